@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "tests/end_to_end/programs.h"
+#include "tests/support/await.h"
 
 namespace ballpiston {
 namespace {
@@ -17,10 +18,12 @@ using ::testing::Not;
 
 // The server enforces its limits once a second. Until it has made room, it refuses new jobs.
 ProcessResult RunWhenThereIsRoom(const TestServer& server, const Words& question) {
-  while (true) {
-    ProcessResult run = server.Client(Joined({{"run", "--format", "json"}, question}));
-    if (run.err.find("TOO_MANY_STORED_BYTES") == std::string::npos) return run;
-  }
+  ProcessResult run;
+  AwaitThat([&] {
+    run = server.Client(Joined({{"run", "--format", "json"}, question}));
+    return run.err.find("TOO_MANY_STORED_BYTES") == std::string::npos;
+  });
+  return run;
 }
 
 // 40 points whose results take 120 kB.
@@ -50,9 +53,12 @@ TEST(Expiry, OldResultsExpireUnlessPinnedAndCanBeComputedAgain) {
   ASSERT_THAT(old, ExitsWith(0));
   const std::string pinned = NameOf(kept), expired = NameOf(old);
   EXPECT_THAT(server.Client({"pin", pinned}).out, HasSubstr(pinned + " pinned"));
-  for (int seed = 3; !HasExpired(server, expired); ++seed) {
-    ASSERT_THAT(RunSweep(server, seed), ExitsWith(0));
-  }
+  int seed = 3;
+  AwaitThat([&] {
+    if (HasExpired(server, expired)) return true;
+    EXPECT_THAT(RunSweep(server, seed++), ExitsWith(0));
+    return testing::Test::HasFailure();
+  });
 
   EXPECT_EQ(PointsOf(server.Client({"result", pinned, "--format", "json"}).out),
             PointsOf(kept.out));

@@ -1,6 +1,7 @@
 // The same question gives the same bytes: whatever the number of workers, and through kill -9.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include <string>
 
@@ -10,16 +11,10 @@ namespace ballpiston {
 namespace {
 
 // Four points of 32 blocks or more each.
-Words Question(int samples) {
-  return Split(
-      "first-hit --rho 0.529561127988977 --delta 0.1,0.05 --epsilon 0.1,0.4 --exponent 1 "
-      "--seed 11 --samples " +
-      std::to_string(samples));
-}
-
+const Words kQuestion = Split(
+    "first-hit --rho 0.529561127988977 --delta 0.1,0.05 --epsilon 0.1,0.4 --exponent 1 --seed 11 "
+    "--samples 300000");
 constexpr int kPoints = 4;
-// Some seconds of one core.
-constexpr int kSamples = 300'000;
 
 std::string Points(const TestServer& server, const std::string& job) {
   const ProcessResult result = server.Client({"result", job, "--format", "json"});
@@ -27,9 +22,9 @@ std::string Points(const TestServer& server, const std::string& job) {
   return PointsOf(result.out);
 }
 
-std::string PointsWithWorkers(int workers, int samples = kSamples) {
+std::string PointsWithWorkers(int workers) {
   const TestServer server(workers);
-  const std::string job = server.Submit(Question(samples));
+  const std::string job = server.Submit(kQuestion);
   EXPECT_THAT(server.Client({"watch", job}), ExitsWith(0));
   return Points(server, job);
 }
@@ -62,42 +57,21 @@ TEST(SameBytes, OfRelaxationMarkovPropertyAndGasesWithOneAndTwoWorkers) {
   }
 }
 
-bool HasSucceeded(const TestServer& server, const std::string& job) {
-  const auto list = server.Json({"list"});
-  const auto newest = At(list, "jobs", 0);
-  EXPECT_EQ(At(newest, "name").string_value(), job);
-  return At(newest, "state").string_value() == "SUCCEEDED";
-}
-
-// Waits until the watching client prints that `finished` points are finished, then kills the server
-// and starts it again. False if the job had ended before the kill.
-bool KillInTheMidst(TestServer& server, const std::string& job, Process& watch, int finished) {
-  const auto points_done = [](const std::string& line) {
-    return static_cast<int>(At(ParseJson(line), "progress", "points_done").number_value());
-  };
-  const std::string line =
-      watch.WaitForErrLine([&](const std::string& text) { return points_done(text) >= finished; });
-  EXPECT_NE(line, "");
-  server.KillHard();
-  server.Start();
-  return points_done(line) < kPoints && !HasSucceeded(server, job);
-}
-
-// The server is killed when one point is finished, and again when a second one is. The watching
-// client reattaches itself. If the job ended before a kill, the next one has twice as many samples.
+// The server is killed when the result of the second point waits to be written, and again after the
+// first result of its second life. The watching client reattaches itself.
 TEST(SameBytes, ThroughKillNineAndRestart) {
-  for (int samples = kSamples; samples <= 8 * kSamples; samples *= 2) {
-    TestServer server(1);
-    const std::string job = server.Submit(Question(samples));
-    const auto watch = server.StartClient({"watch", job, "--progress", "json"});
-    const bool first = KillInTheMidst(server, job, *watch, 1);
-    const bool second = KillInTheMidst(server, job, *watch, 2);
-    const ProcessResult watched = watch->Wait();
-    ASSERT_THAT(watched, ExitsWith(0));
-    ASSERT_EQ(Points(server, job), PointsWithWorkers(2, samples));
-    if (first && second) return;
-  }
-  FAIL() << "always killed too late";
+  TestServer server(1);
+  server.KillHard();
+  server.Spawn("point.recorded:2");
+  ASSERT_TRUE(server.AwaitReady());
+  const std::string job = server.Submit(kQuestion);
+  const auto watch = server.StartClient({"watch", job});
+  EXPECT_EQ(server.AwaitEnd(), 128 + SIGKILL);
+  server.Spawn("point.recorded:1");
+  EXPECT_EQ(server.AwaitEnd(), 128 + SIGKILL);
+  server.Start();
+  EXPECT_THAT(watch->Wait(), ExitsWith(0));
+  EXPECT_EQ(Points(server, job), PointsWithWorkers(2));
 }
 
 // The comparison of the tests above can fail.

@@ -23,7 +23,7 @@ class ServerVerbTest : public ::testing::Test {
 
   // A server that a failing test leaves behind ends by itself.
   ProcessResult Start(const Words& flags) const {
-    return Server("start", Joined({flags, {"--", "--idle-exit-seconds", "60"}}));
+    return Server("start", Joined({flags, {"--", "--idle-exit-seconds", "1000"}}));
   }
   ProcessResult Server(const std::string& verb, const Words& flags) const {
     return RunProgram(ClientCommand(home_, Joined({{"server", verb}, flags})));
@@ -79,10 +79,10 @@ TEST_F(ServerVerbTest, AWrongServerFlagIsReportedWithTheServersLastLogLine) {
 TEST_F(ServerVerbTest, StopIgnoresProcessesThatDoNotUseTheFolder) {
   fs::create_directory(home_.File("data"));
   const std::string lock = home_.File("data/lock");
-  Process stranger({.command = {"sleep", "60"}});
+  Process stranger({.command = {"sleep", "infinity"}});
   WriteFile(lock, std::to_string(stranger.pid()) + "\n");
-  Process holder(
-      {.command = {"flock", "--no-fork", lock, "sh", "-c", "echo locked >&2; exec sleep 60"}});
+  Process holder({.command = {"flock", "--no-fork", lock, "sh", "-c",
+                              "echo locked >&2; exec sleep infinity"}});
   ASSERT_TRUE(holder.WaitForErr("locked"));
   const ProcessResult result = Server("stop", named_);
   EXPECT_THAT(result, ExitsWith(3));

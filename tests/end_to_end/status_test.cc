@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_split.h"
 #include "tests/end_to_end/programs.h"
+#include "tests/support/await.h"
 
 namespace ballpiston {
 namespace {
@@ -81,7 +82,7 @@ TEST(Status, TheServerGoesOnWhenNobodyReadsItsLog) {
   const auto ask = [&](const std::string& words) {
     return RunProgram(ClientCommand(home, Split(words + " --server " + server.address())));
   };
-  while (ask("status").exit_code != 0) continue;  // until the server listens
+  AwaitThat([&] { return ask("status").exit_code == 0; });  // until the server listens
   for (int i = 0; i < 3; ++i) {
     EXPECT_THAT(ask("run equilibrium --rho 0.53 --delta 0.2 --collisions 100"), ExitsWith(0));
   }

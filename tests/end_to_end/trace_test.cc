@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_split.h"
 #include "tests/end_to_end/programs.h"
+#include "tests/support/await.h"
 
 namespace ballpiston {
 namespace {
@@ -82,12 +83,10 @@ TEST_F(TraceTest, AnInterruptionEndsClientAndTrace) {
   options.command.insert(options.command.begin(), {"sh", "-c", "exec \"$@\" >/dev/null", "sh"});
   for (const int signal : {SIGINT, SIGTERM}) {
     Process trace(options);
-    while (Streams() < 1) {
-    }
+    AwaitThat([this] { return Streams() == 1; });
     trace.Signal(signal);
     EXPECT_THAT(trace.Wait(), ExitsWith(130));
-    while (Streams() > 0) {
-    }
+    AwaitThat([this] { return Streams() == 0; });
   }
 }
 
@@ -98,8 +97,7 @@ TEST_F(TraceTest, AReaderThatLeavesEndsTheTrace) {
   EXPECT_THAT(result, ExitsWith(0));
   EXPECT_EQ(At(ParseJson(result.out), "event").string_value(), "start");
   EXPECT_EQ(result.err, "");
-  while (Streams() > 0) {
-  }
+  AwaitThat([this] { return Streams() == 0; });
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "tests/end_to_end/programs.h"
+#include "tests/support/await.h"
 
 namespace ballpiston {
 namespace {
@@ -57,7 +58,7 @@ class WebTest : public ::testing::Test {
     const std::vector<std::string> address =
         absl::StrSplit(line.substr(0, line.find('\n')), "/#token=");
     http_.emplace(address[0]);
-    http_->set_read_timeout(60);
+    http_->set_read_timeout(kPatience);
     host_ = address[0];
     token_ = address[1];
   }
@@ -134,16 +135,18 @@ TEST_F(WebTest, HistogramsOfARunningPointFillUp) {
   };
   EXPECT_EQ(get("}")->status, 404);
   double before = 0;
-  for (int growths = 0; growths < 3;) {
+  int growths = 0;
+  AwaitThat([&] {
     const httplib::Result now = get(", \"unfinished\": true}");
-    if (now->status == 404) continue;  // no worker has begun
-    ASSERT_EQ(now->status, 200) << now->body;
+    if (now->status == 404) return false;  // no worker has begun
+    EXPECT_EQ(now->status, 200) << now->body;
     const auto point = ParseJson(now->body);
     EXPECT_EQ(CountsIn(point), At(point, "samples").number_value());
     EXPECT_EQ(Length(At(point, "histograms", 0, "expected_probabilities")), 1000);
     if (CountsIn(point) > before) ++growths;
     before = CountsIn(point);
-  }
+    return growths == 3 || HasFailure();
+  });
   EXPECT_EQ(get("}")->status, 404);
   EXPECT_THAT(server_.Client({"cancel", job}), ExitsWith(0));
 }
@@ -194,8 +197,8 @@ TEST_F(WebTest, ReconnectsToAServerThatWasRestarted) {
   EXPECT_EQ(gone->status, 503);
   EXPECT_THAT(gone->body, HasSubstr("no answer from the server"));
   server_.Start();
-  int status = 0;  // the channel pauses before it connects again
-  while (status != 200) status = Post(method, "{}")->status;
+  // The channel pauses before it connects again.
+  AwaitThat([&] { return Post(method, "{}")->status == 200; });
 }
 
 // When a reader disconnects its call ends, so there is room for the next calls.
@@ -204,7 +207,7 @@ TEST_F(WebTest, AStreamEndsWhenItsReaderDisconnects) {
   const std::string body = Envelope(absl::StrCat("{\"name\": \"", name, "\"}"));
   for (int i = 0; i < 40; ++i) {  // more than the gateway has threads
     httplib::Client reader(host_);
-    reader.set_read_timeout(60);
+    reader.set_read_timeout(kPatience);
     httplib::Request request;
     request.method = "POST";
     request.path = std::string(kJobs) + "WatchEnsembleJob";

@@ -5,6 +5,7 @@
 
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
+#include "tests/support/await.h"
 
 namespace ballpiston::server {
 namespace {
@@ -138,7 +139,7 @@ void Gate::Pass(std::stop_token stop) {
 
 void Gate::AwaitWaiting(int count) {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return waiting_ >= count; });
+  AwaitNotified(changed_, lock, [&] { return waiting_ >= count; });
 }
 
 int Gate::waiting() {

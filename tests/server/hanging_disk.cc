@@ -3,6 +3,7 @@
 #include <sqlite3.h>
 
 #include "absl/strings/str_cat.h"
+#include "tests/support/await.h"
 
 namespace ballpiston::server {
 
@@ -56,7 +57,7 @@ void HangingDisk::Hang() {
 
 void HangingDisk::AwaitHanging() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return waiting_ > 0; });
+  AwaitNotified(changed_, lock, [this] { return waiting_ > 0; });
 }
 
 void HangingDisk::Resume() {

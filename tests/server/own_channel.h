@@ -3,6 +3,7 @@
 #ifndef BALLPISTON_TESTS_SERVER_OWN_CHANNEL_H_
 #define BALLPISTON_TESTS_SERVER_OWN_CHANNEL_H_
 
+#include <chrono>
 #include <memory>
 #include <string>
 
@@ -11,15 +12,19 @@
 #include "grpcpp/create_channel.h"
 #include "grpcpp/security/credentials.h"
 #include "grpcpp/support/channel_arguments.h"
+#include "tests/support/await.h"
 
 namespace ballpiston::server {
 
-// `credentials` null: none.
+// Each call ends after 15 minutes (kPatience) with DEADLINE_EXCEEDED. `credentials` null: none.
 inline std::shared_ptr<grpc::Channel> OwnChannel(
     const std::string& address,
     const std::shared_ptr<grpc::ChannelCredentials>& credentials = nullptr,
     grpc::ChannelArguments arguments = {}) {
   arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+  const auto seconds = std::chrono::seconds(kPatience).count();
+  arguments.SetServiceConfigJSON(R"({"methodConfig": [{"name": [{}], "timeout": ")" +
+                                 std::to_string(seconds) + R"(s"}]})");
   return grpc::CreateCustomChannel(
       address, credentials != nullptr ? credentials : grpc::InsecureChannelCredentials(),
       arguments);

@@ -6,6 +6,7 @@
 #include "grpc/grpc.h"
 #include "gtest/gtest.h"
 #include "tests/server/own_channel.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
@@ -17,9 +18,6 @@ namespace {
   grpc_init();
   return true;
 }();
-
-// On a busy machine a commit may take long although the disk does not hang.
-constexpr std::chrono::hours kNeverStalls(1);
 
 ServerOptions OptionsIn(const std::string& data_dir, const TestServerOptions& options) {
   ServerOptions all;
@@ -33,7 +31,8 @@ ServerOptions OptionsIn(const std::string& data_dir, const TestServerOptions& op
   all.connections = options.connections;
   all.limits = options.limits;
   all.metrics_listen = options.metrics_listen;
-  all.store = {.delay = std::chrono::milliseconds(1), .stall = kNeverStalls};
+  // On a busy machine a commit may take long although the disk does not hang.
+  all.store = {.delay = std::chrono::milliseconds(1), .stall = kNever};
   return all;
 }
 

@@ -23,6 +23,7 @@
 #include "grpcpp/security/credentials.h"
 #include "server/ballpiston_server.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/support/await.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
@@ -43,12 +44,11 @@ struct TestServerOptions {
 };
 
 // Silent and old connections stay open.
-inline constexpr ConnectionTiming kOnlyClosedByAStop = {
-    .handshake = std::chrono::hours(1),
-    .ping_interval = std::chrono::hours(1),
-    .ping_timeout = std::chrono::hours(1),
-    .certified_age = std::chrono::hours(1),
-    .certified_age_grace = std::chrono::hours(1)};
+inline constexpr ConnectionTiming kOnlyClosedByAStop = {.handshake = kNever,
+                                                        .ping_interval = kNever,
+                                                        .ping_timeout = kNever,
+                                                        .certified_age = kNever,
+                                                        .certified_age_grace = kNever};
 
 // A channel, and frequent calls on it. Calls that do not return a status expect OK.
 class TestClient {

@@ -15,6 +15,7 @@
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"
+#include "tests/support/await.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -90,7 +91,7 @@ TEST(StartStop, StoppingDoesNotWaitForAnEndlessBlock) {
                      })});
   server.Submit(Equilibrium(5, 100));
   gate.AwaitWaiting(3);
-  server.Shutdown(std::chrono::hours(1));
+  server.Shutdown(kNever);
   EXPECT_EQ(begun, 3);
   EXPECT_EQ(gate.waiting(), 0);
 }
@@ -103,7 +104,7 @@ TEST(StartStop, AServerWithoutCallsAndJobsIsIdle) {
   EXPECT_EQ(server.server().IdleFor().count(), 0);  // the server computes
   gate.Open();
   server.AwaitEnd(name);
-  while (server.server().IdleFor() < std::chrono::milliseconds(1)) std::this_thread::yield();
+  AwaitThat([&] { return server.server().IdleFor() >= std::chrono::milliseconds(1); });
 }
 
 // grpc.health.v1 by hand: the request's field 1 names a service, an empty one asks for the whole

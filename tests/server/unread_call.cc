@@ -3,11 +3,13 @@
 #include <chrono>
 #include <utility>
 
+#include "tests/support/await.h"
+
 namespace ballpiston::server {
 
 UnreadCall::UnreadCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method)
     : stub_(channel) {
-  context_.set_deadline(std::chrono::system_clock::now() + std::chrono::minutes(10));
+  context_.set_deadline(std::chrono::system_clock::now() + kPatience);
   call_ = stub_.PrepareCall(&context_, method, &queue_);
   call_->StartCall(this);
   Next();

@@ -7,11 +7,11 @@
 #include <cstdlib>
 #include <map>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "tests/support/await.h"
 
 namespace ballpiston {
 namespace {
@@ -65,17 +65,6 @@ Words SweepOf(int samples, int seed) {
                  {"--seed", absl::StrCat(seed), "--samples", absl::StrCat(samples)}});
 }
 
-void Await(const std::string& what, const std::function<bool()>& condition,
-           std::chrono::seconds limit) {
-  const auto end = std::chrono::steady_clock::now() + limit;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) {
-      throw std::runtime_error("still waiting for: " + what);
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-}
-
 Sweep::Sweep(SweepSetUp set_up) : set_up_(std::move(set_up)), cluster_(set_up_.cluster) {
   mkdir(shared_folder().c_str(), 0700);
   server_ = std::make_unique<TestServer>(
@@ -87,14 +76,16 @@ Sweep::Sweep(SweepSetUp set_up) : set_up_(std::move(set_up)), cluster_(set_up_.c
 Sweep::~Sweep() {
   KeepCounts();
   const testing::TestInfo* const test = testing::UnitTest::GetInstance()->current_test_info();
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   absl::PrintF(
       "%s: %.0f s; by the cluster: %g chunks; %g tasks lost, %g files refused, %g queries%s\n",
-      test->name(), seconds, earlier_.chunks, earlier_.lost, earlier_.refused, earlier_.queries,
+      test->name(), Seconds(), earlier_.chunks, earlier_.lost, earlier_.refused, earlier_.queries,
       notes_);
   std::fflush(stdout);
   if (testing::Test::HasFailure()) absl::PrintF("%s\n", server_->log());
+}
+
+double Sweep::Seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
 void Sweep::Submit() { job_ = server_->Submit(SweepOf(set_up_.samples)); }
@@ -122,15 +113,15 @@ void Sweep::KeepCounts() {
 }
 
 void Sweep::AwaitTasks() const {
-  Await("tasks in the cluster", [this] { return Counts().tasks() > 0; });
+  AwaitThat([this] { return Counts().tasks() > 0; });
 }
 
 void Sweep::AwaitRunningTasks() const {
-  Await("workers", [this] { return !Workers().empty(); });
+  AwaitThat([this] { return !Workers().empty(); });
 }
 
 void Sweep::AwaitProblem(const std::string& text) const {
-  Await("the problem: " + text, [&] { return Counts().problem.find(text) != std::string::npos; });
+  AwaitThat([&] { return Counts().problem.find(text) != std::string::npos; });
 }
 
 std::vector<pid_t> Sweep::Workers() const {

@@ -3,7 +3,6 @@
 #define BALLPISTON_TESTS_SLURM_SWEEP_H_
 
 #include <chrono>
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -15,10 +14,6 @@ namespace ballpiston {
 // Sixteen points; a million samples of each take 20 s of one core.
 inline constexpr int kPoints = 16;
 Words SweepOf(int samples, int seed = 11);
-
-// Returns when the condition holds. Throws std::runtime_error after a minute.
-void Await(const std::string& what, const std::function<bool()>& condition,
-           std::chrono::seconds limit = std::chrono::seconds(60));
 
 struct SlurmCounts {
   std::string problem;
@@ -59,6 +54,7 @@ class Sweep {
   // samples that was asked for, and the bytes are those of a server that has threads alone.
   void ExpectTheSameBytes();
   void Note(const std::string& what) { notes_ += "; " + what; }
+  double Seconds() const;  // since the constructor began
 
  private:
   void KeepCounts();

@@ -124,7 +124,7 @@ std::string Process::Output() const {
 bool Process::WaitFor(const Stream& stream, const std::string& text) {
   std::unique_lock lock(mutex_);
   const auto found = [&] { return stream.text.find(text) != std::string::npos; };
-  news_.wait(lock, [&] { return found() || stream.ended; });
+  AwaitNotified(news_, lock, [&] { return found() || stream.ended; });
   return found();
 }
 
@@ -146,6 +146,9 @@ bool Process::EndsWithin(std::chrono::milliseconds time) const {
 
 ProcessResult Process::Wait() {
   if (!waited_) {
+    if (!EndsWithin(kPatience)) {
+      throw std::runtime_error("the program still runs after 15 minutes; its output:\n" + Output());
+    }
     int status = 0;
     if (Uninterrupted([&] { return waitpid(pid_, &status, 0); }) != pid_) {
       throw std::runtime_error("waitpid failed");

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "gmock/gmock.h"
+#include "tests/support/await.h"
 
 namespace ballpiston {
 
@@ -48,6 +49,8 @@ class Process {
   void Signal(int signal) const;  // no effect after Wait
   pid_t pid() const { return pid_; }
   std::string Output() const;  // standard output, then standard error, so far
+
+  // Each function that waits does so for 15 minutes at most. Then it throws std::runtime_error.
 
   // Waits until standard error holds the text. False if the program ended without it.
   bool WaitForErr(const std::string& text) { return WaitFor(err_, text); }
@@ -94,7 +97,8 @@ std::string Process::WaitForErrLine(Wanted wanted) {
     } else if (err_.ended) {
       return "";
     } else {
-      news_.wait(lock);
+      const size_t length = err_.text.size();
+      AwaitNotified(news_, lock, [&] { return err_.text.size() > length || err_.ended; });
     }
   }
 }

@@ -31,15 +31,23 @@ absl::Status StatusOf(const Result& result) {
   }
 }
 
+// For a failed assertion.
+inline std::string StatusText(const absl::Status& status) {
+  const bool is_late = status.code() == absl::StatusCode::kDeadlineExceeded;
+  return "whose status is " + status.ToString() +
+         (is_late ? "\n(a call of a test has this status if it has not ended after 15 minutes)"
+                  : "");
+}
+
 MATCHER(IsOk, "") {
   const absl::Status status = StatusOf(arg);
-  *result_listener << "whose status is " << status.ToString();
+  *result_listener << StatusText(status);
   return status.ok();
 }
 
 MATCHER_P2(StatusIs, code, message, "") {
   const absl::Status status = StatusOf(arg);
-  *result_listener << "whose status is " << status.ToString();
+  *result_listener << StatusText(status);
   return static_cast<int>(status.code()) == static_cast<int>(code) &&
          testing::ExplainMatchResult(message, std::string(status.message()), result_listener);
 }
@@ -51,7 +59,7 @@ auto StatusIs(Code code) {
 
 MATCHER_P(IsOkAndHolds, value, "") {
   if (!arg.ok()) {
-    *result_listener << "whose status is " << StatusOf(arg).ToString();
+    *result_listener << StatusText(StatusOf(arg));
     return false;
   }
   return testing::ExplainMatchResult(value, *arg, result_listener);

@@ -21,7 +21,7 @@ const ARGUMENTS = [
   '--disable-sync',
 ];
 const PHONE = {width: 390, height: 800};
-const PATIENCE = 20000; // ms, the longest wait for a condition
+const PATIENCE = 15 * 60000; // ms, the longest wait for a condition
 
 const PAIR = ['--rho', '0.5296', '--delta', '0.1'];
 const NEVER_ENDS = [

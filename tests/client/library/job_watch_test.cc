@@ -11,6 +11,7 @@
 
 #include "client/library/client.h"
 #include "tests/client/fake_server.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::client {
@@ -42,7 +43,7 @@ class JobWatch : public ::testing::Test {
   JobWatch() {
     options_.initial_backoff = absl::Milliseconds(1);
     options_.max_backoff = absl::Milliseconds(4);
-    options_.give_up_after = absl::Minutes(10);
+    options_.give_up_after = absl::FromChrono(kPatience);
   }
 
   void Start(std::vector<WatchScript> watches) {
@@ -193,7 +194,7 @@ TEST_F(JobWatch, AStopEndsTheWatchAtOnce) {
 
 TEST_F(JobWatch, AStopEndsThePauseBetweenAttempts) {
   Start({Unavailable()});
-  options_.initial_backoff = absl::Hours(1);
+  options_.initial_backoff = absl::FromChrono(kNever);
   options_.give_up_after = absl::InfiniteDuration();
   after_disconnect_ = [this] { stop_.request_stop(); };
   EXPECT_THAT(Watch(), StatusIs(absl::StatusCode::kCancelled));

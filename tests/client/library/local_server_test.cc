@@ -4,10 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/inotify.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <stop_token>
@@ -18,6 +18,7 @@
 #include "absl/time/time.h"
 #include "client/library/server_address.h"
 #include "tests/client/fake_server.h"
+#include "tests/support/await.h"
 #include "tests/support/files.h"
 #include "tests/support/scoped_variable.h"
 #include "tests/support/status_matchers.h"
@@ -141,25 +142,51 @@ class FolderInUse {
 };
 
 // Waits until the file exists or a stop is requested.
-void Await(const fs::path& file, const std::stop_token& stop) {
-  while (!fs::exists(file) && !stop.stop_requested()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
+void AwaitFile(const fs::path& file, const std::stop_token& stop) {
+  AwaitThat([&] { return fs::exists(file) || stop.stop_requested(); });
 }
 
+// Counts how often a file is opened.
+class Openings {
+ public:
+  explicit Openings(const fs::path& file) : descriptor_(inotify_init1(IN_CLOEXEC | IN_NONBLOCK)) {
+    EXPECT_GE(inotify_add_watch(descriptor_, file.c_str(), IN_OPEN), 0);
+  }
+  ~Openings() { close(descriptor_); }
+  Openings(const Openings&) = delete;
+  Openings& operator=(const Openings&) = delete;
+
+  // Waits until the file has been opened so often from now on, or a stop is requested.
+  void Await(int count, const std::stop_token& stop) {
+    while (Read() > 0) continue;  // earlier ones
+    int seen = 0;
+    AwaitThat([&] { return (seen += Read()) >= count || stop.stop_requested(); });
+  }
+
+ private:
+  // Openings since the last call. The kernel may report equal ones as one.
+  int Read() {
+    inotify_event event;
+    return read(descriptor_, &event, sizeof(event)) == sizeof(event) ? 1 : 0;
+  }
+
+  const int descriptor_;
+};
+
 // The started program exits, because another server holds the folder. The client starts no second
-// program, but waits until that server listens. (The test waits long enough to detect a second
-// start.)
+// program, but waits until that server listens. It looks at the lock again and again meanwhile.
 TEST_F(LocalServerTest, WaitsForAnotherClientsServer) {
   FakeServer other;
   const FolderInUse in_use(home_);
   const LocalServer server{.folder = home_.string(),
                            .socket = other.SocketPath(),
                            .program = Program("cd " + home_.string() +
-                                              "; [ -e once ] && touch twice; touch once; exit 1")};
+                                              "; [ -e once ] && touch twice; touch once; exit 1"),
+                           .start_time = absl::FromChrono(kPatience)};
+  Openings looks(home_ / "lock");
   std::jthread starter([&](const std::stop_token& stop) {
-    Await(home_ / "once", stop);
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    AwaitFile(home_ / "once", stop);
+    looks.Await(6, stop);
     other.Start();
   });
   EXPECT_OK(ConnectToLocalServer(server));
@@ -172,7 +199,7 @@ TEST_F(LocalServerTest, DoesNotWaitForAServerThatListensElsewhere) {
   const LocalServer server{.folder = home_.string(),
                            .socket = home_ / "socket",
                            .program = Program("echo why; exit 2"),
-                           .start_time = absl::Hours(1)};
+                           .start_time = absl::FromChrono(kNever)};
   const FolderInUse in_use(home_);
   WriteFile(home_ / "server.address", "127.0.0.1:50051\n");
   EXPECT_THAT(
@@ -189,11 +216,12 @@ TEST_F(LocalServerTest, StartsAServerWhenAnotherLeavesTheFolder) {
                            .program = Program("cd " + home_.string() +
                                               "; if [ -e once ]; then touch twice;"
                                               " while [ -e once ]; do sleep 0.01; done; exit 1; fi;"
-                                              " touch once; exit 1")};
+                                              " touch once; exit 1"),
+                           .start_time = absl::FromChrono(kPatience)};
   std::jthread starter([&](const std::stop_token& stop) {
-    Await(home_ / "once", stop);
+    AwaitFile(home_ / "once", stop);
     in_use.Leave();
-    Await(home_ / "twice", stop);
+    AwaitFile(home_ / "twice", stop);
     second.Start();
   });
   EXPECT_OK(ConnectToLocalServer(server));

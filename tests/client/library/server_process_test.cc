@@ -5,11 +5,12 @@
 #include <signal.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "absl/strings/str_cat.h"
-#include "absl/time/clock.h"
 #include "absl/time/time.h"
+#include "tests/support/await.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -28,8 +29,6 @@ constexpr char kLock[] =
 constexpr char kListen[] = "echo unix:$2/socket >$2/server.address\n";
 constexpr char kWait[] = "while [ -d $2 ]; do sleep 0.01 9>&-; done\n";
 constexpr char kEnd[] = "trap 'rm $2/server.address; exit 0' TERM\n";
-
-constexpr absl::Duration kPause = absl::Milliseconds(5);
 
 class ServerProcessTest : public ::testing::Test {
  protected:
@@ -91,8 +90,11 @@ TEST_F(ServerProcessTest, StartReturnsTheAddressOfAnEarlierServer) {
 TEST_F(ServerProcessTest, AServerThatDoesNotListenIsFoundAndReported) {
   EXPECT_THAT(StartServer(Program(absl::StrCat(kLock, kWait)), absl::Milliseconds(100)),
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("does not answer")));
-  auto server = FindServer(data_);
-  for (; !server || server->pid == 0; server = FindServer(data_)) absl::SleepFor(kPause);
+  std::optional<RunningServer> server;
+  AwaitThat([&] {
+    server = FindServer(data_);
+    return server && server->pid != 0;
+  });
   EXPECT_EQ(server->address, "");
   EXPECT_OK(StopServer(data_));
 }

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from conftest import Home, wait_until
+from conftest import LIMIT, Home, wait_until
 
 import ballpiston
 from ballpiston.channel_security import ChannelSecurity, check, credentials_of
@@ -135,7 +135,7 @@ def test_no_program_and_no_server_says_what_to_install(
 
 def test_a_server_that_does_not_answer_is_named(tmp_path: Path) -> None:
     address = f"unix:{tmp_path}/socket"
-    with ballpiston.connect(address, timeout=10) as client:
+    with ballpiston.connect(address, timeout=LIMIT) as client:
         with pytest.raises(ballpiston.Unavailable, match="no answer from the server at unix:"):
             client.jobs()
 

@@ -44,6 +44,7 @@ def test_a_watch_goes_on_after_the_server_was_killed(own_home: Home) -> None:
         assert ends == []
         job.cancel()
         thread.join(LIMIT)
+        assert not thread.is_alive(), f"the watch has not ended after {LIMIT} seconds"
     assert [type(error) for error in ends] == [ballpiston.JobCancelled]
 
 

@@ -22,6 +22,7 @@
 #include "tests/fault/store/service_on_disk.h"
 #include "tests/server/error_details.h"
 #include "tests/server/requests.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
@@ -47,8 +48,7 @@ void ExpectDiskFailure(const absl::Status& status, Refusal refusal) {
 
 // Flush succeeds only when all pending writes are written.
 void AwaitWritten(Store& store) {
-  while (!store.Flush().ok()) {
-  }
+  AwaitThat([&] { return store.Flush().ok(); });
 }
 
 // A job that waits at a turnstile, a job that has ended, and the three calls that write.
@@ -268,10 +268,10 @@ TEST(DiskFailure, TheStoreNoticesByItselfThatTheDiskWorksAgain) {
   EXPECT_FALSE(scene.Create().ok());
   EXPECT_TRUE(scene.service().store().failing());
   const int64_t refusals = scene.disk().refusals();
-  while (scene.disk().refusals() < refusals + 3) std::this_thread::yield();  // the store retries
+  AwaitThat([&] { return scene.disk().refusals() >= refusals + 3; });  // the store retries
   EXPECT_TRUE(scene.service().store().failing());
   scene.disk().StopRefusing();
-  while (scene.service().store().failing()) std::this_thread::yield();  // without any call
+  AwaitThat([&] { return !scene.service().store().failing(); });  // without any call
   EXPECT_OK(scene.Create());
 }
 
@@ -319,6 +319,7 @@ void RecordLarge(Store& store, int64_t job) {
 TEST(DiskFailure, OnAFullDiskTheReserveLetsALargeJobBeDeleted) {
   FaultDisk disk;
   Store::Options options;
+  options.stall = kNever;
   options.retry = std::chrono::milliseconds(1);
   options.reserve_bytes = 4'000'000;
   options.vfs = disk.vfs();
@@ -327,7 +328,7 @@ TEST(DiskFailure, OnAFullDiskTheReserveLetsALargeJobBeDeleted) {
   AwaitWritten(*store);
   disk.SetCapacity(disk.bytes_used() + 200'000);
   RecordLarge(*store, 8);
-  while (!store->failing()) std::this_thread::yield();
+  AwaitThat([&] { return store->failing(); });
   ASSERT_OK(store->CommitDeletion([](Database& database) { return DeleteJob(database, 7); }));
   AwaitWritten(*store);
   const auto count = [](Database& database) {
@@ -370,6 +371,7 @@ TEST(DiskFailure, OnAFullDiskRecordsThatFitAreWritten) {
 TEST(DiskFailure, WorkersWaitWhenTheirResultsTakeTooMuchMemory) {
   FaultDisk disk;
   Store::Options options;
+  options.stall = kNever;
   options.retry = std::chrono::milliseconds(1);
   options.max_pending_bytes = 1000;
   options.vfs = disk.vfs();
@@ -384,7 +386,7 @@ TEST(DiskFailure, WorkersWaitWhenTheirResultsTakeTooMuchMemory) {
     has_room = true;
   });
   const int64_t refusals = disk.refusals();
-  while (disk.refusals() < refusals + 3) std::this_thread::yield();
+  AwaitThat([&] { return disk.refusals() >= refusals + 3; });
   EXPECT_FALSE(has_room);
   disk.StopRefusing();
   worker.join();
@@ -395,7 +397,8 @@ TEST(DiskFailure, WorkersWaitWhenTheirResultsTakeTooMuchMemory) {
 TEST(DiskFailure, ManyWritesAreNotDelayed) {
   FaultDisk disk;
   Store::Options options;
-  options.delay = std::chrono::hours(1);
+  options.stall = kNever;
+  options.delay = kNever;
   options.max_pending = 10;
   options.vfs = disk.vfs();
   ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(kStorePath, options));
@@ -405,7 +408,7 @@ TEST(DiskFailure, ManyWritesAreNotDelayed) {
       if (number == 6) stored.set_value();
     });
   }
-  stored.get_future().wait();
+  EXPECT_EQ(stored.get_future().wait_for(kPatience), std::future_status::ready);
 }
 
 // ---- a whole life with one disk error ----

@@ -20,6 +20,7 @@
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
 #include "tests/server/thread_pool.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -73,7 +74,7 @@ absl::Status AddUnfinished(Database& database, int number, JobState state,
 
 // Fills a store in one commit, and closes it.
 void Fill(const std::string& path, const Store::Change& change) {
-  ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(path, {}));
+  ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(path, {.stall = kNever}));
   ASSERT_OK(store->Commit(change));
 }
 

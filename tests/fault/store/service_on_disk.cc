@@ -9,6 +9,7 @@
 #include "server/jobs/job_state.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
+#include "tests/support/await.h"
 
 namespace ballpiston::server {
 namespace {
@@ -22,8 +23,9 @@ ExperimentFactory Factory(Turnstile* turnstile) {
 // Records wait until a request is committed, so that a trace does not depend on time.
 Store::Options StoreOptions(const FaultDisk& disk) {
   Store::Options options;
-  options.delay = std::chrono::hours(1);
+  options.delay = kNever;
   options.retry = std::chrono::milliseconds(1);
+  options.stall = kNever;
   options.reserve_bytes = 0;  // a disk of a few kB, copied at each cut
   options.vfs = disk.vfs();
   return options;
@@ -67,7 +69,7 @@ void Turnstile::AwaitWaiting() {
 }
 
 void Turnstile::AwaitWaiting(std::unique_lock<std::mutex>& lock) {
-  changed_.wait(lock, [this] { return admitted_ == 0 && waiting_ > 0; });
+  AwaitNotified(changed_, lock, [this] { return admitted_ == 0 && waiting_ > 0; });
 }
 
 // ---- ServiceOnDisk ----
@@ -131,7 +133,7 @@ v1::EnsembleJob ServiceOnDisk::AwaitEnd(const std::string& id) {
     if (job.ok() && HasEnded(job->state())) return *job;
     if (absl::IsNotFound(job.status())) return {};
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return changes_ != seen; });
+    AwaitNotified(changed_, lock, [&] { return changes_ != seen; });
   }
 }
 

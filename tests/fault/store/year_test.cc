@@ -24,6 +24,7 @@
 #include "server/store/usage_table.h"
 #include "tests/server/requests.h"
 #include "tests/server/store_access.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -70,7 +71,7 @@ class Prober {
 class YearTest : public testing::Test {
  protected:
   YearTest()
-      : store_(*Store::Open(path_, {.delay = std::chrono::milliseconds(1)})),
+      : store_(*Store::Open(path_, {.delay = std::chrono::milliseconds(1), .stall = kNever})),
         retention_(*store_, usage_, {.retain_days = kRetainDays, .max_store_bytes = kBound}) {}
 
   // With a histogram of 750 bins, like a first hit.

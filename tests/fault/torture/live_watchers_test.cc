@@ -19,6 +19,7 @@
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"
 #include "tests/fault/torture/sizes.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::torture {
@@ -127,7 +128,7 @@ class LiveWatchers : public testing::Test {
   // Waits until each watcher has received this many messages.
   void AwaitHeard(int messages) const {
     for (const LiveWatcher& watcher : watchers_) {
-      while (watcher.heard() < messages) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      AwaitThat([&] { return watcher.heard() >= messages; });
     }
   }
 

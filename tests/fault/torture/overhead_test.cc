@@ -41,7 +41,8 @@ class OnFirstCores {
   cpu_set_t before_;
 };
 
-// Runs the same question on both in turn. While one computes, the other is stopped.
+// Runs the same question on both in turn. While one computes, the other is stopped. The short form
+// only shows that both compute: on a busy machine the ratio may have any value.
 void Compare(int workers, const std::string& name, Findings& findings) {
   const OnFirstCores pinned(workers);
   const v1::EnsembleSpec question = Endless();
@@ -54,7 +55,7 @@ void Compare(int workers, const std::string& name, Findings& findings) {
   engine.Run(length);  // both warm
   ServerWindow(server, client, job.name(), length);
   PairedRatio processor, wall;
-  for (int i = 0; i < Size(4, 400); ++i) {
+  for (int i = 0; i < Size(1, 400); ++i) {
     const Window with = ServerWindow(server, client, job.name(), length, kLeastSamples);
     const Window bare = engine.RunInsteadOf(server, length);
     processor.Add(with.ProcessorCost(), bare.ProcessorCost());
@@ -63,9 +64,9 @@ void Compare(int workers, const std::string& name, Findings& findings) {
   }
   findings.Note("processor time a sample, " + name, processor.Text());
   findings.Note("time a sample, " + name, wall.Text());
-  const double bound = HoldsToTimes() ? kMostOverhead + 2 * processor.StandardError() : 1;
-  EXPECT_LT(processor.ratio() - 1, bound) << name;
+  EXPECT_GT(processor.ratio(), 0) << name;
   if (HoldsToTimes()) {
+    EXPECT_LT(processor.ratio() - 1, kMostOverhead + 2 * processor.StandardError()) << name;
     EXPECT_LT(processor.StandardError(), kMostOverhead / 2) << "too noisy to tell";
   }
 }

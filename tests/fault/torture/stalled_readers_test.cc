@@ -15,6 +15,7 @@
 #include "tests/fault/torture/questions.h"
 #include "tests/fault/torture/sizes.h"
 #include "tests/fault/torture/windows.h"
+#include "tests/support/await.h"
 
 namespace ballpiston::torture {
 namespace {
@@ -28,7 +29,8 @@ constexpr int kPoints = 40'000;
 constexpr int kFinishedBefore = 600;
 constexpr int kFinishedMeanwhile = 10;
 constexpr int kWorkers = 2;
-constexpr std::chrono::seconds kLongestToStall(20);
+// Readers that get messages for so long have not stalled.
+constexpr std::chrono::milliseconds kLongestToStall = kPatience;
 
 class StalledReaders : public testing::Test {
  protected:
@@ -42,8 +44,7 @@ class StalledReaders : public testing::Test {
   int Finished() const { return client_->Get(name_)->progress().points_done(); }
 
   void AwaitFinished(int points) const {
-    while (Finished() < std::min(points, kPoints))
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    AwaitThat([&] { return Finished() >= std::min(points, kPoints); });
   }
 
   // The cost of a sample, relative to the bare engine at the same time, because the machine's speed

@@ -17,6 +17,7 @@
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"
 #include "tests/fault/torture/sizes.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::torture {
@@ -66,7 +67,7 @@ absl::Status InsertEnded(Database& database, int count, const std::string& resul
 }
 
 void Fill(const std::string& path, int jobs) {
-  ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(path, {}));
+  ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(path, {.stall = kNever}));
   const std::string result = SomeResult();
   for (int i = 0; i < jobs; i += kGroup) {
     ASSERT_OK(

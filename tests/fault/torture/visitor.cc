@@ -10,6 +10,7 @@
 #include "client/library/job_watch.h"
 #include "client/library/request_id.h"
 #include "tests/fault/torture/connected_server.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::torture {
@@ -22,7 +23,7 @@ using client::HasEnded;
 constexpr size_t kMostActive = 3;
 // Enough jobs for the lists, few enough to check all at the end.
 constexpr size_t kMostKept = 40;
-constexpr std::chrono::seconds kPatience(20);  // for one call; after that the call is repeated
+constexpr std::chrono::seconds kTimeOfCall(20);  // after that the call is repeated
 
 // A call that reaches a server just as it stops is CANCELLED by gRPC, without a reason.
 bool WasNotAnswered(const absl::Status& status) {
@@ -36,7 +37,7 @@ absl::StatusOr<Response> Ask(Stub& stub,
                                                           Response*),
                              const Request& request) {
   grpc::ClientContext context;
-  context.set_deadline(std::chrono::system_clock::now() + kPatience);
+  context.set_deadline(std::chrono::system_clock::now() + kTimeOfCall);
   context.set_wait_for_ready(true);
   Response response;
   const absl::Status status = client::FromGrpc((stub.*method)(&context, request, &response));
@@ -237,6 +238,7 @@ void Visitor::CheckSamples(const OwnJob& job, const v1::EnsembleJob& seen) {
 void Visitor::CheckAll() {
   for (OwnJob& job : jobs_) {
     client::WatchOptions options;
+    options.give_up_after = absl::FromChrono(kPatience);
     const auto ended = client::WatchJob(*stub_, job.name, {}, options);
     if (!ended.ok()) {
       Wrong(job, absl::StrCat("at the end: ", ended.status().ToString()));

@@ -17,6 +17,7 @@
 #include "tests/fault/torture/questions.h"
 #include "tests/fault/torture/sizes.h"
 #include "tests/fault/torture/watch_chain.h"
+#include "tests/support/await.h"
 
 namespace ballpiston::torture {
 namespace {
@@ -87,6 +88,7 @@ class Watches : public testing::Test {
       };
       client::WatchOptions options;
       options.max_backoff = absl::Milliseconds(500);
+      options.give_up_after = absl::FromChrono(kPatience);
       const auto ended = client.Watch(name, callbacks, options);
       findings_.Count("client library's watches to the end");
       if (!ended.ok()) findings_.Wrong(absl::StrCat("WatchJob: ", ended.status().ToString()));

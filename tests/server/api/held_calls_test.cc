@@ -13,6 +13,7 @@
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"
 #include "tests/server/unread_call.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
@@ -94,15 +95,16 @@ class UnreadAnswers : public testing::Test {
   void ExpectRefusedUntilLetGo(const std::string& flag) {
     std::unique_ptr<UnreadCall> unread;
     grpc::Status refused;
-    do {  // until the server knows that the answers before it were read
+    AwaitThat([&] {  // the server knows that the answers before it were read
       unread = Unread();
       refused = Evaluate();
-    } while (ReasonOf(refused) != "TOO_MANY_CALLS");
+      return ReasonOf(refused) == "TOO_MANY_CALLS";
+    });
     EXPECT_THAT(refused, StatusIs(grpc::StatusCode::RESOURCE_EXHAUSTED));
     EXPECT_THAT(refused.error_message(), HasSubstr("(--" + flag + ")"));
     unread.reset();
-    while (ReasonOf(Evaluate()) == "TOO_MANY_CALLS") {  // until the server sees the end
-    }
+    // Then the server has seen the end.
+    AwaitThat([&] { return ReasonOf(Evaluate()) != "TOO_MANY_CALLS"; });
   }
 
   Gate gate_;

@@ -22,6 +22,7 @@
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"
 #include "tests/server/thread_pool.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -31,7 +32,7 @@ namespace {
 // The objects behind the API, without gRPC, so that a test can set the caller.
 class ServerStatusTest : public testing::Test {
  protected:
-  explicit ServerStatusTest(const Store::Options& options = {})
+  explicit ServerStatusTest(const Store::Options& options = {.stall = kNever})
       : store_(*Store::Open(folder_.File("store.sqlite3"), options)) {}
   ~ServerStatusTest() override { gate_.Open(); }
 
@@ -185,7 +186,7 @@ class HangingDiskTest : public ServerStatusTest {
       EXPECT_OK(store_->Commit(write));
     });
     disk_->AwaitHanging();
-    while (!store_->stalled()) std::this_thread::yield();
+    AwaitThat([this] { return store_->stalled(); });
   }
 
   std::unique_ptr<HangingDisk> disk_;

@@ -13,6 +13,7 @@
 #include "tests/server/error_details.h"
 #include "tests/server/running_server.h"
 #include "tests/server/secure_server.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
@@ -201,8 +202,8 @@ TEST_F(TraceServiceTest, ATraceCountsAsAStreamUntilItsReaderGoes) {
               IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_STREAMS"));
   first->context.TryCancel();
   first.reset();
-  while (!TraceStream(server, Request(1)).Next()) {  // until the server knows
-  }
+  // Then the server knows that the trace has ended.
+  AwaitThat([&] { return TraceStream(server, Request(1)).Next().has_value(); });
 }
 
 TEST_F(TraceServiceTest, ItsMemoryCountsAmongTheBytesOfCalls) {
@@ -214,14 +215,14 @@ TEST_F(TraceServiceTest, ItsMemoryCountsAmongTheBytesOfCalls) {
   EXPECT_THAT(Refusal(Request(1)), IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_CALLS"));
   first->context.TryCancel();
   first.reset();
-  while (!TraceStream(server, Request(1)).Next()) {  // until the server knows
-  }
+  // Then the server knows that the trace has ended.
+  AwaitThat([&] { return TraceStream(server, Request(1)).Next().has_value(); });
 }
 
 TEST_F(TraceServiceTest, AStopEndsTracesThatAreRead) {
   TraceStream stream(server(), kLong);
   ASSERT_TRUE(stream.Next());
-  std::thread stop([this] { server().Shutdown(std::chrono::minutes(10)); });
+  std::thread stop([this] { server().Shutdown(kNever); });
   EXPECT_THAT(stream.End(), IsError(grpc::StatusCode::UNAVAILABLE, "SHUTTING_DOWN"));
   stop.join();
 }
@@ -243,8 +244,7 @@ TEST(TraceCredentials, AStalledTraceEndsWhenItsTokenIsRevoked) {
   ASSERT_TRUE(stalled.Next());
   files.WriteAccessFile(TokenLine(kOps, {"ops", Role::kAdmin}));
   ASSERT_OK(server.server().Reload());
-  while (ops.Status().streams() > 0) {
-  }
+  AwaitThat([&] { return ops.Status().streams() == 0; });
   EXPECT_THAT(stalled.End(), Not(IsOk()));
 }
 

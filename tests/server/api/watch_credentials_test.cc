@@ -10,6 +10,7 @@
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"
 #include "tests/server/secure_server.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
@@ -84,8 +85,7 @@ TEST_F(WatchCredentialsTest, AStalledReaderLosesItsWatchToo) {
   while (ops_.Status().streams() < 1) {  // until the server has the watch
   }
   ReplaceAccess(TokenLine(kOps, {"ops", Role::kAdmin}));
-  while (ops_.Status().streams() > 0) {
-  }
+  AwaitThat([this] { return ops_.Status().streams() == 0; });
   EXPECT_THAT(stalled.End(), Not(IsOk()));
 }
 

@@ -18,6 +18,7 @@ class FakeSlurm::FakeTools : public SlurmTools {
   absl::Status Submit(const ArraySubmission& array, const std::stop_token&) override {
     std::lock_guard lock(slurm_.mutex_);
     slurm_.submissions_.push_back(array);
+    slurm_.queries_before_.push_back(slurm_.queries_);
     if (!slurm_.accepts_) return slurm_.submission_;
     Array& taken = slurm_.arrays_[array.name];
     taken = Array();
@@ -30,7 +31,7 @@ class FakeSlurm::FakeTools : public SlurmTools {
   absl::StatusOr<std::map<std::string, QueuedArray>> Query(absl::string_view prefix,
                                                            const std::stop_token&) override {
     std::lock_guard lock(slurm_.mutex_);
-    slurm_.queries_.push_back(Clock::now());
+    ++slurm_.queries_;
     if (!slurm_.query_.ok()) return slurm_.query_;
     std::map<std::string, QueuedArray> queue;
     for (const auto& [name, array] : slurm_.arrays_) {
@@ -107,9 +108,10 @@ void FakeSlurm::End(const std::string& name, size_t task) {
   if (found->second.waiting.empty() && found->second.running.empty()) arrays_.erase(found);
 }
 
-void FakeSlurm::Lose(const std::string& name, size_t task) {
+size_t FakeSlurm::Lose(const std::string& name, size_t task) {
   std::lock_guard lock(mutex_);
   End(name, task);
+  return queries_;
 }
 
 void FakeSlurm::LoseAll() {
@@ -148,9 +150,14 @@ std::vector<std::string> FakeSlurm::cancelled() const {
   return cancelled_;
 }
 
-std::vector<FakeSlurm::Clock::time_point> FakeSlurm::queries() const {
+size_t FakeSlurm::queries() const {
   std::lock_guard lock(mutex_);
   return queries_;
+}
+
+size_t FakeSlurm::QueriesBeforeSubmission(size_t index) const {
+  std::lock_guard lock(mutex_);
+  return queries_before_.at(index);
 }
 
 std::map<std::string, std::set<size_t>> FakeSlurm::queue() const {

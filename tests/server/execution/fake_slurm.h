@@ -3,7 +3,6 @@
 #ifndef BALLPISTON_TESTS_SERVER_EXECUTION_FAKE_SLURM_H_
 #define BALLPISTON_TESTS_SERVER_EXECUTION_FAKE_SLURM_H_
 
-#include <chrono>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -22,8 +21,6 @@ namespace ballpiston::server {
 
 class FakeSlurm {
  public:
-  using Clock = std::chrono::steady_clock;
-
   std::unique_ptr<SlurmTools> Tools(const SlurmOptions& options);
 
   // ---- how it behaves from now on ----
@@ -38,8 +35,9 @@ class FakeSlurm {
 
   void Add(const std::string& name, size_t tasks);   // an array that this server did not submit
   void Start(const std::string& name, size_t task);  // the task runs and has left no file yet
-  // The task has ended, whatever its files say. Without an index, all tasks of all arrays.
-  void Lose(const std::string& name, size_t task);
+  // The task has ended, whatever its files say. Returns the number of queries until then. Without
+  // an index, all tasks of all arrays.
+  size_t Lose(const std::string& name, size_t task);
   void LoseAll();
   // Computes the task as ballpiston-worker does, and ends it.
   absl::Status Run(const std::string& name, size_t task);
@@ -49,7 +47,8 @@ class FakeSlurm {
 
   std::vector<ArraySubmission> submissions() const;  // also refused ones
   std::vector<std::string> cancelled() const;        // names; or NAME_[INDICES]
-  std::vector<Clock::time_point> queries() const;
+  size_t queries() const;                            // their number
+  size_t QueriesBeforeSubmission(size_t index) const;
   std::map<std::string, std::set<size_t>> queue() const;  // names and tasks that have not ended
 
  private:
@@ -70,7 +69,8 @@ class FakeSlurm {
   std::map<std::string, Array> arrays_;
   std::vector<ArraySubmission> submissions_;
   std::vector<std::string> cancelled_;
-  std::vector<Clock::time_point> queries_;
+  size_t queries_ = 0;
+  std::vector<size_t> queries_before_;  // each submission
 };
 
 // The task of an array in this folder, as the server wrote it.

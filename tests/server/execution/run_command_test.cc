@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/await.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -106,10 +107,10 @@ TEST(RunCommand, TheProgramIsKilledWhenStopIsRequested) {
   const TemporaryFolder folder;
   const std::string pid_file = folder.File("pid");
   Command command = Shell(absl::StrCat("echo $$ >", pid_file, "; exec ", kForever));
-  command.limit = std::chrono::hours(1);
+  command.limit = kNever;
   std::stop_source stop;
   std::thread stopper([&] {
-    while (Contents(pid_file).empty()) std::this_thread::yield();
+    AwaitThat([&] { return !Contents(pid_file).empty(); });
     stop.request_stop();
   });
   EXPECT_THAT(RunCommand(command, stop.get_token()), StatusIs(absl::StatusCode::kCancelled));

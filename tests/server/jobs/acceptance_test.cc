@@ -28,6 +28,7 @@
 #include "tests/server/running_server.h"
 #include "tests/server/store_access.h"
 #include "tests/server/thread_pool.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -53,8 +54,9 @@ class AcceptanceTest : public testing::Test {
   ~AcceptanceTest() override { Stop(); }
 
   void Start() {
-    ASSERT_OK_AND_ASSIGN(
-        store_, Store::Open(folder_.File("store"), {.delay = std::chrono::milliseconds(1)}));
+    ASSERT_OK_AND_ASSIGN(store_,
+                         Store::Open(folder_.File("store"),
+                                     {.delay = std::chrono::milliseconds(1), .stall = kNever}));
     pool_ = std::make_unique<ThreadPool>(2, Experiments());
     book_ = std::make_unique<JobBook>(*store_, limits_, pool_->scheduler(), [this] {
       std::lock_guard lock(mutex_);
@@ -100,7 +102,7 @@ class AcceptanceTest : public testing::Test {
   EnsembleJob AwaitEnd(const std::string& name) {
     absl::StatusOr<EnsembleJob> job;
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] {
+    AwaitNotified(changed_, lock, [&] {
       job = book_->Get({"", Role::kAdmin}, IdOf(name));
       return !job.ok() || HasEnded(job->state());
     });

@@ -14,6 +14,7 @@
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
 #include "tests/server/thread_pool.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -79,7 +80,7 @@ class JobList : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
-  std::unique_ptr<Store> store_ = *Store::Open(folder_.File("store"), {});
+  std::unique_ptr<Store> store_ = *Store::Open(folder_.File("store"), {.stall = kNever});
   ThreadPool pool_{1, FakeExperiments()};
   std::unique_ptr<JobBook> book_ =
       std::make_unique<JobBook>(*store_, Limits(), pool_.scheduler(), [] {});

@@ -18,6 +18,7 @@
 #include "server/store/job_table.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/store_access.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -159,7 +160,7 @@ class JobJournalTest : public testing::Test {
   // Nothing is committed before it is flushed.
   void SetUp() override {
     ASSERT_OK_AND_ASSIGN(store_,
-                         Store::Open(folder_.File("store"), {.delay = std::chrono::hours(1)}));
+                         Store::Open(folder_.File("store"), {.delay = kNever, .stall = kNever}));
     record_ = JobWithPoints(3);
     ASSERT_OK(store_->Commit([this](Database& database) { return InsertJob(database, record_); }));
     job_ = std::make_shared<Job>(record_, nullptr);

@@ -17,6 +17,7 @@
 #include "tests/server/requests.h"
 #include "tests/server/store_access.h"
 #include "tests/server/thread_pool.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -43,8 +44,9 @@ class StoredLimitsTest : public testing::Test {
 
   void Start(const Limits& limits, ExperimentFactory factory = FakeExperiments()) {
     Stop();
-    ASSERT_OK_AND_ASSIGN(
-        store_, Store::Open(path_, {.delay = std::chrono::milliseconds(1), .reserve_bytes = 0}));
+    ASSERT_OK_AND_ASSIGN(store_, Store::Open(path_, {.delay = std::chrono::milliseconds(1),
+                                                     .stall = kNever,
+                                                     .reserve_bytes = 0}));
     pool_ = std::make_unique<ThreadPool>(2, std::move(factory));
     book_ = std::make_unique<JobBook>(*store_, limits, pool_->scheduler(), nullptr);
     ASSERT_OK(book_->Resume());
@@ -65,10 +67,14 @@ class StoredLimitsTest : public testing::Test {
     return book_->Get(caller, id).value();
   }
 
+  void AwaitEnd(const Principal& caller, const std::string& id) {
+    AwaitThat([&] { return HasEnded(Get(caller, id).state()); });
+  }
+
   // The id of a job that has succeeded.
   std::string Done(const Principal& caller, uint64_t seed, int points = 3) {
     const std::string id = *JobIdOf(Create(caller, seed, points).value().name());
-    while (!HasEnded(Get(caller, id).state())) std::this_thread::yield();
+    AwaitEnd(caller, id);
     EXPECT_EQ(Get(caller, id).state(), EnsembleJob::SUCCEEDED);
     return id;
   }
@@ -154,7 +160,7 @@ TEST_F(StoredLimitsTest, AnActiveJobDoesNotExpireAndCanBePinned) {
   EXPECT_TRUE(book_->Pin(kAlice, id, true)->pinned());
   book_->KeepLimits(absl::Now() + 100 * kDay);
   gate.Open();
-  while (!HasEnded(Get(kAlice, id).state())) std::this_thread::yield();
+  AwaitEnd(kAlice, id);
   EXPECT_TRUE(Get(kAlice, id).pinned());
   book_->KeepLimits(absl::Now() + 100 * kDay);
   EXPECT_EQ(PointsOf(kAlice, id), 3u);
@@ -176,7 +182,7 @@ TEST_F(StoredLimitsTest, TheStoreKeepsItsBound) {
   for (uint64_t seed = 1; seed <= 30; ++seed) {
     ids.push_back(Done(kAlice, seed, 300));
     book_->KeepLimits(absl::Now());
-    while (ReadFrom(*store_, &IsSweeping)) std::this_thread::yield();
+    AwaitThat([this] { return !ReadFrom(*store_, &IsSweeping); });
     EXPECT_LT(ReadFrom(*store_, &UsedBytes), kBound);
   }
   EXPECT_TRUE(Get(kAlice, ids.front()).results_expired());
@@ -194,7 +200,7 @@ TEST_F(StoredLimitsTest, AStoreFullOfPinnedJobsRejectsNewJobs) {
   Start({.max_store_bytes = 200'000});
   const std::string pinned = *JobIdOf(Create(kAlice, 1, 900)->name());
   ASSERT_OK(book_->Pin(kAlice, pinned, true));
-  while (!HasEnded(Get(kAlice, pinned).state())) std::this_thread::yield();
+  AwaitEnd(kAlice, pinned);
   book_->KeepLimits(absl::Now());
   const absl::Status refused = Create(kBob, 2).status();
   EXPECT_THAT(refused, IsLimit("TOO_MANY_STORED_BYTES", "max-store-bytes"));
@@ -233,7 +239,7 @@ TEST_F(StoredLimitsTest, AnUnfinishedJobCountsAfterARestart) {
   Start({}, FakeExperiments(stuck));
   EXPECT_EQ(book_->usage().Of("alice", absl::Now()).bytes, bytes);
   gate.Open();
-  while (!HasEnded(Get(kAlice, id).state())) std::this_thread::yield();
+  AwaitEnd(kAlice, id);
   EXPECT_EQ(static_cast<double>(book_->usage().Of("alice", absl::Now()).bytes),
             Get(kAlice, id).stored_bytes());
 }
@@ -245,7 +251,7 @@ TEST_F(StoredLimitsTest, AJobThatTakesTooLongFailsAndKeepsItsPoints) {
   };
   Start({.max_seconds_per_job = 1e-9}, FakeExperiments(stuck));
   const std::string id = *JobIdOf(Create(kAlice, 1)->name());
-  while (Get(kAlice, id).progress().points_done() == 0) std::this_thread::yield();
+  AwaitThat([&] { return Get(kAlice, id).progress().points_done() > 0; });
   while (!HasEnded(Get(kAlice, id).state())) book_->KeepLimits(absl::Now());
   const EnsembleJob job = Get(kAlice, id);
   EXPECT_EQ(job.state(), EnsembleJob::FAILED);

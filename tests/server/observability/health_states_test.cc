@@ -8,6 +8,7 @@
 
 #include "gtest/gtest.h"
 #include "server/observability/health.h"
+#include "tests/support/await.h"
 
 namespace ballpiston::server {
 namespace {
@@ -33,7 +34,7 @@ class FakeHealth : public grpc::HealthCheckServiceInterface {
   }
   void Await(const std::string& name, bool serving) {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return serving_.at(name) == serving; });
+    AwaitNotified(changed_, lock, [&] { return serving_.at(name) == serving; });
   }
 
  private:

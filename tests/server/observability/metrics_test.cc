@@ -16,6 +16,7 @@
 #include "tests/server/http_get.h"
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
@@ -61,7 +62,7 @@ class MetricsTest : public testing::Test {
   std::map<std::string, double> Metrics() { return Samples(Page()); }
   // A client sees the end of a job or a stream just before it is counted.
   void Await(const std::string& metric, double value) {
-    while (Metrics().at(metric) != value) std::this_thread::yield();
+    AwaitThat([&] { return Metrics().at(metric) == value; });
   }
 
   Gate gate_;
@@ -117,7 +118,7 @@ TEST_F(MetricsTest, AHealthWatchEndedByItsClientIsNotLogged) {
                      "grpc_type=\"server_stream\"}");
     return found == metrics.end() ? 0 : found->second;
   };
-  while (ended_as("CANCELLED") + ended_as("UNKNOWN") == 0) std::this_thread::yield();
+  AwaitThat([&] { return ended_as("CANCELLED") + ended_as("UNKNOWN") > 0; });
   EXPECT_EQ(ended_as("CANCELLED"), 1);
   EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::Not(HasSubstr("call failed")));
 }

@@ -11,6 +11,7 @@
 #include "gtest/gtest.h"
 #include "server/store/pilot_table.h"
 #include "tests/server/store_access.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -30,7 +31,7 @@ PilotPlace PlaceOf(const EnsembleSpec& spec) { return PilotPlaceFor(PointAt(spec
 
 class ModelLadderTest : public testing::Test {
  protected:
-  ModelLadderTest() : store_(*Store::Open(folder_.File("store.sqlite3"), {})) {}
+  ModelLadderTest() : store_(*Store::Open(folder_.File("store.sqlite3"), {.stall = kNever})) {}
 
   // The experiment; runs a pilot, which costs nothing, if the ladder asks for one.
   std::unique_ptr<const PointExperiment> Create(ModelLadder& ladder, const EnsembleSpec& spec) {

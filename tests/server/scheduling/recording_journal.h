@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "server/scheduling/run_journal.h"
+#include "tests/support/await.h"
 
 namespace ballpiston::server {
 
@@ -64,7 +65,7 @@ class RecordingJournal : public RunJournal {
 
   absl::Status AwaitEnd() {
     std::unique_lock lock(mutex);
-    changed.wait(lock, [this] { return outcome.has_value(); });
+    AwaitNotified(changed, lock, [this] { return outcome.has_value(); });
     return *outcome;
   }
 

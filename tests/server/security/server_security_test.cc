@@ -30,6 +30,7 @@
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"
 #include "tests/server/secure_server.h"
+#include "tests/support/await.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 
@@ -378,8 +379,7 @@ TEST_F(SecureServer, ACertificateIsExchangedWhileAConnectionLives) {
   ASSERT_EQ(ServedCommonName(), "server-1");
   files_.WriteCertificate(files_.authority().Issue("server-2"));
   ASSERT_OK(Reload());
-  while (ServedCommonName() != "server-2") {
-  }
+  AwaitThat([this] { return ServedCommonName() == "server-2"; });
   EXPECT_OK(List(channel, kAlice));
   EXPECT_OK(List(Channel(), kAlice));
 }
@@ -390,8 +390,7 @@ TEST_F(SecureServer, AnInvalidCertificateKeepsThePreviousOne) {
   files_.WriteCertificate(files_.authority().Issue("good"));
   files_.WriteAccessFile("nonsense\n");
   EXPECT_FALSE(Reload().ok());  // the access file is wrong; the certificate is used
-  while (ServedCommonName() != "good") {
-  }
+  AwaitThat([this] { return ServedCommonName() == "good"; });
   EXPECT_OK(List(Channel(), kAlice));
 }
 
@@ -439,8 +438,7 @@ TEST_F(ClockNotSet, TheServerStartsLogsAndIsRefusedByClients) {
 // Without a signal or a restart.
 TEST_F(ClockNotSet, ClientsConnectAsSoonAsTheCertificateIsValid) {
   Start({.from = std::chrono::seconds(3)});
-  while (!List().ok()) {
-  }
+  AwaitThat([this] { return List().ok(); });
 }
 
 TEST_F(ClockNotSet, ANotYetValidCertificateReplacesAnother) {
@@ -451,8 +449,7 @@ TEST_F(ClockNotSet, ANotYetValidCertificateReplacesAnother) {
   EXPECT_GT(*server_->server().security().CertificateExpiry(), absl::Now() + absl::Hours(1));
   files_.WriteCertificate(files_.authority().Issue("good"));
   EXPECT_OK(server_->server().Reload());
-  while (!List().ok()) {
-  }
+  AwaitThat([this] { return List().ok(); });
 }
 
 // First a certificate of 24 hours, like the others here, then one of a year.
@@ -510,8 +507,7 @@ TEST_F(MutualServer, TheAuthorityOfClientsIsExchangedToo) {
   files_.Write("clients.pem", next.Pem());
   ASSERT_OK(Reload());
   const auto own = next.Issue("Ada L.");
-  while (!List(Channel(own), "").ok()) {
-  }
+  AwaitThat([&] { return List(Channel(own), "").ok(); });
   EXPECT_FALSE(List(With("Ada L."), "").ok());
 }
 

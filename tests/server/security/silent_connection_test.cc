@@ -6,6 +6,7 @@
 #include "gtest/gtest.h"
 #include "tests/server/http_get.h"
 #include "tests/server/running_server.h"
+#include "tests/support/await.h"
 
 namespace ballpiston::server {
 namespace {
@@ -13,12 +14,10 @@ namespace {
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
-// In each test one time limit is short. The others are longer than any test.
-constexpr std::chrono::hours kNever(1);
-
 // Part of the GOAWAY frame of HTTP/2: its type, no flags, stream 0.
 const std::string kGoAway("\x7\0\0\0\0\0", 6);
 
+// In each test one time limit is short, and the others are not reached.
 TestServerOptions OnPort(const ConnectionTiming& timing) {
   return {.listen = "127.0.0.1:0", .connections = timing};
 }

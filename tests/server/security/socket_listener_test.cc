@@ -24,6 +24,7 @@
 #include "server/security/peer_user.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/running_server.h"
+#include "tests/support/await.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -238,7 +239,7 @@ TEST(SocketServer, ManyConnectionsAreServedAndAllAreClosedAtTheEnd) {
     close(hanging);
   }
   // gRPC gives its sockets back on threads of its own.
-  while (OpenDescriptors() > before + 8) std::this_thread::yield();
+  AwaitThat([&] { return OpenDescriptors() <= before + 8; });
 }
 
 }  // namespace

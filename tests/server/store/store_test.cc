@@ -20,6 +20,7 @@
 #include "server/store/schema.h"
 #include "tests/server/hanging_disk.h"
 #include "tests/server/store_access.h"
+#include "tests/support/await.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -47,6 +48,7 @@ absl::Status WriteSomething(Database& database) { return InsertChunk(database, 9
 class StoreTest : public testing::Test {
  protected:
   std::unique_ptr<Store> Open(Store::Options options = {}) {
+    options.stall = kNever;
     auto store = Store::Open(File(), options);
     EXPECT_OK(store);
     return store.ok() ? *std::move(store) : nullptr;
@@ -298,7 +300,7 @@ TEST_F(StoreTest, TheLogOfAnotherStoreIsRejected) {
 }
 
 TEST_F(StoreTest, AnImpossibleWriteIsRejectedAlone) {
-  const auto store = Open({.delay = std::chrono::hours(1)});
+  const auto store = Open({.delay = kNever});
   const auto broken = [](Database& database) {
     return database.Execute(
         "INSERT INTO results (job, point, samples, result, finish) VALUES (1, 1, NULL, x'00', 1)");
@@ -317,7 +319,7 @@ TEST_F(StoreTest, AnImpossibleWriteIsRejectedAlone) {
 }
 
 TEST_F(StoreTest, ARejectedChangeIsRolledBackAndTheOthersStay) {
-  const auto store = Open({.delay = std::chrono::hours(1)});
+  const auto store = Open({.delay = kNever});
   store->RecordCheckpoint(1, 0, 0, [] { return "kept"; });
   absl::Status full = absl::ResourceExhaustedError("too many jobs");
   full.SetPayload("reason", absl::Cord("TOO_MANY_JOBS"));
@@ -340,8 +342,7 @@ TEST_F(StoreTest, AChangeThatRunsOutOfMemoryIsRetried) {
     if (++attempts < 3) throw std::bad_alloc();
     return "kept";
   });
-  while (!store->Flush().ok()) {
-  }
+  AwaitThat([&] { return store->Flush().ok(); });
   EXPECT_EQ(Checkpoint(*store, 1, 0), "kept");
 }
 
@@ -373,7 +374,7 @@ TEST_F(StoreTest, TheFirstWriterOfAResultWins) {
 }
 
 TEST_F(StoreTest, WritesAreCommittedInGroups) {
-  const auto store = Open({.delay = std::chrono::hours(1)});
+  const auto store = Open({.delay = kNever});
   for (int point = 0; point < 1000; ++point) {
     store->RecordCheckpoint(1, point, 0, [] { return "r"; });
   }
@@ -383,7 +384,7 @@ TEST_F(StoreTest, WritesAreCommittedInGroups) {
 }
 
 TEST_F(StoreTest, OnlyTheLastCheckpointOfAGroupIsWritten) {
-  const auto store = Open({.delay = std::chrono::hours(1)});
+  const auto store = Open({.delay = kNever});
   for (int i = 0; i < 10; ++i) {
     store->RecordCheckpoint(1, 0, 0, [i] { return std::to_string(i); });
   }
@@ -404,7 +405,7 @@ TEST_F(StoreTest, ConcurrentCommitsShareTheDisksTime) {
 }
 
 TEST_F(StoreTest, CheckpointsOfAFinishedPointAreNeitherWrittenNorKept) {
-  const auto store = Open({.delay = std::chrono::hours(1)});
+  const auto store = Open({.delay = kNever});
   store->RecordCheckpoint(1, 0, 0, [] { return "r"; });
   ASSERT_OK(store->Flush());
   EXPECT_EQ(store->checkpoints_written(), 1);
@@ -419,7 +420,7 @@ TEST_F(StoreTest, CheckpointsOfAFinishedPointAreNeitherWrittenNorKept) {
 
 TEST_F(StoreTest, ClosingWritesWhatIsPending) {
   {
-    const auto store = Open({.delay = std::chrono::hours(1)});
+    const auto store = Open({.delay = kNever});
     store->RecordCheckpoint(1, 0, 0, [] { return "r"; });
   }
   EXPECT_EQ(Checkpoint(*Open(), 1, 0), "r");
@@ -458,8 +459,7 @@ TEST_F(StoreTest, RecordsAreRetriedUntilTheDiskWorks) {
   store->Record([&](Database&) {
     return ++attempts < 4 ? absl::UnavailableError("disk full") : absl::OkStatus();
   });
-  while (!store->Flush().ok()) {
-  }
+  AwaitThat([&] { return store->Flush().ok(); });
   EXPECT_EQ(attempts, 4);
   EXPECT_EQ(Checkpoint(*store, 1, 0), "kept");
 }
@@ -482,7 +482,7 @@ TEST_F(StoreTest, AHangingDiskRejectsRequestsAndServesReads) {
     EXPECT_OK(store->Commit([](Database& database) { return WriteSomething(database); }));
   });
   disk.AwaitHanging();
-  while (!store->stalled()) std::this_thread::yield();
+  AwaitThat([&] { return store->stalled(); });
   EXPECT_FALSE(store->failing());
   bool run = false;
   const auto change = [&](Database&) {
@@ -498,13 +498,13 @@ TEST_F(StoreTest, AHangingDiskRejectsRequestsAndServesReads) {
   EXPECT_OK(store->Read([](Database& database) { return CountJobs(database).status(); }));
   disk.Resume();
   hanging.join();
-  while (!store->Commit(change).ok()) {  // until the store's thread has seen the end of it
-  }
+  // The store accepts changes again when its thread has seen the end of the disk call.
+  AwaitThat([&] { return store->Commit(change).ok(); });
   EXPECT_TRUE(run);
 }
 
 TEST_F(StoreTest, JobsAreReadOneByOneUntilTheReaderStops) {
-  const auto store = *Store::Open(folder_.File("store"), {});
+  const auto store = *Store::Open(folder_.File("store"), {.stall = kNever});
   for (const char* id : {"a", "b", "c", "d"}) Insert(*store, Record(id));
   std::vector<std::string> read;
   const auto take = [&](const JobRecord& job) {
@@ -570,7 +570,7 @@ TEST_F(StoreTest, ADeletedJobLeavesNothingAndItsSequenceIsNotUsedAgain) {
   store->RecordResult(job, {0, 1, "r"});
   ASSERT_OK(store->Commit([&](Database& database) { return DeleteJob(database, job); }));
   EXPECT_FALSE(Find(*store, "a"));
-  while (!Results(*store, job).empty()) std::this_thread::yield();
+  AwaitThat([&] { return Results(*store, job).empty(); });
   EXPECT_GT(Insert(*store, Record("a")), job);
 }
 

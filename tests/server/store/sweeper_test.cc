@@ -12,6 +12,7 @@
 #include "server/store/schema.h"
 #include "server/store/store.h"
 #include "tests/server/store_access.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -22,7 +23,9 @@ constexpr int64_t kMiB = 1 << 20;
 
 class SweeperTest : public testing::Test {
  protected:
-  std::unique_ptr<Store> Open() { return *Store::Open(path_, {.readers = 1, .reserve_bytes = 0}); }
+  std::unique_ptr<Store> Open() {
+    return *Store::Open(path_, {.stall = kNever, .readers = 1, .reserve_bytes = 0});
+  }
   int64_t FileBytes() const { return static_cast<int64_t>(std::filesystem::file_size(path_)); }
 
   // 20 MB of details.
@@ -63,7 +66,7 @@ TEST_F(SweeperTest, TheFileShrinksWhenAJobIsDeleted) {
   const int64_t first = AddLargeJob(*store, "a");
   AddLargeJob(*store, "b");
   Delete(*store, first);
-  while (FileBytes() > 23 * kMiB) std::this_thread::yield();  // 5 pages a point, and 256 free ones
+  AwaitThat([this] { return FileBytes() <= 23 * kMiB; });  // 5 pages a point, and 256 free ones
   EXPECT_EQ(Count(*store, "details"), 1000);
   EXPECT_GT(FileBytes(), 20 * kMiB);  // those of "b"
 }
@@ -81,7 +84,7 @@ TEST_F(SweeperTest, ARestartGoesOnWithTheRest) {
   }
   const auto store = Open();
   ASSERT_OK(store->Flush());
-  while (Count(*store, "dropped") > 0) std::this_thread::yield();
+  AwaitThat([&] { return Count(*store, "dropped") == 0; });
   EXPECT_EQ(Count(*store, "details"), 1);
   EXPECT_EQ(Count(*store, "results"), 0);
 }

@@ -1,0 +1,51 @@
+// How long tests wait.
+//
+// No result of a test depends on the machine's pace: a test waits until a condition is true. The
+// limit of a wait is only for a program that hangs, and the failure of the test then says so.
+#ifndef BALLPISTON_TESTS_SUPPORT_AWAIT_H_
+#define BALLPISTON_TESTS_SUPPORT_AWAIT_H_
+
+#include <chrono>
+#include <source_location>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+namespace ballpiston {
+
+// The longest wait for one condition, and the deadline of one call.
+inline constexpr std::chrono::minutes kPatience(15);
+
+// A time limit under test that must not be reached. It is longer than ctest's limit of a test
+// program.
+inline constexpr std::chrono::hours kNever(100);
+
+[[noreturn]] inline void ThrowLongWait(const std::source_location& caller) {
+  std::ostringstream text;
+  text << caller.file_name() << ":" << caller.line() << ": the condition is still false after "
+       << kPatience.count() << " minutes";
+  throw std::runtime_error(text.str());
+}
+
+// Returns when the condition is true; asks again and again. After kPatience it throws
+// std::runtime_error, which fails the test.
+template <typename Condition>
+void AwaitThat(Condition condition,
+               const std::source_location& caller = std::source_location::current()) {
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) ThrowLongWait(caller);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+// The same for a condition whose changes are notified. `lock` holds the mutex.
+template <typename Changed, typename Lock, typename Condition>
+void AwaitNotified(Changed& changed, Lock& lock, Condition condition,
+                   const std::source_location& caller = std::source_location::current()) {
+  if (!changed.wait_for(lock, kPatience, condition)) ThrowLongWait(caller);
+}
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_TESTS_SUPPORT_AWAIT_H_
