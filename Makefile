@@ -15,12 +15,27 @@ PROGRAMS := ballpiston ballpistond ballpiston-worker method_comparison stability
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder
-.PHONY: build test demo chart ladder bench stability stability-table torture test-slurm test-alerts test-web deb oci asan tsan aarch64 fuzz thread-safety nightly format check-format tidy setup clean help
+.PHONY: build test check test-asan test-tsan test-long demo chart ladder bench stability stability-table torture test-slurm test-alerts test-web deb oci aarch64 fuzz thread-safety nightly format check-format tidy setup clean help
 
 build: build/release/.$(PRESETS_PREFIX)programs ## Build the programs, optimised, in build/release/bin (the default)
 	@cmake --build build/release --target $(PROGRAMS)
 
-test: test-release test-asan ## Build, then run all tests: the fast ones under the address sanitizer (10 minutes)
+test: build/release/.$(PRESETS_PREFIX)tests ## Build, then run all tests
+	@cmake --build build/release --target fast_tests slow_tests
+	@ctest --preset release -j$(TEST_JOBS)
+
+check: check-format thread-safety test test-asan ## What every change has to pass: format, locks, test, and the fast tests under the sanitizers
+
+test-asan: ## Run the fast tests under the address and undefined-behaviour sanitizers
+test-tsan: ## Run the fast tests under the thread sanitizer
+# gRPC is not instrumented: tests/sanitizer tells the thread sanitizer how gRPC orders accesses.
+test-asan test-tsan: test-%: build/%/.$(PRESETS_PREFIX)tests
+	@cmake --build build/$* --target fast_tests
+	@ctest --preset $* -j$(TEST_JOBS)
+
+test-long: build/release/.$(PRESETS_PREFIX)tests ## Run the tests of laws and bits at their full size (15 minutes)
+	@cmake --build build/release --target statistical_test core_test worker_test
+	@BALLPISTON_NIGHTLY=1 ctest --preset release -R '^(statistical|core|worker)_test' -j$(TEST_JOBS)
 
 demo: build ## Run the paper's sweep with a real server and client (1 minute)
 	@scripts/demo.sh build/release/bin
@@ -45,8 +60,8 @@ stability-table: build/release/.$(PRESETS_PREFIX)programs ## Count the failures 
 
 torture: build/release/.$(PRESETS_PREFIX)tests ## Cut the power, kill the server a thousand times, cut its watches, stall its readers; print the counts (half an hour)
 	@cmake --build build/release --target ballpistond store_fault_test torture_test
-	@BALLPISTON_TORTURE=1 BALLPISTON_TEST_TIME_SCALE=30 build/release/bin/store_fault_test --gtest_brief=1
-	@BALLPISTON_TORTURE=1 BALLPISTON_TEST_TIME_SCALE=30 build/release/bin/torture_test --gtest_brief=1
+	@BALLPISTON_TORTURE=1 build/release/bin/store_fault_test --gtest_brief=1
+	@BALLPISTON_TORTURE=1 build/release/bin/torture_test --gtest_brief=1
 
 test-slurm: ## Run jobs on a whole Slurm cluster that the tests start on this machine, and kill its parts
 	@scripts/setup.sh $(SLURM_PACKAGES)
@@ -60,11 +75,6 @@ test-alerts: ## Test the alert rules for Prometheus, with promtool
 test-web: build ## Test the page of ballpiston web in headless Chromium, with npm's playwright-core and axe-core (2 minutes)
 	@scripts/setup.sh $(WEB_PACKAGES)
 	@scripts/web-test.sh build/release/bin
-
-asan: test-asan ## Run the fast tests under the address and undefined-behaviour sanitizers
-
-# gRPC is not instrumented: tests/sanitizer tells the sanitizer how gRPC orders accesses.
-tsan: test-tsan ## Run the fast tests under the thread sanitizer
 
 aarch64: ## Compile the core for AArch64 and run its tests under an emulator: the results have the same bits as on x86 (15 minutes)
 	@scripts/setup.sh $(AARCH64_PACKAGES)
@@ -90,8 +100,8 @@ thread-safety: ## Check with Clang that the server holds the right mutexes, in t
 	@scripts/setup.sh clang
 	@scripts/thread-safety.sh
 
-nightly: ## Run the checks that take hours: tsan, aarch64, tidy, torture, test-slurm, test-alerts, test-web, stability, and ten minutes of each fuzz target
-	@status=0; for task in tsan aarch64 tidy torture test-slurm test-alerts test-web stability "fuzz FUZZ_SECONDS=600"; do \
+nightly: ## Run the checks that take hours: test-tsan, test-long, aarch64, tidy, torture, test-slurm, test-alerts, test-web, stability, and ten minutes of each fuzz target
+	@status=0; for task in test-tsan test-long aarch64 tidy torture test-slurm test-alerts test-web stability "fuzz FUZZ_SECONDS=600"; do \
 	  printf '\n== make %s\n' "$$task"; $(MAKE) $$task || { status=1; failed+=" $${task%% *}"; }; \
 	done; echo "nightly: failed:$${failed:- none}"; exit $$status
 
@@ -116,15 +126,6 @@ help: ## Show this list
 
 setup: ## Install the Debian packages that are missing
 	@scripts/setup.sh
-
-.PHONY: test-release test-asan test-tsan
-test-release: build/release/.$(PRESETS_PREFIX)tests
-	@cmake --build build/release --target slow_tests
-	@ctest --preset release -j$(TEST_JOBS)
-
-test-asan test-tsan: test-%: build/%/.$(PRESETS_PREFIX)tests
-	@cmake --build build/$* --target fast_tests
-	@ctest --preset $* -j$(TEST_JOBS)
 
 # Stamps in build/PRESET: .programs if the preset is configured, perhaps without the tests; .tests if it
 # is configured with the tests; .benchmarks if with tests and benchmarks. The prefix of the presets is

@@ -16,8 +16,7 @@ namespace ballpiston {
 // The longest wait for one condition, and the deadline of one call.
 inline constexpr std::chrono::minutes kPatience(15);
 
-// A time limit under test that must not be reached. It is longer than ctest's limit of a test
-// program.
+// A time limit under test that must not be reached.
 inline constexpr std::chrono::hours kNever(100);
 
 [[noreturn]] inline void ThrowLongWait(const std::source_location& caller) {

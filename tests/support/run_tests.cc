@@ -1,8 +1,7 @@
 #include "tests/support/run_tests.h"
 
+#include <signal.h>
 #include <sys/resource.h>
-
-#include <string>
 
 #include "absl/strings/str_format.h"
 #include "gmock/gmock.h"
@@ -41,6 +40,7 @@ class ProcessorTimes : public testing::EmptyTestEventListener {
 }  // namespace
 
 int RunTests(int argc, char** argv) {
+  signal(SIGINT, SIG_DFL);  // a job in a shell's background ignores it, and so would its programs
   testing::InitGoogleMock(&argc, argv);
   WatchTests(argv[0]);
   testing::UnitTest::GetInstance()->listeners().Append(new ProcessorTimes);  // gtest owns it
