@@ -24,7 +24,11 @@ test: build/release/.$(PRESETS_PREFIX)tests ## Build, then run all tests
 	@cmake --build build/release --target fast_tests slow_tests
 	@ctest --preset release -j$(TEST_JOBS)
 
-check: check-format thread-safety test test-asan ## What every change has to pass: format, locks, test, and the fast tests under the sanitizers
+check: ## What every change has to pass: format, locks, test, and the fast tests under the sanitizers
+	@for step in check-format thread-safety test test-asan; do \
+	  printf '\n== [%d min %02d s] make %s\n' $$((SECONDS / 60)) $$((SECONDS % 60)) $$step; \
+	  $(MAKE) $$step || exit 1; \
+	done
 
 test-asan: ## Run the fast tests under the address and undefined-behaviour sanitizers
 test-tsan: ## Run the fast tests under the thread sanitizer
@@ -37,7 +41,7 @@ test-long: build/release/.$(PRESETS_PREFIX)tests ## Run the tests of laws and bi
 	@cmake --build build/release --target statistical_test core_test worker_test
 	@BALLPISTON_NIGHTLY=1 ctest --preset release -R '^(statistical|core|worker)_test' -j$(TEST_JOBS)
 
-demo: build ## Run the paper's sweep with a real server and client (1 minute)
+demo: build ## Run the paper's sweep with a real server and client
 	@scripts/demo.sh build/release/bin
 
 chart: build ## Chart speed against accuracy for every method, on this machine (2 minutes)
