@@ -5,6 +5,7 @@ TEST_JOBS ?= $(shell nproc)
 # The prefix ci- selects the same presets with warnings as errors.
 PRESETS_PREFIX ?=
 STABILITY_OUT ?= stability.md
+MUTANTS ?= 60
 
 TEST_PACKAGES := libgtest-dev libgmock-dev python3-grpcio python3-numpy python3-pandas python3-pytest python3-tqdm python3-matplotlib
 AARCH64_PACKAGES := g++-aarch64-linux-gnu qemu-user libabsl-dev:arm64 libhwy-dev:arm64 libgtest-dev:arm64 libgmock-dev:arm64
@@ -15,7 +16,7 @@ PROGRAMS := ballpiston ballpistond ballpiston-worker method_comparison stability
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder
-.PHONY: build test check test-asan test-tsan test-long demo chart ladder bench stability stability-table torture test-slurm test-alerts test-web deb oci aarch64 fuzz thread-safety nightly format check-format tidy setup clean help
+.PHONY: build test check test-asan test-tsan test-long demo chart ladder bench stability stability-table torture test-slurm test-alerts test-web mutation deb oci aarch64 fuzz thread-safety nightly format check-format tidy setup clean help
 
 build: build/release/.$(PRESETS_PREFIX)programs ## Build the programs, optimised, in build/release/bin (the default)
 	@cmake --build build/release --target $(PROGRAMS)
@@ -80,6 +81,10 @@ test-web: build ## Test the page of ballpiston web in headless Chromium, with np
 	@scripts/setup.sh $(WEB_PACKAGES)
 	@scripts/web-test.sh build/release/bin
 
+mutation: ## Make MUTANTS small wrong changes, by default 60, and count those that the fast tests catch (two hours)
+	@scripts/setup.sh $(TEST_PACKAGES)
+	@tests/mutation/mutation.py --count $(MUTANTS)
+
 aarch64: ## Compile the core for AArch64 and run its tests under an emulator: the results have the same bits as on x86 (15 minutes)
 	@scripts/setup.sh $(AARCH64_PACKAGES)
 	@$(MAKE) build/aarch64/.$(PRESETS_PREFIX)tests
@@ -104,8 +109,8 @@ thread-safety: ## Check with Clang that the server holds the right mutexes, in t
 	@scripts/setup.sh clang
 	@scripts/thread-safety.sh
 
-nightly: ## Run the checks that take hours: test-tsan, test-long, aarch64, tidy, torture, test-slurm, test-alerts, test-web, stability, and ten minutes of each fuzz target
-	@status=0; for task in test-tsan test-long aarch64 tidy torture test-slurm test-alerts test-web stability "fuzz FUZZ_SECONDS=600"; do \
+nightly: ## Run the checks that take hours: test-tsan, test-long, aarch64, tidy, torture, test-slurm, test-alerts, test-web, stability, mutation, and ten minutes of each fuzz target
+	@status=0; for task in test-tsan test-long aarch64 tidy torture test-slurm test-alerts test-web stability mutation "fuzz FUZZ_SECONDS=600"; do \
 	  printf '\n== make %s\n' "$$task"; $(MAKE) $$task || { status=1; failed+=" $${task%% *}"; }; \
 	done; echo "nightly: failed:$${failed:- none}"; exit $$status
 
