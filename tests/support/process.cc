@@ -78,7 +78,8 @@ Process::Process(const ProcessOptions& options) {
   posix_spawn_file_actions_adddup2(&actions, out.write, STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, err.write, STDERR_FILENO);
   const std::vector<std::string> environment = Environment(options.environment);
-  std::vector<std::string> command = {"setpriv", "--pdeathsig", "KILL"};
+  std::vector<std::string> command = {"setpriv", "--pdeathsig", "KILL", "env",
+                                      "--default-signal=INT,HUP,TERM"};
   command.insert(command.end(), options.command.begin(), options.command.end());
   const int error = posix_spawnp(&pid_, command[0].c_str(), &actions, nullptr,
                                  Pointers(command).data(), Pointers(environment).data());

@@ -2,6 +2,9 @@
 //
 // The program is killed when the thread that started it ends (`setpriv --pdeathsig`). A test that
 // crashes or is killed therefore leaves no process. Start the program in the test's main thread.
+//
+// SIGINT, SIGHUP and SIGTERM have their default effect on the program, also where the tests ignore
+// one of them because they run in the background of a shell or under nohup.
 #ifndef BALLPISTON_TESTS_SUPPORT_PROCESS_H_
 #define BALLPISTON_TESTS_SUPPORT_PROCESS_H_
 

@@ -1,6 +1,5 @@
 #include "tests/support/run_tests.h"
 
-#include <signal.h>
 #include <sys/resource.h>
 
 #include "absl/strings/str_format.h"
@@ -40,7 +39,6 @@ class ProcessorTimes : public testing::EmptyTestEventListener {
 }  // namespace
 
 int RunTests(int argc, char** argv) {
-  signal(SIGINT, SIG_DFL);  // a job in a shell's background ignores it, and so would its programs
   testing::InitGoogleMock(&argc, argv);
   WatchTests(argv[0]);
   testing::UnitTest::GetInstance()->listeners().Append(new ProcessorTimes);  // gtest owns it

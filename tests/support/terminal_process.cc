@@ -16,7 +16,8 @@ namespace {
 // The command is setpriv, env and the program. env changes the environment, so that the child calls
 // only exec after fork.
 std::vector<std::string> CommandOf(const ProcessOptions& options) {
-  std::vector<std::string> command = {"setpriv", "--pdeathsig", "KILL", "env"};
+  std::vector<std::string> command = {"setpriv", "--pdeathsig", "KILL", "env",
+                                      "--default-signal=INT,HUP,TERM"};
   for (const auto& [name, value] : options.environment) {
     if (value.empty()) command.insert(command.end(), {"-u", name});
   }

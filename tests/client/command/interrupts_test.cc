@@ -29,6 +29,8 @@ sigset_t Signals() {
 // so that all threads inherit it, also the threads of the time limit and of gRPC. The client
 // constructs Interrupts before it starts a thread.
 [[maybe_unused]] const bool kSignalsAreBlocked = [] {
+  // In the background of a shell or under nohup they are ignored.
+  for (const int ignored : {SIGINT, SIGTERM, SIGHUP}) signal(ignored, SIG_DFL);
   const sigset_t signals = Signals();
   return pthread_sigmask(SIG_BLOCK, &signals, nullptr) == 0;
 }();

@@ -26,6 +26,9 @@ import ballpiston
 PROJECT = Path(__file__).resolve().parents[3]
 LIMIT = 900.0  # seconds: the longest wait for a condition or a program
 
+# The background of a shell ignores SIGINT, and so would the programs that the tests start.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
 # Variables of the user that runs the tests must not change them.
 FOREIGN = [
     name for name in os.environ if name.startswith("BALLPISTON_") and name != "BALLPISTON_BIN"
