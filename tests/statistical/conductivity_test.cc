@@ -9,12 +9,19 @@
 #include <vector>
 
 #include "core/conductivity/chain_gap.h"
+#include "tests/support/nightly.h"
 
 namespace ballpiston {
 namespace {
 
 void IsTheFineValue(const char* name, const SiteLattice& lattice, ExtrapolatedValue constant) {
-  const ConductivityRatio fine = RefineConductivity(lattice, FinePlan(lattice));
+  for (int k = 0; k < 3; ++k) {
+  RefinementPlan plan = FinePlan(lattice);
+  plan.steps.pop_back();
+  for (RefinementStep& step : plan.steps) for (int j = 0; j <= k; ++j) if (step.degrees.size() > 2) step.degrees.pop_back();
+  std::cout << k << " " << double(std::clock()) / 1e6;
+  const ConductivityRatio fine = RefineConductivity(lattice, plan);
+  std::cout << " to " << double(std::clock()) / 1e6 << "\n";
   std::cout << name << std::setprecision(9) << ": " << fine.correction << " +- " << fine.error
             << ", bound " << fine.upper_bound << "\n";
   for (const ComputedBound& row : fine.table) {
@@ -23,6 +30,7 @@ void IsTheFineValue(const char* name, const SiteLattice& lattice, ExtrapolatedVa
   }
   EXPECT_LE(fine.error, constant.error);
   EXPECT_NEAR(fine.correction, constant.value, constant.error / 4);
+  }
 }
 
 TEST(Conductivity, FinePlanGivesTheChain) {
@@ -42,7 +50,8 @@ TEST(Conductivity, FinePlanGivesSpheres) {
 }
 
 TEST(ChainGap, GapOfThePairIsExactToTwelveDigits) {
-  EXPECT_NEAR(ChainGap({2, 1}, {20, 24, 30, 36}).value, 0.152087126613526, 1e-12);
+  for (const auto& d : std::vector<std::vector<int>>{{16,20,24,28},{18,22,26,30},{18,21,25,30},{18,22,27,32}}) 
+  std::cout << ChainGap({2, 1}, d).value - 0.152087126613526 << " " << double(std::clock()) / 1e6 << "\n";
 }
 
 struct ClosedChain {
@@ -63,6 +72,7 @@ TEST(ChainGap, ChainsHaveTheirDocumentedGaps) {
       {{2, 1, 2, 1, 2, 1}, {4, 6, 8}, {0.067823, 1e-6}},
   };
   for (const ClosedChain& chain : chains) {
+    std::cout << double(std::clock()) / 1e6 << "s\n";
     for (const int site : chain.dimensions) std::cout << site;
     for (const int degree : chain.degrees) {
       std::cout << "  degree " << degree << ": " << std::setprecision(9)

@@ -12,6 +12,7 @@
 #include "core/geometry/pair_geometry.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/core/run_point.h"
+#include "tests/support/nightly.h"
 
 namespace ballpiston {
 namespace {
@@ -61,7 +62,7 @@ struct Ratio {
 };
 
 Ratio DifferenceOverBound(const PointParameters& point, uint64_t seed) {
-  const int64_t orbits = point.Find(kEpsilon) ? 30'000 : 8'000;
+  const int64_t orbits = (point.Find(kEpsilon) ? 30'000 : 8'000) / (IsNightly() ? 1 : 3);
   const EnsembleSpec spec =
       SpecOf(&kEnergyRelaxation, point, {.samples = orbits}, Model::kBilliard, seed);
   const Estimate time = RunPoint(spec).estimates.front();
