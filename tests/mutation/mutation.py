@@ -120,7 +120,7 @@ def _unmutated_seconds(tree: trial.Tree, results: table.Results, folder: str) ->
         raise SystemExit(f"{folder} does not build: see {FOLDER}/build.log")
     begin = time.monotonic()
     if by := tree.failure(folder, float("inf")):
-        raise SystemExit(f"{by} fails without a mutant")
+        raise SystemExit(f"{by} fails without a mutant: see {FOLDER}/failure.log")
     return results.add({"unmutated": folder, "seconds": time.monotonic() - begin})["seconds"]
 
 

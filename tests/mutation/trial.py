@@ -48,6 +48,7 @@ class Tree:
         waiting = [(name, shard) for name in TESTS[folder] for shard in range(SHARDS)]
         deadline = time.monotonic() + limit
         temporary = Path(tempfile.mkdtemp(prefix="mutation-"))
+        temporary.chmod(0o1777)  # like /tmp: a test is a server of several users
         running: dict[Path, subprocess.Popen[bytes]] = {}
         try:
             while waiting or running:
@@ -61,6 +62,7 @@ class Tree:
                 ended = [path for path, process in running.items() if process.poll() is not None]
                 for output in ended:
                     if code := running.pop(output).returncode:
+                        shutil.copy(output, self._log.with_name("failure.log"))
                         return _failed_test(output, code)
             return None
         finally:
