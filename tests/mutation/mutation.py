@@ -21,8 +21,9 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import table
-import trial
 from mutants import Mutant, draw, mutated
+from running_tests import first_failure
+from tree import TESTS, Tree
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "build/mutation"
@@ -41,12 +42,12 @@ def main() -> int:
     except BlockingIOError:
         raise SystemExit(f"another run uses {FOLDER}") from None
     results = table.Results(path, run)
-    tree = trial.Tree(ROOT, FOLDER, run["commit"], options.jobs)
+    tree = Tree(ROOT, FOLDER, run["commit"], options.jobs)
     if options.replay:
         old = [table.mutant_of(r) for r in table.tried(table.read(options.replay))]
         _try_all(tree, results, old, len(old))
     else:
-        _try_all(tree, results, draw(tree.path, list(trial.TESTS), options.seed), options.count)
+        _try_all(tree, results, draw(tree.path, list(TESTS), options.seed), options.count)
     return _print_tables(results.records, options.replay)
 
 
@@ -72,9 +73,7 @@ def _run_of(options: argparse.Namespace) -> tuple[Path, table.Record]:
     return FOLDER / name, {"commit": commit, "seed": options.seed}
 
 
-def _try_all(
-    tree: trial.Tree, results: table.Results, mutants: Iterable[Mutant], count: int
-) -> None:
+def _try_all(tree: Tree, results: table.Results, mutants: Iterable[Mutant], count: int) -> None:
     """Until so many compiled. Mutants of an earlier, interrupted run are not tried again."""
     seen: set[Mutant] = set()
     number = 0
@@ -89,7 +88,7 @@ def _try_all(
         print(f"{table.row(number, record)} {record['seconds']:.0f} s", flush=True)
 
 
-def _try(tree: trial.Tree, results: table.Results, mutant: Mutant) -> table.Record:
+def _try(tree: Tree, results: table.Results, mutant: Mutant) -> table.Record:
     folder = mutant.file.split("/")[0]
     limit = max(SHORTEST_HANG, 10 * _unmutated_seconds(tree, results, folder))
     begin = time.monotonic()
@@ -103,7 +102,7 @@ def _try(tree: trial.Tree, results: table.Results, mutant: Mutant) -> table.Reco
         by = None
         result = table.INVALID
         if tree.builds(folder):
-            by = tree.failure(folder, limit)
+            by = _failure(tree, folder, limit)
             result = table.CAUGHT if by else table.MISSED
     finally:
         file.write_text(original)
@@ -111,7 +110,7 @@ def _try(tree: trial.Tree, results: table.Results, mutant: Mutant) -> table.Reco
     return {**mutant._asdict(), "result": result, "by": by, "seconds": seconds}
 
 
-def _unmutated_seconds(tree: trial.Tree, results: table.Results, folder: str) -> float:
+def _unmutated_seconds(tree: Tree, results: table.Results, folder: str) -> float:
     """Without a mutant all tests must pass; otherwise the run ends here."""
     if seconds := results.seconds(folder):
         return seconds
@@ -119,9 +118,14 @@ def _unmutated_seconds(tree: trial.Tree, results: table.Results, folder: str) ->
     if not tree.builds(folder):
         raise SystemExit(f"{folder} does not build: see {FOLDER}/build.log")
     begin = time.monotonic()
-    if by := tree.failure(folder, float("inf")):
-        raise SystemExit(f"{by} fails without a mutant")
+    if by := _failure(tree, folder, float("inf")):
+        raise SystemExit(f"{by} fails without a mutant: see {FOLDER}/failure.log")
     return results.add({"unmutated": folder, "seconds": time.monotonic() - begin})["seconds"]
+
+
+def _failure(tree: Tree, folder: str, seconds: float) -> str | None:
+    programs = [tree.build / "bin" / name for name in TESTS[folder]]
+    return first_failure(programs, tree.jobs, seconds, FOLDER / "failure.log")
 
 
 def _print_tables(records: list[table.Record], replay: Path | None) -> int:

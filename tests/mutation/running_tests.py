@@ -1,0 +1,91 @@
+"""A run of test programs in parallel parts, which ends at the first test that fails."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+_PARTS = 4  # of each program
+
+
+class Part:
+    """A part of a program's tests, as a process."""
+
+    def __init__(self, program: Path, index: int, temporary: Path) -> None:
+        self._command = program
+        self._environment = {
+            **os.environ,
+            "GTEST_FAIL_FAST": "1",
+            "GTEST_SHARD_INDEX": str(index),
+            "GTEST_TOTAL_SHARDS": str(_PARTS),
+            "TMPDIR": str(temporary),
+        }
+        self.output = temporary / f"{program.name}.{index}.log"
+        self.starts = 0
+
+    def start(self) -> None:
+        self.starts += 1
+        with self.output.open("w") as output:
+            self._process = subprocess.Popen(
+                [self._command],
+                env=self._environment,
+                stdout=output,
+                stderr=output,
+                start_new_session=True,
+            )
+
+    def has_ended(self) -> bool:
+        return self._process.poll() is not None
+
+    def kill(self) -> None:
+        os.killpg(self._process.pid, signal.SIGKILL)
+        self._process.wait()
+
+    def failed_test(self) -> str | None:
+        code = self._process.returncode
+        text = self.output.read_text(errors="replace")
+        if code == 0:
+            return None
+        if failed := re.search(r"^\[  FAILED  \] ([\w/]+\.[\w/]+)", text, re.MULTILINE):
+            return failed[1]
+        begun = re.findall(r"^\[ RUN      \] (\S+)", text, re.MULTILINE)
+        return f"{begun[-1] if begun else self.output.stem} (exit status {code})"
+
+
+def first_failure(programs: list[Path], jobs: int, seconds: float, log: Path) -> str | None:
+    """The first test that fails, with its output in `log`; `hang` after so many seconds.
+
+    A part that fails runs a second time, because a busy machine can make a test fail too.
+    """
+    temporary = Path(tempfile.mkdtemp(prefix="mutation-"))
+    temporary.chmod(0o1777)  # like /tmp: a test is a server of several users
+    waiting = [Part(program, i, temporary) for program in programs for i in range(_PARTS)]
+    running: list[Part] = []
+    deadline = time.monotonic() + seconds
+    try:
+        while waiting or running:
+            while waiting and len(running) < jobs:
+                running.append(waiting.pop(0))
+                running[-1].start()
+            time.sleep(0.1)
+            if time.monotonic() > deadline:
+                return "hang"
+            for part in [part for part in running if part.has_ended()]:
+                running.remove(part)
+                failed = part.failed_test()
+                if failed and part.starts > 1:
+                    shutil.copy(part.output, log)
+                    return failed
+                if failed:
+                    waiting.insert(0, part)
+        return None
+    finally:
+        for part in running:
+            part.kill()
+        shutil.rmtree(temporary, ignore_errors=True)
