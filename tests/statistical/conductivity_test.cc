@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
@@ -14,23 +15,28 @@
 namespace ballpiston {
 namespace {
 
-void IsTheFineValue(const char* name, const SiteLattice& lattice, ExtrapolatedValue constant) {
-  for (int k = 0; k < 3; ++k) {
+// The fine plan takes 20 s. Without its last step, and with two degrees fewer, it takes at most 5
+// s; its errors are five times those of the fine plan, and the constants lie within them.
+RefinementPlan PlanOfTest(const SiteLattice& lattice) {
   RefinementPlan plan = FinePlan(lattice);
+  if (IsNightly()) return plan;
   plan.steps.pop_back();
-  for (RefinementStep& step : plan.steps) for (int j = 0; j <= k; ++j) if (step.degrees.size() > 2) step.degrees.pop_back();
-  std::cout << k << " " << double(std::clock()) / 1e6;
-  const ConductivityRatio fine = RefineConductivity(lattice, plan);
-  std::cout << " to " << double(std::clock()) / 1e6 << "\n";
+  for (RefinementStep& step : plan.steps) {
+    step.degrees.resize(std::max<size_t>(2, step.degrees.size() - 2));
+  }
+  return plan;
+}
+
+void IsTheFineValue(const char* name, const SiteLattice& lattice, ExtrapolatedValue constant) {
+  const ConductivityRatio fine = RefineConductivity(lattice, PlanOfTest(lattice));
   std::cout << name << std::setprecision(9) << ": " << fine.correction << " +- " << fine.error
             << ", bound " << fine.upper_bound << "\n";
   for (const ComputedBound& row : fine.table) {
     std::cout << "  extent " << row.size.extent << ", sites " << row.size.sites << ", degree "
               << row.degree << ": " << row.correction << "\n";
   }
-  EXPECT_LE(fine.error, constant.error);
-  EXPECT_NEAR(fine.correction, constant.value, constant.error / 4);
-  }
+  EXPECT_LE(fine.error, constant.error * (IsNightly() ? 1 : 5));
+  EXPECT_NEAR(fine.correction, constant.value, IsNightly() ? constant.error / 4 : fine.error);
 }
 
 TEST(Conductivity, FinePlanGivesTheChain) {
@@ -50,8 +56,7 @@ TEST(Conductivity, FinePlanGivesSpheres) {
 }
 
 TEST(ChainGap, GapOfThePairIsExactToTwelveDigits) {
-  for (const auto& d : std::vector<std::vector<int>>{{16,20,24,28},{18,22,26,30},{18,21,25,30},{18,22,27,32}}) 
-  std::cout << ChainGap({2, 1}, d).value - 0.152087126613526 << " " << double(std::clock()) / 1e6 << "\n";
+  EXPECT_NEAR(ChainGap({2, 1}, {16, 20, 24, 28}).value, 0.152087126613526, 1e-12);
 }
 
 struct ClosedChain {
@@ -61,7 +66,8 @@ struct ClosedChain {
 };
 
 // The values of docs/conductivity.md, by fewer degrees. The stated error is
-// the change by the last term, which can be half of the true error.
+// the change by the last term, which can be half of the true error. Chains of more than four sites
+// wait for the night.
 TEST(ChainGap, ChainsHaveTheirDocumentedGaps) {
   const ClosedChain chains[] = {
       {{2, 1, 2}, {12, 14, 16, 18, 20}, {0.113388479, 2e-9}},
@@ -72,7 +78,7 @@ TEST(ChainGap, ChainsHaveTheirDocumentedGaps) {
       {{2, 1, 2, 1, 2, 1}, {4, 6, 8}, {0.067823, 1e-6}},
   };
   for (const ClosedChain& chain : chains) {
-    std::cout << double(std::clock()) / 1e6 << "s\n";
+    if (chain.dimensions.size() > 4 && !IsNightly()) continue;
     for (const int site : chain.dimensions) std::cout << site;
     for (const int degree : chain.degrees) {
       std::cout << "  degree " << degree << ": " << std::setprecision(9)
