@@ -12,7 +12,7 @@ namespace {
 
 // Four points of 32 blocks or more each.
 const Words kQuestion = Split(
-    "first-hit --rho 0.529561127988977 --delta 0.1,0.05 --epsilon 0.1,0.4 --exponent 1 --seed 11 "
+    "first-hit --rho 0.529561127988977 --delta 0.2,0.1 --epsilon 0.1,0.4 --exponent 1 --seed 11 "
     "--samples 300000");
 constexpr int kPoints = 4;
 
@@ -40,16 +40,16 @@ TEST(SameBytes, WithOneTwoAndEightWorkers) {
 TEST(SameBytes, OfRelaxationMarkovPropertyAndGasesWithOneAndTwoWorkers) {
   const TestServer one(1), two(2);
   for (const std::string question :
-       {"energy-relaxation --samples 2000 --delta 0.2,0.1",
-        "energy-relaxation --samples 500 --delta 0.2 --epsilon 0.05,0.4",
-        "energy-relaxation --samples 4000 --delta 0.1 --model markov",
+       {"energy-relaxation --samples 500 --delta 0.2,0.1",
+        "energy-relaxation --samples 200 --delta 0.2 --epsilon 0.05,0.4",
+        "energy-relaxation --samples 2000 --delta 0.1 --model markov",
         "energy-relaxation --tolerance 0.1 --delta 0.1 --model markov",
         "markov-property --collisions 20000 --delta 0.2",
         "markov-property --collisions 20000 --delta 0.2 --model markov",
-        "gas-equilibrium --verify --samples 300 --delta 0.19 --cells 4,2x3 --temperature 1",
-        "gas-equilibrium --model markov --samples 300 --delta 0.19 --cells 4 --temperature 1",
-        "gas-conduction --samples 200 --delta 0.19,0.1 --cells 3 --hot 1.5 --cold 0.5",
-        "gas-conduction --samples 200 --delta 0.19 --cells 2x2 --hot 2 --cold 1 --model markov"}) {
+        "gas-equilibrium --verify --samples 96 --delta 0.19 --cells 3,2x2 --temperature 1",
+        "gas-equilibrium --model markov --samples 200 --delta 0.19 --cells 3 --temperature 1",
+        "gas-conduction --samples 96 --delta 0.2,0.19 --cells 2 --hot 1.5 --cold 0.5",
+        "gas-conduction --samples 96 --delta 0.19 --cells 2x2 --hot 2 --cold 1 --model markov"}) {
     const Words words = Split("run " + question + " --rho 0.5296 --seed 3 --format json");
     const ProcessResult by_one = one.Client(words);
     ASSERT_THAT(by_one, ExitsWith(0));

@@ -46,7 +46,7 @@ class SpeedAccuracy : public testing::Test {
 
 // The measured times are too short for meaningful numbers. The test checks that there are numbers.
 TEST_F(SpeedAccuracy, LeavesDataScriptsAndPicture) {
-  const ProcessResult result = RunProgram(Command({"--seconds", "0.02", "--progress", "bar"}));
+  const ProcessResult result = RunProgram(Command({"--seconds", "0.01", "--progress", "bar"}));
   EXPECT_THAT(result, ExitsWith(0));
   EXPECT_THAT(result.err, HasSubstr("measurements"));
   const std::string csv = Contents(figure_ + "/speed-accuracy.csv");

@@ -13,6 +13,7 @@ namespace {
 
 constexpr uint64_t kBallSeed = 20;
 constexpr uint64_t kBallBatch = 4096;
+constexpr double kFewestWanted = 1e-3;
 
 }  // namespace
 
@@ -53,8 +54,10 @@ const std::vector<BallCase>& BallCases() {
 Failures FlyCase(const BallCase& ball_case, const BallMethod& method, double effort) {
   Failures failures;
   for (const auto& [rho, all] : ball_case.radii) {
-    const auto starts =
-        static_cast<uint64_t>(std::ceil(static_cast<double>(all) * effort * method.share));
+    const double wanted = static_cast<double>(all) * effort * method.share;
+    // One start would be far too many. A promise is checked all the same.
+    if (wanted < kFewestWanted && !method.promised) continue;
+    const auto starts = static_cast<uint64_t>(std::ceil(wanted));
     // The ball is alone: any delta will do.
     const PairGeometry geometry = *PairGeometry::Create(rho, 0.5 * PairDeltaBound(rho));
     const uint64_t hits = ball_case.hits > 0 ? ball_case.hits : LongestTipSequence(geometry) + 4;

@@ -53,8 +53,9 @@ Results RunAll(double effort) {
   results.pair = RunAll(PairCases(), PairMethods(), RunCase, effort);
   results.gas = RunAll(GasCases(), GasMethods(), RunGasCase, effort);
   std::cerr << "stability: reversal" << std::endl;
-  results.ball_reversals = BallReversals(1000);
-  results.pair_reversals = PairReversals(20'000);
+  const uint64_t orbits = effort < 1 ? 100 : 1000;
+  results.ball_reversals = BallReversals(orbits);
+  results.pair_reversals = PairReversals(20 * orbits);
   std::cerr << "stability: energy" << std::endl;
   results.energy = EnergyRuns(effort);
   results.gas_energy = GasEnergyRuns(effort);

@@ -143,7 +143,7 @@ class LiveWatchers : public testing::Test {
 
   double Health(const std::string& when) {
     grpc::GenericStub stub(server_.Connect());
-    const double p99 = HealthP99(stub, Size(50, 2000));
+    const double p99 = HealthP99(stub, Size(10, 2000));
     findings_.Note("health p99, ms, " + when, absl::StrFormat("%.1f", 1e3 * p99));
     return p99;
   }

@@ -17,8 +17,9 @@ namespace ballpiston::torture {
 namespace {
 
 constexpr double kMostOverhead = 0.02;
-// A window has at least ten blocks, so an incomplete block at its end does not matter.
-constexpr double kLeastSamples = 10 * 65536;
+// A window has at least ten blocks, so an incomplete block at its end does not matter. In the short
+// form one block is enough.
+double LeastSamples() { return (HoldsToTimes() ? 10 : 1) * 65536; }
 
 // Programs and threads that this thread starts meanwhile run on the first cores only, because other
 // programs may slow some cores more than others.
@@ -51,12 +52,12 @@ void Compare(int workers, const std::string& name, Findings& findings) {
   server.Start();
   const client::Client client(server.Connect());
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, client.Create(question));
-  const std::chrono::milliseconds length(300);
+  const std::chrono::milliseconds length(HoldsToTimes() ? 300 : 30);
   engine.Run(length);  // both warm
   ServerWindow(server, client, job.name(), length);
   PairedRatio processor, wall;
   for (int i = 0; i < Size(1, 400); ++i) {
-    const Window with = ServerWindow(server, client, job.name(), length, kLeastSamples);
+    const Window with = ServerWindow(server, client, job.name(), length, LeastSamples());
     const Window bare = engine.RunInsteadOf(server, length);
     processor.Add(with.ProcessorCost(), bare.ProcessorCost());
     wall.Add(with.Cost(), bare.Cost());

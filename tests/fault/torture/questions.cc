@@ -6,6 +6,7 @@
 #include "core/geometry/paper.h"
 #include "server/convert/spec.h"
 #include "tests/fault/torture/connected_server.h"
+#include "tests/fault/torture/sizes.h"
 
 namespace ballpiston::torture {
 namespace {
@@ -57,6 +58,10 @@ EnsembleSpec FirstHit(const std::vector<double>& energies) {
   return spec;
 }
 
+// In the short form an eighth of the samples.
+int64_t Samples(int full) { return Size(full / 8, full); }
+double Tolerance(double full) { return ShareOfFullSize() > 0 ? full : 2 * full; }
+
 // Each point must have the planned number of samples: none missing, none twice.
 void CheckCounts(const EnsembleSpec& message, const std::vector<v1::PointResult>& points) {
   const ballpiston::EnsembleSpec spec = server::CheckSpec(message).spec;
@@ -78,27 +83,29 @@ std::vector<EnsembleSpec> Questions() {
   const auto markov = EnsembleSpec::MARKOV;
   const auto returns = EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME;
   const auto relaxation = EnsembleSpec::ENERGY_RELAXATION;
-  return {WithCollisions(Question(EnsembleSpec::EQUILIBRIUM, billiard, {0.2, 0.1}), 100'000),
-          Question(EnsembleSpec::EQUILIBRIUM, EnsembleSpec::CLOSED_FORM, {0.2, 0.1, 0.05}),
-          WithSamples(Question(returns, billiard, {0.2}, {0.1, 0.4}), 100'000),
-          WithSamples(Question(returns, billiard, {0.2, 0.15, 0.1}, {0.1, 0.2, 0.3, 0.4}), 10'000),
-          WithTolerance(Question(returns, billiard, {0.2}, {0.25}), 0.005),
-          WithSamples(Question(returns, billiard, {0.2}, {0.3}), 10'000'000),  // for checkpoints
-          WithSamples(FirstHit({0.1, 0.4}), 50'000),
-          WithTolerance(FirstHit({0.2}), 0.01),
-          WithSamples(Question(relaxation, markov, {0.1}), 1'000),
-          WithTolerance(Question(relaxation, markov, {0.1}), 0.1),
-          WithSamples(Question(relaxation, billiard, {0.2}), 500),
-          WithCollisions(Question(EnsembleSpec::MARKOV_PROPERTY, markov, {0.2}), 20'000),
-          WithSamples(Gas(EnsembleSpec::GAS_EQUILIBRIUM, billiard), 20'000),
-          WithSamples(Gas(EnsembleSpec::GAS_CONDUCTION, billiard), 5'000)};
+  return {
+      WithCollisions(Question(EnsembleSpec::EQUILIBRIUM, billiard, {0.2, 0.1}), Samples(100'000)),
+      Question(EnsembleSpec::EQUILIBRIUM, EnsembleSpec::CLOSED_FORM, {0.2, 0.1, 0.05}),
+      WithSamples(Question(returns, billiard, {0.2}, {0.1, 0.4}), Samples(100'000)),
+      WithSamples(Question(returns, billiard, {0.2, 0.15, 0.1}, {0.1, 0.2, 0.3, 0.4}),
+                  Samples(10'000)),
+      WithTolerance(Question(returns, billiard, {0.2}, {0.25}), Tolerance(0.005)),
+      WithSamples(Question(returns, billiard, {0.2}, {0.3}), 10'000'000),  // for checkpoints
+      WithSamples(FirstHit({0.1, 0.4}), Samples(50'000)),
+      WithTolerance(FirstHit({0.2}), Tolerance(0.01)),
+      WithSamples(Question(relaxation, markov, {0.1}), Samples(1'000)),
+      WithTolerance(Question(relaxation, markov, {0.1}), Tolerance(0.1)),
+      WithSamples(Question(relaxation, billiard, {0.2}), Samples(500)),
+      WithCollisions(Question(EnsembleSpec::MARKOV_PROPERTY, markov, {0.2}), Samples(20'000)),
+      WithSamples(Gas(EnsembleSpec::GAS_EQUILIBRIUM, billiard), Size(1'000, 20'000)),
+      WithSamples(Gas(EnsembleSpec::GAS_CONDUCTION, billiard), Size(100, 5'000))};
 }
 
 std::vector<EnsembleSpec> LargeQuestions() {
   const auto returns = EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME;
-  return {WithSamples(FirstHit({0.1, 0.2, 0.3, 0.4}), 300'000),
+  return {WithSamples(FirstHit({0.1, 0.2, 0.3, 0.4}), Samples(300'000)),
           WithSamples(Question(returns, EnsembleSpec::BILLIARD, {0.2, 0.1}, {0.1, 0.2, 0.3, 0.4}),
-                      300'000)};
+                      Samples(300'000))};
 }
 
 EnsembleSpec ManyPoints(int points, int64_t samples) {

@@ -15,10 +15,11 @@
 namespace ballpiston::torture {
 
 // Specifications of every experiment, by several models, with one point and with many, with a
-// number of samples and with a tolerance. Each takes 0.02 s to 1 s of one core.
+// number of samples and with a tolerance. Each takes 0.02 s to 1 s of one core, or some seconds in
+// the long form.
 std::vector<v1::EnsembleSpec> Questions();
 
-// Questions of some seconds of one core.
+// Questions of some seconds of one core; in the short form an eighth of it.
 std::vector<v1::EnsembleSpec> LargeQuestions();
 
 // Many points of similar cost.

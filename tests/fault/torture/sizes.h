@@ -1,5 +1,5 @@
-// The size of the torture tests: by default a few seconds each; the full size with
-// BALLPISTON_TORTURE=1 in the environment (`make torture`), a tenth with 0.1.
+// The size of the torture tests: by default five seconds of one core or less each; the full size
+// with BALLPISTON_TORTURE=1 in the environment (`make torture`), a tenth with 0.1.
 #ifndef BALLPISTON_TESTS_FAULT_TORTURE_SIZES_H_
 #define BALLPISTON_TESTS_FAULT_TORTURE_SIZES_H_
 

@@ -105,7 +105,7 @@ class StalledReaders : public testing::Test {
 
   const int readers_ = Size(10, 100);
   const int windows_ = Size(2, 15);
-  const std::chrono::milliseconds length_{300}, pause_{Size(400, 2000)};
+  const std::chrono::milliseconds length_{HoldsToTimes() ? 300 : 50}, pause_{Size(300, 2000)};
   std::chrono::milliseconds to_stall_ = pause_;
   Findings findings_{"stalled readers"};
   BareEngine engine_{Endless(), kWorkers};

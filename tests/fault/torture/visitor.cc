@@ -10,6 +10,7 @@
 #include "client/library/job_watch.h"
 #include "client/library/request_id.h"
 #include "tests/fault/torture/connected_server.h"
+#include "tests/fault/torture/sizes.h"
 #include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
@@ -22,7 +23,7 @@ using client::HasEnded;
 // More active jobs would only wait for the two cores.
 constexpr size_t kMostActive = 3;
 // Enough jobs for the lists, few enough to check all at the end.
-constexpr size_t kMostKept = 40;
+size_t MostKept() { return static_cast<size_t>(Size(12, 40)); }
 constexpr std::chrono::seconds kTimeOfCall(20);  // after that the call is repeated
 
 // A call that reaches a server just as it stops is CANCELLED by gRPC, without a reason.
@@ -78,7 +79,7 @@ void Visitor::VisitUntil(const std::atomic<bool>& enough) {
 }
 
 void Visitor::DoSomething() {
-  if (jobs_.size() < kMostKept && CountActive() < kMostActive && Chance(0.5)) return Create();
+  if (jobs_.size() < MostKept() && CountActive() < kMostActive && Chance(0.5)) return Create();
   if (jobs_.empty()) return;
   const size_t index = Pick(jobs_.size());
   OwnJob& job = jobs_[index];
@@ -86,7 +87,7 @@ void Visitor::DoSomething() {
   if (Chance(0.1)) return AskAgain(job);
   if (Chance(0.05)) return List();
   if (!ended) return Chance(0.2) ? Cancel(job) : Chance(0.5) ? Get(job) : Watch(job);
-  if (Chance(jobs_.size() < kMostKept ? 0.2 : 0.5)) return Delete(index);
+  if (Chance(jobs_.size() < MostKept() ? 0.2 : 0.5)) return Delete(index);
   return Chance(0.5) ? Fetch(job) : Get(job);
 }
 

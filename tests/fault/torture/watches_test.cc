@@ -101,7 +101,7 @@ class Watches : public testing::Test {
   void Restart(int restarts, int cuts) {
     std::mt19937_64 random(4);
     for (int i = 0; i < restarts || findings_.count("watches cut") < cuts; ++i) {
-      const int life = std::uniform_int_distribution<int>(0, 1'500)(random);
+      const int life = std::uniform_int_distribution<int>(0, HoldsToTimes() ? 1'500 : 300)(random);
       std::this_thread::sleep_for(std::chrono::milliseconds(life));
       server_.Signal(i % 2 == 0 ? SIGKILL : SIGTERM);
       const int code = server_.AwaitEnd();

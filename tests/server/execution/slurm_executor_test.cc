@@ -675,7 +675,7 @@ TEST_P(SlurmQueriesTest, ThereIsAtMostOneInAnInterval) {
   EXPECT_GE(slurm_.queue().size(), arrays);
 }
 
-INSTANTIATE_TEST_SUITE_P(SlurmExecutor, SlurmQueriesTest, testing::Values(1, 1000));
+INSTANTIATE_TEST_SUITE_P(SlurmExecutor, SlurmQueriesTest, testing::Values(1, 250));
 
 // The thread that submits the second run's tasks looks first whether a query is due, and here it
 // always is.

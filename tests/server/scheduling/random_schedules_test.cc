@@ -24,6 +24,7 @@
 #include "tests/server/scheduling/remote_executor.h"
 #include "tests/server/scheduling/run_requests.h"
 #include "tests/server/scheduling/stepped_executor.h"
+#include "tests/support/nightly.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
@@ -363,13 +364,14 @@ int PlaySchedule(uint64_t seed) {
 }
 
 TEST(RandomSchedules, GiveTheBytesOfOnePlace) {
+  const int schedules = IsNightly() ? 400 : 100;
   int leases_elsewhere = 0;
-  for (uint64_t seed = 1; seed <= 400; ++seed) {
+  for (int seed = 1; seed <= schedules; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
-    leases_elsewhere += PlaySchedule(seed);
+    leases_elsewhere += PlaySchedule(static_cast<uint64_t>(seed));
     if (testing::Test::HasFailure()) break;
   }
-  EXPECT_GT(leases_elsewhere, 1000);  // the schedules are worth playing
+  EXPECT_GT(leases_elsewhere, 5 * schedules / 2);  // the schedules are worth playing
 }
 
 // The same with threads, which no seed can repeat.

@@ -205,16 +205,6 @@ TEST(MethodComparison, TheErrorOfAHeatCurrentIncludesTheErrorOfTheTruth) {
   EXPECT_GE(runs, 3);
 }
 
-TEST(MethodComparison, WithoutDeltasRelaxationTimesAndHeatCurrentAreLeftOut) {
-  MethodComparisonSpec spec = kSmallestComparison;
-  spec.relaxation_deltas = {};
-  spec.gas_delta = 0;
-  for (const MethodMeasurement& m : Compare(spec)) {
-    EXPECT_LT(m.quantity, Quantity::kRelaxationTime);
-    EXPECT_EQ(m.delta, 0.2);
-  }
-}
-
 MethodComparisonSpec WithField(double MethodComparisonSpec::*field, double value) {
   MethodComparisonSpec spec = kSmallestComparison;
   spec.*field = value;
@@ -266,8 +256,9 @@ TEST(MethodComparison, DefaultRelaxationDeltasArePermitted) {
 
 // The mean free time grows as 1/delta^2. A delta that would take too long is left out at once.
 TEST(MethodComparison, ADeltaWhoseTruthTakesTooLongIsLeftOut) {
-  MethodComparisonSpec spec = kSmallestComparison;
+  MethodComparisonSpec spec = WithField(&MethodComparisonSpec::delta, 1e-9);  // few methods
   spec.relaxation_deltas = {1e-9, 0.2};
+  spec.gas_delta = 0;
   std::set<double> deltas;
   for (const MethodMeasurement& m : Compare(spec)) {
     if (m.quantity == Quantity::kRelaxationTime) deltas.insert(m.delta);
@@ -275,10 +266,15 @@ TEST(MethodComparison, ADeltaWhoseTruthTakesTooLongIsLeftOut) {
   EXPECT_EQ(deltas, std::set<double>{0.2});
 }
 
-TEST(MethodComparison, RareCollisionsLeaveOutSlowMethods) {
+TEST(MethodComparison, RareCollisionsLeaveOutSlowMethodsAndNoDeltasTheirQuantities) {
+  MethodComparisonSpec spec = WithField(&MethodComparisonSpec::delta, 1e-9);
+  spec.relaxation_deltas = {};
+  spec.gas_delta = 0;
   std::set<Method> methods;
-  for (const MethodMeasurement& m : Compare(WithField(&MethodComparisonSpec::delta, 1e-9))) {
+  for (const MethodMeasurement& m : Compare(spec)) {
     if (m.quantity == Quantity::kMeanFreeTime) methods.insert(m.method);
+    EXPECT_LT(m.quantity, Quantity::kRelaxationTime);
+    EXPECT_EQ(m.delta, 1e-9);
   }
   EXPECT_EQ(methods, std::set<Method>{Method::kClosedForm});
 }
