@@ -107,8 +107,8 @@ void Print(const Curve& curve) {
   }
 }
 
-// Half a million orbits, 20 million jumps; four times as many in the night. False alarms: 3e-5 for the curve, 33 * 6.8e-6 for the lags,
-// 6e-5 for the integral; 3e-4 in all.
+// Half a million orbits, 20 million jumps; four times as many in the night. False alarms: 3e-5 for
+// the curve, 33 * 6.8e-6 for the lags, 6e-5 for the integral; 3e-4 in all.
 TEST(EnergyRelaxation, AutocorrelationOfTheJumpProcessMatchesTheSpectrum) {
   const double smallest = IsNightly() ? 1e-3 : 2e-3;
   const Blocks blocks = RunInBlocks(IsNightly() ? 512 : 128, 4096, 0);
@@ -187,8 +187,8 @@ TEST(EnergyRelaxation, BilliardIsSlowerThanTheLimitAtLargeDelta) {
 // larger delta: 4 errors of the billiard's result, 6e-5.
 TEST(EnergyRelaxation, BilliardIsNearTheLimitAtSmallDelta) {
   const PointParameters point = PaperPoint(0.05);
-  const Difference small =
-      FromLimit(RunPoint(SpecOfOrbits(Model::kBilliard, point[kDelta], IsNightly() ? 60'000 : 30'000)));
+  const Difference small = FromLimit(
+      RunPoint(SpecOfOrbits(Model::kBilliard, point[kDelta], IsNightly() ? 60'000 : 30'000)));
   const PilotPlace place = PilotPlaceFor(point);
   const auto run = PilotExperiment(place);
   const Pilot pilot = PilotOf(*run, *FoldPoint(*run));

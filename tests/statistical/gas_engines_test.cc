@@ -69,9 +69,9 @@ INSTANTIATE_TEST_SUITE_P(
                     GasPoint{0.6, 0.4, "2", 5, 0.05}, GasPoint{0.65, 0.8, "1x3", 2, 1},
                     GasPoint{0.69, 1, "2", 1, 1}, GasPoint{0.69, 0.6, "2x1", 1, 0.9}));
 
-// A gas runs for 2e7 (nightly 1e8) wall hits of its balls, in ten stretches. Each exchange rounds two of 3072
-// energies, at random: together some 1e-16 of the whole; their sum here is rounded to some 1e-15. A
-// loss of 1e-15 in each stretch would come to 1e-14.
+// A gas runs for 2e7 (nightly 1e8) wall hits of its balls, in ten stretches. Each exchange rounds
+// two of 3072 energies, at random: together some 1e-16 of the whole; their sum here is rounded to
+// some 1e-15. A loss of 1e-15 in each stretch would come to 1e-14.
 TEST(LaneGas, KeepsItsEnergyOverMillionsOfHits) {
   constexpr int kStretches = 10;
   const double all_hits = IsNightly() ? 1e8 : 2e7;

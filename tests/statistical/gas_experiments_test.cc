@@ -54,20 +54,20 @@ double StatedOverMeasured(const EnsembleSpec& spec) {
 TEST(GasExperiments, StatedErrorsInEquilibriumMatchTheMeasuredErrors) {
   for (const Model model : {Model::kMarkov, Model::kBilliard}) {
     for (const GasShape& shape : {GasShape{4}, GasShape{16}, GasShape{4, 4, true}}) {
-      EXPECT_NEAR(StatedOverMeasured(Equilibrium(0.1, shape, model, IsNightly() ? 1000 : 400)), 1, 0.2);
+      EXPECT_NEAR(StatedOverMeasured(Equilibrium(0.1, shape, model, IsNightly() ? 1000 : 400)), 1,
+                  0.2);
     }
   }
 }
 
 // One constant serves all longer chains, and one all wider lattices, although measured errors
 // differ by up to 25 % between shapes. An error measured with 1500 replicas is itself known to 5 %,
-// one with 500 replicas, of large gases, to 8 %, and those with the 4000 of the night to 3 %. The true
-// ratios are from 0.83 to 1.06, so the windows are more than three errors wide.
+// one with 500 replicas, of large gases, to 8 %, and those with the 4000 of the night to 3 %. The
+// true ratios are from 0.83 to 1.06, so the windows are more than three errors wide.
 TEST(GasExperiments, StatedErrorsOfTheConductivityMatchTheMeasuredErrors) {
   const auto stated_over_measured = [](Model model, const GasShape& shape, double delta) {
     const int64_t affordable = shape.columns * shape.rows < 16 ? 1500 : 500;
-    EnsembleSpec spec =
-        Equilibrium(delta, shape, model, IsNightly() ? 4000 : affordable);
+    EnsembleSpec spec = Equilibrium(delta, shape, model, IsNightly() ? 4000 : affordable);
     spec.target.estimate = "conductivity";
     return StatedOverMeasured(spec);
   };
@@ -102,10 +102,10 @@ TEST(GasExperiments, ConductivityOfTheJumpProcessMatchesTheSpectrum) {
   }
 }
 
-// Between reservoirs at 1.05 and 0.95 1000 replicas know the current to 13 % only, 4000 to 6.5 %, and
-// the 10,000 of the night to 4 %. The billiard takes most of the time: longer chains and a smaller
-// delta wait for the night. Its 500 replicas know the error to 3.2 % and the current to 2 %; the
-// ratios are from 0.87 to 1.04.
+// Between reservoirs at 1.05 and 0.95 1000 replicas know the current to 13 % only, 4000 to 6.5 %,
+// and the 10,000 of the night to 4 %. The billiard takes most of the time: longer chains and a
+// smaller delta wait for the night. Its 500 replicas know the error to 3.2 % and the current to 2
+// %; the ratios are from 0.87 to 1.04.
 TEST(GasExperiments, StatedErrorsOfTheCurrentMatchTheMeasuredErrors) {
   const auto stated_over_measured = [](const GasShape& shape, double hot, double cold, Model model,
                                        double delta = 0.2, int64_t replicas = 1000) {
@@ -114,9 +114,11 @@ TEST(GasExperiments, StatedErrorsOfTheCurrentMatchTheMeasuredErrors) {
   for (const GasShape& shape : {GasShape{2}, GasShape{4}, GasShape{3, 3, true}}) {
     EXPECT_NEAR(stated_over_measured(shape, 1.5, 0.5, Model::kMarkov), 1, 0.2);
   }
-  EXPECT_NEAR(stated_over_measured({4}, 1.05, 0.95, Model::kMarkov, 0.2, IsNightly() ? 10'000 : 4000), 1, 0.2);
   EXPECT_NEAR(
-      stated_over_measured({2}, 1.5, 0.5, Model::kBilliard, 0.2, IsNightly() ? 1000 : 500), 1, 0.2);
+      stated_over_measured({4}, 1.05, 0.95, Model::kMarkov, 0.2, IsNightly() ? 10'000 : 4000), 1,
+      0.2);
+  EXPECT_NEAR(stated_over_measured({2}, 1.5, 0.5, Model::kBilliard, 0.2, IsNightly() ? 1000 : 500),
+              1, 0.2);
   if (!IsNightly()) return;
   EXPECT_NEAR(stated_over_measured({4}, 1.5, 0.5, Model::kBilliard), 1, 0.2);
   EXPECT_NEAR(stated_over_measured({2}, 2, 1, Model::kBilliard, 0.1), 1, 0.2);
@@ -155,7 +157,8 @@ TEST(GasExperiments, CurrentOfTheJumpProcessMatchesAnIndependentProgram) {
 }
 
 TEST(GasExperiments, CurrentOfTheBilliardMatchesAnIndependentProgram) {
-  const PointSummary two = RunPoint(Conduction(0.15, {2}, 2, 1, Model::kBilliard, IsNightly() ? 10'000 : 1000));
+  const PointSummary two =
+      RunPoint(Conduction(0.15, {2}, 2, 1, Model::kBilliard, IsNightly() ? 10'000 : 1000));
   ExpectAgrees(two.estimates[0], 0.019931, 0.000150);
   const double expected[] = {1.976, 1.752, 1.512, 1.269, 1.021};
   for (size_t i = 0; i < std::size(expected); ++i) {

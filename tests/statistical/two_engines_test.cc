@@ -110,9 +110,9 @@ class TwoEngines : public testing::TestWithParam<Point> {};
 
 // Means agree within 4 combined standard errors, with 6e-5 false alarms each. The ingoing law is
 // compared by chi^2 (3e-5), the law of the return times by Kolmogorov and Smirnov (5e-5). Over the
-// 60 points this makes 1.5 percent of false alarms. The test detects a difference of 1 % between the
-// distribution functions of the times, and one of 1.8 % of the standard deviation between means; at
-// the nightly size half of these.
+// 60 points this makes 1.5 percent of false alarms. The test detects a difference of 1 % between
+// the distribution functions of the times, and one of 1.8 % of the standard deviation between
+// means; at the nightly size half of these.
 TEST_P(TwoEngines, AgreeInMeansAndLaws) {
   const FirstHits reference = Sample(Engine::kReference, GetParam());
   const FirstHits lanes = Sample(Engine::kLanes, GetParam());
