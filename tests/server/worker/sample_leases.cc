@@ -40,7 +40,7 @@ EnsembleSpec SpecOf(const ExperimentKind& kind, Model model, int64_t samples) {
     spec.grid[*use.parameter] = {SomeValueOf(*use.parameter)};
   }
   // Exchanges are more frequent, so a replica is less work.
-  if (IsGas(kind)) spec.grid[kDelta] = {0.2};
+  if (IsGas(kind)) spec.grid[kDelta] = {0.19};
   (kind.unit == TargetUnit::kCollisions ? spec.target.collisions : spec.target.samples) = samples;
   return spec;
 }
