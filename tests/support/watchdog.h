@@ -1,5 +1,5 @@
-// Shows where a test hangs: every 15 minutes that a test takes, the program prints the test's name and
-// the stacks of all threads. The test goes on. No test fails because a machine is slow.
+// Shows where a test hangs: every 15 minutes that a test takes, the program prints the test's name
+// and the stacks of all threads. The test goes on. No test fails because a machine is slow.
 //
 // The environment variable BALLPISTON_STACKS_AFTER replaces the 15 minutes by a number of seconds.
 #ifndef BALLPISTON_TESTS_SUPPORT_WATCHDOG_H_

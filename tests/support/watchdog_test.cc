@@ -50,7 +50,8 @@ TEST(Watchdog, PrintsTheStacksOfAllThreadsAndLetsTheTestGoOn) {
                                    {"GTEST_OUTPUT", ""},
                                    {"GTEST_TOTAL_SHARDS", ""},
                                    {"GTEST_SHARD_INDEX", ""}}});
-  EXPECT_TRUE(hanging.WaitForErr("DISABLED_HangingTest.EndsWhenToldTo has not ended after 0.1 s or more"));
+  EXPECT_TRUE(
+      hanging.WaitForErr("DISABLED_HangingTest.EndsWhenToldTo has not ended after 0.1 s or more"));
   EXPECT_TRUE(hanging.WaitForErr("WaitForAnAnswerThatNeverComes"));
   EXPECT_TRUE(hanging.WaitForErr("SleepUntilFileExists"));
   std::ofstream{end_of_test};
