@@ -121,7 +121,7 @@ TEST(GasExperiment, AReplicaDependsOnlyOnItsNumber) {
 
 // From every number of merged blocks.
 TEST(GasExperiment, AResumedFoldHasTheSameBits) {
-  for (const EnsembleSpec& spec : OneOfEach(130)) {
+  for (const EnsembleSpec& spec : OneOfEach(80)) {
     SCOPED_TRACE(Described(spec));
     const auto point = PointExperiment::Create(spec, 0);
     const BlockResult whole = *FoldPoint(*point);

@@ -98,6 +98,18 @@ TEST(KlDivergence, NoiseFloorHoldsForExtremeProbabilities) {
   }
 }
 
+// The definition, without the noise, which takes most of RelativeEntropy's time.
+double PlainDivergence(const std::vector<uint64_t>& counts, uint64_t samples,
+                       const std::vector<double>& probabilities) {
+  double sum = 0;
+  for (size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] == 0) continue;
+    const double p = static_cast<double>(counts[i]) / static_cast<double>(samples);
+    sum += p * std::log(p / probabilities[i]);
+  }
+  return sum;
+}
+
 // Divergences of `samples` draws from the law itself, `repeats` times.
 Moments Divergences(const std::vector<double>& probabilities, uint64_t samples, uint64_t repeats) {
   std::vector<double> sums(probabilities.size());
@@ -110,7 +122,10 @@ Moments Divergences(const std::vector<double>& probabilities, uint64_t samples, 
       const auto cell = std::upper_bound(sums.begin(), sums.end() - 1, random.Uniform());
       ++counts[static_cast<size_t>(cell - sums.begin())];
     }
-    moments.Add(RelativeEntropy(counts, probabilities).value);
+    moments.Add(PlainDivergence(counts, samples, probabilities));
+    if (i == 0) {
+      EXPECT_NEAR(RelativeEntropy(counts, probabilities).value, moments.mean, 1e-12);
+    }
   }
   return moments;
 }

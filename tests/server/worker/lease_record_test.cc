@@ -1,5 +1,6 @@
 #include "server/worker/lease_record.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -34,18 +35,27 @@ absl::StatusOr<IdentifiedLease> ReadBack(const IdentifiedLease& lease) {
   return LeaseOfRecord(record);
 }
 
-std::string FirstBlock(const PointExperiment& experiment) {
-  return ChunkRecordBytes({0, RunBlock(experiment, experiment.plan().BlockAt(0, 0)).value()});
+// The bits of the first samples. A whole block of an open-ended target would take much longer.
+std::string FirstSamples(const PointExperiment& experiment) {
+  Block block = experiment.plan().BlockAt(0, 0);
+  block.samples = std::min<uint64_t>(block.samples, 64);
+  return ChunkRecordBytes({0, RunBlock(experiment, block).value()});
 }
 
 void ExpectSamePlan(const ChunkPlan& a, const ChunkPlan& b) {
   EXPECT_EQ(a.samples(), b.samples());
   EXPECT_EQ(a.events_per_sample(), b.events_per_sample());
   ASSERT_EQ(a.chunks(), b.chunks());
-  for (uint64_t chunk = 0; chunk < a.chunks(); ++chunk) {
+  // Sizes double from chunk to chunk, up to a maximum. So the first chunks and the last chunk show
+  // all sizes. An open-ended target has far more chunks.
+  constexpr uint64_t kFirst = 100;
+  for (uint64_t chunk = 0; chunk < std::min(kFirst, a.chunks()); ++chunk) {
     EXPECT_EQ(a.BlocksIn(chunk), b.BlocksIn(chunk));
     EXPECT_EQ(a.BlockAt(chunk, 0), b.BlockAt(chunk, 0));
   }
+  const uint64_t last = a.chunks() - 1;
+  EXPECT_EQ(a.BlocksIn(last), b.BlocksIn(last));
+  EXPECT_EQ(a.BlockAt(last, 0), b.BlockAt(last, 0));
 }
 
 void ExpectSameExperiment(const Lease& original, const Lease& back) {
@@ -58,7 +68,7 @@ void ExpectSameExperiment(const Lease& original, const Lease& back) {
   EXPECT_EQ(back.spec->seed, original.spec->seed);
   EXPECT_EQ(a.expected_chunks(), b.expected_chunks());
   ExpectSamePlan(a.plan(), b.plan());
-  EXPECT_EQ(FirstBlock(a), FirstBlock(b));
+  EXPECT_EQ(FirstSamples(a), FirstSamples(b));
 }
 
 void ExpectComesBack(const IdentifiedLease& lease) {

@@ -25,10 +25,12 @@ double SomeValueOf(const Parameter& parameter) {
 
 bool Samples(Model model) { return model != Model::kClosedForm && model != Model::kSpectrum; }
 
-// A replica of a gas is more work than other samples.
-int64_t SamplesOf(const ExperimentKind& kind) {
-  return &kind == &kGasEquilibrium || &kind == &kGasConduction ? 150 : kSomeSamples;
+bool IsGas(const ExperimentKind& kind) {
+  return &kind == &kGasEquilibrium || &kind == &kGasConduction;
 }
+
+// A replica of a gas is more work than other samples. The first chunk has 64 replicas.
+int64_t SamplesOf(const ExperimentKind& kind) { return IsGas(kind) ? 66 : kSomeSamples; }
 
 }  // namespace
 
@@ -37,6 +39,8 @@ EnsembleSpec SpecOf(const ExperimentKind& kind, Model model, int64_t samples) {
   for (const ParameterUse& use : kind.parameters) {
     spec.grid[*use.parameter] = {SomeValueOf(*use.parameter)};
   }
+  // Exchanges are more frequent, so a replica is less work.
+  if (IsGas(kind)) spec.grid[kDelta] = {0.19};
   (kind.unit == TargetUnit::kCollisions ? spec.target.collisions : spec.target.samples) = samples;
   return spec;
 }
