@@ -20,8 +20,8 @@
 // step is extrapolated in n. The last step gives an estimate for still larger clusters.
 //
 // The values are constants, because they are universal and the service must answer at once.
-// QuickPlan recomputes them in a few tenths of a second with a larger error. A slow test recomputes
-// them with FinePlan. docs/conductivity.md has the tables.
+// QuickPlan recomputes them in a few tenths of a second with a larger error. A nightly test
+// recomputes them with FinePlan. docs/conductivity.md has the tables.
 //
 // Units: lengths in E, A and b are distances of neighbouring sites; the ratio has no unit.
 // Properties, each with the test that bears its name:
