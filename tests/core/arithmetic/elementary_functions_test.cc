@@ -54,7 +54,7 @@ TEST(ElementaryFunctions, PowersAreWithinTheirBound) {
     if (exact < 1e-300L) return;
     worst = std::max(worst, UlpError(Power(base, exponent), exact));
   };
-  for (int i = 0; i < kSamples; ++i) {
+  for (int i = 0; i < kSamples / 2; ++i) {
     const double base = random.Uniform(), exponent = random.Uniform();
     for (const double scale : {1e-9, 0.5, 10.0, 1000.0}) compare(base, scale * exponent);
     compare(std::exp2(-900 * base), exponent);
