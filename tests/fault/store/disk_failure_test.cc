@@ -464,7 +464,7 @@ bool LiveWithARefusal(Refusal refusal, size_t at, const std::vector<std::string>
 // The disk fails once, at each operation of a life in turn, and the power is cut at the end of the
 // life.
 TEST(DiskFailure, AfterADiskErrorAtAnyCallAcknowledgedDataIsThere) {
-  const size_t stride = IsLong() ? 1 : 5;
+  const size_t stride = IsLong() ? 1 : 3;
   FaultDisk undisturbed;
   ServiceOnDisk service(undisturbed);
   const std::string id = CreateAtLast(service, 7);
