@@ -26,11 +26,11 @@ ProcessResult RunWhenThereIsRoom(const TestServer& server, const Words& question
   return run;
 }
 
-// 20 points whose results take 60 kB.
+// 40 points whose results take 120 kB.
 ProcessResult RunSweep(const TestServer& server, int seed) {
   return RunWhenThereIsRoom(
       server,
-      Joined({Split("--resume first-hit --rho 0.53 --delta 0.1:0.2:20 --epsilon 0.1 --exponent 1"),
+      Joined({Split("--resume first-hit --rho 0.53 --delta 0.1:0.2:40 --epsilon 0.1 --exponent 1"),
               {"--samples", "500", "--seed", absl::StrCat(seed)}}));
 }
 
@@ -47,7 +47,7 @@ bool HasExpired(const TestServer& server, const std::string& name) {
 }
 
 TEST(Expiry, OldResultsExpireUnlessPinnedAndCanBeComputedAgain) {
-  const TestServer server({.flags = {"--max-store-bytes=300000"}});
+  const TestServer server({.flags = {"--max-store-bytes=600000"}});
   const ProcessResult kept = RunSweep(server, 1), old = RunSweep(server, 2);
   ASSERT_THAT(kept, ExitsWith(0));
   ASSERT_THAT(old, ExitsWith(0));

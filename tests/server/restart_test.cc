@@ -67,7 +67,7 @@ v1::EnsembleSpec SmallGas(v1::EnsembleSpec::Experiment experiment, v1::EnsembleS
   spec.set_experiment(experiment);
   spec.mutable_grid()->clear_delta();
   for (const double delta : {0.19, 0.17, 0.15}) spec.mutable_grid()->add_delta(delta);
-  spec.mutable_grid()->add_cells("2");
+  spec.mutable_grid()->add_cells("1");
   if (experiment == v1::EnsembleSpec::GAS_EQUILIBRIUM) {
     spec.mutable_grid()->add_temperature(2);
   } else {

@@ -90,7 +90,8 @@ std::vector<EnsembleSpec> Questions() {
       WithSamples(Question(returns, billiard, {0.2, 0.15, 0.1}, {0.1, 0.2, 0.3, 0.4}),
                   Samples(10'000)),
       WithTolerance(Question(returns, billiard, {0.2}, {0.25}), Tolerance(0.005)),
-      WithSamples(Question(returns, billiard, {0.2}, {0.3}), 10'000'000),  // for checkpoints
+      WithSamples(Question(returns, billiard, {0.2}, {0.3}),
+                  Size(3'000'000, 10'000'000)),  // for checkpoints
       WithSamples(FirstHit({0.1, 0.4}), Samples(50'000)),
       WithTolerance(FirstHit({0.2}), Tolerance(0.01)),
       WithSamples(Question(relaxation, markov, {0.1}), Samples(1'000)),

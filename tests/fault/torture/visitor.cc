@@ -23,7 +23,7 @@ using client::HasEnded;
 // More active jobs would only wait for the two cores.
 constexpr size_t kMostActive = 3;
 // Enough jobs for the lists, few enough to check all at the end.
-size_t MostKept() { return static_cast<size_t>(Size(12, 40)); }
+size_t MostKept() { return static_cast<size_t>(Size(6, 40)); }
 constexpr std::chrono::seconds kTimeOfCall(20);  // after that the call is repeated
 
 // A call that reaches a server just as it stops is CANCELLED by gRPC, without a reason.
