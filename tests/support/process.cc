@@ -60,6 +60,13 @@ void WriteAll(int descriptor, const std::string& text) {
   close(descriptor);
 }
 
+sigset_t SignalsThatEndPrograms() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGHUP, SIGTERM}) sigaddset(&signals, signal);
+  return signals;
+}
+
 // Repeats a system call that a signal has interrupted.
 template <typename Call>
 auto Uninterrupted(Call call) {
@@ -77,12 +84,17 @@ Process::Process(const ProcessOptions& options) {
   posix_spawn_file_actions_adddup2(&actions, in.read, STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, out.write, STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, err.write, STDERR_FILENO);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+  const sigset_t signals = SignalsThatEndPrograms();
+  posix_spawnattr_setsigdefault(&attributes, &signals);
   const std::vector<std::string> environment = Environment(options.environment);
-  std::vector<std::string> command = {"setpriv", "--pdeathsig", "KILL", "env",
-                                      "--default-signal=INT,HUP,TERM"};
+  std::vector<std::string> command = {"setpriv", "--pdeathsig", "KILL"};
   command.insert(command.end(), options.command.begin(), options.command.end());
-  const int error = posix_spawnp(&pid_, command[0].c_str(), &actions, nullptr,
+  const int error = posix_spawnp(&pid_, command[0].c_str(), &actions, &attributes,
                                  Pointers(command).data(), Pointers(environment).data());
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   for (const int end : {in.read, out.write, err.write}) close(end);
   if (error != 0) throw std::runtime_error("cannot start " + command[0]);

@@ -14,10 +14,9 @@ namespace ballpiston {
 namespace {
 
 // The command is setpriv, env and the program. env changes the environment, so that the child calls
-// only exec after fork.
+// only signal and exec after fork.
 std::vector<std::string> CommandOf(const ProcessOptions& options) {
-  std::vector<std::string> command = {"setpriv", "--pdeathsig", "KILL", "env",
-                                      "--default-signal=INT,HUP,TERM"};
+  std::vector<std::string> command = {"setpriv", "--pdeathsig", "KILL", "env"};
   for (const auto& [name, value] : options.environment) {
     if (value.empty()) command.insert(command.end(), {"-u", name});
   }
@@ -39,6 +38,7 @@ TerminalProcess::TerminalProcess(const ProcessOptions& options) {
   pid_ = forkpty(&terminal_, nullptr, nullptr, nullptr);
   if (pid_ < 0) throw std::runtime_error("no pseudo-terminal");
   if (pid_ > 0) return;
+  for (const int ended_by : {SIGINT, SIGHUP, SIGTERM}) signal(ended_by, SIG_DFL);
   execvp(words[0], words.data());
   _exit(127);
 }
