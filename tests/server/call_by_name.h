@@ -26,7 +26,7 @@ inline const std::string kWholeServer("\x0a\0", 2);
 inline constexpr char kListServices[] = "\x3a\x01*";
 
 // Sends one request with the serialized message `bytes` and with these headers `authorization`, and
-// reads to the end. Ends after 10 min with DEADLINE_EXCEEDED.
+// reads to the end. Ends after 15 minutes with DEADLINE_EXCEEDED.
 grpc::Status CallByName(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
                         const std::string& bytes = "",
                         const std::vector<std::string>& authorization = {});

@@ -4,12 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -20,6 +18,7 @@
 #include "tests/server/http_get.h"
 #include "tests/server/running_server.h"
 #include "tests/server/unread_call.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
@@ -191,8 +190,7 @@ TEST(ConnectionBounds, EndlessRequestsAreEndedWhenMemoryIsUsedUp) {
   }
   EXPECT_TRUE(client.EndsOne());
   // Other clients can connect again after a while. There is room only for moments.
-  while (!CallByName(server.channel(), kListJobs).ok()) {
-  }
+  AwaitThat([&server] { return CallByName(server.channel(), kListJobs).ok(); });
 }
 
 size_t ThreadsOfThisProcess() {
@@ -214,9 +212,7 @@ TEST(ConnectionBounds, ReflectionUsesLimitedThreadsAndOtherCallsGoOn) {
   EXPECT_OK(CallByName(server.channel(), kListJobs));
   EXPECT_OK(CallByName(server.channel(), kCheckHealth));
   streams.clear();
-  while (!CallByName(server.channel(), kReflection, kListServices).ok()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));  // the server is to have the core
-  }
+  AwaitThat([&server] { return CallByName(server.channel(), kReflection, kListServices).ok(); });
 }
 
 }  // namespace
