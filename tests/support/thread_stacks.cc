@@ -11,6 +11,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <list>
 #include <string>
 #include <thread>
 
@@ -25,7 +26,8 @@ constexpr std::chrono::seconds kPatience(10);
 
 pid_t ThisThread() { return static_cast<pid_t>(syscall(SYS_gettid)); }
 
-// Never freed, because a thread may answer after the time limit.
+// Never freed, because a thread may answer after the time limit. The list of all is for the leak
+// sanitizer.
 struct Request {
   pid_t thread = 0;
   std::array<void*, kMaxDepth> frames = {};
@@ -33,6 +35,7 @@ struct Request {
 };
 
 std::atomic<Request*> asked = nullptr;
+std::list<Request>& requests = *new std::list<Request>;
 
 void RecordStack(int) {
   const int error = errno;
@@ -85,7 +88,7 @@ void WriteThreadStacks(int descriptor) {
   action.sa_flags = SA_RESTART;  // interrupted system calls continue
   sigaction(SIGRTMAX, &action, nullptr);
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task")) {
-    Request& request = *new Request;
+    Request& request = requests.emplace_back();
     request.thread = std::stoi(entry.path().filename());
     if (request.thread == ThisThread()) continue;
     Write(descriptor,
