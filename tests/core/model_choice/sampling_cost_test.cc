@@ -65,7 +65,7 @@ TEST(SamplingCost, ErrorOfReturnsIsWithinAFactorOfTwo) {
 TEST(SamplingCost, ErrorOfRelaxationIsWithinAFactorOfTwoAndAHalf) {
   for (const Model model : {Model::kBilliard, Model::kMarkov}) {
     for (const double delta : {0.1, 0.25}) {
-      EnsembleSpec spec = Relaxation(delta, {.samples = 20'000});
+      EnsembleSpec spec = Relaxation(delta, {.samples = 10'000});
       spec.model = model;
       ExpectWithinAFactor(2.5, spec);
       for (const double epsilon : {0.01, 0.05, 0.4}) {
