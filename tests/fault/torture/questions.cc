@@ -104,9 +104,9 @@ std::vector<EnsembleSpec> Questions() {
 
 std::vector<EnsembleSpec> LargeQuestions() {
   const auto returns = EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME;
-  return {WithSamples(FirstHit({0.1, 0.2, 0.3, 0.4}), Samples(300'000)),
+  return {WithSamples(FirstHit({0.1, 0.2, 0.3, 0.4}), 300'000),
           WithSamples(Question(returns, EnsembleSpec::BILLIARD, {0.2, 0.1}, {0.1, 0.2, 0.3, 0.4}),
-                      Samples(300'000))};
+                      300'000)};
 }
 
 EnsembleSpec ManyPoints(int points, int64_t samples) {
