@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import shutil
@@ -33,7 +34,7 @@ class Part:
         self.starts += 1
         with self.output.open("w") as output:
             self._process = subprocess.Popen(
-                [self._command],
+                ["setpriv", "--pdeathsig", "KILL", self._command],
                 env=self._environment,
                 stdout=output,
                 stderr=output,
@@ -44,29 +45,38 @@ class Part:
         return self._process.poll() is not None
 
     def kill(self) -> None:
-        os.killpg(self._process.pid, signal.SIGKILL)
+        with contextlib.suppress(ProcessLookupError):  # it may have ended
+            os.killpg(self._process.pid, signal.SIGKILL)
         self._process.wait()
 
     def failed_test(self) -> str | None:
         code = self._process.returncode
-        text = self.output.read_text(errors="replace")
         if code == 0:
             return None
-        if failed := re.search(r"^\[  FAILED  \] ([\w/]+\.[\w/]+)", text, re.MULTILINE):
+        if failed := re.search(r"^\[  FAILED  \] ([\w/]+\.[\w/]+)", self.text(), re.MULTILINE):
             return failed[1]
-        begun = re.findall(r"^\[ RUN      \] (\S+)", text, re.MULTILINE)
-        return f"{begun[-1] if begun else self.output.stem} (exit status {code})"
+        return f"{self.last_test()} (exit status {code})"
+
+    def last_test(self) -> str:
+        """The last test that began."""
+        begun = re.findall(r"^\[ RUN      \] (\S+)", self.text(), re.MULTILINE)
+        return begun[-1] if begun else self.output.stem
+
+    def text(self) -> str:
+        return self.output.read_text(errors="replace")
 
 
 def first_failure(programs: list[Path], jobs: int, seconds: float, log: Path) -> str | None:
-    """The first test that fails, with its output in `log`; `hang` after so many seconds.
+    """The first test that fails, or after so many seconds `hang: ` and the tests that still run.
 
-    A part that fails runs a second time, because a busy machine can make a test fail too.
+    `log` gets their output. A part that fails or hangs runs once more, and only the second time
+    counts, because a busy machine can make a test fail too.
     """
     temporary = Path(tempfile.mkdtemp(prefix="mutation-"))
     temporary.chmod(0o1777)  # like /tmp: a test is a server of several users
     waiting = [Part(program, i, temporary) for program in programs for i in range(_PARTS)]
     running: list[Part] = []
+    has_hung = False
     deadline = time.monotonic() + seconds
     try:
         while waiting or running:
@@ -75,7 +85,13 @@ def first_failure(programs: list[Path], jobs: int, seconds: float, log: Path) ->
                 running[-1].start()
             time.sleep(0.1)
             if time.monotonic() > deadline:
-                return "hang"
+                log.write_text("\n".join(part.text() for part in running))
+                if has_hung:
+                    return "hang: " + ", ".join(part.last_test() for part in running)
+                for part in running:
+                    part.kill()
+                waiting, running = running + waiting, []
+                has_hung, deadline = True, time.monotonic() + seconds
             for part in [part for part in running if part.has_ended()]:
                 running.remove(part)
                 failed = part.failed_test()

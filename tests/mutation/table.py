@@ -48,7 +48,11 @@ class Results:
 
 
 def read(path: Path) -> list[Record]:
-    return [json.loads(line) for line in path.read_text().splitlines()]
+    if not path.exists():
+        raise SystemExit(f"no results: {path}")
+    text = path.read_text()
+    whole = text[: text.rfind("\n") + 1]  # a killed run leaves a part of a line
+    return [json.loads(line) for line in whole.splitlines()]
 
 
 def mutant_of(record: Record) -> Mutant:

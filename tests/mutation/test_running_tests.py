@@ -1,0 +1,76 @@
+"""What counts as a failure of a test program. Shell scripts stand for the programs."""
+
+from __future__ import annotations
+
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import running_tests
+
+PARTS = running_tests._PARTS
+RUN = 'echo "[ RUN      ] Suite.Test$GTEST_SHARD_INDEX"\n'
+FIRST_TIME = 'mkdir "$folder/$GTEST_SHARD_INDEX" 2>/dev/null'
+HANG = 'echo started >>"$folder/hanging"; sleep 1000\n'
+
+
+class FirstFailureTest(unittest.TestCase):
+    def setUp(self) -> None:
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+        self.log = self.folder / "log"
+
+    def first_failure(self, script: str) -> str | None:
+        program = self.folder / "program"
+        program.write_text(f"#!/bin/sh\nfolder={self.folder}\n{script}")
+        program.chmod(0o700)
+        # The time limit of 5 s is exceeded as soon as all parts hang, and not before.
+        with mock.patch.object(running_tests.time, "monotonic", lambda: 10 * self.hangs()):
+            return running_tests.first_failure([program], PARTS, 5, self.log)
+
+    def hangs(self) -> int:
+        """How often all parts hung."""
+        file = self.folder / "hanging"
+        return len(file.read_text().split()) // PARTS if file.exists() else 0
+
+    def test_success_is_no_failure(self) -> None:
+        self.assertIsNone(self.first_failure(RUN))
+
+    def test_a_part_that_fails_once_is_no_failure(self) -> None:
+        self.assertIsNone(self.first_failure(f"{FIRST_TIME} && exit 1\nexit 0"))
+
+    def test_the_failed_test_is_named_and_logged(self) -> None:
+        failed = f'{RUN}echo "[  FAILED  ] Suite.Wrong"\nexit 1'
+        script = f'[ "$GTEST_SHARD_INDEX" = 2 ] || exit 0\n{failed}'
+        self.assertEqual(self.first_failure(script), "Suite.Wrong")
+        self.assertIn("Suite.Test2", self.log.read_text())
+
+    def test_a_crash_is_named_after_the_last_test(self) -> None:
+        crash = f'[ "$GTEST_SHARD_INDEX" = 3 ] || exit 0\n{RUN}kill -SEGV $$'
+        self.assertEqual(self.first_failure(crash), "Suite.Test3 (exit status -11)")
+
+    def test_a_hang_runs_once_more(self) -> None:
+        self.assertIsNone(self.first_failure(f"{RUN}{FIRST_TIME} || exit 0\n{HANG}"))
+        self.assertEqual(self.hangs(), 1)
+        self.assertIn("Suite.Test0", self.log.read_text())
+
+    def test_a_second_hang_names_the_tests_that_run(self) -> None:
+        names = ", ".join(f"Suite.Test{i}" for i in range(PARTS))
+        self.assertEqual(self.first_failure(RUN + HANG), f"hang: {names}")
+        self.assertEqual(self.hangs(), 2)
+
+    def test_a_part_that_has_ended_can_be_killed(self) -> None:
+        program = self.folder / "program"
+        program.write_text("#!/bin/sh\n")
+        program.chmod(0o700)
+        part = running_tests.Part(program, 0, self.folder)
+        part.start()
+        while not part.has_ended():
+            pass
+        part.kill()
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,25 @@
+"""The file of results."""
+
+from __future__ import annotations
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import table
+
+
+class ReadTest(unittest.TestCase):
+    def test_a_part_of_a_line_is_left_out(self) -> None:
+        with tempfile.NamedTemporaryFile("w") as file:
+            file.write('{"seed": 1}\n{"file": "core')
+            file.flush()
+            self.assertEqual(table.read(Path(file.name)), [{"seed": 1}])
+
+    def test_a_missing_file_is_named(self) -> None:
+        with self.assertRaisesRegex(SystemExit, "no results: missing.jsonl"):
+            table.read(Path("missing.jsonl"))
+
+
+if __name__ == "__main__":
+    unittest.main()
