@@ -26,7 +26,7 @@ import ballpiston
 PROJECT = Path(__file__).resolve().parents[3]
 LIMIT = 900.0  # seconds: the longest wait for a condition or a program
 
-# The background of a shell ignores SIGINT, and so would the programs that the tests start.
+# A shell starts background commands with SIGINT ignored, and their child processes inherit that.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # Variables of the user that runs the tests must not change them.

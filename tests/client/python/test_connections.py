@@ -190,13 +190,13 @@ def test_tls_and_a_token_reach_a_server_that_wants_them(
     secure_address: str, tmp_path: Path
 ) -> None:
     ca, token_file = str(tmp_path / "server.pem"), str(tmp_path / "ada.token")
-    with ballpiston.connect(secure_address, ca=ca, token_file=token_file) as client:
+    with ballpiston.connect(secure_address, ca=ca, token_file=token_file, timeout=LIMIT) as client:
         status = client.status()
         assert (status.principal, status.role) == ("ada", "submit")
-    with ballpiston.connect(secure_address, ca=ca) as client:
+    with ballpiston.connect(secure_address, ca=ca, timeout=LIMIT) as client:
         with pytest.raises(ballpiston.Unauthenticated) as caught:
             client.status()
         assert caught.value.reason == "CREDENTIALS_MISSING"
-    with ballpiston.connect(secure_address, tls=True) as client:
+    with ballpiston.connect(secure_address, tls=True, timeout=LIMIT) as client:
         with pytest.raises(ballpiston.Unavailable, match="ca=FILE"):
             client.status()

@@ -6,7 +6,7 @@ import uuid
 
 import numpy as np
 import pytest
-from conftest import ENDLESS, FIRST_HITS, Home, wait_until
+from conftest import ENDLESS, FIRST_HITS, LIMIT, Home, wait_until
 
 import ballpiston
 
@@ -122,7 +122,7 @@ def test_a_notebook_shows_the_job_as_it_is_now(endless: ballpiston.Job) -> None:
 
 
 def test_a_call_after_the_server_was_killed_starts_it_again(own_home: Home) -> None:
-    with ballpiston.connect() as client:
+    with ballpiston.connect(timeout=LIMIT) as client:
         job = client.submit(**ENDLESS)
         before = own_home.server_id()
         own_home.end_server(9)

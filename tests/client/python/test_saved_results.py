@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import FIRST_HITS, Home
+from conftest import FIRST_HITS, LIMIT, Home
 
 import ballpiston
 
@@ -84,7 +84,7 @@ def test_the_numbers_are_those_of_the_command_line_bit_for_bit(home: Home) -> No
     )
     name = "mean_free_time_conditional"
     rows = [row for row in csv.DictReader(io.StringIO(printed)) if row["name"] == name]
-    with ballpiston.connect() as client:
+    with ballpiston.connect(timeout=LIMIT) as client:
         result = client.run(
             "conditional-mean-free-time",
             rho=0.5296,

@@ -25,7 +25,7 @@ def streams(client: ballpiston.Client) -> float:
 
 
 def test_a_watch_goes_on_after_the_server_was_killed(own_home: Home) -> None:
-    with ballpiston.connect() as client, ballpiston.connect() as watching:
+    with ballpiston.connect(timeout=LIMIT) as client, ballpiston.connect(timeout=LIMIT) as watching:
         job = client.submit(**ENDLESS)
         ends: list[BaseException] = []
 
@@ -51,7 +51,10 @@ def test_a_watch_goes_on_after_the_server_was_killed(own_home: Home) -> None:
 def test_ctrl_c_ends_the_watch_and_leaves_the_job(
     home: Home, client: ballpiston.Client, endless: ballpiston.Job
 ) -> None:
-    program = "import ballpiston, sys; ballpiston.connect().job(sys.argv[1]).watch()"
+    program = (
+        "import ballpiston, sys\n"
+        f"ballpiston.connect(timeout={LIMIT}).job(sys.argv[1]).watch()"
+    )
     watcher = home.python(program, endless.name)
     wait_until(lambda: streams(client) == 1)
     watcher.send_signal(signal.SIGINT)
@@ -63,7 +66,7 @@ def test_ctrl_c_ends_the_watch_and_leaves_the_job(
 
 
 def test_there_is_no_bar_where_nobody_looks(home: Home) -> None:
-    program = "import ballpiston; ballpiston.connect().run(**eval(input()))"
+    program = f"import ballpiston; ballpiston.connect(timeout={LIMIT}).run(**eval(input()))"
     watcher = home.python(program, stdin=-1)
     assert watcher.communicate(repr({**FIRST_HITS, "fresh": True}), LIMIT) == ("", "")
 
@@ -74,7 +77,7 @@ def test_a_terminal_shows_a_bar_unless_it_is_silenced(hidden: str, home: Home) -
         "import sys\n"
         f"if '{hidden}': sys.modules['{hidden}'] = None\n"
         "import ballpiston\n"
-        "client = ballpiston.connect()\n"
+        f"client = ballpiston.connect(timeout={LIMIT})\n"
         f"client.run(**{ {**FIRST_HITS, 'fresh': True} !r}, progress=sys.argv[1] == 'bar')"
     )
     assert "4/4 points" in on_a_terminal(program, "bar")
