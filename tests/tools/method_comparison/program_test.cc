@@ -24,7 +24,7 @@ ProcessResult RunComparison(std::vector<std::string> flags) {
   return RunProgram({.command = std::move(flags)});
 }
 
-TEST(Program, PrintsARowForEachMeasurementAndAProgressLineThatIsClearedAtTheEnd) {
+TEST(Program, PrintsRowsAndClearsTheProgressLine) {
   const ProcessResult result = RunComparison(
       {"--seconds", "0.01", "--delta=0.2", "--relaxation-delta", "0.2,0.3", "--progress", "bar"});
   EXPECT_THAT(result, ExitsWith(0));
