@@ -23,6 +23,7 @@ build: build/release/.$(PRESETS_PREFIX)programs ## Build the programs, optimised
 
 test: build/release/.$(PRESETS_PREFIX)tests ## Build, then run all tests
 	@cmake --build build/release --target fast_tests slow_tests
+	@rm -rf build/release/test-times  # reports of test programs that do not exist any more
 	@ctest --preset release -j$(TEST_JOBS)
 
 check: ## What every change has to pass: format, locks, test, and the fast tests under the sanitizers
@@ -39,8 +40,8 @@ test-asan test-tsan: test-%: build/%/.$(PRESETS_PREFIX)tests
 	@ctest --preset $* -j$(TEST_JOBS)
 
 test-long: build/release/.$(PRESETS_PREFIX)tests ## Run the tests of laws and bits at their full size (15 minutes)
-	@cmake --build build/release --target statistical_test core_test worker_test
-	@BALLPISTON_NIGHTLY=1 ctest --preset release -R '^(statistical|core|worker)_test' -j$(TEST_JOBS)
+	@cmake --build build/release --target statistical_test core_test server_test
+	@BALLPISTON_NIGHTLY=1 ctest --preset release -R '^(statistical|core|server)_test' -j$(TEST_JOBS)
 
 demo: build ## Run the paper's sweep with a real server and client
 	@scripts/demo.sh build/release/bin

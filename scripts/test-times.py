@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Prints the processor time of the last `make test` for each program, and of the 20 slowest tests.
+"""Prints the processor time of each GoogleTest program, and of the 20 slowest tests.
 
     scripts/test-times.py [FOLDER_OF_THE_BUILD]
 
-The tests write their times into FOLDER_OF_THE_BUILD/test-times (tests/support/run_tests.h). They
+The tests write their times into FOLDER_OF_THE_BUILD/test-times (tests/support/run_tests.h). `make
+test` empties this folder first. The times
 include the programs that a test started and that have ended.
 """
 
