@@ -1,7 +1,7 @@
 # Collision rates from the probability of a collision in a short time (three equations of the paper)
 #
 # Run by `ballpiston figure rates --out DIR`, whose flags replace these values, or by hand:
-# sh rates.sh. Time on two cores: quick 2 s, default 25 s, full 4 min.
+# sh rates.sh. Time on two cores: quick 3 s, default 25 s, full 4 min.
 set -eu
 . ./figure.sh
 : "${rho:=0.529561127988977}"             # the paper's value, (sqrt(33) - 2)/(5 sqrt(2))
@@ -9,7 +9,7 @@ set -eu
 : "${epsilon:=0.05,0.15,0.25,0.35,0.45}"  # energies of the piston, of the conditional rates
 : "${seed:=0}"                            # of the first orbit; the next orbits have the next seeds
 orbits=$(by_effort 5 5 20)
-events=$(by_effort 20000 400000 1000000)  # of each orbit
+events=$(by_effort 40000 400000 1000000)  # of each orbit
 batches=8         # of each orbit; their scatter gives the standard errors
 half_width=0.02   # a conditional rate is the rate at all energies within epsilon +- half_width
 energies=20       # the exact conditional rate is averaged over this number of energies

@@ -2,7 +2,7 @@
 #
 # Run by `ballpiston figure stability --out DIR`, or by hand: sh stability.sh. It needs no server:
 # the program `stability` counts the failures. With --full it takes about ten minutes on one core,
-# else it runs a thousandth of the starts.
+# else some seconds, with a small part of the starts.
 set -eu
 . ./figure.sh
 

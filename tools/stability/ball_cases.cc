@@ -55,7 +55,8 @@ Failures FlyCase(const BallCase& ball_case, const BallMethod& method, double eff
   Failures failures;
   for (const auto& [rho, all] : ball_case.radii) {
     const double wanted = static_cast<double>(all) * effort * method.share;
-    // One start would be far too many. A promise is checked all the same.
+    // At least one start would run, a thousand times too many or more. Methods that promise zeros
+    // run it nevertheless.
     if (wanted < kFewestWanted && !method.promised) continue;
     const auto starts = static_cast<uint64_t>(std::ceil(wanted));
     // The ball is alone: any delta will do.

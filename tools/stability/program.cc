@@ -21,7 +21,8 @@ Runs every engine in every precision, and naive methods, in situations in which 
 Counts the failures and prints tables in Markdown. This takes about ten minutes on one core. The
 starts are fixed: the same program gives the same tables.
 
-  --quick      run a thousandth of the starts: seconds instead of minutes
+  --quick      run a thousandth of the starts (of slow methods sometimes none) and a tenth of the
+               reversals: seconds instead of minutes
   --out FILE   write the tables to FILE instead; an existing FILE is replaced
   --into FILE  write the tables into FILE instead, between the two lines
                  <!-- stability:begin -->

@@ -1,5 +1,6 @@
-// The size of the torture tests: by default five seconds of one core or less each; the full size
-// with BALLPISTON_TORTURE=1 in the environment (`make torture`), a tenth with 0.1.
+// The size of the torture tests. By default each takes five seconds of one core or less, except the
+// two tests Kills, which start a server for each failpoint. BALLPISTON_TORTURE=1 in the environment
+// (`make torture`) selects the full size, 0.1 a tenth.
 #ifndef BALLPISTON_TESTS_FAULT_TORTURE_SIZES_H_
 #define BALLPISTON_TESTS_FAULT_TORTURE_SIZES_H_
 
