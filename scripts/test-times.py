@@ -3,9 +3,9 @@
 
     scripts/test-times.py [FOLDER_OF_THE_BUILD]
 
-The tests write their times into FOLDER_OF_THE_BUILD/test-times (tests/support/run_tests.h). `make
-test` empties this folder first. The times
-include the programs that a test started and that have ended.
+The tests write their times into FOLDER_OF_THE_BUILD/test-times (tests/support/run_tests.h); `make
+test` empties this folder first. The times include the programs that a test started and that have
+ended.
 """
 
 import collections
