@@ -54,9 +54,9 @@ class Sweep {
   // samples that was asked for, and the bytes are those of a server that has threads alone.
   void ExpectTheSameBytes();
   void Note(const std::string& what) { notes_ += "; " + what; }
-  double Seconds() const;  // since the constructor began
 
  private:
+  double Seconds() const;  // since the constructor began
   void KeepCounts();
 
   const SweepSetUp set_up_;

@@ -6,6 +6,7 @@
 #define BALLPISTON_TESTS_SUPPORT_AWAIT_H_
 
 #include <chrono>
+#include <iostream>
 #include <source_location>
 #include <sstream>
 #include <stdexcept>
@@ -23,10 +24,11 @@ inline constexpr std::chrono::hours kNever(100);
   std::ostringstream text;
   text << caller.file_name() << ":" << caller.line() << ": the condition is still false after "
        << kPatience.count() << " minutes";
+  std::cerr << text.str() << std::endl;  // the exception may end the program without a message
   throw std::runtime_error(text.str());
 }
 
-// Returns when the condition is true; asks again and again. After kPatience it throws
+// Evaluates the condition every millisecond and returns when it is true. After kPatience it throws
 // std::runtime_error, which fails the test.
 template <typename Condition>
 void AwaitThat(Condition condition,

@@ -143,7 +143,11 @@ bool Process::WaitFor(const Stream& stream, const std::string& text) {
 
 bool Process::WaitUntilStopped() const {
   siginfo_t state = {};
-  if (!waited_) waitid(P_PID, static_cast<id_t>(pid_), &state, WSTOPPED | WEXITED | WNOWAIT);
+  if (waited_) return false;
+  AwaitThat([&] {
+    waitid(P_PID, static_cast<id_t>(pid_), &state, WSTOPPED | WEXITED | WNOWAIT | WNOHANG);
+    return state.si_pid != 0;
+  });
   return state.si_code == CLD_STOPPED;
 }
 
@@ -170,6 +174,11 @@ ProcessResult Process::Wait() {
     waited_ = true;
     writer_.join();
     for (Stream* stream : {&out_, &err_}) {
+      {
+        // A program that this one started may keep the stream open.
+        std::unique_lock lock(mutex_);
+        AwaitNotified(news_, lock, [&] { return stream->ended; });
+      }
       stream->reader.join();
       close(stream->descriptor);
     }

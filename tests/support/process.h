@@ -53,7 +53,7 @@ class Process {
   pid_t pid() const { return pid_; }
   std::string Output() const;  // standard output, then standard error, so far
 
-  // Each function that waits does so for 15 minutes at most. Then it throws std::runtime_error.
+  // Every wait ends after 15 minutes with std::runtime_error.
 
   // Waits until standard error holds the text. False if the program ended without it.
   bool WaitForErr(const std::string& text) { return WaitFor(err_, text); }

@@ -35,8 +35,9 @@ absl::Status StatusOf(const Result& result) {
 inline std::string StatusText(const absl::Status& status) {
   const bool is_late = status.code() == absl::StatusCode::kDeadlineExceeded;
   return "whose status is " + status.ToString() +
-         (is_late ? "\n(a call of a test has this status if it has not ended after 15 minutes)"
-                  : "");
+         (is_late
+              ? "\n(a call without a deadline of its own gets 15 minutes in tests: support/await.h)"
+              : "");
 }
 
 MATCHER(IsOk, "") {

@@ -1,5 +1,6 @@
 #include "tests/support/terminal_process.h"
 
+#include <poll.h>
 #include <pty.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -9,6 +10,8 @@
 #include <cstdlib>
 #include <stdexcept>
 #include <vector>
+
+#include "tests/support/await.h"
 
 namespace ballpiston {
 namespace {
@@ -52,6 +55,10 @@ TerminalProcess::~TerminalProcess() {
 }
 
 bool TerminalProcess::Read() {
+  AwaitThat([this] {
+    pollfd readable{terminal_, POLLIN, 0};
+    return poll(&readable, 1, 0) != 0;
+  });
   char buffer[4096];
   ssize_t size = -1;
   do {
@@ -84,7 +91,7 @@ TerminalProcess::Outcome TerminalProcess::Wait() {
   while (terminal_ >= 0 && Read()) {
   }
   int status = 0;
-  waitpid(pid_, &status, 0);
+  AwaitThat([&] { return waitpid(pid_, &status, WNOHANG) != 0; });
   pid_ = 0;
   return {WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status), output_};
 }

@@ -18,6 +18,8 @@ class TerminalProcess {
   TerminalProcess(const TerminalProcess&) = delete;
   TerminalProcess& operator=(const TerminalProcess&) = delete;
 
+  // Every wait ends after 15 minutes with std::runtime_error.
+
   // Waits until the output holds the text. False if the program ended without it.
   bool WaitFor(const std::string& text);
   void Type(const std::string& keys);  // "\x03" is Ctrl-C

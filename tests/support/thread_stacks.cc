@@ -26,8 +26,8 @@ constexpr std::chrono::seconds kPatience(10);
 
 pid_t ThisThread() { return static_cast<pid_t>(syscall(SYS_gettid)); }
 
-// Never freed, because a thread may answer after the time limit. The list of all is for the leak
-// sanitizer.
+// Never freed, because a thread may answer after the time limit. `requests` keeps them reachable
+// for the leak sanitizer.
 struct Request {
   pid_t thread = 0;
   std::array<void*, kMaxDepth> frames = {};

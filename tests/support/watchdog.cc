@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
+#include <exception>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -53,7 +54,11 @@ class Watchdog {
       if (Clock::now() < deadline_) continue;
       Write(report_);
       lock.unlock();  // the test may end meanwhile
-      WriteThreadStacks(STDERR_FILENO);
+      try {
+        WriteThreadStacks(STDERR_FILENO);
+      } catch (const std::exception&) {  // e.g. no file can be opened
+        Write("  cannot be read\n");
+      }
       lock.lock();
       SetDeadline();
     }

@@ -7,6 +7,7 @@
 
 #include "client/library/error_text.h"
 #include "tests/client/fake_server.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::client {
@@ -22,7 +23,7 @@ class ClientTest : public ::testing::Test {
 
   Client StartServer() {
     server_.Start();
-    return Client(server_.Channel());
+    return Client(server_.Channel(), absl::FromChrono(kPatience));
   }
 
   FakeServer server_;

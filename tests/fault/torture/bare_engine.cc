@@ -60,9 +60,11 @@ Window BareEngine::Run(std::chrono::milliseconds length) {
   return window_;
 }
 
-Window BareEngine::RunInsteadOf(const ServerProcess& server, std::chrono::milliseconds length) {
+Window BareEngine::RunInsteadOf(const ServerProcess& server, std::chrono::milliseconds length,
+                                double least_samples) {
   server.Signal(SIGSTOP);
-  const Window window = Run(length);
+  Window window;
+  while (window.samples < least_samples) window += Run(length);
   server.Signal(SIGCONT);
   return window;
 }

@@ -26,8 +26,10 @@ class BareEngine {
 
   Window Run(std::chrono::milliseconds length);
 
-  // Runs while the server is stopped.
-  Window RunInsteadOf(const ServerProcess& server, std::chrono::milliseconds length);
+  // Runs while the server is stopped. Goes on until `least_samples` are done, because the machine
+  // may be busy.
+  Window RunInsteadOf(const ServerProcess& server, std::chrono::milliseconds length,
+                      double least_samples = 1);
 
  private:
   // Its blocks stay on their way between two windows.

@@ -36,7 +36,7 @@ Channels ConnectionsTo(ConnectedServer& server) {
 // Repeats the call while the server is down. Returns the name of the job, or another error.
 std::string CreateInTheEnd(const std::shared_ptr<grpc::Channel>& channel,
                            const v1::EnsembleSpec& spec, const std::string& request_id) {
-  const client::Client client(channel);
+  const client::Client client(channel, absl::FromChrono(kPatience));
   while (true) {
     const auto job = client.Create(spec, {.request_id = request_id});
     if (job.ok()) return job->name();
@@ -87,9 +87,8 @@ class BatchOfCreates : public testing::Test {
 
   void CheckReplay(const v1::EnsembleSpec& spec, const std::string& id, const std::string& name) {
     server_.Start();
-    const auto channel = server_.Connect();
-    EXPECT_EQ(CreateInTheEnd(channel, spec, id), name);
-    const client::Client client(channel);
+    EXPECT_EQ(CreateInTheEnd(server_.Connect(), spec, id), name);
+    const client::Client client = server_.NewClient();
     v1::EnsembleSpec other = spec;
     other.set_seed(spec.seed() + 1);
     const auto rejected = client.Create(other, {.request_id = id});
@@ -100,7 +99,7 @@ class BatchOfCreates : public testing::Test {
     findings_.Count("replays after a kill");
     // The job is cancelled, so that the next server writes nothing until a client calls it.
     client.Cancel(name).status().IgnoreError();
-    EXPECT_OK(client.Watch(name, {}));
+    EXPECT_OK(client.Watch(name, {}, {.give_up_after = absl::FromChrono(kPatience)}));
     server_.KillHard();
   }
 

@@ -9,6 +9,9 @@
 #include <mutex>
 #include <vector>
 
+#include "absl/time/time.h"
+#include "client/library/client.h"
+#include "tests/support/await.h"
 #include "tests/support/server_process.h"
 
 namespace ballpiston::torture {
@@ -23,6 +26,7 @@ class ConnectedServer : public ServerProcess {
   // A channel with a connection of its own, not shared with other channels to the server. It
   // reconnects as soon as a new process is ready.
   std::shared_ptr<grpc::Channel> Connect();
+  client::Client NewClient() { return client::Client(Connect(), absl::FromChrono(kPatience)); }
 
  private:
   void OnReady() override;

@@ -24,7 +24,7 @@
 namespace ballpiston::torture {
 namespace {
 
-// Time passes idly: the short form takes less.
+// The server only waits in this time, so the short form has less.
 double DrainSeconds() { return HoldsToTimes() ? 1 : 0.1; }
 constexpr char kPreface[] = "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n";  // of every HTTP/2 connection
 
@@ -86,8 +86,7 @@ class HungClients : public testing::Test {
   HungClients()
       : server_({.workers = 2, .flags = {absl::StrFormat("--drain-seconds=%g", DrainSeconds())}}) {
     server_.Start();
-    const client::Client client(server_.Connect());
-    name_ = OrThrow(client.Create(ManyPoints(20'000, 1'000))).name();
+    name_ = OrThrow(server_.NewClient().Create(ManyPoints(20'000, 1'000))).name();
   }
 
   // Seconds from SIGTERM to the process's end.
@@ -131,7 +130,7 @@ TEST_F(HungClients, CallsWithoutAMessageDoNotDelayTheStop) {
   const CallWithoutMessage watch(channel, service + "WatchEnsembleJob");
   const CallWithoutMessage health(channel, "/grpc.health.v1.Health/Check");
   // This call uses the same connection. When it is answered, the earlier calls have arrived.
-  ASSERT_OK(client::Client(channel).Get(name_));
+  ASSERT_OK(client::Client(channel, absl::FromChrono(kPatience)).Get(name_));
   CheckStop("calls without a message");
 }
 

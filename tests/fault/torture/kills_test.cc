@@ -12,8 +12,10 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/library/client.h"
@@ -135,7 +137,7 @@ void KillManyTimes(int kills, const std::vector<std::string_view>& failpoints, K
 
 std::set<std::string> NamesOn(ConnectedServer& server) {
   std::set<std::string> names;
-  for (const v1::EnsembleJob& job : OrThrow(client::Client(server.Connect()).List())) {
+  for (const v1::EnsembleJob& job : OrThrow(server.NewClient().List())) {
     EXPECT_TRUE(names.insert(job.name()).second);
   }
   return names;
@@ -168,21 +170,29 @@ void KillUnderVisitors(const Scene& scene, Findings& findings) {
     visitors.emplace_back(server.Connect(), exam, static_cast<uint64_t>(i), findings);
   }
   std::atomic<bool> enough = false;
-  std::vector<std::thread> threads;
+  std::vector<std::jthread> threads;
   for (Visitor& visitor : visitors) {
     threads.emplace_back([&] { visitor.VisitUntil(enough); });
   }
+  // If an exception ends the test, the visits end too. They need a server for that.
+  absl::Cleanup end_visits = [&] {
+    enough = true;
+    server.KillHard();
+    server.Start();
+  };
   const auto start = std::chrono::steady_clock::now();
   Killer killer(server, scene.pace, findings);
   KillManyTimes(scene.kills, scene.failpoints, killer, findings);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   findings.Note("seconds of killing", absl::StrFormat("%.0f", took.count()));
 
-  // Every client may have been killed in each of its lives: this one lasts for as long as needed.
+  // No client may have compared a result before a kill. The last server therefore runs until one
+  // has.
   server.Start();
   AwaitThat([&] { return findings.count("results compared byte by byte") > 0; });
   enough = true;
-  for (std::thread& thread : threads) thread.join();
+  threads.clear();  // waits for them
+  std::move(end_visits).Cancel();
   std::set<std::string> expected;
   for (Visitor& visitor : visitors) {
     visitor.CheckAll();
@@ -211,7 +221,8 @@ TEST(Kills, OfAServerWithAClusterLoseNothingAndCountNothingTwice) {
                                           slurm.shared_folder(),    "--slurm-least-seconds=0",
                                           "--slurm-task-seconds=1", "--slurm-query-seconds=1",
                                           "--slurm-max-tasks=4"};
-  // In the short form only questions that a cluster gets: its failpoints are passed soon.
+  // In the short form all questions go to the cluster, so the server soon passes the cluster's
+  // failpoints.
   std::vector<v1::EnsembleSpec> questions = LargeQuestions();
   if (ShareOfFullSize() > 0) {
     for (v1::EnsembleSpec& question : Questions()) questions.push_back(std::move(question));

@@ -35,6 +35,7 @@ class LiveWatcher : public grpc::ClientReadReactor<v1::WatchEnsembleJobResponse>
  public:
   LiveWatcher(v1::EnsembleService::Stub& stub, const std::string& job) {
     request_.set_name(job);
+    context_.set_deadline(std::chrono::system_clock::now() + kPatience);
     stub.async()->WatchEnsembleJob(&context_, &request_, this);
     StartRead(&message_);
     StartCall();
@@ -65,6 +66,7 @@ double HealthCheckSeconds(grpc::GenericStub& stub) {
   const grpc::Slice nothing;
   grpc::ByteBuffer request(&nothing, 1), response;
   grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + kPatience);
   std::promise<grpc::Status> done;
   const auto start = Clock::now();
   stub.UnaryCall(&context, "/grpc.health.v1.Health/Check", {}, &request, &response,
@@ -156,7 +158,7 @@ class LiveWatchers : public testing::Test {
 };
 
 TEST_F(LiveWatchers, AllGetTheEndAndHealthAnswersWithAFullQueue) {
-  const client::Client client(server_.Connect());
+  const client::Client client = server_.NewClient();
   Health("a quiet server");
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, client.Create(Endless()));
   Health("one job");

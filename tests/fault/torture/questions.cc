@@ -131,11 +131,12 @@ Answer AnswerOf(const std::vector<v1::PointResult>& points) {
 std::vector<Answer> UndisturbedAnswers(const std::vector<EnsembleSpec>& questions) {
   ConnectedServer server;
   server.Start();
-  const client::Client client(server.Connect());
+  const client::Client client = server.NewClient();
   std::vector<Answer> answers;
   for (const EnsembleSpec& question : questions) {
     const std::string name = OrThrow(client.Create(question)).name();
-    const v1::EnsembleJob job = OrThrow(client.Watch(name, {}));
+    const v1::EnsembleJob job =
+        OrThrow(client.Watch(name, {}, {.give_up_after = absl::FromChrono(kPatience)}));
     if (job.state() != v1::EnsembleJob::SUCCEEDED) throw std::runtime_error(job.ShortDebugString());
     const std::vector<v1::PointResult> points = OrThrow(client.Results(name));
     CheckCounts(question, points);

@@ -19,7 +19,7 @@ namespace ballpiston::torture {
 // the long form.
 std::vector<v1::EnsembleSpec> Questions();
 
-// Questions of some seconds of one core; in the short form an eighth of it.
+// Questions of some seconds of one core, in both forms.
 std::vector<v1::EnsembleSpec> LargeQuestions();
 
 // Many points of similar cost.

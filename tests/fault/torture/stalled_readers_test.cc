@@ -36,7 +36,7 @@ class StalledReaders : public testing::Test {
  protected:
   StalledReaders() : server_({.workers = kWorkers}) {
     server_.Start();
-    client_.emplace(server_.Connect());
+    client_.emplace(server_.NewClient());
     name_ = OrThrow(client_->Create(ManyPoints(kPoints, Size(5'000, 60'000)))).name();
     AwaitFinished(kFinishedBefore);
   }

@@ -79,7 +79,7 @@ void Fill(const std::string& path, int jobs) {
 double SecondsToFirstAnswer(ConnectedServer& server) {
   const auto start = std::chrono::steady_clock::now();
   server.Start();
-  const client::Client client(server.Connect());
+  const client::Client client = server.NewClient();
   EXPECT_THAT(client.Get("ensembleJobs/" + server::RandomId()),
               StatusIs(absl::StatusCode::kNotFound));
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -29,7 +29,7 @@ constexpr int kMostMessages = 4;
 // The job that is watched now. When it has ended, a new job replaces it.
 class WatchedJob {
  public:
-  explicit WatchedJob(ConnectedServer& server) : client_(server.Connect()) { Next(""); }
+  explicit WatchedJob(ConnectedServer& server) : client_(server.NewClient()) { Next(""); }
 
   std::string Now() {
     const std::lock_guard lock(mutex_);
@@ -75,7 +75,7 @@ class Watches : public testing::Test {
 
   // For the client library a restart is a pause.
   void FollowToTheEnd() {
-    const client::Client client(server_.Connect());
+    const client::Client client = server_.NewClient();
     while (!enough_) {
       const std::string name = watched_->Now();
       int ends = 0;

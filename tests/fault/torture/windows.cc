@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "client/library/job_watch.h"
 #include "tests/fault/torture/questions.h"
+#include "tests/support/await.h"
 
 namespace ballpiston::torture {
 namespace {
@@ -54,10 +55,11 @@ Window ServerWindow(const ServerProcess& server, const client::Client& client,
                     double least_samples) {
   const Reading start = Read(server, client, job);
   Reading end;
-  do {
+  AwaitThat([&] {
     std::this_thread::sleep_for(length);
     end = Read(server, client, job);
-  } while (end.samples - start.samples < least_samples);
+    return end.samples - start.samples >= least_samples;
+  });
   return {end.samples - start.samples, end.processor_seconds - start.processor_seconds,
           std::chrono::duration<double>(end.at - start.at).count()};
 }
