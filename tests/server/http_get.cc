@@ -3,11 +3,16 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <chrono>
 #include <cstdint>
+#include <stdexcept>
 
 #include "gtest/gtest.h"
+#include "tests/support/await.h"
 
 namespace ballpiston::server {
 
@@ -17,6 +22,8 @@ Connection::Connection(const std::string& address)
   sockaddr_in to = {};
   to.sin_family = AF_INET;
   to.sin_port = htons(static_cast<uint16_t>(std::stoi(address.substr(colon + 1))));
+  const timeval patience = {.tv_sec = std::chrono::seconds(kPatience).count(), .tv_usec = 0};
+  setsockopt(descriptor_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
   inet_pton(AF_INET, address.substr(0, colon).c_str(), &to.sin_addr);
   EXPECT_EQ(connect(descriptor_, reinterpret_cast<const sockaddr*>(&to), sizeof(to)), 0);
 }
@@ -31,6 +38,7 @@ void Connection::Send(const std::string& bytes) {
 std::string Connection::ReadSome() {
   char buffer[4096];
   const ssize_t n = recv(descriptor_, buffer, sizeof(buffer), 0);
+  if (n < 0 && errno == EAGAIN) throw std::runtime_error("no byte has come for 15 minutes");
   return n > 0 ? std::string(buffer, static_cast<size_t>(n)) : "";
 }
 

@@ -21,6 +21,7 @@
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"
 #include "tests/server/secure_server.h"
+#include "tests/support/await.h"
 #include "tests/support/paths.h"
 #include "tests/support/status_matchers.h"
 
@@ -178,9 +179,10 @@ TEST_F(AccessTable, UnfinishedResultsBelongToThePrincipalOfTheJob) {
     v1::PointResult now;
     return client.ensemble().GetResult(&context, request, &now);
   };
-  while (!get(alice_).ok()) {  // until a worker has computed a part
-    ASSERT_EQ(ReasonOf(get(bob_)), "JOB_NOT_FOUND");
-  }
+  AwaitThat([&] {  // until a worker has computed a part
+    EXPECT_EQ(ReasonOf(get(bob_)), "JOB_NOT_FOUND");
+    return get(alice_).ok() || HasFailure();
+  });
   EXPECT_EQ(ReasonOf(get(bob_)), "JOB_NOT_FOUND");
   EXPECT_OK(get(ops_));
 }

@@ -82,8 +82,7 @@ TEST_F(WatchCredentialsTest, AWatchWithAValidTokenGoesOn) {
 
 TEST_F(WatchCredentialsTest, AStalledReaderLosesItsWatchToo) {
   WatchStream stalled(alice_, alice_.Submit(LargeEquilibrium()));
-  while (ops_.Status().streams() < 1) {  // until the server has the watch
-  }
+  AwaitThat([this] { return ops_.Status().streams() == 1; });  // the server has the watch
   ReplaceAccess(TokenLine(kOps, {"ops", Role::kAdmin}));
   AwaitThat([this] { return ops_.Status().streams() == 0; });
   EXPECT_THAT(stalled.End(), Not(IsOk()));

@@ -252,7 +252,10 @@ TEST_F(StoredLimitsTest, AJobThatTakesTooLongFailsAndKeepsItsPoints) {
   Start({.max_seconds_per_job = 1e-9}, FakeExperiments(stuck));
   const std::string id = *JobIdOf(Create(kAlice, 1)->name());
   AwaitThat([&] { return Get(kAlice, id).progress().points_done() > 0; });
-  while (!HasEnded(Get(kAlice, id).state())) book_->KeepLimits(absl::Now());
+  AwaitThat([&] {
+    book_->KeepLimits(absl::Now());
+    return HasEnded(Get(kAlice, id).state());
+  });
   const EnsembleJob job = Get(kAlice, id);
   EXPECT_EQ(job.state(), EnsembleJob::FAILED);
   EXPECT_THAT(job.error().message(), HasSubstr("--max-seconds-per-job"));
