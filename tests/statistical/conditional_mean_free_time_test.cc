@@ -39,10 +39,10 @@ TEST(ConditionalMeanFreeTime, GivesNoErrorIfLongReturnsAreTooRare) {
 
 // The tolerance is judged at doubling numbers of samples. This rarely stops too early by chance, so
 // the stated error stays valid. Of 10,000 seeds 69.6 % were within one stated error and 95.3 %
-// within two. With 500 seeds these shares have errors of 2.1 % and 0.95 %, and with the 2,000 of
-// the night half of these. The windows are four errors wide on either side: 1.3e-4 false alarms in
-// all. If the stated error were 20 % too small, 57.6 % would be within one and 89.0 % within two;
-// if it were 10 % too small, 63.2 % and 92.8 %.
+// within two. With 500 seeds the standard errors of these shares are 2.1 % and 0.95 %. The nightly
+// test has 2,000 seeds and half these errors. The windows are four errors wide on either side:
+// 1.3e-4 false alarms in all. If the stated error were 20 % too small, 57.6 % would be within one
+// and 89.0 % within two; if it were 10 % too small, 63.2 % and 92.8 %.
 TEST(ConditionalMeanFreeTime, ErrorsAreValidWhenAToleranceStops) {
   const uint64_t seeds = IsNightly() ? 2000 : 500;
   double within_one = 0, within_two = 0;
@@ -89,7 +89,7 @@ TEST(ConditionalMeanFreeTime, ErrorsAreValidWithFewLongReturns) {
 
 // Narrow tips, wide tips, and a cell so small that rounding matters most. The windows are the
 // stated error plus 4 standard errors: 6e-5 false alarms each. Standard errors are 0.1 to 0.2 %,
-// and in the night 0.07 to 0.14 %.
+// nightly 0.07 to 0.14 %.
 TEST(ConditionalMeanFreeTime, SinglePrecisionIsWithinItsStatedError) {
   for (const double rho : {0.501, 0.65, kSingleMaxRho}) {
     const PointParameters point = {{kRho, rho}, {kDelta, PairDeltaBound(rho)}, {kEpsilon, 0.45}};

@@ -70,9 +70,9 @@ struct ClosedChain {
   ExtrapolatedValue documented;
 };
 
-// The values of docs/conductivity.md, by fewer degrees. The stated error is
-// the change by the last term, which can be half of the true error. The chains that take more than
-// half a second wait for the night, except one of five sites.
+// The values of docs/conductivity.md, by fewer degrees. The stated error is the change by the last
+// term, which can be half of the true error. Chains that take more than half a second run only in
+// the nightly test, except one of five sites.
 TEST(ChainGap, ChainsHaveTheirDocumentedGaps) {
   std::vector<ClosedChain> chains = {
       {{2, 1, 2}, {12, 14, 16, 18}, {0.113388479, 2e-9}},

@@ -107,8 +107,8 @@ void Print(const Curve& curve) {
   }
 }
 
-// Half a million orbits, 20 million jumps; four times as many in the night. False alarms: 3e-5 for
-// the curve, 33 * 6.8e-6 for the lags, 6e-5 for the integral; 3e-4 in all.
+// Half a million orbits, 20 million jumps; nightly four times as many. False alarms: 3e-5 for the
+// curve, 33 * 6.8e-6 for the lags, 6e-5 for the integral; 3e-4 in all.
 TEST(EnergyRelaxation, AutocorrelationOfTheJumpProcessMatchesTheSpectrum) {
   const double smallest = IsNightly() ? 1e-3 : 2e-3;
   const Blocks blocks = RunInBlocks(IsNightly() ? 512 : 128, 4096, 0);
@@ -131,7 +131,7 @@ TEST(EnergyRelaxation, AutocorrelationOfTheJumpProcessMatchesTheSpectrum) {
   EXPECT_LT(LargestScore(curve, 0), 4.5);
   EXPECT_LT(std::fabs(*time.ZScore()), 4);
   EXPECT_LT(*time.standard_error, smallest * time.value);
-  // The test detects a law with times that are 1 % shorter, and in the night one with 0.5 %.
+  // The test detects a law with times that are 1 % shorter, nightly 0.5 %.
   const double shorter = IsNightly() ? 0.005 : 0.01;
   EXPECT_GT(HotellingScore(blocks.curves, limit.array().pow(1 + shorter)), 10);
 }
@@ -152,7 +152,7 @@ TEST(EnergyRelaxation, MeanEnergyOfTheJumpProcessMatchesTheSpectrum) {
     EXPECT_LT(score, 4);
     EXPECT_LT(LargestScore(curve, 1), 4.5);
     EXPECT_LT(std::fabs(*time.ZScore()), 4);
-    // The test detects a curve that is 3 % nearer to its end, and in the night one of 2 %.
+    // The test detects a curve that is 3 % nearer to its end, nightly 2 %.
     const double share = IsNightly() ? 0.02 : 0.03;
     const Eigen::VectorXd nearer = (1 - share) * limit.array() + share * kMeanPistonEnergy;
     EXPECT_GT(HotellingScore(blocks.curves, nearer), 5);

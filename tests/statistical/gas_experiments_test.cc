@@ -48,9 +48,9 @@ double StatedOverMeasured(const EnsembleSpec& spec) {
   return ratio;
 }
 
-// An error measured with 400 replicas is itself known to 1/sqrt(800) = 3.5 %, with the 1000 of the
-// night to 2.2 %. The windows are 20 % wide: a statement that is right within 7 % (nightly 12 %)
-// fails for one seed in 3000.
+// An error measured with 400 replicas is itself known to 1/sqrt(800) = 3.5 %, with the nightly
+// test's 1000 to 2.2 %. The windows are 20 % wide: a statement that is right within 7 % (nightly 12
+// %) fails for one seed in 3000.
 TEST(GasExperiments, StatedErrorsInEquilibriumMatchTheMeasuredErrors) {
   for (const Model model : {Model::kMarkov, Model::kBilliard}) {
     for (const GasShape& shape : {GasShape{4}, GasShape{16}, GasShape{4, 4, true}}) {
@@ -62,8 +62,9 @@ TEST(GasExperiments, StatedErrorsInEquilibriumMatchTheMeasuredErrors) {
 
 // One constant serves all longer chains, and one all wider lattices, although measured errors
 // differ by up to 25 % between shapes. An error measured with 1500 replicas is itself known to 5 %,
-// one with 500 replicas, of large gases, to 8 %, and those with the 4000 of the night to 3 %. At
-// the nightly sizes the ratios are from 0.83 to 1.06. So the windows leave three errors or more.
+// one with 500 replicas, of large gases, to 8 %, and those with the nightly test's 4000 to 3 %. At
+// the nightly sizes the ratios are from 0.83 to 1.06. So the windows leave 2.7 errors or more: one
+// seed in 300 fails.
 TEST(GasExperiments, StatedErrorsOfTheConductivityMatchTheMeasuredErrors) {
   const auto stated_over_measured = [](Model model, const GasShape& shape, double delta) {
     const int64_t affordable = shape.columns * shape.rows < 16 ? 1500 : 500;
@@ -103,9 +104,10 @@ TEST(GasExperiments, ConductivityOfTheJumpProcessMatchesTheSpectrum) {
 }
 
 // Between reservoirs at 1.05 and 0.95 1000 replicas know the current to 13 % only, 4000 to 6.5 %,
-// and the 10,000 of the night to 4 %. The billiard takes most of the time: longer chains and a
-// smaller delta wait for the night. Its 500 replicas know the error to 3.2 % and the current to 2
-// %. At the nightly sizes the ratios are from 0.87 to 1.04.
+// and the nightly test's 10,000 to 4 %. The billiard takes most of the time, so longer chains and a
+// smaller delta run only in the nightly test. Its 500 replicas know the error to 3.2 % and the
+// current to 2 %. At the nightly sizes the ratios are from 0.87 to 1.04. The windows of these two
+// are wider, so that each window leaves three errors or more: one seed in 700 fails.
 TEST(GasExperiments, StatedErrorsOfTheCurrentMatchTheMeasuredErrors) {
   const auto stated_over_measured = [](const GasShape& shape, double hot, double cold, Model model,
                                        double delta = 0.2, int64_t replicas = 1000) {
@@ -116,9 +118,9 @@ TEST(GasExperiments, StatedErrorsOfTheCurrentMatchTheMeasuredErrors) {
   }
   EXPECT_NEAR(
       stated_over_measured({4}, 1.05, 0.95, Model::kMarkov, 0.2, IsNightly() ? 10'000 : 4000), 1,
-      0.2);
+      0.35);
   EXPECT_NEAR(stated_over_measured({2}, 1.5, 0.5, Model::kBilliard, 0.2, IsNightly() ? 1000 : 500),
-              1, 0.2);
+              1, 0.25);
   if (!IsNightly()) return;
   EXPECT_NEAR(stated_over_measured({4}, 1.5, 0.5, Model::kBilliard), 1, 0.2);
   EXPECT_NEAR(stated_over_measured({2}, 2, 1, Model::kBilliard, 0.1), 1, 0.2);
@@ -139,8 +141,8 @@ double Prefactor(double delta, const GasShape& shape) {
 }
 
 // The table has no errors of the independent programs' temperatures; 0.004 is about two of the
-// standard errors here. Currents that are wrong by 2 % (two cells) or 6 % (eight cells, in the
-// night 5 %) are detected.
+// standard errors here. Currents that are wrong by 2 % (two cells) or 6 % (eight cells, nightly
+// 5 %) are detected.
 TEST(GasExperiments, CurrentOfTheJumpProcessMatchesAnIndependentProgram) {
   const PointSummary two = RunPoint(Conduction(0.1, {2}, 1.5, 0.5, Model::kMarkov, 20'000));
   const double unit = Prefactor(0.1, {2});
@@ -154,7 +156,7 @@ TEST(GasExperiments, CurrentOfTheJumpProcessMatchesAnIndependentProgram) {
   ExpectAgrees(eight.estimates[0], 0.030476 * unit, 0.000255 * unit);
 }
 
-// Temperatures: with the replicas of the night 0.008 is about two standard errors. With fewer
+// Temperatures: with the nightly replicas 0.008 is about two standard errors. With fewer
 // replicas the windows are four standard errors wide, and the program's own errors are a third of
 // these. A current that is wrong by 10 %, nightly 4 %, is detected.
 TEST(GasExperiments, CurrentOfTheBilliardMatchesAnIndependentProgram) {

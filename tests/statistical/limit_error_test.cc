@@ -73,8 +73,8 @@ Ratio DifferenceOverBound(const PointParameters& point, uint64_t seed) {
 // A difference is outside if it is beyond the bound by more than two of its errors: that happens in
 // 2.3 % of all cases where the true one is just within. If 95 % of the domain were covered, and all
 // of it just so, 7.2 % would be outside, and more than 7 of 40 points in 0.9 % of all cases.
-// Found: no point outside, and with a third of the night's orbits 9 points outside of a quarter of
-// the bound. So a bound that is four times too small would be detected.
+// Found: no point outside, and with a third of the nightly test's orbits 9 points outside of a
+// quarter of the bound. So a bound that is four times too small would be detected.
 TEST(LimitError, StatedErrorCoversTheBilliard) {
   constexpr int kPoints = 40, kMostOutside = 7;
   Dice dice;

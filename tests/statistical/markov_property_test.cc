@@ -72,8 +72,8 @@ void ExpectHittingTimesToBecomeExponential(const std::vector<Estimates>& measure
 }
 
 // The memory is well above the noise at delta = 0.3: by 29 standard errors with a million
-// collisions, and twice that in the night. At each smaller delta it is less by more than
-// 4 standard errors, as long as it is above the noise: 6e-5 false alarms each.
+// collisions, nightly by twice that. At each smaller delta it is less by more than 4 standard
+// errors, as long as it is above the noise: 6e-5 false alarms each.
 void ExpectMemoryToFade(const std::vector<Estimates>& measured) {
   for (const char* name : {"memory_divergence", "memory_correlation"}) {
     EXPECT_GT(Signal(measured[0].at(name)), 20 * std::sqrt(static_cast<double>(Collisions()) / 1e6))
