@@ -58,14 +58,18 @@ TEST(SameBytes, OfRelaxationMarkovPropertyAndGasesWithOneAndTwoWorkers) {
 }
 
 // The server is killed when the result of the second point waits to be written, and again after the
-// first result of its second life. The watching client reattaches itself.
+// first result of its second life. The client that watches reattaches itself: an endless job of a
+// higher priority keeps the worker busy until the client has printed its first line.
 TEST(SameBytes, ThroughKillNineAndRestart) {
   TestServer server(1);
   server.KillHard();
   server.Spawn("point.recorded:2");
   ASSERT_TRUE(server.AwaitReady());
+  const std::string earlier = server.Submit(Joined({kEndlessQuestion, {"--priority", "1"}}));
   const std::string job = server.Submit(kQuestion);
-  const auto watch = server.StartClient({"watch", job});
+  const auto watch = server.StartClient({"watch", job, "--progress", "json"});
+  EXPECT_TRUE(watch->WaitForErr("\n"));
+  EXPECT_THAT(server.Client({"cancel", earlier}), ExitsWith(0));
   EXPECT_EQ(server.AwaitEnd(), 128 + SIGKILL);
   server.Spawn("point.recorded:1");
   EXPECT_EQ(server.AwaitEnd(), 128 + SIGKILL);
