@@ -20,10 +20,7 @@ class Results:
     def __init__(self, path: Path, run: Record) -> None:
         self.path = path
         if path.exists():
-            text = path.read_text()
-            whole = text[: text.rfind("\n") + 1]  # a killed run leaves a part of a line
-            if whole != text:
-                path.write_text(whole)
+            os.truncate(path, len(_whole_lines(path).encode()))
         self.records = read(path) if path.exists() else []
         if not self.records:
             self.add(run)
@@ -50,9 +47,12 @@ class Results:
 def read(path: Path) -> list[Record]:
     if not path.exists():
         raise SystemExit(f"no results: {path}")
+    return [json.loads(line) for line in _whole_lines(path).splitlines()]
+
+
+def _whole_lines(path: Path) -> str:
     text = path.read_text()
-    whole = text[: text.rfind("\n") + 1]  # a killed run leaves a part of a line
-    return [json.loads(line) for line in whole.splitlines()]
+    return text[: text.rfind("\n") + 1]  # a killed run leaves a part of a line
 
 
 def mutant_of(record: Record) -> Mutant:

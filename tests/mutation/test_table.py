@@ -16,6 +16,13 @@ class ReadTest(unittest.TestCase):
             file.flush()
             self.assertEqual(table.read(Path(file.name)), [{"seed": 1}])
 
+    def test_a_run_goes_on_after_the_last_whole_line(self) -> None:
+        with tempfile.NamedTemporaryFile("w") as file:
+            file.write('{"seed": 1}\n{"file": "core')
+            file.flush()
+            table.Results(Path(file.name), {"seed": 1}).add({"line": 2})
+            self.assertEqual(table.read(Path(file.name)), [{"seed": 1}, {"line": 2}])
+
     def test_a_missing_file_is_named(self) -> None:
         with self.assertRaisesRegex(SystemExit, "no results: missing.jsonl"):
             table.read(Path("missing.jsonl"))

@@ -37,7 +37,7 @@ class StalledReaders : public testing::Test {
   StalledReaders() : server_({.workers = kWorkers}) {
     server_.Start();
     client_.emplace(server_.NewClient());
-    name_ = OrThrow(client_->Create(ManyPoints(kPoints, Size(5'000, 60'000)))).name();
+    name_ = OrThrow(client_->Create(ManyPoints(kPoints, Size(3'000, 60'000)))).name();
     AwaitFinished(kFinishedBefore);
   }
 
@@ -104,8 +104,8 @@ class StalledReaders : public testing::Test {
   }
 
   const int readers_ = Size(10, 100);
-  const int windows_ = Size(2, 15);
-  const std::chrono::milliseconds length_{HoldsToTimes() ? 300 : 50}, pause_{Size(300, 2000)};
+  const int windows_ = Size(1, 15);
+  const std::chrono::milliseconds length_{HoldsToTimes() ? 300 : 50}, pause_{Size(150, 2000)};
   std::chrono::milliseconds to_stall_ = pause_;
   Findings findings_{"stalled readers"};
   BareEngine engine_{Endless(), kWorkers};
