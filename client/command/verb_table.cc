@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "client/command/number_list.h"
 
 namespace ballpiston::client {
 namespace {
@@ -48,8 +49,24 @@ void SetBudget(Options& options, double seconds) {
   constexpr double kMost = 315576000000;
   seconds = std::clamp(seconds, -kMost, kMost);
   google::protobuf::Duration& budget = *options.spec.mutable_target()->mutable_budget();
-  budget.set_seconds(static_cast<int64_t>(seconds));
-  budget.set_nanos(static_cast<int32_t>((seconds - std::trunc(seconds)) * 1e9));
+  constexpr int32_t kNanos = 1'000'000'000;
+  const auto nanos = static_cast<int32_t>(std::lround((seconds - std::trunc(seconds)) * kNanos));
+  budget.set_seconds(static_cast<int64_t>(seconds) + nanos / kNanos);
+  budget.set_nanos(nanos % kNanos);
+}
+
+// A message cannot hold less than a nanosecond.
+Value Budget() {
+  Value value = Number("SECONDS", &SetBudget);
+  value.read = [read = value.read](const std::string& text, Options& options) {
+    const absl::Status status = read(text, options);
+    const google::protobuf::Duration& budget = options.spec.target().budget();
+    const bool is_zero = budget.seconds() == 0 && budget.nanos() == 0;
+    if (!status.ok() || !is_zero || *ParseNumber(text) == 0) return status;
+    return absl::InvalidArgumentError(
+        absl::StrCat(text, " is below the least budget; permitted: 1e-9 to 1e6 s"));
+  };
+  return value;
 }
 
 // Shell completion offers the names for gas-equilibrium, the only experiment with a choice. The
@@ -133,7 +150,8 @@ const FlagGroup kGrid = {
       "shapes of the gas: N, a chain of N cells, or NxM, a lattice of N columns and M rows; at "
       "most 1e6 cells"},
      {"--temperature", Grid(&v1::Grid::mutable_temperature),
-      "temperatures of a gas in equilibrium, 1e-120 to 1e120 (the Boltzmann constant is 1)"},
+      "temperatures of a gas in equilibrium, 1e-120 to 1e120, by default 1 (the Boltzmann constant "
+      "is 1)"},
      {"--hot", Grid(&v1::Grid::mutable_hot), "temperatures of the hot reservoir, 1e-120 to 1e120"},
      {"--cold", Grid(&v1::Grid::mutable_cold),
       "temperatures of the cold reservoir, 1e-120 to 1e120"}}};
@@ -149,7 +167,7 @@ const FlagGroup kTarget = {
       Number("REL", [](Options& o, double x) { o.spec.mutable_target()->set_tolerance(x); }),
       "relative standard error of the first estimate; a point is finished when it reaches this "
       "error"},
-     {"--budget", Number("SECONDS", &SetBudget),
+     {"--budget", Budget(),
       "time of all workers, divided evenly between the points; with --tolerance, the job fails if "
       "this time is too short"}}};
 

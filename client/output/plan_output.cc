@@ -1,5 +1,6 @@
 #include "client/output/plan_output.h"
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -169,7 +170,8 @@ void PrintTotal(const v1::PlanEnsembleJobResponse& plan, std::ostream& out) {
   if (!all) out << "Shown: " << plan.points_size() << " points, evenly spread over the grid.\n";
   out << Points(plan.point_count()) << ": " << DurationText(plan.work()) << " of one core, "
       << DurationText(plan.time()) << " with this server's " << plan.workers()
-      << (plan.workers() == 1 ? " worker\n" : " workers\n");
+      << (plan.workers() == 1 ? " worker" : " workers")
+      << absl::StrFormat(", up to %.0f MB of memory\n", std::ceil(plan.memory() / 1e6));
 }
 
 void PrintTable(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& plan,

@@ -17,7 +17,7 @@ constexpr NominalEvents kInLanes = {2.5e-9, 0x1p24, 0x1p20, 0x1p34};
 constexpr NominalEvents kByReference = {40e-9, 0x1p20, 0x1p16, 0x1p30};
 
 // Fewer samples are not enough to estimate an error (statistics/told_error.h).
-constexpr uint64_t kLeastInAChunk = 64;
+constexpr uint64_t kLeastJudged = 64;
 constexpr uint64_t kBlocksInAChunk = 32;
 constexpr double kMostInABlock = 0x1p16;
 
@@ -33,9 +33,9 @@ ChunkPlan::ChunkPlan(uint64_t samples, Engine engine, double events_per_sample, 
   const NominalEvents& nominal = engine == Engine::kReference ? kByReference : kInLanes;
   seconds_per_event_ = nominal.seconds;
   constexpr double kMostInAChunk = 0x1p40;
-  base_ = std::max(SamplesOf(nominal.base, events_per_sample, kMostInAChunk), kLeastInAChunk);
-  const uint64_t last =
-      std::max(SamplesOf(nominal.last_chunk, events_per_sample, kMostInAChunk), base_);
+  const uint64_t last = SamplesOf(nominal.last_chunk, events_per_sample, kMostInAChunk);
+  base_ = std::max(SamplesOf(nominal.base, events_per_sample, kMostInAChunk),
+                   std::min(kLeastJudged, last));
   doublings_ = static_cast<uint64_t>(std::countr_zero(last) - std::countr_zero(base_));
   largest_block_ = SamplesOf(nominal.block, events_per_sample, kMostInABlock);
 }
@@ -77,7 +77,14 @@ Block ChunkPlan::BlockAt(uint64_t chunk, uint64_t index) const {
           .samples = std::min(size, SamplesIn(chunk) - before)};
 }
 
+bool ChunkPlan::IsJudgedAfter(uint64_t chunk) const {
+  return base_ >= kLeastJudged || FirstSample(chunk + 1) % kLeastJudged == 0;
+}
+
 uint64_t ChunkPlan::ChunksFor(double samples) const {
+  if (base_ < kLeastJudged) {
+    samples = std::ceil(samples / kLeastJudged) * static_cast<double>(kLeastJudged);
+  }
   if (!(samples < static_cast<double>(samples_))) return chunks();
   uint64_t chunk = 1;
   if (const double past = samples - static_cast<double>(FirstSample(doublings_)); past > 0) {

@@ -7,6 +7,9 @@
 // after about 10 ms, and the tolerance of a computation of hours is judged at most a few hundred
 // times. The stated error stays correct, because the sizes at which the tolerance is judged double.
 //
+// If 64 samples take more than a minute, all chunks have fewer samples: as many as take a minute,
+// or one. A tolerance is then judged after each 64 samples.
+//
 // All sizes are powers of two, so a rounding difference in the predicted cost of a sample changes
 // the plan only if that cost lies next to a power of two. The sizes depend only on the engine and
 // on that prediction, never on threads or machines.
@@ -45,13 +48,16 @@ class ChunkPlan {
   uint64_t BlocksIn(uint64_t chunk) const;
   Block BlockAt(uint64_t chunk, uint64_t index) const;
 
+  // Whether a tolerance is judged when this chunk and all before it are merged.
+  bool IsJudgedAfter(uint64_t chunk) const;
+
   // The expected time on one core at nominal speed.
   double SecondsFor(double samples) const {
     return samples * events_per_sample_ * seconds_per_event_;
   }
 
-  // The fewest chunks that together have at least `samples` samples; all if there are fewer
-  // samples.
+  // The fewest chunks with at least `samples` samples, after which a tolerance is judged; all if
+  // there are fewer samples.
   uint64_t ChunksFor(double samples) const;
   uint64_t SamplesBefore(uint64_t chunk) const;  // chunk <= chunks()
 

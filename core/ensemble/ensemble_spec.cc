@@ -6,7 +6,15 @@ namespace ballpiston {
 
 size_t PointCount(const EnsembleSpec& spec) { return static_cast<size_t>(spec.grid.PointCount()); }
 
-PointParameters PointAt(const EnsembleSpec& spec, size_t index) { return spec.grid.PointAt(index); }
+PointParameters PointAt(const EnsembleSpec& spec, size_t index) {
+  PointParameters point = spec.grid.PointAt(index);
+  for (const ParameterUse& use : spec.experiment->parameters) {
+    if (use.default_value && !point.Find(*use.parameter)) {
+      point.Set(*use.parameter, use.default_value);
+    }
+  }
+  return point;
+}
 
 EnsembleSpec OnePointSpec(const EnsembleSpec& spec, const PointParameters& point, Model model) {
   EnsembleSpec one = {.experiment = spec.experiment,

@@ -63,7 +63,8 @@ struct FieldViolation {
 std::vector<FieldViolation> Violations(const EnsembleSpec& spec);
 
 size_t PointCount(const EnsembleSpec& spec);
-PointParameters PointAt(const EnsembleSpec& spec, size_t index);  // index < PointCount
+// With the experiment's default values. index < PointCount
+PointParameters PointAt(const EnsembleSpec& spec, size_t index);
 
 // The same spec for one of its points, by `model`, with that point's share of a budget.
 EnsembleSpec OnePointSpec(const EnsembleSpec& spec, const PointParameters& point, Model model);

@@ -6,7 +6,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "absl/strings/string_view.h"
@@ -19,7 +21,8 @@ class PointExperiment;
 
 struct ParameterUse {
   const Parameter* parameter;
-  bool needed = true;  // or optional
+  bool needed = true;                        // or optional
+  std::optional<double> default_value = {};  // of every point if the list is empty
 };
 
 // The unit of a number in the target.
@@ -42,6 +45,8 @@ struct AimedEstimate {
   // is 1/sqrt(n) times that of one; it is infinite if no number of samples is enough.
   double (*error)(Model model, const PointParameters& point);
   const LimitError* limit_error = nullptr;  // null: no bound is known
+  // Names of estimates that are this one in other units, so that they have its relative errors.
+  std::span<const absl::string_view> multiples = {};
 
   // Besides AUTO, which answers everything.
   bool IsAnsweredBy(Model model) const;
@@ -64,6 +69,10 @@ struct ExperimentKind {
   void (*check_grid)(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
   // Finds why sampling cannot reach a tolerance; null if it always can.
   void (*check_tolerance)(const EnsembleSpec& spec, std::vector<FieldViolation>& found) = nullptr;
+
+  // The reason why an answer by samples of `model` states no errors at this point, whatever the
+  // number of samples, and the permitted range; empty if it states errors. Null: it always does.
+  std::string (*no_errors)(Model model, const PointParameters& point) = nullptr;
 
   // These two describe one sample by `model`: its work, and its mean number of ball-piston
   // collisions.

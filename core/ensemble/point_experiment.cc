@@ -1,5 +1,6 @@
 #include "core/ensemble/point_experiment.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -23,6 +24,18 @@ uint64_t ExpectedChunks(const EnsembleSpec& spec, const PointParameters& point,
 
 }  // namespace
 
+double NominalSeconds(const EnsembleSpec& spec, const PointParameters& point) {
+  const ChunkPlan plan = PlanFor(spec, point);
+  return plan.SecondsFor(
+      static_cast<double>(plan.SamplesBefore(ExpectedChunks(spec, point, plan))));
+}
+
+std::optional<double> Answer::ModelErrorOf(std::string_view name, bool is_first) const {
+  if (is_first || model_error == 0) return model_error;
+  const auto found = further_errors.find(name);
+  return found == further_errors.end() ? std::nullopt : std::optional(found->second);
+}
+
 double SamplesFor(double tolerance, const EnsembleSpec& spec, const PointParameters& point) {
   const double ratio = AimOf(spec).error(Sampled(spec.model), point) / tolerance;
   return ratio * ratio;
@@ -32,8 +45,10 @@ uint64_t SamplesAskedFor(const EnsembleSpec& spec, const PointParameters& point)
   const Target& target = spec.target;
   if (target.IsOpenEnded()) return kMaxSamples;
   if (!target.collisions) return static_cast<uint64_t>(target.samples.value_or(kDefaultSamples));
-  return static_cast<uint64_t>(std::ceil(static_cast<double>(*target.collisions) /
-                                         spec.experiment->collisions(Sampled(spec.model), point)));
+  const double samples = std::ceil(static_cast<double>(*target.collisions) /
+                                   spec.experiment->collisions(Sampled(spec.model), point));
+  // More is a violation (validation.cc). The cast of a larger number would be undefined.
+  return static_cast<uint64_t>(std::min(samples, static_cast<double>(kMaxSamples)));
 }
 
 PointExperiment::PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters)

@@ -10,9 +10,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "core/billiard/orbits.h"
 #include "core/ensemble/block_result.h"
@@ -31,6 +34,11 @@ struct Answer {
   // Upper bound of the relative difference between the model's first estimate and the billiard's,
   // without the statistical error. Empty if no bound is known.
   std::optional<double> model_error = 0.0;
+  // The same for other estimates, by their names. If model_error is 0, it counts for all estimates.
+  std::map<std::string, double, std::less<>> further_errors = {};
+
+  // Of the estimate of this name, which may be the first one.
+  std::optional<double> ModelErrorOf(std::string_view name, bool is_first) const;
 };
 
 // Whether the estimate's relative standard error, if it has one, is at most `tolerance`.
@@ -93,8 +101,11 @@ class PointExperiment {
   RandomStream random_;
 };
 
-// The largest number of samples that the target requests at a point.
+// The largest number of samples that the target requests at a point; 1 to kMaxSamples.
 uint64_t SamplesAskedFor(const EnsembleSpec& spec, const PointParameters& point);
+
+// The time of the point on one core at nominal speed, by spec.model. Requires a model that samples.
+double NominalSeconds(const EnsembleSpec& spec, const PointParameters& point);
 
 // The expected number of samples that reach the relative standard error `tolerance`.
 double SamplesFor(double tolerance, const EnsembleSpec& spec, const PointParameters& point);

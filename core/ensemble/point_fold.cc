@@ -30,7 +30,7 @@ uint64_t PointFold::MergeNext(BlockResult chunk) {
   state_.chunk_digests.push_back(DigestOf(chunk));
   state_.blocks = 0;
   ++state_.chunk;
-  if (state_.chunk == chunks_ || experiment_.ReachesTolerance(state_.complete)) Finish();
+  if (state_.chunk == chunks_ || ReachesTolerance()) Finish();
   return chunk.samples - known;
 }
 
@@ -49,10 +49,12 @@ void PointFold::Finish() {
 void PointFold::Resume(FoldState state) {
   state_ = std::move(state);
   const bool at_end_of_chunk = state_.blocks == 0 && state_.chunk > 0;
-  if (state_.chunk == chunks_ ||
-      (at_end_of_chunk && experiment_.ReachesTolerance(state_.complete))) {
-    Finish();
-  }
+  if (state_.chunk == chunks_ || (at_end_of_chunk && ReachesTolerance())) Finish();
+}
+
+bool PointFold::ReachesTolerance() const {
+  return experiment_.plan().IsJudgedAfter(state_.chunk - 1) &&
+         experiment_.ReachesTolerance(state_.complete);
 }
 
 BlockResult PointFold::Merged() const {

@@ -63,6 +63,7 @@ class PointFold {
 
  private:
   uint64_t MergeNext(BlockResult chunk);
+  bool ReachesTolerance() const;  // after the last complete chunk
 
   const PointExperiment& experiment_;
   const uint64_t chunks_;

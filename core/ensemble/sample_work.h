@@ -12,6 +12,15 @@ struct SampleWork {
   double starts = 0;      // of orbits, with their ends, in units of the simplest start
   double jumps = 0;       // of the limit's jump process, or measurements of a step of the energy
 
+  // The rest tells how costs differ from the sum of the events. Chunk plans do not depend on it.
+  double delays = 0;  // further time in lanes, in wall hits
+  // The number of independent parts of an orbit, for instance its collisions, whose durations add
+  // up. Below 1: only this share of the orbits takes long.
+  double parts = 1;
+  // Replicas of a gas that a thread runs from start to end together; 0 for orbits, of which each
+  // lane takes the next one when its orbit has ended.
+  double together = 0;
+
   // The sum, in units of a wall hit in lanes.
   double Events() const {
     constexpr double kEventsPerJump = 25;
@@ -19,7 +28,8 @@ struct SampleWork {
   }
 
   SampleWork Times(double n) const {
-    return {n * ball_wall, n * piston_wall, n * collisions, n * starts, n * jumps};
+    return {n * ball_wall, n * piston_wall, n * collisions, n * starts,
+            n * jumps,     n * delays,      n * parts,      together};
   }
 };
 

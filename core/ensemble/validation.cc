@@ -1,4 +1,8 @@
 // Finds all errors of a specification, field by field.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
@@ -27,7 +31,7 @@ void CheckUse(const ExperimentKind& experiment, const Parameter& parameter, size
     found.push_back({ListOf(parameter), absl::StrCat("has ", size, " values; ", experiment.name,
                                                      " does not use this list")});
   }
-  if (use != nullptr && use->needed && size == 0) {
+  if (use != nullptr && use->needed && !use->default_value && size == 0) {
     found.push_back({ListOf(parameter),
                      absl::StrCat("is empty; ", experiment.name, " needs at least one value")});
   }
@@ -143,6 +147,23 @@ void CheckBudget(const Target& target, Found& found) {
   }
 }
 
+// A number of collisions may need more samples than are permitted: a replica of a gas may have
+// fewer than one collision.
+void CheckSamplesOfCollisions(const EnsembleSpec& spec, Found& found) {
+  double least = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < PointCount(spec); ++i) {
+    least = std::min(least, spec.experiment->collisions(Sampled(spec.model), PointAt(spec, i)));
+  }
+  const double most = std::floor(least * static_cast<double>(kMaxSamples));
+  if (static_cast<double>(*spec.target.collisions) <= most) return;
+  const std::string permitted = most < 1 ? "target.samples" : absl::StrFormat("1 to %.0f", most);
+  found.push_back(
+      {"target.collisions",
+       absl::StrFormat("is %d, but a sample has %.3g collisions, and at most %d samples can be "
+                       "taken; permitted: %s",
+                       *spec.target.collisions, least, kMaxSamples, permitted)});
+}
+
 void CheckTarget(const EnsembleSpec& spec, Found& found) {
   const Target& target = spec.target;
   const int kinds =
@@ -191,6 +212,9 @@ std::vector<FieldViolation> Violations(const EnsembleSpec& spec) {
     CheckModel(spec, found);
   }
   CheckValues(spec, found);
+  if (found.empty() && spec.target.collisions && !NeedsNoSamples(spec)) {
+    CheckSamplesOfCollisions(spec, found);
+  }
   return found;
 }
 

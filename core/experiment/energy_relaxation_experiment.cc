@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "core/arithmetic/number_text.h"
+#include "core/closed_form/mean_free_time.h"
+#include "core/closed_form/pair_measures.h"
 #include "core/ensemble/block_orbits.h"
 #include "core/ensemble/computed_answer.h"
 #include "core/experiment/all_experiments.h"
@@ -236,6 +239,31 @@ std::vector<std::vector<double>> ProbabilitiesOfTheLimit(const PointParameters& 
   return EnergyRelaxation(GeometryOf(point), point).ProbabilitiesOfLimit();
 }
 
+// The share of the orbits from epsilon in which ball and piston meet within the window. A slow
+// piston or ball meets its partner if it starts within reach, or comes there in time.
+double ShareThatMeets(const PointParameters& point) {
+  const double epsilon = point[kEpsilon];
+  const PairGeometry geometry = GeometryOf(point);
+  const PairMeasures measures = Measures(geometry);
+  const RestingVolumes reached = VolumesAtRest(geometry);
+  const double window = kWindowTimes * MeanFreeTimesOf(geometry).ball_piston;
+  const double by_piston =
+      reached.piston / measures.volume + std::sqrt(2 * epsilon) * window / (2 * geometry.stroke());
+  const double by_ball =
+      reached.ball / measures.volume +
+      std::sqrt(1 - 2 * epsilon) * window * measures.eta / (std::numbers::pi * measures.cell_area);
+  return std::min({by_piston, by_ball, 1.0});
+}
+
+// An orbit without a collision waits in its lane until the lanes look at the time limit, which they
+// do after 512 bursts of up to 12 flights. A ball at rest takes no lane.
+double DelayOfOrbitsThatNeverMeet(const PointParameters& point) {
+  if (point[kEpsilon] == 0.5) return 0;
+  constexpr double kBursts = 512;
+  const double flights = kBursts * std::clamp(1.7 / point[kDelta], 4.0, 12.0);
+  return (1 - ShareThatMeets(point)) * flights;
+}
+
 // The measurements of a step of the energy take most of a jump's time.
 SampleWork WorkOfAnOrbit(Model model, const PointParameters& point) {
   SampleWork step = {.jumps = 1};
@@ -243,24 +271,32 @@ SampleWork WorkOfAnOrbit(Model model, const PointParameters& point) {
     step = WorkOfACollision(GeometryOf(point));
     step.jumps = 1;
   }
-  return step.Times(CollisionsPerOrbit(point));
+  SampleWork orbit = step.Times(CollisionsPerOrbit(point));
+  if (model != Model::kMarkov && point.Find(kEpsilon)) {
+    orbit.delays = DelayOfOrbitsThatNeverMeet(point);
+  }
+  return orbit;
 }
 
 bool HasRelaxationTimeAt(const PointParameters& point) {
   return HasRelaxationTime(point.Find(kEpsilon));
 }
 
-// The relative standard error that one orbit from epsilon gives for int (ep - 1/6) dt.
-double ErrorOfDecay(const PointParameters& point) {
+// The relative standard error that one orbit from epsilon gives for int (ep - 1/6) dt. If few
+// orbits of the billiard meet, the integral has two values, and their shares determine its scatter.
+double ErrorOfDecay(Model model, const PointParameters& point) {
   constexpr double kScatter = 0.42;
   const EnergyRelaxation relaxation(GeometryOf(point), point);
   const double decay = relaxation.EstimatesOfLimit().back().value;
-  return std::fabs(kScatter * 4 * relaxation.unit() / decay);
+  const double error = std::fabs(kScatter * 4 * relaxation.unit() / decay);
+  if (model == Model::kMarkov) return error;
+  const double meet = ShareThatMeets(point);
+  return std::min(error, std::sqrt(meet / (1 - meet)));
 }
 
-double ErrorOfAnOrbit(Model, const PointParameters& point) {
+double ErrorOfAnOrbit(Model model, const PointParameters& point) {
   if (!HasRelaxationTimeAt(point)) return std::numeric_limits<double>::infinity();
-  return point.Find(kEpsilon) ? ErrorOfDecay(point) : 1.25;
+  return point.Find(kEpsilon) ? ErrorOfDecay(model, point) : 1.25;
 }
 
 // Finds a tolerance at energies where the estimate passes through 0, because a relative error has
@@ -292,10 +328,13 @@ double CollisionsOfASample(Model, const PointParameters& point) {
   return CollisionsPerOrbit(point);
 }
 
+constexpr absl::string_view kMultiplesOfTheTime[] = {"decay_integral"};
+
 constexpr AimedEstimate kAimsOfRelaxation[] = {{.name = "relaxation_time",
                                                 .models = kModelsOfRelaxation,
                                                 .error = ErrorOfAnOrbit,
-                                                .limit_error = &kLimitErrorOfRelaxation}};
+                                                .limit_error = &kLimitErrorOfRelaxation,
+                                                .multiples = kMultiplesOfTheTime}};
 
 }  // namespace
 

@@ -22,10 +22,12 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_format.h"
+#include "absl/strings/string_view.h"
 #include "core/arithmetic/number_text.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/expected_limit_error.h"
@@ -40,9 +42,8 @@ namespace {
 constexpr double kRelaxTimes = 4;
 constexpr double kMeasureTimes = 12;
 
-// A replica with more work than this, some minutes in lanes, is shortened. It is then not
-// stationary.
-constexpr double kMostEvents = 0x1p37;
+// A replica with more work than this, some minutes, is shortened. It is then not stationary.
+double MostEvents(Model model) { return model == Model::kBilliardReference ? 0x1p33 : 0x1p37; }
 
 constexpr int64_t kMostColumnsApart =
     128;  // of the profile; in a longer gas, columns share a place
@@ -66,7 +67,7 @@ GasTimes TimesOfConduction(Model model, const GasGeometry& geometry, double cold
   const double time = RelaxationTime(geometry, cold);
   const double events =
       WorkOfReplica(model, geometry, (kRelaxTimes + kMeasureTimes) * time).Events();
-  const double share = std::min(kMostEvents / events, 1.0);
+  const double share = std::min(MostEvents(model) / events, 1.0);
   return {
       .relax = share * kRelaxTimes * time, .measure = share * kMeasureTimes * time, .share = share};
 }
@@ -238,6 +239,29 @@ void CheckConductionTolerance(const EnsembleSpec& spec, std::vector<FieldViolati
   }
 }
 
+bool IsCutShort(Model model, PointParameters point, const GasShape& shape) {
+  point.Set(kCells, CodeOf(shape));
+  return TimesAt(model, point).share < 1;
+}
+
+std::string WhyConductionHasNoErrors(Model model, const PointParameters& point) {
+  const GasShape shape = ShapeOf(point[kCells]);
+  if (!IsCutShort(model, point, shape)) return "";
+  // The time that a replica needs grows with its length.
+  GasShape longest = shape;
+  int64_t short_enough = 0, too_long = shape.columns;
+  while (too_long - short_enough > 1) {
+    longest.columns = (short_enough + too_long) / 2;
+    (IsCutShort(model, point, longest) ? too_long : short_enough) = longest.columns;
+  }
+  return absl::StrFormat(
+      "is %s, whose replicas are cut short and have no errors; permitted with a tolerance at rho = "
+      "%s, delta = %s, hot = %s, cold = %s, by model %s: %s",
+      Text(shape), NumberText(point[kRho]), NumberText(point[kDelta]), NumberText(point[kHot]),
+      NumberText(point[kCold]), Name(model),
+      short_enough == 0 ? "none" : absl::StrFormat("up to %d cells in a row", short_enough));
+}
+
 SampleWork WorkOfGasConduction(Model model, const PointParameters& point) {
   return WorkOfReplica(model, OpenGasOf(point), TimesAt(model, point).Total());
 }
@@ -277,10 +301,14 @@ constexpr Model kModelsOfGasConduction[] = {Model::kMarkov, Model::kBilliard,
 constexpr ParameterUse kParametersOfGasConduction[] = {
     {&kRho}, {&kDelta}, {&kCells}, {&kHot}, {&kCold}};
 
+// At given temperatures they are the current in other units.
+constexpr absl::string_view kMultiplesOfTheCurrent[] = {"conductivity", "conductivity_ratio"};
+
 constexpr AimedEstimate kAimsOfGasConduction[] = {{.name = "heat_current",
                                                    .models = kModelsOfGasConduction,
                                                    .error = ErrorOfGasConduction,
-                                                   .limit_error = &kLimitErrorOfConduction}};
+                                                   .limit_error = &kLimitErrorOfConduction,
+                                                   .multiples = kMultiplesOfTheCurrent}};
 
 }  // namespace
 
@@ -293,6 +321,7 @@ constinit const ExperimentKind kGasConduction = {.name = "gas-conduction",
                                                  .create = CreateGasConduction,
                                                  .check_grid = CheckConductionGrid,
                                                  .check_tolerance = CheckConductionTolerance,
+                                                 .no_errors = WhyConductionHasNoErrors,
                                                  .work = WorkOfGasConduction,
                                                  .collisions = ExchangesOfAConductionSample,
                                                  .memory = MemoryOfReplicas};

@@ -380,7 +380,7 @@ std::vector<std::vector<double>> SpeedProbabilitiesAt(const PointParameters&) {
 }
 
 constexpr ParameterUse kParametersOfGasEquilibrium[] = {
-    {&kRho}, {&kDelta}, {&kCells}, {&kTemperature}};
+    {&kRho}, {&kDelta}, {&kCells}, {.parameter = &kTemperature, .default_value = 1}};
 constexpr Model kModelsOfGasEquilibrium[] = {Model::kClosedForm, Model::kSpectrum, Model::kMarkov,
                                              Model::kBilliard, Model::kBilliardReference};
 constexpr Model kModelsOfConductivity[] = {Model::kSpectrum, Model::kMarkov, Model::kBilliard,
@@ -390,12 +390,14 @@ constexpr LimitError kLimitErrorOfConductivity = {
     .has_pilots = false,
     .is_known = [](const PointParameters&) { return true; },
     .expected = ErrorOfTheLimit};
+constexpr absl::string_view kMultiplesOfTheConductivity[] = {"conductivity_ratio"};
 constexpr AimedEstimate kAimsOfGasEquilibrium[] = {
     {.name = "exchange_rate", .models = kModelsOfGasEquilibrium, .error = ErrorOfGasEquilibrium},
     {.name = kConductivity,
      .models = kModelsOfConductivity,
      .error = ErrorOfConductivity,
-     .limit_error = &kLimitErrorOfConductivity}};
+     .limit_error = &kLimitErrorOfConductivity,
+     .multiples = kMultiplesOfTheConductivity}};
 
 }  // namespace
 

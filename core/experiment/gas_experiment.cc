@@ -17,9 +17,6 @@
 namespace ballpiston {
 namespace {
 
-// The lanes need this many balls to be full.
-constexpr int64_t kBallsInLanes = 1536;
-
 // A block whose replicas are being computed. The meters are kept until all replicas are done, so
 // that results are added in the order of the replicas.
 struct OpenBlock {
@@ -44,9 +41,11 @@ class GasBlocks : public BlockRun {
   }
 
  private:
-  // The other engines run one replica at a time, because more would not make them faster.
+  // The lanes need this many balls to be full. The other engines run one replica at a time, because
+  // more replicas would not make them faster.
   int64_t BallsTogether() const {
-    return experiment_.gas_engine() == GasEngine::kLanes ? kBallsInLanes : 1;
+    constexpr int64_t kOfLanes = 1536;
+    return experiment_.gas_engine() == GasEngine::kLanes ? kOfLanes : 1;
   }
 
   static constexpr double kSecondsOfASlice = 0.01;
@@ -148,6 +147,12 @@ double ThermalHitsOf(const GasGeometry& geometry, const HitRates& rates) {
   return static_cast<double>(geometry.shape().rows) * rates.of_a_piston;
 }
 
+// Replicas that a thread computes at the same time.
+double TogetherInLanes(double balls) {
+  constexpr double kBalls = 192, kMost = 16;  // a quarter of the smallest chunk
+  return std::min(std::ceil(kBalls / balls), kMost);
+}
+
 }  // namespace
 
 GasGeometry GasGeometryOf(const PointParameters& point, GasEnds ends) {
@@ -168,12 +173,17 @@ void CheckGasGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) 
 // as 2.6 of the pair's events with 16 bodies in the queue, and 6.6 with 20,000. An exchange of the
 // jump process costs as much as 2.6 of the pair's jumps, which are measured with their
 // correlations.
+//
+// Further time in lanes, measured from rho = 0.501 to 0.70705 and with up to 10^6 cells: each visit
+// of a ball to a piston's reach costs 100 wall hits, and there are about stroke/delta visits for an
+// exchange. In a gas beyond the processor's caches an exchange costs up to 16,000 more, and the
+// start of a ball 1500.
 SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time) {
   const auto balls = static_cast<double>(geometry.balls());
   const auto pistons = static_cast<double>(geometry.pistons());
   const double exchanges =
       static_cast<double>(geometry.contacts()) * InfiniteGasExchangeRate(geometry, 1) * time;
-  if (model == Model::kMarkov) return {.starts = balls, .jumps = 2.6 * exchanges};
+  if (model == Model::kMarkov) return {.starts = balls, .jumps = 2.6 * exchanges, .together = 1};
   const HitRates rates = HitRatesOf(geometry.pair());
   const double ball_hits = rates.of_a_ball * balls * time;
   if (model == Model::kBilliardReference) {
@@ -181,12 +191,18 @@ SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time) 
     return {.ball_wall = event * ball_hits,
             .piston_wall = event * rates.of_a_piston * pistons * time,
             .collisions = event * exchanges,
-            .starts = balls};
+            .starts = balls,
+            .together = 1};
   }
   const double thermal_hits = ThermalHitsOf(geometry, rates) * time;
+  constexpr double kBeyondTheCaches = 7e5;  // balls
+  const double uncached = balls / (balls + kBeyondTheCaches);
+  const double visits = geometry.pair().stroke() / geometry.pair().delta();
   return {.ball_wall = 4 * ball_hits + 900 * exchanges + 1000 * thermal_hits,
           .collisions = exchanges,
-          .starts = balls};
+          .starts = balls,
+          .delays = exchanges * (100 * visits + 16'000 * uncached) + 1500 * uncached * balls,
+          .together = TogetherInLanes(balls)};
 }
 
 // Measured with gases of 10^6 cells, chains and lattices: by the lanes 234 bytes for a ball and 49
@@ -202,7 +218,7 @@ double MemoryOfReplicas(Model model, const PointParameters& point) {
   // A piston for every contact along +x and +y, and one more in each row between reservoirs.
   const auto balls = static_cast<double>(shape.cells());
   const double pistons = static_cast<double>(shape.contacts() / 2 + shape.rows);
-  const double together = in_lanes ? std::ceil(static_cast<double>(kBallsInLanes) / balls) : 1;
+  const double together = in_lanes ? TogetherInLanes(balls) : 1;
   return kOfABlock + together * (balls * bytes[0] + pistons * bytes[1]);
 }
 

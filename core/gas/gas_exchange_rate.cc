@@ -21,9 +21,13 @@
 #include "core/gas/gas_exchange_rate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <cstddef>
+#include <functional>
+#include <map>
+#include <mutex>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -34,7 +38,8 @@ namespace ballpiston {
 namespace {
 
 constexpr int kWidest = 8;
-constexpr double kStep = 1e-30;  // of the complex derivative
+constexpr double kMostCrowded = 0.02;  // the largest z
+constexpr double kStep = 1e-30;        // of the complex derivative
 
 using Weight = std::complex<double>;
 
@@ -132,6 +137,53 @@ double FactorOfRing(double cells, double z) {
   return (1 - std::pow(ratio, 2 * cells - 1)) / (s * larger * (1 + std::pow(ratio, 2 * cells)));
 }
 
+// A function on 0 <= z <= kMostCrowded, known at Chebyshev's points. The functions below have their
+// next singularity beyond z = 0.08, so the polynomial through n points differs from them by less
+// than 13^-n.
+class Interpolated {
+ public:
+  explicit Interpolated(const std::function<double(double)>& function) {
+    for (size_t i = 0; i < kPoints; ++i) {
+      const double angle = std::numbers::pi * static_cast<double>(i) / (kPoints - 1);
+      points_[i] = kMostCrowded / 2 * (1 - std::cos(angle));
+      values_[i] = function(points_[i]);
+    }
+  }
+
+  // The barycentric formula.
+  double At(double z) const {
+    double sum = 0, weights = 0;
+    for (size_t i = 0; i < kPoints; ++i) {
+      if (z == points_[i]) return values_[i];
+      const double size = i == 0 || i + 1 == kPoints ? 0.5 : 1;
+      const double weight = (i % 2 == 0 ? size : -size) / (z - points_[i]);
+      sum += weight * values_[i];
+      weights += weight;
+    }
+    return sum / weights;
+  }
+
+ private:
+  static constexpr size_t kPoints = 16;
+  std::array<double, kPoints> points_, values_;
+};
+
+// The transfer matrix takes milliseconds, and a plan has thousands of values of z. `longer` is
+// kWidest for infinitely many columns.
+double FactorOfLattice(int shorter, int longer, double z) {
+  static std::mutex mutex;
+  static std::map<std::pair<int, int>, Interpolated> known;
+  const std::scoped_lock lock(mutex);
+  auto found = known.find({shorter, longer});
+  if (found == known.end()) {
+    const auto exact = [=](double at) {
+      return longer == kWidest ? FactorOfTube(shorter, at) : FactorOfTorus(longer, shorter, at);
+    };
+    found = known.emplace(std::pair(shorter, longer), Interpolated(exact)).first;
+  }
+  return found->second.At(z);
+}
+
 struct Crowding {
   double z;
   double rate;  // at z = 0 and temperature 1
@@ -150,13 +202,12 @@ Crowding CrowdingOf(const PairGeometry& pair) {
 double CrowdingFactor(const GasShape& shape, double z) {
   if (!shape.is_lattice) return FactorOfRing(static_cast<double>(shape.columns), z);
   const auto [shorter, longer] = std::minmax(shape.columns, shape.rows);
-  const int rows = static_cast<int>(std::min<int64_t>(shorter, kWidest));
-  if (longer >= kWidest) return FactorOfTube(rows, z);
-  return FactorOfTorus(static_cast<int>(longer), rows, z);
+  return FactorOfLattice(static_cast<int>(std::min<int64_t>(shorter, kWidest)),
+                         static_cast<int>(std::min<int64_t>(longer, kWidest)), z);
 }
 
 double InfiniteCrowdingFactor(bool is_lattice, double z) {
-  if (is_lattice) return FactorOfTube(kWidest, z);
+  if (is_lattice) return FactorOfLattice(kWidest, kWidest, z);
   const double s = std::sqrt(1 - 4 * z);
   return 2 / (s * (1 + s));
 }

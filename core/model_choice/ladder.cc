@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -12,7 +14,9 @@
 #include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
+#include "core/ensemble/point_memory.h"
 #include "core/experiment/all_experiments.h"
+#include "core/gas/gas_shape.h"
 #include "core/model_choice/sampling_cost.h"
 
 namespace ballpiston {
@@ -59,8 +63,20 @@ class Question {
     return kSinglePrecisionError;
   }
 
-  double SecondsBy(Model model) const {
-    return SecondsPerSample(By(model), point_, machine_.rates);
+  SamplingCost CostBy(Model model) const {
+    return CostOfSampling(By(model), point_, machine_.rates);
+  }
+  double SecondsOf(Model model, double samples) const {
+    return CostBy(model).Of(samples, machine_.workers);
+  }
+  // Of processor time, until all workers have their first samples.
+  double SecondsOfTheFirst(Model model) const { return CostBy(model).first * machine_.workers; }
+  double MemoryBy(Model model) const { return MemoryOf(By(model), point_, machine_.workers); }
+
+  // Empty if samples by this model have errors.
+  std::string WhyNoErrors(Model model) const {
+    const auto why = spec_.experiment->no_errors;
+    return why == nullptr || !TakesSamples(model) ? "" : why(model, point_);
   }
 
   // The number of samples that the target requires from a model that samples.
@@ -72,8 +88,10 @@ class Question {
     return samples;
   }
 
+  // 0 if the budget ends before the first samples.
   double SamplesInBudget(Model model) const {
-    return std::max(std::floor(BudgetOfAPoint(spec_, machine_.workers) / SecondsBy(model)), 1.0);
+    const double seconds = BudgetOfAPoint(spec_, machine_.workers);
+    return CostBy(model).SamplesIn(seconds, machine_.workers);
   }
 
   double SamplesFor(double tolerance) const {
@@ -81,9 +99,10 @@ class Question {
   }
 
   double ErrorOf(Model model, double samples) const {
+    if (!WhyNoErrors(model).empty()) return std::numeric_limits<double>::infinity();
     return aim().error(model, point_) / std::sqrt(samples);
   }
-  bool HasRelativeError() const { return std::isfinite(ErrorOf(Model::kBilliard, 1)); }
+  bool HasRelativeError() const { return std::isfinite(aim().error(Model::kBilliard, point_)); }
 
   // The statistical error when the budget is used up; 0 for the spectrum, which has no samples.
   double ErrorInBudget(Model model) const {
@@ -177,9 +196,11 @@ Answer ByBudget(const Question& question) {
   const double limit = question.ErrorInBudget(question.ModelOfLimit()) + bound;
   const double billiard = question.ErrorInBudget(Model::kBilliard) +
                           question.ErrorOfPrecision(Model::kBilliard).value_or(0);
-  const std::string compared =
-      absl::StrCat("the billiard's error with this budget is about ", Rounded(billiard),
-                   ", the limit's error at most ", Rounded(limit));
+  const std::string compared = absl::StrCat(
+      std::isfinite(billiard)
+          ? absl::StrCat("the billiard's error with this budget is about ", Rounded(billiard))
+          : "the billiard has no error within this budget",
+      ", the limit's error at most ", Rounded(limit));
   const double enough = question.target().tolerance.value_or(0);
   if (billiard <= std::max(limit, enough)) return Billiard(question, compared);
   return {question.ModelOfLimit(), compared, bound};
@@ -243,15 +264,22 @@ void PredictWithoutSamples(const Machine& machine, Rung& rung) {
 }
 
 void PredictSamples(const Question& question, Rung& rung) {
-  rung.samples = question.SamplesBy(rung.model);
-  const double work = *rung.samples * question.SecondsBy(rung.model);
-  if (std::isfinite(work)) rung.work = work;
-  const double error = question.ErrorOf(rung.model, *rung.samples);
-  if (std::isfinite(error)) rung.statistical_error = error;
   if (!IsOfTheLimit(rung.model)) {
     rung.model_error = question.ErrorOfPrecision(rung.model);
     rung.reason = rung.model_error == 0 ? "exact" : "the billiard in single precision";
   }
+  const std::string no_errors = question.WhyNoErrors(rung.model);
+  if (!no_errors.empty()) rung.reason = absl::StrCat("cells ", no_errors);
+  if (question.target().tolerance && !no_errors.empty()) return;  // never reached
+  rung.samples = question.SamplesBy(rung.model);
+  if (*rung.samples == 0) {
+    rung.reason = "the budget ends before the first samples";
+    return;
+  }
+  const double work = question.SecondsOf(rung.model, *rung.samples);
+  if (std::isfinite(work)) rung.work = work;
+  const double error = question.ErrorOf(rung.model, *rung.samples);
+  if (std::isfinite(error)) rung.statistical_error = error;
 }
 
 // The limit's error: from a pilot if one was run, else the expected error.
@@ -274,6 +302,7 @@ Rung RungFor(Model model, const Question& question, const Machine& machine,
   Rung rung;
   rung.model = model;
   rung.answers = question.aim().IsAnsweredBy(model);
+  rung.memory = rung.answers ? question.MemoryBy(model) : 0;
   if (!rung.answers) {
     rung.reason = CannotAnswer(model, question);
     return rung;
@@ -283,7 +312,8 @@ Rung RungFor(Model model, const Question& question, const Machine& machine,
   } else {
     PredictWithoutSamples(machine, rung);
   }
-  if (IsOfTheLimit(model)) SetLimitError(question, pilots, rung);
+  const bool has_samples = !TakesSamples(model) || rung.samples.value_or(0) > 0;
+  if (IsOfTheLimit(model) && has_samples) SetLimitError(question, pilots, rung);
   return rung;
 }
 
@@ -300,6 +330,23 @@ void AddPilot(const MachineRates& rates, Ladder& ladder) {
 
 }  // namespace
 
+namespace {
+
+// The limit's errors in other estimates of the answer.
+void AddFurtherErrors(const Question& question, Answer& answer) {
+  if (!IsOfTheLimit(answer.model)) return;
+  for (const AimedEstimate& aim : question.spec().experiment->aims) {
+    if (aim.limit_error == nullptr || !aim.limit_error->is_known(question.point())) continue;
+    const bool is_first = &aim == &question.aim();
+    const double error =
+        is_first ? answer.model_error.value_or(0) : aim.limit_error->expected(question.point());
+    if (!is_first) answer.further_errors.emplace(aim.name, error);
+    for (const absl::string_view name : aim.multiples) answer.further_errors.emplace(name, error);
+  }
+}
+
+}  // namespace
+
 double BudgetOfAPoint(const EnsembleSpec& spec, int workers) {
   return *spec.target.budget_seconds * workers / static_cast<double>(PointCount(spec));
 }
@@ -307,7 +354,10 @@ double BudgetOfAPoint(const EnsembleSpec& spec, int workers) {
 std::optional<Answer> ChooseAnswer(const EnsembleSpec& spec, const PointParameters& point,
                                    const Machine& machine, const PilotSource& pilots) {
   const Question question(spec, point, machine);
-  return spec.model == Model::kAuto ? AutoAnswer(question, pilots) : ExplicitAnswer(question);
+  std::optional<Answer> answer =
+      spec.model == Model::kAuto ? AutoAnswer(question, pilots) : ExplicitAnswer(question);
+  if (answer) AddFurtherErrors(question, *answer);
+  return answer;
 }
 
 const Rung& Ladder::Chosen() const {
@@ -361,10 +411,130 @@ double LeastTolerance(const EnsembleSpec& spec) {
   return least;
 }
 
+// The model that is expected to answer, without pilots.
+Model ExpectedModel(const EnsembleSpec& spec, const PointParameters& point,
+                    const Machine& machine = Machine()) {
+  if (spec.model != Model::kAuto) return spec.model;
+  return ChooseAnswer(spec, point, machine, PredictedPilot)->model;
+}
+
+// Where samples have no errors, with the index of the shape in its list: each shape once.
+std::vector<FieldViolation> PointsWithoutErrors(const EnsembleSpec& spec) {
+  std::vector<FieldViolation> found;
+  if (spec.experiment->no_errors == nullptr) return found;
+  const std::vector<double>& cells = spec.grid[kCells];
+  std::set<double> named;
+  for (size_t i = 0; i < PointCount(spec); ++i) {
+    const PointParameters point = PointAt(spec, i);
+    if (named.contains(point[kCells])) continue;
+    const Model model = ExpectedModel(spec, point);
+    if (!TakesSamples(model)) continue;
+    const std::string why = spec.experiment->no_errors(model, point);
+    if (why.empty()) continue;
+    named.insert(point[kCells]);
+    const auto index = std::find(cells.begin(), cells.end(), point[kCells]) - cells.begin();
+    found.push_back({absl::StrFormat("grid.cells[%d]", index), why});
+  }
+  return found;
+}
+
+// Lists at most one point: the first one.
+std::string ParametersText(const PointParameters& point) {
+  std::string text;
+  for (const Parameter* parameter : kParameters) {
+    const auto& value = point.Find(*parameter);
+    if (!value) continue;
+    absl::StrAppend(&text, text.empty() ? "" : ", ", parameter->name, " = ",
+                    parameter == &kCells ? Text(ShapeOf(*value)) : NumberText(*value));
+  }
+  return text;
+}
+
+FieldViolation TooLong(const Target& target, const PointParameters& point, double seconds) {
+  std::string field = "target", given = absl::StrCat("is ", kDefaultSamples, " by default");
+  if (target.samples) field = "target.samples", given = absl::StrCat("is ", *target.samples);
+  if (target.collisions) {
+    field = "target.collisions", given = absl::StrCat("is ", *target.collisions);
+  }
+  if (target.tolerance) {
+    field = "target.tolerance", given = absl::StrCat("is ", NumberText(*target.tolerance));
+  }
+  return {field,
+          absl::StrFormat("%s, which takes about %.1g s of one core at %s; permitted: up to %.0g s",
+                          given, seconds, ParametersText(point), kMostSeconds)};
+}
+
 }  // namespace
+
+std::vector<FieldViolation> TimeViolations(const EnsembleSpec& spec) {
+  if (NeedsNoSamples(spec) || spec.target.budget_seconds) return {};
+  for (size_t i = 0; i < PointCount(spec); ++i) {
+    const PointParameters point = PointAt(spec, i);
+    // Without a tolerance AUTO takes samples of the billiard.
+    const Model model = spec.target.tolerance ? ExpectedModel(spec, point) : Sampled(spec.model);
+    if (!TakesSamples(model)) continue;
+    const double seconds = NominalSeconds(OnePointSpec(spec, point, model), point);
+    if (!(seconds <= kMostSeconds)) return {TooLong(spec.target, point, seconds)};
+  }
+  return {};
+}
+
+namespace {
+
+std::string Megabytes(double bytes) { return absl::StrFormat("%.0f MB", std::ceil(bytes / 1e6)); }
+
+// Only gases need much memory, and only their shape matters.
+void CheckMemory(const EnsembleSpec& spec, const Machine& machine,
+                 std::vector<FieldViolation>& found) {
+  const std::vector<double>& cells = spec.grid[kCells];
+  for (size_t i = 0; i < cells.size(); ++i) {
+    PointParameters point = PointAt(spec, 0);
+    point.Set(kCells, cells[i]);
+    const double needed = MemoryOf(spec, point, 1);
+    if (needed <= machine.memory) continue;
+    found.push_back(
+        {absl::StrFormat("grid.cells[%d]", i),
+         absl::StrFormat("is %s, which needs %s of memory; permitted here: up to %s",
+                         Text(ShapeOf(cells[i])), Megabytes(needed), Megabytes(machine.memory))});
+  }
+}
+
+void CheckBudget(const EnsembleSpec& spec, const Machine& machine,
+                 std::vector<FieldViolation>& found) {
+  if (!spec.target.budget_seconds || NeedsNoSamples(spec)) return;
+  const double budget = BudgetOfAPoint(spec, machine.workers);
+  double least = 0;  // processor time of a point
+  for (size_t i = 0; i < PointCount(spec); ++i) {
+    const PointParameters point = PointAt(spec, i);
+    const Question question(spec, point, machine);
+    if (question.SecondsOfTheFirst(Sampled(spec.model)) <= budget) continue;
+    const Model model = ExpectedModel(spec, point, machine);
+    if (TakesSamples(model)) least = std::max(least, question.SecondsOfTheFirst(model));
+  }
+  if (least <= budget) return;
+  const double seconds = *spec.target.budget_seconds * least / budget;
+  const auto points = static_cast<int64_t>(PointCount(spec));
+  found.push_back(
+      {"target.budget",
+       absl::StrFormat("is %s s%s, which ends before the first samples are complete; permitted on "
+                       "this server: budget >= %s s",
+                       NumberText(*spec.target.budget_seconds),
+                       points == 1 ? "" : absl::StrFormat(" for %d points", points),
+                       RoundedUp(seconds))});
+}
+
+}  // namespace
+
+std::vector<FieldViolation> MachineViolations(const EnsembleSpec& spec, const Machine& machine) {
+  std::vector<FieldViolation> found;
+  CheckMemory(spec, machine, found);
+  CheckBudget(spec, machine, found);
+  return found;
+}
 
 std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec) {
   if (!spec.target.tolerance) return {};
+  if (std::vector<FieldViolation> found = PointsWithoutErrors(spec); !found.empty()) return found;
   const double tolerance = *spec.target.tolerance, least = LeastTolerance(spec);
   if (!(tolerance < least)) return {};
   absl::string_view other;

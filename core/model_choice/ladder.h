@@ -10,6 +10,7 @@
 #define BALLPISTON_CORE_MODEL_CHOICE_LADDER_H_
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ namespace ballpiston {
 struct Machine {
   MachineRates rates;
   int workers = 1;
+  double memory = std::numeric_limits<double>::infinity();  // bytes that questions may use
 };
 
 // Returns a known pilot; empty if the pilot has not run.
@@ -43,6 +45,7 @@ struct Rung {
   std::optional<double> work;               // seconds of processor time
   std::optional<double> statistical_error;  // these two relative, of the first estimate
   std::optional<double> model_error;
+  double memory = 0;  // bytes
 };
 
 struct Ladder {
@@ -63,10 +66,21 @@ Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const M
                  const PilotSource& pilots);
 
 // Finds a tolerance that the answering model cannot reach: a tolerance below the model's own error,
-// or below the statistical error of the largest permitted number of samples. The limit's error
-// counts for the spectrum, and for `markov` where pilots can check it; elsewhere the tolerance of
-// `markov` is that of its samples.
+// or below the statistical error of the largest permitted number of samples, or where samples have
+// no errors. The limit's error counts for the spectrum, and for `markov` where pilots can check it;
+// elsewhere the tolerance of `markov` is that of its samples.
 std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec);
+
+// No machine computes longer for a point than this, in seconds at nominal speed.
+inline constexpr double kMostSeconds = 1e10;
+
+// Finds a point that takes longer. A budget limits the time of each point. The spec must have no
+// other violations.
+std::vector<FieldViolation> TimeViolations(const EnsembleSpec& spec);
+
+// Finds what this machine cannot do: a question that needs more memory, and a budget that ends
+// before the first samples of a point. The spec must have no other violations.
+std::vector<FieldViolation> MachineViolations(const EnsembleSpec& spec, const Machine& machine);
 
 // Processor time of a budget for each point of the grid.
 double BudgetOfAPoint(const EnsembleSpec& spec, int workers);

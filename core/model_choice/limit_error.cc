@@ -52,8 +52,8 @@ Pilot PilotOf(const PointExperiment& experiment, const BlockResult& merged) {
 }
 
 double SecondsOfPilot(const PilotPlace& place, const MachineRates& rates) {
-  return static_cast<double>(kPilotOrbits) *
-         SecondsPerSample(PilotSpec(place), PointOf(place), rates);
+  const SamplingCost cost = CostOfSampling(PilotSpec(place), PointOf(place), rates);
+  return cost.Of(static_cast<double>(kPilotOrbits), 1);
 }
 
 Pilot PredictedPilot(const PilotPlace& place) {

@@ -12,6 +12,7 @@ struct EngineRate {
   double wall_hit = 0;   // a wall hit: in lanes, of the ball only; in the reference, any event
   double collision = 0;  // of ball and piston, in an orbit that continues
   double sample = 0;     // an orbit's start and end
+  double lanes = 1;      // orbits that the engine moves at the same time
 };
 
 struct MachineRates {

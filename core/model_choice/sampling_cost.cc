@@ -1,5 +1,9 @@
 #include "core/model_choice/sampling_cost.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "core/ensemble/experiment_kind.h"
 
 namespace ballpiston {
@@ -7,20 +11,70 @@ namespace {
 
 // In lanes only the ball's wall hits are events; the reference has one for each hit and collision.
 double WallHits(Engine engine, const SampleWork& work) {
-  if (engine != Engine::kReference) return work.ball_wall;
+  if (engine != Engine::kReference) return work.ball_wall + work.delays;
   return work.ball_wall + work.piston_wall + work.collisions + work.starts;
 }
 
+// The mean of the longest of n times from an exponential law, in units of their mean: 1 + 1/2 +
+// ... + 1/n.
+double LongestOfExponentials(double n) {
+  return std::log(n) + std::numbers::egamma + (1 - std::numbers::egamma) / n;
+}
+
+// The same for flights of some parts each. Below one part, this share of the flights has an
+// exponential law, and the others take no time.
+double Longest(double n, double parts) {
+  if (parts >= 1) return 1 + (LongestOfExponentials(n) - 1) / std::sqrt(parts);
+  return n * parts < 1 ? n : LongestOfExponentials(n * parts) / parts;
+}
+
+// The first blocks of a point with long samples have two samples.
+constexpr double kSamplesOfABlock = 2;
+
 }  // namespace
 
-double SecondsPerSample(const EnsembleSpec& spec, const PointParameters& point,
-                        const MachineRates& rates) {
+double SamplingCost::Of(double samples, int threads) const {
+  const double used = std::clamp(std::ceil(samples / lanes), 1.0, static_cast<double>(threads));
+  const double at_the_end = std::min(samples / used, lanes);
+  const double in_full_lanes = std::max(samples - used * lanes, 0.0);
+  const double flights = in_full_lanes + used * lanes * Longest(at_the_end, parts);
+  return samples * (sample - flight) + flights * flight;
+}
+
+double SamplingCost::SamplesIn(double seconds, int threads) const {
+  if (seconds < first * threads) return 0;
+  // The cost grows with the number of samples.
+  double enough = 1, too_many = static_cast<double>(kMaxSamples);
+  if (Of(too_many, threads) <= seconds) return too_many;
+  while (too_many > enough * (1 + 1e-9) + 0.5) {
+    const double middle = std::sqrt(enough * too_many);
+    (Of(middle, threads) <= seconds ? enough : too_many) = middle;
+  }
+  return std::floor(enough);
+}
+
+SamplingCost CostOfSampling(const EnsembleSpec& spec, const PointParameters& point,
+                            const MachineRates& rates) {
   const Model model = Sampled(spec.model);
   const SampleWork work = spec.experiment->work(model, point);
   const Engine engine = EngineFor(spec);
   const EngineRate& rate = rates.Of(engine);
-  return WallHits(engine, work) * rate.wall_hit + work.collisions * rate.collision +
-         work.starts * rate.sample + work.jumps * rates.jump;
+  const double flight = WallHits(engine, work) * rate.wall_hit;
+  SamplingCost cost = {.sample = flight + work.collisions * rate.collision +
+                                 work.starts * rate.sample + work.jumps * rates.jump};
+  if (work.together > 0) {
+    cost.first = work.together * cost.sample;
+  } else if (model == Model::kMarkov) {
+    cost.first = kSamplesOfABlock * cost.sample;
+  } else {
+    const auto of_an_orbit = static_cast<double>(spec.experiment->samples_together);
+    cost.flight = flight;
+    cost.lanes = rate.lanes * of_an_orbit;
+    cost.parts = work.parts * of_an_orbit;
+    cost.first = cost.lanes * flight * Longest(std::min(rate.lanes, kSamplesOfABlock), cost.parts) +
+                 kSamplesOfABlock * of_an_orbit * (cost.sample - flight);
+  }
+  return cost;
 }
 
 }  // namespace ballpiston

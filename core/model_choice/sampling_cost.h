@@ -1,6 +1,5 @@
-// Predicts the cost of a sample on a machine, from the work that the experiment's row counts and
-// the machine's rates. The prediction holds within a factor of two, except for the extra work of a
-// slow ball or piston.
+// Predicts the cost of samples on a machine, from the work that the experiment's row counts and the
+// machine's rates. The prediction holds within a factor of five, mostly within two.
 #ifndef BALLPISTON_CORE_MODEL_CHOICE_SAMPLING_COST_H_
 #define BALLPISTON_CORE_MODEL_CHOICE_SAMPLING_COST_H_
 
@@ -9,10 +8,25 @@
 
 namespace ballpiston {
 
-// Seconds of processor time of one sample, by a model that samples (spec.model; AUTO is the
-// billiard).
-double SecondsPerSample(const EnsembleSpec& spec, const PointParameters& point,
-                        const MachineRates& rates);
+// Seconds of processor time. All lanes of a thread fly even if few have orbits. So a few samples
+// cost as much as the longest of them in all lanes, and at the end of many samples the last orbits
+// fly in lanes that are hardly full.
+struct SamplingCost {
+  double sample = 0;  // one of many samples
+  double flight = 0;  // the part of it that lanes compute together
+  double lanes = 1;   // samples that a thread computes at the same time
+  double parts = 1;   // of a sample's flight (ensemble/sample_work.h)
+  double first = 0;   // a thread's time until its first samples are complete
+
+  // `samples` samples by up to `threads` threads.
+  double Of(double samples, int threads) const;
+  // The number of samples that `threads` threads complete in this time; 0 if they complete none.
+  double SamplesIn(double seconds, int threads) const;
+};
+
+// By a model that samples (spec.model; AUTO is the billiard).
+SamplingCost CostOfSampling(const EnsembleSpec& spec, const PointParameters& point,
+                            const MachineRates& rates);
 
 }  // namespace ballpiston
 

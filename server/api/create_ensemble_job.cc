@@ -37,7 +37,9 @@ absl::StatusOr<v1::EnsembleJob> CreateEnsembleJob(ServiceContext& service, const
     check.Add("priority", absl::StrCat("is ", request.priority(), "; permitted: -",
                                        kHighestPriority, " to ", kHighestPriority));
   }
-  const CheckedSpec spec = CheckSpec(request.spec());
+  AddDefaults(*accepted.mutable_spec());
+  CheckedSpec spec = CheckSpec(accepted.spec());
+  if (spec.violations.empty()) AddViolations(service.ladder.ViolationsHere(spec.spec), spec);
   const absl::Status checked = Check(spec, check);
   if (!checked.ok()) return checked;
   if (request.validate_only()) return service.book.Preview(call.caller, accepted, spec);

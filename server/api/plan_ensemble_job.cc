@@ -35,7 +35,10 @@ double SecondsToStore(const Ladder& ladder, const MachineRates& rates) {
 
 absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
     ServiceContext& service, const Call&, const v1::PlanEnsembleJobRequest& request) {
-  const CheckedSpec checked = CheckSpec(request.spec());
+  CheckedSpec checked = CheckSpec(request.spec());
+  if (checked.violations.empty()) {
+    AddViolations(service.ladder.ViolationsHere(checked.spec), checked);
+  }
   if (!checked.violations.empty()) return InvalidSpec(checked.violations);
   const size_t points = PointCount(checked.spec), planned = std::min(points, kMostPoints);
   v1::PlanEnsembleJobResponse response;
@@ -48,6 +51,7 @@ absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
     work.pilots += ladder.work_of_pilot;
     work.points += ladder.Chosen().work.value_or(0) - ladder.work_of_pilot;
     work.stored += SecondsToStore(ladder, service.ladder.machine().rates);
+    response.set_memory(std::max(response.memory(), ladder.Chosen().memory));
     *response.add_points() = PointPlanMessage(point, ladder);
   }
   const Machine& machine = service.ladder.machine();

@@ -13,6 +13,7 @@ v1::ModelPlan ModelPlanMessage(const Rung& rung) {
   if (rung.samples) message.set_samples(*rung.samples);
   if (rung.work) message.set_work(*rung.work);
   if (rung.statistical_error) message.set_statistical_error(*rung.statistical_error);
+  message.set_memory(rung.memory);
   if (rung.model_error) message.set_model_error(*rung.model_error);
   return message;
 }

@@ -12,11 +12,9 @@ namespace {
 
 bool Exists(const std::optional<double>& value) { return value && std::isfinite(*value); }
 
-// The model's error is relative to the first estimate. For other estimates it is known only if it
-// is 0.
 void SetModelError(const Answer& answer, bool first, storage::Estimate& record) {
-  if (!answer.model_error || (!first && *answer.model_error != 0)) return;
-  record.set_model_error(*answer.model_error * std::fabs(record.value()));
+  const std::optional<double> relative = answer.ModelErrorOf(record.name(), first);
+  if (relative) record.set_model_error(*relative * std::fabs(record.value()));
 }
 
 void AddEstimate(const Estimate& estimate, const Answer& answer, bool first,

@@ -161,16 +161,11 @@ void AddUnknownFields(const char* path, const google::protobuf::Message& message
   }
 }
 
-// Adds the core's violations, except of fields that already have a violation.
-void AddCoreViolations(const EnsembleSpec& spec, Violations& violations) {
-  std::set<std::string> known;
-  for (const FieldViolation& violation : violations) known.insert(violation.field);
+Violations CoreViolations(const EnsembleSpec& spec) {
   Violations found = ballpiston::Violations(spec);
   if (found.empty()) found = ToleranceViolations(spec);
-  for (FieldViolation& violation : found) {
-    violation.field = absl::StrCat("spec.", violation.field);
-    if (!known.contains(violation.field)) violations.push_back(std::move(violation));
-  }
+  if (found.empty()) found = TimeViolations(spec);
+  return found;
 }
 
 v1::EnsembleSpec::Experiment ExperimentMessage(const ExperimentKind* experiment) {
@@ -217,8 +212,31 @@ CheckedSpec CheckSpec(const v1::EnsembleSpec& message) {
   checked.spec.model = ModelOf(message.model(), checked.violations);
   checked.spec.precision = PrecisionOf(message.precision(), checked.violations);
   checked.spec.verify = message.verify();
-  AddCoreViolations(checked.spec, checked.violations);
+  AddViolations(CoreViolations(checked.spec), checked);
   return checked;
+}
+
+// Fields that already have a violation get no other one.
+void AddViolations(std::vector<FieldViolation> found, CheckedSpec& checked) {
+  std::set<std::string> known;
+  for (const FieldViolation& violation : checked.violations) known.insert(violation.field);
+  for (FieldViolation& violation : found) {
+    violation.field = absl::StrCat("spec.", violation.field);
+    if (!known.contains(violation.field)) checked.violations.push_back(std::move(violation));
+  }
+}
+
+void AddDefaults(v1::EnsembleSpec& message) {
+  const ExperimentKind* const experiment =
+      FindExperiment(static_cast<uint64_t>(message.experiment()));
+  if (experiment == nullptr) return;
+  for (const ParameterUse& use : experiment->parameters) {
+    if (!use.default_value) continue;
+    v1::Grid& grid = *message.mutable_grid();
+    const auto* field = FieldOf(grid, *use.parameter);
+    if (grid.GetReflection()->FieldSize(grid, field) > 0) continue;
+    grid.GetReflection()->AddDouble(&grid, field, *use.default_value);
+  }
 }
 
 absl::StatusOr<GasShape> ShapeOfText(const std::string& text) {

@@ -21,6 +21,13 @@ struct CheckedSpec {
 // version does not know is a violation, because it might change the answer.
 CheckedSpec CheckSpec(const v1::EnsembleSpec& message);
 
+// Adds violations that were found in checked.spec.
+void AddViolations(std::vector<FieldViolation> found, CheckedSpec& checked);
+
+// Writes the experiment's default values into empty lists of the grid, so that jobs, results and
+// hashes have them.
+void AddDefaults(v1::EnsembleSpec& message);
+
 // Parses the name of a shape. INVALID_ARGUMENT quotes at most the beginning of the text.
 absl::StatusOr<GasShape> ShapeOfText(const std::string& text);
 

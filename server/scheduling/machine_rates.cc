@@ -1,7 +1,10 @@
 #include "server/scheduling/machine_rates.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <span>
 
+#include "core/billiard/orbits.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
@@ -22,6 +25,27 @@ EnsembleSpec SpecOf(const ExperimentKind& experiment, Model model, double delta)
       .experiment = &experiment, .grid = {{kRho, {kSomeRho}}, {kDelta, {delta}}}, .model = model};
   if (&experiment == &kConditionalMeanFreeTime) spec.grid[kEpsilon] = {kSomeEpsilon};
   return spec;
+}
+
+// Counts the orbits for which an engine asks at first, and has none.
+class NoOrbits : public OrbitSource {
+ public:
+  size_t Start(std::span<OrbitStart> starts) override {
+    lanes_ = std::max(lanes_, starts.size());
+    return 0;
+  }
+  void Meet(std::span<Meeting>) override {}
+  bool Pause() override { return false; }
+  double lanes() const { return static_cast<double>(lanes_); }
+
+ private:
+  size_t lanes_ = 1;
+};
+
+double LanesOf(Engine engine, const PairGeometry& geometry) {
+  NoOrbits none;
+  StartOrbits(engine, geometry, none)->Advance();
+  return none.lanes();
 }
 
 // Seconds per sample: the smallest of three measurements, because other programs only add time.
@@ -64,6 +88,7 @@ EngineRate RateOf(Engine engine, uint64_t scale) {
   // On a busy machine the difference can even be negative.
   constexpr double kLeastShare = 0.01;
   rate.sample = std::max({returns - hits * rate.wall_hit, rate.collision, kLeastShare * returns});
+  rate.lanes = LanesOf(engine, large);
   return rate;
 }
 

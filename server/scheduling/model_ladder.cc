@@ -88,7 +88,18 @@ void ModelLadder::Measure() {
   const std::string scratch = store_.path() + ".rates";
   rates.stored_closed_form = SecondsToStore(scratch, Serve(closed));
   rates.stored_spectrum = SecondsToStore(scratch, Serve(spectrum));
-  machine_ = {rates, workers_};
+  machine_ = Unmeasured();
+  machine_.rates = rates;
+}
+
+Machine ModelLadder::Unmeasured() const {
+  const double memory =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  return {MachineRates(), workers_, memory};
+}
+
+std::vector<FieldViolation> ModelLadder::ViolationsHere(const EnsembleSpec& spec) {
+  return MachineViolations(spec, spec.target.budget_seconds ? machine() : Unmeasured());
 }
 
 PointRow ModelLadder::Serve(const EnsembleSpec& spec) {
@@ -112,7 +123,7 @@ OpenedPoint ModelLadder::Open(const EnsembleSpec& spec, size_t index) {
     return known;
   };
   // Only a choice with a budget needs the machine's own rates.
-  const Machine unmeasured = {MachineRates(), workers_};
+  const Machine unmeasured = Unmeasured();
   const Machine& rates = spec.target.budget_seconds ? machine() : unmeasured;
   std::optional<Answer> answer = ChooseAnswer(spec, PointAt(spec, index), rates, pilots);
   if (!answer) return *needed;

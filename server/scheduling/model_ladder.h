@@ -13,6 +13,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "core/model_choice/ladder.h"
 #include "server/mutex.h"
@@ -35,8 +36,12 @@ class ModelLadder : public PointOpener {
 
   const Machine& machine();
 
+  // What this machine cannot do (MachineViolations). Measures the rates if the spec has a budget.
+  std::vector<FieldViolation> ViolationsHere(const EnsembleSpec& spec);
+
  private:
   void Measure();
+  Machine Unmeasured() const;  // without rates
   // Does all the work that serves a point without samples. Returns its row.
   PointRow Serve(const EnsembleSpec& spec);
   std::optional<Pilot> Known(const PilotPlace& place);

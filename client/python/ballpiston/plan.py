@@ -41,6 +41,11 @@ class Plan:
         return float(self.message.time)
 
     @property
+    def memory(self) -> float:
+        """Bytes that the point needs that needs most, with all workers; an upper bound."""
+        return float(self.message.memory)
+
+    @property
     def models(self) -> list[str]:
         """The model that would answer, for each planned point."""
         return [_model(point.model) for point in self.message.points]

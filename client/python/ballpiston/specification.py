@@ -65,7 +65,7 @@ def specification(
         exponent: n of the outgoing law h^(n); 0 to 1000.
         cells: shape of a gas: 8, a chain of 8 cells, or "10x5", a lattice of 10 columns and 5 rows;
             at most 10^6 cells in all.
-        temperature: of a gas in equilibrium; 1e-120 to 1e120.
+        temperature: of a gas in equilibrium; 1e-120 to 1e120, by default 1.
         hot, cold: temperatures of the reservoirs; 1e-120 to 1e120, hot >= cold.
         samples: first hits, orbits or replicas of a gas, for each point; 1 to 10^12.
         collisions: ball-piston collisions for each point; 1 to 10^12.

@@ -42,7 +42,7 @@ constexpr char kLadders[] = R"(
       models { model: BILLIARD answers: true samples: 4.0123e8 work: 15 statistical_error: 1e-2
                model_error: 0 }
       model: BILLIARD reason: "the billiard itself" }
-    point_count: 2 work: 15.0123 time: 7.6 workers: 2
+    point_count: 2 work: 15.0123 time: 7.6 workers: 2 memory: 25200000
     rates { jump: 2e-8 })";
 
 v1::PlanEnsembleJobResponse Plan() { return FromText<v1::PlanEnsembleJobResponse>(kLadders); }
@@ -78,7 +78,7 @@ rho 0.529561128, delta 0.2, epsilon 0.1
  >  billiard  yes      4.0e+08    15 s      1.0e-02            0
  > billiard: the billiard itself
 
-2 points: 15 s of one core, 7.6 s with this server's 2 workers
+2 points: 15 s of one core, 7.6 s with this server's 2 workers, up to 26 MB of memory
 )");
 }
 
@@ -99,7 +99,7 @@ TEST(PlanTable, SaysThatNoModelAnswers) {
                                       R"(points { models { model: MARKOV } reason: "out of reach" }
                              point_count: 1 workers: 1)"));
   EXPECT_THAT(text, HasSubstr("\n   markov  no\n > none: out of reach\n"));
-  EXPECT_THAT(text, HasSubstr("\n1 point: 0 s of one core, 0 s with this server's 1 worker\n"));
+  EXPECT_THAT(text, HasSubstr("\n1 point: 0 s of one core, 0 s with this server's 1 worker, "));
 }
 
 v1::PlanEnsembleJobResponse PlanOfMany(int points) {

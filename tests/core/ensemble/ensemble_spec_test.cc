@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ensemble/point_experiment.h"
 #include "core/experiment/all_experiments.h"
 #include "core/geometry/pair_geometry.h"
 #include "tests/core/one_point_spec.h"
@@ -137,6 +138,45 @@ TEST(EnsembleSpec, TargetsInTheWrongUnitAreRejected) {
     spec.target = {.tolerance = tolerance};
     EXPECT_THAT(Violations(spec), ElementsAre(Names("target.tolerance", "0 < tolerance < 1")));
   }
+}
+
+// The replicas of this gas are cut short, so that a replica has hardly any collisions.
+EnsembleSpec RareCollisions(int64_t collisions) {
+  return SpecOf(&kGasConduction,
+                {{kRho, 0.53}, {kDelta, 1e-13}, {kCells, 2}, {kHot, 1.5}, {kCold, 0.5}},
+                {.collisions = collisions}, Model::kBilliard);
+}
+
+// The number of samples would not fit an integer.
+TEST(EnsembleSpec, CollisionsThatNeedTooManySamplesAreRejected) {
+  EXPECT_THAT(Violations(RareCollisions(1'000'000)),
+              ElementsAre(Names("target.collisions", "is 1000000, but a sample has")));
+  EnsembleSpec spec = RareCollisions(kMaxSamples);
+  spec.grid[kDelta] = {0.1, 1e-6};
+  const std::vector<FieldViolation> found = Violations(spec);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].field, "target.collisions");
+  const size_t permitted = found[0].description.find("permitted: 1 to ");
+  ASSERT_NE(permitted, std::string::npos) << found[0].description;
+  spec.target.collisions = std::stoll(found[0].description.substr(permitted + 16));
+  EXPECT_THAT(Violations(spec), IsEmpty());
+  EXPECT_LE(SamplesAskedFor(spec, PointAt(spec, 1)), static_cast<uint64_t>(kMaxSamples));
+  ++*spec.target.collisions;
+  EXPECT_EQ(Violations(spec).size(), 1u);
+}
+
+TEST(EnsembleSpec, TheNumberOfSamplesHasALimitForEveryTarget) {
+  const EnsembleSpec spec = RareCollisions(kMaxSamples);
+  EXPECT_EQ(SamplesAskedFor(spec, PointAt(spec, 0)), static_cast<uint64_t>(kMaxSamples));
+}
+
+TEST(EnsembleSpec, TheTemperatureOfAGasIsOneByDefault) {
+  EnsembleSpec spec = SpecOf(&kGasEquilibrium, PaperGas(&kGasEquilibrium, 0.1));
+  spec.grid[kTemperature] = {1};
+  const PointParameters given = PointAt(spec, 0);
+  spec.grid[kTemperature] = {};
+  EXPECT_THAT(Violations(spec), IsEmpty());
+  EXPECT_EQ(PointAt(spec, 0), given);
 }
 
 TEST(EnsembleSpec, DeltaWithTimesOutsideTheRangeOfDoubleIsRejected) {

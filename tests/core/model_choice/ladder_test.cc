@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
+#include "absl/strings/str_cat.h"
 #include "core/billiard/single_precision.h"
 #include "core/experiment/energy_relaxation.h"
 #include "tests/core/model_choice/questions.h"
@@ -513,6 +515,141 @@ TEST(Ladder, ReducedModelsRejectAToleranceBelowTheirError) {
   EXPECT_EQ(ToleranceViolations(spec).size(), 1u);
   spec.target = {};
   EXPECT_TRUE(ToleranceViolations(spec).empty());
+}
+
+// ---- what cannot be done ----
+
+EnsembleSpec Conduction(const GasShape& shape, Model model, const Target& target) {
+  EnsembleSpec spec = SpecOf(&kGasConduction, PaperGas(&kGasConduction, 0.1, shape), target);
+  spec.model = model;
+  return spec;
+}
+
+// A replica of a long gas is cut short and tells no error, so its job would never end.
+TEST(Ladder, AToleranceWithoutErrorsIsRejectedWithTheLongestGas) {
+  for (const Model model : {Model::kBilliard, Model::kBilliardReference, Model::kMarkov}) {
+    for (const GasShape& shape :
+         {GasShape{.columns = 20'000}, GasShape{.columns = 5000, .rows = 2, .is_lattice = true}}) {
+      EnsembleSpec spec = Conduction(shape, model, {.tolerance = 0.5});
+      const std::vector<FieldViolation> found = ToleranceViolations(spec);
+      ASSERT_EQ(found.size(), 1u) << Name(model);
+      EXPECT_EQ(found[0].field, "grid.cells[0]");
+      EXPECT_THAT(found[0].description, AllOf(HasSubstr(absl::StrCat("is ", Text(shape))),
+                                              HasSubstr("delta = 0.1"), HasSubstr(Name(model))));
+      const std::string& text = found[0].description;
+      GasShape longest = shape;
+      longest.columns = std::stoll(text.substr(text.find("up to ") + 6));
+      EXPECT_GT(longest.columns, 10);
+      spec.grid[kCells] = {CodeOf(longest)};
+      EXPECT_THAT(ToleranceViolations(spec), testing::IsEmpty());
+      ++longest.columns;
+      spec.grid[kCells] = {CodeOf(longest)};
+      EXPECT_EQ(ToleranceViolations(spec).size(), 1u);
+    }
+  }
+}
+
+TEST(Ladder, AReplicaThatIsCutShortHasNoPlannedError) {
+  const EnsembleSpec spec = Conduction({.columns = 20'000}, Model::kBilliard, {.samples = 64});
+  EXPECT_TRUE(ToleranceViolations(spec).empty());
+  const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked);
+  EXPECT_FALSE(ladder.Chosen().statistical_error);
+  EXPECT_THAT(ladder.Chosen().reason, HasSubstr("no errors"));
+}
+
+// At delta = 1e-9 a collision takes 10^18 wall hits.
+TEST(Ladder, ATimeThatNoMachineHasIsRejected) {
+  for (const Target& target :
+       {Target{}, Target{.samples = 1000}, Target{.collisions = 1'000'000}}) {
+    EnsembleSpec spec = Relaxation(1e-9, target);
+    spec.model = Model::kBilliard;
+    ASSERT_TRUE(Violations(spec).empty());
+    const std::vector<FieldViolation> found = TimeViolations(spec);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].field, target.samples      ? "target.samples"
+                              : target.collisions ? "target.collisions"
+                                                  : "target");
+    EXPECT_THAT(found[0].description,
+                AllOf(HasSubstr("delta = 1e-09"), HasSubstr("up to 1e+10 s")));
+    spec.grid[kDelta] = {0.01};
+    EXPECT_TRUE(TimeViolations(spec).empty());
+  }
+  EXPECT_TRUE(TimeViolations(Asked(&kEquilibrium, 1e-100)).empty());  // the closed form answers
+}
+
+Machine InLanes24() {
+  Machine machine = SomeMachine();
+  machine.rates.lanes.lanes = 24;
+  machine.workers = 2;
+  return machine;
+}
+
+// A budget that ends before the first block is complete would be exceeded.
+TEST(Ladder, ABudgetBelowTheFirstSamplesIsRejectedWithTheLeastBudget) {
+  EnsembleSpec spec = Asked(&kEquilibrium, 3e-5, {.budget_seconds = 0.3});
+  spec.model = Model::kBilliard;
+  const std::vector<FieldViolation> found = MachineViolations(spec, InLanes24());
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].field, "target.budget");
+  EXPECT_THAT(found[0].description, HasSubstr("is 0.3 s"));
+  const std::string& text = found[0].description;
+  const double least = std::stod(text.substr(text.find(">= ") + 3));
+  EXPECT_GT(least, 50);
+  EXPECT_LT(least, 500);
+  spec.target.budget_seconds = least;
+  EXPECT_TRUE(MachineViolations(spec, InLanes24()).empty());
+  const Ladder ladder = LadderFor(spec, PointAt(spec, 0), InLanes24(), MayNotBeAsked);
+  EXPECT_GE(*ladder.Chosen().samples, 1);
+  EXPECT_LE(*ladder.Chosen().work, 2 * least);
+  // Two points need twice the budget.
+  spec.grid[kDelta] = {3e-5, 4e-5};
+  EXPECT_EQ(MachineViolations(spec, InLanes24()).size(), 1u);
+  spec.target.budget_seconds = 2 * least;
+  EXPECT_TRUE(MachineViolations(spec, InLanes24()).empty());
+}
+
+TEST(Ladder, AShortBudgetIsAnsweredWithoutSamplesWherePossible) {
+  EXPECT_TRUE(
+      MachineViolations(Asked(&kEquilibrium, 3e-5, {.budget_seconds = 1e-6}), InLanes24()).empty());
+  const EnsembleSpec spec = Relaxation(1e-5, {.budget_seconds = 0.01});
+  EXPECT_TRUE(MachineViolations(spec, InLanes24()).empty());
+  EXPECT_EQ(Choice(spec, MayNotBeAsked, InLanes24())->model, Model::kSpectrum);
+}
+
+TEST(Ladder, AQuestionBeyondTheMemoryIsRejected) {
+  Machine machine = SomeMachine();
+  machine.memory = 1e8;
+  const GasShape large = {.columns = 1000, .rows = 1000, .is_lattice = true};
+  const EnsembleSpec spec = Conduction(large, Model::kBilliard, {.samples = 1});
+  const std::vector<FieldViolation> found = MachineViolations(spec, machine);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].field, "grid.cells[0]");
+  EXPECT_THAT(found[0].description,
+              AllOf(HasSubstr("is 1000x1000, which needs"), HasSubstr("up to 100 MB")));
+  machine.memory = 2e9;
+  EXPECT_TRUE(MachineViolations(spec, machine).empty());
+  const Ladder ladder = LadderFor(spec, PointAt(spec, 0), machine, MayNotBeAsked);
+  EXPECT_GT(ladder.Chosen().memory, 3e8);
+  EXPECT_LT(ladder.Chosen().memory, 2e9);
+}
+
+// The conductivity has the error of the limit, whichever estimate is the first.
+TEST(Ladder, TheLimitsErrorIsKnownForEveryEstimateThatHasOne) {
+  EnsembleSpec rate = Asked(&kGasEquilibrium, 0.01);
+  rate.model = Model::kSpectrum;
+  const Answer answer = *Choice(rate, MayNotBeAsked);
+  EXPECT_FALSE(answer.ModelErrorOf("exchange_rate", true));
+  const double error = BoundOfConductivity(Conductivity(0.01));
+  EXPECT_EQ(answer.ModelErrorOf("conductivity", false), error);
+  EXPECT_EQ(answer.ModelErrorOf("conductivity_ratio", false), error);
+  EnsembleSpec current = Asked(&kGasConduction, 0.01);
+  current.model = Model::kMarkov;
+  const Answer conduction = *Choice(current, MayNotBeAsked);
+  EXPECT_GT(*conduction.model_error, 0);
+  EXPECT_EQ(conduction.ModelErrorOf("conductivity", false), conduction.model_error);
+  EXPECT_FALSE(conduction.ModelErrorOf("temperature_ball", false));
+  current.model = Model::kBilliard;
+  EXPECT_EQ(Choice(current, MayNotBeAsked)->ModelErrorOf("temperature_ball", false), 0);
 }
 
 }  // namespace

@@ -154,6 +154,21 @@ TEST(Spec, ComesBackUnchanged) {
   EXPECT_EQ(SpecMessage(checked.spec).SerializeAsString(), message.SerializeAsString());
 }
 
+TEST(Spec, DefaultValuesAreWrittenIntoEmptyLists) {
+  v1::EnsembleSpec gas;
+  gas.set_experiment(v1::EnsembleSpec::GAS_EQUILIBRIUM);
+  gas.mutable_grid()->add_rho(0.53);
+  v1::EnsembleSpec given = gas;
+  AddDefaults(gas);
+  EXPECT_THAT(gas.grid().temperature(), testing::ElementsAre(1));
+  given.mutable_grid()->add_temperature(2);
+  AddDefaults(given);
+  EXPECT_THAT(given.grid().temperature(), testing::ElementsAre(2));
+  v1::EnsembleSpec pair = OneFirstHit();
+  AddDefaults(pair);
+  EXPECT_EQ(pair.SerializeAsString(), OneFirstHit().SerializeAsString());
+}
+
 TEST(Spec, EveryKindOfTargetComesBack) {
   for (const int kind : {0, 1, 2, 3}) {
     v1::EnsembleSpec message = OneFirstHit();
