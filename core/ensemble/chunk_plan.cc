@@ -33,7 +33,8 @@ ChunkPlan::ChunkPlan(uint64_t samples, Engine engine, double events_per_sample, 
   const NominalEvents& nominal = engine == Engine::kReference ? kByReference : kInLanes;
   seconds_per_event_ = nominal.seconds;
   constexpr double kMostInAChunk = 0x1p40;
-  const uint64_t last = SamplesOf(nominal.last_chunk, events_per_sample, kMostInAChunk);
+  const uint64_t last =
+      std::max(SamplesOf(nominal.last_chunk, events_per_sample, kMostInAChunk), together);
   base_ = std::max(SamplesOf(nominal.base, events_per_sample, kMostInAChunk),
                    std::min(kLeastJudged, last));
   doublings_ = static_cast<uint64_t>(std::countr_zero(last) - std::countr_zero(base_));

@@ -239,19 +239,20 @@ std::vector<std::vector<double>> ProbabilitiesOfTheLimit(const PointParameters& 
   return EnergyRelaxation(GeometryOf(point), point).ProbabilitiesOfLimit();
 }
 
-// The share of the orbits from epsilon in which ball and piston meet within the window. A slow
-// piston or ball meets its partner if it starts within reach, or comes there in time.
+// The share of the orbits from epsilon in which ball and piston meet in the first half of the
+// window. A slow piston or ball meets its partner if it starts within reach, or comes there in
+// time.
 double ShareThatMeets(const PointParameters& point) {
   const double epsilon = point[kEpsilon];
   const PairGeometry geometry = GeometryOf(point);
   const PairMeasures measures = Measures(geometry);
   const RestingVolumes reached = VolumesAtRest(geometry);
-  const double window = kWindowTimes * MeanFreeTimesOf(geometry).ball_piston;
+  const double time = kWindowTimes / 2 * MeanFreeTimesOf(geometry).ball_piston;
   const double by_piston =
-      reached.piston / measures.volume + std::sqrt(2 * epsilon) * window / (2 * geometry.stroke());
+      reached.piston / measures.volume + std::sqrt(2 * epsilon) * time / (2 * geometry.stroke());
   const double by_ball =
       reached.ball / measures.volume +
-      std::sqrt(1 - 2 * epsilon) * window * measures.eta / (std::numbers::pi * measures.cell_area);
+      std::sqrt(1 - 2 * epsilon) * time * measures.eta / (std::numbers::pi * measures.cell_area);
   return std::min({by_piston, by_ball, 1.0});
 }
 

@@ -50,7 +50,8 @@ double SamplingCost::SamplesIn(double seconds, int threads) const {
     const double middle = std::sqrt(enough * too_many);
     (Of(middle, threads) <= seconds ? enough : too_many) = middle;
   }
-  return std::floor(enough);
+  const double whole = std::floor(enough);
+  return Of(whole + 1, threads) <= seconds ? whole + 1 : whole;
 }
 
 SamplingCost CostOfSampling(const EnsembleSpec& spec, const PointParameters& point,

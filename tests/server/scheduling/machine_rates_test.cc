@@ -14,8 +14,11 @@ TEST(MachineRates, AreMeasured) {
   for (const EngineRate& engine : {rates.lanes, rates.lanes_single, rates.reference}) {
     EXPECT_GT(engine.wall_hit + engine.collision, 0);
     EXPECT_GT(engine.sample, 0);
+    EXPECT_GE(engine.lanes, 1);
     EXPECT_TRUE(std::isfinite(engine.wall_hit + engine.collision + engine.sample));
   }
+  EXPECT_EQ(rates.reference.lanes, 1);
+  EXPECT_GE(rates.lanes.lanes, 6);  // six vectors
 }
 
 }  // namespace
