@@ -69,6 +69,9 @@ class Question {
   double SecondsOf(Model model, double samples) const {
     return CostBy(model).Of(samples, machine_.workers);
   }
+  double ThreadsFor(Model model, double samples) const {
+    return CostBy(model).ThreadsFor(samples, machine_.workers);
+  }
   // Of processor time, until all workers have their first samples.
   double SecondsOfTheFirst(Model model) const { return CostBy(model).first * machine_.workers; }
   double MemoryBy(Model model) const { return MemoryOf(By(model), point_, machine_.workers); }
@@ -255,7 +258,7 @@ std::string CannotAnswer(Model model, const Question& question) {
 void PredictWithoutSamples(const Machine& machine, Rung& rung) {
   const bool closed = rung.model == Model::kClosedForm;
   rung.samples = 0;
-  rung.work = closed ? machine.rates.closed_form : machine.rates.spectrum;
+  rung.work = rung.time = closed ? machine.rates.closed_form : machine.rates.spectrum;
   rung.statistical_error = 0;
   if (closed) {
     rung.model_error = 0;
@@ -277,7 +280,10 @@ void PredictSamples(const Question& question, Rung& rung) {
     return;
   }
   const double work = question.SecondsOf(rung.model, *rung.samples);
-  if (std::isfinite(work)) rung.work = work;
+  if (std::isfinite(work)) {
+    rung.work = work;
+    rung.time = work / question.ThreadsFor(rung.model, *rung.samples);
+  }
   const double error = question.ErrorOf(rung.model, *rung.samples);
   if (std::isfinite(error)) rung.statistical_error = error;
 }

@@ -40,9 +40,10 @@ std::optional<Answer> ChooseAnswer(const EnsembleSpec& spec, const PointParamete
 struct Rung {
   Model model = Model::kBilliard;
   bool answers = false;
-  std::string reason;                       // why it cannot answer, or the source of its error
-  std::optional<double> samples;            // that the target requires
-  std::optional<double> work;               // seconds of processor time
+  std::string reason;             // why it cannot answer, or the source of its error
+  std::optional<double> samples;  // that the target requires
+  std::optional<double> work;     // seconds of processor time
+  double time = 0;                // seconds by the clock, if all workers have only this point
   std::optional<double> statistical_error;  // these two relative, of the first estimate
   std::optional<double> model_error;
   double memory = 0;  // bytes

@@ -33,8 +33,12 @@ constexpr double kSamplesOfABlock = 2;
 
 }  // namespace
 
+double SamplingCost::ThreadsFor(double samples, int threads) const {
+  return std::clamp(std::ceil(samples / lanes), 1.0, static_cast<double>(threads));
+}
+
 double SamplingCost::Of(double samples, int threads) const {
-  const double used = std::clamp(std::ceil(samples / lanes), 1.0, static_cast<double>(threads));
+  const double used = ThreadsFor(samples, threads);
   const double at_the_end = std::min(samples / used, lanes);
   const double in_full_lanes = std::max(samples - used * lanes, 0.0);
   const double flights = in_full_lanes + used * lanes * Longest(at_the_end, parts);
@@ -64,6 +68,7 @@ SamplingCost CostOfSampling(const EnsembleSpec& spec, const PointParameters& poi
   SamplingCost cost = {.sample = flight + work.collisions * rate.collision +
                                  work.starts * rate.sample + work.jumps * rates.jump};
   if (work.together > 0) {
+    cost.lanes = work.together;
     cost.first = work.together * cost.sample;
   } else if (model == Model::kMarkov) {
     cost.first = kSamplesOfABlock * cost.sample;

@@ -20,6 +20,8 @@ struct SamplingCost {
 
   // `samples` samples by up to `threads` threads.
   double Of(double samples, int threads) const;
+  // The number of threads that have samples then.
+  double ThreadsFor(double samples, int threads) const;
   // The number of samples that `threads` threads complete in this time; 0 if they complete none.
   double SamplesIn(double seconds, int threads) const;
 };

@@ -16,14 +16,15 @@ constexpr size_t kMostPoints = 1000;
 // In seconds of processor time.
 struct PlannedWork {
   double points = 0;
-  double pilots = 0;  // each is run once
-  double stored = 0;  // of the store's thread
+  double pilots = 0;   // each is run once
+  double stored = 0;   // of the store's thread
+  double longest = 0;  // by the clock, of a point with few samples, which do not occupy all workers
 
   double Computed() const { return points + pilots; }
   // Workers and the store's thread share the cores.
   double Time(int workers) const {
     const double cores = std::max(1.0, static_cast<double>(std::thread::hardware_concurrency()));
-    return std::max({Computed() / workers, stored, (Computed() + stored) / cores});
+    return std::max({Computed() / workers, stored, (Computed() + stored) / cores, longest});
   }
 };
 
@@ -50,6 +51,7 @@ absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
     if (ladder.pilot && !pilots.insert(*ladder.pilot).second) ladder.DropPilot();
     work.pilots += ladder.work_of_pilot;
     work.points += ladder.Chosen().work.value_or(0) - ladder.work_of_pilot;
+    work.longest = std::max(work.longest, ladder.Chosen().time);
     work.stored += SecondsToStore(ladder, service.ladder.machine().rates);
     response.set_memory(std::max(response.memory(), ladder.Chosen().memory));
     *response.add_points() = PointPlanMessage(point, ladder);

@@ -206,6 +206,8 @@ def _set_duration(duration: Any, seconds: float) -> None:
     if not abs(seconds) <= 1e9:
         raise ValueError(f"budget has to be a number of seconds up to 10^9, not {seconds!r}")
     nanoseconds = round(seconds * _NANOSECONDS)
+    if nanoseconds == 0 and seconds != 0:
+        raise ValueError(f"budget is {seconds!r} s; permitted: 1e-9 to 1e6 s")
     sign = 1 if nanoseconds >= 0 else -1
     whole, rest = divmod(abs(nanoseconds), _NANOSECONDS)
     duration.seconds, duration.nanos = sign * whole, sign * rest

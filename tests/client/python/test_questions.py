@@ -72,6 +72,11 @@ def test_a_seed_has_64_bits() -> None:
         ballpiston.specification("first-hit", seed=-1)
 
 
+def test_a_budget_below_a_nanosecond_is_named_as_it_was_given() -> None:
+    with pytest.raises(ValueError, match="budget is 1e-10 s; permitted: 1e-9"):
+        ballpiston.specification("first-hit", budget=1e-10)
+
+
 def test_only_tolerance_and_budget_stand_together() -> None:
     target = ballpiston.specification("first-hit", tolerance=0.01, budget=1.5).target
     assert (target.tolerance, target.budget.seconds, target.budget.nanos) == (0.01, 1, 500_000_000)

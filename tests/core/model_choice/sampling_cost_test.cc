@@ -171,6 +171,9 @@ TEST(SamplingCost, AFewSamplesCostAsMuchAsTheLongestInAllLanes) {
   EXPECT_NEAR(cost.Of(24, 1), 3.776 * 24 * cost.sample, 0.1 * cost.sample);  // 1 + ... + 1/24
   EXPECT_NEAR(cost.Of(1e6, 1) / (1e6 * cost.sample), 1, 1e-3);
   EXPECT_NEAR(cost.Of(1e6, 4) / (1e6 * cost.sample), 1, 1e-3);
+  EXPECT_EQ(cost.ThreadsFor(24, 8), 1);
+  EXPECT_EQ(cost.ThreadsFor(25, 8), 2);
+  EXPECT_EQ(cost.ThreadsFor(1e6, 8), 8);
   // Orbits of 40 collisions have nearly equal durations.
   const SamplingCost orbits = InLanes(Relaxation(1e-4));
   EXPECT_NEAR(orbits.Of(24, 1) / (24 * orbits.sample), 1.44, 0.02);
