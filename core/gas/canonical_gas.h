@@ -31,9 +31,9 @@
 namespace ballpiston {
 
 // A temperature that depends on x, in cells from the left end. T^(3/2) falls linearly from one end
-// to the other, as in a stationary gas whose conductivity grows as sqrt T. The cold part is a term
-// of its own, so that rounding never makes it negative. With equal temperatures the profile is
-// exactly flat.
+// to the other, as in a stationary gas whose conductivity grows as sqrt T. Relative errors are some
+// ulps everywhere, also next to a cold end. Equal temperatures give exactly the same temperature
+// everywhere.
 class TemperatureProfile {
  public:
   explicit TemperatureProfile(double everywhere) : TemperatureProfile(everywhere, everywhere, 1) {}
@@ -41,10 +41,9 @@ class TemperatureProfile {
   TemperatureProfile(double hot, double cold, double length)
       : hot_(hot), cold_(cold), length_(length), ratio_(cold / hot * std::sqrt(cold / hot)) {}
 
-  double At(double x) const {  // 0 <= x <= length
-    const double share = x / length_;
-    if (share >= 1) return cold_;  // the ratio may be 0 by underflow
-    return std::max(hot_ * Power((1 - share) + ratio_ * share, 2.0 / 3), cold_);
+  double At(double x) const {        // 0 <= x <= length
+    if (x >= length_) return cold_;  // the ratio may be 0 by underflow
+    return std::max(hot_ * Power(((length_ - x) + ratio_ * x) / length_, 2.0 / 3), cold_);
   }
 
  private:

@@ -194,6 +194,28 @@ TEST(ReferenceGas, BallsStayInTheirCellsAndBeforeTheirPistons) {
   }
 }
 
+// Balls and pistons overlap at most by the rounding of places, also after 10^5 events of each body,
+// when an ulp of the time since the start is far larger.
+TEST(ReferenceGas, LongRunsKeepBallsBeforeTheirPistons) {
+  constexpr double kSlack = 1e-13;
+  for (const GasEnds ends : {GasEnds::kPeriodic, GasEnds::kReservoirs}) {
+    const GasGeometry gas = GasAtShare(kPaperRho, 1, "1", ends);
+    const GasRandom random(77, 0, 0);
+    ReferenceGas moving(gas, GasInEquilibrium(gas, 1, 77, 0), ThermalWalls(gas, 1, 1, random));
+    RunTo(moving, 3e4);
+    int exchanges = 0;
+    while (exchanges < 500) {
+      const GasEvent event = moving.Step();
+      if (event.kind != EventKind::kBallPiston) continue;
+      ++exchanges;
+      const GasState state = moving.StateAt(event.time);
+      ASSERT_TRUE(InsideCell(gas.pair(), state.balls[0].position, kSlack));
+      ASSERT_GE(GapTo(gas, state, 0, event.direction), -kSlack);
+      ASSERT_LE(GapTo(gas, state, 0, event.direction), kSlack);
+    }
+  }
+}
+
 TEST(ReferenceGas, AGasAtRestHasAnInfiniteNextTime) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "2x2");
   EXPECT_EQ(GasFrom(gas, AtRest(gas)).NextTime(), std::numeric_limits<double>::infinity());
