@@ -30,8 +30,7 @@ constexpr double kFlightsOfAPeriod = 1024;
 // Nanoseconds.
 constexpr double kToPutABall = 200;
 constexpr double kToPutAPiston = 20;
-constexpr double kToFindAnArrival = 10;
-constexpr double kToMoveOrigin = 20;      // of a body
+constexpr double kToFindAnArrival = 50;
 constexpr double kToHandleAnEvent = 300;  // without the flights
 constexpr double kToFly = 10;             // one flight of one of many balls
 
@@ -127,13 +126,16 @@ void LaneGas::BeginWindow(double end) {
   std::swap(from_, to_);
   meetings_.clear();
   flown_balls_ = 0;
-  if (gas_.geometry.ends() == GasEnds::kPeriodic) return;
-  for (uint32_t piston = 0; piston < gas_.pistons.size(); ++piston) FindArrival(piston);
+  found_arrivals_ = gas_.geometry.ends() == GasEnds::kPeriodic ? gas_.pistons.size() : 0;
 }
 
-// First all balls fly to the end of the window. Then its events follow in the order of time; after
-// each event some balls fly again.
+// First all pistons and balls move to the end of the window. Then its events follow in the order of
+// time; after each event some balls fly again.
 bool LaneGas::FinishWindow(Pauses& pauses) {
+  if (!ForEachWithPauses(found_arrivals_, gas_.pistons.size(), kToFindAnArrival, pauses,
+                         [this](size_t i) { FindArrival(static_cast<uint32_t>(i)); })) {
+    return false;
+  }
   for (;;) {
     if (!FlyOrders(pauses)) return false;
     if (flown_balls_ < gas_.balls.size()) {

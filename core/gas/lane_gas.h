@@ -108,6 +108,7 @@ class LaneGas : public GasRun {
   size_t flights_ = 0;               // that these balls fly at a time
   bool orders_are_new_ = false;      // their balls are still in from_
   size_t flown_balls_ = 0;           // in this window, or on their way
+  size_t found_arrivals_ = 0;        // pistons whose arrivals in this window are found
   bool is_in_window_ = false;
   double now_ = 0;  // all events before this time are done
   double end_ = 0;  // of the window

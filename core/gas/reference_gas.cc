@@ -67,8 +67,12 @@ GasEvent ReferenceGas::Step() {
   return event;
 }
 
+// Without the last bits of the present time, so that the sum of all moves is exact.
 void ReferenceGas::MoveOrigin() {
-  const double later = queue_.First().time;
+  constexpr int kBits = 20;
+  int exponent;
+  const double mantissa = std::frexp(queue_.First().time, &exponent);
+  const double later = std::ldexp(std::floor(std::ldexp(mantissa, kBits)), exponent - kBits);
   for (Ball& ball : balls_) {
     ball.time -= later;
     ball.wall_time -= later;

@@ -6,8 +6,8 @@
 // Properties, each with a test of its name:
 //   1. OneBallAndOnePistonMoveLikeThePair.  2. ReversedVelocitiesRetraceTheirWay.
 //   3. EnergyIsConserved.
-//   4. LongRunsKeepBallsBeforeTheirPistons: inside, times count from an origin that moves on, so
-//      that the rounding of times does not grow with the time since the start.
+//   4. LongRunsKeepTheDigitsOfTheirTimes: inside, times count from an origin that moves on, so that
+//      their rounding does not grow with the time since the start.
 //
 // Times are in cells over unit speed. One object is one gas. Not thread-safe.
 #ifndef BALLPISTON_CORE_GAS_REFERENCE_GAS_H_
