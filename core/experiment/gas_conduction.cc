@@ -18,7 +18,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -72,33 +71,77 @@ GasTimes TimesOfConduction(Model model, const GasGeometry& geometry, double cold
       .relax = share * kRelaxTimes * time, .measure = share * kMeasureTimes * time, .share = share};
 }
 
-// Bodies of about the same x, whose mean temperature is one point of the profile.
-struct Place {
-  double position = 0;
-  std::vector<size_t> bodies = {};
-};
+// The places of the temperature profile: a place has the bodies of about the same x. Balls are at
+// the middles of cells, pistons between cells. In a long gas several columns share a place, and of
+// the pistons only the outermost ones have a place. Places are numbered from the hot end.
+class ProfilePlaces {
+ public:
+  explicit ProfilePlaces(const GasGeometry& geometry)
+      : columns_(geometry.shape().columns),
+        rows_(geometry.shape().rows),
+        each_((columns_ + kMostColumnsApart - 1) / kMostColumnsApart) {
+    for (int64_t edge = 0; edge <= columns_; ++edge) {
+      if (HasPlace(edge)) At(OfEdge(edge)) = static_cast<double>(edge);
+    }
+    for (int64_t first = 0; first < columns_; first += each_) {
+      At(OfColumn(first)) = static_cast<double>(first + std::min(first + each_, columns_)) / 2;
+    }
+  }
 
-// Balls are at the middles of cells, pistons between cells. In a long gas several columns share a
-// place, and only the outermost pistons have a place.
-std::vector<Place> PlacesOf(const GasGeometry& geometry) {
-  const int64_t columns = geometry.shape().columns;
-  const int64_t each = (columns + kMostColumnsApart - 1) / kMostColumnsApart;
-  std::map<double, std::vector<size_t>> bodies;  // by position
-  for (int64_t ball = 0; ball < geometry.balls(); ++ball) {
-    const int64_t first = ball % columns / each * each, last = std::min(first + each, columns);
-    bodies[static_cast<double>(first + last) / 2].push_back(static_cast<size_t>(ball));
+  size_t size() const { return positions_.size(); }
+  double Position(size_t place) const { return positions_[place]; }
+
+  // The mean temperature at each place.
+  std::vector<double> Temperatures(const GasMeter& meter) const {
+    std::vector<Mean> means(size());
+    size_t body = 0;
+    for (int64_t row = 0; row < rows_; ++row) {
+      for (int64_t column = 0; column < columns_; ++column) {
+        means[OfColumn(column)].Add(meter.MeanEnergy(body++));
+      }
+    }
+    for (int64_t row = 0; row < rows_; ++row) {
+      for (int64_t edge = 0; edge <= columns_; ++edge, ++body) {
+        if (HasPlace(edge)) means[OfEdge(edge)].Add(2 * meter.MeanEnergy(body));
+      }
+    }
+    std::vector<double> temperatures;
+    for (const Mean& mean : means) temperatures.push_back(mean.sum / mean.count);
+    return temperatures;
   }
-  for (int64_t piston = 0; piston < geometry.pistons(); ++piston) {
-    if (!geometry.IsAlongX(piston)) continue;
-    const double position = geometry.PositionOfPiston(piston);
-    const bool is_outermost = position == 0 || position == static_cast<double>(columns);
-    if (each > 1 && !is_outermost) continue;
-    bodies[position].push_back(static_cast<size_t>(geometry.balls() + piston));
+
+ private:
+  struct Mean {
+    double sum = 0;
+    double count = 0;
+
+    void Add(double value) {
+      sum += value;
+      ++count;
+    }
+  };
+
+  bool HasPlace(int64_t edge) const { return each_ == 1 || edge == 0 || edge == columns_; }
+  // Places alternate between edges and columns, or have the columns between the two outermost
+  // edges.
+  size_t OfEdge(int64_t edge) const {
+    if (each_ == 1) return static_cast<size_t>(2 * edge);
+    return edge == 0 ? 0 : OfColumn(columns_ - 1) + 1;
   }
-  std::vector<Place> places;
-  for (auto& [position, there] : bodies) places.push_back({position, std::move(there)});
-  return places;
-}
+  size_t OfColumn(int64_t column) const {
+    return static_cast<size_t>(each_ == 1 ? 2 * column + 1 : column / each_ + 1);
+  }
+
+  double& At(size_t place) {
+    if (place >= positions_.size()) positions_.resize(place + 1);
+    return positions_[place];
+  }
+
+  int64_t columns_;
+  int64_t rows_;
+  int64_t each_;  // columns of a place
+  std::vector<double> positions_;
+};
 
 class GasConduction : public GasExperiment {
  public:
@@ -108,11 +151,9 @@ class GasConduction : public GasExperiment {
         temperature_(MeanTemperature(point)),
         hot_(point[kHot] / temperature_),
         cold_(point[kCold] / temperature_),
-        places_(PlacesOf(geometry)) {}
+        places_(geometry) {}
 
-  GasState Draw(CounterRandom& random) const override {
-    return DrawGas(geometry(), TemperatureProfile(hot_, cold_, Columns()), random);
-  }
+  TemperatureProfile TemperaturesAtStart() const override { return {hot_, cold_, Columns()}; }
 
   ThermalWalls WallsOf(const GasRandom& random) const override {
     return {geometry(), hot_, cold_, random};
@@ -123,9 +164,8 @@ class GasConduction : public GasExperiment {
     const double contacts_along_x = 2 * static_cast<double>(geometry().balls());
     result.batch_means[0].Add(meter.carried(), contacts_along_x * meter.duration());
     AddMeans(meter, 1, result);
-    for (size_t i = 0; i < places_.size(); ++i) {
-      result.moments[i].Add(TemperatureAt(places_[i], meter));
-    }
+    const std::vector<double> temperatures = places_.Temperatures(meter);
+    for (size_t i = 0; i < temperatures.size(); ++i) result.moments[i].Add(temperatures[i]);
   }
 
   BlockResult EmptyResult() const override {
@@ -174,20 +214,12 @@ class GasConduction : public GasExperiment {
     return Columns() * std::sqrt(temperature_) / fall;
   }
 
-  double TemperatureAt(const Place& place, const GasMeter& meter) const {
-    double sum = 0;
-    for (const size_t body : place.bodies) {
-      sum += (body < meter.balls() ? 1 : 2) * meter.MeanEnergy(body);
-    }
-    return sum / static_cast<double>(place.bodies.size());
-  }
-
   Curve Profile(const BlockResult& merged) const {
     Curve curve = {.name = "temperature_profile", .axis = CurveAxis::kPosition};
     for (size_t i = 0; i < places_.size(); ++i) {
       const Moments& measured = merged.moments[i];
       curve.points.push_back(
-          {.at = places_[i].position,
+          {.at = places_.Position(i),
            .value = temperature_ * measured.mean,
            .standard_error = Told(merged, measured.StandardError(), temperature_)});
     }
@@ -197,7 +229,7 @@ class GasConduction : public GasExperiment {
   double temperature_;  // the mean; all other temperatures are in units of it
   double hot_;
   double cold_;
-  std::vector<Place> places_;
+  ProfilePlaces places_;
 };
 
 GasGeometry OpenGasOf(const PointParameters& point) {

@@ -118,9 +118,7 @@ class GasEquilibrium : public GasExperiment {
         exact_rate_(GasExchangeRate(geometry, temperature_)),
         aims_at_conductivity_(AimsAtConductivity(spec)) {}
 
-  GasState Draw(CounterRandom& random) const override {
-    return DrawGas(geometry(), TemperatureProfile(1), random);
-  }
+  TemperatureProfile TemperaturesAtStart() const override { return TemperatureProfile(1); }
 
   std::unique_ptr<CurrentMeter> CurrentOf(const GasState& start) const override {
     if (!MeasuresConductivity(geometry())) return nullptr;
@@ -176,10 +174,11 @@ class GasEquilibrium : public GasExperiment {
   }
 
   // Scales at the gas's temperature: of times, of conductivities, and of squared currents of a
-  // cell.
+  // cell. The currents' energies are in units of the temperature, because its cube may exceed a
+  // double.
   double Step() const { return times().measure / kCurrentSteps / std::sqrt(temperature_); }
   double ConductivityScale() const { return std::sqrt(temperature_); }
-  double AutocorrelationScale() const { return temperature_ * temperature_ * temperature_; }
+  double AutocorrelationScale() const { return temperature_; }
 
   Estimate ExchangeRate(const BlockResult& merged) const {
     return MeanBeside(exact_rate_, "exchange_rate", merged, 0, std::sqrt(temperature_));

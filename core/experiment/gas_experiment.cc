@@ -26,6 +26,18 @@ struct OpenBlock {
   uint64_t done = 0;
 };
 
+// The draw of a replica's start.
+struct StartDraw {
+  StartDraw(const GasExperiment& experiment, const GasRandom& random)
+      : random(random),
+        of_start(random.OfStart()),
+        draw(experiment.geometry(), experiment.TemperaturesAtStart(), of_start) {}
+
+  GasRandom random;
+  CounterRandom of_start;
+  GasDraw draw;
+};
+
 // Computes several replicas at a time, of several blocks if these are small, to fill the lanes.
 class GasBlocks : public BlockRun {
  public:
@@ -33,9 +45,12 @@ class GasBlocks : public BlockRun {
       : experiment_(experiment), queue_(queue) {}
 
   bool Advance() override {
+    Pauses pauses([this] { return queue_.Pause(); });
     do {
-      if (run_ == nullptr && !Begin()) return true;
-      AdvanceSlice();
+      if (run_ == nullptr && !Begin(pauses)) return false;
+      if (run_ == nullptr) return true;
+      if (!RunToTheEnd(pauses)) return false;
+      Finish();
     } while (!queue_.Pause());
     return false;
   }
@@ -44,28 +59,37 @@ class GasBlocks : public BlockRun {
   // The lanes need this many balls to be full. The other engines run one replica at a time, because
   // more replicas would not make them faster.
   int64_t BallsTogether() const {
-    constexpr int64_t kOfLanes = 1536;
+    constexpr int64_t kOfLanes = 192;
     return experiment_.gas_engine() == GasEngine::kLanes ? kOfLanes : 1;
   }
 
-  static constexpr double kSecondsOfASlice = 0.01;
-
-  // Takes replicas until there are enough balls. Returns false if there are none.
-  bool Begin() {
-    std::vector<GasStart> starts;
+  // A run takes at most a quarter of the replicas of its chunk, so that several threads share even
+  // a small chunk.
+  size_t MostTogether(const Block& block) const {
     const int64_t each = experiment_.geometry().balls();
-    for (int64_t balls = 0; balls < BallsTogether() && HasNext(); balls += each) {
-      starts.push_back(Start());
+    const int64_t for_lanes = (BallsTogether() + each - 1) / each;
+    const uint64_t quarter = experiment_.plan().SamplesIn(block.chunk) / 4;
+    return std::clamp<size_t>(quarter, 1, static_cast<size_t>(for_lanes));
+  }
+
+  // Starts replicas until there are enough, if the queue has any. Returns false at a pause.
+  bool Begin(Pauses& pauses) {
+    while (draw_ != nullptr || (!IsFull() && HasNext())) {
+      if (draw_ == nullptr) BeginDraw();
+      if (!draw_->draw.Advance(pauses)) return false;
+      FinishDraw();
+      if (pauses.After(kToAddABall * static_cast<double>(experiment_.geometry().balls()))) {
+        return false;
+      }
     }
-    if (starts.empty()) return false;
-    const double seconds = experiment_.plan().SecondsFor(static_cast<double>(starts.size()));
-    slice_ = experiment_.times().Total() / std::ceil(seconds / kSecondsOfASlice);
-    time_ = 0;
+    if (starts_.empty()) return true;
     is_measuring_ = false;
     run_ = StartGases(experiment_.gas_engine(), experiment_.geometry(), experiment_.exchange_rate(),
-                      std::move(starts));
+                      std::exchange(starts_, {}));
     return true;
   }
+
+  bool IsFull() const { return !starts_.empty() && starts_.size() >= most_together_; }
 
   bool HasNext() {
     if (!open_.empty() && open_.back()->meters.size() < open_.back()->block.samples) return true;
@@ -74,34 +98,42 @@ class GasBlocks : public BlockRun {
     return block.has_value();
   }
 
-  GasStart Start() {
+  // The first replica determines the number of replicas in the run.
+  void BeginDraw() {
+    const OpenBlock& open = *open_.back();
+    if (starts_.empty()) most_together_ = MostTogether(open.block);
+    draw_ = std::make_unique<StartDraw>(
+        experiment_, experiment_.RandomOf(open.block.first + open.meters.size()));
+  }
+
+  void FinishDraw() {
     OpenBlock& open = *open_.back();
-    const GasRandom random = experiment_.RandomOf(open.block.first + open.meters.size());
-    CounterRandom of_start = random.OfStart();
-    GasState state = experiment_.Draw(of_start);
+    GasState state = draw_->draw.Take();
     open.meters.push_back(std::make_unique<GasMeter>(experiment_.geometry(), state));
     GasMeter* const meter = open.meters.back().get();
     meter->MeasureCurrent(experiment_.CurrentOf(state));
     open.energies.push_back(meter->TotalEnergy());
     running_.push_back(meter);
-    return {std::move(state), experiment_.WallsOf(random), random, meter};
+    const GasRandom& random = draw_->random;
+    starts_.push_back({std::move(state), experiment_.WallsOf(random), random, meter});
+    draw_.reset();
   }
 
-  void AdvanceSlice() {
+  // Returns false at a pause.
+  bool RunToTheEnd(Pauses& pauses) {
     const GasTimes& times = experiment_.times();
-    const double end = is_measuring_ ? times.Total() : times.relax;
-    time_ = std::min(time_ + slice_, end);
-    run_->AdvanceTo(time_);
-    if (time_ < end) return;
-    if (is_measuring_) return Finish();
-    is_measuring_ = true;
-    for (GasMeter* const meter : running_) meter->Begin(time_);
+    if (!is_measuring_) {
+      if (!run_->AdvanceTo(times.relax, pauses)) return false;
+      for (GasMeter* const meter : running_) meter->Begin(times.relax);
+      is_measuring_ = true;
+    }
+    return run_->AdvanceTo(times.Total(), pauses);
   }
 
   // Replicas were started in the order of their blocks.
   void Finish() {
     run_.reset();
-    for (GasMeter* const meter : running_) meter->End(time_);
+    for (GasMeter* const meter : running_) meter->End(experiment_.times().Total());
     size_t left = std::exchange(running_, {}).size();
     for (const auto& open : open_) {
       const uint64_t more = std::min<uint64_t>(left, open->meters.size() - open->done);
@@ -133,11 +165,14 @@ class GasBlocks : public BlockRun {
   const GasExperiment& experiment_;
   BlockQueue& queue_;
   std::vector<std::unique_ptr<OpenBlock>> open_;
+  std::unique_ptr<StartDraw> draw_;  // of the next replica, if begun
+  std::vector<GasStart> starts_;
+  size_t most_together_ = 0;
   std::vector<GasMeter*> running_;
   std::unique_ptr<GasRun> run_;
-  double slice_ = 0;
-  double time_ = 0;
   bool is_measuring_ = false;
+
+  static constexpr double kToAddABall = 50;  // and its pistons to a meter; nanoseconds
 };
 
 // Hits of the outermost pistons at their thermal walls per unit of time at temperature 1: every

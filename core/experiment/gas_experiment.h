@@ -11,6 +11,7 @@
 
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
+#include "core/gas/canonical_gas.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_meter.h"
@@ -51,7 +52,7 @@ class GasExperiment : public PointExperiment {
   // At temperature 1.
   double exchange_rate() const { return exchange_rate_; }
   GasRandom RandomOf(uint64_t sample) const { return {random().seed, random().stream, sample}; }
-  virtual GasState Draw(CounterRandom& random) const = 0;
+  virtual TemperatureProfile TemperaturesAtStart() const = 0;
   virtual ThermalWalls WallsOf(const GasRandom&) const { return {}; }
   // A meter of the current of a replica with this start; null if the current is not measured.
   virtual std::unique_ptr<CurrentMeter> CurrentOf(const GasState&) const { return nullptr; }

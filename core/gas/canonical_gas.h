@@ -15,29 +15,85 @@
 #ifndef BALLPISTON_CORE_GAS_CANONICAL_GAS_H_
 #define BALLPISTON_CORE_GAS_CANONICAL_GAS_H_
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "core/arithmetic/elementary_functions.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_state.h"
+#include "core/gas/pauses.h"
 #include "core/sampling/counter_random.h"
 
 namespace ballpiston {
 
 // A temperature that depends on x, in cells from the left end. T^(3/2) falls linearly from one end
-// to the other, as in a stationary gas whose conductivity grows as sqrt T.
+// to the other, as in a stationary gas whose conductivity grows as sqrt T. Relative errors are some
+// ulps everywhere, also next to a cold end. Equal temperatures give exactly the same temperature
+// everywhere.
 class TemperatureProfile {
  public:
   explicit TemperatureProfile(double everywhere) : TemperatureProfile(everywhere, everywhere, 1) {}
   // hot >= cold > 0
   TemperatureProfile(double hot, double cold, double length)
-      : hot_(hot), slope_((1 - cold / hot * std::sqrt(cold / hot)) / length) {}
+      : hot_(hot), cold_(cold), length_(length), ratio_(cold / hot * std::sqrt(cold / hot)) {}
 
-  double At(double x) const { return hot_ * Power(1 - slope_ * x, 2.0 / 3); }  // 0 <= x <= length
+  double At(double x) const {        // 0 <= x <= length
+    if (x >= length_) return cold_;  // the ratio may be 0 by underflow
+    return std::max(hot_ * Power(((length_ - x) + ratio_ * x) / length_, 2.0 / 3), cold_);
+  }
 
  private:
   double hot_;
-  double slope_;  // of (T/hot)^(3/2), downward
+  double cold_;
+  double length_;
+  double ratio_;  // (cold/hot)^(3/2)
+};
+
+// Draws a gas, with pauses. A gas of 10^6 cells takes a second.
+class GasDraw {
+ public:
+  // The geometry and the random numbers must outlive the draw.
+  GasDraw(const GasGeometry& geometry, const TemperatureProfile& temperature,
+          CounterRandom& random);
+
+  // Returns true when the gas is complete, and false at a pause; then to be called again.
+  bool Advance(Pauses& pauses);
+  GasState Take() { return std::move(state_); }  // of a complete gas, once
+
+ private:
+  struct Contact {
+    int64_t ball;
+    Direction direction;
+  };
+
+  GasBall& BallAt(int64_t i) { return state_.balls[static_cast<size_t>(i)]; }
+  GasPiston& PistonAt(int64_t i) { return state_.pistons[static_cast<size_t>(i)]; }
+
+  bool DrawPlaces(Pauses& pauses);
+  void DrawPlace(GasBall& ball);
+  void DrawPlace(GasPiston& piston);
+  bool Separate(Pauses& pauses);
+  bool IsBeyond(const Contact& contact);
+  void LookForWrong(int64_t ball);
+  void DrawAgain(const Contact& contact);
+  void BeginRound();
+  bool DrawVelocities(Pauses& pauses);
+
+  const GasGeometry& geometry_;
+  TemperatureProfile temperature_;
+  CounterRandom& random_;
+  GasState state_;
+  // Of a round of the rejection: the balls that may be beyond a piston; the contacts in which they
+  // are, which are then drawn again; and the balls that may be beyond a piston after that.
+  std::vector<int64_t> suspects_, next_suspects_;
+  std::vector<Contact> wrong_;
+  // The numbers of steps that are done, in the order of the draw.
+  size_t placed_balls_ = 0, placed_pistons_ = 0, looked_at_ = 0, drawn_again_ = 0;
+  size_t moving_balls_ = 0, moving_pistons_ = 0;
 };
 
 GasState DrawGas(const GasGeometry& geometry, const TemperatureProfile& temperature,

@@ -13,10 +13,12 @@ namespace ballpiston {
 class EventQueue {
  public:
   // All bodies at infinity.
-  explicit EventQueue(size_t bodies) : heap_(bodies), place_(bodies) {
-    for (size_t i = 0; i < bodies; ++i) {
-      heap_[i] = {std::numeric_limits<double>::infinity(), static_cast<uint32_t>(i)};
-      place_[i] = static_cast<uint32_t>(i);
+  explicit EventQueue(size_t bodies) {
+    heap_.reserve(bodies);
+    place_.reserve(bodies);
+    for (uint32_t i = 0; i < bodies; ++i) {
+      heap_.push_back({std::numeric_limits<double>::infinity(), i});
+      place_.push_back(i);
     }
   }
 
@@ -30,6 +32,12 @@ class EventQueue {
   };
 
   const Entry& First() const { return heap_[0]; }
+
+  // Counts all times from a later origin. Times that become equal by rounding may come in any
+  // order.
+  void MoveOrigin(double later) {
+    for (Entry& entry : heap_) entry.time -= later;
+  }
 
   void Set(size_t body, double time) {
     const Entry entry = {time, static_cast<uint32_t>(body)};

@@ -11,74 +11,104 @@
 namespace ballpiston {
 namespace {
 
+// Nanoseconds.
+constexpr double kOfAnEvent = 300;
+constexpr double kToAllocateABody = 20;
+
+double BodiesOf(const GasGeometry& geometry) {
+  return static_cast<double>(geometry.balls() + geometry.pistons());
+}
+
 class ReferenceRun : public GasRun {
  public:
-  ReferenceRun(const GasGeometry& geometry, std::vector<GasStart> replicas) {
-    for (GasStart& start : replicas) {
-      replicas_.push_back(
-          {ReferenceGas(geometry, start.state, std::move(start.walls)), start.meter});
-    }
+  ReferenceRun(const GasGeometry& geometry, std::vector<GasStart> replicas)
+      : geometry_(geometry), starts_(std::move(replicas)) {
+    gases_.reserve(starts_.size());
   }
 
-  void AdvanceTo(double time) override {
-    for (Replica& replica : replicas_) {
-      while (replica.gas.NextTime() <= time) Record(replica);
+  bool AdvanceTo(double time, Pauses& pauses) override {
+    if (!Begin(pauses)) return false;
+    for (size_t i = 0; i < gases_.size(); ++i) {
+      while (gases_[i].NextTime() <= time) {
+        Record(gases_[i], *starts_[i].meter);
+        if (pauses.After(kOfAnEvent)) return false;
+      }
     }
+    return true;
   }
 
  private:
-  struct Replica {
-    ReferenceGas gas;
-    GasMeter* meter;
-  };
+  bool Begin(Pauses& pauses) {
+    for (; begun_ < starts_.size(); ++begun_) {
+      GasStart& start = starts_[begun_];
+      if (gases_.size() == begun_) {
+        gases_.emplace_back(geometry_, std::move(start.walls));
+        if (pauses.After(kToAllocateABody * BodiesOf(geometry_))) return false;
+      }
+      if (!gases_.back().Begin(start.state, pauses)) return false;
+      start.state = {};
+    }
+    return true;
+  }
 
-  void Record(Replica& replica) {
-    ReferenceGas& gas = replica.gas;
+  static void Record(ReferenceGas& gas, GasMeter& meter) {
     const GasEvent event = gas.Step();
     if (event.kind == EventKind::kBallPiston) {
-      replica.meter->Exchange({event.time, event.ball, event.piston, event.direction,
-                               gas.BallEnergy(event.ball), gas.PistonEnergy(event.piston)});
+      meter.Exchange({event.time, event.ball, event.piston, event.direction,
+                      gas.BallEnergy(event.ball), gas.PistonEnergy(event.piston)});
     } else if (event.kind == EventKind::kPistonWall) {
-      replica.meter->SetPiston(event.time, event.piston, gas.PistonEnergy(event.piston));
+      meter.SetPiston(event.time, event.piston, gas.PistonEnergy(event.piston));
     } else if (event.kind == EventKind::kEscape) {
-      replica.meter->CountEscape();
+      meter.CountEscape();
     }
   }
 
-  std::vector<Replica> replicas_;
+  GasGeometry geometry_;
+  std::vector<GasStart> starts_;
+  size_t begun_ = 0;  // gases that are complete
+  std::vector<ReferenceGas> gases_;
 };
 
 class JumpRun : public GasRun {
  public:
-  JumpRun(const GasGeometry& geometry, double exchange_rate, std::vector<GasStart> replicas) {
-    const double density = std::sqrt(std::numbers::pi) * exchange_rate;
-    for (GasStart& start : replicas) {
-      SetOutermost(geometry, start);
-      const CounterRandom random = start.random.OfJumps();
-      replicas_.push_back(
-          {JumpGas(geometry, density, start.state, std::move(start.walls), random), start.meter});
-    }
+  JumpRun(const GasGeometry& geometry, double exchange_rate, std::vector<GasStart> replicas)
+      : geometry_(geometry),
+        density_(std::sqrt(std::numbers::pi) * exchange_rate),
+        starts_(std::move(replicas)) {
+    gases_.reserve(starts_.size());
   }
 
-  void AdvanceTo(double time) override {
-    for (Replica& replica : replicas_) replica.gas.AdvanceTo(time, *replica.meter);
+  bool AdvanceTo(double time, Pauses& pauses) override {
+    while (gases_.size() < starts_.size()) {
+      Begin(starts_[gases_.size()]);
+      if (pauses.After(kToAllocateABody * BodiesOf(geometry_))) return false;
+    }
+    for (size_t i = 0; i < gases_.size(); ++i) {
+      if (!gases_[i].AdvanceTo(time, *starts_[i].meter, pauses)) return false;
+    }
+    return true;
   }
 
  private:
-  struct Replica {
-    JumpGas gas;
-    GasMeter* meter;
-  };
+  void Begin(GasStart& start) {
+    SetOutermost(start);
+    gases_.emplace_back(geometry_, density_, start.state, std::move(start.walls),
+                        start.random.OfJumps());
+    start.state = {};
+  }
 
   // The outermost pistons have their mean energy from the start.
-  static void SetOutermost(const GasGeometry& geometry, const GasStart& start) {
-    for (int64_t piston = 0; piston < geometry.pistons(); ++piston) {
+  void SetOutermost(const GasStart& start) const {
+    for (int64_t piston = 0; piston < geometry_.pistons(); ++piston) {
       if (!start.walls.Has(piston)) continue;
       start.meter->SetPiston(0, piston, start.walls.TemperatureAt(piston) / 2);
     }
   }
 
-  std::vector<Replica> replicas_;
+  GasGeometry geometry_;
+  double density_;
+  std::vector<GasStart> starts_;
+  std::vector<JumpGas> gases_;
 };
 
 }  // namespace

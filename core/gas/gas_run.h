@@ -4,7 +4,8 @@
 //   kLanes      the same gas, with the flights of many balls in vector lanes (lane_gas.h).
 //   kJumps      the limit of rare collisions: a jump process of the energies (jump_gas.h).
 //
-// A replica's numbers depend only on its start, not on the times of the calls or on other replicas.
+// A replica's numbers depend only on its start, not on the times of the calls, on pauses or on
+// other replicas. The replicas are prepared in the first call of AdvanceTo.
 #ifndef BALLPISTON_CORE_GAS_GAS_RUN_H_
 #define BALLPISTON_CORE_GAS_GAS_RUN_H_
 
@@ -15,6 +16,7 @@
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_meter.h"
 #include "core/gas/gas_state.h"
+#include "core/gas/pauses.h"
 #include "core/gas/thermal_walls.h"
 
 namespace ballpiston {
@@ -32,8 +34,13 @@ struct GasStart {
 class GasRun {
  public:
   virtual ~GasRun() = default;
-  // Moves all replicas to `time`, which must not be less than in the previous call.
-  virtual void AdvanceTo(double time) = 0;
+  // Moves all replicas to `time`, which must not be less than in the previous call. Returns false
+  // at a pause; then it must be called again with the same time.
+  virtual bool AdvanceTo(double time, Pauses& pauses) = 0;
+  void AdvanceTo(double time) {
+    Pauses never;
+    AdvanceTo(time, never);
+  }
 };
 
 // `exchange_rate` is that of the gas at temperature 1 (gas_exchange_rate.h). It determines the

@@ -16,6 +16,8 @@ namespace {
 constexpr double kBallsRatePerPiston = 1 / std::numbers::pi;
 constexpr double kPistonsRate = 2 * 0.5;
 
+constexpr double kNanosecondsOfAnExchange = 200;
+
 }  // namespace
 
 JumpGas::JumpGas(const GasGeometry& geometry, double density, const GasState& start,
@@ -25,6 +27,7 @@ JumpGas::JumpGas(const GasGeometry& geometry, double density, const GasState& st
       walls_(std::move(walls)),
       random_(random),
       balls_(start.balls.size()) {
+  speeds_.reserve(balls_ + start.pistons.size());
   for (const GasBall& ball : start.balls) speeds_.push_back(ball.speed);
   for (size_t i = 0; i < start.pistons.size(); ++i) {
     const auto piston = static_cast<int64_t>(i);
@@ -83,7 +86,7 @@ void JumpGas::SetSpeed(size_t body, double speed) {
   FindPlaces();
 }
 
-void JumpGas::AdvanceTo(double time, GasMeter& meter) {
+bool JumpGas::AdvanceTo(double time, GasMeter& meter, Pauses& pauses) {
   while (time_ <= time) {
     const Proposal& p = next_;
     const double ball = std::sqrt(p.v3 * p.v3 + p.across * p.across);
@@ -97,7 +100,9 @@ void JumpGas::AdvanceTo(double time, GasMeter& meter) {
     meter.Exchange({time_, p.ball, p.piston, p.direction, ball * ball / 2, piston_energy});
     if (++changes_ > speeds_.size()) FindRates();
     FindNext();
+    if (pauses.After(kNanosecondsOfAnExchange)) return false;
   }
+  return true;
 }
 
 void JumpGas::FindNext() {

@@ -27,6 +27,7 @@
 #include "core/gas/gas_meter.h"
 #include "core/gas/gas_state.h"
 #include "core/gas/jump_draws.h"
+#include "core/gas/pauses.h"
 #include "core/gas/thermal_walls.h"
 #include "core/sampling/counter_random.h"
 
@@ -39,8 +40,12 @@ class JumpGas {
           const CounterRandom& random);
 
   // Exchanges until `time`, and reports the exchanges to the meter. There an outermost piston has
-  // its mean energy.
-  void AdvanceTo(double time, GasMeter& meter);
+  // its mean energy. Returns false at a pause; then it must be called again with the same time.
+  bool AdvanceTo(double time, GasMeter& meter, Pauses& pauses);
+  void AdvanceTo(double time, GasMeter& meter) {
+    Pauses never;
+    AdvanceTo(time, meter, never);
+  }
 
  private:
   // An exchange. In the direction in which the ball sees the piston, v1 is the ball's velocity and

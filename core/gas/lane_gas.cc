@@ -23,78 +23,160 @@ constexpr double kMostFlightsInAWindow = 64;
 constexpr size_t kFlightsTogether = 12;
 constexpr uint32_t kBallsAtATime = 32 * kMostBallsAhead;
 
+// The period of the origin's moves, in mean flights. In a period the rounding of times stays far
+// below kReachSlack. To move the origin costs less than a hundredth of the flights.
+constexpr double kFlightsOfAPeriod = 1024;
+
+// Nanoseconds.
+constexpr double kToPutABall = 200;
+constexpr double kToPutAPiston = 20;
+constexpr double kToFindAnArrival = 50;
+constexpr double kToHandleAnEvent = 300;  // without the flights
+constexpr double kToFly = 10;             // one flight of one of many balls
+
+// A power of two, so that any number of periods is exact.
+double PeriodOf(double mean_flight) {
+  return std::exp2(std::round(std::log2(kFlightsOfAPeriod * mean_flight)));
+}
+
 }  // namespace
 
 LaneGas::LaneGas(const GasGeometry& geometry, double exchange_rate, std::vector<GasStart> replicas)
     : gas_(geometry),
       balls_each_(static_cast<uint32_t>(geometry.balls())),
       pistons_each_(static_cast<uint32_t>(geometry.pistons())),
-      mean_flight_(MeanFlight(geometry.pair())) {
-  for (GasStart& start : replicas) {
-    Place(start.state);
-    replicas_.push_back({std::move(start.walls), start.meter});
-  }
-  FindPistons();
-  from_ = to_;
-  versions_.resize(gas_.balls.size() + gas_.pistons.size());
-  ChooseWindow(exchange_rate);
+      exchange_rate_(exchange_rate),
+      mean_flight_(MeanFlight(geometry.pair())),
+      period_(PeriodOf(mean_flight_)),
+      starts_(std::move(replicas)) {
+  for (GasStart& start : starts_) replicas_.push_back({std::move(start.walls), start.meter});
+  const size_t balls = starts_.size() * balls_each_, pistons = starts_.size() * pistons_each_;
+  gas_.balls.reserve(balls);
+  gas_.pistons.reserve(pistons);
+  from_.reserve(balls);
+  to_.reserve(balls);
+  versions_.reserve(balls + pistons);
 }
 
-void LaneGas::Place(const GasState& state) {
-  for (const GasBall& ball : state.balls) {
-    to_.push_back(PlacedBall(gas_, ball.position, ball.direction));
-    const double speed = std::max(ball.speed, kAtRest);
-    gas_.balls.push_back({.speed = speed, .slowness = 1 / speed});
+bool LaneGas::Place(Pauses& pauses) {
+  if (starts_.empty()) return true;
+  if (!ForEachWithPauses(placed_balls_, starts_.size() * balls_each_, kToPutABall, pauses,
+                         [this](size_t i) { PlaceBall(i); }) ||
+      !ForEachWithPauses(placed_pistons_, starts_.size() * pistons_each_, kToPutAPiston, pauses,
+                         [this](size_t i) { PlacePiston(i); })) {
+    return false;
   }
-  for (const GasPiston& piston : state.pistons) {
-    const PairState seen = {.piston = 0.5 + piston.offset, .piston_velocity = piston.velocity};
-    gas_.pistons.push_back({.speed = std::fabs(piston.velocity), .phase = gas_.wave.Phase(seen)});
-  }
+  ChooseWindow();
+  starts_.clear();
+  return true;
 }
 
-void LaneGas::FindPistons() {
-  for (uint32_t ball = 0; ball < gas_.balls.size(); ++ball) {
-    const uint32_t first = ball / balls_each_ * pistons_each_;
-    for (int i = 0; i < gas_.geometry.directions(); ++i) {
-      const Direction direction = gas_.geometry.DirectionAt(i);
-      const int64_t piston = gas_.geometry.PistonOf(ball % balls_each_, direction);
-      gas_.balls[ball].pistons[static_cast<size_t>(direction)] =
-          first + static_cast<uint32_t>(piston);
-    }
+void LaneGas::PlaceBall(size_t number) {
+  const GasBall& ball = starts_[number / balls_each_].state.balls[number % balls_each_];
+  to_.push_back(PlacedBall(gas_, ball.position, ball.direction));
+  from_.push_back(to_.back());
+  const double speed = std::max(ball.speed, kAtRest);
+  gas_.balls.push_back({.speed = speed, .slowness = 1 / speed});
+  versions_.push_back(0);
+  FindPistons(static_cast<uint32_t>(number));
+}
+
+void LaneGas::PlacePiston(size_t number) {
+  const GasPiston& piston = starts_[number / pistons_each_].state.pistons[number % pistons_each_];
+  const PairState seen = {.piston = 0.5 + piston.offset, .piston_velocity = piston.velocity};
+  gas_.pistons.push_back({.speed = std::fabs(piston.velocity), .phase = gas_.wave.Phase(seen)});
+  versions_.push_back(0);
+}
+
+void LaneGas::FindPistons(uint32_t ball) {
+  const uint32_t first = ball / balls_each_ * pistons_each_;
+  for (int i = 0; i < gas_.geometry.directions(); ++i) {
+    const Direction direction = gas_.geometry.DirectionAt(i);
+    const int64_t piston = gas_.geometry.PistonOf(ball % balls_each_, direction);
+    gas_.balls[ball].pistons[static_cast<size_t>(direction)] =
+        first + static_cast<uint32_t>(piston);
   }
 }
 
 // Chooses the window for the mean energy of the balls. The results do not depend on the window.
-void LaneGas::ChooseWindow(double exchange_rate) {
+void LaneGas::ChooseWindow() {
   double energy = 0;
   for (const BallInTime& ball : gas_.balls) energy += ball.speed * ball.speed / 2;
   const double temperature = energy / static_cast<double>(gas_.balls.size());
   const double flights = std::sqrt(temperature) * MeanBallSpeed() / mean_flight_;
-  const double exchanges = gas_.geometry.directions() * exchange_rate * std::sqrt(temperature);
+  const double exchanges = gas_.geometry.directions() * exchange_rate_ * std::sqrt(temperature);
   const double best = std::sqrt(kFlightsOfAWindow * flights / std::max(exchanges, kAtRest));
   window_ = std::min(best, kMostFlightsInAWindow) / std::max(flights, kAtRest);
 }
 
-void LaneGas::AdvanceTo(double time) {
-  while (now_ < time) {
-    end_ = std::min(now_ + window_, time);
-    AdvanceWindow();
-    now_ = end_;
+bool LaneGas::AdvanceTo(double time, Pauses& pauses) {
+  if (!Place(pauses)) return false;
+  for (;;) {
+    if (is_in_window_ && !FinishWindow(pauses)) return false;
+    if (now_ == period_) MoveOrigin();
+    if (now_ >= time - origin_) return true;
+    BeginWindow(time - origin_);
   }
 }
 
-void LaneGas::AdvanceWindow() {
-  FlyAll();
-  if (gas_.geometry.ends() == GasEnds::kReservoirs) {
-    for (uint32_t piston = 0; piston < gas_.pistons.size(); ++piston) FindArrival(piston);
+// Ends at `end` or before it.
+void LaneGas::BeginWindow(double end) {
+  end_ = std::min({now_ + window_, end, period_});
+  is_in_window_ = true;
+  std::swap(from_, to_);
+  meetings_.clear();
+  flown_balls_ = 0;
+  found_arrivals_ = gas_.geometry.ends() == GasEnds::kPeriodic ? gas_.pistons.size() : 0;
+}
+
+// First all pistons and balls move to the end of the window. Then its events follow in the order of
+// time; after each event some balls fly again.
+bool LaneGas::FinishWindow(Pauses& pauses) {
+  if (!ForEachWithPauses(found_arrivals_, gas_.pistons.size(), kToFindAnArrival, pauses,
+                         [this](size_t i) { FindArrival(static_cast<uint32_t>(i)); })) {
+    return false;
   }
-  while (!queue_.empty()) {
-    const Entry entry = queue_.top();
-    queue_.pop();
-    if (entry.version != versions_[entry.body]) continue;
-    now_ = entry.time;
-    Handle(entry);
+  for (;;) {
+    if (!FlyOrders(pauses)) return false;
+    if (flown_balls_ < gas_.balls.size()) {
+      FlyNextBalls();
+    } else if (!queue_.empty()) {
+      const Entry entry = queue_.top();
+      queue_.pop();
+      if (entry.version != versions_[entry.body]) continue;
+      now_ = entry.time;
+      Handle(entry);
+      if (pauses.After(kToHandleAnEvent)) return false;
+    } else {
+      break;
+    }
   }
+  now_ = end_;
+  is_in_window_ = false;
+  return true;
+}
+
+// At the end of a period, with all its events done.
+void LaneGas::MoveOrigin() {
+  for (uint32_t i = 0; i < gas_.balls.size(); ++i) {
+    BallInTime& ball = gas_.balls[i];
+    ball.since += to_[i].path * gas_.unit * ball.slowness - period_;
+    to_[i].path = 0;
+  }
+  for (uint32_t i = 0; i < gas_.pistons.size(); ++i) {
+    PistonInTime& piston = gas_.pistons[i];
+    // An outermost piston gets a new phase at its thermal wall. Its arrival there must not be lost
+    // by rounding.
+    if (replicas_[i / pistons_each_].walls.Has(i % pistons_each_)) {
+      piston.since -= period_;
+    } else {
+      piston = {.since = 0,
+                .speed = piston.speed,
+                .phase = piston.PhaseAt(period_, Direction::kRight, gas_.wave)};
+    }
+  }
+  origin_ += period_;
+  now_ = 0;
 }
 
 void LaneGas::Handle(const Entry& entry) {
@@ -115,22 +197,17 @@ FlightOrder LaneGas::OrderFor(uint32_t number) const {
           .from_time = now_};
 }
 
-void LaneGas::FlyAll() {
-  std::swap(from_, to_);
-  meetings_.clear();
-  const auto balls = static_cast<uint32_t>(gas_.balls.size());
-  for (uint32_t first = 0; first < balls; first += kBallsAtATime) {
-    orders_.clear();
-    for (uint32_t ball = first; ball < std::min(first + kBallsAtATime, balls); ++ball) {
-      orders_.push_back(OrderFor(ball));
-    }
-    FlyOrders(kFlightsTogether);
+void LaneGas::FlyNextBalls() {
+  const size_t end = std::min(flown_balls_ + kBallsAtATime, gas_.balls.size());
+  for (; flown_balls_ < end; ++flown_balls_) {
+    orders_.push_back(OrderFor(static_cast<uint32_t>(flown_balls_)));
   }
+  flights_ = kFlightsTogether;
+  orders_are_new_ = true;
 }
 
 // Flies these balls again, from their states in from_.
 void LaneGas::FlyAgain(std::span<const uint32_t> balls) {
-  orders_.clear();
   double flights = 0;
   for (const uint32_t ball : balls) {
     ++versions_[ball];
@@ -138,27 +215,32 @@ void LaneGas::FlyAgain(std::span<const uint32_t> balls) {
     const double left = (orders_.back().until - from_[ball].path) * gas_.unit;
     flights = std::max(flights, std::ceil(left / mean_flight_));
   }
-  FlyOrders(static_cast<size_t>(std::min(flights + 1, double{kMostFlightsAhead})));
+  flights_ = static_cast<size_t>(std::min(flights + 1, double{kMostFlightsAhead}));
+  orders_are_new_ = true;
 }
 
 // Flies until all balls have arrived.
-void LaneGas::FlyOrders(size_t flights) {
-  for (bool is_first = true; !orders_.empty(); is_first = false) {
+bool LaneGas::FlyOrders(Pauses& pauses) {
+  while (!orders_.empty()) {
+    const double work = kToFly * static_cast<double>(flights_ * (orders_.size() + 8));
     size_t kept = 0;
     for (size_t first = 0; first < orders_.size(); first += kMostBallsAhead) {
       const std::span<FlightOrder> orders(&orders_[first],
                                           std::min(kMostBallsAhead, orders_.size() - first));
-      Fly(flights, orders, is_first ? from_ : to_);
+      Fly(orders, orders_are_new_ ? from_ : to_);
       for (const FlightOrder& order : orders) {
         if (!order.has_arrived) orders_[kept++] = order;
       }
     }
     orders_.resize(kept);
+    orders_are_new_ = false;
+    if (pauses.After(work)) return false;
   }
+  return true;
 }
 
-void LaneGas::Fly(size_t flights, std::span<FlightOrder> orders, std::span<const FlyingBall> from) {
-  FlyAhead(gas_, flights, orders, from, to_);
+void LaneGas::Fly(std::span<FlightOrder> orders, std::span<const FlyingBall> from) {
+  FlyAhead(gas_, flights_, orders, from, to_);
   for (FlightOrder& order : orders) {
     if (to_[order.ball].has_escaped) Stop(order);
     if (!order.has_arrived || !order.first) continue;
@@ -167,7 +249,8 @@ void LaneGas::Fly(size_t flights, std::span<FlightOrder> orders, std::span<const
   }
 }
 
-// A ball that has escaped stays where it is.
+// A ball that has escaped rests in the middle of its cell, where no piston comes. A contact that
+// was found on its way does not count.
 void LaneGas::Stop(FlightOrder& order) {
   ReplicaOf(order.ball).meter->CountEscape();
   ++versions_[order.ball];
@@ -177,6 +260,7 @@ void LaneGas::Stop(FlightOrder& order) {
   ball.since = now_;
   from_[order.ball] = to_[order.ball] = PlacedBall(gas_, {0, 0}, {1, 0});
   order.has_arrived = true;
+  order.first.reset();
 }
 
 // ---- contacts ----
@@ -208,7 +292,7 @@ void LaneGas::LeaveThermalWall(const Entry& entry) {
   piston = {.since = entry.time,
             .speed = replica.walls.DrawSpeed(local),
             .phase = is_hot ? 0 : gas_.wave.stroke()};
-  replica.meter->SetPiston(entry.time, local, piston.speed * piston.speed / 2);
+  replica.meter->SetPiston(origin_ + entry.time, local, piston.speed * piston.speed / 2);
   FindArrival(number);
   const uint32_t ball = BallOf(number, is_hot ? Direction::kLeft : Direction::kRight);
   FlyAgain({&ball, 1});
@@ -238,7 +322,7 @@ void LaneGas::Exchange(const Entry& entry) {
   ball.since = entry.time;
   from_[number] =
       PlacedBall(gas_, SeenFrom(direction, after.position), SeenFrom(direction, after.direction));
-  ReplicaOf(number).meter->Exchange({.time = entry.time,
+  ReplicaOf(number).meter->Exchange({.time = origin_ + entry.time,
                                      .ball = number % balls_each_,
                                      .piston = piston_number % pistons_each_,
                                      .direction = direction,

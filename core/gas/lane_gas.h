@@ -8,11 +8,15 @@
 //
 // Replicas are independent gases of one geometry; small gases fill the lanes together. A replica's
 // numbers do not depend on the number of replicas or on the windows.
+//
+// Times count from an origin, which moves on by the same period again and again. So the rounding of
+// times and of paths does not grow with the time since the start.
 // Properties, each with the test that bears its name:
 //   1. AgreesWithTheReferenceEventByEvent, until the rounding errors have grown.
 //   2. ManyShortCallsGiveTheBitsOfOneCall.  3. ReplicasDoNotDependOnTheirNeighbours.
 //   4. EnergyIsConserved.
 //   5. BallsThatMeetPistonsInTipsStayInTheirCells.
+//   6. AnEscapedBallStopsAndCountsOnce.
 #ifndef BALLPISTON_CORE_GAS_LANE_GAS_H_
 #define BALLPISTON_CORE_GAS_LANE_GAS_H_
 
@@ -37,7 +41,7 @@ class LaneGas : public GasRun {
  public:
   LaneGas(const GasGeometry& geometry, double exchange_rate, std::vector<GasStart> replicas);
 
-  void AdvanceTo(double time) override;
+  bool AdvanceTo(double time, Pauses& pauses) override;
 
  private:
   static constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
@@ -58,15 +62,19 @@ class LaneGas : public GasRun {
     GasMeter* meter;
   };
 
-  void Place(const GasState& state);
-  void FindPistons();
-  void ChooseWindow(double exchange_rate);
+  bool Place(Pauses& pauses);
+  void PlaceBall(size_t number);
+  void PlacePiston(size_t number);
+  void FindPistons(uint32_t ball);
+  void ChooseWindow();
 
-  void AdvanceWindow();  // to end_
-  void FlyAll();
+  void BeginWindow(double end);
+  bool FinishWindow(Pauses& pauses);
+  void MoveOrigin();
+  void FlyNextBalls();
   void FlyAgain(std::span<const uint32_t> balls);
-  void FlyOrders(size_t flights);
-  void Fly(size_t flights, std::span<FlightOrder> orders, std::span<const FlyingBall> from);
+  bool FlyOrders(Pauses& pauses);
+  void Fly(std::span<FlightOrder> orders, std::span<const FlyingBall> from);
   FlightOrder OrderFor(uint32_t ball) const;
   void Stop(FlightOrder& order);
 
@@ -82,8 +90,13 @@ class LaneGas : public GasRun {
   GasInTime gas_;
   uint32_t balls_each_;  // of a replica
   uint32_t pistons_each_;
+  double exchange_rate_;
   double mean_flight_;
-  double window_ = 0;  // of time
+  double period_;                 // of the origin's moves
+  double window_ = 0;             // of time
+  double origin_ = 0;             // all times in here count from it
+  std::vector<GasStart> starts_;  // until all bodies are placed
+  size_t placed_balls_ = 0, placed_pistons_ = 0;
   std::vector<Replica> replicas_;
   // By ball. `from_` is the ball before the flight in which the window begins, or in which its last
   // exchange in the window is. `to_` is the ball before the flight in which the window ends.
@@ -91,7 +104,12 @@ class LaneGas : public GasRun {
   std::vector<uint32_t> versions_;                                        // by ball, then by piston
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;  // of the window
   std::vector<MeetingInTime> meetings_;
-  std::vector<FlightOrder> orders_;
+  std::vector<FlightOrder> orders_;  // of balls that fly now
+  size_t flights_ = 0;               // that these balls fly at a time
+  bool orders_are_new_ = false;      // their balls are still in from_
+  size_t flown_balls_ = 0;           // in this window, or on their way
+  size_t found_arrivals_ = 0;        // pistons whose arrivals in this window are found
+  bool is_in_window_ = false;
   double now_ = 0;  // all events before this time are done
   double end_ = 0;  // of the window
 };

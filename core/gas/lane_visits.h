@@ -28,7 +28,8 @@ struct FlyingBall {
   bool has_escaped;
 };
 
-// A ball since its last exchange, or its start.
+// A ball since its last exchange, its start, or the last move of the origin of time. `since` is the
+// time at which its path had the length 0.
 struct BallInTime {
   double since = 0;
   double speed = 0;
@@ -36,8 +37,8 @@ struct BallInTime {
   std::array<uint32_t, 4> pistons = {};  // by direction
 };
 
-// A piston since its last change of velocity. `phase` is that of PistonWave at that time, as seen
-// by the ball before the piston.
+// A piston since its last change of velocity, or the last move of the origin of time. `phase` is
+// that of PistonWave at that time, as seen by the ball before the piston.
 struct PistonInTime {
   double since = 0;
   double speed = 0;

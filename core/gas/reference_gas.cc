@@ -12,57 +12,100 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
+// After so many events of each body the origin of all times moves to the present. A body passes
+// through its cell fewer times, so that times stay as precise as places; the cost is less than one
+// event in a thousand.
+constexpr uint64_t kEventsFromAnOrigin = 1024;
+
+// Nanoseconds.
+constexpr double kToBeginWithAPiston = 50;
+constexpr double kToBeginWithABall = 200;
+
 }  // namespace
 
 ReferenceGas::ReferenceGas(const GasGeometry& geometry, const GasState& state, ThermalWalls walls)
+    : ReferenceGas(geometry, std::move(walls)) {
+  Pauses never;
+  Begin(state, never);
+}
+
+ReferenceGas::ReferenceGas(const GasGeometry& geometry, ThermalWalls walls)
     : geometry_(geometry),
       cell_walls_(geometry.pair()),
       thermal_walls_(std::move(walls)),
-      balls_(state.balls.size()),
-      pistons_(state.pistons.size()),
-      queue_(balls_.size() + pistons_.size()) {
-  for (size_t i = 0; i < pistons_.size(); ++i) {
-    pistons_[i].state = state.pistons[i];
-    TimePiston(pistons_[i]);
-    SchedulePiston(static_cast<int64_t>(i));
-  }
-  for (size_t i = 0; i < balls_.size(); ++i) {
-    balls_[i].state = state.balls[i];
-    Aim(balls_[i]);
-    LookAgain(static_cast<int64_t>(i));
-  }
+      queue_(Place(geometry.pistons())) {
+  balls_.reserve(Index(geometry.balls()));
+  pistons_.reserve(Index(geometry.pistons()));
+}
+
+bool ReferenceGas::Begin(const GasState& state, Pauses& pauses) {
+  size_t piston = pistons_.size(), ball = balls_.size();
+  return ForEachWithPauses(piston, state.pistons.size(), kToBeginWithAPiston, pauses,
+                           [&](size_t i) {
+                             TimePiston(pistons_.emplace_back(Piston{.state = state.pistons[i]}));
+                             SchedulePiston(static_cast<int64_t>(i));
+                           }) &&
+         ForEachWithPauses(ball, state.balls.size(), kToBeginWithABall, pauses, [&](size_t i) {
+           Aim(balls_.emplace_back(Ball{.state = state.balls[i]}));
+           LookAgain(static_cast<int64_t>(i));
+         });
 }
 
 GasEvent ReferenceGas::Step() {
+  if (++events_ > kEventsFromAnOrigin * (balls_.size() + pistons_.size())) MoveOrigin();
+  now_ = queue_.First().time;
   const size_t body = queue_.First().body;
-  if (body >= balls_.size()) return TurnPiston(static_cast<int64_t>(body - balls_.size()));
-  const Ball& ball = balls_[body];
-  const auto number = static_cast<int64_t>(body);
-  return ball.contact_time <= ball.wall_time ? Exchange(number) : HitWall(number);
+  GasEvent event;
+  if (body >= balls_.size()) {
+    event = TurnPiston(static_cast<int64_t>(body - balls_.size()));
+  } else {
+    const Ball& ball = balls_[body];
+    const auto number = static_cast<int64_t>(body);
+    event = ball.contact_time <= ball.wall_time ? Exchange(number) : HitWall(number);
+  }
+  event.time = origin_ + now_;
+  return event;
+}
+
+// Without the last bits of the present time, so that the sum of all moves is exact.
+void ReferenceGas::MoveOrigin() {
+  constexpr int kBits = 20;
+  int exponent;
+  const double mantissa = std::frexp(queue_.First().time, &exponent);
+  const double later = std::ldexp(std::floor(std::ldexp(mantissa, kBits)), exponent - kBits);
+  for (Ball& ball : balls_) {
+    ball.time -= later;
+    ball.wall_time -= later;
+    ball.contact_time -= later;
+  }
+  for (Piston& piston : pistons_) {
+    piston.time -= later;
+    piston.turn_time -= later;
+  }
+  queue_.MoveOrigin(later);
+  origin_ += later;
+  events_ = 0;
 }
 
 GasEvent ReferenceGas::HitWall(int64_t number) {
   Ball& ball = balls_[Index(number)];
-  const GasEvent event = {.kind = EventKind::kBallWall, .time = ball.wall_time, .ball = number};
   if (ball.encounter.disc == kNoDisc) {
     ball.wall_time = ball.contact_time = kNever;
     Schedule(number);
-    return {.kind = EventKind::kEscape, .time = event.time, .ball = number};
+    return {.kind = EventKind::kEscape, .ball = number};
   }
   cell_walls_.Reflect(ball.encounter, ball.state.position, ball.state.direction);
   ball.last_disc = ball.encounter.disc;
-  ball.time = event.time;
+  ball.time = now_;
   Aim(ball);
   LookAgain(number);
-  return event;
+  return {.kind = EventKind::kBallWall, .ball = number};
 }
 
 GasEvent ReferenceGas::TurnPiston(int64_t number) {
   Piston& piston = pistons_[Index(number)];
-  const GasEvent event = {
-      .kind = EventKind::kPistonWall, .time = piston.turn_time, .piston = number};
   GasPiston& state = piston.state;
-  piston.time = event.time;
+  piston.time = now_;
   state.offset = std::copysign(geometry_.reach(), state.velocity);
   const bool is_thermal =
       thermal_walls_.Has(number) && (state.velocity < 0) == thermal_walls_.IsHot(number);
@@ -75,18 +118,18 @@ GasEvent ReferenceGas::TurnPiston(int64_t number) {
     const int64_t ball = geometry_.BallOf(number, side);
     if (ball != GasGeometry::kNoBall) LookAgain(ball);
   }
-  return event;
+  return {.kind = EventKind::kPistonWall, .piston = number};
 }
 
 // The pair's exchange, in the cell turned until the piston is on the right.
 GasEvent ReferenceGas::Exchange(int64_t number) {
   Ball& ball = balls_[Index(number)];
   const Direction direction = ball.contact;
-  const double time = ball.contact_time, sign = SignOf(direction);
+  const double sign = SignOf(direction);
   const int64_t piston_number = geometry_.PistonOf(number, direction);
   Piston& piston = pistons_[Index(piston_number)];
-  const GasBall ball_there = BallAt(number, time);
-  const double offset = PistonAt(piston_number, time).offset;
+  const GasBall ball_there = MovedTo(now_, ball);
+  const double offset = MovedTo(now_, piston).offset;
   const PairState before = {.position = SeenToward(direction, ball_there.position),
                             .direction = SeenToward(direction, ball_there.direction),
                             .ball_speed = ball_there.speed,
@@ -97,7 +140,7 @@ GasEvent ReferenceGas::Exchange(int64_t number) {
                 .direction = SeenFrom(direction, after.direction),
                 .speed = after.ball_speed};
   piston.state = {.offset = offset, .velocity = sign * after.piston_velocity};
-  ball.time = piston.time = time;
+  ball.time = piston.time = now_;
   ball.last_disc = kNoDisc;
   Aim(ball);
   TimePiston(piston);
@@ -105,7 +148,10 @@ GasEvent ReferenceGas::Exchange(int64_t number) {
   LookAgain(number);
   const int64_t other = geometry_.BallOf(piston_number, Opposite(direction));
   if (other != GasGeometry::kNoBall && other != number) LookAgain(other);
-  return {EventKind::kBallPiston, time, number, piston_number, direction};
+  return {.kind = EventKind::kBallPiston,
+          .ball = number,
+          .piston = piston_number,
+          .direction = direction};
 }
 
 void ReferenceGas::Aim(Ball& ball) const {
@@ -161,22 +207,28 @@ void ReferenceGas::Schedule(int64_t number) {
 }
 
 void ReferenceGas::SchedulePiston(int64_t number) {
-  queue_.Set(balls_.size() + Index(number), pistons_[Index(number)].turn_time);
+  queue_.Set(Place(number), pistons_[Index(number)].turn_time);
 }
 
-GasBall ReferenceGas::BallAt(int64_t number, double time) const {
-  const Ball& ball = balls_[Index(number)];
+GasBall ReferenceGas::MovedTo(double time, const Ball& ball) {
   GasBall state = ball.state;
   state.position += state.direction * (state.speed * (time - ball.time));
   return state;
 }
 
-GasPiston ReferenceGas::PistonAt(int64_t number, double time) const {
-  const Piston& piston = pistons_[Index(number)];
+GasPiston ReferenceGas::MovedTo(double time, const Piston& piston) const {
   GasPiston state = piston.state;
   state.offset = std::clamp(state.offset + state.velocity * (time - piston.time),
                             -geometry_.reach(), geometry_.reach());
   return state;
+}
+
+GasBall ReferenceGas::BallAt(int64_t number, double time) const {
+  return MovedTo(FromOrigin(time), balls_[Index(number)]);
+}
+
+GasPiston ReferenceGas::PistonAt(int64_t number, double time) const {
+  return MovedTo(FromOrigin(time), pistons_[Index(number)]);
 }
 
 GasState ReferenceGas::StateAt(double time) const {

@@ -6,6 +6,8 @@
 // Properties, each with a test of its name:
 //   1. OneBallAndOnePistonMoveLikeThePair.  2. ReversedVelocitiesRetraceTheirWay.
 //   3. EnergyIsConserved.
+//   4. LongRunsKeepTheDigitsOfTheirTimes: inside, times count from an origin that moves on, so that
+//      their rounding does not grow with the time since the start.
 //
 // Times are in cells over unit speed. One object is one gas. Not thread-safe.
 #ifndef BALLPISTON_CORE_GAS_REFERENCE_GAS_H_
@@ -20,6 +22,7 @@
 #include "core/gas/event_queue.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_state.h"
+#include "core/gas/pauses.h"
 #include "core/gas/thermal_walls.h"
 #include "core/geometry/pair_state.h"
 
@@ -37,12 +40,17 @@ class ReferenceGas {
  public:
   ReferenceGas(const GasGeometry& geometry, const GasState& state, ThermalWalls walls);
 
+  // The same in parts: the gas is complete when Begin has returned true. At a pause Begin returns
+  // false; then it must be called again with the same state.
+  ReferenceGas(const GasGeometry& geometry, ThermalWalls walls);
+  bool Begin(const GasState& state, Pauses& pauses);
+
   // The time of the next event; infinite if there is none.
-  double NextTime() const { return queue_.First().time; }
+  double NextTime() const { return origin_ + queue_.First().time; }
   // Moves to the next event and resolves it. An escaped ball has no more events.
   GasEvent Step();
 
-  // At a time between the last event and the next one.
+  // At a time between the last event and the next one. Exact at the time of the last event.
   GasBall BallAt(int64_t ball, double time) const;
   GasPiston PistonAt(int64_t piston, double time) const;
   GasState StateAt(double time) const;
@@ -51,6 +59,7 @@ class ReferenceGas {
   double PistonEnergy(int64_t piston) const { return EnergyOf(pistons_[Index(piston)].state); }
 
  private:
+  // All times in here count from `origin_`.
   struct Ball {
     GasBall state;
     double time = 0;
@@ -67,6 +76,12 @@ class ReferenceGas {
   };
 
   static size_t Index(int64_t i) { return static_cast<size_t>(i); }
+  size_t Place(int64_t piston) const { return Index(geometry_.balls() + piston); }  // in the queue
+
+  void MoveOrigin();
+  double FromOrigin(double time) const { return time == origin_ + now_ ? now_ : time - origin_; }
+  static GasBall MovedTo(double time, const Ball& ball);
+  GasPiston MovedTo(double time, const Piston& piston) const;
 
   void Aim(Ball& ball) const;
   void TimePiston(Piston& piston) const;
@@ -84,6 +99,9 @@ class ReferenceGas {
   std::vector<Ball> balls_;
   std::vector<Piston> pistons_;
   EventQueue queue_;  // balls, then pistons
+  double origin_ = 0;
+  double now_ = 0;       // the time of the last event
+  uint64_t events_ = 0;  // since the origin moved
 };
 
 }  // namespace ballpiston

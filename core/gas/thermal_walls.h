@@ -4,6 +4,8 @@
 #ifndef BALLPISTON_CORE_GAS_THERMAL_WALLS_H_
 #define BALLPISTON_CORE_GAS_THERMAL_WALLS_H_
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -37,12 +39,10 @@ class ThermalWalls {
   ThermalWalls() = default;  // no walls, for a periodic gas
   // The left one is hot, the right one cold: hot >= cold > 0.
   ThermalWalls(const GasGeometry& geometry, double hot, double cold, const GasRandom& random)
-      : edges_(geometry.shape().columns + 1), hot_(hot), cold_(cold) {
+      : edges_(geometry.shape().columns + 1), hot_(hot), cold_(cold), random_(random) {
     if (geometry.ends() == GasEnds::kPeriodic) return;
-    for (int64_t i = 0; i < 2 * geometry.shape().rows; ++i) {
-      random_.push_back(random.OfWall(static_cast<uint64_t>(i)));
-    }
     pistons_ = edges_ * geometry.shape().rows;
+    groups_.resize((WallCount() + kGroup - 1) / kGroup);
   }
 
   // Whether the piston has a thermal wall. Such a piston meets only one ball.
@@ -54,15 +54,34 @@ class ThermalWalls {
   double TemperatureAt(int64_t piston) const { return IsHot(piston) ? hot_ : cold_; }
   double DrawSpeed(int64_t piston) {
     const auto wall = static_cast<size_t>(2 * (piston / edges_) + (IsHot(piston) ? 0 : 1));
-    return DrawFluxSpeed(TemperatureAt(piston), random_[wall]);
+    return DrawFluxSpeed(TemperatureAt(piston), SequenceOf(wall));
   }
 
  private:
+  // Walls whose sequences begin together. A gas may have two million walls, whose sequences would
+  // take a fifth of a second.
+  static constexpr size_t kGroup = 256;
+
+  size_t WallCount() const { return static_cast<size_t>(2 * pistons_ / edges_); }
+
+  CounterRandom& SequenceOf(size_t wall) {
+    std::vector<CounterRandom>& group = groups_[wall / kGroup];
+    if (group.empty()) BeginSequences(wall / kGroup * kGroup, group);
+    return group[wall % kGroup];
+  }
+
+  void BeginSequences(size_t first, std::vector<CounterRandom>& group) const {
+    const size_t end = std::min(first + kGroup, WallCount());
+    group.reserve(end - first);
+    for (size_t wall = first; wall < end; ++wall) group.push_back(random_.OfWall(wall));
+  }
+
   int64_t edges_ = 1;    // of a row
   int64_t pistons_ = 0;  // along x
   double hot_ = 0;
   double cold_ = 0;
-  std::vector<CounterRandom> random_;  // by row, hot and cold
+  GasRandom random_ = {0, 0, 0};
+  std::vector<std::vector<CounterRandom>> groups_;  // of the walls by row, hot and cold
 };
 
 }  // namespace ballpiston

@@ -44,11 +44,14 @@ class RunningGas {
         unit_(unit) {
     const GasRandom random(1, 2, 3);
     CounterRandom of_start = random.OfStart();
+    // The run takes the state and frees it. So its bytes count from before the state is drawn.
+    double before = BytesInUse();
     GasState state = DrawGas(geometry_, TemperatureProfile(1), of_start);
+    const double without_meter = BytesInUse();
     meter_ = std::make_unique<GasMeter>(geometry_, state);
+    before += BytesInUse() - without_meter;
     std::vector<GasStart> starts;
     starts.push_back({std::move(state), ThermalWalls(), random, meter_.get()});
-    const double before = BytesInUse();
     run_ = StartGases(engine, geometry_, GasExchangeRate(geometry_, 1), std::move(starts));
     run_->AdvanceTo(time_ = slice / 4);
     bytes_ = (BytesInUse() - before) / static_cast<double>(geometry_.balls());

@@ -159,8 +159,9 @@ TEST(GasEquilibrium, AllScalesWithTheTemperature) {
     if (!a.exact) continue;
     EXPECT_DOUBLE_EQ(*b.exact, factors[i] * *a.exact) << a.name;
   }
-  // The ratio by the window, and the autocorrelation, in which two currents of T^(3/2) stand.
-  const double scales[] = {1, 64};
+  // The ratio by the window, and the autocorrelation. In this two currents of T^(3/2) stand, with
+  // energies in units of T.
+  const double scales[] = {1, 4};
   for (size_t i = 0; i < 2; ++i) {
     ASSERT_EQ(hot.curves[i].points.size(), unit.curves[i].points.size());
     for (size_t k = 0; k < unit.curves[i].points.size(); ++k) {
@@ -172,6 +173,19 @@ TEST(GasEquilibrium, AllScalesWithTheTemperature) {
   for (size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(hot.histograms[i].histogram.counts, unit.histograms[i].histogram.counts);
     EXPECT_DOUBLE_EQ(hot.histograms[i].histogram.upper, 2 * unit.histograms[i].histogram.upper);
+  }
+}
+
+// The cube of such a temperature exceeds the range of a double.
+TEST(GasEquilibrium, CurvesAreFiniteAtEveryTemperature) {
+  const BlockResult merged = *FoldPoint(*PointExperiment::Create(SpecAt(1), 0));
+  for (const double temperature : {1e-120, 1e-110, 1e110, 1e120}) {
+    for (const Curve& curve : Summarized(SpecAt(temperature), merged).curves) {
+      for (const CurvePoint& point : curve.points) {
+        EXPECT_TRUE(std::isfinite(point.value)) << curve.name << " at " << temperature;
+        EXPECT_GT(*point.standard_error, 0) << curve.name << " at " << temperature;
+      }
+    }
   }
 }
 

@@ -55,6 +55,7 @@ class ListedBlocks : public BlockQueue {
 
   std::optional<Block> Next() override {
     if (next_ == blocks_.size()) return std::nullopt;
+    if (results.empty()) ++taken_before_first_result;
     return blocks_[next_++];
   }
   void Done(const Block& block, BlockResult result) override {
@@ -68,6 +69,7 @@ class ListedBlocks : public BlockQueue {
 
   std::map<uint64_t, BlockResult> results;
   int asked = 0;
+  size_t taken_before_first_result = 0;
 
  private:
   std::vector<Block> blocks_;
@@ -100,6 +102,46 @@ TEST(GasExperiment, BlocksComputedTogetherEqualThoseComputedAlone) {
       EXPECT_EQ(*RunBlock(*point, block), together.results.at(block.first));
     }
   }
+}
+
+struct TogetherCase {
+  Model model;
+  int64_t columns;
+  int64_t samples;
+  size_t together;
+};
+
+// Lanes take 192 balls, but at most a quarter of the chunk; the other engines one replica.
+TEST(GasExperiment, ARunTakesAQuarterOfItsChunkAtMost) {
+  for (const TogetherCase& c :
+       {TogetherCase{Model::kBilliard, 1, 64, 16}, TogetherCase{Model::kBilliard, 1, 3, 1},
+        TogetherCase{Model::kBilliard, 1, 100'000, 192}, TogetherCase{Model::kBilliard, 30, 64, 7},
+        TogetherCase{Model::kBilliard, 200, 64, 1}, TogetherCase{Model::kMarkov, 1, 64, 1},
+        TogetherCase{Model::kBilliardReference, 1, 64, 1}}) {
+    const auto point = PointExperiment::Create(
+        SpecOf(&kGasEquilibrium, PaperGas(&kGasEquilibrium, 0.2, {c.columns}),
+               {.samples = c.samples}, c.model, 42),
+        0);
+    std::vector<Block> blocks = BlocksOf(200, 1);
+    for (Block& block : blocks) block.chunk = point->plan().chunks() - 1;
+    if (c.samples <= 64) blocks = BlocksOf(static_cast<uint64_t>(c.samples), 1);
+    ListedBlocks queue(blocks, true);
+    const std::unique_ptr<BlockRun> run = point->StartRun(queue);
+    while (queue.results.empty()) run->Advance();
+    EXPECT_EQ(queue.taken_before_first_result, c.together)
+        << Name(c.model) << " " << c.columns << " " << c.samples;
+  }
+}
+
+// The jump process of a big gas takes less time than the draw of its start.
+TEST(GasExperiment, TheDrawOfABigGasAsksForPauses) {
+  const PointParameters gas = PaperGas(&kGasEquilibrium, 0.2, {150, 100, true});
+  const auto point =
+      PointExperiment::Create(SpecOf(&kGasEquilibrium, gas, {.samples = 1}, Model::kMarkov, 42), 0);
+  ListedBlocks queue(BlocksOf(1, 1), true);
+  const std::unique_ptr<BlockRun> run = point->StartRun(queue);
+  while (queue.results.empty()) run->Advance();
+  EXPECT_GE(queue.asked, 6);
 }
 
 TEST(GasExperiment, AReplicaDependsOnlyOnItsNumber) {

@@ -273,6 +273,35 @@ TEST(CanonicalGas, SameNumbersForTheSameRandomSequence) {
   }
 }
 
+// A pause whenever one is possible.
+TEST(CanonicalGas, PausesDivideADrawAndKeepItsNumbers) {
+  const GasGeometry gas = CrowdedGas("150x150", GasEnds::kReservoirs);
+  const TemperatureProfile profile(2, 1, 150);
+  CounterRandom random(70, 0, 0), paused_random(70, 0, 0);
+  const GasState whole = DrawGas(gas, profile, random);
+  GasDraw draw(gas, profile, paused_random);
+  int parts = 0;
+  bool is_done = false;
+  while (!is_done) {
+    Pauses always([] { return true; });
+    is_done = draw.Advance(always);
+    ++parts;
+  }
+  const GasState paused = draw.Take();
+  EXPECT_GE(parts, 6);  // of at most some 4,000 cells
+  ASSERT_EQ(paused.balls.size(), whole.balls.size());
+  ASSERT_EQ(paused.pistons.size(), whole.pistons.size());
+  for (size_t i = 0; i < whole.balls.size(); ++i) {
+    ASSERT_EQ(paused.balls[i].position, whole.balls[i].position);
+    ASSERT_EQ(paused.balls[i].direction, whole.balls[i].direction);
+    ASSERT_EQ(paused.balls[i].speed, whole.balls[i].speed);
+  }
+  for (size_t i = 0; i < whole.pistons.size(); ++i) {
+    ASSERT_EQ(paused.pistons[i].offset, whole.pistons[i].offset);
+    ASSERT_EQ(paused.pistons[i].velocity, whole.pistons[i].velocity);
+  }
+}
+
 TEST(TemperatureProfile, PowerThreeHalvesIsLinear) {
   for (const double cold : {1.0, 0.5, 1e-3}) {
     const TemperatureProfile profile(2, cold, 7);
@@ -284,12 +313,30 @@ TEST(TemperatureProfile, PowerThreeHalvesIsLinear) {
   }
 }
 
-// The cold end carries the rounding of 1 - (1 - (cold/hot)^1.5).
 TEST(TemperatureProfile, EndsHaveTheirTemperatures) {
-  for (const double cold : {2.0, 1.0, 0.5, 0.1}) {
+  for (const double cold : {2.0, 1.0, 0.5, 0.1, 1e-11, 1e-240}) {
     const TemperatureProfile profile(2, cold, 1000);
     EXPECT_EQ(profile.At(0), 2);
-    EXPECT_NEAR(profile.At(1000) / cold, 1, 4e-16 * std::pow(2 / cold, 1.5));
+    EXPECT_EQ(profile.At(1000), cold);
+  }
+}
+
+// Down to the smallest ratio of the permitted temperatures. Long double has 11 bits more.
+TEST(TemperatureProfile, IsRightForEveryRatioOfTemperatures) {
+  for (const double hot : {1e120, 1.0, 1e-120}) {
+    for (double ratio = 1; hot * ratio >= 1e-120; ratio /= 30) {
+      const double cold = hot * ratio;
+      for (const int columns : {1, 3, 1000, 1'000'000}) {
+        const TemperatureProfile profile(hot, cold, columns);
+        for (const double x : {0.0, 0.5, columns / 2.0, columns - 0.5, double(columns)}) {
+          const long double cold_part = x * std::pow(static_cast<long double>(ratio), 1.5L);
+          const long double cube = (columns - x + cold_part) / columns;
+          const auto exact = static_cast<double>(hot * std::pow(cube, 2.0L / 3));
+          EXPECT_NEAR(profile.At(x) / exact, 1, 1e-15) << cold / hot << " at " << x / columns;
+          EXPECT_GE(profile.At(x), cold);
+        }
+      }
+    }
   }
 }
 

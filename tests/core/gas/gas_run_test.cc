@@ -35,13 +35,32 @@ class Replicas {
   }
 
   // The window of measurement in so many calls.
-  std::vector<uint64_t> BitsAfter(int calls) {
+  std::vector<uint64_t> BitsAfter(int calls, double end = kEnd) {
     run_->AdvanceTo(kWarmUp);
     for (GasMeter& meter : meters_) meter.Begin(kWarmUp);
-    for (int i = 1; i <= calls; ++i) run_->AdvanceTo(kWarmUp + (kEnd - kWarmUp) * i / calls);
+    for (int i = 1; i <= calls; ++i) run_->AdvanceTo(kWarmUp + (end - kWarmUp) * i / calls);
+    return Bits(end);
+  }
+
+  std::vector<uint64_t> BitsWithoutWarmUp(double end) {
+    run_->AdvanceTo(end);
+    return Bits(end);
+  }
+
+  // With a pause whenever one is possible; `parts` counts the calls.
+  std::vector<uint64_t> BitsWithPauses(double end, int& parts) {
+    for (bool is_there = false; !is_there; ++parts) {
+      Pauses always([] { return true; });
+      is_there = run_->AdvanceTo(end, always);
+    }
+    return Bits(end);
+  }
+
+ private:
+  std::vector<uint64_t> Bits(double end) {
     std::vector<uint64_t> bits;
     for (GasMeter& meter : meters_) {
-      meter.End(kEnd);
+      meter.End(end);
       EXPECT_EQ(meter.escapes(), 0u);
       bits.push_back(meter.exchanges());
       bits.push_back(std::bit_cast<uint64_t>(meter.carried()));
@@ -53,7 +72,6 @@ class Replicas {
     return bits;
   }
 
- private:
   std::deque<GasMeter> meters_;  // the run has their addresses
   std::unique_ptr<GasRun> run_;
 };
@@ -69,6 +87,30 @@ TEST_P(GasRunOfEngine, ManyShortCallsGiveTheBitsOfOneCall) {
         EXPECT_EQ(Replicas(GetParam(), gas, 0, 3).BitsAfter(calls), whole) << shape;
       }
     }
+  }
+}
+
+// A time in which every engine moves the origin of its times, some thousand events of each body.
+TEST_P(GasRunOfEngine, LongRunsInManyCallsGiveTheBitsOfOneCall) {
+  constexpr double kLongAfter = 2000;
+  for (const GasEnds ends : {GasEnds::kPeriodic, GasEnds::kReservoirs}) {
+    const GasGeometry gas = GasOf(kPaperRho, 0.2, "2", ends);
+    const std::vector<uint64_t> whole = Replicas(GetParam(), gas, 0, 2).BitsAfter(1, kLongAfter);
+    EXPECT_EQ(Replicas(GetParam(), gas, 0, 2).BitsAfter(3000, kLongAfter), whole);
+    EXPECT_EQ(
+        Replicas(GetParam(), gas, 1, 1).BitsAfter(13, kLongAfter),
+        std::vector<uint64_t>(whole.begin() + static_cast<int64_t>(whole.size() / 2), whole.end()));
+  }
+}
+
+TEST_P(GasRunOfEngine, PausesDivideARunAndKeepItsBits) {
+  const double end = GetParam() == GasEngine::kJumps ? 20 : 1;
+  for (const GasEnds ends : {GasEnds::kPeriodic, GasEnds::kReservoirs}) {
+    const GasGeometry gas = GasOf(kPaperRho, 0.2, "80x50", ends);
+    Replicas whole(GetParam(), gas, 0, 2), paused(GetParam(), gas, 0, 2);
+    int parts = 0;
+    EXPECT_EQ(paused.BitsWithPauses(end, parts), whole.BitsWithoutWarmUp(end));
+    EXPECT_GE(parts, 3);
   }
 }
 

@@ -12,6 +12,7 @@
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_meter.h"
 #include "core/gas/gas_run.h"
+#include "core/gas/hit_rates.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/gas/gases.h"
 
@@ -145,6 +146,40 @@ TEST(LaneGas, BallsThatMeetPistonsInTipsStayInTheirCells) {
       EXPECT_GT(exchanges, 300u);
     }
   }
+}
+
+// A ball that starts beyond a tip, where it misses all discs, after it has met the piston there. In
+// its cell it would exchange again and again.
+TEST(LaneGas, AnEscapedBallStopsAndCountsOnce) {
+  const GasGeometry gas = GasOf(0.529561127988977, 0.2, "3");
+  GasState state = GasInEquilibrium(gas, 1, 44, 0);
+  state.balls[1] = {.position = {0.47, 0.4}, .direction = {1, 0}, .speed = 1};
+  GasMeter meter(gas, state);
+  std::vector<GasStart> starts;
+  starts.push_back({state, ThermalWalls(), GasRandom(1, 1, 1), &meter});
+  const auto run = StartGases(GasEngine::kLanes, gas, GasExchangeRate(gas, 1), std::move(starts));
+  run->AdvanceTo(1);
+  EXPECT_EQ(meter.escapes(), 1u);
+  const double energy = meter.Energy(1);
+  run->AdvanceTo(100);
+  EXPECT_EQ(meter.escapes(), 1u);
+  EXPECT_EQ(meter.Energy(1), energy);
+}
+
+// Here a cell is as small as the rounding of places, and balls escape soon.
+TEST(LaneGas, AGasThatLosesItsBallsEnds) {
+  const GasGeometry gas = GasOf(0.7071067811865475, 4.4e-17, "3", GasEnds::kReservoirs);
+  const GasRandom random(45, 0, 0);
+  const GasState state = GasInEquilibrium(gas, 1, 45, 0);
+  GasMeter meter(gas, state);
+  std::vector<GasStart> starts;
+  starts.push_back({state, ThermalWalls(gas, 1, 1, random), random, &meter});
+  const auto run = StartGases(GasEngine::kLanes, gas, GasExchangeRate(gas, 1), std::move(starts));
+  int asked = 0;
+  Pauses pauses([&] { return ++asked > 100; });
+  EXPECT_TRUE(run->AdvanceTo(100'000 * MeanFlight(gas.pair()), pauses));
+  EXPECT_GT(meter.escapes(), 0u);
+  EXPECT_LE(meter.escapes(), 3u);
 }
 
 // A gas at rest except for one piston, which comes to a resting ball within its reach.
