@@ -9,7 +9,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "core/ensemble/experiment_kind.h"
-#include "core/model_choice/sampling_cost.h"
 #include "tests/questions/answer_check.h"
 #include "tests/questions/computed_point.h"
 
@@ -77,7 +76,7 @@ std::optional<EnsembleSpec> ByModel(const EnsembleSpec& question, Model model, u
   spec = WithSamples(spec, kDefaultSamples);
   if (!Violations(spec).empty()) return std::nullopt;
   if (!TakesSamples(model)) return spec;
-  const double samples = seconds / SecondsPerSample(spec, PointAt(spec, 0), machine.rates);
+  const double samples = SamplesIn(seconds, spec, 0, model, machine);
   if (!(samples >= kEnoughSamples)) return std::nullopt;
   return WithSamples(spec, std::min(samples, kMostSamples));
 }

@@ -8,6 +8,7 @@
 #include "tests/questions/agreement_check.h"
 #include "tests/questions/answer_check.h"
 #include "tests/questions/finite_check.h"
+#include "tests/questions/memory_check.h"
 #include "tests/questions/plan_check.h"
 #include "tests/questions/refusal_check.h"
 
@@ -105,6 +106,17 @@ TEST(Checks, EveryDefectOfAPlanIsFound) {
   plan = good;
   plan.set_model(v1::EnsembleSpec::MARKOV);
   EXPECT_THAT(CheckPlan(plan), Breaks(kPlanCheck));
+}
+
+TEST(Checks, MemoryBeyondThePlanIsFound) {
+  const PeakMemory peak;
+  const std::vector<char> bytes(100'000'000, 1);
+  EXPECT_GT(peak.Bytes(), 0.9e8);
+  EXPECT_LT(peak.Bytes(), 1.5e8);
+#ifndef BALLPISTON_SANITIZED
+  EXPECT_THAT(CheckMemory(1e6, 1e8), Breaks(kMemoryCheck));
+#endif
+  EXPECT_THAT(CheckMemory(1e8, 1e8 + kMemoryOfAnyAnswer), IsEmpty());
 }
 
 TEST(Checks, ARefusalNeedsFieldValueAndRange) {

@@ -1,6 +1,8 @@
 #include "tests/questions/computed_point.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -51,6 +53,20 @@ void StartAndStop(const EnsembleSpec& spec, size_t index, const Answer& answer) 
   LocalPoint local(*point);
   ImpatientQueue queue(local);
   point->StartRun(queue)->Advance();
+}
+
+double SamplesIn(double seconds, const EnsembleSpec& spec, size_t index, Model model,
+                 const Machine& machine) {
+  const PointParameters point = PointAt(spec, index);
+  double samples = std::numeric_limits<double>::infinity();
+  if (!TakesSamples(model)) return samples;
+  // A few samples cost more each than many.
+  for (double tried = 1; tried <= 1e9 && std::isinf(samples); tried *= 32) {
+    const EnsembleSpec one = WithSamples(OnePointSpec(spec, point, model), tried);
+    const double work = LadderFor(one, point, machine, NoPilot).Chosen().work.value_or(seconds);
+    if (!(work < seconds / 2)) samples = tried * seconds / work;
+  }
+  return samples;
 }
 
 EnsembleSpec WithSamples(EnsembleSpec spec, double samples) {

@@ -7,7 +7,7 @@
 
 #include "ballpiston/v1/result.pb.h"
 #include "core/ensemble/point_experiment.h"
-#include "core/model_choice/limit_error.h"
+#include "core/model_choice/ladder.h"
 #include "tests/questions/report.h"
 
 namespace ballpiston::questions {
@@ -25,6 +25,11 @@ ComputedPoint ComputePoint(const EnsembleSpec& spec, size_t index, const Answer&
 
 // Starts the computation and stops it where the engine first asks whether to stop.
 void StartAndStop(const EnsembleSpec& spec, size_t index, const Answer& answer);
+
+// The number of samples that `model` is planned to compute in `seconds` at the point `index`. For a
+// model without samples: a number above any other.
+double SamplesIn(double seconds, const EnsembleSpec& spec, size_t index, Model model,
+                 const Machine& machine);
 
 // The same question with a number of samples, or of collisions, in the place of its target.
 EnsembleSpec WithSamples(EnsembleSpec spec, double samples);

@@ -6,9 +6,9 @@
 
 #include "core/experiment/all_experiments.h"
 #include "core/geometry/pair_geometry.h"
-#include "core/model_choice/sampling_cost.h"
 #include "server/convert/spec.h"
 #include "tests/core/model_choice/questions.h"
+#include "tests/questions/computed_point.h"
 #include "tests/questions/defect.h"
 #include "tests/questions/dice.h"
 #include "tests/questions/values.h"
@@ -135,8 +135,8 @@ class Drawing {
   double AffordableSamples() {
     const double seconds = dice_.LogBetween(1e-2, 1) * most_seconds_;
     if (!IsPermitted()) return 64;
-    const double each = SecondsPerSample(Spec(), Point(), SomeMachine().rates);
-    const double samples = seconds / each / Spec().grid.PointCount();
+    const double samples = SamplesIn(seconds / Spec().grid.PointCount(), Spec(), 0,
+                                     Sampled(Spec().model), SomeMachine());
     return samples >= 1 ? std::min(samples, 1e6) : 1;  // NaN becomes 1
   }
 

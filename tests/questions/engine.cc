@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/ensemble/experiment_kind.h"
+#include "core/ensemble/point_memory.h"
 #include "core/model_choice/ladder.h"
 #include "server/convert/plan.h"
 #include "server/convert/spec.h"
@@ -14,6 +15,7 @@
 #include "tests/questions/agreement_check.h"
 #include "tests/questions/answer_check.h"
 #include "tests/questions/computed_point.h"
+#include "tests/questions/memory_check.h"
 #include "tests/questions/plan_check.h"
 #include "tests/questions/refusal_check.h"
 
@@ -91,10 +93,17 @@ class Asking {
     return WithSamples(spec_, ladders_[i].Chosen().samples.value_or(1));
   }
 
+  double PlannedMemory(size_t i) const {
+    const PointParameters point = PointAt(spec_, i);
+    return MemoryOf(OnePointSpec(spec_, point, ladders_[i].answer.model), point, 1);
+  }
+
   bool Answer() {
     report_.outcome = "answered";
     for (size_t i = 0; i < ladders_.size(); ++i) {
+      const PeakMemory peak;
       ComputedPoint computed = ComputePoint(SpecOfPoint(i), i, ladders_[i].answer);
+      Add(CheckMemory(PlannedMemory(i), peak.Bytes()));
       Add(std::move(computed.findings));
       Add(CheckAnswer(question_.spec, computed.result));
     }
@@ -104,7 +113,9 @@ class Asking {
   bool Stop() {
     report_.outcome = "stopped";
     const double start = ProcessorSeconds();
+    const PeakMemory peak;
     StartAndStop(SpecOfPoint(0), 0, ladders_[0].answer);
+    Add(CheckMemory(PlannedMemory(0), peak.Bytes()));
     report_.cancel_seconds = ProcessorSeconds() - start;
     return true;
   }

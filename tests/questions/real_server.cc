@@ -77,7 +77,11 @@ class Conversation {
     report_.outcome = "refused";
     const auto violations = server::CheckSpec(question_.spec).violations;
     if (violations.empty()) {
-      Add({{kRefusalCheck, absl::StrCat("the server alone refuses: ", status.message())}});
+      // What this machine cannot do. The engine knows no machine.
+      report_.outcome = "refused here";
+      if (!absl::StrContains(status.message(), "permitted")) {
+        Add({{kRefusalCheck, absl::StrCat("does not say what is permitted: ", status.message())}});
+      }
     } else if (!absl::StrContains(status.message(), violations.front().description)) {
       Add({{kRefusalCheck, absl::StrCat("not the engine's words: ", status.message())}});
     }
