@@ -24,7 +24,7 @@ namespace {
 constexpr int kShrunkOfAKind = 1;
 constexpr int kPrintedOfAKind = 3;
 constexpr int kMostTrials = 150;
-constexpr int kMostTrialsWithoutEnd = 3;  // each takes kMostProcessorSeconds
+constexpr int kMostTrialsWithoutEnd = 10;  // each takes kMostProcessorSeconds
 
 constexpr double kWrongPlan = 5;
 constexpr double kLeastCompared = 0.02;  // s: below it a plan is about overheads
@@ -84,25 +84,22 @@ class Campaign {
     const int earlier = kinds_[absl::StrCat(finding.check, " ", ExperimentOf(question.spec), " ",
                                             ModelOf(question.spec))]++;
     if (earlier >= kPrintedOfAKind) return;
-    std::string text = absl::StrCat(finding.check, ": ", finding.what);
-    if (earlier < kShrunkOfAKind) {
-      const Question simplest = Simplest(question, finding.check);
-      absl::StrAppend(&text, "\n  ", Command(simplest.spec), "\n  shrunk from");
-    }
-    absl::StrAppend(&text, "\n  ", Command(question.spec), "\n  (question ", number, " of seed ",
-                    size_.seed, ")");
-    if (!question.defect.empty()) absl::StrAppend(&text, " with a defect: ", question.defect);
-    std::cout << name_ << ": " << text << std::endl;  // now, because the campaign may take hours
+    // The output is flushed, because a campaign may take hours.
+    std::cout << name_ << ": " << finding.check << ": " << finding.what << "\n  "
+              << Command(question.spec) << "\n  (question " << number << " of seed " << size_.seed
+              << (question.defect.empty() ? "" : ", with a defect: ") << question.defect << ")"
+              << std::endl;
+    // A question with a defect stays as it is: without its defect it may be permitted.
+    if (earlier >= kShrunkOfAKind || !question.defect.empty()) return;
+    std::cout << "  shrunk: " << Command(Simplest(question.spec, finding.check)) << std::endl;
   }
 
-  Question Simplest(const Question& question, const std::string& check) const {
+  v1::EnsembleSpec Simplest(const v1::EnsembleSpec& spec, const std::string& check) const {
     const int most = check == kEndCheck ? kMostTrialsWithoutEnd : kMostTrials;
-    // A question with a defect stays as it is: without its defect it may be permitted.
-    if (!question.defect.empty()) return question;
-    const auto fails = [&](const v1::EnsembleSpec& spec) {
-      return ask_({.spec = spec}).Breaks(check);
+    const auto fails = [&](const v1::EnsembleSpec& simpler) {
+      return ask_({.spec = simpler}).Breaks(check);
     };
-    return {.spec = Shrink(question.spec, fails, most)};
+    return Shrink(spec, fails, most);
   }
 
   void Print() const {
