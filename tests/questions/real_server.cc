@@ -43,6 +43,10 @@ class Conversation {
     if (!plan.ok()) return Refused(plan.status());
     for (const v1::PointPlan& point : plan->points()) Add(CheckPlan(point));
     Add(CheckFinite(*plan));
+    if (!report_.findings.empty()) {
+      report_.outcome = "bad plan";
+      return std::move(report_);
+    }
     const auto job =
         Timed("server: create", [&] { return client_.Create(question_.spec, {.fresh = true}); });
     if (!job.ok()) return Failed(job.status());
