@@ -27,7 +27,10 @@ void SetValueOutside(Dice& dice, const Parameter& parameter, double bound, v1::G
   }
   if (&parameter == &kExponent) return grid.set_exponent(0, ExponentOutside(dice));
   if (&parameter == &kCells) return grid.set_cells(0, CellsOutside(dice));
-  if (&parameter == &kTemperature) return grid.set_temperature(0, TemperatureOutside(dice));
+  if (&parameter == &kTemperature) {
+    if (grid.temperature().empty()) grid.add_temperature(1);
+    return grid.set_temperature(0, TemperatureOutside(dice));
+  }
   if (&parameter == &kCold) return grid.set_cold(0, TemperatureOutside(dice));
   const bool is_below_cold = dice.Chance(0.5);
   grid.set_hot(0, is_below_cold ? std::nextafter(grid.cold(0), 0) : TemperatureOutside(dice));
