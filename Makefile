@@ -6,6 +6,7 @@ TEST_JOBS ?= $(shell nproc)
 PRESETS_PREFIX ?=
 STABILITY_OUT ?= stability.md
 MUTANTS ?= 60
+QUESTIONS ?= 20000
 
 TEST_PACKAGES := libgtest-dev libgmock-dev python3-grpcio python3-numpy python3-pandas python3-pytest python3-tqdm python3-matplotlib
 AARCH64_PACKAGES := g++-aarch64-linux-gnu qemu-user libabsl-dev:arm64 libhwy-dev:arm64 libgtest-dev:arm64 libgmock-dev:arm64
@@ -16,7 +17,7 @@ PROGRAMS := ballpiston ballpistond ballpiston-worker method_comparison stability
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder
-.PHONY: build test check test-asan test-tsan test-long demo chart ladder bench stability stability-table torture test-slurm test-alerts test-web mutation deb oci aarch64 fuzz thread-safety nightly format check-format tidy setup clean help
+.PHONY: build test check test-asan test-tsan test-long demo chart ladder bench stability stability-table torture test-slurm test-alerts test-web mutation questions deb oci aarch64 fuzz thread-safety nightly format check-format tidy setup clean help
 
 build: build/release/.$(PRESETS_PREFIX)programs ## Build the programs, optimised, in build/release/bin (the default)
 	@cmake --build build/release --target $(PROGRAMS)
@@ -82,6 +83,10 @@ test-web: build ## Test the page of ballpiston web in headless Chromium, with np
 	@scripts/setup.sh $(WEB_PACKAGES)
 	@scripts/web-test.sh build/release/bin
 
+questions: build/release/.$(PRESETS_PREFIX)tests ## Ask the engine and a server QUESTIONS random questions, by default 20,000, and check the answers (some hours)
+	@cmake --build build/release --target questions_test
+	@BALLPISTON_QUESTIONS=$(QUESTIONS) build/release/bin/questions_test --gtest_filter='Questions.*' --gtest_brief=1
+
 mutation: ## Make MUTANTS small wrong changes, by default 60, and count those that the fast tests catch (two hours)
 	@scripts/setup.sh $(TEST_PACKAGES)
 	@tests/mutation/mutation.py --count $(MUTANTS)
@@ -110,8 +115,8 @@ thread-safety: ## Check with Clang that the server holds the right mutexes, in t
 	@scripts/setup.sh clang
 	@scripts/thread-safety.sh
 
-nightly: ## Run the checks that take hours: test-tsan, test-long, aarch64, tidy, torture, test-slurm, test-alerts, test-web, stability, mutation, and ten minutes of each fuzz target
-	@status=0; for task in test-tsan test-long aarch64 tidy torture test-slurm test-alerts test-web stability mutation "fuzz FUZZ_SECONDS=600"; do \
+nightly: ## Run the checks that take hours: test-tsan, test-long, aarch64, tidy, torture, test-slurm, test-alerts, test-web, stability, mutation, questions, and ten minutes of each fuzz target
+	@status=0; for task in test-tsan test-long aarch64 tidy torture test-slurm test-alerts test-web stability mutation questions "fuzz FUZZ_SECONDS=600"; do \
 	  printf '\n== make %s\n' "$$task"; $(MAKE) $$task || { status=1; failed+=" $${task%% *}"; }; \
 	done; echo "nightly: failed:$${failed:- none}"; exit $$status
 

@@ -1,0 +1,109 @@
+#include "tests/questions/answer_check.h"
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "tests/questions/finite_check.h"
+
+namespace ballpiston::questions {
+namespace {
+
+// The spectrum's probabilities have errors of some 1e-8 of their own.
+constexpr double kLawTolerance = 1e-7;
+
+bool HasSamples(const v1::PointResult& result) {
+  return result.model() != v1::EnsembleSpec::CLOSED_FORM &&
+         result.model() != v1::EnsembleSpec::SPECTRUM;
+}
+
+// In a gas of one column.
+bool HasOneColumn(const std::string& cells) {
+  return cells == "1" || absl::StartsWith(cells, "1x");
+}
+
+// Whether the estimate is exact although the model samples, or computes with an error.
+bool IsExact(const v1::PointResult& result, const v1::Estimate& estimate) {
+  if (estimate.has_exact() && estimate.value() == estimate.exact()) return true;
+  const v1::PointParameters& point = result.parameters();
+  // The piston is too slow to be overtaken.
+  if (estimate.name() == "mean_sigma") return point.epsilon() >= 0.25;
+  const bool is_of_the_limit =
+      result.model() == v1::EnsembleSpec::MARKOV || result.model() == v1::EnsembleSpec::SPECTRUM;
+  return is_of_the_limit && absl::StartsWith(estimate.name(), "conductivity") &&
+         HasOneColumn(point.cells());
+}
+
+void CheckErrors(const v1::PointResult& result, Findings& findings) {
+  if (result.model() == v1::EnsembleSpec::CLOSED_FORM) return;
+  for (const v1::Estimate& estimate : result.estimates()) {
+    if (!estimate.has_standard_error() || IsExact(result, estimate)) continue;
+    const double rounding =
+        std::numeric_limits<double>::epsilon() / 2 * std::fabs(estimate.value());
+    if (estimate.standard_error() <= 0 || estimate.standard_error() < rounding) {
+      findings.push_back(
+          {kFalseZeroCheck,
+           absl::StrCat(estimate.name(), " is ", estimate.value(), " +- ",
+                        estimate.standard_error(), " from ", result.samples(), " samples by ",
+                        v1::EnsembleSpec::Model_Name(result.model()))});
+    }
+  }
+}
+
+void CheckMeasured(const v1::PointResult& result, Findings& findings) {
+  if (result.estimates().empty()) {
+    findings.push_back({kMeasuredCheck, "no estimate"});
+    return;
+  }
+  if (!HasSamples(result) || !result.remarks().empty()) return;
+  if (result.samples() < 1) {
+    findings.push_back({kMeasuredCheck, "0 samples, and no remark"});
+  } else if (result.samples() >= kEnoughSamples && !result.estimates(0).has_standard_error()) {
+    findings.push_back(
+        {kMeasuredCheck, absl::StrCat(result.estimates(0).name(), " has from ", result.samples(),
+                                      " samples no error, and no remark")});
+  }
+}
+
+void CheckHealth(const v1::EnsembleSpec& spec, const v1::PointResult& result, Findings& findings) {
+  const double most = spec.precision() == v1::EnsembleSpec::SINGLE ? 1e-4 : 1e-9;
+  if (result.health().escapes() == 0 && result.health().max_energy_error() <= most) return;
+  findings.push_back({kHealthCheck, result.health().ShortDebugString()});
+}
+
+void CheckLaws(const v1::PointResult& result, Findings& findings) {
+  double both_signs = 0;
+  for (const v1::Histogram& histogram : result.histograms()) {
+    if (histogram.expected_probabilities().empty()) continue;
+    double sum = std::accumulate(histogram.expected_probabilities().begin(),
+                                 histogram.expected_probabilities().end(), 0.0);
+    if (histogram.sigma() != 0) {
+      both_signs += sum;
+      continue;
+    }
+    if (!(std::fabs(sum - 1) <= kLawTolerance)) {
+      findings.push_back({kLawCheck, absl::StrCat("the probabilities of ", histogram.name(),
+                                                  " sum to 1 + ", sum - 1)});
+    }
+  }
+  if (both_signs != 0 && !(std::fabs(both_signs - 1) <= kLawTolerance)) {
+    findings.push_back(
+        {kLawCheck, absl::StrCat("the probabilities of alpha sum to 1 + ", both_signs - 1)});
+  }
+}
+
+}  // namespace
+
+Findings CheckAnswer(const v1::EnsembleSpec& spec, const v1::PointResult& result) {
+  Findings findings = CheckFinite(result);
+  CheckErrors(result, findings);
+  CheckMeasured(result, findings);
+  CheckHealth(spec, result, findings);
+  CheckLaws(result, findings);
+  return findings;
+}
+
+}  // namespace ballpiston::questions

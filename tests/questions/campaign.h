@@ -1,0 +1,36 @@
+// Asks many questions, shrinks those that break a check, and prints what became of them.
+#ifndef BALLPISTON_TESTS_QUESTIONS_CAMPAIGN_H_
+#define BALLPISTON_TESTS_QUESTIONS_CAMPAIGN_H_
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "tests/questions/question.h"
+#include "tests/questions/report.h"
+
+namespace ballpiston::questions {
+
+struct Size {
+  uint64_t seed = 1;
+  uint64_t first = 0;
+  uint64_t questions = 300;
+  // Questions that are planned above this processor time are started and stopped.
+  double most_seconds = 0.01;
+  bool is_nightly = false;  // reports wrong plans and late cancels too
+};
+
+// The size of `make test`, or the one that the environment chooses (README.md).
+Size SizeFromEnvironment();
+
+using Asker = std::function<Report(const Question&)>;
+
+// Prints the counts by experiment and outcome, the seconds of each check and, if it is nightly,
+// plans that were wrong by more than a factor of 5 and cancels of more than 2 s. Prints each kind
+// of failure when it is found: the broken check, and the command that shows it. Returns the number
+// of questions that break a check.
+int AskAll(const std::string& name, const Size& size, const Asker& ask);
+
+}  // namespace ballpiston::questions
+
+#endif  // BALLPISTON_TESTS_QUESTIONS_CAMPAIGN_H_

@@ -1,0 +1,82 @@
+#include "tests/questions/computed_point.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/ensemble/block_run.h"
+#include "core/ensemble/experiment_kind.h"
+#include "core/ensemble/point_fold.h"
+#include "server/convert/point_result.h"
+#include "server/convert/result_record.h"
+#include "tests/questions/finite_check.h"
+
+namespace ballpiston::questions {
+namespace {
+
+// Hands out all blocks, and asks for a pause at once.
+class ImpatientQueue : public BlockQueue {
+ public:
+  explicit ImpatientQueue(LocalPoint& point) : point_(point) {}
+
+  std::optional<Block> Next() override { return point_.NextBlock(); }
+  void Done(const Block& block, BlockResult result) override {
+    point_.Add(block, std::move(result));
+  }
+  bool Pause() override {
+    stop_.request_stop();
+    return true;
+  }
+  std::stop_token stop() const override { return stop_.get_token(); }
+
+ private:
+  LocalPoint& point_;
+  std::stop_source stop_;
+};
+
+}  // namespace
+
+ComputedPoint ComputePoint(const EnsembleSpec& spec, size_t index, const Answer& answer) {
+  const auto point = PointExperiment::Create(spec, index, answer);
+  const PointSummary summary = point->Summarize(*FoldPoint(*point));
+  return {server::PointResultMessage(server::ResultRecordOf(index, *point, summary),
+                                     server::DetailsRecordOf(summary), *spec.experiment),
+          CheckFinite(summary)};
+}
+
+void StartAndStop(const EnsembleSpec& spec, size_t index, const Answer& answer) {
+  const auto point = PointExperiment::Create(spec, index, answer);
+  LocalPoint local(*point);
+  ImpatientQueue queue(local);
+  point->StartRun(queue)->Advance();
+}
+
+double SamplesIn(double seconds, const EnsembleSpec& spec, size_t index, Model model,
+                 const Machine& machine) {
+  const PointParameters point = PointAt(spec, index);
+  double samples = std::numeric_limits<double>::infinity();
+  if (!TakesSamples(model)) return samples;
+  // A few samples cost more each than many.
+  for (double tried = 1; tried <= 1e9 && std::isinf(samples); tried *= 32) {
+    const EnsembleSpec one = WithSamples(OnePointSpec(spec, point, model), tried);
+    const double work = LadderFor(one, point, machine, NoPilot).Chosen().work.value_or(seconds);
+    if (!(work < seconds / 2)) samples = tried * seconds / work;
+  }
+  return samples;
+}
+
+EnsembleSpec WithSamples(EnsembleSpec spec, double samples) {
+  const auto count =
+      static_cast<int64_t>(std::clamp(samples, 1.0, static_cast<double>(kMaxSamples)));
+  const std::string estimate = spec.target.estimate;
+  spec.target = spec.experiment->unit == TargetUnit::kCollisions ? Target{.collisions = count}
+                                                                 : Target{.samples = count};
+  spec.target.estimate = estimate;
+  return spec;
+}
+
+}  // namespace ballpiston::questions

@@ -1,0 +1,16 @@
+// A permitted question becomes one that the service has to refuse.
+#ifndef BALLPISTON_TESTS_QUESTIONS_DEFECT_H_
+#define BALLPISTON_TESTS_QUESTIONS_DEFECT_H_
+
+#include "core/ensemble/experiment_kind.h"
+#include "tests/questions/dice.h"
+#include "tests/questions/question.h"
+
+namespace ballpiston::questions {
+
+// `bound`: of delta.
+void AddDefect(Dice& dice, const ExperimentKind& experiment, double bound, Question& question);
+
+}  // namespace ballpiston::questions
+
+#endif  // BALLPISTON_TESTS_QUESTIONS_DEFECT_H_

@@ -1,0 +1,163 @@
+#include "tests/questions/draw.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "core/experiment/all_experiments.h"
+#include "core/geometry/pair_geometry.h"
+#include "server/convert/spec.h"
+#include "tests/core/model_choice/questions.h"
+#include "tests/questions/computed_point.h"
+#include "tests/questions/defect.h"
+#include "tests/questions/dice.h"
+#include "tests/questions/values.h"
+
+namespace ballpiston::questions {
+namespace {
+
+constexpr double kDefects = 1.0 / 7;
+
+class Drawing {
+ public:
+  Drawing(uint64_t seed, uint64_t number, double most_seconds)
+      : dice_(seed, number),
+        most_seconds_(most_seconds),
+        experiment_(*kAllExperiments[dice_.Below(kAllExperiments.size())]) {}
+
+  Question Draw() {
+    spec_.set_experiment(static_cast<v1::EnsembleSpec::Experiment>(experiment_.number));
+    if (dice_.Chance(0.8)) spec_.set_seed(dice_.Bits());
+    for (const ParameterUse& use : experiment_.parameters) {
+      if (use.needed || dice_.Chance(0.5)) AddList(*use.parameter);
+    }
+    SetMethod();
+    SetTarget();
+    Question question = {spec_};
+    if (dice_.Chance(kDefects)) AddDefect(dice_, experiment_, bound_, question);
+    return question;
+  }
+
+ private:
+  bool Extreme() { return dice_.Chance(0.35); }
+
+  void AddList(const Parameter& parameter) {
+    const size_t values = dice_.Chance(0.85) ? 1 : 2 + dice_.Below(2);
+    for (size_t i = 0; i < values; ++i) AddValue(parameter, *spec_.mutable_grid());
+  }
+
+  // rho comes before delta, and hot before cold.
+  void AddValue(const Parameter& parameter, v1::Grid& grid) {
+    if (&parameter == &kRho) {
+      const double rho = Rho(dice_, Extreme());
+      bound_ = std::min(bound_, IsOfAGas(&experiment_) ? GasDeltaBound(rho) : PairDeltaBound(rho));
+      return grid.add_rho(rho);
+    }
+    if (&parameter == &kDelta) return grid.add_delta(Delta(dice_, bound_, Extreme()));
+    if (&parameter == &kEpsilon) return grid.add_epsilon(Epsilon(dice_, Extreme()));
+    if (&parameter == &kExponent) return grid.add_exponent(Exponent(dice_, Extreme()));
+    if (&parameter == &kCells) return grid.add_cells(Cells(dice_, Extreme()));
+    if (&parameter == &kTemperature) return grid.add_temperature(Temperature(dice_, Extreme()));
+    if (&parameter == &kHot) return grid.add_hot(Temperature(dice_, Extreme()));
+    const double hot = *std::min_element(grid.hot().begin(), grid.hot().end());
+    grid.add_cold(Cold(dice_, hot, Extreme()));
+  }
+
+  void SetMethod() {
+    if (dice_.Chance(0.65)) {
+      spec_.set_model(server::ModelMessage(
+          dice_.Chance(0.95)
+              ? dice_.Pick<Model>({experiment_.models.begin(), experiment_.models.end()})
+              : kLadder[dice_.Below(std::size(kLadder))]));
+    } else {
+      spec_.set_verify(dice_.Chance(0.3));
+    }
+    if (dice_.Chance(0.12)) spec_.set_precision(v1::EnsembleSpec::SINGLE);
+    const bool has_choice = experiment_.aims.size() > 1;
+    if (dice_.Chance(has_choice ? 0.5 : 0.1)) {
+      const auto& aim = experiment_.aims[dice_.Below(experiment_.aims.size())];
+      spec_.mutable_target()->set_estimate(std::string(aim.name));
+    }
+  }
+
+  void SetTarget() {
+    v1::Target& target = *spec_.mutable_target();
+    if (dice_.Chance(0.6)) return SetCount(AffordableSamples(), target);
+    switch (dice_.Below(8)) {
+      case 0:
+        return;  // the default, 10,000
+      case 1:
+        return SetCount(dice_.Pick<double>({1, 2, 63, 64, kMaxSamples - 1.0, 1.0 * kMaxSamples}),
+                        target);
+      case 2:
+        return SetCount(dice_.LogBetween(1, 1.0 * kMaxSamples), target);
+      case 3:
+      case 4:
+        return SetTolerance(AffordableSamples(), target);
+      case 5:
+        return target.set_tolerance(dice_.Chance(0.5) ? dice_.LogBetween(1e-300, 1)
+                                                      : std::nextafter(1.0, 0));
+      case 6:
+        SetTolerance(AffordableSamples(), target);
+        [[fallthrough]];
+      default:
+        SetBudget(target);
+    }
+  }
+
+  void SetBudget(v1::Target& target) {
+    const double seconds = dice_.Chance(0.8) ? dice_.LogBetween(1e-5, most_seconds_)
+                                             : dice_.LogBetween(1e-9, kMaxBudgetSeconds);
+    auto& budget = *target.mutable_budget();
+    budget.set_seconds(static_cast<int64_t>(seconds));
+    budget.set_nanos(
+        std::max(static_cast<int32_t>((seconds - std::floor(seconds)) * 1e9), int32_t{1}));
+  }
+
+  // Samples, or collisions where the experiment counts them.
+  void SetCount(double samples, v1::Target& target) {
+    const bool counts_collisions = experiment_.unit == TargetUnit::kCollisions ||
+                                   (experiment_.unit == TargetUnit::kEither && dice_.Chance(0.3));
+    const double each = counts_collisions && IsPermitted() ? CollisionsOfASample() : 1;
+    const double most = static_cast<double>(kMaxSamples);
+    const double wanted = samples * each;
+    const auto count =
+        static_cast<int64_t>(wanted >= 1 ? std::min(wanted, most) : 1);  // NaN becomes 1
+    counts_collisions ? target.set_collisions(count) : target.set_samples(count);
+  }
+
+  void SetTolerance(double samples, v1::Target& target) {
+    double error = IsPermitted() ? AimOf(Spec()).error(Sampled(Spec().model), Point()) : 1;
+    if (!std::isfinite(error)) error = 1;
+    target.set_tolerance(std::clamp(error / std::sqrt(samples), 1e-12, 0.9));
+  }
+
+  double AffordableSamples() {
+    const double seconds = dice_.LogBetween(1e-2, 1) * most_seconds_;
+    if (!IsPermitted()) return 64;
+    const double samples = SamplesIn(seconds / Spec().grid.PointCount(), Spec(), 0,
+                                     Sampled(Spec().model), SomeMachine());
+    return samples >= 1 ? std::min(samples, 1e6) : 1;  // NaN becomes 1
+  }
+
+  double CollisionsOfASample() { return experiment_.collisions(Sampled(Spec().model), Point()); }
+
+  EnsembleSpec Spec() const { return server::CheckSpec(spec_).spec; }
+  PointParameters Point() const { return PointAt(Spec(), 0); }
+  // So far: the target comes last.
+  bool IsPermitted() const { return server::CheckSpec(spec_).violations.empty(); }
+
+  Dice dice_;
+  const double most_seconds_;
+  const ExperimentKind& experiment_;
+  double bound_ = 0.5;
+  v1::EnsembleSpec spec_;
+};
+
+}  // namespace
+
+Question Draw(uint64_t seed, uint64_t number, double most_seconds) {
+  return Drawing(seed, number, most_seconds).Draw();
+}
+
+}  // namespace ballpiston::questions

@@ -1,0 +1,141 @@
+#include "tests/questions/engine.h"
+
+#include <ctime>
+#include <iterator>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "core/ensemble/experiment_kind.h"
+#include "core/ensemble/point_memory.h"
+#include "core/model_choice/ladder.h"
+#include "server/convert/plan.h"
+#include "server/convert/spec.h"
+#include "tests/core/model_choice/questions.h"
+#include "tests/questions/agreement_check.h"
+#include "tests/questions/answer_check.h"
+#include "tests/questions/computed_point.h"
+#include "tests/questions/memory_check.h"
+#include "tests/questions/plan_check.h"
+#include "tests/questions/refusal_check.h"
+
+namespace ballpiston::questions {
+namespace {
+
+// A grid has at most this many points that are planned and computed.
+constexpr size_t kMostPoints = 27;
+
+double ProcessorSeconds() {
+  timespec time = {};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+class Asking {
+ public:
+  Asking(const Question& question, double most_seconds)
+      : question_(question), most_seconds_(most_seconds) {}
+
+  Report Ask() {
+    if (Timed("refusal", [&] { return IsRefused(); })) return std::move(report_);
+    const double work = Timed("plan", [&] { return Plan(); });
+    if (work <= most_seconds_) {
+      Timed("answer", [&] { return Answer(); });
+    } else {
+      Timed("stop", [&] { return Stop(); });
+    }
+    Timed("agreement", [&] { return Compare(); });
+    return std::move(report_);
+  }
+
+ private:
+  template <typename Step>
+  std::invoke_result_t<Step> Timed(const char* check, Step step) {
+    const double start = ProcessorSeconds();
+    const auto result = step();
+    report_.seconds[check] += ProcessorSeconds() - start;
+    return result;
+  }
+
+  void Add(Findings findings) {
+    report_.findings.insert(report_.findings.end(), std::make_move_iterator(findings.begin()),
+                            std::make_move_iterator(findings.end()));
+  }
+
+  bool IsRefused() {
+    const server::CheckedSpec checked = server::CheckSpec(question_.spec);
+    spec_ = checked.spec;
+    Add(CheckRefusal(question_.spec, checked.violations));
+    if (checked.violations.empty() && !question_.defect.empty()) {
+      Add({{kRefusalCheck, "is not refused, although " + question_.defect}});
+    }
+    report_.outcome = checked.violations.empty() ? "" : "refused";
+    return !checked.violations.empty();
+  }
+
+  // The planned processor time.
+  double Plan() {
+    double work = 0;
+    for (size_t i = 0; i < std::min(PointCount(spec_), kMostPoints); ++i) {
+      const PointParameters point = PointAt(spec_, i);
+      ladders_.push_back(LadderFor(spec_, point, SomeMachine(), NoPilot));
+      const v1::PointPlan plan = server::PointPlanMessage(point, ladders_.back());
+      Add(CheckPlan(plan));
+      const v1::ModelPlan* const chosen = Chosen(plan);
+      work += chosen == nullptr ? 0 : chosen->work();
+    }
+    return work;
+  }
+
+  // A budget becomes the number of samples that it is planned to give.
+  EnsembleSpec SpecOfPoint(size_t i) const {
+    if (!spec_.target.budget_seconds) return spec_;
+    return WithSamples(spec_, ladders_[i].Chosen().samples.value_or(1));
+  }
+
+  double PlannedMemory(size_t i) const {
+    const PointParameters point = PointAt(spec_, i);
+    return MemoryOf(OnePointSpec(spec_, point, ladders_[i].answer.model), point, 1);
+  }
+
+  bool Answer() {
+    report_.outcome = "answered";
+    for (size_t i = 0; i < ladders_.size(); ++i) {
+      const PeakMemory peak;
+      ComputedPoint computed = ComputePoint(SpecOfPoint(i), i, ladders_[i].answer);
+      Add(CheckMemory(PlannedMemory(i), peak.Bytes()));
+      Add(std::move(computed.findings));
+      Add(CheckAnswer(question_.spec, computed.result));
+    }
+    return true;
+  }
+
+  bool Stop() {
+    report_.outcome = "stopped";
+    const double start = ProcessorSeconds();
+    const PeakMemory peak;
+    StartAndStop(SpecOfPoint(0), 0, ladders_[0].answer);
+    Add(CheckMemory(PlannedMemory(0), peak.Bytes()));
+    report_.cancel_seconds = ProcessorSeconds() - start;
+    return true;
+  }
+
+  bool Compare() {
+    Add(CheckAgreement(spec_, SomeMachine(), most_seconds_));
+    return true;
+  }
+
+  const Question& question_;
+  const double most_seconds_;
+  EnsembleSpec spec_;
+  std::vector<Ladder> ladders_;
+  Report report_;
+};
+
+}  // namespace
+
+Report AskEngine(const Question& question, double most_seconds) {
+  return Asking(question, most_seconds).Ask();
+}
+
+}  // namespace ballpiston::questions

@@ -1,0 +1,24 @@
+// A question to the service, and the command line that asks it.
+#ifndef BALLPISTON_TESTS_QUESTIONS_QUESTION_H_
+#define BALLPISTON_TESTS_QUESTIONS_QUESTION_H_
+
+#include <string>
+
+#include "ballpiston/v1/spec.pb.h"
+
+namespace ballpiston::questions {
+
+struct Question {
+  v1::EnsembleSpec spec;
+  // Why the service has to refuse the question; empty if it lies in the permitted domain. The
+  // service may still refuse such a question, for instance because no machine could answer it.
+  std::string defect = {};
+};
+
+// `ballpiston run ...`, for a shell. It asks exactly this specification. The specification is given
+// in JSON if the flags cannot express it.
+std::string Command(const v1::EnsembleSpec& spec);
+
+}  // namespace ballpiston::questions
+
+#endif  // BALLPISTON_TESTS_QUESTIONS_QUESTION_H_

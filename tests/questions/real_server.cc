@@ -1,0 +1,220 @@
+#include "tests/questions/real_server.h"
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+#include "client/library/channel.h"
+#include "server/convert/spec.h"
+#include "tests/questions/answer_check.h"
+#include "tests/questions/child.h"
+#include "tests/questions/finite_check.h"
+#include "tests/questions/plan_check.h"
+#include "tests/questions/refusal_check.h"
+#include "tests/support/await.h"
+
+namespace ballpiston::questions {
+namespace {
+
+constexpr char kCallCheck[] = "call";
+constexpr char kJobCheck[] = "job";
+
+bool MayMissItsTolerance(const v1::Target& target) {
+  return target.has_tolerance() && target.has_budget();
+}
+
+// One question to a server that runs.
+class Conversation {
+ public:
+  Conversation(const Question& question, const ServerProcess& server, const client::Client& client)
+      : question_(question), server_(server), client_(client) {}
+
+  Report Have(double most_seconds) {
+    const auto plan = Timed("server: plan", [&] { return client_.Plan(question_.spec); });
+    if (!plan.ok()) return Refused(plan.status());
+    for (const v1::PointPlan& point : plan->points()) Add(CheckPlan(point));
+    Add(CheckFinite(*plan));
+    if (!report_.findings.empty()) {
+      report_.outcome = "bad plan";
+      return std::move(report_);
+    }
+    const auto job =
+        Timed("server: create", [&] { return client_.Create(question_.spec, {.fresh = true}); });
+    if (!job.ok()) return Failed(job.status());
+    report_.planned = plan->work();
+    // A pilot takes seconds, and a plan knows it.
+    const bool is_long = !(plan->work() <= most_seconds);
+    const auto end = is_long ? Timed("server: cancel", [&] { return Cancel(job->name()); })
+                             : Timed("server: answer", [&] { return AwaitEnd(job->name()); });
+    if (!end.ok()) return Failed(end.status());
+    Judge(*end);
+    static_cast<void>(client_.Delete(job->name()));
+    return std::move(report_);
+  }
+
+ private:
+  template <typename Step>
+  std::invoke_result_t<Step> Timed(const char* check, Step step) {
+    const absl::Time start = absl::Now();
+    auto result = step();
+    report_.seconds[check] += absl::ToDoubleSeconds(absl::Now() - start);
+    return result;
+  }
+
+  void Add(Findings findings) {
+    report_.findings.insert(report_.findings.end(), std::make_move_iterator(findings.begin()),
+                            std::make_move_iterator(findings.end()));
+  }
+
+  // The server refuses what the engine refuses, with the same words.
+  Report Refused(const absl::Status& status) {
+    if (!absl::IsInvalidArgument(status)) return Failed(status);
+    report_.outcome = "refused";
+    const auto violations = server::CheckSpec(question_.spec).violations;
+    if (violations.empty()) {
+      // What this machine cannot do. The engine knows no machine.
+      report_.outcome = "refused here";
+      if (!absl::StrContains(status.message(), "permitted")) {
+        Add({{kRefusalCheck, absl::StrCat("does not say what is permitted: ", status.message())}});
+      }
+    } else if (!absl::StrContains(status.message(), violations.front().description)) {
+      Add({{kRefusalCheck, absl::StrCat("not the engine's words: ", status.message())}});
+    }
+    if (const auto job = client_.Create(question_.spec); job.ok()) {
+      Add({{kRefusalCheck, "planning is refused, and running is not"}});
+      static_cast<void>(client_.Cancel(job->name()));
+    }
+    return std::move(report_);
+  }
+
+  Report Failed(const absl::Status& status) {
+    report_.outcome = "failed";
+    Add({{kCallCheck, status.ToString()}});
+    return std::move(report_);
+  }
+
+  bool SpentTooMuch(double start) const {
+    return server_.ProcessorSeconds() - start > kMostProcessorSeconds;
+  }
+
+  // Until the state is `wanted`; an error if the server computes on and on.
+  template <typename Wanted>
+  absl::StatusOr<v1::EnsembleJob> AwaitState(const std::string& name, Wanted wanted) {
+    const double start = server_.ProcessorSeconds();
+    absl::StatusOr<v1::EnsembleJob> job;
+    AwaitThat([&] {
+      job = client_.Get(name);
+      return !job.ok() || wanted(job->state()) || SpentTooMuch(start);
+    });
+    if (job.ok() && !wanted(job->state())) {
+      Add({{kEndCheck, absl::StrCat("the job is ", v1::EnsembleJob::State_Name(job->state()),
+                                    " after ", kMostProcessorSeconds, " s of processor time")}});
+    }
+    return job;
+  }
+
+  absl::StatusOr<v1::EnsembleJob> AwaitEnd(const std::string& name) {
+    return AwaitState(name, client::HasEnded);
+  }
+
+  absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& name) {
+    const auto begun = AwaitState(
+        name, [](v1::EnsembleJob::State state) { return state != v1::EnsembleJob::QUEUED; });
+    if (!begun.ok()) return begun.status();
+    const absl::Time start = absl::Now();
+    const auto cancelled = client_.Cancel(name);
+    if (!cancelled.ok() && !absl::IsFailedPrecondition(cancelled.status())) {
+      return cancelled.status();
+    }
+    const auto end = AwaitEnd(name);
+    report_.cancel_seconds = absl::ToDoubleSeconds(absl::Now() - start);
+    return end;
+  }
+
+  void Judge(const v1::EnsembleJob& job) {
+    Add(CheckFinite(job));
+    switch (job.state()) {
+      case v1::EnsembleJob::SUCCEEDED:
+        report_.outcome = "answered";
+        report_.spent = job.work();
+        return JudgeResults(job);
+      case v1::EnsembleJob::CANCELLED:
+        report_.outcome = "cancelled";
+        return;
+      case v1::EnsembleJob::FAILED:
+        report_.outcome = "failed";
+        if (!MayMissItsTolerance(question_.spec.target())) {
+          Add({{kJobCheck, absl::StrCat("the job failed: ", job.error().message())}});
+        }
+        return;
+      default:
+        report_.outcome = "no end";
+    }
+  }
+
+  void JudgeResults(const v1::EnsembleJob& job) {
+    const auto points = Timed("server: results", [&] { return client_.Results(job.name()); });
+    if (!points.ok()) {
+      Failed(points.status());
+      return;
+    }
+    if (static_cast<int>(points->size()) != job.progress().points()) {
+      Add({{kJobCheck,
+            absl::StrCat(points->size(), " results of ", job.progress().points(), " points")}});
+    }
+    for (const v1::PointResult& point : *points) Add(CheckAnswer(question_.spec, point));
+  }
+
+  const Question& question_;
+  const ServerProcess& server_;
+  const client::Client& client_;
+  Report report_;
+};
+
+std::string LastLines(const std::string& log) {
+  constexpr size_t kMost = 600;
+  return log.substr(log.size() - std::min(log.size(), kMost));
+}
+
+}  // namespace
+
+Report RealServer::Ask(const Question& question) {
+  EnsureRunning();
+  Report report;
+  try {
+    report = Conversation(question, *server_, *client_).Have(most_seconds_);
+  } catch (const std::runtime_error& late) {  // tests/support/await.h
+    report = {.outcome = "no end", .findings = {{kEndCheck, late.what()}}};
+  }
+  // A call may fail a little before the process has ended.
+  const std::chrono::milliseconds patience(report.Breaks(kCallCheck) ? 5000 : 0);
+  if (const auto code = server_->AwaitEnd(patience)) {
+    report.outcome = "died";
+    report.findings = {{kCrashCheck, absl::StrCat("the server ended with exit code ", *code, ": ",
+                                                  LastLines(server_->log()))}};
+    server_.reset();
+  } else if (report.Breaks(kEndCheck)) {
+    server_->KillHard();
+    server_.reset();
+  }
+  return report;
+}
+
+void RealServer::EnsureRunning() {
+  if (server_ != nullptr) return;
+  server_ = std::make_unique<ServerProcess>();
+  server_->Start();
+  client_ = std::make_unique<client::Client>(*client::OpenChannel(server_->address()),
+                                             absl::FromChrono(kPatience));
+}
+
+}  // namespace ballpiston::questions

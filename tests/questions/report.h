@@ -1,0 +1,40 @@
+// What became of a question.
+#ifndef BALLPISTON_TESTS_QUESTIONS_REPORT_H_
+#define BALLPISTON_TESTS_QUESTIONS_REPORT_H_
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace ballpiston::questions {
+
+struct Finding {
+  std::string check;  // the name of the rule that is broken
+  std::string what;
+};
+
+using Findings = std::vector<Finding>;
+
+struct Report {
+  std::string outcome;  // answered, refused, stopped, ...
+  Findings findings = {};
+  std::map<std::string, double> seconds = {};  // by check
+  double planned = 0;         // processor seconds of a computed answer; 0: not compared
+  double spent = 0;           // likewise
+  double cancel_seconds = 0;  // from the wish to stop to the end
+
+  bool Breaks(const std::string& check) const {
+    for (const Finding& finding : findings) {
+      if (finding.check == check) return true;
+    }
+    return false;
+  }
+};
+
+// One line of text for each item, and back.
+std::string Text(const Report& report);
+Report ReportFromText(const std::string& text);
+
+}  // namespace ballpiston::questions
+
+#endif  // BALLPISTON_TESTS_QUESTIONS_REPORT_H_

@@ -1,0 +1,19 @@
+// Makes a question simpler while the same check still fails.
+#ifndef BALLPISTON_TESTS_QUESTIONS_SHRINK_H_
+#define BALLPISTON_TESTS_QUESTIONS_SHRINK_H_
+
+#include <functional>
+
+#include "ballpiston/v1/spec.pb.h"
+
+namespace ballpiston::questions {
+
+using Fails = std::function<bool(const v1::EnsembleSpec&)>;
+
+// Drops values of lists, rounds numbers, and simplifies target and method, as long as the command
+// gets shorter. Asks `fails` at most `most` times.
+v1::EnsembleSpec Shrink(v1::EnsembleSpec spec, const Fails& fails, int most);
+
+}  // namespace ballpiston::questions
+
+#endif  // BALLPISTON_TESTS_QUESTIONS_SHRINK_H_
