@@ -8,6 +8,7 @@ size_t PointCount(const EnsembleSpec& spec) { return static_cast<size_t>(spec.gr
 
 PointParameters PointAt(const EnsembleSpec& spec, size_t index) {
   PointParameters point = spec.grid.PointAt(index);
+  if (spec.experiment == nullptr) return point;
   for (const ParameterUse& use : spec.experiment->parameters) {
     if (use.default_value && !point.Find(*use.parameter)) {
       point.Set(*use.parameter, use.default_value);

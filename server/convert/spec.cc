@@ -128,7 +128,7 @@ Grid GridOf(const v1::Grid& message, Violations& violations) {
 }
 
 double Seconds(const google::protobuf::Duration& duration) {
-  return static_cast<double>(duration.seconds()) + 1e-9 * duration.nanos();
+  return static_cast<double>(duration.seconds()) + duration.nanos() / 1e9;
 }
 
 Target TargetOf(const v1::Target& message) {

@@ -345,6 +345,14 @@ TEST(Spec, AnUnknownEstimateIsAViolationEscapedAndShortened) {
                 "...; permitted with gas-equilibrium: exchange_rate, conductivity");
 }
 
+// Messages name the budget as it was given, not as 0.30000000000000004.
+TEST(Spec, ABudgetIsTheNearestNumberOfSeconds) {
+  v1::EnsembleSpec message = OneFirstHit();
+  message.mutable_target()->clear_samples();
+  message.mutable_target()->mutable_budget()->set_nanos(300'000'000);
+  EXPECT_EQ(CheckSpec(message).spec.target.budget_seconds, 0.3);
+}
+
 TEST(Spec, ABudgetBesideAToleranceComesBackToTheNanosecond) {
   v1::EnsembleSpec message = OneFirstHit();
   message.mutable_target()->set_tolerance(0.01);
