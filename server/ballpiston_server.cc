@@ -134,12 +134,14 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
       security_(std::move(security)),
       watches_(std::min(kLongestLook, options_.watch.snapshot)),
       store_(std::move(store)),
+      crashes_(std::make_shared<CrashRecord>(directory_.path())),
       ladder_(*store_, options_.workers),
       factory_(options_.factory ? std::make_unique<FactoryOpener>(options_.factory) : nullptr),
       scheduler_(factory_ ? *factory_ : static_cast<PointOpener&>(ladder_), options_.workers,
                  OptionsOfScheduler(options_)),
-      book_(*store_, options_.limits, scheduler_, [this] { watches_.LookNow(); }),
-      threads_(scheduler_, options_.workers, options_.slurm ? kLeaseBesideACluster : kWholePoint),
+      book_(*store_, options_.limits, scheduler_, [this] { watches_.LookNow(); }, crashes_),
+      threads_(scheduler_, options_.workers, options_.slurm ? kLeaseBesideACluster : kWholePoint,
+               crashes_),
       slurm_(options_.slurm
                  ? std::make_unique<SlurmExecutor>(
                        scheduler_, *options_.slurm, std::make_unique<SlurmTools>(*options_.slurm),

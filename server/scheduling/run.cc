@@ -29,8 +29,14 @@ Run::Run(RunRequest request, SchedulerOptions options)
       has_checkpoints_(request.has_checkpoints),
       journal_(std::move(request.journal)),
       options_(options),
-      shortfall_(std::move(request.shortfall)) {
+      shortfall_(std::move(request.shortfall)),
+      suspicion_(std::move(request.suspicion)) {
   SkipFinishedPoints();
+  if (suspicion_) {
+    std::erase_if(suspicion_->points, [this](size_t point) {
+      return point >= finished_.size() || finished_[point];
+    });
+  }
 }
 
 void Run::SkipFinishedPoints() {
@@ -179,8 +185,10 @@ OpenPoint* Run::Find(const Lease& lease) const {
 
 void Run::Close(const Lease& lease) {
   if (lease.pilot) {
+    NoteProgress(std::nullopt);
     pilots_.erase(*lease.pilot);
   } else {
+    NoteProgress(lease.point);
     leasable_.erase(lease.point);
     open_.erase(lease.point);
   }
@@ -198,6 +206,16 @@ void Run::Return(const Lease& lease, int attempt) {
 
 void Run::HasChunks(const Lease& lease) {
   if (!lease.pilot && open_.contains(lease.point)) leasable_.insert(lease.point);
+}
+
+void Run::NoteProgress(std::optional<size_t> point) {
+  has_progressed_ = true;
+  if (suspicion_ && point) suspicion_->points.erase(*point);
+}
+
+const Suspicion* Run::refuted() const {
+  const bool is_refuted = suspicion_ && has_progressed_ && suspicion_->points.empty();
+  return is_refuted ? &*suspicion_ : nullptr;
 }
 
 // ---- the end ----

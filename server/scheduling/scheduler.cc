@@ -1,6 +1,7 @@
 #include "server/scheduling/scheduler.h"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "absl/cleanup/cleanup.h"
@@ -74,10 +75,12 @@ std::vector<Executor*> Scheduler::Executors() const {
 // ---- runs ----
 
 void Scheduler::Add(RunRequest request) {
+  const bool is_suspect = request.suspicion.has_value();
   const auto run = std::make_shared<Run>(std::move(request), options_);
   {
     MutexLock lock(mutex_);
     runs_.emplace(run->key(), run);
+    if (is_suspect) suspects_.push_back(run->key());
     for (Member& member : executors_) {
       member.shares.Add(run->key(), run->principal(), run->priority());
     }
@@ -117,6 +120,10 @@ Scheduler::RunPointer Scheduler::FindRun(int64_t key) const {
 void Scheduler::StopRun(Run& run, absl::Status why) {
   run.Stop(std::move(why));
   DropStoppedLeases(run);
+  EndPilotsOf(run);
+}
+
+void Scheduler::EndPilotsOf(const Run& run) {
   std::vector<PilotPlace> left;
   for (const auto& [place, owner] : pilots_) {
     if (owner == run.key()) left.push_back(place);
@@ -156,14 +163,49 @@ void Scheduler::DropStoppedLeases(const Run& run) {
 }
 
 void Scheduler::Conclude(const RunPointer& run) {
+  bool others_go_on = false;
   {
     MutexLock lock(mutex_);
     const auto found = runs_.find(run->key());
     if (shutting_down_ || found == runs_.end() || !run->over()) return;
     for (Member& member : executors_) member.shares.Remove(run->key());
     runs_.erase(found);
+    others_go_on = std::erase(suspects_, run->key()) > 0;
   }
+  if (others_go_on) WakeExecutors();
   run->journal().Ended(run->outcome());
+}
+
+// ---- suspects ----
+
+bool Scheduler::IsPaused(const Run& run) const {
+  return !suspects_.empty() && run.key() != suspects_.front();
+}
+
+// A suspect waits for the end of the others' turns, so that their deaths are not its own.
+bool Scheduler::MayTakeTurn(const Run& run, const Member& member) const {
+  if (suspects_.empty()) return true;
+  if (IsPaused(run) || !member.traits.local) return false;
+  return std::ranges::none_of(
+      runs_, [&](const auto& other) { return other.second->HasTurns() && &run != &*other.second; });
+}
+
+// Between two turns, because the disk may be slow.
+void Scheduler::ClearIfRefuted(const RunPointer& run) {
+  std::function<bool()> clear;
+  {
+    MutexLock lock(mutex_);
+    if (suspects_.empty() || IsPaused(*run) || run->refuted() == nullptr) return;
+    clear = run->refuted()->clear;
+  }
+  if (!clear()) return;
+  {
+    MutexLock lock(mutex_);
+    std::erase(suspects_, run->key());
+    run->EndSuspicion();
+    if (!suspects_.empty()) EndPilotsOf(*run);  // the next suspect may need them
+  }
+  WakeExecutors();
 }
 
 void Scheduler::WakeExecutors() {
@@ -182,7 +224,9 @@ std::optional<Lease> Scheduler::Next(const Capacity& capacity) {
     Member& member = executors_[capacity.executor];
     const auto key = member.shares.First([&](int64_t candidate) {
       mutex_.AssertHeld();
-      lease = NextOf(*runs_.at(candidate), capacity);
+      Run& run_of_candidate = *runs_.at(candidate);
+      if (!MayTakeTurn(run_of_candidate, member)) return false;
+      lease = NextOf(run_of_candidate, capacity);
       return lease.has_value();
     });
     if (!key) return std::nullopt;
@@ -247,6 +291,7 @@ bool Scheduler::EndTurn(const Lease& lease, double seconds) {
     }
   }
   WakeExecutors();
+  ClearIfRefuted(run);
   Conclude(run);
   run->journal().AwaitRoom();
   return continues;
@@ -334,6 +379,7 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
 
 void Scheduler::DropAdopted(Run& run, size_t index) {
   MutexLock lock(mutex_);
+  run.NoteProgress(index);
   run.ForgetAdopted(index);
   DropLeases(run, [&](const Held& held) { return held.lease.point == index && !held.lease.pilot; });
 }
@@ -397,6 +443,9 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
     if (run != nullptr && !lease.pilot && run->IsUnopened(lease.point)) {
       return absl::UnavailableError("the point is not open yet");
     }
+    if (run != nullptr && is_elsewhere && IsPaused(*run)) {
+      return absl::UnavailableError("the run is paused");
+    }
     if (run != nullptr && is_elsewhere) Charge(*run, lease, report.seconds);
     OpenPoint* open = run ? run->Find(lease) : nullptr;
     if (open == nullptr || open->fold().finished()) return absl::OkStatus();
@@ -418,6 +467,7 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
   } else if (is_elsewhere) {
     WakeExecutors();
   }
+  if (is_elsewhere) ClearIfRefuted(run);
   return checked;
 }
 
@@ -431,6 +481,7 @@ void Scheduler::Merge(Run& run, const Lease& lease, OpenPoint& open, LeaseReport
   PointFold& fold = open.fold();
   open.work += report.seconds;
   uint64_t samples = 0;
+  if (!report.chunks.empty() && !lease.pilot) run.NoteProgress(lease.point);
   for (ChunkResult& chunk : report.chunks) {
     const bool is_early = fold.Needs(chunk.chunk) && chunk.chunk > fold.state().chunk;
     if (is_early && !lease.pilot) run.journal().ChunkIsEarly(lease.point, chunk);
@@ -462,7 +513,8 @@ void Scheduler::EndIfBudgetIsSpent(Run& run, const Lease& lease, OpenPoint& open
 // The files of an executor elsewhere may go when the lease ends, so its chunks are written now.
 void Scheduler::CheckpointIfDue(Run& run, const Lease& lease, OpenPoint& open) {
   const bool elsewhere = !executors_[lease.executor].traits.local;
-  const double between = elsewhere ? 0 : kBetweenCheckpoints * workers_;
+  const bool at_once = elsewhere || run.refuted() != nullptr;
+  const double between = at_once ? 0 : kBetweenCheckpoints * workers_;
   if (!open.fold().HasBlocks() || open.work < open.work_at_checkpoint + between) return;
   open.work_at_checkpoint = open.work;
   run.journal().Checkpoint(lease.point, open.fold().state());

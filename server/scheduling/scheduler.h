@@ -10,6 +10,8 @@
 //   3. ReturnedChunksGoOutAgain.
 //   4. APilotIsComputedOnceForAllRuns.
 //   5. AStoppedRunEndsWhenItsTurnsHaveEnded.
+//   6. SuspectsAreComputedAloneOneAfterTheOther. A suspect is a run that was being computed at two
+//      deaths of the process (crash_record.h): other runs pause, and executors elsewhere too.
 // Thread-safe.
 #ifndef BALLPISTON_SERVER_SCHEDULING_SCHEDULER_H_
 #define BALLPISTON_SERVER_SCHEDULING_SCHEDULER_H_
@@ -17,6 +19,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -89,7 +92,7 @@ class Scheduler {
 
   // Chunks that nobody needs are dropped. Errors, of executors that are not local:
   //   DATA_LOSS    a chunk does not belong to its point; the others are merged
-  //   UNAVAILABLE  the point is not open yet: report again later
+  //   UNAVAILABLE  the point is not open yet, or the run is paused: report again later
   absl::Status Report(const Lease& lease, LeaseReport report);
 
   // For a local executor: a turn at the lease ends, after its last report. `seconds`: processor
@@ -174,6 +177,11 @@ class Scheduler {
   absl::Status Resume(Run& run, size_t index, OpenPoint& open);
   void FinishPoint(const RunPointer& run, const Lease& lease) ABSL_LOCKS_EXCLUDED(mutex_);
   void Conclude(const RunPointer& run) ABSL_LOCKS_EXCLUDED(mutex_);
+  bool IsPaused(const Run& run) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  bool MayTakeTurn(const Run& run, const Member& member) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void ClearIfRefuted(const RunPointer& run) ABSL_LOCKS_EXCLUDED(mutex_);
+  void EndPilotsOf(const Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::vector<Executor*> Executors() const ABSL_LOCKS_EXCLUDED(mutex_);
   void WakeExecutors() ABSL_LOCKS_EXCLUDED(mutex_);
 
@@ -187,6 +195,7 @@ class Scheduler {
   bool shutting_down_ ABSL_GUARDED_BY(mutex_) = false;
   std::vector<Member> executors_ ABSL_GUARDED_BY(mutex_);
   std::map<int64_t, RunPointer> runs_ ABSL_GUARDED_BY(mutex_);
+  std::deque<int64_t> suspects_ ABSL_GUARDED_BY(mutex_);  // the first is computed alone
   std::map<HeldKey, Held> held_ ABSL_GUARDED_BY(mutex_);
   int64_t last_number_ ABSL_GUARDED_BY(mutex_) = 0;
   std::map<PilotPlace, int64_t> pilots_ ABSL_GUARDED_BY(mutex_);  // in progress, and by which run
