@@ -70,6 +70,9 @@ struct ExperimentKind {
   SampleWork (*work)(Model model, const PointParameters& point);
   double (*collisions)(Model model, const PointParameters& point);
 
+  // Upper bound of the bytes of one thread that takes samples (point_memory.h).
+  double (*memory)(Model model, const PointParameters& point);
+
   // Samples of one orbit that are measured together; a power of two up to 64.
   uint64_t samples_together = 1;
 

@@ -109,6 +109,7 @@ constinit const ExperimentKind kConditionalMeanFreeTime = {
     .check_grid = CheckPairGrid,
     .check_tolerance = CheckToleranceOfReturns,
     .work = WorkOfAReturn,
-    .collisions = OneCollision};
+    .collisions = OneCollision,
+    .memory = MemoryOfPairs};
 
 }  // namespace ballpiston

@@ -311,6 +311,7 @@ constinit const ExperimentKind kEnergyRelaxation = {
     .check_tolerance = CheckToleranceOfDecay,
     .work = WorkOfAnOrbit,
     .collisions = CollisionsOfASample,
+    .memory = MemoryOfPairs,
     .expected_probabilities = ProbabilitiesOfTheLimit};
 
 }  // namespace ballpiston

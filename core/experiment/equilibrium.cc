@@ -184,6 +184,7 @@ constinit const ExperimentKind kEquilibrium = {.name = "equilibrium",
                                                .create = CreateEquilibrium,
                                                .check_grid = CheckPairGrid,
                                                .work = WorkInEquilibrium,
-                                               .collisions = OneCollision};
+                                               .collisions = OneCollision,
+                                               .memory = MemoryOfPairs};
 
 }  // namespace ballpiston

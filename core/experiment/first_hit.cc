@@ -188,6 +188,7 @@ constinit const ExperimentKind kFirstHit = {.name = "first-hit",
                                             .check_tolerance = CheckToleranceOfReturns,
                                             .work = WorkOfAReturn,
                                             .collisions = OneCollision,
+                                            .memory = MemoryOfPairs,
                                             .expected_probabilities = ExpectedProbabilities};
 
 }  // namespace ballpiston

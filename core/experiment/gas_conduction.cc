@@ -294,6 +294,7 @@ constinit const ExperimentKind kGasConduction = {.name = "gas-conduction",
                                                  .check_grid = CheckConductionGrid,
                                                  .check_tolerance = CheckConductionTolerance,
                                                  .work = WorkOfGasConduction,
-                                                 .collisions = ExchangesOfAConductionSample};
+                                                 .collisions = ExchangesOfAConductionSample,
+                                                 .memory = MemoryOfReplicas};
 
 }  // namespace ballpiston

@@ -409,6 +409,7 @@ constinit const ExperimentKind kGasEquilibrium = {.name = "gas-equilibrium",
                                                   .check_grid = CheckEquilibriumGrid,
                                                   .work = WorkOfGasEquilibrium,
                                                   .collisions = ExchangesOfASample,
+                                                  .memory = MemoryOfReplicas,
                                                   .expected_probabilities = SpeedProbabilitiesAt};
 
 }  // namespace ballpiston

@@ -37,6 +37,9 @@ struct GasTimes {
 // The work of a replica at temperature 1 for this duration.
 SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time);
 
+// Upper bound of the bytes of the replicas that a thread computes together.
+double MemoryOfReplicas(Model model, const PointParameters& point);
+
 class GasExperiment : public PointExperiment {
  public:
   std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override;

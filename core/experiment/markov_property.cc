@@ -229,6 +229,7 @@ constinit const ExperimentKind kMarkovProperty = {
     .check_tolerance = CheckToleranceOfWhatTendsToZero,
     .work = WorkOfAnExchange,
     .collisions = OneCollision,
+    .memory = MemoryOfPairs,
     .samples_together = kExchangesPerOrbit};
 
 }  // namespace ballpiston

@@ -1,0 +1,54 @@
+#include "core/ensemble/point_memory.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/core/one_point_spec.h"
+
+namespace ballpiston {
+namespace {
+
+EnsembleSpec Gas(const GasShape& shape, Model model, int64_t replicas = 64) {
+  return SpecOf(&kGasEquilibrium, PaperGas(&kGasEquilibrium, 0.1, shape), {.samples = replicas},
+                model);
+}
+
+double Memory(const EnsembleSpec& spec, int threads = 1) {
+  return MemoryOf(spec, PointAt(spec, 0), threads);
+}
+
+// Growth of the resident memory of a process, while it computes one replica.
+TEST(PointMemory, IsAboveTheMeasuredMemoryAndOfItsOrder) {
+  const GasShape chain = {.columns = 1'000'000};
+  const GasShape lattice = {.columns = 1000, .rows = 1000, .is_lattice = true};
+  const struct {
+    GasShape shape;
+    Model model;
+    double measured;
+  } kMeasured[] = {{chain, Model::kBilliard, 283.5e6},
+                   {lattice, Model::kBilliard, 331.9e6},
+                   {chain, Model::kMarkov, 130.9e6},
+                   {lattice, Model::kMarkov, 185.1e6},
+                   {chain, Model::kBilliardReference, 297.6e6}};
+  for (const auto& [shape, model, measured] : kMeasured) {
+    EXPECT_GT(Memory(Gas(shape, model)), measured) << Name(model);
+    EXPECT_LT(Memory(Gas(shape, model)), 2.5 * measured) << Name(model);
+  }
+}
+
+TEST(PointMemory, EachThreadHasReplicasOfItsOwn) {
+  const GasShape large = {.columns = 1'000'000};
+  const double one = Memory(Gas(large, Model::kBilliard)),
+               four = Memory(Gas(large, Model::kBilliard), 4);
+  EXPECT_GT(four, 3.5 * one);
+  EXPECT_EQ(Memory(Gas(large, Model::kBilliard, 1), 4), one);  // no more threads than replicas
+}
+
+TEST(PointMemory, IsSmallForPairsAndForAnswersWithoutSamples) {
+  const EnsembleSpec pair = SpecOf(&kEquilibrium, PaperPoint(0.1), {}, Model::kBilliard);
+  EXPECT_LT(Memory(pair, 8), 100e6);
+  EXPECT_LT(Memory(Gas({.columns = 1'000'000}, Model::kClosedForm), 8), 10e6);
+  EXPECT_LT(Memory(Gas({.columns = 1'000'000}, Model::kAuto), 8), 10e6);
+}
+
+}  // namespace
+}  // namespace ballpiston
