@@ -184,7 +184,7 @@ absl::Status EngineCrashed(const std::string& what, int deaths) {
           "the engine crashed ", deaths, " times while it computed ", what,
           ": this is a fault of the program, not of the question; please report it with the "
           "specification. The points that were finished before stay")),
-      "ENGINE_CRASHED");
+      kEngineCrashed);
 }
 
 absl::Status StoreFailure(const absl::Status& status) {

@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/time/clock.h"
@@ -169,12 +170,19 @@ RunName RunOf(const JobRecord& record) {
   return {record.sequence, GenerationOf(record.id, record.restarts)};
 }
 
-RunName RunOf(const Job& job) {
-  return {job.sequence(), GenerationOf(job.id(), job.restarts())};
-}
+RunName RunOf(const Job& job) { return {job.sequence(), GenerationOf(job.id(), job.restarts())}; }
 
 std::string Text(const std::set<size_t>& points) {
   return points.empty() ? "" : absl::StrJoin(points, " ");
+}
+
+void LogCrashed(const JobRecord& job, const std::string& points, const v1::EnsembleSpec& spec) {
+  Log(Severity::kError,
+      "the engine crashed again and again while it computed this job, which fails",
+      {{"job", JobName(job.id)},
+       {"principal", job.principal},
+       {"points", points},
+       {"question", spec.ShortDebugString()}});
 }
 
 // The stored state from which a run is resumed. `damage`: the job's rows contradict each other.
@@ -294,14 +302,10 @@ absl::Status JobBook::ResumeJob(JobRecord record) {
 
 absl::Status JobBook::EndCrashed(const JobRecord& record) {
   const absl::StatusOr<v1::EnsembleSpec> spec = SpecFromBytes(record.spec);
-  const int deaths = crashes_->Deaths(RunOf(record));
-  Log(Severity::kError,
-      absl::StrCat("the engine has crashed ", deaths, " times with this job, which fails"),
-      {{"job", JobName(record.id)},
-       {"principal", record.principal},
-       {"points", Text(crashes_->LastPoints(RunOf(record)))},
-       {"question", spec.ok() ? spec->ShortDebugString() : "unreadable"}});
-  return EndUnresumable(record, EngineCrashed("this job", deaths));
+  const std::string points = Text(crashes_->LastPoints(RunOf(record)));
+  LogCrashed(record, points, spec.value_or(v1::EnsembleSpec()));
+  return EndUnresumable(record, EngineCrashed(points.empty() ? "this job" : "points " + points,
+                                              crashes_->Deaths(RunOf(record))));
 }
 
 // Empty unless the job was being computed at two deaths of the process.
@@ -312,9 +316,9 @@ std::optional<Suspicion> JobBook::SuspicionOf(const JobRecord& record) {
   const bool is_suspect = deaths >= kDeathsOfASuspect;
   const std::set<size_t> points = crashes_->LastPoints(run);
   Log(Severity::kWarning,
-      absl::StrCat(
-          "the server died ", deaths, deaths == 1 ? " time" : " times", " while it computed this job",
-          is_suspect ? "; it is computed alone until its next chunk is stored" : ""),
+      absl::StrCat("the server died ", deaths, deaths == 1 ? " time" : " times",
+                   " while it computed this job",
+                   is_suspect ? "; it is computed alone until its next chunk is stored" : ""),
       {{"job", JobName(record.id)}, {"principal", record.principal}, {"points", Text(points)}});
   if (!is_suspect) return std::nullopt;
   const auto clear = [this, run, name = JobName(record.id)] {
@@ -389,6 +393,10 @@ void JobBook::StartRun(std::shared_ptr<Job> job, RunRequest request) {
 
 void JobBook::Forget(const Job& ended) {
   const JobState state = ended.state();
+  const JobRecord record = ended.Record();
+  if (absl::StrContains(record.error, kEngineCrashed)) {
+    LogCrashed(record, "", ended.Now().job.spec());
+  }
   ++(state == v1::EnsembleJob::SUCCEEDED ? succeeded_
      : state == v1::EnsembleJob::FAILED  ? failed_
                                          : cancelled_);

@@ -3,22 +3,17 @@
 #include <fcntl.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <fstream>
 #include <new>
 #include <utility>
-#include <vector>
 
 #include "absl/cleanup/cleanup.h"
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_split.h"
 #include "server/observability/log.h"
 
 namespace ballpiston::server {
@@ -28,46 +23,7 @@ constexpr std::array<char, 8> kFormat = {'b', 'p', 'c', 'r', 'a', 's', 'h', '1'}
 constexpr size_t kSlots = 1024;  // as many as there can be workers
 constexpr size_t kRuns = 1024;   // that have deaths; further ones are not counted
 
-std::string FirstLine(const std::string& path) {
-  std::string line;
-  std::getline(std::ifstream(path), line);
-  return line;
-}
-
-// The number after the word `oom_kill` at the beginning of a line; empty if there is none.
-std::optional<int64_t> KillsIn(const std::string& path) {
-  std::ifstream file(path);
-  int64_t number = 0;
-  for (std::string word; file >> word >> number;) {
-    if (word == "oom_kill") return number;
-  }
-  return std::nullopt;
-}
-
 }  // namespace
-
-OutOfMemoryKills ReadOutOfMemoryKills() {
-  std::vector<std::string> counters;
-  std::ifstream groups("/proc/self/cgroup");  // lines NUMBER:CONTROLLERS:PATH
-  for (std::string line; std::getline(groups, line);) {
-    const std::vector<std::string> fields = absl::StrSplit(line, absl::MaxSplits(':', 2));
-    if (fields.size() != 3) continue;
-    const bool is_version_2 = fields[0] == "0";
-    if (!is_version_2 && fields[1] != "memory") continue;
-    const std::string root = is_version_2 ? "/sys/fs/cgroup" : "/sys/fs/cgroup/memory";
-    counters.push_back(absl::StrCat(root, fields[2] == "/" ? "" : fields[2],
-                                    is_version_2 ? "/memory.events" : "/memory.oom_control"));
-  }
-  const std::string boot = FirstLine("/proc/sys/kernel/random/boot_id");
-  if (boot.empty()) return {};
-  for (const std::string& counter : counters) {
-    struct stat found {};
-    const std::optional<int64_t> kills = KillsIn(counter);
-    if (!kills || stat(counter.c_str(), &found) != 0) continue;
-    return {absl::StrCat(boot, " ", found.st_ino, " ", counter), *kills};
-  }
-  return {};
-}
 
 // ---- the file ----
 
@@ -122,9 +78,9 @@ void CrashRecord::Map(const std::string& path) {
   const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   const absl::Cleanup close_file = [file] { close(file); };
   const int error = file < 0 ? errno : posix_fallocate(file, 0, sizeof(Page));
-  void* const memory = error != 0 ? MAP_FAILED
-                                  : mmap(nullptr, sizeof(Page), PROT_READ | PROT_WRITE, MAP_SHARED,
-                                         file, 0);
+  void* const memory =
+      error != 0 ? MAP_FAILED
+                 : mmap(nullptr, sizeof(Page), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
   if (memory == MAP_FAILED) {
     return LogError(absl::StrCat(path, " cannot be used (", strerror(error != 0 ? error : errno),
                                  "): if the engine crashes the server, the next start will not "
@@ -161,9 +117,9 @@ std::set<RunName> CrashRecord::KilledThePrevious(const std::string& folder,
   std::set<RunName> runs;
   for (const auto& [run, points] : last_) runs.insert(run);
   if (signal != 0 && examined.run != 0) runs = {examined};
-  const std::string reason =
-      signal != 0 ? absl::StrCat("signal ", signal, " (", strsignal(signal), ")")
-                  : "want of memory: the kernel killed it";
+  const std::string reason = signal != 0
+                                 ? absl::StrCat("signal ", signal, " (", strsignal(signal), ")")
+                                 : "an out-of-memory kill";
   if (!runs.empty()) {
     LogError(absl::StrCat("the previous process died of ", reason, " while it computed ",
                           runs.size(), runs.size() == 1 ? " job" : " jobs"));

@@ -24,6 +24,7 @@
 #include <set>
 #include <string>
 
+#include "server/machine_memory.h"
 #include "server/mutex.h"
 
 namespace ballpiston::server {
@@ -39,16 +40,6 @@ struct RunName {
 
   friend auto operator<=>(const RunName&, const RunName&) = default;
 };
-
-// How often the kernel has killed a process in a group of processes for want of memory. The counts
-// of two times can be compared if the group is the same. No group: the kernel does not tell.
-struct OutOfMemoryKills {
-  std::string group = {};  // with the boot's identity
-  int64_t kills = 0;
-};
-
-// Of the control group of this process (cgroup version 1 or 2).
-OutOfMemoryKills ReadOutOfMemoryKills();
 
 // In this folder, systemd's unit leaves a file of this name after an out-of-memory kill.
 inline constexpr char kOutOfMemoryFile[] = "out-of-memory";

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -58,6 +59,8 @@ struct SchedulerOptions {
   // A run with less to compute, in seconds of one core at nominal speed, is computed here: to send
   // it elsewhere would take longer.
   double least_seconds_elsewhere = 60;
+  // Bytes. The leases that local executors hold take no more together, unless one alone does.
+  double memory_limit = std::numeric_limits<double>::infinity();
 };
 
 class Run {
@@ -171,6 +174,7 @@ class Run {
   size_t next_point_ = 0;
   size_t opening_ = 0;  // leases that open points
   size_t turns_ = 0;
+  bool awaits_memory_ = false;     // at the last look of a local executor
   bool hungry_elsewhere_ = false;  // an executor that is not local found nothing
   double sampled_points_ = 0;      // opened ones
   double sampled_seconds_ = 0;     // expected, of these

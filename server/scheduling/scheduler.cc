@@ -1,13 +1,16 @@
 #include "server/scheduling/scheduler.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <utility>
 
 #include "absl/cleanup/cleanup.h"
+#include "absl/strings/str_cat.h"
 #include "core/model_choice/ladder.h"
 #include "server/convert/errors.h"
 #include "server/convert/fold_record.h"
+#include "server/scheduling/crash_record.h"
 #include "server/scheduling/guarded.h"
 
 namespace ballpiston::server {
@@ -15,6 +18,10 @@ namespace {
 
 // Seconds of work on a point between two checkpoints, for each local worker.
 constexpr double kBetweenCheckpoints = 0.1;
+
+// While more than half of the memory is taken, a lease of a local executor has chunks of so many
+// seconds of one core, so that other runs get memory before a long point ends.
+constexpr double kLeaseInLittleMemory = 60;
 
 // Also: a chunk has at least the samples of its merged blocks.
 absl::Status CheckChunkOf(const OpenPoint& open, const ChunkResult& chunk) {
@@ -149,7 +156,7 @@ void Scheduler::DropLeases(const Run& run, IsDropped is_dropped) {
     while (held != end) {
       const bool drops = is_dropped(held->second);
       if (drops && !executors_[i].traits.local) executors_[i].shares.TurnEnds(run.key(), 0);
-      held = drops ? held_.erase(held) : std::next(held);
+      held = drops ? Drop(held) : std::next(held);
     }
   }
 }
@@ -226,7 +233,7 @@ std::optional<Lease> Scheduler::Next(const Capacity& capacity) {
       mutex_.AssertHeld();
       Run& run_of_candidate = *runs_.at(candidate);
       if (!MayTakeTurn(run_of_candidate, member)) return false;
-      lease = NextOf(run_of_candidate, capacity);
+      lease = NextOf(run_of_candidate, CapacityNow(capacity));
       return lease.has_value();
     });
     if (!key) return std::nullopt;
@@ -240,6 +247,21 @@ std::optional<Lease> Scheduler::Next(const Capacity& capacity) {
   return lease;
 }
 
+// A suspect's lease needs no room beside those of paused runs, which could not end.
+Capacity Scheduler::CapacityNow(const Capacity& capacity) const {
+  Capacity now = capacity;
+  const bool is_limited = executors_[capacity.executor].traits.local && suspects_.empty();
+  if (!is_limited || held_memory_ == 0) return now;
+  now.memory = options_.memory_limit - held_memory_;
+  if (now.memory < held_memory_) now.seconds = std::min(now.seconds, kLeaseInLittleMemory);
+  return now;
+}
+
+Scheduler::HeldLeases::iterator Scheduler::Drop(HeldLeases::iterator held) {
+  held_memory_ -= held->second.lease.memory;
+  return held_.erase(held);
+}
+
 std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
   const Member& member = executors_[capacity.executor];
   std::optional<Lease> held;
@@ -250,6 +272,7 @@ std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
   if (lease) {
     lease->number = ++last_number_;
     lease->executor = capacity.executor;
+    held_memory_ += lease->memory;
     if (!lease->OpensPoints()) held_.emplace(KeyOf(*lease), Held{*lease});
   } else {
     lease = std::move(held);
@@ -286,7 +309,7 @@ bool Scheduler::EndTurn(const Lease& lease, double seconds) {
     } else if (const auto held = held_.find(KeyOf(lease)); held != held_.end()) {
       const bool stopped = lease.stop.stop_requested();
       continues = !stopped && executors_[lease.executor].executor->HasTurn(lease.number);
-      if (--held->second.turns == 0 && !continues) held_.erase(held);
+      if (--held->second.turns == 0 && !continues) Drop(held);
       continues = !stopped && held_.contains(KeyOf(lease));
     }
   }
@@ -318,6 +341,12 @@ std::optional<Lease> Scheduler::Adopt(Lease lease) {
   held_.emplace(KeyOf(lease), Held{lease, 1});
   executors_[lease.executor].shares.TurnBegins(lease.run);
   return lease;
+}
+
+void Scheduler::ReturnCrashed(Lease lease) {
+  ++lease.crashes;
+  if (lease.crashes < kMostDeaths || !Needs(lease)) return Return(lease);
+  Fail(lease, EngineCrashed(absl::StrCat("point ", lease.point, " on the cluster"), lease.crashes));
 }
 
 bool Scheduler::Needs(const Lease& lease) const {
@@ -362,6 +391,7 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
   if (const auto* place = std::get_if<PilotPlace>(&opened)) return AwaitPilot(run, index, *place);
   auto open = std::make_unique<OpenPoint>(
       std::get<std::unique_ptr<const PointExperiment>>(std::move(opened)));
+  open->memory = std::ceil(opener_.MemoryOf(run.spec(), index, workers_));
   if (run.has_checkpoints()) {
     absl::Status resumed = Resume(run, index, *open);
     if (!resumed.ok()) return resumed;
@@ -398,6 +428,7 @@ absl::Status Scheduler::AwaitPilot(Run& run, size_t index, const PilotPlace& pla
   // The pilot's result may have become known before this run took the pilot over.
   if (!std::holds_alternative<PilotPlace>(opener_.Open(run.spec(), index))) return absl::OkStatus();
   auto pilot = std::make_unique<OpenPoint>(opener_.OpenPilot(place));
+  pilot->memory = std::ceil(opener_.MemoryOf(run.spec(), index, workers_));
   std::move(give_up).Cancel();
   MutexLock lock(mutex_);
   if (!run.stopped()) run.PilotOpened(place, std::move(pilot));

@@ -10,7 +10,8 @@
 //   3. ReturnedChunksGoOutAgain.
 //   4. APilotIsComputedOnceForAllRuns.
 //   5. AStoppedRunEndsWhenItsTurnsHaveEnded.
-//   6. SuspectsAreComputedAloneOneAfterTheOther. A suspect is a run that was being computed at two
+//   6. TheLeasesOfThisServerTakeNoMoreMemoryThanTheLimit.
+//   7. SuspectsAreComputedAloneOneAfterTheOther. A suspect is a run that was being computed at two
 //      deaths of the process (crash_record.h): other runs pause, and executors elsewhere too.
 // Thread-safe.
 #ifndef BALLPISTON_SERVER_SCHEDULING_SCHEDULER_H_
@@ -105,6 +106,10 @@ class Scheduler {
   // attempt if the executor `tried` to compute them. May wait for the disk.
   void Return(const Lease& lease, bool tried = true);
 
+  // The same after an attempt that died of itself. After kMostDeaths of the lease the run fails:
+  // ENGINE_CRASHED.
+  void ReturnCrashed(Lease lease);
+
   // Returns when the disk has room for more reports.
   void AwaitRoom();
 
@@ -146,10 +151,13 @@ class Scheduler {
     int turns = 0;  // of a local executor
   };
   using RunPointer = std::shared_ptr<Run>;
+  using HeldLeases = std::map<HeldKey, Held>;
 
   static HeldKey KeyOf(const Lease& lease) { return {lease.executor, lease.run, lease.number}; }
 
   RunPointer FindRun(int64_t key) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  Capacity CapacityNow(const Capacity& capacity) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  HeldLeases::iterator Drop(HeldLeases::iterator held) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::optional<Lease> NextOf(Run& run, const Capacity& capacity)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::optional<Lease> HeldWithTurn(const Run& run, size_t executor) const
@@ -196,7 +204,8 @@ class Scheduler {
   std::vector<Member> executors_ ABSL_GUARDED_BY(mutex_);
   std::map<int64_t, RunPointer> runs_ ABSL_GUARDED_BY(mutex_);
   std::deque<int64_t> suspects_ ABSL_GUARDED_BY(mutex_);  // the first is computed alone
-  std::map<HeldKey, Held> held_ ABSL_GUARDED_BY(mutex_);
+  HeldLeases held_ ABSL_GUARDED_BY(mutex_);
+  double held_memory_ ABSL_GUARDED_BY(mutex_) = 0;  // bytes of held_
   int64_t last_number_ ABSL_GUARDED_BY(mutex_) = 0;
   std::map<PilotPlace, int64_t> pilots_ ABSL_GUARDED_BY(mutex_);  // in progress, and by which run
 };

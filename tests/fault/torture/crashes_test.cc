@@ -89,9 +89,9 @@ TEST(Crashes, OneJobFailsAndTheOthersHaveTheirBytes) {
   }
   EXPECT_EQ(same, kJobs);
   EXPECT_EQ(server.Stop(), 0);
-  EXPECT_THAT(server.log(), AllOf(HasSubstr("it is computed alone until its next chunk is stored"),
-                                  HasSubstr(absl::StrCat("job=", names.back())),
-                                  HasSubstr("seed: 13")));
+  EXPECT_THAT(server.log(),
+              AllOf(HasSubstr("it is computed alone until its next chunk is stored"),
+                    HasSubstr(absl::StrCat("job=", names.back())), HasSubstr("seed: 13")));
   findings.Count("deaths", kDeaths);
   findings.Count("other jobs with the same bytes", same);
 }

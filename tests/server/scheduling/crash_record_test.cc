@@ -192,13 +192,13 @@ TEST_F(CrashRecordTest, WithoutAFileTheRecordIsInMemory) {
 
 // ---- real signals: each death is that of a process of its own ----
 
-int Overflow(volatile int depth) {
+int Overflow(int depth) {
   volatile char frame[4096];
   frame[0] = static_cast<char>(depth);
   return depth == 0 ? frame[0] : Overflow(depth + 1) + frame[0];
 }
 
-class Deaths : public CrashRecordTest {
+class FatalSignalsDeathTest : public CrashRecordTest {
  protected:
   template <typename Fault>
   void DieInATurn(Fault fault) {
@@ -212,27 +212,27 @@ class Deaths : public CrashRecordTest {
   }
 };
 
-TEST_F(Deaths, AFaultCounts) {
+TEST_F(FatalSignalsDeathTest, AFaultCounts) {
   EXPECT_DEATH(DieInATurn([] { *static_cast<volatile int*>(nullptr) = 0; }), "");
   EXPECT_EQ(Next()->Deaths(kFirst), 1);
 }
 
-TEST_F(Deaths, AStackOverflowCounts) {
+TEST_F(FatalSignalsDeathTest, AStackOverflowCounts) {
   EXPECT_DEATH(DieInATurn([] { Overflow(1); }), "");
   EXPECT_EQ(Next()->Deaths(kFirst), 1);
 }
 
-TEST_F(Deaths, AnAbortCounts) {
+TEST_F(FatalSignalsDeathTest, AnAbortCounts) {
   EXPECT_DEATH(DieInATurn([] { abort(); }), "");
   EXPECT_EQ(Next()->Deaths(kFirst), 1);
 }
 
-TEST_F(Deaths, AKillDoesNotCount) {
+TEST_F(FatalSignalsDeathTest, AKillDoesNotCount) {
   EXPECT_DEATH(DieInATurn([] { raise(SIGKILL); }), "");
   EXPECT_EQ(Next()->Deaths(kFirst), 0);
 }
 
-TEST_F(Deaths, AFatalSignalOfAnotherProcessDoesNotCount) {
+TEST_F(FatalSignalsDeathTest, AFatalSignalOfAnotherProcessDoesNotCount) {
   EXPECT_DEATH(DieInATurn([] {
                  std::system(("kill -SEGV " + std::to_string(getpid())).c_str());
                  pause();

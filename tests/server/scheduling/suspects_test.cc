@@ -157,7 +157,8 @@ TEST_F(SuspectsTest, TheNextSuspectTakesAPilotOver) {
   });
   Scheduler scheduler(opener, 2);
   SteppedExecutor local(scheduler), other(scheduler);
-  const EnsembleSpec spec = FakeSpec(2, 10);
+  EnsembleSpec spec = FakeSpec(2, 10);
+  spec.model = Model::kBilliard;  // a lease opens one point
   std::vector<JournalPointer> journals;
   for (const int64_t key : {1, 2}) {
     journals.push_back(std::make_shared<RecordingJournal>());
