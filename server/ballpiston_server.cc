@@ -38,9 +38,15 @@ constexpr double kWholePoint = std::numeric_limits<double>::infinity();
 constexpr double kLeaseBesideACluster = 60;
 
 SchedulerOptions OptionsOfScheduler(const ServerOptions& options) {
-  if (!options.slurm) return {};
-  return {.least_seconds_elsewhere =
-              std::chrono::duration<double>(options.slurm->least_work).count()};
+  SchedulerOptions scheduler;
+  if (options.slurm) {
+    scheduler.least_seconds_elsewhere =
+        std::chrono::duration<double>(options.slurm->least_work).count();
+  }
+  if (options.limits.max_memory_mib > 0) {
+    scheduler.memory_limit = static_cast<double>(options.limits.max_memory_mib) * (1 << 20);
+  }
+  return scheduler;
 }
 
 Health::Services ServicesOfHealth() {
@@ -134,16 +140,19 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
       security_(std::move(security)),
       watches_(std::min(kLongestLook, options_.watch.snapshot)),
       store_(std::move(store)),
+      crashes_(std::make_shared<CrashRecord>(directory_.path())),
       ladder_(*store_, options_.workers),
       factory_(options_.factory ? std::make_unique<FactoryOpener>(options_.factory) : nullptr),
       scheduler_(factory_ ? *factory_ : static_cast<PointOpener&>(ladder_), options_.workers,
                  OptionsOfScheduler(options_)),
-      book_(*store_, options_.limits, scheduler_, [this] { watches_.LookNow(); }),
-      threads_(scheduler_, options_.workers, options_.slurm ? kLeaseBesideACluster : kWholePoint),
+      book_(
+          *store_, options_.limits, scheduler_, [this] { watches_.LookNow(); }, crashes_),
+      threads_(scheduler_, options_.workers, options_.slurm ? kLeaseBesideACluster : kWholePoint,
+               crashes_),
       slurm_(options_.slurm
                  ? std::make_unique<SlurmExecutor>(
                        scheduler_, *options_.slurm, std::make_unique<SlurmTools>(*options_.slurm),
-                       store_->identity(), [this] { return store_->Flush(); })
+                       store_->identity(), [this] { return store_->Flush(); }, crashes_)
                  : nullptr),
       executor_(kRpcThreads),
       context_{security_->authenticator(),

@@ -118,6 +118,7 @@ class BallpistonServer {
   CallObserver calls_;
   WatchRegistry watches_;
   std::unique_ptr<Store> store_;
+  std::shared_ptr<CrashRecord> crashes_;
   ModelLadder ladder_;
   std::unique_ptr<PointOpener> factory_;  // null: the ladder opens points
   Scheduler scheduler_;

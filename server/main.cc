@@ -15,9 +15,11 @@
 #include "absl/time/clock.h"
 #include "server/ballpiston_server.h"
 #include "server/command_line/command_line.h"
+#include "server/fatal_signals.h"
 #include "server/mutex.h"
 #include "server/observability/failpoint.h"
 #include "server/observability/log.h"
+#include "server/scheduling/crash_record.h"
 #include "server/security/new_token.h"
 #include "server/store/backup.h"
 #include "server/store/check_store.h"
@@ -153,6 +155,7 @@ int Main(int argc, char** argv) {
   if (line->check) return Report(CheckStore(StoreIn(*line)));
   if (!line->backup.empty()) return Report(BackupStore(StoreIn(*line), line->backup));
   SetLogOptions(line->log);
+  NoteFatalSignals(CrashRecord::NoteDeath);
   const sigset_t signals = BlockSignals();
   const auto server = BallpistonServer::Start(line->server);
   if (!server.ok()) return Fail(server.status());

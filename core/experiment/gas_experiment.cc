@@ -17,6 +17,9 @@
 namespace ballpiston {
 namespace {
 
+// The lanes need this many balls to be full.
+constexpr int64_t kBallsInLanes = 192;
+
 // A block whose replicas are being computed. The meters are kept until all replicas are done, so
 // that results are added in the order of the replicas.
 struct OpenBlock {
@@ -56,11 +59,9 @@ class GasBlocks : public BlockRun {
   }
 
  private:
-  // The lanes need this many balls to be full. The other engines run one replica at a time, because
-  // more replicas would not make them faster.
+  // The other engines run one replica at a time, because more would not make them faster.
   int64_t BallsTogether() const {
-    constexpr int64_t kOfLanes = 192;
-    return experiment_.gas_engine() == GasEngine::kLanes ? kOfLanes : 1;
+    return experiment_.gas_engine() == GasEngine::kLanes ? kBallsInLanes : 1;
   }
 
   // A run takes at most a quarter of the replicas of its chunk, so that several threads share even
@@ -184,8 +185,8 @@ double ThermalHitsOf(const GasGeometry& geometry, const HitRates& rates) {
 
 // Replicas that a thread computes at the same time.
 double TogetherInLanes(double balls) {
-  constexpr double kBalls = 192, kMost = 16;  // a quarter of the smallest chunk
-  return std::min(std::ceil(kBalls / balls), kMost);
+  constexpr double kMost = 16;  // a quarter of the smallest chunk
+  return std::min(std::ceil(static_cast<double>(kBallsInLanes) / balls), kMost);
 }
 
 }  // namespace

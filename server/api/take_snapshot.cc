@@ -72,6 +72,7 @@ ServerSnapshot TakeSnapshot(const ServiceContext& service) {
   snapshot.draining = service.draining;
   AddJobs(service.book, snapshot);
   AddWork(service, snapshot);
+  snapshot.engine_crashes = service.book.engine_crashes();
   if (service.slurm != nullptr) snapshot.slurm = service.slurm->Status();
   AddStore(service, snapshot);
   snapshot.streams = static_cast<int64_t>(service.watches.size());

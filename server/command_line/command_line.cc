@@ -16,6 +16,7 @@
 #include "server/command_line/flag_file.h"
 #include "server/command_line/flag_values.h"
 #include "server/command_line/help_page.h"
+#include "server/machine_memory.h"
 #include "server/version.h"
 
 namespace ballpiston::server {
@@ -168,6 +169,10 @@ const LimitFlag kLimitFlags[] = {
     {"max-transfer-mib", &Limits::max_transfer_mib,
      "MiB for connections and for requests that are being received, of all clients; calls beyond "
      "it are rejected. At least 16 and twice --max-message-bytes, at most 1048576"},
+    {"max-memory-mib", &Limits::max_memory_mib,
+     "MiB of memory of all points that this server computes at a time, by an upper bound; points "
+     "beyond it wait, and one point alone may take more. Default: 80 % of the memory of this "
+     "machine or of the server's control group"},
     {"retain-days", &Limits::retain_days,
      "days from the end of a job until its results expire, unless it is pinned; its "
      "specification stays"},
@@ -364,11 +369,17 @@ int DefaultWorkers() {
   return static_cast<int>(std::clamp(cores, int64_t{1}, kMostWorkers));
 }
 
+int64_t DefaultMemoryMib() {
+  constexpr double kShare = 0.8;
+  return static_cast<int64_t>(kShare * MachineMemory() / (1 << 20));
+}
+
 }  // namespace
 
 absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
   CommandLine line;
   line.server.workers = DefaultWorkers();
+  line.server.limits.max_memory_mib = DefaultMemoryMib();
   std::string new_token;
   CLI::App app("", "ballpistond");
   app.set_help_flag();  // AddCommands adds its own help flag

@@ -178,6 +178,15 @@ absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const E
       "TOLERANCE_NOT_REACHED", "reached", error);
 }
 
+absl::Status EngineCrashed(const std::string& what, int deaths) {
+  return WithReason(
+      absl::InternalError(absl::StrCat(
+          "the engine crashed ", deaths, " times while it computed ", what,
+          ": this is a fault of the program, not of the question; please report it with the "
+          "specification. The points that were finished before stay")),
+      kEngineCrashed);
+}
+
 absl::Status StoreFailure(const absl::Status& status) {
   const std::string type = absl::StrCat(kTypePrefix, google::rpc::ErrorInfo().GetTypeName());
   if (status.ok() || status.GetPayload(type)) return status;

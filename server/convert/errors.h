@@ -52,6 +52,12 @@ absl::Status LimitExceeded(const std::string& reason, const std::string& what,
 // the error that was reached.
 absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached);
 
+inline constexpr char kEngineCrashed[] = "ENGINE_CRASHED";
+
+// INTERNAL, ENGINE_CRASHED: the engine killed the process, or the task of a cluster, `deaths` times
+// while it computed this; `what` names the job's part.
+absl::Status EngineCrashed(const std::string& what, int deaths);
+
 // The status of a call when a write to the store or a read from it failed. RESOURCE_EXHAUSTED,
 // STORE_FULL: the disk is full. DATA_LOSS, STORE_DAMAGED: the stored data cannot be read, and a
 // retry does not help. UNAVAILABLE, STORE_FAILED: anything else. OK stays OK, and a status that has

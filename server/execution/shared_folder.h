@@ -5,6 +5,7 @@
 //     NAME/                           one folder for each job array
 //       tasks                         its tasks (worker/task_file.h)
 //       task-TASK.SEQUENCE.chunks     what its tasks computed (worker/chunk_file.h)
+//       task-TASK.lease-LEASE.crash   the engine killed this task (worker/crash_mark.h)
 //       TASK.log                      what a task said
 #ifndef BALLPISTON_SERVER_EXECUTION_SHARED_FOLDER_H_
 #define BALLPISTON_SERVER_EXECUTION_SHARED_FOLDER_H_

@@ -14,6 +14,7 @@
 #include "core/engine_version.h"
 #include "server/observability/failpoint.h"
 #include "server/observability/log.h"
+#include "server/worker/crash_mark.h"
 #include "server/worker/task_file.h"
 
 namespace ballpiston::server {
@@ -61,13 +62,15 @@ double SecondsOf(const std::vector<Lease>& leases) {
 
 SlurmExecutor::SlurmExecutor(Scheduler& scheduler, SlurmOptions options,
                              std::unique_ptr<SlurmTools> tools, std::string identity,
-                             std::function<absl::Status()> flush)
+                             std::function<absl::Status()> flush,
+                             std::shared_ptr<CrashRecord> crashes)
     : scheduler_(scheduler),
       options_(std::move(options)),
       tools_(std::move(tools)),
       identity_(std::move(identity)),
       prefix_(absl::StrCat("bp-", identity_, "-")),
       flush_(std::move(flush)),
+      crashes_(std::move(crashes)),
       folder_(options_.shared_folder, identity_),
       capacity_(CapacityOf(options_)),
       array_size_(options_.max_array_size) {
@@ -214,8 +217,10 @@ absl::Status SlurmExecutor::ReportFile(const ChunkFile& file, const std::vector<
     }
   }
   for (const LeaseChunks& of_lease : file.leases) {
+    const Lease& lease = leases[of_lease.lease];
+    const CrashRecord::Examining examining(*crashes_, {lease.run, lease.generation});
     const absl::Status reported = scheduler_.Report(
-        leases[of_lease.lease], {.chunks = of_lease.chunks, .seconds = of_lease.processor_seconds});
+        lease, {.chunks = of_lease.chunks, .seconds = of_lease.processor_seconds});
     if (absl::IsUnavailable(reported)) return reported;
     if (!reported.ok()) taken = reported;
   }
@@ -321,18 +326,21 @@ void SlurmExecutor::Guarded(Activity activity, absl::FunctionRef<absl::Status()>
 
 // The tasks' leases go back to the scheduler without the lock.
 void SlurmExecutor::EndTasks(const std::function<bool(const Task&)>& has_ended, bool tried) {
-  std::vector<Lease> returned;
+  std::vector<Lease> returned, crashed;
   {
     MutexLock lock(mutex_);
     for (auto& [name, array] : arrays_) {
       for (Task& task : array.tasks) {
         if (task.state == TaskState::kOver || !has_ended(task)) continue;
         task.state = TaskState::kOver;
-        returned.insert(returned.end(), task.leases.begin(), task.leases.end());
+        for (size_t i = 0; i < task.leases.size(); ++i) {
+          (task.crashed.contains(i) ? crashed : returned).push_back(task.leases[i]);
+        }
       }
     }
   }
   for (const Lease& lease : returned) scheduler_.Return(lease, tried);
+  for (const Lease& lease : crashed) scheduler_.ReturnCrashed(lease);
 }
 
 void SlurmExecutor::EndFinalTasks() {
@@ -442,20 +450,32 @@ void SlurmExecutor::NoteTasks(const std::string& name, const QueuedArray* queued
   if (now.running.empty() && forever != now.reasons.end()) GiveUpWaiting(name, *forever);
 }
 
-// First reads their files once more.
+void SlurmExecutor::NoteCrashes(const std::string& name, size_t index, Task& task) {
+  for (size_t lease = 0; lease < task.leases.size(); ++lease) {
+    if (!std::filesystem::exists(CrashMarkFile(folder_.PathOf(name), index, lease))) continue;
+    task.crashed.insert(lease);
+    LogError(absl::StrCat("slurm: the engine crashed in task ", index, " of ", name, ", attempt ",
+                          task.leases[lease].attempt, " of point ", task.leases[lease].point));
+  }
+}
+
+// First reads their files once more. A task that left the mark of a crash can use the folder.
 void SlurmExecutor::EndLostTasks(const std::string& name) {
   CollectArray(name).IgnoreError();  // the thread that reads files meets the same error
   EndFinalTasks();
   size_t lost = 0, without_file = 0;
   {
     MutexLock lock(mutex_);
-    for (Task& task : arrays_.at(name).tasks) {
+    std::vector<Task>& tasks = arrays_.at(name).tasks;
+    for (size_t i = 0; i < tasks.size(); ++i) {
+      Task& task = tasks[i];
       const bool is_lost = task.state != TaskState::kOver && !task.has_unread_file &&
                            task.missing >= kMissingQueries;
       if (!is_lost) continue;
       task.is_lost = true;
+      NoteCrashes(name, i, task);
       ++lost;
-      without_file += task.left_a_file ? 0 : 1;
+      without_file += task.left_a_file || !task.crashed.empty() ? 0 : 1;
     }
     counts_.lost_tasks += static_cast<double>(lost);
   }

@@ -36,6 +36,7 @@
 #include "server/execution/slurm_tools.h"
 #include "server/mutex.h"
 #include "server/observability/slurm_status.h"
+#include "server/scheduling/crash_record.h"
 #include "server/scheduling/scheduler.h"
 #include "server/worker/chunk_file.h"
 
@@ -48,7 +49,8 @@ class SlurmExecutor : public Executor {
   // The scheduler must outlive this. `identity` names the server; `flush` returns OK when all that
   // was reported is on disk. Begins with Start.
   SlurmExecutor(Scheduler& scheduler, SlurmOptions options, std::unique_ptr<SlurmTools> tools,
-                std::string identity, std::function<absl::Status()> flush);
+                std::string identity, std::function<absl::Status()> flush,
+                std::shared_ptr<CrashRecord> crashes = std::make_shared<CrashRecord>());
   ~SlurmExecutor() override;  // shuts down
 
   ExecutorTraits traits() const override { return {.local = false}; }
@@ -71,8 +73,9 @@ class SlurmExecutor : public Executor {
     bool has_unread_file = false;  // of a point that is not open yet
     bool is_final = false;         // it has left its last file
     bool is_lost = false;
-    bool unneeded = false;  // Slurm does not have it (any more)
-    int missing = 0;        // queries in a row in which it was not in the queue
+    std::set<size_t> crashed = {};  // leases at which the engine killed it
+    bool unneeded = false;          // Slurm does not have it (any more)
+    int missing = 0;                // queries in a row in which it was not in the queue
   };
 
   struct Array {
@@ -112,6 +115,8 @@ class SlurmExecutor : public Executor {
   void SteerUntilStopped();
   void Steer();
   void Guarded(Activity activity, absl::FunctionRef<absl::Status()> round);
+  void NoteCrashes(const std::string& name, size_t index, Task& task)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void EndTasks(const std::function<bool(const Task&)>& has_ended, bool tried)
       ABSL_LOCKS_EXCLUDED(mutex_);
   void EndFinalTasks();
@@ -156,6 +161,7 @@ class SlurmExecutor : public Executor {
   const std::string identity_;
   const std::string prefix_;  // of the names of this server's arrays
   const std::function<absl::Status()> flush_;
+  const std::shared_ptr<CrashRecord> crashes_;
   const SharedFolder folder_;
   Capacity capacity_;
 

@@ -6,10 +6,21 @@
 #include "absl/status/status.h"
 #include "core/ensemble/chunk_fold.h"
 #include "server/execution/block_session.h"
+#include "server/fatal_signals.h"
+#include "server/observability/failpoint.h"
 #include "server/processor_time.h"
 #include "server/scheduling/guarded.h"
 
 namespace ballpiston::server {
+namespace {
+
+// The point of the grid that a turn at the lease computes; of several that it opens, the first.
+std::optional<size_t> PointOf(const Lease& lease) {
+  if (lease.OpensPoints()) return lease.opens.front();
+  return lease.pilot ? std::nullopt : std::optional(lease.point);
+}
+
+}  // namespace
 
 // A lease at which several threads take turns.
 class ThreadExecutor::SharedLease : private BlockExchange {
@@ -81,8 +92,9 @@ class ThreadExecutor::SharedLease : private BlockExchange {
   std::deque<std::unique_ptr<BlockSession>> resting_ ABSL_GUARDED_BY(mutex_);
 };
 
-ThreadExecutor::ThreadExecutor(Scheduler& scheduler, int threads, double seconds)
-    : scheduler_(scheduler), workers_(threads) {
+ThreadExecutor::ThreadExecutor(Scheduler& scheduler, int threads, double seconds,
+                               std::shared_ptr<CrashRecord> crashes)
+    : scheduler_(scheduler), workers_(threads), crashes_(std::move(crashes)) {
   capacity_ = {.executor = scheduler.AddExecutor(*this), .seconds = seconds};
 }
 
@@ -128,6 +140,7 @@ ThreadCounts ThreadExecutor::Counts() const {
 }
 
 void ThreadExecutor::Work() {
+  const SignalStack stack;
   while (const std::optional<Lease> lease = AwaitLease()) TakeTurn(*lease);
 }
 
@@ -147,11 +160,13 @@ std::optional<Lease> ThreadExecutor::AwaitLease() {
 }
 
 void ThreadExecutor::TakeTurn(const Lease& lease) {
+  const CrashRecord::Computing computing(*crashes_, {lease.run, lease.generation}, PointOf(lease));
   busy_.fetch_add(1, std::memory_order_relaxed);
   const double start = ThreadSeconds();
   if (lease.OpensPoints()) {
     scheduler_.Open(lease);
   } else {
+    CrashForSeed(lease.spec->seed);
     const absl::Status advanced = Guarded(lease.point, [&] {
       Find(lease)->Advance();
       return absl::OkStatus();

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "server/mutex.h"
+#include "server/scheduling/crash_record.h"
 #include "server/scheduling/scheduler.h"
 
 namespace ballpiston::server {
@@ -31,9 +32,10 @@ struct ThreadCounts {
 class ThreadExecutor : public Executor {
  public:
   // The scheduler must outlive this. `seconds` bounds a lease (Capacity), so that something is left
-  // for other executors.
+  // for other executors. The record always has the runs whose turns are in progress.
   ThreadExecutor(Scheduler& scheduler, int threads,
-                 double seconds = std::numeric_limits<double>::infinity());
+                 double seconds = std::numeric_limits<double>::infinity(),
+                 std::shared_ptr<CrashRecord> crashes = std::make_shared<CrashRecord>());
   ~ThreadExecutor() override;  // shuts down
 
   ExecutorTraits traits() const override { return {.local = true}; }
@@ -56,6 +58,7 @@ class ThreadExecutor : public Executor {
 
   Scheduler& scheduler_;
   const int workers_;
+  const std::shared_ptr<CrashRecord> crashes_;
   Capacity capacity_;
   std::atomic<int> busy_ = 0;
   std::atomic<uint64_t> blocks_ = 0;

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "absl/time/clock.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
@@ -156,11 +159,30 @@ absl::Status ReadShortfall(Database& database, const JobRecord& record, const En
 
 // Distinguishes a job from another job with the same sequence (before the store was restored from a
 // backup), and from the same job under an older engine.
-int64_t GenerationOf(const Job& job) {
-  const std::string hash = Sha256(absl::StrCat(job.id(), " ", job.restarts()));
+int64_t GenerationOf(const std::string& id, int64_t restarts) {
+  const std::string hash = Sha256(absl::StrCat(id, " ", restarts));
   uint64_t number = 0;
   for (size_t i = 0; i < 7; ++i) number = number << 8 | static_cast<uint8_t>(hash[i]);
   return static_cast<int64_t>(number);
+}
+
+RunName RunOf(const JobRecord& record) {
+  return {record.sequence, GenerationOf(record.id, record.restarts)};
+}
+
+RunName RunOf(const Job& job) { return {job.sequence(), GenerationOf(job.id(), job.restarts())}; }
+
+std::string Text(const std::set<size_t>& points) {
+  return points.empty() ? "" : absl::StrJoin(points, " ");
+}
+
+void LogCrashed(const JobRecord& job, const std::string& points, const v1::EnsembleSpec& spec) {
+  Log(Severity::kError,
+      "the engine crashed again and again while it computed this job, which fails",
+      {{"job", JobName(job.id)},
+       {"principal", job.principal},
+       {"points", points},
+       {"question", spec.ShortDebugString()}});
 }
 
 // The stored state from which a run is resumed. `damage`: the job's rows contradict each other.
@@ -182,11 +204,12 @@ absl::Status ReadRestored(Database& database, const JobRecord& record, const Ens
 }  // namespace
 
 JobBook::JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
-                 std::function<void()> on_state_change)
+                 std::function<void()> on_state_change, std::shared_ptr<CrashRecord> crashes)
     : store_(store),
       limits_(limits),
       scheduler_(scheduler),
       on_state_change_(std::move(on_state_change)),
+      crashes_(std::move(crashes)),
       retention_(store, usage_, limits) {}
 
 JobBook::~JobBook() {
@@ -213,6 +236,9 @@ absl::Status JobBook::Resume() {
   if (!read.ok()) return read;
   const absl::Status restarted = RestartOlder(*unfinished);
   if (!restarted.ok()) return restarted;
+  std::set<RunName> runs;
+  for (const JobRecord& record : *unfinished) runs.insert(RunOf(record));
+  crashes_->ClearAllBut(runs);
   for (JobRecord& record : *unfinished) {
     const absl::Status resumed = ResumeJob(std::move(record));
     Failpoint("resume.job");
@@ -265,11 +291,44 @@ absl::Status JobBook::ResumeJob(JobRecord record) {
   if (record.state == v1::EnsembleJob::CANCELLING) {
     return EndUnresumable(record, absl::CancelledError("cancelled"));
   }
+  const CrashRecord::Examining examining(*crashes_, RunOf(record));
+  if (crashes_->Deaths(RunOf(record)) >= kMostDeaths) return EndCrashed(record);
   const absl::StatusOr<v1::EnsembleSpec> message = SpecFromBytes(record.spec);
   if (!message.ok()) return EndUnresumable(record, message.status());
   CheckedSpec checked = CheckSpec(*message);
   if (!checked.violations.empty()) return EndUnresumable(record, InvalidSpec(checked.violations));
   return ResumeRun(std::move(record), std::move(checked.spec));
+}
+
+absl::Status JobBook::EndCrashed(const JobRecord& record) {
+  const absl::StatusOr<v1::EnsembleSpec> spec = SpecFromBytes(record.spec);
+  const std::string points = Text(crashes_->LastPoints(RunOf(record)));
+  LogCrashed(record, points, spec.value_or(v1::EnsembleSpec()));
+  return EndUnresumable(record, EngineCrashed(points.empty() ? "this job" : "points " + points,
+                                              crashes_->Deaths(RunOf(record))));
+}
+
+// Empty unless the job was being computed at two deaths of the process.
+std::optional<Suspicion> JobBook::SuspicionOf(const JobRecord& record) {
+  const RunName run = RunOf(record);
+  const int deaths = crashes_->Deaths(run);
+  if (deaths == 0) return std::nullopt;
+  const bool is_suspect = deaths >= kDeathsOfASuspect;
+  const std::set<size_t> points = crashes_->LastPoints(run);
+  Log(Severity::kWarning,
+      absl::StrCat("the server died ", deaths, deaths == 1 ? " time" : " times",
+                   " while it computed this job",
+                   is_suspect ? "; it is computed alone until its next chunk is stored" : ""),
+      {{"job", JobName(record.id)}, {"principal", record.principal}, {"points", Text(points)}});
+  if (!is_suspect) return std::nullopt;
+  const auto clear = [this, run, name = JobName(record.id)] {
+    if (!store_.Flush().ok()) return false;
+    crashes_->Clear(run);
+    Log(Severity::kInfo, "this job was computed alone without a crash; other jobs continue",
+        {{"job", name}});
+    return true;
+  };
+  return Suspicion{.points = points, .clear = clear};
 }
 
 // Ends the job like a run that has nothing left to compute. The end is on disk when all jobs are
@@ -300,6 +359,7 @@ absl::Status JobBook::ResumeRun(JobRecord record, EnsembleSpec spec) {
   request.spec = std::move(spec);
   request.has_checkpoints = true;
   request.shortfall = std::move(restored.shortfall);
+  request.suspicion = SuspicionOf(record);
   std::shared_ptr<Job> job = Register(std::move(record));
   job->AddRestoredPoints(points.count(), points.samples, points.last);
   AddRestoredBytes(*job, points.bytes);
@@ -322,7 +382,7 @@ std::shared_ptr<Job> JobBook::Register(JobRecord record) {
 
 void JobBook::StartRun(std::shared_ptr<Job> job, RunRequest request) {
   request.key = job->sequence();
-  request.generation = GenerationOf(*job);
+  request.generation = RunOf(*job).generation;
   request.principal = job->principal();
   request.priority = job->Record().priority;
   request.journal =
@@ -333,6 +393,10 @@ void JobBook::StartRun(std::shared_ptr<Job> job, RunRequest request) {
 
 void JobBook::Forget(const Job& ended) {
   const JobState state = ended.state();
+  const JobRecord record = ended.Record();
+  if (absl::StrContains(record.error, kEngineCrashed)) {
+    LogCrashed(record, "", ended.Now().job.spec());
+  }
   ++(state == v1::EnsembleJob::SUCCEEDED ? succeeded_
      : state == v1::EnsembleJob::FAILED  ? failed_
                                          : cancelled_);
@@ -588,6 +652,7 @@ absl::StatusOr<std::optional<v1::PointResult>> JobBook::UnfinishedResult(const P
   if (experiment == nullptr) return std::nullopt;  // an experiment of a test
   const auto live = scheduler_.Unfinished((*job)->sequence(), static_cast<size_t>(point));
   if (!live) return std::nullopt;
+  const CrashRecord::Examining examining(*crashes_, RunOf(**job));
   const PointSummary summary = live->experiment->Summarize(live->merged);
   return PointResultMessage(ResultRecordOf(live->index, *live->experiment, summary),
                             DetailsRecordOf(summary), *experiment);
@@ -676,6 +741,7 @@ absl::StatusOr<WatchedJob> JobBook::FindWatched(const Principal& caller, const s
 std::shared_ptr<const JobSnapshot> JobBook::Snapshot(Job& job, std::chrono::milliseconds max_age,
                                                      size_t limit) const {
   return job.snapshot().Get(job.last_change(), max_age, [&] {
+    const CrashRecord::Examining examining(*crashes_, RunOf(job));
     JobSnapshot snapshot;
     snapshot.change = job.last_change();  // read before the points, which may be newer
     snapshot.finished = job.last_finished();

@@ -30,6 +30,7 @@
 #include "server/jobs/usage.h"
 #include "server/limits.h"
 #include "server/mutex.h"
+#include "server/scheduling/crash_record.h"
 #include "server/scheduling/scheduler.h"
 #include "server/security/principal.h"
 #include "server/store/store.h"
@@ -101,7 +102,8 @@ class JobBook {
   // Store and scheduler must outlive this. The book calls `on_state_change` after each change of
   // state.
   JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
-          std::function<void()> on_state_change);
+          std::function<void()> on_state_change,
+          std::shared_ptr<CrashRecord> crashes = std::make_shared<CrashRecord>());
   ~JobBook();  // shuts down
 
   // Resumes the unfinished jobs of an earlier process. Call before anything else.
@@ -166,6 +168,7 @@ class JobBook {
   size_t active_jobs() const;
   std::map<std::string, ActiveJobs> ActiveByPrincipal() const;
   EndedJobs ended_jobs() const;
+  int64_t engine_crashes() const { return crashes_->counted_deaths(); }
 
  private:
   JobRecord NewRecord(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
@@ -176,6 +179,8 @@ class JobBook {
   absl::Status RestartOlder(std::vector<JobRecord>& unfinished);
   absl::Status ReadUsage();
   absl::Status ResumeJob(JobRecord record);
+  absl::Status EndCrashed(const JobRecord& record);
+  std::optional<Suspicion> SuspicionOf(const JobRecord& record);
   absl::Status EndUnresumable(const JobRecord& record, const absl::Status& why);
   absl::Status ResumeRun(JobRecord record, EnsembleSpec spec);
   void AddRestoredBytes(Job& job, int64_t bytes);
@@ -200,6 +205,7 @@ class JobBook {
   const Limits limits_;
   Scheduler& scheduler_;
   const std::function<void()> on_state_change_;
+  const std::shared_ptr<CrashRecord> crashes_;
   mutable Mutex mutex_;
   std::map<std::string, std::shared_ptr<Job>> active_ ABSL_GUARDED_BY(mutex_);  // by id
   ActivePoints active_points_;

@@ -40,6 +40,7 @@ Armed Parse(const char* text) {
   const auto [rest, error] = std::from_chars(number_text.data(), end, parsed.pass);
   const bool number = error == std::errc() && rest == end && parsed.pass >= 1;
   const bool known =
+      parsed.name == kCrashForSeed ||
       std::find(kFailpoints.begin(), kFailpoints.end(), parsed.name) != kFailpoints.end();
   if (!number || !known) Refuse(text);
   return parsed;
@@ -56,6 +57,11 @@ static std::atomic<bool> counting = !target.when_ready;
 void Pass(std::string_view name) {
   static std::atomic<int64_t> passes = 0;
   if (name == target.name && counting && ++passes == target.pass) raise(SIGKILL);
+}
+
+void CrashForSeed(uint64_t seed) {
+  const bool is_the_seed = static_cast<uint64_t>(target.pass) == seed;
+  if (target.name == kCrashForSeed && is_the_seed) raise(SIGSEGV);
 }
 
 }  // namespace ballpiston::server::failpoint_internal

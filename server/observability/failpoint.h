@@ -8,10 +8,13 @@
 // variable is unset, a pass costs one load and one branch. If the value has an unknown name or a
 // number less than 1, the process exits at once with code 2, because the test would otherwise wait
 // for ever. Thread-safe.
+//
+// BALLPISTON_FAILPOINT=crash-for-seed:SEED arms a crash of the engine instead (CrashForSeed).
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_FAILPOINT_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_FAILPOINT_H_
 
 #include <array>
+#include <cstdint>
 #include <string_view>
 
 namespace ballpiston::server {
@@ -52,6 +55,18 @@ void Pass(std::string_view name);
 
 // The server is ready: from now on passes of NAME:ready+N count.
 void CountFailpointsOfReadyServer();
+
+// Before blocks of a job with this seed are computed: the process dies of SIGSEGV, as if the engine
+// had a fault, if the environment says so. The seed is at least 1.
+inline constexpr std::string_view kCrashForSeed = "crash-for-seed";
+namespace failpoint_internal {
+void CrashForSeed(uint64_t seed);
+}
+inline void CrashForSeed(uint64_t seed) {
+  if (failpoint_internal::armed) [[unlikely]] {
+    failpoint_internal::CrashForSeed(seed);
+  }
+}
 
 inline bool FailpointsAreArmed() { return failpoint_internal::armed; }
 

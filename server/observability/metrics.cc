@@ -44,6 +44,10 @@ void AddServer(const ServerSnapshot& server, Page& page) {
   page.Gauge("ballpiston_start_time_seconds", "Start time of the server, in seconds since 1970.",
              SinceEpoch(server.start_time));
   page.Gauge("ballpiston_draining", "1 while the server is stopping.", server.draining);
+  page.Counter("ballpiston_engine_crashes_total",
+               "Deaths of server processes on this data folder while they computed: crashes of the "
+               "engine, and kills for want of memory.",
+               server.engine_crashes);
   page.Gauge("ballpiston_streams", "Open watches and traces.", server.streams);
   if (server.certificate_expiry) {
     page.Gauge("ballpiston_certificate_expiry_timestamp_seconds",

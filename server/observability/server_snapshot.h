@@ -36,6 +36,8 @@ struct ServerSnapshot {
   uint64_t jobs_failed = 0;
   uint64_t jobs_cancelled = 0;
 
+  int64_t engine_crashes = 0;  // of all processes with this data folder
+
   std::optional<absl::Time> certificate_expiry;  // none without TLS
 
   int workers = 0;

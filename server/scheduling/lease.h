@@ -30,6 +30,7 @@ struct Lease {
   int64_t generation = 0;
   size_t executor = 0;
   int attempt = 1;  // greater than 1 if an executor returned some of the chunks
+  int crashes = 0;  // earlier attempts that died of themselves (Scheduler::ReturnCrashed)
 
   std::shared_ptr<const EnsembleSpec> spec;  // of the run
   std::vector<size_t> opens = {};            // points to open; empty: the lease has chunks
@@ -41,6 +42,7 @@ struct Lease {
   PartialChunk start = {};  // the first chunk, and what is merged of it already
   uint64_t end = 0;         // the chunk after the last
   double seconds = 0;       // predicted, of one core at nominal speed; 0 if all the rest is leased
+  double memory = 0;        // bytes, upper bound, if this server's threads compute it
 
   // Stop is requested when the chunks are no longer needed.
   std::stop_token stop = {};
@@ -60,6 +62,8 @@ struct Capacity {
   size_t executor = 0;  // its number, as the scheduler gave it
   // A lease has the fewest chunks that take as long as this.
   double seconds = std::numeric_limits<double>::infinity();
+  // A lease of a local executor takes no more bytes.
+  double memory = std::numeric_limits<double>::infinity();
   // A lease has no chunk that takes longer, unless the executor is local.
   double longest_chunk = std::numeric_limits<double>::infinity();
 };

@@ -11,6 +11,7 @@
 
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
+#include "core/ensemble/point_memory.h"
 #include "core/experiment/all_experiments.h"
 #include "core/markov/relaxation_spectrum.h"
 #include "server/convert/result_record.h"
@@ -128,6 +129,10 @@ OpenedPoint ModelLadder::Open(const EnsembleSpec& spec, size_t index) {
   std::optional<Answer> answer = ChooseAnswer(spec, PointAt(spec, index), rates, pilots);
   if (!answer) return *needed;
   return PointExperiment::Create(spec, index, *std::move(answer));
+}
+
+double ModelLadder::MemoryOf(const EnsembleSpec& spec, size_t index, int threads) {
+  return ballpiston::MemoryOf(spec, PointAt(spec, index), threads);
 }
 
 Ladder ModelLadder::LadderOf(const EnsembleSpec& spec, const PointParameters& point) {

@@ -29,6 +29,7 @@ class ModelLadder : public PointOpener {
 
   // The core's experiment, by the model that was asked for or chosen.
   OpenedPoint Open(const EnsembleSpec& spec, size_t index) override;
+  double MemoryOf(const EnsembleSpec& spec, size_t index, int threads) override;
   void KeepPilot(const PilotPlace& place, const Pilot& pilot) override;
 
   // Runs nothing but the measurement of the rates.

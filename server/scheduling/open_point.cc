@@ -18,13 +18,13 @@ void OpenPoint::SkipUnneeded() {
   std::erase_if(returned_, [this](const auto& chunk) { return !fold_.Needs(chunk.first); });
 }
 
-std::optional<std::pair<uint64_t, int>> OpenPoint::NextChunk(const Capacity& capacity,
-                                                             const ChunkLimits& limits) const {
+std::optional<std::pair<uint64_t, OpenPoint::Attempt>> OpenPoint::NextChunk(
+    const Capacity& capacity, const ChunkLimits& limits) const {
   const ChunkPlan& plan = experiment_->plan();
-  const auto fits = [&](uint64_t chunk, int attempt) {
+  const auto fits = [&](uint64_t chunk, const Attempt& attempt) {
     if (limits.local) return true;
     const double seconds = plan.SecondsFor(static_cast<double>(plan.SamplesIn(chunk)));
-    return attempt <= limits.most_attempts && seconds <= capacity.longest_chunk;
+    return attempt.number <= limits.most_attempts && seconds <= capacity.longest_chunk;
   };
   for (const auto& [chunk, attempt] : returned_) {
     if (fits(chunk, attempt)) return std::pair(chunk, attempt);
@@ -32,8 +32,8 @@ std::optional<std::pair<uint64_t, int>> OpenPoint::NextChunk(const Capacity& cap
   // Beyond the expected end the next chunk alone, because it may be the last.
   const uint64_t expected = std::max(experiment_->expected_chunks(), fold_.state().chunk + 1);
   const uint64_t end = std::isinf(capacity.seconds) ? chunks() : std::min(expected, chunks());
-  if (next_chunk_ >= end || !fits(next_chunk_, 1)) return std::nullopt;
-  return std::pair(next_chunk_, 1);
+  if (next_chunk_ >= end || !fits(next_chunk_, Attempt())) return std::nullopt;
+  return std::pair(next_chunk_, Attempt());
 }
 
 void OpenPoint::Take(uint64_t chunk) {
@@ -45,14 +45,21 @@ void OpenPoint::Take(uint64_t chunk) {
   }
 }
 
+bool OpenPoint::AwaitsMemory(const Capacity& capacity) const {
+  const bool fits = memory <= capacity.memory;
+  return !fits && !fold_.finished() && NextChunk(capacity, ChunkLimits()).has_value();
+}
+
 std::optional<Lease> OpenPoint::NextChunks(const Capacity& capacity, const ChunkLimits& limits) {
-  if (fold_.finished()) return std::nullopt;
+  if (fold_.finished() || (limits.local && memory > capacity.memory)) return std::nullopt;
   SkipUnneeded();
   const auto first = NextChunk(capacity, limits);
   if (!first) return std::nullopt;
   const ChunkPlan& plan = experiment_->plan();
   Lease lease;
-  lease.attempt = first->second;
+  lease.attempt = first->second.number;
+  lease.crashes = first->second.crashes;
+  lease.memory = limits.local ? memory : 0;
   lease.experiment = experiment_;
   lease.stop = stop();
   lease.start.chunk = first->first;
@@ -64,7 +71,7 @@ std::optional<Lease> OpenPoint::NextChunks(const Capacity& capacity, const Chunk
     lease.end = next_chunk_ = chunks();
     return lease;
   }
-  for (auto next = first; next && *next == std::pair(lease.end, lease.attempt);
+  for (auto next = first; next && *next == std::pair(lease.end, first->second);
        next = NextChunk(capacity, limits)) {
     Take(lease.end);
     lease.seconds += plan.SecondsFor(static_cast<double>(plan.SamplesIn(lease.end)));
@@ -74,9 +81,9 @@ std::optional<Lease> OpenPoint::NextChunks(const Capacity& capacity, const Chunk
   return lease;
 }
 
-void OpenPoint::Return(uint64_t first, uint64_t end, int attempt) {
+void OpenPoint::Return(uint64_t first, uint64_t end, int attempt, int crashes) {
   for (uint64_t chunk = first; chunk < std::min(end, next_chunk_); ++chunk) {
-    if (fold_.Needs(chunk)) returned_[chunk] = attempt;
+    if (fold_.Needs(chunk)) returned_[chunk] = {attempt, crashes};
   }
 }
 

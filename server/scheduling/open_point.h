@@ -37,8 +37,11 @@ class OpenPoint {
   // none for this capacity now.
   std::optional<Lease> NextChunks(const Capacity& capacity, const ChunkLimits& limits);
 
+  // There is a lease, but it takes more memory than the capacity of a local executor has.
+  bool AwaitsMemory(const Capacity& capacity) const;
+
   // Chunks that were leased and are still needed go out again, as this attempt.
-  void Return(uint64_t first, uint64_t end, int attempt);
+  void Return(uint64_t first, uint64_t end, int attempt, int crashes = 0);
 
   // These chunks are leased already.
   void Adopt(uint64_t first, uint64_t end);
@@ -52,19 +55,26 @@ class OpenPoint {
   uint64_t version = 0;  // the journal's number of the point's last change
   double work = 0;       // seconds of processor time of the point's chunks
   double work_at_checkpoint = 0;
+  double memory = 0;  // bytes of a lease if this server's threads compute it
 
  private:
+  // Lease::attempt and Lease::crashes.
+  struct Attempt {
+    int number = 1;
+    int crashes = 0;
+    friend bool operator==(const Attempt&, const Attempt&) = default;
+  };
   // The first chunk to lease and its attempt.
-  std::optional<std::pair<uint64_t, int>> NextChunk(const Capacity& capacity,
-                                                    const ChunkLimits& limits) const;
+  std::optional<std::pair<uint64_t, Attempt>> NextChunk(const Capacity& capacity,
+                                                        const ChunkLimits& limits) const;
   void Take(uint64_t chunk);
   void SkipUnneeded();
   uint64_t chunks() const { return experiment_->plan().chunks(); }
 
   const std::shared_ptr<const PointExperiment> experiment_;
   PointFold fold_;
-  uint64_t next_chunk_ = 0;           // this chunk and all after it were never leased
-  std::map<uint64_t, int> returned_;  // chunks before it to be leased again, with their attempts
+  uint64_t next_chunk_ = 0;               // this chunk and all after it were never leased
+  std::map<uint64_t, Attempt> returned_;  // chunks before it to be leased again
   std::stop_source stop_;
 };
 

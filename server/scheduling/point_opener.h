@@ -28,6 +28,9 @@ class PointOpener {
   // May throw.
   virtual OpenedPoint Open(const EnsembleSpec& spec, size_t index) = 0;
 
+  // Bytes, upper bound, while so many threads compute the point or its pilot.
+  virtual double MemoryOf(const EnsembleSpec&, size_t /*index*/, int /*threads*/) { return 0; }
+
   // The billiard run of a pilot that Open named. May throw.
   virtual std::unique_ptr<const PointExperiment> OpenPilot(const PilotPlace& place) {
     return PilotExperiment(place);

@@ -29,8 +29,13 @@ Run::Run(RunRequest request, SchedulerOptions options)
       has_checkpoints_(request.has_checkpoints),
       journal_(std::move(request.journal)),
       options_(options),
-      shortfall_(std::move(request.shortfall)) {
+      shortfall_(std::move(request.shortfall)),
+      suspicion_(std::move(request.suspicion)) {
   SkipFinishedPoints();
+  if (suspicion_) {
+    std::erase_if(suspicion_->points,
+                  [this](size_t point) { return point >= finished_.size() || finished_[point]; });
+  }
 }
 
 void Run::SkipFinishedPoints() {
@@ -51,9 +56,10 @@ std::optional<Lease> Run::NextLease(const Capacity& capacity, const ExecutorTrai
     return lease;
   }
   if (IsWantedElsewhere()) return NextOpening();
+  awaits_memory_ = false;
   std::optional<Lease> lease = NextChunksOfPilot(capacity);
   if (!lease) lease = NextChunks(capacity, executor, finished_.size());
-  return lease ? std::move(lease) : NextOpening();
+  return lease || awaits_memory_ ? std::move(lease) : NextOpening();
 }
 
 std::optional<Lease> Run::NextLeaseBefore(const Lease& held, const Capacity& capacity,
@@ -66,6 +72,7 @@ std::optional<Lease> Run::NextLeaseBefore(const Lease& held, const Capacity& cap
 std::optional<Lease> Run::NextChunksOfPilot(const Capacity& capacity) {
   for (const auto& [place, pilot] : pilots_) {
     auto lease = pilot->NextChunks(capacity, ChunkLimits());
+    awaits_memory_ |= !lease && pilot->AwaitsMemory(capacity);
     if (!lease) continue;
     lease->pilot = place;
     return Completed(*std::move(lease));
@@ -78,13 +85,17 @@ std::optional<Lease> Run::NextChunks(const Capacity& capacity, const ExecutorTra
   const ChunkLimits limits =
       executor.local ? ChunkLimits() : ChunkLimits{false, kMostAttemptsElsewhere};
   for (auto next = leasable_.begin(); next != leasable_.end() && *next < end;) {
-    auto lease = open_.at(*next)->NextChunks(capacity, limits);
+    OpenPoint& point = *open_.at(*next);
+    auto lease = point.NextChunks(capacity, limits);
     if (lease) {
       lease->point = *next;
       return Completed(*std::move(lease));
     }
+    const bool awaits_memory = executor.local && point.AwaitsMemory(capacity);
+    awaits_memory_ |= awaits_memory;
     // The point may have chunks for a local executor, although it has none for this one.
-    next = executor.local ? leasable_.erase(next) : std::next(next);
+    const bool stays = awaits_memory || !executor.local;
+    next = stays ? std::next(next) : leasable_.erase(next);
   }
   return std::nullopt;
 }
@@ -138,7 +149,7 @@ void Run::PointOpened(size_t point, std::unique_ptr<OpenPoint> open) {
   if (const auto adopted = unopened_.extract(point)) {
     for (const Lease& lease : adopted.mapped().all) open->Adopt(lease.start.chunk, lease.end);
     for (const Lease& lease : adopted.mapped().returned) {
-      open->Return(lease.start.chunk, lease.end, lease.attempt);
+      open->Return(lease.start.chunk, lease.end, lease.attempt, lease.crashes);
     }
   }
   open_.emplace(point, std::move(open));
@@ -179,8 +190,10 @@ OpenPoint* Run::Find(const Lease& lease) const {
 
 void Run::Close(const Lease& lease) {
   if (lease.pilot) {
+    NoteProgress(std::nullopt);
     pilots_.erase(*lease.pilot);
   } else {
+    NoteProgress(lease.point);
     leasable_.erase(lease.point);
     open_.erase(lease.point);
   }
@@ -188,7 +201,7 @@ void Run::Close(const Lease& lease) {
 
 void Run::Return(const Lease& lease, int attempt) {
   if (OpenPoint* open = Find(lease)) {
-    open->Return(lease.start.chunk, lease.end, attempt);
+    open->Return(lease.start.chunk, lease.end, attempt, lease.crashes);
     HasChunks(lease);
   } else if (const auto unopened = unopened_.find(lease.point); unopened != unopened_.end()) {
     unopened->second.returned.push_back(lease);
@@ -198,6 +211,16 @@ void Run::Return(const Lease& lease, int attempt) {
 
 void Run::HasChunks(const Lease& lease) {
   if (!lease.pilot && open_.contains(lease.point)) leasable_.insert(lease.point);
+}
+
+void Run::NoteProgress(std::optional<size_t> point) {
+  has_progressed_ = true;
+  if (suspicion_ && point) suspicion_->points.erase(*point);
+}
+
+const Suspicion* Run::refuted() const {
+  const bool is_refuted = suspicion_ && has_progressed_ && suspicion_->points.empty();
+  return is_refuted ? &*suspicion_ : nullptr;
 }
 
 // ---- the end ----

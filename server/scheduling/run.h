@@ -9,6 +9,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -32,6 +34,14 @@ struct Shortfall {
   absl::Status status;
 };
 
+// The run was being computed when the process died, twice. It is computed alone until a chunk of
+// each of these points is stored; without points, until any chunk is.
+struct Suspicion {
+  std::set<size_t> points = {};  // that were being computed at the last death
+  // Stores what was reported, which may take long, and ends the suspicion. False: not now.
+  std::function<bool()> clear;
+};
+
 struct RunRequest {
   int64_t key = 0;         // greater for a newer job
   int64_t generation = 0;  // tells apart jobs that had this key (after a backup)
@@ -41,6 +51,7 @@ struct RunRequest {
   std::vector<bool> finished;               // by point of the grid: nothing left to compute
   bool has_checkpoints = false;             // ask the journal for them
   std::optional<Shortfall> shortfall = {};  // of a finished point
+  std::optional<Suspicion> suspicion = {};
   std::shared_ptr<RunJournal> journal;
 };
 
@@ -48,6 +59,8 @@ struct SchedulerOptions {
   // A run with less to compute, in seconds of one core at nominal speed, is computed here: to send
   // it elsewhere would take longer.
   double least_seconds_elsewhere = 60;
+  // Bytes. The leases that local executors hold take no more together, unless one alone does.
+  double memory_limit = std::numeric_limits<double>::infinity();
 };
 
 class Run {
@@ -74,6 +87,7 @@ class Run {
   // The leases of local executors, and their turns in progress: a run ends when there are none.
   void TurnBegins() { ++turns_; }
   void TurnEnds() { --turns_; }
+  bool HasTurns() const { return turns_ > 0; }
 
   // Points of a lease that opens points: each is opened, finished, or waits for a pilot. Then the
   // lease ends.
@@ -99,6 +113,12 @@ class Run {
   // The point may have chunks to lease again.
   void HasChunks(const Lease& lease);
   const std::map<size_t, std::unique_ptr<OpenPoint>>& open_points() const { return open_; }
+
+  // A chunk of the point is merged or the point is finished; or a pilot, which is no point.
+  void NoteProgress(std::optional<size_t> point);
+  // Empty, or the suspicion that is to be cleared: the run has progressed.
+  const Suspicion* refuted() const;
+  void EndSuspicion() { suspicion_.reset(); }
 
   // Ends the run: it gives no more leases and requests the stop of those in progress. The first
   // reason is kept.
@@ -154,6 +174,7 @@ class Run {
   size_t next_point_ = 0;
   size_t opening_ = 0;  // leases that open points
   size_t turns_ = 0;
+  bool awaits_memory_ = false;     // at the last look of a local executor
   bool hungry_elsewhere_ = false;  // an executor that is not local found nothing
   double sampled_points_ = 0;      // opened ones
   double sampled_seconds_ = 0;     // expected, of these
@@ -161,6 +182,8 @@ class Run {
   bool stopped_ = false;
   absl::Status outcome_;
   std::optional<Shortfall> shortfall_;
+  std::optional<Suspicion> suspicion_;
+  bool has_progressed_ = false;
   std::stop_source stop_opening_;
 };
 

@@ -1,12 +1,16 @@
 #include "server/scheduling/scheduler.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <utility>
 
 #include "absl/cleanup/cleanup.h"
+#include "absl/strings/str_cat.h"
 #include "core/model_choice/ladder.h"
 #include "server/convert/errors.h"
 #include "server/convert/fold_record.h"
+#include "server/scheduling/crash_record.h"
 #include "server/scheduling/guarded.h"
 
 namespace ballpiston::server {
@@ -14,6 +18,10 @@ namespace {
 
 // Seconds of work on a point between two checkpoints, for each local worker.
 constexpr double kBetweenCheckpoints = 0.1;
+
+// While more than half of the memory is taken, a lease of a local executor has chunks of so many
+// seconds of one core, so that other runs get memory before a long point ends.
+constexpr double kLeaseInLittleMemory = 60;
 
 // Also: a chunk has at least the samples of its merged blocks.
 absl::Status CheckChunkOf(const OpenPoint& open, const ChunkResult& chunk) {
@@ -74,10 +82,12 @@ std::vector<Executor*> Scheduler::Executors() const {
 // ---- runs ----
 
 void Scheduler::Add(RunRequest request) {
+  const bool is_suspect = request.suspicion.has_value();
   const auto run = std::make_shared<Run>(std::move(request), options_);
   {
     MutexLock lock(mutex_);
     runs_.emplace(run->key(), run);
+    if (is_suspect) suspects_.push_back(run->key());
     for (Member& member : executors_) {
       member.shares.Add(run->key(), run->principal(), run->priority());
     }
@@ -117,6 +127,10 @@ Scheduler::RunPointer Scheduler::FindRun(int64_t key) const {
 void Scheduler::StopRun(Run& run, absl::Status why) {
   run.Stop(std::move(why));
   DropStoppedLeases(run);
+  EndPilotsOf(run);
+}
+
+void Scheduler::EndPilotsOf(const Run& run) {
   std::vector<PilotPlace> left;
   for (const auto& [place, owner] : pilots_) {
     if (owner == run.key()) left.push_back(place);
@@ -142,7 +156,7 @@ void Scheduler::DropLeases(const Run& run, IsDropped is_dropped) {
     while (held != end) {
       const bool drops = is_dropped(held->second);
       if (drops && !executors_[i].traits.local) executors_[i].shares.TurnEnds(run.key(), 0);
-      held = drops ? held_.erase(held) : std::next(held);
+      held = drops ? Drop(held) : std::next(held);
     }
   }
 }
@@ -156,14 +170,49 @@ void Scheduler::DropStoppedLeases(const Run& run) {
 }
 
 void Scheduler::Conclude(const RunPointer& run) {
+  bool others_go_on = false;
   {
     MutexLock lock(mutex_);
     const auto found = runs_.find(run->key());
     if (shutting_down_ || found == runs_.end() || !run->over()) return;
     for (Member& member : executors_) member.shares.Remove(run->key());
     runs_.erase(found);
+    others_go_on = std::erase(suspects_, run->key()) > 0;
   }
+  if (others_go_on) WakeExecutors();
   run->journal().Ended(run->outcome());
+}
+
+// ---- suspects ----
+
+bool Scheduler::IsPaused(const Run& run) const {
+  return !suspects_.empty() && run.key() != suspects_.front();
+}
+
+// A suspect waits for the end of the others' turns, so that their deaths are not its own.
+bool Scheduler::MayTakeTurn(const Run& run, const Member& member) const {
+  if (suspects_.empty()) return true;
+  if (IsPaused(run) || !member.traits.local) return false;
+  return std::ranges::none_of(
+      runs_, [&](const auto& other) { return other.second->HasTurns() && &run != &*other.second; });
+}
+
+// Between two turns, because the disk may be slow.
+void Scheduler::ClearIfRefuted(const RunPointer& run) {
+  std::function<bool()> clear;
+  {
+    MutexLock lock(mutex_);
+    if (suspects_.empty() || IsPaused(*run) || run->refuted() == nullptr) return;
+    clear = run->refuted()->clear;
+  }
+  if (!clear()) return;
+  {
+    MutexLock lock(mutex_);
+    std::erase(suspects_, run->key());
+    run->EndSuspicion();
+    if (!suspects_.empty()) EndPilotsOf(*run);  // the next suspect may need them
+  }
+  WakeExecutors();
 }
 
 void Scheduler::WakeExecutors() {
@@ -182,7 +231,9 @@ std::optional<Lease> Scheduler::Next(const Capacity& capacity) {
     Member& member = executors_[capacity.executor];
     const auto key = member.shares.First([&](int64_t candidate) {
       mutex_.AssertHeld();
-      lease = NextOf(*runs_.at(candidate), capacity);
+      Run& run_of_candidate = *runs_.at(candidate);
+      if (!MayTakeTurn(run_of_candidate, member)) return false;
+      lease = NextOf(run_of_candidate, CapacityNow(capacity));
       return lease.has_value();
     });
     if (!key) return std::nullopt;
@@ -196,6 +247,21 @@ std::optional<Lease> Scheduler::Next(const Capacity& capacity) {
   return lease;
 }
 
+// A suspect's lease needs no room beside those of paused runs, which could not end.
+Capacity Scheduler::CapacityNow(const Capacity& capacity) const {
+  Capacity now = capacity;
+  const bool is_limited = executors_[capacity.executor].traits.local && suspects_.empty();
+  if (!is_limited || held_memory_ == 0) return now;
+  now.memory = options_.memory_limit - held_memory_;
+  if (now.memory < held_memory_) now.seconds = std::min(now.seconds, kLeaseInLittleMemory);
+  return now;
+}
+
+Scheduler::HeldLeases::iterator Scheduler::Drop(HeldLeases::iterator held) {
+  held_memory_ -= held->second.lease.memory;
+  return held_.erase(held);
+}
+
 std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
   const Member& member = executors_[capacity.executor];
   std::optional<Lease> held;
@@ -206,6 +272,7 @@ std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
   if (lease) {
     lease->number = ++last_number_;
     lease->executor = capacity.executor;
+    held_memory_ += lease->memory;
     if (!lease->OpensPoints()) held_.emplace(KeyOf(*lease), Held{*lease});
   } else {
     lease = std::move(held);
@@ -242,11 +309,12 @@ bool Scheduler::EndTurn(const Lease& lease, double seconds) {
     } else if (const auto held = held_.find(KeyOf(lease)); held != held_.end()) {
       const bool stopped = lease.stop.stop_requested();
       continues = !stopped && executors_[lease.executor].executor->HasTurn(lease.number);
-      if (--held->second.turns == 0 && !continues) held_.erase(held);
+      if (--held->second.turns == 0 && !continues) Drop(held);
       continues = !stopped && held_.contains(KeyOf(lease));
     }
   }
   WakeExecutors();
+  ClearIfRefuted(run);
   Conclude(run);
   run->journal().AwaitRoom();
   return continues;
@@ -273,6 +341,12 @@ std::optional<Lease> Scheduler::Adopt(Lease lease) {
   held_.emplace(KeyOf(lease), Held{lease, 1});
   executors_[lease.executor].shares.TurnBegins(lease.run);
   return lease;
+}
+
+void Scheduler::ReturnCrashed(Lease lease) {
+  ++lease.crashes;
+  if (lease.crashes < kMostDeaths || !Needs(lease)) return Return(lease);
+  Fail(lease, EngineCrashed(absl::StrCat("point ", lease.point, " on the cluster"), lease.crashes));
 }
 
 bool Scheduler::Needs(const Lease& lease) const {
@@ -317,6 +391,7 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
   if (const auto* place = std::get_if<PilotPlace>(&opened)) return AwaitPilot(run, index, *place);
   auto open = std::make_unique<OpenPoint>(
       std::get<std::unique_ptr<const PointExperiment>>(std::move(opened)));
+  open->memory = std::ceil(opener_.MemoryOf(run.spec(), index, workers_));
   if (run.has_checkpoints()) {
     absl::Status resumed = Resume(run, index, *open);
     if (!resumed.ok()) return resumed;
@@ -334,6 +409,7 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
 
 void Scheduler::DropAdopted(Run& run, size_t index) {
   MutexLock lock(mutex_);
+  run.NoteProgress(index);
   run.ForgetAdopted(index);
   DropLeases(run, [&](const Held& held) { return held.lease.point == index && !held.lease.pilot; });
 }
@@ -352,6 +428,7 @@ absl::Status Scheduler::AwaitPilot(Run& run, size_t index, const PilotPlace& pla
   // The pilot's result may have become known before this run took the pilot over.
   if (!std::holds_alternative<PilotPlace>(opener_.Open(run.spec(), index))) return absl::OkStatus();
   auto pilot = std::make_unique<OpenPoint>(opener_.OpenPilot(place));
+  pilot->memory = std::ceil(opener_.MemoryOf(run.spec(), index, workers_));
   std::move(give_up).Cancel();
   MutexLock lock(mutex_);
   if (!run.stopped()) run.PilotOpened(place, std::move(pilot));
@@ -397,6 +474,9 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
     if (run != nullptr && !lease.pilot && run->IsUnopened(lease.point)) {
       return absl::UnavailableError("the point is not open yet");
     }
+    if (run != nullptr && is_elsewhere && IsPaused(*run)) {
+      return absl::UnavailableError("the run is paused");
+    }
     if (run != nullptr && is_elsewhere) Charge(*run, lease, report.seconds);
     OpenPoint* open = run ? run->Find(lease) : nullptr;
     if (open == nullptr || open->fold().finished()) return absl::OkStatus();
@@ -418,6 +498,7 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
   } else if (is_elsewhere) {
     WakeExecutors();
   }
+  if (is_elsewhere) ClearIfRefuted(run);
   return checked;
 }
 
@@ -431,6 +512,7 @@ void Scheduler::Merge(Run& run, const Lease& lease, OpenPoint& open, LeaseReport
   PointFold& fold = open.fold();
   open.work += report.seconds;
   uint64_t samples = 0;
+  if (!report.chunks.empty() && !lease.pilot) run.NoteProgress(lease.point);
   for (ChunkResult& chunk : report.chunks) {
     const bool is_early = fold.Needs(chunk.chunk) && chunk.chunk > fold.state().chunk;
     if (is_early && !lease.pilot) run.journal().ChunkIsEarly(lease.point, chunk);
@@ -462,7 +544,8 @@ void Scheduler::EndIfBudgetIsSpent(Run& run, const Lease& lease, OpenPoint& open
 // The files of an executor elsewhere may go when the lease ends, so its chunks are written now.
 void Scheduler::CheckpointIfDue(Run& run, const Lease& lease, OpenPoint& open) {
   const bool elsewhere = !executors_[lease.executor].traits.local;
-  const double between = elsewhere ? 0 : kBetweenCheckpoints * workers_;
+  const bool at_once = elsewhere || run.refuted() != nullptr;
+  const double between = at_once ? 0 : kBetweenCheckpoints * workers_;
   if (!open.fold().HasBlocks() || open.work < open.work_at_checkpoint + between) return;
   open.work_at_checkpoint = open.work;
   run.journal().Checkpoint(lease.point, open.fold().state());

@@ -10,6 +10,9 @@
 //   3. ReturnedChunksGoOutAgain.
 //   4. APilotIsComputedOnceForAllRuns.
 //   5. AStoppedRunEndsWhenItsTurnsHaveEnded.
+//   6. TheLeasesOfThisServerTakeNoMoreMemoryThanTheLimit.
+//   7. SuspectsAreComputedAloneOneAfterTheOther. A suspect is a run that was being computed at two
+//      deaths of the process (crash_record.h): other runs pause, and executors elsewhere too.
 // Thread-safe.
 #ifndef BALLPISTON_SERVER_SCHEDULING_SCHEDULER_H_
 #define BALLPISTON_SERVER_SCHEDULING_SCHEDULER_H_
@@ -17,6 +20,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -89,7 +93,7 @@ class Scheduler {
 
   // Chunks that nobody needs are dropped. Errors, of executors that are not local:
   //   DATA_LOSS    a chunk does not belong to its point; the others are merged
-  //   UNAVAILABLE  the point is not open yet: report again later
+  //   UNAVAILABLE  the point is not open yet, or the run is paused: report again later
   absl::Status Report(const Lease& lease, LeaseReport report);
 
   // For a local executor: a turn at the lease ends, after its last report. `seconds`: processor
@@ -101,6 +105,10 @@ class Scheduler {
   // The executor ends with the lease. Chunks that were not reported go out again, as another
   // attempt if the executor `tried` to compute them. May wait for the disk.
   void Return(const Lease& lease, bool tried = true);
+
+  // The same after an attempt that died of itself. After kMostDeaths of the lease the run fails:
+  // ENGINE_CRASHED.
+  void ReturnCrashed(Lease lease);
 
   // Returns when the disk has room for more reports.
   void AwaitRoom();
@@ -143,10 +151,13 @@ class Scheduler {
     int turns = 0;  // of a local executor
   };
   using RunPointer = std::shared_ptr<Run>;
+  using HeldLeases = std::map<HeldKey, Held>;
 
   static HeldKey KeyOf(const Lease& lease) { return {lease.executor, lease.run, lease.number}; }
 
   RunPointer FindRun(int64_t key) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  Capacity CapacityNow(const Capacity& capacity) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  HeldLeases::iterator Drop(HeldLeases::iterator held) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::optional<Lease> NextOf(Run& run, const Capacity& capacity)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::optional<Lease> HeldWithTurn(const Run& run, size_t executor) const
@@ -174,6 +185,11 @@ class Scheduler {
   absl::Status Resume(Run& run, size_t index, OpenPoint& open);
   void FinishPoint(const RunPointer& run, const Lease& lease) ABSL_LOCKS_EXCLUDED(mutex_);
   void Conclude(const RunPointer& run) ABSL_LOCKS_EXCLUDED(mutex_);
+  bool IsPaused(const Run& run) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  bool MayTakeTurn(const Run& run, const Member& member) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void ClearIfRefuted(const RunPointer& run) ABSL_LOCKS_EXCLUDED(mutex_);
+  void EndPilotsOf(const Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::vector<Executor*> Executors() const ABSL_LOCKS_EXCLUDED(mutex_);
   void WakeExecutors() ABSL_LOCKS_EXCLUDED(mutex_);
 
@@ -187,7 +203,9 @@ class Scheduler {
   bool shutting_down_ ABSL_GUARDED_BY(mutex_) = false;
   std::vector<Member> executors_ ABSL_GUARDED_BY(mutex_);
   std::map<int64_t, RunPointer> runs_ ABSL_GUARDED_BY(mutex_);
-  std::map<HeldKey, Held> held_ ABSL_GUARDED_BY(mutex_);
+  std::deque<int64_t> suspects_ ABSL_GUARDED_BY(mutex_);  // the first is computed alone
+  HeldLeases held_ ABSL_GUARDED_BY(mutex_);
+  double held_memory_ ABSL_GUARDED_BY(mutex_) = 0;  // bytes of held_
   int64_t last_number_ ABSL_GUARDED_BY(mutex_) = 0;
   std::map<PilotPlace, int64_t> pilots_ ABSL_GUARDED_BY(mutex_);  // in progress, and by which run
 };

@@ -169,6 +169,7 @@ absl::StatusOr<Lease> ChunksOf(const storage::Lease& record, EnsembleSpec spec) 
   absl::Status checked = CheckChunks(record, lease.experiment->plan());
   if (!checked.ok()) return checked;
   lease.attempt = record.attempt();
+  lease.crashes = record.crashes();
   lease.point = static_cast<size_t>(record.point());
   lease.start = {record.first_chunk(), record.blocks(), ResultOfAccumulators(record.partial())};
   lease.end = record.end_chunk();
@@ -187,6 +188,10 @@ absl::Status CheckIdentity(const storage::Lease& record) {
   if (record.point() < 0 || record.point() >= kMaxPoints) {
     return DamagedRecord("point",
                          absl::StrCat("is ", record.point(), "; permitted: 0 to ", kMaxPoints - 1));
+  }
+  if (record.crashes() < 0) {
+    return DamagedRecord("crashes",
+                         absl::StrCat("is ", record.crashes(), "; permitted: 0 or greater"));
   }
   if (record.attempt() >= 1) return absl::OkStatus();
   return DamagedRecord("attempt",
@@ -240,6 +245,7 @@ storage::Lease LeaseRecord(const Lease& lease, const JobIdentity& job) {
   record.set_engine_version(job.engine_version);
   record.set_point(static_cast<int64_t>(lease.point));
   record.set_attempt(lease.attempt);
+  record.set_crashes(lease.crashes);
   const PointExperiment& experiment = *lease.experiment;
   *record.mutable_question() =
       QuestionRecord(OnePointSpec(*lease.spec, experiment.parameters(), experiment.answer().model));

@@ -7,6 +7,7 @@
 
 #include "core/ensemble/block_run.h"
 #include "core/ensemble/point_fold.h"
+#include "server/observability/failpoint.h"
 #include "server/processor_time.h"
 
 namespace ballpiston::server {
@@ -73,6 +74,7 @@ bool LeaseRun::Run() {
 }
 
 void LeaseRun::Compute(uint64_t first, uint64_t end) {
+  CrashForSeed(lease_.spec->seed);
   const bool is_start = first == lease_.start.chunk;
   chunks_.emplace(lease_.experiment->plan(), is_start ? lease_.start : PartialChunk{first}, end);
   const std::unique_ptr<BlockRun> run = lease_.experiment->StartRun(*this);
@@ -104,6 +106,7 @@ bool LeaseRun::Pause() {
 bool RunLeases(const std::vector<LeaseWork>& work, const std::stop_token& stop,
                ChunkReceiver& receiver) {
   for (size_t i = 0; i < work.size(); ++i) {
+    receiver.LeaseBegins(i);
     if (!LeaseRun(i, work[i], stop, receiver).Run()) return false;
   }
   return !stop.stop_requested();

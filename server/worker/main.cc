@@ -14,6 +14,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "core/engine_version.h"
+#include "server/fatal_signals.h"
+#include "server/worker/crash_mark.h"
 #include "server/worker/task_file.h"
 #include "server/worker/task_run.h"
 
@@ -87,6 +89,8 @@ int Fail(const absl::Status& status) {
 }
 
 int Compute(const CommandLine& line) {
+  NoteFatalSignals(LeaveCrashMark);
+  const SignalStack stack;
   std::stop_source stop;
   const SignalWatch watch(stop);
   const absl::StatusOr<ArrayTask> task = ReadTask(line.task_file, line.task);

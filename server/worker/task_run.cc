@@ -10,6 +10,7 @@
 #include "absl/functional/function_ref.h"
 #include "absl/strings/str_cat.h"
 #include "server/worker/chunk_file.h"
+#include "server/worker/crash_mark.h"
 #include "server/worker/lease_runner.h"
 
 namespace ballpiston::server {
@@ -29,6 +30,7 @@ class TaskRun : private ChunkReceiver {
   void TakeChunks(const LeaseChunks& chunks);
 
   // ---- new files ----
+  void LeaseBegins(size_t lease) override { SetCrashMark(options_.folder, task_.task, lease); }
   void ChunkDone(size_t lease, ChunkResult chunk) override;
   void Worked(size_t lease, double seconds) override;
   bool HasNewChunks() const;

@@ -20,6 +20,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "server/worker/chunk_file.h"
+#include "server/worker/crash_mark.h"
 #include "server/worker/task_run.h"
 #include "tests/server/execution/fake_slurm.h"
 #include "tests/server/scheduling/run_requests.h"
@@ -344,6 +345,46 @@ TEST_F(SlurmExecutorTest, LostTasksAreComputedAgain) {
   EXPECT_EQ(again.leases.at(0).lease.attempt, 2);
   RunToRightEnd();
   EXPECT_EQ(server_->Status().chunks, 3);
+}
+
+// Its marks show that the task can use the folder, so other leases are submitted as before.
+TEST_F(SlurmExecutorTest, ThreeCrashesOfALeaseFailItsRunAlone) {
+  StartServer();
+  spec_ = PointOfChunks(1);
+  journal_ = server_->AddOpenRun(1, spec_);
+  for (size_t attempt = 1; attempt <= 3; ++attempt) {
+    server_->AwaitSubmissions(attempt);
+    const ArraySubmission array = slurm_.submissions().back();
+    ASSERT_OK_AND_ASSIGN(const ArrayTask task, TaskIn(array.folder, 0));
+    EXPECT_EQ(task.leases.at(0).lease.crashes, static_cast<int>(attempt) - 1);
+    WriteFile(CrashMarkFile(array.folder, 0, 0), "");
+    slurm_.LoseAll();
+  }
+  EXPECT_THAT(journal_->AwaitEnd(),
+              StatusIs(absl::StatusCode::kInternal, HasSubstr("the engine crashed 3 times")));
+  EXPECT_THAT(server_->AwaitIdle().problem, IsEmpty());
+  journal_ = server_->AddOpenRun(2, spec_);
+  RunToRightEnd();
+}
+
+// Lost tasks are no crashes: after some attempts this server computes the chunk.
+TEST_F(SlurmExecutorTest, TheCrashesOfALeaseSurviveARestart) {
+  SubmitRun(1);
+  WriteFile(CrashMarkFile(slurm_.submissions().back().folder, 0, 0), "");
+  slurm_.LoseAll();
+  server_->AwaitSubmissions(2);
+  server_ = nullptr;
+  server_ = std::make_unique<ClusteredServer>(slurm_, options_);
+  journal_ = server_->AddRun(1, spec_);
+  server_->Start();
+  server_->OpenPoints();
+  slurm_.LoseAll();
+  server_->AwaitProblem("left no file");
+  AwaitThat([&] { return slurm_.submissions().size() >= 3; });
+  ASSERT_OK_AND_ASSIGN(const ArrayTask task, TaskIn(slurm_.submissions().back().folder, 0));
+  EXPECT_EQ(task.leases.at(0).lease.crashes, 1);
+  EXPECT_EQ(task.leases.at(0).lease.attempt, 3);
+  RunToRightEnd();
 }
 
 // A task is not lost because one answer of Slurm lacks it: a file may become visible later.

@@ -118,6 +118,31 @@ TEST(OpenPoint, ChunksThatWereNeverLeasedCannotBeReturned) {
   EXPECT_EQ(Next(point, 1000), Chunks(1, 6, 1));
 }
 
+TEST(OpenPoint, ChunksWithCrashesAreALeaseOfTheirOwn) {
+  OpenPoint point = PointOf(SixChunks());
+  EXPECT_EQ(Next(point, 15), Chunks(0, 4));
+  point.Return(0, 2, 2);
+  point.Return(2, 4, 2, 1);
+  EXPECT_EQ(Next(point, 1000), Chunks(0, 2, 2));
+  const auto crashed = point.NextChunks({.seconds = 1000}, ChunkLimits());
+  ASSERT_TRUE(crashed);
+  EXPECT_EQ(crashed->start.chunk, 2u);
+  EXPECT_EQ(crashed->end, 4u);
+  EXPECT_EQ(crashed->crashes, 1);
+  EXPECT_EQ(Next(point, 1000), Chunks(4, 6, 1));
+}
+
+TEST(OpenPoint, ALocalLeaseWaitsForItsMemory) {
+  OpenPoint point = PointOf(SixChunks());
+  point.memory = 100;
+  EXPECT_FALSE(point.AwaitsMemory({.memory = 100}));
+  EXPECT_TRUE(point.AwaitsMemory({.memory = 99}));
+  EXPECT_FALSE(point.NextChunks({.memory = 99}, ChunkLimits()));
+  EXPECT_TRUE(point.NextChunks({.seconds = 0, .memory = 99}, kElsewhere));
+  EXPECT_TRUE(point.NextChunks({.memory = 100}, ChunkLimits()));
+  EXPECT_FALSE(point.AwaitsMemory({.memory = 99}));  // nothing is left
+}
+
 TEST(OpenPoint, AChunkOfTooManyAttemptsIsForLocalExecutors) {
   OpenPoint point = PointOf(SixChunks());
   EXPECT_EQ(Next(point, 0, kElsewhere), Chunks(0, 1));

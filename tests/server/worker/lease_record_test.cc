@@ -76,6 +76,7 @@ void ExpectComesBack(const IdentifiedLease& lease) {
   EXPECT_EQ(back.job, lease.job);
   EXPECT_EQ(back.lease.point, lease.lease.point);
   EXPECT_EQ(back.lease.attempt, lease.lease.attempt);
+  EXPECT_EQ(back.lease.crashes, lease.lease.crashes);
   EXPECT_EQ(back.lease.start.chunk, lease.lease.start.chunk);
   EXPECT_EQ(back.lease.start.blocks, lease.lease.start.blocks);
   EXPECT_EQ(back.lease.start.merged, lease.lease.start.merged);
@@ -225,6 +226,7 @@ TEST(LeaseRecord, DamagedChunksAreDataLossWithTheirField) {
        std::vector<Damage>{{"point", [](Record& r) { r.set_point(-1); }},
                            {"point", [](Record& r) { r.set_point(kMaxPoints); }},
                            {"attempt", [](Record& r) { r.set_attempt(0); }},
+                           {"crashes", [](Record& r) { r.set_crashes(-1); }},
                            {"first_chunk", [](Record& r) { r.set_first_chunk(~uint64_t{0}); }},
                            {"first_chunk", [](Record& r) { r.set_first_chunk(r.end_chunk()); }},
                            {"end_chunk", [](Record& r) { r.set_end_chunk(0); }},

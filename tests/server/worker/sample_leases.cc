@@ -69,6 +69,7 @@ IdentifiedLease LeaseOf(const EnsembleSpec& spec, uint64_t first, uint64_t end) 
   lease.experiment = PointExperiment::Create(spec, 0);
   lease.point = 5;
   lease.attempt = 2;
+  lease.crashes = 1;
   lease.start.chunk = first;
   lease.end = end == 0 ? lease.experiment->plan().chunks() : end;
   return {SomeJob(), std::move(lease)};

@@ -17,6 +17,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "server/worker/chunk_file.h"
+#include "server/worker/crash_mark.h"
 #include "server/worker/task_file.h"
 #include "tests/server/worker/sample_leases.h"
 #include "tests/support/files.h"
@@ -105,6 +106,18 @@ TEST_F(WorkerProgramTest, ATaskHasSeveralLeases) {
   EXPECT_TRUE(AreEqual(ChunksOfLease(1), AllChunks(*b.lease.experiment)));
   const std::vector<ChunkFile> files = Files();
   for (const ChunkFile& file : files) EXPECT_EQ(file.is_final, &file == &files.back());
+}
+
+TEST_F(WorkerProgramTest, ACrashLeavesTheMarkOfItsLease) {
+  EnsembleSpec crash = SpecOf(kEquilibrium, Model::kBilliard);
+  crash.seed = 13;
+  WriteTasks({{LeaseOf(SpecOf(kFirstHit, Model::kBilliard)), LeaseOf(crash)}});
+  ProcessOptions command = Command();
+  command.environment["BALLPISTON_FAILPOINT"] = "crash-for-seed:13";
+  EXPECT_THAT(RunProgram(command), ExitsWith(128 + SIGSEGV));
+  EXPECT_FALSE(std::filesystem::exists(CrashMarkFile(out_, 0, 0)));
+  EXPECT_TRUE(std::filesystem::exists(CrashMarkFile(out_, 0, 1)));
+  EXPECT_THAT(RunProgram(Command()), ExitsWith(0));
 }
 
 TEST_F(WorkerProgramTest, EndsWhenTheToleranceIsReached) {

@@ -1,0 +1,25 @@
+// The memory that this process can use, and the kernel's kills for want of it: of the process's
+// control group (cgroup version 1 or 2), and of the machine.
+#ifndef BALLPISTON_SERVER_MACHINE_MEMORY_H_
+#define BALLPISTON_SERVER_MACHINE_MEMORY_H_
+
+#include <cstdint>
+#include <string>
+
+namespace ballpiston::server {
+
+// How often the kernel has killed a process of a group for want of memory. The counts of two times
+// can be compared if the group is the same. No group: the kernel does not tell.
+struct OutOfMemoryKills {
+  std::string group = {};  // with the boot's identity
+  int64_t kills = 0;
+};
+
+OutOfMemoryKills ReadOutOfMemoryKills();
+
+// Bytes of memory, at most the group's limit.
+double MachineMemory();
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_MACHINE_MEMORY_H_

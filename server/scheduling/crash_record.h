@@ -1,0 +1,116 @@
+// What this process computes, on disk before it is computed, so that the next process knows what
+// killed this one.
+//
+// The record is a small file in memory (mmap), which the kernel keeps when the process dies. It is
+// never synced: a write takes some nanoseconds, and only a power cut loses it, which counts for
+// nothing. A death of the process counts if the process died of itself in a thread that computed a
+// run (NoteDeath), or if the kernel killed it for want of memory (OutOfMemoryKills). It counts once
+// for each run that was being computed. Properties, each with a test of its name:
+//   1. ADeathCountsForTheRunsThatWereBeingComputed.
+//   2. AKillFromOutsideCountsForNothing.
+//   3. AStoredChunkClearsTheRun.
+//   4. AnOutOfMemoryKillCounts.
+//   5. ADeathInAnExaminationCountsForItsRunAlone.
+// A run that dies twice is computed alone (Scheduler), so at its third death nothing else can be
+// the cause. Thread-safe.
+#ifndef BALLPISTON_SERVER_SCHEDULING_CRASH_RECORD_H_
+#define BALLPISTON_SERVER_SCHEDULING_CRASH_RECORD_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "server/machine_memory.h"
+#include "server/mutex.h"
+
+namespace ballpiston::server {
+
+// After so many deaths a run is computed alone, and after so many it is computed no more.
+inline constexpr int kDeathsOfASuspect = 2;
+inline constexpr int kMostDeaths = 3;
+
+// RunRequest's key and generation.
+struct RunName {
+  int64_t run = 0;
+  int64_t generation = 0;
+
+  friend auto operator<=>(const RunName&, const RunName&) = default;
+};
+
+// In this folder, systemd's unit leaves a file of this name after an out-of-memory kill.
+inline constexpr char kOutOfMemoryFile[] = "out-of-memory";
+
+class CrashRecord {
+  struct Slot;
+
+ public:
+  CrashRecord();  // in memory, of no use to a later process
+  // Reads the record of the previous process in this folder, counts its death, and begins a record
+  // of this process. If the disk refuses, the record is in memory, and the log says so. One object
+  // at a time for a folder.
+  explicit CrashRecord(const std::string& folder,
+                       const OutOfMemoryKills& now = ReadOutOfMemoryKills());
+  ~CrashRecord();
+  CrashRecord(const CrashRecord&) = delete;
+  CrashRecord& operator=(const CrashRecord&) = delete;
+
+  // The deaths that count for the run.
+  int Deaths(const RunName& run) const;
+  // The points of the run that were being computed when the previous process ended.
+  std::set<size_t> LastPoints(const RunName& run) const;
+  // The run's deaths count no more.
+  void Clear(const RunName& run);
+  // The same for all other runs than these.
+  void ClearAllBut(const std::set<RunName>& runs);
+
+  int64_t counted_deaths() const;  // of all processes with this record
+
+  // As long as it lives, this thread computes the run. `point`: empty if it is none of the run's.
+  class Computing {
+   public:
+    Computing(CrashRecord& record, const RunName& run, std::optional<size_t> point);
+    ~Computing();
+    Computing(const Computing&) = delete;
+    Computing& operator=(const Computing&) = delete;
+
+   private:
+    Slot* slot_ = nullptr;
+  };
+
+  // As long as it lives, this thread looks at what is known of the run, which may be paused. A
+  // death in this thread counts for this run alone; a death in another thread does not count for
+  // it.
+  class Examining {
+   public:
+    Examining(CrashRecord& record, const RunName& run);
+    ~Examining();
+    Examining(const Examining&) = delete;
+    Examining& operator=(const Examining&) = delete;
+  };
+
+  // This thread has received a fatal signal. Async-signal-safe.
+  static void NoteDeath(int signal);
+
+ private:
+  struct Page;
+
+  void Map(const std::string& path);
+  void TakeLast();
+  // Empty if its death does not count.
+  std::set<RunName> KilledThePrevious(const std::string& folder, const OutOfMemoryKills& now);
+  void CountDeath(const std::set<RunName>& runs);
+
+  std::unique_ptr<Page> in_memory_;
+  Page* page_;
+  // What the previous process was computing when it ended.
+  std::map<RunName, std::set<size_t>> last_;
+  mutable Mutex mutex_;  // guards the page's deaths
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_SCHEDULING_CRASH_RECORD_H_

@@ -1,0 +1,114 @@
+// The engine kills the server again and again, always for one job: the job fails, others do not.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "client/library/client.h"
+#include "gmock/gmock.h"
+#include "google/rpc/error_details.pb.h"
+#include "server/observability/failpoint.h"
+#include "tests/fault/torture/connected_server.h"
+#include "tests/fault/torture/findings.h"
+#include "tests/fault/torture/questions.h"
+#include "tests/support/await.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::torture {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr int kJobs = 10;
+constexpr int kDeaths = 3;
+constexpr uint64_t kSeedOfTheCrash = 13;
+constexpr int kDiedOfAFault = 128 + SIGSEGV;
+
+std::string Armed() {
+  return absl::StrCat(std::string(server::kCrashForSeed), ":", kSeedOfTheCrash);
+}
+
+std::vector<v1::EnsembleSpec> InnocentQuestions() {
+  std::vector<v1::EnsembleSpec> questions;
+  for (int i = 0; i < kJobs; ++i) questions.push_back(ManyPoints(2, 20'000 + 1'000 * i));
+  return questions;
+}
+
+v1::EnsembleJob AwaitEnd(const client::Client& client, const std::string& name) {
+  return OrThrow(client.Watch(name, {}, {.give_up_after = absl::FromChrono(kPatience)}));
+}
+
+std::string ReasonOf(const v1::EnsembleJob& job) {
+  google::rpc::ErrorInfo info;
+  for (const auto& detail : job.error().details()) detail.UnpackTo(&info);
+  return info.reason();
+}
+
+// Clients that submit all jobs before one of them is computed: the server is killed at once.
+std::vector<std::string> SubmitAll(ConnectedServer& server,
+                                   const std::vector<v1::EnsembleSpec>& questions) {
+  server.Start();
+  std::vector<std::string> names;
+  const client::Client client = server.NewClient();
+  for (const v1::EnsembleSpec& question : questions) {
+    names.push_back(OrThrow(client.Create(question)).name());
+  }
+  server.KillHard();
+  return names;
+}
+
+TEST(Crashes, OneJobFailsAndTheOthersHaveTheirBytes) {
+  Findings findings("crashes");
+  std::vector<v1::EnsembleSpec> questions = InnocentQuestions();
+  const std::vector<Answer> answers = UndisturbedAnswers(questions);
+  v1::EnsembleSpec crash = Endless();
+  crash.set_seed(kSeedOfTheCrash);
+  questions.push_back(crash);
+  ConnectedServer server;
+  const std::vector<std::string> names = SubmitAll(server, questions);
+  for (int life = 0; life < kDeaths; ++life) {
+    server.Spawn(Armed());
+    EXPECT_EQ(server.AwaitEnd(), kDiedOfAFault) << server.log();
+  }
+  server.Spawn(Armed());
+  ASSERT_TRUE(server.AwaitReady()) << server.log();
+  const client::Client client = server.NewClient();
+  const v1::EnsembleJob crashed = AwaitEnd(client, names.back());
+  EXPECT_EQ(crashed.state(), v1::EnsembleJob::FAILED) << crashed.ShortDebugString();
+  EXPECT_EQ(ReasonOf(crashed), "ENGINE_CRASHED");
+  int same = 0;
+  for (size_t i = 0; i < answers.size(); ++i) {
+    const v1::EnsembleJob job = AwaitEnd(client, names[i]);
+    EXPECT_EQ(job.state(), v1::EnsembleJob::SUCCEEDED) << job.ShortDebugString();
+    same += AnswerOf(OrThrow(client.Results(names[i]))) == answers[i];
+  }
+  EXPECT_EQ(same, kJobs);
+  EXPECT_EQ(server.Stop(), 0);
+  EXPECT_THAT(server.log(),
+              AllOf(HasSubstr("it is computed alone until its next chunk is stored"),
+                    HasSubstr(absl::StrCat("job=", names.back())), HasSubstr("seed: 13")));
+  findings.Count("deaths", kDeaths);
+  findings.Count("other jobs with the same bytes", same);
+}
+
+// Whatever is computed when it comes.
+TEST(Crashes, AKillFromOutsideCountsForNothing) {
+  ConnectedServer server;
+  const std::vector<std::string> names = SubmitAll(server, {Endless()});
+  for (int life = 0; life < 2 * kDeaths; ++life) {
+    server.Start();
+    AwaitThat([&] { return OrThrow(server.NewClient().Get(names[0])).progress().samples() > 0; });
+    server.KillHard();
+  }
+  server.Start();
+  EXPECT_EQ(OrThrow(server.NewClient().Get(names[0])).state(), v1::EnsembleJob::RUNNING);
+  EXPECT_THAT(server.log(), Not(HasSubstr("died")));
+}
+
+}  // namespace
+}  // namespace ballpiston::torture

@@ -1,0 +1,121 @@
+// The points that are computed at a time take no more memory than the limit.
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "gtest/gtest.h"
+#include "server/scheduling/scheduler.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/scheduling/recording_journal.h"
+#include "tests/server/scheduling/run_requests.h"
+#include "tests/server/scheduling/stepped_executor.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::server {
+namespace {
+
+constexpr double kLimitBytes = 100;
+
+// A point takes as many bytes as the seed of its specification.
+class SeedsAreBytes : public FactoryOpener {
+ public:
+  SeedsAreBytes() : FactoryOpener(FakeExperiments()) {}
+  double MemoryOf(const EnsembleSpec& spec, size_t, int) override {
+    return static_cast<double>(spec.seed);
+  }
+};
+
+class MemoryLimitTest : public testing::Test {
+ protected:
+  ~MemoryLimitTest() override { scheduler_.Shutdown(); }
+
+  EnsembleSpec SpecOfBytes(uint64_t bytes) const { return FakeSpec(2, 3000, bytes); }
+
+  JournalPointer Add(int64_t key, uint64_t bytes) {
+    auto journal = std::make_shared<RecordingJournal>();
+    scheduler_.Add(RunOf(key, SpecOfBytes(bytes), journal));
+    bytes_[key] = bytes;
+    return journal;
+  }
+
+  // One turn of each run that can have one; the turns are in progress at the same time. Returns the
+  // runs whose chunks are computed.
+  std::multiset<int64_t> TurnsAtOnce(size_t most, uint64_t blocks) {
+    std::vector<Lease> leases;
+    std::multiset<int64_t> runs;
+    while (leases.size() < most) {
+      const auto lease = local_.Begin();
+      if (!lease) break;
+      if (!lease->OpensPoints()) runs.insert(lease->run);
+      leases.push_back(*lease);
+    }
+    std::map<int64_t, double> bytes_of_lease;
+    for (const Lease& lease : leases) {
+      if (!lease.OpensPoints()) bytes_of_lease[lease.number] = lease.memory;
+    }
+    double bytes = 0;
+    for (const auto& [number, of_lease] : bytes_of_lease) bytes += of_lease;
+    most_bytes_ = std::max(most_bytes_, bytes);
+    for (const Lease& lease : leases) local_.End(lease, blocks, 0.1);
+    return runs;
+  }
+
+  SeedsAreBytes opener_;
+  Scheduler scheduler_{opener_, 1, {.memory_limit = kLimitBytes}};
+  SteppedExecutor local_{scheduler_};
+  std::map<int64_t, uint64_t> bytes_;
+  double most_bytes_ = 0;
+};
+
+TEST_F(MemoryLimitTest, TheLeasesOfThisServerTakeNoMoreMemoryThanTheLimit) {
+  std::vector<JournalPointer> journals;
+  const std::vector<uint64_t> bytes = {40, 50, 60, 70};
+  for (size_t i = 0; i < bytes.size(); ++i) {
+    journals.push_back(Add(static_cast<int64_t>(i) + 1, bytes[i]));
+  }
+  for (int round = 0; round < 1000 && journals.back()->ends == 0; ++round) TurnsAtOnce(8, 100);
+  local_.TakeAllTurns();
+  EXPECT_LE(most_bytes_, kLimitBytes);
+  EXPECT_GE(most_bytes_, 90);  // the first two fit together
+  for (size_t i = 0; i < bytes.size(); ++i) {
+    ASSERT_EQ(journals[i]->ends, 1) << bytes[i];
+    ExpectAllPointsRight(SpecOfBytes(bytes[i]), *journals[i]);
+  }
+}
+
+TEST_F(MemoryLimitTest, OnePointAloneMayTakeMore) {
+  const auto large = Add(1, 1000);
+  local_.TakeAllTurns();
+  ASSERT_EQ(large->ends, 1);
+  EXPECT_OK(*large->outcome);
+}
+
+// A lease of little memory ends after a minute of one core, so that the third run does not wait for
+// the end of a point of two minutes.
+TEST_F(MemoryLimitTest, ALongPointLetsOthersIn) {
+  const auto first = Add(1, 60), second = Add(2, 40), third = Add(3, 40);
+  bool third_began = false;
+  while (first->finished.empty() && second->finished.empty()) {
+    third_began |= TurnsAtOnce(8, 100).contains(3);
+  }
+  EXPECT_TRUE(third_began);
+  local_.TakeAllTurns();
+  for (const auto& journal : {first, second, third}) EXPECT_EQ(journal->ends, 1);
+}
+
+TEST_F(MemoryLimitTest, AStoppedRunGivesItsMemoryBack) {
+  Add(1, 100);
+  local_.TakeTurn(0);
+  local_.TakeTurn(1);
+  const auto second = Add(2, 100);
+  local_.TakeTurn(0);
+  scheduler_.Cancel(1);
+  local_.TakeAllTurns();
+  ASSERT_EQ(second->ends, 1);
+  EXPECT_OK(*second->outcome);
+}
+
+}  // namespace
+}  // namespace ballpiston::server
