@@ -214,7 +214,9 @@ std::vector<EnsembleSpec> ModelErrorQuestions() {
 
 std::string ClaimOf(const EnsembleSpec& question) {
   const bool is_single = question.precision == Precision::kSingle;
-  return absl::StrCat(AimOf(question).name, " by ",
+  const bool is_decay =
+      question.experiment == &kEnergyRelaxation && !question.grid[ballpiston::kEpsilon].empty();
+  return absl::StrCat(AimOf(question).name, is_decay ? " from an energy" : "", " by ",
                       is_single ? "billiard in single precision" : Name(question.model));
 }
 

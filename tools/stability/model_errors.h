@@ -31,7 +31,7 @@ struct ModelError {
   bool IsTight() const;
 };
 
-// The experiment and the model, "heat_current by markov".
+// The estimate and the model, "heat_current by markov".
 std::string ClaimOf(const EnsembleSpec& question);
 // The parameters of its point, "rho 0.53, delta 0.1".
 std::string PlaceOf(const EnsembleSpec& question);
