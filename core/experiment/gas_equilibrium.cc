@@ -17,9 +17,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -340,22 +340,25 @@ double ErrorOfConductivity(Model model, const PointParameters& point) {
 }
 
 // The relative difference between the infinite gas, whose conductivity the spectrum gives, and a
-// gas of this many columns in the limit. The values are bounds of measured differences
+// gas of this shape in the limit. The values are bounds of measured differences
 // (docs/conductivity.md). In one column no correlation lowers the conductivity.
 double ErrorOfSize(const GasGeometry& geometry) {
   constexpr double kOfColumns[] = {0.0018, 5e-4, 2e-4, 7e-5};
-  constexpr double kOfMoreColumns = 1e-5;
-  const auto columns = static_cast<size_t>(geometry.shape().columns);
-  const double correlations =
-      columns <= std::size(kOfColumns) ? kOfColumns[columns - 1] : kOfMoreColumns;
+  constexpr double kOfRows[] = {2.6e-4, 4e-5};
+  constexpr double kOfMore = 1e-5;
+  const auto in = [](std::span<const double> errors, int64_t count) {
+    const auto n = static_cast<size_t>(count);
+    return n <= errors.size() ? errors[n - 1] : kOfMore;
+  };
+  const GasShape& shape = geometry.shape();
+  const double rows = shape.is_lattice ? in(kOfRows, shape.rows) : 0;
   const double rate = GasExchangeRate(geometry, 1) / InfiniteGasExchangeRate(geometry, 1);
-  return correlations + std::fabs(rate - 1);
+  return in(kOfColumns, shape.columns) + rows + std::fabs(rate - 1);
 }
 
 double ErrorOfTheLimit(const PointParameters& point) {
   const GasGeometry geometry = PeriodicGasOf(point);
-  return ExpectedLimitErrorOfConduction(point) + ErrorOfSize(geometry) +
-         LimitCorrection(geometry).error;
+  return ExpectedLimitErrorInAGas(point) + ErrorOfSize(geometry) + LimitCorrection(geometry).error;
 }
 
 void CheckEquilibriumGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {

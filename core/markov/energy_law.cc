@@ -113,7 +113,9 @@ std::vector<double> EnergyLaw::Probabilities(const Start& start, double t) const
   AddTwoJumps(u, t, law);
   AddModes(all_, start.gains, u, t, law);
   AddModes(losses_, -start.gains_of_losses, u, t, law);
-  for (double& probability : law) probability = std::max(probability, 0.0);
+  double sum = 0;
+  for (double& probability : law) sum += probability = std::max(probability, 0.0);
+  for (double& probability : law) probability /= sum;
   return law;
 }
 

@@ -11,6 +11,7 @@
 #include "tools/stability/gas_cases.h"
 #include "tools/stability/gas_energy.h"
 #include "tools/stability/gas_methods.h"
+#include "tools/stability/model_errors.h"
 #include "tools/stability/pair_cases.h"
 #include "tools/stability/pair_methods.h"
 #include "tools/stability/reversal.h"
@@ -28,6 +29,7 @@ struct Results {
   std::vector<Reversal> pair_reversals;
   std::vector<EnergyRun> energy;
   std::vector<GasEnergyRun> gas_energy;
+  std::vector<ModelError> model_errors;
   std::vector<Cancellation> cancellations;
   std::vector<uint64_t> unit_speed;
 };
@@ -59,6 +61,7 @@ Results RunAll(double effort) {
   std::cerr << "stability: energy" << std::endl;
   results.energy = EnergyRuns(effort);
   results.gas_energy = GasEnergyRuns(effort);
+  results.model_errors = ModelErrors(effort);
   results.cancellations = Cancellations();
   results.unit_speed = HitsBeforeEscape(40);
   return results;
@@ -84,6 +87,7 @@ std::vector<std::string> BrokenPromises(const Results& results) {
       broken.push_back(absl::StrCat(run.method, " loses energy: gases"));
     }
   }
+  for (const std::string& claim : BrokenClaims(results.model_errors)) broken.push_back(claim);
   return broken;
 }
 
@@ -121,6 +125,10 @@ std::string Text(const Results& results) {
       " starts at the paper's radius; ", unit_speed.front(), " at the earliest, ",
       unit_speed.back(), " at the latest).\n\n**Energy**\n\n", EnergyTable(results.energy),
       "\nGases of 4x3 cells:\n\n", GasEnergyTable(results.gas_energy),
+      "\n**Model errors**: billiard over model - 1, and the error that is stated; ratio: (the "
+      "difference - 2 standard errors)/stated, - where the standard error is above half of the "
+      "stated error\n\n",
+      ModelErrorTable(results.model_errors),
       "\n**Reversal**: distance from the start, in cells, after so many hits and as many back; "
       "medians\n\n",
       ReversalTable(results.ball_reversals, results.pair_reversals),

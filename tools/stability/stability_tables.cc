@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "tools/stability/markdown_table.h"
 
 namespace ballpiston::stability {
@@ -128,6 +129,20 @@ std::string GasEnergyTable(const std::vector<GasEnergyRun>& runs) {
                ErrorText(run.errors.StandardError().value_or(0)), HasTrend(run) ? "yes" : "no"});
   }
   return table.Text(1);
+}
+
+std::string ModelErrorTable(const std::vector<ModelError>& errors) {
+  MarkdownTable table(
+      {"claim", "place", "difference", "its standard error", "stated", "ratio", "at most 4 times"});
+  std::string claim;
+  for (const ModelError& error : errors) {
+    const std::string before = std::exchange(claim, ClaimOf(error.question));
+    table.Add({claim == before ? "" : claim, PlaceOf(error.question), SignedText(error.difference),
+               ErrorText(error.standard_error), ErrorText(error.Stated()),
+               error.Counts() ? absl::StrFormat("%.2f", error.Ratio()) : "-",
+               error.IsTight() ? "yes" : "no"});
+  }
+  return table.Text(2);
 }
 
 std::string CancellationTable(const std::vector<Cancellation>& rows) {

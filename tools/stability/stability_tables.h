@@ -10,6 +10,7 @@
 #include "tools/stability/energy_drift.h"
 #include "tools/stability/failures.h"
 #include "tools/stability/gas_energy.h"
+#include "tools/stability/model_errors.h"
 #include "tools/stability/reversal.h"
 
 namespace ballpiston::stability {
@@ -35,6 +36,7 @@ std::string GasTable(const std::vector<CaseResult>& cases);
 std::string ReversalTable(const std::vector<Reversal>& ball, const std::vector<Reversal>& pair);
 std::string EnergyTable(const std::vector<EnergyRun>& runs);
 std::string GasEnergyTable(const std::vector<GasEnergyRun>& runs);
+std::string ModelErrorTable(const std::vector<ModelError>& errors);
 std::string CancellationTable(const std::vector<Cancellation>& rows);
 
 }  // namespace ballpiston::stability

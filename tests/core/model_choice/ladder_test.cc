@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <string>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "core/billiard/single_precision.h"
 #include "core/experiment/energy_relaxation.h"
+#include "core/experiment/expected_limit_error.h"
 #include "tests/core/model_choice/questions.h"
 
 namespace ballpiston {
@@ -232,7 +235,7 @@ TEST(Ladder, AnUnknownPilotIsPartOfTheWork) {
 // No pilot checks the bound for a gas, so the bound alone decides.
 TEST(Ladder, TheJumpProcessAnswersWhereItsBoundIsWithinHalfOfTheTolerance) {
   for (double delta = 0.2; delta > 1e-3; delta /= 2) {
-    const double bound = 1.5 * ExpectedLimitError(PaperPoint(delta));
+    const double bound = ExpectedLimitErrorOfConduction(PaperGas(&kGasConduction, delta));
     for (const double share : {0.999, 1.001}) {
       const EnsembleSpec spec = Asked(&kGasConduction, delta, {.tolerance = 2 * bound / share});
       const Answer answer = *Choice(spec, MayNotBeAsked);
@@ -257,7 +260,7 @@ double BoundOfConductivity(const EnsembleSpec& spec) {
 }
 
 // The bound of the limit, that of the gas's size, and the error of the spectrum's value. One cell
-// has no correlations at all, and another exchange rate.
+// has no correlations at all, and another exchange rate. In a lattice few rows count too.
 TEST(Ladder, TheBoundOfTheConductivityCountsTheSizeOfTheGas) {
   EnsembleSpec spec = Conductivity(0.01);
   spec.grid[kCells] = {CodeOf({.columns = 8})};
@@ -269,6 +272,38 @@ TEST(Ladder, TheBoundOfTheConductivityCountsTheSizeOfTheGas) {
   spec.grid[kCells] = {CodeOf({.columns = 1})};
   EXPECT_NEAR(BoundOfConductivity(spec),
               1.5 * ExpectedLimitError(PaperPoint(0.2)) + 0.0018 + 0.0119, 1e-4);
+  spec = Conductivity(1e-6);
+  for (const auto& [rows, error] : {std::pair(1, 2.7e-4), std::pair(2, 5e-5), std::pair(8, 2e-5)}) {
+    spec.grid[kCells] = {CodeOf({.columns = 8, .rows = rows, .is_lattice = true})};
+    EXPECT_NEAR(BoundOfConductivity(spec), error, 1e-6) << rows;
+  }
+}
+
+// The cold wall's slow pistons: more of them at a lower temperature, at a larger delta, and in a
+// short chain.
+TEST(Ladder, TheBoundOfTheHeatCurrentGrowsTowardsAColdReservoir) {
+  const auto bound = [](double delta, int64_t columns, double cold) {
+    PointParameters point = PaperGas(&kGasConduction, delta, {.columns = columns});
+    point.Set(kHot, 1);
+    point.Set(kCold, cold);
+    return ExpectedLimitErrorOfConduction(point);
+  };
+  EXPECT_EQ(bound(0.1, 1, 1), ExpectedLimitErrorInAGas(PaperPoint(0.1)));
+  EXPECT_GT(bound(0.1, 1, 0.01), 0.097);  // the measured difference
+  EXPECT_GT(bound(0.1, 1, 1e-6), 0.885);  // likewise
+  EXPECT_LE(bound(0.2, 1, 1e-300), 1);
+  EXPECT_GT(bound(0.1, 1, 1e-3), bound(0.1, 3, 1e-3));
+  EXPECT_GT(bound(0.1, 3, 1e-3), bound(0.05, 3, 1e-3));
+  // In proportion to x = stroke times rate, which falls as delta^2.
+  EXPECT_NEAR(bound(1e-5, 1, 1e-4) / bound(1e-6, 1, 1e-4), 100, 5);
+}
+
+// The question of 0.12 that the jump process answered nine times too large.
+TEST(Ladder, TheBilliardAnswersNextToAVeryColdReservoir) {
+  EnsembleSpec spec = Asked(&kGasConduction, 0.1, {.tolerance = 0.12});
+  spec.grid[kHot] = {1};
+  spec.grid[kCold] = {1e-6};
+  EXPECT_EQ(Choice(spec, MayNotBeAsked)->model, Model::kBilliard);
 }
 
 TEST(Ladder, TheSpectrumAnswersTheConductivityWhereItsBoundIsWithinTheTolerance) {
