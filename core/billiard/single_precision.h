@@ -33,23 +33,17 @@
 #ifndef BALLPISTON_CORE_BILLIARD_SINGLE_PRECISION_H_
 #define BALLPISTON_CORE_BILLIARD_SINGLE_PRECISION_H_
 
-#include "core/geometry/pair_geometry.h"
+#include "core/billiard/billiard_domain.h"
 
 namespace ballpiston {
 
-// Single precision is permitted only in these ranges.
-inline constexpr double kSingleMinRho = kMinRho + 1e-9;
-inline constexpr double kSingleMaxRho = kMaxRho - 1e-3;
-inline constexpr double kSingleMinDelta = 1e-3;
+inline constexpr BilliardDomain kSingleDomain = {
+    .min_rho = kMinRho + 1e-9, .max_rho = kMaxRho - 1e-3, .min_delta = 1e-3};
 
 // Upper bound of the relative error of times in these ranges. It is larger than the measured error
 // plus two standard errors in each row of the table above that lies inside. Deeper in the tips of
 // other cells it rests on the assumption that the same rounding is smaller relative to delta.
 inline constexpr double kSinglePrecisionError = 2e-3;
-
-constexpr bool IsRhoForSinglePrecision(double rho) {
-  return rho >= kSingleMinRho && rho <= kSingleMaxRho;
-}
 
 }  // namespace ballpiston
 
