@@ -19,6 +19,7 @@
 #include "core/billiard/exchange.h"
 #include "core/billiard/lane_burst-inl.h"
 #include "core/billiard/lane_frame.h"
+#include "core/billiard/longest_wait.h"
 #include "core/billiard/piston_wave.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -36,14 +37,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 // the rounding at the end of a burst occurs at the same flights of the orbit in every lane.
 //
 // Fewer vectors would hardly take less time, so all vectors fly even if few lanes have orbits.
-constexpr int kBurstsBetweenLooks = 512;  // between two calls of Pause; about 0.2 ms
 
-// A ball slower than this counts as at rest. The lanes give the ball this speed, and a contact
-// counts only on the first part of its path, because there the piston has come to the ball.
+// Between two calls of Pause. 512 bursts take about 0.2 ms. The source takes up to 5 us for a start
+// or a meeting, so 4096 of them take at most 0.02 s.
+constexpr int kBurstsBetweenLooks = 512;
+constexpr int64_t kCallsBetweenLooks = 4096;
+
+// A ball slower than this counts as at rest. The lanes cannot fly it.
 constexpr double kAtRest = 1e-18;
-constexpr double kLongestPathAtRest = 1e-9;
-
-constexpr int kMostRounds = 256;  // of starts between two bursts
 
 // A start this near to a wall may be on it.
 constexpr double kOnAWall = 1e-9;
@@ -55,7 +56,7 @@ struct LaneOrbit {
   double piston_speed = 0;
   double entry_phase = 0;
   uint64_t entry_burst = 0;
-  bool rests = false;
+  double longest_wait = 0;  // for the piston
 };
 
 template <typename T>
@@ -67,6 +68,7 @@ class LaneOrbits : public OrbitRun {
         constants_(geometry, wave_),
         source_(source),
         limit_(source.TimeLimit()),
+        longest_wait_(geometry),
         flights_(FlightsInABurst(geometry)),
         steps_(flights_ * kVectors),
         slots_(kMostSteps + kVectors),
@@ -78,9 +80,10 @@ class LaneOrbits : public OrbitRun {
   bool Advance() override {
     do {
       source_is_empty_ = false;
+      calls_left_ = kCallsBetweenLooks;
       Refill();
-      for (int i = 0; i < kBurstsBetweenLooks && IsRunning(); ++i) Burst();
-      if (limit_ < std::numeric_limits<double>::infinity()) LookAtLimits();
+      for (int i = 0; i < kBurstsBetweenLooks && calls_left_ > 0 && IsRunning(); ++i) Burst();
+      LookAtLimits();
       if (source_is_empty_ && !IsRunning()) return true;
     } while (!source_.Pause());
     return false;
@@ -124,6 +127,7 @@ class LaneOrbits : public OrbitRun {
   size_t VectorOf(size_t lane) const { return lane / Width(); }
   size_t InVector(size_t lane) const { return lane % Width(); }
   bool IsRunning() const { return idle_.size() < orbit_.size(); }
+  bool HasTimeLimit() const { return limit_ < std::numeric_limits<double>::infinity(); }
 
   // ---- a burst ----
 
@@ -332,10 +336,11 @@ class LaneOrbits : public OrbitRun {
     contact.escaped = true;
     return contact;
   }
-  static Contact Expiry(double time) {
+  // Of an orbit that has waited for `time`, longer than it may.
+  Contact Overdue(double time) const {
     Contact contact;
     contact.time = time;
-    contact.expired = true;
+    (HasTimeLimit() ? contact.expired : contact.escaped) = true;
     return contact;
   }
 
@@ -367,16 +372,31 @@ class LaneOrbits : public OrbitRun {
     if (!meeting) return std::nullopt;
     const double path =
         (piston.path[i] + static_cast<double>(from.path[i])) * inverse + meeting->way;
-    if (orbit.rests && path > kLongestPathAtRest) return std::nullopt;
+    contact.time = path / orbit.ball_speed;
+    if (contact.time > orbit.longest_wait) return Overdue(contact.time);
     state.position += state.direction * meeting->way;
-    state.ball_speed = orbit.rests ? 0 : orbit.ball_speed;
+    state.ball_speed = orbit.ball_speed;
     state.piston = state.position.x();
     state.piston_velocity = meeting->piston_goes_right ? orbit.piston_speed : -orbit.piston_speed;
-    contact.time = path / orbit.ball_speed;
-    contact.expired = contact.time > limit_;
     contact.ball_wall_hits = (bursts_ - 1 - orbit.entry_burst) * flights_ + t / kVectors;
     contact.piston_wall_hits = wave_.Hits(orbit.entry_phase, path * ratio);
     return contact;
+  }
+
+  // The piston comes to a ball at rest, wherever rounding puts the ball in its lane.
+  void MeetIfAtRest(size_t lane, const PairState& start) {
+    if (start.ball_speed >= kAtRest) return;
+    const LaneOrbit& orbit = orbit_[lane];
+    const std::optional<double> way =
+        wave_.WayToBallAtRest(orbit.entry_phase, start.position.x() - wave_.left());
+    const double time = way ? *way / orbit.piston_speed : std::numeric_limits<double>::infinity();
+    if (!(time <= orbit.longest_wait)) return Report(lane, Overdue(time));
+    Contact contact = {.state = start, .time = time};
+    contact.state.ball_speed = 0;
+    contact.state.piston = start.position.x();
+    contact.state.piston_velocity = -orbit.piston_speed;
+    contact.piston_wall_hits = orbit.entry_phase < wave_.stroke() ? 1 : 0;  // the right one
+    Report(lane, contact);
   }
 
   // The piston's phase when the ball has gone `path` in this burst, in periods, at least 0 and
@@ -392,29 +412,34 @@ class LaneOrbits : public OrbitRun {
   // ---- between bursts ----
 
   // Reports the orbits that have left the lanes to the source, and gives the lanes new orbits. An
-  // orbit that starts outside of the cell leaves at once. If there are very many such orbits, the
-  // next call of Refill reports the last of them.
+  // orbit that starts outside of the cell, or with a ball at rest, leaves at once. If there are
+  // very many such orbits, the next call of Refill reports the last of them.
   void Refill() {
-    for (int round = 0; round == 0 || (round < kMostRounds && !meetings_.empty()); ++round) {
+    do {
       Meet();
       StartNew();
-    }
+    } while (calls_left_ > 0 && !meetings_.empty());
     for (; parked_ < idle_.size(); ++parked_) Park(idle_[parked_]);
   }
 
   void Meet() {
     if (meetings_.empty()) return;
     source_.Meet(meetings_);
-    for (size_t i = 0; i < met_.size(); ++i) {
-      const Contact& contact = meetings_[i].contact;
-      if (meetings_[i].after == AfterContact::kEnd || contact.escaped || contact.expired) {
-        idle_.push_back(met_[i]);
+    calls_left_ -= static_cast<int64_t>(meetings_.size());
+    told_.swap(meetings_);
+    told_lanes_.swap(met_);
+    for (size_t i = 0; i < told_.size(); ++i) {
+      const Contact& contact = told_[i].contact;
+      if (told_[i].after == AfterContact::kEnd || contact.escaped || contact.expired) {
+        idle_.push_back(told_lanes_[i]);
       } else {
-        Enter(met_[i], {meetings_[i].orbit, AfterExchange(contact.state, 1.0)});
+        const OrbitStart start = {told_[i].orbit, AfterExchange(contact.state, 1.0)};
+        Enter(told_lanes_[i], start);
+        MeetIfAtRest(told_lanes_[i], start.state);
       }
     }
-    meetings_.clear();
-    met_.clear();
+    told_.clear();
+    told_lanes_.clear();
   }
 
   void StartNew() {
@@ -422,12 +447,17 @@ class LaneOrbits : public OrbitRun {
     starts_.resize(idle_.size());
     const size_t started = source_.Start(starts_);
     source_is_empty_ = started < starts_.size();
+    calls_left_ -= static_cast<int64_t>(started);
     for (size_t i = 0; i < started; ++i) {
       const size_t lane = idle_.back();
       idle_.pop_back();
       parked_ = std::min(parked_, idle_.size());
       Enter(lane, starts_[i]);
-      if (!InsideCell(geometry_, starts_[i].state.position, kOnAWall)) Report(lane, Escape());
+      if (InsideCell(geometry_, starts_[i].state.position, kOnAWall)) {
+        MeetIfAtRest(lane, starts_[i].state);
+      } else {
+        Report(lane, Escape());
+      }
     }
   }
 
@@ -442,7 +472,7 @@ class LaneOrbits : public OrbitRun {
                     .piston_speed = piston_speed,
                     .entry_phase = wave_.Phase(state),
                     .entry_burst = bursts_,
-                    .rests = state.ball_speed < kAtRest};
+                    .longest_wait = HasTimeLimit() ? limit_ : longest_wait_.From(state)};
     Balls<T>& balls = slots_[v];
     balls.Set(i, Scaled(FrameOfBall(state.position, state.direction), scale));
     balls.path[i] = 0;
@@ -471,7 +501,7 @@ class LaneOrbits : public OrbitRun {
       if ((piston.lanes >> InVector(lane) & 1) == 0) continue;
       const double time =
           piston.path[InVector(lane)] / constants_.flight.scale / orbit_[lane].ball_speed;
-      if (time > limit_) Report(lane, Expiry(time));
+      if (time > orbit_[lane].longest_wait) Report(lane, Overdue(time));
     }
     Refill();
   }
@@ -480,7 +510,8 @@ class LaneOrbits : public OrbitRun {
   PistonWave wave_;
   Constants constants_;
   OrbitSource& source_;
-  double limit_;            // time without a collision
+  double limit_;  // time without a collision
+  LongestWait longest_wait_;
   size_t flights_, steps_;  // of a lane, and of a vector, in a burst
   std::vector<Balls<T>> slots_;
   std::vector<Pistons> pistons_;
@@ -500,6 +531,9 @@ class LaneOrbits : public OrbitRun {
   bool source_is_empty_ = false;  // at the last call of Start
   std::vector<size_t> met_;       // lanes of the meetings
   std::vector<Meeting> meetings_;
+  int64_t calls_left_ = 0;          // starts and meetings until the next call of Pause
+  std::vector<size_t> told_lanes_;  // of the meetings that Meet is resolving
+  std::vector<Meeting> told_;
   std::vector<OrbitStart> starts_;
 };
 

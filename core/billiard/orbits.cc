@@ -1,8 +1,10 @@
 #include "core/billiard/orbits.h"
 
+#include <limits>
 #include <optional>
 
 #include "core/billiard/lane_orbits.h"
+#include "core/billiard/longest_wait.h"
 #include "core/billiard/reference_flow.h"
 
 namespace ballpiston {
@@ -14,7 +16,7 @@ constexpr uint64_t kEventsBetweenLooks = 4096;  // about 0.2 ms, so a call of Pa
 class ReferenceOrbits : public OrbitRun {
  public:
   ReferenceOrbits(const PairGeometry& geometry, OrbitSource& source)
-      : geometry_(geometry), source_(source), limit_(source.TimeLimit()) {}
+      : geometry_(geometry), source_(source), limit_(source.TimeLimit()), longest_wait_(geometry) {}
 
   bool Advance() override {
     for (uint64_t events = 1; flow_ || Begin(); ++events) {
@@ -30,26 +32,33 @@ class ReferenceOrbits : public OrbitRun {
     if (source_.Start({&start, 1}) == 0) return false;
     flow_.emplace(geometry_, start.state);
     meeting_ = {.orbit = start.orbit};
+    longest_ = HasTimeLimit() ? limit_ : longest_wait_.From(start.state);
     return true;
   }
+  bool HasTimeLimit() const { return limit_ < std::numeric_limits<double>::infinity(); }
 
   void Step() {
     Contact& contact = meeting_.contact;
     const Event event = flow_->Step();
     contact.Add(event);
-    contact.expired = contact.time > limit_;
+    const bool is_overdue = contact.time > longest_;
+    contact.expired = is_overdue && HasTimeLimit();
+    contact.escaped |= is_overdue && !HasTimeLimit();
     const bool has_ended = contact.escaped || contact.expired;
     if (event.kind != EventKind::kBallPiston && !has_ended) return;
     contact.state = flow_->state();
     source_.Meet({&meeting_, 1});
     if (meeting_.after == AfterContact::kEnd || has_ended) return flow_.reset();
     flow_->ExchangeComponents();
+    if (!HasTimeLimit()) longest_ = longest_wait_.From(flow_->state());
     contact = {};
   }
 
   PairGeometry geometry_;
   OrbitSource& source_;
   double limit_;
+  LongestWait longest_wait_;
+  double longest_ = 0;  // of the current wait
   std::optional<ReferenceFlow> flow_;
   Meeting meeting_;
 };

@@ -37,7 +37,9 @@ struct Contact {
   double time = 0;  // since the orbit's start or its previous collision
   uint64_t ball_wall_hits = 0;
   uint64_t piston_wall_hits = 0;
-  bool escaped = false;  // the orbit left the cell; all other fields are meaningless
+  // Rounding has lost the orbit: it left the cell, or waited longer than any orbit does
+  // (longest_wait.h). All other fields are meaningless.
+  bool escaped = false;
   bool expired = false;  // no collision within the time limit; `state` is meaningless, and `time`
                          // means only that the limit has passed
 
@@ -72,10 +74,11 @@ class OrbitSource {
   virtual size_t Start(std::span<OrbitStart> starts) = 0;
   virtual void Meet(std::span<Meeting> meetings) = 0;
   // An orbit expires after this time without a collision: the source receives an expired contact,
-  // and the orbit ends. The expired contact may come later than the limit. The limit ensures that
-  // the engine does not wait for ever for a ball or a piston that is slow or at rest.
+  // and the orbit ends. The expired contact may come later than the limit. Without a limit an orbit
+  // waits for LongestWait (longest_wait.h), and is then reported as escaped. So every orbit ends.
   virtual double TimeLimit() const { return std::numeric_limits<double>::infinity(); }
-  // True if the engine should return. The engine asks about 5000 times a second.
+  // True if the engine should return. The engine asks about 5000 times a second, and at least every
+  // 0.05 s if a call of Start or Meet takes at most 10 us for each orbit.
   virtual bool Pause() = 0;
 };
 

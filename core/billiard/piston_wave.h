@@ -75,6 +75,14 @@ class PistonWave {
     return met ? Within(length, {way + *met, false}) : std::nullopt;
   }
 
+  // The piston's path until it meets a ball at rest, `x` right of the piston's left wall and not
+  // beyond the piston; a ball that rounding has put beyond the piston is met at once. Empty if the
+  // piston does not come so far.
+  std::optional<double> WayToBallAtRest(double phase, double x) const {
+    if (x < 0) return std::nullopt;
+    return std::max(2 * stroke_ - x - phase, 0.0);
+  }
+
   // Whether FirstMeeting may find a meeting: a cheaper test, for balls that seldom meet the piston.
   // The distance between ball and piston is a concave function of time, except where the piston
   // turns at its left wall. So they meet if the ball ends beyond the piston, or if the ball is

@@ -33,24 +33,18 @@
 #ifndef BALLPISTON_CORE_BILLIARD_SINGLE_PRECISION_H_
 #define BALLPISTON_CORE_BILLIARD_SINGLE_PRECISION_H_
 
-#include "core/geometry/pair_geometry.h"
+#include "core/billiard/billiard_domain.h"
 
 namespace ballpiston {
 
-// Single precision is permitted only in these ranges.
-inline constexpr double kSingleMinRho = kMinRho + 1e-9;
-inline constexpr double kSingleMaxRho = kMaxRho - 1e-3;
-inline constexpr double kSingleMinDelta = 1e-3;
+inline constexpr BilliardDomain kSingleDomain = {
+    .min_rho = kMinRho + 1e-9, .max_rho = kMaxRho - 1e-3, .min_delta = 1e-3};
 
 // Upper bound of the relative error of times in these ranges. No row of the table above that lies
 // inside is beyond it by two standard errors. At the bound of delta it is at most four times the
 // measured error in three of four rows. Deeper in the tips it rests on the scaling: positions are
 // rounded by 6e-8, below 1e-4 of the least delta.
 inline constexpr double kSinglePrecisionError = 5e-4;
-
-constexpr bool IsRhoForSinglePrecision(double rho) {
-  return rho >= kSingleMinRho && rho <= kSingleMaxRho;
-}
 
 }  // namespace ballpiston
 

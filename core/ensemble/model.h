@@ -20,6 +20,10 @@ constexpr bool IsOfTheLimit(Model model) {
   return model == Model::kSpectrum || model == Model::kMarkov;
 }
 
+constexpr bool IsABilliard(Model model) {
+  return model == Model::kBilliard || model == Model::kBilliardReference;
+}
+
 // Requires a model other than AUTO.
 constexpr bool TakesSamples(Model model) {
   return model != Model::kClosedForm && model != Model::kSpectrum;

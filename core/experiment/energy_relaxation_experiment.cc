@@ -119,14 +119,16 @@ std::vector<double> StartsOfWalkers(const std::optional<double>& epsilon,
   return u;
 }
 
-// Energies of `count` walkers up to orbit_time, in units of the geometry.
+// Energies of `count` walkers up to orbit_time, in units of the geometry. Incomplete if `stop` was
+// requested.
 std::vector<StepFunction> WalkTogether(const EnergyRelaxation& relaxation,
-                                       const RandomStream& random, uint64_t first, uint64_t count) {
+                                       const RandomStream& random, uint64_t first, uint64_t count,
+                                       const std::stop_token& stop) {
   const std::vector<double> starts = StartsOfWalkers(relaxation.epsilon(), random, first, count);
   JumpWalkers walkers(random.seed, random.stream, first, starts);
   std::vector<StepFunction> energies;
   for (const double u : starts) energies.emplace_back(u * u / 2);
-  for (bool walking = true; walking;) {
+  for (bool walking = true; walking && !stop.stop_requested();) {
     walkers.Jump();
     walking = false;
     for (uint64_t i = 0; i < count; ++i) {
@@ -144,10 +146,12 @@ std::optional<BlockResult> WalkBlock(const EnergyRelaxation& relaxation, const R
                                      const Block& block, const std::stop_token& stop) {
   OrbitMeasurements measurements(relaxation, block.samples);
   for (uint64_t done = 0; done < block.samples; done += kWalkersInStep) {
-    if (stop.stop_requested()) return std::nullopt;
     const uint64_t together = std::min(kWalkersInStep, block.samples - done);
-    const auto energies = WalkTogether(relaxation, random, block.first + done, together);
-    for (uint64_t i = 0; i < together; ++i) measurements.Set(done + i, energies[i]);
+    const auto energies = WalkTogether(relaxation, random, block.first + done, together, stop);
+    for (uint64_t i = 0; i < together; ++i) {
+      if (stop.stop_requested()) return std::nullopt;
+      measurements.Set(done + i, energies[i]);
+    }
   }
   return measurements.Result();
 }

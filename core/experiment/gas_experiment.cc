@@ -199,6 +199,8 @@ void CheckGasGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) 
   CheckDeltas(spec.grid, ValidateGasDelta, found);
   if (spec.precision == Precision::kSingle) {
     found.push_back({"precision", "is single; permitted for a gas: double"});
+  } else {
+    CheckBilliardDomain(spec, found);
   }
 }
 

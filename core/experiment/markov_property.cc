@@ -18,6 +18,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -135,18 +136,32 @@ std::vector<Exchange> Walk(JumpWalkers& walkers, uint64_t exchanges) {
   return all;
 }
 
-// A block of the jump process itself.
-BlockResult WalkExchanges(const PairGeometry& geometry, const RandomStream& random,
-                          const Block& block) {
-  const uint64_t orbits = (block.samples + kExchangesPerOrbit - 1) / kExchangesPerOrbit;
-  const std::vector<double> starts = StartsAfterCollisions(geometry, random, block.first, orbits);
-  JumpWalkers walkers(random.seed, random.stream, block.first, starts);
-  const std::vector<Exchange> all = Walk(walkers, block.samples);
-  BlockResult result = EmptyMarkovPropertyCounts();
+// Some orbits of a block whose first sample is block_first: orbits from number `first_orbit` on,
+// which have `exchanges` exchanges together.
+void WalkOrbits(const PairGeometry& geometry, const RandomStream& random, uint64_t block_first,
+                uint64_t first_orbit, uint64_t exchanges, BlockResult& result) {
+  const uint64_t orbits = (exchanges + kExchangesPerOrbit - 1) / kExchangesPerOrbit;
+  const std::vector<double> starts = StartsAfterCollisions(
+      geometry, random, block_first + first_orbit * kExchangesPerOrbit, orbits);
+  JumpWalkers walkers(random.seed, random.stream, block_first + first_orbit, starts);
+  const std::vector<Exchange> all = Walk(walkers, exchanges);
   for (uint64_t i = 0; i < orbits; ++i) {
     const uint64_t begin = i * kExchangesPerOrbit;
-    const uint64_t length = std::min(kExchangesPerOrbit, block.samples - begin);
+    const uint64_t length = std::min(kExchangesPerOrbit, exchanges - begin);
     CountOrbit(PistonEnergy(starts[i]), std::span(all).subspan(begin, length), result);
+  }
+}
+
+// A block of the jump process itself. Empty only if `stop` was requested.
+std::optional<BlockResult> WalkExchanges(const PairGeometry& geometry, const RandomStream& random,
+                                         const Block& block, const std::stop_token& stop) {
+  constexpr uint64_t kOrbitsTogether = 64;  // about 1 ms
+  constexpr uint64_t kTogether = kOrbitsTogether * kExchangesPerOrbit;
+  BlockResult result = EmptyMarkovPropertyCounts();
+  for (uint64_t done = 0; done < block.samples; done += kTogether) {
+    if (stop.stop_requested()) return std::nullopt;
+    WalkOrbits(geometry, random, block.first, done / kExchangesPerOrbit,
+               std::min(kTogether, block.samples - done), result);
   }
   return result;
 }
@@ -159,8 +174,8 @@ class MarkovPropertyExperiment : public PointExperiment {
 
   std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
     if (answer().model == Model::kMarkov) {
-      return RunOneByOne(queue, [this](const Block& block, const std::stop_token&) {
-        return std::optional(WalkExchanges(geometry_, random(), block));
+      return RunOneByOne(queue, [this](const Block& block, const std::stop_token& stop) {
+        return WalkExchanges(geometry_, random(), block, stop);
       });
     }
     return RunBlockOrbits(

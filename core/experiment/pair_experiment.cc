@@ -1,12 +1,16 @@
 #include "core/experiment/pair_experiment.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "core/arithmetic/number_text.h"
+#include "core/billiard/billiard_domain.h"
 #include "core/billiard/single_precision.h"
 #include "core/closed_form/pair_measures.h"
 
@@ -45,28 +49,100 @@ RangeOfRho RangeIn(const Grid& grid) {
   return range;
 }
 
-void CheckSinglePrecision(const Grid& grid, std::vector<FieldViolation>& found) {
-  const std::vector<double>&radii = grid[kRho], &deltas = grid[kDelta];
-  for (size_t i = 0; i < radii.size(); ++i) {
-    if (!ValidateRho(radii[i]).ok() || IsRhoForSinglePrecision(radii[i])) continue;
-    found.push_back({absl::StrFormat("grid.rho[%d]", i),
-                     absl::StrCat("rho is ", NumberText(radii[i]),
-                                  "; permitted with precision single: ", NumberText(kSingleMinRho),
-                                  " <= rho <= ", NumberText(kSingleMaxRho))});
+const BilliardDomain& DomainOf(const EnsembleSpec& spec) {
+  return spec.precision == Precision::kSingle ? kSingleDomain : kDoubleDomain;
+}
+
+// The values at which a billiard has to answer.
+struct BilliardValues {
+  std::vector<double> rho;
+  std::vector<double> delta;
+};
+
+// With model AUTO those of the points outside of the billiard's domain that no other model answers.
+BilliardValues ValuesForBilliard(const EnsembleSpec& spec) {
+  if (spec.precision == Precision::kSingle || spec.model != Model::kAuto) {
+    return {spec.grid[kRho], spec.grid[kDelta]};
   }
-  for (size_t i = 0; i < deltas.size(); ++i) {
-    if (!ValidateSomeDelta(deltas[i]).ok() || deltas[i] >= kSingleMinDelta) continue;
-    found.push_back({absl::StrFormat("grid.delta[%d]", i),
-                     absl::StrCat("delta is ", NumberText(deltas[i]),
-                                  "; permitted with precision single: delta >= ",
-                                  NumberText(kSingleMinDelta))});
+  BilliardValues values;
+  for (size_t i = 0; i < PointCount(spec); ++i) {
+    const PointParameters point = PointAt(spec, i);
+    if (IsSoundForBilliard(spec, point) || IsAnsweredWithoutBilliard(spec, point)) continue;
+    values.rho.push_back(point[kRho]);
+    values.delta.push_back(point[kDelta]);
   }
+  return values;
+}
+
+bool Contains(const std::vector<double>& values, double x) {
+  return std::find(values.begin(), values.end(), x) != values.end();
+}
+
+// The name of what has the domain, and the models that have none.
+std::string PermittedWith(const EnsembleSpec& spec) {
+  if (spec.precision == Precision::kSingle) return "permitted with precision single: ";
+  return "permitted with the models billiard and billiard_reference: ";
+}
+
+std::string OtherModels(const EnsembleSpec& spec) {
+  std::vector<absl::string_view> names;
+  for (const Model model : spec.experiment->models) {
+    if (!IsABilliard(model)) names.push_back(Name(model));
+  }
+  if (names.empty()) return absl::StrCat("; no other model answers ", spec.experiment->name);
+  return absl::StrCat("; at other values these models answer ", spec.experiment->name, ": ",
+                      absl::StrJoin(names, ", "));
+}
+
+std::string RangeOfRhoIn(const BilliardDomain& domain) {
+  return absl::StrCat(NumberText(domain.min_rho), domain.HasRho(kMinRho) ? " < " : " <= ",
+                      "rho <= ", NumberText(domain.max_rho));
 }
 
 }  // namespace
 
 PairGeometry GeometryOf(const PointParameters& point) {
   return PairGeometry::Create(point[kRho], point[kDelta]).value();
+}
+
+bool IsSoundForBilliard(const EnsembleSpec& spec, const PointParameters& point) {
+  return DomainOf(spec).Has(point[kRho], point[kDelta]);
+}
+
+bool IsAnsweredWithoutBilliard(const EnsembleSpec& spec, const PointParameters& point) {
+  const AimedEstimate& aim = AimOf(spec);
+  if (aim.HasClosedForm()) return !spec.verify;
+  if (aim.limit_error == nullptr || !aim.limit_error->is_known(point)) return false;
+  if (spec.target.budget_seconds) return true;
+  if (!spec.target.tolerance) return false;
+  return aim.limit_error->expected(point) <=
+         *spec.target.tolerance / (TakesSamples(aim.limit_error->model) ? 2 : 1);
+}
+
+// Model AUTO chooses by points, so it is checked only if each value is valid.
+void CheckBilliardDomain(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
+  const bool is_asked = spec.model == Model::kAuto || IsABilliard(spec.model);
+  if (!is_asked ||
+      (spec.model == Model::kAuto && spec.precision == Precision::kDouble && !found.empty())) {
+    return;
+  }
+  const BilliardDomain& domain = DomainOf(spec);
+  const BilliardValues values = ValuesForBilliard(spec);
+  const auto refuse = [&](absl::string_view name, size_t i, double value, std::string permitted) {
+    found.push_back({absl::StrFormat("grid.%s[%d]", name, i),
+                     absl::StrCat(name, " is ", NumberText(value), "; ", PermittedWith(spec),
+                                  permitted, OtherModels(spec))});
+  };
+  const std::vector<double>&radii = spec.grid[kRho], &deltas = spec.grid[kDelta];
+  for (size_t i = 0; i < radii.size(); ++i) {
+    if (!ValidateRho(radii[i]).ok() || domain.HasRho(radii[i])) continue;
+    if (Contains(values.rho, radii[i])) refuse("rho", i, radii[i], RangeOfRhoIn(domain));
+  }
+  for (size_t i = 0; i < deltas.size(); ++i) {
+    if (!ValidateSomeDelta(deltas[i]).ok() || domain.HasDelta(deltas[i])) continue;
+    if (!Contains(values.delta, deltas[i])) continue;
+    refuse("delta", i, deltas[i], absl::StrCat("delta >= ", NumberText(domain.min_delta)));
+  }
 }
 
 // The largest valid rho has the smallest bound, and the smallest rho has the longest times, so it
@@ -85,8 +161,7 @@ void CheckDeltas(const Grid& grid, DeltaValidation validate, std::vector<FieldVi
 
 void CheckPairGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
   CheckDeltas(spec.grid, ValidatePairDelta, found);
-  if (RangeIn(spec.grid).IsEmpty()) return;
-  if (spec.precision == Precision::kSingle) CheckSinglePrecision(spec.grid, found);
+  if (!RangeIn(spec.grid).IsEmpty()) CheckBilliardDomain(spec, found);
 }
 
 SampleWork WorkOfACollision(const PairGeometry& geometry) {

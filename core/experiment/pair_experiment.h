@@ -25,9 +25,20 @@ using DeltaValidation = absl::Status (*)(double rho, double delta);
 // time of the smallest rho leaves the range of double.
 void CheckDeltas(const Grid& grid, DeltaValidation validate, std::vector<FieldViolation>& found);
 
-// Finds deltas beyond the bound of the largest rho, and deltas so small that the mean free time of
-// the smallest rho leaves the range of double. With single precision also finds rho and delta at
-// which single precision is not permitted (billiard/single_precision.h).
+// Whether a billiard engine of the spec's precision is sound at the point
+// (billiard/billiard_domain.h).
+bool IsSoundForBilliard(const EnsembleSpec& spec, const PointParameters& point);
+
+// Whether model AUTO has another model than the billiard for the question at this point: a closed
+// form, or the limit with an error that is known and within the target's tolerance. Without a
+// tolerance or a budget the limit does not answer. Requires a spec without violations.
+bool IsAnsweredWithoutBilliard(const EnsembleSpec& spec, const PointParameters& point);
+
+// Finds rho and delta outside of the billiard's domain, in the spec's precision, if a billiard has
+// to answer there. For pairs and for gases.
+void CheckBilliardDomain(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
+
+// CheckDeltas with the bound of a pair, and CheckBilliardDomain.
 void CheckPairGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
 
 inline double OneCollision(Model, const PointParameters&) { return 1; }

@@ -25,7 +25,7 @@ struct Return {
   bool escaped = false;  // if true, all other fields are meaningless
 };
 
-// Returns may take any time.
+// Returns may take any time; an engine gives up an orbit that cannot end (billiard/longest_wait.h).
 inline constexpr double kNoTimeLimit = std::numeric_limits<double>::infinity();
 
 struct ReturnLaw {

@@ -16,6 +16,7 @@
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_memory.h"
 #include "core/experiment/all_experiments.h"
+#include "core/experiment/pair_experiment.h"
 #include "core/gas/gas_shape.h"
 #include "core/model_choice/sampling_cost.h"
 
@@ -47,6 +48,7 @@ class Question {
   bool HasLimitError() const { return HasLimit() && aim().limit_error->is_known(point_); }
   bool HasPilots() const { return HasLimitError() && aim().limit_error->has_pilots; }
   double ExpectedLimitError() const { return aim().limit_error->expected(point_); }
+  bool IsSoundForBilliard() const { return ballpiston::IsSoundForBilliard(spec_, point_); }
   Model ModelOfLimit() const { return aim().limit_error->model; }
 
   // The experiment, or the estimate if it is not the experiment's default.
@@ -209,7 +211,15 @@ Answer ByBudget(const Question& question) {
   return {question.ModelOfLimit(), compared, bound};
 }
 
+// Outside of the billiard's domain the limit answers by its expected error, without a pilot. The
+// spec has no violations, so this error is known, and within a tolerance.
+Answer WithoutBilliard(const Question& question) {
+  return {question.ModelOfLimit(), "the billiard is not sound at this rho and delta",
+          question.ExpectedLimitError()};
+}
+
 std::optional<Answer> AnswerNearTheLimit(const Question& question, const PilotSource& pilots) {
+  if (!question.IsSoundForBilliard()) return WithoutBilliard(question);
   if (!question.HasLimitError()) {
     return Billiard(question, "the limit's error is not known at this point");
   }
@@ -294,7 +304,7 @@ void SetLimitError(const Question& question, const PilotSource& pilots, Rung& ru
   if (!question.HasLimitError()) return;
   rung.model_error = question.ExpectedLimitError();
   rung.reason = "the limit delta -> 0; the model error is an expected upper bound";
-  if (!question.HasPilots()) return;
+  if (!question.HasPilots() || !question.IsSoundForBilliard()) return;
   const PilotPlace place = PilotPlaceFor(question.point());
   if (const std::optional<Pilot> pilot = pilots(place)) {
     rung.model_error = LimitErrorBound(*pilot, place, question.point());
@@ -311,6 +321,11 @@ Rung RungFor(Model model, const Question& question, const Machine& machine,
   rung.memory = rung.answers ? question.MemoryBy(model) : 0;
   if (!rung.answers) {
     rung.reason = CannotAnswer(model, question);
+    return rung;
+  }
+  if (IsABilliard(model) && !question.IsSoundForBilliard()) {
+    rung.answers = false;
+    rung.reason = "rounding: this model is not sound at this rho and delta";
     return rung;
   }
   if (TakesSamples(model)) {

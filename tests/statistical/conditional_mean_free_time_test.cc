@@ -91,7 +91,7 @@ TEST(ConditionalMeanFreeTime, ErrorsAreValidWithFewLongReturns) {
 // stated error plus 4 standard errors: 6e-5 false alarms each. Standard errors are 0.1 to 0.2 %,
 // nightly 0.07 to 0.14 %.
 TEST(ConditionalMeanFreeTime, SinglePrecisionIsWithinItsStatedError) {
-  for (const double rho : {0.501, 0.65, kSingleMaxRho}) {
+  for (const double rho : {0.501, 0.65, kSingleDomain.max_rho}) {
     const PointParameters point = {{kRho, rho}, {kDelta, PairDeltaBound(rho)}, {kEpsilon, 0.45}};
     EnsembleSpec spec = SpecOf(&kConditionalMeanFreeTime, point,
                                {.samples = IsNightly() ? 1'000'000 : 500'000}, Model::kBilliard, 6);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <random>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/geometry/paper.h"
@@ -137,30 +138,6 @@ TEST(Orbits, StopEndsOrbits) {
   for (const Engine engine : kEngines) {
     RecordedContacts recorded(geometry, 10, 1);
     EXPECT_FALSE(RunOrbits(engine, geometry, 10, recorded, Stopped()));
-  }
-}
-
-// A ball that rests out of the piston's reach: only the piston has events, for ever.
-class RestingBall : public NumberedOrbits {
- public:
-  explicit RestingBall(const PairGeometry& geometry) : geometry_(geometry) {}
-  PairState Start(uint64_t) override {
-    return {.position = {-0.1, 0},
-            .ball_speed = 0,
-            .piston = geometry_.piston_right(),
-            .piston_velocity = -1};
-  }
-  AfterContact Meet(uint64_t, const Contact&) override { return AfterContact::kEnd; }
-
- private:
-  PairGeometry geometry_;
-};
-
-TEST(Orbits, StopEndsAnOrbitOfARestingBall) {
-  const PairGeometry geometry = PaperGeometry(0.1);
-  for (const Engine engine : kEngines) {
-    RestingBall source(geometry);
-    EXPECT_FALSE(RunOrbits(engine, geometry, 3, source, Stopped()));
   }
 }
 
@@ -323,6 +300,119 @@ TEST(Orbits, TimeLimitChangesNothingWithinIt) {
         EXPECT_EQ(expired == kOrbits, limit < 1);
         EXPECT_EQ(expired == 0, limit > 1e6);
       });
+    }
+  }
+}
+
+// Given pairs, each once. Gives up after so many looks that a run that can end has ended.
+class GivesUp : public OrbitSource {
+ public:
+  explicit GivesUp(std::vector<PairState> pairs) : pairs_(std::move(pairs)) {}
+  size_t Start(std::span<OrbitStart> starts) override {
+    size_t n = 0;
+    for (; n < starts.size() && next_ < pairs_.size(); ++n, ++next_) {
+      starts[n] = {next_, pairs_[next_]};
+    }
+    return n;
+  }
+  void Meet(std::span<Meeting> meetings) override {
+    for (const Meeting& meeting : meetings) ends_.push_back(meeting);
+  }
+  bool Pause() override { return ++looks_ > kMostLooks; }
+  const std::vector<Meeting>& ends() const { return ends_; }
+
+ private:
+  static constexpr int kMostLooks = 500;
+  std::vector<PairState> pairs_;
+  size_t next_ = 0;
+  int looks_ = 0;
+  std::vector<Meeting> ends_;
+};
+
+// Balls at the very end of the piston's reach, and the piston on them. In its lane such a ball may
+// be rounded out of the reach.
+TEST(Orbits, ThePistonMeetsABallAtRestAtTheEndOfItsReach) {
+  for (const double delta : {1e-10, 1e-3, 0.05}) {
+    const PairGeometry geometry = PaperGeometry(delta);
+    const double left = geometry.piston_left(), height = delta * geometry.lambda();
+    std::vector<PairState> pairs;
+    for (int i = 0; i < 300; ++i) {
+      const double angle = 2 * M_PI * i / 300, x = left + (i % 3) * 1e-17;
+      pairs.push_back({.position = {x, height * std::sin(7 * angle) / 2},
+                       .direction = {std::cos(angle), std::sin(angle)},
+                       .ball_speed = 0,
+                       .piston = x,
+                       .piston_velocity = 1});
+    }
+    for (const Engine engine : kEngines) {
+      GivesUp source(pairs);
+      ASSERT_TRUE(StartOrbits(engine, geometry, source)->Advance());
+      ASSERT_EQ(source.ends().size(), pairs.size());
+      for (const Meeting& end : source.ends()) {
+        ASSERT_FALSE(end.contact.escaped);
+        EXPECT_NEAR(end.contact.time, 2 * geometry.stroke(), 1e-14);
+        EXPECT_EQ(end.contact.piston_wall_hits, 1u);
+        EXPECT_EQ(end.contact.state.piston_velocity, -1);
+      }
+    }
+  }
+}
+
+// A piston at rest outside of the cell; a ball that flies between two discs for ever; and a ball at
+// rest out of the piston's reach.
+TEST(Orbits, OrbitsThatCannotEndAreLost) {
+  const PairGeometry geometry = PaperGeometry(0.1);
+  const std::vector<PairState> pairs = {
+      {.position = {0, 0}, .direction = {0.6, 0.8}, .ball_speed = 1, .piston = 0.5},
+      {.position = {0, 0},
+       .direction = {M_SQRT1_2, M_SQRT1_2},
+       .ball_speed = 0.8,
+       .piston = 0.5,
+       .piston_velocity = 0.6},
+      {.position = {0, 0}, .ball_speed = 0, .piston = 0.5, .piston_velocity = 1}};
+  for (const Engine engine : kEngines) {
+    GivesUp source(pairs);
+    ASSERT_TRUE(StartOrbits(engine, geometry, source)->Advance());
+    ASSERT_EQ(source.ends().size(), pairs.size());
+    for (const Meeting& end : source.ends()) {
+      EXPECT_TRUE(end.contact.escaped);
+      EXPECT_FALSE(end.contact.expired);
+    }
+  }
+}
+
+// The largest number of starts between two looks, of orbits that end after few flights or none.
+class CountedStarts : public OrbitSource {
+ public:
+  explicit CountedStarts(const PairState& pair) : pair_(pair) {}
+  size_t Start(std::span<OrbitStart> starts) override {
+    for (OrbitStart& start : starts) start = {started_++, pair_};
+    return starts.size();
+  }
+  void Meet(std::span<Meeting>) override {}
+  bool Pause() override {
+    most_ = std::max(most_, started_ - std::exchange(at_look_, started_));
+    return started_ > 100'000;
+  }
+  uint64_t most() const { return most_; }
+
+ private:
+  PairState pair_;
+  uint64_t started_ = 0, at_look_ = 0, most_ = 0;
+};
+
+TEST(Orbits, TheEngineLooksAtPauseAfterFewStarts) {
+  const PairGeometry geometry = GeometryAtShare(kPaperRho, 1);
+  const double x = geometry.piston_left() + 0.1;
+  for (const Engine engine : kEngines) {
+    for (const double ball_speed : {0.0, 1.0}) {
+      CountedStarts source({.position = {x, 0},
+                            .direction = {1, 0},
+                            .ball_speed = ball_speed,
+                            .piston = x + 1e-3,
+                            .piston_velocity = ball_speed - 1});
+      EXPECT_FALSE(StartOrbits(engine, geometry, source)->Advance());
+      EXPECT_LE(source.most(), 5000u);
     }
   }
 }

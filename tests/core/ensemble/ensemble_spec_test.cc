@@ -188,7 +188,7 @@ TEST(EnsembleSpec, DeltaWithTimesOutsideTheRangeOfDoubleIsRejected) {
   spec.grid[kRho] = {0.6, std::nextafter(0.5, 1)};
   spec.grid[kDelta] = {1e-151};
   EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.delta[0]", "too small")));
-  spec.grid[kRho] = {0.6};
+  spec = {.experiment = &kEquilibrium, .grid = {{kRho, {0.6}}, {kDelta, {1e-151}}}};
   EXPECT_THAT(Violations(spec), testing::IsEmpty());
 }
 
@@ -303,6 +303,78 @@ TEST(EnsembleSpec, SinglePrecisionIsOnlyForTheLanes) {
     spec.model = model;
     EXPECT_THAT(Violations(spec), ElementsAre(Names("precision", Name(model).data())));
   }
+}
+
+// A question of each experiment at one corner of the billiard's domain or beyond it.
+EnsembleSpec NearTheCorner(const ExperimentKind* experiment, double rho, double delta) {
+  EnsembleSpec spec = {.experiment = experiment, .grid = {{kRho, {rho}}, {kDelta, {delta}}}};
+  if (experiment == &kConditionalMeanFreeTime || experiment == &kFirstHit) {
+    spec.grid[kEpsilon] = {0.1};
+  }
+  if (experiment == &kFirstHit) spec.grid[kExponent] = {1};
+  if (IsOfAGas(experiment)) spec.grid[kCells] = {2};
+  if (experiment == &kGasConduction) {
+    spec.grid[kHot] = {2};
+    spec.grid[kCold] = {1};
+  }
+  if (experiment == &kGasEquilibrium) spec.grid[kTemperature] = {1};
+  return spec;
+}
+
+// Beyond this domain rounding makes the billiard wrong (billiard/billiard_domain.h).
+TEST(EnsembleSpec, BilliardIsRejectedOutsideItsDomain) {
+  const double inside = kMaxRho - 1.1e-9, outside = kMaxRho - 0.9e-9;
+  for (const ExperimentKind* experiment : kAllExperiments) {
+    for (const Model model : {Model::kBilliard, Model::kBilliardReference}) {
+      EnsembleSpec spec = NearTheCorner(experiment, inside, 1.01e-10);
+      spec.model = model;
+      EXPECT_THAT(Violations(spec), IsEmpty()) << experiment->name;
+      spec.grid[kRho] = {inside, outside};
+      spec.grid[kDelta] = {0.99e-10, 1.01e-10};
+      EXPECT_THAT(Violations(spec),
+                  ElementsAre(Names("grid.rho[1]", "billiard_reference: 0.5 < rho <= 0.7071067801"),
+                              Names("grid.delta[0]", "billiard_reference: delta >= 1e-10")))
+          << experiment->name;
+    }
+    for (const Model model : {Model::kClosedForm, Model::kSpectrum, Model::kMarkov}) {
+      EnsembleSpec spec = NearTheCorner(experiment, outside, 0.99e-10);
+      spec.model = model;
+      if (!experiment->IsAnsweredBy(model)) continue;
+      EXPECT_THAT(Violations(spec), IsEmpty()) << experiment->name;
+    }
+  }
+  EnsembleSpec spec = NearTheCorner(&kMarkovProperty, 0.6, 1e-12);
+  spec.model = Model::kBilliard;
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.delta[0]", "markov-property: markov")));
+  spec = NearTheCorner(&kFirstHit, 0.6, 1e-12);
+  EXPECT_THAT(Violations(spec),
+              ElementsAre(Names("grid.delta[0]", "no other model answers first-hit")));
+}
+
+// AUTO answers by another model where one answers, and is rejected elsewhere.
+TEST(EnsembleSpec, AutoNeedsAnotherModelOutsideTheBilliardsDomain) {
+  const auto of = [](const ExperimentKind* experiment, const Target& target = {}) {
+    EnsembleSpec spec = NearTheCorner(experiment, 0.6, 1e-12);
+    spec.target = target;
+    return spec;
+  };
+  const auto is_rejected = ElementsAre(Names("grid.delta[0]", "delta >= 1e-10"));
+  EXPECT_THAT(Violations(of(&kEquilibrium)), IsEmpty());
+  EnsembleSpec verified = of(&kEquilibrium);
+  verified.verify = true;
+  EXPECT_THAT(Violations(verified), is_rejected);
+  EXPECT_THAT(Violations(of(&kFirstHit)), is_rejected);
+  EXPECT_THAT(Violations(of(&kMarkovProperty)), is_rejected);
+  EXPECT_THAT(Violations(of(&kEnergyRelaxation)), is_rejected);  // no tolerance: an exact model
+  EXPECT_THAT(Violations(of(&kEnergyRelaxation, {.tolerance = 0.01})), IsEmpty());
+  EXPECT_THAT(Violations(of(&kEnergyRelaxation, {.budget_seconds = 1})), IsEmpty());
+  // Near the mean energy there is no relaxation time, and the limit's error is not known.
+  EnsembleSpec spec = of(&kEnergyRelaxation, {.budget_seconds = 1});
+  spec.grid[kEpsilon] = {0.1, 1.0 / 6};
+  EXPECT_THAT(Violations(spec), is_rejected);
+  spec = of(&kEnergyRelaxation);
+  spec.grid[kDelta] = {1e-12, 0.01};
+  EXPECT_THAT(Violations(spec), is_rejected);
 }
 
 // Outside of this domain the errors of single precision are unknown (billiard/single_precision.h).

@@ -15,6 +15,7 @@
 #include "core/statistics/moments.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/core/run_point.h"
+#include "tests/core/stopped.h"
 
 namespace ballpiston {
 namespace {
@@ -160,6 +161,28 @@ TEST(MarkovPropertyStatistics, EnergiesAtBothEndsAreCounted) {
   EXPECT_EQ(counts.samples, 4u);
   for (const Estimate& estimate : MarkovPropertyEstimates(counts, 0)) {
     EXPECT_TRUE(std::isfinite(estimate.value)) << estimate.name;
+  }
+}
+
+// A walk looks at its stop after every 64 orbits.
+TEST(MarkovProperty, AStoppedWalkHasNoResult) {
+  const auto point = PointExperiment::Create(
+      SpecOf(&kMarkovProperty, PaperPoint(0.2), {.collisions = 64}, Model::kMarkov), 0);
+  EXPECT_FALSE(RunBlock(*point, {.samples = 64}, Stopped()));
+}
+
+// The orbits of a block do not depend on its size: 96 orbits walk in two groups.
+TEST(MarkovProperty, AWalkDoesNotDependOnTheBlock) {
+  const auto point = PointExperiment::Create(
+      SpecOf(&kMarkovProperty, PaperPoint(0.2), {.collisions = 4096}, Model::kMarkov), 0);
+  const BlockResult together = *RunBlock(*point, {.samples = 96 * kExchangesPerOrbit});
+  BlockResult first = *RunBlock(*point, {.samples = 64 * kExchangesPerOrbit});
+  EXPECT_EQ(first.samples, 64 * kExchangesPerOrbit);
+  EXPECT_EQ(together.samples, 96 * kExchangesPerOrbit);
+  for (size_t i = 0; i < first.histograms.size(); ++i) {
+    for (size_t bin = 0; bin < first.histograms[i].counts.size(); ++bin) {
+      ASSERT_LE(first.histograms[i].counts[bin], together.histograms[i].counts[bin]);
+    }
   }
 }
 

@@ -64,6 +64,22 @@ TEST(Ladder, WithoutAToleranceRelaxationUsesTheBilliard) {
   }
 }
 
+// Beyond the billiard's domain the limit answers without a pilot.
+TEST(Ladder, TheLimitAnswersWhereTheBilliardIsNotSound) {
+  for (const Target& target : {Target{.tolerance = 0.01}, Target{.budget_seconds = 1}}) {
+    const EnsembleSpec spec = Relaxation(1e-12, target);
+    ASSERT_TRUE(Violations(spec).empty());
+    const Answer answer = *Choice(spec, MayNotBeAsked);
+    EXPECT_EQ(answer.model, Model::kSpectrum);
+    EXPECT_GT(*answer.model_error, 0);
+    EXPECT_THAT(answer.reason, HasSubstr("not sound at this rho and delta"));
+    const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked);
+    for (const Rung& rung : ladder.rungs) {
+      EXPECT_EQ(rung.answers, IsOfTheLimit(rung.model)) << Name(rung.model);
+    }
+  }
+}
+
 // Deltas and tolerances over five decades each: a pilot is used at most once, at the point's place,
 // and then its result decides.
 TEST(Ladder, APilotRunsOnlyIfItCanDecide) {

@@ -1,0 +1,57 @@
+// The rho and delta at which a billiard engine is sound. Elsewhere the billiard models are refused;
+// closed forms and the limit delta -> 0 have no such bounds.
+//
+// A ball's position is rounded to about 1e-16. So its error in a tip is of order 1e-16/delta. At a
+// grazing hit, where the ball leaves a disc at the angle s to its tangent, the error along the path
+// is 1e-16/s. In a cell of the size g = 1/sqrt 2 - rho a share of order (1e-16/g)^2 of all hits
+// therefore ends anywhere in the cell, or outside of it.
+//
+// Measured: conditional mean free times with balls so slow (epsilon = 1/2 - 1e-16) that they cross
+// the cell as often as the piston comes, relative to the closed form, and lost orbits.
+//
+//   g       delta/bound   lanes: difference    lost     hits, about  reference
+//   1e-8    1             -0.8(6)e-3           0        4e6          -0.8(6)e-3
+//   1e-9    1              0.3(3)e-3           0        3e8          -0.5(10)e-3
+//   1e-9    0.1           -2(3)e-3             0        5e7           2(2)e-2
+//   1e-10   1              0.0(8)e-3           0        4e8           5(3)e-3
+//   1e-11   1             -2(2)e-3             0        6e8           1(9)e-3
+//   1e-11   0.3            2(8)e-3             0        3e9           -
+//   1e-12   0.3            5(20)e-3            1        3e9           -
+//   1e-12   1              2(5)e-3             2        7e8           3(30)e-3
+//   1e-13   1             -10(10)e-3           3        6e8          -3(9)e-2
+//   1e-15   1              6 of 7 lost, no end in 3 s                 no end in 3 s
+//
+// Runs that were cut short (delta/bound < 1, and g below 1e-10) favour short returns. The largest
+// |2 E - 1| was 1e-15 everywhere. By the
+// share above, which the two rows of g = 1e-12 fit, a ball is lost about once in 1e14 wall hits at
+// g = 1e-9: extrapolated, not measured. At epsilon = 0 and g = 1e-8 and 1e-9 mean free times agree
+// with the closed form within 0.4 % to 1 %, one standard error each. Smaller deltas in wide cells
+// are too expensive to measure; there the bound rests on the rounding of positions.
+//
+// At the other end, rho -> 1/2, there is no bound: at rho = 1/2 + 1.1e-16, 1e-14 and 1e-12 mean
+// free times in equilibrium (2e-3) and at epsilon = 0.05 and 0.45 (1e-3) agree with the closed
+// forms, and no orbit was lost.
+#ifndef BALLPISTON_CORE_BILLIARD_BILLIARD_DOMAIN_H_
+#define BALLPISTON_CORE_BILLIARD_BILLIARD_DOMAIN_H_
+
+#include "core/geometry/pair_geometry.h"
+
+namespace ballpiston {
+
+struct BilliardDomain {
+  double min_rho;
+  double max_rho;
+  double min_delta;
+
+  constexpr bool HasRho(double rho) const { return rho >= min_rho && rho <= max_rho; }
+  constexpr bool HasDelta(double delta) const { return delta >= min_delta; }
+  constexpr bool Has(double rho, double delta) const { return HasRho(rho) && HasDelta(delta); }
+};
+
+// In double precision; every valid rho is above kMinRho.
+inline constexpr BilliardDomain kDoubleDomain = {
+    .min_rho = kMinRho, .max_rho = kMaxRho - 1e-9, .min_delta = 1e-10};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_BILLIARD_BILLIARD_DOMAIN_H_

@@ -1,0 +1,108 @@
+#include "core/billiard/longest_wait.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/billiard/orbits.h"
+#include "core/sampling/collision_surface.h"
+#include "core/sampling/outgoing_law.h"
+#include "tests/core/geometries.h"
+
+namespace ballpiston {
+namespace {
+
+// Returns to the collision surface at a piston's energy. Records the largest share of the longest
+// wait that an orbit has waited.
+class Returns : public NumberedOrbits {
+ public:
+  Returns(const PairGeometry& geometry, double epsilon)
+      : geometry_(geometry), longest_(geometry), epsilon_(epsilon), law_(epsilon, 1) {}
+
+  PairState Start(uint64_t orbit) override {
+    CounterRandom random(5, 6, orbit);
+    const Eigen::Vector2d ball = UniformOnCollisionSurface(geometry_, random);
+    const SignedDirection outgoing = law_.Draw(random);
+    const PairState state = {.position = ball,
+                             .direction = outgoing.ball,
+                             .ball_speed = std::sqrt(1 - 2 * epsilon_),
+                             .piston = ball.x(),
+                             .piston_velocity = outgoing.sigma * std::sqrt(2 * epsilon_)};
+    limits_.push_back(longest_.From(state));
+    return state;
+  }
+  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
+    lost_ += contact.escaped;
+    share_ = std::max(share_, contact.time / limits_[orbit]);
+    return AfterContact::kEnd;
+  }
+  double share() const { return share_; }
+  int lost() const { return lost_; }
+
+ private:
+  PairGeometry geometry_;
+  LongestWait longest_;
+  double epsilon_;
+  OutgoingLaw law_;
+  std::vector<double> limits_;
+  double share_ = 0;
+  int lost_ = 0;
+};
+
+void ExpectShort(const PairGeometry& geometry, double epsilon) {
+  Returns returns(geometry, epsilon);
+  ASSERT_TRUE(RunOrbits(Engine::kLanes, geometry, 500, returns, {}));
+  EXPECT_EQ(returns.lost(), 0);
+  EXPECT_LT(returns.share(), 0.05) << geometry.rho() << " " << epsilon;
+}
+
+// Of n = 500 returns the longest takes about log n = 6 time scales, a share of 0.006. A share of
+// 0.05 is e^-50 away for an exponential law of this scale.
+TEST(LongestWait, EveryOrbitOfTheBilliardIsShorter) {
+  for (const double rho : {0.5 + 1e-6, 0.6, 0.7}) {
+    for (const double share : {1.0, 0.1}) {
+      for (const double epsilon : {0.0, 1e-6, 0.01, 0.25, 0.49, 0.5 - 1e-6, 0.5}) {
+        ExpectShort(GeometryAtShare(rho, share), epsilon);
+      }
+    }
+  }
+}
+
+// The discs are nearly flat. Only balls that are slow, or alone, cost few hits here.
+TEST(LongestWait, EveryOrbitInASmallCellIsShorter) {
+  for (const double epsilon : {0.0, 0.5 - 1e-11}) {
+    ExpectShort(GeometryAtShare(kMaxRho - 1e-5, 1), epsilon);
+    ExpectShort(GeometryAtShare(kMaxRho - 1e-5, 0.3), epsilon);
+  }
+}
+
+TEST(LongestWait, APistonAtRestThatCannotBeReachedIsNotWaitedFor) {
+  const PairGeometry geometry = PaperGeometry(0.1);
+  const LongestWait longest(geometry);
+  const PairState apart = {.ball_speed = 1, .piston = geometry.tip()};
+  EXPECT_EQ(longest.From(apart), 0);
+  PairState state = apart;
+  for (const double velocity : {1e-300, 1e-9, 0.5}) {
+    state.piston_velocity = velocity;
+    EXPECT_GT(longest.From(state), 1 / velocity);
+  }
+}
+
+// A slow piston is a wall while the ball finds it, and no wall if it moves further.
+TEST(LongestWait, ASlowPistonIsWaitedForAsIfAtRest) {
+  const PairGeometry geometry = PaperGeometry(0.1);
+  const LongestWait longest(geometry);
+  PairState state = {.ball_speed = 1, .piston = geometry.tip() - 0.05};
+  const double at_rest = longest.From(state);
+  EXPECT_GT(at_rest, 1e4);
+  EXPECT_LT(at_rest, 1e6);
+  state.piston_velocity = 1e-12;
+  EXPECT_EQ(longest.From(state), at_rest);
+  state.piston_velocity = 1e-4;
+  EXPECT_GT(longest.From(state), at_rest);
+}
+
+}  // namespace
+}  // namespace ballpiston
