@@ -6,9 +6,10 @@
 #include <utility>
 
 #include "core/closed_form/mean_free_time.h"
+#include "core/experiment/long_returns.h"
+#include "core/experiment/sampled_estimate.h"
 #include "core/experiment/without_last_bits.h"
 #include "core/markov/energy_law.h"
-#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 namespace {
@@ -18,11 +19,6 @@ constexpr double kForEver = std::numeric_limits<double>::infinity();
 // The distance of the curve's time origins, in lags: half a mean free time. In this time the energy
 // loses most of its correlation, so more origins would add little information.
 constexpr size_t kLagsBetweenOrigins = 2;
-
-// The error of a mean over orbits, if there are enough of them.
-std::optional<double> ErrorOf(const Moments& moments) {
-  return ToldError(static_cast<double>(moments.count), moments.StandardError());
-}
 
 }  // namespace
 
@@ -38,7 +34,8 @@ EnergyRelaxation::EnergyRelaxation(const PairGeometry& geometry, const PointPara
     : epsilon_(point.Find(kEpsilon)),
       unit_of_limit_(MeanFreeTimesOf(geometry).ball_piston / 4),
       unit_(WithoutLastBits(unit_of_limit_)),
-      mean_free_time_(4 * unit_) {}
+      mean_free_time_(4 * unit_),
+      share_that_meets_(epsilon_ ? ShareThatMeets(geometry, *epsilon_, window()) : 1) {}
 
 double EnergyRelaxation::orbit_time() const {
   return epsilon_ ? window() : kOriginTimes * mean_free_time_ + window();
@@ -107,13 +104,13 @@ std::vector<Estimate> EnergyRelaxation::Named(const Estimate& integral) const {
   return {time, integral};
 }
 
-std::vector<Estimate> EnergyRelaxation::Estimates(const BlockResult& merged) const {
+std::vector<Estimate> EnergyRelaxation::Estimates(const BlockResult& merged, double events) const {
   const double limit = IntegralOfLimit(kForEver).value;
   const double remainder = WithoutLastBits(limit - IntegralOfLimit(window()).value);
-  return Named({.name = "decay_integral",
-                .value = merged.moments[0].mean + remainder,
-                .standard_error = ErrorOf(merged.moments[0]),
-                .limit = limit});
+  Estimate integral = SampledMean("decay_integral", merged.moments[0], events);
+  integral.value += remainder;
+  integral.limit = limit;
+  return Named(integral);
 }
 
 std::vector<Estimate> EnergyRelaxation::EstimatesOfLimit() const {
@@ -134,13 +131,15 @@ SpectralValue EnergyRelaxation::CurveOfLimitAt(double time) const {
                   : spectrum.Autocorrelation(time / unit_of_limit_);
 }
 
-Curve EnergyRelaxation::MeasuredCurve(const BlockResult& merged) const {
+Curve EnergyRelaxation::MeasuredCurve(const BlockResult& merged, double events) const {
   Curve curve = {.name = CurveName()};
+  if (merged.samples == 0) return curve;
   for (size_t i = 0; i < kLags; ++i) {
     const Moments& measured = merged.moments[1 + i];
     curve.points.push_back({.at = Lag(i),
                             .value = measured.mean,
-                            .standard_error = ErrorOf(measured),
+                            .standard_error =
+                                ToldError(events, measured.mean, measured.StandardError()),
                             .limit = CurveOfLimitAt(Lag(i)).value});
   }
   return curve;

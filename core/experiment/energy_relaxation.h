@@ -72,9 +72,14 @@ class EnergyRelaxation {
   // Adds the numbers of one orbit.
   void Record(const std::vector<double>& values, BlockResult& result) const;
 
-  // relaxation_time, if it exists; with epsilon also decay_integral.
-  std::vector<Estimate> Estimates(const BlockResult& merged) const;
-  Curve MeasuredCurve(const BlockResult& merged) const;
+  // About the share of orbits of the billiard in which ball and piston meet. The piston's energy is
+  // constant in the others, so the scatter is that of the orbits that meet.
+  double share_that_meets() const { return share_that_meets_; }
+
+  // relaxation_time, if it exists; with epsilon also decay_integral. `events`: the expected number of
+  // orbits that meet.
+  std::vector<Estimate> Estimates(const BlockResult& merged, double events) const;
+  Curve MeasuredCurve(const BlockResult& merged, double events) const;
   std::vector<NamedHistogram> MeasuredLaws(const BlockResult& merged) const;
 
   // These four are for the limit. Their standard errors are those of the computation.
@@ -101,6 +106,7 @@ class EnergyRelaxation {
   double unit_of_limit_;  // |G|/|dG_bp|: the spectrum's unit of time
   double unit_;           // unit_of_limit_ without its last bits; measurements use it
   double mean_free_time_;
+  double share_that_meets_;
 };
 
 // Whether relaxation_time exists: in equilibrium, and from energies far enough from 1/6.

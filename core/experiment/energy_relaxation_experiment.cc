@@ -19,6 +19,7 @@
 #include "core/experiment/pair_experiment.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
+#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 namespace {
@@ -203,16 +204,28 @@ class EnergyRelaxationExperiment : public PointExperiment {
     PointSummary summary = {.samples = merged.samples, .health = merged.health};
     summary.estimates = Estimates(merged);
     if (IsLimit()) summary.estimates.push_back(SpectralGap());
-    summary.curves.push_back(relaxation_.MeasuredCurve(merged));
+    summary.curves.push_back(relaxation_.MeasuredCurve(merged, EventsIn(merged)));
     summary.histograms = relaxation_.MeasuredLaws(merged);
+    if (TellsItsError(static_cast<double>(merged.samples)) && !TellsItsError(EventsIn(merged))) {
+      summary.remarks.push_back(absl::StrFormat(
+          "there are no standard errors: ball and piston meet in about %.2g of these %d orbits; an "
+          "error needs %.0f",
+          EventsIn(merged), merged.samples, kEventsForAnError));
+    }
     return summary;
   }
 
  private:
   bool IsLimit() const { return answer().model == Model::kMarkov; }
 
+  // The expected number of orbits that meet. A walk of the jump process always does.
+  double EventsIn(const BlockResult& merged) const {
+    const double share = IsLimit() ? 1 : relaxation_.share_that_meets();
+    return static_cast<double>(merged.samples) * share;
+  }
+
   std::vector<Estimate> Estimates(const BlockResult& merged) const {
-    std::vector<Estimate> estimates = relaxation_.Estimates(merged);
+    std::vector<Estimate> estimates = relaxation_.Estimates(merged, EventsIn(merged));
     if (!IsLimit()) return estimates;
     // The jump process is the limit.
     for (Estimate& estimate : estimates) estimate.exact = estimate.limit;

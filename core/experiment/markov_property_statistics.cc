@@ -7,9 +7,9 @@
 
 #include "core/arithmetic/elementary_functions.h"
 #include "core/closed_form/kernel_distribution.h"
+#include "core/experiment/sampled_estimate.h"
 #include "core/statistics/kl_divergence.h"
 #include "core/statistics/kolmogorov_smirnov.h"
-#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 namespace {
@@ -45,11 +45,10 @@ std::span<const Histogram> MemoryRows(const BlockResult& merged) {
 Estimate CorrelationOf(std::string name, const BlockResult& merged, Correlation correlation,
                        std::optional<double> exact) {
   const BatchMeans& measured = merged.batch_means[correlation];
-  return {
-      .name = std::move(name),
-      .value = measured.Ratio().value_or(0),
-      .standard_error = ToldError(static_cast<double>(measured.batches), measured.StandardError()),
-      .exact = exact};
+  Estimate estimate =
+      SampledRatio(std::move(name), measured, static_cast<double>(measured.batches));
+  estimate.exact = exact;
+  return estimate;
 }
 
 Estimate HittingTimeDistance(const Histogram& waiting) {
