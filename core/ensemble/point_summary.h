@@ -19,10 +19,11 @@ struct Estimate {
   std::optional<double> standard_error = {};  // empty with too few samples
   // The error is as uncertain as that of the mean of this many independent normal numbers:
   // value +- t standard_error covers the true value with Student's probability for batches - 1
-  // degrees of freedom. 0 if the error does not come from a scatter: then t is that of a normal law.
+  // degrees of freedom. 0 if the error does not come from a scatter: then t is that of a normal
+  // law.
   uint64_t batches = 0;
-  std::optional<double> exact = {};           // the closed form, if one exists
-  std::optional<double> limit = {};           // the value in the limit delta -> 0, if known
+  std::optional<double> exact = {};  // the closed form, if one exists
+  std::optional<double> limit = {};  // the value in the limit delta -> 0, if known
   // For a distance between laws, which is never below 0: its mean if the two laws were equal.
   std::optional<double> noise_floor = {};
 

@@ -20,6 +20,11 @@ constexpr double kForEver = std::numeric_limits<double>::infinity();
 // loses most of its correlation, so more origins would add little information.
 constexpr size_t kLagsBetweenOrigins = 2;
 
+// In equilibrium one orbit in eight counts as an event: the few with a slow piston, whose energy is
+// constant for long, skew the law of the integral. Intervals of 95 % from 64 and 256 orbits covered
+// in 91.6 and 93.6 %.
+constexpr double kEventsOfACorrelation = 0.125;
+
 }  // namespace
 
 bool HasRelaxationTime(const std::optional<double>& epsilon) {
@@ -35,7 +40,8 @@ EnergyRelaxation::EnergyRelaxation(const PairGeometry& geometry, const PointPara
       unit_of_limit_(MeanFreeTimesOf(geometry).ball_piston / 4),
       unit_(WithoutLastBits(unit_of_limit_)),
       mean_free_time_(4 * unit_),
-      share_that_meets_(epsilon_ ? ShareThatMeets(geometry, *epsilon_, window()) : 1) {}
+      events_per_orbit_(epsilon_ ? ShareThatMeets(geometry, *epsilon_, window())
+                                 : kEventsOfACorrelation) {}
 
 double EnergyRelaxation::orbit_time() const {
   return epsilon_ ? window() : kOriginTimes * mean_free_time_ + window();
@@ -136,11 +142,11 @@ Curve EnergyRelaxation::MeasuredCurve(const BlockResult& merged, double events) 
   if (merged.samples == 0) return curve;
   for (size_t i = 0; i < kLags; ++i) {
     const Moments& measured = merged.moments[1 + i];
-    curve.points.push_back({.at = Lag(i),
-                            .value = measured.mean,
-                            .standard_error =
-                                ToldError(events, measured.mean, measured.StandardError()),
-                            .limit = CurveOfLimitAt(Lag(i)).value});
+    curve.points.push_back(
+        {.at = Lag(i),
+         .value = measured.mean,
+         .standard_error = ToldError(events, measured.mean, measured.StandardError()),
+         .limit = CurveOfLimitAt(Lag(i)).value});
   }
   return curve;
 }

@@ -72,12 +72,12 @@ class EnergyRelaxation {
   // Adds the numbers of one orbit.
   void Record(const std::vector<double>& values, BlockResult& result) const;
 
-  // About the share of orbits of the billiard in which ball and piston meet. The piston's energy is
+  // The events of an orbit of the billiard for the standard errors (statistics/told_error.h). From
+  // an epsilon: about the share of orbits in which ball and piston meet. The piston's energy is
   // constant in the others, so the scatter is that of the orbits that meet.
-  double share_that_meets() const { return share_that_meets_; }
+  double events_per_orbit() const { return events_per_orbit_; }
 
-  // relaxation_time, if it exists; with epsilon also decay_integral. `events`: the expected number of
-  // orbits that meet.
+  // relaxation_time, if it exists; with epsilon also decay_integral. `events`: those of all orbits.
   std::vector<Estimate> Estimates(const BlockResult& merged, double events) const;
   Curve MeasuredCurve(const BlockResult& merged, double events) const;
   std::vector<NamedHistogram> MeasuredLaws(const BlockResult& merged) const;
@@ -106,7 +106,7 @@ class EnergyRelaxation {
   double unit_of_limit_;  // |G|/|dG_bp|: the spectrum's unit of time
   double unit_;           // unit_of_limit_ without its last bits; measurements use it
   double mean_free_time_;
-  double share_that_meets_;
+  double events_per_orbit_;
 };
 
 // Whether relaxation_time exists: in equilibrium, and from energies far enough from 1/6.

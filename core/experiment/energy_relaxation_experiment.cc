@@ -206,22 +206,36 @@ class EnergyRelaxationExperiment : public PointExperiment {
     if (IsLimit()) summary.estimates.push_back(SpectralGap());
     summary.curves.push_back(relaxation_.MeasuredCurve(merged, EventsIn(merged)));
     summary.histograms = relaxation_.MeasuredLaws(merged);
-    if (TellsItsError(static_cast<double>(merged.samples)) && !TellsItsError(EventsIn(merged))) {
-      summary.remarks.push_back(absl::StrFormat(
-          "there are no standard errors: ball and piston meet in about %.2g of these %d orbits; an "
-          "error needs %.0f",
-          EventsIn(merged), merged.samples, kEventsForAnError));
-    }
+    if (LacksEvents(merged)) summary.remarks.push_back(ReasonOfNoErrors(merged));
     return summary;
   }
 
  private:
   bool IsLimit() const { return answer().model == Model::kMarkov; }
 
-  // The expected number of orbits that meet. A walk of the jump process always does.
+  // Each walk of the jump process counts.
   double EventsIn(const BlockResult& merged) const {
-    const double share = IsLimit() ? 1 : relaxation_.share_that_meets();
-    return static_cast<double>(merged.samples) * share;
+    const double each = IsLimit() ? 1 : relaxation_.events_per_orbit();
+    return static_cast<double>(merged.samples) * each;
+  }
+
+  // Whether there are no errors, although the sample is not small.
+  bool LacksEvents(const BlockResult& merged) const {
+    return TellsItsError(static_cast<double>(merged.samples)) && !TellsItsError(EventsIn(merged));
+  }
+
+  std::string ReasonOfNoErrors(const BlockResult& merged) const {
+    if (!relaxation_.epsilon()) {
+      return absl::StrFormat(
+          "there are no standard errors: few orbits, those with a slow piston, skew the law of %d "
+          "orbits; errors need %.0f orbits",
+          merged.samples, kEventsForAnError / relaxation_.events_per_orbit());
+    }
+    return absl::StrFormat(
+        "there are no standard errors: ball and piston meet in about %.2g of these %d orbits; "
+        "errors "
+        "need %.0f",
+        EventsIn(merged), merged.samples, kEventsForAnError);
   }
 
   std::vector<Estimate> Estimates(const BlockResult& merged) const {

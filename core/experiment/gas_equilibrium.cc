@@ -88,8 +88,8 @@ std::array<std::vector<double>, 2> SpeedLaws() {
 
 // The events of a replica for the errors of its current's correlations (statistics/told_error.h).
 // Few replicas dominate what the jump process measures, those with much energy in few bodies: the
-// skewness over replicas is 15 with three columns, 3 with 32, and above 100 with two. One column has
-// no current.
+// skewness over replicas is 15 with three columns, 3 with 32, and above 100 with two. One column
+// has no current.
 double EventsOfCurrents(GasEngine engine, const GasShape& shape) {
   if (engine != GasEngine::kJumps || shape.columns == 1) return 1;
   return shape.columns == 2 ? 2e-4 : 0.05;

@@ -228,8 +228,8 @@ Estimate GasExperiment::Scaled(Estimate measured, double scale) const {
 
 Estimate GasExperiment::Mean(const char* name, const BlockResult& merged, size_t index,
                              double scale) const {
-  return Scaled(
-      SampledRatio(name, merged.batch_means[index], static_cast<double>(merged.samples)), scale);
+  return Scaled(SampledRatio(name, merged.batch_means[index], static_cast<double>(merged.samples)),
+                scale);
 }
 
 Estimate GasExperiment::Mean(const char* name, const Moments& measured, double scale,

@@ -21,10 +21,11 @@ namespace ballpiston {
 // return times are bounded.
 double LongReturnsPerSample(const PairGeometry& geometry, double epsilon);
 
-// About the share of orbits, started with uniform positions at this energy, that meet within `time`,
-// some mean free times. While the slow body rests, only the share of the volume that can be reached
-// meets; the slow body reaches the rest in the time of its round trip. Almost 1 unless one body is
-// slow. It decides whether a sample contains enough orbits that meet, so a rough value is enough.
+// About the share of orbits, started with uniform positions at this energy, that meet within
+// `time`, some mean free times. While the slow body rests, only the share of the volume that can be
+// reached meets; the slow body reaches the rest in the time of its round trip. Almost 1 unless one
+// body is slow. It decides whether a sample contains enough orbits that meet, so a rough value is
+// enough.
 double ShareThatMeets(const PairGeometry& geometry, double epsilon, double time);
 
 }  // namespace ballpiston

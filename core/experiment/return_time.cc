@@ -46,7 +46,8 @@ std::optional<std::string> ReturnTime::Remark(const Moments& times) const {
     return std::nullopt;
   }
   if (epsilon_ == 0) {
-    return "the mean return time has no standard error: at epsilon = 0, where the piston rests, the "
+    return "the mean return time has no standard error: at epsilon = 0, where the piston rests, "
+           "the "
            "variance of return times is infinite";
   }
   return absl::StrFormat(

@@ -2,9 +2,9 @@
 // between the two distribution functions at the edges of the histogram's bins.
 //
 // For N samples of the uniform law, sqrt(N) D tends to the maximum of the absolute value of a
-// Brownian bridge, with the mean sqrt(pi/2) log 2 and the variance pi^2/12 - pi/2 log^2 2. The maximum over only m + 1 points is smaller by
-// 0.5826/sqrt(m); the constant is -zeta(1/2)/sqrt(2 pi), as for random walks. Property, with a test
-// of its name:
+// Brownian bridge, with the mean sqrt(pi/2) log 2 and the variance pi^2/12 - pi/2 log^2 2. The
+// maximum over only m + 1 points is smaller by 0.5826/sqrt(m); the constant is -zeta(1/2)/sqrt(2
+// pi), as for random walks. Property, with a test of its name:
 //   1. NoiseFloorIsTheMeanDistanceOfUniformSamples.
 #ifndef BALLPISTON_CORE_STATISTICS_KOLMOGOROV_SMIRNOV_H_
 #define BALLPISTON_CORE_STATISTICS_KOLMOGOROV_SMIRNOV_H_

@@ -1,5 +1,5 @@
-// Whether the interval value +- t(batches - 1) x standard error covers the true value in 95 % of the
-// runs, for every sampled estimate.
+// Whether the interval value +- t(batches - 1) x standard error covers the true value in 95 % of
+// the runs, for every sampled estimate.
 //
 // The true value is the exact one, or that of all runs together. A distance between laws has a mean
 // that depends on the number of samples, so it is compared with the mean of the runs. `make test`
@@ -108,8 +108,8 @@ struct Asked {
   }
 };
 
-// The relative number of runs that are outside by chance, 4.9 standard errors: a false alarm of 1e-6
-// for each estimate.
+// The relative number of runs that are outside by chance, 4.9 standard errors: a false alarm of
+// 1e-6 for each estimate.
 double Chance(const Runs& runs) {
   return 4.9 *
          std::sqrt(kProbability * (1 - kProbability) / static_cast<double>(runs.with_error.size()));
@@ -121,8 +121,8 @@ bool IsSkewed(std::string_view estimate) {
          estimate.starts_with("relaxation") || estimate.starts_with("conductivity");
 }
 
-// The share of the intervals of all runs is 94 to 96 %; with 64 samples of a skewed law 90 % or more.
-// A distance between nearly equal laws may have too large an error.
+// The share of the intervals of all runs is 94 to 96 %; with 64 samples of a skewed law 90 % or
+// more. A distance between nearly equal laws may have too large an error.
 void ExpectCoverage(const Asked& asked, int64_t samples, uint64_t runs) {
   for (const auto& [name, of] : RunMany(asked.Spec(samples), runs)) {
     SCOPED_TRACE(asked.Text() + ", " + name + ", " + std::to_string(samples) + " samples");

@@ -13,8 +13,8 @@
 #include "core/closed_form/ingoing_law.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/long_returns.h"
-#include "core/model_choice/limit_error.h"
 #include "core/geometry/paper.h"
+#include "core/model_choice/limit_error.h"
 #include "tests/core/geometries.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/core/run_point.h"
@@ -59,8 +59,8 @@ TEST(StandardErrors, MeanOfAConstantSignIsExact) {
   EXPECT_EQ(sigma.batches, 0u);
 }
 
-// A body at rest that is out of reach of the other keeps its energy, so that orbits that do not meet
-// have no scatter.
+// A body at rest that is out of reach of the other keeps its energy, so that orbits that do not
+// meet have no scatter.
 TEST(StandardErrors, OfARelaxationNeedOrbitsThatMeet) {
   for (const PointParameters& point :
        {PairAt(0.6, 0.0194, 0.5), PairAt(kPaperRho, 0.0125, 0), PairAt(0.707, 1e-4, 0)}) {
@@ -82,21 +82,37 @@ TEST(StandardErrors, OfARelaxationNeedOrbitsThatMeet) {
 // The measured share of orbits that meet: whose energy has left its bin at the end. One in 61 of
 // those is back in it. 2000 orbits.
 TEST(StandardErrors, ShareThatMeetsIsAboutTheMeasuredOne) {
-  for (const auto& [delta, epsilon] : {std::pair{0.1, 0.0}, {0.02, 0.0}, {0.1, 0.5}, {0.2, 0.5},
-                                       {0.02, 1e-5}, {0.02, 1e-3}, {0.1, 0.02}, {0.1, 0.4999}}) {
+  for (const auto& [delta, epsilon] : {std::pair{0.1, 0.0},
+                                       {0.02, 0.0},
+                                       {0.1, 0.5},
+                                       {0.2, 0.5},
+                                       {0.02, 1e-5},
+                                       {0.02, 1e-3},
+                                       {0.1, 0.02},
+                                       {0.1, 0.4999}}) {
     const PointParameters point = PaperPoint(delta, epsilon);
     const PointSummary summary =
         RunPoint(SpecOf(&kEnergyRelaxation, point, {.samples = 2000}, Model::kBilliard));
     const Histogram& at_end = summary.histograms.back().histogram;
     Histogram start = Histogram::OfBins(at_end.lower, at_end.upper, at_end.counts.size());
     start.Add(epsilon);
-    const auto bin = static_cast<size_t>(std::ranges::max_element(start.counts) - start.counts.begin());
+    const auto bin =
+        static_cast<size_t>(std::ranges::max_element(start.counts) - start.counts.begin());
     const double measured = 1 - static_cast<double>(at_end.counts[bin]) / 2000;
     const double window = *summary.histograms.back().time;
     const double share = ShareThatMeets(PaperGeometry(delta), epsilon, window);
     std::cout << delta << " " << epsilon << ": " << share << ", measured " << measured << "\n";
     EXPECT_GT(share / measured, 0.6) << delta << " " << epsilon;
     EXPECT_LT(share / measured, 1.6) << delta << " " << epsilon;
+  }
+}
+
+TEST(StandardErrors, OfARelaxationInEquilibriumNeed400Orbits) {
+  for (const int64_t orbits : {399, 400}) {
+    const PointSummary summary = RunPoint(
+        SpecOf(&kEnergyRelaxation, PaperPoint(0.2), {.samples = orbits}, Model::kBilliard));
+    EXPECT_EQ(summary.estimates[0].standard_error.has_value(), orbits == 400);
+    EXPECT_EQ(HasRemark(summary, "errors need 400 orbits"), orbits < 400);
   }
 }
 
@@ -133,19 +149,19 @@ TEST(StandardErrors, OfACoefficientOfVariationNeedsAThousandReturns) {
 
 // A resting ball next to the tip: all returns take the same time but for 1e-13 of it.
 TEST(StandardErrors, AreAtLeastTheRoundingOfTheMean) {
-  const EnsembleSpec spec =
-      SpecOf(&kConditionalMeanFreeTime, PairAt(kPaperRho, 1e-13, 0.5), {.samples = 20'000},
-             Model::kBilliardReference);
+  const EnsembleSpec spec = SpecOf(&kConditionalMeanFreeTime, PairAt(kPaperRho, 1e-13, 0.5),
+                                   {.samples = 20'000}, Model::kBilliardReference);
   const Estimate time = RunPoint(spec).estimates[0];
   EXPECT_GE(*time.standard_error, 2e-14 * time.value);
   EXPECT_LT(std::fabs(*time.ZScore()), 2);
 }
 
 TEST(StandardErrors, ValueIsMissingWhereNothingWasMeasured) {
-  for (const ExperimentKind* experiment :
-       {&kEquilibrium, &kConditionalMeanFreeTime, &kFirstHit, &kEnergyRelaxation, &kMarkovProperty}) {
+  for (const ExperimentKind* experiment : {&kEquilibrium, &kConditionalMeanFreeTime, &kFirstHit,
+                                           &kEnergyRelaxation, &kMarkovProperty}) {
     PointParameters point = PaperPoint(0.2);
-    if (experiment == &kConditionalMeanFreeTime || experiment == &kFirstHit) point.Set(kEpsilon, 0.1);
+    if (experiment == &kConditionalMeanFreeTime || experiment == &kFirstHit)
+      point.Set(kEpsilon, 0.1);
     if (experiment == &kFirstHit) point.Set(kExponent, 1);
     const auto all_escaped =
         PointExperiment::Create(SpecOf(experiment, point, {}, Model::kBilliard), 0);
@@ -162,7 +178,8 @@ TEST(StandardErrors, PilotWithoutOneGivesNoBound) {
   const PilotPlace place = PilotPlaceFor(PairAt(kPaperRho, 0.1, 0));
   const auto pilot = PilotExperiment(place);
   const Pilot without = PilotOf(*pilot, pilot->EmptyResult());
-  EXPECT_EQ(LimitErrorBound(without, place, PointOf(place)), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(LimitErrorBound(without, place, PointOf(place)),
+            std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

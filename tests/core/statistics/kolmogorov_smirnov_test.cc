@@ -16,7 +16,7 @@ Histogram Counts(std::vector<uint64_t> counts) {
 
 TEST(KolmogorovSmirnov, IsTheLargestDifferenceAtAnEdge) {
   const KolmogorovSmirnov measured = DistanceToUniform(Counts({2, 6, 1, 1}));
-  EXPECT_DOUBLE_EQ(measured.distance, 0.3);  // 8/10 below 1/2
+  EXPECT_DOUBLE_EQ(measured.distance, 0.3);                                 // 8/10 below 1/2
   EXPECT_DOUBLE_EQ(DistanceToUniform(Counts({0, 0, 5, 5})).distance, 0.5);  // below, too
   EXPECT_EQ(DistanceToUniform(Counts({7, 7, 7, 7})).distance, 0);
 }

@@ -111,8 +111,8 @@ TEST(Moments, EffectiveCountIsThatOfANormalLaw) {
   EXPECT_EQ(one.EffectiveCount(), 2u);
 }
 
-// The share of 4000 samples of 64 numbers, 1 with the probability 1/20 and else 0, whose interval of
-// 95 % covers the mean: 83 % with the quantile for 64 samples, 96 % with that for the effective
+// The share of 4000 samples of 64 numbers, 1 with the probability 1/20 and else 0, whose interval
+// of 95 % covers the mean: 83 % with the quantile for 64 samples, 96 % with that for the effective
 // count. The error of a share is at most 0.6 %, the windows are 5 of these: false alarms 1e-6.
 TEST(Moments, EffectiveCountGivesIntervalsOfSkewedLaws) {
   constexpr int kRuns = 4000;

@@ -438,9 +438,10 @@ TEST(PointResult, RemarkStandsForAnEstimateWithoutAValue) {
   merged.health.escapes = 2;
   const v1::PointResult result = PointResultOf(0, *experiment, merged);
   EXPECT_EQ(result.estimates_size(), 0);
-  EXPECT_THAT(result.remarks(),
-              testing::Contains("mean_hit_time has no value: nothing was measured in 0 samples and 2 "
-                                "orbits that left the cell"));
+  EXPECT_THAT(
+      result.remarks(),
+      testing::Contains("mean_hit_time has no value: nothing was measured in 0 samples and 2 "
+                        "orbits that left the cell"));
 }
 
 // An answer with everything that a result can hold.
@@ -457,8 +458,8 @@ class ToldExperiment : public PointExperiment {
     PointSummary summary;
     summary.estimates = {
         {.name = "time", .value = -4, .standard_error = 0.5, .batches = 64, .limit = 3},
-                         {.name = "distance", .value = 0.25, .noise_floor = 0.125},
-                         {.name = "odd", .value = 1, .limit = kNan, .noise_floor = kInfinity}};
+        {.name = "distance", .value = 0.25, .noise_floor = 0.125},
+        {.name = "odd", .value = 1, .limit = kNan, .noise_floor = kInfinity}};
     summary.curves = {{"decay", {{0, 1, 0.25, 1}, {2, 0.5, {}, {}}, {4, 0.25, kNan, kInfinity}}},
                       {"profile", {{0, 2}, {1.5, 1}}, CurveAxis::kPosition}};
     summary.remarks = {"the run was too short", "another sentence"};
