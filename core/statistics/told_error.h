@@ -13,7 +13,7 @@
 //   relaxation of an energy         from an epsilon the expected number of orbits that meet; else
 //   an
 //                                   eighth of the orbits (experiment/energy_relaxation.cc)
-//   a gas's current, by exchanges   a twentieth of the replicas, or less
+//   a gas's current, by exchanges   a tenth of the replicas, or less
 //   (experiment/gas_equilibrium.cc) correlation                     the orbits
 // The number of events is an expected one, never a measured one: an error that is shown only if the
 // sample happens to contain many events is shown for samples that lie to one side. A quantity that
