@@ -92,7 +92,8 @@ std::array<std::vector<double>, 2> SpeedLaws() {
 // has no current.
 double EventsOfCurrents(GasEngine engine, const GasShape& shape) {
   if (engine != GasEngine::kJumps || shape.columns == 1) return 1;
-  return shape.columns == 2 ? 2e-4 : 0.05;
+  if (shape.columns == 2 && shape.rows == 1) return 2e-4;  // a lattice is less skewed
+  return shape.columns * shape.rows < 16 ? 0.05 : 0.1;
 }
 
 // Adds estimates at the front or at the end. The conductivity is at the front if the target names
