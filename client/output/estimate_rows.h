@@ -41,6 +41,7 @@ inline constexpr Field kZScore = {&v1::Estimate::has_z_score, &v1::Estimate::z_s
 inline constexpr Field kModelError = {&v1::Estimate::has_model_error, &v1::Estimate::model_error};
 inline constexpr Field kNoiseFloor = {&v1::Estimate::has_noise_floor, &v1::Estimate::noise_floor};
 inline constexpr Field kLimit = {&v1::Estimate::has_limit, &v1::Estimate::limit};
+inline constexpr Field kBatches = {&v1::Estimate::has_batches, &v1::Estimate::batches};
 
 }  // namespace ballpiston::client
 

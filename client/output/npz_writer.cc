@@ -184,7 +184,8 @@ class NpzWriter : public ResultWriter {
     };
     const Suffix suffixes[] = {{"_standard_error", kError},   {"_exact", kExact},
                                {"_z_score", kZScore},         {"_model_error", kModelError},
-                               {"_noise_floor", kNoiseFloor}, {"_limit", kLimit}};
+                               {"_noise_floor", kNoiseFloor}, {"_limit", kLimit},
+                               {"_batches", kBatches}};
     for (const v1::Estimate& estimate : point.estimates()) {
       Set(estimate.name(), estimate.value());
       for (const Suffix& suffix : suffixes) {

@@ -5,7 +5,7 @@
 //   index, rho, delta, ...       position in the grid, and the parameters; `cells` is text
 //   model, samples
 //   NAME, NAME_standard_error, NAME_exact, NAME_z_score, NAME_model_error, NAME_noise_floor,
-//   NAME_limit                   of each estimate, those that some point has
+//   NAME_limit, NAME_batches     of each estimate, those that some point has
 //   kl_divergence, kl_divergence_noise_floor, _cells, _noise_error, _standard_error
 //   health_escapes, health_max_energy_error
 //   histogram_NAME_counts, _expected (points, bins), _lower, _upper (points); NAME ends with _plus

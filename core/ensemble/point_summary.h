@@ -15,10 +15,15 @@ namespace ballpiston {
 
 struct Estimate {
   std::string name;
-  double value = 0;
+  double value = 0;                           // NaN if nothing was measured
   std::optional<double> standard_error = {};  // empty with too few samples
-  std::optional<double> exact = {};           // the closed form, if one exists
-  std::optional<double> limit = {};           // the value in the limit delta -> 0, if known
+  // The error is as uncertain as that of the mean of this many independent normal numbers:
+  // value +- t standard_error covers the true value with Student's probability for batches - 1
+  // degrees of freedom. 0 if the error does not come from a scatter: then t is that of a normal
+  // law.
+  uint64_t batches = 0;
+  std::optional<double> exact = {};  // the closed form, if one exists
+  std::optional<double> limit = {};  // the value in the limit delta -> 0, if known
   // For a distance between laws, which is never below 0: its mean if the two laws were equal.
   std::optional<double> noise_floor = {};
 

@@ -69,6 +69,9 @@ class ConditionalMeanFreeTimeExperiment : public PointExperiment {
     if (const auto variation = return_time_.CoefficientOfVariation(merged.moments[0])) {
       summary.estimates.push_back(*variation);
     }
+    if (const auto remark = return_time_.Remark(merged.moments[0])) {
+      summary.remarks.push_back(*remark);
+    }
     return summary;
   }
 

@@ -6,9 +6,10 @@
 #include <utility>
 
 #include "core/closed_form/mean_free_time.h"
+#include "core/experiment/long_returns.h"
+#include "core/experiment/sampled_estimate.h"
 #include "core/experiment/without_last_bits.h"
 #include "core/markov/energy_law.h"
-#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 namespace {
@@ -19,10 +20,10 @@ constexpr double kForEver = std::numeric_limits<double>::infinity();
 // loses most of its correlation, so more origins would add little information.
 constexpr size_t kLagsBetweenOrigins = 2;
 
-// The error of a mean over orbits, if there are enough of them.
-std::optional<double> ErrorOf(const Moments& moments) {
-  return ToldError(static_cast<double>(moments.count), moments.StandardError());
-}
+// In equilibrium one orbit in eight counts as an event: the few with a slow piston, whose energy is
+// constant for long, skew the law of the integral. Intervals of 95 % from 64 and 256 orbits covered
+// in 91.6 and 93.6 %.
+constexpr double kEventsOfACorrelation = 0.125;
 
 }  // namespace
 
@@ -38,7 +39,9 @@ EnergyRelaxation::EnergyRelaxation(const PairGeometry& geometry, const PointPara
     : epsilon_(point.Find(kEpsilon)),
       unit_of_limit_(MeanFreeTimesOf(geometry).ball_piston / 4),
       unit_(WithoutLastBits(unit_of_limit_)),
-      mean_free_time_(4 * unit_) {}
+      mean_free_time_(4 * unit_),
+      events_per_orbit_(epsilon_ ? ShareThatMeets(geometry, *epsilon_, window())
+                                 : kEventsOfACorrelation) {}
 
 double EnergyRelaxation::orbit_time() const {
   return epsilon_ ? window() : kOriginTimes * mean_free_time_ + window();
@@ -107,13 +110,13 @@ std::vector<Estimate> EnergyRelaxation::Named(const Estimate& integral) const {
   return {time, integral};
 }
 
-std::vector<Estimate> EnergyRelaxation::Estimates(const BlockResult& merged) const {
+std::vector<Estimate> EnergyRelaxation::Estimates(const BlockResult& merged, double events) const {
   const double limit = IntegralOfLimit(kForEver).value;
   const double remainder = WithoutLastBits(limit - IntegralOfLimit(window()).value);
-  return Named({.name = "decay_integral",
-                .value = merged.moments[0].mean + remainder,
-                .standard_error = ErrorOf(merged.moments[0]),
-                .limit = limit});
+  Estimate integral = SampledMean("decay_integral", merged.moments[0], events);
+  integral.value += remainder;
+  integral.limit = limit;
+  return Named(integral);
 }
 
 std::vector<Estimate> EnergyRelaxation::EstimatesOfLimit() const {
@@ -134,14 +137,16 @@ SpectralValue EnergyRelaxation::CurveOfLimitAt(double time) const {
                   : spectrum.Autocorrelation(time / unit_of_limit_);
 }
 
-Curve EnergyRelaxation::MeasuredCurve(const BlockResult& merged) const {
+Curve EnergyRelaxation::MeasuredCurve(const BlockResult& merged, double events) const {
   Curve curve = {.name = CurveName()};
+  if (merged.samples == 0) return curve;
   for (size_t i = 0; i < kLags; ++i) {
     const Moments& measured = merged.moments[1 + i];
-    curve.points.push_back({.at = Lag(i),
-                            .value = measured.mean,
-                            .standard_error = ErrorOf(measured),
-                            .limit = CurveOfLimitAt(Lag(i)).value});
+    curve.points.push_back(
+        {.at = Lag(i),
+         .value = measured.mean,
+         .standard_error = ToldError(events, measured.mean, measured.StandardError()),
+         .limit = CurveOfLimitAt(Lag(i)).value});
   }
   return curve;
 }

@@ -72,9 +72,14 @@ class EnergyRelaxation {
   // Adds the numbers of one orbit.
   void Record(const std::vector<double>& values, BlockResult& result) const;
 
-  // relaxation_time, if it exists; with epsilon also decay_integral.
-  std::vector<Estimate> Estimates(const BlockResult& merged) const;
-  Curve MeasuredCurve(const BlockResult& merged) const;
+  // The events of an orbit of the billiard for the standard errors (statistics/told_error.h). From
+  // an epsilon: about the share of orbits in which ball and piston meet. The piston's energy is
+  // constant in the others, so the scatter is that of the orbits that meet.
+  double events_per_orbit() const { return events_per_orbit_; }
+
+  // relaxation_time, if it exists; with epsilon also decay_integral. `events`: those of all orbits.
+  std::vector<Estimate> Estimates(const BlockResult& merged, double events) const;
+  Curve MeasuredCurve(const BlockResult& merged, double events) const;
   std::vector<NamedHistogram> MeasuredLaws(const BlockResult& merged) const;
 
   // These four are for the limit. Their standard errors are those of the computation.
@@ -101,6 +106,7 @@ class EnergyRelaxation {
   double unit_of_limit_;  // |G|/|dG_bp|: the spectrum's unit of time
   double unit_;           // unit_of_limit_ without its last bits; measurements use it
   double mean_free_time_;
+  double events_per_orbit_;
 };
 
 // Whether relaxation_time exists: in equilibrium, and from energies far enough from 1/6.

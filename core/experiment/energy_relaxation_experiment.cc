@@ -22,6 +22,7 @@
 #include "core/experiment/pair_experiment.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
+#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 namespace {
@@ -210,16 +211,42 @@ class EnergyRelaxationExperiment : public PointExperiment {
     PointSummary summary = {.samples = merged.samples, .health = merged.health};
     summary.estimates = Estimates(merged);
     if (IsLimit()) summary.estimates.push_back(SpectralGap());
-    summary.curves.push_back(relaxation_.MeasuredCurve(merged));
+    summary.curves.push_back(relaxation_.MeasuredCurve(merged, EventsIn(merged)));
     summary.histograms = relaxation_.MeasuredLaws(merged);
+    if (LacksEvents(merged)) summary.remarks.push_back(ReasonOfNoErrors(merged));
     return summary;
   }
 
  private:
   bool IsLimit() const { return answer().model == Model::kMarkov; }
 
+  // Each walk of the jump process counts.
+  double EventsIn(const BlockResult& merged) const {
+    const double each = IsLimit() ? 1 : relaxation_.events_per_orbit();
+    return static_cast<double>(merged.samples) * each;
+  }
+
+  // Whether there are no errors, although the sample is not small.
+  bool LacksEvents(const BlockResult& merged) const {
+    return TellsItsError(static_cast<double>(merged.samples)) && !TellsItsError(EventsIn(merged));
+  }
+
+  std::string ReasonOfNoErrors(const BlockResult& merged) const {
+    if (!relaxation_.epsilon()) {
+      return absl::StrFormat(
+          "there are no standard errors: few orbits, those with a slow piston, skew the law of %d "
+          "orbits; errors need %.0f orbits",
+          merged.samples, kEventsForAnError / relaxation_.events_per_orbit());
+    }
+    return absl::StrFormat(
+        "there are no standard errors: ball and piston meet in about %.2g of these %d orbits; "
+        "errors "
+        "need %.0f",
+        EventsIn(merged), merged.samples, kEventsForAnError);
+  }
+
   std::vector<Estimate> Estimates(const BlockResult& merged) const {
-    std::vector<Estimate> estimates = relaxation_.Estimates(merged);
+    std::vector<Estimate> estimates = relaxation_.Estimates(merged, EventsIn(merged));
     if (!IsLimit()) return estimates;
     // The jump process is the limit.
     for (Estimate& estimate : estimates) estimate.exact = estimate.limit;

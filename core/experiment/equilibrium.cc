@@ -17,8 +17,8 @@
 #include "core/experiment/exact_estimate.h"
 #include "core/experiment/pair_experiment.h"
 #include "core/experiment/return_orbits.h"
+#include "core/experiment/sampled_estimate.h"
 #include "core/sampling/invariant_measure.h"
-#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 namespace {
@@ -35,10 +35,9 @@ Estimate MeanFreeTime(absl::string_view between, const BlockResult& merged, size
                       double exact) {
   const BatchMeans& measured = merged.batch_means[index];
   const double events = kEventsPerCollision * static_cast<double>(merged.samples);
-  return {.name = "mean_free_time_" + std::string(between),
-          .value = measured.Ratio().value_or(0),
-          .standard_error = ToldError(events, measured.StandardError()),
-          .exact = exact};
+  Estimate time = SampledRatio("mean_free_time_" + std::string(between), measured, events);
+  time.exact = exact;
+  return time;
 }
 
 // Three batch means, ball-piston, ball-wall and piston-wall, with one batch an orbit.

@@ -21,7 +21,7 @@
 #include "core/experiment/return_experiment.h"
 #include "core/experiment/return_orbits.h"
 #include "core/experiment/return_time.h"
-#include "core/statistics/told_error.h"
+#include "core/experiment/sampled_estimate.h"
 
 namespace ballpiston {
 namespace {
@@ -54,20 +54,20 @@ std::vector<std::vector<double>> ExpectedProbabilities(const PointParameters& po
 }
 
 Estimate MeanCosAlpha(const Moments& moments) {
-  const double samples = static_cast<double>(moments.count);
-  return {.name = "mean_cos_alpha",
-          .value = moments.mean,
-          .standard_error = ToldError(samples, moments.StandardError())};
+  return SampledMean("mean_cos_alpha", moments, static_cast<double>(moments.count));
 }
 
-// The mean of sigma = +1 or -1. It does not fluctuate if only -1 is possible.
-Estimate MeanSigma(const Moments& moments, bool fluctuates) {
-  const double of_both_signs =
-      static_cast<double>(moments.count) * (1 - moments.mean * moments.mean);
-  return {.name = "mean_sigma",
-          .value = moments.mean,
-          .standard_error =
-              fluctuates ? ToldError(of_both_signs, moments.StandardError()) : std::optional(0.0)};
+// The mean of sigma = +1 or -1. Whether it has an error is decided by the exact mean under the
+// equilibrium's law, which is near that of every outgoing law.
+Estimate MeanSigma(const Moments& moments, const IngoingLaw& law) {
+  const double exact = law.MeanSigma();
+  const double of_both_signs = static_cast<double>(moments.count) * (1 - exact * exact);
+  Estimate mean = SampledMean("mean_sigma", moments, of_both_signs);
+  if (law.AlphaMax(+1) == 0) {  // only -1 is possible
+    mean.standard_error = 0;
+    mean.batches = 0;
+  }
+  return mean;
 }
 
 class RecordedReturns : public ReturnOrbits {
@@ -124,13 +124,16 @@ class FirstHitExperiment : public PointExperiment {
   PointSummary Summarize(const BlockResult& merged) const override {
     PointSummary summary = {.samples = merged.samples, .health = merged.health};
     summary.estimates = {FirstEstimate(merged), MeanCosAlpha(merged.moments[1]),
-                         MeanSigma(merged.moments[2], equilibrium_.AlphaMax(+1) > 0)};
+                         MeanSigma(merged.moments[2], equilibrium_)};
     if (IsStationary()) {
       summary.estimates[1].exact = equilibrium_.MeanCosAlpha();
       summary.estimates[2].exact = equilibrium_.MeanSigma();
     }
     if (const auto variation = return_time_.CoefficientOfVariation(merged.moments[0])) {
       summary.estimates.push_back(*variation);
+    }
+    if (const auto remark = return_time_.Remark(merged.moments[0])) {
+      summary.remarks.push_back(*remark);
     }
     summary.histograms = LabelledHistograms(merged);
     summary.curves = {SurvivalCurve(merged.histograms.back())};

@@ -217,11 +217,10 @@ class GasConduction : public GasExperiment {
   Curve Profile(const BlockResult& merged) const {
     Curve curve = {.name = "temperature_profile", .axis = CurveAxis::kPosition};
     for (size_t i = 0; i < places_.size(); ++i) {
-      const Moments& measured = merged.moments[i];
-      curve.points.push_back(
-          {.at = places_.Position(i),
-           .value = temperature_ * measured.mean,
-           .standard_error = Told(merged, measured.StandardError(), temperature_)});
+      const Estimate there = Mean("", merged.moments[i], temperature_);
+      curve.points.push_back({.at = places_.Position(i),
+                              .value = there.value,
+                              .standard_error = there.standard_error});
     }
     return curve;
   }

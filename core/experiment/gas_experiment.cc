@@ -8,11 +8,11 @@
 #include <utility>
 
 #include "core/experiment/pair_experiment.h"
+#include "core/experiment/sampled_estimate.h"
 #include "core/experiment/without_last_bits.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_shape.h"
 #include "core/gas/hit_rates.h"
-#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 namespace {
@@ -291,18 +291,23 @@ void GasExperiment::AddMeans(const GasMeter& meter, size_t first, BlockResult& r
   result.batch_means[first + 2].Add(2 * pistons, static_cast<double>(geometry_.pistons()));
 }
 
-std::optional<double> GasExperiment::Told(const BlockResult& merged, std::optional<double> error,
-                                          double scale) const {
-  if (!error || times_.share < 1) return std::nullopt;
-  return ToldError(static_cast<double>(merged.samples), *error * scale);
+Estimate GasExperiment::Scaled(Estimate measured, double scale) const {
+  measured.value *= scale;
+  if (times_.share < 1) measured.standard_error.reset();
+  if (measured.standard_error) *measured.standard_error *= scale;
+  return measured;
 }
 
 Estimate GasExperiment::Mean(const char* name, const BlockResult& merged, size_t index,
                              double scale) const {
-  const BatchMeans& measured = merged.batch_means[index];
-  return {.name = name,
-          .value = scale * measured.Ratio().value_or(0),
-          .standard_error = Told(merged, measured.StandardError(), scale)};
+  return Scaled(SampledRatio(name, merged.batch_means[index], static_cast<double>(merged.samples)),
+                scale);
+}
+
+Estimate GasExperiment::Mean(const char* name, const Moments& measured, double scale,
+                             double events_per_replica) const {
+  const double events = events_per_replica * static_cast<double>(measured.count);
+  return Scaled(SampledMean(name, measured, events), scale);
 }
 
 std::unique_ptr<BlockRun> GasExperiment::StartRun(BlockQueue& queue) const {

@@ -68,13 +68,15 @@ class GasExperiment : public PointExperiment {
   // (contacts times duration); the mean energy of a ball; twice the mean energy of a piston.
   void AddMeans(const GasMeter& meter, size_t first, BlockResult& result) const;
 
-  // These two scale a number measured at temperature 1. There is no error if there are too few
+  // These two scale numbers measured at temperature 1. There is no error if there are too few
   // replicas to estimate it, or if the replicas were shortened.
   Estimate Mean(const char* name, const BlockResult& merged, size_t index, double scale) const;
-  std::optional<double> Told(const BlockResult& merged, std::optional<double> error,
-                             double scale) const;
+  Estimate Mean(const char* name, const Moments& measured, double scale,
+                double events_per_replica = 1) const;
 
  private:
+  Estimate Scaled(Estimate measured, double scale) const;
+
   GasGeometry geometry_;
   GasTimes times_;
   double exchange_rate_;

@@ -21,7 +21,7 @@ Curve SurvivalCurve(const Histogram& hit_times) {
     curve.points.push_back(
         {.at = hit_times.Edge(bin),
          .value = share,
-         .standard_error = bin == 0 ? 0 : ToldError(both, std::sqrt(both) / samples),
+         .standard_error = bin == 0 ? 0 : ToldError(both, share, std::sqrt(both) / samples),
          .limit = std::exp(-kHitTimeMeans / kHitTimeBins * static_cast<double>(bin))});
     later -= static_cast<double>(hit_times.counts[bin]);
   }

@@ -28,6 +28,12 @@ double PerSample(double mean, double mean_at_rest, double round_trip) {
   return std::max(mean - mean_at_rest, 0.0) / round_trip;
 }
 
+// The share of the volume that one body reaches at rest, and more as it moves.
+double Reached(double at_rest, double volume, double time, double round_trip) {
+  const double share = at_rest / volume;
+  return share + (1 - share) * std::min(time / round_trip, 1.0);
+}
+
 }  // namespace
 
 double LongReturnsPerSample(const PairGeometry& geometry, double epsilon) {
@@ -37,6 +43,14 @@ double LongReturnsPerSample(const PairGeometry& geometry, double epsilon) {
   return std::min(
       PerSample(mean, ConditionalMeanFreeTime(geometry, 0), PistonsRoundTrip(geometry, epsilon)),
       PerSample(mean, ConditionalMeanFreeTime(geometry, 0.5), BallsRoundTrip(geometry, epsilon)));
+}
+
+// The round trip of a body at rest takes for ever.
+double ShareThatMeets(const PairGeometry& geometry, double epsilon, double time) {
+  const RestingVolumes at_rest = VolumesAtRest(geometry);
+  const double volume = Measures(geometry).volume;
+  return std::min(Reached(at_rest.piston, volume, time, PistonsRoundTrip(geometry, epsilon)),
+                  Reached(at_rest.ball, volume, time, BallsRoundTrip(geometry, epsilon)));
 }
 
 }  // namespace ballpiston

@@ -1,4 +1,5 @@
-// Whether the standard error of a mean return time can be estimated from the sample.
+// Whether the standard error of a mean return time can be estimated from the sample; and the same
+// for the relaxation of an energy.
 //
 // With a slow piston (epsilon -> 0) or a slow ball (epsilon -> 1/2) most returns are short, as if
 // the slow body rested. A few very long returns dominate the mean: the piston goes to its far wall
@@ -19,6 +20,13 @@ namespace ballpiston {
 // epsilon = 0: no number of samples is enough. Infinite at epsilon = 1/2, where the ball rests and
 // return times are bounded.
 double LongReturnsPerSample(const PairGeometry& geometry, double epsilon);
+
+// About the share of orbits, started with uniform positions at this energy, that meet within
+// `time`, some mean free times. While the slow body rests, only the share of the volume that can be
+// reached meets; the slow body reaches the rest in the time of its round trip. Almost 1 unless one
+// body is slow. It decides whether a sample contains enough orbits that meet, so a rough value is
+// enough.
+double ShareThatMeets(const PairGeometry& geometry, double epsilon, double time);
 
 }  // namespace ballpiston
 

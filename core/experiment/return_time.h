@@ -19,12 +19,16 @@ class ReturnTime {
   double exact_mean() const { return exact_mean_; }
 
   Estimate Mean(std::string name, const Moments& times) const;
-  // Empty if no error can be estimated; the scatter of the sample has no meaning then.
+  // Empty if the mean has no error; the scatter of the sample has no meaning then. Its own error
+  // needs more samples.
   std::optional<Estimate> CoefficientOfVariation(const Moments& times) const;
+  // Why the mean of a sample that is not small has no error.
+  std::optional<std::string> Remark(const Moments& times) const;
 
  private:
   double EventsIn(const Moments& times) const;
 
+  double epsilon_;
   double exact_mean_;
   double long_returns_per_sample_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/expected_limit_error.h"
@@ -47,6 +48,7 @@ std::unique_ptr<const PointExperiment> PilotExperiment(const PilotPlace& place) 
 
 Pilot PilotOf(const PointExperiment& experiment, const BlockResult& merged) {
   const Estimate time = experiment.FirstEstimate(merged);
+  if (!time.standard_error) return {.standard_error = std::numeric_limits<double>::infinity()};
   return {.difference = time.value / *time.limit - 1,
           .standard_error = *time.standard_error / std::fabs(*time.limit)};
 }

@@ -2,9 +2,9 @@
 // between the two distribution functions at the edges of the histogram's bins.
 //
 // For N samples of the uniform law, sqrt(N) D tends to the maximum of the absolute value of a
-// Brownian bridge, with the mean sqrt(pi/2) log 2. The maximum over only m + 1 points is smaller by
-// 0.5826/sqrt(m); the constant is -zeta(1/2)/sqrt(2 pi), as for random walks. Property, with a test
-// of its name:
+// Brownian bridge, with the mean sqrt(pi/2) log 2 and the variance pi^2/12 - pi/2 log^2 2. The
+// maximum over only m + 1 points is smaller by 0.5826/sqrt(m); the constant is -zeta(1/2)/sqrt(2
+// pi), as for random walks. Property, with a test of its name:
 //   1. NoiseFloorIsTheMeanDistanceOfUniformSamples.
 #ifndef BALLPISTON_CORE_STATISTICS_KOLMOGOROV_SMIRNOV_H_
 #define BALLPISTON_CORE_STATISTICS_KOLMOGOROV_SMIRNOV_H_
@@ -16,8 +16,9 @@ namespace ballpiston {
 struct KolmogorovSmirnov {
   double distance = 0;
   double noise_floor = 0;     // the mean of `distance` for samples of the uniform law
-  double standard_error = 0;  // of the measured distribution function at the largest difference,
-                              // for independent samples
+  double standard_error = 0;  // for independent samples: for equal laws the scatter of `distance`,
+                              // far from them that of the distribution function at the largest
+                              // difference
 };
 
 // The distance of the law measured by `histogram` from the uniform law over all of its bins.

@@ -46,6 +46,13 @@ std::optional<double> Moments::StandardError() const {
   return std::sqrt(*Variance() / static_cast<double>(count));
 }
 
+uint64_t Moments::EffectiveCount() const {
+  if (count < 2 || m2 <= 0) return count;
+  const double n = static_cast<double>(count);
+  const double excess = std::fmax(n * m4 / (m2 * m2) - 3, 0);
+  return static_cast<uint64_t>(std::lround(1 + 2 / (2 / (n - 1) + excess / n)));
+}
+
 std::optional<double> Moments::CoefficientOfVariation() const {
   if (count < 2 || mean == 0) return std::nullopt;
   return std::sqrt(*Variance()) / mean;

@@ -4,6 +4,7 @@
 // many samples cause no cancellation. Properties, each with a test of its name:
 //   1. MergeEqualsSinglePass: merging parts gives the moments of the whole, to rounding.
 //   2. MergeWithEmptyIsIdentity: bit for bit, on either side.
+//   3. EffectiveCountGivesIntervalsOfSkewedLaws.
 // Merging the same parts in the same order gives the same bits anywhere.
 #ifndef BALLPISTON_CORE_STATISTICS_MOMENTS_H_
 #define BALLPISTON_CORE_STATISTICS_MOMENTS_H_
@@ -27,6 +28,13 @@ struct Moments {
   std::optional<double> Variance() const;
   // The standard error of the mean. Requires two samples.
   std::optional<double> StandardError() const;
+  // How many samples of a normal law would give an error of the mean that is as uncertain as
+  // StandardError(). The relative variance of an estimated variance is 2/(count - 1) + k/count, k
+  // the excess kurtosis, and 2/f with f degrees of freedom (Satterthwaite); the result is f + 1,
+  // rounded. It is `count` for k <= 0, and about count/4 for an exponential law, where Student's t
+  // with `count` is too narrow: a skewed sample without large values has a small mean and a small
+  // error.
+  uint64_t EffectiveCount() const;
   // Standard deviation over mean. Requires two samples and a mean other than 0.
   std::optional<double> CoefficientOfVariation() const;
   // The standard error of CoefficientOfVariation, to first order in 1/count (delta method).

@@ -5,25 +5,40 @@
 // determine the mean. An error is given if there are at least kEventsForAnError independent events
 // of this kind. Its own relative error is then 1/sqrt(2 kEventsForAnError) = 10 %. The events are:
 //   mean over samples               the samples
+//   coefficient of variation        a twentieth of these (experiment/return_time.cc)
 //   mean return time                the expected number of long returns, where these are rare
-//   mean sigma                      N (1 - mean^2): some four times the samples of the rarer sign
+//   mean sigma                      N (1 - mean^2), with the exact mean in equilibrium: some four
+//                                   times the expected samples of the rarer sign
 //   mean free times in equilibrium  a tenth of the collisions (experiment/equilibrium.cc)
-//   correlation                     the orbits
-// A quantity that cannot fluctuate has the error 0.
+//   relaxation of an energy         from an epsilon the expected number of orbits that meet; else
+//   an
+//                                   eighth of the orbits (experiment/energy_relaxation.cc)
+//   a gas's current, by exchanges   a tenth of the replicas, or less
+//   (experiment/gas_equilibrium.cc) correlation                     the orbits
+// The number of events is an expected one, never a measured one: an error that is shown only if the
+// sample happens to contain many events is shown for samples that lie to one side. A quantity that
+// cannot fluctuate has the error 0.
 #ifndef BALLPISTON_CORE_STATISTICS_TOLD_ERROR_H_
 #define BALLPISTON_CORE_STATISTICS_TOLD_ERROR_H_
 
+#include <cmath>
 #include <optional>
 
 namespace ballpiston {
 
 inline constexpr double kEventsForAnError = 50;
 
+// The rounding of a mean, relative. A running mean over a block of 65,536 samples (Moments::Add)
+// ignores deviations that change it by less than half an ulp. If the samples differ by that little,
+// the mean is off by up to some 300 ulps. A smaller scatter is not the error of the mean.
+inline constexpr double kRoundingOfAMean = 3e-14;
+
 inline bool TellsItsError(double events) { return events >= kEventsForAnError; }
 
-// `error`, if this number of events is enough for an error.
-inline std::optional<double> ToldError(double events, std::optional<double> error) {
-  return TellsItsError(events) ? error : std::nullopt;
+// `error` of the mean `value`, at least its rounding, if this number of events is enough.
+inline std::optional<double> ToldError(double events, double value, std::optional<double> error) {
+  if (!error || !TellsItsError(events)) return std::nullopt;
+  return std::fmax(*error, kRoundingOfAMean * std::fabs(value));
 }
 
 }  // namespace ballpiston

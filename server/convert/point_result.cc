@@ -44,6 +44,7 @@ void Fill(const storage::Estimate& record, v1::Estimate& message) {
   if (record.has_model_error()) message.set_model_error(record.model_error());
   if (record.has_noise_floor()) message.set_noise_floor(record.noise_floor());
   if (record.has_limit()) message.set_limit(record.limit());
+  if (record.has_batches()) message.set_batches(static_cast<double>(record.batches()));
 }
 
 void Fill(const storage::Divergence& record, v1::KlDivergence& message) {

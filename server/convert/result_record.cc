@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
 #include "server/convert/deterministic_bytes.h"
 
 namespace ballpiston::server {
@@ -23,7 +24,10 @@ void AddEstimate(const Estimate& estimate, const Answer& answer, bool first,
   storage::Estimate* record = result.add_estimates();
   record->set_name(estimate.name);
   record->set_value(estimate.value);
-  if (Exists(estimate.standard_error)) record->set_standard_error(*estimate.standard_error);
+  if (Exists(estimate.standard_error)) {
+    record->set_standard_error(*estimate.standard_error);
+    if (estimate.batches > 0) record->set_batches(estimate.batches);
+  }
   if (Exists(estimate.exact)) record->set_exact(*estimate.exact);
   if (const auto z = estimate.ZScore(); Exists(z)) record->set_z_score(*z);
   if (Exists(estimate.noise_floor)) record->set_noise_floor(*estimate.noise_floor);
@@ -72,6 +76,17 @@ void SetHealth(const Health& health, storage::Result& result) {
   result.set_max_energy_error(health.max_energy_error);
 }
 
+// A remark stands for each estimate that has no value.
+void AddRemarks(const PointSummary& summary, storage::Result& result) {
+  result.mutable_remarks()->Assign(summary.remarks.begin(), summary.remarks.end());
+  for (const Estimate& estimate : summary.estimates) {
+    if (!std::isnan(estimate.value)) continue;
+    result.add_remarks(absl::StrCat(estimate.name, " has no value: nothing was measured in ",
+                                    summary.samples, " samples and ", summary.health.escapes,
+                                    " orbits that left the cell"));
+  }
+}
+
 storage::Result::Model RecordOf(Model model) {
   switch (model) {
     case Model::kAuto:
@@ -112,7 +127,7 @@ storage::Result ResultRecordOf(size_t index, const PointExperiment& experiment,
   }
   if (summary.kl_divergence) SetDivergence(*summary.kl_divergence, result);
   SetHealth(summary.health, result);
-  result.mutable_remarks()->Assign(summary.remarks.begin(), summary.remarks.end());
+  AddRemarks(summary, result);
   return result;
 }
 

@@ -3,7 +3,7 @@
     index, rho, delta, ...          (points,)  the parameters that are used; cells as str
     model, samples                  (points,)
     NAME, NAME_standard_error, NAME_exact, NAME_z_score, NAME_model_error, NAME_noise_floor,
-    NAME_limit                      (points,)  for each estimate; NaN where absent
+    NAME_limit, NAME_batches        (points,)  for each estimate; NaN where absent
     kl_divergence, kl_divergence_standard_error, _noise_floor, _noise_error, _cells
                                     (points,)  if there is a divergence
     health_escapes, health_max_energy_error

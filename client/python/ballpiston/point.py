@@ -29,6 +29,8 @@ class Estimate:
             without the statistical error.
         noise_floor: of a distance between two laws, its mean if the laws were equal.
         limit: what the limit delta -> 0 gives here.
+        batches: independent numbers behind the error: value +- t(batches - 1) standard_error, with
+            Student's t; None if the error does not come from a scatter.
     """
 
     name: str
@@ -39,12 +41,15 @@ class Estimate:
     model_error: float | None = None
     noise_floor: float | None = None
     limit: float | None = None
+    batches: float | None = None
 
     def __str__(self) -> str:
         return f"{self.name} {measured_text(self.value, self.standard_error)}"
 
 
-ESTIMATE_FIELDS = ("standard_error", "exact", "z_score", "model_error", "noise_floor", "limit")
+ESTIMATE_FIELDS = (
+    "standard_error", "exact", "z_score", "model_error", "noise_floor", "limit", "batches"
+)
 
 
 class Point:

@@ -176,7 +176,8 @@ TEST(EnergyRelaxation, WindowContainsNearlyAllOfTheLimitsIntegral) {
       BlockResult nothing_but_the_remainder;
       nothing_but_the_remainder.samples = 2;
       nothing_but_the_remainder.moments.resize(1 + kLags);
-      const Estimate remainder = relaxation.Estimates(nothing_but_the_remainder).front();
+      nothing_but_the_remainder.moments[0].Add(0);
+      const Estimate remainder = relaxation.Estimates(nothing_but_the_remainder, 1).front();
       EXPECT_NE(remainder.value, 0);
       EXPECT_LT(std::fabs(remainder.value / *remainder.limit), 0.01);
     }

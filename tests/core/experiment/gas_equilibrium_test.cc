@@ -87,7 +87,7 @@ TEST(GasEquilibrium, EveryModelGivesTheSameEstimates) {
 }
 
 // The last of the ratios by window is the ratio. By the jump process a ring of three cells has
-// -0.00165(3), so it is within 2e-4 and five errors of the limit.
+// -0.00165(3), so it is within 2e-4 and five errors of the limit. So few replicas show no error.
 TEST(GasEquilibrium, RatiosByWindowEndAtTheRatio) {
   for (const Model model : {Model::kBilliard, Model::kMarkov}) {
     const PointSummary summary = RunPoint(SpecAt(2, model));
@@ -96,8 +96,8 @@ TEST(GasEquilibrium, RatiosByWindowEndAtTheRatio) {
     EXPECT_EQ(summary.curves[0].points.back().value, ratio.value);
     EXPECT_EQ(ratio.limit, 1 + kChainCorrection.value);
     if (model == Model::kBilliard) continue;
-    EXPECT_LT(*ratio.standard_error, 1e-4);
-    EXPECT_LT(std::fabs(ratio.value - *ratio.limit), 5 * *ratio.standard_error + 2e-4);
+    EXPECT_FALSE(ratio.standard_error);
+    EXPECT_LT(std::fabs(ratio.value - *ratio.limit), 5 * 1e-4 + 2e-4);
   }
 }
 

@@ -197,9 +197,14 @@ TEST(MarkovProperty, CountsEveryCollisionOnce) {
       EXPECT_EQ(merged.histograms[0].Total(), summary.samples);
       EXPECT_EQ(summary.health.escapes, 0u);
       EXPECT_EQ(summary.estimates.front().name, "memory_correlation");
-      EXPECT_EQ(summary.estimates.front().value, point->FirstEstimate(merged).value);
+      // One exchange has no memory.
+      const bool has_memory = collisions > 1;
+      if (has_memory) {
+        EXPECT_EQ(summary.estimates.front().value, point->FirstEstimate(merged).value);
+      }
       for (const Estimate& estimate : summary.estimates) {
-        EXPECT_TRUE(std::isfinite(estimate.value)) << estimate.name;
+        const bool is_of_two = estimate.name.find("memory_correlation") != std::string::npos;
+        EXPECT_EQ(std::isfinite(estimate.value), has_memory || !is_of_two) << estimate.name;
         EXPECT_TRUE(estimate.standard_error || collisions < 1600) << estimate.name;
       }
     }

@@ -454,6 +454,19 @@ TEST(PointResult, ValuesThatDoNotExistAreLeftOut) {
   EXPECT_EQ(PointResultOf(3, *experiment, merged).estimates_size(), 0);
 }
 
+// All orbits left the cell.
+TEST(PointResult, RemarkStandsForAnEstimateWithoutAValue) {
+  const auto experiment = PointExperiment::Create(CheckSpec(OneFirstHit()).spec, 0);
+  BlockResult merged = experiment->EmptyResult();
+  merged.health.escapes = 2;
+  const v1::PointResult result = PointResultOf(0, *experiment, merged);
+  EXPECT_EQ(result.estimates_size(), 0);
+  EXPECT_THAT(
+      result.remarks(),
+      testing::Contains("mean_hit_time has no value: nothing was measured in 0 samples and 2 "
+                        "orbits that left the cell"));
+}
+
 // An answer with everything that a result can hold.
 class ToldExperiment : public PointExperiment {
  public:
@@ -466,9 +479,10 @@ class ToldExperiment : public PointExperiment {
   }
   PointSummary Summarize(const BlockResult&) const override {
     PointSummary summary;
-    summary.estimates = {{.name = "time", .value = -4, .standard_error = 0.5, .limit = 3},
-                         {.name = "distance", .value = 0.25, .noise_floor = 0.125},
-                         {.name = "odd", .value = 1, .limit = kNan, .noise_floor = kInfinity}};
+    summary.estimates = {
+        {.name = "time", .value = -4, .standard_error = 0.5, .batches = 64, .limit = 3},
+        {.name = "distance", .value = 0.25, .noise_floor = 0.125},
+        {.name = "odd", .value = 1, .limit = kNan, .noise_floor = kInfinity}};
     summary.curves = {{"decay", {{0, 1, 0.25, 1}, {2, 0.5, {}, {}}, {4, 0.25, kNan, kInfinity}}},
                       {"profile", {{0, 2}, {1.5, 1}}, CurveAxis::kPosition}};
     summary.remarks = {"the run was too short", "another sentence"};
@@ -480,6 +494,8 @@ TEST(PointResult, LimitNoiseFloorAndCurvesAreKept) {
   const v1::PointResult result = PointResultOf(0, ToldExperiment(FakeSpec(1, 1)), BlockResult());
   ASSERT_EQ(result.estimates_size(), 3);
   EXPECT_EQ(result.estimates(0).limit(), 3);
+  EXPECT_EQ(result.estimates(0).batches(), 64);
+  EXPECT_FALSE(result.estimates(1).has_batches());
   EXPECT_FALSE(result.estimates(0).has_noise_floor());
   EXPECT_EQ(result.estimates(1).noise_floor(), 0.125);
   EXPECT_FALSE(result.estimates(1).has_limit());
