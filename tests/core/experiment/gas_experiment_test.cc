@@ -141,7 +141,7 @@ TEST(GasExperiment, TheDrawOfABigGasAsksForPauses) {
   ListedBlocks queue(BlocksOf(1, 1), true);
   const std::unique_ptr<BlockRun> run = point->StartRun(queue);
   while (queue.results.empty()) run->Advance();
-  EXPECT_GE(queue.asked, 6);
+  EXPECT_GE(queue.asked, 11);  // 5 of them in the draw
 }
 
 TEST(GasExperiment, AReplicaDependsOnlyOnItsNumber) {
