@@ -247,11 +247,11 @@ ModelError MeasuredModelError(const EnsembleSpec& question, double effort) {
           std::fabs(ratio) * std::hypot(RelativeError(by_model), RelativeError(reference))};
 }
 
-std::vector<ModelError> ModelErrors(double effort) {
+std::vector<ModelError> ModelErrors() {
   std::vector<ModelError> errors;
   for (const EnsembleSpec& question : ModelErrorQuestions()) {
     std::cerr << "stability: " << ClaimOf(question) << ": " << PlaceOf(question) << std::endl;
-    errors.push_back(MeasuredModelError(question, effort));
+    errors.push_back(MeasuredModelError(question, 1));
   }
   return errors;
 }

@@ -43,7 +43,7 @@ std::vector<EnsembleSpec> ModelErrorQuestions();
 
 // `effort` is the fraction of the samples.
 ModelError MeasuredModelError(const EnsembleSpec& question, double effort);
-std::vector<ModelError> ModelErrors(double effort);
+std::vector<ModelError> ModelErrors();  // with all samples
 
 // A sentence for each stated error that fails, and for each claim with fewer than half of its
 // places tight.
