@@ -31,7 +31,8 @@ tables.
   --help       print this text
 
 Exit status: 0 success; 1 an engine failed although it promises zeros, or a stated model error does
-not hold, or no method showed one kind of failure, or the tables cannot be computed, or FILE cannot be written; 2 wrong arguments.
+not hold, or no method showed one kind of failure, or the tables cannot be computed, or FILE cannot
+be written; 2 wrong arguments.
 tools/stability/README.md explains the counted failures.
 )";
 
