@@ -57,11 +57,11 @@ bench: build/release/.$(PRESETS_PREFIX)benchmarks ## Build, then run the benchma
 	@cmake --build build/release --target benchmarks
 	@scripts/bench.sh build/release/bin
 
-stability: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods; write STABILITY_OUT, by default stability.md (10 minutes)
+stability: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods, measure the model errors; write STABILITY_OUT, by default stability.md (12 minutes)
 	@cmake --build build/release --target stability
 	@build/release/bin/stability --out '$(STABILITY_OUT)'
 
-stability-table: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods; write the tables into core/README.md (10 minutes)
+stability-table: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods; write the tables into core/README.md (12 minutes)
 	@cmake --build build/release --target stability
 	@build/release/bin/stability --into core/README.md
 

@@ -41,9 +41,8 @@ inline constexpr BilliardDomain kSingleDomain = {
     .min_rho = kMinRho + 1e-9, .max_rho = kMaxRho - 1e-3, .min_delta = 1e-3};
 
 // Upper bound of the relative error of times in these ranges. No row of the table above that lies
-// inside is beyond it by two standard errors. At the bound of delta it is at most four times the
-// measured error in three of four rows. Deeper in the tips it rests on the scaling: positions are
-// rounded by 6e-8, below 1e-4 of the least delta.
+// inside is beyond it by two standard errors, and none of tests/data/model_errors.csv. Deeper in
+// the tips it rests on the scaling: positions are rounded by 6e-8, below 1e-4 of the least delta.
 inline constexpr double kSinglePrecisionError = 5e-4;
 
 }  // namespace ballpiston

@@ -357,7 +357,7 @@ double ErrorOfConductivity(Model model, const PointParameters& point) {
 // gas of this shape in the limit. The values are bounds of measured differences
 // (docs/conductivity.md). In one column no correlation lowers the conductivity.
 double ErrorOfSize(const GasGeometry& geometry) {
-  constexpr double kOfColumns[] = {0.0018, 5e-4, 2e-4, 7e-5};
+  constexpr double kOfColumns[] = {0.00182, 5e-4, 2e-4, 7e-5};
   constexpr double kOfRows[] = {2.6e-4, 4e-5};
   constexpr double kOfMore = 1e-5;
   const auto in = [](std::span<const double> errors, int64_t count) {

@@ -7,7 +7,9 @@
 // A stated error fails if it is exceeded by more than two standard errors of the difference. A
 // place counts only if this standard error is at most half of the stated error. An error that is
 // stated much too large covers everything. So for each claim, an estimate by a model, the stated
-// error has to be at most four times the difference at half of the places that count.
+// error has to be at most four times the difference at half of the places that count. In single
+// precision no affordable run shows a difference at most places. There the larger one of difference
+// and two standard errors counts.
 #ifndef BALLPISTON_TOOLS_STABILITY_MODEL_ERRORS_H_
 #define BALLPISTON_TOOLS_STABILITY_MODEL_ERRORS_H_
 
@@ -41,7 +43,7 @@ std::vector<EnsembleSpec> ModelErrorQuestions();
 
 // `effort` is the fraction of the samples.
 ModelError MeasuredModelError(const EnsembleSpec& question, double effort);
-std::vector<ModelError> ModelErrors(double effort);
+std::vector<ModelError> ModelErrors();  // with all samples
 
 // A sentence for each stated error that fails, and for each claim with fewer than half of its
 // places tight.

@@ -18,19 +18,21 @@ constexpr char kHelp[] =
     R"(usage: stability [--quick] [--out FILE | --into FILE]
 
 Runs every engine in every precision, and naive methods, in situations in which methods fail.
-Counts the failures and prints tables in Markdown. This takes about ten minutes on one core. The
-starts are fixed: the same program gives the same tables.
+Counts the failures, measures the errors that models state, and prints tables in Markdown. This
+takes about twelve minutes on one core. The starts are fixed: the same program gives the same
+tables.
 
   --quick      run a thousandth of the starts (of slow methods sometimes none) and a tenth of the
-               reversals: seconds instead of minutes
+               reversals, and no model errors: seconds instead of minutes
   --out FILE   write the tables to FILE instead; an existing FILE is replaced
   --into FILE  write the tables into FILE instead, between the two lines
                  <!-- stability:begin -->
                  <!-- stability:end -->
   --help       print this text
 
-Exit status: 0 success; 1 an engine failed although it promises zeros, or no method showed one kind
-of failure, or the tables cannot be computed, or FILE cannot be written; 2 wrong arguments.
+Exit status: 0 success; 1 an engine failed although it promises zeros, or a stated model error does
+not hold, or no method showed one kind of failure, or the tables cannot be computed, or FILE cannot
+be written; 2 wrong arguments.
 tools/stability/README.md explains the counted failures.
 )";
 
