@@ -106,7 +106,9 @@ TEST(Crashes, AKillFromOutsideCountsForNothing) {
     server.KillHard();
   }
   server.Start();
-  EXPECT_EQ(OrThrow(server.NewClient().Get(names[0])).state(), v1::EnsembleJob::RUNNING);
+  AwaitThat([&] {
+    return OrThrow(server.NewClient().Get(names[0])).state() == v1::EnsembleJob::RUNNING;
+  });
   EXPECT_THAT(server.log(), Not(HasSubstr("died")));
 }
 
