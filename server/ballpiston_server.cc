@@ -141,7 +141,7 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
       watches_(std::min(kLongestLook, options_.watch.snapshot)),
       store_(std::move(store)),
       crashes_(std::make_shared<CrashRecord>(directory_.path())),
-      ladder_(*store_, options_.workers),
+      ladder_(*store_, options_.workers, OptionsOfScheduler(options_).memory_limit),
       factory_(options_.factory ? std::make_unique<FactoryOpener>(options_.factory) : nullptr),
       scheduler_(factory_ ? *factory_ : static_cast<PointOpener&>(ladder_), options_.workers,
                  OptionsOfScheduler(options_)),

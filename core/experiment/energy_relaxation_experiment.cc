@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,12 +12,12 @@
 #include "absl/strings/str_format.h"
 #include "core/arithmetic/number_text.h"
 #include "core/closed_form/mean_free_time.h"
-#include "core/closed_form/pair_measures.h"
 #include "core/ensemble/block_orbits.h"
 #include "core/ensemble/computed_answer.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/energy_relaxation.h"
 #include "core/experiment/expected_limit_error.h"
+#include "core/experiment/long_returns.h"
 #include "core/experiment/pair_experiment.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
@@ -270,21 +269,11 @@ std::vector<std::vector<double>> ProbabilitiesOfTheLimit(const PointParameters& 
   return EnergyRelaxation(GeometryOf(point), point).ProbabilitiesOfLimit();
 }
 
-// The share of the orbits from epsilon in which ball and piston meet in the first half of the
-// window. A slow piston or ball meets its partner if it starts within reach, or comes there in
-// time.
-double ShareThatMeets(const PointParameters& point) {
-  const double epsilon = point[kEpsilon];
+// In the first half of the window.
+double ShareThatMeetsEarly(const PointParameters& point) {
   const PairGeometry geometry = GeometryOf(point);
-  const PairMeasures measures = Measures(geometry);
-  const RestingVolumes reached = VolumesAtRest(geometry);
   const double time = kWindowTimes / 2 * MeanFreeTimesOf(geometry).ball_piston;
-  const double by_piston =
-      reached.piston / measures.volume + std::sqrt(2 * epsilon) * time / (2 * geometry.stroke());
-  const double by_ball =
-      reached.ball / measures.volume +
-      std::sqrt(1 - 2 * epsilon) * time * measures.eta / (std::numbers::pi * measures.cell_area);
-  return std::min({by_piston, by_ball, 1.0});
+  return ShareThatMeets(geometry, point[kEpsilon], time);
 }
 
 // An orbit without a collision waits in its lane until the lanes look at the time limit, which they
@@ -293,7 +282,7 @@ double DelayOfOrbitsThatNeverMeet(const PointParameters& point) {
   if (point[kEpsilon] == 0.5) return 0;
   constexpr double kBursts = 512;
   const double flights = kBursts * std::clamp(1.7 / point[kDelta], 4.0, 12.0);
-  return (1 - ShareThatMeets(point)) * flights;
+  return (1 - ShareThatMeetsEarly(point)) * flights;
 }
 
 // The measurements of a step of the energy take most of a jump's time.
@@ -322,7 +311,7 @@ double ErrorOfDecay(Model model, const PointParameters& point) {
   const double decay = relaxation.EstimatesOfLimit().back().value;
   const double error = std::fabs(kScatter * 4 * relaxation.unit() / decay);
   if (model == Model::kMarkov) return error;
-  const double meet = ShareThatMeets(point);
+  const double meet = ShareThatMeetsEarly(point);
   return std::min(error, std::sqrt(meet / (1 - meet)));
 }
 

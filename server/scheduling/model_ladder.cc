@@ -1,7 +1,5 @@
 #include "server/scheduling/model_ladder.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -68,7 +66,8 @@ double SecondsToStore(const std::string& path, PointRow row) {
 
 }  // namespace
 
-ModelLadder::ModelLadder(Store& store, int workers) : store_(store), workers_(workers) {}
+ModelLadder::ModelLadder(Store& store, int workers, double memory)
+    : store_(store), workers_(workers), memory_(memory) {}
 
 const Machine& ModelLadder::machine() {
   std::call_once(measured_, [this] { Measure(); });
@@ -93,11 +92,7 @@ void ModelLadder::Measure() {
   machine_.rates = rates;
 }
 
-Machine ModelLadder::Unmeasured() const {
-  const double memory =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-  return {MachineRates(), workers_, memory};
-}
+Machine ModelLadder::Unmeasured() const { return {MachineRates(), workers_, memory_}; }
 
 std::vector<FieldViolation> ModelLadder::ViolationsHere(const EnsembleSpec& spec) {
   return MachineViolations(spec, spec.target.budget_seconds ? machine() : Unmeasured());

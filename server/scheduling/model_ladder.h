@@ -9,6 +9,7 @@
 #define BALLPISTON_SERVER_SCHEDULING_MODEL_LADDER_H_
 
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -24,8 +25,9 @@ namespace ballpiston::server {
 
 class ModelLadder : public PointOpener {
  public:
-  // The store must outlive the ladder.
-  ModelLadder(Store& store, int workers);
+  // The store must outlive the ladder. A question that needs more bytes than `memory` is a
+  // violation.
+  ModelLadder(Store& store, int workers, double memory = std::numeric_limits<double>::infinity());
 
   // The core's experiment, by the model that was asked for or chosen.
   OpenedPoint Open(const EnsembleSpec& spec, size_t index) override;
@@ -49,6 +51,7 @@ class ModelLadder : public PointOpener {
 
   Store& store_;
   const int workers_;
+  const double memory_;
   std::once_flag measured_;
   Machine machine_;
 

@@ -48,7 +48,10 @@ class FakeExperiment : public PointExperiment {
   }
 
   Estimate FirstEstimate(const BlockResult& merged) const override {
-    return {"mean", merged.moments[0].mean, merged.moments[0].StandardError(), 0.5};
+    return {.name = "mean",
+            .value = merged.moments[0].mean,
+            .standard_error = merged.moments[0].StandardError(),
+            .exact = 0.5};
   }
 
   PointSummary Summarize(const BlockResult& merged) const override {

@@ -4,6 +4,7 @@
 
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/gas_experiment.h"
+#include "core/gas/canonical_gas.h"
 #include "core/gas/gas_meter.h"
 #include "server/processor_time.h"
 #include "tools/flows/fixed_step_gas.h"
@@ -68,7 +69,7 @@ void MeasureByFixedSteps(const GasExperiment& experiment, double time_step, uint
                          BlockResult& result) {
   const GasRandom random = experiment.RandomOf(sample);
   CounterRandom of_start = random.OfStart();
-  const GasState start = experiment.Draw(of_start);
+  const GasState start = DrawGas(experiment.geometry(), experiment.TemperaturesAtStart(), of_start);
   GasMeter meter(experiment.geometry(), start);
   FixedStepGas gas(experiment.geometry(), start, experiment.WallsOf(random), time_step);
   AdvanceTo(experiment.times().relax, gas, meter);

@@ -143,7 +143,7 @@ TEST(EnsembleSpec, TargetsInTheWrongUnitAreRejected) {
 // The replicas of this gas are cut short, so that a replica has hardly any collisions.
 EnsembleSpec RareCollisions(int64_t collisions) {
   return SpecOf(&kGasConduction,
-                {{kRho, 0.53}, {kDelta, 1e-13}, {kCells, 2}, {kHot, 1.5}, {kCold, 0.5}},
+                {{kRho, 0.53}, {kDelta, 1e-10}, {kCells, 2}, {kHot, 1.5}, {kCold, 0.5}},
                 {.collisions = collisions}, Model::kBilliard);
 }
 

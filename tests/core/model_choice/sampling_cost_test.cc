@@ -25,7 +25,7 @@ struct Measured {
 Measured ErrorMeasured(const EnsembleSpec& spec) {
   const PointSummary summary = RunPoint(spec);
   const Estimate& estimate = summary.estimates.front();
-  return {*estimate.standard_error / std::fabs(estimate.value),
+  return {estimate.standard_error.value() / std::fabs(estimate.value),
           static_cast<double>(summary.samples)};
 }
 
@@ -83,8 +83,9 @@ TEST(SamplingCost, ErrorOfRelaxationOfASlowBodyIsWithinAFactorOfFour) {
     for (const double share : {0.999, 0.1}) {
       for (const double epsilon : {0.0, 1e-4, 0.4999, 0.5}) {
         const double delta = share * PairDeltaBound(rho);
-        // At a small delta nearly every orbit meets nothing.
-        if (epsilon == 0.5 && share < 0.5 && rho < 0.6) continue;
+        // At a small delta too few orbits meet a body at rest to give an error.
+        const bool rests = epsilon == 0.5 || (epsilon == 0 && rho > 0.6);
+        if (rests && share < 0.5) continue;
         EnsembleSpec spec = Relaxation(delta, {.samples = 2048});
         spec.model = Model::kBilliard;
         spec.grid[kRho] = {rho};
