@@ -22,6 +22,8 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "core/arithmetic/number_text.h"
 #include "core/billiard/orbits.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/block_orbits.h"
@@ -32,6 +34,7 @@
 #include "core/experiment/without_last_bits.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
+#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 namespace {
@@ -190,9 +193,16 @@ class MarkovPropertyExperiment : public PointExperiment {
   }
 
   PointSummary Summarize(const BlockResult& merged) const override {
-    return {.samples = merged.samples,
-            .estimates = MarkovPropertyEstimates(merged, ExactCorrelation()),
-            .health = merged.health};
+    PointSummary summary = {.samples = merged.samples,
+                            .estimates = MarkovPropertyEstimates(merged, ExactCorrelation()),
+                            .health = merged.health};
+    if (!summary.estimates.front().standard_error) {
+      summary.remarks.push_back(
+          absl::StrFormat("the correlations have no standard errors: these need %.0f orbits of %d "
+                          "collisions",
+                          kEventsForAnError, kExchangesPerOrbit));
+    }
+    return summary;
   }
 
  private:
@@ -219,7 +229,8 @@ double ErrorOfWhatTendsToZero(Model, const PointParameters&) {
 
 void CheckToleranceOfWhatTendsToZero(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
   found.push_back({"target.tolerance",
-                   absl::StrCat("is relative, but the first estimate of ", spec.experiment->name,
+                   absl::StrCat("is ", NumberText(*spec.target.tolerance),
+                                " and relative, but the first estimate of ", spec.experiment->name,
                                 " tends to 0; permitted: collisions, budget")});
 }
 

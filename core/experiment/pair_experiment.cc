@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 
@@ -23,13 +24,21 @@ bool HasFiniteTimes(double rho, double delta) {
   return measures.area_ball_piston >= std::numeric_limits<double>::min();
 }
 
+// For small deltas |dG_bp| is sqrt2 lambda delta^2. The factor covers the rounding to two digits.
+double SmallestDelta(double rho) {
+  const double lambda = std::sqrt(4 * rho * rho - 1);
+  return 1.1 * std::sqrt(std::numeric_limits<double>::min() / (std::numbers::sqrt2 * lambda));
+}
+
 std::optional<std::string> WrongDelta(double smallest, double largest, double delta,
                                       DeltaValidation validate) {
   const absl::Status status = validate(largest, delta);
   if (!status.ok()) return std::string(status.message());
   if (HasFiniteTimes(smallest, delta)) return std::nullopt;
-  return absl::StrCat("delta is ", NumberText(delta),
-                      ", too small: the mean free time leaves the range of double");
+  return absl::StrFormat(
+      "delta is %s, too small: the mean free time leaves the range of double; permitted at rho = "
+      "%s: delta >= %.2g",
+      NumberText(delta), NumberText(smallest), SmallestDelta(smallest));
 }
 
 // The smallest and the largest valid rho.

@@ -26,8 +26,6 @@
 #include <complex>
 #include <cstddef>
 #include <functional>
-#include <map>
-#include <mutex>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -168,20 +166,26 @@ class Interpolated {
   std::array<double, kPoints> points_, values_;
 };
 
-// The transfer matrix takes milliseconds, and a plan has thousands of values of z. `longer` is
-// kWidest for infinitely many columns.
+// The transfer matrix takes milliseconds, and a plan has thousands of values of z. So each lattice
+// is interpolated, from its first use on. kWidest columns stand for infinitely many.
+template <size_t kIndex>
+double FactorOfLatticeAt(double z) {
+  constexpr int kShorter = kIndex / kWidest + 1, kLonger = kIndex % kWidest + 1;
+  static const Interpolated factor([](double at) {
+    return kLonger == kWidest ? FactorOfTube(kShorter, at) : FactorOfTorus(kLonger, kShorter, at);
+  });
+  return factor.At(z);
+}
+
+template <size_t... kIndex>
+constexpr auto FactorsOfLattices(std::index_sequence<kIndex...>) {
+  return std::array{&FactorOfLatticeAt<kIndex>...};
+}
+
+// 1 <= shorter, longer <= kWidest
 double FactorOfLattice(int shorter, int longer, double z) {
-  static std::mutex mutex;
-  static std::map<std::pair<int, int>, Interpolated> known;
-  const std::scoped_lock lock(mutex);
-  auto found = known.find({shorter, longer});
-  if (found == known.end()) {
-    const auto exact = [=](double at) {
-      return longer == kWidest ? FactorOfTube(shorter, at) : FactorOfTorus(longer, shorter, at);
-    };
-    found = known.emplace(std::pair(shorter, longer), Interpolated(exact)).first;
-  }
-  return found->second.At(z);
+  constexpr auto kFactors = FactorsOfLattices(std::make_index_sequence<kWidest * kWidest>());
+  return kFactors[static_cast<size_t>((shorter - 1) * kWidest + longer - 1)](z);
 }
 
 struct Crowding {

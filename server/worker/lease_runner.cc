@@ -7,7 +7,6 @@
 
 #include "core/ensemble/block_run.h"
 #include "core/ensemble/point_fold.h"
-#include "server/observability/failpoint.h"
 #include "server/processor_time.h"
 
 namespace ballpiston::server {
@@ -74,7 +73,6 @@ bool LeaseRun::Run() {
 }
 
 void LeaseRun::Compute(uint64_t first, uint64_t end) {
-  CrashForSeed(lease_.spec->seed);
   const bool is_start = first == lease_.start.chunk;
   chunks_.emplace(lease_.experiment->plan(), is_start ? lease_.start : PartialChunk{first}, end);
   const std::unique_ptr<BlockRun> run = lease_.experiment->StartRun(*this);

@@ -9,6 +9,7 @@
 
 #include "absl/functional/function_ref.h"
 #include "absl/strings/str_cat.h"
+#include "server/observability/failpoint.h"
 #include "server/worker/chunk_file.h"
 #include "server/worker/crash_mark.h"
 #include "server/worker/lease_runner.h"
@@ -30,7 +31,7 @@ class TaskRun : private ChunkReceiver {
   void TakeChunks(const LeaseChunks& chunks);
 
   // ---- new files ----
-  void LeaseBegins(size_t lease) override { SetCrashMark(options_.folder, task_.task, lease); }
+  void LeaseBegins(size_t lease) override;
   void ChunkDone(size_t lease, ChunkResult chunk) override;
   void Worked(size_t lease, double seconds) override;
   bool HasNewChunks() const;
@@ -103,6 +104,11 @@ void TaskRun::TakeChunks(const LeaseChunks& chunks) {
   }
   std::vector<ChunkResult>& known = work_[chunks.lease].known;
   known.insert(known.end(), chunks.chunks.begin(), chunks.chunks.end());
+}
+
+void TaskRun::LeaseBegins(size_t lease) {
+  SetCrashMark(options_.folder, task_.task, lease);
+  CrashForSeed(work_[lease].lease.spec->seed);
 }
 
 void TaskRun::ChunkDone(size_t lease, ChunkResult chunk) {

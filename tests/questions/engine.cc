@@ -69,8 +69,16 @@ class Asking {
     if (checked.violations.empty() && !question_.defect.empty()) {
       Add({{kRefusalCheck, "is not refused, although " + question_.defect}});
     }
-    report_.outcome = checked.violations.empty() ? "" : "refused";
-    return !checked.violations.empty();
+    if (!checked.violations.empty()) {
+      report_.outcome = "refused";
+      return true;
+    }
+    std::vector<FieldViolation> here = MachineViolations(spec_, SomeMachine());
+    if (here.empty()) return false;
+    for (FieldViolation& violation : here) violation.field.insert(0, "spec.");
+    Add(CheckRefusal(question_.spec, here));
+    report_.outcome = "refused here";
+    return true;
   }
 
   // The planned processor time.

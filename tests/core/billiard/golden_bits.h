@@ -50,12 +50,12 @@ inline const std::map<std::string_view, uint64_t> kGoldenBits = {
     {"markov, gas-conduction of 2x2 cells", 0x2cd0d4d4243669f5},
     {"reference, gas-equilibrium of 3 cells", 0x37ef8064bf531e90},
     {"reference, gas-equilibrium of 2x2 cells", 0xf5e5094fa6431022},
-    {"reference, gas-conduction of 3 cells", 0x478e967702b54e29},
-    {"reference, gas-conduction of 2x2 cells", 0x5a661515230f4fff},
+    {"reference, gas-conduction of 3 cells", 0xa711d4780cd26bbd},
+    {"reference, gas-conduction of 2x2 cells", 0xf9f0fe922f776dc3},
     {"lanes, gas-equilibrium of 3 cells", 0x143762689baea53e},
     {"lanes, gas-equilibrium of 2x2 cells", 0x19b9d9d354c168bf},
-    {"lanes, gas-conduction of 3 cells", 0x433401b0bb35283d},
-    {"lanes, gas-conduction of 2x2 cells", 0x875a5ac3a2313161},
+    {"lanes, gas-conduction of 3 cells", 0x14d8f3f82799b675},
+    {"lanes, gas-conduction of 2x2 cells", 0x4047c7b2fba4a374},
 };
 
 }  // namespace ballpiston
