@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -18,16 +17,18 @@
 namespace ballpiston {
 namespace {
 
+// |dG_bp| of the smallest delta that is permitted. The mean free time is of order 1/|dG_bp|, and
+// errors need its fourth power.
+constexpr double kSmallestArea = 1e-70;
+
 bool HasFiniteTimes(double rho, double delta) {
-  const PairMeasures measures = Measures(PairGeometry::Create(rho, delta).value());
-  // A denormal number is also too small, because it has lost digits.
-  return measures.area_ball_piston >= std::numeric_limits<double>::min();
+  return Measures(PairGeometry::Create(rho, delta).value()).area_ball_piston >= kSmallestArea;
 }
 
 // For small deltas |dG_bp| is sqrt2 lambda delta^2. The factor covers the rounding to two digits.
 double SmallestDelta(double rho) {
   const double lambda = std::sqrt(4 * rho * rho - 1);
-  return 1.1 * std::sqrt(std::numeric_limits<double>::min() / (std::numbers::sqrt2 * lambda));
+  return 1.1 * std::sqrt(kSmallestArea / (std::numbers::sqrt2 * lambda));
 }
 
 std::optional<std::string> WrongDelta(double smallest, double largest, double delta,
@@ -36,7 +37,8 @@ std::optional<std::string> WrongDelta(double smallest, double largest, double de
   if (!status.ok()) return std::string(status.message());
   if (HasFiniteTimes(smallest, delta)) return std::nullopt;
   return absl::StrFormat(
-      "delta is %s, too small: the mean free time leaves the range of double; permitted at rho = "
+      "delta is %s, too small: powers of the mean free time leave the range of double; permitted "
+      "at rho = "
       "%s: delta >= %.2g",
       NumberText(delta), NumberText(smallest), SmallestDelta(smallest));
 }

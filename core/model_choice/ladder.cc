@@ -471,8 +471,11 @@ std::string ParametersText(const PointParameters& point) {
   return text;
 }
 
-FieldViolation TooLong(const Target& target, const PointParameters& point, double seconds) {
-  std::string field = "target", given = absl::StrCat("is ", kDefaultSamples, " by default");
+FieldViolation TooLong(const EnsembleSpec& spec, const PointParameters& point, double seconds) {
+  const Target& target = spec.target;
+  const bool counts_collisions = spec.experiment->unit == TargetUnit::kCollisions;
+  std::string field = counts_collisions ? "target.collisions" : "target.samples";
+  std::string given = absl::StrCat("is ", kDefaultSamples, " by default");
   if (target.samples) field = "target.samples", given = absl::StrCat("is ", *target.samples);
   if (target.collisions) {
     field = "target.collisions", given = absl::StrCat("is ", *target.collisions);
@@ -495,7 +498,7 @@ std::vector<FieldViolation> TimeViolations(const EnsembleSpec& spec) {
     const Model model = spec.target.tolerance ? ExpectedModel(spec, point) : Sampled(spec.model);
     if (!TakesSamples(model)) continue;
     const double seconds = NominalSeconds(OnePointSpec(spec, point, model), point);
-    if (!(seconds <= kMostSeconds)) return {TooLong(spec.target, point, seconds)};
+    if (!(seconds <= kMostSeconds)) return {TooLong(spec, point, seconds)};
   }
   return {};
 }

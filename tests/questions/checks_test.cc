@@ -76,7 +76,7 @@ TEST(Checks, EveryDefectOfAnAnswerIsFound) {
 }
 
 TEST(Checks, ASummaryWithoutANumberIsFound) {
-  PointSummary summary;
+  PointSummary summary = {.samples = 64};
   summary.estimates = {
       {.name = "mean_hit_time", .value = std::numeric_limits<double>::quiet_NaN()}};
   EXPECT_THAT(CheckFinite(summary), Breaks(kFiniteCheck));

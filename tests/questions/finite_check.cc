@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "core/statistics/told_error.h"
 
 namespace ballpiston::questions {
 namespace {
@@ -77,7 +78,12 @@ Findings CheckFinite(const Message& message) {
 
 Findings CheckFinite(const PointSummary& summary) {
   Findings findings;
-  for (const Estimate& estimate : summary.estimates) CheckEstimate(estimate, findings);
+  for (const Estimate& estimate : summary.estimates) {
+    // A small sample may contain nothing that determines the value.
+    const bool is_small = !TellsItsError(static_cast<double>(summary.samples));
+    if (is_small && std::isnan(estimate.value)) continue;
+    CheckEstimate(estimate, findings);
+  }
   for (const Curve& curve : summary.curves) CheckCurve(curve, findings);
   if (summary.kl_divergence) CheckDivergence(*summary.kl_divergence, findings);
   for (const NamedHistogram& named : summary.histograms) {

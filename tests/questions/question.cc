@@ -46,9 +46,7 @@ void AddTarget(const v1::Target& target, Words& words) {
     words.push_back(absl::StrCat("--tolerance=", client::ExactText(target.tolerance())));
   }
   if (target.has_budget()) {
-    const double seconds =
-        static_cast<double>(target.budget().seconds()) + 1e-9 * target.budget().nanos();
-    words.push_back(absl::StrCat("--budget=", client::ExactText(seconds)));
+    words.push_back(absl::StrCat("--budget=", client::ExactText(BudgetSeconds(target))));
   }
   if (!target.estimate().empty()) words.push_back(absl::StrCat("--estimate=", target.estimate()));
 }
@@ -73,6 +71,11 @@ bool Ask(const Words& words, const v1::EnsembleSpec& spec) {
 }
 
 }  // namespace
+
+double BudgetSeconds(const v1::Target& target) {
+  constexpr int64_t kNanos = 1'000'000'000;
+  return static_cast<double>(target.budget().seconds() * kNanos + target.budget().nanos()) / kNanos;
+}
 
 std::string Command(const v1::EnsembleSpec& spec) {
   const Words words = WordsOf(spec);

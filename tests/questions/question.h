@@ -15,6 +15,9 @@ struct Question {
   std::string defect = {};
 };
 
+// The double next to the budget.
+double BudgetSeconds(const v1::Target& target);
+
 // `ballpiston run ...`, for a shell. It asks exactly this specification. The specification is given
 // in JSON if the flags cannot express it.
 std::string Command(const v1::EnsembleSpec& spec);

@@ -15,6 +15,7 @@
 #include "core/arithmetic/number_text.h"
 #include "core/ensemble/experiment_kind.h"
 #include "server/convert/spec.h"
+#include "tests/questions/question.h"
 
 namespace ballpiston::questions {
 namespace {
@@ -59,14 +60,13 @@ Texts TextsOfGridField(const v1::Grid& grid, absl::string_view path) {
 }
 
 Texts TextsOfTarget(const v1::Target& target, absl::string_view name) {
-  if (name == "samples") return {absl::StrCat(target.samples()), "counts collisions"};
-  if (name == "collisions") return {absl::StrCat(target.collisions()), "counts samples"};
+  constexpr char kDefault[] = "by default";
+  if (name == "samples") return {absl::StrCat(target.samples()), "counts collisions", kDefault};
+  if (name == "collisions") return {absl::StrCat(target.collisions()), "counts samples", kDefault};
   if (name == "tolerance") return {NumberText(target.tolerance())};
   if (name == "estimate") return {absl::CEscape(target.estimate())};
   if (name != "budget") return {};
-  const double seconds =
-      static_cast<double>(target.budget().seconds()) + 1e-9 * target.budget().nanos();
-  return {NumberText(seconds), "is set together"};
+  return {NumberText(BudgetSeconds(target)), "is set together"};
 }
 
 // How a description may show the value of the field; empty if there is no such field.

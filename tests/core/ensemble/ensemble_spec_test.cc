@@ -181,14 +181,14 @@ TEST(EnsembleSpec, TheTemperatureOfAGasIsOneByDefault) {
 
 TEST(EnsembleSpec, DeltaWithTimesOutsideTheRangeOfDoubleIsRejected) {
   EnsembleSpec spec = ValidFirstHit();
-  spec.grid[kDelta] = {0.1, 1e-160, std::numeric_limits<double>::denorm_min()};
-  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.delta[1]", "too small"),
+  spec.grid[kDelta] = {0.1, 1e-36, std::numeric_limits<double>::denorm_min()};
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.delta[1]", "is 1e-36, too small"),
                                             Names("grid.delta[2]", "too small")));
   // The smallest radius decides.
   spec.grid[kRho] = {0.6, std::nextafter(0.5, 1)};
-  spec.grid[kDelta] = {1e-151};
+  spec.grid[kDelta] = {1e-33};
   EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.delta[0]", "too small")));
-  spec = {.experiment = &kEquilibrium, .grid = {{kRho, {0.6}}, {kDelta, {1e-151}}}};
+  spec = {.experiment = &kEquilibrium, .grid = {{kRho, {0.6}}, {kDelta, {1e-33}}}};
   EXPECT_THAT(Violations(spec), testing::IsEmpty());
 }
 
