@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/statistics/told_error.h"
+
 namespace ballpiston {
 
 namespace {
@@ -11,6 +13,10 @@ bool IsOneOf(std::span<const Model> models, Model model) {
 }
 
 }  // namespace
+
+double AimedEstimate::SamplesForAnError(Model model, const PointParameters& point) const {
+  return kEventsForAnError / (events == nullptr ? 1 : events(model, point));
+}
 
 bool AimedEstimate::IsAnsweredBy(Model model) const { return IsOneOf(models, model); }
 

@@ -44,6 +44,9 @@ struct AimedEstimate {
   // The relative standard error of one sample by a model that takes samples. The error of n samples
   // is 1/sqrt(n) times that of one; it is infinite if no number of samples is enough.
   double (*error)(Model model, const PointParameters& point);
+  // The expected number of a sample's events, of which an error needs kEventsForAnError
+  // (statistics/told_error.h). Null: 1.
+  double (*events)(Model model, const PointParameters& point) = nullptr;
   const LimitError* limit_error = nullptr;  // null: no bound is known
   // Names of estimates that are this one in other units, so that they have its relative errors.
   std::span<const absl::string_view> multiples = {};
@@ -51,6 +54,8 @@ struct AimedEstimate {
   // Besides AUTO, which answers everything.
   bool IsAnsweredBy(Model model) const;
   bool HasClosedForm() const { return IsAnsweredBy(Model::kClosedForm); }
+  // The fewest samples that have an error; infinite if no number of samples is enough.
+  double SamplesForAnError(Model model, const PointParameters& point) const;
 };
 
 struct ExperimentKind {

@@ -37,8 +37,10 @@ std::optional<double> Answer::ModelErrorOf(std::string_view name, bool is_first)
 }
 
 double SamplesFor(double tolerance, const EnsembleSpec& spec, const PointParameters& point) {
-  const double ratio = AimOf(spec).error(Sampled(spec.model), point) / tolerance;
-  return ratio * ratio;
+  const AimedEstimate& aim = AimOf(spec);
+  const Model model = Sampled(spec.model);
+  const double ratio = aim.error(model, point) / tolerance;
+  return std::max(ratio * ratio, aim.SamplesForAnError(model, point));
 }
 
 uint64_t SamplesAskedFor(const EnsembleSpec& spec, const PointParameters& point) {

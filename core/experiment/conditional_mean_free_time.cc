@@ -96,8 +96,10 @@ constexpr ParameterUse kParametersOfReturns[] = {{&kRho}, {&kDelta}, {&kEpsilon}
 constexpr Model kModelsOfReturns[] = {Model::kClosedForm, Model::kBilliard,
                                       Model::kBilliardReference};
 
-constexpr AimedEstimate kAimsOfReturns[] = {
-    {.name = "mean_free_time_conditional", .models = kModelsOfReturns, .error = ErrorOfAReturn}};
+constexpr AimedEstimate kAimsOfReturns[] = {{.name = "mean_free_time_conditional",
+                                             .models = kModelsOfReturns,
+                                             .error = ErrorOfAReturn,
+                                             .events = EventsOfAReturn}};
 
 }  // namespace
 

@@ -182,6 +182,11 @@ PointSummary BySpectrum(const EnergyRelaxation& relaxation) {
   return summary;
 }
 
+// The events of an orbit for its error. Each walk of the jump process counts.
+double EventsOf(Model model, const EnergyRelaxation& relaxation) {
+  return model == Model::kMarkov ? 1 : relaxation.events_per_orbit();
+}
+
 // By billiard, billiard_reference or markov.
 class EnergyRelaxationExperiment : public PointExperiment {
  public:
@@ -219,10 +224,8 @@ class EnergyRelaxationExperiment : public PointExperiment {
  private:
   bool IsLimit() const { return answer().model == Model::kMarkov; }
 
-  // Each walk of the jump process counts.
   double EventsIn(const BlockResult& merged) const {
-    const double each = IsLimit() ? 1 : relaxation_.events_per_orbit();
-    return static_cast<double>(merged.samples) * each;
+    return static_cast<double>(merged.samples) * EventsOf(answer().model, relaxation_);
   }
 
   // Whether there are no errors, although the sample is not small.
@@ -320,6 +323,10 @@ double ErrorOfAnOrbit(Model model, const PointParameters& point) {
   return point.Find(kEpsilon) ? ErrorOfDecay(model, point) : 1.25;
 }
 
+double EventsOfAnOrbit(Model model, const PointParameters& point) {
+  return EventsOf(model, EnergyRelaxation(GeometryOf(point), point));
+}
+
 // Finds a tolerance at energies where the estimate passes through 0, because a relative error has
 // no meaning there.
 void CheckToleranceOfDecay(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
@@ -354,6 +361,7 @@ constexpr absl::string_view kMultiplesOfTheTime[] = {"decay_integral"};
 constexpr AimedEstimate kAimsOfRelaxation[] = {{.name = "relaxation_time",
                                                 .models = kModelsOfRelaxation,
                                                 .error = ErrorOfAnOrbit,
+                                                .events = EventsOfAnOrbit,
                                                 .limit_error = &kLimitErrorOfRelaxation,
                                                 .multiples = kMultiplesOfTheTime}};
 

@@ -164,13 +164,15 @@ SampleWork WorkInEquilibrium(Model, const PointParameters& point) {
 }
 
 double ErrorInEquilibrium(Model, const PointParameters&) { return 1.05; }
+double EventsInEquilibrium(Model, const PointParameters&) { return kEventsPerCollision; }
 
 constexpr Model kModelsOfEquilibrium[] = {Model::kClosedForm, Model::kBilliard,
                                           Model::kBilliardReference};
 
 constexpr AimedEstimate kAimsOfEquilibrium[] = {{.name = "mean_free_time_ball_piston",
                                                  .models = kModelsOfEquilibrium,
-                                                 .error = ErrorInEquilibrium}};
+                                                 .error = ErrorInEquilibrium,
+                                                 .events = EventsInEquilibrium}};
 
 }  // namespace
 

@@ -174,8 +174,10 @@ std::unique_ptr<PointExperiment> CreateFirstHit(const EnsembleSpec& spec,
 
 constexpr ParameterUse kParametersOfFirstHit[] = {{&kRho}, {&kDelta}, {&kEpsilon}, {&kExponent}};
 
-constexpr AimedEstimate kAimsOfFirstHit[] = {
-    {.name = "mean_hit_time", .models = kBilliards, .error = ErrorOfAReturn}};
+constexpr AimedEstimate kAimsOfFirstHit[] = {{.name = "mean_hit_time",
+                                              .models = kBilliards,
+                                              .error = ErrorOfAReturn,
+                                              .events = EventsOfAReturn}};
 
 }  // namespace
 

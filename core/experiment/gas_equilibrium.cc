@@ -90,8 +90,8 @@ std::array<std::vector<double>, 2> SpeedLaws() {
 // Few replicas dominate what the jump process measures, those with much energy in few bodies: the
 // skewness over replicas is 15 with three columns, 3 with 32, and above 100 with two. One column
 // has no current.
-double EventsOfCurrents(GasEngine engine, const GasShape& shape) {
-  if (engine != GasEngine::kJumps || shape.columns == 1) return 1;
+double EventsOfCurrents(Model model, const GasShape& shape) {
+  if (model != Model::kMarkov || shape.columns == 1) return 1;
   if (shape.columns == 2 && shape.rows == 1) return 2e-4;  // a lattice is less skewed
   return shape.columns * shape.rows < 16 ? 0.05 : 0.1;
 }
@@ -207,7 +207,7 @@ class GasEquilibrium : public GasExperiment {
 
   Estimate MeanOfCurrents(const char* name, const BlockResult& merged, size_t index,
                           double scale) const {
-    const double events = EventsOfCurrents(gas_engine(), geometry().shape());
+    const double events = EventsOfCurrents(answer().model, geometry().shape());
     return Mean(name, merged.moments[index], scale, events);
   }
 
@@ -342,6 +342,10 @@ double ErrorOfGasEquilibrium(Model model, const PointParameters& point) {
   return std::sqrt(1.3 / ExchangesOfASample(model, point) + 0.5 / freedom);
 }
 
+double EventsOfConductivity(Model model, const PointParameters& point) {
+  return EventsOfCurrents(model, ShapeOf(point[kCells]));
+}
+
 // Measured errors. From four cells on they hardly depend on the number of cells, because the error
 // of a correlation is proportional to its scale for any number of cells. The jump process measures
 // only the correction, which is 0 in one column.
@@ -412,6 +416,7 @@ constexpr AimedEstimate kAimsOfGasEquilibrium[] = {
     {.name = kConductivity,
      .models = kModelsOfConductivity,
      .error = ErrorOfConductivity,
+     .events = EventsOfConductivity,
      .limit_error = &kLimitErrorOfConductivity,
      .multiples = kMultiplesOfTheConductivity}};
 

@@ -48,6 +48,10 @@ double ErrorOfAReturn(Model, const PointParameters& point) {
   return std::sqrt(0.9 * (1 + 1 / long_returns));
 }
 
+double EventsOfAReturn(Model, const PointParameters& point) {
+  return std::min(LongReturnsPerSample(GeometryOf(point), point[kEpsilon]), 1.0);
+}
+
 void CheckToleranceOfReturns(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
   const std::vector<double>& energies = spec.grid[kEpsilon];
   if (std::find(energies.begin(), energies.end(), 0.0) == energies.end()) return;

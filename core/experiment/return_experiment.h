@@ -15,6 +15,9 @@ SampleWork WorkOfAReturn(Model model, const PointParameters& point);
 // so the scatter of their number is its error.
 double ErrorOfAReturn(Model, const PointParameters& point);
 
+// The events of a return for its error: the expected number of long returns, where these are rare.
+double EventsOfAReturn(Model model, const PointParameters& point);
+
 // Finds a tolerance at epsilon = 0, where the return time has no variance.
 void CheckToleranceOfReturns(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
 

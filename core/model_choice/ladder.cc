@@ -459,7 +459,7 @@ std::vector<FieldViolation> PointsWithoutErrors(const EnsembleSpec& spec) {
   return found;
 }
 
-// Lists at most one point: the first one.
+// Of one point.
 std::string ParametersText(const PointParameters& point) {
   std::string text;
   for (const Parameter* parameter : kParameters) {
@@ -469,6 +469,24 @@ std::string ParametersText(const PointParameters& point) {
                     parameter == &kCells ? Text(ShapeOf(*value)) : NumberText(*value));
   }
   return text;
+}
+
+// A point at which the largest permitted number of samples has no error: the first one.
+std::vector<FieldViolation> PointsWithRareEvents(const EnsembleSpec& spec) {
+  for (size_t i = 0; i < PointCount(spec); ++i) {
+    const PointParameters point = PointAt(spec, i);
+    const Model model = ExpectedModel(spec, point);
+    if (!TakesSamples(model)) continue;
+    const double needed = AimOf(spec).SamplesForAnError(model, point);
+    if (needed <= static_cast<double>(kMaxSamples)) continue;
+    return {{"target.tolerance",
+             absl::StrFormat(
+                 "is %s, but at %s an error needs %.2g samples, because the events that "
+                 "determine the mean are rare; permitted in this case: samples, up to "
+                 "%d",
+                 NumberText(*spec.target.tolerance), ParametersText(point), needed, kMaxSamples)}};
+  }
+  return {};
 }
 
 FieldViolation TooLong(const EnsembleSpec& spec, const PointParameters& point, double seconds) {
@@ -559,6 +577,7 @@ std::vector<FieldViolation> MachineViolations(const EnsembleSpec& spec, const Ma
 std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec) {
   if (!spec.target.tolerance) return {};
   if (std::vector<FieldViolation> found = PointsWithoutErrors(spec); !found.empty()) return found;
+  if (std::vector<FieldViolation> found = PointsWithRareEvents(spec); !found.empty()) return found;
   const double tolerance = *spec.target.tolerance, least = LeastTolerance(spec);
   if (!(tolerance < least)) return {};
   absl::string_view other;

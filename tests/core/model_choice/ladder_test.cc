@@ -608,6 +608,28 @@ TEST(Ladder, AReplicaThatIsCutShortHasNoPlannedError) {
   EXPECT_THAT(ladder.Chosen().reason, HasSubstr("no errors"));
 }
 
+// From epsilon = 1/2 only the orbits meet whose ball starts within the piston's reach.
+TEST(Ladder, ATolerancePlansTheSamplesThatAnErrorNeeds) {
+  EnsembleSpec spec = Relaxation(0.05, {.tolerance = 0.5});
+  spec.model = Model::kBilliard;
+  spec.grid[kEpsilon] = {0.5};
+  const PointParameters point = PointAt(spec, 0);
+  const double needed = AimOf(spec).SamplesForAnError(spec.model, point);
+  EXPECT_GT(needed, 1000);
+  EXPECT_GE(SamplesFor(0.5, spec, point), needed);
+  EXPECT_THAT(ToleranceViolations(spec), testing::IsEmpty());
+}
+
+TEST(Ladder, AToleranceWhoseEventsAreTooRareIsRejected) {
+  EnsembleSpec spec = Relaxation(1e-8, {.tolerance = 0.5});
+  spec.model = Model::kBilliard;
+  spec.grid[kEpsilon] = {0.5};
+  EXPECT_THAT(ToleranceViolations(spec),
+              testing::ElementsAre(testing::Field(
+                  &FieldViolation::description,
+                  AllOf(HasSubstr("is 0.5"), HasSubstr("delta = 1e-08"), HasSubstr("permitted")))));
+}
+
 // At delta = 1e-9 a collision takes 10^18 wall hits.
 TEST(Ladder, ATimeThatNoMachineHasIsRejected) {
   for (const Target& target :
@@ -617,9 +639,7 @@ TEST(Ladder, ATimeThatNoMachineHasIsRejected) {
     ASSERT_TRUE(Violations(spec).empty());
     const std::vector<FieldViolation> found = TimeViolations(spec);
     ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(found[0].field, target.samples      ? "target.samples"
-                              : target.collisions ? "target.collisions"
-                                                  : "target");
+    EXPECT_EQ(found[0].field, target.collisions ? "target.collisions" : "target.samples");
     EXPECT_THAT(found[0].description,
                 AllOf(HasSubstr("delta = 1e-09"), HasSubstr("up to 1e+10 s")));
     spec.grid[kDelta] = {0.01};
