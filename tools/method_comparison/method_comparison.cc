@@ -39,6 +39,8 @@ constexpr double kTimeSteps[] = {1e-1, 1e-2, 1e-3, 1e-4};
 constexpr uint64_t kRungFactor = 4;
 constexpr uint64_t kFewestReturns = 16;
 constexpr size_t kFewestOrbits = 64;
+// Fewer orbits give no error of a relaxation time (experiment/energy_relaxation.cc).
+constexpr uint64_t kFewestRelaxations = 512;
 
 // A rung is run if its expected work is at most this many times seconds_per_curve. Then the largest
 // rung takes between 0.5 and 2 times seconds_per_curve.
@@ -283,7 +285,9 @@ class Comparison {
   MethodMeasurement Climb(const Subject& subject, const MethodVariant& variant, double expected,
                           const Run& run) const {
     MethodMeasurement longest;
-    for (uint64_t samples = kFewestOrbits; expected <= Limit(); samples *= kRungFactor) {
+    const bool relaxes = subject.quantity == Quantity::kRelaxationTime;
+    uint64_t samples = relaxes ? kFewestRelaxations : kFewestOrbits;
+    for (; expected <= Limit(); samples *= kRungFactor) {
       const PointEstimate measured = run(RunOf(samples));
       expected = measured.seconds * kRungFactor;
       if (measured.error == 0) continue;  // nearly all samples were lost
