@@ -41,7 +41,7 @@ TEST(Program, PrintsRowsAndClearsTheProgressLine) {
   for (const char* curve :
        {"0.2,0.125,fixed-step,0.01,mean-free-time,16,", "0.2,0.125,closed-form,0,ingoing-law,0,",
         "0.2,0.125,billiard-reference-quadruple,0,trajectory,",
-        "0.3,0.125,markov,0,relaxation-time,64,", "0.3,0.125,spectrum,0,limit-floor,0,0,",
+        "0.3,0.125,markov,0,relaxation-time,512,", "0.3,0.125,spectrum,0,limit-floor,0,0,",
         "0.2,0.125,markov,0,heat-current,64,"}) {
     EXPECT_THAT(result.out, HasSubstr(rho + curve));
   }
