@@ -336,7 +336,7 @@ class LaneOrbits : public OrbitRun {
     contact.escaped = true;
     return contact;
   }
-  // Of an orbit that has waited for `time`, longer than it may.
+  // The orbit has waited for `time`, which is longer than permitted.
   Contact Overdue(double time) const {
     Contact contact;
     contact.time = time;

@@ -37,7 +37,7 @@ struct Answer {
   // The same for other estimates, by their names. If model_error is 0, it counts for all estimates.
   std::map<std::string, double, std::less<>> further_errors = {};
 
-  // Of the estimate of this name, which may be the first one.
+  // The model error of the estimate with this name.
   std::optional<double> ModelErrorOf(std::string_view name, bool is_first) const;
 };
 

@@ -459,7 +459,7 @@ std::vector<FieldViolation> PointsWithoutErrors(const EnsembleSpec& spec) {
   return found;
 }
 
-// Of one point.
+// The names and values of the parameters of a point.
 std::string ParametersText(const PointParameters& point) {
   std::string text;
   for (const Parameter* parameter : kParameters) {
