@@ -19,7 +19,8 @@ absl::StatusOr<v1::ListEnsembleJobsResponse> ListEnsembleJobs(
   query.max_jobs = check.PageSize(request.page_size());
   query.before = check.PageStart(request.page_token(), kList, std::numeric_limits<int64_t>::max());
   query.max_bytes = kMaxPageBytes;
-  query.grids = request.view() != v1::ListEnsembleJobsRequest::BASIC;
+  const bool is_basic = request.view() == v1::ListEnsembleJobsRequest::BASIC;
+  query.grid = is_basic ? Grid::kLeftOut : Grid::kIncluded;
   check.View(request);
   query.filter = ReadListFilter(request, check);
   if (!check.ok()) return check.status();

@@ -18,7 +18,7 @@ int64_t FileBytes(const std::string& path) {
   return stat(path.c_str(), &found) == 0 ? int64_t{found.st_size} : 0;
 }
 
-void AddPrincipals(const JobBook& book, ServerSnapshot& snapshot) {
+void AddPrincipals(JobBook& book, ServerSnapshot& snapshot) {
   std::map<std::string, ActiveJobs> active = book.ActiveByPrincipal();
   for (const auto& [principal, usage] : book.usage().All(absl::Now())) {
     const ActiveJobs& jobs = active[principal];

@@ -92,7 +92,7 @@ absl::Status WatchReactor::Tell() {
 }
 
 absl::Status WatchReactor::CheckRights() const {
-  const bool sees = job_.active == nullptr || caller_.MaySee(job_.active->principal());
+  const bool sees = id_.empty() || caller_.MaySee(job_.record.principal);
   return sees ? absl::OkStatus() : JobNotFound(request_.name());
 }
 
@@ -135,24 +135,37 @@ absl::Status WatchReactor::FindJob() {
 
 absl::StatusOr<bool> WatchReactor::TellState() {
   if (job_.active->last_state_change() <= told_state_) return false;
-  const bool has_ended = HasEnded(job_.active->state());
-  if (has_ended) {
-    absl::StatusOr<bool> told = TellFinishedPoints(job_.active->Progress());
-    if (!told.ok() || *told) return told;
-  }
-  if (!TakeRoom(job_.active->spec_bytes())) return false;
-  Job::View view = service_.book.Now(*job_.active);
-  // A job that has just ended may have more points to send.
-  if (!has_ended && HasEnded(view.job.state())) {
-    LeaveRoom();
-    return TellState();
-  }
-  *message_.mutable_job() = std::move(view.job);
+  const auto stored = service_.book.Stored(*job_.active);
+  if (!stored.ok()) return stored.status();
+  const JobRecord& record = (*stored)->record;
+  if (HasEnded(record.state)) return TellEnd(record);
+  const bool is_new = record.state != told_as_;
+  if (is_new && !TakeRoom(static_cast<size_t>(record.spec_bytes))) return false;
   {
     MutexLock lock(mutex_);
-    told_state_ = view.state_change;
+    told_state_ = (*stored)->change;
   }
-  has_ended ? WriteLastUpdate() : WriteUpdate();
+  if (!is_new) return false;
+  told_as_ = record.state;
+  *message_.mutable_job() = service_.book.Message(record, job_.active.get());
+  WriteUpdate();
+  return true;
+}
+
+absl::StatusOr<bool> WatchReactor::TellEnd(const JobRecord& ended) {
+  const absl::StatusOr<bool> told =
+      TellFinishedPoints(service_.book.Message(ended, nullptr).progress());
+  if (!told.ok() || *told) return told;
+  if (!TakeRoom(static_cast<size_t>(ended.spec_bytes))) return false;
+  // The row that was read for an active job has its grid.
+  absl::StatusOr<v1::EnsembleJob> job = job_.active != nullptr
+                                            ? service_.book.Message(ended, nullptr)
+                                            : service_.book.Get(caller_, id_);
+  if (!job.ok()) return job.status();
+  // If the results expired since the job was found, some points may not have been sent.
+  if (job->results_expired() && !job_.record.expired_time) return ResultsExpired(request_.name());
+  *message_.mutable_job() = *std::move(job);
+  WriteLastUpdate();
   return true;
 }
 
@@ -194,8 +207,8 @@ absl::StatusOr<bool> WatchReactor::TellFinishedPoints(const v1::JobProgress& pro
 }
 
 absl::StatusOr<bool> WatchReactor::AddFinishedPoints() {
-  const auto points =
-      service_.book.FinishedAfter(job_.sequence, job_.active.get(), told_finished_, kMaxPoints);
+  const auto points = service_.book.FinishedAfter(job_.record.sequence, job_.active.get(),
+                                                  told_finished_, kMaxPoints);
   if (!points.ok()) return points.status();
   if (points->empty()) return false;
   for (const FinishedPoint& point : *points) {
@@ -209,22 +222,9 @@ absl::StatusOr<bool> WatchReactor::AddFinishedPoints() {
 }
 
 absl::Status WatchReactor::TellOfEndedJob() {
-  if (!told_all_points_) {
-    const absl::StatusOr<bool> told = TellFinishedPoints(job_.progress);
-    if (!told.ok() || *told) return told.status();
-    told_all_points_ = true;
-  }
-  if (!TakeRoom(job_.spec_bytes)) {
-    TellHeartbeat();
-    return absl::OkStatus();
-  }
-  absl::StatusOr<v1::EnsembleJob> ended = service_.book.Get(caller_, id_);
-  if (!ended.ok()) return ended.status();
-  // If the results expired since the job was found, some points may not have been sent.
-  if (ended->results_expired() && !job_.expired) return ResultsExpired(request_.name());
-  *message_.mutable_job() = *std::move(ended);
-  WriteLastUpdate();
-  return absl::OkStatus();
+  const absl::StatusOr<bool> told = TellEnd(job_.record);
+  if (told.ok() && !*told) TellHeartbeat();
+  return told.status();
 }
 
 void WatchReactor::TellHeartbeat() {
@@ -237,7 +237,7 @@ void WatchReactor::TellHeartbeat() {
 
 std::string WatchReactor::Token() const {
   return ResumeTokenText({.job = id_,
-                          .restarts = job_.restarts,
+                          .restarts = job_.record.restarts,
                           .finished = told_finished_,
                           .instance = service_.instance,
                           .change = told_});
@@ -245,7 +245,7 @@ std::string WatchReactor::Token() const {
 
 void WatchReactor::ReadToken(const std::string& token, int64_t last_finished) {
   const std::optional<ResumeToken> told = ParseResumeToken(token);
-  if (!told || told->job != id_ || told->restarts != job_.restarts ||
+  if (!told || told->job != id_ || told->restarts != job_.record.restarts ||
       told->finished > last_finished) {
     return;
   }

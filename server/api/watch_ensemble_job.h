@@ -1,13 +1,14 @@
 // WatchEnsembleJob: sends the state, the progress and the points of a job, in the frame of
 // stream_reactor.h.
 //
-// The watch makes a message only when it can send it. Of an unfinished point it sends the newest
-// state. It reads finished points from the job's memory or from the store when it sends them. It
-// makes messages without the lock that the workers need. A snapshot needs that lock; the watches of
-// one job share their snapshots (jobs/job_snapshot.h). With many watches each gets snapshots less
-// often, so that all of them together take at most kSnapshotsPerSecond. A stalled reader keeps two
-// copies of a message. So a message with a large specification waits until the principal's messages
-// on their way leave room for it.
+// The watch makes a message only when it can send it. It reads the state from the job's row after a
+// change of state was committed. Of an unfinished point it sends the newest state. It reads
+// finished points from the job's memory or from the store when it sends them. It makes messages
+// without the lock that the workers need. A snapshot needs that lock; the watches of one job share
+// their snapshots, and each row that is read (jobs/shared_copy.h). With many watches each gets
+// snapshots less often, so that all of them together take at most kSnapshotsPerSecond. A stalled
+// reader keeps two copies of a message. So a message with a large specification waits until the
+// principal's messages on their way leave room for it.
 //
 // Properties of a watch and of the watches that resume it, each with a test of its name:
 //   1. EachFinishedPointIsSentOnceInOrder: also over restarts, and before the terminal state.
@@ -61,6 +62,8 @@ class WatchReactor : public StreamReactor<v1::WatchEnsembleJobResponse> {
   absl::StatusOr<bool> TellFinishedPoints(const v1::JobProgress& progress);
   void TellHeartbeat();
   absl::Status TellOfEndedJob();
+  // Sends the points that were not sent yet, then the job's end.
+  absl::StatusOr<bool> TellEnd(const JobRecord& ended);
 
   // Reserves memory for a message with the job's specification, until the message is written. False
   // if there is no room now.
@@ -85,7 +88,7 @@ class WatchReactor : public StreamReactor<v1::WatchEnsembleJobResponse> {
   std::string id_;
   WatchedJob job_;
   std::string told_progress_;
-  bool told_all_points_ = false;  // of a job that had ended before the watch began
+  JobState told_as_ = v1::EnsembleJob::STATE_UNSPECIFIED;  // the last state that was sent
 
   int64_t bytes_held_ ABSL_GUARDED_BY(mutex_) = 0;  // by TakeRoom
 

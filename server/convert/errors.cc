@@ -225,6 +225,14 @@ google::rpc::Status RpcStatus(const absl::Status& status) {
   return rpc;
 }
 
+std::string ReasonOf(const google::rpc::Status& error) {
+  google::rpc::ErrorInfo info;
+  for (const google::protobuf::Any& detail : error.details()) {
+    if (detail.UnpackTo(&info)) return info.reason();
+  }
+  return std::string();
+}
+
 grpc::Status GrpcStatus(const absl::Status& status) {
   if (status.ok()) return grpc::Status::OK;
   const google::rpc::Status rpc = RpcStatus(status);

@@ -72,8 +72,9 @@ absl::Status WithReason(absl::Status status, const std::string& reason, const st
 // The same, but keeps a reason that the status already has.
 absl::Status WithDefaultReason(absl::Status status, const std::string& reason);
 
-// The error that a FAILED job stores.
+// The error that a FAILED job stores, and its reason; empty if it has none.
 google::rpc::Status RpcStatus(const absl::Status& status);
+std::string ReasonOf(const google::rpc::Status& error);
 
 grpc::Status GrpcStatus(const absl::Status& status);
 

@@ -9,6 +9,7 @@
 #include "ballpiston/v1/spec.pb.h"
 #include "core/ensemble/ensemble_spec.h"
 #include "core/gas/gas_shape.h"
+#include "server/convert/stored_spec.h"
 
 namespace ballpiston::server {
 
@@ -39,9 +40,9 @@ v1::EnsembleSpec::Model ModelMessage(Model model);
 
 // The same bytes for the same question: the name of the default estimate is left out.
 std::string QuestionBytes(v1::EnsembleSpec message);
-// The same bytes for the same specification. The store keeps these bytes.
-std::string SpecBytes(const v1::EnsembleSpec& message);
-absl::StatusOr<v1::EnsembleSpec> SpecFromBytes(const std::string& bytes);  // DATA_LOSS
+// The same bytes for the same specification.
+StoredSpec SpecBytes(v1::EnsembleSpec message);
+absl::StatusOr<v1::EnsembleSpec> SpecFromBytes(const StoredSpec& bytes);  // DATA_LOSS
 
 // The version of this program's engine.
 std::string EngineVersion();

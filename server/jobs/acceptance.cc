@@ -76,7 +76,7 @@ absl::Status KeepRequest(Database& database, Acceptance& acceptance, int64_t job
 }
 
 absl::Status Replay(Database& database, const RequestRecord& request, Acceptance& acceptance) {
-  auto job = FindJobBySequence(database, request.job);
+  auto job = FindJobBySequence(database, request.job, Grid::kIncluded);
   if (!job.ok()) return job.status();
   acceptance.earlier = *std::move(job);
   acceptance.replay = true;

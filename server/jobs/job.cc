@@ -3,141 +3,56 @@
 #include <algorithm>
 #include <utility>
 
-#include "absl/strings/ascii.h"
-#include "absl/strings/str_cat.h"
-#include "google/rpc/status.pb.h"
-#include "server/jobs/job_message.h"
-#include "server/jobs/job_name.h"
-#include "server/jobs/job_state.h"
-#include "server/observability/log.h"
+#include "server/convert/spec.h"
 
 namespace ballpiston::server {
-namespace {
 
-void LogEnd(const JobRecord& job, const std::string& state) {
-  // A job without a start time ended before its first turn.
-  const absl::Time begin = job.start_time.value_or(job.create_time);
-  google::rpc::Status error;
-  error.ParseFromString(job.error);
-  Log(job.error.empty() ? Severity::kInfo : Severity::kWarning, absl::StrCat("job ", state),
-      {{"job", JobName(job.id)},
-       {"principal", job.principal},
-       {"state", state},
-       {"points", static_cast<double>(job.points_done)},
-       {"samples", job.samples},
-       {"processor_seconds", job.work},
-       {"seconds", absl::ToDoubleSeconds(job.end_time.value_or(begin) - begin)},
-       {"error", error.message()}});
-}
-
-void LogState(const JobRecord& job) {
-  const std::string state = absl::AsciiStrToLower(StateName(job.state));
-  if (HasEnded(job.state)) return LogEnd(job, state);
-  Log(Severity::kInfo, absl::StrCat("job ", state),
-      {{"job", JobName(job.id)}, {"principal", job.principal}, {"state", state}});
-}
-
-// Empty if it cannot be read.
-v1::EnsembleSpec SpecOf(const std::string& bytes) {
-  v1::EnsembleSpec spec;
-  if (!spec.ParseFromString(bytes)) spec.Clear();
-  return spec;
-}
-
-}  // namespace
-
-Job::Job(JobRecord record, std::function<void()> on_state_change)
+Job::Job(const JobRecord& record, std::function<void()> on_state_change)
     : sequence_(record.sequence),
       id_(record.id),
       principal_(record.principal),
       restarts_(record.restarts),
-      spec_(std::exchange(record.spec, {})),
-      open_ended_(IsOpenEnded(SpecOf(spec_).target())),
+      points_(record.points),
+      open_ended_(
+          IsOpenEnded(SpecFromBytes({record.spec.rest}).value_or(v1::EnsembleSpec()).target())),
       on_state_change_(std::move(on_state_change)),
-      record_(std::move(record)) {}
+      numbers_{.bytes = record.bytes} {}
 
-JobState Job::state() const {
+LiveNumbers Job::Numbers() const {
   MutexLock lock(mutex_);
-  return record_.state;
+  return numbers_;
 }
 
-JobRecord Job::Record() const {
-  MutexLock lock(mutex_);
-  return record_;
-}
+v1::JobProgress Job::Progress() const { return ProgressOf(points_, open_ended_, Numbers()); }
 
-Job::View Job::Now() const {
-  MutexLock lock(mutex_);
-  const JobRecord record = record_;
-  const v1::JobProgress progress = ProgressLocked();
-  const uint64_t state_change = last_state_change_;
-  lock.Unlock();
-  View view = {JobMessage(record), state_change};
-  *view.job.mutable_spec() = SpecOf(spec_);
-  *view.job.mutable_progress() = progress;
-  return view;
-}
-
-v1::JobProgress Job::Progress() const {
-  MutexLock lock(mutex_);
-  return ProgressLocked();
-}
-
-v1::JobProgress Job::ProgressLocked() const {
-  v1::JobProgress progress;
-  progress.set_points(static_cast<int32_t>(record_.points));
-  progress.set_points_done(static_cast<int32_t>(record_.points_done));
-  progress.set_samples(record_.samples);
-  if (open_ended_) return progress;
-  const double points = static_cast<double>(record_.points);
-  const bool done = record_.points_done == record_.points;
-  progress.set_fraction(done ? 1.0 : std::min(1.0, work_done_ / points));
-  return progress;
-}
-
-bool Job::Enter(JobState state, absl::Time now, const std::string& error) {
-  JobRecord record;
+void Job::NoteStateChange() {
   {
     MutexLock lock(mutex_);
-    if (!MayFollow(record_.state, state)) return false;
-    record_.state = state;
-    record_.error = error;
-    if (state == v1::EnsembleJob::RUNNING) record_.start_time = now;
-    if (HasEnded(state)) record_.end_time = now;
-    last_state_change_ = last_change_ + 1;
-    ++last_change_;
-    record = record_;
+    last_state_change_ = ++last_change_;
   }
-  LogState(record);
   if (on_state_change_) on_state_change_();
-  return true;
 }
 
 uint64_t Job::AddSamples(double samples, double share_of_point) {
   MutexLock lock(mutex_);
-  record_.samples += samples;
-  work_done_ += share_of_point;
+  numbers_.samples += samples;
+  numbers_.points_computed += share_of_point;
   return ++last_change_;
 }
 
 void Job::AddWork(double seconds) {
   MutexLock lock(mutex_);
-  record_.work += seconds;
+  numbers_.work += seconds;
 }
 
 void Job::AddBytes(int64_t bytes) {
   MutexLock lock(mutex_);
-  record_.bytes += bytes;
-}
-
-void Job::SetPinned(bool pinned) {
-  MutexLock lock(mutex_);
-  record_.pinned = pinned;
+  numbers_.bytes += bytes;
 }
 
 void Job::AddFinishedPoint(FinishedPoint point) {
   MutexLock lock(mutex_);
-  ++record_.points_done;
+  ++numbers_.points_done;
   last_finished_ = point.number;
   recent_.push_back(std::move(point));
   if (recent_.size() > kRecentPoints) {
@@ -149,9 +64,9 @@ void Job::AddFinishedPoint(FinishedPoint point) {
 
 void Job::AddRestoredPoints(int64_t points, double samples, int64_t last) {
   MutexLock lock(mutex_);
-  record_.points_done += points;
-  record_.samples += samples;
-  work_done_ += static_cast<double>(points);
+  numbers_.points_done += points;
+  numbers_.samples += samples;
+  numbers_.points_computed += static_cast<double>(points);
   last_finished_ = last_forgotten_ = last;
   ++last_change_;
 }

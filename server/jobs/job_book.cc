@@ -5,7 +5,6 @@
 #include <set>
 #include <utility>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/time/clock.h"
@@ -14,6 +13,7 @@
 #include "server/convert/result_record.h"
 #include "server/jobs/acceptance.h"
 #include "server/jobs/job_journal.h"
+#include "server/jobs/job_log.h"
 #include "server/jobs/job_message.h"
 #include "server/jobs/job_name.h"
 #include "server/jobs/job_state.h"
@@ -35,14 +35,11 @@ constexpr size_t kMaxBytesOfPoints = size_t{512} << 10;
 // does not count for the quota.
 constexpr absl::Duration kBetweenWork = absl::Minutes(1);
 
-// The latest time that a Timestamp can hold.
-constexpr absl::Time kLastTime = absl::FromUnixSeconds(253'402'300'799);
-
 // Upper bound of the encoded size of the job's message: names, times and numbers take less than
 // the constant.
-size_t MostBytesOf(const JobRecord& record, bool grids) {
-  return 512 + record.principal.size() + record.engine_version.size() +
-         (grids ? record.spec.size() : 0) + record.error.size();
+size_t MostBytesOf(const JobRecord& record) {
+  return 512 + record.principal.size() + record.engine_version.size() + record.spec.size() +
+         record.error.size();
 }
 
 // Collects the records of one page, newest first, until one of the query's bounds is reached.
@@ -52,7 +49,7 @@ class PageOfRecords {
 
   // False: the page ends before this record.
   bool Take(JobRecord record) {
-    const size_t bytes = MostBytesOf(record, query_.grids);
+    const size_t bytes = MostBytesOf(record);
     if (HasReadEnough(bytes) || IsFull()) return End();
     const bool matches = query_.filter.Matches(record);
     if (matches && !HasRoom(bytes)) return End();
@@ -94,7 +91,7 @@ class PageOfRecords {
 // The job, if the caller may see it.
 absl::StatusOr<std::optional<JobRecord>> FindJobOf(Database& database, const Principal& caller,
                                                    const std::string& id) {
-  auto found = FindJob(database, id);
+  auto found = FindJob(database, id, Grid::kLeftOut);
   if (found.ok() && *found && !caller.MaySee((*found)->principal)) return std::nullopt;
   return found;
 }
@@ -170,19 +167,15 @@ RunName RunOf(const JobRecord& record) {
   return {record.sequence, GenerationOf(record.id, record.restarts)};
 }
 
+bool HasCrashed(const JobRecord& ended) {
+  google::rpc::Status error;
+  return error.ParseFromString(ended.error) && ReasonOf(error) == kEngineCrashed;
+}
+
 RunName RunOf(const Job& job) { return {job.sequence(), GenerationOf(job.id(), job.restarts())}; }
 
 std::string Text(const std::set<size_t>& points) {
   return points.empty() ? "" : absl::StrJoin(points, " ");
-}
-
-void LogCrashed(const JobRecord& job, const std::string& points, const v1::EnsembleSpec& spec) {
-  Log(Severity::kError,
-      "the engine crashed again and again while it computed this job, which fails",
-      {{"job", JobName(job.id)},
-       {"principal", job.principal},
-       {"points", points},
-       {"question", spec.ShortDebugString()}});
 }
 
 // The stored state from which a run is resumed. `damage`: the job's rows contradict each other.
@@ -239,8 +232,8 @@ absl::Status JobBook::Resume() {
   std::set<RunName> runs;
   for (const JobRecord& record : *unfinished) runs.insert(RunOf(record));
   crashes_->ClearAllBut(runs);
-  for (JobRecord& record : *unfinished) {
-    const absl::Status resumed = ResumeJob(std::move(record));
+  for (const JobRecord& record : *unfinished) {
+    const absl::Status resumed = ResumeJob(record);
     Failpoint("resume.job");
     if (!resumed.ok()) return resumed;
   }
@@ -287,7 +280,7 @@ absl::Status JobBook::RestartOlder(std::vector<JobRecord>& unfinished) {
   });
 }
 
-absl::Status JobBook::ResumeJob(JobRecord record) {
+absl::Status JobBook::ResumeJob(const JobRecord& record) {
   if (record.state == v1::EnsembleJob::CANCELLING) {
     return EndUnresumable(record, absl::CancelledError("cancelled"));
   }
@@ -297,7 +290,7 @@ absl::Status JobBook::ResumeJob(JobRecord record) {
   if (!message.ok()) return EndUnresumable(record, message.status());
   CheckedSpec checked = CheckSpec(*message);
   if (!checked.violations.empty()) return EndUnresumable(record, InvalidSpec(checked.violations));
-  return ResumeRun(std::move(record), std::move(checked.spec));
+  return ResumeRun(record, std::move(checked.spec));
 }
 
 absl::Status JobBook::EndCrashed(const JobRecord& record) {
@@ -345,7 +338,7 @@ absl::Status JobBook::EndUnresumable(const JobRecord& record, const absl::Status
   return absl::OkStatus();
 }
 
-absl::Status JobBook::ResumeRun(JobRecord record, EnsembleSpec spec) {
+absl::Status JobBook::ResumeRun(const JobRecord& record, EnsembleSpec spec) {
   Restored restored;
   const absl::Status read = store_.Read(
       [&](Database& database) { return ReadRestored(database, record, spec, restored); });
@@ -360,10 +353,10 @@ absl::Status JobBook::ResumeRun(JobRecord record, EnsembleSpec spec) {
   request.has_checkpoints = true;
   request.shortfall = std::move(restored.shortfall);
   request.suspicion = SuspicionOf(record);
-  std::shared_ptr<Job> job = Register(std::move(record));
+  std::shared_ptr<Job> job = Register(record);
   job->AddRestoredPoints(points.count(), points.samples, points.last);
   AddRestoredBytes(*job, points.bytes);
-  StartRun(std::move(job), std::move(request));
+  StartRun(std::move(job), record, std::move(request));
   return absl::OkStatus();
 }
 
@@ -372,37 +365,38 @@ void JobBook::AddRestoredBytes(Job& job, int64_t bytes) {
   usage_.AddStored(job.principal(), 0, bytes);
 }
 
-std::shared_ptr<Job> JobBook::Register(JobRecord record) {
+std::shared_ptr<Job> JobBook::Register(const JobRecord& record) {
   active_points_.Add(record.id, record.principal, record.points);
-  auto job = std::make_shared<Job>(std::move(record), on_state_change_);
+  auto job = std::make_shared<Job>(record, on_state_change_);
   MutexLock lock(mutex_);
-  active_.emplace(job->id(), job);
+  active_[record.id] = job;
   return job;
 }
 
-void JobBook::StartRun(std::shared_ptr<Job> job, RunRequest request) {
-  request.key = job->sequence();
-  request.generation = RunOf(*job).generation;
-  request.principal = job->principal();
-  request.priority = job->Record().priority;
+void JobBook::Forget(const std::string& id) {
+  active_points_.Remove(id);
+  MutexLock lock(mutex_);
+  active_.erase(id);
+}
+
+void JobBook::StartRun(std::shared_ptr<Job> job, const JobRecord& record, RunRequest request) {
+  request.key = record.sequence;
+  request.generation = RunOf(record).generation;
+  request.principal = record.principal;
+  request.priority = record.priority;
   request.journal =
       std::make_shared<JobJournal>(std::move(job), store_, usage_, request.has_checkpoints,
-                                   [this](const Job& ended) { Forget(ended); });
+                                   [this](const JobRecord& ended) { OnEnded(ended); });
   scheduler_.Add(std::move(request));
 }
 
-void JobBook::Forget(const Job& ended) {
-  const JobState state = ended.state();
-  const JobRecord record = ended.Record();
-  if (absl::StrContains(record.error, kEngineCrashed)) {
-    LogCrashed(record, "", ended.Now().job.spec());
-  }
-  ++(state == v1::EnsembleJob::SUCCEEDED ? succeeded_
-     : state == v1::EnsembleJob::FAILED  ? failed_
-                                         : cancelled_);
-  active_points_.Remove(ended.id());
-  MutexLock lock(mutex_);
-  active_.erase(ended.id());
+void JobBook::OnEnded(const JobRecord& ended) {
+  if (HasCrashed(ended))
+    LogCrashed(ended, "", SpecFromBytes(ended.spec).value_or(v1::EnsembleSpec()));
+  ++(ended.state == v1::EnsembleJob::SUCCEEDED ? succeeded_
+     : ended.state == v1::EnsembleJob::FAILED  ? failed_
+                                               : cancelled_);
+  Forget(ended.id);
 }
 
 // ---- the methods ----
@@ -415,7 +409,8 @@ JobRecord JobBook::NewRecord(const Principal& caller, const v1::CreateEnsembleJo
   record.spec = SpecBytes(request.spec());
   record.engine_version = EngineVersion();
   record.question = QuestionOf(request.spec(), record.engine_version);
-  record.bytes = static_cast<int64_t>(record.spec.size());
+  record.spec_bytes = static_cast<int64_t>(record.spec.size());
+  record.bytes = record.spec_bytes;
   record.create_time = absl::Now();
   record.points = static_cast<int64_t>(PointCount(checked.spec));
   return record;
@@ -443,7 +438,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Preview(const Principal& caller,
   });
   if (!read.ok()) return StoreFailure(read);
   if (!acceptance.refused.ok()) return acceptance.refused;
-  return acceptance.earlier ? EarlierJob(caller, acceptance) : JobMessage(acceptance.record);
+  return acceptance.earlier ? Answer(caller, acceptance) : Message(acceptance.record, nullptr);
 }
 
 absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
@@ -451,50 +446,58 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
                                                 const CheckedSpec& checked) {
   Acceptance acceptance = NewAcceptance(caller, request, checked);
   acceptance.record.id = RandomId();
-  const auto accept = [&](Database& database) {
+  std::shared_ptr<Job> job;  // the new job, if there is one
+  const absl::Status committed = store_.Commit([&](Database& database) {
+    job = nullptr;
     const absl::Status accepted = Accept(database, limits_, active_points_, usage_, acceptance);
     Failpoint("create.in_transaction");
+    if (accepted.ok() && !acceptance.earlier && acceptance.refused.ok()) {
+      job = Register(acceptance.record);
+    }
     return accepted;
-  };
-  // The job is registered before another call can see it in the store.
-  std::shared_ptr<Job> job;
-  const absl::Status committed = store_.Commit(accept, [&](const absl::Status& done) {
-    Failpoint("create.committed");
-    if (!done.ok()) active_points_.Remove(acceptance.record.id);
-    if (!done.ok() || acceptance.earlier || !acceptance.refused.ok()) return;
-    usage_.AddStored(caller.name, 1, acceptance.record.bytes);
-    job = Register(acceptance.record);
-    RunRequest run;
-    run.spec = checked.spec;
-    run.finished.assign(static_cast<size_t>(acceptance.record.points), false);
-    StartRun(job, std::move(run));
   });
+  Failpoint("create.committed");
+  if (!committed.ok() || job == nullptr) Forget(acceptance.record.id);
   if (!committed.ok()) return StoreFailure(committed);
-  Failpoint("create.before_answer");
   if (!acceptance.refused.ok()) return acceptance.refused;
-  return acceptance.earlier ? EarlierJob(caller, acceptance) : Now(*job).job;
+  if (job != nullptr) StartNewRun(std::move(job), acceptance.record, checked);
+  Failpoint("create.before_answer");
+  return Answer(caller, acceptance);
+}
+
+void JobBook::StartNewRun(std::shared_ptr<Job> job, const JobRecord& record,
+                          const CheckedSpec& checked) {
+  usage_.AddStored(record.principal, 1, record.bytes);
+  RunRequest run;
+  run.spec = checked.spec;
+  run.finished.assign(static_cast<size_t>(record.points), false);
+  StartRun(std::move(job), record, std::move(run));
 }
 
 // The job's present state. If the job was deleted meanwhile, its state when it was found.
-absl::StatusOr<v1::EnsembleJob> JobBook::EarlierJob(const Principal& caller,
-                                                    const Acceptance& acceptance) {
-  absl::StatusOr<v1::EnsembleJob> job = Get(caller, acceptance.earlier->id);
-  if (absl::IsNotFound(job.status())) job = Message(*acceptance.earlier);
-  if (job.ok()) job->set_answered_from_store(acceptance.answered_from_store);
+absl::StatusOr<v1::EnsembleJob> JobBook::Answer(const Principal& caller,
+                                                const Acceptance& acceptance) {
+  const JobRecord& record = acceptance.earlier.value_or(acceptance.record);
+  absl::StatusOr<v1::EnsembleJob> job = Get(caller, record.id);
+  if (absl::IsNotFound(job.status())) job = Message(record, nullptr);
+  if (!job.ok()) return job.status();
+  // A cancellation that came before the run was added did not find it.
+  if (job->state() == v1::EnsembleJob::CANCELLING) scheduler_.Cancel(record.sequence);
+  job->set_answered_from_store(acceptance.answered_from_store);
   return job;
 }
 
-std::shared_ptr<Job> JobBook::ActiveOrNull(const Principal& caller, const std::string& id) const {
+std::shared_ptr<Job> JobBook::InBook(const std::string& id) const {
   MutexLock lock(mutex_);
   const auto found = active_.find(id);
-  const bool seen = found != active_.end() && caller.MaySee(found->second->principal());
-  return seen ? found->second : nullptr;
+  return found != active_.end() ? found->second : nullptr;
 }
 
-absl::StatusOr<JobRecord> JobBook::ReadRecord(const Principal& caller, const std::string& id) {
+absl::StatusOr<JobRecord> JobBook::ReadRecord(const Principal& caller, const std::string& id,
+                                              Grid grid) {
   std::optional<JobRecord> record;
   const absl::Status read = store_.Read([&](Database& database) {
-    auto found = FindJob(database, id);
+    auto found = FindJob(database, id, grid);
     if (found.ok()) record = *std::move(found);
     return found.status();
   });
@@ -503,37 +506,33 @@ absl::StatusOr<JobRecord> JobBook::ReadRecord(const Principal& caller, const std
   return *std::move(record);
 }
 
-absl::StatusOr<v1::EnsembleJob> JobBook::Get(const Principal& caller, const std::string& id) {
-  // In this order: a job leaves the book only when its end is in the store.
-  if (const std::shared_ptr<Job> job = ActiveOrNull(caller, id)) return Now(*job).job;
-  const absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
+absl::StatusOr<FoundJob> JobBook::Find(const Principal& caller, const std::string& id, Grid grid) {
+  absl::StatusOr<JobRecord> record = ReadRecord(caller, id, grid);
   if (!record.ok()) return record.status();
-  return Message(*record);
+  if (HasEnded(record->state)) return FoundJob{.record = *std::move(record)};
+  if (std::shared_ptr<Job> job = InBook(id)) {
+    return FoundJob{.record = *std::move(record), .active = std::move(job)};
+  }
+  record = ReadRecord(caller, id, grid);  // it has ended since the first read
+  if (!record.ok()) return record.status();
+  return FoundJob{.record = *std::move(record)};
 }
 
-Job::View JobBook::Now(const Job& job) const {
-  const JobRecord before = job.Record();
-  Job::View view = job.Now();
-  AddExpireTime(before, view.job);
-  return view;
+absl::StatusOr<v1::EnsembleJob> JobBook::Get(const Principal& caller, const std::string& id) {
+  const absl::StatusOr<FoundJob> found = Find(caller, id, Grid::kIncluded);
+  if (!found.ok()) return found.status();
+  return Message(found->record, found->active.get());
 }
 
-v1::EnsembleJob JobBook::Message(const JobRecord& record) const {
-  v1::EnsembleJob job = JobMessage(record);
-  AddExpireTime(record, job);
-  return job;
-}
-
-void JobBook::AddExpireTime(const JobRecord& record, v1::EnsembleJob& job) const {
-  const bool may_expire = record.end_time && !record.expired_time && !record.pinned;
-  if (limits_.retain_days == 0 || !may_expire) return;
-  const absl::Time expires = *record.end_time + absl::Hours(24) * limits_.retain_days;
-  SetTime(std::min(expires, kLastTime), job.mutable_expire_time());
+v1::EnsembleJob JobBook::Message(const JobRecord& record, const Job* active) const {
+  if (active == nullptr) return JobMessage(record, nullptr, limits_.retain_days);
+  const LiveNumbers numbers = active->Numbers();
+  return JobMessage(record, &numbers, limits_.retain_days);
 }
 
 absl::StatusOr<JobRecord> JobBook::ReadRecordWithResults(const Principal& caller,
                                                          const std::string& id) {
-  absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
+  absl::StatusOr<JobRecord> record = ReadRecord(caller, id, Grid::kIncluded);
   if (record.ok() && record->expired_time) return ResultsExpired(JobName(id));
   return record;
 }
@@ -543,19 +542,21 @@ absl::StatusOr<JobsPage> JobBook::List(const Principal& caller, const JobsQuery&
   PageOfRecords records(query);
   const absl::Status read = store_.Read([&](Database& database) {
     return ReadJobs(database, everybodys ? std::nullopt : std::optional(caller.name), query.before,
-                    [&](JobRecord record) { return records.Take(std::move(record)); });
+                    query.grid, [&](JobRecord record) { return records.Take(std::move(record)); });
   });
   if (!read.ok()) return StoreFailure(read);
   JobsPage page{.jobs = {}, .next_before = records.next_before()};
   for (const JobRecord& record : records.records()) {
-    // The store does not have the progress of an active job.
-    absl::StatusOr<v1::EnsembleJob> job =
-        HasEnded(record.state) ? Message(record) : Get(caller, record.id);
-    if (absl::IsNotFound(job.status())) continue;  // the job was deleted meanwhile
-    if (!job.ok()) return job.status();
-    if (!query.filter.MatchesState(job->state())) continue;  // the state has changed since the read
-    if (!query.grids) job->mutable_spec()->clear_grid();
-    page.jobs.push_back(*std::move(job));
+    const std::shared_ptr<Job> active = HasEnded(record.state) ? nullptr : InBook(record.id);
+    const bool has_ended_since = !HasEnded(record.state) && active == nullptr;
+    if (!has_ended_since) {
+      page.jobs.push_back(Message(record, active.get()));
+      continue;
+    }
+    const absl::StatusOr<JobRecord> ended = ReadRecord(caller, record.id, query.grid);
+    if (absl::IsNotFound(ended.status())) continue;  // and was deleted
+    if (!ended.ok()) return ended.status();
+    if (query.filter.MatchesState(ended->state)) page.jobs.push_back(Message(*ended, nullptr));
   }
   return page;
 }
@@ -564,7 +565,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
                                                 const std::string& request_id) {
   std::optional<JobRecord> record;
   bool begun = false;
-  const auto begin = [&](Database& database) -> absl::Status {
+  const absl::Status committed = store_.Commit([&](Database& database) -> absl::Status {
     begun = false;
     auto found = FindJobOf(database, caller, id);
     if (!found.ok()) return found.status();
@@ -574,23 +575,27 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
     begun = changed.ok() && *changed;
     Failpoint("cancel.in_transaction");
     return changed.status();
-  };
-  const absl::Status committed = store_.Commit(begin, [&](const absl::Status& done) {
-    const std::shared_ptr<Job> job = ActiveOrNull(caller, id);
-    if (done.ok() && begun && job) job->Enter(v1::EnsembleJob::CANCELLING, absl::Now());
   });
   if (!committed.ok()) return StoreFailure(committed);
   if (!record) return JobNotFound(JobName(id));
   Failpoint("cancel.committed");
-  if (begun) scheduler_.Cancel(record->sequence);
+  if (begun) CancelRun(*record);
   const bool replay = !request_id.empty() && record->cancel_request_id == request_id;
   if (begun || replay || record->state == v1::EnsembleJob::CANCELLING) return Get(caller, id);
   return JobAlreadyEnded(JobName(id), StateName(record->state));
 }
 
+void JobBook::CancelRun(const JobRecord& record) {
+  if (const std::shared_ptr<Job> job = InBook(record.id)) {
+    LogState(*job, v1::EnsembleJob::CANCELLING);
+    job->NoteStateChange();
+  }
+  scheduler_.Cancel(record.sequence);
+}
+
 absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
   std::optional<JobRecord> record;
-  const auto drop = [&](Database& database) -> absl::Status {
+  const absl::Status committed = store_.CommitDeletion([&](Database& database) -> absl::Status {
     auto found = FindJobOf(database, caller, id);
     if (!found.ok()) return found.status();
     record = *std::move(found);
@@ -598,32 +603,24 @@ absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
     const absl::Status deleted = DeleteJob(database, record->sequence);
     Failpoint("delete.in_transaction");
     return deleted;
-  };
-  const absl::Status committed = store_.CommitDeletion(drop, [&](const absl::Status& done) {
-    const bool deleted = done.ok() && record && HasEnded(record->state);
-    if (deleted) usage_.AddStored(record->principal, -1, -record->bytes);
   });
   Failpoint("delete.committed");
   if (!committed.ok()) return StoreFailure(committed);
   if (!record) return JobNotFound(JobName(id));
-  if (HasEnded(record->state)) return absl::OkStatus();
-  const std::shared_ptr<Job> job = ActiveOrNull(caller, id);
-  return JobStillActive(JobName(id), StateName(job ? job->state() : record->state));
+  if (!HasEnded(record->state)) return JobStillActive(JobName(id), StateName(record->state));
+  usage_.AddStored(record->principal, -1, -record->bytes);
+  return absl::OkStatus();
 }
 
 absl::StatusOr<v1::EnsembleJob> JobBook::Pin(const Principal& caller, const std::string& id,
                                              bool pinned) {
   std::optional<JobRecord> record;
-  const auto pin = [&](Database& database) -> absl::Status {
+  const absl::Status committed = store_.Commit([&](Database& database) -> absl::Status {
     auto found = FindJobOf(database, caller, id);
     if (!found.ok()) return found.status();
     record = *std::move(found);
     if (!record || record->expired_time) return absl::OkStatus();
     return PinJob(database, record->sequence, pinned);
-  };
-  const absl::Status committed = store_.Commit(pin, [&](const absl::Status& done) {
-    const std::shared_ptr<Job> job = ActiveOrNull(caller, id);
-    if (done.ok() && job) job->SetPinned(pinned);
   });
   if (!committed.ok()) return StoreFailure(committed);
   if (!record) return JobNotFound(JobName(id));
@@ -644,15 +641,17 @@ absl::StatusOr<v1::PointResult> JobBook::Result(const Principal& caller, const s
 absl::StatusOr<std::optional<v1::PointResult>> JobBook::UnfinishedResult(const Principal& caller,
                                                                          const std::string& id,
                                                                          int64_t point) {
-  const absl::StatusOr<std::shared_ptr<Job>> job = FindActive(caller, id);
-  if (!job.ok()) return job.status();
-  if (*job == nullptr) return std::nullopt;
-  const auto number = static_cast<uint64_t>((*job)->Now().job.spec().experiment());
-  const ExperimentKind* const experiment = FindExperiment(number);
+  const absl::StatusOr<FoundJob> found = Find(caller, id, Grid::kLeftOut);
+  if (!found.ok()) return found.status();
+  if (found->active == nullptr) return std::nullopt;
+  const absl::StatusOr<v1::EnsembleSpec> spec = SpecFromBytes(found->record.spec);
+  if (!spec.ok()) return StoreFailure(spec.status());
+  const ExperimentKind* const experiment =
+      FindExperiment(static_cast<uint64_t>(spec->experiment()));
   if (experiment == nullptr) return std::nullopt;  // an experiment of a test
-  const auto live = scheduler_.Unfinished((*job)->sequence(), static_cast<size_t>(point));
+  const auto live = scheduler_.Unfinished(found->record.sequence, static_cast<size_t>(point));
   if (!live) return std::nullopt;
-  const CrashRecord::Examining examining(*crashes_, RunOf(**job));
+  const CrashRecord::Examining examining(*crashes_, RunOf(found->record));
   const PointSummary summary = live->experiment->Summarize(live->merged);
   return PointResultMessage(ResultRecordOf(live->index, *live->experiment, summary),
                             DetailsRecordOf(summary), *experiment);
@@ -698,60 +697,59 @@ absl::StatusOr<ResultsPage> JobBook::Results(const Principal& caller, const std:
   return page;
 }
 
-absl::StatusOr<std::shared_ptr<Job>> JobBook::FindActive(const Principal& caller,
-                                                         const std::string& id) {
-  if (std::shared_ptr<Job> job = ActiveOrNull(caller, id)) return job;
-  const absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
-  if (!record.ok()) return record.status();
-  if (HasEnded(record->state)) return nullptr;
-  // The job was committed a moment ago. It is in the book after the store's next commit.
-  const absl::Status settled = store_.Flush();
-  if (!settled.ok()) return StoreFailure(settled);
-  return ActiveOrNull(caller, id);
-}
-
 absl::StatusOr<WatchedJob> JobBook::FindWatched(const Principal& caller, const std::string& id) {
-  absl::StatusOr<std::shared_ptr<Job>> active = FindActive(caller, id);
-  if (!active.ok()) return active.status();
-  if (const std::shared_ptr<Job>& job = *active) {
-    return WatchedJob{
-        .active = job,
-        .sequence = job->sequence(),
-        .restarts = job->restarts(),
-        .last_finished = job->last_finished(),
-    };
+  absl::StatusOr<FoundJob> found = Find(caller, id, Grid::kLeftOut);
+  if (!found.ok()) return found.status();
+  WatchedJob watched{*std::move(found)};
+  if (watched.active != nullptr) {
+    watched.active->stored().Drop();  // it may be older than what another method has returned
+    watched.last_finished = watched.active->last_finished();
+    return watched;
   }
-  const absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
-  if (!record.ok()) return record.status();
-  absl::StatusOr<int64_t> last;
+  if (watched.record.expired_time) return watched;
   const absl::Status read = store_.Read([&](Database& database) {
-    last = LastResultNumber(database, record->sequence);
+    const auto last = LastResultNumber(database, watched.record.sequence);
+    watched.last_finished = last.value_or(0);
     return last.status();
   });
   if (!read.ok()) return StoreFailure(read);
-  const bool expired = record->expired_time.has_value();
-  return WatchedJob{.sequence = record->sequence,
-                    .restarts = record->restarts,
-                    .last_finished = expired ? 0 : *last,
-                    .progress = JobMessage(*record).progress(),
-                    .spec_bytes = record->spec.size(),
-                    .expired = expired};
+  return watched;
+}
+
+absl::StatusOr<std::shared_ptr<const StoredJob>> JobBook::Stored(Job& job) {
+  const auto read_row = [&]() -> absl::StatusOr<StoredJob> {
+    StoredJob stored;
+    stored.change = job.last_state_change();  // before the row, which may be newer
+    std::optional<JobRecord> record;
+    const absl::Status read = store_.Read([&](Database& database) {
+      auto found = FindJobBySequence(database, job.sequence(), Grid::kIncluded);
+      if (found.ok()) record = *std::move(found);
+      return found.status();
+    });
+    if (!read.ok()) return StoreFailure(read);
+    if (!record) return JobNotFound(JobName(job.id()));
+    stored.record = *std::move(record);
+    return stored;
+  };
+  return job.stored().Get(job.last_state_change(), std::chrono::milliseconds(0), read_row);
 }
 
 std::shared_ptr<const JobSnapshot> JobBook::Snapshot(Job& job, std::chrono::milliseconds max_age,
                                                      size_t limit) const {
-  return job.snapshot().Get(job.last_change(), max_age, [&] {
-    const CrashRecord::Examining examining(*crashes_, RunOf(job));
-    JobSnapshot snapshot;
-    snapshot.change = job.last_change();  // read before the points, which may be newer
-    snapshot.finished = job.last_finished();
-    for (const LivePoint& point : scheduler_.ChangedSince(job.sequence(), 0, limit)) {
-      const storage::Result now =
-          ResultRecordOf(point.index, *point.experiment, point.experiment->Summarize(point.merged));
-      snapshot.points.push_back({point.version, PointResultMessage(now)});
-    }
-    return snapshot;
-  });
+  const auto snapshot =
+      job.snapshot().Get(job.last_change(), max_age, [&]() -> absl::StatusOr<JobSnapshot> {
+        const CrashRecord::Examining examining(*crashes_, RunOf(job));
+        JobSnapshot snapshot;
+        snapshot.change = job.last_change();  // read before the points, which may be newer
+        snapshot.finished = job.last_finished();
+        for (const LivePoint& point : scheduler_.ChangedSince(job.sequence(), 0, limit)) {
+          const storage::Result now = ResultRecordOf(point.index, *point.experiment,
+                                                     point.experiment->Summarize(point.merged));
+          snapshot.points.push_back({point.version, PointResultMessage(now)});
+        }
+        return snapshot;
+      });
+  return *snapshot;
 }
 
 absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(int64_t sequence,
@@ -791,7 +789,7 @@ void JobBook::EndLongJobs() {
   const double most = limits_.max_seconds_per_job;
   if (most == 0) return;
   for (const std::shared_ptr<Job>& job : ActiveJobsNow()) {
-    const double work = job->Record().work;
+    const double work = job->Numbers().work;
     if (work < most) continue;
     scheduler_.Stop(job->sequence(),
                     LimitExceeded("JOB_TOO_LONG",
@@ -840,16 +838,15 @@ std::vector<std::shared_ptr<Job>> JobBook::ActiveJobsNow() const {
   return active;
 }
 
-std::map<std::string, ActiveJobs> JobBook::ActiveByPrincipal() const {
+std::map<std::string, ActiveJobs> JobBook::ActiveByPrincipal() {
   std::map<std::string, ActiveJobs> by_principal;
-  for (const std::shared_ptr<Job>& job : ActiveJobsNow()) {
-    const JobState state = job->state();
-    if (HasEnded(state)) continue;  // the book is about to remove it
-    ActiveJobs& jobs = by_principal[job->principal()];
-    ++(state == v1::EnsembleJob::QUEUED    ? jobs.queued
-       : state == v1::EnsembleJob::RUNNING ? jobs.running
-                                           : jobs.cancelling);
-  }
+  store_
+      .Read([&](Database& database) {
+        auto counted = CountActiveByPrincipal(database);
+        if (counted.ok()) by_principal = *std::move(counted);
+        return counted.status();
+      })
+      .IgnoreError();
   return by_principal;
 }
 

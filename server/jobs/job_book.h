@@ -1,9 +1,13 @@
 // All jobs: the operations of the API's methods, without gRPC.
 //
-// Active jobs are here and in the scheduler; ended jobs are only in the store. Every change of a
-// job's state is on disk before a client sees it (except the change to RUNNING, which a restart
-// makes again). Methods that write wait for the disk, so gRPC's own threads must not call them.
-// Errors have reasons (server/convert/errors.h). Thread-safe.
+// A job is a row of the store. While it is active, the book also has its numbers (job.h), and the
+// scheduler its run. Every method reads the job's state from the committed row, so no client sees a
+// state that a restart could take back, or an older state after a newer one. A job is in the book
+// before its row is committed, and until after its end is committed: an active row whose job is not
+// in the book has ended since it was read.
+//
+// Methods that write wait for the disk, so gRPC's own threads must not call them. Errors have
+// reasons (server/convert/errors.h). Thread-safe.
 #ifndef BALLPISTON_SERVER_JOBS_JOB_BOOK_H_
 #define BALLPISTON_SERVER_JOBS_JOB_BOOK_H_
 
@@ -33,6 +37,7 @@
 #include "server/scheduling/crash_record.h"
 #include "server/scheduling/scheduler.h"
 #include "server/security/principal.h"
+#include "server/store/job_table.h"
 #include "server/store/store.h"
 
 namespace ballpiston::server {
@@ -46,7 +51,7 @@ inline constexpr absl::Duration kSoonToExpire = absl::Hours(7 * 24);
 
 struct JobsQuery {
   JobFilter filter = {};
-  bool grids = true;   // in the specifications
+  Grid grid = Grid::kIncluded;
   int64_t before = 0;  // jobs older than this sequence, newest first
   int max_jobs = 1;
   size_t max_bytes = 0;  // ends a page that has at least one job
@@ -60,15 +65,15 @@ struct JobsPage {
   std::optional<int64_t> next_before;  // where the next page begins; empty: this is the last page
 };
 
-// The data of a job that a watch needs.
-struct WatchedJob {
+// A job's row, and its numbers in memory.
+struct FoundJob {
+  JobRecord record;
   std::shared_ptr<Job> active = nullptr;  // null if it has ended
-  int64_t sequence = 0;
-  int64_t restarts = 0;
-  int64_t last_finished = 0;  // the number of its last finished point
-  v1::JobProgress progress = {};
-  size_t spec_bytes = 0;  // of a job that has ended
-  bool expired = false;
+};
+
+// The data of a job that a watch needs.
+struct WatchedJob : FoundJob {  // without its grid
+  int64_t last_finished = 0;    // the number of its last finished point
 };
 
 struct ResultsQuery {
@@ -81,13 +86,6 @@ struct ResultsQuery {
 struct ResultsPage {
   std::vector<v1::PointResult> points;
   std::optional<int64_t> next_point;  // empty: this is the last page
-};
-
-// Active jobs, by state.
-struct ActiveJobs {
-  int64_t queued = 0;
-  int64_t running = 0;
-  int64_t cancelling = 0;
 };
 
 // Jobs that ended in this book's life, by state.
@@ -143,10 +141,14 @@ class JobBook {
                                                                   const std::string& id,
                                                                   int64_t point);
 
-  // An active job, or one that was active a moment ago, with the time when its results expire.
-  Job::View Now(const Job& job) const;
-
   absl::StatusOr<WatchedJob> FindWatched(const Principal& caller, const std::string& id);
+
+  // The row of a job that is or was active; one read serves all watches. It is not older than the
+  // job's last change of state, or its last FindWatched.
+  absl::StatusOr<std::shared_ptr<const StoredJob>> Stored(Job& job);
+
+  // The job that clients see. `active`: null if it has ended.
+  v1::EnsembleJob Message(const JobRecord& record, const Job* active) const;
 
   // The newest `limit` unfinished points of the job. The snapshot is at most `max_age` old.
   std::shared_ptr<const JobSnapshot> Snapshot(Job& job, std::chrono::milliseconds max_age,
@@ -166,7 +168,7 @@ class JobBook {
 
   const Usage& usage() const { return usage_; }
   size_t active_jobs() const;
-  std::map<std::string, ActiveJobs> ActiveByPrincipal() const;
+  std::map<std::string, ActiveJobs> ActiveByPrincipal();  // empty if the store cannot be read
   EndedJobs ended_jobs() const;
   int64_t engine_crashes() const { return crashes_->counted_deaths(); }
 
@@ -175,29 +177,28 @@ class JobBook {
                       const CheckedSpec& checked) const;
   Acceptance NewAcceptance(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
                            const CheckedSpec& checked) const;
-  absl::StatusOr<v1::EnsembleJob> EarlierJob(const Principal& caller, const Acceptance& acceptance);
+  absl::StatusOr<v1::EnsembleJob> Answer(const Principal& caller, const Acceptance& acceptance);
   absl::Status RestartOlder(std::vector<JobRecord>& unfinished);
   absl::Status ReadUsage();
-  absl::Status ResumeJob(JobRecord record);
+  absl::Status ResumeJob(const JobRecord& record);
   absl::Status EndCrashed(const JobRecord& record);
   std::optional<Suspicion> SuspicionOf(const JobRecord& record);
   absl::Status EndUnresumable(const JobRecord& record, const absl::Status& why);
-  absl::Status ResumeRun(JobRecord record, EnsembleSpec spec);
+  absl::Status ResumeRun(const JobRecord& record, EnsembleSpec spec);
   void AddRestoredBytes(Job& job, int64_t bytes);
-  std::shared_ptr<Job> Register(JobRecord record);
+  std::shared_ptr<Job> Register(const JobRecord& record);
+  // No effect if the job is not in the book.
+  void Forget(const std::string& id);
   // Sets the key and the journal of the request.
-  void StartRun(std::shared_ptr<Job> job, RunRequest request);
-  void Forget(const Job& ended);
-  // Null if the job is not active, or if the caller may not see it.
-  std::shared_ptr<Job> ActiveOrNull(const Principal& caller, const std::string& id) const;
-  // The active job; null if it has ended.
-  absl::StatusOr<std::shared_ptr<Job>> FindActive(const Principal& caller, const std::string& id);
-  absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id);
+  void StartRun(std::shared_ptr<Job> job, const JobRecord& record, RunRequest request);
+  void StartNewRun(std::shared_ptr<Job> job, const JobRecord& record, const CheckedSpec& checked);
+  void CancelRun(const JobRecord& record);
+  void OnEnded(const JobRecord& ended);
+  std::shared_ptr<Job> InBook(const std::string& id) const;  // null: it is not
+  absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id, Grid grid);
+  absl::StatusOr<FoundJob> Find(const Principal& caller, const std::string& id, Grid grid);
   // The record of a job whose results have not expired.
   absl::StatusOr<JobRecord> ReadRecordWithResults(const Principal& caller, const std::string& id);
-  // The message of a job that is not in the book, with the time when its results expire.
-  v1::EnsembleJob Message(const JobRecord& record) const;
-  void AddExpireTime(const JobRecord& record, v1::EnsembleJob& job) const;
   std::vector<std::shared_ptr<Job>> ActiveJobsNow() const;
   void EndLongJobs();
 

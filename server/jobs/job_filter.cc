@@ -1,5 +1,7 @@
 #include "server/jobs/job_filter.h"
 
+#include "server/convert/spec.h"
+
 namespace ballpiston::server {
 
 bool JobFilter::MatchesState(JobState state) const {
@@ -9,8 +11,8 @@ bool JobFilter::MatchesState(JobState state) const {
 bool JobFilter::Matches(const JobRecord& record) const {
   if (!MatchesState(record.state) || record.create_time < since) return false;
   if (experiments.empty()) return true;
-  v1::EnsembleSpec spec;
-  return spec.ParseFromString(record.spec) && experiments.contains(spec.experiment());
+  const absl::StatusOr<v1::EnsembleSpec> spec = SpecFromBytes(record.spec);
+  return spec.ok() && experiments.contains(spec->experiment());
 }
 
 }  // namespace ballpiston::server

@@ -9,6 +9,7 @@
 #include "server/convert/errors.h"
 #include "server/convert/fold_record.h"
 #include "server/convert/result_record.h"
+#include "server/jobs/job_log.h"
 #include "server/observability/failpoint.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
@@ -26,12 +27,12 @@ size_t BytesHeld(const BlockResult& result) {
 }
 
 JobEnd EndOf(const Job& job, const absl::Status& outcome) {
-  const JobRecord record = job.Record();
+  const LiveNumbers numbers = job.Numbers();
   JobEnd end;
   end.time = absl::Now();
-  end.samples = record.samples;
-  end.work = record.work;
-  end.bytes = record.bytes;
+  end.samples = numbers.samples;
+  end.work = numbers.work;
+  end.bytes = numbers.bytes;
   if (outcome.ok()) {
     end.state = v1::EnsembleJob::SUCCEEDED;
   } else if (absl::IsCancelled(outcome)) {
@@ -44,13 +45,13 @@ JobEnd EndOf(const Job& job, const absl::Status& outcome) {
 }
 
 // The job fails if the store rejected one of its results, because clients could not read it.
-absl::Status CountStoredPoints(Database& database, const JobRecord& job, JobEnd& end) {
-  const absl::StatusOr<int64_t> stored = CountResults(database, job.sequence);
+absl::Status CountStoredPoints(Database& database, const Job& job, JobEnd& end) {
+  const absl::StatusOr<int64_t> stored = CountResults(database, job.sequence());
   if (!stored.ok()) return stored.status();
   end.points_done = *stored;
-  if (end.state != v1::EnsembleJob::SUCCEEDED || *stored == job.points) return absl::OkStatus();
+  if (end.state != v1::EnsembleJob::SUCCEEDED || *stored == job.points()) return absl::OkStatus();
   const absl::Status lost = absl::DataLossError(
-      absl::StrCat("of ", job.points, " computed points the store keeps ", *stored));
+      absl::StrCat("of ", job.points(), " computed points the store keeps ", *stored));
   end.state = v1::EnsembleJob::FAILED;
   end.error = RpcStatus(StoreFailure(lost)).SerializeAsString();
   return absl::OkStatus();
@@ -59,7 +60,7 @@ absl::Status CountStoredPoints(Database& database, const JobRecord& job, JobEnd&
 }  // namespace
 
 JobJournal::JobJournal(std::shared_ptr<Job> job, Store& store, Usage& usage, bool resumed,
-                       std::function<void(const Job&)> on_ended)
+                       OnEnded on_ended)
     : job_(std::move(job)),
       store_(store),
       usage_(usage),
@@ -67,12 +68,16 @@ JobJournal::JobJournal(std::shared_ptr<Job> job, Store& store, Usage& usage, boo
       on_ended_(std::move(on_ended)) {}
 
 void JobJournal::Began() {
-  const absl::Time now = absl::Now();
-  const auto begin = [sequence = job_->sequence(), now](Database& database) {
-    return BeginJob(database, sequence, now);
+  const auto begun = std::make_shared<bool>(false);
+  const auto begin = [sequence = job_->sequence(), now = absl::Now(), begun](Database& database) {
+    const absl::StatusOr<bool> changed = BeginJob(database, sequence, now);
+    *begun = changed.value_or(false);
+    return changed.status();
   };
-  store_.Record(begin, [job = job_, now](const absl::Status& done) {
-    if (done.ok()) job->Enter(v1::EnsembleJob::RUNNING, now);
+  store_.Record(begin, [job = job_, begun](const absl::Status& done) {
+    if (!done.ok() || !*begun) return;
+    LogState(*job, v1::EnsembleJob::RUNNING);
+    job->NoteStateChange();
   });
 }
 
@@ -154,21 +159,22 @@ void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
 void JobJournal::Ended(const absl::Status& outcome) {
   const JobEnd computed = EndOf(*job_, outcome);
   Failpoint("job.before_end");
-  auto end = std::make_shared<JobEnd>();
-  const auto change = [record = job_->Record(), computed, end](Database& database) {
-    *end = computed;
-    const absl::Status counted = CountStoredPoints(database, record, *end);
+  const auto ended = std::make_shared<std::optional<JobRecord>>();
+  const auto change = [job = job_, computed, ended](Database& database) {
+    JobEnd end = computed;
+    ended->reset();
+    const absl::Status counted = CountStoredPoints(database, *job, end);
     if (!counted.ok()) return counted;
-    const absl::StatusOr<JobState> state = EndJob(database, record.sequence, *end);
-    if (state.ok() && *state != end->state) end->error.clear();  // it was cancelled
-    end->state = state.value_or(end->state);
-    return state.status();
+    absl::StatusOr<std::optional<JobRecord>> row = EndJob(database, job->sequence(), end);
+    if (row.ok()) *ended = *std::move(row);
+    return row.status();
   };
-  store_.RecordSoon(change, [job = job_, end, ended = on_ended_](const absl::Status& done) {
-    if (!done.ok()) return;
+  store_.RecordSoon(change, [job = job_, ended, on_ended = on_ended_](const absl::Status& done) {
+    if (!done.ok() || !*ended) return;
     Failpoint("job.ended");
-    job->Enter(end->state, end->time, end->error);
-    if (ended) ended(*job);
+    LogEnd(**ended);
+    if (on_ended) on_ended(**ended);
+    job->NoteStateChange();
   });
   Failpoint("job.end_recorded");
 }

@@ -1,9 +1,8 @@
-// Stores the progress that a job's run reports, and updates the job.
+// Stores the progress that a job's run reports, and updates the job's numbers in memory.
 //
 // Order in the store: a checkpoint after the point's earlier ones and its chunks, a point's result
-// after its checkpoints, the end of the job after all of it. Clients see that the job has begun,
-// that a point is finished and that the job has ended in this order, and only after the change is
-// on disk. So a restart never takes back a state that a client has seen. Thread-safe.
+// after its checkpoints, the end of the job after all of it. Clients see that a point is finished
+// after its result is on disk; the state they read from the job's row. Thread-safe.
 #ifndef BALLPISTON_SERVER_JOBS_JOB_JOURNAL_H_
 #define BALLPISTON_SERVER_JOBS_JOB_JOURNAL_H_
 
@@ -19,10 +18,12 @@ namespace ballpiston::server {
 
 class JobJournal : public RunJournal {
  public:
-  // `resumed`: an earlier process may have stored checkpoints. The store's thread calls `on_ended`
-  // when the end of the job is on disk. Store and usage must outlive this.
-  JobJournal(std::shared_ptr<Job> job, Store& store, Usage& usage, bool resumed,
-             std::function<void(const Job&)> on_ended);
+  // The store's thread calls it with the job's row.
+  using OnEnded = std::function<void(const JobRecord& ended)>;
+
+  // `resumed`: an earlier process may have stored checkpoints. `on_ended` is called when the end of
+  // the job is on disk, unless the job had ended before. Store and usage must outlive this.
+  JobJournal(std::shared_ptr<Job> job, Store& store, Usage& usage, bool resumed, OnEnded on_ended);
 
   void Began() override;
   absl::StatusOr<StoredPoint> ReadPoint(size_t point) override;
@@ -40,7 +41,7 @@ class JobJournal : public RunJournal {
   Store& store_;
   Usage& usage_;
   const bool resumed_;
-  const std::function<void(const Job&)> on_ended_;
+  const OnEnded on_ended_;
 };
 
 }  // namespace ballpiston::server

@@ -16,17 +16,4 @@ void LeaveOutFinished(v1::StatisticsSnapshot& message) {
   points.erase(std::remove_if(points.begin(), points.end(), is_finished), points.end());
 }
 
-std::shared_ptr<const JobSnapshot> SharedSnapshot::Get(uint64_t change,
-                                                       std::chrono::milliseconds max_age,
-                                                       Make make) {
-  MutexLock lock(mutex_);
-  const Clock::time_point now = Clock::now();
-  const bool fits = last_ != nullptr && (last_->change >= change || now - made_ < max_age);
-  if (!fits) {
-    last_ = std::make_shared<const JobSnapshot>(make());
-    made_ = now;
-  }
-  return last_;
-}
-
 }  // namespace ballpiston::server

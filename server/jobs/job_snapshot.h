@@ -1,19 +1,12 @@
-// A copy of a job's unfinished points at one moment, shared by all watches of the job.
-//
-// Making a snapshot takes the scheduler's lock and copies the merged results of the points. So all
-// watches get the same snapshot as long as it is recent enough or nothing has changed. Thread-safe.
+// A copy of a job's unfinished points at one moment, which its watches share (shared_copy.h).
 #ifndef BALLPISTON_SERVER_JOBS_JOB_SNAPSHOT_H_
 #define BALLPISTON_SERVER_JOBS_JOB_SNAPSHOT_H_
 
-#include <chrono>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
-#include "absl/functional/function_ref.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "ballpiston/v1/result.pb.h"
-#include "server/mutex.h"
 
 namespace ballpiston::server {
 
@@ -32,24 +25,6 @@ struct JobSnapshot {
 // Removes those points from the unfinished ones of a message that are also among its finished ones:
 // they were finished after the snapshot was made.
 void LeaveOutFinished(v1::StatisticsSnapshot& message);
-
-class SharedSnapshot {
- public:
-  using Make = absl::FunctionRef<JobSnapshot()>;
-
-  // Returns the last snapshot if nothing has changed since (`change` is the job's last change), or
-  // if it is at most `max_age` old. Otherwise makes a new snapshot: calls `make` with a lock held,
-  // in one thread at a time.
-  std::shared_ptr<const JobSnapshot> Get(uint64_t change, std::chrono::milliseconds max_age,
-                                         Make make);
-
- private:
-  using Clock = std::chrono::steady_clock;
-
-  Mutex mutex_;
-  std::shared_ptr<const JobSnapshot> last_ ABSL_GUARDED_BY(mutex_);
-  Clock::time_point made_ ABSL_GUARDED_BY(mutex_);
-};
 
 }  // namespace ballpiston::server
 

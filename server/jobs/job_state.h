@@ -1,10 +1,4 @@
-// The states of a job and the permitted transitions.
-//
-//   QUEUED -> RUNNING -> SUCCEEDED | FAILED
-//   QUEUED, RUNNING -> CANCELLING -> CANCELLED
-//
-// QUEUED may also end at once: SUCCEEDED after a restart that found nothing left to compute, or
-// FAILED. Pure functions.
+// The states of a job; store/job_table.h has the transitions. Pure functions.
 #ifndef BALLPISTON_SERVER_JOBS_JOB_STATE_H_
 #define BALLPISTON_SERVER_JOBS_JOB_STATE_H_
 
@@ -15,7 +9,6 @@
 namespace ballpiston::server {
 
 bool HasEnded(JobState state);
-bool MayFollow(JobState from, JobState to);
 std::string StateName(JobState state);
 
 }  // namespace ballpiston::server

@@ -95,7 +95,8 @@ class StoreCheck {
   absl::Status CheckJobs() {
     return ForEach(
         "SELECT id, state, spec, error, end_time IS NULL, points, points_done,"
-        " (SELECT count(*) FROM results WHERE job = sequence), expired_time IS NOT NULL FROM jobs",
+        " (SELECT count(*) FROM results WHERE job = sequence), expired_time IS NOT NULL, grid FROM "
+        "jobs",
         [this](const Query& row) { CheckJob(row); });
   }
 
@@ -105,7 +106,7 @@ class StoreCheck {
     if (state < EnsembleJob::QUEUED || state > EnsembleJob::CANCELLED) {
       return Found(absl::StrCat(job, " has an unknown state: ", state));
     }
-    const absl::StatusOr<v1::EnsembleSpec> spec = SpecFromBytes(row.Bytes(2));
+    const absl::StatusOr<v1::EnsembleSpec> spec = SpecFromBytes({row.Bytes(2), row.Bytes(9)});
     if (!spec.ok()) Found(absl::StrCat(job, ": ", spec.status().message()));
     if (!google::rpc::Status().ParseFromString(row.Bytes(3))) {
       Found(absl::StrCat(job, ": its error cannot be read"));

@@ -1,4 +1,5 @@
-// A row of the jobs table.
+// A row of the jobs table. The row owns the job's state; it changes in committed transactions only
+// (job_table.h).
 #ifndef BALLPISTON_SERVER_STORE_JOB_RECORD_H_
 #define BALLPISTON_SERVER_STORE_JOB_RECORD_H_
 
@@ -8,6 +9,7 @@
 
 #include "absl/time/time.h"
 #include "ballpiston/v1/ensemble.pb.h"
+#include "server/convert/stored_spec.h"
 
 namespace ballpiston::server {
 
@@ -16,12 +18,13 @@ using JobState = v1::EnsembleJob::State;
 struct JobRecord {
   int64_t sequence = 0;  // assigned by the store; greater for a newer job, never reused
   std::string id;
-  std::string principal;  // the job's owner
-  int32_t priority = 0;   // among the principal's; higher first
-  bool pinned = false;    // its results do not expire
-  int64_t bytes = 0;      // of its specification and, once it has ended, of its results
-  std::string spec;       // serialized v1::EnsembleSpec
-  std::string question;   // hash of the question (question.h); empty: always compute
+  std::string principal;   // the job's owner
+  int32_t priority = 0;    // among the principal's; higher first
+  bool pinned = false;     // its results do not expire
+  int64_t bytes = 0;       // of its specification and, once it has ended, of its results
+  StoredSpec spec;         // its grid is empty if it was not read
+  int64_t spec_bytes = 0;  // with the grid, also if it was not read
+  std::string question;    // hash of the question (question.h); empty: always compute
   JobState state = v1::EnsembleJob::QUEUED;
   absl::Time create_time;
   std::optional<absl::Time> start_time;
@@ -32,9 +35,10 @@ struct JobRecord {
   int64_t restarts = 0;           // how often another engine restarted the job
   std::string cancel_request_id;  // of the cancellation, or empty
   int64_t points = 0;
-  int64_t points_done = 0;  // these two are up to date in ended jobs only
+  // Of an ended job; of an active job they are in memory (jobs/job.h).
+  int64_t points_done = 0;
   double samples = 0;
-  double work = 0;  // seconds of processor time, in the server process that runs or ended the job
+  double work = 0;  // seconds of processor time, in the server process that ended the job
 };
 
 }  // namespace ballpiston::server

@@ -8,7 +8,7 @@ namespace {
 constexpr char kColumns[] =
     "sequence, id, principal, priority, spec, question, state, create_time, start_time, end_time,"
     " error, engine_version, cancel_request_id, points, points_done, samples, work,"
-    " restarts, pinned, bytes, expired_time";
+    " restarts, pinned, bytes, expired_time, length(spec) + length(grid)";
 
 // QUEUED, RUNNING, CANCELLING.
 constexpr char kActiveStates[] = "1, 2, 3";
@@ -20,13 +20,15 @@ std::optional<absl::Time> OptionalTime(const Query& query, int column) {
   return absl::FromUnixNanos(query.Integer(column));
 }
 
-JobRecord RecordOf(const Query& query) {
+constexpr int kGridColumn = 22;  // the last one, and there only if the grid is read
+
+JobRecord RecordOf(const Query& query, Grid grid) {
   JobRecord record;
   record.sequence = query.Integer(0);
   record.id = query.Bytes(1);
   record.principal = query.Bytes(2);
   record.priority = static_cast<int32_t>(query.Integer(3));
-  record.spec = query.Bytes(4);
+  record.spec.rest = query.Bytes(4);
   record.question = query.Bytes(5);
   record.state = static_cast<JobState>(query.Integer(6));
   record.create_time = absl::FromUnixNanos(query.Integer(7));
@@ -43,6 +45,8 @@ JobRecord RecordOf(const Query& query) {
   record.pinned = query.Integer(18) != 0;
   record.bytes = query.Integer(19);
   record.expired_time = OptionalTime(query, 20);
+  record.spec_bytes = query.Integer(21);
+  if (grid == Grid::kIncluded) record.spec.grid = query.Bytes(kGridColumn);
   return record;
 }
 
@@ -55,25 +59,33 @@ void BindTextOrNull(Query& query, const std::string& text) {
 }
 
 // Selects the jobs that meet the caller's condition.
-std::string SelectWhere(const char* condition) {
-  return absl::StrCat("SELECT ", kColumns, " FROM jobs WHERE ", condition);
+std::string SelectWhere(const char* condition, Grid grid) {
+  return absl::StrCat("SELECT ", kColumns, grid == Grid::kIncluded ? ", grid" : "",
+                      " FROM jobs WHERE ", condition);
 }
 
-absl::StatusOr<std::optional<JobRecord>> FirstRow(Query& query) {
+absl::StatusOr<std::optional<JobRecord>> FirstRow(Query& query, Grid grid) {
   const absl::StatusOr<bool> row = query.Step();
   if (!row.ok()) return row.status();
   if (!*row) return std::nullopt;
-  return RecordOf(query);
+  return RecordOf(query, grid);
 }
 
-absl::StatusOr<std::vector<JobRecord>> AllRows(Query& query) {
+absl::StatusOr<std::vector<JobRecord>> AllRows(Query& query, Grid grid) {
   std::vector<JobRecord> records;
   while (true) {
     const absl::StatusOr<bool> row = query.Step();
     if (!row.ok()) return row.status();
     if (!*row) return records;
-    records.push_back(RecordOf(query));
+    records.push_back(RecordOf(query, grid));
   }
+}
+
+// Runs an update of one job. False: the job did not meet its condition.
+absl::StatusOr<bool> HasChanged(Database& database, Query& update) {
+  const absl::Status status = update.Run();
+  if (!status.ok()) return status;
+  return database.RowsChanged() == 1;
 }
 
 absl::Status RunFor(Database& database, int64_t sequence, const char* sql) {
@@ -91,8 +103,8 @@ absl::StatusOr<std::vector<JobSize>> AllSizes(Query& query) {
 }
 
 std::string SelectSizes(const char* condition) {
-  return absl::StrCat("SELECT sequence, bytes, length(spec), principal FROM jobs WHERE ",
-                      condition);
+  return absl::StrCat(
+      "SELECT sequence, bytes, length(spec) + length(grid), principal FROM jobs WHERE ", condition);
 }
 
 // The jobs that ended first.
@@ -113,26 +125,29 @@ constexpr const char* kDropUnfinished[] = {"DELETE FROM checkpoints WHERE job = 
 absl::Status InsertJob(Database& database, JobRecord& record) {
   Query query = database.Prepare(
       "INSERT INTO jobs (id, principal, priority, spec, question, state, create_time, error,"
-      " engine_version, restarts, points, points_done, samples, work, pinned, bytes)"
-      " VALUES (?, ?, ?, ?, ?, ?, ?, x'', ?, 0, ?, 0, 0, 0, 0, ?)");
+      " engine_version, restarts, points, points_done, samples, work, pinned, bytes, grid)"
+      " VALUES (?, ?, ?, ?, ?, ?, ?, x'', ?, 0, ?, 0, 0, 0, 0, ?, ?)");
   query.BindText(record.id).BindText(record.principal).Bind(int64_t{record.priority});
-  query.BindBlob(record.spec).BindBlob(record.question).Bind(int64_t{record.state});
+  query.BindBlob(record.spec.rest).BindBlob(record.question).Bind(int64_t{record.state});
   query.Bind(absl::ToUnixNanos(record.create_time)).BindText(record.engine_version);
-  const absl::Status status = query.Bind(record.points).Bind(record.bytes).Run();
+  query.Bind(record.points).Bind(record.bytes).BindBlob(record.spec.grid);
+  const absl::Status status = query.Run();
   record.sequence = database.LastInsertedRow();
   return status;
 }
 
-absl::StatusOr<std::optional<JobRecord>> FindJob(Database& database, const std::string& id) {
-  Query query = database.Prepare(SelectWhere("id = ?"));
+absl::StatusOr<std::optional<JobRecord>> FindJob(Database& database, const std::string& id,
+                                                 Grid grid) {
+  Query query = database.Prepare(SelectWhere("id = ?", grid));
   query.BindText(id);
-  return FirstRow(query);
+  return FirstRow(query, grid);
 }
 
-absl::StatusOr<std::optional<JobRecord>> FindJobBySequence(Database& database, int64_t sequence) {
-  Query query = database.Prepare(SelectWhere("sequence = ?"));
+absl::StatusOr<std::optional<JobRecord>> FindJobBySequence(Database& database, int64_t sequence,
+                                                           Grid grid) {
+  Query query = database.Prepare(SelectWhere("sequence = ?", grid));
   query.Bind(sequence);
-  return FirstRow(query);
+  return FirstRow(query, grid);
 }
 
 absl::StatusOr<std::optional<JobSize>> FindUnpinned(Database& database, int64_t sequence) {
@@ -150,9 +165,10 @@ absl::StatusOr<std::optional<JobRecord>> FindAnswer(Database& database,
   if (question.empty()) return std::nullopt;
   Query query =
       database.Prepare(SelectWhere("principal = ? AND question = ? AND question <> x'' AND state = "
-                                   "? AND expired_time IS NULL ORDER BY sequence LIMIT 1"));
+                                   "? AND expired_time IS NULL ORDER BY sequence LIMIT 1",
+                                   Grid::kIncluded));
   query.BindText(principal).BindBlob(question).Bind(int64_t{v1::EnsembleJob::SUCCEEDED});
-  return FirstRow(query);
+  return FirstRow(query, Grid::kIncluded);
 }
 
 absl::StatusOr<int64_t> CountActiveJobs(Database& database,
@@ -166,38 +182,54 @@ absl::StatusOr<int64_t> CountActiveJobs(Database& database,
   return query.Integer(0);
 }
 
+absl::StatusOr<std::map<std::string, ActiveJobs>> CountActiveByPrincipal(Database& database) {
+  Query query =
+      database.Prepare(absl::StrCat("SELECT principal, state, count(*) FROM jobs WHERE state IN (",
+                                    kActiveStates, ") GROUP BY state, principal"));
+  std::map<std::string, ActiveJobs> by_principal;
+  while (true) {
+    const absl::StatusOr<bool> row = query.Step();
+    if (!row.ok()) return row.status();
+    if (!*row) return by_principal;
+    ActiveJobs& jobs = by_principal[query.Bytes(0)];
+    const int64_t state = query.Integer(1);
+    (state == v1::EnsembleJob::QUEUED    ? jobs.queued
+     : state == v1::EnsembleJob::RUNNING ? jobs.running
+                                         : jobs.cancelling) = query.Integer(2);
+  }
+}
+
 absl::StatusOr<int64_t> CountJobs(Database& database) {
   return database.Integer("SELECT count(*) FROM jobs");
 }
 
 absl::Status ReadJobs(Database& database, const std::optional<std::string>& principal,
-                      int64_t before, const std::function<bool(JobRecord job)>& on_job) {
+                      int64_t before, Grid grid, const std::function<bool(JobRecord job)>& on_job) {
   Query query = database.Prepare(
       SelectWhere(principal ? "principal = ? AND sequence < ? ORDER BY sequence DESC"
-                            : "sequence < ? ORDER BY sequence DESC"));
+                            : "sequence < ? ORDER BY sequence DESC",
+                  grid));
   if (principal) query.BindText(*principal);
   query.Bind(before);
   while (true) {
     const absl::StatusOr<bool> row = query.Step();
     if (!row.ok()) return row.status();
-    if (!*row || !on_job(RecordOf(query))) return absl::OkStatus();
+    if (!*row || !on_job(RecordOf(query, grid))) return absl::OkStatus();
   }
 }
 
 absl::StatusOr<std::vector<JobRecord>> ListUnfinishedJobs(Database& database) {
-  Query query = database.Prepare(
-      absl::StrCat(SelectWhere("state IN ("), kActiveStates, ") ORDER BY sequence"));
-  return AllRows(query);
+  Query query = database.Prepare(absl::StrCat(SelectWhere("state IN (", Grid::kIncluded),
+                                              kActiveStates, ") ORDER BY sequence"));
+  return AllRows(query, Grid::kIncluded);
 }
 
-absl::Status BeginJob(Database& database, int64_t sequence, absl::Time now) {
-  return database
-      .Prepare("UPDATE jobs SET state = ?, start_time = ? WHERE sequence = ? AND state = ?")
-      .Bind(int64_t{v1::EnsembleJob::RUNNING})
-      .Bind(absl::ToUnixNanos(now))
-      .Bind(sequence)
-      .Bind(int64_t{v1::EnsembleJob::QUEUED})
-      .Run();
+absl::StatusOr<bool> BeginJob(Database& database, int64_t sequence, absl::Time now) {
+  Query query = database.Prepare(
+      "UPDATE jobs SET state = ?, start_time = ? WHERE sequence = ? AND state = ?");
+  query.Bind(int64_t{v1::EnsembleJob::RUNNING}).Bind(absl::ToUnixNanos(now));
+  query.Bind(sequence).Bind(int64_t{v1::EnsembleJob::QUEUED});
+  return HasChanged(database, query);
 }
 
 absl::StatusOr<bool> BeginCancellation(Database& database, int64_t sequence,
@@ -208,34 +240,28 @@ absl::StatusOr<bool> BeginCancellation(Database& database, int64_t sequence,
   BindTextOrNull(query, request_id);
   query.Bind(sequence);
   query.Bind(int64_t{v1::EnsembleJob::QUEUED}).Bind(int64_t{v1::EnsembleJob::RUNNING});
-  const absl::Status status = query.Run();
-  if (!status.ok()) return status;
-  return database.RowsChanged() == 1;
+  return HasChanged(database, query);
 }
 
-absl::StatusOr<JobState> EndJob(Database& database, int64_t sequence, const JobEnd& end) {
+absl::StatusOr<std::optional<JobRecord>> EndJob(Database& database, int64_t sequence,
+                                                const JobEnd& end) {
   Query query = database.Prepare(
-      "UPDATE jobs SET state = iif(state = ?, ?, ?), end_time = ?, error = iif(state = ?, x'', ?),"
-      " points_done = ?, samples = ?, work = ?, bytes = ? WHERE sequence = ? RETURNING state");
+      absl::StrCat("UPDATE jobs SET state = iif(state = ?, ?, ?), end_time = ?,"
+                   " error = iif(state = ?, x'', ?), points_done = ?, samples = ?, work = ?,"
+                   " bytes = ? WHERE sequence = ? AND state IN (",
+                   kActiveStates, ")"));
   query.Bind(int64_t{v1::EnsembleJob::CANCELLING}).Bind(int64_t{v1::EnsembleJob::CANCELLED});
   query.Bind(int64_t{end.state}).Bind(absl::ToUnixNanos(end.time));
-  query.Bind(int64_t{v1::EnsembleJob::CANCELLING}).BindBlob(end.error);
-  const absl::StatusOr<bool> row = query.Bind(end.points_done)
-                                       .Bind(end.samples)
-                                       .Bind(end.work)
-                                       .Bind(end.bytes)
-                                       .Bind(sequence)
-                                       .Step();
-  if (!row.ok()) return row.status();
-  if (!*row) return absl::NotFoundError("the job is not in the store");
-  const auto state = static_cast<JobState>(query.Integer(0));
-  const absl::StatusOr<bool> last = query.Step();
-  if (!last.ok()) return last.status();
+  query.Bind(int64_t{v1::EnsembleJob::CANCELLING}).BindBlob(end.error).Bind(end.points_done);
+  query.Bind(end.samples).Bind(end.work).Bind(end.bytes).Bind(sequence);
+  const absl::StatusOr<bool> has_ended = HasChanged(database, query);
+  if (!has_ended.ok()) return has_ended.status();
+  if (!*has_ended) return std::nullopt;
   for (const char* sql : kDropUnfinished) {
     const absl::Status dropped = RunFor(database, sequence, sql);
     if (!dropped.ok()) return dropped;
   }
-  return state;
+  return FindJobBySequence(database, sequence, Grid::kIncluded);
 }
 
 absl::Status RestartJob(Database& database, int64_t sequence, const std::string& engine_version,
@@ -288,7 +314,9 @@ absl::Status ExpireJob(Database& database, int64_t sequence, absl::Time now) {
       RunFor(database, sequence, "INSERT OR IGNORE INTO dropped (job) VALUES (?)");
   if (!dropped.ok()) return dropped;
   return database
-      .Prepare("UPDATE jobs SET expired_time = ?, bytes = length(spec) WHERE sequence = ?")
+      .Prepare(
+          "UPDATE jobs SET expired_time = ?, bytes = length(spec) + length(grid) WHERE sequence = "
+          "?")
       .Bind(absl::ToUnixNanos(now))
       .Bind(sequence)
       .Run();

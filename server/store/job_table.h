@@ -1,13 +1,20 @@
 // The SQL about jobs. Each function runs inside the transaction of its caller.
 //
-// These functions decide changes of state, because the store runs all writes in one order: if a
-// cancellation and the last result of a job come at the same time, one of them is first.
-// UNAVAILABLE: SQLite failed.
+// Only these functions change a job's state. The transitions:
+//
+//   QUEUED -> RUNNING -> SUCCEEDED | FAILED
+//   QUEUED, RUNNING -> CANCELLING -> CANCELLED
+//
+// QUEUED may also end at once: SUCCEEDED after a restart that found nothing left to compute, or
+// FAILED. Each function has the states in which it acts in its condition, and has no effect in
+// others. The store runs all writes in one order: if a cancellation and the end of a job come at
+// the same time, one of them is first, and the first end is kept. UNAVAILABLE: SQLite failed.
 #ifndef BALLPISTON_SERVER_STORE_JOB_TABLE_H_
 #define BALLPISTON_SERVER_STORE_JOB_TABLE_H_
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,11 +27,16 @@
 
 namespace ballpiston::server {
 
+// Whether a job is read with the grid of its specification, which may be large.
+enum class Grid { kLeftOut, kIncluded };
+
 // Sets record.sequence.
 absl::Status InsertJob(Database& database, JobRecord& record);
 
-absl::StatusOr<std::optional<JobRecord>> FindJob(Database& database, const std::string& id);
-absl::StatusOr<std::optional<JobRecord>> FindJobBySequence(Database& database, int64_t sequence);
+absl::StatusOr<std::optional<JobRecord>> FindJob(Database& database, const std::string& id,
+                                                 Grid grid);
+absl::StatusOr<std::optional<JobRecord>> FindJobBySequence(Database& database, int64_t sequence,
+                                                           Grid grid);
 
 // The principal's oldest job that SUCCEEDED in answering the question (JobRecord::question).
 absl::StatusOr<std::optional<JobRecord>> FindAnswer(Database& database,
@@ -36,21 +48,29 @@ absl::StatusOr<std::optional<JobRecord>> FindAnswer(Database& database,
 absl::StatusOr<int64_t> CountActiveJobs(Database& database,
                                         const std::optional<std::string>& principal);
 
+// Active jobs, by state.
+struct ActiveJobs {
+  int64_t queued = 0;
+  int64_t running = 0;
+  int64_t cancelling = 0;
+};
+absl::StatusOr<std::map<std::string, ActiveJobs>> CountActiveByPrincipal(Database& database);
+
 // The number of all jobs.
 absl::StatusOr<int64_t> CountJobs(Database& database);
 
 // Reads the jobs of one principal or of all, with a smaller sequence than `before`, newest first.
 // Ends when `on_job` returns false.
 absl::Status ReadJobs(Database& database, const std::optional<std::string>& principal,
-                      int64_t before, const std::function<bool(JobRecord job)>& on_job);
+                      int64_t before, Grid grid, const std::function<bool(JobRecord job)>& on_job);
 
 // The active jobs, oldest first.
 absl::StatusOr<std::vector<JobRecord>> ListUnfinishedJobs(Database& database);
 
-// QUEUED -> RUNNING. No effect in every other state.
-absl::Status BeginJob(Database& database, int64_t sequence, absl::Time now);
+// QUEUED -> RUNNING. False in every other state.
+absl::StatusOr<bool> BeginJob(Database& database, int64_t sequence, absl::Time now);
 
-// QUEUED, RUNNING -> CANCELLING. False, and no effect, in every other state.
+// QUEUED, RUNNING -> CANCELLING. False in every other state.
 absl::StatusOr<bool> BeginCancellation(Database& database, int64_t sequence,
                                        const std::string& request_id);
 
@@ -65,8 +85,9 @@ struct JobEnd {
 };
 
 // Ends an active job and drops its checkpoints. A job that is CANCELLING becomes CANCELLED whatever
-// state was requested. Returns the job's new state.
-absl::StatusOr<JobState> EndJob(Database& database, int64_t sequence, const JobEnd& end);
+// state was requested. Returns the job's new row; empty if the job is not active.
+absl::StatusOr<std::optional<JobRecord>> EndJob(Database& database, int64_t sequence,
+                                                const JobEnd& end);
 
 // Starts a job of another engine version again: drops its results and sets its engine version.
 absl::Status RestartJob(Database& database, int64_t sequence, const std::string& engine_version,

@@ -38,7 +38,8 @@ CREATE TABLE jobs (
   points INTEGER NOT NULL,
   points_done INTEGER NOT NULL,
   samples REAL NOT NULL,
-  work REAL NOT NULL
+  work REAL NOT NULL,
+  grid BLOB NOT NULL  -- last, because SQLite reads a row up to the columns that are asked for
 ) STRICT;
 CREATE INDEX jobs_by_state ON jobs (state, principal);
 CREATE INDEX jobs_by_principal ON jobs (principal, sequence, bytes);

@@ -276,8 +276,8 @@ void Store::WriteUntilClosed() {
   while (AwaitWork()) {
     if (std::optional<Batch> batch = TakeBatch()) {
       MarkSuperseded(batch->writes);
-      const absl::Status status = CommitBatch(batch->writes);
-      Settle(*std::move(batch), status);
+      const absl::Status status = CommitBatch(*batch);
+      SettleRest(std::move(batch->writes), status);
     }
     Sweep();
   }
@@ -370,22 +370,27 @@ size_t Store::GroupEnd(const Writes& batch, size_t first, size_t most) {
   return end;
 }
 
-absl::Status Store::CommitBatch(Writes& batch) {
+absl::Status Store::CommitBatch(Batch& batch) {
+  Writes& writes = batch.writes;
   size_t first = 0;
-  size_t group = std::max<size_t>(batch.size(), 1);
+  size_t group = std::max<size_t>(writes.size(), 1);
   absl::Status status;
   do {
-    const size_t last = GroupEnd(batch, first, group);
-    status = CommitGroup(batch, first, last);
+    const size_t last = GroupEnd(writes, first, group);
+    status = CommitGroup(writes, first, last);
     if (status.ok()) {
+      if (last == writes.size() && batch.whole)
+        NoteHealth(status);  // before the callers hear of it
+      Settle(writes, first, last, status);
       first = last;
     } else if (absl::IsResourceExhausted(status)) {
       WriteLogBack();
       if (group <= kSmallestGroup) break;
       group = std::max(kSmallestGroup, group / 2);
     }
-  } while (first < batch.size() && (status.ok() || absl::IsResourceExhausted(status)));
-  if (absl::IsResourceExhausted(status)) return CommitRequestsAlone(batch, first, status);
+  } while (first < writes.size() && (status.ok() || absl::IsResourceExhausted(status)));
+  if (absl::IsResourceExhausted(status)) status = CommitRequestsAlone(writes, first, status);
+  if (!status.ok() && batch.whole) NoteHealth(status);
   return status;
 }
 
@@ -397,6 +402,7 @@ absl::Status Store::CommitRequestsAlone(Writes& batch, size_t first, const absl:
     const bool alone = !batch[i].lasting && !batch[i].ordered;
     const absl::Status status = alone ? CommitRequest(batch, i) : full;
     if (!status.ok()) failed = status;
+    if (status.ok()) Settle(batch, i, i + 1, status);
   }
   return failed;
 }
@@ -505,27 +511,38 @@ void Store::NoteSweep(const absl::StatusOr<bool>& swept) {
 
 // ---- outcomes ----
 
-void Store::Settle(Batch batch, const absl::Status& status) {
-  if (batch.whole) NoteHealth(status);  // before the callers get the outcome
-  Writes again;
-  Writes settled;
-  size_t freed = 0;
-  for (Write& write : batch.writes) {
-    const bool waits = !write.outcome && write.lasting && !write.superseded;
-    if (!waits) freed += write.bytes;
-    (waits ? again : settled).push_back(std::move(write));
+void Store::Settle(Writes& batch, size_t first, size_t last, const absl::Status& status) {
+  {
+    MutexLock lock(mutex_);
+    in_batch_ -= last - first;
+    swept_ = false;
+    for (size_t i = first; i < last; ++i) bytes_ -= batch[i].bytes;
+    written_.NotifyAll();
   }
-  Requeue(std::move(again), freed);
-  for (const Write& write : settled) {
-    if (write.done) write.done(write.outcome.value_or(status));
+  for (size_t i = first; i < last; ++i) {
+    batch[i].settled = true;
+    if (batch[i].done) batch[i].done(batch[i].outcome.value_or(status));
   }
 }
 
-void Store::Requeue(Writes again, size_t freed) {
+void Store::SettleRest(Writes batch, const absl::Status& status) {
+  Writes again;
+  for (size_t i = 0; i < batch.size(); ++i) {
+    Write& write = batch[i];
+    const bool waits = !write.outcome && write.lasting && !write.superseded;
+    if (write.settled) continue;
+    if (waits) {
+      again.push_back(std::move(write));
+    } else {
+      Settle(batch, i, i + 1, status);
+    }
+  }
+  Requeue(std::move(again));
+}
+
+void Store::Requeue(Writes again) {
   MutexLock lock(mutex_);
   in_batch_ = 0;
-  swept_ = false;
-  bytes_ -= freed;
   const bool dropped = closing_ || stop_waiting_;
   for (const Write& write : again) {
     if (dropped) bytes_ -= write.bytes;

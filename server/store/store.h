@@ -59,8 +59,9 @@ class Store {
   // its outputs. Not OK: SQLite failed, or the change refuses (with a status that is not a disk
   // error); the change is then rolled back, and `Done` receives the status.
   using Change = std::function<absl::Status(Database&)>;
-  // Called after the commit or the refusal, on the store's thread, in the order of posting. Must be
-  // quick. For a record it is not called after a failure that is retried.
+  // Called on the store's thread when the write's own group is committed, or when the write is
+  // refused; in the order of posting. Must be quick. For a record it is not called after a failure
+  // that is retried.
   using Done = std::function<void(const absl::Status&)>;
 
   struct Options {
@@ -151,6 +152,7 @@ class Store {
     int64_t point = -1;  // of a checkpoint or a result
     bool is_result = false;
     bool superseded = false;  // a checkpoint with a later one, or with the point's result, after it
+    bool settled = false;     // its outcome is told
 
     bool is_checkpoint() const { return point >= 0 && !is_result; }
     Clock::time_point due = {};
@@ -184,8 +186,9 @@ class Store {
   Writes TakeRequests() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void MarkSuperseded(Writes& batch) const;
 
-  // Sets the outcome of all writes that were committed or refused. Not OK: the disk failed.
-  absl::Status CommitBatch(Writes& batch);
+  // Commits the batch in groups and settles each group. The status is that of the last group; if it
+  // is not OK, the disk failed.
+  absl::Status CommitBatch(Batch& batch);
   absl::Status CommitRequestsAlone(Writes& batch, size_t first, const absl::Status& full);
   // Commits all or none of writes [first, last), except those that are refused.
   absl::Status CommitGroup(Writes& batch, size_t first, size_t last);
@@ -197,8 +200,13 @@ class Store {
   void Sweep();
   void NoteSweep(const absl::StatusOr<bool>& swept) ABSL_LOCKS_EXCLUDED(mutex_);
 
-  void Settle(Batch batch, const absl::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
-  void Requeue(Writes again, size_t freed) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Tells writes [first, last) their outcome; that of a write which is neither committed nor
+  // refused is `status`.
+  void Settle(Writes& batch, size_t first, size_t last, const absl::Status& status)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  // Settles what the disk did not take: requests fail, and records wait for the next try.
+  void SettleRest(Writes batch, const absl::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
+  void Requeue(Writes again) ABSL_LOCKS_EXCLUDED(mutex_);
   void NoteHealth(const absl::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
 
   const Options options_;

@@ -44,7 +44,7 @@ void RequireSameAfterConversion(const EnsembleSpec& spec) {
   const v1::EnsembleSpec message = server::SpecMessage(spec);
   const server::CheckedSpec again = server::CheckSpec(message);
   Require(again.violations.empty(), "what was accepted is accepted again");
-  const std::string bytes = server::SpecBytes(message);
+  const server::StoredSpec bytes = server::SpecBytes(message);
   Require(server::SpecBytes(server::SpecMessage(again.spec)) == bytes, "the core's form is exact");
   const absl::StatusOr<v1::EnsembleSpec> stored = server::SpecFromBytes(bytes);
   Require(stored.ok() && server::SpecBytes(*stored) == bytes, "stored bytes come back");

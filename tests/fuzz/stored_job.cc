@@ -42,13 +42,13 @@ server::JobRecord RowOf(std::string_view bytes) {
   row.samples = std::bit_cast<double>(TakeInteger(bytes));
   row.work = std::bit_cast<double>(TakeInteger(bytes));
   const auto length = static_cast<unsigned char>(TakeText(bytes, 1)[0]);
-  row.spec = TakeText(bytes, length);
+  row.spec.rest = TakeText(bytes, length);
   row.error = std::string(bytes);
   return row;
 }
 
 void CheckStoredJob(const std::string& bytes) {
-  const v1::EnsembleJob job = server::JobMessage(RowOf(bytes));
+  const v1::EnsembleJob job = server::JobMessage(RowOf(bytes), nullptr, 400);
   for (const auto& time : {job.create_time(), job.start_time(), job.end_time()}) {
     Require(time.nanos() >= 0 && time.nanos() < 1'000'000'000, "a time is one");
   }

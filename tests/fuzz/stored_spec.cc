@@ -7,9 +7,9 @@ namespace ballpiston::fuzz {
 namespace {
 
 void CheckStoredSpec(const std::string& bytes) {
-  const absl::StatusOr<v1::EnsembleSpec> spec = server::SpecFromBytes(bytes);
+  const absl::StatusOr<v1::EnsembleSpec> spec = server::SpecFromBytes({bytes});
   if (!spec.ok()) return Require(absl::IsDataLoss(spec.status()), "damage is DATA_LOSS");
-  const std::string stored = server::SpecBytes(*spec);
+  const server::StoredSpec stored = server::SpecBytes(*spec);
   const absl::StatusOr<v1::EnsembleSpec> again = server::SpecFromBytes(stored);
   Require(again.ok() && server::SpecBytes(*again) == stored, "stored bytes come back");
   RequireJudged(*spec, bytes);

@@ -11,10 +11,11 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "server/convert/result_record.h"
+#include "server/convert/spec.h"
 #include "server/jobs/job_journal.h"
+#include "server/jobs/job_message.h"
 #include "server/jobs/job_name.h"
 #include "server/jobs/job_snapshot.h"
-#include "server/jobs/job_state.h"
 #include "server/store/job_table.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/store_access.h"
@@ -45,47 +46,6 @@ std::vector<int64_t> Numbers(const std::vector<FinishedPoint>& points) {
   return numbers;
 }
 
-TEST(JobState, OnlyLegalTransitionsAreLegal) {
-  const std::vector<std::pair<JobState, JobState>> legal = {
-      {EnsembleJob::QUEUED, EnsembleJob::RUNNING},
-      {EnsembleJob::QUEUED, EnsembleJob::CANCELLING},
-      {EnsembleJob::QUEUED, EnsembleJob::SUCCEEDED},
-      {EnsembleJob::QUEUED, EnsembleJob::FAILED},
-      {EnsembleJob::RUNNING, EnsembleJob::CANCELLING},
-      {EnsembleJob::RUNNING, EnsembleJob::SUCCEEDED},
-      {EnsembleJob::RUNNING, EnsembleJob::FAILED},
-      {EnsembleJob::CANCELLING, EnsembleJob::CANCELLED}};
-  int found = 0;
-  for (int from = 0; from <= EnsembleJob::CANCELLED; ++from) {
-    for (int to = 0; to <= EnsembleJob::CANCELLED; ++to) {
-      const std::pair<JobState, JobState> step{static_cast<JobState>(from),
-                                               static_cast<JobState>(to)};
-      const bool is_legal = std::find(legal.begin(), legal.end(), step) != legal.end();
-      EXPECT_EQ(MayFollow(step.first, step.second), is_legal) << from << " -> " << to;
-      found += is_legal;
-    }
-  }
-  EXPECT_EQ(found, 8);
-}
-
-TEST(Job, AnIllegalTransitionChangesNothing) {
-  int told = 0;
-  Job job(JobWithPoints(4), [&] { ++told; });
-  EXPECT_TRUE(job.Enter(EnsembleJob::CANCELLING, absl::Now()));
-  EXPECT_FALSE(job.Enter(EnsembleJob::RUNNING, absl::Now()));
-  EXPECT_EQ(job.state(), EnsembleJob::CANCELLING);
-  EXPECT_FALSE(job.Now().job.has_start_time());
-  EXPECT_EQ(told, 1);
-}
-
-TEST(Job, TimesAreThoseOfTheTransitions) {
-  Job job(JobWithPoints(4), nullptr);
-  job.Enter(EnsembleJob::RUNNING, absl::FromUnixSeconds(10));
-  job.Enter(EnsembleJob::SUCCEEDED, absl::FromUnixSeconds(20));
-  EXPECT_EQ(job.Now().job.start_time().seconds(), 10);
-  EXPECT_EQ(job.Now().job.end_time().seconds(), 20);
-}
-
 TEST(Job, ProgressIsTheShareOfWorkDone) {
   Job job(JobWithPoints(4), nullptr);
   job.AddRestoredPoints(1, 100, 1);
@@ -101,7 +61,7 @@ TEST(Job, AToleranceGivesNoFraction) {
   v1::EnsembleSpec spec;
   spec.mutable_target()->set_tolerance(0.1);
   JobRecord record = JobWithPoints(4);
-  record.spec = spec.SerializeAsString();
+  record.spec = SpecBytes(spec);
   EXPECT_FALSE(Job(record, nullptr).Progress().has_fraction());
 }
 
@@ -137,22 +97,24 @@ TEST(Job, RestoredPointsAreNotKept) {
   EXPECT_EQ(job.Progress().points_done(), 4);
 }
 
-TEST(SharedSnapshot, AnOldSnapshotIsReplacedIfTheJobHasChanged) {
-  SharedSnapshot shared;
+TEST(SharedCopy, AnOldCopyIsReplacedIfTheJobHasChanged) {
+  SharedCopy<JobSnapshot> shared;
   uint64_t made = 0;
-  const auto make = [&made] {
+  const auto make = [&made]() -> absl::StatusOr<JobSnapshot> {
     JobSnapshot snapshot;
     snapshot.change = ++made;
     return snapshot;
   };
   const auto ever = std::chrono::hours(1);
   const auto never = std::chrono::milliseconds(0);
-  const auto first = shared.Get(1, ever, make);
-  EXPECT_EQ(shared.Get(2, ever, make), first);   // young
-  EXPECT_EQ(shared.Get(1, never, make), first);  // nothing changed
-  const auto second = shared.Get(2, never, make);
+  const auto first = *shared.Get(1, ever, make);
+  EXPECT_EQ(*shared.Get(2, ever, make), first);   // young
+  EXPECT_EQ(*shared.Get(1, never, make), first);  // nothing changed
+  const auto second = *shared.Get(2, never, make);
   EXPECT_EQ(second->change, 2u);
   EXPECT_EQ(made, 2u);
+  shared.Drop();
+  EXPECT_EQ((*shared.Get(2, ever, make))->change, 3u);
 }
 
 class JobJournalTest : public testing::Test {
@@ -165,6 +127,12 @@ class JobJournalTest : public testing::Test {
     ASSERT_OK(store_->Commit([this](Database& database) { return InsertJob(database, record_); }));
     job_ = std::make_shared<Job>(record_, nullptr);
     journal_.emplace(job_, *store_, usage_, false, nullptr);
+  }
+
+  JobRecord Row() {
+    return *ReadFrom(*store_, [&](Database& database) {
+      return FindJob(database, record_.id, Grid::kIncluded);
+    });
   }
 
   void Finish(size_t point) {
@@ -185,10 +153,10 @@ TEST_F(JobJournalTest, OnlyStoredChangesAreSent) {
   journal_->Began();
   Finish(2);
   Finish(0);
-  EXPECT_EQ(job_->state(), EnsembleJob::QUEUED);
+  EXPECT_EQ(Row().state, EnsembleJob::QUEUED);
   EXPECT_EQ(job_->last_finished(), 0);
   ASSERT_OK(store_->Flush());
-  EXPECT_EQ(job_->state(), EnsembleJob::RUNNING);
+  EXPECT_EQ(Row().state, EnsembleJob::RUNNING);
   const auto told = *job_->FinishedAfter(0, 10);
   EXPECT_THAT(Numbers(told), testing::ElementsAre(1, 2));
   EXPECT_EQ(ResultFromBytes(*told[0].result)->index(), 2);
@@ -216,10 +184,8 @@ TEST_F(JobJournalTest, TheEndCountsPointsThatAreNotStoredYet) {
   for (const size_t point : {0u, 1u, 2u}) Finish(point);
   journal_->Ended(absl::OkStatus());
   ASSERT_OK(store_->Flush());
-  const auto ended =
-      ReadFrom(*store_, [&](Database& database) { return FindJob(database, record_.id); });
-  EXPECT_EQ(ended->state, EnsembleJob::SUCCEEDED);
-  EXPECT_EQ(ended->points_done, 3);
+  EXPECT_EQ(Row().state, EnsembleJob::SUCCEEDED);
+  EXPECT_EQ(Row().points_done, 3);
   EXPECT_EQ(job_->Progress().points_done(), 3);
 }
 
@@ -227,7 +193,7 @@ TEST_F(JobJournalTest, AJobWithMissingResultsFails) {
   for (const size_t point : {0u, 2u}) Finish(point);
   journal_->Ended(absl::OkStatus());
   ASSERT_OK(store_->Flush());
-  const EnsembleJob job = job_->Now().job;
+  const EnsembleJob job = JobMessage(Row(), nullptr, 0);
   EXPECT_EQ(job.state(), EnsembleJob::FAILED);
   EXPECT_THAT(job.error().message(), testing::HasSubstr("of 3 computed points the store keeps 2"));
 }

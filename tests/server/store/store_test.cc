@@ -33,7 +33,7 @@ using ::testing::HasSubstr;
 JobRecord Record(const std::string& id) {
   JobRecord record;
   record.id = id;
-  record.spec = "spec";
+  record.spec = {.rest = "spec", .grid = "grid"};
   record.create_time = absl::FromUnixNanos(1'700'000'000'123'456'789);
   record.engine_version = "1";
   record.principal = "ada";
@@ -61,7 +61,8 @@ class StoreTest : public testing::Test {
   }
 
   static std::optional<JobRecord> Find(Store& store, const std::string& id) {
-    return ReadFrom(store, [&](Database& database) { return FindJob(database, id); });
+    return ReadFrom(store,
+                    [&](Database& database) { return FindJob(database, id, Grid::kIncluded); });
   }
 
   static std::optional<std::string> Checkpoint(Store& store, int64_t job, int64_t point) {
@@ -92,13 +93,13 @@ class StoreTest : public testing::Test {
   }
 
   static JobState End(Store& store, int64_t job, JobState wish) {
-    JobState state{};
+    std::optional<JobRecord> ended;
     EXPECT_OK(store.Commit([&](Database& database) {
-      const auto now = EndJob(database, job, {wish, absl::Now(), "why", 2, 7.5, 0.25});
-      if (now.ok()) state = *now;
-      return now.status();
+      auto row = EndJob(database, job, {wish, absl::Now(), "why", 2, 7.5, 0.25});
+      if (row.ok()) ended = *std::move(row);
+      return row.status();
     }));
-    return state;
+    return ended ? ended->state : v1::EnsembleJob::STATE_UNSPECIFIED;
   }
 
   TemporaryFolder folder_;
@@ -108,7 +109,7 @@ TEST_F(StoreTest, AJobIsThereAfterReopening) {
   Insert(*Open(), Record("a"));
   const auto found = Find(*Open(), "a");
   ASSERT_TRUE(found);
-  EXPECT_EQ(found->spec, "spec");
+  EXPECT_EQ(found->spec, Record("a").spec);
   EXPECT_EQ(found->state, v1::EnsembleJob::QUEUED);
   EXPECT_EQ(found->create_time, Record("a").create_time);
   EXPECT_FALSE(found->start_time);
@@ -242,7 +243,7 @@ void MakeStore(const std::string& path, int jobs) {
   ASSERT_OK((*store)->Commit([&](Database& database) {
     for (int i = 0; i < jobs; ++i) {
       JobRecord record = Record("job-" + std::to_string(i));
-      record.spec = std::string(300, 's');
+      record.spec.rest = std::string(300, 's');
       if (const auto made = InsertJob(database, record); !made.ok()) return made;
     }
     return absl::OkStatus();
@@ -508,12 +509,15 @@ TEST_F(StoreTest, JobsAreReadOneByOneUntilTheReaderStops) {
   for (const char* id : {"a", "b", "c", "d"}) Insert(*store, Record(id));
   std::vector<std::string> read;
   const auto take = [&](const JobRecord& job) {
-    read.push_back(job.id);
-    return read.size() < 2;
+    read.push_back(job.id + job.spec.grid);
+    EXPECT_EQ(job.spec_bytes, 8);
+    return read.size() % 2 == 1;
   };
-  ASSERT_OK(store->Read(
-      [&](Database& database) { return ReadJobs(database, std::nullopt, 1000, take); }));
-  EXPECT_THAT(read, testing::ElementsAre("d", "c"));
+  for (const Grid grid : {Grid::kIncluded, Grid::kLeftOut}) {
+    ASSERT_OK(store->Read(
+        [&](Database& database) { return ReadJobs(database, std::nullopt, 1000, grid, take); }));
+  }
+  EXPECT_THAT(read, testing::ElementsAre("dgrid", "cgrid", "d", "c"));
 }
 
 TEST_F(StoreTest, AfterClosingWritesFail) {
