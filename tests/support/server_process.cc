@@ -87,11 +87,15 @@ std::string ServerProcess::log() const {
   return process_ == nullptr ? "" : ended_log_ + process_->Output();
 }
 
-double ServerProcess::ResidentMiB() const {
+double ServerProcess::ResidentMiB() const { return MiBOf("VmRSS:"); }
+
+double ServerProcess::PeakMiB() const { return MiBOf("VmHWM:"); }
+
+double ServerProcess::MiBOf(const std::string& line) const {
   std::ifstream status("/proc/" + std::to_string(process_->pid()) + "/status");
   for (std::string word; status >> word;) {
     double kib = 0;
-    if (word == "VmRSS:" && status >> kib) return kib / 1024;
+    if (word == line && status >> kib) return kib / 1024;
   }
   return 0;
 }

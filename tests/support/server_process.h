@@ -60,12 +60,15 @@ class ServerProcess {
   std::string log() const;  // the logs of all its processes
 
   double ResidentMiB() const;
+  double PeakMiB() const;
   double ProcessorSeconds() const;  // of the living threads
 
  protected:
   virtual void OnReady() {}
 
  private:
+  double MiBOf(const std::string& line) const;
+
   const ServerSetUp set_up_;
   const TemporaryFolder folder_;
   std::string address_;

@@ -9,6 +9,7 @@
 #include "client/library/error_text.h"
 #include "client/library/job_watch.h"
 #include "client/library/request_id.h"
+#include "tests/fault/torture/calls.h"
 #include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/sizes.h"
 #include "tests/support/await.h"
@@ -17,34 +18,12 @@
 namespace ballpiston::torture {
 namespace {
 
-using Stub = v1::EnsembleService::Stub;
 using client::HasEnded;
 
 // More active jobs would only wait for the two cores.
 constexpr size_t kMostActive = 3;
 // Enough jobs for the lists, few enough to check all at the end.
 size_t MostKept() { return static_cast<size_t>(Size(6, 40)); }
-constexpr std::chrono::seconds kTimeOfCall(20);  // after that the call is repeated
-
-// A call that reaches a server just as it stops is CANCELLED by gRPC, without a reason.
-bool WasNotAnswered(const absl::Status& status) {
-  const bool dropped = absl::IsCancelled(status) && client::ErrorReason(status).empty();
-  return absl::IsUnavailable(status) || absl::IsDeadlineExceeded(status) || dropped;
-}
-
-template <typename Request, typename Response>
-absl::StatusOr<Response> Ask(Stub& stub,
-                             grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&,
-                                                          Response*),
-                             const Request& request) {
-  grpc::ClientContext context;
-  context.set_deadline(std::chrono::system_clock::now() + kTimeOfCall);
-  context.set_wait_for_ready(true);
-  Response response;
-  const absl::Status status = client::FromGrpc((stub.*method)(&context, request, &response));
-  if (!status.ok()) return status;
-  return response;
-}
 
 }  // namespace
 

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
-#include "absl/time/clock.h"
+#include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "server/convert/result_record.h"
@@ -16,10 +19,12 @@
 #include "server/jobs/job_message.h"
 #include "server/jobs/job_name.h"
 #include "server/jobs/job_snapshot.h"
+#include "server/jobs/job_state.h"
 #include "server/store/job_table.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/store_access.h"
 #include "tests/support/await.h"
+#include "tests/support/nightly.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -129,11 +134,11 @@ class JobJournalTest : public testing::Test {
     journal_.emplace(job_, *store_, usage_, false, nullptr);
   }
 
-  JobRecord Row() {
-    return *ReadFrom(*store_, [&](Database& database) {
-      return FindJob(database, record_.id, Grid::kIncluded);
-    });
+  JobRecord Row(const std::string& id) {
+    return *ReadFrom(*store_,
+                     [&](Database& database) { return FindJob(database, id, Grid::kIncluded); });
   }
+  JobRecord Row() { return Row(record_.id); }
 
   void Finish(size_t point) {
     const EnsembleSpec spec = FakeSpec(3, 1);
@@ -196,6 +201,41 @@ TEST_F(JobJournalTest, AJobWithMissingResultsFails) {
   const EnsembleJob job = JobMessage(Row(), nullptr, 0);
   EXPECT_EQ(job.state(), EnsembleJob::FAILED);
   EXPECT_THAT(job.error().message(), testing::HasSubstr("of 3 computed points the store keeps 2"));
+}
+
+// Two runs end the same jobs, one in success and one in failure, while a client cancels them.
+TEST_F(JobJournalTest, TheFirstEndOfAJobIsItsEnd) {
+  std::vector<JobRecord> records(IsNightly() ? 10'000 : 1'000, JobWithPoints(0));
+  for (size_t i = 0; i < records.size(); ++i) records[i].id = absl::StrCat("job-", i);
+  ASSERT_OK(store_->Commit([&](Database& database) {
+    absl::Status inserted;
+    for (JobRecord& record : records) inserted.Update(InsertJob(database, record));
+    return inserted;
+  }));
+  std::map<std::string, std::vector<JobState>> ends;  // the store's thread writes them
+  const auto note = [&](const JobRecord& ended) { ends[ended.id].push_back(ended.state); };
+  const auto end_all = [&](const absl::Status& outcome) {
+    for (const JobRecord& record : records) {
+      const auto job = std::make_shared<Job>(record, nullptr);
+      JobJournal(job, *store_, usage_, false, note).Ended(outcome);
+    }
+  };
+  std::thread succeeds(end_all, absl::OkStatus());
+  std::thread fails(end_all, absl::InternalError("why"));
+  for (const JobRecord& record : records) {
+    store_->RecordSoon([sequence = record.sequence](Database& database) {
+      return BeginCancellation(database, sequence, "").status();
+    });
+  }
+  succeeds.join();
+  fails.join();
+  ASSERT_OK(store_->Flush());
+  for (const JobRecord& record : records) {
+    const JobState state = Row(record.id).state;
+    EXPECT_THAT(ends[record.id], testing::ElementsAre(state)) << record.id;
+    EXPECT_TRUE(HasEnded(state));
+    EXPECT_EQ(Row(record.id).error.empty(), state != EnsembleJob::FAILED);
+  }
 }
 
 TEST(LeaveOutFinished, APointInBothListsIsKeptAsFinishedOnly) {

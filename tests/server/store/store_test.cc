@@ -520,6 +520,22 @@ TEST_F(StoreTest, JobsAreReadOneByOneUntilTheReaderStops) {
   EXPECT_THAT(read, testing::ElementsAre("dgrid", "cgrid", "d", "c"));
 }
 
+// A batch of two groups: each result has more bytes than half a group.
+TEST_F(StoreTest, AWriteIsToldWhenItsOwnGroupIsCommitted) {
+  const auto store = Open({.delay = kNever});
+  const int64_t job = Insert(*store, Record("a"));
+  std::vector<int64_t> stored;
+  for (int64_t point = 0; point < 2; ++point) {
+    PointRow row{point, 1, "result", std::string(size_t{3} << 19, 'd')};
+    store->RecordResult(job, std::move(row), [&](int64_t) {
+      stored.push_back(
+          ReadFrom(*store, [&](Database& database) { return CountResults(database, job); }));
+    });
+  }
+  ASSERT_OK(store->Flush());
+  EXPECT_THAT(stored, testing::ElementsAre(1, 2));
+}
+
 TEST_F(StoreTest, AfterClosingWritesFail) {
   const auto store = Open();
   store->Close();

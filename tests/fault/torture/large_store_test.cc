@@ -1,18 +1,23 @@
-// A server with many jobs in its store starts quickly.
+// A server with much in its store starts quickly, and lists it in little memory.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "absl/strings/str_format.h"
 #include "absl/time/clock.h"
 #include "client/library/client.h"
+#include "core/geometry/paper.h"
 #include "server/convert/spec.h"
 #include "server/jobs/job_name.h"
 #include "server/store/job_table.h"
 #include "server/store/store.h"
+#include "tests/fault/torture/calls.h"
 #include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"
@@ -44,11 +49,12 @@ std::string SomeResult() {
 }
 
 // Ended jobs, with one result each.
-absl::Status InsertEnded(Database& database, int count, const std::string& result) {
+absl::Status InsertEnded(Database& database, int count, const v1::EnsembleSpec& spec,
+                         const std::string& result) {
   for (int i = 0; i < count; ++i) {
     JobRecord record;
     record.id = server::RandomId();
-    record.spec = server::SpecBytes(ManyPoints(1, 10'000));
+    record.spec = server::SpecBytes(spec);
     record.create_time = absl::Now();
     record.engine_version = server::EngineVersion();
     record.points = 1;
@@ -66,12 +72,13 @@ absl::Status InsertEnded(Database& database, int count, const std::string& resul
   return absl::OkStatus();
 }
 
-void Fill(const std::string& path, int jobs) {
+void Fill(const std::string& path, int jobs, const v1::EnsembleSpec& spec) {
   ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(path, {.stall = kNever}));
   const std::string result = SomeResult();
   for (int i = 0; i < jobs; i += kGroup) {
-    ASSERT_OK(
-        store->Commit([&](Database& database) { return InsertEnded(database, kGroup, result); }));
+    ASSERT_OK(store->Commit([&](Database& database) {
+      return InsertEnded(database, std::min(jobs - i, kGroup), spec, result);
+    }));
   }
 }
 
@@ -93,7 +100,7 @@ TEST(StartUp, IsQuickWithManyJobsInTheStore) {
                 absl::StrFormat("%.2f", SecondsToFirstAnswer(server)));
   server.KillHard();
   const std::string path = server.data_dir() + "/store.sqlite3";
-  Fill(path, jobs);
+  Fill(path, jobs, ManyPoints(1, 10'000));
   findings.Count("jobs in the store", jobs);
   findings.Note(
       "MiB of store",
@@ -107,6 +114,38 @@ TEST(StartUp, IsQuickWithManyJobsInTheStore) {
     EXPECT_LT(after_stop, kMostSecondsToReady);
     EXPECT_LT(after_kill, kMostSecondsToReady);
   }
+}
+
+// A grid of 90,000 values of rho takes 720 kB. A BASIC view leaves it out.
+TEST(Lists, InBasicViewOfLargeJobsTakeLittleMemory) {
+  constexpr double kMostMiB = 32;
+  Findings findings("lists of large jobs");
+  const int jobs = Size(100, 500);
+  ConnectedServer server;
+  server.Start();
+  server.KillHard();
+  v1::EnsembleSpec spec = ManyPoints(1, 10'000);
+  for (int i = 1; i < 90'000; ++i) spec.mutable_grid()->add_rho(kPaperRho);
+  Fill(server.data_dir() + "/store.sqlite3", jobs, spec);
+  server.Start();
+  const double before = server.PeakMiB();
+  std::vector<std::jthread> clients;
+  for (int i = 0; i < 8; ++i) {
+    clients.emplace_back([&, channel = server.Connect()] {
+      const auto stub = v1::EnsembleService::NewStub(channel);
+      v1::ListEnsembleJobsRequest request;
+      request.set_view(v1::ListEnsembleJobsRequest::BASIC);
+      request.set_page_size(1000);
+      const auto page = Ask(*stub, &Stub::ListEnsembleJobs, request);
+      ASSERT_OK(page);
+      findings.Count("jobs listed", page->jobs_size());
+    });
+  }
+  clients.clear();  // waits for them
+  EXPECT_EQ(findings.count("jobs listed"), 8 * jobs);
+  const double growth = server.PeakMiB() - before;
+  findings.Note("MiB of growth", absl::StrFormat("%.0f", growth));
+  EXPECT_LT(growth, kMostMiB);
 }
 
 }  // namespace
