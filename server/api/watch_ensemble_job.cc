@@ -9,7 +9,6 @@
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
 #include "server/convert/result_record.h"
-#include "server/jobs/job_state.h"
 
 namespace ballpiston::server {
 namespace {

@@ -15,21 +15,29 @@ bool Exceeds(double value, double limit) { return limit > 0 && value > limit; }
 // These set `refused` to the reason why one more job of the principal is not accepted, if there is
 // one. They return the errors of the store.
 
-absl::Status CheckQueue(Database& database, const Limits& limits, const std::string& principal,
+absl::Status CheckQueue(Database& database, const Limits& limits, const JobRecord& job,
                         absl::Status& refused) {
-  const auto all = CountActiveJobs(database, std::nullopt);
+  const absl::StatusOr<Load> all = ActiveLoad(database, std::nullopt);
   if (!all.ok()) return all.status();
-  const auto own = CountActiveJobs(database, principal);
+  const absl::StatusOr<Load> own = ActiveLoad(database, job.principal);
   if (!own.ok()) return own.status();
-  if (limits.max_active_jobs > 0 && *all >= limits.max_active_jobs) {
-    refused = LimitExceeded("QUEUE_FULL", absl::StrCat(*all, " jobs are active"), "max-active-jobs",
-                            static_cast<double>(limits.max_active_jobs));
-  } else if (limits.max_active_jobs_per_principal > 0 &&
-             *own >= limits.max_active_jobs_per_principal) {
-    refused = LimitExceeded(
-        "TOO_MANY_JOBS", absl::StrCat(principal, " has ", *own, " active jobs already"),
-        "max-active-jobs-per-principal", static_cast<double>(limits.max_active_jobs_per_principal));
-  }
+  const std::string& principal = job.principal;
+  const auto check = [&](int64_t with_job, int64_t most, const char* reason, const char* flag,
+                         const std::string& what) {
+    if (most == 0 || with_job <= most) return;
+    refused.Update(LimitExceeded(reason, what, flag, static_cast<double>(most)));
+  };
+  check(all->jobs + 1, limits.max_active_jobs, "QUEUE_FULL", "max-active-jobs",
+        absl::StrCat(all->jobs, " jobs are active"));
+  check(own->jobs + 1, limits.max_active_jobs_per_principal, "TOO_MANY_JOBS",
+        "max-active-jobs-per-principal",
+        absl::StrCat(principal, " has ", own->jobs, " active jobs already"));
+  const int64_t all_points = all->points + job.points, own_points = own->points + job.points;
+  check(all_points, limits.max_active_points, "TOO_MANY_ACTIVE_POINTS", "max-active-points",
+        absl::StrCat("active jobs would have ", all_points, " points with this one"));
+  check(own_points, limits.max_active_points_per_principal, "TOO_MANY_ACTIVE_POINTS",
+        "max-active-points-per-principal",
+        absl::StrCat(principal, "'s active jobs would have ", own_points, " points with this one"));
   return absl::OkStatus();
 }
 
@@ -46,11 +54,10 @@ absl::Status CheckStoreSize(Database& database, const Limits& limits, absl::Stat
   return absl::OkStatus();
 }
 
-absl::Status CheckRoom(Database& database, const Limits& limits, const ActivePoints& points,
-                       const Usage& usage, const JobRecord& job, absl::Status& refused) {
-  const absl::Status counted = CheckQueue(database, limits, job.principal, refused);
+absl::Status CheckRoom(Database& database, const Limits& limits, const Usage& usage,
+                       const JobRecord& job, absl::Status& refused) {
+  const absl::Status counted = CheckQueue(database, limits, job, refused);
   if (!counted.ok()) return counted;
-  refused.Update(points.Check(job.principal, job.points, limits));
   refused.Update(usage.Check(job.principal, job.create_time, limits));
   return refused.ok() ? CheckStoreSize(database, limits, refused) : absl::OkStatus();
 }
@@ -120,8 +127,8 @@ absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits) {
                        "max-samples-per-job", limits.max_samples_per_job);
 }
 
-absl::Status Judge(Database& database, const Limits& limits, const ActivePoints& points,
-                   const Usage& usage, Acceptance& acceptance) {
+absl::Status Judge(Database& database, const Limits& limits, const Usage& usage,
+                   Acceptance& acceptance) {
   acceptance.earlier.reset();
   acceptance.replay = acceptance.answered_from_store = false;
   acceptance.refused = absl::OkStatus();
@@ -129,21 +136,16 @@ absl::Status Judge(Database& database, const Limits& limits, const ActivePoints&
   if (!looked.ok() || acceptance.earlier || !acceptance.refused.ok()) return looked;
   acceptance.refused = acceptance.fits;
   if (!acceptance.refused.ok()) return absl::OkStatus();
-  return CheckRoom(database, limits, points, usage, acceptance.record, acceptance.refused);
+  return CheckRoom(database, limits, usage, acceptance.record, acceptance.refused);
 }
 
-absl::Status Accept(Database& database, const Limits& limits, ActivePoints& points,
-                    const Usage& usage, Acceptance& acceptance) {
-  const JobRecord& record = acceptance.record;
-  points.Remove(record.id);  // of a transaction that was rolled back
-  const absl::Status judged = Judge(database, limits, points, usage, acceptance);
+absl::Status Accept(Database& database, const Limits& limits, const Usage& usage,
+                    Acceptance& acceptance) {
+  const absl::Status judged = Judge(database, limits, usage, acceptance);
   if (!judged.ok() || !acceptance.refused.ok()) return judged;
   if (acceptance.earlier) return KeepRequest(database, acceptance, acceptance.earlier->sequence);
-  points.Add(record.id, record.principal, record.points);
-  absl::Status made = InsertJob(database, acceptance.record);
-  if (made.ok()) made = KeepRequest(database, acceptance, acceptance.record.sequence);
-  if (!made.ok()) points.Remove(record.id);
-  return made;
+  const absl::Status made = InsertJob(database, acceptance.record);
+  return made.ok() ? KeepRequest(database, acceptance, acceptance.record.sequence) : made;
 }
 
 }  // namespace ballpiston::server

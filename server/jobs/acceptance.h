@@ -13,7 +13,6 @@
 
 #include "absl/status/status.h"
 #include "core/ensemble/ensemble_spec.h"
-#include "server/jobs/active_points.h"
 #include "server/jobs/usage.h"
 #include "server/limits.h"
 #include "server/store/job_record.h"
@@ -35,12 +34,11 @@ struct Acceptance {
   absl::Status refused;              // INVALID_ARGUMENT or RESOURCE_EXHAUSTED
 };
 
-// Both set the outcome. Accept then stores the new job or the request, and counts the points of a
-// new job in `points`; if the commit fails, the caller must remove them. Not OK: SQLite failed.
-absl::Status Judge(Database& database, const Limits& limits, const ActivePoints& points,
-                   const Usage& usage, Acceptance& acceptance);
-absl::Status Accept(Database& database, const Limits& limits, ActivePoints& points,
-                    const Usage& usage, Acceptance& acceptance);
+// Both set the outcome. Accept then stores the new job or the request. Not OK: SQLite failed.
+absl::Status Judge(Database& database, const Limits& limits, const Usage& usage,
+                   Acceptance& acceptance);
+absl::Status Accept(Database& database, const Limits& limits, const Usage& usage,
+                    Acceptance& acceptance);
 
 // RESOURCE_EXHAUSTED  TOO_MANY_POINTS, TOO_MANY_SAMPLES
 absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits);

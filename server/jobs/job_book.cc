@@ -16,7 +16,6 @@
 #include "server/jobs/job_log.h"
 #include "server/jobs/job_message.h"
 #include "server/jobs/job_name.h"
-#include "server/jobs/job_state.h"
 #include "server/jobs/question.h"
 #include "server/observability/failpoint.h"
 #include "server/observability/log.h"
@@ -129,6 +128,12 @@ absl::Status CheckStoredPoints(const JobRecord& record, const EnsembleSpec& spec
   }
   return absl::DataLossError(absl::StrCat("the store's rows of ", JobName(record.id),
                                           " do not fit its specification of ", in_grid, " points"));
+}
+
+void AddTo(Job& job, Usage& usage, const StoredPoints& points) {
+  job.AddRestoredPoints(points.count(), points.samples, points.last);
+  job.AddBytes(points.bytes);
+  usage.AddStored(job.principal(), 0, points.bytes);
 }
 
 // Whether each point of the grid is finished.
@@ -332,8 +337,7 @@ absl::Status JobBook::EndUnresumable(const JobRecord& record, const absl::Status
       store_.Read([&](Database& database) { return ReadStoredPoints(database, record, points); });
   if (!read.ok()) return read;
   auto job = std::make_shared<Job>(record, nullptr);
-  job->AddRestoredPoints(points.count(), points.samples, points.last);
-  AddRestoredBytes(*job, points.bytes);
+  AddTo(*job, usage_, points);
   JobJournal(job, store_, usage_, true, nullptr).Ended(why);
   return absl::OkStatus();
 }
@@ -354,19 +358,12 @@ absl::Status JobBook::ResumeRun(const JobRecord& record, EnsembleSpec spec) {
   request.shortfall = std::move(restored.shortfall);
   request.suspicion = SuspicionOf(record);
   std::shared_ptr<Job> job = Register(record);
-  job->AddRestoredPoints(points.count(), points.samples, points.last);
-  AddRestoredBytes(*job, points.bytes);
+  AddTo(*job, usage_, points);
   StartRun(std::move(job), record, std::move(request));
   return absl::OkStatus();
 }
 
-void JobBook::AddRestoredBytes(Job& job, int64_t bytes) {
-  job.AddBytes(bytes);
-  usage_.AddStored(job.principal(), 0, bytes);
-}
-
 std::shared_ptr<Job> JobBook::Register(const JobRecord& record) {
-  active_points_.Add(record.id, record.principal, record.points);
   auto job = std::make_shared<Job>(record, on_state_change_);
   MutexLock lock(mutex_);
   active_[record.id] = job;
@@ -374,7 +371,6 @@ std::shared_ptr<Job> JobBook::Register(const JobRecord& record) {
 }
 
 void JobBook::Forget(const std::string& id) {
-  active_points_.Remove(id);
   MutexLock lock(mutex_);
   active_.erase(id);
 }
@@ -433,9 +429,8 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Preview(const Principal& caller,
                                                  const v1::CreateEnsembleJobRequest& request,
                                                  const CheckedSpec& checked) {
   Acceptance acceptance = NewAcceptance(caller, request, checked);
-  const absl::Status read = store_.Read([&](Database& database) {
-    return Judge(database, limits_, active_points_, usage_, acceptance);
-  });
+  const absl::Status read =
+      store_.Read([&](Database& database) { return Judge(database, limits_, usage_, acceptance); });
   if (!read.ok()) return StoreFailure(read);
   if (!acceptance.refused.ok()) return acceptance.refused;
   return acceptance.earlier ? Answer(caller, acceptance) : Message(acceptance.record, nullptr);
@@ -449,7 +444,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
   std::shared_ptr<Job> job;  // the new job, if there is one
   const absl::Status committed = store_.Commit([&](Database& database) {
     job = nullptr;
-    const absl::Status accepted = Accept(database, limits_, active_points_, usage_, acceptance);
+    const absl::Status accepted = Accept(database, limits_, usage_, acceptance);
     Failpoint("create.in_transaction");
     if (accepted.ok() && !acceptance.earlier && acceptance.refused.ok()) {
       job = Register(acceptance.record);
@@ -582,7 +577,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
   if (begun) CancelRun(*record);
   const bool replay = !request_id.empty() && record->cancel_request_id == request_id;
   if (begun || replay || record->state == v1::EnsembleJob::CANCELLING) return Get(caller, id);
-  return JobAlreadyEnded(JobName(id), StateName(record->state));
+  return JobAlreadyEnded(JobName(id), v1::EnsembleJob::State_Name(record->state));
 }
 
 void JobBook::CancelRun(const JobRecord& record) {
@@ -607,7 +602,8 @@ absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
   Failpoint("delete.committed");
   if (!committed.ok()) return StoreFailure(committed);
   if (!record) return JobNotFound(JobName(id));
-  if (!HasEnded(record->state)) return JobStillActive(JobName(id), StateName(record->state));
+  if (!HasEnded(record->state))
+    return JobStillActive(JobName(id), v1::EnsembleJob::State_Name(record->state));
   usage_.AddStored(record->principal, -1, -record->bytes);
   return absl::OkStatus();
 }

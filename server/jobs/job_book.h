@@ -27,7 +27,6 @@
 #include "ballpiston/v1/ensemble.pb.h"
 #include "server/convert/spec.h"
 #include "server/jobs/acceptance.h"
-#include "server/jobs/active_points.h"
 #include "server/jobs/job.h"
 #include "server/jobs/job_filter.h"
 #include "server/jobs/retention.h"
@@ -185,7 +184,6 @@ class JobBook {
   std::optional<Suspicion> SuspicionOf(const JobRecord& record);
   absl::Status EndUnresumable(const JobRecord& record, const absl::Status& why);
   absl::Status ResumeRun(const JobRecord& record, EnsembleSpec spec);
-  void AddRestoredBytes(Job& job, int64_t bytes);
   std::shared_ptr<Job> Register(const JobRecord& record);
   // No effect if the job is not in the book.
   void Forget(const std::string& id);
@@ -209,7 +207,6 @@ class JobBook {
   const std::shared_ptr<CrashRecord> crashes_;
   mutable Mutex mutex_;
   std::map<std::string, std::shared_ptr<Job>> active_ ABSL_GUARDED_BY(mutex_);  // by id
-  ActivePoints active_points_;
   Usage usage_;
   Retention retention_;
   absl::Time next_work_time_ = absl::InfinitePast();  // used by KeepLimits and at the end

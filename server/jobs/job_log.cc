@@ -4,19 +4,18 @@
 #include "absl/strings/str_cat.h"
 #include "google/rpc/status.pb.h"
 #include "server/jobs/job_name.h"
-#include "server/jobs/job_state.h"
 #include "server/observability/log.h"
 
 namespace ballpiston::server {
 
 void LogState(const Job& job, JobState state) {
-  const std::string name = absl::AsciiStrToLower(StateName(state));
+  const std::string name = absl::AsciiStrToLower(v1::EnsembleJob::State_Name(state));
   Log(Severity::kInfo, absl::StrCat("job ", name),
       {{"job", JobName(job.id())}, {"principal", job.principal()}, {"state", name}});
 }
 
 void LogEnd(const JobRecord& ended) {
-  const std::string state = absl::AsciiStrToLower(StateName(ended.state));
+  const std::string state = absl::AsciiStrToLower(v1::EnsembleJob::State_Name(ended.state));
   // A job without a start time ended before its first turn.
   const absl::Time begin = ended.start_time.value_or(ended.create_time);
   google::rpc::Status error;

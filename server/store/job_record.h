@@ -15,6 +15,11 @@ namespace ballpiston::server {
 
 using JobState = v1::EnsembleJob::State;
 
+inline bool HasEnded(JobState state) {
+  return state == v1::EnsembleJob::SUCCEEDED || state == v1::EnsembleJob::FAILED ||
+         state == v1::EnsembleJob::CANCELLED;
+}
+
 struct JobRecord {
   int64_t sequence = 0;  // assigned by the store; greater for a newer job, never reused
   std::string id;

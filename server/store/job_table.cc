@@ -171,15 +171,14 @@ absl::StatusOr<std::optional<JobRecord>> FindAnswer(Database& database,
   return FirstRow(query, Grid::kIncluded);
 }
 
-absl::StatusOr<int64_t> CountActiveJobs(Database& database,
-                                        const std::optional<std::string>& principal) {
-  Query query =
-      database.Prepare(absl::StrCat("SELECT count(*) FROM jobs WHERE state IN (", kActiveStates,
-                                    ")", principal ? " AND principal = ?" : ""));
+absl::StatusOr<Load> ActiveLoad(Database& database, const std::optional<std::string>& principal) {
+  Query query = database.Prepare(
+      absl::StrCat("SELECT count(*), coalesce(sum(points), 0) FROM jobs WHERE state IN (",
+                   kActiveStates, ")", principal ? " AND principal = ?" : ""));
   if (principal) query.BindText(*principal);
   const absl::StatusOr<bool> row = query.Step();
   if (!row.ok()) return row.status();
-  return query.Integer(0);
+  return Load{.jobs = query.Integer(0), .points = query.Integer(1)};
 }
 
 absl::StatusOr<std::map<std::string, ActiveJobs>> CountActiveByPrincipal(Database& database) {

@@ -43,10 +43,13 @@ absl::StatusOr<std::optional<JobRecord>> FindAnswer(Database& database,
                                                     const std::string& principal,
                                                     const std::string& question);
 
-// The number of active jobs (neither SUCCEEDED nor FAILED nor CANCELLED), of one principal or of
-// all.
-absl::StatusOr<int64_t> CountActiveJobs(Database& database,
-                                        const std::optional<std::string>& principal);
+// What the active jobs (neither SUCCEEDED nor FAILED nor CANCELLED) of one principal or of all
+// take.
+struct Load {
+  int64_t jobs = 0;
+  int64_t points = 0;  // of their grids
+};
+absl::StatusOr<Load> ActiveLoad(Database& database, const std::optional<std::string>& principal);
 
 // Active jobs, by state.
 struct ActiveJobs {

@@ -41,7 +41,7 @@ CREATE TABLE jobs (
   work REAL NOT NULL,
   grid BLOB NOT NULL  -- last, because SQLite reads a row up to the columns that are asked for
 ) STRICT;
-CREATE INDEX jobs_by_state ON jobs (state, principal);
+CREATE INDEX jobs_by_state ON jobs (state, principal, points);
 CREATE INDEX jobs_by_principal ON jobs (principal, sequence, bytes);
 CREATE INDEX jobs_that_may_expire ON jobs (end_time, bytes)
   WHERE end_time IS NOT NULL AND expired_time IS NULL AND pinned = 0;

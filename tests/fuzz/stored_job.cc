@@ -10,7 +10,7 @@
 
 #include "absl/time/time.h"
 #include "server/jobs/job_message.h"
-#include "server/jobs/job_state.h"
+#include "server/store/job_record.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace ballpiston::fuzz {
@@ -54,7 +54,7 @@ void CheckStoredJob(const std::string& bytes) {
   }
   v1::EnsembleJob sent;
   Require(sent.ParseFromString(job.SerializeAsString()), "a row can be sent");
-  Require(!server::HasEnded(job.state()) || !server::StateName(job.state()).empty(),
+  Require(!server::HasEnded(job.state()) || !v1::EnsembleJob::State_Name(job.state()).empty(),
           "an end has a name");
 }
 

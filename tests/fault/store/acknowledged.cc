@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/jobs/job_state.h"
 #include "server/store/check_store.h"
+#include "server/store/job_record.h"
 
 namespace ballpiston::server {
 namespace {

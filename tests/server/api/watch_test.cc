@@ -13,7 +13,7 @@
 #include "absl/strings/escaping.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "server/jobs/job_state.h"
+#include "server/store/job_record.h"
 #include "tests/server/api/watch_stream.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
@@ -103,7 +103,8 @@ class Chain {
   }
   void TakeState(const EnsembleJob& job) {
     // States come in the order of their numbers. Some may be skipped.
-    EXPECT_GE(job.state(), state_) << StateName(state_) << " -> " << StateName(job.state());
+    EXPECT_GE(job.state(), state_)
+        << EnsembleJob::State_Name(state_) << " -> " << EnsembleJob::State_Name(job.state());
     state_ = job.state();
     terminal_messages_ += HasEnded(state_);
     TakeProgress(job.progress());

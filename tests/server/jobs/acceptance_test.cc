@@ -19,7 +19,6 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "server/jobs/job_book.h"
-#include "server/jobs/job_state.h"
 #include "server/jobs/question.h"
 #include "server/store/job_table.h"
 #include "tests/server/error_details.h"
@@ -562,17 +561,6 @@ TEST_F(LimitTest, PointsOfJobsThatAreNotCreatedDoNotCount) {
     EXPECT_EQ(ReasonOf(Create(kAnn, CreateRequest(Equilibrium(5, 5)))), "TOO_MANY_ACTIVE_POINTS");
   }
   AwaitEnd(Name(kAnn, FreshRequest(Equilibrium(4, 5))));
-}
-
-TEST(ActivePointsTest, AJobCountsOnce) {
-  ActivePoints points;
-  for (int i = 0; i < 3; ++i) points.Add("a", "ann", 4);
-  const Limits limits = {.max_active_points = 5};
-  EXPECT_OK(points.Check("ann", 1, limits));
-  EXPECT_FALSE(points.Check("bob", 2, limits).ok());
-  for (int i = 0; i < 2; ++i) points.Remove("a");
-  EXPECT_OK(points.Check("ann", 5, limits));
-  EXPECT_FALSE(points.Check("ann", 6, limits).ok());
 }
 
 // A thousand requests with the same job are stored. Later ones get the same answer.

@@ -19,7 +19,6 @@
 #include "server/jobs/job_message.h"
 #include "server/jobs/job_name.h"
 #include "server/jobs/job_snapshot.h"
-#include "server/jobs/job_state.h"
 #include "server/store/job_table.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/store_access.h"

@@ -10,7 +10,6 @@
 #include "gtest/gtest.h"
 #include "server/jobs/job_book.h"
 #include "server/jobs/job_name.h"
-#include "server/jobs/job_state.h"
 #include "server/store/check_store.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
