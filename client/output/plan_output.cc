@@ -42,8 +42,9 @@ Cells CsvCells(const ParameterColumns& parameters, const v1::PointPlan& point,
   Cells cells = parameters.Cells(point.parameters());
   Append({Spelling(model.model()), truth(IsChosen(point, model)), truth(model.answers()),
           number(model.has_samples(), model.samples()), number(model.has_work(), model.work()),
-          number(model.has_statistical_error(), model.statistical_error()),
-          number(model.has_model_error(), model.model_error()), WholeReason(point, model)},
+          number(model.has_relative_statistical_error(), model.relative_statistical_error()),
+          number(model.has_relative_model_error(), model.relative_model_error()),
+          WholeReason(point, model)},
          cells);
   return cells;
 }
@@ -52,7 +53,8 @@ void PrintCsv(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& p
               std::ostream& out) {
   const ParameterColumns parameters(spec.grid());
   out << absl::StrJoin(parameters.Titles(), ",")
-      << ",model,chosen,answers,samples,work,statistical_error,model_error,reason\n";
+      << ",model,chosen,answers,samples,work,relative_statistical_error,relative_model_error,"
+         "reason\n";
   for (const v1::PointPlan& point : plan.points()) {
     for (const v1::ModelPlan& model : point.models()) {
       out << CsvRow(CsvCells(parameters, point, model));
@@ -104,8 +106,9 @@ const Cells kCostTitles = {"samples", "work", "stat. error", "model error"};
 Cells CostCells(const v1::ModelPlan& model) {
   return {model.has_samples() ? SampleCountText(model.samples()) : "",
           model.has_work() ? DurationText(model.work()) : "",
-          model.has_statistical_error() ? RelativeError(model.statistical_error()) : "",
-          model.has_model_error() ? RelativeError(model.model_error()) : ""};
+          model.has_relative_statistical_error() ? RelativeError(model.relative_statistical_error())
+                                                 : "",
+          model.has_relative_model_error() ? RelativeError(model.relative_model_error()) : ""};
 }
 
 TextTable LadderTable() {

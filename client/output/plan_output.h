@@ -6,8 +6,8 @@
 //   json    the response
 //   jsonl   one point per line
 //   csv     one row for each point and model:
-//           rho,delta,epsilon,exponent,model,chosen,answers,samples,work,statistical_error,
-//           model_error,reason; after exponent the other parameters of the specification
+//           rho,delta,epsilon,exponent,model,chosen,answers,samples,work,relative_statistical_error,
+//           relative_model_error,reason; after exponent the other parameters of the specification
 //           (parameter_text.h)
 //
 // Work is in seconds of one core (a table prints the units). Errors are relative. Unknown values

@@ -12,9 +12,9 @@ v1::ModelPlan ModelPlanMessage(const Rung& rung) {
   message.set_reason(rung.reason);
   if (rung.samples) message.set_samples(*rung.samples);
   if (rung.work) message.set_work(*rung.work);
-  if (rung.statistical_error) message.set_statistical_error(*rung.statistical_error);
+  if (rung.statistical_error) message.set_relative_statistical_error(*rung.statistical_error);
   message.set_memory(rung.memory);
-  if (rung.model_error) message.set_model_error(*rung.model_error);
+  if (rung.model_error) message.set_relative_model_error(*rung.model_error);
   return message;
 }
 

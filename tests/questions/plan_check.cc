@@ -25,8 +25,8 @@ Findings CheckPlan(const v1::PointPlan& plan) {
     findings.push_back({kPlanCheck, absl::StrCat(what...)});
   };
   for (const v1::ModelPlan& model : plan.models()) {
-    if (model.samples() < 0 || model.work() < 0 || model.statistical_error() < 0 ||
-        model.model_error() < 0) {
+    if (model.samples() < 0 || model.work() < 0 || model.relative_statistical_error() < 0 ||
+        model.relative_model_error() < 0) {
       add("a number is negative: ", model.ShortDebugString());
     }
   }

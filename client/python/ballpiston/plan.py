@@ -105,7 +105,7 @@ def _row(point: Any, model: Any) -> dict[str, Any]:
     row["model"] = _model(model.model)
     row["chosen"] = model.model == point.model
     row["answers"] = model.answers
-    for field in ("samples", "work", "statistical_error", "model_error"):
+    for field in ("samples", "work", "relative_statistical_error", "relative_model_error"):
         if model.HasField(field):
             row[field] = getattr(model, field)
     row["reason"] = model.reason

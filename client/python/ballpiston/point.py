@@ -25,8 +25,8 @@ class Estimate:
         standard_error: one sigma; None if there are too few samples for one.
         exact: the closed form, if there is one.
         z_score: (value - exact)/standard_error.
-        model_error: upper bound of the relative difference between the model and the billiard,
-            without the statistical error.
+        model_error: upper bound of the difference between the model and the billiard, in the units
+            of the value like standard_error.
         noise_floor: of a distance between two laws, its mean if the laws were equal.
         limit: what the limit delta -> 0 gives here.
         batches: independent numbers behind the error: value +- t(batches - 1) standard_error, with

@@ -104,8 +104,8 @@ class Result:
         return optional_floats(self._column(name), "z_score")
 
     def model_error(self, name: str) -> FloatArray:
-        """Upper bounds of the relative difference between the model and the billiard, without the
-        statistical error. 0 for the billiard itself and for closed forms."""
+        """Upper bounds of the difference between the model and the billiard, in the units of the
+        value like its error. 0 for the billiard itself and for closed forms."""
         return optional_floats(self._column(name), "model_error")
 
     def noise_floor(self, name: str) -> FloatArray:

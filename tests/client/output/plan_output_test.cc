@@ -28,19 +28,19 @@ constexpr char kLadders[] = R"(
     points {
       parameters { rho: 0.529561127988977 delta: 0.0125 }
       models { model: CLOSED_FORM reason: "no closed form is known" }
-      models { model: SPECTRUM answers: true work: 0.0123 statistical_error: 0 model_error: 2.1e-3
+      models { model: SPECTRUM answers: true work: 0.0123 relative_statistical_error: 0 relative_model_error: 2.1e-3
                reason: "pilot, 3.0e-04" }
-      models { model: MARKOV answers: true samples: 40123 work: 0.21 statistical_error: 1e-2
-               model_error: 2.1e-3 }
-      models { model: BILLIARD answers: true samples: 40123 work: 192 statistical_error: 1e-2
-               model_error: 0 }
+      models { model: MARKOV answers: true samples: 40123 work: 0.21 relative_statistical_error: 1e-2
+               relative_model_error: 2.1e-3 }
+      models { model: BILLIARD answers: true samples: 40123 work: 192 relative_statistical_error: 1e-2
+               relative_model_error: 0 }
       model: SPECTRUM reason: "cheapest within the tolerance" }
     points {
       parameters { rho: 0.529561127988977 delta: 0.2 epsilon: 0.1 }
-      models { model: SPECTRUM work: 120e-6 statistical_error: 0 model_error: 0.34
+      models { model: SPECTRUM work: 120e-6 relative_statistical_error: 0 relative_model_error: 0.34
                reason: "off by 3.4e-01, \"too much\"" }
-      models { model: BILLIARD answers: true samples: 4.0123e8 work: 15 statistical_error: 1e-2
-               model_error: 0 }
+      models { model: BILLIARD answers: true samples: 4.0123e8 work: 15 relative_statistical_error: 1e-2
+               relative_model_error: 0 }
       model: BILLIARD reason: "the billiard itself" }
     point_count: 2 work: 15.0123 time: 7.6 workers: 2 memory: 25200000
     rates { jump: 2e-8 })";
@@ -139,7 +139,7 @@ TEST(PlanTable, SaysThatItShowsOnlySomePoints) {
 TEST(PlanCsv, HasARowForEachPointAndModel) {
   EXPECT_EQ(
       PrintedPlan(Format::kCsv),
-      R"(rho,delta,epsilon,exponent,model,chosen,answers,samples,work,statistical_error,model_error,reason
+      R"(rho,delta,epsilon,exponent,model,chosen,answers,samples,work,relative_statistical_error,relative_model_error,reason
 0.529561127988977,0.0125,,,closed-form,false,false,,,,,no closed form is known
 0.529561127988977,0.0125,,,spectrum,true,true,,0.0123,0,0.0021,"cheapest within the tolerance; pilot, 3.0e-04"
 0.529561127988977,0.0125,,,markov,false,true,40123,0.21,0.01,0.0021,
@@ -157,7 +157,7 @@ TEST(PlanCsv, HasColumnsForTheParametersOfAGas) {
                models { model: BILLIARD answers: true } model: BILLIARD })");
   EXPECT_EQ(
       PrintedPlan(Format::kCsv, plan, question),
-      R"(rho,delta,epsilon,exponent,cells,temperature,model,chosen,answers,samples,work,statistical_error,model_error,reason
+      R"(rho,delta,epsilon,exponent,cells,temperature,model,chosen,answers,samples,work,relative_statistical_error,relative_model_error,reason
 0.53,0.1,,,4x3,1,billiard,true,true,,,,,
 )");
 }
@@ -167,7 +167,7 @@ TEST(PlanJson, IsTheResponseWithTheProtosNames) {
   v1::PlanEnsembleJobResponse read;
   ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(text, &read).ok()) << text;
   EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(read, Plan())) << text;
-  EXPECT_THAT(text, HasSubstr("\"statistical_error\":0.01"));
+  EXPECT_THAT(text, HasSubstr("\"relative_statistical_error\":0.01"));
   EXPECT_THAT(text, HasSubstr("\"point_count\":2"));
   EXPECT_THAT(text, EndsWith("\n"));
 }
