@@ -73,7 +73,7 @@ TEST(EnergyRelaxation, CorrelationsOfAPulseMatchHandCalculation) {
                 45 * kOff * kOff * (origins - 2 * static_cast<double>(across)) / origins, 1e-12)
         << i;
   }
-  // Continuously: over a lag s, origins during min(s, width) are across either jump.
+  // Continuously: at a lag s each jump is crossed from origins within a time min(s, width).
   const double tau = 4 * relaxation.unit();
   EXPECT_NEAR(values[0],
               45 * kOff * kOff * kWindowTimes * tau * (1 - 1.5 * kWindowTimes / kOriginTimes),

@@ -36,7 +36,7 @@ namespace {
 bool next_port_is_taken = false;
 }
 
-// In this program instead of the C library's function.
+// Replaces the C library's function in this program.
 extern "C" int listen(int descriptor, int waiting) noexcept {
   if (!std::exchange(next_port_is_taken, false)) {
     return static_cast<int>(syscall(SYS_listen, descriptor, waiting));
