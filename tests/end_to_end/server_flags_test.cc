@@ -114,6 +114,7 @@ TEST(ServerFlags, HelpListsEachOnceWithDashes) {
 
 TEST(ServerFlags, HelpListsDefaultsAndExitCodesInShortLines) {
   const std::string page = Server({"--help"}).out;
+  EXPECT_THAT(page, HasSubstr("\n\nLimits; 0 means no limit:\n"));
   EXPECT_THAT(page, HasSubstr("--max-active-jobs N\n"));
   EXPECT_THAT(page, HasSubstr("jobs that have not ended, of all principals; default: 10000\n"));
   EXPECT_THAT(page, HasSubstr("default: 1e+15"));

@@ -132,7 +132,8 @@ TEST(EnsembleSpec, TargetsInTheWrongUnitAreRejected) {
   spec.target = {.collisions = 10};
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target.collisions", "use target.samples")));
   spec.target = {.samples = kMaxSamples + 1};
-  EXPECT_THAT(Violations(spec), ElementsAre(Names("target.samples", "permitted: 1 to")));
+  EXPECT_THAT(Violations(spec),
+              ElementsAre(Names("target.samples", "permitted: 1 to 1000000000000")));
   spec.grid[kEpsilon] = {0.5};
   for (const double tolerance : {0.0, -0.1, 1.0, std::nan(""), HUGE_VAL}) {
     spec.target = {.tolerance = tolerance};

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -52,25 +53,30 @@ TEST(EnergyRelaxation, AnOrbitWithoutCollisionsKeepsItsEnergy) {
   for (size_t i = 0; i < kLags; ++i) EXPECT_NEAR(equilibrium[1 + i], 45 * kOff * kOff, 1e-12);
 }
 
-// One jump, from 1/6 + a to 1/6 - a after a time that is a whole number of lags: with origins
-// before it, the product over a lag is a^2 before the jump and -a^2 across it.
-TEST(EnergyRelaxation, CorrelationsOfOneJumpMatchHandCalculation) {
+// A pulse, from 1/6 + a to 1/6 - a and back, over half the window: the product over a lag is -a^2
+// across one jump, otherwise a^2. The width of the pulse shows whether the lags have their length.
+TEST(EnergyRelaxation, CorrelationsOfAPulseMatchHandCalculation) {
   constexpr double kOff = 0.1;
   constexpr size_t kJumpAtLag = 64;  // of the 128 steps of origins
+  constexpr size_t kWidth = (kLags - 1) / 2;
   const EnergyRelaxation relaxation = RelaxationAt(0.1);
   const double lag = 4 * relaxation.unit() * kWindowTimes / (kLags - 1);
   StepFunction energy(kMeanPistonEnergy + kOff);
   // Half a lag more, so that rounding does not decide on which side a sample lies.
   energy.Add((kJumpAtLag - 0.5) * lag, kMeanPistonEnergy - kOff);
+  energy.Add(kWidth * lag, kMeanPistonEnergy + kOff);
   const std::vector<double> values = relaxation.Measure(energy);
   const double origins = kOriginTimes / kWindowTimes * (kLags - 1) / 2;
   for (size_t i = 0; i < kLags; ++i) {
-    const double across = std::floor(static_cast<double>(i) / 2);  // of the even origins
-    EXPECT_NEAR(values[1 + i], 45 * kOff * kOff * (origins - 2 * across) / origins, 1e-12) << i;
+    const size_t across = 2 * (std::min(i, kWidth) / 2);  // of the even origins, either jump
+    EXPECT_NEAR(values[1 + i],
+                45 * kOff * kOff * (origins - 2 * static_cast<double>(across)) / origins, 1e-12)
+        << i;
   }
-  // Continuously: the window straddles the jump for origins within it.
+  // Continuously: at a lag s each jump is crossed from origins within a time min(s, width).
   const double tau = 4 * relaxation.unit();
-  EXPECT_NEAR(values[0], 45 * kOff * kOff * kWindowTimes * tau * (1 - kWindowTimes / kOriginTimes),
+  EXPECT_NEAR(values[0],
+              45 * kOff * kOff * kWindowTimes * tau * (1 - 1.5 * kWindowTimes / kOriginTimes),
               1e-9 * tau);
 }
 
@@ -226,7 +232,10 @@ TEST(EnergyRelaxation, LawsOfTheJumpProcessSolveTheMasterEquation) {
 TEST(EnergyRelaxation, LawsRequireAnInitialEnergy) {
   EXPECT_TRUE(RelaxationAt(0.1).Empty().histograms.empty());
   EXPECT_TRUE(RelaxationAt(0.1).ProbabilitiesOfLimit().empty());
-  EXPECT_TRUE(RelaxationAt(0.1, 0.1).LawsOfLimit()[0].histogram.counts.empty());
+  const EnsembleSpec limit = SpecOfOrbits(PaperPoint(0.1, 0.1), Model::kSpectrum, 1);
+  const PointSummary summary = PointExperiment::Create(limit, 0)->Summarize({});
+  ASSERT_EQ(summary.histograms.size(), kLawLags.size());
+  EXPECT_TRUE(summary.histograms[0].histogram.counts.empty());
 }
 
 }  // namespace

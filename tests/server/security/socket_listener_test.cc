@@ -5,11 +5,13 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <iterator>
@@ -18,6 +20,7 @@
 #include <set>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -28,6 +31,19 @@
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
+
+namespace {
+bool next_port_is_taken = false;
+}
+
+// Replaces the C library's function in this program.
+extern "C" int listen(int descriptor, int waiting) noexcept {
+  if (!std::exchange(next_port_is_taken, false)) {
+    return static_cast<int>(syscall(SYS_listen, descriptor, waiting));
+  }
+  errno = EADDRINUSE;
+  return -1;
+}
 
 namespace ballpiston::server {
 namespace {
@@ -188,6 +204,12 @@ TEST(Port, PortZeroChoosesAFreePort) {
   const int port = listener->address().port;
   EXPECT_GT(port, 0);
   EXPECT_TRUE(Reaches(AF_INET, "127.0.0.1", port) || Reaches(AF_INET6, "::1", port));
+}
+
+TEST(Port, PortZeroChoosesAnotherPortIfTheFirstIsTaken) {
+  next_port_is_taken = true;
+  EXPECT_OK(SocketListener::Listen(*ParseListenAddress("127.0.0.1:0"), {}));
+  EXPECT_FALSE(next_port_is_taken);
 }
 
 TEST(Port, AnyAddressMeansIpv4AndIpv6) {

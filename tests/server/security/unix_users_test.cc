@@ -186,6 +186,7 @@ class SocketFile : public ::testing::Test {
     RunningServer server({.listen = "unix:" + path, .security = std::move(security)});
     struct stat found {};
     EXPECT_EQ(stat(path.c_str(), &found), 0);
+    EXPECT_EQ(found.st_uid, geteuid());
     char text[32];
     std::snprintf(text, sizeof(text), "%04o %u", found.st_mode & 07777u, found.st_gid);
     return text;
