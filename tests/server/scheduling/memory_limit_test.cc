@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "gtest/gtest.h"
@@ -18,12 +19,12 @@ namespace {
 
 constexpr double kLimitBytes = 100;
 
-// A point takes as many bytes as the seed of its specification.
+// A thread at a point takes as many bytes as the seed of its specification.
 class SeedsAreBytes : public FactoryOpener {
  public:
   SeedsAreBytes() : FactoryOpener(FakeExperiments()) {}
-  double MemoryOf(const EnsembleSpec& spec, size_t, int) override {
-    return static_cast<double>(spec.seed);
+  double MemoryOf(const EnsembleSpec& spec, size_t, int threads) override {
+    return static_cast<double>(spec.seed) * threads;
   }
 };
 
@@ -40,23 +41,20 @@ class MemoryLimitTest : public testing::Test {
     return journal;
   }
 
-  // One turn of each run that can have one; the turns are in progress at the same time. Returns the
-  // runs whose chunks are computed.
+  // Turns that are in progress at the same time, as many as there can be. Returns the runs whose
+  // chunks are computed.
   std::multiset<int64_t> TurnsAtOnce(size_t most, uint64_t blocks) {
     std::vector<Lease> leases;
     std::multiset<int64_t> runs;
+    double bytes = 0;
     while (leases.size() < most) {
       const auto lease = local_.Begin();
       if (!lease) break;
-      if (!lease->OpensPoints()) runs.insert(lease->run);
       leases.push_back(*lease);
+      if (lease->OpensPoints()) continue;
+      runs.insert(lease->run);
+      bytes += static_cast<double>(bytes_.at(lease->run));
     }
-    std::map<int64_t, double> bytes_of_lease;
-    for (const Lease& lease : leases) {
-      if (!lease.OpensPoints()) bytes_of_lease[lease.number] = lease.memory;
-    }
-    double bytes = 0;
-    for (const auto& [number, of_lease] : bytes_of_lease) bytes += of_lease;
     most_bytes_ = std::max(most_bytes_, bytes);
     for (const Lease& lease : leases) local_.End(lease, blocks, 0.1);
     return runs;
@@ -103,6 +101,59 @@ TEST_F(MemoryLimitTest, ALongPointLetsOthersIn) {
   EXPECT_TRUE(third_began);
   local_.TakeAllTurns();
   for (const auto& journal : {first, second, third}) EXPECT_EQ(journal->ends, 1);
+}
+
+// The first of them can be computed by one thread only, the second by two.
+TEST_F(MemoryLimitTest, FurtherThreadsTakeMemoryToo) {
+  for (const auto& [bytes, threads] : {std::pair(60, 1u), std::pair(40, 2u)}) {
+    const auto journal = Add(bytes, static_cast<uint64_t>(bytes));
+    size_t most = 0;
+    while (journal->ends == 0) most = std::max(most, TurnsAtOnce(8, 100).size());
+    EXPECT_EQ(most, threads) << bytes;
+    EXPECT_OK(*journal->outcome);
+  }
+  EXPECT_LE(most_bytes_, kLimitBytes);
+}
+
+// Two small runs fit together, and the next one is always there when one of them ends.
+TEST_F(MemoryLimitTest, ALargePointGetsItsTurn) {
+  std::vector<JournalPointer> small = {Add(1, 40), Add(2, 40)};
+  for (int round = 0; round < 3; ++round) TurnsAtOnce(2, 100);
+  const auto large = Add(3, 70);
+  for (int64_t key = 4; key < 100 && large->finished.empty(); ++key) {
+    small.push_back(Add(key, 40));
+    for (int round = 0; round < 100 && small[small.size() - 2]->ends == 0; ++round) {
+      TurnsAtOnce(8, 100);
+    }
+  }
+  EXPECT_FALSE(large->finished.empty());
+  EXPECT_LE(most_bytes_, kLimitBytes);
+  local_.TakeAllTurns();
+  for (const auto& journal : small) EXPECT_EQ(journal->ends, 1);
+}
+
+// It fits beside the run that waits.
+TEST_F(MemoryLimitTest, ASmallPointNeedNotWaitBehindALargeOne) {
+  const auto first = Add(1, 60), large = Add(2, 70);
+  while (!TurnsAtOnce(8, 100).contains(1)) continue;
+  TurnsAtOnce(8, 100);
+  const auto small = Add(3, 20);
+  while (!TurnsAtOnce(8, 100).contains(3)) continue;
+  EXPECT_TRUE(large->merged.empty());
+  local_.TakeAllTurns();
+  for (const auto& journal : {first, large, small}) EXPECT_EQ(journal->ends, 1);
+}
+
+TEST_F(MemoryLimitTest, SuspectsKeepToTheLimit) {
+  for (const int64_t key : {1, 2}) {
+    bytes_[key] = 60;
+    auto journal = std::make_shared<RecordingJournal>();
+    RunRequest request = RunOf(key, SpecOfBytes(60), journal);
+    request.suspicion = Suspicion{.points = {0, 1}, .clear = [] { return true; }};
+    scheduler_.Add(std::move(request));
+  }
+  for (int round = 0; round < 20; ++round) TurnsAtOnce(8, 20);
+  EXPECT_EQ(most_bytes_, 60);
 }
 
 TEST_F(MemoryLimitTest, AStoppedRunGivesItsMemoryBack) {
