@@ -402,8 +402,8 @@ TEST_F(SlurmExecutorTest, TheCrashesOfALeaseSurviveARestart) {
 TEST_F(SlurmExecutorTest, AQuestionBeyondTheMemoryOfANodeIsComputedHere) {
   slurm_.SetMemory(1e6);
   SubmitRun();
-  slurm_.RunAll();
   AwaitThat([&] {
+    slurm_.RunAll();
     server_->ComputeHere();
     std::lock_guard lock(journal_->mutex);
     return journal_->outcome.has_value();
