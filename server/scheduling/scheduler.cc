@@ -288,9 +288,9 @@ void Scheduler::AddMemory(const Lease& lease, double bytes) {
   if (IsLater(lease)) waiting_->later += bytes;
 }
 
-// A run that waits keeps its place until it has a lease, or needs none.
+// A run without a lease waits. It keeps its place until it has a lease, or needs none.
 void Scheduler::NoteWaiting(const Run& run, bool has_lease) {
-  const double needed = has_lease ? 0 : run.awaited_memory();
+  const double needed = has_lease || HoldsLease(run) ? 0 : run.awaited_memory();
   if (needed > 0 && !waiting_) waiting_ = {run.key(), needed, last_number_};
   if (needed == 0 && waiting_ && waiting_->run == run.key()) waiting_.reset();
 }
@@ -347,11 +347,13 @@ Scheduler::Held* Scheduler::HeldWithTurn(const Run& run, size_t executor) {
 
 // Of a local executor.
 bool Scheduler::HoldsLease(const Run& run) const {
-  return std::ranges::any_of(held_, [&](const auto& held) {
-    mutex_.AssertHeld();
-    const Lease& lease = held.second.lease;
-    return lease.run == run.key() && executors_[lease.executor].traits.local;
-  });
+  for (size_t i = 0; i < executors_.size(); ++i) {
+    const auto next = held_.lower_bound({i, run.key(), 0});
+    const bool holds = next != held_.end() && next->second.lease.run == run.key() &&
+                       next->second.lease.executor == i;
+    if (holds && executors_[i].traits.local) return true;
+  }
+  return false;
 }
 
 bool Scheduler::EndTurn(const Lease& lease, double seconds) {

@@ -1,7 +1,9 @@
 // The points that are computed at a time take no more memory than the limit.
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -10,6 +12,7 @@
 #include "server/scheduling/scheduler.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/scheduling/recording_journal.h"
+#include "tests/server/scheduling/remote_executor.h"
 #include "tests/server/scheduling/run_requests.h"
 #include "tests/server/scheduling/stepped_executor.h"
 #include "tests/support/status_matchers.h"
@@ -18,6 +21,7 @@ namespace ballpiston::server {
 namespace {
 
 constexpr double kLimitBytes = 100;
+constexpr uint64_t kAllBlocks = std::numeric_limits<uint64_t>::max();
 
 // A thread at a point takes as many bytes as the seed of its specification.
 class SeedsAreBytes : public FactoryOpener {
@@ -39,6 +43,16 @@ class MemoryLimitTest : public testing::Test {
     scheduler_.Add(RunOf(key, SpecOfBytes(bytes), journal));
     bytes_[key] = bytes;
     return journal;
+  }
+
+  // The next turn that does not open a point.
+  std::optional<Lease> BeginChunks() {
+    std::optional<Lease> lease = local_.Begin();
+    while (lease && lease->OpensPoints()) {
+      local_.End(*lease, 0);
+      lease = local_.Begin();
+    }
+    return lease;
   }
 
   // Turns that are in progress at the same time, as many as there can be. Returns the runs whose
@@ -115,21 +129,22 @@ TEST_F(MemoryLimitTest, FurtherThreadsTakeMemoryToo) {
   EXPECT_LE(most_bytes_, kLimitBytes);
 }
 
-// Two small runs fit together, and the next one is always there when one of them ends.
+// Two small runs fit together, and a lease of one of them begins before one of the other ends.
 TEST_F(MemoryLimitTest, ALargePointGetsItsTurn) {
-  std::vector<JournalPointer> small = {Add(1, 40), Add(2, 40)};
-  for (int round = 0; round < 3; ++round) TurnsAtOnce(2, 100);
-  const auto large = Add(3, 70);
-  for (int64_t key = 4; key < 100 && large->finished.empty(); ++key) {
-    small.push_back(Add(key, 40));
-    for (int round = 0; round < 100 && small[small.size() - 2]->ends == 0; ++round) {
-      TurnsAtOnce(8, 100);
-    }
+  constexpr int64_t kLarge = 4;
+  const std::vector<JournalPointer> journals = {Add(1, 40), Add(2, 40), Add(3, 40),
+                                                Add(kLarge, 70)};
+  std::optional<Lease> lease = BeginChunks();
+  for (int turn = 0; turn < 8 && lease->run != kLarge; ++turn) {
+    std::optional<Lease> next = BeginChunks();
+    local_.End(*lease, kAllBlocks, 1);
+    lease = next ? next : BeginChunks();
+    ASSERT_TRUE(lease);
   }
-  EXPECT_FALSE(large->finished.empty());
-  EXPECT_LE(most_bytes_, kLimitBytes);
+  EXPECT_EQ(lease->run, kLarge);
+  local_.End(*lease, kAllBlocks);
   local_.TakeAllTurns();
-  for (const auto& journal : small) EXPECT_EQ(journal->ends, 1);
+  for (const auto& journal : journals) EXPECT_EQ(journal->ends, 1);
 }
 
 // It fits beside the run that waits.
@@ -142,6 +157,24 @@ TEST_F(MemoryLimitTest, ASmallPointNeedNotWaitBehindALargeOne) {
   EXPECT_TRUE(large->merged.empty());
   local_.TakeAllTurns();
   for (const auto& journal : {first, large, small}) EXPECT_EQ(journal->ends, 1);
+}
+
+// The cluster takes the chunks for which it waited. The small run goes before it, because of its
+// priority.
+TEST_F(MemoryLimitTest, ARunThatNoLongerWaitsHoldsNobodyUp) {
+  RemoteExecutor remote(scheduler_, 1e6);
+  Add(1, 60);
+  scheduler_.Add(RunOf(2, FakeSpec(1, 3000, 70), std::make_shared<RecordingJournal>()));
+  ASSERT_TRUE(BeginChunks());
+  ASSERT_FALSE(BeginChunks());
+  RunRequest small = RunOf(3, SpecOfBytes(35), std::make_shared<RecordingJournal>());
+  small.priority = 1;
+  scheduler_.Add(std::move(small));
+  ASSERT_FALSE(BeginChunks());
+  while (remote.Take().value().run != 2) continue;
+  const auto lease = BeginChunks();
+  ASSERT_TRUE(lease);
+  EXPECT_EQ(lease->run, 3);
 }
 
 TEST_F(MemoryLimitTest, SuspectsKeepToTheLimit) {
