@@ -349,8 +349,7 @@ Scheduler::Held* Scheduler::HeldWithTurn(const Run& run, size_t executor) {
 bool Scheduler::HoldsLease(const Run& run) const {
   for (size_t i = 0; i < executors_.size(); ++i) {
     const auto next = held_.lower_bound({i, run.key(), 0});
-    const bool holds = next != held_.end() && next->second.lease.run == run.key() &&
-                       next->second.lease.executor == i;
+    const bool holds = next != held_.lower_bound({i, run.key() + 1, 0});
     if (holds && executors_[i].traits.local) return true;
   }
   return false;

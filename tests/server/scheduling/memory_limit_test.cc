@@ -159,15 +159,15 @@ TEST_F(MemoryLimitTest, ASmallPointNeedNotWaitBehindALargeOne) {
   for (const auto& journal : {first, large, small}) EXPECT_EQ(journal->ends, 1);
 }
 
-// The cluster takes the chunks for which it waited. The small run goes before it, because of its
-// priority.
+// The cluster takes the chunks for which it waited. The small run, too small for the cluster, goes
+// before it because of its priority.
 TEST_F(MemoryLimitTest, ARunThatNoLongerWaitsHoldsNobodyUp) {
   RemoteExecutor remote(scheduler_, 1e6);
   Add(1, 60);
   scheduler_.Add(RunOf(2, FakeSpec(1, 3000, 70), std::make_shared<RecordingJournal>()));
   ASSERT_TRUE(BeginChunks());
   ASSERT_FALSE(BeginChunks());
-  RunRequest small = RunOf(3, SpecOfBytes(35), std::make_shared<RecordingJournal>());
+  RunRequest small = RunOf(3, FakeSpec(1, 1000, 35), std::make_shared<RecordingJournal>());
   small.priority = 1;
   scheduler_.Add(std::move(small));
   ASSERT_FALSE(BeginChunks());
