@@ -24,8 +24,8 @@ struct Limits {
   int64_t max_call_bytes_per_principal = int64_t{128} << 20;
   int64_t max_message_bytes = int64_t{4} << 20;  // of a request
   int64_t max_transfer_mib = 512;                // of all requests that are being received
-  // MiB, upper bound, of all points that the server computes at a time; one point alone may take
-  // more. The program's default is a share of the machine's memory.
+  // MiB, upper bound, of all points that the server computes at a time. The program's default is a
+  // share of the machine's memory.
   int64_t max_memory_mib = 0;
   // Stored results.
   double retain_days = 0;       // from the end of a job until its results expire

@@ -19,18 +19,19 @@ struct MemoryFiles {
   std::string limit;
 };
 
-// Version 2 first, if this machine has both. In a container the root may be the process's own
-// group.
-std::vector<MemoryFiles> FilesOfThisProcess() {
+// Of the process's group and of all groups that contain it, up to the root. Version 2 first, if
+// this machine has both. In a container the root may be the process's own group.
+std::vector<MemoryFiles> FilesOfThisProcess(const std::string& root) {
   std::vector<MemoryFiles> found;
-  std::ifstream groups("/proc/self/cgroup");  // lines NUMBER:CONTROLLERS:PATH
+  std::ifstream groups(root + "/proc/self/cgroup");  // lines NUMBER:CONTROLLERS:PATH
   for (std::string line; std::getline(groups, line);) {
     const std::vector<std::string> fields = absl::StrSplit(line, absl::MaxSplits(':', 2));
     if (fields.size() != 3) continue;
-    for (const std::string& path : {fields[2], std::string()}) {
-      const std::string v2 = absl::StrCat("/sys/fs/cgroup", path);
+    for (std::string path = fields[2] + "/"; !path.empty();) {
+      path.resize(path.rfind('/'));
+      const std::string v2 = absl::StrCat(root, "/sys/fs/cgroup", path);
       if (fields[0] == "0") found.push_back({v2 + "/memory.events", v2 + "/memory.max"});
-      const std::string v1 = absl::StrCat("/sys/fs/cgroup/memory", path);
+      const std::string v1 = absl::StrCat(root, "/sys/fs/cgroup/memory", path);
       if (fields[1] != "memory") continue;
       found.push_back({v1 + "/memory.oom_control", v1 + "/memory.limit_in_bytes"});
     }
@@ -50,11 +51,11 @@ std::optional<int64_t> KillsIn(const std::string& path) {
 
 }  // namespace
 
-OutOfMemoryKills ReadOutOfMemoryKills() {
+OutOfMemoryKills ReadOutOfMemoryKills(const std::string& root) {
   std::string boot;
-  std::getline(std::ifstream("/proc/sys/kernel/random/boot_id"), boot);
+  std::getline(std::ifstream(root + "/proc/sys/kernel/random/boot_id"), boot);
   if (boot.empty()) return {};
-  for (const MemoryFiles& files : FilesOfThisProcess()) {
+  for (const MemoryFiles& files : FilesOfThisProcess(root)) {
     struct stat counter {};
     const std::optional<int64_t> kills = KillsIn(files.kills);
     if (!kills || stat(files.kills.c_str(), &counter) != 0) continue;
@@ -63,10 +64,10 @@ OutOfMemoryKills ReadOutOfMemoryKills() {
   return {};
 }
 
-double MachineMemory() {
+double MachineMemory(const std::string& root) {
   double bytes =
       static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-  for (const MemoryFiles& files : FilesOfThisProcess()) {
+  for (const MemoryFiles& files : FilesOfThisProcess(root)) {
     double limit = 0;  // without a limit the file has the word `max` or a huge number
     if (std::ifstream(files.limit) >> limit) bytes = std::min(bytes, limit);
   }

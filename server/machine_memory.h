@@ -15,10 +15,11 @@ struct OutOfMemoryKills {
   int64_t kills = 0;
 };
 
-OutOfMemoryKills ReadOutOfMemoryKills();
+// `root`: the folder of /proc and /sys.
+OutOfMemoryKills ReadOutOfMemoryKills(const std::string& root = "");
 
-// Bytes of memory, at most the group's limit.
-double MachineMemory();
+// Bytes of memory, at most the limits of the group and of those that contain it.
+double MachineMemory(const std::string& root = "");
 
 }  // namespace ballpiston::server
 

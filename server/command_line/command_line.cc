@@ -171,8 +171,8 @@ const LimitFlag kLimitFlags[] = {
      "it are rejected. At least 16 and twice --max-message-bytes, at most 1048576"},
     {"max-memory-mib", &Limits::max_memory_mib,
      "MiB of memory of all points that this server computes at a time, by an upper bound; points "
-     "beyond it wait, and one point alone may take more. Default: 80 % of the memory of this "
-     "machine or of the server's control group"},
+     "beyond it wait, and a point has as many threads as there is memory for. Default: 80 % of "
+     "the memory of this machine or of the server's control group"},
     {"retain-days", &Limits::retain_days,
      "days from the end of a job until its results expire, unless it is pinned; its "
      "specification stays"},

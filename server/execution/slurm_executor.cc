@@ -244,6 +244,13 @@ void SlurmExecutor::NoteFile(const std::string& array, const ChunkFileName& name
   task->left_a_file = true;
   backoff_ = std::chrono::milliseconds(0);
   if (file->is_final) task->is_final = true;
+  if (file->memory_exceeded > 0 && file->memory_exceeded < node_memory_) {
+    node_memory_ = file->memory_exceeded;
+    LogInfo(
+        absl::StrFormat("slurm: a task may use %.0f MB of memory; points that need more are "
+                        "computed here",
+                        node_memory_ / 1e6));
+  }
   for (const LeaseChunks& of_lease : file->leases) {
     counts_.chunks += static_cast<double>(of_lease.chunks.size());
   }
@@ -558,6 +565,10 @@ absl::StatusOr<std::string> SlurmExecutor::PreparedWorker() const {
 bool SlurmExecutor::Gather(double seconds) {
   double gathered = 0;
   for (const auto& [run, leases] : gathered_) gathered += SecondsOf(leases);
+  {
+    MutexLock lock(mutex_);
+    capacity_.memory = node_memory_;
+  }
   while (gathered < seconds) {
     std::optional<Lease> lease = scheduler_.Next(capacity_);
     if (!lease) return false;

@@ -22,6 +22,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -171,6 +172,8 @@ class SlurmExecutor : public Executor {
   std::stop_source stop_;
   std::map<std::string, Array> arrays_ ABSL_GUARDED_BY(mutex_);  // by name
   SlurmStatus counts_ ABSL_GUARDED_BY(mutex_);
+  // Bytes that a task may use: the least of those whose leases needed more.
+  double node_memory_ ABSL_GUARDED_BY(mutex_) = std::numeric_limits<double>::infinity();
   // By activity; empty: its last attempt succeeded.
   std::array<std::string, 3> problems_ ABSL_GUARDED_BY(mutex_);
   Clock::time_point last_query_ ABSL_GUARDED_BY(mutex_);

@@ -6,21 +6,11 @@
 #include "absl/status/status.h"
 #include "core/ensemble/chunk_fold.h"
 #include "server/execution/block_session.h"
-#include "server/fatal_signals.h"
 #include "server/observability/failpoint.h"
 #include "server/processor_time.h"
 #include "server/scheduling/guarded.h"
 
 namespace ballpiston::server {
-namespace {
-
-// The point of the grid that a turn at the lease computes; of several that it opens, the first.
-std::optional<size_t> PointOf(const Lease& lease) {
-  if (lease.OpensPoints()) return lease.opens.front();
-  return lease.pilot ? std::nullopt : std::optional(lease.point);
-}
-
-}  // namespace
 
 // A lease at which several threads take turns.
 class ThreadExecutor::SharedLease : private BlockExchange {
@@ -140,7 +130,6 @@ ThreadCounts ThreadExecutor::Counts() const {
 }
 
 void ThreadExecutor::Work() {
-  const SignalStack stack;
   while (const std::optional<Lease> lease = AwaitLease()) TakeTurn(*lease);
 }
 
@@ -160,24 +149,31 @@ std::optional<Lease> ThreadExecutor::AwaitLease() {
 }
 
 void ThreadExecutor::TakeTurn(const Lease& lease) {
-  const CrashRecord::Computing computing(*crashes_, {lease.run, lease.generation}, PointOf(lease));
   busy_.fetch_add(1, std::memory_order_relaxed);
   const double start = ThreadSeconds();
-  if (lease.OpensPoints()) {
-    scheduler_.Open(lease);
-  } else {
-    CrashForSeed(lease.spec->seed);
-    const absl::Status advanced = Guarded(lease.point, [&] {
-      Find(lease)->Advance();
-      return absl::OkStatus();
-    });
-    if (!advanced.ok()) scheduler_.Fail(lease, advanced);
-  }
+  Compute(lease);
   const double seconds = ThreadSeconds() - start;
   busy_.fetch_sub(1, std::memory_order_relaxed);
   if (scheduler_.EndTurn(lease, seconds)) return;
   MutexLock lock(mutex_);
   leases_.erase(lease.number);
+}
+
+// The record has the point only here, not while EndTurn waits for the disk.
+void ThreadExecutor::Compute(const Lease& lease) {
+  const RunName run = {lease.run, lease.generation};
+  for (const size_t point : lease.opens) {
+    const CrashRecord::Computing opening(*crashes_, run, point);
+    scheduler_.Open(lease, point);
+  }
+  if (lease.OpensPoints()) return;
+  const CrashRecord::Computing computing(*crashes_, run, lease.point);
+  CrashForSeed(lease.spec->seed);
+  const absl::Status advanced = Guarded(lease.point, [&] {
+    Find(lease)->Advance();
+    return absl::OkStatus();
+  });
+  if (!advanced.ok()) scheduler_.Fail(lease, advanced);
 }
 
 ThreadExecutor::SharedPointer ThreadExecutor::Find(const Lease& lease) {

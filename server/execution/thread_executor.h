@@ -32,7 +32,7 @@ struct ThreadCounts {
 class ThreadExecutor : public Executor {
  public:
   // The scheduler must outlive this. `seconds` bounds a lease (Capacity), so that something is left
-  // for other executors. The record always has the runs whose turns are in progress.
+  // for other executors. The record always has the runs that are being computed.
   ThreadExecutor(Scheduler& scheduler, int threads,
                  double seconds = std::numeric_limits<double>::infinity(),
                  std::shared_ptr<CrashRecord> crashes = std::make_shared<CrashRecord>());
@@ -53,6 +53,7 @@ class ThreadExecutor : public Executor {
   void Work();
   std::optional<Lease> AwaitLease();
   void TakeTurn(const Lease& lease) ABSL_LOCKS_EXCLUDED(mutex_);
+  void Compute(const Lease& lease) ABSL_LOCKS_EXCLUDED(mutex_);
   SharedPointer Find(const Lease& lease) ABSL_LOCKS_EXCLUDED(mutex_);
   void DropStopped() ABSL_LOCKS_EXCLUDED(mutex_);
 

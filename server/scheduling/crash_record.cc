@@ -10,62 +10,66 @@
 #include <atomic>
 #include <cerrno>
 #include <new>
-#include <utility>
+#include <optional>
+#include <vector>
 
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
+#include "server/fatal_signals.h"
 #include "server/observability/log.h"
 
 namespace ballpiston::server {
 namespace {
 
-constexpr std::array<char, 8> kFormat = {'b', 'p', 'c', 'r', 'a', 's', 'h', '1'};
-constexpr size_t kSlots = 1024;  // as many as there can be workers
-constexpr size_t kRuns = 1024;   // that have deaths; further ones are not counted
+constexpr std::array<char, 8> kFormat = {'b', 'p', 'c', 'r', 'a', 's', 'h', '2'};
+constexpr size_t kSlots = 1024;         // as many as there can be workers
+constexpr size_t kDeaths = 2 * kSlots;  // further ones are not counted
+
+// Of a slot whose contents are being written.
+constexpr int64_t kTaken = -1;
 
 }  // namespace
 
 // ---- the file ----
 
+// What a thread does.
 struct CrashRecord::Slot {
   std::atomic<int64_t> run = 0;  // 0: the slot is free
-  std::atomic<int64_t> generation = 0;
-  std::atomic<int64_t> point = -1;  // -1: none
+  int64_t generation = 0;
+  int64_t point = kNoPoint;         // kNoPoint: the thread examines the run
+  std::atomic<int64_t> signal = 0;  // of which the thread dies
 };
 
 struct CrashRecord::Page {
-  struct RunDeaths {
+  // A run has an entry for each point that was being computed at its last death, at least one.
+  struct Death {
     RunName run = {};  // run 0: the entry is free
-    int64_t deaths = 0;
+    int64_t point = kNoPoint;
+    int64_t deaths = 0;  // of the run
   };
 
   std::array<char, 8> format = kFormat;
-  std::atomic<int64_t> signal = 0;  // of which the process dies
-  RunName examined = {};            // by the thread that dies; run 0: none
   std::array<char, 512> group = {};
   int64_t kills = 0;  // out-of-memory kills of this group before the process started
   std::atomic<int64_t> counted_deaths = 0;
   std::array<Slot, kSlots> slots = {};
-  std::array<RunDeaths, kRuns> deaths = {};
+  std::array<Death, kDeaths> deaths = {};
 };
-
-namespace {
-
-// What the handler of a signal needs; zero when the process starts, so a thread need not make it.
-struct OfThisThread {
-  void* page;  // null unless the thread computes or examines a run
-  RunName examined;
-};
-constinit thread_local OfThisThread this_thread = {nullptr, {}};
-
-}  // namespace
 
 CrashRecord::CrashRecord() : in_memory_(std::make_unique<Page>()), page_(in_memory_.get()) {}
 
 CrashRecord::CrashRecord(const std::string& folder, const OutOfMemoryKills& now) : CrashRecord() {
   Map(folder + "/computing");
-  TakeLast();
-  CountDeath(KilledThePrevious(folder, now));
+  const auto [signal, blamed] = TakeEnd();
+  const bool is_out_of_memory = TakeOutOfMemoryKill(folder, now);
+  if (blamed.empty() || (signal == 0 && !is_out_of_memory)) return;
+  const std::string reason = signal != 0
+                                 ? absl::StrCat("signal ", signal, " (", strsignal(signal), ")")
+                                 : "an out-of-memory kill";
+  LogError(absl::StrCat("the previous process died of ", reason, " while it computed ",
+                        blamed.size(), blamed.size() == 1 ? " job" : " jobs"));
+  ++page_->counted_deaths;
+  for (const auto& [run, points] : blamed) CountDeath(run, points);
 }
 
 CrashRecord::~CrashRecord() {
@@ -92,116 +96,104 @@ void CrashRecord::Map(const std::string& path) {
 }
 
 // Frees the slots, so that a kill during the start counts nothing twice.
-void CrashRecord::TakeLast() {
+CrashRecord::End CrashRecord::TakeEnd() {
+  End end;
+  std::optional<RunName> examined;  // by the thread that died
   for (Slot& slot : page_->slots) {
-    const RunName run = {slot.run, slot.generation};
-    if (run.run == 0) continue;
-    if (slot.point >= 0) last_[run].insert(static_cast<size_t>(slot.point.load()));
-    last_.try_emplace(run);
-    slot.run = 0;
+    const RunName run = {slot.run.exchange(0), slot.generation};
+    const auto signal = static_cast<int>(slot.signal.exchange(0));
+    if (run.run <= 0) continue;
+    if (signal != 0) end.signal = signal;
+    if (slot.point != kNoPoint) end.blamed[run].insert(static_cast<size_t>(slot.point));
+    if (slot.point == kNoPoint && signal != 0) examined = run;
   }
+  if (examined) end.blamed = {{*examined, {}}};
+  return end;
 }
 
-std::set<RunName> CrashRecord::KilledThePrevious(const std::string& folder,
-                                                 const OutOfMemoryKills& now) {
-  const auto signal = static_cast<int>(page_->signal.exchange(0));
+// Whether the previous process was killed for want of memory.
+bool CrashRecord::TakeOutOfMemoryKill(const std::string& folder, const OutOfMemoryKills& now) {
   const std::string group(page_->group.data(), strnlen(page_->group.data(), page_->group.size()));
-  const std::string told = folder + "/" + kOutOfMemoryFile;
-  const bool by_systemd = unlink(told.c_str()) == 0;
   const bool by_kernel = !group.empty() && group == now.group && now.kills > page_->kills;
   page_->group = {};
   now.group.copy(page_->group.data(), page_->group.size() - 1);
   page_->kills = now.kills;
-  const RunName examined = std::exchange(page_->examined, {});
-  if (signal == 0 && !by_systemd && !by_kernel) return {};
-  std::set<RunName> runs;
-  for (const auto& [run, points] : last_) runs.insert(run);
-  if (signal != 0 && examined.run != 0) runs = {examined};
-  const std::string reason = signal != 0
-                                 ? absl::StrCat("signal ", signal, " (", strsignal(signal), ")")
-                                 : "an out-of-memory kill";
-  if (!runs.empty()) {
-    LogError(absl::StrCat("the previous process died of ", reason, " while it computed ",
-                          runs.size(), runs.size() == 1 ? " job" : " jobs"));
-  }
-  return runs;
+  const bool by_systemd = unlink((folder + "/" + kOutOfMemoryFile).c_str()) == 0;
+  return by_kernel || by_systemd;
 }
 
-void CrashRecord::CountDeath(const std::set<RunName>& runs) {
-  if (!runs.empty()) ++page_->counted_deaths;
+// Without points, those of the run's death before.
+void CrashRecord::CountDeath(const RunName& run, std::set<size_t> points) {
+  const int deaths = Deaths(run) + 1;
+  if (points.empty()) points = LastPoints(run);
+  std::vector<int64_t> entries(points.begin(), points.end());
+  if (entries.empty()) entries.push_back(kNoPoint);
+  Clear(run);
   MutexLock lock(mutex_);
-  for (const RunName& run : runs) {
-    const auto is = [](const RunName& name) {
-      return [name](const Page::RunDeaths& entry) { return entry.run == name; };
-    };
-    auto entry = std::ranges::find_if(page_->deaths, is(run));
-    if (entry == page_->deaths.end()) entry = std::ranges::find_if(page_->deaths, is({}));
-    if (entry == page_->deaths.end()) continue;
-    entry->deaths = entry->run == run ? entry->deaths + 1 : 1;
-    entry->run = run;
+  for (Page::Death& entry : page_->deaths) {
+    if (entry.run != RunName() || entries.empty()) continue;
+    entry = {run, entries.back(), deaths};
+    entries.pop_back();
   }
 }
 
 int CrashRecord::Deaths(const RunName& run) const {
   MutexLock lock(mutex_);
-  for (const Page::RunDeaths& entry : page_->deaths) {
-    if (entry.run == run) return static_cast<int>(entry.deaths);
-  }
-  return 0;
+  const auto entry = std::ranges::find(page_->deaths, run, &Page::Death::run);
+  return entry == page_->deaths.end() ? 0 : static_cast<int>(entry->deaths);
 }
 
 std::set<size_t> CrashRecord::LastPoints(const RunName& run) const {
-  const auto found = last_.find(run);
-  return found == last_.end() ? std::set<size_t>() : found->second;
+  std::set<size_t> points;
+  MutexLock lock(mutex_);
+  for (const Page::Death& entry : page_->deaths) {
+    if (entry.run == run && entry.point != kNoPoint) {
+      points.insert(static_cast<size_t>(entry.point));
+    }
+  }
+  return points;
 }
 
 void CrashRecord::Clear(const RunName& run) {
   MutexLock lock(mutex_);
-  for (Page::RunDeaths& entry : page_->deaths) {
-    if (entry.run == run) entry = {};
-  }
+  std::ranges::replace(page_->deaths, run, Page::Death(), &Page::Death::run);
 }
 
 void CrashRecord::ClearAllBut(const std::set<RunName>& runs) {
   MutexLock lock(mutex_);
-  for (Page::RunDeaths& entry : page_->deaths) {
-    if (!runs.contains(entry.run)) entry = {};
-  }
+  std::ranges::replace_if(
+      page_->deaths, [&](const RunName& run) { return !runs.contains(run); }, Page::Death(),
+      &Page::Death::run);
 }
 
 int64_t CrashRecord::counted_deaths() const { return page_->counted_deaths; }
 
 // ---- of a thread ----
 
-CrashRecord::Computing::Computing(CrashRecord& record, const RunName& run,
-                                  std::optional<size_t> point) {
-  this_thread.page = record.page_;
+constinit thread_local CrashRecord::Slot* CrashRecord::slot_of_this_thread = nullptr;
+
+CrashRecord::Entry::Entry(CrashRecord& record, const RunName& run, int64_t point)
+    : before_(slot_of_this_thread) {
+  static thread_local const SignalStack stack;
   for (Slot& slot : record.page_->slots) {
-    int64_t none = 0;
-    if (slot.run != 0 || !slot.run.compare_exchange_strong(none, run.run)) continue;
+    int64_t free = 0;
+    if (slot.run != 0 || !slot.run.compare_exchange_strong(free, kTaken)) continue;
     slot.generation = run.generation;
-    slot.point = point ? static_cast<int64_t>(*point) : -1;
+    slot.point = point;
+    slot.run = run.run;  // last, because the process may be killed at any moment
     slot_ = &slot;
-    return;
+    break;
   }
+  slot_of_this_thread = slot_;
 }
 
-CrashRecord::Computing::~Computing() {
+CrashRecord::Entry::~Entry() {
+  slot_of_this_thread = before_;
   if (slot_ != nullptr) slot_->run = 0;
-  this_thread.page = nullptr;
 }
-
-CrashRecord::Examining::Examining(CrashRecord& record, const RunName& run) {
-  this_thread = {record.page_, run};
-}
-
-CrashRecord::Examining::~Examining() { this_thread = {nullptr, {}}; }
 
 void CrashRecord::NoteDeath(int signal) {
-  auto* const page = static_cast<Page*>(this_thread.page);
-  if (page == nullptr) return;
-  page->examined = this_thread.examined;
-  page->signal = signal;
+  if (slot_of_this_thread != nullptr) slot_of_this_thread->signal = signal;
 }
 
 }  // namespace ballpiston::server

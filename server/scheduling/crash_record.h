@@ -7,7 +7,7 @@
 // run (NoteDeath), or if the kernel killed it for want of memory (OutOfMemoryKills). It counts once
 // for each run that was being computed. Properties, each with a test of its name:
 //   1. ADeathCountsForTheRunsThatWereBeingComputed.
-//   2. AKillFromOutsideCountsForNothing.
+//   2. AKillFromOutsideCountsForNothing. It changes nothing: the points of the last death stay.
 //   3. AStoredChunkClearsTheRun.
 //   4. AnOutOfMemoryKillCounts.
 //   5. ADeathInAnExaminationCountsForItsRunAlone.
@@ -20,7 +20,6 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <optional>
 #include <set>
 #include <string>
 
@@ -46,6 +45,23 @@ inline constexpr char kOutOfMemoryFile[] = "out-of-memory";
 
 class CrashRecord {
   struct Slot;
+  static constexpr int64_t kNoPoint = -1;
+
+  // As long as it lives, the record says what this thread does, and the thread can note its death
+  // even if its own stack is used up. May nest; then the innermost says it.
+  class Entry {
+   public:
+    Entry(const Entry&) = delete;
+    Entry& operator=(const Entry&) = delete;
+
+   protected:
+    Entry(CrashRecord& record, const RunName& run, int64_t point);
+    ~Entry();
+
+   private:
+    Slot* slot_ = nullptr;
+    Slot* const before_;
+  };
 
  public:
   CrashRecord();  // in memory, of no use to a later process
@@ -60,7 +76,7 @@ class CrashRecord {
 
   // The deaths that count for the run.
   int Deaths(const RunName& run) const;
-  // The points of the run that were being computed when the previous process ended.
+  // The points of the run that were being computed at its last death that counts.
   std::set<size_t> LastPoints(const RunName& run) const;
   // The run's deaths count no more.
   void Clear(const RunName& run);
@@ -69,45 +85,41 @@ class CrashRecord {
 
   int64_t counted_deaths() const;  // of all processes with this record
 
-  // As long as it lives, this thread computes the run. `point`: empty if it is none of the run's.
-  class Computing {
+  // As long as it lives, this thread computes the point.
+  class Computing : public Entry {
    public:
-    Computing(CrashRecord& record, const RunName& run, std::optional<size_t> point);
-    ~Computing();
-    Computing(const Computing&) = delete;
-    Computing& operator=(const Computing&) = delete;
-
-   private:
-    Slot* slot_ = nullptr;
+    Computing(CrashRecord& record, const RunName& run, size_t point)
+        : Entry(record, run, static_cast<int64_t>(point)) {}
   };
 
   // As long as it lives, this thread looks at what is known of the run, which may be paused. A
   // death in this thread counts for this run alone; a death in another thread does not count for
   // it.
-  class Examining {
+  class Examining : public Entry {
    public:
-    Examining(CrashRecord& record, const RunName& run);
-    ~Examining();
-    Examining(const Examining&) = delete;
-    Examining& operator=(const Examining&) = delete;
+    Examining(CrashRecord& record, const RunName& run) : Entry(record, run, kNoPoint) {}
   };
 
   // This thread has received a fatal signal. Async-signal-safe.
   static void NoteDeath(int signal);
 
  private:
+  // Null when a thread starts, so the handler of a signal can read it.
+  static constinit thread_local Slot* slot_of_this_thread;
   struct Page;
+  // Of the previous process.
+  struct End {
+    int signal = 0;                                   // 0: it was killed, or it stopped
+    std::map<RunName, std::set<size_t>> blamed = {};  // if its death counts; points by run
+  };
 
   void Map(const std::string& path);
-  void TakeLast();
-  // Empty if its death does not count.
-  std::set<RunName> KilledThePrevious(const std::string& folder, const OutOfMemoryKills& now);
-  void CountDeath(const std::set<RunName>& runs);
+  End TakeEnd();
+  bool TakeOutOfMemoryKill(const std::string& folder, const OutOfMemoryKills& now);
+  void CountDeath(const RunName& run, std::set<size_t> points);
 
   std::unique_ptr<Page> in_memory_;
   Page* page_;
-  // What the previous process was computing when it ended.
-  std::map<RunName, std::set<size_t>> last_;
   mutable Mutex mutex_;  // guards the page's deaths
 };
 

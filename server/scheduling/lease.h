@@ -24,6 +24,13 @@
 
 namespace ballpiston::server {
 
+// Bytes, upper bounds: with one turn at a time, and for each further turn at the same time. What a
+// turn takes is kept until the next turn (block_session.h).
+struct LeaseMemory {
+  double of_one_turn = 0;
+  double of_a_further_turn = 0;
+};
+
 struct Lease {
   int64_t number = 0;  // greater than those before, in the scheduler's life
   int64_t run = 0;     // these two are RunRequest's key and generation
@@ -36,13 +43,13 @@ struct Lease {
   std::vector<size_t> opens = {};            // points to open; empty: the lease has chunks
 
   size_t point = 0;                      // of the run's grid
-  std::optional<PilotPlace> pilot = {};  // the chunks are of this pilot, not of a point
+  std::optional<PilotPlace> pilot = {};  // the chunks are of this pilot, for which the point waits
   std::shared_ptr<const PointExperiment> experiment = {};
 
   PartialChunk start = {};  // the first chunk, and what is merged of it already
   uint64_t end = 0;         // the chunk after the last
   double seconds = 0;       // predicted, of one core at nominal speed; 0 if all the rest is leased
-  double memory = 0;        // bytes, upper bound, if this server's threads compute it
+  LeaseMemory memory = {};  // if this server's threads compute it
 
   // Stop is requested when the chunks are no longer needed.
   std::stop_token stop = {};
@@ -62,8 +69,10 @@ struct Capacity {
   size_t executor = 0;  // its number, as the scheduler gave it
   // A lease has the fewest chunks that take as long as this.
   double seconds = std::numeric_limits<double>::infinity();
-  // A lease of a local executor takes no more bytes.
+  // Bytes. A lease takes no more with one turn at a time.
   double memory = std::numeric_limits<double>::infinity();
+  // Bytes. A lease of a local executor that takes more does not have all the rest of its point.
+  double memory_of_the_rest = std::numeric_limits<double>::infinity();
   // A lease has no chunk that takes longer, unless the executor is local.
   double longest_chunk = std::numeric_limits<double>::infinity();
 };

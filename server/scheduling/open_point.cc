@@ -4,6 +4,12 @@
 #include <cmath>
 
 namespace ballpiston::server {
+namespace {
+
+// Seconds of one core of a lease that may not have all the rest of its point.
+constexpr double kLeaseOfAPart = 60;
+
+}  // namespace
 
 OpenPoint::OpenPoint(std::shared_ptr<const PointExperiment> experiment)
     : experiment_(std::move(experiment)), fold_(*experiment_) {}
@@ -46,12 +52,12 @@ void OpenPoint::Take(uint64_t chunk) {
 }
 
 bool OpenPoint::AwaitsMemory(const Capacity& capacity) const {
-  const bool fits = memory <= capacity.memory;
+  const bool fits = memory.of_one_turn <= capacity.memory;
   return !fits && !fold_.finished() && NextChunk(capacity, ChunkLimits()).has_value();
 }
 
 std::optional<Lease> OpenPoint::NextChunks(const Capacity& capacity, const ChunkLimits& limits) {
-  if (fold_.finished() || (limits.local && memory > capacity.memory)) return std::nullopt;
+  if (fold_.finished() || memory.of_one_turn > capacity.memory) return std::nullopt;
   SkipUnneeded();
   const auto first = NextChunk(capacity, limits);
   if (!first) return std::nullopt;
@@ -59,24 +65,27 @@ std::optional<Lease> OpenPoint::NextChunks(const Capacity& capacity, const Chunk
   Lease lease;
   lease.attempt = first->second.number;
   lease.crashes = first->second.crashes;
-  lease.memory = limits.local ? memory : 0;
+  if (limits.local) lease.memory = memory;
   lease.experiment = experiment_;
   lease.stop = stop();
   lease.start.chunk = first->first;
   lease.end = first->first;
   const FoldState& state = fold_.state();
   if (lease.end == state.chunk) lease.start = {state.chunk, state.blocks, state.partial};
-  const bool takes_the_rest = limits.local && std::isinf(capacity.seconds) && fold_.waiting() == 0;
+  const bool takes_the_rest = limits.local && std::isinf(capacity.seconds) &&
+                              memory.of_one_turn <= capacity.memory_of_the_rest &&
+                              fold_.waiting() == 0;
   if (takes_the_rest && lease.end == next_chunk_) {
     lease.end = next_chunk_ = chunks();
     return lease;
   }
+  const double seconds = std::isinf(capacity.seconds) ? kLeaseOfAPart : capacity.seconds;
   for (auto next = first; next && *next == std::pair(lease.end, first->second);
        next = NextChunk(capacity, limits)) {
     Take(lease.end);
     lease.seconds += plan.SecondsFor(static_cast<double>(plan.SamplesIn(lease.end)));
     ++lease.end;
-    if (lease.seconds >= capacity.seconds) break;
+    if (lease.seconds >= seconds) break;
   }
   return lease;
 }

@@ -37,7 +37,7 @@ class OpenPoint {
   // none for this capacity now.
   std::optional<Lease> NextChunks(const Capacity& capacity, const ChunkLimits& limits);
 
-  // There is a lease, but it takes more memory than the capacity of a local executor has.
+  // There is a lease for a local executor, but it takes more memory than the capacity has.
   bool AwaitsMemory(const Capacity& capacity) const;
 
   // Chunks that were leased and are still needed go out again, as this attempt.
@@ -55,7 +55,7 @@ class OpenPoint {
   uint64_t version = 0;  // the journal's number of the point's last change
   double work = 0;       // seconds of processor time of the point's chunks
   double work_at_checkpoint = 0;
-  double memory = 0;  // bytes of a lease if this server's threads compute it
+  LeaseMemory memory = {};  // of a lease
 
  private:
   // Lease::attempt and Lease::crashes.

@@ -32,10 +32,16 @@ Run::Run(RunRequest request, SchedulerOptions options)
       shortfall_(std::move(request.shortfall)),
       suspicion_(std::move(request.suspicion)) {
   SkipFinishedPoints();
-  if (suspicion_) {
-    std::erase_if(suspicion_->points,
-                  [this](size_t point) { return point >= finished_.size() || finished_[point]; });
-  }
+  if (!suspicion_) return;
+  std::erase_if(suspicion_->points,
+                [this](size_t point) { return point >= finished_.size() || finished_[point]; });
+  for (const size_t point : suspicion_->points) OpenEarly(point);
+}
+
+// The point is the next to be opened, before those in grid order.
+void Run::OpenEarly(size_t point) {
+  if (opened_early_.insert(point).second) reopen_.insert(point);
+  SkipFinishedPoints();
 }
 
 void Run::SkipFinishedPoints() {
@@ -56,10 +62,10 @@ std::optional<Lease> Run::NextLease(const Capacity& capacity, const ExecutorTrai
     return lease;
   }
   if (IsWantedElsewhere()) return NextOpening();
-  awaits_memory_ = false;
+  awaited_memory_ = 0;
   std::optional<Lease> lease = NextChunksOfPilot(capacity);
   if (!lease) lease = NextChunks(capacity, executor, finished_.size());
-  return lease || awaits_memory_ ? std::move(lease) : NextOpening();
+  return lease || awaited_memory_ > 0 ? std::move(lease) : NextOpening();
 }
 
 std::optional<Lease> Run::NextLeaseBefore(const Lease& held, const Capacity& capacity,
@@ -72,9 +78,14 @@ std::optional<Lease> Run::NextLeaseBefore(const Lease& held, const Capacity& cap
 std::optional<Lease> Run::NextChunksOfPilot(const Capacity& capacity) {
   for (const auto& [place, pilot] : pilots_) {
     auto lease = pilot->NextChunks(capacity, ChunkLimits());
-    awaits_memory_ |= !lease && pilot->AwaitsMemory(capacity);
-    if (!lease) continue;
+    if (!lease) {
+      NoteAwaited(*pilot, capacity);
+      continue;
+    }
     lease->pilot = place;
+    if (const auto waiting = waiting_.find(place); waiting != waiting_.end()) {
+      lease->point = waiting->second.front();
+    }
     return Completed(*std::move(lease));
   }
   return std::nullopt;
@@ -85,19 +96,30 @@ std::optional<Lease> Run::NextChunks(const Capacity& capacity, const ExecutorTra
   const ChunkLimits limits =
       executor.local ? ChunkLimits() : ChunkLimits{false, kMostAttemptsElsewhere};
   for (auto next = leasable_.begin(); next != leasable_.end() && *next < end;) {
-    OpenPoint& point = *open_.at(*next);
+    const size_t index = *next++;
+    if (IsHeldBack(index)) continue;
+    OpenPoint& point = *open_.at(index);
     auto lease = point.NextChunks(capacity, limits);
     if (lease) {
-      lease->point = *next;
+      lease->point = index;
       return Completed(*std::move(lease));
     }
-    const bool awaits_memory = executor.local && point.AwaitsMemory(capacity);
-    awaits_memory_ |= awaits_memory;
-    // The point may have chunks for a local executor, although it has none for this one.
-    const bool stays = awaits_memory || !executor.local;
-    next = stays ? std::next(next) : leasable_.erase(next);
+    // Otherwise the point may have chunks for a local executor, although it has none for this one.
+    if (executor.local && !NoteAwaited(point, capacity)) leasable_.erase(index);
   }
   return std::nullopt;
+}
+
+// Whether the point has a lease that takes more memory than there is.
+bool Run::NoteAwaited(const OpenPoint& point, const Capacity& capacity) {
+  if (!point.AwaitsMemory(capacity)) return false;
+  const double needed = point.memory.of_one_turn;
+  awaited_memory_ = awaited_memory_ == 0 ? needed : std::min(awaited_memory_, needed);
+  return true;
+}
+
+bool Run::IsHeldBack(size_t point) const {
+  return suspicion_ && !suspicion_->points.empty() && !suspicion_->points.contains(point);
 }
 
 Lease Run::Completed(Lease lease) const {
@@ -123,7 +145,6 @@ bool Run::IsWantedElsewhere() const {
 }
 
 std::optional<Lease> Run::NextOpening() {
-  if (!HasPointsToOpen()) return std::nullopt;
   const size_t most = NeedsNoSamples(*spec_) ? kCheapPoints
                       : IsWantedElsewhere()  ? kPointsForElsewhere
                                              : 1;
@@ -131,10 +152,11 @@ std::optional<Lease> Run::NextOpening() {
   while (lease.opens.size() < most && !reopen_.empty()) {
     lease.opens.push_back(reopen_.extract(reopen_.begin()).value());
   }
-  while (lease.opens.size() < most && next_point_ < finished_.size()) {
+  while (lease.opens.size() < most && next_point_ < finished_.size() && !IsHeldBack(next_point_)) {
     lease.opens.push_back(next_point_++);
     SkipFinishedPoints();
   }
+  if (lease.opens.empty()) return std::nullopt;
   lease.stop = stop_opening_.get_token();
   ++opening_;
   return Completed(std::move(lease));
@@ -174,8 +196,7 @@ bool Run::Adopt(const Lease& lease) {
   if (lease.generation != generation_ || lease.point >= finished_.size()) return false;
   if (finished_[lease.point] || open_.contains(lease.point)) return false;
   unopened_[lease.point].all.push_back(lease);
-  if (opened_early_.insert(lease.point).second) reopen_.insert(lease.point);
-  SkipFinishedPoints();
+  OpenEarly(lease.point);
   return true;
 }
 
@@ -190,7 +211,6 @@ OpenPoint* Run::Find(const Lease& lease) const {
 
 void Run::Close(const Lease& lease) {
   if (lease.pilot) {
-    NoteProgress(std::nullopt);
     pilots_.erase(*lease.pilot);
   } else {
     NoteProgress(lease.point);
@@ -213,13 +233,14 @@ void Run::HasChunks(const Lease& lease) {
   if (!lease.pilot && open_.contains(lease.point)) leasable_.insert(lease.point);
 }
 
-void Run::NoteProgress(std::optional<size_t> point) {
+void Run::NoteProgress(size_t point) {
   has_progressed_ = true;
-  if (suspicion_ && point) suspicion_->points.erase(*point);
+  if (suspicion_) suspicion_->points.erase(point);
 }
 
 const Suspicion* Run::refuted() const {
-  const bool is_refuted = suspicion_ && has_progressed_ && suspicion_->points.empty();
+  const bool is_refuted =
+      suspicion_ && has_progressed_ && suspicion_->points.empty() && waiting_.empty();
   return is_refuted ? &*suspicion_ : nullptr;
 }
 

@@ -34,8 +34,9 @@ struct Shortfall {
   absl::Status status;
 };
 
-// The run was being computed when the process died, twice. It is computed alone until a chunk of
-// each of these points is stored; without points, until any chunk is.
+// The run was being computed when the process died, twice. It is computed alone until this process
+// has computed a chunk of each of these points, and the chunks are stored. Only these points are
+// computed until then. Without points: until any chunk is stored.
 struct Suspicion {
   std::set<size_t> points = {};  // that were being computed at the last death
   // Stores what was reported, which may take long, and ends the suspicion. False: not now.
@@ -59,7 +60,7 @@ struct SchedulerOptions {
   // A run with less to compute, in seconds of one core at nominal speed, is computed here: to send
   // it elsewhere would take longer.
   double least_seconds_elsewhere = 60;
-  // Bytes. The leases that local executors hold take no more together, unless one alone does.
+  // Bytes. The leases that local executors hold take no more together, unless one does alone.
   double memory_limit = std::numeric_limits<double>::infinity();
 };
 
@@ -83,6 +84,10 @@ class Run {
   // Whether executors that are not local wait for points that nobody has opened: the next lease of
   // a local executor opens points.
   bool IsWantedElsewhere() const;
+
+  // Bytes that a lease of a local executor needs and that were not there when NextLease gave it
+  // none. 0: the run waits for no memory.
+  double awaited_memory() const { return awaited_memory_; }
 
   // The leases of local executors, and their turns in progress: a run ends when there are none.
   void TurnBegins() { ++turns_; }
@@ -114,10 +119,15 @@ class Run {
   void HasChunks(const Lease& lease);
   const std::map<size_t, std::unique_ptr<OpenPoint>>& open_points() const { return open_; }
 
-  // A chunk of the point is merged or the point is finished; or a pilot, which is no point.
-  void NoteProgress(std::optional<size_t> point);
-  // Empty, or the suspicion that is to be cleared: the run has progressed.
+  // The point is finished, or has a chunk more that this process has computed.
+  void NoteProgress(size_t point);
+  // The same of a chunk that another machine has computed. It does not refute the suspicion that
+  // some point kills this process.
+  void NoteProgressElsewhere() { has_progressed_ = true; }
+  // Null, or the suspicion that is to be cleared: the run has progressed, and has no pilot that the
+  // next suspect may need.
   const Suspicion* refuted() const;
+  bool IsSuspect() const { return suspicion_.has_value(); }
   void EndSuspicion() { suspicion_.reset(); }
 
   // Ends the run: it gives no more leases and requests the stop of those in progress. The first
@@ -148,9 +158,13 @@ class Run {
   std::optional<Lease> NextChunks(const Capacity& capacity, const ExecutorTraits& executor,
                                   size_t end);
   std::optional<Lease> NextOpening();
+  bool NoteAwaited(const OpenPoint& point, const Capacity& capacity);
+  // Whether only some points are computed now, and not this one.
+  bool IsHeldBack(size_t point) const;
   bool HasPointsToOpen() const { return !reopen_.empty() || next_point_ < finished_.size(); }
   // What is left takes long enough for executors that are not local.
   bool IsLarge() const;
+  void OpenEarly(size_t point);
   void SkipFinishedPoints();
   Lease Completed(Lease lease) const;
 
@@ -174,7 +188,7 @@ class Run {
   size_t next_point_ = 0;
   size_t opening_ = 0;  // leases that open points
   size_t turns_ = 0;
-  bool awaits_memory_ = false;     // at the last look of a local executor
+  double awaited_memory_ = 0;
   bool hungry_elsewhere_ = false;  // an executor that is not local found nothing
   double sampled_points_ = 0;      // opened ones
   double sampled_seconds_ = 0;     // expected, of these

@@ -19,9 +19,9 @@ namespace {
 // Seconds of work on a point between two checkpoints, for each local worker.
 constexpr double kBetweenCheckpoints = 0.1;
 
-// While more than half of the memory is taken, a lease of a local executor has chunks of so many
-// seconds of one core, so that other runs get memory before a long point ends.
-constexpr double kLeaseInLittleMemory = 60;
+// Leases with all the rest of a point, which may last for hours, take at most this share of the
+// memory together. So a run that waits for memory seldom waits for one of them.
+constexpr double kShareOfTheRest = 0.25;
 
 // Also: a chunk has at least the samples of its merged blocks.
 absl::Status CheckChunkOf(const OpenPoint& open, const ChunkResult& chunk) {
@@ -178,6 +178,10 @@ void Scheduler::Conclude(const RunPointer& run) {
     for (Member& member : executors_) member.shares.Remove(run->key());
     runs_.erase(found);
     others_go_on = std::erase(suspects_, run->key()) > 0;
+    if (waiting_ && waiting_->run == run->key()) {
+      waiting_.reset();
+      others_go_on = true;
+    }
   }
   if (others_go_on) WakeExecutors();
   run->journal().Ended(run->outcome());
@@ -210,7 +214,6 @@ void Scheduler::ClearIfRefuted(const RunPointer& run) {
     MutexLock lock(mutex_);
     std::erase(suspects_, run->key());
     run->EndSuspicion();
-    if (!suspects_.empty()) EndPilotsOf(*run);  // the next suspect may need them
   }
   WakeExecutors();
 }
@@ -228,17 +231,11 @@ std::optional<Lease> Scheduler::Next(const Capacity& capacity) {
   {
     MutexLock lock(mutex_);
     if (shutting_down_) return std::nullopt;
+    lease = Choose(capacity);
+    if (!lease) return std::nullopt;
     Member& member = executors_[capacity.executor];
-    const auto key = member.shares.First([&](int64_t candidate) {
-      mutex_.AssertHeld();
-      Run& run_of_candidate = *runs_.at(candidate);
-      if (!MayTakeTurn(run_of_candidate, member)) return false;
-      lease = NextOf(run_of_candidate, CapacityNow(capacity));
-      return lease.has_value();
-    });
-    if (!key) return std::nullopt;
-    member.shares.TurnBegins(*key);
-    run = runs_.at(*key);
+    member.shares.TurnBegins(lease->run);
+    run = runs_.at(lease->run);
     if (member.traits.local) run->TurnBegins();
     begins = !run->began();
     run->set_began();
@@ -247,51 +244,115 @@ std::optional<Lease> Scheduler::Next(const Capacity& capacity) {
   return lease;
 }
 
-// A suspect's lease needs no room beside those of paused runs, which could not end.
-Capacity Scheduler::CapacityNow(const Capacity& capacity) const {
+// Of the first run, in the order of turns, that has one.
+std::optional<Lease> Scheduler::Choose(const Capacity& capacity) {
+  const Member& member = executors_[capacity.executor];
+  const bool one_waited = waiting_.has_value();
+  std::optional<Lease> lease;
+  member.shares.First([&](int64_t candidate) {
+    mutex_.AssertHeld();
+    Run& run = *runs_.at(candidate);
+    if (!MayTakeTurn(run, member)) return false;
+    lease = NextOf(run, CapacityFor(run, capacity));
+    if (member.traits.local) NoteWaiting(run, lease.has_value());
+    return lease.has_value();
+  });
+  const bool none_waits_now = one_waited && !waiting_;  // the runs before it have memory again
+  return lease || !none_waits_now ? lease : Choose(capacity);
+}
+
+// Of a new lease.
+Capacity Scheduler::CapacityFor(const Run& run, const Capacity& capacity) const {
   Capacity now = capacity;
-  const bool is_limited = executors_[capacity.executor].traits.local && suspects_.empty();
-  if (!is_limited || held_memory_ == 0) return now;
-  now.memory = options_.memory_limit - held_memory_;
-  if (now.memory < held_memory_) now.seconds = std::min(now.seconds, kLeaseInLittleMemory);
+  if (!executors_[capacity.executor].traits.local) return now;
+  const bool another_waits = waiting_ && waiting_->run != run.key();
+  if (another_waits || held_memory_ > 0) now.memory = FreeMemory(another_waits);
+  now.memory_of_the_rest = kShareOfTheRest * options_.memory_limit - held_memory_;
+  if (!suspects_.empty()) now.seconds = 0;
   return now;
 }
 
+// Bytes that a lease of a local executor can still take, if it began after a run began to wait.
+double Scheduler::FreeMemory(bool is_later) const {
+  const double free = options_.memory_limit - held_memory_;
+  if (!is_later) return free;
+  return std::min(free, options_.memory_limit - waiting_->memory - waiting_->later);
+}
+
+bool Scheduler::IsLater(const Lease& lease) const {
+  return waiting_ && lease.number > waiting_->last_lease;
+}
+
+void Scheduler::AddMemory(const Lease& lease, double bytes) {
+  held_memory_ += bytes;
+  if (IsLater(lease)) waiting_->later += bytes;
+}
+
+// A run without a lease waits. It keeps its place until it has a lease, or needs none.
+void Scheduler::NoteWaiting(const Run& run, bool has_lease) {
+  const double needed = has_lease || HoldsLease(run) ? 0 : run.awaited_memory();
+  if (needed > 0 && !waiting_) waiting_ = {run.key(), needed, last_number_};
+  if (needed == 0 && waiting_ && waiting_->run == run.key()) waiting_.reset();
+}
+
 Scheduler::HeldLeases::iterator Scheduler::Drop(HeldLeases::iterator held) {
-  held_memory_ -= held->second.lease.memory;
+  const auto& [lease, turns, most_turns] = held->second;
+  AddMemory(lease, -lease.memory.of_one_turn - (most_turns - 1) * lease.memory.of_a_further_turn);
   return held_.erase(held);
 }
 
 std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
-  const Member& member = executors_[capacity.executor];
-  std::optional<Lease> held;
-  const bool may_continue = member.traits.local && !run.stopped() && !run.IsWantedElsewhere();
-  if (may_continue) held = HeldWithTurn(run, capacity.executor);
-  std::optional<Lease> lease = held ? run.NextLeaseBefore(*held, capacity, member.traits)
-                                    : run.NextLease(capacity, member.traits);
+  const ExecutorTraits& executor = executors_[capacity.executor].traits;
+  const bool may_continue = executor.local && !run.stopped() && !run.IsWantedElsewhere();
+  Held* held = may_continue ? HeldWithTurn(run, capacity.executor) : nullptr;
+  std::optional<Lease> lease;
+  if (suspects_.empty() || !HoldsLease(run)) {
+    lease = held != nullptr ? run.NextLeaseBefore(held->lease, capacity, executor)
+                            : run.NextLease(capacity, executor);
+  }
   if (lease) {
     lease->number = ++last_number_;
     lease->executor = capacity.executor;
-    held_memory_ += lease->memory;
-    if (!lease->OpensPoints()) held_.emplace(KeyOf(*lease), Held{*lease});
-  } else {
-    lease = std::move(held);
+    if (lease->OpensPoints()) return lease;
+    held = &held_.emplace(KeyOf(*lease), Held{*lease}).first->second;
   }
-  if (lease && !lease->OpensPoints()) ++held_.at(KeyOf(*lease)).turns;
-  return lease;
+  if (held == nullptr) return std::nullopt;
+  BeginTurn(*held);
+  return held->lease;
+}
+
+void Scheduler::BeginTurn(Held& held) {
+  if (++held.turns <= held.most_turns) return;
+  const LeaseMemory& memory = held.lease.memory;
+  AddMemory(held.lease, held.turns == 1 ? memory.of_one_turn : memory.of_a_further_turn);
+  held.most_turns = held.turns;
 }
 
 // Returns the lease that goes before the others (Lease::GoesBefore), among the leases of the run
-// that the executor holds and that have a turn.
-std::optional<Lease> Scheduler::HeldWithTurn(const Run& run, size_t executor) const {
-  const Lease* first = nullptr;
+// that the executor holds, that have a turn, and for whose turn there is memory.
+Scheduler::Held* Scheduler::HeldWithTurn(const Run& run, size_t executor) {
+  Held* first = nullptr;
   const auto end = held_.lower_bound({executor, run.key() + 1, 0});
-  for (auto held = held_.lower_bound({executor, run.key(), 0}); held != end; ++held) {
-    const Lease& lease = held->second.lease;
-    if (lease.stop.stop_requested() || (first != nullptr && !lease.GoesBefore(*first))) continue;
-    if (executors_[executor].executor->HasTurn(lease.number)) first = &lease;
+  for (auto next = held_.lower_bound({executor, run.key(), 0}); next != end; ++next) {
+    Held& held = next->second;
+    const Lease& lease = held.lease;
+    const bool has_memory = held.turns < held.most_turns ||
+                            lease.memory.of_a_further_turn <= FreeMemory(IsLater(lease));
+    if (lease.stop.stop_requested() || !has_memory) continue;
+    if (first != nullptr && !lease.GoesBefore(first->lease)) continue;
+    if (executors_[executor].executor->HasTurn(lease.number)) first = &held;
   }
-  return first == nullptr ? std::nullopt : std::optional(*first);
+  return first;
+}
+
+// Of a local executor.
+bool Scheduler::HoldsLease(const Run& run) const {
+  for (size_t i = 0; i < executors_.size(); ++i) {
+    const auto next = held_.lower_bound({i, run.key(), 0});
+    const bool holds = next != held_.lower_bound({i, run.key() + 1, 0});
+    if (holds && executors_[i].traits.local) return true;
+  }
+  return false;
 }
 
 bool Scheduler::EndTurn(const Lease& lease, double seconds) {
@@ -338,7 +399,7 @@ std::optional<Lease> Scheduler::Adopt(Lease lease) {
   const RunPointer run = FindRun(lease.run);
   lease.number = ++last_number_;
   if (run == nullptr || !run->Adopt(lease)) return std::nullopt;
-  held_.emplace(KeyOf(lease), Held{lease, 1});
+  held_.emplace(KeyOf(lease), Held{lease, 1, 1});
   executors_[lease.executor].shares.TurnBegins(lease.run);
   return lease;
 }
@@ -373,17 +434,15 @@ void Scheduler::Fail(const Lease& lease, absl::Status why) { Stop(lease.run, std
 
 // ---- opening points ----
 
-void Scheduler::Open(const Lease& lease) {
+void Scheduler::Open(const Lease& lease, size_t point) {
+  if (lease.stop.stop_requested()) return;
   RunPointer run;
   {
     MutexLock lock(mutex_);
     run = FindRun(lease.run);
   }
-  for (const size_t index : lease.opens) {
-    if (lease.stop.stop_requested()) return;
-    absl::Status opened = Guarded(index, [&] { return OpenOne(*run, index); });
-    if (!opened.ok()) return Fail(lease, std::move(opened));
-  }
+  absl::Status opened = Guarded(point, [&] { return OpenOne(*run, point); });
+  if (!opened.ok()) Fail(lease, std::move(opened));
 }
 
 absl::Status Scheduler::OpenOne(Run& run, size_t index) {
@@ -391,7 +450,7 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
   if (const auto* place = std::get_if<PilotPlace>(&opened)) return AwaitPilot(run, index, *place);
   auto open = std::make_unique<OpenPoint>(
       std::get<std::unique_ptr<const PointExperiment>>(std::move(opened)));
-  open->memory = std::ceil(opener_.MemoryOf(run.spec(), index, workers_));
+  open->memory = MemoryOf(run, index);
   if (run.has_checkpoints()) {
     absl::Status resumed = Resume(run, index, *open);
     if (!resumed.ok()) return resumed;
@@ -405,6 +464,12 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
   MutexLock lock(mutex_);
   run.PointOpened(index, std::move(open));
   return absl::OkStatus();
+}
+
+// Whole bytes, so that sums are exact.
+LeaseMemory Scheduler::MemoryOf(const Run& run, size_t index) {
+  const double one = std::ceil(opener_.MemoryOf(run.spec(), index, 1));
+  return {one, std::ceil(opener_.MemoryOf(run.spec(), index, 2)) - one};
 }
 
 void Scheduler::DropAdopted(Run& run, size_t index) {
@@ -428,7 +493,7 @@ absl::Status Scheduler::AwaitPilot(Run& run, size_t index, const PilotPlace& pla
   // The pilot's result may have become known before this run took the pilot over.
   if (!std::holds_alternative<PilotPlace>(opener_.Open(run.spec(), index))) return absl::OkStatus();
   auto pilot = std::make_unique<OpenPoint>(opener_.OpenPilot(place));
-  pilot->memory = std::ceil(opener_.MemoryOf(run.spec(), index, workers_));
+  pilot->memory = MemoryOf(run, index);
   std::move(give_up).Cancel();
   MutexLock lock(mutex_);
   if (!run.stopped()) run.PilotOpened(place, std::move(pilot));
@@ -512,7 +577,11 @@ void Scheduler::Merge(Run& run, const Lease& lease, OpenPoint& open, LeaseReport
   PointFold& fold = open.fold();
   open.work += report.seconds;
   uint64_t samples = 0;
-  if (!report.chunks.empty() && !lease.pilot) run.NoteProgress(lease.point);
+  const bool is_local = executors_[lease.executor].traits.local;
+  const bool has_chunks = !report.chunks.empty();
+  if (has_chunks && !lease.pilot) {
+    is_local ? run.NoteProgress(lease.point) : run.NoteProgressElsewhere();
+  }
   for (ChunkResult& chunk : report.chunks) {
     const bool is_early = fold.Needs(chunk.chunk) && chunk.chunk > fold.state().chunk;
     if (is_early && !lease.pilot) run.journal().ChunkIsEarly(lease.point, chunk);
@@ -527,7 +596,9 @@ void Scheduler::Merge(Run& run, const Lease& lease, OpenPoint& open, LeaseReport
         {.point = lease.point, .samples = samples, .share_of_point = ShareOfPoint(open, samples)});
   }
   if (!fold.finished()) EndIfBudgetIsSpent(run, lease, open);
-  if (!fold.finished() && samples > 0) CheckpointIfDue(run, lease, open);
+  // The files of an executor elsewhere may go when the lease ends, so its chunks are written now.
+  const bool at_once = !is_local || (run.IsSuspect() && has_chunks);
+  if (!fold.finished() && samples > 0) CheckpointIfDue(run, lease, open, at_once);
 }
 
 void Scheduler::EndIfBudgetIsSpent(Run& run, const Lease& lease, OpenPoint& open) {
@@ -541,10 +612,7 @@ void Scheduler::EndIfBudgetIsSpent(Run& run, const Lease& lease, OpenPoint& open
   run.NoteShortfall({lease.point, ToleranceNotReached(spec, lease.point, reached)});
 }
 
-// The files of an executor elsewhere may go when the lease ends, so its chunks are written now.
-void Scheduler::CheckpointIfDue(Run& run, const Lease& lease, OpenPoint& open) {
-  const bool elsewhere = !executors_[lease.executor].traits.local;
-  const bool at_once = elsewhere || run.refuted() != nullptr;
+void Scheduler::CheckpointIfDue(Run& run, const Lease& lease, OpenPoint& open, bool at_once) {
   const double between = at_once ? 0 : kBetweenCheckpoints * workers_;
   if (!open.fold().HasBlocks() || open.work < open.work_at_checkpoint + between) return;
   open.work_at_checkpoint = open.work;

@@ -11,8 +11,11 @@
 //   4. APilotIsComputedOnceForAllRuns.
 //   5. AStoppedRunEndsWhenItsTurnsHaveEnded.
 //   6. TheLeasesOfThisServerTakeNoMoreMemoryThanTheLimit.
-//   7. SuspectsAreComputedAloneOneAfterTheOther. A suspect is a run that was being computed at two
-//      deaths of the process (crash_record.h): other runs pause, and executors elsewhere too.
+//   7. ALargePointGetsItsTurn. The first run that finds too little memory waits. Leases that begin
+//      later, of other runs, leave it as much as it needs.
+//   8. SuspectsAreComputedAloneOneAfterTheOther. A suspect is a run that was being computed at two
+//      deaths of the process (crash_record.h): other runs pause, and executors elsewhere too. It
+//      has one lease of one chunk at a time, so it holds no memory when it pauses.
 // Thread-safe.
 #ifndef BALLPISTON_SERVER_SCHEDULING_SCHEDULER_H_
 #define BALLPISTON_SERVER_SCHEDULING_SCHEDULER_H_
@@ -88,8 +91,8 @@ class Scheduler {
   // disk.
   std::optional<Lease> Next(const Capacity& capacity);
 
-  // Opens the points of a lease that asks for it. May take long.
-  void Open(const Lease& lease);
+  // Opens one of the points that the lease asks to open. May take long.
+  void Open(const Lease& lease, size_t point);
 
   // Chunks that nobody needs are dropped. Errors, of executors that are not local:
   //   DATA_LOSS    a chunk does not belong to its point; the others are merged
@@ -148,7 +151,15 @@ class Scheduler {
   using HeldKey = std::tuple<size_t, int64_t, int64_t>;
   struct Held {
     Lease lease;
-    int turns = 0;  // of a local executor
+    int turns = 0;       // of a local executor
+    int most_turns = 0;  // at a time until now
+  };
+  // A run that waits for memory.
+  struct Waiting {
+    int64_t run;
+    double memory;       // bytes that it needs
+    int64_t last_lease;  // before it waited
+    double later = 0;    // bytes of leases that began later
   };
   using RunPointer = std::shared_ptr<Run>;
   using HeldLeases = std::map<HeldKey, Held>;
@@ -156,17 +167,24 @@ class Scheduler {
   static HeldKey KeyOf(const Lease& lease) { return {lease.executor, lease.run, lease.number}; }
 
   RunPointer FindRun(int64_t key) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  Capacity CapacityNow(const Capacity& capacity) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  Capacity CapacityFor(const Run& run, const Capacity& capacity) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  double FreeMemory(bool is_later) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  bool IsLater(const Lease& lease) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void AddMemory(const Lease& lease, double bytes) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void NoteWaiting(const Run& run, bool has_lease) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   HeldLeases::iterator Drop(HeldLeases::iterator held) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  std::optional<Lease> Choose(const Capacity& capacity) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::optional<Lease> NextOf(Run& run, const Capacity& capacity)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  std::optional<Lease> HeldWithTurn(const Run& run, size_t executor) const
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  Held* HeldWithTurn(const Run& run, size_t executor) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  bool HoldsLease(const Run& run) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void BeginTurn(Held& held) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void Merge(Run& run, const Lease& lease, OpenPoint& open, LeaseReport report)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void EndIfBudgetIsSpent(Run& run, const Lease& lease, OpenPoint& open)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void CheckpointIfDue(Run& run, const Lease& lease, OpenPoint& open)
+  void CheckpointIfDue(Run& run, const Lease& lease, OpenPoint& open, bool at_once)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void WriteCheckpoints(Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void StopRun(Run& run, absl::Status why) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
@@ -180,6 +198,7 @@ class Scheduler {
   absl::Status OpenOne(Run& run, size_t index) ABSL_LOCKS_EXCLUDED(mutex_);
   // The adopted leases of a point that is finished.
   void DropAdopted(Run& run, size_t index) ABSL_LOCKS_EXCLUDED(mutex_);
+  LeaseMemory MemoryOf(const Run& run, size_t index);
   absl::Status AwaitPilot(Run& run, size_t index, const PilotPlace& place)
       ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status Resume(Run& run, size_t index, OpenPoint& open);
@@ -206,6 +225,7 @@ class Scheduler {
   std::deque<int64_t> suspects_ ABSL_GUARDED_BY(mutex_);  // the first is computed alone
   HeldLeases held_ ABSL_GUARDED_BY(mutex_);
   double held_memory_ ABSL_GUARDED_BY(mutex_) = 0;  // bytes of held_
+  std::optional<Waiting> waiting_ ABSL_GUARDED_BY(mutex_);
   int64_t last_number_ ABSL_GUARDED_BY(mutex_) = 0;
   std::map<PilotPlace, int64_t> pilots_ ABSL_GUARDED_BY(mutex_);  // in progress, and by which run
 };

@@ -138,6 +138,7 @@ std::string ChunkFilePayload(const ChunkFile& file) {
   record.set_sequence(file.sequence);
   record.set_final(file.is_final);
   for (const LeaseChunks& chunks : file.leases) Fill(chunks, *record.add_leases());
+  record.set_memory_exceeded(file.memory_exceeded);
   return DeterministicBytes(record);
 }
 
@@ -149,7 +150,8 @@ absl::StatusOr<ChunkFile> ChunkFileFromPayload(absl::string_view payload) {
   ChunkFile file = {.array = record.array(),
                     .task = record.task(),
                     .sequence = record.sequence(),
-                    .is_final = record.final()};
+                    .is_final = record.final(),
+                    .memory_exceeded = record.memory_exceeded()};
   for (const storage::LeaseChunks& chunks : record.leases()) {
     const absl::Status checked = CheckNumbers(chunks);
     if (!checked.ok()) return checked;

@@ -37,6 +37,8 @@ struct ChunkFile {
   uint32_t sequence = 0;
   bool is_final = false;  // the task has nothing left to compute
   std::vector<LeaseChunks> leases = {};
+  double memory_exceeded =
+      0;  // bytes that the task may use, if a lease needs more and was left out
 };
 
 struct ChunkFileName {

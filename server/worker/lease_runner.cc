@@ -104,7 +104,7 @@ bool LeaseRun::Pause() {
 bool RunLeases(const std::vector<LeaseWork>& work, const std::stop_token& stop,
                ChunkReceiver& receiver) {
   for (size_t i = 0; i < work.size(); ++i) {
-    receiver.LeaseBegins(i);
+    if (!receiver.LeaseBegins(i)) continue;
     if (!LeaseRun(i, work[i], stop, receiver).Run()) return false;
   }
   return !stop.stop_requested();

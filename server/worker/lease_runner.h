@@ -24,7 +24,8 @@ struct LeaseWork {
 class ChunkReceiver {
  public:
   virtual ~ChunkReceiver() = default;
-  virtual void LeaseBegins(size_t /*lease*/) {}
+  // False if the lease is to be left out.
+  virtual bool LeaseBegins(size_t /*lease*/) { return true; }
   // A complete chunk of the lease with this index. Chunks of a lease arrive in order.
   virtual void ChunkDone(size_t lease, ChunkResult chunk) = 0;
   // Processor time on this lease since the last call. Called at least every 0.05 s, and after each

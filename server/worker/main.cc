@@ -4,17 +4,21 @@
 #include <sys/stat.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <stop_token>
 #include <string>
 #include <thread>
 
 #include "absl/status/status.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "core/engine_version.h"
 #include "server/fatal_signals.h"
+#include "server/machine_memory.h"
 #include "server/worker/crash_mark.h"
 #include "server/worker/task_file.h"
 #include "server/worker/task_run.h"
@@ -88,6 +92,18 @@ int Fail(const absl::Status& status) {
   return absl::IsInvalidArgument(status) ? kExitUsage : kExitFailed;
 }
 
+// Bytes that the machine has for this task, and that Slurm gives it. Slurm says 0 for no limit.
+double TaskMemory() {
+  double bytes = MachineMemory();
+  for (const char* name : {"SLURM_MEM_PER_CPU", "SLURM_MEM_PER_NODE"}) {
+    const char* const text = std::getenv(name);
+    double mib = 0;
+    const bool is_limit = text != nullptr && absl::SimpleAtod(text, &mib) && mib > 0;
+    if (is_limit) bytes = std::min(bytes, mib * (1 << 20));
+  }
+  return bytes;
+}
+
 int Compute(const CommandLine& line) {
   NoteFatalSignals(LeaveCrashMark);
   const SignalStack stack;
@@ -105,6 +121,7 @@ int Main(int argc, char** argv) {
   umask(0077);
   signal(SIGXFSZ, SIG_IGN);  // a file at its size limit is an error like a full disk
   CommandLine line;
+  line.run.memory = TaskMemory();
   CLI::App app("Computes one task of a job array of ballpistond.", "ballpiston-worker");
   AddFlags(app, line);
   try {

@@ -9,6 +9,7 @@
 
 #include "absl/functional/function_ref.h"
 #include "absl/strings/str_cat.h"
+#include "core/ensemble/point_memory.h"
 #include "server/observability/failpoint.h"
 #include "server/worker/chunk_file.h"
 #include "server/worker/crash_mark.h"
@@ -31,7 +32,7 @@ class TaskRun : private ChunkReceiver {
   void TakeChunks(const LeaseChunks& chunks);
 
   // ---- new files ----
-  void LeaseBegins(size_t lease) override;
+  bool LeaseBegins(size_t lease) override;
   void ChunkDone(size_t lease, ChunkResult chunk) override;
   void Worked(size_t lease, double seconds) override;
   bool HasNewChunks() const;
@@ -106,9 +107,19 @@ void TaskRun::TakeChunks(const LeaseChunks& chunks) {
   known.insert(known.end(), chunks.chunks.begin(), chunks.chunks.end());
 }
 
-void TaskRun::LeaseBegins(size_t lease) {
-  SetCrashMark(options_.folder, task_.task, lease);
-  CrashForSeed(work_[lease].lease.spec->seed);
+bool TaskRun::LeaseBegins(size_t index) {
+  const Lease& lease = work_[index].lease;
+  const double needed = MemoryOf(*lease.spec, lease.experiment->parameters(), 1);
+  if (needed > options_.memory) {
+    report_(absl::StrCat("lease ", index, " needs ", needed,
+                         " bytes of memory, but this task may use ", options_.memory,
+                         ": it is left out"));
+    next_.memory_exceeded = options_.memory;
+    return false;
+  }
+  SetCrashMark(options_.folder, task_.task, index);
+  CrashForSeed(lease.spec->seed);
+  return true;
 }
 
 void TaskRun::ChunkDone(size_t lease, ChunkResult chunk) {

@@ -4,6 +4,7 @@
 #define BALLPISTON_SERVER_WORKER_TASK_RUN_H_
 
 #include <functional>
+#include <limits>
 #include <stop_token>
 #include <string>
 
@@ -18,6 +19,8 @@ struct TaskRunOptions {
   double flush_seconds = 30;     // processor time between two files, if a chunk is complete
   double retry_seconds = 5;      // between two attempts to use a folder that is full or not there
   double give_up_seconds = 120;  // sum of these waits
+  // Bytes. A lease that needs more is left out: its memory would end the task (MemoryOf).
+  double memory = std::numeric_limits<double>::infinity();
 };
 
 // One line for people, without the line end.

@@ -238,7 +238,7 @@ std::string NameOf(Order order) {
 
 void OpenOnePoint(Server& server) {
   const auto lease = server.scheduler().Next(server.local().capacity());
-  server.scheduler().Open(*lease);
+  for (const size_t point : lease->opens) server.scheduler().Open(*lease, point);
   server.scheduler().EndTurn(*lease, 0);
 }
 
@@ -334,7 +334,7 @@ class Sweep {
     if (!lease) return false;
     if (lease->OpensPoints()) {
       meter_.Measure([&] {
-        server_.scheduler().Open(*lease);
+        for (const size_t point : lease->opens) server_.scheduler().Open(*lease, point);
         return server_.scheduler().EndTurn(*lease, 0);
       });
       return true;

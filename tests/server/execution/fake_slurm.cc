@@ -108,6 +108,11 @@ void FakeSlurm::End(const std::string& name, size_t task) {
   if (found->second.waiting.empty() && found->second.running.empty()) arrays_.erase(found);
 }
 
+void FakeSlurm::SetMemory(double bytes) {
+  std::lock_guard lock(mutex_);
+  memory_ = bytes;
+}
+
 size_t FakeSlurm::Lose(const std::string& name, size_t task) {
   std::lock_guard lock(mutex_);
   End(name, task);
@@ -120,15 +125,15 @@ void FakeSlurm::LoseAll() {
 }
 
 absl::Status FakeSlurm::Run(const std::string& name, size_t task) {
-  std::string folder;
+  TaskRunOptions options = {.retry_seconds = 0, .give_up_seconds = 0};
   {
     std::lock_guard lock(mutex_);
-    folder = arrays_.at(name).folder;
+    options.folder = arrays_.at(name).folder;
+    options.memory = memory_;
   }
-  const absl::StatusOr<ArrayTask> read = TaskIn(folder, task);
+  const absl::StatusOr<ArrayTask> read = TaskIn(options.folder, task);
   const absl::Status run =
-      read.ok() ? RunTask(*read, {.folder = folder, .retry_seconds = 0, .give_up_seconds = 0},
-                          std::stop_source(), [](absl::string_view) {})
+      read.ok() ? RunTask(*read, options, std::stop_source(), [](absl::string_view) {})
                 : read.status();
   Lose(name, task);
   return run;

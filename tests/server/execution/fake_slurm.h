@@ -16,6 +16,7 @@
 #include "absl/status/statusor.h"
 #include "server/execution/slurm_tools.h"
 #include "server/worker/task_file.h"
+#include "server/worker/task_run.h"
 
 namespace ballpiston::server {
 
@@ -30,6 +31,7 @@ class FakeSlurm {
   void Answer(const absl::Status& submission, bool accepts);
   void AnswerQuery(const absl::Status& query);
   void SetReason(const std::string& reason);  // why tasks wait
+  void SetMemory(double bytes);               // that a task may use
 
   // ---- what the test does ----
 
@@ -65,6 +67,7 @@ class FakeSlurm {
   absl::Status submission_, query_;
   bool accepts_ = true;
   std::string reason_ = "Priority";
+  double memory_ = TaskRunOptions().memory;
   int last_id_ = 0;
   std::map<std::string, Array> arrays_;
   std::vector<ArraySubmission> submissions_;

@@ -16,6 +16,7 @@
 
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
+#include "core/ensemble/point_memory.h"
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -51,6 +52,17 @@ EnsembleSpec PointOfChunks(uint64_t chunks) {
   static const uint64_t base = PointExperiment::Create(two, 0)->plan().SamplesIn(0);
   return SpecOf(kFirstHit, Model::kBilliard, static_cast<int64_t>(base * ((1 << chunks) - 1)));
 }
+
+class CoreOpener : public FactoryOpener {
+ public:
+  CoreOpener()
+      : FactoryOpener([](const EnsembleSpec& spec, size_t index) {
+          return PointExperiment::Create(spec, index);
+        }) {}
+  double MemoryOf(const EnsembleSpec& spec, size_t index, int threads) override {
+    return ballpiston::MemoryOf(spec, PointAt(spec, index), threads);
+  }
+};
 
 // A scheduler, its executor of a fake cluster, and a local one that takes turns when the test says
 // so. Two of them one after the other are a server that was killed and started again.
@@ -124,8 +136,7 @@ class ClusteredServer {
 
  private:
   FakeSlurm& slurm_;
-  FactoryOpener opener_{
-      [](const EnsembleSpec& spec, size_t index) { return PointExperiment::Create(spec, index); }};
+  CoreOpener opener_;
   Scheduler scheduler_{opener_, 1, {.least_seconds_elsewhere = 0}};
   SteppedExecutor local_{scheduler_};
   std::atomic<bool> flush_ok_ = true;
@@ -385,6 +396,23 @@ TEST_F(SlurmExecutorTest, TheCrashesOfALeaseSurviveARestart) {
   EXPECT_EQ(task.leases.at(0).lease.crashes, 1);
   EXPECT_EQ(task.leases.at(0).lease.attempt, 3);
   RunToRightEnd();
+}
+
+// It leaves its leases out and says why; later leases of as much memory stay here.
+TEST_F(SlurmExecutorTest, AQuestionBeyondTheMemoryOfANodeIsComputedHere) {
+  slurm_.SetMemory(1e6);
+  SubmitRun();
+  AwaitThat([&] {
+    slurm_.RunAll();
+    server_->ComputeHere();
+    std::lock_guard lock(journal_->mutex);
+    return journal_->outcome.has_value();
+  });
+  ExpectRightEnd();
+  server_->AwaitIdle();
+  EXPECT_THAT(slurm_.submissions(), SizeIs(1));
+  EXPECT_EQ(server_->Status().chunks + server_->Status().lost_tasks, 0);
+  EXPECT_EQ(server_->Status().problem, "");
 }
 
 // A task is not lost because one answer of Slurm lacks it: a file may become visible later.

@@ -28,20 +28,25 @@ constexpr int kKilledFromOutside = 0;
 // Processes, one after the other, with the record in one folder.
 class CrashRecordTest : public testing::Test {
  protected:
-  using Turns = std::map<RunName, std::set<size_t>>;  // in progress; without points: of a pilot
+  using Turns = std::map<RunName, std::set<size_t>>;  // points that are being computed
 
   // A process begins, computes, and dies of the signal. What is in the record at this moment stays.
   void LiveAndDie(const Turns& turns, int signal, const OutOfMemoryKills& at_start = {}) {
     CrashRecord record(folder_.path(), at_start);
     std::vector<std::unique_ptr<CrashRecord::Computing>> computing;
-    const auto compute = [&](const RunName& run, std::optional<size_t> point) {
-      computing.push_back(std::make_unique<CrashRecord::Computing>(record, run, point));
-    };
     for (const auto& [run, points] : turns) {
-      if (points.empty()) compute(run, std::nullopt);
-      for (const size_t point : points) compute(run, point);
+      for (const size_t point : points) {
+        computing.push_back(std::make_unique<CrashRecord::Computing>(record, run, point));
+      }
     }
     Die(signal);
+    while (!computing.empty()) computing.pop_back();  // the innermost first
+  }
+
+  void DieInAnExamination(const RunName& run) {
+    CrashRecord record(folder_.path(), {});
+    const CrashRecord::Examining examining(record, run);
+    Die(SIGSEGV);
   }
 
   void Die(int signal) {
@@ -67,13 +72,14 @@ class CrashRecordTest : public testing::Test {
 };
 
 TEST_F(CrashRecordTest, ADeathCountsForTheRunsThatWereBeingComputed) {
-  LiveAndDie({{kFirst, {4, 5}}, {kSecond, {}}}, SIGSEGV);
+  LiveAndDie({{kFirst, {4, 5}}, {kSecond, {7}}}, SIGSEGV);
   const auto record = Next();
   EXPECT_EQ(record->Deaths(kFirst), 1);
   EXPECT_EQ(record->Deaths(kSecond), 1);
   EXPECT_EQ(record->Deaths(kThird), 0);
   EXPECT_EQ(record->LastPoints(kFirst), (std::set<size_t>{4, 5}));
-  EXPECT_EQ(record->LastPoints(kSecond), std::set<size_t>());
+  EXPECT_EQ(record->LastPoints(kSecond), (std::set<size_t>{7}));
+  EXPECT_EQ(record->LastPoints(kThird), std::set<size_t>());
   EXPECT_EQ(record->counted_deaths(), 1);
 }
 
@@ -96,6 +102,21 @@ TEST_F(CrashRecordTest, AKillFromOutsideCountsForNothing) {
   }
   LiveAndDie({{kFirst, {0}}}, SIGSEGV);
   EXPECT_EQ(Next()->Deaths(kFirst), 2);
+}
+
+TEST_F(CrashRecordTest, AKillFromOutsideKeepsThePointsOfTheLastDeath) {
+  LiveAndDie({{kFirst, {7}}}, SIGSEGV);
+  Next().reset();
+  LiveAndDie({{kFirst, {5}}}, kKilledFromOutside);
+  EXPECT_EQ(Next()->LastPoints(kFirst), (std::set<size_t>{7}));
+  LiveAndDie({{kSecond, {5}}}, SIGSEGV);
+  EXPECT_EQ(Next()->LastPoints(kFirst), (std::set<size_t>{7}));
+  DieInAnExamination(kFirst);
+  EXPECT_EQ(Next()->Deaths(kFirst), 2);
+  EXPECT_EQ(Next()->LastPoints(kFirst), (std::set<size_t>{7}));
+  LiveAndDie({{kFirst, {8, 9}}}, SIGSEGV);
+  EXPECT_EQ(Next()->Deaths(kFirst), 3);
+  EXPECT_EQ(Next()->LastPoints(kFirst), (std::set<size_t>{8, 9}));
 }
 
 TEST_F(CrashRecordTest, AnEndedTurnDoesNotCount) {
@@ -136,6 +157,18 @@ TEST_F(CrashRecordTest, ADeathInAnExaminationCountsForItsRunAlone) {
   const auto record = Next();
   EXPECT_EQ(record->Deaths(kFirst), 0);
   EXPECT_EQ(record->Deaths(kSecond), 1);
+}
+
+TEST_F(CrashRecordTest, AnExaminationDuringATurnEndsBeforeIt) {
+  {
+    CrashRecord record(folder_.path(), {});
+    const CrashRecord::Computing computing(record, kFirst, 0);
+    { const CrashRecord::Examining examining(record, kSecond); }
+    Die(SIGSEGV);
+  }
+  const auto record = Next();
+  EXPECT_EQ(record->Deaths(kFirst), 1);
+  EXPECT_EQ(record->Deaths(kSecond), 0);
 }
 
 TEST_F(CrashRecordTest, AStoredChunkClearsTheRun) {
@@ -205,10 +238,11 @@ class FatalSignalsDeathTest : public CrashRecordTest {
     const rlimit no_core = {0, 0};
     setrlimit(RLIMIT_CORE, &no_core);
     NoteFatalSignals(CrashRecord::NoteDeath);
-    const SignalStack stack;
     CrashRecord record(folder_.path(), {});
-    const CrashRecord::Computing computing(record, kFirst, 0);
-    fault();
+    std::thread([&] {
+      const CrashRecord::Computing computing(record, kFirst, 0);
+      fault();
+    }).join();
   }
 };
 

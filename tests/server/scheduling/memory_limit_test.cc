@@ -1,14 +1,18 @@
 // The points that are computed at a time take no more memory than the limit.
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "gtest/gtest.h"
 #include "server/scheduling/scheduler.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/scheduling/recording_journal.h"
+#include "tests/server/scheduling/remote_executor.h"
 #include "tests/server/scheduling/run_requests.h"
 #include "tests/server/scheduling/stepped_executor.h"
 #include "tests/support/status_matchers.h"
@@ -17,13 +21,14 @@ namespace ballpiston::server {
 namespace {
 
 constexpr double kLimitBytes = 100;
+constexpr uint64_t kAllBlocks = std::numeric_limits<uint64_t>::max();
 
-// A point takes as many bytes as the seed of its specification.
+// A thread at a point takes as many bytes as the seed of its specification.
 class SeedsAreBytes : public FactoryOpener {
  public:
   SeedsAreBytes() : FactoryOpener(FakeExperiments()) {}
-  double MemoryOf(const EnsembleSpec& spec, size_t, int) override {
-    return static_cast<double>(spec.seed);
+  double MemoryOf(const EnsembleSpec& spec, size_t, int threads) override {
+    return static_cast<double>(spec.seed) * threads;
   }
 };
 
@@ -40,23 +45,30 @@ class MemoryLimitTest : public testing::Test {
     return journal;
   }
 
-  // One turn of each run that can have one; the turns are in progress at the same time. Returns the
-  // runs whose chunks are computed.
+  // The next turn that does not open a point.
+  std::optional<Lease> BeginChunks() {
+    std::optional<Lease> lease = local_.Begin();
+    while (lease && lease->OpensPoints()) {
+      local_.End(*lease, 0);
+      lease = local_.Begin();
+    }
+    return lease;
+  }
+
+  // Turns that are in progress at the same time, as many as there can be. Returns the runs whose
+  // chunks are computed.
   std::multiset<int64_t> TurnsAtOnce(size_t most, uint64_t blocks) {
     std::vector<Lease> leases;
     std::multiset<int64_t> runs;
+    double bytes = 0;
     while (leases.size() < most) {
       const auto lease = local_.Begin();
       if (!lease) break;
-      if (!lease->OpensPoints()) runs.insert(lease->run);
       leases.push_back(*lease);
+      if (lease->OpensPoints()) continue;
+      runs.insert(lease->run);
+      bytes += static_cast<double>(bytes_.at(lease->run));
     }
-    std::map<int64_t, double> bytes_of_lease;
-    for (const Lease& lease : leases) {
-      if (!lease.OpensPoints()) bytes_of_lease[lease.number] = lease.memory;
-    }
-    double bytes = 0;
-    for (const auto& [number, of_lease] : bytes_of_lease) bytes += of_lease;
     most_bytes_ = std::max(most_bytes_, bytes);
     for (const Lease& lease : leases) local_.End(lease, blocks, 0.1);
     return runs;
@@ -103,6 +115,78 @@ TEST_F(MemoryLimitTest, ALongPointLetsOthersIn) {
   EXPECT_TRUE(third_began);
   local_.TakeAllTurns();
   for (const auto& journal : {first, second, third}) EXPECT_EQ(journal->ends, 1);
+}
+
+// The first of them can be computed by one thread only, the second by two.
+TEST_F(MemoryLimitTest, FurtherThreadsTakeMemoryToo) {
+  for (const auto& [bytes, threads] : {std::pair(60, 1u), std::pair(40, 2u)}) {
+    const auto journal = Add(bytes, static_cast<uint64_t>(bytes));
+    size_t most = 0;
+    while (journal->ends == 0) most = std::max(most, TurnsAtOnce(8, 100).size());
+    EXPECT_EQ(most, threads) << bytes;
+    EXPECT_OK(*journal->outcome);
+  }
+  EXPECT_LE(most_bytes_, kLimitBytes);
+}
+
+// Two small runs fit together, and a lease of one of them begins before one of the other ends.
+TEST_F(MemoryLimitTest, ALargePointGetsItsTurn) {
+  constexpr int64_t kLarge = 4;
+  const std::vector<JournalPointer> journals = {Add(1, 40), Add(2, 40), Add(3, 40),
+                                                Add(kLarge, 70)};
+  std::optional<Lease> lease = BeginChunks();
+  for (int turn = 0; turn < 8 && lease->run != kLarge; ++turn) {
+    std::optional<Lease> next = BeginChunks();
+    local_.End(*lease, kAllBlocks, 1);
+    lease = next ? next : BeginChunks();
+    ASSERT_TRUE(lease);
+  }
+  EXPECT_EQ(lease->run, kLarge);
+  local_.End(*lease, kAllBlocks);
+  local_.TakeAllTurns();
+  for (const auto& journal : journals) EXPECT_EQ(journal->ends, 1);
+}
+
+// It fits beside the run that waits.
+TEST_F(MemoryLimitTest, ASmallPointNeedNotWaitBehindALargeOne) {
+  const auto first = Add(1, 60), large = Add(2, 70);
+  while (!TurnsAtOnce(8, 100).contains(1)) continue;
+  TurnsAtOnce(8, 100);
+  const auto small = Add(3, 20);
+  while (!TurnsAtOnce(8, 100).contains(3)) continue;
+  EXPECT_TRUE(large->merged.empty());
+  local_.TakeAllTurns();
+  for (const auto& journal : {first, large, small}) EXPECT_EQ(journal->ends, 1);
+}
+
+// The cluster takes the chunks for which it waited. The small run, too small for the cluster, goes
+// before it because of its priority.
+TEST_F(MemoryLimitTest, ARunThatNoLongerWaitsHoldsNobodyUp) {
+  RemoteExecutor remote(scheduler_, 1e6);
+  Add(1, 60);
+  scheduler_.Add(RunOf(2, FakeSpec(1, 3000, 70), std::make_shared<RecordingJournal>()));
+  ASSERT_TRUE(BeginChunks());
+  ASSERT_FALSE(BeginChunks());
+  RunRequest small = RunOf(3, FakeSpec(1, 1000, 35), std::make_shared<RecordingJournal>());
+  small.priority = 1;
+  scheduler_.Add(std::move(small));
+  ASSERT_FALSE(BeginChunks());
+  while (remote.Take().value().run != 2) continue;
+  const auto lease = BeginChunks();
+  ASSERT_TRUE(lease);
+  EXPECT_EQ(lease->run, 3);
+}
+
+TEST_F(MemoryLimitTest, SuspectsKeepToTheLimit) {
+  for (const int64_t key : {1, 2}) {
+    bytes_[key] = 60;
+    auto journal = std::make_shared<RecordingJournal>();
+    RunRequest request = RunOf(key, SpecOfBytes(60), journal);
+    request.suspicion = Suspicion{.points = {0, 1}, .clear = [] { return true; }};
+    scheduler_.Add(std::move(request));
+  }
+  for (int round = 0; round < 20; ++round) TurnsAtOnce(8, 20);
+  EXPECT_EQ(most_bytes_, 60);
 }
 
 TEST_F(MemoryLimitTest, AStoppedRunGivesItsMemoryBack) {

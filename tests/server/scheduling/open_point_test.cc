@@ -132,15 +132,27 @@ TEST(OpenPoint, ChunksWithCrashesAreALeaseOfTheirOwn) {
   EXPECT_EQ(Next(point, 1000), Chunks(4, 6, 1));
 }
 
-TEST(OpenPoint, ALocalLeaseWaitsForItsMemory) {
+TEST(OpenPoint, ALeaseTakesNoMoreMemoryThanThereIs) {
   OpenPoint point = PointOf(SixChunks());
-  point.memory = 100;
+  point.memory = {.of_one_turn = 100};
   EXPECT_FALSE(point.AwaitsMemory({.memory = 100}));
   EXPECT_TRUE(point.AwaitsMemory({.memory = 99}));
   EXPECT_FALSE(point.NextChunks({.memory = 99}, ChunkLimits()));
-  EXPECT_TRUE(point.NextChunks({.seconds = 0, .memory = 99}, kElsewhere));
+  EXPECT_FALSE(point.NextChunks({.seconds = 0, .memory = 99}, kElsewhere));
+  EXPECT_TRUE(point.NextChunks({.seconds = 0, .memory = 100}, kElsewhere));
   EXPECT_TRUE(point.NextChunks({.memory = 100}, ChunkLimits()));
   EXPECT_FALSE(point.AwaitsMemory({.memory = 99}));  // nothing is left
+}
+
+TEST(OpenPoint, ALargeLeaseDoesNotTakeTheRestOfAPoint) {
+  const EnsembleSpec two_minutes = FakeSpec(1, 3000);
+  for (const double bytes : {100., 101.}) {
+    OpenPoint point = PointOf(two_minutes);
+    point.memory = {.of_one_turn = bytes};
+    const auto lease = point.NextChunks({.memory_of_the_rest = 100}, ChunkLimits());
+    ASSERT_TRUE(lease);
+    EXPECT_EQ(lease->end == point.experiment()->plan().chunks(), bytes <= 100) << bytes;
+  }
 }
 
 TEST(OpenPoint, AChunkOfTooManyAttemptsIsForLocalExecutors) {

@@ -39,11 +39,8 @@ class SteppedExecutor : public Executor {
   // Opens the points of the lease, or computes at most `blocks` blocks of it. Ends the turn, which
   // took `seconds`.
   void End(const Lease& lease, uint64_t blocks, double seconds = 0) {
-    if (lease.OpensPoints()) {
-      scheduler_.Open(lease);
-    } else {
-      Compute(lease, blocks);
-    }
+    for (const size_t point : lease.opens) scheduler_.Open(lease, point);
+    if (!lease.OpensPoints()) Compute(lease, blocks);
     if (!scheduler_.EndTurn(lease, seconds)) folds_.erase(lease.number);
   }
 

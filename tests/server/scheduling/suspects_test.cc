@@ -21,6 +21,8 @@ namespace ballpiston::server {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::Pair;
+using ::testing::UnorderedElementsAre;
 
 class SuspectsTest : public testing::Test {
  protected:
@@ -74,28 +76,47 @@ TEST_F(SuspectsTest, SuspectsAreComputedAloneOneAfterTheOther) {
   EXPECT_THAT(cleared_, ElementsAre(2, 3));
 }
 
-// Another point's chunk proves nothing.
-TEST_F(SuspectsTest, TheChunkIsOfThePointsThatWereBeingComputed) {
-  Add(1);
-  Add(2, Suspected(2, {1}));
-  EXPECT_THAT(Turns(1, 0), ElementsAre(2));     // opens the first point
-  EXPECT_THAT(Turns(1, 1500), ElementsAre(2));  // all of it
+// Another point's chunk proves nothing, so other points wait.
+TEST_F(SuspectsTest, TheChunksAreOfThePointsThatWereBeingComputed) {
+  Add(1, {}, SixChunks(5));
+  const auto suspect = Add(2, Suspected(2, {1, 3}), SixChunks(5));
+  EXPECT_THAT(Turns(2, 32), ElementsAre(2, 2));  // opens a point and computes a chunk
+  EXPECT_THAT(cleared_, ElementsAre());
+  EXPECT_THAT(Turns(2, 32), ElementsAre(2, 2));
+  EXPECT_THAT(cleared_, ElementsAre(2));
+  EXPECT_THAT(suspect->merged, UnorderedElementsAre(Pair(1, 64), Pair(3, 64)));
+  local_.TakeAllTurns();
+  ExpectAllPointsRight(SixChunks(5), *suspect);
+}
+
+TEST_F(SuspectsTest, ASuspectHasOneLeaseOfOneChunkAtATime) {
+  Add(2, Suspected(2, {0, 1}));
+  ASSERT_THAT(Turns(1, 0), ElementsAre(2));
+  const auto lease = local_.Begin();
+  ASSERT_TRUE(lease);
+  EXPECT_EQ(lease->end, 1u);
+  EXPECT_FALSE(local_.Begin());
+  local_.End(*lease, 32);
   EXPECT_THAT(Turns(2, 32), ElementsAre(2, 2));
   EXPECT_THAT(cleared_, ElementsAre(2));
 }
 
-TEST_F(SuspectsTest, TheChunkIsInACheckpointBeforeTheRunIsCleared) {
+TEST_F(SuspectsTest, TheChunksAreInCheckpointsBeforeTheRunIsCleared) {
   JournalPointer journal;
-  uint64_t stored_chunks = 0;
-  journal = Add(2, Suspicion{.points = {0}, .clear = [&] {
-                               stored_chunks = journal->checkpoints.at(0).chunk;
+  std::vector<uint64_t> stored_chunks;
+  journal = Add(2, Suspicion{.points = {0, 1}, .clear = [&] {
+                               for (const auto& [point, state] : journal->checkpoints) {
+                                 stored_chunks.push_back(state.chunk);
+                               }
                                return true;
                              }});
   EXPECT_THAT(Turns(2, 31), ElementsAre(2, 2));
   EXPECT_TRUE(journal->checkpoints.empty());
-  EXPECT_EQ(stored_chunks, 0u);
+  EXPECT_THAT(Turns(2, 1), ElementsAre(2, 2));  // ends the chunk and opens the next point
+  EXPECT_THAT(Turns(1, 31), ElementsAre(2));
+  EXPECT_THAT(stored_chunks, ElementsAre());
   EXPECT_THAT(Turns(1, 1), ElementsAre(2));
-  EXPECT_EQ(stored_chunks, 1u);
+  EXPECT_THAT(stored_chunks, ElementsAre(1, 1));
 }
 
 TEST_F(SuspectsTest, ARunStaysASuspectWhileTheDiskFails) {
@@ -109,17 +130,16 @@ TEST_F(SuspectsTest, ARunStaysASuspectWhileTheDiskFails) {
 }
 
 TEST_F(SuspectsTest, TheNextSuspectWaitsForTheTurnsOfOthers) {
-  SteppedExecutor other(scheduler_);
   Add(1, Suspected(1));
   Add(2, Suspected(2));
-  ASSERT_THAT(Turns(1, 0), ElementsAre(1));
-  const auto slow = other.Begin();
+  ASSERT_THAT(Turns(2, 1), ElementsAre(1, 1));
+  const auto slow = local_.Begin();
   ASSERT_TRUE(slow);
   EXPECT_EQ(slow->run, 1);
-  ASSERT_THAT(Turns(2, 1500), ElementsAre(1, 1));  // opens the next point and computes it
+  ASSERT_THAT(Turns(1, 31), ElementsAre(1));  // at the same lease
   EXPECT_THAT(cleared_, ElementsAre(1));
   EXPECT_FALSE(local_.Begin());
-  other.End(*slow, 1);
+  local_.End(*slow, 1);
   EXPECT_THAT(Turns(1, 0), ElementsAre(2));
 }
 
@@ -150,37 +170,62 @@ TEST_F(SuspectsTest, APointWithoutSamplesIsProgress) {
   EXPECT_THAT(cleared_, ElementsAre(2));
 }
 
-// The first suspect is paused while it computes a pilot that the second needs.
-TEST_F(SuspectsTest, TheNextSuspectTakesAPilotOver) {
+// A lease that an earlier process gave to this executor.
+Lease EarlierLease(const RemoteExecutor& remote, int64_t run, uint64_t first, uint64_t end) {
+  Lease lease;
+  lease.run = run;
+  lease.executor = remote.number();
+  lease.start.chunk = first;
+  lease.end = end;
+  return lease;
+}
+
+absl::Status ReportAll(RemoteExecutor& remote, const Lease& lease, const EnsembleSpec& spec) {
+  return remote.Report(lease, ComputedChunks(lease, *FakeExperiments()(spec, lease.point)));
+}
+
+// The next suspect may need the pilot of the first, which would be paused.
+TEST_F(SuspectsTest, ASuspectIsNotClearedBeforeItsPilots) {
   FakePilotOpener opener([](const EnsembleSpec&, size_t index) {
     return index == 1 ? std::optional(PilotPlace{.rho = 0.53, .delta = 0.1}) : std::nullopt;
   });
   Scheduler scheduler(opener, 2);
-  SteppedExecutor local(scheduler), other(scheduler);
-  EnsembleSpec spec = FakeSpec(2, 10);
-  spec.model = Model::kBilliard;  // a lease opens one point
+  SteppedExecutor local(scheduler);
+  RemoteExecutor remote(scheduler);
   std::vector<JournalPointer> journals;
   for (const int64_t key : {1, 2}) {
     journals.push_back(std::make_shared<RecordingJournal>());
-    RunRequest request = RunOf(key, spec, journals.back());
-    request.suspicion = Suspected(key, {0});
+    RunRequest request = RunOf(key, SixChunks(2), journals.back());
+    request.suspicion = Suspected(key);
     scheduler.Add(std::move(request));
   }
-  ASSERT_TRUE(local.TakeTurn());  // opens the first point
-  const auto lease = local.Begin();
-  ASSERT_TRUE(lease);
-  ASSERT_TRUE(other.TakeTurn());   // opens the second point: it needs the pilot
-  ASSERT_TRUE(other.TakeTurn(1));  // the pilot begins
-  local.End(*lease, 10);
-  EXPECT_THAT(cleared_, ElementsAre(1));
+  const auto elsewhere = scheduler.Adopt(EarlierLease(remote, 1, 1, 2));
+  ASSERT_TRUE(elsewhere);
+  const auto first = local.Begin(), second = local.Begin();  // open the points at the same time
+  ASSERT_TRUE(first && second);
+  local.End(*first, 0);
+  local.End(*second, 0);
+  EXPECT_OK(ReportAll(remote, *elsewhere, SixChunks(2)));
+  EXPECT_THAT(cleared_, ElementsAre());
   local.TakeAllTurns();
-  other.TakeAllTurns();
   EXPECT_THAT(cleared_, ElementsAre(1, 2));
-  local.TakeAllTurns();
   for (const auto& journal : journals) {
     ASSERT_EQ(journal->ends, 1);
-    ExpectAllPointsRight(spec, *journal);
+    ExpectAllPointsRight(SixChunks(2), *journal);
   }
+}
+
+TEST_F(SuspectsTest, AChunkOfAnotherMachineDoesNotClearAPoint) {
+  RemoteExecutor remote(scheduler_);
+  Add(2, Suspected(2, {0}));
+  const auto elsewhere = scheduler_.Adopt(EarlierLease(remote, 2, 1, 2));
+  ASSERT_TRUE(elsewhere);
+  ASSERT_THAT(Turns(1, 0), ElementsAre(2));
+  EXPECT_OK(ReportAll(remote, *elsewhere, SixChunks(2)));
+  EXPECT_THAT(Turns(1, 31), ElementsAre(2));
+  EXPECT_THAT(cleared_, ElementsAre());
+  EXPECT_THAT(Turns(1, 1), ElementsAre(2));
+  EXPECT_THAT(cleared_, ElementsAre(2));
 }
 
 TEST_F(SuspectsTest, ExecutorsElsewherePause) {

@@ -14,6 +14,7 @@
 #include "core/engine_version.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
+#include "core/gas/gas_shape.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "server/worker/chunk_file.h"
@@ -119,6 +120,22 @@ TEST_F(WorkerProgramTest, ACrashLeavesTheMarkOfItsLease) {
   EXPECT_FALSE(std::filesystem::exists(CrashMarkFile(out_, 0, 0)));
   EXPECT_TRUE(std::filesystem::exists(CrashMarkFile(out_, 0, 1)));
   EXPECT_THAT(RunProgram(Command()), ExitsWith(0));
+}
+
+// Slurm says MiB. Lanes of a gas of 1000 x 1000 cells take some 700 MB.
+TEST_F(WorkerProgramTest, ALeaseThatNeedsMoreMemoryThanTheTaskHasIsLeftOut) {
+  EnsembleSpec gas = SpecOf(kGasEquilibrium, Model::kBilliard, 1);
+  gas.grid[kCells] = {CodeOf({.columns = 1000, .rows = 1000, .is_lattice = true})};
+  WriteTasks({{LeaseOf(gas), LeaseOf(SpecOf(kEquilibrium, Model::kBilliard))}});
+  ProcessOptions command = Command();
+  command.environment["SLURM_MEM_PER_CPU"] = "100";
+  ASSERT_THAT(RunProgram(command), ExitsWith(0));
+  const std::vector<ChunkFile> files = Files();
+  ASSERT_EQ(files.size(), 1u);
+  EXPECT_TRUE(files[0].is_final);
+  EXPECT_EQ(files[0].memory_exceeded, 100.0 * (1 << 20));
+  EXPECT_THAT(ChunksOfLease(0), IsEmpty());
+  EXPECT_FALSE(ChunksOfLease(1).empty());
 }
 
 TEST_F(WorkerProgramTest, EndsWhenTheToleranceIsReached) {
