@@ -163,6 +163,21 @@ SamplingCost InLanes(const EnsembleSpec& spec) {
   return CostOfSampling(spec, PointAt(spec, 0), rates);
 }
 
+// A ball that hardly moves hits no wall before it is met, and few such balls are.
+TEST(SamplingCost, ASlowBallHasFewHits) {
+  for (const Model model : {Model::kBilliard, Model::kBilliardReference}) {
+    EnsembleSpec spec = Relaxation(0.02);
+    spec.model = model;
+    spec.grid[kEpsilon] = {0.3};
+    MachineRates rates;
+    rates.lanes.wall_hit = rates.reference.wall_hit = 1;
+    const double usual = Cost(spec, rates);
+    spec.grid[kEpsilon] = {0.5 - 1e-12};
+    EXPECT_LT(Cost(spec, rates), 0.5 * usual);
+    EXPECT_GT(Cost(spec, rates), 0);
+  }
+}
+
 // Measured: 3.4 s were predicted for one collision at delta = 3e-5, and it took 39 s.
 TEST(SamplingCost, AFewSamplesCostAsMuchAsTheLongestInAllLanes) {
   const SamplingCost cost = InLanes(Asked(&kEquilibrium, 1e-4));
