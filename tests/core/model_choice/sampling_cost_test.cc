@@ -110,6 +110,18 @@ TEST(SamplingCost, ErrorOfReturnsToARestingBallIsWithinAFactorOfOneAndAHalf) {
   }
 }
 
+// A slow piston at the cold end passes the current in few portions.
+TEST(SamplingCost, ErrorOfACurrentIsWithinAFactorOfTwo) {
+  for (const double cold : {0.5, 0.01, 1e-4, 1e-6}) {
+    EnsembleSpec spec = Asked(&kGasConduction, 0.1, {.samples = 256});
+    spec.model = Model::kBilliardReference;
+    spec.grid[kCells] = {CodeOf({.columns = 1})};
+    spec.grid[kHot] = {1};
+    spec.grid[kCold] = {cold};
+    ExpectWithinAFactor(2, spec);
+  }
+}
+
 TEST(SamplingCost, InfiniteVarianceMakesTheErrorInfinite) {
   EnsembleSpec spec = Asked(&kConditionalMeanFreeTime, 0.1);
   spec.grid[kEpsilon] = {0};
