@@ -83,7 +83,7 @@ test-web: build ## Test the page of ballpiston web in headless Chromium, with np
 	@scripts/setup.sh $(WEB_PACKAGES)
 	@scripts/web-test.sh build/release/bin
 
-questions: build/release/.$(PRESETS_PREFIX)tests ## Ask the engine and a server QUESTIONS random questions, by default 20,000, and check the answers (some hours)
+questions: build/release/.$(PRESETS_PREFIX)tests ## Ask the engine and a server QUESTIONS random questions, by default 20,000, and check the answers (an hour)
 	@cmake --build build/release --target questions_test
 	@BALLPISTON_QUESTIONS=$(QUESTIONS) build/release/bin/questions_test --gtest_filter='Questions.*' --gtest_brief=1
 

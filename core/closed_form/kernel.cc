@@ -10,8 +10,8 @@ namespace {
 // `rest` is eb - ep_out: the ball's energy after the collision minus the piston's energy before it.
 double KernelWithRest(double ep, double ep_out, double rest) {
   if (rest <= 0) return 0;
-  // max(sqrt ep_out, sqrt ep)/sqrt(ep_out), without 0/0 when both vanish.
-  const double ratio = ep_out >= ep ? 1 : std::sqrt(ep / ep_out);
+  // max(sqrt ep_out, sqrt ep)/sqrt(ep_out), without 0/0 when both vanish. ep/ep_out may overflow.
+  const double ratio = ep_out >= ep ? 1 : std::sqrt(ep) / std::sqrt(ep_out);
   return ratio / (2 * std::numbers::pi * std::sqrt(rest));
 }
 

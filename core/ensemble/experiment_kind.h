@@ -83,6 +83,7 @@ struct ExperimentKind {
   // collisions.
   SampleWork (*work)(Model model, const PointParameters& point);
   double (*collisions)(Model model, const PointParameters& point);
+  double summary = 0;  // the work of a point's summary, in jumps
 
   // Upper bound of the bytes of one thread that takes samples (point_memory.h).
   double (*memory)(Model model, const PointParameters& point);

@@ -13,7 +13,7 @@ struct SampleWork {
   double jumps = 0;       // of the limit's jump process, or measurements of a step of the energy
 
   // The rest tells how costs differ from the sum of the events. Chunk plans do not depend on it.
-  double delays = 0;  // further time in lanes, in wall hits
+  double delays = 0;  // further time, in the ball's wall hits; below 0: these hits are missing
   // The number of independent parts of an orbit, for instance its collisions, whose durations add
   // up. Below 1: only this share of the orbits takes long.
   double parts = 1;

@@ -279,13 +279,15 @@ double ShareThatMeetsEarly(const PointParameters& point) {
   return ShareThatMeets(geometry, point[kEpsilon], time);
 }
 
-// An orbit without a collision waits in its lane until the lanes look at the time limit, which they
-// do after 512 bursts of up to 12 flights. A ball at rest takes no lane.
-double DelayOfOrbitsThatNeverMeet(const PointParameters& point) {
-  if (point[kEpsilon] == 0.5) return 0;
+// Of orbits without a collision, in wall hits. A slow ball hits no wall of the `hits` of other
+// orbits. An orbit with a slow piston waits in its lane until the lanes look at the time limit,
+// which they do after 512 bursts of up to 12 flights.
+double DelayOfOrbitsThatNeverMeet(Model model, const PointParameters& point, double hits) {
+  const double share = 1 - ShareThatMeetsEarly(point);
+  if (point[kEpsilon] > 0.25) return -share * hits;
+  if (model == Model::kBilliardReference) return 0;
   constexpr double kBursts = 512;
-  const double flights = kBursts * std::clamp(1.7 / point[kDelta], 4.0, 12.0);
-  return (1 - ShareThatMeetsEarly(point)) * flights;
+  return share * kBursts * std::clamp(1.7 / point[kDelta], 4.0, 12.0);
 }
 
 // The measurements of a step of the energy take most of a jump's time.
@@ -297,7 +299,7 @@ SampleWork WorkOfAnOrbit(Model model, const PointParameters& point) {
   }
   SampleWork orbit = step.Times(CollisionsPerOrbit(point));
   if (model != Model::kMarkov && point.Find(kEpsilon)) {
-    orbit.delays = DelayOfOrbitsThatNeverMeet(point);
+    orbit.delays = DelayOfOrbitsThatNeverMeet(model, point, orbit.ball_wall);
   }
   return orbit;
 }

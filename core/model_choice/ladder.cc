@@ -69,7 +69,8 @@ class Question {
     return CostOfSampling(By(model), point_, machine_.rates);
   }
   double SecondsOf(Model model, double samples) const {
-    return CostBy(model).Of(samples, machine_.workers);
+    return CostBy(model).Of(samples, machine_.workers) +
+           spec_.experiment->summary * machine_.rates.jump;
   }
   double ThreadsFor(Model model, double samples) const {
     return CostBy(model).ThreadsFor(samples, machine_.workers);

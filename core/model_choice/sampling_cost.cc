@@ -11,8 +11,9 @@ namespace {
 
 // In lanes only the ball's wall hits are events; the reference has one for each hit and collision.
 double WallHits(Engine engine, const SampleWork& work) {
-  if (engine != Engine::kReference) return work.ball_wall + work.delays;
-  return work.ball_wall + work.piston_wall + work.collisions + work.starts;
+  const double of_the_ball = work.ball_wall + work.delays;
+  if (engine != Engine::kReference) return of_the_ball;
+  return of_the_ball + work.piston_wall + work.collisions + work.starts;
 }
 
 // The mean of the longest of n times from an exponential law, in units of their mean: 1 + 1/2 +

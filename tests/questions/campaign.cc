@@ -26,6 +26,9 @@ constexpr int kPrintedOfAKind = 3;
 constexpr int kMostTrials = 150;
 constexpr int kMostTrialsWithoutEnd = 10;  // each takes kMostProcessorSeconds
 
+// A campaign may be cut short.
+constexpr uint64_t kBetweenPrints = 1000;  // questions
+
 constexpr double kWrongPlan = 5;
 constexpr double kLeastCompared = 0.02;  // s: below it a plan is about overheads
 constexpr double kLateCancel = 2;        // s
@@ -55,8 +58,8 @@ class Campaign {
       for (const Finding& finding : report.findings) {
         if (checks.insert(finding.check).second) Note(number, question, finding);
       }
+      if ((i + 1) % kBetweenPrints == 0 || i + 1 == size_.questions) Print(i + 1);
     }
-    Print();
     return failures_;
   }
 
@@ -102,9 +105,8 @@ class Campaign {
     return Shrink(spec, fails, most);
   }
 
-  void Print() const {
-    std::cout << "\n"
-              << name_ << ": " << size_.questions << " questions of seed " << size_.seed << "\n";
+  void Print(uint64_t asked) const {
+    std::cout << "\n" << name_ << ": " << asked << " questions of seed " << size_.seed << "\n";
     std::set<std::string> outcomes;
     for (const auto& [experiment, of_experiment] : counts_) {
       for (const auto& [outcome, count] : of_experiment) outcomes.insert(outcome);

@@ -1,7 +1,6 @@
 #include "tests/questions/computed_point.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -11,6 +10,7 @@
 #include "core/ensemble/block_run.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_fold.h"
+#include "core/model_choice/sampling_cost.h"
 #include "server/convert/point_result.h"
 #include "server/convert/result_record.h"
 #include "tests/questions/finite_check.h"
@@ -57,16 +57,10 @@ void StartAndStop(const EnsembleSpec& spec, size_t index, const Answer& answer) 
 
 double SamplesIn(double seconds, const EnsembleSpec& spec, size_t index, Model model,
                  const Machine& machine) {
+  if (!TakesSamples(model)) return std::numeric_limits<double>::infinity();
   const PointParameters point = PointAt(spec, index);
-  double samples = std::numeric_limits<double>::infinity();
-  if (!TakesSamples(model)) return samples;
-  // A few samples cost more each than many.
-  for (double tried = 1; tried <= 1e9 && std::isinf(samples); tried *= 32) {
-    const EnsembleSpec one = WithSamples(OnePointSpec(spec, point, model), tried);
-    const double work = LadderFor(one, point, machine, NoPilot).Chosen().work.value_or(seconds);
-    if (!(work < seconds / 2)) samples = tried * seconds / work;
-  }
-  return samples;
+  return CostOfSampling(OnePointSpec(spec, point, model), point, machine.rates)
+      .SamplesIn(seconds, machine.workers);
 }
 
 EnsembleSpec WithSamples(EnsembleSpec spec, double samples) {

@@ -75,6 +75,7 @@ TEST(Kernel, LimitsWhereThePistonEndsAtRest) {
   EXPECT_EQ(Kernel(0.3, 0.1, 0), std::numeric_limits<double>::infinity());
   EXPECT_DOUBLE_EQ(Kernel(0.25, 0, 0), 1 / M_PI);
   EXPECT_DOUBLE_EQ(Kernel(0.25, 0, 1e-320), 1 / M_PI);
+  EXPECT_DOUBLE_EQ(PairKernel(0.25, 1e-310), 1 / (2 * M_PI * std::sqrt(1e-310)));
 }
 
 TEST(Kernel, DetailedBalance) {

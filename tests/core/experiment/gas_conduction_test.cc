@@ -194,6 +194,18 @@ TEST(GasConduction, DurationOfAReplicaGrowsWithTheRelaxationTime) {
   EXPECT_LT(exchanges_a_contact(30'000) / exchanges_a_contact(299), 1e4);
 }
 
+// The current passes through the last piston, which is as slow as the cold reservoir. At cold =
+// 1e-8 replicas of a thousandth of the time gave 0.57 of the current, with an error of 6 %.
+TEST(GasConduction, DurationOfAReplicaGrowsWithTheTimeOfASlowPiston) {
+  const auto exchanges = [](Model model, double cold) {
+    const PointParameters point = PointAt(SpecBetween(1, cold, {.columns = 1}), 0);
+    return kGasConduction.collisions(model, point);
+  };
+  EXPECT_NEAR(exchanges(Model::kBilliard, 1e-10) / exchanges(Model::kBilliard, 1e-8), 10, 1e-6);
+  EXPECT_NEAR(exchanges(Model::kBilliard, 0.012) / exchanges(Model::kBilliard, 0.01), 1, 1e-12);
+  EXPECT_NEAR(exchanges(Model::kMarkov, 1e-10) / exchanges(Model::kMarkov, 0.01), 1, 1e-12);
+}
+
 // ---- bad input ----
 
 TEST(GasConduction, HotBelowColdIsRejected) {

@@ -450,6 +450,15 @@ TEST(Ladder, SamplesAreThoseThatTheTargetNeeds) {
   }
 }
 
+// 200 points of one sample each were planned at 2 ms and took 0.8 s.
+TEST(Ladder, AFirstHitsWorkCountsItsSummary) {
+  const EnsembleSpec spec = Asked(&kFirstHit, 0.1, {.samples = 1});
+  const Ladder ladder =
+      LadderFor(spec, PointAt(spec, 0), SomeMachine(), MadeUpPilots(std::nullopt).source());
+  EXPECT_GT(*ladder.Chosen().work, 1e-3);
+  EXPECT_LT(*ladder.Chosen().work, 5e-3);
+}
+
 TEST(Ladder, ModelErrorIsFromAPilotIfOneIsKnown) {
   const EnsembleSpec spec = Relaxation(0.01);
   const PointParameters point = PointAt(spec, 0);

@@ -110,6 +110,18 @@ TEST(SamplingCost, ErrorOfReturnsToARestingBallIsWithinAFactorOfOneAndAHalf) {
   }
 }
 
+// A slow piston at the cold end passes the current in few portions.
+TEST(SamplingCost, ErrorOfACurrentIsWithinAFactorOfTwo) {
+  for (const double cold : {0.5, 0.01, 1e-4, 1e-6}) {
+    EnsembleSpec spec = Asked(&kGasConduction, 0.1, {.samples = 256});
+    spec.model = Model::kBilliardReference;
+    spec.grid[kCells] = {CodeOf({.columns = 1})};
+    spec.grid[kHot] = {1};
+    spec.grid[kCold] = {cold};
+    ExpectWithinAFactor(2, spec);
+  }
+}
+
 TEST(SamplingCost, InfiniteVarianceMakesTheErrorInfinite) {
   EnsembleSpec spec = Asked(&kConditionalMeanFreeTime, 0.1);
   spec.grid[kEpsilon] = {0};
@@ -161,6 +173,21 @@ SamplingCost InLanes(const EnsembleSpec& spec) {
   MachineRates rates;
   rates.lanes = {.wall_hit = 1, .lanes = 24};
   return CostOfSampling(spec, PointAt(spec, 0), rates);
+}
+
+// A ball that hardly moves hits no wall before it is met, and few such balls are.
+TEST(SamplingCost, ASlowBallHasFewHits) {
+  for (const Model model : {Model::kBilliard, Model::kBilliardReference}) {
+    EnsembleSpec spec = Relaxation(0.02);
+    spec.model = model;
+    spec.grid[kEpsilon] = {0.3};
+    MachineRates rates;
+    rates.lanes.wall_hit = rates.reference.wall_hit = 1;
+    const double usual = Cost(spec, rates);
+    spec.grid[kEpsilon] = {0.5 - 1e-12};
+    EXPECT_LT(Cost(spec, rates), 0.5 * usual);
+    EXPECT_GT(Cost(spec, rates), 0);
+  }
 }
 
 // Measured: 3.4 s were predicted for one collision at delta = 3e-5, and it took 39 s.
