@@ -36,6 +36,7 @@
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/jump_current.h"
 #include "core/statistics/kl_divergence.h"
+#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 namespace {
@@ -246,6 +247,12 @@ class GasEquilibrium : public GasExperiment {
         "the conductivity includes the current's correlations up to a time of %.3g, %.2g mean "
         "times between exchanges of a ball and a piston",
         kWindow * Step(), ExchangesOf(answer().model, geometry()) * kWindow / kCurrentSteps));
+    const double events = EventsOfCurrents(answer().model, geometry().shape());
+    if (!TellsItsError(events * static_cast<double>(merged.samples))) {
+      summary.remarks.push_back(
+          absl::StrFormat("the conductivity has no standard error: this needs %.0f replicas",
+                          kEventsForAnError / events));
+    }
   }
 
   CurvePoint PointOf(const BlockResult& merged, size_t index, size_t steps, double scale) const {

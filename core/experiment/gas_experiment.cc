@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/ensemble/chunk_plan.h"
 #include "core/experiment/pair_experiment.h"
 #include "core/experiment/sampled_estimate.h"
 #include "core/experiment/without_last_bits.h"
@@ -19,6 +20,16 @@ namespace {
 
 // The lanes need this many balls to be full.
 constexpr int64_t kBallsInLanes = 192;
+
+uint64_t ReplicasThatFillLanes(int64_t balls) {
+  return static_cast<uint64_t>((kBallsInLanes + balls - 1) / balls);
+}
+
+// Replicas that a thread computes at the same time: at most a quarter of those of the chunk, so
+// that several threads share even a small chunk.
+uint64_t TogetherInLanes(int64_t balls, const ChunkPlan& plan, uint64_t chunk) {
+  return std::clamp<uint64_t>(plan.SamplesIn(chunk) / 4, 1, ReplicasThatFillLanes(balls));
+}
 
 // A block whose replicas are being computed. The meters are kept until all replicas are done, so
 // that results are added in the order of the replicas.
@@ -60,17 +71,9 @@ class GasBlocks : public BlockRun {
 
  private:
   // The other engines run one replica at a time, because more would not make them faster.
-  int64_t BallsTogether() const {
-    return experiment_.gas_engine() == GasEngine::kLanes ? kBallsInLanes : 1;
-  }
-
-  // A run takes at most a quarter of the replicas of its chunk, so that several threads share even
-  // a small chunk.
   size_t MostTogether(const Block& block) const {
-    const int64_t each = experiment_.geometry().balls();
-    const int64_t for_lanes = (BallsTogether() + each - 1) / each;
-    const uint64_t quarter = experiment_.plan().SamplesIn(block.chunk) / 4;
-    return std::clamp<size_t>(quarter, 1, static_cast<size_t>(for_lanes));
+    if (experiment_.gas_engine() != GasEngine::kLanes) return 1;
+    return TogetherInLanes(experiment_.geometry().balls(), experiment_.plan(), block.chunk);
   }
 
   // Starts replicas until there are enough, if the queue has any. Returns false at a pause.
@@ -183,12 +186,6 @@ double ThermalHitsOf(const GasGeometry& geometry, const HitRates& rates) {
   return static_cast<double>(geometry.shape().rows) * rates.of_a_piston;
 }
 
-// Replicas that a thread computes at the same time.
-double TogetherInLanes(double balls) {
-  constexpr double kMost = 16;  // a quarter of the smallest chunk
-  return std::min(std::ceil(static_cast<double>(kBallsInLanes) / balls), kMost);
-}
-
 }  // namespace
 
 GasGeometry GasGeometryOf(const PointParameters& point, GasEnds ends) {
@@ -236,11 +233,14 @@ SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time) 
   constexpr double kBeyondTheCaches = 7e5;  // balls
   const double uncached = balls / (balls + kBeyondTheCaches);
   const double visits = geometry.pair().stroke() / geometry.pair().delta();
-  return {.ball_wall = 4 * ball_hits + 900 * exchanges + 1000 * thermal_hits,
-          .collisions = exchanges,
-          .starts = balls,
-          .delays = exchanges * (100 * visits + 16'000 * uncached) + 1500 * uncached * balls,
-          .together = TogetherInLanes(balls)};
+  SampleWork work = {
+      .ball_wall = 4 * ball_hits + 900 * exchanges + 1000 * thermal_hits,
+      .collisions = exchanges,
+      .starts = balls,
+      .delays = exchanges * (100 * visits + 16'000 * uncached) + 1500 * uncached * balls};
+  const ChunkPlan plan(kMaxSamples, Engine::kLanes, work.Events());
+  work.together = static_cast<double>(TogetherInLanes(geometry.balls(), plan, 0));
+  return work;
 }
 
 // Measured with gases of 10^6 cells, chains and lattices: by the lanes 234 bytes for a ball and 49
@@ -256,7 +256,7 @@ double MemoryOfReplicas(Model model, const PointParameters& point) {
   // A piston for every contact along +x and +y, and one more in each row between reservoirs.
   const auto balls = static_cast<double>(shape.cells());
   const double pistons = static_cast<double>(shape.contacts() / 2 + shape.rows);
-  const double together = in_lanes ? TogetherInLanes(balls) : 1;
+  const double together = in_lanes ? static_cast<double>(ReplicasThatFillLanes(shape.cells())) : 1;
   return kOfABlock + together * (balls * bytes[0] + pistons * bytes[1]);
 }
 
