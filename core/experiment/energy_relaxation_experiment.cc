@@ -354,7 +354,7 @@ constexpr LimitError kLimitErrorOfRelaxation = {.model = Model::kSpectrum,
 // An orbit that has ended keeps its numbers until its block is complete. Two blocks are in progress
 // at a time, unless they are small.
 double MemoryOfOrbits(Model model, const PointParameters& point) {
-  constexpr double kBlocks = 2, kOfAnOrbit = 450;  // 34 numbers, and their and the energy's lists
+  constexpr double kBlocks = 2, kOfAnOrbit = 320;  // 34 numbers, and their and the energy's lists
   const Engine engine = model == Model::kBilliardReference ? Engine::kReference : Engine::kLanes;
   const ChunkPlan plan(kMaxSamples, engine, WorkOfAnOrbit(model, point).Events());
   return MemoryOfPairs(model, point) +

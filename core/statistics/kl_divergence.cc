@@ -31,7 +31,7 @@ double BeyondNoise(const KlDivergence& measured) {
   const double beyond = measured.value - measured.noise_floor;
   return beyond <= kNoise * measured.noise_error
              ? 0
-             : 1 - Square(kNoise * measured.noise_error / beyond);
+             : 1 - Square(Square(kNoise * measured.noise_error / beyond));
 }
 
 // Sums over the cells of one law.

@@ -157,7 +157,10 @@ void AddConductivity(Places& places) {
   for (const double rho : {kNearHalf, 0.6}) add(OfGas(rho, 1), "2", 10'000);
   add(OfGas(kNearHalf, 0.4), "2", 10'000);
   add(OfGas(kSmallCell, 1), "2", 4'000);
-  for (const char* cells : {"1", "2", "2x1"}) add({kPaperRho, kRare}, cells, 1024);
+  // As many as their errors need (EventsOfCurrents).
+  add({kPaperRho, kRare}, "1", 1024);
+  add({kPaperRho, kRare}, "2", 250'000);
+  add({kPaperRho, kRare}, "2x1", 1024);
   for (const char* cells : {"4x1", "8x1", "4", "8x2"}) add({kPaperRho, kRare}, cells, 6000);
   places.Conductivity(Model::kMarkov, {kPaperRho, 0.2}, "4", 20'000);
   places.Conductivity(Model::kMarkov, {kPaperRho, 0.2}, "2x2", 20'000);
