@@ -90,7 +90,7 @@ std::array<std::vector<double>, 2> SpeedLaws() {
 
 // The events of a replica for the errors of its current's correlations (statistics/told_error.h).
 // Few replicas dominate what the jump process measures, those with much energy in few bodies: the
-// skewness over replicas is 15 to 20 with three columns or 2x1, 3 with 32, and above 60 in a chain
+// skewness over replicas is 15 to 20 with three columns or 2x1, 3 with 32, and 60 to 150 in a chain
 // of two. One column has no current.
 double EventsOfCurrents(Model model, const GasShape& shape) {
   if (model != Model::kMarkov || shape.columns == 1) return 1;

@@ -256,7 +256,7 @@ constinit const ExperimentKind kMarkovProperty = {
     .work = WorkOfAnExchange,
     .collisions = OneCollision,
     .memory = MemoryOfPairs,
-    .memory_of_a_result = 100e3,
+    .memory_of_a_result = 120e3,
     .samples_together = kExchangesPerOrbit};
 
 }  // namespace ballpiston

@@ -44,7 +44,7 @@ namespace ballpiston {
 
 inline constexpr size_t kWaitingBins = 1024;
 inline constexpr size_t kEnergyRows = 16;
-inline constexpr size_t kOutcomeBins = 16;  // of V, in the rows by energy
+inline constexpr size_t kOutcomeBins = 32;  // of V, in the rows by energy
 inline constexpr size_t kMemoryBins = 16;
 
 struct Exchange {

@@ -20,9 +20,9 @@ constexpr double kVarianceOfBridge = 0.067773203963865;  // pi^2/12 - pi/2 log^2
 // beyond, the place becomes fixed.
 constexpr double kFloorsOfNoise = 1.6;
 
-// The integral of a squared bridge, from which the scatter of equal laws is estimated, is as
-// uncertain as a chi-squared with (trace)^2/(trace of the square) = 2.5 degrees of freedom.
-constexpr double kFreedomOfBridge = 2.5;
+// The interval of a normal law covers the mean of the bridge's maximum in 95.5 %, and in 95 % if
+// its error has the uncertainty of the groups.
+constexpr double kFreedomOfBridge = 1000;
 
 // The variances of the distribution function at the inner edges of the groups' bins, relative to
 // those of independent samples.
@@ -87,9 +87,8 @@ KolmogorovSmirnov DistanceToUniform(const Histogram& histogram, std::span<const 
   const double of_bridge = (1 - fixed) * kVarianceOfBridge * scatter.Mean();
   const double of_place = fixed * at_the_place * scatter.At(place);
   result.standard_error = std::sqrt((of_bridge + of_place) / samples);
-  result.batches =
-      1 + static_cast<uint64_t>(std::lround(FreedomOfSum(
-              of_bridge, kFreedomOfBridge * kFreedomOfGroups, of_place, kFreedomOfGroups)));
+  result.batches = 1 + static_cast<uint64_t>(std::lround(
+                           FreedomOfSum(of_bridge, kFreedomOfBridge, of_place, kFreedomOfGroups)));
   return result;
 }
 
