@@ -16,6 +16,7 @@
 #ifndef BALLPISTON_CORE_ENSEMBLE_CHUNK_PLAN_H_
 #define BALLPISTON_CORE_ENSEMBLE_CHUNK_PLAN_H_
 
+#include <algorithm>
 #include <cstdint>
 
 #include "core/billiard/orbits.h"
@@ -47,6 +48,7 @@ class ChunkPlan {
   uint64_t SamplesIn(uint64_t chunk) const;  // chunk < chunks()
   uint64_t BlocksIn(uint64_t chunk) const;
   Block BlockAt(uint64_t chunk, uint64_t index) const;
+  uint64_t MostInABlock() const { return std::max(largest_block_, smallest_block_); }
 
   // Whether a tolerance is judged when this chunk and all before it are merged.
   bool IsJudgedAfter(uint64_t chunk) const;

@@ -14,6 +14,10 @@ bool IsOneOf(std::span<const Model> models, Model model) {
 
 }  // namespace
 
+bool LimitError::IsWithin(double tolerance, const PointParameters& point) const {
+  return expected(point) <= tolerance / (TakesSamples(model) ? 2 : 1);
+}
+
 double AimedEstimate::SamplesForAnError(Model model, const PointParameters& point) const {
   return kEventsForAnError / (events == nullptr ? 1 : events(model, point));
 }

@@ -34,6 +34,10 @@ struct LimitError {
   bool has_pilots;  // whether pilot runs can check the bound (model_choice/limit_error.h)
   bool (*is_known)(const PointParameters& point);
   double (*expected)(const PointParameters& point);  // upper bound of the relative error
+
+  // Whether the limit may answer a question with this tolerance. If its model samples, half of the
+  // tolerance is for the scatter. Requires is_known.
+  bool IsWithin(double tolerance, const PointParameters& point) const;
 };
 
 // An estimate that a target can name. The tolerance, the predicted error and the choice of the
@@ -85,10 +89,12 @@ struct ExperimentKind {
   double (*collisions)(Model model, const PointParameters& point);
   double summary = 0;  // the work of a point's summary, in jumps
 
-  // Upper bound of the bytes of one thread that takes samples (point_memory.h).
+  // Upper bounds of the bytes of one thread that takes samples, and of a block's result
+  // (point_memory.h).
   double (*memory)(Model model, const PointParameters& point);
+  double memory_of_a_result = 20e3;
 
-  // Samples of one orbit that are measured together; a power of two up to 64.
+  // Samples of one orbit, which are measured together; a power of two up to 64.
   uint64_t samples_together = 1;
 
   // The exact probabilities of the bins of each histogram; for the energy at a time those of the

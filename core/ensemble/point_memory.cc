@@ -2,16 +2,15 @@
 
 #include <algorithm>
 
+#include "core/ensemble/chunk_fold.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
 
 namespace ballpiston {
 namespace {
 
-// Of a point without samples, and of the merged and the waiting results of a point with samples.
-// 1024 results of first-hit, the largest, take 18 MB (ChunkFold::kWindow).
+// Of a point without its samples.
 constexpr double kOfAnAnswer = 1e6;
-constexpr double kOfResults = 20e6;
 
 }  // namespace
 
@@ -23,7 +22,9 @@ double MemoryOf(const EnsembleSpec& spec, const PointParameters& point, int thre
   if (NeedsNoSamples(spec)) return kOfAnAnswer;
   const double used =
       std::min(static_cast<double>(threads), static_cast<double>(SamplesAskedFor(spec, point)));
-  return kOfResults + used * MemoryOfAThread(spec, point);
+  constexpr auto kWaitingResults = static_cast<double>(ChunkFold::kWindow);
+  return kOfAnAnswer + kWaitingResults * spec.experiment->memory_of_a_result +
+         used * MemoryOfAThread(spec, point);
 }
 
 }  // namespace ballpiston

@@ -13,9 +13,9 @@ struct SampleWork {
   double jumps = 0;       // of the limit's jump process, or measurements of a step of the energy
 
   // The rest tells how costs differ from the sum of the events. Chunk plans do not depend on it.
-  double delays = 0;  // further time, in the ball's wall hits; below 0: these hits are missing
-  // The number of independent parts of an orbit, for instance its collisions, whose durations add
-  // up. Below 1: only this share of the orbits takes long.
+  double delays = 0;  // further time in lanes, in wall hits; below 0: these hits are missing
+  // The number of independent parts of a sample, for instance its collisions, whose durations add
+  // up. Below 1: only this share of the samples takes long.
   double parts = 1;
   // Replicas of a gas that a thread runs from start to end together; 0 for orbits, of which each
   // lane takes the next one when its orbit has ended.

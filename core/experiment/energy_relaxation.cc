@@ -63,12 +63,12 @@ void EnergyRelaxation::Record(const std::vector<double>& values, BlockResult& re
 }
 
 std::vector<double> EnergyRelaxation::Measure(const StepFunction& energy) const {
+  std::vector<double> values(1 + kLags);
   if (epsilon_) {
-    std::vector<double> values = energy.Samples(Lag(1), kLags);
-    values.insert(values.begin(), energy.Integral(kMeanPistonEnergy, window()));
+    values[0] = energy.Integral(kMeanPistonEnergy, window());
+    std::ranges::copy(energy.Samples(Lag(1), kLags), values.begin() + 1);
     return values;
   }
-  std::vector<double> values(1 + kLags);
   values[0] =
       energy.CorrelationIntegral(kMeanPistonEnergy, kOriginTimes * mean_free_time_, window()) /
       kVarianceOfPistonEnergy;

@@ -13,6 +13,7 @@
 #include "core/arithmetic/number_text.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/block_orbits.h"
+#include "core/ensemble/chunk_plan.h"
 #include "core/ensemble/computed_answer.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/energy_relaxation.h"
@@ -352,6 +353,16 @@ constexpr LimitError kLimitErrorOfRelaxation = {.model = Model::kSpectrum,
                                                 .is_known = HasRelaxationTimeAt,
                                                 .expected = ExpectedLimitError};
 
+// An orbit that has ended keeps its numbers until its block is complete. Two blocks are in progress
+// at a time, unless they are small.
+double MemoryOfOrbits(Model model, const PointParameters& point) {
+  constexpr double kBlocks = 2, kOfAnOrbit = 320;  // 34 numbers, and their and the energy's lists
+  const Engine engine = model == Model::kBilliardReference ? Engine::kReference : Engine::kLanes;
+  const ChunkPlan plan(kMaxSamples, engine, WorkOfAnOrbit(model, point).Events());
+  return MemoryOfPairs(model, point) +
+         kBlocks * kOfAnOrbit * static_cast<double>(plan.MostInABlock());
+}
+
 // At energies that have no relaxation time, for which a tolerance is not permitted, the first
 // estimate is the decay integral.
 double CollisionsOfASample(Model, const PointParameters& point) {
@@ -381,7 +392,7 @@ constinit const ExperimentKind kEnergyRelaxation = {
     .check_tolerance = CheckToleranceOfDecay,
     .work = WorkOfAnOrbit,
     .collisions = CollisionsOfASample,
-    .memory = MemoryOfPairs,
+    .memory = MemoryOfOrbits,
     .expected_probabilities = ProbabilitiesOfTheLimit};
 
 }  // namespace ballpiston

@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "absl/strings/str_format.h"
 #include "core/billiard/orbits.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/block_orbits.h"
@@ -31,11 +32,15 @@ constexpr double kEventsPerCollision = 0.1;
 // About this many orbits are in a block, if it has as many collisions: enough batches for an error.
 constexpr uint64_t kOrbitsPerBlock = 256;
 
+double EventsIn(const BlockResult& merged) {
+  return kEventsPerCollision * static_cast<double>(merged.samples);
+}
+
 Estimate MeanFreeTime(absl::string_view between, const BlockResult& merged, size_t index,
                       double exact) {
   const BatchMeans& measured = merged.batch_means[index];
-  const double events = kEventsPerCollision * static_cast<double>(merged.samples);
-  Estimate time = SampledRatio("mean_free_time_" + std::string(between), measured, events);
+  Estimate time =
+      SampledRatio("mean_free_time_" + std::string(between), measured, EventsIn(merged));
   time.exact = exact;
   return time;
 }
@@ -130,11 +135,17 @@ class EquilibriumExperiment : public PointExperiment {
 
   PointSummary Summarize(const BlockResult& merged) const override {
     const MeanFreeTimes exact = MeanFreeTimesOf(geometry_);
-    return {
+    PointSummary summary = {
         .samples = merged.samples,
         .estimates = {FirstEstimate(merged), MeanFreeTime("ball_wall", merged, 1, exact.ball_wall),
                       MeanFreeTime("piston_wall", merged, 2, exact.piston_wall)},
         .health = merged.health};
+    if (!TellsItsError(EventsIn(merged))) {
+      summary.remarks.push_back(
+          absl::StrFormat("there are no standard errors: these need %.0f collisions",
+                          kEventsForAnError / kEventsPerCollision));
+    }
+    return summary;
   }
 
  private:

@@ -91,44 +91,44 @@ class ProfilePlaces {
         rows_(geometry.shape().rows),
         each_((columns_ + kMostColumnsApart - 1) / kMostColumnsApart) {
     for (int64_t edge = 0; edge <= columns_; ++edge) {
-      if (HasPlace(edge)) At(OfEdge(edge)) = static_cast<double>(edge);
+      if (!HasPlace(edge)) continue;
+      At(OfEdge(edge)) = {.position = static_cast<double>(edge), .first = edge, .end = edge + 1};
     }
     for (int64_t first = 0; first < columns_; first += each_) {
-      At(OfColumn(first)) = static_cast<double>(first + std::min(first + each_, columns_)) / 2;
+      const int64_t end = std::min(first + each_, columns_);
+      At(OfColumn(first)) = {.position = static_cast<double>(first + end) / 2,
+                             .has_balls = true,
+                             .first = first,
+                             .end = end};
     }
   }
 
-  size_t size() const { return positions_.size(); }
-  double Position(size_t place) const { return positions_[place]; }
+  size_t size() const { return places_.size(); }
+  double Position(size_t place) const { return places_[place].position; }
 
-  // The mean temperature at each place.
-  std::vector<double> Temperatures(const GasMeter& meter) const {
-    std::vector<Mean> means(size());
-    size_t body = 0;
+  // The mean temperature at a place.
+  double Temperature(size_t place, const GasMeter& meter) const {
+    const auto& [position, has_balls, first, end] = places_[place];
+    const int64_t in_a_row = has_balls ? columns_ : columns_ + 1;
+    const int64_t first_body = has_balls ? 0 : rows_ * columns_;
+    double sum = 0;
     for (int64_t row = 0; row < rows_; ++row) {
-      for (int64_t column = 0; column < columns_; ++column) {
-        means[OfColumn(column)].Add(meter.MeanEnergy(body++));
+      for (int64_t i = first; i < end; ++i) {
+        const double energy =
+            meter.MeanEnergy(static_cast<size_t>(first_body + row * in_a_row + i));
+        sum += has_balls ? energy : 2 * energy;
       }
     }
-    for (int64_t row = 0; row < rows_; ++row) {
-      for (int64_t edge = 0; edge <= columns_; ++edge, ++body) {
-        if (HasPlace(edge)) means[OfEdge(edge)].Add(2 * meter.MeanEnergy(body));
-      }
-    }
-    std::vector<double> temperatures;
-    for (const Mean& mean : means) temperatures.push_back(mean.sum / mean.count);
-    return temperatures;
+    return sum / static_cast<double>(rows_ * (end - first));
   }
 
  private:
-  struct Mean {
-    double sum = 0;
-    double count = 0;
-
-    void Add(double value) {
-      sum += value;
-      ++count;
-    }
+  // Of the balls in the columns from `first` to before `end`, or of the pistons at such edges.
+  struct Place {
+    double position = 0;
+    bool has_balls = false;
+    int64_t first = 0;
+    int64_t end = 0;
   };
 
   bool HasPlace(int64_t edge) const { return each_ == 1 || edge == 0 || edge == columns_; }
@@ -142,15 +142,15 @@ class ProfilePlaces {
     return static_cast<size_t>(each_ == 1 ? 2 * column + 1 : column / each_ + 1);
   }
 
-  double& At(size_t place) {
-    if (place >= positions_.size()) positions_.resize(place + 1);
-    return positions_[place];
+  Place& At(size_t place) {
+    if (place >= places_.size()) places_.resize(place + 1);
+    return places_[place];
   }
 
   int64_t columns_;
   int64_t rows_;
   int64_t each_;  // columns of a place
-  std::vector<double> positions_;
+  std::vector<Place> places_;
 };
 
 class GasConduction : public GasExperiment {
@@ -169,13 +169,17 @@ class GasConduction : public GasExperiment {
     return {geometry(), hot_, cold_, random};
   }
 
-  void Measure(const GasMeter& meter, BlockResult& result) const override {
+  size_t MeasuredParts() const override { return 1 + places_.size(); }
+
+  void MeasurePart(size_t part, const GasMeter& meter, BlockResult& result) const override {
+    if (part > 0) {
+      result.moments[part - 1].Add(places_.Temperature(part - 1, meter));
+      return;
+    }
     // Each ball has one contact on its left and one on its right.
     const double contacts_along_x = 2 * static_cast<double>(geometry().balls());
     result.batch_means[0].Add(meter.carried(), contacts_along_x * meter.duration());
     AddMeans(meter, 1, result);
-    const std::vector<double> temperatures = places_.Temperatures(meter);
-    for (size_t i = 0; i < temperatures.size(); ++i) result.moments[i].Add(temperatures[i]);
   }
 
   BlockResult EmptyResult() const override {

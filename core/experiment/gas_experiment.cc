@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/ensemble/chunk_plan.h"
 #include "core/experiment/pair_experiment.h"
 #include "core/experiment/sampled_estimate.h"
 #include "core/experiment/without_last_bits.h"
@@ -20,6 +21,16 @@ namespace {
 // The lanes need this many balls to be full.
 constexpr int64_t kBallsInLanes = 192;
 
+uint64_t ReplicasThatFillLanes(int64_t balls) {
+  return static_cast<uint64_t>((kBallsInLanes + balls - 1) / balls);
+}
+
+// Replicas that a thread computes at the same time: at most a quarter of those of the chunk, so
+// that several threads share even a small chunk.
+uint64_t TogetherInLanes(int64_t balls, const ChunkPlan& plan, uint64_t chunk) {
+  return std::clamp<uint64_t>(plan.SamplesIn(chunk) / 4, 1, ReplicasThatFillLanes(balls));
+}
+
 // A block whose replicas are being computed. The meters are kept until all replicas are done, so
 // that results are added in the order of the replicas.
 struct OpenBlock {
@@ -27,6 +38,8 @@ struct OpenBlock {
   std::vector<std::unique_ptr<GasMeter>> meters = {};  // of the replicas that have been started
   std::vector<double> energies = {};                   // at their starts
   uint64_t done = 0;
+  BlockResult result = {};    // of the replicas that have been measured
+  size_t measured_parts = 0;  // of the next replica
 };
 
 // The draw of a replica's start.
@@ -39,6 +52,8 @@ struct StartDraw {
   GasRandom random;
   CounterRandom of_start;
   GasDraw draw;
+  GasState state = {};  // once it is drawn
+  GasMeter* meter = nullptr;
 };
 
 // Computes several replicas at a time, of several blocks if these are small, to fill the lanes.
@@ -50,43 +65,33 @@ class GasBlocks : public BlockRun {
   bool Advance() override {
     Pauses pauses([this] { return queue_.Pause(); });
     do {
-      if (run_ == nullptr && !Begin(pauses)) return false;
-      if (run_ == nullptr) return true;
-      if (!RunToTheEnd(pauses)) return false;
-      Finish();
+      if (stage_ == Stage::kBeginning && !Begin(pauses)) return false;
+      if (stage_ == Stage::kBeginning) return true;
+      if (!RunToTheEnd(pauses) || !Finish(pauses)) return false;
     } while (!queue_.Pause());
     return false;
   }
 
  private:
+  enum class Stage { kBeginning, kRelaxing, kMeasuring, kFinishing };
+
   // The other engines run one replica at a time, because more would not make them faster.
-  int64_t BallsTogether() const {
-    return experiment_.gas_engine() == GasEngine::kLanes ? kBallsInLanes : 1;
-  }
-
-  // A run takes at most a quarter of the replicas of its chunk, so that several threads share even
-  // a small chunk.
   size_t MostTogether(const Block& block) const {
-    const int64_t each = experiment_.geometry().balls();
-    const int64_t for_lanes = (BallsTogether() + each - 1) / each;
-    const uint64_t quarter = experiment_.plan().SamplesIn(block.chunk) / 4;
-    return std::clamp<size_t>(quarter, 1, static_cast<size_t>(for_lanes));
+    if (experiment_.gas_engine() != GasEngine::kLanes) return 1;
+    return TogetherInLanes(experiment_.geometry().balls(), experiment_.plan(), block.chunk);
   }
 
-  // Starts replicas until there are enough, if the queue has any. Returns false at a pause.
+  // Starts replicas until there are enough, if the queue has any. These functions return false at a
+  // pause.
   bool Begin(Pauses& pauses) {
     while (draw_ != nullptr || (!IsFull() && HasNext())) {
       if (draw_ == nullptr) BeginDraw();
-      if (!draw_->draw.Advance(pauses)) return false;
-      FinishDraw();
-      if (pauses.After(kToAddABall * static_cast<double>(experiment_.geometry().balls()))) {
-        return false;
-      }
+      if (!Draw(pauses)) return false;
     }
     if (starts_.empty()) return true;
-    is_measuring_ = false;
     run_ = StartGases(experiment_.gas_engine(), experiment_.geometry(), experiment_.exchange_rate(),
                       std::exchange(starts_, {}));
+    stage_ = Stage::kRelaxing;
     return true;
   }
 
@@ -95,7 +100,10 @@ class GasBlocks : public BlockRun {
   bool HasNext() {
     if (!open_.empty() && open_.back()->meters.size() < open_.back()->block.samples) return true;
     const std::optional<Block> block = queue_.Next();
-    if (block) open_.push_back(std::make_unique<OpenBlock>(OpenBlock{*block}));
+    if (block) {
+      open_.push_back(std::make_unique<OpenBlock>(
+          OpenBlock{.block = *block, .result = experiment_.EmptyResult()}));
+    }
     return block.has_value();
   }
 
@@ -107,60 +115,96 @@ class GasBlocks : public BlockRun {
         experiment_, experiment_.RandomOf(open.block.first + open.meters.size()));
   }
 
-  void FinishDraw() {
-    OpenBlock& open = *open_.back();
-    GasState state = draw_->draw.Take();
-    open.meters.push_back(std::make_unique<GasMeter>(experiment_.geometry(), state));
-    GasMeter* const meter = open.meters.back().get();
-    meter->MeasureCurrent(experiment_.CurrentOf(state));
-    open.energies.push_back(meter->TotalEnergy());
-    running_.push_back(meter);
+  bool Draw(Pauses& pauses) {
+    if (draw_->meter == nullptr) {
+      if (!draw_->draw.Advance(pauses)) return false;
+      draw_->state = draw_->draw.Take();
+      open_.back()->meters.push_back(std::make_unique<GasMeter>(experiment_.geometry()));
+      draw_->meter = open_.back()->meters.back().get();
+    }
+    if (!draw_->meter->Place(draw_->state, pauses)) return false;
+    draw_->meter->MeasureCurrent(experiment_.CurrentOf(draw_->state));
+    open_.back()->energies.push_back(draw_->meter->TotalEnergy());
+    running_.push_back(draw_->meter);
     const GasRandom& random = draw_->random;
-    starts_.push_back({std::move(state), experiment_.WallsOf(random), random, meter});
+    starts_.push_back({std::move(draw_->state), experiment_.WallsOf(random), random, draw_->meter});
     draw_.reset();
+    return true;
   }
 
-  // Returns false at a pause.
   bool RunToTheEnd(Pauses& pauses) {
     const GasTimes& times = experiment_.times();
-    if (!is_measuring_) {
-      if (!run_->AdvanceTo(times.relax, pauses)) return false;
-      for (GasMeter* const meter : running_) meter->Begin(times.relax);
-      is_measuring_ = true;
+    if (stage_ == Stage::kRelaxing) {
+      const auto begin = [&](GasMeter& meter) { return meter.Begin(times.relax, pauses); };
+      if (!run_->AdvanceTo(times.relax, pauses) || !ForEachRunning(begin)) return false;
+      stage_ = Stage::kMeasuring;
     }
-    return run_->AdvanceTo(times.Total(), pauses);
+    if (stage_ == Stage::kMeasuring) {
+      const auto end = [&](GasMeter& meter) { return meter.End(times.Total(), pauses); };
+      if (!run_->AdvanceTo(times.Total(), pauses) || !ForEachRunning(end)) return false;
+      run_.reset();
+      CountDone(std::exchange(running_, {}).size());
+      stage_ = Stage::kFinishing;
+    }
+    return true;
+  }
+
+  // Calls step(meter) for the meters of all replicas that run, until it returns false.
+  template <typename Step>
+  bool ForEachRunning(const Step& step) {
+    for (; next_meter_ < running_.size(); ++next_meter_) {
+      if (!step(*running_[next_meter_])) return false;
+    }
+    next_meter_ = 0;
+    return true;
   }
 
   // Replicas were started in the order of their blocks.
-  void Finish() {
-    run_.reset();
-    for (GasMeter* const meter : running_) meter->End(experiment_.times().Total());
-    size_t left = std::exchange(running_, {}).size();
+  void CountDone(size_t replicas) {
     for (const auto& open : open_) {
-      const uint64_t more = std::min<uint64_t>(left, open->meters.size() - open->done);
+      const uint64_t more = std::min<uint64_t>(replicas, open->meters.size() - open->done);
       open->done += more;
-      left -= more;
-    }
-    while (!open_.empty() && open_.front()->done == open_.front()->block.samples) {
-      const std::unique_ptr<OpenBlock> open = std::move(open_.front());
-      open_.erase(open_.begin());
-      queue_.Done(open->block, ResultOf(*open));
+      replicas -= more;
     }
   }
 
-  BlockResult ResultOf(const OpenBlock& open) const {
-    BlockResult result = experiment_.EmptyResult();
-    for (size_t i = 0; i < open.meters.size(); ++i) {
-      const GasMeter& meter = *open.meters[i];
-      Health health = {.escapes = meter.escapes()};
-      if (experiment_.geometry().ends() == GasEnds::kPeriodic) {
-        health.max_energy_error = std::fabs(meter.TotalEnergy() / open.energies[i] - 1);
-      }
-      result.health.Merge(health);
-      ++result.samples;
-      experiment_.Measure(meter, result);
+  bool Finish(Pauses& pauses) {
+    while (!open_.empty() && open_.front()->done == open_.front()->block.samples) {
+      if (!Measure(*open_.front(), pauses)) return false;
+      const std::unique_ptr<OpenBlock> open = std::move(open_.front());
+      open_.erase(open_.begin());
+      queue_.Done(open->block, std::move(open->result));
     }
-    return result;
+    stage_ = Stage::kBeginning;
+    return true;
+  }
+
+  bool Measure(OpenBlock& open, Pauses& pauses) const {
+    const auto bodies =
+        static_cast<double>(experiment_.geometry().balls() + experiment_.geometry().pistons());
+    const size_t parts = experiment_.MeasuredParts();
+    const double nanoseconds = kToMeasureABody * bodies / static_cast<double>(parts);
+    while (open.result.samples < open.block.samples) {
+      const size_t replica = open.result.samples;
+      const GasMeter& meter = *open.meters[replica];
+      if (!ForEachWithPauses(open.measured_parts, parts, nanoseconds, pauses, [&](size_t part) {
+            experiment_.MeasurePart(part, meter, open.result);
+          })) {
+        return false;
+      }
+      open.measured_parts = 0;
+      AddHealth(meter, open.energies[replica], open.result.health);
+      ++open.result.samples;
+    }
+    return true;
+  }
+
+  void AddHealth(const GasMeter& meter, double energy_at_start, Health& health) const {
+    Health of_replica = {.escapes = meter.escapes()};
+    if (experiment_.geometry().ends() == GasEnds::kPeriodic) {
+      of_replica.max_energy_error = std::fabs(meter.TotalEnergy() / energy_at_start - 1);
+    }
+    health.Merge(of_replica);
   }
 
   const GasExperiment& experiment_;
@@ -170,10 +214,11 @@ class GasBlocks : public BlockRun {
   std::vector<GasStart> starts_;
   size_t most_together_ = 0;
   std::vector<GasMeter*> running_;
+  size_t next_meter_ = 0;
   std::unique_ptr<GasRun> run_;
-  bool is_measuring_ = false;
+  Stage stage_ = Stage::kBeginning;
 
-  static constexpr double kToAddABall = 50;  // and its pistons to a meter; nanoseconds
+  static constexpr double kToMeasureABody = 20;  // nanoseconds
 };
 
 // Hits of the outermost pistons at their thermal walls per unit of time at temperature 1: every
@@ -181,12 +226,6 @@ class GasBlocks : public BlockRun {
 double ThermalHitsOf(const GasGeometry& geometry, const HitRates& rates) {
   if (geometry.ends() == GasEnds::kPeriodic) return 0;
   return static_cast<double>(geometry.shape().rows) * rates.of_a_piston;
-}
-
-// Replicas that a thread computes at the same time.
-double TogetherInLanes(double balls) {
-  constexpr double kMost = 16;  // a quarter of the smallest chunk
-  return std::min(std::ceil(static_cast<double>(kBallsInLanes) / balls), kMost);
 }
 
 }  // namespace
@@ -236,11 +275,14 @@ SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time) 
   constexpr double kBeyondTheCaches = 7e5;  // balls
   const double uncached = balls / (balls + kBeyondTheCaches);
   const double visits = geometry.pair().stroke() / geometry.pair().delta();
-  return {.ball_wall = 4 * ball_hits + 900 * exchanges + 1000 * thermal_hits,
-          .collisions = exchanges,
-          .starts = balls,
-          .delays = exchanges * (100 * visits + 16'000 * uncached) + 1500 * uncached * balls,
-          .together = TogetherInLanes(balls)};
+  SampleWork work = {
+      .ball_wall = 4 * ball_hits + 900 * exchanges + 1000 * thermal_hits,
+      .collisions = exchanges,
+      .starts = balls,
+      .delays = exchanges * (100 * visits + 16'000 * uncached) + 1500 * uncached * balls};
+  const ChunkPlan plan(kMaxSamples, Engine::kLanes, work.Events());
+  work.together = static_cast<double>(TogetherInLanes(geometry.balls(), plan, 0));
+  return work;
 }
 
 // Measured with gases of 10^6 cells, chains and lattices: by the lanes 234 bytes for a ball and 49
@@ -256,7 +298,7 @@ double MemoryOfReplicas(Model model, const PointParameters& point) {
   // A piston for every contact along +x and +y, and one more in each row between reservoirs.
   const auto balls = static_cast<double>(shape.cells());
   const double pistons = static_cast<double>(shape.contacts() / 2 + shape.rows);
-  const double together = in_lanes ? TogetherInLanes(balls) : 1;
+  const double together = in_lanes ? static_cast<double>(ReplicasThatFillLanes(shape.cells())) : 1;
   return kOfABlock + together * (balls * bytes[0] + pistons * bytes[1]);
 }
 

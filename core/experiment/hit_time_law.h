@@ -20,7 +20,8 @@ inline constexpr double kHitTimeMeans = 8;  // upper end of the bins, in mean re
 // `mean`: the mean return time at this energy.
 Histogram EmptyHitTimes(double mean);
 
-// The points are at the lower edges of the bins. The errors are binomial.
+// The points are at the lower edges of the bins. The errors are binomial; a point has one if
+// enough earlier and later hits are expected in the limit.
 Curve SurvivalCurve(const Histogram& hit_times);
 
 }  // namespace ballpiston

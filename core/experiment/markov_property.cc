@@ -86,8 +86,8 @@ class ExchangeOrbits {
     BlockResult result = EmptyMarkovPropertyCounts();
     for (size_t i = 0; i < orbits_.size(); ++i) {
       const std::span all(exchanges_);
-      CountOrbit(orbits_[i].first_energy, all.subspan(i * kExchangesPerOrbit, orbits_[i].exchanges),
-                 result);
+      CountOrbit(first_ / kExchangesPerOrbit + i, orbits_[i].first_energy,
+                 all.subspan(i * kExchangesPerOrbit, orbits_[i].exchanges), result);
       result.health.Merge(orbits_[i].health);
     }
     return result;
@@ -151,7 +151,8 @@ void WalkOrbits(const PairGeometry& geometry, const RandomStream& random, uint64
   for (uint64_t i = 0; i < orbits; ++i) {
     const uint64_t begin = i * kExchangesPerOrbit;
     const uint64_t length = std::min(kExchangesPerOrbit, exchanges - begin);
-    CountOrbit(PistonEnergy(starts[i]), std::span(all).subspan(begin, length), result);
+    CountOrbit(block_first / kExchangesPerOrbit + first_orbit + i, PistonEnergy(starts[i]),
+               std::span(all).subspan(begin, length), result);
   }
 }
 
@@ -198,8 +199,7 @@ class MarkovPropertyExperiment : public PointExperiment {
                             .health = merged.health};
     if (!summary.estimates.front().standard_error) {
       summary.remarks.push_back(
-          absl::StrFormat("the correlations have no standard errors: these need %.0f orbits of %d "
-                          "collisions",
+          absl::StrFormat("there are no standard errors: these need %.0f orbits of %d collisions",
                           kEventsForAnError, kExchangesPerOrbit));
     }
     return summary;
@@ -256,6 +256,7 @@ constinit const ExperimentKind kMarkovProperty = {
     .work = WorkOfAnExchange,
     .collisions = OneCollision,
     .memory = MemoryOfPairs,
+    .memory_of_a_result = 120e3,
     .samples_together = kExchangesPerOrbit};
 
 }  // namespace ballpiston

@@ -8,19 +8,18 @@
 #include "core/arithmetic/elementary_functions.h"
 #include "core/closed_form/kernel_distribution.h"
 #include "core/experiment/sampled_estimate.h"
+#include "core/statistics/group_scatter.h"
 #include "core/statistics/kl_divergence.h"
 #include "core/statistics/kolmogorov_smirnov.h"
 
 namespace ballpiston {
 namespace {
 
-// One exchange in five counts as an event for the error of the divergence within the rows by
-// energy, because some rows have few: intervals of 95 % from 64 and 256 exchanges covered in 85 and
-// 95 %.
-constexpr double kEventsOfARow = 0.2;
+constexpr size_t kWaitingBinsOfAGroup = 32;
 
-constexpr size_t kFirstEnergyRow = 1;
-constexpr size_t kFirstMemoryRow = kFirstEnergyRow + kEnergyRows;
+// The histograms of all groups, kind by kind, behind that of all waiting times.
+enum Kind : size_t { kWaiting, kTransition, kMemories, kKinds };
+constexpr size_t PlaceOf(Kind kind, size_t group) { return 1 + kind * kGroups + group; }
 enum Correlation : size_t { kMemory, kWaitingOutcome, kWaitingMemory, kCorrelations };
 
 // The row of a number in [0, 1].
@@ -39,12 +38,13 @@ struct ProductSum {
   }
 };
 
-std::span<const Histogram> EnergyRows(const BlockResult& merged) {
-  return std::span(merged.histograms).subspan(kFirstEnergyRow, kEnergyRows);
+std::span<const Histogram> GroupsOf(Kind kind, const BlockResult& merged) {
+  return std::span(merged.histograms).subspan(PlaceOf(kind, 0), kGroups);
 }
 
-std::span<const Histogram> MemoryRows(const BlockResult& merged) {
-  return std::span(merged.histograms).subspan(kFirstMemoryRow, kMemoryBins);
+// Adds x in [0, 1] to a row of cells.
+void AddToRow(size_t row, size_t bins, double x, Histogram& cells) {
+  ++cells.counts[row * bins + RowOf(x, bins)];
 }
 
 Estimate CorrelationOf(std::string name, const BlockResult& merged, Correlation correlation,
@@ -56,19 +56,31 @@ Estimate CorrelationOf(std::string name, const BlockResult& merged, Correlation 
   return estimate;
 }
 
-Estimate HittingTimeDistance(const Histogram& waiting) {
-  const KolmogorovSmirnov measured = DistanceToUniform(waiting);
-  return {.name = "hitting_time_ks_distance",
-          .value = measured.distance,
-          .standard_error = measured.standard_error,
-          .noise_floor = measured.noise_floor};
+double OrbitsIn(const BlockResult& merged) {
+  return static_cast<double>(merged.batch_means[kWaitingOutcome].batches);
 }
 
-Estimate Divergence(std::string name, const KlDivergence& measured) {
+// A distance, whose error is that of orbits.
+Estimate DistanceOf(std::string name, double value, double noise_floor, double error,
+                    uint64_t batches, const BlockResult& merged) {
   return {.name = std::move(name),
-          .value = measured.value,
-          .standard_error = measured.standard_error,
-          .noise_floor = measured.noise_floor};
+          .value = value,
+          .standard_error = ToldError(OrbitsIn(merged), value, error),
+          .batches = batches,
+          .noise_floor = noise_floor};
+}
+
+Estimate HittingTimeDistance(const BlockResult& merged) {
+  const KolmogorovSmirnov measured =
+      DistanceToUniform(merged.histograms[0], GroupsOf(kWaiting, merged));
+  return DistanceOf("hitting_time_ks_distance", measured.distance, measured.noise_floor,
+                    measured.standard_error, measured.batches, merged);
+}
+
+Estimate Divergence(std::string name, Kind kind, size_t rows, const BlockResult& merged) {
+  const KlDivergence measured = DivergenceWithinRows(GroupsOf(kind, merged), rows);
+  return DistanceOf(std::move(name), measured.value, measured.noise_floor, measured.standard_error,
+                    measured.batches, merged);
 }
 
 }  // namespace
@@ -77,12 +89,19 @@ BlockResult EmptyMarkovPropertyCounts() {
   BlockResult counts;
   counts.batch_means.resize(kCorrelations);
   counts.histograms.push_back(Histogram::OfBins(0, 1, kWaitingBins));
-  counts.histograms.resize(kFirstMemoryRow, Histogram::OfBins(0, 1, kOutcomeBins));
-  counts.histograms.resize(kFirstMemoryRow + kMemoryBins, Histogram::OfBins(0, 1, kMemoryBins));
+  constexpr size_t kCells[kKinds] = {kWaitingBinsOfAGroup, kEnergyRows * kOutcomeBins,
+                                     kMemoryBins * kMemoryBins};
+  for (const size_t cells : kCells) {
+    counts.histograms.resize(counts.histograms.size() + kGroups, Histogram::OfBins(0, 1, cells));
+  }
   return counts;
 }
 
-void CountOrbit(double energy, std::span<const Exchange> exchanges, BlockResult& counts) {
+void CountOrbit(uint64_t number, double energy, std::span<const Exchange> exchanges,
+                BlockResult& counts) {
+  const size_t group = number % kGroups;
+  Histogram& transitions = counts.histograms[PlaceOf(kTransition, group)];
+  Histogram& memories = counts.histograms[PlaceOf(kMemories, group)];
   ProductSum sums[kCorrelations];
   double energy_before = 0, waiting_before = 0;
   for (size_t k = 0; k < exchanges.size(); ++k) {
@@ -91,11 +110,12 @@ void CountOrbit(double energy, std::span<const Exchange> exchanges, BlockResult&
     const double waiting = 1 - Exp(-law.CollisionRate() * exchanges[k].waiting_time);
     const double outcome = law.Below(exchanges[k].energy);
     counts.histograms[0].Add(waiting);
-    counts.histograms[kFirstEnergyRow + RowOf(std::sqrt(2 * energy), kEnergyRows)].Add(outcome);
+    counts.histograms[PlaceOf(kWaiting, group)].Add(waiting);
+    AddToRow(RowOf(std::sqrt(2 * energy), kEnergyRows), kOutcomeBins, outcome, transitions);
     sums[kWaitingOutcome].Add(waiting, outcome);
     if (k > 0) {
       const double backward = law.Below(energy_before);
-      counts.histograms[kFirstMemoryRow + RowOf(backward, kMemoryBins)].Add(outcome);
+      AddToRow(RowOf(backward, kMemoryBins), kMemoryBins, outcome, memories);
       sums[kMemory].Add(backward, outcome);
       sums[kWaitingMemory].Add(waiting_before, waiting);
     }
@@ -115,14 +135,11 @@ std::vector<Estimate> MarkovPropertyEstimates(const BlockResult& merged,
       CorrelationOf("waiting_outcome_correlation", merged, kWaitingOutcome, exact_correlation),
       CorrelationOf("waiting_memory_correlation", merged, kWaitingMemory, exact_correlation)};
   if (merged.samples == 0) return estimates;
-  estimates.push_back(HittingTimeDistance(merged.histograms[0]));
-  estimates.push_back(
-      Divergence("transition_divergence", DivergenceWithinRows(EnergyRows(merged))));
-  if (!TellsItsError(kEventsOfARow * static_cast<double>(merged.samples))) {
-    estimates.back().standard_error.reset();
-  }
+  estimates.push_back(HittingTimeDistance(merged));
+  estimates.push_back(Divergence("transition_divergence", kTransition, kEnergyRows, merged));
   if (merged.batch_means[kMemory].batches > 0) {
-    estimates.push_back(Divergence("memory_divergence", DivergenceFromUniform(MemoryRows(merged))));
+    constexpr size_t kAllTogether = 1;
+    estimates.push_back(Divergence("memory_divergence", kMemories, kAllTogether, merged));
   }
   return estimates;
 }

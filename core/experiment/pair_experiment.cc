@@ -124,10 +124,8 @@ bool IsAnsweredWithoutBilliard(const EnsembleSpec& spec, const PointParameters& 
   const AimedEstimate& aim = AimOf(spec);
   if (aim.HasClosedForm()) return !spec.verify;
   if (aim.limit_error == nullptr || !aim.limit_error->is_known(point)) return false;
-  if (spec.target.budget_seconds) return true;
-  if (!spec.target.tolerance) return false;
-  return aim.limit_error->expected(point) <=
-         *spec.target.tolerance / (TakesSamples(aim.limit_error->model) ? 2 : 1);
+  if (!spec.target.tolerance) return spec.target.budget_seconds.has_value();
+  return aim.limit_error->IsWithin(*spec.target.tolerance, point);
 }
 
 // Model AUTO chooses by points, so it is checked only if each value is valid.

@@ -79,10 +79,7 @@ class JumpRun : public GasRun {
   }
 
   bool AdvanceTo(double time, Pauses& pauses) override {
-    while (gases_.size() < starts_.size()) {
-      Begin(starts_[gases_.size()]);
-      if (pauses.After(kToAllocateABody * BodiesOf(geometry_))) return false;
-    }
+    if (!Begin(pauses)) return false;
     for (size_t i = 0; i < gases_.size(); ++i) {
       if (!gases_[i].AdvanceTo(time, *starts_[i].meter, pauses)) return false;
     }
@@ -90,11 +87,17 @@ class JumpRun : public GasRun {
   }
 
  private:
-  void Begin(GasStart& start) {
-    SetOutermost(start);
-    gases_.emplace_back(geometry_, density_, start.state, std::move(start.walls),
-                        start.random.OfJumps());
-    start.state = {};
+  bool Begin(Pauses& pauses) {
+    for (; begun_ < starts_.size(); ++begun_) {
+      GasStart& start = starts_[begun_];
+      if (gases_.size() == begun_) {
+        SetOutermost(start);
+        gases_.emplace_back(geometry_, density_, std::move(start.walls), start.random.OfJumps());
+      }
+      if (!gases_.back().Begin(start.state, pauses)) return false;
+      start.state = {};
+    }
+    return true;
   }
 
   // The outermost pistons have their mean energy from the start.
@@ -108,6 +111,7 @@ class JumpRun : public GasRun {
   GasGeometry geometry_;
   double density_;
   std::vector<GasStart> starts_;
+  size_t begun_ = 0;  // gases that are complete
   std::vector<JumpGas> gases_;
 };
 

@@ -17,28 +17,46 @@ constexpr double kBallsRatePerPiston = 1 / std::numbers::pi;
 constexpr double kPistonsRate = 2 * 0.5;
 
 constexpr double kNanosecondsOfAnExchange = 200;
+constexpr double kNanosecondsOfABody = 10;
 
 }  // namespace
 
-JumpGas::JumpGas(const GasGeometry& geometry, double density, const GasState& start,
-                 ThermalWalls walls, const CounterRandom& random)
+JumpGas::JumpGas(const GasGeometry& geometry, double density, ThermalWalls walls,
+                 const CounterRandom& random)
     : geometry_(geometry),
       density_(density),
       walls_(std::move(walls)),
       random_(random),
-      balls_(start.balls.size()) {
-  speeds_.reserve(balls_ + start.pistons.size());
-  for (const GasBall& ball : start.balls) speeds_.push_back(ball.speed);
-  for (size_t i = 0; i < start.pistons.size(); ++i) {
-    const auto piston = static_cast<int64_t>(i);
-    speeds_.push_back(walls_.Has(piston) ? SpeedOfOutermost(piston)
-                                         : std::fabs(start.pistons[i].velocity));
+      balls_(static_cast<size_t>(geometry.balls())) {
+  speeds_.reserve(balls_ + static_cast<size_t>(geometry.pistons()));
+}
+
+JumpGas::JumpGas(const GasGeometry& geometry, double density, const GasState& start,
+                 ThermalWalls walls, const CounterRandom& random)
+    : JumpGas(geometry, density, std::move(walls), random) {
+  Pauses never;
+  Begin(start, never);
+}
+
+bool JumpGas::Begin(const GasState& start, Pauses& pauses) {
+  const auto take = [&](size_t body) { speeds_.push_back(SpeedAtStart(body, start)); };
+  size_t next = speeds_.size();
+  if (!ForEachWithPauses(next, balls_ + start.pistons.size(), kNanosecondsOfABody, pauses, take)) {
+    return false;
   }
   const auto count = static_cast<double>(balls_);
   kinds_[0] = {.count = count};
   kinds_[1] = {.first = count, .count = static_cast<double>(speeds_.size()) - count};
   FindRates();
   FindNext();
+  return true;
+}
+
+double JumpGas::SpeedAtStart(size_t body, const GasState& start) const {
+  if (body < balls_) return start.balls[body].speed;
+  const auto piston = static_cast<int64_t>(body - balls_);
+  return walls_.Has(piston) ? SpeedOfOutermost(piston)
+                            : std::fabs(start.pistons[body - balls_].velocity);
 }
 
 // An outermost piston proposes to one ball, at a rate equal to the mean of (-v3)+. Returns the

@@ -35,9 +35,14 @@ namespace ballpiston {
 
 class JumpGas {
  public:
-  // At least one ball or piston must move.
+  JumpGas(const GasGeometry& geometry, double density, ThermalWalls walls,
+          const CounterRandom& random);
   JumpGas(const GasGeometry& geometry, double density, const GasState& start, ThermalWalls walls,
           const CounterRandom& random);
+
+  // Takes the start. At least one ball or piston must move. Returns false at a pause; then it must
+  // be called again.
+  bool Begin(const GasState& start, Pauses& pauses);
 
   // Exchanges until `time`, and reports the exchanges to the meter. There an outermost piston has
   // its mean energy. Returns false at a pause; then it must be called again with the same time.
@@ -60,6 +65,7 @@ class JumpGas {
     bool is_accepted = false;
   };
 
+  double SpeedAtStart(size_t body, const GasState& start) const;
   void FindNext();
   void FindProposal();
   void DrawAttempts();

@@ -31,6 +31,7 @@ constexpr double kFlightsOfAPeriod = 1024;
 constexpr double kToPutABall = 200;
 constexpr double kToPutAPiston = 20;
 constexpr double kToFindAnArrival = 50;
+constexpr double kToMoveABody = 10;
 constexpr double kToHandleAnEvent = 300;  // without the flights
 constexpr double kToFly = 10;             // one flight of one of many balls
 
@@ -113,7 +114,7 @@ bool LaneGas::AdvanceTo(double time, Pauses& pauses) {
   if (!Place(pauses)) return false;
   for (;;) {
     if (is_in_window_ && !FinishWindow(pauses)) return false;
-    if (now_ == period_) MoveOrigin();
+    if (now_ == period_ && !MoveOrigin(pauses)) return false;
     if (now_ >= time - origin_) return true;
     BeginWindow(time - origin_);
   }
@@ -157,26 +158,36 @@ bool LaneGas::FinishWindow(Pauses& pauses) {
 }
 
 // At the end of a period, with all its events done.
-void LaneGas::MoveOrigin() {
-  for (uint32_t i = 0; i < gas_.balls.size(); ++i) {
-    BallInTime& ball = gas_.balls[i];
-    ball.since += to_[i].path * gas_.unit * ball.slowness - period_;
-    to_[i].path = 0;
+bool LaneGas::MoveOrigin(Pauses& pauses) {
+  if (!ForEachWithPauses(moved_balls_, gas_.balls.size(), kToMoveABody, pauses,
+                         [this](size_t i) { MoveOriginOfBall(i); }) ||
+      !ForEachWithPauses(moved_pistons_, gas_.pistons.size(), kToMoveABody, pauses,
+                         [this](size_t i) { MoveOriginOfPiston(i); })) {
+    return false;
   }
-  for (uint32_t i = 0; i < gas_.pistons.size(); ++i) {
-    PistonInTime& piston = gas_.pistons[i];
-    // An outermost piston gets a new phase at its thermal wall. Its arrival there must not be lost
-    // by rounding.
-    if (replicas_[i / pistons_each_].walls.Has(i % pistons_each_)) {
-      piston.since -= period_;
-    } else {
-      piston = {.since = 0,
-                .speed = piston.speed,
-                .phase = piston.PhaseAt(period_, Direction::kRight, gas_.wave)};
-    }
-  }
+  moved_balls_ = moved_pistons_ = 0;
   origin_ += period_;
   now_ = 0;
+  return true;
+}
+
+void LaneGas::MoveOriginOfBall(size_t number) {
+  BallInTime& ball = gas_.balls[number];
+  ball.since += to_[number].path * gas_.unit * ball.slowness - period_;
+  to_[number].path = 0;
+}
+
+// An outermost piston gets a new phase at its thermal wall. Its arrival there must not be lost by
+// rounding.
+void LaneGas::MoveOriginOfPiston(size_t number) {
+  PistonInTime& piston = gas_.pistons[number];
+  if (replicas_[number / pistons_each_].walls.Has(static_cast<int64_t>(number % pistons_each_))) {
+    piston.since -= period_;
+  } else {
+    piston = {.since = 0,
+              .speed = piston.speed,
+              .phase = piston.PhaseAt(period_, Direction::kRight, gas_.wave)};
+  }
 }
 
 void LaneGas::Handle(const Entry& entry) {

@@ -70,7 +70,9 @@ class LaneGas : public GasRun {
 
   void BeginWindow(double end);
   bool FinishWindow(Pauses& pauses);
-  void MoveOrigin();
+  bool MoveOrigin(Pauses& pauses);
+  void MoveOriginOfBall(size_t ball);
+  void MoveOriginOfPiston(size_t piston);
   void FlyNextBalls();
   void FlyAgain(std::span<const uint32_t> balls);
   bool FlyOrders(Pauses& pauses);
@@ -92,10 +94,11 @@ class LaneGas : public GasRun {
   uint32_t pistons_each_;
   double exchange_rate_;
   double mean_flight_;
-  double period_;                 // of the origin's moves
-  double window_ = 0;             // of time
-  double origin_ = 0;             // all times in here count from it
-  std::vector<GasStart> starts_;  // until all bodies are placed
+  double period_;                               // of the origin's moves
+  double window_ = 0;                           // of time
+  double origin_ = 0;                           // all times in here count from it
+  size_t moved_balls_ = 0, moved_pistons_ = 0;  // with the origin
+  std::vector<GasStart> starts_;                // until all bodies are placed
   size_t placed_balls_ = 0, placed_pistons_ = 0;
   std::vector<Replica> replicas_;
   // By ball. `from_` is the ball before the flight in which the window begins, or in which its last

@@ -50,6 +50,11 @@ class Question {
   double ExpectedLimitError() const { return aim().limit_error->expected(point_); }
   bool IsSoundForBilliard() const { return ballpiston::IsSoundForBilliard(spec_, point_); }
   Model ModelOfLimit() const { return aim().limit_error->model; }
+  // Whether the limit's error can be judged, and is not beyond the tolerance.
+  bool MayBeAnsweredByLimit() const {
+    return HasLimitError() && HasRelativeError() &&
+           (!target().tolerance || aim().limit_error->IsWithin(*target().tolerance, point_));
+  }
 
   // The experiment, or the estimate if it is not the experiment's default.
   absl::string_view subject() const {
@@ -76,7 +81,17 @@ class Question {
     return CostBy(model).ThreadsFor(samples, machine_.workers);
   }
   // Of processor time, until all workers have their first samples.
-  double SecondsOfTheFirst(Model model) const { return CostBy(model).first * machine_.workers; }
+  double SecondsOfTheFirst(Model model) const {
+    return TakesSamples(model) ? CostBy(model).first * machine_.workers : 0;
+  }
+  // The same by the model that answers: the least budget.
+  double SecondsOfTheFirst() const {
+    if (spec_.model != Model::kAuto) return SecondsOfTheFirst(spec_.model);
+    if (!IsSoundForBilliard()) return SecondsOfTheFirst(ModelOfLimit());
+    const double by_billiard = SecondsOfTheFirst(Model::kBilliard);
+    return MayBeAnsweredByLimit() ? std::min(by_billiard, SecondsOfTheFirst(ModelOfLimit()))
+                                  : by_billiard;
+  }
   double MemoryBy(Model model) const { return MemoryOf(By(model), point_, machine_.workers); }
 
   // Empty if samples by this model have errors.
@@ -100,12 +115,20 @@ class Question {
     return CostBy(model).SamplesIn(seconds, machine_.workers);
   }
 
+  // Or needs none.
+  bool LimitHasSamplesInBudget() const {
+    return !TakesSamples(ModelOfLimit()) || SamplesInBudget(ModelOfLimit()) > 0;
+  }
+
   double SamplesFor(double tolerance) const {
     return ballpiston::SamplesFor(tolerance, spec_, point_);
   }
 
+  // Infinite if so many samples have no error.
   double ErrorOf(Model model, double samples) const {
-    if (!WhyNoErrors(model).empty()) return std::numeric_limits<double>::infinity();
+    if (!WhyNoErrors(model).empty() || samples < aim().SamplesForAnError(model, point_)) {
+      return std::numeric_limits<double>::infinity();
+    }
     return aim().error(model, point_) / std::sqrt(samples);
   }
   bool HasRelativeError() const { return std::isfinite(aim().error(Model::kBilliard, point_)); }
@@ -170,7 +193,7 @@ std::string FoundBy(const Pilot& pilot, const PilotPlace& place) {
 Answer ByItsBound(const Question& question) {
   const bool samples = TakesSamples(question.ModelOfLimit());
   const double error = question.ExpectedLimitError();
-  const bool is_within = error <= *question.target().tolerance / (samples ? 2 : 1);
+  const bool is_within = question.MayBeAnsweredByLimit();
   const std::string why = absl::StrCat("the limit's error, up to ", Rounded(error), ", is ",
                                        is_within ? "within " : "beyond ",
                                        samples ? "half of the tolerance" : "the tolerance");
@@ -195,9 +218,10 @@ std::optional<Answer> ByTolerance(const Question& question, const PilotSource& p
   return Answer{question.ModelOfLimit(), absl::StrCat(found, ": within the tolerance"), error};
 }
 
-// The model that has the smaller error within the budget. Runs no pilot, because a pilot would use
-// part of the budget.
+// The model that has the smaller error within the budget; the limit if none has an error. Runs no
+// pilot, because a pilot would use part of the budget.
 Answer ByBudget(const Question& question) {
+  if (!question.MayBeAnsweredByLimit()) return ByItsBound(question);
   const double bound = question.ExpectedLimitError();
   const double limit = question.ErrorInBudget(question.ModelOfLimit()) + bound;
   const double billiard = question.ErrorInBudget(Model::kBilliard) +
@@ -206,9 +230,13 @@ Answer ByBudget(const Question& question) {
       std::isfinite(billiard)
           ? absl::StrCat("the billiard's error with this budget is about ", Rounded(billiard))
           : "the billiard has no error within this budget",
-      ", the limit's error at most ", Rounded(limit));
+      ", the limit's ",
+      std::isfinite(limit) ? absl::StrCat("error at most ", Rounded(limit))
+                           : absl::StrCat("model error at most ", Rounded(bound)));
   const double enough = question.target().tolerance.value_or(0);
-  if (billiard <= std::max(limit, enough)) return Billiard(question, compared);
+  const bool is_by_billiard = std::isfinite(billiard) ? billiard <= std::max(limit, enough)
+                                                      : !question.LimitHasSamplesInBudget();
+  if (is_by_billiard) return Billiard(question, compared);
   return {question.ModelOfLimit(), compared, bound};
 }
 
@@ -347,6 +375,7 @@ void AddPilot(const MachineRates& rates, Ladder& ladder) {
   ladder.work_of_pilot = SecondsOfPilot(*ladder.pilot, rates);
   Rung& chosen = ladder.Chosen();
   chosen.work = chosen.work.value_or(0) + ladder.work_of_pilot;
+  chosen.time += ladder.work_of_pilot;
   chosen.reason = absl::StrCat(chosen.reason, kWithThePilot);
 }
 
@@ -390,7 +419,8 @@ Rung& Ladder::Chosen() { return *std::find_if(rungs.begin(), rungs.end(), IsBy(a
 
 void Ladder::DropPilot() {
   if (!pilot) return;
-  Chosen().work = *Chosen().work - std::exchange(work_of_pilot, 0);
+  Chosen().work = *Chosen().work - work_of_pilot;
+  Chosen().time -= std::exchange(work_of_pilot, 0);
   Chosen().reason.resize(Chosen().reason.size() - kWithThePilot.size());
   pilot.reset();
 }
@@ -434,10 +464,9 @@ double LeastTolerance(const EnsembleSpec& spec) {
 }
 
 // The model that is expected to answer, without pilots.
-Model ExpectedModel(const EnsembleSpec& spec, const PointParameters& point,
-                    const Machine& machine = Machine()) {
+Model ExpectedModel(const EnsembleSpec& spec, const PointParameters& point) {
   if (spec.model != Model::kAuto) return spec.model;
-  return ChooseAnswer(spec, point, machine, PredictedPilot)->model;
+  return ChooseAnswer(spec, point, Machine(), PredictedPilot)->model;
 }
 
 // Where samples have no errors, with the index of the shape in its list: each shape once.
@@ -548,11 +577,7 @@ void CheckBudget(const EnsembleSpec& spec, const Machine& machine,
   const double budget = BudgetOfAPoint(spec, machine.workers);
   double least = 0;  // processor time of a point
   for (size_t i = 0; i < PointCount(spec); ++i) {
-    const PointParameters point = PointAt(spec, i);
-    const Question question(spec, point, machine);
-    if (question.SecondsOfTheFirst(Sampled(spec.model)) <= budget) continue;
-    const Model model = ExpectedModel(spec, point, machine);
-    if (TakesSamples(model)) least = std::max(least, question.SecondsOfTheFirst(model));
+    least = std::max(least, Question(spec, PointAt(spec, i), machine).SecondsOfTheFirst());
   }
   if (least <= budget) return;
   const double seconds = *spec.target.budget_seconds * least / budget;

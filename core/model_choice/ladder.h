@@ -43,7 +43,7 @@ struct Rung {
   std::string reason;             // why it cannot answer, or the source of its error
   std::optional<double> samples;  // that the target requires
   std::optional<double> work;     // seconds of processor time
-  double time = 0;                // seconds by the clock, if all workers have only this point
+  double time = 0;  // seconds by the clock, with the pilot, if all workers have only this point
   std::optional<double> statistical_error;  // these two relative, of the first estimate
   std::optional<double> model_error;
   double memory = 0;  // bytes

@@ -35,14 +35,16 @@ constexpr double kSamplesOfABlock = 2;
 }  // namespace
 
 double SamplingCost::ThreadsFor(double samples, int threads) const {
-  return std::clamp(std::ceil(samples / lanes), 1.0, static_cast<double>(threads));
+  return std::clamp(std::ceil(samples / (lanes * orbit)), 1.0, static_cast<double>(threads));
 }
 
 double SamplingCost::Of(double samples, int threads) const {
   const double used = ThreadsFor(samples, threads);
-  const double at_the_end = std::min(samples / used, lanes);
-  const double in_full_lanes = std::max(samples - used * lanes, 0.0);
-  const double flights = in_full_lanes + used * lanes * Longest(at_the_end, parts);
+  const double at_the_end = std::min(samples / used, lanes * orbit);
+  const double of_an_orbit = std::min(at_the_end, orbit);
+  const double in_full_lanes = std::max(samples - used * lanes * orbit, 0.0);
+  const double longest = of_an_orbit * Longest(at_the_end / of_an_orbit, parts * of_an_orbit);
+  const double flights = in_full_lanes + used * lanes * longest;
   return samples * (sample - flight) + flights * flight;
 }
 
@@ -74,12 +76,14 @@ SamplingCost CostOfSampling(const EnsembleSpec& spec, const PointParameters& poi
   } else if (model == Model::kMarkov) {
     cost.first = kSamplesOfABlock * cost.sample;
   } else {
-    const auto of_an_orbit = static_cast<double>(spec.experiment->samples_together);
     cost.flight = flight;
-    cost.lanes = rate.lanes * of_an_orbit;
-    cost.parts = work.parts * of_an_orbit;
-    cost.first = cost.lanes * flight * Longest(std::min(rate.lanes, kSamplesOfABlock), cost.parts) +
-                 kSamplesOfABlock * of_an_orbit * (cost.sample - flight);
+    cost.lanes = rate.lanes;
+    cost.orbit = static_cast<double>(spec.experiment->samples_together);
+    cost.parts = work.parts;
+    const double of_a_block = std::max(kSamplesOfABlock, cost.orbit);
+    const double orbits = std::min(rate.lanes, of_a_block / cost.orbit);
+    cost.first = cost.lanes * cost.orbit * flight * Longest(orbits, cost.parts * cost.orbit) +
+                 of_a_block * (cost.sample - flight);
   }
   return cost;
 }

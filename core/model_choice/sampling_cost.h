@@ -14,7 +14,8 @@ namespace ballpiston {
 struct SamplingCost {
   double sample = 0;  // one of many samples
   double flight = 0;  // the part of it that lanes compute together
-  double lanes = 1;   // samples that a thread computes at the same time
+  double lanes = 1;   // orbits that a thread computes at the same time
+  double orbit = 1;   // samples of an orbit
   double parts = 1;   // of a sample's flight (ensemble/sample_work.h)
   double first = 0;   // a thread's time until its first samples are complete
 

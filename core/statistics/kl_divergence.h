@@ -7,9 +7,11 @@
 // logarithms. Properties, each with a test of its name:
 //   1. NoiseFloorIsTheMeanUnderTheExactLaw, to 1e-3 of itself at every N.
 //   2. ErrorsHoldForEqualLaws and ErrorsHoldForUnequalLaws.
+//   3. ErrorsHoldForCorrelatedSamples, of DivergenceWithinRows.
 #ifndef BALLPISTON_CORE_STATISTICS_KL_DIVERGENCE_H_
 #define BALLPISTON_CORE_STATISTICS_KL_DIVERGENCE_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -23,6 +25,7 @@ struct KlDivergence {
   double noise_error = 0;     // standard deviation of `value` in this case
   double standard_error = 0;  // of `value`, for any measured law; at least noise_error
   int cells = 0;              // with a probability above 0
+  uint64_t batches = 0;       // of standard_error, as in Estimate; 0: those of a normal law
 };
 
 // The mean and the standard deviation of the divergence, if `samples` samples are drawn from the
@@ -38,12 +41,11 @@ DivergenceNoise NoiseOfDivergence(uint64_t samples, std::span<const double> prob
 KlDivergence RelativeEntropy(std::span<const uint64_t> counts,
                              std::span<const double> probabilities);
 
-// The divergence of the law over the bins of all rows from the uniform law.
-KlDivergence DivergenceFromUniform(std::span<const Histogram> rows);
-
-// The divergence of each row's law from the uniform law over its bins, averaged over samples. This
-// is the divergence of the law given the row. Rows without samples have no weight.
-KlDivergence DivergenceWithinRows(std::span<const Histogram> rows);
+// The divergence of each row's law from the uniform law over the row's cells, averaged over
+// samples. This is the divergence of the law given the row. Rows without samples have no weight.
+// The cells are counted by group (group_scatter.h), so samples within a group may be correlated.
+// While a group is empty there is no standard error, and the noise is that of independent samples.
+KlDivergence DivergenceWithinRows(std::span<const Histogram> groups, size_t rows);
 
 }  // namespace ballpiston
 

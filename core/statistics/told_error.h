@@ -7,13 +7,12 @@
 //   mean over samples               the samples
 //   coefficient of variation        a twentieth of these (experiment/return_time.cc)
 //   mean return time                the expected number of long returns, where these are rare
-//   mean sigma                      N (1 - mean^2), with the exact mean in equilibrium: some four
-//                                   times the expected samples of the rarer sign
+//   mean sigma                      the expected samples of the rarer sign
 //   mean free times in equilibrium  a tenth of the collisions (experiment/equilibrium.cc)
 //   relaxation of an energy         the expected number of orbits that meet; without an epsilon an
 //                                   eighth of the orbits (experiment/energy_relaxation.cc)
 //   a gas's current, by exchanges   a tenth of the replicas, or less (gas_equilibrium.cc)
-//   correlation                     the orbits
+//   Markov property                 the orbits
 // The number of events is an expected one, never a measured one: an error that is shown only if the
 // sample happens to contain many events is shown for samples that lie to one side. A quantity that
 // cannot fluctuate has the error 0.

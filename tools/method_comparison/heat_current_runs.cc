@@ -78,7 +78,9 @@ void MeasureByFixedSteps(const GasExperiment& experiment, double time_step, uint
   meter.End(gas.time());
   if (meter.escapes() > 0) return;
   ++result.samples;
-  experiment.Measure(meter, result);
+  for (size_t part = 0; part < experiment.MeasuredParts(); ++part) {
+    experiment.MeasurePart(part, meter, result);
+  }
 }
 
 PointEstimate RunFixedSteps(const GasExperiment& experiment, double time_step,

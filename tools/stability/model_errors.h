@@ -46,7 +46,7 @@ ModelError MeasuredModelError(const EnsembleSpec& question, double effort);
 std::vector<ModelError> ModelErrors();  // with all samples
 
 // A sentence for each stated error that fails, and for each claim with fewer than half of its
-// places tight.
+// places tight, or without a place that counts.
 std::vector<std::string> BrokenClaims(const std::vector<ModelError>& errors);
 
 }  // namespace ballpiston::stability

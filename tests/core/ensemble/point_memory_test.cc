@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/ensemble/chunk_fold.h"
+#include "core/ensemble/experiment_kind.h"
+#include "core/ensemble/point_experiment.h"
 #include "tests/core/one_point_spec.h"
 
 namespace ballpiston {
@@ -45,9 +48,37 @@ TEST(PointMemory, EachThreadHasReplicasOfItsOwn) {
 
 TEST(PointMemory, IsSmallForPairsAndForAnswersWithoutSamples) {
   const EnsembleSpec pair = SpecOf(&kEquilibrium, PaperPoint(0.1), {}, Model::kBilliard);
-  EXPECT_LT(Memory(pair, 8), 100e6);
+  EXPECT_LT(Memory(pair, 8), 150e6);
   EXPECT_LT(Memory(Gas({.columns = 1'000'000}, Model::kClosedForm), 8), 10e6);
   EXPECT_LT(Memory(Gas({.columns = 1'000'000}, Model::kAuto), 8), 10e6);
+}
+
+// Growth of the resident memory of a process, while it computes blocks of 32,768 to 65,536 samples.
+TEST(PointMemory, CountsTheSamplesOfABlock) {
+  const auto of_a_thread = [](const ExperimentKind* experiment, const PointParameters& point,
+                              Model model) {
+    return MemoryOfAThread(SpecOf(experiment, point, {.samples = 1'000'000}, model), point);
+  };
+  const PointParameters point = PaperPoint(0.3, 0.3);
+  EXPECT_GT(of_a_thread(&kEnergyRelaxation, point, Model::kMarkov), 20.6e6);
+  EXPECT_GT(of_a_thread(&kEnergyRelaxation, PaperPoint(0.3, 0), Model::kBilliard), 16.0e6);
+  EXPECT_GT(of_a_thread(&kFirstHit, PaperPoint(0.3, 0.1, 1), Model::kBilliard), 8.4e6);
+  EXPECT_LT(of_a_thread(&kEnergyRelaxation, PaperPoint(0.01, 0.3), Model::kBilliard), 15e6);
+}
+
+// Results that wait for a slow block: the window's number of histograms.
+TEST(PointMemory, CountsTheWaitingResults) {
+  for (const ExperimentKind* experiment : {&kMarkovProperty, &kFirstHit}) {
+    const PointParameters point =
+        experiment == &kFirstHit ? PaperPoint(0.2, 0.1, 1) : PaperPoint(0.2);
+    const EnsembleSpec spec = SpecOf(experiment, point, {}, Model::kBilliard);
+    double bytes = 0;
+    for (const Histogram& histogram : PointExperiment::Create(spec, 0)->EmptyResult().histograms) {
+      bytes += static_cast<double>(histogram.counts.size() * sizeof(uint64_t));
+    }
+    EXPECT_GT(experiment->memory_of_a_result, bytes) << experiment->name;
+    EXPECT_GT(Memory(spec), static_cast<double>(ChunkFold::kWindow) * bytes) << experiment->name;
+  }
 }
 
 }  // namespace

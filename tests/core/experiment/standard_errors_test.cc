@@ -32,17 +32,18 @@ bool HasRemark(const PointSummary& summary, std::string_view text) {
   });
 }
 
-// 64 samples at energies where the expected number of events, 64 (1 - mean^2), is just below and
-// just above 50. The measured mean would give the error to half of the seeds.
+// 256 samples at energies where the expected samples of the rarer sign are just below and just
+// above
+// 50. The measured mean would give the error to half of the seeds.
 TEST(StandardErrors, OfMeanSigmaDoesNotDependOnTheSample) {
   for (const double exponent : {0, 1, 3}) {
-    for (const double epsilon : {0.037, 0.048}) {
+    for (const double epsilon : {0.07, 0.085}) {
       const double exact = IngoingLaw(epsilon).MeanSigma();
-      const bool is_shown = 64 * (1 - exact * exact) >= 50;
-      EXPECT_EQ(is_shown, epsilon < 0.04);
+      const bool is_shown = 256 * (1 + exact) / 2 >= 50;
+      EXPECT_EQ(is_shown, epsilon < 0.08) << exact;
       for (uint64_t seed = 0; seed < 20; ++seed) {
         const EnsembleSpec spec = SpecOf(&kFirstHit, PaperPoint(0.2, epsilon, exponent),
-                                         {.samples = 64}, Model::kBilliard, seed);
+                                         {.samples = 256}, Model::kBilliard, seed);
         const Estimate sigma = Named("mean_sigma", RunPoint(spec).estimates);
         EXPECT_EQ(sigma.standard_error.has_value(), is_shown) << exponent << " " << seed;
       }
@@ -133,6 +134,38 @@ TEST(StandardErrors, RemarkSaysWhyAReturnTimeHasNone) {
     EXPECT_TRUE(at(0.1, 1000).remarks.empty());
     EXPECT_TRUE(at(0, 10).remarks.empty());  // ten samples never have an error
   }
+}
+
+TEST(StandardErrors, RemarkSaysHowManySamplesTheyNeed) {
+  const auto at = [](const ExperimentKind* experiment, const PointParameters& point, Model model,
+                     const Target& target) {
+    return RunPoint(SpecOf(experiment, point, target, model));
+  };
+  for (const int64_t collisions : {499, 500}) {
+    const PointSummary summary =
+        at(&kEquilibrium, PaperPoint(0.2), Model::kBilliard, {.collisions = collisions});
+    EXPECT_EQ(summary.estimates[0].standard_error.has_value(), collisions == 500);
+    EXPECT_EQ(HasRemark(summary, "these need 500 collisions"), collisions < 500);
+  }
+  for (const int64_t collisions : {49 * 32, 50 * 32}) {
+    const PointSummary summary =
+        at(&kMarkovProperty, PaperPoint(0.2), Model::kMarkov, {.collisions = collisions});
+    for (const Estimate& estimate : summary.estimates) {
+      EXPECT_EQ(estimate.standard_error.has_value(), collisions == 50 * 32) << estimate.name;
+    }
+    EXPECT_EQ(HasRemark(summary, "these need 50 orbits of 32 collisions"), collisions < 50 * 32);
+  }
+  const auto conductivity = [&](const GasShape& shape, int64_t replicas) {
+    return at(&kGasEquilibrium, PaperGas(&kGasEquilibrium, 0.2, shape), Model::kMarkov,
+              {.samples = replicas});
+  };
+  // A chain of two is more skewed than a lattice.
+  EXPECT_TRUE(HasRemark(conductivity({.columns = 2}, 1000), "this needs 250000 replicas"));
+  const GasShape lattice = {.columns = 2, .rows = 1, .is_lattice = true};
+  EXPECT_TRUE(HasRemark(conductivity(lattice, 999), "this needs 1000 replicas"));
+  const PointSummary enough = conductivity(lattice, 1000);
+  EXPECT_FALSE(HasRemark(enough, "the conductivity has no standard error"));
+  EXPECT_TRUE(Named("conductivity", enough.estimates).standard_error);
 }
 
 // The squares of the times are much more skewed than the times.

@@ -209,9 +209,30 @@ TEST(Ladder, BudgetWithToleranceChoosesTheBilliardIfItReachesTheTolerance) {
     const Target target = {.tolerance = tolerance, .budget_seconds = seconds};
     return Choice(Relaxation(0.0125, target), MayNotBeAsked)->model;
   };
+  const double limit = ExpectedLimitError(PaperPoint(0.0125));
   EXPECT_EQ(choice(0.5, 1), Model::kBilliard);
-  EXPECT_EQ(choice(1e-5, 1), Model::kSpectrum);
+  EXPECT_EQ(choice(1.01 * limit, 1), Model::kSpectrum);
+  EXPECT_EQ(choice(0.99 * limit, 1), Model::kBilliard);  // the limit is beyond the tolerance
   EXPECT_EQ(choice(1e-5, 1e5), Model::kBilliard);
+}
+
+// Near 1/sqrt 2 the limit's error is large, and the billiard is not sound.
+TEST(Ladder, ABudgetDoesNotLetTheLimitMissATolerance) {
+  for (const std::optional<double> tolerance : {std::optional<double>(), {0.9}, {0.01}}) {
+    EnsembleSpec spec = Relaxation(1.2e-10, {.tolerance = tolerance, .budget_seconds = 1});
+    spec.grid[kRho] = {kMaxRho - 1e-10};
+    EXPECT_EQ(Violations(spec).empty(), tolerance != 0.01);
+  }
+}
+
+// A plan and its result have an error from the same number of samples on.
+TEST(Ladder, SamplesBelowThoseOfAnErrorHaveNoPlannedError) {
+  for (const int64_t collisions : {499, 500}) {
+    EnsembleSpec spec = Asked(&kEquilibrium, 0.1, {.collisions = collisions});
+    spec.model = Model::kBilliard;
+    const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked);
+    EXPECT_EQ(ladder.Chosen().statistical_error.has_value(), collisions == 500);
+  }
 }
 
 // Without a relaxation time the limit's error is unknown.
@@ -239,9 +260,11 @@ TEST(Ladder, AnUnknownPilotIsPartOfTheWork) {
   EXPECT_EQ(ladder.work_of_pilot, SecondsOfPilot(*ladder.pilot, SomeMachine().rates));
   EXPECT_GT(ladder.work_of_pilot, 0.1);
   EXPECT_DOUBLE_EQ(*ladder.Chosen().work, SomeMachine().rates.spectrum + ladder.work_of_pilot);
+  EXPECT_DOUBLE_EQ(ladder.Chosen().time, *ladder.Chosen().work);
   EXPECT_THAT(ladder.Chosen().reason, HasSubstr("with the pilot"));
   ladder.DropPilot();
   EXPECT_NEAR(*ladder.Chosen().work, SomeMachine().rates.spectrum, 1e-12);
+  EXPECT_NEAR(ladder.Chosen().time, SomeMachine().rates.spectrum, 1e-12);
   EXPECT_THAT(ladder.Chosen().reason, Not(HasSubstr("with the pilot")));
   EXPECT_FALSE(ladder.pilot);
   ladder.DropPilot();  // no more than once
@@ -686,6 +709,28 @@ TEST(Ladder, ABudgetBelowTheFirstSamplesIsRejectedWithTheLeastBudget) {
   EXPECT_EQ(MachineViolations(spec, InLanes24()).size(), 1u);
   spec.target.budget_seconds = 2 * least;
   EXPECT_TRUE(MachineViolations(spec, InLanes24()).empty());
+}
+
+// AUTO takes the jump process if the billiard has no samples within the budget.
+TEST(Ladder, TheLeastBudgetOfAutoIsThatOfTheCheapestModel) {
+  EnsembleSpec spec = Asked(&kGasConduction, 0.01, {.budget_seconds = 1e-6});
+  const auto least = [&spec](Model model) {
+    spec.model = model;
+    spec.target.budget_seconds = 1e-6;
+    const std::vector<FieldViolation> found = MachineViolations(spec, InLanes24());
+    EXPECT_EQ(found.size(), 1u);
+    const std::string& text = found.at(0).description;
+    return std::stod(text.substr(text.find(">= ") + 3));
+  };
+  const double by_billiard = least(Model::kBilliard), by_auto = least(Model::kAuto);
+  EXPECT_EQ(by_auto, least(Model::kMarkov));
+  EXPECT_LT(by_auto, by_billiard / 10);
+  spec.model = Model::kAuto;
+  spec.target.budget_seconds = by_auto;
+  EXPECT_TRUE(MachineViolations(spec, InLanes24()).empty());
+  const Ladder ladder = LadderFor(spec, PointAt(spec, 0), InLanes24(), MayNotBeAsked);
+  EXPECT_EQ(ladder.answer.model, Model::kMarkov);
+  EXPECT_GE(*ladder.Chosen().samples, 1);
 }
 
 TEST(Ladder, AShortBudgetIsAnsweredWithoutSamplesWherePossible) {

@@ -207,6 +207,27 @@ TEST(SamplingCost, AFewSamplesCostAsMuchAsTheLongestInAllLanes) {
   EXPECT_NEAR(orbits.Of(24, 1) / (24 * orbits.sample), 1.44, 0.02);
 }
 
+// An orbit of markov-property has up to 32 samples.
+TEST(SamplingCost, SamplesOfOneOrbitFlyOneAfterTheOther) {
+  const SamplingCost cost = InLanes(Asked(&kMarkovProperty, 1e-4));
+  EXPECT_DOUBLE_EQ(cost.Of(1, 1), 24 * cost.sample);
+  EXPECT_DOUBLE_EQ(cost.Of(32, 1), 24 * 32 * cost.sample);
+  EXPECT_DOUBLE_EQ(cost.first, cost.Of(32, 1));
+  EXPECT_EQ(cost.ThreadsFor(24 * 32, 8), 1);
+  EXPECT_EQ(cost.ThreadsFor(24 * 32 + 1, 8), 2);
+}
+
+// A thread takes at most a quarter of a chunk's replicas.
+TEST(SamplingCost, ReplicasOfAThreadDependOnTheChunk) {
+  const auto cost = [](double delta) {
+    EnsembleSpec spec = SpecOf(&kGasEquilibrium, PaperGas(&kGasEquilibrium, delta, {.columns = 3}));
+    spec.model = Model::kBilliard;
+    return CostOfSampling(spec, PointAt(spec, 0), MachineRates());
+  };
+  EXPECT_EQ(cost(0.2).lanes, 16);  // of 64 replicas
+  EXPECT_EQ(cost(1e-6).lanes, 1);  // a replica takes more than a minute
+}
+
 TEST(SamplingCost, AReferenceOrbitCostsTheSameAlone) {
   MachineRates rates;
   rates.reference = {.wall_hit = 1, .collision = 1, .sample = 1};

@@ -71,6 +71,20 @@ TEST(ModelErrors, AnErrorThatIsStatedTooLargeIsFound) {
   EXPECT_THAT(BrokenClaims(errors), Contains(HasSubstr("more than four times")));
 }
 
+TEST(ModelErrors, AClaimWithoutAPlaceThatCountsIsFound) {
+  std::vector<ModelError> errors = StoredErrors();
+  for (ModelError& error : errors) error.standard_error = 1e9;
+  EXPECT_THAT(BrokenClaims(errors), Contains(HasSubstr("no place counts")));
+}
+
+// Of a chain of two, 64 replicas of the jump process have no error.
+TEST(ModelErrors, ASampleWithoutAnErrorDoesNotCount) {
+  for (const EnsembleSpec& question : ModelErrorQuestions()) {
+    if (PlaceOf(question).find("delta 1e-06 cells 2 ") == std::string::npos) continue;
+    EXPECT_FALSE(MeasuredModelError(question, 0).Counts());
+  }
+}
+
 // Two measurements of one difference, with other samples: more than five errors of the smaller one
 // apart in 6e-7 of all cases.
 TEST(ModelErrors, AMeasurementAgreesWithTheStoredOne) {
