@@ -126,6 +126,7 @@ void AddRelaxation(Places& places) {
   for (const double rho : {kNearHalf, kSmallCell}) {
     add(OfPair(rho, 0.5), 16384, {1e-4, 0.01, 0.12, 0.3, 0.49, 0.4999});
   }
+  add({0.5176, 0.0255}, 16384, {0.49995});  // the stroke is much shorter than the cell
   // The jump process, of which the spectrum is computed.
   places.Relaxation(Model::kMarkov, {kPaperRho, 0.2}, 65536);
   places.Relaxation(Model::kMarkov, OfPair(kNearHalf, 0.3), 8192);
