@@ -75,8 +75,9 @@ class WordParser {
   }
 
   absl::StatusOr<CommandLine> Parse(const std::vector<std::string>& words) {
+    if (words.empty()) return CommandLine{.page = TextPage(nullptr)};
     if (absl::Status bad = CheckValuesAreThere(words); !bad.ok()) return bad;
-    if (!words.empty()) first_word_ = words.front();
+    first_word_ = words.front();
     try {
       program_.parse(std::vector<std::string>(words.rbegin(), words.rend()));
     } catch (const CLI::CallForHelp&) {

@@ -87,6 +87,11 @@ Choices<Format> Formats() {
           {"csv", Format::kCsv}};
 }
 
+// The status of a server is not a table of rows.
+Choices<Format> StatusFormats() {
+  return {{"table", Format::kTable}, {"json", Format::kJson}, {"jsonl", Format::kJsonl}};
+}
+
 // The formats of results. Only results have histograms and curves.
 Choices<Format> ResultFormats() {
   Choices<Format> formats = Formats();
@@ -213,6 +218,11 @@ const FlagGroup kJob = {
 const FlagGroup kFormat = {"Output",
                            {{"--format", OneOf("FORMAT", Formats(), To(&Options::format)),
                              "format of the result on standard output, by default table"}}};
+
+const FlagGroup kStatusFormat = {
+    "Output",
+    {{"--format", OneOf("FORMAT", StatusFormats(), To(&Options::format)),
+      "format of the status on standard output, by default table"}}};
 
 const FlagGroup kResultFormat = {
     "Output",
@@ -497,7 +507,7 @@ std::vector<Verb> ServerVerbs() {
        "show the server's load and its limits",
        "Starts no server.",
        {},
-       With({&kFormat, &kServer}, {}),
+       With({&kStatusFormat, &kServer}, {}),
        {"server status",
         "server status --server lab.example.org:50051 --ca authority.pem "
         "--token-file ada.token --format json"},

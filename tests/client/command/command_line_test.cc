@@ -32,7 +32,10 @@ TEST_F(CommandLineTest, HelpAndVersionExitWithZero) {
   const Outcome program = Ballpiston({"--help"});
   EXPECT_EQ(program.code, 0);
   EXPECT_THAT(program.out, HasSubstr("Exit codes:"));
-  EXPECT_EQ(Ballpiston({"help"}).out, program.out);
+  for (const Words& words : {Words{"help"}, Words{}}) {
+    EXPECT_EQ(Ballpiston(words).code, 0);
+    EXPECT_EQ(Ballpiston(words).out, program.out);
+  }
   const Outcome version = Ballpiston({"--version"});
   EXPECT_EQ(version.code, 0);
   EXPECT_THAT(version.out, ::testing::MatchesRegex("ballpiston [0-9.]+\n"));
@@ -51,8 +54,7 @@ TEST_F(CommandLineTest, HelpOfAVerbIsItsPage) {
 }
 
 TEST_F(CommandLineTest, WrongUsageExitsWithTwoAndOneLine) {
-  const Words mistakes[] = {{},
-                            {"dance"},
+  const Words mistakes[] = {{"dance"},
                             {"server"},
                             {"server", "dance"},
                             {"help", "dance"},
@@ -114,6 +116,7 @@ TEST_F(CommandLineTest, ErrorsNameTheWrongWord) {
   const std::pair<Words, std::string> mistakes[] = {
       {{"run", "first-hit", "--rho"}, "--rho needs a value (ballpiston help run shows its usage)"},
       {{"srver", "status"}, "'srver' is not a verb; verbs are "},
+      {{"server", "status", "--format", "csv"}, "--format: 'csv' is not one of table, json, jsonl"},
       {{"watch"}, "watch needs JOB: ensembleJobs/ID, or the ID alone (ballpiston help watch"},
       {{"run", "first-hit", "again"}, "not expected: 'again' (ballpiston help run"},
       {{"run", "first-hit", "--rho", "1", "--rho", "2"}, "--rho is given more than once"},
