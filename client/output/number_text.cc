@@ -20,7 +20,11 @@ constexpr double kLargest = 1e7;
 // more than needed, which does no harm.
 int DecimalExponent(double x) { return static_cast<int>(std::floor(std::log10(std::abs(x)))); }
 
-std::string Significant(double x) { return absl::StrFormat("%.6g", x); }
+// An error below this part of the value is that of rounding: the value is exact.
+constexpr double kRounding = 5e-13;
+constexpr int kDigitsOfExact = 12;
+
+std::string Significant(double x, int digits = 6) { return absl::StrFormat("%.*g", digits, x); }
 
 std::string Fixed(double x, int decimals) { return absl::StrFormat("%.*f", decimals, x); }
 
@@ -53,6 +57,11 @@ MeasuredText Measured(double value, std::optional<double> error, std::optional<d
     text.value = Significant(value);
     if (error) text.error = Significant(*error);
     if (exact) text.exact = Significant(*exact);
+    return text;
+  }
+  if (*error < kRounding * std::abs(value)) {
+    text.value = Significant(value, kDigitsOfExact);
+    if (exact) text.exact = Significant(*exact, kDigitsOfExact);
     return text;
   }
   const int last_digit = DecimalExponent(*error) - 1;

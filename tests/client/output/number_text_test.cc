@@ -30,6 +30,12 @@ void ExpectMeasured(double value, double error, const std::string& value_text,
   EXPECT_EQ(text.error, error_text);
 }
 
+TEST(Measured, AnExactValueHasTwelveDigitsAndNoError) {
+  ExpectMeasured(52.65625940298963, 2.6e-13, "52.656259403", "");
+  ExpectMeasured(1234.5678901234, 1e-10, "1234.56789012", "");
+  EXPECT_EQ(Measured(0.3102289521723049, 1.6e-15, 0.3102289521723049).exact, "0.310228952172");
+}
+
 TEST(Measured, HasTheDigitsThatTheErrorSupports) {
   ExpectMeasured(21.63214, 0.1234, "21.63", "0.12");
   ExpectMeasured(21.63214, 0.01234, "21.632", "0.012");
