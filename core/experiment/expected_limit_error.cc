@@ -55,8 +55,7 @@ double WithinTheWindow(double mean) { return -mean * std::expm1(-kWindowTimes / 
 double SlowBallError(const PairGeometry& geometry, double v) {
   constexpr double kLonger = 0.7, kShort = 2.5;
   constexpr double kTimeToAHit = std::numbers::sqrt2 / 2;  // of a ball at rest, in the limit
-  const double path = std::min(2 * geometry.tip(), geometry.stroke());
-  const double stays = geometry.delta() / (path * v);
+  const double stays = geometry.delta() / (std::min(2 * geometry.tip(), geometry.stroke()) * v);
   const double time = kLonger * kTimeToAHit * stays * Square(stays) / (Square(stays) + kShort);
   return (kMostPistonEnergy - kMeanPistonEnergy) * WithinTheWindow(time);
 }

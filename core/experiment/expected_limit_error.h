@@ -16,13 +16,14 @@
 // From a given energy the same delays change the decay integral, in mean free times by up to
 //
 //   0.45 x log(1 + 1/x) max(1, 0.16/u) + 0.1 cusp/v + (1/3) m (1 - exp(-8/m))
-//   m = 0.7 (1/sqrt 2) p^3/(p^2 + 2.5),  p = delta/(v min(2 tip, lambda + 2 delta))
+//   m = 0.7 (1/sqrt 2) p^3/(p^2 + 2.5),  p = delta/(min(2 tip, stroke) v)
 //
-// u and v are the speeds of piston and ball at that energy. The last term belongs to a slow ball.
-// An exchange gives the slow piston to the ball's place: the ball, now fast, crosses its cell of
-// length 2 tip and returns before the piston has left the depth delta, and takes the energy back.
-// Or the piston, if it is the fast one, returns over its stroke. The shorter path decides.
-// So the pair keeps its energy for longer, m mean free times more, of which the window of 8 counts.
+// u and v are the speeds of piston and ball at that energy. The last term belongs to a slow ball,
+// which leaves the depth delta slowly. The fast piston crosses its stroke and meets the ball there
+// again: hits come in clusters, and the first one comes late. An exchange gives the slow piston to
+// the ball's place: the ball, now fast, crosses its cell of length 2 tip and returns before the
+// piston has left, and takes the energy back. So the pair keeps its energy for longer, m mean free
+// times more, of which the window of 8 counts. The constants cover 510 random places.
 // 1/sqrt 2 is the limit's mean time to the hit of a ball at rest. The bound is never larger than
 // the difference of a pair that does not relax at all within the window. The relative error is this
 // bound over the limit's decay integral, which passes through 0 at epsilon = 0.141. So it is large
