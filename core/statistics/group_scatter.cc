@@ -23,13 +23,22 @@ class GroupProducts {
   }
 
   double freedom() const { return freedom_; }
+  // The same for the scatter of Q_gh. Q is a form of pairs of samples, 1/n_c - 1/n_r for two of one
+  // cell and -1/n_r for two of one row. Its squares sum to freedom(), but a sample with itself
+  // hardly scatters, with 2/G of the scatter of others.
+  double freedom_of_pairs() const { return freedom_ - (1 - 2.0 / kGroups) * of_themselves_; }
   double Of(size_t g, size_t h) const { return products_[g][h]; }
   double Share(size_t g) const { return shares_[g]; }
 
  private:
   void AddRow(size_t first, size_t cells) {
     ByGroup of_row = {};
+    double samples = 0;
+    for (size_t cell = first; cell < first + cells; ++cell) samples += CountOf(cell);
     for (size_t cell = first; cell < first + cells; ++cell) {
+      if (const double count = CountOf(cell); count > 0) {
+        of_themselves_ += count * std::pow(1 / count - 1 / samples, 2);
+      }
       ByGroup counts;
       for (size_t g = 0; g < kGroups; ++g) {
         counts[g] = static_cast<double>(groups_[g].counts[cell]);
@@ -38,6 +47,12 @@ class GroupProducts {
       Add(counts, 1);
     }
     Add(of_row, -1);
+  }
+
+  double CountOf(size_t cell) const {
+    double count = 0;
+    for (const Histogram& group : groups_) count += static_cast<double>(group.counts[cell]);
+    return count;
   }
 
   void Add(const ByGroup& counts, double sign) {
@@ -56,7 +71,8 @@ class GroupProducts {
 
   std::span<const Histogram> groups_;
   ByGroup shares_ = {};
-  double freedom_ = 0;  // cells less rows, without empty ones
+  double freedom_ = 0;        // cells less rows, without empty ones
+  double of_themselves_ = 0;  // sum of squares of the form for each sample with itself
   std::array<ByGroup, kGroups> products_ = {};
 };
 
@@ -70,7 +86,7 @@ bool HaveSamples(std::span<const Histogram> groups) {
 // and G of its G (G - 1)/2 degrees of freedom are lost.
 GroupScatter ScatterOfGroups(std::span<const Histogram> groups, size_t rows) {
   const GroupProducts products(groups, rows);
-  if (products.freedom() <= 0) return {};
+  if (products.freedom_of_pairs() <= 0) return {};
   constexpr double kPairs = kGroups * (kGroups - 1) / 2.0;
   double on_diagonal = 0, pairs_of_shares = 0;
   for (size_t g = 0; g < kGroups; ++g) {
@@ -85,7 +101,7 @@ GroupScatter ScatterOfGroups(std::span<const Histogram> groups, size_t rows) {
   }
   scatter *= kPairs / kFreedomOfPairs;
   return {on_diagonal / (2 * pairs_of_shares * products.freedom()),
-          scatter / (pairs_of_shares * products.freedom())};
+          scatter / (pairs_of_shares * products.freedom_of_pairs())};
 }
 
 double VarianceBetweenGroups(std::span<const Histogram> groups, std::span<const double> weights) {

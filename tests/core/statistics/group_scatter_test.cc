@@ -40,7 +40,11 @@ void ExpectScatter(int samples, uint64_t repeats, double chi_squared, double var
   EXPECT_NEAR(second.mean, variance, 5 * *second.StandardError());
 }
 
-TEST(GroupScatter, IndependentSamplesScatterAsExpected) { ExpectScatter(32, 1, 1, 1); }
+// With 107 and with 3 samples a cell.
+TEST(GroupScatter, IndependentSamplesScatterAsExpected) {
+  ExpectScatter(32, 1, 1, 1);
+  ExpectScatter(1, 1, 1, 1);
+}
 
 // The counts' variances are three times as large, and so is a chi-squared.
 TEST(GroupScatter, RepeatedSamplesCountOnce) { ExpectScatter(10, 3, 3, 9); }
