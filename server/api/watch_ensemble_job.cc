@@ -151,15 +151,14 @@ absl::StatusOr<bool> WatchReactor::TellState() {
   return true;
 }
 
+// The points come from the store, which has all of them. The job in memory gets its last points
+// after the commit that shows its end to readers.
 absl::StatusOr<bool> WatchReactor::TellEnd(const JobRecord& ended) {
   const absl::StatusOr<bool> told =
-      TellFinishedPoints(service_.book.Message(ended, nullptr).progress());
+      TellFinishedPoints(service_.book.Message(ended, nullptr).progress(), nullptr);
   if (!told.ok() || *told) return told;
   if (!TakeRoom(static_cast<size_t>(ended.spec_bytes))) return false;
-  // The row that was read for an active job has its grid.
-  absl::StatusOr<v1::EnsembleJob> job = job_.active != nullptr
-                                            ? service_.book.Message(ended, nullptr)
-                                            : service_.book.Get(caller_, id_);
+  absl::StatusOr<v1::EnsembleJob> job = service_.book.Get(caller_, id_);
   if (!job.ok()) return job.status();
   // If the results expired since the job was found, some points may not have been sent.
   if (job->results_expired() && !job_.record.expired_time) return ResultsExpired(request_.name());
@@ -171,7 +170,8 @@ absl::StatusOr<bool> WatchReactor::TellEnd(const JobRecord& ended) {
 absl::StatusOr<bool> WatchReactor::TellSnapshot() {
   const Clock::time_point now = Clock::now();
   if (!IsSnapshotDue(now)) {
-    return IsBehind() ? TellFinishedPoints(job_.active->Progress()) : absl::StatusOr<bool>(false);
+    if (!IsBehind()) return false;
+    return TellFinishedPoints(job_.active->Progress(), job_.active.get());
   }
   const auto shared = service_.book.Snapshot(*job_.active, service_.timing.snapshot, kMaxPoints);
   v1::StatisticsSnapshot& snapshot = *message_.mutable_snapshot();
@@ -184,7 +184,7 @@ absl::StatusOr<bool> WatchReactor::TellSnapshot() {
     MutexLock lock(mutex_);
     told_ = std::max(told_, shared->change);
   }
-  const absl::StatusOr<bool> finished = AddFinishedPoints();
+  const absl::StatusOr<bool> finished = AddFinishedPoints(job_.active.get());
   if (!finished.ok()) return finished;
   LeaveOutFinished(snapshot);
   {
@@ -198,16 +198,17 @@ absl::StatusOr<bool> WatchReactor::TellSnapshot() {
   return true;
 }
 
-absl::StatusOr<bool> WatchReactor::TellFinishedPoints(const v1::JobProgress& progress) {
+absl::StatusOr<bool> WatchReactor::TellFinishedPoints(const v1::JobProgress& progress,
+                                                      const Job* active) {
   *message_.mutable_snapshot()->mutable_progress() = progress;
-  const absl::StatusOr<bool> added = AddFinishedPoints();
+  const absl::StatusOr<bool> added = AddFinishedPoints(active);
   if (added.ok() && *added) WriteUpdate();
   return added;
 }
 
-absl::StatusOr<bool> WatchReactor::AddFinishedPoints() {
-  const auto points = service_.book.FinishedAfter(job_.record.sequence, job_.active.get(),
-                                                  told_finished_, kMaxPoints);
+absl::StatusOr<bool> WatchReactor::AddFinishedPoints(const Job* active) {
+  const auto points =
+      service_.book.FinishedAfter(job_.record.sequence, active, told_finished_, kMaxPoints);
   if (!points.ok()) return points.status();
   if (points->empty()) return false;
   for (const FinishedPoint& point : *points) {

@@ -59,7 +59,8 @@ class WatchReactor : public StreamReactor<v1::WatchEnsembleJobResponse> {
   // Each of these sends one message, or returns false if it has nothing to send now.
   absl::StatusOr<bool> TellState();
   absl::StatusOr<bool> TellSnapshot();
-  absl::StatusOr<bool> TellFinishedPoints(const v1::JobProgress& progress);
+  // `active`: null to read the points from the store.
+  absl::StatusOr<bool> TellFinishedPoints(const v1::JobProgress& progress, const Job* active);
   void TellHeartbeat();
   absl::Status TellOfEndedJob();
   // Sends the points that were not sent yet, then the job's end.
@@ -74,7 +75,7 @@ class WatchReactor : public StreamReactor<v1::WatchEnsembleJobResponse> {
   bool IsSnapshotDue(Clock::time_point now) const;
   bool IsBehind() const;  // at least one full message of finished points waits
   Clock::duration SnapshotInterval() const;
-  absl::StatusOr<bool> AddFinishedPoints();  // to the message; false: none
+  absl::StatusOr<bool> AddFinishedPoints(const Job* active);  // to the message; false: none
 
   void ReadToken(const std::string& token, int64_t last_finished);
   std::string Token() const;

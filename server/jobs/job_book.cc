@@ -575,6 +575,8 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
   if (!record) return JobNotFound(JobName(id));
   Failpoint("cancel.committed");
   if (begun) CancelRun(*record);
+  // An earlier call may have come before the run was added.
+  if (record->state == v1::EnsembleJob::CANCELLING) scheduler_.Cancel(record->sequence);
   const bool replay = !request_id.empty() && record->cancel_request_id == request_id;
   if (begun || replay || record->state == v1::EnsembleJob::CANCELLING) return Get(caller, id);
   return JobAlreadyEnded(JobName(id), v1::EnsembleJob::State_Name(record->state));

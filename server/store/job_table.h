@@ -6,9 +6,10 @@
 //   QUEUED, RUNNING -> CANCELLING -> CANCELLED
 //
 // QUEUED may also end at once: SUCCEEDED after a restart that found nothing left to compute, or
-// FAILED. Each function has the states in which it acts in its condition, and has no effect in
-// others. The store runs all writes in one order: if a cancellation and the end of a job come at
-// the same time, one of them is first, and the first end is kept. UNAVAILABLE: SQLite failed.
+// FAILED. BeginJob, BeginCancellation and EndJob have the states in which they act in their
+// conditions, and no effect in others. The store runs all writes in one order: if a cancellation
+// and the end of a job come at the same time, one of them is first, and the first end is kept.
+// UNAVAILABLE: SQLite failed.
 #ifndef BALLPISTON_SERVER_STORE_JOB_TABLE_H_
 #define BALLPISTON_SERVER_STORE_JOB_TABLE_H_
 

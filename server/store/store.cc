@@ -389,8 +389,9 @@ absl::Status Store::CommitBatch(Batch& batch) {
       group = std::max(kSmallestGroup, group / 2);
     }
   } while (first < writes.size() && (status.ok() || absl::IsResourceExhausted(status)));
+  if (status.ok()) return status;
   if (absl::IsResourceExhausted(status)) status = CommitRequestsAlone(writes, first, status);
-  if (!status.ok() && batch.whole) NoteHealth(status);
+  if (batch.whole) NoteHealth(status);
   return status;
 }
 
@@ -520,8 +521,11 @@ void Store::Settle(Writes& batch, size_t first, size_t last, const absl::Status&
     written_.NotifyAll();
   }
   for (size_t i = first; i < last; ++i) {
-    batch[i].settled = true;
-    if (batch[i].done) batch[i].done(batch[i].outcome.value_or(status));
+    Write& write = batch[i];
+    write.settled = true;
+    if (write.done) write.done(write.outcome.value_or(status));
+    write.change = nullptr;  // releases its data; other groups of the batch may take long
+    write.done = nullptr;
   }
 }
 

@@ -60,8 +60,8 @@ class Store {
   // error); the change is then rolled back, and `Done` receives the status.
   using Change = std::function<absl::Status(Database&)>;
   // Called on the store's thread when the write's own group is committed, or when the write is
-  // refused; in the order of posting. Must be quick. For a record it is not called after a failure
-  // that is retried.
+  // refused; in the order of the commits. Must be quick. For a record it is not called after a
+  // failure that is retried.
   using Done = std::function<void(const absl::Status&)>;
 
   struct Options {

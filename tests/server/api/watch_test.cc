@@ -193,6 +193,25 @@ TEST_F(WatchTest, EveryChangeOfStateIsSent) {
   EXPECT_OK(stream.reader->Finish());
 }
 
+// Begin, results and end of a short job are often committed together. The watch may read the end
+// before the job has its last points in memory.
+TEST_F(WatchTest, TheEndOfAShortJobComesAfterItsPoints) {
+  constexpr int kClients = 8, kJobs = 60;
+  constexpr size_t kPoints = 50;
+  RunningServer& server = Start();
+  std::vector<std::jthread> clients;
+  for (int client = 0; client < kClients; ++client) {
+    clients.emplace_back([&] {
+      for (int i = 0; i < kJobs; ++i) {
+        Chain chain;
+        chain.WatchToTheEnd(server, server.Submit(Equilibrium(kPoints, 1)));
+        EXPECT_EQ(chain.state(), EnsembleJob::SUCCEEDED);
+        EXPECT_EQ(chain.finished().size(), kPoints);
+      }
+    });
+  }
+}
+
 TEST_F(WatchTest, EachFinishedPointIsSentOnceInOrder) {
   constexpr int kWatches = 200;
   RunningServer& server = StartWithPermits();
