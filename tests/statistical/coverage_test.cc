@@ -154,31 +154,46 @@ TEST(Coverage, OfSomeEstimates) {
   for (const Asked& asked : some) ExpectCoverage(asked, 64, 500);
 }
 
-TEST(Coverage, OfAllEstimates) {
-  if (!IsNightly()) GTEST_SKIP() << "only with BALLPISTON_NIGHTLY=1";
+struct Row {
+  std::string name;
+  Asked asked;
+};
+
+void PrintTo(const Row& row, std::ostream* out) { *out << row.asked.Text(); }
+
+std::vector<Row> AllRows() {
   const PointParameters gas = PaperGas(&kGasEquilibrium, 0.1);
   const PointParameters hot_gas = PaperGas(&kGasConduction, 0.1, {.columns = 1});
-  const std::vector<Asked> all = {
-      {&kConditionalMeanFreeTime, PaperPoint(0.2, 0.125)},
-      {&kConditionalMeanFreeTime, PaperPoint(0.2, 0.001)},
-      {&kConditionalMeanFreeTime, PaperPoint(0.2, 0.5)},
-      {&kFirstHit, PaperPoint(0.2, 0.02, 0)},
-      {&kFirstHit, PaperPoint(0.2, 0.125, 1)},
-      {&kFirstHit, PaperPoint(0.2, 0.3, 2)},
-      {&kEquilibrium, PaperPoint(0.2)},
-      {&kMarkovProperty, PaperPoint(0.2), Model::kMarkov},
-      {&kEnergyRelaxation, PaperPoint(0.2), Model::kMarkov},
-      {&kEnergyRelaxation, PaperPoint(0.2, 0.01), Model::kMarkov},
-      {&kEnergyRelaxation, PaperPoint(0.2)},
-      {&kEnergyRelaxation, PaperPoint(0.2, 0.01)},
-      {&kEnergyRelaxation, PaperPoint(0.2, 0.4)},
-      {&kGasConduction, hot_gas, Model::kMarkov},
-      {&kGasEquilibrium, gas, Model::kMarkov},
-      {&kGasEquilibrium, gas},
+  const PointParameters quick_hot_gas = PaperGas(&kGasConduction, 0.2, {.columns = 1});
+  return {
+      {"ConditionalTime", {&kConditionalMeanFreeTime, PaperPoint(0.2, 0.125)}},
+      {"ConditionalTimeOfARareStart", {&kConditionalMeanFreeTime, PaperPoint(0.2, 0.001)}},
+      {"ConditionalTimeOfTheFastest", {&kConditionalMeanFreeTime, PaperPoint(0.2, 0.5)}},
+      {"FirstHit", {&kFirstHit, PaperPoint(0.2, 0.02, 0)}},
+      {"FirstHitWithExponentOne", {&kFirstHit, PaperPoint(0.2, 0.125, 1)}},
+      {"FirstHitWithExponentTwo", {&kFirstHit, PaperPoint(0.2, 0.3, 2)}},
+      {"Equilibrium", {&kEquilibrium, PaperPoint(0.2)}},
+      {"MarkovProperty", {&kMarkovProperty, PaperPoint(0.2), Model::kMarkov}},
+      {"RelaxationByJumps", {&kEnergyRelaxation, PaperPoint(0.2), Model::kMarkov}},
+      {"SlowRelaxationByJumps", {&kEnergyRelaxation, PaperPoint(0.2, 0.01), Model::kMarkov}},
+      {"Relaxation", {&kEnergyRelaxation, PaperPoint(0.2)}},
+      {"RelaxationOfASlowBall", {&kEnergyRelaxation, PaperPoint(0.2, 0.01)}},
+      {"RelaxationOfAFastBall", {&kEnergyRelaxation, PaperPoint(0.2, 0.4)}},
+      {"ConductionByJumps", {&kGasConduction, hot_gas, Model::kMarkov}},
+      {"Conduction", {&kGasConduction, quick_hot_gas}},
+      {"GasByJumps", {&kGasEquilibrium, gas, Model::kMarkov}},
+      {"Gas", {&kGasEquilibrium, gas}},
   };
-  for (const Asked& asked : all) {
-    for (const int64_t samples : {64, 256, 4096}) ExpectCoverage(asked, samples, 4000);
-  }
+}
+
+class CoverageOfAll : public testing::TestWithParam<Row> {};
+
+INSTANTIATE_TEST_SUITE_P(Estimates, CoverageOfAll, testing::ValuesIn(AllRows()),
+                         [](const auto& row) { return row.param.name; });
+
+TEST_P(CoverageOfAll, IsThatOfTheStatedProbability) {
+  if (!IsNightly()) GTEST_SKIP() << "only with BALLPISTON_NIGHTLY=1";
+  for (const int64_t samples : {64, 256, 4096}) ExpectCoverage(GetParam().asked, samples, 4000);
 }
 
 }  // namespace
