@@ -37,7 +37,7 @@ const std::vector<Rule>& Rules() {
        {"core/arithmetic/", "core/geometry/", "core/closed_form/", "core/sampling/", "core/markov/",
         "core/statistics/", "Eigen/", "absl/", "hwy/", "boost/", "Random123/"},
        false},
-      {"core/conductivity/", {"core/arithmetic/", "core/conductivity/", "boost/"}, false},
+      {"core/conductivity/", {"core/arithmetic/", "core/conductivity/", "boost/", "hwy/"}, false},
       {"core/statistics/", {"core/arithmetic/", "core/statistics/", "Eigen/", "absl/"}, false},
       {"core/gas/",
        {"core/arithmetic/", "core/geometry/", "core/closed_form/", "core/sampling/",
