@@ -20,6 +20,9 @@ struct Flag {
   Value value;
   std::string text;
   std::string variable = "";  // environment variable, used if the flag is not given
+  // The keys of further flags that it replaces where they stand in a weaker source (the command
+  // line is stronger than the environment, and the environment than the config file).
+  std::vector<std::string> replaces = {};
 };
 
 struct FlagGroup {
@@ -62,8 +65,14 @@ const std::vector<Remark>& Files();
 // All flags of the verb.
 std::vector<const Flag*> FlagsOf(const Verb& verb);
 
-// --rho for --rho; --quiet for -q,--quiet.
+// --rho for --rho; --quiet for -q,--quiet; empty if only the variable sets the value.
 std::string LongName(const Flag& flag);
+
+// Its key in the config file: token-file for --token-file and for BALLPISTON_TOKEN_FILE.
+std::string KeyOf(const Flag& flag);
+
+// Whether it replaces the other flag where that one stands in a weaker source.
+bool Replaces(const Flag& flag, const Flag& other);
 
 }  // namespace ballpiston::client
 

@@ -16,6 +16,9 @@ namespace ballpiston::client {
 // those of NewFile::Keep.
 absl::Status CheckNewFile(const std::string& flag, const std::string& path);
 
+// Removes what is written of every file that is not kept yet, because the program ends at once.
+void RemoveUnfinishedFiles();
+
 class NewFile {
  public:
   // `flag` is the flag that named the path, for messages.
