@@ -64,7 +64,7 @@
     const rows = (point.estimates ?? []).map((estimate) => [
       words(estimate.name),
       valueText(estimate.value, estimate.standard_error),
-      errorText(estimate.standard_error),
+      errorText(estimate.value, estimate.standard_error),
       yardstick(estimate),
       zElement(estimate.z_score),
       modelErrorText(estimate.model_error),
