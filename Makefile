@@ -61,9 +61,9 @@ stability: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all
 	@cmake --build build/release --target stability
 	@build/release/bin/stability --out '$(STABILITY_OUT)'
 
-stability-table: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods; write the tables into core/README.md (12 minutes)
+stability-table: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods; write the tables into docs/stability.md (12 minutes)
 	@cmake --build build/release --target stability
-	@build/release/bin/stability --into core/README.md
+	@build/release/bin/stability --into docs/stability.md
 
 torture: build/release/.$(PRESETS_PREFIX)tests ## Cut the power, kill the server a thousand times, cut its watches, stall its readers; print the counts (half an hour)
 	@cmake --build build/release --target ballpistond store_fault_test torture_test
