@@ -240,30 +240,25 @@ size_t LaneGas::FlightsOf(std::span<const FlightOrder> orders,
   return static_cast<size_t>(std::min(1.25 * mean + 2, double{kMostFlightsAhead}));
 }
 
-// A ball that has met a piston does not fly on: the exchange changes its way.
 void LaneGas::Fly(std::span<FlightOrder> orders, std::span<const FlyingBall> from) {
   FlyAhead(gas_, FlightsOf(orders, from), orders, from, to_);
   for (FlightOrder& order : orders) {
-    if (to_[order.ball].has_escaped) Stop(order);
-    order.has_arrived |= order.first.has_value();
     if (!order.has_arrived) continue;
+    if (order.has_escaped) Stop(order);
     contacts_[order.ball] = order.first.value_or(MeetingInTime{.time = kNever});
     Replica& replica = ReplicaOf(order.ball);
     replica.queue.Set(order.ball - replica.first_ball, contacts_[order.ball].time);
   }
 }
 
-// A ball that has escaped rests in the middle of its cell, where no piston comes. A contact that
-// was found on its way does not count.
-void LaneGas::Stop(FlightOrder& order) {
+// A ball that has escaped rests in the middle of its cell, where no piston comes.
+void LaneGas::Stop(const FlightOrder& order) {
   ReplicaOf(order.ball).meter->CountEscape();
   BallInTime& ball = gas_.balls[order.ball];
   ball.speed = kAtRest;
   ball.slowness = 1 / kAtRest;
   ball.since = order.from_time;
   from_[order.ball] = to_[order.ball] = PlacedBall(gas_, {0, 0}, {1, 0});
-  order.has_arrived = true;
-  order.first.reset();
 }
 
 // ---- events ----

@@ -73,7 +73,7 @@ class LaneGas : public GasRun {
   bool FlyOrders(Pauses& pauses);
   size_t FlightsOf(std::span<const FlightOrder> orders, std::span<const FlyingBall> from) const;
   void Fly(std::span<FlightOrder> orders, std::span<const FlyingBall> from);
-  void Stop(FlightOrder& order);
+  void Stop(const FlightOrder& order);
 
   void FindArrival(Replica& replica, uint32_t piston);
   void Handle(Replica& replica, size_t body);

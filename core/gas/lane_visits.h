@@ -25,7 +25,6 @@ struct FlyingBall {
   // Signs of the frame's compass: a and m are true for -1; ab is true if a and b differ.
   bool a, ab, m;
   bool is_in_reach;  // of a piston
-  bool has_escaped;
 };
 
 // A ball since its last exchange, its start, or the last move of the origin of time. `since` is the
@@ -58,7 +57,6 @@ struct GasInTime {
   PistonWave wave;
   CellWalls<double> walls;
   double unit;  // the lanes' unit of length, in cells
-  double edge;  // of the pistons' reach, along an arc, in that unit
   std::vector<BallInTime> balls;
   std::vector<PistonInTime> pistons;
 };
@@ -79,6 +77,7 @@ struct FlightOrder {
   double until_time = 0;  // the time at which the ball has this path length
   double from_time = 0;   // contacts before this time do not count
   bool has_arrived = false;
+  bool has_escaped = false;  // before it met a piston; its state is the last one in its cell
   std::optional<MeetingInTime> first = {};  // between the two times
 };
 
@@ -93,8 +92,8 @@ inline constexpr double kReachSlack = 1e-11;
 FlyingBall PlacedBall(const GasInTime& gas, Eigen::Vector2d position, Eigen::Vector2d direction);
 
 // Flies up to kMostBallsAhead balls by up to `flights` <= kMostFlightsAhead flights each. A ball
-// that passes `until` has arrived; its state is that before the flight in which it passes. `to` may
-// be `from`. A ball's numbers do not depend on other balls, or on how flights are divided between
+// that passes `until` has arrived; its state in `to` is that before the flight in which it passes.
+// A ball that meets a piston has arrived too, but without a state in `to`. `to` may be `from`. A ball's numbers do not depend on other balls, or on how flights are divided between
 // calls.
 void FlyAhead(const GasInTime& gas, size_t flights, std::span<FlightOrder> orders,
               std::span<const FlyingBall> from, std::span<FlyingBall> to);
