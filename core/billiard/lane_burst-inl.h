@@ -122,8 +122,8 @@ class PlacesInCell {
   V along_, across_;
 };
 
-// The lanes in which a ball, in a flight from x0 to x1, and the piston on its right, at these phases
-// then, may have met.
+// The lanes in which a ball, in a flight from x0 to x1, and the piston on its right, at these
+// phases then, may have met.
 //
 // The distance between ball and piston is a concave function of time, except where the piston turns
 // at its left wall. So they met if the ball ends beyond the piston, or was in reach when the piston

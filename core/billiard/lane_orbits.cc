@@ -213,8 +213,7 @@ class LaneOrbits : public OrbitRun {
     const Pistons& piston = pistons_[t % kVectors];
     const T half_height = flight_constants_.half_height;
     return MayHaveMet(reach_constants_, PlacesInCell(from, half_height).X(),
-                      PlacesInCell(to, half_height).X(),
-                      piston.PhaseAfter(hn::Load(d, from.path)),
+                      PlacesInCell(to, half_height).X(), piston.PhaseAfter(hn::Load(d, from.path)),
                       piston.PhaseAfter(hn::Load(d, to.path))) &
            burst_.InReachAround(t) & piston.lanes;
   }
@@ -311,7 +310,8 @@ class LaneOrbits : public OrbitRun {
     Report(lane, contact);
   }
 
-  // The piston's phase when the ball has gone `path` in this burst, in periods, at least 0 and below
+  // The piston's phase when the ball has gone `path` in this burst, in periods, at least 0 and
+  // below
   // 1. It has the same bits as PhaseAfter of the whole vector.
   static double PhaseOf(const Pistons& piston, size_t i, T path) {
     const hn::CappedTag<T, 1> d;

@@ -44,6 +44,7 @@ class EventQueue {
   void Set(size_t body, double time) {
     const Entry entry = {time, static_cast<uint32_t>(body)};
     const size_t place = place_[body];
+    if (heap_[place].time == time) return;
     if (place > 0 && entry.IsBefore(heap_[(place - 1) / kChildren])) {
       Rise(place, entry);
     } else {

@@ -23,7 +23,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <memory>
 #include <vector>
 
 #include "core/billiard/piston_wave.h"
@@ -71,9 +71,8 @@ class LaneGas : public GasRun {
 
   void Order(const Replica& replica, uint32_t ball);
   bool FlyOrders(Pauses& pauses);
-  size_t FlightsOf(std::span<const FlightOrder> orders, std::span<const FlyingBall> from) const;
-  void Fly(std::span<FlightOrder> orders, std::span<const FlyingBall> from);
-  void Stop(const FlightOrder& order);
+  void Arrive(const FlightOrder& order);
+  void Stop(const Replica& replica, const FlightOrder& order);
 
   void FindArrival(Replica& replica, uint32_t piston);
   void Handle(Replica& replica, size_t body);
@@ -84,6 +83,7 @@ class LaneGas : public GasRun {
   Replica& ReplicaOf(uint32_t ball) { return replicas_[ball / balls_each_]; }
 
   GasInTime gas_;
+  std::unique_ptr<FlightsAhead> lanes_;
   uint32_t balls_each_;  // of a replica
   uint32_t pistons_each_;
   double exchange_rate_;

@@ -13,42 +13,31 @@
 #include "core/billiard/lane_burst-inl.h"
 #include "core/billiard/lane_frame.h"
 #include "core/billiard/piston_wave.h"
+#include "core/gas/hit_rates.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ballpiston {
 namespace HWY_NAMESPACE {
 
-static_assert(kMostFlightsAhead == kMostFlights);
-static_assert(kMostBallsAhead >= kVectors * kMostLanes<double> || HWY_TARGET == HWY_SCALAR);
 static_assert(kReachSlack == kSlack<double>);
 
-class FlightsAhead {
+class LanesAhead : public FlightsAhead {
  public:
-  FlightsAhead(const GasInTime& gas, size_t flights, std::span<FlightOrder> orders)
+  explicit LanesAhead(const GasInTime& gas)
       : gas_(gas),
         directions_(gas.geometry.directions()),
-        flights_(flights),
-        orders_(orders),
-        vectors_((orders.size() + Width() - 1) / Width()),
+        mean_flight_(MeanFlight(gas.geometry.pair()) / gas.unit),
         flight_constants_(gas.geometry.pair()),
-        reach_constants_(gas.geometry.pair(), flight_constants_.scale) {
-    if (vectors_ > kMostOfFew) vectors_ = kVectors;
-    std::fill_n(end_, Count(), flights);
-  }
+        reach_constants_(gas.geometry.pair(), flight_constants_.scale) {}
 
-  static size_t Width() { return hn::Lanes(hn::ScalableTag<double>()); }
-  static size_t Count() { return kVectors * Width(); }
-
-  void Fly(std::span<const FlyingBall> from, std::span<FlyingBall> to) {
-    for (size_t i = 0; i < vectors_ * Width(); ++i) {
-      const FlightOrder& order = orders_[std::min(i, orders_.size() - 1)];
-      Load(i, from[order.ball]);
-      LoadPistons(i, gas_.balls[order.ball]);
+  void Fly(std::span<FlightOrder> orders, std::span<const FlyingBall> from,
+           std::span<FlyingBall> to, std::span<MeetingInTime> meetings) override {
+    meetings_ = meetings;
+    const size_t count = kVectors * Width();
+    for (size_t first = 0; first < orders.size(); first += count) {
+      orders_ = orders.subspan(first, std::min(count, orders.size() - first));
+      FlyTogether(from, to);
     }
-    FlyVectors();
-    if (HWY_UNLIKELY(burst_.left_cell())) FindLostBalls();
-    FindMeetings();
-    for (size_t i = 0; i < orders_.size(); ++i) Finish(i, to[orders_[i].ball]);
   }
 
  private:
@@ -56,6 +45,36 @@ class FlightsAhead {
 
   // So few vectors fly faster alone than with empty ones.
   static constexpr size_t kMostOfFew = 3;
+
+  static size_t Width() { return hn::Lanes(D()); }
+
+  void FlyTogether(std::span<const FlyingBall> from, std::span<FlyingBall> to) {
+    vectors_ = (orders_.size() + Width() - 1) / Width();
+    if (vectors_ > kMostOfFew) vectors_ = kVectors;
+    for (size_t i = 0; i < vectors_ * Width(); ++i) {
+      const FlightOrder& order = orders_[std::min(i, orders_.size() - 1)];
+      const BallInTime& ball = gas_.balls[order.ball];
+      until_[i] = (order.until_time - ball.since) * ball.speed / gas_.unit;
+      Load(i, from[order.ball]);
+      LoadPistons(i, ball);
+    }
+    flights_ = FlightsOfMost();
+    std::fill_n(end_, orders_.size(), flights_);
+    FlyVectors();
+    if (HWY_UNLIKELY(burst_.left_cell())) FindLostBalls();
+    FindMeetings();
+    for (size_t i = 0; i < orders_.size(); ++i) Finish(i, to[orders_[i].ball]);
+  }
+
+  // The flights that most of the balls need; the others fly on later.
+  size_t FlightsOfMost() const {
+    double path = 0;
+    for (size_t i = 0; i < orders_.size(); ++i) {
+      path += until_[i] - burst_.slot(i / Width()).path[i % Width()];
+    }
+    const double mean = path / mean_flight_ / static_cast<double>(orders_.size());
+    return static_cast<size_t>(std::min(1.25 * mean + 2, double{kMostFlights}));
+  }
 
   void Load(size_t i, const FlyingBall& ball) {
     const size_t slot = i / Width(), lane = i % Width();
@@ -171,10 +190,10 @@ class FlightsAhead {
   // Whether ball and piston meet in flight t. Events before the piston's last change are done
   // already, so the result does not depend on the time of the call.
   void LookForMeeting(size_t t, size_t i, Direction direction) {
-    FlightOrder& order = orders_[i];
+    const FlightOrder& order = orders_[i];
     const Balls<double>& from = burst_.slot(t);
     const size_t lane = i % Width();
-    if (from.path[lane] > order.until) return;
+    if (from.path[lane] > until_[i]) return;
     const BallInTime& ball = gas_.balls[order.ball];
     const double path = from.path[lane] * gas_.unit;
     const double length = burst_.slot(t + kVectors).path[lane] * gas_.unit - path;
@@ -190,11 +209,12 @@ class FlightsAhead {
     const auto meeting = wave.FirstMeeting(phase, ratio, x, velocity, length - gone);
     if (!meeting) return;
     const double time = begin + meeting->way * ball.slowness;
-    if (time > order.until_time || (order.first && order.first->time <= time)) return;
+    MeetingInTime& first = meetings_[order.ball];
+    if (time > order.until_time || first.time <= time) return;
     end_[i] = t / kVectors + 1;
-    order.first = MeetingAt(lane, from, gone + meeting->way, direction);
-    order.first->time = time;
-    order.first->piston_goes_right = meeting->piston_goes_right;
+    first = MeetingAt(lane, from, gone + meeting->way, direction);
+    first.time = time;
+    first.piston_goes_right = meeting->piston_goes_right;
   }
 
   // The ball's place and velocity, of length 1, toward a direction in the cell. This is one of the
@@ -228,10 +248,10 @@ class FlightsAhead {
   void Finish(size_t i, FlyingBall& ball) const {
     const size_t lane = i % Width();
     FlightOrder& order = orders_[i];
-    order.has_arrived = order.first.has_value();
+    order.has_arrived = meetings_[order.ball].time < kNever;
     if (order.has_arrived) return;
     const auto is_beyond = [&](size_t flight) {
-      return burst_.slot(SlotOf(i, flight)).path[lane] > order.until;
+      return burst_.slot(SlotOf(i, flight)).path[lane] > until_[i];
     };
     size_t flight = end_[i];
     order.has_escaped = flight < flights_ && !is_beyond(flight);
@@ -252,23 +272,23 @@ class FlightsAhead {
 
   const GasInTime& gas_;
   int directions_;
-  size_t flights_;
-  std::span<FlightOrder> orders_;
-  size_t vectors_;
+  double mean_flight_;  // in the lanes' unit
   FlightConstants<double> flight_constants_;
   ReachConstants<double> reach_constants_;
+  size_t flights_ = 0;
+  std::span<FlightOrder> orders_;
+  std::span<MeetingInTime> meetings_;
+  size_t vectors_ = 0;
   LaneBurst<double> burst_;
   PistonWaves<double> pistons_[kVectors][4];  // by direction
-  // By ball, the number of flights in which it may still meet a piston for the first time.
+  // By order: the path length at which the ball may stop, and the number of flights in which it may
+  // still meet a piston for the first time.
+  double until_[kVectors * kMostLanes<double>];
   size_t end_[kVectors * kMostLanes<double>];
 };
 
-void FlyAheadInLanes(const GasInTime& gas, size_t flights, std::span<FlightOrder> orders,
-                     std::span<const FlyingBall> from, std::span<FlyingBall> to) {
-  for (size_t first = 0; first < orders.size(); first += FlightsAhead::Count()) {
-    const size_t count = std::min(FlightsAhead::Count(), orders.size() - first);
-    FlightsAhead(gas, flights, orders.subspan(first, count)).Fly(from, to);
-  }
+std::unique_ptr<FlightsAhead> NewLanes(const GasInTime& gas) {
+  return std::make_unique<LanesAhead>(gas);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -278,7 +298,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace ballpiston {
 
-HWY_EXPORT(FlyAheadInLanes);
+HWY_EXPORT(NewLanes);
 
 GasInTime::GasInTime(const GasGeometry& g)
     : geometry(g), wave(g.pair()), walls(g.pair()), unit(g.pair().rho() / M_SQRT2) {}
@@ -323,9 +343,8 @@ FlyingBall PlacedBall(const GasInTime& gas, Eigen::Vector2d position, Eigen::Vec
                          (gas.geometry.shape().is_lattice && std::fabs(position.y()) >= left)};
 }
 
-void FlyAhead(const GasInTime& gas, size_t flights, std::span<FlightOrder> orders,
-              std::span<const FlyingBall> from, std::span<FlyingBall> to) {
-  HWY_DYNAMIC_DISPATCH(FlyAheadInLanes)(gas, flights, orders, from, to);
+std::unique_ptr<FlightsAhead> LanesOf(const GasInTime& gas) {
+  return HWY_DYNAMIC_DISPATCH(NewLanes)(gas);
 }
 
 }  // namespace ballpiston
