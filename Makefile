@@ -61,9 +61,9 @@ stability: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all
 	@cmake --build build/release --target stability
 	@build/release/bin/stability --out '$(STABILITY_OUT)'
 
-stability-table: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods; write the tables into core/README.md (12 minutes)
+stability-table: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods; write the tables into docs/stability.md (12 minutes)
 	@cmake --build build/release --target stability
-	@build/release/bin/stability --into core/README.md
+	@build/release/bin/stability --into docs/stability.md
 
 conductivity: build/release/.$(PRESETS_PREFIX)programs ## Compute the constants of the conductivity in the limit of rare collisions (1 minute)
 	@cmake --build build/release --target conductivity

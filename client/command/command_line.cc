@@ -10,15 +10,18 @@
 #include <utility>
 
 #include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "client/command/config_file.h"
+#include "client/command/field_flags.h"
 #include "client/command/reference.h"
 #include "client/command/suggestion.h"
 #include "client/library/quoted.h"
+#include "client/output/spelling.h"
 
 namespace ballpiston::client {
 namespace {
@@ -62,9 +65,81 @@ ParsedVerb Add(CLI::App& program, const Verb& verb) {
     if (flag->name.empty()) continue;
     CLI::Option* const option = flag->value.IsSwitch() ? parsed.app->add_flag(flag->name)
                                                        : parsed.app->add_option(flag->name);
-    parsed.flags[flag] = option->envname(flag->variable);
+    parsed.flags[flag] = option;
   }
   return parsed;
+}
+
+// The value of a flag and its source. Sources are in the order of increasing priority.
+enum class Source { kFile, kSection, kVariable, kCommandLine };
+struct Setting {
+  std::string text;
+  Source source;
+};
+using Settings = std::map<const Flag*, Setting>;
+
+// A switch that is off replaces nothing.
+bool IsOff(const Flag& flag, const Setting& setting) {
+  bool on = true;
+  return flag.value.IsSwitch() && absl::SimpleAtob(setting.text, &on) && !on;
+}
+
+bool IsReplaced(const Flag& flag, const Settings& stronger) {
+  return std::any_of(stronger.begin(), stronger.end(), [&](const auto& other) {
+    return Replaces(*other.first, flag) && !IsOff(*other.first, other.second);
+  });
+}
+
+// Without the settings that others from stronger sources replace.
+Settings WithoutReplaced(const Settings& settings) {
+  Settings kept;
+  for (const Source source :
+       {Source::kCommandLine, Source::kVariable, Source::kSection, Source::kFile}) {
+    Settings of_source;
+    for (const auto& [flag, setting] : settings) {
+      const bool is_here = setting.source == source;
+      if (is_here && !IsReplaced(*flag, kept)) of_source.emplace(flag, setting);
+    }
+    kept.merge(of_source);
+  }
+  return kept;
+}
+
+void AddVariables(const Verb& verb, Settings& settings) {
+  for (const Flag* flag : FlagsOf(verb)) {
+    std::string text = FromEnvironment(flag->variable);
+    if (!text.empty()) settings.try_emplace(flag, Setting{std::move(text), Source::kVariable});
+  }
+}
+
+bool IsChoice(const Flag& flag, const std::string& text) {
+  const std::vector<std::string>& choices = flag.value.choices;
+  return std::find(choices.begin(), choices.end(), SpellingOfName(text)) != choices.end();
+}
+
+// A line for all verbs may name a choice that only some of them have, such as format = "csv".
+bool IsForOtherVerbs(const Flag& flag, const std::string& text) {
+  if (flag.value.choices.empty() || IsChoice(flag, text)) return false;
+  return std::any_of(Verbs().begin(), Verbs().end(), [&](const Verb& verb) {
+    const std::vector<const Flag*> flags = FlagsOf(verb);
+    return std::any_of(flags.begin(), flags.end(), [&](const Flag* other) {
+      return LongName(*other) == LongName(flag) && IsChoice(*other, text);
+    });
+  });
+}
+
+absl::Status AddConfig(const Verb& verb, Settings& settings) {
+  std::string path = UsualConfig();
+  for (const auto& [flag, setting] : settings) {
+    if (LongName(*flag) == "--config") path = setting.text;
+  }
+  if (path.empty() || verb.act == &Help) return absl::OkStatus();
+  return ReadConfig(path, verb,
+                    [&](const Flag& flag, const std::string& text, bool is_for_this_verb) {
+                      if (!is_for_this_verb && IsForOtherVerbs(flag, text)) return;
+                      const Source source = is_for_this_verb ? Source::kSection : Source::kFile;
+                      settings.try_emplace(&flag, Setting{text, source});
+                    });
 }
 
 class WordParser {
@@ -76,6 +151,11 @@ class WordParser {
 
   absl::StatusOr<CommandLine> Parse(const std::vector<std::string>& words) {
     if (words.empty()) return CommandLine{.page = TextPage(nullptr)};
+    if (words.size() == 1) {
+      if (std::string page = GroupPage(words[0]); !page.empty()) {
+        return CommandLine{.page = std::move(page)};
+      }
+    }
     if (absl::Status bad = CheckValuesAreThere(words); !bad.ok()) return bad;
     first_word_ = words.front();
     try {
@@ -89,10 +169,11 @@ class WordParser {
       return absl::InvalidArgumentError(Explanation(error));
     }
     CommandLine line{.verb = Chosen()};
-    FindGiven(words, *line.verb, line.options.given);
-    absl::Status status = AddConfig(*line.verb, line.options.given);
+    Settings settings = OnTheCommandLine(*line.verb);
+    AddVariables(*line.verb, settings);
+    absl::Status status = AddConfig(*line.verb, settings);
     if (status.ok()) status = ReadArguments(*line.verb, line.options);
-    if (status.ok()) status = ReadFlags(*line.verb, line.options);
+    if (status.ok()) status = ReadFlags(*line.verb, WithoutReplaced(settings), line.options);
     if (!status.ok()) return status;
     return line;
   }
@@ -130,40 +211,13 @@ class WordParser {
     return absl::OkStatus();
   }
 
-  // Finds the flags on the command line, not those from variables or the config file.
-  void FindGiven(const std::vector<std::string>& words, const Verb& verb,
-                 std::set<std::string>& given) const {
-    const auto end = std::find(words.begin(), words.end(), "--");
+  Settings OnTheCommandLine(const Verb& verb) const {
+    Settings settings;
     for (const auto& [flag, option] : parsed_.at(&verb).flags) {
-      if (option->empty()) continue;  // the word may be another flag's value
-      const std::string name = LongName(*flag);
-      const auto is_this = [&name](const std::string& word) {
-        return word == name || absl::StartsWith(word, name + "=");
-      };
-      if (std::any_of(words.begin(), end, is_this)) given.insert(name);
+      if (option->empty()) continue;
+      settings[flag] = {option->results().front(), Source::kCommandLine};
     }
-  }
-
-  // Reads from the config file the flags that neither the command line nor the environment sets. A
-  // target on the command line replaces all targets of the config file.
-  absl::Status AddConfig(const Verb& verb, const std::set<std::string>& given) {
-    const ParsedVerb& parsed = parsed_.at(&verb);
-    const CLI::Option* const named = parsed.app->get_option("--config");
-    const std::string path = named->empty() ? UsualConfig() : named->results().front();
-    if (path.empty() || verb.act == &Help) return absl::OkStatus();
-    const bool has_target =
-        std::any_of(TargetFlags().flags.begin(), TargetFlags().flags.end(),
-                    [&given](const Flag& flag) { return given.contains(LongName(flag)); });
-    return ReadConfig(path, verb, [&](const Flag& flag, const std::string& text) {
-      CLI::Option* const option = parsed.flags.at(&flag);
-      const bool is_replaced = has_target && IsOneOf(flag, TargetFlags());
-      if (option->empty() && !is_replaced) option->add_result(text);
-    });
-  }
-
-  static bool IsOneOf(const Flag& flag, const FlagGroup& group) {
-    return std::any_of(group.flags.begin(), group.flags.end(),
-                       [&flag](const Flag& other) { return &other == &flag; });
+    return settings;
   }
 
   absl::Status ReadArguments(const Verb& verb, Options& options) const {
@@ -177,34 +231,43 @@ class WordParser {
     return absl::OkStatus();
   }
 
-  absl::Status ReadFlags(const Verb& verb, Options& options) const {
-    const auto& parsed = parsed_.at(&verb).flags;
+  // In the order of the table. An empty variable counts as not set.
+  static absl::Status ReadFlags(const Verb& verb, const Settings& settings, Options& options) {
     for (const Flag* flag : FlagsOf(verb)) {
-      const auto option = parsed.find(flag);
-      const bool is_variable = option == parsed.end();  // CLI11 has no option for it
-      if (!is_variable && option->second->empty()) continue;
-      const std::string text =
-          is_variable ? FromEnvironment(flag->variable) : option->second->results().front();
-      if (is_variable && text.empty()) continue;
-      if (absl::Status bad = ReadFlag(*flag, text, options); !bad.ok()) return bad;
+      if (!flag->variable.empty()) options.inherited[flag->variable] = "";
+      const auto setting = settings.find(flag);
+      if (setting == settings.end()) continue;
+      if (absl::Status bad = ReadFlag(*flag, setting->second, options); !bad.ok()) return bad;
     }
     return absl::OkStatus();
   }
 
-  // The error names the variable, or says that the flag comes from the config file.
-  static absl::Status ReadFlag(const Flag& flag, const std::string& text, Options& options) {
+  static absl::Status ReadFlag(const Flag& flag, const Setting& setting, Options& options) {
     const std::string name = LongName(flag);
-    if (!flag.variable.empty()) options.inherited[flag.variable] = Absolute(flag.value, text);
-    if (options.given.contains(name)) {
-      if (IsOneOf(flag, ServerFlags()) || name == "--config") {
+    if (!flag.variable.empty())
+      options.inherited[flag.variable] = Absolute(flag.value, setting.text);
+    if (setting.source == Source::kCommandLine) {
+      options.given.insert(name);
+      if (IsOfConnection(flag)) {
         absl::StrAppend(&options.connection, " ", name,
-                        flag.value.IsSwitch() ? "" : " " + ShellWord(text));
+                        flag.value.IsSwitch() ? "" : " " + ShellWord(setting.text));
       }
-      return Named(name, flag.value.read(text, options));
     }
-    const bool is_variable = !flag.variable.empty() && FromEnvironment(flag.variable) == text;
-    return Named(is_variable ? flag.variable : name + " of the config file",
-                 flag.value.read(text, options));
+    return Named(NameOf(flag, setting.source), flag.value.read(setting.text, options));
+  }
+
+  // Whether another command needs this flag to reach the same server.
+  static bool IsOfConnection(const Flag& flag) {
+    const auto& flags = ServerFlags().flags;
+    return LongName(flag) == "--config" ||
+           std::any_of(flags.begin(), flags.end(),
+                       [&flag](const Flag& other) { return &other == &flag; });
+  }
+
+  static std::string NameOf(const Flag& flag, Source source) {
+    if (source == Source::kCommandLine) return LongName(flag);
+    if (source == Source::kVariable) return flag.variable;
+    return KeyOf(flag) + " of the config file";
   }
 
   // An absolute path, for a program that runs in another folder.
@@ -310,13 +373,17 @@ Verbosity VerbosityOf(const Options& options) {
   return options.verbose ? Verbosity::kVerbose : Verbosity::kNormal;
 }
 
-VerbResult ParseAndAct(const std::vector<std::string>& words, Terminal& terminal) {
-  const absl::StatusOr<CommandLine> line = ParseCommandLine(words);
-  if (!line.ok()) return line.status();
-  terminal.out << line->page;
-  if (line->verb == nullptr) return ExitCode::kDone;
-  terminal.verbosity = VerbosityOf(line->options);
-  return line->verb->act(line->options, terminal);
+// Prints the page, or what the verb prints.
+VerbResult Act(const CommandLine& line, Terminal& terminal) {
+  terminal.out << line.page;
+  if (line.verb == nullptr) return ExitCode::kDone;
+  terminal.verbosity = VerbosityOf(line.options);
+  return line.verb->act(line.options, terminal);
+}
+
+std::string MessageOf(const absl::Status& error, const absl::StatusOr<CommandLine>& line) {
+  if (!line.ok()) return std::string(error.message());
+  return MessageWithFlags(error, *line->verb, line->options);
 }
 
 }  // namespace
@@ -327,10 +394,11 @@ absl::StatusOr<CommandLine> ParseCommandLine(const std::vector<std::string>& wor
 
 ExitCode RunCommandLine(const std::vector<std::string>& words, Terminal& terminal) {
   google::protobuf::SetLogHandler(nullptr);  // the program prints every error itself
-  const VerbResult result = ParseAndAct(words, terminal);
+  const absl::StatusOr<CommandLine> line = ParseCommandLine(words);
+  const VerbResult result = line.ok() ? Act(*line, terminal) : line.status();
   if (result.ok()) return *result;
   const char* const prefix = terminal.colour ? "\x1b[1;31mballpiston:\x1b[0m " : "ballpiston: ";
-  terminal.err << prefix << result.status().message() << std::endl;
+  terminal.err << prefix << MessageOf(result.status(), line) << std::endl;
   return ExitCodeOf(result.status());
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 const Flag* FindFlag(const Verb& verb, const std::string& key) {
   for (const Flag* flag : FlagsOf(verb)) {
-    if (LongName(*flag) == "--" + key) return flag;
+    if (KeyOf(*flag) == key) return flag;
   }
   return nullptr;
 }
@@ -27,7 +27,7 @@ std::vector<std::string> Keys(const std::string& verb_name) {
   for (const Verb& verb : Verbs()) {
     if (!verb_name.empty() && verb.name != verb_name) continue;
     for (const Flag* flag : FlagsOf(verb)) {
-      if (!flag->name.empty()) keys.insert(LongName(*flag).substr(2));
+      if (!flag->name.empty()) keys.insert(KeyOf(*flag));
     }
   }
   return {keys.begin(), keys.end()};
@@ -60,8 +60,7 @@ std::string UsualConfig() {
   return std::filesystem::exists(path, error) ? path : "";
 }
 
-absl::Status ReadConfig(const std::string& path, const Verb& verb,
-                        const std::function<void(const Flag&, const std::string& text)>& add) {
+absl::Status ReadConfig(const std::string& path, const Verb& verb, const AddSetting& add) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {
     return absl::InvalidArgumentError(absl::StrCat(path, " is a folder"));
@@ -80,7 +79,8 @@ absl::Status ReadConfig(const std::string& path, const Verb& verb,
         return absl::InvalidArgumentError(absl::StrCat(path, ": ", bad.message()));
       }
       const Flag* const flag = FindFlag(verb, item.name);
-      if (section == wanted && flag != nullptr) add(*flag, absl::StrJoin(item.inputs, ","));
+      if (section != wanted || flag == nullptr) continue;
+      add(*flag, absl::StrJoin(item.inputs, ","), !section.empty());
     }
   }
   return absl::OkStatus();

@@ -20,10 +20,12 @@ std::string FromEnvironment(const std::string& variable);
 // The path of ~/.config/ballpiston/config.toml; empty if the file does not exist.
 std::string UsualConfig();
 
-// Calls `add` with each of the verb's flags in the file, first with those below [VERB].
-// INVALID_ARGUMENT names the file and the error.
-absl::Status ReadConfig(const std::string& path, const Verb& verb,
-                        const std::function<void(const Flag&, const std::string& text)>& add);
+using AddSetting =
+    std::function<void(const Flag& flag, const std::string& text, bool is_for_this_verb)>;
+
+// Calls `add` with each of the verb's flags in the file, first with those below [VERB], which are
+// for this verb only. INVALID_ARGUMENT names the file and the error.
+absl::Status ReadConfig(const std::string& path, const Verb& verb, const AddSetting& add);
 
 }  // namespace ballpiston::client
 

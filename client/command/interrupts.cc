@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "client/command/exit_code.h"
+#include "client/output/new_file.h"
 
 namespace ballpiston::client {
 namespace {
@@ -28,7 +29,10 @@ sigset_t SignalsNotIgnored() {
 }
 
 // Runs no destructors, because other threads may still use the objects.
-[[noreturn]] void EndProgram() { std::_Exit(static_cast<int>(ExitCode::kInterrupted)); }
+[[noreturn]] void EndProgram() {
+  RemoveUnfinishedFiles();
+  std::_Exit(static_cast<int>(ExitCode::kInterrupted));
+}
 
 }  // namespace
 

@@ -5,7 +5,10 @@
 #include <limits>
 #include <utility>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
+#include "absl/strings/strip.h"
 #include "client/command/number_list.h"
 
 namespace ballpiston::client {
@@ -116,10 +119,16 @@ int32_t Clamped(int64_t priority) {
 
 const FlagGroup kCommon = {
     "General flags",
-    {{"-q,--quiet", Switch(To(&Options::quiet)), "print no progress and no notes, only errors",
-      "BALLPISTON_QUIET"},
-     {"-v,--verbose", Switch(To(&Options::verbose)),
-      "print which server, request ids and programs are used", "BALLPISTON_VERBOSE"},
+    {{"-q,--quiet",
+      Switch(To(&Options::quiet)),
+      "print no progress and no notes, only errors",
+      "BALLPISTON_QUIET",
+      {"verbose", "progress"}},
+     {"-v,--verbose",
+      Switch(To(&Options::verbose)),
+      "print which server, request ids and programs are used",
+      "BALLPISTON_VERBOSE",
+      {"quiet"}},
      {"--config", File([](Options&, const std::string&) {}),
       "config file to read instead of ~/.config/ballpiston/config.toml", "BALLPISTON_CONFIG"}}};
 
@@ -136,12 +145,16 @@ const FlagGroup kServer = {
       "TLS: PEM file of your certificate, if the server requires one", "BALLPISTON_CERT"},
      {"--key", File(Security(&ChannelSecurity::key)), "TLS: PEM file of the private key of --cert",
       "BALLPISTON_KEY"},
-     {"--token-file", File(Security(&ChannelSecurity::token_file)),
+     {"--token-file",
+      File(Security(&ChannelSecurity::token_file)),
       "TLS: file with your token; other users must not be able to read it",
-      "BALLPISTON_TOKEN_FILE"},
-     {"", Text("TOKEN", Security(&ChannelSecurity::token)),
+      "BALLPISTON_TOKEN_FILE",
+      {"token"}},
+     {"",
+      Text("TOKEN", Security(&ChannelSecurity::token)),
       "your token; there is no flag for it, because all users of a machine can see command lines",
-      "BALLPISTON_TOKEN"}}};
+      "BALLPISTON_TOKEN",
+      {"token-file"}}}};
 
 const FlagGroup kGrid = {
     absl::StrCat("Grid (", kListForm, ")"),
@@ -161,20 +174,24 @@ const FlagGroup kGrid = {
      {"--cold", Grid(&v1::Grid::mutable_cold),
       "temperatures of the cold reservoir, 1e-120 to 1e120"}}};
 
+const std::vector<std::string> kTargets = {"samples", "collisions", "tolerance", "budget"};
+
 const FlagGroup kTarget = {
     "Target (at most one; --tolerance and --budget can be combined)",
     {{"--samples", Count([](Options& o, int64_t n) { o.spec.mutable_target()->set_samples(n); }),
-      "first hits, or orbits, per point"},
+      "first hits, or orbits, per point", "", kTargets},
      {"--collisions",
       Count([](Options& o, int64_t n) { o.spec.mutable_target()->set_collisions(n); }),
-      "ball-piston collisions per point"},
+      "ball-piston collisions per point", "", kTargets},
      {"--tolerance",
       Number("REL", [](Options& o, double x) { o.spec.mutable_target()->set_tolerance(x); }),
       "relative standard error of the first estimate; a point is finished when it reaches this "
-      "error"},
+      "error",
+      "", kTargets},
      {"--budget", Budget(),
       "time of all workers, divided evenly between the points; with --tolerance, the job fails if "
-      "this time is too short"}}};
+      "this time is too short",
+      "", kTargets}}};
 
 const FlagGroup kMethod = {
     "Method",
@@ -317,8 +334,16 @@ const FlagGroup kFigure = {
     "Figure",
     {{"--out", File(To(&Options::out)), "folder for data, scripts and picture"},
      {"--list", Switch(To(&Options::list)), "print the figures' names; draw nothing"},
-     {"--quick", Effort("quick"), "few samples: the figure takes seconds instead of minutes"},
-     {"--full", Effort("full"), "the paper's number of samples or more: minutes to hours"},
+     {"--quick",
+      Effort("quick"),
+      "few samples: the figure takes seconds instead of minutes",
+      "",
+      {"full"}},
+     {"--full",
+      Effort("full"),
+      "the paper's number of samples or more: minutes to hours",
+      "",
+      {"quick"}},
      {"--edit", Switch(To(&Options::edit)),
       "copy the figure's scripts to the --out folder, so that you can edit them; draw nothing"}}};
 
@@ -353,7 +378,12 @@ const FlagGroup kWeb = {
 const FlagGroup kDataFolder = {
     "Which server",
     {{"--data-dir", File(To(&Options::data_dir)),
-      "the data folder of a server on this machine; by default the private server's folder"}}};
+      "the data folder of a server on this machine; by default the private server's folder"},
+     {"", Text("ADDRESS", To(&Options::server)),
+      "if this variable or server in the config file is set, give --data-dir: your commands then "
+      "do "
+      "not use the private server",
+      "BALLPISTON_SERVER"}}};
 
 const FlagGroup kStart = {"Settings",
                           {{"--listen", Passed("ADDRESS", "--listen"),
@@ -679,6 +709,17 @@ std::vector<const Flag*> FlagsOf(const Verb& verb) {
 
 std::string LongName(const Flag& flag) {
   return flag.name.empty() ? "" : flag.name.substr(flag.name.find("--"));
+}
+
+std::string KeyOf(const Flag& flag) {
+  if (!flag.name.empty()) return LongName(flag).substr(2);
+  const absl::string_view variable = absl::StripPrefix(flag.variable, "BALLPISTON_");
+  return absl::StrReplaceAll(absl::AsciiStrToLower(variable), {{"_", "-"}});
+}
+
+bool Replaces(const Flag& flag, const Flag& other) {
+  const auto& keys = flag.replaces;
+  return std::find(keys.begin(), keys.end(), KeyOf(other)) != keys.end();
 }
 
 }  // namespace ballpiston::client

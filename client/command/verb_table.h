@@ -20,6 +20,9 @@ struct Flag {
   Value value;
   std::string text;
   std::string variable = "";  // environment variable, used if the flag is not given
+  // Keys of other flags, which this flag overrides if they come from a weaker source:
+  // --token-file overrides BALLPISTON_TOKEN.
+  std::vector<std::string> replaces = {};
 };
 
 struct FlagGroup {
@@ -62,8 +65,14 @@ const std::vector<Remark>& Files();
 // All flags of the verb.
 std::vector<const Flag*> FlagsOf(const Verb& verb);
 
-// --rho for --rho; --quiet for -q,--quiet.
+// --rho for --rho; --quiet for -q,--quiet; empty if only the variable sets the value.
 std::string LongName(const Flag& flag);
+
+// Its key in the config file: token-file for --token-file and for BALLPISTON_TOKEN_FILE.
+std::string KeyOf(const Flag& flag);
+
+// Whether it replaces the other flag where that one stands in a weaker source.
+bool Replaces(const Flag& flag, const Flag& other);
 
 }  // namespace ballpiston::client
 

@@ -3,7 +3,6 @@
 #include <iterator>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "absl/strings/cord.h"
 #include "absl/strings/numbers.h"
@@ -25,24 +24,32 @@ std::optional<Detail> Find(const google::rpc::Status& status) {
   return std::nullopt;
 }
 
-using Violations = std::vector<google::rpc::BadRequest::FieldViolation>;
-
-Violations ViolationsOf(const google::rpc::Status& status) {
-  Violations all;
+std::vector<FieldViolation> ViolationsOf(const google::rpc::Status& status) {
+  std::vector<FieldViolation> all;
   for (const google::protobuf::Any& any : status.details()) {
     google::rpc::BadRequest request;
     if (!any.UnpackTo(&request)) continue;
-    all.insert(all.end(), request.field_violations().begin(), request.field_violations().end());
+    for (const auto& violation : request.field_violations()) {
+      all.push_back({violation.field(), violation.description()});
+    }
   }
   return all;
 }
 
-std::string LinesOf(const Violations& violations) {
+std::string LinesOf(const std::vector<FieldViolation>& violations) {
   std::string lines;
-  for (const auto& violation : violations) {
-    absl::StrAppend(&lines, "\n  ", violation.field(), ": ", violation.description());
+  for (const auto& [field, description] : violations) {
+    absl::StrAppend(&lines, "\n  ", field, ": ", description);
   }
   return lines;
+}
+
+// Empty if the error is not the server's.
+google::rpc::Status DetailsOf(const absl::Status& status) {
+  google::rpc::Status details;
+  const auto payload = status.GetPayload(kStatusPayload);
+  if (!payload || !details.ParseFromString(std::string(*payload))) details.Clear();
+  return details;
 }
 
 int LeftOut(const google::rpc::ErrorInfo& info) {
@@ -55,12 +62,12 @@ int LeftOut(const google::rpc::ErrorInfo& info) {
 std::string Text(const std::string& message, const google::rpc::Status& status) {
   const auto info = Find<google::rpc::ErrorInfo>(status).value_or(google::rpc::ErrorInfo());
   const std::string reason = info.reason().empty() ? "" : absl::StrCat(" (", info.reason(), ")");
-  const Violations violations = ViolationsOf(status);
+  const std::vector<FieldViolation> violations = ViolationsOf(status);
   const int left_out = LeftOut(info);
   const auto count = std::ssize(violations) + left_out;
   if (count == 0) return message + reason;
   if (count == 1 && left_out == 0) {
-    return absl::StrCat(violations[0].field(), ": ", violations[0].description(), reason);
+    return absl::StrCat(violations[0].field, ": ", violations[0].description, reason);
   }
   return absl::StrCat("not valid, ", count, " violations", reason, ":", LinesOf(violations),
                       left_out > 0 ? absl::StrCat("\n  and ", left_out, " more") : "");
@@ -98,11 +105,12 @@ absl::Status FromGrpc(const grpc::Status& status) {
 }
 
 std::string ErrorReason(const absl::Status& status) {
-  const auto payload = status.GetPayload(kStatusPayload);
-  google::rpc::Status details;
-  if (!payload || !details.ParseFromString(std::string(*payload))) return "";
-  const auto info = Find<google::rpc::ErrorInfo>(details);
+  const auto info = Find<google::rpc::ErrorInfo>(DetailsOf(status));
   return info ? info->reason() : "";
+}
+
+std::vector<FieldViolation> ErrorViolations(const absl::Status& status) {
+  return ViolationsOf(DetailsOf(status));
 }
 
 }  // namespace ballpiston::client

@@ -19,6 +19,7 @@
 #include <grpcpp/support/status.h>
 
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 
@@ -33,6 +34,12 @@ absl::Status FromGrpc(const grpc::Status& status);
 // The ErrorInfo's reason, e.g. "JOB_NOT_FOUND"; empty if the server gave no reason or was not
 // reached.
 std::string ErrorReason(const absl::Status& status);
+
+// The invalid fields of the request, by their paths: spec.grid.rho[0].
+struct FieldViolation {
+  std::string field, description;
+};
+std::vector<FieldViolation> ErrorViolations(const absl::Status& status);
 
 }  // namespace ballpiston::client
 

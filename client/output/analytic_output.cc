@@ -70,7 +70,7 @@ void PrintCsv(const v1::EvaluatePairsResponse& response, std::ostream& out) {
   }
 }
 
-std::string TableCell(double x) { return absl::StrFormat("%.15g", x); }
+std::string TableCell(double x) { return Measured(x, 0).value; }
 
 void PrintQuantities(const v1::PairAnalytics& pair, std::ostream& out) {
   TextTable table({{"quantity", TextTable::Column::kLeft}, {"value", TextTable::Column::kLeft}});

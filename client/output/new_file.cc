@@ -7,6 +7,8 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -16,6 +18,17 @@ namespace ballpiston::client {
 namespace fs = std::filesystem;
 
 namespace {
+
+// The hidden files that are not kept yet.
+struct Unfinished {
+  std::mutex mutex;
+  std::set<fs::path> parts;
+};
+
+Unfinished& AllUnfinished() {
+  static auto* const unfinished = new Unfinished;
+  return *unfinished;
+}
 
 fs::perms UsualMode() {
   const mode_t mask = umask(0);
@@ -40,6 +53,12 @@ absl::Status CheckNewFile(const std::string& flag, const std::string& path) {
   return denied == 0 ? absl::OkStatus() : CannotWrite(flag, path, std::strerror(errno));
 }
 
+void RemoveUnfinishedFiles() {
+  AllUnfinished().mutex.lock();
+  std::error_code ignored;
+  for (const fs::path& part : AllUnfinished().parts) fs::remove(part, ignored);
+}
+
 NewFile::NewFile(std::string flag, std::string path)
     : flag_(std::move(flag)), path_(std::move(path)), descriptor_(Open()), buffer_(descriptor_) {
   open_error_ = descriptor_ < 0 ? errno : 0;
@@ -58,17 +77,22 @@ int NewFile::Open() {
   const fs::perms mode = exists ? fs::status(file_, error).permissions() : UsualMode();
   const std::string hidden = absl::StrCat(".", file_.filename().string(), ".XXXXXX");
   std::string name = (file_.parent_path() / hidden).string();
+  const std::lock_guard lock(AllUnfinished().mutex);
   const int descriptor = mkostemp(name.data(), O_CLOEXEC);
   if (descriptor < 0) return descriptor;
   part_ = name;
+  AllUnfinished().parts.insert(part_);
   fchmod(descriptor, static_cast<mode_t>(mode));
   return descriptor;
 }
 
 NewFile::~NewFile() {
   if (descriptor_ >= 0) close(descriptor_);
+  if (part_.empty()) return;
+  const std::lock_guard lock(AllUnfinished().mutex);
   std::error_code ignored;
-  if (!part_.empty()) fs::remove(part_, ignored);
+  fs::remove(part_, ignored);
+  AllUnfinished().parts.erase(part_);
 }
 
 absl::Status NewFile::Keep() {
@@ -77,9 +101,11 @@ absl::Status NewFile::Keep() {
   if (buffer_.error() != 0) return CannotWrite(flag_, path_, std::strerror(buffer_.error()));
   if (!out_) return CannotWrite(flag_, path_, "its content could not be made");
   if (part_.empty()) return absl::OkStatus();
+  const std::lock_guard lock(AllUnfinished().mutex);
   std::error_code error;
   fs::rename(part_, file_, error);
   if (error) return CannotWrite(flag_, path_, error.message());
+  AllUnfinished().parts.erase(part_);
   part_.clear();
   return absl::OkStatus();
 }

@@ -16,6 +16,10 @@ namespace ballpiston::client {
 // those of NewFile::Keep.
 absl::Status CheckNewFile(const std::string& flag, const std::string& path);
 
+// Deletes the temporary files of every NewFile that is not kept, for a program that ends without
+// destructors. No other thread can make or keep a file afterwards.
+void RemoveUnfinishedFiles();
+
 class NewFile {
  public:
   // `flag` is the flag that named the path, for messages.

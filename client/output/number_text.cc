@@ -23,8 +23,11 @@ int DecimalExponent(double x) { return static_cast<int>(std::floor(std::log10(st
 // An error below this part of the value is that of rounding: the value is exact.
 constexpr double kRounding = 5e-13;
 constexpr int kDigitsOfExact = 12;
+constexpr int kDigitsWithoutError = 6;
 
-std::string Significant(double x, int digits = 6) { return absl::StrFormat("%.*g", digits, x); }
+std::string Significant(double x, int digits = kDigitsWithoutError) {
+  return absl::StrFormat("%.*g", digits, x);
+}
 
 std::string Fixed(double x, int decimals) { return absl::StrFormat("%.*f", decimals, x); }
 
@@ -52,16 +55,13 @@ std::string ExactText(double value) {
 
 MeasuredText Measured(double value, std::optional<double> error, std::optional<double> exact) {
   MeasuredText text;
-  const bool usable = error && *error > 0 && std::isfinite(*error) && std::isfinite(value);
-  if (!usable) {
-    text.value = Significant(value);
-    if (error) text.error = Significant(*error);
-    if (exact) text.exact = Significant(*exact);
-    return text;
-  }
-  if (*error < kRounding * std::abs(value)) {
-    text.value = Significant(value, kDigitsOfExact);
-    if (exact) text.exact = Significant(*exact, kDigitsOfExact);
+  const bool is_exact = error && *error >= 0 && *error < kRounding * std::abs(value);
+  const bool has_scatter = error && *error > 0 && std::isfinite(*error) && std::isfinite(value);
+  if (is_exact || !has_scatter) {
+    const int digits = is_exact ? kDigitsOfExact : kDigitsWithoutError;
+    text.value = Significant(value, digits);
+    if (error && !is_exact) text.error = Significant(*error);
+    if (exact) text.exact = Significant(*exact, digits);
     return text;
   }
   const int last_digit = DecimalExponent(*error) - 1;

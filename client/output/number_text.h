@@ -15,7 +15,8 @@ std::string ExactText(double value);
 
 // A value with the digits that its standard error supports. The error has two significant digits;
 // the value and the exact value end at the same decimal place. Without an error the value has six
-// significant digits. With an error that is only rounding it has twelve, and no error is shown.
+// significant digits. With an error of 0, or of rounding only, it has twelve, and no error is
+// shown.
 //   (21.63214, 0.1234, 21.6225) -> 21.63, 0.12, 21.62
 struct MeasuredText {
   std::string value;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/long_returns.h"
 #include "core/experiment/sampled_estimate.h"
@@ -29,6 +30,13 @@ constexpr double kEventsOfACorrelation = 0.125;
 
 bool HasRelaxationTime(const std::optional<double>& epsilon) {
   return !epsilon || *epsilon <= kNoDecayFrom || *epsilon >= kNoDecayTo;
+}
+
+std::vector<std::string> RemarksOnDecay(const std::optional<double>& epsilon) {
+  if (HasRelaxationTime(epsilon)) return {};
+  return {absl::StrCat(
+      "there is no relaxation_time for epsilon between ", kNoDecayFrom, " and ", kNoDecayTo,
+      ": the start is close to 1/6, and the mean energy first moves away from 1/6")};
 }
 
 double CollisionsPerOrbit(const PointParameters& point) {

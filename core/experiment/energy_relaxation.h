@@ -112,6 +112,9 @@ class EnergyRelaxation {
 // Whether relaxation_time exists: in equilibrium, and from energies far enough from 1/6.
 bool HasRelaxationTime(const std::optional<double>& epsilon);
 
+// Says why relaxation_time is missing; empty if it exists.
+std::vector<std::string> RemarksOnDecay(const std::optional<double>& epsilon);
+
 // Mean number of ball-piston collisions in an orbit.
 double CollisionsPerOrbit(const PointParameters& point);
 

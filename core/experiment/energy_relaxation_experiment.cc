@@ -175,6 +175,7 @@ void AddFurtherRates(std::vector<Estimate>& estimates) {
 // No samples: standard errors are those of the discretisation.
 PointSummary BySpectrum(const EnergyRelaxation& relaxation) {
   PointSummary summary;
+  summary.remarks = RemarksOnDecay(relaxation.epsilon());
   summary.estimates = relaxation.EstimatesOfLimit();
   summary.estimates.push_back(SpectralGap());
   AddFurtherRates(summary.estimates);
@@ -214,6 +215,7 @@ class EnergyRelaxationExperiment : public PointExperiment {
 
   PointSummary Summarize(const BlockResult& merged) const override {
     PointSummary summary = {.samples = merged.samples, .health = merged.health};
+    summary.remarks = RemarksOnDecay(relaxation_.epsilon());
     summary.estimates = Estimates(merged);
     if (IsLimit()) summary.estimates.push_back(SpectralGap());
     summary.curves.push_back(relaxation_.MeasuredCurve(merged, EventsIn(merged)));

@@ -50,7 +50,12 @@ def address_and_security(given: Mapping[str, Any]) -> tuple[str, ChannelSecurity
     Raises:
         ValueError: the private server with TLS or a token, or a config file that is not TOML.
     """
-    settings: dict[str, Any] = {**_config_file(), **_environment(), **given}
+    settings: dict[str, Any] = {}
+    for stronger in (_config_file(), _environment(), given):
+        if "token" in stronger or "token_file" in stronger:
+            settings.pop("token", None)
+            settings.pop("token_file", None)
+        settings.update(stronger)
     address = str(settings.pop("address", ""))
     if not address or is_socket(address):
         settings = {name: value for name, value in given.items() if name != "address"}
@@ -59,8 +64,6 @@ def address_and_security(given: Mapping[str, Any]) -> tuple[str, ChannelSecurity
             f"the private server needs no {', '.join(settings)}: name a server, "
             'connect("host:port", ...)'
         )
-    if "token_file" in given:
-        settings.pop("token", None)
     settings["tls"] = _truth(settings.get("tls", False))
     return address, ChannelSecurity(**settings)
 

@@ -13,7 +13,9 @@
     cold: 'T cold',
   };
   const ERROR_DIGITS = 2;
-  const DIGITS = 8; // without an error
+  const DIGITS = 6; // without an error
+  const EXACT_DIGITS = 12;
+  const ROUNDING = 5e-13; // an error below this share of the value is that of rounding
 
   const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
 
@@ -26,9 +28,14 @@
     return Math.abs(value) < 1e7 && places >= 0 && places <= 9;
   }
 
+  function isExact(value, error) {
+    return isNumber(error) && error >= 0 && error < ROUNDING * Math.abs(value);
+  }
+
   // As many digits as the error permits.
   function valueText(value, error) {
     if (!isNumber(value)) return '';
+    if (isExact(value, error)) return String(Number(value.toPrecision(EXACT_DIGITS)));
     if (!(error > 0)) return String(Number(value.toPrecision(DIGITS)));
     const places = decimals(error);
     if (isPlain(value, places)) return value.toFixed(places);
@@ -36,15 +43,15 @@
     return value.toExponential(Math.min(Math.max(digits, 0), 15));
   }
 
-  function errorText(error) {
-    if (!isNumber(error)) return '';
+  function errorText(value, error) {
+    if (!isNumber(error) || isExact(value, error)) return '';
     if (error === 0) return '0';
     const places = decimals(error);
     return isPlain(error, places) ? error.toFixed(places) : error.toExponential(ERROR_DIGITS - 1);
   }
 
   function withError(value, error) {
-    return isNumber(error) ? `${valueText(value, error)} ± ${errorText(error)}` : valueText(value);
+    return [valueText(value, error), errorText(value, error)].filter(Boolean).join(' ± ');
   }
 
   function signedText(value, places = 2) {

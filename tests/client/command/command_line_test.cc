@@ -55,7 +55,6 @@ TEST_F(CommandLineTest, HelpOfAVerbIsItsPage) {
 
 TEST_F(CommandLineTest, WrongUsageExitsWithTwoAndOneLine) {
   const Words mistakes[] = {{"dance"},
-                            {"server"},
                             {"server", "dance"},
                             {"help", "dance"},
                             {"run"},
@@ -186,7 +185,7 @@ TEST_F(CommandLineTest, TheFlagsThatChooseTheServerAreKept) {
   const auto line = ParseCommandLine({"watch", "abc", "--tls", "-q", "--server=h:1"});
   ASSERT_TRUE(line.ok()) << line.status();
   EXPECT_EQ(line->options.connection, " --server h:1 --tls");
-  EXPECT_THAT(line->options.given, ElementsAre("--server", "--tls"));
+  EXPECT_THAT(line->options.given, ElementsAre("--quiet", "--server", "--tls"));
 }
 
 // ---- notes ----
@@ -424,13 +423,29 @@ TEST_F(CommandLineTest, PlanPrintsTheLadderAndCreatesNoJob) {
   EXPECT_TRUE(spec.verify());
 }
 
+TEST_F(CommandLineTest, AnErrorOfASpecificationFromAFileNamesItsField) {
+  server_.ensemble.plan_end = InvalidSpec("spec.grid.rho[0]", "is 0.9");
+  server_.Start();
+  const std::string file = home_.File("question.json");
+  WriteFile(file, R"({"experiment": "EQUILIBRIUM"})");
+  const Outcome outcome = WithServer({"plan", "--spec", file});
+  EXPECT_EQ(outcome.err, "ballpiston: grid.rho[0]: is 0.9 (INVALID_SPEC)\n");
+}
+
+TEST_F(CommandLineTest, AnErrorMayNameATargetsFlag) {
+  server_.ensemble.plan_end = InvalidSpec("spec.target", "use target.collisions");
+  server_.Start();
+  EXPECT_EQ(WithServer({"plan", "equilibrium"}).err,
+            "ballpiston: target: use --collisions (INVALID_SPEC)\n");
+}
+
 TEST_F(CommandLineTest, AnInvalidSpecificationExitsWithTwo) {
   server_.ensemble.plan_end = InvalidSpec("spec.target.tolerance", "-1 is not in (0, 1)");
   server_.Start();
   const Outcome outcome = WithServer({"plan", "equilibrium", "--tolerance", "-1"});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(outcome.err, "ballpiston: spec.target.tolerance: -1 is not in (0, 1) (INVALID_SPEC)\n");
+  EXPECT_EQ(outcome.err, "ballpiston: --tolerance: -1 is not in (0, 1) (INVALID_SPEC)\n");
 }
 
 // ---- closed forms and the server ----

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_replace.h"
 #include "tests/client/program.h"
 #include "tests/support/scoped_variable.h"
 #include "tests/support/status_matchers.h"
@@ -37,17 +39,92 @@ class ConfigFileTest : public ::testing::Test {
   const EmptyHome home_;
 };
 
-TEST_F(ConfigFileTest, FlagThenVariableThenSectionThenFile) {
-  EXPECT_EQ(Server(), "");
-  home_.WriteConfig("server = \"file:1\"\n");
-  EXPECT_EQ(Server(), "file:1");
-  home_.WriteConfig("server = \"file:1\"\n[server.status]\nserver = \"section:1\"\n");
-  EXPECT_EQ(Server(), "section:1");
-  const ScopedVariable variable("BALLPISTON_SERVER", "variable:1");
-  EXPECT_EQ(Server(), "variable:1");
-  EXPECT_EQ(Server({"--server", "flag:1"}), "flag:1");
-  variable.Set("");
-  EXPECT_EQ(Server(), "section:1");
+// A flag with a variable, its values from the strongest source to the weakest, and what it sets.
+struct Ranked {
+  std::string key;
+  std::vector<std::string> values;  // command line, environment, section, file
+  std::string (*read)(const Options& options);
+};
+
+const Ranked kRanked[] = {
+    {"server", {"a:1", "b:1", "c:1", "d:1"}, [](const Options& o) { return o.server; }},
+    {"ca", {"a", "b", "c", "d"}, [](const Options& o) { return o.security.ca; }},
+    {"cert", {"a", "b", "c", "d"}, [](const Options& o) { return o.security.certificate; }},
+    {"key", {"a", "b", "c", "d"}, [](const Options& o) { return o.security.key; }},
+    {"token-file", {"a", "b", "c", "d"}, [](const Options& o) { return o.security.token_file; }},
+    {"progress",
+     {"none", "json", "bar", "auto"},
+     [](const Options& o) {
+       return std::vector<std::string>{"auto", "bar", "json", "none"}[int(o.progress)];
+     }},
+    {"tls",
+     {"true", "false", "true", "false"},
+     [](const Options& o) -> std::string { return o.security.tls ? "true" : "false"; }},
+    {"quiet",
+     {"true", "false", "true", "false"},
+     [](const Options& o) -> std::string { return o.quiet ? "true" : "false"; }},
+    {"verbose", {"true", "false", "true", "false"}, [](const Options& o) -> std::string {
+       return o.verbose ? "true" : "false";
+     }}};
+
+std::string VariableOf(const std::string& key) {
+  return "BALLPISTON_" + absl::AsciiStrToUpper(absl::StrReplaceAll(key, {{"-", "_"}}));
+}
+
+TEST_F(ConfigFileTest, EachFlagThenVariableThenSectionThenFile) {
+  for (const auto& [key, values, read] : kRanked) {
+    SCOPED_TRACE(key);
+    for (size_t strongest = 0; strongest < values.size(); ++strongest) {
+      std::vector<std::string> words = {"watch", "abc"};
+      if (strongest == 0) words.push_back("--" + key + "=" + values[0]);
+      const ScopedVariable variable(VariableOf(key), strongest <= 1 ? values[1] : "");
+      home_.WriteConfig(key + " = \"" + values[3] + "\"\n" +
+                        (strongest <= 2 ? "[watch]\n" + key + " = \"" + values[2] + "\"\n" : ""));
+      ASSERT_OK_AND_ASSIGN(const CommandLine line, ParseCommandLine(words));
+      EXPECT_EQ(read(line.options), values[strongest]);
+    }
+  }
+}
+
+TEST_F(ConfigFileTest, AFlagReplacesWeakerSourcesOfItsRivals) {
+  home_.WriteConfig("token-file = \"file\"\nquiet = true\nprogress = \"bar\"\n");
+  const ScopedVariable token("BALLPISTON_TOKEN", "secret");
+  ASSERT_OK_AND_ASSIGN(CommandLine line, ParseCommandLine({"watch", "abc", "--verbose"}));
+  EXPECT_EQ(line.options.security.token, "secret");
+  EXPECT_EQ(line.options.security.token_file, "");
+  EXPECT_TRUE(line.options.verbose);
+  EXPECT_FALSE(line.options.quiet);
+  EXPECT_EQ(line.options.progress, ProgressStyle::kBar);
+  ASSERT_OK_AND_ASSIGN(line, ParseCommandLine({"watch", "abc", "--quiet", "--token-file", "own"}));
+  EXPECT_EQ(line.options.security.token, "");
+  EXPECT_EQ(line.options.security.token_file, "own");
+  EXPECT_EQ(line.options.progress, ProgressStyle::kAuto);
+}
+
+TEST_F(ConfigFileTest, WhatIsOffOrReplacedReplacesNothing) {
+  home_.WriteConfig("verbose = true\nprogress = \"json\"\n");
+  ASSERT_OK_AND_ASSIGN(CommandLine line, ParseCommandLine({"watch", "abc", "--quiet=false"}));
+  EXPECT_TRUE(line.options.verbose);
+  const ScopedVariable quiet("BALLPISTON_QUIET", "1");
+  ASSERT_OK_AND_ASSIGN(line, ParseCommandLine({"watch", "abc", "--verbose"}));
+  EXPECT_EQ(line.options.progress, ProgressStyle::kJson);
+}
+
+TEST_F(ConfigFileTest, AWrongValueForAllVerbsIsAnError) {
+  home_.WriteConfig("samples = \"many\"\nseed = 1\n");
+  EXPECT_THAT(ParseCommandLine({"plan", "first-hit"}),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("samples of the config file: 'many'")));
+}
+
+TEST_F(ConfigFileTest, AValueForOtherVerbsIsSkipped) {
+  home_.WriteConfig("format = \"csv-curves\"\n");
+  ASSERT_OK_AND_ASSIGN(CommandLine line, ParseCommandLine({"result", "abc"}));
+  EXPECT_EQ(line.options.format, Format::kCsvCurves);
+  ASSERT_OK_AND_ASSIGN(line, ParseCommandLine({"server", "status"}));
+  EXPECT_EQ(line.options.format, Format::kTable);
+  ExpectError("[list]\nformat = \"csv-curves\"\n",
+              "format of the config file: 'csv-curves' is not one of table, json, jsonl, csv");
 }
 
 TEST_F(ConfigFileTest, EveryVariableReachesItsOption) {
@@ -129,7 +206,7 @@ TEST_F(ConfigFileTest, ErrorsNameTheFile) {
   ExpectError("foramt = \"csv\"\n", file + ": 'foramt' is not a flag; did you mean format?");
   ExpectError("[run]\nlimit = 3\n", file + ": 'limit' is not a flag of run");
   ExpectError("[dance]\nformat = \"csv\"\n", file + ": [dance] is not a verb");
-  ExpectError("format = \"xml\"\n", "--format of the config file: 'xml' is not one of table, ");
+  ExpectError("format = \"xml\"\n", "format of the config file: 'xml' is not one of table, ");
 }
 
 TEST_F(ConfigFileTest, AnotherFileMayBeChosen) {

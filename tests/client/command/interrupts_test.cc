@@ -6,9 +6,15 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <latch>
+#include <string>
 #include <thread>
+
+#include "absl/strings/str_cat.h"
+#include "client/output/new_file.h"
 
 namespace ballpiston::client {
 namespace {
@@ -83,6 +89,30 @@ TEST_F(InterruptsDeathTest, TheProgramEndsDuringAHangingFarewell) {
         while (true) pause();
       },
       ExitedWithCode(130), "");
+}
+
+// A folder of this process, which the process that EXPECT_EXIT starts knows as well.
+std::string SharedFolder() {
+  const std::string own = absl::StrCat(testing::TempDir(), "interrupts-", getpid());
+  setenv("BALLPISTON_TEST_FOLDER", own.c_str(), 0);
+  const std::string folder = std::getenv("BALLPISTON_TEST_FOLDER");
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
+TEST_F(InterruptsDeathTest, NoPartOfAFileIsLeft) {
+  const std::string folder = SharedFolder();
+  EXPECT_EXIT(
+      {
+        Interrupts interrupts;
+        NewFile file("--save", folder + "/result.csv");
+        file.out() << "half";
+        Send(SIGINT);
+        while (true) pause();
+      },
+      ExitedWithCode(130), "");
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+  std::filesystem::remove_all(folder);
 }
 
 // After the scope its owner destroys objects that the farewell uses.

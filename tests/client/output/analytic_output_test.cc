@@ -65,9 +65,9 @@ TEST(AnalyticJson, HasTheProtosNamesAtFullPrecision) {
 
 TEST(AnalyticTable, ListsQuantitiesThenEnergies) {
   EXPECT_EQ(PrintedPairs(Format::kTable), R"(quantity          value
-rho               0.529561127988977
+rho               0.529561127989
 delta             0.1
-lambda            0.348912529307606
+lambda            0.348912529308
 eta               1
 cell_area         2
 volume            3

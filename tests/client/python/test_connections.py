@@ -105,6 +105,8 @@ def test_an_argument_wins_over_the_environment_and_that_over_the_config_file(
     monkeypatch.setenv("BALLPISTON_CA", "environment.pem")
     monkeypatch.setenv("BALLPISTON_TLS", "1")
     monkeypatch.setenv("BALLPISTON_TOKEN", "secret")
+    security = address_and_security({})[1]
+    assert (security.token, security.token_file) == ("secret", "")
     address, security = address_and_security({"ca": "argument.pem", "token_file": "argument.token"})
     assert (address, security.ca, security.tls) == ("environment:1", "argument.pem", True)
     assert (security.token_file, security.token) == ("argument.token", "")

@@ -173,6 +173,20 @@ TEST(EnergyRelaxation, RelaxationTimeExistsAwayFromTheMeanEnergy) {
   }
 }
 
+TEST(EnergyRelaxation, ARemarkSaysWhyThereIsNoRelaxationTime) {
+  for (const Model model : {Model::kSpectrum, Model::kMarkov, Model::kBilliard}) {
+    const Target target = model == Model::kSpectrum ? Target{} : Target{.samples = 64};
+    for (const auto& [epsilon, remarks] : {std::pair(0.1, 0u), std::pair(0.15, 1u)}) {
+      const PointSummary summary =
+          RunPoint(SpecOf(&kEnergyRelaxation, PaperPoint(0.1, epsilon), target, model));
+      ASSERT_EQ(summary.remarks.size(), remarks);
+      if (remarks == 1) {
+        EXPECT_EQ(summary.remarks[0].find("there is no relaxation_time"), 0u);
+      }
+    }
+  }
+}
+
 // The spectrum gives the part beyond the window, which is small.
 TEST(EnergyRelaxation, WindowContainsNearlyAllOfTheLimitsIntegral) {
   for (const double delta : {0.2, 0.01}) {
