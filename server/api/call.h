@@ -1,6 +1,5 @@
 // One call: its caller, and its request id, which is also in the log.
-#ifndef BALLPISTON_SERVER_API_CALL_H_
-#define BALLPISTON_SERVER_API_CALL_H_
+#pragma once
 
 #include <string>
 
@@ -33,5 +32,3 @@ absl::StatusOr<Call> AdmitCall(const ServiceContext& service, grpc::CallbackServ
                                const CallRule& rule);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_CALL_H_

@@ -4,8 +4,7 @@
 // A unary call holds its request from its admission, and its answer until the client has received
 // it. A client that sends calls and does not read the answers therefore reaches the limits.
 // Thread-safe.
-#ifndef BALLPISTON_SERVER_API_HELD_CALLS_H_
-#define BALLPISTON_SERVER_API_HELD_CALLS_H_
+#pragma once
 
 #include <cstdint>
 #include <map>
@@ -46,5 +45,3 @@ class HeldCalls {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_HELD_CALLS_H_

@@ -1,8 +1,7 @@
 // The unary methods of the API, one row each. A row declares the function that executes the method
 // in a file of its own, and the method of its service. To add a method: its proto, a row, a file.
 // The protos have the contracts and errors.
-#ifndef BALLPISTON_SERVER_API_METHODS_H_
-#define BALLPISTON_SERVER_API_METHODS_H_
+#pragma once
 
 #include "absl/status/statusor.h"
 #include "ballpiston/v1/analytic.pb.h"
@@ -43,5 +42,3 @@ BALLPISTON_SERVER_METHODS(BALLPISTON_DECLARE)
 #undef BALLPISTON_DECLARE
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_METHODS_H_

@@ -6,8 +6,7 @@
 // turns, whatever the number of their tasks. A principal has at most half of the threads of a kind,
 // except of those that write. The tasks of one principal begin in the order of posting.
 // Thread-safe.
-#ifndef BALLPISTON_SERVER_API_RPC_EXECUTOR_H_
-#define BALLPISTON_SERVER_API_RPC_EXECUTOR_H_
+#pragma once
 
 #include <deque>
 #include <functional>
@@ -91,5 +90,3 @@ class RpcExecutor {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_RPC_EXECUTOR_H_

@@ -1,7 +1,6 @@
 // The gRPC services: each unary method runs its function of methods.h inside the frame of
 // unary_rpc.h; the streams have reactors of their own.
-#ifndef BALLPISTON_SERVER_API_SERVICES_H_
-#define BALLPISTON_SERVER_API_SERVICES_H_
+#pragma once
 
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
@@ -67,5 +66,3 @@ class ServerService : public v1::ServerService::CallbackService {
 #undef BALLPISTON_SERVE
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_SERVICES_H_

@@ -7,8 +7,7 @@
 //
 // Once per heartbeat the stream checks its credentials again. It ends if they are no longer valid,
 // also if its reader stalls.
-#ifndef BALLPISTON_SERVER_API_STREAM_REACTOR_H_
-#define BALLPISTON_SERVER_API_STREAM_REACTOR_H_
+#pragma once
 
 #include <chrono>
 #include <exception>
@@ -217,5 +216,3 @@ class StreamReactor : public grpc::ServerWriteReactor<Message>,
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_STREAM_REACTOR_H_

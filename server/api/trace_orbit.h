@@ -4,8 +4,7 @@
 // fast as its reader, and principals take turns at the threads after each message. The request
 // bounds the cost of a trace (convert/trace.h). Its memory counts among the bytes of the
 // principal's calls, because a stalled reader keeps that memory in use.
-#ifndef BALLPISTON_SERVER_API_TRACE_ORBIT_H_
-#define BALLPISTON_SERVER_API_TRACE_ORBIT_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -45,5 +44,3 @@ class TraceReactor : public StreamReactor<v1::TraceOrbitResponse> {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_TRACE_ORBIT_H_

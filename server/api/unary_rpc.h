@@ -1,6 +1,5 @@
 // The frame of every unary call: leaves gRPC's thread, runs the method, answers.
-#ifndef BALLPISTON_SERVER_API_UNARY_RPC_H_
-#define BALLPISTON_SERVER_API_UNARY_RPC_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -109,5 +108,3 @@ grpc::ServerUnaryReactor* RunUnary(ServiceContext& service, grpc::CallbackServer
 }
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_UNARY_RPC_H_

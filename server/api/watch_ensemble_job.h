@@ -22,8 +22,7 @@
 // of results that were dropped because another engine computes the job again, or of points that the
 // store does not have. With a token of an earlier server process, it sends only the unfinished
 // points again.
-#ifndef BALLPISTON_SERVER_API_WATCH_ENSEMBLE_JOB_H_
-#define BALLPISTON_SERVER_API_WATCH_ENSEMBLE_JOB_H_
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -106,5 +105,3 @@ class WatchReactor : public StreamReactor<v1::WatchEnsembleJobResponse> {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_WATCH_ENSEMBLE_JOB_H_

@@ -3,8 +3,7 @@
 // The thread calls Look of each stream a few times a second, and at once when a job changes its
 // state, but at most once in a few milliseconds. A stream that has something to send then schedules
 // its next message. The registry also counts the streams of each principal. Thread-safe.
-#ifndef BALLPISTON_SERVER_API_WATCH_REGISTRY_H_
-#define BALLPISTON_SERVER_API_WATCH_REGISTRY_H_
+#pragma once
 
 #include <atomic>
 #include <chrono>
@@ -64,5 +63,3 @@ class WatchRegistry {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_WATCH_REGISTRY_H_
