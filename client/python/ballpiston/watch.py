@@ -119,7 +119,6 @@ class _Watch:
             return self._connection.error_of(error)
         finally:
             stream.cancel()
-            stream.code()  # waits: gRPC's thread must not hold its lock when the interpreter ends
         return Unavailable(
             "the server ended the watch before the end of the job", code="UNAVAILABLE"
         )
