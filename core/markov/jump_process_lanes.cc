@@ -1,3 +1,8 @@
+// Accuracy. No step cancels: 1 - 2 u^2 is fused, s^2 = (1 - u)(1 + u), and for u' > u, with
+// w = c v - u A in [0, q],
+//     s^2 - (q - w)^2 = u^2 + w (2 q - w).
+// w loses digits if it is much smaller than u A. The loss is at most a rounding of u^2, because
+// then u A <= 2 u^2.
 #include "core/markov/jump_process_lanes.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -19,8 +24,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, kJumpGroup>;
 using V = hn::Vec<D>;
 
-// The targets of one vector, as in JumpFrom. One of the two squares is selected before the square
-// root. At u = 0 the lower square is never selected, and may be a NaN.
+// The targets of one vector. One of the two squares is selected before the square root. At u = 0
+// the lower square is never selected, and may be a NaN.
 HWY_INLINE V Target(V u, V q, V low, V c, V v) {
   const D d;
   const V one = hn::Set(d, 1.0), g = hn::Mul(c, v);

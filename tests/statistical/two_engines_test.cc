@@ -18,9 +18,9 @@
 #include "core/statistics/histogram.h"
 #include "core/statistics/moments.h"
 #include "tests/core/geometries.h"
-#include "tests/core/run_orbits.h"
 #include "tests/oracle/two_sample.h"
 #include "tests/support/nightly.h"
+#include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {
 namespace {
@@ -94,7 +94,7 @@ FirstHits Sample(Engine engine, const Point& point) {
     ReturnOrbits orbits(geometry, {point.epsilon, point.exponent},
                         {.seed = static_cast<uint64_t>(engine), .stream = 77},
                         {.first = first, .samples = count});
-    EXPECT_TRUE(RunAll(engine, geometry, orbits));
+    EXPECT_TRUE(RunOrbits(engine, geometry, orbits.count(), orbits));
     for (const Return& hit : orbits.returns()) hits.Add(hit);
   }
   return hits;

@@ -11,7 +11,7 @@
 #include "core/statistics/moments.h"
 #include "tests/core/billiard/recorded_contacts.h"
 #include "tests/core/geometries.h"
-#include "tests/core/run_orbits.h"
+#include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {
 namespace {
@@ -64,7 +64,7 @@ TEST(PredictedHits, MatchReturnsAtAnEnergy) {
   for (const double epsilon : {0.05, 0.2, 0.35, 0.45}) {
     for (const Engine engine : kEngines) {
       CountedReturns returns(geometry, {epsilon, 1}, {.seed = 1, .stream = 2}, {.samples = 20'000});
-      ASSERT_TRUE(RunAll(engine, geometry, returns));
+      ASSERT_TRUE(RunOrbits(engine, geometry, returns.count(), returns));
       ExpectCounted(HitsPerReturn(geometry, epsilon), returns.counted);
     }
   }
