@@ -9,12 +9,12 @@
 #define HWY_TARGET_INCLUDE "core/markov/jump_process_lanes.cc"
 #include <hwy/foreach_target.h>
 // After foreach_target.h.
-#include <Random123/philox.h>
 #include <hwy/highway.h>
 
 #include <numbers>
 
 #include "core/markov/jump_process_functions-inl.h"
+#include "core/sampling/counter_random.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ballpiston {
@@ -58,15 +58,11 @@ void JumpGroup(const uint64_t* HWY_RESTRICT waiting_words,
   }
 }
 
-// Philox, one sample after the other. Its products of 64 by 64 bits have no vector instruction.
-// Made of four products of 32 bits they would take as long with AVX-512, and twice as long with
-// AVX2. The function is in this file because an instruction of the AVX2 target (mulx) saves a fifth
-// of its time.
 void DrawGroup(uint64_t seed, uint64_t stream, uint64_t first, uint64_t block, JumpWords& drawn) {
-  const r123::Philox4x64::key_type key = {{seed, stream}};
   for (size_t i = 0; i < kJumpGroup; ++i) {
-    const auto words = r123::Philox4x64()({{first + i, block, 0, 0}}, key);
-    for (size_t word = 0; word < 4; ++word) drawn.words[word][i] = words[word];
+    uint64_t words[CounterRandom::kBlock];
+    CounterRandom(seed, stream, first + i, 0, block).DrawBlock(words);
+    for (size_t word = 0; word < CounterRandom::kBlock; ++word) drawn.words[word][i] = words[word];
   }
 }
 

@@ -21,7 +21,7 @@ struct Rule {
 // The first row whose folder contains the file applies.
 const std::vector<Rule>& Rules() {
   static const auto* const rules = new std::vector<Rule>{
-      {"core/arithmetic/", {"core/arithmetic/", "absl/"}, false},
+      {"core/arithmetic/", {"core/arithmetic/", "absl/", "boost/"}, false},
       {"core/geometry/", {"core/arithmetic/", "core/geometry/", "Eigen/", "absl/"}, false},
       {"core/closed_form/",
        {"core/arithmetic/", "core/geometry/", "core/closed_form/", "Eigen/", "absl/"},
@@ -35,14 +35,14 @@ const std::vector<Rule>& Rules() {
        false},
       {"core/markov/",
        {"core/arithmetic/", "core/geometry/", "core/closed_form/", "core/sampling/", "core/markov/",
-        "core/statistics/", "Eigen/", "absl/", "hwy/", "boost/", "Random123/"},
+        "core/statistics/", "Eigen/", "absl/", "hwy/"},
        false},
-      {"core/conductivity/", {"core/arithmetic/", "core/conductivity/", "boost/", "hwy/"}, false},
+      {"core/conductivity/", {"core/arithmetic/", "core/conductivity/", "hwy/"}, false},
       {"core/statistics/", {"core/arithmetic/", "core/statistics/", "Eigen/", "absl/"}, false},
       {"core/gas/",
        {"core/arithmetic/", "core/geometry/", "core/closed_form/", "core/sampling/",
         "core/billiard/", "core/markov/", "core/conductivity/", "core/statistics/", "core/gas/",
-        "Eigen/", "absl/", "hwy/", "Random123/"},
+        "Eigen/", "absl/", "hwy/"},
        false},
       {"core/ensemble/",
        {"core/arithmetic/", "core/geometry/", "core/sampling/", "core/billiard/",
