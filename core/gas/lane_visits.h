@@ -70,6 +70,14 @@ struct MeetingInTime {
   bool piston_goes_right = false;  // as the ball sees it
 };
 
+// The directions in which a ball came within reach of the piston: bit 0 of the bits of a direction.
+using Visits = uint32_t;
+inline constexpr size_t kBitsOfADirection = 8;
+
+inline bool Has(Visits visits, Direction direction) {
+  return (visits >> kBitsOfADirection * static_cast<size_t>(direction) & 1) != 0;
+}
+
 // A ball that is to fly ahead and to look for its first meeting between two times.
 struct FlightOrder {
   uint32_t ball = 0;
@@ -77,6 +85,7 @@ struct FlightOrder {
   double until_time = 0;
   bool has_arrived = false;  // at a meeting, or in the flight in which `until_time` is
   bool has_escaped = false;  // before it met a piston; its state is the last one in its cell
+  Visits visits = 0;         // until it arrived, or shortly after
 };
 
 // Positions up to this distance outside a piston's reach, in cells, count as inside: rounding must
