@@ -70,7 +70,8 @@ struct MeetingInTime {
   bool piston_goes_right = false;  // as the ball sees it
 };
 
-// The directions in which a ball came within reach of the piston: bit 0 of the bits of a direction.
+// The directions in which a ball came within reach of the piston. Each direction has eight bits, of
+// which the lowest is used: so the lanes find them in their masks of eight lanes.
 using Visits = uint32_t;
 inline constexpr size_t kBitsOfADirection = 8;
 

@@ -22,8 +22,7 @@ constexpr double kToBeginWithABall = 200;
 
 ReferenceGas::ReferenceGas(const GasGeometry& geometry, const GasState& state, ThermalWalls walls)
     : ReferenceGas(geometry, std::move(walls)) {
-  Pauses never;
-  Begin(state, never);
+  Begin(state, NoPauses());
 }
 
 ReferenceGas::ReferenceGas(const GasGeometry& geometry, ThermalWalls walls)
