@@ -91,7 +91,7 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
 
   ~Interceptor() override {
     if (!ended_) counts_.Ended(absl::StatusCode::kCancelled, Seconds());
-    observer_.Ended(call_);
+    observer_.Forget(call_);
   }
 
   void Intercept(InterceptorBatchMethods* batch) override {
@@ -120,7 +120,7 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
     const absl::StatusCode code = CodeOf(status);
     const double seconds = Seconds();
     counts_.Ended(code, seconds);
-    const std::string principal = observer_.Ended(call_);
+    const std::string principal = observer_.CallerOf(call_);
     if (status.ok()) return;
     const auto* trailing = batch.GetSendTrailingMetadata();
     const auto id = trailing->find(kRequestId);
@@ -161,13 +161,27 @@ CallObserver::InterceptorFactory() {
 
 void CallObserver::Identify(const grpc::ServerContextBase& call, const std::string& principal) {
   MutexLock lock(mutex_);
-  callers_[&call] = principal;
+  in_progress_[&call].principal = principal;
 }
 
-std::string CallObserver::Ended(const grpc::ServerContextBase& call) {
+void CallObserver::Keep(const grpc::ServerContextBase& call, std::shared_ptr<void> object) {
   MutexLock lock(mutex_);
-  const auto node = callers_.extract(&call);
-  return node.empty() ? "" : std::move(node.mapped());
+  in_progress_[&call].kept = std::move(object);
+}
+
+std::string CallObserver::CallerOf(const grpc::ServerContextBase& call) {
+  MutexLock lock(mutex_);
+  const auto found = in_progress_.find(&call);
+  return found == in_progress_.end() ? "" : found->second.principal;
+}
+
+void CallObserver::Forget(const grpc::ServerContextBase& call) {
+  std::shared_ptr<void> kept;  // released without the lock
+  MutexLock lock(mutex_);
+  const auto found = in_progress_.find(&call);
+  if (found == in_progress_.end()) return;
+  kept = std::move(found->second.kept);
+  in_progress_.erase(found);
 }
 
 // ---- failed calls ----

@@ -66,7 +66,7 @@ TEST(Job, AToleranceGivesNoFraction) {
   spec.mutable_target()->set_tolerance(0.1);
   JobRecord record = JobWithPoints(4);
   record.spec = SpecBytes(spec);
-  EXPECT_FALSE(Job(record, nullptr).Progress().has_fraction());
+  EXPECT_FALSE(Job(record).Progress().has_fraction());
 }
 
 TEST(Job, APointIsDoneWhenItIsStored) {
@@ -215,7 +215,7 @@ TEST_F(JobJournalTest, TheFirstEndOfAJobIsItsEnd) {
   const auto note = [&](const JobRecord& ended) { ends[ended.id].push_back(ended.state); };
   const auto end_all = [&](const absl::Status& outcome) {
     for (const JobRecord& record : records) {
-      const auto job = std::make_shared<Job>(record, nullptr);
+      const auto job = std::make_shared<Job>(record);
       JobJournal(job, *store_, usage_, false, note).Ended(outcome);
     }
   };

@@ -1,0 +1,45 @@
+// Turns of calls that compute. Each call has a thread, so a principal with many calls would slow
+// down the calls of all others and the workers. Therefore few calls compute at a time; the others
+// wait. Thread-safe.
+#ifndef BALLPISTON_SERVER_API_TURNS_H_
+#define BALLPISTON_SERVER_API_TURNS_H_
+
+#include <map>
+#include <string>
+
+#include "server/mutex.h"
+
+namespace ballpiston::server {
+
+class Turns {
+ public:
+  // At most `all` calls compute at a time, and at most `of_one` of the same principal.
+  Turns(int all, int of_one) : all_(all), of_one_(of_one) {}
+
+  // Waits for a turn of the principal, and gives it back at the end of the scope.
+  class Turn {
+   public:
+    Turn(Turns& turns, const std::string& principal);
+    ~Turn();
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+   private:
+    Turns& turns_;
+    const std::string principal_;
+  };
+
+ private:
+  void Take(const std::string& principal);
+  void GiveBack(const std::string& principal);
+
+  const int all_, of_one_;
+  Mutex mutex_;
+  Condition changed_;
+  int taken_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::map<std::string, int> of_ ABSL_GUARDED_BY(mutex_);
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_API_TURNS_H_
