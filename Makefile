@@ -13,11 +13,11 @@ AARCH64_PACKAGES := g++-aarch64-linux-gnu qemu-user libabsl-dev:arm64 libhwy-dev
 SLURM_PACKAGES := munge slurmctld slurmd slurm-client procps
 DEB_PACKAGES := debhelper dh-python help2man lintian
 WEB_PACKAGES = chromium $(shell command -v npm >/dev/null || echo nodejs npm)
-PROGRAMS := ballpiston ballpistond ballpiston-worker method_comparison stability pages
+PROGRAMS := ballpiston ballpistond ballpiston-worker conductivity method_comparison stability pages
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder
-.PHONY: build test check test-asan test-tsan test-long demo chart ladder bench stability stability-table torture test-slurm test-alerts test-web mutation questions deb oci aarch64 fuzz thread-safety nightly format check-format tidy setup clean help
+.PHONY: build test check test-asan test-tsan test-long demo chart ladder bench conductivity stability stability-table torture test-slurm test-alerts test-web mutation questions deb oci aarch64 fuzz thread-safety nightly format check-format tidy setup clean help
 
 build: build/release/.$(PRESETS_PREFIX)programs ## Build the programs, optimised, in build/release/bin (the default)
 	@cmake --build build/release --target $(PROGRAMS)
@@ -41,8 +41,8 @@ test-asan test-tsan: test-%: build/%/.$(PRESETS_PREFIX)tests
 	@ctest --preset $* -j$(TEST_JOBS)
 
 test-long: build/release/.$(PRESETS_PREFIX)tests ## Run the tests of laws and bits at their full size (15 minutes)
-	@cmake --build build/release --target statistical_test core_test server_test
-	@BALLPISTON_NIGHTLY=1 ctest --preset release -R '^(statistical|core|server)_test' -j$(TEST_JOBS)
+	@cmake --build build/release --target statistical_test core_test conductivity_test server_test
+	@BALLPISTON_NIGHTLY=1 ctest --preset release -R '^(statistical|core|conductivity|server)_test' -j$(TEST_JOBS)
 
 demo: build ## Run the paper's sweep with a real server and client
 	@scripts/demo.sh build/release/bin
@@ -64,6 +64,10 @@ stability: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all
 stability-table: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods; write the tables into docs/stability.md (12 minutes)
 	@cmake --build build/release --target stability
 	@build/release/bin/stability --into docs/stability.md
+
+conductivity: build/release/.$(PRESETS_PREFIX)programs ## Compute the constants of the conductivity in the limit of rare collisions (1 minute)
+	@cmake --build build/release --target conductivity
+	@build/release/bin/conductivity
 
 torture: build/release/.$(PRESETS_PREFIX)tests ## Cut the power, kill the server a thousand times, cut its watches, stall its readers; print the counts (half an hour)
 	@cmake --build build/release --target ballpistond store_fault_test torture_test

@@ -4,7 +4,7 @@
 
 namespace ballpiston {
 
-inline constexpr char kEngineVersion[] = "0.11.0";
+inline constexpr char kEngineVersion[] = "0.12.0";
 
 }  // namespace ballpiston
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
@@ -20,6 +21,7 @@
 #include "client/command/reference.h"
 #include "client/command/suggestion.h"
 #include "client/library/quoted.h"
+#include "client/output/spelling.h"
 
 namespace ballpiston::client {
 namespace {
@@ -68,7 +70,7 @@ ParsedVerb Add(CLI::App& program, const Verb& verb) {
   return parsed;
 }
 
-// The text of a flag, and where it stands. A stronger source comes later.
+// The value of a flag and its source. Sources are in the order of increasing priority.
 enum class Source { kFile, kSection, kVariable, kCommandLine };
 struct Setting {
   std::string text;
@@ -76,19 +78,31 @@ struct Setting {
 };
 using Settings = std::map<const Flag*, Setting>;
 
-// A source overrides the weaker sources of a flag, and those of the flags that it replaces.
-bool IsReplaced(const Flag& flag, const Setting& setting, const Settings& settings) {
-  return std::any_of(settings.begin(), settings.end(), [&](const auto& other) {
-    return other.second.source > setting.source && Replaces(*other.first, flag);
+// A switch that is off replaces nothing.
+bool IsOff(const Flag& flag, const Setting& setting) {
+  bool on = true;
+  return flag.value.IsSwitch() && absl::SimpleAtob(setting.text, &on) && !on;
+}
+
+bool IsReplaced(const Flag& flag, const Settings& stronger) {
+  return std::any_of(stronger.begin(), stronger.end(), [&](const auto& other) {
+    return Replaces(*other.first, flag) && !IsOff(*other.first, other.second);
   });
 }
 
+// Without the settings that others from stronger sources replace.
 Settings WithoutReplaced(const Settings& settings) {
-  Settings left;
-  for (const auto& [flag, setting] : settings) {
-    if (!IsReplaced(*flag, setting, settings)) left.emplace(flag, setting);
+  Settings kept;
+  for (const Source source :
+       {Source::kCommandLine, Source::kVariable, Source::kSection, Source::kFile}) {
+    Settings of_source;
+    for (const auto& [flag, setting] : settings) {
+      const bool is_here = setting.source == source;
+      if (is_here && !IsReplaced(*flag, kept)) of_source.emplace(flag, setting);
+    }
+    kept.merge(of_source);
   }
-  return left;
+  return kept;
 }
 
 void AddVariables(const Verb& verb, Settings& settings) {
@@ -98,17 +112,20 @@ void AddVariables(const Verb& verb, Settings& settings) {
   }
 }
 
-// A line for all verbs may have a value that only some of them permit, such as format = "csv".
+bool IsChoice(const Flag& flag, const std::string& text) {
+  const std::vector<std::string>& choices = flag.value.choices;
+  return std::find(choices.begin(), choices.end(), SpellingOfName(text)) != choices.end();
+}
+
+// A line for all verbs may name a choice that only some of them have, such as format = "csv".
 bool IsForOtherVerbs(const Flag& flag, const std::string& text) {
-  Options ignored;
-  if (flag.value.read(text, ignored).ok()) return false;
-  for (const Verb& verb : Verbs()) {
-    for (const Flag* other : FlagsOf(verb)) {
-      const bool is_same_name = LongName(*other) == LongName(flag);
-      if (is_same_name && other->value.read(text, ignored).ok()) return true;
-    }
-  }
-  return false;
+  if (flag.value.choices.empty() || IsChoice(flag, text)) return false;
+  return std::any_of(Verbs().begin(), Verbs().end(), [&](const Verb& verb) {
+    const std::vector<const Flag*> flags = FlagsOf(verb);
+    return std::any_of(flags.begin(), flags.end(), [&](const Flag* other) {
+      return LongName(*other) == LongName(flag) && IsChoice(*other, text);
+    });
+  });
 }
 
 absl::Status AddConfig(const Verb& verb, Settings& settings) {
@@ -134,8 +151,10 @@ class WordParser {
 
   absl::StatusOr<CommandLine> Parse(const std::vector<std::string>& words) {
     if (words.empty()) return CommandLine{.page = TextPage(nullptr)};
-    if (words.size() == 1 && !GroupPage(words[0]).empty()) {
-      return CommandLine{.page = GroupPage(words[0])};
+    if (words.size() == 1) {
+      if (std::string page = GroupPage(words[0]); !page.empty()) {
+        return CommandLine{.page = std::move(page)};
+      }
     }
     if (absl::Status bad = CheckValuesAreThere(words); !bad.ok()) return bad;
     first_word_ = words.front();
@@ -212,9 +231,10 @@ class WordParser {
     return absl::OkStatus();
   }
 
-  // In the order of the table.
+  // In the order of the table. An empty variable counts as not set.
   static absl::Status ReadFlags(const Verb& verb, const Settings& settings, Options& options) {
     for (const Flag* flag : FlagsOf(verb)) {
+      if (!flag->variable.empty()) options.inherited[flag->variable] = "";
       const auto setting = settings.find(flag);
       if (setting == settings.end()) continue;
       if (absl::Status bad = ReadFlag(*flag, setting->second, options); !bad.ok()) return bad;
@@ -236,7 +256,7 @@ class WordParser {
     return Named(NameOf(flag, setting.source), flag.value.read(setting.text, options));
   }
 
-  // Another command needs it to reach the same server.
+  // Whether another command needs this flag to reach the same server.
   static bool IsOfConnection(const Flag& flag) {
     const auto& flags = ServerFlags().flags;
     return LongName(flag) == "--config" ||

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
@@ -11,6 +12,8 @@
 
 namespace ballpiston::client {
 namespace {
+
+constexpr absl::string_view kSpec = "spec.";
 
 // --outgoing-epsilon for outgoing_epsilon[2].
 std::string FlagNamed(absl::string_view field) {
@@ -24,7 +27,7 @@ std::string NameOf(const std::string& field, const Verb& verb) {
   const std::vector<const Flag*> flags = FlagsOf(verb);
   const bool is_flag = std::any_of(flags.begin(), flags.end(),
                                    [&name](const Flag* flag) { return LongName(*flag) == name; });
-  return is_flag ? name : field;
+  return is_flag ? name : std::string(absl::StripPrefix(field, kSpec));
 }
 
 // The description of a field may name another one: use target.collisions.
@@ -42,9 +45,10 @@ std::string MessageWithFlags(const absl::Status& error, const Verb& verb, const 
   const bool has_file = !options.spec_file.empty() || !options.again.empty();
   std::string message(error.message());
   for (const auto& [field, description] : ErrorViolations(error)) {
+    const bool is_of_file = has_file && absl::StartsWith(field, kSpec);
     const std::string in_flags =
-        has_file ? absl::StrCat(absl::StripPrefix(field, "spec."), ": ", description)
-                 : absl::StrCat(NameOf(field, verb), ": ", WithTargetFlags(description));
+        is_of_file ? absl::StrCat(absl::StripPrefix(field, kSpec), ": ", description)
+                   : absl::StrCat(NameOf(field, verb), ": ", WithTargetFlags(description));
     message = absl::StrReplaceAll(message, {{absl::StrCat(field, ": ", description), in_flags}});
   }
   return message;

@@ -11,7 +11,7 @@
 namespace ballpiston::client {
 
 // The message of the error. A field that a flag of the verb sets has the flag's name. With --spec
-// or --again the fields are those of the specification: grid.rho[0].
+// or --again a field of the specification has its path there: grid.rho[0].
 std::string MessageWithFlags(const absl::Status& error, const Verb& verb, const Options& options);
 
 }  // namespace ballpiston::client

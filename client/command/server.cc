@@ -17,14 +17,15 @@ namespace {
 // A server on this machine: its data folder and the command that starts it.
 absl::StatusOr<ServerProgram> ProgramOf(const Options& options) {
   if (options.data_dir.empty()) {
-    if (!options.server.empty()) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          "your commands use the server ", options.server,
-          " (BALLPISTON_SERVER, or server in the config file), not the private server of this "
-          "machine: give --data-dir"));
-    }
     const absl::StatusOr<LocalServer> local = FindLocalServer();
     if (!local.ok()) return local.status();
+    if (!options.server.empty() && options.server != local->Address()) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          "your commands use the server ", options.server,
+          " (BALLPISTON_SERVER, or server in the config file), not the private server: give the "
+          "server's --data-dir; the private server's is ",
+          local->folder));
+    }
     return ServerProgram{local->program, local->folder, {"--listen", local->Address()}};
   }
   std::error_code error;

@@ -334,8 +334,16 @@ const FlagGroup kFigure = {
     "Figure",
     {{"--out", File(To(&Options::out)), "folder for data, scripts and picture"},
      {"--list", Switch(To(&Options::list)), "print the figures' names; draw nothing"},
-     {"--quick", Effort("quick"), "few samples: the figure takes seconds instead of minutes"},
-     {"--full", Effort("full"), "the paper's number of samples or more: minutes to hours"},
+     {"--quick",
+      Effort("quick"),
+      "few samples: the figure takes seconds instead of minutes",
+      "",
+      {"full"}},
+     {"--full",
+      Effort("full"),
+      "the paper's number of samples or more: minutes to hours",
+      "",
+      {"quick"}},
      {"--edit", Switch(To(&Options::edit)),
       "copy the figure's scripts to the --out folder, so that you can edit them; draw nothing"}}};
 
@@ -372,8 +380,9 @@ const FlagGroup kDataFolder = {
     {{"--data-dir", File(To(&Options::data_dir)),
       "the data folder of a server on this machine; by default the private server's folder"},
      {"", Text("ADDRESS", To(&Options::server)),
-      "if it is set, or server in the config file, --data-dir is required: the private server is "
-      "not the usual one",
+      "if this variable or server in the config file is set, give --data-dir: your commands then "
+      "do "
+      "not use the private server",
       "BALLPISTON_SERVER"}}};
 
 const FlagGroup kStart = {"Settings",

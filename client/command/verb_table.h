@@ -20,8 +20,8 @@ struct Flag {
   Value value;
   std::string text;
   std::string variable = "";  // environment variable, used if the flag is not given
-  // The keys of further flags that it replaces where they stand in a weaker source (the command
-  // line is stronger than the environment, and the environment than the config file).
+  // Keys of other flags, which this flag overrides if they come from a weaker source:
+  // --token-file overrides BALLPISTON_TOKEN.
   std::vector<std::string> replaces = {};
 };
 

@@ -54,7 +54,7 @@ absl::Status CheckNewFile(const std::string& flag, const std::string& path) {
 }
 
 void RemoveUnfinishedFiles() {
-  const std::lock_guard lock(AllUnfinished().mutex);
+  AllUnfinished().mutex.lock();
   std::error_code ignored;
   for (const fs::path& part : AllUnfinished().parts) fs::remove(part, ignored);
 }

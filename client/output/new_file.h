@@ -16,7 +16,8 @@ namespace ballpiston::client {
 // those of NewFile::Keep.
 absl::Status CheckNewFile(const std::string& flag, const std::string& path);
 
-// Removes what is written of every file that is not kept yet, because the program ends at once.
+// Deletes the temporary files of every NewFile that is not kept, for a program that ends without
+// destructors. No other thread can make or keep a file afterwards.
 void RemoveUnfinishedFiles();
 
 class NewFile {

@@ -23,8 +23,11 @@ int DecimalExponent(double x) { return static_cast<int>(std::floor(std::log10(st
 // An error below this part of the value is that of rounding: the value is exact.
 constexpr double kRounding = 5e-13;
 constexpr int kDigitsOfExact = 12;
+constexpr int kDigitsWithoutError = 6;
 
-std::string Significant(double x, int digits = 6) { return absl::StrFormat("%.*g", digits, x); }
+std::string Significant(double x, int digits = kDigitsWithoutError) {
+  return absl::StrFormat("%.*g", digits, x);
+}
 
 std::string Fixed(double x, int decimals) { return absl::StrFormat("%.*f", decimals, x); }
 
@@ -55,7 +58,7 @@ MeasuredText Measured(double value, std::optional<double> error, std::optional<d
   const bool is_exact = error && *error >= 0 && *error < kRounding * std::abs(value);
   const bool has_scatter = error && *error > 0 && std::isfinite(*error) && std::isfinite(value);
   if (is_exact || !has_scatter) {
-    const int digits = is_exact ? kDigitsOfExact : 6;
+    const int digits = is_exact ? kDigitsOfExact : kDigitsWithoutError;
     text.value = Significant(value, digits);
     if (error && !is_exact) text.error = Significant(*error);
     if (exact) text.exact = Significant(*exact, digits);

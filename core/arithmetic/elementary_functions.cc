@@ -15,8 +15,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace ballpiston {
 namespace {
@@ -107,6 +109,9 @@ Split Logarithm(double x) {
   return Sum(high.high, whole.low + high.low + (low + series));
 }
 
+// 2^k, for k of normal numbers; std::ldexp calls the C library.
+double PowerOfTwo(int k) { return std::bit_cast<double>(static_cast<int64_t>(k + 1023) << 52); }
+
 // exp(x.high + x.low), x.high <= 700.
 double Exponential(const Split& x) {
   if (x.high < kLeastExponent) return 0;
@@ -117,7 +122,8 @@ double Exponential(const Split& x) {
        1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800},
       r.high);
   const Split sum = Sum(1, r.high);
-  return std::ldexp(sum.high + (sum.low + r.low + r.high * r.high * series), static_cast<int>(k));
+  const double mantissa = sum.high + (sum.low + r.low + r.high * r.high * series);
+  return mantissa * PowerOfTwo(static_cast<int>(k));
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -65,13 +64,13 @@ class LaneOrbits : public OrbitRun {
   LaneOrbits(const PairGeometry& geometry, OrbitSource& source)
       : geometry_(geometry),
         wave_(geometry),
-        constants_(geometry, wave_),
+        flight_constants_(geometry),
+        reach_constants_(geometry, flight_constants_.scale),
         source_(source),
         limit_(source.TimeLimit()),
         longest_wait_(geometry),
         flights_(FlightsInABurst(geometry)),
         steps_(flights_ * kVectors),
-        slots_(kMostSteps + kVectors),
         pistons_(kVectors),
         orbit_(Width() * kVectors) {
     for (size_t lane = orbit_.size(); lane-- > 0;) idle_.push_back(lane);
@@ -96,26 +95,9 @@ class LaneOrbits : public OrbitRun {
   static size_t Width() { return hn::Lanes(D()); }
 
   // Beside a vector of balls, as they are between two bursts.
-  struct Pistons {
-    HWY_ALIGN T phase[kMostLanes<T>];      // in periods
-    HWY_ALIGN T ratio[kMostLanes<T>];      // periods of the piston in a unit of the ball's path
+  struct Pistons : PistonWaves<T> {
     HWY_ALIGN double path[kMostLanes<T>];  // the ball's since the orbit entered
     uint32_t lanes;                        // that have orbits
-  };
-
-  struct Constants {
-    Constants(const PairGeometry& geometry, const PistonWave& wave) : flight(geometry) {
-      const double square = flight.scale * flight.scale;
-      left = static_cast<T>(square * (wave.left() - kSlack<T>));
-      period = static_cast<T>(square * 2 * wave.stroke());
-      phase_at_tip = static_cast<T>((geometry.delta() + 2 * kSlack<T>) / (2 * wave.stroke()));
-      edge = EdgeOfReach<T>(geometry, flight.scale);
-    }
-    FlightConstants<T> flight;
-    T left;  // from here on the piston can reach the ball
-    T edge;
-    T period;
-    T phase_at_tip;  // of the piston
   };
 
   // A lane that has a contact flies on to the end of the burst, and those flights are lost. So a
@@ -141,11 +123,11 @@ class LaneOrbits : public OrbitRun {
   // Only the arcs at the right tip can be in the piston's reach. The ball is on such an arc if a <
   // 0; b tells on which side of the arc the tip is.
   void Fly() {
-    const auto reach = [edge = constants_.edge](const Balls<T>& balls) HWY_ATTR {
+    const auto reach = [edge = reach_constants_.edge](const Balls<T>& balls) HWY_ATTR {
       const TipsInReach tips = TipsOf(balls, edge);
       return balls.a & (tips.below ^ (balls.ab & (tips.below ^ tips.above)));
     };
-    left_cell_ = FlyBurst(constants_.flight, flights_, reach, slots_.data(), in_reach_);
+    burst_.Fly(flight_constants_, flights_, reach);
     ++bursts_;
   }
 
@@ -155,13 +137,13 @@ class LaneOrbits : public OrbitRun {
     const D d;
     for (size_t v = 0; v < kVectors; ++v) {
       Pistons& piston = pistons_[v];
-      const V path = hn::Load(d, slots_[steps_ + v].path);
-      const V phase = PhaseAfter(piston, path);
+      const V path = hn::Load(d, burst_.slot(steps_ + v).path);
+      const V phase = piston.PhaseAfter(path);
       hn::Store(hn::Sub(phase, hn::Floor(phase)), d, piston.phase);
       AddPath(path, piston.path);
-      Copy(slots_[steps_ + v], slots_[v]);
-      hn::Store(hn::Zero(d), d, slots_[v].path);
-      in_reach_[v] = in_reach_[steps_ + v];
+      Copy(burst_.slot(steps_ + v), burst_.slot(v));
+      hn::Store(hn::Zero(d), d, burst_.slot(v).path);
+      burst_.in_reach(v) = burst_.in_reach(steps_ + v);
     }
   }
 
@@ -194,61 +176,20 @@ class LaneOrbits : public OrbitRun {
     }
   }
 
-  static HWY_INLINE V PhaseAfter(const Pistons& piston, V path) {
-    return hn::MulAdd(hn::Load(D(), piston.ratio), path, hn::Load(D(), piston.phase));
-  }
-
   // ---- events of a burst ----
 
   void LookAtFlights() {
-    if (HWY_UNLIKELY(left_cell_)) {
-      ListAll();
+    if (HWY_UNLIKELY(burst_.left_cell())) {
+      burst_.ListAll();
     } else {
-      ListFlightsInReach();
+      burst_.ListFlightsInReach();
     }
-    if (flights_ == kMostFlights) Keep([this](size_t t) { return PistonMayBeNear(t); });
-    Keep([this](size_t t) { return MayHaveMet(t); });
-    for (const FlightOfLanes* f = listed_; f != listed_end_; ++f) {
-      if (HWY_UNLIKELY(left_cell_)) LookForEscapes(f->flight);
-      LookForContacts(f->flight, f->lanes & pistons_[f->flight % kVectors].lanes);
+    if (flights_ == kMostFlights) burst_.Keep([this](size_t t) { return PistonMayBeNear(t); });
+    burst_.Keep([this](size_t t) { return LanesThatMayHaveMet(t); });
+    for (const auto& [t, lanes] : burst_.listed()) {
+      if (HWY_UNLIKELY(burst_.left_cell())) LookForEscapes(t);
+      LookForContacts(t, lanes & pistons_[t % kVectors].lanes);
     }
-  }
-
-  void ListAll() {
-    listed_end_ = listed_;
-    for (uint32_t t = 0; t < steps_; ++t) *listed_end_++ = {t, ~0U};
-  }
-
-  // Lists the flights that began or ended in the piston's reach.
-  void ListFlightsInReach() {
-    const hn::CappedTag<uint16_t, 32> d;
-    listed_end_ = listed_;
-    for (size_t t = 0; t < steps_; t += hn::Lanes(d)) {
-      const auto in_reach =
-          hn::Or(hn::LoadU(d, in_reach_ + t), hn::LoadU(d, in_reach_ + t + kVectors));
-      uint8_t bytes[8] = {};
-      hn::StoreMaskBits(d, hn::Ne(in_reach, hn::Zero(d)), bytes);
-      uint64_t bits;
-      std::memcpy(&bits, bytes, sizeof(bits));
-      if (steps_ - t < hn::Lanes(d)) bits &= (uint64_t{1} << (steps_ - t)) - 1;
-      for (; bits != 0; bits &= bits - 1) {
-        const uint64_t first = hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);
-        *listed_end_++ = {static_cast<uint32_t>(t + first), ~0U};
-      }
-    }
-  }
-
-  // Keeps, of the listed flights, the lanes in which `test` finds a contact. The list is compacted
-  // without a branch, because that branch would often be mispredicted.
-  template <typename Test>
-  HWY_INLINE void Keep(const Test& test) {
-    FlightOfLanes* kept = listed_;
-    for (const FlightOfLanes* f = listed_; f != listed_end_; ++f) {
-      const uint32_t t = f->flight, lanes = test(t) & f->lanes;
-      *kept = {t, lanes};
-      kept += static_cast<size_t>(lanes != 0) | static_cast<size_t>(left_cell_);
-    }
-    listed_end_ = kept;
   }
 
   // A cheaper test before MayHaveMet: the piston turned at its left wall, or began or ended so near
@@ -256,19 +197,30 @@ class LaneOrbits : public OrbitRun {
   HWY_INLINE uint32_t PistonMayBeNear(size_t t) const {
     const D d;
     const Pistons& piston = pistons_[t % kVectors];
-    const V before = PhaseAfter(piston, hn::Load(d, slots_[t].path));
-    const V after = PhaseAfter(piston, hn::Load(d, slots_[t + kVectors].path));
+    const V before = piston.PhaseAfter(hn::Load(d, burst_.slot(t).path));
+    const V after = piston.PhaseAfter(hn::Load(d, burst_.slot(t + kVectors).path));
     const V turns = hn::Floor(after), last = hn::Floor(before);
     const V nearest =
         hn::Min(hn::Sub(before, last), hn::Sub(hn::Add(turns, hn::Set(d, T(1))), after));
     const uint32_t turned = Bits(d, hn::Gt(turns, last));
-    const uint32_t near = Bits(d, hn::Lt(nearest, hn::Set(d, constants_.phase_at_tip)));
-    return (turned | near) & (in_reach_[t] | in_reach_[t + kVectors]) & piston.lanes;
+    const uint32_t near = Bits(d, hn::Lt(nearest, hn::Set(d, reach_constants_.phase_at_tip)));
+    return (turned | near) & burst_.InReachAround(t) & piston.lanes;
+  }
+
+  HWY_INLINE uint32_t LanesThatMayHaveMet(size_t t) const {
+    const D d;
+    const Balls<T>&from = burst_.slot(t), &to = burst_.slot(t + kVectors);
+    const Pistons& piston = pistons_[t % kVectors];
+    const T half_height = flight_constants_.half_height;
+    return MayHaveMet(reach_constants_, PlacesInCell(from, half_height).X(),
+                      PlacesInCell(to, half_height).X(), piston.PhaseAfter(hn::Load(d, from.path)),
+                      piston.PhaseAfter(hn::Load(d, to.path))) &
+           burst_.InReachAround(t) & piston.lanes;
   }
 
   HWY_NOINLINE void LookForEscapes(size_t t) {
     const D d;
-    const V c = hn::Load(d, slots_[t + kVectors].c);
+    const V c = hn::Load(d, burst_.slot(t + kVectors).c);
     const V square = hn::NegMulAdd(c, c, hn::Set(d, T(2)));
     const V left_cell = hn::Add(square, hn::Set(d, kMissedByRounding<T>));
     ForLanes(t, SignBits(d, left_cell) & pistons_[t % kVectors].lanes,
@@ -288,47 +240,6 @@ class LaneOrbits : public OrbitRun {
     for (; lanes != 0; lanes &= lanes - 1) {
       function(first + hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
     }
-  }
-
-  // The distance between ball and piston is a concave function of time, except where the piston
-  // turns at its left wall. So they met if the ball ends beyond the piston, or was in reach when
-  // the piston turned for the first or the last time in the flight.
-  HWY_INLINE uint32_t MayHaveMet(size_t t) const {
-    const D d;
-    const Balls<T>&from = slots_[t], &to = slots_[t + kVectors];
-    const Pistons& piston = pistons_[t % kVectors];
-    const V x0 = Depth(from), x1 = Depth(to), gain = hn::Sub(x1, x0);
-    const V before = PhaseAfter(piston, hn::Load(d, from.path));
-    const V after = PhaseAfter(piston, hn::Load(d, to.path));
-    const V turns = hn::Floor(after), last = hn::Floor(before);
-    const V phase0 = hn::Sub(before, last), phase1 = hn::Sub(after, turns);
-    const V one = hn::Set(d, T(1)), way = hn::Sub(after, before);
-    const V distance =
-        hn::Mul(hn::Min(phase1, hn::Sub(one, phase1)), hn::Set(d, constants_.period));
-    // Times `way`: x0 + gain (1 - phase0)/way, and x1 - gain phase1/way.
-    const V at_first = hn::MulAdd(gain, hn::Sub(one, phase0), hn::Mul(x0, way));
-    const V at_last = hn::NegMulAdd(gain, phase1, hn::Mul(x1, way));
-    const uint32_t beyond = Bits(d, hn::Gt(x1, distance));
-    const uint32_t turned =
-        Bits(d, hn::Gt(turns, last)) & Bits(d, hn::Gt(hn::Max(at_first, at_last), hn::Zero(d)));
-    return (beyond | turned) & (in_reach_[t] | in_reach_[t + kVectors]) & piston.lanes;
-  }
-
-  // The distance of the balls to the right of the piston's left wall, plus kSlack; scaled.
-  HWY_INLINE V Depth(const Balls<T>& balls) const {
-    const D d;
-    const V h = hn::Load(d, balls.h), e = hn::Load(d, balls.e), c = hn::Load(d, balls.c),
-            s = hn::Load(d, balls.s);
-    const V along =
-        hn::NegMulAdd(c, e, hn::MulSub(s, h, hn::Set(d, constants_.flight.half_height)));
-    const V across = hn::MulAdd(c, h, hn::Mul(s, e));
-    const V sum = hn::Add(NegatedIn(balls.a, along), NegatedIn(balls.a ^ balls.ab, across));
-    return hn::Sub(sum, hn::Set(d, constants_.left));
-  }
-
-  static HWY_INLINE V NegatedIn(uint32_t lanes, V v) {
-    const uint8_t bytes[8] = {static_cast<uint8_t>(lanes), static_cast<uint8_t>(lanes >> 8)};
-    return hn::IfThenElse(hn::LoadMaskBits(D(), bytes), hn::Neg(v), v);
   }
 
   static Contact Escape() {
@@ -356,8 +267,8 @@ class LaneOrbits : public OrbitRun {
     const size_t i = InVector(lane);
     const Pistons& piston = pistons_[VectorOf(lane)];
     const LaneOrbit& orbit = orbit_[lane];
-    const Balls<T>& from = slots_[t];
-    const double inverse = 1 / constants_.flight.scale;
+    const Balls<T>& from = burst_.slot(t);
+    const double inverse = 1 / flight_constants_.scale;
     const LaneFrame frame = Scaled(from.Frame(i), inverse);
     Contact contact;
     PairState& state = contact.state;
@@ -366,7 +277,7 @@ class LaneOrbits : public OrbitRun {
     state.direction *= OneOverLength(state.direction);
     const double phase = PhaseOf(piston, i, from.path[i]) * 2 * wave_.stroke();
     const double ratio = orbit.piston_speed / orbit.ball_speed;
-    const double length = (slots_[t + kVectors].path[i] - from.path[i]) * inverse;
+    const double length = (burst_.slot(t + kVectors).path[i] - from.path[i]) * inverse;
     const std::optional<PistonWave::Meeting> meeting = wave_.FirstMeeting(
         phase, ratio, state.position.x() - wave_.left(), state.direction.x(), length);
     if (!meeting) return std::nullopt;
@@ -466,19 +377,20 @@ class LaneOrbits : public OrbitRun {
     const size_t v = VectorOf(lane), i = InVector(lane);
     const double ball_speed = std::max(state.ball_speed, kAtRest);
     const double piston_speed = std::fabs(state.piston_velocity);
-    const double scale = constants_.flight.scale, period = 2 * wave_.stroke();
+    const double scale = flight_constants_.scale, period = 2 * wave_.stroke();
     orbit_[lane] = {.orbit = start.orbit,
                     .ball_speed = ball_speed,
                     .piston_speed = piston_speed,
                     .entry_phase = wave_.Phase(state),
                     .entry_burst = bursts_,
                     .longest_wait = HasTimeLimit() ? limit_ : longest_wait_.From(state)};
-    Balls<T>& balls = slots_[v];
+    Balls<T>& balls = burst_.slot(v);
     balls.Set(i, Scaled(FrameOfBall(state.position, state.direction), scale));
     balls.path[i] = 0;
     const uint32_t bit = uint32_t{1} << i;
     const bool in_reach = state.position.x() >= wave_.left() - kSlack<T>;
-    in_reach_[v] = static_cast<uint16_t>(in_reach ? in_reach_[v] | bit : in_reach_[v] & ~bit);
+    uint16_t& lanes = burst_.in_reach(v);
+    lanes = static_cast<uint16_t>(in_reach ? lanes | bit : lanes & ~bit);
     Pistons& piston = pistons_[v];
     piston.phase[i] = static_cast<T>(orbit_[lane].entry_phase / period);
     piston.ratio[i] = static_cast<T>(piston_speed / ball_speed / (scale * period));
@@ -500,7 +412,7 @@ class LaneOrbits : public OrbitRun {
       const Pistons& piston = pistons_[VectorOf(lane)];
       if ((piston.lanes >> InVector(lane) & 1) == 0) continue;
       const double time =
-          piston.path[InVector(lane)] / constants_.flight.scale / orbit_[lane].ball_speed;
+          piston.path[InVector(lane)] / flight_constants_.scale / orbit_[lane].ball_speed;
       if (time > orbit_[lane].longest_wait) Report(lane, Overdue(time));
     }
     Refill();
@@ -508,22 +420,14 @@ class LaneOrbits : public OrbitRun {
 
   PairGeometry geometry_;
   PistonWave wave_;
-  Constants constants_;
+  FlightConstants<T> flight_constants_;
+  ReachConstants<T> reach_constants_;
   OrbitSource& source_;
   double limit_;  // time without a collision
   LongestWait longest_wait_;
   size_t flights_, steps_;  // of a lane, and of a vector, in a burst
-  std::vector<Balls<T>> slots_;
+  LaneBurst<T> burst_;
   std::vector<Pistons> pistons_;
-  // By slot, the lanes whose ball is in the piston's reach; and room for a vector beyond.
-  uint16_t in_reach_[kMostSteps + kVectors + 32] = {};
-  // Flights of the last burst to look at, and the lanes that may have met the piston in them.
-  struct FlightOfLanes {
-    uint32_t flight, lanes;
-  };
-  FlightOfLanes listed_[kMostSteps];
-  FlightOfLanes* listed_end_ = listed_;
-  bool left_cell_ = false;  // whether a ball left its cell in that burst
   uint64_t bursts_ = 0;
   std::vector<LaneOrbit> orbit_;  // by lane
   std::vector<size_t> idle_;      // lanes without an orbit

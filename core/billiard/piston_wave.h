@@ -83,20 +83,6 @@ class PistonWave {
     return std::max(2 * stroke_ - x - phase, 0.0);
   }
 
-  // Whether FirstMeeting may find a meeting: a cheaper test, for balls that seldom meet the piston.
-  // The distance between ball and piston is a concave function of time, except where the piston
-  // turns at its left wall. So they meet if the ball ends beyond the piston, or if the ball is
-  // right of that wall when the piston turns there for the first or the last time. `slack` is a
-  // tolerance of length for rounding.
-  bool MayMeet(double phase, double ratio, double x, double ux, double length, double slack) const {
-    const double period = 2 * stroke_, after = phase + ratio * length, end = x + ux * length;
-    const double last = Reduced(after);
-    const bool ends_beyond = end > std::min(last, period - last) - slack;
-    const double at_first = x * ratio + ux * (period - phase), at_last = end * ratio - ux * last;
-    return ends_beyond |
-           ((after >= period - slack) & (std::max(at_first, at_last) > -slack * ratio));
-  }
-
   // The number of walls that the piston hits while it goes `way` further; at most 2^63.
   uint64_t Hits(double phase, double way) const {
     const double hits = std::floor((phase + way) / stroke_) - std::floor(phase / stroke_);

@@ -5,8 +5,44 @@
 #include <cmath>
 #include <numbers>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/conductivity/contact_currents.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace ballpiston {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// The weighted sum of four nodes of four rows, all values of a node at once.
+void Interpolate(const double* first, size_t row_length, const double* row_weights,
+                 const double* weights, double* sums) {
+  const hn::CappedTag<double, 8> d;
+  for (size_t value = 0; value < 8; value += hn::Lanes(d)) {
+    auto sum = hn::Zero(d);
+    for (size_t row = 0; row < 4; ++row) {
+      const double* const nodes = first + row * row_length + value;
+      auto of_row = hn::Mul(hn::Set(d, weights[0]), hn::LoadU(d, nodes));
+      for (size_t k = 1; k < 4; ++k) {
+        of_row = hn::MulAdd(hn::Set(d, weights[k]), hn::LoadU(d, nodes + 8 * k), of_row);
+      }
+      sum = hn::MulAdd(hn::Set(d, row_weights[row]), of_row, sum);
+    }
+    hn::StoreU(sum, d, sums + value);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace ballpiston
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace ballpiston {
 namespace {
+
+HWY_EXPORT(Interpolate);
 
 using Values = TestFunction::Values;
 
@@ -62,12 +98,14 @@ class Changes {
 
 // The interpolation of a value between nodes: the first of four nodes, and their weights.
 struct Stencil {
-  Stencil(double at, size_t count)
-      : first(static_cast<size_t>(
-            std::clamp(std::floor(at) - 1, 0.0, static_cast<double>(count) - 4))) {
+  Stencil(double at, size_t count) {
+    const auto last = static_cast<double>(count - 1);
+    const auto below = static_cast<size_t>(std::min(at, last));
+    first = std::clamp<size_t>(below, 1, count - 3) - 1;
     const double t = at - static_cast<double>(first);
-    weights = {-(t - 1) * (t - 2) * (t - 3) / 6, t * (t - 2) * (t - 3) / 2,
-               -t * (t - 1) * (t - 3) / 2, t * (t - 1) * (t - 2) / 6};
+    const double inner = (t - 1) * (t - 2), outer = t * (t - 3);
+    weights = {-inner * (t - 3) * (1.0 / 6), outer * (t - 2) * 0.5, -outer * (t - 1) * 0.5,
+               inner * t * (1.0 / 6)};
   }
 
   size_t first;
@@ -133,15 +171,12 @@ ContactCurrents ContactCurrentsTable::At(double ball_energy, double piston_energ
   const double y = std::sqrt(std::fabs(ball_energy - piston_energy) / total);
   const Stencil root(std::sqrt(total) * kRootsInOne, kRoots), place(y * kPlacesInOne, kPlaces);
   const bool is_piston_faster = piston_energy > ball_energy;
-  Node sum = {};
-  for (size_t i = 0; i < 4; ++i) {
-    const Node* const row = &nodes_[NodeAt(is_piston_faster, root.first + i, place.first)];
-    for (size_t k = 0; k < 4; ++k) {
-      const double weight = root.weights[i] * place.weights[k];
-      for (size_t value = 0; value < kValues; ++value) sum[value] += weight * row[k][value];
-    }
-  }
+  const Node& first = nodes_[NodeAt(is_piston_faster, root.first, place.first)];
+  Node sum;
+  HWY_DYNAMIC_DISPATCH(Interpolate)
+  (first.data(), kPlaces * kValues, root.weights.data(), place.weights.data(), sum.data());
   return {sum[0], sum[1], {sum[2], sum[3]}, {sum[4], sum[5]}};
 }
 
 }  // namespace ballpiston
+#endif  // HWY_ONCE

@@ -16,8 +16,8 @@
 // kContactCurrentsError. Properties, each with the test that bears its name:
 //   1. AgreeWithTheirDefinition.  2. TableErrorIsWithinItsBound.  3. TableTakesEveryEnergy.
 //
-// Uses only +, -, *, / and sqrt, so the bits are the same everywhere. Immutable; safe to share
-// between threads.
+// The table's lookups run in vector lanes: their bits are the same on every target with fused
+// multiply-add. Immutable; safe to share between threads.
 #ifndef BALLPISTON_CORE_CONDUCTIVITY_CONTACT_CURRENTS_H_
 #define BALLPISTON_CORE_CONDUCTIVITY_CONTACT_CURRENTS_H_
 
@@ -55,7 +55,7 @@ class ContactCurrentsTable {
   ContactCurrents At(double ball_energy, double piston_energy) const;
 
  private:
-  static constexpr size_t kValues = 2 + 2 * TestFunction::kTerms;
+  static constexpr size_t kValues = 8;  // six in use: the vectors of all processors divide eight
   using Node = std::array<double, kValues>;
   size_t NodeAt(bool is_piston_faster, size_t root, size_t place) const;
 

@@ -34,9 +34,9 @@ bool HasRelaxationTime(const std::optional<double>& epsilon) {
 
 std::vector<std::string> RemarksOnDecay(const std::optional<double>& epsilon) {
   if (HasRelaxationTime(epsilon)) return {};
-  return {absl::StrCat("there is no relaxation_time: for epsilon between ", kNoDecayFrom, " and ",
-                       kNoDecayTo,
-                       " the mean energy does not decay towards 1/6, near which it starts")};
+  return {absl::StrCat(
+      "there is no relaxation_time for epsilon between ", kNoDecayFrom, " and ", kNoDecayTo,
+      ": the start is close to 1/6, and the mean energy first moves away from 1/6")};
 }
 
 double CollisionsPerOrbit(const PointParameters& point) {

@@ -243,24 +243,22 @@ void CheckGasGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) 
   }
 }
 
-// Factors measured with chains of 8, 100 and 10^4 cells and with 16x16, at deltas from 0.025 to
-// 0.2. In lanes a wall hit costs as much as four of the pair's, and an exchange, after which two
-// balls fly again, as much as a collision of the pair and 900 wall hits. A hit of a thermal wall,
-// after which one ball flies again, costs 1000 wall hits. An event of the reference costs as much
-// as 2.6 of the pair's events with 16 bodies in the queue, and 6.6 with 20,000. An exchange of the
-// jump process costs as much as 2.6 of the pair's jumps, which are measured with their
-// correlations.
+// Factors measured with chains of 1 to 10^4 cells and lattices to 1000x1000, at deltas from 0.0125
+// to 0.2. In lanes a wall hit costs as much as 2.6 of the pair's. An exchange, after which two
+// balls fly again, costs as much as a collision of the pair and 345 wall hits, and 360 more shared
+// by the replicas that run together, whose balls fly together. A hit of a thermal wall, after which
+// one ball flies again, costs 110 wall hits. An event of the reference costs as much as 2.6 of the
+// pair's events with 16 bodies in the queue, and 6.6 with 20,000. An exchange of the jump process
+// costs as much as 2.1 of the pair's jumps, which are measured with their correlations.
 //
-// Further time in lanes, measured from rho = 0.501 to 0.70705 and with up to 10^6 cells: each visit
-// of a ball to a piston's reach costs 100 wall hits, and there are about stroke/delta visits for an
-// exchange. In a gas beyond the processor's caches an exchange costs up to 16,000 more, and the
-// start of a ball 1500.
+// Each visit of a ball to a piston's reach costs 6 wall hits, and there are about stroke/delta
+// visits for an exchange. In a gas beyond the processor's caches an exchange costs up to 2300 more.
 SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time) {
   const auto balls = static_cast<double>(geometry.balls());
   const auto pistons = static_cast<double>(geometry.pistons());
   const double exchanges =
       static_cast<double>(geometry.contacts()) * InfiniteGasExchangeRate(geometry, 1) * time;
-  if (model == Model::kMarkov) return {.starts = balls, .jumps = 2.6 * exchanges, .together = 1};
+  if (model == Model::kMarkov) return {.starts = balls, .jumps = 2.1 * exchanges, .together = 1};
   const HitRates rates = HitRatesOf(geometry.pair());
   const double ball_hits = rates.of_a_ball * balls * time;
   if (model == Model::kBilliardReference) {
@@ -275,13 +273,12 @@ SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time) 
   constexpr double kBeyondTheCaches = 7e5;  // balls
   const double uncached = balls / (balls + kBeyondTheCaches);
   const double visits = geometry.pair().stroke() / geometry.pair().delta();
-  SampleWork work = {
-      .ball_wall = 4 * ball_hits + 900 * exchanges + 1000 * thermal_hits,
-      .collisions = exchanges,
-      .starts = balls,
-      .delays = exchanges * (100 * visits + 16'000 * uncached) + 1500 * uncached * balls};
+  SampleWork work = {.ball_wall = 2.6 * ball_hits + 345 * exchanges + 110 * thermal_hits,
+                     .collisions = exchanges,
+                     .starts = balls};
   const ChunkPlan plan(kMaxSamples, Engine::kLanes, work.Events());
   work.together = static_cast<double>(TogetherInLanes(geometry.balls(), plan, 0));
+  work.delays = exchanges * (360 / work.together + 6 * visits + 2300 * uncached);
   return work;
 }
 

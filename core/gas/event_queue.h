@@ -10,14 +10,16 @@
 
 namespace ballpiston {
 
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
+
 class EventQueue {
  public:
-  // All bodies at infinity.
+  // No body has an event.
   explicit EventQueue(size_t bodies) {
     heap_.reserve(bodies);
     place_.reserve(bodies);
     for (uint32_t i = 0; i < bodies; ++i) {
-      heap_.push_back({std::numeric_limits<double>::infinity(), i});
+      heap_.push_back({kNever, i});
       place_.push_back(i);
     }
   }
@@ -42,6 +44,7 @@ class EventQueue {
   void Set(size_t body, double time) {
     const Entry entry = {time, static_cast<uint32_t>(body)};
     const size_t place = place_[body];
+    if (heap_[place].time == time) return;
     if (place > 0 && entry.IsBefore(heap_[(place - 1) / kChildren])) {
       Rise(place, entry);
     } else {

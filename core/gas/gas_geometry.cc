@@ -16,34 +16,30 @@ int64_t GasGeometry::pistons() const {
   return edges_ * shape_.rows + (shape_.is_lattice ? balls() : 0);
 }
 
-// The edge on the left of column c is edge c; the edge below row r is edge r.
+// The edge on the left of column c is edge c; the edge below row r is edge r. Right and up are one
+// edge further than left and down. The jump process calls this with random arguments, so there are
+// no branches and no division.
 int64_t GasGeometry::PistonOf(int64_t ball, Direction direction) const {
-  const int64_t column = ball % shape_.columns, row = ball / shape_.columns;
-  const int64_t vertical = edges_ * shape_.rows;
-  switch (direction) {
-    case Direction::kRight:
-      return row * edges_ + (column + 1) % edges_;
-    case Direction::kLeft:
-      return row * edges_ + column;
-    case Direction::kUp:
-      return vertical + (row + 1) % shape_.rows * shape_.columns + column;
-    case Direction::kDown:
-      break;
-  }
-  return vertical + ball;
+  const int64_t row = Quotient(ball, per_column_), column = ball - row * shape_.columns;
+  const int64_t further = SignOf(direction) > 0 ? 1 : 0;
+  const int64_t edge = column + further == edges_ ? 0 : column + further;
+  const int64_t above = row + further == shape_.rows ? 0 : row + further;
+  const int64_t along_y = edges_ * shape_.rows + above * shape_.columns + column;
+  return ballpiston::IsAlongX(direction) ? row * edges_ + edge : along_y;
 }
 
 int64_t GasGeometry::BallOf(int64_t piston, Direction direction) const {
-  if (!IsAlongX(piston)) {
-    const int64_t above = piston - edges_ * shape_.rows;
-    const int64_t row = above / shape_.columns, column = above % shape_.columns;
-    if (direction == Direction::kDown) return above;
-    return (row + shape_.rows - 1) % shape_.rows * shape_.columns + column;
+  const int64_t back = SignOf(direction) > 0 ? 1 : 0;
+  const int64_t along_x = edges_ * shape_.rows;
+  if (piston >= along_x) {
+    const int64_t ball = piston - along_x - back * shape_.columns;
+    return ball < 0 ? ball + balls() : ball;
   }
-  const int64_t row = piston / edges_, edge = piston % edges_;
-  const int64_t column = direction == Direction::kLeft ? edge : edge - 1;
-  if (ends_ == GasEnds::kReservoirs && (column < 0 || column >= shape_.columns)) return kNoBall;
-  return row * shape_.columns + (column + shape_.columns) % shape_.columns;
+  const int64_t row = Quotient(piston, per_edge_), column = piston - row * edges_ - back;
+  if (column < 0 || column == shape_.columns) {
+    return ends_ == GasEnds::kReservoirs ? kNoBall : (row + 1) * shape_.columns - 1;
+  }
+  return row * shape_.columns + column;
 }
 
 double GasGeometry::PositionOfPiston(int64_t piston) const {

@@ -74,12 +74,21 @@ class GasGeometry {
       : pair_(pair),
         shape_(shape),
         ends_(ends),
-        edges_(shape.columns + (ends == GasEnds::kReservoirs ? 1 : 0)) {}
+        edges_(shape.columns + (ends == GasEnds::kReservoirs ? 1 : 0)),
+        per_column_(1.0 / static_cast<double>(shape.columns)),
+        per_edge_(1.0 / static_cast<double>(edges_)) {}
+
+  // n/d, rounded down, for whole n below 2^50/d.
+  static int64_t Quotient(int64_t n, double inverse_of_d) {
+    return static_cast<int64_t>((static_cast<double>(n) + 0.5) * inverse_of_d);
+  }
 
   PairGeometry pair_;
   GasShape shape_;
   GasEnds ends_;
   int64_t edges_;  // of a row, with a piston that moves along x
+  double per_column_;
+  double per_edge_;
 };
 
 // The components of a vector of the cell after the cell is turned until `direction` points to the

@@ -1,6 +1,6 @@
 #include "core/gas/jump_current.h"
 
-#include "core/conductivity/contact_matrix.h"
+#include "core/conductivity/conductivity.h"
 #include "core/gas/gas_meter.h"
 #include "core/statistics/lag_products.h"
 

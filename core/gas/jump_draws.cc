@@ -1,5 +1,8 @@
 #include "core/gas/jump_draws.h"
 
+#include <bit>
+#include <numbers>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/gas/jump_draws.cc"
 #include <hwy/foreach_target.h>
@@ -58,12 +61,31 @@ void DrawAttempts(const JumpKinds& kinds, CounterRandom& random, JumpAttempts& a
   FindAttempts(kinds, attempts);
 }
 
-void DrawWaits(CounterRandom& random, JumpWaits& waits) {
+// With the weight of the cosine, the sine is uniform.
+HWY_INLINE V CosineOfSine(V sine) {
+  const V one = hn::Set(D(), 1.0);
+  return hn::Sqrt(hn::Mul(hn::Sub(one, sine), hn::Add(one, sine)));
+}
+
+// cos(pi turn) = sin(pi (1/2 - turn)), for turn in [0, 1].
+HWY_INLINE V CosineOfHalfTurn(V turn) {
   const D d;
-  uint64_t words[kJumpDraws];
+  const V angle = hn::Mul(hn::Sub(hn::Set(d, 0.5), turn), hn::Set(d, std::numbers::pi));
+  return SineOfQuarterTurn(d, angle);
+}
+
+// Angle and waiting time share a word: each has half of it to itself, and the other's half as
+// further bits.
+void DrawProposals(CounterRandom& random, JumpProposals& proposals) {
+  const D d;
+  uint64_t words[kJumpDraws], turned[kJumpDraws];
   DrawWords(random, words);
+  for (size_t i = 0; i < kJumpDraws; ++i) turned[i] = std::rotl(words[i], 32);
   for (size_t i = 0; i < kJumpDraws; i += hn::Lanes(d)) {
-    hn::StoreU(MinusLog(d, UniformOf(d, words + i)), d, waits.data() + i);
+    const V angle = UniformOf(d, words + i);
+    hn::StoreU(CosineOfSine(angle), d, proposals.cosines[0] + i);
+    hn::StoreU(CosineOfHalfTurn(angle), d, proposals.cosines[1] + i);
+    hn::StoreU(MinusLog(d, UniformOf(d, turned + i)), d, proposals.waits + i);
   }
 }
 
@@ -76,7 +98,7 @@ namespace ballpiston {
 
 HWY_EXPORT(FindAttempts);
 HWY_EXPORT(DrawAttempts);
-HWY_EXPORT(DrawWaits);
+HWY_EXPORT(DrawProposals);
 
 void FindJumpAttempts(const JumpKinds& kinds, JumpAttempts& attempts) {
   HWY_DYNAMIC_DISPATCH(FindAttempts)(kinds, attempts);
@@ -86,8 +108,8 @@ void DrawJumpAttempts(const JumpKinds& kinds, CounterRandom& random, JumpAttempt
   HWY_DYNAMIC_DISPATCH(DrawAttempts)(kinds, random, attempts);
 }
 
-void DrawJumpWaits(CounterRandom& random, JumpWaits& waits) {
-  HWY_DYNAMIC_DISPATCH(DrawWaits)(random, waits);
+void DrawJumpProposals(CounterRandom& random, JumpProposals& proposals) {
+  HWY_DYNAMIC_DISPATCH(DrawProposals)(random, proposals);
 }
 
 }  // namespace ballpiston

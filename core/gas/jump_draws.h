@@ -1,6 +1,7 @@
-// The random numbers of a gas's jump process: attempts and waiting times, drawn in advance, many at
-// once in vector lanes. An attempt chooses a body, and the least speed at which the body is
-// accepted. The bits are the same on every target with fused multiply-add.
+// The random numbers of a gas's jump process, drawn in advance, many at once in vector lanes. An
+// attempt chooses a body, and the least speed at which the body proposes an exchange. A proposal
+// has an angle of the ball, and a time since the last proposal. The bits are the same on every
+// target with fused multiply-add.
 #ifndef BALLPISTON_CORE_GAS_JUMP_DRAWS_H_
 #define BALLPISTON_CORE_GAS_JUMP_DRAWS_H_
 
@@ -35,9 +36,14 @@ void DrawJumpAttempts(const JumpKinds& kinds, CounterRandom& random, JumpAttempt
 // Computes the attempts again from the same words, after the kinds have changed.
 void FindJumpAttempts(const JumpKinds& kinds, JumpAttempts& attempts);
 
-// Exponentially distributed with mean 1.
-using JumpWaits = std::array<double, kJumpDraws>;
-void DrawJumpWaits(CounterRandom& random, JumpWaits& waits);
+// Cosines of the angle between a ball's direction and that to the piston: [0] for a proposal of the
+// ball, whose angles have a weight in proportion to a positive cosine; [1] for one of the piston,
+// whose angles are uniform. A proposal uses one of them. The waiting times have mean 1.
+struct JumpProposals {
+  double cosines[2][kJumpDraws];
+  double waits[kJumpDraws];
+};
+void DrawJumpProposals(CounterRandom& random, JumpProposals& proposals);
 
 }  // namespace ballpiston
 

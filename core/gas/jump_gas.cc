@@ -6,8 +6,6 @@
 #include <numbers>
 #include <utility>
 
-#include "core/sampling/direction.h"
-
 namespace ballpiston {
 namespace {
 
@@ -16,8 +14,11 @@ namespace {
 constexpr double kBallsRatePerPiston = 1 / std::numbers::pi;
 constexpr double kPistonsRate = 2 * 0.5;
 
-constexpr double kNanosecondsOfAnExchange = 200;
+constexpr double kNanosecondsOfAnExchange = 100;
 constexpr double kNanosecondsOfABody = 10;
+
+// The rates are found again after as many exchanges as there are bodies, or after:
+constexpr size_t kFewestExchanges = 64;
 
 }  // namespace
 
@@ -106,47 +107,60 @@ void JumpGas::SetSpeed(size_t body, double speed) {
 
 bool JumpGas::AdvanceTo(double time, GasMeter& meter, Pauses& pauses) {
   while (time_ <= time) {
-    const Proposal& p = next_;
-    const double ball = std::sqrt(p.v3 * p.v3 + p.across * p.across);
-    double piston_energy = p.v1 * p.v1 / 2;
-    SetSpeed(static_cast<size_t>(p.ball), ball);
-    if (walls_.Has(p.piston)) {
-      piston_energy = walls_.TemperatureAt(p.piston) / 2;
-    } else {
-      SetSpeed(balls_ + static_cast<size_t>(p.piston), std::fabs(p.v1));
-    }
-    meter.Exchange({time_, p.ball, p.piston, p.direction, ball * ball / 2, piston_energy});
-    if (++changes_ > speeds_.size()) FindRates();
+    Exchange(meter);
+    if (++changes_ > std::max(speeds_.size(), kFewestExchanges)) FindRates();
     FindNext();
     if (pauses.After(kNanosecondsOfAnExchange)) return false;
   }
   return true;
 }
 
+void JumpGas::Exchange(GasMeter& meter) {
+  const auto& [ball, piston, direction, v1, v3] = next_;
+  const double speed = speeds_[static_cast<size_t>(ball)];
+  const double ball_energy = (v3 * v3 + (speed - v1) * (speed + v1)) / 2;
+  double piston_energy = v1 * v1 / 2;
+  SetSpeed(static_cast<size_t>(ball), std::sqrt(2 * ball_energy));
+  if (walls_.Has(piston)) {
+    piston_energy = walls_.TemperatureAt(piston) / 2;
+  } else {
+    SetSpeed(balls_ + static_cast<size_t>(piston), std::fabs(v1));
+  }
+  meter.Exchange({time_, ball, piston, direction, ball_energy, piston_energy});
+}
+
+// The lowest bits of the word that chose the body choose the contact; they are still unused. What
+// is left of the attempt's least speed decides, because it is uniform below the body's speed.
 void JumpGas::FindNext() {
   double wait = 0;
-  do {
-    FindProposal();
-    wait += DrawWait();
-  } while (!next_.is_accepted);
+  for (;;) {
+    const size_t attempt = NextAttempt();
+    if (used_proposals_ == kJumpDraws) {
+      DrawJumpProposals(random_, proposals_);
+      used_proposals_ = 0;
+    }
+    const size_t i = used_proposals_++;
+    const auto body = static_cast<size_t>(attempts_.bodies[attempt]);
+    const uint64_t bits = attempts_.words[attempt];
+    if (body < balls_) {
+      ByBall(static_cast<int64_t>(body), bits, proposals_.cosines[0][i]);
+    } else {
+      ByPiston(static_cast<int64_t>(body - balls_), bits, proposals_.cosines[1][i]);
+    }
+    wait += proposals_.waits[i];
+    const double bound = std::max(next_.v1, 0.0) + std::max(-next_.v3, 0.0);
+    const double least = attempts_.least_speeds[attempt];
+    if (least * bound < speeds_[body] * (next_.v1 - next_.v3)) break;
+  }
   time_ += wait / (density_ * rate_);
 }
 
-double JumpGas::DrawWait() {
-  if (used_waits_ == kJumpDraws) {
-    DrawJumpWaits(random_, waits_);
-    used_waits_ = 0;
-  }
-  return waits_[used_waits_++];
-}
-
-// The lowest bits of the word that chose the body choose the contact; they are still unused.
-void JumpGas::FindProposal() {
+// The next one at which the body proposes an exchange.
+size_t JumpGas::NextAttempt() {
   for (;;) {
     if (used_attempts_ == kJumpDraws) DrawAttempts();
     const size_t i = used_attempts_++;
-    const auto body = static_cast<size_t>(attempts_.bodies[i]);
-    if (attempts_.least_speeds[i] < speeds_[body]) return Propose(body, attempts_.words[i]);
+    if (attempts_.least_speeds[i] < speeds_[static_cast<size_t>(attempts_.bodies[i])]) return i;
   }
 }
 
@@ -157,35 +171,22 @@ void JumpGas::DrawAttempts() {
   used_attempts_ = 0;
 }
 
-void JumpGas::Propose(size_t body, uint64_t bits) {
-  if (body < balls_) {
-    ByBall(static_cast<int64_t>(body), bits);
-  } else {
-    ByPiston(static_cast<int64_t>(body - balls_), bits);
-  }
-  Decide();
-}
-
-// The angles with v1 > 0 have the weight v1, so the other component is uniform. The piston's
-// velocity has either sign.
-void JumpGas::ByBall(int64_t ball, uint64_t bits) {
-  const double speed = speeds_[static_cast<size_t>(ball)];
+// The piston's velocity has either sign.
+void JumpGas::ByBall(int64_t ball, uint64_t bits, double cosine) {
   const int way = static_cast<int>(bits >> 1) & (geometry_.directions() - 1);  // of 2 or 4
   const Direction direction = geometry_.DirectionAt(way);
-  const double across = random_.Uniform();
   const int64_t piston = geometry_.PistonOf(ball, direction);
+  const double speed = speeds_[balls_ + static_cast<size_t>(piston)];
   next_ = {.ball = ball,
            .piston = piston,
            .direction = direction,
-           .v1 = speed * std::sqrt((1 - across) * (1 + across)),
-           .across = speed * across,
-           .v3 = speeds_[balls_ + static_cast<size_t>(piston)]};
-  if ((bits & 1) != 0) next_.v3 = -next_.v3;
+           .v1 = speeds_[static_cast<size_t>(ball)] * cosine,
+           .v3 = (bits & 1) != 0 ? -speed : speed};
   if (walls_.Has(piston)) next_.v3 = DrawThermalVelocity(walls_.TemperatureAt(piston), random_);
 }
 
 // The piston moves toward the ball. An outermost piston has a speed from the flux law.
-void JumpGas::ByPiston(int64_t piston, uint64_t bits) {
+void JumpGas::ByPiston(int64_t piston, uint64_t bits, double cosine) {
   const Direction direction = geometry_.DirectionTo(piston);
   Direction side = (bits & 1) != 0 ? direction : Opposite(direction);
   double speed = speeds_[balls_ + static_cast<size_t>(piston)];
@@ -194,18 +195,11 @@ void JumpGas::ByPiston(int64_t piston, uint64_t bits) {
     speed = DrawFluxSpeed(walls_.TemperatureAt(piston), random_);
   }
   const int64_t ball = geometry_.BallOf(piston, side);
-  const Eigen::Vector2d velocity = UniformDirection(random_) * speeds_[static_cast<size_t>(ball)];
   next_ = {.ball = ball,
            .piston = piston,
            .direction = side,
-           .v1 = velocity.x(),
-           .across = velocity.y(),
+           .v1 = speeds_[static_cast<size_t>(ball)] * cosine,
            .v3 = -speed};
-}
-
-void JumpGas::Decide() {
-  const double proposed = std::max(next_.v1, 0.0) + std::max(-next_.v3, 0.0);
-  next_.is_accepted = random_.Uniform() * proposed < next_.v1 - next_.v3;
 }
 
 }  // namespace ballpiston

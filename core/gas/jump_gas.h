@@ -54,26 +54,22 @@ class JumpGas {
 
  private:
   // An exchange. In the direction in which the ball sees the piston, v1 is the ball's velocity and
-  // v3 the piston's; `across` is the ball's other component.
+  // v3 the piston's.
   struct Proposal {
     int64_t ball = 0;
     int64_t piston = 0;
     Direction direction = Direction::kRight;
     double v1 = 0;
-    double across = 0;
     double v3 = 0;
-    bool is_accepted = false;
   };
 
   double SpeedAtStart(size_t body, const GasState& start) const;
+  void Exchange(GasMeter& meter);
   void FindNext();
-  void FindProposal();
+  size_t NextAttempt();
   void DrawAttempts();
-  void Propose(size_t body, uint64_t bits);
-  void ByBall(int64_t ball, uint64_t bits);
-  void ByPiston(int64_t piston, uint64_t bits);
-  void Decide();
-  double DrawWait();
+  void ByBall(int64_t ball, uint64_t bits, double cosine);
+  void ByPiston(int64_t piston, uint64_t bits, double cosine);
   double SpeedOfOutermost(int64_t piston) const;
   double RatePerSpeed(size_t body) const;
   void SetSpeed(size_t body, double speed);
@@ -93,8 +89,8 @@ class JumpGas {
   size_t changes_ = 0;          // since the rates were found
   JumpAttempts attempts_ = {};  // drawn in advance, so that the speeds can be prefetched
   size_t used_attempts_ = kJumpDraws;
-  JumpWaits waits_ = {};
-  size_t used_waits_ = kJumpDraws;
+  JumpProposals proposals_ = {};
+  size_t used_proposals_ = kJumpDraws;
   double time_ = 0;  // of the next exchange
   Proposal next_ = {};
 };

@@ -1,16 +1,17 @@
 // Many gases in vector lanes. Between its exchanges a ball's path does not depend on the pistons.
-// In each time window all balls fly ahead, many at once (lane_visits.h). Every visit of a ball
-// to a piston's reach is compared with the piston's position, a triangle wave in time. The first
-// visit in which they meet is the ball's next contact. A queue holds the window's contacts in the
-// order of time. An exchange changes the path of its ball and the motion of its piston. So this
+// In each time window all balls of a gas fly ahead, many at once (lane_visits.h). Every visit of a
+// ball to a piston's reach is compared with the piston's position, a triangle wave in time. The
+// first visit in which they meet is the ball's next contact. A queue holds the window's contacts in
+// the order of time. An exchange changes the path of its ball and the motion of its piston. So this
 // ball, and the other ball of the piston, fly the rest of the window again. All other contacts stay
 // valid.
 //
-// Replicas are independent gases of one geometry; small gases fill the lanes together. A replica's
-// numbers do not depend on the number of replicas or on the windows.
+// Replicas are independent gases of one geometry. Each goes one step, to its next event or to its
+// next window; then the balls that have to fly in all replicas fly together. So small gases fill
+// the lanes. A replica's numbers do not depend on the number of replicas or on the windows.
 //
-// Times count from an origin, which moves on by the same period again and again. So the rounding of
-// times and of paths does not grow with the time since the start.
+// Times of a replica count from an origin, which moves on by the same period again and again. So
+// the rounding of times and of paths does not grow with the time since the start.
 // Properties, each with the test that bears its name:
 //   1. AgreesWithTheReferenceEventByEvent, until the rounding errors have grown.
 //   2. ManyShortCallsGiveTheBitsOfOneCall.  3. ReplicasDoNotDependOnTheirNeighbours.
@@ -22,13 +23,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <limits>
-#include <queue>
-#include <span>
+#include <memory>
 #include <vector>
 
 #include "core/billiard/piston_wave.h"
+#include "core/gas/event_queue.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_run.h"
 #include "core/gas/gas_state.h"
@@ -44,22 +43,17 @@ class LaneGas : public GasRun {
   bool AdvanceTo(double time, Pauses& pauses) override;
 
  private:
-  static constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
-
-  // A ball's contact, or an outermost piston's arrival at its thermal wall.
-  struct Entry {
-    double time = 0;
-    uint32_t body = 0;     // the balls come first, then the pistons
-    uint32_t version = 0;  // the entry is valid if the body's version is the same
-    size_t meeting = 0;    // in meetings_
-
-    bool operator>(const Entry& other) const {
-      return time > other.time || (time == other.time && body > other.body);
-    }
-  };
+  // Its times count from `origin`.
   struct Replica {
     ThermalWalls walls;
     GasMeter* meter;
+    EventQueue queue;  // the balls' contacts in the window, then arrivals at the thermal walls
+    uint32_t first_ball;
+    uint32_t first_piston;
+    double origin = 0;
+    double now = 0;    // all events before this time are done
+    double end = 0;    // of the window
+    size_t begun = 0;  // bodies that have begun the window: pistons, then balls
   };
 
   bool Place(Pauses& pauses);
@@ -68,53 +62,45 @@ class LaneGas : public GasRun {
   void FindPistons(uint32_t ball);
   void ChooseWindow();
 
-  void BeginWindow(double end);
-  bool FinishWindow(Pauses& pauses);
-  bool MoveOrigin(Pauses& pauses);
-  void MoveOriginOfBall(size_t ball);
-  void MoveOriginOfPiston(size_t piston);
-  void FlyNextBalls();
-  void FlyAgain(std::span<const uint32_t> balls);
+  void Step();
+  bool Step(Replica& replica);
+  void BeginWindow(Replica& replica);
+  void BeginBodies(Replica& replica);
+  void MoveOriginOfBall(uint32_t ball);
+  void MoveOriginOfPiston(Replica& replica, uint32_t piston);
+
+  void Order(const Replica& replica, uint32_t ball);
   bool FlyOrders(Pauses& pauses);
-  void Fly(std::span<FlightOrder> orders, std::span<const FlyingBall> from);
-  FlightOrder OrderFor(uint32_t ball) const;
-  void Stop(FlightOrder& order);
+  void Arrive(const FlightOrder& order);
+  void Stop(const Replica& replica, const FlightOrder& order);
 
-  void FindArrival(uint32_t piston);
-  void Push(Entry entry);
-  void Handle(const Entry& entry);
-  void Exchange(const Entry& entry);
-  void LeaveThermalWall(const Entry& entry);
+  void FindArrival(Replica& replica, uint32_t piston);
+  void Handle(Replica& replica, size_t body);
+  void Exchange(Replica& replica, uint32_t ball);
+  void LeaveThermalWall(Replica& replica, uint32_t piston);
 
+  size_t BodiesOfAReplica() const { return balls_each_ + pistons_each_; }
   Replica& ReplicaOf(uint32_t ball) { return replicas_[ball / balls_each_]; }
-  uint32_t BallOf(uint32_t piston, Direction direction) const;  // kNone if there is none
 
   GasInTime gas_;
+  std::unique_ptr<FlightsAhead> lanes_;
   uint32_t balls_each_;  // of a replica
   uint32_t pistons_each_;
   double exchange_rate_;
   double mean_flight_;
-  double period_;                               // of the origin's moves
-  double window_ = 0;                           // of time
-  double origin_ = 0;                           // all times in here count from it
-  size_t moved_balls_ = 0, moved_pistons_ = 0;  // with the origin
-  std::vector<GasStart> starts_;                // until all bodies are placed
+  double period_;                 // of the origin's moves
+  double window_ = 0;             // of time
+  std::vector<GasStart> starts_;  // until all bodies are placed
   size_t placed_balls_ = 0, placed_pistons_ = 0;
   std::vector<Replica> replicas_;
   // By ball. `from_` is the ball before the flight in which the window begins, or in which its last
   // exchange in the window is. `to_` is the ball before the flight in which the window ends.
   std::vector<FlyingBall> from_, to_;
-  std::vector<uint32_t> versions_;                                        // by ball, then by piston
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;  // of the window
-  std::vector<MeetingInTime> meetings_;
-  std::vector<FlightOrder> orders_;  // of balls that fly now
-  size_t flights_ = 0;               // that these balls fly at a time
-  bool orders_are_new_ = false;      // their balls are still in from_
-  size_t flown_balls_ = 0;           // in this window, or on their way
-  size_t found_arrivals_ = 0;        // pistons whose arrivals in this window are found
-  bool is_in_window_ = false;
-  double now_ = 0;  // all events before this time are done
-  double end_ = 0;  // of the window
+  std::vector<MeetingInTime> contacts_;  // by ball, its next one in the window
+  double time_ = 0;                      // to which all replicas go
+  std::vector<uint32_t> active_;         // replicas that have not come there
+  std::vector<FlightOrder> orders_;      // of balls that fly now
+  bool orders_are_new_ = false;          // their balls are still in from_
 };
 
 }  // namespace ballpiston

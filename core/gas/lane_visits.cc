@@ -13,42 +13,74 @@
 #include "core/billiard/lane_burst-inl.h"
 #include "core/billiard/lane_frame.h"
 #include "core/billiard/piston_wave.h"
+#include "core/gas/hit_rates.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ballpiston {
 namespace HWY_NAMESPACE {
 
-static_assert(kMostFlightsAhead == kMostFlights);
-static_assert(kMostBallsAhead >= kVectors * kMostLanes<double> || HWY_TARGET == HWY_SCALAR);
 static_assert(kReachSlack == kSlack<double>);
 
-class FlightsAhead {
+class LanesAhead : public FlightsAhead {
  public:
-  FlightsAhead(const GasInTime& gas, size_t flights, std::span<FlightOrder> orders)
+  explicit LanesAhead(const GasInTime& gas)
       : gas_(gas),
-        is_lattice_(gas.geometry.shape().is_lattice),
-        flights_(flights),
-        orders_(orders),
-        vectors_(orders.size() <= Width() ? 1 : kVectors),
-        constants_(gas.geometry.pair()) {}
+        directions_(gas.geometry.directions()),
+        mean_flight_(MeanFlight(gas.geometry.pair()) / gas.unit),
+        flight_constants_(gas.geometry.pair()),
+        reach_constants_(gas.geometry.pair(), flight_constants_.scale) {}
 
-  static size_t Width() { return hn::Lanes(hn::ScalableTag<double>()); }
-  static size_t Count() { return kVectors * Width(); }
-
-  void Fly(std::span<const FlyingBall> from, std::span<FlyingBall> to) {
-    for (size_t i = 0; i < vectors_ * Width(); ++i) {
-      Load(i, from[orders_[std::min(i, orders_.size() - 1)].ball]);
+  void Fly(std::span<FlightOrder> orders, std::span<const FlyingBall> from,
+           std::span<FlyingBall> to, std::span<MeetingInTime> meetings) override {
+    meetings_ = meetings;
+    const size_t count = kVectors * Width();
+    for (size_t first = 0; first < orders.size(); first += count) {
+      orders_ = orders.subspan(first, std::min(count, orders.size() - first));
+      FlyTogether(from, to);
     }
-    const bool left_cell = FlyVectors();
-    for (size_t i = 0; i < orders_.size(); ++i) Store(i, left_cell, to[orders_[i].ball]);
-    FindMeetings();
   }
 
  private:
+  using D = hn::ScalableTag<double>;
+
+  // So few vectors fly faster alone than with empty ones.
+  static constexpr size_t kMostOfFew = 3;
+
+  static size_t Width() { return hn::Lanes(D()); }
+
+  void FlyTogether(std::span<const FlyingBall> from, std::span<FlyingBall> to) {
+    vectors_ = (orders_.size() + Width() - 1) / Width();
+    if (vectors_ > kMostOfFew) vectors_ = kVectors;
+    for (size_t i = 0; i < vectors_ * Width(); ++i) {
+      const FlightOrder& order = orders_[std::min(i, orders_.size() - 1)];
+      const BallInTime& ball = gas_.balls[order.ball];
+      until_[i] = (order.until_time - ball.since) * ball.speed / gas_.unit;
+      Load(i, from[order.ball]);
+      LoadPistons(i, ball);
+    }
+    flights_ = FlightsOfMost();
+    std::fill_n(end_, orders_.size(), flights_);
+    FlyVectors();
+    if (HWY_UNLIKELY(burst_.left_cell())) FindLostBalls();
+    FindMeetings();
+    for (size_t i = 0; i < orders_.size(); ++i) Finish(i, to[orders_[i].ball]);
+  }
+
+  // The flights that most of the balls need; the others fly on later.
+  size_t FlightsOfMost() const {
+    double path = 0;
+    for (size_t i = 0; i < orders_.size(); ++i) {
+      path += until_[i] - burst_.slot(i / Width()).path[i % Width()];
+    }
+    const double mean = path / mean_flight_ / static_cast<double>(orders_.size());
+    return static_cast<size_t>(std::min(1.25 * mean + 2, double{kMostFlights}));
+  }
+
   void Load(size_t i, const FlyingBall& ball) {
     const size_t slot = i / Width(), lane = i % Width();
-    Balls<double>& vector = slots_[slot];
-    if (lane == 0) vector.a = vector.ab = vector.m = in_reach_[slot] = 0;
+    Balls<double>& vector = burst_.slot(slot);
+    uint16_t& in_reach = burst_.in_reach(slot);
+    if (lane == 0) vector.a = vector.ab = vector.m = in_reach = 0;
     vector.h[lane] = ball.h;
     vector.e[lane] = ball.e;
     vector.c[lane] = ball.c;
@@ -57,112 +89,148 @@ class FlightsAhead {
     vector.a |= uint32_t{ball.a} << lane;
     vector.ab |= uint32_t{ball.ab} << lane;
     vector.m |= uint32_t{ball.m} << lane;
-    in_reach_[slot] = static_cast<uint16_t>(in_reach_[slot] | uint32_t{ball.is_in_reach} << lane);
+    in_reach = static_cast<uint16_t>(in_reach | uint32_t{ball.is_in_reach} << lane);
   }
 
-  void Store(size_t i, bool left_cell, FlyingBall& ball) {
+  // A piston's wave is continued to times before its last change, which may add false alarms.
+  void LoadPistons(size_t i, const BallInTime& ball) {
     const size_t lane = i % Width();
-    FlightOrder& order = orders_[i];
-    size_t slot = i / Width() + flights_ * vectors_;
-    order.has_arrived = slots_[slot].path[lane] > order.until;
-    while (slot >= vectors_ && slots_[slot].path[lane] > order.until) slot -= vectors_;
-    const Balls<double>& vector = slots_[slot];
-    const auto bit = [lane](uint32_t bits) { return (bits >> lane & 1) != 0; };
-    ball = {.h = vector.h[lane],
-            .e = vector.e[lane],
-            .c = vector.c[lane],
-            .s = vector.s[lane],
-            .path = vector.path[lane],
-            .a = bit(vector.a),
-            .ab = bit(vector.ab),
-            .m = bit(vector.m),
-            .is_in_reach = bit(in_reach_[slot]),
-            .has_escaped = left_cell && HasEscaped(i)};
+    const double per_period = 1 / (2 * gas_.wave.stroke());
+    for (int j = 0; j < directions_; ++j) {
+      const Direction direction = gas_.geometry.DirectionAt(j);
+      const PistonInTime& piston = PistonOf(ball, direction);
+      PistonWaves<double>& waves = pistons_[i / Width()][static_cast<size_t>(direction)];
+      const double half_turn = SignOf(direction) < 0 ? 0.5 : 0;
+      waves.phase[lane] =
+          half_turn + per_period * (piston.phase + piston.speed * (ball.since - piston.since));
+      waves.ratio[lane] = per_period * piston.speed * ball.slowness * gas_.unit;
+    }
   }
 
-  bool FlyVectors() {
-    if (is_lattice_) {
-      return FlyWatched([edge = gas_.edge](const Balls<double>& balls) HWY_ATTR {
+  const PistonInTime& PistonOf(const BallInTime& ball, Direction direction) const {
+    return gas_.pistons[ball.pistons[static_cast<size_t>(direction)]];
+  }
+
+  void FlyVectors() {
+    if (directions_ == 4) {
+      FlyWatched([edge = reach_constants_.edge](const Balls<double>& balls) HWY_ATTR {
         const TipsInReach tips = TipsOf(balls, edge);
         return tips.above | tips.below;
       });
+    } else {
+      // The cell's right is along x of the frame if a and b are equal.
+      FlyWatched([edge = reach_constants_.edge](const Balls<double>& balls) HWY_ATTR {
+        const TipsInReach tips = TipsOf(balls, edge);
+        return tips.below ^ (balls.ab & (tips.below ^ tips.above));
+      });
     }
-    // The cell's right is along x of the frame if a and b are equal.
-    return FlyWatched([edge = gas_.edge](const Balls<double>& balls) HWY_ATTR {
-      const TipsInReach tips = TipsOf(balls, edge);
-      return tips.below ^ (balls.ab & (tips.below ^ tips.above));
-    });
   }
 
   template <class Reach>
-  bool FlyWatched(const Reach& reach) {
-    if (vectors_ == 1) return FlyOneVector(constants_, flights_, reach, slots_, in_reach_);
-    return FlyBurst(constants_, flights_, reach, slots_, in_reach_);
+  void FlyWatched(const Reach& reach) {
+    if (vectors_ == kVectors) {
+      burst_.Fly(flight_constants_, flights_, reach);
+    } else {
+      burst_.FlyFew(flight_constants_, vectors_, flights_, reach);
+    }
   }
 
-  // In the order of each ball's path.
-  void FindMeetings() const {
-    for (size_t t = 0; t < flights_ * vectors_; ++t) {
-      const size_t first = t % vectors_ * Width();
-      uint32_t lanes = in_reach_[t] | in_reach_[t + vectors_];
-      for (; lanes != 0; lanes &= lanes - 1) {
-        const size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes);
-        if (first + lane >= orders_.size()) break;
-        FlightOrder& order = orders_[first + lane];
-        if (order.first || slots_[t].path[lane] > order.until) continue;
-        LookForPistons(lane, slots_[t], slots_[t + vectors_], order);
+  // A lost ball's flights end with the one in which it misses all discs.
+  HWY_NOINLINE void FindLostBalls() {
+    for (size_t i = 0; i < orders_.size(); ++i) {
+      for (size_t flight = flights_; flight-- > 0;) {
+        const double c = burst_.slot(SlotOf(i, flight + 1)).c[i % Width()];
+        if (2 - c * c < -kMissedByRounding<double>) end_[i] = flight;
       }
     }
   }
 
-  HWY_INLINE void LookForPistons(size_t lane, const Balls<double>& from, const Balls<double>& to,
-                                 FlightOrder& order) const {
-    const double unit = gas_.unit;
-    const BallInTime& ball = gas_.balls[order.ball];
-    const double path = from.path[lane] * unit, length = to.path[lane] * unit - path;
-    const double start = ball.since + path * ball.slowness;
-    if (start + length * ball.slowness < order.from_time) return;
-    const double h = from.h[lane] * unit, e = from.e[lane] * unit;
-    const double c = from.c[lane] * unit, s = from.s[lane] * unit;
-    const double ux = h + e, uy = h - e;
-    const double x = s * ux + c * uy - 0.5, y = s * uy - c * ux - 0.5;
-    const auto look = [&](double place, double velocity, uint32_t toward) HWY_ATTR {
-      if (std::max(place, place + velocity * length) < gas_.wave.left() - kReachSlack) return;
-      Compare(place, velocity, length, start, toward, lane, from, order);
-    };
-    const bool is_turned = (from.ab >> lane & 1) != 0;  // the cell's right is along y of the frame
-    if (is_lattice_ || !is_turned) {
-      look(x, ux, 0);
-      look(-x, -ux, 2);
-    }
-    if (is_lattice_ || is_turned) {
-      look(y, uy, 1);
-      look(-y, -uy, 3);
+  // Before the flight.
+  static size_t SlotOf(size_t i, size_t flight) { return i / Width() + flight * kVectors; }
+
+  // In the order of each ball's path.
+  void FindMeetings() {
+    burst_.ListFlightsInReach();
+    burst_.Keep([this](size_t t) HWY_ATTR { return MayHaveMetPistons(t); });
+    for (const auto& [t, lanes] : burst_.listed()) {
+      for (uint32_t left = lanes; left != 0; left &= left - 1) {
+        const size_t bit = hwy::Num0BitsBelowLS1Bit_Nonzero32(left);
+        const size_t i = t % kVectors * Width() + bit % kLanesEach;
+        if (i >= orders_.size() || t / kVectors >= end_[i]) continue;
+        LookForMeeting(t, i, static_cast<Direction>(bit / kLanesEach));
+      }
     }
   }
 
-  // Whether ball and piston meet in a flight from `place` on, toward one of the frame's axes.
-  // Events before the piston's last change are done already, so the result does not depend on the
-  // time of the call.
-  HWY_INLINE void Compare(double place, double velocity, double length, double start,
-                          uint32_t toward, size_t lane, const Balls<double>& from,
-                          FlightOrder& order) const {
-    const PistonWave& wave = gas_.wave;
+  // The lanes whose balls may have met their pistons, eight bits for each direction.
+  static constexpr size_t kLanesEach = 8;
+  HWY_INLINE uint32_t MayHaveMetPistons(size_t t) const {
+    const D d;
+    const Balls<double>&from = burst_.slot(t), &to = burst_.slot(t + kVectors);
+    const PlacesInCell before(from, flight_constants_.half_height);
+    const PlacesInCell after(to, flight_constants_.half_height);
+    const auto path0 = hn::Load(d, from.path), path1 = hn::Load(d, to.path);
+    const PistonWaves<double>* const pistons = pistons_[t % kVectors];
+    const auto met = [&](Direction direction, auto x0, auto x1) HWY_ATTR {
+      const auto i = static_cast<size_t>(direction);
+      return MayHaveMet(reach_constants_, x0, x1, pistons[i].PhaseAfter(path0),
+                        pistons[i].PhaseAfter(path1))
+             << i * kLanesEach;
+    };
+    const auto x0 = before.X(), x1 = after.X();
+    uint32_t lanes =
+        met(Direction::kRight, x0, x1) | met(Direction::kLeft, hn::Neg(x0), hn::Neg(x1));
+    if (directions_ == 4) {
+      const auto y0 = before.Y(), y1 = after.Y();
+      lanes |= met(Direction::kUp, y0, y1) | met(Direction::kDown, hn::Neg(y0), hn::Neg(y1));
+    }
+    return lanes & burst_.InReachAround(t) * 0x01010101U;
+  }
+
+  // Whether ball and piston meet in flight t. Events before the piston's last change are done
+  // already, so the result does not depend on the time of the call.
+  void LookForMeeting(size_t t, size_t i, Direction direction) {
+    const FlightOrder& order = orders_[i];
+    const Balls<double>& from = burst_.slot(t);
+    const size_t lane = i % Width();
+    if (from.path[lane] > until_[i]) return;
     const BallInTime& ball = gas_.balls[order.ball];
-    const Direction direction = DirectionOf(from, lane, toward);
-    const PistonInTime& piston = gas_.pistons[ball.pistons[static_cast<size_t>(direction)]];
+    const double path = from.path[lane] * gas_.unit;
+    const double length = burst_.slot(t + kVectors).path[lane] * gas_.unit - path;
+    const double start = ball.since + path * ball.slowness;
+    if (start + length * ball.slowness < order.from_time) return;
+    const PistonWave& wave = gas_.wave;
+    const PistonInTime& piston = PistonOf(ball, direction);
     const double begin = std::max(start, piston.since), gone = (begin - start) * ball.speed;
     const double phase = piston.PhaseAt(begin, direction, wave);
     const double ratio = piston.speed * ball.slowness;
+    const auto [place, velocity] = SeenToward(direction, Scaled(from.Frame(lane), gas_.unit));
     const double x = place + velocity * gone - wave.left();
-    if (!wave.MayMeet(phase, ratio, x, velocity, length - gone, kReachSlack)) return;
     const auto meeting = wave.FirstMeeting(phase, ratio, x, velocity, length - gone);
     if (!meeting) return;
     const double time = begin + meeting->way * ball.slowness;
-    if (time > order.until_time || (order.first && order.first->time <= time)) return;
-    order.first = MeetingAt(lane, from, gone + meeting->way, direction);
-    order.first->time = time;
-    order.first->piston_goes_right = meeting->piston_goes_right;
+    MeetingInTime& first = meetings_[order.ball];
+    if (time > order.until_time || first.time <= time) return;
+    end_[i] = t / kVectors + 1;
+    first = MeetingAt(lane, from, gone + meeting->way, direction);
+    first.time = time;
+    first.piston_goes_right = meeting->piston_goes_right;
+  }
+
+  // The ball's place and velocity, of length 1, toward a direction in the cell. This is one of the
+  // frame's axes. The cell's right is x of the frame, by a quarter turn on if a and b differ, and
+  // opposite if a is negative.
+  struct Seen {
+    double place, velocity;
+  };
+  static Seen SeenToward(Direction direction, const LaneFrame& frame) {
+    const int right = (frame.a != frame.b ? 1 : 0) + (frame.a < 0 ? 2 : 0);
+    const int turns = static_cast<int>(direction);
+    const int axis = (right + (frame.m < 0 ? 4 - turns : turns)) % 4;
+    const double ux = frame.h + frame.e, uy = frame.h - frame.e;
+    const Seen seen = axis % 2 == 0 ? Seen{frame.s * ux + frame.c * uy - 0.5, ux}
+                                    : Seen{frame.s * uy - frame.c * ux - 0.5, uy};
+    return axis < 2 ? seen : Seen{-seen.place, -seen.velocity};
   }
 
   MeetingInTime MeetingAt(size_t lane, const Balls<double>& from, double way,
@@ -175,43 +243,52 @@ class FlightsAhead {
             .direction = direction};
   }
 
-  // The direction in the cell of one of the frame's axes, by quarter turns from its x axis. The
-  // cell's right is x of the frame, by a quarter turn on if ab is set, and opposite if a is set.
-  static Direction DirectionOf(const Balls<double>& balls, size_t lane, uint32_t toward) {
-    const auto bit = [lane](uint32_t bits) { return bits >> lane & 1; };
-    const uint32_t right = bit(balls.ab) + 2 * bit(balls.a);
-    const uint32_t turns = toward - right;
-    return static_cast<Direction>((bit(balls.m) != 0 ? 0 - turns : turns) & 3);
-  }
-
-  bool HasEscaped(size_t i) const {
-    for (size_t t = i / Width() + vectors_; t < (flights_ + 1) * vectors_; t += vectors_) {
-      const double c = slots_[t].c[i % Width()];
-      if (2 - c * c < -kMissedByRounding<double>) return true;
-    }
-    return false;
+  // The ball's state before the flight in which it arrives. A ball that meets a piston does not fly
+  // on: the exchange changes its way.
+  void Finish(size_t i, FlyingBall& ball) const {
+    const size_t lane = i % Width();
+    FlightOrder& order = orders_[i];
+    order.has_arrived = meetings_[order.ball].time < kNever;
+    if (order.has_arrived) return;
+    const auto is_beyond = [&](size_t flight) {
+      return burst_.slot(SlotOf(i, flight)).path[lane] > until_[i];
+    };
+    size_t flight = end_[i];
+    order.has_escaped = flight < flights_ && !is_beyond(flight);
+    order.has_arrived = order.has_escaped || is_beyond(flight);
+    while (flight > 0 && is_beyond(flight)) --flight;
+    const Balls<double>& vector = burst_.slot(SlotOf(i, flight));
+    const auto bit = [lane](uint32_t bits) { return (bits >> lane & 1) != 0; };
+    ball = {.h = vector.h[lane],
+            .e = vector.e[lane],
+            .c = vector.c[lane],
+            .s = vector.s[lane],
+            .path = vector.path[lane],
+            .a = bit(vector.a),
+            .ab = bit(vector.ab),
+            .m = bit(vector.m),
+            .is_in_reach = bit(burst_.in_reach(SlotOf(i, flight)))};
   }
 
   const GasInTime& gas_;
-  bool is_lattice_;
-  size_t flights_;
+  int directions_;
+  double mean_flight_;  // in the lanes' unit
+  FlightConstants<double> flight_constants_;
+  ReachConstants<double> reach_constants_;
+  size_t flights_ = 0;
   std::span<FlightOrder> orders_;
-  size_t vectors_;
-  FlightConstants<double> constants_;
-  Balls<double> slots_[kMostSteps + kVectors];
-  uint16_t in_reach_[kMostSteps + kVectors];
+  std::span<MeetingInTime> meetings_;
+  size_t vectors_ = 0;
+  LaneBurst<double> burst_;
+  PistonWaves<double> pistons_[kVectors][4];  // by direction
+  // By order: the path length at which the ball may stop, and the number of flights in which it may
+  // still meet a piston for the first time.
+  double until_[kVectors * kMostLanes<double>];
+  size_t end_[kVectors * kMostLanes<double>];
 };
 
-void FlyAheadInLanes(const GasInTime& gas, size_t flights, std::span<FlightOrder> orders,
-                     std::span<const FlyingBall> from, std::span<FlyingBall> to) {
-  for (size_t first = 0; first < orders.size(); first += FlightsAhead::Count()) {
-    const size_t count = std::min(FlightsAhead::Count(), orders.size() - first);
-    FlightsAhead(gas, flights, orders.subspan(first, count)).Fly(from, to);
-  }
-}
-
-double EdgeInLanes(const PairGeometry& pair, double unit) {
-  return EdgeOfReach<double>(pair, 1 / unit);
+std::unique_ptr<FlightsAhead> NewLanes(const GasInTime& gas) {
+  return std::make_unique<LanesAhead>(gas);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -221,15 +298,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace ballpiston {
 
-HWY_EXPORT(EdgeInLanes);
-HWY_EXPORT(FlyAheadInLanes);
+HWY_EXPORT(NewLanes);
 
 GasInTime::GasInTime(const GasGeometry& g)
-    : geometry(g),
-      wave(g.pair()),
-      walls(g.pair()),
-      unit(g.pair().rho() / M_SQRT2),
-      edge(HWY_DYNAMIC_DISPATCH(EdgeInLanes)(g.pair(), unit)) {}
+    : geometry(g), wave(g.pair()), walls(g.pair()), unit(g.pair().rho() / M_SQRT2) {}
 
 namespace {
 
@@ -268,13 +340,11 @@ FlyingBall PlacedBall(const GasInTime& gas, Eigen::Vector2d position, Eigen::Vec
           .ab = frame.a != frame.b,
           .m = frame.m < 0,
           .is_in_reach = std::fabs(position.x()) >= left ||
-                         (gas.geometry.shape().is_lattice && std::fabs(position.y()) >= left),
-          .has_escaped = false};
+                         (gas.geometry.shape().is_lattice && std::fabs(position.y()) >= left)};
 }
 
-void FlyAhead(const GasInTime& gas, size_t flights, std::span<FlightOrder> orders,
-              std::span<const FlyingBall> from, std::span<FlyingBall> to) {
-  HWY_DYNAMIC_DISPATCH(FlyAheadInLanes)(gas, flights, orders, from, to);
+std::unique_ptr<FlightsAhead> LanesOf(const GasInTime& gas) {
+  return HWY_DYNAMIC_DISPATCH(NewLanes)(gas);
 }
 
 }  // namespace ballpiston

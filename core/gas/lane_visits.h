@@ -7,12 +7,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "core/billiard/cell_walls.h"
 #include "core/billiard/piston_wave.h"
+#include "core/gas/event_queue.h"
 #include "core/gas/gas_geometry.h"
 
 namespace ballpiston {
@@ -25,7 +26,6 @@ struct FlyingBall {
   // Signs of the frame's compass: a and m are true for -1; ab is true if a and b differ.
   bool a, ab, m;
   bool is_in_reach;  // of a piston
-  bool has_escaped;
 };
 
 // A ball since its last exchange, its start, or the last move of the origin of time. `since` is the
@@ -58,32 +58,27 @@ struct GasInTime {
   PistonWave wave;
   CellWalls<double> walls;
   double unit;  // the lanes' unit of length, in cells
-  double edge;  // of the pistons' reach, along an arc, in that unit
   std::vector<BallInTime> balls;
   std::vector<PistonInTime> pistons;
 };
 
 // A ball meets the piston that it sees in `direction`.
 struct MeetingInTime {
-  double time = 0;
+  double time = kNever;
   Eigen::Vector2d position = {0, 0};
   Eigen::Vector2d velocity = {0, 0};  // of the ball, of length 1
   Direction direction = Direction::kRight;
   bool piston_goes_right = false;  // as the ball sees it
 };
 
-// A ball that is to fly.
+// A ball that is to fly ahead and to look for its first meeting between two times.
 struct FlightOrder {
   uint32_t ball = 0;
-  double until = 0;       // the path length, in the lanes' unit, at which the ball may stop
-  double until_time = 0;  // the time at which the ball has this path length
-  double from_time = 0;   // contacts before this time do not count
-  bool has_arrived = false;
-  std::optional<MeetingInTime> first = {};  // between the two times
+  double from_time = 0;
+  double until_time = 0;
+  bool has_arrived = false;  // at a meeting, or in the flight in which `until_time` is
+  bool has_escaped = false;  // before it met a piston; its state is the last one in its cell
 };
-
-inline constexpr size_t kMostFlightsAhead = 12;
-inline constexpr size_t kMostBallsAhead = 48;
 
 // Positions up to this distance outside a piston's reach, in cells, count as inside: rounding must
 // not hide a contact.
@@ -92,12 +87,20 @@ inline constexpr double kReachSlack = 1e-11;
 // A ball anywhere in the cell; it may be on a wall, or beyond one by rounding.
 FlyingBall PlacedBall(const GasInTime& gas, Eigen::Vector2d position, Eigen::Vector2d direction);
 
-// Flies up to kMostBallsAhead balls by up to `flights` <= kMostFlightsAhead flights each. A ball
-// that passes `until` has arrived; its state is that before the flight in which it passes. `to` may
-// be `from`. A ball's numbers do not depend on other balls, or on how flights are divided between
-// calls.
-void FlyAhead(const GasInTime& gas, size_t flights, std::span<FlightOrder> orders,
-              std::span<const FlyingBall> from, std::span<FlyingBall> to);
+// The lanes in which balls fly ahead. They do not depend on the balls that flew before.
+class FlightsAhead {
+ public:
+  virtual ~FlightsAhead() = default;
+  // Flies some flights of each ball, from its state in `from`. If a ball meets a piston, its
+  // meeting is in `meetings`. Otherwise its state in `to` is that before the flight in which it
+  // arrives, or to which it came. All spans but `orders` are by ball; `to` may be `from`. A ball's
+  // numbers do not depend on other balls, or on how flights are divided between calls.
+  virtual void Fly(std::span<FlightOrder> orders, std::span<const FlyingBall> from,
+                   std::span<FlyingBall> to, std::span<MeetingInTime> meetings) = 0;
+};
+
+// The gas must outlive the lanes.
+std::unique_ptr<FlightsAhead> LanesOf(const GasInTime& gas);
 
 }  // namespace ballpiston
 

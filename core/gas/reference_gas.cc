@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/billiard/exchange.h"
 
 namespace ballpiston {
 namespace {
-
-constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // After so many events of each body the origin of all times moves to the present. A body passes
 // through its cell fewer times, so that times stay as precise as places; the cost is less than one

@@ -42,27 +42,32 @@ class ThermalWalls {
       : edges_(geometry.shape().columns + 1), hot_(hot), cold_(cold), random_(random) {
     if (geometry.ends() == GasEnds::kPeriodic) return;
     pistons_ = edges_ * geometry.shape().rows;
-    groups_.resize((WallCount() + kGroup - 1) / kGroup);
+    groups_.resize((Count() + kGroup - 1) / kGroup);
   }
 
   // Whether the piston has a thermal wall. Such a piston meets only one ball.
   bool Has(int64_t piston) const {
     return piston < pistons_ && (IsHot(piston) || piston % edges_ == edges_ - 1);
   }
-  // These require Has.
+  // Walls are numbered by row, the hot one first. The last four functions require Has.
+  size_t Count() const { return static_cast<size_t>(2 * pistons_ / edges_); }
+  int64_t PistonAt(size_t wall) const {
+    const auto row = static_cast<int64_t>(wall / 2);
+    return row * edges_ + (wall % 2 == 0 ? 0 : edges_ - 1);
+  }
+  size_t WallOf(int64_t piston) const {
+    return static_cast<size_t>(2 * (piston / edges_) + (IsHot(piston) ? 0 : 1));
+  }
   bool IsHot(int64_t piston) const { return piston % edges_ == 0; }
   double TemperatureAt(int64_t piston) const { return IsHot(piston) ? hot_ : cold_; }
   double DrawSpeed(int64_t piston) {
-    const auto wall = static_cast<size_t>(2 * (piston / edges_) + (IsHot(piston) ? 0 : 1));
-    return DrawFluxSpeed(TemperatureAt(piston), SequenceOf(wall));
+    return DrawFluxSpeed(TemperatureAt(piston), SequenceOf(WallOf(piston)));
   }
 
  private:
   // Walls whose sequences begin together. A gas may have two million walls, whose sequences would
   // take a fifth of a second.
   static constexpr size_t kGroup = 256;
-
-  size_t WallCount() const { return static_cast<size_t>(2 * pistons_ / edges_); }
 
   CounterRandom& SequenceOf(size_t wall) {
     std::vector<CounterRandom>& group = groups_[wall / kGroup];
@@ -71,7 +76,7 @@ class ThermalWalls {
   }
 
   void BeginSequences(size_t first, std::vector<CounterRandom>& group) const {
-    const size_t end = std::min(first + kGroup, WallCount());
+    const size_t end = std::min(first + kGroup, Count());
     group.reserve(end - first);
     for (size_t wall = first; wall < end; ++wall) group.push_back(random_.OfWall(wall));
   }

@@ -93,7 +93,7 @@ void ShowSpeed(double delta) {
   std::vector<RunningGas> gases;
   gases.emplace_back(GasEngine::kLanes, 100, delta, 50, Unit::kBallHits);
   gases.emplace_back(GasEngine::kReference, 100, delta, 3, Unit::kAllHits);
-  gases.emplace_back(GasEngine::kJumps, 100, delta, 0.01 / (delta * delta), Unit::kExchanges);
+  gases.emplace_back(GasEngine::kJumps, 100, delta, 1 / (delta * delta), Unit::kExchanges);
   const Turns turns(gases, 12);
   const double reference = turns.Best(1) * gases[1].hits_of_events();
   std::printf(

@@ -141,7 +141,7 @@ std::vector<BadInput> Table(const std::string& cancelled) {
       {"run first-hit --rho 0.51:0.6:1000 --delta 0.001:0.01:1000 --epsilon 0:0.5:1000 "
        "--exponent 1",
        2,
-       {"spec.grid", "1000000000"}},
+       {"grid: ", "1000000000"}},
       {"run equilibrium --rho 0.51:0.6:1000000000 --delta 0.1",
        2,
        {"--rho: ", "a whole number from 1 to 100000"}},

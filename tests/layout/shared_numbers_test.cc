@@ -1,4 +1,4 @@
-// Pages that state the same number state the same one.
+// A number that several pages state is equal on all of them.
 #include "tests/layout/shared_numbers.h"
 
 #include <filesystem>

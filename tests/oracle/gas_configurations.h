@@ -18,9 +18,9 @@
 #include <cstddef>
 #include <numbers>
 
-#include "core/arithmetic/quad_precision.h"
 #include "tests/oracle/gauss_legendre.h"
 #include "tests/oracle/measures_by_quadrature.h"
+#include "tools/flows/quad_precision.h"
 
 namespace ballpiston::oracle {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/arithmetic/quad_precision.h"
+#include "tools/flows/quad_precision.h"
 
 namespace ballpiston::oracle {
 

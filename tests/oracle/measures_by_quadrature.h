@@ -9,9 +9,9 @@
 #ifndef BALLPISTON_TESTS_ORACLE_MEASURES_BY_QUADRATURE_H_
 #define BALLPISTON_TESTS_ORACLE_MEASURES_BY_QUADRATURE_H_
 
-#include "core/arithmetic/quad_precision.h"
-#include "core/closed_form/printed_formulas.h"
 #include "tests/oracle/gauss_legendre.h"
+#include "tools/flows/printed_formulas.h"
+#include "tools/flows/quad_precision.h"
 
 namespace ballpiston::oracle {
 

@@ -4,11 +4,11 @@
 #include <numbers>
 
 #include "absl/strings/str_cat.h"
-#include "core/arithmetic/quad_precision.h"
 #include "core/closed_form/pair_measures.h"
-#include "core/closed_form/printed_formulas.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/paper.h"
+#include "tools/flows/printed_formulas.h"
+#include "tools/flows/quad_precision.h"
 
 namespace ballpiston::stability {
 namespace {

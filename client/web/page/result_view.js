@@ -39,9 +39,9 @@
     {label: 'Model error', number: true},
   ];
 
+  // In the units of the value.
   function modelErrorText(error) {
-    if (!isNumber(error)) return 'unknown';
-    return error === 0 ? '0' : `${Number((100 * error).toPrecision(2))} %`;
+    return isNumber(error) ? String(Number(error.toPrecision(2))) : 'unknown';
   }
 
   // The closed form; else the Markov limit; else the noise floor, which is the mean of the estimate
@@ -49,7 +49,7 @@
   function yardstick(estimate) {
     const {exact, limit, noise_floor: floor, standard_error: error} = estimate;
     if (isNumber(exact))
-      return isNumber(error) && error > 0 ? valueText(exact, error / 10) : valueText(exact);
+      return isNumber(error) && error >= 0 ? valueText(exact, error / 10) : valueText(exact);
     if (isNumber(limit)) return `limit ${valueText(limit, error)}`;
     if (isNumber(floor)) return `floor ${valueText(floor, error)}`;
     return '';

@@ -436,7 +436,7 @@ TEST_F(CommandLineTest, AnErrorMayNameATargetsFlag) {
   server_.ensemble.plan_end = InvalidSpec("spec.target", "use target.collisions");
   server_.Start();
   EXPECT_EQ(WithServer({"plan", "equilibrium"}).err,
-            "ballpiston: spec.target: use --collisions (INVALID_SPEC)\n");
+            "ballpiston: target: use --collisions (INVALID_SPEC)\n");
 }
 
 TEST_F(CommandLineTest, AnInvalidSpecificationExitsWithTwo) {

@@ -101,6 +101,22 @@ TEST_F(ConfigFileTest, AFlagReplacesWeakerSourcesOfItsRivals) {
   EXPECT_EQ(line.options.progress, ProgressStyle::kAuto);
 }
 
+TEST_F(ConfigFileTest, WhatIsOffOrReplacedReplacesNothing) {
+  home_.WriteConfig("verbose = true\nprogress = \"json\"\n");
+  ASSERT_OK_AND_ASSIGN(CommandLine line, ParseCommandLine({"watch", "abc", "--quiet=false"}));
+  EXPECT_TRUE(line.options.verbose);
+  const ScopedVariable quiet("BALLPISTON_QUIET", "1");
+  ASSERT_OK_AND_ASSIGN(line, ParseCommandLine({"watch", "abc", "--verbose"}));
+  EXPECT_EQ(line.options.progress, ProgressStyle::kJson);
+}
+
+TEST_F(ConfigFileTest, AWrongValueForAllVerbsIsAnError) {
+  home_.WriteConfig("samples = \"many\"\nseed = 1\n");
+  EXPECT_THAT(ParseCommandLine({"plan", "first-hit"}),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("samples of the config file: 'many'")));
+}
+
 TEST_F(ConfigFileTest, AValueForOtherVerbsIsSkipped) {
   home_.WriteConfig("format = \"csv-curves\"\n");
   ASSERT_OK_AND_ASSIGN(CommandLine line, ParseCommandLine({"result", "abc"}));

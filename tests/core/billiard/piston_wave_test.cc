@@ -92,30 +92,10 @@ TEST(PistonWave, FirstMeetingOfASlowBallIsOnItsPath) {
       ASSERT_TRUE(meeting);  // the piston comes past many times
     }
     if (!meeting) continue;
-    ASSERT_TRUE(wave.MayMeet(a.phase, a.ratio, a.x, a.ux, a.length, 1e-11));
     ASSERT_GE(meeting->way, 0);
     ASSERT_LE(meeting->way, a.length);
     ASSERT_GT(a.x + a.ux * meeting->way, -1e-15);
   }
-}
-
-// MayMeet saves time only if it rarely returns true without a meeting.
-TEST(PistonWave, MayMeetIsRarelyWrong) {
-  const PistonWave wave(PaperGeometry(0.025));
-  CounterRandom random(61, 0, 0);
-  int meetings = 0, alarms = 0;
-  for (int i = 0; i < 100'000; ++i) {
-    const Approach a = {.phase = 2 * wave.stroke() * random.Uniform(),
-                        .ratio = random.Uniform(),
-                        .x = 0.025 - 0.3 * random.Uniform(),
-                        .ux = 2 * random.Uniform() - 1,
-                        .length = 0.3 * random.Uniform()};
-    if (a.x + a.ux * a.length > 0.025 || a.x > wave.Position(a.phase) - wave.left()) continue;
-    meetings += FirstMeeting(wave, a).has_value();
-    alarms += wave.MayMeet(a.phase, a.ratio, a.x, a.ux, a.length, 1e-11);
-  }
-  EXPECT_GT(meetings, 200);
-  EXPECT_LE(alarms, 1.01 * meetings);
 }
 
 TEST(PistonWave, ABallThatLeavesHasNoMeeting) {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/arithmetic/quad_precision.h"
 #include "gtest/gtest.h"
+#include "tools/flows/quad_precision.h"
 
 namespace ballpiston {
 namespace {

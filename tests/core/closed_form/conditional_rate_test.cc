@@ -5,11 +5,11 @@
 #include <random>
 
 #include "core/closed_form/mean_free_time.h"
-#include "core/closed_form/printed_formulas.h"
 #include "core/geometry/pair_geometry.h"
 #include "gtest/gtest.h"
 #include "tests/core/geometries.h"
 #include "tests/oracle/gauss_legendre.h"
+#include "tools/flows/printed_formulas.h"
 
 namespace ballpiston {
 namespace {

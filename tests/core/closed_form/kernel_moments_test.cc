@@ -4,9 +4,9 @@
 #include <cmath>
 #include <random>
 
-#include "core/closed_form/printed_formulas.h"
 #include "gtest/gtest.h"
 #include "tests/oracle/gauss_legendre.h"
+#include "tools/flows/printed_formulas.h"
 
 namespace ballpiston {
 namespace {

@@ -5,11 +5,11 @@
 #include <limits>
 #include <random>
 
-#include "core/arithmetic/quad_precision.h"
 #include "core/closed_form/kernel_moments.h"
-#include "core/closed_form/printed_formulas.h"
 #include "gtest/gtest.h"
 #include "tests/oracle/gauss_legendre.h"
+#include "tools/flows/printed_formulas.h"
+#include "tools/flows/quad_precision.h"
 
 namespace ballpiston {
 namespace {

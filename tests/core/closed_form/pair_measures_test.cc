@@ -6,13 +6,13 @@
 #include <random>
 #include <string>
 
-#include "core/arithmetic/quad_precision.h"
-#include "core/closed_form/printed_formulas.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/paper.h"
 #include "gtest/gtest.h"
 #include "tests/core/geometries.h"
 #include "tests/oracle/measures_by_quadrature.h"
+#include "tools/flows/printed_formulas.h"
+#include "tools/flows/quad_precision.h"
 
 namespace ballpiston {
 namespace {

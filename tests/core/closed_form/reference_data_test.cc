@@ -9,10 +9,10 @@
 #include "core/closed_form/kernel_moments.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/closed_form/pair_measures.h"
-#include "core/closed_form/printed_formulas.h"
 #include "core/geometry/pair_geometry.h"
 #include "gtest/gtest.h"
 #include "tests/oracle/reference_table.h"
+#include "tools/flows/printed_formulas.h"
 
 namespace ballpiston {
 namespace {

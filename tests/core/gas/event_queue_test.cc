@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <set>
 #include <utility>
 #include <vector>
@@ -14,13 +13,11 @@
 namespace ballpiston {
 namespace {
 
-constexpr double kNoEvent = std::numeric_limits<double>::infinity();
-
 // A slow implementation: all bodies in order, by time and then by number.
 class OrderedEvents {
  public:
-  explicit OrderedEvents(size_t bodies) : times_(bodies, kNoEvent) {
-    for (size_t i = 0; i < bodies; ++i) order_.insert({kNoEvent, i});
+  explicit OrderedEvents(size_t bodies) : times_(bodies, kNever) {
+    for (size_t i = 0; i < bodies; ++i) order_.insert({kNever, i});
   }
   void Set(size_t body, double time) {
     order_.erase({times_[body], body});
@@ -49,7 +46,7 @@ TEST(EventQueue, KeepsTheOrderUnderRandomChanges) {
       const bool is_first = random.Uniform() < 0.5;
       const size_t body = is_first ? queue.First().body : random.Bits() % bodies;
       const double time =
-          random.Uniform() < 0.1 ? kNoEvent : std::floor(random.Uniform() * 2 * 17) + change / 100;
+          random.Uniform() < 0.1 ? kNever : std::floor(random.Uniform() * 2 * 17) + change / 100;
       queue.Set(body, time);
       expected.Set(body, time);
       ASSERT_NO_FATAL_FAILURE(ExpectSameFirst(queue, expected))
@@ -71,10 +68,10 @@ TEST(EventQueue, EmptiesInTheOrderOfTime) {
   for (size_t i = 0; i <= kBodies; ++i) {
     ASSERT_NO_FATAL_FAILURE(ExpectSameFirst(queue, expected)) << i;
     const size_t body = expected.First().second;
-    queue.Set(body, kNoEvent);
-    expected.Set(body, kNoEvent);
+    queue.Set(body, kNever);
+    expected.Set(body, kNever);
   }
-  EXPECT_EQ(queue.First().time, kNoEvent);
+  EXPECT_EQ(queue.First().time, kNever);
 }
 
 TEST(EventQueue, BodiesWithEqualTimesComeByNumber) {

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <numbers>
 #include <vector>
 
 #include "tests/core/billiard/each_target.h"
@@ -64,29 +65,39 @@ TEST(JumpDraws, OnlyMovingKindsAreChosen) {
   }
 }
 
-TEST(JumpDraws, WaitsAreExponential) {
+// A ball proposes with the weight of a positive cosine, so the sine is uniform. A piston's proposal
+// meets uniform angles. False alarms: 5e-5 each.
+TEST(JumpDraws, ProposalsHaveTheirLaws) {
   CounterRandom random(1, 2, 5);
-  std::vector<double> all;
+  std::vector<double> sines, angles, waits;
   for (int i = 0; i < 1000; ++i) {
-    JumpWaits waits;
-    DrawJumpWaits(random, waits);
-    all.insert(all.end(), waits.begin(), waits.end());
+    JumpProposals proposals;
+    DrawJumpProposals(random, proposals);
+    for (size_t j = 0; j < kJumpDraws; ++j) {
+      const double weighted = proposals.cosines[0][j];
+      ASSERT_GT(weighted, 0);
+      sines.push_back(std::sqrt(1 - weighted * weighted));
+      angles.push_back(std::acos(proposals.cosines[1][j]) / std::numbers::pi);
+      waits.push_back(proposals.waits[j]);
+    }
   }
-  // False alarms: 5e-5.
-  EXPECT_LT(oracle::KolmogorovSmirnov(all, [](double x) { return -std::expm1(-x); }), 2.3);
+  const auto uniform = [](double x) { return x; };
+  EXPECT_LT(oracle::KolmogorovSmirnov(sines, uniform), 2.3);
+  EXPECT_LT(oracle::KolmogorovSmirnov(angles, uniform), 2.3);
+  EXPECT_LT(oracle::KolmogorovSmirnov(waits, [](double x) { return -std::expm1(-x); }), 2.3);
 }
 
 TEST(JumpDraws, SameBitsOnEveryTargetWithFusedMultiplyAdd) {
   std::vector<JumpAttempts> attempts;
-  std::vector<JumpWaits> waits;
+  std::vector<JumpProposals> proposals;
   ForEachFusedTarget([&] {
     CounterRandom random(1, 2, 6);
     DrawJumpAttempts(TwoKinds(), random, attempts.emplace_back());
-    DrawJumpWaits(random, waits.emplace_back());
+    DrawJumpProposals(random, proposals.emplace_back());
   });
   for (size_t i = 1; i < attempts.size(); ++i) {
     EXPECT_EQ(std::memcmp(&attempts[i], &attempts[0], sizeof(JumpAttempts)), 0);
-    EXPECT_EQ(waits[i], waits[0]);
+    EXPECT_EQ(std::memcmp(&proposals[i], &proposals[0], sizeof(JumpProposals)), 0);
   }
 }
 

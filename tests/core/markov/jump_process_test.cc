@@ -9,11 +9,11 @@
 #include <limits>
 #include <vector>
 
-#include "core/arithmetic/quad_precision.h"
 #include "core/closed_form/kernel_moments.h"
 #include "core/sampling/counter_random.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/oracle/gauss_legendre.h"
+#include "tools/flows/quad_precision.h"
 
 namespace ballpiston {
 namespace {

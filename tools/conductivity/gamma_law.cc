@@ -1,4 +1,4 @@
-#include "core/conductivity/gamma_law.h"
+#include "tools/conductivity/gamma_law.h"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>

@@ -6,8 +6,8 @@
 // Domain: shape > 0, degree and nodes 1 to 100. Properties, each with the test that bears its name:
 //   1. QuadratureIsExactBelowTwiceItsNodes, to kGammaQuadratureError.
 //   2. PolynomialsAreOrthonormal.
-#ifndef BALLPISTON_CORE_CONDUCTIVITY_GAMMA_LAW_H_
-#define BALLPISTON_CORE_CONDUCTIVITY_GAMMA_LAW_H_
+#ifndef BALLPISTON_TOOLS_CONDUCTIVITY_GAMMA_LAW_H_
+#define BALLPISTON_TOOLS_CONDUCTIVITY_GAMMA_LAW_H_
 
 #include <Eigen/Core>
 
@@ -28,4 +28,4 @@ Eigen::VectorXd GammaPolynomials(double shape, int degree, double x);
 
 }  // namespace ballpiston
 
-#endif  // BALLPISTON_CORE_CONDUCTIVITY_GAMMA_LAW_H_
+#endif  // BALLPISTON_TOOLS_CONDUCTIVITY_GAMMA_LAW_H_

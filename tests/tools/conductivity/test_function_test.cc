@@ -6,9 +6,9 @@
 #include <cmath>
 #include <ostream>
 
-#include "core/conductivity/conductivity.h"
-#include "core/conductivity/contact_matrix.h"
-#include "core/conductivity/gamma_law.h"
+#include "tools/conductivity/conductivity.h"
+#include "tools/conductivity/contact_matrix.h"
+#include "tools/conductivity/gamma_law.h"
 
 namespace ballpiston {
 namespace {

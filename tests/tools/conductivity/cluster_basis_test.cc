@@ -1,4 +1,4 @@
-#include "core/conductivity/cluster_basis.h"
+#include "tools/conductivity/cluster_basis.h"
 
 #include <gtest/gtest.h>
 

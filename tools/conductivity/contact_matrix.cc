@@ -1,8 +1,8 @@
-#include "core/conductivity/contact_matrix.h"
+#include "tools/conductivity/contact_matrix.h"
 
 #include <cmath>
 
-#include "core/conductivity/gamma_law.h"
+#include "tools/conductivity/gamma_law.h"
 
 // With t = (v_a - v_b)^2/4, y = (v_a + v_b)^2/4 and the energies g of the other components,
 //

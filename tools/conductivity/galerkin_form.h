@@ -16,15 +16,15 @@
 //   1. AgreesWithTheDefinitionOnARing.  2. IsSymmetricAndPositive.
 //
 // Immutable; safe to share between threads.
-#ifndef BALLPISTON_CORE_CONDUCTIVITY_GALERKIN_FORM_H_
-#define BALLPISTON_CORE_CONDUCTIVITY_GALERKIN_FORM_H_
+#ifndef BALLPISTON_TOOLS_CONDUCTIVITY_GALERKIN_FORM_H_
+#define BALLPISTON_TOOLS_CONDUCTIVITY_GALERKIN_FORM_H_
 
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/conductivity/cluster_basis.h"
-#include "core/conductivity/contact_matrix.h"
-#include "core/conductivity/site_lattice.h"
+#include "tools/conductivity/cluster_basis.h"
+#include "tools/conductivity/contact_matrix.h"
+#include "tools/conductivity/site_lattice.h"
 
 namespace ballpiston {
 
@@ -59,4 +59,4 @@ class GalerkinForm {
 
 }  // namespace ballpiston
 
-#endif  // BALLPISTON_CORE_CONDUCTIVITY_GALERKIN_FORM_H_
+#endif  // BALLPISTON_TOOLS_CONDUCTIVITY_GALERKIN_FORM_H_

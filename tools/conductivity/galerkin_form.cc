@@ -1,4 +1,4 @@
-#include "core/conductivity/galerkin_form.h"
+#include "tools/conductivity/galerkin_form.h"
 
 #include <absl/container/flat_hash_set.h>
 

@@ -1,11 +1,11 @@
-#include "core/conductivity/conductivity.h"
+#include "tools/conductivity/conductivity.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/conductivity/contact_matrix.h"
-#include "core/conductivity/galerkin_form.h"
-#include "core/conductivity/tail_limit.h"
+#include "tools/conductivity/contact_matrix.h"
+#include "tools/conductivity/galerkin_form.h"
+#include "tools/conductivity/tail_limit.h"
 
 namespace ballpiston {
 namespace {

@@ -18,15 +18,14 @@
 //   5. HighDegreesAreExactToRounding.
 //
 // Immutable; safe to share between threads.
-#ifndef BALLPISTON_CORE_CONDUCTIVITY_CONTACT_MATRIX_H_
-#define BALLPISTON_CORE_CONDUCTIVITY_CONTACT_MATRIX_H_
+#ifndef BALLPISTON_TOOLS_CONDUCTIVITY_CONTACT_MATRIX_H_
+#define BALLPISTON_TOOLS_CONDUCTIVITY_CONTACT_MATRIX_H_
 
 #include <Eigen/Core>
 
-namespace ballpiston {
+#include "core/conductivity/conductivity.h"
 
-// <(v_a - v_b)+> = 1/sqrt(pi).
-inline constexpr double kContactRate = 0.5641895835477563;
+namespace ballpiston {
 
 // The largest error of an element, divided by the root of the product of two diagonal elements:
 // those of its row and of its column.
@@ -59,4 +58,4 @@ class ContactMatrix {
 
 }  // namespace ballpiston
 
-#endif  // BALLPISTON_CORE_CONDUCTIVITY_CONTACT_MATRIX_H_
+#endif  // BALLPISTON_TOOLS_CONDUCTIVITY_CONTACT_MATRIX_H_

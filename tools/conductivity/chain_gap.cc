@@ -1,4 +1,4 @@
-#include "core/conductivity/chain_gap.h"
+#include "tools/conductivity/chain_gap.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -9,7 +9,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "core/conductivity/contact_matrix.h"
+#include "tools/conductivity/contact_matrix.h"
 
 namespace ballpiston {
 namespace {

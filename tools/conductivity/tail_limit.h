@@ -5,17 +5,14 @@
 // power of their degree. Measured powers: d + 2 for the conductivity, where d is the least number
 // of a site's velocity components; 6 for the gap of balls and pistons. The error of clusters of n
 // sites falls as n^-6.
-#ifndef BALLPISTON_CORE_CONDUCTIVITY_TAIL_LIMIT_H_
-#define BALLPISTON_CORE_CONDUCTIVITY_TAIL_LIMIT_H_
+#ifndef BALLPISTON_TOOLS_CONDUCTIVITY_TAIL_LIMIT_H_
+#define BALLPISTON_TOOLS_CONDUCTIVITY_TAIL_LIMIT_H_
 
 #include <absl/types/span.h>
 
-namespace ballpiston {
+#include "core/conductivity/conductivity.h"
 
-struct ExtrapolatedValue {
-  double value;
-  double error;  // the change of the value by its last term
-};
+namespace ballpiston {
 
 // `at` is ascending and positive. `at` and `values` have the same size, two or more.
 ExtrapolatedValue TailLimit(absl::Span<const double> at, absl::Span<const double> values,
@@ -23,4 +20,4 @@ ExtrapolatedValue TailLimit(absl::Span<const double> at, absl::Span<const double
 
 }  // namespace ballpiston
 
-#endif  // BALLPISTON_CORE_CONDUCTIVITY_TAIL_LIMIT_H_
+#endif  // BALLPISTON_TOOLS_CONDUCTIVITY_TAIL_LIMIT_H_

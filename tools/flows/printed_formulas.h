@@ -4,12 +4,12 @@
 // the stability tables use them.
 //
 // Rates, moments and the kernel are in units of |dG_bp|/|G|, as in the library.
-#ifndef BALLPISTON_CORE_CLOSED_FORM_PRINTED_FORMULAS_H_
-#define BALLPISTON_CORE_CLOSED_FORM_PRINTED_FORMULAS_H_
+#ifndef BALLPISTON_TOOLS_FLOWS_PRINTED_FORMULAS_H_
+#define BALLPISTON_TOOLS_FLOWS_PRINTED_FORMULAS_H_
 
 #include <algorithm>
 
-#include "core/arithmetic/quad_precision.h"
+#include "tools/flows/quad_precision.h"
 
 namespace ballpiston {
 
@@ -82,4 +82,4 @@ Real KernelAsPrinted(Real eb, Real ep, Real ep_out, Real pi) {
 
 }  // namespace ballpiston
 
-#endif  // BALLPISTON_CORE_CLOSED_FORM_PRINTED_FORMULAS_H_
+#endif  // BALLPISTON_TOOLS_FLOWS_PRINTED_FORMULAS_H_

@@ -1,4 +1,4 @@
-#include "core/conductivity/contact_matrix.h"
+#include "tools/conductivity/contact_matrix.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "core/conductivity/gamma_law.h"
 #include "tests/oracle/gauss_legendre.h"
+#include "tools/conductivity/gamma_law.h"
 
 namespace ballpiston {
 namespace {

@@ -21,13 +21,13 @@
 // degree n and N sites. Properties, each with the test that bears its name:
 //   1. GapOfThePairMatchesItsGenerator.  2. GapFallsWithDegree.
 //   3. SpectrumDoesNotDependOnTheDirectionOfTheChain.
-#ifndef BALLPISTON_CORE_CONDUCTIVITY_CHAIN_GAP_H_
-#define BALLPISTON_CORE_CONDUCTIVITY_CHAIN_GAP_H_
+#ifndef BALLPISTON_TOOLS_CONDUCTIVITY_CHAIN_GAP_H_
+#define BALLPISTON_TOOLS_CONDUCTIVITY_CHAIN_GAP_H_
 
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/conductivity/tail_limit.h"
+#include "tools/conductivity/tail_limit.h"
 
 namespace ballpiston {
 
@@ -40,4 +40,4 @@ ExtrapolatedValue ChainGap(const std::vector<int>& dimensions, const std::vector
 
 }  // namespace ballpiston
 
-#endif  // BALLPISTON_CORE_CONDUCTIVITY_CHAIN_GAP_H_
+#endif  // BALLPISTON_TOOLS_CONDUCTIVITY_CHAIN_GAP_H_

@@ -3,14 +3,14 @@
 // Sites have whole coordinates, and neighbours have distance 1. A ball has even coordinates; a
 // piston has one odd coordinate. Unlike elsewhere in the core, a cell here has length 2. In a chain
 // of equal sites a cell has length 1.
-#ifndef BALLPISTON_CORE_CONDUCTIVITY_SITE_LATTICE_H_
-#define BALLPISTON_CORE_CONDUCTIVITY_SITE_LATTICE_H_
+#ifndef BALLPISTON_TOOLS_CONDUCTIVITY_SITE_LATTICE_H_
+#define BALLPISTON_TOOLS_CONDUCTIVITY_SITE_LATTICE_H_
 
 #include <cstdint>
 #include <tuple>
 #include <vector>
 
-#include "core/conductivity/contact_matrix.h"
+#include "tools/conductivity/contact_matrix.h"
 
 namespace ballpiston {
 
@@ -44,12 +44,16 @@ struct SiteLattice {
 };
 
 // Ball, piston, ball, piston, ...
-SiteLattice BallPistonChain();
+inline SiteLattice BallPistonChain() { return {{2, 1}, 2, false, {{{0, 0}, {1, 0}, 2}}}; }
+
 // Equal sites of d velocity components: 2 is the model of discs, 3 that of spheres.
-SiteLattice EqualSitesChain(int dimension);
+inline SiteLattice EqualSitesChain(int d) { return {{d, d}, 1, false, {{{0, 0}, {1, 0}, 1}}}; }
+
 // A ball in each cell and a piston on each edge of the square lattice.
-SiteLattice BallPistonLattice();
+inline SiteLattice BallPistonLattice() {
+  return {{2, 1}, 2, true, {{{0, 0}, {1, 0}, 2}, {{0, 0}, {0, 1}, 2}}};
+}
 
 }  // namespace ballpiston
 
-#endif  // BALLPISTON_CORE_CONDUCTIVITY_SITE_LATTICE_H_
+#endif  // BALLPISTON_TOOLS_CONDUCTIVITY_SITE_LATTICE_H_

@@ -1,4 +1,4 @@
-#include "core/conductivity/conductivity.h"
+#include "tools/conductivity/conductivity.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,9 @@
 #include <cmath>
 #include <vector>
 
-#include "core/conductivity/contact_matrix.h"
-#include "core/conductivity/galerkin_form.h"
+#include "tests/support/nightly.h"
+#include "tools/conductivity/contact_matrix.h"
+#include "tools/conductivity/galerkin_form.h"
 
 namespace ballpiston {
 namespace {
@@ -95,18 +96,33 @@ TEST(Conductivity, RefinementSumsTheLimitsOfItsSteps) {
   EXPECT_EQ(ratio.table.size(), 5);
 }
 
+void AgreesWithTheConstant(const SiteLattice& lattice, ExtrapolatedValue constant) {
+  const ConductivityRatio quick = RefineConductivity(lattice, QuickPlan(lattice));
+  EXPECT_NEAR(quick.correction, constant.value, quick.error);
+  EXPECT_LE(quick.error, 3e-6);
+  EXPECT_GT(quick.upper_bound, constant.value);
+  EXPECT_GE(quick.table.size(), 8);
+  for (const ComputedBound& row : quick.table) EXPECT_GE(row.correction, quick.upper_bound);
+}
+
 TEST(Conductivity, QuickPlanAgreesWithTheConstants) {
-  const auto agrees = [](const SiteLattice& lattice, ExtrapolatedValue constant) {
-    const ConductivityRatio quick = RefineConductivity(lattice, QuickPlan(lattice));
-    EXPECT_NEAR(quick.correction, constant.value, quick.error);
-    EXPECT_LE(quick.error, 3e-6);
-    EXPECT_GT(quick.upper_bound, constant.value);
-    EXPECT_GE(quick.table.size(), 8);
-    for (const ComputedBound& row : quick.table) EXPECT_GE(row.correction, quick.upper_bound);
-  };
-  agrees(BallPistonChain(), kChainCorrection);
-  agrees(BallPistonLattice(), kLatticeCorrection);
-  agrees(EqualSitesChain(2), kDiscChainCorrection);
+  AgreesWithTheConstant(BallPistonChain(), kChainCorrection);
+  AgreesWithTheConstant(BallPistonLattice(), kLatticeCorrection);
+  AgreesWithTheConstant(EqualSitesChain(2), kDiscChainCorrection);
+}
+
+void FinePlanGivesTheConstant(const SiteLattice& lattice, ExtrapolatedValue constant) {
+  const ConductivityRatio fine = RefineConductivity(lattice, FinePlan(lattice));
+  EXPECT_LE(fine.error, constant.error);
+  EXPECT_NEAR(fine.correction, constant.value, constant.error / 4);
+}
+
+TEST(Conductivity, FinePlanGivesTheConstants) {
+  if (!IsNightly()) GTEST_SKIP() << "takes half a minute";
+  FinePlanGivesTheConstant(BallPistonChain(), kChainCorrection);
+  FinePlanGivesTheConstant(BallPistonLattice(), kLatticeCorrection);
+  FinePlanGivesTheConstant(EqualSitesChain(2), kDiscChainCorrection);
+  FinePlanGivesTheConstant(EqualSitesChain(3), kSphereChainCorrection);
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 // On x86 the type is __float128 with the compiler's libquadmath, elsewhere a long double of the
 // same format. The functions are declared here because quadmath.h is in a folder of GCC that other
 // compilers do not search.
-#ifndef BALLPISTON_CORE_ARITHMETIC_QUAD_PRECISION_H_
-#define BALLPISTON_CORE_ARITHMETIC_QUAD_PRECISION_H_
+#ifndef BALLPISTON_TOOLS_FLOWS_QUAD_PRECISION_H_
+#define BALLPISTON_TOOLS_FLOWS_QUAD_PRECISION_H_
 
 #include <cmath>
 #include <limits>
@@ -57,4 +57,4 @@ inline double RelativeError(double value, Quad exact) {
 
 }  // namespace ballpiston
 
-#endif  // BALLPISTON_CORE_ARITHMETIC_QUAD_PRECISION_H_
+#endif  // BALLPISTON_TOOLS_FLOWS_QUAD_PRECISION_H_

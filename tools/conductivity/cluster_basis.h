@@ -11,8 +11,8 @@
 //   3. HasEveryFunctionOfTheCluster.
 //
 // Immutable; safe to share between threads.
-#ifndef BALLPISTON_CORE_CONDUCTIVITY_CLUSTER_BASIS_H_
-#define BALLPISTON_CORE_CONDUCTIVITY_CLUSTER_BASIS_H_
+#ifndef BALLPISTON_TOOLS_CONDUCTIVITY_CLUSTER_BASIS_H_
+#define BALLPISTON_TOOLS_CONDUCTIVITY_CLUSTER_BASIS_H_
 
 #include <absl/container/flat_hash_map.h>
 #include <absl/container/inlined_vector.h>
@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/conductivity/site_lattice.h"
+#include "tools/conductivity/site_lattice.h"
 
 namespace ballpiston {
 
@@ -92,4 +92,4 @@ class ClusterBasis {
 
 }  // namespace ballpiston
 
-#endif  // BALLPISTON_CORE_CONDUCTIVITY_CLUSTER_BASIS_H_
+#endif  // BALLPISTON_TOOLS_CONDUCTIVITY_CLUSTER_BASIS_H_

@@ -1,4 +1,4 @@
-#include "core/conductivity/tail_limit.h"
+#include "tools/conductivity/tail_limit.h"
 
 #include <Eigen/SVD>
 #include <cmath>
