@@ -81,7 +81,7 @@ ServiceOnDisk::ServiceOnDisk(FaultDisk& disk, Turnstile* turnstile) {
   store_ = *std::move(store);
   pool_ = std::make_unique<ThreadPool>(1, Factory(turnstile));
   book_ =
-      std::make_unique<JobBook>(*store_, Limits(), pool_->scheduler(), [this] { OnStateChange(); });
+      std::make_unique<JobBook>(*store_, Limits(), pool_->scheduler());
   status_ = book_->Resume();
 }
 

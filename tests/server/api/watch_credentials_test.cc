@@ -81,7 +81,9 @@ TEST_F(WatchCredentialsTest, AWatchWithAValidTokenGoesOn) {
 }
 
 TEST_F(WatchCredentialsTest, AStalledReaderLosesItsWatchToo) {
-  WatchStream stalled(alice_, alice_.Submit(LargeEquilibrium()));
+  const std::string name = alice_.Submit(Equilibrium(20'000, 1));  // some MB of points
+  alice_.AwaitEnd(name);
+  WatchStream stalled(alice_, name);
   AwaitThat([this] { return ops_.Status().streams() == 1; });  // the server has the watch
   ReplaceAccess(TokenLine(kOps, {"ops", Role::kAdmin}));
   AwaitThat([this] { return ops_.Status().streams() == 0; });

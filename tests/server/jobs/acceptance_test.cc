@@ -57,10 +57,7 @@ class AcceptanceTest : public testing::Test {
                          Store::Open(folder_.File("store"),
                                      {.delay = std::chrono::milliseconds(1), .stall = kNever}));
     pool_ = std::make_unique<ThreadPool>(2, Experiments());
-    book_ = std::make_unique<JobBook>(*store_, limits_, pool_->scheduler(), [this] {
-      std::lock_guard lock(mutex_);
-      changed_.notify_all();
-    });
+    book_ = std::make_unique<JobBook>(*store_, limits_, pool_->scheduler());
     ASSERT_OK(book_->Resume());
   }
 
