@@ -3,8 +3,7 @@
 //   auto server = BallpistonServer::Start(options);
 //   ...
 //   (*server)->Shutdown(std::chrono::seconds(10));
-#ifndef BALLPISTON_SERVER_BALLPISTON_SERVER_H_
-#define BALLPISTON_SERVER_BALLPISTON_SERVER_H_
+#pragma once
 
 #include <atomic>
 #include <chrono>
@@ -143,5 +142,3 @@ class BallpistonServer {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_BALLPISTON_SERVER_H_

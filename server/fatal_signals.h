@@ -1,6 +1,5 @@
 // Notes that the process dies of itself: of SIGSEGV, SIGBUS, SIGFPE, SIGILL or SIGABRT.
-#ifndef BALLPISTON_SERVER_FATAL_SIGNALS_H_
-#define BALLPISTON_SERVER_FATAL_SIGNALS_H_
+#pragma once
 
 #include <signal.h>
 
@@ -29,5 +28,3 @@ class SignalStack {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_FATAL_SIGNALS_H_

@@ -1,7 +1,6 @@
 // Limits of a request, of a principal and of all principals together. The flag of a limit is its
 // name with dashes (--max-active-jobs). 0 means no limit; max_message_bytes is always limited.
-#ifndef BALLPISTON_SERVER_LIMITS_H_
-#define BALLPISTON_SERVER_LIMITS_H_
+#pragma once
 
 #include <cstdint>
 
@@ -37,5 +36,3 @@ struct Limits {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_LIMITS_H_

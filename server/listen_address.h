@@ -1,7 +1,6 @@
 // Where a server listens: a Unix socket, or HOST:PORT. security/server_security.h says which
 // credentials each kind of address needs.
-#ifndef BALLPISTON_SERVER_LISTEN_ADDRESS_H_
-#define BALLPISTON_SERVER_LISTEN_ADDRESS_H_
+#pragma once
 
 #include <string>
 
@@ -36,5 +35,3 @@ absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text);
 absl::Status ClearSocketPath(const ListenAddress& address);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_LISTEN_ADDRESS_H_

@@ -1,7 +1,6 @@
 // The memory that this process can use, and the kernel's kills for want of it: of the process's
 // control group (cgroup version 1 or 2), and of the machine.
-#ifndef BALLPISTON_SERVER_MACHINE_MEMORY_H_
-#define BALLPISTON_SERVER_MACHINE_MEMORY_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -22,5 +21,3 @@ OutOfMemoryKills ReadOutOfMemoryKills(const std::string& root = "");
 double MachineMemory(const std::string& root = "");
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_MACHINE_MEMORY_H_

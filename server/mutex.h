@@ -10,8 +10,7 @@
 //
 // absl::Mutex has these annotations too. But Debian's build of absl::Mutex is not instrumented, so
 // the thread sanitizer would not see its synchronisation. It sees that of std::mutex.
-#ifndef BALLPISTON_SERVER_MUTEX_H_
-#define BALLPISTON_SERVER_MUTEX_H_
+#pragma once
 
 #include <chrono>
 #include <condition_variable>
@@ -88,5 +87,3 @@ class Condition {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_MUTEX_H_

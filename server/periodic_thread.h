@@ -1,6 +1,5 @@
 // A thread that calls a function again and again.
-#ifndef BALLPISTON_SERVER_PERIODIC_THREAD_H_
-#define BALLPISTON_SERVER_PERIODIC_THREAD_H_
+#pragma once
 
 #include <chrono>
 #include <functional>
@@ -28,5 +27,3 @@ class PeriodicThread {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_PERIODIC_THREAD_H_

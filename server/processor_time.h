@@ -1,7 +1,6 @@
 // Processor time of the calling thread, in seconds. It does not include the time of other threads
 // and programs.
-#ifndef BALLPISTON_SERVER_PROCESSOR_TIME_H_
-#define BALLPISTON_SERVER_PROCESSOR_TIME_H_
+#pragma once
 
 #include <ctime>
 
@@ -29,5 +28,3 @@ double SecondsOf(const Run& run) {
 }
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_PROCESSOR_TIME_H_

@@ -1,6 +1,5 @@
 // Commands that ballpistond itself executes, without starting a server.
-#ifndef BALLPISTON_CLIENT_COMMAND_BALLPISTOND_H_
-#define BALLPISTON_CLIENT_COMMAND_BALLPISTOND_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -14,5 +13,3 @@ namespace ballpiston::client {
 VerbResult RunBallpistond(std::vector<std::string> flags, const Terminal& terminal);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_BALLPISTOND_H_

@@ -1,6 +1,5 @@
 // The whole program: parses the command line, runs the verb, prints errors, returns the exit code.
-#ifndef BALLPISTON_CLIENT_COMMAND_COMMAND_LINE_H_
-#define BALLPISTON_CLIENT_COMMAND_COMMAND_LINE_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -28,5 +27,3 @@ absl::StatusOr<CommandLine> ParseCommandLine(const std::vector<std::string>& wor
 ExitCode RunCommandLine(const std::vector<std::string>& words, Terminal& terminal);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_COMMAND_LINE_H_

@@ -3,8 +3,7 @@
 //
 // CLI11's own config file is not used: it would override the environment, and has no keys for all
 // verbs.
-#ifndef BALLPISTON_CLIENT_COMMAND_CONFIG_FILE_H_
-#define BALLPISTON_CLIENT_COMMAND_CONFIG_FILE_H_
+#pragma once
 
 #include <functional>
 #include <string>
@@ -28,5 +27,3 @@ using AddSetting =
 absl::Status ReadConfig(const std::string& path, const Verb& verb, const AddSetting& add);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_CONFIG_FILE_H_

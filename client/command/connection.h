@@ -3,8 +3,7 @@
 //
 // A Unix socket, such as the private server's, uses neither TLS nor tokens. Flags of TLS and tokens
 // are then an error; the same settings in the environment and the config file are ignored.
-#ifndef BALLPISTON_CLIENT_COMMAND_CONNECTION_H_
-#define BALLPISTON_CLIENT_COMMAND_CONNECTION_H_
+#pragma once
 
 #include <grpcpp/grpcpp.h>
 
@@ -57,5 +56,3 @@ VerbResult WithRunningServer(const Options& options, const Terminal& terminal,
                              const VerbOfServer& verb);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_CONNECTION_H_

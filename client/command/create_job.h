@@ -1,7 +1,6 @@
 // Submits a job over a connection, and makes two messages: that the results were already stored,
 // and what the user can do about a limit of the server.
-#ifndef BALLPISTON_CLIENT_COMMAND_CREATE_JOB_H_
-#define BALLPISTON_CLIENT_COMMAND_CREATE_JOB_H_
+#pragma once
 
 #include <string>
 
@@ -27,5 +26,3 @@ absl::StatusOr<v1::EnsembleJob> CreateJob(const Connection& connection,
 std::string FromStoreText(const v1::EnsembleJob& job);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_CREATE_JOB_H_

@@ -1,6 +1,5 @@
 // The program's exit codes; scripts rely on them.
-#ifndef BALLPISTON_CLIENT_COMMAND_EXIT_CODE_H_
-#define BALLPISTON_CLIENT_COMMAND_EXIT_CODE_H_
+#pragma once
 
 #include "absl/status/status.h"
 
@@ -24,5 +23,3 @@ ExitCode ExitCodeOf(const absl::Status& status);
 ExitCode ExitCodeOf(int exit_status);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_EXIT_CODE_H_

@@ -1,6 +1,5 @@
 // The server's errors in the words of the command line: --rho, not spec.grid.rho[0].
-#ifndef BALLPISTON_CLIENT_COMMAND_FIELD_FLAGS_H_
-#define BALLPISTON_CLIENT_COMMAND_FIELD_FLAGS_H_
+#pragma once
 
 #include <string>
 
@@ -15,5 +14,3 @@ namespace ballpiston::client {
 std::string MessageWithFlags(const absl::Status& error, const Verb& verb, const Options& options);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_FIELD_FLAGS_H_

@@ -2,8 +2,7 @@
 //
 // An interruption (interrupts.h) ends the watch, but not the job. The message says how to watch the
 // job again and how to cancel it.
-#ifndef BALLPISTON_CLIENT_COMMAND_FOLLOW_JOB_H_
-#define BALLPISTON_CLIENT_COMMAND_FOLLOW_JOB_H_
+#pragma once
 
 #include <string>
 
@@ -28,5 +27,3 @@ absl::StatusOr<v1::EnsembleJob> FollowJob(const Connection& connection, const st
 ExitCode ReportEnd(const v1::EnsembleJob& job, const Terminal& terminal);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_FOLLOW_JOB_H_

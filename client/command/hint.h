@@ -1,6 +1,5 @@
 // Hints: a second line of an error message tells the user what to do.
-#ifndef BALLPISTON_CLIENT_COMMAND_HINT_H_
-#define BALLPISTON_CLIENT_COMMAND_HINT_H_
+#pragma once
 
 #include <string>
 
@@ -19,5 +18,3 @@ absl::Status HintIfExpired(const absl::Status& status, const Connection& connect
                            const std::string& job);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_HINT_H_

@@ -3,8 +3,7 @@
 // Construct it before any other thread starts. The signals are blocked in every thread, and a
 // thread of this class receives them. Therefore an ordinary thread prints the last message, not a
 // signal handler. A signal that was ignored before (nohup) stays ignored.
-#ifndef BALLPISTON_CLIENT_COMMAND_INTERRUPTS_H_
-#define BALLPISTON_CLIENT_COMMAND_INTERRUPTS_H_
+#pragma once
 
 #include <signal.h>
 
@@ -48,5 +47,3 @@ class Interrupts {
 };
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_INTERRUPTS_H_

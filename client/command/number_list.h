@@ -7,8 +7,7 @@
 //           (both ends above 0). A range with COUNT 1 is FROM alone.
 //
 // Every error is INVALID_ARGUMENT; it quotes the text and states the permitted form.
-#ifndef BALLPISTON_CLIENT_COMMAND_NUMBER_LIST_H_
-#define BALLPISTON_CLIENT_COMMAND_NUMBER_LIST_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -26,5 +25,3 @@ absl::StatusOr<uint64_t> ParseSeed(absl::string_view text);
 absl::StatusOr<std::vector<double>> ParseNumberList(absl::string_view text);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_NUMBER_LIST_H_

@@ -1,7 +1,6 @@
 // The values of all flags and arguments. Each verb sets some of them (verb_table.h); the others
 // keep their defaults.
-#ifndef BALLPISTON_CLIENT_COMMAND_OPTIONS_H_
-#define BALLPISTON_CLIENT_COMMAND_OPTIONS_H_
+#pragma once
 
 #include <cstdint>
 #include <map>
@@ -65,5 +64,3 @@ struct Options {
 };
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_OPTIONS_H_

@@ -1,6 +1,5 @@
 // Fetches a job's finished points, or one of them, and prints them.
-#ifndef BALLPISTON_CLIENT_COMMAND_PRINT_RESULT_H_
-#define BALLPISTON_CLIENT_COMMAND_PRINT_RESULT_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -26,5 +25,3 @@ VerbResult PrintPoint(const Connection& connection, const std::string& name, int
                       const Options& options, Terminal& terminal);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_PRINT_RESULT_H_

@@ -4,8 +4,7 @@
 //
 // The client checks only the form. The server checks the values, and reports all violations
 // together.
-#ifndef BALLPISTON_CLIENT_COMMAND_QUESTION_H_
-#define BALLPISTON_CLIENT_COMMAND_QUESTION_H_
+#pragma once
 
 #include <functional>
 
@@ -29,5 +28,3 @@ VerbResult WithQuestion(const Options& options, const Terminal& terminal,
                         const VerbOfQuestion& verb);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_QUESTION_H_

@@ -1,6 +1,5 @@
 // Makes help, man pages and the reference in Markdown from the table of verbs.
-#ifndef BALLPISTON_CLIENT_COMMAND_REFERENCE_H_
-#define BALLPISTON_CLIENT_COMMAND_REFERENCE_H_
+#pragma once
 
 #include <string>
 
@@ -21,5 +20,3 @@ std::string MarkdownReference();
 std::string PageName(const Verb* verb);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_REFERENCE_H_

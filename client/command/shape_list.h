@@ -5,8 +5,7 @@
 //   range  FROM:TO:COUNT or FROM:TO:COUNT:log, whose numbers are whole: chains of these lengths
 //
 // COUNT and range are those of number_list.h. The server checks which numbers are permitted.
-#ifndef BALLPISTON_CLIENT_COMMAND_SHAPE_LIST_H_
-#define BALLPISTON_CLIENT_COMMAND_SHAPE_LIST_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -23,5 +22,3 @@ absl::StatusOr<std::vector<std::string>> ParseShapeList(absl::string_view text);
 absl::StatusOr<std::string> ParseShape(absl::string_view text);  // a single SHAPE
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_SHAPE_LIST_H_

@@ -1,6 +1,5 @@
 // A specification from a file of proto JSON (ballpiston.v1.EnsembleSpec).
-#ifndef BALLPISTON_CLIENT_COMMAND_SPEC_FILE_H_
-#define BALLPISTON_CLIENT_COMMAND_SPEC_FILE_H_
+#pragma once
 
 #include <string>
 
@@ -18,5 +17,3 @@ absl::StatusOr<v1::EnsembleSpec> ReadSpecFile(const std::string& path);
 absl::StatusOr<v1::EnsembleSpec> ParseSpec(absl::string_view name, const std::string& json);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_SPEC_FILE_H_

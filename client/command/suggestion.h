@@ -1,6 +1,5 @@
 // "did you mean ...?" for names that the user mistyped.
-#ifndef BALLPISTON_CLIENT_COMMAND_SUGGESTION_H_
-#define BALLPISTON_CLIENT_COMMAND_SUGGESTION_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -20,5 +19,3 @@ std::string DidYouMean(absl::string_view text, const std::vector<std::string>& n
 std::string NotOneOf(absl::string_view text, const std::vector<std::string>& names);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_SUGGESTION_H_

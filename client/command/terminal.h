@@ -1,6 +1,5 @@
 // The output of a verb: results go to standard output, everything else to standard error.
-#ifndef BALLPISTON_CLIENT_COMMAND_TERMINAL_H_
-#define BALLPISTON_CLIENT_COMMAND_TERMINAL_H_
+#pragma once
 
 #include <ostream>
 
@@ -30,5 +29,3 @@ struct Terminal {
 };
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_TERMINAL_H_

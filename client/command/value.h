@@ -3,8 +3,7 @@
 // An error is INVALID_ARGUMENT; it quotes the text and states the permitted form:
 // 'x' is not a decimal number such as 0.1 or 1e-3. The server checks whether a number is
 // physical.
-#ifndef BALLPISTON_CLIENT_COMMAND_VALUE_H_
-#define BALLPISTON_CLIENT_COMMAND_VALUE_H_
+#pragma once
 
 #include <functional>
 #include <string>
@@ -101,5 +100,3 @@ Value SomeOf(std::string name, Choices<T> choices, Store<T> store) {
 }
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_VALUE_H_

@@ -2,8 +2,7 @@
 // the reference (reference.h) and shell completion (completion.cc) all use this one table.
 //
 // A new verb is a row here, its function in verbs.h and its file.
-#ifndef BALLPISTON_CLIENT_COMMAND_VERB_TABLE_H_
-#define BALLPISTON_CLIENT_COMMAND_VERB_TABLE_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -75,5 +74,3 @@ std::string KeyOf(const Flag& flag);
 bool Replaces(const Flag& flag, const Flag& other);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_VERB_TABLE_H_

@@ -1,7 +1,6 @@
 // The functions of the verbs. Each function is in the file with the verb's name; the verbs of
 // `server` are in server.cc. The parser has already checked the command line.
-#ifndef BALLPISTON_CLIENT_COMMAND_VERBS_H_
-#define BALLPISTON_CLIENT_COMMAND_VERBS_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -43,5 +42,3 @@ VerbResult Complete(const Options& options, Terminal& terminal);
 std::vector<std::string> FigureNames();
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_COMMAND_VERBS_H_

@@ -3,8 +3,7 @@
 // While the server is unreachable, the channel retries calls for about a second if they are safe to
 // repeat: all calls but Delete (Create and Cancel carry a request id). The channel does not retry a
 // watch: JobWatch does.
-#ifndef BALLPISTON_CLIENT_LIBRARY_CHANNEL_H_
-#define BALLPISTON_CLIENT_LIBRARY_CHANNEL_H_
+#pragma once
 
 #include <grpcpp/grpcpp.h>
 
@@ -22,5 +21,3 @@ absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(absl::string_view add
                                                            const ChannelSecurity& security = {});
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_LIBRARY_CHANNEL_H_

@@ -5,8 +5,7 @@
 //   ca               TLS; the certificate authorities in this file verify the server
 //   certificate/key  TLS; the client also shows its own certificate
 //   token            sent with every call; needs TLS
-#ifndef BALLPISTON_CLIENT_LIBRARY_CHANNEL_SECURITY_H_
-#define BALLPISTON_CLIENT_LIBRARY_CHANNEL_SECURITY_H_
+#pragma once
 
 #include <grpcpp/grpcpp.h>
 
@@ -41,5 +40,3 @@ absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> CredentialsOf(
     const ChannelSecurity& security);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_LIBRARY_CHANNEL_SECURITY_H_

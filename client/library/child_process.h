@@ -2,8 +2,7 @@
 //
 // A child process does not inherit this program's signal settings or open files: it starts with no
 // signal blocked or ignored, and with only the three standard files open.
-#ifndef BALLPISTON_CLIENT_LIBRARY_CHILD_PROCESS_H_
-#define BALLPISTON_CLIENT_LIBRARY_CHILD_PROCESS_H_
+#pragma once
 
 #include <sys/types.h>
 
@@ -40,5 +39,3 @@ absl::StatusOr<int> WaitForChild(pid_t pid);
 absl::StatusOr<int> RunChild(const ChildProcess& child);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_LIBRARY_CHILD_PROCESS_H_

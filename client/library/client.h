@@ -9,8 +9,7 @@
 //
 // An error has the server's code and the text that error_text.h makes from its details. UNAVAILABLE
 // or DEADLINE_EXCEEDED if the server cannot be reached. Thread-safe.
-#ifndef BALLPISTON_CLIENT_LIBRARY_CLIENT_H_
-#define BALLPISTON_CLIENT_LIBRARY_CLIENT_H_
+#pragma once
 
 #include <grpcpp/grpcpp.h>
 
@@ -114,5 +113,3 @@ class Client {
 };
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_LIBRARY_CLIENT_H_

@@ -1,7 +1,6 @@
 // Advice for a failed connection. The messages of gRPC and OpenSSL describe the failure, but do not
 // say what the user can do.
-#ifndef BALLPISTON_CLIENT_LIBRARY_CONNECTION_HINT_H_
-#define BALLPISTON_CLIENT_LIBRARY_CONNECTION_HINT_H_
+#pragma once
 
 #include <string>
 
@@ -18,5 +17,3 @@ std::string ConnectionHint(const ChannelSecurity& security, absl::string_view me
 std::string SocketHint(absl::string_view message);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_LIBRARY_CONNECTION_HINT_H_

@@ -13,8 +13,7 @@
 //
 // Two errors of gRPC get a plain text: a message that is too large for the transport (with both
 // sizes), and a method that the server lacks.
-#ifndef BALLPISTON_CLIENT_LIBRARY_ERROR_TEXT_H_
-#define BALLPISTON_CLIENT_LIBRARY_ERROR_TEXT_H_
+#pragma once
 
 #include <grpcpp/support/status.h>
 
@@ -42,5 +41,3 @@ struct FieldViolation {
 std::vector<FieldViolation> ErrorViolations(const absl::Status& status);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_LIBRARY_ERROR_TEXT_H_

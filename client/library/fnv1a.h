@@ -1,6 +1,5 @@
 // The hash FNV-1a, 64 bits: the same number in every process and version of this program.
-#ifndef BALLPISTON_CLIENT_LIBRARY_FNV1A_H_
-#define BALLPISTON_CLIENT_LIBRARY_FNV1A_H_
+#pragma once
 
 #include <cstdint>
 
@@ -17,5 +16,3 @@ inline uint64_t Fnv1a(absl::string_view text, uint64_t basis = kFnv1aBasis) {
 }
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_LIBRARY_FNV1A_H_

@@ -1,6 +1,5 @@
 // Data files that are installed with this program.
-#ifndef BALLPISTON_CLIENT_LIBRARY_INSTALLED_FILES_H_
-#define BALLPISTON_CLIENT_LIBRARY_INSTALLED_FILES_H_
+#pragma once
 
 #include <filesystem>
 #include <fstream>
@@ -25,5 +24,3 @@ inline std::string Contents(const std::filesystem::path& file) {
 }
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_LIBRARY_INSTALLED_FILES_H_

@@ -8,8 +8,7 @@
 // Properties, each with a test of its name:
 //   1. PassesTheLastResumeTokenOn.     2. ShowsTheTerminalStateOnce.
 //   3. GivesUpAfterTheConfiguredTime.  4. AStopEndsTheWatchAtOnce.
-#ifndef BALLPISTON_CLIENT_LIBRARY_JOB_WATCH_H_
-#define BALLPISTON_CLIENT_LIBRARY_JOB_WATCH_H_
+#pragma once
 
 #include <functional>
 #include <stop_token>
@@ -50,5 +49,3 @@ absl::StatusOr<v1::EnsembleJob> WatchJob(v1::EnsembleService::StubInterface& stu
                                          std::stop_token stop = {});
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_LIBRARY_JOB_WATCH_H_

@@ -9,8 +9,7 @@
 // Two clients that start at the same time may start two servers. Only the server that gets the
 // folder's lock stays, and both clients use it: they wait for at most a minute while it holds the
 // lock, unless it listens at another address.
-#ifndef BALLPISTON_CLIENT_LIBRARY_LOCAL_SERVER_H_
-#define BALLPISTON_CLIENT_LIBRARY_LOCAL_SERVER_H_
+#pragma once
 
 #include <grpcpp/grpcpp.h>
 
@@ -47,5 +46,3 @@ absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectToLocalServer(const LocalS
 absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectIfRunning(const LocalServer& server);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_LIBRARY_LOCAL_SERVER_H_

@@ -1,7 +1,6 @@
 // Wrong values in error messages. Short values are shown whole, long values are shortened to a line
 // or two. Control characters are escaped, so that they do not change the terminal.
-#ifndef BALLPISTON_CLIENT_LIBRARY_QUOTED_H_
-#define BALLPISTON_CLIENT_LIBRARY_QUOTED_H_
+#pragma once
 
 #include <cstddef>
 #include <string>
@@ -34,5 +33,3 @@ inline std::string Quoted(absl::string_view text) {
 }
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_LIBRARY_QUOTED_H_

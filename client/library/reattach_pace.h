@@ -4,8 +4,7 @@
 // it has received nothing for `give_up_after`.
 //
 // The caller passes the times, so that tests need not wait. Not thread-safe.
-#ifndef BALLPISTON_CLIENT_LIBRARY_REATTACH_PACE_H_
-#define BALLPISTON_CLIENT_LIBRARY_REATTACH_PACE_H_
+#pragma once
 
 #include <chrono>
 #include <optional>
@@ -37,5 +36,3 @@ class ReattachPace {
 };
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_LIBRARY_REATTACH_PACE_H_

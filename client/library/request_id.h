@@ -1,6 +1,5 @@
 // Ids for calls that must not take effect twice.
-#ifndef BALLPISTON_CLIENT_LIBRARY_REQUEST_ID_H_
-#define BALLPISTON_CLIENT_LIBRARY_REQUEST_ID_H_
+#pragma once
 
 #include <string>
 
@@ -18,5 +17,3 @@ std::string RequestIdFor(absl::string_view text);
 bool IsRequestId(absl::string_view text);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_LIBRARY_REQUEST_ID_H_

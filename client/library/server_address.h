@@ -4,8 +4,7 @@
 //   unix:PATH    a Unix domain socket
 //
 // channel_security.h protects connections to host:port.
-#ifndef BALLPISTON_CLIENT_LIBRARY_SERVER_ADDRESS_H_
-#define BALLPISTON_CLIENT_LIBRARY_SERVER_ADDRESS_H_
+#pragma once
 
 #include <string>
 
@@ -22,5 +21,3 @@ inline constexpr size_t kMaxSocketPath = 100;
 absl::StatusOr<std::string> GrpcTarget(absl::string_view address);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_LIBRARY_SERVER_ADDRESS_H_

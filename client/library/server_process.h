@@ -1,7 +1,6 @@
 // A ballpistond on this machine, known by its data folder (server/store/data_directory.h): start
 // it, find it, stop it.
-#ifndef BALLPISTON_CLIENT_LIBRARY_SERVER_PROCESS_H_
-#define BALLPISTON_CLIENT_LIBRARY_SERVER_PROCESS_H_
+#pragma once
 
 #include <sys/types.h>
 
@@ -68,5 +67,3 @@ absl::StatusOr<std::string> StartServer(const ServerProgram& program,
 absl::Status StopServer(const std::string& folder, absl::Duration timeout = absl::Minutes(1));
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_LIBRARY_SERVER_PROCESS_H_

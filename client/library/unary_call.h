@@ -1,6 +1,5 @@
 // One call with one answer and a deadline. The server's error becomes readable text (error_text.h).
-#ifndef BALLPISTON_CLIENT_LIBRARY_UNARY_CALL_H_
-#define BALLPISTON_CLIENT_LIBRARY_UNARY_CALL_H_
+#pragma once
 
 #include <grpcpp/client_context.h>
 
@@ -27,5 +26,3 @@ absl::StatusOr<Response> CallUnary(Stub& stub,
 }
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_LIBRARY_UNARY_CALL_H_

@@ -10,8 +10,7 @@
 //
 // The table has 15 significant digits. In the other formats all numbers read back as the same
 // double.
-#ifndef BALLPISTON_CLIENT_OUTPUT_ANALYTIC_OUTPUT_H_
-#define BALLPISTON_CLIENT_OUTPUT_ANALYTIC_OUTPUT_H_
+#pragma once
 
 #include <ostream>
 #include <vector>
@@ -26,5 +25,3 @@ void PrintAnalytics(const v1::EvaluatePairsResponse& response,
                     const std::vector<double>& outgoing_epsilon, Format format, std::ostream& out);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_ANALYTIC_OUTPUT_H_

@@ -1,6 +1,5 @@
 // Rows of CSV (RFC 4180).
-#ifndef BALLPISTON_CLIENT_OUTPUT_CSV_ROW_H_
-#define BALLPISTON_CLIENT_OUTPUT_CSV_ROW_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -26,5 +25,3 @@ inline std::string CsvRow(const std::vector<std::string>& cells) {
 }
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_CSV_ROW_H_

@@ -1,7 +1,6 @@
 // Results as CSV: a header, then one row for each estimate, each bin of the histograms, or each
 // point of the curves. result_writer.h lists the columns.
-#ifndef BALLPISTON_CLIENT_OUTPUT_CSV_WRITER_H_
-#define BALLPISTON_CLIENT_OUTPUT_CSV_WRITER_H_
+#pragma once
 
 #include <memory>
 #include <ostream>
@@ -16,5 +15,3 @@ std::unique_ptr<ResultWriter> NewHistogramCsvWriter(std::ostream& out);
 std::unique_ptr<ResultWriter> NewCurveCsvWriter(std::ostream& out);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_CSV_WRITER_H_

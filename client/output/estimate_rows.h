@@ -1,6 +1,5 @@
 // The estimates of a point as rows of a table, and the optional fields of a row.
-#ifndef BALLPISTON_CLIENT_OUTPUT_ESTIMATE_ROWS_H_
-#define BALLPISTON_CLIENT_OUTPUT_ESTIMATE_ROWS_H_
+#pragma once
 
 #include <optional>
 #include <vector>
@@ -44,5 +43,3 @@ inline constexpr Field kLimit = {&v1::Estimate::has_limit, &v1::Estimate::limit}
 inline constexpr Field kBatches = {&v1::Estimate::has_batches, &v1::Estimate::batches};
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_ESTIMATE_ROWS_H_

@@ -1,6 +1,5 @@
 // The output formats.
-#ifndef BALLPISTON_CLIENT_OUTPUT_FORMAT_H_
-#define BALLPISTON_CLIENT_OUTPUT_FORMAT_H_
+#pragma once
 
 namespace ballpiston::client {
 
@@ -14,5 +13,3 @@ enum class Format {
 };
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_FORMAT_H_

@@ -2,8 +2,7 @@
 // column for the principal if the jobs have different principals, a column for the priority if a
 // priority is not 0, and a column for the results if some results are pinned, have expired or will
 // expire within a week. CSV always has these columns.
-#ifndef BALLPISTON_CLIENT_OUTPUT_JOB_LIST_H_
-#define BALLPISTON_CLIENT_OUTPUT_JOB_LIST_H_
+#pragma once
 
 #include <ostream>
 #include <vector>
@@ -22,5 +21,3 @@ void PrintJobs(const std::vector<v1::EnsembleJob>& jobs, absl::Time now, Format 
 v1::ListEnsembleJobsRequest::View JobViewFor(Format format);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_JOB_LIST_H_

@@ -2,8 +2,7 @@
 // they have their default value, so that all messages have the same columns. Doubles read back as
 // the same double. 64-bit integers are strings, as in proto JSON. The same message gives the same
 // bytes.
-#ifndef BALLPISTON_CLIENT_OUTPUT_JSON_H_
-#define BALLPISTON_CLIENT_OUTPUT_JSON_H_
+#pragma once
 
 #include <google/protobuf/message.h>
 
@@ -35,5 +34,3 @@ void PrintJsonDocument(absl::string_view key, const Messages& messages, std::ost
 }
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_JSON_H_

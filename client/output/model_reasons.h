@@ -5,8 +5,7 @@
 //
 //   markov (rho 0.53, delta 0.0125): off by 1.2e-03             several reasons: each with its
 //   billiard (rho 0.53, delta 0.1 and 2 more points): ...       first point
-#ifndef BALLPISTON_CLIENT_OUTPUT_MODEL_REASONS_H_
-#define BALLPISTON_CLIENT_OUTPUT_MODEL_REASONS_H_
+#pragma once
 
 #include <map>
 #include <ostream>
@@ -44,5 +43,3 @@ class ModelReasons {
 };
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_MODEL_REASONS_H_

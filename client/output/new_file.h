@@ -1,7 +1,6 @@
 // A file that appears whole: a reader never sees half of it, and a failure keeps the file that was
 // there. A pipe or a device is written to directly.
-#ifndef BALLPISTON_CLIENT_OUTPUT_NEW_FILE_H_
-#define BALLPISTON_CLIENT_OUTPUT_NEW_FILE_H_
+#pragma once
 
 #include <filesystem>
 #include <ostream>
@@ -47,5 +46,3 @@ class NewFile {
 };
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_NEW_FILE_H_

@@ -1,6 +1,5 @@
 // NumPy's format .npy, version 1.0: a header that describes an array, and its elements.
-#ifndef BALLPISTON_CLIENT_OUTPUT_NPY_ARRAY_H_
-#define BALLPISTON_CLIENT_OUTPUT_NPY_ARRAY_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -17,5 +16,3 @@ std::string NpyBytes(const std::vector<int64_t>& elements, const std::vector<siz
 std::string NpyBytes(const std::vector<std::string>& elements, const std::vector<size_t>& shape);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_NPY_ARRAY_H_

@@ -13,8 +13,7 @@
 //                                have times, (points, times, bins), and _time (points, times)
 //   curve_NAME_time or _position, _value, _standard_error, _limit (points, length)
 //   provenance                   text: JSON with job, engine_version, client_version and spec
-#ifndef BALLPISTON_CLIENT_OUTPUT_NPZ_WRITER_H_
-#define BALLPISTON_CLIENT_OUTPUT_NPZ_WRITER_H_
+#pragma once
 
 #include <memory>
 #include <ostream>
@@ -27,5 +26,3 @@ namespace ballpiston::client {
 std::unique_ptr<ResultWriter> NewNpzWriter(std::ostream& out);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_NPZ_WRITER_H_

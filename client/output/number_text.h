@@ -1,6 +1,5 @@
 // Numbers as text.
-#ifndef BALLPISTON_CLIENT_OUTPUT_NUMBER_TEXT_H_
-#define BALLPISTON_CLIENT_OUTPUT_NUMBER_TEXT_H_
+#pragma once
 
 #include <optional>
 #include <string>
@@ -40,5 +39,3 @@ std::string Counted(double count, absl::string_view noun);
 std::string ClockText(absl::Duration time);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_NUMBER_TEXT_H_

@@ -1,6 +1,5 @@
 // A point's parameters as text. Those that the experiment does not use are absent.
-#ifndef BALLPISTON_CLIENT_OUTPUT_PARAMETER_TEXT_H_
-#define BALLPISTON_CLIENT_OUTPUT_PARAMETER_TEXT_H_
+#pragma once
 
 #include <array>
 #include <string>
@@ -42,5 +41,3 @@ class ParametersShown {
 };
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_PARAMETER_TEXT_H_

@@ -13,8 +13,7 @@
 // Work is in seconds of one core (a table prints the units). Errors are relative. Unknown values
 // are empty. In CSV the reason of the chosen model has two parts: why it was chosen and, after a
 // semicolon, the source of its error.
-#ifndef BALLPISTON_CLIENT_OUTPUT_PLAN_OUTPUT_H_
-#define BALLPISTON_CLIENT_OUTPUT_PLAN_OUTPUT_H_
+#pragma once
 
 #include <ostream>
 
@@ -31,5 +30,3 @@ void PrintPlan(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& 
                std::ostream& out);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_PLAN_OUTPUT_H_

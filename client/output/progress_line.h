@@ -1,6 +1,5 @@
 // The text of the progress bar's one line.
-#ifndef BALLPISTON_CLIENT_OUTPUT_PROGRESS_LINE_H_
-#define BALLPISTON_CLIENT_OUTPUT_PROGRESS_LINE_H_
+#pragma once
 
 #include <cstddef>
 #include <optional>
@@ -18,5 +17,3 @@ std::string ProgressLine(const ProgressMeter& meter,
                          const std::optional<v1::PointResult>& point_in_work, size_t width);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_PROGRESS_LINE_H_

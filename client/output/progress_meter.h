@@ -3,8 +3,7 @@
 // Rates are means since the first snapshot of this watch. They start again if a server died and
 // lost the work since its last checkpoint. Therefore work before the watch and lost work do not
 // distort them. The caller passes the time.
-#ifndef BALLPISTON_CLIENT_OUTPUT_PROGRESS_METER_H_
-#define BALLPISTON_CLIENT_OUTPUT_PROGRESS_METER_H_
+#pragma once
 
 #include <optional>
 
@@ -37,5 +36,3 @@ class ProgressMeter {
 };
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_PROGRESS_METER_H_

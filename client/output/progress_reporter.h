@@ -7,8 +7,7 @@
 //   none  only notes
 //
 // Thread-safe: the thread that handles Ctrl-C calls Farewell while another thread redraws the bar.
-#ifndef BALLPISTON_CLIENT_OUTPUT_PROGRESS_REPORTER_H_
-#define BALLPISTON_CLIENT_OUTPUT_PROGRESS_REPORTER_H_
+#pragma once
 
 #include <mutex>
 #include <optional>
@@ -57,5 +56,3 @@ class ProgressReporter {
 };
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_PROGRESS_REPORTER_H_

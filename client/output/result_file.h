@@ -5,8 +5,7 @@
 //   .csv   estimates, or with --format csv-histograms or csv-curves these; the first lines begin
 //          with # and hold the job and the specification
 //   .npz   NumPy arrays (npz_writer.h)
-#ifndef BALLPISTON_CLIENT_OUTPUT_RESULT_FILE_H_
-#define BALLPISTON_CLIENT_OUTPUT_RESULT_FILE_H_
+#pragma once
 
 #include <memory>
 #include <ostream>
@@ -34,5 +33,3 @@ std::unique_ptr<ResultWriter> NewResultFileWriter(const FileFormat& format, std:
 v1::ListResultsRequest::View ViewFor(const FileFormat& format);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_RESULT_FILE_H_

@@ -19,8 +19,7 @@
 // remark is a line below the estimates of its point, and the reasons for the models are below the
 // table (model_reasons.h). CSV has no remarks. Tables and csv have neither histograms nor curves.
 // The same points give the same bytes.
-#ifndef BALLPISTON_CLIENT_OUTPUT_RESULT_WRITER_H_
-#define BALLPISTON_CLIENT_OUTPUT_RESULT_WRITER_H_
+#pragma once
 
 #include <memory>
 #include <ostream>
@@ -47,5 +46,3 @@ std::unique_ptr<ResultWriter> NewResultWriter(Format format, std::ostream& out);
 v1::ListResultsRequest::View ViewFor(Format format);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_RESULT_WRITER_H_

@@ -1,6 +1,5 @@
 // The proto's enum values on the command line: FIRST_HIT is first-hit; first_hit is accepted too.
-#ifndef BALLPISTON_CLIENT_OUTPUT_SPELLING_H_
-#define BALLPISTON_CLIENT_OUTPUT_SPELLING_H_
+#pragma once
 
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/generated_enum_reflection.h>
@@ -53,5 +52,3 @@ std::optional<Enum> FromSpelling(absl::string_view text) {
 }
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_SPELLING_H_

@@ -2,8 +2,7 @@
 //
 // If a reader closes the pipe (`ballpiston result JOB | head`), this is not an error; a full disk
 // is an error. std::cout cannot distinguish the two afterwards.
-#ifndef BALLPISTON_CLIENT_OUTPUT_STANDARD_OUTPUT_H_
-#define BALLPISTON_CLIENT_OUTPUT_STANDARD_OUTPUT_H_
+#pragma once
 
 #include <array>
 #include <ostream>
@@ -42,5 +41,3 @@ class StandardOutput : public std::ostream {
 };
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_STANDARD_OUTPUT_H_

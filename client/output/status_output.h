@@ -1,6 +1,5 @@
 // Prints a server's status: a table, or the message as JSON.
-#ifndef BALLPISTON_CLIENT_OUTPUT_STATUS_OUTPUT_H_
-#define BALLPISTON_CLIENT_OUTPUT_STATUS_OUTPUT_H_
+#pragma once
 
 #include <ostream>
 
@@ -15,5 +14,3 @@ namespace ballpiston::client {
 void PrintStatus(const v1::ServerStatus& status, absl::Time now, Format format, std::ostream& out);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_STATUS_OUTPUT_H_

@@ -1,6 +1,5 @@
 // Aligned columns of text. The first row is the header. Columns of numbers are aligned right.
-#ifndef BALLPISTON_CLIENT_OUTPUT_TEXT_TABLE_H_
-#define BALLPISTON_CLIENT_OUTPUT_TEXT_TABLE_H_
+#pragma once
 
 #include <ostream>
 #include <string>
@@ -38,5 +37,3 @@ class TextTable {
 };
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_OUTPUT_TEXT_TABLE_H_

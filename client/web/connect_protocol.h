@@ -6,8 +6,7 @@
 // Each message of a stream, also the request, is in an envelope: a byte of flags, the length as 4
 // bytes, big-endian, and the JSON. The last envelope has the flag 2 and contains {} or
 // {"error": {...}}.
-#ifndef BALLPISTON_CLIENT_WEB_CONNECT_PROTOCOL_H_
-#define BALLPISTON_CLIENT_WEB_CONNECT_PROTOCOL_H_
+#pragma once
 
 #include <string>
 
@@ -32,5 +31,3 @@ std::string EndOfStream(const absl::Status& status);
 absl::StatusOr<std::string> OpenEnvelope(absl::string_view body);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_WEB_CONNECT_PROTOCOL_H_

@@ -1,7 +1,6 @@
 // Calls any method of the server with JSON. Methods are found in the API's descriptors, so a new
 // method needs no code here.
-#ifndef BALLPISTON_CLIENT_WEB_JSON_CALL_H_
-#define BALLPISTON_CLIENT_WEB_JSON_CALL_H_
+#pragma once
 
 #include <google/protobuf/descriptor.h>
 #include <grpcpp/grpcpp.h>
@@ -40,5 +39,3 @@ absl::Status CallWithJson(const std::shared_ptr<grpc::Channel>& channel, const J
                           const JsonReceiver& receive);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_WEB_JSON_CALL_H_

@@ -1,7 +1,6 @@
 // A page with its style sheets, scripts and data in one file. The file needs neither a server nor a
 // network.
-#ifndef BALLPISTON_CLIENT_WEB_ONE_FILE_PAGE_H_
-#define BALLPISTON_CLIENT_WEB_ONE_FILE_PAGE_H_
+#pragma once
 
 #include <map>
 #include <string>
@@ -19,5 +18,3 @@ absl::StatusOr<std::string> OneFilePage(const std::map<std::string, PageFile>& f
                                         const std::string& name, absl::string_view json);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_WEB_ONE_FILE_PAGE_H_

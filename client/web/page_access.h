@@ -6,8 +6,7 @@
 //   Origin         must be this page's, if the browser sends it
 //   Authorization  must be Bearer TOKEN in every call to the server. The page's files contain no
 //                  secrets and need no token.
-#ifndef BALLPISTON_CLIENT_WEB_PAGE_ACCESS_H_
-#define BALLPISTON_CLIENT_WEB_PAGE_ACCESS_H_
+#pragma once
 
 #include <string>
 
@@ -35,5 +34,3 @@ class PageAccess {
 };
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_WEB_PAGE_ACCESS_H_

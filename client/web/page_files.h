@@ -1,6 +1,5 @@
 // The files of the page, in share/ballpiston/web beside this program's folder.
-#ifndef BALLPISTON_CLIENT_WEB_PAGE_FILES_H_
-#define BALLPISTON_CLIENT_WEB_PAGE_FILES_H_
+#pragma once
 
 #include <map>
 #include <string>
@@ -18,5 +17,3 @@ struct PageFile {
 absl::StatusOr<std::map<std::string, PageFile>> ReadPageFiles();
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_WEB_PAGE_FILES_H_

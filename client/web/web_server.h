@@ -6,8 +6,7 @@
 //
 // Each open stream uses one of kMostConnections threads. If its reader disconnects, the call ends
 // at the next message. A watch sends heartbeats, so that there is always a next message.
-#ifndef BALLPISTON_CLIENT_WEB_WEB_SERVER_H_
-#define BALLPISTON_CLIENT_WEB_WEB_SERVER_H_
+#pragma once
 
 #include <functional>
 #include <map>
@@ -43,5 +42,3 @@ class WebServer {
 };
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_CLIENT_WEB_WEB_SERVER_H_

@@ -15,8 +15,7 @@
 //   5. AnglesOnAxesAndDiagonals, PowersOfOne and ExponentialOfZeroAndLogarithmOfOne are exact.
 //
 // Pure functions: safe from any thread.
-#ifndef BALLPISTON_CORE_ARITHMETIC_ELEMENTARY_FUNCTIONS_H_
-#define BALLPISTON_CORE_ARITHMETIC_ELEMENTARY_FUNCTIONS_H_
+#pragma once
 
 namespace ballpiston {
 
@@ -41,5 +40,3 @@ double Exp(double x);
 double Log(double x);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ARITHMETIC_ELEMENTARY_FUNCTIONS_H_

@@ -1,6 +1,5 @@
 // The text of a number in messages: the shortest decimal text that parses to the same double.
-#ifndef BALLPISTON_CORE_ARITHMETIC_NUMBER_TEXT_H_
-#define BALLPISTON_CORE_ARITHMETIC_NUMBER_TEXT_H_
+#pragma once
 
 #include <string>
 
@@ -9,5 +8,3 @@ namespace ballpiston {
 std::string NumberText(double value);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ARITHMETIC_NUMBER_TEXT_H_

@@ -36,8 +36,7 @@
 // At the other end, rho -> 1/2, there is no bound: at rho = 1/2 + 1.1e-16, 1e-14 and 1e-12 mean
 // free times in equilibrium (2e-3) and at epsilon = 0.05 and 0.45 (1e-3) agree with the closed
 // forms, and no orbit was lost.
-#ifndef BALLPISTON_CORE_BILLIARD_BILLIARD_DOMAIN_H_
-#define BALLPISTON_CORE_BILLIARD_BILLIARD_DOMAIN_H_
+#pragma once
 
 #include "core/geometry/pair_geometry.h"
 
@@ -58,5 +57,3 @@ inline constexpr BilliardDomain kDoubleDomain = {
     .min_rho = kMinRho, .max_rho = kMaxRho - 1e-9, .min_delta = 1e-10};
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_BILLIARD_BILLIARD_DOMAIN_H_

@@ -2,8 +2,7 @@
 // precision. Part of EventFlow; event_flow.h describes the numerical stability.
 //
 // Real is a floating-point type with numeric_limits, sqrt and fabs. Immutable.
-#ifndef BALLPISTON_CORE_BILLIARD_CELL_WALLS_H_
-#define BALLPISTON_CORE_BILLIARD_CELL_WALLS_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -93,5 +92,3 @@ class CellWalls {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_BILLIARD_CELL_WALLS_H_

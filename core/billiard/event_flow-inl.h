@@ -1,7 +1,6 @@
 // The functions of EventFlow, for the files that instantiate it. `inline` is a hint: instances are
 // weak symbols, and calls between them cost about 8% more instructions than those of a plain class.
-#ifndef BALLPISTON_CORE_BILLIARD_EVENT_FLOW_INL_H_
-#define BALLPISTON_CORE_BILLIARD_EVENT_FLOW_INL_H_
+#pragma once
 
 #include <algorithm>
 
@@ -88,5 +87,3 @@ inline void EventFlow<Real>::TimePiston() {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_BILLIARD_EVENT_FLOW_INL_H_

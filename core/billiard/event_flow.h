@@ -22,8 +22,7 @@
 // precision, rounded if Real has fewer bits. So all precisions compute the same billiard.
 //
 // Times are in cells over unit speed. One object is one orbit. Not thread-safe.
-#ifndef BALLPISTON_CORE_BILLIARD_EVENT_FLOW_H_
-#define BALLPISTON_CORE_BILLIARD_EVENT_FLOW_H_
+#pragma once
 
 #include <limits>
 
@@ -83,5 +82,3 @@ class EventFlow {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_BILLIARD_EVENT_FLOW_H_

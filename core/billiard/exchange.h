@@ -1,7 +1,6 @@
 // The collision of ball and piston: they exchange their horizontal components (the paper's
 // eq. tv1tv2tv3ep).
-#ifndef BALLPISTON_CORE_BILLIARD_EXCHANGE_H_
-#define BALLPISTON_CORE_BILLIARD_EXCHANGE_H_
+#pragma once
 
 #include <cmath>
 #include <type_traits>
@@ -52,5 +51,3 @@ PairStateOf<Real> AfterExchange(const PairStateOf<Real>& before, const Real& spe
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_BILLIARD_EXCHANGE_H_

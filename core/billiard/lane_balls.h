@@ -1,7 +1,6 @@
 // Flies balls without a piston in vector lanes, several vectors at a time, with the flights of
 // lane_flight-inl.h. Comparisons of methods, tools and tests use it, because they need single hits.
-#ifndef BALLPISTON_CORE_BILLIARD_LANE_BALLS_H_
-#define BALLPISTON_CORE_BILLIARD_LANE_BALLS_H_
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -27,5 +26,3 @@ void FlyLaneBallsSingle(const PairGeometry& geometry, std::span<const LaneFrame>
                         uint64_t hits, std::span<LaneHit> recorded);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_BILLIARD_LANE_BALLS_H_

@@ -1,6 +1,6 @@
-// What the engines of the pair and of the gas share: a burst, which is some flights of several
-// vectors of balls, and the test whether ball and piston may have met in a flight. Included once
-// for each instruction set.
+// The engines of the pair and of the gas both use this file. It has the burst and a test. A burst
+// computes some flights of several vectors of balls. The test tells whether ball and piston may
+// have met in a flight. Included once for each instruction set.
 //
 // The burst keeps the state before and after every flight, and the lanes whose ball is within a
 // piston's reach. Slot t is the state before flight t, slot t + kVectors the state after it, and t

@@ -12,8 +12,7 @@
 // The compass gives the direction of the cell's right tip. r is the unit vector of the frame that
 // points to the right in the cell: a = r_x + r_y, b = r_x - r_y. Both are +1 or -1, and turn like h
 // and e. m is the frame's handedness: +1, or -1 if the frame is a mirror image of the cell.
-#ifndef BALLPISTON_CORE_BILLIARD_LANE_FRAME_H_
-#define BALLPISTON_CORE_BILLIARD_LANE_FRAME_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -78,5 +77,3 @@ inline Eigen::Vector2d DirectionInCell(const LaneFrame& frame) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_BILLIARD_LANE_FRAME_H_

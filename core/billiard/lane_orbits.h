@@ -1,6 +1,5 @@
 // Orbits in vector lanes; see orbits.h.
-#ifndef BALLPISTON_CORE_BILLIARD_LANE_ORBITS_H_
-#define BALLPISTON_CORE_BILLIARD_LANE_ORBITS_H_
+#pragma once
 
 #include <memory>
 
@@ -13,5 +12,3 @@ std::unique_ptr<OrbitRun> StartLaneOrbits(const PairGeometry& geometry, OrbitSou
 std::unique_ptr<OrbitRun> StartLaneOrbitsSingle(const PairGeometry& geometry, OrbitSource& source);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_BILLIARD_LANE_ORBITS_H_

@@ -18,8 +18,7 @@
 // 2. APistonAtRestThatCannotBeReachedIsNotWaitedFor.
 //
 // Units: cells over unit speed. Immutable: safe to share between threads.
-#ifndef BALLPISTON_CORE_BILLIARD_LONGEST_WAIT_H_
-#define BALLPISTON_CORE_BILLIARD_LONGEST_WAIT_H_
+#pragma once
 
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
@@ -48,5 +47,3 @@ class LongestWait {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_BILLIARD_LONGEST_WAIT_H_

@@ -13,8 +13,7 @@
 // operation is elementwise, and is exact, correctly rounded or fused as written. So the bits are
 // the same on every processor with fused multiply-add. The two engines round differently: their
 // orbits agree for about 30 wall hits, then only in law.
-#ifndef BALLPISTON_CORE_BILLIARD_ORBITS_H_
-#define BALLPISTON_CORE_BILLIARD_ORBITS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -109,5 +108,3 @@ bool RunOrbits(Engine engine, const PairGeometry& geometry, uint64_t count, Numb
                const std::stop_token& stop);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_BILLIARD_ORBITS_H_

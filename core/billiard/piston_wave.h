@@ -1,7 +1,6 @@
 // The piston between collisions: a triangle wave. Its phase is the path length since it was last at
 // its left wall, in [0, 2 stroke). Below `stroke` the piston moves to the right, above to the left.
-#ifndef BALLPISTON_CORE_BILLIARD_PISTON_WAVE_H_
-#define BALLPISTON_CORE_BILLIARD_PISTON_WAVE_H_
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -106,5 +105,3 @@ class PistonWave {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_BILLIARD_PISTON_WAVE_H_

@@ -30,8 +30,7 @@
 //
 // At 1/sqrt 2 - rho = 1e-4 and delta = 1.4e-5 a run of a few seconds did not end within four
 // minutes; at 1e-5 orbits leave the cell.
-#ifndef BALLPISTON_CORE_BILLIARD_SINGLE_PRECISION_H_
-#define BALLPISTON_CORE_BILLIARD_SINGLE_PRECISION_H_
+#pragma once
 
 #include "core/billiard/billiard_domain.h"
 
@@ -46,5 +45,3 @@ inline constexpr BilliardDomain kSingleDomain = {
 inline constexpr double kSinglePrecisionError = 5e-4;
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_BILLIARD_SINGLE_PRECISION_H_

@@ -16,8 +16,7 @@
 //   3. AveragesSatisfyTheIdentities of eq. nucanavg.
 //
 // Pure functions: safe from any thread.
-#ifndef BALLPISTON_CORE_CLOSED_FORM_CANONICAL_MEASURE_H_
-#define BALLPISTON_CORE_CLOSED_FORM_CANONICAL_MEASURE_H_
+#pragma once
 
 #include "core/geometry/temperature.h"  // the domain, for callers that check it
 
@@ -34,5 +33,3 @@ struct CanonicalAverages {
 CanonicalAverages AveragesAt(double beta);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_CLOSED_FORM_CANONICAL_MEASURE_H_

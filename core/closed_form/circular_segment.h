@@ -12,8 +12,7 @@
 //   2. ChordAngleInvertsTheChord: chord = 2 r sin(angle/2).
 //
 // Pure functions: safe from any thread.
-#ifndef BALLPISTON_CORE_CLOSED_FORM_CIRCULAR_SEGMENT_H_
-#define BALLPISTON_CORE_CLOSED_FORM_CIRCULAR_SEGMENT_H_
+#pragma once
 
 namespace ballpiston {
 
@@ -29,5 +28,3 @@ double ChordAngle(double radius, double chord);
 double SegmentArea(double radius, double angle);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_CLOSED_FORM_CIRCULAR_SEGMENT_H_

@@ -13,8 +13,7 @@
 //   3. AveragesToTheUnconditionalRate: int phi dep/sqrt(2 ep) = 1, eq. intcnuep.
 //
 // Pure functions: safe from any thread.
-#ifndef BALLPISTON_CORE_CLOSED_FORM_CONDITIONAL_RATE_H_
-#define BALLPISTON_CORE_CLOSED_FORM_CONDITIONAL_RATE_H_
+#pragma once
 
 #include "core/geometry/pair_geometry.h"
 
@@ -31,5 +30,3 @@ double Phi(double ep);
 double ConditionalMeanFreeTime(const PairGeometry& geometry, double ep);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_CLOSED_FORM_CONDITIONAL_RATE_H_

@@ -27,8 +27,7 @@
 //      conductivity.
 //
 // Pure functions: safe from any thread.
-#ifndef BALLPISTON_CORE_CLOSED_FORM_EXCHANGE_RATE_H_
-#define BALLPISTON_CORE_CLOSED_FORM_EXCHANGE_RATE_H_
+#pragma once
 
 #include "core/closed_form/pair_measures.h"
 
@@ -44,5 +43,3 @@ double RareLimitExchangeRate(double rho, double temperature);
 double StaticConductivity(double exchange_rate);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_CLOSED_FORM_EXCHANGE_RATE_H_

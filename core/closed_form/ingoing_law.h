@@ -28,8 +28,7 @@
 // at AlphaMax the rounding of AlphaMax changes the probability by a relative 1e-16/w.
 //
 // Immutable: safe to share between threads.
-#ifndef BALLPISTON_CORE_CLOSED_FORM_INGOING_LAW_H_
-#define BALLPISTON_CORE_CLOSED_FORM_INGOING_LAW_H_
+#pragma once
 
 namespace ballpiston {
 
@@ -64,5 +63,3 @@ class IngoingLaw {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_CLOSED_FORM_INGOING_LAW_H_

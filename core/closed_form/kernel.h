@@ -19,8 +19,7 @@
 //      kernel_moments.h.
 //
 // Pure functions: safe from any thread.
-#ifndef BALLPISTON_CORE_CLOSED_FORM_KERNEL_H_
-#define BALLPISTON_CORE_CLOSED_FORM_KERNEL_H_
+#pragma once
 
 namespace ballpiston {
 
@@ -31,5 +30,3 @@ double Kernel(double eb, double ep, double ep_out);
 double PairKernel(double ep, double ep_out);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_CLOSED_FORM_KERNEL_H_

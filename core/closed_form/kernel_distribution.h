@@ -22,8 +22,7 @@
 // Uses only +, -, *, /, sqrt and Atan2, so the bits are the same on every processor.
 //
 // Immutable: safe to share between threads.
-#ifndef BALLPISTON_CORE_CLOSED_FORM_KERNEL_DISTRIBUTION_H_
-#define BALLPISTON_CORE_CLOSED_FORM_KERNEL_DISTRIBUTION_H_
+#pragma once
 
 namespace ballpiston {
 
@@ -51,5 +50,3 @@ class KernelDistribution {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_CLOSED_FORM_KERNEL_DISTRIBUTION_H_

@@ -19,8 +19,7 @@
 //   5. AreIntegralsOfTheKernel.
 //
 // Pure functions: safe from any thread.
-#ifndef BALLPISTON_CORE_CLOSED_FORM_KERNEL_MOMENTS_H_
-#define BALLPISTON_CORE_CLOSED_FORM_KERNEL_MOMENTS_H_
+#pragma once
 
 namespace ballpiston {
 
@@ -38,5 +37,3 @@ double PairEnergyCurrent(double ep);
 double PairSquaredEnergyTransfer(double ep);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_CLOSED_FORM_KERNEL_MOMENTS_H_

@@ -17,8 +17,7 @@
 //      delta >> lambda.
 //
 // Pure functions: safe from any thread.
-#ifndef BALLPISTON_CORE_CLOSED_FORM_MEAN_FREE_TIME_H_
-#define BALLPISTON_CORE_CLOSED_FORM_MEAN_FREE_TIME_H_
+#pragma once
 
 #include <numbers>
 
@@ -52,5 +51,3 @@ inline constexpr double kDeltaFirstScaledVolumeRatio =
 inline constexpr double kRhoFirstScaledVolumeRatio = 3 * kDeltaFirstScaledVolumeRatio;
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_CLOSED_FORM_MEAN_FREE_TIME_H_

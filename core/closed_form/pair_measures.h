@@ -24,8 +24,7 @@
 //   5. RareCollisionsSeeAWedge: |dG_bp| = sqrt(2) lambda delta^2 as delta -> 0.
 //
 // Pure functions: safe from any thread.
-#ifndef BALLPISTON_CORE_CLOSED_FORM_PAIR_MEASURES_H_
-#define BALLPISTON_CORE_CLOSED_FORM_PAIR_MEASURES_H_
+#pragma once
 
 #include "core/geometry/pair_geometry.h"
 
@@ -59,5 +58,3 @@ struct RestingVolumes {
 RestingVolumes VolumesAtRest(const PairGeometry& geometry);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_CLOSED_FORM_PAIR_MEASURES_H_

@@ -6,8 +6,7 @@
 // kappa/kappa_0 - 1 is a universal number for each lattice: it is independent of the temperature
 // and of the cell's shape. So it is a constant here; tools/conductivity computes it by Varadhan's
 // variational formula. docs/conductivity.md has the tables.
-#ifndef BALLPISTON_CORE_CONDUCTIVITY_CONDUCTIVITY_H_
-#define BALLPISTON_CORE_CONDUCTIVITY_CONDUCTIVITY_H_
+#pragma once
 
 namespace ballpiston {
 
@@ -25,5 +24,3 @@ inline constexpr ExtrapolatedValue kChainCorrection = {-0.0018073, 4e-7};
 inline constexpr ExtrapolatedValue kLatticeCorrection = {-0.0011937, 2e-7};
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_CONDUCTIVITY_CONDUCTIVITY_H_

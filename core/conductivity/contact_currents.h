@@ -18,8 +18,7 @@
 //
 // The table's lookups run in vector lanes: their bits are the same on every target with fused
 // multiply-add. Immutable; safe to share between threads.
-#ifndef BALLPISTON_CORE_CONDUCTIVITY_CONTACT_CURRENTS_H_
-#define BALLPISTON_CORE_CONDUCTIVITY_CONTACT_CURRENTS_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -64,5 +63,3 @@ class ContactCurrentsTable {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_CONDUCTIVITY_CONTACT_CURRENTS_H_

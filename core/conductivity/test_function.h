@@ -17,8 +17,7 @@
 //
 // Units: those of galerkin_form.h; temperature 1, neighbouring sites at distance 1. Test:
 // TestFunction.HasItsBound.
-#ifndef BALLPISTON_CORE_CONDUCTIVITY_TEST_FUNCTION_H_
-#define BALLPISTON_CORE_CONDUCTIVITY_TEST_FUNCTION_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -63,5 +62,3 @@ inline constexpr TestFunction kLatticeTestFunction = {
     .bound = -0.00092723546};
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_CONDUCTIVITY_TEST_FUNCTION_H_

@@ -5,8 +5,7 @@
 // protect from a person who makes up numbers with a given digest. Properties, each with a test of
 // its name:
 //   1. EveryNumberChangesTheDigest.  2. NumbersInAnotherOrderHaveAnotherDigest.
-#ifndef BALLPISTON_CORE_ENSEMBLE_BLOCK_DIGEST_H_
-#define BALLPISTON_CORE_ENSEMBLE_BLOCK_DIGEST_H_
+#pragma once
 
 #include <cstdint>
 
@@ -17,5 +16,3 @@ namespace ballpiston {
 uint64_t DigestOf(const BlockResult& result);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_BLOCK_DIGEST_H_

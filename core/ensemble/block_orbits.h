@@ -1,7 +1,6 @@
 // Computes several blocks of orbits at once in one engine. When an orbit ends, its lane takes an
 // orbit of the next block, so lanes stay full even if a block has few orbits.
-#ifndef BALLPISTON_CORE_ENSEMBLE_BLOCK_ORBITS_H_
-#define BALLPISTON_CORE_ENSEMBLE_BLOCK_ORBITS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -100,5 +99,3 @@ std::unique_ptr<BlockRun> RunBlockOrbits(Engine engine, const PairGeometry& geom
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_BLOCK_ORBITS_H_

@@ -5,8 +5,7 @@
 // them. Properties, each with a test of its name:
 //   1. MergeWithEmptyIsIdentity.  2. MergeKeepsEverySample.
 //   3. EveryBlockHasTheShapeOfTheEmptyOne.
-#ifndef BALLPISTON_CORE_ENSEMBLE_BLOCK_RESULT_H_
-#define BALLPISTON_CORE_ENSEMBLE_BLOCK_RESULT_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -41,5 +40,3 @@ struct BlockResult {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_BLOCK_RESULT_H_

@@ -1,6 +1,5 @@
 // BlockRun computes the blocks of a point; BlockQueue supplies them and receives their results.
-#ifndef BALLPISTON_CORE_ENSEMBLE_BLOCK_RUN_H_
-#define BALLPISTON_CORE_ENSEMBLE_BLOCK_RUN_H_
+#pragma once
 
 #include <memory>
 #include <optional>
@@ -64,5 +63,3 @@ std::unique_ptr<BlockRun> RunOneByOne(BlockQueue& queue, Compute compute) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_BLOCK_RUN_H_

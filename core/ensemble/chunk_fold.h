@@ -5,8 +5,7 @@
 // arrival. Properties, each with a test of its name:
 //   1. ChunksAreIndependentOfTheOrderOfBlocks.  2. AResumedChunkHasTheSameBits.
 // Not thread-safe.
-#ifndef BALLPISTON_CORE_ENSEMBLE_CHUNK_FOLD_H_
-#define BALLPISTON_CORE_ENSEMBLE_CHUNK_FOLD_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -68,5 +67,3 @@ class ChunkFold {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_CHUNK_FOLD_H_

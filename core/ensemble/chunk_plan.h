@@ -13,8 +13,7 @@
 // All sizes are powers of two, so a rounding difference in the predicted cost of a sample changes
 // the plan only if that cost lies next to a power of two. The sizes depend only on the engine and
 // on that prediction, never on threads or machines.
-#ifndef BALLPISTON_CORE_ENSEMBLE_CHUNK_PLAN_H_
-#define BALLPISTON_CORE_ENSEMBLE_CHUNK_PLAN_H_
+#pragma once
 
 #include <algorithm>
 #include <cstdint>
@@ -77,5 +76,3 @@ class ChunkPlan {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_CHUNK_PLAN_H_

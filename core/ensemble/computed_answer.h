@@ -1,6 +1,5 @@
 // An answer that needs no samples: a point without blocks.
-#ifndef BALLPISTON_CORE_ENSEMBLE_COMPUTED_ANSWER_H_
-#define BALLPISTON_CORE_ENSEMBLE_COMPUTED_ANSWER_H_
+#pragma once
 
 #include <memory>
 
@@ -23,5 +22,3 @@ class ComputedAnswer : public PointExperiment {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_COMPUTED_ANSWER_H_

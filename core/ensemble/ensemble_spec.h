@@ -2,8 +2,7 @@
 //
 // The struct holds unchecked input. `Violations` lists all errors, field by field. All other
 // functions of this folder require a spec without violations.
-#ifndef BALLPISTON_CORE_ENSEMBLE_ENSEMBLE_SPEC_H_
-#define BALLPISTON_CORE_ENSEMBLE_ENSEMBLE_SPEC_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -79,5 +78,3 @@ bool NeedsNoSamples(const EnsembleSpec& spec);
 Engine EngineFor(const EnsembleSpec& spec);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_ENSEMBLE_SPEC_H_

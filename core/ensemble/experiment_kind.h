@@ -1,8 +1,7 @@
 // Each experiment has one row, which describes it to the rest of the program. The row stands in the
 // experiment's file, and experiment/all_experiments.h lists all rows. Validation, plans, ladder,
 // predictions and random streams read rows.
-#ifndef BALLPISTON_CORE_ENSEMBLE_EXPERIMENT_KIND_H_
-#define BALLPISTON_CORE_ENSEMBLE_EXPERIMENT_KIND_H_
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -119,5 +118,3 @@ std::span<const ExperimentKind* const> AllExperiments();
 const ExperimentKind* FindExperiment(uint64_t number);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_EXPERIMENT_KIND_H_

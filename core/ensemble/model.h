@@ -1,6 +1,5 @@
 // The ladder of models, and the precision of the billiard's lanes.
-#ifndef BALLPISTON_CORE_ENSEMBLE_MODEL_H_
-#define BALLPISTON_CORE_ENSEMBLE_MODEL_H_
+#pragma once
 
 #include "absl/strings/string_view.h"
 
@@ -56,5 +55,3 @@ constexpr absl::string_view Name(Precision precision) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_MODEL_H_

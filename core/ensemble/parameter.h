@@ -1,6 +1,5 @@
 // The parameters that span grids of questions.
-#ifndef BALLPISTON_CORE_ENSEMBLE_PARAMETER_H_
-#define BALLPISTON_CORE_ENSEMBLE_PARAMETER_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -85,5 +84,3 @@ class Grid {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_PARAMETER_H_

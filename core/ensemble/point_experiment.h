@@ -5,8 +5,7 @@
 // A block depends only on (experiment, point, model, precision, seed, the block's samples): not on
 // the other points of the grid, not on threads and not on earlier calls. Immutable; safe to share
 // between threads.
-#ifndef BALLPISTON_CORE_ENSEMBLE_POINT_EXPERIMENT_H_
-#define BALLPISTON_CORE_ENSEMBLE_POINT_EXPERIMENT_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -111,5 +110,3 @@ double NominalSeconds(const EnsembleSpec& spec, const PointParameters& point);
 double SamplesFor(double tolerance, const EnsembleSpec& spec, const PointParameters& point);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_POINT_EXPERIMENT_H_

@@ -6,8 +6,7 @@
 // the fold drops every later chunk. Properties, each with a test of its name:
 //   1. ResultIsIndependentOfArrivalOrder.  2. ResumedFoldGivesTheSameBits.
 // Not thread-safe.
-#ifndef BALLPISTON_CORE_ENSEMBLE_POINT_FOLD_H_
-#define BALLPISTON_CORE_ENSEMBLE_POINT_FOLD_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -110,5 +109,3 @@ std::optional<BlockResult> RunBlock(const PointExperiment& experiment, const Blo
                                     const std::stop_token& stop = {});
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_POINT_FOLD_H_

@@ -1,8 +1,7 @@
 // The memory that the computation of a point takes, known before it starts. The scheduler keeps the
 // sum over the running points below a limit, and a question beyond the machine's memory is
 // rejected.
-#ifndef BALLPISTON_CORE_ENSEMBLE_POINT_MEMORY_H_
-#define BALLPISTON_CORE_ENSEMBLE_POINT_MEMORY_H_
+#pragma once
 
 #include "core/ensemble/ensemble_spec.h"
 
@@ -17,5 +16,3 @@ double MemoryOf(const EnsembleSpec& spec, const PointParameters& point, int thre
 double MemoryOfAThread(const EnsembleSpec& spec, const PointParameters& point);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_POINT_MEMORY_H_

@@ -2,8 +2,7 @@
 // (billiard or jump process) and the purpose (answer or pilot). So the points of a grid are
 // independent under one seed, and a point's numbers do not depend on its grid. The hash determines
 // the bits of every result.
-#ifndef BALLPISTON_CORE_ENSEMBLE_POINT_STREAM_H_
-#define BALLPISTON_CORE_ENSEMBLE_POINT_STREAM_H_
+#pragma once
 
 #include <cstdint>
 
@@ -14,5 +13,3 @@ namespace ballpiston {
 uint64_t PointStream(const EnsembleSpec& spec, const PointParameters& parameters);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_POINT_STREAM_H_

@@ -1,6 +1,5 @@
 // The results of a point's merged blocks: estimates with errors, and exact values beside them.
-#ifndef BALLPISTON_CORE_ENSEMBLE_POINT_SUMMARY_H_
-#define BALLPISTON_CORE_ENSEMBLE_POINT_SUMMARY_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -69,5 +68,3 @@ struct PointSummary {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_POINT_SUMMARY_H_

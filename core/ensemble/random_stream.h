@@ -1,6 +1,5 @@
 // The random numbers of a point, by sample.
-#ifndef BALLPISTON_CORE_ENSEMBLE_RANDOM_STREAM_H_
-#define BALLPISTON_CORE_ENSEMBLE_RANDOM_STREAM_H_
+#pragma once
 
 #include <cstdint>
 
@@ -16,5 +15,3 @@ struct RandomStream {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_RANDOM_STREAM_H_

@@ -1,6 +1,5 @@
 // The work of a sample, for chunk plans and for predictions of its cost on a machine.
-#ifndef BALLPISTON_CORE_ENSEMBLE_SAMPLE_WORK_H_
-#define BALLPISTON_CORE_ENSEMBLE_SAMPLE_WORK_H_
+#pragma once
 
 namespace ballpiston {
 
@@ -34,5 +33,3 @@ struct SampleWork {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_ENSEMBLE_SAMPLE_WORK_H_

@@ -1,6 +1,5 @@
 // The list of all experiments. Each row is defined in its experiment's file.
-#ifndef BALLPISTON_CORE_EXPERIMENT_ALL_EXPERIMENTS_H_
-#define BALLPISTON_CORE_EXPERIMENT_ALL_EXPERIMENTS_H_
+#pragma once
 
 #include <array>
 
@@ -21,5 +20,3 @@ inline constexpr std::array kAllExperiments = {
     &kMarkovProperty, &kGasEquilibrium,          &kGasConduction};
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_EXPERIMENT_ALL_EXPERIMENTS_H_

@@ -21,8 +21,7 @@
 // estimates. Moments: [0] the integral, [1 + i] the curve at the i-th of kLags times. With epsilon
 // also histograms of the piston's energy at each of kLawLags: the law P(ep, t) of eq. meq, compared
 // with that of the limit (energy_law.h). A sample is one orbit.
-#ifndef BALLPISTON_CORE_EXPERIMENT_ENERGY_RELAXATION_H_
-#define BALLPISTON_CORE_EXPERIMENT_ENERGY_RELAXATION_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <array>
@@ -119,5 +118,3 @@ std::vector<std::string> RemarksOnDecay(const std::optional<double>& epsilon);
 double CollisionsPerOrbit(const PointParameters& point);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_EXPERIMENT_ENERGY_RELAXATION_H_

@@ -1,6 +1,5 @@
 // An estimate that is a closed form.
-#ifndef BALLPISTON_CORE_EXPERIMENT_EXACT_ESTIMATE_H_
-#define BALLPISTON_CORE_EXPERIMENT_EXACT_ESTIMATE_H_
+#pragma once
 
 #include <string>
 #include <utility>
@@ -18,5 +17,3 @@ inline Estimate ExactEstimate(std::string name, double value, double relative_er
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_EXPERIMENT_EXACT_ESTIMATE_H_

@@ -44,8 +44,7 @@
 // errors is within the bound; these places include the ends of rho, delta, epsilon and cold/hot
 // (docs/markov-limit.md has the arguments of scaling for the places where the billiard is too
 // expensive). The same holds for 40 random points: LimitError.StatedErrorCoversTheBilliard.
-#ifndef BALLPISTON_CORE_EXPERIMENT_EXPECTED_LIMIT_ERROR_H_
-#define BALLPISTON_CORE_EXPERIMENT_EXPECTED_LIMIT_ERROR_H_
+#pragma once
 
 #include "core/ensemble/parameter.h"
 
@@ -67,5 +66,3 @@ double ExpectedLimitErrorInAGas(const PointParameters& point);
 double ExpectedLimitErrorOfConduction(const PointParameters& point);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_EXPERIMENT_EXPECTED_LIMIT_ERROR_H_

@@ -282,13 +282,13 @@ SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time) 
   return work;
 }
 
-// Measured with gases of 10^6 cells, chains and lattices: by the lanes 234 bytes for a ball and 49
+// Measured with gases of 10^6 cells, chains and lattices: by the lanes 297 bytes for a ball and 64
 // for a piston, by the reference 206 and 92, by the jump process 77 and 54. Lists that grow may be
 // half empty, so the bound is twice that. The rest is for the meters of small gases, of which a
 // block has thousands.
 double MemoryOfReplicas(Model model, const PointParameters& point) {
   constexpr double kOfABlock = 10e6;
-  constexpr double kLanes[] = {468, 98}, kReference[] = {412, 184}, kJumps[] = {154, 108};
+  constexpr double kLanes[] = {594, 128}, kReference[] = {412, 184}, kJumps[] = {154, 108};
   const bool in_lanes = model != Model::kMarkov && model != Model::kBilliardReference;
   const double* const bytes = in_lanes ? kLanes : model == Model::kMarkov ? kJumps : kReference;
   const GasShape shape = ShapeOf(point[kCells]);

@@ -1,7 +1,6 @@
 // The base of all experiments with a gas. A sample is a replica of the gas: it starts from its own
 // random state, relaxes, and is then measured.
-#ifndef BALLPISTON_CORE_EXPERIMENT_GAS_EXPERIMENT_H_
-#define BALLPISTON_CORE_EXPERIMENT_GAS_EXPERIMENT_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -85,5 +84,3 @@ class GasExperiment : public PointExperiment {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_EXPERIMENT_GAS_EXPERIMENT_H_

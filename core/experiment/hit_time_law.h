@@ -4,8 +4,7 @@
 // Times are counted in kHitTimeBins bins, each a tenth of the mean return time at this energy;
 // later hits count in the last bin. The result shows the law as the curve `survival`: the
 // probability that ball and piston have not collided up to a time.
-#ifndef BALLPISTON_CORE_EXPERIMENT_HIT_TIME_LAW_H_
-#define BALLPISTON_CORE_EXPERIMENT_HIT_TIME_LAW_H_
+#pragma once
 
 #include <cstddef>
 
@@ -25,5 +24,3 @@ Histogram EmptyHitTimes(double mean);
 Curve SurvivalCurve(const Histogram& hit_times);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_EXPERIMENT_HIT_TIME_LAW_H_

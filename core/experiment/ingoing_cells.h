@@ -1,8 +1,7 @@
 // The cells of the ingoing law, eq. kld: bins of alpha over the interval that is permitted for each
 // sign of the piston's velocity. sigma = -1 comes first, then +1, which occurs only for
 // epsilon < 1/4.
-#ifndef BALLPISTON_CORE_EXPERIMENT_INGOING_CELLS_H_
-#define BALLPISTON_CORE_EXPERIMENT_INGOING_CELLS_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -26,5 +25,3 @@ std::vector<std::vector<double>> IngoingBinProbabilities(const IngoingLaw& law);
 void CountIngoing(const Return& hit, std::span<Histogram> histograms);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_EXPERIMENT_INGOING_CELLS_H_

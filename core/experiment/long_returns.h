@@ -9,8 +9,7 @@
 //
 // At exactly epsilon = 0 there are no long returns, but the variance is infinite: a start at depth
 // t below the tip returns after a time of order 1/(t (lambda + t)), with density t (lambda + t).
-#ifndef BALLPISTON_CORE_EXPERIMENT_LONG_RETURNS_H_
-#define BALLPISTON_CORE_EXPERIMENT_LONG_RETURNS_H_
+#pragma once
 
 #include "core/geometry/pair_geometry.h"
 
@@ -29,5 +28,3 @@ double LongReturnsPerSample(const PairGeometry& geometry, double epsilon);
 double ShareThatMeets(const PairGeometry& geometry, double epsilon, double time);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_EXPERIMENT_LONG_RETURNS_H_

@@ -1,6 +1,5 @@
 // Constants of the markov-property experiment that its tests rely on.
-#ifndef BALLPISTON_CORE_EXPERIMENT_MARKOV_PROPERTY_H_
-#define BALLPISTON_CORE_EXPERIMENT_MARKOV_PROPERTY_H_
+#pragma once
 
 #include <cstdint>
 
@@ -11,5 +10,3 @@ namespace ballpiston {
 inline constexpr uint64_t kExchangesPerOrbit = 32;
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_EXPERIMENT_MARKOV_PROPERTY_H_

@@ -28,8 +28,7 @@
 // energy 1/2. Properties, each with a test of its name:
 //   1. JumpProcessHasNoMemory: for a sample of the jump process every estimate is noise.
 //   2. ErrorsHoldForCorrelatedExchanges.
-#ifndef BALLPISTON_CORE_EXPERIMENT_MARKOV_PROPERTY_STATISTICS_H_
-#define BALLPISTON_CORE_EXPERIMENT_MARKOV_PROPERTY_STATISTICS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -66,5 +65,3 @@ std::vector<Estimate> MarkovPropertyEstimates(const BlockResult& merged,
                                               std::optional<double> exact_correlation);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_EXPERIMENT_MARKOV_PROPERTY_STATISTICS_H_

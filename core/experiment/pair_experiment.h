@@ -1,6 +1,5 @@
 // Functions that the rows of the ball-piston pair's experiments share.
-#ifndef BALLPISTON_CORE_EXPERIMENT_PAIR_EXPERIMENT_H_
-#define BALLPISTON_CORE_EXPERIMENT_PAIR_EXPERIMENT_H_
+#pragma once
 
 #include <vector>
 
@@ -50,5 +49,3 @@ inline double MemoryOfPairs(Model, const PointParameters&) { return 12e6; }
 SampleWork WorkOfACollision(const PairGeometry& geometry);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_EXPERIMENT_PAIR_EXPERIMENT_H_

@@ -1,7 +1,6 @@
 // Mean number of wall hits between two collisions of ball and piston. It predicts the cost of a
 // sample.
-#ifndef BALLPISTON_CORE_EXPERIMENT_PREDICTED_HITS_H_
-#define BALLPISTON_CORE_EXPERIMENT_PREDICTED_HITS_H_
+#pragma once
 
 #include "core/geometry/pair_geometry.h"
 
@@ -22,5 +21,3 @@ PredictedHits HitsPerCollision(const PairGeometry& geometry);
 PredictedHits HitsPerReturn(const PairGeometry& geometry, double epsilon);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_EXPERIMENT_PREDICTED_HITS_H_

@@ -1,7 +1,6 @@
 // Functions that the rows of conditional-mean-free-time and first-hit share. A sample is a return
 // to the collision surface at fixed energies.
-#ifndef BALLPISTON_CORE_EXPERIMENT_RETURN_EXPERIMENT_H_
-#define BALLPISTON_CORE_EXPERIMENT_RETURN_EXPERIMENT_H_
+#pragma once
 
 #include <vector>
 
@@ -22,5 +21,3 @@ double EventsOfAReturn(Model model, const PointParameters& point);
 void CheckToleranceOfReturns(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_EXPERIMENT_RETURN_EXPERIMENT_H_

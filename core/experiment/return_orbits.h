@@ -1,8 +1,7 @@
 // Returns to the collision surface at fixed energies. An orbit starts uniformly on dGamma_bp with
 // an outgoing law and ends at the next ball-piston collision. The ingoing velocities are recorded
 // before the exchange. Each orbit is one sample of first-hit and of conditional-mean-free-time.
-#ifndef BALLPISTON_CORE_EXPERIMENT_RETURN_ORBITS_H_
-#define BALLPISTON_CORE_EXPERIMENT_RETURN_ORBITS_H_
+#pragma once
 
 #include <cstdint>
 #include <limits>
@@ -60,5 +59,3 @@ class ReturnOrbits {
 bool Healthy(const Return& sample, Health& health);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_EXPERIMENT_RETURN_ORBITS_H_

@@ -1,6 +1,5 @@
 // The estimates from a sample of return times, with errors if the sample is large enough.
-#ifndef BALLPISTON_CORE_EXPERIMENT_RETURN_TIME_H_
-#define BALLPISTON_CORE_EXPERIMENT_RETURN_TIME_H_
+#pragma once
 
 #include <optional>
 #include <string>
@@ -34,5 +33,3 @@ class ReturnTime {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_EXPERIMENT_RETURN_TIME_H_

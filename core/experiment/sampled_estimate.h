@@ -1,8 +1,7 @@
 // Estimates from a sample, with errors if the sample has enough events (statistics/told_error.h).
 //
 // Without samples the value is NaN, and there is no error.
-#ifndef BALLPISTON_CORE_EXPERIMENT_SAMPLED_ESTIMATE_H_
-#define BALLPISTON_CORE_EXPERIMENT_SAMPLED_ESTIMATE_H_
+#pragma once
 
 #include <limits>
 #include <optional>
@@ -35,5 +34,3 @@ inline Estimate SampledRatio(std::string name, const BatchMeans& sample, double 
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_EXPERIMENT_SAMPLED_ESTIMATE_H_

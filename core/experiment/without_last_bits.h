@@ -4,8 +4,7 @@
 // time, and of every sum measured in units of it. After rounding to 30 bits the difference remains
 // only for about one geometry in a million, next to a rounding edge. Rounding changes results by
 // much less than their statistical errors.
-#ifndef BALLPISTON_CORE_EXPERIMENT_WITHOUT_LAST_BITS_H_
-#define BALLPISTON_CORE_EXPERIMENT_WITHOUT_LAST_BITS_H_
+#pragma once
 
 #include <cmath>
 
@@ -18,5 +17,3 @@ inline double WithoutLastBits(double x) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_EXPERIMENT_WITHOUT_LAST_BITS_H_

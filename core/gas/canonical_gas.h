@@ -12,8 +12,7 @@
 // Jerrum, Liu 2017). Properties, each with the test that bears its name:
 //   1. PistonsHaveTheirExactLaw: in rings of one and of two cells, and in a lattice.
 //   2. EnergiesHaveTheirGammaLaws.
-#ifndef BALLPISTON_CORE_GAS_CANONICAL_GAS_H_
-#define BALLPISTON_CORE_GAS_CANONICAL_GAS_H_
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -108,5 +107,3 @@ inline double DrawFluxSpeed(double temperature, CounterRandom& random) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_CANONICAL_GAS_H_

@@ -13,8 +13,7 @@
 // Properties, each with the test that bears its name:
 //   1. StepsHoldTheWholeCurrent.  2. CountsProductsOfDifferentExchanges.
 //   3. SquaredExchangesGiveTheStaticConductivity.
-#ifndef BALLPISTON_CORE_GAS_CURRENT_METER_H_
-#define BALLPISTON_CORE_GAS_CURRENT_METER_H_
+#pragma once
 
 #include <cstddef>
 #include <vector>
@@ -87,5 +86,3 @@ class CarriedCurrent : public CurrentMeter {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_CURRENT_METER_H_

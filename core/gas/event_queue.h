@@ -1,7 +1,6 @@
 // The times of the next events of many bodies, and the earliest of them: a heap that stores the
 // place of each body. Bodies with equal times come in the order of their numbers.
-#ifndef BALLPISTON_CORE_GAS_EVENT_QUEUE_H_
-#define BALLPISTON_CORE_GAS_EVENT_QUEUE_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -93,5 +92,3 @@ class EventQueue {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_EVENT_QUEUE_H_

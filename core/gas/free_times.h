@@ -1,6 +1,5 @@
 // Times since the last event of the same kind with the same bodies.
-#ifndef BALLPISTON_CORE_GAS_FREE_TIMES_H_
-#define BALLPISTON_CORE_GAS_FREE_TIMES_H_
+#pragma once
 
 #include <cstddef>
 #include <limits>
@@ -30,5 +29,3 @@ class FreeTimes {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_FREE_TIMES_H_

@@ -16,8 +16,7 @@
 //   1. RingsAreTracesOfTheirTransferOperator.  2. ToriCountEveryConfiguration.
 //   3. LargeGasesTendToTheInfiniteOne, to kGasExchangeRateRelativeError.
 //   4. AgreesWithSampledConfigurations.
-#ifndef BALLPISTON_CORE_GAS_GAS_EXCHANGE_RATE_H_
-#define BALLPISTON_CORE_GAS_GAS_EXCHANGE_RATE_H_
+#pragma once
 
 #include "core/gas/gas_geometry.h"
 
@@ -37,5 +36,3 @@ double CrowdingFactor(const GasShape& shape, double z);
 double InfiniteCrowdingFactor(bool is_lattice, double z);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_GAS_EXCHANGE_RATE_H_

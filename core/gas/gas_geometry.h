@@ -15,8 +15,7 @@
 // delta.
 //
 // Immutable, so safe to share between threads.
-#ifndef BALLPISTON_CORE_GAS_GAS_GEOMETRY_H_
-#define BALLPISTON_CORE_GAS_GAS_GEOMETRY_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -127,5 +126,3 @@ inline bool IsAlongX(Direction direction) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_GAS_GEOMETRY_H_

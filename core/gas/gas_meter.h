@@ -4,8 +4,7 @@
 //
 // Bodies are the balls, then the pistons. Placing, beginning and ending take a time in proportion
 // to their number; a function that returns false at a pause must be called again. Not thread-safe.
-#ifndef BALLPISTON_CORE_GAS_GAS_METER_H_
-#define BALLPISTON_CORE_GAS_GAS_METER_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -145,5 +144,3 @@ class GasMeter {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_GAS_METER_H_

@@ -6,8 +6,7 @@
 //
 // A replica's numbers depend only on its start, not on the times of the calls, on pauses or on
 // other replicas. The replicas are prepared in the first call of AdvanceTo.
-#ifndef BALLPISTON_CORE_GAS_GAS_RUN_H_
-#define BALLPISTON_CORE_GAS_GAS_RUN_H_
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -50,5 +49,3 @@ std::unique_ptr<GasRun> StartGases(GasEngine engine, const GasGeometry& geometry
                                    double exchange_rate, std::vector<GasStart> replicas);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_GAS_RUN_H_

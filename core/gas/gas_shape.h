@@ -5,8 +5,7 @@
 // pistons. Both are periodic, except along x if there are reservoirs at the ends.
 //
 // A ring of one cell is permitted: its ball meets the same piston on both sides.
-#ifndef BALLPISTON_CORE_GAS_GAS_SHAPE_H_
-#define BALLPISTON_CORE_GAS_GAS_SHAPE_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -41,5 +40,3 @@ double CodeOf(const GasShape& shape);
 GasShape ShapeOf(double code);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_GAS_SHAPE_H_

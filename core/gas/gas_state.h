@@ -1,6 +1,5 @@
 // The positions and velocities of all balls and pistons of a gas: a point of its phase space.
-#ifndef BALLPISTON_CORE_GAS_GAS_STATE_H_
-#define BALLPISTON_CORE_GAS_GAS_STATE_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <vector>
@@ -27,5 +26,3 @@ inline double EnergyOf(const GasBall& ball) { return ball.speed * ball.speed / 2
 inline double EnergyOf(const GasPiston& piston) { return piston.velocity * piston.velocity / 2; }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_GAS_STATE_H_

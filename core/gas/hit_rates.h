@@ -1,7 +1,6 @@
 // Wall hits of a ball and of a piston per unit of time at temperature 1, without ball-piston
 // collisions. They predict the cost of runs, and determine how far balls fly ahead.
-#ifndef BALLPISTON_CORE_GAS_HIT_RATES_H_
-#define BALLPISTON_CORE_GAS_HIT_RATES_H_
+#pragma once
 
 #include <cmath>
 #include <numbers>
@@ -33,5 +32,3 @@ inline HitRates HitRatesOf(const PairGeometry& pair) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_HIT_RATES_H_

@@ -23,8 +23,7 @@
 //
 // Properties, each with the test that bears its name:
 //   1. CurrentsMatchTheirDefinition.  2. ConductivityOfTheJumpProcessMatchesTheSpectrum.
-#ifndef BALLPISTON_CORE_GAS_JUMP_CURRENT_H_
-#define BALLPISTON_CORE_GAS_JUMP_CURRENT_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -91,5 +90,3 @@ class JumpCurrent : public CurrentMeter {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_JUMP_CURRENT_H_

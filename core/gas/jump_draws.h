@@ -2,8 +2,7 @@
 // attempt chooses a body, and the least speed at which the body proposes an exchange. A proposal
 // has an angle of the ball, and a time since the last proposal. The bits are the same on every
 // target with fused multiply-add.
-#ifndef BALLPISTON_CORE_GAS_JUMP_DRAWS_H_
-#define BALLPISTON_CORE_GAS_JUMP_DRAWS_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -46,5 +45,3 @@ struct JumpProposals {
 void DrawJumpProposals(CounterRandom& random, JumpProposals& proposals);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_JUMP_DRAWS_H_

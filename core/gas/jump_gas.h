@@ -16,8 +16,7 @@
 // its mean at temperature T is density sqrt(T/pi).
 // Properties, each with the test that bears its name:
 //   1. PairsFollowTheJumpProcess.  2. KeepsTheGammaLaws.  3. EqualReservoirsAreAnEquilibrium.
-#ifndef BALLPISTON_CORE_GAS_JUMP_GAS_H_
-#define BALLPISTON_CORE_GAS_JUMP_GAS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -96,5 +95,3 @@ class JumpGas {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_JUMP_GAS_H_

@@ -18,8 +18,7 @@
 //   4. EnergyIsConserved.
 //   5. BallsThatMeetPistonsInTipsStayInTheirCells.
 //   6. AnEscapedBallStopsAndCountsOnce.
-#ifndef BALLPISTON_CORE_GAS_LANE_GAS_H_
-#define BALLPISTON_CORE_GAS_LANE_GAS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -104,5 +103,3 @@ class LaneGas : public GasRun {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_LANE_GAS_H_

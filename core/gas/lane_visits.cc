@@ -43,7 +43,8 @@ class LanesAhead : public FlightsAhead {
  private:
   using D = hn::ScalableTag<double>;
 
-  // So few vectors fly faster alone than with empty ones.
+  // Up to this number of vectors, FlyFew takes less time than a full burst, which also computes the
+  // empty vectors.
   static constexpr size_t kMostOfFew = 3;
 
   static size_t Width() { return hn::Lanes(D()); }

@@ -1,7 +1,6 @@
 // Balls fly ahead in vector lanes and find their first contact with a piston, as long as the
 // pistons keep their present motion.
-#ifndef BALLPISTON_CORE_GAS_LANE_VISITS_H_
-#define BALLPISTON_CORE_GAS_LANE_VISITS_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <array>
@@ -103,5 +102,3 @@ class FlightsAhead {
 std::unique_ptr<FlightsAhead> LanesOf(const GasInTime& gas);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_LANE_VISITS_H_

@@ -3,8 +3,7 @@
 //
 // Work is counted after it is done, so every call makes progress, even if the caller always wants
 // a pause. Not thread-safe.
-#ifndef BALLPISTON_CORE_GAS_PAUSES_H_
-#define BALLPISTON_CORE_GAS_PAUSES_H_
+#pragma once
 
 #include <cstddef>
 #include <functional>
@@ -49,5 +48,3 @@ bool ForEachWithPauses(size_t& next, size_t end, double nanoseconds, Pauses& pau
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_PAUSES_H_

@@ -10,8 +10,7 @@
 //      their rounding does not grow with the time since the start.
 //
 // Times are in cells over unit speed. One object is one gas. Not thread-safe.
-#ifndef BALLPISTON_CORE_GAS_REFERENCE_GAS_H_
-#define BALLPISTON_CORE_GAS_REFERENCE_GAS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -105,5 +104,3 @@ class ReferenceGas {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_REFERENCE_GAS_H_

@@ -1,8 +1,7 @@
 // The reservoirs at the two ends of a gas: thermal walls, which the outermost pistons hit from
 // inside. A piston leaves a thermal wall with a speed from the flux law at the wall's temperature.
 // If both temperatures are equal, the gas is in equilibrium at this temperature.
-#ifndef BALLPISTON_CORE_GAS_THERMAL_WALLS_H_
-#define BALLPISTON_CORE_GAS_THERMAL_WALLS_H_
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -90,5 +89,3 @@ class ThermalWalls {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_THERMAL_WALLS_H_

@@ -16,8 +16,7 @@
 //   5. FreeTimesCountFromTheSameKindAndBodies.
 //
 // Units: lengths are cells, masses 1. One object is one orbit. Not thread-safe.
-#ifndef BALLPISTON_CORE_GAS_TRACE_H_
-#define BALLPISTON_CORE_GAS_TRACE_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -73,5 +72,3 @@ std::unique_ptr<Trace> TracePair(const PairGeometry& geometry, const PairState& 
 std::unique_ptr<Trace> TraceGas(const GasGeometry& geometry, const GasState& start);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GAS_TRACE_H_

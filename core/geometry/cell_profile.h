@@ -3,8 +3,7 @@
 // With rho^2 = (1 + lambda^2)/4 the arcs above and below are at |y| = t (t + lambda)/(1/2 + s),
 // where s = sqrt(rho^2 - (lambda/2 + t)^2) is the height of the discs' centres above their arcs.
 // Accurate to a few ulps for 0 <= t <= (1 - lambda)/2. If rounding makes t larger, s is 0.
-#ifndef BALLPISTON_CORE_GEOMETRY_CELL_PROFILE_H_
-#define BALLPISTON_CORE_GEOMETRY_CELL_PROFILE_H_
+#pragma once
 
 namespace ballpiston {
 
@@ -15,5 +14,3 @@ double CentreToArc(double lambda, double depth);
 double HalfHeight(double lambda, double depth);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GEOMETRY_CELL_PROFILE_H_

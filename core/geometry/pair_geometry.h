@@ -11,8 +11,7 @@
 //
 // Lengths are in cells. All members are accurate to a few ulps over the whole domain.
 // Immutable, so safe to share between threads.
-#ifndef BALLPISTON_CORE_GEOMETRY_PAIR_GEOMETRY_H_
-#define BALLPISTON_CORE_GEOMETRY_PAIR_GEOMETRY_H_
+#pragma once
 
 #include "absl/status/statusor.h"
 
@@ -68,5 +67,3 @@ absl::Status ValidateGasDelta(double rho, double delta);   // likewise
 absl::Status ValidateSomeDelta(double delta);  // OK if some rho permits delta: 0 < delta < 1/2
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GEOMETRY_PAIR_GEOMETRY_H_

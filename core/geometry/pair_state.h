@@ -4,8 +4,7 @@
 // cannot change the speed. Energies: eb = ball_speed^2/2, ep = piston_velocity^2/2, sum 1/2.
 // PairState uses doubles. Other number types are for flows in other precisions
 // (billiard/event_flow.h).
-#ifndef BALLPISTON_CORE_GEOMETRY_PAIR_STATE_H_
-#define BALLPISTON_CORE_GEOMETRY_PAIR_STATE_H_
+#pragma once
 
 #include <Eigen/Core>
 
@@ -52,5 +51,3 @@ double EnergyError(const PairState& state);
 bool InsideCell(const PairGeometry& geometry, const Eigen::Vector2d& position, double slack = 0);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GEOMETRY_PAIR_STATE_H_

@@ -1,6 +1,5 @@
 // Parameters of the paper.
-#ifndef BALLPISTON_CORE_GEOMETRY_PAPER_H_
-#define BALLPISTON_CORE_GEOMETRY_PAPER_H_
+#pragma once
 
 namespace ballpiston {
 
@@ -8,5 +7,3 @@ namespace ballpiston {
 inline constexpr double kPaperRho = 0.529561127988977;
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GEOMETRY_PAPER_H_

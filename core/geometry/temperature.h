@@ -2,8 +2,7 @@
 //
 // Units: the Boltzmann constant is 1, so a temperature is an energy; masses are 1, lengths are
 // cells. Over this range, powers of T up to T^(5/2) stay in the range of double.
-#ifndef BALLPISTON_CORE_GEOMETRY_TEMPERATURE_H_
-#define BALLPISTON_CORE_GEOMETRY_TEMPERATURE_H_
+#pragma once
 
 namespace ballpiston {
 
@@ -11,5 +10,3 @@ inline constexpr double kMinTemperature = 1e-120;
 inline constexpr double kMaxTemperature = 1e120;
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_GEOMETRY_TEMPERATURE_H_

@@ -21,8 +21,7 @@
 //   4. FollowsTheKernelAtShortTimes.
 //   5. DiffersBetweenDiscretisationsByLessThanItsBound, kEnergyLawError.
 // Immutable; safe to share between threads.
-#ifndef BALLPISTON_CORE_MARKOV_ENERGY_LAW_H_
-#define BALLPISTON_CORE_MARKOV_ENERGY_LAW_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -80,5 +79,3 @@ class EnergyLaw {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_MARKOV_ENERGY_LAW_H_

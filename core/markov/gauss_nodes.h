@@ -1,6 +1,5 @@
 // Gauss's quadrature as a loop over the nodes.
-#ifndef BALLPISTON_CORE_MARKOV_GAUSS_NODES_H_
-#define BALLPISTON_CORE_MARKOV_GAUSS_NODES_H_
+#pragma once
 
 #include <boost/math/quadrature/gauss.hpp>
 #include <cstddef>
@@ -30,5 +29,3 @@ void ForEachGaussNodeWithRoot(double lower, double upper, F f) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_MARKOV_GAUSS_NODES_H_

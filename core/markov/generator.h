@@ -22,8 +22,7 @@
 //   2. RatesConvergeFromAbove as degree and levels grow.
 //
 // Immutable; safe to share between threads.
-#ifndef BALLPISTON_CORE_MARKOV_GENERATOR_H_
-#define BALLPISTON_CORE_MARKOV_GENERATOR_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <functional>
@@ -101,5 +100,3 @@ class Generator {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_MARKOV_GENERATOR_H_

@@ -25,8 +25,7 @@
 //   3. DetailedBalance: the stationary law is uniform in u.
 //   4. LanesMatchTheScalarDefinition, within a relative error kJumpError.
 //   5. SameBitsOnEveryProcessor with fused multiply-add, and WalkersAreIndependentOfEachOther.
-#ifndef BALLPISTON_CORE_MARKOV_JUMP_PROCESS_H_
-#define BALLPISTON_CORE_MARKOV_JUMP_PROCESS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -81,5 +80,3 @@ class JumpWalkers {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_MARKOV_JUMP_PROCESS_H_

@@ -1,6 +1,5 @@
 // JumpFrom in vector lanes, from words of random bits; see jump_process.h.
-#ifndef BALLPISTON_CORE_MARKOV_JUMP_PROCESS_LANES_H_
-#define BALLPISTON_CORE_MARKOV_JUMP_PROCESS_LANES_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -24,5 +23,3 @@ void JumpInLanes(const uint64_t* waiting_words, const uint64_t* target_words, do
                  double* waiting_times);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_MARKOV_JUMP_PROCESS_LANES_H_

@@ -17,8 +17,7 @@
 //   3. MeanEnergyRelaxesFromTheInitialEnergy.
 //
 // Immutable; safe to share between threads.
-#ifndef BALLPISTON_CORE_MARKOV_RELAXATION_SPECTRUM_H_
-#define BALLPISTON_CORE_MARKOV_RELAXATION_SPECTRUM_H_
+#pragma once
 
 #include <vector>
 
@@ -76,5 +75,3 @@ class RelaxationSpectrum {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_MARKOV_RELAXATION_SPECTRUM_H_

@@ -6,8 +6,7 @@
 // one, else the limit's cheapest model if its error permits, else the billiard. Without a tolerance
 // AUTO chooses only an exact model. With a budget alone AUTO chooses the model with the smallest
 // error that can be reached within the budget.
-#ifndef BALLPISTON_CORE_MODEL_CHOICE_LADDER_H_
-#define BALLPISTON_CORE_MODEL_CHOICE_LADDER_H_
+#pragma once
 
 #include <functional>
 #include <limits>
@@ -87,5 +86,3 @@ std::vector<FieldViolation> MachineViolations(const EnsembleSpec& spec, const Ma
 double BudgetOfAPoint(const EnsembleSpec& spec, int workers);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_MODEL_CHOICE_LADDER_H_

@@ -9,8 +9,7 @@
 // pilot can raise the bound but never lower it, so the coverage stays. A pilot's result depends on
 // its place alone, so an answer does not depend on which job ran the pilot, or when. A pilot has
 // its own random numbers, which do not depend on the job's seed.
-#ifndef BALLPISTON_CORE_MODEL_CHOICE_LIMIT_ERROR_H_
-#define BALLPISTON_CORE_MODEL_CHOICE_LIMIT_ERROR_H_
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -60,5 +59,3 @@ Pilot PredictedPilot(const PilotPlace& place);
 double LimitErrorBound(const Pilot& pilot, const PilotPlace& place, const PointParameters& point);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_MODEL_CHOICE_LIMIT_ERROR_H_

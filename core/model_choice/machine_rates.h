@@ -1,7 +1,6 @@
 // The speed of a machine, from which costs are predicted. The core has no clock: the caller of a
 // prediction measures the rates and passes them in.
-#ifndef BALLPISTON_CORE_MODEL_CHOICE_MACHINE_RATES_H_
-#define BALLPISTON_CORE_MODEL_CHOICE_MACHINE_RATES_H_
+#pragma once
 
 #include "core/billiard/orbits.h"
 
@@ -34,5 +33,3 @@ struct MachineRates {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_MODEL_CHOICE_MACHINE_RATES_H_

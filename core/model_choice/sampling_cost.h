@@ -1,7 +1,6 @@
 // Predicts the cost of samples on a machine, from the work that the experiment's row counts and the
 // machine's rates. The prediction holds within a factor of five, mostly within two.
-#ifndef BALLPISTON_CORE_MODEL_CHOICE_SAMPLING_COST_H_
-#define BALLPISTON_CORE_MODEL_CHOICE_SAMPLING_COST_H_
+#pragma once
 
 #include "core/ensemble/ensemble_spec.h"
 #include "core/model_choice/machine_rates.h"
@@ -32,5 +31,3 @@ SamplingCost CostOfSampling(const EnsembleSpec& spec, const PointParameters& poi
                             const MachineRates& rates);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_MODEL_CHOICE_SAMPLING_COST_H_

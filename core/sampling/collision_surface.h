@@ -3,8 +3,7 @@
 //
 // The depth t = tip - x in [0, delta] has a density proportional to the cell's half-height at t,
 // and y is uniform over the cell's height at t.
-#ifndef BALLPISTON_CORE_SAMPLING_COLLISION_SURFACE_H_
-#define BALLPISTON_CORE_SAMPLING_COLLISION_SURFACE_H_
+#pragma once
 
 #include <Eigen/Core>
 
@@ -17,5 +16,3 @@ namespace ballpiston {
 Eigen::Vector2d UniformOnCollisionSurface(const PairGeometry& geometry, CounterRandom& random);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_SAMPLING_COLLISION_SURFACE_H_

@@ -7,8 +7,7 @@
 //   sample  index of the sample within the stream.
 //   part    separates the sequences of one sample, if the sample needs several.
 // One object is one sequence of draws of a sample. Not thread-safe.
-#ifndef BALLPISTON_CORE_SAMPLING_COUNTER_RANDOM_H_
-#define BALLPISTON_CORE_SAMPLING_COUNTER_RANDOM_H_
+#pragma once
 
 #include <Random123/philox.h>
 
@@ -59,5 +58,3 @@ class CounterRandom {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_SAMPLING_COUNTER_RANDOM_H_

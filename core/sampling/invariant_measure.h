@@ -1,8 +1,7 @@
 // Pairs in equilibrium at total energy 1/2: the flow's invariant measure mu (uniform on Gamma times
 // the unit sphere of velocities) and the return map's measure nu_bp (uniform on the collision
 // surface, velocity density v.n over the outgoing hemisphere, n = (-1, 0, 1)/sqrt(2); eq. cnu).
-#ifndef BALLPISTON_CORE_SAMPLING_INVARIANT_MEASURE_H_
-#define BALLPISTON_CORE_SAMPLING_INVARIANT_MEASURE_H_
+#pragma once
 
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
@@ -22,5 +21,3 @@ PairState DrawFromFlowMeasureAt(const PairGeometry& geometry, double epsilon,
 PairState DrawFromCollisionMeasure(const PairGeometry& geometry, CounterRandom& random);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_SAMPLING_INVARIANT_MEASURE_H_

@@ -7,8 +7,7 @@
 //
 // Sampling is exact, by rejection from the uniform law; for n -> 1000 about 1 in 100 proposals is
 // accepted.
-#ifndef BALLPISTON_CORE_SAMPLING_OUTGOING_LAW_H_
-#define BALLPISTON_CORE_SAMPLING_OUTGOING_LAW_H_
+#pragma once
 
 #include <Eigen/Core>
 
@@ -37,5 +36,3 @@ class OutgoingLaw {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_SAMPLING_OUTGOING_LAW_H_

@@ -7,8 +7,7 @@
 // length have the correct weights. Properties, each with a test of its name:
 //   1. MergeEqualsSinglePass, to rounding.  2. MergeWithEmptyIsIdentity, bit for bit.
 //   3. ErrorOfIndependentTermsIsTheUsualOne, for batches of single independent terms.
-#ifndef BALLPISTON_CORE_STATISTICS_BATCH_MEANS_H_
-#define BALLPISTON_CORE_STATISTICS_BATCH_MEANS_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -35,5 +34,3 @@ struct BatchMeans {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_STATISTICS_BATCH_MEANS_H_

@@ -7,8 +7,7 @@
 // N, covariance/N; the curvature c is that of E(H) plus 1/N. T has variance N, so
 //   variance(H | T = N) = variance - covariance^2/N - (N c)^2/2.
 // With many samples per cell this tends to (cells - 1)/2, as for a chi-squared law.
-#ifndef BALLPISTON_CORE_STATISTICS_CELL_NOISE_H_
-#define BALLPISTON_CORE_STATISTICS_CELL_NOISE_H_
+#pragma once
 
 namespace ballpiston {
 
@@ -29,5 +28,3 @@ struct CellNoise {
 CellNoise NoiseOfCell(double samples, double probability);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_STATISTICS_CELL_NOISE_H_

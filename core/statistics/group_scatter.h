@@ -9,8 +9,7 @@
 // is that of the chi-squared of all samples. Both are 1 below for independent samples. Properties,
 // each with a test of its name:
 //   1. IndependentSamplesScatterAsExpected.  2. RepeatedSamplesCountOnce.
-#ifndef BALLPISTON_CORE_STATISTICS_GROUP_SCATTER_H_
-#define BALLPISTON_CORE_STATISTICS_GROUP_SCATTER_H_
+#pragma once
 
 #include <cstddef>
 #include <span>
@@ -49,5 +48,3 @@ std::vector<uint64_t> CountsOf(std::span<const Histogram> groups);
 double FreedomOfSum(double a, double freedom_of_a, double b, double freedom_of_b);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_STATISTICS_GROUP_SCATTER_H_

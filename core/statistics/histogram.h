@@ -3,8 +3,7 @@
 // Values at or beyond an end count in the bin at that end: a rounded value may leave its interval
 // by an ulp, and no sample may be lost. Property, with a test of its name:
 //   1. MergeAddsCounts: exactly, in any order.
-#ifndef BALLPISTON_CORE_STATISTICS_HISTOGRAM_H_
-#define BALLPISTON_CORE_STATISTICS_HISTOGRAM_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -30,5 +29,3 @@ struct Histogram {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_STATISTICS_HISTOGRAM_H_

@@ -8,8 +8,7 @@
 //   1. NoiseFloorIsTheMeanUnderTheExactLaw, to 1e-3 of itself at every N.
 //   2. ErrorsHoldForEqualLaws and ErrorsHoldForUnequalLaws.
 //   3. ErrorsHoldForCorrelatedSamples, of DivergenceWithinRows.
-#ifndef BALLPISTON_CORE_STATISTICS_KL_DIVERGENCE_H_
-#define BALLPISTON_CORE_STATISTICS_KL_DIVERGENCE_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -48,5 +47,3 @@ KlDivergence RelativeEntropy(std::span<const uint64_t> counts,
 KlDivergence DivergenceWithinRows(std::span<const Histogram> groups, size_t rows);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_STATISTICS_KL_DIVERGENCE_H_

@@ -7,8 +7,7 @@
 // pi), as for random walks. Properties, each with a test of its name:
 //   1. NoiseFloorIsTheMeanDistanceOfUniformSamples.
 //   2. ErrorsHoldForCorrelatedSamples.
-#ifndef BALLPISTON_CORE_STATISTICS_KOLMOGOROV_SMIRNOV_H_
-#define BALLPISTON_CORE_STATISTICS_KOLMOGOROV_SMIRNOV_H_
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -32,5 +31,3 @@ struct KolmogorovSmirnov {
 KolmogorovSmirnov DistanceToUniform(const Histogram& histogram, std::span<const Histogram> groups);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_STATISTICS_KOLMOGOROV_SMIRNOV_H_

@@ -1,6 +1,5 @@
 // The autocorrelation by lag of a series with mean 0.
-#ifndef BALLPISTON_CORE_STATISTICS_LAG_PRODUCTS_H_
-#define BALLPISTON_CORE_STATISTICS_LAG_PRODUCTS_H_
+#pragma once
 
 #include <cstddef>
 #include <vector>
@@ -30,5 +29,3 @@ inline std::vector<double> IntegralsOf(const std::vector<double>& products) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_STATISTICS_LAG_PRODUCTS_H_

@@ -6,8 +6,7 @@
 //   2. MergeWithEmptyIsIdentity: bit for bit, on either side.
 //   3. EffectiveCountGivesIntervalsOfSkewedLaws.
 // Merging the same parts in the same order gives the same bits anywhere.
-#ifndef BALLPISTON_CORE_STATISTICS_MOMENTS_H_
-#define BALLPISTON_CORE_STATISTICS_MOMENTS_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -44,5 +43,3 @@ struct Moments {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_STATISTICS_MOMENTS_H_

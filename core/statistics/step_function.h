@@ -5,8 +5,7 @@
 //   1. IntegralIsExact: of the product with a later window, piece by piece, without a time step.
 //   2. SamplesHoldTheLastValue.
 // Not thread-safe while Add is called.
-#ifndef BALLPISTON_CORE_STATISTICS_STEP_FUNCTION_H_
-#define BALLPISTON_CORE_STATISTICS_STEP_FUNCTION_H_
+#pragma once
 
 #include <cstddef>
 #include <vector>
@@ -42,5 +41,3 @@ class StepFunction {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_STATISTICS_STEP_FUNCTION_H_

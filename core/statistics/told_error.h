@@ -16,8 +16,7 @@
 // The number of events is an expected one, never a measured one: an error that is shown only if the
 // sample happens to contain many events is shown for samples that lie to one side. A quantity that
 // cannot fluctuate has the error 0.
-#ifndef BALLPISTON_CORE_STATISTICS_TOLD_ERROR_H_
-#define BALLPISTON_CORE_STATISTICS_TOLD_ERROR_H_
+#pragma once
 
 #include <cmath>
 #include <optional>
@@ -40,5 +39,3 @@ inline std::optional<double> ToldError(double events, double value, std::optiona
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_CORE_STATISTICS_TOLD_ERROR_H_

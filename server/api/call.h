@@ -1,6 +1,5 @@
 // One call: its caller, and its request id, which is also in the log.
-#ifndef BALLPISTON_SERVER_API_CALL_H_
-#define BALLPISTON_SERVER_API_CALL_H_
+#pragma once
 
 #include <string>
 
@@ -32,5 +31,3 @@ absl::StatusOr<Call> AdmitCall(const ServiceContext& service, grpc::ServerContex
                                const CallRule& rule);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_CALL_H_

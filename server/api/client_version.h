@@ -4,8 +4,7 @@
 // The project's clients send their version at the start of the user agent: "ballpiston/0.1.0 ...".
 // A client that sends none, such as one made from the protos, is served: the name of the proto
 // package, ballpiston.v1, is its version.
-#ifndef BALLPISTON_SERVER_API_CLIENT_VERSION_H_
-#define BALLPISTON_SERVER_API_CLIENT_VERSION_H_
+#pragma once
 
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
@@ -17,5 +16,3 @@ namespace ballpiston::server {
 absl::Status CheckClientVersion(absl::string_view user_agent, absl::string_view server);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_CLIENT_VERSION_H_

@@ -1,6 +1,5 @@
 // Reads the filters of a ListEnsembleJobsRequest.
-#ifndef BALLPISTON_SERVER_API_LIST_FILTER_H_
-#define BALLPISTON_SERVER_API_LIST_FILTER_H_
+#pragma once
 
 #include "ballpiston/v1/ensemble.pb.h"
 #include "server/api/request_check.h"
@@ -13,5 +12,3 @@ namespace ballpiston::server {
 JobFilter ReadListFilter(const v1::ListEnsembleJobsRequest& request, RequestCheck& check);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_LIST_FILTER_H_

@@ -1,8 +1,7 @@
 // The methods of the API, one row each. A row declares the function that executes the method in a
 // file of its own, and the method of its service. To add a method: its proto, a row, a file. The
 // protos have the contracts and errors.
-#ifndef BALLPISTON_SERVER_API_METHODS_H_
-#define BALLPISTON_SERVER_API_METHODS_H_
+#pragma once
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -60,5 +59,3 @@ BALLPISTON_TRACE_STREAMS(BALLPISTON_DECLARE_STREAM)
 #undef BALLPISTON_DECLARE_STREAM
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_METHODS_H_

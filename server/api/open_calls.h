@@ -1,8 +1,7 @@
 // The calls in progress of each principal, with their memory: the request, and the answer until the
 // client has received it, or what a trace computes. A client that sends calls and does not read the
 // answers therefore reaches the limits. Thread-safe.
-#ifndef BALLPISTON_SERVER_API_OPEN_CALLS_H_
-#define BALLPISTON_SERVER_API_OPEN_CALLS_H_
+#pragma once
 
 #include <cstdint>
 #include <map>
@@ -50,5 +49,3 @@ class OpenCalls {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_OPEN_CALLS_H_

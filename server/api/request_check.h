@@ -3,8 +3,7 @@
 //   RequestCheck check;
 //   const std::string id = check.JobId("name", request.name());
 //   if (!check.ok()) return check.status();
-#ifndef BALLPISTON_SERVER_API_REQUEST_CHECK_H_
-#define BALLPISTON_SERVER_API_REQUEST_CHECK_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -54,5 +53,3 @@ class RequestCheck {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_REQUEST_CHECK_H_

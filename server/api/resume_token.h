@@ -1,8 +1,7 @@
 // The content of a watch's resume token: the job, and how much of it the client has received.
 // Tokens are opaque to clients. A client may send any text as a token, so parsing must accept
 // everything. Pure functions.
-#ifndef BALLPISTON_SERVER_API_RESUME_TOKEN_H_
-#define BALLPISTON_SERVER_API_RESUME_TOKEN_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -26,5 +25,3 @@ std::string ResumeTokenText(const ResumeToken& token);
 std::optional<ResumeToken> ParseResumeToken(const std::string& text);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_RESUME_TOKEN_H_

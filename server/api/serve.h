@@ -1,7 +1,6 @@
 // The frames of every unary call and of every stream: admit the caller, run the method, answer.
 // gRPC gives each call a thread of its own.
-#ifndef BALLPISTON_SERVER_API_SERVE_H_
-#define BALLPISTON_SERVER_API_SERVE_H_
+#pragma once
 
 #include <cstdint>
 #include <exception>
@@ -73,5 +72,3 @@ inline grpc::Status ServeStream(ServiceContext& service, grpc::ServerContext& co
 }
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_SERVE_H_

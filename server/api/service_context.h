@@ -1,6 +1,5 @@
 // The objects and options that every method of the API uses.
-#ifndef BALLPISTON_SERVER_API_SERVICE_CONTEXT_H_
-#define BALLPISTON_SERVER_API_SERVICE_CONTEXT_H_
+#pragma once
 
 #include <atomic>
 #include <chrono>
@@ -50,5 +49,3 @@ struct ServiceContext {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_SERVICE_CONTEXT_H_

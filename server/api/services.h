@@ -1,6 +1,5 @@
 // The gRPC services: each method runs its function of methods.h in a frame of serve.h.
-#ifndef BALLPISTON_SERVER_API_SERVICES_H_
-#define BALLPISTON_SERVER_API_SERVICES_H_
+#pragma once
 
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
@@ -73,5 +72,3 @@ class ServerService : public v1::ServerService::Service {
 #undef BALLPISTON_SERVE_STREAM
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_SERVICES_H_

@@ -1,7 +1,6 @@
 // The streams in progress: watches and traces. Each has a thread, which waits while its reader does
 // not read. Thread-safe.
-#ifndef BALLPISTON_SERVER_API_STREAMS_H_
-#define BALLPISTON_SERVER_API_STREAMS_H_
+#pragma once
 
 #include <atomic>
 #include <chrono>
@@ -83,5 +82,3 @@ class Streams {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_STREAMS_H_

@@ -1,6 +1,5 @@
 // The server's counts at this moment, for the metrics and for GetServerStatus.
-#ifndef BALLPISTON_SERVER_API_TAKE_SNAPSHOT_H_
-#define BALLPISTON_SERVER_API_TAKE_SNAPSHOT_H_
+#pragma once
 
 #include "server/api/service_context.h"
 #include "server/observability/server_snapshot.h"
@@ -12,5 +11,3 @@ namespace ballpiston::server {
 ServerSnapshot TakeSnapshot(const ServiceContext& service);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_TAKE_SNAPSHOT_H_

@@ -1,8 +1,7 @@
 // Turns of calls that compute. Each call has a thread, so a principal with many calls would slow
 // down the calls of all others and the workers. Therefore few calls compute at a time; the others
 // wait. Thread-safe.
-#ifndef BALLPISTON_SERVER_API_TURNS_H_
-#define BALLPISTON_SERVER_API_TURNS_H_
+#pragma once
 
 #include <map>
 #include <string>
@@ -41,5 +40,3 @@ class Turns {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_API_TURNS_H_

@@ -1,6 +1,5 @@
 // The flags of ballpistond, on its command line and in the file of --config.
-#ifndef BALLPISTON_SERVER_COMMAND_LINE_COMMAND_LINE_H_
-#define BALLPISTON_SERVER_COMMAND_LINE_COMMAND_LINE_H_
+#pragma once
 
 #include <chrono>
 #include <optional>
@@ -31,5 +30,3 @@ struct CommandLine {
 absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_COMMAND_LINE_COMMAND_LINE_H_

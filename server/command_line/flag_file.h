@@ -1,6 +1,5 @@
 // The file of --config: lines FLAG = VALUE or FLAG = "VALUE", and comments, which begin with #.
-#ifndef BALLPISTON_SERVER_COMMAND_LINE_FLAG_FILE_H_
-#define BALLPISTON_SERVER_COMMAND_LINE_FLAG_FILE_H_
+#pragma once
 
 #include <CLI/CLI.hpp>
 #include <string>
@@ -15,5 +14,3 @@ void AddFlagFile(CLI::App& app);
 std::string NoSuchFlag(const CLI::App& app, const std::string& flag, const std::string& written);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_COMMAND_LINE_FLAG_FILE_H_

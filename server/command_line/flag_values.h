@@ -1,6 +1,5 @@
 // Flags of the server whose values are numbers, times or names, with the range that each permits.
-#ifndef BALLPISTON_SERVER_COMMAND_LINE_FLAG_VALUES_H_
-#define BALLPISTON_SERVER_COMMAND_LINE_FLAG_VALUES_H_
+#pragma once
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -92,5 +91,3 @@ void AddChoice(CLI::App& app, const std::string& flag, Value& value, const Choic
 }
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_COMMAND_LINE_FLAG_VALUES_H_

@@ -1,6 +1,5 @@
 // How --help is laid out, and its lines that describe no flag.
-#ifndef BALLPISTON_SERVER_COMMAND_LINE_HELP_PAGE_H_
-#define BALLPISTON_SERVER_COMMAND_LINE_HELP_PAGE_H_
+#pragma once
 
 #include <CLI/CLI.hpp>
 
@@ -10,5 +9,3 @@ namespace ballpiston::server {
 void SetHelpPage(CLI::App& app);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_COMMAND_LINE_HELP_PAGE_H_

@@ -1,6 +1,5 @@
 // Evaluates the closed forms for AnalyticService. Pure functions.
-#ifndef BALLPISTON_SERVER_CONVERT_ANALYTIC_H_
-#define BALLPISTON_SERVER_CONVERT_ANALYTIC_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -20,5 +19,3 @@ inline constexpr int64_t kMaxAnalyticValues = 100'000;
 absl::StatusOr<v1::EvaluatePairsResponse> EvaluatePairs(const v1::EvaluatePairsRequest& request);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_CONVERT_ANALYTIC_H_

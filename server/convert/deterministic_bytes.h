@@ -1,6 +1,5 @@
 // Serializes a message. Equal messages give equal bytes. Pure function.
-#ifndef BALLPISTON_SERVER_CONVERT_DETERMINISTIC_BYTES_H_
-#define BALLPISTON_SERVER_CONVERT_DETERMINISTIC_BYTES_H_
+#pragma once
 
 #include <string>
 
@@ -22,5 +21,3 @@ inline std::string DeterministicBytes(const google::protobuf::MessageLite& messa
 }
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_CONVERT_DETERMINISTIC_BYTES_H_

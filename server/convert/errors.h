@@ -5,8 +5,7 @@
 // into the error details, which together stay below kMaxErrorDetails: gRPC refuses trailers of
 // 8 KiB. Violations that do not fit are counted in the metadata `violations_left_out` and in the
 // message. Pure functions.
-#ifndef BALLPISTON_SERVER_CONVERT_ERRORS_H_
-#define BALLPISTON_SERVER_CONVERT_ERRORS_H_
+#pragma once
 
 #include <cstddef>
 #include <string>
@@ -79,5 +78,3 @@ std::string ReasonOf(const google::rpc::Status& error);
 grpc::Status GrpcStatus(const absl::Status& status);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_CONVERT_ERRORS_H_

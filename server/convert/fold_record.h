@@ -3,8 +3,7 @@
 //
 // A record that can be parsed may still be damaged. So before a point is resumed, CheckFoldState
 // checks that the record is possible for the point's experiment.
-#ifndef BALLPISTON_SERVER_CONVERT_FOLD_RECORD_H_
-#define BALLPISTON_SERVER_CONVERT_FOLD_RECORD_H_
+#pragma once
 
 #include <string>
 
@@ -33,5 +32,3 @@ absl::Status CheckFoldState(const PointExperiment& experiment, const FoldState& 
 absl::Status CheckChunk(const PointExperiment& experiment, const ChunkResult& chunk);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_CONVERT_FOLD_RECORD_H_

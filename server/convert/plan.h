@@ -1,6 +1,5 @@
 // The ladder of models as a message of the API. Pure functions.
-#ifndef BALLPISTON_SERVER_CONVERT_PLAN_H_
-#define BALLPISTON_SERVER_CONVERT_PLAN_H_
+#pragma once
 
 #include "ballpiston/v1/ensemble.pb.h"
 #include "core/model_choice/ladder.h"
@@ -12,5 +11,3 @@ v1::PointPlan PointPlanMessage(const PointParameters& point, const Ladder& ladde
 v1::ComputingRates RatesMessage(const MachineRates& rates);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_CONVERT_PLAN_H_

@@ -1,6 +1,5 @@
 // A stored result as the API's PointResult. Pure functions.
-#ifndef BALLPISTON_SERVER_CONVERT_POINT_RESULT_H_
-#define BALLPISTON_SERVER_CONVERT_POINT_RESULT_H_
+#pragma once
 
 #include "ballpiston/storage/records.pb.h"
 #include "ballpiston/v1/result.pb.h"
@@ -14,5 +13,3 @@ v1::PointResult PointResultMessage(const storage::Result& record, const storage:
                                    const ExperimentKind& experiment);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_CONVERT_POINT_RESULT_H_

@@ -1,7 +1,6 @@
 // Converts a point's results from the core's numbers to the store's record. Equal numbers give
 // equal bytes. A value that is not finite is left out. Pure functions.
-#ifndef BALLPISTON_SERVER_CONVERT_RESULT_RECORD_H_
-#define BALLPISTON_SERVER_CONVERT_RESULT_RECORD_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -33,5 +32,3 @@ absl::StatusOr<storage::Result> ResultFromBytes(const std::string& bytes);    //
 absl::StatusOr<storage::Details> DetailsFromBytes(const std::string& bytes);  // DATA_LOSS
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_CONVERT_RESULT_RECORD_H_

@@ -1,6 +1,5 @@
 // Converts between the API's EnsembleSpec and the core's. Pure functions.
-#ifndef BALLPISTON_SERVER_CONVERT_SPEC_H_
-#define BALLPISTON_SERVER_CONVERT_SPEC_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -48,5 +47,3 @@ absl::StatusOr<v1::EnsembleSpec> SpecFromBytes(const StoredSpec& bytes);  // DAT
 std::string EngineVersion();
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_CONVERT_SPEC_H_

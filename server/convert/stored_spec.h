@@ -1,6 +1,5 @@
 // The bytes of a specification in the store.
-#ifndef BALLPISTON_SERVER_CONVERT_STORED_SPEC_H_
-#define BALLPISTON_SERVER_CONVERT_STORED_SPEC_H_
+#pragma once
 
 #include <cstddef>
 #include <string>
@@ -18,5 +17,3 @@ struct StoredSpec {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_CONVERT_STORED_SPEC_H_

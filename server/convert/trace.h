@@ -1,6 +1,5 @@
 // Converts the core's trace of one orbit to the messages of TraceService.
-#ifndef BALLPISTON_SERVER_CONVERT_TRACE_H_
-#define BALLPISTON_SERVER_CONVERT_TRACE_H_
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -65,5 +64,3 @@ class TraceQuestion {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_CONVERT_TRACE_H_

@@ -1,7 +1,6 @@
 // A session computes blocks of a lease in turns of about 50 ms. Between turns the session keeps its
 // orbits where they are, and any thread may take the next turn.
-#ifndef BALLPISTON_SERVER_EXECUTION_BLOCK_SESSION_H_
-#define BALLPISTON_SERVER_EXECUTION_BLOCK_SESSION_H_
+#pragma once
 
 #include <chrono>
 #include <memory>
@@ -50,5 +49,3 @@ class BlockSession : private BlockQueue {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_EXECUTION_BLOCK_SESSION_H_

@@ -1,6 +1,5 @@
 // Runs another program to its end, with a time limit.
-#ifndef BALLPISTON_SERVER_EXECUTION_RUN_COMMAND_H_
-#define BALLPISTON_SERVER_EXECUTION_RUN_COMMAND_H_
+#pragma once
 
 #include <chrono>
 #include <stop_token>
@@ -29,5 +28,3 @@ struct CommandOutput {
 absl::StatusOr<CommandOutput> RunCommand(const Command& command, const std::stop_token& stop);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_EXECUTION_RUN_COMMAND_H_

@@ -7,8 +7,7 @@
 //       task-TASK.SEQUENCE.chunks     what its tasks computed (worker/chunk_file.h)
 //       task-TASK.lease-LEASE.crash   the engine killed this task (worker/crash_mark.h)
 //       TASK.log                      what a task said
-#ifndef BALLPISTON_SERVER_EXECUTION_SHARED_FOLDER_H_
-#define BALLPISTON_SERVER_EXECUTION_SHARED_FOLDER_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -46,5 +45,3 @@ class SharedFolder {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_EXECUTION_SHARED_FOLDER_H_

@@ -14,8 +14,7 @@
 // If Slurm refuses, or the shared folder cannot be used, the leases go back to the scheduler, for
 // the server's threads, and the executor tries again later with one task. Status() has the reason.
 // Two threads: one reads files; one runs Slurm's tools, which may block for minutes. Thread-safe.
-#ifndef BALLPISTON_SERVER_EXECUTION_SLURM_EXECUTOR_H_
-#define BALLPISTON_SERVER_EXECUTION_SLURM_EXECUTOR_H_
+#pragma once
 
 #include <array>
 #include <chrono>
@@ -192,5 +191,3 @@ class SlurmExecutor : public Executor {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_EXECUTION_SLURM_EXECUTOR_H_

@@ -1,6 +1,5 @@
 // Reads the output of squeue: the job arrays in the queue, and the states of their tasks.
-#ifndef BALLPISTON_SERVER_EXECUTION_SLURM_QUEUE_H_
-#define BALLPISTON_SERVER_EXECUTION_SLURM_QUEUE_H_
+#pragma once
 
 #include <cstddef>
 #include <map>
@@ -35,5 +34,3 @@ std::string IndicesText(const std::set<size_t>& indices);
 bool WaitsForever(absl::string_view reason);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_EXECUTION_SLURM_QUEUE_H_

@@ -2,8 +2,7 @@
 //
 // Slurm says when and where a task runs. It proves nothing: acknowledged jobs were lost when
 // slurmctld was killed, and a submission that timed out may have succeeded. Thread-safe.
-#ifndef BALLPISTON_SERVER_EXECUTION_SLURM_TOOLS_H_
-#define BALLPISTON_SERVER_EXECUTION_SLURM_TOOLS_H_
+#pragma once
 
 #include <chrono>
 #include <cstddef>
@@ -75,5 +74,3 @@ class SlurmTools {
 std::vector<std::string> SlurmEnvironment();
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_EXECUTION_SLURM_TOOLS_H_

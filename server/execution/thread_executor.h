@@ -3,8 +3,7 @@
 // The threads share a lease: each computes blocks of its chunks in a session of its own
 // (block_session.h). Before every turn a thread asks the scheduler for the lease whose turn it is.
 // An exception from a block ends only the block's run, with a failure. Thread-safe.
-#ifndef BALLPISTON_SERVER_EXECUTION_THREAD_EXECUTOR_H_
-#define BALLPISTON_SERVER_EXECUTION_THREAD_EXECUTOR_H_
+#pragma once
 
 #include <atomic>
 #include <cstddef>
@@ -73,5 +72,3 @@ class ThreadExecutor : public Executor {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_EXECUTION_THREAD_EXECUTOR_H_

@@ -6,8 +6,7 @@
 // stored results and on processor time. All this is decided inside one transaction of the store.
 // The store runs its transactions one after the other, so many equal requests at the same time make
 // one job.
-#ifndef BALLPISTON_SERVER_JOBS_ACCEPTANCE_H_
-#define BALLPISTON_SERVER_JOBS_ACCEPTANCE_H_
+#pragma once
 
 #include <optional>
 
@@ -44,5 +43,3 @@ absl::Status Accept(Database& database, const Limits& limits, const Usage& usage
 absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_JOBS_ACCEPTANCE_H_

@@ -10,8 +10,7 @@
 // Finished points have numbers of their own. The store assigns them, and they stay valid after a
 // restart of the server (point_tables.h). A point counts as done, and can be sent, when it is
 // stored. The job keeps the newest kRecentPoints in memory; the store has all of them. Thread-safe.
-#ifndef BALLPISTON_SERVER_JOBS_JOB_H_
-#define BALLPISTON_SERVER_JOBS_JOB_H_
+#pragma once
 
 #include <atomic>
 #include <chrono>
@@ -112,5 +111,3 @@ class Job {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_JOBS_JOB_H_

@@ -8,8 +8,7 @@
 //
 // Methods that write wait for the disk, so gRPC's own threads must not call them. Errors have
 // reasons (server/convert/errors.h). Thread-safe.
-#ifndef BALLPISTON_SERVER_JOBS_JOB_BOOK_H_
-#define BALLPISTON_SERVER_JOBS_JOB_BOOK_H_
+#pragma once
 
 #include <atomic>
 #include <chrono>
@@ -216,5 +215,3 @@ class JobBook {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_JOBS_JOB_BOOK_H_

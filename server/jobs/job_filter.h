@@ -1,6 +1,5 @@
 // Which jobs a list contains: those that match all parts of a filter.
-#ifndef BALLPISTON_SERVER_JOBS_JOB_FILTER_H_
-#define BALLPISTON_SERVER_JOBS_JOB_FILTER_H_
+#pragma once
 
 #include <set>
 
@@ -21,5 +20,3 @@ struct JobFilter {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_JOBS_JOB_FILTER_H_

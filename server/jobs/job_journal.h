@@ -3,8 +3,7 @@
 // Order in the store: a checkpoint after the point's earlier ones and its chunks, a point's result
 // after its checkpoints, the end of the job after all of it. Clients see that a point is finished
 // after its result is on disk; the state they read from the job's row. Thread-safe.
-#ifndef BALLPISTON_SERVER_JOBS_JOB_JOURNAL_H_
-#define BALLPISTON_SERVER_JOBS_JOB_JOURNAL_H_
+#pragma once
 
 #include <functional>
 #include <memory>
@@ -45,5 +44,3 @@ class JobJournal : public RunJournal {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_JOBS_JOB_JOURNAL_H_

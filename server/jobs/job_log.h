@@ -1,6 +1,5 @@
 // The log lines about a job's life, after its acceptance (api/create_ensemble_job.cc).
-#ifndef BALLPISTON_SERVER_JOBS_JOB_LOG_H_
-#define BALLPISTON_SERVER_JOBS_JOB_LOG_H_
+#pragma once
 
 #include <string>
 
@@ -19,5 +18,3 @@ void LogEnd(const JobRecord& ended);
 void LogCrashed(const JobRecord& job, const std::string& points, const v1::EnsembleSpec& spec);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_JOBS_JOB_LOG_H_

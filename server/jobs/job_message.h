@@ -1,6 +1,5 @@
 // A job as the API shows it, made from its row and from what memory knows about it. Pure functions.
-#ifndef BALLPISTON_SERVER_JOBS_JOB_MESSAGE_H_
-#define BALLPISTON_SERVER_JOBS_JOB_MESSAGE_H_
+#pragma once
 
 #include <cstdint>
 
@@ -35,5 +34,3 @@ void SetTime(absl::Time time, google::protobuf::Timestamp* timestamp);
 bool IsOpenEnded(const v1::Target& target);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_JOBS_JOB_MESSAGE_H_

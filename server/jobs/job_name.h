@@ -1,7 +1,6 @@
 // Resource names: ensembleJobs/{id}, where an id is 1 to 63 of [a-z0-9-], and
 // ensembleJobs/{id}/results/{index}. Pure functions, except RandomId.
-#ifndef BALLPISTON_SERVER_JOBS_JOB_NAME_H_
-#define BALLPISTON_SERVER_JOBS_JOB_NAME_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -27,5 +26,3 @@ std::optional<ResultId> ResultIdOf(const std::string& name);
 std::string RandomId();
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_JOBS_JOB_NAME_H_

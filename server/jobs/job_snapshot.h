@@ -1,6 +1,5 @@
 // A copy of a job's unfinished points at one moment, which its watches share (shared_copy.h).
-#ifndef BALLPISTON_SERVER_JOBS_JOB_SNAPSHOT_H_
-#define BALLPISTON_SERVER_JOBS_JOB_SNAPSHOT_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -27,5 +26,3 @@ struct JobSnapshot {
 void LeaveOutFinished(v1::StatisticsSnapshot& message);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_JOBS_JOB_SNAPSHOT_H_

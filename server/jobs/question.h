@@ -1,6 +1,5 @@
 // Hashes that tell whether two requests, or two questions, are the same. Pure functions.
-#ifndef BALLPISTON_SERVER_JOBS_QUESTION_H_
-#define BALLPISTON_SERVER_JOBS_QUESTION_H_
+#pragma once
 
 #include <string>
 
@@ -16,5 +15,3 @@ std::string QuestionOf(const v1::EnsembleSpec& spec, const std::string& engine_v
 std::string PayloadOf(const v1::CreateEnsembleJobRequest& request);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_JOBS_QUESTION_H_

@@ -5,8 +5,7 @@
 // when none are left, expired jobs are deleted in the same order. The data of active and pinned
 // jobs are never removed here, so the store may grow beyond the bound; then no new job is accepted
 // (acceptance.h).
-#ifndef BALLPISTON_SERVER_JOBS_RETENTION_H_
-#define BALLPISTON_SERVER_JOBS_RETENTION_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -46,5 +45,3 @@ class Retention {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_JOBS_RETENTION_H_

@@ -2,8 +2,7 @@
 //
 // Making a copy costs a read of the store, or the scheduler's lock. So all watches get the same
 // copy as long as it is recent enough or nothing has changed. Thread-safe.
-#ifndef BALLPISTON_SERVER_JOBS_SHARED_COPY_H_
-#define BALLPISTON_SERVER_JOBS_SHARED_COPY_H_
+#pragma once
 
 #include <chrono>
 #include <cstdint>
@@ -52,5 +51,3 @@ class SharedCopy {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_JOBS_SHARED_COPY_H_

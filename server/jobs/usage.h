@@ -1,8 +1,7 @@
 // Counts the stored jobs, their bytes and the processor time of each principal, and checks them
 // against the quotas. The counts are in memory, because the store would have to add up all its jobs
 // for every new job. Thread-safe.
-#ifndef BALLPISTON_SERVER_JOBS_USAGE_H_
-#define BALLPISTON_SERVER_JOBS_USAGE_H_
+#pragma once
 
 #include <cstdint>
 #include <map>
@@ -59,5 +58,3 @@ class Usage {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_JOBS_USAGE_H_

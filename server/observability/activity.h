@@ -1,6 +1,5 @@
 // Counts the calls and streams in progress, and how long the server has been idle. Thread-safe.
-#ifndef BALLPISTON_SERVER_OBSERVABILITY_ACTIVITY_H_
-#define BALLPISTON_SERVER_OBSERVABILITY_ACTIVITY_H_
+#pragma once
 
 #include <chrono>
 #include <memory>
@@ -32,5 +31,3 @@ class Activity {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_OBSERVABILITY_ACTIVITY_H_

@@ -6,8 +6,7 @@
 // a client that has the answer finds the call counted. Methods that no service has are not counted,
 // because clients could invent any number of them. The counters are prometheus-cpp's; no library
 // connects them to gRPC's C++ server. Thread-safe.
-#ifndef BALLPISTON_SERVER_OBSERVABILITY_CALL_OBSERVER_H_
-#define BALLPISTON_SERVER_OBSERVABILITY_CALL_OBSERVER_H_
+#pragma once
 
 #include <map>
 #include <memory>
@@ -96,5 +95,3 @@ class CallObserver {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_OBSERVABILITY_CALL_OBSERVER_H_

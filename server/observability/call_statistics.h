@@ -5,8 +5,7 @@
 // Family::Add builds and hashes a map of labels for every look-up. A call has three look-ups: they
 // take 1.3 us with Add, and 0.2 us with the map. Only registered methods are in the map, so its
 // size is bounded. Thread-safe.
-#ifndef BALLPISTON_SERVER_OBSERVABILITY_CALL_STATISTICS_H_
-#define BALLPISTON_SERVER_OBSERVABILITY_CALL_STATISTICS_H_
+#pragma once
 
 #include <array>
 #include <map>
@@ -55,5 +54,3 @@ class CallStatistics {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_OBSERVABILITY_CALL_STATISTICS_H_

@@ -10,8 +10,7 @@
 // for ever. Thread-safe.
 //
 // BALLPISTON_FAILPOINT=crash-for-seed:SEED arms a crash of the engine instead (CrashForSeed).
-#ifndef BALLPISTON_SERVER_OBSERVABILITY_FAILPOINT_H_
-#define BALLPISTON_SERVER_OBSERVABILITY_FAILPOINT_H_
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -77,5 +76,3 @@ inline void Failpoint(std::string_view name) {
 }
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_OBSERVABILITY_FAILPOINT_H_

@@ -4,8 +4,7 @@
 // While the disk rejects writes, the services that need it are NOT_SERVING, so that clients can
 // choose another server. The other services and the whole server stay SERVING, because a restart
 // would not repair the disk. When the server stops, all are NOT_SERVING and stay so. Thread-safe.
-#ifndef BALLPISTON_SERVER_OBSERVABILITY_HEALTH_H_
-#define BALLPISTON_SERVER_OBSERVABILITY_HEALTH_H_
+#pragma once
 
 #include <chrono>
 #include <functional>
@@ -43,5 +42,3 @@ class Health {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_OBSERVABILITY_HEALTH_H_

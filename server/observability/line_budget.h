@@ -3,8 +3,7 @@
 //
 // At most `lines` lines are written in a `period`, which begins with a line. Further lines are
 // counted, and the next line that is written gives their number. Thread-safe.
-#ifndef BALLPISTON_SERVER_OBSERVABILITY_LINE_BUDGET_H_
-#define BALLPISTON_SERVER_OBSERVABILITY_LINE_BUDGET_H_
+#pragma once
 
 #include <chrono>
 #include <cstdint>
@@ -34,5 +33,3 @@ class LineBudget {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_OBSERVABILITY_LINE_BUDGET_H_

@@ -4,8 +4,7 @@
 //   Log(Severity::kInfo, "job accepted", {{"job", name}, {"principal", caller.name}});
 //
 // Never log a token, a key or another secret.
-#ifndef BALLPISTON_SERVER_OBSERVABILITY_LOG_H_
-#define BALLPISTON_SERVER_OBSERVABILITY_LOG_H_
+#pragma once
 
 #include "absl/strings/string_view.h"
 #include "server/observability/log_line.h"
@@ -27,5 +26,3 @@ inline void LogInfo(absl::string_view message) { Log(Severity::kInfo, message); 
 inline void LogError(absl::string_view message) { Log(Severity::kError, message); }
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_OBSERVABILITY_LOG_H_

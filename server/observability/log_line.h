@@ -7,8 +7,7 @@
 // invalid UTF-8 are escaped, so that a message stays one line and cannot imitate another line.
 // Messages and values are cut so that a line has at most kMaxLogLine bytes, which a pipe accepts in
 // one piece.
-#ifndef BALLPISTON_SERVER_OBSERVABILITY_LOG_LINE_H_
-#define BALLPISTON_SERVER_OBSERVABILITY_LOG_LINE_H_
+#pragma once
 
 #include <cstddef>
 #include <initializer_list>
@@ -41,5 +40,3 @@ std::string LogLine(LogFormat format, absl::Time now, Severity severity, absl::s
                     LogFields fields);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_OBSERVABILITY_LOG_LINE_H_

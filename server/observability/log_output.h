@@ -3,8 +3,7 @@
 // A write waits at most 100 ms for a slow reader. If the reader takes nothing, the line is dropped
 // and counted, and the server goes on. The number of dropped lines is written before the next line.
 // The same holds if the descriptor is closed or its disk is full. Thread-safe.
-#ifndef BALLPISTON_SERVER_OBSERVABILITY_LOG_OUTPUT_H_
-#define BALLPISTON_SERVER_OBSERVABILITY_LOG_OUTPUT_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -36,5 +35,3 @@ class LogOutput {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_OBSERVABILITY_LOG_OUTPUT_H_

@@ -7,8 +7,7 @@
 // The numbers here belong to the scheduler, the store and others, which the API's status reads too.
 // A scrape therefore copies one snapshot into a registry of its own. With a permanent registry each
 // number would have to be counted in a second place.
-#ifndef BALLPISTON_SERVER_OBSERVABILITY_METRICS_H_
-#define BALLPISTON_SERVER_OBSERVABILITY_METRICS_H_
+#pragma once
 
 #include <cstddef>
 #include <vector>
@@ -23,5 +22,3 @@ inline constexpr size_t kMostPrincipals = 1000;
 std::vector<prometheus::MetricFamily> ServerMetrics(const ServerSnapshot& server);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_OBSERVABILITY_METRICS_H_

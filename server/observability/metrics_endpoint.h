@@ -6,8 +6,7 @@
 // because the page is neither encrypted nor authenticated. It returns errors instead of throwing
 // exceptions. To stop, it wakes the Exposer, which otherwise looks only every 2 s whether it should
 // stop.
-#ifndef BALLPISTON_SERVER_OBSERVABILITY_METRICS_ENDPOINT_H_
-#define BALLPISTON_SERVER_OBSERVABILITY_METRICS_ENDPOINT_H_
+#pragma once
 
 #include <chrono>
 #include <functional>
@@ -54,5 +53,3 @@ class MetricsEndpoint {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_OBSERVABILITY_METRICS_ENDPOINT_H_

@@ -1,6 +1,5 @@
 // The server's counts at one moment.
-#ifndef BALLPISTON_SERVER_OBSERVABILITY_SERVER_SNAPSHOT_H_
-#define BALLPISTON_SERVER_OBSERVABILITY_SERVER_SNAPSHOT_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -61,5 +60,3 @@ struct ServerSnapshot {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_OBSERVABILITY_SERVER_SNAPSHOT_H_

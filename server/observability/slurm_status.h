@@ -1,6 +1,5 @@
 // The work that the server has handed to a Slurm cluster, at one moment.
-#ifndef BALLPISTON_SERVER_OBSERVABILITY_SLURM_STATUS_H_
-#define BALLPISTON_SERVER_OBSERVABILITY_SLURM_STATUS_H_
+#pragma once
 
 #include <string>
 
@@ -19,5 +18,3 @@ struct SlurmStatus {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_OBSERVABILITY_SLURM_STATUS_H_

@@ -1,6 +1,5 @@
 // Characters of UTF-8, one after the other. Pure function.
-#ifndef BALLPISTON_SERVER_OBSERVABILITY_UTF8_H_
-#define BALLPISTON_SERVER_OBSERVABILITY_UTF8_H_
+#pragma once
 
 #include <cstdint>
 
@@ -19,5 +18,3 @@ struct Utf8Character {
 Utf8Character TakeUtf8(absl::string_view& text);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_OBSERVABILITY_UTF8_H_

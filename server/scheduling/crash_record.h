@@ -13,8 +13,7 @@
 //   5. ADeathInAnExaminationCountsForItsRunAlone.
 // A run that dies twice is computed alone (Scheduler), so at its third death nothing else can be
 // the cause. Thread-safe.
-#ifndef BALLPISTON_SERVER_SCHEDULING_CRASH_RECORD_H_
-#define BALLPISTON_SERVER_SCHEDULING_CRASH_RECORD_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -124,5 +123,3 @@ class CrashRecord {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SCHEDULING_CRASH_RECORD_H_

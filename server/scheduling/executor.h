@@ -3,8 +3,7 @@
 // An executor takes leases with Scheduler::Next. Of each lease it either reports all chunks, or
 // returns the lease (Scheduler::Return), or keeps it until the lease's stop is requested. It may
 // report chunks late, twice and in any order.
-#ifndef BALLPISTON_SERVER_SCHEDULING_EXECUTOR_H_
-#define BALLPISTON_SERVER_SCHEDULING_EXECUTOR_H_
+#pragma once
 
 #include <cstdint>
 
@@ -42,5 +41,3 @@ class Executor {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SCHEDULING_EXECUTOR_H_

@@ -24,8 +24,7 @@
 //   7. UnusedTimeGivesNoCredit.
 //   8. AReturningPrincipalKeepsItsLead.
 // Not thread-safe.
-#ifndef BALLPISTON_SERVER_SCHEDULING_FAIR_SHARE_H_
-#define BALLPISTON_SERVER_SCHEDULING_FAIR_SHARE_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -124,5 +123,3 @@ std::optional<int64_t> FairShare::First(HasTask has_task) const {
 }
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SCHEDULING_FAIR_SHARE_H_

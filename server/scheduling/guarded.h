@@ -1,6 +1,5 @@
 // Exceptions of a point's experiment as the status that ends its run.
-#ifndef BALLPISTON_SERVER_SCHEDULING_GUARDED_H_
-#define BALLPISTON_SERVER_SCHEDULING_GUARDED_H_
+#pragma once
 
 #include <cstddef>
 #include <exception>
@@ -26,5 +25,3 @@ absl::Status Guarded(size_t point, Step step) {
 }
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SCHEDULING_GUARDED_H_

@@ -6,8 +6,7 @@
 //
 // A lease may instead ask for points to be opened (Scheduler::Open). A point that needs no samples
 // is finished when it is opened, so many cheap points are one lease.
-#ifndef BALLPISTON_SERVER_SCHEDULING_LEASE_H_
-#define BALLPISTON_SERVER_SCHEDULING_LEASE_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -78,5 +77,3 @@ struct Capacity {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SCHEDULING_LEASE_H_

@@ -1,6 +1,5 @@
 // Measures the sampling rates of this machine, for the core's predictions of cost.
-#ifndef BALLPISTON_SERVER_SCHEDULING_MACHINE_RATES_H_
-#define BALLPISTON_SERVER_SCHEDULING_MACHINE_RATES_H_
+#pragma once
 
 #include "core/model_choice/machine_rates.h"
 
@@ -12,5 +11,3 @@ namespace ballpiston::server {
 MachineRates MeasureSamplingRates();
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SCHEDULING_MACHINE_RATES_H_

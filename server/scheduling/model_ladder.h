@@ -5,8 +5,7 @@
 // The rates of points without samples include all work to serve them. The store keeps pilots. If a
 // pilot cannot be read, it is run again; if it cannot be stored, its result is still used.
 // Thread-safe.
-#ifndef BALLPISTON_SERVER_SCHEDULING_MODEL_LADDER_H_
-#define BALLPISTON_SERVER_SCHEDULING_MODEL_LADDER_H_
+#pragma once
 
 #include <cstddef>
 #include <limits>
@@ -60,5 +59,3 @@ class ModelLadder : public PointOpener {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SCHEDULING_MODEL_LADDER_H_

@@ -1,6 +1,5 @@
 // A point whose chunks are being computed, or a pilot: which chunks are to be leased, and the fold.
-#ifndef BALLPISTON_SERVER_SCHEDULING_OPEN_POINT_H_
-#define BALLPISTON_SERVER_SCHEDULING_OPEN_POINT_H_
+#pragma once
 
 #include <cstdint>
 #include <limits>
@@ -79,5 +78,3 @@ class OpenPoint {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SCHEDULING_OPEN_POINT_H_

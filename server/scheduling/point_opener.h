@@ -1,6 +1,5 @@
 // Opens the points of a run: chooses the model that answers, and makes the point's experiment.
-#ifndef BALLPISTON_SERVER_SCHEDULING_POINT_OPENER_H_
-#define BALLPISTON_SERVER_SCHEDULING_POINT_OPENER_H_
+#pragma once
 
 #include <cstddef>
 #include <functional>
@@ -55,5 +54,3 @@ class FactoryOpener : public PointOpener {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SCHEDULING_POINT_OPENER_H_

@@ -4,8 +4,7 @@
 // executor elsewhere has no work; points of adopted leases come first. So a grid of 100,000 points
 // takes only the memory of its open points. A point that waits for a pilot takes a
 // few bytes. Not thread-safe: the scheduler's lock guards it.
-#ifndef BALLPISTON_SERVER_SCHEDULING_RUN_H_
-#define BALLPISTON_SERVER_SCHEDULING_RUN_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -202,5 +201,3 @@ class Run {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SCHEDULING_RUN_H_

@@ -4,8 +4,7 @@
 // One journal belongs to one run. Threads of executors call it, so an implementation must be
 // thread-safe. Calls about one point come in order. PointFinished comes after the point's last
 // Merged. Ended is the last call and comes once, or never if the scheduler shuts down first.
-#ifndef BALLPISTON_SERVER_SCHEDULING_RUN_JOURNAL_H_
-#define BALLPISTON_SERVER_SCHEDULING_RUN_JOURNAL_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -69,5 +68,3 @@ class RunJournal {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SCHEDULING_RUN_JOURNAL_H_

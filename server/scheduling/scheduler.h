@@ -17,8 +17,7 @@
 //      deaths of the process (crash_record.h): other runs pause, and executors elsewhere too. It
 //      has one lease of one chunk at a time, so it holds no memory when it pauses.
 // Thread-safe.
-#ifndef BALLPISTON_SERVER_SCHEDULING_SCHEDULER_H_
-#define BALLPISTON_SERVER_SCHEDULING_SCHEDULER_H_
+#pragma once
 
 #include <atomic>
 #include <cstddef>
@@ -231,5 +230,3 @@ class Scheduler {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SCHEDULING_SCHEDULER_H_

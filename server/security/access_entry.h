@@ -14,8 +14,7 @@
 //
 // An error names the field and the permitted values, but does not quote the line: if the operator
 // mixed up two fields, any field may contain a token. Pure functions.
-#ifndef BALLPISTON_SERVER_SECURITY_ACCESS_ENTRY_H_
-#define BALLPISTON_SERVER_SECURITY_ACCESS_ENTRY_H_
+#pragma once
 
 #include <optional>
 #include <string>
@@ -58,5 +57,3 @@ absl::Status CheckPrincipalName(absl::string_view name);
 absl::StatusOr<Role> ParseRole(absl::string_view text);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_ACCESS_ENTRY_H_

@@ -2,8 +2,7 @@
 // line).
 //
 // Immutable, and therefore thread-safe. A changed file gives a new list.
-#ifndef BALLPISTON_SERVER_SECURITY_ACCESS_LIST_H_
-#define BALLPISTON_SERVER_SECURITY_ACCESS_LIST_H_
+#pragma once
 
 #include <cstddef>
 #include <string>
@@ -65,5 +64,3 @@ class AccessList {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_ACCESS_LIST_H_

@@ -6,8 +6,7 @@
 // If a call has a token and a certificate, the token decides. Each call is looked up again, so a
 // new list applies from the next call on, also on existing connections. A watch repeats the look-up
 // once per heartbeat. Thread-safe.
-#ifndef BALLPISTON_SERVER_SECURITY_AUTHENTICATOR_H_
-#define BALLPISTON_SERVER_SECURITY_AUTHENTICATOR_H_
+#pragma once
 
 #include <memory>
 #include <optional>
@@ -69,5 +68,3 @@ std::optional<Principal> UnixUserOf(const grpc::AuthContext& context);
 absl::string_view BearerToken(absl::string_view authorization);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_AUTHENTICATOR_H_

@@ -6,8 +6,7 @@
 // another server may have replaced it. No other process can share the port. gRPC gives such a file
 // the mode of the umask, and removes it even if it is another server's (socket_listener.h tells why
 // gRPC and systemd do not listen here).
-#ifndef BALLPISTON_SERVER_SECURITY_BOUND_SOCKETS_H_
-#define BALLPISTON_SERVER_SECURITY_BOUND_SOCKETS_H_
+#pragma once
 
 #include <sys/types.h>
 
@@ -51,5 +50,3 @@ class BoundSockets {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_BOUND_SOCKETS_H_

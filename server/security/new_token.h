@@ -1,6 +1,5 @@
 // Makes a token of 256 random bits. It is printed once; the access file keeps only its hash.
-#ifndef BALLPISTON_SERVER_SECURITY_NEW_TOKEN_H_
-#define BALLPISTON_SERVER_SECURITY_NEW_TOKEN_H_
+#pragma once
 
 #include <optional>
 #include <string>
@@ -30,5 +29,3 @@ absl::StatusOr<std::string> IssueToken(const NamedFile& file, const TokenRequest
                                        absl::Time now);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_NEW_TOKEN_H_

@@ -6,8 +6,7 @@
 //                                have a reason (an error from this check cannot have one)
 //
 // Only for encrypted connections: gRPC has no such processor for others. Thread-safe.
-#ifndef BALLPISTON_SERVER_SECURITY_OTHER_SERVICES_CHECK_H_
-#define BALLPISTON_SERVER_SECURITY_OTHER_SERVICES_CHECK_H_
+#pragma once
 
 #include "absl/strings/string_view.h"
 #include "grpcpp/security/auth_metadata_processor.h"
@@ -32,5 +31,3 @@ class OtherServicesCheck : public grpc::AuthMetadataProcessor {
 bool PassesUnchecked(absl::string_view method);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_OTHER_SERVICES_CHECK_H_

@@ -1,7 +1,6 @@
 // The user of the process at the other end of a Unix socket. The kernel provides it; clients cannot
 // forge it.
-#ifndef BALLPISTON_SERVER_SECURITY_PEER_USER_H_
-#define BALLPISTON_SERVER_SECURITY_PEER_USER_H_
+#pragma once
 
 #include <sys/types.h>
 
@@ -30,5 +29,3 @@ bool StandsForOneUser(std::optional<uid_t> peer);
 std::optional<std::string> UserName(uid_t user);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_PEER_USER_H_

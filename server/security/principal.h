@@ -1,6 +1,5 @@
 // The principal of a call, and its role. Pure functions.
-#ifndef BALLPISTON_SERVER_SECURITY_PRINCIPAL_H_
-#define BALLPISTON_SERVER_SECURITY_PRINCIPAL_H_
+#pragma once
 
 #include <string>
 
@@ -28,5 +27,3 @@ inline const char* RoleName(Role role) {
 inline Principal LocalPrincipal(Role role = Role::kAdmin) { return {"local", role}; }
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_PRINCIPAL_H_

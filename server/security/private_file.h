@@ -1,8 +1,7 @@
 // Reads the files with credentials, keys and certificates.
 //
 // An error names the flag, the file and the problem, and never quotes the file.
-#ifndef BALLPISTON_SERVER_SECURITY_PRIVATE_FILE_H_
-#define BALLPISTON_SERVER_SECURITY_PRIVATE_FILE_H_
+#pragma once
 
 #include <sys/stat.h>
 
@@ -41,5 +40,3 @@ absl::StatusOr<std::string> ReadPrivateFile(const NamedFile& file);
 absl::Status CheckKeptPrivate(const NamedFile& file, const struct stat& status, uid_t user);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_PRIVATE_FILE_H_

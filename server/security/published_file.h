@@ -4,8 +4,7 @@
 //
 // The path is that of a descriptor, /proc/self/fd/N. It is valid only in this process, and as long
 // as the object lives.
-#ifndef BALLPISTON_SERVER_SECURITY_PUBLISHED_FILE_H_
-#define BALLPISTON_SERVER_SECURITY_PUBLISHED_FILE_H_
+#pragma once
 
 #include <time.h>
 
@@ -61,5 +60,3 @@ class PublishedFile {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_PUBLISHED_FILE_H_

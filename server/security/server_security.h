@@ -10,8 +10,7 @@
 //
 // The server refuses to start with any other combination: an address that other machines reach
 // needs TLS and an access file; tokens need TLS.
-#ifndef BALLPISTON_SERVER_SECURITY_SERVER_SECURITY_H_
-#define BALLPISTON_SERVER_SECURITY_SERVER_SECURITY_H_
+#pragma once
 
 #include <memory>
 #include <optional>
@@ -93,5 +92,3 @@ class ServerSecurity {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_SERVER_SECURITY_H_

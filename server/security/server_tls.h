@@ -8,8 +8,7 @@
 // accept a key and a certificate of different pairs. It would treat a broken file as no
 // certificate. It compares only times of change, does not test the files, and reports nothing to
 // the operator.
-#ifndef BALLPISTON_SERVER_SECURITY_SERVER_TLS_H_
-#define BALLPISTON_SERVER_SECURITY_SERVER_TLS_H_
+#pragma once
 
 #include <atomic>
 #include <cstdint>
@@ -58,5 +57,3 @@ class ServerTls {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_SERVER_TLS_H_

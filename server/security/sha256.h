@@ -1,6 +1,5 @@
 // SHA-256, by OpenSSL. Pure function.
-#ifndef BALLPISTON_SERVER_SECURITY_SHA256_H_
-#define BALLPISTON_SERVER_SECURITY_SHA256_H_
+#pragma once
 
 #include <string>
 
@@ -14,5 +13,3 @@ inline constexpr size_t kSha256Bytes = 32;
 std::string Sha256(absl::string_view bytes);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_SHA256_H_

@@ -6,8 +6,7 @@
 //
 // Users also need access to the folders of the path. With every mode the kernel names the user who
 // connects (peer_user.h).
-#ifndef BALLPISTON_SERVER_SECURITY_SOCKET_ACCESS_H_
-#define BALLPISTON_SERVER_SECURITY_SOCKET_ACCESS_H_
+#pragma once
 
 #include <sys/types.h>
 
@@ -34,5 +33,3 @@ absl::StatusOr<gid_t> FindGroup(const std::string& group);
 absl::Status SetSocketAccess(const std::string& path, const SocketAccess& access);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_SOCKET_ACCESS_H_

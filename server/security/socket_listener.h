@@ -11,8 +11,7 @@
 // descriptors, and stops for good at the first EMFILE. Socket activation by systemd would replace
 // only bound_sockets.h, and only if systemd starts the server: a private server would still need
 // that file.
-#ifndef BALLPISTON_SERVER_SECURITY_SOCKET_LISTENER_H_
-#define BALLPISTON_SERVER_SECURITY_SOCKET_LISTENER_H_
+#pragma once
 
 #include <sys/types.h>
 
@@ -87,5 +86,3 @@ class SocketListener {
 uint64_t ReservedDescriptors(uint64_t limit);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_SOCKET_LISTENER_H_

@@ -1,7 +1,6 @@
 // Reads the server's certificate, its key and the authorities for clients' certificates, and tests
 // them before gRPC uses them: gRPC would fail only when the first client connects.
-#ifndef BALLPISTON_SERVER_SECURITY_TLS_FILES_H_
-#define BALLPISTON_SERVER_SECURITY_TLS_FILES_H_
+#pragma once
 
 #include <string>
 
@@ -30,5 +29,3 @@ struct TlsIdentity {
 absl::StatusOr<TlsIdentity> ReadTlsIdentity(const TlsFiles& files);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_TLS_FILES_H_

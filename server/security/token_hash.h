@@ -1,8 +1,7 @@
 // The SHA-256 of a token: the server stores only this, and the token cannot be computed from it. A
 // plain hash is enough because a token is 256 random bits (new_token.h). Nobody can guess it, so a
 // slow, salted hash would not add security. Pure functions.
-#ifndef BALLPISTON_SERVER_SECURITY_TOKEN_HASH_H_
-#define BALLPISTON_SERVER_SECURITY_TOKEN_HASH_H_
+#pragma once
 
 #include <optional>
 #include <string>
@@ -26,5 +25,3 @@ std::optional<TokenHash> ParseTokenHash(absl::string_view hex);
 std::string HexOf(const TokenHash& hash);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_TOKEN_HASH_H_

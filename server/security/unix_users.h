@@ -9,8 +9,7 @@
 //
 // Acceptors can be added only before gRPC starts, so there are always kMostUnixUsers. An unused
 // acceptor costs some 5 KiB and 40 us.
-#ifndef BALLPISTON_SERVER_SECURITY_UNIX_USERS_H_
-#define BALLPISTON_SERVER_SECURITY_UNIX_USERS_H_
+#pragma once
 
 #include <sys/types.h>
 
@@ -55,5 +54,3 @@ class UnixUsers {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_SECURITY_UNIX_USERS_H_

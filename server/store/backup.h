@@ -6,8 +6,7 @@
 // To restore: stop the server, move store.sqlite3, store.sqlite3-wal and store.sqlite3-shm away,
 // copy the backup to store.sqlite3. If an old log is left beside it by mistake, the server refuses
 // the store.
-#ifndef BALLPISTON_SERVER_STORE_BACKUP_H_
-#define BALLPISTON_SERVER_STORE_BACKUP_H_
+#pragma once
 
 #include <string>
 
@@ -27,5 +26,3 @@ namespace ballpiston::server {
 absl::StatusOr<StoreSummary> BackupStore(const std::string& store, const std::string& target);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_STORE_BACKUP_H_

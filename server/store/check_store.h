@@ -3,8 +3,7 @@
 //
 // The check uses a read-only connection in one transaction, also while a server uses the store. The
 // store's log grows during the check. The first part takes about a second per gigabyte.
-#ifndef BALLPISTON_SERVER_STORE_CHECK_STORE_H_
-#define BALLPISTON_SERVER_STORE_CHECK_STORE_H_
+#pragma once
 
 #include <cstdint>
 #include <map>
@@ -42,5 +41,3 @@ absl::StatusOr<StoreSummary> CheckStore(const std::string& path,
 std::string SummaryText(const StoreSummary& summary);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_STORE_CHECK_STORE_H_

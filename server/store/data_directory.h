@@ -19,8 +19,7 @@
 //   - It is locked and empty: the server is about to write its id, retry; or the disk is full.
 // The server empties the file before it releases the lock. It never changes a file `lock` that
 // contains something else, which another program must have written.
-#ifndef BALLPISTON_SERVER_STORE_DATA_DIRECTORY_H_
-#define BALLPISTON_SERVER_STORE_DATA_DIRECTORY_H_
+#pragma once
 
 #include <string>
 
@@ -61,5 +60,3 @@ class DataDirectory {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_STORE_DATA_DIRECTORY_H_

@@ -3,8 +3,7 @@
 // A transaction may take long. But if a single disk call (a read, a write, a flush) takes seconds,
 // the disk hangs. SQLite does not report its disk calls, so this class replaces their functions in
 // its files. Other calls of the same thread are marked (Mark).
-#ifndef BALLPISTON_SERVER_STORE_DISK_CALLS_H_
-#define BALLPISTON_SERVER_STORE_DISK_CALLS_H_
+#pragma once
 
 #include <atomic>
 #include <chrono>
@@ -53,5 +52,3 @@ class DiskCalls {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_STORE_DISK_CALLS_H_

@@ -1,6 +1,5 @@
 // Flushes a folder, that is the names of its files. The flush of a file does not include its name.
-#ifndef BALLPISTON_SERVER_STORE_FOLDER_SYNC_H_
-#define BALLPISTON_SERVER_STORE_FOLDER_SYNC_H_
+#pragma once
 
 #include <string>
 
@@ -16,5 +15,3 @@ absl::Status SyncFolder(const std::string& folder);
 std::string FolderOf(const std::string& path);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_STORE_FOLDER_SYNC_H_

@@ -1,7 +1,6 @@
 // A row of the jobs table. The row owns the job's state; it changes in committed transactions only
 // (job_table.h).
-#ifndef BALLPISTON_SERVER_STORE_JOB_RECORD_H_
-#define BALLPISTON_SERVER_STORE_JOB_RECORD_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -47,5 +46,3 @@ struct JobRecord {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_STORE_JOB_RECORD_H_

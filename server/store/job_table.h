@@ -10,8 +10,7 @@
 // conditions, and no effect in others. The store runs all writes in one order: if a cancellation
 // and the end of a job come at the same time, one of them is first, and the first end is kept.
 // UNAVAILABLE: SQLite failed.
-#ifndef BALLPISTON_SERVER_STORE_JOB_TABLE_H_
-#define BALLPISTON_SERVER_STORE_JOB_TABLE_H_
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -124,5 +123,3 @@ absl::Status ExpireJob(Database& database, int64_t sequence, absl::Time now);
 absl::Status DeleteJob(Database& database, int64_t sequence);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_STORE_JOB_TABLE_H_

@@ -1,7 +1,6 @@
 // The SQL about pilot runs: the measured error of the limit at each place. Each function runs
 // inside the transaction of its caller. UNAVAILABLE: SQLite failed.
-#ifndef BALLPISTON_SERVER_STORE_PILOT_TABLE_H_
-#define BALLPISTON_SERVER_STORE_PILOT_TABLE_H_
+#pragma once
 
 #include <optional>
 #include <string>
@@ -21,5 +20,3 @@ absl::StatusOr<std::optional<Pilot>> FindPilot(Database& database,
                                                const PilotPlace& place);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_STORE_PILOT_TABLE_H_

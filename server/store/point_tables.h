@@ -1,7 +1,6 @@
 // The SQL about computed data: checkpoints and chunks of unfinished points, results of finished
 // ones. Each function runs inside the transaction of its caller. UNAVAILABLE: SQLite failed.
-#ifndef BALLPISTON_SERVER_STORE_POINT_TABLES_H_
-#define BALLPISTON_SERVER_STORE_POINT_TABLES_H_
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -68,5 +67,3 @@ absl::StatusOr<std::vector<PointRow>> ListFinishedPoints(Database& database, int
 absl::StatusOr<int64_t> BytesOfResults(Database& database, int64_t job);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_STORE_POINT_TABLES_H_

@@ -1,7 +1,6 @@
 // The SQL about requests: for each Create, the job that it made or returned. Each function runs
 // inside the transaction of its caller. UNAVAILABLE: SQLite failed.
-#ifndef BALLPISTON_SERVER_STORE_REQUEST_TABLE_H_
-#define BALLPISTON_SERVER_STORE_REQUEST_TABLE_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -31,5 +30,3 @@ absl::StatusOr<std::optional<RequestRecord>> FindRequest(Database& database,
 absl::StatusOr<int64_t> CountRequests(Database& database, int64_t job, int64_t most);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_STORE_REQUEST_TABLE_H_

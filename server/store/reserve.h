@@ -3,8 +3,7 @@
 //
 // It is a file of zeros beside the store. Errors are not reported: without the reserve the store
 // works, but a deletion on a full disk may fail.
-#ifndef BALLPISTON_SERVER_STORE_RESERVE_H_
-#define BALLPISTON_SERVER_STORE_RESERVE_H_
+#pragma once
 
 #include <cstddef>
 #include <string>
@@ -32,5 +31,3 @@ class Reserve {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_STORE_RESERVE_H_

@@ -13,8 +13,7 @@
 //
 // `application_id` marks the file as a ballpiston store; `user_version` is the version of these
 // tables.
-#ifndef BALLPISTON_SERVER_STORE_SCHEMA_H_
-#define BALLPISTON_SERVER_STORE_SCHEMA_H_
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -42,5 +41,3 @@ absl::StatusOr<std::unique_ptr<Database>> OpenStoreToRead(const std::string& pat
                                                           const std::string& vfs = std::string());
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_STORE_SCHEMA_H_

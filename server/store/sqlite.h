@@ -10,8 +10,7 @@
 //   INVALID_ARGUMENT    a constraint, a type, a value too big
 //   INTERNAL            anything else
 // A connection and its statements belong to one thread at a time.
-#ifndef BALLPISTON_SERVER_STORE_SQLITE_H_
-#define BALLPISTON_SERVER_STORE_SQLITE_H_
+#pragma once
 
 #include <cstdint>
 #include <map>
@@ -115,5 +114,3 @@ class Database {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_STORE_SQLITE_H_

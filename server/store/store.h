@@ -28,8 +28,7 @@
 // The space of deleted jobs is freed a little at a time, between other writes (sweeper.h).
 // A write that can never succeed (a violated constraint, too big) is refused alone, and the other
 // writes of its group are committed.
-#ifndef BALLPISTON_SERVER_STORE_STORE_H_
-#define BALLPISTON_SERVER_STORE_STORE_H_
+#pragma once
 
 #include <chrono>
 #include <cstddef>
@@ -251,5 +250,3 @@ class Store {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_STORE_STORE_H_

@@ -2,8 +2,7 @@
 // file by its free pages. Its transactions are short, so that other writes need not wait long. Such
 // a job is in the table `dropped` until its last row is removed, so a restart goes on with the
 // rest.
-#ifndef BALLPISTON_SERVER_STORE_SWEEPER_H_
-#define BALLPISTON_SERVER_STORE_SWEEPER_H_
+#pragma once
 
 #include <cstdint>
 
@@ -32,5 +31,3 @@ class Sweeper {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_STORE_SWEEPER_H_

@@ -3,8 +3,7 @@
 // A read-only connection creates an empty log, but may not remove it. This class lets SQLite remove
 // these files through a connection that can write. SQLite holds its locks meanwhile, so a server
 // that starts at this moment keeps its files.
-#ifndef BALLPISTON_SERVER_STORE_UNUSED_LOG_H_
-#define BALLPISTON_SERVER_STORE_UNUSED_LOG_H_
+#pragma once
 
 #include <string>
 
@@ -25,5 +24,3 @@ class UnusedLog {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_STORE_UNUSED_LOG_H_

@@ -1,7 +1,6 @@
 // The SQL about the usage of principals. Each function runs inside the transaction of its caller.
 // UNAVAILABLE: SQLite failed.
-#ifndef BALLPISTON_SERVER_STORE_USAGE_TABLE_H_
-#define BALLPISTON_SERVER_STORE_USAGE_TABLE_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -42,5 +41,3 @@ absl::StatusOr<int64_t> UsedBytes(Database& database);
 absl::StatusOr<bool> IsSweeping(Database& database);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_STORE_USAGE_TABLE_H_

@@ -5,8 +5,7 @@
 // point it is a random chunk, which takes up to about a minute: then its digest is compared, and
 // nothing is said of the estimates. The probability that one call finds a single altered chunk is
 // therefore one over the number of chunks.
-#ifndef BALLPISTON_SERVER_VERIFICATION_VERIFY_RESULT_H_
-#define BALLPISTON_SERVER_VERIFICATION_VERIFY_RESULT_H_
+#pragma once
 
 #include <string>
 
@@ -31,5 +30,3 @@ absl::StatusOr<std::string> VerifySaved(const v1::SavedResult& saved, absl::BitG
                                         double whole_seconds = kWholePointSeconds);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_VERIFICATION_VERIFY_RESULT_H_

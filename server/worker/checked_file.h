@@ -13,8 +13,7 @@
 // folder. A reader sees a whole file or none. Errors name the file. Properties, each with a test of
 // its name:
 //   1. AChangedByteIsRejected.  2. AShorterFileIsRejected.
-#ifndef BALLPISTON_SERVER_WORKER_CHECKED_FILE_H_
-#define BALLPISTON_SERVER_WORKER_CHECKED_FILE_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -55,5 +54,3 @@ absl::Status WriteCheckedFile(const std::string& path, FileKind kind, absl::stri
 absl::StatusOr<std::string> ReadCheckedFile(const std::string& path, FileKind kind);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_WORKER_CHECKED_FILE_H_

@@ -4,8 +4,7 @@
 // was interrupted and starts again reads its files, continues after the greatest number, and
 // computes the missing chunks. A checksummed file proves its chunks whatever the job scheduler
 // says.
-#ifndef BALLPISTON_SERVER_WORKER_CHUNK_FILE_H_
-#define BALLPISTON_SERVER_WORKER_CHUNK_FILE_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -71,5 +70,3 @@ absl::StatusOr<ChunkFile> ChunkFileFromPayload(absl::string_view payload);
 absl::Status CheckLeaseChunks(const IdentifiedLease& lease, const LeaseChunks& chunks);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_WORKER_CHUNK_FILE_H_

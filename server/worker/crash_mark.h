@@ -1,7 +1,6 @@
 // The mark that a task leaves in its array's folder if the engine kills it: an empty file whose
 // name says which lease was being computed.
-#ifndef BALLPISTON_SERVER_WORKER_CRASH_MARK_H_
-#define BALLPISTON_SERVER_WORKER_CRASH_MARK_H_
+#pragma once
 
 #include <cstddef>
 #include <string>
@@ -18,5 +17,3 @@ void SetCrashMark(const std::string& folder, size_t task, size_t lease);
 void LeaveCrashMark(int signal);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_WORKER_CRASH_MARK_H_

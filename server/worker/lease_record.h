@@ -6,8 +6,7 @@
 //
 // A record that can be parsed may still be damaged, or be written by a foreign program. So reading
 // checks everything that creating the experiment and merging the blocks require.
-#ifndef BALLPISTON_SERVER_WORKER_LEASE_RECORD_H_
-#define BALLPISTON_SERVER_WORKER_LEASE_RECORD_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -51,5 +50,3 @@ storage::Lease LeaseRecord(const Lease& lease, const JobIdentity& job);
 absl::StatusOr<IdentifiedLease> LeaseOfRecord(const storage::Lease& record);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_WORKER_LEASE_RECORD_H_

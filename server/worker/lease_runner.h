@@ -3,8 +3,7 @@
 // Properties, each with a test of its name:
 //   1. ChunksHaveTheBitsOfAWholePoint.  2. ComputesOnlyMissingChunks.
 //   3. StopsAtTheTolerance.
-#ifndef BALLPISTON_SERVER_WORKER_LEASE_RUNNER_H_
-#define BALLPISTON_SERVER_WORKER_LEASE_RUNNER_H_
+#pragma once
 
 #include <cstddef>
 #include <stop_token>
@@ -40,5 +39,3 @@ bool RunLeases(const std::vector<LeaseWork>& work, const std::stop_token& stop,
                ChunkReceiver& receiver);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_WORKER_LEASE_RUNNER_H_

@@ -1,6 +1,5 @@
 // The tasks of a job array: the server writes one file, and each task reads its leases from it.
-#ifndef BALLPISTON_SERVER_WORKER_TASK_FILE_H_
-#define BALLPISTON_SERVER_WORKER_TASK_FILE_H_
+#pragma once
 
 #include <cstddef>
 #include <string>
@@ -32,5 +31,3 @@ absl::StatusOr<ArrayTask> ReadTask(const std::string& path, size_t task);
 absl::StatusOr<std::vector<std::vector<IdentifiedLease>>> ReadTasks(const std::string& path);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_WORKER_TASK_FILE_H_

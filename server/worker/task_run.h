@@ -1,7 +1,6 @@
 // Runs one task of a job array: reads the files that an earlier run of the task left, computes the
 // missing chunks, and writes them in files.
-#ifndef BALLPISTON_SERVER_WORKER_TASK_RUN_H_
-#define BALLPISTON_SERVER_WORKER_TASK_RUN_H_
+#pragma once
 
 #include <functional>
 #include <limits>
@@ -33,5 +32,3 @@ absl::Status RunTask(const ArrayTask& task, const TaskRunOptions& options, std::
                      const Report& report);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_SERVER_WORKER_TASK_RUN_H_

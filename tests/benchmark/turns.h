@@ -4,8 +4,7 @@
 // that keeps the ports busy much, and code that waits for results little: so it changes ratios, and
 // the clock does not show it. A probe before and after each turn does: independent operations, as
 // many at a time as a core can do, take longer then.
-#ifndef BALLPISTON_TESTS_BENCHMARK_TURNS_H_
-#define BALLPISTON_TESTS_BENCHMARK_TURNS_H_
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -133,5 +132,3 @@ inline void ShowDisturbance(const Turns& turns) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_BENCHMARK_TURNS_H_

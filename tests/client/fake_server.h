@@ -1,6 +1,5 @@
 // A server on a Unix socket that sends the answers that a test has prepared.
-#ifndef BALLPISTON_TESTS_CLIENT_FAKE_SERVER_H_
-#define BALLPISTON_TESTS_CLIENT_FAKE_SERVER_H_
+#pragma once
 
 #include <grpcpp/grpcpp.h>
 
@@ -169,5 +168,3 @@ v1::WatchEnsembleJobResponse SnapshotMessage(double samples, const std::string& 
 v1::EnsembleJob JobIn(v1::EnsembleJob::State state);
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_TESTS_CLIENT_FAKE_SERVER_H_

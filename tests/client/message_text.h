@@ -1,6 +1,5 @@
 // Parses messages that tests write in the text format of Protocol Buffers.
-#ifndef BALLPISTON_TESTS_CLIENT_MESSAGE_TEXT_H_
-#define BALLPISTON_TESTS_CLIENT_MESSAGE_TEXT_H_
+#pragma once
 
 #include <google/protobuf/text_format.h>
 
@@ -18,5 +17,3 @@ Message FromText(const std::string& text) {
 }
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_TESTS_CLIENT_MESSAGE_TEXT_H_

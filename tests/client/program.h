@@ -1,6 +1,5 @@
 // The whole program without its main function, in an empty home folder.
-#ifndef BALLPISTON_TESTS_CLIENT_PROGRAM_H_
-#define BALLPISTON_TESTS_CLIENT_PROGRAM_H_
+#pragma once
 
 #include <filesystem>
 #include <map>
@@ -88,5 +87,3 @@ class ProgramTest : public ::testing::Test {
 };
 
 }  // namespace ballpiston::client
-
-#endif  // BALLPISTON_TESTS_CLIENT_PROGRAM_H_

@@ -1,6 +1,5 @@
 // Geometries for tests. Their parameters must be valid.
-#ifndef BALLPISTON_TESTS_CORE_GEOMETRIES_H_
-#define BALLPISTON_TESTS_CORE_GEOMETRIES_H_
+#pragma once
 
 #include <vector>
 
@@ -35,5 +34,3 @@ inline std::vector<PairGeometry> GeometriesOfFlows() {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_CORE_GEOMETRIES_H_

@@ -1,6 +1,5 @@
 // Specifications of one point.
-#ifndef BALLPISTON_TESTS_CORE_ONE_POINT_SPEC_H_
-#define BALLPISTON_TESTS_CORE_ONE_POINT_SPEC_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -48,5 +47,3 @@ inline EnsembleSpec SpecOf(const ExperimentKind* experiment, const PointParamete
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_CORE_ONE_POINT_SPEC_H_

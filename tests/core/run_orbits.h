@@ -1,6 +1,5 @@
 // Runs all orbits of one block.
-#ifndef BALLPISTON_TESTS_CORE_RUN_ORBITS_H_
-#define BALLPISTON_TESTS_CORE_RUN_ORBITS_H_
+#pragma once
 
 #include "core/billiard/orbits.h"
 
@@ -24,5 +23,3 @@ bool RunAll(Engine engine, const PairGeometry& geometry, Orbits& orbits) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_CORE_RUN_ORBITS_H_

@@ -1,6 +1,5 @@
 // Runs a whole point, as the server does.
-#ifndef BALLPISTON_TESTS_CORE_RUN_POINT_H_
-#define BALLPISTON_TESTS_CORE_RUN_POINT_H_
+#pragma once
 
 #include <gtest/gtest.h>
 
@@ -26,5 +25,3 @@ inline const Estimate& Named(std::string_view name, const std::vector<Estimate>&
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_CORE_RUN_POINT_H_

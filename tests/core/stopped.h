@@ -1,6 +1,5 @@
 // A stop token that is already stopped.
-#ifndef BALLPISTON_TESTS_CORE_STOPPED_H_
-#define BALLPISTON_TESTS_CORE_STOPPED_H_
+#pragma once
 
 #include <stop_token>
 
@@ -13,5 +12,3 @@ inline std::stop_token Stopped() {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_CORE_STOPPED_H_

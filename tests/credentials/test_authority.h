@@ -1,6 +1,5 @@
 // An authority of a test's own that signs certificates.
-#ifndef BALLPISTON_TESTS_CREDENTIALS_TEST_AUTHORITY_H_
-#define BALLPISTON_TESTS_CREDENTIALS_TEST_AUTHORITY_H_
+#pragma once
 
 #include <chrono>
 #include <memory>
@@ -42,5 +41,3 @@ class TestAuthority {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_CREDENTIALS_TEST_AUTHORITY_H_

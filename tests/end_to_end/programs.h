@@ -1,6 +1,5 @@
 // Runs the programs with the tests' arguments and reads their output.
-#ifndef BALLPISTON_TESTS_END_TO_END_PROGRAMS_H_
-#define BALLPISTON_TESTS_END_TO_END_PROGRAMS_H_
+#pragma once
 
 #include <google/protobuf/struct.pb.h>
 
@@ -82,5 +81,3 @@ int Length(const google::protobuf::Value& list);
 std::string PointsOf(const std::string& document);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_END_TO_END_PROGRAMS_H_

@@ -9,8 +9,7 @@
 //
 // A check is a function of its input alone, quick (below 50 us for nearly every input), and never
 // computes a block.
-#ifndef BALLPISTON_TESTS_FUZZ_FUZZ_TARGET_H_
-#define BALLPISTON_TESTS_FUZZ_FUZZ_TARGET_H_
+#pragma once
 
 #include <cstddef>
 #include <string>
@@ -45,5 +44,3 @@ bool IsOneIn(size_t n, const std::string& input);
 std::vector<std::string> SeedsOf(const FuzzTarget& target, const std::string& folder);
 
 }  // namespace ballpiston::fuzz
-
-#endif  // BALLPISTON_TESTS_FUZZ_FUZZ_TARGET_H_

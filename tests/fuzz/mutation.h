@@ -1,6 +1,5 @@
 // Random changes of inputs: of bytes, and of messages field by field, which get past the parser.
-#ifndef BALLPISTON_TESTS_FUZZ_MUTATION_H_
-#define BALLPISTON_TESTS_FUZZ_MUTATION_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -35,5 +34,3 @@ void MutateMessage(Dice& dice, google::protobuf::Message& message);
 bool MutateFields(Dice& dice, const google::protobuf::Message& kind, std::string& bytes);
 
 }  // namespace ballpiston::fuzz
-
-#endif  // BALLPISTON_TESTS_FUZZ_MUTATION_H_

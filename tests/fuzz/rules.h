@@ -1,7 +1,6 @@
 // Properties that several targets share. All functions throw as Require does. Slow checks run for
 // one input in sixteen.
-#ifndef BALLPISTON_TESTS_FUZZ_RULES_H_
-#define BALLPISTON_TESTS_FUZZ_RULES_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -32,5 +31,3 @@ void RequirePage(int32_t page_size, const std::string& page_token, const std::st
                  int64_t first, const std::string& input);
 
 }  // namespace ballpiston::fuzz
-
-#endif  // BALLPISTON_TESTS_FUZZ_RULES_H_

@@ -1,7 +1,6 @@
 // The table of the paper's equations in core/closed_form/README.md: which file and function
 // computes each.
-#ifndef BALLPISTON_TESTS_LAYOUT_EQUATION_TABLE_H_
-#define BALLPISTON_TESTS_LAYOUT_EQUATION_TABLE_H_
+#pragma once
 
 #include <functional>
 #include <string>
@@ -36,5 +35,3 @@ std::vector<std::string> WrongRows(
     const std::function<std::string(const std::string& path)>& contents);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_LAYOUT_EQUATION_TABLE_H_

@@ -12,8 +12,7 @@
 //
 // A new folder needs a row in the table of include_rules.cc: a file of a folder without a row is a
 // violation.
-#ifndef BALLPISTON_TESTS_LAYOUT_INCLUDE_RULES_H_
-#define BALLPISTON_TESTS_LAYOUT_INCLUDE_RULES_H_
+#pragma once
 
 #include <string>
 #include <string_view>
@@ -29,5 +28,3 @@ std::vector<std::string> IncludesOf(std::string_view text);
 std::vector<std::string> WrongIncludes(std::string_view path, std::string_view text);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_LAYOUT_INCLUDE_RULES_H_

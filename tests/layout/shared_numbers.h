@@ -1,7 +1,6 @@
 // Numbers that several pages state (docs/numbers.md). A page marks such a number with its name:
 // 21<!--gain-rare-avx2-->.
-#ifndef BALLPISTON_TESTS_LAYOUT_SHARED_NUMBERS_H_
-#define BALLPISTON_TESTS_LAYOUT_SHARED_NUMBERS_H_
+#pragma once
 
 #include <map>
 #include <string>
@@ -24,5 +23,3 @@ std::vector<MarkedNumber> MarkedNumbersIn(const std::string& page);
 bool EndsWithNumber(const std::string& before, const std::string& number);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_LAYOUT_SHARED_NUMBERS_H_

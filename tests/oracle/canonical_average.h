@@ -1,6 +1,5 @@
 // Averages over the canonical distribution of a pair's energies, by quadrature.
-#ifndef BALLPISTON_TESTS_ORACLE_CANONICAL_AVERAGE_H_
-#define BALLPISTON_TESTS_ORACLE_CANONICAL_AVERAGE_H_
+#pragma once
 
 #include <cmath>
 
@@ -36,5 +35,3 @@ double CanonicalAverage(double beta, Function g) {
 inline constexpr double kCanonicalAverageError = 1e-12;
 
 }  // namespace ballpiston::oracle
-
-#endif  // BALLPISTON_TESTS_ORACLE_CANONICAL_AVERAGE_H_

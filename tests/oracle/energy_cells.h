@@ -10,8 +10,7 @@
 //
 // Rows sum to the rate at which a cell is left, without use of its closed form. Errors fall as
 // 1/n^2, and after one extrapolation as 1/n^3.
-#ifndef BALLPISTON_TESTS_ORACLE_ENERGY_CELLS_H_
-#define BALLPISTON_TESTS_ORACLE_ENERGY_CELLS_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
@@ -91,5 +90,3 @@ auto FromEnergyCells(Eigen::Index n, Function value) {
 }
 
 }  // namespace ballpiston::oracle
-
-#endif  // BALLPISTON_TESTS_ORACLE_ENERGY_CELLS_H_

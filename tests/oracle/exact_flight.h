@@ -1,7 +1,6 @@
 // One flight of the ball alone from disc to disc, in numbers of any precision, by the definition:
 // the nearest of all discs that the ray hits. Faster flights are compared with it.
-#ifndef BALLPISTON_TESTS_ORACLE_EXACT_FLIGHT_H_
-#define BALLPISTON_TESTS_ORACLE_EXACT_FLIGHT_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <array>
@@ -58,5 +57,3 @@ struct ExactFlight {
 };
 
 }  // namespace ballpiston::oracle
-
-#endif  // BALLPISTON_TESTS_ORACLE_EXACT_FLIGHT_H_

@@ -9,8 +9,7 @@
 // cells. So only the two means matter, both the fraction z of the cell. A piston that takes 2 z of
 // the cell on one side or on the other, each with probability 1/2, has these means: a lattice of
 // pistons with two states, summed over all of them by transfer matrices of columns.
-#ifndef BALLPISTON_TESTS_ORACLE_GAS_CONFIGURATIONS_H_
-#define BALLPISTON_TESTS_ORACLE_GAS_CONFIGURATIONS_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <array>
@@ -157,5 +156,3 @@ inline double TorusByStates(int columns, int rows, double z) {
 }
 
 }  // namespace ballpiston::oracle
-
-#endif  // BALLPISTON_TESTS_ORACLE_GAS_CONFIGURATIONS_H_

@@ -1,7 +1,6 @@
 // Gauss-Legendre quadrature with 32 nodes in quadruple precision: exact to rounding for integrands
 // that are analytic well beyond the interval. Integrands with a kink are to be cut there.
-#ifndef BALLPISTON_TESTS_ORACLE_GAUSS_LEGENDRE_H_
-#define BALLPISTON_TESTS_ORACLE_GAUSS_LEGENDRE_H_
+#pragma once
 
 #include <array>
 #include <cmath>
@@ -63,5 +62,3 @@ Quad IntegrateToRoot(Integrand integrand, Quad a, Quad b) {
 }
 
 }  // namespace ballpiston::oracle
-
-#endif  // BALLPISTON_TESTS_ORACLE_GAUSS_LEGENDRE_H_

@@ -6,8 +6,7 @@
 // 32 Gauss nodes are exact to rounding, cusp (rho -> 1/2) included. The plain differences cost
 // digits in proportion to 1/delta: about twenty of the 34 remain at delta = 1e-13, fifteen at
 // 1e-19.
-#ifndef BALLPISTON_TESTS_ORACLE_MEASURES_BY_QUADRATURE_H_
-#define BALLPISTON_TESTS_ORACLE_MEASURES_BY_QUADRATURE_H_
+#pragma once
 
 #include "tests/oracle/gauss_legendre.h"
 #include "tools/flows/printed_formulas.h"
@@ -47,5 +46,3 @@ inline PrintedMeasures<Quad> MeasuresByQuadrature(double rho_in, double delta_in
 }
 
 }  // namespace ballpiston::oracle
-
-#endif  // BALLPISTON_TESTS_ORACLE_MEASURES_BY_QUADRATURE_H_

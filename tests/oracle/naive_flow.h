@@ -1,8 +1,7 @@
 // An independent flow for the comparison of one event. It uses long double, tests every disc, and
 // reflects the velocity as v - 2 (v.n) n. It is slow and its energy drifts, but one event from a
 // given state is accurate.
-#ifndef BALLPISTON_TESTS_ORACLE_NAIVE_FLOW_H_
-#define BALLPISTON_TESTS_ORACLE_NAIVE_FLOW_H_
+#pragma once
 
 #include <cmath>
 #include <limits>
@@ -68,5 +67,3 @@ inline NaiveEvent NextEvent(const PairGeometry& geometry, const NaiveState& s) {
 }
 
 }  // namespace ballpiston::oracle
-
-#endif  // BALLPISTON_TESTS_ORACLE_NAIVE_FLOW_H_

@@ -1,7 +1,6 @@
 // Tests whether a sample is from a known law: two classical tests, whose results are small for
 // samples of this law. Samples must be independent.
-#ifndef BALLPISTON_TESTS_ORACLE_ONE_SAMPLE_H_
-#define BALLPISTON_TESTS_ORACLE_ONE_SAMPLE_H_
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -43,5 +42,3 @@ inline double ChiSquareScoreOf(std::span<const uint64_t> counts,
 }
 
 }  // namespace ballpiston::oracle
-
-#endif  // BALLPISTON_TESTS_ORACLE_ONE_SAMPLE_H_

@@ -1,7 +1,6 @@
 // A csv table of reference values with more digits than a double, and the errors of computed
 // values.
-#ifndef BALLPISTON_TESTS_ORACLE_REFERENCE_TABLE_H_
-#define BALLPISTON_TESTS_ORACLE_REFERENCE_TABLE_H_
+#pragma once
 
 #include <map>
 #include <string>
@@ -55,5 +54,3 @@ class ErrorTable {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_ORACLE_REFERENCE_TABLE_H_

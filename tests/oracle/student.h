@@ -1,6 +1,5 @@
 // Student's t.
-#ifndef BALLPISTON_TESTS_ORACLE_STUDENT_H_
-#define BALLPISTON_TESTS_ORACLE_STUDENT_H_
+#pragma once
 
 #include <cmath>
 #include <numbers>
@@ -34,5 +33,3 @@ inline double StudentQuantile(double freedom, double probability) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_ORACLE_STUDENT_H_

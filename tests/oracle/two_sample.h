@@ -1,7 +1,6 @@
 // Tests whether two samples are from the same law: two classical tests, whose results are small for
 // samples of the same law. Samples must be independent, also of each other.
-#ifndef BALLPISTON_TESTS_ORACLE_TWO_SAMPLE_H_
-#define BALLPISTON_TESTS_ORACLE_TWO_SAMPLE_H_
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -58,5 +57,3 @@ inline double KolmogorovSmirnov(std::vector<double> first, std::vector<double> s
 }
 
 }  // namespace ballpiston::oracle
-
-#endif  // BALLPISTON_TESTS_ORACLE_TWO_SAMPLE_H_

@@ -10,8 +10,7 @@
 // samples. False alarms: a normal deviate exceeds 5 sigma with probability 5.7e-7, twice with
 // 3e-13. Estimates from 1,000 samples are skewed; with a probability as large as 1e-4 of such a
 // deviation, 20,000 questions with 20 comparisons each give a false alarm in 250 runs.
-#ifndef BALLPISTON_TESTS_QUESTIONS_AGREEMENT_CHECK_H_
-#define BALLPISTON_TESTS_QUESTIONS_AGREEMENT_CHECK_H_
+#pragma once
 
 #include <vector>
 
@@ -31,5 +30,3 @@ Findings CheckAgreement(const EnsembleSpec& spec, const Machine& machine, double
 Findings Disagreements(const std::vector<v1::PointResult>& answers);
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_AGREEMENT_CHECK_H_

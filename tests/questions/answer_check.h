@@ -5,8 +5,7 @@
 //   measured     something was measured, or a remark says why not
 //   health       no orbit left its cell, and the energy is conserved
 //   law          the expected probabilities of a law sum to 1
-#ifndef BALLPISTON_TESTS_QUESTIONS_ANSWER_CHECK_H_
-#define BALLPISTON_TESTS_QUESTIONS_ANSWER_CHECK_H_
+#pragma once
 
 #include "ballpiston/v1/result.pb.h"
 #include "ballpiston/v1/spec.pb.h"
@@ -25,5 +24,3 @@ inline constexpr double kEnoughSamples = 1000;
 Findings CheckAnswer(const v1::EnsembleSpec& spec, const v1::PointResult& result);
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_ANSWER_CHECK_H_

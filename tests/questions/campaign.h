@@ -1,6 +1,5 @@
 // Asks many questions, shrinks those that break a check, and prints what became of them.
-#ifndef BALLPISTON_TESTS_QUESTIONS_CAMPAIGN_H_
-#define BALLPISTON_TESTS_QUESTIONS_CAMPAIGN_H_
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -32,5 +31,3 @@ using Asker = std::function<Report(const Question&)>;
 int AskAll(const std::string& name, const Size& size, const Asker& ask);
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_CAMPAIGN_H_

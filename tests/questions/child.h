@@ -1,6 +1,5 @@
 // Asks in a process of its own, which may die or not end.
-#ifndef BALLPISTON_TESTS_QUESTIONS_CHILD_H_
-#define BALLPISTON_TESTS_QUESTIONS_CHILD_H_
+#pragma once
 
 #include <functional>
 
@@ -23,5 +22,3 @@ inline constexpr int kMostProcessorSeconds = 30;
 Report InChild(const std::function<Report()>& ask);
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_CHILD_H_

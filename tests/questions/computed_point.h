@@ -1,6 +1,5 @@
 // Computes the answer at a point in this process, as the server does.
-#ifndef BALLPISTON_TESTS_QUESTIONS_COMPUTED_POINT_H_
-#define BALLPISTON_TESTS_QUESTIONS_COMPUTED_POINT_H_
+#pragma once
 
 #include <cstddef>
 #include <optional>
@@ -35,5 +34,3 @@ double SamplesIn(double seconds, const EnsembleSpec& spec, size_t index, Model m
 EnsembleSpec WithSamples(EnsembleSpec spec, double samples);
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_COMPUTED_POINT_H_

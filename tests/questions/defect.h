@@ -1,6 +1,5 @@
 // A permitted question becomes one that the service has to refuse.
-#ifndef BALLPISTON_TESTS_QUESTIONS_DEFECT_H_
-#define BALLPISTON_TESTS_QUESTIONS_DEFECT_H_
+#pragma once
 
 #include "core/ensemble/experiment_kind.h"
 #include "tests/questions/dice.h"
@@ -12,5 +11,3 @@ namespace ballpiston::questions {
 void AddDefect(Dice& dice, const ExperimentKind& experiment, double bound, Question& question);
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_DEFECT_H_

@@ -1,6 +1,5 @@
 // Random choices, the same on every machine.
-#ifndef BALLPISTON_TESTS_QUESTIONS_DICE_H_
-#define BALLPISTON_TESTS_QUESTIONS_DICE_H_
+#pragma once
 
 #include <cmath>
 #include <cstddef>
@@ -33,5 +32,3 @@ class Dice {
 };
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_DICE_H_

@@ -3,8 +3,7 @@
 // Half of the parameters of a question are extreme (values.h). Most targets are such that the
 // answer costs less than `most_seconds` of a processor of the day; the others are anything that is
 // permitted. One question in seven has one defect, for which the service has to refuse it.
-#ifndef BALLPISTON_TESTS_QUESTIONS_DRAW_H_
-#define BALLPISTON_TESTS_QUESTIONS_DRAW_H_
+#pragma once
 
 #include <cstdint>
 
@@ -15,5 +14,3 @@ namespace ballpiston::questions {
 Question Draw(uint64_t seed, uint64_t number, double most_seconds);
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_DRAW_H_

@@ -1,6 +1,5 @@
 // Asks the engine in this process.
-#ifndef BALLPISTON_TESTS_QUESTIONS_ENGINE_H_
-#define BALLPISTON_TESTS_QUESTIONS_ENGINE_H_
+#pragma once
 
 #include "tests/questions/question.h"
 #include "tests/questions/report.h"
@@ -12,5 +11,3 @@ namespace ballpiston::questions {
 Report AskEngine(const Question& question, double most_seconds);
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_ENGINE_H_

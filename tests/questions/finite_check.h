@@ -1,6 +1,5 @@
 // No number is NaN or infinite.
-#ifndef BALLPISTON_TESTS_QUESTIONS_FINITE_CHECK_H_
-#define BALLPISTON_TESTS_QUESTIONS_FINITE_CHECK_H_
+#pragma once
 
 #include <google/protobuf/message.h>
 
@@ -17,5 +16,3 @@ Findings CheckFinite(const google::protobuf::Message& message);
 Findings CheckFinite(const PointSummary& summary);
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_FINITE_CHECK_H_

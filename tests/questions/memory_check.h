@@ -1,6 +1,5 @@
 // The memory that a computation takes is at most what was planned (core/ensemble/point_memory.h).
-#ifndef BALLPISTON_TESTS_QUESTIONS_MEMORY_CHECK_H_
-#define BALLPISTON_TESTS_QUESTIONS_MEMORY_CHECK_H_
+#pragma once
 
 #include "tests/questions/report.h"
 
@@ -26,5 +25,3 @@ class PeakMemory {
 Findings CheckMemory(double planned, double measured);
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_MEMORY_CHECK_H_

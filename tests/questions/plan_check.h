@@ -1,6 +1,5 @@
 // A plan has samples and an end.
-#ifndef BALLPISTON_TESTS_QUESTIONS_PLAN_CHECK_H_
-#define BALLPISTON_TESTS_QUESTIONS_PLAN_CHECK_H_
+#pragma once
 
 #include "ballpiston/v1/ensemble.pb.h"
 #include "tests/questions/report.h"
@@ -20,5 +19,3 @@ Findings CheckPlan(const v1::PointPlan& plan);
 const v1::ModelPlan* Chosen(const v1::PointPlan& plan);
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_PLAN_CHECK_H_

@@ -1,6 +1,5 @@
 // A question to the service, and the command line that asks it.
-#ifndef BALLPISTON_TESTS_QUESTIONS_QUESTION_H_
-#define BALLPISTON_TESTS_QUESTIONS_QUESTION_H_
+#pragma once
 
 #include <string>
 
@@ -23,5 +22,3 @@ double BudgetSeconds(const v1::Target& target);
 std::string Command(const v1::EnsembleSpec& spec);
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_QUESTION_H_

@@ -1,6 +1,5 @@
 // Asks ballpistond, a process on a Unix socket in a temporary folder.
-#ifndef BALLPISTON_TESTS_QUESTIONS_REAL_SERVER_H_
-#define BALLPISTON_TESTS_QUESTIONS_REAL_SERVER_H_
+#pragma once
 
 #include <memory>
 
@@ -28,5 +27,3 @@ class RealServer {
 };
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_REAL_SERVER_H_

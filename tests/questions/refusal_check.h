@@ -1,6 +1,5 @@
 // A refusal names the field, the value as it was given, and the permitted values.
-#ifndef BALLPISTON_TESTS_QUESTIONS_REFUSAL_CHECK_H_
-#define BALLPISTON_TESTS_QUESTIONS_REFUSAL_CHECK_H_
+#pragma once
 
 #include <vector>
 
@@ -16,5 +15,3 @@ inline constexpr char kRefusalCheck[] = "refusal";
 Findings CheckRefusal(const v1::EnsembleSpec& spec, const std::vector<FieldViolation>& violations);
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_REFUSAL_CHECK_H_

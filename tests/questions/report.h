@@ -1,6 +1,5 @@
 // What became of a question.
-#ifndef BALLPISTON_TESTS_QUESTIONS_REPORT_H_
-#define BALLPISTON_TESTS_QUESTIONS_REPORT_H_
+#pragma once
 
 #include <map>
 #include <string>
@@ -36,5 +35,3 @@ std::string Text(const Report& report);
 Report ReportFromText(const std::string& text);
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_REPORT_H_

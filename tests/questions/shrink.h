@@ -1,6 +1,5 @@
 // Makes a question simpler while the same check still fails.
-#ifndef BALLPISTON_TESTS_QUESTIONS_SHRINK_H_
-#define BALLPISTON_TESTS_QUESTIONS_SHRINK_H_
+#pragma once
 
 #include <functional>
 
@@ -15,5 +14,3 @@ using Fails = std::function<bool(const v1::EnsembleSpec&)>;
 v1::EnsembleSpec Shrink(v1::EnsembleSpec spec, const Fails& fails, int most);
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_SHRINK_H_

@@ -2,8 +2,7 @@
 //
 // `extreme` values lie log-uniformly close to an end of the domain, or are the end itself or its
 // neighbour among the doubles. The others are those of an ordinary question.
-#ifndef BALLPISTON_TESTS_QUESTIONS_VALUES_H_
-#define BALLPISTON_TESTS_QUESTIONS_VALUES_H_
+#pragma once
 
 #include <string>
 
@@ -27,5 +26,3 @@ std::string CellsOutside(Dice& dice);
 double TemperatureOutside(Dice& dice);
 
 }  // namespace ballpiston::questions
-
-#endif  // BALLPISTON_TESTS_QUESTIONS_VALUES_H_

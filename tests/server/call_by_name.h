@@ -1,6 +1,5 @@
 // A call of any method, unary or streaming, by its name.
-#ifndef BALLPISTON_TESTS_SERVER_CALL_BY_NAME_H_
-#define BALLPISTON_TESTS_SERVER_CALL_BY_NAME_H_
+#pragma once
 
 #include <memory>
 #include <string>
@@ -35,5 +34,3 @@ grpc::Status CallByName(const std::shared_ptr<grpc::Channel>& channel, const std
 std::vector<std::string> Bearer(const std::string& token);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_CALL_BY_NAME_H_

@@ -1,8 +1,7 @@
 // The details of an error beside its code and message.
 //
 //   EXPECT_THAT(server.Delete(name), IsError(grpc::StatusCode::NOT_FOUND, "JOB_NOT_FOUND"));
-#ifndef BALLPISTON_TESTS_SERVER_ERROR_DETAILS_H_
-#define BALLPISTON_TESTS_SERVER_ERROR_DETAILS_H_
+#pragma once
 
 #include <map>
 #include <string>
@@ -41,5 +40,3 @@ MATCHER_P2(IsError, code, reason, "") {
 }
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_ERROR_DETAILS_H_

@@ -1,6 +1,5 @@
 // Experiments that a test can stop, make fail and count.
-#ifndef BALLPISTON_TESTS_SERVER_FAKE_EXPERIMENTS_H_
-#define BALLPISTON_TESTS_SERVER_FAKE_EXPERIMENTS_H_
+#pragma once
 
 #include <condition_variable>
 #include <cstddef>
@@ -62,5 +61,3 @@ FoldState FakeState(const EnsembleSpec& spec, size_t point, uint64_t blocks);
 BlockResult FakeMerged(const EnsembleSpec& spec, size_t point, uint64_t blocks);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_FAKE_EXPERIMENTS_H_

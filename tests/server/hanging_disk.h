@@ -1,6 +1,5 @@
 // A file system for SQLite that stops answering when the test says so: writes to logs wait.
-#ifndef BALLPISTON_TESTS_SERVER_HANGING_DISK_H_
-#define BALLPISTON_TESTS_SERVER_HANGING_DISK_H_
+#pragma once
 
 #include <condition_variable>
 #include <memory>
@@ -36,5 +35,3 @@ class HangingDisk {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_HANGING_DISK_H_

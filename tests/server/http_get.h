@@ -1,6 +1,5 @@
 // One request to an HTTP server on the loopback, byte by byte as the test wants it.
-#ifndef BALLPISTON_TESTS_SERVER_HTTP_GET_H_
-#define BALLPISTON_TESTS_SERVER_HTTP_GET_H_
+#pragma once
 
 #include <string>
 
@@ -27,5 +26,3 @@ class Connection {
 std::string HttpGet(const std::string& address, const std::string& path);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_HTTP_GET_H_

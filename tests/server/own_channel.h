@@ -1,7 +1,6 @@
 // A channel with a connection of its own. Other channels to the same address share a connection,
 // also a connection to a server that has ended.
-#ifndef BALLPISTON_TESTS_SERVER_OWN_CHANNEL_H_
-#define BALLPISTON_TESTS_SERVER_OWN_CHANNEL_H_
+#pragma once
 
 #include <chrono>
 #include <memory>
@@ -31,5 +30,3 @@ inline std::shared_ptr<grpc::Channel> OwnChannel(
 }
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_OWN_CHANNEL_H_

@@ -1,6 +1,5 @@
 // Specifications and requests of the tests.
-#ifndef BALLPISTON_TESTS_SERVER_REQUESTS_H_
-#define BALLPISTON_TESTS_SERVER_REQUESTS_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -29,5 +28,3 @@ v1::CreateEnsembleJobRequest FreshRequest(const v1::EnsembleSpec& spec,
                                           const std::string& request_id = "");
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_REQUESTS_H_

@@ -5,8 +5,7 @@
 //   EXPECT_EQ(server.AwaitEnd(name).state(), v1::EnsembleJob::SUCCEEDED);
 //
 //   RunningServer small({.workers = 1, .limits = {.max_active_jobs = 1}});
-#ifndef BALLPISTON_TESTS_SERVER_RUNNING_SERVER_H_
-#define BALLPISTON_TESTS_SERVER_RUNNING_SERVER_H_
+#pragma once
 
 #include <chrono>
 #include <memory>
@@ -116,5 +115,3 @@ class RunningServer : public TestClient {
 absl::Status StartError(const TestServerOptions& options);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_RUNNING_SERVER_H_

@@ -4,8 +4,7 @@
 //   LaboratoryFiles files;
 //   RunningServer server(Secure(files));
 //   TestClient alice(server.NewChannel(files.Credentials(kAlice)));
-#ifndef BALLPISTON_TESTS_SERVER_SECURE_SERVER_H_
-#define BALLPISTON_TESTS_SERVER_SECURE_SERVER_H_
+#pragma once
 
 #include <openssl/bio.h>
 #include <openssl/ssl.h>
@@ -82,5 +81,3 @@ class SilentTlsConnection {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_SECURE_SERVER_H_

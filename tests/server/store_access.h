@@ -1,6 +1,5 @@
 // Reads and changes a store without a server.
-#ifndef BALLPISTON_TESTS_SERVER_STORE_ACCESS_H_
-#define BALLPISTON_TESTS_SERVER_STORE_ACCESS_H_
+#pragma once
 
 #include <string>
 #include <type_traits>
@@ -31,5 +30,3 @@ inline void ChangeStore(const std::string& path, const std::string& sql) {
 }
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_STORE_ACCESS_H_

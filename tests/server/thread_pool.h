@@ -1,6 +1,5 @@
 // A scheduler with threads that compute, as a server has them.
-#ifndef BALLPISTON_TESTS_SERVER_THREAD_POOL_H_
-#define BALLPISTON_TESTS_SERVER_THREAD_POOL_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -42,5 +41,3 @@ class ThreadPool {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_THREAD_POOL_H_

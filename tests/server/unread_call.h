@@ -1,6 +1,5 @@
 // A call of any method whose answers nobody reads, until it ends.
-#ifndef BALLPISTON_TESTS_SERVER_UNREAD_CALL_H_
-#define BALLPISTON_TESTS_SERVER_UNREAD_CALL_H_
+#pragma once
 
 #include <memory>
 #include <string>
@@ -37,5 +36,3 @@ class UnreadCall {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_UNREAD_CALL_H_

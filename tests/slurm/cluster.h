@@ -1,7 +1,6 @@
 // A Slurm cluster of two nodes on this machine, by scripts/test-cluster.sh. The script says what
 // its verbs do.
-#ifndef BALLPISTON_TESTS_SLURM_CLUSTER_H_
-#define BALLPISTON_TESTS_SLURM_CLUSTER_H_
+#pragma once
 
 #include <sys/types.h>
 
@@ -47,5 +46,3 @@ class Cluster {
 std::vector<pid_t> ProcessesWith(const std::string& text);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_SLURM_CLUSTER_H_

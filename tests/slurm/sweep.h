@@ -1,6 +1,5 @@
 // A real server with a Slurm cluster, and one job that is large enough for the cluster.
-#ifndef BALLPISTON_TESTS_SLURM_SWEEP_H_
-#define BALLPISTON_TESTS_SLURM_SWEEP_H_
+#pragma once
 
 #include <chrono>
 #include <memory>
@@ -69,5 +68,3 @@ class Sweep {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_SLURM_SWEEP_H_

@@ -1,6 +1,5 @@
 // Many replicas of a gas, measured in the same window of time.
-#ifndef BALLPISTON_TESTS_STATISTICAL_GAS_SAMPLES_H_
-#define BALLPISTON_TESTS_STATISTICAL_GAS_SAMPLES_H_
+#pragma once
 
 #include <gtest/gtest.h>
 
@@ -93,5 +92,3 @@ inline double StandardErrorsOff(const Moments& moments, double expected, double 
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_STATISTICAL_GAS_SAMPLES_H_

@@ -2,8 +2,7 @@
 //
 // No result of a test depends on the machine's pace: a test waits until a condition is true. The
 // limit of a wait is only for a program that hangs, and the failure of the test then says so.
-#ifndef BALLPISTON_TESTS_SUPPORT_AWAIT_H_
-#define BALLPISTON_TESTS_SUPPORT_AWAIT_H_
+#pragma once
 
 #include <chrono>
 #include <iostream>
@@ -48,5 +47,3 @@ void AwaitNotified(Changed& changed, Lock& lock, Condition condition,
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_SUPPORT_AWAIT_H_

@@ -1,6 +1,5 @@
 // Contents and modes of files.
-#ifndef BALLPISTON_TESTS_SUPPORT_FILES_H_
-#define BALLPISTON_TESTS_SUPPORT_FILES_H_
+#pragma once
 
 #include <sys/stat.h>
 
@@ -46,5 +45,3 @@ inline std::vector<std::string> NamesIn(const std::string& folder) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_SUPPORT_FILES_H_

@@ -1,6 +1,5 @@
 // Paths of the project's files and programs.
-#ifndef BALLPISTON_TESTS_SUPPORT_PATHS_H_
-#define BALLPISTON_TESTS_SUPPORT_PATHS_H_
+#pragma once
 
 #include <string>
 
@@ -17,5 +16,3 @@ std::string ServerProgram();  // ballpistond
 std::string ClientProgram();  // ballpiston
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_SUPPORT_PATHS_H_

@@ -5,8 +5,7 @@
 //
 // SIGINT, SIGHUP and SIGTERM have their default effect on the program, also where the tests ignore
 // one of them because they run in the background of a shell or under nohup.
-#ifndef BALLPISTON_TESTS_SUPPORT_PROCESS_H_
-#define BALLPISTON_TESTS_SUPPORT_PROCESS_H_
+#pragma once
 
 #include <sys/types.h>
 
@@ -109,5 +108,3 @@ std::string Process::WaitForErrLine(Wanted wanted) {
 ProcessResult RunProgram(const ProcessOptions& options);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_SUPPORT_PROCESS_H_

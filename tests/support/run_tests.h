@@ -1,6 +1,5 @@
 // What the main function of every test program does.
-#ifndef BALLPISTON_TESTS_SUPPORT_RUN_TESTS_H_
-#define BALLPISTON_TESTS_SUPPORT_RUN_TESTS_H_
+#pragma once
 
 namespace ballpiston {
 
@@ -10,5 +9,3 @@ namespace ballpiston {
 int RunTests(int argc, char** argv);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_SUPPORT_RUN_TESTS_H_

@@ -1,6 +1,5 @@
 // An environment variable with another value, or without one, for the time of a scope.
-#ifndef BALLPISTON_TESTS_SUPPORT_SCOPED_VARIABLE_H_
-#define BALLPISTON_TESTS_SUPPORT_SCOPED_VARIABLE_H_
+#pragma once
 
 #include <cstdlib>
 #include <optional>
@@ -34,5 +33,3 @@ class ScopedVariable {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_SUPPORT_SCOPED_VARIABLE_H_

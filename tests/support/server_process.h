@@ -1,6 +1,5 @@
 // The real server, ballpistond, as a process: started, killed and started again on one data folder.
-#ifndef BALLPISTON_TESTS_SUPPORT_SERVER_PROCESS_H_
-#define BALLPISTON_TESTS_SUPPORT_SERVER_PROCESS_H_
+#pragma once
 
 #include <chrono>
 #include <map>
@@ -77,5 +76,3 @@ class ServerProcess {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_SUPPORT_SERVER_PROCESS_H_

@@ -1,7 +1,6 @@
 // Programs in the place of sbatch, squeue and scancel, for tests without Slurm. Each task of an
 // array becomes a process on this machine at once, and runs on when the server is killed.
-#ifndef BALLPISTON_TESTS_SUPPORT_STAND_IN_SLURM_H_
-#define BALLPISTON_TESTS_SUPPORT_STAND_IN_SLURM_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -28,5 +27,3 @@ class StandInSlurm {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_SUPPORT_STAND_IN_SLURM_H_

@@ -5,8 +5,7 @@
 //   EXPECT_THAT(PairGeometry::Create(rho, -1),
 //               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("delta")));
 //   EXPECT_THAT(ParseNumber("1e3"), IsOkAndHolds(1000));
-#ifndef BALLPISTON_TESTS_SUPPORT_STATUS_MATCHERS_H_
-#define BALLPISTON_TESTS_SUPPORT_STATUS_MATCHERS_H_
+#pragma once
 
 #include <string>
 #include <utility>
@@ -81,5 +80,3 @@ MATCHER_P(IsOkAndHolds, value, "") {
   variable = *std::move(result)
 #define BALLPISTON_JOIN_(a, b) BALLPISTON_JOIN_NOW_(a, b)
 #define BALLPISTON_JOIN_NOW_(a, b) a##b
-
-#endif  // BALLPISTON_TESTS_SUPPORT_STATUS_MATCHERS_H_

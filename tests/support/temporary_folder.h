@@ -1,6 +1,5 @@
 // A folder that exists as long as the object. Its path is short enough for a Unix socket in it.
-#ifndef BALLPISTON_TESTS_SUPPORT_TEMPORARY_FOLDER_H_
-#define BALLPISTON_TESTS_SUPPORT_TEMPORARY_FOLDER_H_
+#pragma once
 
 #include <string>
 
@@ -21,5 +20,3 @@ class TemporaryFolder {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_SUPPORT_TEMPORARY_FOLDER_H_

@@ -1,6 +1,5 @@
 // Runs a program on its own pseudo-terminal, as a user at a keyboard does.
-#ifndef BALLPISTON_TESTS_SUPPORT_TERMINAL_PROCESS_H_
-#define BALLPISTON_TESTS_SUPPORT_TERMINAL_PROCESS_H_
+#pragma once
 
 #include <sys/types.h>
 
@@ -40,5 +39,3 @@ class TerminalProcess {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_SUPPORT_TERMINAL_PROCESS_H_

@@ -1,6 +1,5 @@
 // The stacks of all threads of this process.
-#ifndef BALLPISTON_TESTS_SUPPORT_THREAD_STACKS_H_
-#define BALLPISTON_TESTS_SUPPORT_THREAD_STACKS_H_
+#pragma once
 
 namespace ballpiston {
 
@@ -14,5 +13,3 @@ namespace ballpiston {
 void WriteThreadStacks(int descriptor);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_SUPPORT_THREAD_STACKS_H_

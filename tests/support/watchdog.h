@@ -2,8 +2,7 @@
 // and the stacks of all threads. The test goes on. No test fails because a machine is slow.
 //
 // The environment variable BALLPISTON_STACKS_AFTER replaces the 15 minutes by a number of seconds.
-#ifndef BALLPISTON_TESTS_SUPPORT_WATCHDOG_H_
-#define BALLPISTON_TESTS_SUPPORT_WATCHDOG_H_
+#pragma once
 
 namespace ballpiston {
 
@@ -12,5 +11,3 @@ namespace ballpiston {
 void WatchTests(const char* program);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_SUPPORT_WATCHDOG_H_

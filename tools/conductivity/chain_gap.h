@@ -21,8 +21,7 @@
 // degree n and N sites. Properties, each with the test that bears its name:
 //   1. GapOfThePairMatchesItsGenerator.  2. GapFallsWithDegree.
 //   3. SpectrumDoesNotDependOnTheDirectionOfTheChain.
-#ifndef BALLPISTON_TOOLS_CONDUCTIVITY_CHAIN_GAP_H_
-#define BALLPISTON_TOOLS_CONDUCTIVITY_CHAIN_GAP_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <vector>
@@ -39,5 +38,3 @@ Eigen::VectorXd ChainRates(const std::vector<int>& dimensions, int degree);
 ExtrapolatedValue ChainGap(const std::vector<int>& dimensions, const std::vector<int>& degrees);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TOOLS_CONDUCTIVITY_CHAIN_GAP_H_

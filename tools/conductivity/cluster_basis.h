@@ -11,8 +11,7 @@
 //   3. HasEveryFunctionOfTheCluster.
 //
 // Immutable; safe to share between threads.
-#ifndef BALLPISTON_TOOLS_CONDUCTIVITY_CLUSTER_BASIS_H_
-#define BALLPISTON_TOOLS_CONDUCTIVITY_CLUSTER_BASIS_H_
+#pragma once
 
 #include <absl/container/flat_hash_map.h>
 #include <absl/container/inlined_vector.h>
@@ -91,5 +90,3 @@ class ClusterBasis {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TOOLS_CONDUCTIVITY_CLUSTER_BASIS_H_

@@ -22,8 +22,7 @@
 //      conductivity in stochastic energy exchanges of locally confined gases (2017), -0.000373. The
 //      value here, -0.000372458, agrees within one unit of the last digit.
 //   4. QuickPlanAgreesWithTheConstants, and by night FinePlanGivesTheConstants.
-#ifndef BALLPISTON_TOOLS_CONDUCTIVITY_CONDUCTIVITY_H_
-#define BALLPISTON_TOOLS_CONDUCTIVITY_CONDUCTIVITY_H_
+#pragma once
 
 #include <vector>
 
@@ -82,5 +81,3 @@ inline constexpr ExtrapolatedValue kDiscChainCorrection = {-0.00089895, 6e-8};
 inline constexpr ExtrapolatedValue kSphereChainCorrection = {-0.000372458, 8e-9};
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TOOLS_CONDUCTIVITY_CONDUCTIVITY_H_

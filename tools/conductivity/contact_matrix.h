@@ -18,8 +18,7 @@
 //   5. HighDegreesAreExactToRounding.
 //
 // Immutable; safe to share between threads.
-#ifndef BALLPISTON_TOOLS_CONDUCTIVITY_CONTACT_MATRIX_H_
-#define BALLPISTON_TOOLS_CONDUCTIVITY_CONTACT_MATRIX_H_
+#pragma once
 
 #include <Eigen/Core>
 
@@ -57,5 +56,3 @@ class ContactMatrix {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TOOLS_CONDUCTIVITY_CONTACT_MATRIX_H_

@@ -16,8 +16,7 @@
 //   1. AgreesWithTheDefinitionOnARing.  2. IsSymmetricAndPositive.
 //
 // Immutable; safe to share between threads.
-#ifndef BALLPISTON_TOOLS_CONDUCTIVITY_GALERKIN_FORM_H_
-#define BALLPISTON_TOOLS_CONDUCTIVITY_GALERKIN_FORM_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <vector>
@@ -58,5 +57,3 @@ class GalerkinForm {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TOOLS_CONDUCTIVITY_GALERKIN_FORM_H_

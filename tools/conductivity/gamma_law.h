@@ -6,8 +6,7 @@
 // Domain: shape > 0, degree and nodes 1 to 100. Properties, each with the test that bears its name:
 //   1. QuadratureIsExactBelowTwiceItsNodes, to kGammaQuadratureError.
 //   2. PolynomialsAreOrthonormal.
-#ifndef BALLPISTON_TOOLS_CONDUCTIVITY_GAMMA_LAW_H_
-#define BALLPISTON_TOOLS_CONDUCTIVITY_GAMMA_LAW_H_
+#pragma once
 
 #include <Eigen/Core>
 
@@ -27,5 +26,3 @@ GammaQuadrature GammaNodes(double shape, int count);
 Eigen::VectorXd GammaPolynomials(double shape, int degree, double x);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TOOLS_CONDUCTIVITY_GAMMA_LAW_H_

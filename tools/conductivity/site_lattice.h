@@ -3,8 +3,7 @@
 // Sites have whole coordinates, and neighbours have distance 1. A ball has even coordinates; a
 // piston has one odd coordinate. Unlike elsewhere in the core, a cell here has length 2. In a chain
 // of equal sites a cell has length 1.
-#ifndef BALLPISTON_TOOLS_CONDUCTIVITY_SITE_LATTICE_H_
-#define BALLPISTON_TOOLS_CONDUCTIVITY_SITE_LATTICE_H_
+#pragma once
 
 #include <cstdint>
 #include <tuple>
@@ -55,5 +54,3 @@ inline SiteLattice BallPistonLattice() {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TOOLS_CONDUCTIVITY_SITE_LATTICE_H_

@@ -5,8 +5,7 @@
 // power of their degree. Measured powers: d + 2 for the conductivity, where d is the least number
 // of a site's velocity components; 6 for the gap of balls and pistons. The error of clusters of n
 // sites falls as n^-6.
-#ifndef BALLPISTON_TOOLS_CONDUCTIVITY_TAIL_LIMIT_H_
-#define BALLPISTON_TOOLS_CONDUCTIVITY_TAIL_LIMIT_H_
+#pragma once
 
 #include <absl/types/span.h>
 
@@ -19,5 +18,3 @@ ExtrapolatedValue TailLimit(absl::Span<const double> at, absl::Span<const double
                             double power);
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TOOLS_CONDUCTIVITY_TAIL_LIMIT_H_

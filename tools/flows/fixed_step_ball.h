@@ -1,7 +1,6 @@
 // A ball that moves by fixed time steps. After a step in which it has entered a disc, it is pushed
 // out along the normal, and its velocity is reflected if it heads inward.
-#ifndef BALLPISTON_TOOLS_FLOWS_FIXED_STEP_BALL_H_
-#define BALLPISTON_TOOLS_FLOWS_FIXED_STEP_BALL_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <cmath>
@@ -57,5 +56,3 @@ class FixedStepBall {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TOOLS_FLOWS_FIXED_STEP_BALL_H_

@@ -12,8 +12,7 @@
 // 2. TimeIsBiasedToFirstOrderInTheStep.
 //
 // One object is one orbit; not for sharing between threads.
-#ifndef BALLPISTON_TOOLS_FLOWS_FIXED_STEP_FLOW_H_
-#define BALLPISTON_TOOLS_FLOWS_FIXED_STEP_FLOW_H_
+#pragma once
 
 #include <cstdint>
 
@@ -58,5 +57,3 @@ class FixedStepFlow {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TOOLS_FLOWS_FIXED_STEP_FLOW_H_

@@ -7,8 +7,7 @@
 // 2. ABallThatHasPassedAPistonExchanges, in each direction. 3. ThermalWallsGiveNewSpeeds.
 //
 // One object is one gas; not for sharing between threads.
-#ifndef BALLPISTON_TOOLS_FLOWS_FIXED_STEP_GAS_H_
-#define BALLPISTON_TOOLS_FLOWS_FIXED_STEP_GAS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -55,5 +54,3 @@ class FixedStepGas {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TOOLS_FLOWS_FIXED_STEP_GAS_H_

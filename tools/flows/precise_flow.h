@@ -7,8 +7,7 @@
 //   TwinNumber   256 bits, about 150 ns per operation; for twins of orbits in other precisions
 //
 // Include it only to compare precisions: it includes Boost's numbers.
-#ifndef BALLPISTON_TOOLS_FLOWS_PRECISE_FLOW_H_
-#define BALLPISTON_TOOLS_FLOWS_PRECISE_FLOW_H_
+#pragma once
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
@@ -39,5 +38,3 @@ extern template class EventFlow<Quadruple>;
 extern template class EventFlow<TwinNumber>;
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TOOLS_FLOWS_PRECISE_FLOW_H_

@@ -4,8 +4,7 @@
 // the stability tables use them.
 //
 // Rates, moments and the kernel are in units of |dG_bp|/|G|, as in the library.
-#ifndef BALLPISTON_TOOLS_FLOWS_PRINTED_FORMULAS_H_
-#define BALLPISTON_TOOLS_FLOWS_PRINTED_FORMULAS_H_
+#pragma once
 
 #include <algorithm>
 
@@ -81,5 +80,3 @@ Real KernelAsPrinted(Real eb, Real ep, Real ep_out, Real pi) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TOOLS_FLOWS_PRINTED_FORMULAS_H_

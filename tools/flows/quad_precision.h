@@ -5,8 +5,7 @@
 // On x86 the type is __float128 with the compiler's libquadmath, elsewhere a long double of the
 // same format. The functions are declared here because quadmath.h is in a folder of GCC that other
 // compilers do not search.
-#ifndef BALLPISTON_TOOLS_FLOWS_QUAD_PRECISION_H_
-#define BALLPISTON_TOOLS_FLOWS_QUAD_PRECISION_H_
+#pragma once
 
 #include <cmath>
 #include <limits>
@@ -56,5 +55,3 @@ inline double RelativeError(double value, Quad exact) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TOOLS_FLOWS_QUAD_PRECISION_H_

@@ -4,8 +4,7 @@
 // Runs are those of point_runs.h; a sample is an orbit. Property, with a test of
 // its name:
 //   1. TheJumpProcessAgreesWithTheSpectrum within its error.
-#ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_ENERGY_RELAXATION_RUNS_H_
-#define BALLPISTON_TOOLS_METHOD_COMPARISON_ENERGY_RELAXATION_RUNS_H_
+#pragma once
 
 #include <cstdint>
 
@@ -40,5 +39,3 @@ class EnergyRelaxationRuns {
 };
 
 }  // namespace ballpiston::method_comparison
-
-#endif  // BALLPISTON_TOOLS_METHOD_COMPARISON_ENERGY_RELAXATION_RUNS_H_

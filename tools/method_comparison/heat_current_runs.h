@@ -4,8 +4,7 @@
 // All methods run the same replicas for the same times. A replica of the fixed time steps that
 // loses a ball is not counted. The jump process has the current of the limit, not of the billiard.
 // Property, with a test of its name: 1. AllMethodsAgree, within their errors and biases.
-#ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_HEAT_CURRENT_RUNS_H_
-#define BALLPISTON_TOOLS_METHOD_COMPARISON_HEAT_CURRENT_RUNS_H_
+#pragma once
 
 #include <cstdint>
 
@@ -43,5 +42,3 @@ class HeatCurrentRuns {
 };
 
 }  // namespace ballpiston::method_comparison
-
-#endif  // BALLPISTON_TOOLS_METHOD_COMPARISON_HEAT_CURRENT_RUNS_H_

@@ -1,7 +1,6 @@
 // Histograms of the ingoing angles of returns, with the cells of `first-hit`: kIngoingBins bins of
 // alpha for each allowed sign of the piston's velocity.
-#ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_INGOING_DIVERGENCE_H_
-#define BALLPISTON_TOOLS_METHOD_COMPARISON_INGOING_DIVERGENCE_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -28,5 +27,3 @@ class IngoingCounts {
 };
 
 }  // namespace ballpiston::method_comparison
-
-#endif  // BALLPISTON_TOOLS_METHOD_COMPARISON_INGOING_DIVERGENCE_H_

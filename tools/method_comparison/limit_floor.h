@@ -10,8 +10,7 @@
 // error equals the floor. For a larger tolerance the limit is as good and costs less. For a smaller
 // tolerance the limit cannot be used. If the floor is an upper bound, the crossing work is a lower
 // bound.
-#ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_LIMIT_FLOOR_H_
-#define BALLPISTON_TOOLS_METHOD_COMPARISON_LIMIT_FLOOR_H_
+#pragma once
 
 #include <cstdint>
 
@@ -31,5 +30,3 @@ MethodMeasurement LimitFloorOf(const MethodMeasurement& spectrum,
                                const MethodMeasurement& billiard);
 
 }  // namespace ballpiston::method_comparison
-
-#endif  // BALLPISTON_TOOLS_METHOD_COMPARISON_LIMIT_FLOOR_H_

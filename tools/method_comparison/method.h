@@ -1,6 +1,5 @@
 // The compared methods of computing the ball-piston pair and the gas, and the compared quantities.
-#ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_H_
-#define BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_H_
+#pragma once
 
 namespace ballpiston::method_comparison {
 
@@ -56,5 +55,3 @@ struct MethodVariant {
 };
 
 }  // namespace ballpiston::method_comparison
-
-#endif  // BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_H_

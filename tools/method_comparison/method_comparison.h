@@ -63,8 +63,7 @@
 //
 // Work is processor time: other programs do not count, but they affect caches and shared cores.
 // Values are functions of the spec; the number of rungs also depends on the work.
-#ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_COMPARISON_H_
-#define BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_COMPARISON_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -130,5 +129,3 @@ void CompareMethods(const MethodComparisonSpec& spec,
                     const std::function<void(const MethodMeasurement&)>& tell);
 
 }  // namespace ballpiston::method_comparison
-
-#endif  // BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_COMPARISON_H_

@@ -1,7 +1,6 @@
 // Orbits of many pairs by any method, from collision to collision (see billiard/orbits.h). An orbit
 // that is lost, or whose time no longer advances, ends with an escape.
-#ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_ORBITS_H_
-#define BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_ORBITS_H_
+#pragma once
 
 #include <cstdint>
 
@@ -17,5 +16,3 @@ void RunMethodOrbits(const MethodVariant& variant, const PairGeometry& geometry,
                      NumberedOrbits& source);
 
 }  // namespace ballpiston::method_comparison
-
-#endif  // BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_ORBITS_H_

@@ -4,8 +4,7 @@
 // 256, 1024, ... samples have no sample in common. The samples of the truth are in the gaps between
 // the runs. A run is one block; it is not divided into chunks and blocks like a job. Property, with
 // a test of its name: 1. RunsHaveNoSampleInCommon, truth included.
-#ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_POINT_RUNS_H_
-#define BALLPISTON_TOOLS_METHOD_COMPARISON_POINT_RUNS_H_
+#pragma once
 
 #include <cstdint>
 
@@ -42,5 +41,3 @@ PointEstimate EstimateOf(const PointExperiment& experiment, const BlockResult& m
                          double seconds);
 
 }  // namespace ballpiston::method_comparison
-
-#endif  // BALLPISTON_TOOLS_METHOD_COMPARISON_POINT_RUNS_H_

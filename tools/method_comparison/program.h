@@ -14,8 +14,7 @@
 // Exit status: 0 success; 1 standard output cannot be written, or a quantity has no measurement of
 // kFewestDrawn samples: then its panel of the chart is empty, but all rows are printed; 2 a wrong
 // flag or value: standard error names each value that is not permitted.
-#ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_PROGRAM_H_
-#define BALLPISTON_TOOLS_METHOD_COMPARISON_PROGRAM_H_
+#pragma once
 
 #include <cstdint>
 #include <ostream>
@@ -29,5 +28,3 @@ inline constexpr uint64_t kFewestDrawn = 64;
 int RunProgram(int argc, const char* const* argv, std::ostream& out, std::ostream& error);
 
 }  // namespace ballpiston::method_comparison
-
-#endif  // BALLPISTON_TOOLS_METHOD_COMPARISON_PROGRAM_H_

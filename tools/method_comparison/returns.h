@@ -1,7 +1,6 @@
 // Returns to the collision surface at fixed energies, with starts from the invariant law, by any
 // method: their times, their ingoing angles and their cost.
-#ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_RETURNS_H_
-#define BALLPISTON_TOOLS_METHOD_COMPARISON_RETURNS_H_
+#pragma once
 
 #include <cstdint>
 
@@ -30,5 +29,3 @@ double PredictedSeconds(const MethodVariant& variant, const PairGeometry& geomet
                         uint64_t samples);
 
 }  // namespace ballpiston::method_comparison
-
-#endif  // BALLPISTON_TOOLS_METHOD_COMPARISON_RETURNS_H_

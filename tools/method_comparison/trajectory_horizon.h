@@ -6,8 +6,7 @@
 // one hit grows by a factor exp(L) per hit, where L is the Lyapunov exponent. Therefore the horizon
 // is about log(kParted/eps)/L. Property, with a test of its name:
 // 1. HorizonGrowsWithTheLogarithmOfThePrecision.
-#ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_TRAJECTORY_HORIZON_H_
-#define BALLPISTON_TOOLS_METHOD_COMPARISON_TRAJECTORY_HORIZON_H_
+#pragma once
 
 #include <cstdint>
 
@@ -34,5 +33,3 @@ TrajectoryHorizon HorizonOf(const MethodVariant& variant, const PairGeometry& ge
                             TwinOrbits& twins);
 
 }  // namespace ballpiston::method_comparison
-
-#endif  // BALLPISTON_TOOLS_METHOD_COMPARISON_TRAJECTORY_HORIZON_H_

@@ -2,8 +2,7 @@
 //
 // An error grows by about a factor of e per wall hit. Therefore a twin is correct for about 170
 // hits, more than twice as long as an orbit in 113 bits.
-#ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_TWIN_ORBITS_H_
-#define BALLPISTON_TOOLS_METHOD_COMPARISON_TWIN_ORBITS_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -55,5 +54,3 @@ class TwinOrbits {
 };
 
 }  // namespace ballpiston::method_comparison
-
-#endif  // BALLPISTON_TOOLS_METHOD_COMPARISON_TWIN_ORBITS_H_

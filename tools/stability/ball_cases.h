@@ -1,6 +1,5 @@
 // The situations without a piston in which methods fail, and the failures of each method there.
-#ifndef BALLPISTON_TOOLS_STABILITY_BALL_CASES_H_
-#define BALLPISTON_TOOLS_STABILITY_BALL_CASES_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -33,5 +32,3 @@ const std::vector<BallCase>& BallCases();
 Failures FlyCase(const BallCase& ball_case, const BallMethod& method, double effort);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_BALL_CASES_H_

@@ -1,7 +1,6 @@
 // The methods that move a ball alone: the engines in every precision, and the naive methods. Each
 // method is one function.
-#ifndef BALLPISTON_TOOLS_STABILITY_BALL_METHODS_H_
-#define BALLPISTON_TOOLS_STABILITY_BALL_METHODS_H_
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -32,5 +31,3 @@ struct BallMethod {
 const std::vector<BallMethod>& BallMethods();
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_BALL_METHODS_H_

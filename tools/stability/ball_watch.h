@@ -1,6 +1,5 @@
 // Checks one ball after each of its wall hits.
-#ifndef BALLPISTON_TOOLS_STABILITY_BALL_WATCH_H_
-#define BALLPISTON_TOOLS_STABILITY_BALL_WATCH_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -51,5 +50,3 @@ class BallWatch {
 };
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_BALL_WATCH_H_

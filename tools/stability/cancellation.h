@@ -1,6 +1,5 @@
 // Errors of the closed forms at parameters where terms of the printed formulas cancel.
-#ifndef BALLPISTON_TOOLS_STABILITY_CANCELLATION_H_
-#define BALLPISTON_TOOLS_STABILITY_CANCELLATION_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -17,5 +16,3 @@ struct Cancellation {
 std::vector<Cancellation> Cancellations();
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_CANCELLATION_H_

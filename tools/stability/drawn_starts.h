@@ -1,6 +1,5 @@
 // Starts of a case. The i-th start does not depend on earlier draws.
-#ifndef BALLPISTON_TOOLS_STABILITY_DRAWN_STARTS_H_
-#define BALLPISTON_TOOLS_STABILITY_DRAWN_STARTS_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -26,5 +25,3 @@ inline std::vector<PairState> DrawnStarts(DrawStart& draw, const PairGeometry& g
 }
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_DRAWN_STARTS_H_

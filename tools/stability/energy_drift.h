@@ -1,6 +1,5 @@
 // The error of the energy after a long run, and its drift.
-#ifndef BALLPISTON_TOOLS_STABILITY_ENERGY_DRIFT_H_
-#define BALLPISTON_TOOLS_STABILITY_ENERGY_DRIFT_H_
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -51,5 +50,3 @@ bool Drifts(const EnergyRun& run);
 std::vector<EnergyRun> EnergyRuns(double effort);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_ENERGY_DRIFT_H_

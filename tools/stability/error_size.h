@@ -1,7 +1,6 @@
 // The size of an error of the energy. An error that is not a number becomes infinite. Otherwise it
 // would pass every limit: std::max drops NaN, and a comparison with NaN is false.
-#ifndef BALLPISTON_TOOLS_STABILITY_ERROR_SIZE_H_
-#define BALLPISTON_TOOLS_STABILITY_ERROR_SIZE_H_
+#pragma once
 
 #include <cmath>
 #include <limits>
@@ -13,5 +12,3 @@ inline double ErrorSize(double error) {
 }
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_ERROR_SIZE_H_

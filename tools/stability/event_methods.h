@@ -1,7 +1,6 @@
 // A ball moved by a flow that computes one event after the other: EventFlow in any precision, or a
 // naive flow with the same interface.
-#ifndef BALLPISTON_TOOLS_STABILITY_EVENT_METHODS_H_
-#define BALLPISTON_TOOLS_STABILITY_EVENT_METHODS_H_
+#pragma once
 
 #include <cmath>
 #include <cstdint>
@@ -128,5 +127,3 @@ std::vector<double> ThereAndBackByEvents(const PairGeometry& geometry,
 }
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_EVENT_METHODS_H_

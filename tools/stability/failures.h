@@ -1,6 +1,5 @@
 // Counts of the failures of orbits.
-#ifndef BALLPISTON_TOOLS_STABILITY_FAILURES_H_
-#define BALLPISTON_TOOLS_STABILITY_FAILURES_H_
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -51,5 +50,3 @@ struct Failures {
 };
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_FAILURES_H_

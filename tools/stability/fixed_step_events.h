@@ -1,6 +1,5 @@
 // The flow with fixed time steps, with the interface of the event-driven flows.
-#ifndef BALLPISTON_TOOLS_STABILITY_FIXED_STEP_EVENTS_H_
-#define BALLPISTON_TOOLS_STABILITY_FIXED_STEP_EVENTS_H_
+#pragma once
 
 #include <cstdint>
 
@@ -52,5 +51,3 @@ class FixedStepEvents {
 };
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_FIXED_STEP_EVENTS_H_

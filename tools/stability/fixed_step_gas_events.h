@@ -1,6 +1,5 @@
 // The gas with fixed time steps, with the interface of the event-driven gases.
-#ifndef BALLPISTON_TOOLS_STABILITY_FIXED_STEP_GAS_EVENTS_H_
-#define BALLPISTON_TOOLS_STABILITY_FIXED_STEP_GAS_EVENTS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -47,5 +46,3 @@ class FixedStepGasEvents {
 };
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_FIXED_STEP_GAS_EVENTS_H_

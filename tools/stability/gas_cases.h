@@ -1,6 +1,5 @@
 // The situations of a gas in which methods fail, and the failures of each method there.
-#ifndef BALLPISTON_TOOLS_STABILITY_GAS_CASES_H_
-#define BALLPISTON_TOOLS_STABILITY_GAS_CASES_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -28,5 +27,3 @@ const std::vector<GasCase>& GasCases();
 Failures RunGasCase(const GasCase& gas_case, const GasMethod& method, double effort);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_GAS_CASES_H_

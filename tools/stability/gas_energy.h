@@ -3,8 +3,7 @@
 // Each exchange rounds the energies of two bodies. Therefore the energy of a gas makes a random
 // walk, and a straight line through a random walk means nothing. Instead many gases run, and a
 // trend is a mean over the gases.
-#ifndef BALLPISTON_TOOLS_STABILITY_GAS_ENERGY_H_
-#define BALLPISTON_TOOLS_STABILITY_GAS_ENERGY_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -36,5 +35,3 @@ bool LosesEnergy(const GasEnergyRun& run);
 std::vector<GasEnergyRun> GasEnergyRuns(double effort);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_GAS_ENERGY_H_

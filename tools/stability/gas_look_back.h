@@ -1,7 +1,6 @@
 // Checks gases of an engine that reports only energies, through their meters: the exchanges of a
 // short run, and the energies at the end of any run.
-#ifndef BALLPISTON_TOOLS_STABILITY_GAS_LOOK_BACK_H_
-#define BALLPISTON_TOOLS_STABILITY_GAS_LOOK_BACK_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -36,5 +35,3 @@ Failures LookBack(const GasGeometry& geometry, const GasReplica& replica, double
 Failures LookAtEnergies(const GasGeometry& geometry, const GasMeter& meter, double start);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_GAS_LOOK_BACK_H_

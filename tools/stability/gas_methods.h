@@ -1,6 +1,5 @@
 // The methods that run gases. Each method is one function.
-#ifndef BALLPISTON_TOOLS_STABILITY_GAS_METHODS_H_
-#define BALLPISTON_TOOLS_STABILITY_GAS_METHODS_H_
+#pragma once
 
 #include <span>
 #include <string>
@@ -32,5 +31,3 @@ struct GasMethod {
 const std::vector<GasMethod>& GasMethods();
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_GAS_METHODS_H_

@@ -1,7 +1,6 @@
 // Starts of gases just before situations in which methods fail. The fastest body has about speed 1.
 // wall_starts.h defines the offsets.
-#ifndef BALLPISTON_TOOLS_STABILITY_GAS_STARTS_H_
-#define BALLPISTON_TOOLS_STABILITY_GAS_STARTS_H_
+#pragma once
 
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_state.h"
@@ -37,5 +36,3 @@ GasState WithPair(const GasGeometry& geometry, CounterRandom& random) {
 }
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_GAS_STARTS_H_

@@ -4,8 +4,7 @@
 // last event to its next event and checks there that the ball is not beyond one of its pistons, and
 // that the piston is not beyond the ends of its path. At a contact this check covers the whole time
 // between the two events, because the gap between a ball and a piston changes linearly.
-#ifndef BALLPISTON_TOOLS_STABILITY_GAS_WATCH_H_
-#define BALLPISTON_TOOLS_STABILITY_GAS_WATCH_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -67,5 +66,3 @@ class GasWatch {
 };
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_GAS_WATCH_H_

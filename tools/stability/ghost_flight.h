@@ -1,6 +1,5 @@
 // The flight of a ball that passes through the piston. It shows where the two really collide.
-#ifndef BALLPISTON_TOOLS_STABILITY_GHOST_FLIGHT_H_
-#define BALLPISTON_TOOLS_STABILITY_GHOST_FLIGHT_H_
+#pragma once
 
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
@@ -16,5 +15,3 @@ struct GhostFlight {
 GhostFlight FlyAsGhost(const PairGeometry& geometry, const PairState& from, double time);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_GHOST_FLIGHT_H_

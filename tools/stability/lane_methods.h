@@ -1,6 +1,5 @@
 // Balls in vector lanes, moved by the engine's own flight.
-#ifndef BALLPISTON_TOOLS_STABILITY_LANE_METHODS_H_
-#define BALLPISTON_TOOLS_STABILITY_LANE_METHODS_H_
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -26,5 +25,3 @@ std::vector<double> ThereAndBackInLanes(FlyLanes fly, const PairGeometry& geomet
 double SquaredLengthError(const LaneFrame& frame);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_LANE_METHODS_H_

@@ -1,6 +1,5 @@
 // A table in Markdown. Its columns are padded, so that it is also readable as plain text.
-#ifndef BALLPISTON_TOOLS_STABILITY_MARKDOWN_TABLE_H_
-#define BALLPISTON_TOOLS_STABILITY_MARKDOWN_TABLE_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -25,5 +24,3 @@ std::string ErrorText(double error);    // 1.2e-15; 0; - for NaN
 std::string SignedText(double value);   // +1.2e-15
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_MARKDOWN_TABLE_H_

@@ -1,6 +1,5 @@
 // The part of a text file between the lines <!-- NAME:begin --> and <!-- NAME:end -->.
-#ifndef BALLPISTON_TOOLS_STABILITY_MARKED_SECTION_H_
-#define BALLPISTON_TOOLS_STABILITY_MARKED_SECTION_H_
+#pragma once
 
 #include <string>
 
@@ -18,5 +17,3 @@ absl::Status ReplaceMarkedSection(const std::string& path, const std::string& na
                                   const std::string& text);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_MARKED_SECTION_H_

@@ -1,6 +1,5 @@
 // Gases side by side in one engine, each with its meter.
-#ifndef BALLPISTON_TOOLS_STABILITY_METERED_GASES_H_
-#define BALLPISTON_TOOLS_STABILITY_METERED_GASES_H_
+#pragma once
 
 #include <cstddef>
 #include <deque>
@@ -43,5 +42,3 @@ class MeteredGases {
 };
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_METERED_GASES_H_

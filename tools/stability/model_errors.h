@@ -10,8 +10,7 @@
 // error has to be at most four times the difference at half of the places that count. In single
 // precision no affordable run shows a difference at most places. There the larger one of difference
 // and two standard errors counts.
-#ifndef BALLPISTON_TOOLS_STABILITY_MODEL_ERRORS_H_
-#define BALLPISTON_TOOLS_STABILITY_MODEL_ERRORS_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -50,5 +49,3 @@ std::vector<ModelError> ModelErrors();  // with all samples
 std::vector<std::string> BrokenClaims(const std::vector<ModelError>& errors);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_MODEL_ERRORS_H_

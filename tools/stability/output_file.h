@@ -1,7 +1,6 @@
 // Writes a text file atomically: writes it under another name in the same folder, then renames it.
 // A reader finds the old file or the new file, never a partial file, even if the program is killed.
-#ifndef BALLPISTON_TOOLS_STABILITY_OUTPUT_FILE_H_
-#define BALLPISTON_TOOLS_STABILITY_OUTPUT_FILE_H_
+#pragma once
 
 #include <string>
 
@@ -19,5 +18,3 @@ absl::Status CheckWritable(const std::string& path);
 absl::Status WriteWholeFile(const std::string& path, const std::string& text);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_OUTPUT_FILE_H_

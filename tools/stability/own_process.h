@@ -1,6 +1,5 @@
 // Runs a computation that may never end, in a separate process.
-#ifndef BALLPISTON_TOOLS_STABILITY_OWN_PROCESS_H_
-#define BALLPISTON_TOOLS_STABILITY_OWN_PROCESS_H_
+#pragma once
 
 #include <functional>
 #include <optional>
@@ -15,5 +14,3 @@ namespace ballpiston::stability {
 std::optional<Failures> InOwnProcess(const std::function<Failures()>& compute, unsigned seconds);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_OWN_PROCESS_H_

@@ -1,6 +1,5 @@
 // The situations with a piston in which methods fail, and the failures of each method there.
-#ifndef BALLPISTON_TOOLS_STABILITY_PAIR_CASES_H_
-#define BALLPISTON_TOOLS_STABILITY_PAIR_CASES_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -27,5 +26,3 @@ const std::vector<PairCase>& PairCases();
 Failures RunCase(const PairCase& pair_case, const PairMethod& method, double effort);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_PAIR_CASES_H_

@@ -1,6 +1,5 @@
 // The methods that run ball-piston pairs. Each method is one function.
-#ifndef BALLPISTON_TOOLS_STABILITY_PAIR_METHODS_H_
-#define BALLPISTON_TOOLS_STABILITY_PAIR_METHODS_H_
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -27,5 +26,3 @@ struct PairMethod {
 const std::vector<PairMethod>& PairMethods();
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_PAIR_METHODS_H_

@@ -3,8 +3,7 @@
 //
 // Most starts are computed backwards: the state in the target situation is reversed and moved over
 // a few wall hits. In this way an engine makes a few hits before it reaches the situation.
-#ifndef BALLPISTON_TOOLS_STABILITY_PAIR_STARTS_H_
-#define BALLPISTON_TOOLS_STABILITY_PAIR_STARTS_H_
+#pragma once
 
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
@@ -36,5 +35,3 @@ PairState SlowBall(const PairGeometry& geometry, CounterRandom& random);
 PairState SlowPiston(const PairGeometry& geometry, CounterRandom& random);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_PAIR_STARTS_H_

@@ -1,7 +1,6 @@
 // Checks ball-piston pairs: after each event if the method reports all events, else at each
 // collision.
-#ifndef BALLPISTON_TOOLS_STABILITY_PAIR_WATCH_H_
-#define BALLPISTON_TOOLS_STABILITY_PAIR_WATCH_H_
+#pragma once
 
 #include <cstdint>
 #include <limits>
@@ -85,5 +84,3 @@ class CollisionWatch : public NumberedOrbits {
 };
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_PAIR_WATCH_H_

@@ -7,8 +7,7 @@
 //
 // Exit status: 0 success; 1 if FILE cannot be written, or if the report has complaints (then the
 // tables are still written), or if the report cannot be made (no tables); 2 for wrong arguments.
-#ifndef BALLPISTON_TOOLS_STABILITY_PROGRAM_H_
-#define BALLPISTON_TOOLS_STABILITY_PROGRAM_H_
+#pragma once
 
 #include <functional>
 #include <ostream>
@@ -26,5 +25,3 @@ int RunProgram(const std::vector<std::string>& arguments,
                std::ostream& error);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_PROGRAM_H_

@@ -1,6 +1,5 @@
 // All tables of a run, and complaints about their contents.
-#ifndef BALLPISTON_TOOLS_STABILITY_REPORT_H_
-#define BALLPISTON_TOOLS_STABILITY_REPORT_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -18,5 +17,3 @@ struct Report {
 Report MakeReport(double effort);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_REPORT_H_

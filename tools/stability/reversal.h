@@ -1,7 +1,6 @@
 // The velocity of an orbit is reversed after some hits, and the orbit returns. Its distance from
 // its start is the rounding error of twice this number of hits.
-#ifndef BALLPISTON_TOOLS_STABILITY_REVERSAL_H_
-#define BALLPISTON_TOOLS_STABILITY_REVERSAL_H_
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -25,5 +24,3 @@ std::vector<Reversal> BallReversals(uint64_t orbits);
 std::vector<Reversal> PairReversals(uint64_t orbits);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_REVERSAL_H_

@@ -1,6 +1,5 @@
 // The results as Markdown.
-#ifndef BALLPISTON_TOOLS_STABILITY_STABILITY_TABLES_H_
-#define BALLPISTON_TOOLS_STABILITY_STABILITY_TABLES_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -40,5 +39,3 @@ std::string ModelErrorTable(const std::vector<ModelError>& errors);
 std::string CancellationTable(const std::vector<Cancellation>& rows);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_STABILITY_TABLES_H_

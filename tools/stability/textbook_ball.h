@@ -13,8 +13,7 @@
 //   kUnitSpeed     the disc just hit is excluded and times are clamped at 0, which would be enough.
 //                  But the hit time assumes |v| = 1, and the reflection does not. The error of |v|
 //                  goes into the position, from there back into |v|, and grows.
-#ifndef BALLPISTON_TOOLS_STABILITY_TEXTBOOK_BALL_H_
-#define BALLPISTON_TOOLS_STABILITY_TEXTBOOK_BALL_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -117,5 +116,3 @@ class TextbookBall {
 };
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_TEXTBOOK_BALL_H_

@@ -1,7 +1,6 @@
 // The billiard flow as in a textbook (textbook_ball.h describes its rules). Each rule looks correct
 // and fails in some situation. A stable flow is compared with these rules.
-#ifndef BALLPISTON_TOOLS_STABILITY_TEXTBOOK_FLOW_H_
-#define BALLPISTON_TOOLS_STABILITY_TEXTBOOK_FLOW_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -75,5 +74,3 @@ class TextbookFlow {
 };
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_TEXTBOOK_FLOW_H_

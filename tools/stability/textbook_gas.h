@@ -1,7 +1,6 @@
 // A gas whose balls follow a textbook rule (textbook_ball.h). All bodies move from event to event;
 // the next event is the earliest event of all bodies. For gases of a few cells.
-#ifndef BALLPISTON_TOOLS_STABILITY_TEXTBOOK_GAS_H_
-#define BALLPISTON_TOOLS_STABILITY_TEXTBOOK_GAS_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <cmath>
@@ -133,5 +132,3 @@ class TextbookGas {
 };
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_TEXTBOOK_GAS_H_

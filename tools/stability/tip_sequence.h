@@ -7,8 +7,7 @@
 // tangents. Flights much shorter than the cell are flights between two neighbouring discs near
 // their tip. A longer sequence of such flights is not an orbit: it repeats its state, or rounding
 // has moved it out of the cell.
-#ifndef BALLPISTON_TOOLS_STABILITY_TIP_SEQUENCE_H_
-#define BALLPISTON_TOOLS_STABILITY_TIP_SEQUENCE_H_
+#pragma once
 
 #include <cmath>
 #include <cstdint>
@@ -24,5 +23,3 @@ inline uint64_t LongestTipSequence(const PairGeometry& geometry) {
 }
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_TIP_SEQUENCE_H_

@@ -1,6 +1,5 @@
 // The lifetime of an orbit whose hit times assume |v| = 1 while its reflections do not.
-#ifndef BALLPISTON_TOOLS_STABILITY_UNIT_SPEED_H_
-#define BALLPISTON_TOOLS_STABILITY_UNIT_SPEED_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -12,5 +11,3 @@ namespace ballpiston::stability {
 std::vector<uint64_t> HitsBeforeEscape(uint64_t orbits);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_UNIT_SPEED_H_

@@ -2,8 +2,7 @@
 // methods fail. The piston rests at its right wall, out of the ball's reach.
 //
 // The offset from the target is +-10^-k, k = 3 ... 17, or exactly 0: one of 16 values at random.
-#ifndef BALLPISTON_TOOLS_STABILITY_WALL_STARTS_H_
-#define BALLPISTON_TOOLS_STABILITY_WALL_STARTS_H_
+#pragma once
 
 #include <Eigen/Core>
 
@@ -28,5 +27,3 @@ PairState AimedAtTip(const PairGeometry& geometry, CounterRandom& random);
 PairState AimedToGraze(const PairGeometry& geometry, CounterRandom& random);
 
 }  // namespace ballpiston::stability
-
-#endif  // BALLPISTON_TOOLS_STABILITY_WALL_STARTS_H_

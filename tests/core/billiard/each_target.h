@@ -1,6 +1,5 @@
 // Runs a test under every instruction set that this machine and the build support.
-#ifndef BALLPISTON_TESTS_CORE_BILLIARD_EACH_TARGET_H_
-#define BALLPISTON_TESTS_CORE_BILLIARD_EACH_TARGET_H_
+#pragma once
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -41,5 +40,3 @@ inline void ForEachFusedTarget(const std::function<void()>& test) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_CORE_BILLIARD_EACH_TARGET_H_

@@ -1,8 +1,7 @@
 // The fingerprints of the orbits and experiments of golden_test.cc, from the last intended change.
 // If the bits differ, this command prints the new lines:
 //   statistical_test --gtest_filter='*Golden*' | grep '^{'
-#ifndef BALLPISTON_TESTS_CORE_BILLIARD_GOLDEN_BITS_H_
-#define BALLPISTON_TESTS_CORE_BILLIARD_GOLDEN_BITS_H_
+#pragma once
 
 #include <cstdint>
 #include <map>
@@ -59,5 +58,3 @@ inline const std::map<std::string_view, uint64_t> kGoldenBits = {
 };
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_CORE_BILLIARD_GOLDEN_BITS_H_

@@ -1,6 +1,5 @@
 // Orbits of a few collisions from equilibrium, and all contacts that they reported.
-#ifndef BALLPISTON_TESTS_CORE_BILLIARD_RECORDED_CONTACTS_H_
-#define BALLPISTON_TESTS_CORE_BILLIARD_RECORDED_CONTACTS_H_
+#pragma once
 
 #include <gtest/gtest.h>
 
@@ -46,5 +45,3 @@ inline RecordedContacts Recorded(Engine engine, const PairGeometry& geometry, ui
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_CORE_BILLIARD_RECORDED_CONTACTS_H_

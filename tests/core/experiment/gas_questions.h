@@ -1,6 +1,5 @@
 // Functions that the tests of the gas's experiments share.
-#ifndef BALLPISTON_TESTS_CORE_EXPERIMENT_GAS_QUESTIONS_H_
-#define BALLPISTON_TESTS_CORE_EXPERIMENT_GAS_QUESTIONS_H_
+#pragma once
 
 #include <gmock/gmock.h>
 
@@ -23,5 +22,3 @@ inline auto Violates(const std::string& field, const std::string& text) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_CORE_EXPERIMENT_GAS_QUESTIONS_H_

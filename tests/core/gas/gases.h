@@ -1,6 +1,5 @@
 // Gases for tests. Their parameters must be valid.
-#ifndef BALLPISTON_TESTS_CORE_GAS_GASES_H_
-#define BALLPISTON_TESTS_CORE_GAS_GASES_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -51,5 +50,3 @@ inline double EnergyOf(const GasState& state) {
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_CORE_GAS_GASES_H_

@@ -1,6 +1,5 @@
 // Questions for the ladder, a machine to predict for, and pilots that are made up.
-#ifndef BALLPISTON_TESTS_CORE_MODEL_CHOICE_QUESTIONS_H_
-#define BALLPISTON_TESTS_CORE_MODEL_CHOICE_QUESTIONS_H_
+#pragma once
 
 #include <gtest/gtest.h>
 
@@ -77,5 +76,3 @@ inline std::optional<Answer> Choice(const EnsembleSpec& spec, const PilotSource&
 }
 
 }  // namespace ballpiston
-
-#endif  // BALLPISTON_TESTS_CORE_MODEL_CHOICE_QUESTIONS_H_

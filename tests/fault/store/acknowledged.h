@@ -1,6 +1,5 @@
 // The answers that a client got during a trace, and when. A power cut must not undo them.
-#ifndef BALLPISTON_TESTS_FAULT_STORE_ACKNOWLEDGED_H_
-#define BALLPISTON_TESTS_FAULT_STORE_ACKNOWLEDGED_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -52,5 +51,3 @@ std::vector<std::string> WhatIsWrongAfter(const Trace& trace, size_t cut, Surviv
                                           uint64_t seed);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_FAULT_STORE_ACKNOWLEDGED_H_

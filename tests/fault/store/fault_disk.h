@@ -5,8 +5,7 @@
 // never changed, an empty file counts as not existing, locks and the log's index are shared by all
 // connections of the process. Every write, truncation, sync, creation and deletion is one
 // operation, numbered from 0; power_cut.h says what a cut at any of them would leave. Thread-safe.
-#ifndef BALLPISTON_TESTS_FAULT_STORE_FAULT_DISK_H_
-#define BALLPISTON_TESTS_FAULT_STORE_FAULT_DISK_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -119,5 +118,3 @@ class FaultDisk {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_FAULT_STORE_FAULT_DISK_H_

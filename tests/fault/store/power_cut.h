@@ -4,8 +4,7 @@
 // flushed. Any part of the other operations, including the one in progress, may be on the disk:
 // `Survival` says which. After a failed sync, earlier writes may be lost although a later sync
 // succeeds, unless they were written again.
-#ifndef BALLPISTON_TESTS_FAULT_STORE_POWER_CUT_H_
-#define BALLPISTON_TESTS_FAULT_STORE_POWER_CUT_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -34,5 +33,3 @@ DiskFiles AfterPowerCut(const DiskFiles& initial, const std::vector<DiskOperatio
                         size_t cut, Survival survival, uint64_t seed);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_FAULT_STORE_POWER_CUT_H_

@@ -1,7 +1,6 @@
 // One life of a server without gRPC, over a disk that can fail: store, book of jobs and one worker
 // with the fake experiments.
-#ifndef BALLPISTON_TESTS_FAULT_STORE_SERVICE_ON_DISK_H_
-#define BALLPISTON_TESTS_FAULT_STORE_SERVICE_ON_DISK_H_
+#pragma once
 
 #include <condition_variable>
 #include <cstdint>
@@ -87,5 +86,3 @@ class ServiceOnDisk {
 std::string IdOf(const v1::EnsembleJob& job);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_FAULT_STORE_SERVICE_ON_DISK_H_

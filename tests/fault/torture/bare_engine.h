@@ -1,8 +1,7 @@
 // The engine without the service: threads compute the blocks of a question's first point, and the
 // blocks are merged in order. It is the reference for the cost of the service and for the present
 // speed of the machine.
-#ifndef BALLPISTON_TESTS_FAULT_TORTURE_BARE_ENGINE_H_
-#define BALLPISTON_TESTS_FAULT_TORTURE_BARE_ENGINE_H_
+#pragma once
 
 #include <atomic>
 #include <chrono>
@@ -49,5 +48,3 @@ class BareEngine {
 };
 
 }  // namespace ballpiston::torture
-
-#endif  // BALLPISTON_TESTS_FAULT_TORTURE_BARE_ENGINE_H_

@@ -1,6 +1,5 @@
 // Unary calls of the ensemble service, for clients whose server is killed.
-#ifndef BALLPISTON_TESTS_FAULT_TORTURE_CALLS_H_
-#define BALLPISTON_TESTS_FAULT_TORTURE_CALLS_H_
+#pragma once
 
 #include <grpcpp/grpcpp.h>
 
@@ -37,5 +36,3 @@ absl::StatusOr<Response> Ask(Stub& stub,
 }
 
 }  // namespace ballpiston::torture
-
-#endif  // BALLPISTON_TESTS_FAULT_TORTURE_CALLS_H_

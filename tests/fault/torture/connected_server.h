@@ -1,6 +1,5 @@
 // A server process, and gRPC channels to it.
-#ifndef BALLPISTON_TESTS_FAULT_TORTURE_CONNECTED_SERVER_H_
-#define BALLPISTON_TESTS_FAULT_TORTURE_CONNECTED_SERVER_H_
+#pragma once
 
 #include <grpcpp/grpcpp.h>
 
@@ -36,5 +35,3 @@ class ConnectedServer : public ServerProcess {
 };
 
 }  // namespace ballpiston::torture
-
-#endif  // BALLPISTON_TESTS_FAULT_TORTURE_CONNECTED_SERVER_H_

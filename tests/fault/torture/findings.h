@@ -1,6 +1,5 @@
 // A test's counts and errors. The program prints them as a table when it ends.
-#ifndef BALLPISTON_TESTS_FAULT_TORTURE_FINDINGS_H_
-#define BALLPISTON_TESTS_FAULT_TORTURE_FINDINGS_H_
+#pragma once
 
 #include <cstdint>
 #include <map>
@@ -37,5 +36,3 @@ class Findings {
 void PrintTable();
 
 }  // namespace ballpiston::torture
-
-#endif  // BALLPISTON_TESTS_FAULT_TORTURE_FINDINGS_H_

@@ -1,8 +1,7 @@
 // Clients that hang: a process that opens watches and then stops (SIGSTOP). After that, neither the
 // watches nor gRPC read what the server sends. Every other watch has not read its first message
 // either, which is as large as the job.
-#ifndef BALLPISTON_TESTS_FAULT_TORTURE_HUNG_READERS_H_
-#define BALLPISTON_TESTS_FAULT_TORTURE_HUNG_READERS_H_
+#pragma once
 
 #include <string>
 
@@ -33,5 +32,3 @@ class HungReaders {
 };
 
 }  // namespace ballpiston::torture
-
-#endif  // BALLPISTON_TESTS_FAULT_TORTURE_HUNG_READERS_H_

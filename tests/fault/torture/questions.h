@@ -1,6 +1,5 @@
 // The specifications of the torture tests, and their answers by a server that is not killed.
-#ifndef BALLPISTON_TESTS_FAULT_TORTURE_QUESTIONS_H_
-#define BALLPISTON_TESTS_FAULT_TORTURE_QUESTIONS_H_
+#pragma once
 
 #include <map>
 #include <memory>
@@ -44,5 +43,3 @@ Answer AnswerOf(const std::vector<v1::PointResult>& points);
 std::vector<Answer> UndisturbedAnswers(const std::vector<v1::EnsembleSpec>& questions);
 
 }  // namespace ballpiston::torture
-
-#endif  // BALLPISTON_TESTS_FAULT_TORTURE_QUESTIONS_H_

@@ -1,8 +1,7 @@
 // The size of the torture tests. By default each takes five seconds of one core or less, except the
 // two tests Kills, which start a server for each failpoint. BALLPISTON_TORTURE=1 in the environment
 // (`make torture`) selects the full size, 0.1 a tenth.
-#ifndef BALLPISTON_TESTS_FAULT_TORTURE_SIZES_H_
-#define BALLPISTON_TESTS_FAULT_TORTURE_SIZES_H_
+#pragma once
 
 namespace ballpiston::torture {
 
@@ -16,5 +15,3 @@ int Size(int brief, int full);
 bool HoldsToTimes();
 
 }  // namespace ballpiston::torture
-
-#endif  // BALLPISTON_TESTS_FAULT_TORTURE_SIZES_H_

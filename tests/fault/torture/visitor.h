@@ -6,8 +6,7 @@
 //   3. a cancellation that was acknowledged ends in CANCELLED;
 //   4. an end that was seen stays that end;
 //   5. a job that succeeded has the undisturbed answer, byte by byte, and its samples once.
-#ifndef BALLPISTON_TESTS_FAULT_TORTURE_VISITOR_H_
-#define BALLPISTON_TESTS_FAULT_TORTURE_VISITOR_H_
+#pragma once
 
 #include <grpcpp/grpcpp.h>
 
@@ -84,5 +83,3 @@ class Visitor {
 };
 
 }  // namespace ballpiston::torture
-
-#endif  // BALLPISTON_TESTS_FAULT_TORTURE_VISITOR_H_

@@ -6,8 +6,7 @@
 //   4. points done and samples never go back within one life of the server;
 //   5. the terminal state is sent once, as the last message, before OK; no watch ends with OK
 //      without it.
-#ifndef BALLPISTON_TESTS_FAULT_TORTURE_WATCH_CHAIN_H_
-#define BALLPISTON_TESTS_FAULT_TORTURE_WATCH_CHAIN_H_
+#pragma once
 
 #include <atomic>
 #include <optional>
@@ -58,5 +57,3 @@ class WatchChain {
 };
 
 }  // namespace ballpiston::torture
-
-#endif  // BALLPISTON_TESTS_FAULT_TORTURE_WATCH_CHAIN_H_

@@ -1,7 +1,6 @@
 // Compares two ways of running in short alternate windows, so that other load of the machine
 // affects both equally.
-#ifndef BALLPISTON_TESTS_FAULT_TORTURE_WINDOWS_H_
-#define BALLPISTON_TESTS_FAULT_TORTURE_WINDOWS_H_
+#pragma once
 
 #include <chrono>
 #include <string>
@@ -52,5 +51,3 @@ class PairedRatio {
 };
 
 }  // namespace ballpiston::torture
-
-#endif  // BALLPISTON_TESTS_FAULT_TORTURE_WINDOWS_H_

@@ -1,6 +1,5 @@
 // One watch of a job, message by message.
-#ifndef BALLPISTON_TESTS_SERVER_API_WATCH_STREAM_H_
-#define BALLPISTON_TESTS_SERVER_API_WATCH_STREAM_H_
+#pragma once
 
 #include <memory>
 #include <optional>
@@ -58,5 +57,3 @@ struct WatchStream {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_API_WATCH_STREAM_H_

@@ -1,7 +1,6 @@
 // A Slurm cluster in the test's process. It starts, runs, loses and kills tasks when the test says
 // so. It outlives the executors that use it. Thread-safe.
-#ifndef BALLPISTON_TESTS_SERVER_EXECUTION_FAKE_SLURM_H_
-#define BALLPISTON_TESTS_SERVER_EXECUTION_FAKE_SLURM_H_
+#pragma once
 
 #include <cstddef>
 #include <map>
@@ -80,5 +79,3 @@ class FakeSlurm {
 absl::StatusOr<ArrayTask> TaskIn(const std::string& folder, size_t task);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_EXECUTION_FAKE_SLURM_H_

@@ -1,6 +1,5 @@
 // Points that need a pilot before their model is known. Points and pilots are fake experiments.
-#ifndef BALLPISTON_TESTS_SERVER_FAKE_PILOTS_H_
-#define BALLPISTON_TESTS_SERVER_FAKE_PILOTS_H_
+#pragma once
 
 #include <cstddef>
 #include <functional>
@@ -102,5 +101,3 @@ class FakePilotOpener : public PointOpener {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_FAKE_PILOTS_H_

@@ -1,6 +1,5 @@
 // A journal that remembers everything, for tests of the scheduler.
-#ifndef BALLPISTON_TESTS_SERVER_RECORDING_JOURNAL_H_
-#define BALLPISTON_TESTS_SERVER_RECORDING_JOURNAL_H_
+#pragma once
 
 #include <atomic>
 #include <condition_variable>
@@ -86,5 +85,3 @@ class RecordingJournal : public RunJournal {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_RECORDING_JOURNAL_H_

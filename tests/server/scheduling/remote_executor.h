@@ -2,8 +2,7 @@
 //
 // The test decides when a lease is taken, which chunks are reported, how often and in which order,
 // and whether the lease is returned. Only Wake may be called from another thread.
-#ifndef BALLPISTON_TESTS_SERVER_REMOTE_EXECUTOR_H_
-#define BALLPISTON_TESTS_SERVER_REMOTE_EXECUTOR_H_
+#pragma once
 
 #include <atomic>
 #include <cstdint>
@@ -97,5 +96,3 @@ class RemoteExecutor : public Executor {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_REMOTE_EXECUTOR_H_

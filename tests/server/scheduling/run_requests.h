@@ -1,6 +1,5 @@
 // Requests and checks of runs with fake experiments.
-#ifndef BALLPISTON_TESTS_SERVER_RUN_REQUESTS_H_
-#define BALLPISTON_TESTS_SERVER_RUN_REQUESTS_H_
+#pragma once
 
 #include <cstdint>
 #include <limits>
@@ -52,5 +51,3 @@ inline void ExpectAllPointsRight(const EnsembleSpec& spec, const RecordingJourna
 }
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_RUN_REQUESTS_H_

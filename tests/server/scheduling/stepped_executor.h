@@ -1,6 +1,5 @@
 // A local executor without threads: the test takes its turns, so a schedule can be repeated.
-#ifndef BALLPISTON_TESTS_SERVER_STEPPED_EXECUTOR_H_
-#define BALLPISTON_TESTS_SERVER_STEPPED_EXECUTOR_H_
+#pragma once
 
 #include <cstdint>
 #include <limits>
@@ -86,5 +85,3 @@ class SteppedExecutor : public Executor {
 };
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_STEPPED_EXECUTOR_H_

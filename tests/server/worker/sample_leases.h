@@ -1,6 +1,5 @@
 // Leases for tests of the worker: of every experiment, by every model that samples.
-#ifndef BALLPISTON_TESTS_SERVER_WORKER_SAMPLE_LEASES_H_
-#define BALLPISTON_TESTS_SERVER_WORKER_SAMPLE_LEASES_H_
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -37,5 +36,3 @@ std::vector<ChunkResult> AllChunks(const PointExperiment& experiment);
 bool AreEqual(const std::vector<ChunkResult>& a, const std::vector<ChunkResult>& b);
 
 }  // namespace ballpiston::server
-
-#endif  // BALLPISTON_TESTS_SERVER_WORKER_SAMPLE_LEASES_H_
