@@ -13,6 +13,7 @@
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/resource_quota.h"
 #include "grpcpp/server_builder.h"
+#include "server/api/reflection_limit.h"
 #include "server/api/take_snapshot.h"
 #include "server/jobs/job_name.h"
 #include "server/observability/failpoint.h"
@@ -24,10 +25,13 @@ namespace {
 constexpr int kTurns = 8;  // of calls that compute
 constexpr int kMinPingIntervalMs = 15'000;
 constexpr int kStreamsPerConnection = 2'048;  // twice what one principal may watch
-constexpr int kUnaryThreads = 1'024;
+// Of calls that are not counted as streams. One principal can fill a quarter of them with answers
+// that it does not read (--max-calls-per-principal).
+constexpr int kOtherThreads = 4'096;
 // The longest delay until health reports that the store fails.
 constexpr std::chrono::milliseconds kHealthInterval(500);
 constexpr std::chrono::milliseconds kLimitsInterval(1000);
+constexpr std::chrono::milliseconds kStalledInterval(1000);
 
 // Seconds of one core of a lease of the threads. Without a cluster they take all chunks of a point
 // at once, which keeps their lanes full.
@@ -73,7 +77,7 @@ void SetAge(grpc::ServerBuilder& builder, const ConnectionTiming& timing) {
 }
 
 // Bounds what clients can use before they are authenticated: streams, memory and threads. Each call
-// has a thread. There are more than the streams can take, so that other calls always find one.
+// has a thread. There are more than the streams can take, so that other calls find one.
 void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   using Option = grpc::ServerBuilder::SyncServerOption;
   grpc::ResourceQuota quota("ballpiston");
@@ -81,7 +85,7 @@ void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
     quota.Resize(static_cast<size_t>(limits.max_transfer_mib) << 20);
   }
   if (limits.max_streams > 0) {
-    quota.SetMaxThreads(static_cast<int>(limits.max_streams) + kUnaryThreads);
+    quota.SetMaxThreads(static_cast<int>(limits.max_streams) + kOtherThreads);
   }
   builder.SetResourceQuota(quota);
   // By default gRPC would start a thread for each core, and end the process if the quota has fewer
@@ -186,8 +190,7 @@ void BallpistonServer::StartExecutors() {
 void BallpistonServer::StartKeepingLimits() {
   limits_ =
       std::make_unique<PeriodicThread>(kLimitsInterval, [this] { book_.KeepLimits(absl::Now()); });
-  stalled_ =
-      std::make_unique<PeriodicThread>(options_.watch.heartbeat, [this] { streams_.EndStalled(); });
+  stalled_ = std::make_unique<PeriodicThread>(kStalledInterval, [this] { streams_.EndStalled(); });
 }
 
 BallpistonServer::~BallpistonServer() { Shutdown(std::chrono::milliseconds(0)); }
@@ -235,6 +238,7 @@ absl::Status BallpistonServer::Listen() {
   builder.RegisterService(&server_);
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
   interceptors.push_back(calls_.InterceptorFactory());
+  interceptors.push_back(std::make_unique<ReflectionLimit>());
   builder.experimental().SetInterceptorCreators(std::move(interceptors));
   SocketListener::Receive receive = AddReceiver(builder);
   grpc_ = builder.BuildAndStart();

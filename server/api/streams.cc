@@ -9,6 +9,9 @@
 namespace ballpiston::server {
 namespace {
 
+// A stream that has not checked its credentials for so long after it should have, stalls.
+constexpr std::chrono::seconds kGrace(1);
+
 bool IsFull(int64_t streams, int64_t limit) { return limit != 0 && streams >= limit; }
 
 absl::Status TooManyStreams(const std::string& what, const std::string& flag, int64_t limit) {
@@ -86,7 +89,7 @@ void Streams::EndStalled() {
   MutexLock lock(mutex_);
   const auto now = Stream::Clock::now();
   for (Stream* stream : streams_) {
-    const bool is_stalled = now >= stream->next_check() + heartbeat_;
+    const bool is_stalled = now >= stream->next_check() + kGrace;
     if (is_stalled && !Authenticate(*stream).ok()) stream->context_.TryCancel();
   }
 }

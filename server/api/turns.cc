@@ -11,18 +11,20 @@ Turns::Turn::~Turn() { turns_.GiveBack(principal_); }
 
 void Turns::Take(const std::string& principal) {
   MutexLock lock(mutex_);
-  while (taken_ >= all_ || of_[principal] >= of_one_) changed_.Wait(mutex_);
+  OfPrincipal& own = principals_[principal];
+  ++own.calls;
+  while (taken_ >= all_ || own.taken >= of_one_) own.changed.Wait(mutex_);
   ++taken_;
-  ++of_[principal];
+  ++own.taken;
 }
 
 void Turns::GiveBack(const std::string& principal) {
-  {
-    MutexLock lock(mutex_);
-    --taken_;
-    if (--of_[principal] == 0) of_.erase(principal);
-  }
-  changed_.NotifyAll();
+  MutexLock lock(mutex_);
+  const auto own = principals_.find(principal);
+  --taken_;
+  --own->second.taken;
+  if (--own->second.calls == 0) principals_.erase(own);
+  for (auto& [name, other] : principals_) other.changed.NotifyOne();
 }
 
 }  // namespace ballpiston::server

@@ -29,14 +29,20 @@ class Turns {
   };
 
  private:
+  // A condition each, so that a turn that is given back wakes one call of each principal.
+  struct OfPrincipal {
+    int taken = 0;
+    int calls = 0;  // with a turn, or waiting for one
+    Condition changed;
+  };
+
   void Take(const std::string& principal);
   void GiveBack(const std::string& principal);
 
   const int all_, of_one_;
   Mutex mutex_;
-  Condition changed_;
   int taken_ ABSL_GUARDED_BY(mutex_) = 0;
-  std::map<std::string, int> of_ ABSL_GUARDED_BY(mutex_);
+  std::map<std::string, OfPrincipal> principals_ ABSL_GUARDED_BY(mutex_);
 };
 
 }  // namespace ballpiston::server
