@@ -497,6 +497,22 @@ TEST_F(WatchTest, APrincipalsStreamsAreLimited) {
   AwaitThat([&] { return WatchStream(server, name).Next().has_value(); });
 }
 
+// gRPC's own error would have no reason.
+TEST_F(WatchTest, WatchesLeaveThreadsToOtherCalls) {
+  constexpr int kMost = 100;
+  RunningServer& server =
+      StartWith({.factory = GatedExperiments(gate_), .limits = {.max_streams = kMost}});
+  const std::string name = server.Submit(Equilibrium(1, 5));
+  std::vector<std::unique_ptr<WatchStream>> watches;
+  for (int i = 0; i < kMost; ++i) {
+    watches.push_back(std::make_unique<WatchStream>(server, name));
+    ASSERT_TRUE(watches.back()->Next());
+  }
+  EXPECT_THAT(WatchStream(server, name).End(),
+              IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_STREAMS"));
+  EXPECT_EQ(server.Status().streams(), kMost);
+}
+
 TEST(Streams, AreCountedByPrincipal) {
   const Limits limits = {.max_streams = 3, .max_streams_per_principal = 2};
   const Authenticator authenticator;
