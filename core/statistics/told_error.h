@@ -5,7 +5,7 @@
 // determine the mean. An error is given if there are at least kEventsForAnError independent events
 // of this kind. Its own relative error is then 1/sqrt(2 kEventsForAnError) = 10 %. The events are:
 //   mean over samples               the samples
-//   coefficient of variation        a twentieth of these (experiment/return_time.cc)
+//   coefficient of variation        a twentieth of these (experiment/first_hit.cc)
 //   mean return time                the expected number of long returns, where these are rare
 //   mean sigma                      the expected samples of the rarer sign
 //   mean free times in equilibrium  a tenth of the collisions (experiment/equilibrium.cc)

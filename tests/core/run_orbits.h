@@ -12,7 +12,7 @@ bool RunAll(Engine engine, const PairGeometry& geometry, Orbits& orbits) {
     explicit Numbered(Orbits& orbits) : orbits_(orbits) {}
     PairState Start(uint64_t orbit) override { return orbits_.Start(orbit); }
     AfterContact Meet(uint64_t orbit, const Contact& contact) override {
-      return orbits_.Meet(orbit, contact);
+      return contact.escaped ? AfterContact::kEnd : orbits_.Meet(orbit, contact);
     }
 
    private:

@@ -17,7 +17,7 @@
 #include "core/closed_form/conditional_rate.h"
 #include "core/closed_form/ingoing_law.h"
 #include "core/closed_form/mean_free_time.h"
-#include "core/experiment/long_returns.h"
+#include "core/experiment/expected_returns.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/statistics/kl_divergence.h"
 #include "core/statistics/told_error.h"
