@@ -13,6 +13,7 @@
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/resource_quota.h"
 #include "grpcpp/server_builder.h"
+#include "server/api/reflection_limit.h"
 #include "server/api/take_snapshot.h"
 #include "server/jobs/job_name.h"
 #include "server/observability/failpoint.h"
@@ -21,16 +22,16 @@
 namespace ballpiston::server {
 namespace {
 
-// These threads mostly wait for the disk.
-constexpr int kRpcThreads = 8;
-// The longest time between two looks at the watches. Their snapshots are further apart.
-constexpr std::chrono::milliseconds kLongestLook(50);
+constexpr int kTurns = 8;  // of calls that compute
 constexpr int kMinPingIntervalMs = 15'000;
 constexpr int kStreamsPerConnection = 2'048;  // twice what one principal may watch
-constexpr int kBlockingThreads = 32;
+// Of calls that are not counted as streams. One principal can fill a quarter of them with answers
+// that it does not read (--max-calls-per-principal).
+constexpr int kOtherThreads = 4'096;
 // The longest delay until health reports that the store fails.
 constexpr std::chrono::milliseconds kHealthInterval(500);
 constexpr std::chrono::milliseconds kLimitsInterval(1000);
+constexpr std::chrono::milliseconds kStalledInterval(1000);
 
 // Seconds of one core of a lease of the threads. Without a cluster they take all chunks of a point
 // at once, which keeps their lanes full.
@@ -75,15 +76,17 @@ void SetAge(grpc::ServerBuilder& builder, const ConnectionTiming& timing) {
   Set(builder, GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS, timing.certified_age_grace);
 }
 
-// Bounds what clients can use before they are authenticated: streams, memory, and the threads of
-// reflection, the only service that blocks a thread for each stream.
+// Bounds what clients can use before they are authenticated: streams, memory and threads. Each call
+// has a thread. There are more than the streams can take, so that other calls find one.
 void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   using Option = grpc::ServerBuilder::SyncServerOption;
   grpc::ResourceQuota quota("ballpiston");
   if (limits.max_transfer_mib > 0) {
     quota.Resize(static_cast<size_t>(limits.max_transfer_mib) << 20);
   }
-  quota.SetMaxThreads(kBlockingThreads);
+  if (limits.max_streams > 0) {
+    quota.SetMaxThreads(static_cast<int>(limits.max_streams) + kOtherThreads);
+  }
   builder.SetResourceQuota(quota);
   // By default gRPC would start a thread for each core, and end the process if the quota has fewer
   // threads.
@@ -138,15 +141,13 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
       directory_(std::move(directory)),
       address_(std::move(address)),
       security_(std::move(security)),
-      watches_(std::min(kLongestLook, options_.watch.snapshot)),
       store_(std::move(store)),
       crashes_(std::make_shared<CrashRecord>(directory_.path())),
       ladder_(*store_, options_.workers, OptionsOfScheduler(options_).memory_limit),
       factory_(options_.factory ? std::make_unique<FactoryOpener>(options_.factory) : nullptr),
       scheduler_(factory_ ? *factory_ : static_cast<PointOpener&>(ladder_), options_.workers,
                  OptionsOfScheduler(options_)),
-      book_(
-          *store_, options_.limits, scheduler_, [this] { watches_.LookNow(); }, crashes_),
+      book_(*store_, options_.limits, scheduler_, crashes_),
       threads_(scheduler_, options_.workers, options_.slurm ? kLeaseBesideACluster : kWholePoint,
                crashes_),
       slurm_(options_.slurm
@@ -154,7 +155,9 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
                        scheduler_, *options_.slurm, std::make_unique<SlurmTools>(*options_.slurm),
                        store_->identity(), [this] { return store_->Flush(); }, crashes_)
                  : nullptr),
-      executor_(kRpcThreads),
+      open_calls_(options_.limits),
+      turns_(kTurns, kTurns / 2),
+      streams_(options_.limits, security_->authenticator(), options_.watch.heartbeat, draining_),
       context_{security_->authenticator(),
                options_.limits,
                book_,
@@ -162,8 +165,9 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
                threads_,
                slurm_.get(),
                ladder_,
-               executor_,
-               watches_,
+               open_calls_,
+               turns_,
+               streams_,
                activity_,
                draining_,
                RandomId(),
@@ -186,6 +190,7 @@ void BallpistonServer::StartExecutors() {
 void BallpistonServer::StartKeepingLimits() {
   limits_ =
       std::make_unique<PeriodicThread>(kLimitsInterval, [this] { book_.KeepLimits(absl::Now()); });
+  stalled_ = std::make_unique<PeriodicThread>(kStalledInterval, [this] { streams_.EndStalled(); });
 }
 
 BallpistonServer::~BallpistonServer() { Shutdown(std::chrono::milliseconds(0)); }
@@ -233,6 +238,7 @@ absl::Status BallpistonServer::Listen() {
   builder.RegisterService(&server_);
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
   interceptors.push_back(calls_.InterceptorFactory());
+  interceptors.push_back(std::make_unique<ReflectionLimit>());
   builder.experimental().SetInterceptorCreators(std::move(interceptors));
   SocketListener::Receive receive = AddReceiver(builder);
   grpc_ = builder.BuildAndStart();
@@ -275,16 +281,14 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   const auto deadline = std::chrono::system_clock::now() + drain;
   if (health_ != nullptr) health_->Drain();
   draining_ = true;
-  watches_.LookNow();
   limits_.reset();
+  stalled_.reset();
   book_.Shutdown();
   Failpoint("stop.before_flush");
   store_->Flush().IgnoreError();
   book_.StoreNewWork(absl::Now());
   if (listener_ != nullptr) listener_->Stop();
   if (grpc_ != nullptr) grpc_->Shutdown(deadline);
-  executor_.Stop();
-  watches_.Stop();
   if (metrics_ != nullptr) metrics_->Detach();
   store_->Close();
 }

@@ -115,7 +115,6 @@ class BallpistonServer {
   bool shut_down_ = false;
   Activity activity_;
   CallObserver calls_;
-  WatchRegistry watches_;
   std::unique_ptr<Store> store_;
   std::shared_ptr<CrashRecord> crashes_;
   ModelLadder ladder_;
@@ -125,7 +124,9 @@ class BallpistonServer {
   // After the book: the executors' threads use the book.
   ThreadExecutor threads_;
   std::unique_ptr<SlurmExecutor> slurm_;  // null without a cluster
-  RpcExecutor executor_;
+  OpenCalls open_calls_;
+  Turns turns_;
+  Streams streams_;
   ServiceContext context_;
   EnsembleService ensemble_;
   AnalyticService analytic_;
@@ -135,6 +136,7 @@ class BallpistonServer {
   std::unique_ptr<grpc::Server> grpc_;
   std::unique_ptr<SocketListener> listener_;
   std::unique_ptr<PeriodicThread> limits_;    // calls JobBook::KeepLimits
+  std::unique_ptr<PeriodicThread> stalled_;   // calls Streams::EndStalled
   std::unique_ptr<Health> health_;            // after grpc_, which owns the health service
   std::unique_ptr<MetricsEndpoint> metrics_;  // last: it reads all members above
 };

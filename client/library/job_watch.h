@@ -41,8 +41,8 @@ struct WatchOptions {
 // SUCCEEDED, FAILED or CANCELLED.
 bool HasEnded(v1::EnsembleJob::State state);
 
-// Blocks until the job has ended, and returns the ended job. CANCELLED if `stop` was requested (the
-// job continues), UNAVAILABLE if the watch gave up, else the server's error.
+// Blocks until the job has ended, and returns the ended job, without its grid. CANCELLED if `stop`
+// was requested (the job continues), UNAVAILABLE if the watch gave up, else the server's error.
 absl::StatusOr<v1::EnsembleJob> WatchJob(v1::EnsembleService::StubInterface& stub,
                                          const std::string& name, const WatchCallbacks& callbacks,
                                          const WatchOptions& options = {},

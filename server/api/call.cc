@@ -24,14 +24,14 @@ bool IsRequestId(const std::string& id) {
   return !id.empty() && id.size() <= kMaxRequestId && std::all_of(id.begin(), id.end(), permitted);
 }
 
-std::string RequestIdOf(const grpc::CallbackServerContext& context) {
+std::string RequestIdOf(const grpc::ServerContext& context) {
   const auto found = context.client_metadata().find(kRequestId);
   if (found == context.client_metadata().end()) return RandomId();
   const std::string id(found->second.data(), found->second.size());
   return IsRequestId(id) ? id : RandomId();
 }
 
-absl::string_view UserAgentOf(const grpc::CallbackServerContext& context) {
+absl::string_view UserAgentOf(const grpc::ServerContext& context) {
   const auto found = context.client_metadata().find("user-agent");
   if (found == context.client_metadata().end()) return "";
   return {found->second.data(), found->second.size()};
@@ -50,7 +50,7 @@ absl::Status RoleTooLow(const Principal& caller, Role least) {
 
 }  // namespace
 
-absl::StatusOr<Call> AdmitCall(const ServiceContext& service, grpc::CallbackServerContext& context,
+absl::StatusOr<Call> AdmitCall(const ServiceContext& service, grpc::ServerContext& context,
                                const CallRule& rule) {
   Call call = {.method = rule.method, .request_id = RequestIdOf(context), .caller = {}};
   context.AddTrailingMetadata(kRequestId, call.request_id);

@@ -23,12 +23,11 @@ struct CallRule {
   bool writes = false;  // waits for the disk
 };
 
-// Authenticates and authorises a call. Does not block, so gRPC's own threads can call it. Always
-// sends the request id back in the trailing metadata.
+// Authenticates and authorises a call. Always sends the request id back in the trailing metadata.
 //   FAILED_PRECONDITION  CLIENT_VERSION_NOT_SERVED
 //   UNAUTHENTICATED    CREDENTIALS_MISSING, CREDENTIALS_INVALID, CREDENTIALS_EXPIRED
 //   PERMISSION_DENIED  ROLE_TOO_LOW
-absl::StatusOr<Call> AdmitCall(const ServiceContext& service, grpc::CallbackServerContext& context,
+absl::StatusOr<Call> AdmitCall(const ServiceContext& service, grpc::ServerContext& context,
                                const CallRule& rule);
 
 }  // namespace ballpiston::server

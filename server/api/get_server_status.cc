@@ -86,9 +86,8 @@ double StoredJobs(Store& store) {
   return jobs;
 }
 
-void AddPrincipals(const ServerSnapshot& now, const WatchRegistry& watches, const Principal& caller,
-                   v1::ServerStatus& status) {
-  const std::map<std::string, int64_t> streams = watches.StreamsByPrincipal();
+void AddPrincipals(const ServerSnapshot& now, const std::map<std::string, int64_t>& streams,
+                   const Principal& caller, v1::ServerStatus& status) {
   for (const PrincipalSnapshot& of_one : now.principals) {
     if (!caller.MaySee(of_one.principal)) continue;
     v1::PrincipalStatus& principal = *status.add_principals();
@@ -114,7 +113,7 @@ absl::StatusOr<v1::ServerStatus> GetServerStatus(ServiceContext& service, const 
   *status.mutable_limits() = LimitsMessage(service.limits);
   status.set_principal(call.caller.name);
   status.set_role(RoleName(call.caller.role));
-  AddPrincipals(now, service.watches, call.caller, status);
+  AddPrincipals(now, service.streams.ByPrincipal(), call.caller, status);
   return status;
 }
 

@@ -1,13 +1,16 @@
-// The unary methods of the API, one row each. A row declares the function that executes the method
-// in a file of its own, and the method of its service. To add a method: its proto, a row, a file.
-// The protos have the contracts and errors.
+// The methods of the API, one row each. A row declares the function that executes the method in a
+// file of its own, and the method of its service. To add a method: its proto, a row, a file. The
+// protos have the contracts and errors.
 #pragma once
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "ballpiston/v1/analytic.pb.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "ballpiston/v1/server.pb.h"
+#include "ballpiston/v1/trace.pb.h"
 #include "google/protobuf/empty.pb.h"
+#include "grpcpp/support/sync_stream.h"
 #include "server/api/call.h"
 #include "server/api/service_context.h"
 
@@ -32,6 +35,13 @@
 #define BALLPISTON_SERVER_METHODS(METHOD) \
   METHOD(GetServerStatus, v1::GetServerStatusRequest, v1::ServerStatus, Role::kRead, false)
 
+// STREAM(name, request, message, least role)
+#define BALLPISTON_ENSEMBLE_STREAMS(STREAM) \
+  STREAM(WatchEnsembleJob, v1::WatchEnsembleJobRequest, v1::WatchEnsembleJobResponse, Role::kRead)
+
+#define BALLPISTON_TRACE_STREAMS(STREAM) \
+  STREAM(TraceOrbit, v1::TraceOrbitRequest, v1::TraceOrbitResponse, Role::kSubmit)
+
 namespace ballpiston::server {
 
 #define BALLPISTON_DECLARE(name, Request, Response, role, writes) \
@@ -40,5 +50,12 @@ BALLPISTON_ENSEMBLE_METHODS(BALLPISTON_DECLARE)
 BALLPISTON_ANALYTIC_METHODS(BALLPISTON_DECLARE)
 BALLPISTON_SERVER_METHODS(BALLPISTON_DECLARE)
 #undef BALLPISTON_DECLARE
+
+#define BALLPISTON_DECLARE_STREAM(name, Request, Message, role)                      \
+  absl::Status name(ServiceContext& service, Stream& stream, const Request& request, \
+                    grpc::ServerWriter<Message>& writer);
+BALLPISTON_ENSEMBLE_STREAMS(BALLPISTON_DECLARE_STREAM)
+BALLPISTON_TRACE_STREAMS(BALLPISTON_DECLARE_STREAM)
+#undef BALLPISTON_DECLARE_STREAM
 
 }  // namespace ballpiston::server

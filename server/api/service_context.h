@@ -6,8 +6,9 @@
 #include <string>
 
 #include "absl/time/time.h"
-#include "server/api/rpc_executor.h"
-#include "server/api/watch_registry.h"
+#include "server/api/open_calls.h"
+#include "server/api/streams.h"
+#include "server/api/turns.h"
 #include "server/execution/slurm_executor.h"
 #include "server/execution/thread_executor.h"
 #include "server/jobs/job_book.h"
@@ -34,8 +35,9 @@ struct ServiceContext {
   const ThreadExecutor& threads;
   const SlurmExecutor* slurm;  // null without a cluster
   ModelLadder& ladder;
-  RpcExecutor& executor;
-  WatchRegistry& watches;
+  OpenCalls& open_calls;
+  Turns& turns;
+  Streams& streams;
   Activity& activity;
   const std::atomic<bool>& draining;
   std::string instance;  // of this server process, which numbers the changes

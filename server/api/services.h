@@ -1,5 +1,4 @@
-// The gRPC services: each unary method runs its function of methods.h inside the frame of
-// unary_rpc.h; the streams have reactors of their own.
+// The gRPC services: each method runs its function of methods.h in a frame of serve.h.
 #pragma once
 
 #include "ballpiston/v1/analytic.grpc.pb.h"
@@ -7,62 +6,62 @@
 #include "ballpiston/v1/server.grpc.pb.h"
 #include "ballpiston/v1/trace.grpc.pb.h"
 #include "server/api/methods.h"
+#include "server/api/serve.h"
 #include "server/api/service_context.h"
-#include "server/api/unary_rpc.h"
 
 namespace ballpiston::server {
 
-#define BALLPISTON_SERVE(name, Request, Response, role, writes)                                \
-  grpc::ServerUnaryReactor* name(grpc::CallbackServerContext* context, const Request* request, \
-                                 Response* response) override {                                \
-    return RunUnary<Request, Response>(service_, context, {#name, role, writes}, request,      \
-                                       response, &server::name);                               \
+#define BALLPISTON_SERVE(name, Request, Response, role, writes)                               \
+  grpc::Status name(grpc::ServerContext* context, const Request* request, Response* response) \
+      override {                                                                              \
+    return ServeUnary<Request, Response>(service_, *context, {#name, role, writes}, *request, \
+                                         *response, &server::name);                           \
+  }
+
+#define BALLPISTON_SERVE_STREAM(name, Request, Response, role)                  \
+  grpc::Status name(grpc::ServerContext* context, const Request* request,       \
+                    grpc::ServerWriter<Response>* writer) override {            \
+    return ServeStream(service_, *context, {#name, role}, [&](Stream& stream) { \
+      return server::name(service_, stream, *request, *writer);                 \
+    });                                                                         \
   }
 
 // `service` must outlive all services.
-class EnsembleService : public v1::EnsembleService::CallbackService {
+template <typename Service>
+class ServiceOf : public Service {
  public:
-  explicit EnsembleService(ServiceContext& service) : service_(service) {}
+  explicit ServiceOf(ServiceContext& service) : service_(service) {}
 
+ protected:
+  ServiceContext& service_;
+};
+
+class EnsembleService : public ServiceOf<v1::EnsembleService::Service> {
+ public:
+  using ServiceOf::ServiceOf;
   BALLPISTON_ENSEMBLE_METHODS(BALLPISTON_SERVE)
-  grpc::ServerWriteReactor<v1::WatchEnsembleJobResponse>* WatchEnsembleJob(
-      grpc::CallbackServerContext* context, const v1::WatchEnsembleJobRequest* request) override;
-
- private:
-  ServiceContext& service_;
+  BALLPISTON_ENSEMBLE_STREAMS(BALLPISTON_SERVE_STREAM)
 };
 
-class AnalyticService : public v1::AnalyticService::CallbackService {
+class AnalyticService : public ServiceOf<v1::AnalyticService::Service> {
  public:
-  explicit AnalyticService(ServiceContext& service) : service_(service) {}
-
+  using ServiceOf::ServiceOf;
   BALLPISTON_ANALYTIC_METHODS(BALLPISTON_SERVE)
-
- private:
-  ServiceContext& service_;
 };
 
-class TraceService : public v1::TraceService::CallbackService {
+class TraceService : public ServiceOf<v1::TraceService::Service> {
  public:
-  explicit TraceService(ServiceContext& service) : service_(service) {}
-
-  grpc::ServerWriteReactor<v1::TraceOrbitResponse>* TraceOrbit(
-      grpc::CallbackServerContext* context, const v1::TraceOrbitRequest* request) override;
-
- private:
-  ServiceContext& service_;
+  using ServiceOf::ServiceOf;
+  BALLPISTON_TRACE_STREAMS(BALLPISTON_SERVE_STREAM)
 };
 
-class ServerService : public v1::ServerService::CallbackService {
+class ServerService : public ServiceOf<v1::ServerService::Service> {
  public:
-  explicit ServerService(ServiceContext& service) : service_(service) {}
-
+  using ServiceOf::ServiceOf;
   BALLPISTON_SERVER_METHODS(BALLPISTON_SERVE)
-
- private:
-  ServiceContext& service_;
 };
 
 #undef BALLPISTON_SERVE
+#undef BALLPISTON_SERVE_STREAM
 
 }  // namespace ballpiston::server

@@ -75,7 +75,7 @@ ServerSnapshot TakeSnapshot(const ServiceContext& service) {
   snapshot.engine_crashes = service.book.engine_crashes();
   if (service.slurm != nullptr) snapshot.slurm = service.slurm->Status();
   AddStore(service, snapshot);
-  snapshot.streams = static_cast<int64_t>(service.watches.size());
+  snapshot.streams = static_cast<int64_t>(service.streams.size());
   return snapshot;
 }
 

@@ -1,48 +1,36 @@
-#include "server/api/trace_orbit.h"
-
-#include <memory>
+// TraceOrbit: the start and the events of one orbit. The events of a message are computed when the
+// reader has taken the previous message. The request bounds the cost of a trace (convert/trace.h).
+#include "server/api/methods.h"
+#include "server/convert/trace.h"
 
 namespace ballpiston::server {
+namespace {
 
-TraceReactor* TraceReactor::Start(ServiceContext& service, grpc::CallbackServerContext& context,
-                                  const absl::StatusOr<Call>& call,
-                                  const v1::TraceOrbitRequest& request) {
-  const std::shared_ptr<TraceReactor> reactor(new TraceReactor(service, context, request));
-  reactor->StreamReactor::Start(call);
-  return reactor.get();
+// Other calls compute in between.
+void FillInTurn(ServiceContext& service, const Stream& stream, TraceMessages& messages,
+                v1::TraceOrbitResponse& message) {
+  const Turns::Turn turn(service.turns, stream.caller().name);
+  messages.FillNext(message);
 }
 
-void TraceReactor::Look(Clock::time_point now) {
-  {
-    MutexLock lock(mutex_);
-    if (ended_ || now < next_check_) return;
-  }
-  Schedule();
-}
+}  // namespace
 
-absl::Status TraceReactor::Tell() {
-  if (!messages_) {
-    const absl::Status begun = Begin();
-    if (!begun.ok()) return begun;
-  }
-  messages_->FillNext(message_);
-  messages_->HasEnded() ? WriteLastAndEnd() : Write();
-  return absl::OkStatus();
-}
-
-absl::Status TraceReactor::Begin() {
-  const absl::StatusOr<TraceQuestion> question = TraceQuestion::Create(request_);
+absl::Status TraceOrbit(ServiceContext& service, Stream& stream,
+                        const v1::TraceOrbitRequest& request,
+                        grpc::ServerWriter<v1::TraceOrbitResponse>& writer) {
+  const absl::StatusOr<TraceQuestion> question = TraceQuestion::Create(request);
   if (!question.ok()) return question.status();
-  HeldCalls& calls = service_.executor.held_calls();
-  const absl::Status held = calls.Begin(caller_.name, question->Bytes(), service_.limits);
-  if (!held.ok()) return held;
-  bytes_held_ = question->Bytes();
-  messages_ = question->Start();
+  const auto memory = service.open_calls.Begin(stream.caller().name, question->Bytes());
+  if (!memory.ok()) return memory.status();
+  auto messages = question->Start();
+  v1::TraceOrbitResponse message;
+  while (!messages.HasEnded()) {
+    if (const absl::Status proceed = stream.Proceed(); !proceed.ok()) return proceed;
+    message.Clear();
+    FillInTurn(service, stream, messages, message);
+    if (!writer.Write(message)) return absl::CancelledError("the client is gone");
+  }
   return absl::OkStatus();
-}
-
-void TraceReactor::ReleaseCall() {
-  if (bytes_held_ > 0) service_.executor.held_calls().End(caller_.name, bytes_held_);
 }
 
 }  // namespace ballpiston::server

@@ -7,7 +7,7 @@
 
 namespace ballpiston::server {
 
-Job::Job(const JobRecord& record, std::function<void()> on_state_change)
+Job::Job(const JobRecord& record)
     : sequence_(record.sequence),
       id_(record.id),
       principal_(record.principal),
@@ -15,7 +15,6 @@ Job::Job(const JobRecord& record, std::function<void()> on_state_change)
       points_(record.points),
       open_ended_(
           IsOpenEnded(SpecFromBytes({record.spec.rest}).value_or(v1::EnsembleSpec()).target())),
-      on_state_change_(std::move(on_state_change)),
       numbers_{.bytes = record.bytes} {}
 
 LiveNumbers Job::Numbers() const {
@@ -26,11 +25,21 @@ LiveNumbers Job::Numbers() const {
 v1::JobProgress Job::Progress() const { return ProgressOf(points_, open_ended_, Numbers()); }
 
 void Job::NoteStateChange() {
-  {
-    MutexLock lock(mutex_);
-    last_state_change_ = ++last_change_;
+  MutexLock lock(mutex_);
+  last_state_change_ = ++last_change_;
+  state_changed_.NotifyAll();
+}
+
+void Job::AwaitStateChange(uint64_t after, std::chrono::steady_clock::time_point until) {
+  MutexLock lock(mutex_);
+  while (!stopping_ && last_state_change_ <= after && state_changed_.WaitUntil(mutex_, until)) {
   }
-  if (on_state_change_) on_state_change_();
+}
+
+void Job::StopWaiting() {
+  MutexLock lock(mutex_);
+  stopping_ = true;
+  state_changed_.NotifyAll();
 }
 
 uint64_t Job::AddSamples(double samples, double share_of_point) {

@@ -13,10 +13,10 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,8 +46,7 @@ struct StoredJob {
 
 class Job {
  public:
-  // `on_state_change` is called, without a lock, by NoteStateChange.
-  Job(const JobRecord& record, std::function<void()> on_state_change);
+  explicit Job(const JobRecord& record);
 
   int64_t sequence() const { return sequence_; }
   const std::string& id() const { return id_; }
@@ -65,6 +64,10 @@ class Job {
 
   // Call when a change of the row's state is committed.
   void NoteStateChange();
+  // Waits for a change of state after number `after`, at most until the time `until`.
+  void AwaitStateChange(uint64_t after, std::chrono::steady_clock::time_point until);
+  // From now on nobody waits: the server stops.
+  void StopWaiting();
 
   // Adds the samples of merged blocks or of a restored checkpoint, and their share of the point.
   // Returns the number of the change.
@@ -91,9 +94,10 @@ class Job {
   const int64_t restarts_;
   const int64_t points_;
   const bool open_ended_;  // the number of samples is not known in advance
-  const std::function<void()> on_state_change_;
 
   mutable Mutex mutex_;
+  Condition state_changed_;
+  bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
   LiveNumbers numbers_ ABSL_GUARDED_BY(mutex_);
   std::atomic<uint64_t> last_change_ = 1;
   std::atomic<uint64_t> last_state_change_ = 1;

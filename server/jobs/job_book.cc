@@ -202,11 +202,10 @@ absl::Status ReadRestored(Database& database, const JobRecord& record, const Ens
 }  // namespace
 
 JobBook::JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
-                 std::function<void()> on_state_change, std::shared_ptr<CrashRecord> crashes)
+                 std::shared_ptr<CrashRecord> crashes)
     : store_(store),
       limits_(limits),
       scheduler_(scheduler),
-      on_state_change_(std::move(on_state_change)),
       crashes_(std::move(crashes)),
       retention_(store, usage_, limits) {}
 
@@ -219,6 +218,8 @@ JobBook::~JobBook() {
 void JobBook::Shutdown() {
   store_.StopWaiting();
   scheduler_.Shutdown();
+  MutexLock lock(mutex_);
+  for (const auto& [id, job] : active_) job->StopWaiting();
 }
 
 // ---- resuming jobs of an earlier process ----
@@ -336,7 +337,7 @@ absl::Status JobBook::EndUnresumable(const JobRecord& record, const absl::Status
   const absl::Status read =
       store_.Read([&](Database& database) { return ReadStoredPoints(database, record, points); });
   if (!read.ok()) return read;
-  auto job = std::make_shared<Job>(record, nullptr);
+  auto job = std::make_shared<Job>(record);
   AddTo(*job, usage_, points);
   JobJournal(job, store_, usage_, true, nullptr).Ended(why);
   return absl::OkStatus();
@@ -364,7 +365,7 @@ absl::Status JobBook::ResumeRun(const JobRecord& record, EnsembleSpec spec) {
 }
 
 std::shared_ptr<Job> JobBook::Register(const JobRecord& record) {
-  auto job = std::make_shared<Job>(record, on_state_change_);
+  auto job = std::make_shared<Job>(record);
   MutexLock lock(mutex_);
   active_[record.id] = job;
   return job;
@@ -513,8 +514,9 @@ absl::StatusOr<FoundJob> JobBook::Find(const Principal& caller, const std::strin
   return FoundJob{.record = *std::move(record)};
 }
 
-absl::StatusOr<v1::EnsembleJob> JobBook::Get(const Principal& caller, const std::string& id) {
-  const absl::StatusOr<FoundJob> found = Find(caller, id, Grid::kIncluded);
+absl::StatusOr<v1::EnsembleJob> JobBook::Get(const Principal& caller, const std::string& id,
+                                             Grid grid) {
+  const absl::StatusOr<FoundJob> found = Find(caller, id, grid);
   if (!found.ok()) return found.status();
   return Message(found->record, found->active.get());
 }
@@ -720,7 +722,7 @@ absl::StatusOr<std::shared_ptr<const StoredJob>> JobBook::Stored(Job& job) {
     stored.change = job.last_state_change();  // before the row, which may be newer
     std::optional<JobRecord> record;
     const absl::Status read = store_.Read([&](Database& database) {
-      auto found = FindJobBySequence(database, job.sequence(), Grid::kIncluded);
+      auto found = FindJobBySequence(database, job.sequence(), Grid::kLeftOut);
       if (found.ok()) record = *std::move(found);
       return found.status();
     });

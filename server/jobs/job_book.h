@@ -95,17 +95,16 @@ struct EndedJobs {
 
 class JobBook {
  public:
-  // Store and scheduler must outlive this. The book calls `on_state_change` after each change of
-  // state.
+  // Store and scheduler must outlive this.
   JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
-          std::function<void()> on_state_change,
           std::shared_ptr<CrashRecord> crashes = std::make_shared<CrashRecord>());
   ~JobBook();  // shuts down
 
   // Resumes the unfinished jobs of an earlier process. Call before anything else.
   absl::Status Resume();
 
-  // Stops the computation. Unfinished jobs stay in the store as they are.
+  // Stops the computation, and all waits for a change of a job. Unfinished jobs stay in the store
+  // as they are.
   void Shutdown();
 
   // Records the processor time that was not stored yet.
@@ -123,7 +122,8 @@ class JobBook {
                                          const CheckedSpec& checked);
 
   // For all methods below, a job that the caller may not see does not exist.
-  absl::StatusOr<v1::EnsembleJob> Get(const Principal& caller, const std::string& id);
+  absl::StatusOr<v1::EnsembleJob> Get(const Principal& caller, const std::string& id,
+                                      Grid grid = Grid::kIncluded);
   absl::StatusOr<JobsPage> List(const Principal& caller, const JobsQuery& query);
   absl::StatusOr<v1::EnsembleJob> Cancel(const Principal& caller, const std::string& id,
                                          const std::string& request_id);
@@ -141,8 +141,8 @@ class JobBook {
 
   absl::StatusOr<WatchedJob> FindWatched(const Principal& caller, const std::string& id);
 
-  // The row of a job that is or was active; one read serves all watches. It is not older than the
-  // job's last change of state, or its last FindWatched.
+  // The row of a job that is or was active, without its grid; one read serves all watches. It is
+  // not older than the job's last change of state, or its last FindWatched.
   absl::StatusOr<std::shared_ptr<const StoredJob>> Stored(Job& job);
 
   // The job that clients see. `active`: null if it has ended.
@@ -202,7 +202,6 @@ class JobBook {
   Store& store_;
   const Limits limits_;
   Scheduler& scheduler_;
-  const std::function<void()> on_state_change_;
   const std::shared_ptr<CrashRecord> crashes_;
   mutable Mutex mutex_;
   std::map<std::string, std::shared_ptr<Job>> active_ ABSL_GUARDED_BY(mutex_);  // by id

@@ -84,14 +84,14 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
       : observer_(observer),
         call_(*info.server_context()),
         path_(info.method()),
-        counts_(observer.statistics_.Of(path_, info.type())),
+        labels_(CallStatistics::Of(path_, info.type())),
         begin_(Clock::now()) {
-    counts_.began->Increment();
+    observer_.statistics_.Began(labels_);
   }
 
   ~Interceptor() override {
-    if (!ended_) counts_.Ended(absl::StatusCode::kCancelled, Seconds());
-    observer_.Ended(call_);
+    if (!ended_) observer_.statistics_.Ended(labels_, absl::StatusCode::kCancelled, Seconds());
+    observer_.Forget(call_);
   }
 
   void Intercept(InterceptorBatchMethods* batch) override {
@@ -119,8 +119,8 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
     const grpc::Status status = batch.GetSendStatus();
     const absl::StatusCode code = CodeOf(status);
     const double seconds = Seconds();
-    counts_.Ended(code, seconds);
-    const std::string principal = observer_.Ended(call_);
+    observer_.statistics_.Ended(labels_, code, seconds);
+    const std::string principal = observer_.CallerOf(call_);
     if (status.ok()) return;
     const auto* trailing = batch.GetSendTrailingMetadata();
     const auto id = trailing->find(kRequestId);
@@ -136,7 +136,7 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
   CallObserver& observer_;
   const grpc::ServerContextBase& call_;
   const std::string path_;
-  const MethodCounts& counts_;
+  const prometheus::Labels labels_;
   const Clock::time_point begin_;
   std::atomic<bool> ended_ = false;
 };
@@ -161,13 +161,27 @@ CallObserver::InterceptorFactory() {
 
 void CallObserver::Identify(const grpc::ServerContextBase& call, const std::string& principal) {
   MutexLock lock(mutex_);
-  callers_[&call] = principal;
+  in_progress_[&call].principal = principal;
 }
 
-std::string CallObserver::Ended(const grpc::ServerContextBase& call) {
+void CallObserver::Keep(const grpc::ServerContextBase& call, std::shared_ptr<void> object) {
   MutexLock lock(mutex_);
-  const auto node = callers_.extract(&call);
-  return node.empty() ? "" : std::move(node.mapped());
+  in_progress_[&call].kept = std::move(object);
+}
+
+std::string CallObserver::CallerOf(const grpc::ServerContextBase& call) {
+  MutexLock lock(mutex_);
+  const auto found = in_progress_.find(&call);
+  return found == in_progress_.end() ? "" : found->second.principal;
+}
+
+void CallObserver::Forget(const grpc::ServerContextBase& call) {
+  std::shared_ptr<void> kept;  // released without the lock
+  MutexLock lock(mutex_);
+  const auto found = in_progress_.find(&call);
+  if (found == in_progress_.end()) return;
+  kept = std::move(found->second.kept);
+  in_progress_.erase(found);
 }
 
 // ---- failed calls ----

@@ -58,6 +58,9 @@ class CallObserver {
   // Sets the caller, for the log. Call before the method runs.
   void Identify(const grpc::ServerContextBase& call, const std::string& principal);
 
+  // Keeps an object until gRPC has sent the answer, which it does after the method has returned.
+  void Keep(const grpc::ServerContextBase& call, std::shared_ptr<void> object);
+
   CallStatistics& statistics() { return statistics_; }
 
   // The counts of all calls, of those that failed authentication or authorisation, and of those
@@ -71,7 +74,13 @@ class CallObserver {
   class Interceptor;
   class Factory;
 
-  std::string Ended(const grpc::ServerContextBase& call);  // returns the caller
+  struct CallInProgress {
+    std::string principal;
+    std::shared_ptr<void> kept = nullptr;
+  };
+
+  std::string CallerOf(const grpc::ServerContextBase& call);
+  void Forget(const grpc::ServerContextBase& call);
   void WriteLine(const FailedCall& call, Verdict verdict);
 
   prometheus::Registry registry_;  // first: it owns the counters of the next three
@@ -82,8 +91,7 @@ class CallObserver {
   LineBudget failures_{10, std::chrono::seconds(1)};
 
   Mutex mutex_;
-  std::map<const grpc::ServerContextBase*, std::string> callers_
-      ABSL_GUARDED_BY(mutex_);  // of calls in progress
+  std::map<const grpc::ServerContextBase*, CallInProgress> in_progress_ ABSL_GUARDED_BY(mutex_);
 };
 
 }  // namespace ballpiston::server

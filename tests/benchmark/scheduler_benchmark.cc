@@ -145,7 +145,7 @@ class Server {
         scheduler_(opener_, kLocalCores),
         local_(scheduler_, true, kLocalLeaseSeconds),
         remote_(scheduler_, false, lease_seconds),
-        book_(*store_, Limits{.max_samples_per_job = 0}, scheduler_, [] {}) {}
+        book_(*store_, Limits{.max_samples_per_job = 0}, scheduler_) {}
 
   static constexpr int kLocalCores = 2;
   static constexpr double kLocalLeaseSeconds = 5;

@@ -245,10 +245,12 @@ class Job:
             raise
 
     def _follow(self, screen: Progress) -> None:
+        specification = self.message.spec
         try:
             self.message = watch_job(self._connection, self.name, screen)
         finally:
             screen.close()
+        self.message.spec.CopyFrom(specification)  # a watch leaves out the grid
 
     def _raise_unless_succeeded(self) -> None:
         state = self._last_state()

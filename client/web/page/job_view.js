@@ -96,7 +96,8 @@
 
     takeJob(job) {
       const known = {answered_from_store: job.answered_from_store || fromStore.has(job.name)};
-      this.job = {...job, ...known};
+      const spec = this.job?.spec ?? job.spec; // a watch leaves out the grid
+      this.job = {...job, ...known, spec};
     }
 
     takePoint(point, isFinished) {
@@ -503,7 +504,8 @@
       }
     }
 
-    // A watch of an ended job sends the job last. Therefore the page first requests the job.
+    // A watch of an ended job sends the job last, and no watch sends the grid. Therefore the page
+    // first requests the job.
     async run() {
       const job = await keepTrying(
         () => call('EnsembleService/GetEnsembleJob', {name: this.name}, this.signal),

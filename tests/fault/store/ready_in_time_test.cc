@@ -88,7 +88,7 @@ double SecondsUntilReady(const std::string& path) {
   ThreadPool pool(2, FakeExperiments([](size_t, uint64_t, const std::stop_token& stop) {
                     Turnstile().Pass(stop);
                   }));
-  JobBook book(**store, Limits(), pool.scheduler(), nullptr);
+  JobBook book(**store, Limits(), pool.scheduler());
   EXPECT_OK(book.Resume());
   const double resumed = SecondsSince(start);
   EXPECT_OK(book.List(LocalPrincipal(), {.before = std::numeric_limits<int64_t>::max(),

@@ -80,8 +80,7 @@ ServiceOnDisk::ServiceOnDisk(FaultDisk& disk, Turnstile* turnstile) {
   if (!status_.ok()) return;
   store_ = *std::move(store);
   pool_ = std::make_unique<ThreadPool>(1, Factory(turnstile));
-  book_ =
-      std::make_unique<JobBook>(*store_, Limits(), pool_->scheduler(), [this] { OnStateChange(); });
+  book_ = std::make_unique<JobBook>(*store_, Limits(), pool_->scheduler());
   status_ = book_->Resume();
 }
 
@@ -116,25 +115,13 @@ std::vector<v1::EnsembleJob> ServiceOnDisk::List() {
   return listed.ok() ? listed->jobs : std::vector<v1::EnsembleJob>();
 }
 
-void ServiceOnDisk::OnStateChange() {
-  std::lock_guard lock(mutex_);
-  ++changes_;
-  changed_.notify_all();
-}
-
 v1::EnsembleJob ServiceOnDisk::AwaitEnd(const std::string& id) {
-  while (true) {
-    uint64_t seen = 0;
-    {
-      std::lock_guard lock(mutex_);
-      seen = changes_;
-    }
-    const auto job = Get(id);
-    if (job.ok() && HasEnded(job->state())) return *job;
-    if (absl::IsNotFound(job.status())) return {};
-    std::unique_lock lock(mutex_);
-    AwaitNotified(changed_, lock, [&] { return changes_ != seen; });
-  }
+  absl::StatusOr<v1::EnsembleJob> job;
+  AwaitThat([&] {
+    job = Get(id);
+    return absl::IsNotFound(job.status()) || (job.ok() && HasEnded(job->state()));
+  });
+  return job.value_or(v1::EnsembleJob());
 }
 
 std::vector<std::string> ServiceOnDisk::Results(const std::string& id) {

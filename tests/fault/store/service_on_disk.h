@@ -71,11 +71,6 @@ class ServiceOnDisk {
   void WriteLogBackOften();
 
  private:
-  void OnStateChange();
-
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  uint64_t changes_ = 0;
   absl::Status status_;
   std::unique_ptr<Store> store_;
   std::unique_ptr<ThreadPool> pool_;

@@ -1,4 +1,4 @@
-// The server stays healthy with a thousand watchers of one job.
+// The server stays healthy with a thousand watchers of one job, and stops in time.
 #include <grpcpp/generic/generic_stub.h>
 #include <gtest/gtest.h>
 
@@ -29,6 +29,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kMostHealthSeconds = 0.05;
 constexpr size_t kConnectionsOfWatchers = 10;
+constexpr double kDrainSeconds = 1;
 
 // A watch without a thread of its own.
 class LiveWatcher : public grpc::ClientReadReactor<v1::WatchEnsembleJobResponse> {
@@ -114,7 +115,8 @@ class LiveWatchers : public testing::Test {
   LiveWatchers()
       : queue_(Size(100, 1000)),
         server_({.workers = 2,
-                 .flags = {absl::StrFormat("--max-active-jobs-per-principal=%d", queue_)}}) {
+                 .flags = {absl::StrFormat("--max-active-jobs-per-principal=%d", queue_),
+                           absl::StrFormat("--drain-seconds=%g", kDrainSeconds)}}) {
     server_.Start();
     for (size_t i = 0; i < kConnectionsOfWatchers; ++i) {
       stubs_.push_back(v1::EnsembleService::NewStub(server_.Connect()));
@@ -162,9 +164,12 @@ TEST_F(LiveWatchers, AllGetTheEndAndHealthAnswersWithAFullQueue) {
   Health("a quiet server");
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, client.Create(Endless()));
   Health("one job");
+  const double mib_without = server_.ResidentMiB();
   Attach(Size(100, 1000), job.name());
   AwaitHeard(3);
   findings_.Count("watchers at once", static_cast<int64_t>(watchers_.size()));
+  findings_.Note("their memory in all, MiB",
+                 absl::StrFormat("%.1f", server_.ResidentMiB() - mib_without));
   Health("one job, all watching");
   EXPECT_EQ(FillQueue(client), queue_ - 1);
   findings_.Count("jobs in the full queue", queue_);
@@ -173,6 +178,20 @@ TEST_F(LiveWatchers, AllGetTheEndAndHealthAnswersWithAFullQueue) {
   CheckEnds();
   if (HoldsToTimes()) {
     EXPECT_LT(p99, kMostHealthSeconds);
+  }
+}
+
+TEST_F(LiveWatchers, DoNotDelayTheStop) {
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, server_.NewClient().Create(Endless()));
+  Attach(Size(100, 1000), job.name());
+  AwaitHeard(1);
+  const auto start = Clock::now();
+  EXPECT_EQ(server_.Stop(), 0);
+  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  findings_.Note("seconds to stop", absl::StrFormat("%.2f", seconds));
+  for (LiveWatcher& watcher : watchers_) EXPECT_FALSE(watcher.AwaitOk());
+  if (HoldsToTimes()) {
+    EXPECT_LT(seconds, kDrainSeconds);
   }
 }
 

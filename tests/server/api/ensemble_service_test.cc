@@ -43,7 +43,9 @@ TEST(EnsembleService, AJobRunsToItsEnd) {
   EXPECT_EQ(ended.progress().fraction(), 1);
   EXPECT_TRUE(ended.has_start_time());
   EXPECT_TRUE(ended.has_end_time());
-  EXPECT_EQ(server.Get(made.name()).SerializeAsString(), ended.SerializeAsString());
+  EnsembleJob now = server.Get(made.name());
+  now.mutable_spec()->clear_grid();  // a watch leaves it out
+  EXPECT_EQ(now.SerializeAsString(), ended.SerializeAsString());
 }
 
 TEST(EnsembleService, AllViolationsAreListedWithTheirPaths) {

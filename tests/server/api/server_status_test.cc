@@ -12,8 +12,8 @@
 #include "grpcpp/server_builder.h"
 #include "gtest/gtest.h"
 #include "server/api/methods.h"
+#include "server/api/serve.h"
 #include "server/api/services.h"
-#include "server/api/unary_rpc.h"
 #include "server/convert/spec.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
@@ -61,11 +61,12 @@ class ServerStatusTest : public testing::Test {
   ModelLadder ladder_{*store_, 2};
   ThreadPool pool_{
       2, FakeExperiments([this](size_t, uint64_t, std::stop_token stop) { gate_.Pass(stop); })};
-  JobBook book_{*store_, limits_, pool_.scheduler(), nullptr};
-  RpcExecutor executor_{1};
-  WatchRegistry watches_{std::chrono::milliseconds(1)};
+  JobBook book_{*store_, limits_, pool_.scheduler()};
+  OpenCalls open_calls_{limits_};
+  Turns turns_{1, 1};
   Activity activity_;
   std::atomic<bool> draining_ = false;
+  Streams streams_{limits_, authenticator_, std::chrono::seconds(10), draining_};
   CallObserver calls_;
   ServiceContext context_{.authenticator = authenticator_,
                           .limits = limits_,
@@ -74,8 +75,9 @@ class ServerStatusTest : public testing::Test {
                           .threads = pool_.threads(),
                           .slurm = nullptr,
                           .ladder = ladder_,
-                          .executor = executor_,
-                          .watches = watches_,
+                          .open_calls = open_calls_,
+                          .turns = turns_,
+                          .streams = streams_,
                           .activity = activity_,
                           .draining = draining_,
                           .instance = "test",
@@ -86,14 +88,10 @@ class ServerStatusTest : public testing::Test {
                           .store_path = folder_.File("store.sqlite3")};
 };
 
-TEST_F(ServerStatusTest, AnExceptionEndsTheCallOnly) {
-  using Request = v1::GetServerStatusRequest;
-  const auto throws = [](ServiceContext&, const Call&, const Request&) -> absl::StatusOr<Request> {
-    throw std::runtime_error("no memory left");
-  };
-  Request response;
-  EXPECT_THAT((Answer<Request, Request>(throws, context_, {}, Request(), response)),
-              StatusIs(grpc::StatusCode::INTERNAL, "no memory left"));
+TEST(Serve, AnExceptionEndsTheCallOnly) {
+  const auto throws = []() -> absl::Status { throw std::runtime_error("no memory left"); };
+  EXPECT_THAT(WithoutExceptions(throws),
+              StatusIs(absl::StatusCode::kInternal, testing::HasSubstr("no memory left")));
 }
 
 TEST_F(ServerStatusTest, CountsQueuedAndRunningWork) {

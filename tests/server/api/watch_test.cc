@@ -17,6 +17,7 @@
 #include "tests/server/api/watch_stream.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/own_channel.h"
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"
 #include "tests/server/store_access.h"
@@ -451,31 +452,25 @@ TEST_F(WatchTest, AStoppingServerEndsWatchesWithUnavailable) {
   EXPECT_THAT(status, IsError(grpc::StatusCode::UNAVAILABLE, "SHUTTING_DOWN"));
 }
 
-// The messages are larger than the memory for unsent messages. A reader waits until those before it
-// have read.
-TEST_F(WatchTest, ReadersOfALargeJobAreServedInTurn) {
+TEST_F(WatchTest, TheJobHasNoGrid) {
   RunningServer& server = Start(0);
   const std::string name = server.Submit(LargeEquilibrium());
-  std::vector<std::unique_ptr<WatchStream>> readers;  // 43 MB in all
-  for (int i = 0; i < 60; ++i) readers.push_back(std::make_unique<WatchStream>(server, name));
-  std::vector<std::thread> threads;
-  for (const auto& reader : readers) {
-    threads.emplace_back([&reader] {
-      const auto first = reader->Next();
-      ASSERT_TRUE(first);
-      EXPECT_EQ(first->job().spec().grid().delta_size(), 90'000);
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
+  WatchStream stream(server, name);
+  const auto first = stream.Next();
+  ASSERT_TRUE(first);
+  EXPECT_FALSE(first->job().spec().has_grid());
+  EXPECT_EQ(first->job().spec().experiment(), v1::EnsembleSpec::EQUILIBRIUM);
+  EXPECT_EQ(first->job().progress().points(), 90'000);
 }
 
 // Only the end of the time to drain can end these streams: a stop that waited for anything else
 // would never end.
 TEST_F(WatchTest, AStalledReaderDoesNotDelayAStop) {
   RunningServer& server = StartWith({.connections = kOnlyClosedByAStop});
-  const std::string name = server.Submit(LargeEquilibrium());
-  std::vector<std::unique_ptr<WatchStream>> stalled;  // 720 kB each, which nobody reads
-  for (int i = 0; i < 50; ++i) stalled.push_back(std::make_unique<WatchStream>(server, name));
+  const std::string name = server.Succeeded(Equilibrium(20'000, 1));
+  TestClient slow(OwnChannel(server.address(), nullptr, SmallWindow()));
+  std::vector<std::unique_ptr<WatchStream>> stalled;  // some MB each, which nobody reads
+  for (int i = 0; i < 50; ++i) stalled.push_back(std::make_unique<WatchStream>(slow, name));
   server.Shutdown(std::chrono::milliseconds(500));
   for (const auto& reader : stalled) EXPECT_THAT(reader->End(), Not(IsOk()));
 }
@@ -502,31 +497,42 @@ TEST_F(WatchTest, APrincipalsStreamsAreLimited) {
   AwaitThat([&] { return WatchStream(server, name).Next().has_value(); });
 }
 
-class Quiet : public Watch {
- public:
-  void Look(std::chrono::steady_clock::time_point) override {}
-};
+// gRPC's own error would have no reason.
+TEST_F(WatchTest, WatchesLeaveThreadsToOtherCalls) {
+  constexpr int kMost = 100;
+  RunningServer& server =
+      StartWith({.factory = GatedExperiments(gate_), .limits = {.max_streams = kMost}});
+  const std::string name = server.Submit(Equilibrium(1, 5));
+  std::vector<std::unique_ptr<WatchStream>> watches;
+  for (int i = 0; i < kMost; ++i) {
+    watches.push_back(std::make_unique<WatchStream>(server, name));
+    ASSERT_TRUE(watches.back()->Next());
+  }
+  EXPECT_THAT(WatchStream(server, name).End(),
+              IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_STREAMS"));
+  EXPECT_EQ(server.Status().streams(), kMost);
+}
 
-TEST(WatchRegistry, CountsStreamsByPrincipal) {
-  Quiet a, b, c, d;
-  WatchRegistry registry(kNever);
-  Limits limits;
-  limits.max_streams = 3;
-  limits.max_streams_per_principal = 2;
-  EXPECT_OK(registry.Add(&a, "ann", limits));
-  EXPECT_OK(registry.Add(&b, "ann", limits));
-  EXPECT_THAT(registry.Add(&c, "ann", limits), StatusIs(absl::StatusCode::kResourceExhausted));
-  EXPECT_OK(registry.Add(&c, "bob", limits));
-  EXPECT_THAT(registry.Add(&d, "bob", limits), StatusIs(absl::StatusCode::kResourceExhausted));
-  registry.Remove(&d);  // was not added
-  EXPECT_EQ(registry.size(), 3u);
-  EXPECT_THAT(registry.StreamsByPrincipal(),
-              testing::ElementsAre(testing::Pair("ann", 2), testing::Pair("bob", 1)));
-  registry.Remove(&c);
-  EXPECT_THAT(registry.StreamsByPrincipal(), testing::ElementsAre(testing::Pair("ann", 2)));
-  limits.max_streams = limits.max_streams_per_principal = 0;  // none
-  EXPECT_OK(registry.Add(&c, "ann", limits));
-  EXPECT_OK(registry.Add(&d, "ann", limits));
+TEST(Streams, AreCountedByPrincipal) {
+  const Limits limits = {.max_streams = 3, .max_streams_per_principal = 2};
+  const Authenticator authenticator;
+  const std::atomic<bool> draining = false;
+  Streams streams(limits, authenticator, kNever, draining);
+  grpc::ServerContext context;
+  const Principal ann{"ann"}, bob{"bob"};
+  Stream a(streams, context, ann), b(streams, context, ann), c(streams, context, ann);
+  EXPECT_OK(streams.Add(a));
+  EXPECT_OK(streams.Add(b));
+  EXPECT_THAT(streams.Add(c), StatusIs(absl::StatusCode::kResourceExhausted));
+  {
+    Stream d(streams, context, bob), e(streams, context, bob);
+    EXPECT_OK(streams.Add(d));
+    EXPECT_THAT(streams.Add(e), StatusIs(absl::StatusCode::kResourceExhausted));
+    EXPECT_EQ(streams.size(), 3u);
+    EXPECT_THAT(streams.ByPrincipal(),
+                testing::ElementsAre(testing::Pair("ann", 2), testing::Pair("bob", 1)));
+  }
+  EXPECT_THAT(streams.ByPrincipal(), testing::ElementsAre(testing::Pair("ann", 2)));
 }
 
 // ---- many ----

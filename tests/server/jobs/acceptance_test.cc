@@ -57,10 +57,7 @@ class AcceptanceTest : public testing::Test {
                          Store::Open(folder_.File("store"),
                                      {.delay = std::chrono::milliseconds(1), .stall = kNever}));
     pool_ = std::make_unique<ThreadPool>(2, Experiments());
-    book_ = std::make_unique<JobBook>(*store_, limits_, pool_->scheduler(), [this] {
-      std::lock_guard lock(mutex_);
-      changed_.notify_all();
-    });
+    book_ = std::make_unique<JobBook>(*store_, limits_, pool_->scheduler());
     ASSERT_OK(book_->Resume());
   }
 
@@ -100,8 +97,7 @@ class AcceptanceTest : public testing::Test {
 
   EnsembleJob AwaitEnd(const std::string& name) {
     absl::StatusOr<EnsembleJob> job;
-    std::unique_lock lock(mutex_);
-    AwaitNotified(changed_, lock, [&] {
+    AwaitThat([&] {
       job = book_->Get({"", Role::kAdmin}, IdOf(name));
       return !job.ok() || HasEnded(job->state());
     });
@@ -136,8 +132,6 @@ class AcceptanceTest : public testing::Test {
   Limits limits_;
   Gate gate_;
   TemporaryFolder folder_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
   std::unique_ptr<Store> store_;
   std::unique_ptr<ThreadPool> pool_;
   std::unique_ptr<JobBook> book_;

@@ -51,7 +51,7 @@ std::vector<int64_t> Numbers(const std::vector<FinishedPoint>& points) {
 }
 
 TEST(Job, ProgressIsTheShareOfWorkDone) {
-  Job job(JobWithPoints(4), nullptr);
+  Job job(JobWithPoints(4));
   job.AddRestoredPoints(1, 100, 1);
   job.AddSamples(50, 0.5);
   const v1::JobProgress progress = job.Progress();
@@ -66,11 +66,11 @@ TEST(Job, AToleranceGivesNoFraction) {
   spec.mutable_target()->set_tolerance(0.1);
   JobRecord record = JobWithPoints(4);
   record.spec = SpecBytes(spec);
-  EXPECT_FALSE(Job(record, nullptr).Progress().has_fraction());
+  EXPECT_FALSE(Job(record).Progress().has_fraction());
 }
 
 TEST(Job, APointIsDoneWhenItIsStored) {
-  Job job(JobWithPoints(2), nullptr);
+  Job job(JobWithPoints(2));
   EXPECT_EQ(job.Progress().points_done(), 0);
   const uint64_t before = job.last_change();
   job.AddFinishedPoint(FinishedPointOf(1));
@@ -80,7 +80,7 @@ TEST(Job, APointIsDoneWhenItIsStored) {
 }
 
 TEST(Job, FinishedPointsComeInTheirOrderAndTheNewestAreKept) {
-  Job job(JobWithPoints(1000), nullptr);
+  Job job(JobWithPoints(1000));
   for (int number = 1; number <= 300; ++number) job.AddFinishedPoint(FinishedPointOf(number));
   const auto last = static_cast<int64_t>(300 - kRecentPoints);
   EXPECT_EQ(job.FinishedAfter(last - 1, 10), std::nullopt);
@@ -91,7 +91,7 @@ TEST(Job, FinishedPointsComeInTheirOrderAndTheNewestAreKept) {
 }
 
 TEST(Job, RestoredPointsAreNotKept) {
-  Job job(JobWithPoints(1000), nullptr);
+  Job job(JobWithPoints(1000));
   job.AddRestoredPoints(3, 12, 70);
   EXPECT_EQ(job.last_finished(), 70);
   EXPECT_EQ(job.FinishedAfter(69, 10), std::nullopt);
@@ -129,7 +129,7 @@ class JobJournalTest : public testing::Test {
                          Store::Open(folder_.File("store"), {.delay = kNever, .stall = kNever}));
     record_ = JobWithPoints(3);
     ASSERT_OK(store_->Commit([this](Database& database) { return InsertJob(database, record_); }));
-    job_ = std::make_shared<Job>(record_, nullptr);
+    job_ = std::make_shared<Job>(record_);
     journal_.emplace(job_, *store_, usage_, false, nullptr);
   }
 
@@ -215,7 +215,7 @@ TEST_F(JobJournalTest, TheFirstEndOfAJobIsItsEnd) {
   const auto note = [&](const JobRecord& ended) { ends[ended.id].push_back(ended.state); };
   const auto end_all = [&](const absl::Status& outcome) {
     for (const JobRecord& record : records) {
-      const auto job = std::make_shared<Job>(record, nullptr);
+      const auto job = std::make_shared<Job>(record);
       JobJournal(job, *store_, usage_, false, note).Ended(outcome);
     }
   };

@@ -47,7 +47,7 @@ class StoredLimitsTest : public testing::Test {
                                                      .stall = kNever,
                                                      .reserve_bytes = 0}));
     pool_ = std::make_unique<ThreadPool>(2, std::move(factory));
-    book_ = std::make_unique<JobBook>(*store_, limits, pool_->scheduler(), nullptr);
+    book_ = std::make_unique<JobBook>(*store_, limits, pool_->scheduler());
     ASSERT_OK(book_->Resume());
   }
 

@@ -1,12 +1,18 @@
-// The memory that calls with unread answers hold: the class HeldCalls, and through the API.
-#include "server/api/held_calls.h"
+// The calls of a principal and their memory, also of unread answers; and the turns of calls that
+// compute.
+#include "server/api/open_calls.h"
 
+#include <latch>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "server/api/turns.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
@@ -24,49 +30,75 @@ using ::testing::HasSubstr;
 constexpr Limits kTwoCallsOfTenBytes = {.max_calls_per_principal = 2,
                                         .max_call_bytes_per_principal = 10};
 
-TEST(HeldCalls, EachPrincipalHasItsOwnCalls) {
-  HeldCalls calls;
-  EXPECT_OK(calls.Begin("ann", 1, kTwoCallsOfTenBytes));
-  EXPECT_OK(calls.Begin("ann", 1, kTwoCallsOfTenBytes));
-  const absl::Status third = calls.Begin("ann", 1, kTwoCallsOfTenBytes);
-  EXPECT_THAT(third, StatusIs(absl::StatusCode::kResourceExhausted));
-  EXPECT_THAT(std::string(third.message()), HasSubstr("permits 2 (--max-calls-per-principal)"));
-  EXPECT_OK(calls.Begin("bob", 1, kTwoCallsOfTenBytes));
-  calls.End("ann", 1);
-  EXPECT_OK(calls.Begin("ann", 1, kTwoCallsOfTenBytes));
+TEST(OpenCalls, EachPrincipalHasItsOwnCalls) {
+  OpenCalls calls(kTwoCallsOfTenBytes);
+  auto first = calls.Begin("ann", 1);
+  const auto second = calls.Begin("ann", 1);
+  ASSERT_OK(first);
+  ASSERT_OK(second);
+  const auto third = calls.Begin("ann", 1);
+  EXPECT_THAT(third, StatusIs(absl::StatusCode::kResourceExhausted,
+                              HasSubstr("permits 2 (--max-calls-per-principal)")));
+  EXPECT_OK(calls.Begin("bob", 1));
+  first->reset();
+  EXPECT_OK(calls.Begin("ann", 1));
 }
 
-TEST(HeldCalls, BytesAreLimitedButASingleCallIsPermitted) {
-  HeldCalls calls;
-  EXPECT_OK(calls.Begin("ann", 11, kTwoCallsOfTenBytes));
-  EXPECT_OK(calls.CheckRoom("ann", kTwoCallsOfTenBytes));
-  const absl::Status second = calls.Begin("ann", 1, kTwoCallsOfTenBytes);
-  EXPECT_THAT(std::string(second.message()), HasSubstr("10 (--max-call-bytes-per-principal)"));
-  calls.End("ann", 11);
-  EXPECT_OK(calls.Begin("ann", 5, kTwoCallsOfTenBytes));
-  EXPECT_OK(calls.Begin("ann", 5, kTwoCallsOfTenBytes));
-  EXPECT_OK(calls.CheckRoom("ann", kTwoCallsOfTenBytes));
-  calls.AddBytes("ann", 1);  // an answer
-  EXPECT_THAT(calls.CheckRoom("ann", kTwoCallsOfTenBytes),
-              StatusIs(absl::StatusCode::kResourceExhausted));
+TEST(OpenCalls, BytesAreLimitedButASingleCallIsPermitted) {
+  OpenCalls calls(kTwoCallsOfTenBytes);
+  auto large = calls.Begin("ann", 11);
+  ASSERT_OK(large);
+  EXPECT_THAT(calls.Begin("ann", 1), StatusIs(absl::StatusCode::kResourceExhausted,
+                                              HasSubstr("10 (--max-call-bytes-per-principal)")));
+  large->reset();
+  const auto half = calls.Begin("ann", 5);
+  ASSERT_OK(half);
+  EXPECT_OK(calls.Begin("ann", 5));
+  (*half)->AddBytes(1);  // an answer
+  EXPECT_THAT(calls.Begin("ann", 5), StatusIs(absl::StatusCode::kResourceExhausted));
 }
 
-TEST(HeldCalls, ZeroMeansUnlimited) {
-  HeldCalls calls;
+TEST(OpenCalls, ZeroMeansUnlimited) {
   const Limits none = {.max_calls_per_principal = 0, .max_call_bytes_per_principal = 0};
-  for (int i = 0; i < 2000; ++i) EXPECT_OK(calls.Begin("ann", 1 << 30, none));
-  EXPECT_OK(calls.CheckRoom("ann", none));
+  OpenCalls calls(none);
+  std::vector<std::shared_ptr<OpenCalls::Call>> open;
+  for (int i = 0; i < 2000; ++i) {
+    auto call = calls.Begin("ann", 1 << 30);
+    ASSERT_OK(call);
+    open.push_back(*std::move(call));
+  }
 }
 
-TEST(HeldCalls, AMessageWaitsUntilThereIsRoom) {
-  HeldCalls messages;
-  EXPECT_TRUE(messages.TryBegin("ann", 12, 10));  // alone
-  EXPECT_FALSE(messages.TryBegin("ann", 1, 10));
-  EXPECT_TRUE(messages.TryBegin("bob", 1, 10));
-  messages.End("ann", 12);
-  EXPECT_TRUE(messages.TryBegin("ann", 4, 10));
-  EXPECT_TRUE(messages.TryBegin("ann", 6, 10));
-  EXPECT_FALSE(messages.TryBegin("ann", 1, 10));
+// A turn that is waited for in a thread of its own.
+class WaitedTurn {
+ public:
+  WaitedTurn(Turns& turns, const std::string& principal)
+      : thread_([this, &turns, principal] {
+          const Turns::Turn turn(turns, principal);
+          taken_.count_down();
+          end_.wait();
+        }) {}
+  ~WaitedTurn() {
+    end_.count_down();
+    thread_.join();
+  }
+  void AwaitTaken() { taken_.wait(); }
+  bool is_taken() const { return taken_.try_wait(); }
+
+ private:
+  std::latch taken_{1}, end_{1};
+  std::thread thread_;
+};
+
+TEST(Turns, OnePrincipalLeavesTurnsToOthers) {
+  Turns turns(2, 1);
+  auto first = std::make_unique<WaitedTurn>(turns, "ann");
+  first->AwaitTaken();
+  WaitedTurn second(turns, "ann"), other(turns, "bob");
+  other.AwaitTaken();
+  EXPECT_FALSE(second.is_taken());
+  first.reset();
+  second.AwaitTaken();
 }
 
 // Calls with unread answers, each of which holds a large job.
