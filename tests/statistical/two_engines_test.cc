@@ -17,8 +17,8 @@
 #include "core/geometry/paper.h"
 #include "core/statistics/histogram.h"
 #include "core/statistics/moments.h"
-#include "tests/core/run_orbits.h"
 #include "tests/core/geometries.h"
+#include "tests/core/run_orbits.h"
 #include "tests/oracle/two_sample.h"
 #include "tests/support/nightly.h"
 

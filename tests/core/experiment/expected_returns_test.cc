@@ -9,9 +9,9 @@
 #include "core/experiment/returns.h"
 #include "core/geometry/paper.h"
 #include "core/statistics/moments.h"
-#include "tests/core/run_orbits.h"
 #include "tests/core/billiard/recorded_contacts.h"
 #include "tests/core/geometries.h"
+#include "tests/core/run_orbits.h"
 
 namespace ballpiston {
 namespace {
