@@ -4,7 +4,7 @@
 
 #include "core/ensemble/chunk_fold.h"
 #include "core/ensemble/point_experiment.h"
-#include "core/statistics/told_error.h"
+#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {

@@ -77,7 +77,7 @@ struct AimedEstimate {
   // is 1/sqrt(n) times that of one; it is infinite if no number of samples is enough.
   double (*error)(Model model, const PointParameters& point);
   // The expected number of a sample's events, of which an error needs kEventsForAnError
-  // (statistics/told_error.h). Null: 1.
+  // (statistics/stated_error.h). Null: 1.
   double (*events)(Model model, const PointParameters& point) = nullptr;
   const LimitError* limit_error = nullptr;  // null: no bound is known
   // Names of estimates that are this one in other units, so that they have its relative errors.

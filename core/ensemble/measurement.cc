@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/statistics/told_error.h"
+#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
@@ -46,14 +46,14 @@ std::vector<Estimate> EstimatesOf(const std::vector<Measurement>& table,
 Estimate MeanOf(const Moments& sample, double events) {
   const double value = sample.count == 0 ? kNotMeasured : sample.mean;
   return {.value = value,
-          .standard_error = ToldError(events, value, sample.StandardError()),
+          .standard_error = StatedError(events, value, sample.StandardError()),
           .batches = sample.EffectiveCount()};
 }
 
 Estimate RatioOf(const BatchMeans& sample, double events) {
   const double value = sample.Ratio().value_or(kNotMeasured);
   return {.value = value,
-          .standard_error = ToldError(events, value, sample.StandardError()),
+          .standard_error = StatedError(events, value, sample.StandardError()),
           .batches = sample.batches};
 }
 

@@ -2,7 +2,7 @@
 // refers to the first row.
 //
 // A standard error is stated if the sample contains enough of the events that determine the
-// estimate (statistics/told_error.h). Without samples the value is NaN, and there is no error.
+// estimate (statistics/stated_error.h). Without samples the value is NaN, and there is no error.
 #pragma once
 
 #include <cstddef>

@@ -71,9 +71,9 @@ class EnergyRelaxation {
   // Adds the numbers of one orbit.
   void Record(const std::vector<double>& values, BlockResult& result) const;
 
-  // The events of an orbit of the billiard for the standard errors (statistics/told_error.h). From
-  // an epsilon: about the share of orbits in which ball and piston meet. The piston's energy is
-  // constant in the others, so the scatter is that of the orbits that meet.
+  // The events of an orbit of the billiard for the standard errors (statistics/stated_error.h).
+  // From an epsilon: about the share of orbits in which ball and piston meet. The piston's energy
+  // is constant in the others, so the scatter is that of the orbits that meet.
   double events_per_orbit() const { return events_per_orbit_; }
 
   // relaxation_time, if it exists; with epsilon also decay_integral. The jump process is the limit,

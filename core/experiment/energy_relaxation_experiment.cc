@@ -20,7 +20,7 @@
 #include "core/experiment/pair_experiment.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
-#include "core/statistics/told_error.h"
+#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
@@ -214,7 +214,7 @@ class EnergyRelaxationExperiment : public PairExperiment {
 
   // Whether there are no errors, although the sample is not small.
   bool LacksEvents(const BlockResult& merged) const {
-    return TellsItsError(static_cast<double>(merged.samples)) && !TellsItsError(EventsIn(merged));
+    return HasStatedError(static_cast<double>(merged.samples)) && !HasStatedError(EventsIn(merged));
   }
 
   std::string ReasonOfNoErrors(const BlockResult& merged) const {

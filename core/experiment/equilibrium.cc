@@ -15,12 +15,12 @@
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/pair_experiment.h"
-#include "core/statistics/told_error.h"
+#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
 
-// One collision in ten counts as an event for the error (statistics/told_error.h), because long
+// One collision in ten counts as an event for the error (statistics/stated_error.h), because long
 // flights are rare and skew the law of the ratio: the z-scores of 100 seeds with 64 collisions had
 // variance 1.35.
 constexpr double kEventsPerCollision = 0.1;
@@ -94,7 +94,7 @@ class EquilibriumExperiment : public PairExperiment {
 
  protected:
   void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
-    if (TellsItsError(kEventsPerCollision * static_cast<double>(merged.samples))) return;
+    if (HasStatedError(kEventsPerCollision * static_cast<double>(merged.samples))) return;
     summary.remarks.push_back(
         absl::StrFormat("there are no standard errors: these need %.0f collisions",
                         kEventsForAnError / kEventsPerCollision));

@@ -30,7 +30,7 @@
 #include "core/experiment/expected_returns.h"
 #include "core/experiment/pair_experiment.h"
 #include "core/experiment/returns.h"
-#include "core/statistics/told_error.h"
+#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
@@ -130,7 +130,8 @@ class ReturnExperiment : public PairExperiment {
 
   void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
     const Moments& times = merged.moments[kTime];
-    if (!TellsItsError(static_cast<double>(times.count)) || TellsItsError(EventsIn(times))) return;
+    if (!HasStatedError(static_cast<double>(times.count)) || HasStatedError(EventsIn(times)))
+      return;
     summary.remarks.push_back(
         absl::StrCat("the mean return time has no standard error: ", ReasonOfNoError(times)));
   }
@@ -145,10 +146,10 @@ class ReturnExperiment : public PairExperiment {
   std::optional<Estimate> Variation(const Moments& times) const {
     constexpr double kEventsOfScatter = 0.05;
     const std::optional<double> value = times.CoefficientOfVariation();
-    if (!TellsItsError(EventsIn(times)) || !value) return std::nullopt;
+    if (!HasStatedError(EventsIn(times)) || !value) return std::nullopt;
     return Estimate{.value = *value,
-                    .standard_error = ToldError(kEventsOfScatter * EventsIn(times), *value,
-                                                times.CoefficientOfVariationError()),
+                    .standard_error = StatedError(kEventsOfScatter * EventsIn(times), *value,
+                                                  times.CoefficientOfVariationError()),
                     .batches = times.EffectiveCount()};
   }
 

@@ -30,7 +30,7 @@
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/jump_current.h"
 #include "core/statistics/kl_divergence.h"
-#include "core/statistics/told_error.h"
+#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
@@ -93,7 +93,7 @@ Estimate SpeedDivergence(const BodyLaw& law, const Histogram& speeds) {
           .noise_floor = divergence.noise_floor};
 }
 
-// The events of a replica for the errors of its current's correlations (statistics/told_error.h).
+// The events of a replica for the errors of its current's correlations (statistics/stated_error.h).
 // Few replicas dominate what the jump process measures, those with much energy in few bodies: the
 // skewness over replicas is 15 to 20 with three columns or 2x1, 3 with 32, and 60 to 150 in a chain
 // of two. One column has no current.
@@ -247,7 +247,7 @@ class GasEquilibrium : public GasExperiment {
         "the conductivity includes the current's correlations up to a time of %.3g, %.2g mean "
         "times between exchanges of a ball and a piston",
         kWindow * Step(), ExchangesOf(answer().model, geometry()) * kWindow / kCurrentSteps));
-    if (TellsItsError(events_ * static_cast<double>(merged.samples))) return;
+    if (HasStatedError(events_ * static_cast<double>(merged.samples))) return;
     remarks.push_back(
         absl::StrFormat("the conductivity has no standard error: this needs %.0f replicas",
                         kEventsForAnError / events_));

@@ -9,7 +9,7 @@
 #include "core/statistics/group_scatter.h"
 #include "core/statistics/kl_divergence.h"
 #include "core/statistics/kolmogorov_smirnov.h"
-#include "core/statistics/told_error.h"
+#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
@@ -58,7 +58,7 @@ template <typename Distance>
 Estimate DistanceOf(double value, const Distance& measured, const BlockResult& merged) {
   const auto orbits = static_cast<double>(merged.batch_means[kWaitingOutcome].batches);
   return {.value = value,
-          .standard_error = ToldError(orbits, value, measured.standard_error),
+          .standard_error = StatedError(orbits, value, measured.standard_error),
           .batches = measured.batches,
           .noise_floor = measured.noise_floor};
 }

@@ -4,7 +4,7 @@
 
 #include "core/arithmetic/elementary_functions.h"
 #include "core/sampling/collision_surface.h"
-#include "core/statistics/told_error.h"
+#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 
@@ -81,7 +81,7 @@ Curve SurvivalCurve(const Histogram& return_times) {
     const double error = std::sqrt(share * (1 - share) / samples);
     curve.points.push_back({.at = return_times.Edge(bin),
                             .value = share,
-                            .standard_error = bin == 0 ? 0 : ToldError(events, share, error),
+                            .standard_error = bin == 0 ? 0 : StatedError(events, share, error),
                             .limit = limit});
     later -= static_cast<double>(return_times.counts[bin]);
   }

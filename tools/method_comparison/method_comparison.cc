@@ -20,7 +20,7 @@
 #include "core/experiment/expected_returns.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/statistics/kl_divergence.h"
-#include "core/statistics/told_error.h"
+#include "core/statistics/stated_error.h"
 #include "server/processor_time.h"
 #include "tools/method_comparison/energy_relaxation_runs.h"
 #include "tools/method_comparison/heat_current_runs.h"
@@ -159,7 +159,7 @@ class Comparison {
   double ErrorOfMean(const Moments& times) {
     const double count = static_cast<double>(times.count);
     const double long_returns = count * LongReturnsPerSample(geometry_, spec_.epsilon);
-    if (TellsItsError(long_returns)) return times.StandardError().value_or(0);
+    if (HasStatedError(long_returns)) return times.StandardError().value_or(0);
     return std::sqrt(VarianceOfTimes() / count);
   }
 

@@ -30,11 +30,11 @@ inline constexpr double kEventsForAnError = 50;
 // the mean is off by up to some 300 ulps. A smaller scatter is not the error of the mean.
 inline constexpr double kRoundingOfAMean = 3e-14;
 
-inline bool TellsItsError(double events) { return events >= kEventsForAnError; }
+inline bool HasStatedError(double events) { return events >= kEventsForAnError; }
 
 // `error` of the mean `value`, at least its rounding, if this number of events is enough.
-inline std::optional<double> ToldError(double events, double value, std::optional<double> error) {
-  if (!error || !TellsItsError(events)) return std::nullopt;
+inline std::optional<double> StatedError(double events, double value, std::optional<double> error) {
+  if (!error || !HasStatedError(events)) return std::nullopt;
   return std::fmax(*error, kRoundingOfAMean * std::fabs(value));
 }
 
