@@ -1,7 +1,8 @@
+#include "core/ensemble/experiment_kind.h"
+
 #include <gtest/gtest.h>
 
 #include "core/ensemble/chunk_fold.h"
-#include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
 #include "tests/core/one_point_spec.h"
 
