@@ -93,8 +93,10 @@ class PointExperiment {
   const RandomStream& random() const { return random_; }
 
  protected:
-  // For an answer by sampling.
+  // For an answer by sampling. The second one has a plan of its own, as tests want it.
   PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters);
+  PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters,
+                  const ChunkPlan& plan);
 
   // To be called in the constructor of an experiment that samples. The first row of the table must
   // have an estimate for every sample.
@@ -104,9 +106,6 @@ class PointExperiment {
   virtual void AddDetails(const BlockResult& /*merged*/, PointSummary& /*summary*/) const {}
 
  private:
-  PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters,
-                  const ChunkPlan& plan);
-
   PointParameters parameters_;
   Answer answer_;
   Engine engine_;
