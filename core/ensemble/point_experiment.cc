@@ -95,7 +95,7 @@ void PointExperiment::SetMeasurements(BlockResult empty, std::vector<Measurement
 }
 
 // This run is for an answer that needs no samples. Experiments that sample override this function.
-std::unique_ptr<BlockRun> PointExperiment::StartRun(BlockQueue& queue) const {
+std::unique_ptr<EngineRun> PointExperiment::StartRun(BlockQueue& queue) const {
   return RunOneByOne(
       queue, [](const Block&, const std::stop_token&) { return std::optional(BlockResult()); });
 }

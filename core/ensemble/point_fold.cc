@@ -112,7 +112,7 @@ class QueueOfOne : public BlockQueue {
 
 bool LocalPoint::Run(const std::stop_token& stop) {
   stop_ = stop;
-  const std::unique_ptr<BlockRun> run = experiment_.StartRun(*this);
+  const std::unique_ptr<EngineRun> run = experiment_.StartRun(*this);
   while (!finished() && !stop.stop_requested()) run->Advance();
   return finished();
 }
