@@ -83,7 +83,7 @@ void TurnToWall(PairState& state) {
 
 // A state just after a collision on the surface, with the given speeds; ball and piston separate.
 PairState JustAfterCollision(const PairGeometry& geometry, double ball, double piston,
-                         CounterRandom& random) {
+                             CounterRandom& random) {
   const Vector2d position = UniformOnCollisionSurface(geometry, random);
   PairState state = {.position = position,
                      .direction = UniformDirection(random),
@@ -157,8 +157,8 @@ PairState SlowBall(const PairGeometry& geometry, CounterRandom& random) {
 
 PairState SlowPiston(const PairGeometry& geometry, CounterRandom& random) {
   const double offset = RandomOffset(random), energy = std::fabs(offset);
-  return JustAfterCollision(geometry, std::sqrt(1 - energy), std::copysign(std::sqrt(energy), offset),
-                        random);
+  return JustAfterCollision(geometry, std::sqrt(1 - energy),
+                            std::copysign(std::sqrt(energy), offset), random);
 }
 
 }  // namespace ballpiston::stability
