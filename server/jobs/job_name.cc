@@ -50,8 +50,6 @@ std::optional<ResultId> ResultIdOf(const std::string& name) {
   return ResultId{*job, point};
 }
 
-std::string RandomId() {
-  return absl::StrFormat("%016x", RandomBits());
-}
+std::string RandomId() { return absl::StrFormat("%016x", RandomBits()); }
 
 }  // namespace ballpiston::server
