@@ -48,7 +48,11 @@ class Simulation {
       new std::shared_ptr<Life>(std::move(life_));  // its threads wait for ever: it cannot end
       disk_.release();
     }
-    return {.finding = finding_, .steps = machine_.switches(), .calls = calls_, .deaths = deaths_};
+    return {.finding = finding_,
+            .steps = machine_.switches(),
+            .calls = calls_,
+            .deaths = deaths_,
+            .last_bits = machine_.Bits()};
   }
 
  private:

@@ -44,6 +44,7 @@ struct SimulationReport {
   uint64_t steps = 0;
   uint64_t calls = 0;
   uint64_t deaths = 0;
+  uint64_t last_bits = 0;  // of the world's chance: the same if everything happened as before
 };
 
 // Runs the world. In the end nothing fails any more: every job ends, its results have the bytes of

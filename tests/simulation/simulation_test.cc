@@ -16,7 +16,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kWorlds = 12;  // of make test
+constexpr int kWorlds = 8;  // of make test
 constexpr int kRunsToShrink = 60;
 
 std::optional<std::string> Environment(const char* name) {
@@ -62,7 +62,7 @@ TEST(Simulation, OneSeedIsOneWorld) {
   const SimulationOptions options = {.seed = 5, .steps = 3000};
   const SimulationReport once = Simulate(options), again = Simulate(options);
   EXPECT_EQ(once.steps, again.steps);
-  EXPECT_EQ(once.calls, again.calls);
+  EXPECT_EQ(once.last_bits, again.last_bits);
 }
 
 }  // namespace
