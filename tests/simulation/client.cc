@@ -65,7 +65,8 @@ void Client::CallOnce() {
   if (ids.empty() || choice < 20) return Create();
   if (choice < 35) return List();
   const std::string& id = ids[world_.machine.Below(ids.size())];
-  if (choice < 55) return Get(id);
+  if (choice < 52) return Get(id);
+  if (choice < 55) return Pin(id);
   if (choice < 70) return Read(id);
   if (choice < 85) return world_.habits.watches ? Watch(id) : Get(id);
   if (choice < 90) return world_.habits.cancels ? Cancel(id) : Get(id);
@@ -78,17 +79,21 @@ void Client::Create() {
   question.seed = question.has_key ? kFirstKeyedSeed + world_.machine.Below(kKeys)
                                    : 1 + world_.machine.Below(kSeedsWithoutKey);
   question.points = static_cast<int>(1 + question.seed % 4);
-  question.blocks = static_cast<int64_t>(1 + question.seed * 7 % 60);
+  question.has_tolerance = question.seed % 3 == 0;
+  question.blocks =
+      static_cast<int64_t>(1 + question.seed * 7 % (question.has_tolerance ? 300 : 60));
   const std::string key = question.has_key ? absl::StrCat("key-", question.seed) : "";
   v1::CreateEnsembleJobRequest request = CreateRequest(SpecOf(question), key);
+  request.set_priority(static_cast<int32_t>(question.seed % 3) - 1);
   request.set_fresh(!question.has_key && world_.machine.Chance(0.5));
+  const std::map<std::string, KnownJob> before = world_.expectations.all();
   Call call(world_, absl::StrCat("create ", question.seed, " ", key));
   if (!call) return;
   const auto job = call->book().Create(LocalPrincipal(), request, CheckSpec(SpecOf(question)));
   if (!call.Hears(job.status())) return;
   if (!job.ok()) throw Violation("create", "", job.status().ToString());
   world_.tell(absl::StrCat("created ", IdOfJob(*job)));
-  world_.expectations.Created(key, question, *job);
+  world_.expectations.Created(before, key, question, *job);
 }
 
 void Client::Get(const std::string& id) {
@@ -142,6 +147,18 @@ void Client::Delete(const std::string& id) {
   if (absl::IsFailedPrecondition(status)) return world_.expectations.Refused(id, before, true);
   if (!status.ok()) throw Violation("delete", id, status.ToString());
   world_.expectations.Deleted(id);
+}
+
+void Client::Pin(const std::string& id) {
+  const KnownJob before = world_.expectations.Known(id);
+  Call call(world_, absl::StrCat("pin ", id));
+  if (!call) return;
+  const bool pinned = world_.machine.Chance(0.5);
+  const auto job = call->book().Pin(LocalPrincipal(), id, pinned);
+  if (!call.Hears(job.status())) return;
+  if (absl::IsNotFound(job.status())) return world_.expectations.Missed(id, before);
+  if (!job.ok()) throw Violation("pin", id, job.status().ToString());
+  world_.expectations.Got(before, *job);
 }
 
 void Client::Read(const std::string& id) {

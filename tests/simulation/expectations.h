@@ -22,7 +22,8 @@ struct Question {
   uint64_t seed = 0;
   int points = 1;
   int64_t blocks = 1;
-  bool has_key = false;  // it is asked with one request_id alone, however often
+  bool has_tolerance = false;  // then the points end before their last block
+  bool has_key = false;        // it is asked with one request_id alone, however often
 };
 v1::EnsembleSpec SpecOf(const Question& question);
 
@@ -63,7 +64,8 @@ class Expectations {
   // ---- answers of calls that began when `before` was known ----
 
   // `key`: of the request; empty if it has none.
-  void Created(const std::string& key, const Question& question, const v1::EnsembleJob& job);
+  void Created(const std::map<std::string, KnownJob>& before, const std::string& key,
+               const Question& question, const v1::EnsembleJob& job);
   void Got(const KnownJob& before, const v1::EnsembleJob& job);
   // The job was not found, or was not in the list.
   void Missed(const std::string& id, const KnownJob& before);
@@ -91,11 +93,12 @@ class Expectations {
   void NoteState(const std::string& id, const v1::EnsembleJob& job);
   void CheckKeys(const std::set<std::string>& listed) const;
   void CheckResult(const std::string& id, const Question& question, const v1::PointResult& result);
+  const v1::PointResult& Undisturbed(const Question& question, int point);
+  double SamplesOf(const Question& question);
 
-  std::map<std::string, KnownJob> jobs_;       // by id
-  std::map<std::string, std::string> by_key_;  // ids of requests with a key
-  std::map<std::pair<uint64_t, int>, std::string>
-      results_;  // of undisturbed runs, by seed and point
+  std::map<std::string, KnownJob> jobs_;                             // by id
+  std::map<std::string, std::string> by_key_;                        // ids of requests with a key
+  std::map<std::pair<uint64_t, int>, v1::PointResult> undisturbed_;  // by seed and point
 };
 
 std::string IdOfJob(const v1::EnsembleJob& job);

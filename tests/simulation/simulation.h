@@ -19,7 +19,7 @@ namespace ballpiston::server {
 
 struct SimulationOptions {
   uint64_t seed = 1;
-  uint64_t steps = 20'000;  // switches from thread to thread until peace begins
+  uint64_t steps = 40'000;  // switches from thread to thread until peace begins
   int clients = 4;
   bool crashes = true;
   bool power_cuts = true;
