@@ -7,6 +7,7 @@ PRESETS_PREFIX ?=
 STABILITY_OUT ?= stability.md
 MUTANTS ?= 60
 QUESTIONS ?= 20000
+SIMULATION_SECONDS ?= 3600
 
 TEST_PACKAGES := libgtest-dev libgmock-dev python3-grpcio python3-numpy python3-pandas python3-pytest python3-tqdm python3-matplotlib
 AARCH64_PACKAGES := g++-aarch64-linux-gnu qemu-user libabsl-dev:arm64 libhwy-dev:arm64 libgtest-dev:arm64 libgmock-dev:arm64
@@ -17,7 +18,7 @@ PROGRAMS := ballpiston ballpistond ballpiston-worker conductivity method_compari
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder
-.PHONY: build test check test-asan test-tsan test-long demo chart ladder bench conductivity stability stability-table torture test-slurm test-alerts test-web mutation questions deb oci aarch64 fuzz thread-safety nightly format check-format tidy setup clean help
+.PHONY: build test check test-asan test-tsan test-long demo chart ladder bench conductivity stability stability-table torture test-slurm test-alerts test-web mutation questions deb oci aarch64 fuzz simulation thread-safety nightly format check-format tidy setup clean help
 
 build: build/release/.$(PRESETS_PREFIX)programs ## Build the programs, optimised, in build/release/bin (the default)
 	@cmake --build build/release --target $(PROGRAMS)
@@ -107,6 +108,10 @@ fuzz: ## Run libFuzzer on every parser of requests, stored bytes and answers; FU
 	@cmake --build --preset fuzz
 	@scripts/fuzz.sh build/fuzz/bin
 
+simulation: build/release/.$(PRESETS_PREFIX)tests ## Simulate the server in random worlds for SIMULATION_SECONDS, by default an hour
+	@cmake --build build/release --target simulation_test
+	@BALLPISTON_SIMULATION_SECONDS=$(SIMULATION_SECONDS) build/release/bin/simulation_test --gtest_filter='*AnyWorld'
+
 deb: ## Build the Debian packages of the last commit in build/deb, and check them with lintian (5 minutes)
 	@scripts/setup.sh $(DEB_PACKAGES)
 	@scripts/deb.sh build/deb
@@ -119,8 +124,8 @@ thread-safety: ## Check with Clang that the server holds the right mutexes, in t
 	@scripts/setup.sh clang
 	@scripts/thread-safety.sh
 
-nightly: ## Run the checks that take hours: test-tsan, test-long, aarch64, tidy, torture, test-slurm, test-alerts, test-web, stability, mutation, questions, and ten minutes of each fuzz target
-	@status=0; for task in test-tsan test-long aarch64 tidy torture test-slurm test-alerts test-web stability mutation questions "fuzz FUZZ_SECONDS=600"; do \
+nightly: ## Run the checks that take hours: test-tsan, test-long, aarch64, tidy, torture, test-slurm, test-alerts, test-web, stability, mutation, questions, simulation, and ten minutes of each fuzz target
+	@status=0; for task in test-tsan test-long aarch64 tidy torture test-slurm test-alerts test-web stability mutation questions simulation "fuzz FUZZ_SECONDS=600"; do \
 	  printf '\n== make %s\n' "$$task"; $(MAKE) $$task || { status=1; failed+=" $${task%% *}"; }; \
 	done; echo "nightly: failed:$${failed:- none}"; exit $$status
 

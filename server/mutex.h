@@ -10,6 +10,8 @@
 //
 // absl::Mutex has these annotations too. But Debian's build of absl::Mutex is not instrumented, so
 // the thread sanitizer would not see its synchronisation. It sees that of std::mutex.
+//
+// The functions are in host.cc.
 #pragma once
 
 #include <chrono>
@@ -22,8 +24,8 @@ namespace ballpiston::server {
 
 class ABSL_LOCKABLE Mutex {
  public:
-  void Lock() ABSL_EXCLUSIVE_LOCK_FUNCTION() { mutex_.lock(); }
-  void Unlock() ABSL_UNLOCK_FUNCTION() { mutex_.unlock(); }
+  void Lock() ABSL_EXCLUSIVE_LOCK_FUNCTION();
+  void Unlock() ABSL_UNLOCK_FUNCTION();
 
   // Tells the analysis that the mutex is held, and does nothing. For a lambda that runs while its
   // creator holds the mutex: the analysis treats the lambda as a function of its own.
@@ -64,23 +66,14 @@ class ABSL_SCOPED_LOCKABLE MutexLock {
 // the analysis would not know that they run with the mutex held.
 class Condition {
  public:
-  void Wait(Mutex& mutex) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex) {
-    std::unique_lock lock(mutex.mutex_, std::adopt_lock);
-    condition_.wait(lock);
-    lock.release();
-  }
+  void Wait(Mutex& mutex) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex);
 
   // False: the time `end` has come.
   bool WaitUntil(Mutex& mutex, std::chrono::steady_clock::time_point end)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex) {
-    std::unique_lock lock(mutex.mutex_, std::adopt_lock);
-    const std::cv_status status = condition_.wait_until(lock, end);
-    lock.release();
-    return status == std::cv_status::no_timeout;
-  }
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex);
 
-  void NotifyOne() { condition_.notify_one(); }
-  void NotifyAll() { condition_.notify_all(); }
+  void NotifyOne();
+  void NotifyAll();
 
  private:
   std::condition_variable condition_;

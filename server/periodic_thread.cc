@@ -22,7 +22,7 @@ void PeriodicThread::CallUntilStopped() {
     lock.Unlock();
     call_();
     lock.Lock();
-    const auto next = std::chrono::steady_clock::now() + interval_;
+    const auto next = SteadyNow() + interval_;
     while (!stopping_ && stop_.WaitUntil(mutex_, next)) continue;
   }
 }

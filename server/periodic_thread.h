@@ -3,8 +3,8 @@
 
 #include <chrono>
 #include <functional>
-#include <thread>
 
+#include "server/host.h"
 #include "server/mutex.h"
 
 namespace ballpiston::server {
@@ -23,7 +23,7 @@ class PeriodicThread {
   Mutex mutex_;
   Condition stop_;
   bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
-  std::thread thread_;
+  Thread thread_;
 };
 
 }  // namespace ballpiston::server

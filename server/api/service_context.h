@@ -2,13 +2,13 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <string>
 
 #include "absl/time/time.h"
 #include "server/api/open_calls.h"
 #include "server/api/streams.h"
 #include "server/api/turns.h"
+#include "server/api/watch.h"
 #include "server/execution/slurm_executor.h"
 #include "server/execution/thread_executor.h"
 #include "server/jobs/job_book.h"
@@ -21,11 +21,6 @@
 #include "server/store/store.h"
 
 namespace ballpiston::server {
-
-struct WatchTiming {
-  std::chrono::milliseconds snapshot{200};      // least time between two snapshots
-  std::chrono::milliseconds heartbeat{10'000};  // sent if no other message was sent in this time
-};
 
 struct ServiceContext {
   const Authenticator& authenticator;

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "server/processor_time.h"
+#include "server/host.h"
 
 namespace ballpiston::server {
 namespace {
@@ -16,19 +16,19 @@ BlockSession::BlockSession(BlockExchange& exchange,
     : exchange_(exchange), experiment_(std::move(experiment)), stop_(std::move(stop)) {}
 
 bool BlockSession::Advance() {
-  end_of_turn_ = Clock::now() + kTurn;
-  worked_ = ThreadSeconds();
+  end_of_turn_ = SteadyNow() + kTurn;
+  worked_ = ProcessorSeconds();
   if (blocks_ == nullptr) blocks_ = experiment_->StartRun(*this);
   const bool is_idle = blocks_->Advance();
-  exchange_.TurnEnds(ThreadSeconds() - worked_);
+  exchange_.TurnEnds(ProcessorSeconds() - worked_);
   return !is_idle && !stop_.stop_requested();
 }
 
 void BlockSession::Done(const Block& block, BlockResult result) {
-  const double now = ThreadSeconds();
+  const double now = ProcessorSeconds();
   exchange_.BlockDone(block, std::move(result), now - std::exchange(worked_, now));
 }
 
-bool BlockSession::Pause() { return stop_.stop_requested() || Clock::now() >= end_of_turn_; }
+bool BlockSession::Pause() { return stop_.stop_requested() || SteadyNow() >= end_of_turn_; }
 
 }  // namespace ballpiston::server

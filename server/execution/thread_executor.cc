@@ -7,7 +7,6 @@
 #include "core/ensemble/chunk_fold.h"
 #include "server/execution/block_session.h"
 #include "server/observability/failpoint.h"
-#include "server/processor_time.h"
 #include "server/scheduling/guarded.h"
 
 namespace ballpiston::server {
@@ -113,14 +112,14 @@ bool ThreadExecutor::HasTurn(int64_t lease) const {
 }
 
 void ThreadExecutor::Shutdown() {
-  std::vector<std::thread> threads;
+  std::vector<Thread> threads;
   {
     MutexLock lock(mutex_);
     shutting_down_ = true;
     threads.swap(threads_);
   }
   woken_.NotifyAll();
-  for (std::thread& thread : threads) thread.join();
+  for (Thread& thread : threads) thread.join();
 }
 
 ThreadCounts ThreadExecutor::Counts() const {
@@ -150,9 +149,9 @@ std::optional<Lease> ThreadExecutor::AwaitLease() {
 
 void ThreadExecutor::TakeTurn(const Lease& lease) {
   busy_.fetch_add(1, std::memory_order_relaxed);
-  const double start = ThreadSeconds();
+  const double start = ProcessorSeconds();
   Compute(lease);
-  const double seconds = ThreadSeconds() - start;
+  const double seconds = ProcessorSeconds() - start;
   busy_.fetch_sub(1, std::memory_order_relaxed);
   if (scheduler_.EndTurn(lease, seconds)) return;
   MutexLock lock(mutex_);

@@ -12,9 +12,9 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <thread>
 #include <vector>
 
+#include "server/host.h"
 #include "server/mutex.h"
 #include "server/scheduling/crash_record.h"
 #include "server/scheduling/scheduler.h"
@@ -68,7 +68,7 @@ class ThreadExecutor : public Executor {
   uint64_t wakes_ ABSL_GUARDED_BY(mutex_) = 0;
   bool shutting_down_ ABSL_GUARDED_BY(mutex_) = false;
   std::map<int64_t, SharedPointer> leases_ ABSL_GUARDED_BY(mutex_);  // by number
-  std::vector<std::thread> threads_ ABSL_GUARDED_BY(mutex_);
+  std::vector<Thread> threads_ ABSL_GUARDED_BY(mutex_);
 };
 
 }  // namespace ballpiston::server

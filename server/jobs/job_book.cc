@@ -7,10 +7,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "absl/time/clock.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
 #include "server/convert/result_record.h"
+#include "server/host.h"
 #include "server/jobs/acceptance.h"
 #include "server/jobs/job_journal.h"
 #include "server/jobs/job_log.h"
@@ -212,7 +212,7 @@ JobBook::JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
 JobBook::~JobBook() {
   Shutdown();
   store_.Flush().IgnoreError();  // after this, this book knows every ended job
-  StoreNewWork(absl::Now());
+  StoreNewWork(WallNow());
 }
 
 void JobBook::Shutdown() {
@@ -253,7 +253,7 @@ absl::Status JobBook::ReadUsage() {
     for (const StoredUsage& usage : *stored) {
       usage_.AddStored(usage.principal, usage.jobs, usage.bytes);
     }
-    const auto work = ReadWork(database, Usage::FirstDay(absl::Now()));
+    const auto work = ReadWork(database, Usage::FirstDay(WallNow()));
     if (!work.ok()) return work.status();
     for (const DayOfWork& day : *work) usage_.AddStoredWork(day);
     return absl::OkStatus();
@@ -408,7 +408,7 @@ JobRecord JobBook::NewRecord(const Principal& caller, const v1::CreateEnsembleJo
   record.question = QuestionOf(request.spec(), record.engine_version);
   record.spec_bytes = static_cast<int64_t>(record.spec.size());
   record.bytes = record.spec_bytes;
-  record.create_time = absl::Now();
+  record.create_time = WallNow();
   record.points = static_cast<int64_t>(PointCount(checked.spec));
   return record;
 }

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "absl/time/clock.h"
 #include "server/convert/errors.h"
 #include "server/convert/fold_record.h"
 #include "server/convert/result_record.h"
+#include "server/host.h"
 #include "server/jobs/job_log.h"
 #include "server/observability/failpoint.h"
 #include "server/store/job_table.h"
@@ -29,7 +29,7 @@ size_t BytesHeld(const BlockResult& result) {
 JobEnd EndOf(const Job& job, const absl::Status& outcome) {
   const LiveNumbers numbers = job.Numbers();
   JobEnd end;
-  end.time = absl::Now();
+  end.time = WallNow();
   end.samples = numbers.samples;
   end.work = numbers.work;
   end.bytes = numbers.bytes;
@@ -69,7 +69,7 @@ JobJournal::JobJournal(std::shared_ptr<Job> job, Store& store, Usage& usage, boo
 
 void JobJournal::Began() {
   const auto begun = std::make_shared<bool>(false);
-  const auto begin = [sequence = job_->sequence(), now = absl::Now(), begun](Database& database) {
+  const auto begin = [sequence = job_->sequence(), now = WallNow(), begun](Database& database) {
     const absl::StatusOr<bool> changed = BeginJob(database, sequence, now);
     *begun = changed.value_or(false);
     return changed.status();
@@ -132,7 +132,7 @@ void JobJournal::ChunkIsEarly(size_t point, const ChunkResult& chunk) {
 
 void JobJournal::Worked(double seconds) {
   job_->AddWork(seconds);
-  usage_.AddWork(job_->principal(), absl::Now(), seconds);
+  usage_.AddWork(job_->principal(), WallNow(), seconds);
 }
 
 void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,

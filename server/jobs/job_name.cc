@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <random>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/host.h"
 
 namespace ballpiston::server {
 namespace {
@@ -50,10 +50,6 @@ std::optional<ResultId> ResultIdOf(const std::string& name) {
   return ResultId{*job, point};
 }
 
-std::string RandomId() {
-  std::random_device random;
-  const uint64_t high = random();
-  return absl::StrFormat("%016x", high << 32 | random());
-}
+std::string RandomId() { return absl::StrFormat("%016x", RandomBits()); }
 
 }  // namespace ballpiston::server

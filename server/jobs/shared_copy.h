@@ -11,6 +11,7 @@
 
 #include "absl/functional/function_ref.h"
 #include "absl/status/statusor.h"
+#include "server/host.h"
 #include "server/mutex.h"
 
 namespace ballpiston::server {
@@ -26,7 +27,7 @@ class SharedCopy {
   absl::StatusOr<Pointer> Get(uint64_t change, std::chrono::milliseconds max_age,
                               absl::FunctionRef<absl::StatusOr<T>()> make) {
     MutexLock lock(mutex_);
-    const Clock::time_point now = Clock::now();
+    const Clock::time_point now = SteadyNow();
     const bool fits = last_ != nullptr && (last_->change >= change || now - made_ < max_age);
     if (fits) return last_;
     absl::StatusOr<T> made = make();

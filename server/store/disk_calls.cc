@@ -65,7 +65,7 @@ void DiskCalls::Watch(sqlite3_file& file, const char* failpoint) {
 DiskCalls::Clock::duration DiskCalls::Waiting() const {
   const Clock::rep begin = begin_;
   if (begin == 0) return Clock::duration::zero();
-  return Clock::now() - Clock::time_point(Clock::duration(begin));
+  return SteadyNow() - Clock::time_point(Clock::duration(begin));
 }
 
 }  // namespace ballpiston::server

@@ -10,6 +10,8 @@
 #include <memory>
 #include <vector>
 
+#include "server/host.h"
+
 struct sqlite3_file;
 
 namespace ballpiston::server {
@@ -30,7 +32,7 @@ class DiskCalls {
   class Mark {
    public:
     explicit Mark(DiskCalls& calls) : calls_(calls) {
-      calls_.begin_ = Clock::now().time_since_epoch().count();
+      calls_.begin_ = SteadyNow().time_since_epoch().count();
     }
     ~Mark() { calls_.begin_ = 0; }
     Mark(const Mark&) = delete;

@@ -1,7 +1,6 @@
 #include "server/store/store.h"
 
 #include <algorithm>
-#include <future>
 #include <iterator>
 #include <new>
 #include <set>
@@ -28,6 +27,26 @@ constexpr std::chrono::seconds kBetweenReserves(60);
 absl::Status Stalled() {
   return absl::UnavailableError("store: the disk does not answer; retry later");
 }
+
+// What a thread waits for that has posted a write.
+class Outcome {
+ public:
+  void Tell(const absl::Status& status) {
+    MutexLock lock(mutex_);
+    status_ = status;
+    told_.NotifyAll();
+  }
+  absl::Status Await() {
+    MutexLock lock(mutex_);
+    while (!status_) told_.Wait(mutex_);
+    return *status_;
+  }
+
+ private:
+  Mutex mutex_;
+  Condition told_;
+  std::optional<absl::Status> status_ ABSL_GUARDED_BY(mutex_);
+};
 
 absl::Status Closed() { return absl::UnavailableError("store: closed"); }
 
@@ -63,7 +82,7 @@ Store::Store(std::unique_ptr<Database> writer, std::vector<std::unique_ptr<Datab
       free_readers_(std::move(readers)),
       readers_(free_readers_.size()) {
   reserve_.Take();
-  thread_ = std::thread([this] { WriteUntilClosed(); });
+  thread_ = Thread([this] { WriteUntilClosed(); });
 }
 
 Store::~Store() { Close(); }
@@ -92,17 +111,16 @@ absl::Status Store::Await(Write write) {
     if (write.done) write.done(Stalled());
     return Stalled();
   }
-  // Shared: the store's thread may still be inside set_value when this function returns.
-  auto committed = std::make_shared<std::promise<absl::Status>>();
-  std::future<absl::Status> result = committed->get_future();
+  // Shared: the store's thread may still be inside Tell when this function returns.
+  const auto outcome = std::make_shared<Outcome>();
   write.urgent = true;
   write.lasting = false;
-  write.done = [committed, done = std::move(write.done)](const absl::Status& status) {
+  write.done = [outcome, done = std::move(write.done)](const absl::Status& status) {
     if (done) done(status);
-    committed->set_value(status);
+    outcome->Tell(status);
   };
   Post(std::move(write));
-  return result.get();
+  return outcome->Await();
 }
 
 void Store::Record(Change change, Done done) {
@@ -161,7 +179,7 @@ void Store::RecordResult(int64_t job, PointRow row, std::function<void(int64_t n
 }
 
 void Store::Post(Write write) {
-  write.due = Clock::now() + options_.delay;
+  write.due = SteadyNow() + options_.delay;
   {
     MutexLock lock(mutex_);
     if (!closing_) {
@@ -171,7 +189,7 @@ void Store::Post(Write write) {
       bytes_ += write.bytes;
       pending_.push_back(std::move(write));
       // The store's thread knows already when the other writes are due.
-      if (pending_.size() == 1 || BatchIsDue(Clock::now())) posted_.NotifyOne();
+      if (pending_.size() == 1 || BatchIsDue(SteadyNow())) posted_.NotifyOne();
       return;
     }
   }
@@ -310,7 +328,7 @@ std::optional<Store::Clock::time_point> Store::NextDue() const {
 
 bool Store::AwaitWork() {
   MutexLock lock(mutex_);
-  for (auto now = Clock::now(); !BatchIsDue(now) && !SweepIsDue(now); now = Clock::now()) {
+  for (auto now = SteadyNow(); !BatchIsDue(now) && !SweepIsDue(now); now = SteadyNow()) {
     if (const std::optional<Clock::time_point> due = NextDue()) {
       posted_.WaitUntil(mutex_, *due);
     } else {
@@ -322,7 +340,7 @@ bool Store::AwaitWork() {
 
 std::optional<Store::Batch> Store::TakeBatch() {
   MutexLock lock(mutex_);
-  const Clock::time_point now = Clock::now();
+  const Clock::time_point now = SteadyNow();
   if (!BatchIsDue(now)) return std::nullopt;
   const bool records_wait = failing_ && sweep_advances_ && !stop_waiting_ && !closing_;
   const bool retry = closing_ || retry_time_ <= now || ordered_ > 0;
@@ -477,7 +495,7 @@ void Store::Sweep() {
   bool swept_before = false, is_failing = false;
   {
     MutexLock lock(mutex_);
-    if (closing_ || sweep_is_damaged_ || Clock::now() < next_sweep_) return;
+    if (closing_ || sweep_is_damaged_ || SteadyNow() < next_sweep_) return;
     swept_before = sweeping_;
     is_failing = failing_;
   }
@@ -486,9 +504,9 @@ void Store::Sweep() {
   if (is_failing && swept.ok() && *swept && reserve_.held()) reserve_.Release();
   // The file gets shorter when the log is written back. A full disk has no room for a longer log.
   if (is_failing || !swept.ok() || (swept_before && has_ended)) WriteLogBack();
-  if (has_ended && !is_failing && !reserve_.held() && next_reserve_ <= Clock::now()) {
+  if (has_ended && !is_failing && !reserve_.held() && next_reserve_ <= SteadyNow()) {
     reserve_.Take();
-    next_reserve_ = Clock::now() + kBetweenReserves;
+    next_reserve_ = SteadyNow() + kBetweenReserves;
   }
   NoteSweep(swept);
 }
@@ -506,7 +524,7 @@ void Store::NoteSweep(const absl::StatusOr<bool>& swept) {
   sweeping_ = swept.ok() ? *swept : sweeping_;
   sweep_advances_ = swept.ok() && *swept;
   sweep_is_damaged_ = is_damage;
-  next_sweep_ = swept.ok() ? Clock::now() : Clock::now() + options_.retry;
+  next_sweep_ = swept.ok() ? SteadyNow() : SteadyNow() + options_.retry;
   written_.NotifyAll();
 }
 
@@ -564,7 +582,7 @@ void Store::NoteHealth(const absl::Status& status) {
   MutexLock lock(mutex_);
   if (!status.ok()) {
     ++failures_;
-    retry_time_ = Clock::now() + options_.retry;
+    retry_time_ = SteadyNow() + options_.retry;
     if (std::exchange(failure_, Text(status)) != Text(status)) {
       LogError(absl::StrCat(Text(status), "; computed results wait until the disk works again"));
     }

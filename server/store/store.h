@@ -38,12 +38,12 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "absl/functional/function_ref.h"
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "server/host.h"
 #include "server/mutex.h"
 #include "server/store/point_tables.h"
 #include "server/store/reserve.h"
@@ -246,7 +246,7 @@ class Store {
   bool sweep_advances_ ABSL_GUARDED_BY(mutex_) = false;    // and has done it
   bool sweep_is_damaged_ ABSL_GUARDED_BY(mutex_) = false;  // until the next start
   Clock::time_point next_sweep_ ABSL_GUARDED_BY(mutex_);
-  std::thread thread_;
+  Thread thread_;
 };
 
 }  // namespace ballpiston::server

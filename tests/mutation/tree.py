@@ -9,7 +9,7 @@ from typing import Any
 # The fast test programs of each folder, and the program that has its main function.
 TESTS = {
     "core": ["core_test"],
-    "server": ["server_test", "worker_test", "store_fault_test"],
+    "server": ["server_test", "worker_test", "store_fault_test", "simulation_test"],
     "client": ["client_test", "interrupts_test"],
 }
 PROGRAMS = {"core": [], "server": ["ballpistond"], "client": ["ballpiston"]}

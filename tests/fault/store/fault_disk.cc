@@ -65,6 +65,7 @@ struct Methods {
   static int Perform(OpenFile& open, DiskOperation operation) {
     operation.path = (*open.file)->path;
     operation.file = (*open.file)->number;
+    if (open.disk->before_operation_) open.disk->before_operation_();
     std::lock_guard lock(open.disk->mutex_);
     return open.disk->Perform(std::move(operation));
   }

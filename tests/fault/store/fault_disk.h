@@ -10,12 +10,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 struct sqlite3_vfs;
@@ -52,6 +54,8 @@ class FaultDisk {
   // Refuses operations of that kind (a full disk and a write error: writes; a sync error: syncs)
   // among those with numbers first, first + 1, ..., first + count - 1.
   void Refuse(Refusal refusal, size_t first, size_t count = std::numeric_limits<size_t>::max() / 2);
+  // Called before each operation of a file, which waits until `call` returns.
+  void SetBeforeOperation(std::function<void()> call) { before_operation_ = std::move(call); }
   // Limits the total size of all files.
   void SetCapacity(int64_t bytes);
   void StopRefusing();
@@ -102,6 +106,7 @@ class FaultDisk {
   const std::string name_;
   const DiskFiles initial_;
   std::unique_ptr<sqlite3_vfs> registered_;
+  std::function<void()> before_operation_;
 
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<File>> files_;

@@ -1,0 +1,243 @@
+#include "tests/simulation/client.h"
+
+#include <chrono>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "server/api/watch.h"
+#include "server/convert/spec.h"
+#include "server/jobs/job_name.h"
+#include "tests/server/requests.h"
+
+namespace ballpiston::server {
+namespace {
+
+constexpr uint64_t kKeys = 12, kSeedsWithoutKey = 6;
+constexpr uint64_t kFirstKeyedSeed = 1000;
+constexpr std::chrono::seconds kLongestRead(2);
+constexpr std::chrono::milliseconds kHeartbeat(2000), kSnapshot(200);
+
+// Of so many messages, the client of a watch leaves after one.
+constexpr double kLeaves = 0.05;
+
+}  // namespace
+
+// A call to the present life.
+class Client::Call {
+ public:
+  Call(ClientWorld& world, std::string what)
+      : world_(world),
+        what_(std::move(what)),
+        life_(world.life()),
+        troubles_(world.troubles()),
+        began_in_trouble_(world.is_in_trouble()) {
+    if (life_ != nullptr) world_.tell(absl::StrCat(what_, " ..."));
+  }
+
+  explicit operator bool() const { return life_ != nullptr; }
+  Life* operator->() const { return life_.get(); }
+
+  // False: the answer is not heard, or the call failed for a reason that is permitted.
+  bool Hears(const absl::Status& status) {
+    if (life_->is_over()) return false;
+    world_.tell(absl::StrCat(what_, " -> ", status.ok() ? "OK" : status.ToString()));
+    const bool is_refused = absl::IsUnavailable(status) || absl::IsResourceExhausted(status);
+    if (!is_refused) return true;
+    if (!began_in_trouble_ && troubles_ == world_.troubles()) {
+      throw Violation("refused", "", absl::StrCat(what_, ": ", status.ToString()));
+    }
+    return false;
+  }
+
+ private:
+  ClientWorld& world_;
+  const std::string what_;
+  const std::shared_ptr<Life> life_;
+  const uint64_t troubles_;
+  const bool began_in_trouble_;
+};
+
+void Client::CallOnce() {
+  const std::vector<std::string> ids = world_.expectations.Ids();
+  const uint64_t choice = world_.machine.Below(100);
+  if (ids.empty() || choice < 20) return Create();
+  if (choice < 35) return List();
+  const std::string& id = ids[world_.machine.Below(ids.size())];
+  if (choice < 52) return Get(id);
+  if (choice < 55) return Pin(id);
+  if (choice < 70) return Read(id);
+  if (choice < 85) return world_.habits.watches ? Watch(id) : Get(id);
+  if (choice < 90) return world_.habits.cancels ? Cancel(id) : Get(id);
+  return world_.habits.deletes ? Delete(id) : Get(id);
+}
+
+void Client::Create() {
+  Question question;
+  question.has_key = world_.habits.retries && world_.machine.Chance(0.7);
+  question.seed = question.has_key ? kFirstKeyedSeed + world_.machine.Below(kKeys)
+                                   : 1 + world_.machine.Below(kSeedsWithoutKey);
+  question.points = static_cast<int>(1 + question.seed % 4);
+  question.has_tolerance = question.seed % 3 == 0;
+  question.blocks =
+      static_cast<int64_t>(1 + question.seed * 7 % (question.has_tolerance ? 300 : 60));
+  const std::string key = question.has_key ? absl::StrCat("key-", question.seed) : "";
+  v1::CreateEnsembleJobRequest request = CreateRequest(SpecOf(question), key);
+  request.set_priority(static_cast<int32_t>(question.seed % 3) - 1);
+  request.set_fresh(!question.has_key && world_.machine.Chance(0.5));
+  const std::map<std::string, KnownJob> before = world_.expectations.all();
+  Call call(world_, absl::StrCat("create ", question.seed, " ", key));
+  if (!call) return;
+  const auto job = call->book().Create(LocalPrincipal(), request, CheckSpec(SpecOf(question)));
+  if (!call.Hears(job.status())) return;
+  if (!job.ok()) throw Violation("create", "", job.status().ToString());
+  world_.tell(absl::StrCat("created ", IdOfJob(*job)));
+  world_.expectations.Created(before, key, question, *job);
+}
+
+void Client::Get(const std::string& id) {
+  const KnownJob before = world_.expectations.Known(id);
+  Call call(world_, absl::StrCat("get ", id));
+  if (!call) return;
+  const auto job = call->book().Get(LocalPrincipal(), id);
+  if (!call.Hears(job.status())) return;
+  if (absl::IsNotFound(job.status())) return world_.expectations.Missed(id, before);
+  if (!job.ok()) throw Violation("get", id, job.status().ToString());
+  world_.expectations.Got(before, *job);
+}
+
+void Client::List() {
+  const std::map<std::string, KnownJob> before = world_.expectations.all();
+  Call call(world_, "list");
+  if (!call) return;
+  const auto page =
+      call->book().List(LocalPrincipal(), {.before = std::numeric_limits<int64_t>::max(),
+                                           .max_jobs = 10'000,
+                                           .max_bytes = std::numeric_limits<size_t>::max()});
+  if (!call.Hears(page.status())) return;
+  if (!page.ok()) throw Violation("list", "", page.status().ToString());
+  world_.expectations.Listed(before, page->jobs);
+}
+
+void Client::Cancel(const std::string& id) {
+  const KnownJob before = world_.expectations.Known(id);
+  world_.expectations.AskedToCancel(id);
+  Call call(world_, absl::StrCat("cancel ", id));
+  if (!call) return;
+  const auto job = call->book().Cancel(LocalPrincipal(), id, "");
+  if (!call.Hears(job.status())) return;
+  if (absl::IsNotFound(job.status())) return world_.expectations.Missed(id, before);
+  if (absl::IsFailedPrecondition(job.status())) {
+    return world_.expectations.Refused(id, before, false);
+  }
+  if (!job.ok()) throw Violation("cancel", id, job.status().ToString());
+  world_.expectations.Cancelled(id);
+  world_.expectations.Got(before, *job);
+}
+
+void Client::Delete(const std::string& id) {
+  const KnownJob before = world_.expectations.Known(id);
+  world_.expectations.AskedToDelete(id);
+  Call call(world_, absl::StrCat("delete ", id));
+  if (!call) return;
+  const absl::Status status = call->book().Delete(LocalPrincipal(), id);
+  if (!call.Hears(status)) return;
+  if (absl::IsNotFound(status)) return world_.expectations.Missed(id, before);
+  if (absl::IsFailedPrecondition(status)) return world_.expectations.Refused(id, before, true);
+  if (!status.ok()) throw Violation("delete", id, status.ToString());
+  world_.expectations.Deleted(id);
+}
+
+void Client::Pin(const std::string& id) {
+  const KnownJob before = world_.expectations.Known(id);
+  Call call(world_, absl::StrCat("pin ", id));
+  if (!call) return;
+  const bool pinned = world_.machine.Chance(0.5);
+  const auto job = call->book().Pin(LocalPrincipal(), id, pinned);
+  if (!call.Hears(job.status())) return;
+  if (absl::IsNotFound(job.status())) return world_.expectations.Missed(id, before);
+  if (!job.ok()) throw Violation("pin", id, job.status().ToString());
+  world_.expectations.Got(before, *job);
+}
+
+void Client::Read(const std::string& id) {
+  const KnownJob before = world_.expectations.Known(id);
+  Call call(world_, absl::StrCat("results ", id));
+  if (!call) return;
+  const auto page = call->book().Results(
+      LocalPrincipal(), id,
+      {.max_points = 1000, .max_bytes = std::numeric_limits<size_t>::max(), .histograms = false});
+  if (!call.Hears(page.status())) return;
+  if (absl::IsNotFound(page.status())) return world_.expectations.Missed(id, before);
+  if (!page.ok()) throw Violation("results", id, page.status().ToString());
+  world_.expectations.Read(id, before, page->points);
+}
+
+// ---- watches ----
+
+class Client::Reader : public WatchReader {
+ public:
+  Reader(ClientWorld& world, Call& call, std::string id, Chain& chain)
+      : world_(world),
+        call_(call),
+        id_(std::move(id)),
+        chain_(chain),
+        before_(world.expectations.Known(id_)) {}
+
+  const Principal& caller() const override { return caller_; }
+  absl::Status Proceed() override {
+    return call_->is_over() ? absl::UnavailableError("the server ends") : absl::OkStatus();
+  }
+  std::chrono::steady_clock::time_point next_check() const override {
+    return world_.machine.now() + kHeartbeat;
+  }
+  size_t watches() const override { return 1; }
+
+  bool Write(const v1::WatchEnsembleJobResponse& message) override {
+    world_.machine.Sleep(world_.machine.UpTo(kLongestRead));
+    if (call_->is_over() || world_.machine.Chance(kLeaves)) return false;
+    chain_.token = message.resume_token();
+    for (const v1::PointResult& point : message.snapshot().finished_points()) {
+      world_.tell(absl::StrCat("watch ", id_, ": point ", point.index()));
+      chain_.points.push_back(point);
+    }
+    if (message.has_job()) Saw(message.job().state());
+    return true;
+  }
+
+ private:
+  void Saw(v1::EnsembleJob::State state) {
+    world_.tell(absl::StrCat("watch ", id_, ": ", v1::EnsembleJob::State_Name(state)));
+    world_.expectations.Saw(id_, before_, state);
+    world_.expectations.Watched(id_, chain_.points, state);
+    chain_.has_ended = HasEndedState(state);
+  }
+
+  ClientWorld& world_;
+  Call& call_;
+  const std::string id_;
+  Chain& chain_;
+  const KnownJob before_;
+  const Principal caller_ = LocalPrincipal();
+};
+
+void Client::Watch(const std::string& id) {
+  const KnownJob before = world_.expectations.Known(id);
+  Call call(world_, absl::StrCat("watch ", id));
+  if (!call) return;
+  if (chains_[id].has_ended) chains_[id] = {};
+  Reader reader(world_, call, id, chains_[id]);
+  v1::WatchEnsembleJobRequest request;
+  request.set_name(JobName(id));
+  request.set_resume_token(chains_[id].token);
+  const absl::Status status =
+      RunWatch(call->book(), {.snapshot = kSnapshot, .heartbeat = kHeartbeat}, call->name(),
+               request, reader);
+  if (absl::IsCancelled(status) || !call.Hears(status)) return;
+  if (absl::IsNotFound(status)) return world_.expectations.Missed(id, before);
+  if (!status.ok()) throw Violation("watch", id, status.ToString());
+  if (!chains_[id].has_ended) throw Violation("watch", id, "ended before the job");
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,67 @@
+// A client that asks at random and compares each answer with the expectations.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "tests/simulation/expectations.h"
+#include "tests/simulation/life.h"
+#include "tests/simulation/machine.h"
+
+namespace ballpiston::server {
+
+// What clients may do beyond creating and reading jobs.
+struct ClientHabits {
+  bool cancels = true;
+  bool deletes = true;
+  bool watches = true;
+  bool retries = true;  // with a key
+};
+
+// What all clients share.
+struct ClientWorld {
+  Machine& machine;
+  Expectations& expectations;
+  ClientHabits habits;
+  std::function<std::shared_ptr<Life>()> life;  // null: no server
+  // Counts moments at which a call may fail: the disk fails, or the server ends.
+  std::function<uint64_t()> troubles;
+  std::function<bool()> is_in_trouble;
+  std::function<void(const std::string&)> tell;  // a line of the story
+};
+
+class Client {
+ public:
+  explicit Client(ClientWorld& world) : world_(world) {}
+
+  // One call, of any kind. Throws Violation.
+  void CallOnce();
+
+  void Create();
+  void Get(const std::string& id);
+  void List();
+  void Cancel(const std::string& id);
+  void Delete(const std::string& id);
+  void Pin(const std::string& id);
+  void Read(const std::string& id);
+  void Watch(const std::string& id);
+
+ private:
+  class Call;
+  class Reader;
+  // A watch and those that it resumes.
+  struct Chain {
+    std::string token;
+    std::vector<v1::PointResult> points;
+    bool has_ended = false;
+  };
+
+  ClientWorld& world_;
+  std::map<std::string, Chain> chains_;  // by job
+};
+
+}  // namespace ballpiston::server

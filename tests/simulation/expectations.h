@@ -1,0 +1,107 @@
+// The reference model: what every call may answer, given what was asked and answered before.
+//
+// A call is judged by what was known when it began, because calls overlap and a call without an
+// answer may or may not have taken effect. Violations throw Violation.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "ballpiston/v1/ensemble.pb.h"
+
+namespace ballpiston::server {
+
+// What a request asks for: toy jobs of one seed have one specification.
+struct Question {
+  uint64_t seed = 0;
+  int points = 1;
+  int64_t blocks = 1;
+  bool has_tolerance = false;  // then the points end before their last block
+  bool has_key = false;        // it is asked with one request_id alone, however often
+};
+v1::EnsembleSpec SpecOf(const Question& question);
+
+class Violation : public std::runtime_error {
+ public:
+  // `check` names the promise. `job`: empty if the promise is not about one job.
+  Violation(std::string check, std::string job, const std::string& what)
+      : std::runtime_error(check + ": " + job + " " + what),
+        check_(std::move(check)),
+        job_(std::move(job)) {}
+
+  const std::string& check() const { return check_; }
+  const std::string& job() const { return job_; }
+
+ private:
+  std::string check_, job_;
+};
+
+// What is known of a job. States are in the order of v1::EnsembleJob::State.
+struct KnownJob {
+  Question question;
+  v1::EnsembleJob::State state = v1::EnsembleJob::QUEUED;  // the last that was answered
+  int points_done = 0;                                     // the most that were answered
+  bool is_cancel_asked = false;
+  bool is_cancelled = false;  // and this was answered
+  bool is_delete_asked = false;
+  bool is_deleted = false;  // and this was answered
+};
+
+class Expectations {
+ public:
+  // Of all jobs ever, deleted ones too.
+  std::vector<std::string> Ids() const;
+  const std::map<std::string, KnownJob>& all() const { return jobs_; }
+  // As it is now; a new one if the id is unknown.
+  KnownJob Known(const std::string& id) const;
+
+  // ---- answers of calls that began when `before` was known ----
+
+  // `key`: of the request; empty if it has none.
+  void Created(const std::map<std::string, KnownJob>& before, const std::string& key,
+               const Question& question, const v1::EnsembleJob& job);
+  void Got(const KnownJob& before, const v1::EnsembleJob& job);
+  // The job was not found, or was not in the list.
+  void Missed(const std::string& id, const KnownJob& before);
+  void AskedToCancel(const std::string& id) { jobs_.at(id).is_cancel_asked = true; }
+  void Cancelled(const std::string& id) { jobs_.at(id).is_cancelled = true; }
+  void AskedToDelete(const std::string& id) { jobs_.at(id).is_delete_asked = true; }
+  void Deleted(const std::string& id) { jobs_.at(id).is_deleted = true; }
+  // Cancel or Delete refused because of the job's state.
+  void Refused(const std::string& id, const KnownJob& before, bool is_active);
+  void Listed(const std::map<std::string, KnownJob>& before,
+              const std::vector<v1::EnsembleJob>& jobs);
+  // A watch told this state.
+  void Saw(const std::string& id, const KnownJob& before, v1::EnsembleJob::State state);
+  // All results that the job had.
+  void Read(const std::string& id, const KnownJob& before,
+            const std::vector<v1::PointResult>& results);
+  // Finished points and states of a watch, and of those that it resumes.
+  void Watched(const std::string& id, const std::vector<v1::PointResult>& points,
+               v1::EnsembleJob::State state);
+
+  // When nothing fails and everything has ended.
+  void ExpectAllEnded() const;
+
+ private:
+  void NoteState(const std::string& id, const v1::EnsembleJob& job);
+  void CheckKeys(const std::set<std::string>& listed) const;
+  void CheckResult(const std::string& id, const Question& question, const v1::PointResult& result);
+  const v1::PointResult& Undisturbed(const Question& question, int point);
+  double SamplesOf(const Question& question);
+
+  std::map<std::string, KnownJob> jobs_;                             // by id
+  std::map<std::string, std::string> by_key_;                        // ids of requests with a key
+  std::map<std::pair<uint64_t, int>, v1::PointResult> undisturbed_;  // by seed and point
+};
+
+std::string IdOfJob(const v1::EnsembleJob& job);
+bool HasEndedState(v1::EnsembleJob::State state);
+
+}  // namespace ballpiston::server

@@ -1,0 +1,69 @@
+#include "tests/simulation/life.h"
+
+#include <chrono>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "server/host.h"
+#include "tests/fault/store/service_on_disk.h"
+#include "tests/server/fake_experiments.h"
+
+namespace ballpiston::server {
+namespace {
+
+constexpr int kThreads = 2;
+constexpr std::chrono::milliseconds kLongestBlock(200);
+constexpr std::chrono::seconds kBetweenLimits(1);
+
+Store::Options StoreOptions(const FaultDisk& disk) {
+  Store::Options options;
+  options.readers = 2;  // so that calls wait for one
+  options.reserve_bytes = size_t{256} << 10;
+  options.vfs = disk.vfs();
+  return options;
+}
+
+ExperimentFactory SlowExperiments(Machine& machine) {
+  return FakeExperiments([&machine](size_t, uint64_t, const std::stop_token&) {
+    machine.Sleep(machine.UpTo(kLongestBlock));
+  });
+}
+
+}  // namespace
+
+Life::Life(Machine& machine, FaultDisk& disk, bool has_cluster)
+    : machine_(machine),
+      name_(absl::StrCat("life", machine.Bits())),
+      opener_(SlowExperiments(machine)),
+      scheduler_(std::make_unique<Scheduler>(opener_, kThreads,
+                                             SchedulerOptions{.least_seconds_elsewhere = 0})),
+      threads_(std::make_unique<ThreadExecutor>(*scheduler_, kThreads)),
+      cluster_(has_cluster ? std::make_unique<Cluster>(machine, *scheduler_) : nullptr) {
+  status_ = Start(disk);
+}
+
+absl::Status Life::Start(FaultDisk& disk) {
+  absl::StatusOr<std::unique_ptr<Store>> store = Store::Open(kStorePath, StoreOptions(disk));
+  if (!store.ok()) return store.status();
+  store_ = *std::move(store);
+  book_ = std::make_unique<JobBook>(*store_, Limits(), *scheduler_);
+  const absl::Status resumed = book_->Resume();
+  if (!resumed.ok()) return resumed;
+  if (cluster_ != nullptr) cluster_->Start();
+  threads_->Start();
+  limits_ =
+      std::make_unique<PeriodicThread>(kBetweenLimits, [this] { book_->KeepLimits(WallNow()); });
+  return absl::OkStatus();
+}
+
+Life::~Life() {
+  limits_.reset();
+  if (book_ != nullptr) book_->Shutdown();
+  scheduler_->Shutdown();
+  if (store_ != nullptr) store_->Flush().IgnoreError();
+  if (store_ != nullptr) store_->Close();
+  cluster_.reset();
+  book_.reset();
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,66 @@
+// One life of the server in the simulated machine: the real store, book, scheduler and threads,
+// with toy experiments, on a disk that can fail, and a cluster that reports late, twice, out of
+// order or not at all.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "absl/status/status.h"
+#include "server/execution/thread_executor.h"
+#include "server/jobs/job_book.h"
+#include "server/periodic_thread.h"
+#include "server/scheduling/point_opener.h"
+#include "server/scheduling/scheduler.h"
+#include "server/store/store.h"
+#include "tests/fault/store/fault_disk.h"
+#include "tests/simulation/cluster.h"
+#include "tests/simulation/machine.h"
+
+namespace ballpiston::server {
+
+class Life {
+ public:
+  // Reads the disk and goes on with the jobs that it finds. `has_cluster`: leases also go there.
+  Life(Machine& machine, FaultDisk& disk, bool has_cluster);
+  ~Life();  // stops like a server after SIGTERM
+
+  // Why the server could not start. Call other functions only if it is OK.
+  const absl::Status& status() const { return status_; }
+  Store& store() { return *store_; }
+  JobBook& book() { return *book_; }
+  // Names this life in tokens of watches.
+  const std::string& name() const { return name_; }
+
+  // From now on nobody hears what this life says.
+  void Die() { is_over_ = true; }
+  bool is_over() const { return is_over_; }
+
+  // As long as it lives, a client is in a call.
+  class Call {
+   public:
+    explicit Call(std::shared_ptr<Life> life) : life_(std::move(life)) {}
+    Life& operator*() const { return *life_; }
+    Life* operator->() const { return life_.get(); }
+
+   private:
+    std::shared_ptr<Life> life_;
+  };
+
+ private:
+  absl::Status Start(FaultDisk& disk);
+
+  Machine& machine_;
+  const std::string name_;
+  bool is_over_ = false;
+  absl::Status status_;
+  std::unique_ptr<Store> store_;
+  FactoryOpener opener_;
+  std::unique_ptr<Scheduler> scheduler_;
+  std::unique_ptr<ThreadExecutor> threads_;
+  std::unique_ptr<Cluster> cluster_;
+  std::unique_ptr<JobBook> book_;
+  std::unique_ptr<PeriodicThread> limits_;
+};
+
+}  // namespace ballpiston::server

@@ -1,0 +1,82 @@
+// A simulated machine: its own time, and threads that run one at a time, all within one thread of
+// the system. One seed determines which thread runs next, and so everything.
+//
+// machine.cc defines what server/host.h and server/mutex.h declare, in place of server/host.cc. A
+// thread runs until it waits: for a lock, a condition, a time, or another thread. Before it takes a
+// lock another thread may run. Time passes only while all threads wait.
+#pragma once
+
+#include <ucontext.h>
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <random>
+#include <vector>
+
+namespace ballpiston::server {
+
+class Machine {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  explicit Machine(uint64_t seed);
+  ~Machine();
+  Machine(const Machine&) = delete;
+  Machine& operator=(const Machine&) = delete;
+
+  // Null outside of Run: then the locks are the system's.
+  static Machine* Current();
+
+  // Returns when `main` and all threads that it started have ended. Throws std::runtime_error if
+  // all threads wait, and none for a time.
+  void Run(std::function<void()> main);
+
+  // ---- for the threads ----
+
+  struct Fiber;  // a thread
+
+  Fiber* Start(std::function<void()> run);
+  void Join(Fiber* fiber);
+  void Yield();
+  void Sleep(Clock::duration time) { SleepUntil(now_ + time); }
+  void SleepUntil(Clock::time_point time);
+  // Waits for Notify of the same `what`, which is only compared. False: `until` has come.
+  bool Await(const void* what, std::optional<Clock::time_point> until = std::nullopt);
+  void NotifyOne(const void* what);
+  void NotifyAll(const void* what);
+
+  Clock::time_point now() const { return now_; }
+
+  // ---- chance ----
+
+  uint64_t Bits() { return random_(); }
+  uint64_t Below(uint64_t end) { return random_() % end; }
+  bool Chance(double probability) {
+    return static_cast<double>(random_() >> 11) * 0x1p-53 < probability;
+  }
+  // Up to `most`, short times more often.
+  Clock::duration UpTo(Clock::duration most);
+
+  uint64_t switches() const { return switches_; }  // from thread to thread
+
+ private:
+  static void Enter();
+  void Switch();  // to a thread that is ready, or back to Run if all have ended
+  Fiber* Choose();
+  bool PassTime();
+  void Resume(Fiber& fiber);
+
+  std::mt19937_64 random_;
+  Clock::time_point now_;
+  uint64_t switches_ = 0;
+  std::vector<std::unique_ptr<Fiber>> fibers_;
+  Fiber* running_ = nullptr;
+  ucontext_t outside_ = {};
+  bool is_stuck_ = false;
+};
+
+}  // namespace ballpiston::server

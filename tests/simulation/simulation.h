@@ -1,0 +1,57 @@
+// A simulated world from one seed: a server with its clients, cluster, disk failures and crashes.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/fault/store/power_cut.h"
+#include "tests/simulation/client.h"
+#include "tests/simulation/expectations.h"
+#include "tests/simulation/life.h"
+#include "tests/simulation/machine.h"
+
+namespace ballpiston::server {
+
+struct SimulationOptions {
+  uint64_t seed = 1;
+  uint64_t steps = 40'000;  // switches from thread to thread until peace begins
+  int clients = 4;
+  bool crashes = true;
+  bool power_cuts = true;
+  bool restarts = true;
+  bool slow_disk = true;
+  bool full_disk = true;
+  bool bad_disk = true;
+  bool cluster = true;
+  ClientHabits habits = {};
+};
+std::string TextOf(const SimulationOptions& options);
+
+// A promise that was broken.
+struct Finding {
+  std::string check;
+  std::string what;
+  std::vector<std::string> story;  // what happened to the job, at last
+};
+
+struct SimulationReport {
+  std::optional<Finding> finding;
+  uint64_t steps = 0;
+  uint64_t calls = 0;
+  uint64_t deaths = 0;
+  uint64_t last_bits = 0;  // of the world's chance: the same if everything happened as before
+};
+
+// Runs the world. In the end nothing fails any more: every job ends, its results have the bytes of
+// an undisturbed run, and deletions free the disk.
+SimulationReport Simulate(const SimulationOptions& options);
+
+// Fewer things that happen, as long as the same check fails. At most `runs` more simulations.
+SimulationOptions Shrunk(SimulationOptions options, const Finding& finding, int runs);
+
+}  // namespace ballpiston::server

@@ -1,0 +1,69 @@
+// Simulated worlds with fixed seeds. BALLPISTON_SIMULATION_SECONDS in the environment: worlds with
+// random seeds for so long; BALLPISTON_SIMULATION_SEED: the first seed.
+#include "tests/simulation/simulation.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <iostream>
+#include <random>
+#include <string>
+
+#include "gtest/gtest.h"
+#include "server/observability/log.h"
+
+namespace ballpiston::server {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kWorlds = 8;  // of make test
+constexpr int kRunsToShrink = 60;
+
+std::optional<std::string> Environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? std::nullopt : std::optional<std::string>(value);
+}
+
+// The short story of a failing world.
+void Report(const SimulationOptions& options, const Finding& finding) {
+  const SimulationOptions fewer = Shrunk(options, finding, kRunsToShrink);
+  const SimulationReport short_one = Simulate(fewer);
+  const Finding& shown = short_one.finding ? *short_one.finding : finding;
+  std::cout << TextOf(options) << "\n  " << finding.what << "\nshrunk to " << TextOf(fewer) << "\n";
+  for (const std::string& line : shown.story) std::cout << "  " << line << "\n";
+  std::cout << "  " << shown.what << "\n";
+  ADD_FAILURE() << finding.what;
+}
+
+TEST(Simulation, NoPromiseIsBrokenInAnyWorld) {
+  SetLogOptions({.silent = true});
+  const auto time = Environment("BALLPISTON_SIMULATION_SECONDS");
+  const auto first = Environment("BALLPISTON_SIMULATION_SEED");
+  const double seconds = time ? std::stod(*time) : 0;
+  uint64_t seed = first ? std::stoull(*first) : time ? std::random_device()() : 1;
+  SimulationReport all;
+  int worlds = 0;
+  const auto begin = Clock::now();
+  const auto spent = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  for (; time ? spent() < seconds : worlds < kWorlds; ++worlds, ++seed) {
+    const SimulationOptions options = {.seed = seed};
+    const SimulationReport report = Simulate(options);
+    all.steps += report.steps;
+    all.calls += report.calls;
+    all.deaths += report.deaths;
+    if (report.finding) return Report(options, *report.finding);
+  }
+  std::cout << worlds << " worlds, " << all.steps << " steps, " << all.calls << " calls, "
+            << all.deaths << " deaths, " << spent() << " s\n";
+}
+
+TEST(Simulation, OneSeedIsOneWorld) {
+  SetLogOptions({.silent = true});
+  const SimulationOptions options = {.seed = 5, .steps = 3000};
+  const SimulationReport once = Simulate(options), again = Simulate(options);
+  EXPECT_EQ(once.steps, again.steps);
+  EXPECT_EQ(once.last_bits, again.last_bits);
+}
+
+}  // namespace
+}  // namespace ballpiston::server
