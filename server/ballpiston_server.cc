@@ -71,11 +71,6 @@ void SetPings(grpc::ServerBuilder& builder, const ConnectionTiming& timing) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
 }
 
-void SetAge(grpc::ServerBuilder& builder, const ConnectionTiming& timing) {
-  Set(builder, GRPC_ARG_MAX_CONNECTION_AGE_MS, timing.certified_age);
-  Set(builder, GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS, timing.certified_age_grace);
-}
-
 // Bounds what clients can use before they are authenticated: streams, memory and threads. Each call
 // has a thread. There are more than the streams can take, so that other calls find one.
 void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
@@ -93,7 +88,14 @@ void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   builder.SetSyncServerOption(Option::NUM_CQS, 1);
   builder.SetSyncServerOption(Option::MIN_POLLERS, 1);
   builder.SetSyncServerOption(Option::MAX_POLLERS, 2);
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);  // no other server shares the port
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kStreamsPerConnection);
+}
+
+absl::Status CannotListen(const ListenAddress& address) {
+  return absl::FailedPreconditionError(absl::StrCat(
+      "--listen=", address.Text(),
+      ": the address is in use, not permitted, or not of this machine; choose another address"));
 }
 
 }  // namespace
@@ -101,26 +103,20 @@ void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
 absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(ServerOptions options) {
   absl::StatusOr<DataDirectory> directory = DataDirectory::Open(options.data_dir);
   if (!directory.ok()) return directory.status();
-  if (options.listen.empty() && options.security.socket_mode.value_or(0600) != 0600) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "--socket-mode=%04o needs --listen=unix:PATH: the default socket is in the data folder, "
-        "which other users cannot enter",
-        *options.security.socket_mode));
-  }
   if (options.listen.empty()) {
     options.listen = absl::StrCat("unix:", directory->FilePath("server.socket"));
   }
   const absl::StatusOr<ListenAddress> address = ParseListenAddress(options.listen);
   if (!address.ok()) return address.status();
-  auto security = ServerSecurity::Create(options.security, *address);
-  if (!security.ok()) return security.status();
+  auto door = Door::Create(options.door, *address);
+  if (!door.ok()) return door.status();
   absl::StatusOr<std::unique_ptr<Store>> store =
       Store::Open(directory->FilePath(kStoreFile), options.store);
   if (!store.ok()) return store.status();
   try {
     std::unique_ptr<BallpistonServer> server(
         new BallpistonServer(std::move(options), *std::move(directory), *address,
-                             *std::move(security), *std::move(store)));
+                             *std::move(door), *std::move(store)));
     absl::Status status = server->book_.Resume();
     if (status.ok()) server->StartExecutors();
     if (status.ok()) server->StartKeepingLimits();
@@ -135,12 +131,12 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
 }
 
 BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory directory,
-                                   ListenAddress address, std::unique_ptr<ServerSecurity> security,
+                                   ListenAddress address, std::unique_ptr<Door> door,
                                    std::unique_ptr<Store> store)
     : options_(std::move(options)),
       directory_(std::move(directory)),
       address_(std::move(address)),
-      security_(std::move(security)),
+      door_(std::move(door)),
       store_(std::move(store)),
       crashes_(std::make_shared<CrashRecord>(directory_.path())),
       ladder_(*store_, options_.workers, OptionsOfScheduler(options_).memory_limit),
@@ -157,8 +153,8 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
                  : nullptr),
       open_calls_(options_.limits),
       turns_(kTurns, kTurns / 2),
-      streams_(options_.limits, security_->authenticator(), options_.watch.heartbeat, draining_),
-      context_{security_->authenticator(),
+      streams_(options_.limits, door_->authenticator(), options_.watch.heartbeat, draining_),
+      context_{door_->authenticator(),
                options_.limits,
                book_,
                scheduler_,
@@ -197,37 +193,14 @@ BallpistonServer::~BallpistonServer() { Shutdown(std::chrono::milliseconds(0)); 
 
 void BallpistonServer::BoundConnections(grpc::ServerBuilder& builder) const {
   SetPings(builder, options_.connections);
-  if (!options_.security.tls_client_ca.empty()) SetAge(builder, options_.connections);
   SetBounds(builder, options_.limits);
   builder.SetMaxReceiveMessageSize(static_cast<int>(options_.limits.max_message_bytes));
 }
 
-SocketListener::Receive BallpistonServer::AddReceiver(grpc::ServerBuilder& builder) {
-  if (security_->socket_access().IsOpenToOthers()) {
-    unix_users_ = std::make_unique<UnixUsers>(builder);
-    return [this](int descriptor, std::optional<uid_t> user) {
-      unix_users_->Receive(descriptor, *user);
-    };
-  }
-  const std::shared_ptr<grpc::experimental::ExternalConnectionAcceptor> connections =
-      builder.experimental().AddExternalConnectionAcceptor(
-          grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD,
-          security_->Credentials());
-  return [connections](int descriptor, std::optional<uid_t>) {
-    grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
-    connection.fd = descriptor;
-    connections->HandleNewConnection(&connection);
-  };
-}
-
 absl::Status BallpistonServer::Listen() {
-  const absl::Status free =
-      address_.socket_path.empty() ? absl::OkStatus() : ClearSocketPath(address_);
+  const bool is_socket = !address_.socket_path.empty();
+  const absl::Status free = is_socket ? ClearSocketPath(address_) : absl::OkStatus();
   if (!free.ok()) return free;
-  auto listener =
-      SocketListener::Listen(address_, options_.socket_users, security_->socket_access());
-  if (!listener.ok()) return listener.status();
-  address_ = (*listener)->address();
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
@@ -240,11 +213,12 @@ absl::Status BallpistonServer::Listen() {
   interceptors.push_back(calls_.InterceptorFactory());
   interceptors.push_back(std::make_unique<ReflectionLimit>());
   builder.experimental().SetInterceptorCreators(std::move(interceptors));
-  SocketListener::Receive receive = AddReceiver(builder);
+  int port = 0;
+  builder.AddListeningPort(address_.Text(), door_->Credentials(), &port);
   grpc_ = builder.BuildAndStart();
-  if (grpc_ == nullptr) return absl::FailedPreconditionError("gRPC cannot start");
-  listener_ = *std::move(listener);
-  listener_->Start(std::move(receive));
+  if (grpc_ == nullptr || port == 0) return CannotListen(address_);
+  if (!is_socket) address_.port = port;
+  door_->Open(address_);
   StartHealth();
   directory_.TellAddress(address());
   return absl::OkStatus();
@@ -261,7 +235,7 @@ absl::Status BallpistonServer::StartMetrics() {
   for (const std::string& service : ServicesOfHealth().all) calls_.statistics().Expect(service);
   auto endpoint = MetricsEndpoint::Start(options_.metrics_listen, [this] {
     ServerSnapshot now = TakeSnapshot(context_);
-    now.certificate_expiry = security_->CertificateExpiry();
+    now.certificate_expiry = door_->CertificateExpiry();
     std::vector<prometheus::MetricFamily> metrics = ServerMetrics(now);
     for (auto& family : calls_.metrics().Collect()) metrics.push_back(std::move(family));
     return metrics;
@@ -287,7 +261,6 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   Failpoint("stop.before_flush");
   store_->Flush().IgnoreError();
   book_.StoreNewWork(absl::Now());
-  if (listener_ != nullptr) listener_->Stop();
   if (grpc_ != nullptr) grpc_->Shutdown(deadline);
   if (metrics_ != nullptr) metrics_->Detach();
   store_->Close();

@@ -1,5 +1,6 @@
 // ballpistond: starts the server, waits for a signal or for idleness, stops it.
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <time.h>
 
@@ -20,7 +21,7 @@
 #include "server/observability/failpoint.h"
 #include "server/observability/log.h"
 #include "server/scheduling/crash_record.h"
-#include "server/security/new_token.h"
+#include "server/door/new_token.h"
 #include "server/store/backup.h"
 #include "server/store/check_store.h"
 #include "server/store/data_directory.h"
@@ -50,9 +51,17 @@ sigset_t BlockSignals() {
   return signals;
 }
 
+// Each connection needs a descriptor, and gRPC stops listening for good when there is none left.
+void UseAllDescriptors() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &limit);
+}
+
 void Reload(BallpistonServer& server) {
   const absl::Status status = server.Reload();
-  if (status.ok()) return LogInfo(absl::StrCat("reloaded: ", server.security().Description()));
+  if (status.ok()) return LogInfo(absl::StrCat("reloaded: ", server.door().Description()));
   LogError(absl::StrCat("not reloaded, the previous contents stay in use: ", status.message()));
 }
 
@@ -119,7 +128,7 @@ int Print(const std::string& text) {
 // Prints the token and nothing else to standard output. The log does not hold the token.
 int PrintNewToken(const CommandLine& line) {
   const auto token =
-      IssueToken({"access-file", line.server.security.access_file}, *line.new_token, absl::Now());
+      IssueToken({"access-file", line.server.door.access_file}, *line.new_token, absl::Now());
   return token.ok() ? Print(*token + "\n") : Fail(token.status());
 }
 
@@ -155,11 +164,12 @@ int Main(int argc, char** argv) {
   if (line->check) return Report(CheckStore(StoreIn(*line)));
   if (!line->backup.empty()) return Report(BackupStore(StoreIn(*line), line->backup));
   SetLogOptions(line->log);
+  UseAllDescriptors();
   NoteFatalSignals(CrashRecord::NoteDeath);
   const sigset_t signals = BlockSignals();
   const auto server = BallpistonServer::Start(line->server);
   if (!server.ok()) return Fail(server.status());
-  LogInfo((*server)->security().Description());
+  LogInfo((*server)->door().Description());
   if (!(*server)->metrics_address().empty()) {
     LogInfo(absl::StrCat("metrics at http://", (*server)->metrics_address(), "/metrics"));
   }

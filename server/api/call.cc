@@ -37,14 +37,10 @@ absl::string_view UserAgentOf(const grpc::ServerContext& context) {
   return {found->second.data(), found->second.size()};
 }
 
-// The hint is for the principal `local`, which has a role below admin only over the loopback.
 absl::Status RoleTooLow(const Principal& caller, Role least) {
-  const char* const hint = caller.name == LocalPrincipal().name
-                               ? "; the server's flag --loopback-role sets the role of local users"
-                               : "";
   return WithReason(absl::PermissionDeniedError(
                         absl::StrCat(caller.name, " has the role ", RoleName(caller.role),
-                                     ", this call needs the role ", RoleName(least), hint)),
+                                     ", this call needs the role ", RoleName(least))),
                     "ROLE_TOO_LOW", "role", RoleName(least));
 }
 

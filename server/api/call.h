@@ -6,7 +6,7 @@
 #include "absl/status/statusor.h"
 #include "grpcpp/server_context.h"
 #include "server/api/service_context.h"
-#include "server/security/principal.h"
+#include "server/door/principal.h"
 
 namespace ballpiston::server {
 

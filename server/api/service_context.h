@@ -17,7 +17,7 @@
 #include "server/observability/call_observer.h"
 #include "server/scheduling/model_ladder.h"
 #include "server/scheduling/scheduler.h"
-#include "server/security/authenticator.h"
+#include "server/door/authenticator.h"
 #include "server/store/store.h"
 
 namespace ballpiston::server {

@@ -13,7 +13,7 @@
 #include "grpcpp/server_context.h"
 #include "server/limits.h"
 #include "server/mutex.h"
-#include "server/security/authenticator.h"
+#include "server/door/authenticator.h"
 
 namespace ballpiston::server {
 

@@ -58,44 +58,17 @@ void AddServerFlags(CLI::App& app, CommandLine& line) {
   AddFlagFile(app);
 }
 
-void AddLocalAccessFlags(CLI::App& app, SecurityOptions& security) {
-  BeginGroup(app, "Users of this machine");
-  AddChoice(app, "socket-mode", security.socket_mode,
-            {{"0600", mode_t{0600}}, {"0660", mode_t{0660}}, {"0666", mode_t{0666}}},
-            "mode of the Unix socket in --listen. 0600: only the server's user and root connect, "
-            "as principal local. 0660: also the members of --socket-group. 0666: every user. With "
-            "0660 and 0666 each user is a principal of that name, with the role submit; if an "
-            "--access-file has lines user UNIX_USER PRINCIPAL ROLE [EXPIRES], only its users are "
-            "accepted. The server's user and root are administrators");
-  app.add_option("--socket-group", security.socket_group,
-                 "group of the Unix socket, by name or number, with --socket-mode=0660. The "
-                 "server's user must belong to it")
-      ->type_name("GROUP");
-  AddChoice(
-      app, "loopback-role", security.loopback_role,
-      {{RoleName(kLoopbackRole), kLoopbackRole}, {"read", Role::kRead}, {"admin", Role::kAdmin}},
-      "role of every user of this machine at a loopback HOST:PORT without --access-file: "
-      "read, submit or admin. All of them are the principal local");
-}
-
-void AddSecurityFlags(CLI::App& app, SecurityOptions& security) {
+void AddDoorFlags(CLI::App& app, DoorOptions& door) {
   BeginGroup(app, "Security; SIGHUP makes the server read these files again");
-  app.add_option("--tls-certificate", security.tls_certificate,
+  app.add_option("--tls-certificate", door.tls_certificate,
                  "PEM file: the server's certificate, then the intermediate certificates")
       ->type_name("FILE");
-  app.add_option("--tls-key", security.tls_key,
+  app.add_option("--tls-key", door.tls_key,
                  "PEM file: the certificate's private key, which other users cannot read")
       ->type_name("FILE");
-  app.add_option("--tls-client-ca", security.tls_client_ca,
-                 "PEM file: the authorities that sign clients' certificates. With it, every client "
-                 "needs a certificate")
-      ->type_name("FILE");
-  app.add_option(
-         "--access-file", security.access_file,
-         "credentials of the clients; needs TLS, or a Unix socket with --socket-mode (see there). "
-         "One line for each credential: token sha256:HEX PRINCIPAL "
-         "ROLE [EXPIRES], or certificate COMMON_NAME PRINCIPAL ROLE [EXPIRES]; ROLE is "
-         "read, submit or admin")
+  app.add_option("--access-file", door.access_file,
+                 "tokens of the clients, one line each: token sha256:HEX PRINCIPAL ROLE [EXPIRES]; "
+                 "ROLE is read, submit or admin. On the loopback this server's user needs none")
       ->type_name("FILE");
 }
 
@@ -355,7 +328,7 @@ absl::Status CheckOneCommand(const CommandLine& line, const std::string& new_tok
 
 absl::Status SetNewToken(const std::string& text, CommandLine& line) {
   if (text.empty()) return absl::OkStatus();
-  if (line.server.security.access_file.empty()) {
+  if (line.server.door.access_file.empty()) {
     return absl::InvalidArgumentError(
         "--new-token: --access-file is missing, the file that keeps the token's hash");
   }
@@ -385,8 +358,7 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   app.set_help_flag();  // AddCommands adds its own help flag
   SetHelpPage(app);
   AddServerFlags(app, line);
-  AddLocalAccessFlags(app, line.server.security);
-  AddSecurityFlags(app, line.server.security);
+  AddDoorFlags(app, line.server.door);
   bool with_slurm = false;
   SlurmOptions slurm;
   AddSlurmFlags(app, with_slurm, slurm);

@@ -19,7 +19,7 @@
 #include "server/jobs/question.h"
 #include "server/observability/failpoint.h"
 #include "server/observability/log.h"
-#include "server/security/sha256.h"
+#include "server/door/sha256.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
 #include "server/store/usage_table.h"

@@ -34,7 +34,7 @@
 #include "server/mutex.h"
 #include "server/scheduling/crash_record.h"
 #include "server/scheduling/scheduler.h"
-#include "server/security/principal.h"
+#include "server/door/principal.h"
 #include "server/store/job_table.h"
 #include "server/store/store.h"
 

@@ -18,7 +18,7 @@
 #include "prometheus/collectable.h"
 #include "prometheus/exposer.h"
 #include "prometheus/metric_family.h"
-#include "server/listen_address.h"
+#include "server/door/listen_address.h"
 
 namespace ballpiston::server {
 

@@ -1,6 +1,6 @@
 // The access file, the credentials of a call, and --new-token. Errors do not quote the rejected
 // text.
-#include "server/security/access_list.h"
+#include "server/door/access_list.h"
 
 #include <memory>
 #include <vector>
@@ -8,9 +8,9 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_split.h"
 #include "absl/time/time.h"
-#include "server/security/access_entry.h"
-#include "server/security/authenticator.h"
-#include "server/security/new_token.h"
+#include "server/door/access_entry.h"
+#include "server/door/authenticator.h"
+#include "server/door/new_token.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"
 

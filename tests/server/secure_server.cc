@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "server/security/access_entry.h"
+#include "server/door/access_entry.h"
 #include "tests/support/files.h"
 
 namespace ballpiston::server {

@@ -14,7 +14,7 @@
 
 #include "absl/time/time.h"
 #include "grpcpp/security/credentials.h"
-#include "server/security/principal.h"
+#include "server/door/principal.h"
 #include "tests/credentials/test_authority.h"
 #include "tests/server/running_server.h"
 #include "tests/support/temporary_folder.h"

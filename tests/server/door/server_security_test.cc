@@ -1,0 +1,404 @@
+#include "server/door/door.h"
+
+#include <sys/types.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "absl/strings/match.h"
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
+#include "gmock/gmock.h"
+#include "grpcpp/create_channel.h"
+#include "gtest/gtest.h"
+#include "tests/server/call_by_name.h"
+#include "tests/server/error_details.h"
+#include "tests/server/http_get.h"
+#include "tests/server/own_channel.h"
+#include "tests/server/requests.h"
+#include "tests/server/running_server.h"
+#include "tests/server/secure_server.h"
+#include "tests/support/await.h"
+#include "tests/support/files.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+// The given flags, as letters: a(ccess file), c(ertificate), k(ey), m(utual: client CA).
+SecurityOptions Flags(const std::string& letters) {
+  const auto path = [&](char letter) { return letters.find(letter) == letters.npos ? "" : "f"; };
+  return {.access_file = path('a'),
+          .tls_certificate = path('c'),
+          .tls_key = path('k'),
+          .tls_client_ca = path('m')};
+}
+
+std::string Refusal(const std::string& listen, const std::string& flags) {
+  const absl::Status status = CheckCombination(Flags(flags), *ParseListenAddress(listen));
+  if (!status.ok()) {
+    EXPECT_THAT(status, StatusIs(absl::StatusCode::kInvalidArgument));
+  }
+  return std::string(status.message());
+}
+
+TEST(SecurityCombination, OnlySafeOnesOfAllSixteenAreAccepted) {
+  const std::map<std::string, std::set<std::string>> accepted = {
+      {"unix:/tmp/x", {""}},
+      {"127.0.0.1:1", {"", "ck", "cka", "ckam"}},
+      {"[::1]:1", {"", "ck", "cka", "ckam"}},
+      {"localhost:1", {"", "ck", "cka", "ckam"}},
+      {"0.0.0.0:1", {"cka", "ckam"}},
+      {"[::]:1", {"cka", "ckam"}},
+      {"192.168.0.7:1", {"cka", "ckam"}},
+      {"node.example.org:1", {"cka", "ckam"}}};
+  for (const auto& [listen, safe] : accepted) {
+    for (unsigned set = 0; set < 16; ++set) {
+      std::string flags;
+      for (unsigned i = 0; i < 4; ++i)
+        flags += (set >> i & 1) != 0 ? std::string(1, "ckam"[i]) : "";
+      EXPECT_EQ(Refusal(listen, flags).empty(), safe.count(flags) == 1) << listen << " " << flags;
+    }
+  }
+}
+
+TEST(SecurityCombination, AnErrorNamesTheMissingFlags) {
+  EXPECT_THAT(Refusal("0.0.0.0:1", ""),
+              HasSubstr("missing: --tls-certificate and --tls-key and --access-file"));
+  EXPECT_THAT(Refusal("0.0.0.0:1", "ck"), HasSubstr("missing: --access-file"));
+  EXPECT_THAT(Refusal("0.0.0.0:1", "a"), HasSubstr("missing: --tls-certificate"));
+  EXPECT_THAT(Refusal("127.0.0.1:1", "a"), HasSubstr("others could read the tokens"));
+  EXPECT_THAT(Refusal("127.0.0.1:1", "c"), HasSubstr("both or neither"));
+  EXPECT_THAT(Refusal("127.0.0.1:1", "ckm"), HasSubstr("--access-file"));
+  EXPECT_THAT(Refusal("unix:x", "ck"), HasSubstr("--tls-certificate, --tls-key"));
+}
+
+std::string RefusalOf(const std::string& listen, const SecurityOptions& options) {
+  return std::string(CheckCombination(options, *ParseListenAddress(listen)).message());
+}
+
+TEST(SecurityCombination, FlagsOfAUnixSocketNeedOne) {
+  for (const char* listen : {"127.0.0.1:1", "0.0.0.0:1"}) {
+    EXPECT_THAT(
+        RefusalOf(listen, {.socket_mode = 0600}),
+        HasSubstr(std::string("--socket-mode=0600 needs --listen=unix:PATH, not --listen=") +
+                  listen));
+    EXPECT_THAT(RefusalOf(listen, {.socket_group = "adm"}),
+                HasSubstr("--socket-group=adm needs --listen=unix:PATH"));
+  }
+  SecurityOptions secure = Flags("cka");
+  secure.socket_mode = 0666;
+  EXPECT_THAT(RefusalOf("0.0.0.0:1", secure), HasSubstr("--socket-mode=0666 needs"));
+  secure.tls_client_ca = "f";
+  EXPECT_THAT(RefusalOf("unix:x", secure),
+              HasSubstr("combined with --tls-certificate, --tls-key, --tls-client-ca"));
+}
+
+TEST(SecurityCombination, Mode0660AndAGroupNeedEachOther) {
+  EXPECT_EQ(RefusalOf("unix:x", {.socket_mode = 0660, .socket_group = "adm"}), "");
+  EXPECT_EQ(RefusalOf("unix:x", {.socket_mode = 0666}), "");
+  EXPECT_EQ(RefusalOf("unix:x", {.access_file = "f", .socket_mode = 0666}), "");
+  EXPECT_THAT(RefusalOf("unix:x", {.socket_mode = 0660}),
+              HasSubstr("--socket-mode=0660 needs --socket-group"));
+  for (const std::optional<mode_t> mode : {std::optional<mode_t>(), {0600}, {0666}}) {
+    EXPECT_THAT(RefusalOf("unix:x", {.socket_mode = mode, .socket_group = "adm"}),
+                HasSubstr("--socket-group=adm needs --socket-mode=0660"));
+  }
+  EXPECT_THAT(RefusalOf("unix:x", {.access_file = "f", .socket_mode = 0600}),
+              HasSubstr("cannot be combined with --access-file"));
+}
+
+TEST(SecurityCombination, ARoleOfTheLoopbackNeedsAnOpenLoopback) {
+  for (const char* listen : {"127.0.0.1:1", "localhost:1", "[::1]:1"}) {
+    EXPECT_EQ(RefusalOf(listen, {.loopback_role = Role::kAdmin}), "");
+  }
+  EXPECT_THAT(RefusalOf("unix:x", {.loopback_role = Role::kAdmin}),
+              HasSubstr("--loopback-role=admin needs --listen=HOST:PORT with a loopback host"));
+  SecurityOptions secure = Flags("cka");
+  secure.loopback_role = Role::kRead;
+  EXPECT_THAT(RefusalOf("0.0.0.0:1", secure),
+              HasSubstr("--loopback-role=read needs a loopback host, not --listen=0.0.0.0:1"));
+  EXPECT_THAT(RefusalOf("127.0.0.1:1", secure), HasSubstr("combined with --access-file"));
+}
+
+TEST(SecurityCombination, LinesOfUnixUsersNeedASharedSocket) {
+  const LaboratoryFiles files;
+  files.WriteAccessFile("user ada ada read\n");
+  const auto security = ServerSecurity::Create(files.options(), *ParseListenAddress("0.0.0.0:1"));
+  EXPECT_THAT(std::string(security.status().message()), HasSubstr("--socket-mode=0660 or 0666"));
+}
+
+// ---- the loopback without credentials ----
+
+std::string JobOfAlice(const TemporaryFolder& data) {
+  const LaboratoryFiles files;
+  RunningServer server(Secure(files, {.data_dir = data.path()}));
+  return TestClient(server.NewChannel(files.Credentials(kAlice))).Submit(Equilibrium(1, 2));
+}
+
+TEST(Loopback, UsersOfThisMachineSubmitJobsAndDoNotSeeThoseOfOthers) {
+  const TemporaryFolder data;
+  const std::string job = JobOfAlice(data);
+  RunningServer server({.data_dir = data.path(), .listen = "127.0.0.1:0"});
+  const v1::EnsembleJob own = server.Created(CreateRequest(Equilibrium(1, 2)));
+  EXPECT_EQ(own.principal(), "local");
+  EXPECT_EQ(server.List().jobs_size(), 1);
+  EXPECT_EQ(ReasonOf(server.Delete(job)), "JOB_NOT_FOUND");
+}
+
+TEST(Loopback, TheFlagMakesUsersOfThisMachineAdministrators) {
+  const TemporaryFolder data;
+  const std::string job = JobOfAlice(data);
+  RunningServer server({.data_dir = data.path(),
+                        .listen = "127.0.0.1:0",
+                        .security = {.loopback_role = Role::kAdmin}});
+  EXPECT_EQ(server.Get(job).principal(), "alice");
+}
+
+TEST(Loopback, ARoleThatIsTooLowNamesTheFlag) {
+  RunningServer server({.listen = "127.0.0.1:0", .security = {.loopback_role = Role::kRead}});
+  EXPECT_EQ(server.List().jobs_size(), 0);
+  const grpc::Status status = server.Create(CreateRequest(Equilibrium(1, 2)));
+  EXPECT_THAT(status, StatusIs(grpc::StatusCode::PERMISSION_DENIED, HasSubstr("--loopback-role")));
+}
+
+TEST(SecurityCombination, CertificatesOnTheListNeedAnAuthorityOfClients) {
+  const LaboratoryFiles files;
+  files.WriteAccessFile("certificate box box read\n");
+  const auto security = ServerSecurity::Create(files.options(), *ParseListenAddress("0.0.0.0:1"));
+  EXPECT_THAT(std::string(security.status().message()), HasSubstr("--tls-client-ca"));
+}
+
+TEST(Start, APublicAddressWithoutCredentialsIsRefused) {
+  for (const char* listen : {"0.0.0.0:0", "[::]:0"}) {
+    EXPECT_THAT(StartError({.listen = listen}), StatusIs(absl::StatusCode::kInvalidArgument));
+  }
+}
+
+TEST(Start, APublicAddressWithCredentialsIsServed) {
+  const LaboratoryFiles files;
+  RunningServer server(Secure(files, {.listen = "0.0.0.0:0"}));
+  const std::string address = "localhost" + server.address().substr(7);
+  const auto channel = OwnChannel(address, files.Credentials());
+  EXPECT_OK(CallByName(channel, kListJobs, "", Bearer(kAlice)));
+  EXPECT_FALSE(CallByName(channel, kListJobs).ok());
+}
+
+class SecureServer : public ::testing::Test {
+ protected:
+  explicit SecureServer(bool mutual = false) : files_(mutual) {}
+
+  grpc::Status List(const std::shared_ptr<grpc::Channel>& channel, const std::string& token) {
+    return CallByName(channel, kListJobs, "", Bearer(token));
+  }
+  std::shared_ptr<grpc::Channel> Channel(const KeyAndCertificate& own = {}) {
+    return server_.NewChannel(files_.Credentials("", own));
+  }
+  std::string ServedCommonName() const {
+    return SilentTlsConnection(server_.address()).served_common_name();
+  }
+  absl::Status Reload() { return server_.server().Reload(); }
+
+  const LaboratoryFiles files_;
+  RunningServer server_{Secure(files_)};
+};
+
+TEST_F(SecureServer, PlainTextGetsNoAnswer) {
+  EXPECT_THAT(List(server_.NewChannel(), kAlice), StatusIs(grpc::StatusCode::UNAVAILABLE));
+  EXPECT_OK(List(Channel(), kAlice));
+}
+
+TEST_F(SecureServer, AClientThatTrustsAnotherAuthorityDoesNotConnect) {
+  const TestAuthority other("another authority");
+  const auto channel = server_.NewChannel(TlsCredentials(other.Pem()));
+  EXPECT_THAT(List(channel, kAlice), StatusIs(grpc::StatusCode::UNAVAILABLE));
+}
+
+TEST_F(SecureServer, AnAccessFileIsReadAgainWhileAConnectionLives) {
+  const auto channel = Channel();
+  ASSERT_OK(List(channel, kAlice));
+  files_.WriteAccessFile("");
+  EXPECT_OK(List(channel, kAlice));  // the server has not read the file again yet
+  ASSERT_OK(Reload());
+  EXPECT_EQ(ReasonOf(List(channel, kAlice)), "CREDENTIALS_INVALID");
+  files_.WriteAccessFile(LaboratoryTokens());
+  ASSERT_OK(Reload());
+  EXPECT_OK(List(channel, kAlice));
+  EXPECT_EQ(channel->GetState(false), GRPC_CHANNEL_READY);
+}
+
+TEST_F(SecureServer, AnInvalidAccessFileKeepsThePreviousOne) {
+  const auto channel = Channel();
+  files_.WriteAccessFile("nonsense " + std::string(kBob) + "\n");
+  const absl::Status status = Reload();
+  EXPECT_THAT(std::string(status.message()), HasSubstr("line 1"));
+  EXPECT_THAT(std::string(status.message()), Not(HasSubstr(kBob)));
+  EXPECT_OK(List(channel, kAlice));
+  unlink(files_.options().access_file.c_str());
+  EXPECT_FALSE(Reload().ok());
+  EXPECT_OK(List(channel, kAlice));
+}
+
+// The existing connection goes on. New connections get the new certificate when gRPC has read it.
+TEST_F(SecureServer, ACertificateIsExchangedWhileAConnectionLives) {
+  const auto channel = Channel();
+  ASSERT_OK(List(channel, kAlice));
+  ASSERT_EQ(ServedCommonName(), "server-1");
+  files_.WriteCertificate(files_.authority().Issue("server-2"));
+  ASSERT_OK(Reload());
+  AwaitThat([this] { return ServedCommonName() == "server-2"; });
+  EXPECT_OK(List(channel, kAlice));
+  EXPECT_OK(List(Channel(), kAlice));
+}
+
+TEST_F(SecureServer, AnInvalidCertificateKeepsThePreviousOne) {
+  files_.Write("server.key", files_.authority().Issue("x").key);
+  EXPECT_THAT(std::string(Reload().message()), HasSubstr("--tls-key="));
+  files_.WriteCertificate(files_.authority().Issue("good"));
+  files_.WriteAccessFile("nonsense\n");
+  EXPECT_FALSE(Reload().ok());  // the access file is wrong; the certificate is used
+  AwaitThat([this] { return ServedCommonName() == "good"; });
+  EXPECT_OK(List(Channel(), kAlice));
+}
+
+// Neither an expired certificate nor one that is not valid yet, for example because the clock is
+// slow.
+TEST_F(SecureServer, AnExpiredOrFutureCertificateDoesNotReplaceAValidOne) {
+  using std::chrono::hours;
+  for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
+    files_.WriteCertificate(files_.authority().Issue("x", validity));
+    EXPECT_THAT(std::string(Reload().message()), HasSubstr("the certificate is valid from "));
+    EXPECT_OK(List(Channel(), kAlice));
+  }
+}
+
+// ---- a start before the clock is set: the certificate seems not valid yet, or expired ----
+
+class ClockNotSet : public ::testing::Test {
+ protected:
+  // Starts a server whose certificate has this validity.
+  void Start(Validity validity) {
+    files_.WriteCertificate(files_.authority().Issue("out-of-time", validity));
+    ::testing::internal::CaptureStderr();
+    server_.emplace(Secure(files_));
+    log_ = ::testing::internal::GetCapturedStderr();
+  }
+  grpc::Status List() {
+    return CallByName(server_->NewChannel(files_.Credentials()), kListJobs, "", Bearer(kAlice));
+  }
+
+  const LaboratoryFiles files_;
+  std::optional<RunningServer> server_;
+  std::string log_;
+};
+
+TEST_F(ClockNotSet, TheServerStartsLogsAndIsRefusedByClients) {
+  using std::chrono::hours;
+  for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
+    Start(validity);
+    EXPECT_THAT(log_, HasSubstr("error: the certificate in --tls-certificate="));
+    EXPECT_THAT(log_, HasSubstr("clients cannot connect while it is not valid"));
+    EXPECT_THAT(List(), StatusIs(grpc::StatusCode::UNAVAILABLE));
+  }
+}
+
+// Without a signal or a restart. The server has to start before the certificate is valid; a slow
+// start is repeated with more time.
+TEST_F(ClockNotSet, ClientsConnectAsSoonAsTheCertificateIsValid) {
+  const std::string early = "while it is not valid";
+  for (std::chrono::seconds time(1);
+       !absl::StrContains(log_, early) && time < std::chrono::hours(1); time *= 2) {
+    Start({.from = time});
+  }
+  ASSERT_THAT(log_, HasSubstr(early));
+  AwaitThat([this] { return List().ok(); });
+}
+
+TEST_F(ClockNotSet, ANotYetValidCertificateReplacesAnother) {
+  using std::chrono::hours;
+  Start({hours(-2), hours(-1)});
+  files_.WriteCertificate(files_.authority().Issue("early", {hours(1), hours(2)}));
+  EXPECT_OK(server_->server().Reload());
+  EXPECT_GT(*server_->server().security().CertificateExpiry(), absl::Now() + absl::Hours(1));
+  files_.WriteCertificate(files_.authority().Issue("good"));
+  EXPECT_OK(server_->server().Reload());
+  AwaitThat([this] { return List().ok(); });
+}
+
+// First a certificate of 24 hours, like the others here, then one of a year.
+TEST_F(SecureServer, ACertificateThatEndsSoonIsLogged) {
+  const auto reload = [this] {
+    ::testing::internal::CaptureStderr();
+    EXPECT_OK(Reload());
+    return ::testing::internal::GetCapturedStderr();
+  };
+  EXPECT_THAT(reload(), HasSubstr("is valid until 2"));
+  const auto day = absl::ToUnixSeconds(absl::Now()) + 24 * 3600;
+  EXPECT_NEAR(
+      static_cast<double>(absl::ToUnixSeconds(*server_.server().security().CertificateExpiry())),
+      static_cast<double>(day), 600);
+  files_.WriteCertificate(
+      files_.authority().Issue("server-2", {.until = std::chrono::hours(365 * 24)}));
+  EXPECT_THAT(reload(), Not(HasSubstr("is valid until")));
+  EXPECT_GT(*server_.server().security().CertificateExpiry(), absl::Now() + absl::Hours(364 * 24));
+}
+
+class MutualServer : public SecureServer {
+ protected:
+  MutualServer() : SecureServer(true) {
+    files_.WriteAccessFile(LaboratoryTokens() + "certificate \"Ada L.\" alice submit\n" +
+                           "certificate old bob submit 2020-01-01\n");
+    EXPECT_OK(Reload());
+  }
+  std::shared_ptr<grpc::Channel> With(const std::string& common_name) {
+    return Channel(files_.authority().Issue(common_name));
+  }
+};
+
+TEST_F(MutualServer, ACertificateBelongsToItsPrincipal) {
+  EXPECT_OK(List(With("Ada L."), ""));
+  EXPECT_EQ(ReasonOf(List(With("ada l."), "")), "CREDENTIALS_INVALID");
+  EXPECT_EQ(ReasonOf(List(With("old"), "")), "CREDENTIALS_EXPIRED");
+}
+
+TEST_F(MutualServer, ATokenBesideACertificateDecides) {
+  EXPECT_OK(List(With("stranger"), kBob));
+  EXPECT_EQ(ReasonOf(List(With("Ada L."), "no-such-token")), "CREDENTIALS_INVALID");
+}
+
+TEST_F(MutualServer, ClientsWithoutAGoodCertificateDoNotConnect) {
+  using std::chrono::hours;
+  const TestAuthority other("the laboratory's authority");  // of the same name
+  const auto expired = files_.authority().Issue("Ada L.", {hours(-2), hours(-1)});
+  for (const auto& own : {KeyAndCertificate(), other.Issue("Ada L."), expired}) {
+    EXPECT_THAT(List(Channel(own), kAlice), StatusIs(grpc::StatusCode::UNAVAILABLE));
+  }
+}
+
+TEST_F(MutualServer, TheAuthorityOfClientsIsExchangedToo) {
+  const TestAuthority next("the next authority");
+  files_.Write("clients.pem", next.Pem());
+  ASSERT_OK(Reload());
+  const auto own = next.Issue("Ada L.");
+  AwaitThat([&] { return List(Channel(own), "").ok(); });
+  EXPECT_FALSE(List(With("Ada L."), "").ok());
+}
+
+// The connection sends one byte and then nothing.
+TEST_F(SecureServer, AHangingConnectionDoesNotDelayOtherClients) {
+  Connection hanging(server_.address());
+  hanging.Send("\x16");
+  EXPECT_OK(List(Channel(), kAlice));
+  server_.Shutdown();
+}
+
+}  // namespace
+}  // namespace ballpiston::server

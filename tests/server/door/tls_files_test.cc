@@ -1,0 +1,148 @@
+// The files of a server's TLS identity: read, checked and published again as a whole.
+#include "server/door/tls_files.h"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/door/published_file.h"
+#include "server/door/server_tls.h"
+#include "tests/server/secure_server.h"
+#include "tests/support/files.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class TlsFilesTest : public ::testing::Test {
+ protected:
+  std::string Error() const {
+    const auto identity = ReadTlsIdentity({{"tls-certificate", files_.options().tls_certificate},
+                                           {"tls-key", files_.options().tls_key},
+                                           {"tls-client-ca", files_.options().tls_client_ca}});
+    if (identity.ok()) return "";
+    EXPECT_THAT(identity, StatusIs(absl::StatusCode::kInvalidArgument, Not(HasSubstr("BEGIN"))));
+    return std::string(identity.status().message());
+  }
+
+  const LaboratoryFiles files_{true};
+  const TestAuthority other_{"another authority"};
+};
+
+TEST_F(TlsFilesTest, AGoodSetIsAccepted) { EXPECT_EQ(Error(), ""); }
+
+TEST_F(TlsFilesTest, AKeyOfAnotherCertificateIsRefused) {
+  files_.Write("server.key", other_.Issue("x").key);
+  EXPECT_THAT(Error(), HasSubstr("--tls-key="));
+  EXPECT_THAT(Error(), HasSubstr("is not the key of the certificate in --tls-certificate="));
+}
+
+// The clock may be set only later.
+TEST_F(TlsFilesTest, AnExpiredOrFutureCertificateIsRead) {
+  using std::chrono::hours;
+  for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
+    files_.WriteCertificate(files_.authority().Issue("x", validity));
+    EXPECT_EQ(Error(), "");
+  }
+}
+
+TEST_F(TlsFilesTest, AKeyThatOthersMayReadIsRefused) {
+  chmod(files_.options().tls_key.c_str(), 0644);
+  EXPECT_THAT(Error(), HasSubstr("open to other users (mode 0644)"));
+}
+
+TEST_F(TlsFilesTest, AFileThatIsNotPemIsRefused) {
+  for (const char* text : {"", "nonsense", "-----BEGIN CERTIFICATE-----\nAAAA\n"}) {
+    files_.Write("server.pem", text);
+    EXPECT_THAT(Error(), HasSubstr("--tls-certificate")) << text;
+  }
+  const KeyAndCertificate good = files_.authority().Issue("good");
+  files_.WriteCertificate({good.certificate, "nonsense"});
+  EXPECT_THAT(Error(), HasSubstr("has no private key"));
+  files_.WriteCertificate(good);
+  files_.Write("clients.pem", "nonsense");
+  EXPECT_THAT(Error(), HasSubstr("--tls-client-ca"));
+}
+
+TEST_F(TlsFilesTest, AMissingFileIsNamed) {
+  unlink(files_.options().tls_key.c_str());
+  EXPECT_THAT(Error(), HasSubstr("--tls-key="));
+  EXPECT_THAT(Error(), HasSubstr("No such file"));
+}
+
+TEST(PublishedFile, IsExchangedAsAWhole) {
+  PublishedFile file;
+  ASSERT_OK(file.Publish(std::string(100'000, 'a')));
+  const std::string path = file.Path();
+  std::ifstream reading(path);
+  std::string begun(10, '\0');
+  reading.read(begun.data(), 10);
+  ASSERT_OK(file.Publish("b"));
+  EXPECT_EQ(file.Path(), path);
+  EXPECT_EQ(Contents(path), "b");
+  // A reader that has begun continues with the old content.
+  begun.append(std::istreambuf_iterator<char>(reading), {});
+  EXPECT_EQ(begun, std::string(100'000, 'a'));
+}
+
+TEST(PublishedFile, EachContentHasALaterSecond) {
+  PublishedFile file;
+  time_t last = 0;
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_OK(file.Publish("x"));
+    struct stat found {};
+    ASSERT_EQ(stat(file.Path().c_str(), &found), 0);
+    EXPECT_GT(found.st_mtime, last);
+    last = found.st_mtime;
+  }
+}
+
+// The contents of this process's files in memory.
+std::string Published() {
+  std::string all;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code gone;
+    const std::string file = std::filesystem::read_symlink(entry.path(), gone).string();
+    if (file.find("/memfd:ballpiston") == 0) all += Contents(entry.path().string());
+  }
+  return all;
+}
+
+// The certificate must not be exchanged without the authority that belongs to it.
+TEST(ServerTls, IfOneFileCannotBePublishedBothStayOld) {
+  const LaboratoryFiles files(true);
+  const SecurityOptions& options = files.options();
+  ASSERT_OK_AND_ASSIGN(const auto tls,
+                       ServerTls::Create({{"tls-certificate", options.tls_certificate},
+                                          {"tls-key", options.tls_key},
+                                          {"tls-client-ca", options.tls_client_ca}}));
+  const KeyAndCertificate next = files.authority().Issue("server-2");
+  files.WriteCertificate(next);
+  rlimit before{};
+  getrlimit(RLIMIT_NOFILE, &before);
+  const int free = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  close(free);
+  const rlimit one_more{static_cast<rlim_t>(free) + 1, before.rlim_max};
+  setrlimit(RLIMIT_NOFILE, &one_more);
+  const absl::Status reloaded = tls->Reload();
+  setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_THAT(reloaded, StatusIs(absl::StatusCode::kInternal));
+  EXPECT_THAT(Published(), Not(HasSubstr(next.certificate)));
+  ASSERT_OK(tls->Reload());
+  EXPECT_THAT(Published(), HasSubstr(next.certificate));
+}
+
+}  // namespace
+}  // namespace ballpiston::server
