@@ -162,4 +162,10 @@ double Log(double x) {
   return log.high + log.low;
 }
 
+double WithoutLastBits(double x) {
+  int exponent;
+  const double mantissa = std::frexp(x, &exponent);
+  return std::ldexp(std::round(mantissa * 0x1p30), exponent - 30);
+}
+
 }  // namespace ballpiston

@@ -337,20 +337,20 @@ class LaneOrbits : public OrbitRun {
     if (meetings_.empty()) return;
     source_.Meet(meetings_);
     calls_left_ -= static_cast<int64_t>(meetings_.size());
-    told_.swap(meetings_);
-    told_lanes_.swap(met_);
-    for (size_t i = 0; i < told_.size(); ++i) {
-      const Contact& contact = told_[i].contact;
-      if (told_[i].after == AfterContact::kEnd || contact.escaped || contact.expired) {
-        idle_.push_back(told_lanes_[i]);
+    reported_.swap(meetings_);
+    reported_lanes_.swap(met_);
+    for (size_t i = 0; i < reported_.size(); ++i) {
+      const Contact& contact = reported_[i].contact;
+      if (reported_[i].after == AfterContact::kEnd || contact.escaped || contact.expired) {
+        idle_.push_back(reported_lanes_[i]);
       } else {
-        const OrbitStart start = {told_[i].orbit, AfterExchange(contact.state, 1.0)};
-        Enter(told_lanes_[i], start);
-        MeetIfAtRest(told_lanes_[i], start.state);
+        const OrbitStart start = {reported_[i].orbit, AfterExchange(contact.state, 1.0)};
+        Enter(reported_lanes_[i], start);
+        MeetIfAtRest(reported_lanes_[i], start.state);
       }
     }
-    told_.clear();
-    told_lanes_.clear();
+    reported_.clear();
+    reported_lanes_.clear();
   }
 
   void StartNew() {
@@ -435,9 +435,9 @@ class LaneOrbits : public OrbitRun {
   bool source_is_empty_ = false;  // at the last call of Start
   std::vector<size_t> met_;       // lanes of the meetings
   std::vector<Meeting> meetings_;
-  int64_t calls_left_ = 0;          // starts and meetings until the next call of Pause
-  std::vector<size_t> told_lanes_;  // of the meetings that Meet is resolving
-  std::vector<Meeting> told_;
+  int64_t calls_left_ = 0;              // starts and meetings until the next call of Pause
+  std::vector<size_t> reported_lanes_;  // of the meetings that Meet is resolving
+  std::vector<Meeting> reported_;
   std::vector<OrbitStart> starts_;
 };
 

@@ -63,31 +63,6 @@ class ReferenceOrbits : public OrbitRun {
   Meeting meeting_;
 };
 
-class SourceOfNumbered : public OrbitSource {
- public:
-  SourceOfNumbered(uint64_t count, NumberedOrbits& orbits, const std::stop_token& stop)
-      : count_(count), orbits_(orbits), stop_(stop) {}
-
-  size_t Start(std::span<OrbitStart> starts) override {
-    size_t n = 0;
-    for (; n < starts.size() && next_ < count_; ++n, ++next_) {
-      starts[n] = {next_, orbits_.Start(next_)};
-    }
-    return n;
-  }
-  void Meet(std::span<Meeting> meetings) override {
-    for (Meeting& meeting : meetings) meeting.after = orbits_.Meet(meeting.orbit, meeting.contact);
-  }
-  double TimeLimit() const override { return orbits_.TimeLimit(); }
-  bool Pause() override { return stop_.stop_requested(); }
-
- private:
-  uint64_t count_;
-  NumberedOrbits& orbits_;
-  const std::stop_token& stop_;
-  uint64_t next_ = 0;
-};
-
 }  // namespace
 
 void Contact::Add(const Event& event) {
@@ -102,12 +77,6 @@ std::unique_ptr<OrbitRun> StartOrbits(Engine engine, const PairGeometry& geometr
   if (engine == Engine::kLanes) return StartLaneOrbits(geometry, source);
   if (engine == Engine::kLanesSingle) return StartLaneOrbitsSingle(geometry, source);
   return std::make_unique<ReferenceOrbits>(geometry, source);
-}
-
-bool RunOrbits(Engine engine, const PairGeometry& geometry, uint64_t count, NumberedOrbits& orbits,
-               const std::stop_token& stop) {
-  SourceOfNumbered source(count, orbits, stop);
-  return StartOrbits(engine, geometry, source)->Advance();
 }
 
 }  // namespace ballpiston

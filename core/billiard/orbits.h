@@ -20,7 +20,6 @@
 #include <limits>
 #include <memory>
 #include <span>
-#include <stop_token>
 
 #include "core/billiard/reference_flow.h"
 #include "core/geometry/pair_geometry.h"
@@ -93,18 +92,5 @@ class OrbitRun {
 // The source must outlive the run.
 std::unique_ptr<OrbitRun> StartOrbits(Engine engine, const PairGeometry& geometry,
                                       OrbitSource& source);
-
-// A fixed number of orbits, with one call for each start and for each contact. For tools and tests.
-class NumberedOrbits {
- public:
-  virtual ~NumberedOrbits() = default;
-  virtual PairState Start(uint64_t orbit) = 0;
-  virtual AfterContact Meet(uint64_t orbit, const Contact& contact) = 0;
-  virtual double TimeLimit() const { return std::numeric_limits<double>::infinity(); }
-};
-
-// Runs orbits 0 ... count - 1 to their ends. Returns false if `stop` was requested before.
-bool RunOrbits(Engine engine, const PairGeometry& geometry, uint64_t count, NumberedOrbits& orbits,
-               const std::stop_token& stop);
 
 }  // namespace ballpiston

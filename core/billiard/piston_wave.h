@@ -38,7 +38,6 @@ class PistonWave {
     return turns < 0x1p52 ? way - 2 * stroke_ * static_cast<double>(static_cast<int64_t>(turns))
                           : 0;
   }
-  double Velocity(double phase, double speed) const { return phase < stroke_ ? speed : -speed; }
 
   // A meeting of ball and piston: the ball's path length `way` until then, and the direction in
   // which the piston moves.

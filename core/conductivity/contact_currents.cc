@@ -1,7 +1,6 @@
 #include "core/conductivity/contact_currents.h"
 
 #include <algorithm>
-#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -11,22 +10,26 @@
 // After foreach_target.h.
 #include <hwy/highway.h>
 
+#include "core/arithmetic/gauss_nodes.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace ballpiston {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+constexpr size_t kValues = ContactCurrentsTable::kValues;
+
 // The weighted sum of four nodes of four rows, all values of a node at once.
 void Interpolate(const double* first, size_t row_length, const double* row_weights,
                  const double* weights, double* sums) {
-  const hn::CappedTag<double, 8> d;
-  for (size_t value = 0; value < 8; value += hn::Lanes(d)) {
+  const hn::CappedTag<double, kValues> d;
+  for (size_t value = 0; value < kValues; value += hn::Lanes(d)) {
     auto sum = hn::Zero(d);
     for (size_t row = 0; row < 4; ++row) {
       const double* const nodes = first + row * row_length + value;
       auto of_row = hn::Mul(hn::Set(d, weights[0]), hn::LoadU(d, nodes));
       for (size_t k = 1; k < 4; ++k) {
-        of_row = hn::MulAdd(hn::Set(d, weights[k]), hn::LoadU(d, nodes + 8 * k), of_row);
+        of_row = hn::MulAdd(hn::Set(d, weights[k]), hn::LoadU(d, nodes + kValues * k), of_row);
       }
       sum = hn::MulAdd(hn::Set(d, row_weights[row]), of_row, sum);
     }
@@ -54,16 +57,11 @@ constexpr size_t kPlaces = 49;  // on each side of equal speeds
 // v = speed - (speed - least) z^2 is smooth at both ends.
 template <typename F>
 void ForEachAngle(double speed, double least, F f) {
-  using Gauss = boost::math::quadrature::gauss<double, 20>;
   const double range = speed - least;
-  const auto& nodes = Gauss::abscissa();
-  for (size_t k = 0; k < nodes.size(); ++k) {
-    for (const double sign : {-1, 1}) {
-      const double z = (1 + sign * nodes[k]) / 2;
-      const double v = speed - range * z * z;
-      f(v, Gauss::weights()[k] * std::sqrt(range / (speed + v)));
-    }
-  }
+  ForEachGaussNode<20>(0, 1, [&](double z, double weight) {
+    const double v = speed - range * z * z;
+    f(v, 2 * weight * std::sqrt(range / (speed + v)));
+  });
 }
 
 // The changes by an exchange in which the ball's component is v.

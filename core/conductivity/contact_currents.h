@@ -44,6 +44,9 @@ ContactCurrents ContactCurrentsOf(const TestFunction& f, double ball_energy, dou
 
 class ContactCurrentsTable {
  public:
+  // Of a node. Six are in use; eight are one vector of the widest lanes.
+  static constexpr size_t kValues = 8;
+
   explicit ContactCurrentsTable(const TestFunction& f);
 
   // Each table is computed once in a process, in about 10 ms.
@@ -54,7 +57,6 @@ class ContactCurrentsTable {
   ContactCurrents At(double ball_energy, double piston_energy) const;
 
  private:
-  static constexpr size_t kValues = 8;  // six in use: the vectors of all processors divide eight
   using Node = std::array<double, kValues>;
   size_t NodeAt(bool is_piston_faster, size_t root, size_t place) const;
 

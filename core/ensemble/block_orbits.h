@@ -2,100 +2,97 @@
 // orbit of the next block, so lanes stay full even if a block has few orbits.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "core/billiard/orbits.h"
-#include "core/ensemble/block_run.h"
+#include "core/ensemble/open_blocks.h"
 #include "core/geometry/pair_geometry.h"
 
 namespace ballpiston {
 
-// `Orbits` is the class of one block's orbits:
+// Orbits may take any time; an engine gives up an orbit that cannot end (billiard/longest_wait.h).
+inline constexpr double kNoTimeLimit = std::numeric_limits<double>::infinity();
+
+// The orbits of one block, with their health. `Orbits` has these functions:
 //   uint64_t count() const;                                     at least 1
 //   PairState Start(uint64_t orbit);                            called once for each orbit
-//   AfterContact Meet(uint64_t orbit, const Contact& contact);
+//   AfterContact Meet(uint64_t orbit, const Contact& contact);  not called for an escape
 //   BlockResult Result() const;                                 called after all orbits have ended
-// `Make` makes the orbits of a block: Orbits make(const Block&).
-template <typename Orbits, typename Make>
+template <typename Orbits>
+class WatchedOrbits {
+ public:
+  explicit WatchedOrbits(Orbits orbits) : orbits_(std::move(orbits)) {}
+
+  uint64_t count() const { return orbits_.count(); }
+  PairState Start(uint64_t orbit) { return orbits_.Start(orbit); }
+
+  AfterContact Meet(uint64_t orbit, const Contact& contact) {
+    if (contact.escaped) {
+      ++health_.escapes;
+      return AfterContact::kEnd;
+    }
+    const AfterContact after = orbits_.Meet(orbit, contact);
+    if (contact.expired) return AfterContact::kEnd;
+    health_.max_energy_error = std::max(health_.max_energy_error, EnergyError(contact.state));
+    return after;
+  }
+
+  BlockResult Result() const {
+    BlockResult result = orbits_.Result();
+    result.health = health_;
+    return result;
+  }
+
+ private:
+  Orbits orbits_;
+  Health health_;
+};
+
+template <typename Orbits>
 class BlockOrbits : public BlockRun, private OrbitSource {
  public:
+  template <typename Make>
   BlockOrbits(Engine engine, const PairGeometry& geometry, double time_limit, Make make,
               BlockQueue& queue)
       : time_limit_(time_limit),
-        make_(std::move(make)),
         queue_(queue),
+        blocks_(queue, [make](const Block& block) { return WatchedOrbits(make(block)); }),
         run_(StartOrbits(engine, geometry, *this)) {}
 
   bool Advance() override { return run_->Advance(); }
 
  private:
-  struct OpenBlock {
-    Block block;
-    Orbits orbits;
-    uint64_t running;
-  };
-
-  // An orbit's number in the engine: the place of its block in open_, then its number in the block.
-  static constexpr int kBitsOfOrbit = 32;
-  static constexpr uint64_t kOrbitMask = (uint64_t{1} << kBitsOfOrbit) - 1;
-
   size_t Start(std::span<OrbitStart> starts) override {
-    size_t n = 0;
-    for (; n < starts.size() && HasNext(); ++n, ++next_) {
-      starts[n] = {place_ << kBitsOfOrbit | next_, open_[place_]->orbits.Start(next_)};
+    for (size_t n = 0; n < starts.size(); ++n) {
+      const std::optional<uint64_t> orbit = blocks_.Next();
+      if (!orbit) return n;
+      starts[n] = {*orbit, blocks_.WorkOf(*orbit).Start(blocks_.IndexOf(*orbit))};
     }
-    return n;
-  }
-
-  bool HasNext() {
-    if (next_ < count_) return true;
-    const std::optional<Block> block = queue_.Next();
-    if (!block) return false;
-    for (place_ = 0; place_ < open_.size() && open_[place_] != nullptr;) ++place_;
-    if (place_ == open_.size()) open_.emplace_back();
-    Orbits orbits = make_(*block);
-    count_ = orbits.count();
-    open_[place_] = std::make_unique<OpenBlock>(OpenBlock{*block, std::move(orbits), count_});
-    next_ = 0;
-    return true;
+    return starts.size();
   }
 
   void Meet(std::span<Meeting> meetings) override {
     for (Meeting& meeting : meetings) {
-      const Contact& contact = meeting.contact;
-      std::unique_ptr<OpenBlock>& open = open_[meeting.orbit >> kBitsOfOrbit];
-      meeting.after = open->orbits.Meet(meeting.orbit & kOrbitMask, contact);
-      const bool ends = meeting.after == AfterContact::kEnd || contact.escaped || contact.expired;
-      if (ends && --open->running == 0) Deliver(*std::exchange(open, nullptr));
+      const uint64_t orbit = meeting.orbit;
+      meeting.after = blocks_.WorkOf(orbit).Meet(blocks_.IndexOf(orbit), meeting.contact);
+      if (meeting.after == AfterContact::kEnd) blocks_.End(orbit);
     }
   }
-
-  void Deliver(const OpenBlock& open) { queue_.Done(open.block, open.orbits.Result()); }
 
   double TimeLimit() const override { return time_limit_; }
   bool Pause() override { return queue_.Pause(); }
 
   double time_limit_;
-  Make make_;
   BlockQueue& queue_;
-  std::vector<std::unique_ptr<OpenBlock>> open_;
-  size_t place_ = 0;    // in open_, of the block whose orbits are being started
-  uint64_t next_ = 0;   // the next orbit of that block
-  uint64_t count_ = 0;  // the number of orbits of that block
+  OpenBlocks<WatchedOrbits<Orbits>> blocks_;
   std::unique_ptr<OrbitRun> run_;
 };
-
-template <typename Make>
-std::unique_ptr<BlockRun> RunBlockOrbits(Engine engine, const PairGeometry& geometry,
-                                         double time_limit, Make make, BlockQueue& queue) {
-  using Orbits = decltype(make(Block()));
-  return std::make_unique<BlockOrbits<Orbits, Make>>(engine, geometry, time_limit, std::move(make),
-                                                     queue);
-}
 
 }  // namespace ballpiston

@@ -1,10 +1,11 @@
 // The measurements of one block of an experiment, or of several merged blocks.
 //
-// A plain set of accumulators; each experiment defines the meaning of each index. Merging the
+// A plain set of accumulators; the table of an experiment reads them (measurement.h). Merging the
 // blocks of a point in the order of their indices gives the same bits, whichever machine computed
 // them. Properties, each with a test of its name:
 //   1. MergeWithEmptyIsIdentity.  2. MergeKeepsEverySample.
 //   3. EveryBlockHasTheShapeOfTheEmptyOne.
+//   4. EveryNumberChangesTheDigest.  5. NumbersInAnotherOrderHaveAnotherDigest.
 #pragma once
 
 #include <cstdint>
@@ -26,10 +27,10 @@ struct Health {
 
 struct BlockResult {
   uint64_t samples = 0;  // first hits, ball-piston collisions, or replicas of a gas
-  std::vector<Moments> moments;
-  std::vector<BatchMeans> batch_means;
-  std::vector<Histogram> histograms;
-  Health health;
+  std::vector<Moments> moments = {};
+  std::vector<BatchMeans> batch_means = {};
+  std::vector<Histogram> histograms = {};
+  Health health = {};
 
   // Requires the same experiment and point on both sides, or one side default-constructed.
   void Merge(const BlockResult& other);
@@ -38,5 +39,12 @@ struct BlockResult {
   bool HasShapeOf(const BlockResult& other) const;
   friend bool operator==(const BlockResult&, const BlockResult&) = default;
 };
+
+// A digest of a result: 64 bits that depend on every bit of every number in it.
+//
+// Two results with the same digest are the same, except with a probability of some 2^-64. A stored
+// digest of a chunk lets anybody who computes the chunk again compare the bits. The digest does not
+// protect from a person who makes up numbers with a given digest.
+uint64_t DigestOf(const BlockResult& result);
 
 }  // namespace ballpiston

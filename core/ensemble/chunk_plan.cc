@@ -16,7 +16,7 @@ struct NominalEvents {
 constexpr NominalEvents kInLanes = {2.5e-9, 0x1p24, 0x1p20, 0x1p34};
 constexpr NominalEvents kByReference = {40e-9, 0x1p20, 0x1p16, 0x1p30};
 
-// Fewer samples are not enough to estimate an error (statistics/told_error.h).
+// Fewer samples are not enough to estimate an error (statistics/stated_error.h).
 constexpr uint64_t kLeastJudged = 64;
 constexpr uint64_t kBlocksInAChunk = 32;
 constexpr double kMostInABlock = 0x1p16;

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 
-#include "core/statistics/told_error.h"
+#include "core/ensemble/chunk_fold.h"
+#include "core/ensemble/point_experiment.h"
+#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
-
 namespace {
 
 bool IsOneOf(std::span<const Model> models, Model model) {
@@ -43,6 +44,20 @@ const ExperimentKind* FindExperiment(uint64_t number) {
     if (kind->number == number) return kind;
   }
   return nullptr;
+}
+
+double MemoryOfAThread(const EnsembleSpec& spec, const PointParameters& point) {
+  return spec.experiment->memory(Sampled(spec.model), point);
+}
+
+double MemoryOf(const EnsembleSpec& spec, const PointParameters& point, int threads) {
+  constexpr double kOfAnAnswer = 1e6;  // of a point without its samples
+  if (NeedsNoSamples(spec)) return kOfAnAnswer;
+  const double used =
+      std::min(static_cast<double>(threads), static_cast<double>(SamplesAskedFor(spec, point)));
+  constexpr auto kWaitingResults = static_cast<double>(ChunkFold::kWindow);
+  return kOfAnAnswer + kWaitingResults * spec.experiment->memory_of_a_result +
+         used * MemoryOfAThread(spec, point);
 }
 
 }  // namespace ballpiston

@@ -12,11 +12,41 @@
 
 #include "absl/strings/string_view.h"
 #include "core/ensemble/ensemble_spec.h"
-#include "core/ensemble/sample_work.h"
 
 namespace ballpiston {
 
 class PointExperiment;
+struct PointSummary;
+
+// The work of a sample in mean numbers of events, for chunk plans and for predictions of its cost
+// on a machine.
+struct SampleWork {
+  double ball_wall = 0;
+  double piston_wall = 0;
+  double collisions = 0;  // of ball and piston, in orbits that continue
+  double starts = 0;      // of orbits, with their ends, in units of the simplest start
+  double jumps = 0;       // of the limit's jump process, or measurements of a step of the energy
+
+  // The rest tells how costs differ from the sum of the events. Chunk plans do not depend on it.
+  double delays = 0;  // further time in lanes, in wall hits; below 0: these hits are missing
+  // The number of independent parts of a sample, for instance its collisions, whose durations add
+  // up. Below 1: only this share of the samples takes long.
+  double parts = 1;
+  // Replicas of a gas that a thread runs from start to end together; 0 for orbits, of which each
+  // lane takes the next one when its orbit has ended.
+  double together = 0;
+
+  // The sum, in units of a wall hit in lanes.
+  double Events() const {
+    constexpr double kEventsPerJump = 25;
+    return ball_wall + piston_wall + collisions + starts + kEventsPerJump * jumps;
+  }
+
+  SampleWork Times(double n) const {
+    return {n * ball_wall, n * piston_wall, n * collisions, n * starts,
+            n * jumps,     n * delays,      n * parts,      together};
+  }
+};
 
 struct ParameterUse {
   const Parameter* parameter;
@@ -29,8 +59,7 @@ enum class TargetUnit { kSamples, kCollisions, kEither };
 
 // How far the limit delta -> 0 is from the billiard, in one estimate.
 struct LimitError {
-  Model model;      // the cheapest one that answers in the limit
-  bool has_pilots;  // whether pilot runs can check the bound (model_choice/limit_error.h)
+  Model model;  // the cheapest one that answers in the limit
   bool (*is_known)(const PointParameters& point);
   double (*expected)(const PointParameters& point);  // upper bound of the relative error
 
@@ -48,7 +77,7 @@ struct AimedEstimate {
   // is 1/sqrt(n) times that of one; it is infinite if no number of samples is enough.
   double (*error)(Model model, const PointParameters& point);
   // The expected number of a sample's events, of which an error needs kEventsForAnError
-  // (statistics/told_error.h). Null: 1.
+  // (statistics/stated_error.h). Null: 1.
   double (*events)(Model model, const PointParameters& point) = nullptr;
   const LimitError* limit_error = nullptr;  // null: no bound is known
   // Names of estimates that are this one in other units, so that they have its relative errors.
@@ -69,9 +98,11 @@ struct ExperimentKind {
   std::span<const Model> models;        // that can answer one of the aims; cheapest first
   std::span<const AimedEstimate> aims;  // the first one is the default
 
-  // `spec` has one point, which is `point`, and a model of `models`.
+  // These two answer by samples, and without them. `spec` has one point, which is `point`, and a
+  // model of `models`. `compute` is null if every model takes samples.
   std::unique_ptr<PointExperiment> (*create)(const EnsembleSpec& spec,
                                              const PointParameters& point);
+  PointSummary (*compute)(const EnsembleSpec& spec, const PointParameters& point) = nullptr;
   // Finds combinations of values, or of values and precision, that are not permitted although each
   // value alone is.
   void (*check_grid)(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
@@ -89,7 +120,7 @@ struct ExperimentKind {
   double summary = 0;  // the work of a point's summary, in jumps
 
   // Upper bounds of the bytes of one thread that takes samples, and of a block's result
-  // (point_memory.h).
+  // (MemoryOf).
   double (*memory)(Model model, const PointParameters& point);
   double memory_of_a_result = 20e3;
 
@@ -116,5 +147,15 @@ const AimedEstimate& AimOf(const EnsembleSpec& spec);
 std::span<const ExperimentKind* const> AllExperiments();
 // Null if no experiment has this number.
 const ExperimentKind* FindExperiment(uint64_t number);
+
+// Upper bound of the bytes of a point while up to `threads` threads compute it: the state of the
+// engines, the blocks in progress, and the results that wait to be merged. It is known before the
+// computation starts: the scheduler keeps the sum over the running points below a limit, and a
+// question beyond the machine's memory is rejected. Uses spec.model; for AUTO the billiard, unless
+// a closed form answers. The spec must have no violations.
+double MemoryOf(const EnsembleSpec& spec, const PointParameters& point, int threads);
+
+// The same for a thread alone: the state of one engine and its blocks.
+double MemoryOfAThread(const EnsembleSpec& spec, const PointParameters& point);
 
 }  // namespace ballpiston

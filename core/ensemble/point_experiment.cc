@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/ensemble/experiment_kind.h"
-#include "core/ensemble/point_stream.h"
 
 namespace ballpiston {
 namespace {
@@ -66,19 +65,51 @@ PointExperiment::PointExperiment(const EnsembleSpec& spec, const PointParameters
       tolerance_(spec.target.tolerance),
       random_{spec.seed, PointStream(spec, parameters)} {}
 
+PointExperiment::PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters,
+                                 PointSummary answer)
+    : PointExperiment(spec, parameters, ChunkPlan()) {
+  computed_ = std::move(answer);
+}
+
 std::unique_ptr<const PointExperiment> PointExperiment::Create(const EnsembleSpec& spec,
                                                                size_t index) {
-  const PointParameters point = PointAt(spec, index);
-  return spec.experiment->create(OnePointSpec(spec, point, Sampled(spec.model)), point);
+  return Create(spec, index, {.model = Sampled(spec.model)});
 }
 
 std::unique_ptr<const PointExperiment> PointExperiment::Create(const EnsembleSpec& spec,
                                                                size_t index, Answer answer) {
   const PointParameters point = PointAt(spec, index);
+  const EnsembleSpec one = OnePointSpec(spec, point, answer.model);
+  const ExperimentKind& kind = *spec.experiment;
   std::unique_ptr<PointExperiment> experiment =
-      spec.experiment->create(OnePointSpec(spec, point, answer.model), point);
+      TakesSamples(answer.model)
+          ? kind.create(one, point)
+          : std::make_unique<PointExperiment>(one, point, kind.compute(one, point));
   experiment->answer_ = std::move(answer);
   return experiment;
+}
+
+void PointExperiment::SetMeasurements(BlockResult empty, std::vector<Measurement> table) {
+  empty_ = std::move(empty);
+  table_ = std::move(table);
+}
+
+// Of an answer that needs no samples. Other experiments replace it.
+std::unique_ptr<BlockRun> PointExperiment::StartRun(BlockQueue& queue) const {
+  return RunOneByOne(
+      queue, [](const Block&, const std::stop_token&) { return std::optional(BlockResult()); });
+}
+
+Estimate PointExperiment::FirstEstimate(const BlockResult& merged) const {
+  return table_.empty() ? computed_.estimates.front() : table_.front().Of(merged).value();
+}
+
+PointSummary PointExperiment::Summarize(const BlockResult& merged) const {
+  if (table_.empty()) return computed_;
+  PointSummary summary = {
+      .samples = merged.samples, .estimates = EstimatesOf(table_, merged), .health = merged.health};
+  AddDetails(merged, summary);
+  return summary;
 }
 
 bool MeetsTolerance(const Estimate& estimate, double tolerance) {

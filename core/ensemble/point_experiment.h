@@ -1,6 +1,6 @@
 // An experiment at one point of the grid: a plan of chunks and blocks, a pure function that
-// computes blocks, and a summary of the merged blocks. The server, the tools and the tests use
-// these; point_fold.h combines them.
+// computes blocks, and a table of the estimates in the merged blocks. The server, the tools and the
+// tests use these; point_fold.h combines them.
 //
 // A block depends only on (experiment, point, model, precision, seed, the block's samples): not on
 // the other points of the grid, not on threads and not on earlier calls. Immutable; safe to share
@@ -15,12 +15,14 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/billiard/orbits.h"
 #include "core/ensemble/block_result.h"
 #include "core/ensemble/block_run.h"
 #include "core/ensemble/chunk_plan.h"
 #include "core/ensemble/ensemble_spec.h"
+#include "core/ensemble/measurement.h"
 #include "core/ensemble/point_summary.h"
 #include "core/ensemble/random_stream.h"
 
@@ -47,6 +49,9 @@ class PointExperiment {
  public:
   virtual ~PointExperiment() = default;
 
+  // A point without blocks, whose answer, with an estimate or more, needs no samples.
+  PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters, PointSummary answer);
+
   // The spec must have no violations; index < PointCount(spec). Uses the spec's own model; for AUTO
   // the billiard, which answers every experiment.
   static std::unique_ptr<const PointExperiment> Create(const EnsembleSpec& spec, size_t index);
@@ -62,33 +67,39 @@ class PointExperiment {
   const Answer& answer() const { return answer_; }
 
   // The queue must outlive the run. The queue's Next must return blocks of plan().
-  virtual std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const = 0;
+  virtual std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const;
 
   // The result before any block. It has the accumulators that every block has; merging needs them.
-  virtual BlockResult EmptyResult() const = 0;
+  const BlockResult& EmptyResult() const { return empty_; }
 
   // The largest number of counts in one histogram that a sample adds.
   virtual uint64_t CountsOfASample() const { return 1; }
 
   // The estimate that a tolerance refers to. This and Summarize require at least one merged block
   // if the plan has blocks.
-  virtual Estimate FirstEstimate(const BlockResult& merged) const = 0;
+  virtual Estimate FirstEstimate(const BlockResult& merged) const;
 
   // All that was measured. The first estimate is FirstEstimate.
-  virtual PointSummary Summarize(const BlockResult& merged) const = 0;
+  virtual PointSummary Summarize(const BlockResult& merged) const;
 
   // Whether `merged`, the complete chunks, reaches the tolerance; false if there is no tolerance.
   bool ReachesTolerance(const BlockResult& merged) const;
 
+  // The orbits and replicas of a run use these two.
+  Engine engine() const { return engine_; }
+  const RandomStream& random() const { return random_; }
+
  protected:
-  // For an answer by sampling.
+  // For an answer by sampling. The second one is for a plan other than that of the experiment.
   PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters);
-  // For an answer that needs no samples.
   PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters,
                   const ChunkPlan& plan);
 
-  Engine engine() const { return engine_; }
-  const RandomStream& random() const { return random_; }
+  // To be called in the constructor of an experiment that samples.
+  void SetMeasurements(BlockResult empty, std::vector<Measurement> table);
+
+  // Adds to the summary, which has the table's estimates, what is no estimate.
+  virtual void AddDetails(const BlockResult& /*merged*/, PointSummary& /*summary*/) const {}
 
  private:
   PointParameters parameters_;
@@ -98,7 +109,16 @@ class PointExperiment {
   uint64_t expected_chunks_;
   std::optional<double> tolerance_;
   RandomStream random_;
+  BlockResult empty_;
+  std::vector<Measurement> table_;
+  PointSummary computed_;  // the answer, if it needs no samples
 };
+
+// Makes an experiment that samples; for its row.
+template <typename Experiment>
+std::unique_ptr<PointExperiment> CreateAs(const EnsembleSpec& spec, const PointParameters& point) {
+  return std::make_unique<Experiment>(spec, point);
+}
 
 // The largest number of samples that the target requests at a point; 1 to kMaxSamples.
 uint64_t SamplesAskedFor(const EnsembleSpec& spec, const PointParameters& point);

@@ -3,8 +3,6 @@
 #include <memory>
 #include <utility>
 
-#include "core/ensemble/block_digest.h"
-
 namespace ballpiston {
 
 PointFold::PointFold(const PointExperiment& experiment)

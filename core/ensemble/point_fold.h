@@ -27,7 +27,7 @@ struct FoldState {
   uint64_t blocks = 0;                       // the number of merged blocks of that chunk
   BlockResult complete = {};                 // the merged result of all complete chunks
   BlockResult partial = {};                  // the merged blocks of that chunk
-  std::vector<uint64_t> chunk_digests = {};  // of the complete chunks, in order (block_digest.h)
+  std::vector<uint64_t> chunk_digests = {};  // of the complete chunks, in order (DigestOf)
 };
 
 class PointFold {

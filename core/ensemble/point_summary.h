@@ -13,7 +13,7 @@
 namespace ballpiston {
 
 struct Estimate {
-  std::string name;
+  std::string name = {};
   double value = 0;                           // NaN if nothing was measured
   std::optional<double> standard_error = {};  // empty with too few samples
   // The error is as uncertain as that of the mean of this many independent normal numbers:
@@ -27,7 +27,10 @@ struct Estimate {
   std::optional<double> noise_floor = {};
 
   // (value - exact)/standard_error; empty unless both exist and the error is not 0.
-  std::optional<double> ZScore() const;
+  std::optional<double> ZScore() const {
+    if (!exact || !standard_error || *standard_error == 0) return std::nullopt;
+    return (value - *exact) / *standard_error;
+  }
 };
 
 // Counts of the ingoing angle for one sign of the piston's velocity, of an energy at a time, or of

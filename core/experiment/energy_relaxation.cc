@@ -6,10 +6,9 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "core/arithmetic/elementary_functions.h"
 #include "core/closed_form/mean_free_time.h"
-#include "core/experiment/long_returns.h"
-#include "core/experiment/sampled_estimate.h"
-#include "core/experiment/without_last_bits.h"
+#include "core/experiment/expected_returns.h"
 #include "core/markov/energy_law.h"
 
 namespace ballpiston {
@@ -106,33 +105,32 @@ SpectralValue EnergyRelaxation::IntegralOfLimit(double window) const {
   return {unit_of_limit_ * integral.value, unit_of_limit_ * integral.error};
 }
 
-std::vector<Estimate> EnergyRelaxation::Named(const Estimate& integral) const {
-  if (!HasRelaxationTime(epsilon_)) return {integral};
-  Estimate time = integral;
-  time.name = "relaxation_time";
-  if (!epsilon_) return {time};
-  const double scale = 1 / (*epsilon_ - kMeanPistonEnergy);
-  time.value *= scale;
-  if (time.standard_error) *time.standard_error *= std::fabs(scale);
-  *time.limit *= scale;
-  return {time, integral};
+std::vector<Measurement> EnergyRelaxation::TableOf(const Reading& integral) const {
+  if (!epsilon_) return {{"relaxation_time", integral}};
+  std::vector<Measurement> table;
+  if (HasRelaxationTime(epsilon_)) {
+    table.push_back({"relaxation_time", integral, 1 / (*epsilon_ - kMeanPistonEnergy)});
+  }
+  table.push_back({"decay_integral", integral});
+  return table;
 }
 
-std::vector<Estimate> EnergyRelaxation::Estimates(const BlockResult& merged, double events) const {
-  const double limit = IntegralOfLimit(kForEver).value;
-  const double remainder = WithoutLastBits(limit - IntegralOfLimit(window()).value);
-  Estimate integral = SampledMean("decay_integral", merged.moments[0], events);
-  integral.value += remainder;
-  integral.limit = limit;
-  return Named(integral);
+std::vector<Measurement> EnergyRelaxation::Table(double events_per_orbit, bool is_limit) const {
+  return TableOf([=, this, within = MeanAt(0, events_per_orbit)](const BlockResult& merged) {
+    std::optional<Estimate> integral = within(merged);
+    const double limit = IntegralOfLimit(kForEver).value;
+    integral->value += WithoutLastBits(limit - IntegralOfLimit(window()).value);
+    integral->limit = limit;
+    if (is_limit) integral->exact = limit;
+    return integral;
+  });
 }
 
 std::vector<Estimate> EnergyRelaxation::EstimatesOfLimit() const {
   const SpectralValue integral = IntegralOfLimit(kForEver);
-  return Named({.name = "decay_integral",
-                .value = integral.value,
-                .standard_error = integral.error,
-                .limit = integral.value});
+  const Estimate estimate = {
+      .value = integral.value, .standard_error = integral.error, .limit = integral.value};
+  return EstimatesOf(TableOf([=](const BlockResult&) { return estimate; }), {});
 }
 
 std::string EnergyRelaxation::CurveName() const {
@@ -145,16 +143,13 @@ SpectralValue EnergyRelaxation::CurveOfLimitAt(double time) const {
                   : spectrum.Autocorrelation(time / unit_of_limit_);
 }
 
-Curve EnergyRelaxation::MeasuredCurve(const BlockResult& merged, double events) const {
+Curve EnergyRelaxation::MeasuredCurve(const BlockResult& merged, double events_per_orbit) const {
   Curve curve = {.name = CurveName()};
   if (merged.samples == 0) return curve;
   for (size_t i = 0; i < kLags; ++i) {
-    const Moments& measured = merged.moments[1 + i];
-    curve.points.push_back(
-        {.at = Lag(i),
-         .value = measured.mean,
-         .standard_error = ToldError(events, measured.mean, measured.StandardError()),
-         .limit = CurveOfLimitAt(Lag(i)).value});
+    Estimate there = *MeanAt(1 + i, events_per_orbit)(merged);
+    there.limit = CurveOfLimitAt(Lag(i)).value;
+    curve.points.push_back(PointAt(Lag(i), there));
   }
   return curve;
 }

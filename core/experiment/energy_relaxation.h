@@ -18,9 +18,10 @@
 // is of order lambda/tau, that is delta^2.
 //
 // EnergyRelaxation has the scales that all models share, the measurements of an orbit, and the
-// estimates. Moments: [0] the integral, [1 + i] the curve at the i-th of kLags times. With epsilon
-// also histograms of the piston's energy at each of kLawLags: the law P(ep, t) of eq. meq, compared
-// with that of the limit (energy_law.h). A sample is one orbit.
+// estimates. The numbers of an orbit, of which there are moments, are the integral and then the
+// curve at kLags times. With epsilon there are also histograms of the piston's energy at each of
+// kLawLags: the law P(ep, t) of eq. meq, compared with that of the limit (energy_law.h). A sample
+// is one orbit.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,9 +31,8 @@
 #include <string>
 #include <vector>
 
-#include "core/ensemble/block_result.h"
+#include "core/ensemble/measurement.h"
 #include "core/ensemble/parameter.h"
-#include "core/ensemble/point_summary.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/markov/relaxation_spectrum.h"
 #include "core/statistics/step_function.h"
@@ -66,19 +66,20 @@ class EnergyRelaxation {
   // A result without orbits.
   BlockResult Empty() const;
 
-  // The numbers of one orbit: as many as there are moments.
+  // The numbers of one orbit.
   std::vector<double> Measure(const StepFunction& energy) const;
   // Adds the numbers of one orbit.
   void Record(const std::vector<double>& values, BlockResult& result) const;
 
-  // The events of an orbit of the billiard for the standard errors (statistics/told_error.h). From
-  // an epsilon: about the share of orbits in which ball and piston meet. The piston's energy is
-  // constant in the others, so the scatter is that of the orbits that meet.
+  // The events of an orbit of the billiard for the standard errors (statistics/stated_error.h).
+  // From an epsilon: about the share of orbits in which ball and piston meet. The piston's energy
+  // is constant in the others, so the scatter is that of the orbits that meet.
   double events_per_orbit() const { return events_per_orbit_; }
 
-  // relaxation_time, if it exists; with epsilon also decay_integral. `events`: those of all orbits.
-  std::vector<Estimate> Estimates(const BlockResult& merged, double events) const;
-  Curve MeasuredCurve(const BlockResult& merged, double events) const;
+  // relaxation_time, if it exists; with epsilon also decay_integral. The jump process is the limit,
+  // whose value is exact for it.
+  std::vector<Measurement> Table(double events_per_orbit, bool is_limit) const;
+  Curve MeasuredCurve(const BlockResult& merged, double events_per_orbit) const;
   std::vector<NamedHistogram> MeasuredLaws(const BlockResult& merged) const;
 
   // These four are for the limit. Their standard errors are those of the computation.
@@ -98,8 +99,7 @@ class EnergyRelaxation {
   SpectralValue CurveOfLimitAt(double time) const;
   // int_0^window of the limit's curve: autocorrelation, or mean energy less 1/6.
   SpectralValue IntegralOfLimit(double window) const;
-  // The estimates from the integral: decay_integral, and relaxation_time.
-  std::vector<Estimate> Named(const Estimate& integral) const;
+  std::vector<Measurement> TableOf(const Reading& integral) const;
 
   std::optional<double> epsilon_;
   double unit_of_limit_;  // |G|/|dG_bp|: the spectrum's unit of time

@@ -12,17 +12,15 @@
 #include "absl/strings/str_format.h"
 #include "core/arithmetic/number_text.h"
 #include "core/closed_form/mean_free_time.h"
-#include "core/ensemble/block_orbits.h"
 #include "core/ensemble/chunk_plan.h"
-#include "core/ensemble/computed_answer.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/energy_relaxation.h"
 #include "core/experiment/expected_limit_error.h"
-#include "core/experiment/long_returns.h"
+#include "core/experiment/expected_returns.h"
 #include "core/experiment/pair_experiment.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
-#include "core/statistics/told_error.h"
+#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
@@ -56,11 +54,10 @@ class OrbitMeasurements {
 
 class RelaxingOrbits {
  public:
-  RelaxingOrbits(const PairGeometry& geometry, const EnergyRelaxation& relaxation,
-                 const RandomStream& random, const Block& block)
-      : geometry_(geometry),
+  RelaxingOrbits(const PairExperiment& experiment, const EnergyRelaxation& relaxation,
+                 const Block& block)
+      : experiment_(experiment),
         relaxation_(relaxation),
-        random_(random),
         first_(block.first),
         energies_(block.samples),
         measurements_(relaxation, block.samples) {}
@@ -68,26 +65,21 @@ class RelaxingOrbits {
   uint64_t count() const { return energies_.size(); }
 
   PairState Start(uint64_t orbit) {
-    CounterRandom random = random_.Sample(first_ + orbit);
+    CounterRandom random = experiment_.random().Sample(first_ + orbit);
+    const PairGeometry& geometry = experiment_.geometry();
     const PairState state = relaxation_.epsilon()
-                                ? DrawFromFlowMeasureAt(geometry_, *relaxation_.epsilon(), random)
-                                : DrawFromFlowMeasure(geometry_, random);
+                                ? DrawFromFlowMeasureAt(geometry, *relaxation_.epsilon(), random)
+                                : DrawFromFlowMeasure(geometry, random);
     energies_[orbit].emplace(state.piston_velocity * state.piston_velocity / 2);
     return state;
   }
 
   AfterContact Meet(uint64_t orbit, const Contact& contact) {
     std::optional<StepFunction>& energy = energies_[orbit];
-    if (contact.escaped) {
-      ++health_.escapes;
-      energy.reset();
-      return AfterContact::kEnd;
-    }
     if (!contact.expired) {
       // After the collision the piston has the ball's normal velocity component.
       const double v = contact.state.ball_speed * contact.state.direction.x();
       energy->Add(contact.time, v * v / 2);
-      health_.max_energy_error = std::max(health_.max_energy_error, EnergyError(contact.state));
       if (energy->last_jump() < relaxation_.orbit_time()) return AfterContact::kGoOn;
     }
     measurements_.Set(orbit, *energy);
@@ -95,20 +87,14 @@ class RelaxingOrbits {
     return AfterContact::kEnd;
   }
 
-  BlockResult Result() const {
-    BlockResult result = measurements_.Result();
-    result.health = health_;
-    return result;
-  }
+  BlockResult Result() const { return measurements_.Result(); }
 
  private:
-  PairGeometry geometry_;
+  const PairExperiment& experiment_;
   const EnergyRelaxation& relaxation_;
-  RandomStream random_;
   uint64_t first_;
   std::vector<std::optional<StepFunction>> energies_;  // of the orbits that run
   OrbitMeasurements measurements_;
-  Health health_;
 };
 
 std::vector<double> StartsOfWalkers(const std::optional<double>& epsilon,
@@ -173,14 +159,14 @@ void AddFurtherRates(std::vector<Estimate>& estimates) {
 }
 
 // No samples: standard errors are those of the discretisation.
-PointSummary BySpectrum(const EnergyRelaxation& relaxation) {
-  PointSummary summary;
-  summary.remarks = RemarksOnDecay(relaxation.epsilon());
-  summary.estimates = relaxation.EstimatesOfLimit();
+PointSummary RelaxationBySpectrum(const EnsembleSpec&, const PointParameters& point) {
+  const EnergyRelaxation relaxation(GeometryOf(point), point);
+  PointSummary summary = {.estimates = relaxation.EstimatesOfLimit(),
+                          .histograms = relaxation.LawsOfLimit(),
+                          .curves = {relaxation.CurveOfLimit()},
+                          .remarks = RemarksOnDecay(relaxation.epsilon())};
   summary.estimates.push_back(SpectralGap());
   AddFurtherRates(summary.estimates);
-  summary.curves = {relaxation.CurveOfLimit()};
-  summary.histograms = relaxation.LawsOfLimit();
   return summary;
 }
 
@@ -190,10 +176,17 @@ double EventsOf(Model model, const EnergyRelaxation& relaxation) {
 }
 
 // By billiard, billiard_reference or markov.
-class EnergyRelaxationExperiment : public PointExperiment {
+class EnergyRelaxationExperiment : public PairExperiment {
  public:
   EnergyRelaxationExperiment(const EnsembleSpec& spec, const PointParameters& point)
-      : PointExperiment(spec, point), geometry_(GeometryOf(point)), relaxation_(geometry_, point) {}
+      : PairExperiment(spec, point),
+        relaxation_(geometry(), point),
+        events_per_orbit_(EventsOf(answer().model, relaxation_)) {
+    std::vector<Measurement> table = relaxation_.Table(events_per_orbit_, IsLimit());
+    if (IsLimit())
+      table.push_back({"spectral_gap", [](const BlockResult&) { return SpectralGap(); }});
+    SetMeasurements(relaxation_.Empty(), std::move(table));
+  }
 
   std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
     if (IsLimit()) {
@@ -201,39 +194,27 @@ class EnergyRelaxationExperiment : public PointExperiment {
         return WalkBlock(relaxation_, random(), block, stop);
       });
     }
-    return RunBlockOrbits(
-        engine(), geometry_, relaxation_.orbit_time(),
-        [this](const Block& b) { return RelaxingOrbits(geometry_, relaxation_, random(), b); },
-        queue);
+    return RunOrbits(
+        queue, [this](const Block& block) { return RelaxingOrbits(*this, relaxation_, block); },
+        relaxation_.orbit_time());
   }
 
-  BlockResult EmptyResult() const override { return relaxation_.Empty(); }
-
-  Estimate FirstEstimate(const BlockResult& merged) const override {
-    return Estimates(merged).front();
-  }
-
-  PointSummary Summarize(const BlockResult& merged) const override {
-    PointSummary summary = {.samples = merged.samples, .health = merged.health};
+ protected:
+  void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
     summary.remarks = RemarksOnDecay(relaxation_.epsilon());
-    summary.estimates = Estimates(merged);
-    if (IsLimit()) summary.estimates.push_back(SpectralGap());
-    summary.curves.push_back(relaxation_.MeasuredCurve(merged, EventsIn(merged)));
+    summary.curves.push_back(relaxation_.MeasuredCurve(merged, events_per_orbit_));
     summary.histograms = relaxation_.MeasuredLaws(merged);
     if (LacksEvents(merged)) summary.remarks.push_back(ReasonOfNoErrors(merged));
-    return summary;
   }
 
  private:
-  bool IsLimit() const { return answer().model == Model::kMarkov; }
-
   double EventsIn(const BlockResult& merged) const {
-    return static_cast<double>(merged.samples) * EventsOf(answer().model, relaxation_);
+    return static_cast<double>(merged.samples) * events_per_orbit_;
   }
 
   // Whether there are no errors, although the sample is not small.
   bool LacksEvents(const BlockResult& merged) const {
-    return TellsItsError(static_cast<double>(merged.samples)) && !TellsItsError(EventsIn(merged));
+    return HasStatedError(static_cast<double>(merged.samples)) && !HasStatedError(EventsIn(merged));
   }
 
   std::string ReasonOfNoErrors(const BlockResult& merged) const {
@@ -241,35 +222,17 @@ class EnergyRelaxationExperiment : public PointExperiment {
       return absl::StrFormat(
           "there are no standard errors: few orbits, those with a slow piston, skew the law of %d "
           "orbits; errors need %.0f orbits",
-          merged.samples, kEventsForAnError / relaxation_.events_per_orbit());
+          merged.samples, kEventsForAnError / events_per_orbit_);
     }
     return absl::StrFormat(
         "there are no standard errors: ball and piston meet in about %.2g of these %d orbits; "
-        "errors "
-        "need %.0f",
+        "errors need %.0f",
         EventsIn(merged), merged.samples, kEventsForAnError);
   }
 
-  std::vector<Estimate> Estimates(const BlockResult& merged) const {
-    std::vector<Estimate> estimates = relaxation_.Estimates(merged, EventsIn(merged));
-    if (!IsLimit()) return estimates;
-    // The jump process is the limit.
-    for (Estimate& estimate : estimates) estimate.exact = estimate.limit;
-    return estimates;
-  }
-
-  PairGeometry geometry_;
   EnergyRelaxation relaxation_;
+  double events_per_orbit_;  // for the standard errors
 };
-
-std::unique_ptr<PointExperiment> CreateRelaxation(const EnsembleSpec& spec,
-                                                  const PointParameters& point) {
-  if (spec.model != Model::kSpectrum) {
-    return std::make_unique<EnergyRelaxationExperiment>(spec, point);
-  }
-  return std::make_unique<ComputedAnswer>(spec, point,
-                                          BySpectrum(EnergyRelaxation(GeometryOf(point), point)));
-}
 
 std::vector<std::vector<double>> ProbabilitiesOfTheLimit(const PointParameters& point) {
   return EnergyRelaxation(GeometryOf(point), point).ProbabilitiesOfLimit();
@@ -350,10 +313,8 @@ constexpr ParameterUse kParametersOfRelaxation[] = {
     {&kRho}, {&kDelta}, {.parameter = &kEpsilon, .needed = false}};
 constexpr Model kModelsOfRelaxation[] = {Model::kSpectrum, Model::kMarkov, Model::kBilliard,
                                          Model::kBilliardReference};
-constexpr LimitError kLimitErrorOfRelaxation = {.model = Model::kSpectrum,
-                                                .has_pilots = true,
-                                                .is_known = HasRelaxationTimeAt,
-                                                .expected = ExpectedLimitError};
+constexpr LimitError kLimitErrorOfRelaxation = {
+    .model = Model::kSpectrum, .is_known = HasRelaxationTimeAt, .expected = ExpectedLimitError};
 
 // An orbit that has ended keeps its numbers until its block is complete. Two blocks are in progress
 // at a time, unless they are small.
@@ -389,7 +350,8 @@ constinit const ExperimentKind kEnergyRelaxation = {
     .unit = TargetUnit::kEither,
     .models = kModelsOfRelaxation,
     .aims = kAimsOfRelaxation,
-    .create = CreateRelaxation,
+    .create = CreateAs<EnergyRelaxationExperiment>,
+    .compute = RelaxationBySpectrum,
     .check_grid = CheckPairGrid,
     .check_tolerance = CheckToleranceOfDecay,
     .work = WorkOfAnOrbit,

@@ -8,11 +8,8 @@
 //   conductivity = J N sqrt(T)/[(2/3)(hot^(3/2) - cold^(3/2))],  T = (hot + cold)/2
 //
 // This is the conductivity at T of N cells in a row, if the conductivity grows as sqrt T.
-//   batch means, a replica each  [0] energy carried through all contacts along x; these times
-//   duration
-//                                [1] exchanges, contacts times duration
-//                                [2] the balls' mean energies, balls  [3] twice the pistons'
-//   moments                      the mean temperature at each place of the profile
+// Each replica is a batch of the batch means. The moments are of the mean temperature at each place
+// of the profile.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -153,15 +150,26 @@ class ProfilePlaces {
   std::vector<Place> places_;
 };
 
+GasGeometry OpenGasOf(const PointParameters& point) {
+  return GasGeometryOf(point, GasEnds::kReservoirs);
+}
+
+GasTimes TimesAt(Model model, const PointParameters& point) {
+  return TimesOfConduction(model, OpenGasOf(point), point[kCold] / MeanTemperature(point));
+}
+
 class GasConduction : public GasExperiment {
  public:
-  GasConduction(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
-                const GasTimes& times)
-      : GasExperiment(spec, point, geometry, times),
-        temperature_(MeanTemperature(point)),
-        hot_(point[kHot] / temperature_),
-        cold_(point[kCold] / temperature_),
-        places_(geometry) {}
+  GasConduction(const EnsembleSpec& spec, const PointParameters& point)
+      : GasExperiment(spec, point, OpenGasOf(point), TimesAt(spec.model, point),
+                      MeanTemperature(point)),
+        hot_(point[kHot] / temperature()),
+        cold_(point[kCold] / temperature()),
+        places_(geometry()) {
+    SetMeasurements({.moments = std::vector<Moments>(places_.size()),
+                     .batch_means = std::vector<BatchMeans>(kMeans + 3)},
+                    Table());
+  }
 
   TemperatureProfile TemperaturesAtStart() const override { return {hot_, cold_, Columns()}; }
 
@@ -178,85 +186,61 @@ class GasConduction : public GasExperiment {
     }
     // Each ball has one contact on its left and one on its right.
     const double contacts_along_x = 2 * static_cast<double>(geometry().balls());
-    result.batch_means[0].Add(meter.carried(), contacts_along_x * meter.duration());
-    AddMeans(meter, 1, result);
+    result.batch_means[kCarried].Add(meter.carried(), contacts_along_x * meter.duration());
+    AddMeans(meter, kMeans, result);
   }
 
-  BlockResult EmptyResult() const override {
-    BlockResult result;
-    result.batch_means.resize(4);
-    result.moments.resize(places_.size());
-    return result;
-  }
-
-  Estimate FirstEstimate(const BlockResult& merged) const override {
-    Estimate current = Mean("heat_current", merged, 0, temperature_ * std::sqrt(temperature_));
-    if (hot_ == cold_) current.exact = 0;
-    return current;
-  }
-
-  PointSummary Summarize(const BlockResult& merged) const override {
-    PointSummary summary = {.samples = merged.samples, .health = merged.health};
-    summary.estimates.push_back(FirstEstimate(merged));
-    if (hot_ > cold_) {
-      summary.estimates.push_back(Mean("conductivity", merged, 0, Conductance()));
-      summary.estimates.push_back(Mean("conductivity_ratio", merged, 0,
-                                       Conductance() / StaticConductivityAt(temperature_)));
-    }
-    summary.estimates.push_back(Mean("exchange_rate", merged, 1, std::sqrt(temperature_)));
-    summary.estimates.push_back(Mean("temperature_ball", merged, 2, temperature_));
-    summary.estimates.push_back(Mean("temperature_piston", merged, 3, temperature_));
+ protected:
+  void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
     summary.curves.push_back(Profile(merged));
-    if (times().share < 1) {
-      summary.remarks.push_back(absl::StrFormat(
-          "replicas of %.0f cells in a row ran for only %.2g of the time that a stationary state "
-          "needs, so there are no standard errors",
-          Columns(), times().share));
-    }
-    return summary;
+    if (times().share == 1) return;
+    summary.remarks.push_back(absl::StrFormat(
+        "replicas of %.0f cells in a row ran for only %.2g of the time that a stationary state "
+        "needs, so there are no standard errors",
+        Columns(), times().share));
   }
 
  private:
-  double Columns() const { return static_cast<double>(geometry().shape().columns); }
-  double StaticConductivityAt(double temperature) const {
-    return InfiniteGasExchangeRate(geometry(), temperature) / 2;
+  // Indices of the batch means: the energy carried through the contacts along x, over the number of
+  // these contacts and the duration; and those of AddMeans.
+  static constexpr size_t kCarried = 0, kMeans = 1;
+
+  std::vector<Measurement> Table() const {
+    const bool has_fall = hot_ > cold_;
+    std::vector<Measurement> table = {{.name = "heat_current",
+                                       .reading = Ratio(kCarried),
+                                       .scale = temperature() * std::sqrt(temperature()),
+                                       .exact = has_fall ? std::nullopt : std::optional(0.0)}};
+    if (has_fall) {
+      const double of_static = InfiniteGasExchangeRate(geometry(), temperature()) / 2;
+      table.push_back({"conductivity", Ratio(kCarried), Conductance()});
+      table.push_back({"conductivity_ratio", Ratio(kCarried), Conductance() / of_static});
+    }
+    for (Measurement& row : MeansFrom(kMeans)) table.push_back(std::move(row));
+    return table;
   }
+
+  double Columns() const { return static_cast<double>(geometry().shape().columns); }
 
   // The conductivity over the current at mean temperature 1.
   double Conductance() const {
     const double fall = 2.0 / 3 * (hot_ * std::sqrt(hot_) - cold_ * std::sqrt(cold_));
-    return Columns() * std::sqrt(temperature_) / fall;
+    return Columns() * std::sqrt(temperature()) / fall;
   }
 
   Curve Profile(const BlockResult& merged) const {
     Curve curve = {.name = "temperature_profile", .axis = CurveAxis::kPosition};
     for (size_t i = 0; i < places_.size(); ++i) {
-      const Estimate there = Mean("", merged.moments[i], temperature_);
-      curve.points.push_back({.at = places_.Position(i),
-                              .value = there.value,
-                              .standard_error = there.standard_error});
+      const Measurement there = {"", Mean(i), temperature()};
+      curve.points.push_back(PointAt(places_.Position(i), *there.Of(merged)));
     }
     return curve;
   }
 
-  double temperature_;  // the mean; all other temperatures are in units of it
-  double hot_;
+  double hot_;  // this and cold_ in units of the mean temperature
   double cold_;
   ProfilePlaces places_;
 };
-
-GasGeometry OpenGasOf(const PointParameters& point) {
-  return GasGeometryOf(point, GasEnds::kReservoirs);
-}
-
-GasTimes TimesAt(Model model, const PointParameters& point) {
-  return TimesOfConduction(model, OpenGasOf(point), point[kCold] / MeanTemperature(point));
-}
-
-std::unique_ptr<PointExperiment> CreateGasConduction(const EnsembleSpec& spec,
-                                                     const PointParameters& point) {
-  return std::make_unique<GasConduction>(spec, point, OpenGasOf(point), TimesAt(spec.model, point));
-}
 
 void CheckConductionGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
   CheckGasGrid(spec, found);
@@ -337,10 +321,8 @@ double ErrorOfGasConduction(Model model, const PointParameters& point) {
   return std::sqrt(of_the_gas + of_the_portions);
 }
 
-// There is no pilot, because it would take as long as the billiard's answer.
 constexpr LimitError kLimitErrorOfConduction = {
     .model = Model::kMarkov,
-    .has_pilots = false,
     .is_known = [](const PointParameters&) { return true; },
     .expected = ExpectedLimitErrorOfConduction};
 
@@ -366,7 +348,7 @@ constinit const ExperimentKind kGasConduction = {.name = "gas-conduction",
                                                  .unit = TargetUnit::kEither,
                                                  .models = kModelsOfGasConduction,
                                                  .aims = kAimsOfGasConduction,
-                                                 .create = CreateGasConduction,
+                                                 .create = CreateAs<GasConduction>,
                                                  .check_grid = CheckConductionGrid,
                                                  .check_tolerance = CheckConductionTolerance,
                                                  .no_errors = WhyConductionHasNoErrors,

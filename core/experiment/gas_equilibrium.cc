@@ -6,12 +6,7 @@
 // the canonical fluctuations. It runs for a fixed time, at most 8 mean times between exchanges of a
 // contact (16 by the jump process). Half of that time is the window of the current's
 // autocorrelation. A replica runs at temperature 1, and its results are scaled.
-//   batch means, a replica each  [0] exchanges, contacts times duration
-//                                [1] sum of the balls' mean energies, balls  [2] twice the pistons'
-//   moments                      [0] conductivity without a test function (gas/jump_current.h)
-//                                [1] to [17] conductivity with windows of 0 to 16 steps
-//                                [18] to [33] the current's autocorrelation at 1 to 16 steps
-//   histograms                   [0] speeds of the balls at the end  [1] of the pistons
+// Each replica is a batch of the batch means.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,15 +15,14 @@
 #include <memory>
 #include <numbers>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "core/conductivity/conductivity.h"
-#include "core/ensemble/computed_answer.h"
 #include "core/experiment/all_experiments.h"
-#include "core/experiment/exact_estimate.h"
 #include "core/experiment/expected_limit_error.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/canonical_gas.h"
@@ -36,7 +30,7 @@
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/jump_current.h"
 #include "core/statistics/kl_divergence.h"
-#include "core/statistics/told_error.h"
+#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
@@ -72,23 +66,34 @@ GasTimes TimesInEquilibrium(Model model, const GasGeometry& geometry) {
 
 std::vector<Histogram> EmptySpeeds() { return {2, Histogram::OfBins(0, kMostSpeed, kSpeedBins)}; }
 
-// Exact probabilities of the bins of a law with the distribution function 1 - tail(speed).
-std::vector<double> SpeedProbabilities(double (*tail)(double)) {
+// The bodies, and the laws of their speeds at temperature 1: the probability of a larger speed.
+struct BodyLaw {
+  const char* name;
+  double (*tail)(double speed);
+};
+constexpr std::array<BodyLaw, 2> kBodies = {
+    {{"ball", [](double v) { return std::exp(-v * v / 2); }},
+     {"piston", [](double v) { return std::erfc(v * std::numbers::sqrt2 / 2); }}}};
+
+// Exact probabilities of the bins.
+std::vector<double> SpeedProbabilities(const BodyLaw& law) {
   const Histogram bins = EmptySpeeds()[0];
   std::vector<double> probabilities;
   for (size_t i = 0; i < kSpeedBins; ++i) {
-    const double above = i + 1 == kSpeedBins ? 0 : tail(bins.Edge(i + 1));
-    probabilities.push_back(tail(bins.Edge(i)) - above);
+    const double above = i + 1 == kSpeedBins ? 0 : law.tail(bins.Edge(i + 1));
+    probabilities.push_back(law.tail(bins.Edge(i)) - above);
   }
   return probabilities;
 }
 
-std::array<std::vector<double>, 2> SpeedLaws() {
-  return {SpeedProbabilities([](double v) { return std::exp(-v * v / 2); }),
-          SpeedProbabilities([](double v) { return std::erfc(v * std::numbers::sqrt2 / 2); })};
+Estimate SpeedDivergence(const BodyLaw& law, const Histogram& speeds) {
+  const KlDivergence divergence = RelativeEntropy(speeds.counts, SpeedProbabilities(law));
+  return {.value = divergence.value,
+          .standard_error = divergence.standard_error,
+          .noise_floor = divergence.noise_floor};
 }
 
-// The events of a replica for the errors of its current's correlations (statistics/told_error.h).
+// The events of a replica for the errors of its current's correlations (statistics/stated_error.h).
 // Few replicas dominate what the jump process measures, those with much energy in few bodies: the
 // skewness over replicas is 15 to 20 with three columns or 2x1, 3 with 32, and 60 to 150 in a chain
 // of two. One column has no current.
@@ -98,37 +103,39 @@ double EventsOfCurrents(Model model, const GasShape& shape) {
   return shape.columns * shape.rows < 16 ? 0.05 : 0.1;
 }
 
-// Adds estimates at the front or at the end. The conductivity is at the front if the target names
-// it.
-void Insert(const std::vector<Estimate>& added, bool are_first, PointSummary& summary) {
-  std::vector<Estimate>& estimates = summary.estimates;
-  estimates.insert(are_first ? estimates.begin() : estimates.end(), added.begin(), added.end());
-}
-
-// Where the moments of the windows begin, and those of the lags of the autocorrelation.
+// Where moments begin: [0] the conductivity without a test function (gas/jump_current.h); those
+// with windows of 0 to kWindow steps; the current's autocorrelation at 1 to kWindow steps.
 constexpr size_t kFirstWindow = 1;
 constexpr size_t kFirstLag = kFirstWindow + kWindow + 1;
-
-BlockResult NoGasesMeasured() {
-  BlockResult result;
-  result.moments.resize(kFirstLag + kWindow);
-  result.batch_means.resize(3);
-  result.histograms = EmptySpeeds();
-  return result;
-}
+constexpr size_t kMomentsOfCurrents = kFirstLag + kWindow;
 
 constexpr char kConductivity[] = "conductivity";
 
 bool AimsAtConductivity(const EnsembleSpec& spec) { return AimOf(spec).name == kConductivity; }
 
+// The conductivity is first if the target names it, else last.
+template <typename Row>
+std::vector<Row> WithConductivity(std::vector<Row> rows, const std::vector<Row>& conductivity,
+                                  bool is_first) {
+  rows.insert(is_first ? rows.begin() : rows.end(), conductivity.begin(), conductivity.end());
+  return rows;
+}
+
+GasGeometry PeriodicGasOf(const PointParameters& point) {
+  return GasGeometryOf(point, GasEnds::kPeriodic);
+}
+
 class GasEquilibrium : public GasExperiment {
  public:
-  GasEquilibrium(const EnsembleSpec& spec, const PointParameters& point,
-                 const GasGeometry& geometry)
-      : GasExperiment(spec, point, geometry, TimesInEquilibrium(spec.model, geometry)),
-        temperature_(point[kTemperature]),
-        exact_rate_(GasExchangeRate(geometry, temperature_)),
-        aims_at_conductivity_(AimsAtConductivity(spec)) {}
+  GasEquilibrium(const EnsembleSpec& spec, const PointParameters& point)
+      : GasExperiment(spec, point, PeriodicGasOf(point),
+                      TimesInEquilibrium(spec.model, PeriodicGasOf(point)), point[kTemperature]),
+        events_(EventsOfCurrents(answer().model, geometry().shape())) {
+    SetMeasurements({.moments = std::vector<Moments>(kMomentsOfCurrents),
+                     .batch_means = std::vector<BatchMeans>(3),
+                     .histograms = EmptySpeeds()},
+                    WithConductivity(Table(), ConductivityTable(), AimsAtConductivity(spec)));
+  }
 
   TemperatureProfile TemperaturesAtStart() const override { return TemperatureProfile(1); }
 
@@ -157,34 +164,27 @@ class GasEquilibrium : public GasExperiment {
     }
   }
 
-  BlockResult EmptyResult() const override { return NoGasesMeasured(); }
-
   uint64_t CountsOfASample() const override {
     return static_cast<uint64_t>(std::max(geometry().balls(), geometry().pistons()));
   }
 
-  Estimate FirstEstimate(const BlockResult& merged) const override {
-    return aims_at_conductivity_ ? Conductivity(merged) : ExchangeRate(merged);
-  }
-
-  PointSummary Summarize(const BlockResult& merged) const override {
-    PointSummary summary = {.samples = merged.samples, .health = merged.health};
-    summary.estimates = {ExchangeRate(merged),
-                         MeanBeside(temperature_, "temperature_ball", merged, 1, temperature_),
-                         MeanBeside(temperature_, "temperature_piston", merged, 2, temperature_)};
-    const auto laws = SpeedLaws();
-    constexpr std::array<const char*, 2> kBodies = {"ball", "piston"};
-    for (size_t i = 0; i < laws.size(); ++i) {
-      const KlDivergence divergence = RelativeEntropy(merged.histograms[i].counts, laws[i]);
-      summary.estimates.push_back({.name = absl::StrCat(kBodies[i], "_speed_divergence"),
-                                   .value = divergence.value,
-                                   .standard_error = divergence.standard_error,
-                                   .noise_floor = divergence.noise_floor});
-      summary.histograms.push_back(
-          {.name = absl::StrCat(kBodies[i], "_speed"), .histogram = AtTemperature(merged, i)});
+ protected:
+  void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
+    for (size_t i = 0; i < kBodies.size(); ++i) {
+      summary.histograms.push_back({.name = absl::StrCat(kBodies[i].name, "_speed"),
+                                    .histogram = AtTemperature(merged.histograms[i])});
     }
-    AddConductivity(merged, summary);
-    return summary;
+    if (!MeasuresConductivity(geometry())) {
+      summary.remarks.push_back(
+          absl::StrFormat("the conductivity is not measured in gases of more than %d contacts; "
+                          "a smaller gas has nearly the same conductivity",
+                          kMostContacts));
+      return;
+    }
+    summary.curves = {
+        CurveOf("conductivity_ratio_by_window", kFirstWindow, 0, 1 / StaticConductivity(), merged),
+        CurveOf("current_autocorrelation", kFirstLag, 1, AutocorrelationScale(), merged)};
+    AddRemarks(merged, summary.remarks);
   }
 
  private:
@@ -197,109 +197,76 @@ class GasEquilibrium : public GasExperiment {
   // Scales at the gas's temperature: of times, of conductivities, and of squared currents of a
   // cell. The currents' energies are in units of the temperature, because its cube may exceed a
   // double.
-  double Step() const { return times().measure / kCurrentSteps / std::sqrt(temperature_); }
-  double ConductivityScale() const { return std::sqrt(temperature_); }
-  double AutocorrelationScale() const { return temperature_; }
-
-  Estimate ExchangeRate(const BlockResult& merged) const {
-    return MeanBeside(exact_rate_, "exchange_rate", merged, 0, std::sqrt(temperature_));
-  }
-
-  Estimate Conductivity(const BlockResult& merged) const {
-    return InUnitsOf(ConductivityScale(), kConductivity, merged);
-  }
-
-  // The limit in the estimate is that of the infinite gas.
-  Estimate InUnitsOf(double scale, const char* name, const BlockResult& merged) const {
-    Estimate estimate = MeanOfCurrents(name, merged, kFirstWindow + kWindow, scale);
-    estimate.limit = scale * StaticConductivity() * (1 + LimitCorrection(geometry()).value);
-    return estimate;
-  }
-
-  Estimate MeanOfCurrents(const char* name, const BlockResult& merged, size_t index,
-                          double scale) const {
-    const double events = EventsOfCurrents(answer().model, geometry().shape());
-    return Mean(name, merged.moments[index], scale, events);
-  }
+  double Step() const { return times().measure / kCurrentSteps / std::sqrt(temperature()); }
+  double ConductivityScale() const { return std::sqrt(temperature()); }
+  double AutocorrelationScale() const { return temperature(); }
 
   // The static conductivity of the infinite gas at temperature 1.
   double StaticConductivity() const { return InfiniteGasExchangeRate(geometry(), 1) / 2; }
 
-  Curve RatioByWindow(const BlockResult& merged) const {
-    Curve curve = {.name = "conductivity_ratio_by_window"};
-    for (size_t i = 0; i <= kWindow; ++i) {
-      curve.points.push_back(PointOf(merged, kFirstWindow + i, i, 1 / StaticConductivity()));
+  std::vector<Measurement> Table() const {
+    std::vector<Measurement> table = MeansFrom(0);
+    table[0].exact = GasExchangeRate(geometry(), temperature());
+    table[1].exact = table[2].exact = temperature();
+    for (size_t i = 0; i < kBodies.size(); ++i) {
+      table.push_back(
+          {absl::StrCat(kBodies[i].name, "_speed_divergence"), [i](const BlockResult& merged) {
+             return SpeedDivergence(kBodies[i], merged.histograms[i]);
+           }});
+    }
+    return table;
+  }
+
+  // The limit beside the estimates is that of the infinite gas.
+  std::vector<Measurement> ConductivityTable() const {
+    if (!MeasuresConductivity(geometry())) return {};
+    const auto in_units_of = [&](double scale, const char* name) {
+      return Measurement{
+          .name = name,
+          .reading = Mean(kFirstWindow + kWindow, events_),
+          .scale = scale,
+          .limit = scale * StaticConductivity() * (1 + LimitCorrection(geometry()).value)};
+    };
+    return {in_units_of(ConductivityScale(), kConductivity),
+            in_units_of(1 / StaticConductivity(), "conductivity_ratio")};
+  }
+
+  // The moments from index `first` on are those at times from `first_step` to the window's end.
+  Curve CurveOf(const char* name, size_t first, size_t first_step, double scale,
+                const BlockResult& merged) const {
+    Curve curve = {.name = name};
+    for (size_t step = first_step; step <= kWindow; ++step) {
+      const Measurement there = {"", Mean(first + step - first_step, events_), scale};
+      curve.points.push_back(PointAt(static_cast<double>(step) * Step(), *there.Of(merged)));
     }
     return curve;
   }
 
-  Curve Autocorrelation(const BlockResult& merged) const {
-    Curve curve = {.name = "current_autocorrelation"};
-    for (size_t i = 1; i <= kWindow; ++i) {
-      curve.points.push_back(PointOf(merged, kFirstLag + i - 1, i, AutocorrelationScale()));
-    }
-    return curve;
-  }
-
-  void AddConductivity(const BlockResult& merged, PointSummary& summary) const {
-    if (!MeasuresConductivity(geometry())) {
-      summary.remarks.push_back(
-          absl::StrFormat("the conductivity is not measured in gases of more than %d contacts; "
-                          "a smaller gas has nearly the same conductivity",
-                          kMostContacts));
-      return;
-    }
-    Insert(
-        {Conductivity(merged), InUnitsOf(1 / StaticConductivity(), "conductivity_ratio", merged)},
-        aims_at_conductivity_, summary);
-    summary.curves = {RatioByWindow(merged), Autocorrelation(merged)};
-    summary.remarks.push_back(absl::StrFormat(
+  void AddRemarks(const BlockResult& merged, std::vector<std::string>& remarks) const {
+    remarks.push_back(absl::StrFormat(
         "the conductivity includes the current's correlations up to a time of %.3g, %.2g mean "
         "times between exchanges of a ball and a piston",
         kWindow * Step(), ExchangesOf(answer().model, geometry()) * kWindow / kCurrentSteps));
-    const double events = EventsOfCurrents(answer().model, geometry().shape());
-    if (!TellsItsError(events * static_cast<double>(merged.samples))) {
-      summary.remarks.push_back(
-          absl::StrFormat("the conductivity has no standard error: this needs %.0f replicas",
-                          kEventsForAnError / events));
-    }
-  }
-
-  CurvePoint PointOf(const BlockResult& merged, size_t index, size_t steps, double scale) const {
-    const Estimate there = MeanOfCurrents("", merged, index, scale);
-    return {.at = static_cast<double>(steps) * Step(),
-            .value = there.value,
-            .standard_error = there.standard_error};
+    if (HasStatedError(events_ * static_cast<double>(merged.samples))) return;
+    remarks.push_back(
+        absl::StrFormat("the conductivity has no standard error: this needs %.0f replicas",
+                        kEventsForAnError / events_));
   }
 
   // Speeds scale with sqrt T.
-  Histogram AtTemperature(const BlockResult& merged, size_t index) const {
-    Histogram speeds = merged.histograms[index];
-    speeds.upper *= std::sqrt(temperature_);
+  Histogram AtTemperature(Histogram speeds) const {
+    speeds.upper *= std::sqrt(temperature());
     return speeds;
   }
 
-  Estimate MeanBeside(double exact, const char* name, const BlockResult& merged, size_t index,
-                      double scale) const {
-    Estimate mean = Mean(name, merged, index, scale);
-    mean.exact = exact;
-    return mean;
-  }
-
-  double temperature_;
-  double exact_rate_;
-  bool aims_at_conductivity_;
+  double events_;  // of a replica, for the errors of its current's correlations
 };
 
-GasGeometry PeriodicGasOf(const PointParameters& point) {
-  return GasGeometryOf(point, GasEnds::kPeriodic);
-}
-
-PointSummary ExactAnswer(const GasGeometry& geometry, double temperature) {
-  return {.estimates = {ExactEstimate("exchange_rate", GasExchangeRate(geometry, temperature),
-                                      kGasExchangeRateRelativeError),
-                        ExactEstimate("temperature_ball", temperature, 0),
-                        ExactEstimate("temperature_piston", temperature, 0)}};
+std::vector<Estimate> ClosedForms(const GasGeometry& geometry, double temperature) {
+  return {ExactEstimate("exchange_rate", GasExchangeRate(geometry, temperature),
+                        kGasExchangeRateRelativeError),
+          ExactEstimate("temperature_ball", temperature, 0),
+          ExactEstimate("temperature_piston", temperature, 0)};
 }
 
 // The conductivity of the infinite gas in the limit of rare exchanges, and its ratio to the static
@@ -315,26 +282,17 @@ std::vector<Estimate> ConductivityOfLimit(const GasGeometry& geometry, double te
   return {in(kConductivity, of_static), in("conductivity_ratio", 1)};
 }
 
-// The closed forms, and the conductivity before or after them.
-PointSummary BySpectrum(const EnsembleSpec& spec, const GasGeometry& geometry, double temperature) {
-  PointSummary summary = ExactAnswer(geometry, temperature);
-  Insert(ConductivityOfLimit(geometry, temperature), AimsAtConductivity(spec), summary);
-  summary.remarks.push_back(absl::StrCat("the conductivity is that of the infinite ",
-                                         geometry.shape().is_lattice ? "lattice" : "chain",
-                                         " in the limit of rare exchanges"));
-  return summary;
-}
-
-std::unique_ptr<PointExperiment> CreateGasEquilibrium(const EnsembleSpec& spec,
-                                                      const PointParameters& point) {
+PointSummary ComputedEquilibrium(const EnsembleSpec& spec, const PointParameters& point) {
   const GasGeometry geometry = PeriodicGasOf(point);
-  if (TakesSamples(spec.model)) {
-    return std::make_unique<GasEquilibrium>(spec, point, geometry);
-  }
-  PointSummary summary = spec.model == Model::kSpectrum
-                             ? BySpectrum(spec, geometry, point[kTemperature])
-                             : ExactAnswer(geometry, point[kTemperature]);
-  return std::make_unique<ComputedAnswer>(spec, point, std::move(summary));
+  const double temperature = point[kTemperature];
+  std::vector<Estimate> closed_forms = ClosedForms(geometry, temperature);
+  if (spec.model == Model::kClosedForm) return {.estimates = std::move(closed_forms)};
+  const char* const gas = geometry.shape().is_lattice ? "lattice" : "chain";
+  return {.estimates =
+              WithConductivity(std::move(closed_forms), ConductivityOfLimit(geometry, temperature),
+                               AimsAtConductivity(spec)),
+          .remarks = {absl::StrCat("the conductivity is that of the infinite ", gas,
+                                   " in the limit of rare exchanges")}};
 }
 
 // The current of the jump process costs twice as much as its exchanges; the billiard's current
@@ -412,8 +370,7 @@ void CheckEquilibriumGrid(const EnsembleSpec& spec, std::vector<FieldViolation>&
 }
 
 std::vector<std::vector<double>> SpeedProbabilitiesAt(const PointParameters&) {
-  const auto laws = SpeedLaws();
-  return {laws.begin(), laws.end()};
+  return {SpeedProbabilities(kBodies[0]), SpeedProbabilities(kBodies[1])};
 }
 
 constexpr ParameterUse kParametersOfGasEquilibrium[] = {
@@ -424,7 +381,6 @@ constexpr Model kModelsOfConductivity[] = {Model::kSpectrum, Model::kMarkov, Mod
                                            Model::kBilliardReference};
 constexpr LimitError kLimitErrorOfConductivity = {
     .model = Model::kSpectrum,
-    .has_pilots = false,
     .is_known = [](const PointParameters&) { return true; },
     .expected = ErrorOfTheLimit};
 constexpr absl::string_view kMultiplesOfTheConductivity[] = {"conductivity_ratio"};
@@ -445,7 +401,8 @@ constinit const ExperimentKind kGasEquilibrium = {.name = "gas-equilibrium",
                                                   .unit = TargetUnit::kEither,
                                                   .models = kModelsOfGasEquilibrium,
                                                   .aims = kAimsOfGasEquilibrium,
-                                                  .create = CreateGasEquilibrium,
+                                                  .create = CreateAs<GasEquilibrium>,
+                                                  .compute = ComputedEquilibrium,
                                                   .check_grid = CheckEquilibriumGrid,
                                                   .work = WorkOfGasEquilibrium,
                                                   .collisions = ExchangesOfASample,

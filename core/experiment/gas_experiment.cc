@@ -7,10 +7,10 @@
 #include <optional>
 #include <utility>
 
+#include "core/arithmetic/elementary_functions.h"
 #include "core/ensemble/chunk_plan.h"
+#include "core/ensemble/open_blocks.h"
 #include "core/experiment/pair_experiment.h"
-#include "core/experiment/sampled_estimate.h"
-#include "core/experiment/without_last_bits.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_shape.h"
 #include "core/gas/hit_rates.h"
@@ -31,49 +31,58 @@ uint64_t TogetherInLanes(int64_t balls, const ChunkPlan& plan, uint64_t chunk) {
   return std::clamp<uint64_t>(plan.SamplesIn(chunk) / 4, 1, ReplicasThatFillLanes(balls));
 }
 
-// A block whose replicas are being computed. The meters are kept until all replicas are done, so
-// that results are added in the order of the replicas.
-struct OpenBlock {
-  Block block;
-  std::vector<std::unique_ptr<GasMeter>> meters = {};  // of the replicas that have been started
-  std::vector<double> energies = {};                   // at their starts
-  uint64_t done = 0;
-  BlockResult result = {};    // of the replicas that have been measured
-  size_t measured_parts = 0;  // of the next replica
+// The replicas of a block, which are measured in their order.
+struct ReplicasOfBlock {
+  uint64_t replicas;
+  BlockResult result;
+
+  uint64_t count() const { return replicas; }
+  BlockResult Result() { return std::move(result); }
+};
+
+// A replica that runs.
+struct Replica {
+  uint64_t number;  // of OpenBlocks
+  std::unique_ptr<GasMeter> meter;
+  double energy_at_start = 0;
 };
 
 // The draw of a replica's start.
 struct StartDraw {
-  StartDraw(const GasExperiment& experiment, const GasRandom& random)
+  StartDraw(const GasExperiment& experiment, const GasRandom& random, uint64_t number)
       : random(random),
         of_start(random.OfStart()),
-        draw(experiment.geometry(), experiment.TemperaturesAtStart(), of_start) {}
+        draw(experiment.geometry(), experiment.TemperaturesAtStart(), of_start),
+        replica{number, nullptr} {}
 
   GasRandom random;
   CounterRandom of_start;
   GasDraw draw;
   GasState state = {};  // once it is drawn
-  GasMeter* meter = nullptr;
+  Replica replica;      // has a meter from then on
 };
 
 // Computes several replicas at a time, of several blocks if these are small, to fill the lanes.
+// These functions return false at a pause.
 class GasBlocks : public BlockRun {
  public:
   GasBlocks(const GasExperiment& experiment, BlockQueue& queue)
-      : experiment_(experiment), queue_(queue) {}
+      : experiment_(experiment), queue_(queue), blocks_(queue, [&experiment](const Block& block) {
+          return ReplicasOfBlock{block.samples, experiment.EmptyResult()};
+        }) {}
 
   bool Advance() override {
     Pauses pauses([this] { return queue_.Pause(); });
     do {
       if (stage_ == Stage::kBeginning && !Begin(pauses)) return false;
       if (stage_ == Stage::kBeginning) return true;
-      if (!RunToTheEnd(pauses) || !Finish(pauses)) return false;
+      if (!RunToTheEnd(pauses)) return false;
     } while (!queue_.Pause());
     return false;
   }
 
  private:
-  enum class Stage { kBeginning, kRelaxing, kMeasuring, kFinishing };
+  enum class Stage { kBeginning, kRelaxing, kRunning, kMeasuring };
 
   // The other engines run one replica at a time, because more would not make them faster.
   size_t MostTogether(const Block& block) const {
@@ -81,11 +90,9 @@ class GasBlocks : public BlockRun {
     return TogetherInLanes(experiment_.geometry().balls(), experiment_.plan(), block.chunk);
   }
 
-  // Starts replicas until there are enough, if the queue has any. These functions return false at a
-  // pause.
+  // Starts replicas until there are enough, if the queue has any.
   bool Begin(Pauses& pauses) {
-    while (draw_ != nullptr || (!IsFull() && HasNext())) {
-      if (draw_ == nullptr) BeginDraw();
+    while (draw_ != nullptr || (!IsFull() && BeginDraw())) {
       if (!Draw(pauses)) return false;
     }
     if (starts_.empty()) return true;
@@ -97,37 +104,31 @@ class GasBlocks : public BlockRun {
 
   bool IsFull() const { return !starts_.empty() && starts_.size() >= most_together_; }
 
-  bool HasNext() {
-    if (!open_.empty() && open_.back()->meters.size() < open_.back()->block.samples) return true;
-    const std::optional<Block> block = queue_.Next();
-    if (block) {
-      open_.push_back(std::make_unique<OpenBlock>(
-          OpenBlock{.block = *block, .result = experiment_.EmptyResult()}));
-    }
-    return block.has_value();
-  }
-
-  // The first replica determines the number of replicas in the run.
-  void BeginDraw() {
-    const OpenBlock& open = *open_.back();
-    if (starts_.empty()) most_together_ = MostTogether(open.block);
-    draw_ = std::make_unique<StartDraw>(
-        experiment_, experiment_.RandomOf(open.block.first + open.meters.size()));
+  // False if the queue has no more replicas now. The first replica determines the number of
+  // replicas in the run.
+  bool BeginDraw() {
+    const std::optional<uint64_t> number = blocks_.Next();
+    if (!number) return false;
+    const Block& block = blocks_.BlockOf(*number);
+    if (starts_.empty()) most_together_ = MostTogether(block);
+    const GasRandom random = experiment_.RandomOf(block.first + blocks_.IndexOf(*number));
+    draw_ = std::make_unique<StartDraw>(experiment_, random, *number);
+    return true;
   }
 
   bool Draw(Pauses& pauses) {
-    if (draw_->meter == nullptr) {
+    auto& [number, meter, energy_at_start] = draw_->replica;
+    if (meter == nullptr) {
       if (!draw_->draw.Advance(pauses)) return false;
       draw_->state = draw_->draw.Take();
-      open_.back()->meters.push_back(std::make_unique<GasMeter>(experiment_.geometry()));
-      draw_->meter = open_.back()->meters.back().get();
+      meter = std::make_unique<GasMeter>(experiment_.geometry());
     }
-    if (!draw_->meter->Place(draw_->state, pauses)) return false;
-    draw_->meter->MeasureCurrent(experiment_.CurrentOf(draw_->state));
-    open_.back()->energies.push_back(draw_->meter->TotalEnergy());
-    running_.push_back(draw_->meter);
+    if (!meter->Place(draw_->state, pauses)) return false;
+    meter->MeasureCurrent(experiment_.CurrentOf(draw_->state));
+    energy_at_start = meter->TotalEnergy();
     const GasRandom& random = draw_->random;
-    starts_.push_back({std::move(draw_->state), experiment_.WallsOf(random), random, draw_->meter});
+    starts_.push_back({std::move(draw_->state), experiment_.WallsOf(random), random, meter.get()});
+    running_.push_back(std::move(draw_->replica));
     draw_.reset();
     return true;
   }
@@ -135,86 +136,68 @@ class GasBlocks : public BlockRun {
   bool RunToTheEnd(Pauses& pauses) {
     const GasTimes& times = experiment_.times();
     if (stage_ == Stage::kRelaxing) {
-      const auto begin = [&](GasMeter& meter) { return meter.Begin(times.relax, pauses); };
+      const auto begin = [&](Replica& it) { return it.meter->Begin(times.relax, pauses); };
       if (!run_->AdvanceTo(times.relax, pauses) || !ForEachRunning(begin)) return false;
-      stage_ = Stage::kMeasuring;
+      stage_ = Stage::kRunning;
     }
-    if (stage_ == Stage::kMeasuring) {
-      const auto end = [&](GasMeter& meter) { return meter.End(times.Total(), pauses); };
+    if (stage_ == Stage::kRunning) {
+      const auto end = [&](Replica& it) { return it.meter->End(times.Total(), pauses); };
       if (!run_->AdvanceTo(times.Total(), pauses) || !ForEachRunning(end)) return false;
       run_.reset();
-      CountDone(std::exchange(running_, {}).size());
-      stage_ = Stage::kFinishing;
+      stage_ = Stage::kMeasuring;
     }
-    return true;
-  }
-
-  // Calls step(meter) for the meters of all replicas that run, until it returns false.
-  template <typename Step>
-  bool ForEachRunning(const Step& step) {
-    for (; next_meter_ < running_.size(); ++next_meter_) {
-      if (!step(*running_[next_meter_])) return false;
-    }
-    next_meter_ = 0;
-    return true;
-  }
-
-  // Replicas were started in the order of their blocks.
-  void CountDone(size_t replicas) {
-    for (const auto& open : open_) {
-      const uint64_t more = std::min<uint64_t>(replicas, open->meters.size() - open->done);
-      open->done += more;
-      replicas -= more;
-    }
-  }
-
-  bool Finish(Pauses& pauses) {
-    while (!open_.empty() && open_.front()->done == open_.front()->block.samples) {
-      if (!Measure(*open_.front(), pauses)) return false;
-      const std::unique_ptr<OpenBlock> open = std::move(open_.front());
-      open_.erase(open_.begin());
-      queue_.Done(open->block, std::move(open->result));
-    }
+    if (!ForEachRunning([&](Replica& it) { return Measure(it, pauses); })) return false;
+    running_.clear();
     stage_ = Stage::kBeginning;
     return true;
   }
 
-  bool Measure(OpenBlock& open, Pauses& pauses) const {
+  // Calls step(replica) for all replicas that run, until it returns false.
+  template <typename Step>
+  bool ForEachRunning(const Step& step) {
+    for (; next_replica_ < running_.size(); ++next_replica_) {
+      if (!step(running_[next_replica_])) return false;
+    }
+    next_replica_ = 0;
+    return true;
+  }
+
+  bool Measure(const Replica& replica, Pauses& pauses) {
     const auto bodies =
         static_cast<double>(experiment_.geometry().balls() + experiment_.geometry().pistons());
     const size_t parts = experiment_.MeasuredParts();
     const double nanoseconds = kToMeasureABody * bodies / static_cast<double>(parts);
-    while (open.result.samples < open.block.samples) {
-      const size_t replica = open.result.samples;
-      const GasMeter& meter = *open.meters[replica];
-      if (!ForEachWithPauses(open.measured_parts, parts, nanoseconds, pauses, [&](size_t part) {
-            experiment_.MeasurePart(part, meter, open.result);
-          })) {
-        return false;
-      }
-      open.measured_parts = 0;
-      AddHealth(meter, open.energies[replica], open.result.health);
-      ++open.result.samples;
+    BlockResult& result = blocks_.WorkOf(replica.number).result;
+    if (!ForEachWithPauses(next_part_, parts, nanoseconds, pauses, [&](size_t part) {
+          experiment_.MeasurePart(part, *replica.meter, result);
+        })) {
+      return false;
     }
+    next_part_ = 0;
+    AddHealth(replica, result.health);
+    ++result.samples;
+    blocks_.End(replica.number);
     return true;
   }
 
-  void AddHealth(const GasMeter& meter, double energy_at_start, Health& health) const {
-    Health of_replica = {.escapes = meter.escapes()};
+  void AddHealth(const Replica& replica, Health& health) const {
+    Health of_replica = {.escapes = replica.meter->escapes()};
     if (experiment_.geometry().ends() == GasEnds::kPeriodic) {
-      of_replica.max_energy_error = std::fabs(meter.TotalEnergy() / energy_at_start - 1);
+      of_replica.max_energy_error =
+          std::fabs(replica.meter->TotalEnergy() / replica.energy_at_start - 1);
     }
     health.Merge(of_replica);
   }
 
   const GasExperiment& experiment_;
   BlockQueue& queue_;
-  std::vector<std::unique_ptr<OpenBlock>> open_;
+  OpenBlocks<ReplicasOfBlock> blocks_;
   std::unique_ptr<StartDraw> draw_;  // of the next replica, if begun
   std::vector<GasStart> starts_;
   size_t most_together_ = 0;
-  std::vector<GasMeter*> running_;
-  size_t next_meter_ = 0;
+  std::vector<Replica> running_;
+  size_t next_replica_ = 0;  // with which a call that paused goes on
+  size_t next_part_ = 0;     // of the measurement of that replica
   std::unique_ptr<GasRun> run_;
   Stage stage_ = Stage::kBeginning;
 
@@ -282,13 +265,12 @@ SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time) 
   return work;
 }
 
-// Measured with gases of 10^6 cells, chains and lattices: by the lanes 297 bytes for a ball and 64
-// for a piston, by the reference 206 and 92, by the jump process 77 and 54. Lists that grow may be
-// half empty, so the bound is twice that. The rest is for the meters of small gases, of which a
-// block has thousands.
+// Measured with gases of 10^6 cells, chains and lattices: by the lanes 313 bytes for a ball and 64
+// for a piston, by the reference 250 and 104, by the jump process 77 and 54. Lists that grow may be
+// half empty, so the bound is twice that. The rest is for the blocks in progress.
 double MemoryOfReplicas(Model model, const PointParameters& point) {
   constexpr double kOfABlock = 10e6;
-  constexpr double kLanes[] = {594, 128}, kReference[] = {412, 184}, kJumps[] = {154, 108};
+  constexpr double kLanes[] = {626, 128}, kReference[] = {500, 208}, kJumps[] = {154, 108};
   const bool in_lanes = model != Model::kMarkov && model != Model::kBilliardReference;
   const double* const bytes = in_lanes ? kLanes : model == Model::kMarkov ? kJumps : kReference;
   const GasShape shape = ShapeOf(point[kCells]);
@@ -300,13 +282,14 @@ double MemoryOfReplicas(Model model, const PointParameters& point) {
 }
 
 GasExperiment::GasExperiment(const EnsembleSpec& spec, const PointParameters& point,
-                             const GasGeometry& geometry, const GasTimes& times)
+                             const GasGeometry& geometry, const GasTimes& times, double temperature)
     : PointExperiment(spec, point),
       geometry_(geometry),
       times_{.relax = WithoutLastBits(times.relax),
              .measure = WithoutLastBits(times.measure),
              .share = times.share},
-      exchange_rate_(WithoutLastBits(GasExchangeRate(geometry, 1))) {}
+      exchange_rate_(WithoutLastBits(GasExchangeRate(geometry, 1))),
+      temperature_(temperature) {}
 
 GasEngine GasExperiment::gas_engine() const {
   switch (answer().model) {
@@ -330,23 +313,10 @@ void GasExperiment::AddMeans(const GasMeter& meter, size_t first, BlockResult& r
   result.batch_means[first + 2].Add(2 * pistons, static_cast<double>(geometry_.pistons()));
 }
 
-Estimate GasExperiment::Scaled(Estimate measured, double scale) const {
-  measured.value *= scale;
-  if (times_.share < 1) measured.standard_error.reset();
-  if (measured.standard_error) *measured.standard_error *= scale;
-  return measured;
-}
-
-Estimate GasExperiment::Mean(const char* name, const BlockResult& merged, size_t index,
-                             double scale) const {
-  return Scaled(SampledRatio(name, merged.batch_means[index], static_cast<double>(merged.samples)),
-                scale);
-}
-
-Estimate GasExperiment::Mean(const char* name, const Moments& measured, double scale,
-                             double events_per_replica) const {
-  const double events = events_per_replica * static_cast<double>(measured.count);
-  return Scaled(SampledMean(name, measured, events), scale);
+std::vector<Measurement> GasExperiment::MeansFrom(size_t first) const {
+  return {{"exchange_rate", Ratio(first), std::sqrt(temperature_)},
+          {"temperature_ball", Ratio(first + 1), temperature_},
+          {"temperature_piston", Ratio(first + 2), temperature_}};
 }
 
 std::unique_ptr<BlockRun> GasExperiment::StartRun(BlockQueue& queue) const {

@@ -61,26 +61,33 @@ class GasExperiment : public PointExperiment {
   virtual void MeasurePart(size_t part, const GasMeter& meter, BlockResult& result) const = 0;
 
  protected:
-  // Rounds the times (without_last_bits.h), because their last bits depend on the C library.
+  // Rounds the times (WithoutLastBits), because their last bits depend on the C library.
+  // Replicas run at temperature 1; `temperature` is that of the results.
   GasExperiment(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
-                const GasTimes& times);
+                const GasTimes& times, double temperature);
+
+  double temperature() const { return temperature_; }
 
   // Adds one replica to three batch means, at the indices `first` to `first + 2`: exchanges over
   // (contacts times duration); the mean energy of a ball; twice the mean energy of a piston.
   void AddMeans(const GasMeter& meter, size_t first, BlockResult& result) const;
+  // The rows of these three.
+  std::vector<Measurement> MeansFrom(size_t first) const;
 
-  // These two scale numbers measured at temperature 1. There is no error if there are too few
-  // replicas to estimate it, or if the replicas were shortened.
-  Estimate Mean(const char* name, const BlockResult& merged, size_t index, double scale) const;
-  Estimate Mean(const char* name, const Moments& measured, double scale,
-                double events_per_replica = 1) const;
+  // Readings of an accumulator. There is no error if there are too few replicas to estimate it, or
+  // if the replicas were shortened.
+  Reading Ratio(size_t index) const { return RatioAt(index, HasErrors() ? 1 : 0); }
+  Reading Mean(size_t index, double events_per_replica = 1) const {
+    return MeanAt(index, HasErrors() ? events_per_replica : 0);
+  }
 
  private:
-  Estimate Scaled(Estimate measured, double scale) const;
+  bool HasErrors() const { return times_.share == 1; }
 
   GasGeometry geometry_;
   GasTimes times_;
   double exchange_rate_;
+  double temperature_;
 };
 
 }  // namespace ballpiston

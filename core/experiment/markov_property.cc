@@ -10,8 +10,6 @@
 // 2 (lambda + 2 delta)/u. This affects a fraction of order delta^2/u of its hits. Every octave of u
 // adds the same amount to the Kolmogorov-Smirnov distance, down to u of order delta^2, where the
 // return law is not exponential at all. In measurements the distance falls as delta^2 log(1/delta).
-#include "core/experiment/markov_property.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -23,18 +21,16 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "core/arithmetic/elementary_functions.h"
 #include "core/arithmetic/number_text.h"
 #include "core/billiard/orbits.h"
 #include "core/closed_form/mean_free_time.h"
-#include "core/ensemble/block_orbits.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/markov_property_statistics.h"
 #include "core/experiment/pair_experiment.h"
-#include "core/experiment/return_orbits.h"
-#include "core/experiment/without_last_bits.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
-#include "core/statistics/told_error.h"
+#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
@@ -47,48 +43,36 @@ double RateUnit(const PairGeometry& geometry) {
 // Rounding may give more than the pair's energy of 1/2.
 double PistonEnergy(double velocity) { return std::min(velocity * velocity / 2, 0.5); }
 
-// A block's collisions, over orbits that start at numbers first, first + length, ...
-class ExchangeOrbits {
+class ExchangeOrbits : public OrbitsInEquilibrium {
  public:
-  ExchangeOrbits(const PairGeometry& geometry, const RandomStream& random, const Block& block)
-      : geometry_(geometry),
-        random_(random),
-        first_(block.first),
-        rate_unit_(RateUnit(geometry)),
+  ExchangeOrbits(const PairExperiment& experiment, const Block& block)
+      : OrbitsInEquilibrium(experiment, block, kExchangesPerOrbit),
+        rate_unit_(RateUnit(experiment.geometry())),
         exchanges_(block.samples),
-        orbits_((block.samples + kExchangesPerOrbit - 1) / kExchangesPerOrbit) {}
-
-  uint64_t count() const { return orbits_.size(); }
+        orbits_(count()) {}
 
   PairState Start(uint64_t orbit) {
-    CounterRandom random = random_.Sample(first_ + orbit * kExchangesPerOrbit);
-    const PairState state = DrawFromCollisionMeasure(geometry_, random);
+    const PairState state = Draw(orbit);
     orbits_[orbit].first_energy = PistonEnergy(state.piston_velocity);
     return state;
   }
 
   AfterContact Meet(uint64_t index, const Contact& contact) {
     Orbit& orbit = orbits_[index];
-    if (contact.escaped) {
-      ++orbit.health.escapes;
-      return AfterContact::kEnd;
-    }
     const PairState& state = contact.state;
-    orbit.health.max_energy_error = std::max(orbit.health.max_energy_error, EnergyError(state));
     // After the collision the piston has the ball's normal velocity component.
     exchanges_[index * kExchangesPerOrbit + orbit.exchanges++] = {
         .waiting_time = contact.time * rate_unit_,
         .energy = PistonEnergy(state.ball_speed * state.direction.x())};
-    return orbit.exchanges < Length(index) ? AfterContact::kGoOn : AfterContact::kEnd;
+    return After(index, orbit.exchanges);
   }
 
   BlockResult Result() const {
-    BlockResult result = EmptyMarkovPropertyCounts();
+    BlockResult result = experiment_.EmptyResult();
     for (size_t i = 0; i < orbits_.size(); ++i) {
       const std::span all(exchanges_);
-      CountOrbit(first_ / kExchangesPerOrbit + i, orbits_[i].first_energy,
+      CountOrbit(block_.first / kExchangesPerOrbit + i, orbits_[i].first_energy,
                  all.subspan(i * kExchangesPerOrbit, orbits_[i].exchanges), result);
-      result.health.Merge(orbits_[i].health);
     }
     return result;
   }
@@ -97,16 +81,8 @@ class ExchangeOrbits {
   struct Orbit {
     double first_energy = 0;
     uint64_t exchanges = 0;
-    Health health;
   };
 
-  uint64_t Length(uint64_t orbit) const {
-    return std::min<uint64_t>(kExchangesPerOrbit, exchanges_.size() - orbit * kExchangesPerOrbit);
-  }
-
-  PairGeometry geometry_;
-  RandomStream random_;
-  uint64_t first_;
   double rate_unit_;
   std::vector<Exchange> exchanges_;  // of all orbits, one orbit after the other
   std::vector<Orbit> orbits_;
@@ -170,54 +146,33 @@ std::optional<BlockResult> WalkExchanges(const PairGeometry& geometry, const Ran
   return result;
 }
 
-// By billiard, billiard_reference, or markov, which is a control.
-class MarkovPropertyExperiment : public PointExperiment {
+// By billiard, billiard_reference, or markov, which is a control: the jump process has no memory;
+// for the billiard the memory is unknown.
+class MarkovPropertyExperiment : public PairExperiment {
  public:
   MarkovPropertyExperiment(const EnsembleSpec& spec, const PointParameters& point)
-      : PointExperiment(spec, point), geometry_(GeometryOf(point)) {}
+      : PairExperiment(spec, point) {
+    SetMeasurements(EmptyMarkovPropertyCounts(),
+                    MarkovPropertyTable(IsLimit() ? std::optional(0.0) : std::nullopt));
+  }
 
   std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
-    if (answer().model == Model::kMarkov) {
+    if (IsLimit()) {
       return RunOneByOne(queue, [this](const Block& block, const std::stop_token& stop) {
-        return WalkExchanges(geometry_, random(), block, stop);
+        return WalkExchanges(geometry(), random(), block, stop);
       });
     }
-    return RunBlockOrbits(
-        engine(), geometry_, kNoTimeLimit,
-        [this](const Block& block) { return ExchangeOrbits(geometry_, random(), block); }, queue);
+    return RunOrbits(queue, [this](const Block& block) { return ExchangeOrbits(*this, block); });
   }
 
-  BlockResult EmptyResult() const override { return EmptyMarkovPropertyCounts(); }
-
-  Estimate FirstEstimate(const BlockResult& merged) const override {
-    return MarkovPropertyEstimates(merged, ExactCorrelation()).front();
+ protected:
+  void AddDetails(const BlockResult&, PointSummary& summary) const override {
+    if (summary.estimates.front().standard_error) return;
+    summary.remarks.push_back(
+        absl::StrFormat("there are no standard errors: these need %.0f orbits of %d collisions",
+                        kEventsForAnError, kExchangesPerOrbit));
   }
-
-  PointSummary Summarize(const BlockResult& merged) const override {
-    PointSummary summary = {.samples = merged.samples,
-                            .estimates = MarkovPropertyEstimates(merged, ExactCorrelation()),
-                            .health = merged.health};
-    if (!summary.estimates.front().standard_error) {
-      summary.remarks.push_back(
-          absl::StrFormat("there are no standard errors: these need %.0f orbits of %d collisions",
-                          kEventsForAnError, kExchangesPerOrbit));
-    }
-    return summary;
-  }
-
- private:
-  // The jump process has no memory; for the billiard the memory is unknown.
-  std::optional<double> ExactCorrelation() const {
-    return answer().model == Model::kMarkov ? std::optional(0.0) : std::nullopt;
-  }
-
-  PairGeometry geometry_;
 };
-
-std::unique_ptr<PointExperiment> CreateMarkovProperty(const EnsembleSpec& spec,
-                                                      const PointParameters& point) {
-  return std::make_unique<MarkovPropertyExperiment>(spec, point);
-}
 
 SampleWork WorkOfAnExchange(Model model, const PointParameters& point) {
   return model == Model::kMarkov ? SampleWork{.jumps = 1} : WorkOfACollision(GeometryOf(point));
@@ -250,7 +205,7 @@ constinit const ExperimentKind kMarkovProperty = {
     .unit = TargetUnit::kCollisions,
     .models = kModelsOfMarkovProperty,
     .aims = kAimsOfMarkovProperty,
-    .create = CreateMarkovProperty,
+    .create = CreateAs<MarkovPropertyExperiment>,
     .check_grid = CheckPairGrid,
     .check_tolerance = CheckToleranceOfWhatTendsToZero,
     .work = WorkOfAnExchange,

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
 
 #include "core/arithmetic/elementary_functions.h"
 #include "core/closed_form/kernel_distribution.h"
-#include "core/experiment/sampled_estimate.h"
 #include "core/statistics/group_scatter.h"
 #include "core/statistics/kl_divergence.h"
 #include "core/statistics/kolmogorov_smirnov.h"
+#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
@@ -47,40 +46,37 @@ void AddToRow(size_t row, size_t bins, double x, Histogram& cells) {
   ++cells.counts[row * bins + RowOf(x, bins)];
 }
 
-Estimate CorrelationOf(std::string name, const BlockResult& merged, Correlation correlation,
-                       std::optional<double> exact) {
-  const BatchMeans& measured = merged.batch_means[correlation];
-  Estimate estimate =
-      SampledRatio(std::move(name), measured, static_cast<double>(measured.batches));
-  estimate.exact = exact;
-  return estimate;
+Reading CorrelationAt(Correlation correlation) {
+  return [=](const BlockResult& merged) {
+    const BatchMeans& measured = merged.batch_means[correlation];
+    return RatioOf(measured, static_cast<double>(measured.batches));
+  };
 }
 
-double OrbitsIn(const BlockResult& merged) {
-  return static_cast<double>(merged.batch_means[kWaitingOutcome].batches);
+// A distance between laws, whose error is that of orbits.
+template <typename Distance>
+Estimate DistanceOf(double value, const Distance& measured, const BlockResult& merged) {
+  const auto orbits = static_cast<double>(merged.batch_means[kWaitingOutcome].batches);
+  return {.value = value,
+          .standard_error = StatedError(orbits, value, measured.standard_error),
+          .batches = measured.batches,
+          .noise_floor = measured.noise_floor};
 }
 
-// A distance, whose error is that of orbits.
-Estimate DistanceOf(std::string name, double value, double noise_floor, double error,
-                    uint64_t batches, const BlockResult& merged) {
-  return {.name = std::move(name),
-          .value = value,
-          .standard_error = ToldError(OrbitsIn(merged), value, error),
-          .batches = batches,
-          .noise_floor = noise_floor};
-}
-
-Estimate HittingTimeDistance(const BlockResult& merged) {
+std::optional<Estimate> HittingTimeDistance(const BlockResult& merged) {
+  if (merged.samples == 0) return std::nullopt;
   const KolmogorovSmirnov measured =
       DistanceToUniform(merged.histograms[0], GroupsOf(kWaiting, merged));
-  return DistanceOf("hitting_time_ks_distance", measured.distance, measured.noise_floor,
-                    measured.standard_error, measured.batches, merged);
+  return DistanceOf(measured.distance, measured, merged);
 }
 
-Estimate Divergence(std::string name, Kind kind, size_t rows, const BlockResult& merged) {
-  const KlDivergence measured = DivergenceWithinRows(GroupsOf(kind, merged), rows);
-  return DistanceOf(std::move(name), measured.value, measured.noise_floor, measured.standard_error,
-                    measured.batches, merged);
+// `has_counts`: the correlation whose terms are also counted in the rows.
+Reading DivergenceAt(Kind kind, size_t rows, Correlation has_counts) {
+  return [=](const BlockResult& merged) -> std::optional<Estimate> {
+    if (merged.batch_means[has_counts].batches == 0) return std::nullopt;
+    const KlDivergence measured = DivergenceWithinRows(GroupsOf(kind, merged), rows);
+    return DistanceOf(measured.value, measured, merged);
+  };
 }
 
 }  // namespace
@@ -128,20 +124,17 @@ void CountOrbit(uint64_t number, double energy, std::span<const Exchange> exchan
   }
 }
 
-std::vector<Estimate> MarkovPropertyEstimates(const BlockResult& merged,
-                                              std::optional<double> exact_correlation) {
-  std::vector<Estimate> estimates = {
-      CorrelationOf("memory_correlation", merged, kMemory, exact_correlation),
-      CorrelationOf("waiting_outcome_correlation", merged, kWaitingOutcome, exact_correlation),
-      CorrelationOf("waiting_memory_correlation", merged, kWaitingMemory, exact_correlation)};
-  if (merged.samples == 0) return estimates;
-  estimates.push_back(HittingTimeDistance(merged));
-  estimates.push_back(Divergence("transition_divergence", kTransition, kEnergyRows, merged));
-  if (merged.batch_means[kMemory].batches > 0) {
-    constexpr size_t kAllTogether = 1;
-    estimates.push_back(Divergence("memory_divergence", kMemories, kAllTogether, merged));
-  }
-  return estimates;
+std::vector<Measurement> MarkovPropertyTable(std::optional<double> exact_correlation) {
+  constexpr size_t kAllTogether = 1;
+  const auto correlation = [&](const char* name, Correlation index) {
+    return Measurement{.name = name, .reading = CorrelationAt(index), .exact = exact_correlation};
+  };
+  return {correlation("memory_correlation", kMemory),
+          correlation("waiting_outcome_correlation", kWaitingOutcome),
+          correlation("waiting_memory_correlation", kWaitingMemory),
+          {"hitting_time_ks_distance", HittingTimeDistance},
+          {"transition_divergence", DivergenceAt(kTransition, kEnergyRows, kWaitingOutcome)},
+          {"memory_divergence", DivergenceAt(kMemories, kAllTogether, kMemory)}};
 }
 
 }  // namespace ballpiston

@@ -22,10 +22,10 @@
 // (statistics/group_scatter.h); errors of independent exchanges were 1.6 times too small at rho =
 // 0.705, delta = 0.0026. Nothing has an error with fewer than kEventsForAnError orbits.
 //
-// In a BlockResult: histograms [0] T; then for each of kGroups groups of orbits T in fewer bins,
-// kEnergyRows rows of V by u = sqrt(2 e), and kMemoryBins rows of V by B. Batch means, one batch an
-// orbit: [0] memory, [1] waiting-outcome, [2] waiting-memory. Units: times in |G|/|dG_bp|, total
-// energy 1/2. Properties, each with a test of its name:
+// In a BlockResult, histograms are first that of T; then for each of kGroups groups of orbits T in
+// fewer bins, kEnergyRows rows of V by u = sqrt(2 e), and kMemoryBins rows of V by B. Batch means
+// of the correlations have one batch an orbit. Units: times in |G|/|dG_bp|, total energy 1/2.
+// Properties, each with a test of its name:
 //   1. JumpProcessHasNoMemory: for a sample of the jump process every estimate is noise.
 //   2. ErrorsHoldForCorrelatedExchanges.
 #pragma once
@@ -37,9 +37,13 @@
 #include <vector>
 
 #include "core/ensemble/block_result.h"
-#include "core/ensemble/point_summary.h"
+#include "core/ensemble/measurement.h"
 
 namespace ballpiston {
+
+// Large enough that an orbit's first exchange, which has no exchange before it, costs little; small
+// enough that there are enough orbits to fill the lanes.
+inline constexpr uint64_t kExchangesPerOrbit = 32;
 
 inline constexpr size_t kWaitingBins = 1024;
 inline constexpr size_t kEnergyRows = 16;
@@ -58,10 +62,8 @@ BlockResult EmptyMarkovPropertyCounts();
 void CountOrbit(uint64_t number, double energy, std::span<const Exchange> exchanges,
                 BlockResult& counts);
 
-// In this order: memory_correlation, the other correlations, the distances. `exact_correlation` is
-// 0 if the orbits are those of the jump process, else empty. Distances are omitted if the counts
-// are empty.
-std::vector<Estimate> MarkovPropertyEstimates(const BlockResult& merged,
-                                              std::optional<double> exact_correlation);
+// `exact_correlation` is 0 if the orbits are those of the jump process, else empty. Distances are
+// omitted if the counts are empty.
+std::vector<Measurement> MarkovPropertyTable(std::optional<double> exact_correlation);
 
 }  // namespace ballpiston

@@ -13,6 +13,7 @@
 #include "core/billiard/billiard_domain.h"
 #include "core/billiard/single_precision.h"
 #include "core/closed_form/pair_measures.h"
+#include "core/experiment/expected_returns.h"
 
 namespace ballpiston {
 namespace {

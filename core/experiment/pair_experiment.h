@@ -1,13 +1,16 @@
-// Functions that the rows of the ball-piston pair's experiments share.
+// The base of all experiments with a ball-piston pair, and functions that their rows share.
 #pragma once
 
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
+#include "core/ensemble/block_orbits.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
-#include "core/experiment/predicted_hits.h"
 #include "core/geometry/pair_geometry.h"
+#include "core/sampling/invariant_measure.h"
 
 namespace ballpiston {
 
@@ -47,5 +50,54 @@ inline double MemoryOfPairs(Model, const PointParameters&) { return 12e6; }
 
 // The work of a sample that is one collision of an orbit in equilibrium.
 SampleWork WorkOfACollision(const PairGeometry& geometry);
+
+class PairExperiment : public PointExperiment {
+ public:
+  const PairGeometry& geometry() const { return geometry_; }
+
+ protected:
+  PairExperiment(const EnsembleSpec& spec, const PointParameters& point)
+      : PointExperiment(spec, point), geometry_(GeometryOf(point)) {}
+
+  // Whether the jump process answers, and not the billiard.
+  bool IsLimit() const { return answer().model == Model::kMarkov; }
+
+  // `make` makes the orbits of a block (ensemble/block_orbits.h): Orbits make(const Block&).
+  template <typename Make>
+  std::unique_ptr<BlockRun> RunOrbits(BlockQueue& queue, Make make,
+                                      double time_limit = kNoTimeLimit) const {
+    using Orbits = decltype(make(Block()));
+    return std::make_unique<BlockOrbits<Orbits>>(engine(), geometry_, time_limit, std::move(make),
+                                                 queue);
+  }
+
+ private:
+  PairGeometry geometry_;
+};
+
+// A block's collisions in equilibrium, as orbits of at most `length` collisions each. Each orbit
+// starts from the return map's invariant measure, with the random numbers of its first collision.
+class OrbitsInEquilibrium {
+ public:
+  OrbitsInEquilibrium(const PairExperiment& experiment, const Block& block, uint64_t length)
+      : experiment_(experiment), block_(block), length_(length) {}
+
+  uint64_t count() const { return (block_.samples + length_ - 1) / length_; }
+
+ protected:
+  PairState Draw(uint64_t orbit) const {
+    CounterRandom random = experiment_.random().Sample(block_.first + orbit * length_);
+    return DrawFromCollisionMeasure(experiment_.geometry(), random);
+  }
+  // `collisions`: those of the orbit so far.
+  AfterContact After(uint64_t orbit, uint64_t collisions) const {
+    const uint64_t last = std::min(length_, block_.samples - orbit * length_);
+    return collisions < last ? AfterContact::kGoOn : AfterContact::kEnd;
+  }
+
+  const PairExperiment& experiment_;
+  Block block_;
+  uint64_t length_;
+};
 
 }  // namespace ballpiston

@@ -131,8 +131,7 @@ double DrawThermalVelocity(double temperature, CounterRandom& random) {
 GasState DrawGas(const GasGeometry& geometry, const TemperatureProfile& temperature,
                  CounterRandom& random) {
   GasDraw draw(geometry, temperature, random);
-  Pauses never;
-  draw.Advance(never);
+  draw.Advance(NoPauses());
   return draw.Take();
 }
 

@@ -35,8 +35,7 @@ class GasMeter {
     bodies_.reserve(static_cast<size_t>(geometry.balls() + geometry.pistons()));
   }
   GasMeter(const GasGeometry& geometry, const GasState& start) : GasMeter(geometry) {
-    Pauses never;
-    Place(start, never);
+    Place(start, NoPauses());
   }
 
   bool Place(const GasState& start, Pauses& pauses) {
@@ -51,17 +50,13 @@ class GasMeter {
   const CurrentMeter* current() const { return current_.get(); }  // or null
 
   // Discards all earlier measurements except the current.
-  bool Begin(double time, Pauses& pauses) {
+  bool Begin(double time, Pauses& pauses = NoPauses()) {
     begin_ = time;
     exchanges_ = 0;
     carried_ = 0;
     return ForEachBody(bodies_.size(), pauses, [&](size_t i) {
       bodies_[i] = {.energy = bodies_[i].energy, .since = time};
     });
-  }
-  void Begin(double time) {
-    Pauses never;
-    Begin(time, never);
   }
 
   void Exchange(const GasExchange& exchange) {
@@ -84,15 +79,11 @@ class GasMeter {
   // A ball has left its cell, which is a defect.
   void CountEscape() { ++escapes_; }
 
-  bool End(double time, Pauses& pauses) {
+  bool End(double time, Pauses& pauses = NoPauses()) {
     if (next_ == 0 && current_ != nullptr) current_->End(time);
     end_ = time;
     return ForEachBody(bodies_.size(), pauses,
                        [&](size_t i) { Set(time, bodies_[i].energy, bodies_[i]); });
-  }
-  void End(double time) {
-    Pauses never;
-    End(time, never);
   }
 
   uint64_t escapes() const { return escapes_; }  // since the start

@@ -36,10 +36,7 @@ class GasRun {
   // Moves all replicas to `time`, which must not be less than in the previous call. Returns false
   // at a pause; then it must be called again with the same time.
   virtual bool AdvanceTo(double time, Pauses& pauses) = 0;
-  void AdvanceTo(double time) {
-    Pauses never;
-    AdvanceTo(time, never);
-  }
+  void AdvanceTo(double time) { AdvanceTo(time, NoPauses()); }
 };
 
 // `exchange_rate` is that of the gas at temperature 1 (gas_exchange_rate.h). It determines the

@@ -19,8 +19,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, kJumpDraws>;
 using V = hn::Vec<D>;
 
-// In the lanes' targets because the AVX2 target has mulx, which saves a fifth of the time of a
-// draw.
 HWY_INLINE void DrawWords(CounterRandom& random, uint64_t* words) {
   for (size_t i = 0; i < kJumpDraws; i += CounterRandom::kBlock) random.DrawBlock(words + i);
 }

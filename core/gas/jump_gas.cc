@@ -32,13 +32,6 @@ JumpGas::JumpGas(const GasGeometry& geometry, double density, ThermalWalls walls
   speeds_.reserve(balls_ + static_cast<size_t>(geometry.pistons()));
 }
 
-JumpGas::JumpGas(const GasGeometry& geometry, double density, const GasState& start,
-                 ThermalWalls walls, const CounterRandom& random)
-    : JumpGas(geometry, density, std::move(walls), random) {
-  Pauses never;
-  Begin(start, never);
-}
-
 bool JumpGas::Begin(const GasState& start, Pauses& pauses) {
   const auto take = [&](size_t body) { speeds_.push_back(SpeedAtStart(body, start)); };
   size_t next = speeds_.size();

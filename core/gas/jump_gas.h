@@ -36,20 +36,14 @@ class JumpGas {
  public:
   JumpGas(const GasGeometry& geometry, double density, ThermalWalls walls,
           const CounterRandom& random);
-  JumpGas(const GasGeometry& geometry, double density, const GasState& start, ThermalWalls walls,
-          const CounterRandom& random);
 
   // Takes the start. At least one ball or piston must move. Returns false at a pause; then it must
   // be called again.
-  bool Begin(const GasState& start, Pauses& pauses);
+  bool Begin(const GasState& start, Pauses& pauses = NoPauses());
 
   // Exchanges until `time`, and reports the exchanges to the meter. There an outermost piston has
   // its mean energy. Returns false at a pause; then it must be called again with the same time.
-  bool AdvanceTo(double time, GasMeter& meter, Pauses& pauses);
-  void AdvanceTo(double time, GasMeter& meter) {
-    Pauses never;
-    AdvanceTo(time, meter, never);
-  }
+  bool AdvanceTo(double time, GasMeter& meter, Pauses& pauses = NoPauses());
 
  private:
   // An exchange. In the direction in which the ball sees the piston, v1 is the ball's velocity and

@@ -63,6 +63,7 @@ LaneGas::LaneGas(const GasGeometry& geometry, double exchange_rate, std::vector<
   from_.reserve(balls);
   to_.reserve(balls);
   contacts_.reserve(balls);
+  visits_.reserve(balls);
   replicas_.reserve(starts_.size());
   for (GasStart& start : starts_) {
     const auto number = static_cast<uint32_t>(replicas_.size());
@@ -94,6 +95,7 @@ void LaneGas::PlaceBall(size_t number) {
   to_.push_back(PlacedBall(gas_, ball.position, ball.direction));
   from_.push_back(to_.back());
   contacts_.emplace_back();
+  visits_.push_back(0);
   const double speed = std::max(ball.speed, kAtRest);
   gas_.balls.push_back({.speed = speed, .slowness = 1 / speed});
   FindPistons(static_cast<uint32_t>(number));
@@ -217,8 +219,17 @@ void LaneGas::MoveOriginOfPiston(Replica& replica, uint32_t number) {
 // The ball is to fly, from its state in from_ to the window's end.
 void LaneGas::Order(const Replica& replica, uint32_t ball) {
   contacts_[ball].time = kNever;
-  orders_.push_back({.ball = ball, .from_time = replica.now, .until_time = replica.end});
+  FlightOrder& order = orders_.emplace_back();
+  order.ball = ball;
+  order.from_time = replica.now;
+  order.until_time = replica.end;
   orders_are_new_ = true;
+}
+
+// The piston in this direction has changed. If the ball does not come there, its contact is the
+// same.
+void LaneGas::OrderVisitor(const Replica& replica, uint32_t ball, Direction direction) {
+  if (Has(visits_[ball], direction)) Order(replica, ball);
 }
 
 // Flies until all balls have arrived.
@@ -238,6 +249,7 @@ bool LaneGas::FlyOrders(Pauses& pauses) {
 
 void LaneGas::Arrive(const FlightOrder& order) {
   Replica& replica = ReplicaOf(order.ball);
+  visits_[order.ball] = order.visits;
   if (order.has_escaped) Stop(replica, order);
   replica.queue.Set(order.ball - replica.first_ball, contacts_[order.ball].time);
 }
@@ -285,7 +297,7 @@ void LaneGas::LeaveThermalWall(Replica& replica, uint32_t number) {
   FindArrival(replica, number);
   const Direction toward_ball = is_hot ? Direction::kLeft : Direction::kRight;
   const int64_t ball = gas_.geometry.BallOf(local, toward_ball);
-  Order(replica, replica.first_ball + static_cast<uint32_t>(ball));
+  OrderVisitor(replica, replica.first_ball + static_cast<uint32_t>(ball), toward_ball);
 }
 
 // The pair's exchange, in the cell turned until the piston is on the right.
@@ -320,10 +332,11 @@ void LaneGas::Exchange(Replica& replica, uint32_t number) {
                            .piston_energy = piston.speed * piston.speed / 2});
   FindArrival(replica, piston_number);
   Order(replica, number);
-  const int64_t other = gas_.geometry.BallOf(local, Opposite(direction));
+  const Direction opposite = Opposite(direction);
+  const int64_t other = gas_.geometry.BallOf(local, opposite);
   if (other == GasGeometry::kNoBall) return;
   const uint32_t other_number = replica.first_ball + static_cast<uint32_t>(other);
-  if (other_number != number) Order(replica, other_number);
+  if (other_number != number) OrderVisitor(replica, other_number, opposite);
 }
 
 }  // namespace ballpiston

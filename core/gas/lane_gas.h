@@ -3,8 +3,8 @@
 // ball to a piston's reach is compared with the piston's position, a triangle wave in time. The
 // first visit in which they meet is the ball's next contact. A queue holds the window's contacts in
 // the order of time. An exchange changes the path of its ball and the motion of its piston. So this
-// ball, and the other ball of the piston, fly the rest of the window again. All other contacts stay
-// valid.
+// ball flies the rest of the window again; so does the other ball of the piston, if it comes within
+// the piston's reach. All other contacts stay valid.
 //
 // Replicas are independent gases of one geometry. Each goes one step, to its next event or to its
 // next window; then the balls that have to fly in all replicas fly together. So small gases fill
@@ -69,6 +69,7 @@ class LaneGas : public GasRun {
   void MoveOriginOfPiston(Replica& replica, uint32_t piston);
 
   void Order(const Replica& replica, uint32_t ball);
+  void OrderVisitor(const Replica& replica, uint32_t ball, Direction direction);
   bool FlyOrders(Pauses& pauses);
   void Arrive(const FlightOrder& order);
   void Stop(const Replica& replica, const FlightOrder& order);
@@ -96,6 +97,7 @@ class LaneGas : public GasRun {
   // exchange in the window is. `to_` is the ball before the flight in which the window ends.
   std::vector<FlyingBall> from_, to_;
   std::vector<MeetingInTime> contacts_;  // by ball, its next one in the window
+  std::vector<Visits> visits_;           // by ball, in the window until its contact
   double time_ = 0;                      // to which all replicas go
   std::vector<uint32_t> active_;         // replicas that have not come there
   std::vector<FlightOrder> orders_;      // of balls that fly now

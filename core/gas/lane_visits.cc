@@ -47,6 +47,8 @@ class LanesAhead : public FlightsAhead {
   // empty vectors.
   static constexpr size_t kMostOfFew = 3;
 
+  static constexpr uint32_t kEveryDirection = 0x01010101;  // the first bit of each
+
   static size_t Width() { return hn::Lanes(D()); }
 
   void FlyTogether(std::span<const FlyingBall> from, std::span<FlyingBall> to) {
@@ -63,6 +65,7 @@ class LanesAhead : public FlightsAhead {
     std::fill_n(end_, orders_.size(), flights_);
     FlyVectors();
     if (HWY_UNLIKELY(burst_.left_cell())) FindLostBalls();
+    std::fill_n(visitors_, vectors_, 0);
     FindMeetings();
     for (size_t i = 0; i < orders_.size(); ++i) Finish(i, to[orders_[i].ball]);
   }
@@ -156,27 +159,30 @@ class LanesAhead : public FlightsAhead {
     for (const auto& [t, lanes] : burst_.listed()) {
       for (uint32_t left = lanes; left != 0; left &= left - 1) {
         const size_t bit = hwy::Num0BitsBelowLS1Bit_Nonzero32(left);
-        const size_t i = t % kVectors * Width() + bit % kLanesEach;
+        const size_t i = t % kVectors * Width() + bit % kBitsOfADirection;
         if (i >= orders_.size() || t / kVectors >= end_[i]) continue;
-        LookForMeeting(t, i, static_cast<Direction>(bit / kLanesEach));
+        LookForMeeting(t, i, static_cast<Direction>(bit / kBitsOfADirection));
       }
     }
   }
 
-  // The lanes whose balls may have met their pistons, eight bits for each direction.
-  static constexpr size_t kLanesEach = 8;
-  HWY_INLINE uint32_t MayHaveMetPistons(size_t t) const {
+  // The lanes whose balls may have met their pistons, eight bits for each direction. Adds those
+  // whose balls could have met any piston there.
+  HWY_INLINE uint32_t MayHaveMetPistons(size_t t) {
     const D d;
     const Balls<double>&from = burst_.slot(t), &to = burst_.slot(t + kVectors);
     const PlacesInCell before(from, flight_constants_.half_height);
     const PlacesInCell after(to, flight_constants_.half_height);
     const auto path0 = hn::Load(d, from.path), path1 = hn::Load(d, to.path);
     const PistonWaves<double>* const pistons = pistons_[t % kVectors];
+    uint32_t visitors = 0;
     const auto met = [&](Direction direction, auto x0, auto x1) HWY_ATTR {
       const auto i = static_cast<size_t>(direction);
+      visitors |= Bits(d, hn::Gt(hn::Max(x0, x1), hn::Set(d, reach_constants_.left)))
+                  << i * kBitsOfADirection;
       return MayHaveMet(reach_constants_, x0, x1, pistons[i].PhaseAfter(path0),
                         pistons[i].PhaseAfter(path1))
-             << i * kLanesEach;
+             << i * kBitsOfADirection;
     };
     const auto x0 = before.X(), x1 = after.X();
     uint32_t lanes =
@@ -185,7 +191,8 @@ class LanesAhead : public FlightsAhead {
       const auto y0 = before.Y(), y1 = after.Y();
       lanes |= met(Direction::kUp, y0, y1) | met(Direction::kDown, hn::Neg(y0), hn::Neg(y1));
     }
-    return lanes & burst_.InReachAround(t) * 0x01010101U;
+    visitors_[t % kVectors] |= visitors;
+    return lanes & burst_.InReachAround(t) * kEveryDirection;
   }
 
   // Whether ball and piston meet in flight t. Events before the piston's last change are done
@@ -249,6 +256,7 @@ class LanesAhead : public FlightsAhead {
   void Finish(size_t i, FlyingBall& ball) const {
     const size_t lane = i % Width();
     FlightOrder& order = orders_[i];
+    order.visits |= visitors_[i / Width()] >> lane & kEveryDirection;
     order.has_arrived = meetings_[order.ball].time < kNever;
     if (order.has_arrived) return;
     const auto is_beyond = [&](size_t flight) {
@@ -282,6 +290,7 @@ class LanesAhead : public FlightsAhead {
   size_t vectors_ = 0;
   LaneBurst<double> burst_;
   PistonWaves<double> pistons_[kVectors][4];  // by direction
+  uint32_t visitors_[kVectors];  // lanes whose balls came within reach, as in MayHaveMetPistons
   // By order: the path length at which the ball may stop, and the number of flights in which it may
   // still meet a piston for the first time.
   double until_[kVectors * kMostLanes<double>];

@@ -70,6 +70,15 @@ struct MeetingInTime {
   bool piston_goes_right = false;  // as the ball sees it
 };
 
+// The directions in which a ball came within reach of the piston. Each direction has eight bits, of
+// which the lowest is used: so the lanes find them in their masks of eight lanes.
+using Visits = uint32_t;
+inline constexpr size_t kBitsOfADirection = 8;
+
+inline bool Has(Visits visits, Direction direction) {
+  return (visits >> kBitsOfADirection * static_cast<size_t>(direction) & 1) != 0;
+}
+
 // A ball that is to fly ahead and to look for its first meeting between two times.
 struct FlightOrder {
   uint32_t ball = 0;
@@ -77,6 +86,7 @@ struct FlightOrder {
   double until_time = 0;
   bool has_arrived = false;  // at a meeting, or in the flight in which `until_time` is
   bool has_escaped = false;  // before it met a piston; its state is the last one in its cell
+  Visits visits = 0;         // until it arrived, or shortly after
 };
 
 // Positions up to this distance outside a piston's reach, in cells, count as inside: rounding must

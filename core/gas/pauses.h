@@ -35,6 +35,12 @@ class Pauses {
   double left_ = kBetweenQuestions;
 };
 
+// For a computation that does not pause.
+inline Pauses& NoPauses() {
+  thread_local Pauses never;
+  return never;
+}
+
 // Calls step(next), step(next + 1), ..., step(end - 1), each of which takes about so many
 // nanoseconds. Returns false if there is a pause; the next call with the same `next` continues.
 template <typename Step>

@@ -22,8 +22,7 @@ constexpr double kToBeginWithABall = 200;
 
 ReferenceGas::ReferenceGas(const GasGeometry& geometry, const GasState& state, ThermalWalls walls)
     : ReferenceGas(geometry, std::move(walls)) {
-  Pauses never;
-  Begin(state, never);
+  Begin(state, NoPauses());
 }
 
 ReferenceGas::ReferenceGas(const GasGeometry& geometry, ThermalWalls walls)
@@ -44,7 +43,7 @@ bool ReferenceGas::Begin(const GasState& state, Pauses& pauses) {
                            }) &&
          ForEachWithPauses(ball, state.balls.size(), kToBeginWithABall, pauses, [&](size_t i) {
            Aim(balls_.emplace_back(Ball{.state = state.balls[i]}));
-           LookAgain(static_cast<int64_t>(i));
+           LookAround(static_cast<int64_t>(i));
          });
 }
 
@@ -58,7 +57,7 @@ GasEvent ReferenceGas::Step() {
   } else {
     const Ball& ball = balls_[body];
     const auto number = static_cast<int64_t>(body);
-    event = ball.contact_time <= ball.wall_time ? Exchange(number) : HitWall(number);
+    event = ball.ContactTime() <= ball.wall_time ? Exchange(number) : HitWall(number);
   }
   event.time = origin_ + now_;
   return event;
@@ -73,7 +72,7 @@ void ReferenceGas::MoveOrigin() {
   for (Ball& ball : balls_) {
     ball.time -= later;
     ball.wall_time -= later;
-    ball.contact_time -= later;
+    for (double& time : ball.contact_times) time -= later;
   }
   for (Piston& piston : pistons_) {
     piston.time -= later;
@@ -87,7 +86,8 @@ void ReferenceGas::MoveOrigin() {
 GasEvent ReferenceGas::HitWall(int64_t number) {
   Ball& ball = balls_[Index(number)];
   if (ball.encounter.disc == kNoDisc) {
-    ball.wall_time = ball.contact_time = kNever;
+    ball.wall_time = kNever;
+    ball.contact_times.fill(kNever);
     Schedule(number);
     return {.kind = EventKind::kEscape, .ball = number};
   }
@@ -95,7 +95,7 @@ GasEvent ReferenceGas::HitWall(int64_t number) {
   ball.last_disc = ball.encounter.disc;
   ball.time = now_;
   Aim(ball);
-  LookAgain(number);
+  LookAround(number);
   return {.kind = EventKind::kBallWall, .ball = number};
 }
 
@@ -113,7 +113,7 @@ GasEvent ReferenceGas::TurnPiston(int64_t number) {
   const Direction direction = geometry_.DirectionTo(number);
   for (const Direction side : {direction, Opposite(direction)}) {
     const int64_t ball = geometry_.BallOf(number, side);
-    if (ball != GasGeometry::kNoBall) LookAgain(ball);
+    if (ball != GasGeometry::kNoBall) LookAgain(ball, side);
   }
   return {.kind = EventKind::kPistonWall, .piston = number};
 }
@@ -142,9 +142,10 @@ GasEvent ReferenceGas::Exchange(int64_t number) {
   Aim(ball);
   TimePiston(piston);
   SchedulePiston(piston_number);
-  LookAgain(number);
-  const int64_t other = geometry_.BallOf(piston_number, Opposite(direction));
-  if (other != GasGeometry::kNoBall && other != number) LookAgain(other);
+  LookAround(number);
+  const Direction opposite = Opposite(direction);
+  const int64_t other = geometry_.BallOf(piston_number, opposite);
+  if (other != GasGeometry::kNoBall && other != number) LookAgain(other, opposite);
   return {.kind = EventKind::kBallPiston,
           .ball = number,
           .piston = piston_number,
@@ -168,18 +169,27 @@ void ReferenceGas::TimePiston(Piston& piston) const {
   piston.turn_time = velocity == 0 ? kNever : piston.time + std::max(way / velocity, 0.0);
 }
 
-void ReferenceGas::LookAgain(int64_t number) {
+void ReferenceGas::LookAround(int64_t number) {
   Ball& ball = balls_[Index(number)];
-  ball.contact_time = kNever;
   for (int i = 0; i < geometry_.directions(); ++i) {
-    const Direction direction = geometry_.DirectionAt(i);
-    const Piston& piston = pistons_[Index(geometry_.PistonOf(number, direction))];
-    const double time = ContactTime(ball, direction, piston);
-    if (time >= ball.contact_time) continue;
-    ball.contact_time = time;
-    ball.contact = direction;
+    FindContact(ball, number, geometry_.DirectionAt(i));
   }
+  ball.origin = origin_;
   Schedule(number);
+}
+
+// One of the ball's pistons has changed. Times from before the last move of the origin are less
+// precise, so all are found again.
+void ReferenceGas::LookAgain(int64_t number, Direction direction) {
+  Ball& ball = balls_[Index(number)];
+  if (ball.origin != origin_) return LookAround(number);
+  FindContact(ball, number, direction);
+  Schedule(number);
+}
+
+void ReferenceGas::FindContact(Ball& ball, int64_t number, Direction direction) const {
+  const Piston& piston = pistons_[Index(geometry_.PistonOf(number, direction))];
+  ball.contact_times[static_cast<size_t>(direction)] = ContactTime(ball, direction, piston);
 }
 
 // The time of a contact before ball or piston hits a wall. A contact at the moment when the piston
@@ -199,8 +209,10 @@ double ReferenceGas::ContactTime(const Ball& ball, Direction direction,
 }
 
 void ReferenceGas::Schedule(int64_t number) {
-  const Ball& ball = balls_[Index(number)];
-  queue_.Set(Index(number), std::min(ball.wall_time, ball.contact_time));
+  Ball& ball = balls_[Index(number)];
+  const auto first = std::min_element(ball.contact_times.begin(), ball.contact_times.end());
+  ball.contact = static_cast<Direction>(first - ball.contact_times.begin());
+  queue_.Set(Index(number), std::min(ball.wall_time, *first));
 }
 
 void ReferenceGas::SchedulePiston(int64_t number) {

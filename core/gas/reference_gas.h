@@ -12,6 +12,7 @@
 // Times are in cells over unit speed. One object is one gas. Not thread-safe.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -65,8 +66,12 @@ class ReferenceGas {
     int last_disc = kNoDisc;  // the disc on which the ball is, if any
     CellWalls<double>::Encounter encounter = {};
     double wall_time = 0;
-    double contact_time = 0;
-    Direction contact = Direction::kRight;
+    // With the pistons, by direction; kNever if it hits a wall before.
+    std::array<double, 4> contact_times = {kNever, kNever, kNever, kNever};
+    Direction contact = Direction::kRight;  // the first of them
+    double origin = 0;                      // when they were all found
+
+    double ContactTime() const { return contact_times[static_cast<size_t>(contact)]; }
   };
   struct Piston {
     GasPiston state;
@@ -85,7 +90,9 @@ class ReferenceGas {
   void Aim(Ball& ball) const;
   void TimePiston(Piston& piston) const;
   double ContactTime(const Ball& ball, Direction direction, const Piston& piston) const;
-  void LookAgain(int64_t ball);  // for the ball's next contact
+  void LookAround(int64_t ball);  // for its next contacts
+  void LookAgain(int64_t ball, Direction direction);
+  void FindContact(Ball& ball, int64_t number, Direction direction) const;
   void Schedule(int64_t ball);
   void SchedulePiston(int64_t piston);
   GasEvent HitWall(int64_t ball);

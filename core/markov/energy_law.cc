@@ -5,8 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core/arithmetic/gauss_nodes.h"
 #include "core/closed_form/kernel_moments.h"
-#include "core/markov/gauss_nodes.h"
 
 namespace ballpiston {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/arithmetic/gauss_nodes.h"
 #include "core/closed_form/kernel_moments.h"
-#include "core/markov/gauss_nodes.h"
 
 namespace ballpiston {
 namespace {

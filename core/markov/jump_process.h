@@ -23,7 +23,7 @@
 //   1. InvertsTheDistributionOfW: u' is the exact quantile within a relative kJumpError.
 //   2. WaitsWithTheRateOfCollisions, within a relative kJumpError.
 //   3. DetailedBalance: the stationary law is uniform in u.
-//   4. LanesMatchTheScalarDefinition, within a relative error kJumpError.
+//   4. LanesMatchTheScalarDefinition (tests/oracle/scalar_jump.h), within a relative kJumpError.
 //   5. SameBitsOnEveryProcessor with fused multiply-add, and WalkersAreIndependentOfEachOther.
 #pragma once
 
@@ -37,15 +37,6 @@
 namespace ballpiston {
 
 inline constexpr double kJumpError = 2e-15;  // 1e-15 measured
-
-struct Jump {
-  double waiting_time = 0;  // before the jump
-  double u = 0;             // after the jump
-};
-
-// One jump, computed with the C library: the definition, up to rounding. u' grows with
-// target_uniform.
-Jump JumpFrom(double u, double waiting_uniform, double target_uniform);
 
 // Many independent walkers, in step, in vector lanes: 100 million jumps a second on one core.
 //

@@ -1,15 +1,20 @@
+// Accuracy. No step cancels: 1 - 2 u^2 is fused, s^2 = (1 - u)(1 + u), and for u' > u, with
+// w = c v - u A in [0, q],
+//     s^2 - (q - w)^2 = u^2 + w (2 q - w).
+// w loses digits if it is much smaller than u A. The loss is at most a rounding of u^2, because
+// then u A <= 2 u^2.
 #include "core/markov/jump_process_lanes.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/markov/jump_process_lanes.cc"
 #include <hwy/foreach_target.h>
 // After foreach_target.h.
-#include <Random123/philox.h>
 #include <hwy/highway.h>
 
 #include <numbers>
 
 #include "core/markov/jump_process_functions-inl.h"
+#include "core/sampling/counter_random.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ballpiston {
@@ -19,8 +24,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, kJumpGroup>;
 using V = hn::Vec<D>;
 
-// The targets of one vector, as in JumpFrom. One of the two squares is selected before the square
-// root. At u = 0 the lower square is never selected, and may be a NaN.
+// The targets of one vector. One of the two squares is selected before the square root. At u = 0
+// the lower square is never selected, and may be a NaN.
 HWY_INLINE V Target(V u, V q, V low, V c, V v) {
   const D d;
   const V one = hn::Set(d, 1.0), g = hn::Mul(c, v);
@@ -53,15 +58,11 @@ void JumpGroup(const uint64_t* HWY_RESTRICT waiting_words,
   }
 }
 
-// Philox, one sample after the other. Its products of 64 by 64 bits have no vector instruction.
-// Made of four products of 32 bits they would take as long with AVX-512, and twice as long with
-// AVX2. The function is in this file because an instruction of the AVX2 target (mulx) saves a fifth
-// of its time.
 void DrawGroup(uint64_t seed, uint64_t stream, uint64_t first, uint64_t block, JumpWords& drawn) {
-  const r123::Philox4x64::key_type key = {{seed, stream}};
   for (size_t i = 0; i < kJumpGroup; ++i) {
-    const auto words = r123::Philox4x64()({{first + i, block, 0, 0}}, key);
-    for (size_t word = 0; word < 4; ++word) drawn.words[word][i] = words[word];
+    uint64_t words[CounterRandom::kBlock];
+    CounterRandom(seed, stream, first + i, 0, block).DrawBlock(words);
+    for (size_t word = 0; word < CounterRandom::kBlock; ++word) drawn.words[word][i] = words[word];
   }
 }
 

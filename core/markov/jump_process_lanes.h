@@ -1,4 +1,4 @@
-// JumpFrom in vector lanes, from words of random bits; see jump_process.h.
+// Jumps in vector lanes, from words of random bits; see jump_process.h.
 #pragma once
 
 #include <cstddef>

@@ -14,7 +14,6 @@
 #include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
-#include "core/ensemble/point_memory.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/pair_experiment.h"
 #include "core/gas/gas_shape.h"
@@ -46,7 +45,9 @@ class Question {
   bool HasLimit() const { return aim().limit_error != nullptr; }
   // Whether a bound of the limit's error is known.
   bool HasLimitError() const { return HasLimit() && aim().limit_error->is_known(point_); }
-  bool HasPilots() const { return HasLimitError() && aim().limit_error->has_pilots; }
+  // Whether pilots can check the bound. They are runs of energy-relaxation. In a gas one would take
+  // as long as the billiard's answer.
+  bool HasPilots() const { return HasLimitError() && spec_.experiment == &kEnergyRelaxation; }
   double ExpectedLimitError() const { return aim().limit_error->expected(point_); }
   bool IsSoundForBilliard() const { return ballpiston::IsSoundForBilliard(spec_, point_); }
   Model ModelOfLimit() const { return aim().limit_error->model; }

@@ -15,7 +15,7 @@ struct SamplingCost {
   double flight = 0;  // the part of it that lanes compute together
   double lanes = 1;   // orbits that a thread computes at the same time
   double orbit = 1;   // samples of an orbit
-  double parts = 1;   // of a sample's flight (ensemble/sample_work.h)
+  double parts = 1;   // of a sample's flight (ensemble/experiment_kind.h)
   double first = 0;   // a thread's time until its first samples are complete
 
   // `samples` samples by up to `threads` threads.

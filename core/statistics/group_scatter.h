@@ -4,8 +4,8 @@
 // each group has its own counts. Let d_gc be the count of group g in cell c less the group's share
 // of all counts n_c, and
 //   Q_gh = sum over cells of d_gc d_hc/n_c - sum over rows of d_gr d_hr/n_r.
-// Q_gg is a chi-squared of group g, whose mean tells how large the counts' variances are. The
-// scatter of Q_gh, g other than h, tells also how the counts of different cells are correlated: it
+// Q_gg is a chi-squared of group g, whose mean shows how large the counts' variances are. The
+// scatter of Q_gh, g other than h, also shows how the counts of different cells are correlated: it
 // is that of the chi-squared of all samples. Both are 1 below for independent samples. Properties,
 // each with a test of its name:
 //   1. IndependentSamplesScatterAsExpected.  2. RepeatedSamplesCountOnce.
@@ -31,7 +31,7 @@ struct GroupScatter {
   double chi_squared_variance = 1;  // its variance
 };
 
-// Nothing can be told before every group has samples.
+// False: nothing can be said before every group has samples.
 bool HaveSamples(std::span<const Histogram> groups);
 
 // `groups`: kGroups histograms with the same cells, row by row. Requires HaveSamples.

@@ -108,12 +108,6 @@ std::vector<double> Deviations(std::span<const uint64_t> counts, size_t rows, do
 
 }  // namespace
 
-DivergenceNoise NoiseOfDivergence(uint64_t samples, std::span<const double> probabilities) {
-  const double count = static_cast<double>(samples);
-  const CellNoise noise = NoiseOfCells(count, probabilities);
-  return {noise.mean / count, std::sqrt(noise.VarianceOfSum(count)) / count};
-}
-
 KlDivergence RelativeEntropy(std::span<const uint64_t> counts,
                              std::span<const double> probabilities) {
   Sums sums;

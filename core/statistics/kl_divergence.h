@@ -27,14 +27,6 @@ struct KlDivergence {
   uint64_t batches = 0;       // of standard_error, as in Estimate; 0: those of a normal law
 };
 
-// The mean and the standard deviation of the divergence, if `samples` samples are drawn from the
-// law with these probabilities.
-struct DivergenceNoise {
-  double mean = 0;
-  double standard_deviation = 0;
-};
-DivergenceNoise NoiseOfDivergence(uint64_t samples, std::span<const double> probabilities);
-
 // One count for each probability; probabilities sum to 1. If a cell of probability 0 has a count,
 // the divergence is infinite. Without samples all fields except `cells` are 0, here and below.
 KlDivergence RelativeEntropy(std::span<const uint64_t> counts,

@@ -27,45 +27,38 @@ namespace ballpiston::server {
   }
 
 // `service` must outlive all services.
-class EnsembleService : public v1::EnsembleService::Service {
+template <typename Service>
+class ServiceOf : public Service {
  public:
-  explicit EnsembleService(ServiceContext& service) : service_(service) {}
+  explicit ServiceOf(ServiceContext& service) : service_(service) {}
 
+ protected:
+  ServiceContext& service_;
+};
+
+class EnsembleService : public ServiceOf<v1::EnsembleService::Service> {
+ public:
+  using ServiceOf::ServiceOf;
   BALLPISTON_ENSEMBLE_METHODS(BALLPISTON_SERVE)
   BALLPISTON_ENSEMBLE_STREAMS(BALLPISTON_SERVE_STREAM)
-
- private:
-  ServiceContext& service_;
 };
 
-class AnalyticService : public v1::AnalyticService::Service {
+class AnalyticService : public ServiceOf<v1::AnalyticService::Service> {
  public:
-  explicit AnalyticService(ServiceContext& service) : service_(service) {}
-
+  using ServiceOf::ServiceOf;
   BALLPISTON_ANALYTIC_METHODS(BALLPISTON_SERVE)
-
- private:
-  ServiceContext& service_;
 };
 
-class TraceService : public v1::TraceService::Service {
+class TraceService : public ServiceOf<v1::TraceService::Service> {
  public:
-  explicit TraceService(ServiceContext& service) : service_(service) {}
-
+  using ServiceOf::ServiceOf;
   BALLPISTON_TRACE_STREAMS(BALLPISTON_SERVE_STREAM)
-
- private:
-  ServiceContext& service_;
 };
 
-class ServerService : public v1::ServerService::Service {
+class ServerService : public ServiceOf<v1::ServerService::Service> {
  public:
-  explicit ServerService(ServiceContext& service) : service_(service) {}
-
+  using ServiceOf::ServiceOf;
   BALLPISTON_SERVER_METHODS(BALLPISTON_SERVE)
-
- private:
-  ServiceContext& service_;
 };
 
 #undef BALLPISTON_SERVE

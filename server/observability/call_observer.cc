@@ -84,13 +84,13 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
       : observer_(observer),
         call_(*info.server_context()),
         path_(info.method()),
-        counts_(observer.statistics_.Of(path_, info.type())),
+        labels_(CallStatistics::Of(path_, info.type())),
         begin_(Clock::now()) {
-    counts_.began->Increment();
+    observer_.statistics_.Began(labels_);
   }
 
   ~Interceptor() override {
-    if (!ended_) counts_.Ended(absl::StatusCode::kCancelled, Seconds());
+    if (!ended_) observer_.statistics_.Ended(labels_, absl::StatusCode::kCancelled, Seconds());
     observer_.Forget(call_);
   }
 
@@ -119,7 +119,7 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
     const grpc::Status status = batch.GetSendStatus();
     const absl::StatusCode code = CodeOf(status);
     const double seconds = Seconds();
-    counts_.Ended(code, seconds);
+    observer_.statistics_.Ended(labels_, code, seconds);
     const std::string principal = observer_.CallerOf(call_);
     if (status.ok()) return;
     const auto* trailing = batch.GetSendTrailingMetadata();
@@ -136,7 +136,7 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
   CallObserver& observer_;
   const grpc::ServerContextBase& call_;
   const std::string path_;
-  const MethodCounts& counts_;
+  const prometheus::Labels labels_;
   const Clock::time_point begin_;
   std::atomic<bool> ended_ = false;
 };

@@ -1,5 +1,6 @@
 #include "server/observability/call_statistics.h"
 
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,11 @@ namespace {
 
 using MethodType = CallStatistics::MethodType;
 
+constexpr int kLastCode = 16;  // UNAUTHENTICATED
+
+// Upper bounds, in seconds; prometheus-cpp adds an unbounded bucket.
+const std::vector<double> kBuckets = {0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30};
+
 constexpr std::array<const char*, 4> kTypeNames = {  // by MethodType
     "unary", "client_stream", "server_stream", "bidi_stream"};
 
@@ -23,22 +29,7 @@ MethodType TypeOf(const google::protobuf::MethodDescriptor& method) {
   return method.server_streaming() ? MethodType::SERVER_STREAMING : MethodType::UNARY;
 }
 
-prometheus::Labels LabelsOf(absl::string_view path, MethodType type) {
-  const std::pair<std::string, std::string> names =
-      absl::StrSplit(absl::StripPrefix(path, "/"), absl::MaxSplits('/', 1));
-  return {{"grpc_service", names.first},
-          {"grpc_method", names.second},
-          {"grpc_type", kTypeNames[static_cast<size_t>(type)]}};
-}
-
 }  // namespace
-
-void MethodCounts::Ended(absl::StatusCode code, double duration) const {
-  const auto known = static_cast<size_t>(code);
-  ended[known < ended.size() ? known : static_cast<size_t>(absl::StatusCode::kUnknown)]
-      ->Increment();
-  seconds->Observe(duration);
-}
 
 CallStatistics::CallStatistics(prometheus::Registry& registry)
     : began_(prometheus::BuildCounter()
@@ -54,23 +45,29 @@ CallStatistics::CallStatistics(prometheus::Registry& registry)
                    .Help("From a call's begin to its end.")
                    .Register(registry)) {}
 
-MethodCounts CallStatistics::NewCounts(const std::string& path, MethodType type) {
-  // Upper bounds, in seconds; prometheus-cpp adds an unbounded bucket.
-  const std::vector<double> buckets = {0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30};
-  prometheus::Labels labels = LabelsOf(path, type);
-  MethodCounts counts{&began_.Add(labels), {}, &seconds_.Add(labels, buckets)};
-  for (size_t code = 0; code < counts.ended.size(); ++code) {
-    labels["grpc_code"] = absl::StatusCodeToString(static_cast<absl::StatusCode>(code));
-    counts.ended[code] = &ended_.Add(labels);
-  }
-  return counts;
+prometheus::Labels CallStatistics::Of(const std::string& path, MethodType type) {
+  const std::pair<std::string, std::string> names =
+      absl::StrSplit(absl::StripPrefix(path, "/"), absl::MaxSplits('/', 1));
+  return {{"grpc_service", names.first},
+          {"grpc_method", names.second},
+          {"grpc_type", kTypeNames[static_cast<size_t>(type)]}};
 }
 
-const MethodCounts& CallStatistics::Of(const std::string& path, MethodType type) {
-  MutexLock lock(mutex_);
-  const auto [method, added] = methods_.try_emplace(path);
-  if (added) method->second = NewCounts(path, type);
-  return method->second;
+void CallStatistics::Began(const prometheus::Labels& method) { began_.Add(method).Increment(); }
+
+void CallStatistics::Ended(const prometheus::Labels& method, absl::StatusCode code,
+                           double seconds) {
+  EndedWith(code, method).Increment();
+  SecondsOf(method).Observe(seconds);
+}
+
+prometheus::Histogram& CallStatistics::SecondsOf(const prometheus::Labels& method) {
+  return seconds_.Add(method, kBuckets);
+}
+
+prometheus::Counter& CallStatistics::EndedWith(absl::StatusCode code, prometheus::Labels method) {
+  method["grpc_code"] = absl::StatusCodeToString(code);
+  return ended_.Add(method);
 }
 
 void CallStatistics::Expect(const std::string& service) {
@@ -79,7 +76,12 @@ void CallStatistics::Expect(const std::string& service) {
   if (described == nullptr) return;
   for (int i = 0; i < described->method_count(); ++i) {
     const google::protobuf::MethodDescriptor& method = *described->method(i);
-    Of(absl::StrCat("/", service, "/", method.name()), TypeOf(method));
+    const auto labels = Of(absl::StrCat("/", service, "/", method.name()), TypeOf(method));
+    began_.Add(labels);
+    SecondsOf(labels);
+    for (int code = 0; code <= kLastCode; ++code) {
+      EndedWith(static_cast<absl::StatusCode>(code), labels);
+    }
   }
 }
 

@@ -8,7 +8,7 @@
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
-#include "core/experiment/predicted_hits.h"
+#include "core/experiment/expected_returns.h"
 #include "server/processor_time.h"
 
 namespace ballpiston::server {

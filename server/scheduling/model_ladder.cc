@@ -9,7 +9,7 @@
 
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
-#include "core/ensemble/point_memory.h"
+#include "core/ensemble/experiment_kind.h"
 #include "core/experiment/all_experiments.h"
 #include "core/markov/relaxation_spectrum.h"
 #include "server/convert/result_record.h"

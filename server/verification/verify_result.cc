@@ -15,7 +15,7 @@
 
 #include "absl/random/distributions.h"
 #include "absl/strings/str_cat.h"
-#include "core/ensemble/block_digest.h"
+#include "core/ensemble/block_result.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
 #include "server/convert/point_result.h"

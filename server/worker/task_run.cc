@@ -9,7 +9,7 @@
 
 #include "absl/functional/function_ref.h"
 #include "absl/strings/str_cat.h"
-#include "core/ensemble/point_memory.h"
+#include "core/ensemble/experiment_kind.h"
 #include "server/observability/failpoint.h"
 #include "server/worker/chunk_file.h"
 #include "server/worker/crash_mark.h"

@@ -25,7 +25,6 @@
 // After hwy/targets.h.
 #include <hwy/highway.h>
 
-#include "core/billiard/lane_balls.h"
 #include "core/billiard/lane_frame.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
@@ -34,6 +33,7 @@
 #include "core/sampling/direction.h"
 #include "server/processor_time.h"
 #include "tests/benchmark/turns.h"
+#include "tools/flows/lane_balls.h"
 
 namespace ballpiston {
 namespace {

@@ -1,19 +1,23 @@
-// The gas's engines side by side, in one run, on one core: wall hits, events and exchanges a
-// second, the bytes of a cell, and how the cost of an exchange or a hit grows with the number of
-// cells.
+// The gas's engines side by side, in one run, on one core: the time of a replica of an experiment,
+// wall hits, events and exchanges a second, the bytes of a cell, and how the cost of an exchange or
+// a hit grows with the number of cells.
 //
 //   gas_benchmark
 //
-// Contenders take turns (turns.h). Wall hits and the pistons' are counted by their exact mean
-// rates.
+// Contenders take turns (turns.h). A row shows medians and ranges of their turns. Wall hits and the
+// pistons' are counted by their exact mean rates.
 #include <malloc.h>
 
 #include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "core/ensemble/point_experiment.h"
+#include "core/ensemble/point_fold.h"
+#include "core/experiment/all_experiments.h"
 #include "core/gas/canonical_gas.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_geometry.h"
@@ -89,19 +93,66 @@ class RunningGas {
   double bytes_ = 0;
 };
 
+std::vector<double> Millions(std::vector<double> rates) {
+  for (double& rate : rates) rate /= 1e6;
+  return rates;
+}
+
 void ShowSpeed(double delta) {
   std::vector<RunningGas> gases;
   gases.emplace_back(GasEngine::kLanes, 100, delta, 50, Unit::kBallHits);
   gases.emplace_back(GasEngine::kReference, 100, delta, 3, Unit::kAllHits);
   gases.emplace_back(GasEngine::kJumps, 100, delta, 1 / (delta * delta), Unit::kExchanges);
   const Turns turns(gases, 12);
-  const double reference = turns.Best(1) * gases[1].hits_of_events();
-  std::printf(
-      "100x100, delta %-6g lanes %6.1f million wall hits/s   reference %5.2f million events/s: "
-      "%5.1f "
-      "times   jump process %5.2f million exchanges/s",
-      delta, turns.Best(0) / 1e6, turns.Best(1) / 1e6, turns.Best(0) / reference,
-      turns.Best(2) / 1e6);
+  std::printf("100x100, delta %-6g", delta);
+  ShowMedian("lanes", Millions(turns.Rates(0)), " million wall hits/s");
+  ShowMedian("reference", Millions(turns.Rates(1)), " million events/s");
+  std::printf(": %.1f times", turns.Best(0) / (turns.Best(1) * gases[1].hits_of_events()));
+  ShowMedian("jump process", Millions(turns.Rates(2)), " million exchanges/s");
+  ShowDisturbance(turns);
+  std::printf("\n");
+}
+
+// An experiment with a chain of some cells, in replicas.
+struct ReplicaContender {
+  std::unique_ptr<const PointExperiment> point;
+  uint64_t replicas;  // of a turn
+
+  // Replicas a second. The plan's last chunk has enough replicas to fill the lanes.
+  double Rate(uint64_t turn) const {
+    const Block block = {
+        .chunk = point->plan().chunks() - 1, .first = turn * replicas, .samples = replicas};
+    const double begin = server::ThreadSeconds();
+    RunBlock(*point, block);
+    return static_cast<double>(replicas) / (server::ThreadSeconds() - begin);
+  }
+};
+
+void ShowReplicas(const ExperimentKind* experiment, int64_t cells, double delta) {
+  constexpr int64_t kBalls = 192;  // as many as the lanes fly together
+  EnsembleSpec spec = {
+      .experiment = experiment,
+      .grid = {{kRho, {kPaperRho}}, {kDelta, {delta}}, {kCells, {CodeOf({cells})}}},
+      .seed = 5};
+  spec.target.samples = 1'000'000;
+  if (experiment == &kGasEquilibrium) spec.grid[kTemperature] = {1};
+  if (experiment == &kGasConduction) spec.grid[kHot] = {1.5}, spec.grid[kCold] = {0.5};
+  std::vector<ReplicaContender> contenders;
+  for (const Model model : {Model::kBilliard, Model::kBilliardReference, Model::kMarkov}) {
+    spec.model = model;
+    const int64_t balls = model == Model::kBilliard ? kBalls : kBalls / 8;
+    contenders.push_back({PointExperiment::Create(spec, 0), static_cast<uint64_t>(balls / cells)});
+  }
+  const Turns turns(contenders, 12);
+  std::printf("%-15s cells %lld, delta %-4g, ms a replica:", std::string(experiment->name).c_str(),
+              static_cast<long long>(cells), delta);
+  const char* const names[] = {"lanes", "reference", "jump process"};
+  for (size_t i = 0; i < contenders.size(); ++i) {
+    std::vector<double> milliseconds = turns.Rates(i);
+    for (double& rate : milliseconds) rate = 1e3 / rate;
+    ShowMedian(names[i], std::move(milliseconds), "");
+  }
+  std::printf("   lanes %.1f times the reference", turns.Best(0) / turns.Best(1));
   ShowDisturbance(turns);
   std::printf("\n");
 }
@@ -123,6 +174,13 @@ void ShowGrowth(const char* name, GasEngine engine, double slice, Unit unit) {
 }  // namespace ballpiston
 
 int main() {
+  using ballpiston::ShowReplicas, ballpiston::kGasConduction;
+  for (const double delta : {0.2, 0.1, 0.05}) {
+    ShowReplicas(&ballpiston::kGasEquilibrium, 8, delta);
+    ShowReplicas(&kGasConduction, 1, delta);
+    ShowReplicas(&kGasConduction, 2, delta);
+    if (delta > 0.05) ShowReplicas(&kGasConduction, 8, delta);
+  }
   for (const double delta : {0.025, 0.05, 0.1, 0.2}) ballpiston::ShowSpeed(delta);
   ballpiston::ShowGrowth("lanes", ballpiston::GasEngine::kLanes, 4, ballpiston::Unit::kBallHits);
   ballpiston::ShowGrowth("jump process", ballpiston::GasEngine::kJumps, 30,

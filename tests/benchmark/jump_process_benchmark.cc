@@ -12,12 +12,13 @@
 // After hwy/targets.h.
 #include <hwy/highway.h>
 
-#include "core/billiard/orbits.h"
 #include "core/geometry/paper.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/counter_random.h"
 #include "core/sampling/invariant_measure.h"
 #include "server/processor_time.h"
+#include "tests/oracle/scalar_jump.h"
+#include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {
 namespace {
@@ -69,7 +70,7 @@ void Billiard(benchmark::State& state) {
   const PairGeometry geometry = *PairGeometry::Create(kPaperRho, kDelta);
   billiard_collisions_per_second = BestRate(state, kOrbits * Equilibrium::kCollisions, [&] {
     Equilibrium source(geometry, kOrbits);
-    RunOrbits(Engine::kLanes, geometry, kOrbits, source, {});
+    RunOrbits(Engine::kLanes, geometry, kOrbits, source);
   });
 }
 
@@ -87,7 +88,7 @@ void ScalarJumps(benchmark::State& state) {
   scalar_jumps_per_second = BestRate(state, kJumps, [&] {
     for (int n = 0; n < kJumps; ++n) {
       const double waiting = random.Uniform();
-      const Jump jump = JumpFrom(u, waiting, random.Uniform());
+      const oracle::Jump jump = oracle::JumpFrom(u, waiting, random.Uniform());
       benchmark::DoNotOptimize(jump.waiting_time);
       u = jump.u;
     }

@@ -60,7 +60,7 @@ inline double CyclesPerSecond() {
   return 3 * kSteps / least;
 }
 
-// Best rates of contenders that take turns.
+// Rates of contenders that take turns.
 class Turns {
  public:
   // contenders[i].Rate(turn) does some work and returns how much of it a second of processor time
@@ -78,11 +78,19 @@ class Turns {
     }
   }
 
-  // In turns without a neighbour, unless all of the contender's had one.
-  double Best(size_t contender) const {
-    const double quiet = Best(contender, true);
-    return quiet > 0 ? quiet : Best(contender, false);
+  // The contender's rates in turns without a neighbour, unless all of its turns had one; ascending.
+  std::vector<double> Rates(size_t contender) const {
+    std::vector<double> all, quiet;
+    for (const Turn& turn : turns_) {
+      if (turn.contender != contender) continue;
+      all.push_back(turn.rate);
+      if (!IsDisturbed(turn)) quiet.push_back(turn.rate);
+    }
+    std::vector<double>& rates = quiet.empty() ? all : quiet;
+    std::sort(rates.begin(), rates.end());
+    return rates;
   }
+  double Best(size_t contender) const { return Rates(contender).back(); }
   size_t disturbed() const {
     return static_cast<size_t>(std::count_if(turns_.begin(), turns_.end(), IsDisturbed));
   }
@@ -111,19 +119,17 @@ class Turns {
     return turns() - disturbed() >= kQuietTurns * contenders;
   }
 
-  double Best(size_t contender, bool quiet) const {
-    double best = 0;
-    for (const Turn& turn : turns_) {
-      if (turn.contender != contender || (quiet && IsDisturbed(turn))) continue;
-      best = std::max(best, turn.rate);
-    }
-    return best;
-  }
-
   static inline double best_probe_ = 0;
 
   std::vector<Turn> turns_;
 };
+
+// Prints the median of some values, and their range.
+inline void ShowMedian(const char* name, std::vector<double> values, const char* unit) {
+  std::sort(values.begin(), values.end());
+  std::printf("   %s %.4g (%.4g to %.4g)%s", name, values[values.size() / 2], values.front(),
+              values.back(), unit);
+}
 
 // Prints, at the end of a line, in how many turns there was a neighbour.
 inline void ShowDisturbance(const Turns& turns) {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/ensemble/experiment_kind.h"
-#include "core/ensemble/point_memory.h"
 #include "core/model_choice/ladder.h"
 #include "server/convert/plan.h"
 #include "server/convert/spec.h"

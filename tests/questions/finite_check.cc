@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "core/statistics/told_error.h"
+#include "core/statistics/stated_error.h"
 
 namespace ballpiston::questions {
 namespace {
@@ -80,7 +80,7 @@ Findings CheckFinite(const PointSummary& summary) {
   Findings findings;
   for (const Estimate& estimate : summary.estimates) {
     // A small sample may contain nothing that determines the value.
-    const bool is_small = !TellsItsError(static_cast<double>(summary.samples));
+    const bool is_small = !HasStatedError(static_cast<double>(summary.samples));
     if (is_small && std::isnan(estimate.value)) continue;
     CheckEstimate(estimate, findings);
   }

@@ -1,4 +1,5 @@
-// The memory that a computation takes is at most what was planned (core/ensemble/point_memory.h).
+// The memory that a computation takes is at most what was planned
+// (core/ensemble/experiment_kind.h).
 #pragma once
 
 #include "tests/questions/report.h"

@@ -33,7 +33,10 @@ class FakeExperiment : public PointExperiment {
       : PointExperiment(spec, PointAt(spec, index), FakePlan(spec.target)),
         seed_(spec.seed),
         index_(index),
-        before_block_(std::move(before_block)) {}
+        before_block_(std::move(before_block)) {
+    SetMeasurements({.moments = std::vector<Moments>(1)},
+                    {{.name = "mean", .reading = Mean, .exact = 0.5}});
+  }
 
   std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
     return RunOneByOne(queue, [this](const Block& block, const std::stop_token& stop) {
@@ -41,27 +44,12 @@ class FakeExperiment : public PointExperiment {
     });
   }
 
-  BlockResult EmptyResult() const override {
-    BlockResult result;
-    result.moments.resize(1);
-    return result;
-  }
-
-  Estimate FirstEstimate(const BlockResult& merged) const override {
-    return {.name = "mean",
-            .value = merged.moments[0].mean,
-            .standard_error = merged.moments[0].StandardError(),
-            .exact = 0.5};
-  }
-
-  PointSummary Summarize(const BlockResult& merged) const override {
-    PointSummary summary;
-    summary.samples = merged.samples;
-    summary.estimates = {FirstEstimate(merged)};
-    return summary;
-  }
-
  private:
+  // With an error for any number of samples.
+  static Estimate Mean(const BlockResult& merged) {
+    return {.value = merged.moments[0].mean, .standard_error = merged.moments[0].StandardError()};
+  }
+
   std::optional<BlockResult> Compute(const Block& block, const std::stop_token& stop) const {
     if (before_block_) before_block_(index_, NumberOf(block), stop);
     if (stop.stop_requested()) return std::nullopt;
@@ -89,7 +77,9 @@ class HeldUpExperiment : public PointExperiment {
       : PointExperiment(spec, real->parameters(), real->plan()),
         real_(std::move(real)),
         index_(index),
-        before_sample_(std::move(before_sample)) {}
+        before_sample_(std::move(before_sample)) {
+    SetMeasurements(real_->EmptyResult(), {});
+  }
 
   std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
     return RunOneByOne(
@@ -100,7 +90,6 @@ class HeldUpExperiment : public PointExperiment {
           return RunBlock(*real_, block, stop);
         });
   }
-  BlockResult EmptyResult() const override { return real_->EmptyResult(); }
   uint64_t CountsOfASample() const override { return real_->CountsOfASample(); }
   Estimate FirstEstimate(const BlockResult& merged) const override {
     return real_->FirstEstimate(merged);

@@ -29,4 +29,11 @@ inline std::shared_ptr<grpc::Channel> OwnChannel(
       arguments);
 }
 
+// The server can send at most 64 KiB ahead of a reader. By default the window grows.
+inline grpc::ChannelArguments SmallWindow() {
+  grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
+  return arguments;
+}
+
 }  // namespace ballpiston::server

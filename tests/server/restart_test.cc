@@ -214,8 +214,8 @@ TEST(Restart, AnEndedJobStaysUnchanged) {
   std::vector<std::string> bytes;
   {
     RunningServer server(InFolder(folder));
-    name = server.Submit(Equilibrium(3, 5));
-    before = server.AwaitEnd(name);
+    name = server.Succeeded(Equilibrium(3, 5));
+    before = server.Get(name);
     bytes = server.ResultBytes(name);
   }
   RunningServer server(InFolder(folder));

@@ -22,7 +22,6 @@
 #include <iostream>
 #include <vector>
 
-#include "core/billiard/orbits.h"
 #include "core/closed_form/conditional_rate.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/sampling/invariant_measure.h"
@@ -30,6 +29,7 @@
 #include "tests/core/geometries.h"
 #include "tests/oracle/gauss_legendre.h"
 #include "tests/support/nightly.h"
+#include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {
 namespace {
@@ -128,7 +128,7 @@ class WindowOrbits : public NumberedOrbits {
 const WindowOrbits& SampledWindows() {
   static const WindowOrbits* const orbits = [] {
     auto* sampled = new WindowOrbits;
-    EXPECT_TRUE(RunOrbits(Engine::kLanes, kPaperPair, kWindowOrbits, *sampled, {}));
+    EXPECT_TRUE(RunOrbits(Engine::kLanes, kPaperPair, kWindowOrbits, *sampled));
     return sampled;
   }();
   return *orbits;

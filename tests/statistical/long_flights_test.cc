@@ -11,12 +11,12 @@
 #include <iostream>
 #include <vector>
 
-#include "core/billiard/lane_balls.h"
 #include "core/billiard/reference_flow.h"
 #include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
 #include "tests/core/geometries.h"
 #include "tests/oracle/two_sample.h"
+#include "tools/flows/lane_balls.h"
 
 namespace ballpiston {
 namespace {

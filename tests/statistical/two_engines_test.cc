@@ -12,8 +12,8 @@
 
 #include "core/arithmetic/elementary_functions.h"
 #include "core/closed_form/ingoing_law.h"
-#include "core/experiment/predicted_hits.h"
-#include "core/experiment/return_orbits.h"
+#include "core/experiment/expected_returns.h"
+#include "core/experiment/returns.h"
 #include "core/geometry/paper.h"
 #include "core/statistics/histogram.h"
 #include "core/statistics/moments.h"
@@ -47,7 +47,6 @@ class FirstHits {
   }
 
   void Add(const Return& hit) {
-    escapes_ += hit.escaped;
     means_[0].Add(hit.time);
     means_[1].Add(hit.direction.x());
     means_[2].Add(hit.sigma);
@@ -60,6 +59,7 @@ class FirstHits {
     }
   }
 
+  void CountEscape() { ++escapes_; }
   uint64_t escapes() const { return escapes_; }
   const std::array<Moments, 3>& means() const { return means_; }  // of time, cos alpha, sigma
   const std::vector<double>& times() const { return times_; }
@@ -95,7 +95,7 @@ FirstHits Sample(Engine engine, const Point& point) {
                         {.seed = static_cast<uint64_t>(engine), .stream = 77},
                         {.first = first, .samples = count});
     EXPECT_TRUE(RunAll(engine, geometry, orbits));
-    for (const Return& hit : orbits.returns()) hits.Add(hit);
+    for (const auto& hit : orbits.returns()) hit ? hits.Add(*hit) : hits.CountEscape();
   }
   return hits;
 }

@@ -5,7 +5,7 @@
 #include "core/ensemble/point_experiment.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/energy_relaxation.h"
-#include "core/experiment/predicted_hits.h"
+#include "core/experiment/expected_returns.h"
 #include "server/processor_time.h"
 
 namespace ballpiston::method_comparison {

@@ -1,6 +1,6 @@
 #include "tools/method_comparison/ingoing_divergence.h"
 
-#include "core/experiment/ingoing_cells.h"
+#include "core/experiment/returns.h"
 
 namespace ballpiston::method_comparison {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/closed_form/ingoing_law.h"
-#include "core/experiment/return_orbits.h"
+#include "core/experiment/returns.h"
 #include "core/statistics/histogram.h"
 
 namespace ballpiston::method_comparison {

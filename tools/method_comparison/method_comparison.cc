@@ -17,10 +17,10 @@
 #include "core/closed_form/conditional_rate.h"
 #include "core/closed_form/ingoing_law.h"
 #include "core/closed_form/mean_free_time.h"
-#include "core/experiment/long_returns.h"
+#include "core/experiment/expected_returns.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/statistics/kl_divergence.h"
-#include "core/statistics/told_error.h"
+#include "core/statistics/stated_error.h"
 #include "server/processor_time.h"
 #include "tools/method_comparison/energy_relaxation_runs.h"
 #include "tools/method_comparison/heat_current_runs.h"
@@ -75,9 +75,9 @@ std::vector<MethodVariant> GasVariants() {
 }
 
 // The error of the chi-squared law, plus the scatter that a real divergence adds.
-double ErrorOfDivergence(const DivergenceNoise& noise, double excess, uint64_t samples) {
+double ErrorOfDivergence(double noise_error, double excess, uint64_t samples) {
   const double bias = std::fmax(excess, 0);
-  return std::hypot(noise.standard_deviation, std::sqrt(2 * bias / static_cast<double>(samples)));
+  return std::hypot(noise_error, std::sqrt(2 * bias / static_cast<double>(samples)));
 }
 
 class Comparison {
@@ -147,26 +147,19 @@ class Comparison {
       measurement.value = std::fabs(returns.times.mean - exact_) / exact_;
       measurement.statistical_error = ErrorOfMean(returns.times) / exact_;
     } else {
-      const DivergenceNoise noise = NoiseOf(returns.times.count);
-      measurement.value =
-          RelativeEntropy(returns.ingoing.Counts(), probabilities_).value - noise.mean;
+      const KlDivergence kl = RelativeEntropy(returns.ingoing.Counts(), probabilities_);
+      measurement.value = kl.value - kl.noise_floor;
       measurement.statistical_error =
-          ErrorOfDivergence(noise, measurement.value, returns.times.count);
+          ErrorOfDivergence(kl.noise_error, measurement.value, returns.times.count);
     }
     measurement.own_error = measurement.statistical_error;
     return measurement;
   }
 
-  DivergenceNoise NoiseOf(uint64_t samples) {
-    const auto [noise, is_new] = noise_.try_emplace(samples);
-    if (is_new) noise->second = NoiseOfDivergence(samples, probabilities_);
-    return noise->second;
-  }
-
   double ErrorOfMean(const Moments& times) {
     const double count = static_cast<double>(times.count);
     const double long_returns = count * LongReturnsPerSample(geometry_, spec_.epsilon);
-    if (TellsItsError(long_returns)) return times.StandardError().value_or(0);
+    if (HasStatedError(long_returns)) return times.StandardError().value_or(0);
     return std::sqrt(VarianceOfTimes() / count);
   }
 
@@ -319,7 +312,6 @@ class Comparison {
   const double exact_;
   const std::vector<double> probabilities_;
   std::optional<double> variance_of_times_;
-  std::map<uint64_t, DivergenceNoise> noise_;  // by the number of samples; the same for all methods
   std::map<double, MethodMeasurement, std::greater<>> floors_;  // by delta
 };
 

@@ -29,7 +29,7 @@
 // statistical_error is one standard error of `value` (before its absolute value is taken). A value
 // within kResolved standard errors shows no bias, only an upper bound of the bias.
 //   kMeanFreeTime  from the scatter of the sample. If the sample has too few of the long returns
-//                  that dominate the mean (long_returns.h), from a larger sample by kLanes.
+//                  that dominate the mean (expected_returns.h), from a larger sample by kLanes.
 //   kIngoingLaw    from the chi-squared law, sqrt((cells - 1)/2)/samples. For a biased law, which
 //                  has a larger divergence, sqrt(2 value/samples) is added in quadrature.
 //   kTrajectory    from the scatter of the orbits.
@@ -59,7 +59,7 @@
 // for the heat current, and 10 times more for each delta of a relaxation time.
 //
 // The orbits of kRelaxationTime and the replicas of kHeatCurrent are samples of the point's own
-// stream (point_stream.h) under the seed. Each rung and the truth have different samples.
+// stream (random_stream.h) under the seed. Each rung and the truth have different samples.
 //
 // Work is processor time: other programs do not count, but they affect caches and shared cores.
 // Values are functions of the spec; the number of rungs also depends on the work.

@@ -78,7 +78,7 @@ void RunEventOrbits(const PairGeometry& geometry, uint64_t orbits, NumberedOrbit
 
 void RunEngineOrbits(Engine engine, const PairGeometry& geometry, uint64_t orbits,
                      NumberedOrbits& source) {
-  RunOrbits(engine, geometry, orbits, source, {});
+  RunOrbits(engine, geometry, orbits, source);
 }
 
 void RunFixedStepOrbits(double time_step, const PairGeometry& geometry, uint64_t orbits,

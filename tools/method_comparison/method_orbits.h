@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "core/billiard/orbits.h"
 #include "core/geometry/pair_geometry.h"
+#include "tools/flows/numbered_orbits.h"
 #include "tools/method_comparison/method.h"
 
 namespace ballpiston::method_comparison {

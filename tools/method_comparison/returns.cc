@@ -1,10 +1,11 @@
 #include "tools/method_comparison/returns.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "core/closed_form/conditional_rate.h"
-#include "core/experiment/predicted_hits.h"
-#include "core/experiment/return_orbits.h"
+#include "core/experiment/expected_returns.h"
+#include "core/experiment/returns.h"
 #include "server/processor_time.h"
 #include "tools/method_comparison/method_orbits.h"
 
@@ -25,16 +26,17 @@ class CountedReturns : public NumberedOrbits {
 
   PairState Start(uint64_t orbit) override { return returns_.Start(orbit); }
   AfterContact Meet(uint64_t orbit, const Contact& contact) override {
+    if (contact.escaped) return AfterContact::kEnd;
     wall_hits_ += contact.ball_wall_hits;
     return returns_.Meet(orbit, contact);
   }
 
   void AddTo(ReturnStatistics& statistics) const {
     statistics.wall_hits += wall_hits_;
-    for (const Return& hit : returns_.returns()) {
-      if (hit.escaped) continue;
-      statistics.times.Add(hit.time);
-      statistics.ingoing.Add(hit);
+    for (const std::optional<Return>& hit : returns_.returns()) {
+      if (!hit) continue;
+      statistics.times.Add(hit->time);
+      statistics.ingoing.Add(*hit);
     }
   }
 

@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "core/billiard/lane_balls.h"
 #include "core/billiard/reference_flow.h"
 #include "server/processor_time.h"
 #include "tools/flows/fixed_step_flow.h"
+#include "tools/flows/lane_balls.h"
 
 namespace ballpiston::method_comparison {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "core/billiard/lane_balls.h"
 #include "core/billiard/reference_flow.h"
+#include "tools/flows/lane_balls.h"
 #include "tools/flows/precise_flow.h"
 #include "tools/stability/event_methods.h"
 #include "tools/stability/fixed_step_events.h"

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/billiard/lane_balls.h"
-#include "core/billiard/orbits.h"
 #include "core/billiard/reference_flow.h"
 #include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
+#include "tools/flows/lane_balls.h"
+#include "tools/flows/numbered_orbits.h"
 #include "tools/flows/precise_flow.h"
 #include "tools/stability/error_size.h"
 #include "tools/stability/event_methods.h"
@@ -80,7 +80,7 @@ class PairsInEquilibrium : public NumberedOrbits {
 
 EnergyRecord PairsByEngine(Engine engine, uint64_t orbits, uint64_t hits_each) {
   PairsInEquilibrium pairs(orbits, hits_each);
-  RunOrbits(engine, Geometry(), orbits, pairs, {});
+  RunOrbits(engine, Geometry(), orbits, pairs);
   return pairs.record();
 }
 

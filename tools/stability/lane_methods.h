@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "core/billiard/lane_balls.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
+#include "tools/flows/lane_balls.h"
 #include "tools/stability/failures.h"
 
 namespace ballpiston::stability {

@@ -193,7 +193,7 @@ Estimate Reference(const EnsembleSpec& question, const Estimate& by_model) {
   return FirstEstimate(billiard, kSeedOfBilliard);
 }
 
-// A sample that tells no error proves nothing.
+// A sample without a stated error proves nothing.
 double RelativeError(const Estimate& estimate) {
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
   return std::fabs(estimate.standard_error.value_or(kUnknown) / estimate.value);

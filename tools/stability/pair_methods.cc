@@ -12,8 +12,8 @@
 #include <thread>
 #include <utility>
 
-#include "core/billiard/orbits.h"
 #include "core/billiard/reference_flow.h"
+#include "tools/flows/numbered_orbits.h"
 #include "tools/flows/precise_flow.h"
 #include "tools/stability/event_methods.h"
 #include "tools/stability/fixed_step_events.h"

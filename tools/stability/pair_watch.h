@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "core/billiard/event_flow.h"
-#include "core/billiard/orbits.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
+#include "tools/flows/numbered_orbits.h"
 #include "tools/stability/ball_watch.h"
 #include "tools/stability/failures.h"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/billiard/orbits.h"
 #include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
+#include "tools/flows/numbered_orbits.h"
 #include "tools/stability/ball_methods.h"
 #include "tools/stability/wall_starts.h"
 
@@ -36,7 +36,7 @@ class FirstCollisions : public NumberedOrbits {
   }
 
   const std::vector<Contact>& Run(Engine engine, const PairGeometry& geometry) {
-    RunOrbits(engine, geometry, starts_.size(), *this, {});
+    RunOrbits(engine, geometry, starts_.size(), *this);
     return contacts_;
   }
 

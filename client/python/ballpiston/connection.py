@@ -6,7 +6,9 @@ the call is repeated once. So every call that goes through `call` has to be safe
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import grpc
@@ -41,13 +43,13 @@ class Connection:
         self.private = private
         self.timeout = timeout
         self.channel = open_channel(address, security)
+        # Also at the interpreter's exit: gRPC's own destructor comes after its threads were killed,
+        # and would wait forever for a lock that one of them held.
+        self.close = weakref.finalize(self, self.channel.close)
         self.ensembles = ensemble_pb2_grpc.EnsembleServiceStub(self.channel)
         self.analytic = analytic_pb2_grpc.AnalyticServiceStub(self.channel)
         self.traces = trace_pb2_grpc.TraceServiceStub(self.channel)
         self.server = server_pb2_grpc.ServerServiceStub(self.channel)
-
-    def close(self) -> None:
-        self.channel.close()
 
     def call(self, method: Callable[..., Any], request: Any) -> Any:
         """The answer to a call that may be repeated."""
@@ -67,6 +69,13 @@ class Connection:
             return method(request, timeout=self.timeout if timeout is None else timeout)
         except grpc.RpcError as error:
             raise self.error_of(error) from None
+
+    def open_stream(self, method: Callable[..., Any], request: Any) -> Any:
+        """The messages of a streaming call. The call begins on a thread of its own, which Ctrl-C does
+        not interrupt: a call that is interrupted while it begins is never read by gRPC, and the
+        interpreter would wait for it forever at its exit."""
+        with ThreadPoolExecutor(max_workers=1) as thread:
+            return thread.submit(method, request).result()
 
     def error_of(self, rpc_error: grpc.RpcError) -> Error:
         """The exception for a failed call. An error without a reason is one of the connection: its

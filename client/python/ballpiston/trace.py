@@ -14,7 +14,7 @@ from ballpiston.record import record_of
 def events_of(connection: Connection, request: Any) -> Iterator[dict[str, Any]]:
     """The start, then the events. If the private server stops before the start arrives, it is
     started again and asked once more; later a repetition would begin with the start again."""
-    call = connection.traces.TraceOrbit(request)
+    call = connection.open_stream(connection.traces.TraceOrbit, request)
     try:
         try:
             first = next(call)
@@ -22,7 +22,7 @@ def events_of(connection: Connection, request: Any) -> Iterator[dict[str, Any]]:
             if connection.private is None or error.code() != grpc.StatusCode.UNAVAILABLE:
                 raise
             connection.revive()
-            call = connection.traces.TraceOrbit(request)
+            call = connection.open_stream(connection.traces.TraceOrbit, request)
             first = next(call)
         yield record_of(first.start)
         yield from map(record_of, first.events)

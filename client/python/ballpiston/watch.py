@@ -111,7 +111,9 @@ class _Watch:
 
     def _read_stream(self) -> Error:
         """One attachment, to its end, and why it ended."""
-        stream = self._connection.ensembles.WatchEnsembleJob(self._request)
+        stream = self._connection.open_stream(
+            self._connection.ensembles.WatchEnsembleJob, self._request
+        )
         try:
             for message in stream:
                 self._handle(message)

@@ -77,6 +77,7 @@ def test_a_cancelled_job_keeps_its_finished_points(
     with pytest.raises(ballpiston.JobCancelled, match="cancelled") as caught:
         endless.watch()
     assert caught.value.job is endless
+    assert list(endless.specification.grid.rho)
     assert len(endless.result()) == 0
 
 

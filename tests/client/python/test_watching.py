@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, cast
 
@@ -154,6 +155,9 @@ class ScriptedServer:
         self.streams = list(streams)
         self.tokens: list[str] = []
         self.ensembles = self
+
+    def open_stream(self, method: Callable[[Any], Any], request: Any) -> Any:
+        return method(request)
 
     def WatchEnsembleJob(self, request: Any) -> Any:
         self.tokens.append(request.resume_token)

@@ -1,5 +1,5 @@
 // Tests the records of FlyLaneBalls. single_flight_test.cc tests the flights themselves.
-#include "core/billiard/lane_balls.h"
+#include "tools/flows/lane_balls.h"
 
 #include <gtest/gtest.h>
 

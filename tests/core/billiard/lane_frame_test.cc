@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-#include "core/billiard/lane_balls.h"
 #include "core/billiard/reference_flow.h"
 #include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
 #include "tests/core/geometries.h"
+#include "tools/flows/lane_balls.h"
 
 namespace ballpiston {
 namespace {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "core/billiard/orbits.h"
 #include "core/sampling/collision_surface.h"
 #include "core/sampling/outgoing_law.h"
 #include "tests/core/geometries.h"
+#include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {
 namespace {
@@ -53,7 +53,7 @@ class Returns : public NumberedOrbits {
 
 void ExpectShort(const PairGeometry& geometry, double epsilon) {
   Returns returns(geometry, epsilon);
-  ASSERT_TRUE(RunOrbits(Engine::kLanes, geometry, 500, returns, {}));
+  ASSERT_TRUE(RunOrbits(Engine::kLanes, geometry, 500, returns));
   EXPECT_EQ(returns.lost(), 0);
   EXPECT_LT(returns.share(), 0.05) << geometry.rho() << " " << epsilon;
 }

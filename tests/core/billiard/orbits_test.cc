@@ -15,6 +15,7 @@
 #include "tests/core/billiard/recorded_contacts.h"
 #include "tests/core/geometries.h"
 #include "tests/core/stopped.h"
+#include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {
 namespace {
@@ -97,7 +98,7 @@ class WithTimeLimit : public NumberedOrbits {
     ends_[orbit].push_back(contact);
     return AfterContact::kEnd;
   }
-  double TimeLimit() const override { return limit_; }
+  double TimeLimit() const { return limit_; }
   const std::vector<std::vector<Contact>>& ends() const { return ends_; }
 
  private:
@@ -117,7 +118,7 @@ TEST(Orbits, ThePistonMeetsABallAtRestAtItsPlace) {
         WithTimeLimit source(
             {.position = {x, 0}, .ball_speed = 0, .piston = piston, .piston_velocity = velocity},
             1000, 70);
-        ASSERT_TRUE(RunOrbits(engine, geometry, 70, source, {}));
+        ASSERT_TRUE(RunOrbits(engine, geometry, 70, source));
         const double way = velocity < 0 ? piston - x : right - piston + right - x;
         for (const std::vector<Contact>& ends : source.ends()) {
           ASSERT_EQ(ends.size(), 1u);
@@ -156,7 +157,7 @@ TEST(Orbits, AStartOutsideOfTheCellEscapes) {
   };
   for (const Engine engine : kEngines) {
     Outside source;
-    EXPECT_TRUE(RunOrbits(engine, kPaperPair, 3, source, {}));
+    EXPECT_TRUE(RunOrbits(engine, kPaperPair, 3, source));
     EXPECT_EQ(source.escapes_, 3);
   }
 }
@@ -195,12 +196,12 @@ TEST(Orbits, AnOrbitEndsAtItsTimeLimitEvenIfTheSourceContinues) {
       ended_ += contact.expired;
       return AfterContact::kGoOn;
     }
-    double TimeLimit() const override { return 10; }
+    double TimeLimit() const { return 10; }
     int ended_ = 0;
   };
   for (const Engine engine : kEngines) {
     GoesOn source;
-    EXPECT_TRUE(RunOrbits(engine, PaperGeometry(0.1), 3, source, {}));
+    EXPECT_TRUE(RunOrbits(engine, PaperGeometry(0.1), 3, source));
     EXPECT_EQ(source.ended_, 3);
   }
 }
@@ -233,7 +234,7 @@ TEST(Orbits, TimeLimitEndsPairsThatDoNotMeet) {
     for (const PairState& pair : PairsApart(geometry)) {
       for (const uint64_t orbits : {1u, 70u}) {
         WithTimeLimit source(pair, kLimit, orbits);
-        ASSERT_TRUE(RunOrbits(engine, geometry, orbits, source, {}));
+        ASSERT_TRUE(RunOrbits(engine, geometry, orbits, source));
         for (const std::vector<Contact>& ends : source.ends()) {
           ASSERT_EQ(ends.size(), 1u);
           EXPECT_TRUE(ends[0].expired);
@@ -253,7 +254,7 @@ class ContactsWithin : public RecordedContacts {
     const AfterContact after = RecordedContacts::Meet(orbit, contact);
     return contact.expired ? AfterContact::kEnd : after;
   }
-  double TimeLimit() const override { return limit_; }
+  double TimeLimit() const { return limit_; }
 
  private:
   double limit_;
@@ -281,7 +282,7 @@ TEST(Orbits, TimeLimitChangesNothingWithinIt) {
     for (const double limit : {1e-9, 40.0, 100.0, 300.0, 1e9}) {
       ForEachFusedTarget([&] {
         ContactsWithin limited(limit, geometry, kOrbits, kCollisions);
-        ASSERT_TRUE(RunOrbits(engine, geometry, kOrbits, limited, {}));
+        ASSERT_TRUE(RunOrbits(engine, geometry, kOrbits, limited));
         uint64_t expired = 0;
         for (uint64_t orbit = 0; orbit < kOrbits; ++orbit) {
           const auto &all = free.by_orbit()[orbit], &some = limited.by_orbit()[orbit];

@@ -48,7 +48,7 @@ Approach Drawn(const PistonWave& wave, CounterRandom& random) {
                 .ux = std::cos(angle),
                 .length = 0.6 * random.Uniform()};
   const double piston = wave.Position(a.phase) - wave.left();
-  const double velocity = wave.Velocity(a.phase, a.ratio);
+  const double velocity = a.phase < wave.stroke() ? a.ratio : -a.ratio;
   const bool touches = random.Uniform() < 0.3 && velocity > a.ux;
   a.x = touches ? piston : piston - 0.5 * random.Uniform();
   return a;

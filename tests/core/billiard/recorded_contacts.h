@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/billiard/orbits.h"
 #include "core/sampling/invariant_measure.h"
+#include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {
 
@@ -40,7 +40,7 @@ class RecordedContacts : public NumberedOrbits {
 inline RecordedContacts Recorded(Engine engine, const PairGeometry& geometry, uint64_t orbits,
                                  size_t collisions) {
   RecordedContacts contacts(geometry, orbits, collisions);
-  EXPECT_TRUE(RunOrbits(engine, geometry, orbits, contacts, {}));
+  EXPECT_TRUE(RunOrbits(engine, geometry, orbits, contacts));
   return contacts;
 }
 

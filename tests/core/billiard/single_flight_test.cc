@@ -21,7 +21,6 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "core/billiard/lane_balls.h"
 #include "core/billiard/lane_frame.h"
 #include "core/billiard/reference_flow.h"
 #include "core/geometry/paper.h"
@@ -29,6 +28,7 @@
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/geometries.h"
 #include "tests/oracle/exact_flight.h"
+#include "tools/flows/lane_balls.h"
 
 namespace ballpiston {
 namespace {

@@ -1,5 +1,3 @@
-#include "core/ensemble/point_memory.h"
-
 #include <gtest/gtest.h>
 
 #include "core/ensemble/chunk_fold.h"

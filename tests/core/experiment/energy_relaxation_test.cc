@@ -11,7 +11,7 @@
 #include "core/billiard/reference_flow.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/point_fold.h"
-#include "core/ensemble/point_stream.h"
+#include "core/ensemble/random_stream.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
 #include "tests/core/geometries.h"
@@ -197,7 +197,7 @@ TEST(EnergyRelaxation, WindowContainsNearlyAllOfTheLimitsIntegral) {
       nothing_but_the_remainder.samples = 2;
       nothing_but_the_remainder.moments.resize(1 + kLags);
       nothing_but_the_remainder.moments[0].Add(0);
-      const Estimate remainder = relaxation.Estimates(nothing_but_the_remainder, 1).front();
+      const Estimate remainder = *relaxation.Table(1, false).front().Of(nothing_but_the_remainder);
       EXPECT_NE(remainder.value, 0);
       EXPECT_LT(std::fabs(remainder.value / *remainder.limit), 0.01);
     }

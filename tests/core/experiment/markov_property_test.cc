@@ -1,8 +1,7 @@
-#include "core/experiment/markov_property.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -55,6 +54,11 @@ BlockResult CountsOfProcess(uint64_t seed, int orbits, Outcome outcome, Exponent
   return counts;
 }
 
+std::vector<Estimate> EstimatesOf(const BlockResult& counts,
+                                  std::optional<double> exact_correlation = {}) {
+  return EstimatesOf(MarkovPropertyTable(exact_correlation), counts);
+}
+
 double Uniform(CounterRandom& random) { return random.Uniform(); }
 double Exponential(CounterRandom& random) { return -Log(random.Uniform()); }
 
@@ -69,7 +73,7 @@ BlockResult CountsOfJumpProcess(uint64_t seed, int orbits) {
 TEST(MarkovPropertyStatistics, JumpProcessHasNoMemory) {
   const BlockResult counts = CountsOfJumpProcess(1, 20'000);
   ASSERT_EQ(counts.samples, 640'000u);
-  const std::vector<Estimate> estimates = MarkovPropertyEstimates(counts, 0);
+  const std::vector<Estimate> estimates = EstimatesOf(counts, 0);
   ASSERT_EQ(estimates.size(), 6u);
   for (const Estimate& estimate : estimates) {
     if (estimate.name == "hitting_time_ks_distance") {
@@ -88,7 +92,7 @@ TEST(MarkovPropertyDivergence, NoiseFloorsHoldForTheJumpProcess) {
   for (const char* const name : {"transition_divergence", "memory_divergence"}) {
     Moments excess, errors;
     for (uint64_t seed = 0; seed < 100; ++seed) {
-      const auto estimates = MarkovPropertyEstimates(CountsOfJumpProcess(100 + seed, 400), 0);
+      const auto estimates = EstimatesOf(CountsOfJumpProcess(100 + seed, 400), 0);
       const Estimate& divergence = Named(name, estimates);
       excess.Add(divergence.value - *divergence.noise_floor);
       errors.Add(*divergence.standard_error);
@@ -102,9 +106,7 @@ TEST(MarkovPropertyDivergence, NoiseFloorsHoldForTheJumpProcess) {
 TEST(MarkovPropertyStatistics, DetectsDeviationsFromMarkov) {
   const auto uniform = [](CounterRandom& random, double, double) { return Uniform(random); };
   const auto exponential = [](CounterRandom& random, double) { return Exponential(random); };
-  const auto estimates = [](const BlockResult& counts) {
-    return MarkovPropertyEstimates(counts, std::nullopt);
-  };
+  const auto estimates = [](const BlockResult& counts) { return EstimatesOf(counts); };
   const auto regular = estimates(CountsOfProcess(
       2, 1000, uniform, [](CounterRandom& random, double) { return 0.5 + Uniform(random); }));
   EXPECT_NEAR(Named("hitting_time_ks_distance", regular).value, 1 - std::exp(-0.5), 0.001);
@@ -161,7 +163,7 @@ TEST(MarkovPropertyStatistics, EnergiesAtBothEndsAreCounted) {
                                            {.waiting_time = 1, .energy = 0.25}};
   CountOrbit(0, 0, exchanges, counts);
   EXPECT_EQ(counts.samples, 4u);
-  for (const Estimate& estimate : MarkovPropertyEstimates(counts, 0)) {
+  for (const Estimate& estimate : EstimatesOf(counts, 0)) {
     EXPECT_TRUE(std::isfinite(estimate.value)) << estimate.name;
   }
 }

@@ -12,7 +12,7 @@
 
 #include "core/closed_form/ingoing_law.h"
 #include "core/ensemble/point_fold.h"
-#include "core/experiment/long_returns.h"
+#include "core/experiment/expected_returns.h"
 #include "core/geometry/paper.h"
 #include "core/model_choice/limit_error.h"
 #include "tests/core/geometries.h"

@@ -58,6 +58,7 @@ FirstExchange AfterOne(GasMeter& meter, const GasState& start, double end) {
 
 // Steps that end before the first exchange are final; one that ends after the second is halved.
 FirstExchange Find(JumpGas gas, const GasGeometry& geometry, const GasState& start, double step) {
+  gas.Begin(start);
   for (double begin = 0;;) {
     JumpGas next = gas;
     GasMeter meter(geometry, start);
@@ -103,7 +104,7 @@ TEST(JumpGas, PairsFollowTheJumpProcess) {
     for (uint64_t replica = 0; replica < kReplicas; ++replica) {
       const CounterRandom random(81, row, replica);
       const FirstExchange first =
-          Find(JumpGas(ring, kDensity, start, ThermalWalls(), random), ring, start, 0.3 / sum);
+          Find(JumpGas(ring, kDensity, ThermalWalls(), random), ring, start, 0.3 / sum);
       times.push_back(first.time * sum);
       ++counts[2 * first.ball + first.piston];
       const double eb = e.balls[first.ball], ep = e.pistons[first.piston];
@@ -126,8 +127,7 @@ TEST(JumpGas, APistonThatABallSeesTwiceHasTwoContacts) {
   for (uint64_t replica = 0; replica < kReplicas; ++replica) {
     const CounterRandom random(82, 0, replica);
     times.push_back(
-        sum * Find(JumpGas(torus, kDensity, start, ThermalWalls(), random), torus, start, 0.3 / sum)
-                  .time);
+        sum * Find(JumpGas(torus, kDensity, ThermalWalls(), random), torus, start, 0.3 / sum).time);
   }
   EXPECT_LT(oracle::KolmogorovSmirnov(times, Exponential), 2.3);
 }
@@ -155,9 +155,9 @@ TEST(JumpGas, OutermostPistonsAreThermal) {
   std::vector<uint64_t> counts(2);
   for (uint64_t replica = 0; replica < kReplicas; ++replica) {
     const GasRandom random(83, 0, replica);
-    const FirstExchange first = Find(
-        JumpGas(chain, kDensity, start, ThermalWalls(chain, kHot, kCold, random), random.OfJumps()),
-        chain, start, 0.3 / (hot + cold));
+    const FirstExchange first =
+        Find(JumpGas(chain, kDensity, ThermalWalls(chain, kHot, kCold, random), random.OfJumps()),
+             chain, start, 0.3 / (hot + cold));
     times.push_back(first.time * (hot + cold));
     ++counts[first.piston];
     EXPECT_EQ(first.piston_energy, (first.piston == 0 ? kHot : kCold) / 2);
@@ -173,7 +173,8 @@ TEST(JumpGas, EnergyIsConserved) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "4x4");
   const GasState start = GasInEquilibrium(gas, 1, 84, 0);
   GasMeter meter(gas, start);
-  JumpGas jumps(gas, kDensity, start, ThermalWalls(), CounterRandom(84, 0, 0));
+  JumpGas jumps(gas, kDensity, ThermalWalls(), CounterRandom(84, 0, 0));
+  jumps.Begin(start);
   jumps.AdvanceTo(5000, meter);
   EXPECT_GT(meter.exchanges(), 10'000u);
   double sum = 0;
@@ -186,8 +187,11 @@ TEST(JumpGas, DensityIsAScaleOfTime) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "5");
   const GasState start = GasInEquilibrium(gas, 1, 85, 0);
   GasMeter slow(gas, start), fast(gas, start);
-  JumpGas(gas, 1, start, ThermalWalls(), CounterRandom(85, 0, 0)).AdvanceTo(200, slow);
-  JumpGas(gas, 2, start, ThermalWalls(), CounterRandom(85, 0, 0)).AdvanceTo(100, fast);
+  for (const double density : {1, 2}) {
+    JumpGas jumps(gas, density, ThermalWalls(), CounterRandom(85, 0, 0));
+    jumps.Begin(start);
+    jumps.AdvanceTo(200 / density, density == 1 ? slow : fast);
+  }
   EXPECT_GT(slow.exchanges(), 100u);
   EXPECT_EQ(slow.exchanges(), fast.exchanges());
   for (size_t body = 0; body < slow.bodies(); ++body) {

@@ -13,6 +13,7 @@
 #include "core/sampling/counter_random.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/oracle/gauss_legendre.h"
+#include "tests/oracle/scalar_jump.h"
 #include "tools/flows/quad_precision.h"
 
 namespace ballpiston {
@@ -74,14 +75,15 @@ void ExpectQuantile(double u, double v, double next) {
 
 TEST(JumpProcess, InvertsTheDistributionOfW) {
   for (const double u : Energies()) {
-    for (const double v : UniformNumbers()) ExpectQuantile(u, v, JumpFrom(u, 0.5, v).u);
+    for (const double v : UniformNumbers()) ExpectQuantile(u, v, oracle::JumpFrom(u, 0.5, v).u);
   }
 }
 
 TEST(JumpProcess, JumpsFurtherUpForAGreaterUniformNumber) {
   for (const double u : Energies()) {
     for (int k = 1; k + 1 < 1000; ++k) {
-      ASSERT_LE(JumpFrom(u, 0.5, k / 1000.0).u, JumpFrom(u, 0.5, (k + 1) / 1000.0).u);
+      ASSERT_LE(oracle::JumpFrom(u, 0.5, k / 1000.0).u,
+                oracle::JumpFrom(u, 0.5, (k + 1) / 1000.0).u);
     }
   }
 }
@@ -90,7 +92,7 @@ TEST(JumpProcess, WaitsWithTheRateOfCollisions) {
   for (const double u : Energies()) {
     const ExactLaw law(u);
     for (const double v : UniformNumbers()) {
-      const double time = JumpFrom(u, v, 0.5).waiting_time;
+      const double time = oracle::JumpFrom(u, v, 0.5).waiting_time;
       ASSERT_TRUE(time > 0 && std::isfinite(time));
       EXPECT_LE(RelativeError(time, -Quad{std::log(v)} / law.rate()), kJumpError) << u;
     }
@@ -98,23 +100,24 @@ TEST(JumpProcess, WaitsWithTheRateOfCollisions) {
   // The closed form's rate; u^2/2 rounds.
   for (int k = 0; k <= 64; ++k) {
     const double u = k / 64.0;
-    EXPECT_NEAR(-std::log(0.5) / JumpFrom(u, 0.5, 0.5).waiting_time / PairCollisionRate(u * u / 2),
-                1, kJumpError + kKernelMomentsRelativeError);
+    EXPECT_NEAR(
+        -std::log(0.5) / oracle::JumpFrom(u, 0.5, 0.5).waiting_time / PairCollisionRate(u * u / 2),
+        1, kJumpError + kKernelMomentsRelativeError);
   }
 }
 
 TEST(JumpProcess, BallAtRestStopsThePiston) {
-  for (const double v : UniformNumbers()) EXPECT_EQ(JumpFrom(1, 0.5, v).u, 0);
+  for (const double v : UniformNumbers()) EXPECT_EQ(oracle::JumpFrom(1, 0.5, v).u, 0);
 }
 
-double Rate(double u) { return std::log(2.0) / JumpFrom(u, 0.5, 0.5).waiting_time; }
+double Rate(double u) { return std::log(2.0) / oracle::JumpFrom(u, 0.5, 0.5).waiting_time; }
 
 // The probability of a jump from u to below `end`, found by bisection.
 double Below(double u, double end) {
   double low = 0, high = 1;
   for (int i = 0; i < 60; ++i) {
     const double middle = (low + high) / 2;
-    (JumpFrom(u, 0.5, middle).u < end ? low : high) = middle;
+    (oracle::JumpFrom(u, 0.5, middle).u < end ? low : high) = middle;
   }
   return (low + high) / 2;
 }
@@ -162,7 +165,7 @@ struct Group {
 
 void ExpectLaneIsScalar(const Group& before, const Group& after, size_t i) {
   const double v = UniformOf(before.target_words[i]);
-  const Jump jump = JumpFrom(before.u[i], UniformOf(before.waiting_words[i]), v);
+  const oracle::Jump jump = oracle::JumpFrom(before.u[i], UniformOf(before.waiting_words[i]), v);
   SCOPED_TRACE(testing::Message() << "u " << before.u[i] << " v " << v);
   ASSERT_TRUE(after.u[i] >= 0 && after.u[i] <= 1);
   ASSERT_TRUE(after.waiting_times[i] > 0 && std::isfinite(after.waiting_times[i]));
@@ -210,7 +213,7 @@ TEST(JumpWalkers, TakeTheirWordsFromTheirSamples) {
     walkers.Jump();
     for (size_t i = 0; i < starts.size(); ++i) {
       const double waiting = randoms[i].Uniform(), target = randoms[i].Uniform();
-      const Jump jump = JumpFrom(before[i], waiting, target);
+      const oracle::Jump jump = oracle::JumpFrom(before[i], waiting, target);
       ASSERT_NEAR(walkers.u()[i], jump.u, kJumpError * jump.u);
       ASSERT_NEAR(walkers.waiting_times()[i], jump.waiting_time, kJumpError * jump.waiting_time);
     }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/experiment/energy_relaxation.h"
-#include "core/experiment/predicted_hits.h"
+#include "core/experiment/expected_returns.h"
 #include "tests/core/geometries.h"
 #include "tests/core/model_choice/questions.h"
 #include "tests/core/run_point.h"

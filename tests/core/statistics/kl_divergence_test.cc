@@ -74,18 +74,25 @@ double ExactFloor(uint64_t samples, const std::vector<double>& probabilities) {
   return floor;
 }
 
+// The noise depends on the number of samples, not on their cells.
+KlDivergence NoiseOf(uint64_t samples, const std::vector<double>& law) {
+  std::vector<uint64_t> counts(law.size());
+  counts[0] = samples;
+  return RelativeEntropy(counts, law);
+}
+
 // Between 0.001 and 10,000 samples a cell.
 TEST(KlDivergence, NoiseFloorIsTheMeanUnderTheExactLaw) {
   for (const size_t cells : {2u, 7u, 100u}) {
     const std::vector<double> law = SteepLaw(cells);
     for (const uint64_t samples :
          {1u, 2u, 3u, 10u, 30u, 100u, 300u, 1000u, 3000u, 10'000u, 20'000u}) {
-      EXPECT_NEAR(NoiseOfDivergence(samples, law).mean / ExactFloor(samples, law), 1, 1e-3)
+      EXPECT_NEAR(NoiseOf(samples, law).noise_floor / ExactFloor(samples, law), 1, 1e-3)
           << cells << " cells, " << samples << " samples";
     }
   }
   const std::vector<double> certain = {1};
-  EXPECT_NEAR(NoiseOfDivergence(10, certain).mean, 0, 1e-16);
+  EXPECT_NEAR(NoiseOf(10, certain).noise_floor, 0, 1e-16);
 }
 
 // Cells that are nearly certain, and nearly impossible.
@@ -93,7 +100,7 @@ TEST(KlDivergence, NoiseFloorHoldsForExtremeProbabilities) {
   for (const double q : {0.3, 0.01, 1e-5, 1e-9}) {
     for (const uint64_t samples : {1u, 10u, 1000u}) {
       const std::vector<double> law = {1 - q, q};
-      EXPECT_NEAR(NoiseOfDivergence(samples, law).mean / ExactFloor(samples, law), 1, 1e-3)
+      EXPECT_NEAR(NoiseOf(samples, law).noise_floor / ExactFloor(samples, law), 1, 1e-3)
           << q << ", " << samples << " samples";
     }
   }
@@ -140,13 +147,12 @@ TEST(KlDivergence, NoiseMatchesSamplesFromTheLaw) {
     for (const auto& [samples, repeats] :
          {std::pair<uint64_t, uint64_t>{16, 1000}, {256, 400}, {4096, 100}, {65536, 20}}) {
       const Moments measured = Divergences(probabilities, samples, repeats);
-      const DivergenceNoise noise = NoiseOfDivergence(samples, probabilities);
-      EXPECT_NEAR(measured.mean, noise.mean, 4.5 * *measured.StandardError()) << samples;
+      const KlDivergence noise = NoiseOf(samples, probabilities);
+      EXPECT_NEAR(measured.mean, noise.noise_floor, 4.5 * *measured.StandardError()) << samples;
       const double count = static_cast<double>(repeats);
       const double kurtosis = measured.m4 * count / (measured.m2 * measured.m2);
       const double error_of_scatter = std::sqrt(std::fmax(kurtosis - 1, 2) / (4 * count));
-      EXPECT_NEAR(std::sqrt(*measured.Variance()) / noise.standard_deviation, 1,
-                  4.5 * error_of_scatter)
+      EXPECT_NEAR(std::sqrt(*measured.Variance()) / noise.noise_error, 1, 4.5 * error_of_scatter)
           << samples;
     }
   }
@@ -158,9 +164,9 @@ TEST(KlDivergence, NoiseTendsToThatOfChiSquared) {
     const std::vector<double> probabilities = SteepLaw(cells);
     const double freedom = static_cast<double>(probabilities.size()) - 1;
     constexpr uint64_t kSamples = 100'000'000;
-    const DivergenceNoise noise = NoiseOfDivergence(kSamples, probabilities);
-    EXPECT_NEAR(noise.mean * 2 * kSamples / freedom, 1, 2e-3);
-    EXPECT_NEAR(noise.standard_deviation * kSamples / std::sqrt(freedom / 2), 1, 2e-3);
+    const KlDivergence noise = NoiseOf(kSamples, probabilities);
+    EXPECT_NEAR(noise.noise_floor * 2 * kSamples / freedom, 1, 2e-3);
+    EXPECT_NEAR(noise.noise_error * kSamples / std::sqrt(freedom / 2), 1, 2e-3);
   }
 }
 

@@ -33,10 +33,9 @@ struct Reader {
 };
 
 std::unique_ptr<Reader> Open(const std::string& address, const std::string& job, bool reads) {
-  grpc::ChannelArguments arguments;
-  arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);  // the server can send at most 64 KiB ahead
   auto reader = std::make_unique<Reader>();
-  reader->stub = v1::EnsembleService::NewStub(server::OwnChannel(address, nullptr, arguments));
+  reader->stub =
+      v1::EnsembleService::NewStub(server::OwnChannel(address, nullptr, server::SmallWindow()));
   v1::WatchEnsembleJobRequest request;
   request.set_name(job);
   reader->stream = reader->stub->WatchEnsembleJob(&reader->context, request);

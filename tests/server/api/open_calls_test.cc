@@ -48,9 +48,8 @@ TEST(OpenCalls, BytesAreLimitedButASingleCallIsPermitted) {
   OpenCalls calls(kTwoCallsOfTenBytes);
   auto large = calls.Begin("ann", 11);
   ASSERT_OK(large);
-  EXPECT_THAT(calls.Begin("ann", 1),
-              StatusIs(absl::StatusCode::kResourceExhausted,
-                       HasSubstr("10 (--max-call-bytes-per-principal)")));
+  EXPECT_THAT(calls.Begin("ann", 1), StatusIs(absl::StatusCode::kResourceExhausted,
+                                              HasSubstr("10 (--max-call-bytes-per-principal)")));
   large->reset();
   const auto half = calls.Begin("ann", 5);
   ASSERT_OK(half);

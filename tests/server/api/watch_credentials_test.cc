@@ -7,6 +7,7 @@
 #include "tests/server/api/watch_stream.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/own_channel.h"
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"
 #include "tests/server/secure_server.h"
@@ -81,9 +82,10 @@ TEST_F(WatchCredentialsTest, AWatchWithAValidTokenGoesOn) {
 }
 
 TEST_F(WatchCredentialsTest, AStalledReaderLosesItsWatchToo) {
-  const std::string name = alice_.Submit(Equilibrium(20'000, 1));  // some MB of points
-  alice_.AwaitEnd(name);
-  WatchStream stalled(alice_, name);
+  gate_.Open();
+  const std::string name = alice_.Succeeded(Equilibrium(20'000, 1));  // some MB of points
+  TestClient slow(OwnChannel(server_.address(), files_.Credentials(kAlice), SmallWindow()));
+  WatchStream stalled(slow, name);
   AwaitThat([this] { return ops_.Status().streams() == 1; });  // the server has the watch
   ReplaceAccess(TokenLine(kOps, {"ops", Role::kAdmin}));
   AwaitThat([this] { return ops_.Status().streams() == 0; });

@@ -17,6 +17,7 @@
 #include "tests/server/api/watch_stream.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/own_channel.h"
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"
 #include "tests/server/store_access.h"
@@ -466,10 +467,10 @@ TEST_F(WatchTest, TheJobHasNoGrid) {
 // would never end.
 TEST_F(WatchTest, AStalledReaderDoesNotDelayAStop) {
   RunningServer& server = StartWith({.connections = kOnlyClosedByAStop});
-  const std::string name = server.Submit(Equilibrium(20'000, 1));
-  server.AwaitEnd(name);
+  const std::string name = server.Succeeded(Equilibrium(20'000, 1));
+  TestClient slow(OwnChannel(server.address(), nullptr, SmallWindow()));
   std::vector<std::unique_ptr<WatchStream>> stalled;  // some MB each, which nobody reads
-  for (int i = 0; i < 50; ++i) stalled.push_back(std::make_unique<WatchStream>(server, name));
+  for (int i = 0; i < 50; ++i) stalled.push_back(std::make_unique<WatchStream>(slow, name));
   server.Shutdown(std::chrono::milliseconds(500));
   for (const auto& reader : stalled) EXPECT_THAT(reader->End(), Not(IsOk()));
 }
@@ -494,6 +495,22 @@ TEST_F(WatchTest, APrincipalsStreamsAreLimited) {
   first.reset();
   // Then the server knows that the watch has ended.
   AwaitThat([&] { return WatchStream(server, name).Next().has_value(); });
+}
+
+// gRPC's own error would have no reason.
+TEST_F(WatchTest, WatchesLeaveThreadsToOtherCalls) {
+  constexpr int kMost = 100;
+  RunningServer& server =
+      StartWith({.factory = GatedExperiments(gate_), .limits = {.max_streams = kMost}});
+  const std::string name = server.Submit(Equilibrium(1, 5));
+  std::vector<std::unique_ptr<WatchStream>> watches;
+  for (int i = 0; i < kMost; ++i) {
+    watches.push_back(std::make_unique<WatchStream>(server, name));
+    ASSERT_TRUE(watches.back()->Next());
+  }
+  EXPECT_THAT(WatchStream(server, name).End(),
+              IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_STREAMS"));
+  EXPECT_EQ(server.Status().streams(), kMost);
 }
 
 TEST(Streams, AreCountedByPrincipal) {

@@ -468,30 +468,21 @@ TEST(PointResult, RemarkStandsForAnEstimateWithoutAValue) {
 }
 
 // An answer with everything that a result can hold.
-class ToldExperiment : public PointExperiment {
- public:
-  explicit ToldExperiment(const EnsembleSpec& spec)
-      : PointExperiment(spec, PointAt(spec, 0), ChunkPlan()) {}
-  std::unique_ptr<BlockRun> StartRun(BlockQueue&) const override { return nullptr; }
-  BlockResult EmptyResult() const override { return BlockResult(); }
-  Estimate FirstEstimate(const BlockResult& merged) const override {
-    return Summarize(merged).estimates[0];
-  }
-  PointSummary Summarize(const BlockResult&) const override {
-    PointSummary summary;
-    summary.estimates = {
-        {.name = "time", .value = -4, .standard_error = 0.5, .batches = 64, .limit = 3},
-        {.name = "distance", .value = 0.25, .noise_floor = 0.125},
-        {.name = "odd", .value = 1, .limit = kNan, .noise_floor = kInfinity}};
-    summary.curves = {{"decay", {{0, 1, 0.25, 1}, {2, 0.5, {}, {}}, {4, 0.25, kNan, kInfinity}}},
-                      {"profile", {{0, 2}, {1.5, 1}}, CurveAxis::kPosition}};
-    summary.remarks = {"the run was too short", "another sentence"};
-    return summary;
-  }
-};
+PointExperiment FullAnswer() {
+  PointSummary summary;
+  summary.estimates = {
+      {.name = "time", .value = -4, .standard_error = 0.5, .batches = 64, .limit = 3},
+      {.name = "distance", .value = 0.25, .noise_floor = 0.125},
+      {.name = "odd", .value = 1, .limit = kNan, .noise_floor = kInfinity}};
+  summary.curves = {{"decay", {{0, 1, 0.25, 1}, {2, 0.5, {}, {}}, {4, 0.25, kNan, kInfinity}}},
+                    {"profile", {{0, 2}, {1.5, 1}}, CurveAxis::kPosition}};
+  summary.remarks = {"the run was too short", "another sentence"};
+  const EnsembleSpec spec = FakeSpec(1, 1);
+  return PointExperiment(spec, PointAt(spec, 0), summary);
+}
 
 TEST(PointResult, LimitNoiseFloorAndCurvesAreKept) {
-  const v1::PointResult result = PointResultOf(0, ToldExperiment(FakeSpec(1, 1)), BlockResult());
+  const v1::PointResult result = PointResultOf(0, FullAnswer(), BlockResult());
   ASSERT_EQ(result.estimates_size(), 3);
   EXPECT_EQ(result.estimates(0).limit(), 3);
   EXPECT_EQ(result.estimates(0).batches(), 64);
@@ -515,7 +506,7 @@ TEST(PointResult, LimitNoiseFloorAndCurvesAreKept) {
 }
 
 TEST(PointResult, CurveHasATimeOrAPositionAtEachPoint) {
-  const v1::PointResult result = PointResultOf(0, ToldExperiment(FakeSpec(1, 1)), BlockResult());
+  const v1::PointResult result = PointResultOf(0, FullAnswer(), BlockResult());
   for (const v1::Curve::Point& point : result.curves(0).points()) {
     EXPECT_TRUE(point.has_time());
     EXPECT_FALSE(point.has_position());
@@ -531,7 +522,7 @@ TEST(PointResult, CurveHasATimeOrAPositionAtEachPoint) {
 }
 
 TEST(PointResult, RemarksAreKeptInTheirOrder) {
-  const v1::PointResult result = PointResultOf(0, ToldExperiment(FakeSpec(1, 1)), BlockResult());
+  const v1::PointResult result = PointResultOf(0, FullAnswer(), BlockResult());
   EXPECT_THAT(result.remarks(), testing::ElementsAre("the run was too short", "another sentence"));
 }
 

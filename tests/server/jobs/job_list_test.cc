@@ -82,8 +82,7 @@ class JobList : public ::testing::Test {
   TemporaryFolder folder_;
   std::unique_ptr<Store> store_ = *Store::Open(folder_.File("store"), {.stall = kNever});
   ThreadPool pool_{1, FakeExperiments()};
-  std::unique_ptr<JobBook> book_ =
-      std::make_unique<JobBook>(*store_, Limits(), pool_.scheduler());
+  std::unique_ptr<JobBook> book_ = std::make_unique<JobBook>(*store_, Limits(), pool_.scheduler());
 };
 
 TEST_F(JobList, AJobMatchesAllPartsOfTheFilter) {

@@ -29,21 +29,17 @@ class FakePilot : public PointExperiment {
   std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
     return fake_->StartRun(queue);
   }
-  BlockResult EmptyResult() const override { return fake_->EmptyResult(); }
   uint64_t CountsOfASample() const override { return fake_->CountsOfASample(); }
-  Estimate FirstEstimate(const BlockResult& merged) const override {
-    Estimate estimate = fake_->FirstEstimate(merged);
-    estimate.limit = kLimit;
-    return estimate;
-  }
-  PointSummary Summarize(const BlockResult& merged) const override {
-    return fake_->Summarize(merged);
-  }
 
  private:
   explicit FakePilot(std::unique_ptr<const PointExperiment> fake)
       : PointExperiment(FakePilotSpec(), PointAt(FakePilotSpec(), 0), fake->plan()),
-        fake_(std::move(fake)) {}
+        fake_(std::move(fake)) {
+    SetMeasurements(fake_->EmptyResult(),
+                    {{.name = "mean",
+                      .reading = [this](const BlockResult& m) { return fake_->FirstEstimate(m); },
+                      .limit = kLimit}});
+  }
 
   const std::unique_ptr<const PointExperiment> fake_;
 };

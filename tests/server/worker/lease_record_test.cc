@@ -12,7 +12,7 @@
 #include "core/engine_version.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_fold.h"
-#include "core/ensemble/point_stream.h"
+#include "core/ensemble/random_stream.h"
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"

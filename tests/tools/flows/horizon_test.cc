@@ -18,12 +18,12 @@
 #include <string>
 #include <vector>
 
-#include "core/billiard/lane_balls.h"
 #include "core/billiard/lane_frame.h"
 #include "core/billiard/reference_flow.h"
 #include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
 #include "tests/core/geometries.h"
+#include "tools/flows/lane_balls.h"
 #include "tools/flows/precise_flow.h"
 
 namespace ballpiston {

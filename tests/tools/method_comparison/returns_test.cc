@@ -38,9 +38,8 @@ TEST(Returns, EnginesShowNoBias) {
     ASSERT_EQ(returns.times.count, engine.samples) << "some orbits were lost";
     EXPECT_GT(returns.wall_hits, engine.samples);
     EXPECT_NEAR(returns.times.mean, exact, 4.5 * *returns.times.StandardError());
-    const DivergenceNoise noise = NoiseOfDivergence(engine.samples, probabilities);
-    const double divergence = RelativeEntropy(returns.ingoing.Counts(), probabilities).value;
-    EXPECT_NEAR(divergence, noise.mean, 4.5 * noise.standard_deviation);
+    const KlDivergence kl = RelativeEntropy(returns.ingoing.Counts(), probabilities);
+    EXPECT_NEAR(kl.value, kl.noise_floor, 4.5 * kl.noise_error);
   }
 }
 
@@ -50,9 +49,8 @@ TEST(Returns, CoarseStepsShowABias) {
   const auto returns =
       RunReturns({Method::kFixedStep, 0.1}, kPaperPair, kEpsilonOfReturns, {21, 1}, 16384);
   EXPECT_GT(std::fabs(returns.times.mean - exact), 10 * *returns.times.StandardError());
-  const DivergenceNoise noise = NoiseOfDivergence(returns.times.count, probabilities);
-  EXPECT_GT(RelativeEntropy(returns.ingoing.Counts(), probabilities).value,
-            noise.mean + 10 * noise.standard_deviation);
+  const KlDivergence kl = RelativeEntropy(returns.ingoing.Counts(), probabilities);
+  EXPECT_GT(kl.value, kl.noise_floor + 10 * kl.noise_error);
 }
 
 // The bias of the mean free time at two time steps, a factor of three apart, against the closed

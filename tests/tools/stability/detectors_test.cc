@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/billiard/orbits.h"
 #include "core/sampling/invariant_measure.h"
+#include "tools/flows/numbered_orbits.h"
 #include "tools/stability/ball_watch.h"
 #include "tools/stability/energy_drift.h"
 #include "tools/stability/pair_watch.h"
@@ -51,7 +51,7 @@ Failures Watched(Tampered::Change change) {
   const std::vector<PairState> starts = Starts();
   CollisionWatch watch(Geometry(), kEpsilon, starts, 4);
   Tampered source(watch, change);
-  RunOrbits(Engine::kReference, Geometry(), starts.size(), source, {});
+  RunOrbits(Engine::kReference, Geometry(), starts.size(), source);
   return watch.Finish();
 }
 
@@ -94,7 +94,7 @@ TEST(Detectors, AnOmittedCollisionIsMissed) {
   const std::vector<PairState> starts = Starts();
   CollisionWatch watch(Geometry(), kEpsilon, starts, 1);
   EverySecond source(watch, starts.size());
-  RunOrbits(Engine::kReference, Geometry(), starts.size(), source, {});
+  RunOrbits(Engine::kReference, Geometry(), starts.size(), source);
   EXPECT_GT(watch.Finish().missed, 10u);
 }
 

@@ -5,7 +5,7 @@
 // determine the mean. An error is given if there are at least kEventsForAnError independent events
 // of this kind. Its own relative error is then 1/sqrt(2 kEventsForAnError) = 10 %. The events are:
 //   mean over samples               the samples
-//   coefficient of variation        a twentieth of these (experiment/return_time.cc)
+//   coefficient of variation        a twentieth of these (experiment/first_hit.cc)
 //   mean return time                the expected number of long returns, where these are rare
 //   mean sigma                      the expected samples of the rarer sign
 //   mean free times in equilibrium  a tenth of the collisions (experiment/equilibrium.cc)
@@ -30,11 +30,11 @@ inline constexpr double kEventsForAnError = 50;
 // the mean is off by up to some 300 ulps. A smaller scatter is not the error of the mean.
 inline constexpr double kRoundingOfAMean = 3e-14;
 
-inline bool TellsItsError(double events) { return events >= kEventsForAnError; }
+inline bool HasStatedError(double events) { return events >= kEventsForAnError; }
 
 // `error` of the mean `value`, at least its rounding, if this number of events is enough.
-inline std::optional<double> ToldError(double events, double value, std::optional<double> error) {
-  if (!error || !TellsItsError(events)) return std::nullopt;
+inline std::optional<double> StatedError(double events, double value, std::optional<double> error) {
+  if (!error || !HasStatedError(events)) return std::nullopt;
   return std::fmax(*error, kRoundingOfAMean * std::fabs(value));
 }
 

@@ -1,7 +1,7 @@
-#include "core/billiard/lane_balls.h"
+#include "tools/flows/lane_balls.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "core/billiard/lane_balls.cc"
+#define HWY_TARGET_INCLUDE "tools/flows/lane_balls.cc"
 #include <hwy/foreach_target.h>
 // After foreach_target.h.
 #include <hwy/highway.h>

@@ -1,4 +1,4 @@
-#include "core/experiment/predicted_hits.h"
+#include "core/experiment/expected_returns.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "core/billiard/orbits.h"
 #include "core/closed_form/mean_free_time.h"
-#include "core/experiment/return_orbits.h"
+#include "core/experiment/returns.h"
 #include "core/geometry/paper.h"
 #include "core/statistics/moments.h"
 #include "tests/core/billiard/recorded_contacts.h"

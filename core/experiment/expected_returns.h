@@ -1,5 +1,5 @@
-// Whether the standard error of a mean return time can be estimated from the sample; and the same
-// for the relaxation of an energy.
+// What the closed forms predict of returns to the collision surface: the wall hits on the way,
+// which decide the cost of a sample, and the long returns, which decide its standard error.
 //
 // With a slow piston (epsilon -> 0) or a slow ball (epsilon -> 1/2) most returns are short, as if
 // the slow body rested. A few very long returns dominate the mean: the piston goes to its far wall
@@ -14,6 +14,21 @@
 #include "core/geometry/pair_geometry.h"
 
 namespace ballpiston {
+
+// Mean numbers of wall hits between two collisions of ball and piston.
+struct PredictedHits {
+  double ball_wall;
+  double piston_wall;
+
+  // With the collision itself.
+  double Events() const { return 1 + ball_wall + piston_wall; }
+};
+
+// In equilibrium.
+PredictedHits HitsPerCollision(const PairGeometry& geometry);
+
+// In a return to the collision surface at fixed energies.
+PredictedHits HitsPerReturn(const PairGeometry& geometry, double epsilon);
 
 // Expected number of long returns in one sample; about 1 or more if they are not rare. 0 at
 // epsilon = 0: no number of samples is enough. Infinite at epsilon = 1/2, where the ball rests and

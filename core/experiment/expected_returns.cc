@@ -1,4 +1,4 @@
-#include "core/experiment/long_returns.h"
+#include "core/experiment/expected_returns.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/closed_form/conditional_rate.h"
+#include "core/closed_form/mean_free_time.h"
 #include "core/closed_form/pair_measures.h"
 
 namespace ballpiston {
@@ -35,6 +36,20 @@ double Reached(double at_rest, double volume, double time, double round_trip) {
 }
 
 }  // namespace
+
+PredictedHits HitsPerCollision(const PairGeometry& geometry) {
+  const MeanFreeTimes tau = MeanFreeTimesOf(geometry);
+  return {tau.ball_piston / tau.ball_wall, tau.ball_piston / tau.piston_wall};
+}
+
+PredictedHits HitsPerReturn(const PairGeometry& geometry, double epsilon) {
+  // Rate of hits on a wall of area |dG| at fixed speed: speed/pi |dG|/|G| for the ball, whose
+  // direction is uniform in its plane, and speed/2 |dG|/|G| for the piston.
+  const PairMeasures measures = Measures(geometry);
+  const double time = ConditionalMeanFreeTime(geometry, epsilon) / measures.volume;
+  return {time * std::sqrt(1 - 2 * epsilon) * measures.area_ball_wall * std::numbers::inv_pi,
+          time * std::sqrt(2 * epsilon) * measures.area_piston_wall / 2};
+}
 
 double LongReturnsPerSample(const PairGeometry& geometry, double epsilon) {
   if (epsilon == 0) return 0;

@@ -1,24 +1,52 @@
-#include "core/experiment/hit_time_law.h"
+#include "core/experiment/returns.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "core/ensemble/block_orbits.h"
+#include "tests/core/geometries.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/core/run_point.h"
 
 namespace ballpiston {
 namespace {
 
+class EndedReturns : public ReturnOrbits {
+ public:
+  using ReturnOrbits::ReturnOrbits;
+  BlockResult Result() const {
+    BlockResult result;
+    for (const auto& hit : returns()) result.samples += hit.has_value();
+    return result;
+  }
+};
+
+TEST(ReturnOrbits, AnEscapedOrbitCountsAsAnEscapeOnly) {
+  WatchedOrbits orbits(
+      EndedReturns(kPaperPair, {0.125, 1}, {.seed = 1, .stream = 2}, {.samples = 2}));
+  Contact contact;
+  contact.state = orbits.Start(0);
+  contact.state.ball_speed *= 1 + 1e-10;
+  orbits.Meet(0, contact);
+  contact.escaped = true;
+  contact.state.ball_speed = 7;
+  EXPECT_EQ(orbits.Meet(1, contact), AfterContact::kEnd);
+  const BlockResult result = orbits.Result();
+  EXPECT_EQ(result.samples, 1u);
+  EXPECT_EQ(result.health.escapes, 1u);
+  EXPECT_NEAR(result.health.max_energy_error, 1.5e-10, 1e-11);
+}
+
 TEST(HitTimeLaw, SurvivalIsTheShareOfLaterHits) {
-  Histogram times = EmptyHitTimes(1);
+  Histogram times = EmptyReturnTimes(1);
   for (int i = 0; i < 300; ++i) times.Add(0.05);
   for (int i = 0; i < 100; ++i) times.Add(100);
   const Curve curve = SurvivalCurve(times);
-  ASSERT_EQ(curve.points.size(), kHitTimeBins);
+  ASSERT_EQ(curve.points.size(), kReturnTimeBins);
   EXPECT_EQ(curve.points[0].value, 1);
   EXPECT_EQ(curve.points[0].standard_error, 0);
-  for (size_t i = 1; i < kHitTimeBins; ++i) {
+  for (size_t i = 1; i < kReturnTimeBins; ++i) {
     EXPECT_NEAR(curve.points[i].at, 0.1 * static_cast<double>(i), 1e-6);
     EXPECT_NEAR(*curve.points[i].limit, std::exp(-0.1 * static_cast<double>(i)), 1e-12);
     EXPECT_EQ(curve.points[i].value, 0.25);

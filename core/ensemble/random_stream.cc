@@ -1,4 +1,4 @@
-#include "core/ensemble/point_stream.h"
+#include "core/ensemble/random_stream.h"
 
 #include <bit>
 

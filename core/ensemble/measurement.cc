@@ -1,0 +1,79 @@
+#include "core/ensemble/measurement.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/statistics/stated_error.h"
+
+namespace ballpiston {
+namespace {
+
+constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
+void Scale(std::optional<double>& value, double scale) {
+  if (value) *value *= scale;
+}
+
+double EventsIn(const BlockResult& merged, double events_per_sample) {
+  return events_per_sample * static_cast<double>(merged.samples);
+}
+
+}  // namespace
+
+std::optional<Estimate> Measurement::Of(const BlockResult& merged) const {
+  std::optional<Estimate> estimate = reading(merged);
+  if (!estimate) return std::nullopt;
+  estimate->name = name;
+  estimate->value *= scale;
+  Scale(estimate->standard_error, std::fabs(scale));
+  Scale(estimate->exact, scale);
+  Scale(estimate->limit, scale);
+  if (exact) estimate->exact = exact;
+  if (limit) estimate->limit = limit;
+  return estimate;
+}
+
+std::vector<Estimate> EstimatesOf(const std::vector<Measurement>& table,
+                                  const BlockResult& merged) {
+  std::vector<Estimate> estimates;
+  for (const Measurement& row : table) {
+    if (auto estimate = row.Of(merged)) estimates.push_back(*std::move(estimate));
+  }
+  return estimates;
+}
+
+Estimate MeanOf(const Moments& sample, double events) {
+  const double value = sample.count == 0 ? kNotMeasured : sample.mean;
+  return {.value = value,
+          .standard_error = StatedError(events, value, sample.StandardError()),
+          .batches = sample.EffectiveCount()};
+}
+
+Estimate RatioOf(const BatchMeans& sample, double events) {
+  const double value = sample.Ratio().value_or(kNotMeasured);
+  return {.value = value,
+          .standard_error = StatedError(events, value, sample.StandardError()),
+          .batches = sample.batches};
+}
+
+Reading MeanAt(size_t index, double events_per_sample) {
+  return [=](const BlockResult& merged) {
+    return MeanOf(merged.moments[index], EventsIn(merged, events_per_sample));
+  };
+}
+
+Reading RatioAt(size_t index, double events_per_sample) {
+  return [=](const BlockResult& merged) {
+    return RatioOf(merged.batch_means[index], EventsIn(merged, events_per_sample));
+  };
+}
+
+Estimate ExactEstimate(std::string name, double value, double relative_error) {
+  return {.name = std::move(name),
+          .value = value,
+          .standard_error = relative_error * value,
+          .exact = value};
+}
+
+}  // namespace ballpiston

@@ -1,0 +1,51 @@
+// The table of an experiment: one row for each estimate, in the order of the answer. A tolerance
+// refers to the first row.
+//
+// A standard error is stated if the sample contains enough of the events that determine the
+// estimate (statistics/stated_error.h). Without samples the value is NaN, and there is no error.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/ensemble/block_result.h"
+#include "core/ensemble/point_summary.h"
+
+namespace ballpiston {
+
+// Reads an estimate, still without its name, from merged blocks. Empty if the sample is too small
+// for this estimate.
+using Reading = std::function<std::optional<Estimate>(const BlockResult& merged)>;
+
+struct Measurement {
+  std::string name;
+  Reading reading;
+  double scale = 1;  // from the units of the reading to those of the estimate
+  // These two, in the units of the estimate, replace those of the reading.
+  std::optional<double> exact = {};
+  std::optional<double> limit = {};
+
+  std::optional<Estimate> Of(const BlockResult& merged) const;
+};
+
+// All estimates of a table that the sample is large enough for.
+std::vector<Estimate> EstimatesOf(const std::vector<Measurement>& table, const BlockResult& merged);
+
+Estimate MeanOf(const Moments& sample, double events);
+Estimate RatioOf(const BatchMeans& sample, double events);
+
+// Readings of the accumulator with this index.
+Reading MeanAt(size_t index, double events_per_sample = 1);
+Reading RatioAt(size_t index, double events_per_sample = 1);
+
+// An estimate that is a closed form. Its standard error is the bound of the formula's rounding.
+Estimate ExactEstimate(std::string name, double value, double relative_error);
+
+inline CurvePoint PointAt(double at, const Estimate& estimate) {
+  return {at, estimate.value, estimate.standard_error, estimate.limit};
+}
+
+}  // namespace ballpiston

@@ -1,0 +1,91 @@
+#include "core/experiment/returns.h"
+
+#include <cmath>
+
+#include "core/arithmetic/elementary_functions.h"
+#include "core/sampling/collision_surface.h"
+#include "core/statistics/stated_error.h"
+
+namespace ballpiston {
+
+ReturnOrbits::ReturnOrbits(const PairGeometry& geometry, const ReturnLaw& law,
+                           const RandomStream& random, const Block& block)
+    : geometry_(geometry),
+      law_(law.epsilon, law.exponent),
+      ball_speed_(std::sqrt(1 - 2 * law.epsilon)),
+      piston_speed_(std::sqrt(2 * law.epsilon)),
+      random_(random),
+      first_(block.first),
+      returns_(block.samples) {}
+
+PairState ReturnOrbits::Start(uint64_t orbit) {
+  CounterRandom random = random_.Sample(first_ + orbit);
+  const Eigen::Vector2d ball = UniformOnCollisionSurface(geometry_, random);
+  const SignedDirection outgoing = law_.Draw(random);
+  return {.position = ball,
+          .direction = outgoing.ball,
+          .ball_speed = ball_speed_,
+          .piston = ball.x(),
+          .piston_velocity = outgoing.sigma * piston_speed_};
+}
+
+AfterContact ReturnOrbits::Meet(uint64_t orbit, const Contact& contact) {
+  returns_[orbit] = {.time = contact.time,
+                     .direction = contact.state.direction,
+                     .sigma = std::signbit(contact.state.piston_velocity) ? -1 : 1};
+  return AfterContact::kEnd;
+}
+
+std::vector<Histogram> EmptyIngoingHistograms(const IngoingLaw& law) {
+  std::vector<Histogram> histograms;
+  for (const int sigma : kIngoingSigmas) {
+    const double half_width = law.AlphaMax(sigma);
+    if (half_width == 0) continue;
+    histograms.push_back(Histogram::OfBins(-half_width, half_width, kIngoingBins));
+  }
+  return histograms;
+}
+
+std::vector<std::vector<double>> IngoingBinProbabilities(const IngoingLaw& law) {
+  std::vector<std::vector<double>> probabilities;
+  for (const Histogram& histogram : EmptyIngoingHistograms(law)) {
+    const int sigma = kIngoingSigmas[probabilities.size()];
+    std::vector<double>& bins = probabilities.emplace_back(kIngoingBins);
+    for (size_t bin = 0; bin < kIngoingBins; ++bin) {
+      bins[bin] = law.BinProbability(sigma, histogram.Edge(bin), histogram.Edge(bin + 1));
+    }
+  }
+  return probabilities;
+}
+
+void CountIngoing(const Return& hit, std::span<Histogram> histograms) {
+  // With epsilon >= 1/4 an approaching piston always moves to the left. If rounding says otherwise,
+  // the hit still counts as sigma = -1.
+  const size_t index = hit.sigma > 0 && histograms.size() > 1 ? 1 : 0;
+  histograms[index].Add(Atan2(hit.direction.y(), hit.direction.x()));
+}
+
+Histogram EmptyReturnTimes(double mean) {
+  return Histogram::OfBins(0, WithoutLastBits(kReturnTimeMeans * mean), kReturnTimeBins);
+}
+
+Curve SurvivalCurve(const Histogram& return_times) {
+  Curve curve = {.name = "survival"};
+  const auto samples = static_cast<double>(return_times.Total());
+  if (samples == 0) return curve;
+  double later = samples;
+  for (size_t bin = 0; bin < kReturnTimeBins; ++bin) {
+    const double share = later / samples;
+    const double limit = std::exp(-kReturnTimeMeans / kReturnTimeBins * static_cast<double>(bin));
+    const double events = samples * limit * (1 - limit);
+    const double error = std::sqrt(share * (1 - share) / samples);
+    curve.points.push_back({.at = return_times.Edge(bin),
+                            .value = share,
+                            .standard_error = bin == 0 ? 0 : StatedError(events, share, error),
+                            .limit = limit});
+    later -= static_cast<double>(return_times.counts[bin]);
+  }
+  return curve;
+}
+
+}  // namespace ballpiston
