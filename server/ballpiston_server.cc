@@ -25,9 +25,10 @@ namespace {
 constexpr int kTurns = 8;  // of calls that compute
 constexpr int kMinPingIntervalMs = 15'000;
 constexpr int kStreamsPerConnection = 2'048;  // twice what one principal may watch
-// Of calls that are not counted as streams. One principal can fill a quarter of them with answers
+// Threads for calls that are not streams. One principal can fill a quarter of them with answers
 // that it does not read (--max-calls-per-principal).
 constexpr int kOtherThreads = 4'096;
+constexpr int kMostThreads = 1 << 20;  // more than any system permits a process
 // The longest delay until health reports that the store fails.
 constexpr std::chrono::milliseconds kHealthInterval(500);
 constexpr std::chrono::milliseconds kLimitsInterval(1000);
@@ -72,7 +73,7 @@ void SetPings(grpc::ServerBuilder& builder, const ConnectionTiming& timing) {
 }
 
 // Bounds what clients can use before they are authenticated: streams, memory and threads. Each call
-// has a thread. There are more than the streams can take, so that other calls find one.
+// has a thread. The quota has more than there can be streams, so other calls find a thread.
 void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   using Option = grpc::ServerBuilder::SyncServerOption;
   grpc::ResourceQuota quota("ballpiston");
@@ -80,11 +81,13 @@ void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
     quota.Resize(static_cast<size_t>(limits.max_transfer_mib) << 20);
   }
   if (limits.max_streams > 0) {
-    quota.SetMaxThreads(static_cast<int>(limits.max_streams) + kOtherThreads);
+    quota.SetMaxThreads(
+        static_cast<int>(std::min<int64_t>(limits.max_streams, kMostThreads - kOtherThreads)) +
+        kOtherThreads);
   }
   builder.SetResourceQuota(quota);
-  // By default gRPC would start a thread for each core, and end the process if the quota has fewer
-  // threads.
+  // One queue, and at most two idle threads that wait for calls. By default gRPC has a queue for
+  // each core.
   builder.SetSyncServerOption(Option::NUM_CQS, 1);
   builder.SetSyncServerOption(Option::MIN_POLLERS, 1);
   builder.SetSyncServerOption(Option::MAX_POLLERS, 2);
@@ -186,7 +189,7 @@ void BallpistonServer::StartExecutors() {
 void BallpistonServer::StartKeepingLimits() {
   limits_ =
       std::make_unique<PeriodicThread>(kLimitsInterval, [this] { book_.KeepLimits(absl::Now()); });
-  stalled_ = std::make_unique<PeriodicThread>(kStalledInterval, [this] { streams_.EndStalled(); });
+  stalled_ = std::make_unique<PeriodicThread>(kStalledInterval, [this] { streams_.EndRevoked(); });
 }
 
 BallpistonServer::~BallpistonServer() { Shutdown(std::chrono::milliseconds(0)); }

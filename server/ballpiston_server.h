@@ -119,7 +119,7 @@ class BallpistonServer {
   ServerService server_;
   std::unique_ptr<grpc::Server> grpc_;
   std::unique_ptr<PeriodicThread> limits_;    // calls JobBook::KeepLimits
-  std::unique_ptr<PeriodicThread> stalled_;   // calls Streams::EndStalled
+  std::unique_ptr<PeriodicThread> stalled_;   // calls Streams::EndRevoked
   std::unique_ptr<Health> health_;            // after grpc_, which owns the health service
   std::unique_ptr<MetricsEndpoint> metrics_;  // last: it reads all members above
 };

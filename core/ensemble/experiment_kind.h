@@ -98,8 +98,8 @@ struct ExperimentKind {
   std::span<const Model> models;        // that can answer one of the aims; cheapest first
   std::span<const AimedEstimate> aims;  // the first one is the default
 
-  // These two answer by samples, and without them. `spec` has one point, which is `point`, and a
-  // model of `models`. `compute` is null if every model takes samples.
+  // `create` answers by samples, `compute` without samples. `spec` has one point, which is `point`,
+  // and a model of `models`. `compute` is null if every model takes samples.
   std::unique_ptr<PointExperiment> (*create)(const EnsembleSpec& spec,
                                              const PointParameters& point);
   PointSummary (*compute)(const EnsembleSpec& spec, const PointParameters& point) = nullptr;

@@ -44,7 +44,7 @@ Reading RatioAt(size_t index, double events_per_sample = 1);
 // An estimate that is a closed form. Its standard error is the bound of the formula's rounding.
 Estimate ExactEstimate(std::string name, double value, double relative_error);
 
-inline CurvePoint PointAt(double at, const Estimate& estimate) {
+inline CurvePoint CurvePointOf(double at, const Estimate& estimate) {
   return {at, estimate.value, estimate.standard_error, estimate.limit};
 }
 

@@ -48,6 +48,9 @@ bool MeetsTolerance(const Estimate& estimate, double tolerance);
 class PointExperiment {
  public:
   virtual ~PointExperiment() = default;
+  // The table's readings may refer to the experiment.
+  PointExperiment(const PointExperiment&) = delete;
+  PointExperiment& operator=(const PointExperiment&) = delete;
 
   // A point without blocks, whose answer, with an estimate or more, needs no samples.
   PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters, PointSummary answer);
@@ -90,15 +93,16 @@ class PointExperiment {
   const RandomStream& random() const { return random_; }
 
  protected:
-  // For an answer by sampling. The second one is for a plan other than that of the experiment.
+  // For an answer by sampling. The second one has a plan of its own, as tests want it.
   PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters);
   PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters,
                   const ChunkPlan& plan);
 
-  // To be called in the constructor of an experiment that samples.
+  // To be called in the constructor of an experiment that samples. The first row of the table must
+  // have an estimate for every sample.
   void SetMeasurements(BlockResult empty, std::vector<Measurement> table);
 
-  // Adds to the summary, which has the table's estimates, what is no estimate.
+  // Adds histograms, curves and remarks. The summary already has the table's estimates.
   virtual void AddDetails(const BlockResult& /*merged*/, PointSummary& /*summary*/) const {}
 
  private:

@@ -116,7 +116,7 @@ std::vector<Measurement> EnergyRelaxation::TableOf(const Reading& integral) cons
 }
 
 std::vector<Measurement> EnergyRelaxation::Table(double events_per_orbit, bool is_limit) const {
-  return TableOf([=, this, within = MeanAt(0, events_per_orbit)](const BlockResult& merged) {
+  return TableOf([this, is_limit, within = MeanAt(0, events_per_orbit)](const BlockResult& merged) {
     std::optional<Estimate> integral = within(merged);
     const double limit = IntegralOfLimit(kForEver).value;
     integral->value += WithoutLastBits(limit - IntegralOfLimit(window()).value);
@@ -149,7 +149,7 @@ Curve EnergyRelaxation::MeasuredCurve(const BlockResult& merged, double events_p
   for (size_t i = 0; i < kLags; ++i) {
     Estimate there = *MeanAt(1 + i, events_per_orbit)(merged);
     there.limit = CurveOfLimitAt(Lag(i)).value;
-    curve.points.push_back(PointAt(Lag(i), there));
+    curve.points.push_back(CurvePointOf(Lag(i), there));
   }
   return curve;
 }

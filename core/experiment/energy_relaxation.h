@@ -77,7 +77,7 @@ class EnergyRelaxation {
   double events_per_orbit() const { return events_per_orbit_; }
 
   // relaxation_time, if it exists; with epsilon also decay_integral. The jump process is the limit,
-  // whose value is exact for it.
+  // whose value is exact for it. The table must not outlive this object.
   std::vector<Measurement> Table(double events_per_orbit, bool is_limit) const;
   Curve MeasuredCurve(const BlockResult& merged, double events_per_orbit) const;
   std::vector<NamedHistogram> MeasuredLaws(const BlockResult& merged) const;

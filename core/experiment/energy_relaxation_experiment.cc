@@ -183,8 +183,9 @@ class EnergyRelaxationExperiment : public PairExperiment {
         relaxation_(geometry(), point),
         events_per_orbit_(EventsOf(answer().model, relaxation_)) {
     std::vector<Measurement> table = relaxation_.Table(events_per_orbit_, IsLimit());
-    if (IsLimit())
+    if (IsLimit()) {
       table.push_back({"spectral_gap", [](const BlockResult&) { return SpectralGap(); }});
+    }
     SetMeasurements(relaxation_.Empty(), std::move(table));
   }
 

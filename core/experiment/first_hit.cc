@@ -8,8 +8,8 @@
 // collision surface with an outgoing law h^(n); the ingoing (alpha, sigma) of the first ball-piston
 // collision is recorded. Histograms of alpha have 1000 bins over the interval permitted for each
 // sign of the piston's velocity. Their relative entropy with respect to h^(1) is the paper's eq.
-// kld. The last histogram is that of hit times. For n = 1 the process is stationary at every delta,
-// and the result has the exact values.
+// kld. The last histogram is that of return times. For n = 1 the process is stationary at every
+// delta, and the result has the exact values.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -130,8 +130,8 @@ class ReturnExperiment : public PairExperiment {
 
   void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
     const Moments& times = merged.moments[kTime];
-    if (!HasStatedError(static_cast<double>(times.count)) || HasStatedError(EventsIn(times)))
-      return;
+    const bool is_large = HasStatedError(static_cast<double>(times.count));
+    if (!is_large || HasStatedError(EventsIn(times))) return;
     summary.remarks.push_back(
         absl::StrCat("the mean return time has no standard error: ", ReasonOfNoError(times)));
   }

@@ -167,7 +167,7 @@ class GasConduction : public GasExperiment {
         cold_(point[kCold] / temperature()),
         places_(geometry()) {
     SetMeasurements({.moments = std::vector<Moments>(places_.size()),
-                     .batch_means = std::vector<BatchMeans>(kMeans + 3)},
+                     .batch_means = std::vector<BatchMeans>(kMeans + kMeansOfAReplica)},
                     Table());
   }
 
@@ -232,7 +232,7 @@ class GasConduction : public GasExperiment {
     Curve curve = {.name = "temperature_profile", .axis = CurveAxis::kPosition};
     for (size_t i = 0; i < places_.size(); ++i) {
       const Measurement there = {"", Mean(i), temperature()};
-      curve.points.push_back(PointAt(places_.Position(i), *there.Of(merged)));
+      curve.points.push_back(CurvePointOf(places_.Position(i), *there.Of(merged)));
     }
     return curve;
   }

@@ -132,7 +132,7 @@ class GasEquilibrium : public GasExperiment {
                       TimesInEquilibrium(spec.model, PeriodicGasOf(point)), point[kTemperature]),
         events_(EventsOfCurrents(answer().model, geometry().shape())) {
     SetMeasurements({.moments = std::vector<Moments>(kMomentsOfCurrents),
-                     .batch_means = std::vector<BatchMeans>(3),
+                     .batch_means = std::vector<BatchMeans>(kMeansOfAReplica),
                      .histograms = EmptySpeeds()},
                     WithConductivity(Table(), ConductivityTable(), AimsAtConductivity(spec)));
   }
@@ -237,7 +237,7 @@ class GasEquilibrium : public GasExperiment {
     Curve curve = {.name = name};
     for (size_t step = first_step; step <= kWindow; ++step) {
       const Measurement there = {"", Mean(first + step - first_step, events_), scale};
-      curve.points.push_back(PointAt(static_cast<double>(step) * Step(), *there.Of(merged)));
+      curve.points.push_back(CurvePointOf(static_cast<double>(step) * Step(), *there.Of(merged)));
     }
     return curve;
   }

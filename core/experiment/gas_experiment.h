@@ -68,6 +68,8 @@ class GasExperiment : public PointExperiment {
 
   double temperature() const { return temperature_; }
 
+  static constexpr size_t kMeansOfAReplica = 3;
+
   // Adds one replica to three batch means, at the indices `first` to `first + 2`: exchanges over
   // (contacts times duration); the mean energy of a ball; twice the mean energy of a piston.
   void AddMeans(const GasMeter& meter, size_t first, BlockResult& result) const;

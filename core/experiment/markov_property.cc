@@ -152,8 +152,7 @@ class MarkovPropertyExperiment : public PairExperiment {
  public:
   MarkovPropertyExperiment(const EnsembleSpec& spec, const PointParameters& point)
       : PairExperiment(spec, point) {
-    SetMeasurements(EmptyMarkovPropertyCounts(),
-                    MarkovPropertyTable(IsLimit() ? std::optional(0.0) : std::nullopt));
+    SetMeasurements(EmptyMarkovPropertyCounts(), MarkovPropertyTable(IsLimit()));
   }
 
   std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {

@@ -124,10 +124,12 @@ void CountOrbit(uint64_t number, double energy, std::span<const Exchange> exchan
   }
 }
 
-std::vector<Measurement> MarkovPropertyTable(std::optional<double> exact_correlation) {
+std::vector<Measurement> MarkovPropertyTable(bool is_limit) {
   constexpr size_t kAllTogether = 1;
   const auto correlation = [&](const char* name, Correlation index) {
-    return Measurement{.name = name, .reading = CorrelationAt(index), .exact = exact_correlation};
+    return Measurement{.name = name,
+                       .reading = CorrelationAt(index),
+                       .exact = is_limit ? std::optional(0.0) : std::nullopt};
   };
   return {correlation("memory_correlation", kMemory),
           correlation("waiting_outcome_correlation", kWaitingOutcome),

@@ -62,8 +62,8 @@ BlockResult EmptyMarkovPropertyCounts();
 void CountOrbit(uint64_t number, double energy, std::span<const Exchange> exchanges,
                 BlockResult& counts);
 
-// `exact_correlation` is 0 if the orbits are those of the jump process, else empty. Distances are
+// `is_limit`: the orbits are those of the jump process, whose correlation is 0. Distances are
 // omitted if the counts are empty.
-std::vector<Measurement> MarkovPropertyTable(std::optional<double> exact_correlation);
+std::vector<Measurement> MarkovPropertyTable(bool is_limit);
 
 }  // namespace ballpiston

@@ -18,14 +18,14 @@ inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 class EventQueue {
  public:
-  // No body has an event.
+  // No body has an event. Requires bodies > 0.
   explicit EventQueue(size_t bodies) : bodies_(bodies), entries_(2 * bodies) {}
 
   struct Entry {
     double time = kNever;
     uint32_t body = 0;
 
-    // & instead of &&, because the result is often mispredicted.
+    // & instead of &&, because the processor often predicts a branch on the result wrongly.
     bool IsBefore(const Entry& other) const {
       return (int{time < other.time} | (int{time == other.time} & int{body < other.body})) != 0;
     }

@@ -219,10 +219,7 @@ void LaneGas::MoveOriginOfPiston(Replica& replica, uint32_t number) {
 // The ball is to fly, from its state in from_ to the window's end.
 void LaneGas::Order(const Replica& replica, uint32_t ball) {
   contacts_[ball].time = kNever;
-  FlightOrder& order = orders_.emplace_back();
-  order.ball = ball;
-  order.from_time = replica.now;
-  order.until_time = replica.end;
+  orders_.push_back({.ball = ball, .from_time = replica.now, .until_time = replica.end});
   orders_are_new_ = true;
 }
 
@@ -295,9 +292,9 @@ void LaneGas::LeaveThermalWall(Replica& replica, uint32_t number) {
             .phase = is_hot ? 0 : gas_.wave.stroke()};
   replica.meter->SetPiston(replica.origin + replica.now, local, piston.speed * piston.speed / 2);
   FindArrival(replica, number);
-  const Direction toward_ball = is_hot ? Direction::kLeft : Direction::kRight;
-  const int64_t ball = gas_.geometry.BallOf(local, toward_ball);
-  OrderVisitor(replica, replica.first_ball + static_cast<uint32_t>(ball), toward_ball);
+  const Direction toward_piston = is_hot ? Direction::kLeft : Direction::kRight;
+  const int64_t ball = gas_.geometry.BallOf(local, toward_piston);
+  OrderVisitor(replica, replica.first_ball + static_cast<uint32_t>(ball), toward_piston);
 }
 
 // The pair's exchange, in the cell turned until the piston is on the right.

@@ -71,7 +71,8 @@ struct MeetingInTime {
 };
 
 // The directions in which a ball came within reach of the piston. Each direction has eight bits, of
-// which the lowest is used: so the lanes find them in their masks of eight lanes.
+// which the lowest is used: a vector's mask, which has a
+// bit for each lane, gives a ball's visits when it is shifted right by the lane.
 using Visits = uint32_t;
 inline constexpr size_t kBitsOfADirection = 8;
 

@@ -69,7 +69,7 @@ class ReferenceGas {
     // With the pistons, by direction; kNever if it hits a wall before.
     std::array<double, 4> contact_times = {kNever, kNever, kNever, kNever};
     Direction contact = Direction::kRight;  // the first of them
-    double origin = 0;                      // when they were all found
+    double origin = 0;                      // the time when all of them were found
 
     double ContactTime() const { return contact_times[static_cast<size_t>(contact)]; }
   };

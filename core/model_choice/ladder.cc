@@ -45,8 +45,8 @@ class Question {
   bool HasLimit() const { return aim().limit_error != nullptr; }
   // Whether a bound of the limit's error is known.
   bool HasLimitError() const { return HasLimit() && aim().limit_error->is_known(point_); }
-  // Whether pilots can check the bound. They are runs of energy-relaxation. In a gas one would take
-  // as long as the billiard's answer.
+  // Whether pilots can check the bound. They are runs of energy-relaxation. In a gas a pilot would
+  // take as long as the billiard's answer.
   bool HasPilots() const { return HasLimitError() && spec_.experiment == &kEnergyRelaxation; }
   double ExpectedLimitError() const { return aim().limit_error->expected(point_); }
   bool IsSoundForBilliard() const { return ballpiston::IsSoundForBilliard(spec_, point_); }

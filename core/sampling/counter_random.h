@@ -1,11 +1,11 @@
 // Uniform random numbers as a pure function of (seed, stream, sample, draw).
 //
 // Counter-based (Philox4x64-10 of Random123): key (seed, stream), counter (sample, draw/4, part). A
-// block is the four words of one counter. Its products of 64 by 64 bits have no vector instruction.
-// Made of four products of 32 bits, blocks in vector lanes would take as long with AVX-512, and
-// twice as long with AVX2. But code that is compiled for AVX2 has an instruction (mulx) that saves
-// a fifth of a block's time. So functions for many words draw blocks there, and blocks are always
-// inlined. The numbers of a sample do not depend on the machine, the time, or earlier computations.
+// block is the four words of one counter. Philox multiplies 64 by 64 bits, for which there is no
+// vector instruction. Made of four products of 32 bits, blocks in vector lanes would take as long
+// with AVX-512, and twice as long with AVX2. Code that is compiled for AVX2 has an instruction
+// (mulx) that saves a fifth of a block's time, so blocks are always inlined into it. The numbers of
+// a sample do not depend on the machine, the time, or earlier computations.
 //   seed    the user's seed.
 //   stream  separates quantities that must be independent under one seed, e.g. points of a grid.
 //   sample  index of the sample within the stream.

@@ -31,7 +31,7 @@ struct GroupScatter {
   double chi_squared_variance = 1;  // its variance
 };
 
-// False: nothing can be said before every group has samples.
+// Whether every group has samples. Without them the scatter is unknown.
 bool HaveSamples(std::span<const Histogram> groups);
 
 // `groups`: kGroups histograms with the same cells, row by row. Requires HaveSamples.

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "absl/memory/memory.h"
 #include "absl/strings/str_cat.h"
 #include "server/convert/errors.h"
 
@@ -17,6 +16,8 @@ absl::Status TooMany(const std::string& what, const std::string& flag, int64_t l
 
 absl::StatusOr<std::shared_ptr<OpenCalls::Call>> OpenCalls::Begin(const std::string& principal,
                                                                   int64_t bytes) {
+  // Before the lock: if memory runs out, nothing is counted. A rejected call ends after the lock.
+  const std::shared_ptr<Call> call(new Call(*this, principal));
   MutexLock lock(mutex_);
   Held& held = held_[principal];
   const int64_t most_calls = limits_.max_calls_per_principal;
@@ -32,22 +33,24 @@ absl::StatusOr<std::shared_ptr<OpenCalls::Call>> OpenCalls::Begin(const std::str
   }
   ++held.calls;
   held.bytes += bytes;
-  return absl::WrapUnique(new Call(*this, principal, bytes));
+  call->bytes_ = bytes;
+  return call;
 }
 
-OpenCalls::Call::Call(OpenCalls& all, std::string principal, int64_t bytes)
-    : all_(all), principal_(std::move(principal)), bytes_(bytes) {}
+OpenCalls::Call::Call(OpenCalls& all, std::string principal)
+    : all_(all), principal_(std::move(principal)) {}
 
 void OpenCalls::Call::AddBytes(int64_t bytes) {
   MutexLock lock(all_.mutex_);
-  bytes_ += bytes;
+  *bytes_ += bytes;
   all_.held_[principal_].bytes += bytes;
 }
 
 OpenCalls::Call::~Call() {
+  if (!bytes_) return;
   MutexLock lock(all_.mutex_);
   const auto held = all_.held_.find(principal_);
-  held->second.bytes -= bytes_;
+  held->second.bytes -= *bytes_;
   if (--held->second.calls == 0) all_.held_.erase(held);
 }
 

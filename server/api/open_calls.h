@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -24,11 +25,11 @@ class OpenCalls {
 
    private:
     friend class OpenCalls;
-    Call(OpenCalls& all, std::string principal, int64_t bytes);
+    Call(OpenCalls& all, std::string principal);
 
     OpenCalls& all_;
     const std::string principal_;
-    int64_t bytes_;
+    std::optional<int64_t> bytes_;  // empty until the call is counted
   };
 
   explicit OpenCalls(const Limits& limits) : limits_(limits) {}

@@ -15,7 +15,8 @@ class ReflectionStream : public grpc::experimental::Interceptor {
       : context_(context), streams_(streams), is_surplus_(++streams > kReflectionStreams) {}
   ~ReflectionStream() override { --streams_; }
 
-  // gRPC can end the stream from this hook on. Then the service finds no request.
+  // This is the first hook at which gRPC can cancel a stream. The service then reads no request and
+  // returns.
   void Intercept(grpc::experimental::InterceptorBatchMethods* batch) override {
     constexpr auto kBegun = InterceptionHookPoints::POST_RECV_INITIAL_METADATA;
     if (is_surplus_ && batch->QueryInterceptionHookPoint(kBegun)) {

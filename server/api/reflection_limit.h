@@ -1,5 +1,5 @@
-// Limits the reflection streams of all clients. The service is gRPC's own and known to no other
-// limit; each of its streams has a thread until its client ends it. Thread-safe.
+// Limits the reflection streams of all clients. The service is part of gRPC, so no other limit
+// counts its streams. Each stream has a thread until its client ends it. Thread-safe.
 #pragma once
 
 #include <atomic>

@@ -49,6 +49,7 @@ grpc::Status ServeUnary(ServiceContext& service, grpc::ServerContext& context, c
     service.calls.Keep(context, *open);
     std::optional<Turns::Turn> turn;
     if (!rule.writes) turn.emplace(service.turns, call->caller.name);
+    if (context.IsCancelled()) return absl::CancelledError("the client is gone");
     absl::StatusOr<Response> answer = method(service, *call, request);
     if (!answer.ok()) return answer.status();
     response = *std::move(answer);
@@ -63,12 +64,15 @@ grpc::Status ServeUnary(ServiceContext& service, grpc::ServerContext& context, c
 inline grpc::Status ServeStream(ServiceContext& service, grpc::ServerContext& context,
                                 const CallRule& rule,
                                 absl::FunctionRef<absl::Status(Stream& stream)> run) {
-  const std::shared_ptr<void> active = service.activity.Begin();
-  const absl::StatusOr<Call> call = AdmitCall(service, context, rule);
-  if (!call.ok()) return GrpcStatus(call.status());
-  Stream stream(service.streams, context, call->caller);
-  if (const absl::Status added = service.streams.Add(stream); !added.ok()) return GrpcStatus(added);
-  return GrpcStatus(WithoutExceptions([&] { return run(stream); }));
+  const auto admit_and_run = [&]() -> absl::Status {
+    const std::shared_ptr<void> active = service.activity.Begin();
+    const absl::StatusOr<Call> call = AdmitCall(service, context, rule);
+    if (!call.ok()) return call.status();
+    Stream stream(service.streams, context, call->caller);
+    if (absl::Status added = service.streams.Add(stream); !added.ok()) return added;
+    return run(stream);
+  };
+  return GrpcStatus(WithoutExceptions(admit_and_run));
 }
 
 }  // namespace ballpiston::server

@@ -9,7 +9,7 @@
 namespace ballpiston::server {
 namespace {
 
-// A stream that has not checked its credentials for so long after it should have, stalls.
+// A stream has stalled if its check of credentials is overdue by this time.
 constexpr std::chrono::seconds kGrace(1);
 
 bool IsFull(int64_t streams, int64_t limit) { return limit != 0 && streams >= limit; }
@@ -85,7 +85,7 @@ absl::StatusOr<Principal> Streams::Authenticate(const Stream& stream) const {
   return caller;
 }
 
-void Streams::EndStalled() {
+void Streams::EndRevoked() {
   MutexLock lock(mutex_);
   const auto now = Stream::Clock::now();
   for (Stream* stream : streams_) {

@@ -61,7 +61,7 @@ class Streams {
 
   // Ends the streams whose readers stall and whose credentials are no longer valid. Call about once
   // a second.
-  void EndStalled();
+  void EndRevoked();
 
   size_t size() const { return size_; }
   std::map<std::string, int64_t> ByPrincipal() const;

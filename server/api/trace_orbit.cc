@@ -6,7 +6,7 @@
 namespace ballpiston::server {
 namespace {
 
-// Other calls compute in between.
+// Takes a turn for each message, so other calls can compute between two messages.
 void FillInTurn(ServiceContext& service, const Stream& stream, TraceMessages& messages,
                 v1::TraceOrbitResponse& message) {
   const Turns::Turn turn(service.turns, stream.caller().name);

@@ -29,7 +29,7 @@ class Turns {
   };
 
  private:
-  // A condition each, so that a turn that is given back wakes one call of each principal.
+  // Each principal has its own condition: a turn that is given back wakes one call of each.
   struct OfPrincipal {
     int taken = 0;
     int calls = 0;  // with a turn, or waiting for one

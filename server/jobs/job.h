@@ -66,7 +66,7 @@ class Job {
   void NoteStateChange();
   // Waits for a change of state after number `after`, at most until the time `until`.
   void AwaitStateChange(uint64_t after, std::chrono::steady_clock::time_point until);
-  // From now on nobody waits: the server stops.
+  // Ends all waits, now and later. Call it when the server stops.
   void StopWaiting();
 
   // Adds the samples of merged blocks or of a restored checkpoint, and their share of the point.

@@ -26,9 +26,8 @@ class CountedReturns : public NumberedOrbits {
 
   PairState Start(uint64_t orbit) override { return returns_.Start(orbit); }
   AfterContact Meet(uint64_t orbit, const Contact& contact) override {
-    if (contact.escaped) return AfterContact::kEnd;
     wall_hits_ += contact.ball_wall_hits;
-    return returns_.Meet(orbit, contact);
+    return contact.escaped ? AfterContact::kEnd : returns_.Meet(orbit, contact);
   }
 
   void AddTo(ReturnStatistics& statistics) const {

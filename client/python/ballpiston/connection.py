@@ -75,7 +75,12 @@ class Connection:
         not interrupt: a call that is interrupted while it begins is never read by gRPC, and the
         interpreter would wait for it forever at its exit."""
         with ThreadPoolExecutor(max_workers=1) as thread:
-            return thread.submit(method, request).result()
+            begun = thread.submit(method, request)
+            try:
+                return begun.result()
+            except KeyboardInterrupt:
+                begun.result().cancel()
+                raise
 
     def error_of(self, rpc_error: grpc.RpcError) -> Error:
         """The exception for a failed call. An error without a reason is one of the connection: its

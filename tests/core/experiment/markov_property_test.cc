@@ -54,9 +54,8 @@ BlockResult CountsOfProcess(uint64_t seed, int orbits, Outcome outcome, Exponent
   return counts;
 }
 
-std::vector<Estimate> EstimatesOf(const BlockResult& counts,
-                                  std::optional<double> exact_correlation = {}) {
-  return EstimatesOf(MarkovPropertyTable(exact_correlation), counts);
+std::vector<Estimate> EstimatesOf(const BlockResult& counts, bool is_limit = false) {
+  return EstimatesOf(MarkovPropertyTable(is_limit), counts);
 }
 
 double Uniform(CounterRandom& random) { return random.Uniform(); }
@@ -73,7 +72,7 @@ BlockResult CountsOfJumpProcess(uint64_t seed, int orbits) {
 TEST(MarkovPropertyStatistics, JumpProcessHasNoMemory) {
   const BlockResult counts = CountsOfJumpProcess(1, 20'000);
   ASSERT_EQ(counts.samples, 640'000u);
-  const std::vector<Estimate> estimates = EstimatesOf(counts, 0);
+  const std::vector<Estimate> estimates = EstimatesOf(counts, true);
   ASSERT_EQ(estimates.size(), 6u);
   for (const Estimate& estimate : estimates) {
     if (estimate.name == "hitting_time_ks_distance") {
@@ -92,7 +91,7 @@ TEST(MarkovPropertyDivergence, NoiseFloorsHoldForTheJumpProcess) {
   for (const char* const name : {"transition_divergence", "memory_divergence"}) {
     Moments excess, errors;
     for (uint64_t seed = 0; seed < 100; ++seed) {
-      const auto estimates = EstimatesOf(CountsOfJumpProcess(100 + seed, 400), 0);
+      const auto estimates = EstimatesOf(CountsOfJumpProcess(100 + seed, 400), true);
       const Estimate& divergence = Named(name, estimates);
       excess.Add(divergence.value - *divergence.noise_floor);
       errors.Add(*divergence.standard_error);
@@ -163,7 +162,7 @@ TEST(MarkovPropertyStatistics, EnergiesAtBothEndsAreCounted) {
                                            {.waiting_time = 1, .energy = 0.25}};
   CountOrbit(0, 0, exchanges, counts);
   EXPECT_EQ(counts.samples, 4u);
-  for (const Estimate& estimate : EstimatesOf(counts, 0)) {
+  for (const Estimate& estimate : EstimatesOf(counts, true)) {
     EXPECT_TRUE(std::isfinite(estimate.value)) << estimate.name;
   }
 }

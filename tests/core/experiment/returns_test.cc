@@ -38,7 +38,7 @@ TEST(ReturnOrbits, AnEscapedOrbitCountsAsAnEscapeOnly) {
   EXPECT_NEAR(result.health.max_energy_error, 1.5e-10, 1e-11);
 }
 
-TEST(HitTimeLaw, SurvivalIsTheShareOfLaterHits) {
+TEST(ReturnTimes, SurvivalIsTheShareOfLaterHits) {
   Histogram times = EmptyReturnTimes(1);
   for (int i = 0; i < 300; ++i) times.Add(0.05);
   for (int i = 0; i < 100; ++i) times.Add(100);
@@ -60,7 +60,7 @@ TEST(HitTimeLaw, SurvivalIsTheShareOfLaterHits) {
 
 // The integral of the survival probability is the mean. The test uses the trapezoidal rule and
 // leaves out the part beyond the last bin; both change the integral by less than 0.002 of it.
-TEST(HitTimeLaw, IntegralOfTheSurvivalIsTheMeanHitTime) {
+TEST(ReturnTimes, IntegralOfTheSurvivalIsTheMeanHitTime) {
   for (const double exponent : {0.0, 1.0, 10.0}) {
     const PointSummary summary = RunPoint(
         SpecOf(&kFirstHit, PaperPoint(0.2, 0.125, exponent), {.samples = 5'000}, Model::kBilliard));
@@ -76,7 +76,7 @@ TEST(HitTimeLaw, IntegralOfTheSurvivalIsTheMeanHitTime) {
   }
 }
 
-TEST(HitTimeLaw, HistogramsAndDivergenceUseOnlyTheAngle) {
+TEST(ReturnTimes, HistogramsAndDivergenceUseOnlyTheAngle) {
   const PointSummary summary =
       RunPoint(SpecOf(&kFirstHit, PaperPoint(0.2, 0.3, 1), {.samples = 1'000}, Model::kBilliard));
   ASSERT_EQ(summary.histograms.size(), 1u);

@@ -1,7 +1,8 @@
+#include "core/ensemble/experiment_kind.h"
+
 #include <gtest/gtest.h>
 
 #include "core/ensemble/chunk_fold.h"
-#include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
 #include "tests/core/one_point_spec.h"
 
@@ -70,8 +71,9 @@ TEST(PointMemory, CountsTheWaitingResults) {
     const PointParameters point =
         experiment == &kFirstHit ? PaperPoint(0.2, 0.1, 1) : PaperPoint(0.2);
     const EnsembleSpec spec = SpecOf(experiment, point, {}, Model::kBilliard);
+    const auto point_experiment = PointExperiment::Create(spec, 0);
     double bytes = 0;
-    for (const Histogram& histogram : PointExperiment::Create(spec, 0)->EmptyResult().histograms) {
+    for (const Histogram& histogram : point_experiment->EmptyResult().histograms) {
       bytes += static_cast<double>(histogram.counts.size() * sizeof(uint64_t));
     }
     EXPECT_GT(experiment->memory_of_a_result, bytes) << experiment->name;
