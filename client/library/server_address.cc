@@ -1,5 +1,8 @@
 #include "client/library/server_address.h"
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
+
 #include <cstdint>
 
 #include "absl/status/status.h"
