@@ -23,8 +23,8 @@ ServerOptions OptionsIn(const std::string& data_dir, const TestServerOptions& op
   ServerOptions all;
   all.data_dir = data_dir;
   all.listen = options.listen;
-  all.security = options.security;
-  all.socket_users = options.socket_users;
+  all.door = options.door;
+  all.door.own_tokens = data_dir + "/tokens";
   all.workers = options.workers;
   all.factory = options.factory;
   all.watch = options.watch;

@@ -9,7 +9,6 @@
 
 #include <chrono>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -31,8 +30,7 @@ namespace ballpiston::server {
 struct TestServerOptions {
   std::string data_dir = {};  // empty: a temporary folder, removed with the server
   std::string listen = {};    // empty: a Unix socket in the data folder
-  SecurityOptions security = {};
-  std::set<uid_t> socket_users = OwnUserAndRoot();
+  DoorOptions door = {};
   int workers = 2;
   ExperimentFactory factory = FakeExperiments();  // null: the core's, by the chosen model
   WatchTiming watch = {.snapshot = std::chrono::milliseconds(2)};
@@ -45,9 +43,7 @@ struct TestServerOptions {
 // Silent and old connections stay open.
 inline constexpr ConnectionTiming kOnlyClosedByAStop = {.handshake = kNever,
                                                         .ping_interval = kNever,
-                                                        .ping_timeout = kNever,
-                                                        .certified_age = kNever,
-                                                        .certified_age_grace = kNever};
+                                                        .ping_timeout = kNever};
 
 // A channel, and frequent calls on it. Calls that do not return a status expect OK.
 class TestClient {

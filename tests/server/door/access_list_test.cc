@@ -83,39 +83,20 @@ TEST(AccessList, AnEntryIsRefusedFromItsTimeOfExpiryOn) {
   const AccessList list =
       ParsedList("token " + HashText("time") + " a read 2030-06-01T12:00:00Z\ntoken " +
                  HashText("zone") + " b read 2030-06-01T14:00:00.5+02:00\ntoken " +
-                 HashText("date") + " c read 2030-06-02\ncertificate old d read 2030-06-01\n");
+                 HashText("date") + " c read 2030-06-02\n");
   EXPECT_OK(list.OfToken("time", kNoon - absl::Milliseconds(1)));
   EXPECT_THAT(list.OfToken("time", kNoon), IsRefusedAs("CREDENTIALS_EXPIRED"));
   EXPECT_OK(list.OfToken("zone", kNoon));
   EXPECT_THAT(list.OfToken("zone", kNoon + absl::Seconds(1)), IsRefusedAs("CREDENTIALS_EXPIRED"));
   EXPECT_OK(list.OfToken("date", kNoon + absl::Hours(11)));
   EXPECT_THAT(list.OfToken("date", kNoon + absl::Hours(12)), IsRefusedAs("CREDENTIALS_EXPIRED"));
-  EXPECT_THAT(list.OfCertificate("old", kNoon), IsRefusedAs("CREDENTIALS_EXPIRED"));
-}
-
-TEST(AccessList, ACertificateIsKnownByItsWholeCommonName) {
-  const AccessList list =
-      ParsedList("certificate \"Ada Lovelace\" ada admin\ncertificate box box read");
-  EXPECT_TRUE(list.has_certificates());
-  EXPECT_EQ(list.OfCertificate("Ada Lovelace", kNoon)->name, "ada");
-  EXPECT_EQ(list.OfCertificate("box", kNoon)->role, Role::kRead);
-  const std::string longest(256, 'x');
-  EXPECT_OK(ParsedList("certificate " + longest + " x read").OfCertificate(longest, kNoon));
-  for (const std::string name : {"Ada", "", "BOX", "box.evil.example"}) {
-    EXPECT_THAT(list.OfCertificate(name, kNoon), IsRefusedAs("CREDENTIALS_INVALID"));
-  }
-  EXPECT_THAT(list.OfCertificate(std::string("box\0.evil", 9), kNoon),
-              IsRefusedAs("CREDENTIALS_INVALID"));
 }
 
 TEST(AccessList, AFormattedEntryIsReadBack) {
-  const AccessEntry entries[] = {
-      {HashOf("one"), {"alice", Role::kSubmit}, kNoon},
-      {CommonName{"Ada Lovelace"}, {"ada", Role::kAdmin}, absl::InfiniteFuture()},
-      {UnixUser{"LAB\\ada"}, {"ada", Role::kRead}, absl::InfiniteFuture()}};
-  for (const AccessEntry& entry : entries) {
+  for (const absl::Time expires : {kNoon, absl::InfiniteFuture()}) {
+    const AccessEntry entry = {HashOf("one"), {"alice", Role::kSubmit}, expires};
     ASSERT_OK_AND_ASSIGN(const auto read, ParseAccessEntry(FormatAccessEntry(entry)));
-    EXPECT_EQ(read->credential, entry.credential);
+    EXPECT_EQ(read->token, entry.token);
     EXPECT_EQ(read->principal.name, entry.principal.name);
     EXPECT_EQ(read->principal.role, entry.principal.role);
     EXPECT_EQ(read->expires, entry.expires);
@@ -127,13 +108,13 @@ TEST(AccessList, ErrorsNameTheLineAndDoNotQuoteIt) {
   const std::string secret = "hunter2hunter2";
   const std::string good = HashText("one");
   const std::pair<std::string, std::string> cases[] = {
-      {secret, "there are 1 words"},
-      {"token " + secret, "words"},
+      {secret, "the line of a token"},
+      {"token " + secret, "the line of a token"},
       {"token " + secret + " alice read", "sha256: and 64 hexadecimal digits"},
       {"token sha256:" + secret + " alice read", "64 hexadecimal digits"},
       {"token " + good + "0 alice read", "64 hexadecimal digits"},
       {"token " + good.substr(0, 70) + "g alice read", "64 hexadecimal digits"},
-      {secret + " " + good + " alice read", "permitted: token, certificate"},
+      {secret + " " + good + " alice read", "permitted: token sha256:HEX"},
       {"token " + good + " " + secret + "! read", "a-z"},
       {"token " + good + " local read", "not local"},
       {"token " + good + " " + std::string(65, 'a') + " read", "1 to 64"},
@@ -142,11 +123,8 @@ TEST(AccessList, ErrorsNameTheLineAndDoNotQuoteIt) {
       {"token " + good + " alice read " + secret, "2027-01-31"},
       {"token " + good + " alice read infinite-future", "2027-01-31"},
       {"token " + good + " alice read 2030-13-01", "2027-01-31"},
-      {"token " + good + " alice read 2030-06-01 " + secret, "there are 6 words"},
-      {"certificate \"" + secret + " alice read", "quotation mark"},
-      {"certificate \"\" alice read", "quotation mark"},
-      {"certificate " + secret + std::string(257 - secret.size(), 'x') + " alice read",
-       "at most 256"}};
+      {"token " + good + " alice read 2030-06-01 " + secret, "the line of a token"},
+      {"certificate " + secret + " alice read", "the line of a token"}};
   for (const auto& [line, permitted] : cases) {
     EXPECT_THAT(ErrorOf("# first\n" + line + "\n"),
                 AllOf(HasSubstr("--access-file=list, line 2: "), HasSubstr(permitted),
@@ -154,11 +132,9 @@ TEST(AccessList, ErrorsNameTheLineAndDoNotQuoteIt) {
   }
 }
 
-TEST(AccessList, TwoEntriesOfOneCredentialAreRefused) {
+TEST(AccessList, TwoEntriesOfOneTokenAreRefused) {
   const std::string line = "token " + HashText("one") + " alice read\n";
   EXPECT_THAT(ErrorOf(line + "token " + HashText("one") + " bob admin"), HasSubstr("line 2"));
-  EXPECT_THAT(ErrorOf("certificate a alice read\n\ncertificate \"a\" bob read"),
-              HasSubstr("line 3"));
 }
 
 class AccessFile : public ::testing::Test {

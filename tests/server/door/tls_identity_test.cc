@@ -1,5 +1,5 @@
 // The files of a server's TLS identity: read, checked and published again as a whole.
-#include "server/door/tls_files.h"
+#include "server/door/tls_identity.h"
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -30,14 +30,13 @@ class TlsFilesTest : public ::testing::Test {
  protected:
   std::string Error() const {
     const auto identity = ReadTlsIdentity({{"tls-certificate", files_.options().tls_certificate},
-                                           {"tls-key", files_.options().tls_key},
-                                           {"tls-client-ca", files_.options().tls_client_ca}});
+                                           {"tls-key", files_.options().tls_key}});
     if (identity.ok()) return "";
     EXPECT_THAT(identity, StatusIs(absl::StatusCode::kInvalidArgument, Not(HasSubstr("BEGIN"))));
     return std::string(identity.status().message());
   }
 
-  const LaboratoryFiles files_{true};
+  const LaboratoryFiles files_;
   const TestAuthority other_{"another authority"};
 };
 
@@ -68,12 +67,8 @@ TEST_F(TlsFilesTest, AFileThatIsNotPemIsRefused) {
     files_.Write("server.pem", text);
     EXPECT_THAT(Error(), HasSubstr("--tls-certificate")) << text;
   }
-  const KeyAndCertificate good = files_.authority().Issue("good");
-  files_.WriteCertificate({good.certificate, "nonsense"});
+  files_.WriteCertificate({files_.authority().Issue("good").certificate, "nonsense"});
   EXPECT_THAT(Error(), HasSubstr("has no private key"));
-  files_.WriteCertificate(good);
-  files_.Write("clients.pem", "nonsense");
-  EXPECT_THAT(Error(), HasSubstr("--tls-client-ca"));
 }
 
 TEST_F(TlsFilesTest, AMissingFileIsNamed) {
@@ -120,14 +115,12 @@ std::string Published() {
   return all;
 }
 
-// The certificate must not be exchanged without the authority that belongs to it.
-TEST(ServerTls, IfOneFileCannotBePublishedBothStayOld) {
-  const LaboratoryFiles files(true);
-  const SecurityOptions& options = files.options();
+TEST(ServerTls, ACertificateThatCannotBePublishedLeavesTheOldOne) {
+  const LaboratoryFiles files;
+  const DoorOptions& options = files.options();
   ASSERT_OK_AND_ASSIGN(const auto tls,
                        ServerTls::Create({{"tls-certificate", options.tls_certificate},
-                                          {"tls-key", options.tls_key},
-                                          {"tls-client-ca", options.tls_client_ca}}));
+                                          {"tls-key", options.tls_key}}));
   const KeyAndCertificate next = files.authority().Issue("server-2");
   files.WriteCertificate(next);
   rlimit before{};

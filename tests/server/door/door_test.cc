@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -33,13 +34,10 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// The given flags, as letters: a(ccess file), c(ertificate), k(ey), m(utual: client CA).
-SecurityOptions Flags(const std::string& letters) {
+// The given flags, as letters: a(ccess file), c(ertificate), k(ey).
+DoorOptions Flags(const std::string& letters) {
   const auto path = [&](char letter) { return letters.find(letter) == letters.npos ? "" : "f"; };
-  return {.access_file = path('a'),
-          .tls_certificate = path('c'),
-          .tls_key = path('k'),
-          .tls_client_ca = path('m')};
+  return {.access_file = path('a'), .tls_certificate = path('c'), .tls_key = path('k')};
 }
 
 std::string Refusal(const std::string& listen, const std::string& flags) {
@@ -50,93 +48,36 @@ std::string Refusal(const std::string& listen, const std::string& flags) {
   return std::string(status.message());
 }
 
-TEST(SecurityCombination, OnlySafeOnesOfAllSixteenAreAccepted) {
+TEST(DoorCombination, OnlySafeOnesOfAllEightAreAccepted) {
   const std::map<std::string, std::set<std::string>> accepted = {
       {"unix:/tmp/x", {""}},
-      {"127.0.0.1:1", {"", "ck", "cka", "ckam"}},
-      {"[::1]:1", {"", "ck", "cka", "ckam"}},
-      {"localhost:1", {"", "ck", "cka", "ckam"}},
-      {"0.0.0.0:1", {"cka", "ckam"}},
-      {"[::]:1", {"cka", "ckam"}},
-      {"192.168.0.7:1", {"cka", "ckam"}},
-      {"node.example.org:1", {"cka", "ckam"}}};
+      {"127.0.0.1:1", {"", "a", "cka"}},
+      {"[::1]:1", {"", "a", "cka"}},
+      {"localhost:1", {"", "a", "cka"}},
+      {"0.0.0.0:1", {"cka"}},
+      {"[::]:1", {"cka"}},
+      {"192.168.0.7:1", {"cka"}},
+      {"node.example.org:1", {"cka"}}};
   for (const auto& [listen, safe] : accepted) {
-    for (unsigned set = 0; set < 16; ++set) {
+    for (unsigned set = 0; set < 8; ++set) {
       std::string flags;
-      for (unsigned i = 0; i < 4; ++i)
-        flags += (set >> i & 1) != 0 ? std::string(1, "ckam"[i]) : "";
+      for (unsigned i = 0; i < 3; ++i) flags += (set >> i & 1) != 0 ? std::string(1, "cka"[i]) : "";
       EXPECT_EQ(Refusal(listen, flags).empty(), safe.count(flags) == 1) << listen << " " << flags;
     }
   }
 }
 
-TEST(SecurityCombination, AnErrorNamesTheMissingFlags) {
+TEST(DoorCombination, AnErrorNamesTheMissingFlags) {
   EXPECT_THAT(Refusal("0.0.0.0:1", ""),
               HasSubstr("missing: --tls-certificate and --tls-key and --access-file"));
   EXPECT_THAT(Refusal("0.0.0.0:1", "ck"), HasSubstr("missing: --access-file"));
   EXPECT_THAT(Refusal("0.0.0.0:1", "a"), HasSubstr("missing: --tls-certificate"));
-  EXPECT_THAT(Refusal("127.0.0.1:1", "a"), HasSubstr("others could read the tokens"));
   EXPECT_THAT(Refusal("127.0.0.1:1", "c"), HasSubstr("both or neither"));
-  EXPECT_THAT(Refusal("127.0.0.1:1", "ckm"), HasSubstr("--access-file"));
+  EXPECT_THAT(Refusal("127.0.0.1:1", "ck"), HasSubstr("missing: --access-file"));
   EXPECT_THAT(Refusal("unix:x", "ck"), HasSubstr("--tls-certificate, --tls-key"));
 }
 
-std::string RefusalOf(const std::string& listen, const SecurityOptions& options) {
-  return std::string(CheckCombination(options, *ParseListenAddress(listen)).message());
-}
-
-TEST(SecurityCombination, FlagsOfAUnixSocketNeedOne) {
-  for (const char* listen : {"127.0.0.1:1", "0.0.0.0:1"}) {
-    EXPECT_THAT(
-        RefusalOf(listen, {.socket_mode = 0600}),
-        HasSubstr(std::string("--socket-mode=0600 needs --listen=unix:PATH, not --listen=") +
-                  listen));
-    EXPECT_THAT(RefusalOf(listen, {.socket_group = "adm"}),
-                HasSubstr("--socket-group=adm needs --listen=unix:PATH"));
-  }
-  SecurityOptions secure = Flags("cka");
-  secure.socket_mode = 0666;
-  EXPECT_THAT(RefusalOf("0.0.0.0:1", secure), HasSubstr("--socket-mode=0666 needs"));
-  secure.tls_client_ca = "f";
-  EXPECT_THAT(RefusalOf("unix:x", secure),
-              HasSubstr("combined with --tls-certificate, --tls-key, --tls-client-ca"));
-}
-
-TEST(SecurityCombination, Mode0660AndAGroupNeedEachOther) {
-  EXPECT_EQ(RefusalOf("unix:x", {.socket_mode = 0660, .socket_group = "adm"}), "");
-  EXPECT_EQ(RefusalOf("unix:x", {.socket_mode = 0666}), "");
-  EXPECT_EQ(RefusalOf("unix:x", {.access_file = "f", .socket_mode = 0666}), "");
-  EXPECT_THAT(RefusalOf("unix:x", {.socket_mode = 0660}),
-              HasSubstr("--socket-mode=0660 needs --socket-group"));
-  for (const std::optional<mode_t> mode : {std::optional<mode_t>(), {0600}, {0666}}) {
-    EXPECT_THAT(RefusalOf("unix:x", {.socket_mode = mode, .socket_group = "adm"}),
-                HasSubstr("--socket-group=adm needs --socket-mode=0660"));
-  }
-  EXPECT_THAT(RefusalOf("unix:x", {.access_file = "f", .socket_mode = 0600}),
-              HasSubstr("cannot be combined with --access-file"));
-}
-
-TEST(SecurityCombination, ARoleOfTheLoopbackNeedsAnOpenLoopback) {
-  for (const char* listen : {"127.0.0.1:1", "localhost:1", "[::1]:1"}) {
-    EXPECT_EQ(RefusalOf(listen, {.loopback_role = Role::kAdmin}), "");
-  }
-  EXPECT_THAT(RefusalOf("unix:x", {.loopback_role = Role::kAdmin}),
-              HasSubstr("--loopback-role=admin needs --listen=HOST:PORT with a loopback host"));
-  SecurityOptions secure = Flags("cka");
-  secure.loopback_role = Role::kRead;
-  EXPECT_THAT(RefusalOf("0.0.0.0:1", secure),
-              HasSubstr("--loopback-role=read needs a loopback host, not --listen=0.0.0.0:1"));
-  EXPECT_THAT(RefusalOf("127.0.0.1:1", secure), HasSubstr("combined with --access-file"));
-}
-
-TEST(SecurityCombination, LinesOfUnixUsersNeedASharedSocket) {
-  const LaboratoryFiles files;
-  files.WriteAccessFile("user ada ada read\n");
-  const auto security = ServerSecurity::Create(files.options(), *ParseListenAddress("0.0.0.0:1"));
-  EXPECT_THAT(std::string(security.status().message()), HasSubstr("--socket-mode=0660 or 0666"));
-}
-
-// ---- the loopback without credentials ----
+// ---- the loopback without TLS ----
 
 std::string JobOfAlice(const TemporaryFolder& data) {
   const LaboratoryFiles files;
@@ -144,37 +85,52 @@ std::string JobOfAlice(const TemporaryFolder& data) {
   return TestClient(server.NewChannel(files.Credentials(kAlice))).Submit(Equilibrium(1, 2));
 }
 
-TEST(Loopback, UsersOfThisMachineSubmitJobsAndDoNotSeeThoseOfOthers) {
+std::string OwnTokenOf(const TemporaryFolder& data, const RunningServer& server) {
+  const std::string text = Contents(data.path() + "/tokens/" + server.address());
+  return text.substr(0, text.find('\n'));
+}
+
+TEST(Loopback, CallersWithoutATokenGetHealthOnly) {
+  RunningServer server({.listen = "127.0.0.1:0"});
+  for (const char* method : {kListJobs, kWatchJob}) {
+    EXPECT_EQ(ReasonOf(CallByName(server.channel(), method)), "CREDENTIALS_MISSING") << method;
+  }
+  EXPECT_OK(CallByName(server.channel(), kCheckHealth));
+}
+
+TEST(Loopback, TheServersUserIsItsAdministrator) {
   const TemporaryFolder data;
   const std::string job = JobOfAlice(data);
   RunningServer server({.data_dir = data.path(), .listen = "127.0.0.1:0"});
-  const v1::EnsembleJob own = server.Created(CreateRequest(Equilibrium(1, 2)));
-  EXPECT_EQ(own.principal(), "local");
-  EXPECT_EQ(server.List().jobs_size(), 1);
-  EXPECT_EQ(ReasonOf(server.Delete(job)), "JOB_NOT_FOUND");
+  const std::string token = OwnTokenOf(data, server);
+  v1::GetEnsembleJobRequest request;
+  request.set_name(job);
+  EXPECT_OK(CallByName(server.channel(), kGetJob, request.SerializeAsString(), Bearer(token)));
+  EXPECT_EQ(ReasonOf(CallByName(server.channel(), kListJobs, "", Bearer(token + "x"))),
+            "CREDENTIALS_INVALID");
 }
 
-TEST(Loopback, TheFlagMakesUsersOfThisMachineAdministrators) {
+TEST(Loopback, TheOwnTokenIsPrivateAndEndsWithTheServer) {
   const TemporaryFolder data;
-  const std::string job = JobOfAlice(data);
-  RunningServer server({.data_dir = data.path(),
-                        .listen = "127.0.0.1:0",
-                        .security = {.loopback_role = Role::kAdmin}});
-  EXPECT_EQ(server.Get(job).principal(), "alice");
+  std::string first;
+  {
+    RunningServer server({.data_dir = data.path(), .listen = "127.0.0.1:0"});
+    const std::string file = data.path() + "/tokens/" + server.address();
+    EXPECT_EQ(ModeOf(file), 0600u);
+    EXPECT_EQ(ModeOf(data.path() + "/tokens"), 0700u);
+    first = OwnTokenOf(data, server);
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(data.path() + "/tokens"));
+  RunningServer server({.data_dir = data.path(), .listen = "127.0.0.1:0"});
+  EXPECT_EQ(ReasonOf(CallByName(server.channel(), kListJobs, "", Bearer(first))),
+            "CREDENTIALS_INVALID");
 }
 
-TEST(Loopback, ARoleThatIsTooLowNamesTheFlag) {
-  RunningServer server({.listen = "127.0.0.1:0", .security = {.loopback_role = Role::kRead}});
-  EXPECT_EQ(server.List().jobs_size(), 0);
-  const grpc::Status status = server.Create(CreateRequest(Equilibrium(1, 2)));
-  EXPECT_THAT(status, StatusIs(grpc::StatusCode::PERMISSION_DENIED, HasSubstr("--loopback-role")));
-}
-
-TEST(SecurityCombination, CertificatesOnTheListNeedAnAuthorityOfClients) {
+TEST(Loopback, TokensOfTheAccessFileNeedNoTls) {
   const LaboratoryFiles files;
-  files.WriteAccessFile("certificate box box read\n");
-  const auto security = ServerSecurity::Create(files.options(), *ParseListenAddress("0.0.0.0:1"));
-  EXPECT_THAT(std::string(security.status().message()), HasSubstr("--tls-client-ca"));
+  RunningServer server({.listen = "127.0.0.1:0",
+                        .door = {.access_file = files.options().access_file}});
+  EXPECT_OK(CallByName(server.channel(), kListJobs, "", Bearer(kAlice)));
 }
 
 TEST(Start, APublicAddressWithoutCredentialsIsRefused) {
@@ -194,14 +150,10 @@ TEST(Start, APublicAddressWithCredentialsIsServed) {
 
 class SecureServer : public ::testing::Test {
  protected:
-  explicit SecureServer(bool mutual = false) : files_(mutual) {}
-
   grpc::Status List(const std::shared_ptr<grpc::Channel>& channel, const std::string& token) {
     return CallByName(channel, kListJobs, "", Bearer(token));
   }
-  std::shared_ptr<grpc::Channel> Channel(const KeyAndCertificate& own = {}) {
-    return server_.NewChannel(files_.Credentials("", own));
-  }
+  std::shared_ptr<grpc::Channel> Channel() { return server_.NewChannel(files_.Credentials()); }
   std::string ServedCommonName() const {
     return SilentTlsConnection(server_.address()).served_common_name();
   }
@@ -327,7 +279,7 @@ TEST_F(ClockNotSet, ANotYetValidCertificateReplacesAnother) {
   Start({hours(-2), hours(-1)});
   files_.WriteCertificate(files_.authority().Issue("early", {hours(1), hours(2)}));
   EXPECT_OK(server_->server().Reload());
-  EXPECT_GT(*server_->server().security().CertificateExpiry(), absl::Now() + absl::Hours(1));
+  EXPECT_GT(*server_->server().door().CertificateExpiry(), absl::Now() + absl::Hours(1));
   files_.WriteCertificate(files_.authority().Issue("good"));
   EXPECT_OK(server_->server().Reload());
   AwaitThat([this] { return List().ok(); });
@@ -343,53 +295,12 @@ TEST_F(SecureServer, ACertificateThatEndsSoonIsLogged) {
   EXPECT_THAT(reload(), HasSubstr("is valid until 2"));
   const auto day = absl::ToUnixSeconds(absl::Now()) + 24 * 3600;
   EXPECT_NEAR(
-      static_cast<double>(absl::ToUnixSeconds(*server_.server().security().CertificateExpiry())),
+      static_cast<double>(absl::ToUnixSeconds(*server_.server().door().CertificateExpiry())),
       static_cast<double>(day), 600);
   files_.WriteCertificate(
       files_.authority().Issue("server-2", {.until = std::chrono::hours(365 * 24)}));
   EXPECT_THAT(reload(), Not(HasSubstr("is valid until")));
-  EXPECT_GT(*server_.server().security().CertificateExpiry(), absl::Now() + absl::Hours(364 * 24));
-}
-
-class MutualServer : public SecureServer {
- protected:
-  MutualServer() : SecureServer(true) {
-    files_.WriteAccessFile(LaboratoryTokens() + "certificate \"Ada L.\" alice submit\n" +
-                           "certificate old bob submit 2020-01-01\n");
-    EXPECT_OK(Reload());
-  }
-  std::shared_ptr<grpc::Channel> With(const std::string& common_name) {
-    return Channel(files_.authority().Issue(common_name));
-  }
-};
-
-TEST_F(MutualServer, ACertificateBelongsToItsPrincipal) {
-  EXPECT_OK(List(With("Ada L."), ""));
-  EXPECT_EQ(ReasonOf(List(With("ada l."), "")), "CREDENTIALS_INVALID");
-  EXPECT_EQ(ReasonOf(List(With("old"), "")), "CREDENTIALS_EXPIRED");
-}
-
-TEST_F(MutualServer, ATokenBesideACertificateDecides) {
-  EXPECT_OK(List(With("stranger"), kBob));
-  EXPECT_EQ(ReasonOf(List(With("Ada L."), "no-such-token")), "CREDENTIALS_INVALID");
-}
-
-TEST_F(MutualServer, ClientsWithoutAGoodCertificateDoNotConnect) {
-  using std::chrono::hours;
-  const TestAuthority other("the laboratory's authority");  // of the same name
-  const auto expired = files_.authority().Issue("Ada L.", {hours(-2), hours(-1)});
-  for (const auto& own : {KeyAndCertificate(), other.Issue("Ada L."), expired}) {
-    EXPECT_THAT(List(Channel(own), kAlice), StatusIs(grpc::StatusCode::UNAVAILABLE));
-  }
-}
-
-TEST_F(MutualServer, TheAuthorityOfClientsIsExchangedToo) {
-  const TestAuthority next("the next authority");
-  files_.Write("clients.pem", next.Pem());
-  ASSERT_OK(Reload());
-  const auto own = next.Issue("Ada L.");
-  AwaitThat([&] { return List(Channel(own), "").ok(); });
-  EXPECT_FALSE(List(With("Ada L."), "").ok());
+  EXPECT_GT(*server_.server().door().CertificateExpiry(), absl::Now() + absl::Hours(364 * 24));
 }
 
 // The connection sends one byte and then nothing.
