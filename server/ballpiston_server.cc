@@ -117,9 +117,8 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
       Store::Open(directory->FilePath(kStoreFile), options.store);
   if (!store.ok()) return store.status();
   try {
-    std::unique_ptr<BallpistonServer> server(
-        new BallpistonServer(std::move(options), *std::move(directory), *address,
-                             *std::move(door), *std::move(store)));
+    std::unique_ptr<BallpistonServer> server(new BallpistonServer(
+        std::move(options), *std::move(directory), *address, *std::move(door), *std::move(store)));
     absl::Status status = server->book_.Resume();
     if (status.ok()) server->StartExecutors();
     if (status.ok()) server->StartKeepingLimits();
@@ -265,6 +264,7 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   store_->Flush().IgnoreError();
   book_.StoreNewWork(absl::Now());
   if (grpc_ != nullptr) grpc_->Shutdown(deadline);
+  door_->Close();
   if (metrics_ != nullptr) metrics_->Detach();
   store_->Close();
 }

@@ -143,7 +143,8 @@ const FlagGroup kServer = {
       "TLS: trust the certificate authorities of this system", "BALLPISTON_TLS"},
      {"--token-file",
       File(Security(&ChannelSecurity::token_file)),
-      "file with your token, for TLS or a loopback address; other users must not be able to read it",
+      "file with your token, for TLS or a loopback address; other users must not be able to read "
+      "it",
       "BALLPISTON_TOKEN_FILE",
       {"token"}},
      {"",

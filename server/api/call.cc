@@ -38,10 +38,10 @@ absl::string_view UserAgentOf(const grpc::ServerContext& context) {
 }
 
 absl::Status RoleTooLow(const Principal& caller, Role least) {
-  return WithReason(absl::PermissionDeniedError(
-                        absl::StrCat(caller.name, " has the role ", RoleName(caller.role),
-                                     ", this call needs the role ", RoleName(least))),
-                    "ROLE_TOO_LOW", "role", RoleName(least));
+  return WithReason(
+      absl::PermissionDeniedError(absl::StrCat(caller.name, " has the role ", RoleName(caller.role),
+                                               ", this call needs the role ", RoleName(least))),
+      "ROLE_TOO_LOW", "role", RoleName(least));
 }
 
 }  // namespace

@@ -11,9 +11,9 @@
 
 #include "absl/status/status.h"
 #include "grpcpp/server_context.h"
+#include "server/door/authenticator.h"
 #include "server/limits.h"
 #include "server/mutex.h"
-#include "server/door/authenticator.h"
 
 namespace ballpiston::server {
 

@@ -7,8 +7,8 @@
 
 #include "absl/status/statusor.h"
 #include "server/ballpiston_server.h"
-#include "server/observability/log.h"
 #include "server/door/new_token.h"
+#include "server/observability/log.h"
 
 namespace ballpiston::server {
 

@@ -11,7 +11,7 @@
 namespace ballpiston::server {
 namespace {
 
-constexpr size_t kLongestName = 64;
+constexpr size_t kLongestPrincipal = 64;
 constexpr absl::string_view kHashPrefix = "sha256:";
 constexpr Role kRoles[] = {Role::kRead, Role::kSubmit, Role::kAdmin};
 
@@ -88,13 +88,14 @@ absl::Status CheckPrincipalName(absl::string_view name) {
   const auto permitted = [](unsigned char c) {
     return absl::ascii_isalnum(c) || c == '.' || c == '_' || c == '@' || c == '-';
   };
-  if (!name.empty() && name.size() <= kLongestName && name != LocalPrincipal().name &&
+  if (!name.empty() && name.size() <= kLongestPrincipal && name != LocalPrincipal().name &&
       std::all_of(name.begin(), name.end(), permitted)) {
     return absl::OkStatus();
   }
-  return Wrong("the name of the principal is invalid",
-               absl::StrCat("1 to ", kLongestName, " of a-z, A-Z, 0-9, '.', '_', '@' and '-', not ",
-                            LocalPrincipal().name));
+  return Wrong(
+      "the name of the principal is invalid",
+      absl::StrCat("1 to ", kLongestPrincipal, " of a-z, A-Z, 0-9, '.', '_', '@' and '-', not ",
+                   LocalPrincipal().name));
 }
 
 absl::StatusOr<Role> ParseRole(absl::string_view text) {

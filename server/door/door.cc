@@ -69,13 +69,12 @@ absl::Status CheckCombination(const DoorOptions& options, const ListenAddress& a
     missing.push_back("--access-file");
   }
   if (missing.empty()) return absl::OkStatus();
-  return Refused(absl::StrCat("--listen=", address.Text(),
-                              address.IsLoopback()
-                                  ? ": a server with TLS needs the tokens of its clients; missing: "
-                                  : ": other machines can reach this address, so it needs TLS and "
-                                    "tokens; missing: ",
-                              absl::StrJoin(missing, " and "),
-                              " (or listen on a loopback address or a Unix socket)"));
+  return Refused(absl::StrCat(
+      "--listen=", address.Text(),
+      address.IsLoopback() ? ": a server with TLS needs the tokens of its clients; missing: "
+                           : ": other machines can reach this address, so it needs TLS and "
+                             "tokens; missing: ",
+      absl::StrJoin(missing, " and "), " (or listen on a loopback address or a Unix socket)"));
 }
 
 absl::StatusOr<std::unique_ptr<Door>> Door::Create(const DoorOptions& options,
@@ -105,8 +104,7 @@ std::shared_ptr<grpc::ServerCredentials> Door::Credentials() const {
 
 void Door::Open(const ListenAddress& address) {
   if (own_token_.empty()) return;
-  absl::StatusOr<OwnToken> file =
-      OwnToken::Write(options_.own_tokens, address.Text(), own_token_);
+  absl::StatusOr<OwnToken> file = OwnToken::Write(options_.own_tokens, address.Text(), own_token_);
   if (file.ok()) {
     own_file_.emplace(*std::move(file));
     return;

@@ -58,6 +58,9 @@ class Door {
   // `address` has the port in use. If the token cannot be written, a warning is logged.
   void Open(const ListenAddress& address);
 
+  // Removes the own token's file.
+  void Close() { own_file_.reset(); }
+
   // Reads the files again, and logs the same warnings as Create. If a file is invalid, its previous
   // content stays in use, and the error names the file. The new access file applies from the next
   // call on. New connections use the new certificate a second later. One thread at a time.

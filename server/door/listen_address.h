@@ -17,15 +17,15 @@ struct ListenAddress {
   // The address as gRPC and clients write it.
   std::string Text() const;
 
-  // Whether only local connections are possible: 127.0.0.0/8 or ::1. Every name counts as an address that other machines reach, because what it resolves to may
-  // change.
+  // Whether only local connections are possible: 127.0.0.0/8 or ::1. Every name counts as an
+  // address that other machines reach, because what it resolves to may change.
   bool IsLoopback() const;
 };
 
 // Parses unix:PATH or HOST:PORT. HOST is an IPv4 address, an IPv6 address in brackets (with a zone
-// if it is link-local, [fe80::1%eth0]), or a name; localhost is 127.0.0.1. 0.0.0.0 and [::] both mean every IPv4 and IPv6
-// address of this machine. INVALID_ARGUMENT names the flag --listen, the value, and the permitted
-// values.
+// if it is link-local, [fe80::1%eth0]), or a name; localhost is 127.0.0.1. 0.0.0.0 and [::] both
+// mean every IPv4 and IPv6 address of this machine. INVALID_ARGUMENT names the flag --listen, the
+// value, and the permitted values.
 absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text);
 
 // Removes a socket file on which no server listens: it refuses connections. FAILED_PRECONDITION if

@@ -111,8 +111,8 @@ absl::StatusOr<TlsIdentity> ReadTlsIdentity(const TlsFiles& files) {
   const absl::Status usable = TryOut(files, certificates.front().get(), key.get());
   if (!usable.ok()) return usable;
   const X509* const own = certificates.front().get();
-  return TlsIdentity{absl::StrCat(Pem(certificates), Pem(*key)),
-                     TimeOf(X509_get0_notBefore(own)), TimeOf(X509_get0_notAfter(own))};
+  return TlsIdentity{absl::StrCat(Pem(certificates), Pem(*key)), TimeOf(X509_get0_notBefore(own)),
+                     TimeOf(X509_get0_notAfter(own))};
 }
 
 }  // namespace ballpiston::server

@@ -41,9 +41,8 @@ struct TestServerOptions {
 };
 
 // Silent and old connections stay open.
-inline constexpr ConnectionTiming kOnlyClosedByAStop = {.handshake = kNever,
-                                                        .ping_interval = kNever,
-                                                        .ping_timeout = kNever};
+inline constexpr ConnectionTiming kOnlyClosedByAStop = {
+    .handshake = kNever, .ping_interval = kNever, .ping_timeout = kNever};
 
 // A channel, and frequent calls on it. Calls that do not return a status expect OK.
 class TestClient {

@@ -80,10 +80,9 @@ TEST(AccessList, ATokenThatIsTooLongIsRefusedEvenIfItsHashIsListed) {
 }
 
 TEST(AccessList, AnEntryIsRefusedFromItsTimeOfExpiryOn) {
-  const AccessList list =
-      ParsedList("token " + HashText("time") + " a read 2030-06-01T12:00:00Z\ntoken " +
-                 HashText("zone") + " b read 2030-06-01T14:00:00.5+02:00\ntoken " +
-                 HashText("date") + " c read 2030-06-02\n");
+  const AccessList list = ParsedList(
+      "token " + HashText("time") + " a read 2030-06-01T12:00:00Z\ntoken " + HashText("zone") +
+      " b read 2030-06-01T14:00:00.5+02:00\ntoken " + HashText("date") + " c read 2030-06-02\n");
   EXPECT_OK(list.OfToken("time", kNoon - absl::Milliseconds(1)));
   EXPECT_THAT(list.OfToken("time", kNoon), IsRefusedAs("CREDENTIALS_EXPIRED"));
   EXPECT_OK(list.OfToken("zone", kNoon));

@@ -50,14 +50,10 @@ std::string Refusal(const std::string& listen, const std::string& flags) {
 
 TEST(DoorCombination, OnlySafeOnesOfAllEightAreAccepted) {
   const std::map<std::string, std::set<std::string>> accepted = {
-      {"unix:/tmp/x", {""}},
-      {"127.0.0.1:1", {"", "a", "cka"}},
-      {"[::1]:1", {"", "a", "cka"}},
-      {"localhost:1", {"", "a", "cka"}},
-      {"0.0.0.0:1", {"cka"}},
-      {"[::]:1", {"cka"}},
-      {"192.168.0.7:1", {"cka"}},
-      {"node.example.org:1", {"cka"}}};
+      {"unix:/tmp/x", {""}},         {"127.0.0.1:1", {"", "a", "cka"}},
+      {"[::1]:1", {"", "a", "cka"}}, {"localhost:1", {"", "a", "cka"}},
+      {"0.0.0.0:1", {"cka"}},        {"[::]:1", {"cka"}},
+      {"192.168.0.7:1", {"cka"}},    {"node.example.org:1", {"cka"}}};
   for (const auto& [listen, safe] : accepted) {
     for (unsigned set = 0; set < 8; ++set) {
       std::string flags;
@@ -128,8 +124,8 @@ TEST(Loopback, TheOwnTokenIsPrivateAndEndsWithTheServer) {
 
 TEST(Loopback, TokensOfTheAccessFileNeedNoTls) {
   const LaboratoryFiles files;
-  RunningServer server({.listen = "127.0.0.1:0",
-                        .door = {.access_file = files.options().access_file}});
+  RunningServer server(
+      {.listen = "127.0.0.1:0", .door = {.access_file = files.options().access_file}});
   EXPECT_OK(CallByName(server.channel(), kListJobs, "", Bearer(kAlice)));
 }
 
