@@ -29,10 +29,9 @@ constexpr int kStreamsPerConnection = 2'048;  // twice what one principal may wa
 // that it does not read (--max-calls-per-principal).
 constexpr int kOtherThreads = 4'096;
 constexpr int kMostThreads = 1 << 20;  // more than any system permits a process
-// The longest delay until health reports that the store fails.
-constexpr std::chrono::milliseconds kHealthInterval(500);
 constexpr std::chrono::milliseconds kLimitsInterval(1000);
-constexpr std::chrono::milliseconds kStalledInterval(1000);
+// The longest delay until health reports that the store fails, and until a revoked watch ends.
+constexpr std::chrono::milliseconds kLookInterval(500);
 
 // Seconds of one core of a lease of the threads. Without a cluster they take all chunks of a point
 // at once, which keeps their lanes full.
@@ -51,11 +50,10 @@ SchedulerOptions OptionsOfScheduler(const ServerOptions& options) {
   return scheduler;
 }
 
-Health::Services ServicesOfHealth() {
-  const std::string ensemble = v1::EnsembleService::service_full_name();
-  return {.all = {ensemble, v1::AnalyticService::service_full_name(),
-                  v1::TraceService::service_full_name(), v1::ServerService::service_full_name()},
-          .with_store = {ensemble}};
+// The services of the API; the first needs the store.
+std::vector<std::string> ServiceNames() {
+  return {v1::EnsembleService::service_full_name(), v1::AnalyticService::service_full_name(),
+          v1::TraceService::service_full_name(), v1::ServerService::service_full_name()};
 }
 
 void Set(grpc::ServerBuilder& builder, const char* argument, std::chrono::milliseconds time) {
@@ -188,7 +186,6 @@ void BallpistonServer::StartExecutors() {
 void BallpistonServer::StartKeepingLimits() {
   limits_ =
       std::make_unique<PeriodicThread>(kLimitsInterval, [this] { book_.KeepLimits(absl::Now()); });
-  stalled_ = std::make_unique<PeriodicThread>(kStalledInterval, [this] { streams_.EndRevoked(); });
 }
 
 BallpistonServer::~BallpistonServer() { Shutdown(std::chrono::milliseconds(0)); }
@@ -227,14 +224,20 @@ absl::Status BallpistonServer::Listen() {
 }
 
 void BallpistonServer::StartHealth() {
-  health_ = std::make_unique<Health>(
-      *grpc_->GetHealthCheckService(), ServicesOfHealth(),
-      [this] { return store_->failing() || store_->stalled(); }, kHealthInterval);
+  grpc::HealthCheckServiceInterface* const health = grpc_->GetHealthCheckService();
+  for (const std::string& name : ServiceNames()) health->SetServingStatus(name, true);
+  looking_ =
+      std::make_unique<PeriodicThread>(kLookInterval, [this, health, served = true]() mutable {
+        streams_.EndRevoked();
+        const bool serves = !store_->failing() && !store_->stalled();
+        if (std::exchange(served, serves) == serves) return;
+        health->SetServingStatus(ServiceNames().front(), serves);
+      });
 }
 
 absl::Status BallpistonServer::StartMetrics() {
   if (options_.metrics_listen.empty()) return absl::OkStatus();
-  for (const std::string& service : ServicesOfHealth().all) calls_.statistics().Expect(service);
+  for (const std::string& service : ServiceNames()) calls_.Expect(service);
   auto endpoint = MetricsEndpoint::Start(options_.metrics_listen, [this] {
     ServerSnapshot now = TakeSnapshot(context_);
     now.certificate_expiry = door_->CertificateExpiry();
@@ -255,10 +258,10 @@ std::chrono::steady_clock::duration BallpistonServer::IdleFor() {
 void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   if (std::exchange(shut_down_, true)) return;
   const auto deadline = std::chrono::system_clock::now() + drain;
-  if (health_ != nullptr) health_->Drain();
+  looking_.reset();
+  if (grpc_ != nullptr) grpc_->GetHealthCheckService()->Shutdown();
   draining_ = true;
   limits_.reset();
-  stalled_.reset();
   book_.Shutdown();
   Failpoint("stop.before_flush");
   store_->Flush().IgnoreError();

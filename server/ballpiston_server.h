@@ -21,7 +21,6 @@
 #include "server/execution/slurm_executor.h"
 #include "server/execution/thread_executor.h"
 #include "server/observability/call_observer.h"
-#include "server/observability/health.h"
 #include "server/observability/metrics_endpoint.h"
 #include "server/periodic_thread.h"
 #include "server/scheduling/model_ladder.h"
@@ -90,6 +89,9 @@ class BallpistonServer {
   absl::Status Listen();
   void BoundConnections(grpc::ServerBuilder& builder) const;
   absl::Status StartMetrics();
+  // While the disk rejects writes, the service that needs it is NOT_SERVING, so that clients can
+  // choose another server. The other services and the whole server stay SERVING, because a restart
+  // would not repair the disk.
   void StartHealth();
 
   const ServerOptions options_;
@@ -119,8 +121,7 @@ class BallpistonServer {
   ServerService server_;
   std::unique_ptr<grpc::Server> grpc_;
   std::unique_ptr<PeriodicThread> limits_;    // calls JobBook::KeepLimits
-  std::unique_ptr<PeriodicThread> stalled_;   // calls Streams::EndRevoked
-  std::unique_ptr<Health> health_;            // after grpc_, which owns the health service
+  std::unique_ptr<PeriodicThread> looking_;   // sets health; calls Streams::EndRevoked
   std::unique_ptr<MetricsEndpoint> metrics_;  // last: it reads all members above
 };
 

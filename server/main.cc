@@ -10,7 +10,6 @@
 #include <string>
 #include <thread>
 
-#include "absl/random/random.h"
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
@@ -25,7 +24,6 @@
 #include "server/store/backup.h"
 #include "server/store/check_store.h"
 #include "server/store/data_directory.h"
-#include "server/verification/verify_result.h"
 #include "server/version.h"
 
 namespace ballpiston::server {
@@ -33,7 +31,6 @@ namespace {
 
 constexpr int kExitTryAgain = 1;
 constexpr int kExitUsage = 2;
-constexpr int kExitDiffers = 4;
 constexpr int kExitNotPermitted = 6;
 constexpr timespec kLookInterval{0, 200'000'000};  // at idleness
 // The time for stopping the workers and closing the store, after the time to drain.
@@ -114,7 +111,7 @@ void StopInTime(BallpistonServer& server, std::chrono::milliseconds drain) {
 }
 
 int Fail(const absl::Status& status) {
-  LogError(status.message());
+  std::fputs(LogLine(Severity::kError, status.message()).c_str(), stderr);
   if (absl::IsUnavailable(status)) return kExitTryAgain;
   return absl::IsPermissionDenied(status) ? kExitNotPermitted : kExitUsage;
 }
@@ -139,15 +136,6 @@ int Report(const absl::StatusOr<StoreSummary>& summary) {
   return summary->sound() ? printed : kExitUsage;
 }
 
-// Prints what was compared; returns the exit code.
-int Verify(const std::string& file) {
-  absl::BitGen random;
-  const auto verified = VerifyResult(file, random);
-  if (verified.ok()) return Print(*verified + "\n");
-  LogError(verified.status().message());
-  return absl::IsDataLoss(verified.status()) ? kExitDiffers : kExitUsage;
-}
-
 std::string StoreIn(const CommandLine& line) {
   return absl::StrCat(line.server.data_dir, "/", kStoreFile);
 }
@@ -160,10 +148,9 @@ int Main(int argc, char** argv) {
   if (!line.ok()) return Fail(line.status());
   if (!line->page.empty()) return Print(line->page);
   if (line->new_token) return PrintNewToken(*line);
-  if (!line->verify.empty()) return Verify(line->verify);
   if (line->check) return Report(CheckStore(StoreIn(*line)));
   if (!line->backup.empty()) return Report(BackupStore(StoreIn(*line), line->backup));
-  SetLogOptions(line->log);
+  SetLogLevel(line->log_level);
   UseAllDescriptors();
   NoteFatalSignals(CrashRecord::NoteDeath);
   const sigset_t signals = BlockSignals();

@@ -31,8 +31,7 @@ ServerOptions OptionsIn(const std::string& data_dir, const TestServerOptions& op
   all.connections = options.connections;
   all.limits = options.limits;
   all.metrics_listen = options.metrics_listen;
-  // On a busy machine a commit may take long although the disk does not hang.
-  all.store = {.delay = std::chrono::milliseconds(1), .stall = kNever};
+  all.store = options.store;
   return all;
 }
 

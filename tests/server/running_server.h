@@ -37,6 +37,8 @@ struct TestServerOptions {
   ConnectionTiming connections = {};
   Limits limits = {};
   std::string metrics_listen = {};
+  // On a busy machine a commit may take long although the disk does not hang.
+  Store::Options store = {.delay = std::chrono::milliseconds(1), .stall = kNever};
   std::shared_ptr<grpc::ChannelCredentials> credentials = nullptr;  // the client's; null: none
 };
 

@@ -13,6 +13,7 @@
 #include "gtest/gtest.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/hanging_disk.h"
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"
 #include "tests/support/await.h"
@@ -125,12 +126,29 @@ std::string HealthOf(RunningServer& server, const std::string& service) {
   return std::string(slice.begin(), slice.end());
 }
 
+constexpr char kServing[] = "\x08\x01";
+
 TEST(StartStop, HealthIsServedForTheWholeAndForEachService) {
   RunningServer server;
   for (const char* service : {"", "ballpiston.v1.EnsembleService", "ballpiston.v1.AnalyticService",
-                              "ballpiston.v1.ServerService"}) {
-    EXPECT_EQ(HealthOf(server, service), "\x08\x01") << service;
+                              "ballpiston.v1.TraceService", "ballpiston.v1.ServerService"}) {
+    EXPECT_EQ(HealthOf(server, service), kServing) << service;
   }
+}
+
+TEST(StartStop, OnlyTheServiceThatNeedsTheStoreStopsServingWhileTheDiskHangs) {
+  HangingDisk disk;
+  RunningServer server({.store = {.stall = std::chrono::milliseconds(1), .vfs = disk.vfs()}});
+  const auto is_serving = [&] {
+    return HealthOf(server, "ballpiston.v1.EnsembleService") == kServing;
+  };
+  disk.Hang();
+  const auto waiting = std::async([&] { server.Create(CreateRequest(Equilibrium(1, 1))); });
+  AwaitThat([&] { return !is_serving(); });
+  EXPECT_EQ(HealthOf(server, ""), kServing);
+  EXPECT_EQ(HealthOf(server, "ballpiston.v1.AnalyticService"), kServing);
+  disk.Resume();
+  AwaitThat(is_serving);
 }
 
 }  // namespace
