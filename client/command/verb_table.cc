@@ -251,12 +251,6 @@ const FlagGroup kSave = {
       "file's path. The ending selects the format: .json has everything, .npz NumPy arrays, .csv "
       "the estimates, or what --format selects"}}};
 
-const FlagGroup kVerify = {
-    "Verification",
-    {{"--verify", File(To(&Options::verify_file)),
-      "compute a random point or chunk of samples of this .json file again, on this machine, and "
-      "compare the bits"}}};
-
 const FlagGroup kProgress = {
     "Progress",
     {{"--progress",
@@ -462,11 +456,10 @@ std::vector<Verb> JobVerbs() {
        &Watch},
       {"result",
        "print a job's result: the points that it has finished so far",
-       "With --verify no JOB is given, and no server is used. The exit code is 0 if what was "
-       "computed again is equal, and 4 if not.",
-       {{Job(kJobs), "ensembleJobs/ID, or the ID alone", Argument::kOptional}},
-       With({&kPoint, &kResultFormat, &kSave, &kVerify, &kServer}, {}),
-       {"result ensembleJobs/ID", "result ID --save result.json", "result --verify result.json",
+       "",
+       {kOneJob},
+       With({&kPoint, &kResultFormat, &kSave, &kServer}, {}),
+       {"result ensembleJobs/ID", "result ID --save result.json",
         "result ID --point 17 --format json >point.json"},
        &Result},
       {"list",

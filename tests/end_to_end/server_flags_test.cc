@@ -68,7 +68,7 @@ TEST(ServerFlags, HelpListsEachOnceWithDashes) {
   std::multiset<std::string> expected = {"--data_dir", "-h"};
   for (const std::string& flag : Split(kFlags)) expected.insert("--" + flag);
   EXPECT_EQ(FlagsOf(help.out), expected);
-  EXPECT_EQ(Server({"-h"}).out, help.out);
+  EXPECT_EQ(FlagsOf(Server({"-h"}).out), expected);
 }
 
 TEST(ServerFlags, HelpHasDefaultsRangesAndExitCodesInShortLines) {
@@ -118,7 +118,7 @@ TEST(ServerFlags, ARefusalNamesFlagValueAndPermittedValues) {
       {{"--workers=2", "--workers", "2"}, "--workers: At Most 1"},
       {{"--data-dir=a", "--data_dir=b"}, "--data-dir: At Most 1"},
       {{"--backup", "copy"}, "--check excludes --backup"},
-      {{"--new-token", "ada:read"}, "--check excludes --new-token"},
+      {{"--new-token", "ada:read"}, "--new-token excludes --check"},
       {{"--workers=0"}, "--workers: 0" + workers},
       {{"--workers=1025"}, "--workers: 1025" + workers},
       {{"--workers", "-1"}, "--workers: -1" + workers},

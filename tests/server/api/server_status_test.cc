@@ -48,6 +48,13 @@ class ServerStatusTest : public testing::Test {
     return *status;
   }
 
+  static std::unique_ptr<grpc::Server> Serve(grpc::Service& service, const std::string& address) {
+    return grpc::ServerBuilder()
+        .RegisterService(&service)
+        .AddListeningPort(address, grpc::InsecureServerCredentials())
+        .BuildAndStart();
+  }
+
   TemporaryFolder folder_;
   Gate gate_;
   const Limits limits_ = {.max_active_jobs = 7,
@@ -88,10 +95,29 @@ class ServerStatusTest : public testing::Test {
                           .store_path = folder_.File("store.sqlite3")};
 };
 
-TEST(Serve, AnExceptionEndsTheCallOnly) {
-  const auto throws = []() -> absl::Status { throw std::runtime_error("no memory left"); };
-  EXPECT_THAT(WithoutExceptions(throws),
-              StatusIs(absl::StatusCode::kInternal, testing::HasSubstr("no memory left")));
+// Answers every call of EvaluatePairs with an exception.
+class ThrowingService : public ServiceOf<v1::AnalyticService::Service> {
+ public:
+  using ServiceOf::ServiceOf;
+
+  grpc::Status EvaluatePairs(grpc::ServerContext* context, const v1::EvaluatePairsRequest*,
+                             v1::EvaluatePairsResponse*) override {
+    return ServeCall(service_, *context, {"EvaluatePairs", Role::kRead},
+                     [](const Call&) -> absl::Status { throw std::runtime_error("no memory"); });
+  }
+};
+
+TEST_F(ServerStatusTest, AnExceptionEndsTheCallOnly) {
+  ThrowingService service(context_);
+  const std::string address = "unix:" + folder_.File("socket");
+  const auto server = Serve(service, address);
+  TestClient client(OwnChannel(address));
+  for (int i = 0; i < 2; ++i) {
+    grpc::ClientContext context;
+    v1::EvaluatePairsResponse response;
+    EXPECT_THAT(client.analytic().EvaluatePairs(&context, {}, &response),
+                IsError(grpc::StatusCode::INTERNAL, "INTERNAL"));
+  }
 }
 
 TEST_F(ServerStatusTest, CountsQueuedAndRunningWork) {
@@ -199,10 +225,7 @@ TEST_F(HangingDiskTest, TheStateIsStoreFailing) {
 TEST_F(HangingDiskTest, CallsThatWriteAreRefusedAtOnceAndReadsAnswered) {
   EnsembleService service(context_);
   const std::string address = "unix:" + folder_.File("socket");
-  const auto server = grpc::ServerBuilder()
-                          .RegisterService(&service)
-                          .AddListeningPort(address, grpc::InsecureServerCredentials())
-                          .BuildAndStart();
+  const auto server = Serve(service, address);
   TestClient client(OwnChannel(address));
   for (int i = 0; i < 20; ++i) {
     EXPECT_THAT(client.Create(CreateRequest(Equilibrium(1, 1))),
