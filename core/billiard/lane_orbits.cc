@@ -59,7 +59,7 @@ struct LaneOrbit {
 };
 
 template <typename T>
-class LaneOrbits : public OrbitRun {
+class LaneOrbits : public EngineRun {
  public:
   LaneOrbits(const PairGeometry& geometry, OrbitSource& source)
       : geometry_(geometry),
@@ -441,11 +441,11 @@ class LaneOrbits : public OrbitRun {
   std::vector<OrbitStart> starts_;
 };
 
-std::unique_ptr<OrbitRun> StartDouble(const PairGeometry& geometry, OrbitSource& source) {
+std::unique_ptr<EngineRun> StartDouble(const PairGeometry& geometry, OrbitSource& source) {
   return std::make_unique<LaneOrbits<double>>(geometry, source);
 }
 
-std::unique_ptr<OrbitRun> StartSingle(const PairGeometry& geometry, OrbitSource& source) {
+std::unique_ptr<EngineRun> StartSingle(const PairGeometry& geometry, OrbitSource& source) {
   return std::make_unique<LaneOrbits<float>>(geometry, source);
 }
 
@@ -459,11 +459,12 @@ namespace ballpiston {
 HWY_EXPORT(StartDouble);
 HWY_EXPORT(StartSingle);
 
-std::unique_ptr<OrbitRun> StartLaneOrbits(const PairGeometry& geometry, OrbitSource& source) {
+std::unique_ptr<EngineRun> StartLaneOrbits(const PairGeometry& geometry, OrbitSource& source) {
   return HWY_DYNAMIC_DISPATCH(StartDouble)(geometry, source);
 }
 
-std::unique_ptr<OrbitRun> StartLaneOrbitsSingle(const PairGeometry& geometry, OrbitSource& source) {
+std::unique_ptr<EngineRun> StartLaneOrbitsSingle(const PairGeometry& geometry,
+                                                 OrbitSource& source) {
   return HWY_DYNAMIC_DISPATCH(StartSingle)(geometry, source);
 }
 

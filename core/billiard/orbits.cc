@@ -13,7 +13,7 @@ namespace {
 constexpr uint64_t kEventsBetweenLooks = 4096;  // about 0.2 ms, so a call of Pause costs nothing
 
 // One orbit after the other.
-class ReferenceOrbits : public OrbitRun {
+class ReferenceOrbits : public EngineRun {
  public:
   ReferenceOrbits(const PairGeometry& geometry, OrbitSource& source)
       : geometry_(geometry), source_(source), limit_(source.TimeLimit()), longest_wait_(geometry) {}
@@ -72,8 +72,8 @@ void Contact::Add(const Event& event) {
   escaped = event.kind == EventKind::kEscape;
 }
 
-std::unique_ptr<OrbitRun> StartOrbits(Engine engine, const PairGeometry& geometry,
-                                      OrbitSource& source) {
+std::unique_ptr<EngineRun> StartOrbits(Engine engine, const PairGeometry& geometry,
+                                       OrbitSource& source) {
   if (engine == Engine::kLanes) return StartLaneOrbits(geometry, source);
   if (engine == Engine::kLanesSingle) return StartLaneOrbitsSingle(geometry, source);
   return std::make_unique<ReferenceOrbits>(geometry, source);

@@ -21,6 +21,7 @@
 #include <memory>
 #include <span>
 
+#include "core/billiard/engine_run.h"
 #include "core/billiard/reference_flow.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
@@ -80,17 +81,9 @@ class OrbitSource {
   virtual bool Pause() = 0;
 };
 
-// Orbits in progress. An engine keeps as many lanes full as the source can fill.
-class OrbitRun {
- public:
-  virtual ~OrbitRun() = default;
-  // Returns true when no orbit is in progress and the source has no more now. Returns false when
-  // the source's Pause is true. May be called again in both cases, from any thread.
-  virtual bool Advance() = 0;
-};
-
-// The source must outlive the run.
-std::unique_ptr<OrbitRun> StartOrbits(Engine engine, const PairGeometry& geometry,
-                                      OrbitSource& source);
+// Orbits in progress. An engine keeps as many lanes full as the source can fill. The source must
+// outlive the run.
+std::unique_ptr<EngineRun> StartOrbits(Engine engine, const PairGeometry& geometry,
+                                       OrbitSource& source);
 
 }  // namespace ballpiston

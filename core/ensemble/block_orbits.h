@@ -56,7 +56,7 @@ class WatchedOrbits {
 };
 
 template <typename Orbits>
-class BlockOrbits : public BlockRun, private OrbitSource {
+class BlockOrbits : public EngineRun, private OrbitSource {
  public:
   template <typename Make>
   BlockOrbits(Engine engine, const PairGeometry& geometry, double time_limit, Make make,
@@ -92,7 +92,7 @@ class BlockOrbits : public BlockRun, private OrbitSource {
   double time_limit_;
   BlockQueue& queue_;
   OpenBlocks<WatchedOrbits<Orbits>> blocks_;
-  std::unique_ptr<OrbitRun> run_;
+  std::unique_ptr<EngineRun> run_;
 };
 
 }  // namespace ballpiston

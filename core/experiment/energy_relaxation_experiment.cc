@@ -189,7 +189,7 @@ class EnergyRelaxationExperiment : public PairExperiment {
     SetMeasurements(relaxation_.Empty(), std::move(table));
   }
 
-  std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
     if (IsLimit()) {
       return RunOneByOne(queue, [this](const Block& block, const std::stop_token& stop) {
         return WalkBlock(relaxation_, random(), block, stop);

@@ -88,7 +88,7 @@ class EquilibriumExperiment : public PairExperiment {
     SetMeasurements({.batch_means = std::vector<BatchMeans>(kHits)}, std::move(table));
   }
 
-  std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
     return RunOrbits(queue, [this](const Block& block) { return TimedOrbits(*this, block); });
   }
 

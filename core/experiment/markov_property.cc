@@ -155,7 +155,7 @@ class MarkovPropertyExperiment : public PairExperiment {
     SetMeasurements(EmptyMarkovPropertyCounts(), MarkovPropertyTable(IsLimit()));
   }
 
-  std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
     if (IsLimit()) {
       return RunOneByOne(queue, [this](const Block& block, const std::stop_token& stop) {
         return WalkExchanges(geometry(), random(), block, stop);

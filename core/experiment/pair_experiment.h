@@ -64,8 +64,8 @@ class PairExperiment : public PointExperiment {
 
   // `make` makes the orbits of a block (ensemble/block_orbits.h): Orbits make(const Block&).
   template <typename Make>
-  std::unique_ptr<BlockRun> RunOrbits(BlockQueue& queue, Make make,
-                                      double time_limit = kNoTimeLimit) const {
+  std::unique_ptr<EngineRun> RunOrbits(BlockQueue& queue, Make make,
+                                       double time_limit = kNoTimeLimit) const {
     using Orbits = decltype(make(Block()));
     return std::make_unique<BlockOrbits<Orbits>>(engine(), geometry_, time_limit, std::move(make),
                                                  queue);
