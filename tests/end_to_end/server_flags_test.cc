@@ -40,12 +40,8 @@ const char* const kFlags[] = {"listen",
                               "idle-exit-seconds",
                               "drain-seconds",
                               "config",
-                              "socket-mode",
-                              "socket-group",
-                              "loopback-role",
                               "tls-certificate",
                               "tls-key",
-                              "tls-client-ca",
                               "access-file",
                               "max-active-jobs",
                               "max-active-jobs-per-principal",
@@ -218,8 +214,6 @@ TEST(ServerFlags, AValueOutOfRangeIsNamedWithTheRange) {
        "or 32 to 1048576 with --max-message-bytes=16777216"},
       {{"--log-format=xml"}, "--log-format=xml is unknown; permitted: text, json"},
       {{"--log-level", "-1"}, "--log-level=-1 is unknown; permitted: info, warning, error"},
-      {{"--socket-mode=0777"}, "--socket-mode=0777 is unknown; permitted: 0600, 0660, 0666"},
-      {{"--loopback-role=root"}, "--loopback-role=root is unknown; permitted: submit, read, admin"},
   };
   for (const auto& row : table) {
     Words flags = row.flags;

@@ -26,7 +26,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class TlsFilesTest : public ::testing::Test {
+class TlsIdentityTest : public ::testing::Test {
  protected:
   std::string Error() const {
     const auto identity = ReadTlsIdentity({{"tls-certificate", files_.options().tls_certificate},
@@ -40,16 +40,16 @@ class TlsFilesTest : public ::testing::Test {
   const TestAuthority other_{"another authority"};
 };
 
-TEST_F(TlsFilesTest, AGoodSetIsAccepted) { EXPECT_EQ(Error(), ""); }
+TEST_F(TlsIdentityTest, AGoodSetIsAccepted) { EXPECT_EQ(Error(), ""); }
 
-TEST_F(TlsFilesTest, AKeyOfAnotherCertificateIsRefused) {
+TEST_F(TlsIdentityTest, AKeyOfAnotherCertificateIsRefused) {
   files_.Write("server.key", other_.Issue("x").key);
   EXPECT_THAT(Error(), HasSubstr("--tls-key="));
   EXPECT_THAT(Error(), HasSubstr("is not the key of the certificate in --tls-certificate="));
 }
 
 // The clock may be set only later.
-TEST_F(TlsFilesTest, AnExpiredOrFutureCertificateIsRead) {
+TEST_F(TlsIdentityTest, AnExpiredOrFutureCertificateIsRead) {
   using std::chrono::hours;
   for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
     files_.WriteCertificate(files_.authority().Issue("x", validity));
@@ -57,12 +57,12 @@ TEST_F(TlsFilesTest, AnExpiredOrFutureCertificateIsRead) {
   }
 }
 
-TEST_F(TlsFilesTest, AKeyThatOthersMayReadIsRefused) {
+TEST_F(TlsIdentityTest, AKeyThatOthersMayReadIsRefused) {
   chmod(files_.options().tls_key.c_str(), 0644);
   EXPECT_THAT(Error(), HasSubstr("open to other users (mode 0644)"));
 }
 
-TEST_F(TlsFilesTest, AFileThatIsNotPemIsRefused) {
+TEST_F(TlsIdentityTest, AFileThatIsNotPemIsRefused) {
   for (const char* text : {"", "nonsense", "-----BEGIN CERTIFICATE-----\nAAAA\n"}) {
     files_.Write("server.pem", text);
     EXPECT_THAT(Error(), HasSubstr("--tls-certificate")) << text;
@@ -71,7 +71,7 @@ TEST_F(TlsFilesTest, AFileThatIsNotPemIsRefused) {
   EXPECT_THAT(Error(), HasSubstr("has no private key"));
 }
 
-TEST_F(TlsFilesTest, AMissingFileIsNamed) {
+TEST_F(TlsIdentityTest, AMissingFileIsNamed) {
   unlink(files_.options().tls_key.c_str());
   EXPECT_THAT(Error(), HasSubstr("--tls-key="));
   EXPECT_THAT(Error(), HasSubstr("No such file"));
