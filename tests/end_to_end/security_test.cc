@@ -132,8 +132,6 @@ TEST_F(Security, ErrorsSayWhatToTry) {
   expect({"--tls"}, 3, "that this system knows");
   expect({"--ca", home_.File("ca.pem")}, 6, "CREDENTIALS_MISSING");
   expect(Known("wrong"), 6, "CREDENTIALS_INVALID");
-  expect({"--server", "lab.example.org:1", "--token-file", home_.File("token_alice")}, 2,
-         "not sent to another machine without encryption");
   chmod(home_.File("token_alice").c_str(), 0644);
   expect(Known("alice"), 6, "chmod 600");
   WriteCertificate(authority_.IssueForHost("elsewhere.example.org"));
@@ -147,6 +145,11 @@ TEST_F(Security, ErrorOfTlsToAPlainServerSaysSo) {
   EXPECT_THAT(result, ExitsWith(3));
   EXPECT_THAT(result.err, HasSubstr("does not use TLS"));
   EXPECT_THAT(List({}), ExitsWith(0));
+}
+
+TEST(UnixSocket, IsItsUsersAlone) {
+  const TestServer server;
+  EXPECT_EQ(ModeOf(server.folder().File("socket")) & 077u, 0u);
 }
 
 TEST_F(Security, OnTheLoopbackOtherUsersNeedAToken) {
@@ -241,7 +244,7 @@ TEST_F(Security, NoTokenIsInTheLogTheStoreOrTheOutputOfAClient) {
   Write("access", "token " + tokens[1] + " bob submit\n");
   server_->Signal(SIGHUP);
   ASSERT_TRUE(server_->AwaitLog("not reloaded"));
-  EXPECT_THAT(List({"--token-file", home_.File("token_gone")}), ExitsWith(2));
+  EXPECT_THAT(List({"--token-file", home_.File("token_gone")}), ExitsWith(3));  // without TLS
   server_->Stop();
   std::string all = client_output_ + server_->log() + access;
   for (const auto& entry : std::filesystem::directory_iterator(server_->data_dir())) {

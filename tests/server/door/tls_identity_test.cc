@@ -1,13 +1,10 @@
 // The files of a server's TLS identity: read, checked and published again as a whole.
 #include "server/door/tls_identity.h"
 
-#include <fcntl.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -15,7 +12,6 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "server/door/published_file.h"
-#include "server/door/server_tls.h"
 #include "tests/server/secure_server.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
@@ -102,39 +98,6 @@ TEST(PublishedFile, EachContentHasALaterSecond) {
     EXPECT_GT(found.st_mtime, last);
     last = found.st_mtime;
   }
-}
-
-// The contents of this process's files in memory.
-std::string Published() {
-  std::string all;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
-    std::error_code gone;
-    const std::string file = std::filesystem::read_symlink(entry.path(), gone).string();
-    if (file.find("/memfd:ballpiston") == 0) all += Contents(entry.path().string());
-  }
-  return all;
-}
-
-TEST(ServerTls, ACertificateThatCannotBePublishedLeavesTheOldOne) {
-  const LaboratoryFiles files;
-  const DoorOptions& options = files.options();
-  ASSERT_OK_AND_ASSIGN(const auto tls,
-                       ServerTls::Create({{"tls-certificate", options.tls_certificate},
-                                          {"tls-key", options.tls_key}}));
-  const KeyAndCertificate next = files.authority().Issue("server-2");
-  files.WriteCertificate(next);
-  rlimit before{};
-  getrlimit(RLIMIT_NOFILE, &before);
-  const int free = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  close(free);
-  const rlimit one_more{static_cast<rlim_t>(free) + 1, before.rlim_max};
-  setrlimit(RLIMIT_NOFILE, &one_more);
-  const absl::Status reloaded = tls->Reload();
-  setrlimit(RLIMIT_NOFILE, &before);
-  EXPECT_THAT(reloaded, StatusIs(absl::StatusCode::kInternal));
-  EXPECT_THAT(Published(), Not(HasSubstr(next.certificate)));
-  ASSERT_OK(tls->Reload());
-  EXPECT_THAT(Published(), HasSubstr(next.certificate));
 }
 
 }  // namespace
