@@ -201,7 +201,7 @@ void BallpistonServer::BoundConnections(grpc::ServerBuilder& builder) const {
 
 absl::Status BallpistonServer::Listen() {
   const bool is_socket = !address_.socket_path.empty();
-  const absl::Status free = is_socket ? ClearSocketPath(address_) : absl::OkStatus();
+  const absl::Status free = is_socket ? CheckSocketIsFree(address_) : absl::OkStatus();
   if (!free.ok()) return free;
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();

@@ -27,10 +27,6 @@ std::vector<std::string> Given(const DoorOptions& options) {
 
 NamedFile AccessFile(const DoorOptions& options) { return {"access-file", options.access_file}; }
 
-std::string DateText(absl::Time time) {
-  return absl::FormatTime("%Y-%m-%d", time, absl::UTCTimeZone());
-}
-
 std::string MinuteText(absl::Time time) {
   return absl::FormatTime("%Y-%m-%d %H:%M UTC", time, absl::UTCTimeZone());
 }
@@ -127,27 +123,22 @@ std::optional<absl::Time> Door::CertificateExpiry() const {
 }
 
 void Door::WarnOfExpiry() const {
+  if (tls_ == nullptr) return;
   const absl::Time now = absl::Now();
-  if (tls_ == nullptr || (tls_->begins() <= now && now + kExpiryWarning < tls_->expires())) return;
-  if (!tls_->IsValidAt(now)) {
-    LogError(absl::StrCat("the certificate in --tls-certificate=", options_.tls_certificate,
-                          " is valid from ", MinuteText(tls_->begins()), " to ",
-                          MinuteText(tls_->expires()), " only, and now it is ", MinuteText(now),
-                          ": clients cannot connect while it is not valid. If the clock is right, "
-                          "get a new one and send SIGHUP"));
-    return;
-  }
-  Log(Severity::kWarning,
+  const bool is_valid = tls_->IsValidAt(now);
+  if (is_valid && now + kExpiryWarning < tls_->expires()) return;
+  Log(is_valid ? Severity::kWarning : Severity::kError,
       absl::StrCat("the certificate in --tls-certificate=", options_.tls_certificate,
-                   " is valid until ", MinuteText(tls_->expires()),
-                   " only: get a new one, and send SIGHUP"));
+                   " is valid from ", MinuteText(tls_->begins()), " to ",
+                   MinuteText(tls_->expires()), ", and now it is ", MinuteText(now),
+                   is_valid ? "" : ": clients cannot connect", "; get a new one, and send SIGHUP"));
 }
 
 std::string Door::Description() const {
   if (!needs_tokens_) return "a Unix socket for this server's user, without tokens";
   std::vector<std::string> parts;
   if (tls_ != nullptr) {
-    parts.push_back(absl::StrCat("TLS, certificate valid until ", DateText(tls_->expires())));
+    parts.push_back(absl::StrCat("TLS, certificate valid until ", MinuteText(tls_->expires())));
   }
   if (own_token_ != nullptr) parts.push_back("a token for this server's user");
   if (!options_.access_file.empty()) {

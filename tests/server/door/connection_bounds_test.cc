@@ -1,4 +1,5 @@
-// Limits for clients that are not authenticated yet: streams, memory, threads.
+// Limits for clients that are not authenticated yet: streams, memory, threads, time.
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -150,6 +151,33 @@ TEST(ConnectionBounds, ReflectionUsesLimitedThreadsAndOtherCallsGoOn) {
   EXPECT_OK(CallByName(server.channel(), kCheckHealth));
   streams.clear();
   AwaitThat([&server] { return CallByName(server.channel(), kReflection, kListServices).ok(); });
+}
+
+// ---- connections whose client no longer answers ----
+
+// Part of the GOAWAY frame of HTTP/2: its type, no flags, stream 0.
+const std::string kGoAway("\x7\0\0\0\0\0", 6);
+
+// In each test one time limit is short, and the others are not reached.
+TestServerOptions OnPort(const ConnectionTiming& timing) {
+  return {.listen = "127.0.0.1:0", .connections = timing};
+}
+
+TEST(SilentConnection, AConnectionWithoutAHandshakeIsClosed) {
+  RunningServer server(
+      OnPort({.handshake = std::chrono::milliseconds(200), .ping_interval = kNever}));
+  Connection connection(server.address());
+  EXPECT_THAT(connection.ReadToTheEnd(), HasSubstr(kGoAway));
+}
+
+TEST(SilentConnection, AConnectionThatAnswersNoPingIsClosed) {
+  RunningServer server(OnPort({.handshake = kNever,
+                               .ping_interval = std::chrono::milliseconds(100),
+                               .ping_timeout = std::chrono::milliseconds(100)}));
+  Connection connection(server.address());
+  const std::string empty_settings("\0\0\0\x4\0\0\0\0\0", 9);
+  connection.Send("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + empty_settings);
+  EXPECT_THAT(connection.ReadToTheEnd(), HasSubstr(std::string("\0\0\x8\x6", 4)));  // the ping
 }
 
 }  // namespace
