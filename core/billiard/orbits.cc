@@ -31,27 +31,27 @@ class ReferenceOrbits : public EngineRun {
     OrbitStart start;
     if (source_.Start({&start, 1}) == 0) return false;
     flow_.emplace(geometry_, start.state);
-    meeting_ = {.orbit = start.orbit};
+    current_ = {.orbit = start.orbit};
     longest_ = HasTimeLimit() ? limit_ : longest_wait_.From(start.state);
     return true;
   }
   bool HasTimeLimit() const { return limit_ < std::numeric_limits<double>::infinity(); }
 
   void Step() {
-    Contact& contact = meeting_.contact;
+    Collision& collision = current_.collision;
     const Event event = flow_->Step();
-    contact.Add(event);
-    const bool is_overdue = contact.time > longest_;
-    contact.expired = is_overdue && HasTimeLimit();
-    contact.escaped |= is_overdue && !HasTimeLimit();
-    const bool has_ended = contact.escaped || contact.expired;
+    collision.Add(event);
+    const bool is_overdue = collision.time > longest_;
+    collision.expired = is_overdue && HasTimeLimit();
+    collision.escaped |= is_overdue && !HasTimeLimit();
+    const bool has_ended = collision.escaped || collision.expired;
     if (event.kind != EventKind::kBallPiston && !has_ended) return;
-    contact.state = flow_->state();
-    source_.Meet({&meeting_, 1});
-    if (meeting_.after == AfterContact::kEnd || has_ended) return flow_.reset();
+    collision.state = flow_->state();
+    source_.Collide({&current_, 1});
+    if (current_.after == AfterCollision::kEnd || has_ended) return flow_.reset();
     flow_->ExchangeComponents();
     if (!HasTimeLimit()) longest_ = longest_wait_.From(flow_->state());
-    contact = {};
+    collision = {};
   }
 
   PairGeometry geometry_;
@@ -60,12 +60,12 @@ class ReferenceOrbits : public EngineRun {
   LongestWait longest_wait_;
   double longest_ = 0;  // of the current wait
   std::optional<ReferenceFlow> flow_;
-  Meeting meeting_;
+  OrbitCollision current_;
 };
 
 }  // namespace
 
-void Contact::Add(const Event& event) {
+void Collision::Add(const Event& event) {
   time += event.duration;
   ball_wall_hits += event.kind == EventKind::kBallWall;
   piston_wall_hits += event.kind == EventKind::kPistonWall;

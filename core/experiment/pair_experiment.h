@@ -90,9 +90,9 @@ class OrbitsInEquilibrium {
     return DrawFromCollisionMeasure(experiment_.geometry(), random);
   }
   // `collisions`: those of the orbit so far.
-  AfterContact After(uint64_t orbit, uint64_t collisions) const {
+  AfterCollision After(uint64_t orbit, uint64_t collisions) const {
     const uint64_t last = std::min(length_, block_.samples - orbit * length_);
-    return collisions < last ? AfterContact::kGoOn : AfterContact::kEnd;
+    return collisions < last ? AfterCollision::kGoOn : AfterCollision::kEnd;
   }
 
   const PairExperiment& experiment_;
