@@ -13,7 +13,7 @@
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/resource_quota.h"
 #include "grpcpp/server_builder.h"
-#include "server/api/reflection_limit.h"
+#include "server/api/reflection_check.h"
 #include "server/api/take_snapshot.h"
 #include "server/jobs/job_name.h"
 #include "server/observability/failpoint.h"
@@ -198,7 +198,7 @@ void BallpistonServer::BoundConnections(grpc::ServerBuilder& builder) const {
 
 absl::Status BallpistonServer::Listen() {
   const bool is_socket = !address_.socket_path.empty();
-  const absl::Status free = is_socket ? ClearSocketPath(address_) : absl::OkStatus();
+  const absl::Status free = is_socket ? CheckSocketIsFree(address_) : absl::OkStatus();
   if (!free.ok()) return free;
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
@@ -210,7 +210,7 @@ absl::Status BallpistonServer::Listen() {
   builder.RegisterService(&server_);
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
   interceptors.push_back(calls_.InterceptorFactory());
-  interceptors.push_back(std::make_unique<ReflectionLimit>());
+  interceptors.push_back(std::make_unique<ReflectionCheck>(door_->authenticator()));
   builder.experimental().SetInterceptorCreators(std::move(interceptors));
   int port = 0;
   builder.AddListeningPort(address_.Text(), door_->Credentials(), &port);

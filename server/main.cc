@@ -11,8 +11,10 @@
 #include <thread>
 
 #include "absl/status/status.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
+#include "grpc/support/log.h"
 #include "server/ballpiston_server.h"
 #include "server/command_line/command_line.h"
 #include "server/door/new_token.h"
@@ -48,12 +50,21 @@ sigset_t BlockSignals() {
   return signals;
 }
 
-// Each connection needs a descriptor, and gRPC stops listening for good when there is none left.
+// Each connection needs a descriptor. When there is none left, gRPC 1.51 stops listening for good.
 void UseAllDescriptors() {
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
   limit.rlim_cur = limit.rlim_max;
   setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+// Of gRPC's messages the log has only this one.
+void LogEndOfListening(gpr_log_func_args* message) {
+  if (!absl::StartsWith(message->message, "Failed accept")) return;
+  LogError(
+      absl::StrCat("the server accepts no more connections; raise its limit of open files and "
+                   "restart it (",
+                   message->message, ")"));
 }
 
 void Reload(BallpistonServer& server) {
@@ -141,9 +152,9 @@ std::string StoreIn(const CommandLine& line) {
 }
 
 int Main(int argc, char** argv) {
-  umask(0077);                              // only the server's user can use store and socket
-  signal(SIGXFSZ, SIG_IGN);                 // a file at its size limit is an error like a full disk
-  setenv("GRPC_VERBOSITY", "NONE", false);  // this program reports errors itself, in one line
+  umask(0077);               // only the server's user can use store and socket
+  signal(SIGXFSZ, SIG_IGN);  // a file at its size limit is an error like a full disk
+  if (std::getenv("GRPC_VERBOSITY") == nullptr) gpr_set_log_function(&LogEndOfListening);
   const absl::StatusOr<CommandLine> line = ParseCommandLine(argc, argv);
   if (!line.ok()) return Fail(line.status());
   if (!line->page.empty()) return Print(line->page);

@@ -42,9 +42,9 @@ class CellWalls {
   Encounter Next(const Vector& position, const Vector& direction, int last_disc) const {
     // The ball is inside the unit cell, so it moves away from the centre in the quadrant behind it.
     const int behind = (direction.x() < 0 ? 1 : 0) | (direction.y() < 0 ? 2 : 0);
-    const std::array<Encounter, 3> discs = {Meet(behind ^ 1, position, direction, last_disc),
-                                            Meet(behind ^ 2, position, direction, last_disc),
-                                            Meet(behind ^ 3, position, direction, last_disc)};
+    const std::array<Encounter, 3> discs = {HitOf(behind ^ 1, position, direction, last_disc),
+                                            HitOf(behind ^ 2, position, direction, last_disc),
+                                            HitOf(behind ^ 3, position, direction, last_disc)};
     // The disc that is hit is practically random, so an index costs less than mispredicted
     // branches.
     const size_t beside = discs[1].distance < discs[0].distance;
@@ -72,7 +72,7 @@ class CellWalls {
   static Real Cross(const Vector& a, const Vector& b) { return a.x() * b.y() - a.y() * b.x(); }
   static Vector Perpendicular(const Vector& a) { return {-a.y(), a.x()}; }
 
-  Encounter Meet(int disc, const Vector& position, const Vector& direction, int last_disc) const {
+  Encounter HitOf(int disc, const Vector& position, const Vector& direction, int last_disc) const {
     using std::sqrt;
     const Vector to_centre = centres_[static_cast<size_t>(disc)] - position;
     const Real foot = direction.dot(to_centre);

@@ -27,10 +27,10 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // The lanes fly in bursts of some flights each (lane_burst-inl.h). After a burst the engine
-// examines the flights that began or ended in the piston's reach, resolves the contacts that it
-// finds, and gives the lanes their next orbits. So contacts and starts come in batches, and the
-// flights have no branches. After a contact the ball may be anywhere in the cell (FrameOfBall); the
-// lanes accept such a state.
+// examines the flights that began or ended in the piston's reach, resolves the collisions that it
+// finds, and gives the lanes their next orbits. So collisions and starts come in batches, and the
+// flights have no branches. After a collision the ball may be anywhere in the cell (FrameOfBall);
+// the lanes accept such a state.
 //
 // An orbit enters at the beginning of a burst, and every burst has the same number of flights. So
 // the rounding at the end of a burst occurs at the same flights of the orbit in every lane.
@@ -38,7 +38,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Fewer vectors would hardly take less time, so all vectors fly even if few lanes have orbits.
 
 // Between two calls of Pause. 512 bursts take about 0.2 ms. The source takes up to 5 us for a start
-// or a meeting, so 4096 of them take at most 0.02 s.
+// or a collision, so 4096 of them take at most 0.02 s.
 constexpr int kBurstsBetweenLooks = 512;
 constexpr int64_t kCallsBetweenLooks = 4096;
 
@@ -48,7 +48,7 @@ constexpr double kAtRest = 1e-18;
 // A start this near to a wall may be on it.
 constexpr double kOnAWall = 1e-9;
 
-// An orbit in a lane, since it entered at its start or its last contact.
+// An orbit in a lane, since it entered at its start or its last collision.
 struct LaneOrbit {
   uint64_t orbit = 0;
   double ball_speed = 1;  // at least kAtRest
@@ -59,7 +59,7 @@ struct LaneOrbit {
 };
 
 template <typename T>
-class LaneOrbits : public OrbitRun {
+class LaneOrbits : public EngineRun {
  public:
   LaneOrbits(const PairGeometry& geometry, OrbitSource& source)
       : geometry_(geometry),
@@ -100,8 +100,8 @@ class LaneOrbits : public OrbitRun {
     uint32_t lanes;                        // that have orbits
   };
 
-  // A lane that has a contact flies on to the end of the burst, and those flights are lost. So a
-  // burst is short where contacts are frequent.
+  // A lane that has a collision flies on to the end of the burst, and those flights are lost. So a
+  // burst is short where collisions are frequent.
   static size_t FlightsInABurst(const PairGeometry& geometry) {
     return static_cast<size_t>(std::clamp(1.7 / geometry.delta(), 4.0, double{kMostFlights}));
   }
@@ -117,7 +117,7 @@ class LaneOrbits : public OrbitRun {
     Fly();
     LookAtFlights();
     EndBurst();
-    if (!meetings_.empty()) Refill();
+    if (!collisions_.empty()) Refill();
   }
 
   // Only the arcs at the right tip can be in the piston's reach. The ball is on such an arc if a <
@@ -188,7 +188,7 @@ class LaneOrbits : public OrbitRun {
     burst_.Keep([this](size_t t) { return LanesThatMayHaveMet(t); });
     for (const auto& [t, lanes] : burst_.listed()) {
       if (HWY_UNLIKELY(burst_.left_cell())) LookForEscapes(t);
-      LookForContacts(t, lanes & pistons_[t % kVectors].lanes);
+      LookForCollisions(t, lanes & pistons_[t % kVectors].lanes);
     }
   }
 
@@ -227,10 +227,10 @@ class LaneOrbits : public OrbitRun {
              [&](size_t lane) { Report(lane, Escape()); });
   }
 
-  void LookForContacts(size_t t, uint32_t lanes) {
+  void LookForCollisions(size_t t, uint32_t lanes) {
     ForLanes(t, lanes, [&](size_t lane) {
-      const std::optional<Contact> contact = FindContact(t, lane);
-      if (contact) Report(lane, *contact);
+      const std::optional<Collision> collision = FindCollision(t, lane);
+      if (collision) Report(lane, *collision);
     });
   }
 
@@ -242,72 +242,71 @@ class LaneOrbits : public OrbitRun {
     }
   }
 
-  static Contact Escape() {
-    Contact contact;
-    contact.escaped = true;
-    return contact;
+  static Collision Escape() {
+    Collision collision;
+    collision.escaped = true;
+    return collision;
   }
   // The orbit has waited for `time`, which is longer than permitted.
-  Contact Overdue(double time) const {
-    Contact contact;
-    contact.time = time;
-    (HasTimeLimit() ? contact.expired : contact.escaped) = true;
-    return contact;
+  Collision Overdue(double time) const {
+    Collision collision;
+    collision.time = time;
+    (HasTimeLimit() ? collision.expired : collision.escaped) = true;
+    return collision;
   }
 
-  // The orbit leaves the lane; Meet reports the contact to the source.
-  void Report(size_t lane, const Contact& contact) {
+  // The orbit leaves the lane; Resolve reports the collision to the source.
+  void Report(size_t lane, const Collision& collision) {
     pistons_[VectorOf(lane)].lanes &= ~(uint32_t{1} << InVector(lane));
-    meetings_.push_back({orbit_[lane].orbit, contact});
-    met_.push_back(lane);
+    collisions_.push_back({orbit_[lane].orbit, collision});
+    collided_.push_back(lane);
   }
 
-  // The contact of ball and piston of the lane in flight t, if they meet.
-  std::optional<Contact> FindContact(size_t t, size_t lane) const {
+  // The collision of ball and piston of the lane in flight t, if they meet.
+  std::optional<Collision> FindCollision(size_t t, size_t lane) const {
     const size_t i = InVector(lane);
     const Pistons& piston = pistons_[VectorOf(lane)];
     const LaneOrbit& orbit = orbit_[lane];
     const Balls<T>& from = burst_.slot(t);
     const double inverse = 1 / flight_constants_.scale;
     const LaneFrame frame = Scaled(from.Frame(i), inverse);
-    Contact contact;
-    PairState& state = contact.state;
+    Collision collision;
+    PairState& state = collision.state;
     state.position = PositionInCell(frame);
     state.direction = DirectionInCell(frame);
     state.direction *= OneOverLength(state.direction);
     const double phase = PhaseOf(piston, i, from.path[i]) * 2 * wave_.stroke();
     const double ratio = orbit.piston_speed / orbit.ball_speed;
     const double length = (burst_.slot(t + kVectors).path[i] - from.path[i]) * inverse;
-    const std::optional<PistonWave::Meeting> meeting = wave_.FirstMeeting(
+    const std::optional<PistonWave::Collision> first = wave_.FirstCollision(
         phase, ratio, state.position.x() - wave_.left(), state.direction.x(), length);
-    if (!meeting) return std::nullopt;
-    const double path =
-        (piston.path[i] + static_cast<double>(from.path[i])) * inverse + meeting->way;
-    contact.time = path / orbit.ball_speed;
-    if (contact.time > orbit.longest_wait) return Overdue(contact.time);
-    state.position += state.direction * meeting->way;
+    if (!first) return std::nullopt;
+    const double path = (piston.path[i] + static_cast<double>(from.path[i])) * inverse + first->way;
+    collision.time = path / orbit.ball_speed;
+    if (collision.time > orbit.longest_wait) return Overdue(collision.time);
+    state.position += state.direction * first->way;
     state.ball_speed = orbit.ball_speed;
     state.piston = state.position.x();
-    state.piston_velocity = meeting->piston_goes_right ? orbit.piston_speed : -orbit.piston_speed;
-    contact.ball_wall_hits = (bursts_ - 1 - orbit.entry_burst) * flights_ + t / kVectors;
-    contact.piston_wall_hits = wave_.Hits(orbit.entry_phase, path * ratio);
-    return contact;
+    state.piston_velocity = first->piston_goes_right ? orbit.piston_speed : -orbit.piston_speed;
+    collision.ball_wall_hits = (bursts_ - 1 - orbit.entry_burst) * flights_ + t / kVectors;
+    collision.piston_wall_hits = wave_.Hits(orbit.entry_phase, path * ratio);
+    return collision;
   }
 
   // The piston comes to a ball at rest, wherever rounding puts the ball in its lane.
-  void MeetIfAtRest(size_t lane, const PairState& start) {
+  void CollideIfAtRest(size_t lane, const PairState& start) {
     if (start.ball_speed >= kAtRest) return;
     const LaneOrbit& orbit = orbit_[lane];
     const std::optional<double> way =
         wave_.WayToBallAtRest(orbit.entry_phase, start.position.x() - wave_.left());
     const double time = way ? *way / orbit.piston_speed : std::numeric_limits<double>::infinity();
     if (!(time <= orbit.longest_wait)) return Report(lane, Overdue(time));
-    Contact contact = {.state = start, .time = time};
-    contact.state.ball_speed = 0;
-    contact.state.piston = start.position.x();
-    contact.state.piston_velocity = -orbit.piston_speed;
-    contact.piston_wall_hits = orbit.entry_phase < wave_.stroke() ? 1 : 0;  // the right one
-    Report(lane, contact);
+    Collision collision = {.state = start, .time = time};
+    collision.state.ball_speed = 0;
+    collision.state.piston = start.position.x();
+    collision.state.piston_velocity = -orbit.piston_speed;
+    collision.piston_wall_hits = orbit.entry_phase < wave_.stroke() ? 1 : 0;  // the right one
+    Report(lane, collision);
   }
 
   // The piston's phase when the ball has gone `path` in this burst, in periods, at least 0 and
@@ -327,26 +326,26 @@ class LaneOrbits : public OrbitRun {
   // very many such orbits, the next call of Refill reports the last of them.
   void Refill() {
     do {
-      Meet();
+      Resolve();
       StartNew();
-    } while (calls_left_ > 0 && !meetings_.empty());
+    } while (calls_left_ > 0 && !collisions_.empty());
     for (; parked_ < idle_.size(); ++parked_) Park(idle_[parked_]);
   }
 
-  void Meet() {
-    if (meetings_.empty()) return;
-    source_.Meet(meetings_);
-    calls_left_ -= static_cast<int64_t>(meetings_.size());
-    reported_.swap(meetings_);
-    reported_lanes_.swap(met_);
+  void Resolve() {
+    if (collisions_.empty()) return;
+    source_.Collide(collisions_);
+    calls_left_ -= static_cast<int64_t>(collisions_.size());
+    reported_.swap(collisions_);
+    reported_lanes_.swap(collided_);
     for (size_t i = 0; i < reported_.size(); ++i) {
-      const Contact& contact = reported_[i].contact;
-      if (reported_[i].after == AfterContact::kEnd || contact.escaped || contact.expired) {
+      const Collision& collision = reported_[i].collision;
+      if (reported_[i].after == AfterCollision::kEnd || collision.escaped || collision.expired) {
         idle_.push_back(reported_lanes_[i]);
       } else {
-        const OrbitStart start = {reported_[i].orbit, AfterExchange(contact.state, 1.0)};
+        const OrbitStart start = {reported_[i].orbit, AfterExchange(collision.state, 1.0)};
         Enter(reported_lanes_[i], start);
-        MeetIfAtRest(reported_lanes_[i], start.state);
+        CollideIfAtRest(reported_lanes_[i], start.state);
       }
     }
     reported_.clear();
@@ -365,7 +364,7 @@ class LaneOrbits : public OrbitRun {
       parked_ = std::min(parked_, idle_.size());
       Enter(lane, starts_[i]);
       if (InsideCell(geometry_, starts_[i].state.position, kOnAWall)) {
-        MeetIfAtRest(lane, starts_[i].state);
+        CollideIfAtRest(lane, starts_[i].state);
       } else {
         Report(lane, Escape());
       }
@@ -433,19 +432,19 @@ class LaneOrbits : public OrbitRun {
   std::vector<size_t> idle_;      // lanes without an orbit
   size_t parked_ = 0;             // of them, the first ones
   bool source_is_empty_ = false;  // at the last call of Start
-  std::vector<size_t> met_;       // lanes of the meetings
-  std::vector<Meeting> meetings_;
-  int64_t calls_left_ = 0;              // starts and meetings until the next call of Pause
-  std::vector<size_t> reported_lanes_;  // of the meetings that Meet is resolving
-  std::vector<Meeting> reported_;
+  std::vector<size_t> collided_;  // lanes of the collisions
+  std::vector<OrbitCollision> collisions_;
+  int64_t calls_left_ = 0;              // starts and collisions until the next call of Pause
+  std::vector<size_t> reported_lanes_;  // of the collisions that Resolve is resolving
+  std::vector<OrbitCollision> reported_;
   std::vector<OrbitStart> starts_;
 };
 
-std::unique_ptr<OrbitRun> StartDouble(const PairGeometry& geometry, OrbitSource& source) {
+std::unique_ptr<EngineRun> StartDouble(const PairGeometry& geometry, OrbitSource& source) {
   return std::make_unique<LaneOrbits<double>>(geometry, source);
 }
 
-std::unique_ptr<OrbitRun> StartSingle(const PairGeometry& geometry, OrbitSource& source) {
+std::unique_ptr<EngineRun> StartSingle(const PairGeometry& geometry, OrbitSource& source) {
   return std::make_unique<LaneOrbits<float>>(geometry, source);
 }
 
@@ -459,11 +458,12 @@ namespace ballpiston {
 HWY_EXPORT(StartDouble);
 HWY_EXPORT(StartSingle);
 
-std::unique_ptr<OrbitRun> StartLaneOrbits(const PairGeometry& geometry, OrbitSource& source) {
+std::unique_ptr<EngineRun> StartLaneOrbits(const PairGeometry& geometry, OrbitSource& source) {
   return HWY_DYNAMIC_DISPATCH(StartDouble)(geometry, source);
 }
 
-std::unique_ptr<OrbitRun> StartLaneOrbitsSingle(const PairGeometry& geometry, OrbitSource& source) {
+std::unique_ptr<EngineRun> StartLaneOrbitsSingle(const PairGeometry& geometry,
+                                                 OrbitSource& source) {
   return HWY_DYNAMIC_DISPATCH(StartSingle)(geometry, source);
 }
 

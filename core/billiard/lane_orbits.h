@@ -7,8 +7,8 @@
 
 namespace ballpiston {
 
-std::unique_ptr<OrbitRun> StartLaneOrbits(const PairGeometry& geometry, OrbitSource& source);
+std::unique_ptr<EngineRun> StartLaneOrbits(const PairGeometry& geometry, OrbitSource& source);
 // With flights in single precision: faster, with the errors that single_precision.h states.
-std::unique_ptr<OrbitRun> StartLaneOrbitsSingle(const PairGeometry& geometry, OrbitSource& source);
+std::unique_ptr<EngineRun> StartLaneOrbitsSingle(const PairGeometry& geometry, OrbitSource& source);
 
 }  // namespace ballpiston

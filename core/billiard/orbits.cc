@@ -13,7 +13,7 @@ namespace {
 constexpr uint64_t kEventsBetweenLooks = 4096;  // about 0.2 ms, so a call of Pause costs nothing
 
 // One orbit after the other.
-class ReferenceOrbits : public OrbitRun {
+class ReferenceOrbits : public EngineRun {
  public:
   ReferenceOrbits(const PairGeometry& geometry, OrbitSource& source)
       : geometry_(geometry), source_(source), limit_(source.TimeLimit()), longest_wait_(geometry) {}
@@ -31,27 +31,27 @@ class ReferenceOrbits : public OrbitRun {
     OrbitStart start;
     if (source_.Start({&start, 1}) == 0) return false;
     flow_.emplace(geometry_, start.state);
-    meeting_ = {.orbit = start.orbit};
+    current_ = {.orbit = start.orbit};
     longest_ = HasTimeLimit() ? limit_ : longest_wait_.From(start.state);
     return true;
   }
   bool HasTimeLimit() const { return limit_ < std::numeric_limits<double>::infinity(); }
 
   void Step() {
-    Contact& contact = meeting_.contact;
+    Collision& collision = current_.collision;
     const Event event = flow_->Step();
-    contact.Add(event);
-    const bool is_overdue = contact.time > longest_;
-    contact.expired = is_overdue && HasTimeLimit();
-    contact.escaped |= is_overdue && !HasTimeLimit();
-    const bool has_ended = contact.escaped || contact.expired;
+    collision.Add(event);
+    const bool is_overdue = collision.time > longest_;
+    collision.expired = is_overdue && HasTimeLimit();
+    collision.escaped |= is_overdue && !HasTimeLimit();
+    const bool has_ended = collision.escaped || collision.expired;
     if (event.kind != EventKind::kBallPiston && !has_ended) return;
-    contact.state = flow_->state();
-    source_.Meet({&meeting_, 1});
-    if (meeting_.after == AfterContact::kEnd || has_ended) return flow_.reset();
+    collision.state = flow_->state();
+    source_.Collide({&current_, 1});
+    if (current_.after == AfterCollision::kEnd || has_ended) return flow_.reset();
     flow_->ExchangeComponents();
     if (!HasTimeLimit()) longest_ = longest_wait_.From(flow_->state());
-    contact = {};
+    collision = {};
   }
 
   PairGeometry geometry_;
@@ -60,20 +60,20 @@ class ReferenceOrbits : public OrbitRun {
   LongestWait longest_wait_;
   double longest_ = 0;  // of the current wait
   std::optional<ReferenceFlow> flow_;
-  Meeting meeting_;
+  OrbitCollision current_;
 };
 
 }  // namespace
 
-void Contact::Add(const Event& event) {
+void Collision::Add(const Event& event) {
   time += event.duration;
   ball_wall_hits += event.kind == EventKind::kBallWall;
   piston_wall_hits += event.kind == EventKind::kPistonWall;
   escaped = event.kind == EventKind::kEscape;
 }
 
-std::unique_ptr<OrbitRun> StartOrbits(Engine engine, const PairGeometry& geometry,
-                                      OrbitSource& source) {
+std::unique_ptr<EngineRun> StartOrbits(Engine engine, const PairGeometry& geometry,
+                                       OrbitSource& source) {
   if (engine == Engine::kLanes) return StartLaneOrbits(geometry, source);
   if (engine == Engine::kLanesSingle) return StartLaneOrbitsSingle(geometry, source);
   return std::make_unique<ReferenceOrbits>(geometry, source);

@@ -5,9 +5,9 @@
 //   kReference  computes one orbit after the other by ReferenceFlow, event by event.
 //   kLanes      computes the ball's flights between walls in vector lanes, without positions. The
 //               piston's position is a triangle wave in time, which the engine evaluates only when
-//               the ball is within the piston's reach. The engine finds a contact from the
+//               the ball is within the piston's reach. The engine finds a collision from the
 //               positions of both bodies at the flight's end and at the piston's turning point, and
-//               resolves the contact within the flight. The orbit then continues in its lane.
+//               resolves the collision within the flight. The orbit then continues in its lane.
 //
 // An orbit's numbers do not depend on its lane, on the number of lanes, or on other orbits: every
 // operation is elementwise, and is exact, correctly rounded or fused as written. So the bits are
@@ -21,6 +21,7 @@
 #include <memory>
 #include <span>
 
+#include "core/billiard/engine_run.h"
 #include "core/billiard/reference_flow.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
@@ -30,7 +31,7 @@ namespace ballpiston {
 enum class Engine { kReference, kLanes, kLanesSingle };
 
 // A ball-piston collision of an orbit, and the orbit's path to it.
-struct Contact {
+struct Collision {
   PairState state;  // in contact, before the exchange of velocity components
   double time = 0;  // since the orbit's start or its previous collision
   uint64_t ball_wall_hits = 0;
@@ -41,10 +42,10 @@ struct Contact {
   bool expired = false;  // no collision within the time limit; `state` is meaningless, and `time`
                          // means only that the limit has passed
 
-  void Add(const Event& event);  // adds an event before the contact
+  void Add(const Event& event);  // adds an event before the collision
 };
 
-enum class AfterContact { kGoOn, kEnd };
+enum class AfterCollision { kGoOn, kEnd };
 
 // A pair at the start of an orbit. The source chooses the orbit's number.
 struct OrbitStart {
@@ -52,17 +53,19 @@ struct OrbitStart {
   PairState state = {};
 };
 
-// A contact of orbit `orbit`. The source sets `after`. kGoOn: ball and piston exchange components,
-// and the orbit continues. An orbit that escaped or expired ends for any value of `after`.
-struct Meeting {
+// A collision of orbit `orbit`. The source sets `after`. kGoOn: ball and piston exchange
+// components, and the orbit continues. An orbit that escaped or expired ends for any value of
+// `after`.
+struct OrbitCollision {
   uint64_t orbit = 0;
-  Contact contact = {};
-  AfterContact after = AfterContact::kEnd;
+  Collision collision = {};
+  AfterCollision after = AfterCollision::kEnd;
 };
 
-// Supplies the starts of orbits and receives their contacts, both in batches. The thread that runs
-// the orbits calls the source. The order of calls for different orbits depends on the engine, so a
-// source must keep its measurements by orbit and combine them in the order of the orbits' numbers.
+// Supplies the starts of orbits and receives their collisions, both in batches. The thread that
+// runs the orbits calls the source. The order of calls for different orbits depends on the engine,
+// so a source must keep its measurements by orbit and combine them in the order of the orbits'
+// numbers.
 class OrbitSource {
  public:
   virtual ~OrbitSource() = default;
@@ -70,27 +73,20 @@ class OrbitSource {
   // means that the source has no more orbits now. The lanes ask again about 0.2 ms later, as long
   // as they have other orbits in progress.
   virtual size_t Start(std::span<OrbitStart> starts) = 0;
-  virtual void Meet(std::span<Meeting> meetings) = 0;
-  // An orbit expires after this time without a collision: the source receives an expired contact,
-  // and the orbit ends. The expired contact may come later than the limit. Without a limit an orbit
-  // waits for LongestWait (longest_wait.h), and is then reported as escaped. So every orbit ends.
+  virtual void Collide(std::span<OrbitCollision> collisions) = 0;
+  // An orbit expires after this time without a collision: the source receives an expired collision,
+  // and the orbit ends. The expired collision may come later than the limit. Without a limit an
+  // orbit waits for LongestWait (longest_wait.h), and is then reported as escaped. So every orbit
+  // ends.
   virtual double TimeLimit() const { return std::numeric_limits<double>::infinity(); }
   // True if the engine should return. The engine asks about 5000 times a second, and at least every
-  // 0.05 s if a call of Start or Meet takes at most 10 us for each orbit.
+  // 0.05 s if a call of Start or Collide takes at most 10 us for each orbit.
   virtual bool Pause() = 0;
 };
 
-// Orbits in progress. An engine keeps as many lanes full as the source can fill.
-class OrbitRun {
- public:
-  virtual ~OrbitRun() = default;
-  // Returns true when no orbit is in progress and the source has no more now. Returns false when
-  // the source's Pause is true. May be called again in both cases, from any thread.
-  virtual bool Advance() = 0;
-};
-
-// The source must outlive the run.
-std::unique_ptr<OrbitRun> StartOrbits(Engine engine, const PairGeometry& geometry,
-                                      OrbitSource& source);
+// Orbits in progress. An engine keeps as many lanes full as the source can fill. The source must
+// outlive the run.
+std::unique_ptr<EngineRun> StartOrbits(Engine engine, const PairGeometry& geometry,
+                                       OrbitSource& source);
 
 }  // namespace ballpiston

@@ -39,19 +39,19 @@ class PistonWave {
                           : 0;
   }
 
-  // A meeting of ball and piston: the ball's path length `way` until then, and the direction in
+  // A collision of ball and piston: the ball's path length `way` until then, and the direction in
   // which the piston moves.
-  struct Meeting {
+  struct Collision {
     double way;
     bool piston_goes_right;
   };
-  // The first meeting of piston and ball. The ball goes at most `length`, from a distance `x` right
-  // of the piston's left wall and not beyond the piston, along a direction with the component `ux`.
-  // The piston goes `ratio` times as far. A ball and a piston that touch and move apart do not
-  // meet. The piston passes every ball that is right of the piston's left wall. So they meet before
-  // the piston turns there, or the ball has left the piston's reach.
-  std::optional<Meeting> FirstMeeting(double phase, double ratio, double x, double ux,
-                                      double length) const {
+  // The first collision of piston and ball. The ball goes at most `length`, from a distance `x`
+  // right of the piston's left wall and not beyond the piston, along a direction with the component
+  // `ux`. The piston goes `ratio` times as far. A ball and a piston that touch and move apart do
+  // not meet. The piston passes every ball that is right of the piston's left wall. So they meet
+  // before the piston turns there, or the ball has left the piston's reach.
+  std::optional<Collision> FirstCollision(double phase, double ratio, double x, double ux,
+                                          double length) const {
     double way = 0;
     if (x < 0) {  // the ball first flies to the piston's left wall
       if (ux <= 0) return std::nullopt;
@@ -62,14 +62,14 @@ class PistonWave {
     }
     if (phase < stroke_) {
       const double gap = phase - (x + ux * way), approach = ux - ratio, rest = stroke_ - phase;
-      const std::optional<double> met = Meet(gap, approach, ratio, rest);
+      const std::optional<double> met = WayToClose(gap, approach, ratio, rest);
       if (met) return Within(length, {way + *met, true});
       way += rest / ratio;
       phase = stroke_;
     }
     if (way > length) return std::nullopt;
     const double rest = 2 * stroke_ - phase;
-    const std::optional<double> met = Meet(rest - (x + ux * way), ux + ratio, ratio, rest);
+    const std::optional<double> met = WayToClose(rest - (x + ux * way), ux + ratio, ratio, rest);
     return met ? Within(length, {way + *met, false}) : std::nullopt;
   }
 
@@ -89,13 +89,13 @@ class PistonWave {
 
  private:
   // The ball's path length until a gap closes; empty if the piston turns before.
-  static std::optional<double> Meet(double gap, double approach, double ratio, double rest) {
+  static std::optional<double> WayToClose(double gap, double approach, double ratio, double rest) {
     gap = std::max(gap, 0.0);  // below 0 by rounding
     if (approach <= 0 || gap * ratio > approach * rest) return std::nullopt;
     return gap / approach;
   }
-  static std::optional<Meeting> Within(double length, const Meeting& meeting) {
-    return meeting.way <= length ? std::optional(meeting) : std::nullopt;
+  static std::optional<Collision> Within(double length, const Collision& collision) {
+    return collision.way <= length ? std::optional(collision) : std::nullopt;
   }
 
   double left_;

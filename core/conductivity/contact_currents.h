@@ -44,7 +44,7 @@ ContactCurrents ContactCurrentsOf(const TestFunction& f, double ball_energy, dou
 
 class ContactCurrentsTable {
  public:
-  // Of a node. Six are in use; eight are one vector of the widest lanes.
+  // The numbers that a node stores. The functions use six of them; a vector of AVX-512 has eight.
   static constexpr size_t kValues = 8;
 
   explicit ContactCurrentsTable(const TestFunction& f);

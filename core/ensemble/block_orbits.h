@@ -23,7 +23,7 @@ inline constexpr double kNoTimeLimit = std::numeric_limits<double>::infinity();
 // The orbits of one block, with their health. `Orbits` has these functions:
 //   uint64_t count() const;                                     at least 1
 //   PairState Start(uint64_t orbit);                            called once for each orbit
-//   AfterContact Meet(uint64_t orbit, const Contact& contact);  not called for an escape
+//   AfterCollision Collide(uint64_t orbit, const Collision& collision);  not called for an escape
 //   BlockResult Result() const;                                 called after all orbits have ended
 template <typename Orbits>
 class WatchedOrbits {
@@ -33,14 +33,14 @@ class WatchedOrbits {
   uint64_t count() const { return orbits_.count(); }
   PairState Start(uint64_t orbit) { return orbits_.Start(orbit); }
 
-  AfterContact Meet(uint64_t orbit, const Contact& contact) {
-    if (contact.escaped) {
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) {
+    if (collision.escaped) {
       ++health_.escapes;
-      return AfterContact::kEnd;
+      return AfterCollision::kEnd;
     }
-    const AfterContact after = orbits_.Meet(orbit, contact);
-    if (contact.expired) return AfterContact::kEnd;
-    health_.max_energy_error = std::max(health_.max_energy_error, EnergyError(contact.state));
+    const AfterCollision after = orbits_.Collide(orbit, collision);
+    if (collision.expired) return AfterCollision::kEnd;
+    health_.max_energy_error = std::max(health_.max_energy_error, EnergyError(collision.state));
     return after;
   }
 
@@ -56,7 +56,7 @@ class WatchedOrbits {
 };
 
 template <typename Orbits>
-class BlockOrbits : public BlockRun, private OrbitSource {
+class BlockOrbits : public EngineRun, private OrbitSource {
  public:
   template <typename Make>
   BlockOrbits(Engine engine, const PairGeometry& geometry, double time_limit, Make make,
@@ -78,11 +78,10 @@ class BlockOrbits : public BlockRun, private OrbitSource {
     return starts.size();
   }
 
-  void Meet(std::span<Meeting> meetings) override {
-    for (Meeting& meeting : meetings) {
-      const uint64_t orbit = meeting.orbit;
-      meeting.after = blocks_.WorkOf(orbit).Meet(blocks_.IndexOf(orbit), meeting.contact);
-      if (meeting.after == AfterContact::kEnd) blocks_.End(orbit);
+  void Collide(std::span<OrbitCollision> collisions) override {
+    for (auto& [orbit, collision, after] : collisions) {
+      after = blocks_.WorkOf(orbit).Collide(blocks_.IndexOf(orbit), collision);
+      if (after == AfterCollision::kEnd) blocks_.End(orbit);
     }
   }
 
@@ -92,7 +91,7 @@ class BlockOrbits : public BlockRun, private OrbitSource {
   double time_limit_;
   BlockQueue& queue_;
   OpenBlocks<WatchedOrbits<Orbits>> blocks_;
-  std::unique_ptr<OrbitRun> run_;
+  std::unique_ptr<EngineRun> run_;
 };
 
 }  // namespace ballpiston

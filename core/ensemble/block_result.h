@@ -18,7 +18,7 @@
 namespace ballpiston {
 
 struct Health {
-  uint64_t escapes = 0;         // orbits that were lost (Contact::escaped): a defect if not 0
+  uint64_t escapes = 0;         // orbits that were lost (Collision::escaped): a defect if not 0
   double max_energy_error = 0;  // largest |E/E0 - 1| seen; E0 = 1/2 of a pair
 
   void Merge(const Health& other);

@@ -1,4 +1,7 @@
-// BlockRun computes the blocks of a point; BlockQueue supplies them and receives their results.
+// A run of a point's blocks (billiard/engine_run.h). BlockQueue supplies the blocks and receives
+// their results. A run computes several blocks at a time where this keeps the lanes of an engine
+// full. A block's result depends only on the block, not on other blocks in progress and not on
+// pauses.
 #pragma once
 
 #include <memory>
@@ -6,6 +9,7 @@
 #include <stop_token>
 #include <utility>
 
+#include "core/billiard/engine_run.h"
 #include "core/ensemble/block_result.h"
 #include "core/ensemble/chunk_plan.h"
 
@@ -24,21 +28,11 @@ class BlockQueue {
   virtual std::stop_token stop() const = 0;
 };
 
-// Computes blocks of one point, several at a time where this keeps the lanes of an engine full. A
-// block's result depends only on the block, not on other blocks in progress and not on pauses.
-class BlockRun {
- public:
-  virtual ~BlockRun() = default;
-  // Returns true when no block is in progress and the queue has none now. Returns false when the
-  // queue's Pause is true. May be called again in both cases, from any thread.
-  virtual bool Advance() = 0;
-};
-
 // Computes one block after the other with
 //   std::optional<BlockResult> compute(const Block&, const std::stop_token&)
 // which returns nothing only if stop was requested.
 template <typename Compute>
-class OneBlockAtATime : public BlockRun {
+class OneBlockAtATime : public EngineRun {
  public:
   OneBlockAtATime(BlockQueue& queue, Compute compute)
       : queue_(queue), compute_(std::move(compute)) {}
@@ -58,7 +52,7 @@ class OneBlockAtATime : public BlockRun {
 };
 
 template <typename Compute>
-std::unique_ptr<BlockRun> RunOneByOne(BlockQueue& queue, Compute compute) {
+std::unique_ptr<EngineRun> RunOneByOne(BlockQueue& queue, Compute compute) {
   return std::make_unique<OneBlockAtATime<Compute>>(queue, std::move(compute));
 }
 

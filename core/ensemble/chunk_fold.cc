@@ -19,9 +19,9 @@ std::vector<ChunkResult> ChunkFold::Add(const Block& block, BlockResult result) 
   std::vector<ChunkResult> complete;
   const Place place = {block.chunk, block.index};
   if (place < NextPlace()) return complete;
-  early_.emplace(place, std::move(result));
-  while (!early_.empty() && early_.begin()->first == NextPlace()) {
-    partial_.merged.Merge(early_.extract(early_.begin()).mapped());
+  early_.Add(place, std::move(result));
+  while (const std::optional<BlockResult> next = early_.Take(NextPlace())) {
+    partial_.merged.Merge(*next);
     --handed_out_;
     if (++partial_.blocks < plan_.BlocksIn(partial_.chunk)) continue;
     complete.push_back({partial_.chunk, std::exchange(partial_.merged, {})});

@@ -9,13 +9,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/ensemble/block_result.h"
 #include "core/ensemble/chunk_plan.h"
+#include "core/ensemble/in_order.h"
 
 namespace ballpiston {
 
@@ -63,7 +63,7 @@ class ChunkFold {
   PartialChunk partial_;
   Place next_;               // of the next block to hand out
   uint64_t handed_out_ = 0;  // blocks that are handed out but not merged
-  std::map<Place, BlockResult> early_;
+  InOrder<Place, BlockResult> early_;
 };
 
 }  // namespace ballpiston

@@ -94,8 +94,8 @@ void PointExperiment::SetMeasurements(BlockResult empty, std::vector<Measurement
   table_ = std::move(table);
 }
 
-// Of an answer that needs no samples. Other experiments replace it.
-std::unique_ptr<BlockRun> PointExperiment::StartRun(BlockQueue& queue) const {
+// This run is for an answer that needs no samples. Experiments that sample override this function.
+std::unique_ptr<EngineRun> PointExperiment::StartRun(BlockQueue& queue) const {
   return RunOneByOne(
       queue, [](const Block&, const std::stop_token&) { return std::optional(BlockResult()); });
 }

@@ -70,7 +70,7 @@ class PointExperiment {
   const Answer& answer() const { return answer_; }
 
   // The queue must outlive the run. The queue's Next must return blocks of plan().
-  virtual std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const;
+  virtual std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const;
 
   // The result before any block. It has the accumulators that every block has; merging needs them.
   const BlockResult& EmptyResult() const { return empty_; }

@@ -9,20 +9,20 @@ PointFold::PointFold(const PointExperiment& experiment)
     : experiment_(experiment), chunks_(experiment.plan().chunks()), finished_(chunks_ == 0) {}
 
 bool PointFold::Needs(uint64_t chunk) const {
-  return !finished_ && chunk >= state_.chunk && chunk < chunks_ && !early_.contains(chunk);
+  return !finished_ && chunk >= state_.chunk && chunk < chunks_ && !early_.Has(chunk);
 }
 
 uint64_t PointFold::Add(ChunkResult chunk) {
   if (!Needs(chunk.chunk)) return 0;
-  early_.emplace(chunk.chunk, std::move(chunk.result));
+  early_.Add(chunk.chunk, std::move(chunk.result));
   uint64_t samples = 0;
-  while (!finished_ && !early_.empty() && early_.begin()->first == state_.chunk) {
-    samples += MergeNext(std::move(early_.extract(early_.begin()).mapped()));
+  while (const std::optional<BlockResult> next = early_.Take(state_.chunk)) {
+    samples += MergeNext(*next);
   }
   return samples;
 }
 
-uint64_t PointFold::MergeNext(BlockResult chunk) {
+uint64_t PointFold::MergeNext(const BlockResult& chunk) {
   const uint64_t known = std::exchange(state_.partial, {}).samples;
   state_.complete.Merge(chunk);
   state_.chunk_digests.push_back(DigestOf(chunk));
@@ -41,7 +41,7 @@ uint64_t PointFold::AddPartial(const PartialChunk& partial) {
 
 void PointFold::Finish() {
   finished_ = true;
-  early_.clear();
+  early_.Clear();
 }
 
 void PointFold::Resume(FoldState state) {
@@ -92,22 +92,6 @@ BlockResult LocalPoint::Merged() const { return Now().Merged(); }
 
 namespace {
 
-class LocalQueue : public BlockQueue {
- public:
-  LocalQueue(LocalPoint& point, const std::stop_token& stop) : point_(point), stop_(stop) {}
-
-  std::optional<Block> Next() override { return point_.NextBlock(); }
-  void Done(const Block& block, BlockResult result) override {
-    point_.Add(block, std::move(result));
-  }
-  bool Pause() override { return point_.finished() || stop_.stop_requested(); }
-  std::stop_token stop() const override { return stop_; }
-
- private:
-  LocalPoint& point_;
-  const std::stop_token& stop_;
-};
-
 class QueueOfOne : public BlockQueue {
  public:
   QueueOfOne(const Block& block, const std::stop_token& stop) : block_(block), stop_(stop) {}
@@ -127,8 +111,8 @@ class QueueOfOne : public BlockQueue {
 }  // namespace
 
 bool LocalPoint::Run(const std::stop_token& stop) {
-  LocalQueue queue(*this, stop);
-  const std::unique_ptr<BlockRun> run = experiment_.StartRun(queue);
+  stop_ = stop;
+  const std::unique_ptr<EngineRun> run = experiment_.StartRun(*this);
   while (!finished() && !stop.stop_requested()) run->Advance();
   return finished();
 }

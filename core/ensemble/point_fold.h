@@ -10,9 +10,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <stop_token>
+#include <utility>
 #include <vector>
 
 #include "core/ensemble/block_result.h"
@@ -61,18 +61,18 @@ class PointFold {
   size_t waiting() const { return early_.size(); }
 
  private:
-  uint64_t MergeNext(BlockResult chunk);
+  uint64_t MergeNext(const BlockResult& chunk);
   bool ReachesTolerance() const;  // after the last complete chunk
 
   const PointExperiment& experiment_;
   const uint64_t chunks_;
   FoldState state_;
   bool finished_;
-  std::map<uint64_t, BlockResult> early_;  // by chunk
+  InOrder<uint64_t, BlockResult> early_;  // by chunk
 };
 
 // A whole point computed in one place: all its chunks, and their fold.
-class LocalPoint {
+class LocalPoint : private BlockQueue {
  public:
   // The experiment must outlive this object.
   explicit LocalPoint(const PointExperiment& experiment);
@@ -92,12 +92,18 @@ class LocalPoint {
   BlockResult Merged() const;
 
  private:
+  std::optional<Block> Next() override { return NextBlock(); }
+  void Done(const Block& block, BlockResult result) override { Add(block, std::move(result)); }
+  bool Pause() override { return finished() || stop_.stop_requested(); }
+  std::stop_token stop() const override { return stop_; }
+
   // The fold, with the merged blocks of the first chunk that is not complete.
   PointFold Now() const;
 
   const PointExperiment& experiment_;
   PointFold fold_;
   ChunkFold chunks_;
+  std::stop_token stop_;  // of Run
 };
 
 // Computes a whole point on the calling thread. Empty if `stop` was requested before the end.

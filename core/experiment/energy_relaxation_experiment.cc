@@ -74,17 +74,17 @@ class RelaxingOrbits {
     return state;
   }
 
-  AfterContact Meet(uint64_t orbit, const Contact& contact) {
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) {
     std::optional<StepFunction>& energy = energies_[orbit];
-    if (!contact.expired) {
+    if (!collision.expired) {
       // After the collision the piston has the ball's normal velocity component.
-      const double v = contact.state.ball_speed * contact.state.direction.x();
-      energy->Add(contact.time, v * v / 2);
-      if (energy->last_jump() < relaxation_.orbit_time()) return AfterContact::kGoOn;
+      const double v = collision.state.ball_speed * collision.state.direction.x();
+      energy->Add(collision.time, v * v / 2);
+      if (energy->last_jump() < relaxation_.orbit_time()) return AfterCollision::kGoOn;
     }
     measurements_.Set(orbit, *energy);
     energy.reset();
-    return AfterContact::kEnd;
+    return AfterCollision::kEnd;
   }
 
   BlockResult Result() const { return measurements_.Result(); }
@@ -189,7 +189,7 @@ class EnergyRelaxationExperiment : public PairExperiment {
     SetMeasurements(relaxation_.Empty(), std::move(table));
   }
 
-  std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
     if (IsLimit()) {
       return RunOneByOne(queue, [this](const Block& block, const std::stop_token& stop) {
         return WalkBlock(relaxation_, random(), block, stop);

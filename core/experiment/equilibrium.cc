@@ -46,12 +46,12 @@ class TimedOrbits : public OrbitsInEquilibrium {
 
   PairState Start(uint64_t orbit) const { return Draw(orbit); }
 
-  AfterContact Meet(uint64_t orbit, const Contact& contact) {
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) {
     Orbit& sums = orbits_[orbit];
-    sums.time += contact.time;
+    sums.time += collision.time;
     sums.collisions[kBallPiston] += 1;
-    sums.collisions[kBallWall] += contact.ball_wall_hits;
-    sums.collisions[kPistonWall] += contact.piston_wall_hits;
+    sums.collisions[kBallWall] += collision.ball_wall_hits;
+    sums.collisions[kPistonWall] += collision.piston_wall_hits;
     return After(orbit, sums.collisions[kBallPiston]);
   }
 
@@ -88,7 +88,7 @@ class EquilibriumExperiment : public PairExperiment {
     SetMeasurements({.batch_means = std::vector<BatchMeans>(kHits)}, std::move(table));
   }
 
-  std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
     return RunOrbits(queue, [this](const Block& block) { return TimedOrbits(*this, block); });
   }
 

@@ -1,5 +1,5 @@
-// What the closed forms predict of returns to the collision surface: the wall hits on the way,
-// which decide the cost of a sample, and the long returns, which decide its standard error.
+// Predictions for returns to the collision surface, by closed forms. The number of wall hits before
+// a return decides the cost of a sample. The number of long returns decides its standard error.
 //
 // With a slow piston (epsilon -> 0) or a slow ball (epsilon -> 1/2) most returns are short, as if
 // the slow body rested. A few very long returns dominate the mean: the piston goes to its far wall

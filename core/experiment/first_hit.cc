@@ -103,7 +103,7 @@ class ReturnExperiment : public PairExperiment {
         exact_mean_(ConditionalMeanFreeTime(geometry(), law_.epsilon)),
         events_(EventsOfAReturn(answer().model, point)) {}
 
-  std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override;
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override;
 
   virtual void Record(const Return& hit, BlockResult& result) const {
     result.moments[kTime].Add(hit.time);
@@ -188,7 +188,7 @@ class RecordedReturns : public ReturnOrbits {
   const ReturnExperiment& experiment_;
 };
 
-std::unique_ptr<BlockRun> ReturnExperiment::StartRun(BlockQueue& queue) const {
+std::unique_ptr<EngineRun> ReturnExperiment::StartRun(BlockQueue& queue) const {
   return RunOrbits(queue,
                    [this](const Block& block) { return RecordedReturns(*this, law_, block); });
 }

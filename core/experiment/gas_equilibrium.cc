@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <span>
@@ -323,11 +324,11 @@ double EventsOfConductivity(Model model, const PointParameters& point) {
 
 // Measured errors. From four cells on they hardly depend on the number of cells, because the error
 // of a correlation is proportional to its scale for any number of cells. The jump process measures
-// only the correction, which is 0 in one column.
+// only the correction, which is 0 but for rounding in one column.
 double ErrorOfConductivity(Model model, const PointParameters& point) {
   const GasShape shape = ShapeOf(point[kCells]);
   if (model != Model::kMarkov) return shape.is_lattice ? 2 : 2.5;
-  if (shape.columns == 1) return 0;
+  if (shape.columns == 1) return std::numeric_limits<double>::epsilon();
   if (shape.columns == 2) return shape.is_lattice && shape.rows == 1 ? 0.0007 : 0.0003;
   return shape.rows > 1 ? 0.0005 : 0.001;
 }

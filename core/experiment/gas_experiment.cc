@@ -64,7 +64,7 @@ struct StartDraw {
 
 // Computes several replicas at a time, of several blocks if these are small, to fill the lanes.
 // These functions return false at a pause.
-class GasBlocks : public BlockRun {
+class GasBlocks : public EngineRun {
  public:
   GasBlocks(const GasExperiment& experiment, BlockQueue& queue)
       : experiment_(experiment), queue_(queue), blocks_(queue, [&experiment](const Block& block) {
@@ -319,7 +319,7 @@ std::vector<Measurement> GasExperiment::MeansFrom(size_t first) const {
           {"temperature_piston", Ratio(first + 2), temperature_}};
 }
 
-std::unique_ptr<BlockRun> GasExperiment::StartRun(BlockQueue& queue) const {
+std::unique_ptr<EngineRun> GasExperiment::StartRun(BlockQueue& queue) const {
   return std::make_unique<GasBlocks>(*this, queue);
 }
 

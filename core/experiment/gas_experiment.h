@@ -42,7 +42,7 @@ double MemoryOfReplicas(Model model, const PointParameters& point);
 
 class GasExperiment : public PointExperiment {
  public:
-  std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override;
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override;
 
   // A run of replicas calls these functions, from any thread.
   GasEngine gas_engine() const;

@@ -57,12 +57,12 @@ class ExchangeOrbits : public OrbitsInEquilibrium {
     return state;
   }
 
-  AfterContact Meet(uint64_t index, const Contact& contact) {
+  AfterCollision Collide(uint64_t index, const Collision& collision) {
     Orbit& orbit = orbits_[index];
-    const PairState& state = contact.state;
+    const PairState& state = collision.state;
     // After the collision the piston has the ball's normal velocity component.
     exchanges_[index * kExchangesPerOrbit + orbit.exchanges++] = {
-        .waiting_time = contact.time * rate_unit_,
+        .waiting_time = collision.time * rate_unit_,
         .energy = PistonEnergy(state.ball_speed * state.direction.x())};
     return After(index, orbit.exchanges);
   }
@@ -155,7 +155,7 @@ class MarkovPropertyExperiment : public PairExperiment {
     SetMeasurements(EmptyMarkovPropertyCounts(), MarkovPropertyTable(IsLimit()));
   }
 
-  std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
     if (IsLimit()) {
       return RunOneByOne(queue, [this](const Block& block, const std::stop_token& stop) {
         return WalkExchanges(geometry(), random(), block, stop);

@@ -64,8 +64,8 @@ class PairExperiment : public PointExperiment {
 
   // `make` makes the orbits of a block (ensemble/block_orbits.h): Orbits make(const Block&).
   template <typename Make>
-  std::unique_ptr<BlockRun> RunOrbits(BlockQueue& queue, Make make,
-                                      double time_limit = kNoTimeLimit) const {
+  std::unique_ptr<EngineRun> RunOrbits(BlockQueue& queue, Make make,
+                                       double time_limit = kNoTimeLimit) const {
     using Orbits = decltype(make(Block()));
     return std::make_unique<BlockOrbits<Orbits>>(engine(), geometry_, time_limit, std::move(make),
                                                  queue);
@@ -90,9 +90,9 @@ class OrbitsInEquilibrium {
     return DrawFromCollisionMeasure(experiment_.geometry(), random);
   }
   // `collisions`: those of the orbit so far.
-  AfterContact After(uint64_t orbit, uint64_t collisions) const {
+  AfterCollision After(uint64_t orbit, uint64_t collisions) const {
     const uint64_t last = std::min(length_, block_.samples - orbit * length_);
-    return collisions < last ? AfterContact::kGoOn : AfterContact::kEnd;
+    return collisions < last ? AfterCollision::kGoOn : AfterCollision::kEnd;
   }
 
   const PairExperiment& experiment_;

@@ -29,11 +29,11 @@ PairState ReturnOrbits::Start(uint64_t orbit) {
           .piston_velocity = outgoing.sigma * piston_speed_};
 }
 
-AfterContact ReturnOrbits::Meet(uint64_t orbit, const Contact& contact) {
-  returns_[orbit] = {.time = contact.time,
-                     .direction = contact.state.direction,
-                     .sigma = std::signbit(contact.state.piston_velocity) ? -1 : 1};
-  return AfterContact::kEnd;
+AfterCollision ReturnOrbits::Collide(uint64_t orbit, const Collision& collision) {
+  returns_[orbit] = {.time = collision.time,
+                     .direction = collision.state.direction,
+                     .sigma = std::signbit(collision.state.piston_velocity) ? -1 : 1};
+  return AfterCollision::kEnd;
 }
 
 std::vector<Histogram> EmptyIngoingHistograms(const IngoingLaw& law) {

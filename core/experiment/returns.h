@@ -50,7 +50,7 @@ class ReturnOrbits {
 
   uint64_t count() const { return returns_.size(); }
   PairState Start(uint64_t orbit);
-  AfterContact Meet(uint64_t orbit, const Contact& contact);  // not for an escape
+  AfterCollision Collide(uint64_t orbit, const Collision& collision);  // not for an escape
 
   // In the order of samples; empty for an orbit that has not ended, or has escaped.
   const std::vector<std::optional<Return>>& returns() const { return returns_; }

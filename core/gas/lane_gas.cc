@@ -300,15 +300,15 @@ void LaneGas::LeaveThermalWall(Replica& replica, uint32_t number) {
 // The pair's exchange, in the cell turned until the piston is on the right.
 void LaneGas::Exchange(Replica& replica, uint32_t number) {
   BallInTime& ball = gas_.balls[number];
-  const MeetingInTime& meeting = contacts_[number];
-  const Direction direction = meeting.direction;
+  const BallCollision& collision = contacts_[number];
+  const Direction direction = collision.direction;
   const uint32_t piston_number = ball.pistons[static_cast<size_t>(direction)];
   PistonInTime& piston = gas_.pistons[piston_number];
-  PairState before = {.position = SeenToward(direction, meeting.position),
-                      .direction = SeenToward(direction, meeting.velocity),
+  PairState before = {.position = SeenToward(direction, collision.position),
+                      .direction = SeenToward(direction, collision.velocity),
                       .ball_speed = ball.speed > kAtRest ? ball.speed : 0};
   before.piston = before.position.x();
-  before.piston_velocity = meeting.piston_goes_right ? piston.speed : -piston.speed;
+  before.piston_velocity = collision.piston_goes_right ? piston.speed : -piston.speed;
   const PairState after = AfterExchange(before, std::sqrt(2 * EnergyOf(before)));
 
   const double half_turn = SignOf(direction) < 0 ? gas_.wave.stroke() : 0;

@@ -96,7 +96,7 @@ class LaneGas : public GasRun {
   // By ball. `from_` is the ball before the flight in which the window begins, or in which its last
   // exchange in the window is. `to_` is the ball before the flight in which the window ends.
   std::vector<FlyingBall> from_, to_;
-  std::vector<MeetingInTime> contacts_;  // by ball, its next one in the window
+  std::vector<BallCollision> contacts_;  // by ball, its next one in the window
   std::vector<Visits> visits_;           // by ball, in the window until its contact
   double time_ = 0;                      // to which all replicas go
   std::vector<uint32_t> active_;         // replicas that have not come there

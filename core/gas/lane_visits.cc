@@ -31,8 +31,8 @@ class LanesAhead : public FlightsAhead {
         reach_constants_(gas.geometry.pair(), flight_constants_.scale) {}
 
   void Fly(std::span<FlightOrder> orders, std::span<const FlyingBall> from,
-           std::span<FlyingBall> to, std::span<MeetingInTime> meetings) override {
-    meetings_ = meetings;
+           std::span<FlyingBall> to, std::span<BallCollision> collisions) override {
+    collisions_ = collisions;
     const size_t count = kVectors * Width();
     for (size_t first = 0; first < orders.size(); first += count) {
       orders_ = orders.subspan(first, std::min(count, orders.size() - first));
@@ -66,7 +66,7 @@ class LanesAhead : public FlightsAhead {
     FlyVectors();
     if (HWY_UNLIKELY(burst_.left_cell())) FindLostBalls();
     std::fill_n(visitors_, vectors_, 0);
-    FindMeetings();
+    FindCollisions();
     for (size_t i = 0; i < orders_.size(); ++i) Finish(i, to[orders_[i].ball]);
   }
 
@@ -153,7 +153,7 @@ class LanesAhead : public FlightsAhead {
   static size_t SlotOf(size_t i, size_t flight) { return i / Width() + flight * kVectors; }
 
   // In the order of each ball's path.
-  void FindMeetings() {
+  void FindCollisions() {
     burst_.ListFlightsInReach();
     burst_.Keep([this](size_t t) HWY_ATTR { return MayHaveMetPistons(t); });
     for (const auto& [t, lanes] : burst_.listed()) {
@@ -161,7 +161,7 @@ class LanesAhead : public FlightsAhead {
         const size_t bit = hwy::Num0BitsBelowLS1Bit_Nonzero32(left);
         const size_t i = t % kVectors * Width() + bit % kBitsOfADirection;
         if (i >= orders_.size() || t / kVectors >= end_[i]) continue;
-        LookForMeeting(t, i, static_cast<Direction>(bit / kBitsOfADirection));
+        LookForCollision(t, i, static_cast<Direction>(bit / kBitsOfADirection));
       }
     }
   }
@@ -197,7 +197,7 @@ class LanesAhead : public FlightsAhead {
 
   // Whether ball and piston meet in flight t. Events before the piston's last change are done
   // already, so the result does not depend on the time of the call.
-  void LookForMeeting(size_t t, size_t i, Direction direction) {
+  void LookForCollision(size_t t, size_t i, Direction direction) {
     const FlightOrder& order = orders_[i];
     const Balls<double>& from = burst_.slot(t);
     const size_t lane = i % Width();
@@ -214,15 +214,15 @@ class LanesAhead : public FlightsAhead {
     const double ratio = piston.speed * ball.slowness;
     const auto [place, velocity] = SeenToward(direction, Scaled(from.Frame(lane), gas_.unit));
     const double x = place + velocity * gone - wave.left();
-    const auto meeting = wave.FirstMeeting(phase, ratio, x, velocity, length - gone);
-    if (!meeting) return;
-    const double time = begin + meeting->way * ball.slowness;
-    MeetingInTime& first = meetings_[order.ball];
+    const auto collision = wave.FirstCollision(phase, ratio, x, velocity, length - gone);
+    if (!collision) return;
+    const double time = begin + collision->way * ball.slowness;
+    BallCollision& first = collisions_[order.ball];
     if (time > order.until_time || first.time <= time) return;
     end_[i] = t / kVectors + 1;
-    first = MeetingAt(lane, from, gone + meeting->way, direction);
+    first = CollisionAt(lane, from, gone + collision->way, direction);
     first.time = time;
-    first.piston_goes_right = meeting->piston_goes_right;
+    first.piston_goes_right = collision->piston_goes_right;
   }
 
   // The ball's place and velocity, of length 1, toward a direction in the cell. This is one of the
@@ -241,8 +241,8 @@ class LanesAhead : public FlightsAhead {
     return axis < 2 ? seen : Seen{-seen.place, -seen.velocity};
   }
 
-  MeetingInTime MeetingAt(size_t lane, const Balls<double>& from, double way,
-                          Direction direction) const {
+  BallCollision CollisionAt(size_t lane, const Balls<double>& from, double way,
+                            Direction direction) const {
     const LaneFrame frame = Scaled(from.Frame(lane), gas_.unit);
     Eigen::Vector2d velocity = DirectionInCell(frame);
     velocity *= OneOverLength(velocity);
@@ -257,7 +257,7 @@ class LanesAhead : public FlightsAhead {
     const size_t lane = i % Width();
     FlightOrder& order = orders_[i];
     order.visits |= visitors_[i / Width()] >> lane & kEveryDirection;
-    order.has_arrived = meetings_[order.ball].time < kNever;
+    order.has_arrived = collisions_[order.ball].time < kNever;
     if (order.has_arrived) return;
     const auto is_beyond = [&](size_t flight) {
       return burst_.slot(SlotOf(i, flight)).path[lane] > until_[i];
@@ -286,7 +286,7 @@ class LanesAhead : public FlightsAhead {
   ReachConstants<double> reach_constants_;
   size_t flights_ = 0;
   std::span<FlightOrder> orders_;
-  std::span<MeetingInTime> meetings_;
+  std::span<BallCollision> collisions_;
   size_t vectors_ = 0;
   LaneBurst<double> burst_;
   PistonWaves<double> pistons_[kVectors][4];  // by direction

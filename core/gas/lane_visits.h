@@ -62,7 +62,7 @@ struct GasInTime {
 };
 
 // A ball meets the piston that it sees in `direction`.
-struct MeetingInTime {
+struct BallCollision {
   double time = kNever;
   Eigen::Vector2d position = {0, 0};
   Eigen::Vector2d velocity = {0, 0};  // of the ball, of length 1
@@ -80,12 +80,12 @@ inline bool Has(Visits visits, Direction direction) {
   return (visits >> kBitsOfADirection * static_cast<size_t>(direction) & 1) != 0;
 }
 
-// A ball that is to fly ahead and to look for its first meeting between two times.
+// A ball that is to fly ahead and to look for its first collision between two times.
 struct FlightOrder {
   uint32_t ball = 0;
   double from_time = 0;
   double until_time = 0;
-  bool has_arrived = false;  // at a meeting, or in the flight in which `until_time` is
+  bool has_arrived = false;  // at a collision, or in the flight in which `until_time` is
   bool has_escaped = false;  // before it met a piston; its state is the last one in its cell
   Visits visits = 0;         // until it arrived, or shortly after
 };
@@ -102,11 +102,11 @@ class FlightsAhead {
  public:
   virtual ~FlightsAhead() = default;
   // Flies some flights of each ball, from its state in `from`. If a ball meets a piston, its
-  // meeting is in `meetings`. Otherwise its state in `to` is that before the flight in which it
+  // collision is in `collisions`. Otherwise its state in `to` is that before the flight in which it
   // arrives, or to which it came. All spans but `orders` are by ball; `to` may be `from`. A ball's
   // numbers do not depend on other balls, or on how flights are divided between calls.
   virtual void Fly(std::span<FlightOrder> orders, std::span<const FlyingBall> from,
-                   std::span<FlyingBall> to, std::span<MeetingInTime> meetings) = 0;
+                   std::span<FlyingBall> to, std::span<BallCollision> collisions) = 0;
 };
 
 // The gas must outlive the lanes.

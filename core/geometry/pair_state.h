@@ -25,19 +25,6 @@ struct PairStateOf {
 
 using PairState = PairStateOf<double>;
 
-// The same state in another number type. Each number is rounded separately.
-template <typename To, typename From>
-PairStateOf<To> RoundedTo(const PairStateOf<From>& state) {
-  const auto vector = [](const auto& v) -> typename PairStateOf<To>::Vector {
-    return {static_cast<To>(v.x()), static_cast<To>(v.y())};
-  };
-  return {.position = vector(state.position),
-          .direction = vector(state.direction),
-          .ball_speed = static_cast<To>(state.ball_speed),
-          .piston = static_cast<To>(state.piston),
-          .piston_velocity = static_cast<To>(state.piston_velocity)};
-}
-
 // The energy of ball and piston together, from their speeds.
 inline double EnergyOf(const PairState& state) {
   return (state.ball_speed * state.ball_speed + state.piston_velocity * state.piston_velocity) / 2;

@@ -157,6 +157,14 @@ double HitsOf(const PointParameters& point, double orbits) {
   return orbits * (work.ball_wall + kHitsThatACollisionCosts * work.collisions);
 }
 
+// A few hours of a core. Where the discs nearly touch, a pilot may take longer than any machine
+// lasts.
+constexpr double kMostHitsOfAPilot = 1e13;
+
+double HitsOfPilot(const PilotPlace& place) {
+  return HitsOf(PointOf(place), static_cast<double>(kPilotOrbits));
+}
+
 // The billiard as the answer; `why` is the reason that no cheaper model answers.
 Answer Billiard(const Question& question, absl::string_view why) {
   const std::optional<double> error = question.ErrorOfPrecision(Model::kBilliard);
@@ -177,8 +185,7 @@ std::string WithoutAPilot(const Question& question) {
   if (LimitErrorBound(at_best, place, question.point()) > tolerance) {
     return "a pilot could not establish the limit's error to this tolerance";
   }
-  if (HitsOf(question.point(), question.SamplesFor(tolerance)) <
-      HitsOf(PointOf(place), static_cast<double>(kPilotOrbits))) {
+  if (HitsOf(question.point(), question.SamplesFor(tolerance)) < HitsOfPilot(place)) {
     return "the billiard reaches the tolerance before a pilot would establish the limit's error";
   }
   return "";
@@ -208,6 +215,7 @@ std::optional<Answer> ByTolerance(const Question& question, const PilotSource& p
     return Billiard(question, why);
   }
   const PilotPlace place = PilotPlaceFor(question.point());
+  if (HitsOfPilot(place) > kMostHitsOfAPilot) return ByItsBound(question);
   const std::optional<Pilot> pilot = pilots(place);
   if (!pilot) return std::nullopt;
   const double error = LimitErrorBound(*pilot, place, question.point());

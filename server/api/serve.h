@@ -21,6 +21,7 @@ using UnaryMethod = absl::StatusOr<Response> (*)(ServiceContext&, const Call&, c
 // The call counts until gRPC has sent its answer (CallObserver::Keep). A call that waits for the
 // disk takes no turn.
 //   RESOURCE_EXHAUSTED  TOO_MANY_CALLS
+//   CANCELLED           the client left before the method began
 template <typename Request, typename Response>
 grpc::Status ServeUnary(ServiceContext& service, grpc::ServerContext& context, const CallRule& rule,
                         const Request& request, Response& response,

@@ -20,8 +20,7 @@ absl::Status Wrong(absl::string_view field, absl::string_view permitted) {
 }
 
 absl::Status AtLine(const NamedFile& file, size_t line, absl::string_view what) {
-  return absl::InvalidArgumentError(
-      absl::StrCat(file.Text(), ", line ", line, ": ", std::string(what)));
+  return absl::InvalidArgumentError(absl::StrCat(file.Text(), ", line ", line, ": ", what));
 }
 
 // Without the comment.

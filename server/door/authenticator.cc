@@ -1,5 +1,7 @@
 #include "server/door/authenticator.h"
 
+#include <utility>
+
 #include "absl/strings/match.h"
 #include "absl/time/clock.h"
 #include "server/convert/errors.h"
@@ -18,20 +20,25 @@ absl::StatusOr<Principal> Authenticator::Authenticate(
 
 absl::StatusOr<Principal> Authenticator::Authenticate(const std::vector<std::string>& authorization,
                                                       absl::Time now) const {
+  if (!needs_tokens_) return LocalPrincipal();
   std::shared_ptr<const AccessList> list;
   {
-    const MutexLock lock(mutex_);
+    MutexLock lock(mutex_);
+    while (list_ == nullptr) accepted_.Wait(mutex_);
     list = list_;
   }
-  if (list == nullptr) return LocalPrincipal();
   if (authorization.empty()) return CredentialsMissing();
   if (authorization.size() > 1) return CredentialsInvalid();  // ambiguous
   return list->OfToken(BearerToken(authorization.front()), now);
 }
 
-void Authenticator::Replace(std::shared_ptr<const AccessList> list) {
-  const MutexLock lock(mutex_);
-  list_ = std::move(list);
+void Authenticator::Accept(AccessList list) {
+  auto next = std::make_shared<const AccessList>(std::move(list));
+  {
+    const MutexLock lock(mutex_);
+    list_ = std::move(next);
+  }
+  accepted_.NotifyAll();
 }
 
 absl::string_view BearerToken(absl::string_view authorization) {

@@ -8,7 +8,6 @@
 
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -23,21 +22,23 @@ namespace ballpiston::server {
 
 class Authenticator {
  public:
-  // With a null list every caller is LocalPrincipal(): only the server's user and root can open its
+  // Without tokens every caller is LocalPrincipal(): only the server's user and root can open its
   // Unix socket.
-  explicit Authenticator(std::shared_ptr<const AccessList> list = nullptr)
-      : list_(std::move(list)) {}
+  explicit Authenticator(bool needs_tokens) : needs_tokens_(needs_tokens) {}
 
-  // UNAUTHENTICATED, reason CREDENTIALS_MISSING, CREDENTIALS_INVALID or CREDENTIALS_EXPIRED.
+  // UNAUTHENTICATED, reason CREDENTIALS_MISSING, CREDENTIALS_INVALID or CREDENTIALS_EXPIRED. Waits
+  // for the first list: gRPC answers calls a moment before the server's own token is written.
   absl::StatusOr<Principal> Authenticate(const grpc::ServerContextBase& context) const;
   // `authorization`: every header of this name.
   absl::StatusOr<Principal> Authenticate(const std::vector<std::string>& authorization,
                                          absl::Time now) const;
 
-  void Replace(std::shared_ptr<const AccessList> list);
+  void Accept(AccessList list);  // instead of the previous list
 
  private:
+  const bool needs_tokens_;
   mutable Mutex mutex_;
+  mutable Condition accepted_;
   std::shared_ptr<const AccessList> list_ ABSL_GUARDED_BY(mutex_);
 };
 

@@ -6,8 +6,7 @@
 //                           user's clients find, or one of the access file.
 //   any HOST:PORT with TLS  Every caller needs a token of the access file.
 //
-// The server refuses to start with any other combination. Without a token anybody can ask for
-// health, and for the description of the API (reflection), which is public.
+// The server refuses to start with any other combination. Health needs no token.
 #pragma once
 
 #include <memory>
@@ -54,12 +53,12 @@ class Door {
   // For gRPC's port. This object must outlive the server that uses the credentials.
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
 
-  // Gives the server's user the own token, if the server listens on the loopback without TLS.
-  // `address` has the port in use. If the token cannot be written, a warning is logged.
+  // Lets calls in, which wait for it. Makes the own token first, if the server listens on the
+  // loopback without TLS; if it cannot be written, logs a warning. `address` has the port in use.
   void Open(const ListenAddress& address);
 
   // Removes the own token's file.
-  void Close() { own_file_.reset(); }
+  void Close() { own_token_.reset(); }
 
   // Reads the files again, and logs the same warnings as Create. If a file is invalid, its previous
   // content stays in use, and the error names the file. The new access file applies from the next
@@ -73,19 +72,19 @@ class Door {
   std::optional<absl::Time> CertificateExpiry() const;
 
  private:
-  Door(const DoorOptions& options, bool needs_tokens, std::string own_token,
-       std::unique_ptr<ServerTls> tls);
+  Door(const DoorOptions& options, bool needs_tokens)
+      : options_(options), needs_tokens_(needs_tokens), authenticator_(needs_tokens) {}
 
   absl::Status ReadAccessFile();
+  void AcceptTokens();
   void WarnOfExpiry() const;
 
   const DoorOptions options_;
-  const bool needs_tokens_;      // false at a Unix socket
-  const std::string own_token_;  // empty: none
-  size_t entries_ = 0;           // of the access file
+  const bool needs_tokens_;  // false at a Unix socket
+  AccessList access_;        // of the access file
   Authenticator authenticator_;
-  std::unique_ptr<ServerTls> tls_;  // null: without TLS
-  std::optional<OwnToken> own_file_;
+  std::unique_ptr<ServerTls> tls_;       // null: without TLS
+  std::unique_ptr<OwnToken> own_token_;  // null: none
 };
 
 }  // namespace ballpiston::server

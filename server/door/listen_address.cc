@@ -3,7 +3,6 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -78,11 +77,6 @@ absl::StatusOr<std::string> ParseHost(const std::string& text, const std::string
   return Refused(text, "the host is neither an address nor a name");
 }
 
-absl::Status Occupied(const ListenAddress& address, absl::string_view by) {
-  return absl::FailedPreconditionError(
-      absl::StrCat("--listen=", address.Text(), ": ", by, "; choose another path"));
-}
-
 // 0 if a connection succeeds, otherwise its errno. Does not wait for a busy server.
 int ErrorOfConnecting(const std::string& path) {
   const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
@@ -128,25 +122,13 @@ absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text) {
   return address;
 }
 
-absl::Status ClearSocketPath(const ListenAddress& address) {
-  const std::string& path = address.socket_path;
-  struct stat found {};
-  if (lstat(path.c_str(), &found) != 0) return absl::OkStatus();
-  if (!S_ISSOCK(found.st_mode)) return Occupied(address, "a file that is not a socket is there");
-  switch (const int error = ErrorOfConnecting(path)) {
-    case 0:
-    case EAGAIN:  // the queue of connections is full
-      return Occupied(address, "a server is listening there (stop it)");
-    case ENOENT:
-      return absl::OkStatus();
-    case ECONNREFUSED:  // nobody listens any more
-      if (unlink(path.c_str()) == 0 || errno == ENOENT) return absl::OkStatus();
-      return Occupied(address, absl::StrCat("the unused socket there cannot be removed (",
-                                            std::strerror(errno), ")"));
-    default:
-      return Occupied(address, absl::StrCat("cannot find out whether a server listens there (",
-                                            std::strerror(error), ")"));
-  }
+absl::Status CheckSocketIsFree(const ListenAddress& address) {
+  const int error = ErrorOfConnecting(address.socket_path);
+  if (error == ENOENT || error == ECONNREFUSED) return absl::OkStatus();
+  return absl::FailedPreconditionError(
+      absl::StrCat("--listen=", address.Text(),
+                   ": a server is listening there (stop it), or the path cannot be used (",
+                   std::strerror(error == 0 ? EADDRINUSE : error), "); choose another path"));
 }
 
 }  // namespace ballpiston::server

@@ -28,9 +28,8 @@ struct ListenAddress {
 // value, and the permitted values.
 absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text);
 
-// Removes a socket file on which no server listens: it refuses connections. FAILED_PRECONDITION if
-// a server listens on it, if that cannot be determined, or if the file is not a socket; then the
-// file stays.
-absl::Status ClearSocketPath(const ListenAddress& address);
+// FAILED_PRECONDITION if the socket does not refuse connections, because a server may listen on it.
+// gRPC would replace it; other files it leaves alone, and does not start.
+absl::Status CheckSocketIsFree(const ListenAddress& address);
 
 }  // namespace ballpiston::server

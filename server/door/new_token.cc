@@ -25,8 +25,8 @@ namespace {
 constexpr int kMostDays = 36'500;
 
 absl::Status WrongRequest(absl::string_view why) {
-  return absl::InvalidArgumentError(absl::StrCat("--new-token: ", std::string(why),
-                                                 " (write PRINCIPAL:ROLE or PRINCIPAL:ROLE:DAYS)"));
+  return absl::InvalidArgumentError(
+      absl::StrCat("--new-token: ", why, " (write PRINCIPAL:ROLE or PRINCIPAL:ROLE:DAYS)"));
 }
 
 absl::Status Failed(const NamedFile& file, const char* what) {
@@ -53,8 +53,8 @@ absl::Status WriteAllOrNothing(const NamedFile& file, int descriptor, const std:
   absl::Status failed = Failed(file, "written to");
   if (ftruncate(descriptor, length) == 0 && fsync(descriptor) == 0) return failed;
   return absl::PermissionDeniedError(
-      absl::StrCat(std::string(failed.message()),
-                   "; an incomplete line is at its end: truncate the file to ", length, " bytes"));
+      absl::StrCat(failed.message(), "; an incomplete line is at its end: truncate the file to ",
+                   length, " bytes"));
 }
 
 absl::Status Append(const NamedFile& file, const std::string& line) {

@@ -7,10 +7,11 @@
 //   $XDG_STATE_HOME/ballpiston/tokens/127.0.0.1:50051    (~/.local/state if it is not set)
 #pragma once
 
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "absl/status/statusor.h"
-#include "absl/strings/string_view.h"
 
 namespace ballpiston::server {
 
@@ -19,19 +20,22 @@ class OwnToken {
   // The folder of the files, in the user's state folder.
   static std::string DefaultFolder();
 
-  // Replaces the file that an earlier server left. Creates the folder, with mode 0700.
-  // PERMISSION_DENIED if the file cannot be written.
-  static absl::StatusOr<OwnToken> Write(const std::string& folder, const std::string& address,
-                                        absl::string_view token);
+  // Makes a token and its file, instead of the file that an earlier server left. Creates the
+  // folder, with mode 0700. PERMISSION_DENIED if the file cannot be written.
+  static absl::StatusOr<std::unique_ptr<OwnToken>> Make(const std::string& folder,
+                                                        const std::string& address);
 
-  OwnToken(OwnToken&& other) noexcept;
-  OwnToken& operator=(OwnToken&& other) = delete;
-  ~OwnToken();  // removes the file
+  OwnToken(const OwnToken&) = delete;
+  OwnToken& operator=(const OwnToken&) = delete;
+  ~OwnToken();  // removes the file, unless a later server has replaced it
+
+  const std::string& token() const { return token_; }
 
  private:
-  explicit OwnToken(std::string path) : path_(std::move(path)) {}
+  OwnToken(std::string token, std::string path)
+      : token_(std::move(token)), path_(std::move(path)) {}
 
-  std::string path_;  // empty: moved from
+  const std::string token_, path_;
 };
 
 }  // namespace ballpiston::server

@@ -45,7 +45,7 @@ class BlockSession : private BlockQueue {
   const std::stop_token stop_;
   Clock::time_point end_of_turn_;
   double worked_ = 0;  // the thread's processor time at the last report
-  std::unique_ptr<BlockRun> blocks_;
+  std::unique_ptr<EngineRun> blocks_;
 };
 
 }  // namespace ballpiston::server

@@ -17,8 +17,6 @@ absl::StatusOr<ListenAddress> ParseLoopback(const std::string& text) {
         "localhost (metrics are not encrypted; let others reach them through a proxy or a "
         "tunnel)"));
   }
-  if (address->host == "localhost")
-    address->host = "127.0.0.1";  // the HTTP server accepts no names
   return address;
 }
 

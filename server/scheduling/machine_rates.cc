@@ -34,7 +34,7 @@ class NoOrbits : public OrbitSource {
     lanes_ = std::max(lanes_, starts.size());
     return 0;
   }
-  void Meet(std::span<Meeting>) override {}
+  void Collide(std::span<OrbitCollision>) override {}
   bool Pause() override { return false; }
   double lanes() const { return static_cast<double>(lanes_); }
 

@@ -75,7 +75,7 @@ bool LeaseRun::Run() {
 void LeaseRun::Compute(uint64_t first, uint64_t end) {
   const bool is_start = first == lease_.start.chunk;
   chunks_.emplace(lease_.experiment->plan(), is_start ? lease_.start : PartialChunk{first}, end);
-  const std::unique_ptr<BlockRun> run = lease_.experiment->StartRun(*this);
+  const std::unique_ptr<EngineRun> run = lease_.experiment->StartRun(*this);
   while (!chunks_->finished() && !IsOver() && !stop_.stop_requested()) run->Advance();
   TellWork();
 }

@@ -54,8 +54,8 @@ class Equilibrium : public NumberedOrbits {
     CounterRandom random(1, 2, orbit);
     return DrawFromCollisionMeasure(geometry_, random);
   }
-  AfterContact Meet(uint64_t orbit, const Contact&) override {
-    return ++collisions_[orbit] == kCollisions ? AfterContact::kEnd : AfterContact::kGoOn;
+  AfterCollision Collide(uint64_t orbit, const Collision&) override {
+    return ++collisions_[orbit] == kCollisions ? AfterCollision::kEnd : AfterCollision::kGoOn;
   }
 
   static constexpr uint64_t kCollisions = 4;

@@ -11,8 +11,8 @@ bool RunAll(Engine engine, const PairGeometry& geometry, Orbits& orbits) {
    public:
     explicit UntilEscape(Orbits& orbits) : orbits_(orbits) {}
     PairState Start(uint64_t orbit) override { return orbits_.Start(orbit); }
-    AfterContact Meet(uint64_t orbit, const Contact& contact) override {
-      return contact.escaped ? AfterContact::kEnd : orbits_.Meet(orbit, contact);
+    AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+      return collision.escaped ? AfterCollision::kEnd : orbits_.Collide(orbit, collision);
     }
 
    private:

@@ -67,7 +67,7 @@ const std::vector<Rule>& Rules() {
        true},
       {"server/door/",
        {"server/door/", "server/convert/errors.h", "server/observability/",
-        "server/store/folder_sync.h", "server/door/listen_address.h", "server/mutex.h", "absl/",
+        "server/store/data_directory.h", "server/store/folder_sync.h", "server/mutex.h", "absl/",
         "grpc/", "grpcpp/", "openssl/"},
        true},
       {"server/store/",

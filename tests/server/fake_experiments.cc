@@ -38,7 +38,7 @@ class FakeExperiment : public PointExperiment {
                     {{.name = "mean", .reading = Mean, .exact = 0.5}});
   }
 
-  std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
     return RunOneByOne(queue, [this](const Block& block, const std::stop_token& stop) {
       return Compute(block, stop);
     });
@@ -81,7 +81,7 @@ class HeldUpExperiment : public PointExperiment {
     SetMeasurements(real_->EmptyResult(), {});
   }
 
-  std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
     return RunOneByOne(
         queue,
         [this](const Block& block, const std::stop_token& stop) -> std::optional<BlockResult> {

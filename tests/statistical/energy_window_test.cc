@@ -86,19 +86,19 @@ class WindowOrbits : public NumberedOrbits {
     return state;
   }
 
-  AfterContact Meet(uint64_t number, const Contact& contact) override {
-    EXPECT_FALSE(contact.escaped);
+  AfterCollision Collide(uint64_t number, const Collision& collision) override {
+    EXPECT_FALSE(collision.escaped);
     Orbit& orbit = orbits_[number];
     for (size_t i = 0; i < kEnergyWindows.size(); ++i) {
       if (!kEnergyWindows[i].Holds(orbit.energy)) continue;
-      orbit.returns[i] += contact.time;
+      orbit.returns[i] += collision.time;
       ++orbit.events[i];
     }
-    orbit.time += contact.time;
+    orbit.time += collision.time;
     // The piston takes the ball's velocity along x.
-    const double velocity = contact.state.ball_speed * contact.state.direction.x();
+    const double velocity = collision.state.ball_speed * collision.state.direction.x();
     orbit.energy = velocity * velocity / 2;
-    return ++orbit.collisions < kCollisionsAnOrbit ? AfterContact::kGoOn : AfterContact::kEnd;
+    return ++orbit.collisions < kCollisionsAnOrbit ? AfterCollision::kGoOn : AfterCollision::kEnd;
   }
 
   BatchMeans ReturnTimes(size_t window) const {

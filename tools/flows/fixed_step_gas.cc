@@ -43,7 +43,7 @@ void FixedStepGas::MoveBall(int64_t number) {
   if (ball.moving.Repair()) {
     events_.push_back({.kind = EventKind::kBallWall, .time = time(), .ball = number});
   }
-  for (int i = 0; i < geometry_.directions(); ++i) Meet(number, geometry_.DirectionAt(i));
+  for (int i = 0; i < geometry_.directions(); ++i) Collide(number, geometry_.DirectionAt(i));
   ball.is_lost = ball.moving.IsLost();
   if (ball.is_lost) {
     events_.push_back({.kind = EventKind::kEscape, .time = time(), .ball = number});
@@ -51,7 +51,7 @@ void FixedStepGas::MoveBall(int64_t number) {
 }
 
 // Exchanges energy if the ball has passed the piston and they still approach.
-void FixedStepGas::Meet(int64_t number, Direction direction) {
+void FixedStepGas::Collide(int64_t number, Direction direction) {
   FixedStepBall& ball = balls_[static_cast<size_t>(number)].moving;
   const int64_t piston_number = geometry_.PistonOf(number, direction);
   GasPiston& piston = pistons_[static_cast<size_t>(piston_number)];

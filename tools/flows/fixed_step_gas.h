@@ -42,7 +42,7 @@ class FixedStepGas {
 
   void MovePiston(int64_t number);
   void MoveBall(int64_t number);
-  void Meet(int64_t number, Direction direction);
+  void Collide(int64_t number, Direction direction);
 
   GasGeometry geometry_;
   ThermalWalls walls_;

@@ -2,6 +2,7 @@
 
 #include "tools/flows/fixed_step_flow.h"
 #include "tools/flows/precise_flow.h"
+#include "tools/flows/rounded_to.h"
 
 namespace ballpiston::method_comparison {
 namespace {
@@ -13,13 +14,13 @@ class EventOrbit {
   EventOrbit(const PairGeometry& geometry, const PairState& start)
       : flow_(geometry, RoundedTo<Real>(start)) {}
 
-  // True if the contact is reached.
-  bool Advance(Contact& contact) {
+  // True if the collision is reached.
+  bool Advance(Collision& collision) {
     const EventOf<Real> event = flow_.Step();
-    contact.Add({event.kind, static_cast<double>(event.duration)});
+    collision.Add({event.kind, static_cast<double>(event.duration)});
     standing_ = event.duration > 0 ? 0 : standing_ + 1;
-    contact.escaped = contact.escaped || standing_ > kStandsStill;
-    return contact.escaped || event.kind == EventKind::kBallPiston;
+    collision.escaped = collision.escaped || standing_ > kStandsStill;
+    return collision.escaped || event.kind == EventKind::kBallPiston;
   }
   PairState state() const { return RoundedTo<double>(flow_.state()); }
   void ExchangeComponents() { flow_.ExchangeComponents(); }
@@ -36,14 +37,14 @@ class FixedStepOrbit {
   FixedStepOrbit(const PairGeometry& geometry, const PairState& start, double time_step)
       : flow_(geometry, start, time_step), time_step_(time_step) {}
 
-  bool Advance(Contact& contact) {
+  bool Advance(Collision& collision) {
     constexpr uint64_t kMostSteps = 1024;
     const FixedSteps done = flow_.Advance(kMostSteps);
     steps_ += done.steps;
-    contact.time = static_cast<double>(steps_) * time_step_;
-    contact.ball_wall_hits += done.ball_wall;
-    contact.piston_wall_hits += done.piston_wall;
-    contact.escaped = done.lost;
+    collision.time = static_cast<double>(steps_) * time_step_;
+    collision.ball_wall_hits += done.ball_wall;
+    collision.piston_wall_hits += done.piston_wall;
+    collision.escaped = done.lost;
     return done.lost || done.ball_piston;
   }
   PairState state() const { return flow_.state(); }
@@ -60,12 +61,12 @@ class FixedStepOrbit {
 
 template <typename Orbit>
 void RunOrbit(Orbit orbit, uint64_t index, NumberedOrbits& source) {
-  for (Contact contact;;) {
-    if (!orbit.Advance(contact)) continue;
-    contact.state = orbit.state();
-    if (source.Meet(index, contact) == AfterContact::kEnd) return;
+  for (Collision collision;;) {
+    if (!orbit.Advance(collision)) continue;
+    collision.state = orbit.state();
+    if (source.Collide(index, collision) == AfterCollision::kEnd) return;
     orbit.ExchangeComponents();
-    contact = {};
+    collision = {};
   }
 }
 

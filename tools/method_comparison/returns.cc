@@ -25,9 +25,9 @@ class CountedReturns : public NumberedOrbits {
   explicit CountedReturns(ReturnOrbits returns) : returns_(std::move(returns)) {}
 
   PairState Start(uint64_t orbit) override { return returns_.Start(orbit); }
-  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
-    wall_hits_ += contact.ball_wall_hits;
-    return contact.escaped ? AfterContact::kEnd : returns_.Meet(orbit, contact);
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+    wall_hits_ += collision.ball_wall_hits;
+    return collision.escaped ? AfterCollision::kEnd : returns_.Collide(orbit, collision);
   }
 
   void AddTo(ReturnStatistics& statistics) const {

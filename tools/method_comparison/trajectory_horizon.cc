@@ -8,6 +8,7 @@
 #include "server/processor_time.h"
 #include "tools/flows/fixed_step_flow.h"
 #include "tools/flows/lane_balls.h"
+#include "tools/flows/rounded_to.h"
 
 namespace ballpiston::method_comparison {
 namespace {

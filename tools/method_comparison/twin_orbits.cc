@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/sampling/invariant_measure.h"
+#include "tools/flows/rounded_to.h"
 
 namespace ballpiston::method_comparison {
 namespace {

@@ -9,6 +9,7 @@
 #include "tools/flows/lane_balls.h"
 #include "tools/flows/numbered_orbits.h"
 #include "tools/flows/precise_flow.h"
+#include "tools/flows/rounded_to.h"
 #include "tools/stability/error_size.h"
 #include "tools/stability/event_methods.h"
 #include "tools/stability/fixed_step_events.h"
@@ -63,11 +64,11 @@ class PairsInEquilibrium : public NumberedOrbits {
       : hits_each_(hits_each), hits_(orbits, 0) {}
 
   PairState Start(uint64_t orbit) override { return stability::Start(orbit); }
-  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
-    hits_[orbit] += contact.ball_wall_hits;
-    record_.Add(std::min(Share(hits_[orbit], hits_each_), 1.0), SignedEnergyError(contact.state));
-    const bool on = !contact.escaped && hits_[orbit] < hits_each_;
-    return on ? AfterContact::kGoOn : AfterContact::kEnd;
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+    hits_[orbit] += collision.ball_wall_hits;
+    record_.Add(std::min(Share(hits_[orbit], hits_each_), 1.0), SignedEnergyError(collision.state));
+    const bool on = !collision.escaped && hits_[orbit] < hits_each_;
+    return on ? AfterCollision::kGoOn : AfterCollision::kEnd;
   }
 
   const EnergyRecord& record() const { return record_; }

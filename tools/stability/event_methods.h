@@ -13,6 +13,7 @@
 #include "core/billiard/event_flow.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
+#include "tools/flows/rounded_to.h"
 #include "tools/stability/ball_watch.h"
 #include "tools/stability/failures.h"
 

@@ -15,6 +15,7 @@
 #include "core/billiard/reference_flow.h"
 #include "tools/flows/numbered_orbits.h"
 #include "tools/flows/precise_flow.h"
+#include "tools/flows/rounded_to.h"
 #include "tools/stability/event_methods.h"
 #include "tools/stability/fixed_step_events.h"
 #include "tools/stability/pair_watch.h"

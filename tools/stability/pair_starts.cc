@@ -82,8 +82,8 @@ void TurnToWall(PairState& state) {
 }
 
 // A state just after a collision on the surface, with the given speeds; ball and piston separate.
-PairState AfterCollision(const PairGeometry& geometry, double ball, double piston,
-                         CounterRandom& random) {
+PairState JustAfterCollision(const PairGeometry& geometry, double ball, double piston,
+                             CounterRandom& random) {
   const Vector2d position = UniformOnCollisionSurface(geometry, random);
   PairState state = {.position = position,
                      .direction = UniformDirection(random),
@@ -152,13 +152,13 @@ PairState InTheWedge(const PairGeometry& geometry, CounterRandom& random) {
 
 PairState SlowBall(const PairGeometry& geometry, CounterRandom& random) {
   const double energy = std::fabs(RandomOffset(random));
-  return AfterCollision(geometry, std::sqrt(energy), std::sqrt(1 - energy), random);
+  return JustAfterCollision(geometry, std::sqrt(energy), std::sqrt(1 - energy), random);
 }
 
 PairState SlowPiston(const PairGeometry& geometry, CounterRandom& random) {
   const double offset = RandomOffset(random), energy = std::fabs(offset);
-  return AfterCollision(geometry, std::sqrt(1 - energy), std::copysign(std::sqrt(energy), offset),
-                        random);
+  return JustAfterCollision(geometry, std::sqrt(1 - energy),
+                            std::copysign(std::sqrt(energy), offset), random);
 }
 
 }  // namespace ballpiston::stability

@@ -82,48 +82,48 @@ PairState CollisionWatch::Start(uint64_t orbit) {
   return starts_[orbit];
 }
 
-AfterContact CollisionWatch::Meet(uint64_t i, const Contact& contact) {
+AfterCollision CollisionWatch::Collide(uint64_t i, const Collision& collision) {
   Orbit& orbit = orbits_[i];
-  const PairState& state = contact.state;
+  const PairState& state = collision.state;
   const double depth = ball_.Depth(state.position);
-  if (contact.escaped || !(depth <= AnywhereSlack(epsilon_))) {
+  if (collision.escaped || !(depth <= AnywhereSlack(epsilon_))) {
     ++failures_.escapes;
     return End(orbit);
   }
   ++failures_.hits;
   failures_.deepest = std::max(failures_.deepest, depth);
-  failures_.negative_times += contact.time < 0;
+  failures_.negative_times += collision.time < 0;
   failures_.SeeEnergy(EnergyError(state));
   failures_.inward += Approach(state) < -kDirectionUlps * epsilon_;
-  LookBack(orbit.departure, contact);
+  LookBack(orbit.departure, collision);
   ReferenceFlow flow(geometry_, state);
   flow.ExchangeComponents();
   orbit.departure = flow.state();
-  orbit.standstill = contact.time < kShortUlps * epsilon_ ? orbit.standstill + 1 : 0;
+  orbit.standstill = collision.time < kShortUlps * epsilon_ ? orbit.standstill + 1 : 0;
   if (orbit.standstill <= longest_standstill_) {
-    return ++orbit.collisions < collisions_ ? AfterContact::kGoOn : End(orbit);
+    return ++orbit.collisions < collisions_ ? AfterCollision::kGoOn : End(orbit);
   }
   ++failures_.loops;
   return End(orbit);
 }
 
-void CollisionWatch::LookBack(const PairState& departure, const Contact& contact) {
+void CollisionWatch::LookBack(const PairState& departure, const Collision& collision) {
   constexpr uint64_t kFewHits = 6;
-  if (contact.ball_wall_hits > kFewHits || departure.ball_speed == 0) return;
+  if (collision.ball_wall_hits > kFewHits || departure.ball_speed == 0) return;
   ++failures_.looked_back;
   // The checking flight has rounding errors too. For a grazing ball two neighbours are not enough.
-  Failures found = AsGhostsTell(departure, contact, 1);
-  if (found.Total() > 0) found = AsGhostsTell(departure, contact, 8);
+  Failures found = AsGhostsTell(departure, collision, 1);
+  if (found.Total() > 0) found = AsGhostsTell(departure, collision, 8);
   failures_.Merge(found);
 }
 
 // Checks with this flight and the given number of neighbours on each side.
-Failures CollisionWatch::AsGhostsTell(const PairState& departure, const Contact& contact,
+Failures CollisionWatch::AsGhostsTell(const PairState& departure, const Collision& collision,
                                       int neighbours) const {
   std::vector<double> overlaps, gaps, beyond;
   for (int i = -neighbours; i <= neighbours; ++i) {
     const GhostFlight ghost =
-        FlyAsGhost(geometry_, Turned(departure, 1e3 * epsilon_ * i), contact.time);
+        FlyAsGhost(geometry_, Turned(departure, 1e3 * epsilon_ * i), collision.time);
     overlaps.push_back(ghost.overlap);
     gaps.push_back(ghost.gap);
     beyond.push_back(-ghost.gap);
@@ -131,8 +131,8 @@ Failures CollisionWatch::AsGhostsTell(const PairState& departure, const Contact&
   // The piston's phase has the rounding error of its whole path. The time has the rounding errors
   // of as many sums as there were events: for a slow ball millions, all rounded in the same
   // direction.
-  const double way = std::fabs(departure.piston_velocity) * contact.time;
-  const auto events = static_cast<double>(contact.ball_wall_hits + contact.piston_wall_hits);
+  const double way = std::fabs(departure.piston_velocity) * collision.time;
+  const auto events = static_cast<double>(collision.ball_wall_hits + collision.piston_wall_hits);
   const double slack = epsilon_ * (1e4 * (1 + way) + events * way);
   Failures found;
   found.missed += Exceeds(overlaps, slack);
@@ -140,9 +140,9 @@ Failures CollisionWatch::AsGhostsTell(const PairState& departure, const Contact&
   return found;
 }
 
-AfterContact CollisionWatch::End(Orbit& orbit) {
+AfterCollision CollisionWatch::End(Orbit& orbit) {
   orbit.ended = true;
-  return AfterContact::kEnd;
+  return AfterCollision::kEnd;
 }
 
 Failures CollisionWatch::Finish() {

@@ -56,7 +56,7 @@ class CollisionWatch : public NumberedOrbits {
                  uint64_t collisions);
 
   PairState Start(uint64_t orbit) override;
-  AfterContact Meet(uint64_t orbit, const Contact& contact) override;
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) override;
 
   // An orbit that has not reached its end counts as a missed piston.
   Failures Finish();
@@ -69,9 +69,10 @@ class CollisionWatch : public NumberedOrbits {
     bool ended = false;
   };
 
-  void LookBack(const PairState& departure, const Contact& contact);
-  Failures AsGhostsTell(const PairState& departure, const Contact& contact, int neighbours) const;
-  AfterContact End(Orbit& orbit);
+  void LookBack(const PairState& departure, const Collision& collision);
+  Failures AsGhostsTell(const PairState& departure, const Collision& collision,
+                        int neighbours) const;
+  AfterCollision End(Orbit& orbit);
 
   PairGeometry geometry_;
   BallWatch ball_;

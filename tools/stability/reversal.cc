@@ -27,22 +27,22 @@ double Median(std::vector<double> values) {
 class FirstCollisions : public NumberedOrbits {
  public:
   explicit FirstCollisions(std::vector<PairState> starts)
-      : starts_(std::move(starts)), contacts_(starts_.size()) {}
+      : starts_(std::move(starts)), collisions_(starts_.size()) {}
 
   PairState Start(uint64_t orbit) override { return starts_[orbit]; }
-  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
-    contacts_[orbit] = contact;
-    return AfterContact::kEnd;
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+    collisions_[orbit] = collision;
+    return AfterCollision::kEnd;
   }
 
-  const std::vector<Contact>& Run(Engine engine, const PairGeometry& geometry) {
+  const std::vector<Collision>& Run(Engine engine, const PairGeometry& geometry) {
     RunOrbits(engine, geometry, starts_.size(), *this);
-    return contacts_;
+    return collisions_;
   }
 
  private:
   std::vector<PairState> starts_;
-  std::vector<Contact> contacts_;
+  std::vector<Collision> collisions_;
 };
 
 Reversal ReversalOf(Engine engine, const std::string& name, uint64_t orbits) {
@@ -53,19 +53,19 @@ Reversal ReversalOf(Engine engine, const std::string& name, uint64_t orbits) {
     starts.push_back(DrawFromCollisionMeasure(geometry, random));
   }
   FirstCollisions there(starts);
-  const std::vector<Contact>& contacts = there.Run(engine, geometry);
-  for (const Contact& contact : contacts) {
-    turned.push_back(contact.state);
-    turned.back().direction = -contact.state.direction;
-    turned.back().piston_velocity = -contact.state.piston_velocity;
+  const std::vector<Collision>& collisions = there.Run(engine, geometry);
+  for (const Collision& collision : collisions) {
+    turned.push_back(collision.state);
+    turned.back().direction = -collision.state.direction;
+    turned.back().piston_velocity = -collision.state.piston_velocity;
   }
   FirstCollisions back(turned);
-  const std::vector<Contact>& returns = back.Run(engine, geometry);
+  const std::vector<Collision>& returns = back.Run(engine, geometry);
   Reversal reversal = {.method = name, .median = {}};
   for (size_t k = 0; k < kReversalHits.size(); ++k) {
     std::vector<double> distances;
     for (size_t i = 0; i < orbits; ++i) {
-      if (contacts[i].ball_wall_hits != kReversalHits[k]) continue;
+      if (collisions[i].ball_wall_hits != kReversalHits[k]) continue;
       distances.push_back((returns[i].state.position - starts[i].position).norm());
     }
     reversal.median[k] = Median(distances);

@@ -20,7 +20,8 @@ def is_socket(address: str) -> bool:
 def literal_address(address: str) -> str:
     """With 127.0.0.1 for the name localhost, which could also mean ::1: there another user's server
     may listen."""
-    return address.replace("localhost:", "127.0.0.1:") if address.startswith("localhost:") else address
+    host, _, port = address.rpartition(":")
+    return f"127.0.0.1:{port}" if host == "localhost" else address
 
 
 def is_loopback(address: str) -> bool:

@@ -57,8 +57,7 @@ def specification(
     most 100,000 points.
 
     Args:
-        experiment: "equilibrium", "conditional-mean-free-time", "first-hit", "energy-relaxation",
-            "markov-property", "gas-equilibrium" or "gas-conduction".
+        experiment: its name, such as "first-hit"; the error of a wrong name lists all names.
         rho: radius of the discs; 1/2 < rho < 1/sqrt(2).
         delta: how far the piston reaches into the cell; 0 < delta <= (1 - sqrt(4 rho^2 - 1))/2.
         epsilon: energy of the piston; 0 to 1/2.

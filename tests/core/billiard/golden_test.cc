@@ -34,7 +34,7 @@
 #include "core/geometry/paper.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/billiard/golden_bits.h"
-#include "tests/core/billiard/recorded_contacts.h"
+#include "tests/core/billiard/recorded_collisions.h"
 #include "tests/core/geometries.h"
 #include "tests/core/one_point_spec.h"
 
@@ -47,15 +47,15 @@ class Fingerprint {
   void Add(uint64_t word) { hash_ = (hash_ ^ word) * 0x100000001b3; }
   void Add(double x) { Add(std::bit_cast<uint64_t>(x)); }
 
-  void Add(const Contact& contact) {
-    const PairState& state = contact.state;
+  void Add(const Collision& collision) {
+    const PairState& state = collision.state;
     for (const double x :
-         {contact.time, state.position.x(), state.position.y(), state.direction.x(),
+         {collision.time, state.position.x(), state.position.y(), state.direction.x(),
           state.direction.y(), state.ball_speed, state.piston, state.piston_velocity}) {
       Add(x);
     }
-    Add(contact.ball_wall_hits);
-    Add(contact.piston_wall_hits);
+    Add(collision.ball_wall_hits);
+    Add(collision.piston_wall_hits);
   }
 
   void Add(const BlockResult& result) {
@@ -119,10 +119,10 @@ TEST_P(Golden, Orbits) {
   ForEachTargetOf(engine, [engine] {
     for (const double rho : {0.501, kPaperRho, 0.7}) {
       const PairGeometry geometry = GeometryAtShare(rho, 0.4);
-      const RecordedContacts recorded = Recorded(engine, geometry, 200, 4);
+      const RecordedCollisions recorded = Recorded(engine, geometry, 200, 4);
       Fingerprint fingerprint;
       for (const auto& orbit : recorded.by_orbit()) {
-        for (const Contact& contact : orbit) fingerprint.Add(contact);
+        for (const Collision& collision : orbit) fingerprint.Add(collision);
       }
       ExpectGolden(absl::StrCat(Name(engine), ", orbits, rho ", rho), fingerprint);
     }

@@ -33,10 +33,10 @@ class Returns : public NumberedOrbits {
     limits_.push_back(longest_.From(state));
     return state;
   }
-  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
-    lost_ += contact.escaped;
-    share_ = std::max(share_, contact.time / limits_[orbit]);
-    return AfterContact::kEnd;
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+    lost_ += collision.escaped;
+    share_ = std::max(share_, collision.time / limits_[orbit]);
+    return AfterCollision::kEnd;
   }
   double share() const { return share_; }
   int lost() const { return lost_; }

@@ -12,7 +12,7 @@
 
 #include "core/geometry/paper.h"
 #include "tests/core/billiard/each_target.h"
-#include "tests/core/billiard/recorded_contacts.h"
+#include "tests/core/billiard/recorded_collisions.h"
 #include "tests/core/geometries.h"
 #include "tests/core/stopped.h"
 #include "tools/flows/numbered_orbits.h"
@@ -25,8 +25,8 @@ TEST(Orbits, EveryOrbitEnds) {
   for (const Engine engine : kEngines) {
     for (const uint64_t orbits :
          {1u, 2u, 11u, 12u, 13u, 23u, 24u, 25u, 47u, 48u, 49u, 95u, 96u, 97u, 1000u}) {
-      const RecordedContacts recorded = Recorded(engine, geometry, orbits, 3);
-      for (const auto& contacts : recorded.by_orbit()) ASSERT_EQ(contacts.size(), 3u);
+      const RecordedCollisions recorded = Recorded(engine, geometry, orbits, 3);
+      for (const auto& collisions : recorded.by_orbit()) ASSERT_EQ(collisions.size(), 3u);
     }
   }
 }
@@ -34,11 +34,11 @@ TEST(Orbits, EveryOrbitEnds) {
 TEST(Orbits, ContactsAreOnTheCollisionSurfaceAndApproaching) {
   for (const double share : {1.0, 0.3, 0.03}) {
     const PairGeometry geometry = GeometryAtShare(kPaperRho, share);
-    const RecordedContacts recorded = Recorded(Engine::kLanes, geometry, 500, 4);
-    for (const auto& contacts : recorded.by_orbit()) {
-      for (const Contact& contact : contacts) {
-        const PairState& state = contact.state;
-        ASSERT_FALSE(contact.escaped);
+    const RecordedCollisions recorded = Recorded(Engine::kLanes, geometry, 500, 4);
+    for (const auto& collisions : recorded.by_orbit()) {
+      for (const Collision& collision : collisions) {
+        const PairState& state = collision.state;
+        ASSERT_FALSE(collision.escaped);
         ASSERT_LE(EnergyError(state), 1e-14);
         ASSERT_TRUE(InsideCell(geometry, state.position, 1e-12));
         ASSERT_NEAR(state.position.x(), state.piston, 1e-12);
@@ -48,7 +48,7 @@ TEST(Orbits, ContactsAreOnTheCollisionSurfaceAndApproaching) {
   }
 }
 
-void ExpectNear(const Contact& first, const Contact& second, double tolerance) {
+void ExpectNear(const Collision& first, const Collision& second, double tolerance) {
   EXPECT_EQ(first.ball_wall_hits, second.ball_wall_hits);
   EXPECT_EQ(first.piston_wall_hits, second.piston_wall_hits);
   EXPECT_NEAR(first.time, second.time, tolerance * (1 + first.time));
@@ -65,14 +65,14 @@ TEST(Orbits, LanesMeetThePistonWhereTheReferenceDoes) {
   int compared = 0, at_once = 0, later = 0;
   for (const double delta : {0.1, 0.2, 0.32}) {
     const PairGeometry geometry = PaperGeometry(delta);
-    const RecordedContacts reference = Recorded(Engine::kReference, geometry, kOrbits, 3);
+    const RecordedCollisions reference = Recorded(Engine::kReference, geometry, kOrbits, 3);
     ForEachFusedTarget([&] {
-      const RecordedContacts lanes = Recorded(Engine::kLanes, geometry, kOrbits, 3);
+      const RecordedCollisions lanes = Recorded(Engine::kLanes, geometry, kOrbits, 3);
       for (uint64_t orbit = 0; orbit < kOrbits; ++orbit) {
         uint64_t hits = 0;
         for (size_t i = 0; i < 3; ++i) {
-          const Contact &first = reference.by_orbit()[orbit][i],
-                        &second = lanes.by_orbit()[orbit][i];
+          const Collision &first = reference.by_orbit()[orbit][i],
+                          &second = lanes.by_orbit()[orbit][i];
           hits += first.ball_wall_hits;
           if (hits > kMostHits) break;
           ExpectNear(first, second, 1e-8);
@@ -94,17 +94,17 @@ class WithTimeLimit : public NumberedOrbits {
   WithTimeLimit(const PairState& state, double limit, uint64_t orbits)
       : state_(state), limit_(limit), ends_(orbits) {}
   PairState Start(uint64_t) override { return state_; }
-  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
-    ends_[orbit].push_back(contact);
-    return AfterContact::kEnd;
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+    ends_[orbit].push_back(collision);
+    return AfterCollision::kEnd;
   }
-  double TimeLimit() const { return limit_; }
-  const std::vector<std::vector<Contact>>& ends() const { return ends_; }
+  double TimeLimit() const override { return limit_; }
+  const std::vector<std::vector<Collision>>& ends() const { return ends_; }
 
  private:
   PairState state_;
   double limit_;
-  std::vector<std::vector<Contact>> ends_;
+  std::vector<std::vector<Collision>> ends_;
 };
 
 // The ball is within the piston's reach; the piston moves in either direction, at any phase.
@@ -120,7 +120,7 @@ TEST(Orbits, ThePistonMeetsABallAtRestAtItsPlace) {
             1000, 70);
         ASSERT_TRUE(RunOrbits(engine, geometry, 70, source));
         const double way = velocity < 0 ? piston - x : right - piston + right - x;
-        for (const std::vector<Contact>& ends : source.ends()) {
+        for (const std::vector<Collision>& ends : source.ends()) {
           ASSERT_EQ(ends.size(), 1u);
           EXPECT_FALSE(ends[0].expired);
           EXPECT_NEAR(ends[0].time, way, engine == Engine::kLanesSingle ? 1e-6 : 1e-14);
@@ -137,7 +137,7 @@ TEST(Orbits, ThePistonMeetsABallAtRestAtItsPlace) {
 TEST(Orbits, StopEndsOrbits) {
   const PairGeometry geometry = PaperGeometry(1e-7);
   for (const Engine engine : kEngines) {
-    RecordedContacts recorded(geometry, 10, 1);
+    RecordedCollisions recorded(geometry, 10, 1);
     EXPECT_FALSE(RunOrbits(engine, geometry, 10, recorded, Stopped()));
   }
 }
@@ -149,9 +149,9 @@ TEST(Orbits, AStartOutsideOfTheCellEscapes) {
     PairState Start(uint64_t) override {
       return {.position = {-0.9, 0}, .direction = {-1, 0}, .ball_speed = 1, .piston = 0.5};
     }
-    AfterContact Meet(uint64_t, const Contact& contact) override {
-      escapes_ += contact.escaped;
-      return AfterContact::kGoOn;
+    AfterCollision Collide(uint64_t, const Collision& collision) override {
+      escapes_ += collision.escaped;
+      return AfterCollision::kGoOn;
     }
     int escapes_ = 0;
   };
@@ -163,13 +163,13 @@ TEST(Orbits, AStartOutsideOfTheCellEscapes) {
 }
 
 // Orbits from equilibrium that are followed until one of them escapes.
-class UntilAnEscape : public RecordedContacts {
+class UntilAnEscape : public RecordedCollisions {
  public:
-  using RecordedContacts::RecordedContacts;
+  using RecordedCollisions::RecordedCollisions;
 
-  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
-    if (contact.escaped) stop_.request_stop();
-    return RecordedContacts::Meet(orbit, contact);
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+    if (collision.escaped) stop_.request_stop();
+    return RecordedCollisions::Collide(orbit, collision);
   }
   std::stop_token token() const { return stop_.get_token(); }
 
@@ -192,11 +192,11 @@ TEST(Orbits, AnOrbitEndsAtItsTimeLimitEvenIfTheSourceContinues) {
     PairState Start(uint64_t) override {
       return {.position = {0, 0}, .direction = {0, 1}, .ball_speed = 1, .piston = 0.5};
     }
-    AfterContact Meet(uint64_t, const Contact& contact) override {
-      ended_ += contact.expired;
-      return AfterContact::kGoOn;
+    AfterCollision Collide(uint64_t, const Collision& collision) override {
+      ended_ += collision.expired;
+      return AfterCollision::kGoOn;
     }
-    double TimeLimit() const { return 10; }
+    double TimeLimit() const override { return 10; }
     int ended_ = 0;
   };
   for (const Engine engine : kEngines) {
@@ -235,7 +235,7 @@ TEST(Orbits, TimeLimitEndsPairsThatDoNotMeet) {
       for (const uint64_t orbits : {1u, 70u}) {
         WithTimeLimit source(pair, kLimit, orbits);
         ASSERT_TRUE(RunOrbits(engine, geometry, orbits, source));
-        for (const std::vector<Contact>& ends : source.ends()) {
+        for (const std::vector<Collision>& ends : source.ends()) {
           ASSERT_EQ(ends.size(), 1u);
           EXPECT_TRUE(ends[0].expired);
           EXPECT_FALSE(ends[0].escaped);
@@ -246,21 +246,21 @@ TEST(Orbits, TimeLimitEndsPairsThatDoNotMeet) {
   }
 }
 
-class ContactsWithin : public RecordedContacts {
+class CollisionsWithin : public RecordedCollisions {
  public:
-  ContactsWithin(double limit, const PairGeometry& geometry, uint64_t orbits, size_t collisions)
-      : RecordedContacts(geometry, orbits, collisions), limit_(limit) {}
-  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
-    const AfterContact after = RecordedContacts::Meet(orbit, contact);
-    return contact.expired ? AfterContact::kEnd : after;
+  CollisionsWithin(double limit, const PairGeometry& geometry, uint64_t orbits, size_t collisions)
+      : RecordedCollisions(geometry, orbits, collisions), limit_(limit) {}
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+    const AfterCollision after = RecordedCollisions::Collide(orbit, collision);
+    return collision.expired ? AfterCollision::kEnd : after;
   }
-  double TimeLimit() const { return limit_; }
+  double TimeLimit() const override { return limit_; }
 
  private:
   double limit_;
 };
 
-void ExpectSameBits(const Contact& first, const Contact& second) {
+void ExpectSameBits(const Collision& first, const Collision& second) {
   EXPECT_EQ(first.time, second.time);
   EXPECT_EQ(first.state.position, second.state.position);
   EXPECT_EQ(first.state.direction, second.state.direction);
@@ -277,11 +277,11 @@ TEST(Orbits, TimeLimitChangesNothingWithinIt) {
   constexpr size_t kCollisions = 6;
   const PairGeometry geometry = PaperGeometry(0.1);
   for (const Engine engine : kEngines) {
-    const RecordedContacts free = Recorded(engine, geometry, kOrbits, kCollisions);
+    const RecordedCollisions free = Recorded(engine, geometry, kOrbits, kCollisions);
     // The mean free time is 97 here. At 1e-9 every orbit ends at once.
     for (const double limit : {1e-9, 40.0, 100.0, 300.0, 1e9}) {
       ForEachFusedTarget([&] {
-        ContactsWithin limited(limit, geometry, kOrbits, kCollisions);
+        CollisionsWithin limited(limit, geometry, kOrbits, kCollisions);
         ASSERT_TRUE(RunOrbits(engine, geometry, kOrbits, limited));
         uint64_t expired = 0;
         for (uint64_t orbit = 0; orbit < kOrbits; ++orbit) {
@@ -316,18 +316,18 @@ class GivesUp : public OrbitSource {
     }
     return n;
   }
-  void Meet(std::span<Meeting> meetings) override {
-    for (const Meeting& meeting : meetings) ends_.push_back(meeting);
+  void Collide(std::span<OrbitCollision> collisions) override {
+    ends_.insert(ends_.end(), collisions.begin(), collisions.end());
   }
   bool Pause() override { return ++looks_ > kMostLooks; }
-  const std::vector<Meeting>& ends() const { return ends_; }
+  const std::vector<OrbitCollision>& ends() const { return ends_; }
 
  private:
   static constexpr int kMostLooks = 500;
   std::vector<PairState> pairs_;
   size_t next_ = 0;
   int looks_ = 0;
-  std::vector<Meeting> ends_;
+  std::vector<OrbitCollision> ends_;
 };
 
 // Balls at the very end of the piston's reach, and the piston on them. In its lane such a ball may
@@ -349,11 +349,11 @@ TEST(Orbits, ThePistonMeetsABallAtRestAtTheEndOfItsReach) {
       GivesUp source(pairs);
       ASSERT_TRUE(StartOrbits(engine, geometry, source)->Advance());
       ASSERT_EQ(source.ends().size(), pairs.size());
-      for (const Meeting& end : source.ends()) {
-        ASSERT_FALSE(end.contact.escaped);
-        EXPECT_NEAR(end.contact.time, 2 * geometry.stroke(), 1e-14);
-        EXPECT_EQ(end.contact.piston_wall_hits, 1u);
-        EXPECT_EQ(end.contact.state.piston_velocity, -1);
+      for (const OrbitCollision& end : source.ends()) {
+        ASSERT_FALSE(end.collision.escaped);
+        EXPECT_NEAR(end.collision.time, 2 * geometry.stroke(), 1e-14);
+        EXPECT_EQ(end.collision.piston_wall_hits, 1u);
+        EXPECT_EQ(end.collision.state.piston_velocity, -1);
       }
     }
   }
@@ -375,9 +375,9 @@ TEST(Orbits, OrbitsThatCannotEndAreLost) {
     GivesUp source(pairs);
     ASSERT_TRUE(StartOrbits(engine, geometry, source)->Advance());
     ASSERT_EQ(source.ends().size(), pairs.size());
-    for (const Meeting& end : source.ends()) {
-      EXPECT_TRUE(end.contact.escaped);
-      EXPECT_FALSE(end.contact.expired);
+    for (const OrbitCollision& end : source.ends()) {
+      EXPECT_TRUE(end.collision.escaped);
+      EXPECT_FALSE(end.collision.expired);
     }
   }
 }
@@ -390,7 +390,7 @@ class CountedStarts : public OrbitSource {
     for (OrbitStart& start : starts) start = {started_++, pair_};
     return starts.size();
   }
-  void Meet(std::span<Meeting>) override {}
+  void Collide(std::span<OrbitCollision>) override {}
   bool Pause() override {
     most_ = std::max(most_, started_ - std::exchange(at_look_, started_));
     return started_ > 100'000;
@@ -431,10 +431,10 @@ class DripFedOrbits : public OrbitSource {
     }
     return n;
   }
-  void Meet(std::span<Meeting> meetings) override {
-    for (Meeting& meeting : meetings) {
-      meeting.after = orbits_.Meet(meeting.orbit, meeting.contact);
-      running_ -= meeting.after == AfterContact::kEnd;
+  void Collide(std::span<OrbitCollision> collisions) override {
+    for (auto& [orbit, collision, after] : collisions) {
+      after = orbits_.Collide(orbit, collision);
+      running_ -= after == AfterCollision::kEnd;
     }
   }
   bool Pause() override { return true; }
@@ -453,14 +453,14 @@ TEST(Orbits, AnIntermittentSourceGivesTheSameBits) {
   constexpr uint64_t kOrbits = 600;
   const PairGeometry geometry = *PairGeometry::Create(0.55, 0.05);
   for (const Engine engine : kEngines) {
-    const RecordedContacts expected = Recorded(engine, geometry, kOrbits, 3);
+    const RecordedCollisions expected = Recorded(engine, geometry, kOrbits, 3);
     ForEachFusedTarget([&] {
-      RecordedContacts contacts(geometry, kOrbits, 3);
-      DripFedOrbits source(contacts, kOrbits);
+      RecordedCollisions collisions(geometry, kOrbits, 3);
+      DripFedOrbits source(collisions, kOrbits);
       const auto run = StartOrbits(engine, geometry, source);
       while (!run->Advance() || source.HasMore()) continue;
       for (uint64_t orbit = 0; orbit < kOrbits; ++orbit) {
-        const auto &all = expected.by_orbit()[orbit], &found = contacts.by_orbit()[orbit];
+        const auto &all = expected.by_orbit()[orbit], &found = collisions.by_orbit()[orbit];
         ASSERT_EQ(found.size(), all.size());
         for (size_t i = 0; i < all.size(); ++i) ExpectSameBits(found[i], all[i]);
       }

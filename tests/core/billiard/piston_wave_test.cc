@@ -25,8 +25,8 @@ double Gap(const PistonWave& wave, const Approach& a, double way) {
   return wave.Position(rest) - wave.left() - (a.x + a.ux * way);
 }
 
-std::optional<PistonWave::Meeting> FirstMeeting(const PistonWave& wave, const Approach& a) {
-  return wave.FirstMeeting(a.phase, a.ratio, a.x, a.ux, a.length);
+std::optional<PistonWave::Collision> FirstCollision(const PistonWave& wave, const Approach& a) {
+  return wave.FirstCollision(a.phase, a.ratio, a.x, a.ux, a.length);
 }
 
 // The piston is right of the ball until `way`, up to rounding.
@@ -54,65 +54,65 @@ Approach Drawn(const PistonWave& wave, CounterRandom& random) {
   return a;
 }
 
-TEST(PistonWave, FirstMeetingIsWhereTheBallFirstTouchesThePiston) {
-  int meetings = 0, none = 0;
+TEST(PistonWave, FirstCollisionIsWhereTheBallFirstTouchesThePiston) {
+  int collisions = 0, none = 0;
   for (const double delta : {0.001, 0.05, 0.3}) {
     const PistonWave wave(PaperGeometry(delta));
     for (uint64_t i = 0; i < 3000; ++i) {
       CounterRandom random(1, 2, i);
       const Approach a = Drawn(wave, random);
-      const std::optional<PistonWave::Meeting> meeting = FirstMeeting(wave, a);
-      ExpectApartBefore(wave, a, meeting ? meeting->way : a.length);
-      if (!meeting) {
+      const std::optional<PistonWave::Collision> collision = FirstCollision(wave, a);
+      ExpectApartBefore(wave, a, collision ? collision->way : a.length);
+      if (!collision) {
         ++none;
         continue;
       }
-      ++meetings;
-      ASSERT_GE(meeting->way, 0);
-      ASSERT_LE(meeting->way, a.length);
-      ASSERT_NEAR(Gap(wave, a, meeting->way), 0, 1e-12 * (1 + a.ratio));
-      ASSERT_GT(a.ux, meeting->piston_goes_right ? a.ratio : -a.ratio);
+      ++collisions;
+      ASSERT_GE(collision->way, 0);
+      ASSERT_LE(collision->way, a.length);
+      ASSERT_NEAR(Gap(wave, a, collision->way), 0, 1e-12 * (1 + a.ratio));
+      ASSERT_GT(a.ux, collision->piston_goes_right ? a.ratio : -a.ratio);
     }
   }
-  EXPECT_GT(meetings, 200);
+  EXPECT_GT(collisions, 200);
   EXPECT_GT(none, 500);
 }
 
-// For slow balls the piston's phase has no correct digit, but FirstMeeting must still have an
+// For slow balls the piston's phase has no correct digit, but FirstCollision must still have an
 // answer.
-TEST(PistonWave, FirstMeetingOfASlowBallIsOnItsPath) {
+TEST(PistonWave, FirstCollisionOfASlowBallIsOnItsPath) {
   const PistonWave wave(PaperGeometry(0.01));
   for (uint64_t i = 0; i < 3000; ++i) {
     CounterRandom random(3, 4, i);
     Approach a = Drawn(wave, random);
     a.ratio = std::pow(10, 6 + 12 * random.Uniform());
-    const std::optional<PistonWave::Meeting> meeting = FirstMeeting(wave, a);
+    const std::optional<PistonWave::Collision> collision = FirstCollision(wave, a);
     const double farthest = a.x + a.ux * a.length;
     if (farthest > 1e-3 && a.x > 1e-3) {
-      ASSERT_TRUE(meeting);  // the piston comes past many times
+      ASSERT_TRUE(collision);  // the piston comes past many times
     }
-    if (!meeting) continue;
-    ASSERT_GE(meeting->way, 0);
-    ASSERT_LE(meeting->way, a.length);
-    ASSERT_GT(a.x + a.ux * meeting->way, -1e-15);
+    if (!collision) continue;
+    ASSERT_GE(collision->way, 0);
+    ASSERT_LE(collision->way, a.length);
+    ASSERT_GT(a.x + a.ux * collision->way, -1e-15);
   }
 }
 
-TEST(PistonWave, ABallThatLeavesHasNoMeeting) {
+TEST(PistonWave, ABallThatLeavesHasNoCollision) {
   const PistonWave wave(PaperGeometry(0.1));
   for (const double ux : {0.0, -1e-300, -1.0}) {
-    EXPECT_FALSE(wave.FirstMeeting(0.05, 1, -0.01, ux, 0.5));
+    EXPECT_FALSE(wave.FirstCollision(0.05, 1, -0.01, ux, 0.5));
   }
-  EXPECT_FALSE(wave.FirstMeeting(2 * wave.stroke(), 0, -0.01, 1, 0.005));  // does not come so far
-  EXPECT_FALSE(wave.FirstMeeting(0.05, 1, -0.01, 1e-300, 0.5));
+  EXPECT_FALSE(wave.FirstCollision(2 * wave.stroke(), 0, -0.01, 1, 0.005));  // does not come so far
+  EXPECT_FALSE(wave.FirstCollision(0.05, 1, -0.01, 1e-300, 0.5));
 }
 
 TEST(PistonWave, ABallMeetsARestingPistonAtThePistonsPlace) {
   const PistonWave wave(PaperGeometry(0.1));
   const Approach a = {.phase = 0.07, .ratio = 0, .x = -0.2, .ux = 0.5, .length = 1};
-  const std::optional<PistonWave::Meeting> meeting = FirstMeeting(wave, a);
-  ASSERT_TRUE(meeting);
-  EXPECT_NEAR(meeting->way, 0.27 / 0.5, 1e-15);
+  const std::optional<PistonWave::Collision> collision = FirstCollision(wave, a);
+  ASSERT_TRUE(collision);
+  EXPECT_NEAR(collision->way, 0.27 / 0.5, 1e-15);
 }
 
 // The ball touches the piston and moves in the same direction, slower. The piston comes back.
@@ -120,10 +120,10 @@ TEST(PistonWave, AReturningPistonMeetsABallAtRest) {
   const PistonWave wave(PaperGeometry(0.1));
   const double stroke = wave.stroke();
   const Approach a = {.phase = 0.05, .ratio = 1e18, .x = 0.05, .ux = 1, .length = 0.3};
-  const std::optional<PistonWave::Meeting> meeting = FirstMeeting(wave, a);
-  ASSERT_TRUE(meeting);
-  EXPECT_NEAR(meeting->way * a.ratio, 2 * (stroke - 0.05), 1e-12);
-  EXPECT_FALSE(meeting->piston_goes_right);
+  const std::optional<PistonWave::Collision> collision = FirstCollision(wave, a);
+  ASSERT_TRUE(collision);
+  EXPECT_NEAR(collision->way * a.ratio, 2 * (stroke - 0.05), 1e-12);
+  EXPECT_FALSE(collision->piston_goes_right);
 }
 
 TEST(PistonWave, WayToBallAtRestIsThatOfThePiston) {

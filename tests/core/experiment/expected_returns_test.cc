@@ -9,7 +9,7 @@
 #include "core/experiment/returns.h"
 #include "core/geometry/paper.h"
 #include "core/statistics/moments.h"
-#include "tests/core/billiard/recorded_contacts.h"
+#include "tests/core/billiard/recorded_collisions.h"
 #include "tests/core/geometries.h"
 #include "tests/core/run_orbits.h"
 
@@ -18,25 +18,25 @@ namespace {
 
 struct Counted {
   Moments time, ball_wall, piston_wall;
-  void Add(const Contact& contact) {
-    time.Add(contact.time);
-    ball_wall.Add(static_cast<double>(contact.ball_wall_hits));
-    piston_wall.Add(static_cast<double>(contact.piston_wall_hits));
+  void Add(const Collision& collision) {
+    time.Add(collision.time);
+    ball_wall.Add(static_cast<double>(collision.ball_wall_hits));
+    piston_wall.Add(static_cast<double>(collision.piston_wall_hits));
   }
 };
 
 class CountedReturns : public ReturnOrbits {
  public:
   using ReturnOrbits::ReturnOrbits;
-  AfterContact Meet(uint64_t orbit, const Contact& contact) {
-    counted.Add(contact);
-    return ReturnOrbits::Meet(orbit, contact);
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) {
+    counted.Add(collision);
+    return ReturnOrbits::Collide(orbit, collision);
   }
   Counted counted;
 };
 
 // The predictions are exact means: 5 standard errors, 6e-7 false alarms each. An orbit starts in
-// contact, and its hits before the second collision are counted.
+// collision, and its hits before the second collision are counted.
 void ExpectCounted(const PredictedHits& predicted, const Counted& counted) {
   EXPECT_NEAR(counted.ball_wall.mean, predicted.ball_wall, 5 * *counted.ball_wall.StandardError());
   EXPECT_NEAR(counted.piston_wall.mean, predicted.piston_wall,
@@ -49,8 +49,8 @@ TEST(PredictedHits, MatchOrbitsInEquilibrium) {
     const PairGeometry geometry = GeometryAtShare(rho, 0.6);
     for (const Engine engine : kEngines) {
       Counted counted;
-      const RecordedContacts recorded = Recorded(engine, geometry, 20'000, 1);
-      for (const auto& contacts : recorded.by_orbit()) counted.Add(contacts.front());
+      const RecordedCollisions recorded = Recorded(engine, geometry, 20'000, 1);
+      for (const auto& collisions : recorded.by_orbit()) counted.Add(collisions.front());
       ExpectCounted(HitsPerCollision(geometry), counted);
       EXPECT_NEAR(counted.time.mean, MeanFreeTimesOf(geometry).ball_piston,
                   5 * *counted.time.StandardError());

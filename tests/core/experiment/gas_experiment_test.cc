@@ -92,7 +92,7 @@ TEST(GasExperiment, BlocksComputedTogetherEqualThoseComputedAlone) {
     const std::vector<Block> blocks = BlocksOf(12, 3);
     ListedBlocks together(blocks, false), paused(blocks, true);
     EXPECT_TRUE(point->StartRun(together)->Advance());
-    const std::unique_ptr<BlockRun> run = point->StartRun(paused);
+    const std::unique_ptr<EngineRun> run = point->StartRun(paused);
     int calls = 1;
     while (!run->Advance()) ++calls;
     EXPECT_GT(calls, 1);
@@ -126,7 +126,7 @@ TEST(GasExperiment, ARunTakesAQuarterOfItsChunkAtMost) {
     for (Block& block : blocks) block.chunk = point->plan().chunks() - 1;
     if (c.samples <= 64) blocks = BlocksOf(static_cast<uint64_t>(c.samples), 1);
     ListedBlocks queue(blocks, true);
-    const std::unique_ptr<BlockRun> run = point->StartRun(queue);
+    const std::unique_ptr<EngineRun> run = point->StartRun(queue);
     while (queue.results.empty()) run->Advance();
     EXPECT_EQ(queue.taken_before_first_result, c.together)
         << Name(c.model) << " " << c.columns << " " << c.samples;
@@ -139,7 +139,7 @@ TEST(GasExperiment, TheDrawOfABigGasAsksForPauses) {
   const auto point =
       PointExperiment::Create(SpecOf(&kGasEquilibrium, gas, {.samples = 1}, Model::kMarkov, 42), 0);
   ListedBlocks queue(BlocksOf(1, 1), true);
-  const std::unique_ptr<BlockRun> run = point->StartRun(queue);
+  const std::unique_ptr<EngineRun> run = point->StartRun(queue);
   while (queue.results.empty()) run->Advance();
   EXPECT_GE(queue.asked, 11);  // 5 of them in the draw
 }

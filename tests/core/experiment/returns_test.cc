@@ -25,13 +25,13 @@ class EndedReturns : public ReturnOrbits {
 TEST(ReturnOrbits, AnEscapedOrbitCountsAsAnEscapeOnly) {
   WatchedOrbits orbits(
       EndedReturns(kPaperPair, {0.125, 1}, {.seed = 1, .stream = 2}, {.samples = 2}));
-  Contact contact;
-  contact.state = orbits.Start(0);
-  contact.state.ball_speed *= 1 + 1e-10;
-  orbits.Meet(0, contact);
-  contact.escaped = true;
-  contact.state.ball_speed = 7;
-  EXPECT_EQ(orbits.Meet(1, contact), AfterContact::kEnd);
+  Collision collision;
+  collision.state = orbits.Start(0);
+  collision.state.ball_speed *= 1 + 1e-10;
+  orbits.Collide(0, collision);
+  collision.escaped = true;
+  collision.state.ball_speed = 7;
+  EXPECT_EQ(orbits.Collide(1, collision), AfterCollision::kEnd);
   const BlockResult result = orbits.Result();
   EXPECT_EQ(result.samples, 1u);
   EXPECT_EQ(result.health.escapes, 1u);

@@ -128,6 +128,16 @@ TEST(Ladder, TheReasonForRunningNoPilotIsStated) {
               HasSubstr("before a pilot"));
 }
 
+// The discs nearly touch: a collision takes 1e9 times as many wall hits as in the paper's cell.
+TEST(Ladder, APilotThatWouldTakeYearsIsNotRun) {
+  EnsembleSpec spec = Relaxation(7e-9, {.tolerance = 0.1});
+  spec.grid[kRho] = {0.50000378};
+  spec.grid[kEpsilon] = {0};
+  const Answer answer = *Choice(spec, MayNotBeAsked);
+  EXPECT_EQ(answer.model, Model::kSpectrum);
+  EXPECT_THAT(answer.reason, HasSubstr("is within the tolerance"));
+}
+
 TEST(Ladder, OnePilotServesAllSmallerDeltas) {
   const Pilot pilot = {.difference = 0.01, .standard_error = 0.005};
   std::optional<PilotPlace> place;
@@ -316,6 +326,15 @@ TEST(Ladder, TheBoundOfTheConductivityCountsTheSizeOfTheGas) {
     spec.grid[kCells] = {CodeOf({.columns = 8, .rows = rows, .is_lattice = true})};
     EXPECT_NEAR(BoundOfConductivity(spec), error, 1e-6) << rows;
   }
+}
+
+// In one column the conductivity has no scatter but rounding, which never reaches this tolerance.
+TEST(Ladder, AToleranceBelowRoundingTakesAllSamplesInOneColumn) {
+  EnsembleSpec spec = Conductivity(0.03, {.tolerance = 1e-200});
+  spec.model = Model::kMarkov;
+  spec.grid[kCells] = {CodeOf({.columns = 1})};
+  const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked);
+  EXPECT_EQ(ladder.Chosen().samples, kMaxSamples);
 }
 
 // The cold wall's slow pistons: more of them at a lower temperature, at a larger delta, and in a

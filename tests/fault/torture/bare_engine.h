@@ -34,7 +34,7 @@ class BareEngine {
   // Its blocks stay on their way between two windows.
   struct Worker {
     std::unique_ptr<BlockQueue> queue;
-    std::unique_ptr<BlockRun> run;
+    std::unique_ptr<EngineRun> run;
   };
 
   void Work(Worker& worker);

@@ -63,7 +63,7 @@ class ServerStatusTest : public testing::Test {
                           .max_samples_per_job = 0,
                           .max_calls_per_principal = 73,
                           .max_call_bytes_per_principal = 1000};
-  Authenticator authenticator_;
+  Authenticator authenticator_{/*needs_tokens=*/false};
   std::unique_ptr<Store> store_;
   ModelLadder ladder_{*store_, 2};
   ThreadPool pool_{

@@ -1,9 +1,5 @@
-// Limits for clients that are not authenticated yet: descriptors, streams, threads.
-#include <fcntl.h>
-#include <sys/resource.h>
-#include <unistd.h>
-
-#include <algorithm>
+// Limits for clients that are not authenticated yet: streams, memory, threads, time.
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -13,7 +9,6 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "server/door/socket_listener.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/http_get.h"
 #include "tests/server/running_server.h"
@@ -25,63 +20,6 @@ namespace ballpiston::server {
 namespace {
 
 using ::testing::HasSubstr;
-
-// The number that the next descriptor gets.
-rlim_t NextDescriptor() {
-  const int next = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  close(next);
-  return static_cast<rlim_t>(next);
-}
-
-class DescriptorLimit {
- public:
-  explicit DescriptorLimit(rlim_t limit) {
-    getrlimit(RLIMIT_NOFILE, &before_);
-    const rlimit lowered{limit, before_.rlim_max};
-    setrlimit(RLIMIT_NOFILE, &lowered);
-  }
-  ~DescriptorLimit() { setrlimit(RLIMIT_NOFILE, &before_); }
-  DescriptorLimit(const DescriptorLimit&) = delete;
-  DescriptorLimit& operator=(const DescriptorLimit&) = delete;
-
- private:
-  rlimit before_{};
-};
-
-TEST(ConnectionBounds, AQuarterOfAFewDescriptorsIsReservedAndNoMoreThan32) {
-  EXPECT_EQ(ReservedDescriptors(64), 16u);
-  EXPECT_EQ(ReservedDescriptors(128), 32u);
-  EXPECT_EQ(ReservedDescriptors(1'000'000), 32u);
-}
-
-// More connections than the process has descriptors: the server closes the surplus, the process can
-// still open files, and afterwards the server answers as before.
-TEST(ConnectionBounds, AFloodOfConnectionsLeavesDescriptorsFree) {
-  constexpr rlim_t kFlood = 100;
-  RunningServer server({.listen = "127.0.0.1:0"});
-  ASSERT_OK(CallByName(server.channel(), kListJobs));
-  testing::internal::CaptureStderr();
-  {
-    // Descriptors of the clients, in this same process, are below the limit; half as many of the
-    // server's are above what is reserved.
-    const rlim_t limit = std::max<rlim_t>(NextDescriptor() + 3 * kFlood / 2, 128);
-    const DescriptorLimit lowered(limit);
-    std::vector<std::unique_ptr<Connection>> flood;
-    int closed = 0;
-    for (rlim_t i = 0; i < kFlood && closed < 3; ++i) {
-      flood.push_back(std::make_unique<Connection>(server.address()));
-      if (flood.back()->ReadSome().empty()) ++closed;
-    }
-    EXPECT_EQ(closed, 3);
-    EXPECT_LT(NextDescriptor(), limit);
-  }
-  EXPECT_OK(CallByName(server.channel(), kListJobs));
-  EXPECT_FALSE(Connection(server.address()).ReadSome().empty());
-  const std::string log = testing::internal::GetCapturedStderr();
-  EXPECT_THAT(
-      log,
-      HasSubstr("1 connection closed: the process has nearly reached its limit of descriptors"));
-}
 
 TEST(ConnectionBounds, TheSettingsLimitTheStreamsOfAConnection) {
   RunningServer server({.listen = "127.0.0.1:0"});
@@ -190,7 +128,7 @@ TEST(ConnectionBounds, EndlessRequestsAreEndedWhenMemoryIsUsedUp) {
   }
   EXPECT_TRUE(client.EndsOne());
   // Other clients can connect again after a while. There is room only for moments.
-  AwaitThat([&server] { return CallByName(server.channel(), kListJobs).ok(); });
+  AwaitThat([&server] { return CallByName(server.channel(), kCheckHealth).ok(); });
 }
 
 size_t ThreadsOfThisProcess() {
@@ -199,7 +137,7 @@ size_t ThreadsOfThisProcess() {
 }
 
 TEST(ConnectionBounds, ReflectionUsesLimitedThreadsAndOtherCallsGoOn) {
-  RunningServer server({.listen = "127.0.0.1:0"});
+  RunningServer server;
   ASSERT_OK(CallByName(server.channel(), kReflection, kListServices));
   const size_t before = ThreadsOfThisProcess();
   std::vector<std::unique_ptr<UnreadCall>> streams;
@@ -213,6 +151,33 @@ TEST(ConnectionBounds, ReflectionUsesLimitedThreadsAndOtherCallsGoOn) {
   EXPECT_OK(CallByName(server.channel(), kCheckHealth));
   streams.clear();
   AwaitThat([&server] { return CallByName(server.channel(), kReflection, kListServices).ok(); });
+}
+
+// ---- connections whose client no longer answers ----
+
+// Part of the GOAWAY frame of HTTP/2: its type, no flags, stream 0.
+const std::string kGoAway("\x7\0\0\0\0\0", 6);
+
+// In each test one time limit is short, and the others are not reached.
+TestServerOptions OnPort(const ConnectionTiming& timing) {
+  return {.listen = "127.0.0.1:0", .connections = timing};
+}
+
+TEST(SilentConnection, AConnectionWithoutAHandshakeIsClosed) {
+  RunningServer server(
+      OnPort({.handshake = std::chrono::milliseconds(200), .ping_interval = kNever}));
+  Connection connection(server.address());
+  EXPECT_THAT(connection.ReadToTheEnd(), HasSubstr(kGoAway));
+}
+
+TEST(SilentConnection, AConnectionThatAnswersNoPingIsClosed) {
+  RunningServer server(OnPort({.handshake = kNever,
+                               .ping_interval = std::chrono::milliseconds(100),
+                               .ping_timeout = std::chrono::milliseconds(100)}));
+  Connection connection(server.address());
+  const std::string empty_settings("\0\0\0\x4\0\0\0\0\0", 9);
+  connection.Send("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + empty_settings);
+  EXPECT_THAT(connection.ReadToTheEnd(), HasSubstr(std::string("\0\0\x8\x6", 4)));  // the ping
 }
 
 }  // namespace

@@ -62,9 +62,10 @@ TEST_F(NewToken, ExpiresAfterItsDays) {
 }
 
 TEST_F(NewToken, IsAppendedAfterALineWithoutAnEnd) {
-  WriteFile(file_.path, "certificate box box read");
-  chmod(file_.path.c_str(), 0600);
   Issue("alice:read");
+  const std::string line = Contents(file_.path);
+  WriteFile(file_.path, line.substr(0, line.size() - 1));
+  Issue("bob:read");
   ASSERT_OK_AND_ASSIGN(const auto list, AccessList::Read(file_));
   EXPECT_EQ(list.size(), 2u);
 }
@@ -80,7 +81,7 @@ TEST_F(NewToken, ConcurrentTokensAreAllKeptAndAllDifferent) {
 }
 
 TEST_F(NewToken, AnOpenOrMalformedFileStaysUnchanged) {
-  WriteFile(file_.path, "certificate box box read\n");
+  WriteFile(file_.path, "");
   chmod(file_.path.c_str(), 0644);
   const TokenRequest request = *ParseTokenRequest("alice:read");
   EXPECT_THAT(std::string(IssueToken(file_, request, kIssueTime).status().message()),

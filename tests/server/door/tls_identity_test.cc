@@ -1,13 +1,10 @@
 // The files of a server's TLS identity: read, checked and published again as a whole.
 #include "server/door/tls_identity.h"
 
-#include <fcntl.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -15,7 +12,6 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "server/door/published_file.h"
-#include "server/door/server_tls.h"
 #include "tests/server/secure_server.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
@@ -26,7 +22,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class TlsFilesTest : public ::testing::Test {
+class TlsIdentityTest : public ::testing::Test {
  protected:
   std::string Error() const {
     const auto identity = ReadTlsIdentity({{"tls-certificate", files_.options().tls_certificate},
@@ -40,16 +36,16 @@ class TlsFilesTest : public ::testing::Test {
   const TestAuthority other_{"another authority"};
 };
 
-TEST_F(TlsFilesTest, AGoodSetIsAccepted) { EXPECT_EQ(Error(), ""); }
+TEST_F(TlsIdentityTest, AGoodSetIsAccepted) { EXPECT_EQ(Error(), ""); }
 
-TEST_F(TlsFilesTest, AKeyOfAnotherCertificateIsRefused) {
+TEST_F(TlsIdentityTest, AKeyOfAnotherCertificateIsRefused) {
   files_.Write("server.key", other_.Issue("x").key);
   EXPECT_THAT(Error(), HasSubstr("--tls-key="));
   EXPECT_THAT(Error(), HasSubstr("is not the key of the certificate in --tls-certificate="));
 }
 
 // The clock may be set only later.
-TEST_F(TlsFilesTest, AnExpiredOrFutureCertificateIsRead) {
+TEST_F(TlsIdentityTest, AnExpiredOrFutureCertificateIsRead) {
   using std::chrono::hours;
   for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
     files_.WriteCertificate(files_.authority().Issue("x", validity));
@@ -57,12 +53,12 @@ TEST_F(TlsFilesTest, AnExpiredOrFutureCertificateIsRead) {
   }
 }
 
-TEST_F(TlsFilesTest, AKeyThatOthersMayReadIsRefused) {
+TEST_F(TlsIdentityTest, AKeyThatOthersMayReadIsRefused) {
   chmod(files_.options().tls_key.c_str(), 0644);
   EXPECT_THAT(Error(), HasSubstr("open to other users (mode 0644)"));
 }
 
-TEST_F(TlsFilesTest, AFileThatIsNotPemIsRefused) {
+TEST_F(TlsIdentityTest, AFileThatIsNotPemIsRefused) {
   for (const char* text : {"", "nonsense", "-----BEGIN CERTIFICATE-----\nAAAA\n"}) {
     files_.Write("server.pem", text);
     EXPECT_THAT(Error(), HasSubstr("--tls-certificate")) << text;
@@ -71,7 +67,7 @@ TEST_F(TlsFilesTest, AFileThatIsNotPemIsRefused) {
   EXPECT_THAT(Error(), HasSubstr("has no private key"));
 }
 
-TEST_F(TlsFilesTest, AMissingFileIsNamed) {
+TEST_F(TlsIdentityTest, AMissingFileIsNamed) {
   unlink(files_.options().tls_key.c_str());
   EXPECT_THAT(Error(), HasSubstr("--tls-key="));
   EXPECT_THAT(Error(), HasSubstr("No such file"));
@@ -102,39 +98,6 @@ TEST(PublishedFile, EachContentHasALaterSecond) {
     EXPECT_GT(found.st_mtime, last);
     last = found.st_mtime;
   }
-}
-
-// The contents of this process's files in memory.
-std::string Published() {
-  std::string all;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
-    std::error_code gone;
-    const std::string file = std::filesystem::read_symlink(entry.path(), gone).string();
-    if (file.find("/memfd:ballpiston") == 0) all += Contents(entry.path().string());
-  }
-  return all;
-}
-
-TEST(ServerTls, ACertificateThatCannotBePublishedLeavesTheOldOne) {
-  const LaboratoryFiles files;
-  const DoorOptions& options = files.options();
-  ASSERT_OK_AND_ASSIGN(const auto tls,
-                       ServerTls::Create({{"tls-certificate", options.tls_certificate},
-                                          {"tls-key", options.tls_key}}));
-  const KeyAndCertificate next = files.authority().Issue("server-2");
-  files.WriteCertificate(next);
-  rlimit before{};
-  getrlimit(RLIMIT_NOFILE, &before);
-  const int free = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  close(free);
-  const rlimit one_more{static_cast<rlim_t>(free) + 1, before.rlim_max};
-  setrlimit(RLIMIT_NOFILE, &one_more);
-  const absl::Status reloaded = tls->Reload();
-  setrlimit(RLIMIT_NOFILE, &before);
-  EXPECT_THAT(reloaded, StatusIs(absl::StatusCode::kInternal));
-  EXPECT_THAT(Published(), Not(HasSubstr(next.certificate)));
-  ASSERT_OK(tls->Reload());
-  EXPECT_THAT(Published(), HasSubstr(next.certificate));
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ class FakePilot : public PointExperiment {
   explicit FakePilot(BeforeBlock before_block = nullptr)
       : FakePilot(FakeExperiments(std::move(before_block))(FakePilotSpec(), 0)) {}
 
-  std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
     return fake_->StartRun(queue);
   }
   uint64_t CountsOfASample() const override { return fake_->CountsOfASample(); }

@@ -25,6 +25,7 @@
 #include "tests/core/geometries.h"
 #include "tools/flows/lane_balls.h"
 #include "tools/flows/precise_flow.h"
+#include "tools/flows/rounded_to.h"
 
 namespace ballpiston {
 namespace {

@@ -8,6 +8,7 @@
 #include "core/billiard/reference_flow.h"
 #include "core/sampling/invariant_measure.h"
 #include "tests/core/geometries.h"
+#include "tools/flows/rounded_to.h"
 
 namespace ballpiston {
 namespace {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "tests/core/geometries.h"
+#include "tools/flows/rounded_to.h"
 
 namespace ballpiston::method_comparison {
 namespace {

@@ -31,15 +31,15 @@ std::vector<PairState> Starts() {
 // Changes collisions and passes them to a watch.
 class Tampered : public NumberedOrbits {
  public:
-  using Change = void (*)(Contact& contact);
+  using Change = void (*)(Collision& collision);
 
   Tampered(CollisionWatch& watch, Change change) : watch_(watch), change_(change) {}
 
   PairState Start(uint64_t orbit) override { return watch_.Start(orbit); }
-  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
-    Contact changed = contact;
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+    Collision changed = collision;
     change_(changed);
-    return watch_.Meet(orbit, changed);
+    return watch_.Collide(orbit, changed);
   }
 
  private:
@@ -56,14 +56,14 @@ Failures Watched(Tampered::Change change) {
 }
 
 TEST(Detectors, UnchangedCollisionsGiveNoFailure) {
-  const Failures failures = Watched([](Contact&) {});
+  const Failures failures = Watched([](Collision&) {});
   EXPECT_EQ(failures.hits, 2000u);
   EXPECT_GT(failures.looked_back, 300u);
   EXPECT_EQ(failures.Total(), 0u);
 }
 
 TEST(Detectors, ALateCollisionIsAPhantom) {
-  const Failures failures = Watched([](Contact& c) { c.time += 1e-6; });
+  const Failures failures = Watched([](Collision& c) { c.time += 1e-6; });
   EXPECT_GT(failures.phantoms, 100u);
 }
 
@@ -73,21 +73,21 @@ class EverySecond : public NumberedOrbits {
   EverySecond(CollisionWatch& watch, size_t orbits) : watch_(watch), first_(orbits) {}
 
   PairState Start(uint64_t orbit) override { return watch_.Start(orbit); }
-  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
-    Contact& first = first_[orbit];
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+    Collision& first = first_[orbit];
     if (first.time == 0) {
-      first = contact;
-      return AfterContact::kGoOn;
+      first = collision;
+      return AfterCollision::kGoOn;
     }
-    Contact both = contact;
+    Collision both = collision;
     both.time += first.time;
     both.ball_wall_hits += first.ball_wall_hits;
-    return watch_.Meet(orbit, both);
+    return watch_.Collide(orbit, both);
   }
 
  private:
   CollisionWatch& watch_;
-  std::vector<Contact> first_;
+  std::vector<Collision> first_;
 };
 
 TEST(Detectors, AnOmittedCollisionIsMissed) {
@@ -105,11 +105,11 @@ TEST(Detectors, AnOmittedOrbitIsMissed) {
 }
 
 TEST(Detectors, TurnedVelocitiesEscapesAndTimesAreDetected) {
-  EXPECT_GT(Watched([](Contact& c) { c.state.direction = -c.state.direction; }).inward, 100u);
-  EXPECT_GT(Watched([](Contact& c) { c.time = -c.time; }).negative_times, 100u);
-  EXPECT_EQ(Watched([](Contact& c) { c.escaped = true; }).escapes, 500u);
-  EXPECT_EQ(Watched([](Contact& c) { c.state.position.y() += 0.3; }).escapes, 500u);
-  EXPECT_GT(Watched([](Contact& c) { c.state.ball_speed *= 1 + 1e-9; }).energy, 1e-10);
+  EXPECT_GT(Watched([](Collision& c) { c.state.direction = -c.state.direction; }).inward, 100u);
+  EXPECT_GT(Watched([](Collision& c) { c.time = -c.time; }).negative_times, 100u);
+  EXPECT_EQ(Watched([](Collision& c) { c.escaped = true; }).escapes, 500u);
+  EXPECT_EQ(Watched([](Collision& c) { c.state.position.y() += 0.3; }).escapes, 500u);
+  EXPECT_GT(Watched([](Collision& c) { c.state.ball_speed *= 1 + 1e-9; }).energy, 1e-10);
 }
 
 TEST(Detectors, ANanEnergyErrorIsInfiniteAndAMissingErrorIsNan) {
