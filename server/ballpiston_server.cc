@@ -14,10 +14,9 @@
 #include "grpcpp/resource_quota.h"
 #include "grpcpp/server_builder.h"
 #include "server/api/reflection_check.h"
-#include "server/api/take_snapshot.h"
+#include "server/api/server_metrics.h"
 #include "server/jobs/job_name.h"
 #include "server/observability/failpoint.h"
-#include "server/observability/metrics.h"
 
 namespace ballpiston::server {
 namespace {
@@ -239,9 +238,7 @@ absl::Status BallpistonServer::StartMetrics() {
   if (options_.metrics_listen.empty()) return absl::OkStatus();
   for (const std::string& service : ServiceNames()) calls_.Expect(service);
   auto endpoint = MetricsEndpoint::Start(options_.metrics_listen, [this] {
-    ServerSnapshot now = TakeSnapshot(context_);
-    now.certificate_expiry = door_->CertificateExpiry();
-    std::vector<prometheus::MetricFamily> metrics = ServerMetrics(now);
+    auto metrics = ServerMetrics(context_, door_->CertificateExpiry());
     for (auto& family : calls_.metrics().Collect()) metrics.push_back(std::move(family));
     return metrics;
   });

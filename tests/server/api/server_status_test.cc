@@ -1,18 +1,22 @@
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <stop_token>
 #include <string>
 #include <thread>
 
+#include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "gmock/gmock.h"
 #include "grpcpp/create_channel.h"
 #include "grpcpp/server.h"
 #include "grpcpp/server_builder.h"
 #include "gtest/gtest.h"
+#include "prometheus/text_serializer.h"
 #include "server/api/methods.h"
 #include "server/api/serve.h"
+#include "server/api/server_metrics.h"
 #include "server/api/services.h"
 #include "server/convert/spec.h"
 #include "tests/server/error_details.h"
@@ -167,6 +171,16 @@ TEST_F(ServerStatusTest, OnlyAnAdministratorSeesOtherPrincipals) {
     EXPECT_EQ(own.queued_jobs(), 2);  // of all principals, because they share the queue
   }
   EXPECT_EQ(AskedBy("carol", Role::kSubmit).principals_size(), 0);
+}
+
+TEST_F(ServerStatusTest, TheExpiryOfACertificateIsAMetricIfThereIsOne) {
+  const auto page = [this](std::optional<absl::Time> expiry) {
+    return prometheus::TextSerializer().Serialize(ServerMetrics(context_, expiry));
+  };
+  constexpr char kExpiry[] = "ballpiston_certificate_expiry_timestamp_seconds";
+  EXPECT_THAT(page(std::nullopt), testing::Not(testing::HasSubstr(kExpiry)));
+  EXPECT_THAT(page(absl::FromUnixSeconds(2'000'000'000)),
+              testing::HasSubstr(absl::StrCat("\n", kExpiry, " 2000000000\n")));
 }
 
 TEST_F(ServerStatusTest, AStoppingServerIsDraining) {

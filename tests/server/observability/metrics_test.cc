@@ -1,5 +1,4 @@
-#include "server/observability/metrics.h"
-
+// The metrics over HTTP.
 #include <cstdlib>
 #include <map>
 #include <optional>
@@ -72,21 +71,6 @@ class MetricsTest : public testing::Test {
   Gate gate_;
   std::optional<RunningServer> server_;
 };
-
-TEST(ServerMetrics, TheEndOfACertificateIsAMetricIfThereIsOne) {
-  const auto names = [](const ServerSnapshot& server) {
-    std::map<std::string, double> values;
-    for (const auto& family : ServerMetrics(server)) {
-      if (!family.metric.empty()) values[family.name] = family.metric[0].gauge.value;
-    }
-    return values;
-  };
-  constexpr char kExpiry[] = "ballpiston_certificate_expiry_timestamp_seconds";
-  ServerSnapshot server;
-  EXPECT_EQ(names(server).count(kExpiry), 0u);
-  server.certificate_expiry = absl::FromUnixSeconds(2'000'000'000);
-  EXPECT_EQ(names(server)[kExpiry], 2e9);
-}
 
 TEST_F(MetricsTest, AHealthWatchEndedByItsClientIsNotLogged) {
   testing::internal::CaptureStderr();
