@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
-#include <limits>
 #include <thread>
 #include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -28,15 +28,15 @@ constexpr char kDescription[] =
     "The server of ballpiston: computes ensembles of rarely interacting billiards.";
 constexpr char kExitCodes[] =
     "Exit codes: 0 stopped (SIGTERM, SIGINT, idle) or done; 1 the disk of the store is full or\n"
-    "fails, retry later; 2 a wrong flag, an unsafe combination of flags, an address or data "
-    "folder\n"
-    "in use, or a store that is not sound; 6 a data folder that is not writable, or that other\n"
-    "users can enter and that is not the server's own.";
+    "fails, retry later; 2 a wrong flag, an unsafe combination of flags, an address or folder in\n"
+    "use, or a store that is not sound; 6 a data folder that is not writable, or that other users\n"
+    "can enter and that is not the server's own.";
 constexpr int kHelpIndentation = 8;
 
 constexpr int kMostWorkers = 1024;
 constexpr double kMostSeconds = 1e6;
 constexpr double kDaySeconds = 86400;
+constexpr double kMostLimit = 1e15;
 constexpr int64_t kLeastMessage = 1024;
 constexpr int64_t kMostMessage = int64_t{256} << 20;
 constexpr int64_t kLeastTransferMib = 16;
@@ -59,63 +59,47 @@ std::string Text(double number) { return absl::StrFormat("%.15g", number); }
 
 // Accepts a number and rewrites it in decimal: CLI11 takes 010 for 8 and lets nan pass.
 template <typename Number>
-CLI::Validator Permit(double least, double most, const std::string& permitted) {
+CLI::Validator Between(double least, double most) {
   constexpr bool kIsWhole = std::is_integral_v<Number>;
-  return CLI::Validator(
-      [=](std::string& text) -> std::string {
-        double number = 0;
-        const bool is_permitted = absl::SimpleAtod(text, &number) && number >= least &&
-                                  number <= most && (!kIsWhole || number == std::floor(number));
-        if (!is_permitted) {
-          return absl::StrCat(
-              text, " is not permitted; permitted: ", kIsWhole ? "whole numbers, " : "", permitted);
-        }
-        text = absl::StrFormat("%.17g", number);
-        return "";
-      },
-      "");
+  const std::string range = absl::StrCat(Text(least), " to ", Text(most));
+  const auto accept = [=](std::string& text) -> std::string {
+    double number = 0;
+    const bool is_permitted = absl::SimpleAtod(text, &number) && number >= least &&
+                              number <= most && (!kIsWhole || number == std::floor(number));
+    if (is_permitted) text = absl::StrFormat("%.17g", number);
+    const char* const kind = kIsWhole ? "whole numbers, " : "";
+    return is_permitted ? "" : absl::StrCat(text, " is refused; permitted: ", kind, range);
+  };
+  return CLI::Validator(accept, range);
 }
 
 template <typename Number>
 void AddNumber(CLI::App& app, const std::string& flag, Number& value, double least, double most,
                const std::string& description) {
-  const std::string permitted = absl::StrCat(Text(least), " to ", Text(most));
-  app.add_option(flag, value, absl::StrCat(description, "; ", permitted))
-      ->transform(Permit<Number>(least, most, permitted))
+  app.add_option(flag, value, description)
+      ->transform(Between<Number>(least, most))
       ->type_name("N")
       ->capture_default_str();
 }
 
 void AddSeconds(CLI::App& app, const std::string& flag, std::chrono::milliseconds& time,
                 double least, double most, const std::string& description) {
-  const std::string permitted = absl::StrCat(Text(least), " to ", Text(most));
   const auto set = [&time](double seconds) {
     time = std::chrono::milliseconds(static_cast<int64_t>(std::ceil(1000 * seconds)));
   };
-  app.add_option_function<double>(flag, set, absl::StrCat(description, "; ", permitted))
-      ->transform(Permit<double>(least, most, permitted))
+  app.add_option_function<double>(flag, set, description)
+      ->transform(Between<double>(least, most))
       ->type_name("SECONDS")
       ->default_str(Text(std::chrono::duration<double>(time).count()));
 }
 
-// Whole numbers up to 2^53, beyond which a double is not exact.
-template <typename Number>
-void AddLimit(CLI::App& app, const std::string& flag, Number& limit,
-              const std::string& description) {
-  const double most = std::is_integral_v<Number> ? 0x1p53 : std::numeric_limits<double>::max();
-  app.add_option(flag, limit, description)
-      ->transform(Permit<Number>(0, most, "0 (no limit) or more"))
-      ->type_name("N")
-      ->capture_default_str();
-}
-
 // An unset variable of a shell gives an empty text.
-void AddText(CLI::App& app, const std::string& flag, std::string& text, const std::string& type,
-             const std::string& description) {
+CLI::Option* AddText(CLI::App& app, const std::string& flag, std::string& text,
+                     const std::string& type, const std::string& description) {
   const auto refuse_empty = [](const std::string& given) {
     return std::string(given.empty() ? "needs a value" : "");
   };
-  app.add_option(flag, text, description)->check(refuse_empty)->type_name(type);
+  return app.add_option(flag, text, description)->check(refuse_empty)->type_name(type);
 }
 
 void AddWord(CLI::App& app, const std::string& flag, std::string& word,
@@ -137,9 +121,8 @@ void AddServerFlags(CLI::App& app, CommandLine& line, Words& words) {
           "machines can reach needs --tls-certificate, --tls-key and --access-file.\n"
           "Default: the Unix socket server.socket in the data folder");
   AddText(app, "--data-dir,--data_dir", line.server.data_dir, "DIR",
-          "folder of jobs and results, which is created if it does not exist; one server at a\n"
-          "time can use it. Default: " +
-              line.server.data_dir);
+          "folder of jobs and results, created if it does not exist; one server at a time uses it")
+      ->capture_default_str();
   AddNumber(app, "--workers", line.server.workers, 1, kMostWorkers, "threads that compute");
   AddSeconds(app, "--watch-heartbeat-seconds", line.server.watch.heartbeat, 0.01, 3600,
              "a watch with nothing new to send sends a heartbeat after this time");
@@ -201,43 +184,57 @@ void AddSlurmFlags(CLI::App& app, Words& words) {
           "default: the one installed with the server");
 }
 
+struct LimitFlag {
+  const char* flag;
+  std::variant<int64_t Limits::*, double Limits::*> limit;
+  const char* description;
+};
+
+const LimitFlag kLimitFlags[] = {
+    {"--max-active-jobs", &Limits::max_active_jobs, "jobs that have not ended, of all principals"},
+    {"--max-active-jobs-per-principal", &Limits::max_active_jobs_per_principal,
+     "jobs that have not ended, of one principal"},
+    {"--max-active-points", &Limits::max_active_points,
+     "grid points of jobs that have not ended, of all principals"},
+    {"--max-active-points-per-principal", &Limits::max_active_points_per_principal,
+     "grid points of jobs that have not ended, of one principal"},
+    {"--max-points-per-job", &Limits::max_points_per_job,
+     "grid points of one job; the engine permits 100,000 at most"},
+    {"--max-samples-per-job", &Limits::max_samples_per_job,
+     "samples or collisions of one job, over all its points"},
+    {"--max-streams", &Limits::max_streams, "open watches and traces of all principals"},
+    {"--max-streams-per-principal", &Limits::max_streams_per_principal,
+     "open watches and traces of one principal"},
+    {"--max-calls-per-principal", &Limits::max_calls_per_principal,
+     "calls in progress of one principal, without watches"},
+    {"--max-call-bytes-per-principal", &Limits::max_call_bytes_per_principal,
+     "bytes of the requests of these calls and of their unread answers"},
+    {"--max-transfer-mib", &Limits::max_transfer_mib,
+     "MiB for connections and for requests that are being received, of all clients. At\n"
+     "least 16 and twice --max-message-bytes, at most 1048576"},
+    {"--max-memory-mib", &Limits::max_memory_mib,
+     "MiB of memory of all points that this server computes at a time, by an upper bound.\n"
+     "By default 80 % of the memory of this machine or of the server's control group"},
+    {"--retain-days", &Limits::retain_days,
+     "days from the end of a job until its results expire, unless it is pinned"},
+    {"--max-store-bytes", &Limits::max_store_bytes,
+     "bytes of the store; shortly before it is full, results expire, the oldest first"},
+    {"--max-store-bytes-per-principal", &Limits::max_store_bytes_per_principal,
+     "bytes of specifications and results of one principal"},
+    {"--max-processor-seconds-per-principal", &Limits::max_processor_seconds_per_principal,
+     "processor time of one principal's jobs in 30 days"},
+    {"--max-seconds-per-job", &Limits::max_seconds_per_job,
+     "processor time of one job, after which it fails and keeps its finished points"},
+};
+
 void AddLimitFlags(CLI::App& app, Limits& limits) {
   BeginGroup(app, "Limits; 0 means no limit");
-  AddLimit(app, "--max-active-jobs", limits.max_active_jobs,
-           "jobs that have not ended, of all principals");
-  AddLimit(app, "--max-active-jobs-per-principal", limits.max_active_jobs_per_principal,
-           "jobs that have not ended, of one principal");
-  AddLimit(app, "--max-active-points", limits.max_active_points,
-           "grid points of jobs that have not ended, of all principals");
-  AddLimit(app, "--max-active-points-per-principal", limits.max_active_points_per_principal,
-           "grid points of jobs that have not ended, of one principal");
-  AddLimit(app, "--max-points-per-job", limits.max_points_per_job,
-           "grid points of one job; the engine permits 100,000 at most");
-  AddLimit(app, "--max-samples-per-job", limits.max_samples_per_job,
-           "samples or collisions of one job, over all its points");
-  AddLimit(app, "--max-streams", limits.max_streams, "open watches and traces of all principals");
-  AddLimit(app, "--max-streams-per-principal", limits.max_streams_per_principal,
-           "open watches and traces of one principal");
-  AddLimit(app, "--max-calls-per-principal", limits.max_calls_per_principal,
-           "calls in progress of one principal, without watches");
-  AddLimit(app, "--max-call-bytes-per-principal", limits.max_call_bytes_per_principal,
-           "bytes of the requests of these calls and of their unread answers");
-  AddLimit(app, "--max-transfer-mib", limits.max_transfer_mib,
-           "MiB for connections and for requests that are being received, of all clients. At\n"
-           "least 16 and twice --max-message-bytes, at most 1048576");
-  AddLimit(app, "--max-memory-mib", limits.max_memory_mib,
-           "MiB of memory of all points that this server computes at a time, by an upper bound.\n"
-           "By default 80 % of the memory of this machine or of the server's control group");
-  AddLimit(app, "--retain-days", limits.retain_days,
-           "days from the end of a job until its results expire, unless it is pinned");
-  AddLimit(app, "--max-store-bytes", limits.max_store_bytes,
-           "bytes of the store; shortly before it is full, results expire, the oldest first");
-  AddLimit(app, "--max-store-bytes-per-principal", limits.max_store_bytes_per_principal,
-           "bytes of specifications and results of one principal");
-  AddLimit(app, "--max-processor-seconds-per-principal", limits.max_processor_seconds_per_principal,
-           "processor time of one principal's jobs in 30 days");
-  AddLimit(app, "--max-seconds-per-job", limits.max_seconds_per_job,
-           "processor time of one job, after which it fails and keeps its finished points");
+  for (const LimitFlag& row : kLimitFlags) {
+    const auto add = [&](auto limit) {
+      AddNumber(app, row.flag, limits.*limit, 0, kMostLimit, row.description);
+    };
+    std::visit(add, row.limit);
+  }
   AddNumber(app, "--max-message-bytes", limits.max_message_bytes, kLeastMessage, kMostMessage,
             "bytes of one request");
 }
@@ -340,7 +337,7 @@ absl::Status CheckTransfer(const Limits& limits) {
   const int64_t mib = limits.max_transfer_mib;
   if (mib == 0 || (mib >= least && mib <= kMostTransferMib)) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat(
-      "--max-transfer-mib: ", mib, " is not permitted; permitted: 0 (no limit), or ", least, " to ",
+      "--max-transfer-mib: ", mib, " is refused; permitted: 0 (no limit), or ", least, " to ",
       kMostTransferMib, " with --max-message-bytes=", limits.max_message_bytes));
 }
 

@@ -74,10 +74,10 @@ TEST(ServerFlags, HelpListsEachOnceWithDashes) {
 TEST(ServerFlags, HelpHasDefaultsRangesAndExitCodesInShortLines) {
   const std::string page = Server({"--help"}).out;
   for (const char* text :
-       {"\n\nLimits; 0 means no limit:\n", "--max-active-jobs N=10000\n", "N=1e+15\n",
-        "--drain-seconds SECONDS=10\n", "{info,warning,error}=info\n", ".local/state/ballpiston\n",
-        "threads that compute; 1 to 1024\n",
-        "Exit codes: 0 stopped (SIGTERM, SIGINT, idle) or done; 1 "}) {
+       {"\n\nLimits; 0 means no limit:\n", "--max-active-jobs N:0 to 1e+15=10000\n",
+        "--drain-seconds SECONDS:0 to 3600=10\n", "{info,warning,error}=info\n",
+        ".local/state/ballpiston\n",
+        "--workers N:1 to 1024=", "Exit codes: 0 stopped (SIGTERM, SIGINT, idle) or done; 1 "}) {
     EXPECT_THAT(page, HasSubstr(text));
   }
   std::istringstream lines(page);
@@ -102,10 +102,10 @@ TEST(ServerFlags, DataDirIsAlsoSpelledWithAnUnderscore) {
 // ---- refusals ----
 
 TEST(ServerFlags, ARefusalNamesFlagValueAndPermittedValues) {
-  const std::string workers = " is not permitted; permitted: whole numbers, 1 to 1024";
-  const std::string seconds = " is not permitted; permitted: 0 to 3600";
-  const std::string limit = " is not permitted; permitted: whole numbers, 0 (no limit) or more";
-  const std::string real_limit = " is not permitted; permitted: 0 (no limit) or more";
+  const std::string workers = " is refused; permitted: whole numbers, 1 to 1024";
+  const std::string seconds = " is refused; permitted: 0 to 3600";
+  const std::string limit = " is refused; permitted: whole numbers, 0 to 1e+15";
+  const std::string real_limit = " is refused; permitted: 0 to 1e+15";
   const struct {
     Words flags;
     std::string message;
@@ -118,7 +118,6 @@ TEST(ServerFlags, ARefusalNamesFlagValueAndPermittedValues) {
       {{"--workers=2", "--workers", "2"}, "--workers: At Most 1"},
       {{"--data-dir=a", "--data_dir=b"}, "--data-dir: At Most 1"},
       {{"--backup", "copy"}, "--check excludes --backup"},
-      {{"--new-token", "ada:read"}, "--new-token excludes --check"},
       {{"--workers=0"}, "--workers: 0" + workers},
       {{"--workers=1025"}, "--workers: 1025" + workers},
       {{"--workers", "-1"}, "--workers: -1" + workers},
@@ -227,7 +226,7 @@ TEST_F(ConfigFile, ARefusalNamesFileLineFlagAndPermittedValues) {
       {"--workers = 3\n", ", line 1: The following argument was not expected: "},
       {"[server]\nworkers = 1\n", ", line 1: --[server]: needs a value"},
       {"workers\n", ", line 1: --workers: needs a value"},
-      {"workers = 1\nworkers = 0\n", ", line 2: --workers: 0 is not permitted; permitted: whole"},
+      {"workers = 1\nworkers = 0\n", ", line 2: --workers: 0 is refused; permitted: whole"},
   };
   for (const auto& row : table) {
     EXPECT_THAT(RefusalOf(row.text, {"--check"}), HasSubstr(Path() + row.message));
