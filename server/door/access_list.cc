@@ -1,12 +1,15 @@
 #include "server/door/access_list.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "absl/strings/ascii.h"
+#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "server/convert/errors.h"
+#include "server/door/sha256.h"
 
 namespace ballpiston::server {
 namespace {
@@ -33,9 +36,11 @@ std::vector<absl::string_view> Words(absl::string_view line) {
   return words;
 }
 
-absl::StatusOr<TokenHash> ParseHash(absl::string_view text) {
-  const auto hash = absl::ConsumePrefix(&text, kHashPrefix) ? ParseTokenHash(text) : std::nullopt;
-  if (hash) return *hash;
+absl::StatusOr<std::string> ParseHash(absl::string_view text) {
+  const bool is_hash = absl::ConsumePrefix(&text, kHashPrefix) && text.size() == 2 * kSha256Bytes &&
+                       std::all_of(text.begin(), text.end(),
+                                   [](unsigned char c) { return absl::ascii_isxdigit(c); });
+  if (is_hash) return absl::HexStringToBytes(text);
   return Wrong("the second word is not the SHA-256 of a token",
                "sha256: and 64 hexadecimal digits");
 }
@@ -79,8 +84,8 @@ std::string FormatAccessEntry(const AccessEntry& entry) {
       entry.expires == absl::InfiniteFuture()
           ? ""
           : absl::FormatTime(" %Y-%m-%dT%H:%M:%SZ", entry.expires, absl::UTCTimeZone());
-  return absl::StrCat("token ", kHashPrefix, HexOf(entry.token), " ", entry.principal.name, " ",
-                      RoleName(entry.principal.role), expiry);
+  return absl::StrCat("token ", kHashPrefix, absl::BytesToHexString(entry.hash), " ",
+                      entry.principal.name, " ", RoleName(entry.principal.role), expiry);
 }
 
 absl::Status CheckPrincipalName(absl::string_view name) {
@@ -125,26 +130,11 @@ absl::StatusOr<AccessList> AccessList::Parse(const NamedFile& file, absl::string
   return list;
 }
 
-bool AccessList::Add(const AccessEntry& entry) {
-  if (Find(entry.token) != nullptr) return false;
-  entries_.push_back(entry);
-  return true;
-}
-
-// Compares all entries: constant time.
-const AccessEntry* AccessList::Find(const TokenHash& token) const {
-  const AccessEntry* found = nullptr;
-  for (const AccessEntry& entry : entries_) {
-    if (entry.token == token) found = &entry;
-  }
-  return found;
-}
-
 absl::StatusOr<Principal> AccessList::OfToken(absl::string_view token, absl::Time now) const {
   if (token.empty() || token.size() > kLongestToken) return CredentialsInvalid();
-  const AccessEntry* const found = Find(HashOf(token));
-  if (found == nullptr) return CredentialsInvalid();
-  if (now < found->expires) return found->principal;
+  const auto found = entries_.find(Sha256(token));
+  if (found == entries_.end()) return CredentialsInvalid();
+  if (now < found->second.expires) return found->second.principal;
   return CredentialsExpired();
 }
 

@@ -16,9 +16,9 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -26,7 +26,6 @@
 #include "absl/time/time.h"
 #include "server/door/principal.h"
 #include "server/door/private_file.h"
-#include "server/door/token_hash.h"
 
 namespace ballpiston::server {
 
@@ -34,8 +33,10 @@ namespace ballpiston::server {
 // look-up.
 inline constexpr size_t kLongestToken = 256;
 
+// The server stores a plain hash of a token. That is enough because a token is 256 random bits
+// (new_token.h): nobody can guess one, and the time of a look-up tells nothing about it.
 struct AccessEntry {
-  TokenHash token;
+  std::string hash;  // SHA-256 of the token
   Principal principal;
   absl::Time expires = absl::InfiniteFuture();
 };
@@ -58,16 +59,14 @@ class AccessList {
   static absl::StatusOr<AccessList> Parse(const NamedFile& file, absl::string_view text);
 
   size_t size() const { return entries_.size(); }
-  bool Add(const AccessEntry& entry);  // false if the list already has the token
+  // False if the list already has the token.
+  bool Add(const AccessEntry& entry) { return entries_.emplace(entry.hash, entry).second; }
 
-  // UNAUTHENTICATED, reason CREDENTIALS_INVALID or CREDENTIALS_EXPIRED. The token's hash is
-  // compared with every entry, so the time does not tell which entry is similar.
+  // UNAUTHENTICATED, reason CREDENTIALS_INVALID or CREDENTIALS_EXPIRED.
   absl::StatusOr<Principal> OfToken(absl::string_view token, absl::Time now) const;
 
  private:
-  const AccessEntry* Find(const TokenHash& token) const;
-
-  std::vector<AccessEntry> entries_;
+  std::map<std::string, AccessEntry> entries_;  // by their hashes
 };
 
 }  // namespace ballpiston::server

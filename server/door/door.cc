@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/time/clock.h"
+#include "server/door/sha256.h"
 #include "server/observability/log.h"
 
 namespace ballpiston::server {
@@ -102,7 +103,7 @@ absl::Status Door::ReadAccessFile() {
 
 void Door::AcceptTokens() {
   AccessList list = access_;
-  if (own_token_ != nullptr) list.Add({HashOf(own_token_->token()), LocalPrincipal()});
+  if (own_token_ != nullptr) list.Add({Sha256(own_token_->token()), LocalPrincipal()});
   authenticator_.Accept(std::move(list));
 }
 

@@ -17,6 +17,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "server/door/access_list.h"
+#include "server/door/sha256.h"
 #include "server/store/folder_sync.h"
 
 namespace ballpiston::server {
@@ -34,22 +35,16 @@ absl::Status Failed(const NamedFile& file, const char* what) {
       absl::StrCat(file.Text(), ": cannot be ", what, ": ", std::strerror(errno)));
 }
 
-// Writes the whole text to disk. False on an error, which is in errno.
-bool WriteAll(int descriptor, absl::string_view text) {
-  while (!text.empty()) {
-    const ssize_t written = write(descriptor, text.data(), text.size());
-    if (written < 0 && errno != EINTR) return false;
-    if (written > 0) text.remove_prefix(static_cast<size_t>(written));
-  }
-  return fsync(descriptor) == 0;
-}
-
 // An incomplete line would make the whole file invalid. So if the line cannot be written completely
 // (the disk is full), its part is removed.
 absl::Status WriteAllOrNothing(const NamedFile& file, int descriptor, const std::string& text) {
   const off_t length = lseek(descriptor, 0, SEEK_END);
   if (length < 0) return Failed(file, "written to");
-  if (WriteAll(descriptor, text)) return absl::OkStatus();
+  errno = ENOSPC;  // what a short write means
+  if (write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
+      fsync(descriptor) == 0) {
+    return absl::OkStatus();
+  }
   absl::Status failed = Failed(file, "written to");
   if (ftruncate(descriptor, length) == 0 && fsync(descriptor) == 0) return failed;
   return absl::PermissionDeniedError(
@@ -109,7 +104,7 @@ absl::StatusOr<std::string> IssueToken(const NamedFile& file, const TokenRequest
                                        absl::Time now) {
   absl::StatusOr<std::string> token = RandomToken();
   if (!token.ok()) return token.status();
-  AccessEntry entry{HashOf(*token), request.principal};
+  AccessEntry entry{Sha256(*token), request.principal};
   if (request.days) entry.expires = now + *request.days * absl::Hours(24);
   const absl::Status appended = Append(file, FormatAccessEntry(entry));
   if (!appended.ok()) return appended;

@@ -39,7 +39,7 @@ void CheckWritten(const std::string& line) {
   if ((*entry)->expires != absl::InfiniteFuture()) return;
   const auto again = server::ParseAccessEntry(server::FormatAccessEntry(**entry));
   Require(again.ok() && again->has_value(), "what is written can be read");
-  Require((*again)->token == (*entry)->token, "a token stays");
+  Require((*again)->hash == (*entry)->hash, "a token stays");
   Require((*again)->principal.name == (*entry)->principal.name, "a principal stays");
   Require((*again)->principal.role == (*entry)->principal.role, "a role stays");
 }

@@ -5,12 +5,13 @@
 #include <utility>
 
 #include "server/door/access_list.h"
+#include "server/door/sha256.h"
 #include "tests/support/files.h"
 
 namespace ballpiston::server {
 
 std::string TokenLine(const std::string& token, const Principal& principal, absl::Time expires) {
-  return FormatAccessEntry({HashOf(token), principal, expires}) + "\n";
+  return FormatAccessEntry({Sha256(token), principal, expires}) + "\n";
 }
 
 std::string LaboratoryTokens() {

@@ -120,7 +120,7 @@ TEST_F(NewToken, OnAFullDiskTheFileStaysUnchanged) {
   {
     const FullDisk disk(before.size() + 20);
     const auto token = IssueToken(file_, *ParseTokenRequest("bob:submit"), kIssueTime);
-    EXPECT_THAT(std::string(token.status().message()), HasSubstr("File too large"));
+    EXPECT_THAT(std::string(token.status().message()), HasSubstr("No space left"));
   }
   EXPECT_EQ(Contents(file_.path), before);
   Issue("bob:submit");
