@@ -30,7 +30,7 @@ constexpr int kOtherThreads = 4'096;
 constexpr int kMostThreads = 1 << 20;  // more than any system permits a process
 constexpr std::chrono::milliseconds kLimitsInterval(1000);
 // The longest delay until health reports that the store fails, and until a revoked watch ends.
-constexpr std::chrono::milliseconds kLookInterval(500);
+constexpr std::chrono::milliseconds kHealthInterval(500);
 
 // Seconds of one core of a lease of the threads. Without a cluster they take all chunks of a point
 // at once, which keeps their lanes full.
@@ -226,7 +226,7 @@ void BallpistonServer::StartHealth() {
   grpc::HealthCheckServiceInterface* const health = grpc_->GetHealthCheckService();
   for (const std::string& name : ServiceNames()) health->SetServingStatus(name, true);
   looking_ =
-      std::make_unique<PeriodicThread>(kLookInterval, [this, health, served = true]() mutable {
+      std::make_unique<PeriodicThread>(kHealthInterval, [this, health, served = true]() mutable {
         streams_.EndRevoked();
         const bool serves = !store_->failing() && !store_->stalled();
         if (std::exchange(served, serves) == serves) return;
