@@ -13,11 +13,10 @@
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/resource_quota.h"
 #include "grpcpp/server_builder.h"
-#include "server/api/reflection_limit.h"
-#include "server/api/take_snapshot.h"
+#include "server/api/reflection_check.h"
+#include "server/api/server_metrics.h"
 #include "server/jobs/job_name.h"
 #include "server/observability/failpoint.h"
-#include "server/observability/metrics.h"
 
 namespace ballpiston::server {
 namespace {
@@ -29,10 +28,9 @@ constexpr int kStreamsPerConnection = 2'048;  // twice what one principal may wa
 // that it does not read (--max-calls-per-principal).
 constexpr int kOtherThreads = 4'096;
 constexpr int kMostThreads = 1 << 20;  // more than any system permits a process
-// The longest delay until health reports that the store fails.
-constexpr std::chrono::milliseconds kHealthInterval(500);
 constexpr std::chrono::milliseconds kLimitsInterval(1000);
-constexpr std::chrono::milliseconds kStalledInterval(1000);
+// The longest delay until health reports that the store fails, and until a revoked watch ends.
+constexpr std::chrono::milliseconds kHealthInterval(500);
 
 // Seconds of one core of a lease of the threads. Without a cluster they take all chunks of a point
 // at once, which keeps their lanes full.
@@ -51,11 +49,10 @@ SchedulerOptions OptionsOfScheduler(const ServerOptions& options) {
   return scheduler;
 }
 
-Health::Services ServicesOfHealth() {
-  const std::string ensemble = v1::EnsembleService::service_full_name();
-  return {.all = {ensemble, v1::AnalyticService::service_full_name(),
-                  v1::TraceService::service_full_name(), v1::ServerService::service_full_name()},
-          .with_store = {ensemble}};
+// The services of the API; the first needs the store.
+std::vector<std::string> ServiceNames() {
+  return {v1::EnsembleService::service_full_name(), v1::AnalyticService::service_full_name(),
+          v1::TraceService::service_full_name(), v1::ServerService::service_full_name()};
 }
 
 void Set(grpc::ServerBuilder& builder, const char* argument, std::chrono::milliseconds time) {
@@ -70,11 +67,6 @@ void SetPings(grpc::ServerBuilder& builder, const ConnectionTiming& timing) {
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS,
                              kMinPingIntervalMs);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
-}
-
-void SetAge(grpc::ServerBuilder& builder, const ConnectionTiming& timing) {
-  Set(builder, GRPC_ARG_MAX_CONNECTION_AGE_MS, timing.certified_age);
-  Set(builder, GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS, timing.certified_age_grace);
 }
 
 // Bounds what clients can use before they are authenticated: streams, memory and threads. Each call
@@ -96,7 +88,14 @@ void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   builder.SetSyncServerOption(Option::NUM_CQS, 1);
   builder.SetSyncServerOption(Option::MIN_POLLERS, 1);
   builder.SetSyncServerOption(Option::MAX_POLLERS, 2);
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);  // no other server shares the port
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kStreamsPerConnection);
+}
+
+absl::Status CannotListen(const ListenAddress& address) {
+  return absl::FailedPreconditionError(absl::StrCat(
+      "--listen=", address.Text(),
+      ": the address is in use, not permitted, or not of this machine; choose another address"));
 }
 
 }  // namespace
@@ -104,26 +103,19 @@ void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
 absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(ServerOptions options) {
   absl::StatusOr<DataDirectory> directory = DataDirectory::Open(options.data_dir);
   if (!directory.ok()) return directory.status();
-  if (options.listen.empty() && options.security.socket_mode.value_or(0600) != 0600) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "--socket-mode=%04o needs --listen=unix:PATH: the default socket is in the data folder, "
-        "which other users cannot enter",
-        *options.security.socket_mode));
-  }
   if (options.listen.empty()) {
     options.listen = absl::StrCat("unix:", directory->FilePath("server.socket"));
   }
   const absl::StatusOr<ListenAddress> address = ParseListenAddress(options.listen);
   if (!address.ok()) return address.status();
-  auto security = ServerSecurity::Create(options.security, *address);
-  if (!security.ok()) return security.status();
+  auto door = Door::Create(options.door, *address);
+  if (!door.ok()) return door.status();
   absl::StatusOr<std::unique_ptr<Store>> store =
       Store::Open(directory->FilePath(kStoreFile), options.store);
   if (!store.ok()) return store.status();
   try {
-    std::unique_ptr<BallpistonServer> server(
-        new BallpistonServer(std::move(options), *std::move(directory), *address,
-                             *std::move(security), *std::move(store)));
+    std::unique_ptr<BallpistonServer> server(new BallpistonServer(
+        std::move(options), *std::move(directory), *address, *std::move(door), *std::move(store)));
     absl::Status status = server->book_.Resume();
     if (status.ok()) server->StartExecutors();
     if (status.ok()) server->StartKeepingLimits();
@@ -138,12 +130,12 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
 }
 
 BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory directory,
-                                   ListenAddress address, std::unique_ptr<ServerSecurity> security,
+                                   ListenAddress address, std::unique_ptr<Door> door,
                                    std::unique_ptr<Store> store)
     : options_(std::move(options)),
       directory_(std::move(directory)),
       address_(std::move(address)),
-      security_(std::move(security)),
+      door_(std::move(door)),
       store_(std::move(store)),
       crashes_(std::make_shared<CrashRecord>(directory_.path())),
       ladder_(*store_, options_.workers, OptionsOfScheduler(options_).memory_limit),
@@ -160,8 +152,8 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
                  : nullptr),
       open_calls_(options_.limits),
       turns_(kTurns, kTurns / 2),
-      streams_(options_.limits, security_->authenticator(), options_.watch.heartbeat, draining_),
-      context_{security_->authenticator(),
+      streams_(options_.limits, door_->authenticator(), options_.watch.heartbeat, draining_),
+      context_{door_->authenticator(),
                options_.limits,
                book_,
                scheduler_,
@@ -193,44 +185,20 @@ void BallpistonServer::StartExecutors() {
 void BallpistonServer::StartKeepingLimits() {
   limits_ =
       std::make_unique<PeriodicThread>(kLimitsInterval, [this] { book_.KeepLimits(absl::Now()); });
-  stalled_ = std::make_unique<PeriodicThread>(kStalledInterval, [this] { streams_.EndRevoked(); });
 }
 
 BallpistonServer::~BallpistonServer() { Shutdown(std::chrono::milliseconds(0)); }
 
 void BallpistonServer::BoundConnections(grpc::ServerBuilder& builder) const {
   SetPings(builder, options_.connections);
-  if (!options_.security.tls_client_ca.empty()) SetAge(builder, options_.connections);
   SetBounds(builder, options_.limits);
   builder.SetMaxReceiveMessageSize(static_cast<int>(options_.limits.max_message_bytes));
 }
 
-SocketListener::Receive BallpistonServer::AddReceiver(grpc::ServerBuilder& builder) {
-  if (security_->socket_access().IsOpenToOthers()) {
-    unix_users_ = std::make_unique<UnixUsers>(builder);
-    return [this](int descriptor, std::optional<uid_t> user) {
-      unix_users_->Receive(descriptor, *user);
-    };
-  }
-  const std::shared_ptr<grpc::experimental::ExternalConnectionAcceptor> connections =
-      builder.experimental().AddExternalConnectionAcceptor(
-          grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD,
-          security_->Credentials());
-  return [connections](int descriptor, std::optional<uid_t>) {
-    grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
-    connection.fd = descriptor;
-    connections->HandleNewConnection(&connection);
-  };
-}
-
 absl::Status BallpistonServer::Listen() {
-  const absl::Status free =
-      address_.socket_path.empty() ? absl::OkStatus() : ClearSocketPath(address_);
+  const bool is_socket = !address_.socket_path.empty();
+  const absl::Status free = is_socket ? CheckSocketIsFree(address_) : absl::OkStatus();
   if (!free.ok()) return free;
-  auto listener =
-      SocketListener::Listen(address_, options_.socket_users, security_->socket_access());
-  if (!listener.ok()) return listener.status();
-  address_ = (*listener)->address();
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
@@ -241,31 +209,36 @@ absl::Status BallpistonServer::Listen() {
   builder.RegisterService(&server_);
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
   interceptors.push_back(calls_.InterceptorFactory());
-  interceptors.push_back(std::make_unique<ReflectionLimit>());
+  interceptors.push_back(std::make_unique<ReflectionCheck>(door_->authenticator()));
   builder.experimental().SetInterceptorCreators(std::move(interceptors));
-  SocketListener::Receive receive = AddReceiver(builder);
+  int port = 0;
+  builder.AddListeningPort(address_.Text(), door_->Credentials(), &port);
   grpc_ = builder.BuildAndStart();
-  if (grpc_ == nullptr) return absl::FailedPreconditionError("gRPC cannot start");
-  listener_ = *std::move(listener);
-  listener_->Start(std::move(receive));
+  if (grpc_ == nullptr || port == 0) return CannotListen(address_);
+  if (!is_socket) address_.port = port;
+  door_->Open(address_);
   StartHealth();
   directory_.TellAddress(address());
   return absl::OkStatus();
 }
 
 void BallpistonServer::StartHealth() {
-  health_ = std::make_unique<Health>(
-      *grpc_->GetHealthCheckService(), ServicesOfHealth(),
-      [this] { return store_->failing() || store_->stalled(); }, kHealthInterval);
+  grpc::HealthCheckServiceInterface* const health = grpc_->GetHealthCheckService();
+  for (const std::string& name : ServiceNames()) health->SetServingStatus(name, true);
+  looking_ =
+      std::make_unique<PeriodicThread>(kHealthInterval, [this, health, served = true]() mutable {
+        streams_.EndRevoked();
+        const bool serves = !store_->failing() && !store_->stalled();
+        if (std::exchange(served, serves) == serves) return;
+        health->SetServingStatus(ServiceNames().front(), serves);
+      });
 }
 
 absl::Status BallpistonServer::StartMetrics() {
   if (options_.metrics_listen.empty()) return absl::OkStatus();
-  for (const std::string& service : ServicesOfHealth().all) calls_.statistics().Expect(service);
+  for (const std::string& service : ServiceNames()) calls_.Expect(service);
   auto endpoint = MetricsEndpoint::Start(options_.metrics_listen, [this] {
-    ServerSnapshot now = TakeSnapshot(context_);
-    now.certificate_expiry = security_->CertificateExpiry();
-    std::vector<prometheus::MetricFamily> metrics = ServerMetrics(now);
+    auto metrics = ServerMetrics(context_, door_->CertificateExpiry());
     for (auto& family : calls_.metrics().Collect()) metrics.push_back(std::move(family));
     return metrics;
   });
@@ -282,16 +255,16 @@ std::chrono::steady_clock::duration BallpistonServer::IdleFor() {
 void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   if (std::exchange(shut_down_, true)) return;
   const auto deadline = std::chrono::system_clock::now() + drain;
-  if (health_ != nullptr) health_->Drain();
+  looking_.reset();
+  if (grpc_ != nullptr) grpc_->GetHealthCheckService()->Shutdown();
   draining_ = true;
   limits_.reset();
-  stalled_.reset();
   book_.Shutdown();
   Failpoint("stop.before_flush");
   store_->Flush().IgnoreError();
   book_.StoreNewWork(absl::Now());
-  if (listener_ != nullptr) listener_->Stop();
   if (grpc_ != nullptr) grpc_->Shutdown(deadline);
+  door_->Close();
   if (metrics_ != nullptr) metrics_->Detach();
   store_->Close();
 }

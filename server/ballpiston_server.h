@@ -9,7 +9,6 @@
 #include <chrono>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 
 #include "absl/status/status.h"
@@ -17,19 +16,15 @@
 #include "grpcpp/server.h"
 #include "grpcpp/server_builder.h"
 #include "server/api/services.h"
+#include "server/door/door.h"
+#include "server/door/listen_address.h"
 #include "server/execution/slurm_executor.h"
 #include "server/execution/thread_executor.h"
-#include "server/listen_address.h"
 #include "server/observability/call_observer.h"
-#include "server/observability/health.h"
 #include "server/observability/metrics_endpoint.h"
 #include "server/periodic_thread.h"
 #include "server/scheduling/model_ladder.h"
 #include "server/scheduling/scheduler.h"
-#include "server/security/peer_user.h"
-#include "server/security/server_security.h"
-#include "server/security/socket_listener.h"
-#include "server/security/unix_users.h"
 #include "server/store/data_directory.h"
 #include "server/store/store.h"
 
@@ -41,21 +36,12 @@ struct ConnectionTiming {
   std::chrono::milliseconds handshake{20'000};      // limit of a TLS handshake
   std::chrono::milliseconds ping_interval{60'000};  // silence before the server sends a ping
   std::chrono::milliseconds ping_timeout{20'000};   // limit for the client's answer
-
-  // The server checks a client's certificate only when the client connects. So with client
-  // certificates, a connection of this age accepts no new calls (the client's gRPC library makes a
-  // new connection). The server closes it when its calls have ended, at the latest after the grace
-  // time.
-  std::chrono::milliseconds certified_age{3'600'000};
-  std::chrono::milliseconds certified_age_grace{300'000};
 };
 
 struct ServerOptions {
   std::string data_dir = DataDirectory::Default();
   std::string listen;  // empty: a Unix socket in data_dir
-  SecurityOptions security;
-  // The users who can connect to a Unix socket with mode 0600.
-  std::set<uid_t> socket_users = OwnUserAndRoot();
+  DoorOptions door;
   int workers = 1;
   std::optional<SlurmOptions> slurm = {};  // empty: no cluster
   ExperimentFactory factory;               // empty: the core's experiment of the chosen model
@@ -78,12 +64,12 @@ class BallpistonServer {
   // With the port that the server uses, also if the options have port 0.
   std::string address() const { return address_.Text(); }
 
-  const ServerSecurity& security() const { return *security_; }
+  const Door& door() const { return *door_; }
 
   // Reads the access file and the certificates again; calls and connections go on. If a file is
   // invalid, the server keeps its previous contents, and the error names the file. One thread at a
   // time.
-  absl::Status Reload() { return security_->Reload(); }
+  absl::Status Reload() { return door_->Reload(); }
   // The address of the metrics; empty if there are none.
   std::string metrics_address() const { return metrics_ ? metrics_->address() : ""; }
 
@@ -96,21 +82,22 @@ class BallpistonServer {
 
  private:
   BallpistonServer(ServerOptions options, DataDirectory directory, ListenAddress address,
-                   std::unique_ptr<ServerSecurity> security, std::unique_ptr<Store> store);
+                   std::unique_ptr<Door> door, std::unique_ptr<Store> store);
 
   void StartExecutors();
   void StartKeepingLimits();
   absl::Status Listen();
   void BoundConnections(grpc::ServerBuilder& builder) const;
-  // Returns the function that receives the connections of the server that is being built.
-  SocketListener::Receive AddReceiver(grpc::ServerBuilder& builder);
   absl::Status StartMetrics();
+  // While the disk rejects writes, the service that needs it is NOT_SERVING, so that clients can
+  // choose another server. The other services and the whole server stay SERVING, because a restart
+  // would not repair the disk.
   void StartHealth();
 
   const ServerOptions options_;
   DataDirectory directory_;  // first: its lock guards all later members
   ListenAddress address_;
-  std::unique_ptr<ServerSecurity> security_;
+  std::unique_ptr<Door> door_;
   std::atomic<bool> draining_ = false;
   bool shut_down_ = false;
   Activity activity_;
@@ -132,12 +119,9 @@ class BallpistonServer {
   AnalyticService analytic_;
   TraceService trace_;
   ServerService server_;
-  std::unique_ptr<UnixUsers> unix_users_;  // null unless a Unix socket is open to other users
   std::unique_ptr<grpc::Server> grpc_;
-  std::unique_ptr<SocketListener> listener_;
   std::unique_ptr<PeriodicThread> limits_;    // calls JobBook::KeepLimits
-  std::unique_ptr<PeriodicThread> stalled_;   // calls Streams::EndRevoked
-  std::unique_ptr<Health> health_;            // after grpc_, which owns the health service
+  std::unique_ptr<PeriodicThread> looking_;   // sets health; calls Streams::EndRevoked
   std::unique_ptr<MetricsEndpoint> metrics_;  // last: it reads all members above
 };
 

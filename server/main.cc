@@ -1,5 +1,6 @@
 // ballpistond: starts the server, waits for a signal or for idleness, stops it.
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <time.h>
 
@@ -9,22 +10,22 @@
 #include <string>
 #include <thread>
 
-#include "absl/random/random.h"
 #include "absl/status/status.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
+#include "grpc/support/log.h"
 #include "server/ballpiston_server.h"
 #include "server/command_line/command_line.h"
+#include "server/door/new_token.h"
 #include "server/fatal_signals.h"
 #include "server/mutex.h"
 #include "server/observability/failpoint.h"
 #include "server/observability/log.h"
 #include "server/scheduling/crash_record.h"
-#include "server/security/new_token.h"
 #include "server/store/backup.h"
 #include "server/store/check_store.h"
 #include "server/store/data_directory.h"
-#include "server/verification/verify_result.h"
 #include "server/version.h"
 
 namespace ballpiston::server {
@@ -32,7 +33,6 @@ namespace {
 
 constexpr int kExitTryAgain = 1;
 constexpr int kExitUsage = 2;
-constexpr int kExitDiffers = 4;
 constexpr int kExitNotPermitted = 6;
 constexpr timespec kLookInterval{0, 200'000'000};  // at idleness
 // The time for stopping the workers and closing the store, after the time to drain.
@@ -50,9 +50,26 @@ sigset_t BlockSignals() {
   return signals;
 }
 
+// Each connection needs a descriptor. When there is none left, gRPC 1.51 stops listening for good.
+void UseAllDescriptors() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+// Of gRPC's messages the log has only this one.
+void LogEndOfListening(gpr_log_func_args* message) {
+  if (!absl::StartsWith(message->message, "Failed accept")) return;
+  LogError(
+      absl::StrCat("the server accepts no more connections; raise its limit of open files and "
+                   "restart it (",
+                   message->message, ")"));
+}
+
 void Reload(BallpistonServer& server) {
   const absl::Status status = server.Reload();
-  if (status.ok()) return LogInfo(absl::StrCat("reloaded: ", server.security().Description()));
+  if (status.ok()) return LogInfo(absl::StrCat("reloaded: ", server.door().Description()));
   LogError(absl::StrCat("not reloaded, the previous contents stay in use: ", status.message()));
 }
 
@@ -105,7 +122,7 @@ void StopInTime(BallpistonServer& server, std::chrono::milliseconds drain) {
 }
 
 int Fail(const absl::Status& status) {
-  LogError(status.message());
+  std::fputs(LogLine(Severity::kError, status.message()).c_str(), stderr);
   if (absl::IsUnavailable(status)) return kExitTryAgain;
   return absl::IsPermissionDenied(status) ? kExitNotPermitted : kExitUsage;
 }
@@ -119,7 +136,7 @@ int Print(const std::string& text) {
 // Prints the token and nothing else to standard output. The log does not hold the token.
 int PrintNewToken(const CommandLine& line) {
   const auto token =
-      IssueToken({"access-file", line.server.security.access_file}, *line.new_token, absl::Now());
+      IssueToken({"access-file", line.server.door.access_file}, *line.new_token, absl::Now());
   return token.ok() ? Print(*token + "\n") : Fail(token.status());
 }
 
@@ -130,36 +147,27 @@ int Report(const absl::StatusOr<StoreSummary>& summary) {
   return summary->sound() ? printed : kExitUsage;
 }
 
-// Prints what was compared; returns the exit code.
-int Verify(const std::string& file) {
-  absl::BitGen random;
-  const auto verified = VerifyResult(file, random);
-  if (verified.ok()) return Print(*verified + "\n");
-  LogError(verified.status().message());
-  return absl::IsDataLoss(verified.status()) ? kExitDiffers : kExitUsage;
-}
-
 std::string StoreIn(const CommandLine& line) {
   return absl::StrCat(line.server.data_dir, "/", kStoreFile);
 }
 
 int Main(int argc, char** argv) {
-  umask(0077);                              // only the server's user can use store and socket
-  signal(SIGXFSZ, SIG_IGN);                 // a file at its size limit is an error like a full disk
-  setenv("GRPC_VERBOSITY", "NONE", false);  // this program reports errors itself, in one line
+  umask(0077);               // only the server's user can use store and socket
+  signal(SIGXFSZ, SIG_IGN);  // a file at its size limit is an error like a full disk
+  if (std::getenv("GRPC_VERBOSITY") == nullptr) gpr_set_log_function(&LogEndOfListening);
   const absl::StatusOr<CommandLine> line = ParseCommandLine(argc, argv);
   if (!line.ok()) return Fail(line.status());
   if (!line->page.empty()) return Print(line->page);
   if (line->new_token) return PrintNewToken(*line);
-  if (!line->verify.empty()) return Verify(line->verify);
   if (line->check) return Report(CheckStore(StoreIn(*line)));
   if (!line->backup.empty()) return Report(BackupStore(StoreIn(*line), line->backup));
-  SetLogOptions(line->log);
+  SetLogLevel(line->log_level);
+  UseAllDescriptors();
   NoteFatalSignals(CrashRecord::NoteDeath);
   const sigset_t signals = BlockSignals();
   const auto server = BallpistonServer::Start(line->server);
   if (!server.ok()) return Fail(server.status());
-  LogInfo((*server)->security().Description());
+  LogInfo((*server)->door().Description());
   if (!(*server)->metrics_address().empty()) {
     LogInfo(absl::StrCat("metrics at http://", (*server)->metrics_address(), "/metrics"));
   }

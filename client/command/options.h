@@ -36,7 +36,7 @@ struct Options {
   v1::ListEnsembleJobsRequest which_jobs;
   int64_t limit = Client::kAllJobs;
   std::optional<int64_t> point;  // absent: all points
-  std::string save, verify_file;
+  std::string save;
 
   std::string server;
   ChannelSecurity security;

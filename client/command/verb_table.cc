@@ -141,13 +141,10 @@ const FlagGroup kServer = {
       "TLS: PEM file of the authority that signed the server's certificate", "BALLPISTON_CA"},
      {"--tls", Switch([](Options& options, bool tls) { options.security.tls = tls; }),
       "TLS: trust the certificate authorities of this system", "BALLPISTON_TLS"},
-     {"--cert", File(Security(&ChannelSecurity::certificate)),
-      "TLS: PEM file of your certificate, if the server requires one", "BALLPISTON_CERT"},
-     {"--key", File(Security(&ChannelSecurity::key)), "TLS: PEM file of the private key of --cert",
-      "BALLPISTON_KEY"},
      {"--token-file",
       File(Security(&ChannelSecurity::token_file)),
-      "TLS: file with your token; other users must not be able to read it",
+      "file with your token, for TLS or a loopback address; other users must not be able to read "
+      "it",
       "BALLPISTON_TOKEN_FILE",
       {"token"}},
      {"",
@@ -253,12 +250,6 @@ const FlagGroup kSave = {
       "write the result to this file, with its specification, seed and versions, and print the "
       "file's path. The ending selects the format: .json has everything, .npz NumPy arrays, .csv "
       "the estimates, or what --format selects"}}};
-
-const FlagGroup kVerify = {
-    "Verification",
-    {{"--verify", File(To(&Options::verify_file)),
-      "compute a random point or chunk of samples of this .json file again, on this machine, and "
-      "compare the bits"}}};
 
 const FlagGroup kProgress = {
     "Progress",
@@ -465,11 +456,10 @@ std::vector<Verb> JobVerbs() {
        &Watch},
       {"result",
        "print a job's result: the points that it has finished so far",
-       "With --verify no JOB is given, and no server is used. The exit code is 0 if what was "
-       "computed again is equal, and 4 if not.",
-       {{Job(kJobs), "ensembleJobs/ID, or the ID alone", Argument::kOptional}},
-       With({&kPoint, &kResultFormat, &kSave, &kVerify, &kServer}, {}),
-       {"result ensembleJobs/ID", "result ID --save result.json", "result --verify result.json",
+       "",
+       {kOneJob},
+       With({&kPoint, &kResultFormat, &kSave, &kServer}, {}),
+       {"result ensembleJobs/ID", "result ID --save result.json",
         "result ID --point 17 --format json >point.json"},
        &Result},
       {"list",

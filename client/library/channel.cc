@@ -44,10 +44,11 @@ grpc::ChannelArguments Arguments() {
 
 absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(absl::string_view address,
                                                            const ChannelSecurity& security) {
-  const absl::StatusOr<std::string> target = GrpcTarget(address);
+  const std::string literal = LiteralAddress(address);
+  const absl::StatusOr<std::string> target = GrpcTarget(security.HasTls() ? address : literal);
   if (!target.ok()) return target.status();
-  if (absl::Status fits = CheckSecurity(security, address); !fits.ok()) return fits;
-  const auto credentials = CredentialsOf(security);
+  if (absl::Status fits = CheckSecurity(security, literal); !fits.ok()) return fits;
+  const auto credentials = CredentialsOf(security, literal);
   if (!credentials.ok()) return credentials.status();
   return grpc::CreateCustomChannel(*target, *credentials, Arguments());
 }

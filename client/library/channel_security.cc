@@ -7,12 +7,16 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <map>
+#include <utility>
 
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/library/own_token.h"
+#include "client/library/server_address.h"
 
 namespace ballpiston::client {
 namespace {
@@ -65,9 +69,9 @@ absl::StatusOr<std::string> ReadFile(const std::string& what, const std::string&
 // Checks that the file looks like PEM. Without this check gRPC would only report that the
 // connection failed.
 absl::StatusOr<std::string> ReadPem(const std::string& what, const std::string& path,
-                                    absl::string_view kind, Secret secret) {
+                                    absl::string_view kind) {
   if (path.empty()) return std::string();
-  absl::StatusOr<std::string> text = ReadFile(what, path, secret);
+  absl::StatusOr<std::string> text = ReadFile(what, path, Secret::kNo);
   if (!text.ok() || absl::StrContains(*text, kind)) return text;
   return CannotUse(what, path, absl::StrCat("holds no \"", kind, "\" (a PEM file is needed)"));
 }
@@ -91,51 +95,73 @@ absl::StatusOr<std::string> Token(const ChannelSecurity& security) {
       " must be one word of 1 to ", kLongestToken, " printable characters"));
 }
 
-absl::StatusOr<grpc::SslCredentialsOptions> ReadTlsFiles(const ChannelSecurity& security) {
-  constexpr char kCertificate[] = "-----BEGIN CERTIFICATE-----";
-  constexpr char kKey[] = "PRIVATE KEY-----";
-  auto ca = ReadPem("authority file", security.ca, kCertificate, Secret::kNo);
-  auto chain = ReadPem("certificate file", security.certificate, kCertificate, Secret::kNo);
-  auto key = ReadPem("key file", security.key, kKey, Secret::kYes);
-  for (const absl::Status& status : {ca.status(), chain.status(), key.status()}) {
-    if (!status.ok()) return status;
+// Adds the token to calls to a loopback address, without encryption. Without a token of the user's
+// choice it is read for each call, because a server that starts again makes another.
+class LoopbackToken : public grpc::MetadataCredentialsPlugin {
+ public:
+  LoopbackToken(std::string address, std::string token)
+      : address_(std::move(address)), token_(std::move(token)) {}
+
+  bool IsBlocking() const override { return false; }
+  grpc::Status GetMetadata(grpc::string_ref, grpc::string_ref, const grpc::AuthContext&,
+                           std::multimap<grpc::string, grpc::string>* metadata) override {
+    const std::string token = token_.empty() ? OwnToken(address_) : token_;
+    if (!token.empty()) metadata->emplace("authorization", absl::StrCat("Bearer ", token));
+    return grpc::Status::OK;
   }
+
+ private:
+  const std::string address_, token_;
+};
+
+// The connection is refused if the address turns out to be of another machine.
+std::shared_ptr<grpc::ChannelCredentials> LoopbackCredentials(const std::string& address,
+                                                              const std::string& token) {
+  return grpc::CompositeChannelCredentials(
+      grpc::experimental::LocalCredentials(LOCAL_TCP),
+      grpc::experimental::MetadataCredentialsFromPlugin(
+          std::make_unique<LoopbackToken>(address, token), GRPC_SECURITY_NONE));
+}
+
+absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> TlsCredentials(
+    const ChannelSecurity& security) {
+  auto ca = ReadPem("authority file", security.ca, "-----BEGIN CERTIFICATE-----");
+  if (!ca.ok()) return ca.status();
   grpc::SslCredentialsOptions options;
   options.pem_root_certs = *std::move(ca);
-  options.pem_cert_chain = *std::move(chain);
-  options.pem_private_key = *std::move(key);
-  return options;
+  return grpc::SslCredentials(options);
 }
 
 }  // namespace
 
 absl::Status CheckSecurity(const ChannelSecurity& security, absl::string_view address) {
-  const bool is_socket = absl::StartsWith(address, "unix:");
-  if (is_socket && (security.HasTls() || security.HasToken())) {
+  if (absl::StartsWith(address, "unix:") && (security.HasTls() || security.HasToken())) {
     return absl::InvalidArgumentError(
-        "a Unix socket uses neither TLS nor a token: the system tells the server who you are");
+        "a Unix socket uses neither TLS nor a token: only the server's own user can open it");
   }
-  if (security.certificate.empty() != security.key.empty()) {
-    return absl::InvalidArgumentError("a certificate and its key are needed together");
-  }
-  if (security.HasToken() && !security.HasTls()) {
+  if (security.HasToken() && !security.HasTls() && !IsLoopback(address)) {
     return absl::InvalidArgumentError(
-        "a token is not sent over an unencrypted connection: use TLS (with the file of the "
+        "a token is not sent to another machine without encryption: use TLS (with the file of the "
         "authority, or with the authorities of this system)");
   }
   return absl::OkStatus();
 }
 
 absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> CredentialsOf(
-    const ChannelSecurity& security) {
-  if (!security.HasTls()) return grpc::InsecureChannelCredentials();
-  const auto files = ReadTlsFiles(security);
-  if (!files.ok()) return files.status();
-  auto channel = grpc::SslCredentials(*files);
-  if (!security.HasToken()) return channel;
-  const absl::StatusOr<std::string> token = Token(security);
-  if (!token.ok()) return token.status();
-  return grpc::CompositeChannelCredentials(channel, grpc::AccessTokenCredentials(*token));
+    const ChannelSecurity& security, const std::string& address) {
+  std::string token;
+  if (security.HasToken()) {
+    absl::StatusOr<std::string> read = Token(security);
+    if (!read.ok()) return read.status();
+    token = *std::move(read);
+  }
+  if (!security.HasTls()) {
+    return IsLoopback(address) ? LoopbackCredentials(address, token)
+                               : grpc::InsecureChannelCredentials();
+  }
+  auto channel = TlsCredentials(security);
+  if (!channel.ok() || token.empty()) return channel;
+  return grpc::CompositeChannelCredentials(*channel, grpc::AccessTokenCredentials(token));
 }
 
 }  // namespace ballpiston::client

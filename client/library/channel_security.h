@@ -1,10 +1,12 @@
 // How the client and the server authenticate each other.
 //
-//   nothing set      no encryption: a Unix socket, a server on this machine, or a tunnel
+//   nothing set      no encryption: a Unix socket, or a server on the loopback
 //   tls              TLS; the system's certificate authorities verify the server
 //   ca               TLS; the certificate authorities in this file verify the server
-//   certificate/key  TLS; the client also shows its own certificate
-//   token            sent with every call; needs TLS
+//   token            sent with every call, over TLS or to a loopback address
+//
+// To a loopback address without a token the client sends that of its own user's server, if one
+// listens there (own_token.h).
 #pragma once
 
 #include <grpcpp/grpcpp.h>
@@ -20,23 +22,21 @@ namespace ballpiston::client {
 
 struct ChannelSecurity {
   bool tls = false;
-  std::string ca = {};           // PEM file
-  std::string certificate = {};  // PEM file; needs `key`
-  std::string key = {};          // PEM file; only its owner may read it
-  std::string token_file = {};   // only its owner may read it; white space around the token is cut
-  std::string token = {};        // instead of a token file
+  std::string ca = {};          // PEM file
+  std::string token_file = {};  // only its owner may read it; white space around the token is cut
+  std::string token = {};       // instead of a token file
 
-  bool HasTls() const { return tls || !ca.empty() || !certificate.empty() || !key.empty(); }
+  bool HasTls() const { return tls || !ca.empty(); }
   bool HasToken() const { return !token_file.empty() || !token.empty(); }
 };
 
 // Checks that the settings fit each other and the address. Reads no file. INVALID_ARGUMENT names
-// the fault, e.g. a token for a connection without encryption.
+// the fault, e.g. a token for another machine without encryption.
 absl::Status CheckSecurity(const ChannelSecurity& security, absl::string_view address);
 
 // Reads the files. INVALID_ARGUMENT names a file that cannot be used, PERMISSION_DENIED a secret
 // file that other users can read. The messages never show the contents of a file.
 absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> CredentialsOf(
-    const ChannelSecurity& security);
+    const ChannelSecurity& security, const std::string& address);
 
 }  // namespace ballpiston::client

@@ -18,15 +18,7 @@ std::string HintWithTls(const ChannelSecurity& security, absl::string_view messa
   }
   if (absl::StrContains(message, "wrong version number") ||
       absl::StrContains(message, "packet length too long")) {
-    return "the server does not use TLS: leave out --ca, --tls, --cert and --key";
-  }
-  if (security.certificate.empty() && (absl::StrContains(message, "Socket closed") ||
-                                       absl::StrContains(message, "certificate required"))) {
-    return "if the server asks for a client certificate: --cert FILE --key FILE";
-  }
-  if (absl::StrContains(message, "Socket closed") || absl::StrContains(message, "alert")) {
-    return absl::StrCat("the server may reject the certificate in ", security.certificate,
-                        ": it has expired, or another authority signed it");
+    return "the server does not use TLS: leave out --ca and --tls";
   }
   return "";
 }
@@ -51,8 +43,8 @@ std::string ConnectionHint(const ChannelSecurity& security, absl::string_view me
 
 std::string SocketHint(absl::string_view message) {
   if (!WasClosed(message) && !absl::StrContains(message, "Permission denied")) return "";
-  return "\n  perhaps the server does not accept your user: its operator can open the socket to "
-         "other users with --socket-mode";
+  return "\n  perhaps it is another user's server: only its own user can open a Unix socket; the "
+         "users of a machine share a server at a loopback address, each with a token";
 }
 
 }  // namespace ballpiston::client

@@ -48,13 +48,6 @@ std::string HomeFolder() {
   return user != nullptr ? user->pw_dir : "";
 }
 
-std::string StateFolder() {
-  if (std::string state = PathVariable("XDG_STATE_HOME"); !state.empty()) {
-    return state + "/ballpiston";
-  }
-  return HomeFolder() + "/.local/state/ballpiston";
-}
-
 // Another user may have made a folder of this name in /tmp: accept only the user's own folder.
 absl::Status CheckPrivate(const std::string& folder) {
   struct stat status;
@@ -157,6 +150,13 @@ class Starter {
 };
 
 }  // namespace
+
+std::string StateFolder() {
+  if (std::string state = PathVariable("XDG_STATE_HOME"); !state.empty()) {
+    return state + "/ballpiston";
+  }
+  return HomeFolder() + "/.local/state/ballpiston";
+}
 
 absl::StatusOr<LocalServer> FindLocalServer() {
   LocalServer server{.folder = StateFolder(), .socket = "", .program = UsualServerProgram()};

@@ -32,6 +32,9 @@ struct LocalServer {
   std::string Address() const { return "unix:" + socket; }
 };
 
+// $XDG_STATE_HOME/ballpiston or ~/.local/state/ballpiston: what this user's servers keep.
+std::string StateFolder();
+
 // Reads the environment: XDG_STATE_HOME, HOME, TMPDIR, BALLPISTON_SERVER_PROGRAM (else
 // `ballpistond` beside this program, else in PATH). Creates the folders. If the state folder's path
 // is too long for a socket, the socket is in a private folder in $TMPDIR or /tmp.

@@ -1,5 +1,8 @@
 #include "client/library/server_address.h"
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
+
 #include <cstdint>
 
 #include "absl/status/status.h"
@@ -49,6 +52,18 @@ absl::StatusOr<std::string> GrpcTarget(absl::string_view address) {
     return BadAddress(address, "the port must be a number from 1 to 65535");
   }
   return absl::StrCat("dns:///", address);
+}
+
+std::string LiteralAddress(absl::string_view address) {
+  if (absl::ConsumePrefix(&address, "localhost:")) return absl::StrCat("127.0.0.1:", address);
+  return std::string(address);
+}
+
+bool IsLoopback(absl::string_view address) {
+  const std::string host(address.substr(0, address.rfind(':')));
+  in_addr v4{};
+  if (inet_pton(AF_INET, host.c_str(), &v4) == 1) return ntohl(v4.s_addr) >> 24 == 127;
+  return host == "[::1]";
 }
 
 }  // namespace ballpiston::client

@@ -1,18 +1,23 @@
 #include "server/api/call.h"
 
 #include <algorithm>
+#include <exception>
+#include <utility>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
 #include "server/api/client_version.h"
 #include "server/convert/errors.h"
 #include "server/jobs/job_name.h"
-#include "server/observability/call_observer.h"
 #include "server/version.h"
 
 namespace ballpiston::server {
 namespace {
 
+// The metadata key of a call's request id, in the request and in the answer.
+constexpr char kRequestId[] = "x-request-id";
 constexpr size_t kMaxRequestId = 64;
 
 // The id is logged, so it may contain only characters that cannot be mistaken for other parts of a
@@ -37,32 +42,48 @@ absl::string_view UserAgentOf(const grpc::ServerContext& context) {
   return {found->second.data(), found->second.size()};
 }
 
-// The hint is for the principal `local`, which has a role below admin only over the loopback.
 absl::Status RoleTooLow(const Principal& caller, Role least) {
-  const char* const hint = caller.name == LocalPrincipal().name
-                               ? "; the server's flag --loopback-role sets the role of local users"
-                               : "";
-  return WithReason(absl::PermissionDeniedError(
-                        absl::StrCat(caller.name, " has the role ", RoleName(caller.role),
-                                     ", this call needs the role ", RoleName(least), hint)),
-                    "ROLE_TOO_LOW", "role", RoleName(least));
+  return WithReason(
+      absl::PermissionDeniedError(absl::StrCat(caller.name, " has the role ", RoleName(caller.role),
+                                               ", this call needs the role ", RoleName(least))),
+      "ROLE_TOO_LOW", "role", RoleName(least));
+}
+
+// Sets the caller.
+absl::Status Admit(const ServiceContext& service, const grpc::ServerContext& context,
+                   const CallRule& rule, Call& call) {
+  absl::Status served = CheckClientVersion(UserAgentOf(context), kVersion);
+  if (!served.ok()) return served;
+  absl::StatusOr<Principal> caller = service.authenticator.Authenticate(context);
+  if (!caller.ok()) return caller.status();
+  call.caller = *std::move(caller);
+  return call.caller.role < rule.least ? RoleTooLow(call.caller, rule.least) : absl::OkStatus();
 }
 
 }  // namespace
 
-absl::StatusOr<Call> AdmitCall(const ServiceContext& service, grpc::ServerContext& context,
-                               const CallRule& rule) {
+grpc::Status ServeCall(ServiceContext& service, grpc::ServerContext& context, const CallRule& rule,
+                       absl::FunctionRef<absl::Status(const Call&)> method) {
+  const auto active = service.activity.Begin();
+  const absl::Time begin = absl::Now();
   Call call = {.method = rule.method, .request_id = RequestIdOf(context), .caller = {}};
   context.AddTrailingMetadata(kRequestId, call.request_id);
-  if (absl::Status served = CheckClientVersion(UserAgentOf(context), kVersion); !served.ok()) {
-    return served;
+  absl::Status status;
+  try {
+    status = Admit(service, context, rule, call);
+    if (status.ok()) status = method(call);
+  } catch (const std::exception& error) {
+    status = WithReason(absl::InternalError(error.what()), "INTERNAL");
   }
-  absl::StatusOr<Principal> caller = service.authenticator.Authenticate(context);
-  if (!caller.ok()) return caller.status();
-  call.caller = *std::move(caller);
-  service.calls.Identify(context, call.caller.name);
-  if (call.caller.role < rule.least) return RoleTooLow(call.caller, rule.least);
-  return call;
+  if (status.ok()) return grpc::Status::OK;
+  service.calls.Failed({.method = call.method,
+                        .principal = call.caller.name,
+                        .request_id = call.request_id,
+                        .code = status.code(),
+                        .reason = ReasonOf(RpcStatus(status)),
+                        .message = std::string(status.message()),
+                        .seconds = absl::ToDoubleSeconds(absl::Now() - begin)});
+  return GrpcStatus(status);
 }
 
 }  // namespace ballpiston::server

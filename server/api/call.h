@@ -1,12 +1,13 @@
-// One call: its caller, and its request id, which is also in the log.
+// One call: its caller, its request id, which is also in the log, and the frame around its method.
 #pragma once
 
 #include <string>
 
-#include "absl/status/statusor.h"
+#include "absl/functional/function_ref.h"
+#include "absl/status/status.h"
 #include "grpcpp/server_context.h"
 #include "server/api/service_context.h"
-#include "server/security/principal.h"
+#include "server/door/principal.h"
 
 namespace ballpiston::server {
 
@@ -23,11 +24,14 @@ struct CallRule {
   bool writes = false;  // waits for the disk
 };
 
-// Authenticates and authorises a call. Always sends the request id back in the trailing metadata.
+// Authenticates and authorises a call, runs its method, and reports a failure to the log. Always
+// sends the request id back in the trailing metadata. An exception (out of memory) ends the call,
+// not the server.
 //   FAILED_PRECONDITION  CLIENT_VERSION_NOT_SERVED
-//   UNAUTHENTICATED    CREDENTIALS_MISSING, CREDENTIALS_INVALID, CREDENTIALS_EXPIRED
-//   PERMISSION_DENIED  ROLE_TOO_LOW
-absl::StatusOr<Call> AdmitCall(const ServiceContext& service, grpc::ServerContext& context,
-                               const CallRule& rule);
+//   UNAUTHENTICATED      CREDENTIALS_MISSING, CREDENTIALS_INVALID, CREDENTIALS_EXPIRED
+//   PERMISSION_DENIED    ROLE_TOO_LOW
+//   INTERNAL             an exception
+grpc::Status ServeCall(ServiceContext& service, grpc::ServerContext& context, const CallRule& rule,
+                       absl::FunctionRef<absl::Status(const Call&)> method);
 
 }  // namespace ballpiston::server

@@ -22,7 +22,7 @@ void LogAcceptance(const Call& call, const v1::EnsembleJob& job) {
        {"job", job.name()},
        {"principal", call.caller.name},
        {"request_id", call.request_id},
-       {"points", static_cast<double>(job.progress().points())}});
+       {"points", job.progress().points()}});
 }
 
 }  // namespace

@@ -1,18 +1,27 @@
+#include <sys/stat.h>
+
+#include <algorithm>
 #include <map>
 #include <string>
 
+#include "absl/time/clock.h"
 #include "server/api/methods.h"
-#include "server/api/take_snapshot.h"
+#include "server/api/server_status.h"
 #include "server/convert/plan.h"
+#include "server/convert/spec.h"
 #include "server/jobs/job_message.h"
 #include "server/store/job_table.h"
+#include "server/version.h"
 
 namespace ballpiston::server {
 namespace {
 
-v1::ServerStatus::State StateOf(const ServerSnapshot& now) {
-  if (now.draining) return v1::ServerStatus::DRAINING;
-  return now.store_failing ? v1::ServerStatus::STORE_FAILING : v1::ServerStatus::SERVING;
+bool StoreFails(const Store& store) { return store.failing() || store.stalled(); }
+
+// 0 if there is no such file.
+double FileBytes(const std::string& path) {
+  struct stat found {};
+  return stat(path.c_str(), &found) == 0 ? static_cast<double>(found.st_size) : 0;
 }
 
 v1::SlurmStatus SlurmMessage(const SlurmStatus& slurm) {
@@ -28,24 +37,34 @@ v1::SlurmStatus SlurmMessage(const SlurmStatus& slurm) {
   return message;
 }
 
-v1::ServerStatus StatusMessage(const ServerSnapshot& now) {
-  v1::ServerStatus status;
-  status.set_state(StateOf(now));
-  status.set_version(now.version);
-  status.set_engine_version(now.engine_version);
-  SetTime(now.start_time, status.mutable_start_time());
-  status.set_workers(now.workers);
-  status.set_busy_workers(now.busy_workers);
-  status.set_queued_jobs(static_cast<double>(now.queued_jobs));
-  status.set_running_jobs(static_cast<double>(now.running_jobs + now.cancelling_jobs));
-  status.set_streams(static_cast<double>(now.streams));
-  status.set_store_bytes(static_cast<double>(now.store_bytes));
-  status.set_blocks_computed(now.blocks_computed);
-  status.set_samples_computed(now.samples_computed);
-  status.set_expiring_jobs(static_cast<double>(now.expiring_jobs));
-  status.set_processor_seconds(now.processor_seconds);
-  if (now.slurm) *status.mutable_slurm() = SlurmMessage(*now.slurm);
-  return status;
+void AddWork(const ServiceContext& service, v1::ServerStatus& status) {
+  const ThreadCounts threads = service.threads.Counts();
+  const WorkCounts work = service.scheduler.Counts();
+  status.set_workers(threads.workers);
+  status.set_busy_workers(threads.busy);
+  status.set_blocks_computed(threads.blocks);
+  status.set_samples_computed(work.samples);
+  status.set_processor_seconds(work.processor_seconds);
+  if (service.slurm != nullptr) *status.mutable_slurm() = SlurmMessage(service.slurm->Status());
+}
+
+// And the jobs of all together.
+void AddPrincipals(const ServiceContext& service, v1::ServerStatus& status) {
+  std::map<std::string, ActiveJobs> active = service.book.ActiveByPrincipal();
+  std::map<std::string, int64_t> streams = service.streams.ByPrincipal();
+  for (const auto& [name, usage] : service.book.usage().All(absl::Now())) {
+    const ActiveJobs& jobs = active[name];
+    v1::PrincipalStatus& principal = *status.add_principals();
+    principal.set_principal(name);
+    principal.set_queued_jobs(static_cast<double>(jobs.queued));
+    principal.set_running_jobs(static_cast<double>(jobs.running + jobs.cancelling));
+    principal.set_streams(static_cast<double>(streams[name]));
+    principal.set_stored_jobs(static_cast<double>(usage.jobs));
+    principal.set_stored_bytes(static_cast<double>(usage.bytes));
+    principal.set_processor_seconds(usage.seconds);
+    status.set_queued_jobs(status.queued_jobs() + principal.queued_jobs());
+    status.set_running_jobs(status.running_jobs() + principal.running_jobs());
+  }
 }
 
 v1::ServerLimits LimitsMessage(const Limits& limits) {
@@ -86,34 +105,41 @@ double StoredJobs(Store& store) {
   return jobs;
 }
 
-void AddPrincipals(const ServerSnapshot& now, const std::map<std::string, int64_t>& streams,
-                   const Principal& caller, v1::ServerStatus& status) {
-  for (const PrincipalSnapshot& of_one : now.principals) {
-    if (!caller.MaySee(of_one.principal)) continue;
-    v1::PrincipalStatus& principal = *status.add_principals();
-    principal.set_principal(of_one.principal);
-    principal.set_queued_jobs(static_cast<double>(of_one.queued_jobs));
-    principal.set_running_jobs(static_cast<double>(of_one.running_jobs));
-    const auto own = streams.find(of_one.principal);
-    principal.set_streams(own == streams.end() ? 0 : static_cast<double>(own->second));
-    principal.set_stored_jobs(static_cast<double>(of_one.stored_jobs));
-    principal.set_stored_bytes(static_cast<double>(of_one.stored_bytes));
-    principal.set_processor_seconds(of_one.processor_seconds);
-  }
+void RemoveHidden(const Principal& caller, v1::ServerStatus& status) {
+  auto& principals = *status.mutable_principals();
+  const auto hidden = std::remove_if(
+      principals.begin(), principals.end(),
+      [&](const v1::PrincipalStatus& one) { return !caller.MaySee(one.principal()); });
+  principals.erase(hidden, principals.end());
 }
 
 }  // namespace
 
+v1::ServerStatus StatusOf(const ServiceContext& service) {
+  v1::ServerStatus status;
+  status.set_state(service.draining            ? v1::ServerStatus::DRAINING
+                   : StoreFails(service.store) ? v1::ServerStatus::STORE_FAILING
+                                               : v1::ServerStatus::SERVING);
+  status.set_version(kVersion);
+  status.set_engine_version(EngineVersion());
+  SetTime(service.start_time, status.mutable_start_time());
+  status.set_streams(static_cast<double>(service.streams.size()));
+  status.set_store_bytes(FileBytes(service.store_path) + FileBytes(service.store_path + "-wal"));
+  status.set_expiring_jobs(static_cast<double>(service.book.CountExpiring(absl::Now())));
+  AddWork(service, status);
+  AddPrincipals(service, status);
+  return status;
+}
+
 absl::StatusOr<v1::ServerStatus> GetServerStatus(ServiceContext& service, const Call& call,
                                                  const v1::GetServerStatusRequest&) {
-  const ServerSnapshot now = TakeSnapshot(service);
-  v1::ServerStatus status = StatusMessage(now);
+  v1::ServerStatus status = StatusOf(service);
+  RemoveHidden(call.caller, status);
   status.set_stored_jobs(StoredJobs(service.store));
   *status.mutable_rates() = RatesMessage(service.ladder.machine().rates);
   *status.mutable_limits() = LimitsMessage(service.limits);
   status.set_principal(call.caller.name);
   status.set_role(RoleName(call.caller.role));
-  AddPrincipals(now, service.streams.ByPrincipal(), call.caller, status);
   return status;
 }
 

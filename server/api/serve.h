@@ -1,10 +1,8 @@
-// The frames of every unary call and of every stream: admit the caller, run the method, answer.
+// The frames of every unary call and of every stream, within that of every call (call.h).
 // gRPC gives each call a thread of its own.
 #pragma once
 
 #include <cstdint>
-#include <exception>
-#include <memory>
 #include <optional>
 
 #include "absl/functional/function_ref.h"
@@ -17,15 +15,6 @@
 
 namespace ballpiston::server {
 
-// An exception (out of memory) ends the call, not the server.
-inline absl::Status WithoutExceptions(absl::FunctionRef<absl::Status()> run) {
-  try {
-    return run();
-  } catch (const std::exception& error) {
-    return WithReason(absl::InternalError(error.what()), "INTERNAL");
-  }
-}
-
 template <typename Request, typename Response>
 using UnaryMethod = absl::StatusOr<Response> (*)(ServiceContext&, const Call&, const Request&);
 
@@ -37,27 +26,23 @@ template <typename Request, typename Response>
 grpc::Status ServeUnary(ServiceContext& service, grpc::ServerContext& context, const CallRule& rule,
                         const Request& request, Response& response,
                         UnaryMethod<Request, Response> method) {
-  const auto run = [&]() -> absl::Status {
-    const std::shared_ptr<void> active = service.activity.Begin();
-    const absl::StatusOr<Call> call = AdmitCall(service, context, rule);
-    if (!call.ok()) return call.status();
+  return ServeCall(service, context, rule, [&](const Call& call) -> absl::Status {
     if (rule.writes && service.store.stalled()) {
       return StoreFailure(absl::UnavailableError("store: the disk does not answer"));
     }
     const auto open =
-        service.open_calls.Begin(call->caller.name, static_cast<int64_t>(request.ByteSizeLong()));
+        service.open_calls.Begin(call.caller.name, static_cast<int64_t>(request.ByteSizeLong()));
     if (!open.ok()) return open.status();
     service.calls.Keep(context, *open);
     std::optional<Turns::Turn> turn;
-    if (!rule.writes) turn.emplace(service.turns, call->caller.name);
+    if (!rule.writes) turn.emplace(service.turns, call.caller.name);
     if (context.IsCancelled()) return absl::CancelledError("the client is gone");
-    absl::StatusOr<Response> answer = method(service, *call, request);
+    absl::StatusOr<Response> answer = method(service, call, request);
     if (!answer.ok()) return answer.status();
     response = *std::move(answer);
     (*open)->AddBytes(static_cast<int64_t>(response.ByteSizeLong()));
     return absl::OkStatus();
-  };
-  return GrpcStatus(WithoutExceptions(run));
+  });
 }
 
 // `run` sends the messages; its status ends the stream.
@@ -65,15 +50,11 @@ grpc::Status ServeUnary(ServiceContext& service, grpc::ServerContext& context, c
 inline grpc::Status ServeStream(ServiceContext& service, grpc::ServerContext& context,
                                 const CallRule& rule,
                                 absl::FunctionRef<absl::Status(Stream& stream)> run) {
-  const auto admit_and_run = [&]() -> absl::Status {
-    const std::shared_ptr<void> active = service.activity.Begin();
-    const absl::StatusOr<Call> call = AdmitCall(service, context, rule);
-    if (!call.ok()) return call.status();
-    Stream stream(service.streams, context, call->caller);
-    if (absl::Status added = service.streams.Add(stream); !added.ok()) return added;
-    return run(stream);
-  };
-  return GrpcStatus(WithoutExceptions(admit_and_run));
+  return ServeCall(service, context, rule, [&](const Call& call) -> absl::Status {
+    Stream stream(service.streams, context, call.caller);
+    const absl::Status added = service.streams.Add(stream);
+    return added.ok() ? run(stream) : added;
+  });
 }
 
 }  // namespace ballpiston::server

@@ -9,6 +9,7 @@
 #include "server/api/streams.h"
 #include "server/api/turns.h"
 #include "server/api/watch.h"
+#include "server/door/authenticator.h"
 #include "server/execution/slurm_executor.h"
 #include "server/execution/thread_executor.h"
 #include "server/jobs/job_book.h"
@@ -17,7 +18,6 @@
 #include "server/observability/call_observer.h"
 #include "server/scheduling/model_ladder.h"
 #include "server/scheduling/scheduler.h"
-#include "server/security/authenticator.h"
 #include "server/store/store.h"
 
 namespace ballpiston::server {

@@ -11,9 +11,9 @@
 
 #include "absl/status/status.h"
 #include "grpcpp/server_context.h"
+#include "server/door/authenticator.h"
 #include "server/limits.h"
 #include "server/mutex.h"
-#include "server/security/authenticator.h"
 
 namespace ballpiston::server {
 
@@ -59,8 +59,8 @@ class Streams {
   // RESOURCE_EXHAUSTED, TOO_MANY_STREAMS. Otherwise the stream is counted until its destructor.
   absl::Status Add(Stream& stream);
 
-  // Ends the streams whose readers stall and whose credentials are no longer valid. Call about once
-  // a second.
+  // Ends the streams whose readers stall and whose credentials are no longer valid. Call about
+  // twice a second.
   void EndRevoked();
 
   size_t size() const { return size_; }

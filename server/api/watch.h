@@ -27,8 +27,8 @@
 
 #include "absl/status/status.h"
 #include "ballpiston/v1/ensemble.pb.h"
+#include "server/door/principal.h"
 #include "server/jobs/job_book.h"
-#include "server/security/principal.h"
 
 namespace ballpiston::server {
 

@@ -2,28 +2,41 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
-#include <string>
+#include <fstream>
 #include <thread>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
-#include "server/command_line/flag_file.h"
-#include "server/command_line/flag_values.h"
-#include "server/command_line/help_page.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_split.h"
 #include "server/machine_memory.h"
 #include "server/version.h"
 
 namespace ballpiston::server {
 namespace {
 
-constexpr int64_t kMostWorkers = 1024;
+constexpr char kDescription[] =
+    "The server of ballpiston: computes ensembles of rarely interacting billiards.";
+constexpr char kExitCodes[] =
+    "Exit codes: 0 stopped (SIGTERM, SIGINT, idle) or done; 1 the disk of the store is full or\n"
+    "fails, retry later; 2 a wrong flag, an unsafe combination of flags, an address or folder in\n"
+    "use, or a store that is not sound; 6 a data folder that is not writable, or that other users\n"
+    "can enter and that is not the server's own.";
+constexpr int kHelpIndentation = 8;
+
+constexpr int kMostWorkers = 1024;
 constexpr double kMostSeconds = 1e6;
+constexpr double kDaySeconds = 86400;
+constexpr double kMostLimit = 1e15;
 constexpr int64_t kLeastMessage = 1024;
 constexpr int64_t kMostMessage = int64_t{256} << 20;
 constexpr int64_t kLeastTransferMib = 16;
@@ -31,113 +44,144 @@ constexpr int64_t kMostTransferMib = int64_t{1} << 20;
 constexpr int64_t kMostSlurmMinutes = 60 * 24 * 365;
 constexpr int64_t kMostSlurmTasks = 1'000'000;
 
+// What the flags set beside the options of the server.
+struct Words {
+  std::string config;
+  std::string executor = "threads";
+  std::string log_level = "info";
+  std::string new_token;
+  SlurmOptions slurm;
+};
+
+// ---- values ----
+
+std::string Text(double number) { return absl::StrFormat("%.15g", number); }
+
+// Accepts a number and rewrites it in decimal: CLI11 takes 010 for 8 and lets nan pass.
+template <typename Number>
+CLI::Validator Between(double least, double most) {
+  constexpr bool kIsWhole = std::is_integral_v<Number>;
+  const std::string range = absl::StrCat(Text(least), " to ", Text(most));
+  const auto accept = [=](std::string& text) -> std::string {
+    double number = 0;
+    const bool is_permitted = absl::SimpleAtod(text, &number) && number >= least &&
+                              number <= most && (!kIsWhole || number == std::floor(number));
+    if (is_permitted) text = absl::StrFormat("%.17g", number);
+    const char* const kind = kIsWhole ? "whole numbers, " : "";
+    return is_permitted ? "" : absl::StrCat(text, " is refused; permitted: ", kind, range);
+  };
+  return CLI::Validator(accept, range);
+}
+
+template <typename Number>
+void AddNumber(CLI::App& app, const std::string& flag, Number& value, double least, double most,
+               const std::string& description) {
+  app.add_option(flag, value, description)
+      ->transform(Between<Number>(least, most))
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+void AddSeconds(CLI::App& app, const std::string& flag, std::chrono::milliseconds& time,
+                double least, double most, const std::string& description) {
+  const auto set = [&time](double seconds) {
+    time = std::chrono::milliseconds(static_cast<int64_t>(std::ceil(1000 * seconds)));
+  };
+  app.add_option_function<double>(flag, set, description)
+      ->transform(Between<double>(least, most))
+      ->type_name("SECONDS")
+      ->default_str(Text(std::chrono::duration<double>(time).count()));
+}
+
+// An unset variable of a shell gives an empty text.
+CLI::Option* AddText(CLI::App& app, const std::string& flag, std::string& text,
+                     const std::string& type, const std::string& description) {
+  const auto refuse_empty = [](const std::string& given) {
+    return std::string(given.empty() ? "needs a value" : "");
+  };
+  return app.add_option(flag, text, description)->check(refuse_empty)->type_name(type);
+}
+
+void AddWord(CLI::App& app, const std::string& flag, std::string& word,
+             const std::vector<std::string>& words, const std::string& description) {
+  app.add_option(flag, word, description)
+      ->check(CLI::IsMember(words))
+      ->type_name("NAME")
+      ->capture_default_str();
+}
+
 // ---- the flags, by their groups in --help ----
 
 void BeginGroup(CLI::App& app, const std::string& name) { app.option_defaults()->group(name); }
 
-void AddServerFlags(CLI::App& app, CommandLine& line) {
+void AddServerFlags(CLI::App& app, CommandLine& line, Words& words) {
   BeginGroup(app, "Server");
-  app.add_option("--listen", line.server.listen,
-                 "address of the API: unix:PATH or HOST:PORT (port 0: any free port). A host that "
-                 "other machines can reach needs --tls-certificate, --tls-key and --access-file. "
-                 "Default: the Unix socket server.socket in the data folder")
-      ->type_name("ADDRESS");
-  app.add_option("--data-dir,--data_dir", line.server.data_dir,
-                 "folder of jobs and results. It is created if it does not exist; one server at a "
-                 "time can use it")
-      ->type_name("DIR")
+  AddText(app, "--listen", line.server.listen, "ADDRESS",
+          "address of the API: unix:PATH or HOST:PORT (port 0: any free port). A host that other\n"
+          "machines can reach needs --tls-certificate, --tls-key and --access-file.\n"
+          "Default: the Unix socket server.socket in the data folder");
+  AddText(app, "--data-dir,--data_dir", line.server.data_dir, "DIR",
+          "folder of jobs and results, created if it does not exist; one server at a time uses it")
       ->capture_default_str();
-  AddInteger(app, "workers", line.server.workers, Between(int64_t{1}, kMostWorkers),
-             "threads that compute");
-  AddSeconds(app, "watch-heartbeat-seconds", line.server.watch.heartbeat, Between(0.01, 3600.0),
+  AddNumber(app, "--workers", line.server.workers, 1, kMostWorkers, "threads that compute");
+  AddSeconds(app, "--watch-heartbeat-seconds", line.server.watch.heartbeat, 0.01, 3600,
              "a watch with nothing new to send sends a heartbeat after this time");
-  AddSeconds(app, "idle-exit-seconds", line.idle_exit, Between(0.0, kMostSeconds, " (never)"),
-             "the server stops when it has had no active job and no call for this time");
-  AddSeconds(app, "drain-seconds", line.drain, Between(0.0, 3600.0),
+  AddSeconds(app, "--idle-exit-seconds", line.idle_exit, 0, kMostSeconds,
+             "stop after this time without active jobs and calls (0: never)");
+  AddSeconds(app, "--drain-seconds", line.drain, 0, 3600,
              "time for calls in progress to end after SIGTERM or SIGINT");
-  AddFlagFile(app);
+  app.add_option("--config", words.config,
+                 "file of flags, one a line: FLAG = VALUE, without the dashes. A flag of the\n"
+                 "command line takes precedence")
+      ->check(CLI::ExistingFile)
+      ->option_text("FILE");
 }
 
-void AddLocalAccessFlags(CLI::App& app, SecurityOptions& security) {
-  BeginGroup(app, "Users of this machine");
-  AddChoice(app, "socket-mode", security.socket_mode,
-            {{"0600", mode_t{0600}}, {"0660", mode_t{0660}}, {"0666", mode_t{0666}}},
-            "mode of the Unix socket in --listen. 0600: only the server's user and root connect, "
-            "as principal local. 0660: also the members of --socket-group. 0666: every user. With "
-            "0660 and 0666 each user is a principal of that name, with the role submit; if an "
-            "--access-file has lines user UNIX_USER PRINCIPAL ROLE [EXPIRES], only its users are "
-            "accepted. The server's user and root are administrators");
-  app.add_option("--socket-group", security.socket_group,
-                 "group of the Unix socket, by name or number, with --socket-mode=0660. The "
-                 "server's user must belong to it")
-      ->type_name("GROUP");
-  AddChoice(
-      app, "loopback-role", security.loopback_role,
-      {{RoleName(kLoopbackRole), kLoopbackRole}, {"read", Role::kRead}, {"admin", Role::kAdmin}},
-      "role of every user of this machine at a loopback HOST:PORT without --access-file: "
-      "read, submit or admin. All of them are the principal local");
-}
-
-void AddSecurityFlags(CLI::App& app, SecurityOptions& security) {
+void AddDoorFlags(CLI::App& app, DoorOptions& door) {
   BeginGroup(app, "Security; SIGHUP makes the server read these files again");
-  app.add_option("--tls-certificate", security.tls_certificate,
-                 "PEM file: the server's certificate, then the intermediate certificates")
-      ->type_name("FILE");
-  app.add_option("--tls-key", security.tls_key,
-                 "PEM file: the certificate's private key, which other users cannot read")
-      ->type_name("FILE");
-  app.add_option("--tls-client-ca", security.tls_client_ca,
-                 "PEM file: the authorities that sign clients' certificates. With it, every client "
-                 "needs a certificate")
-      ->type_name("FILE");
-  app.add_option(
-         "--access-file", security.access_file,
-         "credentials of the clients; needs TLS, or a Unix socket with --socket-mode (see there). "
-         "One line for each credential: token sha256:HEX PRINCIPAL "
-         "ROLE [EXPIRES], or certificate COMMON_NAME PRINCIPAL ROLE [EXPIRES]; ROLE is "
-         "read, submit or admin")
-      ->type_name("FILE");
+  AddText(app, "--tls-certificate", door.tls_certificate, "FILE",
+          "PEM file: the server's certificate, then the intermediate certificates");
+  AddText(app, "--tls-key", door.tls_key, "FILE",
+          "PEM file: the certificate's private key, which other users cannot read");
+  AddText(app, "--access-file", door.access_file, "FILE",
+          "tokens of the clients, one line each: token sha256:HEX PRINCIPAL ROLE [EXPIRES]; ROLE\n"
+          "is read, submit or admin. On the loopback this server's user needs none");
 }
 
-void AddSlurmFlags(CLI::App& app, bool& with_slurm, SlurmOptions& slurm) {
+void AddSlurmFlags(CLI::App& app, Words& words) {
+  SlurmOptions& slurm = words.slurm;
   BeginGroup(app, "Slurm, with --executor=slurm");
-  AddChoice(
-      app, "executor", with_slurm, {{"threads", false}, {"slurm", true}},
-      "threads: only this server's threads compute; slurm: long work also goes to a Slurm cluster");
-  app.add_option("--slurm-shared-folder", slurm.shared_folder,
-                 "folder that the server and all nodes of the cluster see under this absolute "
-                 "path. It belongs to the server's user; other users cannot write it")
-      ->type_name("DIR");
-  app.add_option("--slurm-partition", slurm.partition, "partition; default: the cluster's default")
-      ->type_name("NAME");
-  app.add_option("--slurm-account", slurm.account, "account; default: the user's default")
-      ->type_name("NAME");
-  app.add_option("--slurm-cluster", slurm.cluster,
-                 "cluster, where a site has several; needs slurmdbd")
-      ->type_name("NAME");
-  AddInteger(app, "slurm-time-limit-minutes", slurm.time_limit_minutes,
-             Between(int64_t{1}, kMostSlurmMinutes), "time limit of a task");
+  AddWord(app, "--executor", words.executor, {"threads", "slurm"},
+          "threads: only this server's threads compute; slurm: long work also goes to a cluster");
+  AddText(app, "--slurm-shared-folder", slurm.shared_folder, "DIR",
+          "folder that the server and all nodes of the cluster see under this absolute path. It\n"
+          "belongs to the server's user; other users cannot write it");
+  AddText(app, "--slurm-partition", slurm.partition, "NAME",
+          "partition; default: the cluster's default");
+  AddText(app, "--slurm-account", slurm.account, "NAME", "account; default: the user's default");
+  AddText(app, "--slurm-cluster", slurm.cluster, "NAME",
+          "cluster, where a site has several; needs slurmdbd");
+  AddNumber(app, "--slurm-time-limit-minutes", slurm.time_limit_minutes, 1, kMostSlurmMinutes,
+            "time limit of a task");
   app.add_option("--slurm-option", slurm.sbatch_options,
-                 "one further word for sbatch, such as --slurm-option=--mem-per-cpu=500M; may be "
+                 "one further word for sbatch, such as --slurm-option=--mem-per-cpu=500M; may be\n"
                  "given several times")
       ->type_name("WORD")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->expected(1);
-  AddInteger(app, "slurm-max-tasks", slurm.max_tasks, Between(int64_t{1}, kMostSlurmTasks),
-             "tasks that wait or run at the same time; a task uses one core");
-  AddInteger(app, "slurm-max-array-size", slurm.max_array_size,
-             Between(int64_t{1}, kMostSlurmTasks),
-             "tasks of one job array; less than the cluster's MaxArraySize");
-  AddSeconds(app, "slurm-task-seconds", slurm.task_length, Between(1.0, 86400.0),
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  AddNumber(app, "--slurm-max-tasks", slurm.max_tasks, 1, kMostSlurmTasks,
+            "tasks that wait or run at the same time; a task uses one core");
+  AddNumber(app, "--slurm-max-array-size", slurm.max_array_size, 1, kMostSlurmTasks,
+            "tasks of one job array; less than the cluster's MaxArraySize");
+  AddSeconds(app, "--slurm-task-seconds", slurm.task_length, 1, kDaySeconds,
              "computing time of a task, about; at most half of the time limit is used");
-  AddSeconds(app, "slurm-least-seconds", slurm.least_work, Between(0.0, 86400.0),
-             "a job that is expected to take less of one core is computed by this server alone");
-  AddSeconds(app, "slurm-query-seconds", slurm.query_interval, Between(1.0, 3600.0),
+  AddSeconds(app, "--slurm-least-seconds", slurm.least_work, 0, kDaySeconds,
+             "a job that takes less of one core is computed by this server alone");
+  AddSeconds(app, "--slurm-query-seconds", slurm.query_interval, 1, 3600,
              "time between two queries of Slurm's queue");
-  app.add_option("--slurm-worker", slurm.worker,
-                 "the program ballpiston-worker, which the server copies into the shared folder; "
-                 "default: the one installed with the server")
-      ->type_name("FILE");
+  AddText(app, "--slurm-worker", slurm.worker, "FILE",
+          "the program ballpiston-worker, which the server copies into the shared folder;\n"
+          "default: the one installed with the server");
 }
 
 struct LimitFlag {
@@ -146,169 +190,142 @@ struct LimitFlag {
   const char* description;
 };
 
-// 0 means no limit.
 const LimitFlag kLimitFlags[] = {
-    {"max-active-jobs", &Limits::max_active_jobs, "jobs that have not ended, of all principals"},
-    {"max-active-jobs-per-principal", &Limits::max_active_jobs_per_principal,
+    {"--max-active-jobs", &Limits::max_active_jobs, "jobs that have not ended, of all principals"},
+    {"--max-active-jobs-per-principal", &Limits::max_active_jobs_per_principal,
      "jobs that have not ended, of one principal"},
-    {"max-active-points", &Limits::max_active_points,
+    {"--max-active-points", &Limits::max_active_points,
      "grid points of jobs that have not ended, of all principals"},
-    {"max-active-points-per-principal", &Limits::max_active_points_per_principal,
+    {"--max-active-points-per-principal", &Limits::max_active_points_per_principal,
      "grid points of jobs that have not ended, of one principal"},
-    {"max-points-per-job", &Limits::max_points_per_job,
+    {"--max-points-per-job", &Limits::max_points_per_job,
      "grid points of one job; the engine permits 100,000 at most"},
-    {"max-samples-per-job", &Limits::max_samples_per_job,
+    {"--max-samples-per-job", &Limits::max_samples_per_job,
      "samples or collisions of one job, over all its points"},
-    {"max-streams", &Limits::max_streams, "open watches and traces of all principals"},
-    {"max-streams-per-principal", &Limits::max_streams_per_principal,
+    {"--max-streams", &Limits::max_streams, "open watches and traces of all principals"},
+    {"--max-streams-per-principal", &Limits::max_streams_per_principal,
      "open watches and traces of one principal"},
-    {"max-calls-per-principal", &Limits::max_calls_per_principal,
+    {"--max-calls-per-principal", &Limits::max_calls_per_principal,
      "calls in progress of one principal, without watches"},
-    {"max-call-bytes-per-principal", &Limits::max_call_bytes_per_principal,
+    {"--max-call-bytes-per-principal", &Limits::max_call_bytes_per_principal,
      "bytes of the requests of these calls and of their unread answers"},
-    {"max-transfer-mib", &Limits::max_transfer_mib,
-     "MiB for connections and for requests that are being received, of all clients; calls beyond "
-     "it are rejected. At least 16 and twice --max-message-bytes, at most 1048576"},
-    {"max-memory-mib", &Limits::max_memory_mib,
-     "MiB of memory of all points that this server computes at a time, by an upper bound; points "
-     "beyond it wait, and a point has as many threads as there is memory for. Default: 80 % of "
-     "the memory of this machine or of the server's control group"},
-    {"retain-days", &Limits::retain_days,
-     "days from the end of a job until its results expire, unless it is pinned; its "
-     "specification stays"},
-    {"max-store-bytes", &Limits::max_store_bytes,
-     "bytes of the store; shortly before it is full, results expire, the oldest first. Active and "
-     "pinned jobs may store more than that; then no further job is accepted"},
-    {"max-store-bytes-per-principal", &Limits::max_store_bytes_per_principal,
-     "bytes of specifications and results of one principal; beyond it no further job is accepted"},
-    {"max-processor-seconds-per-principal", &Limits::max_processor_seconds_per_principal,
-     "processor time of one principal's jobs in 30 days; beyond it no further job is accepted"},
-    {"max-seconds-per-job", &Limits::max_seconds_per_job,
+    {"--max-transfer-mib", &Limits::max_transfer_mib,
+     "MiB for connections and for requests that are being received, of all clients. At\n"
+     "least 16 and twice --max-message-bytes, at most 1048576"},
+    {"--max-memory-mib", &Limits::max_memory_mib,
+     "MiB of memory of all points that this server computes at a time, by an upper bound.\n"
+     "By default 80 % of the memory of this machine or of the server's control group"},
+    {"--retain-days", &Limits::retain_days,
+     "days from the end of a job until its results expire, unless it is pinned"},
+    {"--max-store-bytes", &Limits::max_store_bytes,
+     "bytes of the store; shortly before it is full, results expire, the oldest first"},
+    {"--max-store-bytes-per-principal", &Limits::max_store_bytes_per_principal,
+     "bytes of specifications and results of one principal"},
+    {"--max-processor-seconds-per-principal", &Limits::max_processor_seconds_per_principal,
+     "processor time of one principal's jobs in 30 days"},
+    {"--max-seconds-per-job", &Limits::max_seconds_per_job,
      "processor time of one job, after which it fails and keeps its finished points"},
 };
 
 void AddLimitFlags(CLI::App& app, Limits& limits) {
   BeginGroup(app, "Limits; 0 means no limit");
   for (const LimitFlag& row : kLimitFlags) {
-    const auto add = [&]<typename Number>(Number Limits::*limit) {
-      AddNumber(app, row.flag, limits.*limit, LimitRange<Number>(), row.description);
+    const auto add = [&](auto limit) {
+      AddNumber(app, row.flag, limits.*limit, 0, kMostLimit, row.description);
     };
     std::visit(add, row.limit);
   }
-  AddInteger(app, "max-message-bytes", limits.max_message_bytes,
-             Between(kLeastMessage, kMostMessage), "bytes of one request");
+  AddNumber(app, "--max-message-bytes", limits.max_message_bytes, kLeastMessage, kMostMessage,
+            "bytes of one request");
 }
 
-void AddLogFlags(CLI::App& app, CommandLine& line) {
+void AddLogFlags(CLI::App& app, CommandLine& line, Words& words) {
   BeginGroup(app, "Log (on standard error) and metrics");
-  AddChoice(app, "log-format", line.log.format,
-            {{"text", LogFormat::kText}, {"json", LogFormat::kJson}},
-            "text, or json: one object a line");
-  AddChoice(
-      app, "log-level", line.log.least,
-      {{"info", Severity::kInfo}, {"warning", Severity::kWarning}, {"error", Severity::kError}},
-      "the least severe lines that are written: info, warning or error");
-  app.add_option("--metrics-listen", line.server.metrics_listen,
-                 "address of Prometheus metrics, at /metrics: HOST:PORT with a loopback host (port "
-                 "0: any free port, which the log names). Default: no metrics")
-      ->type_name("ADDRESS");
+  AddWord(app, "--log-level", words.log_level, {"info", "warning", "error"},
+          "the least severe lines that are written");
+  AddText(
+      app, "--metrics-listen", line.server.metrics_listen, "ADDRESS",
+      "address of Prometheus metrics, at /metrics: HOST:PORT with a loopback host (port 0: any\n"
+      "free port, which the log names). Default: no metrics");
 }
 
-void AddCommands(CLI::App& app, CommandLine& line, std::string& new_token) {
+void AddCommands(CLI::App& app, CommandLine& line, Words& words) {
   BeginGroup(app, "Commands; at most one, instead of a server");
-  app.option_defaults()->configurable(false);
-  app.add_option("--new-token", new_token,
-                 "make a token, append its hash to --access-file and print the token")
-      ->type_name("PRINCIPAL:ROLE[:DAYS]");
-  app.add_flag("--check", line.check,
-               "check the whole store in --data-dir and print a summary; the exit code is 0 if "
-               "the store is sound. A server may use the store at the same time");
-  app.add_option("--backup", line.backup,
-                 "copy the store in --data-dir to this file, and check the copy. A server may use "
-                 "the store at the same time")
-      ->type_name("FILE");
-  app.add_option(
-         "--verify", line.verify,
-         "compute a random point, or a random chunk of samples, of a saved result again and "
-         "compare; the exit code is 0 if it is the same")
-      ->type_name("FILE");
-  // trigger_on_parse: --help prints the help even if another flag is wrong.
-  app.add_flag_callback(
-         "-h,--help", [] { throw CLI::CallForHelp(); }, "print this page")
-      ->trigger_on_parse();
-  app.set_version_flag("--version", absl::StrCat("ballpistond ", kVersion), "print the version")
-      ->trigger_on_parse();
+  AddText(app, "--new-token", words.new_token, "PRINCIPAL:ROLE[:DAYS]",
+          "make a token, append its hash to --access-file and print the token");
+  app.add_flag(
+      "--check", line.check,
+      "check the whole store in --data-dir and print a summary; the exit code is 0 if the\n"
+      "store is sound. A server may use the store at the same time");
+  AddText(app, "--backup", line.backup, "FILE",
+          "copy the store in --data-dir to this file, and check the copy. A server may use the\n"
+          "store at the same time");
+  app.get_option("--backup")->excludes("--check")->excludes("--new-token");
+  app.get_option("--check")->excludes("--new-token");
+  app.set_help_flag("-h,--help", "print this page");
+  app.set_version_flag("--version", absl::StrCat("ballpistond ", kVersion), "print the version");
 }
 
 // ---- parsing ----
 
-// The arguments in reverse order, as CLI11 expects them. An empty value, as in --listen=, becomes
-// an argument of its own; otherwise CLI11 would use the next flag as the value.
-std::vector<std::string> Arguments(int argc, const char* const* argv) {
-  std::vector<std::string> arguments;
-  for (int i = 1; i < argc; ++i) {
-    std::string argument = argv[i];
-    const bool is_empty =
-        absl::StartsWith(argument, "--") && argument.find('=') == argument.size() - 1;
-    if (is_empty) argument.pop_back();
-    arguments.push_back(std::move(argument));
-    if (is_empty) arguments.emplace_back();
+// CLI11 would take the next argument for the missing value.
+void CheckValue(const std::string& argument) {
+  if (absl::StartsWith(argument, "--") && argument.find('=') == argument.size() - 1) {
+    throw CLI::ValidationError(argument.substr(0, argument.size() - 1), "needs a value");
   }
-  std::reverse(arguments.begin(), arguments.end());
-  return arguments;
 }
 
-// The first argument that CLI11 could not use.
-std::string Unexpected(const CLI::App& app) {
-  for (const std::string& argument : app.remaining()) {
-    if (argument == "--") continue;
-    if (!absl::StartsWith(argument, "-")) {
-      return absl::StrCat("unexpected argument \"", argument, "\"; --help lists the flags");
+void ParseArguments(CLI::App& app, int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i) CheckValue(argv[i]);
+  app.parse(argc, argv);
+}
+
+// `listen = "unix:x"  # the API` is --listen=unix:x; a comment is the empty text.
+std::string ArgumentIn(const std::string& line) {
+  const absl::string_view text =
+      absl::StripAsciiWhitespace(absl::string_view(line).substr(0, line.find(" #")));
+  if (text.empty() || text.front() == '#') return "";
+  const std::pair<std::string, std::string> parts = absl::StrSplit(text, absl::MaxSplits('=', 1));
+  std::string value(absl::StripAsciiWhitespace(parts.second));
+  return absl::StrCat("--", absl::StripAsciiWhitespace(parts.first), "=",
+                      CLI::detail::remove_quotes(value));
+}
+
+// Each line is a flag of its own. CLI11's own reader takes [::1]:50051 for the beginning of a list,
+// ignores a key's second value, and does not say in which line an error is.
+void ParseFile(CLI::App& app, const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw CLI::FileError::Missing(path);
+  int number = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++number;
+    const std::string argument = ArgumentIn(line);
+    if (argument.empty()) continue;
+    try {
+      CheckValue(argument);
+      app.parse(std::vector<std::string>{argument});
+    } catch (const CLI::ParseError& error) {
+      throw CLI::ConfigError(absl::StrCat(path, ", line ", number, ": ", error.what()));
     }
-    const std::string flag = argument.substr(0, argument.find('='));
-    const size_t name = std::min(flag.find_first_not_of('-'), flag.size());
-    return NoSuchFlag(app, flag.substr(name), flag);
   }
-  return "unexpected argument; --help lists the flags";
-}
-
-std::string WrongNumberOfValues(const CLI::App& app, const std::string& last_argument) {
-  for (const CLI::Option* option : app.get_options()) {
-    if (option->count() > 1) return absl::StrCat(option->get_name(), " is given more than once");
-  }
-  return absl::StrCat(last_argument, " needs a value");
-}
-
-// CLI11 treats an empty text as a missing value.
-absl::Status CheckValuesAreGiven(const CLI::App& app) {
-  for (const CLI::Option* option : app.get_options()) {
-    const bool takes_value = option->get_items_expected_max() > 0;
-    if (!takes_value || option->count() == 0 || !option->results().front().empty()) continue;
-    return absl::InvalidArgumentError(absl::StrCat(option->get_name(), " needs a value"));
-  }
-  return absl::OkStatus();
 }
 
 // Sets the flags, or `page`.
-absl::Status Parse(CLI::App& app, std::vector<std::string> arguments, std::string& page) {
-  const std::string last = arguments.empty() ? "" : arguments.front();
+absl::Status Parse(CLI::App& app, int argc, const char* const* argv, const std::string& config,
+                   std::string& page) {
   try {
-    app.parse(arguments);
+    ParseArguments(app, argc, argv);
+    if (config.empty()) return absl::OkStatus();
+    ParseFile(app, config);
+    ParseArguments(app, argc, argv);  // takes precedence
   } catch (const CLI::CallForHelp&) {
     page = app.help();
   } catch (const CLI::CallForVersion& version) {
     page = absl::StrCat(version.what(), "\n");
-  } catch (const CLI::ExtrasError&) {
-    return absl::InvalidArgumentError(Unexpected(app));
-  } catch (const CLI::ArgumentMismatch&) {
-    return absl::InvalidArgumentError(WrongNumberOfValues(app, last));
-  } catch (const CLI::FileError&) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "--config=", app.get_config_ptr()->as<std::string>(), " is not a file that can be read"));
   } catch (const CLI::ParseError& error) {
     return absl::InvalidArgumentError(error.what());
   }
-  return CheckValuesAreGiven(app);
+  return absl::OkStatus();
 }
 
 // ---- combinations of flags ----
@@ -320,42 +337,28 @@ absl::Status CheckTransfer(const Limits& limits) {
   const int64_t mib = limits.max_transfer_mib;
   if (mib == 0 || (mib >= least && mib <= kMostTransferMib)) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat(
-      "--max-transfer-mib=", mib, " is out of range; permitted: 0 (no limit), or ", least, " to ",
+      "--max-transfer-mib: ", mib, " is refused; permitted: 0 (no limit), or ", least, " to ",
       kMostTransferMib, " with --max-message-bytes=", limits.max_message_bytes));
 }
 
-absl::Status CheckSlurm(const CLI::App& app, bool with_slurm, const SlurmOptions& slurm) {
-  if (with_slurm && slurm.shared_folder.empty()) {
+absl::Status SetSlurm(Words& words, CommandLine& line) {
+  const std::string& folder = words.slurm.shared_folder;
+  if (words.executor == "threads") {
+    if (folder.empty()) return absl::OkStatus();
+    return absl::InvalidArgumentError("--slurm-shared-folder needs --executor=slurm");
+  }
+  if (!absl::StartsWith(folder, "/")) {
     return absl::InvalidArgumentError(
-        "--executor=slurm: --slurm-shared-folder is missing, the folder that the server and the "
-        "nodes of the cluster share");
+        absl::StrCat("--slurm-shared-folder: \"", folder,
+                     "\" is not an absolute path, which --executor=slurm needs"));
   }
-  if (with_slurm && !absl::StartsWith(slurm.shared_folder, "/")) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("--slurm-shared-folder=", slurm.shared_folder, " is not an absolute path"));
-  }
-  if (with_slurm) return absl::OkStatus();
-  for (const CLI::Option* option : app.get_options()) {
-    if (option->count() == 0 || !absl::StartsWith(option->get_name(), "--slurm-")) continue;
-    return absl::InvalidArgumentError(absl::StrCat(option->get_name(), " needs --executor=slurm"));
-  }
+  line.server.slurm = std::move(words.slurm);
   return absl::OkStatus();
-}
-
-absl::Status CheckOneCommand(const CommandLine& line, const std::string& new_token) {
-  std::vector<std::string> given;
-  if (line.check) given.push_back("--check");
-  if (!line.backup.empty()) given.push_back("--backup");
-  if (!line.verify.empty()) given.push_back("--verify");
-  if (!new_token.empty()) given.push_back("--new-token");
-  if (given.size() <= 1) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrCat(absl::StrJoin(given, " and "), " exclude each other; give one of them"));
 }
 
 absl::Status SetNewToken(const std::string& text, CommandLine& line) {
   if (text.empty()) return absl::OkStatus();
-  if (line.server.security.access_file.empty()) {
+  if (line.server.door.access_file.empty()) {
     return absl::InvalidArgumentError(
         "--new-token: --access-file is missing, the file that keeps the token's hash");
   }
@@ -364,44 +367,39 @@ absl::Status SetNewToken(const std::string& text, CommandLine& line) {
   return request.status();
 }
 
-int DefaultWorkers() {
-  const auto cores = int64_t{std::thread::hardware_concurrency()};
-  return static_cast<int>(std::clamp(cores, int64_t{1}, kMostWorkers));
-}
-
-int64_t DefaultMemoryMib() {
-  constexpr double kShare = 0.8;
-  return static_cast<int64_t>(kShare * MachineMemory() / (1 << 20));
+void SetDefaults(CommandLine& line) {
+  constexpr double kShareOfMemory = 0.8;
+  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+  line.server.workers = std::clamp(cores, 1, kMostWorkers);
+  line.server.limits.max_memory_mib =
+      static_cast<int64_t>(kShareOfMemory * MachineMemory() / (1 << 20));
 }
 
 }  // namespace
 
 absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
   CommandLine line;
-  line.server.workers = DefaultWorkers();
-  line.server.limits.max_memory_mib = DefaultMemoryMib();
-  std::string new_token;
-  CLI::App app("", "ballpistond");
-  app.set_help_flag();  // AddCommands adds its own help flag
-  SetHelpPage(app);
-  AddServerFlags(app, line);
-  AddLocalAccessFlags(app, line.server.security);
-  AddSecurityFlags(app, line.server.security);
-  bool with_slurm = false;
-  SlurmOptions slurm;
-  AddSlurmFlags(app, with_slurm, slurm);
+  Words words;
+  SetDefaults(line);
+  CLI::App app(kDescription, "ballpistond");
+  app.get_formatter()->column_width(kHelpIndentation);
+  app.footer(kExitCodes);
+  AddServerFlags(app, line, words);
+  AddDoorFlags(app, line.server.door);
+  AddSlurmFlags(app, words);
   AddLimitFlags(app, line.server.limits);
-  AddLogFlags(app, line);
-  AddCommands(app, line, new_token);
-  absl::Status parsed = Parse(app, Arguments(argc, argv), line.page);
+  AddLogFlags(app, line, words);
+  AddCommands(app, line, words);
+  const absl::Status parsed = Parse(app, argc, argv, words.config, line.page);
   if (!parsed.ok()) return parsed;
   if (!line.page.empty()) return line;
-  for (const absl::Status& status :
-       {CheckTransfer(line.server.limits), CheckOneCommand(line, new_token),
-        SetNewToken(new_token, line), CheckSlurm(app, with_slurm, slurm)}) {
+  line.log_level = words.log_level == "info"      ? Severity::kInfo
+                   : words.log_level == "warning" ? Severity::kWarning
+                                                  : Severity::kError;
+  for (const absl::Status& status : {CheckTransfer(line.server.limits), SetSlurm(words, line),
+                                     SetNewToken(words.new_token, line)}) {
     if (!status.ok()) return status;
   }
-  if (with_slurm) line.server.slurm = std::move(slurm);
   return line;
 }
 

@@ -7,14 +7,14 @@
 
 #include "absl/status/statusor.h"
 #include "server/ballpiston_server.h"
+#include "server/door/new_token.h"
 #include "server/observability/log.h"
-#include "server/security/new_token.h"
 
 namespace ballpiston::server {
 
 struct CommandLine {
   ServerOptions server;
-  LogOptions log;
+  Severity log_level = Severity::kInfo;    // less severe messages are not logged
   std::chrono::milliseconds idle_exit{0};  // 0: never
   std::chrono::milliseconds drain{10'000};
 
@@ -23,10 +23,10 @@ struct CommandLine {
   std::optional<TokenRequest> new_token;
   bool check = false;
   std::string backup;  // the file to write
-  std::string verify;  // the saved result to read
 };
 
-// INVALID_ARGUMENT names the flag, its value and the permitted values.
+// INVALID_ARGUMENT names the flag, its value and the permitted values, and of a wrong line of the
+// file of --config also the file and the line.
 absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv);
 
 }  // namespace ballpiston::server

@@ -148,13 +148,6 @@ absl::Status CredentialsExpired() {
                     "CREDENTIALS_EXPIRED");
 }
 
-absl::Status UserNotListed(const std::string& user) {
-  return WithReason(absl::UnauthenticatedError(
-                        absl::StrCat("this server has no principal for the Unix user ", user,
-                                     "; its operator can add a line to the access file")),
-                    "CREDENTIALS_INVALID");
-}
-
 absl::Status LimitExceeded(const std::string& reason, const std::string& what,
                            const std::string& flag, double limit) {
   absl::Status status = absl::ResourceExhaustedError(

@@ -41,7 +41,6 @@ absl::Status ShuttingDown();                           // UNAVAILABLE
 absl::Status CredentialsMissing();
 absl::Status CredentialsInvalid();
 absl::Status CredentialsExpired();
-absl::Status UserNotListed(const std::string& user);  // a Unix user; reason CREDENTIALS_INVALID
 
 // RESOURCE_EXHAUSTED: `what` exceeds `limit`, which the server's flag `flag` sets.
 absl::Status LimitExceeded(const std::string& reason, const std::string& what,

@@ -25,6 +25,7 @@
 #include "absl/status/statusor.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "server/convert/spec.h"
+#include "server/door/principal.h"
 #include "server/jobs/acceptance.h"
 #include "server/jobs/job.h"
 #include "server/jobs/job_filter.h"
@@ -34,7 +35,6 @@
 #include "server/mutex.h"
 #include "server/scheduling/crash_record.h"
 #include "server/scheduling/scheduler.h"
-#include "server/security/principal.h"
 #include "server/store/job_table.h"
 #include "server/store/store.h"
 

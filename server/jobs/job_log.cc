@@ -1,5 +1,7 @@
 #include "server/jobs/job_log.h"
 
+#include <cstdint>
+
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "google/rpc/status.pb.h"
@@ -24,8 +26,8 @@ void LogEnd(const JobRecord& ended) {
       {{"job", JobName(ended.id)},
        {"principal", ended.principal},
        {"state", state},
-       {"points", static_cast<double>(ended.points_done)},
-       {"samples", ended.samples},
+       {"points", ended.points_done},
+       {"samples", static_cast<int64_t>(ended.samples)},
        {"processor_seconds", ended.work},
        {"seconds", absl::ToDoubleSeconds(ended.end_time.value_or(begin) - begin)},
        {"error", error.message()}});

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <chrono>
-#include <memory>
 
+#include "absl/cleanup/cleanup.h"
 #include "server/mutex.h"
 
 namespace ballpiston::server {
@@ -12,18 +12,27 @@ class Activity {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // A call begins. It is in progress until the last copy of the returned pointer is gone. This
-  // object must outlive the copies.
-  std::shared_ptr<void> Begin();
+  // A call is in progress as long as the returned object lives.
+  [[nodiscard]] auto Begin() {
+    Add(1);
+    return absl::MakeCleanup([this] { Add(-1); });
+  }
 
   // Resets the idle time, for an event that is not a call.
-  void Touch();
+  void Touch() { Add(0); }
 
   // The time since the last event; zero while a call is in progress.
-  Clock::duration IdleFor() const;
+  Clock::duration IdleFor() const {
+    MutexLock lock(mutex_);
+    return calls_ > 0 ? Clock::duration::zero() : Clock::now() - last_;
+  }
 
  private:
-  void End();
+  void Add(int calls) {
+    MutexLock lock(mutex_);
+    calls_ += calls;
+    last_ = Clock::now();
+  }
 
   mutable Mutex mutex_;
   int calls_ ABSL_GUARDED_BY(mutex_) = 0;

@@ -1,36 +1,45 @@
 #include "server/observability/call_observer.h"
 
-#include <atomic>
 #include <chrono>
-#include <optional>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "google/rpc/error_details.pb.h"
-#include "google/rpc/status.pb.h"
+#include "absl/strings/str_split.h"
+#include "google/protobuf/descriptor.h"
 #include "server/observability/log.h"
 
 namespace ballpiston::server {
 namespace {
 
 using grpc::experimental::InterceptionHookPoints;
-using grpc::experimental::InterceptorBatchMethods;
 using grpc::experimental::ServerRpcInfo;
-using Clock = std::chrono::steady_clock;
+using prometheus::Labels;
 
-std::string ReasonIn(const std::string& error_details) {
-  google::rpc::Status status;
-  google::rpc::ErrorInfo info;
-  if (!status.ParseFromString(error_details)) return "";
-  for (const google::protobuf::Any& detail : status.details()) {
-    if (detail.UnpackTo(&info)) return info.reason();
-  }
-  return "";
+constexpr int kLastCode = 16;  // UNAUTHENTICATED
+constexpr int kLinesPerSecond = 10;
+
+// Upper bounds, in seconds; prometheus-cpp adds an unbounded bucket.
+const std::vector<double> kBuckets = {0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30};
+
+// In gRPC's order: a streaming client adds 1, a streaming server 2.
+constexpr const char* kTypes[] = {"unary", "client_stream", "server_stream", "bidi_stream"};
+
+// `path` is /PACKAGE.SERVICE/METHOD.
+Labels LabelsOf(const std::string& path, size_t type) {
+  const std::vector<std::string> names = absl::StrSplit(path, '/');
+  return {{"grpc_service", names[1]}, {"grpc_method", names[2]}, {"grpc_type", kTypes[type]}};
 }
 
-std::string MethodIn(absl::string_view path) {
-  return std::string(path.substr(path.rfind('/') + 1));
+Labels WithCode(Labels method, absl::StatusCode code) {
+  method["grpc_code"] = absl::StatusCodeToString(code);
+  return method;
+}
+
+prometheus::Family<prometheus::Counter>& Counter(const char* name, const char* help,
+                                                 prometheus::Registry& registry) {
+  return prometheus::BuildCounter().Name(name).Help(help).Register(registry);
 }
 
 }  // namespace
@@ -57,15 +66,16 @@ Verdict VerdictOn(const FailedCall& call) {
 // The known reasons start at zero, because Prometheus does not see the first increase of a counter
 // that appears with 1.
 CallObserver::CallObserver()
-    : statistics_(registry_),
-      not_let_in_(prometheus::BuildCounter()
-                      .Name("ballpiston_failed_authentications_total")
-                      .Help("Calls without valid credentials or with too low a role.")
-                      .Register(registry_)),
-      limits_reached_(prometheus::BuildCounter()
-                          .Name("ballpiston_limit_refusals_total")
-                          .Help("Calls rejected because a limit was reached.")
-                          .Register(registry_)) {
+    : began_(Counter("grpc_server_started_total", "Calls that began.", registry_)),
+      ended_(Counter("grpc_server_handled_total", "Calls that ended, by code.", registry_)),
+      seconds_(prometheus::BuildHistogram()
+                   .Name("grpc_server_handling_seconds")
+                   .Help("From a call's begin to its end.")
+                   .Register(registry_)),
+      not_let_in_(Counter("ballpiston_failed_authentications_total",
+                          "Calls without valid credentials or with too low a role.", registry_)),
+      limits_reached_(Counter("ballpiston_limit_refusals_total",
+                              "Calls rejected because a limit was reached.", registry_)) {
   for (const char* reason :
        {"CREDENTIALS_MISSING", "CREDENTIALS_INVALID", "CREDENTIALS_EXPIRED", "ROLE_TOO_LOW"}) {
     not_let_in_.Add({{"reason", reason}});
@@ -77,68 +87,48 @@ CallObserver::CallObserver()
   }
 }
 
+// ---- counts ----
+
 // Observes one call. gRPC runs its hooks one after the other.
 class CallObserver::Interceptor : public grpc::experimental::Interceptor {
  public:
   Interceptor(CallObserver& observer, ServerRpcInfo& info)
       : observer_(observer),
         call_(*info.server_context()),
-        path_(info.method()),
-        labels_(CallStatistics::Of(path_, info.type())),
-        begin_(Clock::now()) {
-    observer_.statistics_.Began(labels_);
+        method_(LabelsOf(info.method(), static_cast<size_t>(info.type()))) {
+    observer_.began_.Add(method_).Increment();
   }
 
   ~Interceptor() override {
-    if (!ended_) observer_.statistics_.Ended(labels_, absl::StatusCode::kCancelled, Seconds());
-    observer_.Forget(call_);
+    Ended(absl::StatusCode::kCancelled);  // if no status was sent
+    MutexLock lock(observer_.mutex_);
+    const auto kept = observer_.kept_.extract(&call_);
+    lock.Unlock();  // before the object is released
   }
 
-  void Intercept(InterceptorBatchMethods* batch) override {
-    if (batch->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_STATUS))
-      StatusOf(*batch);
+  // If the client has left, the status that gRPC's own services return looks like a fault.
+  void Intercept(grpc::experimental::InterceptorBatchMethods* batch) override {
+    if (batch->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_STATUS)) {
+      Ended(call_.IsCancelled()
+                ? absl::StatusCode::kCancelled
+                : static_cast<absl::StatusCode>(batch->GetSendStatus().error_code()));
+    }
     batch->Proceed();
   }
 
  private:
-  double Seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
-
-  // gRPC's own services return UNKNOWN if the client left, and INTERNAL if the request was missing
-  // or malformed. Both would look like errors of the server.
-  absl::StatusCode CodeOf(const grpc::Status& status) const {
-    const auto code = static_cast<absl::StatusCode>(status.error_code());
-    if (!absl::StartsWith(path_, "/grpc.")) return code;
-    const bool unparsed = status.error_message() == "could not parse request";
-    if (code != absl::StatusCode::kUnknown && !unparsed) return code;
-    if (call_.IsCancelled()) return absl::StatusCode::kCancelled;
-    return unparsed ? absl::StatusCode::kInvalidArgument : code;
-  }
-
-  void StatusOf(InterceptorBatchMethods& batch) {
-    if (ended_.exchange(true)) return;
-    const grpc::Status status = batch.GetSendStatus();
-    const absl::StatusCode code = CodeOf(status);
-    const double seconds = Seconds();
-    observer_.statistics_.Ended(labels_, code, seconds);
-    const std::string principal = observer_.CallerOf(call_);
-    if (status.ok()) return;
-    const auto* trailing = batch.GetSendTrailingMetadata();
-    const auto id = trailing->find(kRequestId);
-    observer_.Failed({.method = MethodIn(path_),
-                      .principal = principal,
-                      .request_id = id == trailing->end() ? "" : id->second,
-                      .code = code,
-                      .reason = ReasonIn(status.error_details()),
-                      .message = status.error_message(),
-                      .seconds = seconds});
+  void Ended(absl::StatusCode code) {
+    if (std::exchange(ended_, true)) return;
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin_;
+    observer_.ended_.Add(WithCode(method_, code)).Increment();
+    observer_.seconds_.Add(method_, kBuckets).Observe(time.count());
   }
 
   CallObserver& observer_;
   const grpc::ServerContextBase& call_;
-  const std::string path_;
-  const prometheus::Labels labels_;
-  const Clock::time_point begin_;
-  std::atomic<bool> ended_ = false;
+  const Labels method_;
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  bool ended_ = false;
 };
 
 class CallObserver::Factory : public grpc::experimental::ServerInterceptorFactoryInterface {
@@ -157,55 +147,38 @@ CallObserver::InterceptorFactory() {
   return std::make_unique<Factory>(*this);
 }
 
-// ---- callers ----
-
-void CallObserver::Identify(const grpc::ServerContextBase& call, const std::string& principal) {
-  MutexLock lock(mutex_);
-  in_progress_[&call].principal = principal;
+void CallObserver::Expect(const std::string& service) {
+  const auto* described =
+      google::protobuf::DescriptorPool::generated_pool()->FindServiceByName(service);
+  for (int i = 0; described != nullptr && i < described->method_count(); ++i) {
+    const google::protobuf::MethodDescriptor& method = *described->method(i);
+    const size_t type = (method.client_streaming() ? 1 : 0) + (method.server_streaming() ? 2 : 0);
+    const Labels labels = LabelsOf(absl::StrCat("/", service, "/", method.name()), type);
+    began_.Add(labels);
+    seconds_.Add(labels, kBuckets);
+    for (int code = 0; code <= kLastCode; ++code) {
+      ended_.Add(WithCode(labels, static_cast<absl::StatusCode>(code)));
+    }
+  }
 }
 
 void CallObserver::Keep(const grpc::ServerContextBase& call, std::shared_ptr<void> object) {
   MutexLock lock(mutex_);
-  in_progress_[&call].kept = std::move(object);
-}
-
-std::string CallObserver::CallerOf(const grpc::ServerContextBase& call) {
-  MutexLock lock(mutex_);
-  const auto found = in_progress_.find(&call);
-  return found == in_progress_.end() ? "" : found->second.principal;
-}
-
-void CallObserver::Forget(const grpc::ServerContextBase& call) {
-  std::shared_ptr<void> kept;  // released without the lock
-  MutexLock lock(mutex_);
-  const auto found = in_progress_.find(&call);
-  if (found == in_progress_.end()) return;
-  kept = std::move(found->second.kept);
-  in_progress_.erase(found);
+  kept_[&call] = std::move(object);
 }
 
 // ---- failed calls ----
 
-void CallObserver::Failed(const FailedCall& call) {
+void CallObserver::Failed(const FailedCall& call, absl::Time now) {
   const Verdict verdict = VerdictOn(call);
   if (verdict == Verdict::kOrdinary) return;
-  const std::string reason =
-      call.reason.empty() ? absl::StatusCodeToString(call.code) : call.reason;
-  if (verdict != Verdict::kServerFailed) {
-    (verdict == Verdict::kNotLetIn ? not_let_in_ : limits_reached_)
-        .Add({{"reason", reason}})
-        .Increment();
-  }
-  WriteLine(call, verdict);
-}
-
-void CallObserver::WriteLine(const FailedCall& call, Verdict verdict) {
   const bool failed = verdict == Verdict::kServerFailed;
-  const std::optional<int64_t> left_out = (failed ? failures_ : refusals_).Take(Clock::now());
+  const bool not_let_in = verdict == Verdict::kNotLetIn;
+  if (!failed)
+    (not_let_in ? not_let_in_ : limits_reached_).Add({{"reason", call.reason}}).Increment();
+  const std::optional<int64_t> left_out = TakeLine(failed, now);
   if (!left_out) return;
-  const char* what = failed                          ? "call failed: "
-                     : verdict == Verdict::kNotLetIn ? "access denied: "
-                                                     : "call rejected: ";
+  const char* what = failed ? "call failed: " : not_let_in ? "access denied: " : "call rejected: ";
   Log(failed ? Severity::kError : Severity::kWarning, absl::StrCat(what, call.message),
       {{"method", call.method},
        {"principal", call.principal},
@@ -214,6 +187,19 @@ void CallObserver::WriteLine(const FailedCall& call, Verdict verdict) {
        {"reason", call.reason},
        {"seconds", call.seconds},
        {"lines_left_out", *left_out == 0 ? "" : absl::StrCat(*left_out)}});
+}
+
+std::optional<int64_t> CallObserver::TakeLine(bool failed, absl::Time now) {
+  MutexLock lock(mutex_);
+  Lines& lines = failed ? failed_ : refused_;
+  const int64_t second = absl::ToUnixSeconds(now);
+  if (std::exchange(lines.second, second) != second) lines.written = 0;
+  if (lines.written == kLinesPerSecond) {
+    ++lines.left_out;
+    return std::nullopt;
+  }
+  ++lines.written;
+  return std::exchange(lines.left_out, 0);
 }
 
 }  // namespace ballpiston::server

@@ -1,38 +1,37 @@
-// Observes the beginning and the end of every call of every service. Counts the call, remembers its
-// caller while it runs, and logs each call that failed in the server or was rejected.
+// Counts the calls of every service, and counts and logs those that were refused or failed.
 //
-// It is an interceptor of gRPC, so it also sees calls that never reach a method of the project:
-// malformed messages, health, reflection. A call counts as ended just before its status is sent, so
-// a client that has the answer finds the call counted. Methods that no service has are not counted,
-// because clients could invent any number of them. The counters are prometheus-cpp's; no library
-// connects them to gRPC's C++ server. Thread-safe.
+// The counts grpc_server_* are made by an interceptor of gRPC, so they include calls that never
+// reach a method of the project: malformed messages, health, reflection. A call counts as ended
+// just before its status is sent, so a client that has the answer finds the call counted. Methods
+// that no service has are not counted, because clients could invent any number of them.
+// Thread-safe.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "absl/status/status.h"
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
 #include "grpcpp/server_context.h"
 #include "grpcpp/support/server_interceptor.h"
 #include "prometheus/collectable.h"
 #include "prometheus/counter.h"
 #include "prometheus/family.h"
+#include "prometheus/histogram.h"
 #include "prometheus/registry.h"
 #include "server/mutex.h"
-#include "server/observability/call_statistics.h"
-#include "server/observability/line_budget.h"
 
 namespace ballpiston::server {
 
-// The metadata key of a call's request id, in the request and in the answer.
-inline constexpr char kRequestId[] = "x-request-id";
-
-// A call that ended with an error.
+// A call of a method of the project that ended with an error.
 struct FailedCall {
-  std::string method;      // WatchEnsembleJob
-  std::string principal;   // empty: not authenticated
-  std::string request_id;  // empty: the call did not reach the project's own frame
+  std::string method;     // WatchEnsembleJob
+  std::string principal;  // empty: not authenticated
+  std::string request_id;
   absl::StatusCode code = absl::StatusCode::kUnknown;
   std::string reason;  // of its ErrorInfo, if there is one
   std::string message;
@@ -55,43 +54,44 @@ class CallObserver {
   // For ServerBuilder::experimental().SetInterceptorCreators. This must outlive the server.
   std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface> InterceptorFactory();
 
-  // Sets the caller, for the log. Call before the method runs.
-  void Identify(const grpc::ServerContextBase& call, const std::string& principal);
+  // Adds the methods of a service of the generated protos, with zeros, before their first call.
+  void Expect(const std::string& service);
 
   // Keeps an object until gRPC has sent the answer, which it does after the method has returned.
   void Keep(const grpc::ServerContextBase& call, std::shared_ptr<void> object);
 
-  CallStatistics& statistics() { return statistics_; }
+  // Counts the call by its reason, and logs it. At most ten lines a second are written about calls
+  // that were refused, and ten about calls that failed, so that a client with a thousand refused
+  // calls a second does not fill the disk. The next line has the number of lines left out.
+  void Failed(const FailedCall& call, absl::Time now = absl::Now());
 
-  // The counts of all calls, of those that failed authentication or authorisation, and of those
-  // that were refused because a limit was reached.
   const prometheus::Collectable& metrics() const { return registry_; }
-
-  // Counts and logs a failed call. For the interceptors, and for tests.
-  void Failed(const FailedCall& call);
 
  private:
   class Interceptor;
   class Factory;
 
-  struct CallInProgress {
-    std::string principal;
-    std::shared_ptr<void> kept = nullptr;
+  // The lines about calls in one second.
+  struct Lines {
+    int64_t second = 0;
+    int written = 0;
+    int64_t left_out = 0;
   };
 
-  std::string CallerOf(const grpc::ServerContextBase& call);
-  void Forget(const grpc::ServerContextBase& call);
-  void WriteLine(const FailedCall& call, Verdict verdict);
+  // Empty if no more line is to be written now. Otherwise the number of lines left out.
+  std::optional<int64_t> TakeLine(bool failed, absl::Time now);
 
-  prometheus::Registry registry_;  // first: it owns the counters of the next three
-  CallStatistics statistics_;
+  prometheus::Registry registry_;  // first: it owns the counters
+  prometheus::Family<prometheus::Counter>& began_;
+  prometheus::Family<prometheus::Counter>& ended_;
+  prometheus::Family<prometheus::Histogram>& seconds_;
   prometheus::Family<prometheus::Counter>& not_let_in_;      // by reason
   prometheus::Family<prometheus::Counter>& limits_reached_;  // by reason
-  LineBudget refusals_{10, std::chrono::seconds(1)};
-  LineBudget failures_{10, std::chrono::seconds(1)};
 
   Mutex mutex_;
-  std::map<const grpc::ServerContextBase*, CallInProgress> in_progress_ ABSL_GUARDED_BY(mutex_);
+  Lines refused_ ABSL_GUARDED_BY(mutex_);
+  Lines failed_ ABSL_GUARDED_BY(mutex_);
+  std::map<const grpc::ServerContextBase*, std::shared_ptr<void>> kept_ ABSL_GUARDED_BY(mutex_);
 };
 
 }  // namespace ballpiston::server

@@ -1,20 +1,12 @@
 #include "server/observability/metrics_endpoint.h"
 
-#include <netdb.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <exception>
-#include <stop_token>
-#include <thread>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 
 namespace ballpiston::server {
 namespace {
-
-constexpr std::chrono::milliseconds kKnockInterval(5);
 
 absl::StatusOr<ListenAddress> ParseLoopback(const std::string& text) {
   absl::StatusOr<ListenAddress> address = ParseListenAddress(text);
@@ -25,27 +17,7 @@ absl::StatusOr<ListenAddress> ParseLoopback(const std::string& text) {
         "localhost (metrics are not encrypted; let others reach them through a proxy or a "
         "tunnel)"));
   }
-  if (address->host == "localhost")
-    address->host = "127.0.0.1";  // the HTTP server accepts no names
   return address;
-}
-
-// Connects and closes the connection. The HTTP server waits up to two seconds for a connection
-// before it sees that it should stop.
-void Knock(const ListenAddress& address) {
-  addrinfo hints = {};
-  hints.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV;
-  hints.ai_socktype = SOCK_STREAM;
-  addrinfo* found = nullptr;
-  if (getaddrinfo(address.host.c_str(), absl::StrCat(address.port).c_str(), &hints, &found) != 0) {
-    return;
-  }
-  const int descriptor = socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (descriptor >= 0) {
-    [[maybe_unused]] const int connected = connect(descriptor, found->ai_addr, found->ai_addrlen);
-    close(descriptor);
-  }
-  freeaddrinfo(found);
 }
 
 std::vector<std::string> HttpOptions(const ListenAddress& address) {
@@ -88,19 +60,9 @@ absl::StatusOr<std::unique_ptr<MetricsEndpoint>> MetricsEndpoint::Start(const st
 MetricsEndpoint::MetricsEndpoint(ListenAddress address, Source source)
     : address_(std::move(address)),
       collector_(std::make_shared<Collector>(std::move(source))),
-      exposer_(std::make_unique<prometheus::Exposer>(HttpOptions(address_))) {
-  address_.port = exposer_->GetListeningPorts().front();
-  exposer_->RegisterCollectable(collector_);
-}
-
-MetricsEndpoint::~MetricsEndpoint() {
-  const std::jthread knocking([this](const std::stop_token& stopped) {
-    while (!stopped.stop_requested()) {
-      Knock(address_);
-      std::this_thread::sleep_for(kKnockInterval);
-    }
-  });
-  exposer_.reset();
+      exposer_(HttpOptions(address_)) {
+  address_.port = exposer_.GetListeningPorts().front();
+  exposer_.RegisterCollectable(collector_);
 }
 
 }  // namespace ballpiston::server

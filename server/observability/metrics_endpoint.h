@@ -1,11 +1,9 @@
-// Serves http://HOST:PORT/metrics for Prometheus, on the loopback only.
+// Serves http://HOST:PORT/metrics for Prometheus, on the loopback only, because the page is neither
+// encrypted nor authenticated.
 //
 // prometheus-cpp's Exposer is the HTTP server. It answers GET of /metrics and nothing else, ends a
 // request that is not complete after kRequestTimeout, and serves at most kHttpThreads requests at a
-// time; a further one waits. This class adds three things. It permits loopback addresses only,
-// because the page is neither encrypted nor authenticated. It returns errors instead of throwing
-// exceptions. To stop, it wakes the Exposer, which otherwise looks only every 2 s whether it should
-// stop.
+// time; a further one waits.
 #pragma once
 
 #include <chrono>
@@ -18,7 +16,7 @@
 #include "prometheus/collectable.h"
 #include "prometheus/exposer.h"
 #include "prometheus/metric_family.h"
-#include "server/listen_address.h"
+#include "server/door/listen_address.h"
 
 namespace ballpiston::server {
 
@@ -33,23 +31,22 @@ class MetricsEndpoint {
   // thread of the HTTP server calls `source` for each request, one thread at a time.
   //   INVALID_ARGUMENT     any other address
   //   FAILED_PRECONDITION  the server cannot listen at the address
+  // The destructor takes up to 2 s: the HTTP server looks that seldom whether it should stop.
   static absl::StatusOr<std::unique_ptr<MetricsEndpoint>> Start(const std::string& address,
                                                                 Source source);
-  // Waits for a request that is not complete, at most kRequestTimeout.
-  ~MetricsEndpoint();
 
   std::string address() const { return address_.Text(); }  // with the port in use
 
   // Waits for a call of the source to return. The source is not called again; later requests get
   // the page without its metrics.
-  void Detach() { exposer_->RemoveCollectable(collector_); }
+  void Detach() { exposer_.RemoveCollectable(collector_); }
 
  private:
   MetricsEndpoint(ListenAddress address, Source source);
 
   ListenAddress address_;
   const std::shared_ptr<prometheus::Collectable> collector_;  // calls the source
-  std::unique_ptr<prometheus::Exposer> exposer_;
+  prometheus::Exposer exposer_;
 };
 
 }  // namespace ballpiston::server

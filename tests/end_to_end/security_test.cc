@@ -2,16 +2,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tests/credentials/test_authority.h"
 #include "tests/end_to_end/programs.h"
+#include "tests/server/http_get.h"
 
 namespace ballpiston {
 namespace {
@@ -52,8 +56,8 @@ class Security : public ::testing::Test {
             home_.File("server.key"), "--access-file",          home_.File("access")};
   }
 
-  void Start(const Words& flags) {
-    server_.emplace(ServerSetUp{.flags = flags, .listen = "127.0.0.1:0"});
+  void Start(const Words& flags, const Words& launcher = {}) {
+    server_.emplace(ServerSetUp{.flags = flags, .listen = "127.0.0.1:0", .launcher = launcher});
   }
 
   ProcessResult Client(const Words& words,
@@ -128,8 +132,6 @@ TEST_F(Security, ErrorsSayWhatToTry) {
   expect({"--tls"}, 3, "that this system knows");
   expect({"--ca", home_.File("ca.pem")}, 6, "CREDENTIALS_MISSING");
   expect(Known("wrong"), 6, "CREDENTIALS_INVALID");
-  expect({"--token-file", home_.File("token_alice")}, 2, "unencrypted connection");
-  expect({"--cert", home_.File("server.pem")}, 2, "together");
   chmod(home_.File("token_alice").c_str(), 0644);
   expect(Known("alice"), 6, "chmod 600");
   WriteCertificate(authority_.IssueForHost("elsewhere.example.org"));
@@ -145,25 +147,54 @@ TEST_F(Security, ErrorOfTlsToAPlainServerSaysSo) {
   EXPECT_THAT(List({}), ExitsWith(0));
 }
 
-TEST_F(Security, TheRoleOfTheLoopbackIsAFlag) {
-  Start({"--loopback-role", "read"});
-  EXPECT_THAT(List({}), ExitsWith(0));
-  const ProcessResult refused = Client(Joined({{"submit"}, kQuickQuestion}));
-  EXPECT_THAT(refused, ExitsWith(6));
-  EXPECT_THAT(refused.err, HasSubstr("the server's flag --loopback-role"));
+TEST(UnixSocket, IsItsUsersAlone) {
+  const TestServer server;
+  EXPECT_EQ(ModeOf(server.folder().File("socket")) & 077u, 0u);
 }
 
-TEST_F(Security, AClientCertificateIsRequiredAndAccepted) {
-  Write("access", "certificate Ada alice read\n");
-  const KeyAndCertificate own = authority_.Issue("Ada");
-  Start(Joined({TlsFlags(), {"--tls-client-ca", home_.File("ca.pem")}}));
-  const Words ca = {"--ca", home_.File("ca.pem")};
-  const Words known = {"--cert", Write("ada.pem", own.certificate), "--key",
-                       Write("ada.key", own.key)};
-  EXPECT_THAT(List(Joined({ca, known})), ExitsWith(0));
-  const ProcessResult without = List(ca);
-  EXPECT_THAT(without, ExitsWith(3));
-  EXPECT_THAT(without.err, HasSubstr("--cert FILE --key FILE"));
+TEST_F(Security, OnTheLoopbackOtherUsersNeedAToken) {
+  NewToken("alice", "alice:read");
+  Start({"--access-file", home_.File("access")});
+  EXPECT_THAT(List({}), ExitsWith(0));
+  const std::map<std::string, std::string> other_user = {{"HOME", home_.path()}};
+  const ProcessResult refused = List({}, other_user);
+  EXPECT_THAT(refused, ExitsWith(6));
+  EXPECT_THAT(refused.err, HasSubstr("CREDENTIALS_MISSING"));
+  EXPECT_THAT(List({"--token-file", home_.File("token_alice")}, other_user), ExitsWith(0));
+}
+
+// Connections that send `begin` and nothing else.
+std::vector<std::unique_ptr<server::Connection>> HalfOpen(const std::string& address, int count,
+                                                          const std::string& begin) {
+  rlimit descriptors{};
+  getrlimit(RLIMIT_NOFILE, &descriptors);
+  descriptors.rlim_cur = descriptors.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &descriptors);
+  std::vector<std::unique_ptr<server::Connection>> connections;
+  for (int i = 0; i < count; ++i) {
+    connections.push_back(std::make_unique<server::Connection>(address));
+    connections.back()->Send(begin);
+  }
+  return connections;
+}
+
+// With the descriptors that a login has by default the server could not accept so many.
+TEST_F(Security, AThousandHalfOpenConnectionsLeaveTheServerToOthers) {
+  constexpr double kMiB = 64;
+  NewToken("alice", "alice:read");
+  Start(TlsFlags(), {"sh", "-c", "ulimit -S -n 256 && exec \"$@\"", "sh"});
+  EXPECT_THAT(List(Known("alice")), ExitsWith(0));
+  const double before = server_->ResidentMiB();
+  const auto silent = HalfOpen(server_->address(), 500, "");
+  const auto begun = HalfOpen(server_->address(), 500, "\x16\x03\x01");
+  EXPECT_THAT(List(Known("alice")), ExitsWith(0));
+  EXPECT_LT(server_->ResidentMiB() - before, kMiB);
+}
+
+TEST_F(Security, WithoutDescriptorsTheLogSaysThatNobodyCanConnect) {
+  Start({}, {"sh", "-c", "ulimit -n 64 && exec \"$@\"", "sh"});
+  const auto connections = HalfOpen(server_->address(), 100, "");
+  EXPECT_TRUE(server_->AwaitLog("the server accepts no more connections; raise its limit"));
 }
 
 TEST_F(Security, SighupReadsTheFilesAgainAndIgnoresInvalidOnes) {
@@ -191,18 +222,8 @@ TEST_F(Security, UnsafeFlagsExitWithTwoAndOneLine) {
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
   };
   expect({"--listen", "0.0.0.0:0"}, "missing: --tls-certificate and --tls-key and --access-file");
-  expect({"--listen", "127.0.0.1:0", "--access-file", home_.File("access")},
-         "others could read the tokens");
-  expect(Joined({TlsFlags(), {"--listen", "unix:" + home_.File("s")}}), "over a Unix socket");
-  expect({"--socket-mode", "0666"}, "--socket-mode=0666 needs --listen=unix:PATH");
-  const std::string socket = "unix:" + home_.File("s");
-  expect({"--listen", socket, "--socket-mode", "0660"}, "--socket-mode=0660 needs --socket-group");
-  expect({"--listen", socket, "--socket-mode", "0660", "--socket-group", "no-such-group"},
-         "--socket-group=no-such-group: there is no such group");
-  expect({"--listen", "127.0.0.1:0", "--socket-mode", "0600"},
-         "--socket-mode=0600 needs --listen=unix:PATH, not --listen=127.0.0.1:0");
-  expect(Joined({TlsFlags(), {"--listen", "127.0.0.1:0", "--loopback-role", "admin"}}),
-         "--loopback-role=admin cannot be combined with --access-file");
+  expect(Joined({TlsFlags(), {"--listen", "unix:" + home_.File("s")}}),
+         "can open its Unix socket; it cannot be combined with --access-file");
   expect({"--new-token", "alice:read"}, "--access-file is missing");
   chmod(home_.File("server.key").c_str(), 0644);
   expect(Joined({TlsFlags(), {"--listen", "127.0.0.1:0"}}), "is open to other users");
@@ -223,7 +244,7 @@ TEST_F(Security, NoTokenIsInTheLogTheStoreOrTheOutputOfAClient) {
   Write("access", "token " + tokens[1] + " bob submit\n");
   server_->Signal(SIGHUP);
   ASSERT_TRUE(server_->AwaitLog("not reloaded"));
-  EXPECT_THAT(List({"--token-file", home_.File("token_gone")}), ExitsWith(2));
+  EXPECT_THAT(List({"--token-file", home_.File("token_gone")}), ExitsWith(3));  // without TLS
   server_->Stop();
   std::string all = client_output_ + server_->log() + access;
   for (const auto& entry : std::filesystem::directory_iterator(server_->data_dir())) {

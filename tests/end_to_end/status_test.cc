@@ -7,7 +7,6 @@
 
 #include <string>
 
-#include "absl/strings/str_split.h"
 #include "tests/end_to_end/programs.h"
 #include "tests/support/await.h"
 
@@ -45,17 +44,10 @@ TEST(Status, CountsJobsAndSamples) {
   EXPECT_EQ(At(json, "principal").string_value(), "local");
 }
 
-TEST(Status, LogLinesAreJsonOnRequest) {
-  TestServer server({.flags = {"--log-format", "json", "--metrics-listen", "127.0.0.1:0"}});
+TEST(Status, TheLogNamesTheAddressOfTheMetrics) {
+  TestServer server({.flags = {"--metrics-listen", "127.0.0.1:0"}});
   EXPECT_EQ(server.Stop(), 0);
-  const std::string log = server.log();
-  EXPECT_TRUE(log.ends_with("\n"));
-  for (const auto text : absl::StrSplit(log, '\n', absl::SkipEmpty())) {
-    const auto line = ParseJson(std::string(text));
-    EXPECT_EQ(At(line, "severity").string_value(), "INFO");
-    EXPECT_NE(At(line, "message").string_value(), "");
-  }
-  EXPECT_THAT(log, HasSubstr("metrics at http://127.0.0.1:"));
+  EXPECT_THAT(server.log(), HasSubstr("metrics at http://127.0.0.1:"));
 }
 
 // A full pipe without a reader.
@@ -68,6 +60,16 @@ class FullPipe {
     while (write(descriptor_, block.data(), block.size()) > 0) continue;
   }
   ~FullPipe() { close(descriptor_); }
+
+  // Empties the pipe.
+  std::string Read() const {
+    std::string text;
+    std::string block(4096, 0);
+    for (ssize_t n = 0; (n = read(descriptor_, block.data(), block.size())) > 0;) {
+      text.append(block, 0, static_cast<size_t>(n));
+    }
+    return text;
+  }
 
  private:
   int descriptor_ = -1;
@@ -86,7 +88,9 @@ TEST(Status, TheServerGoesOnWhenNobodyReadsItsLog) {
   for (int i = 0; i < 3; ++i) {
     EXPECT_THAT(ask("run equilibrium --rho 0.53 --delta 0.2 --collisions 100"), ExitsWith(0));
   }
+  log.Read();
   EXPECT_EQ(server.Stop(), 0);
+  EXPECT_THAT(log.Read(), HasSubstr("warning: lines were dropped: the log was not read (lines="));
 }
 
 TEST(Status, MetricsForOtherMachinesAreRejected) {

@@ -3,7 +3,7 @@
 #include "client/library/server_address.h"
 
 #include "absl/strings/match.h"
-#include "server/listen_address.h"
+#include "server/door/listen_address.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace ballpiston::fuzz {

@@ -123,11 +123,11 @@ TEST(IncludeRules, GeometryIncludesNothingAboveIt) {
 }
 
 TEST(IncludeRules, FoldersOfTheServerIncludeInOneDirection) {
-  ExpectWrong("server/convert/x.h", "\"server/security/principal.h\"");
+  ExpectWrong("server/convert/x.h", "\"server/door/principal.h\"");
   ExpectWrong("server/convert/x.h", "\"server/scheduling/lease.h\"");
   ExpectWrong("server/scheduling/x.cc", "\"server/execution/thread_executor.h\"");
   ExpectWrong("server/store/x.cc", "\"server/jobs/job.h\"");
-  ExpectWrong("server/security/x.cc", "\"server/api/call.h\"");
+  ExpectWrong("server/door/x.cc", "\"server/api/call.h\"");
 }
 
 TEST(IncludeRules, ClosedFormAndSamplingAreSeparate) {

@@ -23,16 +23,15 @@ ServerOptions OptionsIn(const std::string& data_dir, const TestServerOptions& op
   ServerOptions all;
   all.data_dir = data_dir;
   all.listen = options.listen;
-  all.security = options.security;
-  all.socket_users = options.socket_users;
+  all.door = options.door;
+  all.door.own_tokens = data_dir + "/tokens";
   all.workers = options.workers;
   all.factory = options.factory;
   all.watch = options.watch;
   all.connections = options.connections;
   all.limits = options.limits;
   all.metrics_listen = options.metrics_listen;
-  // On a busy machine a commit may take long although the disk does not hang.
-  all.store = {.delay = std::chrono::milliseconds(1), .stall = kNever};
+  all.store = options.store;
   return all;
 }
 

@@ -9,7 +9,6 @@
 
 #include <chrono>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -31,23 +30,21 @@ namespace ballpiston::server {
 struct TestServerOptions {
   std::string data_dir = {};  // empty: a temporary folder, removed with the server
   std::string listen = {};    // empty: a Unix socket in the data folder
-  SecurityOptions security = {};
-  std::set<uid_t> socket_users = OwnUserAndRoot();
+  DoorOptions door = {};
   int workers = 2;
   ExperimentFactory factory = FakeExperiments();  // null: the core's, by the chosen model
   WatchTiming watch = {.snapshot = std::chrono::milliseconds(2)};
   ConnectionTiming connections = {};
   Limits limits = {};
   std::string metrics_listen = {};
+  // On a busy machine a commit may take long although the disk does not hang.
+  Store::Options store = {.delay = std::chrono::milliseconds(1), .stall = kNever};
   std::shared_ptr<grpc::ChannelCredentials> credentials = nullptr;  // the client's; null: none
 };
 
 // Silent and old connections stay open.
-inline constexpr ConnectionTiming kOnlyClosedByAStop = {.handshake = kNever,
-                                                        .ping_interval = kNever,
-                                                        .ping_timeout = kNever,
-                                                        .certified_age = kNever,
-                                                        .certified_age_grace = kNever};
+inline constexpr ConnectionTiming kOnlyClosedByAStop = {
+    .handshake = kNever, .ping_interval = kNever, .ping_timeout = kNever};
 
 // A channel, and frequent calls on it. Calls that do not return a status expect OK.
 class TestClient {

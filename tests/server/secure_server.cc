@@ -4,13 +4,14 @@
 
 #include <utility>
 
-#include "server/security/access_entry.h"
+#include "server/door/access_list.h"
+#include "server/door/sha256.h"
 #include "tests/support/files.h"
 
 namespace ballpiston::server {
 
 std::string TokenLine(const std::string& token, const Principal& principal, absl::Time expires) {
-  return FormatAccessEntry({HashOf(token), principal, expires}) + "\n";
+  return FormatAccessEntry({Sha256(token), principal, expires}) + "\n";
 }
 
 std::string LaboratoryTokens() {
@@ -21,22 +22,18 @@ std::string LaboratoryTokens() {
          TokenLine(kBob, {"bob", Role::kSubmit}) + TokenLine(kOps, {"ops", Role::kAdmin});
 }
 
-std::shared_ptr<grpc::ChannelCredentials> TlsCredentials(const std::string& ca,
-                                                         const KeyAndCertificate& own) {
+std::shared_ptr<grpc::ChannelCredentials> TlsCredentials(const std::string& ca) {
   grpc::SslCredentialsOptions options;
   options.pem_root_certs = ca;
-  options.pem_cert_chain = own.certificate;
-  options.pem_private_key = own.key;
   return grpc::SslCredentials(options);
 }
 
 // ---- LaboratoryFiles ----
 
-LaboratoryFiles::LaboratoryFiles(bool mutual) {
+LaboratoryFiles::LaboratoryFiles() {
   options_.access_file = Path("access");
   options_.tls_certificate = Path("server.pem");
   options_.tls_key = Path("server.key");
-  if (mutual) options_.tls_client_ca = Write("clients.pem", authority_.Pem());
   WriteAccessFile(LaboratoryTokens());
   WriteCertificate(authority_.Issue("server-1"));
 }
@@ -54,15 +51,15 @@ void LaboratoryFiles::WriteCertificate(const KeyAndCertificate& made) const {
 }
 
 std::shared_ptr<grpc::ChannelCredentials> LaboratoryFiles::Credentials(
-    const std::string& token, const KeyAndCertificate& own) const {
-  const auto tls = TlsCredentials(authority_.Pem(), own);
+    const std::string& token) const {
+  const auto tls = TlsCredentials(authority_.Pem());
   if (token.empty()) return tls;
   return grpc::CompositeChannelCredentials(tls, grpc::AccessTokenCredentials(token));
 }
 
 TestServerOptions Secure(const LaboratoryFiles& files, TestServerOptions options) {
   if (options.listen.empty()) options.listen = "127.0.0.1:0";
-  options.security = files.options();
+  options.door = files.options();
   if (options.credentials == nullptr) options.credentials = files.Credentials();
   return options;
 }

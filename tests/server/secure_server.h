@@ -14,7 +14,7 @@
 
 #include "absl/time/time.h"
 #include "grpcpp/security/credentials.h"
-#include "server/security/principal.h"
+#include "server/door/principal.h"
 #include "tests/credentials/test_authority.h"
 #include "tests/server/running_server.h"
 #include "tests/support/temporary_folder.h"
@@ -32,17 +32,15 @@ std::string TokenLine(const std::string& token, const Principal& principal,
                       absl::Time expires = absl::InfiniteFuture());
 std::string LaboratoryTokens();
 
-// TLS to a server with a certificate by the authority `ca` (PEM). `own` is the client's
-// certificate; it may be empty.
-std::shared_ptr<grpc::ChannelCredentials> TlsCredentials(const std::string& ca,
-                                                         const KeyAndCertificate& own = {});
+// TLS to a server with a certificate by the authority `ca` (PEM).
+std::shared_ptr<grpc::ChannelCredentials> TlsCredentials(const std::string& ca);
 
 // A folder with an access file of these tokens, and certificates of an authority of its own.
 class LaboratoryFiles {
  public:
-  explicit LaboratoryFiles(bool mutual = false);
+  LaboratoryFiles();
 
-  const SecurityOptions& options() const { return options_; }
+  const DoorOptions& options() const { return options_; }
   const TestAuthority& authority() const { return authority_; }
   std::string Path(const std::string& name) const { return folder_.File(name); }
 
@@ -53,13 +51,12 @@ class LaboratoryFiles {
 
   // The credentials of a client that trusts the laboratory's authority and sends the token with
   // each call. If `token` is empty, the client sends none.
-  std::shared_ptr<grpc::ChannelCredentials> Credentials(const std::string& token = "",
-                                                        const KeyAndCertificate& own = {}) const;
+  std::shared_ptr<grpc::ChannelCredentials> Credentials(const std::string& token = "") const;
 
  private:
   TemporaryFolder folder_;
   TestAuthority authority_{"the laboratory's authority"};
-  SecurityOptions options_;
+  DoorOptions options_;
 };
 
 // These options with the laboratory's TLS, at any free port of this machine. The client of the

@@ -1,4 +1,7 @@
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -13,8 +16,12 @@
 #include "gtest/gtest.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/hanging_disk.h"
+#include "tests/server/http_get.h"
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"
+#include "tests/server/secure_server.h"
+#include "tests/server/unread_call.h"
 #include "tests/support/await.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
@@ -37,7 +44,7 @@ void ExpectStartRefused(const TestServerOptions& options, const std::string& why
 TEST(StartStop, TheAddressHasTheChosenPort) {
   RunningServer server({.listen = "127.0.0.1:0"});
   EXPECT_THAT(server.address(), Not(HasSubstr(":0")));
-  server.Submit(Equilibrium(1, 2));
+  EXPECT_OK(CallByName(server.channel(), kCheckHealth));
 }
 
 TEST(StartStop, APortInUseIsRefused) {
@@ -64,14 +71,28 @@ TEST(StartStop, ASocketOfAnotherServerIsRefused) {
   server.Submit(Equilibrium(1, 2));  // the first server still answers
 }
 
-TEST(StartStop, AStaleSocketIsReplacedByOneOfMode0600) {
+TEST(StartStop, OtherFilesAtASocketsPathStay) {
+  const TemporaryFolder folder;
+  const std::string precious = folder.File("precious"), datagrams = folder.File("datagrams");
+  WriteFile(precious, "x");
+  ExpectStartRefused({.listen = "unix:" + precious}, "choose another address");
+  EXPECT_EQ(Contents(precious), "x");
+  const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_un local{.sun_family = AF_UNIX, .sun_path = {}};
+  datagrams.copy(local.sun_path, sizeof(local.sun_path) - 1);
+  ASSERT_EQ(bind(descriptor, reinterpret_cast<const sockaddr*>(&local), sizeof(local)), 0);
+  ExpectStartRefused({.listen = "unix:" + datagrams}, "choose another path");
+  EXPECT_TRUE(std::filesystem::exists(datagrams));
+  close(descriptor);
+}
+
+TEST(StartStop, AStaleSocketIsReplaced) {
   TemporaryFolder folder;
   const std::string stale = folder.File("server.socket");
   { RunningServer server({.data_dir = folder.path()}); }
   ASSERT_EQ(mknod(stale.c_str(), S_IFSOCK | 0777, 0), 0);
   RunningServer server({.data_dir = folder.path()});
   server.Submit(Equilibrium(1, 2));
-  EXPECT_EQ(ModeOf(stale), 0600u);
 }
 
 TEST(StartStop, ADamagedStoreIsRefused) {
@@ -94,6 +115,28 @@ TEST(StartStop, StoppingDoesNotWaitForAnEndlessBlock) {
   server.Shutdown(kNever);
   EXPECT_EQ(begun, 3);
   EXPECT_EQ(gate.waiting(), 0);
+}
+
+// A stop that waited for more than the end of the time to drain would never end.
+TEST(StartStop, HungClientsDoNotDelayAStop) {
+  const LaboratoryFiles files;
+  Gate gate;
+  RunningServer server(Secure(files, {.factory = GatedExperiments(gate),
+                                      .connections = kOnlyClosedByAStop,
+                                      .credentials = files.Credentials(kAlice)}));
+  v1::WatchEnsembleJobRequest request;
+  request.set_name(server.Submit(Equilibrium(1000, 1)));
+  const Connection no_handshake(server.address());
+  Connection half_a_handshake(server.address());
+  half_a_handshake.Send("\x16\x03\x01");
+  const SilentTlsConnection silent(server.address());
+  EXPECT_EQ(silent.served_common_name(), "server-1");
+  UnreadCall watch(server.channel(), kWatchJob);
+  watch.Send(request.SerializeAsString());
+  UnreadCall health(server.channel(), kWatchHealth);
+  health.Send(kWholeServer);
+  server.Shutdown(std::chrono::milliseconds(300));
+  EXPECT_THAT(CallByName(server.channel(), kCheckHealth), StatusIs(grpc::StatusCode::UNAVAILABLE));
 }
 
 TEST(StartStop, AServerWithoutCallsAndJobsIsIdle) {
@@ -125,12 +168,29 @@ std::string HealthOf(RunningServer& server, const std::string& service) {
   return std::string(slice.begin(), slice.end());
 }
 
+constexpr char kServing[] = "\x08\x01";
+
 TEST(StartStop, HealthIsServedForTheWholeAndForEachService) {
   RunningServer server;
   for (const char* service : {"", "ballpiston.v1.EnsembleService", "ballpiston.v1.AnalyticService",
-                              "ballpiston.v1.ServerService"}) {
-    EXPECT_EQ(HealthOf(server, service), "\x08\x01") << service;
+                              "ballpiston.v1.TraceService", "ballpiston.v1.ServerService"}) {
+    EXPECT_EQ(HealthOf(server, service), kServing) << service;
   }
+}
+
+TEST(StartStop, OnlyTheServiceThatNeedsTheStoreStopsServingWhileTheDiskHangs) {
+  HangingDisk disk;
+  RunningServer server({.store = {.stall = std::chrono::milliseconds(1), .vfs = disk.vfs()}});
+  const auto is_serving = [&] {
+    return HealthOf(server, "ballpiston.v1.EnsembleService") == kServing;
+  };
+  disk.Hang();
+  const auto waiting = std::async([&] { server.Create(CreateRequest(Equilibrium(1, 1))); });
+  AwaitThat([&] { return !is_serving(); });
+  EXPECT_EQ(HealthOf(server, ""), kServing);
+  EXPECT_EQ(HealthOf(server, "ballpiston.v1.AnalyticService"), kServing);
+  disk.Resume();
+  AwaitThat(is_serving);
 }
 
 }  // namespace

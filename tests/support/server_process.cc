@@ -20,7 +20,6 @@ constexpr char kReady[] = "listening on ";
 std::map<std::string, std::string> CleanEnvironment(const TemporaryFolder& home) {
   return {{"HOME", home.path()},         {"XDG_STATE_HOME", ""},
           {"BALLPISTON_SERVER", ""},     {"BALLPISTON_CA", ""},
-          {"BALLPISTON_CERT", ""},       {"BALLPISTON_KEY", ""},
           {"BALLPISTON_TLS", ""},        {"BALLPISTON_TOKEN", ""},
           {"BALLPISTON_TOKEN_FILE", ""}, {"BALLPISTON_SERVER_PROGRAM", ""},
           {"BALLPISTON_FAILPOINT", ""},  {"XDG_CONFIG_HOME", ""},

@@ -1,10 +1,14 @@
 """How a channel proves which server it is, and who calls.
 
-    nothing set        no encryption: a Unix socket, a server on this machine, or a tunnel to one
+    nothing set        no encryption: a Unix socket, or a server on the loopback
     tls                TLS; the server's certificate is signed by an authority of this system
     ca                 TLS; it is signed by an authority in this file
-    certificate, key   TLS; the client shows a certificate of its own
-    token              sent with every call, over TLS only
+    token              sent with every call, over TLS or to a loopback address
+
+To a loopback address without a token goes that of the user's own server, if one listens there. The
+server makes it at each start, and keeps it in a file that only its user can read:
+
+    $XDG_STATE_HOME/ballpiston/tokens/127.0.0.1:50051    (~/.local/state if it is not set)
 """
 
 from __future__ import annotations
@@ -18,7 +22,7 @@ from typing import Any
 import grpc
 
 from ballpiston.errors import PermissionDenied
-from ballpiston.server_address import is_socket
+from ballpiston.server_address import is_loopback, is_socket
 
 _MOST_FILE_BYTES = 1 << 20
 _LONGEST_TOKEN = 256
@@ -30,14 +34,12 @@ class ChannelSecurity:
 
     tls: bool = False
     ca: str = ""
-    certificate: str = ""
-    key: str = ""
     token_file: str = ""
     token: str = field(default="", repr=False)
 
     @property
     def has_tls(self) -> bool:
-        return self.tls or bool(self.ca or self.certificate or self.key)
+        return self.tls or bool(self.ca)
 
     @property
     def has_token(self) -> bool:
@@ -56,13 +58,11 @@ def check(security: ChannelSecurity, address: str) -> None:
     """
     if is_socket(address) and not security.is_empty:
         raise ValueError(
-            "a Unix socket uses no TLS and no token: the system tells the server who you are"
+            "a Unix socket uses no TLS and no token: only the server's own user can open it"
         )
-    if bool(security.certificate) != bool(security.key):
-        raise ValueError("a certificate and its key have to be given together")
-    if security.has_token and not security.has_tls:
+    if security.has_token and not security.has_tls and not is_loopback(address):
         raise ValueError(
-            "a token is not sent over a connection that others can read: use TLS "
+            "a token is not sent to another machine over a connection that others can read: use TLS "
             "(ca=FILE, or tls=True for the authorities of this system)"
         )
 
@@ -77,11 +77,7 @@ def credentials_of(security: ChannelSecurity) -> Any | None:
     if not security.has_tls:
         return None
     channel = grpc.ssl_channel_credentials(
-        root_certificates=_pem(security.ca, "authority file", "-----BEGIN CERTIFICATE-----"),
-        private_key=_pem(security.key, "key file", "PRIVATE KEY-----", is_secret=True),
-        certificate_chain=_pem(
-            security.certificate, "certificate file", "-----BEGIN CERTIFICATE-----"
-        ),
+        root_certificates=_pem(security.ca, "authority file", "-----BEGIN CERTIFICATE-----")
     )
     if not security.has_token:
         return channel
@@ -89,11 +85,29 @@ def credentials_of(security: ChannelSecurity) -> Any | None:
     return grpc.composite_channel_credentials(channel, caller)
 
 
-def _pem(path: str, what: str, kind: str, is_secret: bool = False) -> bytes | None:
+def loopback_metadata(security: ChannelSecurity, address: str) -> list[tuple[str, str]]:
+    """The metadata of a call without encryption: the token, to a loopback address only."""
+    if security.has_tls or not is_loopback(address):
+        return []
+    token = _token_of(security) if security.has_token else _own_token(address)
+    return [("authorization", f"Bearer {token}")] if token else []
+
+
+def _own_token(address: str) -> str:
+    """Read for each call: a server that starts again makes another token."""
+    state = os.environ.get("XDG_STATE_HOME", "")
+    root = Path(state) if state.startswith("/") else Path.home() / ".local" / "state"
+    try:
+        return (root / "ballpiston" / "tokens" / address).read_text().strip()
+    except OSError:
+        return ""
+
+
+def _pem(path: str, what: str, kind: str) -> bytes | None:
     """PEM, at least by its looks: gRPC would only say that there is no connection."""
     if not path:
         return None
-    data = _contents(path, what, is_secret)
+    data = _contents(path, what, is_secret=False)
     if kind.encode() not in data:
         raise ValueError(f'the {what} {path} does not contain "{kind}": it has to be a PEM file')
     return data

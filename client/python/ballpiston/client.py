@@ -44,8 +44,6 @@ def connect(
     *,
     ca: str | None = None,
     tls: bool | None = None,
-    certificate: str | None = None,
-    key: str | None = None,
     token_file: str | None = None,
     timeout: float = 60.0,
 ) -> Client:
@@ -59,10 +57,8 @@ def connect(
         address: "host:port" or "unix:PATH".
         ca: TLS; PEM file of the authority that signed the server's certificate [BALLPISTON_CA].
         tls: TLS; with the authorities of this system [BALLPISTON_TLS=1].
-        certificate: TLS; PEM file of your certificate, if the server wants one [BALLPISTON_CERT].
-        key: PEM file of its private key, which other users cannot read [BALLPISTON_KEY].
         token_file: file with your token, which other users cannot read [BALLPISTON_TOKEN_FILE, or
-            the token itself in BALLPISTON_TOKEN]. A token is sent over TLS only.
+            the token itself in BALLPISTON_TOKEN]. A token is sent over TLS or to a loopback address.
         timeout: seconds for each single call; watches and traces have none.
 
     If an argument is not given, the variable in brackets is used, else the config file. Over a Unix
@@ -70,7 +66,7 @@ def connect(
 
     Raises:
         ValueError: not an address, or a file that cannot be used.
-        PermissionDenied: other users can read the key or the token file.
+        PermissionDenied: other users can read the token file.
         NoPrivateServer: the private server cannot be started.
 
     Example:
@@ -79,8 +75,7 @@ def connect(
         ...                         token_file="ada.token") as client:
         ...     client.status()
     """
-    arguments = {"address": address, "ca": ca, "tls": tls, "certificate": certificate}
-    arguments |= {"key": key, "token_file": token_file}
+    arguments = {"address": address, "ca": ca, "tls": tls, "token_file": token_file}
     named, security = address_and_security({k: v for k, v in arguments.items() if v is not None})
     if named:
         return Client(Connection(named, security, timeout=timeout))

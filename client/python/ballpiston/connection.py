@@ -14,11 +14,12 @@ from typing import Any
 import grpc
 
 from ballpiston.channel import open_channel
-from ballpiston.channel_security import ChannelSecurity
+from ballpiston.channel_security import ChannelSecurity, loopback_metadata
 from ballpiston.connection_hint import connection_hint
 from ballpiston.error_details import from_rpc_error
 from ballpiston.errors import Error, Unavailable
 from ballpiston.private_server import PrivateServer
+from ballpiston.server_address import literal_address
 from ballpiston.v1 import analytic_pb2_grpc, ensemble_pb2_grpc, server_pb2_grpc, trace_pb2_grpc
 
 _REVIVE_SECONDS = 10.0
@@ -38,11 +39,11 @@ class Connection:
         private: PrivateServer | None = None,
         timeout: float = 60.0,
     ) -> None:
-        self.address = address
+        self.address = address if security.has_tls else literal_address(address)
         self.security = security
         self.private = private
         self.timeout = timeout
-        self.channel = open_channel(address, security)
+        self.channel = open_channel(self.address, security)
         # Also at the interpreter's exit: gRPC's own destructor comes after its threads were killed,
         # and would wait forever for a lock that one of them held.
         self.close = weakref.finalize(self, self.channel.close)
@@ -66,7 +67,8 @@ class Connection:
     ) -> Any:
         """The answer to a single attempt, apart from those of the channel's retry policy."""
         try:
-            return method(request, timeout=self.timeout if timeout is None else timeout)
+            seconds = self.timeout if timeout is None else timeout
+            return method(request, timeout=seconds, metadata=self._metadata())
         except grpc.RpcError as error:
             raise self.error_of(error) from None
 
@@ -75,12 +77,15 @@ class Connection:
         not interrupt: a call that is interrupted while it begins is never read by gRPC, and the
         interpreter would wait for it forever at its exit."""
         with ThreadPoolExecutor(max_workers=1) as thread:
-            begun = thread.submit(method, request)
+            begun = thread.submit(method, request, metadata=self._metadata())
             try:
                 return begun.result()
             except KeyboardInterrupt:
                 begun.result().cancel()
                 raise
+
+    def _metadata(self) -> list[tuple[str, str]]:
+        return loopback_metadata(self.security, self.address)
 
     def error_of(self, rpc_error: grpc.RpcError) -> Error:
         """The exception for a failed call. An error without a reason is one of the connection: its

@@ -26,8 +26,8 @@ def _socket_hint(message: str) -> str:
     if not _was_closed(message) and "Permission denied" not in message:
         return ""
     return (
-        "perhaps that server does not accept your user: its operator can open the socket to other "
-        "users with --socket-mode"
+        "perhaps it is another user's server: only its own user can open a Unix socket; the users of "
+        "a machine share a server at a loopback address, each with a token"
     )
 
 
@@ -47,14 +47,5 @@ def _tls_hint(security: ChannelSecurity, message: str) -> str:
     if "is not in peer certificate" in message:
         return "the server's certificate is for another host: write the host as it stands there"
     if "wrong version number" in message or "packet length too long" in message:
-        return "that server does not use TLS: leave out ca, tls, certificate and key"
-    if not security.certificate and (
-        "Socket closed" in message or "certificate required" in message
-    ):
-        return "if that server wants a certificate of yours: certificate=FILE, key=FILE"
-    if "Socket closed" in message or "alert" in message:
-        return (
-            f"the server may not accept the certificate in {security.certificate}: it has expired, "
-            "or another authority signed it"
-        )
+        return "that server does not use TLS: leave out ca and tls"
     return ""

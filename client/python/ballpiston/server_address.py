@@ -6,6 +6,8 @@
 
 from __future__ import annotations
 
+import ipaddress
+
 _LONGEST_SOCKET_PATH = 100  # bytes; sun_path holds 108 on Linux
 _SOCKET_SCHEME = "unix:"
 
@@ -13,6 +15,22 @@ _SOCKET_SCHEME = "unix:"
 def is_socket(address: str) -> bool:
     """Whether it is the address of a Unix socket."""
     return address.startswith(_SOCKET_SCHEME)
+
+
+def literal_address(address: str) -> str:
+    """With 127.0.0.1 for the name localhost, which could also mean ::1: there another user's server
+    may listen."""
+    host, _, port = address.rpartition(":")
+    return f"127.0.0.1:{port}" if host == "localhost" else address
+
+
+def is_loopback(address: str) -> bool:
+    """Whether only programs of this machine can be at the address."""
+    host = address.rpartition(":")[0]
+    try:
+        return ipaddress.ip_address(host.strip("[]")).is_loopback
+    except ValueError:
+        return False
 
 
 def grpc_target(address: str) -> str:

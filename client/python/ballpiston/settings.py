@@ -5,8 +5,6 @@ file of the command line, ~/.config/ballpiston/config.toml.
     address       BALLPISTON_SERVER        server
     ca            BALLPISTON_CA            ca
     tls           BALLPISTON_TLS           tls
-    certificate   BALLPISTON_CERT          cert
-    key           BALLPISTON_KEY           key
     token_file    BALLPISTON_TOKEN_FILE    token-file
                   BALLPISTON_TOKEN
 """
@@ -26,8 +24,6 @@ _VARIABLES = {
     "address": "BALLPISTON_SERVER",
     "ca": "BALLPISTON_CA",
     "tls": "BALLPISTON_TLS",
-    "certificate": "BALLPISTON_CERT",
-    "key": "BALLPISTON_KEY",
     "token_file": "BALLPISTON_TOKEN_FILE",
     "token": "BALLPISTON_TOKEN",
 }
@@ -35,8 +31,6 @@ _KEYS = {
     "address": "server",
     "ca": "ca",
     "tls": "tls",
-    "certificate": "cert",
-    "key": "key",
     "token_file": "token-file",
 }
 _TRUE = ("1", "true", "yes", "on", "enable")

@@ -49,8 +49,6 @@ struct Ranked {
 const Ranked kRanked[] = {
     {"server", {"a:1", "b:1", "c:1", "d:1"}, [](const Options& o) { return o.server; }},
     {"ca", {"a", "b", "c", "d"}, [](const Options& o) { return o.security.ca; }},
-    {"cert", {"a", "b", "c", "d"}, [](const Options& o) { return o.security.certificate; }},
-    {"key", {"a", "b", "c", "d"}, [](const Options& o) { return o.security.key; }},
     {"token-file", {"a", "b", "c", "d"}, [](const Options& o) { return o.security.token_file; }},
     {"progress",
      {"none", "json", "bar", "auto"},
@@ -130,8 +128,7 @@ TEST_F(ConfigFileTest, AValueForOtherVerbsIsSkipped) {
 TEST_F(ConfigFileTest, EveryVariableReachesItsOption) {
   const std::pair<const char*, const char*> variables[] = {
       {"BALLPISTON_SERVER", "h:1"},   {"BALLPISTON_CA", "ca"},
-      {"BALLPISTON_TLS", "true"},     {"BALLPISTON_CERT", "cert"},
-      {"BALLPISTON_KEY", "key"},      {"BALLPISTON_TOKEN_FILE", "file"},
+      {"BALLPISTON_TLS", "true"},     {"BALLPISTON_TOKEN_FILE", "file"},
       {"BALLPISTON_TOKEN", "secret"}, {"BALLPISTON_PROGRESS", "json"},
       {"BALLPISTON_QUIET", "1"},      {"BALLPISTON_VERBOSE", "yes"}};
   for (const auto& [name, value] : variables) setenv(name, value, 1);  // EmptyHome restores them
@@ -140,8 +137,6 @@ TEST_F(ConfigFileTest, EveryVariableReachesItsOption) {
   EXPECT_EQ(options.server, "h:1");
   EXPECT_EQ(options.security.ca, "ca");
   EXPECT_TRUE(options.security.tls);
-  EXPECT_EQ(options.security.certificate, "cert");
-  EXPECT_EQ(options.security.key, "key");
   EXPECT_EQ(options.security.token_file, "file");
   EXPECT_EQ(options.security.token, "secret");
   EXPECT_EQ(options.progress, ProgressStyle::kJson);

@@ -4,10 +4,14 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <filesystem>
 #include <string>
 
 #include "client/library/connection_hint.h"
+#include "client/library/own_token.h"
+#include "client/library/server_address.h"
 #include "tests/support/files.h"
+#include "tests/support/scoped_variable.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -22,31 +26,38 @@ constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
 constexpr auto kDenied = absl::StatusCode::kPermissionDenied;
 
 constexpr char kSecret[] = "hunter2hunter2";
-constexpr char kPem[] = "-----BEGIN CERTIFICATE-----\n";
-constexpr char kKeyPem[] = "-----BEGIN PRIVATE KEY-----\n";
 
-TEST(ChannelSecurity, ATokenIsNotSentWithoutTls) {
-  for (const char* address : {"localhost:1", "127.0.0.1:1", "example.org:1"}) {
-    EXPECT_THAT(
-        CheckSecurity({.token = kSecret}, address),
-        StatusIs(kInvalid, AllOf(HasSubstr("unencrypted connection"), Not(HasSubstr(kSecret)))));
+TEST(ChannelSecurity, ATokenIsSentInTheClearToALoopbackAddressOnly) {
+  for (const char* address : {"example.org:1", "192.168.0.7:1", "[::2]:1", "127.example.org:1"}) {
+    EXPECT_THAT(CheckSecurity({.token = kSecret}, address),
+                StatusIs(kInvalid, AllOf(HasSubstr("use TLS"), Not(HasSubstr(kSecret)))));
     EXPECT_THAT(CheckSecurity({.token_file = "f"}, address), StatusIs(kInvalid));
     EXPECT_OK(CheckSecurity({.tls = true, .token = kSecret}, address));
     EXPECT_OK(CheckSecurity({.ca = "f", .token_file = "f"}, address));
     EXPECT_OK(CheckSecurity({}, address));
   }
+  for (const char* address : {"127.0.0.1:1", "127.3.2.1:1", "[::1]:1"}) {
+    EXPECT_OK(CheckSecurity({.token = kSecret}, address));
+  }
+  EXPECT_EQ(LiteralAddress("localhost:1"), "127.0.0.1:1");
+}
+
+// A server makes another token at each start.
+TEST(ChannelSecurity, TheOwnTokenIsThatOfTheAddress) {
+  const TemporaryFolder state;
+  const ScopedVariable variable("XDG_STATE_HOME", state.path());
+  std::filesystem::create_directories(state.File("ballpiston/tokens"));
+  for (const char* token : {"first", "second"}) {
+    WriteFile(state.File("ballpiston/tokens/127.0.0.1:1"), std::string(token) + "\n");
+    EXPECT_EQ(OwnToken("127.0.0.1:1"), token);
+  }
+  EXPECT_EQ(OwnToken("127.0.0.1:2"), "");
 }
 
 TEST(ChannelSecurity, SettingsAreRejectedForASocket) {
   EXPECT_OK(CheckSecurity({}, "unix:x"));
   EXPECT_THAT(CheckSecurity({.tls = true}, "unix:x"), StatusIs(kInvalid));
   EXPECT_THAT(CheckSecurity({.token_file = "f"}, "unix:x"), StatusIs(kInvalid));
-}
-
-TEST(ChannelSecurity, ACertificateNeedsItsKey) {
-  EXPECT_THAT(CheckSecurity({.certificate = "f"}, "a:1"), StatusIs(kInvalid));
-  EXPECT_THAT(CheckSecurity({.key = "f"}, "a:1"), StatusIs(kInvalid));
-  EXPECT_OK(CheckSecurity({.certificate = "f", .key = "f"}, "a:1"));
 }
 
 class SecurityFiles : public ::testing::Test {
@@ -59,7 +70,7 @@ class SecurityFiles : public ::testing::Test {
   }
   // The error does not show the secret.
   absl::Status Check(const ChannelSecurity& security) {
-    absl::Status status = CredentialsOf(security).status();
+    absl::Status status = CredentialsOf(security, "host:1").status();
     EXPECT_THAT(std::string(status.message()), Not(HasSubstr(kSecret)));
     return status;
   }
@@ -86,32 +97,22 @@ TEST_F(SecurityFiles, ATokenFileThatOthersCanReadIsRejected) {
   }
 }
 
-TEST_F(SecurityFiles, AKeyFileThatOthersCanReadIsRejected) {
-  ChannelSecurity security;
-  security.certificate = Write("cert", kPem, 0644);
-  security.key = Write("key", std::string(kKeyPem) + kSecret);
-  EXPECT_OK(Check(security));
-  security.key = Write("key", std::string(kKeyPem) + kSecret, 0644);
-  EXPECT_THAT(Check(security), StatusIs(kDenied));
-}
-
 TEST_F(SecurityFiles, ErrorsNameTheFileAndTheFault) {
   EXPECT_THAT(Check({.ca = folder_.File("none")}).message(), HasSubstr("none cannot be opened"));
   EXPECT_THAT(Check({.ca = folder_.path()}).message(), HasSubstr("cannot be read"));
   EXPECT_THAT(Check({.ca = Write("ca", kSecret)}).message(), HasSubstr("a PEM file is needed"));
 }
 
-TEST(ConnectionHint, OfAUnixSocketNamesTheFlagOfItsServer) {
+TEST(ConnectionHint, OfAUnixSocketNamesItsOnlyUser) {
   for (const char* message : {"last error: UNAVAILABLE: unix:/run/s: Socket closed",
                               "last error: UNKNOWN: unix:/run/s: Permission denied"}) {
-    EXPECT_THAT(SocketHint(message), HasSubstr("--socket-mode"));
+    EXPECT_THAT(SocketHint(message), HasSubstr("only its own user"));
   }
   EXPECT_EQ(SocketHint("last error: UNKNOWN: unix:/run/s: No such file or directory"), "");
 }
 
 TEST(ConnectionHint, AdvisesTheUser) {
   const ChannelSecurity plain, with_ca{.ca = "ca.pem"}, with_tls{.tls = true};
-  const ChannelSecurity with_certificate{.tls = true, .certificate = "c.pem", .key = "k"};
   const struct {
     const ChannelSecurity& security;
     const char* message;
@@ -122,9 +123,7 @@ TEST(ConnectionHint, AdvisesTheUser) {
       {with_ca, "SSL routines::certificate verify failed", "in ca.pem"},
       {with_tls, "SSL routines::certificate verify failed", "that this system knows"},
       {with_ca, "Peer name x is not in peer certificate", "another host"},
-      {with_ca, "SSL routines::wrong version number", "does not use TLS"},
-      {with_ca, "Socket closed", "--cert FILE --key FILE"},
-      {with_certificate, "Socket closed", "may reject the certificate in c.pem"}};
+      {with_ca, "SSL routines::wrong version number", "does not use TLS"}};
   for (const auto& [security, message, hint] : cases) {
     EXPECT_THAT(ConnectionHint(security, message), HasSubstr(hint)) << message;
   }

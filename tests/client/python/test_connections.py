@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ import ballpiston
 from ballpiston.channel_security import ChannelSecurity, check, credentials_of
 from ballpiston.connection_hint import connection_hint
 from ballpiston.private_server import find_private_server
-from ballpiston.server_address import grpc_target
+from ballpiston.server_address import grpc_target, literal_address
 from ballpiston.settings import address_and_security
 
 
@@ -51,10 +52,13 @@ def test_a_socket_path_has_at_most_100_bytes() -> None:
         grpc_target("unix:" + "x" * 101)
 
 
-def test_a_token_needs_tls() -> None:
-    with pytest.raises(ValueError, match="use TLS"):
-        check(ChannelSecurity(token="secret"), "host:1")
-    check(ChannelSecurity(token="secret", tls=True), "host:1")
+def test_a_token_needs_tls_or_a_loopback_address() -> None:
+    for address in ("host:1", "192.168.0.7:1", "localhost.host:1"):
+        with pytest.raises(ValueError, match="use TLS"):
+            check(ChannelSecurity(token="secret"), address)
+        check(ChannelSecurity(token="secret", tls=True), address)
+    for address in ("127.0.0.1:1", "[::1]:1", literal_address("localhost:1")):
+        check(ChannelSecurity(token="secret"), address)
 
 
 def test_a_socket_needs_neither_tls_nor_token() -> None:
@@ -62,11 +66,6 @@ def test_a_socket_needs_neither_tls_nor_token() -> None:
         ballpiston.connect("unix:/run/socket", tls=True)
     with pytest.raises(ValueError, match="the private server needs no ca"):
         ballpiston.connect(ca="ca.pem")
-
-
-def test_a_certificate_and_its_key_belong_together() -> None:
-    with pytest.raises(ValueError, match="together"):
-        ballpiston.connect("host:1", certificate="c.pem")
 
 
 def test_a_token_file_that_others_can_read_is_rejected(tmp_path: Path) -> None:
@@ -147,7 +146,7 @@ def test_hints_say_what_a_user_can_do() -> None:
     assert "in ca.pem" in connection_hint("host:1", tls, "certificate verify failed")
     assert "does not use TLS" in connection_hint("host:1", tls, "wrong version number")
     assert "ca=FILE" in connection_hint("host:1", ChannelSecurity(), "Socket closed")
-    assert "--socket-mode" in connection_hint("unix:/s", ChannelSecurity(), "Permission denied")
+    assert "only its own user" in connection_hint("unix:/s", ChannelSecurity(), "Permission denied")
     assert connection_hint("host:1", ChannelSecurity(), "connection refused") == ""
 
 
@@ -164,28 +163,53 @@ def make_certificate(folder: Path) -> None:
     (folder / "server.key").chmod(0o600)
 
 
-@pytest.fixture
-def secure_address(home: Home, tmp_path: Path) -> Iterator[str]:
-    """A server with TLS; the file ada.token has a token for it."""
-    make_certificate(tmp_path)
+@contextmanager
+def serving(home: Home, folder: Path, flags: str) -> Iterator[str]:
+    """The address of a server; the file ada.token has a token for it."""
     program = str(home.programs / "ballpistond")
     token = subprocess.run(
         [program, "--access-file", "access", "--new-token", "ada:submit"],
-        cwd=tmp_path,
+        cwd=folder,
         check=True,
         stdout=subprocess.PIPE,
         text=True,
     ).stdout
-    private(tmp_path, "ada.token", token)
-    flags = "--listen 127.0.0.1:0 --data-dir data --tls-certificate server.pem --tls-key server.key"
+    private(folder, "ada.token", token)
+    always = "--listen 127.0.0.1:0 --data-dir data --access-file access"
     server = subprocess.Popen(
-        [program, *flags.split(), "--access-file", "access"], cwd=tmp_path, stderr=-3
+        [program, *always.split(), *flags.split()], cwd=folder, stderr=subprocess.DEVNULL
     )
-    written = tmp_path / "data" / "server.address"
-    wait_until(lambda: written.exists() and written.read_text().endswith("\n"))
-    yield written.read_text().strip().replace("127.0.0.1", "localhost")
-    server.terminate()
-    server.wait()
+    written = folder / "data" / "server.address"
+    try:
+        wait_until(lambda: written.exists() and written.read_text().endswith("\n"))
+        yield written.read_text().strip().replace("127.0.0.1", "localhost")
+    finally:
+        server.terminate()
+        server.wait()
+
+
+@pytest.fixture
+def secure_address(home: Home, tmp_path: Path) -> Iterator[str]:
+    """A server with TLS."""
+    make_certificate(tmp_path)
+    with serving(home, tmp_path, "--tls-certificate server.pem --tls-key server.key") as address:
+        yield address
+
+
+def test_on_the_loopback_only_the_servers_user_needs_no_token(
+    home: Home, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with serving(home, tmp_path, "") as address:
+        with ballpiston.connect(address, timeout=LIMIT) as client:
+            assert client.status().principal == "local"
+        monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))  # as another user
+        with ballpiston.connect(address, timeout=LIMIT) as client:
+            with pytest.raises(ballpiston.Unauthenticated) as caught:
+                client.status()
+            assert caught.value.reason == "CREDENTIALS_MISSING"
+        token_file = str(tmp_path / "ada.token")
+        with ballpiston.connect(address, token_file=token_file, timeout=LIMIT) as client:
+            assert client.status().principal == "ada"
 
 
 def test_tls_and_a_token_reach_a_server_that_wants_them(

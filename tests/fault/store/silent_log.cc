@@ -6,7 +6,7 @@ namespace ballpiston::server {
 namespace {
 
 class SilentLog : public testing::Environment {
-  void SetUp() override { SetLogOptions({.silent = true}); }
+  void SetUp() override { SetLogLevel(Severity::kNone); }
 };
 
 [[maybe_unused]] const auto* const kSilentLog = testing::AddGlobalTestEnvironment(new SilentLog);

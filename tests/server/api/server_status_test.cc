@@ -1,18 +1,22 @@
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <stop_token>
 #include <string>
 #include <thread>
 
+#include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "gmock/gmock.h"
 #include "grpcpp/create_channel.h"
 #include "grpcpp/server.h"
 #include "grpcpp/server_builder.h"
 #include "gtest/gtest.h"
+#include "prometheus/text_serializer.h"
 #include "server/api/methods.h"
 #include "server/api/serve.h"
+#include "server/api/server_metrics.h"
 #include "server/api/services.h"
 #include "server/convert/spec.h"
 #include "tests/server/error_details.h"
@@ -48,6 +52,13 @@ class ServerStatusTest : public testing::Test {
     return *status;
   }
 
+  static std::unique_ptr<grpc::Server> Serve(grpc::Service& service, const std::string& address) {
+    return grpc::ServerBuilder()
+        .RegisterService(&service)
+        .AddListeningPort(address, grpc::InsecureServerCredentials())
+        .BuildAndStart();
+  }
+
   TemporaryFolder folder_;
   Gate gate_;
   const Limits limits_ = {.max_active_jobs = 7,
@@ -56,7 +67,7 @@ class ServerStatusTest : public testing::Test {
                           .max_samples_per_job = 0,
                           .max_calls_per_principal = 73,
                           .max_call_bytes_per_principal = 1000};
-  Authenticator authenticator_;
+  Authenticator authenticator_{/*needs_tokens=*/false};
   std::unique_ptr<Store> store_;
   ModelLadder ladder_{*store_, 2};
   ThreadPool pool_{
@@ -88,10 +99,29 @@ class ServerStatusTest : public testing::Test {
                           .store_path = folder_.File("store.sqlite3")};
 };
 
-TEST(Serve, AnExceptionEndsTheCallOnly) {
-  const auto throws = []() -> absl::Status { throw std::runtime_error("no memory left"); };
-  EXPECT_THAT(WithoutExceptions(throws),
-              StatusIs(absl::StatusCode::kInternal, testing::HasSubstr("no memory left")));
+// Answers every call of EvaluatePairs with an exception.
+class ThrowingService : public ServiceOf<v1::AnalyticService::Service> {
+ public:
+  using ServiceOf::ServiceOf;
+
+  grpc::Status EvaluatePairs(grpc::ServerContext* context, const v1::EvaluatePairsRequest*,
+                             v1::EvaluatePairsResponse*) override {
+    return ServeCall(service_, *context, {"EvaluatePairs", Role::kRead},
+                     [](const Call&) -> absl::Status { throw std::runtime_error("no memory"); });
+  }
+};
+
+TEST_F(ServerStatusTest, AnExceptionEndsTheCallOnly) {
+  ThrowingService service(context_);
+  const std::string address = "unix:" + folder_.File("socket");
+  const auto server = Serve(service, address);
+  TestClient client(OwnChannel(address));
+  for (int i = 0; i < 2; ++i) {
+    grpc::ClientContext context;
+    v1::EvaluatePairsResponse response;
+    EXPECT_THAT(client.analytic().EvaluatePairs(&context, {}, &response),
+                IsError(grpc::StatusCode::INTERNAL, "INTERNAL"));
+  }
 }
 
 TEST_F(ServerStatusTest, CountsQueuedAndRunningWork) {
@@ -141,6 +171,16 @@ TEST_F(ServerStatusTest, OnlyAnAdministratorSeesOtherPrincipals) {
     EXPECT_EQ(own.queued_jobs(), 2);  // of all principals, because they share the queue
   }
   EXPECT_EQ(AskedBy("carol", Role::kSubmit).principals_size(), 0);
+}
+
+TEST_F(ServerStatusTest, TheExpiryOfACertificateIsAMetricIfThereIsOne) {
+  const auto page = [this](std::optional<absl::Time> expiry) {
+    return prometheus::TextSerializer().Serialize(ServerMetrics(context_, expiry));
+  };
+  constexpr char kExpiry[] = "ballpiston_certificate_expiry_timestamp_seconds";
+  EXPECT_THAT(page(std::nullopt), testing::Not(testing::HasSubstr(kExpiry)));
+  EXPECT_THAT(page(absl::FromUnixSeconds(2'000'000'000)),
+              testing::HasSubstr(absl::StrCat("\n", kExpiry, " 2000000000\n")));
 }
 
 TEST_F(ServerStatusTest, AStoppingServerIsDraining) {
@@ -199,10 +239,7 @@ TEST_F(HangingDiskTest, TheStateIsStoreFailing) {
 TEST_F(HangingDiskTest, CallsThatWriteAreRefusedAtOnceAndReadsAnswered) {
   EnsembleService service(context_);
   const std::string address = "unix:" + folder_.File("socket");
-  const auto server = grpc::ServerBuilder()
-                          .RegisterService(&service)
-                          .AddListeningPort(address, grpc::InsecureServerCredentials())
-                          .BuildAndStart();
+  const auto server = Serve(service, address);
   TestClient client(OwnChannel(address));
   for (int i = 0; i < 20; ++i) {
     EXPECT_THAT(client.Create(CreateRequest(Equilibrium(1, 1))),

@@ -515,7 +515,7 @@ TEST_F(WatchTest, WatchesLeaveThreadsToOtherCalls) {
 
 TEST(Streams, AreCountedByPrincipal) {
   const Limits limits = {.max_streams = 3, .max_streams_per_principal = 2};
-  const Authenticator authenticator;
+  const Authenticator authenticator(/*needs_tokens=*/false);
   const std::atomic<bool> draining = false;
   Streams streams(limits, authenticator, kNever, draining);
   grpc::ServerContext context;

@@ -1,5 +1,4 @@
-#include "server/observability/metrics.h"
-
+// The metrics over HTTP.
 #include <cstdlib>
 #include <map>
 #include <optional>
@@ -22,9 +21,12 @@
 namespace ballpiston::server {
 namespace {
 
+using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Key;
 using ::testing::MatchesRegex;
 using ::testing::Not;
+using ::testing::Pair;
 using ::testing::StartsWith;
 
 constexpr char kCreated[] =
@@ -49,12 +51,13 @@ std::map<std::string, double> Samples(const std::string& page) {
   return samples;
 }
 
+// Each test has several expectations: the HTTP server of each takes up to 2 s to stop.
 class MetricsTest : public testing::Test {
  protected:
   RunningServer& Start(bool held = false) {
     server_.emplace(TestServerOptions{.factory = held ? GatedExperiments(gate_) : FakeExperiments(),
                                       .limits = {.max_points_per_job = 10},
-                                      .metrics_listen = "127.0.0.1:0"});
+                                      .metrics_listen = "localhost:0"});
     return *server_;
   }
   std::string Address() { return server_->server().metrics_address(); }
@@ -68,21 +71,6 @@ class MetricsTest : public testing::Test {
   Gate gate_;
   std::optional<RunningServer> server_;
 };
-
-TEST(ServerMetrics, TheEndOfACertificateIsAMetricIfThereIsOne) {
-  const auto names = [](const ServerSnapshot& server) {
-    std::map<std::string, double> values;
-    for (const auto& family : ServerMetrics(server)) {
-      if (!family.metric.empty()) values[family.name] = family.metric[0].gauge.value;
-    }
-    return values;
-  };
-  constexpr char kExpiry[] = "ballpiston_certificate_expiry_timestamp_seconds";
-  ServerSnapshot server;
-  EXPECT_EQ(names(server).count(kExpiry), 0u);
-  server.certificate_expiry = absl::FromUnixSeconds(2'000'000'000);
-  EXPECT_EQ(names(server)[kExpiry], 2e9);
-}
 
 TEST_F(MetricsTest, AHealthWatchEndedByItsClientIsNotLogged) {
   testing::internal::CaptureStderr();
@@ -123,32 +111,35 @@ TEST_F(MetricsTest, AHealthWatchEndedByItsClientIsNotLogged) {
   EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::Not(HasSubstr("call failed")));
 }
 
-TEST_F(MetricsTest, MethodsAreListedBeforeTheirFirstCall) {
+TEST_F(MetricsTest, MethodsAndReasonsAreListedBeforeTheFirst) {
   Start();
+  EXPECT_THAT(Address(), StartsWith("127.0.0.1:"));  // the HTTP server accepts no names
+  EXPECT_THAT(StartError({.metrics_listen = Address()}),
+              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr(Address())));
   const auto metrics = Metrics();
-  ASSERT_EQ(metrics.count(kCreated), 1u);
-  EXPECT_EQ(metrics.at(kCreated), 0);
-  EXPECT_EQ(metrics.count("grpc_server_started_total{grpc_method=\"GetServerStatus\","
-                          "grpc_service=\"ballpiston.v1.ServerService\",grpc_type=\"unary\"}"),
-            1u);
-}
-
-TEST_F(MetricsTest, ReasonsOfRefusalsAreListedBeforeTheFirst) {
-  Start();
-  const auto metrics = Metrics();
+  EXPECT_THAT(metrics, Contains(Pair(kCreated, 0)));
+  EXPECT_THAT(metrics, Contains(Key("grpc_server_started_total{grpc_method=\"GetServerStatus\","
+                                    "grpc_service=\"ballpiston.v1.ServerService\","
+                                    "grpc_type=\"unary\"}")));
   for (const char* counter : {"ballpiston_failed_authentications_total{reason=\"ROLE_TOO_LOW\"}",
                               "ballpiston_limit_refusals_total{reason=\"QUEUE_FULL\"}"}) {
-    ASSERT_EQ(metrics.count(counter), 1u) << counter;
-    EXPECT_EQ(metrics.at(counter), 0) << counter;
+    EXPECT_THAT(metrics, Contains(Pair(counter, 0)));
   }
 }
 
 TEST_F(MetricsTest, CountersCountCallsJobsAndBlocks) {
   RunningServer& server = Start();
-  for (int i = 0; i < 3; ++i) server.Succeeded(Equilibrium(2, 50));
+  std::string name;
+  for (int i = 0; i < 3; ++i) name = server.Succeeded(Equilibrium(2, 50));
+  EXPECT_FALSE(server.Create(CreateRequest(Equilibrium(11, 1))).ok());
   Await("ballpiston_jobs_ended_total{state=\"succeeded\"}", 3);
   const auto metrics = Metrics();
+  EXPECT_THAT(Page(), Not(HasSubstr(name.substr(name.find('/') + 1))));  // no job's id
   EXPECT_EQ(metrics.at(kCreated), 3);
+  EXPECT_EQ(metrics.at("ballpiston_limit_refusals_total{reason=\"TOO_MANY_POINTS\"}"), 1);
+  EXPECT_EQ(metrics.at("ballpiston_principal_stored_jobs{principal=\"local\"}"), 3);
+  EXPECT_GT(metrics.at("ballpiston_principal_stored_bytes{principal=\"local\"}"), 0);
+  EXPECT_GT(metrics.at("ballpiston_principal_processor_seconds{principal=\"local\"}"), 0);
   EXPECT_EQ(metrics.at("ballpiston_jobs_ended_total{state=\"succeeded\"}"), 3);
   EXPECT_EQ(metrics.at("ballpiston_blocks_computed_total"), 3 * 2 * 50);
   EXPECT_EQ(metrics.at("ballpiston_samples_computed_total"), 3 * 2 * 50 * kFakeSamplesPerBlock);
@@ -183,32 +174,8 @@ TEST_F(MetricsTest, ActiveJobsWorkersAndStreamsAreGauges) {
   EXPECT_EQ(Metrics().at("ballpiston_jobs{state=\"running\"}"), 0);
 }
 
-TEST_F(MetricsTest, RefusalsAreCountedByReason) {
-  RunningServer& server = Start();
-  for (int i = 0; i < 2; ++i) {
-    EXPECT_FALSE(server.Create(CreateRequest(Equilibrium(11, 1))).ok());
-  }
-  EXPECT_EQ(Metrics().at("ballpiston_limit_refusals_total{reason=\"TOO_MANY_POINTS\"}"), 2);
-}
-
-TEST_F(MetricsTest, UsageIsReportedForEachPrincipal) {
-  RunningServer& server = Start();
-  server.Succeeded(Equilibrium(1, 2));
-  EXPECT_EQ(Metrics().at("ballpiston_principal_stored_jobs{principal=\"local\"}"), 1);
-  EXPECT_GT(Metrics().at("ballpiston_principal_stored_bytes{principal=\"local\"}"), 0);
-  EXPECT_GT(Metrics().at("ballpiston_principal_processor_seconds{principal=\"local\"}"), 0);
-}
-
-TEST_F(MetricsTest, LabelsContainNoJobIds) {
-  RunningServer& server = Start();
-  const std::string name = server.Succeeded(Equilibrium(1, 2));
-  const std::string page = Page();
-  EXPECT_THAT(page, StartsWith("HTTP/1.1 200 OK"));
-  EXPECT_THAT(page, Not(HasSubstr(name.substr(name.find('/') + 1))));
-}
-
 TEST_F(MetricsTest, MalformedRequestsDoNotStopTheEndpoint) {
-  Start();
+  RunningServer& server = Start();
   Connection silent(Address()), slow(Address());
   slow.Send("GET /met");
   for (const std::string& request :
@@ -222,14 +189,8 @@ TEST_F(MetricsTest, MalformedRequestsDoNotStopTheEndpoint) {
   }
   EXPECT_THAT(HttpGet(Address(), "/"), HasSubstr(" 404 "));
   EXPECT_EQ(Metrics().at("ballpiston_workers"), 2);
-}
-
-TEST_F(MetricsTest, AStoppedServerHasNoMetrics) {
-  RunningServer& server = Start();
-  Connection slow(Address());
-  slow.Send("GET /met");
   server.Shutdown();
-  const std::string page = Page();
+  const std::string page = Page();  // of the stopped server
   EXPECT_THAT(page, StartsWith("HTTP/1.1 200 OK"));
   EXPECT_THAT(page, Not(HasSubstr("ballpiston_")));
 }
@@ -244,18 +205,6 @@ TEST_F(MetricsTest, OnlyLoopbackAddressesAreAccepted) {
     EXPECT_THAT(std::string(error.message()),
                 HasSubstr("--metrics-listen=" + std::string(address)));
   }
-}
-
-// The HTTP server accepts no names.
-TEST_F(MetricsTest, LocalhostIsAnAddress) {
-  RunningServer server({.metrics_listen = "localhost:0"});
-  EXPECT_THAT(server.server().metrics_address(), StartsWith("127.0.0.1:"));
-}
-
-TEST_F(MetricsTest, AnAddressInUseIsRefused) {
-  Start();
-  EXPECT_THAT(StartError({.metrics_listen = Address()}),
-              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr(Address())));
 }
 
 }  // namespace

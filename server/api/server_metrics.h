@@ -1,0 +1,29 @@
+// The server's numbers as metric families of Prometheus: base units, totals that only grow, no
+// job's id in a label. Only the metrics of usage name principals, at most kMostPrincipals.
+//
+//   grpc_server_*   calls: the names and labels that other gRPC servers use; call_observer.h
+//   ballpiston_*    everything else
+//
+// The numbers here belong to the scheduler, the store and others. A scrape therefore copies them
+// into a registry of its own. With a permanent registry each number would have to be counted in a
+// second place.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "absl/time/time.h"
+#include "prometheus/metric_family.h"
+#include "server/api/service_context.h"
+
+namespace ballpiston::server {
+
+inline constexpr size_t kMostPrincipals = 1000;
+
+// Does not wait for the disk and holds no lock that a worker needs. `certificate_expiry`: empty
+// without TLS.
+std::vector<prometheus::MetricFamily> ServerMetrics(const ServiceContext& service,
+                                                    std::optional<absl::Time> certificate_expiry);
+
+}  // namespace ballpiston::server

@@ -1,0 +1,151 @@
+#include "server/door/door.h"
+
+#include <utility>
+#include <vector>
+
+#include "absl/memory/memory.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/time/clock.h"
+#include "server/door/sha256.h"
+#include "server/observability/log.h"
+
+namespace ballpiston::server {
+namespace {
+
+absl::Status Refused(const std::string& why) { return absl::InvalidArgumentError(why); }
+
+bool HasTls(const DoorOptions& options) { return !options.tls_certificate.empty(); }
+
+// The flags among these that are given.
+std::vector<std::string> Given(const DoorOptions& options) {
+  std::vector<std::string> given;
+  if (!options.access_file.empty()) given.push_back("--access-file");
+  if (!options.tls_certificate.empty()) given.push_back("--tls-certificate");
+  if (!options.tls_key.empty()) given.push_back("--tls-key");
+  return given;
+}
+
+NamedFile AccessFile(const DoorOptions& options) { return {"access-file", options.access_file}; }
+
+std::string MinuteText(absl::Time time) {
+  return absl::FormatTime("%Y-%m-%d %H:%M UTC", time, absl::UTCTimeZone());
+}
+
+absl::StatusOr<std::unique_ptr<ServerTls>> ReadTls(const DoorOptions& options) {
+  if (!HasTls(options)) return nullptr;
+  return ServerTls::Create(
+      {{"tls-certificate", options.tls_certificate}, {"tls-key", options.tls_key}});
+}
+
+}  // namespace
+
+absl::Status CheckCombination(const DoorOptions& options, const ListenAddress& address) {
+  if (!address.socket_path.empty()) {
+    if (Given(options).empty()) return absl::OkStatus();
+    return Refused(absl::StrCat("--listen=", address.Text(),
+                                ": only this server's user and root can open its Unix socket; it "
+                                "cannot be combined with ",
+                                absl::StrJoin(Given(options), ", ")));
+  }
+  if (options.tls_certificate.empty() != options.tls_key.empty()) {
+    return Refused("--tls-certificate and --tls-key: give both or neither");
+  }
+  if (address.IsLoopback() && !HasTls(options)) return absl::OkStatus();
+  std::vector<std::string> missing;
+  if (!HasTls(options)) missing.push_back("--tls-certificate and --tls-key");
+  if (options.access_file.empty()) missing.push_back("--access-file");
+  if (missing.empty()) return absl::OkStatus();
+  return Refused(
+      absl::StrCat("--listen=", address.Text(), ": missing: ", absl::StrJoin(missing, " and "),
+                   "; an address that other machines can reach needs TLS, and TLS needs "
+                   "an access file (or listen on a loopback address without TLS, or on a "
+                   "Unix socket)"));
+}
+
+absl::StatusOr<std::unique_ptr<Door>> Door::Create(const DoorOptions& options,
+                                                   const ListenAddress& address) {
+  if (absl::Status status = CheckCombination(options, address); !status.ok()) return status;
+  auto tls = ReadTls(options);
+  if (!tls.ok()) return tls.status();
+  auto door = absl::WrapUnique(new Door(options, address.socket_path.empty()));
+  door->tls_ = *std::move(tls);
+  if (absl::Status read = door->ReadAccessFile(); !read.ok()) return read;
+  door->WarnOfExpiry();
+  return door;
+}
+
+std::shared_ptr<grpc::ServerCredentials> Door::Credentials() const {
+  return tls_ == nullptr ? grpc::InsecureServerCredentials() : tls_->Credentials();
+}
+
+void Door::Open(const ListenAddress& address) {
+  if (address.IsLoopback() && tls_ == nullptr) {
+    auto own_token = OwnToken::Make(options_.own_tokens, address.Text());
+    if (own_token.ok()) {
+      own_token_ = *std::move(own_token);
+    } else {
+      Log(Severity::kWarning,
+          absl::StrCat("this server's user needs a token of --access-file, because the server's "
+                       "own token cannot be written: ",
+                       own_token.status().message()));
+    }
+  }
+  AcceptTokens();
+}
+
+absl::Status Door::ReadAccessFile() {
+  if (options_.access_file.empty()) return absl::OkStatus();
+  absl::StatusOr<AccessList> read = AccessList::Read(AccessFile(options_));
+  if (read.ok()) access_ = *std::move(read);
+  return read.status();
+}
+
+void Door::AcceptTokens() {
+  AccessList list = access_;
+  if (own_token_ != nullptr) list.Add({Sha256(own_token_->token()), LocalPrincipal()});
+  authenticator_.Accept(std::move(list));
+}
+
+absl::Status Door::Reload() {
+  std::vector<std::string> errors;
+  const absl::Status certificate = tls_ == nullptr ? absl::OkStatus() : tls_->Reload();
+  for (const absl::Status& status : {ReadAccessFile(), certificate}) {
+    if (!status.ok()) errors.emplace_back(status.message());
+  }
+  AcceptTokens();
+  WarnOfExpiry();
+  return errors.empty() ? absl::OkStatus() : Refused(absl::StrJoin(errors, "; "));
+}
+
+std::optional<absl::Time> Door::CertificateExpiry() const {
+  if (tls_ == nullptr) return std::nullopt;
+  return tls_->expires();
+}
+
+void Door::WarnOfExpiry() const {
+  if (tls_ == nullptr) return;
+  const absl::Time now = absl::Now();
+  const bool is_valid = tls_->IsValidAt(now);
+  if (is_valid && now + kExpiryWarning < tls_->expires()) return;
+  Log(is_valid ? Severity::kWarning : Severity::kError,
+      absl::StrCat("the certificate in --tls-certificate=", options_.tls_certificate,
+                   " is valid from ", MinuteText(tls_->begins()), " to ",
+                   MinuteText(tls_->expires()), ", and now it is ", MinuteText(now),
+                   is_valid ? "" : ": clients cannot connect", "; get a new one, and send SIGHUP"));
+}
+
+std::string Door::Description() const {
+  if (!needs_tokens_) return "a Unix socket for this server's user, without tokens";
+  std::vector<std::string> parts;
+  if (tls_ != nullptr) {
+    parts.push_back(absl::StrCat("TLS, certificate valid until ", MinuteText(tls_->expires())));
+  }
+  if (own_token_ != nullptr) parts.push_back("a token for this server's user");
+  if (!options_.access_file.empty()) {
+    parts.push_back(absl::StrCat(access_.size(), " tokens in ", AccessFile(options_).Text()));
+  }
+  return absl::StrJoin(parts, ", ");
+}
+
+}  // namespace ballpiston::server

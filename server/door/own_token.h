@@ -1,0 +1,41 @@
+// The token of the server's own user over the loopback, where the kernel does not say who connects.
+//
+// A server that listens there without TLS makes a token at each start and writes it to a file that
+// only its user can read. The file's name is the server's address, so the user's clients find it,
+// and send it to this address only. Other users of the machine get nothing.
+//
+//   $XDG_STATE_HOME/ballpiston/tokens/127.0.0.1:50051    (~/.local/state if it is not set)
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "absl/status/statusor.h"
+
+namespace ballpiston::server {
+
+class OwnToken {
+ public:
+  // The folder of the files, in the user's state folder.
+  static std::string DefaultFolder();
+
+  // Makes a token and its file, instead of the file that an earlier server left. Creates the
+  // folder, with mode 0700. PERMISSION_DENIED if the file cannot be written.
+  static absl::StatusOr<std::unique_ptr<OwnToken>> Make(const std::string& folder,
+                                                        const std::string& address);
+
+  OwnToken(const OwnToken&) = delete;
+  OwnToken& operator=(const OwnToken&) = delete;
+  ~OwnToken();  // removes the file, unless a later server has replaced it
+
+  const std::string& token() const { return token_; }
+
+ private:
+  OwnToken(std::string token, std::string path)
+      : token_(std::move(token)), path_(std::move(path)) {}
+
+  const std::string token_, path_;
+};
+
+}  // namespace ballpiston::server

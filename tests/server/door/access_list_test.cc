@@ -1,0 +1,189 @@
+#include "server/door/access_list.h"
+
+#include <sys/stat.h>
+
+#include <string>
+#include <utility>
+
+#include "absl/strings/escaping.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/door/sha256.h"
+#include "tests/server/error_details.h"
+#include "tests/support/files.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const NamedFile kFile{"access-file", "list"};
+const absl::Time kNoon = absl::FromCivil(absl::CivilSecond(2030, 6, 1, 12), absl::UTCTimeZone());
+
+std::string HashText(const std::string& token) {
+  return "sha256:" + absl::BytesToHexString(Sha256(token));
+}
+
+AccessList ParsedList(const std::string& text) {
+  auto list = AccessList::Parse(kFile, text);
+  EXPECT_OK(list);
+  return *std::move(list);
+}
+
+auto IsRefusedAs(const std::string& reason) {
+  return IsError(absl::StatusCode::kUnauthenticated, reason);
+}
+
+std::string ErrorOf(const std::string& text) {
+  const absl::Status error = AccessList::Parse(kFile, text).status();
+  EXPECT_THAT(error, StatusIs(absl::StatusCode::kInvalidArgument)) << text;
+  return std::string(error.message());
+}
+
+TEST(Sha256, OfTheTestVector) {
+  EXPECT_EQ(HashText("abc"),
+            "sha256:ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(AccessList, ATokenBelongsToItsPrincipal) {
+  const AccessList list =
+      ParsedList("# the laboratory\n\ntoken " + HashText("one") + " alice submit\n  token\t" +
+                 HashText("two") + " bob@lab.example read # on paper\r\ntoken " +
+                 HashText("three") + " root-3 admin 2030-06-02");
+  EXPECT_EQ(list.size(), 3u);
+  EXPECT_EQ(list.OfToken("one", kNoon)->name, "alice");
+  EXPECT_EQ(list.OfToken("one", kNoon)->role, Role::kSubmit);
+  EXPECT_EQ(list.OfToken("two", kNoon)->name, "bob@lab.example");
+  EXPECT_EQ(list.OfToken("two", kNoon)->role, Role::kRead);
+  EXPECT_EQ(list.OfToken("three", kNoon)->role, Role::kAdmin);
+}
+
+TEST(AccessList, UnknownTokensAreInvalid) {
+  const AccessList list = ParsedList("token " + HashText("one") + " alice submit");
+  const std::string long_token(kLongestToken + 1, 'x');
+  for (const std::string& token : {std::string("two"), std::string(), std::string("one "),
+                                   std::string("on"), HashText("one"), long_token}) {
+    EXPECT_THAT(list.OfToken(token, kNoon), IsRefusedAs("CREDENTIALS_INVALID")) << token;
+  }
+}
+
+TEST(AccessList, ATokenThatIsTooLongIsRefusedEvenIfItsHashIsListed) {
+  const std::string longest(kLongestToken, 'x');
+  const AccessList list = ParsedList("token " + HashText(longest) + " a read\ntoken " +
+                                     HashText(longest + "x") + " b read\n");
+  EXPECT_OK(list.OfToken(longest, kNoon));
+  EXPECT_THAT(list.OfToken(longest + "x", kNoon), IsRefusedAs("CREDENTIALS_INVALID"));
+}
+
+TEST(AccessList, AnEntryIsRefusedFromItsTimeOfExpiryOn) {
+  const AccessList list = ParsedList(
+      "token " + HashText("time") + " a read 2030-06-01T12:00:00Z\ntoken " + HashText("zone") +
+      " b read 2030-06-01T14:00:00.5+02:00\ntoken " + HashText("date") + " c read 2030-06-02\n");
+  EXPECT_OK(list.OfToken("time", kNoon - absl::Milliseconds(1)));
+  EXPECT_THAT(list.OfToken("time", kNoon), IsRefusedAs("CREDENTIALS_EXPIRED"));
+  EXPECT_OK(list.OfToken("zone", kNoon));
+  EXPECT_THAT(list.OfToken("zone", kNoon + absl::Seconds(1)), IsRefusedAs("CREDENTIALS_EXPIRED"));
+  EXPECT_OK(list.OfToken("date", kNoon + absl::Hours(11)));
+  EXPECT_THAT(list.OfToken("date", kNoon + absl::Hours(12)), IsRefusedAs("CREDENTIALS_EXPIRED"));
+}
+
+TEST(AccessList, AFormattedEntryIsReadBack) {
+  for (const absl::Time expires : {kNoon, absl::InfiniteFuture()}) {
+    const AccessEntry entry = {Sha256("one"), {"alice", Role::kSubmit}, expires};
+    ASSERT_OK_AND_ASSIGN(const auto read, ParseAccessEntry(FormatAccessEntry(entry)));
+    EXPECT_EQ(read->hash, entry.hash);
+    EXPECT_EQ(read->principal.name, entry.principal.name);
+    EXPECT_EQ(read->principal.role, entry.principal.role);
+    EXPECT_EQ(read->expires, entry.expires);
+  }
+}
+
+// A token at every place of a line.
+TEST(AccessList, ErrorsNameTheLineAndDoNotQuoteIt) {
+  const std::string secret = "hunter2hunter2";
+  const std::string good = HashText("one");
+  const std::pair<std::string, std::string> cases[] = {
+      {secret, "the line of a token"},
+      {"token " + secret, "the line of a token"},
+      {"token " + secret + " alice read", "sha256: and 64 hexadecimal digits"},
+      {"token sha256:" + secret + " alice read", "64 hexadecimal digits"},
+      {"token " + good + "0 alice read", "64 hexadecimal digits"},
+      {"token " + good.substr(0, 70) + "g alice read", "64 hexadecimal digits"},
+      {secret + " " + good + " alice read", "permitted: token sha256:HEX"},
+      {"token " + good + " " + secret + "! read", "a-z"},
+      {"token " + good + " local read", "not local"},
+      {"token " + good + " " + std::string(65, 'a') + " read", "1 to 64"},
+      {"token " + good + " alice " + secret, "read, submit, admin"},
+      {"token " + good + " alice READ", "read, submit, admin"},
+      {"token " + good + " alice read " + secret, "2027-01-31"},
+      {"token " + good + " alice read infinite-future", "2027-01-31"},
+      {"token " + good + " alice read 2030-13-01", "2027-01-31"},
+      {"token " + good + " alice read 2030-06-01 " + secret, "the line of a token"},
+      {"certificate " + secret + " alice read", "the line of a token"}};
+  for (const auto& [line, permitted] : cases) {
+    EXPECT_THAT(ErrorOf("# first\n" + line + "\n"),
+                AllOf(HasSubstr("--access-file=list, line 2: "), HasSubstr(permitted),
+                      Not(HasSubstr("hunter2"))));
+  }
+}
+
+TEST(AccessList, TwoEntriesOfOneTokenAreRefused) {
+  const std::string line = "token " + HashText("one") + " alice read\n";
+  EXPECT_THAT(ErrorOf(line + "token " + HashText("one") + " bob admin"), HasSubstr("line 2"));
+}
+
+class AccessFile : public ::testing::Test {
+ protected:
+  // The outcome of reading it with this mode.
+  absl::Status With(mode_t mode) {
+    WriteFile(file_.path, std::string("token ") + HashText("one") + " alice read\n");
+    chmod(file_.path.c_str(), mode);
+    return AccessList::Read(file_).status();
+  }
+
+  TemporaryFolder folder_;
+  NamedFile file_{"access-file", folder_.File("list")};
+};
+
+TEST_F(AccessFile, AFileThatOthersMayReadOrWriteIsRefused) {
+  EXPECT_OK(With(0600));
+  EXPECT_OK(With(0400));
+  EXPECT_OK(With(0640));
+  for (const mode_t mode : {0604u, 0644u, 0660u, 0620u, 0602u, 0666u, 0777u}) {
+    EXPECT_THAT(std::string(With(mode).message()), HasSubstr("is open to other users")) << mode;
+  }
+}
+
+TEST_F(AccessFile, OnlyFilesOfTheServersUserOrRootAreAccepted) {
+  struct stat status {};
+  status.st_mode = S_IFREG | 0600;
+  status.st_uid = 1000;
+  EXPECT_OK(CheckKeptPrivate(file_, status, 1000));
+  EXPECT_THAT(std::string(CheckKeptPrivate(file_, status, 1001).message()),
+              HasSubstr("belongs to user 1000; permitted: this server's user (1001) or root"));
+  status.st_uid = 0;
+  EXPECT_OK(CheckKeptPrivate(file_, status, 1000));
+}
+
+TEST_F(AccessFile, OnlyARegularFileIsRead) {
+  EXPECT_THAT(std::string(AccessList::Read(file_).status().message()),
+              HasSubstr("cannot be opened"));
+  ASSERT_EQ(mkfifo(file_.path.c_str(), 0600), 0);  // would wait for a writer
+  EXPECT_THAT(std::string(AccessList::Read(file_).status().message()),
+              HasSubstr("is not a regular file"));
+  EXPECT_THAT(AccessList::Read({"access-file", folder_.path()}),
+              StatusIs(absl::StatusCode::kInvalidArgument));
+}
+
+TEST_F(AccessFile, AFileThatIsTooLongIsRefused) {
+  WriteFile(file_.path, std::string(kMaxSecurityFile + 1, '#'));
+  chmod(file_.path.c_str(), 0600);
+  EXPECT_THAT(std::string(AccessList::Read(file_).status().message()), HasSubstr("longer than"));
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,296 @@
+#include "server/door/door.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/server/call_by_name.h"
+#include "tests/server/error_details.h"
+#include "tests/server/own_channel.h"
+#include "tests/server/requests.h"
+#include "tests/server/running_server.h"
+#include "tests/server/secure_server.h"
+#include "tests/support/await.h"
+#include "tests/support/files.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+// The given flags, as letters: a(ccess file), c(ertificate), k(ey).
+DoorOptions Flags(const std::string& letters) {
+  const auto path = [&](char letter) { return letters.find(letter) == letters.npos ? "" : "f"; };
+  return {.access_file = path('a'), .tls_certificate = path('c'), .tls_key = path('k')};
+}
+
+std::string Refusal(const std::string& listen, const std::string& flags) {
+  const absl::Status status = CheckCombination(Flags(flags), *ParseListenAddress(listen));
+  if (!status.ok()) {
+    EXPECT_THAT(status, StatusIs(absl::StatusCode::kInvalidArgument));
+  }
+  return std::string(status.message());
+}
+
+TEST(DoorCombination, OnlySafeOnesOfAllEightAreAccepted) {
+  const std::map<std::string, std::set<std::string>> accepted = {
+      {"unix:/tmp/x", {""}},         {"127.0.0.1:1", {"", "a", "cka"}},
+      {"[::1]:1", {"", "a", "cka"}}, {"localhost:1", {"", "a", "cka"}},
+      {"0.0.0.0:1", {"cka"}},        {"[::]:1", {"cka"}},
+      {"192.168.0.7:1", {"cka"}},    {"node.example.org:1", {"cka"}}};
+  for (const auto& [listen, safe] : accepted) {
+    for (unsigned set = 0; set < 8; ++set) {
+      std::string flags;
+      for (unsigned i = 0; i < 3; ++i) flags += (set >> i & 1) != 0 ? std::string(1, "cka"[i]) : "";
+      EXPECT_EQ(Refusal(listen, flags).empty(), safe.count(flags) == 1) << listen << " " << flags;
+    }
+  }
+}
+
+TEST(DoorCombination, AnErrorNamesTheMissingFlags) {
+  EXPECT_THAT(Refusal("0.0.0.0:1", ""),
+              HasSubstr("missing: --tls-certificate and --tls-key and --access-file"));
+  EXPECT_THAT(Refusal("0.0.0.0:1", "ck"), HasSubstr("missing: --access-file"));
+  EXPECT_THAT(Refusal("0.0.0.0:1", "a"), HasSubstr("missing: --tls-certificate"));
+  EXPECT_THAT(Refusal("127.0.0.1:1", "c"), HasSubstr("both or neither"));
+  EXPECT_THAT(Refusal("127.0.0.1:1", "ck"), HasSubstr("missing: --access-file"));
+  EXPECT_THAT(Refusal("unix:x", "ck"), HasSubstr("--tls-certificate, --tls-key"));
+}
+
+// ---- the loopback without TLS ----
+
+std::string JobOfAlice(const TemporaryFolder& data) {
+  const LaboratoryFiles files;
+  RunningServer server(Secure(files, {.data_dir = data.path()}));
+  return TestClient(server.NewChannel(files.Credentials(kAlice))).Submit(Equilibrium(1, 2));
+}
+
+std::string OwnTokenOf(const TemporaryFolder& data, const RunningServer& server) {
+  const std::string text = Contents(data.path() + "/tokens/" + server.address());
+  return text.substr(0, text.find('\n'));
+}
+
+TEST(Loopback, TheServersUserIsItsAdministrator) {
+  const TemporaryFolder data;
+  const std::string job = JobOfAlice(data);
+  RunningServer server({.data_dir = data.path(), .listen = "127.0.0.1:0"});
+  const std::string token = OwnTokenOf(data, server);
+  v1::GetEnsembleJobRequest request;
+  request.set_name(job);
+  EXPECT_OK(CallByName(server.channel(), kGetJob, request.SerializeAsString(), Bearer(token)));
+  EXPECT_EQ(ReasonOf(CallByName(server.channel(), kListJobs, "", Bearer(token + "x"))),
+            "CREDENTIALS_INVALID");
+}
+
+TEST(Loopback, TheOwnTokenIsPrivateAndEndsWithTheServer) {
+  const TemporaryFolder data;
+  std::string first;
+  {
+    RunningServer server({.data_dir = data.path(), .listen = "127.0.0.1:0"});
+    const std::string file = data.path() + "/tokens/" + server.address();
+    EXPECT_EQ(ModeOf(file), 0600u);
+    EXPECT_EQ(ModeOf(data.path() + "/tokens"), 0700u);
+    first = OwnTokenOf(data, server);
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(data.path() + "/tokens"));
+  RunningServer server({.data_dir = data.path(), .listen = "127.0.0.1:0"});
+  EXPECT_EQ(ReasonOf(CallByName(server.channel(), kListJobs, "", Bearer(first))),
+            "CREDENTIALS_INVALID");
+}
+
+// Otherwise a client could read the token of an earlier server, and be refused.
+TEST(Loopback, CallsWaitUntilTheOwnTokenIsWritten) {
+  const TemporaryFolder folder;
+  const ListenAddress address = *ParseListenAddress("127.0.0.1:1");
+  ASSERT_OK_AND_ASSIGN(const auto door, Door::Create({.own_tokens = folder.path()}, address));
+  std::atomic<bool> begun = false;
+  bool written = false;
+  std::thread call([&] {
+    begun = true;
+    begun.notify_one();
+    EXPECT_EQ(ReasonOf(door->authenticator().Authenticate({}, absl::Now()).status()),
+              "CREDENTIALS_MISSING");
+    written = std::filesystem::exists(folder.File("127.0.0.1:1"));
+  });
+  begun.wait(false);
+  door->Open(address);
+  call.join();
+  EXPECT_TRUE(written);
+}
+
+TEST(Loopback, ALaterServersTokenStays) {
+  const TemporaryFolder folder;
+  ASSERT_OK_AND_ASSIGN(auto first, OwnToken::Make(folder.path(), "127.0.0.1:1"));
+  ASSERT_OK_AND_ASSIGN(const auto later, OwnToken::Make(folder.path(), "127.0.0.1:1"));
+  first.reset();
+  EXPECT_EQ(Contents(folder.File("127.0.0.1:1")), later->token() + "\n");
+}
+
+TEST(Loopback, WithoutItsOwnTokenTheServerWarnsAndServes) {
+  const LaboratoryFiles files;
+  const ListenAddress address = *ParseListenAddress("127.0.0.1:1");
+  ASSERT_OK_AND_ASSIGN(const auto door,
+                       Door::Create({.access_file = files.options().access_file,
+                                     .own_tokens = files.Write("file", "") + "/tokens"},
+                                    address));
+  ::testing::internal::CaptureStderr();
+  door->Open(address);
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
+              HasSubstr("this server's user needs a token of --access-file"));
+  EXPECT_OK(door->authenticator().Authenticate(Bearer(kAlice), absl::Now()));
+}
+
+TEST(Start, APublicAddressWithCredentialsIsServed) {
+  const LaboratoryFiles files;
+  RunningServer server(Secure(files, {.listen = "0.0.0.0:0"}));
+  const std::string address = "localhost" + server.address().substr(7);
+  const auto channel = OwnChannel(address, files.Credentials());
+  EXPECT_OK(CallByName(channel, kListJobs, "", Bearer(kAlice)));
+  EXPECT_FALSE(CallByName(channel, kListJobs).ok());
+}
+
+class SecureServer : public ::testing::Test {
+ protected:
+  grpc::Status List(const std::shared_ptr<grpc::Channel>& channel, const std::string& token) {
+    return CallByName(channel, kListJobs, "", Bearer(token));
+  }
+  std::shared_ptr<grpc::Channel> Channel() { return server_.NewChannel(files_.Credentials()); }
+  std::string ServedCommonName() const {
+    return SilentTlsConnection(server_.address()).served_common_name();
+  }
+  absl::Status Reload() { return server_.server().Reload(); }
+
+  const LaboratoryFiles files_;
+  RunningServer server_{Secure(files_)};
+};
+
+TEST_F(SecureServer, AnAccessFileIsReadAgainWhileAConnectionLives) {
+  const auto channel = Channel();
+  ASSERT_OK(List(channel, kAlice));
+  files_.WriteAccessFile("");
+  EXPECT_OK(List(channel, kAlice));  // the server has not read the file again yet
+  ASSERT_OK(Reload());
+  EXPECT_EQ(ReasonOf(List(channel, kAlice)), "CREDENTIALS_INVALID");
+  files_.WriteAccessFile(LaboratoryTokens());
+  ASSERT_OK(Reload());
+  EXPECT_OK(List(channel, kAlice));
+  EXPECT_EQ(channel->GetState(false), GRPC_CHANNEL_READY);
+}
+
+TEST_F(SecureServer, AnInvalidAccessFileKeepsThePreviousOne) {
+  const auto channel = Channel();
+  files_.WriteAccessFile("nonsense " + std::string(kBob) + "\n");
+  const absl::Status status = Reload();
+  EXPECT_THAT(std::string(status.message()), HasSubstr("line 1"));
+  EXPECT_THAT(std::string(status.message()), Not(HasSubstr(kBob)));
+  EXPECT_OK(List(channel, kAlice));
+  unlink(files_.options().access_file.c_str());
+  EXPECT_FALSE(Reload().ok());
+  EXPECT_OK(List(channel, kAlice));
+}
+
+// The old pair serves until both files are new. New connections then get the new certificate when
+// gRPC has read it; existing ones go on.
+TEST_F(SecureServer, AKeyMayBeRenewedBeforeItsCertificate) {
+  const auto channel = Channel();
+  ASSERT_OK(List(channel, kAlice));
+  const KeyAndCertificate renewed = files_.authority().Issue("server-2");
+  files_.Write("server.key", renewed.key);
+  EXPECT_THAT(std::string(Reload().message()), HasSubstr("--tls-key="));
+  EXPECT_OK(List(Channel(), kAlice));
+  EXPECT_EQ(ServedCommonName(), "server-1");
+  files_.Write("server.pem", renewed.certificate);
+  files_.WriteAccessFile("nonsense\n");
+  EXPECT_FALSE(Reload().ok());  // the access file is wrong; the certificate is used
+  AwaitThat([this] { return ServedCommonName() == "server-2"; });
+  EXPECT_OK(List(Channel(), kAlice));
+  EXPECT_OK(List(channel, kAlice));
+  EXPECT_EQ(channel->GetState(false), GRPC_CHANNEL_READY);
+}
+
+// Neither an expired certificate nor one that is not valid yet, for example because the clock is
+// slow.
+TEST_F(SecureServer, AnExpiredOrFutureCertificateDoesNotReplaceAValidOne) {
+  using std::chrono::hours;
+  for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
+    files_.WriteCertificate(files_.authority().Issue("x", validity));
+    EXPECT_THAT(std::string(Reload().message()), HasSubstr("the certificate is valid from "));
+    EXPECT_OK(List(Channel(), kAlice));
+  }
+}
+
+// ---- a start before the clock is set: the certificate seems not valid yet, or expired ----
+
+class ClockNotSet : public ::testing::Test {
+ protected:
+  // Starts a server whose certificate has this validity.
+  void Start(Validity validity) {
+    files_.WriteCertificate(files_.authority().Issue("out-of-time", validity));
+    ::testing::internal::CaptureStderr();
+    server_.emplace(Secure(files_));
+    log_ = ::testing::internal::GetCapturedStderr();
+  }
+  grpc::Status List() {
+    return CallByName(server_->NewChannel(files_.Credentials()), kListJobs, "", Bearer(kAlice));
+  }
+
+  const LaboratoryFiles files_;
+  std::optional<RunningServer> server_;
+  std::string log_;
+};
+
+TEST_F(ClockNotSet, TheServerStartsLogsAndIsRefusedByClients) {
+  using std::chrono::hours;
+  for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
+    Start(validity);
+    EXPECT_THAT(log_, HasSubstr("error: the certificate in --tls-certificate="));
+    EXPECT_THAT(log_, HasSubstr(": clients cannot connect"));
+    EXPECT_THAT(List(), StatusIs(grpc::StatusCode::UNAVAILABLE));
+  }
+}
+
+TEST_F(ClockNotSet, ANotYetValidCertificateReplacesAnother) {
+  using std::chrono::hours;
+  Start({hours(-2), hours(-1)});
+  files_.WriteCertificate(files_.authority().Issue("early", {hours(1), hours(2)}));
+  EXPECT_OK(server_->server().Reload());
+  EXPECT_GT(*server_->server().door().CertificateExpiry(), absl::Now() + absl::Hours(1));
+  files_.WriteCertificate(files_.authority().Issue("good"));
+  EXPECT_OK(server_->server().Reload());
+  AwaitThat([this] { return List().ok(); });
+}
+
+// First a certificate of 24 hours, like the others here, then one of a year.
+TEST_F(SecureServer, ACertificateThatEndsSoonIsLogged) {
+  const auto reload = [this] {
+    ::testing::internal::CaptureStderr();
+    EXPECT_OK(Reload());
+    return ::testing::internal::GetCapturedStderr();
+  };
+  EXPECT_THAT(reload(), HasSubstr("warning: the certificate in "));
+  const auto day = absl::ToUnixSeconds(absl::Now()) + 24 * 3600;
+  EXPECT_NEAR(
+      static_cast<double>(absl::ToUnixSeconds(*server_.server().door().CertificateExpiry())),
+      static_cast<double>(day), 600);
+  files_.WriteCertificate(
+      files_.authority().Issue("server-2", {.until = std::chrono::hours(365 * 24)}));
+  EXPECT_THAT(reload(), Not(HasSubstr("certificate in")));
+  EXPECT_GT(*server_.server().door().CertificateExpiry(), absl::Now() + absl::Hours(364 * 24));
+}
+
+}  // namespace
+}  // namespace ballpiston::server

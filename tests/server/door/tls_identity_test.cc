@@ -1,0 +1,104 @@
+// The files of a server's TLS identity: read, checked and published again as a whole.
+#include "server/door/tls_identity.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/door/published_file.h"
+#include "tests/server/secure_server.h"
+#include "tests/support/files.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class TlsIdentityTest : public ::testing::Test {
+ protected:
+  std::string Error() const {
+    const auto identity = ReadTlsIdentity({{"tls-certificate", files_.options().tls_certificate},
+                                           {"tls-key", files_.options().tls_key}});
+    if (identity.ok()) return "";
+    EXPECT_THAT(identity, StatusIs(absl::StatusCode::kInvalidArgument, Not(HasSubstr("BEGIN"))));
+    return std::string(identity.status().message());
+  }
+
+  const LaboratoryFiles files_;
+  const TestAuthority other_{"another authority"};
+};
+
+TEST_F(TlsIdentityTest, AGoodSetIsAccepted) { EXPECT_EQ(Error(), ""); }
+
+TEST_F(TlsIdentityTest, AKeyOfAnotherCertificateIsRefused) {
+  files_.Write("server.key", other_.Issue("x").key);
+  EXPECT_THAT(Error(), HasSubstr("--tls-key="));
+  EXPECT_THAT(Error(), HasSubstr("is not the key of the certificate in --tls-certificate="));
+}
+
+// The clock may be set only later.
+TEST_F(TlsIdentityTest, AnExpiredOrFutureCertificateIsRead) {
+  using std::chrono::hours;
+  for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
+    files_.WriteCertificate(files_.authority().Issue("x", validity));
+    EXPECT_EQ(Error(), "");
+  }
+}
+
+TEST_F(TlsIdentityTest, AKeyThatOthersMayReadIsRefused) {
+  chmod(files_.options().tls_key.c_str(), 0644);
+  EXPECT_THAT(Error(), HasSubstr("open to other users (mode 0644)"));
+}
+
+TEST_F(TlsIdentityTest, AFileThatIsNotPemIsRefused) {
+  for (const char* text : {"", "nonsense", "-----BEGIN CERTIFICATE-----\nAAAA\n"}) {
+    files_.Write("server.pem", text);
+    EXPECT_THAT(Error(), HasSubstr("--tls-certificate")) << text;
+  }
+  files_.WriteCertificate({files_.authority().Issue("good").certificate, "nonsense"});
+  EXPECT_THAT(Error(), HasSubstr("has no private key"));
+}
+
+TEST_F(TlsIdentityTest, AMissingFileIsNamed) {
+  unlink(files_.options().tls_key.c_str());
+  EXPECT_THAT(Error(), HasSubstr("--tls-key="));
+  EXPECT_THAT(Error(), HasSubstr("No such file"));
+}
+
+TEST(PublishedFile, IsExchangedAsAWhole) {
+  PublishedFile file;
+  ASSERT_OK(file.Publish(std::string(100'000, 'a')));
+  const std::string path = file.Path();
+  std::ifstream reading(path);
+  std::string begun(10, '\0');
+  reading.read(begun.data(), 10);
+  ASSERT_OK(file.Publish("b"));
+  EXPECT_EQ(file.Path(), path);
+  EXPECT_EQ(Contents(path), "b");
+  // A reader that has begun continues with the old content.
+  begun.append(std::istreambuf_iterator<char>(reading), {});
+  EXPECT_EQ(begun, std::string(100'000, 'a'));
+}
+
+TEST(PublishedFile, EachContentHasALaterSecond) {
+  PublishedFile file;
+  time_t last = 0;
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_OK(file.Publish("x"));
+    struct stat found {};
+    ASSERT_EQ(stat(file.Path().c_str(), &found), 0);
+    EXPECT_GT(found.st_mtime, last);
+    last = found.st_mtime;
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::server
