@@ -9,7 +9,6 @@
 #include <string>
 
 #include "gtest/gtest.h"
-#include "server/observability/log.h"
 
 namespace ballpiston::server {
 namespace {
@@ -36,7 +35,6 @@ void Report(const SimulationOptions& options, const Finding& finding) {
 }
 
 TEST(Simulation, NoPromiseIsBrokenInAnyWorld) {
-  SetLogOptions({.silent = true});
   const auto time = Environment("BALLPISTON_SIMULATION_SECONDS");
   const auto first = Environment("BALLPISTON_SIMULATION_SEED");
   const double seconds = time ? std::stod(*time) : 0;
@@ -58,7 +56,6 @@ TEST(Simulation, NoPromiseIsBrokenInAnyWorld) {
 }
 
 TEST(Simulation, OneSeedIsOneWorld) {
-  SetLogOptions({.silent = true});
   const SimulationOptions options = {.seed = 5, .steps = 3000};
   const SimulationReport once = Simulate(options), again = Simulate(options);
   EXPECT_EQ(once.steps, again.steps);
