@@ -7,6 +7,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 #include "google/protobuf/descriptor.h"
 #include "server/observability/log.h"
 
@@ -28,8 +29,10 @@ constexpr const char* kTypes[] = {"unary", "client_stream", "server_stream", "bi
 
 // `path` is /PACKAGE.SERVICE/METHOD.
 Labels LabelsOf(const std::string& path, size_t type) {
-  const std::vector<std::string> names = absl::StrSplit(path, '/');
-  return {{"grpc_service", names[1]}, {"grpc_method", names[2]}, {"grpc_type", kTypes[type]}};
+  const std::pair<std::string, std::string> names =
+      absl::StrSplit(absl::StripPrefix(path, "/"), absl::MaxSplits('/', 1));
+  return {
+      {"grpc_service", names.first}, {"grpc_method", names.second}, {"grpc_type", kTypes[type]}};
 }
 
 Labels WithCode(Labels method, absl::StatusCode code) {
@@ -174,8 +177,9 @@ void CallObserver::Failed(const FailedCall& call, absl::Time now) {
   if (verdict == Verdict::kOrdinary) return;
   const bool failed = verdict == Verdict::kServerFailed;
   const bool not_let_in = verdict == Verdict::kNotLetIn;
-  if (!failed)
+  if (!failed) {
     (not_let_in ? not_let_in_ : limits_reached_).Add({{"reason", call.reason}}).Increment();
+  }
   const std::optional<int64_t> left_out = TakeLine(failed, now);
   if (!left_out) return;
   const char* what = failed ? "call failed: " : not_let_in ? "access denied: " : "call rejected: ";
