@@ -18,6 +18,7 @@ using grpc::experimental::InterceptionHookPoints;
 using grpc::experimental::ServerRpcInfo;
 using prometheus::Labels;
 
+constexpr char kReflection[] = "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
 constexpr int kLastCode = 16;  // UNAUTHENTICATED
 constexpr int kLinesPerSecond = 10;
 
@@ -137,8 +138,11 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
 class CallObserver::Factory : public grpc::experimental::ServerInterceptorFactoryInterface {
  public:
   explicit Factory(CallObserver& observer) : observer_(observer) {}
+  // gRPC takes a method that no service has for a stream of both sides.
   grpc::experimental::Interceptor* CreateServerInterceptor(ServerRpcInfo* info) override {
-    return new Interceptor(observer_, *info);
+    const bool is_known = info->type() != ServerRpcInfo::Type::BIDI_STREAMING ||
+                          absl::string_view(info->method()) == kReflection;
+    return is_known ? new Interceptor(observer_, *info) : nullptr;
   }
 
  private:
