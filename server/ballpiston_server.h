@@ -30,8 +30,7 @@
 
 namespace ballpiston::server {
 
-// When the server closes a connection, with its streams: if the client no longer answers, or if the
-// connection is old.
+// When the server closes a connection, with its streams: if the client does not answer.
 struct ConnectionTiming {
   std::chrono::milliseconds handshake{20'000};      // limit of a TLS handshake
   std::chrono::milliseconds ping_interval{60'000};  // silence before the server sends a ping

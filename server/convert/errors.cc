@@ -133,9 +133,10 @@ absl::Status ShuttingDown() {
 }
 
 absl::Status CredentialsMissing() {
-  return WithReason(absl::UnauthenticatedError("this server requires credentials: "
-                                               "send authorization: Bearer TOKEN"),
-                    "CREDENTIALS_MISSING");
+  return WithReason(
+      absl::UnauthenticatedError("this server requires a token: --token-file FILE, or "
+                                 "the header authorization: Bearer TOKEN"),
+      "CREDENTIALS_MISSING");
 }
 
 absl::Status CredentialsInvalid() {

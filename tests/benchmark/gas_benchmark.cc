@@ -4,7 +4,8 @@
 //
 //   gas_benchmark
 //
-// Contenders take turns (turns.h). A row shows medians and ranges of their turns. Wall hits and the
+// Contenders take turns (turns.h). A row shows medians and ranges of their turns;
+// its ratios compare the best turns, which other work disturbs least. Wall hits and the
 // pistons' are counted by their exact mean rates.
 #include <malloc.h>
 

@@ -42,7 +42,7 @@ struct TestServerOptions {
   std::shared_ptr<grpc::ChannelCredentials> credentials = nullptr;  // the client's; null: none
 };
 
-// Silent and old connections stay open.
+// Silent connections stay open.
 inline constexpr ConnectionTiming kOnlyClosedByAStop = {
     .handshake = kNever, .ping_interval = kNever, .ping_timeout = kNever};
 

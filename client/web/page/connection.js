@@ -26,8 +26,9 @@
     banner().hidden = text === '';
   }
 
+  // The server, too, may want a token, which ballpiston web has to send.
   function adviceFor(error) {
-    if (error.code === 'unauthenticated') {
+    if (error.code === 'unauthenticated' && error.message.includes('ballpiston web')) {
       return 'Open the whole address that “ballpiston web” printed: it contains the token. ';
     }
     return '';
