@@ -7,6 +7,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 #include "google/protobuf/descriptor.h"
 #include "server/observability/log.h"
 
@@ -17,6 +18,7 @@ using grpc::experimental::InterceptionHookPoints;
 using grpc::experimental::ServerRpcInfo;
 using prometheus::Labels;
 
+constexpr char kReflection[] = "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
 constexpr int kLastCode = 16;  // UNAUTHENTICATED
 constexpr int kLinesPerSecond = 10;
 
@@ -28,8 +30,10 @@ constexpr const char* kTypes[] = {"unary", "client_stream", "server_stream", "bi
 
 // `path` is /PACKAGE.SERVICE/METHOD.
 Labels LabelsOf(const std::string& path, size_t type) {
-  const std::vector<std::string> names = absl::StrSplit(path, '/');
-  return {{"grpc_service", names[1]}, {"grpc_method", names[2]}, {"grpc_type", kTypes[type]}};
+  const std::pair<std::string, std::string> names =
+      absl::StrSplit(absl::StripPrefix(path, "/"), absl::MaxSplits('/', 1));
+  return {
+      {"grpc_service", names.first}, {"grpc_method", names.second}, {"grpc_type", kTypes[type]}};
 }
 
 Labels WithCode(Labels method, absl::StatusCode code) {
@@ -134,8 +138,11 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
 class CallObserver::Factory : public grpc::experimental::ServerInterceptorFactoryInterface {
  public:
   explicit Factory(CallObserver& observer) : observer_(observer) {}
+  // gRPC takes a method that no service has for a stream of both sides.
   grpc::experimental::Interceptor* CreateServerInterceptor(ServerRpcInfo* info) override {
-    return new Interceptor(observer_, *info);
+    const bool is_known = info->type() != ServerRpcInfo::Type::BIDI_STREAMING ||
+                          absl::string_view(info->method()) == kReflection;
+    return is_known ? new Interceptor(observer_, *info) : nullptr;
   }
 
  private:
@@ -174,8 +181,9 @@ void CallObserver::Failed(const FailedCall& call, absl::Time now) {
   if (verdict == Verdict::kOrdinary) return;
   const bool failed = verdict == Verdict::kServerFailed;
   const bool not_let_in = verdict == Verdict::kNotLetIn;
-  if (!failed)
+  if (!failed) {
     (not_let_in ? not_let_in_ : limits_reached_).Add({{"reason", call.reason}}).Increment();
+  }
   const std::optional<int64_t> left_out = TakeLine(failed, now);
   if (!left_out) return;
   const char* what = failed ? "call failed: " : not_let_in ? "access denied: " : "call rejected: ";

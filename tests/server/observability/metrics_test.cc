@@ -33,6 +33,10 @@ constexpr char kCreated[] =
     "grpc_server_handled_total{grpc_code=\"OK\",grpc_method=\"CreateEnsembleJob\","
     "grpc_service=\"ballpiston.v1.EnsembleService\",grpc_type=\"unary\"}";
 
+constexpr char kReflected[] =
+    "grpc_server_handled_total{grpc_code=\"OK\",grpc_method=\"ServerReflectionInfo\","
+    "grpc_service=\"grpc.reflection.v1alpha.ServerReflection\",grpc_type=\"bidi_stream\"}";
+
 constexpr char kSample[] =
     R"(^[a-zA-Z_:][a-zA-Z0-9_:]*(\{([a-zA-Z_][a-zA-Z0-9_]*="([^"\\]|\\.)*",?)*\})? [^ ]+$)";
 
@@ -132,10 +136,15 @@ TEST_F(MetricsTest, CountersCountCallsJobsAndBlocks) {
   std::string name;
   for (int i = 0; i < 3; ++i) name = server.Succeeded(Equilibrium(2, 50));
   EXPECT_FALSE(server.Create(CreateRequest(Equilibrium(11, 1))).ok());
+  EXPECT_OK(CallByName(server.channel(), kReflection, kListServices));
+  EXPECT_THAT(CallByName(server.channel(), "/no.such.Service/Method"),
+              StatusIs(grpc::StatusCode::UNIMPLEMENTED));
   Await("ballpiston_jobs_ended_total{state=\"succeeded\"}", 3);
   const auto metrics = Metrics();
   EXPECT_THAT(Page(), Not(HasSubstr(name.substr(name.find('/') + 1))));  // no job's id
+  EXPECT_THAT(Page(), Not(HasSubstr("no.such")));  // clients could invent any number of methods
   EXPECT_EQ(metrics.at(kCreated), 3);
+  EXPECT_EQ(metrics.at(kReflected), 1);
   EXPECT_EQ(metrics.at("ballpiston_limit_refusals_total{reason=\"TOO_MANY_POINTS\"}"), 1);
   EXPECT_EQ(metrics.at("ballpiston_principal_stored_jobs{principal=\"local\"}"), 3);
   EXPECT_GT(metrics.at("ballpiston_principal_stored_bytes{principal=\"local\"}"), 0);
