@@ -289,7 +289,6 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   book_.Shutdown();
   Failpoint("stop.before_flush");
   store_->Flush().IgnoreError();
-  book_.StoreNewWork(absl::Now());
   if (listener_ != nullptr) listener_->Stop();
   if (grpc_ != nullptr) grpc_->Shutdown(deadline);
   if (metrics_ != nullptr) metrics_->Detach();

@@ -5,7 +5,6 @@
 #include "server/api/take_snapshot.h"
 #include "server/convert/plan.h"
 #include "server/jobs/job_message.h"
-#include "server/store/job_table.h"
 
 namespace ballpiston::server {
 namespace {
@@ -66,29 +65,13 @@ v1::ServerLimits LimitsMessage(const Limits& limits) {
       static_cast<double>(limits.max_call_bytes_per_principal));
   message.set_retain_days(limits.retain_days);
   message.set_max_store_bytes(static_cast<double>(limits.max_store_bytes));
-  message.set_max_store_bytes_per_principal(
-      static_cast<double>(limits.max_store_bytes_per_principal));
-  message.set_max_processor_seconds_per_principal(limits.max_processor_seconds_per_principal);
-  message.set_max_seconds_per_job(limits.max_seconds_per_job);
   return message;
-}
-
-// 0 if the store cannot be read, so that the status still has its other numbers.
-double StoredJobs(Store& store) {
-  double jobs = 0;
-  store
-      .Read([&](Database& database) {
-        const auto count = CountJobs(database);
-        if (count.ok()) jobs = static_cast<double>(*count);
-        return count.status();
-      })
-      .IgnoreError();
-  return jobs;
 }
 
 void AddPrincipals(const ServerSnapshot& now, const std::map<std::string, int64_t>& streams,
                    const Principal& caller, v1::ServerStatus& status) {
   for (const PrincipalSnapshot& of_one : now.principals) {
+    status.set_stored_jobs(status.stored_jobs() + static_cast<double>(of_one.stored_jobs));
     if (!caller.MaySee(of_one.principal)) continue;
     v1::PrincipalStatus& principal = *status.add_principals();
     principal.set_principal(of_one.principal);
@@ -98,7 +81,6 @@ void AddPrincipals(const ServerSnapshot& now, const std::map<std::string, int64_
     principal.set_streams(own == streams.end() ? 0 : static_cast<double>(own->second));
     principal.set_stored_jobs(static_cast<double>(of_one.stored_jobs));
     principal.set_stored_bytes(static_cast<double>(of_one.stored_bytes));
-    principal.set_processor_seconds(of_one.processor_seconds);
   }
 }
 
@@ -108,7 +90,6 @@ absl::StatusOr<v1::ServerStatus> GetServerStatus(ServiceContext& service, const 
                                                  const v1::GetServerStatusRequest&) {
   const ServerSnapshot now = TakeSnapshot(service);
   v1::ServerStatus status = StatusMessage(now);
-  status.set_stored_jobs(StoredJobs(service.store));
   *status.mutable_rates() = RatesMessage(service.ladder.machine().rates);
   *status.mutable_limits() = LimitsMessage(service.limits);
   status.set_principal(call.caller.name);

@@ -2,8 +2,6 @@
 
 #include <sys/stat.h>
 
-#include <map>
-
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "server/convert/spec.h"
@@ -19,15 +17,12 @@ int64_t FileBytes(const std::string& path) {
 }
 
 void AddPrincipals(JobBook& book, ServerSnapshot& snapshot) {
-  std::map<std::string, ActiveJobs> active = book.ActiveByPrincipal();
-  for (const auto& [principal, usage] : book.usage().All(absl::Now())) {
-    const ActiveJobs& jobs = active[principal];
+  for (const auto& [principal, jobs] : book.JobsByPrincipal()) {
     snapshot.principals.push_back({.principal = principal,
                                    .queued_jobs = jobs.queued,
                                    .running_jobs = jobs.running + jobs.cancelling,
-                                   .stored_jobs = usage.jobs,
-                                   .stored_bytes = usage.bytes,
-                                   .processor_seconds = usage.seconds});
+                                   .stored_jobs = jobs.stored,
+                                   .stored_bytes = jobs.bytes});
     snapshot.queued_jobs += jobs.queued;
     snapshot.running_jobs += jobs.running;
     snapshot.cancelling_jobs += jobs.cancelling;

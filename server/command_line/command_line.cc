@@ -179,12 +179,6 @@ const LimitFlag kLimitFlags[] = {
     {"max-store-bytes", &Limits::max_store_bytes,
      "bytes of the store; shortly before it is full, results expire, the oldest first. Active and "
      "pinned jobs may store more than that; then no further job is accepted"},
-    {"max-store-bytes-per-principal", &Limits::max_store_bytes_per_principal,
-     "bytes of specifications and results of one principal; beyond it no further job is accepted"},
-    {"max-processor-seconds-per-principal", &Limits::max_processor_seconds_per_principal,
-     "processor time of one principal's jobs in 30 days; beyond it no further job is accepted"},
-    {"max-seconds-per-job", &Limits::max_seconds_per_job,
-     "processor time of one job, after which it fails and keeps its finished points"},
 };
 
 void AddLimitFlags(CLI::App& app, Limits& limits) {

@@ -6,9 +6,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
+#include "server/convert/deterministic_bytes.h"
 #include "server/convert/errors.h"
 #include "server/convert/fold_record.h"
-#include "server/convert/result_record.h"
+#include "server/convert/point_result.h"
 #include "server/jobs/job_log.h"
 #include "server/observability/failpoint.h"
 #include "server/store/job_table.h"
@@ -59,13 +60,8 @@ absl::Status CountStoredPoints(Database& database, const Job& job, JobEnd& end) 
 
 }  // namespace
 
-JobJournal::JobJournal(std::shared_ptr<Job> job, Store& store, Usage& usage, bool resumed,
-                       OnEnded on_ended)
-    : job_(std::move(job)),
-      store_(store),
-      usage_(usage),
-      resumed_(resumed),
-      on_ended_(std::move(on_ended)) {}
+JobJournal::JobJournal(std::shared_ptr<Job> job, Store& store, bool resumed, OnEnded on_ended)
+    : job_(std::move(job)), store_(store), resumed_(resumed), on_ended_(std::move(on_ended)) {}
 
 void JobJournal::Began() {
   const auto begun = std::make_shared<bool>(false);
@@ -130,10 +126,7 @@ void JobJournal::ChunkIsEarly(size_t point, const ChunkResult& chunk) {
                      ChunkRecordBytes(chunk));
 }
 
-void JobJournal::Worked(double seconds) {
-  job_->AddWork(seconds);
-  usage_.AddWork(job_->principal(), absl::Now(), seconds);
-}
+void JobJournal::Worked(double seconds) { job_->AddWork(seconds); }
 
 void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
                                const BlockResult& merged,
@@ -141,13 +134,11 @@ void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
   if (experiment.plan().samples() == 0) job_->AddSamples(0, 1);  // computed without one
   const PointSummary summary = experiment.Summarize(merged);
   PointRow row = {static_cast<int64_t>(point), static_cast<double>(summary.samples),
-                  RecordBytes(ResultRecordOf(point, experiment, summary)),
-                  RecordBytes(DetailsRecordOf(summary, chunk_digests))};
+                  DeterministicBytes(ResultOf(point, experiment, summary)),
+                  DeterministicBytes(DetailsOf(summary, chunk_digests))};
   row.has_checkpoint = resumed_ || experiment.plan().samples() > 0;
   auto told = std::make_shared<const std::string>(row.result);
-  const auto bytes = static_cast<int64_t>(row.result.size() + row.details.size());
-  job_->AddBytes(bytes);
-  usage_.AddStored(job_->principal(), 0, bytes);
+  job_->AddBytes(static_cast<int64_t>(row.result.size() + row.details.size()));
   Failpoint("point.before_record");
   store_.RecordResult(job_->sequence(), std::move(row),
                       [job = job_, told = std::move(told)](int64_t number) {

@@ -103,9 +103,6 @@ void AddPrincipals(const ServerSnapshot& server, Page& page) {
                of_one.stored_jobs, labels);
     page.Gauge("ballpiston_principal_stored_bytes", "Bytes of stored specifications and results.",
                of_one.stored_bytes, labels);
-    page.Gauge("ballpiston_principal_processor_seconds",
-               "Processor time in the last 30 days, which counts for the quota.",
-               of_one.processor_seconds, labels);
   }
 }
 

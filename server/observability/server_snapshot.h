@@ -17,7 +17,6 @@ struct PrincipalSnapshot {
   int64_t running_jobs = 0;  // and those that are being cancelled
   int64_t stored_jobs = 0;
   int64_t stored_bytes = 0;
-  double processor_seconds = 0;  // in the last 30 days
 };
 
 struct ServerSnapshot {

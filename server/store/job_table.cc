@@ -92,33 +92,28 @@ absl::Status RunFor(Database& database, int64_t sequence, const char* sql) {
   return database.Prepare(sql).Bind(sequence).Run();
 }
 
-absl::StatusOr<std::vector<JobSize>> AllSizes(Query& query) {
+// The jobs that ended first.
+absl::StatusOr<std::vector<JobSize>> Sizes(Database& database, const char* condition,
+                                           absl::Time ended_before, int most) {
+  Query query = database.Prepare(absl::StrCat("SELECT sequence, bytes FROM jobs WHERE ", condition,
+                                              " AND end_time < ? ORDER BY end_time LIMIT ?"));
+  query.Bind(absl::ToUnixNanos(ended_before)).Bind(int64_t{most});
   std::vector<JobSize> sizes;
   while (true) {
     const absl::StatusOr<bool> row = query.Step();
     if (!row.ok()) return row.status();
     if (!*row) return sizes;
-    sizes.push_back({query.Integer(0), query.Integer(1), query.Integer(2), query.Bytes(3)});
+    sizes.push_back({query.Integer(0), query.Integer(1)});
   }
 }
 
-std::string SelectSizes(const char* condition) {
-  return absl::StrCat(
-      "SELECT sequence, bytes, length(spec) + length(grid), principal FROM jobs WHERE ", condition);
-}
-
-// The jobs that ended first.
-absl::StatusOr<std::vector<JobSize>> Sizes(Database& database, const char* condition,
-                                           absl::Time ended_before, int most) {
-  Query query =
-      database.Prepare(absl::StrCat(SelectSizes(condition), " ORDER BY end_time LIMIT ?"));
-  query.Bind(absl::ToUnixNanos(ended_before)).Bind(int64_t{most});
-  return AllSizes(query);
-}
+// Jobs whose results may expire. An index has this condition.
+constexpr char kExpirable[] = "end_time IS NOT NULL AND expired_time IS NULL AND pinned = 0";
 
 // The rows of a job's unfinished points.
 constexpr const char* kDropUnfinished[] = {"DELETE FROM checkpoints WHERE job = ?",
                                            "DELETE FROM chunks WHERE job = ?"};
+constexpr char kDropResults[] = "INSERT OR IGNORE INTO dropped (job) VALUES (?)";
 
 }  // namespace
 
@@ -150,15 +145,6 @@ absl::StatusOr<std::optional<JobRecord>> FindJobBySequence(Database& database, i
   return FirstRow(query, grid);
 }
 
-absl::StatusOr<std::optional<JobSize>> FindUnpinned(Database& database, int64_t sequence) {
-  Query query = database.Prepare(SelectSizes("sequence = ? AND pinned = 0"));
-  query.Bind(sequence);
-  absl::StatusOr<std::vector<JobSize>> sizes = AllSizes(query);
-  if (!sizes.ok()) return sizes.status();
-  if (sizes->empty()) return std::nullopt;
-  return std::move(sizes->front());
-}
-
 absl::StatusOr<std::optional<JobRecord>> FindAnswer(Database& database,
                                                     const std::string& principal,
                                                     const std::string& question) {
@@ -181,25 +167,21 @@ absl::StatusOr<Load> ActiveLoad(Database& database, const std::optional<std::str
   return Load{.jobs = query.Integer(0), .points = query.Integer(1)};
 }
 
-absl::StatusOr<std::map<std::string, ActiveJobs>> CountActiveByPrincipal(Database& database) {
-  Query query =
-      database.Prepare(absl::StrCat("SELECT principal, state, count(*) FROM jobs WHERE state IN (",
-                                    kActiveStates, ") GROUP BY state, principal"));
-  std::map<std::string, ActiveJobs> by_principal;
+absl::StatusOr<std::map<std::string, PrincipalJobs>> CountJobsByPrincipal(Database& database) {
+  Query query = database.Prepare(
+      "SELECT principal, count(*), sum(bytes), sum(state = 1), sum(state = 2), sum(state = 3)"
+      " FROM jobs GROUP BY principal");
+  std::map<std::string, PrincipalJobs> by_principal;
   while (true) {
     const absl::StatusOr<bool> row = query.Step();
     if (!row.ok()) return row.status();
     if (!*row) return by_principal;
-    ActiveJobs& jobs = by_principal[query.Bytes(0)];
-    const int64_t state = query.Integer(1);
-    (state == v1::EnsembleJob::QUEUED    ? jobs.queued
-     : state == v1::EnsembleJob::RUNNING ? jobs.running
-                                         : jobs.cancelling) = query.Integer(2);
+    by_principal[query.Bytes(0)] = {.stored = query.Integer(1),
+                                    .bytes = query.Integer(2),
+                                    .queued = query.Integer(3),
+                                    .running = query.Integer(4),
+                                    .cancelling = query.Integer(5)};
   }
-}
-
-absl::StatusOr<int64_t> CountJobs(Database& database) {
-  return database.Integer("SELECT count(*) FROM jobs");
 }
 
 absl::Status ReadJobs(Database& database, const std::optional<std::string>& principal,
@@ -290,41 +272,35 @@ absl::Status PinJob(Database& database, int64_t sequence, bool pinned) {
 
 absl::StatusOr<std::vector<JobSize>> ListExpirable(Database& database, absl::Time ended_before,
                                                    int most) {
-  return Sizes(database,
-               "end_time IS NOT NULL AND expired_time IS NULL AND pinned = 0 AND end_time < ?",
-               ended_before, most);
+  return Sizes(database, kExpirable, ended_before, most);
 }
 
 absl::StatusOr<std::vector<JobSize>> ListExpired(Database& database, int most) {
-  return Sizes(database, "expired_time IS NOT NULL AND end_time < ?", absl::InfiniteFuture(), most);
+  return Sizes(database, "expired_time IS NOT NULL", absl::InfiniteFuture(), most);
 }
 
 absl::StatusOr<int64_t> CountExpirable(Database& database, absl::Time ended_before) {
   Query query = database.Prepare(
-      "SELECT count(*) FROM jobs WHERE end_time IS NOT NULL AND expired_time IS NULL"
-      " AND pinned = 0 AND end_time < ?");
+      absl::StrCat("SELECT count(*) FROM jobs WHERE ", kExpirable, " AND end_time < ?"));
   const absl::StatusOr<bool> row = query.Bind(absl::ToUnixNanos(ended_before)).Step();
   if (!row.ok()) return row.status();
   return query.Integer(0);
 }
 
 absl::Status ExpireJob(Database& database, int64_t sequence, absl::Time now) {
-  const absl::Status dropped =
-      RunFor(database, sequence, "INSERT OR IGNORE INTO dropped (job) VALUES (?)");
-  if (!dropped.ok()) return dropped;
-  return database
-      .Prepare(
-          "UPDATE jobs SET expired_time = ?, bytes = length(spec) + length(grid) WHERE sequence = "
-          "?")
-      .Bind(absl::ToUnixNanos(now))
-      .Bind(sequence)
-      .Run();
+  Query query = database.Prepare(
+      "UPDATE jobs SET expired_time = ?, bytes = length(spec) + length(grid)"
+      " WHERE sequence = ? AND pinned = 0");
+  query.Bind(absl::ToUnixNanos(now)).Bind(sequence);
+  const absl::StatusOr<bool> has_expired = HasChanged(database, query);
+  if (!has_expired.ok() || !*has_expired) return has_expired.status();
+  return RunFor(database, sequence, kDropResults);
 }
 
 absl::Status DeleteJob(Database& database, int64_t sequence) {
   for (const char* sql :
-       {kDropUnfinished[0], kDropUnfinished[1], "INSERT OR IGNORE INTO dropped (job) VALUES (?)",
-        "DELETE FROM requests WHERE job = ?", "DELETE FROM jobs WHERE sequence = ?"}) {
+       {kDropUnfinished[0], kDropUnfinished[1], kDropResults, "DELETE FROM requests WHERE job = ?",
+        "DELETE FROM jobs WHERE sequence = ?"}) {
     const absl::Status status = RunFor(database, sequence, sql);
     if (!status.ok()) return status;
   }

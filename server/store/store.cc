@@ -481,7 +481,7 @@ void Store::Sweep() {
     swept_before = sweeping_;
     is_failing = failing_;
   }
-  const absl::StatusOr<bool> swept = sweeper_.Step(*writer_);
+  const absl::StatusOr<bool> swept = SweepStep(*writer_);
   const bool has_ended = swept.ok() && !*swept;
   if (is_failing && swept.ok() && *swept && reserve_.held()) reserve_.Release();
   // The file gets shorter when the log is written back. A full disk has no room for a longer log.

@@ -214,7 +214,6 @@ class Store {
   // Only the store's thread uses these five. Any thread may read from disk_calls_ how long a call
   // waits.
   std::unique_ptr<Database> writer_;
-  Sweeper sweeper_;
   const std::shared_ptr<DiskCalls> disk_calls_;
   Reserve reserve_;
   Clock::time_point next_reserve_;

@@ -19,7 +19,6 @@
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
 #include "server/convert/point_result.h"
-#include "server/convert/result_record.h"
 #include "server/convert/spec.h"
 #include "server/worker/lease_runner.h"
 
@@ -160,9 +159,9 @@ absl::StatusOr<std::string> VerifyWhole(const SavedPoint& point) {
     merged = local.Merged();
   }
   const PointSummary summary = experiment.Summarize(merged);
-  const v1::PointResult computed = PointResultMessage(
-      ResultRecordOf(static_cast<size_t>(point.result.index()), experiment, summary),
-      DetailsRecordOf(summary, state.chunk_digests), *point.kind);
+  const v1::PointResult computed =
+      WithDetails(ResultOf(static_cast<size_t>(point.result.index()), experiment, summary),
+                  DetailsOf(summary, state.chunk_digests), *point.kind);
 
   DefaultFieldComparator rounded;
   rounded.set_float_comparison(DefaultFieldComparator::APPROXIMATE);

@@ -43,10 +43,8 @@ std::string NameOf(Refusal refusal) {
 }
 
 void ExpectDiskFailure(const absl::Status& status, Refusal refusal) {
-  const bool full = refusal == Refusal::kFull;
-  EXPECT_THAT(status,
-              IsError(full ? absl::StatusCode::kResourceExhausted : absl::StatusCode::kUnavailable,
-                      full ? "STORE_FULL" : "STORE_FAILED"));
+  EXPECT_THAT(status, IsError(absl::StatusCode::kUnavailable,
+                              refusal == Refusal::kFull ? "STORE_FULL" : "STORE_FAILED"));
 }
 
 // Flush succeeds only when all pending writes are written.

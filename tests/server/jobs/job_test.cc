@@ -13,7 +13,7 @@
 #include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "server/convert/result_record.h"
+#include "server/convert/point_result.h"
 #include "server/convert/spec.h"
 #include "server/jobs/job_journal.h"
 #include "server/jobs/job_message.h"
@@ -130,7 +130,7 @@ class JobJournalTest : public testing::Test {
     record_ = JobWithPoints(3);
     ASSERT_OK(store_->Commit([this](Database& database) { return InsertJob(database, record_); }));
     job_ = std::make_shared<Job>(record_);
-    journal_.emplace(job_, *store_, usage_, false, nullptr);
+    journal_.emplace(job_, *store_, false, nullptr);
   }
 
   JobRecord Row(const std::string& id) {
@@ -147,7 +147,6 @@ class JobJournalTest : public testing::Test {
 
   TemporaryFolder folder_;
   std::unique_ptr<Store> store_;
-  Usage usage_;
   JobRecord record_;
   std::shared_ptr<Job> job_;
   std::optional<JobJournal> journal_;
@@ -216,7 +215,7 @@ TEST_F(JobJournalTest, TheFirstEndOfAJobIsItsEnd) {
   const auto end_all = [&](const absl::Status& outcome) {
     for (const JobRecord& record : records) {
       const auto job = std::make_shared<Job>(record);
-      JobJournal(job, *store_, usage_, false, note).Ended(outcome);
+      JobJournal(job, *store_, false, note).Ended(outcome);
     }
   };
   std::thread succeeds(end_all, absl::OkStatus());

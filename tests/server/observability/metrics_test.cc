@@ -196,7 +196,6 @@ TEST_F(MetricsTest, UsageIsReportedForEachPrincipal) {
   server.Succeeded(Equilibrium(1, 2));
   EXPECT_EQ(Metrics().at("ballpiston_principal_stored_jobs{principal=\"local\"}"), 1);
   EXPECT_GT(Metrics().at("ballpiston_principal_stored_bytes{principal=\"local\"}"), 0);
-  EXPECT_GT(Metrics().at("ballpiston_principal_processor_seconds{principal=\"local\"}"), 0);
 }
 
 TEST_F(MetricsTest, LabelsContainNoJobIds) {

@@ -496,7 +496,8 @@ TEST_F(StoreTest, AHangingDiskRejectsRequestsAndServesReads) {
   EXPECT_THAT(refused, StatusIs(absl::StatusCode::kUnavailable));
   EXPECT_TRUE(told);
   EXPECT_FALSE(run);
-  EXPECT_OK(store->Read([](Database& database) { return CountJobs(database).status(); }));
+  EXPECT_OK(
+      store->Read([](Database& database) { return CountJobsByPrincipal(database).status(); }));
   disk.Resume();
   hanging.join();
   // The store accepts changes again when its thread has seen the end of the disk call.

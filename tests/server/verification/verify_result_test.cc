@@ -11,7 +11,6 @@
 #include "google/protobuf/util/json_util.h"
 #include "gtest/gtest.h"
 #include "server/convert/point_result.h"
-#include "server/convert/result_record.h"
 #include "server/convert/spec.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
@@ -32,9 +31,8 @@ v1::PointResult ComputedPoint(const EnsembleSpec& spec, size_t index) {
   LocalPoint point(*experiment);
   if (experiment->plan().samples() > 0) point.Run();
   const PointSummary summary = experiment->Summarize(point.Merged());
-  return PointResultMessage(ResultRecordOf(index, *experiment, summary),
-                            DetailsRecordOf(summary, point.State().chunk_digests),
-                            *spec.experiment);
+  return WithDetails(ResultOf(index, *experiment, summary),
+                     DetailsOf(summary, point.State().chunk_digests), *spec.experiment);
 }
 
 v1::SavedResult Saved(const EnsembleSpec& spec) {
