@@ -51,9 +51,10 @@ void AddWork(const ServiceContext& service, ServerSnapshot& snapshot) {
 void AddStore(const ServiceContext& service, ServerSnapshot& snapshot) {
   snapshot.store_bytes =
       FileBytes(service.store_path) + FileBytes(absl::StrCat(service.store_path, "-wal"));
-  snapshot.store_commits = service.store.commits();
-  snapshot.store_checkpoints_written = service.store.checkpoints_written();
-  snapshot.store_pending_writes = service.store.pending_writes();
+  const Store::Counts counts = service.store.counts();
+  snapshot.store_commits = counts.commits;
+  snapshot.store_checkpoints_written = counts.checkpoints_written;
+  snapshot.store_pending_writes = counts.pending_writes;
   snapshot.store_failing = service.store.failing() || service.store.stalled();
 }
 

@@ -204,7 +204,7 @@ JobBook::JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
 
 JobBook::~JobBook() {
   Shutdown();
-  store_.Flush().IgnoreError();  // after this, this book knows every ended job
+  store_.Close();  // whose thread calls this book when a job's end is written
 }
 
 void JobBook::Shutdown() {

@@ -97,7 +97,7 @@ class JobBook {
   // Store and scheduler must outlive this.
   JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
           std::shared_ptr<CrashRecord> crashes = std::make_shared<CrashRecord>());
-  ~JobBook();  // shuts down
+  ~JobBook();  // shuts down, and closes the store
 
   // Resumes the unfinished jobs of an earlier process. Call before anything else.
   absl::Status Resume();

@@ -31,6 +31,7 @@ JobEnd EndOf(const Job& job, const absl::Status& outcome) {
   const LiveNumbers numbers = job.Numbers();
   JobEnd end;
   end.time = absl::Now();
+  end.points_done = numbers.points_done;
   end.samples = numbers.samples;
   end.work = numbers.work;
   end.bytes = numbers.bytes;
@@ -43,6 +44,28 @@ JobEnd EndOf(const Job& job, const absl::Status& outcome) {
     end.error = RpcStatus(WithDefaultReason(outcome, "COMPUTATION_FAILED")).SerializeAsString();
   }
   return end;
+}
+
+// Why a job fails whose own end the store rejected.
+absl::Status EndRejected(const absl::Status& why) {
+  if (absl::IsDataLoss(why)) return StoreFailure(why);
+  return absl::InternalError(absl::StrCat("the store rejected the job's end: ", why.message()));
+}
+
+// Sets `ended` to the new row, if the job was active.
+absl::Status WriteEnd(Database& database, const Job& job, const JobEnd& end,
+                      std::optional<JobRecord>& ended) {
+  absl::StatusOr<std::optional<JobRecord>> row = EndJob(database, job.sequence(), end);
+  if (row.ok()) ended = *std::move(row);
+  return row.status();
+}
+
+void TellEnd(Job& job, const std::optional<JobRecord>& ended, const JobJournal::OnEnded& on_ended) {
+  if (!ended) return;
+  Failpoint("job.ended");
+  LogEnd(*ended);
+  if (on_ended) on_ended(*ended);
+  job.NoteStateChange();
 }
 
 // The job fails if the store rejected one of its results, because clients could not read it.
@@ -155,17 +178,19 @@ void JobJournal::Ended(const absl::Status& outcome) {
     JobEnd end = computed;
     ended->reset();
     const absl::Status counted = CountStoredPoints(database, *job, end);
-    if (!counted.ok()) return counted;
-    absl::StatusOr<std::optional<JobRecord>> row = EndJob(database, job->sequence(), end);
-    if (row.ok()) *ended = *std::move(row);
-    return row.status();
+    return counted.ok() ? WriteEnd(database, *job, end, *ended) : counted;
   };
-  store_.RecordSoon(change, [job = job_, ended, on_ended = on_ended_](const absl::Status& done) {
-    if (!done.ok() || !*ended) return;
-    Failpoint("job.ended");
-    LogEnd(**ended);
-    if (on_ended) on_ended(**ended);
-    job->NoteStateChange();
+  const auto tell = [job = job_, ended, on_ended = on_ended_] { TellEnd(*job, *ended, on_ended); };
+  store_.RecordSoon(change, [=, this_store = &store_, job = job_](const absl::Status& done) {
+    if (done.ok()) return tell();
+    if (IsOfTheDisk(done)) return;  // the store is closed
+    // No client may wait for ever for the end of this job.
+    const JobEnd failed = EndOf(*job, EndRejected(done));
+    this_store->RecordSoon(
+        [=](Database& database) { return WriteEnd(database, *job, failed, *ended); },
+        [=](const absl::Status& told) {
+          if (told.ok()) tell();
+        });
   });
   Failpoint("job.end_recorded");
 }

@@ -154,6 +154,11 @@ bool Database::Exists(const std::string& path, const std::string& vfs) {
          exists != 0;
 }
 
+void Database::RemoveFile(const std::string& path, const std::string& vfs) {
+  sqlite3_vfs* const files = sqlite3_vfs_find(VfsName(vfs));
+  if (files != nullptr) files->xDelete(files, path.c_str(), 0);
+}
+
 Database::~Database() {
   for (const auto& [sql, statement] : statements_) sqlite3_finalize(statement);
   sqlite3_close(connection_);
@@ -216,18 +221,6 @@ absl::StatusOr<std::string> Database::FileStart(int bytes) const {
 
 absl::Status Database::CopyTo(const std::string& path) {
   return Prepare("VACUUM INTO ?").BindText(path).Run();
-}
-
-std::shared_ptr<DiskCalls> Database::WatchDisk() {
-  disk_calls_ = std::make_shared<DiskCalls>();
-  sqlite3_file* file = nullptr;
-  // In WAL mode only checkpoints write to the file itself.
-  sqlite3_file_control(connection_, "main", SQLITE_FCNTL_FILE_POINTER, &file);
-  if (file != nullptr) disk_calls_->Watch(*file, "checkpoint.page");
-  sqlite3_file* log = nullptr;
-  sqlite3_file_control(connection_, "main", SQLITE_FCNTL_JOURNAL_POINTER, &log);
-  if (log != nullptr) disk_calls_->Watch(*log);
-  return disk_calls_;
 }
 
 bool Database::InTransaction() const { return sqlite3_get_autocommit(connection_) == 0; }

@@ -21,7 +21,6 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "server/store/disk_calls.h"
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -73,6 +72,9 @@ class Database {
   // Whether the file exists and is not empty.
   static bool Exists(const std::string& path, const std::string& vfs = std::string());
 
+  // Errors are not reported.
+  static void RemoveFile(const std::string& path, const std::string& vfs);
+
   ~Database();
 
   Database(const Database&) = delete;
@@ -96,9 +98,6 @@ class Database {
   // is not in WAL mode and has no free pages.
   absl::Status CopyTo(const std::string& path);
 
-  // Watches the disk calls of the open file and of its log from now on.
-  std::shared_ptr<DiskCalls> WatchDisk();
-
   // False also after an error for which SQLite has rolled the transaction back.
   bool InTransaction() const;
 
@@ -108,7 +107,6 @@ class Database {
  private:
   explicit Database(sqlite3* connection) : connection_(connection) {}
 
-  std::shared_ptr<DiskCalls> disk_calls_;  // outlives the connection
   sqlite3* connection_;
   std::map<std::string, sqlite3_stmt*> statements_;
 };

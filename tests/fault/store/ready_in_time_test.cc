@@ -38,7 +38,7 @@ double SecondsSince(std::chrono::steady_clock::time_point start) {
 std::string DetailsWithHistogram() {
   v1::PointResult details;
   auto* histogram = details.add_histograms();
-  for (uint64_t i = 0; i < 200; ++i) histogram->add_counts(1000 + i);
+  for (int i = 0; i < 200; ++i) histogram->add_counts(1000 + i);
   return DeterministicBytes(details);
 }
 

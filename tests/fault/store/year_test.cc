@@ -81,7 +81,7 @@ class YearTest : public testing::Test {
   static PointRow Row(int64_t point) {
     v1::PointResult details;
     auto* histogram = details.add_histograms();
-    for (uint64_t i = 0; i < 750; ++i) histogram->add_counts(1000 + i);
+    for (int i = 0; i < 750; ++i) histogram->add_counts(1000 + i);
     v1::PointResult result;
     result.set_index(static_cast<int32_t>(point));
     result.set_reason(std::string(200, 'r'));

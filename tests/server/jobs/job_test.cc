@@ -201,6 +201,29 @@ TEST_F(JobJournalTest, AJobWithMissingResultsFails) {
   EXPECT_THAT(job.error().message(), testing::HasSubstr("of 3 computed points the store keeps 2"));
 }
 
+// Otherwise the job would be active until the next start of the server.
+TEST_F(JobJournalTest, AJobWhoseEndTheStoreRejectsFails) {
+  ASSERT_OK(store_->Commit([](Database& database) {
+    return database.Execute(
+        "CREATE TRIGGER no_success BEFORE UPDATE ON jobs WHEN new.state = 4"
+        " BEGIN SELECT RAISE(ABORT, 'not this one'); END");
+  }));
+  std::vector<JobState> ends;
+  journal_.emplace(job_, *store_, false,
+                   [&](const JobRecord& ended) { ends.push_back(ended.state); });
+  for (const size_t point : {0u, 1u, 2u}) Finish(point);
+  const uint64_t change = job_->last_state_change();
+  journal_->Ended(absl::OkStatus());
+  ASSERT_OK(store_->Flush());  // the rejected end
+  ASSERT_OK(store_->Flush());
+  const EnsembleJob job = JobMessage(Row(), nullptr, 0);
+  EXPECT_EQ(job.state(), EnsembleJob::FAILED);
+  EXPECT_THAT(job.error().message(), testing::HasSubstr("not this one"));
+  EXPECT_EQ(Row().points_done, 3);
+  EXPECT_THAT(ends, testing::ElementsAre(EnsembleJob::FAILED));
+  EXPECT_GT(job_->last_state_change(), change);
+}
+
 // Two runs end the same jobs, one in success and one in failure, while a client cancels them.
 TEST_F(JobJournalTest, TheFirstEndOfAJobIsItsEnd) {
   std::vector<JobRecord> records(IsNightly() ? 10'000 : 1'000, JobWithPoints(0));
