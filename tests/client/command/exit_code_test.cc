@@ -38,7 +38,7 @@ TEST(ExitCode, DistinguishesATooLargeJobFromABusyServer) {
   }
   for (const char* reason :
        {"QUEUE_FULL", "TOO_MANY_JOBS", "TOO_MANY_ACTIVE_POINTS", "TOO_MANY_STREAMS",
-        "TOO_MANY_CALLS", "TOO_MANY_STORED_BYTES", "STORE_FULL"}) {
+        "TOO_MANY_CALLS", "TOO_MANY_STORED_BYTES"}) {
     EXPECT_EQ(ExitCodeOf(LimitOf(reason)), ExitCode::kUnreachable) << reason;
   }
 }

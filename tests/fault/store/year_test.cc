@@ -77,11 +77,11 @@ class YearTest : public testing::Test {
       : store_(*Store::Open(path_, {.delay = std::chrono::milliseconds(1), .stall = kNever})),
         retention_(*store_, {.retain_days = kRetainDays, .max_store_bytes = Bound()}) {}
 
-  // With a histogram of 750 bins, like a first hit.
+  // With 1.5 kB of details: a histogram of 190 bins.
   static PointRow Row(int64_t point) {
     v1::PointResult details;
     auto* histogram = details.add_histograms();
-    for (int i = 0; i < 750; ++i) histogram->add_counts(1000 + i);
+    for (int i = 0; i < 190; ++i) histogram->add_counts(1000 + i);
     v1::PointResult result;
     result.set_index(static_cast<int32_t>(point));
     result.set_reason(std::string(200, 'r'));
