@@ -57,13 +57,10 @@ class StoreCheck {
   // Calls `take` for each row.
   template <typename Take>
   absl::Status ForEach(const std::string& sql, Take take) {
-    Query query = database_.Prepare(sql);
-    while (true) {
-      const absl::StatusOr<bool> row = query.Step();
-      if (!row.ok()) return row.status();
-      if (!*row) return absl::OkStatus();
-      take(query);
-    }
+    return database_.Select(sql).ForEach([&](const Query& row) {
+      take(row);
+      return true;
+    });
   }
 
   absl::Status CheckPages() {

@@ -25,18 +25,15 @@ absl::Status DropSome(Database& database, int64_t job) {
   int64_t dropped = 0;
   for (const char* table : {"details", "results"}) {
     const absl::Status status =
-        database
-            .Prepare(absl::StrCat("DELETE FROM ", table, " WHERE rowid IN (SELECT rowid FROM ",
-                                  table, " WHERE job = ? LIMIT ?)"))
-            .Bind(job)
-            .Bind(kSweptRows - dropped)
-            .Run();
+        database.Run(absl::StrCat("DELETE FROM ", table, " WHERE rowid IN (SELECT rowid FROM ",
+                                  table, " WHERE job = ? LIMIT ?)"),
+                     job, kSweptRows - dropped);
     if (!status.ok()) return status;
     dropped += database.RowsChanged();
   }
   Failpoint("sweep.in_transaction");
   if (dropped > 0) return absl::OkStatus();
-  return database.Prepare("DELETE FROM dropped WHERE job = ?").Bind(job).Run();
+  return database.Run("DELETE FROM dropped WHERE job = ?", job);
 }
 
 absl::StatusOr<bool> ShortenFile(Database& database) {
