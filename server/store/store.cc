@@ -7,7 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
 #include "server/observability/failpoint.h"
 #include "server/observability/log.h"
@@ -23,6 +22,7 @@ constexpr size_t kMostGroupBytes = 2 << 20;
 constexpr size_t kMostBytesOnFailingDisk = 128 << 10;
 
 constexpr std::chrono::seconds kBetweenReserves(60);
+constexpr std::chrono::milliseconds kBetweenLooks(100);  // whether the disk hangs
 
 absl::Status Stalled() {
   return absl::UnavailableError("store: the disk does not answer; retry later");
@@ -50,26 +50,27 @@ void MarkSuperseded(Writes& batch) {
 absl::StatusOr<std::unique_ptr<Store>> Store::Open(const std::string& path, Options options) {
   auto writer = OpenStoreFile(path, options.vfs);
   if (!writer.ok()) return writer.status();
-  std::vector<std::unique_ptr<Database>> readers;
-  for (int i = 0; i < options.readers; ++i) {
-    auto reader = Database::Open(path, Database::Mode::kReadOnly, options.vfs);
-    if (!reader.ok()) return reader.status();
-    readers.push_back(*std::move(reader));
-  }
-  auto identity = readers.front()->Text("SELECT identity FROM server");
+  auto identity = (*writer)->Text("SELECT identity FROM server");
   if (!identity.ok()) return identity.status();
-  return std::unique_ptr<Store>(new Store(*std::move(writer), std::move(readers),
-                                          std::move(options), path, *std::move(identity)));
+  auto store = std::unique_ptr<Store>(
+      new Store(*std::move(writer), std::move(options), path, *std::move(identity)));
+  for (int i = 0; i < store->options_.readers; ++i) {
+    const absl::Status added = store->readers_.Add(path, store->options_.vfs);
+    if (!added.ok()) return added;
+  }
+  store->Start();
+  return store;
 }
 
-Store::Store(std::unique_ptr<Database> writer, std::vector<std::unique_ptr<Database>> readers,
-             Options options, std::string path, std::string identity)
+Store::Store(std::unique_ptr<Database> writer, Options options, std::string path,
+             std::string identity)
     : options_(std::move(options)),
       path_(std::move(path)),
       identity_(std::move(identity)),
       writer_(std::move(writer)),
-      reserve_(path_, options_.reserve_bytes, options_.vfs),
-      free_readers_(std::move(readers)) {
+      reserve_(path_, options_.reserve_bytes, options_.vfs) {}
+
+void Store::Start() {
   reserve_.Take();
   thread_ = std::thread([this] { WriteUntilClosed(); });
 }
@@ -162,7 +163,7 @@ absl::Status Store::Flush() {
   posted_.NotifyOne();
   while (!closing_ && settled_ < last && rejected_ == rejected_before) {
     if (stalled()) return Stalled();
-    written_.WaitUntil(mutex_, Clock::now() + options_.stall);
+    written_.WaitUntil(mutex_, Clock::now() + kBetweenLooks);
   }
   if (closing_) return Closed();
   return settled_ >= last ? absl::OkStatus() : absl::UnavailableError(failure_);
@@ -198,7 +199,7 @@ void Store::Close() {
   }
   if (!thread_.joinable()) return;
   thread_.join();
-  CloseReaders();
+  readers_.Close();
   Failpoint("stop.before_checkpoint");
   writer_.reset();  // last: the last connection to close checkpoints
 }
@@ -218,45 +219,6 @@ Store::Counts Store::counts() const {
   Counts counts = counts_;
   counts.pending_writes = static_cast<int64_t>(records_.size() + requests_.size() + in_batch_);
   return counts;
-}
-
-// ---- reading ----
-
-absl::Status Store::Read(absl::FunctionRef<absl::Status(Database&)> read) {
-  std::unique_ptr<Database> reader = TakeReader();
-  if (reader == nullptr) return Closed();
-  const absl::Cleanup give_back = [&] { GiveBack(std::move(reader)); };
-  absl::Status status = reader->Execute("BEGIN");
-  if (status.ok()) status = read(*reader);
-  reader->Execute("ROLLBACK").IgnoreError();  // SQLite may have done so already
-  return status;
-}
-
-std::unique_ptr<Database> Store::TakeReader() {
-  MutexLock lock(readers_mutex_);
-  while (!readers_closed_ && free_readers_.empty()) reader_is_free_.Wait(readers_mutex_);
-  if (readers_closed_) return nullptr;
-  std::unique_ptr<Database> reader = std::move(free_readers_.back());
-  free_readers_.pop_back();
-  return reader;
-}
-
-void Store::GiveBack(std::unique_ptr<Database> reader) {
-  MutexLock lock(readers_mutex_);
-  free_readers_.push_back(std::move(reader));
-  reader_is_free_.NotifyOne();
-  reader_is_back_.NotifyOne();
-}
-
-// Waits for the connections in use.
-void Store::CloseReaders() {
-  MutexLock lock(readers_mutex_);
-  readers_closed_ = true;
-  reader_is_free_.NotifyAll();
-  while (free_readers_.size() < static_cast<size_t>(options_.readers)) {
-    reader_is_back_.Wait(readers_mutex_);
-  }
-  free_readers_.clear();
 }
 
 // ---- choice of the next writes ----

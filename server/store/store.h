@@ -38,13 +38,13 @@
 #include <optional>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "absl/functional/function_ref.h"
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "server/mutex.h"
 #include "server/store/point_tables.h"
+#include "server/store/reader_pool.h"
 #include "server/store/reserve.h"
 #include "server/store/sqlite.h"
 
@@ -99,9 +99,8 @@ class Store {
   void RecordResult(int64_t job, PointRow row,
                     std::function<void(int64_t number)> stored = nullptr);
 
-  // Runs `read` on one of the read-only connections, in a transaction: it sees the store at one
-  // moment. Waits while all connections are in use.
-  absl::Status Read(absl::FunctionRef<absl::Status(Database&)> read);
+  // As ReaderPool::Read.
+  absl::Status Read(absl::FunctionRef<absl::Status(Database&)> read) { return readers_.Read(read); }
 
   // Returns when few enough writes are pending, or the store is closing.
   void AwaitRoom();
@@ -164,12 +163,8 @@ class Store {
     bool has_all = true;  // no records are left
   };
 
-  Store(std::unique_ptr<Database> writer, std::vector<std::unique_ptr<Database>> readers,
-        Options options, std::string path, std::string identity);
-
-  std::unique_ptr<Database> TakeReader();  // null: closed
-  void GiveBack(std::unique_ptr<Database> reader);
-  void CloseReaders();
+  Store(std::unique_ptr<Database> writer, Options options, std::string path, std::string identity);
+  void Start();
 
   void Post(Write write, bool soon = false) ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status CommitRequest(Write request);
@@ -216,11 +211,7 @@ class Store {
   Clock::time_point next_reserve_;
   std::atomic<Clock::rep> busy_since_ = 0;  // the start of its present group; 0: it waits
 
-  Mutex readers_mutex_;
-  Condition reader_is_free_;
-  Condition reader_is_back_;
-  std::vector<std::unique_ptr<Database>> free_readers_ ABSL_GUARDED_BY(readers_mutex_);
-  bool readers_closed_ ABSL_GUARDED_BY(readers_mutex_) = false;
+  ReaderPool readers_;
 
   mutable Mutex mutex_;
   Condition posted_;

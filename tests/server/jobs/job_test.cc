@@ -1,6 +1,7 @@
 #include "server/jobs/job.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -15,13 +16,17 @@
 #include "gtest/gtest.h"
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
+#include "server/jobs/job_book.h"
 #include "server/jobs/job_journal.h"
 #include "server/jobs/job_message.h"
 #include "server/jobs/job_name.h"
 #include "server/jobs/job_snapshot.h"
 #include "server/store/job_table.h"
+#include "server/store/point_tables.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/hanging_disk.h"
 #include "tests/server/store_access.h"
+#include "tests/server/thread_pool.h"
 #include "tests/support/await.h"
 #include "tests/support/nightly.h"
 #include "tests/support/status_matchers.h"
@@ -257,6 +262,38 @@ TEST_F(JobJournalTest, TheFirstEndOfAJobIsItsEnd) {
     EXPECT_TRUE(HasEnded(state));
     EXPECT_EQ(Row(record.id).error.empty(), state != EnsembleJob::FAILED);
   }
+}
+
+// The store's thread calls the book when it has written the end of a job.
+TEST(JobBook, IsDestroyedAfterTheLastWriteOfAHangingDisk) {
+  const TemporaryFolder folder;
+  HangingDisk disk;
+  const auto store = *Store::Open(folder.File("store"),
+                                  {.stall = std::chrono::milliseconds(1), .vfs = disk.vfs()});
+  ThreadPool pool(1, FakeExperiments());
+  auto book = std::make_unique<JobBook>(*store, Limits(), pool.scheduler());
+  const auto write = [](Database& database) { return InsertChunk(database, 9, 0, 0, "x"); };
+  disk.Hang();
+  store->RecordSoon(write);
+  disk.AwaitHanging();
+  store->Record(write);
+  AwaitThat([&] { return store->stalled(); });
+  std::atomic<bool> is_destroyed = false;
+  int64_t pending = -1;
+  std::thread destroys([&] {
+    book.reset();
+    pending = store->counts().pending_writes;
+    is_destroyed = true;
+  });
+  // Until the book waits for the end of the store: a closing store rejects records.
+  const auto is_closing = std::make_shared<std::atomic<bool>>(false);
+  AwaitThat([&] {
+    store->Record(write, [is_closing](const absl::Status& done) { *is_closing = !done.ok(); });
+    return *is_closing || is_destroyed;
+  });
+  disk.Resume();
+  destroys.join();
+  EXPECT_EQ(pending, 0);
 }
 
 TEST(LeaveOutFinished, APointInBothListsIsKeptAsFinishedOnly) {
