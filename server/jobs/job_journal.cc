@@ -46,12 +46,6 @@ JobEnd EndOf(const Job& job, const absl::Status& outcome) {
   return end;
 }
 
-// Why a job fails whose own end the store rejected.
-absl::Status EndRejected(const absl::Status& why) {
-  if (absl::IsDataLoss(why)) return StoreFailure(why);
-  return absl::InternalError(absl::StrCat("the store rejected the job's end: ", why.message()));
-}
-
 // Sets `ended` to the new row, if the job was active.
 absl::Status WriteEnd(Database& database, const Job& job, const JobEnd& end,
                       std::optional<JobRecord>& ended) {
@@ -66,6 +60,21 @@ void TellEnd(Job& job, const std::optional<JobRecord>& ended, const JobJournal::
   LogEnd(*ended);
   if (on_ended) on_ended(*ended);
   job.NoteStateChange();
+}
+
+// The job fails, because no client may wait for ever for an end that the store rejects.
+void RecordRejectedEnd(Store& store, const std::shared_ptr<Job>& job, const absl::Status& why,
+                       const JobJournal::OnEnded& on_ended) {
+  const absl::Status failure =
+      absl::IsDataLoss(why)
+          ? StoreFailure(why)
+          : absl::InternalError(absl::StrCat("the store rejected the job's end: ", why.message()));
+  const auto ended = std::make_shared<std::optional<JobRecord>>();
+  store.RecordSoon([job, ended, end = EndOf(*job, failure)](
+                       Database& database) { return WriteEnd(database, *job, end, *ended); },
+                   [job, ended, on_ended](const absl::Status& done) {
+                     if (done.ok()) TellEnd(*job, *ended, on_ended);
+                   });
 }
 
 // The job fails if the store rejected one of its results, because clients could not read it.
@@ -176,22 +185,14 @@ void JobJournal::Ended(const absl::Status& outcome) {
   const auto ended = std::make_shared<std::optional<JobRecord>>();
   const auto change = [job = job_, computed, ended](Database& database) {
     JobEnd end = computed;
-    ended->reset();
     const absl::Status counted = CountStoredPoints(database, *job, end);
     return counted.ok() ? WriteEnd(database, *job, end, *ended) : counted;
   };
-  const auto tell = [job = job_, ended, on_ended = on_ended_] { TellEnd(*job, *ended, on_ended); };
-  store_.RecordSoon(change, [=, this_store = &store_, job = job_](const absl::Status& done) {
-    if (done.ok()) return tell();
-    if (IsOfTheDisk(done)) return;  // the store is closed
-    // No client may wait for ever for the end of this job.
-    const JobEnd failed = EndOf(*job, EndRejected(done));
-    this_store->RecordSoon(
-        [=](Database& database) { return WriteEnd(database, *job, failed, *ended); },
-        [=](const absl::Status& told) {
-          if (told.ok()) tell();
-        });
-  });
+  store_.RecordSoon(
+      change, [job = job_, &store = store_, ended, on_ended = on_ended_](const absl::Status& done) {
+        if (done.ok()) return TellEnd(*job, *ended, on_ended);
+        if (!IsOfTheDisk(done)) RecordRejectedEnd(store, job, done, on_ended);  // else it is closed
+      });
   Failpoint("job.end_recorded");
 }
 

@@ -364,12 +364,16 @@ absl::Status Store::BeginGroup() {
   return writer_->Execute(absl::StrCat("PRAGMA user_version = ", kSchemaVersion));
 }
 
-absl::Status Store::CommitAlone(Writes& batch, size_t request) {
-  const absl::Status status = CommitGroup(batch, request, request + 1);
-  const bool needs_room = absl::IsResourceExhausted(status) && batch[request].frees_space;
-  if (!needs_room || !reserve_.held()) return status;
-  ReleaseReserve();
-  return CommitGroup(batch, request, request + 1);
+void Store::TryAgain(Writes& batch, size_t request, const absl::Status& failure) {
+  Write& write = batch[request];
+  if (write.outcome) return;  // refused
+  absl::Status status = failure;
+  if (absl::IsResourceExhausted(status)) status = CommitGroup(batch, request, request + 1);
+  if (absl::IsResourceExhausted(status) && write.frees_space && reserve_.held()) {
+    ReleaseReserve();
+    status = CommitGroup(batch, request, request + 1);
+  }
+  if (!status.ok()) write.outcome = status;
 }
 
 // Then the file may grow, and the log starts from its beginning.
@@ -390,21 +394,28 @@ void Store::Sweep() {
     has_advanced = sweep_advances_;
   }
   NoteProgress();
-  absl::StatusOr<bool> swept = SweepStep(*writer_);
-  if (absl::IsResourceExhausted(swept.status()) && reserve_.held()) {
-    ReleaseReserve();
-    swept = SweepStep(*writer_);
-  }
+  const absl::StatusOr<bool> swept = SweepWithReserve();
   const bool has_ended = swept.ok() && !*swept;
   // Waiting records may need the room of the reserve and that of the deleted job.
   if (is_failing && swept.ok() && *swept && reserve_.held()) reserve_.Release();
   // The file gets shorter when the log is written back. A full disk has no room for a longer log.
   if (is_failing || !swept.ok() || (has_advanced && has_ended)) WriteLogBack();
-  if (has_ended && !is_failing && !reserve_.held() && next_reserve_ <= Clock::now()) {
-    reserve_.Take();
-    next_reserve_ = Clock::now() + kBetweenReserves;
-  }
+  if (has_ended && !is_failing) TakeReserve();
   NoteSweep(swept);
+}
+
+// One step. If it has no room, the reserve is released.
+absl::StatusOr<bool> Store::SweepWithReserve() {
+  const absl::StatusOr<bool> swept = SweepStep(*writer_);
+  if (!absl::IsResourceExhausted(swept.status()) || !reserve_.held()) return swept;
+  ReleaseReserve();
+  return SweepStep(*writer_);
+}
+
+void Store::TakeReserve() {
+  if (reserve_.held() || next_reserve_ > Clock::now()) return;
+  reserve_.Take();
+  next_reserve_ = Clock::now() + kBetweenReserves;
 }
 
 // A step that fails is tried again later, unless the store is damaged: each step would find that.
@@ -448,19 +459,15 @@ void Store::Settle(Writes& batch, size_t first, size_t last) {
 
 void Store::SettleFailed(Batch batch, size_t first, const absl::Status& failure) {
   NoteHealth(failure);
-  const bool is_full = absl::IsResourceExhausted(failure);
-  if (is_full) WriteLogBack();
+  if (absl::IsResourceExhausted(failure)) WriteLogBack();
   Writes& writes = batch.writes;
   bool has_failed = !batch.has_all || first == writes.size();
   Writes again;
   for (size_t i = first; i < writes.size(); ++i) {
     Write& write = writes[i];
-    if (write.is_request && !write.outcome) {
-      const absl::Status alone = is_full ? CommitAlone(writes, i) : failure;
-      if (!alone.ok()) write.outcome = alone;
-      has_failed |= !alone.ok();
-    }
-    if (write.is_request || write.superseded || write.outcome) {
+    if (write.is_request) TryAgain(writes, i, failure);
+    if (write.outcome || write.superseded) {
+      has_failed |= write.outcome && IsOfTheDisk(*write.outcome);
       Settle(writes, i, i + 1);
     } else {
       again.push_back(std::move(write));

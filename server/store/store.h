@@ -187,11 +187,13 @@ class Store {
   absl::Status CommitGroup(Writes& batch, size_t first, size_t last);
   absl::Status TryGroup(Writes& batch, size_t first, size_t last, Write*& culprit);
   absl::Status BeginGroup();
-  // On a full disk.
-  absl::Status CommitAlone(Writes& batch, size_t request);
+  // Sets the outcome of a request whose group failed. On a full disk it is tried alone.
+  void TryAgain(Writes& batch, size_t request, const absl::Status& failure);
   void ReleaseReserve();
+  void TakeReserve();
   void WriteLogBack();
   void Sweep();
+  absl::StatusOr<bool> SweepWithReserve();
   void NoteSweep(const absl::StatusOr<bool>& swept) ABSL_LOCKS_EXCLUDED(mutex_);
   void NoteProgress() { busy_since_ = Clock::now().time_since_epoch().count(); }
 
