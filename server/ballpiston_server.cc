@@ -262,7 +262,6 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   book_.Shutdown();
   Failpoint("stop.before_flush");
   store_->Flush().IgnoreError();
-  book_.StoreNewWork(absl::Now());
   if (grpc_ != nullptr) grpc_->Shutdown(deadline);
   door_->Close();
   if (metrics_ != nullptr) metrics_->Detach();

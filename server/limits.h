@@ -6,9 +6,6 @@
 
 namespace ballpiston::server {
 
-// The days in which a principal's processor time counts.
-inline constexpr int kQuotaDays = 30;
-
 struct Limits {
   int64_t max_active_jobs = 10'000;  // jobs that have not ended
   int64_t max_active_jobs_per_principal = 1'000;
@@ -29,10 +26,6 @@ struct Limits {
   // Stored results.
   double retain_days = 0;       // from the end of a job until its results expire
   int64_t max_store_bytes = 0;  // above it the oldest results expire
-  int64_t max_store_bytes_per_principal = 0;
-  // Processor time.
-  double max_processor_seconds_per_principal = 0;  // in kQuotaDays
-  double max_seconds_per_job = 0;
 };
 
 }  // namespace ballpiston::server

@@ -30,7 +30,7 @@ const char* HintOf(const std::string& reason) {
 }
 
 absl::Status HintIfLimit(const absl::Status& status) {
-  const char* hint = absl::IsResourceExhausted(status) ? HintOf(ErrorReason(status)) : nullptr;
+  const char* hint = status.ok() ? nullptr : HintOf(ErrorReason(status));
   return hint == nullptr ? status : WithHint(status, hint);
 }
 

@@ -14,7 +14,6 @@ namespace ballpiston::client {
 namespace {
 
 constexpr auto kLeft = TextTable::Column::kLeft;
-constexpr char kProcessorTime[] = "processor time, 30 days";
 
 // 68 KiB, 1.2 GiB.
 std::string BytesText(double bytes) {
@@ -30,10 +29,6 @@ std::string CountText(double count) {
 }
 
 std::string LimitText(double limit) { return limit == 0 ? "no limit" : CountText(limit); }
-
-std::string TimeLimitText(double seconds) {
-  return seconds == 0 ? "no limit" : DurationText(seconds);
-}
 
 std::string DayLimitText(double days) { return days == 0 ? "no limit" : Counted(days, "day"); }
 
@@ -105,14 +100,10 @@ void PrintLimits(const v1::ServerLimits& limits, std::ostream& out) {
   table.AddRow({"calls", "no limit", LimitText(limits.max_calls_per_principal())});
   table.AddRow(
       {"bytes of calls", "no limit", ByteLimitText(limits.max_call_bytes_per_principal())});
-  table.AddRow({"stored bytes", ByteLimitText(limits.max_store_bytes()),
-                ByteLimitText(limits.max_store_bytes_per_principal())});
-  table.AddRow(
-      {kProcessorTime, "no limit", TimeLimitText(limits.max_processor_seconds_per_principal())});
+  table.AddRow({"stored bytes", ByteLimitText(limits.max_store_bytes()), "no limit"});
   TextTable requests({{"limit", kLeft}, {"per job"}});
   requests.AddRow({"points", LimitText(limits.max_points_per_job())});
   requests.AddRow({"samples", LimitText(limits.max_samples_per_job())});
-  requests.AddRow({"processor time", TimeLimitText(limits.max_seconds_per_job())});
   requests.AddRow({"message", ByteLimitText(limits.max_message_bytes())});
   requests.AddRow({"results kept", DayLimitText(limits.retain_days())});
   out << '\n';
@@ -123,18 +114,12 @@ void PrintLimits(const v1::ServerLimits& limits, std::ostream& out) {
 
 void PrintPrincipals(const v1::ServerStatus& status, std::ostream& out) {
   if (status.principals().empty()) return;
-  TextTable table({{"principal", kLeft},
-                   {"queued"},
-                   {"running"},
-                   {"streams"},
-                   {"stored"},
-                   {"stored bytes"},
-                   {kProcessorTime}});
+  TextTable table(
+      {{"principal", kLeft}, {"queued"}, {"running"}, {"streams"}, {"stored"}, {"stored bytes"}});
   for (const v1::PrincipalStatus& principal : status.principals()) {
     table.AddRow({principal.principal(), CountText(principal.queued_jobs()),
                   CountText(principal.running_jobs()), CountText(principal.streams()),
-                  CountText(principal.stored_jobs()), BytesText(principal.stored_bytes()),
-                  DurationText(principal.processor_seconds())});
+                  CountText(principal.stored_jobs()), BytesText(principal.stored_bytes())});
   }
   out << '\n';
   table.Print(out);

@@ -10,7 +10,6 @@
 #include "server/convert/plan.h"
 #include "server/convert/spec.h"
 #include "server/jobs/job_message.h"
-#include "server/store/job_table.h"
 #include "server/version.h"
 
 namespace ballpiston::server {
@@ -50,20 +49,18 @@ void AddWork(const ServiceContext& service, v1::ServerStatus& status) {
 
 // And the jobs of all together.
 void AddPrincipals(const ServiceContext& service, v1::ServerStatus& status) {
-  std::map<std::string, ActiveJobs> active = service.book.ActiveByPrincipal();
   std::map<std::string, int64_t> streams = service.streams.ByPrincipal();
-  for (const auto& [name, usage] : service.book.usage().All(absl::Now())) {
-    const ActiveJobs& jobs = active[name];
+  for (const auto& [name, jobs] : service.book.JobsByPrincipal()) {
     v1::PrincipalStatus& principal = *status.add_principals();
     principal.set_principal(name);
     principal.set_queued_jobs(static_cast<double>(jobs.queued));
     principal.set_running_jobs(static_cast<double>(jobs.running + jobs.cancelling));
     principal.set_streams(static_cast<double>(streams[name]));
-    principal.set_stored_jobs(static_cast<double>(usage.jobs));
-    principal.set_stored_bytes(static_cast<double>(usage.bytes));
-    principal.set_processor_seconds(usage.seconds);
+    principal.set_stored_jobs(static_cast<double>(jobs.stored));
+    principal.set_stored_bytes(static_cast<double>(jobs.bytes));
     status.set_queued_jobs(status.queued_jobs() + principal.queued_jobs());
     status.set_running_jobs(status.running_jobs() + principal.running_jobs());
+    status.set_stored_jobs(status.stored_jobs() + principal.stored_jobs());
   }
 }
 
@@ -85,24 +82,7 @@ v1::ServerLimits LimitsMessage(const Limits& limits) {
       static_cast<double>(limits.max_call_bytes_per_principal));
   message.set_retain_days(limits.retain_days);
   message.set_max_store_bytes(static_cast<double>(limits.max_store_bytes));
-  message.set_max_store_bytes_per_principal(
-      static_cast<double>(limits.max_store_bytes_per_principal));
-  message.set_max_processor_seconds_per_principal(limits.max_processor_seconds_per_principal);
-  message.set_max_seconds_per_job(limits.max_seconds_per_job);
   return message;
-}
-
-// 0 if the store cannot be read, so that the status still has its other numbers.
-double StoredJobs(Store& store) {
-  double jobs = 0;
-  store
-      .Read([&](Database& database) {
-        const auto count = CountJobs(database);
-        if (count.ok()) jobs = static_cast<double>(*count);
-        return count.status();
-      })
-      .IgnoreError();
-  return jobs;
 }
 
 void RemoveHidden(const Principal& caller, v1::ServerStatus& status) {
@@ -135,7 +115,6 @@ absl::StatusOr<v1::ServerStatus> GetServerStatus(ServiceContext& service, const 
                                                  const v1::GetServerStatusRequest&) {
   v1::ServerStatus status = StatusOf(service);
   RemoveHidden(call.caller, status);
-  status.set_stored_jobs(StoredJobs(service.store));
   *status.mutable_rates() = RatesMessage(service.ladder.machine().rates);
   *status.mutable_limits() = LimitsMessage(service.limits);
   status.set_principal(call.caller.name);

@@ -59,15 +59,15 @@ void AddServer(const ServiceContext& service, const v1::ServerStatus& status, Pa
 }
 
 void AddJobs(JobBook& book, const v1::ServerStatus& status, Page& page) {
-  ActiveJobs active;
-  for (const auto& [principal, jobs] : book.ActiveByPrincipal()) {
-    active.running += jobs.running;
-    active.cancelling += jobs.cancelling;
+  int64_t running = 0, cancelling = 0;
+  for (const auto& [principal, jobs] : book.JobsByPrincipal()) {
+    running += jobs.running;
+    cancelling += jobs.cancelling;
   }
   const std::string help = "Jobs that have not ended, by state.";
   page.Gauge("ballpiston_jobs", help, status.queued_jobs(), {{"state", "queued"}});
-  page.Gauge("ballpiston_jobs", help, active.running, {{"state", "running"}});
-  page.Gauge("ballpiston_jobs", help, active.cancelling, {{"state", "cancelling"}});
+  page.Gauge("ballpiston_jobs", help, running, {{"state", "running"}});
+  page.Gauge("ballpiston_jobs", help, cancelling, {{"state", "cancelling"}});
   page.Gauge("ballpiston_queue_length", "Jobs that wait for their first turn.",
              status.queued_jobs());
   const EndedJobs ended = book.ended_jobs();
@@ -81,12 +81,13 @@ void AddJobs(JobBook& book, const v1::ServerStatus& status, Page& page) {
 }
 
 void AddStore(const Store& store, const v1::ServerStatus& status, Page& page) {
+  const Store::Counts counts = store.counts();
   page.Gauge("ballpiston_store_bytes", "The store on disk, its log included.",
              status.store_bytes());
-  page.Counter("ballpiston_store_commits_total", "Committed groups of writes.", store.commits());
+  page.Counter("ballpiston_store_commits_total", "Committed groups of writes.", counts.commits);
   page.Counter("ballpiston_store_checkpoints_written_total",
-               "Checkpoints of unfinished points that were written.", store.checkpoints_written());
-  page.Gauge("ballpiston_store_pending_writes", "Writes that wait.", store.pending_writes());
+               "Checkpoints of unfinished points that were written.", counts.checkpoints_written);
+  page.Gauge("ballpiston_store_pending_writes", "Writes that wait.", counts.pending_writes);
   page.Gauge("ballpiston_store_failing", "1 while the disk rejects writes or hangs.",
              store.failing() || store.stalled());
 }
@@ -100,9 +101,6 @@ void AddPrincipals(const v1::ServerStatus& status, Page& page) {
                usage.stored_jobs(), labels);
     page.Gauge("ballpiston_principal_stored_bytes", "Bytes of stored specifications and results.",
                usage.stored_bytes(), labels);
-    page.Gauge("ballpiston_principal_processor_seconds",
-               "Processor time in the last 30 days, which counts for the quota.",
-               usage.processor_seconds(), labels);
   }
 }
 

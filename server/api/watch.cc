@@ -9,7 +9,6 @@
 #include "server/api/resume_token.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
-#include "server/convert/result_record.h"
 #include "server/host.h"
 
 namespace ballpiston::server {
@@ -220,9 +219,9 @@ absl::StatusOr<bool> Watch::AddFinishedPoints(const Job* active) {
   if (!points.ok()) return points.status();
   if (points->empty()) return false;
   for (const FinishedPoint& point : *points) {
-    const absl::StatusOr<storage::Result> result = ResultFromBytes(*point.result);
+    absl::StatusOr<v1::PointResult> result = ResultFromBytes(*point.result);
     if (!result.ok()) return StoreFailure(result.status());
-    *message_.mutable_snapshot()->add_finished_points() = PointResultMessage(*result);
+    *message_.mutable_snapshot()->add_finished_points() = *std::move(result);
   }
   told_finished_ = points->back().number;
   return true;

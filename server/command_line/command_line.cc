@@ -219,12 +219,6 @@ const LimitFlag kLimitFlags[] = {
      "days from the end of a job until its results expire, unless it is pinned"},
     {"--max-store-bytes", &Limits::max_store_bytes,
      "bytes of the store; shortly before it is full, results expire, the oldest first"},
-    {"--max-store-bytes-per-principal", &Limits::max_store_bytes_per_principal,
-     "bytes of specifications and results of one principal"},
-    {"--max-processor-seconds-per-principal", &Limits::max_processor_seconds_per_principal,
-     "processor time of one principal's jobs in 30 days"},
-    {"--max-seconds-per-job", &Limits::max_seconds_per_job,
-     "processor time of one job, after which it fails and keeps its finished points"},
 };
 
 void AddLimitFlags(CLI::App& app, Limits& limits) {

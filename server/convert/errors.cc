@@ -184,9 +184,9 @@ absl::Status EngineCrashed(const std::string& what, int deaths) {
 absl::Status StoreFailure(const absl::Status& status) {
   const std::string type = absl::StrCat(kTypePrefix, google::rpc::ErrorInfo().GetTypeName());
   if (status.ok() || status.GetPayload(type)) return status;
-  if (absl::IsResourceExhausted(status)) return WithReason(status, "STORE_FULL");
   if (absl::IsDataLoss(status)) return WithReason(status, "STORE_DAMAGED");
-  return WithReason(absl::UnavailableError(status.message()), "STORE_FAILED");
+  return WithReason(absl::UnavailableError(status.message()),
+                    absl::IsResourceExhausted(status) ? "STORE_FULL" : "STORE_FAILED");
 }
 
 absl::Status WithReason(absl::Status status, const std::string& reason) {

@@ -56,10 +56,10 @@ inline constexpr char kEngineCrashed[] = "ENGINE_CRASHED";
 // while it computed this; `what` names the job's part.
 absl::Status EngineCrashed(const std::string& what, int deaths);
 
-// The status of a call when a write to the store or a read from it failed. RESOURCE_EXHAUSTED,
-// STORE_FULL: the disk is full. DATA_LOSS, STORE_DAMAGED: the stored data cannot be read, and a
-// retry does not help. UNAVAILABLE, STORE_FAILED: anything else. OK stays OK, and a status that has
-// a reason already keeps it.
+// The status of a call when a write to the store or a read from it failed. UNAVAILABLE, STORE_FULL:
+// the disk is full. DATA_LOSS, STORE_DAMAGED: the stored data cannot be read, and a retry does not
+// help. UNAVAILABLE, STORE_FAILED: anything else. OK stays OK, and a status that has a reason
+// already keeps it.
 absl::Status StoreFailure(const absl::Status& status);
 
 // The status with a reason and the project's domain, which clients read. The second form adds one

@@ -1,122 +1,154 @@
 #include "server/convert/point_result.h"
 
 #include <algorithm>
-#include <vector>
+#include <cmath>
+#include <optional>
+#include <utility>
 
-#include "core/ensemble/parameter.h"
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
 #include "server/convert/spec.h"
 
 namespace ballpiston::server {
 namespace {
 
-PointParameters PointOf(const storage::Result& record) {
-  PointParameters point;
-  for (const storage::Value& value : record.point()) {
-    if (value.parameter() >= kParameters.size()) continue;
-    point.Set(*kParameters[value.parameter()], value.value());
+bool Exists(const std::optional<double>& value) { return value && std::isfinite(*value); }
+
+void AddEstimate(const Estimate& estimate, const Answer& answer, bool first,
+                 v1::PointResult& result) {
+  if (!std::isfinite(estimate.value)) return;
+  v1::Estimate& message = *result.add_estimates();
+  message.set_name(estimate.name);
+  message.set_value(estimate.value);
+  if (Exists(estimate.standard_error)) {
+    message.set_standard_error(*estimate.standard_error);
+    if (estimate.batches > 0) message.set_batches(static_cast<double>(estimate.batches));
   }
-  return point;
+  if (Exists(estimate.exact)) message.set_exact(*estimate.exact);
+  if (const auto z = estimate.ZScore(); Exists(z)) message.set_z_score(*z);
+  if (Exists(estimate.noise_floor)) message.set_noise_floor(*estimate.noise_floor);
+  if (Exists(estimate.limit)) message.set_limit(*estimate.limit);
+  const std::optional<double> relative = answer.ModelErrorOf(estimate.name, first);
+  if (relative) message.set_model_error(*relative * std::fabs(estimate.value));
 }
 
-v1::EnsembleSpec::Model MessageOf(storage::Result::Model model) {
-  switch (model) {
-    case storage::Result::CLOSED_FORM:
-      return v1::EnsembleSpec::CLOSED_FORM;
-    case storage::Result::SPECTRUM:
-      return v1::EnsembleSpec::SPECTRUM;
-    case storage::Result::MARKOV:
-      return v1::EnsembleSpec::MARKOV;
-    case storage::Result::BILLIARD:
-      return v1::EnsembleSpec::BILLIARD;
-    case storage::Result::BILLIARD_REFERENCE:
-      return v1::EnsembleSpec::BILLIARD_REFERENCE;
-    default:
-      return v1::EnsembleSpec::MODEL_UNSPECIFIED;
-  }
+void SetDivergence(const KlDivergence& divergence, v1::PointResult& result) {
+  if (!std::isfinite(divergence.value)) return;
+  v1::KlDivergence& message = *result.mutable_kl_divergence();
+  message.set_value(divergence.value);
+  message.set_noise_floor(divergence.noise_floor);
+  message.set_cells(divergence.cells);
+  message.set_noise_error(divergence.noise_error);
+  message.set_standard_error(divergence.standard_error);
 }
 
-void Fill(const storage::Estimate& record, v1::Estimate& message) {
-  message.set_name(record.name());
-  message.set_value(record.value());
-  if (record.has_standard_error()) message.set_standard_error(record.standard_error());
-  if (record.has_exact()) message.set_exact(record.exact());
-  if (record.has_z_score()) message.set_z_score(record.z_score());
-  if (record.has_model_error()) message.set_model_error(record.model_error());
-  if (record.has_noise_floor()) message.set_noise_floor(record.noise_floor());
-  if (record.has_limit()) message.set_limit(record.limit());
-  if (record.has_batches()) message.set_batches(static_cast<double>(record.batches()));
+void AddHistogram(const NamedHistogram& histogram, v1::PointResult& details) {
+  v1::Histogram& message = *details.add_histograms();
+  message.set_name(histogram.name);
+  message.set_sigma(histogram.sigma);
+  message.set_lower(histogram.histogram.lower);
+  message.set_upper(histogram.histogram.upper);
+  const std::vector<uint64_t>& counts = histogram.histogram.counts;
+  message.mutable_counts()->Assign(counts.begin(), counts.end());
+  if (histogram.time) message.set_time(*histogram.time);
 }
 
-void Fill(const storage::Divergence& record, v1::KlDivergence& message) {
-  message.set_value(record.value());
-  message.set_noise_floor(record.noise_floor());
-  message.set_cells(record.cells());
-  message.set_noise_error(record.noise_error());
-  message.set_standard_error(record.standard_error());
-}
-
-void Fill(const storage::Histogram& record, v1::Histogram& message) {
-  message.set_name(record.name());
-  message.set_sigma(record.sigma());
-  message.set_lower(record.lower());
-  message.set_upper(record.upper());
-  message.mutable_counts()->Assign(record.counts().begin(), record.counts().end());
-  if (record.has_time()) message.set_time(record.time());
-}
-
-void Fill(const storage::Curve& record, v1::Curve& message) {
-  message.set_name(record.name());
-  for (const storage::Curve::Point& point : record.points()) {
-    v1::Curve::Point* added = message.add_points();
-    if (record.axis() == storage::Curve::POSITION) {
-      added->set_position(point.at());
+void AddCurve(const Curve& curve, v1::PointResult& details) {
+  v1::Curve& message = *details.add_curves();
+  message.set_name(curve.name);
+  for (const CurvePoint& point : curve.points) {
+    v1::Curve::Point& added = *message.add_points();
+    if (curve.axis == CurveAxis::kPosition) {
+      added.set_position(point.at);
     } else {
-      added->set_time(point.at());
+      added.set_time(point.at);
     }
-    added->set_value(point.value());
-    if (point.has_standard_error()) added->set_standard_error(point.standard_error());
-    if (point.has_limit()) added->set_limit(point.limit());
+    added.set_value(point.value);
+    if (Exists(point.standard_error)) added.set_standard_error(*point.standard_error);
+    if (Exists(point.limit)) added.set_limit(*point.limit);
   }
+}
+
+void SetHealth(const Health& health, v1::PointResult& result) {
+  v1::Health& message = *result.mutable_health();
+  message.set_escapes(static_cast<double>(health.escapes));
+  if (std::isfinite(health.max_energy_error)) message.set_max_energy_error(health.max_energy_error);
+}
+
+// A remark stands for each estimate that has no value.
+void AddRemarks(const PointSummary& summary, v1::PointResult& result) {
+  result.mutable_remarks()->Assign(summary.remarks.begin(), summary.remarks.end());
+  for (const Estimate& estimate : summary.estimates) {
+    if (!std::isnan(estimate.value)) continue;
+    result.add_remarks(absl::StrCat(estimate.name, " has no value: nothing was measured in ",
+                                    summary.samples, " samples and ", summary.health.escapes,
+                                    " orbits that left the cell"));
+  }
+}
+
+// A damaged record may lack a parameter.
+bool HasNeeded(const PointParameters& point, const ExperimentKind& experiment) {
+  return std::ranges::all_of(experiment.parameters, [&](const ParameterUse& use) {
+    return !use.needed || point.Find(*use.parameter);
+  });
 }
 
 }  // namespace
 
-v1::PointResult PointResultMessage(const storage::Result& record) {
-  v1::PointResult message;
-  message.set_index(static_cast<int32_t>(record.index()));
-  *message.mutable_parameters() = ParametersMessage(PointOf(record));
-  message.set_model(MessageOf(record.model()));
-  message.set_reason(record.reason());
-  message.set_samples(static_cast<double>(record.samples()));
-  for (const auto& estimate : record.estimates()) Fill(estimate, *message.add_estimates());
-  if (record.has_divergence()) Fill(record.divergence(), *message.mutable_kl_divergence());
-  message.mutable_health()->set_escapes(static_cast<double>(record.escapes()));
-  if (record.has_max_energy_error()) {
-    message.mutable_health()->set_max_energy_error(record.max_energy_error());
+v1::PointResult ResultOf(size_t index, const PointExperiment& experiment,
+                         const PointSummary& summary) {
+  const Answer& answer = experiment.answer();
+  v1::PointResult result;
+  result.set_index(static_cast<int32_t>(index));
+  *result.mutable_parameters() = ParametersMessage(experiment.parameters());
+  result.set_model(ModelMessage(answer.model));
+  result.set_reason(answer.reason);
+  result.set_samples(static_cast<double>(summary.samples));
+  for (const Estimate& estimate : summary.estimates) {
+    AddEstimate(estimate, answer, &estimate == &summary.estimates.front(), result);
   }
-  *message.mutable_remarks() = record.remarks();
-  return message;
+  if (summary.kl_divergence) SetDivergence(*summary.kl_divergence, result);
+  SetHealth(summary.health, result);
+  AddRemarks(summary, result);
+  return result;
 }
 
-v1::PointResult PointResultMessage(const storage::Result& record, const storage::Details& details,
-                                   const ExperimentKind& experiment) {
-  v1::PointResult message = PointResultMessage(record);
-  for (const auto& curve : details.curves()) Fill(curve, *message.add_curves());
-  for (const auto& histogram : details.histograms()) Fill(histogram, *message.add_histograms());
-  *message.mutable_chunk_digests() = details.chunk_digests();
-  if (details.histograms().empty() || experiment.expected_probabilities == nullptr) return message;
-  const PointParameters point = PointOf(record);
-  const auto is_missing = [&](const ParameterUse& use) {
-    return use.needed && !point.Find(*use.parameter);
-  };
-  if (std::ranges::any_of(experiment.parameters, is_missing)) return message;  // a damaged record
+v1::PointResult DetailsOf(const PointSummary& summary, const std::vector<uint64_t>& chunk_digests) {
+  v1::PointResult details;
+  for (const NamedHistogram& histogram : summary.histograms) AddHistogram(histogram, details);
+  for (const Curve& curve : summary.curves) AddCurve(curve, details);
+  details.mutable_chunk_digests()->Assign(chunk_digests.begin(), chunk_digests.end());
+  return details;
+}
+
+v1::PointResult WithDetails(v1::PointResult result, const v1::PointResult& details,
+                            const ExperimentKind& experiment) {
+  result.MergeFrom(details);
+  if (result.histograms().empty() || experiment.expected_probabilities == nullptr) return result;
+  const PointParameters point = ParametersOf(result.parameters());
+  if (!HasNeeded(point, experiment)) return result;
   const auto expected = experiment.expected_probabilities(point);
-  for (int i = 0; i < std::min(message.histograms_size(), static_cast<int>(expected.size())); ++i) {
+  for (int i = 0; i < std::min(result.histograms_size(), static_cast<int>(expected.size())); ++i) {
     const std::vector<double>& bins = expected[static_cast<size_t>(i)];
-    message.mutable_histograms(i)->mutable_expected_probabilities()->Assign(bins.begin(),
-                                                                            bins.end());
+    result.mutable_histograms(i)->mutable_expected_probabilities()->Assign(bins.begin(),
+                                                                           bins.end());
   }
-  return message;
+  return result;
+}
+
+Estimate FirstEstimateOf(const v1::PointResult& result) {
+  Estimate first;
+  if (result.estimates().empty()) return first;
+  const v1::Estimate& message = result.estimates(0);
+  first.value = message.value();
+  if (message.has_standard_error()) first.standard_error = message.standard_error();
+  return first;
+}
+
+absl::StatusOr<v1::PointResult> ResultFromBytes(const std::string& bytes) {
+  v1::PointResult result;
+  if (result.ParseFromString(bytes)) return result;
+  return absl::DataLossError("a stored result cannot be read");
 }
 
 }  // namespace ballpiston::server

@@ -1,15 +1,40 @@
-// A stored result as the API's PointResult. Pure functions.
+// Converts a point's results from the core's numbers to the API's PointResult, which the store
+// keeps in two parts. Equal numbers give equal messages. A value that is not finite is left out.
+// Pure functions.
 #pragma once
 
-#include "ballpiston/storage/records.pb.h"
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
 #include "ballpiston/v1/result.pb.h"
 #include "core/ensemble/experiment_kind.h"
+#include "core/ensemble/point_experiment.h"
 
 namespace ballpiston::server {
 
-v1::PointResult PointResultMessage(const storage::Result& record);  // without details
-// `experiment`: of the result's job.
-v1::PointResult PointResultMessage(const storage::Result& record, const storage::Details& details,
-                                   const ExperimentKind& experiment);
+// Without the details. Requires at least one merged block in the summary, if the experiment has
+// any.
+v1::PointResult ResultOf(size_t index, const PointExperiment& experiment,
+                         const PointSummary& summary);
+
+// The details: histograms and curves, and the digests of the chunks that they are made of. The
+// expected probabilities of the histograms are left out, because they follow from the point's
+// parameters.
+v1::PointResult DetailsOf(const PointSummary& summary,
+                          const std::vector<uint64_t>& chunk_digests = {});
+
+// Result and details as clients see them. `experiment`: of the result's job.
+v1::PointResult WithDetails(v1::PointResult result, const v1::PointResult& details,
+                            const ExperimentKind& experiment);
+
+// Value and standard error of the first estimate. Without an estimate, the value is 0 and the error
+// is empty.
+Estimate FirstEstimateOf(const v1::PointResult& result);
+
+// A stored result, or the stored details of one. DATA_LOSS if it cannot be read.
+absl::StatusOr<v1::PointResult> ResultFromBytes(const std::string& bytes);
 
 }  // namespace ballpiston::server

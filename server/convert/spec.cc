@@ -264,9 +264,23 @@ v1::PointParameters ParametersMessage(const PointParameters& parameters) {
     if (!value || parameter == &kCells) continue;
     message.GetReflection()->SetDouble(&message, FieldOf(message, *parameter), *value);
   }
-  const auto& code = parameters.Find(kCells);  // any number, if the record is damaged
-  if (code && kCells.validate(*code).ok()) message.set_cells(Text(ShapeOf(*code)));
+  if (const auto& code = parameters.Find(kCells)) message.set_cells(Text(ShapeOf(*code)));
   return message;
+}
+
+PointParameters ParametersOf(const v1::PointParameters& message) {
+  PointParameters parameters;
+  const google::protobuf::Reflection& reflection = *message.GetReflection();
+  for (const Parameter* parameter : kParameters) {
+    const auto* field = FieldOf(message, *parameter);
+    if (parameter == &kCells || (field->has_presence() && !reflection.HasField(message, field))) {
+      continue;
+    }
+    parameters.Set(*parameter, reflection.GetDouble(message, field));
+  }
+  const absl::StatusOr<GasShape> shape = ParseGasShape(message.cells());
+  if (shape.ok()) parameters.Set(kCells, CodeOf(*shape));
+  return parameters;
 }
 
 v1::EnsembleSpec::Model ModelMessage(Model model) {

@@ -33,8 +33,9 @@ absl::StatusOr<GasShape> ShapeOfText(const std::string& text);
 
 // The values of `cells` must be codes of shapes.
 v1::EnsembleSpec SpecMessage(const EnsembleSpec& spec);
-// `cells` is left out if its value is not the code of a shape.
 v1::PointParameters ParametersMessage(const PointParameters& parameters);
+// Leaves out `cells` if the text is not the name of a shape.
+PointParameters ParametersOf(const v1::PointParameters& message);
 v1::EnsembleSpec::Model ModelMessage(Model model);
 
 // The same bytes for the same question: the name of the default estimate is left out.

@@ -5,7 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/convert/errors.h"
 #include "server/store/job_table.h"
-#include "server/store/usage_table.h"
+#include "server/store/sweeper.h"
 
 namespace ballpiston::server {
 namespace {
@@ -54,12 +54,10 @@ absl::Status CheckStoreSize(Database& database, const Limits& limits, absl::Stat
   return absl::OkStatus();
 }
 
-absl::Status CheckRoom(Database& database, const Limits& limits, const Usage& usage,
-                       const JobRecord& job, absl::Status& refused) {
+absl::Status CheckRoom(Database& database, const Limits& limits, const JobRecord& job,
+                       absl::Status& refused) {
   const absl::Status counted = CheckQueue(database, limits, job, refused);
-  if (!counted.ok()) return counted;
-  refused.Update(usage.Check(job.principal, job.create_time, limits));
-  return refused.ok() ? CheckStoreSize(database, limits, refused) : absl::OkStatus();
+  return counted.ok() && refused.ok() ? CheckStoreSize(database, limits, refused) : counted;
 }
 
 // A job has at most this many stored requests. Later ones that it answers are not stored.
@@ -127,8 +125,7 @@ absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits) {
                        "max-samples-per-job", limits.max_samples_per_job);
 }
 
-absl::Status Judge(Database& database, const Limits& limits, const Usage& usage,
-                   Acceptance& acceptance) {
+absl::Status Judge(Database& database, const Limits& limits, Acceptance& acceptance) {
   acceptance.earlier.reset();
   acceptance.replay = acceptance.answered_from_store = false;
   acceptance.refused = absl::OkStatus();
@@ -136,12 +133,11 @@ absl::Status Judge(Database& database, const Limits& limits, const Usage& usage,
   if (!looked.ok() || acceptance.earlier || !acceptance.refused.ok()) return looked;
   acceptance.refused = acceptance.fits;
   if (!acceptance.refused.ok()) return absl::OkStatus();
-  return CheckRoom(database, limits, usage, acceptance.record, acceptance.refused);
+  return CheckRoom(database, limits, acceptance.record, acceptance.refused);
 }
 
-absl::Status Accept(Database& database, const Limits& limits, const Usage& usage,
-                    Acceptance& acceptance) {
-  const absl::Status judged = Judge(database, limits, usage, acceptance);
+absl::Status Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
+  const absl::Status judged = Judge(database, limits, acceptance);
   if (!judged.ok() || !acceptance.refused.ok()) return judged;
   if (acceptance.earlier) return KeepRequest(database, acceptance, acceptance.earlier->sequence);
   const absl::Status made = InsertJob(database, acceptance.record);

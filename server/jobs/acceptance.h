@@ -2,17 +2,15 @@
 //
 // A retry (the same request id with the same request) returns the original job. If the principal
 // asks the question of an earlier job that succeeded, the server returns that job unless `fresh` is
-// set. Any other request must keep the limits: on a job's size, on active jobs and their points, on
-// stored results and on processor time. All this is decided inside one transaction of the store.
-// The store runs its transactions one after the other, so many equal requests at the same time make
-// one job.
+// set. Any other request must keep the limits: on a job's size, on active jobs and their points,
+// and on the size of the store. All this is decided inside one transaction of the store. The store
+// runs its transactions one after the other, so many equal requests at the same time make one job.
 #pragma once
 
 #include <optional>
 
 #include "absl/status/status.h"
 #include "core/ensemble/ensemble_spec.h"
-#include "server/jobs/usage.h"
 #include "server/limits.h"
 #include "server/store/job_record.h"
 #include "server/store/request_table.h"
@@ -34,10 +32,8 @@ struct Acceptance {
 };
 
 // Both set the outcome. Accept then stores the new job or the request. Not OK: SQLite failed.
-absl::Status Judge(Database& database, const Limits& limits, const Usage& usage,
-                   Acceptance& acceptance);
-absl::Status Accept(Database& database, const Limits& limits, const Usage& usage,
-                    Acceptance& acceptance);
+absl::Status Judge(Database& database, const Limits& limits, Acceptance& acceptance);
+absl::Status Accept(Database& database, const Limits& limits, Acceptance& acceptance);
 
 // RESOURCE_EXHAUSTED  TOO_MANY_POINTS, TOO_MANY_SAMPLES
 absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits);

@@ -35,7 +35,7 @@ inline constexpr size_t kRecentPoints = 100;
 
 struct FinishedPoint {
   int64_t number = 0;
-  std::shared_ptr<const std::string> result;  // serialized storage::Result
+  std::shared_ptr<const std::string> result;  // serialized v1::PointResult
 };
 
 // The job's row at one moment.

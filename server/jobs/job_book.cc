@@ -9,7 +9,6 @@
 #include "absl/strings/str_join.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
-#include "server/convert/result_record.h"
 #include "server/door/sha256.h"
 #include "server/host.h"
 #include "server/jobs/acceptance.h"
@@ -22,17 +21,12 @@
 #include "server/observability/log.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
-#include "server/store/usage_table.h"
 
 namespace ballpiston::server {
 namespace {
 
 // Finished points are read until they have this many bytes.
 constexpr size_t kMaxBytesOfPoints = size_t{512} << 10;
-
-// How often processor time is stored. If the server is killed, the time since it was last stored
-// does not count for the quota.
-constexpr absl::Duration kBetweenWork = absl::Minutes(1);
 
 // Upper bound of the encoded size of the job's message: names, times and numbers take less than
 // the constant.
@@ -130,10 +124,9 @@ absl::Status CheckStoredPoints(const JobRecord& record, const EnsembleSpec& spec
                                           " do not fit its specification of ", in_grid, " points"));
 }
 
-void AddTo(Job& job, Usage& usage, const StoredPoints& points) {
+void AddTo(Job& job, const StoredPoints& points) {
   job.AddRestoredPoints(points.count(), points.samples, points.last);
   job.AddBytes(points.bytes);
-  usage.AddStored(job.principal(), 0, points.bytes);
 }
 
 // Whether each point of the grid is finished.
@@ -148,7 +141,7 @@ absl::Status ReadShortfall(Database& database, const JobRecord& record, const En
                            std::optional<Shortfall>& shortfall, absl::Status& damage) {
   if (!spec.target.tolerance || !spec.target.budget_seconds) return absl::OkStatus();
   return ReadResults(database, record.sequence, 0, Details::kLeftOut, [&](PointRow row) {
-    const absl::StatusOr<storage::Result> result = ResultFromBytes(row.result);
+    const absl::StatusOr<v1::PointResult> result = ResultFromBytes(row.result);
     damage = result.status();
     if (!damage.ok()) return false;
     const Estimate reached = FirstEstimateOf(*result);
@@ -207,12 +200,11 @@ JobBook::JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
       limits_(limits),
       scheduler_(scheduler),
       crashes_(std::move(crashes)),
-      retention_(store, usage_, limits) {}
+      retention_(store, limits) {}
 
 JobBook::~JobBook() {
   Shutdown();
-  store_.Flush().IgnoreError();  // after this, this book knows every ended job
-  StoreNewWork(WallNow());
+  store_.Close();  // whose thread calls this book when a job's end is written
 }
 
 void JobBook::Shutdown() {
@@ -225,8 +217,6 @@ void JobBook::Shutdown() {
 // ---- resuming jobs of an earlier process ----
 
 absl::Status JobBook::Resume() {
-  const absl::Status known = ReadUsage();
-  if (!known.ok()) return known;
   absl::StatusOr<std::vector<JobRecord>> unfinished;
   const absl::Status read = store_.Read([&](Database& database) {
     unfinished = ListUnfinishedJobs(database);
@@ -244,20 +234,6 @@ absl::Status JobBook::Resume() {
     if (!resumed.ok()) return resumed;
   }
   return store_.Flush();
-}
-
-absl::Status JobBook::ReadUsage() {
-  return store_.Read([&](Database& database) {
-    const auto stored = ReadStoredUsage(database);
-    if (!stored.ok()) return stored.status();
-    for (const StoredUsage& usage : *stored) {
-      usage_.AddStored(usage.principal, usage.jobs, usage.bytes);
-    }
-    const auto work = ReadWork(database, Usage::FirstDay(WallNow()));
-    if (!work.ok()) return work.status();
-    for (const DayOfWork& day : *work) usage_.AddStoredWork(day);
-    return absl::OkStatus();
-  });
 }
 
 // Restarts all jobs of another engine version in one commit, because there may be many.
@@ -338,8 +314,8 @@ absl::Status JobBook::EndUnresumable(const JobRecord& record, const absl::Status
       store_.Read([&](Database& database) { return ReadStoredPoints(database, record, points); });
   if (!read.ok()) return read;
   auto job = std::make_shared<Job>(record);
-  AddTo(*job, usage_, points);
-  JobJournal(job, store_, usage_, true, nullptr).Ended(why);
+  AddTo(*job, points);
+  JobJournal(job, store_, true, nullptr).Ended(why);
   return absl::OkStatus();
 }
 
@@ -359,7 +335,7 @@ absl::Status JobBook::ResumeRun(const JobRecord& record, EnsembleSpec spec) {
   request.shortfall = std::move(restored.shortfall);
   request.suspicion = SuspicionOf(record);
   std::shared_ptr<Job> job = Register(record);
-  AddTo(*job, usage_, points);
+  AddTo(*job, points);
   StartRun(std::move(job), record, std::move(request));
   return absl::OkStatus();
 }
@@ -382,7 +358,7 @@ void JobBook::StartRun(std::shared_ptr<Job> job, const JobRecord& record, RunReq
   request.principal = record.principal;
   request.priority = record.priority;
   request.journal =
-      std::make_shared<JobJournal>(std::move(job), store_, usage_, request.has_checkpoints,
+      std::make_shared<JobJournal>(std::move(job), store_, request.has_checkpoints,
                                    [this](const JobRecord& ended) { OnEnded(ended); });
   scheduler_.Add(std::move(request));
 }
@@ -431,7 +407,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Preview(const Principal& caller,
                                                  const CheckedSpec& checked) {
   Acceptance acceptance = NewAcceptance(caller, request, checked);
   const absl::Status read =
-      store_.Read([&](Database& database) { return Judge(database, limits_, usage_, acceptance); });
+      store_.Read([&](Database& database) { return Judge(database, limits_, acceptance); });
   if (!read.ok()) return StoreFailure(read);
   if (!acceptance.refused.ok()) return acceptance.refused;
   return acceptance.earlier ? Answer(caller, acceptance) : Message(acceptance.record, nullptr);
@@ -445,7 +421,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
   std::shared_ptr<Job> job;  // the new job, if there is one
   const absl::Status committed = store_.Commit([&](Database& database) {
     job = nullptr;
-    const absl::Status accepted = Accept(database, limits_, usage_, acceptance);
+    const absl::Status accepted = Accept(database, limits_, acceptance);
     Failpoint("create.in_transaction");
     if (accepted.ok() && !acceptance.earlier && acceptance.refused.ok()) {
       job = Register(acceptance.record);
@@ -463,7 +439,6 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
 
 void JobBook::StartNewRun(std::shared_ptr<Job> job, const JobRecord& record,
                           const CheckedSpec& checked) {
-  usage_.AddStored(record.principal, 1, record.bytes);
   RunRequest run;
   run.spec = checked.spec;
   run.finished.assign(static_cast<size_t>(record.points), false);
@@ -608,7 +583,6 @@ absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
   if (!record) return JobNotFound(JobName(id));
   if (!HasEnded(record->state))
     return JobStillActive(JobName(id), v1::EnsembleJob::State_Name(record->state));
-  usage_.AddStored(record->principal, -1, -record->bytes);
   return absl::OkStatus();
 }
 
@@ -653,8 +627,8 @@ absl::StatusOr<std::optional<v1::PointResult>> JobBook::UnfinishedResult(const P
   if (!live) return std::nullopt;
   const CrashRecord::Examining examining(*crashes_, RunOf(found->record));
   const PointSummary summary = live->experiment->Summarize(live->merged);
-  return PointResultMessage(ResultRecordOf(live->index, *live->experiment, summary),
-                            DetailsRecordOf(summary), *experiment);
+  return WithDetails(ResultOf(live->index, *live->experiment, summary), DetailsOf(summary),
+                     *experiment);
 }
 
 // The results may be removed while they are read. Then the job has expired or is gone when its
@@ -672,13 +646,13 @@ absl::StatusOr<ResultsPage> JobBook::Results(const Principal& caller, const std:
   size_t bytes = 0;
   absl::Status parsed;
   const auto take = [&](PointRow row) {
-    absl::StatusOr<storage::Result> result = ResultFromBytes(row.result);
+    absl::StatusOr<v1::PointResult> result = ResultFromBytes(row.result);
     parsed = result.status();
     if (!parsed.ok()) return false;
-    const absl::StatusOr<storage::Details> details = DetailsFromBytes(row.details);
+    const absl::StatusOr<v1::PointResult> details = ResultFromBytes(row.details);
     parsed = details.status();
     if (!parsed.ok()) return false;
-    v1::PointResult message = PointResultMessage(*result, *details, *experiment);
+    v1::PointResult message = WithDetails(*std::move(result), *details, *experiment);
     bytes += message.ByteSizeLong();
     const bool full = page.points.size() == static_cast<size_t>(query.max_points);
     const bool ends = full || (!page.points.empty() && bytes > query.max_bytes);
@@ -743,9 +717,9 @@ std::shared_ptr<const JobSnapshot> JobBook::Snapshot(Job& job, std::chrono::mill
         snapshot.change = job.last_change();  // read before the points, which may be newer
         snapshot.finished = job.last_finished();
         for (const LivePoint& point : scheduler_.ChangedSince(job.sequence(), 0, limit)) {
-          const storage::Result now = ResultRecordOf(point.index, *point.experiment,
-                                                     point.experiment->Summarize(point.merged));
-          snapshot.points.push_back({point.version, PointResultMessage(now)});
+          snapshot.points.push_back(
+              {point.version, ResultOf(point.index, *point.experiment,
+                                       point.experiment->Summarize(point.merged))});
         }
         return snapshot;
       });
@@ -776,39 +750,11 @@ absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(int64_t sequen
 // ---- limits ----
 
 void JobBook::KeepLimits(absl::Time now) {
-  EndLongJobs();
-  if (now >= next_work_time_) StoreNewWork(now);
   const absl::Status kept = retention_.Enforce(now);
   const bool is_new = std::exchange(limits_failure_, kept) != kept;
   if (is_new && !kept.ok() && !store_.failing()) {
     LogError(absl::StrCat("the limits on stored results cannot be enforced: ", kept.message()));
   }
-}
-
-void JobBook::EndLongJobs() {
-  const double most = limits_.max_seconds_per_job;
-  if (most == 0) return;
-  for (const std::shared_ptr<Job>& job : ActiveJobsNow()) {
-    const double work = job->Numbers().work;
-    if (work < most) continue;
-    scheduler_.Stop(job->sequence(),
-                    LimitExceeded("JOB_TOO_LONG",
-                                  absl::StrCat("the job has taken ", work, " s of processor time"),
-                                  "max-seconds-per-job", most));
-  }
-}
-
-void JobBook::StoreNewWork(absl::Time now) {
-  next_work_time_ = now + kBetweenWork;
-  const auto work = std::make_shared<const std::vector<DayOfWork>>(usage_.TakeNewWork(now));
-  if (work->empty()) return;
-  store_.Record([work, first = Usage::FirstDay(now)](Database& database) {
-    for (const DayOfWork& day : *work) {
-      const absl::Status added = AddWork(database, day);
-      if (!added.ok()) return added;
-    }
-    return DropWorkBefore(database, first);
-  });
 }
 
 int64_t JobBook::CountExpiring(absl::Time now) {
@@ -830,19 +776,11 @@ size_t JobBook::active_jobs() const {
   return active_.size();
 }
 
-std::vector<std::shared_ptr<Job>> JobBook::ActiveJobsNow() const {
-  std::vector<std::shared_ptr<Job>> active;
-  MutexLock lock(mutex_);
-  active.reserve(active_.size());
-  for (const auto& [id, job] : active_) active.push_back(job);
-  return active;
-}
-
-std::map<std::string, ActiveJobs> JobBook::ActiveByPrincipal() {
-  std::map<std::string, ActiveJobs> by_principal;
+std::map<std::string, PrincipalJobs> JobBook::JobsByPrincipal() {
+  std::map<std::string, PrincipalJobs> by_principal;
   store_
       .Read([&](Database& database) {
-        auto counted = CountActiveByPrincipal(database);
+        auto counted = CountJobsByPrincipal(database);
         if (counted.ok()) by_principal = *std::move(counted);
         return counted.status();
       })

@@ -30,7 +30,6 @@
 #include "server/jobs/job.h"
 #include "server/jobs/job_filter.h"
 #include "server/jobs/retention.h"
-#include "server/jobs/usage.h"
 #include "server/limits.h"
 #include "server/mutex.h"
 #include "server/scheduling/crash_record.h"
@@ -98,7 +97,7 @@ class JobBook {
   // Store and scheduler must outlive this.
   JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
           std::shared_ptr<CrashRecord> crashes = std::make_shared<CrashRecord>());
-  ~JobBook();  // shuts down
+  ~JobBook();  // shuts down, and closes the store
 
   // Resumes the unfinished jobs of an earlier process. Call before anything else.
   absl::Status Resume();
@@ -106,9 +105,6 @@ class JobBook {
   // Stops the computation, and all waits for a change of a job. Unfinished jobs stay in the store
   // as they are.
   void Shutdown();
-
-  // Records the processor time that was not stored yet.
-  void StoreNewWork(absl::Time now);
 
   // The answer that Create would give now.
   absl::StatusOr<v1::EnsembleJob> Preview(const Principal& caller,
@@ -157,16 +153,14 @@ class JobBook {
   absl::StatusOr<std::vector<FinishedPoint>> FinishedAfter(int64_t sequence, const Job* active,
                                                            int64_t after, size_t limit);
 
-  // Enforces the limits on stored results and on processor time at the time `now`: expires results,
-  // and ends jobs. Call about once a second, from one thread at a time.
+  // Lets results expire at the time `now`. Call about once a second, from one thread at a time.
   void KeepLimits(absl::Time now);
 
   // Jobs whose results expire within kSoonToExpire. 0 if the store cannot be read.
   int64_t CountExpiring(absl::Time now);
 
-  const Usage& usage() const { return usage_; }
   size_t active_jobs() const;
-  std::map<std::string, ActiveJobs> ActiveByPrincipal();  // empty if the store cannot be read
+  std::map<std::string, PrincipalJobs> JobsByPrincipal();  // empty if the store cannot be read
   EndedJobs ended_jobs() const;
   int64_t engine_crashes() const { return crashes_->counted_deaths(); }
 
@@ -177,7 +171,6 @@ class JobBook {
                            const CheckedSpec& checked) const;
   absl::StatusOr<v1::EnsembleJob> Answer(const Principal& caller, const Acceptance& acceptance);
   absl::Status RestartOlder(std::vector<JobRecord>& unfinished);
-  absl::Status ReadUsage();
   absl::Status ResumeJob(const JobRecord& record);
   absl::Status EndCrashed(const JobRecord& record);
   std::optional<Suspicion> SuspicionOf(const JobRecord& record);
@@ -196,8 +189,6 @@ class JobBook {
   absl::StatusOr<FoundJob> Find(const Principal& caller, const std::string& id, Grid grid);
   // The record of a job whose results have not expired.
   absl::StatusOr<JobRecord> ReadRecordWithResults(const Principal& caller, const std::string& id);
-  std::vector<std::shared_ptr<Job>> ActiveJobsNow() const;
-  void EndLongJobs();
 
   Store& store_;
   const Limits limits_;
@@ -205,10 +196,8 @@ class JobBook {
   const std::shared_ptr<CrashRecord> crashes_;
   mutable Mutex mutex_;
   std::map<std::string, std::shared_ptr<Job>> active_ ABSL_GUARDED_BY(mutex_);  // by id
-  Usage usage_;
   Retention retention_;
-  absl::Time next_work_time_ = absl::InfinitePast();  // used by KeepLimits and at the end
-  absl::Status limits_failure_;                       // of the last call of KeepLimits
+  absl::Status limits_failure_;  // of the last call of KeepLimits
   std::atomic<uint64_t> succeeded_ = 0;
   std::atomic<uint64_t> failed_ = 0;
   std::atomic<uint64_t> cancelled_ = 0;

@@ -5,9 +5,10 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "server/convert/deterministic_bytes.h"
 #include "server/convert/errors.h"
 #include "server/convert/fold_record.h"
-#include "server/convert/result_record.h"
+#include "server/convert/point_result.h"
 #include "server/host.h"
 #include "server/jobs/job_log.h"
 #include "server/observability/failpoint.h"
@@ -30,6 +31,7 @@ JobEnd EndOf(const Job& job, const absl::Status& outcome) {
   const LiveNumbers numbers = job.Numbers();
   JobEnd end;
   end.time = WallNow();
+  end.points_done = numbers.points_done;
   end.samples = numbers.samples;
   end.work = numbers.work;
   end.bytes = numbers.bytes;
@@ -42,6 +44,37 @@ JobEnd EndOf(const Job& job, const absl::Status& outcome) {
     end.error = RpcStatus(WithDefaultReason(outcome, "COMPUTATION_FAILED")).SerializeAsString();
   }
   return end;
+}
+
+// Sets `ended` to the new row, if the job was active.
+absl::Status WriteEnd(Database& database, const Job& job, const JobEnd& end,
+                      std::optional<JobRecord>& ended) {
+  absl::StatusOr<std::optional<JobRecord>> row = EndJob(database, job.sequence(), end);
+  if (row.ok()) ended = *std::move(row);
+  return row.status();
+}
+
+void TellEnd(Job& job, const std::optional<JobRecord>& ended, const JobJournal::OnEnded& on_ended) {
+  if (!ended) return;
+  Failpoint("job.ended");
+  LogEnd(*ended);
+  if (on_ended) on_ended(*ended);
+  job.NoteStateChange();
+}
+
+// The job fails, because no client may wait for ever for an end that the store rejects.
+void RecordRejectedEnd(Store& store, const std::shared_ptr<Job>& job, const absl::Status& why,
+                       const JobJournal::OnEnded& on_ended) {
+  const absl::Status failure =
+      absl::IsDataLoss(why)
+          ? StoreFailure(why)
+          : absl::InternalError(absl::StrCat("the store rejected the job's end: ", why.message()));
+  const auto ended = std::make_shared<std::optional<JobRecord>>();
+  store.RecordSoon([job, ended, end = EndOf(*job, failure)](
+                       Database& database) { return WriteEnd(database, *job, end, *ended); },
+                   [job, ended, on_ended](const absl::Status& done) {
+                     if (done.ok()) TellEnd(*job, *ended, on_ended);
+                   });
 }
 
 // The job fails if the store rejected one of its results, because clients could not read it.
@@ -59,13 +92,8 @@ absl::Status CountStoredPoints(Database& database, const Job& job, JobEnd& end) 
 
 }  // namespace
 
-JobJournal::JobJournal(std::shared_ptr<Job> job, Store& store, Usage& usage, bool resumed,
-                       OnEnded on_ended)
-    : job_(std::move(job)),
-      store_(store),
-      usage_(usage),
-      resumed_(resumed),
-      on_ended_(std::move(on_ended)) {}
+JobJournal::JobJournal(std::shared_ptr<Job> job, Store& store, bool resumed, OnEnded on_ended)
+    : job_(std::move(job)), store_(store), resumed_(resumed), on_ended_(std::move(on_ended)) {}
 
 void JobJournal::Began() {
   const auto begun = std::make_shared<bool>(false);
@@ -130,10 +158,7 @@ void JobJournal::ChunkIsEarly(size_t point, const ChunkResult& chunk) {
                      ChunkRecordBytes(chunk));
 }
 
-void JobJournal::Worked(double seconds) {
-  job_->AddWork(seconds);
-  usage_.AddWork(job_->principal(), WallNow(), seconds);
-}
+void JobJournal::Worked(double seconds) { job_->AddWork(seconds); }
 
 void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
                                const BlockResult& merged,
@@ -141,13 +166,11 @@ void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
   if (experiment.plan().samples() == 0) job_->AddSamples(0, 1);  // computed without one
   const PointSummary summary = experiment.Summarize(merged);
   PointRow row = {static_cast<int64_t>(point), static_cast<double>(summary.samples),
-                  RecordBytes(ResultRecordOf(point, experiment, summary)),
-                  RecordBytes(DetailsRecordOf(summary, chunk_digests))};
+                  DeterministicBytes(ResultOf(point, experiment, summary)),
+                  DeterministicBytes(DetailsOf(summary, chunk_digests))};
   row.has_checkpoint = resumed_ || experiment.plan().samples() > 0;
   auto told = std::make_shared<const std::string>(row.result);
-  const auto bytes = static_cast<int64_t>(row.result.size() + row.details.size());
-  job_->AddBytes(bytes);
-  usage_.AddStored(job_->principal(), 0, bytes);
+  job_->AddBytes(static_cast<int64_t>(row.result.size() + row.details.size()));
   Failpoint("point.before_record");
   store_.RecordResult(job_->sequence(), std::move(row),
                       [job = job_, told = std::move(told)](int64_t number) {
@@ -162,20 +185,14 @@ void JobJournal::Ended(const absl::Status& outcome) {
   const auto ended = std::make_shared<std::optional<JobRecord>>();
   const auto change = [job = job_, computed, ended](Database& database) {
     JobEnd end = computed;
-    ended->reset();
     const absl::Status counted = CountStoredPoints(database, *job, end);
-    if (!counted.ok()) return counted;
-    absl::StatusOr<std::optional<JobRecord>> row = EndJob(database, job->sequence(), end);
-    if (row.ok()) *ended = *std::move(row);
-    return row.status();
+    return counted.ok() ? WriteEnd(database, *job, end, *ended) : counted;
   };
-  store_.RecordSoon(change, [job = job_, ended, on_ended = on_ended_](const absl::Status& done) {
-    if (!done.ok() || !*ended) return;
-    Failpoint("job.ended");
-    LogEnd(**ended);
-    if (on_ended) on_ended(**ended);
-    job->NoteStateChange();
-  });
+  store_.RecordSoon(
+      change, [job = job_, &store = store_, ended, on_ended = on_ended_](const absl::Status& done) {
+        if (done.ok()) return TellEnd(*job, *ended, on_ended);
+        if (!IsOfTheDisk(done)) RecordRejectedEnd(store, job, done, on_ended);  // else it is closed
+      });
   Failpoint("job.end_recorded");
 }
 

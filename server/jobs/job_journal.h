@@ -9,7 +9,6 @@
 #include <memory>
 
 #include "server/jobs/job.h"
-#include "server/jobs/usage.h"
 #include "server/scheduling/run_journal.h"
 #include "server/store/store.h"
 
@@ -21,8 +20,8 @@ class JobJournal : public RunJournal {
   using OnEnded = std::function<void(const JobRecord& ended)>;
 
   // `resumed`: an earlier process may have stored checkpoints. `on_ended` is called when the end of
-  // the job is on disk, unless the job had ended before. Store and usage must outlive this.
-  JobJournal(std::shared_ptr<Job> job, Store& store, Usage& usage, bool resumed, OnEnded on_ended);
+  // the job is on disk, unless the job had ended before. The store must outlive this.
+  JobJournal(std::shared_ptr<Job> job, Store& store, bool resumed, OnEnded on_ended);
 
   void Began() override;
   absl::StatusOr<StoredPoint> ReadPoint(size_t point) override;
@@ -38,7 +37,6 @@ class JobJournal : public RunJournal {
  private:
   const std::shared_ptr<Job> job_;
   Store& store_;
-  Usage& usage_;
   const bool resumed_;
   const OnEnded on_ended_;
 };

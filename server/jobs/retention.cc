@@ -1,10 +1,9 @@
 #include "server/jobs/retention.h"
 
-#include <optional>
-
 #include "absl/strings/str_cat.h"
 #include "server/observability/log.h"
 #include "server/store/job_table.h"
+#include "server/store/sweeper.h"
 
 namespace ballpiston::server {
 namespace {
@@ -60,35 +59,21 @@ absl::Status Retention::EnforceSize(absl::Time now) {
   return read.ok() ? Remove(jobs, removal, now) : read;
 }
 
-// A job may have been pinned or deleted since it was found.
+// A job may have been pinned or deleted since it was found: then this has no effect on it.
 absl::Status Retention::Remove(const std::vector<JobSize>& jobs, Removal removal, absl::Time now) {
   if (jobs.empty()) return absl::OkStatus();
   const bool whole = removal == Removal::kJob;
-  std::vector<JobSize> removed;
-  const auto remove = [&](Database& database) -> absl::Status {
-    removed.clear();
-    for (const JobSize& found : jobs) {
-      const absl::StatusOr<std::optional<JobSize>> job = FindUnpinned(database, found.sequence);
-      if (!job.ok()) return job.status();
-      if (!*job) continue;
-      const absl::Status changed =
-          whole ? DeleteJob(database, found.sequence) : ExpireJob(database, found.sequence, now);
-      if (!changed.ok()) return changed;
-      removed.push_back(**job);
+  const absl::Status committed = store_.CommitDeletion([&](Database& database) {
+    absl::Status removed;
+    for (size_t i = 0; removed.ok() && i < jobs.size(); ++i) {
+      removed = whole ? DeleteJob(database, jobs[i].sequence)
+                      : ExpireJob(database, jobs[i].sequence, now);
     }
-    return absl::OkStatus();
-  };
-  const auto count = [&](const absl::Status& done) {
-    if (!done.ok()) return;
-    for (const JobSize& job : removed) {
-      const int64_t left = whole ? 0 : job.spec_bytes;
-      usage_.AddStored(job.principal, whole ? -1 : 0, left - job.bytes);
-    }
-  };
-  const absl::Status committed = store_.CommitDeletion(remove, count);
-  if (committed.ok() && !removed.empty()) {
+    return removed;
+  });
+  if (committed.ok()) {
     LogInfo(absl::StrCat(whole ? "expired jobs were deleted: " : "results of jobs expired: ",
-                         removed.size()));
+                         jobs.size()));
   }
   return committed;
 }

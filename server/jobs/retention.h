@@ -12,7 +12,6 @@
 
 #include "absl/status/status.h"
 #include "absl/time/time.h"
-#include "server/jobs/usage.h"
 #include "server/limits.h"
 #include "server/store/job_table.h"
 #include "server/store/store.h"
@@ -24,9 +23,8 @@ inline constexpr double kFullShare = 0.95;
 
 class Retention {
  public:
-  // Store and usage have to outlive this.
-  Retention(Store& store, Usage& usage, const Limits& limits)
-      : store_(store), usage_(usage), limits_(limits) {}
+  // The store has to outlive this.
+  Retention(Store& store, const Limits& limits) : store_(store), limits_(limits) {}
 
   // Lets results expire and deletes expired jobs, as the limits require at the time `now`. One call
   // handles at most a few hundred jobs, so it is to be called again and again.
@@ -40,7 +38,6 @@ class Retention {
   absl::Status Remove(const std::vector<JobSize>& jobs, Removal removal, absl::Time now);
 
   Store& store_;
-  Usage& usage_;
   const Limits limits_;
 };
 

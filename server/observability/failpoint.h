@@ -19,7 +19,7 @@
 namespace ballpiston::server {
 
 // All failpoints, in the order of a job's life. Tests visit each of them.
-inline constexpr std::array<std::string_view, 25> kFailpoints = {
+inline constexpr std::array<std::string_view, 24> kFailpoints = {
     "create.in_transaction",    // the job's row is written, not committed
     "create.committed",         // the job's row is on disk; the run is not begun
     "create.before_answer",     // the run is begun; the client knows nothing
@@ -42,7 +42,6 @@ inline constexpr std::array<std::string_view, 25> kFailpoints = {
     "sweep.in_transaction",     // some of a deleted job's results are gone, not committed
     "resume.job",               // after a restart: an unfinished job is resumed
     "resume.point",             // a point is resumed from its checkpoint
-    "checkpoint.page",          // the log is copied into the store: before each page
     "stop.before_flush",        // SIGTERM: the workers have stopped
     "stop.before_checkpoint"    // everything is written; the log is not yet copied into the store
 };

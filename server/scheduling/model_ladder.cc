@@ -12,7 +12,8 @@
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/all_experiments.h"
 #include "core/markov/relaxation_spectrum.h"
-#include "server/convert/result_record.h"
+#include "server/convert/deterministic_bytes.h"
+#include "server/convert/point_result.h"
 #include "server/convert/spec.h"
 #include "server/observability/log.h"
 #include "server/processor_time.h"
@@ -103,8 +104,8 @@ PointRow ModelLadder::Serve(const EnsembleSpec& spec) {
   const OpenedPoint opened = Open(spec, 0);
   const auto& experiment = *std::get<std::unique_ptr<const PointExperiment>>(opened);
   const PointSummary summary = experiment.Summarize(BlockResult());
-  PointRow row = {.result = RecordBytes(ResultRecordOf(0, experiment, summary)),
-                  .details = RecordBytes(DetailsRecordOf(summary)),
+  PointRow row = {.result = DeterministicBytes(ResultOf(0, experiment, summary)),
+                  .details = DeterministicBytes(DetailsOf(summary)),
                   .has_checkpoint = false};
   const auto told = std::make_shared<const std::string>(row.result);
   ThreadSeconds();

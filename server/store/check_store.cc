@@ -10,7 +10,7 @@
 #include "ballpiston/v1/ensemble.pb.h"
 #include "google/rpc/status.pb.h"
 #include "server/convert/fold_record.h"
-#include "server/convert/result_record.h"
+#include "server/convert/point_result.h"
 #include "server/convert/spec.h"
 #include "server/store/schema.h"
 #include "server/store/sqlite.h"
@@ -37,9 +37,9 @@ class StoreCheck {
   absl::StatusOr<StoreSummary> Run() {
     const absl::Status begun = database_.Execute("BEGIN");
     if (!begun.ok()) return begun;
-    for (const auto part : {&StoreCheck::CheckPages, &StoreCheck::Count, &StoreCheck::CheckJobs,
-                            &StoreCheck::CheckRows, &StoreCheck::CheckResults,
-                            &StoreCheck::CheckDetails, &StoreCheck::CheckCheckpoints}) {
+    for (const auto part :
+         {&StoreCheck::CheckPages, &StoreCheck::Count, &StoreCheck::CheckJobs,
+          &StoreCheck::CheckRows, &StoreCheck::CheckResults, &StoreCheck::CheckCheckpoints}) {
       const absl::Status status = (this->*part)();
       if (absl::IsUnavailable(status)) return status;
       // The damage prevents reading this part.
@@ -57,13 +57,10 @@ class StoreCheck {
   // Calls `take` for each row.
   template <typename Take>
   absl::Status ForEach(const std::string& sql, Take take) {
-    Query query = database_.Prepare(sql);
-    while (true) {
-      const absl::StatusOr<bool> row = query.Step();
-      if (!row.ok()) return row.status();
-      if (!*row) return absl::OkStatus();
-      take(query);
-    }
+    return database_.Select(sql).ForEach([&](const Query& row) {
+      take(row);
+      return true;
+    });
   }
 
   absl::Status CheckPages() {
@@ -176,22 +173,19 @@ class StoreCheck {
   }
 
   absl::Status CheckResults() {
-    return ForEach("SELECT job, point, result FROM results", [this](const Query& row) {
-      const absl::StatusOr<storage::Result> result = ResultFromBytes(row.Bytes(2));
-      if (result.ok() && result->index() == row.Integer(1)) return;
-      Found(absl::StrCat("the result of job ", row.Integer(0), ", point ", row.Integer(1), ": ",
-                         result.ok() ? absl::StrCat("is of point ", result->index())
-                                     : std::string(result.status().message())));
-    });
-  }
-
-  absl::Status CheckDetails() {
-    return ForEach("SELECT job, point, record FROM details", [this](const Query& row) {
-      const auto details = DetailsFromBytes(row.Bytes(2));
-      if (details.ok()) return;
-      Found(absl::StrCat("the details of job ", row.Integer(0), ", point ", row.Integer(1), ": ",
-                         details.status().message()));
-    });
+    return ForEach(
+        "SELECT job, point, result, record FROM results LEFT JOIN details USING (job, point)",
+        [this](const Query& row) {
+          const absl::StatusOr<v1::PointResult> result = ResultFromBytes(row.Bytes(2));
+          absl::Status status = result.status();
+          status.Update(ResultFromBytes(row.Bytes(3)).status());
+          if (status.ok() && result->index() != row.Integer(1)) {
+            status = absl::DataLossError(absl::StrCat("is of point ", result->index()));
+          }
+          if (status.ok()) return;
+          Found(absl::StrCat("the result of job ", row.Integer(0), ", point ", row.Integer(1), ": ",
+                             status.message()));
+        });
   }
 
   absl::Status CheckCheckpoints() {

@@ -1,5 +1,7 @@
 #include "server/store/job_table.h"
 
+#include <initializer_list>
+
 #include "absl/strings/str_cat.h"
 
 namespace ballpiston::server {
@@ -50,285 +52,230 @@ JobRecord RecordOf(const Query& query, Grid grid) {
   return record;
 }
 
-void BindTextOrNull(Query& query, const std::string& text) {
-  if (text.empty()) {
-    query.BindNull();
-  } else {
-    query.BindText(text);
-  }
+// The jobs that meet a condition.
+template <typename... Values>
+Query SelectWhere(Database& database, const char* condition, Grid grid, const Values&... values) {
+  return database.Select(absl::StrCat("SELECT ", kColumns, grid == Grid::kIncluded ? ", grid" : "",
+                                      " FROM jobs WHERE ", condition),
+                         values...);
 }
 
-// Selects the jobs that meet the caller's condition.
-std::string SelectWhere(const char* condition, Grid grid) {
-  return absl::StrCat("SELECT ", kColumns, grid == Grid::kIncluded ? ", grid" : "",
-                      " FROM jobs WHERE ", condition);
-}
-
-absl::StatusOr<std::optional<JobRecord>> FirstRow(Query& query, Grid grid) {
+absl::StatusOr<std::optional<JobRecord>> FirstRow(Query query, Grid grid) {
   const absl::StatusOr<bool> row = query.Step();
   if (!row.ok()) return row.status();
   if (!*row) return std::nullopt;
   return RecordOf(query, grid);
 }
 
-absl::StatusOr<std::vector<JobRecord>> AllRows(Query& query, Grid grid) {
-  std::vector<JobRecord> records;
-  while (true) {
-    const absl::StatusOr<bool> row = query.Step();
-    if (!row.ok()) return row.status();
-    if (!*row) return records;
-    records.push_back(RecordOf(query, grid));
-  }
-}
-
-// Runs an update of one job. False: the job did not meet its condition.
-absl::StatusOr<bool> HasChanged(Database& database, Query& update) {
-  const absl::Status status = update.Run();
+// Updates one job. False: the job does not meet the condition.
+template <typename... Values>
+absl::StatusOr<bool> Update(Database& database, const std::string& sql, const Values&... values) {
+  const absl::Status status = database.Run(sql, values...);
   if (!status.ok()) return status;
   return database.RowsChanged() == 1;
 }
 
-absl::Status RunFor(Database& database, int64_t sequence, const char* sql) {
-  return database.Prepare(sql).Bind(sequence).Run();
-}
-
-absl::StatusOr<std::vector<JobSize>> AllSizes(Query& query) {
-  std::vector<JobSize> sizes;
-  while (true) {
-    const absl::StatusOr<bool> row = query.Step();
-    if (!row.ok()) return row.status();
-    if (!*row) return sizes;
-    sizes.push_back({query.Integer(0), query.Integer(1), query.Integer(2), query.Bytes(3)});
+// Runs the statements for a job.
+absl::Status RunFor(Database& database, int64_t sequence,
+                    std::initializer_list<const char*> statements) {
+  for (const char* sql : statements) {
+    const absl::Status status = database.Run(sql, sequence);
+    if (!status.ok()) return status;
   }
-}
-
-std::string SelectSizes(const char* condition) {
-  return absl::StrCat(
-      "SELECT sequence, bytes, length(spec) + length(grid), principal FROM jobs WHERE ", condition);
+  return absl::OkStatus();
 }
 
 // The jobs that ended first.
 absl::StatusOr<std::vector<JobSize>> Sizes(Database& database, const char* condition,
                                            absl::Time ended_before, int most) {
-  Query query =
-      database.Prepare(absl::StrCat(SelectSizes(condition), " ORDER BY end_time LIMIT ?"));
-  query.Bind(absl::ToUnixNanos(ended_before)).Bind(int64_t{most});
-  return AllSizes(query);
+  std::vector<JobSize> sizes;
+  const absl::Status read =
+      database
+          .Select(absl::StrCat("SELECT sequence, bytes FROM jobs WHERE ", condition,
+                               " AND end_time < ? ORDER BY end_time LIMIT ?"),
+                  absl::ToUnixNanos(ended_before), most)
+          .ForEach([&](const Query& row) {
+            sizes.push_back({row.Integer(0), row.Integer(1)});
+            return true;
+          });
+  if (!read.ok()) return read;
+  return sizes;
 }
 
-// The rows of a job's unfinished points.
-constexpr const char* kDropUnfinished[] = {"DELETE FROM checkpoints WHERE job = ?",
-                                           "DELETE FROM chunks WHERE job = ?"};
+// Jobs whose results may expire. An index has this condition.
+constexpr char kExpirable[] = "end_time IS NOT NULL AND expired_time IS NULL AND pinned = 0";
+
+constexpr char kDropCheckpoints[] = "DELETE FROM checkpoints WHERE job = ?";
+constexpr char kDropChunks[] = "DELETE FROM chunks WHERE job = ?";
+constexpr char kDropResults[] = "INSERT OR IGNORE INTO dropped (job) VALUES (?)";
 
 }  // namespace
 
 absl::Status InsertJob(Database& database, JobRecord& record) {
-  Query query = database.Prepare(
+  const absl::Status status = database.Run(
       "INSERT INTO jobs (id, principal, priority, spec, question, state, create_time, error,"
       " engine_version, restarts, points, points_done, samples, work, pinned, bytes, grid)"
-      " VALUES (?, ?, ?, ?, ?, ?, ?, x'', ?, 0, ?, 0, 0, 0, 0, ?, ?)");
-  query.BindText(record.id).BindText(record.principal).Bind(int64_t{record.priority});
-  query.BindBlob(record.spec.rest).BindBlob(record.question).Bind(int64_t{record.state});
-  query.Bind(absl::ToUnixNanos(record.create_time)).BindText(record.engine_version);
-  query.Bind(record.points).Bind(record.bytes).BindBlob(record.spec.grid);
-  const absl::Status status = query.Run();
+      " VALUES (?, ?, ?, ?, ?, ?, ?, x'', ?, 0, ?, 0, 0, 0, 0, ?, ?)",
+      record.id, record.principal, record.priority, Blob{record.spec.rest}, Blob{record.question},
+      int64_t{record.state}, absl::ToUnixNanos(record.create_time), record.engine_version,
+      record.points, record.bytes, Blob{record.spec.grid});
   record.sequence = database.LastInsertedRow();
   return status;
 }
 
 absl::StatusOr<std::optional<JobRecord>> FindJob(Database& database, const std::string& id,
                                                  Grid grid) {
-  Query query = database.Prepare(SelectWhere("id = ?", grid));
-  query.BindText(id);
-  return FirstRow(query, grid);
+  return FirstRow(SelectWhere(database, "id = ?", grid, id), grid);
 }
 
 absl::StatusOr<std::optional<JobRecord>> FindJobBySequence(Database& database, int64_t sequence,
                                                            Grid grid) {
-  Query query = database.Prepare(SelectWhere("sequence = ?", grid));
-  query.Bind(sequence);
-  return FirstRow(query, grid);
-}
-
-absl::StatusOr<std::optional<JobSize>> FindUnpinned(Database& database, int64_t sequence) {
-  Query query = database.Prepare(SelectSizes("sequence = ? AND pinned = 0"));
-  query.Bind(sequence);
-  absl::StatusOr<std::vector<JobSize>> sizes = AllSizes(query);
-  if (!sizes.ok()) return sizes.status();
-  if (sizes->empty()) return std::nullopt;
-  return std::move(sizes->front());
+  return FirstRow(SelectWhere(database, "sequence = ?", grid, sequence), grid);
 }
 
 absl::StatusOr<std::optional<JobRecord>> FindAnswer(Database& database,
                                                     const std::string& principal,
                                                     const std::string& question) {
   if (question.empty()) return std::nullopt;
-  Query query =
-      database.Prepare(SelectWhere("principal = ? AND question = ? AND question <> x'' AND state = "
-                                   "? AND expired_time IS NULL ORDER BY sequence LIMIT 1",
-                                   Grid::kIncluded));
-  query.BindText(principal).BindBlob(question).Bind(int64_t{v1::EnsembleJob::SUCCEEDED});
-  return FirstRow(query, Grid::kIncluded);
+  return FirstRow(
+      SelectWhere(database,
+                  "principal = ? AND question = ? AND question <> x'' AND state = ?"
+                  " AND expired_time IS NULL ORDER BY sequence LIMIT 1",
+                  Grid::kIncluded, principal, Blob{question}, int64_t{v1::EnsembleJob::SUCCEEDED}),
+      Grid::kIncluded);
 }
 
 absl::StatusOr<Load> ActiveLoad(Database& database, const std::optional<std::string>& principal) {
-  Query query = database.Prepare(
-      absl::StrCat("SELECT count(*), coalesce(sum(points), 0) FROM jobs WHERE state IN (",
-                   kActiveStates, ")", principal ? " AND principal = ?" : ""));
-  if (principal) query.BindText(*principal);
+  const std::string sql = absl::StrCat(
+      "SELECT count(*), coalesce(sum(points), 0) FROM jobs WHERE state IN (", kActiveStates, ")");
+  Query query = principal ? database.Select(absl::StrCat(sql, " AND principal = ?"), *principal)
+                          : database.Select(sql);
   const absl::StatusOr<bool> row = query.Step();
   if (!row.ok()) return row.status();
   return Load{.jobs = query.Integer(0), .points = query.Integer(1)};
 }
 
-absl::StatusOr<std::map<std::string, ActiveJobs>> CountActiveByPrincipal(Database& database) {
-  Query query =
-      database.Prepare(absl::StrCat("SELECT principal, state, count(*) FROM jobs WHERE state IN (",
-                                    kActiveStates, ") GROUP BY state, principal"));
-  std::map<std::string, ActiveJobs> by_principal;
-  while (true) {
-    const absl::StatusOr<bool> row = query.Step();
-    if (!row.ok()) return row.status();
-    if (!*row) return by_principal;
-    ActiveJobs& jobs = by_principal[query.Bytes(0)];
-    const int64_t state = query.Integer(1);
-    (state == v1::EnsembleJob::QUEUED    ? jobs.queued
-     : state == v1::EnsembleJob::RUNNING ? jobs.running
-                                         : jobs.cancelling) = query.Integer(2);
-  }
-}
-
-absl::StatusOr<int64_t> CountJobs(Database& database) {
-  return database.Integer("SELECT count(*) FROM jobs");
+absl::StatusOr<std::map<std::string, PrincipalJobs>> CountJobsByPrincipal(Database& database) {
+  std::map<std::string, PrincipalJobs> by_principal;
+  const absl::Status read =
+      database
+          .Select(
+              "SELECT principal, count(*), sum(bytes), sum(state = 1), sum(state = 2),"
+              " sum(state = 3) FROM jobs GROUP BY principal")
+          .ForEach([&](const Query& row) {
+            by_principal[row.Bytes(0)] = {.stored = row.Integer(1),
+                                          .bytes = row.Integer(2),
+                                          .queued = row.Integer(3),
+                                          .running = row.Integer(4),
+                                          .cancelling = row.Integer(5)};
+            return true;
+          });
+  if (!read.ok()) return read;
+  return by_principal;
 }
 
 absl::Status ReadJobs(Database& database, const std::optional<std::string>& principal,
                       int64_t before, Grid grid, const std::function<bool(JobRecord job)>& on_job) {
-  Query query = database.Prepare(
-      SelectWhere(principal ? "principal = ? AND sequence < ? ORDER BY sequence DESC"
-                            : "sequence < ? ORDER BY sequence DESC",
-                  grid));
-  if (principal) query.BindText(*principal);
-  query.Bind(before);
-  while (true) {
-    const absl::StatusOr<bool> row = query.Step();
-    if (!row.ok()) return row.status();
-    if (!*row || !on_job(RecordOf(query, grid))) return absl::OkStatus();
-  }
+  constexpr char kOlder[] = "sequence < ? ORDER BY sequence DESC";
+  Query query = principal
+                    ? SelectWhere(database, absl::StrCat("principal = ? AND ", kOlder).c_str(),
+                                  grid, *principal, before)
+                    : SelectWhere(database, kOlder, grid, before);
+  return query.ForEach([&](const Query& row) { return on_job(RecordOf(row, grid)); });
 }
 
 absl::StatusOr<std::vector<JobRecord>> ListUnfinishedJobs(Database& database) {
-  Query query = database.Prepare(absl::StrCat(SelectWhere("state IN (", Grid::kIncluded),
-                                              kActiveStates, ") ORDER BY sequence"));
-  return AllRows(query, Grid::kIncluded);
+  std::vector<JobRecord> records;
+  const std::string active = absl::StrCat("state IN (", kActiveStates, ") ORDER BY sequence");
+  const absl::Status read =
+      SelectWhere(database, active.c_str(), Grid::kIncluded).ForEach([&](const Query& row) {
+        records.push_back(RecordOf(row, Grid::kIncluded));
+        return true;
+      });
+  if (!read.ok()) return read;
+  return records;
 }
 
 absl::StatusOr<bool> BeginJob(Database& database, int64_t sequence, absl::Time now) {
-  Query query = database.Prepare(
-      "UPDATE jobs SET state = ?, start_time = ? WHERE sequence = ? AND state = ?");
-  query.Bind(int64_t{v1::EnsembleJob::RUNNING}).Bind(absl::ToUnixNanos(now));
-  query.Bind(sequence).Bind(int64_t{v1::EnsembleJob::QUEUED});
-  return HasChanged(database, query);
+  return Update(database,
+                "UPDATE jobs SET state = ?, start_time = ? WHERE sequence = ? AND state = ?",
+                int64_t{v1::EnsembleJob::RUNNING}, absl::ToUnixNanos(now), sequence,
+                int64_t{v1::EnsembleJob::QUEUED});
 }
 
 absl::StatusOr<bool> BeginCancellation(Database& database, int64_t sequence,
                                        const std::string& request_id) {
-  Query query = database.Prepare(
-      "UPDATE jobs SET state = ?, cancel_request_id = ? WHERE sequence = ? AND state IN (?, ?)");
-  query.Bind(int64_t{v1::EnsembleJob::CANCELLING});
-  BindTextOrNull(query, request_id);
-  query.Bind(sequence);
-  query.Bind(int64_t{v1::EnsembleJob::QUEUED}).Bind(int64_t{v1::EnsembleJob::RUNNING});
-  return HasChanged(database, query);
+  return Update(database,
+                "UPDATE jobs SET state = ?, cancel_request_id = nullif(?, '')"
+                " WHERE sequence = ? AND state IN (?, ?)",
+                int64_t{v1::EnsembleJob::CANCELLING}, request_id, sequence,
+                int64_t{v1::EnsembleJob::QUEUED}, int64_t{v1::EnsembleJob::RUNNING});
 }
 
 absl::StatusOr<std::optional<JobRecord>> EndJob(Database& database, int64_t sequence,
                                                 const JobEnd& end) {
-  Query query = database.Prepare(
-      absl::StrCat("UPDATE jobs SET state = iif(state = ?, ?, ?), end_time = ?,"
-                   " error = iif(state = ?, x'', ?), points_done = ?, samples = ?, work = ?,"
-                   " bytes = ? WHERE sequence = ? AND state IN (",
-                   kActiveStates, ")"));
-  query.Bind(int64_t{v1::EnsembleJob::CANCELLING}).Bind(int64_t{v1::EnsembleJob::CANCELLED});
-  query.Bind(int64_t{end.state}).Bind(absl::ToUnixNanos(end.time));
-  query.Bind(int64_t{v1::EnsembleJob::CANCELLING}).BindBlob(end.error).Bind(end.points_done);
-  query.Bind(end.samples).Bind(end.work).Bind(end.bytes).Bind(sequence);
-  const absl::StatusOr<bool> has_ended = HasChanged(database, query);
+  const absl::StatusOr<bool> has_ended = Update(
+      database,
+      absl::StrCat("UPDATE jobs SET state = iif(state = ?1, ?2, ?3), end_time = ?4,"
+                   " error = iif(state = ?1, x'', ?5), points_done = ?6, samples = ?7, work = ?8,"
+                   " bytes = ?9 WHERE sequence = ?10 AND state IN (",
+                   kActiveStates, ")"),
+      int64_t{v1::EnsembleJob::CANCELLING}, int64_t{v1::EnsembleJob::CANCELLED}, int64_t{end.state},
+      absl::ToUnixNanos(end.time), Blob{end.error}, end.points_done, end.samples, end.work,
+      end.bytes, sequence);
   if (!has_ended.ok()) return has_ended.status();
   if (!*has_ended) return std::nullopt;
-  for (const char* sql : kDropUnfinished) {
-    const absl::Status dropped = RunFor(database, sequence, sql);
-    if (!dropped.ok()) return dropped;
-  }
+  const absl::Status dropped = RunFor(database, sequence, {kDropCheckpoints, kDropChunks});
+  if (!dropped.ok()) return dropped;
   return FindJobBySequence(database, sequence, Grid::kIncluded);
 }
 
 absl::Status RestartJob(Database& database, int64_t sequence, const std::string& engine_version,
                         const std::string& question) {
-  for (const char* sql :
-       {kDropUnfinished[0], kDropUnfinished[1], "DELETE FROM results WHERE job = ?",
-        "DELETE FROM details WHERE job = ?"}) {
-    const absl::Status status = RunFor(database, sequence, sql);
-    if (!status.ok()) return status;
-  }
-  return database
-      .Prepare(
-          "UPDATE jobs SET engine_version = ?, question = ?, restarts = restarts + 1"
-          " WHERE sequence = ?")
-      .BindText(engine_version)
-      .BindBlob(question)
-      .Bind(sequence)
-      .Run();
+  const absl::Status dropped =
+      RunFor(database, sequence,
+             {kDropCheckpoints, kDropChunks, "DELETE FROM results WHERE job = ?",
+              "DELETE FROM details WHERE job = ?"});
+  if (!dropped.ok()) return dropped;
+  return database.Run(
+      "UPDATE jobs SET engine_version = ?, question = ?, restarts = restarts + 1"
+      " WHERE sequence = ?",
+      engine_version, Blob{question}, sequence);
 }
 
 absl::Status PinJob(Database& database, int64_t sequence, bool pinned) {
-  return database.Prepare("UPDATE jobs SET pinned = ? WHERE sequence = ?")
-      .Bind(int64_t{pinned})
-      .Bind(sequence)
-      .Run();
+  return database.Run("UPDATE jobs SET pinned = ? WHERE sequence = ?", pinned, sequence);
 }
 
 absl::StatusOr<std::vector<JobSize>> ListExpirable(Database& database, absl::Time ended_before,
                                                    int most) {
-  return Sizes(database,
-               "end_time IS NOT NULL AND expired_time IS NULL AND pinned = 0 AND end_time < ?",
-               ended_before, most);
+  return Sizes(database, kExpirable, ended_before, most);
 }
 
 absl::StatusOr<std::vector<JobSize>> ListExpired(Database& database, int most) {
-  return Sizes(database, "expired_time IS NOT NULL AND end_time < ?", absl::InfiniteFuture(), most);
+  return Sizes(database, "expired_time IS NOT NULL", absl::InfiniteFuture(), most);
 }
 
 absl::StatusOr<int64_t> CountExpirable(Database& database, absl::Time ended_before) {
-  Query query = database.Prepare(
-      "SELECT count(*) FROM jobs WHERE end_time IS NOT NULL AND expired_time IS NULL"
-      " AND pinned = 0 AND end_time < ?");
-  const absl::StatusOr<bool> row = query.Bind(absl::ToUnixNanos(ended_before)).Step();
-  if (!row.ok()) return row.status();
-  return query.Integer(0);
+  return database.Integer(
+      absl::StrCat("SELECT count(*) FROM jobs WHERE ", kExpirable, " AND end_time < ?"),
+      absl::ToUnixNanos(ended_before));
 }
 
 absl::Status ExpireJob(Database& database, int64_t sequence, absl::Time now) {
-  const absl::Status dropped =
-      RunFor(database, sequence, "INSERT OR IGNORE INTO dropped (job) VALUES (?)");
-  if (!dropped.ok()) return dropped;
-  return database
-      .Prepare(
-          "UPDATE jobs SET expired_time = ?, bytes = length(spec) + length(grid) WHERE sequence = "
-          "?")
-      .Bind(absl::ToUnixNanos(now))
-      .Bind(sequence)
-      .Run();
+  const absl::StatusOr<bool> has_expired =
+      Update(database,
+             "UPDATE jobs SET expired_time = ?, bytes = length(spec) + length(grid)"
+             " WHERE sequence = ? AND pinned = 0",
+             absl::ToUnixNanos(now), sequence);
+  if (!has_expired.ok() || !*has_expired) return has_expired.status();
+  return database.Run(kDropResults, sequence);
 }
 
 absl::Status DeleteJob(Database& database, int64_t sequence) {
-  for (const char* sql :
-       {kDropUnfinished[0], kDropUnfinished[1], "INSERT OR IGNORE INTO dropped (job) VALUES (?)",
-        "DELETE FROM requests WHERE job = ?", "DELETE FROM jobs WHERE sequence = ?"}) {
-    const absl::Status status = RunFor(database, sequence, sql);
-    if (!status.ok()) return status;
-  }
-  return absl::OkStatus();
+  return RunFor(database, sequence,
+                {kDropCheckpoints, kDropChunks, kDropResults, "DELETE FROM requests WHERE job = ?",
+                 "DELETE FROM jobs WHERE sequence = ?"});
 }
 
 }  // namespace ballpiston::server

@@ -51,16 +51,15 @@ struct Load {
 };
 absl::StatusOr<Load> ActiveLoad(Database& database, const std::optional<std::string>& principal);
 
-// Active jobs, by state.
-struct ActiveJobs {
+// The jobs of one principal.
+struct PrincipalJobs {
+  int64_t stored = 0;  // all of them
+  int64_t bytes = 0;   // JobRecord::bytes of these
   int64_t queued = 0;
   int64_t running = 0;
   int64_t cancelling = 0;
 };
-absl::StatusOr<std::map<std::string, ActiveJobs>> CountActiveByPrincipal(Database& database);
-
-// The number of all jobs.
-absl::StatusOr<int64_t> CountJobs(Database& database);
+absl::StatusOr<std::map<std::string, PrincipalJobs>> CountJobsByPrincipal(Database& database);
 
 // Reads the jobs of one principal or of all, with a smaller sequence than `before`, newest first.
 // Ends when `on_job` returns false.
@@ -100,13 +99,8 @@ absl::Status PinJob(Database& database, int64_t sequence, bool pinned);
 
 struct JobSize {
   int64_t sequence = 0;
-  int64_t bytes = 0;       // JobRecord::bytes
-  int64_t spec_bytes = 0;  // of these, the specification's
-  std::string principal;
+  int64_t bytes = 0;  // JobRecord::bytes
 };
-
-// The size of the job; nothing if the job is pinned or does not exist.
-absl::StatusOr<std::optional<JobSize>> FindUnpinned(Database& database, int64_t sequence);
 
 // At most `most` jobs whose results may expire: they ended before `ended_before`, and are not
 // pinned. Those that ended first come first.
@@ -117,7 +111,8 @@ absl::StatusOr<int64_t> CountExpirable(Database& database, absl::Time ended_befo
 absl::StatusOr<std::vector<JobSize>> ListExpired(Database& database, int most);
 
 // After these two, the sweeper removes the results (sweeper.h); nobody can find them meanwhile.
-// ExpireJob keeps the specification and the requests, which are still answered with the job.
+// ExpireJob has no effect on a pinned job. It keeps the specification and the requests, which are
+// still answered with the job.
 absl::Status ExpireJob(Database& database, int64_t sequence, absl::Time now);
 // Also deletes its requests.
 absl::Status DeleteJob(Database& database, int64_t sequence);

@@ -42,7 +42,7 @@ CREATE TABLE jobs (
   grid BLOB NOT NULL  -- last, because SQLite reads a row up to the columns that are asked for
 ) STRICT;
 CREATE INDEX jobs_by_state ON jobs (state, principal, points);
-CREATE INDEX jobs_by_principal ON jobs (principal, sequence, bytes);
+CREATE INDEX jobs_by_principal ON jobs (principal, sequence, bytes, state);
 CREATE INDEX jobs_that_may_expire ON jobs (end_time, bytes)
   WHERE end_time IS NOT NULL AND expired_time IS NULL AND pinned = 0;
 CREATE INDEX jobs_that_expired ON jobs (end_time, bytes) WHERE expired_time IS NOT NULL;
@@ -86,12 +86,6 @@ CREATE TABLE details (
 CREATE TABLE dropped (
   job INTEGER PRIMARY KEY
 ) STRICT;
-CREATE TABLE work (
-  principal TEXT NOT NULL,
-  day INTEGER NOT NULL,
-  seconds REAL NOT NULL,
-  PRIMARY KEY (principal, day)
-) STRICT, WITHOUT ROWID;
 CREATE INDEX results_by_finish ON results (job, finish);
 CREATE TABLE server (
   identity TEXT NOT NULL

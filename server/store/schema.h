@@ -1,13 +1,12 @@
 // The tables of the store, and the checks of a file before it is used as a store.
 //
 //   jobs      one row a job; `sequence` orders them by age and names the job in the next five
-//   requests  (principal, request id) -> the job that the server returned checkpoints (job, point)
-//   -> storage Checkpoint, of unfinished points of active jobs
-//   chunks    (job, point, chunk) -> storage Chunk, of chunks that wait for an earlier one
-//   results   (job, point) -> storage Result, of finished points
-//   details   (job, point) -> storage Details, of those that have any
+//   requests  (principal, request id) -> the job that the server returned
+//   checkpoints  (job, point) -> storage.Checkpoint, of unfinished points of active jobs
+//   chunks    (job, point, chunk) -> storage.Chunk, of chunks that wait for an earlier one
+//   results   (job, point) -> v1.PointResult without its details, of finished points
+//   details   (job, point) -> v1.PointResult, the details of those that have any
 //   dropped   deleted and expired jobs whose results are still being removed (sweeper.h)
-//   work      (principal, day) -> processor time (usage_table.h)
 //   server    one row: a random name of this store, which is part of the names of its cluster jobs
 //   pilots    the limit's error that pilot runs measured, by place and engine
 //
@@ -24,7 +23,7 @@
 
 namespace ballpiston::server {
 
-inline constexpr int64_t kSchemaVersion = 4;
+inline constexpr int64_t kSchemaVersion = 5;
 inline constexpr int64_t kApplicationId = 0x62706973;  // "bpis"
 
 // The connection that writes and checkpoints. Checks an existing store; creates a store if there is

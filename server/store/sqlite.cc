@@ -74,36 +74,25 @@ Query::~Query() {
   sqlite3_clear_bindings(statement_);
 }
 
-Query& Query::Bind(int64_t value) {
+void Query::BindInteger(int64_t value) {
   if (status_.ok()) sqlite3_bind_int64(statement_, next_parameter_++, value);
-  return *this;
 }
 
-Query& Query::Bind(double value) {
+void Query::Bind(double value) {
   if (status_.ok()) sqlite3_bind_double(statement_, next_parameter_++, value);
-  return *this;
 }
 
-Query& Query::BindText(absl::string_view value) {
-  if (status_.ok()) {
-    sqlite3_bind_text64(statement_, next_parameter_++, value.data(), value.size(), SQLITE_TRANSIENT,
-                        SQLITE_UTF8);
-  }
-  return *this;
+void Query::Bind(absl::string_view text) {
+  if (!status_.ok()) return;
+  sqlite3_bind_text64(statement_, next_parameter_++, text.data(), text.size(), SQLITE_TRANSIENT,
+                      SQLITE_UTF8);
 }
 
-Query& Query::BindBlob(absl::string_view value) {
+void Query::Bind(Blob blob) {
+  if (!status_.ok()) return;
   // A null pointer would bind NULL.
-  const char* data = value.empty() ? "" : value.data();
-  if (status_.ok()) {
-    sqlite3_bind_blob64(statement_, next_parameter_++, data, value.size(), SQLITE_TRANSIENT);
-  }
-  return *this;
-}
-
-Query& Query::BindNull() {
-  if (status_.ok()) sqlite3_bind_null(statement_, next_parameter_++);
-  return *this;
+  const char* data = blob.bytes.empty() ? "" : blob.bytes.data();
+  sqlite3_bind_blob64(statement_, next_parameter_++, data, blob.bytes.size(), SQLITE_TRANSIENT);
 }
 
 absl::StatusOr<bool> Query::Step() {
@@ -115,7 +104,12 @@ absl::StatusOr<bool> Query::Step() {
   return status_;
 }
 
-absl::Status Query::Run() { return Step().status(); }
+absl::Status Query::ForEach(absl::FunctionRef<bool(const Query& row)> on_row) {
+  while (true) {
+    const absl::StatusOr<bool> row = Step();
+    if (!row.ok() || !*row || !on_row(*this)) return row.status();
+  }
+}
 
 int64_t Query::Integer(int column) const { return sqlite3_column_int64(statement_, column); }
 
@@ -154,6 +148,11 @@ bool Database::Exists(const std::string& path, const std::string& vfs) {
          exists != 0;
 }
 
+void Database::RemoveFile(const std::string& path, const std::string& vfs) {
+  sqlite3_vfs* const files = sqlite3_vfs_find(VfsName(vfs));
+  if (files != nullptr) files->xDelete(files, path.c_str(), 0);
+}
+
 Database::~Database() {
   for (const auto& [sql, statement] : statements_) sqlite3_finalize(statement);
   sqlite3_close(connection_);
@@ -177,8 +176,7 @@ absl::Status Database::Execute(const std::string& sql) {
   return Failure(connection_);
 }
 
-absl::StatusOr<int64_t> Database::Integer(const std::string& sql) {
-  Query query = Prepare(sql);
+absl::StatusOr<int64_t> Database::OnlyInteger(Query query) {
   const absl::StatusOr<bool> row = query.Step();
   if (!row.ok()) return row.status();
   return *row ? query.Integer(0) : 0;
@@ -214,21 +212,7 @@ absl::StatusOr<std::string> Database::FileStart(int bytes) const {
   return absl::UnavailableError(absl::StrCat("store: ", sqlite3_errstr(code)));
 }
 
-absl::Status Database::CopyTo(const std::string& path) {
-  return Prepare("VACUUM INTO ?").BindText(path).Run();
-}
-
-std::shared_ptr<DiskCalls> Database::WatchDisk() {
-  disk_calls_ = std::make_shared<DiskCalls>();
-  sqlite3_file* file = nullptr;
-  // In WAL mode only checkpoints write to the file itself.
-  sqlite3_file_control(connection_, "main", SQLITE_FCNTL_FILE_POINTER, &file);
-  if (file != nullptr) disk_calls_->Watch(*file, "checkpoint.page");
-  sqlite3_file* log = nullptr;
-  sqlite3_file_control(connection_, "main", SQLITE_FCNTL_JOURNAL_POINTER, &log);
-  if (log != nullptr) disk_calls_->Watch(*log);
-  return disk_calls_;
-}
+absl::Status Database::CopyTo(const std::string& path) { return Run("VACUUM INTO ?", path); }
 
 bool Database::InTransaction() const { return sqlite3_get_autocommit(connection_) == 0; }
 

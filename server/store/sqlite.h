@@ -12,16 +12,17 @@
 // A connection and its statements belong to one thread at a time.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "absl/functional/function_ref.h"
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "server/store/disk_calls.h"
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -32,24 +33,32 @@ namespace ballpiston::server {
 // such a status.
 bool IsOfTheDisk(const absl::Status& status);
 
-// One execution of a prepared statement; parameters are numbered from 1, columns from 0. Returns
-// the statement to its connection when it goes out of scope.
+// A value of a column of the type BLOB. The bytes must live until it is bound.
+struct Blob {
+  absl::string_view bytes;
+};
+
+// One execution of a prepared statement; columns are numbered from 0. Returns the statement to its
+// connection when it goes out of scope.
 class Query {
  public:
   explicit Query(sqlite3_stmt* statement, absl::Status prepared);
   Query(Query&& other) noexcept;
   ~Query();
 
-  Query& Bind(int64_t value);
-  Query& Bind(double value);
-  Query& BindText(absl::string_view value);
-  Query& BindBlob(absl::string_view value);
-  Query& BindNull();
+  // Binds the next parameter.
+  template <std::integral Number>
+  void Bind(Number value) {
+    BindInteger(static_cast<int64_t>(value));
+  }
+  void Bind(double value);
+  void Bind(absl::string_view text);
+  void Bind(Blob blob);
 
   // True: there is a row. False: no (more) rows.
   absl::StatusOr<bool> Step();
-  // For statements without rows.
-  absl::Status Run();
+  // Calls `on_row` for each row, until it returns false.
+  absl::Status ForEach(absl::FunctionRef<bool(const Query& row)> on_row);
 
   int64_t Integer(int column) const;
   double Real(int column) const;
@@ -57,6 +66,8 @@ class Query {
   bool IsNull(int column) const;
 
  private:
+  void BindInteger(int64_t value);
+
   sqlite3_stmt* statement_;
   absl::Status status_;
   int next_parameter_ = 1;
@@ -73,20 +84,38 @@ class Database {
   // Whether the file exists and is not empty.
   static bool Exists(const std::string& path, const std::string& vfs = std::string());
 
+  // Errors are not reported.
+  static void RemoveFile(const std::string& path, const std::string& vfs);
+
   ~Database();
 
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
-  // Prepared once for each text. At most one Query of a text at a time.
-  Query Prepare(const std::string& sql);
+  // A statement with its parameters. It is prepared once for each text. At most one Query of a text
+  // at a time.
+  template <typename... Values>
+  Query Select(const std::string& sql, const Values&... values) {
+    Query query = Prepare(sql);
+    (query.Bind(values), ...);
+    return query;
+  }
+
+  // A statement without rows.
+  template <typename... Values>
+  absl::Status Run(const std::string& sql, const Values&... values) {
+    return Select(sql, values...).Step().status();
+  }
+
+  // The first column of the first row; 0 if there is none.
+  template <typename... Values>
+  absl::StatusOr<int64_t> Integer(const std::string& sql, const Values&... values) {
+    return OnlyInteger(Select(sql, values...));
+  }
+  absl::StatusOr<std::string> Text(const std::string& sql);
 
   // Statements without parameters and rows.
   absl::Status Execute(const std::string& sql);
-
-  // The first column of the only row.
-  absl::StatusOr<int64_t> Integer(const std::string& sql);
-  absl::StatusOr<std::string> Text(const std::string& sql);
 
   // The size of the file on disk, without its log.
   absl::StatusOr<int64_t> FileBytes() const;
@@ -95,9 +124,6 @@ class Database {
   // Writes a copy of this database, as it is at one moment, to an empty or missing file. The copy
   // is not in WAL mode and has no free pages.
   absl::Status CopyTo(const std::string& path);
-
-  // Watches the disk calls of the open file and of its log from now on.
-  std::shared_ptr<DiskCalls> WatchDisk();
 
   // False also after an error for which SQLite has rolled the transaction back.
   bool InTransaction() const;
@@ -108,7 +134,9 @@ class Database {
  private:
   explicit Database(sqlite3* connection) : connection_(connection) {}
 
-  std::shared_ptr<DiskCalls> disk_calls_;  // outlives the connection
+  Query Prepare(const std::string& sql);
+  static absl::StatusOr<int64_t> OnlyInteger(Query query);
+
   sqlite3* connection_;
   std::map<std::string, sqlite3_stmt*> statements_;
 };

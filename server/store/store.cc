@@ -6,23 +6,22 @@
 #include <set>
 #include <utility>
 
-#include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
 #include "server/observability/failpoint.h"
 #include "server/observability/log.h"
 #include "server/store/schema.h"
+#include "server/store/sweeper.h"
 
 namespace ballpiston::server {
 namespace {
 
-// The smallest group of records on a full disk. It is larger than one, so that a group that does
-// not fit leaves some room for requests.
-constexpr size_t kSmallestGroup = 32;
-
-// Limits the time of a transaction, and the part of the log that may not fit into the file.
+// Limits the time of a transaction, and the part of the log that may not fit into the file. While
+// the disk fails, groups are small, because a small group may fit where a large one does not.
 constexpr size_t kMostGroupBytes = 2 << 20;
+constexpr size_t kMostBytesOnFailingDisk = 128 << 10;
 
 constexpr std::chrono::seconds kBetweenReserves(60);
+constexpr std::chrono::milliseconds kBetweenLooks(100);  // whether the disk hangs
 
 absl::Status Stalled() {
   return absl::UnavailableError("store: the disk does not answer; retry later");
@@ -54,33 +53,43 @@ std::string Text(const absl::Status& status) {
   return {status.message().data(), status.message().size()};
 }
 
+// Marks the checkpoints of points with a later write in the batch.
+template <typename Writes>
+void MarkSuperseded(Writes& batch) {
+  std::set<std::pair<int64_t, int64_t>> later;  // points that a later write supersedes
+  for (auto write = batch.rbegin(); write != batch.rend(); ++write) {
+    if (write->point < 0) continue;
+    const bool is_first = later.emplace(write->job, write->point).second;
+    write->superseded = write->is_checkpoint() && !is_first;
+  }
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Store>> Store::Open(const std::string& path, Options options) {
   auto writer = OpenStoreFile(path, options.vfs);
   if (!writer.ok()) return writer.status();
-  std::vector<std::unique_ptr<Database>> readers;
-  for (int i = 0; i < options.readers; ++i) {
-    auto reader = Database::Open(path, Database::Mode::kReadOnly, options.vfs);
-    if (!reader.ok()) return reader.status();
-    readers.push_back(*std::move(reader));
-  }
-  auto identity = readers.front()->Text("SELECT identity FROM server");
+  auto identity = (*writer)->Text("SELECT identity FROM server");
   if (!identity.ok()) return identity.status();
-  return std::unique_ptr<Store>(new Store(*std::move(writer), std::move(readers),
-                                          std::move(options), path, *std::move(identity)));
+  auto store = std::unique_ptr<Store>(
+      new Store(*std::move(writer), std::move(options), path, *std::move(identity)));
+  for (int i = 0; i < store->options_.readers; ++i) {
+    const absl::Status added = store->readers_.Add(path, store->options_.vfs);
+    if (!added.ok()) return added;
+  }
+  store->Start();
+  return store;
 }
 
-Store::Store(std::unique_ptr<Database> writer, std::vector<std::unique_ptr<Database>> readers,
-             Options options, std::string path, std::string identity)
+Store::Store(std::unique_ptr<Database> writer, Options options, std::string path,
+             std::string identity)
     : options_(std::move(options)),
       path_(std::move(path)),
       identity_(std::move(identity)),
       writer_(std::move(writer)),
-      disk_calls_(writer_->WatchDisk()),
-      reserve_(path_, options_.reserve_bytes, options_.vfs, *disk_calls_),
-      free_readers_(std::move(readers)),
-      readers_(free_readers_.size()) {
+      reserve_(path_, options_.reserve_bytes, options_.vfs) {}
+
+void Store::Start() {
   reserve_.Take();
   thread_ = Thread([this] { WriteUntilClosed(); });
 }
@@ -89,84 +98,53 @@ Store::~Store() { Close(); }
 
 // ---- posting ----
 
-absl::Status Store::Commit(Change change, Done done) {
-  return Await({.change = std::move(change), .done = std::move(done)});
+absl::Status Store::Commit(Change change) { return CommitRequest({.change = std::move(change)}); }
+
+absl::Status Store::CommitDeletion(Change change) {
+  return CommitRequest({.change = std::move(change), .frees_space = true});
 }
 
-absl::Status Store::CommitDeletion(Change change, Done done) {
-  return Await({.change = std::move(change), .done = std::move(done), .frees_space = true});
-}
-
-absl::Status Store::Flush() {
-  return Await({.change = [](Database&) { return absl::OkStatus(); }, .ordered = true});
-}
-
-void Store::AwaitSwept() {
-  MutexLock lock(mutex_);
-  while (!swept_ && !sweep_is_damaged_ && !closing_) written_.Wait(mutex_);
-}
-
-absl::Status Store::Await(Write write) {
-  if (stalled()) {
-    if (write.done) write.done(Stalled());
-    return Stalled();
-  }
+absl::Status Store::CommitRequest(Write request) {
+  if (stalled()) return Stalled();
   // Shared: the store's thread may still be inside Tell when this function returns.
   const auto outcome = std::make_shared<Outcome>();
-  write.urgent = true;
-  write.lasting = false;
-  write.done = [outcome, done = std::move(write.done)](const absl::Status& status) {
-    if (done) done(status);
-    outcome->Tell(status);
-  };
-  Post(std::move(write));
+  request.is_request = true;
+  request.done = [outcome](const absl::Status& status) { outcome->Tell(status); };
+  Post(std::move(request));
   return outcome->Await();
 }
 
 void Store::Record(Change change, Done done) {
-  Write write;
-  write.change = std::move(change);
-  write.done = std::move(done);
-  Post(std::move(write));
+  Post({.change = std::move(change), .done = std::move(done)});
 }
 
 void Store::RecordSoon(Change change, Done done) {
-  Write write;
-  write.change = std::move(change);
-  write.done = std::move(done);
-  write.urgent = true;
-  Post(std::move(write));
+  Post({.change = std::move(change), .done = std::move(done)}, true);
 }
 
 void Store::RecordCheckpoint(int64_t job, int64_t point, uint64_t chunk,
                              std::function<std::string()> serialize, size_t bytes) {
-  Write write;
-  write.job = job;
-  write.point = point;
-  write.bytes = bytes;
-  write.change = [=, serialize = std::move(serialize)](Database& database) {
+  auto change = [=, serialize = std::move(serialize)](Database& database) {
     Failpoint("checkpoint.before_write");
     return WriteCheckpoint(database, job, point, static_cast<int64_t>(chunk), serialize());
   };
-  Post(std::move(write));
+  Post({.change = std::move(change), .bytes = bytes, .job = job, .point = point});
 }
 
 void Store::RecordChunk(int64_t job, int64_t point, uint64_t chunk, std::string record) {
-  Write write;
-  write.bytes = record.size();
-  write.change = [=, record = std::move(record)](Database& database) {
+  const size_t bytes = record.size();
+  auto change = [=, record = std::move(record)](Database& database) {
     return InsertChunk(database, job, point, static_cast<int64_t>(chunk), record);
   };
-  Post(std::move(write));
+  Post({.change = std::move(change), .bytes = bytes});
 }
 
 void Store::RecordResult(int64_t job, PointRow row, std::function<void(int64_t number)> stored) {
   const auto number = std::make_shared<int64_t>(0);
-  Write write;
-  write.job = job;
-  write.point = row.point;
-  write.is_result = true;
-  write.bytes = row.result.size() + row.details.size();
+  Write write = {.bytes = row.result.size() + row.details.size(),
+                 .job = job,
+                 .point = row.point,
+                 .is_result = true};
   write.change = [job, row = std::move(row), number](Database& database) {
     const absl::StatusOr<int64_t> inserted = InsertResult(database, job, row);
     *number = inserted.value_or(0);
@@ -178,60 +156,45 @@ void Store::RecordResult(int64_t job, PointRow row, std::function<void(int64_t n
   Post(std::move(write));
 }
 
-void Store::Post(Write write) {
-  write.due = SteadyNow() + options_.delay;
+void Store::Post(Write write, bool soon) {
+  const Clock::time_point now = SteadyNow();
+  write.due = now + options_.delay;
   {
     MutexLock lock(mutex_);
     if (!closing_) {
-      urgent_ += write.urgent ? 1 : 0;
-      requests_ += write.lasting ? 0 : 1;
-      ordered_ += write.ordered ? 1 : 0;
+      hurry_ |= soon;
+      recorded_ += write.is_request ? 0 : 1;
       bytes_ += write.bytes;
-      pending_.push_back(std::move(write));
-      // The store's thread knows already when the other writes are due.
-      if (pending_.size() == 1 || BatchIsDue(SteadyNow())) posted_.NotifyOne();
+      (write.is_request ? requests_ : records_).push_back(std::move(write));
+      // The store's thread knows already when the other records are due.
+      if (records_.size() == 1 || BatchIsDue(now)) posted_.NotifyOne();
       return;
     }
   }
   if (write.done) write.done(Closed());
 }
 
-absl::Status Store::Read(absl::FunctionRef<absl::Status(Database&)> read) {
-  std::unique_ptr<Database> reader = TakeReader();
-  if (reader == nullptr) return Closed();
-  const absl::Cleanup give_back = [&] { GiveBack(std::move(reader)); };
-  absl::Status status = reader->Execute("BEGIN");
-  if (status.ok()) status = read(*reader);
-  reader->Execute("ROLLBACK").IgnoreError();  // SQLite may have done so already
-  return status;
+absl::Status Store::Flush() {
+  MutexLock lock(mutex_);
+  const int64_t last = recorded_, rejected_before = rejected_;
+  hurry_ |= settled_ < last;
+  posted_.NotifyOne();
+  while (!closing_ && settled_ < last && rejected_ == rejected_before) {
+    if (stalled()) return Stalled();
+    written_.WaitUntil(mutex_, SteadyNow() + kBetweenLooks);
+  }
+  if (closing_) return Closed();
+  return settled_ >= last ? absl::OkStatus() : absl::UnavailableError(failure_);
 }
 
-std::unique_ptr<Database> Store::TakeReader() {
-  MutexLock lock(readers_mutex_);
-  while (readers_ > 0 && free_readers_.empty()) reader_is_free_.Wait(readers_mutex_);
-  if (readers_ == 0) return nullptr;
-  std::unique_ptr<Database> reader = std::move(free_readers_.back());
-  free_readers_.pop_back();
-  return reader;
-}
-
-void Store::GiveBack(std::unique_ptr<Database> reader) {
-  MutexLock lock(readers_mutex_);
-  free_readers_.push_back(std::move(reader));
-  reader_is_free_.NotifyAll();
-}
-
-// Waits for the connections in use.
-void Store::CloseReaders() {
-  MutexLock lock(readers_mutex_);
-  while (free_readers_.size() < readers_) reader_is_free_.Wait(readers_mutex_);
-  free_readers_.clear();
-  readers_ = 0;
-  reader_is_free_.NotifyAll();
+void Store::AwaitSwept() {
+  MutexLock lock(mutex_);
+  while (next_sweep_ && !closing_) written_.Wait(mutex_);
 }
 
 bool Store::IsFull() const {
-  return pending_.size() + in_batch_ > options_.max_pending || bytes_ > options_.max_pending_bytes;
+  return records_.size() + requests_.size() + in_batch_ > options_.max_pending ||
+         bytes_ > options_.max_pending_bytes;
 }
 
 void Store::AwaitRoom() {
@@ -242,7 +205,6 @@ void Store::AwaitRoom() {
 void Store::StopWaiting() {
   MutexLock lock(mutex_);
   stop_waiting_ = true;
-  posted_.NotifyAll();
   written_.NotifyAll();
 }
 
@@ -255,7 +217,7 @@ void Store::Close() {
   }
   if (!thread_.joinable()) return;
   thread_.join();
-  CloseReaders();
+  readers_.Close();
   Failpoint("stop.before_checkpoint");
   writer_.reset();  // last: the last connection to close checkpoints
 }
@@ -265,26 +227,16 @@ bool Store::failing() const {
   return failing_;
 }
 
-bool Store::stalled() const { return disk_calls_->Waiting() > options_.stall; }
-
-int64_t Store::commits() const {
-  MutexLock lock(mutex_);
-  return commits_;
+bool Store::stalled() const {
+  const Clock::rep since = busy_since_;
+  return since != 0 && SteadyNow() - Clock::time_point(Clock::duration(since)) > options_.stall;
 }
 
-int64_t Store::checkpoints_written() const {
+Store::Counts Store::counts() const {
   MutexLock lock(mutex_);
-  return checkpoints_written_;
-}
-
-int64_t Store::failures() const {
-  MutexLock lock(mutex_);
-  return failures_;
-}
-
-int64_t Store::pending_writes() const {
-  MutexLock lock(mutex_);
-  return static_cast<int64_t>(pending_.size() + in_batch_);
+  Counts counts = counts_;
+  counts.pending_writes = static_cast<int64_t>(records_.size() + requests_.size() + in_batch_);
+  return counts;
 }
 
 // ---- choice of the next writes ----
@@ -292,41 +244,43 @@ int64_t Store::pending_writes() const {
 void Store::WriteUntilClosed() {
   Sweep();  // goes on where the last process stopped
   while (AwaitWork()) {
-    if (std::optional<Batch> batch = TakeBatch()) {
-      MarkSuperseded(batch->writes);
-      const absl::Status status = CommitBatch(*batch);
-      SettleRest(std::move(batch->writes), status);
-    }
+    if (std::optional<Batch> batch = TakeBatch()) WriteBatch(*std::move(batch));
     Sweep();
   }
 }
 
-bool Store::BatchIsDue(Clock::time_point now) const {
+bool Store::RecordsAreDue(Clock::time_point now) const {
   if (closing_) return true;
   // On a full disk, records wait while space is being freed, because they would use it at once.
-  const bool records_wait = failing_ && sweep_advances_ && !stop_waiting_;
-  if (requests_ > (records_wait ? ordered_ : 0)) return true;
-  if (failing_) return !stop_waiting_ && !records_wait && retry_time_ <= now;
-  // A batch is also due when half of the room is taken: AwaitRoom must not wait for the delay.
-  const bool half_full =
-      pending_.size() > options_.max_pending / 2 || bytes_ > options_.max_pending_bytes / 2;
-  return urgent_ > 0 || half_full || (!pending_.empty() && pending_.front().due <= now);
+  if (failing_ && sweep_advances_) return false;
+  const bool hurry = hurry_ && !records_.empty();
+  if (failing_) return hurry || retry_time_ <= now;
+  // Records share the group of a request. They are also due when half of the room is taken, because
+  // AwaitRoom must not wait for the delay.
+  const bool is_half_full =
+      records_.size() > options_.max_pending / 2 || bytes_ > options_.max_pending_bytes / 2;
+  return !requests_.empty() || hurry || is_half_full ||
+         (!records_.empty() && records_.front().due <= now);
+}
+
+bool Store::BatchIsDue(Clock::time_point now) const {
+  return !requests_.empty() || RecordsAreDue(now);
 }
 
 bool Store::SweepIsDue(Clock::time_point now) const {
-  return sweeping_ && !sweep_is_damaged_ && !closing_ && next_sweep_ <= now;
+  return next_sweep_ && !closing_ && *next_sweep_ <= now;
 }
 
 std::optional<Store::Clock::time_point> Store::NextDue() const {
-  std::optional<Clock::time_point> due;
-  if (failing_ && !stop_waiting_ && !sweep_advances_) due = retry_time_;
-  if (!failing_ && !pending_.empty()) due = pending_.front().due;
-  const bool sweeps = sweeping_ && !sweep_is_damaged_ && !closing_;
-  if (sweeps) due = std::min(due.value_or(next_sweep_), next_sweep_);
+  std::optional<Clock::time_point> due = next_sweep_;
+  const auto add = [&](Clock::time_point other) { due = std::min(due.value_or(other), other); };
+  if (failing_ && !sweep_advances_) add(retry_time_);
+  if (!failing_ && !records_.empty()) add(records_.front().due);
   return due;
 }
 
 bool Store::AwaitWork() {
+  busy_since_ = 0;
   MutexLock lock(mutex_);
   for (auto now = SteadyNow(); !BatchIsDue(now) && !SweepIsDue(now); now = SteadyNow()) {
     if (const std::optional<Clock::time_point> due = NextDue()) {
@@ -335,130 +289,70 @@ bool Store::AwaitWork() {
       posted_.Wait(mutex_);
     }
   }
-  return !closing_ || !pending_.empty();
+  return !closing_ || !records_.empty() || !requests_.empty();
 }
 
 std::optional<Store::Batch> Store::TakeBatch() {
   MutexLock lock(mutex_);
   const Clock::time_point now = SteadyNow();
   if (!BatchIsDue(now)) return std::nullopt;
-  const bool records_wait = failing_ && sweep_advances_ && !stop_waiting_ && !closing_;
-  const bool retry = closing_ || retry_time_ <= now || ordered_ > 0;
-  return TakePending(!records_wait && (!failing_ || retry));
-}
-
-// While the disk fails and the next retry is not due, takes only requests, which are few and small.
-Store::Batch Store::TakePending(bool whole) {
-  Batch batch;
-  batch.whole = whole;
-  batch.writes = whole ? std::exchange(pending_, {}) : TakeRequests();
-  urgent_ -= whole ? urgent_ : batch.writes.size();
-  requests_ = whole ? 0 : ordered_;
-  if (whole) ordered_ = 0;
+  Batch batch = {.has_all = records_.empty() || RecordsAreDue(now)};
+  if (batch.has_all) {
+    batch.writes = std::exchange(records_, {});
+    hurry_ = false;
+  }
+  std::move(requests_.begin(), requests_.end(), std::back_inserter(batch.writes));
+  requests_.clear();
   in_batch_ = batch.writes.size();
   return batch;
 }
 
-Store::Writes Store::TakeRequests() {
-  const auto first =
-      std::stable_partition(pending_.begin(), pending_.end(),
-                            [](const Write& write) { return write.lasting || write.ordered; });
-  Writes requests(std::make_move_iterator(first), std::make_move_iterator(pending_.end()));
-  pending_.erase(first, pending_.end());
-  return requests;
-}
-
-void Store::MarkSuperseded(Writes& batch) const {
-  std::set<std::pair<int64_t, int64_t>> later;  // points that a later write supersedes
-  for (auto write = batch.rbegin(); write != batch.rend(); ++write) {
-    if (write->point < 0) continue;
-    const bool is_first = later.emplace(write->job, write->point).second;
-    write->superseded = write->is_checkpoint() && !is_first;
-  }
-}
-
 // ---- writing them ----
 
-size_t Store::GroupEnd(const Writes& batch, size_t first, size_t most) {
+void Store::WriteBatch(Batch batch) {
+  Writes& writes = batch.writes;
+  MarkSuperseded(writes);
+  size_t first = 0;
+  do {  // an empty batch tests the disk
+    const size_t last = GroupEnd(writes, first);
+    const absl::Status status = CommitGroup(writes, first, last);
+    if (!status.ok()) return SettleFailed(std::move(batch), first, status);
+    if (last == writes.size() && batch.has_all) NoteHealth(status);  // before the callers know
+    Settle(writes, std::exchange(first, last), last);
+  } while (first < writes.size());
+}
+
+size_t Store::GroupEnd(const Writes& batch, size_t first) const {
+  const size_t most = failing() ? kMostBytesOnFailingDisk : kMostGroupBytes;
   size_t end = first, bytes = 0;
-  while (end < batch.size() && end - first < most &&
-         (end == first || bytes + batch[end].bytes <= kMostGroupBytes)) {
+  while (end < batch.size() && (end == first || bytes + batch[end].bytes <= most)) {
     bytes += batch[end++].bytes;
   }
   return end;
 }
 
-absl::Status Store::CommitBatch(Batch& batch) {
-  Writes& writes = batch.writes;
-  size_t first = 0;
-  size_t group = std::max<size_t>(writes.size(), 1);
-  absl::Status status;
-  do {
-    const size_t last = GroupEnd(writes, first, group);
-    status = CommitGroup(writes, first, last);
-    if (status.ok()) {
-      if (last == writes.size() && batch.whole)
-        NoteHealth(status);  // before the callers hear of it
-      Settle(writes, first, last, status);
-      first = last;
-    } else if (absl::IsResourceExhausted(status)) {
-      WriteLogBack();
-      if (group <= kSmallestGroup) break;
-      group = std::max(kSmallestGroup, group / 2);
-    }
-  } while (first < writes.size() && (status.ok() || absl::IsResourceExhausted(status)));
-  if (status.ok()) return status;
-  if (absl::IsResourceExhausted(status)) status = CommitRequestsAlone(writes, first, status);
-  if (batch.whole) NoteHealth(status);
-  return status;
-}
-
-// Commits the requests from `first` on, one by one, because the disk is full. OK if no write has to
-// wait.
-absl::Status Store::CommitRequestsAlone(Writes& batch, size_t first, const absl::Status& full) {
-  absl::Status failed = first < batch.size() ? absl::OkStatus() : full;
-  for (size_t i = first; i < batch.size(); ++i) {
-    const bool alone = !batch[i].lasting && !batch[i].ordered;
-    const absl::Status status = alone ? CommitRequest(batch, i) : full;
-    if (!status.ok()) failed = status;
-    if (status.ok()) Settle(batch, i, i + 1, status);
-  }
-  return failed;
-}
-
-absl::Status Store::CommitRequest(Writes& batch, size_t request) {
-  const absl::Status status = CommitGroup(batch, request, request + 1);
-  const bool needs_room =
-      absl::IsResourceExhausted(status) && batch[request].frees_space && reserve_.held();
-  if (!needs_room) return status;
-  reserve_.Release();
-  WriteLogBack();  // the file may grow now, and the log starts from its beginning
-  return CommitGroup(batch, request, request + 1);
-}
-
 absl::Status Store::CommitGroup(Writes& batch, size_t first, size_t last) {
+  NoteProgress();
   while (true) {
-    std::optional<size_t> culprit;
+    Write* culprit = nullptr;
     const absl::Status status = TryGroup(batch, first, last, culprit);
     if (status.ok()) break;
     writer_->Execute("ROLLBACK").IgnoreError();  // SQLite may have done so already
-    if (!culprit || IsOfTheDisk(status)) return status;
-    Write& refused = batch[*culprit];
-    refused.outcome = status;
-    if (refused.lasting) LogError(absl::StrCat("a record was rejected: ", Text(status)));
+    if (culprit == nullptr || IsOfTheDisk(status)) return status;
+    culprit->outcome = status;
+    if (!culprit->is_request) LogError(absl::StrCat("a record was rejected: ", Text(status)));
   }
   MutexLock lock(mutex_);
-  ++commits_;
+  ++counts_.commits;
   for (size_t i = first; i < last; ++i) {
     Write& write = batch[i];
-    if (write.is_checkpoint() && !write.superseded && !write.outcome) ++checkpoints_written_;
+    if (write.is_checkpoint() && !write.superseded && !write.outcome) ++counts_.checkpoints_written;
     if (!write.outcome) write.outcome = absl::OkStatus();
   }
   return absl::OkStatus();
 }
 
-absl::Status Store::TryGroup(Writes& batch, size_t first, size_t last,
-                             std::optional<size_t>& culprit) {
+absl::Status Store::TryGroup(Writes& batch, size_t first, size_t last, Write*& culprit) {
   absl::Status status = BeginGroup();
   for (size_t i = first; i < last && status.ok(); ++i) {
     Write& write = batch[i];
@@ -472,7 +366,7 @@ absl::Status Store::TryGroup(Writes& batch, size_t first, size_t last,
     if (status.ok() && !writer_->InTransaction()) {
       status = absl::UnavailableError("store: SQLite rolled the transaction back");
     }
-    if (!status.ok()) culprit = i;
+    if (!status.ok()) culprit = &write;
   }
   Failpoint("store.before_commit");
   if (status.ok()) status = writer_->Execute("COMMIT");
@@ -488,27 +382,58 @@ absl::Status Store::BeginGroup() {
   return writer_->Execute(absl::StrCat("PRAGMA user_version = ", kSchemaVersion));
 }
 
+void Store::TryAgain(Writes& batch, size_t request, const absl::Status& failure) {
+  Write& write = batch[request];
+  if (write.outcome) return;  // refused
+  absl::Status status = failure;
+  if (absl::IsResourceExhausted(status)) status = CommitGroup(batch, request, request + 1);
+  if (absl::IsResourceExhausted(status) && write.frees_space && reserve_.held()) {
+    ReleaseReserve();
+    status = CommitGroup(batch, request, request + 1);
+  }
+  if (!status.ok()) write.outcome = status;
+}
+
+// Then the file may grow, and the log starts from its beginning.
+void Store::ReleaseReserve() {
+  reserve_.Release();
+  WriteLogBack();
+}
+
 // Frames that cannot be written back now stay in the log.
 void Store::WriteLogBack() { writer_->Execute("PRAGMA wal_checkpoint(PASSIVE)").IgnoreError(); }
 
 void Store::Sweep() {
-  bool swept_before = false, is_failing = false;
+  bool is_failing = false, has_advanced = false;
   {
     MutexLock lock(mutex_);
-    if (closing_ || sweep_is_damaged_ || SteadyNow() < next_sweep_) return;
-    swept_before = sweeping_;
+    if (!SweepIsDue(SteadyNow())) return;
     is_failing = failing_;
+    has_advanced = sweep_advances_;
   }
-  const absl::StatusOr<bool> swept = sweeper_.Step(*writer_);
+  NoteProgress();
+  const absl::StatusOr<bool> swept = SweepWithReserve();
   const bool has_ended = swept.ok() && !*swept;
+  // Waiting records may need the room of the reserve and that of the deleted job.
   if (is_failing && swept.ok() && *swept && reserve_.held()) reserve_.Release();
   // The file gets shorter when the log is written back. A full disk has no room for a longer log.
-  if (is_failing || !swept.ok() || (swept_before && has_ended)) WriteLogBack();
-  if (has_ended && !is_failing && !reserve_.held() && next_reserve_ <= SteadyNow()) {
-    reserve_.Take();
-    next_reserve_ = SteadyNow() + kBetweenReserves;
-  }
+  if (is_failing || !swept.ok() || (has_advanced && has_ended)) WriteLogBack();
+  if (has_ended && !is_failing) TakeReserve();
   NoteSweep(swept);
+}
+
+// One step. If it has no room, the reserve is released.
+absl::StatusOr<bool> Store::SweepWithReserve() {
+  const absl::StatusOr<bool> swept = SweepStep(*writer_);
+  if (!absl::IsResourceExhausted(swept.status()) || !reserve_.held()) return swept;
+  ReleaseReserve();
+  return SweepStep(*writer_);
+}
+
+void Store::TakeReserve() {
+  if (reserve_.held() || next_reserve_ > SteadyNow()) return;
+  reserve_.Take();
+  next_reserve_ = SteadyNow() + kBetweenReserves;
 }
 
 // A step that fails is tried again later, unless the store is damaged: each step would find that.
@@ -520,58 +445,63 @@ void Store::NoteSweep(const absl::StatusOr<bool>& swept) {
     NoteHealth(swept.status());
   }
   MutexLock lock(mutex_);
-  swept_ = swept.ok() && !*swept;
-  sweeping_ = swept.ok() ? *swept : sweeping_;
-  sweep_advances_ = swept.ok() && *swept;
   sweep_is_damaged_ = is_damage;
-  next_sweep_ = swept.ok() ? SteadyNow() : SteadyNow() + options_.retry;
+  sweep_advances_ = swept.ok() && *swept;
+  next_sweep_.reset();
+  if (sweep_advances_) next_sweep_ = SteadyNow();
+  if (!swept.ok() && !is_damage) next_sweep_ = SteadyNow() + options_.retry;
   written_.NotifyAll();
 }
 
 // ---- outcomes ----
 
-void Store::Settle(Writes& batch, size_t first, size_t last, const absl::Status& status) {
+void Store::Settle(Writes& batch, size_t first, size_t last) {
   {
     MutexLock lock(mutex_);
     in_batch_ -= last - first;
-    swept_ = false;
     for (size_t i = first; i < last; ++i) bytes_ -= batch[i].bytes;
-    written_.NotifyAll();
+    if (!next_sweep_ && !sweep_is_damaged_) next_sweep_ = SteadyNow();
   }
+  int64_t records = 0;
   for (size_t i = first; i < last; ++i) {
     Write& write = batch[i];
-    write.settled = true;
-    if (write.done) write.done(write.outcome.value_or(status));
+    if (write.done) write.done(write.outcome.value_or(absl::OkStatus()));
     write.change = nullptr;  // releases its data; other groups of the batch may take long
     write.done = nullptr;
+    records += write.is_request ? 0 : 1;
   }
+  MutexLock lock(mutex_);
+  settled_ += records;
+  written_.NotifyAll();
 }
 
-void Store::SettleRest(Writes batch, const absl::Status& status) {
+void Store::SettleFailed(Batch batch, size_t first, const absl::Status& failure) {
+  NoteHealth(failure);
+  if (absl::IsResourceExhausted(failure)) WriteLogBack();
+  Writes& writes = batch.writes;
+  bool has_failed = !batch.has_all || first == writes.size();
   Writes again;
-  for (size_t i = 0; i < batch.size(); ++i) {
-    Write& write = batch[i];
-    const bool waits = !write.outcome && write.lasting && !write.superseded;
-    if (write.settled) continue;
-    if (waits) {
-      again.push_back(std::move(write));
+  for (size_t i = first; i < writes.size(); ++i) {
+    Write& write = writes[i];
+    if (write.is_request) TryAgain(writes, i, failure);
+    if (write.outcome || write.superseded) {
+      has_failed |= write.outcome && IsOfTheDisk(*write.outcome);
+      Settle(writes, i, i + 1);
     } else {
-      Settle(batch, i, i + 1, status);
+      again.push_back(std::move(write));
     }
   }
+  if (!has_failed && again.empty()) NoteHealth(absl::OkStatus());  // each fitted alone
   Requeue(std::move(again));
 }
 
 void Store::Requeue(Writes again) {
   MutexLock lock(mutex_);
   in_batch_ = 0;
-  const bool dropped = closing_ || stop_waiting_;
-  for (const Write& write : again) {
-    if (dropped) bytes_ -= write.bytes;
-    if (!dropped && write.urgent) ++urgent_;
-  }
-  if (!dropped) {
-    pending_.insert(pending_.begin(), std::make_move_iterator(again.begin()),
+  if (again.empty()) return;
+  ++rejected_;
+  if (!closing_) {
+    records_.insert(records_.begin(), std::make_move_iterator(again.begin()),
                     std::make_move_iterator(again.end()));
   }
   written_.NotifyAll();
@@ -581,7 +511,7 @@ void Store::Requeue(Writes again) {
 void Store::NoteHealth(const absl::Status& status) {
   MutexLock lock(mutex_);
   if (!status.ok()) {
-    ++failures_;
+    ++counts_.failures;
     retry_time_ = SteadyNow() + options_.retry;
     if (std::exchange(failure_, Text(status)) != Text(status)) {
       LogError(absl::StrCat(Text(status), "; computed results wait until the disk works again"));

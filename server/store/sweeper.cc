@@ -1,7 +1,6 @@
 #include "server/store/sweeper.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "absl/functional/function_ref.h"
@@ -11,83 +10,68 @@
 namespace ballpiston::server {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-// The size of a step is adapted so that it takes this long.
-constexpr std::chrono::milliseconds kShortStep(10), kLongStep(20);
-constexpr int64_t kLeast = 8, kMost = 1 << 14;
-// Checkpoints that are replaced leave free pages, which the next checkpoints use.
-constexpr int64_t kKeptPages = 256;
-
-absl::Status InTransaction(Database& database, absl::FunctionRef<absl::Status()> change) {
+// True, or the error of the change.
+absl::StatusOr<bool> InTransaction(Database& database, absl::FunctionRef<absl::Status()> change) {
   absl::Status status = database.Execute("BEGIN IMMEDIATE");
   if (!status.ok()) return status;
   status = change();
   if (status.ok()) status = database.Execute("COMMIT");
-  if (!status.ok()) database.Execute("ROLLBACK").IgnoreError();
+  if (status.ok()) return true;
+  database.Execute("ROLLBACK").IgnoreError();
   return status;
 }
 
-// Adapts the step's size. On a full disk a smaller step may have room in the log.
-absl::Status OneStep(Database& database, int64_t& size, absl::FunctionRef<absl::Status()> change) {
-  const Clock::time_point begin = Clock::now();
-  const absl::Status status = InTransaction(database, change);
-  const bool is_too_large = absl::IsResourceExhausted(status) && size > kLeast;
-  const Clock::duration took = Clock::now() - begin;
-  if (is_too_large || took > kLongStep) {
-    size = std::max(size / 2, kLeast);
-  } else if (took < kShortStep) {
-    size = std::min(size * 2, kMost);
-  }
-  return is_too_large ? absl::OkStatus() : status;
-}
-
-absl::Status DropSome(Database& database, int64_t job, int64_t most) {
+absl::Status DropSome(Database& database, int64_t job) {
   int64_t dropped = 0;
   for (const char* table : {"details", "results"}) {
     const absl::Status status =
-        database
-            .Prepare(absl::StrCat("DELETE FROM ", table, " WHERE rowid IN (SELECT rowid FROM ",
-                                  table, " WHERE job = ? LIMIT ?)"))
-            .Bind(job)
-            .Bind(most - dropped)
-            .Run();
+        database.Run(absl::StrCat("DELETE FROM ", table, " WHERE rowid IN (SELECT rowid FROM ",
+                                  table, " WHERE job = ? LIMIT ?)"),
+                     job, kSweptRows - dropped);
     if (!status.ok()) return status;
     dropped += database.RowsChanged();
   }
   Failpoint("sweep.in_transaction");
   if (dropped > 0) return absl::OkStatus();
-  return database.Prepare("DELETE FROM dropped WHERE job = ?").Bind(job).Run();
+  return database.Run("DELETE FROM dropped WHERE job = ?", job);
+}
+
+absl::StatusOr<bool> ShortenFile(Database& database) {
+  const auto free = database.Integer("PRAGMA freelist_count");
+  if (!free.ok()) return free.status();
+  if (*free <= kKeptPages) return false;
+  const int64_t pages = std::min(kSweptPages, *free - kKeptPages);
+  return InTransaction(database, [&] {
+    return database.Execute(absl::StrCat("PRAGMA incremental_vacuum(", pages, ")"));
+  });
 }
 
 }  // namespace
 
-absl::StatusOr<bool> Sweeper::Step(Database& database) {
-  const absl::StatusOr<bool> dropped = DropRows(database);
-  return dropped.ok() && !*dropped ? ShortenFile(database) : dropped;
-}
-
-absl::StatusOr<bool> Sweeper::DropRows(Database& database) {
+absl::StatusOr<bool> SweepStep(Database& database) {
   const auto job = database.Integer("SELECT min(job) FROM dropped");
   if (!job.ok()) return job.status();
-  if (*job == 0) return false;
-  if (std::exchange(job_, *job) != *job) rows_ = kFirstRows;
-  const absl::Status status =
-      OneStep(database, rows_, [&] { return DropSome(database, *job, rows_); });
-  if (!status.ok()) return status;
-  return true;
+  if (*job == 0) return ShortenFile(database);
+  return InTransaction(database, [&] { return DropSome(database, *job); });
 }
 
-absl::StatusOr<bool> Sweeper::ShortenFile(Database& database) {
-  const auto free = database.Integer("PRAGMA freelist_count");
-  if (!free.ok()) return free.status();
-  if (*free <= kKeptPages) return false;
-  const int64_t pages = std::min(pages_, *free - kKeptPages);
-  const absl::Status status = OneStep(database, pages_, [&] {
-    return database.Execute(absl::StrCat("PRAGMA incremental_vacuum(", pages, ")"));
-  });
-  if (!status.ok()) return status;
-  return true;
+absl::StatusOr<bool> IsSweeping(Database& database) {
+  const absl::StatusOr<int64_t> jobs = database.Integer("SELECT count(*) FROM dropped");
+  if (!jobs.ok()) return jobs.status();
+  return *jobs > 0;
+}
+
+absl::StatusOr<int64_t> UsedBytes(Database& database) {
+  int64_t pages = 0;
+  for (const auto& [sql, sign] :
+       {std::pair{"PRAGMA page_count", 1}, std::pair{"PRAGMA freelist_count", -1}}) {
+    const absl::StatusOr<int64_t> count = database.Integer(sql);
+    if (!count.ok()) return count.status();
+    pages += sign * *count;
+  }
+  const absl::StatusOr<int64_t> bytes = database.Integer("PRAGMA page_size");
+  if (!bytes.ok()) return bytes.status();
+  return pages * *bytes;
 }
 
 }  // namespace ballpiston::server

@@ -1,33 +1,30 @@
 // Frees the space of the results of deleted and expired jobs: removes their rows, then shortens the
-// file by its free pages. Its transactions are short, so that other writes need not wait long. Such
-// a job is in the table `dropped` until its last row is removed, so a restart goes on with the
-// rest.
+// file by its free pages. Each step is one short transaction, so that other writes need not wait
+// long. Such a job is in the table `dropped` until its last row is removed, so a restart goes on
+// with the rest.
 #pragma once
 
 #include <cstdint>
 
-#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "server/store/sqlite.h"
 
 namespace ballpiston::server {
 
-class Sweeper {
- public:
-  // One transaction of some 20 ms. False: nothing was left to do.
-  absl::StatusOr<bool> Step(Database& database);
+// Rows and pages that a step removes. Some milliseconds, and little room in the log.
+inline constexpr int64_t kSweptRows = 64, kSweptPages = 256;
+// Checkpoints that are replaced leave free pages, which the next checkpoints use.
+inline constexpr int64_t kKeptPages = 256;
 
- private:
-  absl::StatusOr<bool> DropRows(Database& database);
-  absl::StatusOr<bool> ShortenFile(Database& database);
+// One transaction. False: nothing was left to do.
+absl::StatusOr<bool> SweepStep(Database& database);
 
-  static constexpr int64_t kFirstRows = 64, kFirstPages = 64;
+// The next two run inside the transaction of their caller.
 
-  int64_t job_ = 0;  // the last step removed rows of this job
-  // Rows to remove in one step, adapted to the time of earlier steps. Starts again for another job,
-  // whose rows may be larger.
-  int64_t rows_ = kFirstRows;
-  int64_t pages_ = kFirstPages;
-};
+// Whether rows of deleted or expired jobs still have to be removed.
+absl::StatusOr<bool> IsSweeping(Database& database);
+
+// The bytes of the store's pages that are not free. The log beside the file is not counted.
+absl::StatusOr<int64_t> UsedBytes(Database& database);
 
 }  // namespace ballpiston::server

@@ -26,7 +26,7 @@ ProcessResult RunWhenThereIsRoom(const TestServer& server, const Words& question
   return run;
 }
 
-// 40 points whose results take 120 kB.
+// 40 points whose results take 800 kB.
 ProcessResult RunSweep(const TestServer& server, int seed) {
   return RunWhenThereIsRoom(
       server,
@@ -47,7 +47,7 @@ bool HasExpired(const TestServer& server, const std::string& name) {
 }
 
 TEST(Expiry, OldResultsExpireUnlessPinnedAndCanBeComputedAgain) {
-  const TestServer server({.flags = {"--max-store-bytes=600000"}});
+  const TestServer server({.flags = {"--max-store-bytes=4000000"}});
   const ProcessResult kept = RunSweep(server, 1), old = RunSweep(server, 2);
   ASSERT_THAT(kept, ExitsWith(0));
   ASSERT_THAT(old, ExitsWith(0));

@@ -43,8 +43,8 @@ constexpr char kFlags[] =
     "max-active-jobs max-active-jobs-per-principal max-active-points "
     "max-active-points-per-principal max-points-per-job max-samples-per-job max-streams "
     "max-streams-per-principal max-calls-per-principal max-call-bytes-per-principal "
-    "max-transfer-mib max-memory-mib retain-days max-store-bytes max-store-bytes-per-principal "
-    "max-processor-seconds-per-principal max-seconds-per-job max-message-bytes "
+    "max-transfer-mib max-memory-mib retain-days max-store-bytes "
+    "max-message-bytes "
     "log-level metrics-listen new-token check backup help version";
 
 // What --help describes: --NAME at the beginning of a line.

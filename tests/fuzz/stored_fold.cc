@@ -8,7 +8,7 @@
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
 #include "server/convert/fold_record.h"
-#include "server/convert/result_record.h"
+#include "server/convert/point_result.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace ballpiston::fuzz {
@@ -59,9 +59,8 @@ void RequireResumed(const PointExperiment& experiment, const FoldState& state) {
   const BlockResult merged = fold.Merged();
   Require(merged.samples == state.complete.samples + state.partial.samples, "no sample is lost");
   Require(merged.HasShapeOf(experiment.EmptyResult()), "merging keeps the shape");
-  const storage::Result result =
-      server::ResultRecordOf(3, experiment, experiment.Summarize(merged));
-  Require(server::ResultFromBytes(server::RecordBytes(result)).ok(),
+  const v1::PointResult result = server::ResultOf(3, experiment, experiment.Summarize(merged));
+  Require(server::ResultFromBytes(result.SerializeAsString()).ok(),
           "what was merged can be stored");
 }
 

@@ -1,8 +1,9 @@
-// A finished point's result, as pages of results and a restart read it.
+// A finished point's result or its details, as pages of results and a restart read them.
 #include "core/ensemble/point_experiment.h"
+#include "core/experiment/all_experiments.h"
+#include "server/convert/deterministic_bytes.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
-#include "server/convert/result_record.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"
 
@@ -10,7 +11,7 @@ namespace ballpiston::fuzz {
 namespace {
 
 // As ReadShortfall does.
-void CheckShortfall(const storage::Result& result, const std::string& bytes) {
+void CheckShortfall(const v1::PointResult& result, const std::string& bytes) {
   constexpr double kTolerance = 0.01;
   const EnsembleSpec spec = {.target = {.tolerance = kTolerance, .budget_seconds = 1.0}};
   const Estimate reached = server::FirstEstimateOf(result);
@@ -19,19 +20,19 @@ void CheckShortfall(const storage::Result& result, const std::string& bytes) {
 }
 
 void CheckStoredResult(const std::string& bytes) {
-  absl::StatusOr<storage::Result> result = server::ResultFromBytes(bytes);
+  const absl::StatusOr<v1::PointResult> result = server::ResultFromBytes(bytes);
   if (!result.ok()) return Require(absl::IsDataLoss(result.status()), "damage is DATA_LOSS");
-  const std::string stored = server::RecordBytes(*result);
-  const absl::StatusOr<storage::Result> again = server::ResultFromBytes(stored);
-  Require(again.ok() && server::RecordBytes(*again) == stored, "stored bytes come back");
+  const std::string stored = server::DeterministicBytes(*result);
+  const absl::StatusOr<v1::PointResult> again = server::ResultFromBytes(stored);
+  Require(again.ok() && server::DeterministicBytes(*again) == stored, "stored bytes come back");
   CheckShortfall(*result, bytes);
-  Require(server::PointResultMessage(*result).index() == static_cast<int32_t>(result->index()),
-          "it can be told");
+  const v1::PointResult told = server::WithDetails({}, *result, kEquilibrium);
+  Require(told.histograms_size() == result->histograms_size(), "it can be told");
 }
 
 const Registration kStoredResult({.name = "stored_result",
                                   .check = CheckStoredResult,
-                                  .message = &storage::Result::default_instance()});
+                                  .message = &v1::PointResult::default_instance()});
 
 }  // namespace
 }  // namespace ballpiston::fuzz

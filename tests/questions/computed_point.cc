@@ -12,7 +12,6 @@
 #include "core/ensemble/point_fold.h"
 #include "core/model_choice/sampling_cost.h"
 #include "server/convert/point_result.h"
-#include "server/convert/result_record.h"
 #include "tests/questions/finite_check.h"
 
 namespace ballpiston::questions {
@@ -43,8 +42,8 @@ class ImpatientQueue : public BlockQueue {
 ComputedPoint ComputePoint(const EnsembleSpec& spec, size_t index, const Answer& answer) {
   const auto point = PointExperiment::Create(spec, index, answer);
   const PointSummary summary = point->Summarize(*FoldPoint(*point));
-  return {server::PointResultMessage(server::ResultRecordOf(index, *point, summary),
-                                     server::DetailsRecordOf(summary), *spec.experiment),
+  return {server::WithDetails(server::ResultOf(index, *point, summary), server::DetailsOf(summary),
+                              *spec.experiment),
           CheckFinite(summary)};
 }
 

@@ -8,7 +8,6 @@
 #include "core/ensemble/point_fold.h"
 #include "server/convert/deterministic_bytes.h"
 #include "server/convert/point_result.h"
-#include "server/convert/result_record.h"
 #include "server/convert/spec.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
@@ -31,8 +30,7 @@ v1::PointResult ResultOfAnUndisturbedRun(const Question& question, int point) {
   while (const std::optional<Block> block = computed.NextBlock()) {
     computed.Add(*block, *RunBlock(*experiment, *block));
   }
-  return PointResultMessage(
-      ResultRecordOf(index, *experiment, experiment->Summarize(computed.Merged())));
+  return ResultOf(index, *experiment, experiment->Summarize(computed.Merged()));
 }
 
 // Histograms and curves are left out, as watches do.

@@ -36,9 +36,8 @@ TEST(ExitCode, DistinguishesATooLargeJobFromABusyServer) {
   for (const char* reason : {"TOO_MANY_POINTS", "TOO_MANY_SAMPLES"}) {
     EXPECT_EQ(ExitCodeOf(LimitOf(reason)), ExitCode::kUsage) << reason;
   }
-  for (const char* reason :
-       {"QUEUE_FULL", "TOO_MANY_JOBS", "TOO_MANY_ACTIVE_POINTS", "TOO_MANY_STREAMS",
-        "TOO_MANY_CALLS", "TOO_MANY_STORED_BYTES", "STORE_FULL"}) {
+  for (const char* reason : {"QUEUE_FULL", "TOO_MANY_JOBS", "TOO_MANY_ACTIVE_POINTS",
+                             "TOO_MANY_STREAMS", "TOO_MANY_CALLS", "TOO_MANY_STORED_BYTES"}) {
     EXPECT_EQ(ExitCodeOf(LimitOf(reason)), ExitCode::kUnreachable) << reason;
   }
 }

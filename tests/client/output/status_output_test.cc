@@ -25,13 +25,11 @@ v1::ServerStatus BusyServer() {
                   max_streams_per_principal: 2048 max_message_bytes: 4194304
                   max_active_points: 20000000 max_active_points_per_principal: 5000000
                   max_calls_per_principal: 1024 max_call_bytes_per_principal: 134217728
-                  retain_days: 30 max_store_bytes: 2147483648
-                  max_store_bytes_per_principal: 536870912
-                  max_processor_seconds_per_principal: 360000 max_seconds_per_job: 86400 }
+                  retain_days: 30 max_store_bytes: 2147483648 }
          expiring_jobs: 12
          principal: "alice" role: "submit"
          principals { principal: "alice" queued_jobs: 3 running_jobs: 1 streams: 4 stored_jobs: 1000
-                      stored_bytes: 60000 processor_seconds: 5000 })");
+                      stored_bytes: 60000 })");
 }
 
 std::string PrintedStatus(const v1::ServerStatus& status, Format format = Format::kTable) {
@@ -55,24 +53,22 @@ streams   4
 store     68 KiB
 expiry    results of 12 jobs expire within a week
 
-principal  queued  running  streams  stored  stored bytes  processor time, 30 days
-alice           3        1        4    1000        59 KiB                    1.4 h
+principal  queued  running  streams  stored  stored bytes
+alice           3        1        4    1000        59 KiB
 
-limit                       total  per principal
-active jobs                 10000           1000
-active points               2e+07        5000000
-streams                      4096           2048
-calls                    no limit           1024
-bytes of calls           no limit        128 MiB
-stored bytes              2.0 GiB        512 MiB
-processor time, 30 days  no limit          4.2 d
+limit              total  per principal
+active jobs        10000           1000
+active points      2e+07        5000000
+streams             4096           2048
+calls           no limit           1024
+bytes of calls  no limit        128 MiB
+stored bytes     2.0 GiB       no limit
 
-limit           per job
-points           100000
-samples           1e+15
-processor time    1.0 d
-message         4.0 MiB
-results kept    30 days
+limit         per job
+points         100000
+samples         1e+15
+message       4.0 MiB
+results kept  30 days
 )");
 }
 
@@ -80,12 +76,10 @@ TEST(StatusOutput, ZeroMeansUnlimited) {
   v1::ServerStatus status = BusyServer();
   status.mutable_limits()->Clear();
   const std::string table = PrintedStatus(status);
-  EXPECT_THAT(table, HasSubstr("active jobs              no limit       no limit\n"));
-  EXPECT_THAT(table, HasSubstr("stored bytes             no limit       no limit\n"));
-  EXPECT_THAT(table, HasSubstr("processor time, 30 days  no limit       no limit\n"));
-  EXPECT_THAT(table, HasSubstr("processor time  no limit\n"));
-  EXPECT_THAT(table, HasSubstr("message         no limit\n"));
-  EXPECT_THAT(table, HasSubstr("results kept    no limit\n"));
+  EXPECT_THAT(table, HasSubstr("active jobs     no limit       no limit\n"));
+  EXPECT_THAT(table, HasSubstr("stored bytes    no limit       no limit\n"));
+  EXPECT_THAT(table, HasSubstr("message       no limit\n"));
+  EXPECT_THAT(table, HasSubstr("results kept  no limit\n"));
 }
 
 TEST(StatusOutput, NamesOtherStatesThanServing) {

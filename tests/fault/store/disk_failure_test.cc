@@ -14,8 +14,11 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "server/convert/deterministic_bytes.h"
+#include "server/convert/spec.h"
 #include "server/store/check_store.h"
 #include "server/store/job_table.h"
 #include "tests/fault/store/fault_disk.h"
@@ -43,10 +46,8 @@ std::string NameOf(Refusal refusal) {
 }
 
 void ExpectDiskFailure(const absl::Status& status, Refusal refusal) {
-  const bool full = refusal == Refusal::kFull;
-  EXPECT_THAT(status,
-              IsError(full ? absl::StatusCode::kResourceExhausted : absl::StatusCode::kUnavailable,
-                      full ? "STORE_FULL" : "STORE_FAILED"));
+  EXPECT_THAT(status, IsError(absl::StatusCode::kUnavailable,
+                              refusal == Refusal::kFull ? "STORE_FULL" : "STORE_FAILED"));
 }
 
 // Flush succeeds only when all pending writes are written.
@@ -147,7 +148,7 @@ class Refused {
     EXPECT_EQ(IsDone(), status_.ok()) << status_;
     if (!status_.ok()) ExpectDiskFailure(status_, refusal_);
     if (!status_.ok()) {
-      EXPECT_GT(scene_.service().store().failures(), 0);
+      EXPECT_GT(scene_.service().store().counts().failures, 0);
     }
   }
 
@@ -348,6 +349,78 @@ TEST(DiskFailure, OnAFullDiskTheReserveLetsALargeJobBeDeleted) {
   EXPECT_OK(store->Read(count));
 }
 
+// A job that succeeded, with results of 20 kB each. Its rows may have to wait for the disk.
+std::string RecordEndedJob(Store& store, uint64_t seed, int points) {
+  JobRecord record;
+  record.id = absl::StrCat("ended-", seed);
+  record.principal = LocalPrincipal().name;
+  record.spec = SpecBytes(Equilibrium(points, 1, seed));
+  record.engine_version = EngineVersion();
+  record.points = points;
+  const auto inserted = std::make_shared<JobRecord>(record);
+  store.Record([inserted](Database& database) { return InsertJob(database, *inserted); });
+  EXPECT_OK(store.Flush());
+  v1::PointResult details;
+  details.add_histograms()->mutable_counts()->Resize(2500, 1);
+  for (int point = 0; point < points; ++point) {
+    v1::PointResult result;
+    result.set_index(point);
+    store.RecordResult(inserted->sequence, {.point = point,
+                                            .result = DeterministicBytes(result),
+                                            .details = DeterministicBytes(details)});
+  }
+  JobEnd end;
+  end.time = absl::Now();
+  end.points_done = points;
+  store.RecordSoon([inserted, end](Database& database) {
+    return EndJob(database, inserted->sequence, end).status();
+  });
+  return record.id;
+}
+
+// Three jobs on a disk of 20 MiB with the usual reserve: one has ended, the results of the second
+// do not fit, and the third still computes. Then not one byte is left.
+TEST(DiskFailure, ADiskOf20MiBThatIsFullIsFreedByADeletionAndNothingIsLost) {
+  FaultDisk undisturbed;
+  ServiceOnDisk elsewhere(undisturbed);
+  const auto expected = elsewhere.Create(Equilibrium(3, 3, 9), "");
+  ASSERT_OK(expected);
+  elsewhere.AwaitEnd(IdOf(*expected));
+
+  FaultDisk disk;
+  disk.SetCapacity(20 << 20);
+  {
+    Turnstile turnstile;
+    ServiceOnDisk service(disk, &turnstile, Store::Options().reserve_bytes);
+    Store& store = service.store();
+    const std::string running = IdOf(*service.Create(Equilibrium(3, 3, 9), ""));
+    turnstile.AwaitWaiting();
+    const std::string first = RecordEndedJob(store, 1, 100);
+    AwaitWritten(store);
+    const std::string second = RecordEndedJob(store, 2, 100);
+    AwaitThat([&] { return store.failing(); });
+    disk.SetCapacity(disk.bytes_used());
+    absl::Status refused;
+    for (uint64_t seed = 100; refused.ok(); ++seed) {
+      refused = service.Create(Equilibrium(1000, 2, seed), "").status();
+    }
+    EXPECT_THAT(refused, IsError(absl::StatusCode::kUnavailable, "STORE_FULL"));
+    turnstile.AdmitAll();
+    EXPECT_EQ(service.Get(running)->state(), EnsembleJob::RUNNING);
+    EXPECT_TRUE(store.failing());
+
+    EXPECT_OK(service.Delete(first));
+    EXPECT_EQ(service.AwaitEnd(running).state(), EnsembleJob::SUCCEEDED);
+    EXPECT_EQ(service.Results(running), elsewhere.Results(IdOf(*expected)));
+    EXPECT_EQ(service.AwaitEnd(second).state(), EnsembleJob::SUCCEEDED);
+    EXPECT_EQ(service.Results(second).size(), 100u);
+    EXPECT_OK(service.Create(Equilibrium(1, 2, 3), ""));
+    EXPECT_FALSE(store.failing());
+  }
+  ASSERT_OK_AND_ASSIGN(const auto summary, CheckStore(kStorePath, disk.vfs()));
+  EXPECT_THAT(summary.problems, IsEmpty());
+}
+
 // Results that do not fit on the disk wait, and do not delay requests that free space.
 TEST(DiskFailure, OnAFullDiskRequestsGoBeforeRecordsThatDoNotFit) {
   Scene scene;
@@ -358,10 +431,10 @@ TEST(DiskFailure, OnAFullDiskRequestsGoBeforeRecordsThatDoNotFit) {
   EXPECT_TRUE(store.failing());
   EXPECT_OK(scene.Delete());
   EXPECT_TRUE(store.failing());
-  EXPECT_EQ(store.pending_writes(), 1);
+  EXPECT_EQ(store.counts().pending_writes, 1);
   scene.disk().StopRefusing();
   AwaitWritten(store);
-  EXPECT_EQ(store.pending_writes(), 0);
+  EXPECT_EQ(store.counts().pending_writes, 0);
 }
 
 // Some of many records fit. The store writes them in smaller groups.
@@ -373,8 +446,8 @@ TEST(DiskFailure, OnAFullDiskRecordsThatFitAreWritten) {
     store.RecordResult(99, {.point = point, .samples = 1, .result = std::string(1000, 'x')});
   }
   EXPECT_FALSE(store.Flush().ok());
-  EXPECT_GT(store.pending_writes(), 100);
-  EXPECT_LT(store.pending_writes(), 900);
+  AwaitThat([&] { return store.counts().pending_writes < 900; });
+  EXPECT_GT(store.counts().pending_writes, 100);
 }
 
 TEST(DiskFailure, WorkersWaitWhenTheirResultsTakeTooMuchMemory) {

@@ -9,8 +9,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "gtest/gtest.h"
+#include "server/convert/deterministic_bytes.h"
 #include "server/convert/fold_record.h"
-#include "server/convert/result_record.h"
 #include "server/convert/spec.h"
 #include "server/jobs/job_book.h"
 #include "server/store/job_table.h"
@@ -36,10 +36,10 @@ double SecondsSince(std::chrono::steady_clock::time_point start) {
 }
 
 std::string DetailsWithHistogram() {
-  storage::Details details;
+  v1::PointResult details;
   auto* histogram = details.add_histograms();
-  for (uint64_t i = 0; i < 200; ++i) histogram->add_counts(1000 + i);
-  return RecordBytes(details);
+  for (int i = 0; i < 200; ++i) histogram->add_counts(1000 + i);
+  return DeterministicBytes(details);
 }
 
 JobRecord NewJob(int number) {

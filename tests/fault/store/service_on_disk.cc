@@ -21,12 +21,12 @@ ExperimentFactory Factory(Turnstile* turnstile) {
 }
 
 // Records wait until a request is committed, so that a trace does not depend on time.
-Store::Options StoreOptions(const FaultDisk& disk) {
+Store::Options StoreOptions(const FaultDisk& disk, size_t reserve_bytes) {
   Store::Options options;
   options.delay = kNever;
   options.retry = std::chrono::milliseconds(1);
   options.stall = kNever;
-  options.reserve_bytes = 0;  // a disk of a few kB, copied at each cut
+  options.reserve_bytes = reserve_bytes;
   options.vfs = disk.vfs();
   return options;
 }
@@ -74,8 +74,8 @@ void Turnstile::AwaitWaiting(std::unique_lock<std::mutex>& lock) {
 
 // ---- ServiceOnDisk ----
 
-ServiceOnDisk::ServiceOnDisk(FaultDisk& disk, Turnstile* turnstile) {
-  auto store = Store::Open(kStorePath, StoreOptions(disk));
+ServiceOnDisk::ServiceOnDisk(FaultDisk& disk, Turnstile* turnstile, size_t reserve_bytes) {
+  auto store = Store::Open(kStorePath, StoreOptions(disk, reserve_bytes));
   status_ = store.status();
   if (!status_.ok()) return;
   store_ = *std::move(store);

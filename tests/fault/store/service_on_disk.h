@@ -46,8 +46,9 @@ class Turnstile {
 
 class ServiceOnDisk {
  public:
-  // A null turnstile lets everything through.
-  explicit ServiceOnDisk(FaultDisk& disk, Turnstile* turnstile = nullptr);
+  // A null turnstile lets everything through. Without a reserve the disk has a few kB, which a test
+  // can copy at each cut.
+  explicit ServiceOnDisk(FaultDisk& disk, Turnstile* turnstile = nullptr, size_t reserve_bytes = 0);
   ~ServiceOnDisk();  // stops like a server after SIGTERM
 
   // The status of opening the store and resuming its jobs. Call other functions only if it is OK.

@@ -14,14 +14,14 @@
 #include "absl/strings/str_format.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "server/convert/result_record.h"
+#include "server/convert/deterministic_bytes.h"
 #include "server/convert/spec.h"
 #include "server/jobs/retention.h"
 #include "server/store/check_store.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
 #include "server/store/store.h"
-#include "server/store/usage_table.h"
+#include "server/store/sweeper.h"
 #include "tests/server/requests.h"
 #include "tests/server/store_access.h"
 #include "tests/support/await.h"
@@ -75,17 +75,17 @@ class YearTest : public testing::Test {
  protected:
   YearTest()
       : store_(*Store::Open(path_, {.delay = std::chrono::milliseconds(1), .stall = kNever})),
-        retention_(*store_, usage_, {.retain_days = kRetainDays, .max_store_bytes = Bound()}) {}
+        retention_(*store_, {.retain_days = kRetainDays, .max_store_bytes = Bound()}) {}
 
-  // With a histogram of 750 bins, like a first hit.
+  // With 1.5 kB of details: a histogram of 190 bins.
   static PointRow Row(int64_t point) {
-    storage::Details details;
+    v1::PointResult details;
     auto* histogram = details.add_histograms();
-    for (uint64_t i = 0; i < 750; ++i) histogram->add_counts(1000 + i);
-    storage::Result result;
+    for (int i = 0; i < 190; ++i) histogram->add_counts(1000 + i);
+    v1::PointResult result;
     result.set_index(static_cast<int32_t>(point));
     result.set_reason(std::string(200, 'r'));
-    return {point, 1e6, RecordBytes(result), RecordBytes(details), false};
+    return {point, 1e6, DeterministicBytes(result), DeterministicBytes(details), false};
   }
 
   void AddJob(absl::Time end) {
@@ -133,7 +133,6 @@ class YearTest : public testing::Test {
   const TemporaryFolder folder_;
   const std::string path_ = folder_.File("store.sqlite3");
   std::unique_ptr<Store> store_;
-  Usage usage_;
   Retention retention_;
   int jobs_ = 0;
 };

@@ -16,7 +16,6 @@
 #include "server/convert/errors.h"
 #include "server/convert/fold_record.h"
 #include "server/convert/point_result.h"
-#include "server/convert/result_record.h"
 #include "server/convert/spec.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
@@ -429,8 +428,7 @@ TEST(Spec, NotANumberAndInfinityAreViolations) {
 v1::PointResult PointResultOf(size_t index, const PointExperiment& experiment,
                               const BlockResult& merged) {
   const PointSummary summary = experiment.Summarize(merged);
-  return PointResultMessage(ResultRecordOf(index, experiment, summary), DetailsRecordOf(summary),
-                            kEquilibrium);
+  return WithDetails(ResultOf(index, experiment, summary), DetailsOf(summary), kEquilibrium);
 }
 
 TEST(PointResult, ValuesThatDoNotExistAreLeftOut) {
@@ -526,16 +524,20 @@ TEST(PointResult, RemarksAreKeptInTheirOrder) {
   EXPECT_THAT(result.remarks(), testing::ElementsAre("the run was too short", "another sentence"));
 }
 
-TEST(PointResult, DamagedCodeOfAShapeIsLeftOut) {
-  storage::Result record;
-  storage::Value& cells = *record.add_point();
-  cells.set_parameter(kCells.index);
-  for (const double code : {0.0, -1.0, 0.5, 1e300, kNan, kInfinity}) {
-    cells.set_value(code);
-    EXPECT_FALSE(PointResultMessage(record).parameters().has_cells()) << code;
+TEST(PointResult, ParametersComeBackFromTheirMessage) {
+  PointParameters point = {{kRho, 0.53}, {kDelta, 0.1}, {kTemperature, 2}};
+  point.Set(kCells, CodeOf({.columns = 4, .rows = 3, .is_lattice = true}));
+  const v1::PointParameters message = ParametersMessage(point);
+  EXPECT_EQ(message.cells(), "4x3");
+  EXPECT_EQ(ParametersOf(message), point);
+}
+
+TEST(PointResult, DamagedNameOfAShapeIsLeftOut) {
+  v1::PointParameters message;
+  for (const char* name : {"", "0", "-1", "4x", "10000x10000", "nan"}) {
+    message.set_cells(name);
+    EXPECT_FALSE(ParametersOf(message).Find(kCells)) << name;
   }
-  cells.set_value(CodeOf({.columns = 4, .rows = 3, .is_lattice = true}));
-  EXPECT_EQ(PointResultMessage(record).parameters().cells(), "4x3");
 }
 
 // Expected probabilities depend only on the parameters, and are not stored.
@@ -545,10 +547,9 @@ TEST(PointResult, ExpectedProbabilitiesAreComputedWhenRead) {
   BlockResult merged = experiment->EmptyResult();
   merged.histograms[0].counts[17] = 3;
   const PointSummary summary = experiment->Summarize(merged);
-  const storage::Details details = DetailsRecordOf(summary);
-  EXPECT_LT(details.ByteSizeLong(), 2500);
-  const v1::PointResult result =
-      PointResultMessage(ResultRecordOf(0, *experiment, summary), details, kFirstHit);
+  const v1::PointResult details = DetailsOf(summary);
+  EXPECT_EQ(details.histograms(0).expected_probabilities_size(), 0);
+  const v1::PointResult result = WithDetails(ResultOf(0, *experiment, summary), details, kFirstHit);
   double sum = 0;
   for (const v1::Histogram& histogram : result.histograms()) {
     ASSERT_EQ(histogram.expected_probabilities_size(), histogram.counts_size());

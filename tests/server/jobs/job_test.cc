@@ -1,6 +1,7 @@
 #include "server/jobs/job.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -13,15 +14,19 @@
 #include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "server/convert/result_record.h"
+#include "server/convert/point_result.h"
 #include "server/convert/spec.h"
+#include "server/jobs/job_book.h"
 #include "server/jobs/job_journal.h"
 #include "server/jobs/job_message.h"
 #include "server/jobs/job_name.h"
 #include "server/jobs/job_snapshot.h"
 #include "server/store/job_table.h"
+#include "server/store/point_tables.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/hanging_disk.h"
 #include "tests/server/store_access.h"
+#include "tests/server/thread_pool.h"
 #include "tests/support/await.h"
 #include "tests/support/nightly.h"
 #include "tests/support/status_matchers.h"
@@ -130,7 +135,7 @@ class JobJournalTest : public testing::Test {
     record_ = JobWithPoints(3);
     ASSERT_OK(store_->Commit([this](Database& database) { return InsertJob(database, record_); }));
     job_ = std::make_shared<Job>(record_);
-    journal_.emplace(job_, *store_, usage_, false, nullptr);
+    journal_.emplace(job_, *store_, false, nullptr);
   }
 
   JobRecord Row(const std::string& id) {
@@ -147,7 +152,6 @@ class JobJournalTest : public testing::Test {
 
   TemporaryFolder folder_;
   std::unique_ptr<Store> store_;
-  Usage usage_;
   JobRecord record_;
   std::shared_ptr<Job> job_;
   std::optional<JobJournal> journal_;
@@ -202,6 +206,29 @@ TEST_F(JobJournalTest, AJobWithMissingResultsFails) {
   EXPECT_THAT(job.error().message(), testing::HasSubstr("of 3 computed points the store keeps 2"));
 }
 
+// Otherwise the job would be active until the next start of the server.
+TEST_F(JobJournalTest, AJobWhoseEndTheStoreRejectsFails) {
+  ASSERT_OK(store_->Commit([](Database& database) {
+    return database.Execute(
+        "CREATE TRIGGER no_success BEFORE UPDATE ON jobs WHEN new.state = 4"
+        " BEGIN SELECT RAISE(ABORT, 'not this one'); END");
+  }));
+  std::vector<JobState> ends;
+  journal_.emplace(job_, *store_, false,
+                   [&](const JobRecord& ended) { ends.push_back(ended.state); });
+  for (const size_t point : {0u, 1u, 2u}) Finish(point);
+  const uint64_t change = job_->last_state_change();
+  journal_->Ended(absl::OkStatus());
+  ASSERT_OK(store_->Flush());  // the rejected end
+  ASSERT_OK(store_->Flush());
+  const EnsembleJob job = JobMessage(Row(), nullptr, 0);
+  EXPECT_EQ(job.state(), EnsembleJob::FAILED);
+  EXPECT_THAT(job.error().message(), testing::HasSubstr("not this one"));
+  EXPECT_EQ(Row().points_done, 3);
+  EXPECT_THAT(ends, testing::ElementsAre(EnsembleJob::FAILED));
+  EXPECT_GT(job_->last_state_change(), change);
+}
+
 // Two runs end the same jobs, one in success and one in failure, while a client cancels them.
 TEST_F(JobJournalTest, TheFirstEndOfAJobIsItsEnd) {
   std::vector<JobRecord> records(IsNightly() ? 10'000 : 1'000, JobWithPoints(0));
@@ -216,7 +243,7 @@ TEST_F(JobJournalTest, TheFirstEndOfAJobIsItsEnd) {
   const auto end_all = [&](const absl::Status& outcome) {
     for (const JobRecord& record : records) {
       const auto job = std::make_shared<Job>(record);
-      JobJournal(job, *store_, usage_, false, note).Ended(outcome);
+      JobJournal(job, *store_, false, note).Ended(outcome);
     }
   };
   std::thread succeeds(end_all, absl::OkStatus());
@@ -235,6 +262,38 @@ TEST_F(JobJournalTest, TheFirstEndOfAJobIsItsEnd) {
     EXPECT_TRUE(HasEnded(state));
     EXPECT_EQ(Row(record.id).error.empty(), state != EnsembleJob::FAILED);
   }
+}
+
+// The store's thread calls the book when it has written the end of a job.
+TEST(JobBook, IsDestroyedAfterTheLastWriteOfAHangingDisk) {
+  const TemporaryFolder folder;
+  HangingDisk disk;
+  const auto store = *Store::Open(folder.File("store"),
+                                  {.stall = std::chrono::milliseconds(1), .vfs = disk.vfs()});
+  ThreadPool pool(1, FakeExperiments());
+  auto book = std::make_unique<JobBook>(*store, Limits(), pool.scheduler());
+  const auto write = [](Database& database) { return InsertChunk(database, 9, 0, 0, "x"); };
+  disk.Hang();
+  store->RecordSoon(write);
+  disk.AwaitHanging();
+  store->Record(write);
+  AwaitThat([&] { return store->stalled(); });
+  std::atomic<bool> is_destroyed = false;
+  int64_t pending = -1;
+  std::thread destroys([&] {
+    book.reset();
+    pending = store->counts().pending_writes;
+    is_destroyed = true;
+  });
+  // Until the book waits for the end of the store: a closing store rejects records.
+  const auto is_closing = std::make_shared<std::atomic<bool>>(false);
+  AwaitThat([&] {
+    store->Record(write, [is_closing](const absl::Status& done) { *is_closing = !done.ok(); });
+    return *is_closing || is_destroyed;
+  });
+  disk.Resume();
+  destroys.join();
+  EXPECT_EQ(pending, 0);
 }
 
 TEST(LeaveOutFinished, APointInBothListsIsKeptAsFinishedOnly) {

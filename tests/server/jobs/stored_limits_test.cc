@@ -1,4 +1,5 @@
-// How long results are kept, and what principals may use. The test sets the time.
+// How long results are kept. The test sets the time.
+#include <map>
 #include <memory>
 #include <string>
 #include <thread>
@@ -11,6 +12,7 @@
 #include "server/jobs/job_book.h"
 #include "server/jobs/job_name.h"
 #include "server/store/check_store.h"
+#include "server/store/sweeper.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
@@ -208,57 +210,20 @@ TEST_F(StoredLimitsTest, AStoreFullOfPinnedJobsRejectsNewJobs) {
   while (!Create(kBob, 2).ok()) book_->KeepLimits(absl::Now());
 }
 
-TEST_F(StoredLimitsTest, ThePrincipalsByteLimitRejectsOnlyItsJobs) {
-  Start({.max_store_bytes_per_principal = 20'000});
-  const std::string first = Done(kAlice, 1, 300);
-  EXPECT_EQ(static_cast<double>(book_->usage().Of("alice", absl::Now()).bytes),
-            Get(kAlice, first).stored_bytes());
-  EXPECT_THAT(Create(kAlice, 2).status(),
-              IsLimit("TOO_MANY_STORED_BYTES", "max-store-bytes-per-principal"));
-  Done(kBob, 2);
-  Start({.max_store_bytes_per_principal = 20'000});  // and after a restart
-  EXPECT_EQ(ReasonOf(Create(kAlice, 2).status()), "TOO_MANY_STORED_BYTES");
-  EXPECT_EQ(Create(kAlice, 1, 300)->name(), JobName(first));  // the store has the answer
+// An active job's results count when it ends.
+TEST_F(StoredLimitsTest, JobsAndBytesOfEachPrincipalAreCounted) {
+  Start({});
+  const std::string first = Done(kAlice, 1), second = Done(kAlice, 2);
+  Done(kBob, 3);
+  const std::map<std::string, PrincipalJobs> before = book_->JobsByPrincipal();
+  EXPECT_EQ(before.at("alice").stored, 2);
+  EXPECT_EQ(static_cast<double>(before.at("alice").bytes),
+            Get(kAlice, first).stored_bytes() + Get(kAlice, second).stored_bytes());
+  EXPECT_EQ(before.at("bob").stored, 1);
   ASSERT_OK(book_->Delete(kAlice, first));
-  EXPECT_EQ(book_->usage().Of("alice", absl::Now()).bytes, 0);
-  Done(kAlice, 2);
-}
-
-// The bytes of an unfinished job are counted after a restart.
-TEST_F(StoredLimitsTest, AnUnfinishedJobCountsAfterARestart) {
-  Gate gate;
-  const auto stuck = [&gate](size_t point, uint64_t, std::stop_token stop) {
-    if (point == 2) gate.Pass(stop);
-  };
-  Start({}, FakeExperiments(stuck));
-  const std::string id = *JobIdOf(Create(kAlice, 1)->name());
-  gate.AwaitWaiting(2);
-  ASSERT_OK(store_->Flush());
-  const int64_t bytes = book_->usage().Of("alice", absl::Now()).bytes;
-  Start({}, FakeExperiments(stuck));
-  EXPECT_EQ(book_->usage().Of("alice", absl::Now()).bytes, bytes);
-  gate.Open();
-  AwaitEnd(kAlice, id);
-  EXPECT_EQ(static_cast<double>(book_->usage().Of("alice", absl::Now()).bytes),
-            Get(kAlice, id).stored_bytes());
-}
-
-TEST_F(StoredLimitsTest, AJobThatTakesTooLongFailsAndKeepsItsPoints) {
-  Gate gate;
-  const auto stuck = [&gate](size_t point, uint64_t, std::stop_token stop) {
-    if (point == 1) gate.Pass(stop);
-  };
-  Start({.max_seconds_per_job = 1e-9}, FakeExperiments(stuck));
-  const std::string id = *JobIdOf(Create(kAlice, 1)->name());
-  AwaitThat([&] { return Get(kAlice, id).progress().points_done() > 0; });
-  AwaitThat([&] {
-    book_->KeepLimits(absl::Now());
-    return HasEnded(Get(kAlice, id).state());
-  });
-  const EnsembleJob job = Get(kAlice, id);
-  EXPECT_EQ(job.state(), EnsembleJob::FAILED);
-  EXPECT_THAT(job.error().message(), HasSubstr("--max-seconds-per-job"));
-  EXPECT_GE(PointsOf(kAlice, id), 1u);
+  EXPECT_EQ(book_->JobsByPrincipal().at("alice").stored, 1);
+  EXPECT_EQ(static_cast<double>(book_->JobsByPrincipal().at("alice").bytes),
+            Get(kAlice, second).stored_bytes());
 }
 
 TEST_F(StoredLimitsTest, OneResultByItsName) {
@@ -277,46 +242,6 @@ TEST(ResultNameTest, NamesAJobAndAPoint) {
                            "ensembleJobs/a/results/99999999999", "ensembleJobs/a"}) {
     EXPECT_FALSE(ResultIdOf(name)) << name;
   }
-}
-
-// ---- processor time ----
-
-TEST(UsageTest, WorkCountsForThirtyDays) {
-  const Limits limits = {.max_processor_seconds_per_principal = 100};
-  const absl::Time start = absl::FromUnixSeconds(1'700'000'000);
-  Usage usage;
-  usage.AddWork("alice", start, 60);
-  EXPECT_OK(usage.Check("alice", start, limits));
-  usage.AddWork("alice", start + 10 * kDay, 40);
-  EXPECT_THAT(usage.Check("alice", start + 10 * kDay, limits),
-              IsLimit("TOO_MANY_SECONDS", "max-processor-seconds-per-principal"));
-  EXPECT_OK(usage.Check("bob", start, limits));
-  EXPECT_EQ(usage.Of("alice", start + 29 * kDay).seconds, 100);
-  EXPECT_EQ(usage.Of("alice", start + 30 * kDay).seconds, 40);
-  EXPECT_OK(usage.Check("alice", start + 30 * kDay, limits));
-}
-
-TEST(UsageTest, NewWorkIsTakenOnce) {
-  const absl::Time start = absl::FromUnixSeconds(1'700'000'000);
-  Usage usage;
-  usage.AddStoredWork({"alice", Usage::FirstDay(start) + kQuotaDays - 1, 5});
-  usage.AddWork("alice", start, 1);
-  usage.AddWork("alice", start, 2);
-  const std::vector<DayOfWork> work = usage.TakeNewWork(start);
-  ASSERT_EQ(work.size(), 1u);
-  EXPECT_EQ(work[0].seconds, 3);
-  EXPECT_EQ(usage.Of("alice", start).seconds, 8);
-  EXPECT_TRUE(usage.TakeNewWork(start + 30 * kDay).empty());
-  EXPECT_TRUE(usage.All(start).empty());  // that day is forgotten
-}
-
-TEST_F(StoredLimitsTest, ProcessorTimeIsKeptOverARestart) {
-  Start({});
-  Done(kAlice, 1);
-  const double seconds = book_->usage().Of("alice", absl::Now()).seconds;
-  EXPECT_GT(seconds, 0);
-  Start({});
-  EXPECT_DOUBLE_EQ(book_->usage().Of("alice", absl::Now()).seconds, seconds);
 }
 
 }  // namespace

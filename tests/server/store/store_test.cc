@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -314,7 +315,7 @@ TEST_F(StoreTest, AnImpossibleWriteIsRejectedAlone) {
   EXPECT_THAT(commit, StatusIs(absl::StatusCode::kInvalidArgument));
   EXPECT_THAT(told, StatusIs(absl::StatusCode::kInvalidArgument));
   EXPECT_FALSE(store->failing());
-  EXPECT_EQ(store->pending_writes(), 0);
+  EXPECT_EQ(store->counts().pending_writes, 0);
   EXPECT_EQ(Checkpoint(*store, 1, 0), "before");
   EXPECT_EQ(Checkpoint(*store, 1, 1), "after");
 }
@@ -380,8 +381,8 @@ TEST_F(StoreTest, WritesAreCommittedInGroups) {
     store->RecordCheckpoint(1, point, 0, [] { return "r"; });
   }
   ASSERT_OK(store->Flush());
-  EXPECT_EQ(store->commits(), 1);
-  EXPECT_EQ(store->checkpoints_written(), 1000);
+  EXPECT_EQ(store->counts().commits, 1);
+  EXPECT_EQ(store->counts().checkpoints_written, 1000);
 }
 
 TEST_F(StoreTest, OnlyTheLastCheckpointOfAGroupIsWritten) {
@@ -390,7 +391,7 @@ TEST_F(StoreTest, OnlyTheLastCheckpointOfAGroupIsWritten) {
     store->RecordCheckpoint(1, 0, 0, [i] { return std::to_string(i); });
   }
   ASSERT_OK(store->Flush());
-  EXPECT_EQ(store->checkpoints_written(), 1);
+  EXPECT_EQ(store->counts().checkpoints_written, 1);
   EXPECT_EQ(Checkpoint(*store, 1, 0), "9");
 }
 
@@ -402,19 +403,19 @@ TEST_F(StoreTest, ConcurrentCommitsShareTheDisksTime) {
   }
   for (std::thread& thread : threads) thread.join();
   for (int i = 0; i < 64; ++i) EXPECT_TRUE(Find(*store, "job-" + std::to_string(i)));
-  EXPECT_LE(store->commits(), 64);
+  EXPECT_LE(store->counts().commits, 64);
 }
 
 TEST_F(StoreTest, CheckpointsOfAFinishedPointAreNeitherWrittenNorKept) {
   const auto store = Open({.delay = kNever});
   store->RecordCheckpoint(1, 0, 0, [] { return "r"; });
   ASSERT_OK(store->Flush());
-  EXPECT_EQ(store->checkpoints_written(), 1);
+  EXPECT_EQ(store->counts().checkpoints_written, 1);
   store->RecordCheckpoint(1, 0, 0, [] { return "r"; });
   store->RecordCheckpoint(1, 5, 0, [] { return "other"; });
   store->RecordResult(1, {0, 8, "result"});
   ASSERT_OK(store->Flush());
-  EXPECT_EQ(store->checkpoints_written(), 2);
+  EXPECT_EQ(store->counts().checkpoints_written, 2);
   EXPECT_FALSE(Checkpoint(*store, 1, 0));
   EXPECT_EQ(Checkpoint(*store, 1, 5), "other");
 }
@@ -465,15 +466,6 @@ TEST_F(StoreTest, RecordsAreRetriedUntilTheDiskWorks) {
   EXPECT_EQ(Checkpoint(*store, 1, 0), "kept");
 }
 
-// A transaction that takes long does not mean that the disk hangs.
-TEST_F(StoreTest, ALongTransactionDoesNotCountAsAHangingDisk) {
-  const auto store = *Store::Open(folder_.File("store"), {.stall = std::chrono::milliseconds(0)});
-  EXPECT_OK(store->Commit([&](Database&) {
-    EXPECT_FALSE(store->stalled());
-    return absl::OkStatus();
-  }));
-}
-
 TEST_F(StoreTest, AHangingDiskRejectsRequestsAndServesReads) {
   HangingDisk disk;
   const auto store = *Store::Open(folder_.File("store"),
@@ -490,18 +482,45 @@ TEST_F(StoreTest, AHangingDiskRejectsRequestsAndServesReads) {
     run = true;
     return absl::OkStatus();
   };
-  bool told = false;
-  const absl::Status refused =
-      store->Commit(change, [&](const absl::Status& done) { told = !done.ok(); });
-  EXPECT_THAT(refused, StatusIs(absl::StatusCode::kUnavailable));
-  EXPECT_TRUE(told);
+  EXPECT_THAT(store->Commit(change), StatusIs(absl::StatusCode::kUnavailable));
   EXPECT_FALSE(run);
-  EXPECT_OK(store->Read([](Database& database) { return CountJobs(database).status(); }));
+  EXPECT_OK(
+      store->Read([](Database& database) { return CountJobsByPrincipal(database).status(); }));
   disk.Resume();
   hanging.join();
   // The store accepts changes again when its thread has seen the end of the disk call.
   AwaitThat([&] { return store->Commit(change).ok(); });
   EXPECT_TRUE(run);
+}
+
+// A server that stops has a deadline.
+TEST_F(StoreTest, AFlushDoesNotWaitForAHangingDisk) {
+  HangingDisk disk;
+  const auto store = *Store::Open(folder_.File("store"),
+                                  {.stall = std::chrono::milliseconds(50), .vfs = disk.vfs()});
+  disk.Hang();
+  store->RecordSoon(WriteSomething);
+  disk.AwaitHanging();
+  EXPECT_THAT(store->Flush(), StatusIs(absl::StatusCode::kUnavailable));
+  disk.Resume();
+  AwaitThat([&] { return store->Flush().ok(); });
+}
+
+// Closing waits for the calls that read.
+TEST_F(StoreTest, EachReaderGetsAConnectionInTurn) {
+  const auto store = Open({.readers = 2});
+  std::atomic<int> read = 0;
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 16; ++i) {
+    threads.emplace_back([&] {
+      EXPECT_OK(store->Read([](Database& database) {
+        return database.Integer("SELECT count(*) FROM jobs").status();
+      }));
+      ++read;
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(read, 16);
 }
 
 TEST_F(StoreTest, JobsAreReadOneByOneUntilTheReaderStops) {
