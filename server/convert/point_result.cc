@@ -1,5 +1,7 @@
 #include "server/convert/point_result.h"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -7,10 +9,15 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "google/protobuf/io/gzip_stream.h"
+#include "google/protobuf/io/zero_copy_stream_impl_lite.h"
 #include "server/convert/spec.h"
 
 namespace ballpiston::server {
 namespace {
+
+using google::protobuf::io::GzipInputStream;
+using google::protobuf::io::GzipOutputStream;
 
 bool Exists(const std::optional<double>& value) { return value && std::isfinite(*value); }
 
@@ -149,6 +156,31 @@ absl::StatusOr<v1::PointResult> ResultFromBytes(const std::string& bytes) {
   v1::PointResult result;
   if (result.ParseFromString(bytes)) return result;
   return absl::DataLossError("a stored result cannot be read");
+}
+
+std::string DetailsBytes(const v1::PointResult& details) {
+  std::string bytes;
+  if (details.ByteSizeLong() == 0) return bytes;
+  google::protobuf::io::StringOutputStream stream(&bytes);
+  GzipOutputStream::Options options;
+  options.format = GzipOutputStream::ZLIB;
+  options.compression_level = Z_BEST_SPEED;
+  GzipOutputStream compressed(&stream, options);
+  details.SerializeToZeroCopyStream(&compressed);
+  compressed.Close();
+  return bytes;
+}
+
+// Also checks the sum that ends the compressed bytes.
+absl::StatusOr<v1::PointResult> DetailsFromBytes(const std::string& bytes) {
+  v1::PointResult details;
+  if (bytes.empty()) return details;
+  google::protobuf::io::ArrayInputStream stream(bytes.data(), static_cast<int>(bytes.size()));
+  GzipInputStream plain(&stream, GzipInputStream::ZLIB);
+  if (details.ParseFromZeroCopyStream(&plain) && plain.ZlibErrorCode() == Z_STREAM_END) {
+    return details;
+  }
+  return absl::DataLossError("the stored details of a result cannot be read");
 }
 
 }  // namespace ballpiston::server

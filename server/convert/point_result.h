@@ -34,7 +34,12 @@ v1::PointResult WithDetails(v1::PointResult result, const v1::PointResult& detai
 // is empty.
 Estimate FirstEstimateOf(const v1::PointResult& result);
 
-// A stored result, or the stored details of one. DATA_LOSS if it cannot be read.
+// A stored result. DATA_LOSS if it cannot be read.
 absl::StatusOr<v1::PointResult> ResultFromBytes(const std::string& bytes);
+
+// The stored details: compressed, because the counts of histograms take eight bytes each and are
+// small. Empty if there are none.
+std::string DetailsBytes(const v1::PointResult& details);
+absl::StatusOr<v1::PointResult> DetailsFromBytes(const std::string& bytes);  // DATA_LOSS
 
 }  // namespace ballpiston::server

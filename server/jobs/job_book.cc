@@ -649,7 +649,7 @@ absl::StatusOr<ResultsPage> JobBook::Results(const Principal& caller, const std:
     absl::StatusOr<v1::PointResult> result = ResultFromBytes(row.result);
     parsed = result.status();
     if (!parsed.ok()) return false;
-    const absl::StatusOr<v1::PointResult> details = ResultFromBytes(row.details);
+    const absl::StatusOr<v1::PointResult> details = DetailsFromBytes(row.details);
     parsed = details.status();
     if (!parsed.ok()) return false;
     v1::PointResult message = WithDetails(*std::move(result), *details, *experiment);

@@ -167,7 +167,7 @@ void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
   const PointSummary summary = experiment.Summarize(merged);
   PointRow row = {static_cast<int64_t>(point), static_cast<double>(summary.samples),
                   DeterministicBytes(ResultOf(point, experiment, summary)),
-                  DeterministicBytes(DetailsOf(summary, chunk_digests))};
+                  DetailsBytes(DetailsOf(summary, chunk_digests))};
   row.has_checkpoint = resumed_ || experiment.plan().samples() > 0;
   auto told = std::make_shared<const std::string>(row.result);
   job_->AddBytes(static_cast<int64_t>(row.result.size() + row.details.size()));

@@ -105,7 +105,7 @@ PointRow ModelLadder::Serve(const EnsembleSpec& spec) {
   const auto& experiment = *std::get<std::unique_ptr<const PointExperiment>>(opened);
   const PointSummary summary = experiment.Summarize(BlockResult());
   PointRow row = {.result = DeterministicBytes(ResultOf(0, experiment, summary)),
-                  .details = DeterministicBytes(DetailsOf(summary)),
+                  .details = DetailsBytes(DetailsOf(summary)),
                   .has_checkpoint = false};
   const auto told = std::make_shared<const std::string>(row.result);
   ThreadSeconds();

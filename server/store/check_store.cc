@@ -178,7 +178,7 @@ class StoreCheck {
         [this](const Query& row) {
           const absl::StatusOr<v1::PointResult> result = ResultFromBytes(row.Bytes(2));
           absl::Status status = result.status();
-          status.Update(ResultFromBytes(row.Bytes(3)).status());
+          status.Update(DetailsFromBytes(row.Bytes(3)).status());
           if (status.ok() && result->index() != row.Integer(1)) {
             status = absl::DataLossError(absl::StrCat("is of point ", result->index()));
           }

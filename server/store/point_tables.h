@@ -33,8 +33,9 @@ absl::StatusOr<std::vector<std::string>> ReadChunks(Database& database, int64_t 
 struct PointRow {
   int64_t point = 0;
   double samples = 0;
-  std::string result;          // serialized v1::PointResult without the details
-  std::string details = {};    // the same of the details; empty if there are none or not read
+  std::string result;  // serialized v1::PointResult without the details
+  std::string details =
+      {};  // the same of the details, compressed; empty if there are none or not read
   bool has_checkpoint = true;  // may have a checkpoint or chunks
 };
 

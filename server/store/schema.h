@@ -5,7 +5,7 @@
 //   checkpoints  (job, point) -> storage.Checkpoint, of unfinished points of active jobs
 //   chunks    (job, point, chunk) -> storage.Chunk, of chunks that wait for an earlier one
 //   results   (job, point) -> v1.PointResult without its details, of finished points
-//   details   (job, point) -> v1.PointResult, the details of those that have any
+//   details   (job, point) -> v1.PointResult, compressed: the details of those that have any
 //   dropped   deleted and expired jobs whose results are still being removed (sweeper.h)
 //   server    one row: a random name of this store, which is part of the names of its cluster jobs
 //   pilots    the limit's error that pilot runs measured, by place and engine

@@ -20,6 +20,8 @@ void CheckShortfall(const v1::PointResult& result, const std::string& bytes) {
 }
 
 void CheckStoredResult(const std::string& bytes) {
+  const absl::StatusOr<v1::PointResult> details = server::DetailsFromBytes(bytes);
+  Require(details.ok() || absl::IsDataLoss(details.status()), "damage of details is DATA_LOSS");
   const absl::StatusOr<v1::PointResult> result = server::ResultFromBytes(bytes);
   if (!result.ok()) return Require(absl::IsDataLoss(result.status()), "damage is DATA_LOSS");
   const std::string stored = server::DeterministicBytes(*result);

@@ -360,14 +360,12 @@ std::string RecordEndedJob(Store& store, uint64_t seed, int points) {
   const auto inserted = std::make_shared<JobRecord>(record);
   store.Record([inserted](Database& database) { return InsertJob(database, *inserted); });
   EXPECT_OK(store.Flush());
-  v1::PointResult details;
-  details.add_histograms()->mutable_counts()->Resize(2500, 1);
+  const std::string details = LargeDetails(2500);
   for (int point = 0; point < points; ++point) {
     v1::PointResult result;
     result.set_index(point);
-    store.RecordResult(inserted->sequence, {.point = point,
-                                            .result = DeterministicBytes(result),
-                                            .details = DeterministicBytes(details)});
+    store.RecordResult(inserted->sequence,
+                       {.point = point, .result = DeterministicBytes(result), .details = details});
   }
   JobEnd end;
   end.time = absl::Now();

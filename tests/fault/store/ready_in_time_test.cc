@@ -9,7 +9,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "gtest/gtest.h"
-#include "server/convert/deterministic_bytes.h"
 #include "server/convert/fold_record.h"
 #include "server/convert/spec.h"
 #include "server/jobs/job_book.h"
@@ -33,13 +32,6 @@ constexpr double kPermittedSeconds = 2;
 
 double SecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-std::string DetailsWithHistogram() {
-  v1::PointResult details;
-  auto* histogram = details.add_histograms();
-  for (int i = 0; i < 200; ++i) histogram->add_counts(1000 + i);
-  return DeterministicBytes(details);
 }
 
 JobRecord NewJob(int number) {
@@ -111,7 +103,7 @@ class ReadyInTime : public testing::Test {
 };
 
 TEST_F(ReadyInTime, WithAHundredThousandEndedJobs) {
-  const std::string result = DetailsWithHistogram();
+  const std::string result = LargeDetails(200);
   Fill(File(), [&](Database& database) {
     for (int i = 0; i < kEndedJobs; ++i) {
       if (const absl::Status added = AddEnded(database, i, result); !added.ok()) return added;

@@ -79,13 +79,10 @@ class YearTest : public testing::Test {
 
   // With 1.5 kB of details: a histogram of 190 bins.
   static PointRow Row(int64_t point) {
-    v1::PointResult details;
-    auto* histogram = details.add_histograms();
-    for (int i = 0; i < 190; ++i) histogram->add_counts(1000 + i);
     v1::PointResult result;
     result.set_index(static_cast<int32_t>(point));
     result.set_reason(std::string(200, 'r'));
-    return {point, 1e6, DeterministicBytes(result), DeterministicBytes(details), false};
+    return {point, 1e6, DeterministicBytes(result), LargeDetails(190), false};
   }
 
   void AddJob(absl::Time end) {

@@ -13,6 +13,7 @@
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "gtest/gtest.h"
+#include "server/convert/deterministic_bytes.h"
 #include "server/convert/errors.h"
 #include "server/convert/fold_record.h"
 #include "server/convert/point_result.h"
@@ -557,6 +558,25 @@ TEST(PointResult, ExpectedProbabilitiesAreComputedWhenRead) {
   }
   EXPECT_EQ(result.histograms(0).counts(17), 3);
   EXPECT_NEAR(sum, 1, 1e-12);  // rounding of a thousand summands
+}
+
+// A count takes a byte or two in the store.
+TEST(PointResult, StoredDetailsAreSmallAndTheirDamageIsNoticed) {
+  v1::PointResult details;
+  for (int i = 0; i < 2000; ++i) {
+    if (i % 1000 == 0) details.add_histograms();
+    details.mutable_histograms(i / 1000)->add_counts(500 + i * 37 % 101);
+  }
+  const std::string bytes = DetailsBytes(details);
+  EXPECT_LT(bytes.size(), 2 * 2000u);
+  EXPECT_EQ(DeterministicBytes(*DetailsFromBytes(bytes)), DeterministicBytes(details));
+  EXPECT_TRUE(DetailsFromBytes("")->histograms().empty());
+  for (size_t i = 0; i < bytes.size(); i += 50) {
+    std::string damaged = bytes;
+    damaged[i] = static_cast<char>(damaged[i] ^ 1);
+    EXPECT_TRUE(absl::IsDataLoss(DetailsFromBytes(damaged).status())) << i;
+  }
+  EXPECT_TRUE(absl::IsDataLoss(DetailsFromBytes(bytes.substr(0, bytes.size() / 2)).status()));
 }
 
 // The model's error is relative in an answer and absolute in a result. Only the first estimate has
