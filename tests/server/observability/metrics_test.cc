@@ -115,7 +115,7 @@ TEST_F(MetricsTest, AHealthWatchEndedByItsClientIsNotLogged) {
   EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::Not(HasSubstr("call failed")));
 }
 
-TEST_F(MetricsTest, MethodsAndReasonsAreListedBeforeTheFirst) {
+TEST_F(MetricsTest, MethodsAndReasonsAreListedBeforeTheFirstCall) {
   Start();
   EXPECT_THAT(Address(), StartsWith("127.0.0.1:"));  // the HTTP server accepts no names
   EXPECT_THAT(StartError({.metrics_listen = Address()}),
