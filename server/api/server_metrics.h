@@ -1,5 +1,6 @@
 // The server's numbers as metric families of Prometheus: base units, totals that only grow, no
-// job's id in a label. Only the metrics of usage name principals, at most kMostPrincipals.
+// job's id in a label. Only the metrics of stored jobs have principals as labels, at most
+// kMostPrincipals.
 //
 //   grpc_server_*   calls: the names and labels that other gRPC servers use; call_observer.h
 //   ballpiston_*    everything else

@@ -44,7 +44,7 @@ constexpr int64_t kMostTransferMib = int64_t{1} << 20;
 constexpr int64_t kMostSlurmMinutes = 60 * 24 * 365;
 constexpr int64_t kMostSlurmTasks = 1'000'000;
 
-// What the flags set beside the options of the server.
+// Values of flags that are converted after all flags were read.
 struct Words {
   std::string config;
   std::string executor = "threads";
