@@ -22,8 +22,8 @@ namespace ballpiston::server {
 
 inline constexpr size_t kMostPrincipals = 1000;
 
-// Does not wait for the disk and holds no lock that a worker needs. `certificate_expiry`: empty
-// without TLS.
+// Reads the store, but does not wait for writes. Holds no lock that a worker needs.
+// `certificate_expiry`: empty without TLS.
 std::vector<prometheus::MetricFamily> ServerMetrics(const ServiceContext& service,
                                                     std::optional<absl::Time> certificate_expiry);
 

@@ -7,7 +7,8 @@
 namespace ballpiston::server {
 
 // The totals and the numbers of every principal. Without the fields that only GetServerStatus adds:
-// rates, limits and the caller. Does not wait for the disk and holds no lock that a worker needs.
+// rates, limits and the caller. Reads the store, but does not wait for writes. Holds no lock that a
+// worker needs.
 v1::ServerStatus StatusOf(const ServiceContext& service);
 
 }  // namespace ballpiston::server
