@@ -55,7 +55,7 @@ std::map<std::string, double> Samples(const std::string& page) {
   return samples;
 }
 
-// Each test has several expectations: the HTTP server of each takes up to 2 s to stop.
+// Each test has several expectations, because the HTTP server of each test takes up to 2 s to stop.
 class MetricsTest : public testing::Test {
  protected:
   RunningServer& Start(bool held = false) {
