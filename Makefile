@@ -110,7 +110,7 @@ fuzz: ## Run libFuzzer on every parser of requests, stored bytes and answers; FU
 
 simulation: build/release/.$(PRESETS_PREFIX)tests ## Simulate the server in random worlds for SIMULATION_SECONDS, by default an hour
 	@cmake --build build/release --target simulation_test
-	@BALLPISTON_SIMULATION_SECONDS=$(SIMULATION_SECONDS) build/release/bin/simulation_test --gtest_filter='*AnyWorld'
+	@BALLPISTON_SIMULATION_SECONDS=$(SIMULATION_SECONDS) build/release/bin/simulation_test --gtest_filter='*EveryWorld'
 
 deb: ## Build the Debian packages of the last commit in build/deb, and check them with lintian (5 minutes)
 	@scripts/setup.sh $(DEB_PACKAGES)

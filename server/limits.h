@@ -19,7 +19,7 @@ struct Limits {
   int64_t max_calls_per_principal = 1'024;
   int64_t max_call_bytes_per_principal = int64_t{128} << 20;
   int64_t max_message_bytes = int64_t{4} << 20;  // of a request
-  int64_t max_transfer_mib = 512;                // of all requests that are being received
+  int64_t max_transfer_mib = 512;  // of connections and of requests that are being received
   // MiB, upper bound, of all points that the server computes at a time. The program's default is a
   // share of the machine's memory.
   int64_t max_memory_mib = 0;

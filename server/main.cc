@@ -58,7 +58,7 @@ void UseAllDescriptors() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-// Of gRPC's messages the log has only this one.
+// The only message of gRPC that the log contains.
 void LogEndOfListening(gpr_log_func_args* message) {
   if (!absl::StartsWith(message->message, "Failed accept")) return;
   LogError(

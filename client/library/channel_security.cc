@@ -95,8 +95,8 @@ absl::StatusOr<std::string> Token(const ChannelSecurity& security) {
       " must be one word of 1 to ", kLongestToken, " printable characters"));
 }
 
-// Adds the token to calls to a loopback address, without encryption. Without a token of the user's
-// choice it is read for each call, because a server that starts again makes another.
+// Adds the token to calls to a loopback address, without encryption. If the user gives no token,
+// the own server's token is read for each call, because the server makes another at each start.
 class LoopbackToken : public grpc::MetadataCredentialsPlugin {
  public:
   LoopbackToken(std::string address, std::string token)

@@ -5,8 +5,8 @@
 //   ca               TLS; the certificate authorities in this file verify the server
 //   token            sent with every call, over TLS or to a loopback address
 //
-// To a loopback address without a token the client sends that of its own user's server, if one
-// listens there (own_token.h).
+// Without TLS and without a token, the client sends to a loopback address the token of its own
+// user's server, if one listens there (own_token.h).
 #pragma once
 
 #include <grpcpp/grpcpp.h>

@@ -20,11 +20,11 @@ inline constexpr size_t kMaxSocketPath = 100;
 // not an address.
 absl::StatusOr<std::string> GrpcTarget(absl::string_view address);
 
-// The address with 127.0.0.1 for the name localhost, which could also mean ::1: there another
-// user's server may listen.
+// The address with 127.0.0.1 instead of the name localhost. The name could also mean ::1, where
+// another user's server may listen.
 std::string LiteralAddress(absl::string_view address);
 
-// Whether only programs of this machine can be at the address: host 127.x.x.x or [::1].
+// Whether only programs of this machine can listen at the address: host 127.x.x.x or [::1].
 bool IsLoopback(absl::string_view address);
 
 }  // namespace ballpiston::client

@@ -25,8 +25,8 @@ EventOf<Real> EventFlow<Real>::Step() {
   Real duration = wall_first ? time_to_wall_ : time_to_piston_wall_;
   const Real approach = state_.ball_speed * state_.direction.x() - state_.piston_velocity;
   const Real gap = std::max(state_.piston - state_.position.x(), Real(0));
-  // <= includes a contact at the moment when the piston turns: the piston may never come nearer to
-  // a ball at rest.
+  // <= includes a collision at the moment when the piston turns: the piston may never come nearer
+  // to a ball at rest.
   if (approach > 0 && gap <= approach * duration) {
     duration = gap / approach;
     Advance(duration);

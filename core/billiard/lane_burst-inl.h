@@ -35,7 +35,7 @@ constexpr size_t kLag = 2;
 constexpr size_t kMostFlights = 12;  // of a lane in a burst
 constexpr size_t kMostSteps = kVectors * kMostFlights;
 
-// Rounding in the lanes must not hide a contact; a false alarm costs little.
+// Rounding in the lanes must not hide a collision; a false alarm costs little.
 template <typename T>
 inline constexpr double kSlack = sizeof(T) == 8 ? 1e-11 : 1e-3;
 

@@ -14,7 +14,7 @@ class InOrder {
   // Keeps a result until its turn. Drops a second one with the same key.
   void Add(const Key& key, Result result) { early_.emplace(key, std::move(result)); }
 
-  // The result with this key, the lowest that is still to leave; empty if it has not arrived.
+  // The result with this key, which is the next one to leave; empty if it has not arrived.
   std::optional<Result> Take(const Key& key) {
     if (!early_.contains(key)) return std::nullopt;
     return std::move(early_.extract(key).mapped());

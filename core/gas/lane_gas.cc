@@ -223,8 +223,8 @@ void LaneGas::Order(const Replica& replica, uint32_t ball) {
   orders_are_new_ = true;
 }
 
-// The piston in this direction has changed. If the ball does not come there, its contact is the
-// same.
+// The piston in this direction has changed. If the ball does not come there, its next collision is
+// the same.
 void LaneGas::OrderVisitor(const Replica& replica, uint32_t ball, Direction direction) {
   if (Has(visits_[ball], direction)) Order(replica, ball);
 }

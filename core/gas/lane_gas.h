@@ -1,10 +1,10 @@
 // Many gases in vector lanes. Between its exchanges a ball's path does not depend on the pistons.
 // In each time window all balls of a gas fly ahead, many at once (lane_visits.h). Every visit of a
 // ball to a piston's reach is compared with the piston's position, a triangle wave in time. The
-// first visit in which they meet is the ball's next contact. A queue holds the window's contacts in
-// the order of time. An exchange changes the path of its ball and the motion of its piston. So this
-// ball flies the rest of the window again; so does the other ball of the piston, if it comes within
-// the piston's reach. All other contacts stay valid.
+// first visit in which they meet has the ball's next collision. A queue holds the window's
+// collisions in the order of time. An exchange changes the path of its ball and the motion of its
+// piston. So this ball flies the rest of the window again; so does the other ball of the piston, if
+// it comes within the piston's reach. All other collisions stay valid.
 //
 // Replicas are independent gases of one geometry. Each goes one step, to its next event or to its
 // next window; then the balls that have to fly in all replicas fly together. So small gases fill
@@ -46,7 +46,7 @@ class LaneGas : public GasRun {
   struct Replica {
     ThermalWalls walls;
     GasMeter* meter;
-    EventQueue queue;  // the balls' contacts in the window, then arrivals at the thermal walls
+    EventQueue queue;  // the balls' collisions in the window, then arrivals at the thermal walls
     uint32_t first_ball;
     uint32_t first_piston;
     double origin = 0;
@@ -97,7 +97,7 @@ class LaneGas : public GasRun {
   // exchange in the window is. `to_` is the ball before the flight in which the window ends.
   std::vector<FlyingBall> from_, to_;
   std::vector<BallCollision> contacts_;  // by ball, its next one in the window
-  std::vector<Visits> visits_;           // by ball, in the window until its contact
+  std::vector<Visits> visits_;           // by ball, in the window until its collision
   double time_ = 0;                      // to which all replicas go
   std::vector<uint32_t> active_;         // replicas that have not come there
   std::vector<FlightOrder> orders_;      // of balls that fly now

@@ -1,4 +1,4 @@
-// Balls fly ahead in vector lanes and find their first contact with a piston, as long as the
+// Balls fly ahead in vector lanes and find their first collision with a piston, as long as the
 // pistons keep their present motion.
 #pragma once
 
@@ -91,7 +91,7 @@ struct FlightOrder {
 };
 
 // Positions up to this distance outside a piston's reach, in cells, count as inside: rounding must
-// not hide a contact.
+// not hide a collision.
 inline constexpr double kReachSlack = 1e-11;
 
 // A ball anywhere in the cell; it may be on a wall, or beyond one by rounding.

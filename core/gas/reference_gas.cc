@@ -192,8 +192,8 @@ void ReferenceGas::FindContact(Ball& ball, int64_t number, Direction direction) 
   ball.contact_times[static_cast<size_t>(direction)] = ContactTime(ball, direction, piston);
 }
 
-// The time of a contact before ball or piston hits a wall. A contact at the moment when the piston
-// turns counts, because the piston may never come nearer to a ball at rest.
+// The time of a collision before ball or piston hits a wall. A collision at the moment when the
+// piston turns counts, because the piston may never come nearer to a ball at rest.
 double ReferenceGas::ContactTime(const Ball& ball, Direction direction,
                                  const Piston& piston) const {
   const double sign = SignOf(direction), now = std::max(ball.time, piston.time);

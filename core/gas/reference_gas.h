@@ -90,7 +90,7 @@ class ReferenceGas {
   void Aim(Ball& ball) const;
   void TimePiston(Piston& piston) const;
   double ContactTime(const Ball& ball, Direction direction, const Piston& piston) const;
-  void LookAround(int64_t ball);  // for its next contacts
+  void LookAround(int64_t ball);  // for its next collisions
   void LookAgain(int64_t ball, Direction direction);
   void FindContact(Ball& ball, int64_t number, Direction direction) const;
   void Schedule(int64_t ball);

@@ -47,7 +47,7 @@ void AddWork(const ServiceContext& service, v1::ServerStatus& status) {
   if (service.slurm != nullptr) *status.mutable_slurm() = SlurmMessage(service.slurm->Status());
 }
 
-// And the jobs of all together.
+// Sets the numbers of each principal, and the totals of all principals.
 void AddPrincipals(const ServiceContext& service, v1::ServerStatus& status) {
   std::map<std::string, int64_t> streams = service.streams.ByPrincipal();
   for (const auto& [name, jobs] : service.book.JobsByPrincipal()) {

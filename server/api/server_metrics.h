@@ -1,5 +1,6 @@
 // The server's numbers as metric families of Prometheus: base units, totals that only grow, no
-// job's id in a label. Only the metrics of usage name principals, at most kMostPrincipals.
+// job's id in a label. Only the metrics of stored jobs have principals as labels, at most
+// kMostPrincipals.
 //
 //   grpc_server_*   calls: the names and labels that other gRPC servers use; call_observer.h
 //   ballpiston_*    everything else
@@ -21,8 +22,8 @@ namespace ballpiston::server {
 
 inline constexpr size_t kMostPrincipals = 1000;
 
-// Does not wait for the disk and holds no lock that a worker needs. `certificate_expiry`: empty
-// without TLS.
+// Reads the store, but does not wait for writes. Holds no lock that a worker needs.
+// `certificate_expiry`: empty without TLS.
 std::vector<prometheus::MetricFamily> ServerMetrics(const ServiceContext& service,
                                                     std::optional<absl::Time> certificate_expiry);
 

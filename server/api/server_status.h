@@ -6,8 +6,9 @@
 
 namespace ballpiston::server {
 
-// Of all principals, and without what only GetServerStatus adds: stored jobs, limits, rates and the
-// caller. Does not wait for the disk and holds no lock that a worker needs.
+// The totals and the numbers of every principal. Without the fields that only GetServerStatus adds:
+// rates, limits and the caller. Reads the store, but does not wait for writes. Holds no lock that a
+// worker needs.
 v1::ServerStatus StatusOf(const ServiceContext& service);
 
 }  // namespace ballpiston::server

@@ -75,8 +75,8 @@ class Watch {
   bool IsBehind() const;
   Clock::duration SnapshotInterval() const;
 
-  // Adds to the message the next finished points: of `active`, or if it is null of the store.
-  // False: there are none.
+  // Adds the next finished points to the message: those of `active`, or those of the store if
+  // `active` is null. False: there are none.
   absl::StatusOr<bool> AddFinishedPoints(const Job* active);
   void AddUnfinishedPoints(v1::StatisticsSnapshot& snapshot);
 
@@ -97,9 +97,9 @@ class Watch {
   std::string told_progress_;
   JobState told_as_ = v1::EnsembleJob::STATE_UNSPECIFIED;  // the last state that was sent
   bool has_told_end_ = false;
-  uint64_t told_state_ = 0;  // numbers of changes
+  uint64_t told_state_ = 0;  // numbers of the last changes that were sent
   uint64_t told_ = 0;
-  int64_t told_finished_ = 0;  // the number of a point
+  int64_t told_finished_ = 0;  // number of the last finished point that was sent
   Clock::time_point next_snapshot_;
   Clock::time_point next_heartbeat_;
 };

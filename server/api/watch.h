@@ -44,7 +44,7 @@ class WatchReader {
   virtual const Principal& caller() const = 0;
   // OK if the watch may go on. Called before each message and after each wait.
   virtual absl::Status Proceed() = 0;
-  // Proceed has something to do then.
+  // The time of the next check in Proceed.
   virtual std::chrono::steady_clock::time_point next_check() const = 0;
   virtual size_t watches() const = 0;  // of all readers, now
   // Waits until the reader takes the message. False: the reader is gone.

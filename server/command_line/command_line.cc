@@ -44,7 +44,7 @@ constexpr int64_t kMostTransferMib = int64_t{1} << 20;
 constexpr int64_t kMostSlurmMinutes = 60 * 24 * 365;
 constexpr int64_t kMostSlurmTasks = 1'000'000;
 
-// What the flags set beside the options of the server.
+// Values of flags that are converted after all flags were read.
 struct Words {
   std::string config;
   std::string executor = "threads";
@@ -145,7 +145,7 @@ void AddDoorFlags(CLI::App& app, DoorOptions& door) {
           "PEM file: the certificate's private key, which other users cannot read");
   AddText(app, "--access-file", door.access_file, "FILE",
           "tokens of the clients, one line each: token sha256:HEX PRINCIPAL ROLE [EXPIRES]; ROLE\n"
-          "is read, submit or admin. On the loopback this server's user needs none");
+          "is read, submit or admin. Without TLS this server's user needs none");
 }
 
 void AddSlurmFlags(CLI::App& app, Words& words) {

@@ -53,8 +53,9 @@ class Door {
   // For gRPC's port. This object must outlive the server that uses the credentials.
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
 
-  // Lets calls in, which wait for it. Makes the own token first, if the server listens on the
-  // loopback without TLS; if it cannot be written, logs a warning. `address` has the port in use.
+  // Calls that arrived earlier wait until this function lets them in. Makes the own token first, if
+  // the server listens on the loopback without TLS. Logs a warning if the token cannot be written.
+  // `address` has the port in use.
   void Open(const ListenAddress& address);
 
   // Removes the own token's file.

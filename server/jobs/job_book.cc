@@ -204,7 +204,7 @@ JobBook::JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
 
 JobBook::~JobBook() {
   Shutdown();
-  store_.Close();  // whose thread calls this book when a job's end is written
+  store_.Close();  // the store's thread calls this book when it has written a job's end
 }
 
 void JobBook::Shutdown() {

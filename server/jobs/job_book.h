@@ -6,8 +6,7 @@
 // before its row is committed, and until after its end is committed: an active row whose job is not
 // in the book has ended since it was read.
 //
-// Methods that write wait for the disk, so gRPC's own threads must not call them. Errors have
-// reasons (server/convert/errors.h). Thread-safe.
+// Methods that write wait for the disk. Errors have reasons (server/convert/errors.h). Thread-safe.
 #pragma once
 
 #include <atomic>

@@ -36,7 +36,7 @@ void Log(Severity severity, absl::string_view message, LogFields fields = {});
 inline void LogInfo(absl::string_view message) { Log(Severity::kInfo, message); }
 inline void LogError(absl::string_view message) { Log(Severity::kError, message); }
 
-// Applies to the whole process: less severe messages are not written, and with kNone nothing is.
+// Applies to the whole process: less severe messages are not written; with kNone none is.
 void SetLogLevel(Severity least);
 
 // The line without its time, with a newline. Messages and values may contain any bytes that a

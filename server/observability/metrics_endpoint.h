@@ -31,7 +31,8 @@ class MetricsEndpoint {
   // thread of the HTTP server calls `source` for each request, one thread at a time.
   //   INVALID_ARGUMENT     any other address
   //   FAILED_PRECONDITION  the server cannot listen at the address
-  // The destructor takes up to 2 s: the HTTP server looks that seldom whether it should stop.
+  // The destructor takes up to 2 s, because the HTTP server checks only every 2 s whether it should
+  // stop.
   static absl::StatusOr<std::unique_ptr<MetricsEndpoint>> Start(const std::string& address,
                                                                 Source source);
 

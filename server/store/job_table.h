@@ -9,7 +9,7 @@
 // FAILED. BeginJob, BeginCancellation and EndJob have the states in which they act in their
 // conditions, and no effect in others. The store runs all writes in one order: if a cancellation
 // and the end of a job come at the same time, one of them is first, and the first end is kept.
-// UNAVAILABLE: SQLite failed.
+// Errors of SQLite are those of sqlite.h.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // The SQL about pilot runs: the measured error of the limit at each place. Each function runs
-// inside the transaction of its caller. UNAVAILABLE: SQLite failed.
+// inside the transaction of its caller. Errors are those of sqlite.h.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // The SQL about computed data: checkpoints and chunks of unfinished points, results of finished
-// ones. Each function runs inside the transaction of its caller. UNAVAILABLE: SQLite failed.
+// ones. Each function runs inside the transaction of its caller. Errors are those of sqlite.h.
 #pragma once
 
 #include <cstdint>

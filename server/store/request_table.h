@@ -1,5 +1,5 @@
 // The SQL about requests: for each Create, the job that it made or returned. Each function runs
-// inside the transaction of its caller. UNAVAILABLE: SQLite failed.
+// inside the transaction of its caller. Errors are those of sqlite.h.
 #pragma once
 
 #include <cstdint>

@@ -27,7 +27,7 @@ absl::Status Stalled() {
   return absl::UnavailableError("store: the disk does not answer; retry later");
 }
 
-// What a thread waits for that has posted a write.
+// The outcome of a write. The thread that posted the write waits for it.
 class Outcome {
  public:
   void Tell(const absl::Status& status) {
@@ -491,7 +491,7 @@ void Store::SettleFailed(Batch batch, size_t first, const absl::Status& failure)
       again.push_back(std::move(write));
     }
   }
-  if (!has_failed && again.empty()) NoteHealth(absl::OkStatus());  // each fitted alone
+  if (!has_failed && again.empty()) NoteHealth(absl::OkStatus());  // every write fitted alone
   Requeue(std::move(again));
 }
 

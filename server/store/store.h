@@ -151,7 +151,7 @@ class Store {
     bool is_result = false;
     bool superseded = false;  // a checkpoint with a later one, or with the point's result, after it
     Clock::time_point due = {};
-    // Committed or refused, or a request that failed; else empty.
+    // Set when the write is committed or refused, or a request has failed.
     std::optional<absl::Status> outcome = {};
 
     bool is_checkpoint() const { return point >= 0 && !is_result; }
@@ -232,7 +232,7 @@ class Store {
   bool stop_waiting_ ABSL_GUARDED_BY(mutex_) = false;
   bool closing_ ABSL_GUARDED_BY(mutex_) = false;
   Counts counts_ ABSL_GUARDED_BY(mutex_);  // without the pending writes
-  // When to look for space to free; empty: all is free.
+  // When to free space next; empty: there is no space to free.
   std::optional<Clock::time_point> next_sweep_ ABSL_GUARDED_BY(mutex_) = Clock::time_point();
   bool sweep_advances_ ABSL_GUARDED_BY(mutex_) = false;    // the last step has freed some
   bool sweep_is_damaged_ ABSL_GUARDED_BY(mutex_) = false;  // until the next start

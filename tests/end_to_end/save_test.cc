@@ -35,7 +35,7 @@ TEST_F(Save, AResultInEachFormat) {
   EXPECT_THAT(Contents(File("a.npz")), StartsWith("PK"));
 }
 
-// As docs/answers.md verifies a file.
+// The commands with which docs/answers.md verifies a file.
 TEST_F(Save, AFilesQuestionGivesTheSamePointsOnAnotherServer) {
   {
     const TestServer server;

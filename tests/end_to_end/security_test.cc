@@ -147,7 +147,7 @@ TEST_F(Security, ErrorOfTlsToAPlainServerSaysSo) {
   EXPECT_THAT(List({}), ExitsWith(0));
 }
 
-TEST(UnixSocket, IsItsUsersAlone) {
+TEST(UnixSocket, OnlyItsUserCanOpenIt) {
   const TestServer server;
   EXPECT_EQ(ModeOf(server.folder().File("socket")) & 077u, 0u);
 }
@@ -178,7 +178,7 @@ std::vector<std::unique_ptr<server::Connection>> HalfOpen(const std::string& add
   return connections;
 }
 
-// With the descriptors that a login has by default the server could not accept so many.
+// With a login's default limit of descriptors the server could not accept so many connections.
 TEST_F(Security, AThousandHalfOpenConnectionsLeaveTheServerToOthers) {
   constexpr double kMiB = 64;
   NewToken("alice", "alice:read");

@@ -33,7 +33,7 @@ std::string Refusal(const Words& flags) {
 
 // ---- spelling ----
 
-// Those of --help, by group.
+// The flags of --help, by group.
 constexpr char kFlags[] =
     "listen data-dir workers watch-heartbeat-seconds idle-exit-seconds drain-seconds config "
     "tls-certificate tls-key access-file "

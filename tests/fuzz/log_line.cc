@@ -11,7 +11,7 @@ void RequireOneLine(const std::string& line) {
   Require(line.size() <= server::kMaxLogLine, "a line fits into a pipe");
   Require(!line.empty() && line.find('\n') == line.size() - 1, "it is one");
   const auto is_printable = [](char c) { return c >= ' ' && c <= '~'; };
-  Require(std::all_of(line.begin(), line.end() - 1, is_printable), "no control reaches a terminal");
+  Require(std::all_of(line.begin(), line.end() - 1, is_printable), "a line is printable ASCII");
 }
 
 // Repeats the text until a message with it must be cut.

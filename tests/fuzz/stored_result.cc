@@ -26,10 +26,11 @@ void CheckStoredResult(const std::string& bytes) {
   if (!result.ok()) return Require(absl::IsDataLoss(result.status()), "damage is DATA_LOSS");
   const std::string stored = server::DeterministicBytes(*result);
   const absl::StatusOr<v1::PointResult> again = server::ResultFromBytes(stored);
-  Require(again.ok() && server::DeterministicBytes(*again) == stored, "stored bytes come back");
+  Require(again.ok() && server::DeterministicBytes(*again) == stored,
+          "a stored result is read as it was written");
   CheckShortfall(*result, bytes);
   const v1::PointResult told = server::WithDetails({}, *result, kEquilibrium);
-  Require(told.histograms_size() == result->histograms_size(), "it can be told");
+  Require(told.histograms_size() == result->histograms_size(), "clients get every histogram");
 }
 
 const Registration kStoredResult({.name = "stored_result",

@@ -117,7 +117,7 @@ TEST(StartStop, StoppingDoesNotWaitForAnEndlessBlock) {
   EXPECT_EQ(gate.waiting(), 0);
 }
 
-// A stop that waited for more than the end of the time to drain would never end.
+// A server that waited for these clients beyond the time to drain would never stop.
 TEST(StartStop, HungClientsDoNotDelayAStop) {
   const LaboratoryFiles files;
   Gate gate;

@@ -19,12 +19,12 @@ constexpr uint64_t kFirstKeyedSeed = 1000;
 constexpr std::chrono::seconds kLongestRead(2);
 constexpr std::chrono::milliseconds kHeartbeat(2000), kSnapshot(200);
 
-// Of so many messages, the client of a watch leaves after one.
+// The probability that the client of a watch leaves when it gets a message.
 constexpr double kLeaves = 0.05;
 
 }  // namespace
 
-// A call to the present life.
+// A call to the server that runs now.
 class Client::Call {
  public:
   Call(ClientWorld& world, std::string what)
@@ -39,7 +39,7 @@ class Client::Call {
   explicit operator bool() const { return life_ != nullptr; }
   Life* operator->() const { return life_.get(); }
 
-  // False: the answer is not heard, or the call failed for a reason that is permitted.
+  // False: the server died before it answered, or the call failed for a permitted reason.
   bool Hears(const absl::Status& status) {
     if (life_->is_over()) return false;
     world_.tell(absl::StrCat(what_, " -> ", status.ok() ? "OK" : status.ToString()));

@@ -1,4 +1,4 @@
-// A client that asks at random and compares each answer with the expectations.
+// A client that calls the server at random and compares each answer with the expectations.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@
 
 namespace ballpiston::server {
 
-// What clients may do beyond creating and reading jobs.
+// What clients may do besides creating, reading, listing and pinning jobs.
 struct ClientHabits {
   bool cancels = true;
   bool deletes = true;
@@ -28,10 +28,10 @@ struct ClientWorld {
   Expectations& expectations;
   ClientHabits habits;
   std::function<std::shared_ptr<Life>()> life;  // null: no server
-  // Counts moments at which a call may fail: the disk fails, or the server ends.
+  // The number of times so far that calls could begin to fail: the disk fails, or the server stops.
   std::function<uint64_t()> troubles;
   std::function<bool()> is_in_trouble;
-  std::function<void(const std::string&)> tell;  // a line of the story
+  std::function<void(const std::string&)> tell;  // records an event, which a failure prints
 };
 
 class Client {
@@ -53,7 +53,7 @@ class Client {
  private:
   class Call;
   class Reader;
-  // A watch and those that it resumes.
+  // A watch and the watches that resume it.
   struct Chain {
     std::string token;
     std::vector<v1::PointResult> points;

@@ -18,7 +18,7 @@ class Cluster : public Executor {
 
   ExecutorTraits traits() const override { return {.local = false}; }
   void Start() override;
-  void Wake() override {}  // it looks from time to time
+  void Wake() override {}  // the machines ask for leases at random times
   bool HasTurn(int64_t) const override { return false; }
   void Shutdown() override;
 

@@ -17,7 +17,7 @@ namespace {
 
 using State = v1::EnsembleJob::State;
 
-// Of the mean of a uniform law. Some points of some 100 blocks reach it.
+// For the mean of a uniform law. Some points of about 100 blocks reach it.
 constexpr double kTolerance = 0.03;
 
 std::string Text(State state) { return v1::EnsembleJob::State_Name(state); }
@@ -33,7 +33,7 @@ v1::PointResult ResultOfAnUndisturbedRun(const Question& question, int point) {
   return ResultOf(index, *experiment, experiment->Summarize(computed.Merged()));
 }
 
-// Histograms and curves are left out, as watches do.
+// Without histograms and curves, which watches do not send.
 std::string BytesOf(v1::PointResult result) {
   result.clear_histograms();
   result.clear_curves();
@@ -74,7 +74,7 @@ void Expectations::Created(const std::map<std::string, KnownJob>& before, const 
   }
   const auto then = before.find(id);
   if (then != before.end() && then->second.is_deleted) {
-    throw Violation("deleted", id, "answers a request and is deleted");
+    throw Violation("deleted", id, "answers a request although it was deleted");
   }
   NoteState(id, job);
   if (key.empty()) return;
@@ -88,7 +88,7 @@ void Expectations::Created(const std::map<std::string, KnownJob>& before, const 
 
 void Expectations::Got(const KnownJob& before, const v1::EnsembleJob& job) {
   const std::string id = IdOfJob(job);
-  if (before.is_deleted) throw Violation("deleted", id, "is back");
+  if (before.is_deleted) throw Violation("deleted", id, "exists again");
   Saw(id, before, job.state());
   if (job.progress().points_done() < before.points_done) {
     throw Violation(
@@ -150,7 +150,7 @@ void Expectations::Listed(const std::map<std::string, KnownJob>& before,
   CheckKeys(found);
 }
 
-// However often a request with a key is retried, it has one job.
+// A request with a key has one job, however often it is retried.
 void Expectations::CheckKeys(const std::set<std::string>& listed) const {
   std::map<uint64_t, std::string> of_seed;
   for (const std::string& id : listed) {
@@ -206,12 +206,12 @@ void Expectations::Watched(const std::string& id, const std::vector<v1::PointRes
   for (const v1::PointResult& point : points) {
     CheckResult(id, question, point);
     if (!told.insert(point.index()).second) {
-      throw Violation("watch", id, absl::StrCat("point ", point.index(), " is told twice"));
+      throw Violation("watch", id, absl::StrCat("point ", point.index(), " was sent twice"));
     }
   }
   if (state == v1::EnsembleJob::SUCCEEDED && static_cast<int>(told.size()) != question.points) {
     throw Violation("watch", id,
-                    absl::StrCat(told.size(), " of ", question.points, " points are told"));
+                    absl::StrCat(told.size(), " of ", question.points, " points were sent"));
   }
 }
 

@@ -1,7 +1,7 @@
-// The reference model: what every call may answer, given what was asked and answered before.
+// The reference model: which answers a call may have, given the earlier calls and their answers.
 //
-// A call is judged by what was known when it began, because calls overlap and a call without an
-// answer may or may not have taken effect. Violations throw Violation.
+// An answer is compared with what was known when its call began, because calls overlap and a call
+// without an answer may or may not have taken effect. A wrong answer throws Violation.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct Question {
   int points = 1;
   int64_t blocks = 1;
   bool has_tolerance = false;  // then the points end before their last block
-  bool has_key = false;        // it is asked with one request_id alone, however often
+  bool has_key = false;        // all its requests have the same request_id
 };
 v1::EnsembleSpec SpecOf(const Question& question);
 
@@ -45,20 +45,20 @@ class Violation : public std::runtime_error {
 // What is known of a job. States are in the order of v1::EnsembleJob::State.
 struct KnownJob {
   Question question;
-  v1::EnsembleJob::State state = v1::EnsembleJob::QUEUED;  // the last that was answered
-  int points_done = 0;                                     // the most that were answered
+  v1::EnsembleJob::State state = v1::EnsembleJob::QUEUED;  // the last one that a call returned
+  int points_done = 0;                                     // the most that a call returned
   bool is_cancel_asked = false;
-  bool is_cancelled = false;  // and this was answered
+  bool is_cancelled = false;  // and the server acknowledged it
   bool is_delete_asked = false;
-  bool is_deleted = false;  // and this was answered
+  bool is_deleted = false;  // and the server acknowledged it
 };
 
 class Expectations {
  public:
-  // Of all jobs ever, deleted ones too.
+  // Of all jobs, including deleted ones.
   std::vector<std::string> Ids() const;
   const std::map<std::string, KnownJob>& all() const { return jobs_; }
-  // As it is now; a new one if the id is unknown.
+  // What is known now; a KnownJob without answers if the id is unknown.
   KnownJob Known(const std::string& id) const;
 
   // ---- answers of calls that began when `before` was known ----
@@ -77,16 +77,16 @@ class Expectations {
   void Refused(const std::string& id, const KnownJob& before, bool is_active);
   void Listed(const std::map<std::string, KnownJob>& before,
               const std::vector<v1::EnsembleJob>& jobs);
-  // A watch told this state.
+  // A watch sent this state.
   void Saw(const std::string& id, const KnownJob& before, v1::EnsembleJob::State state);
-  // All results that the job had.
+  // `results`: all that the job had when it was read.
   void Read(const std::string& id, const KnownJob& before,
             const std::vector<v1::PointResult>& results);
-  // Finished points and states of a watch, and of those that it resumes.
+  // The finished points that a watch and the watches that it resumes have sent, and the last state.
   void Watched(const std::string& id, const std::vector<v1::PointResult>& points,
                v1::EnsembleJob::State state);
 
-  // When nothing fails and everything has ended.
+  // For the last phase, in which nothing fails.
   void ExpectAllEnded() const;
 
  private:

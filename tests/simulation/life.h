@@ -21,18 +21,18 @@ namespace ballpiston::server {
 
 class Life {
  public:
-  // Reads the disk and goes on with the jobs that it finds. `has_cluster`: leases also go there.
+  // Opens the store on the disk and resumes its jobs. `has_cluster`: leases also go to a cluster.
   Life(Machine& machine, FaultDisk& disk, bool has_cluster);
   ~Life();  // stops like a server after SIGTERM
 
-  // Why the server could not start. Call other functions only if it is OK.
+  // Not OK: the reason why the server could not start. Then call no other function.
   const absl::Status& status() const { return status_; }
   Store& store() { return *store_; }
   JobBook& book() { return *book_; }
-  // Names this life in tokens of watches.
+  // The name of this server process in the resume tokens of watches.
   const std::string& name() const { return name_; }
 
-  // From now on nobody hears what this life says.
+  // From now on clients ignore the answers of this life.
   void Die() { is_over_ = true; }
   bool is_over() const { return is_over_; }
 

@@ -20,14 +20,15 @@ constexpr size_t kStackBytes = 512 << 10;
 // The simulation begins at this time.
 constexpr int64_t kStartSeconds = 1'700'000'000;
 
-// Another thread runs before so many of the locks are taken.
+// The probability that another thread runs before a thread takes a lock.
 constexpr double kPreemption = 0.1;
 
 Machine* current = nullptr;
 
 }  // namespace
 
-// The exceptions that a thread handles; the C++ runtime keeps them for each thread of the system.
+// The exceptions that a simulated thread handles. The C++ runtime keeps them for each thread of the
+// system, and all simulated threads share one.
 struct Exceptions {
   void* caught = nullptr;
   unsigned uncaught = 0;
@@ -60,10 +61,10 @@ struct Machine::Fiber {
   Stack stack;
   std::function<void()> run;
   State state = State::kReady;
-  const void* awaited = nullptr;  // these two if it waits
+  const void* awaited = nullptr;  // this and `until`: set while it waits
   std::optional<Clock::time_point> until = {};
   bool was_notified = false;  // by the end of the last wait
-  bool is_joined = false;     // nobody will look at it again
+  bool is_joined = false;     // no thread refers to it any more
   Exceptions exceptions = {};
 };
 
@@ -159,7 +160,7 @@ void Machine::Switch() {
   running_ = next;
   ExceptionsNow() = next != nullptr ? next->exceptions : Exceptions();
   swapcontext(&self->context, next != nullptr ? &next->context : &outside_);
-  // Now this thread runs again. Whoever ran before may have ended.
+  // Now this thread runs again. The thread that ran before it may have ended.
   std::erase_if(fibers_, [](const auto& fiber) {
     return fiber->state == Fiber::State::kEnded && fiber->is_joined;
   });
@@ -175,7 +176,7 @@ Machine::Fiber* Machine::Choose() {
   return ready.empty() ? nullptr : ready[Below(ready.size())];
 }
 
-// To the first moment for which a thread waits. False: there is none.
+// Sets the time to the earliest time limit of a wait. False: no wait has a time limit.
 bool Machine::PassTime() {
   std::optional<Clock::time_point> first;
   bool all_have_ended = true;
@@ -206,7 +207,7 @@ absl::Time WallNow() {
   return absl::UnixEpoch() + absl::FromChrono(SteadyNow().time_since_epoch());
 }
 
-// Threads compute as long as time passes for them.
+// The processor time is the simulated time.
 double ProcessorSeconds() {
   return std::chrono::duration<double>(SteadyNow().time_since_epoch()).count();
 }

@@ -1,5 +1,5 @@
 // A simulated machine: its own time, and threads that run one at a time, all within one thread of
-// the system. One seed determines which thread runs next, and so everything.
+// the system. One seed determines which thread runs next, and therefore everything.
 //
 // machine.cc defines what server/host.h and server/mutex.h declare, in place of server/host.cc. A
 // thread runs until it waits: for a lock, a condition, a time, or another thread. Before it takes a
@@ -28,11 +28,11 @@ class Machine {
   Machine(const Machine&) = delete;
   Machine& operator=(const Machine&) = delete;
 
-  // Null outside of Run: then the locks are the system's.
+  // Null outside of Run. Then the locks are those of the system.
   static Machine* Current();
 
   // Returns when `main` and all threads that it started have ended. Throws std::runtime_error if
-  // all threads wait, and none for a time.
+  // all threads wait, and no wait has a time limit.
   void Run(std::function<void()> main);
 
   // ---- for the threads ----
@@ -44,7 +44,8 @@ class Machine {
   void Yield();
   void Sleep(Clock::duration time) { SleepUntil(now_ + time); }
   void SleepUntil(Clock::time_point time);
-  // Waits for Notify of the same `what`, which is only compared. False: `until` has come.
+  // Waits for a notification with the same `what`; only the address is compared. False: the time
+  // `until` has come.
   bool Await(const void* what, std::optional<Clock::time_point> until = std::nullopt);
   void NotifyOne(const void* what);
   void NotifyAll(const void* what);
@@ -58,7 +59,7 @@ class Machine {
   bool Chance(double probability) {
     return static_cast<double>(random_() >> 11) * 0x1p-53 < probability;
   }
-  // Up to `most`, short times more often.
+  // A random time up to `most`. Short times are more frequent.
   Clock::duration UpTo(Clock::duration most);
 
   uint64_t switches() const { return switches_; }  // from thread to thread

@@ -22,8 +22,8 @@ constexpr seconds kHang(20);
 constexpr hours kPeace(6);  // enough for all jobs
 constexpr size_t kStoryLines = 60;
 
-// By which a store whose jobs are all deleted may be larger than a new one: rows that stay, such as
-// processor times, and trees that keep a page more. A job of the largest kind takes as many.
+// A store whose jobs are all deleted may be larger than a new one by this number of pages, because
+// some trees keep a page more. One job of the largest kind takes as many pages.
 constexpr int64_t kPagesThatStay = 12;
 
 class Simulation {
@@ -45,7 +45,7 @@ class Simulation {
       machine_.Run([this] { Guard([this] { Live(); }); });
     } catch (const std::runtime_error& stuck) {
       Note("stuck", "", stuck.what());
-      new std::shared_ptr<Life>(std::move(life_));  // its threads wait for ever: it cannot end
+      new std::shared_ptr<Life>(std::move(life_));  // leaked: its threads never end
       disk_.release();
     }
     return {.finding = finding_,
@@ -157,7 +157,7 @@ class Simulation {
   }
 
   void Restart() {
-    Tell("restarts", true);
+    Tell("the server restarts", true);
     life_->Die();
     End();
     Start();
@@ -201,10 +201,10 @@ class Simulation {
                   disk_->operation_count(), 1 + machine_.Below(40));
   }
 
-  // The store works again when it has tried.
+  // The store notices only at its next retry that the disk works again.
   void Heal() {
     if (!is_in_trouble_) return;
-    Tell("the disk is well", true);
+    Tell("the disk works again", true);
     disk_->SetBeforeOperation(nullptr);
     disk_->StopRefusing();
     machine_.Sleep(kLongestTrouble);
@@ -215,7 +215,7 @@ class Simulation {
   // ---- the end ----
 
   void MakePeace() {
-    Tell("peace", true);
+    Tell("from now on nothing fails", true);
     Client client(world_);
     const auto until = machine_.now() + kPeace;
     do {
@@ -249,7 +249,7 @@ class Simulation {
     return pages;
   }
 
-  // The client may leave several times.
+  // Several watches, because the client may leave before a watch ends.
   void WatchToTheEnd(Client& client, const std::string& id) {
     for (int i = 0; i < 3; ++i) client.Watch(id);
   }

@@ -19,7 +19,7 @@ namespace ballpiston::server {
 
 struct SimulationOptions {
   uint64_t seed = 1;
-  uint64_t steps = 40'000;  // switches from thread to thread until peace begins
+  uint64_t steps = 40'000;  // switches from thread to thread before the last phase
   int clients = 4;
   bool crashes = true;
   bool power_cuts = true;
@@ -32,11 +32,11 @@ struct SimulationOptions {
 };
 std::string TextOf(const SimulationOptions& options);
 
-// A promise that was broken.
+// A promise that the server broke.
 struct Finding {
   std::string check;
   std::string what;
-  std::vector<std::string> story;  // what happened to the job, at last
+  std::vector<std::string> story;  // the last events of the job and of the server
 };
 
 struct SimulationReport {
@@ -44,14 +44,15 @@ struct SimulationReport {
   uint64_t steps = 0;
   uint64_t calls = 0;
   uint64_t deaths = 0;
-  uint64_t last_bits = 0;  // of the world's chance: the same if everything happened as before
+  uint64_t last_bits = 0;  // of the random numbers: equal in two runs with the same events
 };
 
-// Runs the world. In the end nothing fails any more: every job ends, its results have the bytes of
-// an undisturbed run, and deletions free the disk.
+// Runs the world. In its last phase nothing fails: every job ends, its results have the bytes of an
+// undisturbed run, and deletions free the disk.
 SimulationReport Simulate(const SimulationOptions& options);
 
-// Fewer things that happen, as long as the same check fails. At most `runs` more simulations.
+// Removes kinds of events, clients and steps as long as the same check fails. Simulates at most
+// `runs` worlds.
 SimulationOptions Shrunk(SimulationOptions options, const Finding& finding, int runs);
 
 }  // namespace ballpiston::server

@@ -1,5 +1,6 @@
-// Simulated worlds with fixed seeds. BALLPISTON_SIMULATION_SECONDS in the environment: worlds with
-// random seeds for so long; BALLPISTON_SIMULATION_SEED: the first seed.
+// Simulated worlds with fixed seeds. Two variables of the environment change this:
+//   BALLPISTON_SIMULATION_SECONDS  simulates worlds with random seeds for this time
+//   BALLPISTON_SIMULATION_SEED     the first seed; the next ones follow it
 #include "tests/simulation/simulation.h"
 
 #include <chrono>
@@ -23,7 +24,7 @@ std::optional<std::string> Environment(const char* name) {
   return value == nullptr ? std::nullopt : std::optional<std::string>(value);
 }
 
-// The short story of a failing world.
+// Prints a failing world, and the last events of a smaller one that fails the same check.
 void Report(const SimulationOptions& options, const Finding& finding) {
   const SimulationOptions fewer = Shrunk(options, finding, kRunsToShrink);
   const SimulationReport short_one = Simulate(fewer);
@@ -34,7 +35,7 @@ void Report(const SimulationOptions& options, const Finding& finding) {
   ADD_FAILURE() << finding.what;
 }
 
-TEST(Simulation, NoPromiseIsBrokenInAnyWorld) {
+TEST(Simulation, EveryPromiseHoldsInEveryWorld) {
   const auto time = Environment("BALLPISTON_SIMULATION_SECONDS");
   const auto first = Environment("BALLPISTON_SIMULATION_SEED");
   const double seconds = time ? std::stod(*time) : 0;

@@ -1,12 +1,13 @@
-"""How a channel proves which server it is, and who calls.
+"""How the client and the server authenticate each other.
 
     nothing set        no encryption: a Unix socket, or a server on the loopback
-    tls                TLS; the server's certificate is signed by an authority of this system
-    ca                 TLS; it is signed by an authority in this file
+    tls                TLS; the system's certificate authorities verify the server
+    ca                 TLS; the certificate authorities in this file verify the server
     token              sent with every call, over TLS or to a loopback address
 
-To a loopback address without a token goes that of the user's own server, if one listens there. The
-server makes it at each start, and keeps it in a file that only its user can read:
+Without TLS and without a token, the client sends to a loopback address the token of the user's own
+server, if one listens there. The server makes a token at each start, and keeps it in a file that
+only its user can read:
 
     $XDG_STATE_HOME/ballpiston/tokens/127.0.0.1:50051    (~/.local/state if it is not set)
 """
@@ -94,7 +95,8 @@ def loopback_metadata(security: ChannelSecurity, address: str) -> list[tuple[str
 
 
 def _own_token(address: str) -> str:
-    """Read for each call: a server that starts again makes another token."""
+    """The token in the server's file; empty if there is none. It is read for each call, because a
+    server makes another token at each start."""
     state = os.environ.get("XDG_STATE_HOME", "")
     root = Path(state) if state.startswith("/") else Path.home() / ".local" / "state"
     try:

@@ -18,14 +18,14 @@ def is_socket(address: str) -> bool:
 
 
 def literal_address(address: str) -> str:
-    """With 127.0.0.1 for the name localhost, which could also mean ::1: there another user's server
-    may listen."""
+    """The address with 127.0.0.1 instead of the name localhost. The name could also mean ::1, where
+    another user's server may listen."""
     host, _, port = address.rpartition(":")
     return f"127.0.0.1:{port}" if host == "localhost" else address
 
 
 def is_loopback(address: str) -> bool:
-    """Whether only programs of this machine can be at the address."""
+    """Whether only programs of this machine can listen at the address."""
     host = address.rpartition(":")[0]
     try:
         return ipaddress.ip_address(host.strip("[]")).is_loopback

@@ -26,7 +26,7 @@
     banner().hidden = text === '';
   }
 
-  // The server, too, may want a token, which ballpiston web has to send.
+  // For a token of the page. The server may also require a token; ballpiston web sends that one.
   function adviceFor(error) {
     if (error.code === 'unauthenticated' && error.message.includes('ballpiston web')) {
       return 'Open the whole address that “ballpiston web” printed: it contains the token. ';

@@ -129,7 +129,7 @@ TEST(Ladder, TheReasonForRunningNoPilotIsStated) {
 }
 
 // The discs nearly touch: a collision takes 1e9 times as many wall hits as in the paper's cell.
-TEST(Ladder, APilotThatWouldTakeYearsIsNotRun) {
+TEST(Ladder, APilotOfYearsIsSkipped) {
   EnsembleSpec spec = Relaxation(7e-9, {.tolerance = 0.1});
   spec.grid[kRho] = {0.50000378};
   spec.grid[kEpsilon] = {0};

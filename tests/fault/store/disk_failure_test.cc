@@ -377,7 +377,7 @@ std::string RecordEndedJob(Store& store, uint64_t seed, int points) {
 }
 
 // Three jobs on a disk of 20 MiB with the usual reserve: one has ended, the results of the second
-// do not fit, and the third still computes. Then not one byte is left.
+// do not fit, and the third still computes. Then the disk is completely full.
 TEST(DiskFailure, ADiskOf20MiBThatIsFullIsFreedByADeletionAndNothingIsLost) {
   FaultDisk undisturbed;
   ServiceOnDisk elsewhere(undisturbed);

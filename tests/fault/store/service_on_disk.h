@@ -46,8 +46,8 @@ class Turnstile {
 
 class ServiceOnDisk {
  public:
-  // A null turnstile lets everything through. Without a reserve the disk has a few kB, which a test
-  // can copy at each cut.
+  // Without a turnstile nothing waits. Without a reserve the files have a few kB, so a test can
+  // copy them at each cut.
   explicit ServiceOnDisk(FaultDisk& disk, Turnstile* turnstile = nullptr, size_t reserve_bytes = 0);
   ~ServiceOnDisk();  // stops like a server after SIGTERM
 

@@ -299,7 +299,7 @@ TEST_F(AccessTable, HealthNeedsNoTokenAndReflectionDoes) {
 }
 
 // Another user of the machine, who cannot read the token of the server's user.
-TEST(LoopbackAccess, OnlyHealthNeedsNoToken) {
+TEST(LoopbackAccess, EveryMethodExceptHealthNeedsAToken) {
   RunningServer server({.listen = "127.0.0.1:0"});
   std::vector<std::string> paths = {kReflection};
   for (const MethodDescriptor* method : AllMethods()) paths.push_back(PathOf(*method));

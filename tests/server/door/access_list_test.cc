@@ -44,7 +44,7 @@ std::string ErrorOf(const std::string& text) {
   return std::string(error.message());
 }
 
-TEST(Sha256, OfTheTestVector) {
+TEST(Sha256, EqualsTheTestVector) {
   EXPECT_EQ(HashText("abc"),
             "sha256:ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }

@@ -46,7 +46,7 @@ std::string Refusal(const std::string& listen, const std::string& flags) {
   return std::string(status.message());
 }
 
-TEST(DoorCombination, OnlySafeOnesOfAllEightAreAccepted) {
+TEST(DoorCombination, OnlySafeCombinationsAreAccepted) {
   const std::map<std::string, std::set<std::string>> accepted = {
       {"unix:/tmp/x", {""}},         {"127.0.0.1:1", {"", "a", "cka"}},
       {"[::1]:1", {"", "a", "cka"}}, {"localhost:1", {"", "a", "cka"}},
@@ -224,7 +224,7 @@ TEST_F(SecureServer, AKeyMayBeRenewedBeforeItsCertificate) {
 
 // Neither an expired certificate nor one that is not valid yet, for example because the clock is
 // slow.
-TEST_F(SecureServer, AnExpiredOrFutureCertificateDoesNotReplaceAValidOne) {
+TEST_F(SecureServer, AValidCertificateStaysIfTheNewOneIsExpiredOrFuture) {
   using std::chrono::hours;
   for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
     files_.WriteCertificate(files_.authority().Issue("x", validity));

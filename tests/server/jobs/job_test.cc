@@ -285,7 +285,7 @@ TEST(JobBook, IsDestroyedAfterTheLastWriteOfAHangingDisk) {
     pending = store->counts().pending_writes;
     is_destroyed = true;
   });
-  // Until the book waits for the end of the store: a closing store rejects records.
+  // Waits until the destructor closes the store: a closing store rejects records.
   const auto is_closing = std::make_shared<std::atomic<bool>>(false);
   AwaitThat([&] {
     store->Record(write, [is_closing](const absl::Status& done) { *is_closing = !done.ok(); });

@@ -22,7 +22,7 @@ std::set<std::string> MetricsNamedIn(const std::string& rules) {
           std::sregex_token_iterator()};
 }
 
-// Those whose names the server's code has, in quotes.
+// The metrics whose names are in quotes in the server's code.
 std::set<std::string> ServedMetrics() {
   static const std::regex name("\"((ballpiston|grpc_server)_\\w+)\"");
   std::set<std::string> names;

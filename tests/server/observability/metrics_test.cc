@@ -55,7 +55,7 @@ std::map<std::string, double> Samples(const std::string& page) {
   return samples;
 }
 
-// Each test has several expectations: the HTTP server of each takes up to 2 s to stop.
+// Each test has several expectations, because the HTTP server of each test takes up to 2 s to stop.
 class MetricsTest : public testing::Test {
  protected:
   RunningServer& Start(bool held = false) {
@@ -115,7 +115,7 @@ TEST_F(MetricsTest, AHealthWatchEndedByItsClientIsNotLogged) {
   EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::Not(HasSubstr("call failed")));
 }
 
-TEST_F(MetricsTest, MethodsAndReasonsAreListedBeforeTheFirst) {
+TEST_F(MetricsTest, MethodsAndReasonsAreListedBeforeTheFirstCall) {
   Start();
   EXPECT_THAT(Address(), StartsWith("127.0.0.1:"));  // the HTTP server accepts no names
   EXPECT_THAT(StartError({.metrics_listen = Address()}),
