@@ -484,7 +484,9 @@ void Store::SettleFailed(Batch batch, size_t first, const absl::Status& failure)
   for (size_t i = first; i < writes.size(); ++i) {
     Write& write = writes[i];
     if (write.is_request) TryAgain(writes, i, failure);
-    if (write.outcome || write.superseded) {
+    // Records are settled in their order: Flush counts them.
+    const bool is_settled = write.outcome || write.superseded;
+    if (is_settled && (write.is_request || again.empty())) {
       has_failed |= write.outcome && IsOfTheDisk(*write.outcome);
       Settle(writes, i, i + 1);
     } else {

@@ -15,7 +15,6 @@ namespace ballpiston::server {
 namespace {
 
 constexpr uint64_t kKeys = 12, kSeedsWithoutKey = 6;
-constexpr uint64_t kFirstKeyedSeed = 1000;
 constexpr std::chrono::seconds kLongestRead(2);
 constexpr std::chrono::milliseconds kHeartbeat(2000), kSnapshot(200);
 
@@ -74,14 +73,9 @@ void Client::CallOnce() {
 }
 
 void Client::Create() {
-  Question question;
-  question.has_key = world_.habits.retries && world_.machine.Chance(0.7);
-  question.seed = question.has_key ? kFirstKeyedSeed + world_.machine.Below(kKeys)
-                                   : 1 + world_.machine.Below(kSeedsWithoutKey);
-  question.points = static_cast<int>(1 + question.seed % 4);
-  question.has_tolerance = question.seed % 3 == 0;
-  question.blocks =
-      static_cast<int64_t>(1 + question.seed * 7 % (question.has_tolerance ? 300 : 60));
+  const bool has_key = world_.habits.retries && world_.machine.Chance(0.7);
+  const Question question = QuestionOf(has_key ? kFirstKeyedSeed + world_.machine.Below(kKeys)
+                                               : 1 + world_.machine.Below(kSeedsWithoutKey));
   const std::string key = question.has_key ? absl::StrCat("key-", question.seed) : "";
   v1::CreateEnsembleJobRequest request = CreateRequest(SpecOf(question), key);
   request.set_priority(static_cast<int32_t>(question.seed % 3) - 1);
@@ -102,7 +96,7 @@ void Client::Get(const std::string& id) {
   if (!call) return;
   const auto job = call->book().Get(LocalPrincipal(), id);
   if (!call.Hears(job.status())) return;
-  if (absl::IsNotFound(job.status())) return world_.expectations.Missed(id, before);
+  if (absl::IsNotFound(job.status())) return world_.expectations.Missed(id);
   if (!job.ok()) throw Violation("get", id, job.status().ToString());
   world_.expectations.Got(before, *job);
 }
@@ -127,9 +121,9 @@ void Client::Cancel(const std::string& id) {
   if (!call) return;
   const auto job = call->book().Cancel(LocalPrincipal(), id, "");
   if (!call.Hears(job.status())) return;
-  if (absl::IsNotFound(job.status())) return world_.expectations.Missed(id, before);
+  if (absl::IsNotFound(job.status())) return world_.expectations.Missed(id);
   if (absl::IsFailedPrecondition(job.status())) {
-    return world_.expectations.Refused(id, before, false);
+    return world_.expectations.CancelRefused(id);
   }
   if (!job.ok()) throw Violation("cancel", id, job.status().ToString());
   world_.expectations.Cancelled(id);
@@ -143,8 +137,8 @@ void Client::Delete(const std::string& id) {
   if (!call) return;
   const absl::Status status = call->book().Delete(LocalPrincipal(), id);
   if (!call.Hears(status)) return;
-  if (absl::IsNotFound(status)) return world_.expectations.Missed(id, before);
-  if (absl::IsFailedPrecondition(status)) return world_.expectations.Refused(id, before, true);
+  if (absl::IsNotFound(status)) return world_.expectations.Missed(id);
+  if (absl::IsFailedPrecondition(status)) return world_.expectations.DeletionRefused(id, before);
   if (!status.ok()) throw Violation("delete", id, status.ToString());
   world_.expectations.Deleted(id);
 }
@@ -156,7 +150,7 @@ void Client::Pin(const std::string& id) {
   const bool pinned = world_.machine.Chance(0.5);
   const auto job = call->book().Pin(LocalPrincipal(), id, pinned);
   if (!call.Hears(job.status())) return;
-  if (absl::IsNotFound(job.status())) return world_.expectations.Missed(id, before);
+  if (absl::IsNotFound(job.status())) return world_.expectations.Missed(id);
   if (!job.ok()) throw Violation("pin", id, job.status().ToString());
   world_.expectations.Got(before, *job);
 }
@@ -169,7 +163,7 @@ void Client::Read(const std::string& id) {
       LocalPrincipal(), id,
       {.max_points = 1000, .max_bytes = std::numeric_limits<size_t>::max(), .histograms = false});
   if (!call.Hears(page.status())) return;
-  if (absl::IsNotFound(page.status())) return world_.expectations.Missed(id, before);
+  if (absl::IsNotFound(page.status())) return world_.expectations.Missed(id);
   if (!page.ok()) throw Violation("results", id, page.status().ToString());
   world_.expectations.Read(id, before, page->points);
 }
@@ -203,6 +197,8 @@ class Client::Reader : public WatchReader {
       chain_.points.push_back(point);
     }
     if (message.has_job()) Saw(message.job().state());
+    world_.expectations.Watched(id_, chain_.points, state_);
+    before_ = world_.expectations.Known(id_);  // of the next message
     return true;
   }
 
@@ -210,7 +206,7 @@ class Client::Reader : public WatchReader {
   void Saw(v1::EnsembleJob::State state) {
     world_.tell(absl::StrCat("watch ", id_, ": ", v1::EnsembleJob::State_Name(state)));
     world_.expectations.Saw(id_, before_, state);
-    world_.expectations.Watched(id_, chain_.points, state);
+    state_ = state;
     chain_.has_ended = HasEndedState(state);
   }
 
@@ -218,12 +214,12 @@ class Client::Reader : public WatchReader {
   Call& call_;
   const std::string id_;
   Chain& chain_;
-  const KnownJob before_;
+  KnownJob before_;
+  v1::EnsembleJob::State state_ = v1::EnsembleJob::QUEUED;
   const Principal caller_ = LocalPrincipal();
 };
 
 void Client::Watch(const std::string& id) {
-  const KnownJob before = world_.expectations.Known(id);
   Call call(world_, absl::StrCat("watch ", id));
   if (!call) return;
   if (chains_[id].has_ended) chains_[id] = {};
@@ -235,7 +231,7 @@ void Client::Watch(const std::string& id) {
       RunWatch(call->book(), {.snapshot = kSnapshot, .heartbeat = kHeartbeat}, call->name(),
                request, reader);
   if (absl::IsCancelled(status) || !call.Hears(status)) return;
-  if (absl::IsNotFound(status)) return world_.expectations.Missed(id, before);
+  if (absl::IsNotFound(status)) return world_.expectations.Missed(id);
   if (!status.ok()) throw Violation("watch", id, status.ToString());
   if (!chains_[id].has_ended) throw Violation("watch", id, "ended before the job");
 }

@@ -48,6 +48,15 @@ v1::EnsembleSpec SpecOf(const Question& question) {
   return spec;
 }
 
+Question QuestionOf(uint64_t seed) {
+  const bool has_tolerance = seed % 3 == 0;
+  return {.seed = seed,
+          .points = static_cast<int>(1 + seed % 4),
+          .blocks = static_cast<int64_t>(1 + seed * 7 % (has_tolerance ? 300 : 60)),
+          .has_tolerance = has_tolerance,
+          .has_key = seed >= kFirstKeyedSeed};
+}
+
 std::string IdOfJob(const v1::EnsembleJob& job) {
   return job.name().substr(job.name().find('/') + 1);
 }
@@ -77,9 +86,10 @@ void Expectations::Created(const std::map<std::string, KnownJob>& before, const 
     throw Violation("deleted", id, "answers a request although it was deleted");
   }
   NoteState(id, job);
-  if (key.empty()) return;
+  // A job that is deleted meanwhile may still answer.
+  if (key.empty() || known->second.deletions_asked > 0) return;
   const auto [first, is_first] = by_key_.try_emplace(key, id);
-  const bool is_gone = jobs_.at(first->second).is_delete_asked;
+  const bool is_gone = jobs_.at(first->second).deletions_asked > 0;
   if (first->second != id && !is_gone) {
     throw Violation("second job", id, absl::StrCat("is the job of a retry, after ", first->second));
   }
@@ -104,8 +114,12 @@ void Expectations::Got(const KnownJob& before, const v1::EnsembleJob& job) {
 void Expectations::Saw(const std::string& id, const KnownJob& before, State state) {
   const bool is_older =
       state < before.state || (HasEndedState(before.state) && state != before.state);
-  if (is_older)
+  if (is_older) {
     throw Violation("states", id, absl::StrCat(Text(state), " after ", Text(before.state)));
+  }
+  if (before.has_ended && !HasEndedState(state)) {
+    throw Violation("states", id, absl::StrCat(Text(state), " after it was told to have ended"));
+  }
 }
 
 void Expectations::NoteState(const std::string& id, const v1::EnsembleJob& job) {
@@ -114,7 +128,7 @@ void Expectations::NoteState(const std::string& id, const v1::EnsembleJob& job) 
   known.state = std::max(known.state, job.state());
   known.points_done = std::max(known.points_done, job.progress().points_done());
   if (job.state() == v1::EnsembleJob::FAILED) throw Violation("failed", id, job.error().message());
-  if (job.state() == v1::EnsembleJob::CANCELLED && !known.is_cancel_asked) {
+  if (job.state() == v1::EnsembleJob::CANCELLED && known.cancels_asked == 0) {
     throw Violation("cancelled", id, "is cancelled, which nobody asked for");
   }
   const double all = SamplesOf(question);
@@ -126,13 +140,19 @@ void Expectations::NoteState(const std::string& id, const v1::EnsembleJob& job) 
   }
 }
 
-void Expectations::Missed(const std::string& id, const KnownJob&) {
-  if (!Known(id).is_delete_asked) throw Violation("lost", id, "is not found");
+void Expectations::Missed(const std::string& id) {
+  if (Known(id).deletions_asked == 0) throw Violation("lost", id, "is not found");
 }
 
-void Expectations::Refused(const std::string& id, const KnownJob& before, bool is_active) {
-  if (is_active && HasEndedState(before.state)) {
-    throw Violation("states", id, absl::StrCat("is called active after ", Text(before.state)));
+void Expectations::CancelRefused(const std::string& id) {
+  --jobs_.at(id).cancels_asked;
+  jobs_.at(id).has_ended = true;
+}
+
+void Expectations::DeletionRefused(const std::string& id, const KnownJob& before) {
+  --jobs_.at(id).deletions_asked;
+  if (HasEndedState(before.state) || before.has_ended) {
+    throw Violation("states", id, "is called active after its end");
   }
 }
 
@@ -142,10 +162,12 @@ void Expectations::Listed(const std::map<std::string, KnownJob>& before,
   for (const v1::EnsembleJob& job : jobs) {
     const std::string id = IdOfJob(job);
     if (!found.insert(id).second) throw Violation("list", id, "is in the list twice");
-    if (before.contains(id)) Got(before.at(id), job);
+    // A job whose Create had no answer becomes known here.
+    jobs_.try_emplace(id, KnownJob{.question = QuestionOf(job.spec().seed())});
+    Got(before.contains(id) ? before.at(id) : KnownJob(), job);
   }
   for (const auto& [id, known] : before) {
-    if (!found.contains(id) && !known.is_deleted) Missed(id, known);
+    if (!found.contains(id) && !known.is_deleted) Missed(id);
   }
   CheckKeys(found);
 }
@@ -155,7 +177,7 @@ void Expectations::CheckKeys(const std::set<std::string>& listed) const {
   std::map<uint64_t, std::string> of_seed;
   for (const std::string& id : listed) {
     const KnownJob job = Known(id);
-    if (!job.question.has_key || job.is_delete_asked) continue;
+    if (!job.question.has_key || job.deletions_asked > 0) continue;
     const auto [first, is_first] = of_seed.try_emplace(job.question.seed, id);
     if (!is_first) throw Violation("second job", id, absl::StrCat("and ", first->second));
   }
@@ -209,6 +231,9 @@ void Expectations::Watched(const std::string& id, const std::vector<v1::PointRes
       throw Violation("watch", id, absl::StrCat("point ", point.index(), " was sent twice"));
     }
   }
+  KnownJob& known = jobs_.at(id);
+  known.state = std::max(known.state, state);
+  known.points_done = std::max(known.points_done, static_cast<int>(told.size()));
   if (state == v1::EnsembleJob::SUCCEEDED && static_cast<int>(told.size()) != question.points) {
     throw Violation("watch", id,
                     absl::StrCat(told.size(), " of ", question.points, " points were sent"));

@@ -27,6 +27,10 @@ struct Question {
 };
 v1::EnsembleSpec SpecOf(const Question& question);
 
+// Every client derives a question from its seed in this way. From kFirstKeyedSeed on it has a key.
+inline constexpr uint64_t kFirstKeyedSeed = 1000;
+Question QuestionOf(uint64_t seed);
+
 class Violation : public std::runtime_error {
  public:
   // `check` names the promise. `job`: empty if the promise is not about one job.
@@ -47,10 +51,10 @@ struct KnownJob {
   Question question;
   v1::EnsembleJob::State state = v1::EnsembleJob::QUEUED;  // the last one that a call returned
   int points_done = 0;                                     // the most that a call returned
-  bool is_cancel_asked = false;
-  bool is_cancelled = false;  // and the server acknowledged it
-  bool is_delete_asked = false;
-  bool is_deleted = false;  // and the server acknowledged it
+  bool has_ended = false;                                  // and a call said so
+  // Calls whose effect is possible: not answered yet, without an answer, or acknowledged.
+  int cancels_asked = 0, deletions_asked = 0;
+  bool is_cancelled = false, is_deleted = false;  // and the server acknowledged it
 };
 
 class Expectations {
@@ -68,13 +72,14 @@ class Expectations {
                const Question& question, const v1::EnsembleJob& job);
   void Got(const KnownJob& before, const v1::EnsembleJob& job);
   // The job was not found, or was not in the list.
-  void Missed(const std::string& id, const KnownJob& before);
-  void AskedToCancel(const std::string& id) { jobs_.at(id).is_cancel_asked = true; }
+  void Missed(const std::string& id);
+  void AskedToCancel(const std::string& id) { ++jobs_.at(id).cancels_asked; }
   void Cancelled(const std::string& id) { jobs_.at(id).is_cancelled = true; }
-  void AskedToDelete(const std::string& id) { jobs_.at(id).is_delete_asked = true; }
+  void AskedToDelete(const std::string& id) { ++jobs_.at(id).deletions_asked; }
   void Deleted(const std::string& id) { jobs_.at(id).is_deleted = true; }
-  // Cancel or Delete refused because of the job's state.
-  void Refused(const std::string& id, const KnownJob& before, bool is_active);
+  // Refused because the job has ended, or because it has not.
+  void CancelRefused(const std::string& id);
+  void DeletionRefused(const std::string& id, const KnownJob& before);
   void Listed(const std::map<std::string, KnownJob>& before,
               const std::vector<v1::EnsembleJob>& jobs);
   // A watch sent this state.
@@ -83,6 +88,7 @@ class Expectations {
   void Read(const std::string& id, const KnownJob& before,
             const std::vector<v1::PointResult>& results);
   // The finished points that a watch and the watches that it resumes have sent, and the last state.
+  // What they told stays true.
   void Watched(const std::string& id, const std::vector<v1::PointResult>& points,
                v1::EnsembleJob::State state);
 

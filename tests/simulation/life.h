@@ -36,17 +36,6 @@ class Life {
   void Die() { is_over_ = true; }
   bool is_over() const { return is_over_; }
 
-  // As long as it lives, a client is in a call.
-  class Call {
-   public:
-    explicit Call(std::shared_ptr<Life> life) : life_(std::move(life)) {}
-    Life& operator*() const { return *life_; }
-    Life* operator->() const { return life_.get(); }
-
-   private:
-    std::shared_ptr<Life> life_;
-  };
-
  private:
   absl::Status Start(FaultDisk& disk);
 

@@ -15,7 +15,8 @@
 namespace ballpiston::server {
 namespace {
 
-constexpr size_t kStackBytes = 512 << 10;
+constexpr size_t kStackBytes = 1 << 20;
+constexpr size_t kGuardBytes = 4096;  // at the end of the stack: an overflow is a fault
 
 // The simulation begins at this time.
 constexpr int64_t kStartSeconds = 1'700'000'000;
@@ -42,7 +43,9 @@ class Stack {
   Stack()
       : memory_(mmap(nullptr, kStackBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1,
                      0)) {
-    if (memory_ == MAP_FAILED) throw std::bad_alloc();
+    if (memory_ == MAP_FAILED || mprotect(memory_, kGuardBytes, PROT_NONE) != 0) {
+      throw std::bad_alloc();
+    }
   }
   ~Stack() { munmap(memory_, kStackBytes); }
   Stack(const Stack&) = delete;
@@ -103,9 +106,19 @@ void Machine::Enter() {
   current->Switch();
 }
 
-void Machine::Join(Fiber* fiber) {
-  while (fiber->state != Fiber::State::kEnded) Await(fiber);
+bool Machine::Join(Fiber* fiber, Clock::time_point until) {
+  const auto end = until == Clock::time_point::max() ? std::nullopt : std::optional(until);
+  while (fiber->state != Fiber::State::kEnded) {
+    if (now_ >= until) return false;
+    Await(fiber, end);
+  }
   fiber->is_joined = true;
+  return true;
+}
+
+void Machine::GiveUp() {
+  is_stuck_ = true;
+  swapcontext(&running_->context, &outside_);
 }
 
 void Machine::Yield() { Switch(); }

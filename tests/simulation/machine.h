@@ -40,7 +40,10 @@ class Machine {
   struct Fiber;  // a thread
 
   Fiber* Start(std::function<void()> run);
-  void Join(Fiber* fiber);
+  // False: the time `until` has come, and the thread goes on.
+  bool Join(Fiber* fiber, Clock::time_point until = Clock::time_point::max());
+  // Ends Run, whatever the other threads do. They never run again.
+  void GiveUp();
   void Yield();
   void Sleep(Clock::duration time) { SleepUntil(now_ + time); }
   void SleepUntil(Clock::time_point time);
