@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <set>
 #include <thread>
 #include <type_traits>
 #include <utility>
@@ -133,6 +134,7 @@ void AddServerFlags(CLI::App& app, CommandLine& line, Words& words) {
   app.add_option("--config", words.config,
                  "file of flags, one a line: FLAG = VALUE, without the dashes. A flag of the\n"
                  "command line takes precedence")
+      ->configurable(false)
       ->check(CLI::ExistingFile)
       ->option_text("FILE");
 }
@@ -245,6 +247,7 @@ void AddLogFlags(CLI::App& app, CommandLine& line, Words& words) {
 
 void AddCommands(CLI::App& app, CommandLine& line, Words& words) {
   BeginGroup(app, "Commands; at most one, instead of a server");
+  app.option_defaults()->configurable(false);  // not in the file of --config
   AddText(app, "--new-token", words.new_token, "PRINCIPAL:ROLE[:DAYS]",
           "make a token, append its hash to --access-file and print the token");
   app.add_flag(
@@ -274,34 +277,70 @@ void ParseArguments(CLI::App& app, int argc, const char* const* argv) {
   app.parse(argc, argv);
 }
 
+// A comment begins with a # that is the line's first character or follows white space.
+size_t FindComment(const std::string& line, size_t from) {
+  size_t at = line.find('#', from);
+  while (at != 0 && at != std::string::npos && !absl::ascii_isspace(line[at - 1])) {
+    at = line.find('#', at + 1);
+  }
+  return at;
+}
+
+// A value in quotes may contain what otherwise begins a comment.
+std::string WithoutComment(const std::string& line) {
+  size_t end = FindComment(line, 0);
+  const size_t value = line.find_first_not_of(" \t", line.find('=') + 1);
+  if (value < end && (line[value] == '"' || line[value] == '\'')) {
+    const size_t quote = line.find(line[value], value + 1);
+    if (quote != std::string::npos) end = FindComment(line, quote);
+  }
+  return line.substr(0, end);
+}
+
 // `listen = "unix:x"  # the API` is --listen=unix:x; a comment is the empty text.
 std::string ArgumentIn(const std::string& line) {
-  const absl::string_view text =
-      absl::StripAsciiWhitespace(absl::string_view(line).substr(0, line.find(" #")));
-  if (text.empty() || text.front() == '#') return "";
+  const std::string text(absl::StripAsciiWhitespace(WithoutComment(line)));
+  if (text.empty()) return "";
   const std::pair<std::string, std::string> parts = absl::StrSplit(text, absl::MaxSplits('=', 1));
   std::string value(absl::StripAsciiWhitespace(parts.second));
   return absl::StrCat("--", absl::StripAsciiWhitespace(parts.first), "=",
                       CLI::detail::remove_quotes(value));
 }
 
-// Each line is a flag of its own. CLI11's own reader takes [::1]:50051 for the beginning of a list,
+// Unknown flags are left to the parser. `given` has the flags of the earlier lines.
+void CheckFlag(const CLI::App& app, const std::string& flag, std::set<const CLI::Option*>& given) {
+  const CLI::Option* const option = app.get_option_no_throw(flag);
+  if (option == nullptr) return;
+  if (!option->get_configurable()) {
+    throw CLI::ValidationError(flag, "is permitted on the command line only");
+  }
+  const bool is_new = given.insert(option).second;
+  const bool may_repeat = option->get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll;
+  if (!is_new && !may_repeat) throw CLI::ValidationError(flag, "is given twice");
+}
+
+// First, each line by itself. CLI11's own reader takes [::1]:50051 for the beginning of a list,
 // ignores a key's second value, and does not say in which line an error is.
 void ParseFile(CLI::App& app, const std::string& path) {
   std::ifstream file(path);
   if (!file) throw CLI::FileError::Missing(path);
+  std::set<const CLI::Option*> given;
+  std::vector<std::string> arguments;
   int number = 0;
   for (std::string line; std::getline(file, line);) {
     ++number;
     const std::string argument = ArgumentIn(line);
     if (argument.empty()) continue;
     try {
+      CheckFlag(app, argument.substr(0, argument.find('=')), given);
       CheckValue(argument);
       app.parse(std::vector<std::string>{argument});
     } catch (const CLI::ParseError& error) {
       throw CLI::ConfigError(absl::StrCat(path, ", line ", number, ": ", error.what()));
     }
+    arguments.insert(arguments.begin(), argument);  // CLI11 begins at the end
   }
+  app.parse(std::move(arguments));  // together, for the flags that may be repeated
 }
 
 // Sets the flags, or `page`.

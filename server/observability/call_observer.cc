@@ -4,7 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
@@ -53,9 +52,8 @@ Verdict VerdictOn(const FailedCall& call) {
     case absl::StatusCode::kUnauthenticated:
     case absl::StatusCode::kPermissionDenied:
       return Verdict::kNotLetIn;
-    case absl::StatusCode::kResourceExhausted:  // a limit, or a full disk
-      return absl::StartsWith(call.reason, "STORE_") ? Verdict::kServerFailed
-                                                     : Verdict::kLimitReached;
+    case absl::StatusCode::kResourceExhausted:
+      return Verdict::kLimitReached;
     case absl::StatusCode::kUnavailable:
       return call.reason == "SHUTTING_DOWN" ? Verdict::kOrdinary : Verdict::kServerFailed;
     case absl::StatusCode::kUnknown:

@@ -17,11 +17,12 @@ absl::Status ReaderPool::Add(const std::string& path, const std::string& vfs) {
 absl::Status ReaderPool::Read(absl::FunctionRef<absl::Status(Database&)> read) {
   std::unique_ptr<Database> reader = Take();
   if (reader == nullptr) return absl::UnavailableError("store: closed");
-  const absl::Cleanup give_back = [&] { GiveBack(std::move(reader)); };
-  absl::Status status = reader->Execute("BEGIN");
-  if (status.ok()) status = read(*reader);
-  reader->Execute("ROLLBACK").IgnoreError();  // SQLite may have done so already
-  return status;
+  const absl::Cleanup give_back = [&] {         // also if `read` throws
+    reader->Execute("ROLLBACK").IgnoreError();  // SQLite may have done so already
+    GiveBack(std::move(reader));
+  };
+  const absl::Status status = reader->Execute("BEGIN");
+  return status.ok() ? read(*reader) : status;
 }
 
 std::unique_ptr<Database> ReaderPool::Take() {

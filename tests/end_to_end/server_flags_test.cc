@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <set>
 #include <sstream>
@@ -208,12 +209,40 @@ TEST_F(ConfigFile, CommandLineTakesPrecedence) {
 }
 
 TEST_F(ConfigFile, HasValuesWithOddCharacters) {
-  for (const std::string folder : {"/a#b", "/a b, c", "[/a]", "/a=b"}) {
-    for (const std::string& value : {folder, "\"" + folder + "\"", "  " + folder + "  # \"b\""}) {
+  for (const std::string folder : {"/a#b", "/a b, c", "[/a]", "/a=b", "/it's"}) {
+    for (const std::string& value : {folder, "\"" + folder + "\"", "  " + folder + "  # \"b\"",
+                                     folder + "\t# a tab", "'" + folder + "'\t#b"}) {
       EXPECT_THAT(RefusalOf("data-dir = " + value + "\nworkers = 1\n", {"--check"}),
                   HasSubstr(" " + folder + "/store"));
     }
   }
+}
+
+TEST_F(ConfigFile, AQuotedValueMayContainAComment) {
+  for (const char* value : {"\"/a # b\"", "'/a # b'  # \"c\"", "\"/a # b\"\t#"}) {
+    EXPECT_THAT(RefusalOf(std::string("data-dir = ") + value, {"--check"}),
+                HasSubstr(" /a # b/store"));
+  }
+}
+
+// The words for sbatch are in the message that it failed.
+TEST_F(ConfigFile, EachLineOfAFlagThatMayBeRepeatedCounts) {
+  for (const char* tool : {"sbatch", "squeue", "scancel"}) {
+    WriteFile(home_.File(tool),
+              "#!/bin/sh\n[ ${0##*/} != sbatch ] || { echo \"$@\" >&2; exit 1; }");
+    std::filesystem::permissions(home_.File(tool), std::filesystem::perms::owner_all);
+  }
+  std::filesystem::create_directory(home_.File("shared"));
+  std::filesystem::permissions(home_.File("shared"), std::filesystem::perms::owner_all);
+  Write(
+      "executor = slurm\nslurm-least-seconds = 0\nslurm-worker = /bin/true\n"
+      "slurm-shared-folder = " +
+      home_.File("shared") + "\nslurm-option = --mem-per-cpu=500M\nslurm-option = --exclusive\n");
+  TestServer server({.flags = {"--config", Path()},
+                     .launcher = {"env", "PATH=" + home_.File("") + ":" + std::getenv("PATH")}});
+  server.Submit(kEndlessQuestion);
+  EXPECT_TRUE(server.AwaitLog("--exclusive"));
+  EXPECT_THAT(server.log(), HasSubstr(" --mem-per-cpu=500M --exclusive"));
 }
 
 TEST_F(ConfigFile, ARefusalNamesFileLineFlagAndPermittedValues) {
@@ -226,10 +255,22 @@ TEST_F(ConfigFile, ARefusalNamesFileLineFlagAndPermittedValues) {
       {"--workers = 3\n", ", line 1: The following argument was not expected: "},
       {"[server]\nworkers = 1\n", ", line 1: --[server]: needs a value"},
       {"workers\n", ", line 1: --workers: needs a value"},
-      {"workers = 1\nworkers = 0\n", ", line 2: --workers: 0 is refused; permitted: whole"},
+      {"listen = x\nworkers = 0\n", ", line 2: --workers: 0 is refused; permitted: whole"},
+      {"workers = 1\n\nworkers = 1\n", ", line 3: --workers: is given twice"},
+      {"data-dir = /a\ndata_dir = /a\n", ", line 2: --data_dir: is given twice"},
   };
   for (const auto& row : table) {
     EXPECT_THAT(RefusalOf(row.text, {"--check"}), HasSubstr(Path() + row.message));
+  }
+}
+
+TEST_F(ConfigFile, ACommandIsRefused) {
+  for (const std::string flag : {"config", "new-token", "check", "backup", "help", "version"}) {
+    for (const char* value : {"", " = ", " = true"}) {
+      EXPECT_THAT(
+          RefusalOf("workers = 1\n" + flag + value, {"--check"}),
+          HasSubstr(Path() + ", line 2: --" + flag + ": is permitted on the command line only"));
+    }
   }
 }
 

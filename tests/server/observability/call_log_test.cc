@@ -101,7 +101,6 @@ TEST(CallLog, OnlyEventsForTheOperatorAreLogged) {
   };
   EXPECT_EQ(verdict(StatusCode::kInternal), Verdict::kServerFailed);
   EXPECT_EQ(verdict(StatusCode::kUnavailable, "STORE_FAILED"), Verdict::kServerFailed);
-  EXPECT_EQ(verdict(StatusCode::kResourceExhausted, "STORE_FULL"), Verdict::kServerFailed);
   EXPECT_EQ(verdict(StatusCode::kUnavailable, "SHUTTING_DOWN"), Verdict::kOrdinary);
   EXPECT_EQ(verdict(StatusCode::kResourceExhausted, "QUEUE_FULL"), Verdict::kLimitReached);
   EXPECT_EQ(verdict(StatusCode::kUnauthenticated, "CREDENTIALS_MISSING"), Verdict::kNotLetIn);

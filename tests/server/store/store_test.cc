@@ -523,6 +523,18 @@ TEST_F(StoreTest, EachReaderGetsAConnectionInTurn) {
   EXPECT_EQ(read, 16);
 }
 
+// Else the next reader would get a connection whose transaction is open.
+TEST_F(StoreTest, AReadThatThrowsEndsItsTransaction) {
+  const auto store = Open({.readers = 1});
+  Insert(*store, Record("a"));
+  const auto count = [](Database& database) {
+    return database.Integer("SELECT count(*) FROM jobs").status();
+  };
+  const auto run_out_of_memory = [](Database&) -> absl::Status { throw std::bad_alloc(); };
+  EXPECT_THROW(store->Read(run_out_of_memory).IgnoreError(), std::bad_alloc);
+  EXPECT_OK(store->Read(count));
+}
+
 TEST_F(StoreTest, JobsAreReadOneByOneUntilTheReaderStops) {
   const auto store = *Store::Open(folder_.File("store"), {.stall = kNever});
   for (const char* id : {"a", "b", "c", "d"}) Insert(*store, Record(id));
