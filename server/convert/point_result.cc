@@ -1,8 +1,10 @@
 #include "server/convert/point_result.h"
 
+#define ZLIB_CONST  // zlib does not change its input
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -16,7 +18,6 @@
 namespace ballpiston::server {
 namespace {
 
-using google::protobuf::io::GzipInputStream;
 using google::protobuf::io::GzipOutputStream;
 
 bool Exists(const std::optional<double>& value) { return value && std::isfinite(*value); }
@@ -100,6 +101,26 @@ bool HasNeeded(const PointParameters& point, const ExperimentKind& experiment) {
   });
 }
 
+// Empty unless the bytes are whole, with the right sum at their end. Protobuf's GzipInputStream
+// does not notice that the end is missing.
+std::optional<std::string> Uncompressed(const std::string& bytes) {
+  z_stream stream{};
+  stream.next_in = reinterpret_cast<const Bytef*>(bytes.data());
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  int code = inflateInit(&stream);
+  std::string plain;
+  std::array<char, 16384> part;
+  while (code == Z_OK) {
+    stream.next_out = reinterpret_cast<Bytef*>(part.data());
+    stream.avail_out = part.size();
+    code = inflate(&stream, Z_NO_FLUSH);
+    plain.append(part.data(), part.size() - stream.avail_out);
+  }
+  inflateEnd(&stream);
+  if (code != Z_STREAM_END || stream.avail_in > 0) return std::nullopt;
+  return plain;
+}
+
 }  // namespace
 
 v1::PointResult ResultOf(size_t index, const PointExperiment& experiment,
@@ -171,15 +192,11 @@ std::string DetailsBytes(const v1::PointResult& details) {
   return bytes;
 }
 
-// Also checks the sum that ends the compressed bytes.
 absl::StatusOr<v1::PointResult> DetailsFromBytes(const std::string& bytes) {
   v1::PointResult details;
   if (bytes.empty()) return details;
-  google::protobuf::io::ArrayInputStream stream(bytes.data(), static_cast<int>(bytes.size()));
-  GzipInputStream plain(&stream, GzipInputStream::ZLIB);
-  if (details.ParseFromZeroCopyStream(&plain) && plain.ZlibErrorCode() == Z_STREAM_END) {
-    return details;
-  }
+  const std::optional<std::string> plain = Uncompressed(bytes);
+  if (plain && details.ParseFromString(*plain)) return details;
   return absl::DataLossError("the stored details of a result cannot be read");
 }
 

@@ -576,7 +576,10 @@ TEST(PointResult, StoredDetailsAreSmallAndTheirDamageIsNoticed) {
     damaged[i] = static_cast<char>(damaged[i] ^ 1);
     EXPECT_TRUE(absl::IsDataLoss(DetailsFromBytes(damaged).status())) << i;
   }
-  EXPECT_TRUE(absl::IsDataLoss(DetailsFromBytes(bytes.substr(0, bytes.size() / 2)).status()));
+  for (size_t length = 1; length < bytes.size(); ++length) {
+    EXPECT_TRUE(absl::IsDataLoss(DetailsFromBytes(bytes.substr(0, length)).status())) << length;
+  }
+  EXPECT_TRUE(absl::IsDataLoss(DetailsFromBytes(bytes + "x").status()));
 }
 
 // The model's error is relative in an answer and absolute in a result. Only the first estimate has
