@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <climits>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -32,7 +33,11 @@ bool WriteNewFile(const std::string& path, const std::string& text) {
 
 }  // namespace
 
-std::string OwnToken::DefaultFolder() { return absl::StrCat(DataDirectory::Default(), "/tokens"); }
+std::string OwnToken::DefaultFolder() {
+  char machine[HOST_NAME_MAX + 1] = {};
+  gethostname(machine, HOST_NAME_MAX);
+  return absl::StrCat(DataDirectory::Default(), "/tokens/", machine);
+}
 
 absl::StatusOr<std::unique_ptr<OwnToken>> OwnToken::Make(const std::string& folder,
                                                          const std::string& address) {

@@ -4,7 +4,10 @@
 // only its user can read. The file's name is the server's address, so the user's clients find it,
 // and send it to this address only. Other users of the machine get nothing.
 //
-//   $XDG_STATE_HOME/ballpiston/tokens/127.0.0.1:50051    (~/.local/state if it is not set)
+//   $XDG_STATE_HOME/ballpiston/tokens/MACHINE/127.0.0.1:50051    (~/.local/state if it is not set)
+//
+// MACHINE is the machine's name (hostname): several machines may share the user's home folder, and
+// a client must not send a token to the same address of another machine.
 #pragma once
 
 #include <memory>
@@ -17,7 +20,7 @@ namespace ballpiston::server {
 
 class OwnToken {
  public:
-  // The folder of the files, in the user's state folder.
+  // The folder of this machine's files, in the user's state folder.
   static std::string DefaultFolder();
 
   // Makes a token and its file, instead of the file that an earlier server left. Creates the

@@ -7,14 +7,15 @@
 
 Without TLS and without a token, the client sends to a loopback address the token of the user's own
 server, if one listens there. The server makes a token at each start, and keeps it in a file that
-only its user can read:
+only its user can read, in a folder for each machine that shares the user's home folder:
 
-    $XDG_STATE_HOME/ballpiston/tokens/127.0.0.1:50051    (~/.local/state if it is not set)
+    $XDG_STATE_HOME/ballpiston/tokens/MACHINE/127.0.0.1:50051    (~/.local/state if it is not set)
 """
 
 from __future__ import annotations
 
 import os
+import socket
 import stat
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -100,7 +101,7 @@ def _own_token(address: str) -> str:
     state = os.environ.get("XDG_STATE_HOME", "")
     root = Path(state) if state.startswith("/") else Path.home() / ".local" / "state"
     try:
-        return (root / "ballpiston" / "tokens" / address).read_text().strip()
+        return (root / "ballpiston" / "tokens" / socket.gethostname() / address).read_text().strip()
     except OSError:
         return ""
 

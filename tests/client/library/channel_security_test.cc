@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <climits>
 #include <filesystem>
 #include <string>
 
@@ -42,13 +44,20 @@ TEST(ChannelSecurity, ATokenIsSentInTheClearToALoopbackAddressOnly) {
   EXPECT_EQ(LiteralAddress("localhost:1"), "127.0.0.1:1");
 }
 
-// A server makes another token at each start.
-TEST(ChannelSecurity, TheOwnTokenIsThatOfTheAddress) {
+// A server makes another token at each start. Machines may share the home folder.
+TEST(ChannelSecurity, TheOwnTokenIsThatOfTheAddressOnThisMachine) {
+  char machine[HOST_NAME_MAX + 1] = {};
+  ASSERT_EQ(gethostname(machine, HOST_NAME_MAX), 0);
   const TemporaryFolder state;
   const ScopedVariable variable("XDG_STATE_HOME", state.path());
-  std::filesystem::create_directories(state.File("ballpiston/tokens"));
+  const std::string tokens = state.File("ballpiston/tokens/");
+  for (const std::string& folder : {std::string(), std::string(machine), std::string("other")}) {
+    std::filesystem::create_directories(tokens + folder);
+    WriteFile(tokens + folder + "/127.0.0.1:2", "of another machine\n");
+  }
+  std::filesystem::remove(tokens + machine + "/127.0.0.1:2");
   for (const char* token : {"first", "second"}) {
-    WriteFile(state.File("ballpiston/tokens/127.0.0.1:1"), std::string(token) + "\n");
+    WriteFile(tokens + machine + "/127.0.0.1:1", std::string(token) + "\n");
     EXPECT_EQ(OwnToken("127.0.0.1:1"), token);
   }
   EXPECT_EQ(OwnToken("127.0.0.1:2"), "");
