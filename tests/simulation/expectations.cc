@@ -140,8 +140,10 @@ void Expectations::NoteState(const std::string& id, const v1::EnsembleJob& job) 
   }
 }
 
+// Without a violation, a deletion has taken effect that had no answer.
 void Expectations::Missed(const std::string& id) {
   if (Known(id).deletions_asked == 0) throw Violation("lost", id, "is not found");
+  if (const auto job = jobs_.find(id); job != jobs_.end()) job->second.is_deleted = true;
 }
 
 void Expectations::CancelRefused(const std::string& id) {
