@@ -1,4 +1,5 @@
-// What the server takes from its machine: threads, time and chance. Locks are in mutex.h.
+// The server uses these functions of its machine: threads, clocks and random numbers. Locks are in
+// mutex.h.
 //
 // All of it is defined in host.cc. tests/simulation links another definition, with a simulated
 // machine, in which one seed determines everything.
@@ -21,7 +22,8 @@ double ProcessorSeconds();
 
 uint64_t RandomBits();
 
-// As std::thread. std::system_error if the machine cannot start one more.
+// Works as std::thread does. The constructor throws std::system_error if the machine cannot start
+// another thread.
 class Thread {
  public:
   Thread();

@@ -37,7 +37,7 @@ struct WatchTiming {
   std::chrono::milliseconds heartbeat{10'000};  // sent if no other message was sent in this time
 };
 
-// Who reads a watch.
+// The client that reads the messages of a watch.
 class WatchReader {
  public:
   virtual ~WatchReader() = default;

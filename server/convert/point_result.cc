@@ -11,14 +11,10 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
-#include "google/protobuf/io/gzip_stream.h"
-#include "google/protobuf/io/zero_copy_stream_impl_lite.h"
 #include "server/convert/spec.h"
 
 namespace ballpiston::server {
 namespace {
-
-using google::protobuf::io::GzipOutputStream;
 
 bool Exists(const std::optional<double>& value) { return value && std::isfinite(*value); }
 
@@ -101,8 +97,8 @@ bool HasNeeded(const PointParameters& point, const ExperimentKind& experiment) {
   });
 }
 
-// Empty unless the bytes are whole, with the right sum at their end. Protobuf's GzipInputStream
-// does not notice that the end is missing.
+// Empty unless the bytes are whole, with the right sum at their end. (Protobuf's
+// GzipInputStream does not notice that the end is missing.)
 std::optional<std::string> Uncompressed(const std::string& bytes) {
   z_stream stream{};
   stream.next_in = reinterpret_cast<const Bytef*>(bytes.data());
@@ -180,15 +176,13 @@ absl::StatusOr<v1::PointResult> ResultFromBytes(const std::string& bytes) {
 }
 
 std::string DetailsBytes(const v1::PointResult& details) {
-  std::string bytes;
-  if (details.ByteSizeLong() == 0) return bytes;
-  google::protobuf::io::StringOutputStream stream(&bytes);
-  GzipOutputStream::Options options;
-  options.format = GzipOutputStream::ZLIB;
-  options.compression_level = Z_BEST_SPEED;
-  GzipOutputStream compressed(&stream, options);
-  details.SerializeToZeroCopyStream(&compressed);
-  compressed.Close();
+  const std::string plain = details.SerializeAsString();
+  if (plain.empty()) return "";
+  uLongf size = compressBound(plain.size());
+  std::string bytes(size, '\0');
+  compress2(reinterpret_cast<Bytef*>(bytes.data()), &size,
+            reinterpret_cast<const Bytef*>(plain.data()), plain.size(), Z_BEST_SPEED);
+  bytes.resize(size);
   return bytes;
 }
 

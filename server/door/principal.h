@@ -21,7 +21,8 @@ inline const char* RoleName(Role role) {
   return role == Role::kRead ? "read" : role == Role::kSubmit ? "submit" : "admin";
 }
 
-// The server's own user: whoever can open its Unix socket, or read its own token (own_token.h).
+// The principal of the server's own user. A client is this principal if it can open the server's
+// Unix socket, or if it sends the server's own token (own_token.h).
 inline Principal LocalPrincipal() { return {"local", Role::kAdmin}; }
 
 }  // namespace ballpiston::server

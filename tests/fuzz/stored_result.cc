@@ -27,7 +27,7 @@ void CheckStoredResult(const std::string& bytes) {
   const std::string stored = server::DeterministicBytes(*result);
   const absl::StatusOr<v1::PointResult> again = server::ResultFromBytes(stored);
   Require(again.ok() && server::DeterministicBytes(*again) == stored,
-          "a stored result is read as it was written");
+          "reading a stored result gives the message that was stored");
   CheckShortfall(*result, bytes);
   const v1::PointResult told = server::WithDetails({}, *result, kEquilibrium);
   Require(told.histograms_size() == result->histograms_size(), "clients get every histogram");

@@ -9,6 +9,7 @@
 #include "server/api/watch.h"
 #include "server/convert/spec.h"
 #include "server/jobs/job_name.h"
+#include "server/store/job_record.h"
 #include "tests/server/requests.h"
 
 namespace ballpiston::server {
@@ -86,7 +87,7 @@ void Client::Create() {
   const auto job = call->book().Create(LocalPrincipal(), request, CheckSpec(SpecOf(question)));
   if (!call.Hears(job.status())) return;
   if (!job.ok()) throw Violation("create", "", job.status().ToString());
-  world_.tell(absl::StrCat("created ", IdOfJob(*job)));
+  world_.tell(absl::StrCat("created ", *JobIdOf(job->name())));
   world_.expectations.Created(before, key, question, *job);
 }
 
@@ -207,7 +208,7 @@ class Client::Reader : public WatchReader {
     world_.tell(absl::StrCat("watch ", id_, ": ", v1::EnsembleJob::State_Name(state)));
     world_.expectations.Saw(id_, before_, state);
     state_ = state;
-    chain_.has_ended = HasEndedState(state);
+    chain_.has_ended = HasEnded(state);
   }
 
   ClientWorld& world_;

@@ -14,7 +14,7 @@
 
 namespace ballpiston::server {
 
-// What clients may do besides creating, reading, listing and pinning jobs.
+// The kinds of calls that can be switched off. A client always creates, reads, lists and pins jobs.
 struct ClientHabits {
   bool cancels = true;
   bool deletes = true;
@@ -22,7 +22,7 @@ struct ClientHabits {
   bool retries = true;  // with a key
 };
 
-// What all clients share.
+// All clients use these objects together.
 struct ClientWorld {
   Machine& machine;
   Expectations& expectations;

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "server/host.h"
-#include "server/mutex.h"
 #include "server/scheduling/scheduler.h"
 #include "tests/simulation/machine.h"
 

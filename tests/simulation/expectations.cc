@@ -9,6 +9,8 @@
 #include "server/convert/deterministic_bytes.h"
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
+#include "server/jobs/job_name.h"
+#include "server/store/job_record.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
 
@@ -57,12 +59,6 @@ Question QuestionOf(uint64_t seed) {
           .has_key = seed >= kFirstKeyedSeed};
 }
 
-std::string IdOfJob(const v1::EnsembleJob& job) {
-  return job.name().substr(job.name().find('/') + 1);
-}
-
-bool HasEndedState(State state) { return state >= v1::EnsembleJob::SUCCEEDED; }
-
 std::vector<std::string> Expectations::Ids() const {
   std::vector<std::string> ids;
   for (const auto& [id, job] : jobs_) ids.push_back(id);
@@ -76,7 +72,7 @@ KnownJob Expectations::Known(const std::string& id) const {
 
 void Expectations::Created(const std::map<std::string, KnownJob>& before, const std::string& key,
                            const Question& question, const v1::EnsembleJob& job) {
-  const std::string id = IdOfJob(job);
+  const std::string id = *JobIdOf(job.name());
   const auto [known, is_new] = jobs_.try_emplace(id, KnownJob{.question = question});
   if (known->second.question.seed != question.seed) {
     throw Violation("another question", id, absl::StrCat("answers the question ", question.seed));
@@ -97,7 +93,7 @@ void Expectations::Created(const std::map<std::string, KnownJob>& before, const 
 }
 
 void Expectations::Got(const KnownJob& before, const v1::EnsembleJob& job) {
-  const std::string id = IdOfJob(job);
+  const std::string id = *JobIdOf(job.name());
   if (before.is_deleted) throw Violation("deleted", id, "exists again");
   Saw(id, before, job.state());
   if (job.progress().points_done() < before.points_done) {
@@ -112,13 +108,13 @@ void Expectations::Got(const KnownJob& before, const v1::EnsembleJob& job) {
 }
 
 void Expectations::Saw(const std::string& id, const KnownJob& before, State state) {
-  const bool is_older =
-      state < before.state || (HasEndedState(before.state) && state != before.state);
+  const bool is_older = state < before.state || (HasEnded(before.state) && state != before.state);
   if (is_older) {
     throw Violation("states", id, absl::StrCat(Text(state), " after ", Text(before.state)));
   }
-  if (before.has_ended && !HasEndedState(state)) {
-    throw Violation("states", id, absl::StrCat(Text(state), " after it was told to have ended"));
+  if (before.has_ended && !HasEnded(state)) {
+    throw Violation("states", id,
+                    absl::StrCat(Text(state), " after a refusal that said that the job has ended"));
   }
 }
 
@@ -153,7 +149,7 @@ void Expectations::CancelRefused(const std::string& id) {
 
 void Expectations::DeletionRefused(const std::string& id, const KnownJob& before) {
   --jobs_.at(id).deletions_asked;
-  if (HasEndedState(before.state) || before.has_ended) {
+  if (HasEnded(before.state) || before.has_ended) {
     throw Violation("states", id, "is called active after its end");
   }
 }
@@ -162,7 +158,7 @@ void Expectations::Listed(const std::map<std::string, KnownJob>& before,
                           const std::vector<v1::EnsembleJob>& jobs) {
   std::set<std::string> found;
   for (const v1::EnsembleJob& job : jobs) {
-    const std::string id = IdOfJob(job);
+    const std::string id = *JobIdOf(job.name());
     if (!found.insert(id).second) throw Violation("list", id, "is in the list twice");
     // A job whose Create had no answer becomes known here.
     jobs_.try_emplace(id, KnownJob{.question = QuestionOf(job.spec().seed())});
@@ -244,7 +240,7 @@ void Expectations::Watched(const std::string& id, const std::vector<v1::PointRes
 
 void Expectations::ExpectAllEnded() const {
   for (const auto& [id, job] : jobs_) {
-    if (!job.is_deleted && !HasEndedState(job.state)) {
+    if (!job.is_deleted && !HasEnded(job.state)) {
       throw Violation("end", id, absl::StrCat("does not end: ", Text(job.state)));
     }
     if (job.is_cancelled && job.state != v1::EnsembleJob::CANCELLED && !job.is_deleted) {

@@ -17,7 +17,7 @@
 
 namespace ballpiston::server {
 
-// What a request asks for: toy jobs of one seed have one specification.
+// A specification of a toy job. The seed determines the rest of it.
 struct Question {
   uint64_t seed = 0;
   int points = 1;
@@ -46,7 +46,7 @@ class Violation : public std::runtime_error {
   std::string check_, job_;
 };
 
-// What is known of a job. States are in the order of v1::EnsembleJob::State.
+// The facts that answers gave about a job. States are ordered as in v1::EnsembleJob::State.
 struct KnownJob {
   Question question;
   v1::EnsembleJob::State state = v1::EnsembleJob::QUEUED;  // the last one that a call returned
@@ -59,10 +59,10 @@ struct KnownJob {
 
 class Expectations {
  public:
-  // Of all jobs, including deleted ones.
+  // The ids of all jobs, including deleted jobs.
   std::vector<std::string> Ids() const;
   const std::map<std::string, KnownJob>& all() const { return jobs_; }
-  // What is known now; a KnownJob without answers if the id is unknown.
+  // The facts about the job up to now. If no answer named this id, the KnownJob has no facts.
   KnownJob Known(const std::string& id) const;
 
   // ---- answers of calls that began when `before` was known ----
@@ -106,8 +106,5 @@ class Expectations {
   std::map<std::string, std::string> by_key_;                        // ids of requests with a key
   std::map<std::pair<uint64_t, int>, v1::PointResult> undisturbed_;  // by seed and point
 };
-
-std::string IdOfJob(const v1::EnsembleJob& job);
-bool HasEndedState(v1::EnsembleJob::State state);
 
 }  // namespace ballpiston::server

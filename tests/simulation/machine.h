@@ -72,7 +72,6 @@ class Machine {
   void Switch();  // to a thread that is ready, or back to Run if all have ended
   Fiber* Choose();
   bool PassTime();
-  void Resume(Fiber& fiber);
 
   std::mt19937_64 random_;
   Clock::time_point now_;

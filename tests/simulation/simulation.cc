@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <functional>
+#include <memory>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "server/jobs/job_name.h"
+#include "server/store/job_record.h"
 #include "server/store/sweeper.h"
+#include "tests/fault/store/power_cut.h"
 
 namespace ballpiston::server {
 namespace {
@@ -264,7 +269,7 @@ class Simulation {
 
   bool AllHaveEnded() const {
     return std::ranges::all_of(expectations_.all(), [](const auto& job) {
-      return job.second.is_deleted || HasEndedState(job.second.state);
+      return job.second.is_deleted || HasEnded(job.second.state);
     });
   }
 

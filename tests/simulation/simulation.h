@@ -2,18 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
-#include <exception>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "tests/fault/store/power_cut.h"
 #include "tests/simulation/client.h"
-#include "tests/simulation/expectations.h"
-#include "tests/simulation/life.h"
-#include "tests/simulation/machine.h"
 
 namespace ballpiston::server {
 
