@@ -92,6 +92,15 @@ void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kStreamsPerConnection);
 }
 
+absl::StatusOr<ListenAddress> ParseMetricsAddress(const std::string& text) {
+  absl::StatusOr<ListenAddress> address = ParseListenAddress(text);
+  if (address.ok() && address->IsLoopback()) return address;
+  return absl::InvalidArgumentError(absl::StrCat(
+      "--metrics-listen=", text,
+      " is not a loopback address; permitted: HOST:PORT with a HOST in 127.0.0.0/8, [::1] or "
+      "localhost (metrics are not encrypted; let others reach them through a proxy or a tunnel)"));
+}
+
 absl::Status CannotListen(const ListenAddress& address) {
   return absl::FailedPreconditionError(absl::StrCat(
       "--listen=", address.Text(),
@@ -216,7 +225,7 @@ absl::Status BallpistonServer::Listen() {
   grpc_ = builder.BuildAndStart();
   if (grpc_ == nullptr || port == 0) return CannotListen(address_);
   if (!is_socket) address_.port = port;
-  door_->Open(address_);
+  door_->PublishOwnToken(address_);
   StartHealth();
   directory_.TellAddress(address());
   return absl::OkStatus();
@@ -236,8 +245,10 @@ void BallpistonServer::StartHealth() {
 
 absl::Status BallpistonServer::StartMetrics() {
   if (options_.metrics_listen.empty()) return absl::OkStatus();
+  const absl::StatusOr<ListenAddress> address = ParseMetricsAddress(options_.metrics_listen);
+  if (!address.ok()) return address.status();
   for (const std::string& service : ServiceNames()) calls_.Expect(service);
-  auto endpoint = MetricsEndpoint::Start(options_.metrics_listen, [this] {
+  auto endpoint = MetricsEndpoint::Start(address->Text(), [this] {
     auto metrics = ServerMetrics(context_, door_->CertificateExpiry());
     for (auto& family : calls_.metrics().Collect()) metrics.push_back(std::move(family));
     return metrics;

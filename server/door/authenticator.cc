@@ -23,8 +23,7 @@ absl::StatusOr<Principal> Authenticator::Authenticate(const std::vector<std::str
   if (!needs_tokens_) return LocalPrincipal();
   std::shared_ptr<const AccessList> list;
   {
-    MutexLock lock(mutex_);
-    while (list_ == nullptr) accepted_.Wait(mutex_);
+    const MutexLock lock(mutex_);
     list = list_;
   }
   if (authorization.empty()) return CredentialsMissing();
@@ -34,11 +33,8 @@ absl::StatusOr<Principal> Authenticator::Authenticate(const std::vector<std::str
 
 void Authenticator::Accept(AccessList list) {
   auto next = std::make_shared<const AccessList>(std::move(list));
-  {
-    const MutexLock lock(mutex_);
-    list_ = std::move(next);
-  }
-  accepted_.NotifyAll();
+  const MutexLock lock(mutex_);
+  list_ = std::move(next);
 }
 
 absl::string_view BearerToken(absl::string_view authorization) {

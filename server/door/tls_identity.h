@@ -17,13 +17,12 @@ struct TlsFiles {
 
 struct TlsIdentity {
   std::string certificate_and_key;  // PEM, in one file: always of the same pair
-  absl::Time begins;                // of the certificate's validity
-  absl::Time expires;
+  absl::Time expires;               // of the certificate
 };
 
 // INVALID_ARGUMENT names the flag, the file and the problem: cannot be read, readable by other
-// users (the key), not PEM, key and certificate of different pairs, too weak. The dates are not
-// compared with the clock, which may not be set yet.
+// users (the key), not PEM, key and certificate of different pairs, too weak. The
+// expiry is not compared with the clock, which may not be set yet.
 absl::StatusOr<TlsIdentity> ReadTlsIdentity(const TlsFiles& files);
 
 }  // namespace ballpiston::server

@@ -1,17 +1,14 @@
-// The files of a server's TLS identity: read, checked and published again as a whole.
+// The files of a server's TLS identity: read and checked.
 #include "server/door/tls_identity.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "server/door/published_file.h"
 #include "tests/server/secure_server.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
@@ -73,31 +70,19 @@ TEST_F(TlsIdentityTest, AMissingFileIsNamed) {
   EXPECT_THAT(Error(), HasSubstr("No such file"));
 }
 
-TEST(PublishedFile, IsExchangedAsAWhole) {
-  PublishedFile file;
-  ASSERT_OK(file.Publish(std::string(100'000, 'a')));
-  const std::string path = file.Path();
-  std::ifstream reading(path);
-  std::string begun(10, '\0');
-  reading.read(begun.data(), 10);
-  ASSERT_OK(file.Publish("b"));
-  EXPECT_EQ(file.Path(), path);
-  EXPECT_EQ(Contents(path), "b");
-  // A reader that has begun continues with the old content.
-  begun.append(std::istreambuf_iterator<char>(reading), {});
-  EXPECT_EQ(begun, std::string(100'000, 'a'));
+// As with a file that a certificate's authority delivers in one piece.
+TEST_F(TlsIdentityTest, KeyAndCertificateMayBeInOneFile) {
+  const KeyAndCertificate made = files_.authority().Issue("x");
+  const std::string both = made.certificate + made.key;
+  files_.WriteCertificate({both, both});
+  EXPECT_EQ(Error(), "");
 }
 
-TEST(PublishedFile, EachContentHasALaterSecond) {
-  PublishedFile file;
-  time_t last = 0;
-  for (int i = 0; i < 3; ++i) {
-    ASSERT_OK(file.Publish("x"));
-    struct stat found {};
-    ASSERT_EQ(stat(file.Path().c_str(), &found), 0);
-    EXPECT_GT(found.st_mtime, last);
-    last = found.st_mtime;
-  }
+// gRPC would take that certificate.
+TEST_F(TlsIdentityTest, AnotherCertificateBesideTheKeyIsRefused) {
+  const KeyAndCertificate made = files_.authority().Issue("x");
+  files_.WriteCertificate({made.key + other_.Issue("y").certificate, made.certificate});
+  EXPECT_THAT(Error(), HasSubstr("is not the key of the certificate"));
 }
 
 }  // namespace
