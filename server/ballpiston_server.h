@@ -43,7 +43,7 @@ struct ServerOptions {
   DoorOptions door;
   int workers = 1;
   std::optional<SlurmOptions> slurm = {};  // empty: no cluster
-  ExperimentFactory factory;               // empty: the core's experiment of the chosen model
+  std::shared_ptr<PointOpener> opener;     // null: the ladder of models opens points
   WatchTiming watch;
   ConnectionTiming connections;
   Limits limits;
@@ -104,7 +104,6 @@ class BallpistonServer {
   std::unique_ptr<Store> store_;
   std::shared_ptr<CrashRecord> crashes_;
   ModelLadder ladder_;
-  std::unique_ptr<PointOpener> factory_;  // null: the ladder opens points
   Scheduler scheduler_;
   JobBook book_;
   // After the book: the executors' threads use the book.

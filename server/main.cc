@@ -106,8 +106,10 @@ int Print(const std::string& text) {
 
 // Prints the token and nothing else to standard output. The log does not hold the token.
 int PrintNewToken(const CommandLine& line) {
+  const absl::StatusOr<TokenRequest> request = ParseTokenRequest(line.new_token);
+  if (!request.ok()) return Fail(request.status());
   const auto token =
-      IssueToken({"access-file", line.server.door.access_file}, *line.new_token, absl::Now());
+      IssueToken({"access-file", line.server.door.access_file}, *request, absl::Now());
   return token.ok() ? Print(*token + "\n") : Fail(token.status());
 }
 
@@ -129,7 +131,7 @@ int Main(int argc, char** argv) {
   const absl::StatusOr<CommandLine> line = ParseCommandLine(argc, argv);
   if (!line.ok()) return Fail(line.status());
   if (!line->page.empty()) return Print(line->page);
-  if (line->new_token) return PrintNewToken(*line);
+  if (!line->new_token.empty()) return PrintNewToken(*line);
   if (line->check) return Report(CheckStore(StoreIn(*line)));
   if (!line->backup.empty()) return Report(BackupStore(StoreIn(*line), line->backup));
   SetLogLevel(line->log_level);

@@ -49,7 +49,6 @@ constexpr int64_t kMostSlurmTasks = 1'000'000;
 struct Words {
   std::string executor = "threads";
   std::string log_level = "info";
-  std::string new_token;
   SlurmOptions slurm;
 };
 
@@ -162,7 +161,8 @@ void AddServerFlags(CLI::App& app, CommandLine& line) {
   AddSeconds(app, "--drain-seconds", line.drain, 0, 3600,
              "time for calls in progress to end after SIGTERM or SIGINT");
   app.config_formatter(std::make_shared<FlagFile>());
-  app.allow_config_extras(true);  // they are then refused like unknown flags of the command line
+  // Unknown ones are then refused like those of the command line.
+  app.allow_config_extras(CLI::config_extras_mode::capture);
   app.set_config("--config", "",
                  "file of flags, one a line: FLAG = VALUE, without the dashes. A line that begins\n"
                  "with # is a comment. A flag of the command line takes precedence")
@@ -275,11 +275,12 @@ void AddLogFlags(CLI::App& app, CommandLine& line, Words& words) {
       "free port, which the log names). Default: no metrics");
 }
 
-void AddCommands(CLI::App& app, CommandLine& line, Words& words) {
+void AddCommands(CLI::App& app, CommandLine& line) {
   BeginGroup(app, "Commands; at most one, instead of a server");
   app.option_defaults()->configurable(false);  // not in the file of --config
-  AddText(app, "--new-token", words.new_token, "PRINCIPAL:ROLE[:DAYS]",
-          "make a token, append its hash to --access-file and print the token");
+  AddText(app, "--new-token", line.new_token, "PRINCIPAL:ROLE[:DAYS]",
+          "make a token, append its hash to --access-file and print the token")
+      ->needs("--access-file");
   app.add_flag(
       "--check", line.check,
       "check the whole store in --data-dir and print a summary; the exit code is 0 if the\n"
@@ -348,17 +349,6 @@ absl::Status SetSlurm(Words& words, CommandLine& line) {
   return absl::OkStatus();
 }
 
-absl::Status SetNewToken(const std::string& text, CommandLine& line) {
-  if (text.empty()) return absl::OkStatus();
-  if (line.server.door.access_file.empty()) {
-    return absl::InvalidArgumentError(
-        "--new-token: --access-file is missing, the file that keeps the token's hash");
-  }
-  absl::StatusOr<TokenRequest> request = ParseTokenRequest(text);
-  if (request.ok()) line.new_token = *std::move(request);
-  return request.status();
-}
-
 void SetDefaults(CommandLine& line) {
   constexpr double kShareOfMemory = 0.8;
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
@@ -381,15 +371,14 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   AddSlurmFlags(app, words);
   AddLimitFlags(app, line.server.limits);
   AddLogFlags(app, line, words);
-  AddCommands(app, line, words);
+  AddCommands(app, line);
   const absl::Status parsed = Parse(app, argc, argv, line.page);
   if (!parsed.ok()) return parsed;
   if (!line.page.empty()) return line;
   line.log_level = words.log_level == "info"      ? Severity::kInfo
                    : words.log_level == "warning" ? Severity::kWarning
                                                   : Severity::kError;
-  for (const absl::Status& status : {CheckTransfer(line.server.limits), SetSlurm(words, line),
-                                     SetNewToken(words.new_token, line)}) {
+  for (const absl::Status& status : {CheckTransfer(line.server.limits), SetSlurm(words, line)}) {
     if (!status.ok()) return status;
   }
   return line;

@@ -6,7 +6,6 @@
 // connections. A watch repeats the look-up once per heartbeat. Thread-safe.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -37,7 +36,7 @@ class Authenticator {
  private:
   const bool needs_tokens_;
   mutable Mutex mutex_;
-  std::shared_ptr<const AccessList> list_ ABSL_GUARDED_BY(mutex_) = std::make_shared<AccessList>();
+  AccessList list_ ABSL_GUARDED_BY(mutex_);
 };
 
 // The token of a header's value, `Bearer TOKEN`; empty if the value has another form.

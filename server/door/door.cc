@@ -17,15 +17,6 @@ absl::Status Refused(const std::string& why) { return absl::InvalidArgumentError
 
 bool HasTls(const DoorOptions& options) { return !options.tls_certificate.empty(); }
 
-// The flags among these that are given.
-std::vector<std::string> Given(const DoorOptions& options) {
-  std::vector<std::string> given;
-  if (!options.access_file.empty()) given.push_back("--access-file");
-  if (!options.tls_certificate.empty()) given.push_back("--tls-certificate");
-  if (!options.tls_key.empty()) given.push_back("--tls-key");
-  return given;
-}
-
 NamedFile AccessFile(const DoorOptions& options) { return {"access-file", options.access_file}; }
 
 std::string MinuteText(absl::Time time) {
@@ -41,26 +32,22 @@ absl::StatusOr<std::unique_ptr<ServerTls>> ReadTls(const DoorOptions& options) {
 }  // namespace
 
 absl::Status CheckCombination(const DoorOptions& options, const ListenAddress& address) {
+  const bool has_access_file = !options.access_file.empty();
+  const std::string listen = absl::StrCat("--listen=", address.Text(), ": ");
   if (!address.socket_path.empty()) {
-    if (Given(options).empty()) return absl::OkStatus();
-    return Refused(absl::StrCat("--listen=", address.Text(),
-                                ": only this server's user and root can open its Unix socket; it "
-                                "cannot be combined with ",
-                                absl::StrJoin(Given(options), ", ")));
+    if (!has_access_file && !HasTls(options) && options.tls_key.empty()) return absl::OkStatus();
+    return Refused(listen +
+                   "only this server's user and root can open its Unix socket; it cannot be "
+                   "combined with --access-file, --tls-certificate or --tls-key");
   }
-  if (options.tls_certificate.empty() != options.tls_key.empty()) {
+  if (HasTls(options) == options.tls_key.empty()) {
     return Refused("--tls-certificate and --tls-key: give both or neither");
   }
-  if (address.IsLoopback() && !HasTls(options)) return absl::OkStatus();
-  std::vector<std::string> missing;
-  if (!HasTls(options)) missing.push_back("--tls-certificate and --tls-key");
-  if (options.access_file.empty()) missing.push_back("--access-file");
-  if (missing.empty()) return absl::OkStatus();
-  return Refused(
-      absl::StrCat("--listen=", address.Text(), ": missing: ", absl::StrJoin(missing, " and "),
-                   "; an address that other machines can reach needs TLS, and TLS needs "
-                   "an access file (or listen on a loopback address without TLS, or on a "
-                   "Unix socket)"));
+  if (HasTls(options) ? has_access_file : address.IsLoopback()) return absl::OkStatus();
+  return Refused(listen +
+                 "an address that other machines can reach needs TLS, and TLS needs an access "
+                 "file: give --tls-certificate, --tls-key and --access-file (or listen on a "
+                 "loopback address without TLS, or on a Unix socket)");
 }
 
 absl::StatusOr<std::unique_ptr<Door>> Door::Create(const DoorOptions& options,

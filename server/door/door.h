@@ -34,7 +34,7 @@ struct DoorOptions {
   std::string own_tokens = OwnToken::DefaultFolder();
 };
 
-// INVALID_ARGUMENT says which flags are missing or contradict each other, and why. Reads no file.
+// INVALID_ARGUMENT says which flags are needed or contradict each other, and why. Reads no file.
 absl::Status CheckCombination(const DoorOptions& options, const ListenAddress& address);
 
 inline constexpr absl::Duration kExpiryWarning = absl::Hours(14 * 24);

@@ -16,14 +16,21 @@
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
 #include "grpcpp/security/server_credentials.h"
-#include "server/door/tls_identity.h"
+#include "server/door/private_file.h"
 
 namespace ballpiston::server {
 
+struct TlsFiles {
+  NamedFile certificate;  // PEM: the server's certificate, then the intermediate ones
+  NamedFile key;          // PEM, without a passphrase; private
+};
+
 class ServerTls {
  public:
-  // The errors are those of ReadTlsIdentity. An expired certificate is accepted: clients refuse it
-  // in each handshake.
+  // INVALID_ARGUMENT names the flag, the file and the problem: cannot be read, readable by other
+  // users (the key), not PEM, key and certificate of different pairs, too weak. An expired
+  // certificate is accepted, because the clock may not be set yet: clients refuse it in each
+  // handshake.
   static absl::StatusOr<std::unique_ptr<ServerTls>> Create(TlsFiles files);
   ServerTls(const ServerTls&) = delete;
   ServerTls& operator=(const ServerTls&) = delete;

@@ -135,13 +135,19 @@ class SimulatedExecutor : public Executor {
   std::atomic<bool> is_woken_ = true;
 };
 
+// Without a choice of the model.
+class CoreOpener : public PointOpener {
+ public:
+  OpenedPoint Open(const EnsembleSpec& spec, size_t index) override {
+    return PointExperiment::Create(spec, index);
+  }
+  void KeepPilot(const PilotPlace&, const Pilot&) override {}
+};
+
 class Server {
  public:
   explicit Server(double lease_seconds)
       : store_(*Store::Open(folder_.File("store"), {})),
-        opener_([](const EnsembleSpec& spec, size_t index) {
-          return PointExperiment::Create(spec, index);
-        }),
         scheduler_(opener_, kLocalCores),
         local_(scheduler_, true, kLocalLeaseSeconds),
         remote_(scheduler_, false, lease_seconds),
@@ -171,7 +177,7 @@ class Server {
  private:
   TemporaryFolder folder_;
   std::unique_ptr<Store> store_;
-  FactoryOpener opener_;
+  CoreOpener opener_;
   Scheduler scheduler_;
   SimulatedExecutor local_;
   SimulatedExecutor remote_;

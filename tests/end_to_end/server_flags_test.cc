@@ -242,7 +242,6 @@ TEST_F(ConfigFile, ARefusalNamesFlagAndPermittedValues) {
   } table[] = {
       {"listn = unix:x\n", "not expected: listn"},
       {"max_streams = 3\n", "not expected: max_streams"},
-      {"--workers = 3\n", "not expected: --workers"},
       {"[server]\nworkers = 1\n", "not expected: [server]"},
       {"data-dir\n", "--data-dir: needs a value"},
       {"workers =\n", "--workers:  is refused; permitted: whole"},

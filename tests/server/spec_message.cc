@@ -17,7 +17,7 @@ v1::EnsembleSpec::Experiment ExperimentMessage(const ExperimentKind* experiment)
   return static_cast<v1::EnsembleSpec::Experiment>(experiment == nullptr ? 0 : experiment->number);
 }
 
-v1::Grid GridMessage(const Grid& grid) {
+v1::Grid GridMessage(const ballpiston::Grid& grid) {
   v1::Grid message;
   const google::protobuf::Reflection& reflection = *message.GetReflection();
   for (const Parameter* parameter : kParameters) {
