@@ -14,7 +14,6 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "grpcpp/server.h"
-#include "grpcpp/server_builder.h"
 #include "server/api/services.h"
 #include "server/door/door.h"
 #include "server/door/listen_address.h"
@@ -83,10 +82,8 @@ class BallpistonServer {
   BallpistonServer(ServerOptions options, DataDirectory directory, ListenAddress address,
                    std::unique_ptr<Door> door, std::unique_ptr<Store> store);
 
-  void StartExecutors();
-  void StartKeepingLimits();
+  void StartThreads();
   absl::Status Listen();
-  void BoundConnections(grpc::ServerBuilder& builder) const;
   absl::Status StartMetrics();
   // While the disk rejects writes, the service that needs it is NOT_SERVING, so that clients can
   // choose another server. The other services and the whole server stay SERVING, because a restart

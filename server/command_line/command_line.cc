@@ -40,8 +40,7 @@ constexpr double kDaySeconds = 86400;
 constexpr double kMostLimit = 1e15;
 constexpr int64_t kLeastMessage = 1024;
 constexpr int64_t kMostMessage = int64_t{256} << 20;
-constexpr int64_t kLeastTransferMib = 16;
-constexpr int64_t kMostTransferMib = int64_t{1} << 20;
+constexpr double kMostTransferMib = 1 << 20;
 constexpr int64_t kMostSlurmMinutes = 60 * 24 * 365;
 constexpr int64_t kMostSlurmTasks = 1'000'000;
 
@@ -241,9 +240,6 @@ const LimitFlag kLimitFlags[] = {
      "calls in progress of one principal, without watches"},
     {"--max-call-bytes-per-principal", &Limits::max_call_bytes_per_principal,
      "bytes of the requests of these calls and of their unread answers"},
-    {"--max-transfer-mib", &Limits::max_transfer_mib,
-     "MiB for connections and for requests that are being received, of all clients. At\n"
-     "least 16 and twice --max-message-bytes, at most 1048576"},
     {"--max-memory-mib", &Limits::max_memory_mib,
      "MiB of memory of all points that this server computes at a time, by an upper bound.\n"
      "By default 80 % of the memory of this machine or of the server's control group"},
@@ -263,6 +259,9 @@ void AddLimitFlags(CLI::App& app, Limits& limits) {
   }
   AddNumber(app, "--max-message-bytes", limits.max_message_bytes, kLeastMessage, kMostMessage,
             "bytes of one request");
+  AddNumber(app, "--max-transfer-mib", limits.max_transfer_mib, 0, kMostTransferMib,
+            "MiB for connections and for requests that are being received, of all clients; the\n"
+            "server uses at least 16 MiB and twice --max-message-bytes");
 }
 
 void AddLogFlags(CLI::App& app, CommandLine& line, Words& words) {
@@ -323,17 +322,6 @@ absl::Status Parse(CLI::App& app, int argc, const char* const* argv, std::string
 
 // ---- combinations of flags ----
 
-// With less memory than two messages of the greatest length, two clients that send such messages
-// could block each other for ever.
-absl::Status CheckTransfer(const Limits& limits) {
-  const int64_t least = std::max(kLeastTransferMib, (2 * limits.max_message_bytes) >> 20);
-  const int64_t mib = limits.max_transfer_mib;
-  if (mib == 0 || (mib >= least && mib <= kMostTransferMib)) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(
-      "--max-transfer-mib: ", mib, " is refused; permitted: 0 (no limit), or ", least, " to ",
-      kMostTransferMib, " with --max-message-bytes=", limits.max_message_bytes));
-}
-
 absl::Status SetSlurm(Words& words, CommandLine& line) {
   const std::string& folder = words.slurm.shared_folder;
   if (words.executor == "threads") {
@@ -378,9 +366,8 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   line.log_level = words.log_level == "info"      ? Severity::kInfo
                    : words.log_level == "warning" ? Severity::kWarning
                                                   : Severity::kError;
-  for (const absl::Status& status : {CheckTransfer(line.server.limits), SetSlurm(words, line)}) {
-    if (!status.ok()) return status;
-  }
+  const absl::Status slurm = SetSlurm(words, line);
+  if (!slurm.ok()) return slurm;
   return line;
 }
 
