@@ -15,7 +15,6 @@
 #include "server/store/folder_sync.h"
 #include "server/store/schema.h"
 #include "server/store/sqlite.h"
-#include "server/store/unused_log.h"
 
 namespace ballpiston::server {
 namespace {
@@ -63,29 +62,17 @@ absl::Status Sync(const std::string& path) {
   return synced ? absl::OkStatus() : CannotWrite(path, error);
 }
 
-// Does not overwrite a file that was created meanwhile.
-absl::Status MoveTo(const std::string& path, const std::string& target) {
-  if (renameat2(AT_FDCWD, path.c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE) == 0) {
-    return absl::OkStatus();
-  }
-  if (errno == EEXIST) return TargetExists(target);
-  // This file system cannot refuse to overwrite. A moment ago the target did not exist.
-  if (errno == EINVAL && rename(path.c_str(), target.c_str()) == 0) return absl::OkStatus();
-  return CannotWrite(target, errno);
-}
-
 }  // namespace
 
 absl::StatusOr<StoreSummary> BackupStore(const std::string& store, const std::string& target) {
   struct stat found {};
   if (lstat(target.c_str(), &found) == 0) return TargetExists(target);
-  const UnusedLog log(store);
   const auto source = OpenStoreToRead(store);
   if (!source.ok()) return source.status();
   const TemporaryFile copy(target);
   if (copy.error() != 0) return CannotWrite(target, copy.error());
-  const absl::Status copied = (*source)->CopyTo(copy.path());
-  if (!copied.ok()) return copied;
+  (*source)->Run("VACUUM INTO ?", copy.path());  // it is not in WAL mode and has no free pages
+  if (!(*source)->status().ok()) return (*source)->TakeStatus();
   absl::StatusOr<StoreSummary> summary = CheckStore(copy.path());
   if (!summary.ok()) return summary.status();
   if (!summary->sound()) {
@@ -94,8 +81,9 @@ absl::StatusOr<StoreSummary> BackupStore(const std::string& store, const std::st
                                             "); see --check"));
   }
   absl::Status placed = Sync(copy.path());
-  if (placed.ok()) placed = MoveTo(copy.path(), target);
-  if (placed.ok()) placed = SyncFolder(FolderOf(target));
+  if (!placed.ok()) return placed;
+  if (rename(copy.path().c_str(), target.c_str()) != 0) return CannotWrite(target, errno);
+  placed = SyncFolder(FolderOf(target));
   if (!placed.ok()) return placed;
   return summary;
 }

@@ -8,26 +8,25 @@ constexpr double kNoEpsilon = -1;
 
 }  // namespace
 
-absl::Status InsertPilot(Database& database, const std::string& engine_version,
-                         const PilotPlace& place, const Pilot& pilot) {
-  return database.Run(
+void InsertPilot(Database& database, const std::string& engine_version, const PilotPlace& place,
+                 const Pilot& pilot) {
+  database.Run(
       "INSERT INTO pilots (engine_version, rho, delta, epsilon, difference, standard_error)"
       " VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING",
       engine_version, place.rho, place.delta, place.epsilon.value_or(kNoEpsilon), pilot.difference,
       pilot.standard_error);
 }
 
-absl::StatusOr<std::optional<Pilot>> FindPilot(Database& database,
-                                               const std::string& engine_version,
-                                               const PilotPlace& place) {
+std::optional<Pilot> FindPilot(Database& database, const std::string& engine_version,
+                               const PilotPlace& place) {
   Query query = database.Select(
       "SELECT difference, standard_error FROM pilots WHERE engine_version = ? AND rho = ?"
       " AND delta = ? AND epsilon = ?",
       engine_version, place.rho, place.delta, place.epsilon.value_or(kNoEpsilon));
-  const absl::StatusOr<bool> row = query.Step();
-  if (!row.ok()) return row.status();
-  if (!*row) return std::nullopt;
-  return Pilot{.difference = query.Real(0), .standard_error = query.Real(1)};
+  if (!query.Next()) return std::nullopt;
+  Pilot pilot;
+  query.ReadInto(pilot.difference, pilot.standard_error);
+  return pilot;
 }
 
 }  // namespace ballpiston::server

@@ -1,13 +1,11 @@
 // The SQL about requests: for each Create, the job that it made or returned. Each function runs
-// inside the transaction of its caller. Errors are those of sqlite.h.
+// inside the transaction of its caller, which handles errors (sqlite.h).
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
 
-#include "absl/status/status.h"
-#include "absl/status/statusor.h"
 #include "server/store/sqlite.h"
 
 namespace ballpiston::server {
@@ -20,13 +18,12 @@ struct RequestRecord {
   bool answered_from_store = false;
 };
 
-absl::Status InsertRequest(Database& database, const RequestRecord& record);
+void InsertRequest(Database& database, const RequestRecord& record);
 
-absl::StatusOr<std::optional<RequestRecord>> FindRequest(Database& database,
-                                                         const std::string& principal,
-                                                         const std::string& request_id);
+std::optional<RequestRecord> FindRequest(Database& database, const std::string& principal,
+                                         const std::string& request_id);
 
 // The number of requests with this job; counts at most `most`.
-absl::StatusOr<int64_t> CountRequests(Database& database, int64_t job, int64_t most);
+int64_t CountRequests(Database& database, int64_t job, int64_t most);
 
 }  // namespace ballpiston::server

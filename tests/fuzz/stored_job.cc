@@ -48,7 +48,7 @@ server::JobRecord RowOf(std::string_view bytes) {
 }
 
 void CheckStoredJob(const std::string& bytes) {
-  const v1::EnsembleJob job = server::JobMessage(RowOf(bytes), nullptr, 400);
+  const v1::EnsembleJob job = server::JobMessage(RowOf(bytes), {}, 400);
   for (const auto& time : {job.create_time(), job.start_time(), job.end_time()}) {
     Require(time.nanos() >= 0 && time.nanos() < 1'000'000'000, "a time is one");
   }
