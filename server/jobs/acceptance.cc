@@ -6,14 +6,10 @@
 #include "server/convert/errors.h"
 #include "server/convert/spec.h"
 #include "server/door/sha256.h"
-#include "server/store/job_table.h"
 #include "server/store/sweeper.h"
 
 namespace ballpiston::server {
 namespace {
-
-// A job has at most this many stored requests. Later ones that it answers are not stored.
-constexpr int64_t kMostRequestsOfJob = 1000;
 
 bool Exceeds(double value, double limit) { return limit > 0 && value > limit; }
 
@@ -50,33 +46,22 @@ void CheckStoreSize(Database& database, const Limits& limits) {
                     "max-store-bytes", static_cast<double>(limits.max_store_bytes)));
 }
 
-// A retry of a request that is not stored returns the same job, because the job is stored.
-bool IsWorthKeeping(Database& database, const RequestRecord& request) {
-  if (request.request_id.empty()) return false;
-  if (!request.answered_from_store) return true;
-  return CountRequests(database, request.job, kMostRequestsOfJob) < kMostRequestsOfJob;
-}
-
-std::optional<EarlierJob> FindOriginal(Database& database, const RequestRecord& request) {
-  const auto original = FindRequest(database, request.principal, request.request_id);
-  if (!original) return std::nullopt;
-  if (original->payload != request.payload) database.Fail(RequestIdReused(request.request_id));
-  auto job = FindJobBySequence(database, original->job, Grid::kIncluded);
-  if (!job) return std::nullopt;
-  return EarlierJob{.record = *std::move(job),
-                    .is_replay = true,
-                    .answered_from_store = original->answered_from_store};
+std::optional<EarlierJob> FindOriginal(Database& database, const Acceptance& acceptance) {
+  const auto request = FindRequest(database, acceptance.record.principal, acceptance.request_id);
+  if (!request) return std::nullopt;
+  if (request->payload != acceptance.payload) {
+    database.Fail(RequestIdReused(acceptance.request_id));
+  }
+  auto job = FindJobBySequence(database, request->job, Grid::kIncluded);
+  return job ? std::optional(EarlierJob{*std::move(job)}) : std::nullopt;
 }
 
 std::optional<EarlierJob> FindEarlier(Database& database, const Acceptance& acceptance) {
-  if (!acceptance.request.request_id.empty()) {
-    if (auto original = FindOriginal(database, acceptance.request)) return original;
-  }
+  if (auto original = FindOriginal(database, acceptance)) return original;
   if (acceptance.fresh) return std::nullopt;
   const JobRecord& record = acceptance.record;
   auto answer = FindAnswer(database, record.principal, record.question);
-  if (!answer) return std::nullopt;
-  return EarlierJob{.record = *std::move(answer), .answered_from_store = true};
+  return answer ? std::optional(EarlierJob{*std::move(answer), true}) : std::nullopt;
 }
 
 }  // namespace
@@ -107,15 +92,17 @@ std::optional<EarlierJob> Judge(Database& database, const Limits& limits,
   return std::nullopt;
 }
 
+// An answer from the store stores no request: a retry finds the same answer.
 std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
   std::optional<EarlierJob> earlier = Judge(database, limits, acceptance);
-  if (earlier && earlier->is_replay) return earlier;
-  if (!earlier) InsertJob(database, acceptance.record);
-  RequestRecord& request = acceptance.request;
-  request.job = earlier ? earlier->record.sequence : acceptance.record.sequence;
-  request.answered_from_store = earlier.has_value();
-  if (IsWorthKeeping(database, request)) InsertRequest(database, request);
-  return earlier;
+  if (earlier) return earlier;
+  JobRecord& record = acceptance.record;
+  InsertJob(database, record);
+  if (!acceptance.request_id.empty()) {
+    InsertRequest(database, record.principal, acceptance.request_id,
+                  {.payload = acceptance.payload, .job = record.sequence});
+  }
+  return std::nullopt;
 }
 
 std::string QuestionOf(const v1::EnsembleSpec& spec, const std::string& engine_version) {

@@ -15,29 +15,29 @@
 #include "core/ensemble/ensemble_spec.h"
 #include "server/limits.h"
 #include "server/store/job_record.h"
-#include "server/store/request_table.h"
+#include "server/store/job_table.h"
 #include "server/store/sqlite.h"
 
 namespace ballpiston::server {
 
 struct Acceptance {
-  JobRecord record;       // the new job, if there is one
-  RequestRecord request;  // not stored if its id is empty
-  bool fresh = false;     // do not return an earlier job
-  absl::Status fits;      // of CheckSize; used for new jobs only
+  JobRecord record;        // the new job, if there is one
+  std::string request_id;  // unique for the principal; may be empty
+  std::string payload;     // a hash of the request without its id
+  bool fresh = false;      // do not return an earlier job
+  absl::Status fits;       // of CheckSize; used for new jobs only
 };
 
 // A job that answers the request.
 struct EarlierJob {
   JobRecord record;
-  bool is_replay = false;            // the request is a retry, and this its original job
-  bool answered_from_store = false;  // it answers the question, now or originally
+  bool answered_from_store = false;  // it answers the question; else the request is its own again
 };
 
 // Empty: a new job is to be made. INVALID_ARGUMENT or RESOURCE_EXHAUSTED: the request is refused.
 std::optional<EarlierJob> Judge(Database& database, const Limits& limits,
                                 const Acceptance& acceptance);
-// The same; then stores the new job or the request.
+// The same; then stores the new job and its request.
 std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance);
 
 // RESOURCE_EXHAUSTED  TOO_MANY_POINTS, TOO_MANY_SAMPLES

@@ -59,21 +59,10 @@ void Job::StopWaiting() {
   state_changed_.NotifyAll();
 }
 
-uint64_t Job::AddSamples(double samples, double share_of_point) {
+uint64_t Job::Add(const JobNumbers& more) {
   MutexLock lock(mutex_);
-  numbers_.samples += samples;
-  numbers_.points_computed += share_of_point;
+  numbers_.Add(more);
   return ++last_change_;
-}
-
-void Job::AddWork(double seconds) {
-  MutexLock lock(mutex_);
-  numbers_.work += seconds;
-}
-
-void Job::AddBytes(int64_t bytes) {
-  MutexLock lock(mutex_);
-  numbers_.bytes += bytes;
 }
 
 void Job::AddFinishedPoint(FinishedPoint point) {
@@ -91,10 +80,8 @@ void Job::AddFinishedPoint(FinishedPoint point) {
 void Job::AddRestoredPoints(const std::vector<PointSize>& points) {
   MutexLock lock(mutex_);
   for (const PointSize& point : points) {
-    ++numbers_.points_done;
-    numbers_.points_computed += 1;
-    numbers_.samples += point.samples;
-    numbers_.bytes += point.bytes;
+    numbers_.Add(
+        {.points_done = 1, .samples = point.samples, .bytes = point.bytes, .points_computed = 1});
   }
   last_finished_ = last_forgotten_ = numbers_.points_done;
   ++last_change_;

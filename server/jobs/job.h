@@ -83,11 +83,8 @@ class Job {
   // Ends all waits, now and later. Call it when the server stops.
   void StopWaiting();
 
-  // Adds the samples of merged blocks or of a restored checkpoint, and their share of the point.
-  // Returns the number of the change.
-  uint64_t AddSamples(double samples, double share_of_point);
-  void AddWork(double seconds);
-  void AddBytes(int64_t bytes);  // of results
+  // Adds what was computed, or restored from a checkpoint. Returns the number of the change.
+  uint64_t Add(const JobNumbers& more);
   // Adds a point that is stored now. Call in the order of the points' numbers.
   void AddFinishedPoint(FinishedPoint point);
   // Adds the points that an earlier process stored. Call before AddFinishedPoint.

@@ -6,9 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/convert/errors.h"
 #include "server/host.h"
-#include "server/jobs/job_log.h"
 #include "server/jobs/job_name.h"
-#include "server/jobs/resume_jobs.h"
 #include "server/jobs/retention.h"
 #include "server/observability/failpoint.h"
 #include "server/observability/log.h"
@@ -21,14 +19,12 @@ JobBook::JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
       limits_(limits),
       scheduler_(scheduler),
       crashes_(std::move(crashes)),
-      active_(store, scheduler) {}
+      active_(store, scheduler, *crashes_) {}
 
 JobBook::~JobBook() {
   Shutdown();
   store_.Close();  // the store's thread calls this book when it has written a job's end
 }
-
-absl::Status JobBook::Resume() { return ResumeJobs(store_, *crashes_, active_); }
 
 void JobBook::Shutdown() {
   store_.StopWaiting();
@@ -45,9 +41,11 @@ JobRecord JobOf(Database& database, const Principal& caller, const std::string& 
 
 // ---- new jobs ----
 
-JobRecord JobBook::NewRecord(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
-                             const CheckedSpec& checked) const {
-  JobRecord record;
+Acceptance JobBook::NewAcceptance(const Principal& caller,
+                                  const v1::CreateEnsembleJobRequest& request,
+                                  const CheckedSpec& checked) const {
+  Acceptance acceptance;
+  JobRecord& record = acceptance.record;
   record.principal = caller.name;
   record.priority = request.priority();
   record.spec = SpecBytes(request.spec());
@@ -56,17 +54,8 @@ JobRecord JobBook::NewRecord(const Principal& caller, const v1::CreateEnsembleJo
   record.numbers.bytes = static_cast<int64_t>(record.spec.size());
   record.create_time = WallNow();
   record.points = static_cast<int64_t>(PointCount(checked.spec));
-  return record;
-}
-
-Acceptance JobBook::NewAcceptance(const Principal& caller,
-                                  const v1::CreateEnsembleJobRequest& request,
-                                  const CheckedSpec& checked) const {
-  Acceptance acceptance;
-  acceptance.record = NewRecord(caller, request, checked);
-  acceptance.request.principal = caller.name;
-  acceptance.request.request_id = request.request_id();
-  acceptance.request.payload = PayloadOf(request);
+  acceptance.request_id = request.request_id();
+  acceptance.payload = PayloadOf(request);
   acceptance.fresh = request.fresh();
   acceptance.fits = CheckSize(checked.spec, limits_);
   return acceptance;
@@ -140,18 +129,10 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
   });
   if (!found.ok()) return StoreFailure(found.status());
   Failpoint("cancel.committed");
-  if (begun) CancelRun(*found);
-  // An earlier call may have come before the run was added.
-  if (found->state == v1::EnsembleJob::CANCELLING) scheduler_.Cancel(found->sequence);
+  const std::shared_ptr<Job> job = active_.Find(id);
+  if (begun && job != nullptr) job->NoteStateChange();
+  scheduler_.Cancel(found->sequence);  // again if an earlier call came before the run was added
   return Get(caller, id);
-}
-
-void JobBook::CancelRun(const JobRecord& record) {
-  if (const std::shared_ptr<Job> job = active_.Find(record.id)) {
-    LogState(record, v1::EnsembleJob::CANCELLING);
-    job->NoteStateChange();
-  }
-  scheduler_.Cancel(record.sequence);
 }
 
 absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {

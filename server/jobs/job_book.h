@@ -68,7 +68,7 @@ class JobBook {
   ~JobBook();  // shuts down, and closes the store
 
   // Resumes the unfinished jobs of an earlier process. Call before anything else.
-  absl::Status Resume();
+  absl::Status Resume() { return active_.Resume(); }
 
   // Stops the computation, and all waits for a change of a job. Unfinished jobs stay in the store
   // as they are.
@@ -140,16 +140,15 @@ class JobBook {
   int64_t engine_crashes() const { return crashes_->counted_deaths(); }
 
  private:
-  JobRecord NewRecord(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
-                      const CheckedSpec& checked) const;
   Acceptance NewAcceptance(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
                            const CheckedSpec& checked) const;
   absl::StatusOr<v1::EnsembleJob> Answer(const Principal& caller, const JobRecord& record,
                                          bool answered_from_store);
   void StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& checked);
-  void CancelRun(const JobRecord& record);
   absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id, Grid grid);
   absl::StatusOr<FoundJob> Find(const Principal& caller, const std::string& id, Grid grid);
+  // Adds the numbers in memory. If the job has ended since its row was read, reads the row again.
+  absl::StatusOr<FoundJob> WithNumbers(const Principal& caller, JobRecord record, Grid grid);
 
   Store& store_;
   const Limits limits_;

@@ -56,13 +56,16 @@ absl::StatusOr<JobRecord> JobBook::ReadRecord(const Principal& caller, const std
 absl::StatusOr<FoundJob> JobBook::Find(const Principal& caller, const std::string& id, Grid grid) {
   absl::StatusOr<JobRecord> record = ReadRecord(caller, id, grid);
   if (!record.ok()) return record.status();
-  if (HasEnded(record->state)) return FoundJob{*std::move(record)};
-  if (std::shared_ptr<Job> job = active_.Find(id)) {
-    return FoundJob{*std::move(record), std::move(job)};
-  }
-  record = ReadRecord(caller, id, grid);  // it has ended since the first read
-  if (!record.ok()) return record.status();
-  return FoundJob{*std::move(record)};
+  return WithNumbers(caller, *std::move(record), grid);
+}
+
+absl::StatusOr<FoundJob> JobBook::WithNumbers(const Principal& caller, JobRecord record,
+                                              Grid grid) {
+  if (HasEnded(record.state)) return FoundJob{std::move(record)};
+  if (auto job = active_.Find(record.id)) return FoundJob{std::move(record), std::move(job)};
+  absl::StatusOr<JobRecord> ended = ReadRecord(caller, record.id, grid);
+  if (!ended.ok()) return ended.status();
+  return FoundJob{*std::move(ended)};
 }
 
 absl::StatusOr<v1::EnsembleJob> JobBook::Get(const Principal& caller, const std::string& id,
@@ -85,16 +88,11 @@ absl::StatusOr<JobsPage> JobBook::List(const Principal& caller, const JobsQuery&
   if (!read.ok()) return StoreFailure(read.status());
   JobsPage page{.next_before = read->next_before};
   for (const JobRecord& record : read->jobs) {
-    const std::shared_ptr<Job> active = HasEnded(record.state) ? nullptr : active_.Find(record.id);
-    if (HasEnded(record.state) || active != nullptr) {
-      page.jobs.push_back(Message(record, active.get()));
-      continue;
-    }
-    // It has ended since it was read.
-    const absl::StatusOr<JobRecord> ended = ReadRecord(caller, record.id, query.grid);
-    if (absl::IsNotFound(ended.status())) continue;  // and was deleted
-    if (!ended.ok()) return ended.status();
-    if (query.filter.MatchesState(ended->state)) page.jobs.push_back(Message(*ended, nullptr));
+    const absl::StatusOr<FoundJob> job = WithNumbers(caller, record, query.grid);
+    if (absl::IsNotFound(job.status())) continue;  // it was deleted meanwhile
+    if (!job.ok()) return job.status();
+    if (!query.filter.MatchesState(job->record.state)) continue;
+    page.jobs.push_back(Message(job->record, job->active.get()));
   }
   return page;
 }

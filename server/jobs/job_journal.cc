@@ -4,14 +4,18 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "google/rpc/status.pb.h"
 #include "server/convert/deterministic_bytes.h"
 #include "server/convert/errors.h"
 #include "server/convert/fold_record.h"
 #include "server/convert/point_result.h"
+#include "server/convert/spec.h"
 #include "server/host.h"
-#include "server/jobs/job_log.h"
+#include "server/jobs/job_name.h"
 #include "server/observability/failpoint.h"
+#include "server/observability/log.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
 
@@ -54,6 +58,33 @@ absl::Status Rejected(const absl::Status& why) {
   return absl::InternalError(absl::StrCat("the store rejected the job's end: ", why.message()));
 }
 
+void LogCrash(const JobRecord& job) {
+  const v1::EnsembleSpec spec = SpecFromBytes(job.spec).value_or(v1::EnsembleSpec());
+  Log(Severity::kError,
+      "the engine crashed again and again while it computed this job, which fails",
+      {{"job", JobName(job.id)},
+       {"principal", job.principal},
+       {"question", spec.ShortDebugString()}});
+}
+
+void LogEnd(const JobRecord& ended) {
+  const std::string state = absl::AsciiStrToLower(v1::EnsembleJob::State_Name(ended.state));
+  // A job without a start time ended before its first turn.
+  const absl::Time begin = ended.start_time.value_or(ended.create_time);
+  google::rpc::Status error;
+  error.ParseFromString(ended.error);
+  if (ReasonOf(error) == kEngineCrashed) LogCrash(ended);
+  Log(ended.error.empty() ? Severity::kInfo : Severity::kWarning, absl::StrCat("job ", state),
+      {{"job", JobName(ended.id)},
+       {"principal", ended.principal},
+       {"state", state},
+       {"points", ended.numbers.points_done},
+       {"samples", static_cast<int64_t>(ended.numbers.samples)},
+       {"processor_seconds", ended.numbers.work},
+       {"seconds", absl::ToDoubleSeconds(ended.end_time.value_or(begin) - begin)},
+       {"error", error.message()}});
+}
+
 void TellEnd(Job& job, const std::optional<JobRecord>& ended, const JobJournal::OnEnded& on_ended) {
   if (!ended) return;
   Failpoint("job.ended");
@@ -90,7 +121,10 @@ void JobJournal::Began() {
   };
   store_.Record(begin, [job = job_, begun](const absl::Status& done) {
     if (!done.ok() || !*begun) return;
-    LogState(job->row(), v1::EnsembleJob::RUNNING);
+    Log(Severity::kInfo, "job running",
+        {{"job", JobName(job->row().id)},
+         {"principal", job->row().principal},
+         {"state", "running"}});
     job->NoteStateChange();
   });
 }
@@ -111,8 +145,8 @@ absl::StatusOr<StoredPoint> JobJournal::ReadPoint(size_t point) {
 }
 
 uint64_t JobJournal::Merged(const MergedSamples& merged) {
-  const uint64_t change =
-      job_->AddSamples(static_cast<double>(merged.samples), merged.share_of_point);
+  const uint64_t change = job_->Add(
+      {.samples = static_cast<double>(merged.samples), .points_computed = merged.share_of_point});
   Failpoint(merged.restored ? "resume.point" : "block.merged");
   return change;
 }
@@ -132,19 +166,19 @@ void JobJournal::ChunkIsEarly(size_t point, const ChunkResult& chunk) {
                      ChunkRecordBytes(chunk));
 }
 
-void JobJournal::Worked(double seconds) { job_->AddWork(seconds); }
+void JobJournal::Worked(double seconds) { job_->Add({.work = seconds}); }
 
 void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
                                const BlockResult& merged,
                                const std::vector<uint64_t>& chunk_digests) {
-  if (experiment.plan().samples() == 0) job_->AddSamples(0, 1);  // computed without one
+  if (experiment.plan().samples() == 0) job_->Add({.points_computed = 1});  // computed without one
   const PointSummary summary = experiment.Summarize(merged);
   PointRow row = {static_cast<int64_t>(point), static_cast<double>(summary.samples),
                   DeterministicBytes(ResultOf(point, experiment, summary)),
                   DetailsBytes(DetailsOf(summary, chunk_digests))};
   row.has_checkpoint = resumed_ || experiment.plan().samples() > 0;
   auto told = std::make_shared<const std::string>(row.result);
-  job_->AddBytes(static_cast<int64_t>(row.result.size() + row.details.size()));
+  job_->Add({.bytes = static_cast<int64_t>(row.result.size() + row.details.size())});
   Failpoint("point.before_record");
   store_.RecordResult(job_->row().sequence, std::move(row),
                       [job = job_, told = std::move(told)](int64_t number) {

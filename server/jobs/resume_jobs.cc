@@ -1,5 +1,4 @@
-#include "server/jobs/resume_jobs.h"
-
+// Resuming the jobs of an earlier process (active_jobs.h).
 #include <algorithm>
 #include <optional>
 #include <set>
@@ -13,6 +12,7 @@
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
 #include "server/jobs/acceptance.h"
+#include "server/jobs/active_jobs.h"
 #include "server/jobs/job_name.h"
 #include "server/observability/failpoint.h"
 #include "server/observability/log.h"
@@ -28,34 +28,7 @@ bool IsOfOtherEngine(const JobRecord& record) {
   return record.engine_version != EngineVersion() && record.state != v1::EnsembleJob::CANCELLING;
 }
 
-// Restarts all jobs of another engine version in one commit, because there may be many.
-absl::Status RestartOlder(Store& store, std::vector<JobRecord>& unfinished) {
-  std::vector<JobRecord*> older;
-  for (JobRecord& record : unfinished) {
-    if (!IsOfOtherEngine(record)) continue;
-    const absl::StatusOr<v1::EnsembleSpec> message = SpecFromBytes(record.spec);
-    if (!message.ok() || !CheckSpec(*message).violations.empty()) continue;
-    record.engine_version = EngineVersion();
-    record.question = QuestionOf(*message, record.engine_version);
-    ++record.restarts;
-    older.push_back(&record);
-    LogInfo(
-        absl::StrCat(JobName(record.id), " is computed again by engine ", record.engine_version));
-  }
-  if (older.empty()) return absl::OkStatus();
-  return store.CommitDeletion([&](Database& database) {
-    for (const JobRecord* record : older) {
-      RestartJob(database, record->sequence, record->engine_version, record->question);
-    }
-  });
-}
-
-// The stored state from which a run is resumed.
-struct Restored {
-  std::vector<PointSize> points;
-  std::optional<Shortfall> shortfall;  // of the first finished point that missed its tolerance
-};
-
+// Sets the first finished point that missed its tolerance, if any.
 void ReadShortfall(Database& database, const JobRecord& record, const EnsembleSpec& spec,
                    std::optional<Shortfall>& shortfall) {
   if (!spec.target.tolerance || !spec.target.budget_seconds) return;
@@ -69,50 +42,67 @@ void ReadShortfall(Database& database, const JobRecord& record, const EnsembleSp
   });
 }
 
-// DATA_LOSS if the job's rows contradict each other.
-Restored ReadRestored(Database& database, const JobRecord& record, const EnsembleSpec& spec) {
-  Restored restored = {.points = ListFinishedPoints(database, record.sequence), .shortfall = {}};
-  const auto in_grid = static_cast<int64_t>(PointCount(spec));
-  const auto is_beyond = [&](const PointSize& point) {
-    return point.point < 0 || point.point >= in_grid;
+// Sets the points that are finished. DATA_LOSS if the job's rows contradict each other.
+std::vector<PointSize> ReadFinished(Database& database, const JobRecord& record,
+                                    RunRequest& request) {
+  const size_t in_grid = PointCount(request.spec);
+  const auto is_of_the_grid = [&](const PointSize& point) {
+    return point.point >= 0 && point.point < record.points;
   };
-  if (record.points != in_grid || std::ranges::any_of(restored.points, is_beyond)) {
+  std::vector<PointSize> points = ListFinishedPoints(database, record.sequence);
+  const bool fits = record.points == static_cast<int64_t>(in_grid);
+  if (!fits || !std::ranges::all_of(points, is_of_the_grid)) {
     database.Fail(
         absl::DataLossError(absl::StrCat("the store's rows of ", JobName(record.id),
                                          " do not fit its specification of ", in_grid, " points")));
+    return {};
   }
-  ReadShortfall(database, record, spec, restored.shortfall);
-  return restored;
+  request.finished.assign(in_grid, false);
+  for (const PointSize& point : points) request.finished[static_cast<size_t>(point.point)] = true;
+  return points;
 }
 
-// Whether each point of the grid is finished.
-std::vector<bool> Finished(const JobRecord& record, const std::vector<PointSize>& points) {
-  std::vector<bool> finished(static_cast<size_t>(record.points), false);
-  for (const PointSize& point : points) finished[static_cast<size_t>(point.point)] = true;
-  return finished;
+}  // namespace
+
+absl::Status ActiveJobs::Resume() {
+  absl::StatusOr<std::vector<JobRecord>> unfinished = store_.Read(ListUnfinishedJobs);
+  if (!unfinished.ok()) return unfinished.status();
+  const absl::Status restarted = RestartOlder(*unfinished);
+  if (!restarted.ok()) return restarted;
+  std::set<RunName> runs;
+  for (const JobRecord& record : *unfinished) runs.insert(RunOf(record));
+  crashes_.ClearAllBut(runs);
+  for (const JobRecord& record : *unfinished) {
+    const absl::Status resumed = ResumeJob(record);
+    Failpoint("resume.job");
+    if (!resumed.ok()) return resumed;
+  }
+  return store_.Flush();
 }
 
-class Resumption {
- public:
-  Resumption(Store& store, CrashRecord& crashes, ActiveJobs& jobs)
-      : store_(store), crashes_(crashes), jobs_(jobs) {}
+// Restarts all jobs of another engine version in one commit, because there may be many.
+absl::Status ActiveJobs::RestartOlder(std::vector<JobRecord>& unfinished) {
+  std::vector<JobRecord*> older;
+  for (JobRecord& record : unfinished) {
+    if (!IsOfOtherEngine(record)) continue;
+    const absl::StatusOr<v1::EnsembleSpec> message = SpecFromBytes(record.spec);
+    if (!message.ok() || !CheckSpec(*message).violations.empty()) continue;
+    record.engine_version = EngineVersion();
+    record.question = QuestionOf(*message, record.engine_version);
+    ++record.restarts;
+    older.push_back(&record);
+    LogInfo(
+        absl::StrCat(JobName(record.id), " is computed again by engine ", record.engine_version));
+  }
+  if (older.empty()) return absl::OkStatus();
+  return store_.CommitDeletion([&](Database& database) {
+    for (const JobRecord* record : older) {
+      RestartJob(database, record->sequence, record->engine_version, record->question);
+    }
+  });
+}
 
-  absl::Status Resume(const JobRecord& record);
-
- private:
-  absl::Status ResumeRun(const JobRecord& record, EnsembleSpec spec);
-  // Ends the job like a run that has nothing left to compute.
-  absl::Status End(const JobRecord& record, const absl::Status& why);
-  absl::Status EndCrashed(const JobRecord& record);
-  // Empty unless the job was being computed at two deaths of the process.
-  std::optional<Suspicion> SuspicionOf(const JobRecord& record);
-
-  Store& store_;
-  CrashRecord& crashes_;
-  ActiveJobs& jobs_;
-};
-
-absl::Status Resumption::Resume(const JobRecord& record) {
+absl::Status ActiveJobs::ResumeJob(const JobRecord& record) {
   if (record.state == v1::EnsembleJob::CANCELLING) {
     return End(record, absl::CancelledError("cancelled"));
   }
@@ -125,40 +115,41 @@ absl::Status Resumption::Resume(const JobRecord& record) {
   return ResumeRun(record, std::move(checked.spec));
 }
 
-absl::Status Resumption::ResumeRun(const JobRecord& record, EnsembleSpec spec) {
-  absl::StatusOr<Restored> restored =
-      store_.Read([&](Database& database) { return ReadRestored(database, record, spec); });
-  if (absl::IsDataLoss(restored.status())) return End(record, StoreFailure(restored.status()));
-  if (!restored.ok()) return restored.status();
+absl::Status ActiveJobs::ResumeRun(const JobRecord& record, EnsembleSpec spec) {
   RunRequest request;
-  request.finished = Finished(record, restored->points);
   request.spec = std::move(spec);
   request.has_checkpoints = true;
-  request.shortfall = std::move(restored->shortfall);
+  const absl::StatusOr<std::vector<PointSize>> points = store_.Read([&](Database& database) {
+    std::vector<PointSize> finished = ReadFinished(database, record, request);
+    ReadShortfall(database, record, request.spec, request.shortfall);
+    return finished;
+  });
+  if (absl::IsDataLoss(points.status())) return End(record, StoreFailure(points.status()));
+  if (!points.ok()) return points.status();
   request.suspicion = SuspicionOf(record);
-  const std::shared_ptr<Job> job = jobs_.Add(record);
-  job->AddRestoredPoints(restored->points);
-  jobs_.StartRun(job, std::move(request));
+  const std::shared_ptr<Job> job = Add(record);
+  job->AddRestoredPoints(*points);
+  StartRun(job, std::move(request));
   return absl::OkStatus();
 }
 
-absl::Status Resumption::End(const JobRecord& record, const absl::Status& why) {
+absl::Status ActiveJobs::End(const JobRecord& record, const absl::Status& why) {
   const absl::StatusOr<std::vector<PointSize>> points = store_.Read(
       [&](Database& database) { return ListFinishedPoints(database, record.sequence); });
   if (!points.ok()) return points.status();
   const auto job = std::make_shared<Job>(record);
   job->AddRestoredPoints(*points);
-  jobs_.JournalOf(job, true)->Ended(why);
+  JournalOf(job, true)->Ended(why);
   return absl::OkStatus();
 }
 
-absl::Status Resumption::EndCrashed(const JobRecord& record) {
+absl::Status ActiveJobs::EndCrashed(const JobRecord& record) {
   const std::string points = Text(crashes_.LastPoints(RunOf(record)));
   return End(record, EngineCrashed(points.empty() ? "this job" : "points " + points,
                                    crashes_.Deaths(RunOf(record))));
 }
 
-std::optional<Suspicion> Resumption::SuspicionOf(const JobRecord& record) {
+std::optional<Suspicion> ActiveJobs::SuspicionOf(const JobRecord& record) {
   const int deaths = crashes_.Deaths(RunOf(record));
   if (deaths == 0) return std::nullopt;
   const bool is_suspect = deaths >= kDeathsOfASuspect;
@@ -178,25 +169,6 @@ std::optional<Suspicion> Resumption::SuspicionOf(const JobRecord& record) {
     return true;
   };
   return Suspicion{.points = points, .clear = clear};
-}
-
-}  // namespace
-
-absl::Status ResumeJobs(Store& store, CrashRecord& crashes, ActiveJobs& jobs) {
-  absl::StatusOr<std::vector<JobRecord>> unfinished = store.Read(&ListUnfinishedJobs);
-  if (!unfinished.ok()) return unfinished.status();
-  const absl::Status restarted = RestartOlder(store, *unfinished);
-  if (!restarted.ok()) return restarted;
-  std::set<RunName> runs;
-  for (const JobRecord& record : *unfinished) runs.insert(RunOf(record));
-  crashes.ClearAllBut(runs);
-  Resumption resumption(store, crashes, jobs);
-  for (const JobRecord& record : *unfinished) {
-    const absl::Status resumed = resumption.Resume(record);
-    Failpoint("resume.job");
-    if (!resumed.ok()) return resumed;
-  }
-  return store.Flush();
 }
 
 }  // namespace ballpiston::server

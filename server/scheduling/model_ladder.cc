@@ -18,7 +18,7 @@
 #include "server/observability/log.h"
 #include "server/processor_time.h"
 #include "server/scheduling/machine_rates.h"
-#include "server/store/pilot_table.h"
+#include "server/store/point_tables.h"
 
 namespace ballpiston::server {
 namespace {

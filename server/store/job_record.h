@@ -26,6 +26,14 @@ struct JobNumbers {
   double work = 0;             // seconds of processor time, in this or the last server process
   int64_t bytes = 0;           // of the specification and the results
   double points_computed = 0;  // with the computed shares of unfinished points; not stored
+
+  void Add(const JobNumbers& other) {
+    points_done += other.points_done;
+    samples += other.samples;
+    work += other.work;
+    bytes += other.bytes;
+    points_computed += other.points_computed;
+  }
 };
 
 struct JobRecord {

@@ -100,6 +100,23 @@ std::optional<JobRecord> FindAnswer(Database& database, const std::string& princ
                   principal, Blob{question}, v1::EnsembleJob::SUCCEEDED);
 }
 
+void InsertRequest(Database& database, const std::string& principal, const std::string& request_id,
+                   const RequestRecord& record) {
+  database.Run("INSERT INTO requests (principal, request_id, payload, job) VALUES (?, ?, ?, ?)",
+               principal, request_id, Blob{record.payload}, record.job);
+}
+
+std::optional<RequestRecord> FindRequest(Database& database, const std::string& principal,
+                                         const std::string& request_id) {
+  Query query =
+      database.Select("SELECT payload, job FROM requests WHERE principal = ? AND request_id = ?",
+                      principal, request_id);
+  RequestRecord found;
+  if (!query.Next()) return std::nullopt;
+  query.ReadInto(found.payload, found.job);
+  return found;
+}
+
 Load ActiveLoad(Database& database, const std::string& principal) {
   Load load;
   Query query =

@@ -1,5 +1,5 @@
-// The SQL about jobs. Each function runs inside the transaction of its caller, which handles errors
-// (sqlite.h).
+// The SQL about jobs and requests. Each function runs inside the transaction of its caller, which
+// handles errors (sqlite.h).
 //
 // Only these functions change a job's state. The transitions:
 //
@@ -37,6 +37,16 @@ std::optional<JobRecord> FindJobBySequence(Database& database, int64_t sequence,
 // The principal's oldest job that SUCCEEDED in answering the question (JobRecord::question).
 std::optional<JobRecord> FindAnswer(Database& database, const std::string& principal,
                                     const std::string& question);
+
+// For each principal and request id, the job that the request made.
+struct RequestRecord {
+  std::string payload;  // a hash of the request without its id
+  int64_t job = 0;      // its sequence
+};
+void InsertRequest(Database& database, const std::string& principal, const std::string& request_id,
+                   const RequestRecord& record);
+std::optional<RequestRecord> FindRequest(Database& database, const std::string& principal,
+                                         const std::string& request_id);
 
 // What active jobs (neither SUCCEEDED nor FAILED nor CANCELLED) take: all of them, and those of one
 // principal.

@@ -1,5 +1,6 @@
 // The SQL about computed data: checkpoints and chunks of unfinished points, results of finished
-// ones. Each function runs inside the transaction of its caller, which handles errors (sqlite.h).
+// ones, and pilot runs. Each function runs inside the transaction of its caller, which handles
+// errors (sqlite.h).
 #pragma once
 
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "absl/functional/function_ref.h"
+#include "core/model_choice/limit_error.h"
 #include "server/store/sqlite.h"
 
 namespace ballpiston::server {
@@ -63,5 +65,11 @@ struct PointSize {
 
 // All finished points, in grid order.
 std::vector<PointSize> ListFinishedPoints(Database& database, int64_t job);
+
+// The error of the limit that pilot runs measured, by place and engine. The first writer wins.
+void InsertPilot(Database& database, const std::string& engine_version, const PilotPlace& place,
+                 const Pilot& pilot);
+std::optional<Pilot> FindPilot(Database& database, const std::string& engine_version,
+                               const PilotPlace& place);
 
 }  // namespace ballpiston::server

@@ -48,7 +48,6 @@ CREATE TABLE requests (
   request_id TEXT NOT NULL,
   payload BLOB NOT NULL,
   job INTEGER NOT NULL,
-  answered_from_store INTEGER NOT NULL,
   PRIMARY KEY (principal, request_id)
 ) STRICT, WITHOUT ROWID;
 CREATE INDEX requests_by_job ON requests (job);

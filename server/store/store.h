@@ -214,7 +214,6 @@ class Store {
   // Sets the outcome of a request whose group failed. On a full disk it is tried alone.
   void TryAgain(Writes& batch, size_t request, const absl::Status& failure);
   void WriteLogBack();
-  void TakeReserve();
   void NoteSweep(const absl::Status& status, bool has_advanced) ABSL_LOCKS_EXCLUDED(mutex_);
 
   // Tells writes [first, last) their outcome.
@@ -227,10 +226,9 @@ class Store {
   const Options options_;
   const std::string path_;
   const std::string identity_;
-  // Only the store's thread uses these three.
+  // Only the store's thread uses these two.
   std::unique_ptr<Database> writer_;
   Reserve reserve_;
-  Clock::time_point next_reserve_;
   std::atomic<Clock::rep> busy_since_ = 0;  // the start of its present group; 0: it waits
 
   ReaderPool readers_;

@@ -20,8 +20,6 @@ namespace {
 constexpr size_t kMostGroupBytes = 2 << 20;
 constexpr size_t kMostBytesOnFailingDisk = 128 << 10;
 
-constexpr std::chrono::seconds kBetweenReserves(60);
-
 // Marks the checkpoints of points with a later write in the batch.
 template <typename Writes>
 void MarkSuperseded(Writes& batch) {
@@ -155,7 +153,7 @@ absl::Status Store::CommitGroup(Writes& batch, size_t first, size_t last) {
 // A change that can never succeed is rolled back alone.
 void Store::RunChange(Write& write) {
   if (write.superseded || write.outcome || !writer_->status().ok()) return;
-  writer_->Execute("SAVEPOINT change");
+  writer_->Run("SAVEPOINT change");
   try {
     write.change(*writer_);
   } catch (const std::bad_alloc&) {
@@ -166,9 +164,9 @@ void Store::RunChange(Write& write) {
     if (!write.is_request) {
       LogError(absl::StrCat("a record was rejected: ", write.outcome->message()));
     }
-    writer_->Execute("ROLLBACK TO change");
+    writer_->Run("ROLLBACK TO change");
   }
-  writer_->Execute("RELEASE change");
+  writer_->Run("RELEASE change");
 }
 
 // After a failure even an empty group writes something, because only a write shows that the disk
@@ -196,12 +194,6 @@ void Store::WriteLogBack() {
   writer_->TakeStatus().IgnoreError();
 }
 
-void Store::TakeReserve() {
-  if (reserve_.held() || next_reserve_ > SteadyNow()) return;
-  reserve_.Take();
-  next_reserve_ = SteadyNow() + kBetweenReserves;
-}
-
 // ---- outcomes ----
 
 // A step that fails is tried again later, unless the store is damaged: each step would find that.
@@ -212,7 +204,7 @@ void Store::NoteSweep(const absl::Status& status, bool has_advanced) {
   if (is_failing && advances && reserve_.held()) reserve_.Release();
   // The file gets shorter when the log is written back. A full disk has no room for a longer log.
   if (is_failing || !advances) WriteLogBack();
-  if (!is_failing && !advances) TakeReserve();
+  if (!is_failing && !advances && !reserve_.held()) reserve_.Take();
   if (absl::IsDataLoss(status)) {
     LogError(absl::StrCat("the space of deleted jobs cannot be freed: ", status.message()));
   }

@@ -305,6 +305,25 @@ TEST(DiskFailure, ADiskErrorAtTheStartIsNotReportedAsDamage) {
   }
 }
 
+// The refusal may be about a change of the same group, which is rolled back.
+TEST(DiskFailure, ARefusalIsNotToldIfItsGroupFails) {
+  FaultDisk disk;
+  Store::Options options;
+  options.delay = kNever;
+  options.stall = kNever;
+  options.vfs = disk.vfs();
+  ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(kStorePath, options));
+  disk.Refuse(Refusal::kWriteError, disk.operation_count());
+  store->RecordChunk(1, 0, 5, "chunk");
+  const auto refuse_if_there = [](Database& database) {
+    if (!ReadChunks(database, 1, 0).empty()) database.Fail(absl::AlreadyExistsError("a chunk"));
+  };
+  EXPECT_THAT(store->Commit(refuse_if_there), StatusIs(absl::StatusCode::kUnavailable));
+  disk.StopRefusing();
+  AwaitWritten(*store);
+  EXPECT_THAT(store->Commit(refuse_if_there), StatusIs(absl::StatusCode::kAlreadyExists));
+}
+
 // The disk is full, but the log can be overwritten.
 TEST(DiskFailure, OnAFullDiskJobsCanBeCancelledAndDeleted) {
   Scene scene;

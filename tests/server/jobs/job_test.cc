@@ -62,7 +62,7 @@ std::vector<PointSize> RestoredPoints(size_t count) {
 TEST(Job, ProgressIsTheShareOfWorkDone) {
   Job job(JobWithPoints(4));
   job.AddRestoredPoints(RestoredPoints(1));
-  job.AddSamples(50, 0.5);
+  job.Add({.samples = 50, .points_computed = 0.5});
   const v1::JobProgress progress = job.Progress();
   EXPECT_EQ(progress.points(), 4);
   EXPECT_EQ(progress.points_done(), 1);

@@ -16,7 +16,7 @@
 #include "gtest/gtest.h"
 #include "server/store/data_directory.h"
 #include "server/store/job_table.h"
-#include "server/store/pilot_table.h"
+#include "server/store/point_tables.h"
 #include "server/store/schema.h"
 #include "tests/server/hanging_disk.h"
 #include "tests/server/store_access.h"
