@@ -4,7 +4,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/convert/errors.h"
-#include "server/convert/spec.h"
 #include "server/door/sha256.h"
 #include "server/store/sweeper.h"
 
@@ -66,13 +65,13 @@ std::optional<EarlierJob> FindEarlier(Database& database, const Acceptance& acce
 
 }  // namespace
 
-absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits) {
-  const double points = static_cast<double>(PointCount(spec));
+absl::Status CheckSize(const CheckedSpec& checked, const Limits& limits) {
+  const double points = static_cast<double>(PointCount(checked.spec));
   if (Exceeds(points, static_cast<double>(limits.max_points_per_job))) {
     return LimitExceeded("TOO_MANY_POINTS", absl::StrCat("the grid has ", points, " points"),
                          "max-points-per-job", static_cast<double>(limits.max_points_per_job));
   }
-  const Target& target = spec.target;
+  const Target& target = checked.spec.target;
   const bool open_ended = target.tolerance || target.budget_seconds;
   const int64_t of_a_point =
       target.samples.value_or(target.collisions.value_or(open_ended ? 0 : kDefaultSamples));

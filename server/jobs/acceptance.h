@@ -12,7 +12,7 @@
 
 #include "absl/status/status.h"
 #include "ballpiston/v1/ensemble.pb.h"
-#include "core/ensemble/ensemble_spec.h"
+#include "server/convert/spec.h"
 #include "server/limits.h"
 #include "server/store/job_record.h"
 #include "server/store/job_table.h"
@@ -41,7 +41,7 @@ std::optional<EarlierJob> Judge(Database& database, const Limits& limits,
 std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance);
 
 // RESOURCE_EXHAUSTED  TOO_MANY_POINTS, TOO_MANY_SAMPLES
-absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits);
+absl::Status CheckSize(const CheckedSpec& checked, const Limits& limits);
 
 // A hash of everything that determines the answer: the whole specification with its seed, and the
 // engine's version. Empty if the job has a budget, because the answer then depends on the machine.

@@ -57,7 +57,7 @@ Acceptance JobBook::NewAcceptance(const Principal& caller,
   acceptance.request_id = request.request_id();
   acceptance.payload = PayloadOf(request);
   acceptance.fresh = request.fresh();
-  acceptance.fits = CheckSize(checked.spec, limits_);
+  acceptance.fits = CheckSize(checked, limits_);
   return acceptance;
 }
 

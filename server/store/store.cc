@@ -130,7 +130,6 @@ void Store::Post(Write write, bool soon) {
     MutexLock lock(mutex_);
     if (!closing_) {
       hurry_ |= soon;
-      recorded_ += write.is_request ? 0 : 1;
       bytes_ += write.bytes;
       (write.is_request ? requests_ : records_).push_back(std::move(write));
       // The store's thread knows already when the other records are due.
@@ -143,17 +142,21 @@ void Store::Post(Write write, bool soon) {
 
 // ---- waiting ----
 
+// A request is committed after the records that were posted before it, unless the disk fails.
 absl::Status Store::Flush() {
+  // Shared, because this function does not wait for a hanging disk.
+  const auto outcome = std::make_shared<std::optional<absl::Status>>();
+  const auto done = [this, outcome](const absl::Status& status) {
+    MutexLock lock(mutex_);
+    *outcome = status;
+  };
+  Post({.change = [](Database&) {}, .done = done, .is_request = true}, true);
   MutexLock lock(mutex_);
-  const int64_t last = recorded_, rejected_before = rejected_;
-  hurry_ |= settled_ < last;
-  posted_.NotifyOne();
-  while (!closing_ && settled_ < last && rejected_ == rejected_before) {
+  while (!*outcome) {
     if (stalled()) return Stalled();
     written_.WaitUntil(mutex_, SteadyNow() + kBetweenLooks);
   }
-  if (closing_) return Closed();
-  return settled_ >= last ? absl::OkStatus() : absl::UnavailableError(failure_);
+  return failing_ ? absl::UnavailableError(failure_) : **outcome;
 }
 
 void Store::AwaitSwept() {

@@ -116,8 +116,8 @@ class Store {
   // Returns when few enough writes are pending, or the store is closing.
   void AwaitRoom();
 
-  // When this returns OK, all records posted before the call are on disk. Returns UNAVAILABLE when
-  // the disk rejects one of them, or hangs.
+  // When this returns OK, all records posted before the call are on disk. Returns UNAVAILABLE if
+  // the disk fails or hangs.
   absl::Status Flush();
 
   // For tests: returns when the space of all deletions so far is free.
@@ -239,11 +239,8 @@ class Store {
   Writes records_ ABSL_GUARDED_BY(mutex_);
   Writes requests_ ABSL_GUARDED_BY(mutex_);
   size_t in_batch_ ABSL_GUARDED_BY(mutex_) = 0;
-  size_t bytes_ ABSL_GUARDED_BY(mutex_) = 0;      // of pending writes and of the batch
-  int64_t recorded_ ABSL_GUARDED_BY(mutex_) = 0;  // records posted,
-  int64_t settled_ ABSL_GUARDED_BY(mutex_) = 0;   // and those of them that are settled
-  int64_t rejected_ ABSL_GUARDED_BY(mutex_) = 0;  // batches of which the disk rejected records
-  bool hurry_ ABSL_GUARDED_BY(mutex_) = false;    // the pending records are not delayed
+  size_t bytes_ ABSL_GUARDED_BY(mutex_) = 0;    // of pending writes and of the batch
+  bool hurry_ ABSL_GUARDED_BY(mutex_) = false;  // the pending records are not delayed
   bool failing_ ABSL_GUARDED_BY(mutex_) = false;
   std::string failure_ ABSL_GUARDED_BY(mutex_);  // the last failure that was logged
   Clock::time_point retry_time_ ABSL_GUARDED_BY(mutex_);

@@ -216,13 +216,11 @@ void Store::NoteSweep(const absl::Status& status, bool has_advanced) {
 }
 
 void Store::Settle(Writes& batch, size_t first, size_t last) {
-  int64_t records = 0;
   {
     MutexLock lock(mutex_);
     in_batch_ -= last - first;
     for (size_t i = first; i < last; ++i) {
       bytes_ -= batch[i].bytes;
-      records += batch[i].is_request ? 0 : 1;
       if (batch[i].frees_space) next_sweep_ = SteadyNow();
     }
   }
@@ -233,7 +231,6 @@ void Store::Settle(Writes& batch, size_t first, size_t last) {
     write.done = nullptr;
   }
   MutexLock lock(mutex_);
-  settled_ += records;
   written_.NotifyAll();
 }
 
@@ -246,14 +243,12 @@ void Store::SettleFailed(Batch batch, size_t first, const absl::Status& failure)
   for (size_t i = first; i < writes.size(); ++i) {
     Write& write = writes[i];
     if (write.is_request) TryAgain(writes, i, failure);
-    // Records are settled in their order: Flush counts them.
-    const bool is_settled = write.outcome || write.superseded;
-    if (is_settled && (write.is_request || again.empty())) {
-      has_failed |= write.outcome && IsOfTheDisk(*write.outcome);
-      Settle(writes, i, i + 1);
-    } else {
+    if (!write.outcome && !write.superseded) {
       again.push_back(std::move(write));
+      continue;
     }
+    has_failed |= write.outcome && IsOfTheDisk(*write.outcome);
+    Settle(writes, i, i + 1);
   }
   if (!has_failed && again.empty()) NoteHealth(absl::OkStatus());  // every write fitted alone
   Requeue(std::move(again));
@@ -262,8 +257,6 @@ void Store::SettleFailed(Batch batch, size_t first, const absl::Status& failure)
 void Store::Requeue(Writes again) {
   MutexLock lock(mutex_);
   in_batch_ = 0;
-  if (again.empty()) return;
-  ++rejected_;
   if (!closing_) {
     records_.insert(records_.begin(), std::make_move_iterator(again.begin()),
                     std::make_move_iterator(again.end()));
