@@ -442,7 +442,7 @@ TEST(DiskFailure, OnAFullDiskRequestsGoBeforeRecordsThatDoNotFit) {
   EXPECT_TRUE(store.failing());
   EXPECT_OK(scene.Delete());
   EXPECT_TRUE(store.failing());
-  EXPECT_EQ(store.counts().pending_writes, 1);
+  AwaitThat([&] { return store.counts().pending_writes == 1; });  // after the sweeper's steps
   scene.disk().StopRefusing();
   AwaitWritten(store);
   store.AwaitSwept();
