@@ -210,7 +210,10 @@ class Store {
   // failed.
   absl::Status CommitGroup(Writes& batch, size_t first, size_t last);
   void BeginGroup();
-  void RunChange(Write& write);
+  absl::Status RunChange(const Change& change);  // not OK: it can never succeed
+  void RunRequest(Write& request);
+  bool RunRecord(Write& record);  // false: it is rejected, and the group begins again without it
+  void NoteCommitted(Writes& batch, size_t first, size_t last) ABSL_LOCKS_EXCLUDED(mutex_);
   // Sets the outcome of a request whose group failed. On a full disk it is tried alone.
   void TryAgain(Writes& batch, size_t request, const absl::Status& failure);
   void WriteLogBack();
