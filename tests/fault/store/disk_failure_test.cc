@@ -305,20 +305,23 @@ TEST(DiskFailure, ADiskErrorAtTheStartIsNotReportedAsDamage) {
   }
 }
 
-// The refusal may be about a change of the same group, which is rolled back.
+// The request is refused because of a result in its group. The result does not fit on the disk, so
+// the request runs again without it.
 TEST(DiskFailure, ARefusalIsNotToldIfItsGroupFails) {
   FaultDisk disk;
   Store::Options options;
   options.delay = kNever;
+  options.retry = std::chrono::milliseconds(1);
   options.stall = kNever;
+  options.reserve_bytes = 0;
   options.vfs = disk.vfs();
   ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(kStorePath, options));
-  disk.Refuse(Refusal::kWriteError, disk.operation_count());
-  store->RecordChunk(1, 0, 5, "chunk");
+  disk.SetCapacity(disk.bytes_used() + 100'000);
+  store->RecordResult(99, {.point = 0, .samples = 1, .result = std::string(400'000, 'x')});
   const auto refuse_if_there = [](Database& database) {
-    if (!ReadChunks(database, 1, 0).empty()) database.Fail(absl::AlreadyExistsError("a chunk"));
+    if (CountResults(database, 99) > 0) database.Fail(absl::AlreadyExistsError("a result"));
   };
-  EXPECT_THAT(store->Commit(refuse_if_there), StatusIs(absl::StatusCode::kUnavailable));
+  EXPECT_OK(store->Commit(refuse_if_there));
   disk.StopRefusing();
   AwaitWritten(*store);
   EXPECT_THAT(store->Commit(refuse_if_there), StatusIs(absl::StatusCode::kAlreadyExists));
