@@ -3,7 +3,7 @@
 
 #include "ballpiston/v1/ensemble.pb.h"
 #include "server/api/request_check.h"
-#include "server/jobs/job_filter.h"
+#include "server/jobs/job_list.h"
 
 namespace ballpiston::server {
 

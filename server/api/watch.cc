@@ -93,7 +93,7 @@ class Watch {
   v1::WatchEnsembleJobResponse message_;
 
   std::string id_;
-  WatchedJob job_;
+  FoundJob job_;
   std::string told_progress_;
   JobState told_as_ = v1::EnsembleJob::STATE_UNSPECIFIED;  // the last state that was sent
   bool has_told_end_ = false;
@@ -108,7 +108,7 @@ absl::Status Watch::FindJob() {
   RequestCheck check;
   id_ = check.JobId("name", request_.name());
   if (!check.ok()) return check.status();
-  absl::StatusOr<WatchedJob> job = book_.FindWatched(reader_.caller(), id_);
+  absl::StatusOr<FoundJob> job = book_.FindWatched(reader_.caller(), id_);
   if (!job.ok()) return job.status();
   job_ = *std::move(job);
   ReadToken();
@@ -254,7 +254,7 @@ std::string Watch::Token() const {
 void Watch::ReadToken() {
   const std::optional<ResumeToken> told = ParseResumeToken(request_.resume_token());
   if (!told || told->job != id_ || told->restarts != job_.record.restarts ||
-      told->finished > job_.last_finished) {
+      told->finished > job_.last_finished()) {
     return;
   }
   told_finished_ = told->finished;

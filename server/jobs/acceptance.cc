@@ -4,7 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/convert/errors.h"
-#include "server/store/job_table.h"
+#include "server/sha256.h"
 #include "server/store/sweeper.h"
 
 namespace ballpiston::server {
@@ -12,110 +12,66 @@ namespace {
 
 bool Exceeds(double value, double limit) { return limit > 0 && value > limit; }
 
-// These set `refused` to the reason why one more job of the principal is not accepted, if there is
-// one. They return the errors of the store.
-
-absl::Status CheckQueue(Database& database, const Limits& limits, const JobRecord& job,
-                        absl::Status& refused) {
-  const absl::StatusOr<Load> all = ActiveLoad(database, std::nullopt);
-  if (!all.ok()) return all.status();
-  const absl::StatusOr<Load> own = ActiveLoad(database, job.principal);
-  if (!own.ok()) return own.status();
+// Refuses one more job of the principal if it would exceed a limit.
+void CheckQueue(Database& database, const Limits& limits, const JobRecord& job) {
+  const Load load = ActiveLoad(database, job.principal);
   const std::string& principal = job.principal;
   const auto check = [&](int64_t with_job, int64_t most, const char* reason, const char* flag,
                          const std::string& what) {
     if (most == 0 || with_job <= most) return;
-    refused.Update(LimitExceeded(reason, what, flag, static_cast<double>(most)));
+    database.Fail(LimitExceeded(reason, what, flag, static_cast<double>(most)));
   };
-  check(all->jobs + 1, limits.max_active_jobs, "QUEUE_FULL", "max-active-jobs",
-        absl::StrCat(all->jobs, " jobs are active"));
-  check(own->jobs + 1, limits.max_active_jobs_per_principal, "TOO_MANY_JOBS",
+  check(load.jobs + 1, limits.max_active_jobs, "QUEUE_FULL", "max-active-jobs",
+        absl::StrCat(load.jobs, " jobs are active"));
+  check(load.own_jobs + 1, limits.max_active_jobs_per_principal, "TOO_MANY_JOBS",
         "max-active-jobs-per-principal",
-        absl::StrCat(principal, " has ", own->jobs, " active jobs already"));
-  const int64_t all_points = all->points + job.points, own_points = own->points + job.points;
-  check(all_points, limits.max_active_points, "TOO_MANY_ACTIVE_POINTS", "max-active-points",
-        absl::StrCat("active jobs would have ", all_points, " points with this one"));
+        absl::StrCat(principal, " has ", load.own_jobs, " active jobs already"));
+  const int64_t points = load.points + job.points, own_points = load.own_points + job.points;
+  check(points, limits.max_active_points, "TOO_MANY_ACTIVE_POINTS", "max-active-points",
+        absl::StrCat("active jobs would have ", points, " points with this one"));
   check(own_points, limits.max_active_points_per_principal, "TOO_MANY_ACTIVE_POINTS",
         "max-active-points-per-principal",
         absl::StrCat(principal, "'s active jobs would have ", own_points, " points with this one"));
-  return absl::OkStatus();
 }
 
 // Results expire before the store is full, but those of pinned and active jobs do not.
-absl::Status CheckStoreSize(Database& database, const Limits& limits, absl::Status& refused) {
-  if (limits.max_store_bytes == 0) return absl::OkStatus();
-  const absl::StatusOr<int64_t> used = UsedBytes(database);
-  if (!used.ok()) return used.status();
-  if (*used <= limits.max_store_bytes) return absl::OkStatus();
-  refused =
+void CheckStoreSize(Database& database, const Limits& limits) {
+  if (limits.max_store_bytes == 0) return;
+  const int64_t used = UsedBytes(database);
+  if (used <= limits.max_store_bytes) return;
+  database.Fail(
       LimitExceeded("TOO_MANY_STORED_BYTES",
-                    absl::StrCat("the store holds ", *used, " bytes: unpin or delete some jobs"),
-                    "max-store-bytes", static_cast<double>(limits.max_store_bytes));
-  return absl::OkStatus();
+                    absl::StrCat("the store holds ", used, " bytes: unpin or delete some jobs"),
+                    "max-store-bytes", static_cast<double>(limits.max_store_bytes)));
 }
 
-absl::Status CheckRoom(Database& database, const Limits& limits, const JobRecord& job,
-                       absl::Status& refused) {
-  const absl::Status counted = CheckQueue(database, limits, job, refused);
-  return counted.ok() && refused.ok() ? CheckStoreSize(database, limits, refused) : counted;
-}
-
-// A job has at most this many stored requests. Later ones that it answers are not stored.
-constexpr int64_t kMostRequestsOfJob = 1000;
-
-// A retry of a request that is not stored returns the same job, because the job is stored.
-absl::StatusOr<bool> IsWorthKeeping(Database& database, const Acceptance& acceptance, int64_t job) {
-  if (acceptance.request.request_id.empty() || acceptance.replay) return false;
-  if (!acceptance.answered_from_store) return true;
-  const auto kept = CountRequests(database, job, kMostRequestsOfJob);
-  if (!kept.ok()) return kept.status();
-  return *kept < kMostRequestsOfJob;
-}
-
-absl::Status KeepRequest(Database& database, Acceptance& acceptance, int64_t job) {
-  const absl::StatusOr<bool> kept = IsWorthKeeping(database, acceptance, job);
-  if (!kept.ok() || !*kept) return kept.status();
-  acceptance.request.job = job;
-  acceptance.request.answered_from_store = acceptance.answered_from_store;
-  return InsertRequest(database, acceptance.request);
-}
-
-absl::Status Replay(Database& database, const RequestRecord& request, Acceptance& acceptance) {
-  auto job = FindJobBySequence(database, request.job, Grid::kIncluded);
-  if (!job.ok()) return job.status();
-  acceptance.earlier = *std::move(job);
-  acceptance.replay = true;
-  acceptance.answered_from_store = request.answered_from_store;
-  if (request.payload != acceptance.request.payload) {
-    acceptance.refused = RequestIdReused(request.request_id);
+std::optional<EarlierJob> FindOriginal(Database& database, const Acceptance& acceptance) {
+  const auto request = FindRequest(database, acceptance.record.principal, acceptance.request_id);
+  if (!request) return std::nullopt;
+  if (request->payload != acceptance.payload) {
+    database.Fail(RequestIdReused(acceptance.request_id));
   }
-  return absl::OkStatus();
+  auto job = FindJobBySequence(database, request->job, Grid::kIncluded);
+  return job ? std::optional(EarlierJob{*std::move(job)}) : std::nullopt;
 }
 
-absl::Status FindEarlier(Database& database, Acceptance& acceptance) {
-  const std::string& principal = acceptance.record.principal;
-  if (!acceptance.request.request_id.empty()) {
-    const auto request = FindRequest(database, principal, acceptance.request.request_id);
-    if (!request.ok()) return request.status();
-    if (*request) return Replay(database, **request, acceptance);
-  }
-  if (acceptance.fresh) return absl::OkStatus();
-  auto answer = FindAnswer(database, principal, acceptance.record.question);
-  if (!answer.ok()) return answer.status();
-  acceptance.earlier = *std::move(answer);
-  acceptance.answered_from_store = acceptance.earlier.has_value();
-  return absl::OkStatus();
+std::optional<EarlierJob> FindEarlier(Database& database, const Acceptance& acceptance) {
+  if (auto original = FindOriginal(database, acceptance)) return original;
+  if (acceptance.fresh) return std::nullopt;
+  const JobRecord& record = acceptance.record;
+  auto answer = FindAnswer(database, record.principal, record.question);
+  return answer ? std::optional(EarlierJob{*std::move(answer), true}) : std::nullopt;
 }
 
 }  // namespace
 
-absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits) {
-  const double points = static_cast<double>(PointCount(spec));
+absl::Status CheckSize(const CheckedSpec& checked, const Limits& limits) {
+  const double points = static_cast<double>(PointCount(checked.spec));
   if (Exceeds(points, static_cast<double>(limits.max_points_per_job))) {
     return LimitExceeded("TOO_MANY_POINTS", absl::StrCat("the grid has ", points, " points"),
                          "max-points-per-job", static_cast<double>(limits.max_points_per_job));
   }
-  const Target& target = spec.target;
+  const Target& target = checked.spec.target;
   const bool open_ended = target.tolerance || target.budget_seconds;
   const int64_t of_a_point =
       target.samples.value_or(target.collisions.value_or(open_ended ? 0 : kDefaultSamples));
@@ -125,23 +81,37 @@ absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits) {
                        "max-samples-per-job", limits.max_samples_per_job);
 }
 
-absl::Status Judge(Database& database, const Limits& limits, Acceptance& acceptance) {
-  acceptance.earlier.reset();
-  acceptance.replay = acceptance.answered_from_store = false;
-  acceptance.refused = absl::OkStatus();
-  const absl::Status looked = FindEarlier(database, acceptance);
-  if (!looked.ok() || acceptance.earlier || !acceptance.refused.ok()) return looked;
-  acceptance.refused = acceptance.fits;
-  if (!acceptance.refused.ok()) return absl::OkStatus();
-  return CheckRoom(database, limits, acceptance.record, acceptance.refused);
+std::optional<EarlierJob> Judge(Database& database, const Limits& limits,
+                                const Acceptance& acceptance) {
+  std::optional<EarlierJob> earlier = FindEarlier(database, acceptance);
+  if (earlier) return earlier;
+  database.Fail(acceptance.fits);
+  CheckQueue(database, limits, acceptance.record);
+  CheckStoreSize(database, limits);
+  return std::nullopt;
 }
 
-absl::Status Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
-  const absl::Status judged = Judge(database, limits, acceptance);
-  if (!judged.ok() || !acceptance.refused.ok()) return judged;
-  if (acceptance.earlier) return KeepRequest(database, acceptance, acceptance.earlier->sequence);
-  const absl::Status made = InsertJob(database, acceptance.record);
-  return made.ok() ? KeepRequest(database, acceptance, acceptance.record.sequence) : made;
+// An answer from the store stores no request: a retry finds the same answer.
+std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
+  std::optional<EarlierJob> earlier = Judge(database, limits, acceptance);
+  if (earlier) return earlier;
+  JobRecord& record = acceptance.record;
+  InsertJob(database, record);
+  if (!acceptance.request_id.empty()) {
+    InsertRequest(database, record.principal, acceptance.request_id,
+                  {.payload = acceptance.payload, .job = record.sequence});
+  }
+  return std::nullopt;
+}
+
+std::string QuestionOf(const v1::EnsembleSpec& spec, const std::string& engine_version) {
+  if (spec.target().has_budget()) return std::string();
+  return Sha256(absl::StrCat(engine_version, "\n", QuestionBytes(spec)));
+}
+
+std::string PayloadOf(const v1::CreateEnsembleJobRequest& request) {
+  return Sha256(absl::StrCat(request.fresh() ? "fresh" : "", "\n", request.priority(), "\n",
+                             QuestionBytes(request.spec())));
 }
 
 }  // namespace ballpiston::server

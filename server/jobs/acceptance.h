@@ -8,34 +8,46 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "absl/status/status.h"
-#include "core/ensemble/ensemble_spec.h"
+#include "ballpiston/v1/ensemble.pb.h"
+#include "server/convert/spec.h"
 #include "server/limits.h"
 #include "server/store/job_record.h"
-#include "server/store/request_table.h"
+#include "server/store/job_table.h"
 #include "server/store/sqlite.h"
 
 namespace ballpiston::server {
 
 struct Acceptance {
-  JobRecord record;       // the new job, if there is one
-  RequestRecord request;  // not stored if its id is empty
-  bool fresh = false;     // do not return an earlier job
-  absl::Status fits;      // of CheckSize; used for new jobs only
-
-  // The outcome. If `earlier` is empty and `refused` is OK, a new job is to be made.
-  std::optional<JobRecord> earlier;
-  bool replay = false;               // the request is a retry, and `earlier` its original job
-  bool answered_from_store = false;  // `earlier` answers the question, now or originally
-  absl::Status refused;              // INVALID_ARGUMENT or RESOURCE_EXHAUSTED
+  JobRecord record;        // the new job, if there is one
+  std::string request_id;  // unique for the principal; may be empty
+  std::string payload;     // a hash of the request without its id
+  bool fresh = false;      // do not return an earlier job
+  absl::Status fits;       // of CheckSize; used for new jobs only
 };
 
-// Both set the outcome. Accept then stores the new job or the request. Not OK: SQLite failed.
-absl::Status Judge(Database& database, const Limits& limits, Acceptance& acceptance);
-absl::Status Accept(Database& database, const Limits& limits, Acceptance& acceptance);
+// A job that answers the request.
+struct EarlierJob {
+  JobRecord record;
+  bool answered_from_store = false;  // it answers the question; else the request is its own again
+};
+
+// Empty: a new job is to be made. INVALID_ARGUMENT or RESOURCE_EXHAUSTED: the request is refused.
+std::optional<EarlierJob> Judge(Database& database, const Limits& limits,
+                                const Acceptance& acceptance);
+// The same; then stores the new job and its request.
+std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance);
 
 // RESOURCE_EXHAUSTED  TOO_MANY_POINTS, TOO_MANY_SAMPLES
-absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits);
+absl::Status CheckSize(const CheckedSpec& checked, const Limits& limits);
+
+// A hash of everything that determines the answer: the whole specification with its seed, and the
+// engine's version. Empty if the job has a budget, because the answer then depends on the machine.
+std::string QuestionOf(const v1::EnsembleSpec& spec, const std::string& engine_version);
+
+// A hash of the whole request except its id.
+std::string PayloadOf(const v1::CreateEnsembleJobRequest& request);
 
 }  // namespace ballpiston::server

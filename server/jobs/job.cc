@@ -3,26 +3,43 @@
 #include <algorithm>
 #include <utility>
 
+#include "absl/container/flat_hash_set.h"
 #include "server/convert/spec.h"
+#include "server/jobs/job_message.h"
 
 namespace ballpiston::server {
 
-Job::Job(const JobRecord& record)
-    : sequence_(record.sequence),
-      id_(record.id),
-      principal_(record.principal),
-      restarts_(record.restarts),
-      points_(record.points),
-      open_ended_(
-          IsOpenEnded(SpecFromBytes({record.spec.rest}).value_or(v1::EnsembleSpec()).target())),
-      numbers_{.bytes = record.bytes} {}
+namespace {
 
-LiveNumbers Job::Numbers() const {
+JobRecord WithoutSpec(JobRecord row) {
+  row.spec = {};
+  return row;
+}
+
+}  // namespace
+
+void LeaveOutFinished(v1::StatisticsSnapshot& message) {
+  absl::flat_hash_set<int32_t> finished;
+  for (const v1::PointResult& point : message.finished_points()) finished.insert(point.index());
+  auto& points = *message.mutable_points();
+  const auto is_finished = [&](const v1::PointResult& point) {
+    return finished.contains(point.index());
+  };
+  points.erase(std::remove_if(points.begin(), points.end(), is_finished), points.end());
+}
+
+Job::Job(JobRecord row)
+    : open_ended_(
+          IsOpenEnded(SpecFromBytes({row.spec.rest}).value_or(v1::EnsembleSpec()).target())),
+      row_(WithoutSpec(std::move(row))),
+      numbers_(row_.numbers) {}
+
+JobNumbers Job::Numbers() const {
   MutexLock lock(mutex_);
   return numbers_;
 }
 
-v1::JobProgress Job::Progress() const { return ProgressOf(points_, open_ended_, Numbers()); }
+v1::JobProgress Job::Progress() const { return ProgressOf(row_.points, open_ended_, Numbers()); }
 
 void Job::NoteStateChange() {
   MutexLock lock(mutex_);
@@ -42,21 +59,10 @@ void Job::StopWaiting() {
   state_changed_.NotifyAll();
 }
 
-uint64_t Job::AddSamples(double samples, double share_of_point) {
+uint64_t Job::Add(const JobNumbers& more) {
   MutexLock lock(mutex_);
-  numbers_.samples += samples;
-  numbers_.points_computed += share_of_point;
+  numbers_.Add(more);
   return ++last_change_;
-}
-
-void Job::AddWork(double seconds) {
-  MutexLock lock(mutex_);
-  numbers_.work += seconds;
-}
-
-void Job::AddBytes(int64_t bytes) {
-  MutexLock lock(mutex_);
-  numbers_.bytes += bytes;
 }
 
 void Job::AddFinishedPoint(FinishedPoint point) {
@@ -71,12 +77,13 @@ void Job::AddFinishedPoint(FinishedPoint point) {
   ++last_change_;
 }
 
-void Job::AddRestoredPoints(int64_t points, double samples, int64_t last) {
+void Job::AddRestoredPoints(const std::vector<PointSize>& points) {
   MutexLock lock(mutex_);
-  numbers_.points_done += points;
-  numbers_.samples += samples;
-  numbers_.points_computed += static_cast<double>(points);
-  last_finished_ = last_forgotten_ = last;
+  for (const PointSize& point : points) {
+    numbers_.Add(
+        {.points_done = 1, .samples = point.samples, .bytes = point.bytes, .points_computed = 1});
+  }
+  last_finished_ = last_forgotten_ = numbers_.points_done;
   ++last_change_;
 }
 

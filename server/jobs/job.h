@@ -23,11 +23,11 @@
 #include <vector>
 
 #include "ballpiston/v1/ensemble.pb.h"
-#include "server/jobs/job_message.h"
-#include "server/jobs/job_snapshot.h"
+#include "ballpiston/v1/result.pb.h"
 #include "server/jobs/shared_copy.h"
 #include "server/mutex.h"
 #include "server/store/job_record.h"
+#include "server/store/point_tables.h"
 
 namespace ballpiston::server {
 
@@ -44,17 +44,31 @@ struct StoredJob {
   JobRecord record;
 };
 
+// The job's unfinished points at one moment.
+struct JobSnapshot {
+  struct Point {
+    uint64_t change = 0;     // the number of its last change
+    v1::PointResult result;  // without histograms and curves
+  };
+
+  uint64_t change = 0;        // the job's last change before the snapshot
+  int64_t finished = 0;       // the number of the last finished point then: none of `points` has it
+                              // or a smaller one
+  std::vector<Point> points;  // newest first
+};
+
+// Removes those points from the unfinished ones of a message that are also among its finished ones:
+// they were finished after the snapshot was made.
+void LeaveOutFinished(v1::StatisticsSnapshot& message);
+
 class Job {
  public:
-  explicit Job(const JobRecord& record);
+  explicit Job(JobRecord row);
 
-  int64_t sequence() const { return sequence_; }
-  const std::string& id() const { return id_; }
-  const std::string& principal() const { return principal_; }
-  int64_t restarts() const { return restarts_; }
-  int64_t points() const { return points_; }
+  // The row when the job became active, without its specification.
+  const JobRecord& row() const { return row_; }
 
-  LiveNumbers Numbers() const;
+  JobNumbers Numbers() const;
   v1::JobProgress Progress() const;
 
   // These three take no lock, because a thousand watches call them several times a second.
@@ -69,16 +83,12 @@ class Job {
   // Ends all waits, now and later. Call it when the server stops.
   void StopWaiting();
 
-  // Adds the samples of merged blocks or of a restored checkpoint, and their share of the point.
-  // Returns the number of the change.
-  uint64_t AddSamples(double samples, double share_of_point);
-  void AddWork(double seconds);
-  void AddBytes(int64_t bytes);  // of results
+  // Adds what was computed, or restored from a checkpoint. Returns the number of the change.
+  uint64_t Add(const JobNumbers& more);
   // Adds a point that is stored now. Call in the order of the points' numbers.
   void AddFinishedPoint(FinishedPoint point);
-  // Adds points that an earlier process stored; `last` is the number of the last one. Call before
-  // AddFinishedPoint.
-  void AddRestoredPoints(int64_t points, double samples, int64_t last);
+  // Adds the points that an earlier process stored. Call before AddFinishedPoint.
+  void AddRestoredPoints(const std::vector<PointSize>& points);
 
   // The finished points after number `after`, oldest first, at most `limit`. Empty if some of these
   // points are no longer in memory.
@@ -88,17 +98,13 @@ class Job {
   SharedCopy<StoredJob>& stored() { return stored_; }
 
  private:
-  const int64_t sequence_;
-  const std::string id_;
-  const std::string principal_;
-  const int64_t restarts_;
-  const int64_t points_;
   const bool open_ended_;  // the number of samples is not known in advance
+  const JobRecord row_;
 
   mutable Mutex mutex_;
   Condition state_changed_;
   bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
-  LiveNumbers numbers_ ABSL_GUARDED_BY(mutex_);
+  JobNumbers numbers_ ABSL_GUARDED_BY(mutex_);
   std::atomic<uint64_t> last_change_ = 1;
   std::atomic<uint64_t> last_state_change_ = 1;
   std::atomic<int64_t> last_finished_ = 0;

@@ -1,19 +1,15 @@
 // All jobs: the operations of the API's methods, without gRPC.
 //
-// A job is a row of the store. While it is active, the book also has its numbers (job.h), and the
+// A job is a row of the store. While it is active, memory also has its numbers (job.h), and the
 // scheduler its run. Every method reads the job's state from the committed row, so no client sees a
-// state that a restart could take back, or an older state after a newer one. A job is in the book
-// before its row is committed, and until after its end is committed: an active row whose job is not
-// in the book has ended since it was read.
+// state that a restart could take back, or an older state after a newer one.
 //
 // Methods that write wait for the disk. Errors have reasons (server/convert/errors.h). Thread-safe.
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -26,11 +22,10 @@
 #include "server/convert/spec.h"
 #include "server/door/principal.h"
 #include "server/jobs/acceptance.h"
+#include "server/jobs/active_jobs.h"
 #include "server/jobs/job.h"
-#include "server/jobs/job_filter.h"
-#include "server/jobs/retention.h"
+#include "server/jobs/job_list.h"
 #include "server/limits.h"
-#include "server/mutex.h"
 #include "server/scheduling/crash_record.h"
 #include "server/scheduling/scheduler.h"
 #include "server/store/job_table.h"
@@ -38,38 +33,19 @@
 
 namespace ballpiston::server {
 
-// Limits of what one page reads from the store to find matching jobs. 2,000 small jobs take 4 ms;
-// 16 MiB of large jobs take 12 ms.
-inline constexpr int kMaxJobsRead = 2000;
-inline constexpr size_t kMaxJobBytesRead = size_t{16} << 20;
-
 inline constexpr absl::Duration kSoonToExpire = absl::Hours(7 * 24);
 
-struct JobsQuery {
-  JobFilter filter = {};
-  Grid grid = Grid::kIncluded;
-  int64_t before = 0;  // jobs older than this sequence, newest first
-  int max_jobs = 1;
-  size_t max_bytes = 0;  // ends a page that has at least one job
-  // These also end a page that has no job yet. A page reads at least one job.
-  int max_jobs_read = kMaxJobsRead;
-  size_t max_bytes_read = kMaxJobBytesRead;
-};
-
-struct JobsPage {
-  std::vector<v1::EnsembleJob> jobs;
-  std::optional<int64_t> next_before;  // where the next page begins; empty: this is the last page
-};
+using JobsPage = PageOfJobs<v1::EnsembleJob>;
 
 // A job's row, and its numbers in memory.
 struct FoundJob {
   JobRecord record;
   std::shared_ptr<Job> active = nullptr;  // null if it has ended
-};
 
-// The data of a job that a watch needs.
-struct WatchedJob : FoundJob {  // without its grid
-  int64_t last_finished = 0;    // the number of its last finished point
+  // The number of the last finished point.
+  int64_t last_finished() const {
+    return active != nullptr ? active->last_finished() : record.numbers.points_done;
+  }
 };
 
 struct ResultsQuery {
@@ -84,13 +60,6 @@ struct ResultsPage {
   std::optional<int64_t> next_point;  // empty: this is the last page
 };
 
-// Jobs that ended in this book's life, by state.
-struct EndedJobs {
-  uint64_t succeeded = 0;
-  uint64_t failed = 0;
-  uint64_t cancelled = 0;
-};
-
 class JobBook {
  public:
   // Store and scheduler must outlive this.
@@ -99,7 +68,7 @@ class JobBook {
   ~JobBook();  // shuts down, and closes the store
 
   // Resumes the unfinished jobs of an earlier process. Call before anything else.
-  absl::Status Resume();
+  absl::Status Resume() { return active_.Resume(); }
 
   // Stops the computation, and all waits for a change of a job. Unfinished jobs stay in the store
   // as they are.
@@ -117,13 +86,16 @@ class JobBook {
                                          const CheckedSpec& checked);
 
   // For all methods below, a job that the caller may not see does not exist.
-  absl::StatusOr<v1::EnsembleJob> Get(const Principal& caller, const std::string& id,
-                                      Grid grid = Grid::kIncluded);
-  absl::StatusOr<JobsPage> List(const Principal& caller, const JobsQuery& query);
   absl::StatusOr<v1::EnsembleJob> Cancel(const Principal& caller, const std::string& id,
                                          const std::string& request_id);
   absl::Status Delete(const Principal& caller, const std::string& id);
   absl::StatusOr<v1::EnsembleJob> Pin(const Principal& caller, const std::string& id, bool pinned);
+
+  // ---- these only read (job_book_reads.cc) ----
+
+  absl::StatusOr<v1::EnsembleJob> Get(const Principal& caller, const std::string& id,
+                                      Grid grid = Grid::kIncluded);
+  absl::StatusOr<JobsPage> List(const Principal& caller, const JobsQuery& query);
   absl::StatusOr<ResultsPage> Results(const Principal& caller, const std::string& id,
                                       const ResultsQuery& query);
   absl::StatusOr<v1::PointResult> Result(const Principal& caller, const std::string& id,
@@ -134,14 +106,17 @@ class JobBook {
                                                                   const std::string& id,
                                                                   int64_t point);
 
-  absl::StatusOr<WatchedJob> FindWatched(const Principal& caller, const std::string& id);
+  // The job that clients see. `active`: null if it has ended.
+  v1::EnsembleJob Message(const JobRecord& record, const Job* active) const;
+
+  // ---- for watches ----
+
+  // Without its grid.
+  absl::StatusOr<FoundJob> FindWatched(const Principal& caller, const std::string& id);
 
   // The row of a job that is or was active, without its grid; one read serves all watches. It is
   // not older than the job's last change of state, or its last FindWatched.
   absl::StatusOr<std::shared_ptr<const StoredJob>> Stored(Job& job);
-
-  // The job that clients see. `active`: null if it has ended.
-  v1::EnsembleJob Message(const JobRecord& record, const Job* active) const;
 
   // The newest `limit` unfinished points of the job. The snapshot is at most `max_age` old.
   std::shared_ptr<const JobSnapshot> Snapshot(Job& job, std::chrono::milliseconds max_age,
@@ -152,54 +127,38 @@ class JobBook {
   absl::StatusOr<std::vector<FinishedPoint>> FinishedAfter(int64_t sequence, const Job* active,
                                                            int64_t after, size_t limit);
 
+  // ---- the limits, and what the server's status shows ----
+
   // Lets results expire at the time `now`. Call about once a second, from one thread at a time.
   void KeepLimits(absl::Time now);
 
   // Jobs whose results expire within kSoonToExpire. 0 if the store cannot be read.
   int64_t CountExpiring(absl::Time now);
-
-  size_t active_jobs() const;
   std::map<std::string, PrincipalJobs> JobsByPrincipal();  // empty if the store cannot be read
-  EndedJobs ended_jobs() const;
+  size_t active_jobs() const { return active_.size(); }
+  EndedJobs ended_jobs() const { return active_.ended(); }
   int64_t engine_crashes() const { return crashes_->counted_deaths(); }
 
  private:
-  JobRecord NewRecord(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
-                      const CheckedSpec& checked) const;
   Acceptance NewAcceptance(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
                            const CheckedSpec& checked) const;
-  absl::StatusOr<v1::EnsembleJob> Answer(const Principal& caller, const Acceptance& acceptance);
-  absl::Status RestartOlder(std::vector<JobRecord>& unfinished);
-  absl::Status ResumeJob(const JobRecord& record);
-  absl::Status EndCrashed(const JobRecord& record);
-  std::optional<Suspicion> SuspicionOf(const JobRecord& record);
-  absl::Status EndUnresumable(const JobRecord& record, const absl::Status& why);
-  absl::Status ResumeRun(const JobRecord& record, EnsembleSpec spec);
-  std::shared_ptr<Job> Register(const JobRecord& record);
-  // No effect if the job is not in the book.
-  void Forget(const std::string& id);
-  // Sets the key and the journal of the request.
-  void StartRun(std::shared_ptr<Job> job, const JobRecord& record, RunRequest request);
-  void StartNewRun(std::shared_ptr<Job> job, const JobRecord& record, const CheckedSpec& checked);
-  void CancelRun(const JobRecord& record);
-  void OnEnded(const JobRecord& ended);
-  std::shared_ptr<Job> InBook(const std::string& id) const;  // null: it is not
+  absl::StatusOr<v1::EnsembleJob> Answer(const Principal& caller, const JobRecord& record,
+                                         bool answered_from_store);
+  void StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& checked);
   absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id, Grid grid);
   absl::StatusOr<FoundJob> Find(const Principal& caller, const std::string& id, Grid grid);
-  // The record of a job whose results have not expired.
-  absl::StatusOr<JobRecord> ReadRecordWithResults(const Principal& caller, const std::string& id);
+  // Adds the numbers in memory. If the job has ended since its row was read, reads the row again.
+  absl::StatusOr<FoundJob> WithNumbers(const Principal& caller, JobRecord record, Grid grid);
 
   Store& store_;
   const Limits limits_;
   Scheduler& scheduler_;
   const std::shared_ptr<CrashRecord> crashes_;
-  mutable Mutex mutex_;
-  std::map<std::string, std::shared_ptr<Job>> active_ ABSL_GUARDED_BY(mutex_);  // by id
-  Retention retention_;
+  ActiveJobs active_;
   absl::Status limits_failure_;  // of the last call of KeepLimits
-  std::atomic<uint64_t> succeeded_ = 0;
-  std::atomic<uint64_t> failed_ = 0;
-  std::atomic<uint64_t> cancelled_ = 0;
 };
+
+// The job, or an error of the database: NOT_FOUND if the caller may not see it.
+JobRecord JobOf(Database& database, const Principal& caller, const std::string& id, Grid grid);
 
 }  // namespace ballpiston::server

@@ -2,7 +2,8 @@
 //
 // Order in the store: a checkpoint after the point's earlier ones and its chunks, a point's result
 // after its checkpoints, the end of the job after all of it. Clients see that a point is finished
-// after its result is on disk; the state they read from the job's row. Thread-safe.
+// after its result is on disk; the state they read from the job's row. The journal also writes the
+// log lines about the job's beginning and end. Thread-safe.
 #pragma once
 
 #include <functional>

@@ -11,14 +11,6 @@ namespace {
 // The latest time that a Timestamp can hold.
 constexpr absl::Time kLastTime = absl::FromUnixSeconds(253'402'300'799);
 
-LiveNumbers StoredNumbers(const JobRecord& record) {
-  return {.points_done = record.points_done,
-          .points_computed = static_cast<double>(record.points_done),
-          .samples = record.samples,
-          .work = record.work,
-          .bytes = record.bytes};
-}
-
 void SetTimes(const JobRecord& record, double retain_days, v1::EnsembleJob& job) {
   SetTime(record.create_time, job.mutable_create_time());
   if (record.start_time) SetTime(*record.start_time, job.mutable_start_time());
@@ -40,7 +32,7 @@ void SetTime(absl::Time time, google::protobuf::Timestamp* timestamp) {
 
 bool IsOpenEnded(const v1::Target& target) { return target.has_tolerance() || target.has_budget(); }
 
-v1::JobProgress ProgressOf(int64_t points, bool open_ended, const LiveNumbers& numbers) {
+v1::JobProgress ProgressOf(int64_t points, bool open_ended, const JobNumbers& numbers) {
   v1::JobProgress progress;
   progress.set_points(static_cast<int32_t>(points));
   progress.set_points_done(static_cast<int32_t>(numbers.points_done));
@@ -52,8 +44,7 @@ v1::JobProgress ProgressOf(int64_t points, bool open_ended, const LiveNumbers& n
   return progress;
 }
 
-v1::EnsembleJob JobMessage(const JobRecord& record, const LiveNumbers* live, double retain_days) {
-  const LiveNumbers numbers = live != nullptr ? *live : StoredNumbers(record);
+v1::EnsembleJob JobMessage(const JobRecord& record, const JobNumbers& numbers, double retain_days) {
   v1::EnsembleJob job;
   if (!record.id.empty()) job.set_name(JobName(record.id));
   *job.mutable_spec() = SpecFromBytes(record.spec).value_or(v1::EnsembleSpec());

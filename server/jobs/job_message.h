@@ -10,22 +10,12 @@
 
 namespace ballpiston::server {
 
-// The numbers of an active job.
-struct LiveNumbers {
-  int64_t points_done = 0;     // these are stored
-  double points_computed = 0;  // with the computed shares of unfinished points
-  double samples = 0;
-  double work = 0;    // seconds of processor time in this process
-  int64_t bytes = 0;  // JobRecord::bytes
-};
-
-// `live`: null if the job has ended, or if nothing was computed yet; then the row has the numbers.
-// `retain_days`: results expire after this time; 0: never. A specification that cannot be read is
-// left out.
-v1::EnsembleJob JobMessage(const JobRecord& record, const LiveNumbers* live, double retain_days);
+// `numbers`: those in memory if the job is active. `retain_days`: results expire after this time;
+// 0: never. A specification that cannot be read is left out.
+v1::EnsembleJob JobMessage(const JobRecord& record, const JobNumbers& numbers, double retain_days);
 
 // `open_ended`: there is no fraction.
-v1::JobProgress ProgressOf(int64_t points, bool open_ended, const LiveNumbers& numbers);
+v1::JobProgress ProgressOf(int64_t points, bool open_ended, const JobNumbers& numbers);
 
 // A time in the API's format, to the nanosecond.
 void SetTime(absl::Time time, google::protobuf::Timestamp* timestamp);

@@ -18,7 +18,7 @@
 #include "server/observability/log.h"
 #include "server/processor_time.h"
 #include "server/scheduling/machine_rates.h"
-#include "server/store/pilot_table.h"
+#include "server/store/point_tables.h"
 
 namespace ballpiston::server {
 namespace {
@@ -142,22 +142,19 @@ std::optional<Pilot> ModelLadder::Known(const PilotPlace& place) {
     const auto found = pilots_.find(place);
     if (found != pilots_.end()) return found->second;
   }
-  std::optional<Pilot> stored;
-  const absl::Status read = store_.Read([&](Database& database) {
-    auto found = FindPilot(database, EngineVersion(), place);
-    if (found.ok()) stored = *found;
-    return found.status();
-  });
-  if (!read.ok()) LogError(absl::StrCat("a pilot's result cannot be read: ", read.message()));
-  if (!stored) return std::nullopt;
+  const auto stored =
+      store_.Read([&](Database& database) { return FindPilot(database, EngineVersion(), place); });
+  if (!stored.ok()) {
+    LogError(absl::StrCat("a pilot's result cannot be read: ", stored.status().message()));
+  }
+  if (!stored.ok() || !*stored) return std::nullopt;
   MutexLock lock(mutex_);
-  return pilots_.emplace(place, *stored).first->second;
+  return pilots_.emplace(place, **stored).first->second;
 }
 
 void ModelLadder::KeepPilot(const PilotPlace& place, const Pilot& pilot) {
-  store_.Record([place, pilot](Database& database) {
-    return InsertPilot(database, EngineVersion(), place, pilot);
-  });
+  store_.Record(
+      [place, pilot](Database& database) { InsertPilot(database, EngineVersion(), place, pilot); });
   MutexLock lock(mutex_);
   pilots_.emplace(place, pilot);
 }

@@ -8,22 +8,16 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <utility>
 
+#include "absl/cleanup/cleanup.h"
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "server/store/folder_sync.h"
 #include "server/store/schema.h"
 #include "server/store/sqlite.h"
-#include "server/store/unused_log.h"
 
 namespace ballpiston::server {
 namespace {
-
-absl::Status TargetExists(const std::string& target) {
-  return absl::AlreadyExistsError(
-      absl::StrCat("backup ", target, ": the file exists already; choose another name"));
-}
 
 absl::Status CannotWrite(const std::string& target, int error) {
   const std::string what =
@@ -33,70 +27,36 @@ absl::Status CannotWrite(const std::string& target, int error) {
   return absl::PermissionDeniedError(what);
 }
 
-// An empty file beside the target, for its owner only. The destructor removes it.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const std::string& target) : path_(target + ".XXXXXX") {
-    const int file = mkostemp(path_.data(), O_CLOEXEC);
-    error_ = file < 0 ? errno : 0;
-    if (file >= 0) close(file);
-  }
-  ~TemporaryFile() {
-    if (error_ == 0) unlink(path_.c_str());
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-  int error() const { return error_; }  // 0: the file was created
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-  int error_ = 0;
-};
-
-absl::Status Sync(const std::string& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool synced = file >= 0 && fsync(file) == 0;
-  const int error = errno;
-  if (file >= 0) close(file);
-  return synced ? absl::OkStatus() : CannotWrite(path, error);
-}
-
-// Does not overwrite a file that was created meanwhile.
-absl::Status MoveTo(const std::string& path, const std::string& target) {
-  if (renameat2(AT_FDCWD, path.c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE) == 0) {
-    return absl::OkStatus();
-  }
-  if (errno == EEXIST) return TargetExists(target);
-  // This file system cannot refuse to overwrite. A moment ago the target did not exist.
-  if (errno == EINVAL && rename(path.c_str(), target.c_str()) == 0) return absl::OkStatus();
-  return CannotWrite(target, errno);
-}
-
 }  // namespace
 
 absl::StatusOr<StoreSummary> BackupStore(const std::string& store, const std::string& target) {
   struct stat found {};
-  if (lstat(target.c_str(), &found) == 0) return TargetExists(target);
-  const UnusedLog log(store);
+  if (lstat(target.c_str(), &found) == 0) {
+    return absl::AlreadyExistsError(
+        absl::StrCat("backup ", target, ": the file exists already; choose another name"));
+  }
   const auto source = OpenStoreToRead(store);
   if (!source.ok()) return source.status();
-  const TemporaryFile copy(target);
-  if (copy.error() != 0) return CannotWrite(target, copy.error());
-  const absl::Status copied = (*source)->CopyTo(copy.path());
-  if (!copied.ok()) return copied;
-  absl::StatusOr<StoreSummary> summary = CheckStore(copy.path());
+  std::string copy = target + ".XXXXXX";
+  const int file = mkostemp(copy.data(), O_CLOEXEC);  // for its owner only
+  if (file < 0) return CannotWrite(target, errno);
+  const absl::Cleanup remove = [&] {
+    close(file);
+    unlink(copy.c_str());
+  };
+  (*source)->Run("VACUUM INTO ?", copy);  // it is not in WAL mode and has no free pages
+  if (!(*source)->status().ok()) return (*source)->TakeStatus();
+  absl::StatusOr<StoreSummary> summary = CheckStore(copy);
   if (!summary.ok()) return summary.status();
   if (!summary->sound()) {
     return absl::DataLossError(absl::StrCat("backup ", target, " was not made: store ", store,
                                             " is damaged (", summary->problems.front(),
                                             "); see --check"));
   }
-  absl::Status placed = Sync(copy.path());
-  if (placed.ok()) placed = MoveTo(copy.path(), target);
-  if (placed.ok()) placed = SyncFolder(FolderOf(target));
-  if (!placed.ok()) return placed;
+  const bool is_placed = fsync(file) == 0 && rename(copy.c_str(), target.c_str()) == 0;
+  if (!is_placed) return CannotWrite(target, errno);
+  const absl::Status synced = SyncFolder(FolderOf(target));
+  if (!synced.ok()) return synced;
   return summary;
 }
 

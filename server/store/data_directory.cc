@@ -178,12 +178,6 @@ DataDirectory::DataDirectory(std::string path, int lock) : path_(std::move(path)
 DataDirectory::DataDirectory(DataDirectory&& other) noexcept
     : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
 
-DataDirectory& DataDirectory::operator=(DataDirectory&& other) noexcept {
-  std::swap(path_, other.path_);
-  std::swap(lock_, other.lock_);
-  return *this;
-}
-
 DataDirectory::~DataDirectory() {
   if (lock_ < 0) return;
   unlink(AddressFile(path_).c_str());

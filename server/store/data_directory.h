@@ -42,7 +42,6 @@ class DataDirectory {
   static std::string Default();
 
   DataDirectory(DataDirectory&& other) noexcept;
-  DataDirectory& operator=(DataDirectory&& other) noexcept;
   ~DataDirectory();
 
   // Writes the address file for clients and for further servers. They can do without it, so a disk

@@ -19,16 +19,31 @@ inline bool HasEnded(JobState state) {
          state == v1::EnsembleJob::CANCELLED;
 }
 
+// What is computed of a job.
+struct JobNumbers {
+  int64_t points_done = 0;  // these are stored
+  double samples = 0;
+  double work = 0;             // seconds of processor time, in this or the last server process
+  int64_t bytes = 0;           // of the specification and the results
+  double points_computed = 0;  // with the computed shares of unfinished points; not stored
+
+  void Add(const JobNumbers& other) {
+    points_done += other.points_done;
+    samples += other.samples;
+    work += other.work;
+    bytes += other.bytes;
+    points_computed += other.points_computed;
+  }
+};
+
 struct JobRecord {
   int64_t sequence = 0;  // assigned by the store; greater for a newer job, never reused
   std::string id;
-  std::string principal;   // the job's owner
-  int32_t priority = 0;    // among the principal's; higher first
-  bool pinned = false;     // its results do not expire
-  int64_t bytes = 0;       // of its specification and, once it has ended, of its results
-  StoredSpec spec;         // its grid is empty if it was not read
-  int64_t spec_bytes = 0;  // with the grid, also if it was not read
-  std::string question;    // hash of the question (question.h); empty: always compute
+  std::string principal;  // the job's owner
+  int32_t priority = 0;   // among the principal's; higher first
+  bool pinned = false;    // its results do not expire
+  StoredSpec spec;        // its grid is empty if it was not read
+  std::string question;   // hash of the question (jobs/acceptance.h); empty: always compute
   JobState state = v1::EnsembleJob::QUEUED;
   absl::Time create_time;
   std::optional<absl::Time> start_time;
@@ -39,10 +54,7 @@ struct JobRecord {
   int64_t restarts = 0;           // how often another engine restarted the job
   std::string cancel_request_id;  // of the cancellation, or empty
   int64_t points = 0;
-  // Of an ended job; of an active job they are in memory (jobs/job.h).
-  int64_t points_done = 0;
-  double samples = 0;
-  double work = 0;  // seconds of processor time, in the server process that ended the job
+  JobNumbers numbers;  // of an ended job; of an active job memory has them (jobs/job.h)
 };
 
 }  // namespace ballpiston::server

@@ -1,4 +1,5 @@
-// The SQL about jobs. Each function runs inside the transaction of its caller.
+// The SQL about jobs and requests. Each function runs inside the transaction of its caller, which
+// handles errors (sqlite.h).
 //
 // Only these functions change a job's state. The transitions:
 //
@@ -9,18 +10,15 @@
 // FAILED. BeginJob, BeginCancellation and EndJob have the states in which they act in their
 // conditions, and no effect in others. The store runs all writes in one order: if a cancellation
 // and the end of a job come at the same time, one of them is first, and the first end is kept.
-// Errors of SQLite are those of sqlite.h.
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "absl/status/status.h"
-#include "absl/status/statusor.h"
+#include "absl/functional/function_ref.h"
 #include "absl/time/time.h"
 #include "server/store/job_record.h"
 #include "server/store/sqlite.h"
@@ -31,90 +29,91 @@ namespace ballpiston::server {
 enum class Grid { kLeftOut, kIncluded };
 
 // Sets record.sequence.
-absl::Status InsertJob(Database& database, JobRecord& record);
+void InsertJob(Database& database, JobRecord& record);
 
-absl::StatusOr<std::optional<JobRecord>> FindJob(Database& database, const std::string& id,
-                                                 Grid grid);
-absl::StatusOr<std::optional<JobRecord>> FindJobBySequence(Database& database, int64_t sequence,
-                                                           Grid grid);
+std::optional<JobRecord> FindJob(Database& database, const std::string& id, Grid grid);
+std::optional<JobRecord> FindJobBySequence(Database& database, int64_t sequence, Grid grid);
 
 // The principal's oldest job that SUCCEEDED in answering the question (JobRecord::question).
-absl::StatusOr<std::optional<JobRecord>> FindAnswer(Database& database,
-                                                    const std::string& principal,
-                                                    const std::string& question);
+std::optional<JobRecord> FindAnswer(Database& database, const std::string& principal,
+                                    const std::string& question);
 
-// What the active jobs (neither SUCCEEDED nor FAILED nor CANCELLED) of one principal or of all
-// take.
-struct Load {
-  int64_t jobs = 0;
-  int64_t points = 0;  // of their grids
+// For each principal and request id, the job that the request made.
+struct RequestRecord {
+  std::string payload;  // a hash of the request without its id
+  int64_t job = 0;      // its sequence
 };
-absl::StatusOr<Load> ActiveLoad(Database& database, const std::optional<std::string>& principal);
+void InsertRequest(Database& database, const std::string& principal, const std::string& request_id,
+                   const RequestRecord& record);
+std::optional<RequestRecord> FindRequest(Database& database, const std::string& principal,
+                                         const std::string& request_id);
+
+// What active jobs (neither SUCCEEDED nor FAILED nor CANCELLED) take: all of them, and those of one
+// principal.
+struct Load {
+  int64_t jobs = 0, own_jobs = 0;
+  int64_t points = 0, own_points = 0;  // of their grids
+};
+Load ActiveLoad(Database& database, const std::string& principal);
 
 // The jobs of one principal.
 struct PrincipalJobs {
   int64_t stored = 0;  // all of them
-  int64_t bytes = 0;   // JobRecord::bytes of these
+  int64_t bytes = 0;   // JobNumbers::bytes of these
   int64_t queued = 0;
   int64_t running = 0;
   int64_t cancelling = 0;
 };
-absl::StatusOr<std::map<std::string, PrincipalJobs>> CountJobsByPrincipal(Database& database);
+std::map<std::string, PrincipalJobs> CountJobsByPrincipal(Database& database);
 
 // Reads the jobs of one principal or of all, with a smaller sequence than `before`, newest first.
 // Ends when `on_job` returns false.
-absl::Status ReadJobs(Database& database, const std::optional<std::string>& principal,
-                      int64_t before, Grid grid, const std::function<bool(JobRecord job)>& on_job);
+void ReadJobs(Database& database, const std::optional<std::string>& principal, int64_t before,
+              Grid grid, absl::FunctionRef<bool(JobRecord job)> on_job);
 
 // The active jobs, oldest first.
-absl::StatusOr<std::vector<JobRecord>> ListUnfinishedJobs(Database& database);
+std::vector<JobRecord> ListUnfinishedJobs(Database& database);
 
 // QUEUED -> RUNNING. False in every other state.
-absl::StatusOr<bool> BeginJob(Database& database, int64_t sequence, absl::Time now);
+bool BeginJob(Database& database, int64_t sequence, absl::Time now);
 
 // QUEUED, RUNNING -> CANCELLING. False in every other state.
-absl::StatusOr<bool> BeginCancellation(Database& database, int64_t sequence,
-                                       const std::string& request_id);
+bool BeginCancellation(Database& database, int64_t sequence, const std::string& request_id);
 
 struct JobEnd {
   JobState state = v1::EnsembleJob::SUCCEEDED;
   absl::Time time;
   std::string error;
-  int64_t points_done = 0;
-  double samples = 0;
-  double work = 0;
-  int64_t bytes = 0;  // JobRecord::bytes
+  JobNumbers numbers;
 };
 
 // Ends an active job and drops its checkpoints. A job that is CANCELLING becomes CANCELLED whatever
 // state was requested. Returns the job's new row; empty if the job is not active.
-absl::StatusOr<std::optional<JobRecord>> EndJob(Database& database, int64_t sequence,
-                                                const JobEnd& end);
+std::optional<JobRecord> EndJob(Database& database, int64_t sequence, const JobEnd& end);
 
 // Starts a job of another engine version again: drops its results and sets its engine version.
-absl::Status RestartJob(Database& database, int64_t sequence, const std::string& engine_version,
-                        const std::string& question);
+void RestartJob(Database& database, int64_t sequence, const std::string& engine_version,
+                const std::string& question);
 
-absl::Status PinJob(Database& database, int64_t sequence, bool pinned);
+void PinJob(Database& database, int64_t sequence, bool pinned);
 
 struct JobSize {
   int64_t sequence = 0;
-  int64_t bytes = 0;  // JobRecord::bytes
+  int64_t bytes = 0;  // JobNumbers::bytes
 };
 
 // At most `most` jobs whose results may expire: they ended before `ended_before`, and are not
 // pinned. Those that ended first come first.
-absl::StatusOr<std::vector<JobSize>> ListExpirable(Database& database, absl::Time ended_before,
-                                                   int most);
-absl::StatusOr<int64_t> CountExpirable(Database& database, absl::Time ended_before);
+std::vector<JobSize> ListExpirable(Database& database, absl::Time ended_before, int most);
+int64_t CountExpirable(Database& database, absl::Time ended_before);
 // The same for jobs whose results have expired.
-absl::StatusOr<std::vector<JobSize>> ListExpired(Database& database, int most);
+std::vector<JobSize> ListExpired(Database& database, int most);
 
 // After these two, the sweeper removes the results (sweeper.h); nobody can find them meanwhile.
 // ExpireJob has no effect on a pinned job. It keeps the specification and the requests, which are
 // still answered with the job.
-absl::Status ExpireJob(Database& database, int64_t sequence, absl::Time now);
+void ExpireJob(Database& database, int64_t sequence, absl::Time now);
 // Also deletes its requests.
-absl::Status DeleteJob(Database& database, int64_t sequence);
+void DeleteJob(Database& database, int64_t sequence);
 
 }  // namespace ballpiston::server

@@ -14,20 +14,21 @@ absl::Status ReaderPool::Add(const std::string& path, const std::string& vfs) {
   return absl::OkStatus();
 }
 
-absl::Status ReaderPool::Read(absl::FunctionRef<absl::Status(Database&)> read) {
+absl::Status ReaderPool::Read(absl::FunctionRef<void(Database&)> read) {
   std::unique_ptr<Database> reader = Take();
   if (reader == nullptr) return absl::UnavailableError("store: closed");
-  const absl::Cleanup give_back = [&] {         // also if `read` throws
-    reader->Execute("ROLLBACK").IgnoreError();  // SQLite may have done so already
+  const absl::Cleanup give_back = [&] {  // also if `read` throws
+    reader->Rollback();
     GiveBack(std::move(reader));
   };
-  const absl::Status status = reader->Execute("BEGIN");
-  return status.ok() ? read(*reader) : status;
+  reader->Execute("BEGIN");
+  read(*reader);
+  return reader->TakeStatus();
 }
 
 std::unique_ptr<Database> ReaderPool::Take() {
   MutexLock lock(mutex_);
-  while (!closed_ && free_.empty()) is_free_.Wait(mutex_);
+  while (!closed_ && free_.empty()) changed_.Wait(mutex_);
   if (closed_) return nullptr;
   std::unique_ptr<Database> reader = std::move(free_.back());
   free_.pop_back();
@@ -39,15 +40,15 @@ void ReaderPool::GiveBack(std::unique_ptr<Database> reader) {
   MutexLock lock(mutex_);
   free_.push_back(std::move(reader));
   --in_use_;
-  is_free_.NotifyOne();
-  is_back_.NotifyOne();
+  if (closed_) return changed_.NotifyAll();
+  changed_.NotifyOne();
 }
 
 void ReaderPool::Close() {
   MutexLock lock(mutex_);
   closed_ = true;
-  is_free_.NotifyAll();
-  while (in_use_ > 0) is_back_.Wait(mutex_);
+  changed_.NotifyAll();
+  while (in_use_ > 0) changed_.Wait(mutex_);
   free_.clear();
 }
 

@@ -20,7 +20,7 @@ class ReaderPool {
 
   // Runs `read` on one of the connections, in a transaction: it sees the store at one moment. Waits
   // while all connections are in use. UNAVAILABLE after Close.
-  absl::Status Read(absl::FunctionRef<absl::Status(Database&)> read);
+  absl::Status Read(absl::FunctionRef<void(Database&)> read);
 
   // Waits for the connections in use.
   void Close();
@@ -30,8 +30,7 @@ class ReaderPool {
   void GiveBack(std::unique_ptr<Database> reader);
 
   Mutex mutex_;
-  Condition is_free_;
-  Condition is_back_;
+  Condition changed_;
   std::vector<std::unique_ptr<Database>> free_ ABSL_GUARDED_BY(mutex_);
   size_t in_use_ ABSL_GUARDED_BY(mutex_) = 0;
   bool closed_ ABSL_GUARDED_BY(mutex_) = false;

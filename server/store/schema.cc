@@ -1,9 +1,6 @@
 #include "server/store/schema.h"
 
 #include <sys/stat.h>
-#include <unistd.h>
-
-#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
@@ -14,7 +11,6 @@ namespace {
 // Checking every page takes about a second a gigabyte; beyond this size only the structure that
 // opening it reads is checked.
 constexpr int64_t kFullCheckBytes = int64_t{256} << 20;
-constexpr int64_t kFirstPageBytes = 4096;  // a new store has no more before it has its tables
 
 constexpr char kTables[] = R"sql(
 CREATE TABLE jobs (
@@ -52,7 +48,6 @@ CREATE TABLE requests (
   request_id TEXT NOT NULL,
   payload BLOB NOT NULL,
   job INTEGER NOT NULL,
-  answered_from_store INTEGER NOT NULL,
   PRIMARY KEY (principal, request_id)
 ) STRICT, WITHOUT ROWID;
 CREATE INDEX requests_by_job ON requests (job);
@@ -107,34 +102,32 @@ absl::Status Refused(const std::string& path, const std::string& why) {
       "store ", path, " ", why, "; it is unchanged: move it away, or choose another --data-dir"));
 }
 
-// The disk is full or fails, or the file belongs to another user. This says nothing about the
-// file's content.
-absl::Status NotUsable(const std::string& path, const absl::Status& found) {
+// If the disk is full or fails, or the file belongs to another user, the error says nothing about
+// the file's content.
+absl::Status RefusedFor(const std::string& path, const absl::Status& found) {
+  if (!absl::IsUnavailable(found) && !absl::IsResourceExhausted(found)) {
+    return Refused(path, absl::StrCat("is damaged (", found.message(), ")"));
+  }
   return absl::UnavailableError(absl::StrCat(
       "store ", path, " cannot be used now (", found.message(),
       "); it is unchanged: check that its disk works and has room, and that the file belongs to "
       "this user"));
 }
 
-absl::Status RefusedFor(const std::string& path, const absl::Status& found) {
-  const bool is_of_its_place = absl::IsUnavailable(found) || absl::IsResourceExhausted(found);
-  if (is_of_its_place) return NotUsable(path, found);
-  return Refused(path, absl::StrCat("is damaged (", found.message(), ")"));
-}
-
-bool IsFolder(const std::string& path) {
+absl::Status CheckIsNoFolder(const std::string& path) {
   struct stat found {};
-  return stat(path.c_str(), &found) == 0 && S_ISDIR(found.st_mode);
+  const bool is_folder = stat(path.c_str(), &found) == 0 && S_ISDIR(found.st_mode);
+  return is_folder ? Refused(path, "is a folder, not a file") : absl::OkStatus();
 }
 
 // A store with tables has a log beside it; bytes 18 and 19 of its header say so. A file without
 // this mark but with a log beside it is a backup that replaced another store: SQLite would read the
 // other store's pages into it.
-absl::Status CheckLog(const std::string& path, const Database& database, const std::string& vfs) {
-  const auto start = database.FileStart(20);
-  if (!start.ok()) return RefusedFor(path, start.status());
-  const bool empty = start->front() == '\0';
-  const bool logged = (*start)[18] == 2 && (*start)[19] == 2;
+absl::Status CheckLog(const std::string& path, Database& database, const std::string& vfs) {
+  const std::string start = database.FileStart(20);
+  if (!database.status().ok()) return RefusedFor(path, database.TakeStatus());
+  const bool empty = start.front() == '\0';
+  const bool logged = start[18] == 2 && start[19] == 2;
   if (empty || logged || !Database::Exists(path + "-wal", vfs)) return absl::OkStatus();
   return Refused(path, absl::StrCat("has the log of another store beside it: move ", path,
                                     "-wal away if this is a restored copy"));
@@ -142,99 +135,54 @@ absl::Status CheckLog(const std::string& path, const Database& database, const s
 
 // Checks that the file is a store. `unfinished`: the creation of the store was interrupted.
 absl::Status CheckKind(const std::string& path, Database& database, bool& unfinished) {
-  const auto application = database.Integer("PRAGMA application_id");
-  const auto version = database.Integer("PRAGMA user_version");
-  const auto tables = database.Integer("SELECT count(*) FROM sqlite_schema");
-  for (const absl::Status& status : {application.status(), version.status(), tables.status()}) {
-    if (!status.ok()) return RefusedFor(path, status);
+  const int64_t application = database.Integer("PRAGMA application_id");
+  const int64_t version = database.Integer("PRAGMA user_version");
+  const int64_t tables = database.Integer("SELECT count(*) FROM sqlite_schema");
+  if (!database.status().ok()) return RefusedFor(path, database.TakeStatus());
+  unfinished = tables == 0 && version == 0 && application == 0;
+  if (unfinished || (application == kApplicationId && version == kSchemaVersion)) {
+    return absl::OkStatus();
   }
-  unfinished = *tables == 0 && *version == 0 && *application == 0;
-  if (unfinished) return absl::OkStatus();
-  if (*application != kApplicationId) return Refused(path, "is not a ballpiston store");
-  if (*version > kSchemaVersion) {
-    return Refused(path, absl::StrCat("has version ", *version,
-                                      ", newer than this program's version ", kSchemaVersion));
-  }
-  if (*version >= 1 && *version < kSchemaVersion) {
-    return Refused(path, absl::StrCat("has version ", *version,
-                                      ", older than this program's version ", kSchemaVersion));
-  }
-  if (*version < 1) return Refused(path, absl::StrCat("is damaged (version ", *version, ")"));
-  return absl::OkStatus();
+  if (application != kApplicationId) return Refused(path, "is not a ballpiston store");
+  if (version < 1) return Refused(path, absl::StrCat("is damaged (version ", version, ")"));
+  return Refused(
+      path, absl::StrCat("has version ", version, version > kSchemaVersion ? ", newer" : ", older",
+                         " than this program's version ", kSchemaVersion));
 }
 
 absl::Status CheckContents(const std::string& path, Database& database) {
   bool unfinished = false;
   const absl::Status kind = CheckKind(path, database, unfinished);
   if (!kind.ok() || unfinished) return kind;
-  const auto bytes = database.FileBytes();
-  if (!bytes.ok()) return RefusedFor(path, bytes.status());
-  if (*bytes > kFullCheckBytes) return absl::OkStatus();
-  const auto check = database.Text("PRAGMA quick_check(1)");
-  if (!check.ok()) return RefusedFor(path, check.status());
-  return *check == "ok" ? check.status() : RefusedFor(path, absl::DataLossError(*check));
+  const int64_t bytes =
+      database.Integer("PRAGMA page_count") * database.Integer("PRAGMA page_size");
+  if (bytes > kFullCheckBytes) return absl::OkStatus();
+  const auto check = database.First<std::string>("PRAGMA quick_check(1)");
+  if (check != "ok") database.Fail(absl::DataLossError(check.value_or("")));
+  const absl::Status status = database.TakeStatus();
+  return status.ok() ? status : RefusedFor(path, status);
 }
 
-// Whether the creation of the store was interrupted when it was still empty. A journal then has the
-// undo data, which the writing connection applies.
-bool WasInterruptedAtFirstPage(const std::string& path, const Database& database,
-                               const std::string& vfs) {
-  const auto bytes = database.FileBytes();
-  return bytes.ok() && *bytes <= kFirstPageBytes && Database::Exists(path + "-journal", vfs);
-}
-
-// A read-only connection also creates an empty log and its index if they do not exist. This class
-// removes them if the file is rejected, unless another process has written to the log meanwhile.
-class LogOfRefused {
- public:
-  LogOfRefused(const std::string& path, const std::string& vfs) {
-    if (!vfs.empty()) return;
-    for (const char* suffix : {"-wal", "-shm"}) {
-      if (access((path + suffix).c_str(), F_OK) != 0) added_.push_back(path + suffix);
-    }
+// Through a connection that cannot write. A journal beside the file is left by an interrupted
+// creation: it has the undo data, which the writing connection applies.
+absl::Status CheckFile(const std::string& path, const std::string& vfs) {
+  const absl::Status file = CheckIsNoFolder(path);
+  if (!file.ok()) return file;
+  if (!Database::Exists(path, vfs) || Database::Exists(path + "-journal", vfs)) {
+    return absl::OkStatus();
   }
-  ~LogOfRefused() {
-    for (const std::string& file : added_) {  // the log first
-      struct stat found {};
-      const bool is_log = file.ends_with("-wal");
-      if (is_log && stat(file.c_str(), &found) == 0 && found.st_size > 0) return;
-      unlink(file.c_str());
-    }
-  }
-
-  void Keep() { added_.clear(); }
-
- private:
-  std::vector<std::string> added_;
-};
-
-// Through a connection that cannot write.
-absl::Status CheckFileToRead(const std::string& path, const std::string& vfs) {
   const auto database = Database::Open(path, Database::Mode::kReadOnly, vfs);
   if (!database.ok()) return RefusedFor(path, database.status());
-  if (WasInterruptedAtFirstPage(path, **database, vfs)) return absl::OkStatus();
   const absl::Status log = CheckLog(path, **database, vfs);
   return log.ok() ? CheckContents(path, **database) : log;
 }
 
-absl::Status CheckFile(const std::string& path, const std::string& vfs) {
-  if (IsFolder(path)) return Refused(path, "is a folder, not a file");
-  if (!Database::Exists(path, vfs)) return absl::OkStatus();
-  LogOfRefused log(path, vfs);
-  const absl::Status checked = CheckFileToRead(path, vfs);
-  if (checked.ok()) log.Keep();
-  return checked;
-}
-
-absl::Status MakeTables(Database& database) {
-  const auto version = database.Integer("PRAGMA user_version");
-  if (!version.ok()) return version.status();
-  if (*version == kSchemaVersion) return absl::OkStatus();
-  const absl::Status made = database.Execute(
-      absl::StrCat("BEGIN IMMEDIATE;", kTables, "PRAGMA application_id = ", kApplicationId,
-                   "; PRAGMA user_version = ", kSchemaVersion, "; COMMIT;"));
-  if (!made.ok()) database.Execute("ROLLBACK").IgnoreError();
-  return made;
+void MakeTables(Database& database) {
+  if (database.Integer("PRAGMA user_version") == kSchemaVersion) return;
+  database.Execute(absl::StrCat("BEGIN IMMEDIATE;", kTables,
+                                "PRAGMA application_id = ", kApplicationId,
+                                "; PRAGMA user_version = ", kSchemaVersion, "; COMMIT;"));
+  database.Rollback();  // after an error
 }
 
 absl::Status Prepare(Database& database) {
@@ -242,34 +190,33 @@ absl::Status Prepare(Database& database) {
   // back. secure_delete: Debian's SQLite would overwrite deleted rows with zeros, which would take
   // as much room in the log as the rows did. synchronous: with EXTRA no power cut brings back the
   // journal of this write beside the log, which is made next.
-  const absl::Status frees = database.Execute(
+  database.Execute(
       "PRAGMA synchronous = EXTRA; PRAGMA auto_vacuum = INCREMENTAL; PRAGMA secure_delete = OFF;");
-  if (!frees.ok()) return frees;
-  const auto mode = database.Text("PRAGMA journal_mode = WAL");
-  if (!mode.ok()) return mode.status();
-  if (*mode != "wal") return absl::UnavailableError("store: this file system has no WAL mode");
+  if (database.First<std::string>("PRAGMA journal_mode = WAL") != "wal") {
+    database.Fail(absl::UnavailableError("store: this file system has no WAL mode"));
+  }
   // The log is cut back to 64 MiB after a checkpoint.
-  const absl::Status set =
-      database.Execute("PRAGMA synchronous = FULL; PRAGMA journal_size_limit = 67108864;");
-  return set.ok() ? MakeTables(database) : set;
+  database.Execute("PRAGMA synchronous = FULL; PRAGMA journal_size_limit = 67108864;");
+  MakeTables(database);
+  return database.TakeStatus();
 }
 
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Database>> OpenStoreToRead(const std::string& path,
                                                           const std::string& vfs) {
-  if (IsFolder(path)) return Refused(path, "is a folder, not a file");
+  absl::Status checked = CheckIsNoFolder(path);
+  if (!checked.ok()) return checked;
   if (!Database::Exists(path, vfs)) {
     return absl::NotFoundError(absl::StrCat("there is no store ", path));
   }
   auto database = Database::Open(path, Database::Mode::kReadOnly, vfs);
   if (!database.ok()) return RefusedFor(path, database.status());
-  const absl::Status log = CheckLog(path, **database, vfs);
-  if (!log.ok()) return log;
+  checked = CheckLog(path, **database, vfs);
   bool unfinished = false;
-  const absl::Status kind = CheckKind(path, **database, unfinished);
-  if (!kind.ok()) return kind;
-  if (unfinished) return Refused(path, "has no tables yet");
+  if (checked.ok()) checked = CheckKind(path, **database, unfinished);
+  if (checked.ok() && unfinished) checked = Refused(path, "has no tables yet");
+  if (!checked.ok()) return checked;
   return database;
 }
 

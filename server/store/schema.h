@@ -1,7 +1,7 @@
 // The tables of the store, and the checks of a file before it is used as a store.
 //
 //   jobs      one row a job; `sequence` orders them by age and names the job in the next five
-//   requests  (principal, request id) -> the job that the server returned
+//   requests  (principal, request id) -> the job that the request made
 //   checkpoints  (job, point) -> storage.Checkpoint, of unfinished points of active jobs
 //   chunks    (job, point, chunk) -> storage.Chunk, of chunks that wait for an earlier one
 //   results   (job, point) -> v1.PointResult without its details, of finished points
@@ -23,7 +23,7 @@
 
 namespace ballpiston::server {
 
-inline constexpr int64_t kSchemaVersion = 5;
+inline constexpr int64_t kSchemaVersion = 6;
 inline constexpr int64_t kApplicationId = 0x62706973;  // "bpis"
 
 // The connection that writes and checkpoints. Checks an existing store; creates a store if there is

@@ -60,70 +60,54 @@ bool IsOfTheDisk(const absl::Status& status) {
          absl::IsPermissionDenied(status);
 }
 
-Query::Query(sqlite3_stmt* statement, absl::Status prepared)
-    : statement_(statement), status_(std::move(prepared)) {}
-
-Query::Query(Query&& other) noexcept
-    : statement_(std::exchange(other.statement_, nullptr)),
-      status_(std::move(other.status_)),
-      next_parameter_(other.next_parameter_) {}
-
-Query::~Query() {
-  if (statement_ == nullptr) return;
-  sqlite3_reset(statement_);
-  sqlite3_clear_bindings(statement_);
+void Query::Reset::operator()(sqlite3_stmt* statement) const {
+  sqlite3_reset(statement);
+  sqlite3_clear_bindings(statement);
 }
 
 void Query::BindInteger(int64_t value) {
-  if (status_.ok()) sqlite3_bind_int64(statement_, next_parameter_++, value);
+  if (statement_) sqlite3_bind_int64(statement_.get(), next_parameter_++, value);
 }
 
 void Query::Bind(double value) {
-  if (status_.ok()) sqlite3_bind_double(statement_, next_parameter_++, value);
+  if (statement_) sqlite3_bind_double(statement_.get(), next_parameter_++, value);
 }
 
 void Query::Bind(absl::string_view text) {
-  if (!status_.ok()) return;
-  sqlite3_bind_text64(statement_, next_parameter_++, text.data(), text.size(), SQLITE_TRANSIENT,
-                      SQLITE_UTF8);
+  if (!statement_) return;
+  sqlite3_bind_text64(statement_.get(), next_parameter_++, text.data(), text.size(),
+                      SQLITE_TRANSIENT, SQLITE_UTF8);
 }
 
 void Query::Bind(Blob blob) {
-  if (!status_.ok()) return;
+  if (!statement_) return;
   // A null pointer would bind NULL.
   const char* data = blob.bytes.empty() ? "" : blob.bytes.data();
-  sqlite3_bind_blob64(statement_, next_parameter_++, data, blob.bytes.size(), SQLITE_TRANSIENT);
+  sqlite3_bind_blob64(statement_.get(), next_parameter_++, data, blob.bytes.size(),
+                      SQLITE_TRANSIENT);
 }
 
-absl::StatusOr<bool> Query::Step() {
-  if (!status_.ok()) return status_;
-  const int code = sqlite3_step(statement_);
-  if (code == SQLITE_ROW) return true;
-  if (code == SQLITE_DONE) return false;
-  status_ = Failure(sqlite3_db_handle(statement_));
-  return status_;
+bool Query::Next() {
+  if (!statement_ || !database_.status().ok()) return false;
+  const int code = sqlite3_step(statement_.get());
+  if (code != SQLITE_ROW && code != SQLITE_DONE) database_.Fail(Failure(database_.connection_));
+  return code == SQLITE_ROW;
 }
 
-absl::Status Query::ForEach(absl::FunctionRef<bool(const Query& row)> on_row) {
-  while (true) {
-    const absl::StatusOr<bool> row = Step();
-    if (!row.ok() || !*row || !on_row(*this)) return row.status();
-  }
-}
+int64_t Query::Integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
 
-int64_t Query::Integer(int column) const { return sqlite3_column_int64(statement_, column); }
-
-double Query::Real(int column) const { return sqlite3_column_double(statement_, column); }
+double Query::Real(int column) const { return sqlite3_column_double(statement_.get(), column); }
 
 std::string Query::Bytes(int column) const {
-  const void* data = sqlite3_column_blob(statement_, column);
-  const int size = sqlite3_column_bytes(statement_, column);
+  const void* data = sqlite3_column_blob(statement_.get(), column);
+  const int size = sqlite3_column_bytes(statement_.get(), column);
   return data == nullptr ? std::string()
                          : std::string(static_cast<const char*>(data), static_cast<size_t>(size));
 }
 
-bool Query::IsNull(int column) const {
-  return sqlite3_column_type(statement_, column) == SQLITE_NULL;
+std::optional<absl::Time> Query::Time(int column) const {
+  if (sqlite3_column_type(statement_.get(), column) == SQLITE_NULL) return std::nullopt;
+  return absl::FromUnixNanos(Integer(column));
 }
 
 absl::StatusOr<std::unique_ptr<Database>> Database::Open(const std::string& path, Mode mode,
@@ -160,61 +144,36 @@ Database::~Database() {
 
 Query Database::Prepare(const std::string& sql) {
   const auto known = statements_.find(sql);
-  if (known != statements_.end()) return Query(known->second, absl::OkStatus());
+  if (known != statements_.end()) return {*this, known->second};
+  if (!status_.ok()) return {*this, nullptr};
   sqlite3_stmt* statement = nullptr;
   const int code = sqlite3_prepare_v3(connection_, sql.c_str(), -1, SQLITE_PREPARE_PERSISTENT,
                                       &statement, nullptr);
-  if (code != SQLITE_OK) return Query(nullptr, Failure(connection_));
-  statements_.emplace(sql, statement);
-  return Query(statement, absl::OkStatus());
+  if (code != SQLITE_OK) Fail(Failure(connection_));
+  if (code == SQLITE_OK) statements_.emplace(sql, statement);
+  return {*this, statement};
 }
 
-absl::Status Database::Execute(const std::string& sql) {
-  if (sqlite3_exec(connection_, sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK) {
-    return absl::OkStatus();
+void Database::Execute(const std::string& sql) {
+  if (!status_.ok()) return;
+  if (sqlite3_exec(connection_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) {
+    Fail(Failure(connection_));
   }
-  return Failure(connection_);
 }
 
-absl::StatusOr<int64_t> Database::OnlyInteger(Query query) {
-  const absl::StatusOr<bool> row = query.Step();
-  if (!row.ok()) return row.status();
-  return *row ? query.Integer(0) : 0;
-}
+void Database::Rollback() { sqlite3_exec(connection_, "ROLLBACK", nullptr, nullptr, nullptr); }
 
-absl::StatusOr<std::string> Database::Text(const std::string& sql) {
-  Query query = Prepare(sql);
-  const absl::StatusOr<bool> row = query.Step();
-  if (!row.ok()) return row.status();
-  return *row ? query.Bytes(0) : std::string();
-}
-
-absl::StatusOr<int64_t> Database::FileBytes() const {
-  sqlite3_file* file = nullptr;
-  sqlite3_file_control(connection_, "main", SQLITE_FCNTL_FILE_POINTER, &file);
-  sqlite3_int64 bytes = 0;
-  if (file == nullptr || file->pMethods == nullptr ||
-      file->pMethods->xFileSize(file, &bytes) != SQLITE_OK) {
-    return absl::UnavailableError("store: the file's size cannot be read");
-  }
-  return bytes;
-}
-
-absl::StatusOr<std::string> Database::FileStart(int bytes) const {
+std::string Database::FileStart(int bytes) {
   sqlite3_file* file = nullptr;
   sqlite3_file_control(connection_, "main", SQLITE_FCNTL_FILE_POINTER, &file);
   std::string start(static_cast<size_t>(bytes), '\0');
   const int code = file == nullptr || file->pMethods == nullptr
                        ? SQLITE_CANTOPEN
                        : file->pMethods->xRead(file, start.data(), bytes, 0);
-  // The missing part of a short file reads as zeros.
   if (code == SQLITE_OK || code == SQLITE_IOERR_SHORT_READ) return start;
-  return absl::UnavailableError(absl::StrCat("store: ", sqlite3_errstr(code)));
+  Fail(absl::UnavailableError(absl::StrCat("store: ", sqlite3_errstr(code))));
+  return start;
 }
-
-absl::Status Database::CopyTo(const std::string& path) { return Run("VACUUM INTO ?", path); }
-
-bool Database::InTransaction() const { return sqlite3_get_autocommit(connection_) == 0; }
 
 int64_t Database::LastInsertedRow() const { return sqlite3_last_insert_rowid(connection_); }
 

@@ -1,4 +1,9 @@
-// SQLite connections and statements as C++ objects, with errors as absl::Status.
+// SQLite connections and statements as C++ objects.
+//
+// A connection remembers the first error of its statements. From then on its statements have no
+// effect and find no rows, until TakeStatus returns the error. So only the code that begins a
+// transaction handles errors: it takes the status at the end of the transaction, and discards what
+// was read if the status is not OK.
 //
 // A status has SQLite's own message. Its code tells what failed.
 // The disk, so a retry may succeed (IsOfTheDisk):
@@ -18,11 +23,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
-#include "absl/functional/function_ref.h"
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "absl/time/time.h"
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -38,38 +46,58 @@ struct Blob {
   absl::string_view bytes;
 };
 
-// One execution of a prepared statement; columns are numbered from 0. Returns the statement to its
-// connection when it goes out of scope.
+class Database;
+
+// One execution of a prepared statement; columns are numbered from 0. Times are stored in
+// nanoseconds. Returns the statement to its connection when it goes out of scope.
 class Query {
  public:
-  explicit Query(sqlite3_stmt* statement, absl::Status prepared);
-  Query(Query&& other) noexcept;
-  ~Query();
+  Query(Database& database, sqlite3_stmt* statement) : database_(database), statement_(statement) {}
 
   // Binds the next parameter.
-  template <std::integral Number>
-  void Bind(Number value) {
-    BindInteger(static_cast<int64_t>(value));
-  }
+  template <typename Number>
+  requires std::integral<Number> || std::is_enum_v<Number>
+  void Bind(Number value) { BindInteger(static_cast<int64_t>(value)); }
   void Bind(double value);
   void Bind(absl::string_view text);
   void Bind(Blob blob);
+  void Bind(absl::Time time) { BindInteger(absl::ToUnixNanos(time)); }
 
-  // True: there is a row. False: no (more) rows.
-  absl::StatusOr<bool> Step();
-  // Calls `on_row` for each row, until it returns false.
-  absl::Status ForEach(absl::FunctionRef<bool(const Query& row)> on_row);
+  // Goes to the first or the next row. False: there are no more rows, or an error.
+  bool Next();
 
-  int64_t Integer(int column) const;
-  double Real(int column) const;
-  std::string Bytes(int column) const;  // text or blob
-  bool IsNull(int column) const;
+  // The value of a column: a number, an enumeration, text or a blob, a time or an optional time.
+  template <typename Value>
+  Value Get(int column) const {
+    if constexpr (std::is_same_v<Value, std::string>) return Bytes(column);
+    if constexpr (std::is_same_v<Value, double>) return Real(column);
+    if constexpr (std::is_same_v<Value, absl::Time>) return *Time(column);
+    if constexpr (std::is_same_v<Value, std::optional<absl::Time>>) return Time(column);
+    if constexpr (std::integral<Value> || std::is_enum_v<Value>) {
+      return static_cast<Value>(Integer(column));
+    }
+  }
+
+  // Sets the variables to the values of the columns, in their order.
+  template <typename... Values>
+  void ReadInto(Values&... values) const {
+    int column = 0;
+    ((values = Get<Values>(column++)), ...);
+  }
 
  private:
-  void BindInteger(int64_t value);
+  struct Reset {
+    void operator()(sqlite3_stmt* statement) const;
+  };
 
-  sqlite3_stmt* statement_;
-  absl::Status status_;
+  void BindInteger(int64_t value);
+  int64_t Integer(int column) const;
+  double Real(int column) const;
+  std::string Bytes(int column) const;
+  std::optional<absl::Time> Time(int column) const;  // empty: NULL
+
+  Database& database_;
+  std::unique_ptr<sqlite3_stmt, Reset> statement_;  // null: it could not be prepared
   int next_parameter_ = 1;
 };
 
@@ -92,6 +120,18 @@ class Database {
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
+  // The first error since the last TakeStatus.
+  const absl::Status& status() const { return status_; }
+  absl::Status TakeStatus() { return std::exchange(status_, absl::OkStatus()); }
+  // An error that the caller has found.
+  void Fail(const absl::Status& why) { status_.Update(why); }
+  // The value; or its error becomes that of the connection.
+  template <typename Value>
+  Value ValueOf(absl::StatusOr<Value> value) {
+    Fail(value.status());
+    return value.ok() ? *std::move(value) : Value();
+  }
+
   // A statement with its parameters. It is prepared once for each text. At most one Query of a text
   // at a time.
   template <typename... Values>
@@ -103,42 +143,52 @@ class Database {
 
   // A statement without rows.
   template <typename... Values>
-  absl::Status Run(const std::string& sql, const Values&... values) {
-    return Select(sql, values...).Step().status();
+  void Run(const std::string& sql, const Values&... values) {
+    Select(sql, values...).Next();
   }
 
+  // The rows of a statement, each made of its one column.
+  template <typename Row, typename... Values>
+  std::vector<Row> All(const std::string& sql, const Values&... values) {
+    std::vector<Row> rows;
+    for (Query query = Select(sql, values...); query.Next();) {
+      rows.push_back(query.Get<Row>(0));
+    }
+    return rows;
+  }
+  // The first of these rows; empty: there is none.
+  template <typename Row, typename... Values>
+  std::optional<Row> First(const std::string& sql, const Values&... values) {
+    Query query = Select(sql, values...);
+    return query.Next() ? std::optional(query.Get<Row>(0)) : std::nullopt;
+  }
   // The first column of the first row; 0 if there is none.
   template <typename... Values>
-  absl::StatusOr<int64_t> Integer(const std::string& sql, const Values&... values) {
-    return OnlyInteger(Select(sql, values...));
+  int64_t Integer(const std::string& sql, const Values&... values) {
+    return First<int64_t>(sql, values...).value_or(0);
   }
-  absl::StatusOr<std::string> Text(const std::string& sql);
 
   // Statements without parameters and rows.
-  absl::Status Execute(const std::string& sql);
+  void Execute(const std::string& sql);
 
-  // The size of the file on disk, without its log.
-  absl::StatusOr<int64_t> FileBytes() const;
-  absl::StatusOr<std::string> FileStart(int bytes) const;
+  // Also after an error, which it keeps. No effect without a transaction.
+  void Rollback();
 
-  // Writes a copy of this database, as it is at one moment, to an empty or missing file. The copy
-  // is not in WAL mode and has no free pages.
-  absl::Status CopyTo(const std::string& path);
-
-  // False also after an error for which SQLite has rolled the transaction back.
-  bool InTransaction() const;
+  // The first bytes of the file, without its log. The missing part of a short file reads as zeros.
+  std::string FileStart(int bytes);
 
   int64_t LastInsertedRow() const;
   int64_t RowsChanged() const;  // by the last statement that was run
 
  private:
+  friend class Query;
   explicit Database(sqlite3* connection) : connection_(connection) {}
 
   Query Prepare(const std::string& sql);
-  static absl::StatusOr<int64_t> OnlyInteger(Query query);
 
   sqlite3* connection_;
   std::map<std::string, sqlite3_stmt*> statements_;
+  absl::Status status_;
 };
 
 }  // namespace ballpiston::server

@@ -9,7 +9,8 @@
 // fails. A record (`Record...`) is a computed result: it may wait `delay` for others, and if the
 // disk fails, it is retried until it succeeds or the store is closed. Records are committed in the
 // order in which they were posted, and before the requests of the same group. A point's checkpoint
-// is skipped if the point has a later checkpoint or a result before it is written.
+// is skipped if the point has a later checkpoint or a result before it is written. The space of
+// deleted jobs is freed a little at a time, by requests of the store itself (sweeper.h).
 //
 // When the disk fails (IsOfTheDisk):
 //   - A request that fails has no visible effect. But if it failed during the flush of the log, its
@@ -23,7 +24,6 @@
 //     has no room gets that of a reserve (reserve.h). Records wait until the space is free.
 // If the disk hangs (`stalled`), the store refuses new requests until the disk answers; earlier
 // requests wait.
-// The space of deleted jobs is freed a little at a time, between other writes (sweeper.h).
 // A write that can never succeed (a violated constraint, too big) is refused alone, and the other
 // writes of its group are committed.
 #pragma once
@@ -37,8 +37,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 
-#include "absl/functional/function_ref.h"
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "server/host.h"
@@ -52,10 +53,9 @@ namespace ballpiston::server {
 
 class Store {
  public:
-  // Runs in a transaction, and again if the transaction was rolled back, so each run must set all
-  // its outputs. Not OK: SQLite failed, or the change refuses (with a status that is not a disk
-  // error); the change is then rolled back.
-  using Change = std::function<absl::Status(Database&)>;
+  // Runs in a transaction, and again if the transaction was rolled back. The change refuses by
+  // Database::Fail with a status that is not a disk error; it is then rolled back.
+  using Change = std::function<void(Database&)>;
   // Called on the store's thread when the record's own group is committed, or when the record is
   // refused; in the order of the commits. Must be quick. It is not called after a failure that is
   // retried.
@@ -78,11 +78,19 @@ class Store {
   static absl::StatusOr<std::unique_ptr<Store>> Open(const std::string& path, Options options);
   ~Store();  // closes
 
-  // Returns when the change is on disk, or its error. If the disk hangs, returns UNAVAILABLE at
-  // once and does not run the change.
-  absl::Status Commit(Change change);
+  // Returns when the change is on disk: OK and what the change has returned, or the error. If the
+  // disk hangs, returns UNAVAILABLE at once and does not run the change.
+  template <typename Function>
+  auto Commit(Function change, bool frees_space = false) {
+    return Returned(change, [&](Change run) {
+      return CommitRequest({.change = std::move(run), .frees_space = frees_space});
+    });
+  }
   // As Commit, for a change that frees space.
-  absl::Status CommitDeletion(Change change);
+  template <typename Function>
+  auto CommitDeletion(Function change) {
+    return Commit(std::move(change), true);
+  }
 
   void Record(Change change, Done done = nullptr);
   // As Record, but without delay.
@@ -99,14 +107,17 @@ class Store {
   void RecordResult(int64_t job, PointRow row,
                     std::function<void(int64_t number)> stored = nullptr);
 
-  // As ReaderPool::Read.
-  absl::Status Read(absl::FunctionRef<absl::Status(Database&)> read) { return readers_.Read(read); }
+  // Returns what `read` returns, or an error. As ReaderPool::Read.
+  template <typename Function>
+  auto Read(Function read) {
+    return Returned(read, [&](const Change& run) { return readers_.Read(run); });
+  }
 
   // Returns when few enough writes are pending, or the store is closing.
   void AwaitRoom();
 
-  // When this returns OK, all records posted before the call are on disk. Returns UNAVAILABLE when
-  // the disk rejects one of them, or hangs.
+  // When this returns OK, all records posted before the call are on disk. Returns UNAVAILABLE if
+  // the disk fails or hangs.
   absl::Status Flush();
 
   // For tests: returns when the space of all deletions so far is free.
@@ -163,39 +174,50 @@ class Store {
     bool has_all = true;  // no records are left
   };
 
+  // Lets `run` call `function`, and returns what the function has returned if the status is OK.
+  template <typename Function, typename Run>
+  static auto Returned(Function& function, Run run) {
+    using Result = std::invoke_result_t<Function&, Database&>;
+    if constexpr (std::is_void_v<Result>) {
+      return absl::Status(run([&](Database& database) { function(database); }));
+    } else {
+      std::optional<Result> result;
+      const absl::Status status = run([&](Database& database) { result = function(database); });
+      return status.ok() ? absl::StatusOr<Result>(*std::move(result)) : status;
+    }
+  }
+
   Store(std::unique_ptr<Database> writer, Options options, std::string path, std::string identity);
   void Start();
 
   void Post(Write write, bool soon = false) ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status CommitRequest(Write request);
   bool IsFull() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  bool BatchIsDue(Clock::time_point now) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
-  // ---- the store's thread ----
+  // ---- the store's thread (store_thread.cc) ----
 
   void WriteUntilClosed();
   bool AwaitWork();  // false: closed, and nothing is left to write
   bool RecordsAreDue(Clock::time_point now) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  bool BatchIsDue(Clock::time_point now) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool SweepIsDue(Clock::time_point now) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::optional<Clock::time_point> NextDue() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // The requests, and the records if they are due. Empty if neither is due.
-  std::optional<Batch> TakeBatch() ABSL_LOCKS_EXCLUDED(mutex_);
+  // The requests, the records if they are due, and a step of the sweeper if it is due.
+  Batch TakeBatch() ABSL_LOCKS_EXCLUDED(mutex_);
   void WriteBatch(Batch batch);
   size_t GroupEnd(const Writes& batch, size_t first) const;
   // Commits all or none of writes [first, last), except those that are refused. Not OK: the disk
   // failed.
   absl::Status CommitGroup(Writes& batch, size_t first, size_t last);
-  absl::Status TryGroup(Writes& batch, size_t first, size_t last, Write*& culprit);
-  absl::Status BeginGroup();
+  void BeginGroup();
+  absl::Status RunChange(const Change& change);  // not OK: it can never succeed
+  void RunRequest(Write& request);
+  bool RunRecord(Write& record);  // false: it is rejected, and the group begins again without it
+  void NoteCommitted(Writes& batch, size_t first, size_t last) ABSL_LOCKS_EXCLUDED(mutex_);
   // Sets the outcome of a request whose group failed. On a full disk it is tried alone.
   void TryAgain(Writes& batch, size_t request, const absl::Status& failure);
-  void ReleaseReserve();
-  void TakeReserve();
   void WriteLogBack();
-  void Sweep();
-  absl::StatusOr<bool> SweepWithReserve();
-  void NoteSweep(const absl::StatusOr<bool>& swept) ABSL_LOCKS_EXCLUDED(mutex_);
-  void NoteProgress() { busy_since_ = SteadyNow().time_since_epoch().count(); }
+  void NoteSweep(const absl::Status& status, bool has_advanced) ABSL_LOCKS_EXCLUDED(mutex_);
 
   // Tells writes [first, last) their outcome.
   void Settle(Writes& batch, size_t first, size_t last) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -207,10 +229,9 @@ class Store {
   const Options options_;
   const std::string path_;
   const std::string identity_;
-  // Only the store's thread uses these three.
+  // Only the store's thread uses these two.
   std::unique_ptr<Database> writer_;
   Reserve reserve_;
-  Clock::time_point next_reserve_;
   std::atomic<Clock::rep> busy_since_ = 0;  // the start of its present group; 0: it waits
 
   ReaderPool readers_;
@@ -221,11 +242,8 @@ class Store {
   Writes records_ ABSL_GUARDED_BY(mutex_);
   Writes requests_ ABSL_GUARDED_BY(mutex_);
   size_t in_batch_ ABSL_GUARDED_BY(mutex_) = 0;
-  size_t bytes_ ABSL_GUARDED_BY(mutex_) = 0;      // of pending writes and of the batch
-  int64_t recorded_ ABSL_GUARDED_BY(mutex_) = 0;  // records posted,
-  int64_t settled_ ABSL_GUARDED_BY(mutex_) = 0;   // and those of them that are settled
-  int64_t rejected_ ABSL_GUARDED_BY(mutex_) = 0;  // batches of which the disk rejected records
-  bool hurry_ ABSL_GUARDED_BY(mutex_) = false;    // the pending records are not delayed
+  size_t bytes_ ABSL_GUARDED_BY(mutex_) = 0;    // of pending writes and of the batch
+  bool hurry_ ABSL_GUARDED_BY(mutex_) = false;  // the pending records are not delayed
   bool failing_ ABSL_GUARDED_BY(mutex_) = false;
   std::string failure_ ABSL_GUARDED_BY(mutex_);  // the last failure that was logged
   Clock::time_point retry_time_ ABSL_GUARDED_BY(mutex_);
@@ -233,9 +251,8 @@ class Store {
   bool closing_ ABSL_GUARDED_BY(mutex_) = false;
   Counts counts_ ABSL_GUARDED_BY(mutex_);  // without the pending writes
   // When to free space next; empty: there is no space to free.
-  std::optional<Clock::time_point> next_sweep_ ABSL_GUARDED_BY(mutex_) = Clock::time_point();
-  bool sweep_advances_ ABSL_GUARDED_BY(mutex_) = false;    // the last step has freed some
-  bool sweep_is_damaged_ ABSL_GUARDED_BY(mutex_) = false;  // until the next start
+  std::optional<Clock::time_point> next_sweep_ ABSL_GUARDED_BY(mutex_);
+  bool sweep_advances_ ABSL_GUARDED_BY(mutex_) = false;  // the last step has freed some
   Thread thread_;
 };
 

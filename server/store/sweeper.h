@@ -1,12 +1,12 @@
 // Frees the space of the results of deleted and expired jobs: removes their rows, then shortens the
-// file by its free pages. Each step is one short transaction, so that other writes need not wait
-// long. Such a job is in the table `dropped` until its last row is removed, so a restart goes on
-// with the rest.
+// file by its free pages. Each step is short, so that other writes need not wait long. Such a job
+// is in the table `dropped` until its last row is removed, so a restart goes on with the rest.
+//
+// Each function runs inside the transaction of its caller, which handles errors (sqlite.h).
 #pragma once
 
 #include <cstdint>
 
-#include "absl/status/statusor.h"
 #include "server/store/sqlite.h"
 
 namespace ballpiston::server {
@@ -16,15 +16,13 @@ inline constexpr int64_t kSweptRows = 64, kSweptPages = 256;
 // Checkpoints that are replaced leave free pages, which the next checkpoints use.
 inline constexpr int64_t kKeptPages = 256;
 
-// One transaction. False: nothing was left to do.
-absl::StatusOr<bool> SweepStep(Database& database);
-
-// The next two run inside the transaction of their caller.
+// False: nothing was left to do.
+bool SweepStep(Database& database);
 
 // Whether rows of deleted or expired jobs still have to be removed.
-absl::StatusOr<bool> IsSweeping(Database& database);
+bool IsSweeping(Database& database);
 
 // The bytes of the store's pages that are not free. The log beside the file is not counted.
-absl::StatusOr<int64_t> UsedBytes(Database& database);
+int64_t UsedBytes(Database& database);
 
 }  // namespace ballpiston::server

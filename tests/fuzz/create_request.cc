@@ -2,7 +2,7 @@
 #include "absl/strings/ascii.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "server/api/request_check.h"
-#include "server/jobs/question.h"
+#include "server/jobs/acceptance.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"
 

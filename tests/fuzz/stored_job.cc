@@ -38,9 +38,9 @@ server::JobRecord RowOf(std::string_view bytes) {
   row.start_time = absl::FromUnixNanos(TakeInteger(bytes));
   row.end_time = absl::FromUnixNanos(TakeInteger(bytes));
   row.points = TakeInteger(bytes);
-  row.points_done = TakeInteger(bytes);
-  row.samples = std::bit_cast<double>(TakeInteger(bytes));
-  row.work = std::bit_cast<double>(TakeInteger(bytes));
+  row.numbers.points_done = TakeInteger(bytes);
+  row.numbers.samples = std::bit_cast<double>(TakeInteger(bytes));
+  row.numbers.work = std::bit_cast<double>(TakeInteger(bytes));
   const auto length = static_cast<unsigned char>(TakeText(bytes, 1)[0]);
   row.spec.rest = TakeText(bytes, length);
   row.error = std::string(bytes);
@@ -48,7 +48,8 @@ server::JobRecord RowOf(std::string_view bytes) {
 }
 
 void CheckStoredJob(const std::string& bytes) {
-  const v1::EnsembleJob job = server::JobMessage(RowOf(bytes), nullptr, 400);
+  const server::JobRecord row = RowOf(bytes);
+  const v1::EnsembleJob job = server::JobMessage(row, row.numbers, 400);
   for (const auto& time : {job.create_time(), job.start_time(), job.end_time()}) {
     Require(time.nanos() >= 0 && time.nanos() < 1'000'000'000, "a time is one");
   }

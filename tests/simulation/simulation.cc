@@ -252,14 +252,9 @@ class Simulation {
   }
 
   int64_t BytesOfStore() {
-    int64_t bytes = 0;
-    const absl::Status read = life_->store().Read([&](Database& database) {
-      const absl::StatusOr<int64_t> used = UsedBytes(database);
-      bytes = used.value_or(0);
-      return used.status();
-    });
-    if (!read.ok()) throw Violation("space", "", read.ToString());
-    return bytes;
+    const absl::StatusOr<int64_t> bytes = life_->store().Read(UsedBytes);
+    if (!bytes.ok()) throw Violation("space", "", bytes.status().ToString());
+    return *bytes;
   }
 
   // Several watches, because the client may leave before a watch ends.

@@ -305,6 +305,28 @@ TEST(DiskFailure, ADiskErrorAtTheStartIsNotReportedAsDamage) {
   }
 }
 
+// The request is refused because of a result in its group. The result does not fit on the disk, so
+// the request runs again without it.
+TEST(DiskFailure, ARefusalIsNotToldIfItsGroupFails) {
+  FaultDisk disk;
+  Store::Options options;
+  options.delay = kNever;
+  options.retry = std::chrono::milliseconds(1);
+  options.stall = kNever;
+  options.reserve_bytes = 0;
+  options.vfs = disk.vfs();
+  ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(kStorePath, options));
+  disk.SetCapacity(disk.bytes_used() + 100'000);
+  store->RecordResult(99, {.point = 0, .samples = 1, .result = std::string(400'000, 'x')});
+  const auto refuse_if_there = [](Database& database) {
+    if (CountResults(database, 99) > 0) database.Fail(absl::AlreadyExistsError("a result"));
+  };
+  EXPECT_OK(store->Commit(refuse_if_there));
+  disk.StopRefusing();
+  AwaitWritten(*store);
+  EXPECT_THAT(store->Commit(refuse_if_there), StatusIs(absl::StatusCode::kAlreadyExists));
+}
+
 // The disk is full, but the log can be overwritten.
 TEST(DiskFailure, OnAFullDiskJobsCanBeCancelledAndDeleted) {
   Scene scene;
@@ -339,14 +361,9 @@ TEST(DiskFailure, OnAFullDiskTheReserveLetsALargeJobBeDeleted) {
   disk.SetCapacity(disk.bytes_used() + 200'000);
   RecordLarge(*store, 8);
   AwaitThat([&] { return store->failing(); });
-  ASSERT_OK(store->CommitDeletion([](Database& database) { return DeleteJob(database, 7); }));
+  ASSERT_OK(store->CommitDeletion([](Database& database) { DeleteJob(database, 7); }));
   AwaitWritten(*store);
-  const auto count = [](Database& database) {
-    const auto results = CountResults(database, 8);
-    EXPECT_EQ(results.value_or(0), 100);
-    return results.status();
-  };
-  EXPECT_OK(store->Read(count));
+  EXPECT_EQ(*store->Read([](Database& database) { return CountResults(database, 8); }), 100);
 }
 
 // A job that succeeded, with results of 20 kB each. Its rows may have to wait for the disk.
@@ -358,7 +375,7 @@ std::string RecordEndedJob(Store& store, uint64_t seed, int points) {
   record.engine_version = EngineVersion();
   record.points = points;
   const auto inserted = std::make_shared<JobRecord>(record);
-  store.Record([inserted](Database& database) { return InsertJob(database, *inserted); });
+  store.Record([inserted](Database& database) { InsertJob(database, *inserted); });
   EXPECT_OK(store.Flush());
   const std::string details = LargeDetails(2500);
   for (int point = 0; point < points; ++point) {
@@ -369,10 +386,9 @@ std::string RecordEndedJob(Store& store, uint64_t seed, int points) {
   }
   JobEnd end;
   end.time = absl::Now();
-  end.points_done = points;
-  store.RecordSoon([inserted, end](Database& database) {
-    return EndJob(database, inserted->sequence, end).status();
-  });
+  end.numbers.points_done = points;
+  store.RecordSoon(
+      [inserted, end](Database& database) { EndJob(database, inserted->sequence, end); });
   return record.id;
 }
 
@@ -429,9 +445,10 @@ TEST(DiskFailure, OnAFullDiskRequestsGoBeforeRecordsThatDoNotFit) {
   EXPECT_TRUE(store.failing());
   EXPECT_OK(scene.Delete());
   EXPECT_TRUE(store.failing());
-  EXPECT_EQ(store.counts().pending_writes, 1);
+  AwaitThat([&] { return store.counts().pending_writes == 1; });  // after the sweeper's steps
   scene.disk().StopRefusing();
   AwaitWritten(store);
+  store.AwaitSwept();
   EXPECT_EQ(store.counts().pending_writes, 0);
 }
 

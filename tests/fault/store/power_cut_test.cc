@@ -254,9 +254,9 @@ TEST(PowerCut, AnInterruptedCreationIsCompletedAtTheNextStart) {
       FaultDisk left(AfterPowerCut({}, operations, cut, survival, 1));
       const auto database = OpenStoreFile(kStorePath, left.vfs());
       ASSERT_TRUE(database.ok()) << database.status() << " at " << cut;
-      EXPECT_EQ((*database)->Text("PRAGMA integrity_check").value_or(""), "ok");
-      EXPECT_EQ((*database)->Integer("PRAGMA user_version").value_or(0), kSchemaVersion);
-      EXPECT_EQ((*database)->Integer("SELECT count(*) FROM jobs").value_or(-1), 0);
+      EXPECT_EQ((*database)->First<std::string>("PRAGMA integrity_check"), "ok");
+      EXPECT_EQ((*database)->Integer("PRAGMA user_version"), kSchemaVersion);
+      EXPECT_EQ((*database)->Integer("SELECT count(*) FROM jobs"), 0);
     }
   }
 }

@@ -137,8 +137,7 @@ std::vector<std::string> ServiceOnDisk::Results(const std::string& id) {
 }
 
 void ServiceOnDisk::WriteLogBackOften() {
-  store_
-      ->Commit([](Database& database) { return database.Execute("PRAGMA wal_autocheckpoint = 8"); })
+  store_->Commit([](Database& database) { database.Execute("PRAGMA wal_autocheckpoint = 8"); })
       .IgnoreError();
 }
 

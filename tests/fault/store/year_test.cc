@@ -58,7 +58,7 @@ class Prober {
   void Probe() {
     while (!stop_) {
       const auto start = std::chrono::steady_clock::now();
-      EXPECT_OK(store_.Commit([](Database&) { return absl::OkStatus(); }));
+      EXPECT_OK(store_.Commit([](Database&) {}));
       const std::chrono::duration<double, std::milli> took =
           std::chrono::steady_clock::now() - start;
       longest_ = std::max(longest_.load(), took.count());
@@ -74,8 +74,7 @@ class Prober {
 class YearTest : public testing::Test {
  protected:
   YearTest()
-      : store_(*Store::Open(path_, {.delay = std::chrono::milliseconds(1), .stall = kNever})),
-        retention_(*store_, {.retain_days = kRetainDays, .max_store_bytes = Bound()}) {}
+      : store_(*Store::Open(path_, {.delay = std::chrono::milliseconds(1), .stall = kNever})) {}
 
   // With 1.5 kB of details: a histogram of 190 bins.
   static PointRow Row(int64_t point) {
@@ -90,20 +89,20 @@ class YearTest : public testing::Test {
     record.id = absl::StrCat("job-", ++jobs_);
     record.principal = "ann";
     record.spec = SpecBytes(Equilibrium(kPoints, 2, static_cast<uint64_t>(jobs_)));
-    record.bytes = static_cast<int64_t>(record.spec.size());
+    record.numbers.bytes = static_cast<int64_t>(record.spec.size());
     record.points = kPoints;
-    ASSERT_OK(store_->Commit([&](Database& database) { return InsertJob(database, record); }));
+    ASSERT_OK(store_->Commit([&](Database& database) { InsertJob(database, record); }));
     JobEnd job_end;
     job_end.time = end;
-    job_end.points_done = kPoints;
-    job_end.bytes = record.bytes;
+    job_end.numbers.points_done = kPoints;
+    job_end.numbers.bytes = record.numbers.bytes;
     for (int64_t point = 0; point < kPoints; ++point) {
       PointRow row = Row(point);
-      job_end.bytes += static_cast<int64_t>(row.result.size() + row.details.size());
+      job_end.numbers.bytes += static_cast<int64_t>(row.result.size() + row.details.size());
       store_->RecordResult(record.sequence, std::move(row));
     }
     store_->RecordSoon([=, sequence = record.sequence](Database& database) {
-      return EndJob(database, sequence, job_end).status();
+      EndJob(database, sequence, job_end);
     });
   }
 
@@ -114,23 +113,21 @@ class YearTest : public testing::Test {
     int64_t before = 0, after = 0;
     do {
       before = ReadFrom(*store_, CountExpired);
-      ASSERT_OK(retention_.Enforce(day + kDay));
+      ASSERT_OK(EnforceRetention(*store_, limits_, day + kDay));
       store_->AwaitSwept();
       after = ReadFrom(*store_, CountExpired);
     } while (after != before);
   }
 
-  static absl::StatusOr<int64_t> CountExpired(Database& database) {
+  static int64_t CountExpired(Database& database) {
     return database.Integer("SELECT count(*) FROM jobs WHERE expired_time IS NOT NULL");
   }
-  static absl::StatusOr<int64_t> FreePages(Database& database) {
-    return database.Integer("PRAGMA freelist_count");
-  }
+  static int64_t FreePages(Database& database) { return database.Integer("PRAGMA freelist_count"); }
 
   const TemporaryFolder folder_;
   const std::string path_ = folder_.File("store.sqlite3");
   std::unique_ptr<Store> store_;
-  Retention retention_;
+  const Limits limits_ = {.retain_days = kRetainDays, .max_store_bytes = Bound()};
   int jobs_ = 0;
 };
 

@@ -220,7 +220,7 @@ class HangingDiskTest : public ServerStatusTest {
         disk_(std::move(disk)) {
     disk_->Hang();
     hanging_ = std::thread([this] {
-      const auto write = [](Database& database) { return InsertChunk(database, 9, 0, 0, "x"); };
+      const auto write = [](Database& database) { InsertChunk(database, 9, 0, 0, "x"); };
       EXPECT_OK(store_->Commit(write));
     });
     disk_->AwaitHanging();

@@ -40,7 +40,6 @@ class JobList : public ::testing::Test {
   // In the order of their creation.
   void Insert(const std::vector<StoredJob>& jobs) {
     ASSERT_OK(store_->Commit([&](Database& database) {
-      absl::Status inserted;
       for (const StoredJob& job : jobs) {
         JobRecord record;
         record.id = job.id;
@@ -48,9 +47,8 @@ class JobList : public ::testing::Test {
         record.spec = SpecBytes(job.spec);
         record.state = job.state;
         record.create_time = job.create_time;
-        inserted.Update(InsertJob(database, record));
+        InsertJob(database, record);
       }
-      return inserted;
     }));
   }
 

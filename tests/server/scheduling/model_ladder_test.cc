@@ -9,7 +9,7 @@
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "server/store/pilot_table.h"
+#include "server/store/point_tables.h"
 #include "tests/server/store_access.h"
 #include "tests/support/await.h"
 #include "tests/support/status_matchers.h"

@@ -1,7 +1,6 @@
 // Checking and copying stores, also while a server writes to them.
 #include "server/store/backup.h"
 
-#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <string>
@@ -196,27 +195,6 @@ TEST_F(BackupTest, CopiesMadeWhileAServerWorksAreSound) {
   }
   done = true;
   client.join();
-}
-
-std::vector<std::string> NamesIn(const std::string& folder) {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    names.push_back(entry.path().filename());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-TEST_F(BackupTest, CopyingAndCheckingLeaveNoFilesBesideAnUnusedStore) {
-  MakeStore();
-  const std::vector<std::string> before = NamesIn(folder_.path());
-  const std::string file = Contents(Store());
-  ASSERT_OK(CheckStore(Store()));
-  EXPECT_EQ(NamesIn(folder_.path()), before);
-  TemporaryFolder elsewhere;
-  ASSERT_OK(BackupStore(Store(), elsewhere.File("copy")));
-  EXPECT_EQ(NamesIn(folder_.path()), before);
-  EXPECT_EQ(Contents(Store()), file);
 }
 
 TEST_F(BackupTest, TheSizeIncludesTheLog) {
