@@ -8,7 +8,7 @@ absl::StatusOr<v1::EnsembleJob> PinEnsembleJob(ServiceContext& service, const Ca
   RequestCheck check;
   const std::string id = check.JobId("name", request.name());
   if (!check.ok()) return check.status();
-  return service.book.Pin(call.caller, id, request.pinned());
+  return service.book.Update(call.caller, id, {.pinned = request.pinned()});
 }
 
 }  // namespace ballpiston::server

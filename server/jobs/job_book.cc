@@ -452,8 +452,9 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Answer(const Principal& caller,
   absl::StatusOr<v1::EnsembleJob> job = Get(caller, record.id);
   if (absl::IsNotFound(job.status())) job = Message(record, nullptr);
   if (!job.ok()) return job.status();
-  // A cancellation that came before the run was added did not find it.
+  // A cancellation or a new priority that came before the run was added did not find it.
   if (job->state() == v1::EnsembleJob::CANCELLING) scheduler_.Cancel(record.sequence);
+  scheduler_.SetPriority(record.sequence, job->priority());
   job->set_answered_from_store(acceptance.answered_from_store);
   return job;
 }
@@ -586,19 +587,24 @@ absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<v1::EnsembleJob> JobBook::Pin(const Principal& caller, const std::string& id,
-                                             bool pinned) {
+absl::StatusOr<v1::EnsembleJob> JobBook::Update(const Principal& caller, const std::string& id,
+                                                const JobChange& change) {
   std::optional<JobRecord> record;
+  bool has_expired = false;
   const absl::Status committed = store_.Commit([&](Database& database) -> absl::Status {
     auto found = FindJobOf(database, caller, id);
     if (!found.ok()) return found.status();
     record = *std::move(found);
-    if (!record || record->expired_time) return absl::OkStatus();
-    return PinJob(database, record->sequence, pinned);
+    has_expired = change.pinned && record && record->expired_time;
+    if (!record || has_expired) return absl::OkStatus();
+    record->pinned = change.pinned.value_or(record->pinned);
+    record->priority = change.priority.value_or(record->priority);
+    return UpdateJob(database, *record);
   });
   if (!committed.ok()) return StoreFailure(committed);
   if (!record) return JobNotFound(JobName(id));
-  if (record->expired_time) return ResultsExpired(JobName(id));
+  if (has_expired) return ResultsExpired(JobName(id));
+  scheduler_.SetPriority(record->sequence, record->priority);
   return Get(caller, id);
 }
 

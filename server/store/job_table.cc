@@ -243,8 +243,9 @@ absl::Status RestartJob(Database& database, int64_t sequence, const std::string&
       engine_version, Blob{question}, sequence);
 }
 
-absl::Status PinJob(Database& database, int64_t sequence, bool pinned) {
-  return database.Run("UPDATE jobs SET pinned = ? WHERE sequence = ?", pinned, sequence);
+absl::Status UpdateJob(Database& database, const JobRecord& record) {
+  return database.Run("UPDATE jobs SET pinned = ?, priority = ? WHERE sequence = ?", record.pinned,
+                      record.priority, record.sequence);
 }
 
 absl::StatusOr<std::vector<JobSize>> ListExpirable(Database& database, absl::Time ended_before,

@@ -66,7 +66,7 @@ void Client::CallOnce() {
   if (choice < 35) return List();
   const std::string& id = ids[world_.machine.Below(ids.size())];
   if (choice < 52) return Get(id);
-  if (choice < 55) return Pin(id);
+  if (choice < 55) return Update(id);
   if (choice < 70) return Read(id);
   if (choice < 85) return world_.habits.watches ? Watch(id) : Get(id);
   if (choice < 90) return world_.habits.cancels ? Cancel(id) : Get(id);
@@ -144,15 +144,17 @@ void Client::Delete(const std::string& id) {
   world_.expectations.Deleted(id);
 }
 
-void Client::Pin(const std::string& id) {
+void Client::Update(const std::string& id) {
   const KnownJob before = world_.expectations.Known(id);
-  Call call(world_, absl::StrCat("pin ", id));
+  Call call(world_, absl::StrCat("update ", id));
   if (!call) return;
-  const bool pinned = world_.machine.Chance(0.5);
-  const auto job = call->book().Pin(LocalPrincipal(), id, pinned);
+  JobChange change;
+  if (world_.machine.Chance(0.5)) change.pinned = world_.machine.Chance(0.5);
+  if (!change.pinned) change.priority = static_cast<int32_t>(world_.machine.Below(3)) - 1;
+  const auto job = call->book().Update(LocalPrincipal(), id, change);
   if (!call.Hears(job.status())) return;
   if (absl::IsNotFound(job.status())) return world_.expectations.Missed(id);
-  if (!job.ok()) throw Violation("pin", id, job.status().ToString());
+  if (!job.ok()) throw Violation("update", id, job.status().ToString());
   world_.expectations.Got(before, *job);
 }
 
