@@ -9,7 +9,7 @@ namespace {
 // Takes a turn for each message, so other calls can compute between two messages.
 void FillInTurn(ServiceContext& service, const Stream& stream, TraceMessages& messages,
                 v1::TraceOrbitResponse& message) {
-  const Turns::Turn turn(service.turns, stream.caller().name);
+  const Quota::Part turn = service.quotas.turns.Await(stream.caller().name);
   messages.FillNext(message);
 }
 
@@ -20,7 +20,7 @@ absl::Status TraceOrbit(ServiceContext& service, Stream& stream,
                         grpc::ServerWriter<v1::TraceOrbitResponse>& writer) {
   const absl::StatusOr<TraceQuestion> question = TraceQuestion::Create(request);
   if (!question.ok()) return question.status();
-  const auto memory = service.open_calls.Begin(stream.caller().name, question->Bytes());
+  const auto memory = service.quotas.call_bytes.Take(stream.caller().name, question->Bytes());
   if (!memory.ok()) return memory.status();
   auto messages = question->Start();
   v1::TraceOrbitResponse message;

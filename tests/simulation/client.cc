@@ -189,7 +189,7 @@ class Client::Reader : public WatchReader {
   std::chrono::steady_clock::time_point next_check() const override {
     return world_.machine.now() + kHeartbeat;
   }
-  size_t watches() const override { return 1; }
+  int64_t watches() const override { return 1; }
 
   bool Write(const v1::WatchEnsembleJobResponse& message) override {
     world_.machine.Sleep(world_.machine.UpTo(kLongestRead));
@@ -198,6 +198,7 @@ class Client::Reader : public WatchReader {
     for (const v1::PointResult& point : message.snapshot().finished_points()) {
       world_.tell(absl::StrCat("watch ", id_, ": point ", point.index()));
       chain_.points.push_back(point);
+      chain_.points.back().clear_name();  // results of the book have none
     }
     if (message.has_job()) Saw(message.job().state());
     world_.expectations.Watched(id_, chain_.points, state_);
