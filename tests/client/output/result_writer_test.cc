@@ -36,7 +36,6 @@ std::vector<v1::PointResult> TwoPoints() {
             health { max_energy_error: 1e-12 })"),
           FromText<v1::PointResult>(R"(
             name: "ensembleJobs/abc/results/1"
-            name: "ensembleJobs/abc/results/1"
             index: 1 parameters { rho: 0.53 delta: 0.1 epsilon: 0.25 exponent: 1 }
             model: BILLIARD_REFERENCE samples: 10000
             estimates { name: "mean_hit_time" value: 1e-7 standard_error: 2e-9 })")};
