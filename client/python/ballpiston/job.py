@@ -160,7 +160,9 @@ class Job:
         points: list[Any] = []
         while True:
             page = self._call("ListResults", request)
-            points.extend(page.results)
+            for point in page.results:
+                point.ClearField("name")  # as in files: equal answers are equal results
+                points.append(point)
             request.page_token = page.next_page_token
             if not request.page_token:
                 job = ensemble_pb2.EnsembleJob()
