@@ -26,6 +26,7 @@ constexpr int kStreamsPerConnection = 2'048;  // twice what one principal may wa
 // Threads for calls that are not streams. One principal can fill a quarter of them with answers
 // that it does not read (--max-calls-per-principal).
 constexpr int kOtherThreads = 4'096;
+constexpr int64_t kLeastTransferBytes = 16 << 20;
 constexpr std::chrono::milliseconds kLimitsInterval(1000);
 // The longest delay until health reports that the store fails, and until a revoked watch ends.
 constexpr std::chrono::milliseconds kHealthInterval(500);
@@ -67,14 +68,19 @@ void SetPings(grpc::ServerBuilder& builder, const ConnectionTiming& timing) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
 }
 
+// With less than two messages of the greatest length, two clients that send such messages could
+// block each other for ever.
+size_t TransferBytes(const Limits& limits) {
+  return static_cast<size_t>(
+      std::max({limits.max_transfer_mib << 20, 2 * limits.max_message_bytes, kLeastTransferBytes}));
+}
+
 // Bounds what clients can use before they are authenticated: streams, memory and threads. Each call
 // has a thread. The quota has more than there can be streams, so other calls find a thread.
 void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   using Option = grpc::ServerBuilder::SyncServerOption;
   grpc::ResourceQuota quota("ballpiston");
-  if (limits.max_transfer_mib > 0) {
-    quota.Resize(static_cast<size_t>(limits.max_transfer_mib) << 20);
-  }
+  if (limits.max_transfer_mib > 0) quota.Resize(TransferBytes(limits));
   quota.SetMaxThreads(static_cast<int>(MostStreams(limits)) + kOtherThreads);
   builder.SetResourceQuota(quota);
   // One queue, and at most two idle threads that wait for calls. By default gRPC has a queue for
@@ -84,6 +90,16 @@ void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   builder.SetSyncServerOption(Option::MAX_POLLERS, 2);
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);  // no other server shares the port
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kStreamsPerConnection);
+  builder.SetMaxReceiveMessageSize(static_cast<int>(limits.max_message_bytes));
+}
+
+absl::StatusOr<ListenAddress> ParseMetricsAddress(const std::string& text) {
+  absl::StatusOr<ListenAddress> address = ParseListenAddress(text);
+  if (address.ok() && address->IsLoopback()) return address;
+  return absl::InvalidArgumentError(absl::StrCat(
+      "--metrics-listen=", text,
+      " is not a loopback address; permitted: HOST:PORT with a HOST in 127.0.0.0/8, [::1] or "
+      "localhost (metrics are not encrypted; let others reach them through a proxy or a tunnel)"));
 }
 
 absl::Status CannotListen(const ListenAddress& address) {
@@ -111,8 +127,7 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
     std::unique_ptr<BallpistonServer> server(new BallpistonServer(
         std::move(options), *std::move(directory), *address, *std::move(door), *std::move(store)));
     absl::Status status = server->book_.Resume();
-    if (status.ok()) server->StartExecutors();
-    if (status.ok()) server->StartKeepingLimits();
+    if (status.ok()) server->StartThreads();
     if (status.ok()) status = server->StartMetrics();
     if (status.ok()) status = server->Listen();
     if (!status.ok()) return status;
@@ -133,9 +148,8 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
       store_(std::move(store)),
       crashes_(std::make_shared<CrashRecord>(directory_.path())),
       ladder_(*store_, options_.workers, OptionsOfScheduler(options_).memory_limit),
-      factory_(options_.factory ? std::make_unique<FactoryOpener>(options_.factory) : nullptr),
-      scheduler_(factory_ ? *factory_ : static_cast<PointOpener&>(ladder_), options_.workers,
-                 OptionsOfScheduler(options_)),
+      scheduler_(options_.opener ? *options_.opener : static_cast<PointOpener&>(ladder_),
+                 options_.workers, OptionsOfScheduler(options_)),
       book_(*store_, options_.limits, scheduler_, crashes_),
       threads_(scheduler_, options_.workers, options_.slurm ? kLeaseBesideACluster : kWholePoint,
                crashes_),
@@ -169,23 +183,14 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
       server_(context_) {}
 
 // The cluster first: it adopts leases before a thread can take their chunks.
-void BallpistonServer::StartExecutors() {
+void BallpistonServer::StartThreads() {
   if (slurm_ != nullptr) slurm_->Start();
   threads_.Start();
-}
-
-void BallpistonServer::StartKeepingLimits() {
   limits_ =
       std::make_unique<PeriodicThread>(kLimitsInterval, [this] { book_.KeepLimits(absl::Now()); });
 }
 
 BallpistonServer::~BallpistonServer() { Shutdown(std::chrono::milliseconds(0)); }
-
-void BallpistonServer::BoundConnections(grpc::ServerBuilder& builder) const {
-  SetPings(builder, options_.connections);
-  SetBounds(builder, options_.limits);
-  builder.SetMaxReceiveMessageSize(static_cast<int>(options_.limits.max_message_bytes));
-}
 
 absl::Status BallpistonServer::Listen() {
   const bool is_socket = !address_.socket_path.empty();
@@ -194,7 +199,8 @@ absl::Status BallpistonServer::Listen() {
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
-  BoundConnections(builder);
+  SetPings(builder, options_.connections);
+  SetBounds(builder, options_.limits);
   builder.RegisterService(&ensemble_);
   builder.RegisterService(&analytic_);
   builder.RegisterService(&trace_);
@@ -208,7 +214,7 @@ absl::Status BallpistonServer::Listen() {
   grpc_ = builder.BuildAndStart();
   if (grpc_ == nullptr || port == 0) return CannotListen(address_);
   if (!is_socket) address_.port = port;
-  door_->Open(address_);
+  door_->PublishOwnToken(address_);
   StartHealth();
   directory_.TellAddress(address());
   return absl::OkStatus();
@@ -228,8 +234,10 @@ void BallpistonServer::StartHealth() {
 
 absl::Status BallpistonServer::StartMetrics() {
   if (options_.metrics_listen.empty()) return absl::OkStatus();
+  const absl::StatusOr<ListenAddress> address = ParseMetricsAddress(options_.metrics_listen);
+  if (!address.ok()) return address.status();
   for (const std::string& service : ServiceNames()) calls_.Expect(service);
-  auto endpoint = MetricsEndpoint::Start(options_.metrics_listen, [this] {
+  auto endpoint = MetricsEndpoint::Start(address->Text(), [this] {
     auto metrics = ServerMetrics(context_, door_->CertificateExpiry());
     for (auto& family : calls_.metrics().Collect()) metrics.push_back(std::move(family));
     return metrics;

@@ -14,7 +14,6 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "grpcpp/server.h"
-#include "grpcpp/server_builder.h"
 #include "server/api/services.h"
 #include "server/door/door.h"
 #include "server/door/listen_address.h"
@@ -43,7 +42,7 @@ struct ServerOptions {
   DoorOptions door;
   int workers = 1;
   std::optional<SlurmOptions> slurm = {};  // empty: no cluster
-  ExperimentFactory factory;               // empty: the core's experiment of the chosen model
+  std::shared_ptr<PointOpener> opener;     // null: the ladder of models opens points
   WatchTiming watch;
   ConnectionTiming connections;
   Limits limits;
@@ -83,10 +82,8 @@ class BallpistonServer {
   BallpistonServer(ServerOptions options, DataDirectory directory, ListenAddress address,
                    std::unique_ptr<Door> door, std::unique_ptr<Store> store);
 
-  void StartExecutors();
-  void StartKeepingLimits();
+  void StartThreads();
   absl::Status Listen();
-  void BoundConnections(grpc::ServerBuilder& builder) const;
   absl::Status StartMetrics();
   // While the disk rejects writes, the service that needs it is NOT_SERVING, so that clients can
   // choose another server. The other services and the whole server stay SERVING, because a restart
@@ -104,7 +101,6 @@ class BallpistonServer {
   std::unique_ptr<Store> store_;
   std::shared_ptr<CrashRecord> crashes_;
   ModelLadder ladder_;
-  std::unique_ptr<PointOpener> factory_;  // null: the ladder opens points
   Scheduler scheduler_;
   JobBook book_;
   // After the book: the executors' threads use the book.

@@ -19,7 +19,6 @@
 #include "server/command_line/command_line.h"
 #include "server/door/new_token.h"
 #include "server/fatal_signals.h"
-#include "server/mutex.h"
 #include "server/observability/failpoint.h"
 #include "server/observability/log.h"
 #include "server/scheduling/crash_record.h"
@@ -85,40 +84,12 @@ void AwaitEnd(const sigset_t& signals, const CommandLine& line, BallpistonServer
   LogInfo("stopping");
 }
 
-// Ends the process if this object lives longer than `limit`. Everything that was acknowledged is on
-// disk by then.
-class Watchdog {
- public:
-  using Clock = std::chrono::steady_clock;
-
-  explicit Watchdog(Clock::duration limit)
-      : end_(Clock::now() + limit), thread_([this] { Watch(); }) {}
-  ~Watchdog() {
-    {
-      MutexLock lock(mutex_);
-      stopped_ = true;
-    }
-    changed_.NotifyAll();
-    thread_.join();
-  }
-
- private:
-  void Watch() {
-    MutexLock lock(mutex_);
-    while (!stopped_ && changed_.WaitUntil(mutex_, end_)) continue;
-    if (!stopped_) std::_Exit(0);
-  }
-
-  const Clock::time_point end_;
-  Mutex mutex_;
-  Condition changed_;
-  bool stopped_ ABSL_GUARDED_BY(mutex_) = false;
-  std::thread thread_;
-};
-
-void StopInTime(BallpistonServer& server, std::chrono::milliseconds drain) {
-  const Watchdog watchdog(drain + kGrace);
-  server.Shutdown(drain);
+// Ends the process after this time. Everything that was acknowledged is on disk by then.
+void ExitAfter(std::chrono::milliseconds limit) {
+  std::thread([limit] {
+    std::this_thread::sleep_for(limit);
+    std::_Exit(0);
+  }).detach();
 }
 
 int Fail(const absl::Status& status) {
@@ -135,8 +106,10 @@ int Print(const std::string& text) {
 
 // Prints the token and nothing else to standard output. The log does not hold the token.
 int PrintNewToken(const CommandLine& line) {
+  const absl::StatusOr<TokenRequest> request = ParseTokenRequest(line.new_token);
+  if (!request.ok()) return Fail(request.status());
   const auto token =
-      IssueToken({"access-file", line.server.door.access_file}, *line.new_token, absl::Now());
+      IssueToken({"access-file", line.server.door.access_file}, *request, absl::Now());
   return token.ok() ? Print(*token + "\n") : Fail(token.status());
 }
 
@@ -158,7 +131,7 @@ int Main(int argc, char** argv) {
   const absl::StatusOr<CommandLine> line = ParseCommandLine(argc, argv);
   if (!line.ok()) return Fail(line.status());
   if (!line->page.empty()) return Print(line->page);
-  if (line->new_token) return PrintNewToken(*line);
+  if (!line->new_token.empty()) return PrintNewToken(*line);
   if (line->check) return Report(CheckStore(StoreIn(*line)));
   if (!line->backup.empty()) return Report(BackupStore(StoreIn(*line), line->backup));
   SetLogLevel(line->log_level);
@@ -174,7 +147,8 @@ int Main(int argc, char** argv) {
   CountFailpointsOfReadyServer();
   LogInfo(absl::StrCat("version ", kVersion, " listening on ", (*server)->address()));
   AwaitEnd(signals, *line, **server);
-  StopInTime(**server, line->drain);
+  ExitAfter(line->drain + kGrace);
+  (*server)->Shutdown(line->drain);
   // Skips the destructors: after large answers gRPC may wait 10 s for one of its threads.
   std::fflush(nullptr);
   std::_Exit(0);

@@ -269,7 +269,7 @@ SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time) 
 // for a piston, by the reference 250 and 104, by the jump process 77 and 54. Lists that grow may be
 // half empty, so the bound is twice that. The rest is for the blocks in progress.
 double MemoryOfReplicas(Model model, const PointParameters& point) {
-  constexpr double kOfABlock = 10e6;
+  constexpr double kBlocksInProgress = 10e6;
   constexpr double kLanes[] = {626, 128}, kReference[] = {500, 208}, kJumps[] = {154, 108};
   const bool in_lanes = model != Model::kMarkov && model != Model::kBilliardReference;
   const double* const bytes = in_lanes ? kLanes : model == Model::kMarkov ? kJumps : kReference;
@@ -278,7 +278,7 @@ double MemoryOfReplicas(Model model, const PointParameters& point) {
   const auto balls = static_cast<double>(shape.cells());
   const double pistons = static_cast<double>(shape.contacts() / 2 + shape.rows);
   const double together = in_lanes ? static_cast<double>(ReplicasThatFillLanes(shape.cells())) : 1;
-  return kOfABlock + together * (balls * bytes[0] + pistons * bytes[1]);
+  return kBlocksInProgress + together * (balls * bytes[0] + pistons * bytes[1]);
 }
 
 GasExperiment::GasExperiment(const EnsembleSpec& spec, const PointParameters& point,

@@ -62,7 +62,7 @@ LaneGas::LaneGas(const GasGeometry& geometry, double exchange_rate, std::vector<
   gas_.pistons.reserve(pistons);
   from_.reserve(balls);
   to_.reserve(balls);
-  contacts_.reserve(balls);
+  collisions_.reserve(balls);
   visits_.reserve(balls);
   replicas_.reserve(starts_.size());
   for (GasStart& start : starts_) {
@@ -94,7 +94,7 @@ void LaneGas::PlaceBall(size_t number) {
   const GasBall& ball = starts_[number / balls_each_].state.balls[number % balls_each_];
   to_.push_back(PlacedBall(gas_, ball.position, ball.direction));
   from_.push_back(to_.back());
-  contacts_.emplace_back();
+  collisions_.emplace_back();
   visits_.push_back(0);
   const double speed = std::max(ball.speed, kAtRest);
   gas_.balls.push_back({.speed = speed, .slowness = 1 / speed});
@@ -218,7 +218,7 @@ void LaneGas::MoveOriginOfPiston(Replica& replica, uint32_t number) {
 
 // The ball is to fly, from its state in from_ to the window's end.
 void LaneGas::Order(const Replica& replica, uint32_t ball) {
-  contacts_[ball].time = kNever;
+  collisions_[ball].time = kNever;
   orders_.push_back({.ball = ball, .from_time = replica.now, .until_time = replica.end});
   orders_are_new_ = true;
 }
@@ -232,7 +232,7 @@ void LaneGas::OrderVisitor(const Replica& replica, uint32_t ball, Direction dire
 // Flies until all balls have arrived.
 bool LaneGas::FlyOrders(Pauses& pauses) {
   while (!orders_.empty()) {
-    lanes_->Fly(orders_, orders_are_new_ ? from_ : to_, to_, contacts_);
+    lanes_->Fly(orders_, orders_are_new_ ? from_ : to_, to_, collisions_);
     orders_are_new_ = false;
     const double work = kToFlyABall * static_cast<double>(orders_.size() + 8);
     std::erase_if(orders_, [this](const FlightOrder& order) {
@@ -248,7 +248,7 @@ void LaneGas::Arrive(const FlightOrder& order) {
   Replica& replica = ReplicaOf(order.ball);
   visits_[order.ball] = order.visits;
   if (order.has_escaped) Stop(replica, order);
-  replica.queue.Set(order.ball - replica.first_ball, contacts_[order.ball].time);
+  replica.queue.Set(order.ball - replica.first_ball, collisions_[order.ball].time);
 }
 
 // A ball that has escaped rests in the middle of its cell, where no piston comes.
@@ -300,7 +300,7 @@ void LaneGas::LeaveThermalWall(Replica& replica, uint32_t number) {
 // The pair's exchange, in the cell turned until the piston is on the right.
 void LaneGas::Exchange(Replica& replica, uint32_t number) {
   BallInTime& ball = gas_.balls[number];
-  const BallCollision& collision = contacts_[number];
+  const BallCollision& collision = collisions_[number];
   const Direction direction = collision.direction;
   const uint32_t piston_number = ball.pistons[static_cast<size_t>(direction)];
   PistonInTime& piston = gas_.pistons[piston_number];

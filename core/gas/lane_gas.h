@@ -96,12 +96,12 @@ class LaneGas : public GasRun {
   // By ball. `from_` is the ball before the flight in which the window begins, or in which its last
   // exchange in the window is. `to_` is the ball before the flight in which the window ends.
   std::vector<FlyingBall> from_, to_;
-  std::vector<BallCollision> contacts_;  // by ball, its next one in the window
-  std::vector<Visits> visits_;           // by ball, in the window until its collision
-  double time_ = 0;                      // to which all replicas go
-  std::vector<uint32_t> active_;         // replicas that have not come there
-  std::vector<FlightOrder> orders_;      // of balls that fly now
-  bool orders_are_new_ = false;          // their balls are still in from_
+  std::vector<BallCollision> collisions_;  // by ball, its next one in the window
+  std::vector<Visits> visits_;             // by ball, in the window until its collision
+  double time_ = 0;                        // to which all replicas go
+  std::vector<uint32_t> active_;           // replicas that have not come there
+  std::vector<FlightOrder> orders_;        // of balls that fly now
+  bool orders_are_new_ = false;            // their balls are still in from_
 };
 
 }  // namespace ballpiston

@@ -57,7 +57,7 @@ GasEvent ReferenceGas::Step() {
   } else {
     const Ball& ball = balls_[body];
     const auto number = static_cast<int64_t>(body);
-    event = ball.ContactTime() <= ball.wall_time ? Exchange(number) : HitWall(number);
+    event = ball.CollisionTime() <= ball.wall_time ? Exchange(number) : HitWall(number);
   }
   event.time = origin_ + now_;
   return event;
@@ -72,7 +72,7 @@ void ReferenceGas::MoveOrigin() {
   for (Ball& ball : balls_) {
     ball.time -= later;
     ball.wall_time -= later;
-    for (double& time : ball.contact_times) time -= later;
+    for (double& time : ball.collision_times) time -= later;
   }
   for (Piston& piston : pistons_) {
     piston.time -= later;
@@ -87,7 +87,7 @@ GasEvent ReferenceGas::HitWall(int64_t number) {
   Ball& ball = balls_[Index(number)];
   if (ball.encounter.disc == kNoDisc) {
     ball.wall_time = kNever;
-    ball.contact_times.fill(kNever);
+    ball.collision_times.fill(kNever);
     Schedule(number);
     return {.kind = EventKind::kEscape, .ball = number};
   }
@@ -121,7 +121,7 @@ GasEvent ReferenceGas::TurnPiston(int64_t number) {
 // The pair's exchange, in the cell turned until the piston is on the right.
 GasEvent ReferenceGas::Exchange(int64_t number) {
   Ball& ball = balls_[Index(number)];
-  const Direction direction = ball.contact;
+  const Direction direction = ball.first;
   const double sign = SignOf(direction);
   const int64_t piston_number = geometry_.PistonOf(number, direction);
   Piston& piston = pistons_[Index(piston_number)];
@@ -172,7 +172,7 @@ void ReferenceGas::TimePiston(Piston& piston) const {
 void ReferenceGas::LookAround(int64_t number) {
   Ball& ball = balls_[Index(number)];
   for (int i = 0; i < geometry_.directions(); ++i) {
-    FindContact(ball, number, geometry_.DirectionAt(i));
+    FindCollision(ball, number, geometry_.DirectionAt(i));
   }
   ball.origin = origin_;
   Schedule(number);
@@ -183,19 +183,19 @@ void ReferenceGas::LookAround(int64_t number) {
 void ReferenceGas::LookAgain(int64_t number, Direction direction) {
   Ball& ball = balls_[Index(number)];
   if (ball.origin != origin_) return LookAround(number);
-  FindContact(ball, number, direction);
+  FindCollision(ball, number, direction);
   Schedule(number);
 }
 
-void ReferenceGas::FindContact(Ball& ball, int64_t number, Direction direction) const {
+void ReferenceGas::FindCollision(Ball& ball, int64_t number, Direction direction) const {
   const Piston& piston = pistons_[Index(geometry_.PistonOf(number, direction))];
-  ball.contact_times[static_cast<size_t>(direction)] = ContactTime(ball, direction, piston);
+  ball.collision_times[static_cast<size_t>(direction)] = CollisionTime(ball, direction, piston);
 }
 
 // The time of a collision before ball or piston hits a wall. A collision at the moment when the
 // piston turns counts, because the piston may never come nearer to a ball at rest.
-double ReferenceGas::ContactTime(const Ball& ball, Direction direction,
-                                 const Piston& piston) const {
+double ReferenceGas::CollisionTime(const Ball& ball, Direction direction,
+                                   const Piston& piston) const {
   const double sign = SignOf(direction), now = std::max(ball.time, piston.time);
   const double ball_velocity = ball.state.speed * SeenToward(direction, ball.state.direction).x();
   const double approach = ball_velocity - sign * piston.state.velocity;
@@ -210,8 +210,8 @@ double ReferenceGas::ContactTime(const Ball& ball, Direction direction,
 
 void ReferenceGas::Schedule(int64_t number) {
   Ball& ball = balls_[Index(number)];
-  const auto first = std::min_element(ball.contact_times.begin(), ball.contact_times.end());
-  ball.contact = static_cast<Direction>(first - ball.contact_times.begin());
+  const auto first = std::min_element(ball.collision_times.begin(), ball.collision_times.end());
+  ball.first = static_cast<Direction>(first - ball.collision_times.begin());
   queue_.Set(Index(number), std::min(ball.wall_time, *first));
 }
 

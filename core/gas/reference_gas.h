@@ -67,11 +67,11 @@ class ReferenceGas {
     CellWalls<double>::Encounter encounter = {};
     double wall_time = 0;
     // With the pistons, by direction; kNever if it hits a wall before.
-    std::array<double, 4> contact_times = {kNever, kNever, kNever, kNever};
-    Direction contact = Direction::kRight;  // the first of them
-    double origin = 0;                      // the time when all of them were found
+    std::array<double, 4> collision_times = {kNever, kNever, kNever, kNever};
+    Direction first = Direction::kRight;  // the direction of the first of them
+    double origin = 0;                    // the time when all of them were found
 
-    double ContactTime() const { return contact_times[static_cast<size_t>(contact)]; }
+    double CollisionTime() const { return collision_times[static_cast<size_t>(first)]; }
   };
   struct Piston {
     GasPiston state;
@@ -89,10 +89,10 @@ class ReferenceGas {
 
   void Aim(Ball& ball) const;
   void TimePiston(Piston& piston) const;
-  double ContactTime(const Ball& ball, Direction direction, const Piston& piston) const;
+  double CollisionTime(const Ball& ball, Direction direction, const Piston& piston) const;
   void LookAround(int64_t ball);  // for its next collisions
   void LookAgain(int64_t ball, Direction direction);
-  void FindContact(Ball& ball, int64_t number, Direction direction) const;
+  void FindCollision(Ball& ball, int64_t number, Direction direction) const;
   void Schedule(int64_t ball);
   void SchedulePiston(int64_t piston);
   GasEvent HitWall(int64_t ball);

@@ -16,9 +16,9 @@
 #include "ballpiston/v1/ensemble.pb.h"
 #include "server/api/tokens.h"
 #include "server/convert/errors.h"
-#include "server/door/sha256.h"
 #include "server/jobs/job_book.h"
 #include "server/jobs/job_filter.h"
+#include "server/sha256.h"
 
 namespace ballpiston::server {
 

@@ -56,16 +56,10 @@ void AddServer(const ServiceContext& service, const v1::ServerStatus& status, Pa
                status.processor_seconds());
 }
 
-void AddJobs(JobBook& book, const v1::ServerStatus& status, Page& page) {
-  int64_t running = 0, cancelling = 0;
-  for (const auto& [principal, jobs] : book.JobsByPrincipal()) {
-    running += jobs.running;
-    cancelling += jobs.cancelling;
-  }
-  const std::string help = "Jobs that have not ended, by state.";
+void AddJobs(const JobBook& book, const v1::ServerStatus& status, Page& page) {
+  const std::string help = "Jobs that have not ended, by state. running: or being cancelled.";
   page.Gauge("ballpiston_jobs", help, status.queued_jobs(), {{"state", "queued"}});
-  page.Gauge("ballpiston_jobs", help, running, {{"state", "running"}});
-  page.Gauge("ballpiston_jobs", help, cancelling, {{"state", "cancelling"}});
+  page.Gauge("ballpiston_jobs", help, status.running_jobs(), {{"state", "running"}});
   page.Gauge("ballpiston_queue_length", "Jobs that wait for their first turn.",
              status.queued_jobs());
   const EndedJobs ended = book.ended_jobs();

@@ -18,16 +18,15 @@ void FillInTurn(ServiceContext& service, const Stream& stream, TraceMessages& me
 absl::Status TraceOrbit(ServiceContext& service, Stream& stream,
                         const v1::TraceOrbitRequest& request,
                         grpc::ServerWriter<v1::TraceOrbitResponse>& writer) {
-  const absl::StatusOr<TraceQuestion> question = TraceQuestion::Create(request);
-  if (!question.ok()) return question.status();
-  const auto memory = service.quotas.call_bytes.Take(stream.caller().name, question->Bytes());
+  const auto memory = service.quotas.call_bytes.Take(stream.caller().name, kBytesOfTrace);
   if (!memory.ok()) return memory.status();
-  auto messages = question->Start();
+  absl::StatusOr<TraceMessages> messages = TraceMessages::Create(request);
+  if (!messages.ok()) return messages.status();
   v1::TraceOrbitResponse message;
-  while (!messages.HasEnded()) {
+  while (!messages->HasEnded()) {
     if (const absl::Status proceed = stream.Proceed(); !proceed.ok()) return proceed;
     message.Clear();
-    FillInTurn(service, stream, messages, message);
+    FillInTurn(service, stream, *messages, message);
     if (!writer.Write(message)) return absl::CancelledError("the client is gone");
   }
   return absl::OkStatus();

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
-#include <set>
+#include <istream>
+#include <memory>
 #include <thread>
 #include <type_traits>
 #include <utility>
@@ -40,17 +40,14 @@ constexpr double kDaySeconds = 86400;
 constexpr double kMostLimit = 1e15;
 constexpr int64_t kLeastMessage = 1024;
 constexpr int64_t kMostMessage = int64_t{256} << 20;
-constexpr int64_t kLeastTransferMib = 16;
-constexpr int64_t kMostTransferMib = int64_t{1} << 20;
+constexpr double kMostTransferMib = 1 << 20;
 constexpr int64_t kMostSlurmMinutes = 60 * 24 * 365;
 constexpr int64_t kMostSlurmTasks = 1'000'000;
 
 // Values of flags that are converted after all flags were read.
 struct Words {
-  std::string config;
   std::string executor = "threads";
   std::string log_level = "info";
-  std::string new_token;
   SlurmOptions slurm;
 };
 
@@ -111,11 +108,42 @@ void AddWord(CLI::App& app, const std::string& flag, std::string& word,
       ->capture_default_str();
 }
 
+// ---- the file of --config ----
+
+// Reads lines FLAG = VALUE; a line that begins with # is a comment. (CLI11's own reader takes
+// [::1]:50051 for the beginning of a list, and any # for a comment.)
+class FlagFile : public CLI::Config {
+ public:
+  std::vector<CLI::ConfigItem> from_config(std::istream& file) const override {
+    std::vector<CLI::ConfigItem> items;
+    for (std::string line; std::getline(file, line);) {
+      absl::StripAsciiWhitespace(&line);
+      if (line.empty() || line.front() == '#') continue;
+      const std::vector<std::string> parts = absl::StrSplit(line, absl::MaxSplits('=', 1));
+      const std::string value = parts.size() == 1 ? "" : parts[1];
+      Add(std::string(absl::StripAsciiWhitespace(parts[0])),
+          std::string(absl::StripAsciiWhitespace(value)), items);
+    }
+    return items;
+  }
+
+  std::string to_config(const CLI::App*, bool, bool, std::string) const override { return ""; }
+
+ private:
+  // CLI11 ignores a flag's second item, so all values of a flag are in one.
+  static void Add(const std::string& flag, std::string value, std::vector<CLI::ConfigItem>& items) {
+    const auto same = [&](const CLI::ConfigItem& item) { return item.name == flag; };
+    auto item = std::find_if(items.begin(), items.end(), same);
+    if (item == items.end()) item = items.insert(item, {.parents = {}, .name = flag, .inputs = {}});
+    item->inputs.push_back(std::move(value));
+  }
+};
+
 // ---- the flags, by their groups in --help ----
 
 void BeginGroup(CLI::App& app, const std::string& name) { app.option_defaults()->group(name); }
 
-void AddServerFlags(CLI::App& app, CommandLine& line, Words& words) {
+void AddServerFlags(CLI::App& app, CommandLine& line) {
   BeginGroup(app, "Server");
   AddText(app, "--listen", line.server.listen, "ADDRESS",
           "address of the API: unix:PATH or HOST:PORT (port 0: any free port). A host that other\n"
@@ -131,11 +159,12 @@ void AddServerFlags(CLI::App& app, CommandLine& line, Words& words) {
              "stop after this time without active jobs and calls (0: never)");
   AddSeconds(app, "--drain-seconds", line.drain, 0, 3600,
              "time for calls in progress to end after SIGTERM or SIGINT");
-  app.add_option("--config", words.config,
-                 "file of flags, one a line: FLAG = VALUE, without the dashes. A flag of the\n"
-                 "command line takes precedence")
-      ->configurable(false)
-      ->check(CLI::ExistingFile)
+  app.config_formatter(std::make_shared<FlagFile>());
+  // Unknown ones are then refused like those of the command line.
+  app.allow_config_extras(CLI::config_extras_mode::capture);
+  app.set_config("--config", "",
+                 "file of flags, one a line: FLAG = VALUE, without the dashes. A line that begins\n"
+                 "with # is a comment. A flag of the command line takes precedence")
       ->option_text("FILE");
 }
 
@@ -211,9 +240,6 @@ const LimitFlag kLimitFlags[] = {
      "calls in progress of one principal, without watches"},
     {"--max-call-bytes-per-principal", &Limits::max_call_bytes_per_principal,
      "bytes of the requests of these calls and of their unread answers"},
-    {"--max-transfer-mib", &Limits::max_transfer_mib,
-     "MiB for connections and for requests that are being received, of all clients. At\n"
-     "least 16 and twice --max-message-bytes, at most 1048576"},
     {"--max-memory-mib", &Limits::max_memory_mib,
      "MiB of memory of all points that this server computes at a time, by an upper bound.\n"
      "By default 80 % of the memory of this machine or of the server's control group"},
@@ -233,6 +259,9 @@ void AddLimitFlags(CLI::App& app, Limits& limits) {
   }
   AddNumber(app, "--max-message-bytes", limits.max_message_bytes, kLeastMessage, kMostMessage,
             "bytes of one request");
+  AddNumber(app, "--max-transfer-mib", limits.max_transfer_mib, 0, kMostTransferMib,
+            "MiB for connections and for requests that are being received, of all clients; the\n"
+            "server uses at least 16 MiB and twice --max-message-bytes");
 }
 
 void AddLogFlags(CLI::App& app, CommandLine& line, Words& words) {
@@ -245,11 +274,12 @@ void AddLogFlags(CLI::App& app, CommandLine& line, Words& words) {
       "free port, which the log names). Default: no metrics");
 }
 
-void AddCommands(CLI::App& app, CommandLine& line, Words& words) {
+void AddCommands(CLI::App& app, CommandLine& line) {
   BeginGroup(app, "Commands; at most one, instead of a server");
   app.option_defaults()->configurable(false);  // not in the file of --config
-  AddText(app, "--new-token", words.new_token, "PRINCIPAL:ROLE[:DAYS]",
-          "make a token, append its hash to --access-file and print the token");
+  AddText(app, "--new-token", line.new_token, "PRINCIPAL:ROLE[:DAYS]",
+          "make a token, append its hash to --access-file and print the token")
+      ->needs("--access-file");
   app.add_flag(
       "--check", line.check,
       "check the whole store in --data-dir and print a summary; the exit code is 0 if the\n"
@@ -266,91 +296,20 @@ void AddCommands(CLI::App& app, CommandLine& line, Words& words) {
 // ---- parsing ----
 
 // CLI11 would take the next argument for the missing value.
-void CheckValue(const std::string& argument) {
-  if (absl::StartsWith(argument, "--") && argument.find('=') == argument.size() - 1) {
-    throw CLI::ValidationError(argument.substr(0, argument.size() - 1), "needs a value");
+void CheckValues(int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i) {
+    const absl::string_view argument = argv[i];
+    if (!absl::StartsWith(argument, "--") || argument.find('=') != argument.size() - 1) continue;
+    throw CLI::ValidationError(std::string(argument.substr(0, argument.size() - 1)),
+                               "needs a value");
   }
-}
-
-void ParseArguments(CLI::App& app, int argc, const char* const* argv) {
-  for (int i = 1; i < argc; ++i) CheckValue(argv[i]);
-  app.parse(argc, argv);
-}
-
-// A comment begins with a # that is the line's first character or follows white space.
-size_t FindComment(const std::string& line, size_t from) {
-  size_t at = line.find('#', from);
-  while (at != 0 && at != std::string::npos && !absl::ascii_isspace(line[at - 1])) {
-    at = line.find('#', at + 1);
-  }
-  return at;
-}
-
-// A value in quotes may contain what otherwise begins a comment.
-std::string WithoutComment(const std::string& line) {
-  size_t end = FindComment(line, 0);
-  const size_t value = line.find_first_not_of(" \t", line.find('=') + 1);
-  if (value < end && (line[value] == '"' || line[value] == '\'')) {
-    const size_t quote = line.find(line[value], value + 1);
-    if (quote != std::string::npos) end = FindComment(line, quote);
-  }
-  return line.substr(0, end);
-}
-
-// `listen = "unix:x"  # the API` is --listen=unix:x; a comment is the empty text.
-std::string ArgumentIn(const std::string& line) {
-  const std::string text(absl::StripAsciiWhitespace(WithoutComment(line)));
-  if (text.empty()) return "";
-  const std::pair<std::string, std::string> parts = absl::StrSplit(text, absl::MaxSplits('=', 1));
-  std::string value(absl::StripAsciiWhitespace(parts.second));
-  return absl::StrCat("--", absl::StripAsciiWhitespace(parts.first), "=",
-                      CLI::detail::remove_quotes(value));
-}
-
-// Unknown flags are left to the parser. `given` has the flags of the earlier lines.
-void CheckFlag(const CLI::App& app, const std::string& flag, std::set<const CLI::Option*>& given) {
-  const CLI::Option* const option = app.get_option_no_throw(flag);
-  if (option == nullptr) return;
-  if (!option->get_configurable()) {
-    throw CLI::ValidationError(flag, "is permitted on the command line only");
-  }
-  const bool is_new = given.insert(option).second;
-  const bool may_repeat = option->get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll;
-  if (!is_new && !may_repeat) throw CLI::ValidationError(flag, "is given twice");
-}
-
-// First, each line by itself. CLI11's own reader takes [::1]:50051 for the beginning of a list,
-// ignores a key's second value, and does not say in which line an error is.
-void ParseFile(CLI::App& app, const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw CLI::FileError::Missing(path);
-  std::set<const CLI::Option*> given;
-  std::vector<std::string> arguments;
-  int number = 0;
-  for (std::string line; std::getline(file, line);) {
-    ++number;
-    const std::string argument = ArgumentIn(line);
-    if (argument.empty()) continue;
-    try {
-      CheckFlag(app, argument.substr(0, argument.find('=')), given);
-      CheckValue(argument);
-      app.parse(std::vector<std::string>{argument});
-    } catch (const CLI::ParseError& error) {
-      throw CLI::ConfigError(absl::StrCat(path, ", line ", number, ": ", error.what()));
-    }
-    arguments.insert(arguments.begin(), argument);  // CLI11 begins at the end
-  }
-  app.parse(std::move(arguments));  // together, for the flags that may be repeated
 }
 
 // Sets the flags, or `page`.
-absl::Status Parse(CLI::App& app, int argc, const char* const* argv, const std::string& config,
-                   std::string& page) {
+absl::Status Parse(CLI::App& app, int argc, const char* const* argv, std::string& page) {
   try {
-    ParseArguments(app, argc, argv);
-    if (config.empty()) return absl::OkStatus();
-    ParseFile(app, config);
-    ParseArguments(app, argc, argv);  // takes precedence
+    CheckValues(argc, argv);
+    app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     page = app.help();
   } catch (const CLI::CallForVersion& version) {
@@ -362,17 +321,6 @@ absl::Status Parse(CLI::App& app, int argc, const char* const* argv, const std::
 }
 
 // ---- combinations of flags ----
-
-// With less memory than two messages of the greatest length, two clients that send such messages
-// could block each other for ever.
-absl::Status CheckTransfer(const Limits& limits) {
-  const int64_t least = std::max(kLeastTransferMib, (2 * limits.max_message_bytes) >> 20);
-  const int64_t mib = limits.max_transfer_mib;
-  if (mib == 0 || (mib >= least && mib <= kMostTransferMib)) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(
-      "--max-transfer-mib: ", mib, " is refused; permitted: 0 (no limit), or ", least, " to ",
-      kMostTransferMib, " with --max-message-bytes=", limits.max_message_bytes));
-}
 
 absl::Status SetSlurm(Words& words, CommandLine& line) {
   const std::string& folder = words.slurm.shared_folder;
@@ -387,17 +335,6 @@ absl::Status SetSlurm(Words& words, CommandLine& line) {
   }
   line.server.slurm = std::move(words.slurm);
   return absl::OkStatus();
-}
-
-absl::Status SetNewToken(const std::string& text, CommandLine& line) {
-  if (text.empty()) return absl::OkStatus();
-  if (line.server.door.access_file.empty()) {
-    return absl::InvalidArgumentError(
-        "--new-token: --access-file is missing, the file that keeps the token's hash");
-  }
-  absl::StatusOr<TokenRequest> request = ParseTokenRequest(text);
-  if (request.ok()) line.new_token = *std::move(request);
-  return request.status();
 }
 
 void SetDefaults(CommandLine& line) {
@@ -417,22 +354,20 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   CLI::App app(kDescription, "ballpistond");
   app.get_formatter()->column_width(kHelpIndentation);
   app.footer(kExitCodes);
-  AddServerFlags(app, line, words);
+  AddServerFlags(app, line);
   AddDoorFlags(app, line.server.door);
   AddSlurmFlags(app, words);
   AddLimitFlags(app, line.server.limits);
   AddLogFlags(app, line, words);
-  AddCommands(app, line, words);
-  const absl::Status parsed = Parse(app, argc, argv, words.config, line.page);
+  AddCommands(app, line);
+  const absl::Status parsed = Parse(app, argc, argv, line.page);
   if (!parsed.ok()) return parsed;
   if (!line.page.empty()) return line;
   line.log_level = words.log_level == "info"      ? Severity::kInfo
                    : words.log_level == "warning" ? Severity::kWarning
                                                   : Severity::kError;
-  for (const absl::Status& status : {CheckTransfer(line.server.limits), SetSlurm(words, line),
-                                     SetNewToken(words.new_token, line)}) {
-    if (!status.ok()) return status;
-  }
+  const absl::Status slurm = SetSlurm(words, line);
+  if (!slurm.ok()) return slurm;
   return line;
 }
 

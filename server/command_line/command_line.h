@@ -2,12 +2,10 @@
 #pragma once
 
 #include <chrono>
-#include <optional>
 #include <string>
 
 #include "absl/status/statusor.h"
 #include "server/ballpiston_server.h"
-#include "server/door/new_token.h"
 #include "server/observability/log.h"
 
 namespace ballpiston::server {
@@ -19,8 +17,8 @@ struct CommandLine {
   std::chrono::milliseconds drain{10'000};
 
   // At most one of these is set. The program then executes this command and starts no server.
-  std::string page;  // the text that --help or --version prints
-  std::optional<TokenRequest> new_token;
+  std::string page;       // the text that --help or --version prints
+  std::string new_token;  // PRINCIPAL:ROLE[:DAYS]
   bool check = false;
   std::string backup;  // the file to write
 };

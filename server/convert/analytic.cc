@@ -46,14 +46,6 @@ void CheckValues(const char* field, const List& values, Allowed allowed, absl::s
 
 // The bound of delta falls as rho grows. So a delta that is invalid with any valid rho is invalid
 // with the largest one.
-void CheckDelta(const v1::EvaluatePairsRequest& request, int index, double largest_rho,
-                Violations& violations) {
-  const double delta = request.delta(index);
-  Add(Element("delta", index),
-      largest_rho > 0 ? ValidatePairDelta(largest_rho, delta) : ValidateSomeDelta(delta),
-      violations);
-}
-
 void CheckPairs(const v1::EvaluatePairsRequest& request, Violations& violations) {
   double largest_rho = 0;  // of the valid values
   for (int i = 0; i < request.rho_size() && !Enough(violations); ++i) {
@@ -62,7 +54,10 @@ void CheckPairs(const v1::EvaluatePairsRequest& request, Violations& violations)
     if (status.ok()) largest_rho = std::max(largest_rho, request.rho(i));
   }
   for (int i = 0; i < request.delta_size() && !Enough(violations); ++i) {
-    CheckDelta(request, i, largest_rho, violations);
+    const double delta = request.delta(i);
+    Add(Element("delta", i),
+        largest_rho > 0 ? ValidatePairDelta(largest_rho, delta) : ValidateSomeDelta(delta),
+        violations);
   }
 }
 

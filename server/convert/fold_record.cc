@@ -62,30 +62,6 @@ bool CountsNoSampleTwice(const PointExperiment& experiment, const BlockResult& r
                      [&](const Histogram& h) { return HoldsAtMost(counts, h); });
 }
 
-}  // namespace
-
-void FillAccumulators(const BlockResult& result, storage::Accumulators& record) {
-  record.set_samples(result.samples);
-  for (const Moments& moments : result.moments) Fill(moments, *record.add_moments());
-  for (const BatchMeans& means : result.batch_means) Fill(means, *record.add_batch_means());
-  for (const Histogram& histogram : result.histograms) Fill(histogram, *record.add_histograms());
-  record.set_escapes(result.health.escapes);
-  record.set_max_energy_error(result.health.max_energy_error);
-}
-
-BlockResult ResultOfAccumulators(const storage::Accumulators& record) {
-  BlockResult result;
-  result.samples = record.samples();
-  for (const auto& moments : record.moments()) result.moments.push_back(MomentsOf(moments));
-  for (const auto& means : record.batch_means()) result.batch_means.push_back(BatchMeansOf(means));
-  for (const auto& counts : record.histograms()) result.histograms.push_back(HistogramOf(counts));
-  result.health.escapes = record.escapes();
-  result.health.max_energy_error = record.max_energy_error();
-  return result;
-}
-
-namespace {
-
 // Whether the experiment can have written this result for that number of planned samples. A result
 // of 0 planned samples is empty.
 bool IsPossible(const PointExperiment& experiment, const BlockResult& result, uint64_t planned) {
@@ -110,6 +86,26 @@ bool IsPossible(const PointExperiment& experiment, const FoldState& state) {
 }
 
 }  // namespace
+
+void FillAccumulators(const BlockResult& result, storage::Accumulators& record) {
+  record.set_samples(result.samples);
+  for (const Moments& moments : result.moments) Fill(moments, *record.add_moments());
+  for (const BatchMeans& means : result.batch_means) Fill(means, *record.add_batch_means());
+  for (const Histogram& histogram : result.histograms) Fill(histogram, *record.add_histograms());
+  record.set_escapes(result.health.escapes);
+  record.set_max_energy_error(result.health.max_energy_error);
+}
+
+BlockResult ResultOfAccumulators(const storage::Accumulators& record) {
+  BlockResult result;
+  result.samples = record.samples();
+  for (const auto& moments : record.moments()) result.moments.push_back(MomentsOf(moments));
+  for (const auto& means : record.batch_means()) result.batch_means.push_back(BatchMeansOf(means));
+  for (const auto& counts : record.histograms()) result.histograms.push_back(HistogramOf(counts));
+  result.health.escapes = record.escapes();
+  result.health.max_energy_error = record.max_energy_error();
+  return result;
+}
 
 std::string FoldRecordBytes(const FoldState& state) {
   storage::Checkpoint record;

@@ -43,38 +43,30 @@ const ExperimentKind* ExperimentOf(v1::EnsembleSpec::Experiment message, Violati
   return found;
 }
 
+constexpr std::pair<v1::EnsembleSpec::Model, Model> kModels[] = {
+    {v1::EnsembleSpec::AUTO, Model::kAuto},
+    {v1::EnsembleSpec::CLOSED_FORM, Model::kClosedForm},
+    {v1::EnsembleSpec::SPECTRUM, Model::kSpectrum},
+    {v1::EnsembleSpec::MARKOV, Model::kMarkov},
+    {v1::EnsembleSpec::BILLIARD, Model::kBilliard},
+    {v1::EnsembleSpec::BILLIARD_REFERENCE, Model::kBilliardReference}};
+
 Model ModelOf(v1::EnsembleSpec::Model message, Violations& violations) {
-  switch (message) {
-    case v1::EnsembleSpec::MODEL_UNSPECIFIED:
-    case v1::EnsembleSpec::AUTO:
-      return Model::kAuto;
-    case v1::EnsembleSpec::CLOSED_FORM:
-      return Model::kClosedForm;
-    case v1::EnsembleSpec::SPECTRUM:
-      return Model::kSpectrum;
-    case v1::EnsembleSpec::MARKOV:
-      return Model::kMarkov;
-    case v1::EnsembleSpec::BILLIARD:
-      return Model::kBilliard;
-    case v1::EnsembleSpec::BILLIARD_REFERENCE:
-      return Model::kBilliardReference;
-    default:
-      AddUnknownNumber("spec.model", message, violations);
-      return Model::kAuto;
+  const auto found =
+      std::ranges::find(kModels, message, &std::pair<v1::EnsembleSpec::Model, Model>::first);
+  if (found != std::end(kModels)) return found->second;
+  if (message != v1::EnsembleSpec::MODEL_UNSPECIFIED) {
+    AddUnknownNumber("spec.model", message, violations);
   }
+  return Model::kAuto;
 }
 
 Precision PrecisionOf(v1::EnsembleSpec::Precision message, Violations& violations) {
-  switch (message) {
-    case v1::EnsembleSpec::PRECISION_UNSPECIFIED:
-    case v1::EnsembleSpec::DOUBLE:
-      return Precision::kDouble;
-    case v1::EnsembleSpec::SINGLE:
-      return Precision::kSingle;
-    default:
-      AddUnknownNumber("spec.precision", message, violations);
-      return Precision::kDouble;
+  if (message == v1::EnsembleSpec::SINGLE) return Precision::kSingle;
+  if (message != v1::EnsembleSpec::DOUBLE && message != v1::EnsembleSpec::PRECISION_UNSPECIFIED) {
+    AddUnknownNumber("spec.precision", message, violations);
   }
+  return Precision::kDouble;
 }
 
 // A list of the grid, or a parameter of a point, by the parameter's name.
@@ -133,19 +125,9 @@ double Seconds(const google::protobuf::Duration& duration) {
 
 Target TargetOf(const v1::Target& message) {
   Target target;
-  switch (message.kind_case()) {
-    case v1::Target::kSamples:
-      target.samples = message.samples();
-      break;
-    case v1::Target::kCollisions:
-      target.collisions = message.collisions();
-      break;
-    case v1::Target::kTolerance:
-      target.tolerance = message.tolerance();
-      break;
-    case v1::Target::KIND_NOT_SET:
-      break;
-  }
+  if (message.has_samples()) target.samples = message.samples();
+  if (message.has_collisions()) target.collisions = message.collisions();
+  if (message.has_tolerance()) target.tolerance = message.tolerance();
   if (message.has_budget()) target.budget_seconds = Seconds(message.budget());
   target.estimate = Shown(message.estimate());
   return target;
@@ -166,36 +148,6 @@ Violations CoreViolations(const EnsembleSpec& spec) {
   if (found.empty()) found = ToleranceViolations(spec);
   if (found.empty()) found = TimeViolations(spec);
   return found;
-}
-
-v1::EnsembleSpec::Experiment ExperimentMessage(const ExperimentKind* experiment) {
-  return static_cast<v1::EnsembleSpec::Experiment>(experiment == nullptr ? 0 : experiment->number);
-}
-
-v1::Grid GridMessage(const Grid& grid) {
-  v1::Grid message;
-  const google::protobuf::Reflection& reflection = *message.GetReflection();
-  for (const Parameter* parameter : kParameters) {
-    if (parameter == &kCells) continue;
-    const auto* field = FieldOf(message, *parameter);
-    for (const double value : grid[*parameter]) reflection.AddDouble(&message, field, value);
-  }
-  for (const double code : grid[kCells]) message.add_cells(Text(ShapeOf(code)));
-  return message;
-}
-
-v1::Target TargetMessage(const Target& target) {
-  v1::Target message;
-  if (target.samples) message.set_samples(*target.samples);
-  if (target.collisions) message.set_collisions(*target.collisions);
-  if (target.tolerance) message.set_tolerance(*target.tolerance);
-  if (target.budget_seconds) {
-    const int64_t nanos = std::llround(1e9 * *target.budget_seconds);  // below 10^6 s: it fits
-    message.mutable_budget()->set_seconds(nanos / 1'000'000'000);
-    message.mutable_budget()->set_nanos(static_cast<int32_t>(nanos % 1'000'000'000));
-  }
-  message.set_estimate(target.estimate);
-  return message;
 }
 
 }  // namespace
@@ -244,19 +196,6 @@ absl::StatusOr<GasShape> ShapeOfText(const std::string& text) {
   return shape.ok() ? shape : ParseGasShape(Shown(text));
 }
 
-v1::EnsembleSpec SpecMessage(const EnsembleSpec& spec) {
-  v1::EnsembleSpec message;
-  message.set_experiment(ExperimentMessage(spec.experiment));
-  *message.mutable_grid() = GridMessage(spec.grid);
-  *message.mutable_target() = TargetMessage(spec.target);
-  message.set_seed(spec.seed);
-  message.set_model(ModelMessage(spec.model));
-  message.set_precision(spec.precision == Precision::kSingle ? v1::EnsembleSpec::SINGLE
-                                                             : v1::EnsembleSpec::DOUBLE);
-  message.set_verify(spec.verify);
-  return message;
-}
-
 v1::PointParameters ParametersMessage(const PointParameters& parameters) {
   v1::PointParameters message;
   for (const Parameter* parameter : kParameters) {
@@ -284,21 +223,8 @@ PointParameters ParametersOf(const v1::PointParameters& message) {
 }
 
 v1::EnsembleSpec::Model ModelMessage(Model model) {
-  switch (model) {
-    case Model::kAuto:
-      return v1::EnsembleSpec::AUTO;
-    case Model::kClosedForm:
-      return v1::EnsembleSpec::CLOSED_FORM;
-    case Model::kSpectrum:
-      return v1::EnsembleSpec::SPECTRUM;
-    case Model::kMarkov:
-      return v1::EnsembleSpec::MARKOV;
-    case Model::kBilliard:
-      return v1::EnsembleSpec::BILLIARD;
-    case Model::kBilliardReference:
-      return v1::EnsembleSpec::BILLIARD_REFERENCE;
-  }
-  return v1::EnsembleSpec::MODEL_UNSPECIFIED;
+  return std::ranges::find(kModels, model, &std::pair<v1::EnsembleSpec::Model, Model>::second)
+      ->first;
 }
 
 std::string QuestionBytes(v1::EnsembleSpec message) {

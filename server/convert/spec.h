@@ -31,8 +31,7 @@ void AddDefaults(v1::EnsembleSpec& message);
 // Parses the name of a shape. INVALID_ARGUMENT quotes at most the beginning of the text.
 absl::StatusOr<GasShape> ShapeOfText(const std::string& text);
 
-// The values of `cells` must be codes of shapes.
-v1::EnsembleSpec SpecMessage(const EnsembleSpec& spec);
+// The value of `cells` must be the code of a shape.
 v1::PointParameters ParametersMessage(const PointParameters& parameters);
 // Leaves out `cells` if the text is not the name of a shape.
 PointParameters ParametersOf(const v1::PointParameters& message);

@@ -21,9 +21,6 @@ using Violations = std::vector<FieldViolation>;
 // Points of a grid have streams of their own.
 constexpr uint64_t kTraceStream = 0x7472616365;
 
-constexpr int64_t kBytesOfCell = 1024;
-constexpr int64_t kBytesOfMessage = 128 * 1024;
-
 void Add(const char* field, const absl::Status& status, Violations& violations) {
   if (!status.ok()) violations.push_back({field, std::string(status.message())});
 }
@@ -116,6 +113,24 @@ void Fill(const TraceEvent& event, v1::TraceEvent& message) {
   if (event.piston) FillPiston(*event.piston, message);
 }
 
+v1::TraceStart StartMessage(const v1::TraceOrbitRequest& request, const PairGeometry& pair,
+                            const Trace& trace) {
+  v1::TraceStart start;
+  start.set_event(v1::TraceEvent::start);
+  start.set_rho(pair.rho());
+  start.set_delta(pair.delta());
+  start.set_lambda(pair.lambda());
+  start.set_tip(pair.tip());
+  start.set_eta(Measures(pair).eta);
+  start.set_seed(request.seed());
+  for (const TracedBody& ball : trace.Balls()) Fill(ball, *start.add_balls());
+  for (const TracedBody& piston : trace.Pistons()) {
+    Fill(piston, *start.add_pistons());
+    start.mutable_pistons()->rbegin()->set_vertical(true);
+  }
+  return start;
+}
+
 }  // namespace
 
 void TraceMessages::FillNext(v1::TraceOrbitResponse& message) {
@@ -131,7 +146,7 @@ void TraceMessages::FillNext(v1::TraceOrbitResponse& message) {
   }
 }
 
-absl::StatusOr<TraceQuestion> TraceQuestion::Create(const v1::TraceOrbitRequest& request) {
+absl::StatusOr<TraceMessages> TraceMessages::Create(const v1::TraceOrbitRequest& request) {
   Violations violations;
   const absl::Status rho = ValidateRho(request.rho());
   Add("rho", rho, violations);
@@ -142,50 +157,32 @@ absl::StatusOr<TraceQuestion> TraceQuestion::Create(const v1::TraceOrbitRequest&
   if (!violations.empty()) return InvalidRequest(violations);
   if (!shape) {
     const absl::StatusOr<PairGeometry> pair = PairGeometry::Create(request.rho(), request.delta());
-    if (!pair.ok()) return pair.status();
-    return TraceQuestion(request, *pair, std::nullopt);
+    return pair.ok() ? OfPair(request, *pair) : absl::StatusOr<TraceMessages>(pair.status());
   }
   const absl::StatusOr<GasGeometry> gas =
       GasGeometry::Create(request.rho(), request.delta(), *shape, GasEnds::kPeriodic);
-  if (!gas.ok()) return gas.status();
-  return TraceQuestion(request, gas->pair(), *gas);
+  return gas.ok() ? OfGas(request, *gas) : absl::StatusOr<TraceMessages>(gas.status());
 }
 
-int64_t TraceQuestion::Bytes() const {
-  return kBytesOfMessage + kBytesOfCell * (gas_ ? gas_->balls() : 1);
+TraceMessages TraceMessages::OfPair(const v1::TraceOrbitRequest& request,
+                                    const PairGeometry& pair) {
+  CounterRandom random(request.seed(), kTraceStream, 0);
+  auto trace = TracePair(pair, DrawFromFlowMeasure(pair, random));
+  const v1::TraceStart start = StartMessage(request, pair, *trace);
+  return TraceMessages(std::move(trace), start, request.events());
 }
 
-TraceMessages TraceQuestion::Start() const {
-  std::unique_ptr<Trace> trace = StartTrace();
-  v1::TraceStart start = StartMessage(*trace);
-  return TraceMessages(std::move(trace), std::move(start), request_.events());
-}
-
-std::unique_ptr<Trace> TraceQuestion::StartTrace() const {
-  CounterRandom random(request_.seed(), kTraceStream, 0);
-  if (!gas_) return TracePair(pair_, DrawFromFlowMeasure(pair_, random));
-  return TraceGas(*gas_, DrawGas(*gas_, TemperatureProfile(Temperature()), random));
-}
-
-v1::TraceStart TraceQuestion::StartMessage(const Trace& trace) const {
-  v1::TraceStart start;
-  start.set_event(v1::TraceEvent::start);
-  start.set_rho(pair_.rho());
-  start.set_delta(pair_.delta());
-  start.set_lambda(pair_.lambda());
-  start.set_tip(pair_.tip());
-  start.set_eta(Measures(pair_).eta);
-  if (gas_) start.set_cells(Text(gas_->shape()));
-  if (gas_) start.set_temperature(Temperature());
-  start.set_seed(request_.seed());
-  for (const TracedBody& ball : trace.Balls()) Fill(ball, *start.add_balls());
-  int64_t index = 0;
-  for (const TracedBody& piston : trace.Pistons()) {
-    v1::TracedPiston& added = *start.add_pistons();
-    Fill(piston, added);
-    added.set_vertical(!gas_ || gas_->IsAlongX(index++));
+TraceMessages TraceMessages::OfGas(const v1::TraceOrbitRequest& request, const GasGeometry& gas) {
+  CounterRandom random(request.seed(), kTraceStream, 0);
+  const double temperature = request.has_temperature() ? request.temperature() : 1;
+  auto trace = TraceGas(gas, DrawGas(gas, TemperatureProfile(temperature), random));
+  v1::TraceStart start = StartMessage(request, gas.pair(), *trace);
+  start.set_cells(Text(gas.shape()));
+  start.set_temperature(temperature);
+  for (int i = 0; i < start.pistons_size(); ++i) {
+    start.mutable_pistons(i)->set_vertical(gas.IsAlongX(i));
   }
-  return start;
+  return TraceMessages(std::move(trace), start, request.events());
 }
 
 }  // namespace ballpiston::server

@@ -9,7 +9,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "server/convert/errors.h"
-#include "server/door/sha256.h"
+#include "server/sha256.h"
 
 namespace ballpiston::server {
 namespace {

@@ -11,8 +11,6 @@
 //
 // A word that begins with '#' begins a comment. An error names the field and the permitted values,
 // but does not quote the line: if the operator mixed up two fields, any field may contain a token.
-//
-// A list does not change while threads use it. A changed file gives a new list.
 #pragma once
 
 #include <cstddef>

@@ -6,7 +6,6 @@
 // connections. A watch repeats the look-up once per heartbeat. Thread-safe.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,8 +25,7 @@ class Authenticator {
   // Unix socket.
   explicit Authenticator(bool needs_tokens) : needs_tokens_(needs_tokens) {}
 
-  // UNAUTHENTICATED, reason CREDENTIALS_MISSING, CREDENTIALS_INVALID or CREDENTIALS_EXPIRED. Waits
-  // for the first list: gRPC answers calls a moment before the server's own token is written.
+  // UNAUTHENTICATED, reason CREDENTIALS_MISSING, CREDENTIALS_INVALID or CREDENTIALS_EXPIRED.
   absl::StatusOr<Principal> Authenticate(const grpc::ServerContextBase& context) const;
   // `authorization`: every header of this name.
   absl::StatusOr<Principal> Authenticate(const std::vector<std::string>& authorization,
@@ -38,8 +36,7 @@ class Authenticator {
  private:
   const bool needs_tokens_;
   mutable Mutex mutex_;
-  mutable Condition accepted_;
-  std::shared_ptr<const AccessList> list_ ABSL_GUARDED_BY(mutex_);
+  AccessList list_ ABSL_GUARDED_BY(mutex_);
 };
 
 // The token of a header's value, `Bearer TOKEN`; empty if the value has another form.

@@ -7,8 +7,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/time/clock.h"
-#include "server/door/sha256.h"
 #include "server/observability/log.h"
+#include "server/sha256.h"
 
 namespace ballpiston::server {
 namespace {
@@ -16,15 +16,6 @@ namespace {
 absl::Status Refused(const std::string& why) { return absl::InvalidArgumentError(why); }
 
 bool HasTls(const DoorOptions& options) { return !options.tls_certificate.empty(); }
-
-// The flags among these that are given.
-std::vector<std::string> Given(const DoorOptions& options) {
-  std::vector<std::string> given;
-  if (!options.access_file.empty()) given.push_back("--access-file");
-  if (!options.tls_certificate.empty()) given.push_back("--tls-certificate");
-  if (!options.tls_key.empty()) given.push_back("--tls-key");
-  return given;
-}
 
 NamedFile AccessFile(const DoorOptions& options) { return {"access-file", options.access_file}; }
 
@@ -41,26 +32,22 @@ absl::StatusOr<std::unique_ptr<ServerTls>> ReadTls(const DoorOptions& options) {
 }  // namespace
 
 absl::Status CheckCombination(const DoorOptions& options, const ListenAddress& address) {
+  const bool has_access_file = !options.access_file.empty();
+  const std::string listen = absl::StrCat("--listen=", address.Text(), ": ");
   if (!address.socket_path.empty()) {
-    if (Given(options).empty()) return absl::OkStatus();
-    return Refused(absl::StrCat("--listen=", address.Text(),
-                                ": only this server's user and root can open its Unix socket; it "
-                                "cannot be combined with ",
-                                absl::StrJoin(Given(options), ", ")));
+    if (!has_access_file && !HasTls(options) && options.tls_key.empty()) return absl::OkStatus();
+    return Refused(listen +
+                   "only this server's user and root can open its Unix socket; it cannot be "
+                   "combined with --access-file, --tls-certificate or --tls-key");
   }
-  if (options.tls_certificate.empty() != options.tls_key.empty()) {
+  if (HasTls(options) == options.tls_key.empty()) {
     return Refused("--tls-certificate and --tls-key: give both or neither");
   }
-  if (address.IsLoopback() && !HasTls(options)) return absl::OkStatus();
-  std::vector<std::string> missing;
-  if (!HasTls(options)) missing.push_back("--tls-certificate and --tls-key");
-  if (options.access_file.empty()) missing.push_back("--access-file");
-  if (missing.empty()) return absl::OkStatus();
-  return Refused(
-      absl::StrCat("--listen=", address.Text(), ": missing: ", absl::StrJoin(missing, " and "),
-                   "; an address that other machines can reach needs TLS, and TLS needs "
-                   "an access file (or listen on a loopback address without TLS, or on a "
-                   "Unix socket)"));
+  if (HasTls(options) ? has_access_file : address.IsLoopback()) return absl::OkStatus();
+  return Refused(listen +
+                 "an address that other machines can reach needs TLS, and TLS needs an access "
+                 "file: give --tls-certificate, --tls-key and --access-file (or listen on a "
+                 "loopback address without TLS, or on a Unix socket)");
 }
 
 absl::StatusOr<std::unique_ptr<Door>> Door::Create(const DoorOptions& options,
@@ -71,6 +58,8 @@ absl::StatusOr<std::unique_ptr<Door>> Door::Create(const DoorOptions& options,
   auto door = absl::WrapUnique(new Door(options, address.socket_path.empty()));
   door->tls_ = *std::move(tls);
   if (absl::Status read = door->ReadAccessFile(); !read.ok()) return read;
+  if (address.IsLoopback() && door->tls_ == nullptr) door->own_token_.emplace();
+  door->AcceptTokens();
   door->WarnOfExpiry();
   return door;
 }
@@ -79,19 +68,15 @@ std::shared_ptr<grpc::ServerCredentials> Door::Credentials() const {
   return tls_ == nullptr ? grpc::InsecureServerCredentials() : tls_->Credentials();
 }
 
-void Door::Open(const ListenAddress& address) {
-  if (address.IsLoopback() && tls_ == nullptr) {
-    auto own_token = OwnToken::Make(options_.own_tokens, address.Text());
-    if (own_token.ok()) {
-      own_token_ = *std::move(own_token);
-    } else {
-      Log(Severity::kWarning,
-          absl::StrCat("this server's user needs a token of --access-file, because the server's "
-                       "own token cannot be written: ",
-                       own_token.status().message()));
-    }
-  }
-  AcceptTokens();
+void Door::PublishOwnToken(const ListenAddress& address) {
+  if (!own_token_) return;
+  const absl::Status published = own_token_->Publish(options_.own_tokens, address.Text());
+  if (published.ok()) return;
+  own_token_.reset();
+  Log(Severity::kWarning,
+      absl::StrCat("this server's user needs a token of --access-file, because the server's own "
+                   "token cannot be written: ",
+                   published.message()));
 }
 
 absl::Status Door::ReadAccessFile() {
@@ -103,7 +88,7 @@ absl::Status Door::ReadAccessFile() {
 
 void Door::AcceptTokens() {
   AccessList list = access_;
-  if (own_token_ != nullptr) list.Add({Sha256(own_token_->token()), LocalPrincipal()});
+  if (own_token_) list.Add({Sha256(own_token_->token()), LocalPrincipal()});
   authenticator_.Accept(std::move(list));
 }
 
@@ -124,15 +109,12 @@ std::optional<absl::Time> Door::CertificateExpiry() const {
 }
 
 void Door::WarnOfExpiry() const {
-  if (tls_ == nullptr) return;
-  const absl::Time now = absl::Now();
-  const bool is_valid = tls_->IsValidAt(now);
-  if (is_valid && now + kExpiryWarning < tls_->expires()) return;
+  if (tls_ == nullptr || absl::Now() + kExpiryWarning < tls_->expires()) return;
+  const bool is_valid = absl::Now() < tls_->expires();
   Log(is_valid ? Severity::kWarning : Severity::kError,
       absl::StrCat("the certificate in --tls-certificate=", options_.tls_certificate,
-                   " is valid from ", MinuteText(tls_->begins()), " to ",
-                   MinuteText(tls_->expires()), ", and now it is ", MinuteText(now),
-                   is_valid ? "" : ": clients cannot connect", "; get a new one, and send SIGHUP"));
+                   is_valid ? " is valid until " : " has expired, so clients cannot connect: ",
+                   MinuteText(tls_->expires()), "; get a new one, and send SIGHUP"));
 }
 
 std::string Door::Description() const {
@@ -141,7 +123,7 @@ std::string Door::Description() const {
   if (tls_ != nullptr) {
     parts.push_back(absl::StrCat("TLS, certificate valid until ", MinuteText(tls_->expires())));
   }
-  if (own_token_ != nullptr) parts.push_back("a token for this server's user");
+  if (own_token_) parts.push_back("a token for this server's user");
   if (!options_.access_file.empty()) {
     parts.push_back(absl::StrCat(access_.size(), " tokens in ", AccessFile(options_).Text()));
   }

@@ -34,16 +34,16 @@ struct DoorOptions {
   std::string own_tokens = OwnToken::DefaultFolder();
 };
 
-// INVALID_ARGUMENT says which flags are missing or contradict each other, and why. Reads no file.
+// INVALID_ARGUMENT says which flags are needed or contradict each other, and why. Reads no file.
 absl::Status CheckCombination(const DoorOptions& options, const ListenAddress& address);
 
 inline constexpr absl::Duration kExpiryWarning = absl::Hours(14 * 24);
 
 class Door {
  public:
-  // Reads all files. Logs a warning if the certificate expires within kExpiryWarning or is not
-  // valid now; the server starts with such a certificate. INVALID_ARGUMENT names the flag, the file
-  // and the permitted values.
+  // Reads all files. Logs a warning if the certificate expires within kExpiryWarning, and an error
+  // if it has expired; the server starts with such a certificate. INVALID_ARGUMENT names the flag,
+  // the file and the permitted values.
   static absl::StatusOr<std::unique_ptr<Door>> Create(const DoorOptions& options,
                                                       const ListenAddress& address);
 
@@ -53,10 +53,9 @@ class Door {
   // For gRPC's port. This object must outlive the server that uses the credentials.
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
 
-  // Calls that arrived earlier wait until this function lets them in. Makes the own token first, if
-  // the server listens on the loopback without TLS. Logs a warning if the token cannot be written.
-  // `address` has the port in use.
-  void Open(const ListenAddress& address);
+  // Writes the own token's file, if the server listens on the loopback without TLS. Logs a warning
+  // if the file cannot be written. `address` has the port in use.
+  void PublishOwnToken(const ListenAddress& address);
 
   // Removes the own token's file.
   void Close() { own_token_.reset(); }
@@ -84,8 +83,8 @@ class Door {
   const bool needs_tokens_;  // false at a Unix socket
   AccessList access_;        // of the access file
   Authenticator authenticator_;
-  std::unique_ptr<ServerTls> tls_;       // null: without TLS
-  std::unique_ptr<OwnToken> own_token_;  // null: none
+  std::unique_ptr<ServerTls> tls_;     // null: without TLS
+  std::optional<OwnToken> own_token_;  // on the loopback without TLS
 };
 
 }  // namespace ballpiston::server

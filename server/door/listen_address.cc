@@ -42,16 +42,13 @@ bool IsIpv4(const std::string& host) {
   return inet_pton(AF_INET, host.c_str(), &address) == 1;
 }
 
-bool IsOfName(unsigned char c) {
-  return absl::ascii_isalnum(c) || c == '-' || c == '.' || c == '_';
+bool IsIpv6(const std::string& host) {
+  in6_addr address{};
+  return inet_pton(AF_INET6, host.c_str(), &address) == 1;
 }
 
-bool IsIpv6(const std::string& host) {
-  const size_t percent = host.find('%');
-  const std::string zone = percent == std::string::npos ? "none" : host.substr(percent + 1);
-  in6_addr address{};
-  return inet_pton(AF_INET6, host.substr(0, percent).c_str(), &address) == 1 && !zone.empty() &&
-         std::all_of(zone.begin(), zone.end(), &IsOfName);
+bool IsOfName(unsigned char c) {
+  return absl::ascii_isalnum(c) || c == '-' || c == '.' || c == '_';
 }
 
 // A name must not end in a number, because programs may read it as an address: 127.1 means

@@ -22,10 +22,9 @@ struct ListenAddress {
   bool IsLoopback() const;
 };
 
-// Parses unix:PATH or HOST:PORT. HOST is an IPv4 address, an IPv6 address in brackets (with a zone
-// if it is link-local, [fe80::1%eth0]), or a name; localhost is 127.0.0.1. 0.0.0.0 and [::] both
-// mean every IPv4 and IPv6 address of this machine. INVALID_ARGUMENT names the flag --listen, the
-// value, and the permitted values.
+// Parses unix:PATH or HOST:PORT. HOST is an IPv4 address, an IPv6 address in brackets, or a name;
+// localhost is 127.0.0.1. 0.0.0.0 and [::] both mean every IPv4 and IPv6 address of this machine.
+// INVALID_ARGUMENT names the flag --listen, the value, and the permitted values.
 absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text);
 
 // FAILED_PRECONDITION if the socket does not refuse connections, because a server may listen on it.

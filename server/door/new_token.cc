@@ -7,17 +7,17 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <vector>
 
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/escaping.h"
-#include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "server/door/access_list.h"
-#include "server/door/sha256.h"
+#include "server/sha256.h"
 #include "server/store/folder_sync.h"
 
 namespace ballpiston::server {
@@ -39,17 +39,13 @@ absl::Status Failed(const NamedFile& file, const char* what) {
 // (the disk is full), its part is removed.
 absl::Status WriteAllOrNothing(const NamedFile& file, int descriptor, const std::string& text) {
   const off_t length = lseek(descriptor, 0, SEEK_END);
-  if (length < 0) return Failed(file, "written to");
   errno = ENOSPC;  // what a short write means
   if (write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
       fsync(descriptor) == 0) {
     return absl::OkStatus();
   }
-  absl::Status failed = Failed(file, "written to");
-  if (ftruncate(descriptor, length) == 0 && fsync(descriptor) == 0) return failed;
-  return absl::PermissionDeniedError(
-      absl::StrCat(failed.message(), "; an incomplete line is at its end: truncate the file to ",
-                   length, " bytes"));
+  const absl::Status failed = Failed(file, "written to");
+  return ftruncate(descriptor, length) == 0 ? failed : Failed(file, "restored to its old length");
 }
 
 absl::Status Append(const NamedFile& file, const std::string& line) {
@@ -72,11 +68,9 @@ absl::Status Append(const NamedFile& file, const std::string& line) {
 }  // namespace
 
 // The prefix shows people and secret scanners that the text is a token of this server.
-absl::StatusOr<std::string> RandomToken() {
+std::string RandomToken() {
   std::array<unsigned char, 32> bits;
-  if (RAND_bytes(bits.data(), static_cast<int>(bits.size())) != 1) {
-    return absl::InternalError("the system cannot provide random numbers");
-  }
+  if (RAND_bytes(bits.data(), static_cast<int>(bits.size())) != 1) std::abort();
   std::string text;
   absl::WebSafeBase64Escape({reinterpret_cast<const char*>(bits.data()), bits.size()}, &text);
   return absl::StrCat("bp_", text);
@@ -102,9 +96,8 @@ absl::StatusOr<TokenRequest> ParseTokenRequest(absl::string_view text) {
 
 absl::StatusOr<std::string> IssueToken(const NamedFile& file, const TokenRequest& request,
                                        absl::Time now) {
-  absl::StatusOr<std::string> token = RandomToken();
-  if (!token.ok()) return token.status();
-  AccessEntry entry{Sha256(*token), request.principal};
+  std::string token = RandomToken();
+  AccessEntry entry{Sha256(token), request.principal};
   if (request.days) entry.expires = now + *request.days * absl::Hours(24);
   const absl::Status appended = Append(file, FormatAccessEntry(entry));
   if (!appended.ok()) return appended;

@@ -28,7 +28,7 @@ absl::StatusOr<TokenRequest> ParseTokenRequest(absl::string_view text);
 absl::StatusOr<std::string> IssueToken(const NamedFile& file, const TokenRequest& request,
                                        absl::Time now);
 
-// bp_ and 256 random bits. INTERNAL if the system has no random numbers.
-absl::StatusOr<std::string> RandomToken();
+// bp_ and 256 random bits. Ends the process if the system has no random numbers.
+std::string RandomToken();
 
 }  // namespace ballpiston::server

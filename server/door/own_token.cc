@@ -11,9 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <system_error>
-#include <utility>
 
-#include "absl/memory/memory.h"
 #include "absl/strings/str_cat.h"
 #include "server/door/new_token.h"
 #include "server/store/data_directory.h"
@@ -39,19 +37,18 @@ std::string OwnToken::DefaultFolder() {
   return absl::StrCat(DataDirectory::Default(), "/tokens/", machine);
 }
 
-absl::StatusOr<std::unique_ptr<OwnToken>> OwnToken::Make(const std::string& folder,
-                                                         const std::string& address) {
-  absl::StatusOr<std::string> token = RandomToken();
-  if (!token.ok()) return token.status();
+OwnToken::OwnToken() : token_(RandomToken()) {}
+
+absl::Status OwnToken::Publish(const std::string& folder, const std::string& address) {
   std::error_code ignored;  // the file cannot be written then
   std::filesystem::create_directories(folder, ignored);
   chmod(folder.c_str(), 0700);
-  const std::string path = absl::StrCat(folder, "/", address);
-  const std::string part = absl::StrCat(path, ".part");
-  if (WriteNewFile(part, *token + "\n") && rename(part.c_str(), path.c_str()) == 0) {
-    return absl::WrapUnique(new OwnToken(*std::move(token), path));
+  path_ = absl::StrCat(folder, "/", address);
+  const std::string part = absl::StrCat(path_, ".part");
+  if (WriteNewFile(part, token_ + "\n") && rename(part.c_str(), path_.c_str()) == 0) {
+    return absl::OkStatus();
   }
-  return absl::PermissionDeniedError(absl::StrCat(path, ": ", std::strerror(errno)));
+  return absl::PermissionDeniedError(absl::StrCat(path_, ": ", std::strerror(errno)));
 }
 
 OwnToken::~OwnToken() {

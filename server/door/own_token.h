@@ -10,11 +10,9 @@
 // a client must not send a token to the same address of another machine.
 #pragma once
 
-#include <memory>
 #include <string>
-#include <utility>
 
-#include "absl/status/statusor.h"
+#include "absl/status/status.h"
 
 namespace ballpiston::server {
 
@@ -23,22 +21,20 @@ class OwnToken {
   // The folder of this machine's files, in the user's state folder.
   static std::string DefaultFolder();
 
-  // Makes a token and its file, instead of the file that an earlier server left. Creates the
-  // folder, with mode 0700. PERMISSION_DENIED if the file cannot be written.
-  static absl::StatusOr<std::unique_ptr<OwnToken>> Make(const std::string& folder,
-                                                        const std::string& address);
-
+  OwnToken();  // a new token, in no file
   OwnToken(const OwnToken&) = delete;
   OwnToken& operator=(const OwnToken&) = delete;
   ~OwnToken();  // removes the file, unless a later server has replaced it
 
   const std::string& token() const { return token_; }
 
- private:
-  OwnToken(std::string token, std::string path)
-      : token_(std::move(token)), path_(std::move(path)) {}
+  // Writes the file, instead of the file that an earlier server left. Creates the folder, with mode
+  // 0700. PERMISSION_DENIED if the file cannot be written.
+  absl::Status Publish(const std::string& folder, const std::string& address);
 
-  const std::string token_, path_;
+ private:
+  const std::string token_;
+  std::string path_;  // of the file; empty: none
 };
 
 }  // namespace ballpiston::server

@@ -13,19 +13,6 @@
 namespace ballpiston::server {
 namespace {
 
-absl::StatusOr<std::string> ReadAll(const NamedFile& file, int descriptor) {
-  std::string text;
-  char buffer[1 << 14];
-  while (text.size() <= kMaxSecurityFile) {
-    const ssize_t size = read(descriptor, buffer, sizeof(buffer));
-    if (size < 0 && errno == EINTR) continue;
-    if (size < 0) return Unusable(file, absl::StrCat("cannot be read: ", std::strerror(errno)));
-    if (size == 0) return text;
-    text.append(buffer, static_cast<size_t>(size));
-  }
-  return Unusable(file, absl::StrCat("is longer than ", kMaxSecurityFile, " bytes"));
-}
-
 // Checks the open file, so that nobody can exchange it between check and read.
 absl::StatusOr<std::string> ReadChecked(const NamedFile& file, bool is_private) {
   const int descriptor = open(file.path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
@@ -40,7 +27,13 @@ absl::StatusOr<std::string> ReadChecked(const NamedFile& file, bool is_private) 
   const absl::Status kept =
       is_private ? CheckKeptPrivate(file, status, geteuid()) : absl::OkStatus();
   if (!kept.ok()) return kept;
-  return ReadAll(file, descriptor);
+  const auto size = static_cast<size_t>(status.st_size);
+  if (size > kMaxSecurityFile) {
+    return Unusable(file, absl::StrCat("is longer than ", kMaxSecurityFile, " bytes"));
+  }
+  std::string text(size, '\0');
+  if (read(descriptor, text.data(), size) == status.st_size) return text;
+  return Unusable(file, absl::StrCat("cannot be read: ", std::strerror(errno)));
 }
 
 }  // namespace

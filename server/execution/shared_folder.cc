@@ -15,7 +15,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "server/door/sha256.h"
+#include "server/sha256.h"
 #include "server/store/folder_sync.h"
 
 namespace ballpiston::server {

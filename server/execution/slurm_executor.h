@@ -35,12 +35,24 @@
 #include "server/execution/shared_folder.h"
 #include "server/execution/slurm_tools.h"
 #include "server/mutex.h"
-#include "server/observability/slurm_status.h"
 #include "server/scheduling/crash_record.h"
 #include "server/scheduling/scheduler.h"
 #include "server/worker/chunk_file.h"
 
 namespace ballpiston::server {
+
+// The work that the server has handed to the cluster, at one moment.
+struct SlurmStatus {
+  std::string problem;  // empty: none
+  double waiting_tasks = 0;
+  double running_tasks = 0;
+  double submitted_tasks = 0;  // and not seen in the queue yet
+  // Since the start.
+  double chunks = 0;
+  double lost_tasks = 0;
+  double refused_files = 0;
+  double queries = 0;
+};
 
 class SlurmExecutor : public Executor {
  public:

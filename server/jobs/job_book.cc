@@ -9,7 +9,6 @@
 #include "absl/strings/str_join.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
-#include "server/door/sha256.h"
 #include "server/host.h"
 #include "server/jobs/acceptance.h"
 #include "server/jobs/job_journal.h"
@@ -19,6 +18,7 @@
 #include "server/jobs/question.h"
 #include "server/observability/failpoint.h"
 #include "server/observability/log.h"
+#include "server/sha256.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
 

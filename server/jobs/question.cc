@@ -2,7 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/convert/spec.h"
-#include "server/door/sha256.h"
+#include "server/sha256.h"
 
 namespace ballpiston::server {
 

@@ -182,8 +182,7 @@ void CallObserver::Failed(const FailedCall& call, absl::Time now) {
   if (!failed) {
     (not_let_in ? not_let_in_ : limits_reached_).Add({{"reason", call.reason}}).Increment();
   }
-  const std::optional<int64_t> left_out = TakeLine(failed, now);
-  if (!left_out) return;
+  if (!TakeLine(failed, now)) return;
   const char* what = failed ? "call failed: " : not_let_in ? "access denied: " : "call rejected: ";
   Log(failed ? Severity::kError : Severity::kWarning, absl::StrCat(what, call.message),
       {{"method", call.method},
@@ -191,21 +190,15 @@ void CallObserver::Failed(const FailedCall& call, absl::Time now) {
        {"request_id", call.request_id},
        {"code", absl::StatusCodeToString(call.code)},
        {"reason", call.reason},
-       {"seconds", call.seconds},
-       {"lines_left_out", *left_out == 0 ? "" : absl::StrCat(*left_out)}});
+       {"seconds", call.seconds}});
 }
 
-std::optional<int64_t> CallObserver::TakeLine(bool failed, absl::Time now) {
+bool CallObserver::TakeLine(bool failed, absl::Time now) {
   MutexLock lock(mutex_);
   Lines& lines = failed ? failed_ : refused_;
   const int64_t second = absl::ToUnixSeconds(now);
   if (std::exchange(lines.second, second) != second) lines.written = 0;
-  if (lines.written == kLinesPerSecond) {
-    ++lines.left_out;
-    return std::nullopt;
-  }
-  ++lines.written;
-  return std::exchange(lines.left_out, 0);
+  return ++lines.written <= kLinesPerSecond;
 }
 
 }  // namespace ballpiston::server

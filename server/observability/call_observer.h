@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "absl/status/status.h"
@@ -62,7 +61,7 @@ class CallObserver {
 
   // Counts the call by its reason, and logs it. At most ten lines a second are written about calls
   // that were refused, and ten about calls that failed, so that a client with a thousand refused
-  // calls a second does not fill the disk. The next line has the number of lines left out.
+  // calls a second does not fill the disk; the metrics count all of them.
   void Failed(const FailedCall& call, absl::Time now = absl::Now());
 
   const prometheus::Collectable& metrics() const { return registry_; }
@@ -75,11 +74,10 @@ class CallObserver {
   struct Lines {
     int64_t second = 0;
     int written = 0;
-    int64_t left_out = 0;
   };
 
-  // Empty if no more line is to be written now. Otherwise the number of lines left out.
-  std::optional<int64_t> TakeLine(bool failed, absl::Time now);
+  // Whether one more line is to be written now.
+  bool TakeLine(bool failed, absl::Time now);
 
   prometheus::Registry registry_;  // first: it owns the counters
   prometheus::Family<prometheus::Counter>& began_;

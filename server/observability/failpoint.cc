@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include "absl/strings/numbers.h"
 
 namespace ballpiston::server::failpoint_internal {
 namespace {
@@ -17,7 +20,7 @@ constexpr std::string_view kReady = "ready+";
 struct Armed {
   std::string_view name;
   bool when_ready = false;
-  int64_t pass = 0;
+  int64_t number = 0;
 };
 
 [[noreturn]] void Refuse(const char* text) {
@@ -28,21 +31,21 @@ struct Armed {
   std::_Exit(2);
 }
 
+bool IsKnown(std::string_view name) {
+  return name == kCrashForSeed ||
+         std::find(kFailpoints.begin(), kFailpoints.end(), name) != kFailpoints.end();
+}
+
 // `text` points into the environment, which nobody changes.
 Armed Parse(const char* text) {
-  const std::string_view whole(text);
-  const size_t colon = whole.rfind(':');
-  if (colon == std::string_view::npos) Refuse(text);
-  std::string_view number_text = whole.substr(colon + 1);
-  Armed parsed{whole.substr(0, colon), number_text.starts_with(kReady)};
-  if (parsed.when_ready) number_text.remove_prefix(kReady.size());
-  const char* const end = number_text.data() + number_text.size();
-  const auto [rest, error] = std::from_chars(number_text.data(), end, parsed.pass);
-  const bool number = error == std::errc() && rest == end && parsed.pass >= 1;
-  const bool known =
-      parsed.name == kCrashForSeed ||
-      std::find(kFailpoints.begin(), kFailpoints.end(), parsed.name) != kFailpoints.end();
-  if (!number || !known) Refuse(text);
+  const char* const colon = std::strrchr(text, ':');
+  if (colon == nullptr) Refuse(text);
+  std::string number = colon + 1;
+  Armed parsed{.name = std::string_view(text, static_cast<size_t>(colon - text)),
+               .when_ready = number.starts_with(kReady)};
+  if (parsed.when_ready) number.erase(0, kReady.size());
+  const bool is_number = absl::SimpleAtoi(number, &parsed.number) && parsed.number >= 1;
+  if (!is_number || !IsKnown(parsed.name)) Refuse(text);
   return parsed;
 }
 
@@ -56,11 +59,11 @@ static std::atomic<bool> counting = !target.when_ready;
 
 void Pass(std::string_view name) {
   static std::atomic<int64_t> passes = 0;
-  if (name == target.name && counting && ++passes == target.pass) raise(SIGKILL);
+  if (name == target.name && counting && ++passes == target.number) raise(SIGKILL);
 }
 
-void CrashForSeed(uint64_t seed) {
-  const bool is_the_seed = static_cast<uint64_t>(target.pass) == seed;
+void PassSeed(uint64_t seed) {
+  const bool is_the_seed = static_cast<uint64_t>(target.number) == seed;
   if (target.name == kCrashForSeed && is_the_seed) raise(SIGSEGV);
 }
 

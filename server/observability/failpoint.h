@@ -46,32 +46,29 @@ inline constexpr std::array<std::string_view, 24> kFailpoints = {
     "stop.before_checkpoint"    // everything is written; the log is not yet copied into the store
 };
 
+inline constexpr std::string_view kCrashForSeed = "crash-for-seed";
+
 namespace failpoint_internal {
 extern const bool armed;
 void Pass(std::string_view name);
+void PassSeed(uint64_t seed);
 }  // namespace failpoint_internal
-
-// The server is ready: from now on passes of NAME:ready+N count.
-void CountFailpointsOfReadyServer();
-
-// Before blocks of a job with this seed are computed: the process dies of SIGSEGV, as if the engine
-// had a fault, if the environment says so. The seed is at least 1.
-inline constexpr std::string_view kCrashForSeed = "crash-for-seed";
-namespace failpoint_internal {
-void CrashForSeed(uint64_t seed);
-}
-inline void CrashForSeed(uint64_t seed) {
-  if (failpoint_internal::armed) [[unlikely]] {
-    failpoint_internal::CrashForSeed(seed);
-  }
-}
-
-inline bool FailpointsAreArmed() { return failpoint_internal::armed; }
 
 inline void Failpoint(std::string_view name) {
   if (failpoint_internal::armed) [[unlikely]] {
     failpoint_internal::Pass(name);
   }
 }
+
+// Before blocks of a job with this seed, at least 1, are computed: the process dies of SIGSEGV, as
+// if the engine had a fault, if the environment says so.
+inline void CrashForSeed(uint64_t seed) {
+  if (failpoint_internal::armed) [[unlikely]] {
+    failpoint_internal::PassSeed(seed);
+  }
+}
+
+// The server is ready: from now on passes of NAME:ready+N count.
+void CountFailpointsOfReadyServer();
 
 }  // namespace ballpiston::server

@@ -16,7 +16,6 @@
 #include "prometheus/collectable.h"
 #include "prometheus/exposer.h"
 #include "prometheus/metric_family.h"
-#include "server/door/listen_address.h"
 
 namespace ballpiston::server {
 
@@ -27,27 +26,26 @@ class MetricsEndpoint {
  public:
   using Source = std::function<std::vector<prometheus::MetricFamily>()>;
 
-  // `address` is HOST:PORT with a HOST in 127.0.0.0/8, [::1] or localhost; port 0: any free port. A
-  // thread of the HTTP server calls `source` for each request, one thread at a time.
-  //   INVALID_ARGUMENT     any other address
-  //   FAILED_PRECONDITION  the server cannot listen at the address
+  // `address` is HOST:PORT on the loopback, with a numeric HOST; port 0: any free port. A thread of
+  // the HTTP server calls `source` for each request, one thread at a time. FAILED_PRECONDITION if
+  // the server cannot listen at the address.
   // The destructor takes up to 2 s, because the HTTP server checks only every 2 s whether it should
   // stop.
   static absl::StatusOr<std::unique_ptr<MetricsEndpoint>> Start(const std::string& address,
                                                                 Source source);
 
-  std::string address() const { return address_.Text(); }  // with the port in use
+  const std::string& address() const { return address_; }  // with the port in use
 
   // Waits for a call of the source to return. The source is not called again; later requests get
   // the page without its metrics.
   void Detach() { exposer_.RemoveCollectable(collector_); }
 
  private:
-  MetricsEndpoint(ListenAddress address, Source source);
+  MetricsEndpoint(const std::string& address, Source source);
 
-  ListenAddress address_;
   const std::shared_ptr<prometheus::Collectable> collector_;  // calls the source
   prometheus::Exposer exposer_;
+  const std::string address_;
 };
 
 }  // namespace ballpiston::server

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <variant>
 
@@ -11,10 +10,6 @@
 #include "core/model_choice/limit_error.h"
 
 namespace ballpiston::server {
-
-// Makes a point's experiment. May throw.
-using ExperimentFactory =
-    std::function<std::unique_ptr<const PointExperiment>(const EnsembleSpec&, size_t index)>;
 
 // The experiment, or the pilot without which the model cannot be chosen.
 using OpenedPoint = std::variant<std::unique_ptr<const PointExperiment>, PilotPlace>;
@@ -37,20 +32,6 @@ class PointOpener {
 
   // A pilot that Open named has this result. From now on Open knows it.
   virtual void KeepPilot(const PilotPlace& place, const Pilot& pilot) = 0;
-};
-
-// Opens points without a choice and without pilots.
-class FactoryOpener : public PointOpener {
- public:
-  explicit FactoryOpener(ExperimentFactory factory) : factory_(std::move(factory)) {}
-
-  OpenedPoint Open(const EnsembleSpec& spec, size_t index) override {
-    return factory_(spec, index);
-  }
-  void KeepPilot(const PilotPlace&, const Pilot&) override {}
-
- private:
-  const ExperimentFactory factory_;
 };
 
 }  // namespace ballpiston::server

@@ -135,13 +135,19 @@ class SimulatedExecutor : public Executor {
   std::atomic<bool> is_woken_ = true;
 };
 
+// Without a choice of the model.
+class CoreOpener : public PointOpener {
+ public:
+  OpenedPoint Open(const EnsembleSpec& spec, size_t index) override {
+    return PointExperiment::Create(spec, index);
+  }
+  void KeepPilot(const PilotPlace&, const Pilot&) override {}
+};
+
 class Server {
  public:
   explicit Server(double lease_seconds)
       : store_(*Store::Open(folder_.File("store"), {})),
-        opener_([](const EnsembleSpec& spec, size_t index) {
-          return PointExperiment::Create(spec, index);
-        }),
         scheduler_(opener_, kLocalCores),
         local_(scheduler_, true, kLocalLeaseSeconds),
         remote_(scheduler_, false, lease_seconds),
@@ -150,9 +156,9 @@ class Server {
   static constexpr int kLocalCores = 2;
   static constexpr double kLocalLeaseSeconds = 5;
 
-  void Create(const EnsembleSpec& spec) {
+  void Create(const v1::EnsembleSpec& spec) {
     v1::CreateEnsembleJobRequest request;
-    *request.mutable_spec() = SpecMessage(spec);
+    *request.mutable_spec() = spec;
     const CheckedSpec checked = CheckSpec(request.spec());
     if (!checked.violations.empty()) {
       std::fprintf(stderr, "%s: %s\n", checked.violations[0].field.c_str(),
@@ -171,7 +177,7 @@ class Server {
  private:
   TemporaryFolder folder_;
   std::unique_ptr<Store> store_;
-  FactoryOpener opener_;
+  CoreOpener opener_;
   Scheduler scheduler_;
   SimulatedExecutor local_;
   SimulatedExecutor remote_;
@@ -205,17 +211,19 @@ class FakeChunks {
   std::optional<BlockResult> block_;
 };
 
-EnsembleSpec SpecOf(const ExperimentKind& kind, double delta, int64_t samples, int points) {
-  EnsembleSpec spec = {.experiment = &kind,
-                       .grid = {{kRho, {0.53}}, {kDelta, {delta}}},
-                       .target = {.samples = samples},
-                       .model = Model::kBilliard};
+v1::EnsembleSpec SpecOf(const ExperimentKind& kind, double delta, int64_t samples, int points) {
+  v1::EnsembleSpec spec;
+  spec.set_experiment(static_cast<v1::EnsembleSpec::Experiment>(kind.number));
+  spec.mutable_grid()->add_rho(0.53);
+  spec.mutable_grid()->add_delta(delta);
+  spec.set_model(v1::EnsembleSpec::BILLIARD);
   if (&kind == &kEquilibrium) {
-    spec.target = {.collisions = samples};
+    spec.mutable_target()->set_collisions(samples);
   } else {
+    spec.mutable_target()->set_samples(samples);
     // One energy, so that all points have histograms of the same bins.
-    spec.grid[kEpsilon] = {0.1};
-    for (int i = 0; i < points; ++i) spec.grid[kExponent].push_back(2 + 1.0 * i / points);
+    spec.mutable_grid()->add_epsilon(0.1);
+    for (int i = 0; i < points; ++i) spec.mutable_grid()->add_exponent(2 + 1.0 * i / points);
   }
   return spec;
 }

@@ -221,10 +221,10 @@ TEST_F(Security, UnsafeFlagsExitWithTwoAndOneLine) {
     EXPECT_THAT(result.err, HasSubstr(text));
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
   };
-  expect({"--listen", "0.0.0.0:0"}, "missing: --tls-certificate and --tls-key and --access-file");
+  expect({"--listen", "0.0.0.0:0"}, "give --tls-certificate, --tls-key and --access-file");
   expect(Joined({TlsFlags(), {"--listen", "unix:" + home_.File("s")}}),
          "can open its Unix socket; it cannot be combined with --access-file");
-  expect({"--new-token", "alice:read"}, "--access-file is missing");
+  expect({"--new-token", "alice:read"}, "--new-token requires --access-file");
   chmod(home_.File("server.key").c_str(), 0644);
   expect(Joined({TlsFlags(), {"--listen", "127.0.0.1:0"}}), "is open to other users");
 }

@@ -139,16 +139,13 @@ TEST(ServerFlags, ARefusalNamesFlagValueAndPermittedValues) {
       {{"--max-samples-per-job=inf"}, "--max-samples-per-job: inf" + real_limit},
       {{"--max-samples-per-job=nan"}, "--max-samples-per-job: nan" + real_limit},
       {{"--max-message-bytes=1023"}, "permitted: whole numbers, 1024 to 268435456"},
-      {{"--max-transfer-mib=15"}, "permitted: 0 (no limit), or 16 to 1048576"},
-      {{"--max-transfer-mib=1048577"}, "permitted: 0 (no limit), or 16 to 1048576"},
-      {{"--max-transfer-mib=31", "--max-message-bytes=16777216"},
-       "or 32 to 1048576 with --max-message-bytes=16777216"},
+      {{"--max-transfer-mib=1048577"}, "permitted: whole numbers, 0 to 1048576"},
       {{"--log-level", "-1"}, "--log-level: -1 not in {info,warning,error}"},
       {{"--executor=slurm"}, "--slurm-shared-folder: \"\" is not an absolute path"},
       {{"--executor=slurm", "--slurm-shared-folder=a"}, "\"a\" is not an absolute path"},
       {{"--slurm-shared-folder=/a"}, "--slurm-shared-folder needs --executor=slurm"},
-      {{"--config=none"}, "--config: File does not exist: none"},
-      {{"--config=/"}, "--config: File is actually a directory: /"},
+      {{"--config=none"}, "none was not readable"},
+      {{"--config=/"}, "/ was not readable"},
   };
   for (const auto& row : table) {
     Words flags = row.flags;
@@ -188,10 +185,10 @@ class ConfigFile : public testing::Test {
 
 TEST_F(ConfigFile, GivesTheFlagsOfAServer) {
   const std::string address = "unix:" + home_.File("socket");
-  Write("# of the laboratory\n\n  listen = \"" + address +
-        "\"  # the API\ndata-dir=" + home_.File("data") +
-        "\nworkers = 1 # one\nlog-level=info\nmax-points-per-job = "
-        "2\nmax-active-points-per-principal = 3e7");
+  Write("# of the laboratory\n\n  listen = " + address +
+        "\n#the store\n\tdata-dir=" + home_.File("data") +
+        "\r\nworkers = 1\nlog-level=info\nmax-points-per-job = 2\n"
+        "max-active-points-per-principal = 3e7");
   Process server(ServerCommand(home_, {"--config=" + Path()}));
   ASSERT_TRUE(server.WaitForErr("listening on " + address));
   EXPECT_TRUE(std::filesystem::exists(home_.File("data/store.sqlite3")));
@@ -211,19 +208,9 @@ TEST_F(ConfigFile, CommandLineTakesPrecedence) {
 }
 
 TEST_F(ConfigFile, HasValuesWithOddCharacters) {
-  for (const std::string folder : {"/a#b", "/a b, c", "[/a]", "/a=b", "/it's"}) {
-    for (const std::string& value : {folder, "\"" + folder + "\"", "  " + folder + "  # \"b\"",
-                                     folder + "\t# a tab", "'" + folder + "'\t#b"}) {
-      EXPECT_THAT(RefusalOf("data-dir = " + value + "\nworkers = 1\n", {"--check"}),
-                  HasSubstr(" " + folder + "/store"));
-    }
-  }
-}
-
-TEST_F(ConfigFile, AQuotedValueMayContainAComment) {
-  for (const char* value : {"\"/a # b\"", "'/a # b'  # \"c\"", "\"/a # b\"\t#"}) {
-    EXPECT_THAT(RefusalOf(std::string("data-dir = ") + value, {"--check"}),
-                HasSubstr(" /a # b/store"));
+  for (const std::string folder : {"/a#b", "/a # b", "/a b, c", "[::1]:5", "/a=b", "/it's \"a\""}) {
+    EXPECT_THAT(RefusalOf("data-dir =  " + folder + "\t\nworkers = 1\n", {"--check"}),
+                HasSubstr(" " + folder + "/store"));
   }
 }
 
@@ -247,31 +234,29 @@ TEST_F(ConfigFile, EachLineOfAFlagThatMayBeRepeatedCounts) {
   EXPECT_THAT(server.log(), HasSubstr(" --mem-per-cpu=500M --exclusive"));
 }
 
-TEST_F(ConfigFile, ARefusalNamesFileLineFlagAndPermittedValues) {
+TEST_F(ConfigFile, ARefusalNamesFlagAndPermittedValues) {
   const struct {
     std::string text;
     std::string message;
   } table[] = {
-      {"listn = \"unix:x\"\n", ", line 1: The following argument was not expected: --listn=unix:x"},
-      {"# flags\n\nmax_streams = 3\n", ", line 3: The following argument was not expected: "},
-      {"--workers = 3\n", ", line 1: The following argument was not expected: "},
-      {"[server]\nworkers = 1\n", ", line 1: --[server]: needs a value"},
-      {"workers\n", ", line 1: --workers: needs a value"},
-      {"listen = x\nworkers = 0\n", ", line 2: --workers: 0 is refused; permitted: whole"},
-      {"workers = 1\n\nworkers = 1\n", ", line 3: --workers: is given twice"},
-      {"data-dir = /a\ndata_dir = /a\n", ", line 2: --data_dir: is given twice"},
+      {"listn = unix:x\n", "not expected: listn"},
+      {"max_streams = 3\n", "not expected: max_streams"},
+      {"[server]\nworkers = 1\n", "not expected: [server]"},
+      {"data-dir\n", "--data-dir: needs a value"},
+      {"workers =\n", "--workers:  is refused; permitted: whole"},
+      {"listen = x\nworkers = 0\n", "--workers: 0 is refused; permitted: whole"},
+      {"workers = 1\n\nlog-level = info\nworkers = 1\n", "--workers: At Most 1"},
   };
   for (const auto& row : table) {
-    EXPECT_THAT(RefusalOf(row.text, {"--check"}), HasSubstr(Path() + row.message));
+    EXPECT_THAT(RefusalOf(row.text, {"--check"}), HasSubstr(row.message));
   }
 }
 
 TEST_F(ConfigFile, ACommandIsRefused) {
   for (const std::string flag : {"config", "new-token", "check", "backup", "help", "version"}) {
     for (const char* value : {"", " = ", " = true"}) {
-      EXPECT_THAT(
-          RefusalOf("workers = 1\n" + flag + value, {"--check"}),
-          HasSubstr(Path() + ", line 2: --" + flag + ": is permitted on the command line only"));
+      EXPECT_THAT(RefusalOf("workers = 1\n" + flag + value, {"--check"}),
+                  HasSubstr(flag + ": This option is not allowed in a configuration file"));
     }
   }
 }

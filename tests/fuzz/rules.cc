@@ -12,6 +12,7 @@
 #include "server/convert/errors.h"
 #include "server/convert/spec.h"
 #include "tests/fuzz/fuzz_target.h"
+#include "tests/server/spec_message.h"
 
 namespace ballpiston::fuzz {
 namespace {

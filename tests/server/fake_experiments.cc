@@ -5,6 +5,7 @@
 
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
+#include "tests/server/factory_opener.h"
 #include "tests/support/await.h"
 
 namespace ballpiston::server {

@@ -10,7 +10,7 @@
 #include <stop_token>
 
 #include "core/ensemble/point_fold.h"
-#include "server/scheduling/point_opener.h"
+#include "tests/server/factory_opener.h"
 
 namespace ballpiston::server {
 

@@ -7,6 +7,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/server/factory_opener.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"

@@ -5,6 +5,7 @@
 
 #include "grpc/grpc.h"
 #include "gtest/gtest.h"
+#include "tests/server/factory_opener.h"
 #include "tests/server/own_channel.h"
 #include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
@@ -26,7 +27,7 @@ ServerOptions OptionsIn(const std::string& data_dir, const TestServerOptions& op
   all.door = options.door;
   all.door.own_tokens = data_dir + "/tokens";
   all.workers = options.workers;
-  all.factory = options.factory;
+  if (options.factory) all.opener = std::make_shared<FactoryOpener>(options.factory);
   all.watch = options.watch;
   all.connections = options.connections;
   all.limits = options.limits;

@@ -20,6 +20,7 @@
 #include "grpcpp/channel.h"
 #include "grpcpp/security/credentials.h"
 #include "server/ballpiston_server.h"
+#include "tests/server/factory_opener.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/support/await.h"
 #include "tests/support/temporary_folder.h"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "server/door/access_list.h"
-#include "server/door/sha256.h"
+#include "server/sha256.h"
 #include "tests/support/files.h"
 
 namespace ballpiston::server {

@@ -10,6 +10,7 @@
 #include "server/execution/thread_executor.h"
 #include "server/scheduling/point_opener.h"
 #include "server/scheduling/scheduler.h"
+#include "tests/server/factory_opener.h"
 
 namespace ballpiston::server {
 

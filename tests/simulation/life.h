@@ -10,10 +10,10 @@
 #include "server/execution/thread_executor.h"
 #include "server/jobs/job_book.h"
 #include "server/periodic_thread.h"
-#include "server/scheduling/point_opener.h"
 #include "server/scheduling/scheduler.h"
 #include "server/store/store.h"
 #include "tests/fault/store/fault_disk.h"
+#include "tests/server/factory_opener.h"
 #include "tests/simulation/cluster.h"
 #include "tests/simulation/machine.h"
 

@@ -18,6 +18,7 @@
 #include "tests/fault/store/service_on_disk.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
+#include "tests/server/spec_message.h"
 #include "tests/server/thread_pool.h"
 #include "tests/support/await.h"
 #include "tests/support/status_matchers.h"

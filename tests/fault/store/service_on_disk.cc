@@ -7,6 +7,7 @@
 #include "server/convert/deterministic_bytes.h"
 #include "server/convert/spec.h"
 #include "server/store/job_record.h"
+#include "tests/server/factory_opener.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
 #include "tests/support/await.h"

@@ -20,6 +20,7 @@
 #include "server/convert/spec.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/spec_message.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {

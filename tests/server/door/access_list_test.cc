@@ -8,7 +8,7 @@
 #include "absl/strings/escaping.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "server/door/sha256.h"
+#include "server/sha256.h"
 #include "tests/server/error_details.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"

@@ -131,6 +131,14 @@ TEST(ConnectionBounds, EndlessRequestsAreEndedWhenMemoryIsUsedUp) {
   AwaitThat([&server] { return CallByName(server.channel(), kCheckHealth).ok(); });
 }
 
+TEST(ConnectionBounds, ARequestOfTheGreatestLengthFitsIntoTheSmallestMemory) {
+  constexpr int64_t kLongest = 64 << 20;
+  RunningServer server({.limits = {.max_message_bytes = kLongest, .max_transfer_mib = 1}});
+  v1::CreateEnsembleJobRequest request;
+  request.set_request_id(std::string(kLongest - 100, 'x'));
+  EXPECT_THAT(server.Create(request), StatusIs(grpc::StatusCode::INVALID_ARGUMENT));
+}
+
 size_t ThreadsOfThisProcess() {
   const std::filesystem::directory_iterator all("/proc/self/task");
   return static_cast<size_t>(std::distance(begin(all), end(all)));

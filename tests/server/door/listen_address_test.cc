@@ -14,8 +14,8 @@ using ::testing::HasSubstr;
 TEST(ListenAddress, AddressesNamesAndUnixSocketsAreParsed) {
   for (const char* text :
        {"127.0.0.1:0", "127.8.9.10:65535", "[::1]:50051", "0.0.0.0:50051", "[::]:50051",
-        "192.168.1.1:50051", "[2001:db8::1]:1", "[fe80::1%eth0]:1", "node-7.lab.example.org:50051",
-        "under_score:1", "unix:/tmp/x.socket", "unix:relative"}) {
+        "192.168.1.1:50051", "[2001:db8::1]:1", "node-7.lab.example.org:50051", "under_score:1",
+        "unix:/tmp/x.socket", "unix:relative"}) {
     ASSERT_OK_AND_ASSIGN(const auto address, ParseListenAddress(text));
     EXPECT_EQ(address.Text(), text);
   }
@@ -58,7 +58,7 @@ TEST(ListenAddress, ErrorsShowTheFlagAndTheValue) {
                            "a/b:1",
                            "host.:1",
                            "[::1]%lo:1",
-                           "[::1%]:1",
+                           "[fe80::1%eth0]:1",
                            "[::1%a/b]:1"}) {
     const auto address = ParseListenAddress(text);
     EXPECT_THAT(address, StatusIs(absl::StatusCode::kInvalidArgument,

@@ -24,6 +24,7 @@
 #include "server/worker/crash_mark.h"
 #include "server/worker/task_run.h"
 #include "tests/server/execution/fake_slurm.h"
+#include "tests/server/factory_opener.h"
 #include "tests/server/scheduling/run_requests.h"
 #include "tests/server/scheduling/stepped_executor.h"
 #include "tests/server/worker/sample_leases.h"

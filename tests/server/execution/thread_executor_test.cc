@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "gtest/gtest.h"
+#include "tests/server/factory_opener.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/scheduling/recording_journal.h"
 #include "tests/server/scheduling/run_requests.h"

@@ -22,6 +22,7 @@
 #include "server/jobs/question.h"
 #include "server/store/job_table.h"
 #include "tests/server/error_details.h"
+#include "tests/server/factory_opener.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"

@@ -14,6 +14,7 @@
 #include "server/store/check_store.h"
 #include "server/store/sweeper.h"
 #include "tests/server/error_details.h"
+#include "tests/server/factory_opener.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
 #include "tests/server/store_access.h"

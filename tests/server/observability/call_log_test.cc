@@ -126,8 +126,7 @@ TEST(CallLog, AllRefusedCallsAreCountedAndTenASecondLogged) {
   // Calls that failed have lines of their own.
   EXPECT_EQ(LinesOf([&] { calls.Failed(Failure(absl::StatusCode::kInternal, ""), begin); }).size(),
             1u);
-  EXPECT_THAT(LinesOf([&] { calls.Failed(refused, begin + absl::Seconds(1)); }),
-              UnorderedElementsAre(HasSubstr(" lines_left_out=490)")));
+  EXPECT_EQ(LinesOf([&] { calls.Failed(refused, begin + absl::Seconds(1)); }).size(), 1u);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "server/scheduling/scheduler.h"
+#include "tests/server/factory_opener.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/scheduling/recording_journal.h"
 #include "tests/server/scheduling/remote_executor.h"

@@ -19,6 +19,7 @@
 #include "gtest/gtest.h"
 #include "server/execution/thread_executor.h"
 #include "server/scheduling/scheduler.h"
+#include "tests/server/factory_opener.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/scheduling/recording_journal.h"
 #include "tests/server/scheduling/remote_executor.h"

@@ -16,6 +16,7 @@
 #include "core/ensemble/point_fold.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/server/factory_opener.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/scheduling/recording_journal.h"
 #include "tests/server/scheduling/run_requests.h"

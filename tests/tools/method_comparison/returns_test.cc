@@ -70,6 +70,18 @@ TEST(Returns, TimeIsBiasedToFirstOrderInTheStep) {
   EXPECT_NEAR(std::log(coarse / fine) / std::log(3.0), 1, 4.5 * 0.09);
 }
 
+// The wall hits are the cost of a method, so those of orbits that it loses count.
+TEST(Returns, WallHitsOfALostOrbitCount) {
+  const auto run = [](uint64_t samples) {
+    return RunReturns({Method::kFixedStep, 0.3}, kPaperPair, kEpsilonOfReturns, {5, 6}, samples);
+  };
+  uint64_t samples = 1;  // until the last one is lost
+  while (samples < 1000 && run(samples).times.count == samples) ++samples;
+  const auto without = run(samples - 1), with = run(samples);
+  ASSERT_EQ(with.times.count, without.times.count) << "no orbit was lost: take a longer step";
+  EXPECT_GT(with.wall_hits, without.wall_hits);
+}
+
 // A short orbit is the same in all precisions.
 TEST(Returns, AllMethodsStartFromTheSameStates) {
   constexpr RandomStream kShort = {21, 15};
