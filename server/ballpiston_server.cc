@@ -14,21 +14,19 @@
 #include "grpcpp/resource_quota.h"
 #include "grpcpp/server_builder.h"
 #include "server/api/reflection_check.h"
-#include "server/api/server_metrics.h"
+#include "server/api/server_status.h"
 #include "server/jobs/job_name.h"
 #include "server/observability/failpoint.h"
 
 namespace ballpiston::server {
 namespace {
 
-constexpr int kTurns = 8;  // of calls that compute
 constexpr int kMinPingIntervalMs = 15'000;
 constexpr int kStreamsPerConnection = 2'048;  // twice what one principal may watch
 // Threads for calls that are not streams. One principal can fill a quarter of them with answers
 // that it does not read (--max-calls-per-principal).
 constexpr int kOtherThreads = 4'096;
 constexpr int64_t kLeastTransferBytes = 16 << 20;
-constexpr int kMostThreads = 1 << 20;  // more than any system permits a process
 constexpr std::chrono::milliseconds kLimitsInterval(1000);
 // The longest delay until health reports that the store fails, and until a revoked watch ends.
 constexpr std::chrono::milliseconds kHealthInterval(500);
@@ -83,11 +81,7 @@ void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   using Option = grpc::ServerBuilder::SyncServerOption;
   grpc::ResourceQuota quota("ballpiston");
   if (limits.max_transfer_mib > 0) quota.Resize(TransferBytes(limits));
-  if (limits.max_streams > 0) {
-    quota.SetMaxThreads(
-        static_cast<int>(std::min<int64_t>(limits.max_streams, kMostThreads - kOtherThreads)) +
-        kOtherThreads);
-  }
+  quota.SetMaxThreads(static_cast<int>(MostStreams(limits)) + kOtherThreads);
   builder.SetResourceQuota(quota);
   // One queue, and at most two idle threads that wait for calls. By default gRPC has a queue for
   // each core.
@@ -164,9 +158,8 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
                        scheduler_, *options_.slurm, std::make_unique<SlurmTools>(*options_.slurm),
                        store_->identity(), [this] { return store_->Flush(); }, crashes_)
                  : nullptr),
-      open_calls_(options_.limits),
-      turns_(kTurns, kTurns / 2),
-      streams_(options_.limits, door_->authenticator(), options_.watch.heartbeat, draining_),
+      quotas_(options_.limits),
+      streams_(door_->authenticator(), options_.watch.heartbeat, draining_),
       context_{door_->authenticator(),
                options_.limits,
                book_,
@@ -174,8 +167,7 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
                threads_,
                slurm_.get(),
                ladder_,
-               open_calls_,
-               turns_,
+               quotas_,
                streams_,
                activity_,
                draining_,

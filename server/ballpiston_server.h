@@ -106,8 +106,7 @@ class BallpistonServer {
   // After the book: the executors' threads use the book.
   ThreadExecutor threads_;
   std::unique_ptr<SlurmExecutor> slurm_;  // null without a cluster
-  OpenCalls open_calls_;
-  Turns turns_;
+  Quotas quotas_;
   Streams streams_;
   ServiceContext context_;
   EnsembleService ensemble_;

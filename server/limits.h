@@ -1,10 +1,15 @@
 // Limits of a request, of a principal and of all principals together. The flag of a limit is its
-// name with dashes (--max-active-jobs). 0 means no limit; max_message_bytes is always limited.
+// name with dashes (--max-active-jobs). 0 means no limit; max_streams and max_message_bytes are
+// always limited.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace ballpiston::server {
+
+// Each stream has a thread.
+inline constexpr int64_t kMostStreams = 32'768;
 
 struct Limits {
   int64_t max_active_jobs = 10'000;  // jobs that have not ended
@@ -13,7 +18,7 @@ struct Limits {
   int64_t max_active_points_per_principal = 5'000'000;
   int64_t max_points_per_job = 100'000;
   double max_samples_per_job = 1e15;  // samples or collisions, over all points
-  int64_t max_streams = 2'048;        // open watches and traces
+  int64_t max_streams = 2'048;        // open watches and traces; 0: kMostStreams
   int64_t max_streams_per_principal = 1'024;
   // Unary calls in progress, and the bytes of their requests and answers.
   int64_t max_calls_per_principal = 1'024;
@@ -27,5 +32,9 @@ struct Limits {
   double retain_days = 0;       // from the end of a job until its results expire
   int64_t max_store_bytes = 0;  // above it the oldest results expire
 };
+
+inline int64_t MostStreams(const Limits& limits) {
+  return limits.max_streams == 0 ? kMostStreams : std::min(limits.max_streams, kMostStreams);
+}
 
 }  // namespace ballpiston::server

@@ -13,9 +13,11 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "absl/time/clock.h"
 #include "client/command/options.h"
 #include "client/command/verbs.h"
 #include "client/library/client.h"
+#include "client/library/error_text.h"
 #include "client/library/local_server.h"
 
 namespace ballpiston::client {
@@ -37,6 +39,7 @@ struct Connection {
   auto Ask(const Call& call) const -> decltype(call()) {
     auto answer = call();
     if (!local || !absl::IsUnavailable(answer.status())) return answer;
+    absl::SleepFor(RetryDelay(answer.status()));
     if (absl::Status revived = Revive(); !revived.ok()) return revived;
     return call();
   }

@@ -83,7 +83,7 @@ absl::Status PrintPoints(const Connection& connection, const v1::EnsembleJob& jo
         [&] { return connection.client.ResultsPage(job.name(), destination.view(), token); });
     if (!page.ok()) return HintIfExpired(page.status(), connection, job.name());
     if (token.empty()) destination.writer().Begin(job);
-    for (const v1::PointResult& point : page->points()) {
+    for (const v1::PointResult& point : page->results()) {
       AddPoint(point, destination.writer(), err);
     }
     token = page->next_page_token();

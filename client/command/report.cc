@@ -28,7 +28,7 @@ absl::StatusOr<Points> PointsOf(const Connection& connection, const std::string&
     const auto page =
         connection.Ask([&] { return connection.client.ResultsPage(name, view, token); });
     if (!page.ok()) return HintIfExpired(page.status(), connection, name);
-    for (v1::PointResult point : page->points()) {
+    for (v1::PointResult point : page->results()) {
       if (points.json.size() >= kMostPictured) {
         point.clear_histograms();
         point.clear_curves();

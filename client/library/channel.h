@@ -1,8 +1,8 @@
 // Channels to a server, with settings that suit a long watch.
 //
 // While the server is unreachable, the channel retries calls for about a second if they are safe to
-// repeat: all calls but Delete (Create and Cancel carry a request id). The channel does not retry a
-// watch: JobWatch does.
+// repeat: all calls but Delete (Create and Cancel carry a request id). If the server says how long
+// to wait before a retry, gRPC waits so long. The channel does not retry a watch: JobWatch does.
 #pragma once
 
 #include <grpcpp/grpcpp.h>

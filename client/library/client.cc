@@ -82,10 +82,11 @@ absl::StatusOr<v1::EnsembleJob> Client::Cancel(const std::string& name,
 }
 
 absl::StatusOr<v1::EnsembleJob> Client::Pin(const std::string& name, bool pinned) const {
-  v1::PinEnsembleJobRequest request;
-  request.set_name(name);
-  request.set_pinned(pinned);
-  return CallUnary(*ensembles_, &Stub::PinEnsembleJob, request, timeout_);
+  v1::UpdateEnsembleJobRequest request;
+  request.mutable_job()->set_name(name);
+  request.mutable_job()->set_pinned(pinned);
+  request.mutable_update_mask()->add_paths("pinned");
+  return CallUnary(*ensembles_, &Stub::UpdateEnsembleJob, request, timeout_);
 }
 
 absl::Status Client::Delete(const std::string& name) const {
@@ -112,7 +113,7 @@ absl::StatusOr<std::vector<v1::PointResult>> Client::Results(
   do {
     const auto page = ResultsPage(name, view, token);
     if (!page.ok()) return page.status();
-    points.insert(points.end(), page->points().begin(), page->points().end());
+    points.insert(points.end(), page->results().begin(), page->results().end());
     token = page->next_page_token();
   } while (!token.empty());
   return points;

@@ -109,6 +109,13 @@ std::string ErrorReason(const absl::Status& status) {
   return info ? info->reason() : "";
 }
 
+absl::Duration RetryDelay(const absl::Status& status) {
+  const auto retry = Find<google::rpc::RetryInfo>(DetailsOf(status));
+  if (!retry) return absl::ZeroDuration();
+  const auto& delay = retry->retry_delay();
+  return absl::Seconds(delay.seconds()) + absl::Nanoseconds(delay.nanos());
+}
+
 std::vector<FieldViolation> ErrorViolations(const absl::Status& status) {
   return ViolationsOf(DetailsOf(status));
 }

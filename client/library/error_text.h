@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/time/time.h"
 
 namespace ballpiston::client {
 
@@ -33,6 +34,9 @@ absl::Status FromGrpc(const grpc::Status& status);
 // The ErrorInfo's reason, e.g. "JOB_NOT_FOUND"; empty if the server gave no reason or was not
 // reached.
 std::string ErrorReason(const absl::Status& status);
+
+// The least time to wait before a retry: the RetryInfo of the server's error; 0 without one.
+absl::Duration RetryDelay(const absl::Status& status);
 
 // The invalid fields of the request, by their paths: spec.grid.rho[0].
 struct FieldViolation {

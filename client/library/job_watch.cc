@@ -78,7 +78,7 @@ class Watch {
   }
 
   absl::Status WaitToReattach(const absl::Status& why) {
-    const std::optional<absl::Duration> pause = pace_.NextPause(Clock::now());
+    const std::optional<absl::Duration> pause = pace_.NextPause(Clock::now(), RetryDelay(why));
     if (!pause) {
       return absl::UnavailableError(absl::StrCat("gave up watching after ",
                                                  absl::FormatDuration(options_.give_up_after),

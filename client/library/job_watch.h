@@ -2,7 +2,8 @@
 //
 // A stream is broken if it ends with UNAVAILABLE, with CANCELLED and no reason (a server that stops
 // does this), or without a terminal state. The watch then pauses and reconnects with the last
-// resume token that it received. The pauses double from `initial_backoff` to `max_backoff`. After
+// resume token that it received. The pauses double from `initial_backoff` to `max_backoff`, and are
+// at least as long as the server's error says. After
 // `give_up_after` without a message the watch gives up. Every other error ends the watch.
 //
 // Properties, each with a test of its name:

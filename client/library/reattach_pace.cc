@@ -12,8 +12,8 @@ void ReattachPace::Heard(Time now) {
   backoff_ = options_.initial_backoff;
 }
 
-std::optional<absl::Duration> ReattachPace::NextPause(Time now) {
-  const absl::Duration pause = backoff_ * absl::Uniform(random_, 1.0, 1.25);
+std::optional<absl::Duration> ReattachPace::NextPause(Time now, absl::Duration least) {
+  const absl::Duration pause = std::max(backoff_, least) * absl::Uniform(random_, 1.0, 1.25);
   backoff_ = std::min(2 * backoff_, options_.max_backoff);
   const absl::Duration silence = absl::FromChrono(now - heard_);
   if (silence + pause > options_.give_up_after) return std::nullopt;

@@ -25,8 +25,9 @@ class ReattachPace {
   // The watch received a message: the pauses and the time until it gives up start again.
   void Heard(Time now);
 
-  // The pause before the next attempt; empty if it would end after the time to give up.
-  std::optional<absl::Duration> NextPause(Time now);
+  // The pause before the next attempt, at least `least`; empty if it would end after the time to
+  // give up.
+  std::optional<absl::Duration> NextPause(Time now, absl::Duration least = absl::ZeroDuration());
 
  private:
   const WatchOptions& options_;

@@ -60,10 +60,14 @@ std::string LiteralAddress(absl::string_view address) {
 }
 
 bool IsLoopback(absl::string_view address) {
-  const std::string host(address.substr(0, address.rfind(':')));
+  absl::string_view host = address.substr(0, address.rfind(':'));
   in_addr v4{};
-  if (inet_pton(AF_INET, host.c_str(), &v4) == 1) return ntohl(v4.s_addr) >> 24 == 127;
-  return host == "[::1]";
+  if (inet_pton(AF_INET, std::string(host).c_str(), &v4) == 1) {
+    return ntohl(v4.s_addr) >> 24 == 127;
+  }
+  if (!absl::ConsumePrefix(&host, "[") || !absl::ConsumeSuffix(&host, "]")) return false;
+  in6_addr v6{};
+  return inet_pton(AF_INET6, std::string(host).c_str(), &v6) == 1 && IN6_IS_ADDR_LOOPBACK(&v6);
 }
 
 }  // namespace ballpiston::client

@@ -24,7 +24,8 @@ absl::StatusOr<std::string> GrpcTarget(absl::string_view address);
 // another user's server may listen.
 std::string LiteralAddress(absl::string_view address);
 
-// Whether only programs of this machine can listen at the address: host 127.x.x.x or [::1].
+// Whether only programs of this machine can listen at the address: host 127.x.x.x or
+// [::1], in any spelling.
 bool IsLoopback(absl::string_view address);
 
 }  // namespace ballpiston::client

@@ -101,7 +101,7 @@ void ProgressReporter::Show(const v1::StatisticsSnapshot& changes) {
 
 // The server sends unfinished points newest first, and finished points in the order of finishing.
 void ProgressReporter::WriteJson(const v1::StatisticsSnapshot& changes, absl::string_view note) {
-  v1::WatchProgress line;
+  file::v1::WatchProgress line;
   line.set_job(job_.name());
   line.set_state(job_.state());
   *line.mutable_progress() = meter_.progress();
@@ -111,6 +111,7 @@ void ProgressReporter::WriteJson(const v1::StatisticsSnapshot& changes, absl::st
   const auto& finished = changes.finished_points();
   std::for_each(finished.rbegin(), finished.rend(),
                 [&](const v1::PointResult& point) { *line.add_points() = point; });
+  for (v1::PointResult& point : *line.mutable_points()) point.clear_name();
   line.set_note(std::string(note));
   err_ << Json(line) << '\n' << std::flush;
 }

@@ -2,7 +2,8 @@
 //
 //   bar   one line, redrawn: bar, points, samples per second, time left, and the current
 //         estimate of the point that changed last
-//   json  one v1.WatchProgress per line, with the points that changed: the unfinished points first,
+//   json  one file.v1.WatchProgress per line, with the points that changed: the unfinished points
+//   first,
 //         then the finished points; within each group the newest first
 //   none  only notes
 //
@@ -17,8 +18,8 @@
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
 #include "absl/time/time.h"
+#include "ballpiston/file/v1/progress.pb.h"
 #include "ballpiston/v1/ensemble.pb.h"
-#include "ballpiston/v1/progress.pb.h"
 #include "client/output/progress_meter.h"
 
 namespace ballpiston::client {

@@ -1,7 +1,7 @@
 // A result in a file of its own, which carries the job's name, its specification with the seed, and
 // the versions of engine and client. The file's ending selects the format:
 //
-//   .json  v1::SavedResult: everything; ballpiston.load in Python reads it
+//   .json  file::v1::SavedResult: everything; ballpiston.load in Python reads it
 //   .csv   estimates, or with --format csv-histograms or csv-curves these; the first lines begin
 //          with # and hold the job and the specification
 //   .npz   NumPy arrays (npz_writer.h)

@@ -22,12 +22,17 @@
 namespace ballpiston::client {
 namespace {
 
+std::string PointJson(v1::PointResult point) {
+  point.clear_name();
+  return Json(point);
+}
+
 class JsonlWriter : public ResultWriter {
  public:
   explicit JsonlWriter(std::ostream& out) : out_(out) {}
 
   void Begin(const v1::EnsembleJob&) override {}
-  void Add(const v1::PointResult& point) override { out_ << Json(point) << '\n'; }
+  void Add(const v1::PointResult& point) override { out_ << PointJson(point) << '\n'; }
   void End() override {}
 
  private:
@@ -43,7 +48,7 @@ class JsonWriter : public ResultWriter {
          << ",\n\"points\": [";
   }
   void Add(const v1::PointResult& point) override {
-    out_ << (first_ ? "\n" : ",\n") << Json(point);
+    out_ << (first_ ? "\n" : ",\n") << PointJson(point);
     first_ = false;
   }
   void End() override { out_ << "\n]}\n"; }

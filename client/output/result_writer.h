@@ -1,9 +1,8 @@
 // Prints the results of a job, point by point, in one of the formats.
 //
 //   table   a heading with experiment and model, then one row for each point and estimate
-//   json    {"client_version": ..., "job": {...}, "points": [...]}, a v1::SavedResult; one point
-//   per
-//           line
+//   json    {"client_version": ..., "job": {...}, "points": [...]}, a file::v1::SavedResult;
+//           one point per line
 //   jsonl   one point per line
 //   csv     rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score,
 //           model_error,noise_floor,limit; after exponent the other parameters of the grid
@@ -18,7 +17,8 @@
 // different models, and model_error, noise_floor and limit only if an estimate has the value. Each
 // remark is a line below the estimates of its point, and the reasons for the models are below the
 // table (model_reasons.h). CSV has no remarks. Tables and csv have neither histograms nor curves.
-// The same points give the same bytes.
+// The same points give the same bytes: the names of the points, which have the job's id, are left
+// out.
 #pragma once
 
 #include <memory>

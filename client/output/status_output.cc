@@ -90,26 +90,17 @@ void PrintServer(const v1::ServerStatus& status, absl::Time now, std::ostream& o
 }
 
 void PrintLimits(const v1::ServerLimits& limits, std::ostream& out) {
-  TextTable table({{"limit", kLeft}, {"total"}, {"per principal"}});
-  table.AddRow({"active jobs", LimitText(limits.max_active_jobs()),
-                LimitText(limits.max_active_jobs_per_principal())});
-  table.AddRow({"active points", LimitText(limits.max_active_points()),
-                LimitText(limits.max_active_points_per_principal())});
+  TextTable table({{"limit", kLeft}, {"most"}});
+  table.AddRow({"points of a job", LimitText(limits.max_points_per_job())});
+  table.AddRow({"samples of a job", LimitText(limits.max_samples_per_job())});
+  table.AddRow({"active jobs of a principal", LimitText(limits.max_active_jobs_per_principal())});
   table.AddRow(
-      {"streams", LimitText(limits.max_streams()), LimitText(limits.max_streams_per_principal())});
-  table.AddRow({"calls", "no limit", LimitText(limits.max_calls_per_principal())});
-  table.AddRow(
-      {"bytes of calls", "no limit", ByteLimitText(limits.max_call_bytes_per_principal())});
-  table.AddRow({"stored bytes", ByteLimitText(limits.max_store_bytes()), "no limit"});
-  TextTable requests({{"limit", kLeft}, {"per job"}});
-  requests.AddRow({"points", LimitText(limits.max_points_per_job())});
-  requests.AddRow({"samples", LimitText(limits.max_samples_per_job())});
-  requests.AddRow({"message", ByteLimitText(limits.max_message_bytes())});
-  requests.AddRow({"results kept", DayLimitText(limits.retain_days())});
+      {"active points of a principal", LimitText(limits.max_active_points_per_principal())});
+  table.AddRow({"streams of a principal", LimitText(limits.max_streams_per_principal())});
+  table.AddRow({"message", ByteLimitText(limits.max_message_bytes())});
+  table.AddRow({"results kept", DayLimitText(limits.retain_days())});
   out << '\n';
   table.Print(out);
-  out << '\n';
-  requests.Print(out);
 }
 
 void PrintPrincipals(const v1::ServerStatus& status, std::ostream& out) {

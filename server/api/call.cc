@@ -11,6 +11,7 @@
 #include "server/api/client_version.h"
 #include "server/convert/errors.h"
 #include "server/jobs/job_name.h"
+#include "server/observability/log.h"
 #include "server/version.h"
 
 namespace ballpiston::server {
@@ -29,17 +30,16 @@ bool IsRequestId(const std::string& id) {
   return !id.empty() && id.size() <= kMaxRequestId && std::all_of(id.begin(), id.end(), permitted);
 }
 
-std::string RequestIdOf(const grpc::ServerContext& context) {
-  const auto found = context.client_metadata().find(kRequestId);
-  if (found == context.client_metadata().end()) return RandomId();
-  const std::string id(found->second.data(), found->second.size());
-  return IsRequestId(id) ? id : RandomId();
-}
-
-absl::string_view UserAgentOf(const grpc::ServerContext& context) {
-  const auto found = context.client_metadata().find("user-agent");
+// Empty if there is none.
+std::string MetadataOf(const grpc::ServerContext& context, const char* key) {
+  const auto found = context.client_metadata().find(key);
   if (found == context.client_metadata().end()) return "";
   return {found->second.data(), found->second.size()};
+}
+
+std::string RequestIdOf(const grpc::ServerContext& context) {
+  const std::string id = MetadataOf(context, kRequestId);
+  return IsRequestId(id) ? id : RandomId();
 }
 
 absl::Status RoleTooLow(const Principal& caller, Role least) {
@@ -52,7 +52,7 @@ absl::Status RoleTooLow(const Principal& caller, Role least) {
 // Sets the caller.
 absl::Status Admit(const ServiceContext& service, const grpc::ServerContext& context,
                    const CallRule& rule, Call& call) {
-  absl::Status served = CheckClientVersion(UserAgentOf(context), kVersion);
+  absl::Status served = CheckClientVersion(MetadataOf(context, "user-agent"), kVersion);
   if (!served.ok()) return served;
   absl::StatusOr<Principal> caller = service.authenticator.Authenticate(context);
   if (!caller.ok()) return caller.status();
@@ -60,7 +60,25 @@ absl::Status Admit(const ServiceContext& service, const grpc::ServerContext& con
   return call.caller.role < rule.least ? RoleTooLow(call.caller, rule.least) : absl::OkStatus();
 }
 
+// gRPC's own retries obey this metadata. Other clients read the details of the error.
+void TellRetryDelay(grpc::ServerContext& context, const google::rpc::Status& error) {
+  const absl::Duration delay = RetryDelayOf(error);
+  if (delay == absl::ZeroDuration()) return;
+  context.AddTrailingMetadata("grpc-retry-pushback-ms",
+                              absl::StrCat(absl::ToInt64Milliseconds(delay)));
+}
+
 }  // namespace
+
+void LogDone(const Call& call, const char* what, const std::string& job,
+             const std::string& points) {
+  Log(Severity::kInfo, what,
+      {{"method", call.method},
+       {"job", job},
+       {"principal", call.caller.name},
+       {"request_id", call.request_id},
+       {"points", points}});
+}
 
 grpc::Status ServeCall(ServiceContext& service, grpc::ServerContext& context, const CallRule& rule,
                        absl::FunctionRef<absl::Status(const Call&)> method) {
@@ -76,14 +94,26 @@ grpc::Status ServeCall(ServiceContext& service, grpc::ServerContext& context, co
     status = WithReason(absl::InternalError(error.what()), "INTERNAL");
   }
   if (status.ok()) return grpc::Status::OK;
+  const google::rpc::Status error = RpcStatus(status);
+  TellRetryDelay(context, error);
   service.calls.Failed({.method = call.method,
                         .principal = call.caller.name,
                         .request_id = call.request_id,
                         .code = status.code(),
-                        .reason = ReasonOf(RpcStatus(status)),
+                        .reason = ReasonOf(error),
                         .message = std::string(status.message()),
                         .seconds = absl::ToDoubleSeconds(absl::Now() - begin)});
   return GrpcStatus(status);
+}
+
+grpc::Status ServeStream(ServiceContext& service, grpc::ServerContext& context,
+                         const CallRule& rule, absl::FunctionRef<absl::Status(Stream&)> run) {
+  return ServeCall(service, context, rule, [&](const Call& call) -> absl::Status {
+    const auto open = service.quotas.streams.Take(call.caller.name);
+    if (!open.ok()) return open.status();
+    Stream stream(service.streams, context, call.caller);
+    return run(stream);
+  });
 }
 
 }  // namespace ballpiston::server

@@ -1,10 +1,10 @@
 #include "server/api/client_version.h"
 
-#include <optional>
+#include <algorithm>
 #include <string>
 #include <vector>
 
-#include "absl/strings/numbers.h"
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
@@ -13,24 +13,17 @@
 namespace ballpiston::server {
 namespace {
 
-// The numbers whose change breaks clients: major, and before 1.0.0 minor.
-struct Series {
-  int major = 0;
-  int minor = 0;
+bool IsNumber(const std::string& text) {
+  return !text.empty() && text.size() <= 9 &&
+         std::all_of(text.begin(), text.end(), &absl::ascii_isdigit);
+}
 
-  friend bool operator==(const Series&, const Series&) = default;
-  std::string Text() const { return major > 0 ? absl::StrCat(major) : absl::StrCat("0.", minor); }
-};
-
-std::optional<Series> SeriesOf(absl::string_view version) {
-  const std::vector<absl::string_view> numbers = absl::StrSplit(version, '.');
-  Series series;
-  if (numbers.size() != 3 || !absl::SimpleAtoi(numbers[0], &series.major) ||
-      !absl::SimpleAtoi(numbers[1], &series.minor) || series.major < 0 || series.minor < 0) {
-    return std::nullopt;
-  }
-  if (series.major > 0) series.minor = 0;
-  return series;
+// The numbers whose change breaks clients: major, and before 1.0.0 minor. Empty if this is not a
+// version.
+std::string SeriesOf(absl::string_view version) {
+  const std::vector<std::string> numbers = absl::StrSplit(version, '.');
+  if (numbers.size() != 3 || !IsNumber(numbers[0]) || !IsNumber(numbers[1])) return "";
+  return numbers[0] == "0" ? absl::StrCat("0.", numbers[1]) : numbers[0];
 }
 
 }  // namespace
@@ -38,15 +31,14 @@ std::optional<Series> SeriesOf(absl::string_view version) {
 absl::Status CheckClientVersion(absl::string_view user_agent, absl::string_view server) {
   if (!absl::ConsumePrefix(&user_agent, "ballpiston/")) return absl::OkStatus();
   const absl::string_view client = user_agent.substr(0, user_agent.find(' '));
-  const std::optional<Series> of_client = SeriesOf(client), of_server = SeriesOf(server);
-  if (!of_client || !of_server || *of_client == *of_server) return absl::OkStatus();
-  return WithReason(
-      absl::FailedPreconditionError(absl::StrCat(
-          "this server has version ", server, " and serves clients of version ", of_server->Text(),
-          "; this client has version ", client, ". Install version ", of_server->Text(),
-          " of the client, or version ", of_client->Text(),
-          " of the server and restart it (a private one: ballpiston server stop)")),
-      "CLIENT_VERSION_NOT_SERVED", "server_version", std::string(server));
+  const std::string of_client = SeriesOf(client), of_server = SeriesOf(server);
+  if (of_client.empty() || of_client == of_server) return absl::OkStatus();
+  return WithReason(absl::FailedPreconditionError(absl::StrCat(
+                        "this server has version ", server, " and serves clients of version ",
+                        of_server, "; this client has version ", client, ". Install version ",
+                        of_server, " of the client, or version ", of_client,
+                        " of the server and restart it (a private one: ballpiston server stop)")),
+                    "CLIENT_VERSION_NOT_SERVED", "server_version", std::string(server));
 }
 
 }  // namespace ballpiston::server

@@ -2,12 +2,9 @@
 #include "server/api/methods.h"
 #include "server/api/request_check.h"
 #include "server/convert/spec.h"
-#include "server/observability/log.h"
 
 namespace ballpiston::server {
 namespace {
-
-constexpr int kHighestPriority = 100;
 
 absl::Status Check(const CheckedSpec& spec, const RequestCheck& check) {
   if (spec.violations.empty()) return check.status();
@@ -17,12 +14,8 @@ absl::Status Check(const CheckedSpec& spec, const RequestCheck& check) {
 }
 
 void LogAcceptance(const Call& call, const v1::EnsembleJob& job) {
-  Log(Severity::kInfo, job.answered_from_store() ? "question answered by a job" : "job accepted",
-      {{"method", call.method},
-       {"job", job.name()},
-       {"principal", call.caller.name},
-       {"request_id", call.request_id},
-       {"points", job.progress().points()}});
+  LogDone(call, job.answered_from_store() ? "question answered by a job" : "job accepted",
+          job.name(), absl::StrCat(job.progress().points()));
 }
 
 }  // namespace
@@ -33,10 +26,7 @@ absl::StatusOr<v1::EnsembleJob> CreateEnsembleJob(ServiceContext& service, const
   RequestCheck check;
   v1::CreateEnsembleJobRequest accepted = request;
   accepted.set_request_id(check.RequestId(request.request_id()));
-  if (request.priority() < -kHighestPriority || request.priority() > kHighestPriority) {
-    check.Add("priority", absl::StrCat("is ", request.priority(), "; permitted: -",
-                                       kHighestPriority, " to ", kHighestPriority));
-  }
+  check.Priority("priority", request.priority());
   AddDefaults(*accepted.mutable_spec());
   CheckedSpec spec = CheckSpec(accepted.spec());
   if (spec.violations.empty()) AddViolations(service.ladder.ViolationsHere(spec.spec), spec);

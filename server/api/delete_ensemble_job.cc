@@ -1,6 +1,5 @@
 #include "server/api/methods.h"
 #include "server/api/request_check.h"
-#include "server/observability/log.h"
 
 namespace ballpiston::server {
 
@@ -11,11 +10,7 @@ absl::StatusOr<google::protobuf::Empty> DeleteEnsembleJob(
   if (!check.ok()) return check.status();
   const absl::Status deleted = service.book.Delete(call.caller, id);
   if (!deleted.ok()) return deleted;
-  Log(Severity::kInfo, "job deleted",
-      {{"method", call.method},
-       {"job", request.name()},
-       {"principal", call.caller.name},
-       {"request_id", call.request_id}});
+  LogDone(call, "job deleted", request.name());
   return google::protobuf::Empty();
 }
 

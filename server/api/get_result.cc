@@ -2,7 +2,7 @@
 
 #include "server/api/methods.h"
 #include "server/api/request_check.h"
-#include "server/jobs/job_name.h"
+#include "server/api/result_name.h"
 
 namespace ballpiston::server {
 
@@ -16,9 +16,11 @@ absl::StatusOr<v1::PointResult> GetResult(ServiceContext& service, const Call& c
   if (request.unfinished()) {
     auto now = service.book.UnfinishedResult(call.caller, id->job, id->point);
     if (!now.ok()) return now.status();
-    if (*now) return std::move(**now);
+    if (*now) return Named(**std::move(now), id->job);
   }
-  return service.book.Result(call.caller, id->job, id->point);
+  absl::StatusOr<v1::PointResult> result = service.book.Result(call.caller, id->job, id->point);
+  if (!result.ok()) return result;
+  return Named(*std::move(result), id->job);
 }
 
 }  // namespace ballpiston::server

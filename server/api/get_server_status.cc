@@ -7,7 +7,6 @@
 #include "absl/time/clock.h"
 #include "server/api/methods.h"
 #include "server/api/server_status.h"
-#include "server/convert/plan.h"
 #include "server/convert/spec.h"
 #include "server/jobs/job_message.h"
 #include "server/version.h"
@@ -49,7 +48,7 @@ void AddWork(const ServiceContext& service, v1::ServerStatus& status) {
 
 // Sets the numbers of each principal, and the totals of all principals.
 void AddPrincipals(const ServiceContext& service, v1::ServerStatus& status) {
-  std::map<std::string, int64_t> streams = service.streams.ByPrincipal();
+  std::map<std::string, int64_t> streams = service.quotas.streams.ByPrincipal();
   for (const auto& [name, jobs] : service.book.JobsByPrincipal()) {
     v1::PrincipalStatus& principal = *status.add_principals();
     principal.set_principal(name);
@@ -66,22 +65,15 @@ void AddPrincipals(const ServiceContext& service, v1::ServerStatus& status) {
 
 v1::ServerLimits LimitsMessage(const Limits& limits) {
   v1::ServerLimits message;
-  message.set_max_active_jobs(static_cast<double>(limits.max_active_jobs));
-  message.set_max_active_jobs_per_principal(
-      static_cast<double>(limits.max_active_jobs_per_principal));
   message.set_max_points_per_job(static_cast<double>(limits.max_points_per_job));
   message.set_max_samples_per_job(limits.max_samples_per_job);
-  message.set_max_streams(static_cast<double>(limits.max_streams));
-  message.set_max_streams_per_principal(static_cast<double>(limits.max_streams_per_principal));
-  message.set_max_message_bytes(static_cast<double>(limits.max_message_bytes));
-  message.set_max_active_points(static_cast<double>(limits.max_active_points));
+  message.set_max_active_jobs_per_principal(
+      static_cast<double>(limits.max_active_jobs_per_principal));
   message.set_max_active_points_per_principal(
       static_cast<double>(limits.max_active_points_per_principal));
-  message.set_max_calls_per_principal(static_cast<double>(limits.max_calls_per_principal));
-  message.set_max_call_bytes_per_principal(
-      static_cast<double>(limits.max_call_bytes_per_principal));
+  message.set_max_streams_per_principal(static_cast<double>(limits.max_streams_per_principal));
+  message.set_max_message_bytes(static_cast<double>(limits.max_message_bytes));
   message.set_retain_days(limits.retain_days);
-  message.set_max_store_bytes(static_cast<double>(limits.max_store_bytes));
   return message;
 }
 
@@ -103,7 +95,7 @@ v1::ServerStatus StatusOf(const ServiceContext& service) {
   status.set_version(kVersion);
   status.set_engine_version(EngineVersion());
   SetTime(service.start_time, status.mutable_start_time());
-  status.set_streams(static_cast<double>(service.streams.size()));
+  status.set_streams(static_cast<double>(service.quotas.streams.taken()));
   status.set_store_bytes(FileBytes(service.store_path) + FileBytes(service.store_path + "-wal"));
   status.set_expiring_jobs(static_cast<double>(service.book.CountExpiring(absl::Now())));
   AddWork(service, status);
@@ -115,7 +107,9 @@ absl::StatusOr<v1::ServerStatus> GetServerStatus(ServiceContext& service, const 
                                                  const v1::GetServerStatusRequest&) {
   v1::ServerStatus status = StatusOf(service);
   RemoveHidden(call.caller, status);
-  *status.mutable_rates() = RatesMessage(service.ladder.machine().rates);
+  const MachineRates& rates = service.ladder.machine().rates;
+  status.mutable_rates()->set_jump(rates.jump);
+  status.mutable_rates()->set_wall_hit(rates.lanes.wall_hit);
   *status.mutable_limits() = LimitsMessage(service.limits);
   status.set_principal(call.caller.name);
   status.set_role(RoleName(call.caller.role));

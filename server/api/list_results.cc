@@ -1,6 +1,8 @@
-#include "absl/strings/str_cat.h"
+#include <utility>
+
 #include "server/api/methods.h"
 #include "server/api/request_check.h"
+#include "server/api/result_name.h"
 
 namespace ballpiston::server {
 
@@ -8,10 +10,9 @@ absl::StatusOr<v1::ListResultsResponse> ListResults(ServiceContext& service, con
                                                     const v1::ListResultsRequest& request) {
   RequestCheck check;
   const std::string id = check.JobId("parent", request.parent());
-  const std::string list = absl::StrCat("results:", id);
   ResultsQuery query;
   query.max_points = check.PageSize(request.page_size());
-  query.first_point = check.PageStart(request.page_token(), list, 0);
+  query.first_point = check.PageStart(request, 0);
   query.max_bytes = kMaxPageBytes;
   query.histograms = request.view() != v1::ListResultsRequest::BASIC;
   check.View(request);
@@ -19,10 +20,9 @@ absl::StatusOr<v1::ListResultsResponse> ListResults(ServiceContext& service, con
   absl::StatusOr<ResultsPage> page = service.book.Results(call.caller, id, query);
   if (!page.ok()) return page.status();
   v1::ListResultsResponse response;
-  for (v1::PointResult& point : page->points) *response.add_points() = std::move(point);
-  if (page->next_point) {
-    response.set_next_page_token(RequestCheck::PageToken(list, *page->next_point));
-  }
+  for (v1::PointResult& result : page->points)
+    *response.add_results() = Named(std::move(result), id);
+  if (page->next_point) response.set_next_page_token(NextPageToken(request, *page->next_point));
   return response;
 }
 

@@ -21,7 +21,7 @@
   METHOD(ListEnsembleJobs, v1::ListEnsembleJobsRequest, v1::ListEnsembleJobsResponse, Role::kRead, \
          false)                                                                                    \
   METHOD(CancelEnsembleJob, v1::CancelEnsembleJobRequest, v1::EnsembleJob, Role::kSubmit, true)    \
-  METHOD(PinEnsembleJob, v1::PinEnsembleJobRequest, v1::EnsembleJob, Role::kSubmit, true)          \
+  METHOD(UpdateEnsembleJob, v1::UpdateEnsembleJobRequest, v1::EnsembleJob, Role::kSubmit, true)    \
   METHOD(DeleteEnsembleJob, v1::DeleteEnsembleJobRequest, google::protobuf::Empty, Role::kSubmit,  \
          true)                                                                                     \
   METHOD(PlanEnsembleJob, v1::PlanEnsembleJobRequest, v1::PlanEnsembleJobResponse, Role::kRead,    \

@@ -65,7 +65,6 @@ absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
   response.set_work(work.Computed());
   response.set_time(work.Time(machine.workers));
   response.set_workers(machine.workers);
-  *response.mutable_rates() = RatesMessage(machine.rates);
   return response;
 }
 

@@ -1,4 +1,4 @@
-// Reads the fields that many requests share, and collects all violations.
+// Reads the fields of requests, and collects all violations.
 //
 //   RequestCheck check;
 //   const std::string id = check.JobId("name", request.name());
@@ -12,12 +12,36 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "ballpiston/storage/tokens.pb.h"
+#include "ballpiston/v1/ensemble.pb.h"
+#include "server/api/tokens.h"
 #include "server/convert/errors.h"
+#include "server/jobs/job_book.h"
+#include "server/jobs/job_list.h"
+#include "server/sha256.h"
 
 namespace ballpiston::server {
 
 // A page of a list ends before it has this many bytes (if it has an entry already).
 inline constexpr size_t kMaxPageBytes = size_t{2} << 20;
+
+// What the pages of a list have in common: a hash of the list's name and its filters. The view may
+// change from page to page.
+template <typename Request>
+std::string ListOf(Request request) {
+  request.clear_page_size();
+  request.clear_page_token();
+  request.clear_view();
+  return Sha256(absl::StrCat(request.GetTypeName(), request.SerializeAsString())).substr(0, 8);
+}
+
+template <typename Request>
+std::string NextPageToken(const Request& request, int64_t start) {
+  storage::PageToken token;
+  token.set_list(ListOf(request));
+  token.set_start(start);
+  return TokenText(token);
+}
 
 class RequestCheck {
  public:
@@ -27,13 +51,24 @@ class RequestCheck {
   // UUIDs are equal strings.
   std::string RequestId(const std::string& request_id);
 
+  int32_t Priority(const char* field, int32_t priority);
+
+  // The fields in the request's mask.
+  JobChange Change(const v1::UpdateEnsembleJobRequest& request);
+
+  // A state or experiment must be a known one, and a time a valid google.protobuf.Timestamp (years
+  // 1 to 9999). At most 100 violations of each list.
+  JobFilter Filter(const v1::ListEnsembleJobsRequest& request);
+
   // 0 is the default, 50; more than 1000 counts as 1000.
   int PageSize(int32_t page_size);
 
-  // Where the page begins; `first` if the token is empty. Tokens are opaque and valid only for the
-  // list that returned them.
-  int64_t PageStart(const std::string& token, const std::string& list, int64_t first);
-  static std::string PageToken(const std::string& list, int64_t start);
+  // Where the page begins; `first` if the token is empty. A token is valid only for the list and
+  // the filters of the request that returned it.
+  template <typename Request>
+  int64_t PageStart(const Request& request, int64_t first) {
+    return PageStart(request.page_token(), ListOf(request), first);
+  }
 
   // Checks the view of the request, because proto3 accepts values that its enum View does not have.
   template <typename Request>
@@ -49,6 +84,11 @@ class RequestCheck {
   const std::vector<FieldViolation>& violations() const { return violations_; }
 
  private:
+  int64_t PageStart(const std::string& token, const std::string& list, int64_t first);
+  void Range(const char* field, int64_t value, int64_t first, int64_t last);
+  template <typename Enum>
+  std::set<Enum> Values(const char* field, const google::protobuf::RepeatedField<int>& list);
+
   std::vector<FieldViolation> violations_;
 };
 

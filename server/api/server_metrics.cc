@@ -1,5 +1,3 @@
-#include "server/api/server_metrics.h"
-
 #include <algorithm>
 #include <string>
 

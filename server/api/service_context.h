@@ -5,9 +5,8 @@
 #include <string>
 
 #include "absl/time/time.h"
-#include "server/api/open_calls.h"
+#include "server/api/quota.h"
 #include "server/api/streams.h"
-#include "server/api/turns.h"
 #include "server/api/watch.h"
 #include "server/door/authenticator.h"
 #include "server/execution/slurm_executor.h"
@@ -30,8 +29,7 @@ struct ServiceContext {
   const ThreadExecutor& threads;
   const SlurmExecutor* slurm;  // null without a cluster
   ModelLadder& ladder;
-  OpenCalls& open_calls;
-  Turns& turns;
+  Quotas& quotas;
   Streams& streams;
   Activity& activity;
   const std::atomic<bool>& draining;

@@ -1,12 +1,12 @@
-// The gRPC services: each method runs its function of methods.h in a frame of serve.h.
+// The gRPC services: each method runs its function of methods.h in a frame of call.h.
 #pragma once
 
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "ballpiston/v1/server.grpc.pb.h"
 #include "ballpiston/v1/trace.grpc.pb.h"
+#include "server/api/call.h"
 #include "server/api/methods.h"
-#include "server/api/serve.h"
 #include "server/api/service_context.h"
 
 namespace ballpiston::server {

@@ -4,20 +4,37 @@
 
 #include <atomic>
 #include <chrono>
-#include <cstdint>
-#include <map>
 #include <set>
 #include <string>
 
 #include "absl/status/status.h"
 #include "grpcpp/server_context.h"
 #include "server/door/authenticator.h"
-#include "server/limits.h"
 #include "server/mutex.h"
 
 namespace ballpiston::server {
 
-class Streams;
+class Stream;
+
+class Streams {
+ public:
+  Streams(const Authenticator& authenticator, std::chrono::milliseconds heartbeat,
+          const std::atomic<bool>& draining)
+      : authenticator_(authenticator), heartbeat_(heartbeat), draining_(draining) {}
+
+  // Ends the streams whose readers stall and whose credentials are no longer valid. Call about
+  // twice a second.
+  void EndRevoked();
+
+ private:
+  friend class Stream;
+
+  const Authenticator& authenticator_;
+  const std::chrono::milliseconds heartbeat_;
+  const std::atomic<bool>& draining_;
+  Mutex mutex_;
+  std::set<Stream*> streams_ ABSL_GUARDED_BY(mutex_);
+};
 
 // One stream. Its thread calls Proceed before each message and after each wait.
 class Stream {
@@ -44,41 +61,13 @@ class Stream {
  private:
   friend class Streams;
 
+  absl::StatusOr<Principal> Authenticate() const;
+
   Streams& all_;
   grpc::ServerContext& context_;
   Principal caller_;
   const std::string name_;  // of the caller
   std::atomic<Clock::time_point> next_check_;
-};
-
-class Streams {
- public:
-  Streams(const Limits& limits, const Authenticator& authenticator,
-          std::chrono::milliseconds heartbeat, const std::atomic<bool>& draining);
-
-  // RESOURCE_EXHAUSTED, TOO_MANY_STREAMS. Otherwise the stream is counted until its destructor.
-  absl::Status Add(Stream& stream);
-
-  // Ends the streams whose readers stall and whose credentials are no longer valid. Call about
-  // twice a second.
-  void EndRevoked();
-
-  size_t size() const { return size_; }
-  std::map<std::string, int64_t> ByPrincipal() const;
-
- private:
-  friend class Stream;
-
-  absl::StatusOr<Principal> Authenticate(const Stream& stream) const;
-  int64_t CountOf(const std::string& principal) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-
-  const Limits& limits_;
-  const Authenticator& authenticator_;
-  const std::chrono::milliseconds heartbeat_;
-  const std::atomic<bool>& draining_;
-  mutable Mutex mutex_;
-  std::set<Stream*> streams_ ABSL_GUARDED_BY(mutex_);
-  std::atomic<size_t> size_ = 0;
 };
 
 }  // namespace ballpiston::server

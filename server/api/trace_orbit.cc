@@ -9,7 +9,7 @@ namespace {
 // Takes a turn for each message, so other calls can compute between two messages.
 void FillInTurn(ServiceContext& service, const Stream& stream, TraceMessages& messages,
                 v1::TraceOrbitResponse& message) {
-  const Turns::Turn turn(service.turns, stream.caller().name);
+  const Quota::Part turn = service.quotas.turns.Await(stream.caller().name);
   messages.FillNext(message);
 }
 
@@ -18,7 +18,7 @@ void FillInTurn(ServiceContext& service, const Stream& stream, TraceMessages& me
 absl::Status TraceOrbit(ServiceContext& service, Stream& stream,
                         const v1::TraceOrbitRequest& request,
                         grpc::ServerWriter<v1::TraceOrbitResponse>& writer) {
-  const auto memory = service.open_calls.Begin(stream.caller().name, kBytesOfTrace);
+  const auto memory = service.quotas.call_bytes.Take(stream.caller().name, kBytesOfTrace);
   if (!memory.ok()) return memory.status();
   absl::StatusOr<TraceMessages> messages = TraceMessages::Create(request);
   if (!messages.ok()) return messages.status();

@@ -5,8 +5,10 @@
 #include <string>
 #include <utility>
 
+#include "ballpiston/storage/tokens.pb.h"
 #include "server/api/request_check.h"
-#include "server/api/resume_token.h"
+#include "server/api/result_name.h"
+#include "server/api/tokens.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
 #include "server/host.h"
@@ -46,7 +48,16 @@ class Watch {
   }
 
  private:
-  absl::Status FindJob();
+  absl::Status FindJob() {
+    RequestCheck check;
+    id_ = check.JobId("name", request_.name());
+    if (!check.ok()) return check.status();
+    absl::StatusOr<FoundJob> job = book_.FindWatched(reader_.caller(), id_);
+    if (!job.ok()) return job.status();
+    job_ = *std::move(job);
+    ReadToken();
+    return absl::OkStatus();
+  }
 
   // An administrator who lost that role sees only their own jobs.
   absl::Status Proceed() {
@@ -63,27 +74,158 @@ class Watch {
     return told.status();
   }
 
-  absl::StatusOr<bool> Tell();
-  absl::StatusOr<bool> TellState();
-  absl::StatusOr<bool> TellSnapshot();
-  absl::StatusOr<bool> TellFinishedPoints(const v1::JobProgress& progress, const Job* active);
-  absl::StatusOr<bool> TellHeartbeat();
-  absl::StatusOr<bool> TellEnd(const JobRecord& ended);
+  // ---- when to send ----
 
-  void AwaitNews() const;
-  bool IsSnapshotDue(Clock::time_point now) const;
-  bool IsBehind() const;
-  Clock::duration SnapshotInterval() const;
+  void AwaitNews() const {
+    const Clock::time_point now = SteadyNow();
+    const Clock::time_point next_look =
+        next_snapshot_ > now ? next_snapshot_ : now + SnapshotInterval() / 4;
+    job_.active->AwaitStateChange(
+        told_state_,
+        std::min({next_look, next_heartbeat_, reader_.next_check(), now + kLongestWait}));
+  }
+
+  bool IsSnapshotDue(Clock::time_point now) const {
+    return now >= next_snapshot_ &&
+           (job_.active->last_change() > told_ || job_.active->last_finished() > told_finished_);
+  }
+
+  // Whether at least one full message of finished points waits.
+  bool IsBehind() const {
+    return job_.active->last_finished() - told_finished_ >= static_cast<int64_t>(kMaxPoints);
+  }
+
+  Clock::duration SnapshotInterval() const {
+    const std::chrono::milliseconds fair(reader_.watches() * 1000 / kSnapshotsPerSecond);
+    return std::max(timing_.snapshot, fair);
+  }
+
+  // ---- messages ----
+
+  // The job comes first.
+  absl::StatusOr<bool> Tell() {
+    if (job_.active == nullptr) return TellEnd(job_.record);
+    absl::StatusOr<bool> told = TellState();
+    if (told.ok() && !*told) told = TellSnapshot();
+    if (told.ok() && !*told) told = TellHeartbeat();
+    return told;
+  }
+
+  absl::StatusOr<bool> TellState() {
+    if (job_.active->last_state_change() <= told_state_) return false;
+    const auto stored = book_.Stored(*job_.active);
+    if (!stored.ok()) return stored.status();
+    const JobRecord& record = (*stored)->record;
+    if (HasEnded(record.state)) return TellEnd(record);
+    told_state_ = (*stored)->change;
+    if (std::exchange(told_as_, record.state) == record.state) return false;
+    *message_.mutable_job() = book_.Message(record, job_.active.get());
+    return Write();
+  }
+
+  // The points come from the store, which has all of them. The job in memory gets its last points
+  // after the commit that shows its end to readers.
+  absl::StatusOr<bool> TellEnd(const JobRecord& ended) {
+    const absl::StatusOr<bool> told =
+        TellFinishedPoints(book_.Message(ended, nullptr).progress(), nullptr);
+    if (!told.ok() || *told) return told;
+    absl::StatusOr<v1::EnsembleJob> job = book_.Get(reader_.caller(), id_, Grid::kLeftOut);
+    if (!job.ok()) return job.status();
+    // If the results expired since the job was found, some points may not have been sent.
+    if (job->results_expired() && !job_.record.expired_time) return ResultsExpired(request_.name());
+    *message_.mutable_job() = *std::move(job);
+    has_told_end_ = true;
+    return Write();
+  }
+
+  absl::StatusOr<bool> TellSnapshot() {
+    const Clock::time_point now = SteadyNow();
+    if (!IsSnapshotDue(now)) {
+      if (!IsBehind()) return false;
+      return TellFinishedPoints(job_.active->Progress(), job_.active.get());
+    }
+    next_snapshot_ = now + SnapshotInterval();
+    v1::StatisticsSnapshot& snapshot = *message_.mutable_snapshot();
+    *snapshot.mutable_progress() = job_.active->Progress();
+    AddUnfinishedPoints(snapshot);
+    const absl::StatusOr<bool> finished = AddFinishedPoints(job_.active.get());
+    if (!finished.ok()) return finished;
+    LeaveOutFinished(snapshot);
+    const std::string progress = snapshot.progress().SerializeAsString();
+    const bool same_progress = std::exchange(told_progress_, progress) == progress;
+    if (snapshot.points().empty() && !*finished && same_progress) return false;
+    return Write();
+  }
+
+  // An older snapshot may have a point as unfinished that was already sent as finished.
+  void AddUnfinishedPoints(v1::StatisticsSnapshot& snapshot) {
+    const auto shared = book_.Snapshot(*job_.active, timing_.snapshot, kMaxPoints);
+    if (shared->finished < told_finished_) return;
+    for (const JobSnapshot::Point& point : shared->points) {
+      if (point.change > told_) *snapshot.add_points() = Named(point.result, id_);
+    }
+    told_ = std::max(told_, shared->change);
+  }
+
+  absl::StatusOr<bool> TellFinishedPoints(const v1::JobProgress& progress, const Job* active) {
+    *message_.mutable_snapshot()->mutable_progress() = progress;
+    const absl::StatusOr<bool> added = AddFinishedPoints(active);
+    return added.ok() && *added ? Write() : added;
+  }
 
   // Adds the next finished points to the message: those of `active`, or those of the store if
   // `active` is null. False: there are none.
-  absl::StatusOr<bool> AddFinishedPoints(const Job* active);
-  void AddUnfinishedPoints(v1::StatisticsSnapshot& snapshot);
+  absl::StatusOr<bool> AddFinishedPoints(const Job* active) {
+    const auto points =
+        book_.FinishedAfter(job_.record.sequence, active, told_finished_, kMaxPoints);
+    if (!points.ok()) return points.status();
+    if (points->empty()) return false;
+    for (const FinishedPoint& point : *points) {
+      absl::StatusOr<v1::PointResult> result = ResultFromBytes(*point.result);
+      if (!result.ok()) return StoreFailure(result.status());
+      *message_.mutable_snapshot()->add_finished_points() = Named(*std::move(result), id_);
+    }
+    told_finished_ = points->back().number;
+    return true;
+  }
 
-  void ReadToken();
-  std::string Token() const;
+  absl::StatusOr<bool> TellHeartbeat() {
+    if (SteadyNow() < next_heartbeat_) return false;
+    message_.Clear();  // it may have a snapshot without news
+    message_.mutable_heartbeat();
+    return Write();
+  }
+
   // Writes the message with its token. True, or CANCELLED.
-  absl::StatusOr<bool> Write();
+  absl::StatusOr<bool> Write() {
+    message_.set_resume_token(Token());
+    if (!reader_.Write(message_)) return absl::CancelledError("the client is gone");
+    next_heartbeat_ = SteadyNow() + timing_.heartbeat;
+    return true;
+  }
+
+  // ---- resume tokens ----
+
+  std::string Token() const {
+    storage::ResumeToken token;
+    token.set_job(id_);
+    token.set_restarts(job_.record.restarts);
+    token.set_finished(told_finished_);
+    token.set_instance(instance_);
+    token.set_change(told_);
+    return TokenText(token);
+  }
+
+  void ReadToken() {
+    const auto told = ParseToken<storage::ResumeToken>(request_.resume_token());
+    if (!told || told->job() != id_ || told->restarts() != job_.record.restarts ||
+        told->finished() < 0 || told->finished() > job_.last_finished()) {
+      return;
+    }
+    told_finished_ = told->finished();
+    const bool of_this_life = job_.active != nullptr && told->instance() == instance_;
+    if (of_this_life && told->change() <= job_.active->last_change()) told_ = told->change();
+  }
 
   JobBook& book_;
   const WatchTiming& timing_;
@@ -103,164 +245,6 @@ class Watch {
   Clock::time_point next_snapshot_;
   Clock::time_point next_heartbeat_;
 };
-
-absl::Status Watch::FindJob() {
-  RequestCheck check;
-  id_ = check.JobId("name", request_.name());
-  if (!check.ok()) return check.status();
-  absl::StatusOr<FoundJob> job = book_.FindWatched(reader_.caller(), id_);
-  if (!job.ok()) return job.status();
-  job_ = *std::move(job);
-  ReadToken();
-  return absl::OkStatus();
-}
-
-// ---- when to send ----
-
-void Watch::AwaitNews() const {
-  const Clock::time_point now = SteadyNow();
-  const Clock::time_point next_look =
-      next_snapshot_ > now ? next_snapshot_ : now + SnapshotInterval() / 4;
-  job_.active->AwaitStateChange(told_state_, std::min({next_look, next_heartbeat_,
-                                                       reader_.next_check(), now + kLongestWait}));
-}
-
-bool Watch::IsSnapshotDue(Clock::time_point now) const {
-  return now >= next_snapshot_ &&
-         (job_.active->last_change() > told_ || job_.active->last_finished() > told_finished_);
-}
-
-// Whether at least one full message of finished points waits.
-bool Watch::IsBehind() const {
-  return job_.active->last_finished() - told_finished_ >= static_cast<int64_t>(kMaxPoints);
-}
-
-Clock::duration Watch::SnapshotInterval() const {
-  const auto watches = static_cast<int64_t>(reader_.watches());
-  const std::chrono::milliseconds fair(watches * 1000 / kSnapshotsPerSecond);
-  return std::max(timing_.snapshot, fair);
-}
-
-// ---- messages ----
-
-// The job comes first.
-absl::StatusOr<bool> Watch::Tell() {
-  if (job_.active == nullptr) return TellEnd(job_.record);
-  absl::StatusOr<bool> told = TellState();
-  if (told.ok() && !*told) told = TellSnapshot();
-  if (told.ok() && !*told) told = TellHeartbeat();
-  return told;
-}
-
-absl::StatusOr<bool> Watch::TellState() {
-  if (job_.active->last_state_change() <= told_state_) return false;
-  const auto stored = book_.Stored(*job_.active);
-  if (!stored.ok()) return stored.status();
-  const JobRecord& record = (*stored)->record;
-  if (HasEnded(record.state)) return TellEnd(record);
-  told_state_ = (*stored)->change;
-  if (std::exchange(told_as_, record.state) == record.state) return false;
-  *message_.mutable_job() = book_.Message(record, job_.active.get());
-  return Write();
-}
-
-// The points come from the store, which has all of them. The job in memory gets its last points
-// after the commit that shows its end to readers.
-absl::StatusOr<bool> Watch::TellEnd(const JobRecord& ended) {
-  const absl::StatusOr<bool> told =
-      TellFinishedPoints(book_.Message(ended, nullptr).progress(), nullptr);
-  if (!told.ok() || *told) return told;
-  absl::StatusOr<v1::EnsembleJob> job = book_.Get(reader_.caller(), id_, Grid::kLeftOut);
-  if (!job.ok()) return job.status();
-  // If the results expired since the job was found, some points may not have been sent.
-  if (job->results_expired() && !job_.record.expired_time) return ResultsExpired(request_.name());
-  *message_.mutable_job() = *std::move(job);
-  has_told_end_ = true;
-  return Write();
-}
-
-absl::StatusOr<bool> Watch::TellSnapshot() {
-  const Clock::time_point now = SteadyNow();
-  if (!IsSnapshotDue(now)) {
-    if (!IsBehind()) return false;
-    return TellFinishedPoints(job_.active->Progress(), job_.active.get());
-  }
-  next_snapshot_ = now + SnapshotInterval();
-  v1::StatisticsSnapshot& snapshot = *message_.mutable_snapshot();
-  *snapshot.mutable_progress() = job_.active->Progress();
-  AddUnfinishedPoints(snapshot);
-  const absl::StatusOr<bool> finished = AddFinishedPoints(job_.active.get());
-  if (!finished.ok()) return finished;
-  LeaveOutFinished(snapshot);
-  const std::string progress = snapshot.progress().SerializeAsString();
-  const bool same_progress = std::exchange(told_progress_, progress) == progress;
-  if (snapshot.points().empty() && !*finished && same_progress) return false;
-  return Write();
-}
-
-// An older snapshot may have a point as unfinished that was already sent as finished.
-void Watch::AddUnfinishedPoints(v1::StatisticsSnapshot& snapshot) {
-  const auto shared = book_.Snapshot(*job_.active, timing_.snapshot, kMaxPoints);
-  if (shared->finished < told_finished_) return;
-  for (const JobSnapshot::Point& point : shared->points) {
-    if (point.change > told_) *snapshot.add_points() = point.result;
-  }
-  told_ = std::max(told_, shared->change);
-}
-
-absl::StatusOr<bool> Watch::TellFinishedPoints(const v1::JobProgress& progress, const Job* active) {
-  *message_.mutable_snapshot()->mutable_progress() = progress;
-  const absl::StatusOr<bool> added = AddFinishedPoints(active);
-  return added.ok() && *added ? Write() : added;
-}
-
-absl::StatusOr<bool> Watch::AddFinishedPoints(const Job* active) {
-  const auto points = book_.FinishedAfter(job_.record.sequence, active, told_finished_, kMaxPoints);
-  if (!points.ok()) return points.status();
-  if (points->empty()) return false;
-  for (const FinishedPoint& point : *points) {
-    absl::StatusOr<v1::PointResult> result = ResultFromBytes(*point.result);
-    if (!result.ok()) return StoreFailure(result.status());
-    *message_.mutable_snapshot()->add_finished_points() = *std::move(result);
-  }
-  told_finished_ = points->back().number;
-  return true;
-}
-
-absl::StatusOr<bool> Watch::TellHeartbeat() {
-  if (SteadyNow() < next_heartbeat_) return false;
-  message_.Clear();  // it may have a snapshot without news
-  message_.mutable_heartbeat();
-  return Write();
-}
-
-absl::StatusOr<bool> Watch::Write() {
-  message_.set_resume_token(Token());
-  if (!reader_.Write(message_)) return absl::CancelledError("the client is gone");
-  next_heartbeat_ = SteadyNow() + timing_.heartbeat;
-  return true;
-}
-
-// ---- resume tokens ----
-
-std::string Watch::Token() const {
-  return ResumeTokenText({.job = id_,
-                          .restarts = job_.record.restarts,
-                          .finished = told_finished_,
-                          .instance = instance_,
-                          .change = told_});
-}
-
-void Watch::ReadToken() {
-  const std::optional<ResumeToken> told = ParseResumeToken(request_.resume_token());
-  if (!told || told->job != id_ || told->restarts != job_.record.restarts ||
-      told->finished > job_.last_finished()) {
-    return;
-  }
-  told_finished_ = told->finished;
-  const bool of_this_life = job_.active != nullptr && told->instance == instance_;
-  if (of_this_life && told->change <= job_.active->last_change()) told_ = told->change;
-}
 
 }  // namespace
 

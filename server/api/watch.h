@@ -22,7 +22,7 @@
 #pragma once
 
 #include <chrono>
-#include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "absl/status/status.h"
@@ -46,7 +46,7 @@ class WatchReader {
   virtual absl::Status Proceed() = 0;
   // The time of the next check in Proceed.
   virtual std::chrono::steady_clock::time_point next_check() const = 0;
-  virtual size_t watches() const = 0;  // of all readers, now
+  virtual int64_t watches() const = 0;  // of all readers, now
   // Waits until the reader takes the message. False: the reader is gone.
   virtual bool Write(const v1::WatchEnsembleJobResponse& message) = 0;
 };

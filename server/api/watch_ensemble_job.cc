@@ -7,20 +7,20 @@ namespace {
 
 class StreamReader : public WatchReader {
  public:
-  StreamReader(const Streams& all, Stream& stream,
+  StreamReader(const Quota& streams, Stream& stream,
                grpc::ServerWriter<v1::WatchEnsembleJobResponse>& writer)
-      : all_(all), stream_(stream), writer_(writer) {}
+      : streams_(streams), stream_(stream), writer_(writer) {}
 
   const Principal& caller() const override { return stream_.caller(); }
   absl::Status Proceed() override { return stream_.Proceed(); }
   Stream::Clock::time_point next_check() const override { return stream_.next_check(); }
-  size_t watches() const override { return all_.size(); }
+  int64_t watches() const override { return streams_.taken(); }
   bool Write(const v1::WatchEnsembleJobResponse& message) override {
     return writer_.Write(message);
   }
 
  private:
-  const Streams& all_;
+  const Quota& streams_;
   Stream& stream_;
   grpc::ServerWriter<v1::WatchEnsembleJobResponse>& writer_;
 };
@@ -30,7 +30,7 @@ class StreamReader : public WatchReader {
 absl::Status WatchEnsembleJob(ServiceContext& service, Stream& stream,
                               const v1::WatchEnsembleJobRequest& request,
                               grpc::ServerWriter<v1::WatchEnsembleJobResponse>& writer) {
-  StreamReader reader(service.streams, stream, writer);
+  StreamReader reader(service.quotas.streams, stream, writer);
   return RunWatch(service.book, service.timing, service.instance, request, reader);
 }
 

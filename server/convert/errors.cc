@@ -1,6 +1,8 @@
 #include "server/convert/errors.h"
 
 #include <cmath>
+#include <map>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/cord.h"
@@ -33,11 +35,40 @@ void SetDetail(absl::Status& status, const Detail& detail) {
                     absl::Cord(detail.SerializeAsString()));
 }
 
+// The least seconds before a retry, for the errors that waiting cures. The store retries its writes
+// every second. A limit on active jobs is reached until jobs end.
+absl::Duration RetryDelayFor(const std::string& reason) {
+  static const auto* const seconds = new std::map<std::string, int>{
+      {"SHUTTING_DOWN", 1},  {"STORE_FULL", 1},       {"STORE_FAILED", 1},
+      {"TOO_MANY_CALLS", 1}, {"TOO_MANY_STREAMS", 5}, {"TOO_MANY_ACTIVE_POINTS", 10},
+      {"TOO_MANY_JOBS", 10}, {"QUEUE_FULL", 10}};
+  const auto found = seconds->find(reason);
+  return absl::Seconds(found == seconds->end() ? 0 : found->second);
+}
+
 google::rpc::ErrorInfo Info(const std::string& reason) {
   google::rpc::ErrorInfo info;
   info.set_reason(reason);
   info.set_domain("ballpiston");
   return info;
+}
+
+// Also sets the time to wait before a retry, if waiting helps.
+void SetInfo(absl::Status& status, const google::rpc::ErrorInfo& info) {
+  SetDetail(status, info);
+  const absl::Duration delay = RetryDelayFor(info.reason());
+  if (delay == absl::ZeroDuration()) return;
+  google::rpc::RetryInfo retry;
+  retry.mutable_retry_delay()->set_seconds(absl::ToInt64Seconds(delay));
+  SetDetail(status, retry);
+}
+
+template <typename Detail>
+std::optional<Detail> FindDetail(const google::rpc::Status& error) {
+  for (const google::protobuf::Any& any : error.details()) {
+    if (Detail detail; any.UnpackTo(&detail)) return detail;
+  }
+  return std::nullopt;
 }
 
 google::rpc::BadRequest AsManyAsFit(const std::vector<FieldViolation>& violations) {
@@ -156,7 +187,7 @@ absl::Status LimitExceeded(const std::string& reason, const std::string& what,
   google::rpc::ErrorInfo info = Info(reason);
   (*info.mutable_metadata())["limit"] = absl::StrFormat("%.15g", limit);
   (*info.mutable_metadata())["flag"] = flag;
-  SetDetail(status, info);
+  SetInfo(status, info);
   return status;
 }
 
@@ -190,7 +221,7 @@ absl::Status StoreFailure(const absl::Status& status) {
 }
 
 absl::Status WithReason(absl::Status status, const std::string& reason) {
-  SetDetail(status, Info(reason));
+  SetInfo(status, Info(reason));
   return status;
 }
 
@@ -198,7 +229,7 @@ absl::Status WithReason(absl::Status status, const std::string& reason, const st
                         const std::string& value) {
   google::rpc::ErrorInfo info = Info(reason);
   (*info.mutable_metadata())[key] = Shortened(value, kMaxMetadataValue);
-  SetDetail(status, info);
+  SetInfo(status, info);
   return status;
 }
 
@@ -220,11 +251,13 @@ google::rpc::Status RpcStatus(const absl::Status& status) {
 }
 
 std::string ReasonOf(const google::rpc::Status& error) {
-  google::rpc::ErrorInfo info;
-  for (const google::protobuf::Any& detail : error.details()) {
-    if (detail.UnpackTo(&info)) return info.reason();
-  }
-  return std::string();
+  const auto info = FindDetail<google::rpc::ErrorInfo>(error);
+  return info ? info->reason() : std::string();
+}
+
+absl::Duration RetryDelayOf(const google::rpc::Status& error) {
+  const auto retry = FindDetail<google::rpc::RetryInfo>(error);
+  return retry ? absl::Seconds(retry->retry_delay().seconds()) : absl::ZeroDuration();
 }
 
 grpc::Status GrpcStatus(const absl::Status& status) {

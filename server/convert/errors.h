@@ -1,7 +1,8 @@
 // Every error of the API, by reason, and the one place where a status becomes a gRPC status.
 //
-// A status made here carries its google.rpc.ErrorInfo (domain "ballpiston") and, where the request
-// is wrong, a google.rpc.BadRequest as absl payloads. GrpcStatus packs them as google.rpc.Status
+// A status made here carries as absl payloads its google.rpc.ErrorInfo (domain "ballpiston"), where
+// the request is wrong a google.rpc.BadRequest, and where waiting helps a google.rpc.RetryInfo.
+// GrpcStatus packs them as google.rpc.Status
 // into the error details, which together stay below kMaxErrorDetails: gRPC refuses trailers of
 // 8 KiB. Violations that do not fit are counted in the metadata `violations_left_out` and in the
 // message. Pure functions.
@@ -13,6 +14,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
+#include "absl/time/time.h"
 #include "core/ensemble/ensemble_spec.h"
 #include "core/ensemble/point_summary.h"
 #include "google/rpc/status.pb.h"
@@ -73,6 +75,9 @@ absl::Status WithDefaultReason(absl::Status status, const std::string& reason);
 // The error that a FAILED job stores, and its reason; empty if it has none.
 google::rpc::Status RpcStatus(const absl::Status& status);
 std::string ReasonOf(const google::rpc::Status& error);
+
+// The least time to wait before a retry. 0 if the error does not say that waiting helps.
+absl::Duration RetryDelayOf(const google::rpc::Status& error);
 
 grpc::Status GrpcStatus(const absl::Status& status);
 

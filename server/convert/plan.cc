@@ -29,20 +29,4 @@ v1::PointPlan PointPlanMessage(const PointParameters& point, const Ladder& ladde
   return message;
 }
 
-v1::ComputingRates RatesMessage(const MachineRates& rates) {
-  v1::ComputingRates message;
-  message.set_closed_form(rates.closed_form);
-  message.set_spectrum(rates.spectrum);
-  message.set_jump(rates.jump);
-  message.set_wall_hit(rates.lanes.wall_hit);
-  message.set_collision(rates.lanes.collision);
-  message.set_sample(rates.lanes.sample);
-  message.set_wall_hit_single(rates.lanes_single.wall_hit);
-  message.set_event_reference(rates.reference.wall_hit);
-  message.set_first_point(rates.first_point);
-  message.set_stored_closed_form(rates.stored_closed_form);
-  message.set_stored_spectrum(rates.stored_spectrum);
-  return message;
-}
-
 }  // namespace ballpiston::server

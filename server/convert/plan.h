@@ -8,6 +8,4 @@ namespace ballpiston::server {
 
 v1::PointPlan PointPlanMessage(const PointParameters& point, const Ladder& ladder);
 
-v1::ComputingRates RatesMessage(const MachineRates& rates);
-
 }  // namespace ballpiston::server

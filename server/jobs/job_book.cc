@@ -106,8 +106,9 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Answer(const Principal& caller, const J
   absl::StatusOr<v1::EnsembleJob> job = Get(caller, record.id);
   if (absl::IsNotFound(job.status())) job = Message(record, nullptr);
   if (!job.ok()) return job.status();
-  // A cancellation that came before the run was added did not find it.
+  // A cancellation or a new priority that came before the run was added did not find it.
   if (job->state() == v1::EnsembleJob::CANCELLING) scheduler_.Cancel(record.sequence);
+  scheduler_.SetPriority(record.sequence, job->priority());
   job->set_answered_from_store(answered_from_store);
   return job;
 }
@@ -148,14 +149,18 @@ absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
   return StoreFailure(deleted);
 }
 
-absl::StatusOr<v1::EnsembleJob> JobBook::Pin(const Principal& caller, const std::string& id,
-                                             bool pinned) {
+absl::StatusOr<v1::EnsembleJob> JobBook::Update(const Principal& caller, const std::string& id,
+                                                const JobChange& change) {
+  JobRecord record;
   const absl::Status changed = store_.Commit([&](Database& database) {
-    const JobRecord record = JobOf(database, caller, id, Grid::kLeftOut);
-    if (record.expired_time) database.Fail(ResultsExpired(JobName(id)));
-    PinJob(database, record.sequence, pinned);
+    record = JobOf(database, caller, id, Grid::kLeftOut);
+    if (change.pinned && record.expired_time) database.Fail(ResultsExpired(JobName(id)));
+    record.pinned = change.pinned.value_or(record.pinned);
+    record.priority = change.priority.value_or(record.priority);
+    UpdateJob(database, record);
   });
   if (!changed.ok()) return StoreFailure(changed);
+  scheduler_.SetPriority(record.sequence, record.priority);
   return Get(caller, id);
 }
 

@@ -60,6 +60,12 @@ struct ResultsPage {
   std::optional<int64_t> next_point;  // empty: this is the last page
 };
 
+// The fields of a job that its owner may change; empty: not changed.
+struct JobChange {
+  std::optional<bool> pinned = {};
+  std::optional<int32_t> priority = {};  // of an active job; has no effect on one that has ended
+};
+
 class JobBook {
  public:
   // Store and scheduler must outlive this.
@@ -89,7 +95,8 @@ class JobBook {
   absl::StatusOr<v1::EnsembleJob> Cancel(const Principal& caller, const std::string& id,
                                          const std::string& request_id);
   absl::Status Delete(const Principal& caller, const std::string& id);
-  absl::StatusOr<v1::EnsembleJob> Pin(const Principal& caller, const std::string& id, bool pinned);
+  absl::StatusOr<v1::EnsembleJob> Update(const Principal& caller, const std::string& id,
+                                         const JobChange& change);
 
   // ---- these only read (job_book_reads.cc) ----
 

@@ -64,12 +64,25 @@ void FairShare::Leave(Principals::iterator principal) {
 void FairShare::Add(int64_t run, const std::string& principal, int32_t priority) {
   if (runs_.contains(run)) return;
   RunShare added{.principal = Enter(principal), .rank = -int64_t{priority}, .time = {}};
-  std::set<Place>& turns = added.principal->second.turns;
-  // A run is compared only with runs of its own priority.
-  const auto least = FirstOf(added.rank, turns);
-  if (least != turns.end() && least->rank == added.rank) added.time.used = least->charge;
-  turns.insert({added.rank, added.time.Charge(), run});
+  Join(run, added);
   runs_.emplace(run, added);
+}
+
+// A run is compared only with runs of its own priority.
+void FairShare::Join(int64_t run, RunShare& share) {
+  std::set<Place>& turns = share.principal->second.turns;
+  const auto least = FirstOf(share.rank, turns);
+  if (least != turns.end() && least->rank == share.rank) share.time.RaiseTo(least->charge);
+  turns.insert({share.rank, share.time.Charge(), run});
+}
+
+void FairShare::SetPriority(int64_t run, int32_t priority) {
+  const auto found = runs_.find(run);
+  if (found == runs_.end() || found->second.rank == -int64_t{priority}) return;
+  RunShare& share = found->second;
+  share.principal->second.turns.erase({share.rank, share.time.Charge(), run});
+  share.rank = -int64_t{priority};
+  Join(run, share);
 }
 
 void FairShare::Remove(int64_t run) {

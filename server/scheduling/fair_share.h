@@ -23,6 +23,7 @@
 //   6. ANewRunStartsAtTheLeastCharge.
 //   7. UnusedTimeGivesNoCredit.
 //   8. AReturningPrincipalKeepsItsLead.
+//   9. AChangedPriorityCountsFromTheNextTurn.
 // Not thread-safe.
 #pragma once
 
@@ -42,6 +43,8 @@ class FairShare {
   // `run`: greater for a newer one.
   void Add(int64_t run, const std::string& principal, int32_t priority);
   void Remove(int64_t run);
+  // Takes effect at the next turn. Ignored if the run is not present.
+  void SetPriority(int64_t run, int32_t priority);
 
   // The first run in the order of turns for which `has_task` is true. Calls `has_task` for one run
   // after the other until it returns true.
@@ -96,6 +99,9 @@ class FairShare {
 
   // The least turn of that rank, or the first of the next.
   static std::set<Place>::const_iterator FirstOf(int64_t rank, const std::set<Place>& turns);
+
+  // Adds the run to the turns of its principal, at the least charge of its rank.
+  void Join(int64_t run, RunShare& share);
 
   // Change a share, and keep the order in step with it.
   template <typename Change>

@@ -23,7 +23,6 @@ Run::Run(RunRequest request, SchedulerOptions options)
     : key_(request.key),
       generation_(request.generation),
       principal_(std::move(request.principal)),
-      priority_(request.priority),
       spec_(std::make_shared<const EnsembleSpec>(std::move(request.spec))),
       finished_(std::move(request.finished)),
       has_checkpoints_(request.has_checkpoints),

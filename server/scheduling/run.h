@@ -69,7 +69,6 @@ class Run {
 
   int64_t key() const { return key_; }
   const std::string& principal() const { return principal_; }
-  int32_t priority() const { return priority_; }
   const EnsembleSpec& spec() const { return *spec_; }
   bool has_checkpoints() const { return has_checkpoints_; }
   RunJournal& journal() const { return *journal_; }
@@ -170,7 +169,6 @@ class Run {
   const int64_t key_;
   const int64_t generation_;
   const std::string principal_;
-  const int32_t priority_;
   const std::shared_ptr<const EnsembleSpec> spec_;
   const std::vector<bool> finished_;
   const bool has_checkpoints_;

@@ -83,17 +83,23 @@ std::vector<Executor*> Scheduler::Executors() const {
 
 void Scheduler::Add(RunRequest request) {
   const bool is_suspect = request.suspicion.has_value();
+  const int32_t priority = request.priority;
   const auto run = std::make_shared<Run>(std::move(request), options_);
   {
     MutexLock lock(mutex_);
     runs_.emplace(run->key(), run);
     if (is_suspect) suspects_.push_back(run->key());
     for (Member& member : executors_) {
-      member.shares.Add(run->key(), run->principal(), run->priority());
+      member.shares.Add(run->key(), run->principal(), priority);
     }
   }
   WakeExecutors();
   Conclude(run);  // the run may have nothing left to compute
+}
+
+void Scheduler::SetPriority(int64_t run, int32_t priority) {
+  MutexLock lock(mutex_);
+  for (Member& member : executors_) member.shares.SetPriority(run, priority);
 }
 
 void Scheduler::Stop(int64_t key, absl::Status why) {

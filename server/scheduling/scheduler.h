@@ -74,6 +74,9 @@ class Scheduler {
 
   void Add(RunRequest request);
 
+  // The next turn is given by the new priority. Leases that executors hold go on.
+  void SetPriority(int64_t run, int32_t priority);
+
   // The run's journal then receives Ended with this status, unless the run is over already.
   void Stop(int64_t run, absl::Status why) ABSL_LOCKS_EXCLUDED(mutex_);
   void Cancel(int64_t run) { Stop(run, absl::CancelledError("the job was cancelled")); }

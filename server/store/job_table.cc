@@ -198,8 +198,9 @@ void RestartJob(Database& database, int64_t sequence, const std::string& engine_
       engine_version, Blob{question}, sequence);
 }
 
-void PinJob(Database& database, int64_t sequence, bool pinned) {
-  database.Run("UPDATE jobs SET pinned = ? WHERE sequence = ?", pinned, sequence);
+void UpdateJob(Database& database, const JobRecord& record) {
+  database.Run("UPDATE jobs SET pinned = ?, priority = ? WHERE sequence = ?", record.pinned,
+               record.priority, record.sequence);
 }
 
 std::vector<JobSize> ListExpirable(Database& database, absl::Time ended_before, int most) {

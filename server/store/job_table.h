@@ -95,7 +95,8 @@ std::optional<JobRecord> EndJob(Database& database, int64_t sequence, const JobE
 void RestartJob(Database& database, int64_t sequence, const std::string& engine_version,
                 const std::string& question);
 
-void PinJob(Database& database, int64_t sequence, bool pinned);
+// Stores what a client may change of a job: whether it is pinned, and its priority.
+void UpdateJob(Database& database, const JobRecord& record);
 
 struct JobSize {
   int64_t sequence = 0;

@@ -77,16 +77,20 @@ grpc::Status FakeEnsembleService::CancelEnsembleJob(grpc::ServerContext*,
   return grpc::Status(grpc::StatusCode::FAILED_PRECONDITION, "has ended already");
 }
 
-grpc::Status FakeEnsembleService::PinEnsembleJob(grpc::ServerContext*,
-                                                 const v1::PinEnsembleJobRequest* request,
-                                                 v1::EnsembleJob* job) {
+grpc::Status FakeEnsembleService::UpdateEnsembleJob(grpc::ServerContext* context,
+                                                    const v1::UpdateEnsembleJobRequest* request,
+                                                    v1::EnsembleJob* job) {
   const std::lock_guard lock(mutex_);
-  asked_.pin.push_back(*request);
-  if (unavailable_attempts-- > 0) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
-  if (Find(request->name()) == nullptr) return JobNotFound(request->name());
-  if (HasExpired(request->name())) return ResultsExpired(request->name());
-  *job = *Find(request->name());
-  job->set_pinned(request->pinned());
+  asked_.update.push_back(*request);
+  if (unavailable_attempts-- > 0) {
+    if (!pushback.empty()) context->AddTrailingMetadata("grpc-retry-pushback-ms", pushback);
+    return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
+  }
+  const std::string& name = request->job().name();
+  if (Find(name) == nullptr) return JobNotFound(name);
+  if (HasExpired(name)) return ResultsExpired(name);
+  *job = *Find(name);
+  job->set_pinned(request->job().pinned());
   return grpc::Status::OK;
 }
 
@@ -134,7 +138,7 @@ grpc::Status FakeEnsembleService::ListResults(grpc::ServerContext*,
   }
   const size_t from = request->page_token().empty() ? 0 : std::stoul(request->page_token());
   const size_t to = std::min(from + static_cast<size_t>(page_size), points.size());
-  for (size_t i = from; i < to; ++i) *page->add_points() = points[i];
+  for (size_t i = from; i < to; ++i) *page->add_results() = points[i];
   if (to < points.size()) page->set_next_page_token(std::to_string(to));
   return grpc::Status::OK;
 }

@@ -33,7 +33,8 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
   std::vector<v1::PointResult> points;
   v1::PlanEnsembleJobResponse plan;
   grpc::Status plan_end;
-  int unavailable_attempts = 0;  // the first attempts of create, cancel, pin or delete that fail
+  int unavailable_attempts = 0;  // the first attempts of create, cancel, update or delete that fail
+  std::string pushback;  // milliseconds that failed attempts of update ask to wait; empty: none
   grpc::Status create_end;
   std::vector<v1::EnsembleJob::State> created_states;  // of the jobs that Create makes, in order
   bool answers_from_store = false;  // Create answers with this value of answered_from_store
@@ -46,7 +47,7 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
     std::vector<v1::CreateEnsembleJobRequest> create;
     std::vector<v1::ListEnsembleJobsRequest> list;
     std::vector<v1::CancelEnsembleJobRequest> cancel;
-    std::vector<v1::PinEnsembleJobRequest> pin;
+    std::vector<v1::UpdateEnsembleJobRequest> update;
     std::vector<v1::DeleteEnsembleJobRequest> remove;
     std::vector<v1::PlanEnsembleJobRequest> plan;
     std::vector<v1::ListResultsRequest> results;
@@ -62,8 +63,9 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
                                 v1::ListEnsembleJobsResponse* page) override;
   grpc::Status CancelEnsembleJob(grpc::ServerContext*, const v1::CancelEnsembleJobRequest* request,
                                  v1::EnsembleJob* job) override;
-  grpc::Status PinEnsembleJob(grpc::ServerContext*, const v1::PinEnsembleJobRequest* request,
-                              v1::EnsembleJob* job) override;
+  grpc::Status UpdateEnsembleJob(grpc::ServerContext* context,
+                                 const v1::UpdateEnsembleJobRequest* request,
+                                 v1::EnsembleJob* job) override;
   grpc::Status DeleteEnsembleJob(grpc::ServerContext*, const v1::DeleteEnsembleJobRequest* request,
                                  google::protobuf::Empty*) override;
   grpc::Status WatchEnsembleJob(grpc::ServerContext*, const v1::WatchEnsembleJobRequest* request,

@@ -23,7 +23,8 @@ std::string Output(Words command) {
 }
 
 bool IsOfClientOrProto(const std::string& name) {
-  return absl::StartsWith(name, "client::") || absl::StartsWith(name, "v1::");
+  return absl::StartsWith(name, "client::") || absl::StartsWith(name, "v1::") ||
+         absl::StartsWith(name, "file::");
 }
 
 // Symbols that contain a name of the project outside of the client and the protos.

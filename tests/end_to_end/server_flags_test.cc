@@ -187,7 +187,8 @@ TEST_F(ConfigFile, GivesTheFlagsOfAServer) {
   const std::string address = "unix:" + home_.File("socket");
   Write("# of the laboratory\n\n  listen = " + address +
         "\n#the store\n\tdata-dir=" + home_.File("data") +
-        "\r\nworkers = 1\nlog-level=info\nmax-points-per-job = 2\nmax-active-points = 3e7");
+        "\r\nworkers = 1\nlog-level=info\nmax-points-per-job = 2\n"
+        "max-active-points-per-principal = 3e7");
   Process server(ServerCommand(home_, {"--config=" + Path()}));
   ASSERT_TRUE(server.WaitForErr("listening on " + address));
   EXPECT_TRUE(std::filesystem::exists(home_.File("data/store.sqlite3")));
@@ -195,7 +196,8 @@ TEST_F(ConfigFile, GivesTheFlagsOfAServer) {
       RunProgram(ClientCommand(home_, {"status", "--format", "json", "--server", address}));
   EXPECT_EQ(At(ParseJson(status.out), "workers").number_value(), 1) << status.out << status.err;
   EXPECT_EQ(At(ParseJson(status.out), "limits", "max_points_per_job").number_value(), 2);
-  EXPECT_EQ(At(ParseJson(status.out), "limits", "max_active_points").number_value(), 3e7);
+  EXPECT_EQ(At(ParseJson(status.out), "limits", "max_active_points_per_principal").number_value(),
+            3e7);
 }
 
 TEST_F(ConfigFile, CommandLineTakesPrecedence) {

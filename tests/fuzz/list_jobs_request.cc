@@ -1,9 +1,6 @@
 // ListEnsembleJobs: sizes and tokens of pages, filters.
-#include <limits>
-
 #include "absl/time/time.h"
 #include "ballpiston/v1/ensemble.pb.h"
-#include "server/api/list_filter.h"
 #include "server/api/request_check.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"
@@ -14,10 +11,9 @@ namespace {
 void CheckListJobsRequest(const std::string& bytes) {
   v1::ListEnsembleJobsRequest request;
   if (!request.ParseFromString(bytes)) return;
-  RequirePage(request.page_size(), request.page_token(), "jobs",
-              std::numeric_limits<int64_t>::max(), bytes);
+  RequirePage(request, bytes);
   server::RequestCheck check;
-  const server::JobFilter filter = server::ReadListFilter(request, check);
+  const server::JobFilter filter = check.Filter(request);
   if (!check.ok()) {
     RequireNamed(check.violations(), "");
     return RequireSendable(check.status(), bytes);

@@ -1,5 +1,4 @@
 // ListResults: names, sizes and tokens of pages.
-#include "absl/strings/str_cat.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "server/api/request_check.h"
 #include "server/jobs/job_name.h"
@@ -16,7 +15,7 @@ void CheckListRequest(const std::string& bytes) {
   const std::string id = check.JobId("parent", request.parent());
   if (!check.ok()) return RequireSendable(check.status(), bytes);
   Require(server::JobName(id) == request.parent(), "a name is its job's");
-  RequirePage(request.page_size(), request.page_token(), absl::StrCat("results:", id), 0, bytes);
+  RequirePage(request, bytes);
 }
 
 const Registration kListRequest({.name = "list_request",

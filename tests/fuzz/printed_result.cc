@@ -13,14 +13,14 @@ std::string Printed(const v1::ListResultsResponse& page, client::Format format) 
   std::ostringstream out;
   const auto writer = client::NewResultWriter(format, out);
   writer->Begin(v1::EnsembleJob());
-  for (const v1::PointResult& point : page.points()) writer->Add(point);
+  for (const v1::PointResult& point : page.results()) writer->Add(point);
   writer->End();
   return out.str();
 }
 
 void RequirePrinted(const v1::ListResultsResponse& page, client::Format format) {
   const std::string printed = Printed(page, format);
-  const bool may_be_empty = format == client::Format::kJsonl && page.points().empty();
+  const bool may_be_empty = format == client::Format::kJsonl && page.results().empty();
   Require(may_be_empty || printed.ends_with("\n"), "what is printed ends with its line");
 }
 

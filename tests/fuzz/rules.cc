@@ -9,7 +9,6 @@
 #include "core/geometry/pair_geometry.h"
 #include "google/rpc/status.pb.h"
 #include "grpcpp/support/status.h"
-#include "server/api/request_check.h"
 #include "server/convert/errors.h"
 #include "server/convert/spec.h"
 #include "tests/fuzz/fuzz_target.h"
@@ -85,21 +84,6 @@ bool RequireJudged(const v1::EnsembleSpec& spec, const std::string& input) {
   RequireNamed(checked.violations, "spec");
   RequireSendable(server::InvalidSpec(checked.violations), input);
   return false;
-}
-
-void RequirePage(int32_t page_size, const std::string& page_token, const std::string& list,
-                 int64_t first, const std::string& input) {
-  server::RequestCheck check;
-  const int size = check.PageSize(page_size);
-  const int64_t start = check.PageStart(page_token, list, first);
-  if (!check.ok()) return RequireSendable(check.status(), input);
-  Require(size >= 1 && size <= 1000, "a page has a size");
-  Require(start >= 0, "a page has a start");
-  const std::string token = server::RequestCheck::PageToken(list, start);
-  Require(server::RequestCheck().PageStart(token, list, first) == start, "a token leads back");
-  server::RequestCheck other;
-  other.PageStart(page_token, "another", 0);
-  Require(other.ok() == page_token.empty(), "a token is good for its list alone");
 }
 
 }  // namespace ballpiston::fuzz

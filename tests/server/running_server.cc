@@ -159,7 +159,10 @@ std::vector<std::string> TestClient::ResultBytes(const std::string& name) {
   request.set_parent(name);
   std::vector<std::string> bytes;
   for (const auto& page : Pages(request)) {
-    for (const auto& point : page.points()) bytes.push_back(point.SerializeAsString());
+    for (v1::PointResult result : page.results()) {
+      result.clear_name();  // has the job's id
+      bytes.push_back(result.SerializeAsString());
+    }
   }
   return bytes;
 }

@@ -66,7 +66,7 @@ void Client::CallOnce() {
   if (choice < 35) return List();
   const std::string& id = ids[world_.machine.Below(ids.size())];
   if (choice < 52) return Get(id);
-  if (choice < 55) return Pin(id);
+  if (choice < 55) return Update(id);
   if (choice < 70) return Read(id);
   if (choice < 85) return world_.habits.watches ? Watch(id) : Get(id);
   if (choice < 90) return world_.habits.cancels ? Cancel(id) : Get(id);
@@ -144,15 +144,17 @@ void Client::Delete(const std::string& id) {
   world_.expectations.Deleted(id);
 }
 
-void Client::Pin(const std::string& id) {
+void Client::Update(const std::string& id) {
   const KnownJob before = world_.expectations.Known(id);
-  Call call(world_, absl::StrCat("pin ", id));
+  Call call(world_, absl::StrCat("update ", id));
   if (!call) return;
-  const bool pinned = world_.machine.Chance(0.5);
-  const auto job = call->book().Pin(LocalPrincipal(), id, pinned);
+  JobChange change;
+  if (world_.machine.Chance(0.5)) change.pinned = world_.machine.Chance(0.5);
+  if (!change.pinned) change.priority = static_cast<int32_t>(world_.machine.Below(3)) - 1;
+  const auto job = call->book().Update(LocalPrincipal(), id, change);
   if (!call.Hears(job.status())) return;
   if (absl::IsNotFound(job.status())) return world_.expectations.Missed(id);
-  if (!job.ok()) throw Violation("pin", id, job.status().ToString());
+  if (!job.ok()) throw Violation("update", id, job.status().ToString());
   world_.expectations.Got(before, *job);
 }
 
@@ -187,7 +189,7 @@ class Client::Reader : public WatchReader {
   std::chrono::steady_clock::time_point next_check() const override {
     return world_.machine.now() + kHeartbeat;
   }
-  size_t watches() const override { return 1; }
+  int64_t watches() const override { return 1; }
 
   bool Write(const v1::WatchEnsembleJobResponse& message) override {
     world_.machine.Sleep(world_.machine.UpTo(kLongestRead));
@@ -196,6 +198,7 @@ class Client::Reader : public WatchReader {
     for (const v1::PointResult& point : message.snapshot().finished_points()) {
       world_.tell(absl::StrCat("watch ", id_, ": point ", point.index()));
       chain_.points.push_back(point);
+      chain_.points.back().clear_name();  // results of the book have none
     }
     if (message.has_job()) Saw(message.job().state());
     world_.expectations.Watched(id_, chain_.points, state_);

@@ -46,7 +46,7 @@ class Client {
   void List();
   void Cancel(const std::string& id);
   void Delete(const std::string& id);
-  void Pin(const std::string& id);
+  void Update(const std::string& id);
   void Read(const std::string& id);
   void Watch(const std::string& id);
 

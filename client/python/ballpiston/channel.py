@@ -1,7 +1,8 @@
 """Channels to a server, set up for long watches.
 
 Calls that are safe to repeat are retried for about a second while the server is unreachable: all
-but deletions (creations and cancellations carry a request id). Watches attach again by themselves
+but deletions (creations and cancellations carry a request id). If the server says how long to wait
+before a retry, gRPC waits so long. Watches attach again by themselves
 (watch.py).
 """
 

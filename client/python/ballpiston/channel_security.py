@@ -87,12 +87,23 @@ def credentials_of(security: ChannelSecurity) -> Any | None:
     return grpc.composite_channel_credentials(channel, caller)
 
 
-def loopback_metadata(security: ChannelSecurity, address: str) -> list[tuple[str, str]]:
-    """The metadata of a call without encryption: the token, to a loopback address only."""
-    if security.has_tls or not is_loopback(address):
-        return []
-    token = _token_of(security) if security.has_token else _own_token(address)
-    return [("authorization", f"Bearer {token}")] if token else []
+class LoopbackToken:
+    """The token that calls without encryption send, to a loopback address only. A token file is read
+    once, as with TLS; the own server's token is read for each call.
+
+    Raises:
+        ValueError, PermissionDenied: as credentials_of.
+    """
+
+    def __init__(self, security: ChannelSecurity, address: str) -> None:
+        self._is_needed = not security.has_tls and is_loopback(address)
+        self._address = address
+        self._given = _token_of(security) if self._is_needed and security.has_token else ""
+
+    def metadata(self) -> list[tuple[str, str]]:
+        """Of a call."""
+        token = self._given or (_own_token(self._address) if self._is_needed else "")
+        return [("authorization", f"Bearer {token}")] if token else []
 
 
 def _own_token(address: str) -> str:

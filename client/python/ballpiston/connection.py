@@ -6,6 +6,7 @@ the call is repeated once. So every call that goes through `call` has to be safe
 
 from __future__ import annotations
 
+import time
 import weakref
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -14,7 +15,7 @@ from typing import Any
 import grpc
 
 from ballpiston.channel import open_channel
-from ballpiston.channel_security import ChannelSecurity, loopback_metadata
+from ballpiston.channel_security import ChannelSecurity, LoopbackToken
 from ballpiston.connection_hint import connection_hint
 from ballpiston.error_details import from_rpc_error
 from ballpiston.errors import Error, Unavailable
@@ -44,6 +45,7 @@ class Connection:
         self.private = private
         self.timeout = timeout
         self.channel = open_channel(self.address, security)
+        self._loopback_token = LoopbackToken(security, self.address)
         # Also at the interpreter's exit: gRPC's own destructor comes after its threads were killed,
         # and would wait forever for a lock that one of them held.
         self.close = weakref.finalize(self, self.channel.close)
@@ -59,6 +61,7 @@ class Connection:
         except Unavailable as error:
             if self.private is None or error.code != "UNAVAILABLE":
                 raise
+            time.sleep(error.retry_delay)
         self.revive()
         return self.call_once(method, request)
 
@@ -85,7 +88,7 @@ class Connection:
                 raise
 
     def _metadata(self) -> list[tuple[str, str]]:
-        return loopback_metadata(self.security, self.address)
+        return self._loopback_token.metadata()
 
     def error_of(self, rpc_error: grpc.RpcError) -> Error:
         """The exception for a failed call. An error without a reason is one of the connection: its

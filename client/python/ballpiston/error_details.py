@@ -44,6 +44,7 @@ class Details:
     reason: str = ""
     metadata: dict[str, str] = field(default_factory=dict)
     violations: list[tuple[str, str]] = field(default_factory=list)
+    retry_delay: float = 0.0  # seconds
 
     def text(self, message: str) -> str:
         """`message` with reason and violations, as the head of this file shows."""
@@ -65,14 +66,17 @@ class Details:
 
 def details_of(status: Any) -> Details:
     """Of a google.rpc.Status. Messages of other types are ignored."""
-    reason, metadata, violations = "", {}, []
+    reason, metadata, violations, retry_delay = "", {}, [], 0.0
     for item in status.details:
         info, bad = error_details_pb2.ErrorInfo(), error_details_pb2.BadRequest()
+        retry = error_details_pb2.RetryInfo()
         if item.Unpack(info) and not reason:
             reason, metadata = info.reason, dict(info.metadata)
         if item.Unpack(bad):
             violations += [(v.field, v.description) for v in bad.field_violations]
-    return Details(reason, metadata, violations)
+        if item.Unpack(retry):
+            retry_delay = retry.retry_delay.seconds + 1e-9 * retry.retry_delay.nanos
+    return Details(reason, metadata, violations, retry_delay)
 
 
 def error_of(error_class: type[AnyError], message: str, details: Details, code: str) -> AnyError:
@@ -83,6 +87,7 @@ def error_of(error_class: type[AnyError], message: str, details: Details, code: 
         metadata=details.metadata,
         violations=details.violations,
         code=code,
+        retry_delay=details.retry_delay,
     )
 
 

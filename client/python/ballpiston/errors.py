@@ -28,6 +28,7 @@ class Error(Exception):
         metadata: further facts by name, such as the limit that was reached.
         violations: pairs (field, description), one for each part of the request that is wrong.
         code: the name of the gRPC status code, such as "NOT_FOUND"; empty if there was no call.
+        retry_delay: the least seconds to wait before a retry; 0 if the server did not say.
     """
 
     def __init__(
@@ -38,12 +39,14 @@ class Error(Exception):
         metadata: Mapping[str, str] | None = None,
         violations: Sequence[tuple[str, str]] = (),
         code: str = "",
+        retry_delay: float = 0.0,
     ) -> None:
         super().__init__(message)
         self.reason = reason
         self.metadata = dict(metadata or {})
         self.violations = list(violations)
         self.code = code
+        self.retry_delay = retry_delay
 
 
 class InvalidArgument(Error, ValueError):

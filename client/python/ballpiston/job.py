@@ -160,7 +160,9 @@ class Job:
         points: list[Any] = []
         while True:
             page = self._call("ListResults", request)
-            points.extend(page.points)
+            for point in page.results:
+                point.ClearField("name")  # as in files: equal answers are equal results
+                points.append(point)
             request.page_token = page.next_page_token
             if not request.page_token:
                 job = ensemble_pb2.EnsembleJob()
@@ -181,8 +183,11 @@ class Job:
 
     def pin(self, pinned: bool = True) -> Job:
         """Keeps its results from expiring; with False they may expire again."""
-        request = ensemble_pb2.PinEnsembleJobRequest(name=self.name, pinned=pinned)
-        self.message = self._call("PinEnsembleJob", request)
+        request = ensemble_pb2.UpdateEnsembleJobRequest(
+            job=ensemble_pb2.EnsembleJob(name=self.name, pinned=pinned),
+            update_mask={"paths": ["pinned"]},
+        )
+        self.message = self._call("UpdateEnsembleJob", request)
         return self
 
     def delete(self) -> None:

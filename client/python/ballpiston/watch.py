@@ -1,7 +1,7 @@
 """Following a job to its end, through restarts of the server and cut connections.
 
 If the stream breaks, the watch attaches again with the last resume token that it saw, after pauses
-that double from 0.1 s to 5 s, until nothing was heard for two minutes. A stream is broken by
+that double from 0.1 s to 5 s, or as long as the server's error says, until nothing was heard for two minutes. A stream is broken by
 UNAVAILABLE, by CANCELLED without a reason, as from a server that stops, and by an end without a
 terminal state. Every other error ends the watch.
 """
@@ -70,9 +70,10 @@ class ReattachPace:
         self._heard = now
         self._next = self._pauses.first
 
-    def next_pause(self, now: float) -> float | None:
-        """Seconds before the next attempt; None if that would come after the time to give up."""
-        pause = self._next * random.uniform(1.0, 1.25)
+    def next_pause(self, now: float, least: float = 0.0) -> float | None:
+        """Seconds before the next attempt, at least `least`; None if that would come after the time
+        to give up."""
+        pause = max(self._next, least) * random.uniform(1.0, 1.25)
         self._next = min(2 * self._next, self._pauses.longest)
         return None if now - self._heard + pause > self._pauses.give_up_after else pause
 
@@ -137,7 +138,7 @@ class _Watch:
             self._observer.on_snapshot(message.snapshot)
 
     def _wait_to_reattach(self, why: Error) -> None:
-        pause = self._pace.next_pause(time.monotonic())
+        pause = self._pace.next_pause(time.monotonic(), why.retry_delay)
         if pause is None:
             silence = f"{self._pauses.give_up_after:g} s"
             raise Unavailable(

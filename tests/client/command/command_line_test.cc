@@ -324,7 +324,7 @@ TEST_F(CommandLineTest, PinPrintsEachJobOnceItIsPinned) {
   const Outcome unpinned = WithServer({"pin", "--undo", "abc"});
   EXPECT_EQ(unpinned.code, 0) << unpinned.err;
   EXPECT_EQ(unpinned.out, "ensembleJobs/abc unpinned\n");
-  EXPECT_FALSE(server_.ensemble.Asked().pin.back().pinned());
+  EXPECT_FALSE(server_.ensemble.Asked().update.back().job().pinned());
 }
 
 TEST_F(CommandLineTest, ExpiredResultsExitWithFourAndTheCommandThatComputesThemAgain) {

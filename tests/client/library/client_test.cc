@@ -148,16 +148,27 @@ TEST_F(ClientTest, APinIsRepeated) {
   server_.ensemble.unavailable_attempts = 2;
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, StartServer().Pin(kJobName, true));
   EXPECT_TRUE(job.pinned());
-  const auto asked = server_.ensemble.Asked().pin;
+  const auto asked = server_.ensemble.Asked().update;
   ASSERT_EQ(asked.size(), 3u);
-  EXPECT_EQ(asked[2].name(), kJobName);
-  EXPECT_TRUE(asked[2].pinned());
+  EXPECT_EQ(asked[2].job().name(), kJobName);
+  EXPECT_TRUE(asked[2].job().pinned());
+  EXPECT_THAT(asked[2].update_mask().paths(), testing::ElementsAre("pinned"));
+}
+
+// Without the server's wish the three attempts would take 0.4 s at most.
+TEST_F(ClientTest, ARetryWaitsAsLongAsTheServerAsks) {
+  server_.ensemble.unavailable_attempts = 2;
+  server_.ensemble.pushback = "400";
+  const Client client = StartServer();
+  const absl::Time begin = absl::Now();
+  EXPECT_OK(client.Pin(kJobName, true));
+  EXPECT_GE(absl::Now() - begin, absl::Milliseconds(800));
 }
 
 TEST_F(ClientTest, APinCanBeUndone) {
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, StartServer().Pin(kJobName, false));
   EXPECT_FALSE(job.pinned());
-  EXPECT_FALSE(server_.ensemble.Asked().pin.at(0).pinned());
+  EXPECT_FALSE(server_.ensemble.Asked().update.at(0).job().pinned());
 }
 
 TEST_F(ClientTest, APointIsNamedByItsIndex) {

@@ -43,6 +43,18 @@ TEST(ReattachPace, PausesStartAgainAfterAMessage) {
   EXPECT_LE(*pause, absl::Seconds(1.251));
 }
 
+TEST(ReattachPace, APauseIsAsLongAsTheServerAsks) {
+  const WatchOptions options = ThreeMinutes();
+  ReattachPace pace(options, kStart);
+  for (const double expected : {10, 10, 10}) {
+    const std::optional<absl::Duration> pause = pace.NextPause(kStart, absl::Seconds(10));
+    ASSERT_TRUE(pause);
+    EXPECT_GE(absl::ToDoubleSeconds(*pause), expected);
+    EXPECT_LE(absl::ToDoubleSeconds(*pause), 1.251 * expected);
+  }
+  EXPECT_FALSE(pace.NextPause(kStart, absl::Minutes(4)));
+}
+
 // A pause of 1 s to 1.25 s that begins after 178 s ends within 3 min. A pause that begins after 180
 // s ends too late.
 TEST(ReattachPace, GivesUpWhenTheNextAttemptWouldComeTooLate) {

@@ -31,5 +31,17 @@ TEST(ServerAddress, RejectsAnythingElse) {
   }
 }
 
+// The server takes the same spellings.
+TEST(ServerAddress, TheLoopbackHasManySpellings) {
+  for (const char* text : {"127.0.0.1:1", "127.3.2.1:1", "[::1]:1", "[0:0:0:0:0:0:0:1]:1",
+                           "[0::0001]:1", "[::0.0.0.1]:1"}) {
+    EXPECT_TRUE(IsLoopback(text)) << text;
+  }
+  for (const char* text : {"128.0.0.1:1", "[::2]:1", "[::]:1", "::1:1", "[::1:1", "[127.0.0.1]:1",
+                           "[::1%lo]:1", "localhost.example:1", "unix:/127.0.0.1"}) {
+    EXPECT_FALSE(IsLoopback(text)) << text;
+  }
+}
+
 }  // namespace
 }  // namespace ballpiston::client

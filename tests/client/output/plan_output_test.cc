@@ -42,8 +42,7 @@ constexpr char kLadders[] = R"(
       models { model: BILLIARD answers: true samples: 4.0123e8 work: 15 relative_statistical_error: 1e-2
                relative_model_error: 0 }
       model: BILLIARD reason: "the billiard itself" }
-    point_count: 2 work: 15.0123 time: 7.6 workers: 2 memory: 25200000
-    rates { jump: 2e-8 })";
+    point_count: 2 work: 15.0123 time: 7.6 workers: 2 memory: 25200000)";
 
 v1::PlanEnsembleJobResponse Plan() { return FromText<v1::PlanEnsembleJobResponse>(kLadders); }
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "absl/strings/str_split.h"
-#include "ballpiston/v1/progress.pb.h"
+#include "ballpiston/file/v1/progress.pb.h"
 #include "client/output/progress_line.h"
 #include "client/output/progress_meter.h"
 #include "client/output/progress_reporter.h"
@@ -209,6 +209,7 @@ v1::StatisticsSnapshot WithFinishedPoints(int unfinished) {
   for (const double mean : {55.5, 66.5}) {
     *snapshot.add_finished_points() = ConditionalPoint();
     snapshot.mutable_finished_points()->rbegin()->mutable_estimates(0)->set_value(mean);
+    snapshot.mutable_finished_points()->rbegin()->set_name("ensembleJobs/abc/results/1");
   }
   return snapshot;
 }
@@ -254,8 +255,8 @@ TEST(ProgressBar, IsNotDrawnAfterTheFarewell) {
 
 // ---- JSON ----
 
-std::vector<v1::WatchProgress> JsonLines(const std::string& text) {
-  std::vector<v1::WatchProgress> lines;
+std::vector<file::v1::WatchProgress> JsonLines(const std::string& text) {
+  std::vector<file::v1::WatchProgress> lines;
   for (const absl::string_view line : absl::StrSplit(text, '\n', absl::SkipEmpty())) {
     EXPECT_TRUE(
         google::protobuf::util::JsonStringToMessage(std::string(line), &lines.emplace_back()).ok())
@@ -267,7 +268,7 @@ std::vector<v1::WatchProgress> JsonLines(const std::string& text) {
 TEST(ProgressJson, IsOneMessageALine) {
   const auto lines = JsonLines(ReportOf(ProgressStyle::kJson));
   ASSERT_EQ(lines.size(), 3u);
-  for (const v1::WatchProgress& line : lines) EXPECT_EQ(line.job(), "ensembleJobs/abc");
+  for (const file::v1::WatchProgress& line : lines) EXPECT_EQ(line.job(), "ensembleJobs/abc");
   EXPECT_EQ(lines[0].state(), v1::EnsembleJob::RUNNING);
   EXPECT_EQ(lines[0].progress().points(), 100);
   EXPECT_FALSE(lines[0].has_samples_per_second());
@@ -289,6 +290,7 @@ TEST(ProgressJson, HasUnfinishedAndFinishedPointsNewestFirst) {
   EXPECT_EQ(lines[0].points(0).estimates(0).value(), 21.63214);
   EXPECT_EQ(lines[0].points(1).estimates(0).value(), 66.5);
   EXPECT_EQ(lines[0].points(2).estimates(0).value(), 55.5);
+  for (const v1::PointResult& point : lines[0].points()) EXPECT_FALSE(point.has_name());
 }
 
 TEST(ProgressJson, NotesAreMessages) {

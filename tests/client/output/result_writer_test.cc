@@ -35,6 +35,7 @@ std::vector<v1::PointResult> TwoPoints() {
             histograms { name: "alpha" sigma: 1 lower: 0 upper: 0.5 counts: [1, 0] }
             health { max_energy_error: 1e-12 })"),
           FromText<v1::PointResult>(R"(
+            name: "ensembleJobs/abc/results/1"
             index: 1 parameters { rho: 0.53 delta: 0.1 epsilon: 0.25 exponent: 1 }
             model: BILLIARD_REFERENCE samples: 10000
             estimates { name: "mean_hit_time" value: 1e-7 standard_error: 2e-9 })")};
@@ -216,8 +217,9 @@ TEST(ResultJson, HasShapesPositionsAndRemarks) {
 
 TEST(ResultJson, HasReasonsAndCurves) {
   const std::string text = Written(Format::kJsonl, PointsOfTheLadder());
-  EXPECT_THAT(text, HasSubstr(R"("reason":"the limit is off by 2.1e-02","curves":[{"name":)"
-                              R"("energy_autocorrelation","points":[{"value":1,"time":0}]}])"));
+  EXPECT_THAT(text, HasSubstr(R"("reason":"the limit is off by 2.1e-02","samples":1000000,)"));
+  EXPECT_THAT(text, HasSubstr(R"("curves":[{"name":"energy_autocorrelation","points":[)"
+                              R"({"value":1,"time":0}]}])"));
   EXPECT_THAT(text, HasSubstr(R"("model_error":0,"limit":3.14159)"));
 }
 
@@ -225,8 +227,8 @@ TEST(ResultJson, HasTheProtosNamesAndKeepsDefaults) {
   EXPECT_EQ(Written(Format::kJson), R"({"client_version": ")" BALLPISTON_VERSION R"(",
 "job": {"name":"ensembleJobs/abc","spec":{"experiment":"FIRST_HIT","target":{"estimate":"","samples":"10000"},"seed":"7","model":"MODEL_UNSPECIFIED","precision":"PRECISION_UNSPECIFIED","verify":false},"state":"SUCCEEDED","progress":{"points":2,"points_done":2,"samples":20000,"fraction":1},"engine_version":"1","work":0,"principal":"","priority":0,"answered_from_store":false,"pinned":false,"results_expired":false,"stored_bytes":0},
 "points": [
-{"index":0,"parameters":{"rho":0.53,"delta":0.2,"epsilon":0,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":21.63214,"standard_error":0.1234,"exact":21.62257,"z_score":0.0775527},{"name":"mean_sigma","value":-0.25}],"kl_divergence":{"value":0.005,"noise_floor":0.0025,"cells":2000,"noise_error":0.0001,"standard_error":0.0002},"histograms":[{"name":"alpha","sigma":1,"lower":0,"upper":0.5,"counts":[1,0],"expected_probabilities":[]}],"health":{"escapes":0,"max_energy_error":1e-12},"reason":"","curves":[],"remarks":[],"chunk_digests":[]},
-{"index":1,"parameters":{"rho":0.53,"delta":0.1,"epsilon":0.25,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":1e-07,"standard_error":2e-09}],"histograms":[],"reason":"","curves":[],"remarks":[],"chunk_digests":[]}
+{"index":0,"parameters":{"rho":0.53,"delta":0.2,"epsilon":0,"exponent":1},"model":"BILLIARD_REFERENCE","reason":"","samples":10000,"estimates":[{"name":"mean_hit_time","value":21.63214,"standard_error":0.1234,"exact":21.62257,"z_score":0.0775527},{"name":"mean_sigma","value":-0.25}],"kl_divergence":{"value":0.005,"noise_floor":0.0025,"cells":2000,"noise_error":0.0001,"standard_error":0.0002},"health":{"escapes":0,"max_energy_error":1e-12},"remarks":[],"histograms":[{"name":"alpha","sigma":1,"lower":0,"upper":0.5,"counts":[1,0],"expected_probabilities":[]}],"curves":[],"chunk_digests":[]},
+{"index":1,"parameters":{"rho":0.53,"delta":0.1,"epsilon":0.25,"exponent":1},"model":"BILLIARD_REFERENCE","reason":"","samples":10000,"estimates":[{"name":"mean_hit_time","value":1e-07,"standard_error":2e-09}],"remarks":[],"histograms":[],"curves":[],"chunk_digests":[]}
 ]}
 )");
 }

@@ -20,12 +20,9 @@ v1::ServerStatus BusyServer() {
          workers: 2 busy_workers: 1 queued_jobs: 3 running_jobs: 1 streams: 4 store_bytes: 70048
          stored_jobs: 1024 blocks_computed: 5000 samples_computed: 1.28e9
          processor_seconds: 5400 rates { wall_hit: 2e-9 jump: 8e-9 }
-         limits { max_active_jobs: 10000 max_active_jobs_per_principal: 1000
-                  max_points_per_job: 100000 max_samples_per_job: 1e15 max_streams: 4096
-                  max_streams_per_principal: 2048 max_message_bytes: 4194304
-                  max_active_points: 20000000 max_active_points_per_principal: 5000000
-                  max_calls_per_principal: 1024 max_call_bytes_per_principal: 134217728
-                  retain_days: 30 max_store_bytes: 2147483648 }
+         limits { max_points_per_job: 100000 max_samples_per_job: 1e15
+                  max_active_jobs_per_principal: 1000 max_active_points_per_principal: 5000000
+                  max_streams_per_principal: 2048 max_message_bytes: 4194304 retain_days: 30 }
          expiring_jobs: 12
          principal: "alice" role: "submit"
          principals { principal: "alice" queued_jobs: 3 running_jobs: 1 streams: 4 stored_jobs: 1000
@@ -56,19 +53,14 @@ expiry    results of 12 jobs expire within a week
 principal  queued  running  streams  stored  stored bytes
 alice           3        1        4    1000        59 KiB
 
-limit              total  per principal
-active jobs        10000           1000
-active points      2e+07        5000000
-streams             4096           2048
-calls           no limit           1024
-bytes of calls  no limit        128 MiB
-stored bytes     2.0 GiB       no limit
-
-limit         per job
-points         100000
-samples         1e+15
-message       4.0 MiB
-results kept  30 days
+limit                            most
+points of a job                100000
+samples of a job                1e+15
+active jobs of a principal       1000
+active points of a principal  5000000
+streams of a principal           2048
+message                       4.0 MiB
+results kept                  30 days
 )");
 }
 
@@ -76,10 +68,9 @@ TEST(StatusOutput, ZeroMeansUnlimited) {
   v1::ServerStatus status = BusyServer();
   status.mutable_limits()->Clear();
   const std::string table = PrintedStatus(status);
-  EXPECT_THAT(table, HasSubstr("active jobs     no limit       no limit\n"));
-  EXPECT_THAT(table, HasSubstr("stored bytes    no limit       no limit\n"));
-  EXPECT_THAT(table, HasSubstr("message       no limit\n"));
-  EXPECT_THAT(table, HasSubstr("results kept  no limit\n"));
+  EXPECT_THAT(table, HasSubstr("points of a job               no limit\n"));
+  EXPECT_THAT(table, HasSubstr("message                       no limit\n"));
+  EXPECT_THAT(table, HasSubstr("results kept                  no limit\n"));
 }
 
 TEST(StatusOutput, NamesOtherStatesThanServing) {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import socket
 import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,8 +13,10 @@ import pytest
 from conftest import LIMIT, Home, wait_until
 
 import ballpiston
-from ballpiston.channel_security import ChannelSecurity, check, credentials_of
+from ballpiston._google_rpc import error_details_pb2, status_pb2
+from ballpiston.channel_security import ChannelSecurity, LoopbackToken, check, credentials_of
 from ballpiston.connection_hint import connection_hint
+from ballpiston.error_details import details_of, error_of
 from ballpiston.private_server import find_private_server
 from ballpiston.server_address import grpc_target, literal_address
 from ballpiston.settings import address_and_security
@@ -75,6 +78,40 @@ def test_a_token_file_that_others_can_read_is_rejected(tmp_path: Path) -> None:
     assert "secret" not in str(caught.value)
     os.chmod(open_file, 0o600)
     ballpiston.connect("host:1", tls=True, token_file=open_file).close()
+
+
+def test_a_token_file_is_read_once_for_a_connection(tmp_path: Path) -> None:
+    file = private(tmp_path, "token", "secret\n")
+    token = LoopbackToken(ChannelSecurity(token_file=file), "127.0.0.1:1")
+    os.remove(file)
+    assert token.metadata() == [("authorization", "Bearer secret")]
+    assert LoopbackToken(ChannelSecurity(token="secret", tls=True), "127.0.0.1:1").metadata() == []
+    assert LoopbackToken(ChannelSecurity(), "host:1").metadata() == []
+
+
+def test_the_servers_own_token_is_read_for_each_call(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    folder = tmp_path / "ballpiston" / "tokens" / socket.gethostname()
+    folder.mkdir(parents=True)
+    token = LoopbackToken(ChannelSecurity(), "127.0.0.1:1")
+    assert token.metadata() == []
+    for text in ("first", "second"):
+        private(folder, "127.0.0.1:1", text + "\n")
+        assert token.metadata() == [("authorization", f"Bearer {text}")]
+
+
+def test_an_error_says_how_long_to_wait() -> None:
+    status = status_pb2.Status()
+    retry = error_details_pb2.RetryInfo()
+    retry.retry_delay.FromMilliseconds(1500)
+    status.details.add().Pack(retry)
+    status.details.add().Pack(error_details_pb2.ErrorInfo(reason="QUEUE_FULL"))
+    details = details_of(status)
+    assert (details.reason, details.retry_delay) == ("QUEUE_FULL", 1.5)
+    assert error_of(ballpiston.ResourceExhausted, "", details, "").retry_delay == 1.5
+    assert details_of(status_pb2.Status()).retry_delay == 0
 
 
 @pytest.mark.parametrize("text", ["", "two words", "x" * 257, "ä"])

@@ -142,6 +142,13 @@ def test_pauses_double_until_the_server_is_heard() -> None:
     assert pause is not None and pause <= 1.25
 
 
+def test_a_pause_is_as_long_as_the_server_asks() -> None:
+    pace = ReattachPace(Pauses(first=1, longest=4, give_up_after=100), now=0)
+    pause = pace.next_pause(now=0, least=10)
+    assert pause is not None and 10 <= pause <= 12.5
+    assert pace.next_pause(now=0, least=200) is None
+
+
 def test_a_watch_gives_up_after_the_configured_time() -> None:
     pace = ReattachPace(Pauses(first=1, longest=4, give_up_after=10), now=0)
     assert pace.next_pause(now=5) is not None

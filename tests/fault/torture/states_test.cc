@@ -173,12 +173,13 @@ class Client {
     Learn(before, Ask(*stub_, &Stub::CancelEnsembleJob, request), "Cancel");
   }
 
-  void Pin(const std::string& name) {
-    v1::PinEnsembleJobRequest request;
-    request.set_name(name);
-    request.set_pinned(random_() % 2 == 0);
+  void Update(const std::string& name) {
+    v1::UpdateEnsembleJobRequest request;
+    request.mutable_job()->set_name(name);
+    request.mutable_job()->set_pinned(random_() % 2 == 0);
+    request.mutable_update_mask()->add_paths("pinned");
     const History::Seen before = history_.Of(name);
-    Learn(before, Ask(*stub_, &Stub::PinEnsembleJob, request), "Pin");
+    Learn(before, Ask(*stub_, &Stub::UpdateEnsembleJob, request), "Update");
   }
 
   void Delete(const std::string& name) {
@@ -192,8 +193,8 @@ class Client {
   }
 
   // Get and List twice as often as the others.
-  static constexpr std::array<Call, 8> kCalls = {&Client::Get,   &Client::Get,   &Client::List,
-                                                 &Client::List,  &Client::Pin,   &Client::Cancel,
+  static constexpr std::array<Call, 8> kCalls = {&Client::Get,   &Client::Get,    &Client::List,
+                                                 &Client::List,  &Client::Update, &Client::Cancel,
                                                  &Client::Watch, &Client::Delete};
 
   void Learn(const History::Seen& before, const absl::StatusOr<EnsembleJob>& job,

@@ -169,7 +169,7 @@ void Visitor::Fetch(const OwnJob& job) {
   do {
     const auto page = UntilAnswered([&] { return Ask(*stub_, &Stub::ListResults, request); });
     if (!page.ok()) return Wrong(job, absl::StrCat("ListResults: ", page.status().ToString()));
-    points.insert(points.end(), page->points().begin(), page->points().end());
+    points.insert(points.end(), page->results().begin(), page->results().end());
     request.set_page_token(page->next_page_token());
   } while (!request.page_token().empty());
   const Answer& expected = exam_.answers[job.question];

@@ -130,7 +130,7 @@ void WatchChain::CheckFinishedPoints(v1::EnsembleService::StubInterface& stub) {
     context.set_wait_for_ready(true);
     v1::ListResultsResponse page;
     if (!stub.ListResults(&context, request, &page).ok()) continue;  // the server was killed: retry
-    for (const v1::PointResult& point : page.points()) stored.insert(point.index());
+    for (const v1::PointResult& point : page.results()) stored.insert(point.index());
     request.set_page_token(page.next_page_token());
     if (page.next_page_token().empty()) break;
   } while (true);

@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "ballpiston/v1/progress.pb.h"
-#include "ballpiston/v1/saved_result.pb.h"
 #include "ballpiston/v1/server.pb.h"
 #include "gmock/gmock.h"
 #include "google/protobuf/descriptor.h"
@@ -38,7 +36,7 @@ const std::map<std::string, Role>& LeastRoles() {
       {"ListEnsembleJobs", Role::kRead},    {"CancelEnsembleJob", Role::kSubmit},
       {"DeleteEnsembleJob", Role::kSubmit}, {"WatchEnsembleJob", Role::kRead},
       {"PlanEnsembleJob", Role::kRead},     {"ListResults", Role::kRead},
-      {"PinEnsembleJob", Role::kSubmit},    {"GetResult", Role::kRead},
+      {"UpdateEnsembleJob", Role::kSubmit}, {"GetResult", Role::kRead},
       {"EvaluatePairs", Role::kRead},       {"GetServerStatus", Role::kRead},
       {"TraceOrbit", Role::kSubmit}};
   return *roles;
@@ -48,8 +46,6 @@ const std::map<std::string, Role>& LeastRoles() {
 std::vector<const MethodDescriptor*> AllMethods() {
   // Links the proto files that no other code here uses.
   v1::GetServerStatusRequest::descriptor();
-  v1::WatchProgress::descriptor();
-  v1::SavedResult::descriptor();
   std::vector<const MethodDescriptor*> methods;
   const std::string folder = "ballpiston/v1/";
   for (const auto& entry : std::filesystem::directory_iterator(SourcePath("proto/") + folder)) {
@@ -228,9 +224,9 @@ TEST_F(ForeignTokens, PageTokensOfAnothersResultsAreRefused) {
   ASSERT_FALSE(next.empty());
   EXPECT_EQ(ReasonOf(FirstResult(bob_, alices, next, &seen)), "JOB_NOT_FOUND");
   EXPECT_EQ(ReasonOf(FirstResult(bob_, bobs, next, &seen)), "INVALID_REQUEST");
-  EXPECT_EQ(seen.points_size(), 0);
+  EXPECT_EQ(seen.results_size(), 0);
   EXPECT_OK(FirstResult(ops_, alices, next, &seen));
-  EXPECT_EQ(seen.points(0).index(), 1);
+  EXPECT_EQ(seen.results(0).name(), alices + "/results/1");
 }
 
 TEST_F(ForeignTokens, ResumeTokensOfAnothersWatchSkipNothing) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/server/error_details.h"
@@ -360,17 +361,32 @@ TEST(EnsembleService, JobsAreFilteredByTheirTimeOfCreation) {
   EXPECT_THAT(NamesOf(server.List(request)), ElementsAre());
 }
 
-TEST(EnsembleService, APageTokenIsAPositionForAnyFilter) {
+// The view and the size of the page may change from page to page.
+TEST(EnsembleService, APageTokenIsValidOnlyWithItsFilters) {
   RunningServer server;
   const std::string oldest = server.Succeeded(Equilibrium(1, 2, 1));
-  const std::string older = server.Submit(SmallFirstHit());
-  server.Submit(Equilibrium(1, 2, 2));
+  const std::string older = server.Submit(Equilibrium(1, 2, 2));
+  server.Submit(Equilibrium(1, 2, 3));
   v1::ListEnsembleJobsRequest request;
+  request.add_experiments(v1::EnsembleSpec::EQUILIBRIUM);
   request.set_page_size(1);
   request.set_page_token(server.List(request).next_page_token());
-  EXPECT_THAT(NamesOf(server.List(request)), ElementsAre(older));
-  request.add_experiments(v1::EnsembleSpec::EQUILIBRIUM);
-  EXPECT_THAT(NamesOf(server.List(request)), ElementsAre(oldest));
+  request.set_page_size(2);
+  request.set_view(v1::ListEnsembleJobsRequest::BASIC);
+  EXPECT_THAT(NamesOf(server.List(request)), ElementsAre(older, oldest));
+  const auto refused = [&server](const v1::ListEnsembleJobsRequest& other) {
+    grpc::ClientContext context;
+    v1::ListEnsembleJobsResponse response;
+    return server.ensemble().ListEnsembleJobs(&context, other, &response);
+  };
+  v1::ListEnsembleJobsRequest states = request, experiments = request, since = request;
+  states.add_states(EnsembleJob::SUCCEEDED);
+  experiments.clear_experiments();
+  since.mutable_since()->set_seconds(1);
+  for (const auto& other : {states, experiments, since}) {
+    EXPECT_THAT(refused(other), IsError(grpc::StatusCode::INVALID_ARGUMENT, "INVALID_REQUEST"));
+    EXPECT_THAT(DetailsOf(refused(other)).fields, ElementsAre("page_token"));
+  }
 }
 
 TEST(EnsembleService, WrongFiltersAreRefusedWithWhatIsPermitted) {
@@ -436,6 +452,86 @@ TEST(EnsembleService, BadPagesAreRefused) {
               ElementsAre("page_size", "page_token", "view"));
 }
 
+// ---- Updates ----
+
+grpc::Status Update(RunningServer& server, const v1::UpdateEnsembleJobRequest& request,
+                    EnsembleJob* job = nullptr) {
+  grpc::ClientContext context;
+  EnsembleJob answer;
+  const grpc::Status status =
+      server.ensemble().UpdateEnsembleJob(&context, request, job == nullptr ? &answer : job);
+  return status;
+}
+
+v1::UpdateEnsembleJobRequest UpdateRequest(const std::string& name,
+                                           const std::vector<std::string>& paths) {
+  v1::UpdateEnsembleJobRequest request;
+  request.mutable_job()->set_name(name);
+  for (const std::string& path : paths) request.mutable_update_mask()->add_paths(path);
+  return request;
+}
+
+TEST(EnsembleService, AnUpdateSetsTheFieldsOfItsMask) {
+  RunningServer server;
+  const std::string name = server.Succeeded(Equilibrium(1, 2));
+  v1::UpdateEnsembleJobRequest request = UpdateRequest(name, {"pinned"});
+  request.mutable_job()->set_pinned(true);
+  request.mutable_job()->set_priority(500);  // is not in the mask
+  EnsembleJob job;
+  EXPECT_OK(Update(server, request, &job));
+  EXPECT_TRUE(job.pinned());
+  EXPECT_EQ(job.priority(), 0);
+  request = UpdateRequest(name, {"priority"});
+  request.mutable_job()->set_priority(-7);
+  EXPECT_OK(Update(server, request, &job));
+  EXPECT_TRUE(job.pinned());
+  EXPECT_EQ(job.priority(), -7);
+  EXPECT_OK(Update(server, UpdateRequest(name, {"pinned", "priority"})));
+  EXPECT_FALSE(server.Get(name).pinned());
+  EXPECT_EQ(server.Get(name).priority(), 0);
+}
+
+TEST(EnsembleService, WrongMasksAreRefusedWithWhatIsPermitted) {
+  RunningServer server;
+  const std::string name = server.Submit(Equilibrium(1, 2));
+  const std::vector<std::vector<std::string>> masks = {
+      {}, {"*"}, {"spec"}, {"pinned", "state"}, {"job.pinned"}, {""}};
+  for (const auto& paths : masks) {
+    const grpc::Status status = Update(server, UpdateRequest(name, paths));
+    EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT,
+                                 HasSubstr("permitted: pinned, priority")));
+    EXPECT_THAT(DetailsOf(status).fields, ElementsAre("update_mask"));
+  }
+  v1::UpdateEnsembleJobRequest request = UpdateRequest("jobs/1", {"priority"});
+  request.mutable_job()->set_priority(101);
+  EXPECT_THAT(DetailsOf(Update(server, request)).fields, ElementsAre("job.name", "job.priority"));
+  EXPECT_EQ(ReasonOf(Update(server, UpdateRequest("ensembleJobs/none", {"pinned"}))),
+            "JOB_NOT_FOUND");
+}
+
+// ---- Errors ----
+
+// gRPC's own retries obey the metadata.
+TEST(EnsembleService, ALimitThatWaitingCuresTellsHowLong) {
+  Gate gate;
+  RunningServer server({.factory = GatedExperiments(gate),
+                        .limits = {.max_active_jobs = 1, .max_points_per_job = 5}});
+  server.Submit(Equilibrium(1, 2));
+  const auto pushback = [&](int points) {
+    grpc::ClientContext context;
+    EnsembleJob job;
+    const v1::CreateEnsembleJobRequest request = CreateRequest(Equilibrium(points, 2, 7));
+    EXPECT_THAT(server.ensemble().CreateEnsembleJob(&context, request, &job),
+                StatusIs(grpc::StatusCode::RESOURCE_EXHAUSTED));
+    const auto& trailing = context.GetServerTrailingMetadata();
+    const auto found = trailing.find("grpc-retry-pushback-ms");
+    if (found == trailing.end()) return std::string();
+    return std::string(found->second.data(), found->second.size());
+  };
+  EXPECT_EQ(pushback(1), "10000");  // QUEUE_FULL
+  EXPECT_EQ(pushback(6), "");       // TOO_MANY_POINTS
+}
+
 // ---- Results ----
 
 TEST(EnsembleService, ResultsComeInGridOrderInPages) {
@@ -447,11 +543,12 @@ TEST(EnsembleService, ResultsComeInGridOrderInPages) {
   std::vector<int> indices;
   std::vector<int> sizes;
   for (const auto& page : server.Pages(request)) {
-    for (const auto& point : page.points()) {
+    for (const auto& point : page.results()) {
       indices.push_back(point.index());
+      EXPECT_EQ(point.name(), absl::StrCat(name, "/results/", point.index()));
       EXPECT_EQ(point.parameters().delta(), 0.1 + 1e-6 * point.index());
     }
-    sizes.push_back(page.points_size());
+    sizes.push_back(page.results_size());
   }
   EXPECT_THAT(sizes, ElementsAre(10, 10, 5));
   for (int i = 0; i < 25; ++i) EXPECT_EQ(indices[static_cast<size_t>(i)], i);
@@ -466,10 +563,10 @@ TEST(EnsembleService, TheBasicViewHasNoHistograms) {
     request.set_parent(name);
     request.set_view(view);
     const v1::ListResultsResponse response = server.Results(request);
-    ASSERT_EQ(response.points_size(), 6);
-    EXPECT_EQ(response.points(0).histograms().empty(), view == v1::ListResultsRequest::BASIC);
-    EXPECT_GT(response.points(0).estimates_size(), 0);
-    EXPECT_EQ(response.points(0).model(), v1::EnsembleSpec::BILLIARD);
+    ASSERT_EQ(response.results_size(), 6);
+    EXPECT_EQ(response.results(0).histograms().empty(), view == v1::ListResultsRequest::BASIC);
+    EXPECT_GT(response.results(0).estimates_size(), 0);
+    EXPECT_EQ(response.results(0).model(), v1::EnsembleSpec::BILLIARD);
   }
 }
 
@@ -487,7 +584,7 @@ TEST(EnsembleService, PagesOfHistogramsStayBelowTwoMebibytes) {
   int points = 0;
   for (const auto& page : pages) {
     EXPECT_LE(page.ByteSizeLong(), (size_t{2} << 20) + 1024);
-    points += page.points_size();
+    points += page.results_size();
   }
   EXPECT_EQ(points, 100);
   EXPECT_GT(pages.size(), 1u);

@@ -45,6 +45,8 @@ class PlanServiceTest : public testing::Test {
     return plan;
   }
 
+  static double FirstPoint();
+
   static inline TemporaryFolder* folder_ = nullptr;
   static inline RunningServer* server_ = nullptr;
 };
@@ -68,6 +70,16 @@ v1::EnsembleSpec PlanQuestion(v1::EnsembleSpec::Experiment experiment) {
     spec.mutable_grid()->add_cold(0.5);
   }
   return spec;
+}
+
+double WorkOfPoints(const v1::PlanEnsembleJobResponse& plan) {
+  double work = 0;
+  for (const v1::PointPlan& point : plan.points()) {
+    for (const v1::ModelPlan& model : point.models()) {
+      if (model.model() == point.model()) work += model.work();
+    }
+  }
+  return work;
 }
 
 struct ExpectedLadder {
@@ -120,22 +132,22 @@ TEST_F(PlanServiceTest, EveryExperimentHasItsLadderCheapestFirst) {
   }
 }
 
+// The extra time of a job's first point, because caches are cold.
+double PlanServiceTest::FirstPoint() {
+  const v1::PlanEnsembleJobResponse plan = PlanOf(PlanQuestion(v1::EnsembleSpec::EQUILIBRIUM));
+  return plan.work() - WorkOfPoints(plan);
+}
+
 TEST_F(PlanServiceTest, TheWorkIsThatOfTheChosenOneOverAllPoints) {
   v1::EnsembleSpec spec = PlanQuestion(v1::EnsembleSpec::FIRST_HIT);
   for (const double delta : {0.2, 0.05}) spec.mutable_grid()->add_delta(delta);
   const v1::PlanEnsembleJobResponse plan = PlanOf(spec);
   ASSERT_EQ(plan.points_size(), 3);
-  double work = 0;
-  for (const v1::PointPlan& point : plan.points()) {
-    for (const v1::ModelPlan& model : point.models()) {
-      if (model.model() == point.model()) work += model.work();
-    }
-  }
-  EXPECT_DOUBLE_EQ(plan.work(), plan.rates().first_point() + work);
+  EXPECT_NEAR(plan.work(), FirstPoint() + WorkOfPoints(plan), 1e-9);
   EXPECT_EQ(plan.workers(), 2);
   // The store's thread may share the workers' cores.
   EXPECT_GE(plan.time(), plan.work() / 2);
-  EXPECT_LE(plan.time(), plan.work() + 3 * plan.rates().stored_closed_form());
+  EXPECT_LE(plan.time(), plan.work() + 0.1);
 }
 
 // At delta = 1e-6 the lanes of a worker need many minutes until their first orbits end.
@@ -169,21 +181,6 @@ TEST_F(PlanServiceTest, MemoryIsThatOfTheLargestGas) {
   const v1::PlanEnsembleJobResponse plan = PlanOf(spec);
   EXPECT_GT(plan.memory(), small + 1e7);
   EXPECT_LT(plan.memory(), 1e9);
-}
-
-TEST_F(PlanServiceTest, RatesAreMeasuredAndPositive) {
-  const v1::ComputingRates rates = PlanOf(PlanQuestion(v1::EnsembleSpec::EQUILIBRIUM)).rates();
-  EXPECT_GT(rates.closed_form(), 0);
-  EXPECT_GT(rates.spectrum(), 0);
-  EXPECT_GT(rates.stored_closed_form(), 0);
-  EXPECT_GT(rates.stored_spectrum(), 0);
-  EXPECT_GT(rates.jump(), 0);
-  EXPECT_GT(rates.wall_hit(), 0);
-  EXPECT_GT(rates.collision(), 0);
-  EXPECT_GT(rates.sample(), 0);
-  EXPECT_GT(rates.wall_hit_single(), 0);
-  EXPECT_GT(rates.event_reference(), 0);
-  EXPECT_LT(rates.wall_hit(), rates.event_reference());
 }
 
 // To measure what storing takes, the server makes a store for a moment.
@@ -220,13 +217,7 @@ TEST_F(PlanServiceTest, ALargeGridIsPlannedByAThousandPointsEvenlySpread) {
   for (int i = 0; i < 1000; ++i) {
     EXPECT_EQ(plan.points(i).parameters().delta(), spec.grid().delta(100 * i));
   }
-  double work = 0;
-  for (const v1::PointPlan& point : plan.points()) {
-    for (const v1::ModelPlan& model : point.models()) {
-      if (model.model() == point.model()) work += model.work();
-    }
-  }
-  EXPECT_NEAR((plan.work() - plan.rates().first_point()) / (100 * work), 1, 1e-9);
+  EXPECT_NEAR((plan.work() - FirstPoint()) / (100 * WorkOfPoints(plan)), 1, 1e-9);
 }
 
 TEST_F(PlanServiceTest, APlanCreatesNoJob) {

@@ -1,3 +1,5 @@
+#include "server/api/server_status.h"
+
 #include <atomic>
 #include <memory>
 #include <optional>
@@ -14,9 +16,8 @@
 #include "grpcpp/server_builder.h"
 #include "gtest/gtest.h"
 #include "prometheus/text_serializer.h"
+#include "server/api/call.h"
 #include "server/api/methods.h"
-#include "server/api/serve.h"
-#include "server/api/server_metrics.h"
 #include "server/api/services.h"
 #include "server/convert/spec.h"
 #include "tests/server/error_details.h"
@@ -61,23 +62,20 @@ class ServerStatusTest : public testing::Test {
 
   TemporaryFolder folder_;
   Gate gate_;
-  const Limits limits_ = {.max_active_jobs = 7,
-                          .max_active_points = 71,
+  const Limits limits_ = {.max_active_jobs_per_principal = 7,
                           .max_active_points_per_principal = 72,
                           .max_samples_per_job = 0,
-                          .max_calls_per_principal = 73,
-                          .max_call_bytes_per_principal = 1000};
+                          .max_streams_per_principal = 73};
   Authenticator authenticator_{/*needs_tokens=*/false};
   std::unique_ptr<Store> store_;
   ModelLadder ladder_{*store_, 2};
   ThreadPool pool_{
       2, FakeExperiments([this](size_t, uint64_t, std::stop_token stop) { gate_.Pass(stop); })};
   JobBook book_{*store_, limits_, pool_.scheduler()};
-  OpenCalls open_calls_{limits_};
-  Turns turns_{1, 1};
+  Quotas quotas_{limits_};
   Activity activity_;
   std::atomic<bool> draining_ = false;
-  Streams streams_{limits_, authenticator_, std::chrono::seconds(10), draining_};
+  Streams streams_{authenticator_, std::chrono::seconds(10), draining_};
   CallObserver calls_;
   ServiceContext context_{.authenticator = authenticator_,
                           .limits = limits_,
@@ -86,8 +84,7 @@ class ServerStatusTest : public testing::Test {
                           .threads = pool_.threads(),
                           .slurm = nullptr,
                           .ladder = ladder_,
-                          .open_calls = open_calls_,
-                          .turns = turns_,
+                          .quotas = quotas_,
                           .streams = streams_,
                           .activity = activity_,
                           .draining = draining_,
@@ -140,12 +137,10 @@ TEST_F(ServerStatusTest, CountsQueuedAndRunningWork) {
   EXPECT_GT(status.store_bytes(), 4096);
   EXPECT_GT(status.rates().wall_hit(), 0);
   EXPECT_GT(status.rates().jump(), 0);
-  EXPECT_EQ(status.limits().max_active_jobs(), 7);
+  EXPECT_EQ(status.limits().max_active_jobs_per_principal(), 7);
   EXPECT_EQ(status.limits().max_samples_per_job(), 0);
-  EXPECT_EQ(status.limits().max_active_points(), 71);
   EXPECT_EQ(status.limits().max_active_points_per_principal(), 72);
-  EXPECT_EQ(status.limits().max_calls_per_principal(), 73);
-  EXPECT_EQ(status.limits().max_call_bytes_per_principal(), 1000);
+  EXPECT_EQ(status.limits().max_streams_per_principal(), 73);
   EXPECT_EQ(status.engine_version(), EngineVersion());
 }
 
@@ -196,7 +191,7 @@ TEST(ServerStatus, IsOpenToEveryAuthenticatedPrincipal) {
   EXPECT_EQ(status.role(), "admin");
   EXPECT_EQ(status.blocks_computed(), 10);
   EXPECT_EQ(status.samples_computed(), 10 * kFakeSamplesPerBlock);
-  EXPECT_EQ(status.limits().max_active_jobs(), Limits().max_active_jobs);
+  EXPECT_EQ(status.limits().max_points_per_job(), Limits().max_points_per_job);
   ASSERT_EQ(status.principals_size(), 1);
   EXPECT_EQ(status.principals(0).principal(), "local");
   EXPECT_EQ(status.principals(0).running_jobs(), 0);

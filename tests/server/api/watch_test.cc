@@ -513,28 +513,6 @@ TEST_F(WatchTest, WatchesLeaveThreadsToOtherCalls) {
   EXPECT_EQ(server.Status().streams(), kMost);
 }
 
-TEST(Streams, AreCountedByPrincipal) {
-  const Limits limits = {.max_streams = 3, .max_streams_per_principal = 2};
-  const Authenticator authenticator(/*needs_tokens=*/false);
-  const std::atomic<bool> draining = false;
-  Streams streams(limits, authenticator, kNever, draining);
-  grpc::ServerContext context;
-  const Principal ann{"ann"}, bob{"bob"};
-  Stream a(streams, context, ann), b(streams, context, ann), c(streams, context, ann);
-  EXPECT_OK(streams.Add(a));
-  EXPECT_OK(streams.Add(b));
-  EXPECT_THAT(streams.Add(c), StatusIs(absl::StatusCode::kResourceExhausted));
-  {
-    Stream d(streams, context, bob), e(streams, context, bob);
-    EXPECT_OK(streams.Add(d));
-    EXPECT_THAT(streams.Add(e), StatusIs(absl::StatusCode::kResourceExhausted));
-    EXPECT_EQ(streams.size(), 3u);
-    EXPECT_THAT(streams.ByPrincipal(),
-                testing::ElementsAre(testing::Pair("ann", 2), testing::Pair("bob", 1)));
-  }
-  EXPECT_THAT(streams.ByPrincipal(), testing::ElementsAre(testing::Pair("ann", 2)));
-}
-
 // ---- many ----
 
 class Listener : public grpc::ClientReadReactor<WatchMessage> {

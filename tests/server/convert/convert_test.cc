@@ -624,6 +624,32 @@ TEST(Errors, CarryReasonAndDomain) {
   EXPECT_EQ(info.metadata().at("name"), "ensembleJobs/x");
 }
 
+google::rpc::RetryInfo RetryOf(const absl::Status& status) {
+  const google::rpc::Status error = RpcStatus(status);
+  google::rpc::RetryInfo retry;
+  for (const auto& detail : error.details()) detail.UnpackTo(&retry);
+  return retry;
+}
+
+TEST(Errors, SayHowLongToWaitWhereWaitingHelps) {
+  const auto limit = [](const std::string& reason) { return LimitExceeded(reason, "it", "f", 1); };
+  for (const absl::Status& cured :
+       {ShuttingDown(), StoreFailure(absl::ResourceExhaustedError("full")),
+        StoreFailure(absl::UnavailableError("fails")), limit("TOO_MANY_CALLS"),
+        limit("TOO_MANY_STREAMS"), limit("TOO_MANY_JOBS"), limit("TOO_MANY_ACTIVE_POINTS"),
+        limit("QUEUE_FULL")}) {
+    EXPECT_GT(RetryOf(cured).retry_delay().seconds(), 0) << cured;
+    EXPECT_EQ(RetryDelayOf(RpcStatus(cured)),
+              absl::Seconds(RetryOf(cured).retry_delay().seconds()));
+  }
+  for (const absl::Status& lasting :
+       {limit("TOO_MANY_POINTS"), limit("TOO_MANY_SAMPLES"), limit("TOO_MANY_STORED_BYTES"),
+        StoreFailure(absl::DataLossError("damaged")), JobNotFound("x")}) {
+    EXPECT_FALSE(RetryOf(lasting).has_retry_delay()) << lasting;
+    EXPECT_EQ(RetryDelayOf(RpcStatus(lasting)), absl::ZeroDuration());
+  }
+}
+
 TEST(Errors, AToleranceThatWasNotReachedNamesPointToleranceBudgetAndError) {
   EnsembleSpec spec = FakeSpec(1, 0);
   spec.target = {.tolerance = 1e-6, .budget_seconds = 0.25};

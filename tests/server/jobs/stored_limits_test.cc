@@ -140,18 +140,19 @@ TEST_F(StoredLimitsTest, AnExpiredJobCanBeComputedAgain) {
 TEST_F(StoredLimitsTest, APinnedJobDoesNotExpire) {
   Start({.retain_days = 1});
   const std::string pinned = Done(kAlice, 1), other = Done(kAlice, 2);
-  ASSERT_OK_AND_ASSIGN(const EnsembleJob job, book_->Pin(kAlice, pinned, true));
+  ASSERT_OK_AND_ASSIGN(const EnsembleJob job, book_->Update(kAlice, pinned, {.pinned = true}));
   EXPECT_TRUE(job.pinned());
   EXPECT_FALSE(job.has_expire_time());
   book_->KeepLimits(absl::Now() + 100 * kDay);
   EXPECT_EQ(PointsOf(kAlice, pinned), 3u);
   EXPECT_EQ(ResultsError(other), "RESULTS_EXPIRED");
-  EXPECT_OK(book_->Pin(kAlice, pinned, false));
+  EXPECT_OK(book_->Update(kAlice, pinned, {.pinned = false}));
   book_->KeepLimits(absl::Now() + 100 * kDay);
   EXPECT_EQ(ResultsError(pinned), "RESULTS_EXPIRED");
-  EXPECT_EQ(ReasonOf(book_->Pin(kAlice, pinned, true).status()), "RESULTS_EXPIRED");
-  EXPECT_EQ(ReasonOf(book_->Pin(kAlice, "nosuchjob", true).status()), "JOB_NOT_FOUND");
-  EXPECT_EQ(ReasonOf(book_->Pin(kBob, other, true).status()), "JOB_NOT_FOUND");
+  EXPECT_EQ(ReasonOf(book_->Update(kAlice, pinned, {.pinned = true}).status()), "RESULTS_EXPIRED");
+  EXPECT_EQ(ReasonOf(book_->Update(kAlice, "nosuchjob", {.pinned = true}).status()),
+            "JOB_NOT_FOUND");
+  EXPECT_EQ(ReasonOf(book_->Update(kBob, other, {.pinned = true}).status()), "JOB_NOT_FOUND");
 }
 
 TEST_F(StoredLimitsTest, AnActiveJobDoesNotExpireAndCanBePinned) {
@@ -159,13 +160,27 @@ TEST_F(StoredLimitsTest, AnActiveJobDoesNotExpireAndCanBePinned) {
   Start({.retain_days = 1}, GatedExperiments(gate));
   const std::string id = *JobIdOf(Create(kAlice, 1)->name());
   gate.AwaitWaiting(1);
-  EXPECT_TRUE(book_->Pin(kAlice, id, true)->pinned());
+  EXPECT_TRUE(book_->Update(kAlice, id, {.pinned = true})->pinned());
   book_->KeepLimits(absl::Now() + 100 * kDay);
   gate.Open();
   AwaitEnd(kAlice, id);
   EXPECT_TRUE(Get(kAlice, id).pinned());
   book_->KeepLimits(absl::Now() + 100 * kDay);
   EXPECT_EQ(PointsOf(kAlice, id), 3u);
+}
+
+// A change of one field leaves the other as it is. The priority of a job that has ended can be
+// changed, also if its results have expired.
+TEST_F(StoredLimitsTest, AnUpdateChangesOnlyItsFields) {
+  Start({.retain_days = 1});
+  const std::string id = Done(kAlice, 1);
+  ASSERT_OK(book_->Update(kAlice, id, {.pinned = true}));
+  EXPECT_TRUE(book_->Update(kAlice, id, {.priority = 7})->pinned());
+  ASSERT_OK_AND_ASSIGN(const EnsembleJob job, book_->Update(kAlice, id, {.pinned = false}));
+  EXPECT_EQ(job.priority(), 7);
+  EXPECT_FALSE(job.pinned());
+  book_->KeepLimits(absl::Now() + 2 * kDay);
+  EXPECT_EQ(book_->Update(kAlice, id, {.priority = 8})->priority(), 8);
 }
 
 TEST_F(StoredLimitsTest, JobsThatExpireSoonAreCounted) {
@@ -201,13 +216,13 @@ TEST_F(StoredLimitsTest, TheStoreKeepsItsBound) {
 TEST_F(StoredLimitsTest, AStoreFullOfPinnedJobsRejectsNewJobs) {
   Start({.max_store_bytes = 200'000});
   const std::string pinned = *JobIdOf(Create(kAlice, 1, 900)->name());
-  ASSERT_OK(book_->Pin(kAlice, pinned, true));
+  ASSERT_OK(book_->Update(kAlice, pinned, {.pinned = true}));
   AwaitEnd(kAlice, pinned);
   book_->KeepLimits(absl::Now());
   const absl::Status refused = Create(kBob, 2).status();
   EXPECT_THAT(refused, IsLimit("TOO_MANY_STORED_BYTES", "max-store-bytes"));
   EXPECT_EQ(PointsOf(kAlice, pinned), 900u);
-  ASSERT_OK(book_->Pin(kAlice, pinned, false));
+  ASSERT_OK(book_->Update(kAlice, pinned, {.pinned = false}));
   while (!Create(kBob, 2).ok()) book_->KeepLimits(absl::Now());
 }
 

@@ -75,6 +75,23 @@ TEST(FairShare, AHigherPriorityGoesFirstWithinItsPrincipal) {
   EXPECT_EQ(FirstRun(share), 1);
 }
 
+// The run keeps no time from its earlier priority: it neither catches up nor waits.
+TEST(FairShare, AChangedPriorityCountsFromTheNextTurn) {
+  FairShare share;
+  AddRuns(share, {1}, "a", 0);
+  AddRuns(share, {2}, "a", -1);
+  AddRuns(share, {3}, "a", 5);
+  Served(share, 100);
+  share.SetPriority(1, 5);
+  share.SetPriority(2, 5);
+  const SecondsByRun served = Served(share, 90);
+  for (const int64_t run : {1, 2, 3}) EXPECT_NEAR(served.at(run), 30, 0.2);
+  share.SetPriority(3, 6);
+  EXPECT_NEAR(Served(share, 90).at(3), 90, 0.2);
+  share.SetPriority(4, 1);  // is not present
+  EXPECT_EQ(share.runs(), 3u);
+}
+
 // Time that runs of the highest priority cannot use goes to the next priority.
 TEST(FairShare, RunsWithoutATaskAreSkipped) {
   FairShare share;

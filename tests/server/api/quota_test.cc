@@ -1,6 +1,6 @@
-// The calls of a principal and their memory, also of unread answers; and the turns of calls that
-// compute.
-#include "server/api/open_calls.h"
+// What the calls of a principal take: calls and their memory, also of unread answers, streams, and
+// the turns of calls that compute.
+#include "server/api/quota.h"
 
 #include <latch>
 #include <memory>
@@ -12,7 +12,6 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "server/api/turns.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
@@ -25,56 +24,77 @@
 namespace ballpiston::server {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Pair;
 
-constexpr Limits kTwoCallsOfTenBytes = {.max_calls_per_principal = 2,
-                                        .max_call_bytes_per_principal = 10};
+Quota::Rule Calls(Quota::Limit all, Quota::Limit of_one) {
+  return {.what = "calls", .reason = "TOO_MANY_CALLS", .all = all, .of_one = of_one};
+}
 
-TEST(OpenCalls, EachPrincipalHasItsOwnCalls) {
-  OpenCalls calls(kTwoCallsOfTenBytes);
-  auto first = calls.Begin("ann", 1);
-  const auto second = calls.Begin("ann", 1);
+TEST(Quota, EachPrincipalHasItsOwnLimit) {
+  Quota calls(Calls({}, {2, "most-of-one"}));
+  auto first = calls.Take("ann");
+  const auto second = calls.Take("ann");
   ASSERT_OK(first);
   ASSERT_OK(second);
-  const auto third = calls.Begin("ann", 1);
-  EXPECT_THAT(third, StatusIs(absl::StatusCode::kResourceExhausted,
-                              HasSubstr("permits 2 (--max-calls-per-principal)")));
-  EXPECT_OK(calls.Begin("bob", 1));
+  EXPECT_THAT(calls.Take("ann"),
+              StatusIs(absl::StatusCode::kResourceExhausted,
+                       "ann would have 3 calls; this server permits 2 (--most-of-one)"));
+  EXPECT_OK(calls.Take("bob"));
+  EXPECT_THAT(calls.ByPrincipal(), ElementsAre(Pair("ann", 2)));
   first->reset();
-  EXPECT_OK(calls.Begin("ann", 1));
+  EXPECT_OK(calls.Take("ann"));
 }
 
-TEST(OpenCalls, BytesAreLimitedButASingleCallIsPermitted) {
-  OpenCalls calls(kTwoCallsOfTenBytes);
-  auto large = calls.Begin("ann", 11);
+TEST(Quota, AllPrincipalsTogetherHaveALimit) {
+  Quota calls(Calls({2, "most-of-all"}, {}));
+  const auto first = calls.Take("ann"), second = calls.Take("bob");
+  EXPECT_EQ(calls.taken(), 2);
+  EXPECT_THAT(calls.Take("cat"),
+              StatusIs(absl::StatusCode::kResourceExhausted,
+                       "all clients would have 3 calls; this server permits 2 (--most-of-all)"));
+}
+
+TEST(Quota, AmountsAreLimitedButASingleOneIsPermitted) {
+  Quota bytes(Calls({}, {10, "most-bytes"}));
+  auto large = bytes.Take("ann", 11);
   ASSERT_OK(large);
-  EXPECT_THAT(calls.Begin("ann", 1), StatusIs(absl::StatusCode::kResourceExhausted,
-                                              HasSubstr("10 (--max-call-bytes-per-principal)")));
+  EXPECT_THAT(bytes.Take("ann", 1), StatusIs(absl::StatusCode::kResourceExhausted));
   large->reset();
-  const auto half = calls.Begin("ann", 5);
+  const auto half = bytes.Take("ann", 5);
   ASSERT_OK(half);
-  EXPECT_OK(calls.Begin("ann", 5));
-  (*half)->AddBytes(1);  // an answer
-  EXPECT_THAT(calls.Begin("ann", 5), StatusIs(absl::StatusCode::kResourceExhausted));
+  EXPECT_OK(bytes.Take("ann", 5));
+  const Quota::Part answer = bytes.TakeAnyway("ann", 6);
+  EXPECT_THAT(bytes.Take("ann", 5), StatusIs(absl::StatusCode::kResourceExhausted));
 }
 
-TEST(OpenCalls, ZeroMeansUnlimited) {
-  const Limits none = {.max_calls_per_principal = 0, .max_call_bytes_per_principal = 0};
-  OpenCalls calls(none);
-  std::vector<std::shared_ptr<OpenCalls::Call>> open;
+TEST(Quota, ZeroMeansUnlimited) {
+  Quota calls(Calls({0, ""}, {0, ""}));
+  std::vector<Quota::Part> taken;
   for (int i = 0; i < 2000; ++i) {
-    auto call = calls.Begin("ann", 1 << 30);
+    auto call = calls.Take("ann", 1 << 30);
     ASSERT_OK(call);
-    open.push_back(*std::move(call));
+    taken.push_back(*std::move(call));
   }
+}
+
+// Each stream has a thread.
+TEST(Quota, StreamsAreAlwaysLimited) {
+  Quotas quotas({.max_streams = 0, .max_streams_per_principal = 0});
+  const auto most = quotas.streams.Take("ann", kMostStreams);
+  EXPECT_OK(most);
+  EXPECT_EQ(ReasonOf(quotas.streams.Take("bob")), "TOO_MANY_STREAMS");
+  EXPECT_EQ(MostStreams({.max_streams = 3}), 3);
+  EXPECT_EQ(MostStreams({.max_streams = 10 * kMostStreams}), kMostStreams);
 }
 
 // A turn that is waited for in a thread of its own.
 class WaitedTurn {
  public:
-  WaitedTurn(Turns& turns, const std::string& principal)
+  WaitedTurn(Quota& turns, const std::string& principal)
       : thread_([this, &turns, principal] {
-          const Turns::Turn turn(turns, principal);
+          const Quota::Part turn = turns.Await(principal);
           taken_.count_down();
           end_.wait();
         }) {}
@@ -90,8 +110,8 @@ class WaitedTurn {
   std::thread thread_;
 };
 
-TEST(Turns, OnePrincipalLeavesTurnsToOthers) {
-  Turns turns(2, 1);
+TEST(Quota, OnePrincipalLeavesTurnsToOthers) {
+  Quota turns({.all = {2}, .of_one = {1}});
   auto first = std::make_unique<WaitedTurn>(turns, "ann");
   first->AwaitTaken();
   WaitedTurn second(turns, "ann"), other(turns, "bob");
