@@ -124,7 +124,10 @@ EnsembleSpec Endless() {
 
 Answer AnswerOf(const std::vector<v1::PointResult>& points) {
   Answer answer;
-  for (const v1::PointResult& point : points) answer[point.index()] = point.SerializeAsString();
+  for (v1::PointResult point : points) {
+    point.clear_name();  // it has the job's
+    answer[point.index()] = point.SerializeAsString();
+  }
   return answer;
 }
 
