@@ -1,5 +1,5 @@
-// What the calls of the principals take at a time: calls, bytes, streams, or turns to compute. A
-// principal that takes much leaves enough to the others. Thread-safe.
+// A quota limits how many calls, bytes, streams or turns the principals use at the same time. Its
+// limits keep one principal from using the whole server. Thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,8 @@ class Quota {
     Limit of_one = {};        // of each principal
   };
 
-  // What was taken; given back when the last copy is destroyed. The quota must outlive it.
+  // An amount that a call uses. The quota gets it back when the last copy of the part is destroyed.
+  // The quota must outlive its parts.
   using Part = std::shared_ptr<void>;
 
   explicit Quota(Rule rule) : rule_(rule) {}

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,7 @@ namespace ballpiston::server {
 // A page of a list ends before it has this many bytes (if it has an entry already).
 inline constexpr size_t kMaxPageBytes = size_t{2} << 20;
 
-// What the pages of a list have in common: a hash of the list's name and its filters. The view may
+// A hash of the list's name and its filters. All pages of one list have the same hash. The view may
 // change from page to page.
 template <typename Request>
 std::string ListOf(Request request) {

@@ -19,7 +19,7 @@ inline bool HasEnded(JobState state) {
          state == v1::EnsembleJob::CANCELLED;
 }
 
-// What is computed of a job.
+// How much of a job is computed.
 struct JobNumbers {
   int64_t points_done = 0;  // these are stored
   double samples = 0;

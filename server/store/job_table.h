@@ -48,11 +48,11 @@ void InsertRequest(Database& database, const std::string& principal, const std::
 std::optional<RequestRecord> FindRequest(Database& database, const std::string& principal,
                                          const std::string& request_id);
 
-// What active jobs (neither SUCCEEDED nor FAILED nor CANCELLED) take: all of them, and those of one
-// principal.
+// The number of active jobs (neither SUCCEEDED nor FAILED nor CANCELLED) and of their points: of
+// all principals, and of one.
 struct Load {
   int64_t jobs = 0, own_jobs = 0;
-  int64_t points = 0, own_points = 0;  // of their grids
+  int64_t points = 0, own_points = 0;
 };
 Load ActiveLoad(Database& database, const std::string& principal);
 

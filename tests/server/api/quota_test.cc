@@ -1,5 +1,5 @@
-// What the calls of a principal take: calls and their memory, also of unread answers, streams, and
-// the turns of calls that compute.
+// Limits on the calls of a principal: on their number and their memory (unread answers count), on
+// streams, and on calls that compute.
 #include "server/api/quota.h"
 
 #include <latch>

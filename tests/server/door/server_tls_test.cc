@@ -72,7 +72,7 @@ TEST_F(ServerTlsTest, AMissingFileIsNamed) {
   EXPECT_THAT(Error(), HasSubstr("No such file"));
 }
 
-// As with a file that a certificate's authority delivers in one piece.
+// Some authorities deliver the key and the certificate in one file.
 TEST_F(ServerTlsTest, KeyAndCertificateMayBeInOneFile) {
   const KeyAndCertificate made = files_.authority().Issue("x");
   const std::string both = made.certificate + made.key;

@@ -556,7 +556,7 @@ TEST_F(LimitTest, PointsOfJobsThatAreNotCreatedDoNotCount) {
   AwaitEnd(Name(kAnn, FreshRequest(Equilibrium(4, 5))));
 }
 
-// So that the table does not grow with every question that is asked again.
+// Otherwise the table of requests would grow each time a question is asked again.
 TEST_F(AcceptanceTest, OnlyTheRequestThatMadeTheJobIsStored) {
   const std::string name = Answered(kAnn, CreateRequest(Question(), kUuid));
   for (int i = 1; i <= 3; ++i) {
