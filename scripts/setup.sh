@@ -24,6 +24,7 @@ readonly PACKAGES=(
   libcli11-dev                                                 # the flags of both programs
   libcpp-httplib-dev pkgconf                                   # the client's page
   libzip-dev                                                   # results as NumPy's archives
+  python3                                                      # builds the Python package
   gnuplot-nox)                                                 # the client's figures
 
 # The version of the installed CMake; without CMake, the version of its package; empty if unknown.
