@@ -14,6 +14,7 @@
 
 #include "gtest/gtest.h"
 #include "server/fatal_signals.h"
+#include "tests/support/death_test_folder.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
@@ -231,7 +232,7 @@ int Overflow(int depth) {
   return depth == 0 ? frame[0] : Overflow(depth + 1) + frame[0];
 }
 
-class FatalSignalsDeathTest : public CrashRecordTest {
+class FatalSignalsDeathTest : public testing::Test {
  protected:
   template <typename Fault>
   void DieInATurn(Fault fault) {
@@ -244,26 +245,32 @@ class FatalSignalsDeathTest : public CrashRecordTest {
       fault();
     }).join();
   }
+
+  // What the next process finds.
+  int Deaths() const { return CrashRecord(folder_.path(), {}).Deaths(kFirst); }
+
+ private:
+  const DeathTestFolder folder_;
 };
 
 TEST_F(FatalSignalsDeathTest, AFaultCounts) {
   EXPECT_DEATH(DieInATurn([] { *static_cast<volatile int*>(nullptr) = 0; }), "");
-  EXPECT_EQ(Next()->Deaths(kFirst), 1);
+  EXPECT_EQ(Deaths(), 1);
 }
 
 TEST_F(FatalSignalsDeathTest, AStackOverflowCounts) {
   EXPECT_DEATH(DieInATurn([] { Overflow(1); }), "");
-  EXPECT_EQ(Next()->Deaths(kFirst), 1);
+  EXPECT_EQ(Deaths(), 1);
 }
 
 TEST_F(FatalSignalsDeathTest, AnAbortCounts) {
   EXPECT_DEATH(DieInATurn([] { abort(); }), "");
-  EXPECT_EQ(Next()->Deaths(kFirst), 1);
+  EXPECT_EQ(Deaths(), 1);
 }
 
 TEST_F(FatalSignalsDeathTest, AKillDoesNotCount) {
   EXPECT_DEATH(DieInATurn([] { raise(SIGKILL); }), "");
-  EXPECT_EQ(Next()->Deaths(kFirst), 0);
+  EXPECT_EQ(Deaths(), 0);
 }
 
 TEST_F(FatalSignalsDeathTest, AFatalSignalOfAnotherProcessDoesNotCount) {
@@ -272,7 +279,7 @@ TEST_F(FatalSignalsDeathTest, AFatalSignalOfAnotherProcessDoesNotCount) {
                  pause();
                }),
                "");
-  EXPECT_EQ(Next()->Deaths(kFirst), 0);
+  EXPECT_EQ(Deaths(), 0);
 }
 
 TEST(OutOfMemoryKills, TheGroupStaysTheSame) {
