@@ -23,7 +23,6 @@ readonly PACKAGES=(
   prometheus-cpp-dev                                           # metrics
   libcli11-dev                                                 # the flags of both programs
   libcpp-httplib-dev pkgconf                                   # the client's page
-  libzip-dev                                                   # results as NumPy's archives
   python3                                                      # builds the Python package
   gnuplot-nox)                                                 # the client's figures
 

@@ -248,8 +248,8 @@ const FlagGroup kSave = {
     "File",
     {{"--save", File(To(&Options::save)),
       "write the result to this file, with its specification, seed and versions, and print the "
-      "file's path. The ending selects the format: .json has everything, .npz NumPy arrays, .csv "
-      "the estimates, or what --format selects"}}};
+      "file's path. The ending selects the format: .json has everything, .npz NumPy arrays (this "
+      "needs the Python package), .csv the estimates, or what --format selects"}}};
 
 const FlagGroup kProgress = {
     "Progress",
