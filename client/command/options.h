@@ -55,6 +55,7 @@ struct Options {
   bool quiet = false, verbose = false;
   std::vector<std::string> words;  // of help and completion
   PageFormat page = PageFormat::kText;
+  bool all = false;  // of help: every flag
   Completion completion = Completion::kBash;
 
   std::set<std::string> given;  // names of the flags on the command line: --rho
