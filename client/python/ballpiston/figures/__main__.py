@@ -1,0 +1,24 @@
+"""What `ballpiston figure` starts: python3 .../ballpiston/figures/__main__.py NAME --out DIR ..."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+_PACKAGES = {"grpc": "python3-grpcio", "google": "python3-protobuf"}  # else python3-MODULE
+
+if __name__ == "__main__":
+    if not __package__:  # started by its path: the package is the one that it belongs to
+        sys.path[0] = str(Path(__file__).resolve().parents[2])
+    try:
+        from ballpiston.figures.parts.command import main
+    except ModuleNotFoundError as error:
+        module = str(error.name).split(".", maxsplit=1)[0]
+        package = _PACKAGES.get(module, f"python3-{module}")
+        print(
+            f"ballpiston: figures need the module {module} of {sys.executable}: "
+            f"install the package {package}",
+            file=sys.stderr,
+        )
+        sys.exit(4)
+    sys.exit(main(sys.argv[1:]))
