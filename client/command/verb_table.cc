@@ -687,7 +687,8 @@ const std::vector<Remark>& Files() {
        "file, and flags override both. XDG_CONFIG_HOME replaces ~/.config"},
       {"~/.local/state/ballpiston",
        "jobs, log and socket of the private server. XDG_STATE_HOME replaces ~/.local/state. "
-       "BALLPISTON_SERVER_PROGRAM is the ballpistond to start"}};
+       "BALLPISTON_SERVER_PROGRAM is the ballpistond to start"},
+      {"python3", "draws figures. BALLPISTON_PYTHON is another Python to start"}};
   return *files;
 }
 

@@ -89,7 +89,10 @@ class JsonLines(Progress):
         self._write(snapshot.progress)
 
     def _write(self, progress: Any) -> None:
-        line = self._job | {"progress": json_format.MessageToDict(progress)}
+        values = json_format.MessageToDict(
+            progress, including_default_value_fields=True, preserving_proto_field_name=True
+        )
+        line = self._job | {"progress": values}
         print(json.dumps(line), file=sys.stderr, flush=True)
 
 

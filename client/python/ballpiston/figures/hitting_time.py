@@ -11,6 +11,8 @@ Time on two cores: quick 1 s, default 25 s, full 8 min.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -63,7 +65,7 @@ def draw(tables: Tables) -> Figure:
     panels = figure.subplots(2, len(energies), sharex=True, sharey="row", squeeze=False)
     longest = data["t"][np.isfinite(data["t"])].max()
     t = np.linspace(0, longest, 200)
-    exponential = {"color": style.BLACK, "linewidth": 1.2, "dashes": (6, 4)}
+    exponential: dict[str, Any] = {"color": style.BLACK, "linewidth": 1.2, "dashes": (6, 4)}
     for (upper, lower), epsilon in zip(panels.T, energies):
         upper.set_title(f"ε = {epsilon:g}")
         for k, delta in enumerate(deltas):

@@ -119,7 +119,7 @@ def _draw_law(upper: Any, lower: Any, law: Table, series: list[Any]) -> None:
         part = rows(law, model=model, delta=delta)
         place = part["lower"] + (k + 0.5) / len(series) * (part["upper"] - part["lower"])
         seen = part["density"] > 0
-        dots = {"color": style.colour(k), "markersize": 2}
+        dots: dict[str, Any] = {"color": style.colour(k), "markersize": 2}
         upper.semilogy(place[seen], part["density"][seen], "o", **dots)
         style.error_points(lower, place, part["ratio"], part["ratio_error"], **dots)
     upper.step(part["lower"], part["exact"], where="post", color=style.BLACK, linewidth=1)

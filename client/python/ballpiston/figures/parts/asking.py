@@ -25,9 +25,8 @@ _NAMESPACE = uuid.UUID("6c1f8b0e-4f0b-4c6e-9d43-0c7d1c1a7f11")
 
 def answer(client: Client, experiment: str, **question: Any) -> Result:
     """The result of a question. If the same question was asked before, its job goes on."""
-    return _job(client, specification(experiment, **question)).watch(
-        os.environ.get("BALLPISTON_PROGRESS", "auto")
-    )
+    job = _job(client, specification(experiment, **question))
+    return job.watch(os.environ.get("BALLPISTON_PROGRESS") or "auto")
 
 
 def _job(client: Client, question: Any) -> Job:

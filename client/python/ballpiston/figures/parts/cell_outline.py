@@ -46,4 +46,5 @@ def overlap(rho: float) -> FloatArray:
 
 def half_height(rho: float, x: FloatArray) -> FloatArray:
     """Of the cell at x, measured from its middle."""
-    return 0.5 - np.sqrt(rho**2 - (0.5 - np.abs(x)) ** 2)
+    half: FloatArray = 0.5 - np.sqrt(rho**2 - (0.5 - np.abs(x)) ** 2)
+    return half

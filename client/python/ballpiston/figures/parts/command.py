@@ -18,6 +18,7 @@ from typing import Any
 
 import ballpiston
 from ballpiston import errors
+from ballpiston.document import write_atomically
 from ballpiston.figures import names
 from ballpiston.figures.parts import style, tables
 from ballpiston.parameter_lists import number_list, whole_number
@@ -82,7 +83,7 @@ def _run(parsed: tuple[Namespace, dict[str, str]]) -> list[Path]:
 
 def _copied(name: str, to: Path) -> Path:
     if not to.exists():
-        tables.write_atomically(to, Path(_installed(name)).read_bytes())
+        write_atomically(to, Path(_installed(name)).read_bytes())
     return to
 
 

@@ -113,7 +113,7 @@ class SeriesFit:
 
         def chi(model_error: float) -> float:
             _, whitened, bases = with_error(model_error)
-            return float(whitened @ whitened - max(b.gain(whitened) for b in bases.values()))
+            return float(whitened @ whitened - max(float(b.gain(whitened)) for b in bases.values()))
 
         freedom = len(x) - 5
         lower, upper = 0.0, _LARGEST_ERROR if chi(0) > freedom else 0.0

@@ -8,12 +8,16 @@ import subprocess
 import sys
 from pathlib import Path
 
-from ballpiston.errors import Error
+from ballpiston.errors import Error, InvalidArgument
 from ballpiston.private_server import find_private_server
 
 
 class ProgramFailed(Error):
     """A program of a figure is missing or failed."""
+
+
+class InvalidUse(ProgramFailed, InvalidArgument):
+    """A program rejects its arguments, and has said why."""
 
 
 def output_of(program: str, *arguments: str, quiet: bool = False) -> str:
@@ -34,10 +38,6 @@ def output_of(program: str, *arguments: str, quiet: bool = False) -> str:
         kind = InvalidUse if ended.returncode == 2 else ProgramFailed
         raise kind(f"{program} failed with exit status {ended.returncode}")
     return ended.stdout
-
-
-class InvalidUse(ProgramFailed, ValueError):
-    """A program rejects its arguments, and has said why."""
 
 
 def _folders() -> list[str]:

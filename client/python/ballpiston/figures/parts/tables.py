@@ -117,8 +117,15 @@ def write(path: Path, whole: Table, comment: str = "") -> None:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(whole)
     for row in zip(*(column.tolist() for column in whole.values())):
-        writer.writerow(["" if cell != cell else cell for cell in row])
+        writer.writerow(map(_cell, row))
     write_atomically(path, text.getvalue().encode())
+
+
+def _cell(value: Any) -> Any:
+    """64 rather than 64.0."""
+    if not isinstance(value, float):
+        return value
+    return "" if np.isnan(value) else repr(value).removesuffix(".0")
 
 
 def _as_matrix(column: FloatArray) -> FloatArray:
