@@ -336,7 +336,8 @@ const FlagGroup kFigure = {
       "",
       {"quick"}},
      {"--edit", Switch(To(&Options::edit)),
-      "copy the figure's Python module to the --out folder, so that you can edit it; draw nothing"}}};
+      "copy the figure's Python module to the --out folder, so that you can edit it; draw "
+      "nothing"}}};
 
 const FlagGroup kVariables = {
     "Variables of a figure",

@@ -15,7 +15,7 @@ import pytest
 
 import ballpiston
 from ballpiston import figures
-from ballpiston.figures import ingoing_law, markov_test, rates, speed_accuracy, stability
+from ballpiston.figures import gas, ingoing_law, markov_test, rates, speed_accuracy, stability
 from ballpiston.figures.parts import command, oscillation, style, tables
 
 REFERENCE = json.loads(
@@ -104,6 +104,28 @@ def test_the_decay_and_the_maxima_of_relative_entropies_are_those_of_the_script(
     expect_equal(markov_test.maxima(excess), analysis("maxima"), "maxima")
 
 
+def test_the_error_of_an_excess_is_at_least_that_of_the_noise_floor() -> None:
+    divergence = {name: np.full(2, 0.5) for name in ("delta", "epsilon", "exponent")}
+    divergence |= {"value": np.array([3.0, 3.0]), "noise_floor": np.array([1.0, 2.0])}
+    divergence |= {"standard_error": np.array([0.1, 0.4]), "noise_error": np.array([0.3, 0.2])}
+    points = markov_test.excess(divergence)
+    assert points["excess"].tolist() == [2.0, 1.0]
+    assert points["standard_error"].tolist() == [0.3, 0.4]
+
+
+@pytest.mark.parametrize(
+    "dip,error,count", [(0.7, 0.01, 2), (0.9, 0.01, 1), (0.7, 0.2, 1)], ids=["deep", "flat", "noisy"]
+)
+def test_a_dip_parts_two_maxima_if_it_is_deep_and_certain(
+    dip: float, error: float, count: int
+) -> None:
+    excess = np.array([0.1, 1.0, dip, 1.1, 0.1])
+    points = {name: np.full(5, 0.5) for name in ("epsilon", "exponent")}
+    points |= {"delta": np.geomspace(0.1, 0.3, 5), "excess": excess}
+    points["standard_error"] = np.full(5, error)
+    assert len(markov_test.maxima(points)["delta"]) == count
+
+
 # The random numbers differ from those of the script. A difference of two shares of 200 data sets
 # has a standard error of at most 0.05; ten times this is exceeded with a probability below 1e-20.
 def test_oscillations_are_fitted_as_by_the_script(excess: tables.Table) -> None:
@@ -167,6 +189,14 @@ def test_merged_bins_keep_the_probability() -> None:
     assert merged["density"] * [4, 4, 2] == pytest.approx([6 / 45, 22 / 45, 17 / 45])
     assert merged["error"] == pytest.approx(np.sqrt([6, 22, 17]) / 45 / [4, 4, 2])
     assert merged["alpha"].tolist() == [2.0, 6.0, 9.0]
+
+
+def test_a_chain_is_drawn_as_one_row(client: ballpiston.Client) -> None:
+    data = gas.measure(client, cells="4")
+    geometry = data["gas-geometry"]
+    assert (geometry["columns"][0], geometry["rows"][0]) == (4, 1)
+    assert len(data["gas-pistons"]["x"]) == 4
+    expect_texts_inside(gas.draw(data))
 
 
 def test_the_counts_of_failures_are_read_from_the_report() -> None:

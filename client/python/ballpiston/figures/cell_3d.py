@@ -55,7 +55,7 @@ def draw(tables: Tables) -> Figure:
         _draw_wall(axes, cell_outline.arc(at["rho"], disc), bottom, ceiling, depth)
     _draw_strip(axes, at["rho"], np.linspace(-tip, low, 60), bottom, _FLOOR)
     _draw_strip(axes, at["rho"], np.linspace(low, tip, 60), bottom, style.ORANGE)
-    _draw_axes(axes, tip, low)
+    style.axis_arrows(axes, (0.9 * tip, 0.3 * tip, low), 0.35 * tip, ("q₁", "q₂", "q₃"))
     for place, text, more in (
         ((0.62, 0.03), "collision surface: q₁ = q₃", {"color": style.ORANGE}),
         ((0.03, 0.03), "floor: q₃ = 1/2 - λ/2 - δ", {}),
@@ -64,9 +64,7 @@ def draw(tables: Tables) -> Figure:
     ):
         axes.text2D(*place, text, transform=axes.transAxes, **more)
     if abs(stretch - 1) > 1e-12:
-        axes.text2D(
-            0.62, 0.91, f"heights drawn × {stretch:.2g}", transform=axes.transAxes
-        )
+        axes.text2D(0.62, 0.91, f"heights drawn × {stretch:.2g}", transform=axes.transAxes)
     return figure
 
 
@@ -95,13 +93,5 @@ def _draw_strip(axes: Any, rho: float, x: FloatArray, bottom: Any, colour: str) 
     half, z = cell_outline.half_height(rho, x), bottom(x)
     there = np.column_stack([x, half, z])
     back = np.column_stack([x, -half, z])[::-1]
-    face = Poly3DCollection([np.concatenate([there, back])], facecolor=colour, edgecolor=_EDGE, zorder=9)
-    axes.add_collection3d(face)
-
-
-def _draw_axes(axes: Any, tip: float, low: float) -> None:
-    origin = np.array([0.9 * tip, 0.3 * tip, low])
-    for k, name in enumerate(("q₁", "q₂", "q₃")):
-        step = 0.35 * tip * np.eye(3)[k]
-        axes.quiver(*origin, *step, color=style.BLACK, arrow_length_ratio=0.25, zorder=9)
-        axes.text(*(origin + 1.3 * step), name, ha="center", va="center")
+    face = [np.concatenate([there, back])]
+    axes.add_collection3d(Poly3DCollection(face, facecolor=colour, edgecolor=_EDGE, zorder=9))

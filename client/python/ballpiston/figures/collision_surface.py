@@ -1,4 +1,4 @@
-"""The velocities with which ball and piston leave a collision, at one energy (a figure of the paper)
+"""Velocities with which ball and piston leave a collision, at one energy (a figure of the paper)
 
 Velocities (v1, v2, v3) of ball and piston are points of the unit sphere. The outgoing velocities of
 the collision surface, with normal n = (-1, 0, 1)/sqrt 2, are the hemisphere above its tangent
@@ -57,7 +57,8 @@ def draw(tables: Tables) -> Figure:
     _draw_net(axes, turn)
     for sigma in (-1, 1):
         _draw_circle(axes, epsilon, sigma)
-    _draw_axes(axes)
+    _draw_normal(axes)
+    style.axis_arrows(axes, (-1.0, -0.9, -1.1), 0.42, ("v₁", "v₂", "v₃"))
     for height, text, colour in (
         (0.96, "above the plane", style.GREEN),
         (0.92, "below the plane", style.GREY),
@@ -97,12 +98,7 @@ def _draw_circle(axes: Any, epsilon: float, sigma: int) -> None:
     axes.text(1.15 * end, 1.15 * end, points[0, 2], f"  v₃ = {sign}√(2ε)", va="center")
 
 
-def _draw_axes(axes: Any) -> None:
-    origin = np.array([-1.0, -0.9, -1.1])
-    for k, name in enumerate(("v₁", "v₂", "v₃")):
-        step = 0.42 * np.eye(3)[k]
-        axes.quiver(*origin, *step, color=style.BLACK, arrow_length_ratio=0.2)
-        axes.text(*(origin + 1.25 * step), name, ha="center", va="center")
+def _draw_normal(axes: Any) -> None:
     normal = _in_plane_frame(np.array([1.22]), np.zeros(1), np.zeros(1))[0]
     axes.quiver(0, 0, 0, *normal, color=style.BLUE, linewidth=2.5, arrow_length_ratio=0.1)
     axes.text(*(1.08 * normal), "n", color=style.BLUE)

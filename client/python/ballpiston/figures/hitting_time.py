@@ -1,4 +1,4 @@
-"""Times to the first ball-piston collision, in equilibrium at one energy, beside the exponential law
+"""Times to the first ball-piston collision in equilibrium, beside the exponential law
 
 One column for each energy of the piston. Above: the probability that ball and piston have not
 collided up to the time t after a collision, for several delta, and the exponential law (black).

@@ -54,8 +54,8 @@ def measure(
 
 
 def beside_exact(bins: Table) -> Table:
-    """Densities with their binomial error, and their ratios to the master equation. A bin without an
-    orbit has the binomial error of the exact law."""
+    """Densities with their binomial error, and their ratios to the master equation. A bin without
+    an orbit has the binomial error of the exact law."""
     width = bins["upper"] - bins["lower"]
     exact, density, samples = bins["exact_density"], bins["density"], bins["samples"]
     share = np.where(bins["count"] > 0, bins["count"] / samples, exact * width)

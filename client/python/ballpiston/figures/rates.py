@@ -1,4 +1,4 @@
-"""Collision rates from the probability of a collision in a short time (three equations of the paper)
+"""Collision rates from the probability of a collision in a short time (equations of the paper)
 
 The probability P(t) of at least one event in a window of length t, divided by t and by the exact
 rate, with one standard error, against t in units of the mean free time. As t tends to 0 the ratio
@@ -63,10 +63,9 @@ def measure(
     have the next seeds."""
     kinds = _kinds(client, rho, delta, epsilon)
     batches: dict[Kind, list[FloatArray]] = {kind: [] for kind in kinds}
+    names = ("time", "event", "piston_energy_before")
     for k in range(orbits):
-        orbit = client.trace_arrays(
-            "time", "event", "piston_energy_before", rho=rho, delta=delta, seed=seed + k, events=events
-        )
+        orbit = client.trace_arrays(*names, rho=rho, delta=delta, seed=seed + k, events=events)
         for kind, found in batches.items():
             found += batches_of_gaps(orbit, kind)
     return {"rates": stacked(_rates(kind, found) for kind, found in batches.items())}

@@ -269,13 +269,14 @@ def _draw_orbits(axes: Any, curves: list[Curve]) -> None:
         else:
             height = run["value"] + 0.06 * highest
             axes.text(cost, height, curve.title, color=curve.colour, ha="center", **_SMALL)
-    axes.set(xscale="log", xlim=(0.2 * min(costs), 5 * max(costs)), xlabel="time of a wall hit / ns")
+    axes.set(xscale="log", xlim=(0.2 * min(costs), 5 * max(costs)))
+    axes.set_xlabel("time of a wall hit / ns")
     axes.set(ylim=(-0.5 * highest, 1.2 * highest), ylabel="wall hits until the orbit is wrong")
     style.title(axes, "d", "single orbits")
 
 
 def _draw_relaxation(axes: Any, data: Table) -> None:
-    """For each delta the rows limit-floor contain the bias of the limit, or an upper bound of it."""
+    """The rows limit-floor contain the bias of the limit, or an upper bound, at each delta."""
     floors = rows(data, quantity="limit-floor")
     runs = rows(data, quantity="relaxation-time")
     is_bias = floors["bias_resolved"] == 1
@@ -304,7 +305,7 @@ def _draw_relaxation(axes: Any, data: Table) -> None:
     low, high = axes.get_ylim()
     end = _LABEL_AT * runs["work_seconds"][enough].max()
     for name, y, colour in zip(names, spread(wanted, (high / low) ** _LINE_OF_TEXT), colours):
-        axes.text(end, y, name, color=colour, va="center", **_SMALL)
+        axes.text(end, y, name, color=colour, va="bottom", **_SMALL)
     bounds = ", ".join(
         f"δ = {delta:g}: ≤ {100 * value:.2g} %"
         for delta, value in zip(floors["delta"][~is_bias], floors["value"][~is_bias])

@@ -49,7 +49,7 @@ _METHODS = (
     "unit speed assumed",
     "fixed steps of 1e-3",
 )
-_SHADES = LinearSegmentedColormap.from_list("failures", ["#fdf0d5", "#fdbf6f", "#e8603c", "#8c1d18"])
+_SHADES = LinearSegmentedColormap.from_list("", ["#fdf0d5", "#fdbf6f", "#e8603c", "#8c1d18"])
 _NO_FAILURE = "#d6e6f2"
 _LINE = 25  # height of a line, in pixels
 

@@ -68,6 +68,14 @@ def bare_axes(figure: Figure, place: Any = 111) -> Any:
     return axes
 
 
+def axis_arrows(axes: Any, origin: Sequence[float], length: float, names: Sequence[str]) -> None:
+    """The directions of a drawing in three dimensions."""
+    for k, name in enumerate(names):
+        step = length * np.eye(3)[k]
+        axes.quiver(*origin, *step, color=BLACK, arrow_length_ratio=0.25, zorder=9)
+        axes.text(*(origin + 1.3 * step), name, ha="center", va="center")
+
+
 def title(axes: Axes, letter: str, text: str) -> None:
     """Of one of several panels: a bold letter and a text."""
     axes.set_title(rf"$\mathbf{{{letter}}}$  {text}")
