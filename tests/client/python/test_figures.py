@@ -288,6 +288,15 @@ def test_wrong_values_are_named(
     assert text in capsys.readouterr().err
 
 
+def test_a_folder_that_cannot_be_made_is_named(
+    home: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "file"
+    file.touch()
+    assert command.main(["cell", "--out", str(file)]) == 2
+    assert f"--out: cannot write {file}: File exists" in capsys.readouterr().err
+
+
 # The client's functions that figures use
 
 

@@ -21,4 +21,6 @@ if __name__ == "__main__":
             file=sys.stderr,
         )
         sys.exit(4)
+    except KeyboardInterrupt:
+        sys.exit(130)
     sys.exit(main(sys.argv[1:]))

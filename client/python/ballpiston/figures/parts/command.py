@@ -67,7 +67,10 @@ def _parsed(arguments: list[str]) -> tuple[Namespace, dict[str, str]]:
 
 def _run(parsed: tuple[Namespace, dict[str, str]]) -> list[Path]:
     options, texts = parsed
-    options.out.mkdir(parents=True, exist_ok=True)
+    try:
+        options.out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ValueError(f"--out: cannot write {options.out}: {error.strerror}") from error
     own = options.out / f"{options.name.replace('-', '_')}.py"
     if options.edit:
         return [_copied(options.name, own)]
