@@ -8,8 +8,6 @@ Time on two cores: quick 3 s, default 50 s, full 5 min.
 
 from __future__ import annotations
 
-from typing import Any
-
 from matplotlib.figure import Figure
 
 from ballpiston.client import Client
@@ -59,23 +57,16 @@ def draw(tables: Tables) -> Figure:
     figure = style.picture(960, 500)
     left, right = figure.subplots(1, 2)
 
-    error = billiard["standard_error"]
     style.level(left, limit, color=style.ORANGE, label="rare exchanges")
-    style.error_points(
-        left, billiard["delta"], billiard["value"], error, style.BLUE, label="billiard"
-    )
+    values = billiard["delta"], billiard["value"], billiard["standard_error"]
+    style.error_points(left, *values, style.BLUE, "billiard")
     left.set(xlabel="δ", ylabel="conductivity / static value")
 
     infinite = 1000 * (limit - 1)
     style.level(right, infinite, color=style.ORANGE, label=f"infinite: {infinite:.4f}")
-    style.error_points(
-        right,
-        1 / rings["cells"].astype(float),
-        1000 * (rings["value"] - 1),
-        1000 * rings["standard_error"],
-        style.BLUE,
-        label="jump process, rings of N cells",
-    )
+    share, excess = 1 / rings["cells"].astype(float), 1000 * (rings["value"] - 1)
+    error = 1000 * rings["standard_error"]
+    style.error_points(right, share, excess, error, style.BLUE, "jump process, rings of N cells")
     right.set(xlabel="1/N", ylabel="1000 (conductivity / static value - 1)")
     for axes in (left, right):
         axes.set_xlim(0, axes.dataLim.xmax * 1.06)

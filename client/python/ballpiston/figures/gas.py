@@ -37,9 +37,8 @@ def measure(
 ) -> Tables:
     """The start of an orbit: all balls, all pistons, and one row with the geometry. `cells` is a
     lattice, NxM, or a chain, N."""
-    start = start_of(
-        client, rho=rho, delta=delta, cells=cells, temperature=temperature, seed=seed
-    )
+    orbit = {"rho": rho, "delta": delta, "cells": cells, "temperature": temperature}
+    start = start_of(client, seed=seed, **orbit)
     columns, _, lines = start["cells"].partition("x")
     row = {name: start[name] for name in ("rho", "delta", "lambda", "eta", "temperature")}
     row |= {"columns": int(columns), "rows": int(lines or 1)}

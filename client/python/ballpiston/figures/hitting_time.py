@@ -60,7 +60,7 @@ def draw(tables: Tables) -> Figure:
     """Of several exponents only the first one."""
     data = tables["hitting-time"]
     data = rows(data, exponent=data["exponent"][0])
-    deltas, energies = distinct(data["delta"]), distinct(data["epsilon"])
+    energies = distinct(data["epsilon"])
     figure = style.picture(max(640, 100 + 320 * len(energies)), 760)
     panels = figure.subplots(2, len(energies), sharex=True, sharey="row", squeeze=False)
     longest = data["t"][np.isfinite(data["t"])].max()
@@ -68,14 +68,11 @@ def draw(tables: Tables) -> Figure:
     exponential: dict[str, Any] = {"color": style.BLACK, "linewidth": 1.2, "dashes": (6, 4)}
     for (upper, lower), epsilon in zip(panels.T, energies):
         upper.set_title(f"ε = {epsilon:g}")
-        for k, delta in enumerate(deltas):
-            line = rows(data, delta=delta, epsilon=epsilon)
+        for line, colour, _ in style.series(rows(data, epsilon=epsilon), "delta", "δ"):
             seen = line["value"] > 0
-            upper.semilogy(line["t"][seen], line["value"][seen], color=style.colour(k))
+            upper.semilogy(line["t"][seen], line["value"][seen], color=colour)
             excess = line["value"] - line["limit"]
-            style.error_points(
-                lower, line["t"], excess, line["error"], style.colour(k), markersize=2
-            )
+            style.error_points(lower, line["t"], excess, line["error"], colour, markersize=2)
         upper.semilogy(t, np.exp(-t), **exponential)
         style.level(lower, 0, **exponential)
     excess = data["value"] - data["limit"]
@@ -87,6 +84,6 @@ def draw(tables: Tables) -> Figure:
     panels[1, 0].set(xlim=(0, 1.01 * longest))
     style.outer_labels(panels[1:], "t/τ$_{bp}$(ε)", "minus the exponential")
     handles = [style.line_handle("exponential", **exponential)]
-    handles += [style.line_handle(f"δ = {d:g}", style.colour(k)) for k, d in enumerate(deltas)]
+    handles += [style.line_handle(s.label, s.colour) for s in style.series(data, "delta", "δ")]
     style.top_legend(figure, handles)
     return figure

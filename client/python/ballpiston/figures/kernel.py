@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from ballpiston.client import Client
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct, rows, stacked
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, rows, stacked
 from ballpiston.parameter_lists import Numbers
 
 EFFORT = {"quick": {"orbits": 3, "bins": 8}, "full": {"orbits": 1000, "bins": 40}}
@@ -100,22 +100,21 @@ def _densities_at(energy: float, collisions: FloatArray, bins: int) -> Table:
 @style.styled
 def draw(tables: Tables) -> Figure:
     """One panel for each energy before the collision."""
-    energies = distinct(tables["kernel-exact"]["epsilon"])
+    energies = style.series(tables["kernel-exact"], "epsilon", "ε")
     lines = (len(energies) + 1) // 2
     figure = style.picture(960, 350 * lines)
     panels = figure.subplots(lines, 2, sharex=True, squeeze=False)
-    for k, (axes, energy) in enumerate(zip(panels.flat, energies)):
-        exact = rows(tables["kernel-exact"], epsilon=energy)
+    for axes, (exact, colour, label) in zip(panels.flat, energies):
+        energy = exact["epsilon"][0]
         seen = exact["density"] > 0
         axes.plot(exact["outgoing"][seen], exact["density"][seen], color=style.BLACK)
         if tables["kernel-measured"]:
             near = rows(tables["kernel-measured"], epsilon=energy)
-            style.error_points(
-                axes, near["outgoing"], near["density"], near["standard_error"], style.colour(k)
-            )
+            error = near["standard_error"]
+            style.error_points(axes, near["outgoing"], near["density"], error, colour)
         axes.set_ylim(0, _HIGHEST / (0.5 - min(energy, 0.49)))
         # Left or right of the curve that rises at 1/2 - epsilon.
-        style.inside(axes, 0.35 if energy < 0.2 else 0.85, 0.9, f"ε = {energy:g}", ha="center")
+        style.inside(axes, 0.35 if energy < 0.2 else 0.85, 0.9, label, ha="center")
     panels[0, 0].set_xlim(0, 0.5)
     style.outer_labels(panels, "piston energy after, ε'", "W(ε, ε')/f(ε)")
     style.remove_empty(panels, len(energies))

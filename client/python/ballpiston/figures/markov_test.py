@@ -167,7 +167,7 @@ def _top(x: Any, y: Any, i: int) -> float:
 def draw(tables: Tables) -> Figure:
     """One panel for each exponent."""
     data = tables["markov-test-excess"]
-    energies, exponents = distinct(data["epsilon"]), distinct(data["exponent"])
+    exponents = distinct(data["exponent"])
     across = min(2, len(exponents))
     down = -(-len(exponents) // across)
     figure = style.picture(max(640, 540 * across), 420 * down + 40)
@@ -178,24 +178,14 @@ def draw(tables: Tables) -> Figure:
     panels[0, 0].set_xlim(0.93 * data["delta"].min(), 1.07 * data["delta"].max())
     for axes, exponent in zip(panels.flat, exponents):
         style.level(axes, 0)
-        for k, epsilon in enumerate(energies):
-            part = rows(data, epsilon=epsilon, exponent=exponent)
-            style.error_points(
-                axes,
-                part["delta"],
-                part["excess"],
-                part["standard_error"],
-                style.colour(k),
-                fmt="o-",
-                linewidth=1,
-                markersize=3,
-            )
+        joined: dict[str, Any] = {"fmt": "o-", "linewidth": 1, "markersize": 3}
+        for part, colour, _ in style.series(rows(data, exponent=exponent), "epsilon", "ε"):
+            error = part["standard_error"]
+            style.error_points(axes, part["delta"], part["excess"], error, colour, **joined)
         law = ", the equilibrium law" if exponent == 1 else ""
         style.inside(axes, 0.03, 0.92, f"n = {exponent:g}{law}")
         style.plain_log_ticks(axes.xaxis, (0.001, 0.003, 0.01, 0.03, 0.05, 0.1, 0.15, 0.2, 0.3))
     style.outer_labels(panels, "δ", "relative entropy − noise floor")
     style.remove_empty(panels, len(exponents))
-    style.top_legend(
-        figure, [style.point_handle(f"ε = {e:g}", style.colour(k)) for k, e in enumerate(energies)]
-    )
+    style.top_legend(figure, style.point_handles(style.series(data, "epsilon", "ε")))
     return figure

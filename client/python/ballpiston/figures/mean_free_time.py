@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from ballpiston.client import Client
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO, answer, first
-from ballpiston.figures.parts.tables import Table, Tables, closed_forms, distinct, estimates, rows
+from ballpiston.figures.parts.tables import Table, Tables, closed_forms, estimates, rows
 from ballpiston.parameter_lists import Numbers
 
 EFFORT = {
@@ -64,10 +64,9 @@ def draw(tables: Tables) -> Figure:
     inset = rows(tables["mean-free-time-inset"], name="mean_free_time_ball_piston")
     figure = style.picture(960, 640)
     axes = figure.add_subplot()
-    for k, delta in enumerate(distinct(inset["delta"])):
-        tau = rows(inset, delta=delta)["exact"][0]
-        part = rows(measured, delta=delta)
-        _draw_rates(axes, part, "epsilon", tau, color=style.colour(k), label=f"δ = {delta:g}")
+    for part, colour, label in style.series(measured, "delta", "δ"):
+        tau = rows(inset, delta=part["delta"][0])["exact"][0]
+        _draw_rates(axes, part, "epsilon", tau, color=colour, label=label)
     phi = tables["mean-free-time-phi"]
     axes.plot(
         phi["epsilon"], phi["phi"], color=style.BLACK, label="exact φ$_{bp}$(ε)", zorder=3
@@ -87,12 +86,12 @@ def _draw_rates(axes: Any, part: Table, x: str, unit: float, **style_of: Any) ->
 
 
 def _draw_inset(axes: Any, inset: Table, exact: Table) -> None:
-    deltas = distinct(inset["delta"])
     axes.loglog(exact["delta"], 1 / exact["tau_ball_piston"], color=style.BLACK)
-    for k, delta in enumerate(deltas):
-        _draw_rates(axes, rows(inset, delta=delta), "delta", 1, color=style.colour(k), markersize=6)
-    axes.set_xlim(0.7 * min(deltas), max(deltas) / 0.7)
-    seen = (exact["delta"] > 0.7 * min(deltas)) & (exact["delta"] < max(deltas) / 0.7)
+    for part, colour, _ in style.series(inset, "delta", "δ"):
+        _draw_rates(axes, part, "delta", 1, color=colour, markersize=6)
+    left, right = 0.7 * inset["delta"].min(), inset["delta"].max() / 0.7
+    axes.set_xlim(left, right)
+    seen = (exact["delta"] > left) & (exact["delta"] < right)
     rates = 1 / exact["tau_ball_piston"][seen]
     axes.set_ylim(rates.min(), rates.max())
     style.plain_log_ticks(axes.xaxis, (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3))

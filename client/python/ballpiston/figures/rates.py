@@ -22,7 +22,7 @@ from matplotlib.figure import Figure
 from ballpiston.client import Client
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct, rows, stacked
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, rows, stacked
 from ballpiston.parameter_lists import Numbers
 
 EFFORT = {
@@ -159,20 +159,15 @@ def draw(tables: Tables) -> Figure:
     for axes, letter, text, unit in zip(panels, "abc", titles, units):
         style.title(axes, letter, text)
         axes.set_xlabel(unit)
-    energies = distinct(rows(data, kind="conditional")["epsilon"])
-    series = [(0, rows(data, kind="all"), "", 0.0), (1, rows(data, kind="ball_piston"), "", 0.0)]
-    for k, energy in enumerate(energies):
-        shift = k - (len(energies) - 1) / 2
-        series.append((2, rows(data, epsilon=energy), f"ε = {energy:g}", shift))
-    for number, (panel, part, label, shift) in enumerate(series):
-        style.error_points(
-            panels[panel],
-            part["t"] * part["exact"] * _ASIDE**shift,
-            part["rate"] / part["exact"],
-            part["standard_error"] / part["exact"],
-            style.colour(max(number - 2, 0)),
-            label=label,
-        )
+    several = [(0, rows(data, kind="all"), style.BLUE, "", 0.0)]
+    several += [(1, rows(data, kind="ball_piston"), style.BLUE, "", 0.0)]
+    conditional = style.series(rows(data, kind="conditional"), "epsilon", "ε")
+    for k, series in enumerate(conditional):
+        several.append((2, *series, k - (len(conditional) - 1) / 2))
+    for panel, part, colour, label, shift in several:
+        t, ratio = part["t"] * part["exact"] * _ASIDE**shift, part["rate"] / part["exact"]
+        error = part["standard_error"] / part["exact"]
+        style.error_points(panels[panel], t, ratio, error, colour, label)
     panels[0].set_ylabel("P(t)/t over the exact rate")
     panels[2].legend(loc="lower left")
     return figure

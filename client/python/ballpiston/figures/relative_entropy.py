@@ -47,25 +47,21 @@ def measure(
 def draw(tables: Tables) -> Figure:
     """One panel for each exponent."""
     data = tables["relative-entropy"]
-    energies = distinct(data["epsilon"])
+    count = len(distinct(data["epsilon"]))
     figure = style.picture(960, 840)
     panels = figure.subplots(2, 2, sharex=True)
     for axes, exponent in zip(panels.flat, _EXPONENTS):
         axes.set_xscale("log")
         axes.set_yscale("log")
-        for k, epsilon in enumerate(energies):
-            part = rows(data, exponent=exponent, epsilon=epsilon)
-            beside = part["delta"] * _ASIDE ** (k - (len(energies) - 1) / 2)
+        energies = style.series(rows(data, exponent=exponent), "epsilon", "ε")
+        for k, (part, colour, _) in enumerate(energies):
+            beside = part["delta"] * _ASIDE ** (k - (count - 1) / 2)
             dashed = {"linestyle": (0, (2, 2)), "linewidth": 1}
-            axes.plot(part["delta"], part["noise_floor"], color=style.colour(k), **dashed)
-            style.error_points(
-                axes, beside, part["value"], part["standard_error"], style.colour(k)
-            )
-        style.inside(axes, 0.97, 0.05, f"n = {exponent}", ha="right")
+            axes.plot(part["delta"], part["noise_floor"], color=colour, **dashed)
+            style.error_points(axes, beside, part["value"], part["standard_error"], colour)
+        axes.set_title(f"n = {exponent}")
         style.plain_log_ticks(axes.xaxis, (0.0125, 0.025, 0.05, 0.1, 0.2, 0.3))
     panels[0, 0].set_xlim(0.88 * data["delta"].min(), 1.14 * data["delta"].max())
     style.outer_labels(panels, "δ", "relative entropy")
-    style.top_legend(
-        figure, [style.point_handle(f"ε = {e:g}", style.colour(k)) for k, e in enumerate(energies)]
-    )
+    style.top_legend(figure, style.point_handles(style.series(data, "epsilon", "ε")))
     return figure

@@ -70,15 +70,17 @@ def draw(tables: Tables) -> Figure:
     panels[0, 1].semilogy(line["t"], line["limit"], color=style.BLACK)
     for axes in panels[1]:
         style.level(axes, 0)
-    for k, delta in enumerate(deltas):
-        dots = {"color": style.colour(k), "markersize": 3}
-        _draw_curve(panels[0, 0], rows(energy, delta=delta), label=f"δ = {delta:g}", **dots)
-        _draw_excess(panels[1, 0], rows(energy, delta=delta, epsilon=lowest), 0, **dots)
+    for part, colour, label in style.series(energy, "delta", "δ"):
+        dots = {"color": colour, "markersize": 3}
+        _draw_curve(panels[0, 0], part, label=label, **dots)
+        _draw_excess(panels[1, 0], rows(part, epsilon=lowest), 0, **dots)
         if highest > lowest:
-            part = rows(energy, delta=delta, epsilon=highest)
-            _draw_excess(panels[1, 0], part, _FROM_HIGHEST, fmt="^", fillstyle="none", **dots)
-        _draw_curve(panels[0, 1], rows(correlation, delta=delta), **dots)
-        _draw_excess(panels[1, 1], rows(correlation, delta=delta), 0, **dots)
+            triangles = dots | {"fmt": "^", "fillstyle": "none"}
+            _draw_excess(panels[1, 0], rows(part, epsilon=highest), _FROM_HIGHEST, **triangles)
+    for part, colour, _ in style.series(correlation, "delta", "δ"):
+        dots = {"color": colour, "markersize": 3}
+        _draw_curve(panels[0, 1], part, **dots)
+        _draw_excess(panels[1, 1], part, 0, **dots)
     starts_text = f"from {lowest:g}" + (f" (●), {highest:g} (△)" if highest > lowest else "")
     style.title(panels[0, 0], "a", "mean energy of the piston")
     style.title(panels[0, 1], "b", "autocorrelation of the energy")

@@ -16,15 +16,7 @@ from matplotlib.figure import Figure
 from ballpiston.client import Client
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO, answer, first, in_mean_free_times
-from ballpiston.figures.parts.tables import (
-    Table,
-    Tables,
-    closed_forms,
-    curves,
-    distinct,
-    estimates,
-    rows,
-)
+from ballpiston.figures.parts.tables import Table, Tables, closed_forms, curves, estimates
 from ballpiston.parameter_lists import Numbers
 
 EFFORT = {"quick": {"samples": 20_000}, "full": {"samples": 20_000_000}}
@@ -45,15 +37,8 @@ def measure(
     and the billiard's autocorrelations from `samples` orbits each."""
     one_delta = first("delta", delta)
     spectrum = answer(client, "energy-relaxation", rho=rho, delta=one_delta, model="spectrum")
-    billiard = answer(
-        client,
-        "energy-relaxation",
-        rho=rho,
-        delta=delta,
-        samples=samples,
-        seed=seed,
-        model="billiard",
-    )
+    question = {"rho": rho, "delta": delta, "samples": samples, "seed": seed}
+    billiard = answer(client, "energy-relaxation", model="billiard", **question)
     forms = client.analytic(rho, one_delta, "0:0.5:201")
     facts = ("rho", "delta", "volume", "area_ball_piston", "tau_ball_piston", "epsilon", "f")
     return {
@@ -101,19 +86,11 @@ def _draw_rates(axes: Any, spectrum: Table, total: Table) -> None:
 
 
 def _draw_correlations(axes: Any, billiard: Table) -> None:
-    deltas = distinct(billiard["delta"])
-    line = rows(billiard, delta=deltas[0])
+    several = style.series(billiard, "delta", "δ")
+    line = several[0].part
     axes.semilogy(line["t"], line["limit"], color=style.BLACK, label="limit δ → 0")
-    for k, delta in enumerate(deltas):
-        part = rows(billiard, delta=delta)
-        style.error_points(
-            axes,
-            part["t"],
-            part["value"],
-            part["standard_error"],
-            style.colour(k),
-            label=f"δ = {delta:g}",
-        )
+    for part, colour, label in several:
+        style.error_points(axes, part["t"], part["value"], part["standard_error"], colour, label)
     axes.set(ylim=(_LOWEST, 1.3), xlabel="t/τ$_{bp}$", ylabel="energy autocorrelation")
     axes.set_xlim(0, line["t"].max())
     axes.legend(loc="upper right")

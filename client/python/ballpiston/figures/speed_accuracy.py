@@ -197,15 +197,8 @@ def _draw_errors(axes: Any, data: Table, quantity: str, by: str) -> None:
     if not curves:
         return
     for curve in curves:
-        style.error_points(
-            axes,
-            curve.runs[by],
-            curve.expected_error,
-            curve.error_of_error,
-            curve.colour,
-            fmt="o-",
-            markersize=3,
-        )
+        errors = curve.expected_error, curve.error_of_error
+        style.error_points(axes, curve.runs[by], *errors, curve.colour, fmt="o-", markersize=3)
     unbiased = [c for c in curves if by_hits and c.bias == 0]
     common = next((c for c in unbiased if c.method == "billiard"), next(iter(unbiased), None))
     named = [c for c in curves if c is common or c not in unbiased]

@@ -51,16 +51,8 @@ def first_hits(
     seed: int,
 ) -> Result:
     """First ball-piston hits of the billiard that starts from the outgoing law h^(exponent)."""
-    return answer(
-        client,
-        "first-hit",
-        rho=rho,
-        delta=delta,
-        epsilon=epsilon,
-        exponent=exponent,
-        samples=samples,
-        seed=seed,
-    )
+    question = {"rho": rho, "delta": delta, "epsilon": epsilon, "exponent": exponent}
+    return answer(client, "first-hit", samples=samples, seed=seed, **question)
 
 
 def divergences(result: Result) -> Table:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import matplotlib
 import matplotlib.style
@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from ballpiston.figures.parts.tables import Tables
+from ballpiston.figures.parts.tables import Table, Tables, distinct, rows
 
 BLUE, ORANGE, GREEN, PINK = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
 BLACK, GREY, EDGE = "#202020", "#808080", "#8c8c8c"
@@ -53,6 +53,22 @@ def colour(index: int) -> str:
     """Of the line of this number."""
     cycle: list[str] = matplotlib.rcParams["axes.prop_cycle"].by_key()["color"]
     return "#" + cycle[index % len(cycle)].lstrip("#")
+
+
+class Series(NamedTuple):
+    """The rows of a table that belong to one value, with the value's colour and label."""
+
+    part: Table
+    colour: str
+    label: str
+
+
+def series(whole: Table, name: str, symbol: str) -> list[Series]:
+    """One for each value of the column `name`, in the order of their first appearance."""
+    return [
+        Series(rows(whole, **{name: x}), colour(k), f"{symbol} = {x:g}")
+        for k, x in enumerate(distinct(whole[name]))
+    ]
 
 
 def picture(width: float, height: float) -> Figure:
@@ -98,6 +114,11 @@ def level(axes: Axes, y: float, **style: Any) -> None:
 def point_handle(label: str, color: str, marker: str = "o", **style: Any) -> Line2D:
     """An entry of a legend: points."""
     return Line2D([], [], linestyle="", marker=marker, color=color, label=label, **style)
+
+
+def point_handles(several: Iterable[Series]) -> list[Line2D]:
+    """An entry of a legend for each series."""
+    return [point_handle(each.label, each.colour) for each in several]
 
 
 def line_handle(label: str, color: str, **style: Any) -> Line2D:
