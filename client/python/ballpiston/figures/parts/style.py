@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import io
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -17,6 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
+from ballpiston.document import write_atomically
 from ballpiston.figures.parts.tables import Table, Tables, distinct, rows
 
 BLUE, ORANGE, GREEN, PINK = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
@@ -43,10 +45,14 @@ def styled(draw: Callable[[Tables], Figure]) -> Callable[[Tables], Figure]:
 
 
 def save(figure: Figure, path: Path) -> None:
-    """As SVG or PNG, by the end of the path. The same picture gives the same file."""
+    """As SVG or PNG, by the end of the path. The same picture gives the same file. A full disk
+    leaves the old file."""
+    ending = path.suffix.removeprefix(".")
+    buffer = io.BytesIO()
     with matplotlib.style.context(_SHEET):
-        metadata = {"Date": None} if path.suffix == ".svg" else {}
-        figure.savefig(path, metadata=metadata)
+        metadata = {"Date": None} if ending == "svg" else {}
+        figure.savefig(buffer, format=ending, metadata=metadata)
+    write_atomically(path, buffer.getvalue())
 
 
 def colour(index: int) -> str:
