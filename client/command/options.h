@@ -46,7 +46,7 @@ struct Options {
   std::string figure, out;
   std::string effort = "default";  // of a figure: quick, default or full
   bool list = false, edit = false;
-  std::map<std::string, std::string> variables;  // of the figure's script
+  std::map<std::string, std::string> variables;  // of a figure
 
   int64_t port = 0;  // of the page; 0: any
 

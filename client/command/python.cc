@@ -13,31 +13,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Where a build and an installation have the package, relative to the folder of this program.
-constexpr const char* kFolders[] = {"../python", "../lib/python3/dist-packages"};
-
 std::string Interpreter() {
   const std::string chosen = FromEnvironment("BALLPISTON_PYTHON");
   return chosen.empty() ? "python3" : chosen;
 }
 
-// The package of this program comes first, so that both have the same version.
-void AddPackage() {
-  std::vector<std::string> path;
-  std::error_code error;
-  for (const char* folder : kFolders) {
-    const fs::path place = fs::path(ProgramBeside(folder)).lexically_normal();
-    if (fs::exists(place / "ballpiston", error)) path.push_back(place.string());
-  }
-  const std::string old = FromEnvironment("PYTHONPATH");
-  if (!old.empty()) path.push_back(old);
-  if (!path.empty()) setenv("PYTHONPATH", absl::StrJoin(path, ":").c_str(), 1);
+// This package comes before others, which may be of another version.
+std::string PythonPath() {
+  const std::string others = FromEnvironment("PYTHONPATH");
+  return absl::StrCat(PythonPackage().parent_path().string(), others.empty() ? "" : ":", others);
 }
 
 }  // namespace
 
+fs::path PythonPackage() {
+  const fs::path prefix = fs::path(ProgramBeside("")).parent_path().parent_path();
+  const fs::path built = prefix / "python", installed = prefix / BALLPISTON_PYTHON_DIR;
+  return (fs::exists(built) ? built : installed) / "ballpiston";
+}
+
 std::vector<std::string> PythonCommand(const std::vector<std::string>& arguments) {
-  static const bool kAdded [[maybe_unused]] = (AddPackage(), true);
+  static const int kOnce [[maybe_unused]] = setenv("PYTHONPATH", PythonPath().c_str(), 1);
   std::vector<std::string> command = {Interpreter()};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return command;

@@ -1,23 +1,26 @@
-// Programs of the Python package `ballpiston`, which some verbs start.
+// The Python package `ballpiston` that belongs to this program. Some verbs start its programs.
 //
-// The interpreter is BALLPISTON_PYTHON, by default python3. It also finds the package of this
-// program's own installation or build folder.
+// The interpreter is BALLPISTON_PYTHON, by default python3 in PATH.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
-#include "absl/status/statusor.h"
 
 namespace ballpiston::client {
 
+// Its folder in the build or in the installation of this program. It may be missing.
+std::filesystem::path PythonPackage();
+
 // FAILED_PRECONDITION if the interpreter cannot import one of the modules. `purpose` begins the
-// message, for instance "--save FILE.npz"; `packages` are Debian's names.
+// message; `packages` are Debian's names.
 absl::Status CheckPython(const std::string& purpose, const std::vector<std::string>& modules,
                          const std::string& packages);
 
-// The child process of the interpreter with these arguments.
+// The command that runs the interpreter with these arguments. Adds the package to PYTHONPATH of
+// this process, which the interpreter inherits.
 std::vector<std::string> PythonCommand(const std::vector<std::string>& arguments);
 
 }  // namespace ballpiston::client

@@ -327,7 +327,7 @@ const FlagGroup kPin = {
 
 const FlagGroup kFigure = {
     "Figure",
-    {{"--out", File(To(&Options::out)), "folder for data, scripts and picture"},
+    {{"--out", File(To(&Options::out)), "folder for data and pictures"},
      {"--list", Switch(To(&Options::list)), "print the figures' names; draw nothing"},
      {"--quick",
       Effort("quick"),
@@ -340,10 +340,11 @@ const FlagGroup kFigure = {
       "",
       {"quick"}},
      {"--edit", Switch(To(&Options::edit)),
-      "copy the figure's scripts to the --out folder, so that you can edit them; draw nothing"}}};
+      "copy the figure's Python module to the --out folder, so that you can edit it; draw "
+      "nothing"}}};
 
 const FlagGroup kVariables = {
-    "Variables of a figure's script",
+    "Variables of a figure",
     {{"--rho", Variable("X", "rho"), "disc radius"},
      {"--delta", Variable("LIST", "delta"), "the piston's penetrations"},
      {"--relaxation-delta", Variable("LIST", "relaxation_delta"),
@@ -607,9 +608,11 @@ std::vector<Verb> AllVerbs() {
          "jq -r 'select(.event == \"ball_piston\") | [.time, .ball, .ball_energy] | @tsv'"},
         &Trace}});
   append({{"figure",
-           "draw a figure: data, gnuplot script and SVG",
+           "draw a figure: data, SVG and PNG",
            "After an interruption, the same command resumes the jobs of the figure. If the --out "
-           "folder already contains scripts of the figure, the command uses them unchanged.",
+           "folder already contains the figure's module, the command uses it unchanged. Figures "
+           "need Python with the package ballpiston and matplotlib: python3-ballpiston, "
+           "python3-matplotlib.",
            {{Text("NAME", To(&Options::figure), Offer::kFigure),
              "one of the names that --list prints", Argument::kOptional}},
            With({&kFigure, &kVariables, &kProgress, &kServer}, {}),
@@ -690,7 +693,8 @@ const std::vector<Remark>& Files() {
        "file, and flags override both. XDG_CONFIG_HOME replaces ~/.config"},
       {"~/.local/state/ballpiston",
        "jobs, log and socket of the private server. XDG_STATE_HOME replaces ~/.local/state. "
-       "BALLPISTON_SERVER_PROGRAM is the ballpistond to start"}};
+       "BALLPISTON_SERVER_PROGRAM is the ballpistond to start"},
+      {"python3", "draws figures. BALLPISTON_PYTHON is another Python to start"}};
   return *files;
 }
 

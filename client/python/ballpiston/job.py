@@ -126,7 +126,7 @@ class Job:
         self.message = self._call("GetEnsembleJob", request)
         return self
 
-    def watch(self, progress: bool = True) -> Result:
+    def watch(self, progress: bool | str = True) -> Result:
         """Waits until the job has ended and returns its result.
 
         A bar shows the progress in a terminal (on standard error) and in a notebook. The watch goes
@@ -134,7 +134,8 @@ class Job:
         message says how to watch it again.
 
         Args:
-            progress: False shows nothing.
+            progress: False shows nothing, "bar" shows the bar without a terminal too, "json"
+                writes lines of JSON to standard error.
 
         Raises:
             JobFailed: the job failed; the exception says why.
