@@ -79,7 +79,13 @@ Value NameOfEstimate() {
       "NAME",
       [](Options& o, std::string name) { o.spec.mutable_target()->set_estimate(std::move(name)); },
       Offer::kChoices);
-  value.choices = {"exchange_rate", "conductivity"};
+  value.choices = {"exchange_rate",
+                   "conductivity",
+                   "lyapunov_1",
+                   "lyapunov_2",
+                   "entropy",
+                   "lyapunov_1_per_collision",
+                   "lyapunov_2_per_collision"};
   return value;
 }
 
@@ -200,7 +206,7 @@ const FlagGroup kMethod = {
       "by default auto, which chooses the cheapest model that gives the estimate"},
      {"--estimate", NameOfEstimate(),
       "name of the estimate that --tolerance and --model auto refer to; the result prints it "
-      "first; only gas-equilibrium has a choice"},
+      "first; gas-equilibrium and lyapunov have a choice"},
      {"--precision",
       OneOf<Spec::Precision>(
           "PRECISION", EnumChoices<Spec::Precision>(),

@@ -5,9 +5,9 @@
 //   two velocities across w, the flow (w, 0), the energy (0, w), two positions across w,
 // in this order. Each event maps all six. After some wall hits, and after each collision, Gram and
 // Schmidt's method makes them orthonormal in their order, and the logarithms of the factors are
-// added up. In a long orbit they are the exponents times the time, in descending order. The sum of
-// the third and the fourth, and that of all six, are 0 in exact arithmetic for any orbit: they show
-// errors of the maps and of rounding.
+// added up. In a long orbit they are the exponents times the time, in descending order. The third,
+// the fourth and the sum of all six are 0 in exact arithmetic for any orbit, because the flow
+// and the energy are the third and the fourth vector: they show errors of the maps and of rounding.
 //
 // Properties, each with a test of its name: 1. NearbyOrbitsDivergeAsPredicted.
 // 2. ExponentsComeInPairs.

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <tuple>
 #include <utility>
 
 #include "core/arithmetic/elementary_functions.h"
@@ -19,48 +18,52 @@ std::array<double, TangentPlane::kExponents> TangentPlane::TakeGrowth() {
   return std::exchange(growth_, {});
 }
 
-// Let y1 and y2 be the ball's parts after the wait, divided by 2^exponent, with y1 = m (unit
-// vector) and y2 = alpha (unit vector) + ...; n1 and n2 the piston's parts; `shrink` = 2^-exponent.
-// Then the first vector has the length r 2^exponent with r^2 = m^2 + (shrink |n1|)^2, and
-//   second - share first,   share = (m alpha + shrink^2 n1.n2)/r^2,
-// has the component shrink (alpha |n1|^2 - m n1.n2)/r^2 along y1, and across it, by the
-// determinant, shrink (x1 x x2)/m, x1 and x2 being the ball's parts before the wait.
+// (a, A) after the ball's flights, without the factor 2^exponent.
+Eigen::Vector2d TangentPlane::AfterFlights(const Eigen::Vector2d& ball, double ball_speed) const {
+  const auto& [aa, at, ta, tt, exponent] = flights_;
+  return {aa * ball[0] + at / ball_speed * ball[1], ta * ball_speed * ball[0] + tt * ball[1]};
+}
+
+// After the wait the vectors are (2^exponent y1, n1) and (2^exponent y2, n2). With y1 = m u, u of
+// length 1, and h = 2^-exponent the first one has the length 2^exponent r, r^2 = m^2 + h^2 n1.n1.
+// Let alpha = u.y2. The second vector less its share of the first,
+//   share = (m alpha + h^2 n1.n2)/r^2,
+// has the parts n2 - share n1 and, along u and across it,
+//   h (alpha n1.n1 - m n1.n2)/r^2   and   h (x1 x x2)/m,
+// the latter because the determinant of the flights is 1: x1 and x2 are (a, A) before the wait.
 void TangentPlane::Wait(double ball_speed, double time, double sign) {
   auto& [first, second] = tangents_;
-  const double at = flights_.at / ball_speed, ta = flights_.ta * ball_speed;
-  const double shrink = std::ldexp(1.0, -static_cast<int>(std::fmin(flights_.exponent, 2000)));
-  const double cross = first.a * second.A - first.A * second.a;
-  const double y1a = flights_.aa * first.a + at * first.A;
-  const double y1A = ta * first.a + flights_.tt * first.A;
-  const double y2a = flights_.aa * second.a + at * second.A;
-  const double y2A = ta * second.a + flights_.tt * second.A;
-  const double m = std::sqrt(y1a * y1a + y1A * y1A);
-  const double ua = y1a / m, uA = y1A / m;
-  const double alpha = ua * y2a + uA * y2A;
-  const double b1 = sign * (first.b + time * first.B), B1 = sign * first.B;
-  const double b2 = sign * (second.b + time * second.B), B2 = sign * second.B;
-  const double n11 = b1 * b1 + B1 * B1, n12 = b1 * b2 + B1 * B2;
-  const double r_squared = m * m + shrink * shrink * n11;
-  const double share = (m * alpha + shrink * shrink * n12) / r_squared;
-  const double along = shrink * (alpha * n11 - m * n12) / r_squared;
-  const double across = shrink * cross / m;
-  const double b = b2 - share * b1, B = B2 - share * B1;
-  const double r1 = std::sqrt(r_squared);
-  const double r2 = std::sqrt(along * along + across * across + b * b + B * B);
-  growth_[0] += Log(r1) + flights_.exponent * std::numbers::ln2;
-  growth_[1] += Log(r2);
-  const double of_piston = shrink / r1;
-  first = {y1a / r1, y1A / r1, b1 * of_piston, B1 * of_piston};
-  second = {(along * ua - across * uA) / r2, (along * uA + across * ua) / r2, b / r2, B / r2};
+  const double h = std::ldexp(1.0, -static_cast<int>(std::fmin(flights_.exponent, 2000)));
+  const double cross = first.ball[0] * second.ball[1] - first.ball[1] * second.ball[0];
+  const Eigen::Vector2d y1 = AfterFlights(first.ball, ball_speed);
+  const Eigen::Vector2d y2 = AfterFlights(second.ball, ball_speed);
+  for (Tangent& tangent : tangents_) {
+    tangent.both[0] += time * tangent.both[1];
+    tangent.both *= sign;
+  }
+  const Eigen::Vector2d &n1 = first.both, &n2 = second.both;
+  const double m = y1.norm();
+  const Eigen::Vector2d u = y1 / m;
+  const double alpha = u.dot(y2), n1_n1 = n1.squaredNorm(), n1_n2 = n1.dot(n2);
+  const double r_squared = m * m + h * h * n1_n1, r = std::sqrt(r_squared);
+  const double share = (m * alpha + h * h * n1_n2) / r_squared;
+  const double along = h * (alpha * n1_n1 - m * n1_n2) / r_squared, across = h * cross / m;
+  second = {along * u + across * Eigen::Vector2d(-u[1], u[0]), n2 - share * n1};
+  const double rest = std::sqrt(second.ball.squaredNorm() + second.both.squaredNorm());
+  second = {second.ball / rest, second.both / rest};
+  first = {y1 / r, n1 * (h / r)};
+  growth_[0] += Log(r) + flights_.exponent * std::numbers::ln2;
+  growth_[1] += Log(rest);
 }
 
 void TangentPlane::Exchange(const PairState& before) {
-  const double c = before.piston_velocity * before.direction.x(), s = before.direction.y();
-  const double length = std::sqrt(c * c + s * s);
-  const double cosine = c / length, sine = s / length;
-  for (auto& [a, A, b, B] : tangents_) {
-    std::tie(a, b) = std::pair(cosine * a + sine * b, sine * a - cosine * b);
-    std::tie(A, B) = std::pair(cosine * A + sine * B, sine * A - cosine * B);
+  const double p_cos = before.piston_velocity * before.direction.x(), sin = before.direction.y();
+  const double length = std::sqrt(p_cos * p_cos + sin * sin);
+  const double c = p_cos / length, s = sin / length;
+  for (auto& [ball, both] : tangents_) {
+    const Eigen::Vector2d before_exchange = ball;
+    ball = c * ball + s * both;
+    both = s * before_exchange - c * both;
   }
 }
 

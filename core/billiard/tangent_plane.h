@@ -4,26 +4,29 @@
 // Differences along the flow and in energy are left out. Then dr and dw are across w = (v u, p), in
 // the plane of the two unit vectors (u the ball's direction, v its speed, p the piston's velocity)
 //   e1 = (u_perp, 0),   e2 = (p u, -v).
-// A tangent vector is (a, A, b, B) with dr = a e1 + b e2 and dw = A e1 + B e2. In a wait of time t
-//   (a, A/v)' = BallMap (a, A/v),   (b, B)' = (b + t B, B),
-// and one of the two pairs changes its sign at each wall hit of the ball, the other at each wall
-// hit of the piston. At an exchange the components x and q of e1 and e2 are exchanged, and e1', e2'
-// are those of the velocities after it. With u = (cos alpha, sin alpha) this turns (a, b) and (A,
-// B) by the same reflection
-//   (  p cos alpha   sin alpha     )
-//   (  sin alpha     -p cos alpha  ) / sqrt(p^2 + v^2 sin^2 alpha).
+// A tangent vector has two parts: (a, A) of the ball and (b, B) of both bodies, with
+// dr = a e1 + b e2 and dw = A e1 + B e2. In a wait of time t
+//   (a, A/v)' = BallMap (a, A/v),   (b, B)' = (b + t B, B).
+// Each wall hit of the ball changes the sign of (a, A), and each wall hit of the piston that of
+// (b, B). At a collision the components x and q of e1 and e2 are exchanged, and e1', e2' are those
+// of the velocities after it. With u = (cos alpha, sin alpha), (a, b) and (A, B) are mapped by the
+// same reflection:
+//   ( p cos alpha    sin alpha   )
+//   ( sin alpha     -p cos alpha )  /  sqrt(p^2 + v^2 sin^2 alpha).
 //
 // Two vectors span a plane, which turns to the directions of lambda_1 and lambda_2. After each wait
 // Gram and Schmidt's method makes them orthonormal, and the logarithms of the factors are added up.
 // In a long wait both vectors grow in the same direction, by factors beyond the range of a double.
-// The parts that remain after the subtraction are computed without cancellation: across the ball's
-// first vector, by the determinant 1 of BallMap; along it, from the piston's parts alone.
+// The part of the second vector that remains after the subtraction is computed without cancellation
+// (tangent_plane.cc).
 //
 // Properties, each with a test of its name: 1. TheReflectionOfAnExchangeIsThatOfSixComponents.
 // 2. LongWaitsNeedNoRangeOfExponents.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
+#include <cstddef>
 
 #include "core/billiard/orbits.h"
 #include "core/billiard/tangent_map.h"
@@ -47,14 +50,15 @@ class TangentPlane {
 
  private:
   struct Tangent {
-    double a, A;  // of the ball
-    double b, B;  // of ball and piston
+    Eigen::Vector2d ball;  // (a, A)
+    Eigen::Vector2d both;  // (b, B)
   };
 
+  Eigen::Vector2d AfterFlights(const Eigen::Vector2d& ball, double ball_speed) const;
   void Wait(double ball_speed, double time, double sign);
   void Exchange(const PairState& before);
 
-  std::array<Tangent, kExponents> tangents_ = {{{0, 1, 0, 0}, {0, 0, 0, 1}}};
+  std::array<Tangent, kExponents> tangents_ = {{{{0, 1}, {0, 0}}, {{0, 0}, {0, 1}}}};
   BallMap flights_;  // of the wait
   std::array<double, kExponents> growth_ = {};
 };

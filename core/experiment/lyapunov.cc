@@ -126,7 +126,7 @@ class FollowedOrbits : public OrbitsInEquilibrium {
 
 bool IsByReference(Model model) { return model == Model::kBilliardReference; }
 
-// The table for the first answer of `aim`, whose row comes first.
+// The row of the estimate `aim` comes first.
 std::vector<Measurement> Table(const PairGeometry& geometry, Model model, absl::string_view aim) {
   const auto ratio = [](std::string name, size_t index) {
     return Measurement{.name = std::move(name), .reading = RatioAt(index, kOrbitsPerCollision)};
