@@ -82,7 +82,8 @@ class OrbitSource {
   virtual double TimeLimit() const { return std::numeric_limits<double>::infinity(); }
   // Whether the source follows tangent vectors. If so, the reference calls FollowEvent after each
   // event, at a collision before Collide. The lanes call FollowWait before they report a collision,
-  // with the map of the ball's flights since the orbit's start or its previous collision.
+  // with the map of the ball's flights since the orbit's start or its previous collision. A ball at
+  // rest has no flights, and no call.
   virtual bool FollowsTangents() const { return false; }
   virtual void FollowEvent(uint64_t /*orbit*/, const Event&, const PairState& /*after*/) {}
   virtual void FollowWait(uint64_t /*orbit*/, const BallMap&) {}

@@ -11,6 +11,7 @@ namespace ballpiston {
 void TangentPlane::Collide(const Collision& collision) {
   const bool is_odd = ((collision.ball_wall_hits ^ collision.piston_wall_hits) & 1) != 0;
   Wait(collision.state.ball_speed, collision.time, is_odd ? -1 : 1);
+  flights_ = {};
   Exchange(collision.state);
 }
 
