@@ -79,7 +79,13 @@ Value NameOfEstimate() {
       "NAME",
       [](Options& o, std::string name) { o.spec.mutable_target()->set_estimate(std::move(name)); },
       Offer::kChoices);
-  value.choices = {"exchange_rate", "conductivity"};
+  value.choices = {"exchange_rate",
+                   "conductivity",
+                   "lyapunov_1",
+                   "lyapunov_2",
+                   "entropy",
+                   "lyapunov_1_per_collision",
+                   "lyapunov_2_per_collision"};
   return value;
 }
 
@@ -201,8 +207,8 @@ const FlagGroup kMethod = {
                          [](Options& o, Spec::Model model) { o.spec.set_model(model); }),
       "by default auto, the cheapest model that gives the estimate"},
      {"--estimate", NameOfEstimate(),
-      "the estimate of --tolerance and --model auto; the result prints it first; only "
-      "gas-equilibrium has a choice"},
+      "the estimate of --tolerance and --model auto; the result prints it first; "
+      "gas-equilibrium and lyapunov have a choice"},
      {"--precision",
       OneOf<Spec::Precision>(
           "PRECISION", EnumChoices<Spec::Precision>(),

@@ -13,11 +13,14 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "core/billiard/exchange.h"
 #include "core/billiard/lane_burst-inl.h"
 #include "core/billiard/lane_frame.h"
+#include "core/billiard/lane_tangents-inl.h"
 #include "core/billiard/longest_wait.h"
 #include "core/billiard/piston_wave.h"
 
@@ -58,7 +61,8 @@ struct LaneOrbit {
   double longest_wait = 0;  // for the piston
 };
 
-template <typename T>
+// With kFollowsTangents the maps of the balls' flights are computed beside the flights.
+template <typename T, bool kFollowsTangents>
 class LaneOrbits : public EngineRun {
  public:
   LaneOrbits(const PairGeometry& geometry, OrbitSource& source)
@@ -134,6 +138,7 @@ class LaneOrbits : public EngineRun {
   // Makes the last slots the start of the next burst. Paths begin at 0 again, because sums of short
   // paths have little rounding.
   void EndBurst() {
+    if constexpr (kFollowsTangents) tangents_.FollowBurst(burst_, flights_);
     const D d;
     for (size_t v = 0; v < kVectors; ++v) {
       Pistons& piston = pistons_[v];
@@ -290,6 +295,10 @@ class LaneOrbits : public EngineRun {
     state.piston_velocity = first->piston_goes_right ? orbit.piston_speed : -orbit.piston_speed;
     collision.ball_wall_hits = (bursts_ - 1 - orbit.entry_burst) * flights_ + t / kVectors;
     collision.piston_wall_hits = wave_.Hits(orbit.entry_phase, path * ratio);
+    if constexpr (kFollowsTangents) {
+      source_.FollowWait(orbit.orbit,
+                         tangents_.MapTo(burst_, t, i, first->way, flight_constants_.scale));
+    }
     return collision;
   }
 
@@ -395,6 +404,7 @@ class LaneOrbits : public EngineRun {
     piston.ratio[i] = static_cast<T>(piston_speed / ball_speed / (scale * period));
     piston.path[i] = 0;
     piston.lanes |= bit;
+    if constexpr (kFollowsTangents) tangents_.Restart(v, i);
   }
 
   // A lane without an orbit flies between two discs.
@@ -438,14 +448,21 @@ class LaneOrbits : public EngineRun {
   std::vector<size_t> reported_lanes_;  // of the collisions that Resolve is resolving
   std::vector<OrbitCollision> reported_;
   std::vector<OrbitStart> starts_;
+  std::conditional_t<kFollowsTangents, LaneTangents<T>, std::monostate> tangents_;
 };
 
+template <typename T>
+std::unique_ptr<EngineRun> Start(const PairGeometry& geometry, OrbitSource& source) {
+  if (source.FollowsTangents()) return std::make_unique<LaneOrbits<T, true>>(geometry, source);
+  return std::make_unique<LaneOrbits<T, false>>(geometry, source);
+}
+
 std::unique_ptr<EngineRun> StartDouble(const PairGeometry& geometry, OrbitSource& source) {
-  return std::make_unique<LaneOrbits<double>>(geometry, source);
+  return Start<double>(geometry, source);
 }
 
 std::unique_ptr<EngineRun> StartSingle(const PairGeometry& geometry, OrbitSource& source) {
-  return std::make_unique<LaneOrbits<float>>(geometry, source);
+  return Start<float>(geometry, source);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -16,7 +16,11 @@ constexpr uint64_t kEventsBetweenLooks = 4096;  // about 0.2 ms, so a call of Pa
 class ReferenceOrbits : public EngineRun {
  public:
   ReferenceOrbits(const PairGeometry& geometry, OrbitSource& source)
-      : geometry_(geometry), source_(source), limit_(source.TimeLimit()), longest_wait_(geometry) {}
+      : geometry_(geometry),
+        source_(source),
+        limit_(source.TimeLimit()),
+        follows_tangents_(source.FollowsTangents()),
+        longest_wait_(geometry) {}
 
   bool Advance() override {
     for (uint64_t events = 1; flow_ || Begin(); ++events) {
@@ -41,6 +45,7 @@ class ReferenceOrbits : public EngineRun {
     Collision& collision = current_.collision;
     const Event event = flow_->Step();
     collision.Add(event);
+    if (follows_tangents_) source_.FollowEvent(current_.orbit, event, flow_->state());
     const bool is_overdue = collision.time > longest_;
     collision.expired = is_overdue && HasTimeLimit();
     collision.escaped |= is_overdue && !HasTimeLimit();
@@ -57,6 +62,7 @@ class ReferenceOrbits : public EngineRun {
   PairGeometry geometry_;
   OrbitSource& source_;
   double limit_;
+  bool follows_tangents_;
   LongestWait longest_wait_;
   double longest_ = 0;  // of the current wait
   std::optional<ReferenceFlow> flow_;

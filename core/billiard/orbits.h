@@ -23,6 +23,7 @@
 
 #include "core/billiard/engine_run.h"
 #include "core/billiard/reference_flow.h"
+#include "core/billiard/tangent_map.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
 
@@ -79,6 +80,13 @@ class OrbitSource {
   // orbit waits for LongestWait (longest_wait.h), and is then reported as escaped. So every orbit
   // ends.
   virtual double TimeLimit() const { return std::numeric_limits<double>::infinity(); }
+  // Whether the source follows tangent vectors. If so, the reference calls FollowEvent after each
+  // event, at a collision before Collide. The lanes call FollowWait before they report a collision,
+  // with the map of the ball's flights since the orbit's start or its previous collision. A ball at
+  // rest has no flights, and no call.
+  virtual bool FollowsTangents() const { return false; }
+  virtual void FollowEvent(uint64_t /*orbit*/, const Event&, const PairState& /*after*/) {}
+  virtual void FollowWait(uint64_t /*orbit*/, const BallMap&) {}
   // True if the engine should return. The engine asks about 5000 times a second, and at least every
   // 0.05 s if a call of Start or Collide takes at most 10 us for each orbit.
   virtual bool Pause() = 0;

@@ -25,6 +25,15 @@ inline constexpr double kNoTimeLimit = std::numeric_limits<double>::infinity();
 //   PairState Start(uint64_t orbit);                            called once for each orbit
 //   AfterCollision Collide(uint64_t orbit, const Collision& collision);  not called for an escape
 //   BlockResult Result() const;                                 called after all orbits have ended
+// An experiment with tangent vectors has one function more, which follows the events of the
+// reference or the waits of the lanes (OrbitSource::FollowsTangents):
+//   void Follow(uint64_t orbit, const Event& event, const PairState& after);
+//   void Follow(uint64_t orbit, const BallMap& flights);
+template <typename Orbits, typename... Followed>
+concept Follows = requires(Orbits orbits, uint64_t orbit, const Followed&... followed) {
+  orbits.Follow(orbit, followed...);
+};
+
 template <typename Orbits>
 class WatchedOrbits {
  public:
@@ -43,6 +52,10 @@ class WatchedOrbits {
     health_.max_energy_error = std::max(health_.max_energy_error, EnergyError(collision.state));
     return after;
   }
+
+  template <typename... Followed>
+  requires Follows<Orbits, Followed...>
+  void Follow(uint64_t orbit, const Followed&... followed) { orbits_.Follow(orbit, followed...); }
 
   BlockResult Result() const {
     BlockResult result = orbits_.Result();
@@ -83,6 +96,20 @@ class BlockOrbits : public EngineRun, private OrbitSource {
       after = blocks_.WorkOf(orbit).Collide(blocks_.IndexOf(orbit), collision);
       if (after == AfterCollision::kEnd) blocks_.End(orbit);
     }
+  }
+
+  static constexpr bool kFollowsEvents = Follows<Orbits, Event, PairState>;
+  static constexpr bool kFollowsWaits = Follows<Orbits, BallMap>;
+  bool FollowsTangents() const override { return kFollowsEvents || kFollowsWaits; }
+  void FollowEvent(uint64_t orbit, const Event& event, const PairState& after) override {
+    if constexpr (kFollowsEvents) FollowWith(orbit, event, after);
+  }
+  void FollowWait(uint64_t orbit, const BallMap& flights) override {
+    if constexpr (kFollowsWaits) FollowWith(orbit, flights);
+  }
+  template <typename... Followed>
+  void FollowWith(uint64_t orbit, const Followed&... followed) {
+    blocks_.WorkOf(orbit).Follow(blocks_.IndexOf(orbit), followed...);
   }
 
   double TimeLimit() const override { return time_limit_; }

@@ -14,9 +14,10 @@ extern const ExperimentKind kEnergyRelaxation;
 extern const ExperimentKind kMarkovProperty;
 extern const ExperimentKind kGasEquilibrium;
 extern const ExperimentKind kGasConduction;
+extern const ExperimentKind kLyapunov;
 
 inline constexpr std::array kAllExperiments = {
-    &kEquilibrium,    &kConditionalMeanFreeTime, &kFirstHit,     &kEnergyRelaxation,
-    &kMarkovProperty, &kGasEquilibrium,          &kGasConduction};
+    &kEquilibrium,    &kConditionalMeanFreeTime, &kFirstHit,      &kEnergyRelaxation,
+    &kMarkovProperty, &kGasEquilibrium,          &kGasConduction, &kLyapunov};
 
 }  // namespace ballpiston

@@ -13,6 +13,7 @@
 //                                   eighth of the orbits (experiment/energy_relaxation.cc)
 //   a gas's current, by exchanges   a tenth of the replicas, or less (gas_equilibrium.cc)
 //   Markov property                 the orbits
+//   Lyapunov exponents              the orbits
 // The number of events is an expected one, never a measured one: an error that is shown only if the
 // sample happens to contain many events is shown for samples that lie to one side. A quantity that
 // cannot fluctuate has the error 0.

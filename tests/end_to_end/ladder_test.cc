@@ -63,6 +63,7 @@ TEST_F(LadderTest, APlanNamesTheModelAndMakesNoJob) {
       {"conditional-mean-free-time --delta 0.1 --epsilon 0.1", "CLOSED_FORM"},
       {"first-hit --delta 0.3 --epsilon 0.1 --exponent 1", "BILLIARD"},
       {"markov-property --delta 0.1", "BILLIARD"},
+      {"lyapunov --delta 0.1 --estimate lyapunov_2 --tolerance 0.01", "BILLIARD"},
       {"gas-equilibrium --delta 0.1 --cells 8 --temperature 1", "CLOSED_FORM"},
       {"gas-equilibrium --delta 0.1 --cells 8 --temperature 1 --verify", "BILLIARD"},
       {"gas-equilibrium --delta 0.01 --cells 8 --temperature 1 --estimate conductivity "

@@ -174,6 +174,7 @@ std::vector<Row> AllRows() {
       {"FirstHitWithExponentTwo", {&kFirstHit, PaperPoint(0.2, 0.3, 2)}},
       {"Equilibrium", {&kEquilibrium, PaperPoint(0.2)}},
       {"MarkovProperty", {&kMarkovProperty, PaperPoint(0.2), Model::kMarkov}},
+      {"Lyapunov", {&kLyapunov, PaperPoint(0.2)}},
       {"RelaxationByJumps", {&kEnergyRelaxation, PaperPoint(0.2), Model::kMarkov}},
       {"SlowRelaxationByJumps", {&kEnergyRelaxation, PaperPoint(0.2, 0.01), Model::kMarkov}},
       {"Relaxation", {&kEnergyRelaxation, PaperPoint(0.2)}},

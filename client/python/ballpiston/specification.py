@@ -72,8 +72,9 @@ def specification(
         budget: seconds of computing with all workers, for the whole grid; with a tolerance the job
             fails if some point does not reach it. Of samples, collisions, tolerance and budget give
             at most one, or tolerance and budget together.
-        estimate: the estimate that the tolerance refers to; only "gas-equilibrium" has a choice:
-            "exchange_rate" or "conductivity".
+        estimate: the estimate that the tolerance refers to; "gas-equilibrium" has a choice between
+            "exchange_rate" and "conductivity", and "lyapunov" between "lyapunov_1", "lyapunov_2",
+            "entropy", "lyapunov_1_per_collision" and "lyapunov_2_per_collision".
         seed: of the random numbers; 0 to 2^64 - 1. The same question and seed give the same
             numbers.
         model: "auto", "closed-form", "spectrum", "markov", "billiard" or "billiard-reference".

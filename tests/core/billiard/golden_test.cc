@@ -138,7 +138,8 @@ std::vector<EnsembleSpec> SpecsOf(Engine engine) {
       SpecOf(&kFirstHit, PaperPoint(0.2, 0.125, 2.5), samples),
       SpecOf(&kEnergyRelaxation, PaperPoint(0.2), {.samples = 100}),
       SpecOf(&kEnergyRelaxation, PaperPoint(0.2, 0.01), {.samples = 200}),
-      SpecOf(&kMarkovProperty, PaperPoint(0.2), {.collisions = 5000})};
+      SpecOf(&kMarkovProperty, PaperPoint(0.2), {.collisions = 5000}),
+      SpecOf(&kLyapunov, PaperPoint(0.2), {.collisions = 5000})};
   if (engine != Engine::kLanesSingle) {
     for (const ExperimentKind* gas : {&kGasEquilibrium, &kGasConduction}) {
       for (const GasShape& shape : {GasShape{3}, GasShape{2, 2, true}}) {

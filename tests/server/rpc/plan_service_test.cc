@@ -100,7 +100,8 @@ const std::map<v1::EnsembleSpec::Experiment, ExpectedLadder>& LaddersOfAll() {
       {E::GAS_EQUILIBRIUM,
        {E::CLOSED_FORM,
         {E::CLOSED_FORM, E::SPECTRUM, E::MARKOV, E::BILLIARD, E::BILLIARD_REFERENCE}}},
-      {E::GAS_CONDUCTION, {E::BILLIARD, {E::MARKOV, E::BILLIARD, E::BILLIARD_REFERENCE}}}};
+      {E::GAS_CONDUCTION, {E::BILLIARD, {E::MARKOV, E::BILLIARD, E::BILLIARD_REFERENCE}}},
+      {E::LYAPUNOV, {E::BILLIARD, {E::BILLIARD, E::BILLIARD_REFERENCE}}}};
   return all;
 }
 

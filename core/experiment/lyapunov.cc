@@ -1,0 +1,221 @@
+// The pair's Lyapunov exponents lambda_1 > lambda_2 > 0 in a unit of time at the energy 1/2, and
+// their sum, which is the entropy by Pesin's formula. billiard/tangent_map.h derives the maps of
+// tangent vectors, and why the other exponents are 0, 0, -lambda_2, -lambda_1.
+//
+// A block is many orbits of kOrbit collisions. Each starts from the return map's invariant measure,
+// so orbits are independent and in equilibrium. Each is one batch of the batch means: the
+// logarithms of its growth over its duration, or over its collisions. Tangent vectors start in
+// directions that are the same for every orbit, and turn to those of the exponents by a factor of
+// about exp(-2 lambda_2 t), at least 4 in each collision as measured. So the first kWarmUp
+// collisions of an orbit are not measured.
+//
+// The billiard's lanes follow two tangent vectors. The reference follows six, and reports the other
+// four exponents and the sum of all six as they were measured.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "core/billiard/orbits.h"
+#include "core/billiard/tangent_frame.h"
+#include "core/billiard/tangent_plane.h"
+#include "core/closed_form/mean_free_time.h"
+#include "core/experiment/all_experiments.h"
+#include "core/experiment/pair_experiment.h"
+#include "core/statistics/stated_error.h"
+
+namespace ballpiston {
+namespace {
+
+// Collisions of an orbit that are measured, and those before them.
+constexpr uint64_t kOrbit = 64;
+constexpr uint64_t kWarmUp = 8;
+
+// An orbit is one event for the error.
+constexpr double kOrbitsPerCollision = 1.0 / kOrbit;
+
+// The accumulators of a block. Those of the third to the sixth exponent, and of all six, are at the
+// end, and only in the reference.
+enum Ratio : size_t {
+  kFirst,
+  kSecond,
+  kEntropy,
+  kFirstPerCollision,
+  kSecondPerCollision,
+  kFreeTime,
+  kRatios
+};
+constexpr size_t kFurtherRatios = 5;
+
+// `Tangents` is TangentPlane or TangentFrame.
+template <typename Tangents>
+class FollowedOrbits : public OrbitsInEquilibrium {
+ public:
+  FollowedOrbits(const PairExperiment& experiment, const Block& block)
+      : OrbitsInEquilibrium(experiment, block, kOrbit), orbits_(count()) {}
+
+  PairState Start(uint64_t orbit) {
+    const PairState state = Draw(orbit);
+    orbits_[orbit].tangents = Tangents(experiment_.geometry(), state);
+    return state;
+  }
+
+  // The reference's events, or the lanes' waits.
+  template <typename... Followed>
+  void Follow(uint64_t orbit, const Followed&... followed) requires requires(Tangents tangents) {
+    tangents.Follow(followed...);
+  }
+  { orbits_[orbit].tangents.Follow(followed...); }
+
+  AfterCollision Collide(uint64_t index, const Collision& collision) {
+    Orbit& orbit = orbits_[index];
+    orbit.tangents.Collide(collision);
+    const auto growth = orbit.tangents.TakeGrowth();
+    if (orbit.collisions_before < kWarmUp) {
+      ++orbit.collisions_before;
+      return AfterCollision::kGoOn;
+    }
+    for (size_t k = 0; k < growth.size(); ++k) orbit.growth[k] += growth[k];
+    orbit.time += collision.time;
+    return After(index, ++orbit.collisions);
+  }
+
+  BlockResult Result() const {
+    BlockResult result = experiment_.EmptyResult();
+    for (const Orbit& orbit : orbits_) {
+      if (orbit.collisions == 0) continue;  // it has escaped
+      result.samples += orbit.collisions;
+      AddTo(result.batch_means, orbit);
+    }
+    return result;
+  }
+
+ private:
+  struct Orbit {
+    Tangents tangents = {};
+    uint64_t collisions_before = 0;  // in the warm-up
+    uint64_t collisions = 0;
+    double time = 0;
+    std::array<double, Tangents::kExponents> growth = {};
+  };
+
+  static void AddTo(std::vector<BatchMeans>& ratios, const Orbit& orbit) {
+    const auto collisions = static_cast<double>(orbit.collisions);
+    const double first = orbit.growth[0], second = orbit.growth[1];
+    ratios[kFirst].Add(first, orbit.time);
+    ratios[kSecond].Add(second, orbit.time);
+    ratios[kEntropy].Add(first + second, orbit.time);
+    ratios[kFirstPerCollision].Add(first, collisions);
+    ratios[kSecondPerCollision].Add(second, collisions);
+    ratios[kFreeTime].Add(orbit.time, collisions);
+    double sum = first + second;
+    for (size_t k = 2; k < orbit.growth.size(); ++k) {
+      ratios[kRatios + k - 2].Add(orbit.growth[k], orbit.time);
+      sum += orbit.growth[k];
+    }
+    if (ratios.size() > kRatios) ratios.back().Add(sum, orbit.time);
+  }
+
+  std::vector<Orbit> orbits_;
+};
+
+bool IsByReference(Model model) { return model == Model::kBilliardReference; }
+
+// The row of the estimate `aim` comes first.
+std::vector<Measurement> Table(const PairGeometry& geometry, Model model, absl::string_view aim) {
+  const auto ratio = [](std::string name, size_t index) {
+    return Measurement{.name = std::move(name), .reading = RatioAt(index, kOrbitsPerCollision)};
+  };
+  std::vector<Measurement> table = {ratio("lyapunov_1", kFirst),
+                                    ratio("lyapunov_2", kSecond),
+                                    ratio("entropy", kEntropy),
+                                    ratio("lyapunov_1_per_collision", kFirstPerCollision),
+                                    ratio("lyapunov_2_per_collision", kSecondPerCollision),
+                                    ratio("mean_free_time_ball_piston", kFreeTime)};
+  table.back().exact = MeanFreeTimesOf(geometry).ball_piston;
+  if (IsByReference(model)) {
+    for (size_t k = 0; k < kFurtherRatios - 1; ++k) {
+      table.push_back(ratio(absl::StrCat("lyapunov_", k + 3), kRatios + k));
+    }
+    table.push_back(ratio("lyapunov_sum", kRatios + kFurtherRatios - 1));
+  }
+  const auto first = std::ranges::find(table, aim, &Measurement::name);
+  std::rotate(table.begin(), first, first + 1);
+  return table;
+}
+
+class LyapunovExperiment : public PairExperiment {
+ public:
+  LyapunovExperiment(const EnsembleSpec& spec, const PointParameters& point)
+      : PairExperiment(spec, point) {
+    const size_t ratios = kRatios + (IsByReference(answer().model) ? kFurtherRatios : 0);
+    SetMeasurements({.batch_means = std::vector<BatchMeans>(ratios)},
+                    Table(geometry(), answer().model, AimOf(spec).name));
+  }
+
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
+    if (IsByReference(answer().model)) return RunFollowed<TangentFrame>(queue);
+    return RunFollowed<TangentPlane>(queue);
+  }
+
+ protected:
+  void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
+    if (HasStatedError(kOrbitsPerCollision * static_cast<double>(merged.samples))) return;
+    summary.remarks.push_back(
+        absl::StrFormat("there are no standard errors: these need %.0f collisions",
+                        kEventsForAnError / kOrbitsPerCollision));
+  }
+
+ private:
+  template <typename Tangents>
+  std::unique_ptr<EngineRun> RunFollowed(BlockQueue& queue) const {
+    return RunOrbits(queue,
+                     [this](const Block& block) { return FollowedOrbits<Tangents>(*this, block); });
+  }
+};
+
+// The times of events with tangent vectors, relative to those without, as measured.
+SampleWork WorkOfLyapunov(Model model, const PointParameters& point) {
+  const double with_tangents = IsByReference(model) ? 4 : 1.5;
+  constexpr double kWithWarmUp = static_cast<double>(kWarmUp + kOrbit) / kOrbit;
+  return WorkOfACollision(GeometryOf(point)).Times(with_tangents * kWithWarmUp);
+}
+
+// The relative errors are those measured for rho = 0.501 to 0.7 and delta = 0.005 to its bound,
+// where they differ by a factor of 1.5.
+consteval AimedEstimate Aim(absl::string_view name,
+                            double (*error)(Model, const PointParameters&)) {
+  return {.name = name,
+          .models = kBilliards,
+          .error = error,
+          .events = [](Model, const PointParameters&) { return kOrbitsPerCollision; }};
+}
+
+constexpr AimedEstimate kAimsOfLyapunov[] = {
+    Aim("lyapunov_1", [](Model, const PointParameters&) { return 0.36; }),
+    Aim("lyapunov_2", [](Model, const PointParameters&) { return 1.0; }),
+    Aim("entropy", [](Model, const PointParameters&) { return 0.34; }),
+    Aim("lyapunov_1_per_collision", [](Model, const PointParameters&) { return 1.2; }),
+    Aim("lyapunov_2_per_collision", [](Model, const PointParameters&) { return 0.7; })};
+
+}  // namespace
+
+constinit const ExperimentKind kLyapunov = {.name = "lyapunov",
+                                            .number = 8,
+                                            .parameters = kPairAlone,
+                                            .unit = TargetUnit::kCollisions,
+                                            .models = kBilliards,
+                                            .aims = kAimsOfLyapunov,
+                                            .create = CreateAs<LyapunovExperiment>,
+                                            .check_grid = CheckPairGrid,
+                                            .work = WorkOfLyapunov,
+                                            .collisions = OneCollision,
+                                            .memory = MemoryOfPairs,
+                                            .samples_together = kOrbit};
+
+}  // namespace ballpiston
