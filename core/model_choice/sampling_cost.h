@@ -17,9 +17,13 @@ struct SamplingCost {
   double orbit = 1;   // samples of an orbit
   double parts = 1;   // of a sample's flight (ensemble/experiment_kind.h)
   double first = 0;   // a thread's time until its first samples are complete
+  double warm_up = 0;  // the time of samples that are not measured, of all threads
+  double stage = 0;    // the first samples that are complete, where they continue each other
 
-  // `samples` samples by up to `threads` threads.
+  // `samples` samples by up to `threads` threads, after the warm-up.
   double Of(double samples, int threads) const;
+  // Until all of up to `threads` threads have their first samples.
+  double OfTheFirst(int threads) const;
   // The number of threads that have samples then.
   double ThreadsFor(double samples, int threads) const;
   // The number of samples that `threads` threads complete in this time; 0 if they complete none.
