@@ -11,7 +11,7 @@
 // The charge Q_t is the energy that passes through the gas along x in a time t, the mean over the
 // sections between balls and pistons. Its cumulants c_n grow as t. At a finite t their ratio to t
 // differs by an amount in proportion to 1/t, so the estimates are [c_n(2 t) - c_n(t)]/t, with t =
-// kWindow. In the billiard slow pistons make the variance grow as t ln t.
+// kChargeWindow. In the billiard slow pistons make the variance grow as t ln t.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -43,7 +43,7 @@ namespace {
 
 // In halves of the longest relaxation time; powers of two.
 constexpr uint64_t kWarmUp = 1;
-constexpr size_t kWindow = 8;
+constexpr size_t kChargeWindow = 8;
 
 // At most 256 trajectories, so that a quick question ends quickly. A large gas has fewer, because
 // each has to warm up.
@@ -311,7 +311,7 @@ class GasConduction : public SteadyGas {
   }
   // The first window of the estimates.
   size_t EstimatedWindow() const {
-    return of_half_ + static_cast<size_t>(std::countr_zero(kWindow));
+    return of_half_ + static_cast<size_t>(std::countr_zero(kChargeWindow));
   }
 
   // Whether every group has enough windows of this length for an error.
