@@ -42,12 +42,12 @@ namespace ballpiston {
 namespace {
 
 // In halves of the longest relaxation time; powers of two.
-constexpr uint64_t kWarmUp = 1;
+constexpr uint64_t kWarmUp = 2;
 constexpr size_t kChargeWindow = 8;
 
-// At most 256 trajectories, so that a quick question ends quickly. A large gas has fewer, because
+// At most 128 trajectories, so that a quick question ends quickly. A large gas has fewer, because
 // each has to warm up.
-constexpr uint64_t kMostTrajectories = 256;
+constexpr uint64_t kMostTrajectories = 128;
 
 constexpr int64_t kMostColumnsApart =
     128;  // of the profile; in a longer gas, columns share a place
