@@ -44,8 +44,7 @@ class GroupState {
     return empty() ? std::span<const double>() : std::span(*numbers_);
   }
   friend bool operator==(const GroupState& a, const GroupState& b) {
-    return a.numbers_ == b.numbers_ ||
-           (!a.empty() && !b.empty() && *a.numbers_ == *b.numbers_);
+    return a.numbers_ == b.numbers_ || (!a.empty() && !b.empty() && *a.numbers_ == *b.numbers_);
   }
 
  private:

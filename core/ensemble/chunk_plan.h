@@ -94,8 +94,8 @@ class ChunkPlan {
   uint64_t ChunksOfAStage() const { return std::max<uint64_t>(groups(), 1); }
   uint64_t SamplesOfAStep() const { return std::max<uint64_t>(trajectories_.count(), 1); }
   uint64_t StepsBefore(uint64_t stage) const;
-  uint64_t StepsIn(uint64_t stage) const;      // of the planned ones
-  uint64_t StagesWith(uint64_t steps) const;   // the fewest that have so many steps
+  uint64_t StepsIn(uint64_t stage) const;     // of the planned ones
+  uint64_t StagesWith(uint64_t steps) const;  // the fewest that have so many steps
   uint64_t BlockSize(uint64_t chunk) const;
 
   Trajectories trajectories_ = {.groups = 0, .each = 0, .warm_up = 0};

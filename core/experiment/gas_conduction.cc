@@ -269,11 +269,10 @@ class GasConduction : public SteadyGas {
       };
       table.push_back({NameOf(order), reading, ScaleOf(order)});
     }
-    table.push_back({"autocorrelation_time",
-                     [this](const BlockResult& merged) {
-                       return AutocorrelationTime(GroupsOf(merged));
-                     },
-                     1 / std::sqrt(temperature())});
+    table.push_back(
+        {"autocorrelation_time",
+         [this](const BlockResult& merged) { return AutocorrelationTime(GroupsOf(merged)); },
+         1 / std::sqrt(temperature())});
     return table;
   }
 
@@ -346,8 +345,7 @@ class GasConduction : public SteadyGas {
   std::optional<Estimate> CumulantRate(const Order& order,
                                        const std::vector<SteadyGroup>& groups) const {
     if (!HasWindows(EstimatedWindow() + 1, order.windows, groups)) return std::nullopt;
-    return FromWindows(groups,
-                       [&](const auto& windows) { return RateOf(order.number, windows); });
+    return FromWindows(groups, [&](const auto& windows) { return RateOf(order.number, windows); });
   }
 
   // Of the current, averaged over half a relaxation time: half of that time if the averages are

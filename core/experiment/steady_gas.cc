@@ -132,8 +132,7 @@ class GroupRun : public EngineRun {
     const auto warm_up = static_cast<double>(experiment_.trajectories().warm_up);
     const bool is_new = stretches_ == 0, was_measuring = is_measuring_;
     const bool is_judged =
-        !is_measuring_ &&
-        (group_.stretches == warm_up || (is_new && group_.stretches > warm_up));
+        !is_measuring_ && (group_.stretches == warm_up || (is_new && group_.stretches > warm_up));
     if (is_judged) is_measuring_ = HasWarmedUp() || group_.stretches >= kLongestWarmUp * warm_up;
     if (!is_measuring_ || (was_measuring && !is_new)) return;
     for (GasMeter& meter : meters_) meter.Begin(Now());
@@ -247,8 +246,7 @@ bool SteadyGas::CanContinue(const GroupState& state) const {
     return false;
   }
   const SteadyGroup group = shape_.Read(state);
-  return IsCount(group.stretches) && IsCount(group.measured) &&
-         group.measured <= group.stretches &&
+  return IsCount(group.stretches) && IsCount(group.measured) && group.measured <= group.stretches &&
          std::ranges::all_of(group.trajectories, [&](const SteadyTrajectory& trajectory) {
            return !shape_.has_positions || IsPossible(trajectory, geometry());
          });

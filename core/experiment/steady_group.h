@@ -26,14 +26,14 @@ inline constexpr size_t kWindowLengths = 20;
 
 struct SteadyTrajectory {
   GasState state = {};
-  double energy = 0;              // when the warm-up was judged last
-  std::vector<double> sums = {};  // integrals over the measured time, by quantity
+  double energy = 0;                               // when the warm-up was judged last
+  std::vector<double> sums = {};                   // integrals over the measured time, by quantity
   std::array<double, kWindowLengths> halves = {};  // the charge of the first half of a window
 };
 
 struct SteadyGroup {
-  double stretches = 0;  // of each trajectory, since its start
-  double measured = 0;   // of them
+  double stretches = 0;                              // of each trajectory, since its start
+  double measured = 0;                               // of them
   std::array<Moments, kWindowLengths> windows = {};  // of the charge; window i has 2^i stretches
   std::vector<SteadyTrajectory> trajectories = {};
 

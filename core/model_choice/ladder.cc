@@ -100,8 +100,8 @@ class Question {
   double SamplesBy(Model model) const {
     const auto experiment = PointExperiment::Create(By(model), 0);
     const ChunkPlan& plan = experiment->plan();
-    double samples = static_cast<double>(plan.SamplesBefore(experiment->expected_chunks()) -
-                                         plan.warm_up());
+    double samples =
+        static_cast<double>(plan.SamplesBefore(experiment->expected_chunks()) - plan.warm_up());
     if (target().budget_seconds) samples = std::min(samples, SamplesInBudget(model));
     return samples;
   }

@@ -203,8 +203,7 @@ TEST(GasConduction, TheVarianceOfTheChargeFollowsFromTheCurrent) {
   const Estimate &variance = Named("charge_cumulant_2", equal),
                  &current = Named("heat_current", unequal);
   const double expected = 2 * 4 * current.value / 0.4;
-  const double error =
-      std::hypot(*variance.standard_error, 2 * 4 * *current.standard_error / 0.4);
+  const double error = std::hypot(*variance.standard_error, 2 * 4 * *current.standard_error / 0.4);
   EXPECT_LT(error, 0.1 * expected);
   // Four standard errors, Student's law with 15 degrees of freedom: one false alarm in 900 seeds.
   EXPECT_NEAR(variance.value, expected, 4 * error);

@@ -630,9 +630,9 @@ EnsembleSpec Conduction(const GasShape& shape, Model model, const Target& target
 // A question that needs years is planned. One that needs longer than any machine lasts is rejected.
 TEST(Ladder, ALongGasIsPlannedUntilItsTimeIsBeyondAllMachines) {
   const auto asked = [](int64_t columns) {
-    EnsembleSpec spec = SpecOf(&kGasConduction,
-                               PaperGas(&kGasConduction, 0.1, {.columns = columns}),
-                               {.tolerance = 0.05}, Model::kBilliard);
+    EnsembleSpec spec =
+        SpecOf(&kGasConduction, PaperGas(&kGasConduction, 0.1, {.columns = columns}),
+               {.tolerance = 0.05}, Model::kMarkov);
     return std::pair(spec, LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked));
   };
   const auto [long_gas, ladder] = asked(100'000);
@@ -649,8 +649,7 @@ TEST(Ladder, ChainsOfHundredsTakeMinutes) {
     PointParameters point = PaperGas(&kGasConduction, 0.05, {.columns = columns});
     point.Set(kHot, 2);
     point.Set(kCold, 1);
-    const EnsembleSpec spec =
-        SpecOf(&kGasConduction, point, {.tolerance = 0.05}, Model::kBilliard);
+    const EnsembleSpec spec = SpecOf(&kGasConduction, point, {.tolerance = 0.05}, Model::kBilliard);
     EXPECT_LT(LadderFor(spec, point, SomeMachine(), MayNotBeAsked).Chosen().time, seconds);
   }
 }
