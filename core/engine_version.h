@@ -3,6 +3,6 @@
 
 namespace ballpiston {
 
-inline constexpr char kEngineVersion[] = "0.12.0";
+inline constexpr char kEngineVersion[] = "0.13.0";
 
 }  // namespace ballpiston

@@ -16,6 +16,13 @@ void MergeEach(const std::vector<Accumulator>& from, std::vector<Accumulator>* i
   for (size_t i = 0; i < from.size(); ++i) (*into)[i].Merge(from[i]);
 }
 
+void KeepNewer(const std::vector<GroupState>& from, std::vector<GroupState>* into) {
+  into->resize(std::max(into->size(), from.size()));
+  for (size_t i = 0; i < from.size(); ++i) {
+    if (!from[i].empty()) (*into)[i] = from[i];
+  }
+}
+
 bool HaveSameBins(const Histogram& a, const Histogram& b) {
   return a.lower == b.lower && a.upper == b.upper && a.counts.size() == b.counts.size();
 }
@@ -50,6 +57,11 @@ void Add(const Histogram& histogram, Digest& digest) {
   for (const uint64_t count : histogram.counts) digest.Add(count);
 }
 
+void Add(const GroupState& group, Digest& digest) {
+  digest.Add(uint64_t{group.numbers().size()});
+  for (const double number : group.numbers()) digest.Add(number);
+}
+
 // The number of parts first, so that none can be taken for a part of another kind.
 template <typename Part>
 void Add(const std::vector<Part>& parts, Digest& digest) {
@@ -70,10 +82,12 @@ void BlockResult::Merge(const BlockResult& other) {
   MergeEach(other.batch_means, &batch_means);
   MergeEach(other.histograms, &histograms);
   health.Merge(other.health);
+  KeepNewer(other.groups, &groups);
 }
 
 bool BlockResult::HasShapeOf(const BlockResult& other) const {
   return moments.size() == other.moments.size() && batch_means.size() == other.batch_means.size() &&
+         groups.size() == other.groups.size() &&
          std::equal(histograms.begin(), histograms.end(), other.histograms.begin(),
                     other.histograms.end(), HaveSameBins);
 }
@@ -85,6 +99,7 @@ uint64_t DigestOf(const BlockResult& result) {
   Add(result.batch_means, digest);
   Add(result.histograms, digest);
   digest.AddAll(result.health.escapes, result.health.max_energy_error);
+  Add(result.groups, digest);
   return digest.state();
 }
 

@@ -2,14 +2,27 @@
 
 namespace ballpiston {
 
-ChunkFold::ChunkFold(const ChunkPlan& plan, PartialChunk start, uint64_t end)
-    : plan_(plan), end_(end), partial_(std::move(start)), next_(NextPlace()) {}
+ChunkFold::ChunkFold(const ChunkPlan& plan, PartialChunk start, uint64_t end,
+                     std::vector<GroupState> groups)
+    : plan_(plan),
+      end_(end),
+      partial_(std::move(start)),
+      next_(NextPlace()),
+      groups_(std::move(groups)) {
+  groups_.resize(plan.groups());
+}
 
-bool ChunkFold::HasNextBlock() const { return next_.first < end_ && handed_out_ < kWindow; }
+bool ChunkFold::HasNextBlock() const {
+  if (next_.first >= end_ || handed_out_ >= kWindow) return false;
+  return next_.first < plan_.groups() || plan_.groups() == 0 || !StartOf(next_.first).empty();
+}
 
 std::optional<Block> ChunkFold::NextBlock() {
   if (!HasNextBlock()) return std::nullopt;
-  const Block block = plan_.BlockAt(next_.first, next_.second);
+  Block block = plan_.BlockAt(next_.first, next_.second);
+  if (plan_.groups() > 0) {
+    block.start = std::exchange(groups_[block.chunk % plan_.groups()], GroupState());
+  }
   ++handed_out_;
   if (++next_.second == plan_.BlocksIn(next_.first)) next_ = {next_.first + 1, 0};
   return block;
@@ -18,7 +31,11 @@ std::optional<Block> ChunkFold::NextBlock() {
 std::vector<ChunkResult> ChunkFold::Add(const Block& block, BlockResult result) {
   std::vector<ChunkResult> complete;
   const Place place = {block.chunk, block.index};
-  if (place < NextPlace()) return complete;
+  if (place < NextPlace() || early_.Has(place)) return complete;
+  if (!result.groups.empty()) {
+    const uint64_t group = block.chunk % plan_.groups();
+    groups_[group] = result.groups[group];
+  }
   early_.Add(place, std::move(result));
   while (const std::optional<BlockResult> next = early_.Take(NextPlace())) {
     partial_.merged.Merge(*next);

@@ -2,8 +2,10 @@
 //
 // Blocks may arrive in any order, from any number of threads. A block that arrives early waits
 // until all blocks before it are merged. So a chunk's result has the same bits for every order of
-// arrival. Properties, each with a test of its name:
+// arrival. Where samples continue each other, a block is handed out when its group's previous block
+// has arrived. Properties, each with a test of its name:
 //   1. ChunksAreIndependentOfTheOrderOfBlocks.  2. AResumedChunkHasTheSameBits.
+//   3. ABlockStartsWhereThePreviousOneOfItsGroupEnded.
 // Not thread-safe.
 #pragma once
 
@@ -33,8 +35,10 @@ struct ChunkResult {
 
 class ChunkFold {
  public:
-  // Chunks start.chunk ... end - 1 of the plan, without the first start.blocks blocks.
-  ChunkFold(const ChunkPlan& plan, PartialChunk start, uint64_t end);
+  // Chunks start.chunk ... end - 1 of the plan, without the first start.blocks blocks. `groups` has
+  // the states from which chunks of the range start whose groups have no earlier chunk in it.
+  ChunkFold(const ChunkPlan& plan, PartialChunk start, uint64_t end,
+            std::vector<GroupState> groups = {});
 
   // The maximum number of blocks that are handed out but not merged. It bounds the memory of blocks
   // that wait for a slow one. A smaller window would leave lanes empty.
@@ -56,6 +60,9 @@ class ChunkFold {
  private:
   using Place = std::pair<uint64_t, uint64_t>;  // chunk, index
 
+  // Where the next chunk of this chunk's group starts; empty if the group has not arrived there.
+  const GroupState& StartOf(uint64_t chunk) const { return groups_[chunk % plan_.groups()]; }
+
   Place NextPlace() const { return {partial_.chunk, partial_.blocks}; }
 
   ChunkPlan plan_;
@@ -64,6 +71,7 @@ class ChunkFold {
   Place next_;               // of the next block to hand out
   uint64_t handed_out_ = 0;  // blocks that are handed out but not merged
   InOrder<Place, BlockResult> early_;
+  std::vector<GroupState> groups_;  // by group, empty while a block of the group is computed
 };
 
 }  // namespace ballpiston

@@ -20,6 +20,11 @@ constexpr NominalEvents kByReference = {40e-9, 0x1p20, 0x1p16, 0x1p30};
 constexpr uint64_t kLeastJudged = 64;
 constexpr uint64_t kBlocksInAChunk = 32;
 constexpr double kMostInABlock = 0x1p16;
+constexpr double kMostInAChunk = 0x1p40;
+
+const NominalEvents& NominalOf(Engine engine) {
+  return engine == Engine::kReference ? kByReference : kInLanes;
+}
 
 // A power of two.
 uint64_t SamplesOf(double events, double events_per_sample, double most) {
@@ -29,39 +34,66 @@ uint64_t SamplesOf(double events, double events_per_sample, double most) {
 }  // namespace
 
 ChunkPlan::ChunkPlan(uint64_t samples, Engine engine, double events_per_sample, uint64_t together)
-    : samples_(samples), events_per_sample_(events_per_sample), smallest_block_(together) {
-  const NominalEvents& nominal = engine == Engine::kReference ? kByReference : kInLanes;
+    : samples_(samples),
+      steps_(samples),
+      events_per_sample_(events_per_sample),
+      smallest_block_(together) {
+  const NominalEvents& nominal = NominalOf(engine);
   seconds_per_event_ = nominal.seconds;
-  constexpr double kMostInAChunk = 0x1p40;
-  const uint64_t last =
-      std::max(SamplesOf(nominal.last_chunk, events_per_sample, kMostInAChunk), together);
+  largest_ = std::max(SamplesOf(nominal.last_chunk, events_per_sample, kMostInAChunk), together);
   base_ = std::max(SamplesOf(nominal.base, events_per_sample, kMostInAChunk),
-                   std::min(kLeastJudged, last));
-  doublings_ = static_cast<uint64_t>(std::countr_zero(last) - std::countr_zero(base_));
+                   std::min(kLeastJudged, largest_));
+  doublings_ = static_cast<uint64_t>(std::countr_zero(largest_) - std::countr_zero(base_));
   largest_block_ = SamplesOf(nominal.block, events_per_sample, kMostInABlock);
 }
 
-uint64_t ChunkPlan::FullSize(uint64_t chunk) const { return base_ << std::min(chunk, doublings_); }
-
-uint64_t ChunkPlan::FirstSample(uint64_t chunk) const {
-  if (chunk <= doublings_) return (base_ << chunk) - base_;
-  return (base_ << doublings_) - base_ + (chunk - doublings_) * FullSize(chunk);
+ChunkPlan::ChunkPlan(uint64_t samples, Engine engine, double events_per_sample,
+                     const Trajectories& trajectories)
+    : trajectories_(trajectories), events_per_sample_(events_per_sample) {
+  const NominalEvents& nominal = NominalOf(engine);
+  seconds_per_event_ = nominal.seconds;
+  const uint64_t together = trajectories.count();
+  steps_ = trajectories.warm_up + (samples + together - 1) / together;
+  samples_ = steps_ * together;
+  const double events_per_step = events_per_sample * static_cast<double>(trajectories.each);
+  largest_ = SamplesOf(nominal.last_chunk, events_per_step, kMostInAChunk);
+  if (trajectories.warm_up < largest_) {
+    doublings_ = static_cast<uint64_t>(std::countr_zero(largest_)) + 1;
+  }
 }
 
-uint64_t ChunkPlan::chunks() const {
-  uint64_t chunk = 0;
-  while (chunk < doublings_ && FirstSample(chunk) < samples_) ++chunk;
-  if (FirstSample(chunk) >= samples_) return chunk;
-  const uint64_t left = samples_ - FirstSample(chunk), size = FullSize(chunk);
-  return chunk + (left + size - 1) / size;
+uint64_t ChunkPlan::StepsBefore(uint64_t stage) const {
+  const uint64_t doubled = std::min(stage, doublings_);
+  const uint64_t equal = (stage - doubled) * largest_;
+  if (groups() == 0) return (base_ << doubled) - base_ + equal;
+  return (doubled == 0 ? 0 : trajectories_.warm_up + (uint64_t{1} << (doubled - 1))) + equal;
+}
+
+uint64_t ChunkPlan::StepsIn(uint64_t stage) const {
+  return std::min(StepsBefore(stage + 1), steps_) - StepsBefore(stage);
+}
+
+uint64_t ChunkPlan::StagesWith(uint64_t steps) const {
+  uint64_t stages = 0;
+  while (stages < doublings_ && StepsBefore(stages) < steps) ++stages;
+  const uint64_t before = StepsBefore(stages);
+  return before >= steps ? stages : stages + (steps - before + largest_ - 1) / largest_;
+}
+
+uint64_t ChunkPlan::FirstSample(uint64_t chunk) const {
+  const uint64_t stage = chunk / ChunksOfAStage(), before = chunk % ChunksOfAStage();
+  const uint64_t first = SamplesOfAStep() * StepsBefore(stage);
+  return before == 0 ? first : first + before * SamplesIn(chunk);
 }
 
 uint64_t ChunkPlan::SamplesIn(uint64_t chunk) const {
-  return std::min(FullSize(chunk), samples_ - FirstSample(chunk));
+  return SamplesOfAStep() / ChunksOfAStage() * StepsIn(chunk / ChunksOfAStage());
 }
 
 uint64_t ChunkPlan::BlockSize(uint64_t chunk) const {
-  const uint64_t shared = std::max<uint64_t>(FullSize(chunk) / kBlocksInAChunk, 1);
+  if (groups() > 0) return SamplesIn(chunk);
+  const uint64_t full = base_ << std::min(chunk, doublings_);
+  const uint64_t shared = std::max<uint64_t>(full / kBlocksInAChunk, 1);
   return std::max(std::min(largest_block_, shared), smallest_block_);
 }
 
@@ -79,21 +111,18 @@ Block ChunkPlan::BlockAt(uint64_t chunk, uint64_t index) const {
 }
 
 bool ChunkPlan::IsJudgedAfter(uint64_t chunk) const {
+  if (groups() > 0) return (chunk + 1) % groups() == 0 && FirstSample(chunk + 1) > warm_up();
   return base_ >= kLeastJudged || FirstSample(chunk + 1) % kLeastJudged == 0;
 }
 
 uint64_t ChunkPlan::ChunksFor(double samples) const {
-  if (base_ < kLeastJudged) {
+  if (groups() == 0 && base_ < kLeastJudged) {
     samples = std::ceil(samples / kLeastJudged) * static_cast<double>(kLeastJudged);
   }
+  samples += static_cast<double>(warm_up());
   if (!(samples < static_cast<double>(samples_))) return chunks();
-  uint64_t chunk = 1;
-  if (const double past = samples - static_cast<double>(FirstSample(doublings_)); past > 0) {
-    chunk = doublings_ +
-            static_cast<uint64_t>(std::ceil(past / static_cast<double>(FullSize(doublings_))));
-  }
-  while (static_cast<double>(FirstSample(chunk)) < samples) ++chunk;
-  return chunk;
+  const double steps = std::ceil(samples / static_cast<double>(SamplesOfAStep()));
+  return std::max<uint64_t>(StagesWith(static_cast<uint64_t>(steps)), 1) * ChunksOfAStage();
 }
 
 uint64_t ChunkPlan::SamplesBefore(uint64_t chunk) const {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "absl/strings/string_view.h"
+#include "core/ensemble/chunk_plan.h"
 #include "core/ensemble/ensemble_spec.h"
 
 namespace ballpiston {
@@ -109,10 +110,6 @@ struct ExperimentKind {
   // Finds why sampling cannot reach a tolerance; null if it always can.
   void (*check_tolerance)(const EnsembleSpec& spec, std::vector<FieldViolation>& found) = nullptr;
 
-  // The reason why an answer by samples of `model` states no errors at this point, whatever the
-  // number of samples, and the permitted range; empty if it states errors. Null: it always does.
-  std::string (*no_errors)(Model model, const PointParameters& point) = nullptr;
-
   // These two describe one sample by `model`: its work, and its mean number of ball-piston
   // collisions.
   SampleWork (*work)(Model model, const PointParameters& point);
@@ -123,6 +120,9 @@ struct ExperimentKind {
   // (MemoryOf).
   double (*memory)(Model model, const PointParameters& point);
   double memory_of_a_result = 20e3;
+
+  // If the samples continue each other: the trajectories of a point. Null: they do not.
+  Trajectories (*trajectories)(Model model, const PointParameters& point) = nullptr;
 
   // Samples of one orbit, which are measured together; a power of two up to 64.
   uint64_t samples_together = 1;

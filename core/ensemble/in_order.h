@@ -20,6 +20,12 @@ class InOrder {
     return std::move(early_.extract(key).mapped());
   }
 
+  // Null if there is none.
+  const Result* Find(const Key& key) const {
+    const auto found = early_.find(key);
+    return found == early_.end() ? nullptr : &found->second;
+  }
+
   bool Has(const Key& key) const { return early_.contains(key); }
   size_t size() const { return early_.size(); }
   void Clear() { early_.clear(); }

@@ -10,9 +10,14 @@ namespace ballpiston {
 namespace {
 
 ChunkPlan PlanFor(const EnsembleSpec& spec, const PointParameters& point) {
-  const SampleWork work = spec.experiment->work(Sampled(spec.model), point);
-  return ChunkPlan(SamplesAskedFor(spec, point), EngineFor(spec), work.Events(),
-                   spec.experiment->samples_together);
+  const ExperimentKind& kind = *spec.experiment;
+  const Model model = Sampled(spec.model);
+  const uint64_t samples = SamplesAskedFor(spec, point);
+  const double events = kind.work(model, point).Events();
+  if (kind.trajectories == nullptr) {
+    return ChunkPlan(samples, EngineFor(spec), events, kind.samples_together);
+  }
+  return ChunkPlan(samples, EngineFor(spec), events, kind.trajectories(model, point));
 }
 
 uint64_t ExpectedChunks(const EnsembleSpec& spec, const PointParameters& point,

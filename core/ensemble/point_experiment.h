@@ -75,6 +75,9 @@ class PointExperiment {
   // The result before any block. It has the accumulators that every block has; merging needs them.
   const BlockResult& EmptyResult() const { return empty_; }
 
+  // Whether a block can start from this state, which may be damaged.
+  virtual bool CanContinue(const GroupState& /*state*/) const { return false; }
+
   // The largest number of counts in one histogram that a sample adds.
   virtual uint64_t CountsOfASample() const { return 1; }
 

@@ -12,6 +12,20 @@ bool PointFold::Needs(uint64_t chunk) const {
   return !finished_ && chunk >= state_.chunk && chunk < chunks_ && !early_.Has(chunk);
 }
 
+GroupState PointFold::StartOf(uint64_t chunk) const {
+  const uint64_t groups = experiment_.plan().groups();
+  if (groups == 0 || chunk < groups) return {};
+  const uint64_t group = chunk % groups, previous = chunk - groups;
+  if (previous < state_.chunk) return state_.complete.groups[group];
+  const BlockResult* const early = early_.Find(previous);
+  return early == nullptr ? GroupState() : early->groups[group];
+}
+
+bool PointFold::CanStart(uint64_t chunk) const {
+  return chunk < experiment_.plan().groups() || experiment_.plan().groups() == 0 ||
+         !StartOf(chunk).empty();
+}
+
 uint64_t PointFold::Add(ChunkResult chunk) {
   if (!Needs(chunk.chunk)) return 0;
   early_.Add(chunk.chunk, std::move(chunk.result));

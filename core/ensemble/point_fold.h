@@ -47,6 +47,12 @@ class PointFold {
   // False if the chunk is merged or waits, or if the point is finished.
   bool Needs(uint64_t chunk) const;
 
+  // Where this chunk starts, if samples continue each other. Empty in the first stage, and if its
+  // group's previous chunk has not arrived.
+  GroupState StartOf(uint64_t chunk) const;
+  // Whether the chunk can be computed now: its start is known, or it needs none.
+  bool CanStart(uint64_t chunk) const;
+
   // Ends the point with the merged result and drops waiting chunks.
   void Finish();
 

@@ -61,8 +61,8 @@ ExtrapolatedValue LimitCorrection(const GasGeometry& geometry) {
   return geometry.shape().is_lattice ? kLatticeCorrection : kChainCorrection;
 }
 
-GasTimes TimesInEquilibrium(Model model, const GasGeometry& geometry) {
-  return {.measure = ExchangesOf(model, geometry) / InfiniteGasExchangeRate(geometry, 1)};
+double TimeInEquilibrium(Model model, const GasGeometry& geometry) {
+  return ExchangesOf(model, geometry) / InfiniteGasExchangeRate(geometry, 1);
 }
 
 std::vector<Histogram> EmptySpeeds() { return {2, Histogram::OfBins(0, kMostSpeed, kSpeedBins)}; }
@@ -126,11 +126,11 @@ GasGeometry PeriodicGasOf(const PointParameters& point) {
   return GasGeometryOf(point, GasEnds::kPeriodic);
 }
 
-class GasEquilibrium : public GasExperiment {
+class GasEquilibrium : public GasReplicas {
  public:
   GasEquilibrium(const EnsembleSpec& spec, const PointParameters& point)
-      : GasExperiment(spec, point, PeriodicGasOf(point),
-                      TimesInEquilibrium(spec.model, PeriodicGasOf(point)), point[kTemperature]),
+      : GasReplicas(spec, point, PeriodicGasOf(point),
+                    TimeInEquilibrium(spec.model, PeriodicGasOf(point)), point[kTemperature]),
         events_(EventsOfCurrents(answer().model, geometry().shape())) {
     SetMeasurements({.moments = std::vector<Moments>(kMomentsOfCurrents),
                      .batch_means = std::vector<BatchMeans>(kMeansOfAReplica),
@@ -143,9 +143,9 @@ class GasEquilibrium : public GasExperiment {
   std::unique_ptr<CurrentMeter> CurrentOf(const GasState& start) const override {
     if (!MeasuresConductivity(geometry())) return nullptr;
     if (gas_engine() == GasEngine::kJumps) {
-      return std::make_unique<JumpCurrent>(geometry(), exchange_rate(), start, times().measure);
+      return std::make_unique<JumpCurrent>(geometry(), exchange_rate(), start, duration());
     }
-    return std::make_unique<CarriedCurrent>(start.balls.size(), exchange_rate(), times().measure);
+    return std::make_unique<CarriedCurrent>(start.balls.size(), exchange_rate(), duration());
   }
 
   size_t MeasuredParts() const override {
@@ -198,7 +198,7 @@ class GasEquilibrium : public GasExperiment {
   // Scales at the gas's temperature: of times, of conductivities, and of squared currents of a
   // cell. The currents' energies are in units of the temperature, because its cube may exceed a
   // double.
-  double Step() const { return times().measure / kCurrentSteps / std::sqrt(temperature()); }
+  double Step() const { return duration() / kCurrentSteps / std::sqrt(temperature()); }
   double ConductivityScale() const { return std::sqrt(temperature()); }
   double AutocorrelationScale() const { return temperature(); }
 
@@ -224,7 +224,7 @@ class GasEquilibrium : public GasExperiment {
     const auto in_units_of = [&](double scale, const char* name) {
       return Measurement{
           .name = name,
-          .reading = Mean(kFirstWindow + kWindow, events_),
+          .reading = MeanAt(kFirstWindow + kWindow, events_),
           .scale = scale,
           .limit = scale * StaticConductivity() * (1 + LimitCorrection(geometry()).value)};
     };
@@ -237,7 +237,7 @@ class GasEquilibrium : public GasExperiment {
                 const BlockResult& merged) const {
     Curve curve = {.name = name};
     for (size_t step = first_step; step <= kWindow; ++step) {
-      const Measurement there = {"", Mean(first + step - first_step, events_), scale};
+      const Measurement there = {"", MeanAt(first + step - first_step, events_), scale};
       curve.points.push_back(CurvePointOf(static_cast<double>(step) * Step(), *there.Of(merged)));
     }
     return curve;
@@ -300,7 +300,7 @@ PointSummary ComputedEquilibrium(const EnsembleSpec& spec, const PointParameters
 // costs almost nothing.
 SampleWork WorkOfGasEquilibrium(Model model, const PointParameters& point) {
   const GasGeometry geometry = PeriodicGasOf(point);
-  SampleWork work = WorkOfReplica(model, geometry, TimesInEquilibrium(model, geometry).Total());
+  SampleWork work = WorkOfReplica(model, geometry, TimeInEquilibrium(model, geometry));
   if (MeasuresConductivity(geometry)) work.jumps *= 3;
   return work;
 }

@@ -66,7 +66,7 @@ struct StartDraw {
 // These functions return false at a pause.
 class GasBlocks : public EngineRun {
  public:
-  GasBlocks(const GasExperiment& experiment, BlockQueue& queue)
+  GasBlocks(const GasReplicas& experiment, BlockQueue& queue)
       : experiment_(experiment), queue_(queue), blocks_(queue, [&experiment](const Block& block) {
           return ReplicasOfBlock{block.samples, experiment.EmptyResult()};
         }) {}
@@ -82,7 +82,7 @@ class GasBlocks : public EngineRun {
   }
 
  private:
-  enum class Stage { kBeginning, kRelaxing, kRunning, kMeasuring };
+  enum class Stage { kBeginning, kRunning, kMeasuring };
 
   // The other engines run one replica at a time, because more would not make them faster.
   size_t MostTogether(const Block& block) const {
@@ -98,7 +98,7 @@ class GasBlocks : public EngineRun {
     if (starts_.empty()) return true;
     run_ = StartGases(experiment_.gas_engine(), experiment_.geometry(), experiment_.exchange_rate(),
                       std::exchange(starts_, {}));
-    stage_ = Stage::kRelaxing;
+    stage_ = Stage::kRunning;
     return true;
   }
 
@@ -134,15 +134,10 @@ class GasBlocks : public EngineRun {
   }
 
   bool RunToTheEnd(Pauses& pauses) {
-    const GasTimes& times = experiment_.times();
-    if (stage_ == Stage::kRelaxing) {
-      const auto begin = [&](Replica& it) { return it.meter->Begin(times.relax, pauses); };
-      if (!run_->AdvanceTo(times.relax, pauses) || !ForEachRunning(begin)) return false;
-      stage_ = Stage::kRunning;
-    }
     if (stage_ == Stage::kRunning) {
-      const auto end = [&](Replica& it) { return it.meter->End(times.Total(), pauses); };
-      if (!run_->AdvanceTo(times.Total(), pauses) || !ForEachRunning(end)) return false;
+      const double time = experiment_.duration();
+      const auto end = [&](Replica& it) { return it.meter->End(time, pauses); };
+      if (!run_->AdvanceTo(time, pauses) || !ForEachRunning(end)) return false;
       run_.reset();
       stage_ = Stage::kMeasuring;
     }
@@ -189,7 +184,7 @@ class GasBlocks : public EngineRun {
     health.Merge(of_replica);
   }
 
-  const GasExperiment& experiment_;
+  const GasReplicas& experiment_;
   BlockQueue& queue_;
   OpenBlocks<ReplicasOfBlock> blocks_;
   std::unique_ptr<StartDraw> draw_;  // of the next replica, if begun
@@ -282,12 +277,9 @@ double MemoryOfReplicas(Model model, const PointParameters& point) {
 }
 
 GasExperiment::GasExperiment(const EnsembleSpec& spec, const PointParameters& point,
-                             const GasGeometry& geometry, const GasTimes& times, double temperature)
+                             const GasGeometry& geometry, double temperature)
     : PointExperiment(spec, point),
       geometry_(geometry),
-      times_{.relax = WithoutLastBits(times.relax),
-             .measure = WithoutLastBits(times.measure),
-             .share = times.share},
       exchange_rate_(WithoutLastBits(GasExchangeRate(geometry, 1))),
       temperature_(temperature) {}
 
@@ -302,24 +294,28 @@ GasEngine GasExperiment::gas_engine() const {
   }
 }
 
-void GasExperiment::AddMeans(const GasMeter& meter, size_t first, BlockResult& result) const {
+GasReplicas::GasReplicas(const EnsembleSpec& spec, const PointParameters& point,
+                         const GasGeometry& geometry, double duration, double temperature)
+    : GasExperiment(spec, point, geometry, temperature), duration_(WithoutLastBits(duration)) {}
+
+void GasReplicas::AddMeans(const GasMeter& meter, size_t first, BlockResult& result) const {
   result.batch_means[first].Add(static_cast<double>(meter.exchanges()),
-                                static_cast<double>(geometry_.contacts()) * meter.duration());
+                                static_cast<double>(geometry().contacts()) * meter.duration());
   double balls = 0, pistons = 0;
   for (size_t i = 0; i < meter.bodies(); ++i) {
     (i < meter.balls() ? balls : pistons) += meter.MeanEnergy(i);
   }
-  result.batch_means[first + 1].Add(balls, static_cast<double>(geometry_.balls()));
-  result.batch_means[first + 2].Add(2 * pistons, static_cast<double>(geometry_.pistons()));
+  result.batch_means[first + 1].Add(balls, static_cast<double>(geometry().balls()));
+  result.batch_means[first + 2].Add(2 * pistons, static_cast<double>(geometry().pistons()));
 }
 
-std::vector<Measurement> GasExperiment::MeansFrom(size_t first) const {
-  return {{"exchange_rate", Ratio(first), std::sqrt(temperature_)},
-          {"temperature_ball", Ratio(first + 1), temperature_},
-          {"temperature_piston", Ratio(first + 2), temperature_}};
+std::vector<Measurement> GasReplicas::MeansFrom(size_t first) const {
+  return {{"exchange_rate", RatioAt(first), std::sqrt(temperature())},
+          {"temperature_ball", RatioAt(first + 1), temperature()},
+          {"temperature_piston", RatioAt(first + 2), temperature()}};
 }
 
-std::unique_ptr<EngineRun> GasExperiment::StartRun(BlockQueue& queue) const {
+std::unique_ptr<EngineRun> GasReplicas::StartRun(BlockQueue& queue) const {
   return std::make_unique<GasBlocks>(*this, queue);
 }
 

@@ -1,5 +1,5 @@
-// The base of all experiments with a gas. A sample is a replica of the gas: it starts from its own
-// random state, relaxes, and is then measured.
+// The base of the experiments with a gas, and of those whose sample is a replica of the gas, which
+// starts from a random state of its own. All gases run at temperature 1; results are scaled.
 #pragma once
 
 #include <cstddef>
@@ -25,16 +25,7 @@ GasGeometry GasGeometryOf(const PointParameters& point, GasEnds ends);
 // have.
 void CheckGasGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
 
-// The duration of a replica, in the billiard's units at temperature 1.
-struct GasTimes {
-  double relax = 0;  // before the measurement
-  double measure = 0;
-  double share = 1;  // of the time that a stationary state needs; below 1, no errors are given
-
-  double Total() const { return relax + measure; }
-};
-
-// The work of a replica at temperature 1 for this duration.
+// The work of a replica at temperature 1 for this duration, in the billiard's units.
 SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time);
 
 // Upper bound of the bytes of the replicas that a thread computes together.
@@ -42,17 +33,33 @@ double MemoryOfReplicas(Model model, const PointParameters& point);
 
 class GasExperiment : public PointExperiment {
  public:
-  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override;
-
-  // A run of replicas calls these functions, from any thread.
+  // A run of gases calls these functions, from any thread.
   GasEngine gas_engine() const;
   const GasGeometry& geometry() const { return geometry_; }
-  const GasTimes& times() const { return times_; }
   // At temperature 1.
   double exchange_rate() const { return exchange_rate_; }
   GasRandom RandomOf(uint64_t sample) const { return {random().seed, random().stream, sample}; }
   virtual TemperatureProfile TemperaturesAtStart() const = 0;
   virtual ThermalWalls WallsOf(const GasRandom&) const { return {}; }
+
+ protected:
+  // `temperature` is that of the results.
+  GasExperiment(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
+                double temperature);
+
+  double temperature() const { return temperature_; }
+
+ private:
+  GasGeometry geometry_;
+  double exchange_rate_;
+  double temperature_;
+};
+
+class GasReplicas : public GasExperiment {
+ public:
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override;
+
+  double duration() const { return duration_; }  // of a replica, at temperature 1
   // A meter of the current of a replica with this start; null if the current is not measured.
   virtual std::unique_ptr<CurrentMeter> CurrentOf(const GasState&) const { return nullptr; }
   // A replica's numbers are added part by part, because a big gas has to look at pauses. The first
@@ -61,12 +68,9 @@ class GasExperiment : public PointExperiment {
   virtual void MeasurePart(size_t part, const GasMeter& meter, BlockResult& result) const = 0;
 
  protected:
-  // Rounds the times (WithoutLastBits), because their last bits depend on the C library.
-  // Replicas run at temperature 1; `temperature` is that of the results.
-  GasExperiment(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
-                const GasTimes& times, double temperature);
-
-  double temperature() const { return temperature_; }
+  // Rounds the duration (WithoutLastBits), because its last bits depend on the C library.
+  GasReplicas(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
+              double duration, double temperature);
 
   static constexpr size_t kMeansOfAReplica = 3;
 
@@ -76,20 +80,8 @@ class GasExperiment : public PointExperiment {
   // The rows of these three.
   std::vector<Measurement> MeansFrom(size_t first) const;
 
-  // Readings of an accumulator. There is no error if there are too few replicas to estimate it, or
-  // if the replicas were shortened.
-  Reading Ratio(size_t index) const { return RatioAt(index, HasErrors() ? 1 : 0); }
-  Reading Mean(size_t index, double events_per_replica = 1) const {
-    return MeanAt(index, HasErrors() ? events_per_replica : 0);
-  }
-
  private:
-  bool HasErrors() const { return times_.share == 1; }
-
-  GasGeometry geometry_;
-  GasTimes times_;
-  double exchange_rate_;
-  double temperature_;
+  double duration_;
 };
 
 }  // namespace ballpiston

@@ -36,6 +36,9 @@ bool Advance(ReferenceGas& gas, double time, GasMeter& meter, Pauses& pauses) {
   return true;
 }
 
+GasState StateOf(const ReferenceGas& gas, double time) { return gas.StateAt(time); }
+GasState StateOf(const JumpGas& gas, double) { return gas.State(); }
+
 bool Advance(JumpGas& gas, double time, GasMeter& meter, Pauses& pauses) {
   return gas.AdvanceTo(time, meter, pauses);
 }
@@ -58,7 +61,12 @@ class SeparateGases : public GasRun {
     for (size_t i = 0; i < gases_.size(); ++i) {
       if (!Advance(gases_[i], time, *starts_[i].meter, pauses)) return false;
     }
+    time_ = time;
     return true;
+  }
+
+  GasState StateOf(size_t replica) const override {
+    return ballpiston::StateOf(gases_[replica], time_);
   }
 
  private:
@@ -79,6 +87,7 @@ class SeparateGases : public GasRun {
   std::vector<GasStart> starts_;
   std::function<Gas(GasStart&)> make_;
   size_t begun_ = 0;  // gases that are complete
+  double time_ = 0;
   std::vector<Gas> gases_;
 };
 

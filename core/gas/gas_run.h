@@ -8,6 +8,7 @@
 // other replicas. The replicas are prepared in the first call of AdvanceTo.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -37,6 +38,9 @@ class GasRun {
   // at a pause; then it must be called again with the same time.
   virtual bool AdvanceTo(double time, Pauses& pauses) = 0;
   void AdvanceTo(double time) { AdvanceTo(time, NoPauses()); }
+  // The positions and velocities of a replica at the time to which AdvanceTo has moved it, from
+  // which another run can continue. The jump process has speeds alone.
+  virtual GasState StateOf(size_t replica) const = 0;
 };
 
 // `exchange_rate` is that of the gas at temperature 1 (gas_exchange_rate.h). It determines the

@@ -53,6 +53,21 @@ double JumpGas::SpeedAtStart(size_t body, const GasState& start) const {
                             : std::fabs(start.pistons[body - balls_].velocity);
 }
 
+GasState JumpGas::State() const {
+  GasState state;
+  for (size_t body = 0; body < speeds_.size(); ++body) {
+    if (body < balls_) {
+      state.balls.push_back({.speed = speeds_[body]});
+      continue;
+    }
+    const auto piston = static_cast<int64_t>(body - balls_);
+    const double speed =
+        walls_.Has(piston) ? std::sqrt(walls_.TemperatureAt(piston)) : speeds_[body];
+    state.pistons.push_back({.velocity = speed});
+  }
+  return state;
+}
+
 // An outermost piston proposes to one ball, at a rate equal to the mean of (-v3)+. Returns the
 // speed at which a piston with two balls has the same rate of proposals.
 double JumpGas::SpeedOfOutermost(int64_t piston) const {

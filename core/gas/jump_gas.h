@@ -45,6 +45,10 @@ class JumpGas {
   // its mean energy. Returns false at a pause; then it must be called again with the same time.
   bool AdvanceTo(double time, GasMeter& meter, Pauses& pauses = NoPauses());
 
+  // The speeds, from which another object can begin: the process has no memory. An outermost piston
+  // has its mean energy.
+  GasState State() const;
+
  private:
   // An exchange. In the direction in which the ball sees the piston, v1 is the ball's velocity and
   // v3 the piston's.

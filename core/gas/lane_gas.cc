@@ -214,6 +214,41 @@ void LaneGas::MoveOriginOfPiston(Replica& replica, uint32_t number) {
   }
 }
 
+// ---- the state at time_ ----
+
+GasState LaneGas::StateOf(size_t number) const {
+  const Replica& replica = replicas_[number];
+  GasState state;
+  for (uint32_t i = 0; i < balls_each_; ++i) {
+    state.balls.push_back(BallNow(replica, replica.first_ball + i));
+  }
+  for (uint32_t i = 0; i < pistons_each_; ++i) {
+    state.pistons.push_back(PistonNow(replica, replica.first_piston + i));
+  }
+  return state;
+}
+
+GasBall LaneGas::BallNow(const Replica& replica, uint32_t number) const {
+  const BallInTime& ball = gas_.balls[number];
+  const FlyingBall& before = to_[number];  // the flight that it is in
+  const double way = (replica.now - ball.since) * ball.speed - before.path * gas_.unit;
+  const auto [position, direction] = PlaceOf(gas_, before);
+  return {.position = position + direction * std::max(way, 0.0),
+          .direction = direction,
+          .speed = ball.speed > kAtRest ? ball.speed : 0};
+}
+
+GasPiston LaneGas::PistonNow(const Replica& replica, uint32_t number) const {
+  const PistonInTime& piston = gas_.pistons[number];
+  const double period = 2 * gas_.wave.stroke();
+  // Rounding may give a phase just outside of [0, period).
+  const double phase = piston.PhaseAt(replica.now, Direction::kRight, gas_.wave);
+  const double reduced = phase < 0 ? phase + period : phase < period ? phase : phase - period;
+  const double offset = gas_.wave.Position(reduced) - 0.5, reach = gas_.geometry.reach();
+  return {.offset = std::clamp(offset, -reach, reach),
+          .velocity = reduced < gas_.wave.stroke() ? piston.speed : -piston.speed};
+}
+
 // ---- flights ----
 
 // The ball is to fly, from its state in from_ to the window's end.

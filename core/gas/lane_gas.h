@@ -17,7 +17,7 @@
 //   2. ManyShortCallsGiveTheBitsOfOneCall.  3. ReplicasDoNotDependOnTheirNeighbours.
 //   4. EnergyIsConserved.
 //   5. BallsThatMeetPistonsInTipsStayInTheirCells.
-//   6. AnEscapedBallStopsAndCountsOnce.
+//   6. AnEscapedBallStopsAndCountsOnce.  7. AGasContinuesFromItsState.
 #pragma once
 
 #include <cstddef>
@@ -40,6 +40,7 @@ class LaneGas : public GasRun {
   LaneGas(const GasGeometry& geometry, double exchange_rate, std::vector<GasStart> replicas);
 
   bool AdvanceTo(double time, Pauses& pauses) override;
+  GasState StateOf(size_t replica) const override;
 
  private:
   // Its times count from `origin`.
@@ -55,6 +56,8 @@ class LaneGas : public GasRun {
     size_t begun = 0;  // bodies that have begun the window: pistons, then balls
   };
 
+  GasBall BallNow(const Replica& replica, uint32_t ball) const;
+  GasPiston PistonNow(const Replica& replica, uint32_t piston) const;
   bool Place(Pauses& pauses);
   void PlaceBall(size_t number);
   void PlacePiston(size_t number);

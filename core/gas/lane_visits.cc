@@ -353,6 +353,21 @@ FlyingBall PlacedBall(const GasInTime& gas, Eigen::Vector2d position, Eigen::Vec
                          (gas.geometry.shape().is_lattice && std::fabs(position.y()) >= left)};
 }
 
+BallPlace PlaceOf(const GasInTime& gas, const FlyingBall& ball) {
+  const double a = ball.a ? -1 : 1;
+  const LaneFrame frame = Scaled({.h = ball.h,
+                                  .e = ball.e,
+                                  .c = ball.c,
+                                  .s = ball.s,
+                                  .a = a,
+                                  .b = ball.ab ? -a : a,
+                                  .m = ball.m ? -1.0 : 1.0},
+                                 gas.unit);
+  Eigen::Vector2d direction = DirectionInCell(frame);
+  direction *= OneOverLength(direction);
+  return {PositionInCell(frame), direction};
+}
+
 std::unique_ptr<FlightsAhead> LanesOf(const GasInTime& gas) {
   return HWY_DYNAMIC_DISPATCH(NewLanes)(gas);
 }

@@ -97,6 +97,13 @@ inline constexpr double kReachSlack = 1e-11;
 // A ball anywhere in the cell; it may be on a wall, or beyond one by rounding.
 FlyingBall PlacedBall(const GasInTime& gas, Eigen::Vector2d position, Eigen::Vector2d direction);
 
+// The position in its cell of a ball before a flight, and its direction.
+struct BallPlace {
+  Eigen::Vector2d position;
+  Eigen::Vector2d direction;
+};
+BallPlace PlaceOf(const GasInTime& gas, const FlyingBall& ball);
+
 // The lanes in which balls fly ahead. They do not depend on the balls that flew before.
 class FlightsAhead {
  public:

@@ -83,7 +83,7 @@ class Question {
   }
   // Of processor time, until all workers have their first samples.
   double SecondsOfTheFirst(Model model) const {
-    return TakesSamples(model) ? CostBy(model).first * machine_.workers : 0;
+    return TakesSamples(model) ? CostBy(model).OfTheFirst(machine_.workers) : 0;
   }
   // The same by the model that answers: the least budget.
   double SecondsOfTheFirst() const {
@@ -95,17 +95,13 @@ class Question {
   }
   double MemoryBy(Model model) const { return MemoryOf(By(model), point_, machine_.workers); }
 
-  // Empty if samples by this model have errors.
-  std::string WhyNoErrors(Model model) const {
-    const auto why = spec_.experiment->no_errors;
-    return why == nullptr || !TakesSamples(model) ? "" : why(model, point_);
-  }
-
-  // The number of samples that the target requires from a model that samples.
+  // The number of samples that the target requires from a model that samples, without those of a
+  // warm-up.
   double SamplesBy(Model model) const {
     const auto experiment = PointExperiment::Create(By(model), 0);
+    const ChunkPlan& plan = experiment->plan();
     double samples =
-        static_cast<double>(experiment->plan().SamplesBefore(experiment->expected_chunks()));
+        static_cast<double>(plan.SamplesBefore(experiment->expected_chunks()) - plan.warm_up());
     if (target().budget_seconds) samples = std::min(samples, SamplesInBudget(model));
     return samples;
   }
@@ -127,7 +123,7 @@ class Question {
 
   // Infinite if so many samples have no error.
   double ErrorOf(Model model, double samples) const {
-    if (!WhyNoErrors(model).empty() || samples < aim().SamplesForAnError(model, point_)) {
+    if (samples < aim().SamplesForAnError(model, point_)) {
       return std::numeric_limits<double>::infinity();
     }
     return aim().error(model, point_) / std::sqrt(samples);
@@ -319,9 +315,6 @@ void PredictSamples(const Question& question, Rung& rung) {
     rung.model_error = question.ErrorOfPrecision(rung.model);
     rung.reason = rung.model_error == 0 ? "exact" : "the billiard in single precision";
   }
-  const std::string no_errors = question.WhyNoErrors(rung.model);
-  if (!no_errors.empty()) rung.reason = absl::StrCat("cells ", no_errors);
-  if (question.target().tolerance && !no_errors.empty()) return;  // never reached
   rung.samples = question.SamplesBy(rung.model);
   if (*rung.samples == 0) {
     rung.reason = "the budget ends before the first samples";
@@ -478,26 +471,6 @@ Model ExpectedModel(const EnsembleSpec& spec, const PointParameters& point) {
   return ChooseAnswer(spec, point, Machine(), PredictedPilot)->model;
 }
 
-// Where samples have no errors, with the index of the shape in its list: each shape once.
-std::vector<FieldViolation> PointsWithoutErrors(const EnsembleSpec& spec) {
-  std::vector<FieldViolation> found;
-  if (spec.experiment->no_errors == nullptr) return found;
-  const std::vector<double>& cells = spec.grid[kCells];
-  std::set<double> named;
-  for (size_t i = 0; i < PointCount(spec); ++i) {
-    const PointParameters point = PointAt(spec, i);
-    if (named.contains(point[kCells])) continue;
-    const Model model = ExpectedModel(spec, point);
-    if (!TakesSamples(model)) continue;
-    const std::string why = spec.experiment->no_errors(model, point);
-    if (why.empty()) continue;
-    named.insert(point[kCells]);
-    const auto index = std::find(cells.begin(), cells.end(), point[kCells]) - cells.begin();
-    found.push_back({absl::StrFormat("grid.cells[%d]", index), why});
-  }
-  return found;
-}
-
 // The names and values of the parameters of a point.
 std::string ParametersText(const PointParameters& point) {
   std::string text;
@@ -611,7 +584,6 @@ std::vector<FieldViolation> MachineViolations(const EnsembleSpec& spec, const Ma
 
 std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec) {
   if (!spec.target.tolerance) return {};
-  if (std::vector<FieldViolation> found = PointsWithoutErrors(spec); !found.empty()) return found;
   if (std::vector<FieldViolation> found = PointsWithRareEvents(spec); !found.empty()) return found;
   const double tolerance = *spec.target.tolerance, least = LeastTolerance(spec);
   if (!(tolerance < least)) return {};

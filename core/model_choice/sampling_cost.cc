@@ -38,6 +38,10 @@ double SamplingCost::ThreadsFor(double samples, int threads) const {
   return std::clamp(std::ceil(samples / (lanes * orbit)), 1.0, static_cast<double>(threads));
 }
 
+double SamplingCost::OfTheFirst(int threads) const {
+  return std::max(first * threads, warm_up + stage * sample);
+}
+
 double SamplingCost::Of(double samples, int threads) const {
   const double used = ThreadsFor(samples, threads);
   const double at_the_end = std::min(samples / used, lanes * orbit);
@@ -45,11 +49,11 @@ double SamplingCost::Of(double samples, int threads) const {
   const double in_full_lanes = std::max(samples - used * lanes * orbit, 0.0);
   const double longest = of_an_orbit * Longest(at_the_end / of_an_orbit, parts * of_an_orbit);
   const double flights = in_full_lanes + used * lanes * longest;
-  return samples * (sample - flight) + flights * flight;
+  return warm_up + samples * (sample - flight) + flights * flight;
 }
 
 double SamplingCost::SamplesIn(double seconds, int threads) const {
-  if (seconds < first * threads) return 0;
+  if (seconds < OfTheFirst(threads)) return 0;
   // The cost grows with the number of samples.
   double enough = 1, too_many = static_cast<double>(kMaxSamples);
   if (Of(too_many, threads) <= seconds) return too_many;
@@ -70,6 +74,11 @@ SamplingCost CostOfSampling(const EnsembleSpec& spec, const PointParameters& poi
   const double flight = WallHits(engine, work) * rate.wall_hit;
   SamplingCost cost = {.sample = flight + work.collisions * rate.collision +
                                  work.starts * rate.sample + work.jumps * rates.jump};
+  if (spec.experiment->trajectories != nullptr) {
+    const Trajectories trajectories = spec.experiment->trajectories(model, point);
+    cost.stage = static_cast<double>(trajectories.count());
+    cost.warm_up = cost.stage * static_cast<double>(trajectories.warm_up) * cost.sample;
+  }
   if (work.together > 0) {
     cost.lanes = work.together;
     cost.first = work.together * cost.sample;

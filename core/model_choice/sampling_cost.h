@@ -11,15 +11,19 @@ namespace ballpiston {
 // cost as much as the longest of them in all lanes, and at the end of many samples the last orbits
 // fly in lanes that are hardly full.
 struct SamplingCost {
-  double sample = 0;  // one of many samples
-  double flight = 0;  // the part of it that lanes compute together
-  double lanes = 1;   // orbits that a thread computes at the same time
-  double orbit = 1;   // samples of an orbit
-  double parts = 1;   // of a sample's flight (ensemble/experiment_kind.h)
-  double first = 0;   // a thread's time until its first samples are complete
+  double sample = 0;   // one of many samples
+  double flight = 0;   // the part of it that lanes compute together
+  double lanes = 1;    // orbits that a thread computes at the same time
+  double orbit = 1;    // samples of an orbit
+  double parts = 1;    // of a sample's flight (ensemble/experiment_kind.h)
+  double first = 0;    // a thread's time until its first samples are complete
+  double warm_up = 0;  // the time of samples that are not measured, of all threads
+  double stage = 0;    // the first samples that are complete, where they continue each other
 
-  // `samples` samples by up to `threads` threads.
+  // `samples` samples by up to `threads` threads, after the warm-up.
   double Of(double samples, int threads) const;
+  // Until all of up to `threads` threads have their first samples.
+  double OfTheFirst(int threads) const;
   // The number of threads that have samples then.
   double ThreadsFor(double samples, int threads) const;
   // The number of samples that `threads` threads complete in this time; 0 if they complete none.

@@ -47,6 +47,8 @@ struct Lease {
 
   PartialChunk start = {};  // the first chunk, and what is merged of it already
   uint64_t end = 0;         // the chunk after the last
+  // If samples continue each other: the states from which chunks start, by group.
+  std::vector<GroupState> groups = {};
   double seconds = 0;       // predicted, of one core at nominal speed; 0 if all the rest is leased
   LeaseMemory memory = {};  // if this server's threads compute it
 

@@ -28,6 +28,7 @@ std::optional<std::pair<uint64_t, OpenPoint::Attempt>> OpenPoint::NextChunk(
     const Capacity& capacity, const ChunkLimits& limits) const {
   const ChunkPlan& plan = experiment_->plan();
   const auto fits = [&](uint64_t chunk, const Attempt& attempt) {
+    if (!fold_.CanStart(chunk)) return false;
     if (limits.local) return true;
     const double seconds = plan.SecondsFor(static_cast<double>(plan.SamplesIn(chunk)));
     return attempt.number <= limits.most_attempts && seconds <= capacity.longest_chunk;
@@ -35,8 +36,10 @@ std::optional<std::pair<uint64_t, OpenPoint::Attempt>> OpenPoint::NextChunk(
   for (const auto& [chunk, attempt] : returned_) {
     if (fits(chunk, attempt)) return std::pair(chunk, attempt);
   }
-  // Beyond the expected end the next chunk alone, because it may be the last.
-  const uint64_t expected = std::max(experiment_->expected_chunks(), fold_.state().chunk + 1);
+  // Beyond the expected end the next chunk or stage alone, because it may be the last.
+  const uint64_t stage = std::max<uint64_t>(plan.groups(), 1);
+  const uint64_t next_end = (fold_.state().chunk / stage + 1) * stage;
+  const uint64_t expected = std::max(experiment_->expected_chunks(), next_end);
   const uint64_t end = std::isinf(capacity.seconds) ? chunks() : std::min(expected, chunks());
   if (next_chunk_ >= end || !fits(next_chunk_, Attempt())) return std::nullopt;
   return std::pair(next_chunk_, Attempt());
@@ -74,10 +77,15 @@ std::optional<Lease> OpenPoint::NextChunks(const Capacity& capacity, const Chunk
   if (lease.end == state.chunk) lease.start = {state.chunk, state.blocks, state.partial};
   const bool takes_the_rest = limits.local && std::isinf(capacity.seconds) &&
                               memory.of_one_turn <= capacity.memory_of_the_rest &&
-                              fold_.waiting() == 0;
+                              fold_.waiting() == 0 && KnowsAllStarts();
   if (takes_the_rest && lease.end == next_chunk_) {
+    lease.groups = state.complete.groups;
     lease.end = next_chunk_ = chunks();
     return lease;
+  }
+  if (plan.groups() > 0) {
+    lease.groups.resize(plan.groups());
+    lease.groups[lease.end % plan.groups()] = fold_.StartOf(lease.end);
   }
   const double seconds = std::isinf(capacity.seconds) ? kLeaseOfAPart : capacity.seconds;
   for (auto next = first; next && *next == std::pair(lease.end, first->second);
@@ -85,9 +93,14 @@ std::optional<Lease> OpenPoint::NextChunks(const Capacity& capacity, const Chunk
     Take(lease.end);
     lease.seconds += plan.SecondsFor(static_cast<double>(plan.SamplesIn(lease.end)));
     ++lease.end;
-    if (lease.seconds >= seconds) break;
+    // The chunks of other groups can be computed at the same time.
+    if (lease.seconds >= seconds || plan.groups() > 0) break;
   }
   return lease;
+}
+
+bool OpenPoint::KnowsAllStarts() const {
+  return experiment_->plan().groups() == 0 || fold_.state().chunk == next_chunk_;
 }
 
 void OpenPoint::Return(uint64_t first, uint64_t end, int attempt, int crashes) {

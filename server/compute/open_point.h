@@ -66,6 +66,8 @@ class OpenPoint {
   // The first chunk to lease and its attempt.
   std::optional<std::pair<uint64_t, Attempt>> NextChunk(const Capacity& capacity,
                                                         const ChunkLimits& limits) const;
+  // Whether the states from which the chunks that were never leased start are known.
+  bool KnowsAllStarts() const;
   void Take(uint64_t chunk);
   void SkipUnneeded();
   uint64_t chunks() const { return experiment_->plan().chunks(); }

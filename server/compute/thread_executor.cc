@@ -17,7 +17,7 @@ class ThreadExecutor::SharedLease : private BlockExchange {
   SharedLease(ThreadExecutor& executor, Lease lease)
       : executor_(executor),
         lease_(std::move(lease)),
-        fold_(lease_.experiment->plan(), lease_.start, lease_.end) {}
+        fold_(lease_.experiment->plan(), lease_.start, lease_.end, lease_.groups) {}
 
   bool IsStopped() const { return lease_.stop.stop_requested(); }
 

@@ -70,6 +70,19 @@ bool IsPossible(const PointExperiment& experiment, const BlockResult& result, ui
          CountsNoSampleTwice(experiment, result) && result.HasShapeOf(experiment.EmptyResult());
 }
 
+// Whether the groups that have a chunk in [first, end) of the plan, and no others, have a state
+// with which they can continue.
+bool GroupsArePossible(const PointExperiment& experiment, const BlockResult& result, uint64_t first,
+                       uint64_t end) {
+  for (uint64_t group = 0; group < result.groups.size(); ++group) {
+    const uint64_t groups = result.groups.size();
+    const uint64_t chunk = first + (group + groups - first % groups) % groups;
+    const GroupState& state = result.groups[group];
+    if (chunk < end ? !experiment.CanContinue(state) : !state.empty()) return false;
+  }
+  return true;
+}
+
 bool IsPossible(const PointExperiment& experiment, const FoldState& state) {
   const ChunkPlan& plan = experiment.plan();
   const uint64_t chunks = plan.chunks();
@@ -82,10 +95,20 @@ bool IsPossible(const PointExperiment& experiment, const FoldState& state) {
   const uint64_t partial =
       state.blocks == 0 ? 0 : plan.BlockAt(state.chunk, state.blocks).first - complete;
   return IsPossible(experiment, state.complete, complete) &&
+         GroupsArePossible(experiment, state.complete, 0, state.chunk) &&
          IsPossible(experiment, state.partial, partial);
 }
 
 }  // namespace
+
+void FillGroup(const GroupState& group, storage::Group& record) {
+  record.mutable_numbers()->Assign(group.numbers().begin(), group.numbers().end());
+}
+
+GroupState GroupOf(const storage::Group& record) {
+  if (record.numbers().empty()) return {};
+  return GroupState({record.numbers().begin(), record.numbers().end()});
+}
 
 void FillAccumulators(const BlockResult& result, storage::Accumulators& record) {
   record.set_samples(result.samples);
@@ -94,6 +117,7 @@ void FillAccumulators(const BlockResult& result, storage::Accumulators& record) 
   for (const Histogram& histogram : result.histograms) Fill(histogram, *record.add_histograms());
   record.set_escapes(result.health.escapes);
   record.set_max_energy_error(result.health.max_energy_error);
+  for (const GroupState& group : result.groups) FillGroup(group, *record.add_groups());
 }
 
 BlockResult ResultOfAccumulators(const storage::Accumulators& record) {
@@ -104,6 +128,7 @@ BlockResult ResultOfAccumulators(const storage::Accumulators& record) {
   for (const auto& counts : record.histograms()) result.histograms.push_back(HistogramOf(counts));
   result.health.escapes = record.escapes();
   result.health.max_energy_error = record.max_energy_error();
+  for (const storage::Group& group : record.groups()) result.groups.push_back(GroupOf(group));
   return result;
 }
 
@@ -149,8 +174,10 @@ absl::Status CheckFoldState(const PointExperiment& experiment, const FoldState& 
 
 absl::Status CheckChunk(const PointExperiment& experiment, const ChunkResult& chunk) {
   const ChunkPlan& plan = experiment.plan();
-  const bool is_possible = chunk.chunk < plan.chunks() &&
-                           IsPossible(experiment, chunk.result, plan.SamplesIn(chunk.chunk));
+  const bool is_possible =
+      chunk.chunk < plan.chunks() &&
+      IsPossible(experiment, chunk.result, plan.SamplesIn(chunk.chunk)) &&
+      GroupsArePossible(experiment, chunk.result, chunk.chunk, chunk.chunk + 1);
   if (is_possible) return absl::OkStatus();
   return absl::DataLossError("a chunk does not fit its experiment");
 }

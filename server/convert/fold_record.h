@@ -16,6 +16,8 @@
 namespace ballpiston::server {
 
 void FillAccumulators(const BlockResult& result, storage::Accumulators& record);
+void FillGroup(const GroupState& group, storage::Group& record);
+GroupState GroupOf(const storage::Group& record);
 BlockResult ResultOfAccumulators(const storage::Accumulators& record);
 
 std::string FoldRecordBytes(const FoldState& state);
@@ -25,8 +27,8 @@ std::string ChunkRecordBytes(const ChunkResult& chunk);
 absl::StatusOr<ChunkResult> ChunkFromBytes(const std::string& bytes);  // DATA_LOSS
 
 // DATA_LOSS unless all of this holds: the state lies within the plan, it has at most the planned
-// samples, its energy error is valid, it has the accumulators that merging needs, and no histogram
-// counts a sample twice.
+// samples, its energy error is valid, it has the accumulators that merging needs, no histogram
+// counts a sample twice, and the groups of trajectories can continue.
 absl::Status CheckFoldState(const PointExperiment& experiment, const FoldState& state);
 // The same for a whole chunk.
 absl::Status CheckChunk(const PointExperiment& experiment, const ChunkResult& chunk);

@@ -1,5 +1,6 @@
 #include "server/worker/lease_record.h"
 
+#include <algorithm>
 #include <cassert>
 #include <memory>
 #include <optional>
@@ -156,6 +157,20 @@ absl::Status CheckPartial(const PointExperiment& experiment, const PartialChunk&
   return DamagedRecord("partial", "is not a result of the lease's experiment");
 }
 
+// The chunks start from states that the experiment can continue, or in the first stage.
+absl::Status CheckGroups(const PointExperiment& experiment, const Lease& lease) {
+  const uint64_t groups = experiment.plan().groups();
+  bool is_possible = lease.groups.empty() || lease.groups.size() == groups;
+  for (uint64_t chunk = lease.start.chunk; chunk < std::min(lease.end, lease.start.chunk + groups);
+       ++chunk) {
+    const GroupState start =
+        lease.groups.empty() || !is_possible ? GroupState() : lease.groups[chunk % groups];
+    is_possible &= chunk < groups ? start.empty() : experiment.CanContinue(start);
+  }
+  if (is_possible) return absl::OkStatus();
+  return DamagedRecord("groups", "has no state from which the lease's experiment can continue");
+}
+
 double PredictedSeconds(const ChunkPlan& plan, const Lease& lease) {
   const uint64_t begin = plan.BlockAt(lease.start.chunk, lease.start.blocks).first;
   return plan.SecondsFor(static_cast<double>(plan.SamplesBefore(lease.end) - begin));
@@ -174,7 +189,9 @@ absl::StatusOr<Lease> ChunksOf(const storage::Lease& record, EnsembleSpec spec) 
   lease.start = {record.first_chunk(), record.blocks(), ResultOfAccumulators(record.partial())};
   lease.end = record.end_chunk();
   lease.seconds = PredictedSeconds(lease.experiment->plan(), lease);
+  for (const storage::Group& group : record.groups()) lease.groups.push_back(GroupOf(group));
   checked = CheckPartial(*lease.experiment, lease.start);
+  if (checked.ok()) checked = CheckGroups(*lease.experiment, lease);
   if (!checked.ok()) return checked;
   return lease;
 }
@@ -253,6 +270,7 @@ storage::Lease LeaseRecord(const Lease& lease, const JobIdentity& job) {
   record.set_end_chunk(lease.end);
   record.set_blocks(lease.start.blocks);
   if (lease.start.blocks > 0) FillAccumulators(lease.start.merged, *record.mutable_partial());
+  for (const GroupState& group : lease.groups) FillGroup(group, *record.add_groups());
   return record;
 }
 

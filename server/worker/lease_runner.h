@@ -2,7 +2,7 @@
 //
 // Properties, each with a test of its name:
 //   1. ChunksHaveTheBitsOfAWholePoint.  2. ComputesOnlyMissingChunks.
-//   3. StopsAtTheTolerance.
+//   3. StopsAtTheTolerance.  4. LeasesContinueTheTrajectoriesOfASteadyState.
 #pragma once
 
 #include <cstddef>

@@ -92,6 +92,7 @@ class HeldUpExperiment : public PointExperiment {
         });
   }
   uint64_t CountsOfASample() const override { return real_->CountsOfASample(); }
+  bool CanContinue(const GroupState& state) const override { return real_->CanContinue(state); }
   Estimate FirstEstimate(const BlockResult& merged) const override {
     return real_->FirstEstimate(merged);
   }

@@ -75,7 +75,10 @@ v1::EnsembleSpec SmallGas(v1::EnsembleSpec::Experiment experiment, v1::EnsembleS
     spec.mutable_grid()->add_hot(2);
     spec.mutable_grid()->add_cold(1);
   }
-  spec.mutable_target()->set_samples(96);  // two chunks
+  // Two chunks of replicas, or four stages of trajectories, of which half a point has one and a
+  // half.
+  const bool is_steady = experiment == v1::EnsembleSpec::GAS_CONDUCTION;
+  spec.mutable_target()->set_samples(is_steady ? 1000 : 96);
   return spec;
 }
 

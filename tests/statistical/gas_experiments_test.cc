@@ -23,12 +23,13 @@ EnsembleSpec Equilibrium(double delta, const GasShape& shape, Model model, int64
                 model, 11);
 }
 
+// Samples are halves of a relaxation time; `long_runs` are twelve relaxation times each.
 EnsembleSpec Conduction(double delta, const GasShape& shape, double hot, double cold, Model model,
-                        int64_t replicas) {
+                        int64_t long_runs) {
   PointParameters point = PaperGas(&kGasConduction, delta, shape);
   point.Set(kHot, hot);
   point.Set(kCold, cold);
-  return SpecOf(&kGasConduction, point, {.samples = replicas}, model, 11);
+  return SpecOf(&kGasConduction, point, {.samples = 24 * long_runs}, model, 11);
 }
 
 GasGeometry GeometryAt(const EnsembleSpec& spec) {
@@ -103,15 +104,15 @@ TEST(GasExperiments, ConductivityOfTheJumpProcessMatchesTheSpectrum) {
   }
 }
 
-// Between reservoirs at 1.05 and 0.95 1000 replicas know the current to 13 % only, 4000 to 6.5 %,
+// Between reservoirs at 1.05 and 0.95 1000 long runs know the current to 13 % only, 4000 to 6.5 %,
 // and the nightly test's 10,000 to 4 %. The billiard takes most of the time, so longer chains and a
 // smaller delta run only in the nightly test. Its 500 replicas know the error to 3.2 % and the
 // current to 2 %. At the nightly sizes the ratios are from 0.87 to 1.04. The windows of these two
 // are wider, so that each window leaves three errors or more: one seed in 700 fails.
 TEST(GasExperiments, StatedErrorsOfTheCurrentMatchTheMeasuredErrors) {
   const auto stated_over_measured = [](const GasShape& shape, double hot, double cold, Model model,
-                                       double delta = 0.2, int64_t replicas = 1000) {
-    return StatedOverMeasured(Conduction(delta, shape, hot, cold, model, replicas));
+                                       double delta = 0.2, int64_t long_runs = 1000) {
+    return StatedOverMeasured(Conduction(delta, shape, hot, cold, model, long_runs));
   };
   for (const GasShape& shape : {GasShape{2}, GasShape{4}, GasShape{3, 3, true}}) {
     EXPECT_NEAR(stated_over_measured(shape, 1.5, 0.5, Model::kMarkov), 1, 0.2);

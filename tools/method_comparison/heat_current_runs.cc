@@ -1,11 +1,18 @@
 #include "tools/method_comparison/heat_current_runs.h"
 
+#include <algorithm>
+#include <deque>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/gas_experiment.h"
+#include "core/experiment/steady_gas.h"
 #include "core/gas/canonical_gas.h"
 #include "core/gas/gas_meter.h"
+#include "core/gas/gas_run.h"
+#include "core/statistics/batch_means.h"
 #include "server/processor_time.h"
 #include "tools/flows/fixed_step_gas.h"
 
@@ -23,7 +30,7 @@ Model ModelOf(Method method) {
   }
 }
 
-// The experiment gas-conduction. The fixed steps are measured in the same way as the billiard.
+// The gas of the experiment gas-conduction.
 std::unique_ptr<const PointExperiment> ExperimentOf(double rho, double delta, uint64_t seed,
                                                     Method method) {
   const EnsembleSpec spec = {.experiment = &kGasConduction,
@@ -37,8 +44,23 @@ std::unique_ptr<const PointExperiment> ExperimentOf(double rho, double delta, ui
   return PointExperiment::Create(spec, 0);
 }
 
-const GasExperiment& AsGas(const PointExperiment& experiment) {
-  return static_cast<const GasExperiment&>(experiment);
+const SteadyGas& AsGas(const PointExperiment& experiment) {
+  return static_cast<const SteadyGas&>(experiment);
+}
+
+// A stretch of one cell is half of its relaxation time.
+double TimeToRelax(const SteadyGas& gas) { return 8 * gas.stretch(); }
+double TimeToTheEnd(const SteadyGas& gas) { return 32 * gas.stretch(); }
+
+GasState StartOf(const SteadyGas& gas, const GasRandom& random) {
+  CounterRandom of_start = random.OfStart();
+  return DrawGas(gas.geometry(), gas.TemperaturesAtStart(), of_start);
+}
+
+// The mean temperature is 1, so the current is not scaled.
+static_assert(kComparedHot + kComparedCold == 2);
+void Add(const SteadyGas& gas, const GasMeter& meter, BatchMeans& means) {
+  means.Add(meter.carried(), 2 * static_cast<double>(gas.geometry().balls()) * meter.duration());
 }
 
 // The gas gives its energies only at the end of the step, after all events. In a chain this does no
@@ -65,32 +87,38 @@ void AdvanceTo(double time, FixedStepGas& gas, GasMeter& meter) {
   }
 }
 
-void MeasureByFixedSteps(const GasExperiment& experiment, double time_step, uint64_t sample,
-                         BlockResult& result) {
-  const GasRandom random = experiment.RandomOf(sample);
-  CounterRandom of_start = random.OfStart();
-  const GasState start = DrawGas(experiment.geometry(), experiment.TemperaturesAtStart(), of_start);
-  GasMeter meter(experiment.geometry(), start);
-  FixedStepGas gas(experiment.geometry(), start, experiment.WallsOf(random), time_step);
-  AdvanceTo(experiment.times().relax, gas, meter);
-  meter.Begin(gas.time());
-  AdvanceTo(experiment.times().Total(), gas, meter);
-  meter.End(gas.time());
-  if (meter.escapes() > 0) return;
-  ++result.samples;
-  for (size_t part = 0; part < experiment.MeasuredParts(); ++part) {
-    experiment.MeasurePart(part, meter, result);
-  }
+void MeasureByFixedSteps(const SteadyGas& gas, double time_step, uint64_t sample,
+                         BatchMeans& means) {
+  const GasRandom random = gas.RandomOf(sample);
+  const GasState start = StartOf(gas, random);
+  GasMeter meter(gas.geometry(), start);
+  FixedStepGas steps(gas.geometry(), start, gas.WallsOf(random), time_step);
+  AdvanceTo(TimeToRelax(gas), steps, meter);
+  meter.Begin(steps.time());
+  AdvanceTo(TimeToTheEnd(gas), steps, meter);
+  meter.End(steps.time());
+  if (meter.escapes() == 0) Add(gas, meter, means);
 }
 
-PointEstimate RunFixedSteps(const GasExperiment& experiment, double time_step,
-                            const SampleRange& samples) {
-  const double begin = server::ThreadSeconds();
-  BlockResult result = experiment.EmptyResult();
+// Replicas that run together, to fill the lanes.
+void MeasureTogether(const SteadyGas& gas, const SampleRange& samples, BatchMeans& means) {
+  std::deque<GasMeter> meters;
+  std::vector<GasStart> starts;
   for (uint64_t i = samples.first; i < samples.first + samples.count; ++i) {
-    MeasureByFixedSteps(experiment, time_step, i, result);
+    const GasRandom random = gas.RandomOf(i);
+    const GasState start = StartOf(gas, random);
+    starts.push_back(
+        {start, gas.WallsOf(random), random, &meters.emplace_back(gas.geometry(), start)});
   }
-  return EstimateOf(experiment, result, server::ThreadSeconds() - begin);
+  const auto run =
+      StartGases(gas.gas_engine(), gas.geometry(), gas.exchange_rate(), std::move(starts));
+  run->AdvanceTo(TimeToRelax(gas));
+  for (GasMeter& meter : meters) meter.Begin(TimeToRelax(gas));
+  run->AdvanceTo(TimeToTheEnd(gas));
+  for (GasMeter& meter : meters) {
+    meter.End(TimeToTheEnd(gas));
+    Add(gas, meter, means);
+  }
 }
 
 }  // namespace
@@ -99,8 +127,8 @@ double HeatCurrentRuns::PredictedSecondsPerReplica(const MethodVariant& variant)
   constexpr double kPerStep = 4e-8, kPerHit = 1e-9, kPerEvent = 5e-8, kPerExchange = 4e-7,
                    kPerJump = 4e-8;
   const auto experiment = ExperimentOf(rho_, delta_, seed_, variant.method);
-  const GasExperiment& gas = AsGas(*experiment);
-  const double time = gas.times().Total();
+  const SteadyGas& gas = AsGas(*experiment);
+  const double time = TimeToTheEnd(gas);
   if (variant.method == Method::kFixedStep) return kPerStep * time / variant.time_step;
   const SampleWork work = WorkOfReplica(ModelOf(variant.method), gas.geometry(), time);
   if (variant.method == Method::kReference) return kPerEvent * work.Events();
@@ -108,9 +136,25 @@ double HeatCurrentRuns::PredictedSecondsPerReplica(const MethodVariant& variant)
 }
 
 PointEstimate HeatCurrentRuns::Run(const MethodVariant& variant, const SampleRange& samples) const {
+  constexpr uint64_t kTogether = 64;
   const auto experiment = ExperimentOf(rho_, delta_, seed_, variant.method);
-  if (variant.method != Method::kFixedStep) return RunSamples(*experiment, samples);
-  return RunFixedSteps(AsGas(*experiment), variant.time_step, samples);
+  const SteadyGas& gas = AsGas(*experiment);
+  const double begin = server::ThreadSeconds();
+  const uint64_t end = samples.first + samples.count;
+  BatchMeans means;
+  for (uint64_t i = samples.first; i < end;) {
+    if (variant.method == Method::kFixedStep) {
+      MeasureByFixedSteps(gas, variant.time_step, i++, means);
+      continue;
+    }
+    const SampleRange part = {i, std::min(kTogether, end - i)};
+    MeasureTogether(gas, part, means);
+    i += part.count;
+  }
+  return {.value = means.Ratio().value_or(0),
+          .error = means.StandardError().value_or(0),
+          .samples = means.batches,
+          .seconds = server::ThreadSeconds() - begin};
 }
 
 }  // namespace ballpiston::method_comparison

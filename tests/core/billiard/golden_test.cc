@@ -75,6 +75,9 @@ class Fingerprint {
     }
     Add(result.health.escapes);
     Add(result.health.max_energy_error);
+    for (const GroupState& group : result.groups) {
+      for (const double x : group.numbers()) Add(x);
+    }
   }
 
   void Add(const PointSummary& summary) {
@@ -143,7 +146,9 @@ std::vector<EnsembleSpec> SpecsOf(Engine engine) {
   if (engine != Engine::kLanesSingle) {
     for (const ExperimentKind* gas : {&kGasEquilibrium, &kGasConduction}) {
       for (const GasShape& shape : {GasShape{3}, GasShape{2, 2, true}}) {
-        specs.push_back(SpecOf(gas, PaperGas(gas, 0.2, shape), {.samples = 64}));
+        // Of trajectories, two stages.
+        const int64_t samples = gas == &kGasConduction ? 512 : 64;
+        specs.push_back(SpecOf(gas, PaperGas(gas, 0.2, shape), {.samples = samples}));
       }
     }
   }

@@ -45,16 +45,28 @@ TEST(BlockResult, MergeKeepsEverySample) {
   EXPECT_EQ(merged.health.max_energy_error, 2);
 }
 
+TEST(BlockResult, TheNewerStateOfAGroupReplacesTheOlder) {
+  BlockResult merged, first, second;
+  first.groups = {GroupState({1}), GroupState({2}), {}};
+  second.groups = {{}, GroupState({3}), GroupState({4})};
+  merged.Merge(first);
+  merged.Merge(second);
+  EXPECT_EQ(merged.groups,
+            (std::vector<GroupState>{GroupState({1}), GroupState({3}), GroupState({4})}));
+}
+
 TEST(BlockResult, ShapesDifferInNumbersAndBins) {
   const BlockResult block = Sample(1);
   EXPECT_TRUE(Sample(2).HasShapeOf(block));
-  BlockResult moments = block, means = block, histograms = block, bins = block, range = block;
+  BlockResult moments = block, means = block, histograms = block, bins = block, range = block,
+              groups = block;
+  groups.groups.emplace_back();
   moments.moments.emplace_back();
   means.batch_means.clear();
   histograms.histograms.push_back(block.histograms[0]);
   bins.histograms[0].counts.pop_back();
   range.histograms[0].upper = 11;
-  for (const BlockResult& other : {moments, means, histograms, bins, range}) {
+  for (const BlockResult& other : {moments, means, histograms, bins, range, groups}) {
     EXPECT_FALSE(other.HasShapeOf(block));
     EXPECT_FALSE(block.HasShapeOf(other));
   }
@@ -67,11 +79,12 @@ BlockResult Digested() {
   result.batch_means = {{1, 2, 3, 4, 5, 6}};
   result.histograms = {{0, 1, {1, 2, 3}}};
   result.health = {.escapes = 1, .max_energy_error = 1e-15};
+  result.groups = {{}, GroupState({1, 2})};
   return result;
 }
 
 TEST(BlockDigest, EveryNumberChangesTheDigest) {
-  std::vector<BlockResult> changed(14, Digested());
+  std::vector<BlockResult> changed(16, Digested());
   changed[0].samples ^= 1;
   changed[1].moments[1].count ^= uint64_t{1} << 63;
   changed[2].moments[1].mean = -changed[2].moments[1].mean;
@@ -86,6 +99,8 @@ TEST(BlockDigest, EveryNumberChangesTheDigest) {
   changed[11].health.max_energy_error = 2e-15;
   changed[12].moments.pop_back();
   changed[13].histograms.clear();
+  changed[14].groups[1] = GroupState({1, 3});
+  changed[15].groups.pop_back();
   std::set<uint64_t> digests = {DigestOf(Digested())};
   for (const BlockResult& result : changed) digests.insert(DigestOf(result));
   EXPECT_EQ(digests.size(), changed.size() + 1);

@@ -105,5 +105,62 @@ TEST(ChunkPlan, WholeChunksHoldAsManySamplesOrMore) {
 
 TEST(ChunkPlan, AnAnswerWithoutSamplesHasNoChunks) { EXPECT_EQ(ChunkPlan().chunks(), 0u); }
 
+// ---- samples that continue each other ----
+
+// 16 groups of 4 trajectories, whose warm-up takes two stretches.
+constexpr Trajectories kSome = {.groups = 16, .each = 4, .warm_up = 2};
+
+TEST(ChunkPlan, EveryStageHasAChunkOfEachGroup) {
+  for (const uint64_t samples : {1u, 64u, 65u, 1000u, 100'000u}) {
+    for (const double events : {1.0, 1e7, 1e9, 1e12}) {
+      const ChunkPlan plan(samples, Engine::kLanes, events, kSome);
+      EXPECT_EQ(plan.samples() % kSome.count(), 0u);
+      EXPECT_GE(plan.samples() - plan.warm_up(), samples);
+      EXPECT_LT(plan.samples() - plan.warm_up(), samples + kSome.count());
+      ASSERT_EQ(plan.chunks() % 16, 0u);
+      uint64_t covered = 0;
+      for (uint64_t chunk = 0; chunk < plan.chunks(); ++chunk) {
+        ASSERT_EQ(plan.FirstSample(chunk), covered);
+        ASSERT_EQ(plan.BlocksIn(chunk), 1u);
+        const Block block = plan.BlockAt(chunk, 0);
+        ASSERT_EQ(block.samples, plan.SamplesIn(chunk - chunk % 16));
+        ASSERT_GT(block.samples, 0u);
+        covered += block.samples;
+        const bool is_judged = (chunk + 1) % 16 == 0 && covered > plan.warm_up();
+        EXPECT_EQ(plan.IsJudgedAfter(chunk), is_judged);
+      }
+      EXPECT_EQ(covered, plan.samples());
+    }
+  }
+}
+
+TEST(ChunkPlan, StretchesAfterTheWarmUpDoubleUpToAMinute) {
+  const ChunkPlan quick(kMany, Engine::kLanes, 1e4, kSome);
+  EXPECT_EQ(quick.SamplesIn(0), 4u * 3);
+  for (const uint64_t stage : {1, 2, 5, 9}) {
+    EXPECT_EQ(quick.SamplesBefore(16 * (stage + 1)) - quick.warm_up(), 64u << stage);
+  }
+  const ChunkPlan slow(kMany, Engine::kLanes, 2e9, kSome);
+  for (const uint64_t chunk : {0, 16, 16 * 30}) {
+    EXPECT_EQ(slow.SamplesIn(chunk), 4u * 2);
+    EXPECT_LE(slow.SecondsFor(4 * 2), 60);
+  }
+}
+
+TEST(ChunkPlan, ChunksForMeasuredSamplesAreWholeStages) {
+  for (const double events : {1e4, 1e9}) {
+    const ChunkPlan plan(kMany, Engine::kLanes, events, kSome);
+    for (const double samples : {1.0, 64.0, 65.0, 1e4, 1e9}) {
+      const uint64_t chunks = plan.ChunksFor(samples);
+      EXPECT_EQ(chunks % 16, 0u);
+      EXPECT_GE(static_cast<double>(plan.SamplesBefore(chunks) - plan.warm_up()), samples);
+      if (chunks > 16) {
+        EXPECT_LT(static_cast<double>(plan.SamplesBefore(chunks - 16)),
+                  samples + static_cast<double>(plan.warm_up()));
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ballpiston

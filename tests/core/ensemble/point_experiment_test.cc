@@ -67,7 +67,7 @@ TEST(PointExperiment, BlocksAreAPureFunctionOfTheirIndex) {
   for (const EnsembleSpec& spec : OneOfEach()) {
     SCOPED_TRACE(Described(spec));
     const auto first = PointExperiment::Create(spec, 0), second = PointExperiment::Create(spec, 0);
-    const Block early = {.samples = 50}, late = {.first = 100, .samples = 50};
+    const Block early = {.samples = 64}, late = {.chunk = 1, .first = 128, .samples = 64};
     const BlockResult later = *RunBlock(*first, late);
     EXPECT_NE(*RunBlock(*first, early), later);
     EXPECT_EQ(*RunBlock(*first, late), later);
@@ -110,7 +110,12 @@ TEST(PointExperiment, ComputesTheRequestedSamples) {
     SCOPED_TRACE(Described(spec));
     const auto point = PointExperiment::Create(spec, 0);
     const PointSummary summary = point->Summarize(*FoldPoint(*point));
-    EXPECT_EQ(summary.samples, SamplesAskedFor(spec, point->parameters()));
+    // Where samples continue each other, the same number of each trajectory.
+    const uint64_t asked = SamplesAskedFor(spec, point->parameters());
+    EXPECT_GE(summary.samples, asked);
+    if (point->plan().groups() == 0) {
+      EXPECT_EQ(summary.samples, asked);
+    }
     EXPECT_EQ(summary.health.escapes, 0u);
     EXPECT_LT(summary.health.max_energy_error, IsOfAGas(spec.experiment) ? 1e-13 : 1e-14);
     EXPECT_EQ(point->answer().model, spec.model == Model::kAuto ? Model::kBilliard : spec.model);
@@ -128,6 +133,7 @@ TEST(PointExperiment, ComputesTheRequestedSamples) {
 TEST(PointExperiment, OneSampleIsEnoughForAnAnswerWithoutErrors) {
   for (EnsembleSpec spec : OneOfEach()) {
     SCOPED_TRACE(Described(spec));
+    if (spec.experiment->trajectories != nullptr) continue;  // a sample of each trajectory
     (spec.target.samples ? spec.target.samples : spec.target.collisions) = 1;
     const auto point = PointExperiment::Create(spec, 0);
     const PointSummary summary = point->Summarize(*FoldPoint(*point));

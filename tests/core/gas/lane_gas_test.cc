@@ -87,6 +87,36 @@ TEST(LaneGas, AgreesWithTheReferenceAtThermalWalls) {
   }
 }
 
+// The positions and velocities after a few events are those of the reference, which continues from
+// the lanes' state as from its own.
+TEST(LaneGas, AGasContinuesFromItsState) {
+  constexpr double kTime = 1, kRounding = 1e-6;
+  for (const char* shape : {"1", "3", "2x2"}) {
+    const GasGeometry gas = GasAtShare(0.529561127988977, 0.8, shape, GasEnds::kReservoirs);
+    for (uint64_t i = 0; i < 20; ++i) {
+      const GasState start = GasInEquilibrium(gas, 1, 42, i);
+      const auto state_of = [&](GasEngine engine) {
+        GasMeter meter(gas, start);
+        const GasRandom random(41, 0, i);
+        const auto run = StartGases(engine, gas, GasExchangeRate(gas, 1),
+                                    {{start, ThermalWalls(gas, 1, 1, random), random, &meter}});
+        run->AdvanceTo(kTime);
+        return run->StateOf(0);
+      };
+      const GasState lanes = state_of(GasEngine::kLanes), ref = state_of(GasEngine::kReference);
+      for (size_t b = 0; b < ref.balls.size(); ++b) {
+        EXPECT_NEAR((lanes.balls[b].position - ref.balls[b].position).norm(), 0, kRounding);
+        EXPECT_NEAR((lanes.balls[b].direction - ref.balls[b].direction).norm(), 0, kRounding);
+        EXPECT_NEAR(lanes.balls[b].speed, ref.balls[b].speed, kRounding);
+      }
+      for (size_t p = 0; p < ref.pistons.size(); ++p) {
+        EXPECT_NEAR(lanes.pistons[p].offset, ref.pistons[p].offset, kRounding);
+        EXPECT_NEAR(lanes.pistons[p].velocity, ref.pistons[p].velocity, kRounding);
+      }
+    }
+  }
+}
+
 TEST(LaneGas, EnergyIsConserved) {
   const GasGeometry gas = GasAtShare(0.529561127988977, 0.7, "6x5");
   const auto total = [](const Outcome& outcome) {

@@ -627,36 +627,31 @@ EnsembleSpec Conduction(const GasShape& shape, Model model, const Target& target
   return spec;
 }
 
-// A replica of a long gas is cut short and tells no error, so its job would never end.
-TEST(Ladder, AToleranceWithoutErrorsIsRejectedWithTheLongestGas) {
-  for (const Model model : {Model::kBilliard, Model::kBilliardReference, Model::kMarkov}) {
-    for (const GasShape& shape :
-         {GasShape{.columns = 20'000}, GasShape{.columns = 5000, .rows = 2, .is_lattice = true}}) {
-      EnsembleSpec spec = Conduction(shape, model, {.tolerance = 0.5});
-      const std::vector<FieldViolation> found = ToleranceViolations(spec);
-      ASSERT_EQ(found.size(), 1u) << Name(model);
-      EXPECT_EQ(found[0].field, "grid.cells[0]");
-      EXPECT_THAT(found[0].description, AllOf(HasSubstr(absl::StrCat("is ", Text(shape))),
-                                              HasSubstr("delta = 0.1"), HasSubstr(Name(model))));
-      const std::string& text = found[0].description;
-      GasShape longest = shape;
-      longest.columns = std::stoll(text.substr(text.find("up to ") + 6));
-      EXPECT_GT(longest.columns, 10);
-      spec.grid[kCells] = {CodeOf(longest)};
-      EXPECT_THAT(ToleranceViolations(spec), testing::IsEmpty());
-      ++longest.columns;
-      spec.grid[kCells] = {CodeOf(longest)};
-      EXPECT_EQ(ToleranceViolations(spec).size(), 1u);
-    }
-  }
+// A question that needs years is planned. One that needs longer than any machine lasts is rejected.
+TEST(Ladder, ALongGasIsPlannedUntilItsTimeIsBeyondAllMachines) {
+  const auto asked = [](int64_t columns) {
+    EnsembleSpec spec =
+        SpecOf(&kGasConduction, PaperGas(&kGasConduction, 0.1, {.columns = columns}),
+               {.tolerance = 0.05}, Model::kMarkov);
+    return std::pair(spec, LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked));
+  };
+  const auto [long_gas, ladder] = asked(100'000);
+  EXPECT_THAT(ToleranceViolations(long_gas), testing::IsEmpty());
+  EXPECT_THAT(TimeViolations(long_gas), testing::IsEmpty());
+  EXPECT_GT(ladder.Chosen().time, 1e8);
+  EXPECT_LE(*ladder.Chosen().statistical_error, 0.05);
+  EXPECT_EQ(TimeViolations(asked(1'000'000).first).size(), 1u);
 }
 
-TEST(Ladder, AReplicaThatIsCutShortHasNoPlannedError) {
-  const EnsembleSpec spec = Conduction({.columns = 20'000}, Model::kBilliard, {.samples = 64});
-  EXPECT_TRUE(ToleranceViolations(spec).empty());
-  const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked);
-  EXPECT_FALSE(ladder.Chosen().statistical_error);
-  EXPECT_THAT(ladder.Chosen().reason, HasSubstr("no errors"));
+// A chain of 100 had to wait hours for its first chunk, and one of 300 was refused.
+TEST(Ladder, ChainsOfHundredsTakeMinutes) {
+  for (const auto& [columns, seconds] : {std::pair(100, 1200.), std::pair(300, 3 * 3600.)}) {
+    PointParameters point = PaperGas(&kGasConduction, 0.05, {.columns = columns});
+    point.Set(kHot, 2);
+    point.Set(kCold, 1);
+    const EnsembleSpec spec = SpecOf(&kGasConduction, point, {.tolerance = 0.05}, Model::kBilliard);
+    EXPECT_LT(LadderFor(spec, point, SomeMachine(), MayNotBeAsked).Chosen().time, seconds);
+  }
 }
 
 // From epsilon = 1/2 only the orbits meet whose ball starts within the piston's reach.

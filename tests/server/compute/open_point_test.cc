@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "core/ensemble/point_fold.h"
+#include "core/experiment/all_experiments.h"
+#include "core/gas/gas_shape.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/server/compute/remote_executor.h"
@@ -265,6 +267,63 @@ TEST(OpenPoint, ExpectedSecondsFallWithMergedChunks) {
   EXPECT_DOUBLE_EQ(point.ExpectedSeconds(), seconds(0, expected));
   AddChunks(point, 0, 1);
   EXPECT_DOUBLE_EQ(point.ExpectedSeconds(), seconds(1, expected));
+}
+
+// ---- samples that continue each other ----
+
+std::shared_ptr<const PointExperiment> SteadyExperiment() {
+  return PointExperiment::Create({.experiment = &kGasConduction,
+                                  .grid = {{kRho, {0.53}},
+                                           {kDelta, {0.1}},
+                                           {kCells, {CodeOf({.columns = 2})}},
+                                           {kHot, {2}},
+                                           {kCold, {1}}},
+                                  .target = {.samples = 1000},
+                                  .model = Model::kMarkov},
+                                 0);
+}
+
+ChunkResult Computed(const Lease& lease) {
+  ChunkFold fold(lease.experiment->plan(), lease.start, lease.end, lease.groups);
+  const Block block = *fold.NextBlock();
+  return fold.Add(block, *RunBlock(*lease.experiment, block)).front();
+}
+
+TEST(OpenPoint, GroupsOfTrajectoriesAreLeasesOfTheirOwn) {
+  OpenPoint point(SteadyExperiment());
+  std::vector<Lease> leases;
+  while (auto lease = point.NextChunks({.seconds = 1000}, kElsewhere)) leases.push_back(*lease);
+  ASSERT_EQ(leases.size(), 16u);  // the other chunks have no start yet
+  for (uint64_t group = 0; group < 16; ++group) {
+    EXPECT_EQ(leases[group].start.chunk, group);
+    EXPECT_EQ(leases[group].end, group + 1);
+  }
+  point.Return(5, 6, 2);
+  EXPECT_EQ(Next(point, 1000, kElsewhere), Chunks(5, 6, 2));
+  const ChunkResult first = Computed(leases[0]);
+  point.fold().Add(first);
+  const auto next = point.NextChunks({.seconds = 1000}, kElsewhere);
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->start.chunk, 16u);
+  EXPECT_EQ(next->groups[0], first.result.groups[0]);
+  EXPECT_FALSE(point.NextChunks({.seconds = 1000}, kElsewhere));
+}
+
+// All the rest is one lease only if the starts of its chunks are known.
+TEST(OpenPoint, ALeaseOfTheRestHasTheStatesOfAllGroups) {
+  OpenPoint point(SteadyExperiment());
+  const auto first = point.NextChunks({.seconds = 0}, {});
+  ASSERT_TRUE(first);
+  const auto second = point.NextChunks({}, {});
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->end, 2u);  // chunk 0, from which chunk 16 starts, is computed elsewhere
+  point.fold().Add(Computed(*first));
+  point.fold().Add(Computed(*second));
+  const auto rest = point.NextChunks({}, {});
+  ASSERT_TRUE(rest);
+  EXPECT_EQ(rest->start.chunk, 2u);
+  EXPECT_EQ(rest->end, point.experiment()->plan().chunks());
+  EXPECT_EQ(rest->groups, point.fold().state().complete.groups);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "server/worker/lease_runner.h"
 
 #include <map>
+#include <memory>
 #include <stop_token>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "server/scheduling/open_point.h"
 #include "tests/server/worker/sample_leases.h"
 
 namespace ballpiston::server {
@@ -115,6 +117,41 @@ TEST(LeaseRunner, AStopLeavesTheChunksThatAreComplete) {
   EXPECT_EQ(recorder.chunks.size(), 1u);
   EXPECT_EQ(recorder.Numbers(0).front(), 1u);
   EXPECT_LT(recorder.Numbers(0).size(), 5u);
+}
+
+// Each lease has a chunk of one group, and travels as a message. The next chunk of the group starts
+// with what the lease has reported.
+TEST(LeaseRunner, LeasesContinueTheTrajectoriesOfASteadyState) {
+  for (const Model model : kGasConduction.models) {
+    const EnsembleSpec spec = SpecOf(kGasConduction, model, 600);
+    OpenPoint point(PointExperiment::Create(spec, 0));
+    while (!point.fold().finished()) {
+      std::vector<LeaseWork> work;
+      while (auto lease = point.NextChunks({.seconds = 60}, {.local = false})) {
+        lease->spec = std::make_shared<const EnsembleSpec>(spec);
+        const auto received = LeaseOfRecord(LeaseRecord(*lease, SomeJob()));
+        ASSERT_TRUE(received.ok()) << received.status();
+        work.push_back({received->lease});
+      }
+      ASSERT_EQ(work.size(), point.experiment()->plan().groups());
+      Recorder recorder;
+      EXPECT_TRUE(RunLeases(work, recorder.stop.get_token(), recorder));
+      for (size_t i = work.size(); i-- > 0;) {
+        for (ChunkResult& chunk : recorder.chunks[i]) point.fold().Add(std::move(chunk));
+      }
+    }
+    EXPECT_EQ(point.fold().Merged(), FoldPoint(*point.experiment())) << Name(model);
+  }
+}
+
+// A task that starts again knows some chunks, from which later ones continue.
+TEST(LeaseRunner, KnownChunksAreContinued) {
+  LeaseWork work = {LeaseOf(SpecOf(kGasConduction, Model::kMarkov, 600)).lease};
+  const std::vector<ChunkResult> all = AllChunks(*work.lease.experiment);
+  work.known.assign(all.begin(), all.begin() + 20);
+  Recorder recorder;
+  EXPECT_TRUE(RunLeases({work}, recorder.stop.get_token(), recorder));
+  EXPECT_TRUE(AreEqual(recorder.chunks[0], {all.begin() + 20, all.end()}));
 }
 
 }  // namespace

@@ -29,8 +29,12 @@ bool IsGas(const ExperimentKind& kind) {
   return &kind == &kGasEquilibrium || &kind == &kGasConduction;
 }
 
-// A replica of a gas is more work than other samples. The first chunk has 64 replicas.
-int64_t SamplesOf(const ExperimentKind& kind) { return IsGas(kind) ? 66 : kSomeSamples; }
+// A sample of a gas is more work than other samples. The first chunk has 64 replicas. Of samples
+// that continue each other there are 256 trajectories, and three stages.
+int64_t SamplesOf(const ExperimentKind& kind) {
+  if (kind.trajectories != nullptr) return 600;
+  return IsGas(kind) ? 66 : kSomeSamples;
+}
 
 }  // namespace
 

@@ -1,0 +1,312 @@
+#include "core/experiment/steady_gas.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "absl/strings/str_format.h"
+#include "core/experiment/pair_experiment.h"
+#include "core/gas/canonical_gas.h"
+#include "core/gas/gas_run.h"
+#include "core/statistics/batch_means.h"
+#include "core/statistics/moments.h"
+#include "core/statistics/stated_error.h"
+
+namespace ballpiston {
+namespace {
+
+double EnergyOf(const GasState& state) {
+  double sum = 0;
+  for (const GasBall& ball : state.balls) sum += ballpiston::EnergyOf(ball);
+  for (const GasPiston& piston : state.pistons) sum += ballpiston::EnergyOf(piston);
+  return sum;
+}
+
+// A ball has two degrees of freedom at its temperature T, a piston one: the variance of a kinetic
+// energy is T^2/2 for each.
+double VarianceOfEnergy(const GasGeometry& geometry, const TemperatureProfile& temperature) {
+  double sum = 0;
+  for (int64_t ball = 0; ball < geometry.balls(); ++ball) {
+    const int64_t column = ball % geometry.shape().columns;
+    sum += std::pow(temperature.At(static_cast<double>(column) + 0.5), 2);
+  }
+  for (int64_t piston = 0; piston < geometry.pistons(); ++piston) {
+    sum += std::pow(temperature.At(geometry.PositionOfPiston(piston)), 2) / 2;
+  }
+  return sum;
+}
+
+// Computes chunks, each of which is a block: some stretches of all trajectories of a group, which
+// run together. Functions return false at a pause.
+class GroupRun : public EngineRun {
+ public:
+  GroupRun(const SteadyGas& experiment, BlockQueue& queue)
+      : experiment_(experiment), queue_(queue) {}
+
+  bool Advance() override {
+    Pauses pauses([this] { return queue_.Pause(); });
+    do {
+      if (!block_) {
+        block_ = queue_.Next();
+        if (!block_) return true;
+        Begin();
+      }
+      if (run_ == nullptr && !DrawStarts(pauses)) return false;
+      if (run_ == nullptr) Start();
+      if (!RunToTheEnd(pauses)) return false;
+      BlockResult result = Result();
+      queue_.Done(*std::exchange(block_, std::nullopt), std::move(result));
+    } while (!queue_.Pause());
+    return false;
+  }
+
+ private:
+  // The start of a trajectory that is being drawn.
+  struct StartDraw {
+    StartDraw(const SteadyGas& experiment, const GasRandom& random)
+        : of_start(random.OfStart()),
+          draw(experiment.geometry(), experiment.TemperaturesAtStart(), of_start) {}
+
+    CounterRandom of_start;
+    GasDraw draw;
+  };
+
+  std::vector<SteadyTrajectory>& trajectories() { return group_.trajectories; }
+  double Now() const { return stretches_ * experiment_.stretch(); }
+  // Of a trajectory in this chunk.
+  GasRandom RandomOf(size_t trajectory) const {
+    return experiment_.RandomOf(block_->chunk * experiment_.shape().trajectories + trajectory);
+  }
+
+  void Begin() {
+    const SteadyShape& shape = experiment_.shape();
+    const bool is_first = block_->start.empty();
+    group_ = is_first ? shape.NewGroup() : shape.Read(block_->start);
+    drawn_ = is_first ? 0 : shape.trajectories;
+    stretches_ = 0;
+    is_measuring_ = group_.measured > 0;
+  }
+
+  bool DrawStarts(Pauses& pauses) {
+    for (; drawn_ < trajectories().size(); ++drawn_) {
+      if (draw_ == nullptr) draw_ = std::make_unique<StartDraw>(experiment_, RandomOf(drawn_));
+      if (!draw_->draw.Advance(pauses)) return false;
+      SteadyTrajectory& trajectory = trajectories()[drawn_];
+      trajectory.state = draw_->draw.Take();
+      trajectory.energy = EnergyOf(trajectory.state);
+      draw_.reset();
+    }
+    return true;
+  }
+
+  void Start() {
+    std::vector<GasStart> starts;
+    meters_.clear();
+    meters_.reserve(trajectories().size());
+    for (size_t i = 0; i < trajectories().size(); ++i) {
+      meters_.emplace_back(experiment_.geometry(), trajectories()[i].state);
+      const GasRandom random = RandomOf(i);
+      starts.push_back({std::move(trajectories()[i].state), experiment_.WallsOf(random), random,
+                        &meters_.back()});
+    }
+    run_ = StartGases(experiment_.gas_engine(), experiment_.geometry(), experiment_.exchange_rate(),
+                      std::move(starts));
+    carried_.assign(meters_.size(), 0);
+    BeginStretch();
+  }
+
+  bool RunToTheEnd(Pauses& pauses) {
+    const double end = static_cast<double>(block_->samples) /
+                       static_cast<double>(experiment_.shape().trajectories);
+    while (stretches_ < end) {
+      if (!run_->AdvanceTo((stretches_ + 1) * experiment_.stretch(), pauses)) return false;
+      EndStretch();
+      if (stretches_ < end) BeginStretch();
+    }
+    return true;
+  }
+
+  // Judges the warm-up when it may end, and begins the measurement of the chunk.
+  void BeginStretch() {
+    const auto warm_up = static_cast<double>(experiment_.trajectories().warm_up);
+    const bool is_new = stretches_ == 0, was_measuring = is_measuring_;
+    const bool is_judged =
+        !is_measuring_ && (group_.stretches == warm_up || (is_new && group_.stretches > warm_up));
+    if (is_judged) is_measuring_ = HasWarmedUp() || group_.stretches >= kLongestWarmUp * warm_up;
+    if (!is_measuring_ || (was_measuring && !is_new)) return;
+    for (GasMeter& meter : meters_) meter.Begin(Now());
+  }
+
+  // And keeps the energies, from which the next judgement counts.
+  bool HasWarmedUp() {
+    double change = 0;
+    for (size_t i = 0; i < meters_.size(); ++i) {
+      const double energy = meters_[i].TotalEnergy();
+      change += energy - std::exchange(trajectories()[i].energy, energy);
+    }
+    const auto count = static_cast<double>(meters_.size());
+    constexpr double kDeviations = 3;
+    return std::fabs(change) <=
+           kDeviations * std::sqrt(2 * experiment_.variance_of_energy() * count);
+  }
+
+  void EndStretch() {
+    ++stretches_;
+    ++group_.stretches;
+    if (!is_measuring_) return;
+    // A ball has one contact on its left and one on its right.
+    const auto sections = 2 * static_cast<double>(experiment_.geometry().shape().columns);
+    std::vector<double> charges;
+    for (size_t i = 0; i < meters_.size(); ++i) {
+      const double carried = meters_[i].carried();
+      charges.push_back((carried - std::exchange(carried_[i], carried)) / sections);
+    }
+    group_.AddStretch(charges);
+  }
+
+  BlockResult Result() {
+    BlockResult result = experiment_.EmptyResult();
+    result.samples = block_->samples;
+    for (size_t i = 0; i < meters_.size(); ++i) {
+      SteadyTrajectory& trajectory = trajectories()[i];
+      trajectory.state = run_->StateOf(i);
+      result.health.escapes += meters_[i].escapes();
+      if (!is_measuring_) continue;
+      meters_[i].End(Now());
+      const std::vector<double> integrals = experiment_.IntegralsOf(meters_[i]);
+      for (size_t j = 0; j < integrals.size(); ++j) trajectory.sums[j] += integrals[j];
+    }
+    run_.reset();
+    result.groups[block_->chunk % result.groups.size()] =
+        experiment_.shape().Written(std::exchange(group_, {}));
+    return result;
+  }
+
+  const SteadyGas& experiment_;
+  BlockQueue& queue_;
+  std::optional<Block> block_;
+  SteadyGroup group_;
+  size_t drawn_ = 0;  // trajectories that have a start
+  std::unique_ptr<StartDraw> draw_;
+  std::vector<GasMeter> meters_;
+  std::unique_ptr<GasRun> run_;
+  double stretches_ = 0;  // of this chunk
+  bool is_measuring_ = false;
+  std::vector<double> carried_;  // by each trajectory, at the last end of a stretch
+};
+
+// A ball anywhere in its cell, or beyond a wall by rounding.
+bool IsPossible(const GasBall& ball, const GasGeometry& geometry) {
+  constexpr double kRounding = 1e-9;
+  const Eigen::Vector2d to_a_corner = Eigen::Vector2d(0.5, 0.5) - ball.position.cwiseAbs();
+  return to_a_corner.minCoeff() >= -kRounding &&
+         to_a_corner.norm() >= geometry.pair().rho() - kRounding;
+}
+
+bool IsPossible(const SteadyTrajectory& trajectory, const GasGeometry& geometry) {
+  return std::ranges::all_of(trajectory.state.balls,
+                             [&](const GasBall& ball) { return IsPossible(ball, geometry); }) &&
+         std::ranges::all_of(trajectory.state.pistons, [&](const GasPiston& piston) {
+           return std::fabs(piston.offset) <= geometry.reach();
+         });
+}
+
+bool IsCount(double number) { return number >= 0 && number == std::floor(number); }
+
+}  // namespace
+
+SteadyGas::SteadyGas(const EnsembleSpec& spec, const PointParameters& point,
+                     const GasGeometry& geometry, double stretch, double temperature,
+                     size_t quantities)
+    : GasExperiment(spec, point, geometry, temperature),
+      stretch_(WithoutLastBits(stretch)),
+      trajectories_(spec.experiment->trajectories(answer().model, point)) {
+  shape_ = {.trajectories = trajectories_.each,
+            .quantities = quantities,
+            .balls = static_cast<size_t>(geometry.balls()),
+            .pistons = static_cast<size_t>(geometry.pistons()),
+            .has_positions = answer().model != Model::kMarkov};
+}
+
+void SteadyGas::SetMeasurements(const TemperatureProfile& start, std::vector<Measurement> table) {
+  variance_of_energy_ = VarianceOfEnergy(geometry(), start);
+  PointExperiment::SetMeasurements({.groups = std::vector<GroupState>(trajectories_.groups)},
+                                   std::move(table));
+}
+
+std::unique_ptr<EngineRun> SteadyGas::StartRun(BlockQueue& queue) const {
+  return std::make_unique<GroupRun>(*this, queue);
+}
+
+bool SteadyGas::CanContinue(const GroupState& state) const {
+  const std::span<const double> numbers = state.numbers();
+  if (numbers.size() != shape_.Numbers()) return false;
+  if (!std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); })) {
+    return false;
+  }
+  const SteadyGroup group = shape_.Read(state);
+  return IsCount(group.stretches) && IsCount(group.measured) && group.measured <= group.stretches &&
+         std::ranges::all_of(group.trajectories, [&](const SteadyTrajectory& trajectory) {
+           return !shape_.has_positions || IsPossible(trajectory, geometry());
+         });
+}
+
+std::vector<SteadyGroup> SteadyGas::GroupsOf(const BlockResult& merged) const {
+  std::vector<SteadyGroup> groups;
+  for (const GroupState& state : merged.groups) {
+    if (state.empty()) continue;
+    SteadyGroup group = shape_.Read(state);
+    if (group.measured > 0) groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+PointSummary SteadyGas::Summarize(const BlockResult& merged) const {
+  PointSummary summary = PointExperiment::Summarize(merged);
+  summary.samples = 0;
+  for (const SteadyGroup& group : GroupsOf(merged)) {
+    summary.samples += trajectories_.each * static_cast<uint64_t>(group.measured);
+  }
+  return summary;
+}
+
+// Trajectories are independent, and each has many events.
+Estimate SteadyGas::TimeAverage(size_t quantity, double share,
+                                const std::vector<SteadyGroup>& groups) const {
+  BatchMeans means;
+  for (const SteadyGroup& group : groups) {
+    for (const SteadyTrajectory& trajectory : group.trajectories) {
+      means.Add(trajectory.sums[quantity], share * group.measured * stretch_);
+    }
+  }
+  return RatioOf(means, kEventsForAnError);
+}
+
+Reading SteadyGas::TimeAverageAt(size_t quantity, double share) const {
+  return [this, quantity, share](const BlockResult& merged) {
+    return TimeAverage(quantity, share, GroupsOf(merged));
+  };
+}
+
+std::string SteadyGas::RemarkOnWarmUp(const BlockResult& merged) const {
+  constexpr double kDeviations = 4;
+  const std::vector<SteadyGroup> groups = GroupsOf(merged);
+  Moments changes;
+  double energy = 0;
+  for (const SteadyGroup& group : groups) {
+    for (const SteadyTrajectory& trajectory : group.trajectories) {
+      const double now = EnergyOf(trajectory.state);
+      changes.Add(now - trajectory.energy);
+      energy += now;
+    }
+  }
+  if (changes.count < 2) return "";
+  if (std::fabs(changes.mean) <= kDeviations * *changes.StandardError()) return "";
+  return absl::StrFormat(
+      "the energy of the gas has changed by %.2g %% since its warm-up ended, so the state may not "
+      "be stationary",
+      100 * changes.mean * static_cast<double>(changes.count) / energy);
+}
+
+}  // namespace ballpiston

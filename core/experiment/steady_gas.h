@@ -1,0 +1,69 @@
+// The base of experiments with a gas between reservoirs whose samples continue each other: a sample
+// is a stretch of a trajectory (ensemble/chunk_plan.h). A chunk has its own clock and its own
+// random numbers, so neither loses digits in a long run.
+//
+// Warm-up. A trajectory starts near local equilibrium and is not measured for some stretches. Then
+// its group is judged: is the change of the gas's energy, the mean over the group's trajectories,
+// within three standard deviations of 0? That change is the energy that has entered at one end,
+// less that which has left at the other; its variance is at most twice that of the energy in local
+// equilibrium. If not, the group warms up for one more chunk, and is judged again over that chunk.
+// It is measured in any case after kLongestWarmUp times the warm-up. The decision depends on the
+// specification and on the group alone.
+//
+// Errors are those of the scatter between all trajectories.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/experiment/gas_experiment.h"
+#include "core/experiment/steady_group.h"
+
+namespace ballpiston {
+
+inline constexpr double kLongestWarmUp = 16;
+
+class SteadyGas : public GasExperiment {
+ public:
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override;
+  bool CanContinue(const GroupState& state) const override;
+  // Without the warm-up.
+  PointSummary Summarize(const BlockResult& merged) const override;
+
+  // A run of groups calls these functions, from any thread.
+  const SteadyShape& shape() const { return shape_; }
+  double stretch() const { return stretch_; }  // a time at temperature 1
+  const Trajectories& trajectories() const { return trajectories_; }
+  double variance_of_energy() const { return variance_of_energy_; }  // in local equilibrium
+  // The integral over the meter's window, of each quantity.
+  virtual std::vector<double> IntegralsOf(const GasMeter& meter) const = 0;
+
+ protected:
+  // Rounds the stretch (WithoutLastBits), because its last bits depend on the C library.
+  SteadyGas(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
+            double stretch, double temperature, size_t quantities);
+
+  // To be called in the constructor of the experiment.
+  void SetMeasurements(const TemperatureProfile& start, std::vector<Measurement> table);
+
+  // The groups that have been measured.
+  std::vector<SteadyGroup> GroupsOf(const BlockResult& merged) const;
+  // A quantity over time and over `share`; the error is that between the trajectories.
+  Estimate TimeAverage(size_t quantity, double share, const std::vector<SteadyGroup>& groups) const;
+  Reading TimeAverageAt(size_t quantity, double share) const;
+
+  // A sentence if the gas's energy has changed during the measurement by more than its trajectories
+  // scatter, or if its warm-up has not ended; else empty.
+  std::string RemarkOnWarmUp(const BlockResult& merged) const;
+
+ private:
+  SteadyShape shape_;
+  double stretch_;
+  Trajectories trajectories_;
+  double variance_of_energy_ = 0;
+};
+
+}  // namespace ballpiston

@@ -1,0 +1,127 @@
+// Samples that continue each other, with the experiment `gas-conduction`.
+#include "core/experiment/steady_gas.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "core/ensemble/point_fold.h"
+#include "tests/core/billiard/each_target.h"
+#include "tests/core/one_point_spec.h"
+
+namespace ballpiston {
+namespace {
+
+std::unique_ptr<const PointExperiment> PointOf(Model model, int64_t samples = 2000) {
+  return PointExperiment::Create(
+      SpecOf(&kGasConduction, PaperGas(&kGasConduction, 0.2), {.samples = samples}, model, 5), 0);
+}
+
+// Computes one chunk at a time, each in a fold of its own. Any chunk that can start may be next.
+FoldState ByRandomChunks(const PointExperiment& point, unsigned seed) {
+  std::mt19937 random(seed);
+  PointFold fold(point);
+  while (!fold.finished()) {
+    std::vector<uint64_t> startable;
+    for (uint64_t chunk = 0; chunk < point.plan().chunks(); ++chunk) {
+      if (fold.Needs(chunk) && fold.CanStart(chunk)) startable.push_back(chunk);
+    }
+    const uint64_t chunk = startable[random() % startable.size()];
+    std::vector<GroupState> starts(point.plan().groups());
+    starts[chunk % starts.size()] = fold.StartOf(chunk);
+    ChunkFold one(point.plan(), {chunk}, chunk + 1, starts);
+    const Block block = *one.NextBlock();
+    EXPECT_FALSE(one.NextBlock());
+    for (ChunkResult& done : one.Add(block, *RunBlock(point, block))) fold.Add(std::move(done));
+  }
+  return fold.state();
+}
+
+TEST(SteadyGas, AnyDivisionGivesTheSameBits) {
+  for (const Model model : kModelsThatSampleGases) {
+    const auto point = PointOf(model);
+    LocalPoint whole(*point);
+    whole.Run();
+    for (const unsigned seed : {1u, 2u}) {
+      const FoldState state = ByRandomChunks(*point, seed);
+      EXPECT_EQ(state.complete, whole.Merged()) << Name(model);
+      EXPECT_EQ(state.chunk_digests, whole.State().chunk_digests) << Name(model);
+    }
+  }
+}
+
+TEST(SteadyGas, AResumedPointHasTheSameBits) {
+  const auto point = PointOf(Model::kMarkov);
+  const BlockResult whole = *FoldPoint(*point);
+  LocalPoint begun(*point);
+  for (int i = 0; i < 21; ++i) {
+    const Block block = *begun.NextBlock();
+    begun.Add(block, *RunBlock(*point, block));
+  }
+  PointFold resumed(*point);
+  resumed.Resume(begun.State());
+  std::vector<GroupState> starts = resumed.state().complete.groups;
+  ChunkFold rest(point->plan(), {resumed.state().chunk}, point->plan().chunks(), starts);
+  while (const auto block = rest.NextBlock()) {
+    for (ChunkResult& done : rest.Add(*block, *RunBlock(*point, *block))) {
+      resumed.Add(std::move(done));
+    }
+  }
+  EXPECT_EQ(resumed.Merged(), whole);
+}
+
+TEST(SteadyGas, SameBitsOnEveryTargetWithFusedMultiplyAdd) {
+  const auto point = PointOf(Model::kBilliard, 600);
+  std::vector<BlockResult> results;
+  ForEachFusedTarget([&] { results.push_back(*FoldPoint(*point)); });
+  for (const BlockResult& result : results) EXPECT_EQ(result, results[0]);
+}
+
+TEST(SteadyGas, SamplesAreRoundedUpToStretchesOfEveryTrajectory) {
+  const auto point = PointOf(Model::kMarkov, 257);
+  EXPECT_EQ(point->Summarize(*FoldPoint(*point)).samples, 384u);
+}
+
+// The first chunks start with nothing; every group's next chunk starts where it has ended.
+TEST(SteadyGas, ABlockStartsWhereThePreviousOneOfItsGroupEnded) {
+  const auto point = PointOf(Model::kMarkov);
+  const uint64_t groups = point->plan().groups();
+  ChunkFold fold(point->plan(), {}, point->plan().chunks());
+  std::vector<Block> first;
+  while (const auto block = fold.NextBlock()) first.push_back(*block);
+  ASSERT_EQ(first.size(), groups);
+  const BlockResult result = *RunBlock(*point, first[0]);
+  fold.Add(first[0], result);
+  const auto next = fold.NextBlock();
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->chunk, groups);
+  EXPECT_EQ(next->start, result.groups[0]);
+  fold.Add(first[0], result);  // once more, which changes nothing
+  EXPECT_FALSE(fold.NextBlock());
+}
+
+TEST(SteadyGas, ADamagedStateCannotContinue) {
+  const auto point = PointOf(Model::kBilliard, 1);
+  const GroupState state = FoldPoint(*point)->groups[3];
+  EXPECT_TRUE(point->CanContinue(state));
+  EXPECT_FALSE(point->CanContinue({}));
+  const auto with = [&](size_t place, double number) {
+    std::vector<double> numbers(state.numbers().begin(), state.numbers().end());
+    numbers[place] = number;
+    return GroupState(std::move(numbers));
+  };
+  const size_t last = state.numbers().size() - 1;  // a piston's velocity, after its offset
+  EXPECT_FALSE(point->CanContinue(with(last, std::nan(""))));
+  EXPECT_FALSE(point->CanContinue(with(last - 1, 0.9)));
+  EXPECT_FALSE(point->CanContinue(with(0, -1)));
+  EXPECT_FALSE(point->CanContinue(with(1, 1e9)));
+  std::vector<double> more(state.numbers().begin(), state.numbers().end());
+  more.push_back(0);
+  EXPECT_FALSE(point->CanContinue(GroupState(std::move(more))));
+}
+
+}  // namespace
+}  // namespace ballpiston

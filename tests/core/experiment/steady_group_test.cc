@@ -1,0 +1,91 @@
+#include "core/experiment/steady_group.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace ballpiston {
+namespace {
+
+SteadyGroup SomeGroup(const SteadyShape& shape) {
+  SteadyGroup group = shape.NewGroup();
+  double number = 0.1;
+  const auto next = [&] { return number = std::fmod(number * 1.7 + 0.3, 1); };
+  group.stretches = 7;
+  for (SteadyTrajectory& trajectory : group.trajectories) {
+    trajectory.energy = next();
+    for (double& sum : trajectory.sums) sum = next();
+    for (GasBall& ball : trajectory.state.balls) {
+      ball.speed = next();
+      if (!shape.has_positions) continue;
+      const double angle = next();
+      ball.position = {next(), next()};
+      ball.direction = {std::cos(angle), std::sin(angle)};
+    }
+    for (GasPiston& piston : trajectory.state.pistons) {
+      piston.velocity = -next();
+      if (shape.has_positions) piston.offset = next();
+    }
+  }
+  for (int i = 0; i < 5; ++i) group.AddStretch({next(), next()});
+  return group;
+}
+
+TEST(SteadyGroup, AGroupIsReadAsItWasWritten) {
+  for (const bool has_positions : {true, false}) {
+    const SteadyShape shape = {.trajectories = 2,
+                               .quantities = 3,
+                               .balls = 2,
+                               .pistons = 3,
+                               .has_positions = has_positions};
+    const SteadyGroup group = SomeGroup(shape);
+    const GroupState written = shape.Written(group);
+    ASSERT_EQ(written.numbers().size(), shape.Numbers());
+    const SteadyGroup read = shape.Read(written);
+    EXPECT_EQ(read.stretches, 7);
+    EXPECT_EQ(read.measured, 5);
+    EXPECT_EQ(read.windows, group.windows);
+    for (size_t i = 0; i < 2; ++i) {
+      const SteadyTrajectory &a = read.trajectories[i], &b = group.trajectories[i];
+      EXPECT_EQ(a.energy, b.energy);
+      EXPECT_EQ(a.sums, b.sums);
+      EXPECT_EQ(a.halves, b.halves);
+      for (size_t j = 0; j < 2; ++j) {
+        EXPECT_EQ(a.state.balls[j].position, b.state.balls[j].position);
+        // The velocity is written.
+        EXPECT_NEAR(a.state.balls[j].speed, b.state.balls[j].speed, 1e-15);
+        EXPECT_NEAR((a.state.balls[j].direction - b.state.balls[j].direction).norm(), 0, 1e-15);
+      }
+      for (size_t j = 0; j < 3; ++j) {
+        EXPECT_EQ(a.state.pistons[j].offset, b.state.pistons[j].offset);
+        EXPECT_EQ(a.state.pistons[j].velocity, b.state.pistons[j].velocity);
+      }
+    }
+  }
+}
+
+TEST(SteadyGroup, WindowsHoldTheWholeCharge) {
+  const SteadyShape shape = {.trajectories = 2, .balls = 1, .pistons = 2};
+  SteadyGroup group = shape.NewGroup();
+  std::vector<double> charges;
+  for (int i = 0; i < 13; ++i) {
+    charges.push_back(i * i);
+    group.AddStretch({charges.back(), 0});
+    group = shape.Read(shape.Written(group));  // windows may begin in one chunk and end in another
+  }
+  for (size_t length = 0; length < 5; ++length) {
+    const size_t stretches = size_t{1} << length, windows = charges.size() / stretches;
+    Moments expected;
+    for (size_t i = 0; i < windows; ++i) {
+      const auto first = charges.begin() + static_cast<std::ptrdiff_t>(i * stretches);
+      expected.Add(std::accumulate(first, first + static_cast<std::ptrdiff_t>(stretches), 0.0));
+      expected.Add(0);
+    }
+    EXPECT_EQ(group.windows[length], expected) << length;
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston
