@@ -6,8 +6,8 @@
 // so orbits are independent and in equilibrium. Each is one batch of the batch means: the
 // logarithms of its growth over its duration, or over its collisions. Tangent vectors start in
 // directions that are the same for every orbit, and turn to those of the exponents by a factor of
-// about exp(-2 lambda_2 t), at least 4 in each collision as measured. So the first kWarmUp
-// collisions of an orbit are not measured.
+// about exp(-2 lambda_2 t), at least 4 in each collision as measured. So the first
+// kWarmUpCollisions collisions of an orbit are not measured.
 //
 // The billiard's lanes follow two tangent vectors. The reference follows six, and reports the other
 // four exponents and the sum of all six as they were measured.
@@ -34,7 +34,7 @@ namespace {
 
 // Collisions of an orbit that are measured, and those before them.
 constexpr uint64_t kOrbit = 64;
-constexpr uint64_t kWarmUp = 8;
+constexpr uint64_t kWarmUpCollisions = 8;
 
 // An orbit is one event for the error.
 constexpr double kOrbitsPerCollision = 1.0 / kOrbit;
@@ -76,7 +76,7 @@ class FollowedOrbits : public OrbitsInEquilibrium {
     Orbit& orbit = orbits_[index];
     orbit.tangents.Collide(collision);
     const auto growth = orbit.tangents.TakeGrowth();
-    if (orbit.collisions_before < kWarmUp) {
+    if (orbit.collisions_before < kWarmUpCollisions) {
       ++orbit.collisions_before;
       return AfterCollision::kGoOn;
     }
@@ -182,7 +182,7 @@ class LyapunovExperiment : public PairExperiment {
 // The times of events with tangent vectors, relative to those without, as measured.
 SampleWork WorkOfLyapunov(Model model, const PointParameters& point) {
   const double with_tangents = IsByReference(model) ? 4 : 1.5;
-  constexpr double kWithWarmUp = static_cast<double>(kWarmUp + kOrbit) / kOrbit;
+  constexpr double kWithWarmUp = static_cast<double>(kWarmUpCollisions + kOrbit) / kOrbit;
   return WorkOfACollision(GeometryOf(point)).Times(with_tangents * kWithWarmUp);
 }
 
