@@ -9,7 +9,8 @@ MUTANTS ?= 60
 QUESTIONS ?= 20000
 SIMULATION_SECONDS ?= 3600
 
-TEST_PACKAGES := libgtest-dev libgmock-dev python3-grpcio python3-numpy python3-pandas python3-pytest python3-tqdm python3-matplotlib
+TEST_PACKAGES := libgtest-dev libgmock-dev python3-grpcio python3-numpy python3-pandas python3-pytest python3-tqdm python3-matplotlib \
+  python3-setuptools python3-wheel python3-venv mypy
 AARCH64_PACKAGES := g++-aarch64-linux-gnu qemu-user libabsl-dev:arm64 libhwy-dev:arm64 libgtest-dev:arm64 libgmock-dev:arm64
 SLURM_PACKAGES := munge slurmctld slurmd slurm-client procps
 DEB_PACKAGES := debhelper dh-python help2man lintian
@@ -43,7 +44,7 @@ test-asan test-tsan: test-%: build/%/.$(PRESETS_PREFIX)tests
 
 test-long: build/release/.$(PRESETS_PREFIX)tests ## Run the tests of laws and bits at their full size (15 minutes)
 	@cmake --build build/release --target statistical_test core_test conductivity_test server_test
-	@BALLPISTON_NIGHTLY=1 ctest --preset release -R '^(statistical|core|conductivity|server)_test' -j$(TEST_JOBS)
+	@BALLPISTON_NIGHTLY=1 ctest --preset release --timeout 3600 -R '^(statistical|core|conductivity|server)_test' -j$(TEST_JOBS)
 
 demo: build ## Run the paper's sweep with a real server and client
 	@scripts/demo.sh build/release/bin

@@ -9,6 +9,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 readonly RESULTS=chart
+export BALLPISTON_PYTHON=${BALLPISTON_PYTHON:-/usr/bin/python3}  # setup.sh installs its libraries
 readonly PARAMETERS=(--rho 0.529561127988977 --delta 0.1 --epsilon 0.125 --seconds 1 --seed 0)
 
 printf '\n== ballpiston figure speed-accuracy %s\n' "${PARAMETERS[*]}"

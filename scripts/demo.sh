@@ -13,6 +13,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 readonly RESULTS=demo
 PATH=$1:$PATH
+export BALLPISTON_PYTHON=${BALLPISTON_PYTHON:-/usr/bin/python3}  # for the figure; setup.sh installs its libraries
 
 readonly RHO=0.529561127988977 DELTAS=0.2,0.1,0.05 SEED=1
 # n/100, and halvings of 1/100 towards both ends of (0, 1/2).

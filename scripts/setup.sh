@@ -23,8 +23,7 @@ readonly PACKAGES=(
   prometheus-cpp-dev                                           # metrics
   libcli11-dev                                                 # the flags of both programs
   libcpp-httplib-dev pkgconf                                   # the client's page
-  libzip-dev                                                   # results as NumPy's archives
-  gnuplot-nox)                                                 # the client's figures
+  python3 python3-grpcio python3-matplotlib python3-numpy)     # the Python package and the figures
 
 # The version of the installed CMake; without CMake, the version of its package; empty if unknown.
 cmake_version() {

@@ -13,10 +13,10 @@
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/resource_quota.h"
 #include "grpcpp/server_builder.h"
-#include "server/api/reflection_check.h"
-#include "server/api/server_status.h"
-#include "server/jobs/job_name.h"
-#include "server/observability/failpoint.h"
+#include "server/book/job_name.h"
+#include "server/rpc/reflection_check.h"
+#include "server/rpc/server_status.h"
+#include "server/status/failpoint.h"
 
 namespace ballpiston::server {
 namespace {

@@ -162,7 +162,8 @@ class WordParser {
       program_.parse(std::vector<std::string>(words.rbegin(), words.rend()));
     } catch (const CLI::CallForHelp&) {
       const bool is_group = Chosen() == nullptr && &Innermost() != &program_;
-      return CommandLine{.page = is_group ? GroupPage(Innermost().get_name()) : TextPage(Chosen())};
+      return CommandLine{.page =
+                             is_group ? GroupPage(Innermost().get_name()) : ShortPage(Chosen())};
     } catch (const CLI::CallForVersion& version) {
       return CommandLine{.page = absl::StrCat(version.what(), "\n")};
     } catch (const CLI::ParseError& error) {

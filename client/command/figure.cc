@@ -1,11 +1,9 @@
-// ballpiston figure NAME --out DIR: runs the figure's script in the folder DIR. The script runs
-// ballpiston commands to get the data, writes CSV files and draws with gnuplot. Prints the paths of
-// the files.
+// ballpiston figure NAME --out DIR: starts the Python package ballpiston.figures, which asks the
+// server, computes, writes the data as CSV files, and draws. Prints the paths of the files.
 //
-// A figure consists of the scripts NAME.sh and NAME.gnuplot in share/ballpiston/figures beside this
-// program's folder. All figures share figure.sh and style.gnuplot. These four files are copied to
-// the --out folder. A file that exists there is kept: the user may have edited it. A script takes
-// its variables from the environment: ${rho:=...}.
+// The modules of the figures are NAME.py in ballpiston/figures, in the folder of Python packages
+// that belongs to this program. The package knows which flags a figure has
+// (client/python/ballpiston/figures/parts/command.py).
 #include <signal.h>
 #include <unistd.h>
 
@@ -15,13 +13,13 @@
 #include <set>
 #include <vector>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "client/command/config_file.h"
 #include "client/command/follow_job.h"
 #include "client/command/interrupts.h"
+#include "client/command/python.h"
 #include "client/command/suggestion.h"
 #include "client/command/verb_table.h"
 #include "client/library/child_process.h"
@@ -33,26 +31,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kScript[] = ".sh";
-constexpr char kPicture[] = ".gnuplot";
-constexpr const char* kShared[] = {"figure.sh", "style.gnuplot"};
+fs::path FiguresFolder() { return PythonPackage() / "figures"; }
 
-fs::path ProgramFolder() { return fs::path(ProgramBeside("")).parent_path(); }
-
-fs::path FiguresFolder() { return InstalledFolder("figures"); }
+fs::path ModuleOf(const std::string& figure) {
+  return FiguresFolder() / (absl::StrReplaceAll(figure, {{"-", "_"}}) + ".py");
+}
 
 absl::Status CheckInstalled() {
   if (!FigureNames().empty()) return absl::OkStatus();
   return absl::FailedPreconditionError(
-      absl::StrCat("no figures are installed in ", FiguresFolder().string()));
+      absl::StrCat("figures need the Python package in ", FiguresFolder().string(),
+                   ": install the packages python3-ballpiston and python3-matplotlib"));
 }
 
-// The first line is "# TITLE".
+// A module begins with """TITLE.
 VerbResult ListFigures(Terminal& terminal) {
   if (absl::Status missing = CheckInstalled(); !missing.ok()) return missing;
   for (const std::string& name : FigureNames()) {
-    const std::string script = Contents(FiguresFolder() / (name + kScript));
-    terminal.out << name << ": " << script.substr(2, script.find('\n') - 1);
+    const std::string module = Contents(ModuleOf(name));
+    const std::string title = module.substr(0, module.find('\n'));
+    terminal.out << name << ": " << absl::StrReplaceAll(title, {{"\"\"\"", ""}}) << '\n';
   }
   return ExitCode::kDone;
 }
@@ -71,90 +69,42 @@ absl::Status CheckName(const Options& options) {
     return absl::InvalidArgumentError("--quick and --full exclude each other: give one of them");
   }
   if (!options.out.empty()) return absl::OkStatus();
-  return absl::InvalidArgumentError("--out is missing: name a folder for data, script and picture");
+  return absl::InvalidArgumentError("--out is missing: name a folder for data and pictures");
 }
 
-absl::Status Provide(const fs::path& folder, const std::string& name, const Terminal& terminal) {
-  const fs::path installed = FiguresFolder() / name, here = folder / name;
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (!error && !fs::exists(here, error)) fs::copy_file(installed, here, error);
-  if (error) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("--out: cannot write ", here.string(), ": ", error.message()));
-  }
-  if (Contents(here) != Contents(installed)) {
-    terminal.Note(absl::StrCat(
-        "ballpiston: using ", here.string(),
-        ", which differs from the installed file; delete it to use the installed file"));
-  }
-  return absl::OkStatus();
-}
-
-absl::Status ProvideScripts(const fs::path& folder, const std::string& figure,
-                            const Terminal& terminal) {
-  std::vector<std::string> names = {std::begin(kShared), std::end(kShared)};
-  names.insert(names.begin(), {figure + kScript, figure + kPicture});
-  for (const std::string& name : names) {
-    if (absl::Status status = Provide(folder, name, terminal); !status.ok()) return status;
-  }
-  return absl::OkStatus();
-}
-
-// The script in the folder, else the installed script.
-std::string ScriptFor(const fs::path& folder, const std::string& name) {
-  std::error_code error;
-  return Contents((fs::exists(folder / name, error) ? folder : FiguresFolder()) / name);
-}
-
-// The names in ${NAME:=...}.
-std::set<std::string> VariablesOf(const std::string& script) {
-  std::set<std::string> names;
-  for (size_t at = script.find("${"); at != std::string::npos; at = script.find("${", at + 2)) {
-    const size_t end = script.find(":=", at);
-    if (end != std::string::npos) names.insert(script.substr(at + 2, end - at - 2));
-  }
-  return names;
-}
-
-absl::Status CheckVariables(const Options& options, const std::set<std::string>& names) {
+std::vector<std::string> Command(const Options& options) {
+  std::vector<std::string> command =
+      PythonCommand({"-m", "ballpiston.figures", options.figure, "--out", options.out});
+  if (options.effort != "default") command.push_back("--" + options.effort);
+  if (options.edit) command.push_back("--edit");
   for (const auto& [name, value] : options.variables) {
-    const std::string flag = "--" + absl::StrReplaceAll(name, {{"_", "-"}});
-    if (names.contains(name) || !options.given.contains(flag)) continue;
-    return absl::InvalidArgumentError(
-        absl::StrCat(flag, ": the figure ", options.figure, " has no such variable"));
+    command.insert(command.end(), {"--" + absl::StrReplaceAll(name, {{"_", "-"}}), value});
   }
-  return absl::OkStatus();
+  return command;
 }
 
-// Sets the environment of the script: in PATH this program's folder and, as installed, the folder
-// of the programs that only figures use (tools/README.md); the flags of `figure`, and the script's
-// variables. The user's config file and variables of the same names have no effect.
-void SetEnvironment(const Options& options, const std::set<std::string>& names) {
+// The flags of `figure` that choose the server and the progress, for the package, which starts this
+// program if it needs a private server. The user's config file has no effect on it.
+void SetEnvironment(const Options& options) {
   const auto set = [](const std::string& name, const std::string& value) {
     setenv(name.c_str(), value.c_str(), 1);
   };
-  const std::string path = FromEnvironment("PATH");
-  const fs::path libexec = ProgramFolder().parent_path() / "libexec" / "ballpiston";
-  set("PATH",
-      absl::StrCat(ProgramFolder().string(), ":", libexec.string(), path.empty() ? "" : ":", path));
+  set("BALLPISTON_PROGRAM", ProgramBeside("ballpiston"));
   set("BALLPISTON_SERVER_PROGRAM", UsualServerProgram());
   for (const auto& [name, value] : options.inherited) set(name, value);
   set("BALLPISTON_CONFIG", "/dev/null");
   if (StyleOf(options) == ProgressStyle::kNone) set("BALLPISTON_PROGRESS", "none");
-  for (const std::string& name : names) unsetenv(name.c_str());
-  set("effort", options.effort);
-  for (const auto& [name, value] : options.variables) set(name, value);
 }
 
-// An interruption ends the script and every program that it has started; its jobs continue. The
-// trap makes the shell wait until the running command has printed how to watch its job.
-absl::StatusOr<int> RunScript(const Options& options, const Terminal& terminal) {
-  const std::string commands =
-      absl::StrCat("trap 'exit 130' INT TERM HUP; . ./", options.figure, kScript);
-  const absl::StatusOr<pid_t> pid = StartChild(
-      {.command = {"sh", "-c", commands}, .folder = options.out, .output = "", .own_group = true});
-  if (!pid.ok()) return absl::FailedPreconditionError(pid.status().message());
+// An interruption ends the package and every program that it has started; its jobs continue.
+absl::StatusOr<int> RunPackage(const Options& options, const Terminal& terminal) {
+  const absl::StatusOr<pid_t> pid =
+      StartChild({.command = Command(options), .folder = "", .output = "", .own_group = true});
+  if (!pid.ok()) {
+    return absl::FailedPreconditionError(
+        absl::StrCat("figures need Python, but ", pid.status().message(),
+                     ": install the packages python3-ballpiston and python3-matplotlib"));
+  }
   const Interrupts::Scope scope(terminal.interrupts, [&] {
     kill(-*pid, SIGINT);
     WaitForChild(*pid).IgnoreError();
@@ -164,37 +114,16 @@ absl::StatusOr<int> RunScript(const Options& options, const Terminal& terminal) 
   return WaitForChild(*pid);
 }
 
-// NAME.csv and NAME-data.csv are files of the figure NAME, unless another figure has a longer name
-// with which the file's name begins.
-bool IsFileOf(const std::string& file, const std::string& figure) {
-  const auto begins_with = [&file](const std::string& name) {
-    return absl::StartsWith(file, name + ".") || absl::StartsWith(file, name + "-");
-  };
-  const std::vector<std::string> names = FigureNames();
-  return begins_with(figure) && std::none_of(names.begin(), names.end(), [&](const auto& other) {
-           return other.size() > figure.size() && begins_with(other);
-         });
-}
-
-// The paths of the figure's files, in order.
-void PrintFiles(const fs::path& folder, const std::string& figure, const Terminal& terminal) {
-  std::set<fs::path> files;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (IsFileOf(entry.path().filename(), figure)) files.insert(entry);
-  }
-  for (const fs::path& file : files) terminal.out << file.string() << '\n';
-}
-
 }  // namespace
 
+// The modules of the package's folder; names with _ are its own.
 std::vector<std::string> FigureNames() {
   std::set<std::string> names;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(FiguresFolder(), error)) {
-    if (entry.path().extension() == kPicture &&
-        fs::exists(fs::path(entry).replace_extension(kScript))) {
-      names.insert(entry.path().stem());
+    const std::string stem = entry.path().stem();
+    if (entry.path().extension() == ".py" && stem.front() != '_') {
+      names.insert(absl::StrReplaceAll(stem, {{"_", "-"}}));
     }
   }
   return {names.begin(), names.end()};
@@ -203,20 +132,11 @@ std::vector<std::string> FigureNames() {
 VerbResult Figure(const Options& options, Terminal& terminal) {
   if (options.list) return ListFigures(terminal);
   if (absl::Status bad = CheckName(options); !bad.ok()) return bad;
-  const fs::path folder = options.out;
-  const std::set<std::string> names = VariablesOf(ScriptFor(folder, options.figure + kScript));
-  if (absl::Status bad = CheckVariables(options, names); !bad.ok()) return bad;
-  if (absl::Status status = ProvideScripts(folder, options.figure, terminal); !status.ok()) {
-    return status;
-  }
-  if (!options.edit) {
-    SetEnvironment(options, names);
-    const absl::StatusOr<int> status = RunScript(options, terminal);
-    if (!status.ok()) return status.status();
-    if (*status != 0) return ExitCodeOf(*status);
-  }
-  PrintFiles(folder, options.figure, terminal);
-  return ExitCode::kDone;
+  SetEnvironment(options);
+  terminal.out.flush();
+  const absl::StatusOr<int> status = RunPackage(options, terminal);
+  if (!status.ok()) return status.status();
+  return ExitCodeOf(*status);
 }
 
 }  // namespace ballpiston::client

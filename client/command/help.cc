@@ -60,7 +60,8 @@ VerbResult Help(const Options& options, Terminal& terminal) {
   } else if (options.page == PageFormat::kMarkdown) {
     terminal.out << MarkdownReference();
   } else {
-    terminal.out << (options.page == PageFormat::kMan ? ManPage(*verb) : TextPage(*verb));
+    const bool is_man = options.page == PageFormat::kMan;
+    terminal.out << (is_man ? ManPage(*verb) : options.all ? TextPage(*verb) : ShortPage(*verb));
   }
   return ExitCode::kDone;
 }

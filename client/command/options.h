@@ -46,7 +46,7 @@ struct Options {
   std::string figure, out;
   std::string effort = "default";  // of a figure: quick, default or full
   bool list = false, edit = false;
-  std::map<std::string, std::string> variables;  // of the figure's script
+  std::map<std::string, std::string> variables;  // of a figure
 
   int64_t port = 0;  // of the page; 0: any
 
@@ -55,6 +55,7 @@ struct Options {
   bool quiet = false, verbose = false;
   std::vector<std::string> words;  // of help and completion
   PageFormat page = PageFormat::kText;
+  bool all = false;  // of help: every flag
   Completion completion = Completion::kBash;
 
   std::set<std::string> given;  // names of the flags on the command line: --rho

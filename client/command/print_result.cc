@@ -6,6 +6,8 @@
 #include "absl/strings/str_cat.h"
 #include "client/command/follow_job.h"
 #include "client/command/hint.h"
+#include "client/command/python.h"
+#include "client/library/child_process.h"
 #include "client/output/new_file.h"
 #include "client/output/number_text.h"
 #include "client/output/result_file.h"
@@ -34,6 +36,21 @@ void AddPoint(const v1::PointResult& point, ResultWriter& writer, std::ostream& 
   WarnOfEscapes(point, err);
 }
 
+// Replaces the content of the unfinished file, a result in JSON, by NumPy arrays.
+absl::Status ToArrays(NewFile& file, const std::string& path) {
+  if (absl::Status written = file.Flush(); !written.ok()) return written;
+  const std::string part = file.part().string();
+  if (part.empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--save: ", path, " is not a regular file, as .npz needs it"));
+  }
+  const auto status = RunChild({.command = PythonCommand({"-m", "ballpiston.to_arrays", part})});
+  if (!status.ok()) return status.status();
+  if (*status == 0) return absl::OkStatus();
+  return absl::InternalError(
+      absl::StrCat("--save: ", path, " is not written: Python ended with exit status ", *status));
+}
+
 // Where a result goes: standard output, or the file of --save.
 class Destination {
  public:
@@ -46,6 +63,7 @@ class Destination {
     }
     const FileFormat format = *FormatOfFile(options.save, options.format);
     path_ = options.save;
+    is_npz_ = format.is_npz;
     file_.emplace("--save", path_);
     writer_ = NewResultFileWriter(format, file_->out());
     view_ = ViewFor(format);
@@ -58,6 +76,8 @@ class Destination {
   absl::Status Finish() {
     writer_->End();
     if (file_) {
+      const absl::Status converted = is_npz_ ? ToArrays(*file_, path_) : absl::OkStatus();
+      if (!converted.ok()) return converted;
       if (absl::Status kept = file_->Keep(); !kept.ok()) return kept;
       terminal_.out << path_ << '\n';
     }
@@ -68,6 +88,7 @@ class Destination {
  private:
   Terminal& terminal_;
   std::string path_;
+  bool is_npz_ = false;
   std::optional<NewFile> file_;
   std::unique_ptr<ResultWriter> writer_;
   v1::ListResultsRequest::View view_;
@@ -103,7 +124,11 @@ VerbResult End(const v1::EnsembleJob& job, Destination& destination, Terminal& t
 absl::Status CheckSave(const Options& options) {
   if (options.save.empty()) return absl::OkStatus();
   const auto format = FormatOfFile(options.save, options.format);
-  return format.ok() ? CheckNewFile("--save", options.save) : format.status();
+  if (!format.ok()) return format.status();
+  if (absl::Status bad = CheckNewFile("--save", options.save); !bad.ok()) return bad;
+  if (!format->is_npz) return absl::OkStatus();
+  return CheckPython("--save " + options.save, {"ballpiston", "numpy"},
+                     "python3-ballpiston and python3-numpy");
 }
 
 VerbResult PrintResult(const Connection& connection, const std::string& name,

@@ -25,6 +25,7 @@ struct Page {
   std::string name, summary, synopsis, description;
   std::vector<Section> sections;
   std::vector<std::string> examples;
+  std::string more = "";  // the last line
 };
 
 std::string Described(const std::string& text, const Value& value, const std::string& variable) {
@@ -79,6 +80,37 @@ Page PageOf(const Verb& verb) {
   for (const std::string& example : verb.examples) {
     page.examples.push_back(absl::StrCat(kProgram, " ", example));
   }
+  return page;
+}
+
+// The text without what follows a semicolon.
+std::string Gist(const std::string& text) { return text.substr(0, text.find(';')); }
+
+Section ShortSectionOf(const FlagGroup& group) {
+  Section section = SectionOf(group);
+  for (size_t i = 0; i < group.flags.size(); ++i) {
+    const Flag& flag = group.flags[i];
+    section.entries[i].text = Described(Gist(flag.text), flag.value, "");
+  }
+  return section;
+}
+
+Page ShortPageOf(const Verb& verb) {
+  Page page = PageOf(verb);
+  page.sections.resize(verb.arguments.empty() ? 0 : 1);
+  std::vector<std::string> others;
+  for (const FlagGroup* group : verb.groups) {
+    if (group->is_everyday) {
+      page.sections.push_back(ShortSectionOf(*group));
+    } else {
+      for (const Flag& flag : group->flags) others.push_back(LongName(flag));
+    }
+  }
+  std::erase(others, "");
+  page.description = "";
+  page.examples.resize(1);
+  page.more = absl::StrCat("Also ", absl::StrJoin(others, " "), "; ", kProgram, " help --all ",
+                           verb.name, " describes every flag");
   return page;
 }
 
@@ -141,6 +173,7 @@ std::string Text(const Page& page) {
   }
   out += "\nExamples:\n";
   for (const std::string& example : page.examples) absl::StrAppend(&out, "  ", example, "\n");
+  if (!page.more.empty()) absl::StrAppend(&out, "\n", Wrapped(page.more, 0, 0), "\n");
   return out;
 }
 
@@ -163,6 +196,10 @@ std::string RoffSection(const Section& section) {
 }  // namespace
 
 std::string TextPage(const Verb* verb) { return Text(PageOf(verb)); }
+
+std::string ShortPage(const Verb* verb) {
+  return verb == nullptr ? TextPage(nullptr) : Text(ShortPageOf(*verb));
+}
 
 std::string GroupPage(const std::string& word) {
   const std::string start = word + " ";

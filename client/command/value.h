@@ -53,7 +53,7 @@ Value Words(std::string name, Store<std::string> store);  // each word
 Value Date(Store<absl::Time> store);
 Value Job(Store<std::string> store);                     // ensembleJobs/ID
 Value RequestId();                                       // a UUID
-Value Variable(std::string name, std::string variable);  // of a figure's script
+Value Variable(std::string name, std::string variable);  // of a figure
 Value Passed(std::string name, std::string flag);        // to ballpistond, with its flag
 
 template <typename T>

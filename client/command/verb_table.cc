@@ -130,7 +130,8 @@ const FlagGroup kCommon = {
       "BALLPISTON_VERBOSE",
       {"quiet"}},
      {"--config", File([](Options&, const std::string&) {}),
-      "config file to read instead of ~/.config/ballpiston/config.toml", "BALLPISTON_CONFIG"}}};
+      "config file to read instead of ~/.config/ballpiston/config.toml", "BALLPISTON_CONFIG"}},
+    /*is_everyday=*/false};
 
 const FlagGroup kServer = {
     "Server",
@@ -151,7 +152,8 @@ const FlagGroup kServer = {
       Text("TOKEN", Security(&ChannelSecurity::token)),
       "your token; there is no flag for it, because all users of a machine can see command lines",
       "BALLPISTON_TOKEN",
-      {"token-file"}}}};
+      {"token-file"}}},
+    /*is_everyday=*/false};
 
 const FlagGroup kGrid = {
     absl::StrCat("Grid (", kListForm, ")"),
@@ -162,10 +164,10 @@ const FlagGroup kGrid = {
       "the piston's energies, 0 to 1/2; optional in energy-relaxation"},
      {"--exponent", Grid(&v1::Grid::mutable_exponent), "n of the outgoing law h^(n), 0 to 1000"},
      {"--cells", GridCells(),
-      "shapes of the gas: N, a chain of N cells, or NxM, a lattice of N columns and M rows; at "
+      "shapes of the gas: N or NxM; a chain of N cells, or a lattice of N columns and M rows; at "
       "most 1e6 cells"},
      {"--temperature", Grid(&v1::Grid::mutable_temperature),
-      "temperatures of a gas in equilibrium, 1e-120 to 1e120, by default 1 (the Boltzmann constant "
+      "temperatures of a gas in equilibrium, by default 1; 1e-120 to 1e120 (the Boltzmann constant "
       "is 1)"},
      {"--hot", Grid(&v1::Grid::mutable_hot), "temperatures of the hot reservoir, 1e-120 to 1e120"},
      {"--cold", Grid(&v1::Grid::mutable_cold),
@@ -197,23 +199,23 @@ const FlagGroup kMethod = {
      {"--model",
       OneOf<Spec::Model>("MODEL", EnumChoices<Spec::Model>(),
                          [](Options& o, Spec::Model model) { o.spec.set_model(model); }),
-      "by default auto, which chooses the cheapest model that gives the estimate"},
+      "by default auto, the cheapest model that gives the estimate"},
      {"--estimate", NameOfEstimate(),
-      "name of the estimate that --tolerance and --model auto refer to; the result prints it "
-      "first; only gas-equilibrium has a choice"},
+      "the estimate of --tolerance and --model auto; the result prints it first; only "
+      "gas-equilibrium has a choice"},
      {"--precision",
       OneOf<Spec::Precision>(
           "PRECISION", EnumChoices<Spec::Precision>(),
           [](Options& o, Spec::Precision precision) { o.spec.set_precision(precision); }),
-      "floating-point precision of the billiard, by default double"},
+      "floating-point precision of the billiard; by default double"},
      {"--verify", Switch([](Options& o, bool verify) { o.spec.set_verify(verify); }),
-      "with --model auto: also simulate the points that have a closed form, and print the exact "
-      "values beside the simulated values"},
+      "also simulate points that have a closed form; with --model auto; the exact values stand "
+      "beside the simulated values"},
      {"--spec", File(To(&Options::spec_file)),
-      "JSON file with the whole specification (- for standard input); it replaces EXPERIMENT and "
-      "all flags of grid, target and method"},
+      "JSON file with the whole specification; - is standard input; it replaces EXPERIMENT and all "
+      "flags of grid, target and method"},
      {"--again", Job(To(&Options::again)),
-      "use the specification of this job, for instance because its results have expired; it "
+      "use the specification of this job; for instance because its results have expired; it "
       "replaces EXPERIMENT and all flags of grid, target and method"}}};
 
 const FlagGroup kJob = {
@@ -227,11 +229,12 @@ const FlagGroup kJob = {
      {"--request-id", RequestId(),
       "idempotency key: a retry with the same UUID returns the original job"},
      {"--priority", Count([](Options& o, int64_t n) { o.create.priority = Clamped(n); }),
-      "-100 to 100, by default 0; the server runs your jobs with a higher priority first"}}};
+      "-100 to 100, by default 0; the server runs your jobs with a higher priority first"}},
+    /*is_everyday=*/false};
 
 const FlagGroup kFormat = {"Output",
                            {{"--format", OneOf("FORMAT", Formats(), To(&Options::format)),
-                             "format of the result on standard output, by default table"}}};
+                             "format on standard output; by default table"}}};
 
 const FlagGroup kStatusFormat = {
     "Output",
@@ -241,15 +244,15 @@ const FlagGroup kStatusFormat = {
 const FlagGroup kResultFormat = {
     "Output",
     {{"--format", OneOf("FORMAT", ResultFormats(), To(&Options::format)),
-      "format of the result on standard output, by default table; csv has the estimates, "
+      "format on standard output; by default table; csv has the estimates, "
       "csv-histograms the bins of all histograms, csv-curves the points of all curves"}}};
 
 const FlagGroup kSave = {
     "File",
     {{"--save", File(To(&Options::save)),
-      "write the result to this file, with its specification, seed and versions, and print the "
-      "file's path. The ending selects the format: .json has everything, .npz NumPy arrays, .csv "
-      "the estimates, or what --format selects"}}};
+      "write the result to this file: .json, .csv or .npz; it has the specification, the seed and "
+      "the versions; prints the file's path. .json has everything, .npz NumPy arrays (this needs "
+      "the Python package), .csv the estimates, or what --format selects"}}};
 
 const FlagGroup kProgress = {
     "Progress",
@@ -262,7 +265,8 @@ const FlagGroup kProgress = {
             To(&Options::progress)),
       "progress on standard error; by default auto, which shows a bar if standard error is a "
       "terminal, else nothing",
-      "BALLPISTON_PROGRESS"}}};
+      "BALLPISTON_PROGRESS"}},
+    /*is_everyday=*/false};
 
 const FlagGroup kClosedForms = {
     kListForm,
@@ -323,7 +327,7 @@ const FlagGroup kPin = {
 
 const FlagGroup kFigure = {
     "Figure",
-    {{"--out", File(To(&Options::out)), "folder for data, scripts and picture"},
+    {{"--out", File(To(&Options::out)), "folder for data and pictures"},
      {"--list", Switch(To(&Options::list)), "print the figures' names; draw nothing"},
      {"--quick",
       Effort("quick"),
@@ -336,10 +340,11 @@ const FlagGroup kFigure = {
       "",
       {"quick"}},
      {"--edit", Switch(To(&Options::edit)),
-      "copy the figure's scripts to the --out folder, so that you can edit them; draw nothing"}}};
+      "copy the figure's Python module to the --out folder, so that you can edit it; draw "
+      "nothing"}}};
 
 const FlagGroup kVariables = {
-    "Variables of a figure's script",
+    "Variables of a figure",
     {{"--rho", Variable("X", "rho"), "disc radius"},
      {"--delta", Variable("LIST", "delta"), "the piston's penetrations"},
      {"--relaxation-delta", Variable("LIST", "relaxation_delta"),
@@ -388,7 +393,8 @@ const FlagGroup kToken = {
 
 const FlagGroup kPage = {
     "Page",
-    {{"--format",
+    {{"--all", Switch(To(&Options::all)), "describe every flag of the verb"},
+     {"--format",
       OneOf("FORMAT",
             Choices<PageFormat>{{"text", PageFormat::kText},
                                 {"man", PageFormat::kMan},
@@ -602,9 +608,11 @@ std::vector<Verb> AllVerbs() {
          "jq -r 'select(.event == \"ball_piston\") | [.time, .ball, .ball_energy] | @tsv'"},
         &Trace}});
   append({{"figure",
-           "draw a figure: data, gnuplot script and SVG",
+           "draw a figure: data, SVG and PNG",
            "After an interruption, the same command resumes the jobs of the figure. If the --out "
-           "folder already contains scripts of the figure, the command uses them unchanged.",
+           "folder already contains the figure's module, the command uses it unchanged. Figures "
+           "need Python with the package ballpiston and matplotlib: python3-ballpiston, "
+           "python3-matplotlib.",
            {{Text("NAME", To(&Options::figure), Offer::kFigure),
              "one of the names that --list prints", Argument::kOptional}},
            With({&kFigure, &kVariables, &kProgress, &kServer}, {}),
@@ -633,7 +641,7 @@ std::vector<Verb> AllVerbs() {
            "",
            {{Words("VERB", kWords), "words of the verb, such as: server start", Argument::kAny}},
            With({&kPage}, {}),
-           {"help run", "help --format man --out man1"},
+           {"help run", "help --all run", "help --format man --out man1"},
            &Help},
           {"completion",
            "print a script that completes command lines in a shell",
@@ -685,7 +693,8 @@ const std::vector<Remark>& Files() {
        "file, and flags override both. XDG_CONFIG_HOME replaces ~/.config"},
       {"~/.local/state/ballpiston",
        "jobs, log and socket of the private server. XDG_STATE_HOME replaces ~/.local/state. "
-       "BALLPISTON_SERVER_PROGRAM is the ballpistond to start"}};
+       "BALLPISTON_SERVER_PROGRAM is the ballpistond to start"},
+      {"python3", "draws figures. BALLPISTON_PYTHON is another Python to start"}};
   return *files;
 }
 

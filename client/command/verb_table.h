@@ -27,6 +27,7 @@ struct Flag {
 struct FlagGroup {
   std::string title;
   std::vector<Flag> flags;
+  bool is_everyday = true;  // else the short help only names the flags
 };
 
 struct Argument {

@@ -16,10 +16,10 @@ namespace ballpiston::client {
 
 struct ChildProcess {
   std::vector<std::string> command;  // the program's path, or its name in PATH; then the arguments
-  std::string folder;                // the working folder; empty: this program's
-  std::string output;      // standard output and error are appended to this file; empty: inherited
-  bool detached = false;   // runs in its own session, so that Ctrl-C here does not reach it
-  bool own_group = false;  // runs in its own group, so that a signal also reaches its children
+  std::string folder = {};           // the working folder; empty: this program's
+  std::string output = {};  // standard output and error are appended to this file; empty: inherited
+  bool detached = false;    // runs in its own session, so that Ctrl-C here does not reach it
+  bool own_group = false;   // runs in its own group, so that a signal also reaches its children
 };
 
 // The path that a program has if it is in this program's folder. The file need not exist.

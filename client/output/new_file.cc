@@ -95,11 +95,16 @@ NewFile::~NewFile() {
   AllUnfinished().parts.erase(part_);
 }
 
-absl::Status NewFile::Keep() {
+absl::Status NewFile::Flush() {
   if (open_error_ != 0) return CannotWrite(flag_, path_, std::strerror(open_error_));
   out_.flush();
   if (buffer_.error() != 0) return CannotWrite(flag_, path_, std::strerror(buffer_.error()));
   if (!out_) return CannotWrite(flag_, path_, "its content could not be made");
+  return absl::OkStatus();
+}
+
+absl::Status NewFile::Keep() {
+  if (absl::Status written = Flush(); !written.ok()) return written;
   if (part_.empty()) return absl::OkStatus();
   const std::lock_guard lock(AllUnfinished().mutex);
   std::error_code error;

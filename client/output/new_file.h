@@ -29,8 +29,13 @@ class NewFile {
 
   std::ostream& out() { return out_; }
 
-  // Once, after everything is written. INVALID_ARGUMENT with flag, path and reason if the file
-  // cannot be written, for instance because the disk is full.
+  // The file until Keep. Empty for a pipe or a device.
+  const std::filesystem::path& part() const { return part_; }
+
+  // Everything is in the file. INVALID_ARGUMENT with flag, path and reason if the file cannot be
+  // written, for instance because the disk is full.
+  absl::Status Flush();
+  // Once, after everything is written. Errors as Flush.
   absl::Status Keep();
 
  private:
@@ -38,7 +43,7 @@ class NewFile {
 
   const std::string flag_, path_;
   std::filesystem::path file_;  // `path_` without symbolic links
-  std::filesystem::path part_;  // hidden beside it, until Keep; empty for a pipe or a device
+  std::filesystem::path part_;  // hidden beside it, until Keep
   int descriptor_;
   int open_error_ = 0;  // errno
   FileDescriptorBuffer buffer_;

@@ -7,7 +7,6 @@
 #include "absl/strings/str_cat.h"
 #include "client/library/quoted.h"
 #include "client/output/json.h"
-#include "client/output/npz_writer.h"
 
 namespace ballpiston::client {
 namespace {
@@ -52,7 +51,6 @@ absl::StatusOr<FileFormat> FormatOfFile(const std::string& path, Format asked) {
 }
 
 std::unique_ptr<ResultWriter> NewResultFileWriter(const FileFormat& format, std::ostream& out) {
-  if (format.is_npz) return NewNpzWriter(out);
   if (IsCsv(format.format)) return std::make_unique<CommentedCsvWriter>(format.format, out);
   return NewResultWriter(format.format, out);
 }

@@ -4,7 +4,7 @@
 //   .json  file::v1::SavedResult: everything; ballpiston.load in Python reads it
 //   .csv   estimates, or with --format csv-histograms or csv-curves these; the first lines begin
 //          with # and hold the job and the specification
-//   .npz   NumPy arrays (npz_writer.h)
+//   .npz   NumPy arrays, which the Python package makes of the first format (arrays.py)
 #pragma once
 
 #include <memory>
@@ -18,8 +18,8 @@
 namespace ballpiston::client {
 
 struct FileFormat {
-  Format format = Format::kJson;  // unless it is an archive of arrays
-  bool is_npz = false;
+  Format format = Format::kJson;  // as the writer below writes it
+  bool is_npz = false;            // then the Python package converts it
 };
 
 // The format of the file. `asked`: the value of --format; Format::kTable if it was not given.

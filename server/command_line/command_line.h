@@ -6,7 +6,7 @@
 
 #include "absl/status/statusor.h"
 #include "server/ballpiston_server.h"
-#include "server/observability/log.h"
+#include "server/status/log.h"
 
 namespace ballpiston::server {
 

@@ -7,8 +7,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/time/clock.h"
-#include "server/observability/log.h"
 #include "server/sha256.h"
+#include "server/status/log.h"
 
 namespace ballpiston::server {
 namespace {

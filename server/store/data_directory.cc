@@ -20,7 +20,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "server/observability/log.h"
+#include "server/status/log.h"
 #include "server/store/folder_sync.h"
 
 namespace ballpiston::server {

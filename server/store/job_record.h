@@ -43,7 +43,7 @@ struct JobRecord {
   int32_t priority = 0;   // among the principal's; higher first
   bool pinned = false;    // its results do not expire
   StoredSpec spec;        // its grid is empty if it was not read
-  std::string question;   // hash of the question (jobs/acceptance.h); empty: always compute
+  std::string question;   // hash of the question (book/acceptance.h); empty: always compute
   JobState state = v1::EnsembleJob::QUEUED;
   absl::Time create_time;
   std::optional<absl::Time> start_time;
@@ -54,7 +54,7 @@ struct JobRecord {
   int64_t restarts = 0;           // how often another engine restarted the job
   std::string cancel_request_id;  // of the cancellation, or empty
   int64_t points = 0;
-  JobNumbers numbers;  // of an ended job; of an active job memory has them (jobs/job.h)
+  JobNumbers numbers;  // of an ended job; of an active job memory has them (book/job.h)
 };
 
 }  // namespace ballpiston::server

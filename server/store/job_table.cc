@@ -1,6 +1,12 @@
 #include "server/store/job_table.h"
 
+#include <type_traits>
+#include <utility>
+
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/string_view.h"
 
 namespace ballpiston::server {
 namespace {
@@ -13,26 +19,74 @@ static_assert(v1::EnsembleJob::QUEUED == 1 && v1::EnsembleJob::RUNNING == 2 &&
 // Jobs whose results may expire. An index has this condition.
 constexpr char kExpirable[] = "end_time IS NOT NULL AND expired_time IS NULL AND pinned = 0";
 
-// The grid is an empty value if it is left out.
-std::string SelectJobs(Grid grid, const std::string& condition) {
-  return absl::StrCat(
-      "SELECT sequence, id, principal, priority, pinned, spec, question, state, create_time,"
-      " start_time, end_time, expired_time, error, engine_version, restarts, cancel_request_id,"
-      " points, points_done, samples, work, bytes, ",
-      grid == Grid::kIncluded ? "grid" : "x''", " FROM jobs WHERE ", condition);
+// The columns of the table, one a line: name, type, and field of the row. All statements that make
+// the table or handle whole rows are made of this list. The grid is the last column, because SQLite
+// reads a row up to the columns that are asked for.
+template <typename Record, typename Visit>
+void VisitColumns(Record& job, Visit visit) {
+  visit("sequence", "INTEGER PRIMARY KEY AUTOINCREMENT", job.sequence);
+  visit("id", "TEXT NOT NULL UNIQUE", job.id);
+  visit("principal", "TEXT NOT NULL", job.principal);
+  visit("priority", "INTEGER NOT NULL", job.priority);
+  visit("pinned", "INTEGER NOT NULL", job.pinned);
+  visit("bytes", "INTEGER NOT NULL", job.numbers.bytes);
+  visit("spec", "BLOB NOT NULL", job.spec.rest);
+  visit("question", "BLOB NOT NULL", job.question);
+  visit("state", "INTEGER NOT NULL", job.state);
+  visit("create_time", "INTEGER NOT NULL", job.create_time);
+  visit("start_time", "INTEGER", job.start_time);
+  visit("end_time", "INTEGER", job.end_time);
+  visit("expired_time", "INTEGER", job.expired_time);
+  visit("error", "BLOB NOT NULL", job.error);
+  visit("engine_version", "TEXT NOT NULL", job.engine_version);
+  visit("restarts", "INTEGER NOT NULL", job.restarts);
+  visit("cancel_request_id", "TEXT NOT NULL", job.cancel_request_id);
+  visit("points", "INTEGER NOT NULL", job.points);
+  visit("points_done", "INTEGER NOT NULL", job.numbers.points_done);
+  visit("samples", "REAL NOT NULL", job.numbers.samples);
+  visit("work", "REAL NOT NULL", job.numbers.work);
+  visit("grid", "BLOB NOT NULL", job.spec.grid);
 }
 
-// The columns of SelectJobs.
+// What `text_of` makes of each column's name and type, with commas.
+template <typename TextOf>
+std::string EachColumn(TextOf text_of) {
+  std::vector<std::string> texts;
+  const JobRecord any;
+  VisitColumns(any, [&](absl::string_view name, absl::string_view type, const auto&) {
+    texts.push_back(text_of(name, type));
+  });
+  return absl::StrJoin(texts, ", ");
+}
+
+std::string ColumnNames(Grid grid) {
+  return EachColumn([grid](absl::string_view name, absl::string_view) {
+    const bool is_left_out = name == "grid" && grid == Grid::kLeftOut;
+    return std::string(is_left_out ? "x''" : name);
+  });
+}
+
+std::string SelectJobs(Grid grid, const std::string& condition) {
+  return absl::StrCat("SELECT ", ColumnNames(grid), " FROM jobs WHERE ", condition);
+}
+
+// A row of SelectJobs.
 JobRecord RecordOf(const Query& row) {
   JobRecord job;
-  JobNumbers& numbers = job.numbers;
-  row.ReadInto(job.sequence, job.id, job.principal, job.priority, job.pinned, job.spec.rest,
-               job.question, job.state, job.create_time, job.start_time, job.end_time,
-               job.expired_time, job.error, job.engine_version, job.restarts, job.cancel_request_id,
-               job.points, numbers.points_done, numbers.samples, numbers.work, numbers.bytes,
-               job.spec.grid);
-  numbers.points_computed = static_cast<double>(numbers.points_done);
+  int column = 0;
+  VisitColumns(job, [&](absl::string_view, absl::string_view, auto& field) {
+    field = row.Get<std::remove_reference_t<decltype(field)>>(column++);
+  });
+  job.numbers.points_computed = static_cast<double>(job.numbers.points_done);
   return job;
+}
+
+template <typename Value>
+void BindColumn(Query& query, absl::string_view type, const Value& value) {
+  if constexpr (std::is_same_v<Value, std::string>) {
+    if (absl::StartsWith(type, "BLOB")) return query.Bind(Blob{value});
+  }
+  query.Bind(value);
 }
 
 template <typename... Values>
@@ -72,14 +126,20 @@ std::vector<JobSize> Sizes(Database& database, const char* condition, absl::Time
 
 }  // namespace
 
+std::string JobColumns() {
+  return EachColumn(
+      [](absl::string_view name, absl::string_view type) { return absl::StrCat(name, " ", type); });
+}
+
 void InsertJob(Database& database, JobRecord& record) {
-  database.Run(
-      "INSERT INTO jobs (id, principal, priority, spec, question, state, create_time, error,"
-      " engine_version, restarts, points, points_done, samples, work, pinned, bytes, grid)"
-      " VALUES (?, ?, ?, ?, ?, ?, ?, x'', ?, 0, ?, 0, 0, 0, 0, ?, ?)",
-      record.id, record.principal, record.priority, Blob{record.spec.rest}, Blob{record.question},
-      record.state, record.create_time, record.engine_version, record.points, record.numbers.bytes,
-      Blob{record.spec.grid});
+  const std::string marks = EachColumn([](absl::string_view name, absl::string_view) {
+    return std::string(name == "sequence" ? "NULL" : "?");
+  });
+  Query query = database.Select(absl::StrCat("INSERT INTO jobs VALUES (", marks, ")"));
+  VisitColumns(record, [&](absl::string_view name, absl::string_view type, const auto& field) {
+    if (name != "sequence") BindColumn(query, type, field);
+  });
+  query.Next();
   record.sequence = database.LastInsertedRow();
 }
 
@@ -167,7 +227,7 @@ bool BeginJob(Database& database, int64_t sequence, absl::Time now) {
 
 bool BeginCancellation(Database& database, int64_t sequence, const std::string& request_id) {
   return Update(database,
-                "UPDATE jobs SET state = ?, cancel_request_id = nullif(?, '')"
+                "UPDATE jobs SET state = ?, cancel_request_id = ?"
                 " WHERE sequence = ? AND state IN (?, ?)",
                 v1::EnsembleJob::CANCELLING, request_id, sequence, v1::EnsembleJob::QUEUED,
                 v1::EnsembleJob::RUNNING);

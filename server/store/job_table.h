@@ -28,6 +28,9 @@ namespace ballpiston::server {
 // Whether a job is read with the grid of its specification, which may be large.
 enum class Grid { kLeftOut, kIncluded };
 
+// The columns of the table `jobs` and their types, for CREATE TABLE.
+std::string JobColumns();
+
 // Sets record.sequence.
 void InsertJob(Database& database, JobRecord& record);
 

@@ -4,6 +4,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "server/store/job_table.h"
 
 namespace ballpiston::server {
 namespace {
@@ -12,31 +13,8 @@ namespace {
 // opening it reads is checked.
 constexpr int64_t kFullCheckBytes = int64_t{256} << 20;
 
+// Beside the table of jobs (job_table.h).
 constexpr char kTables[] = R"sql(
-CREATE TABLE jobs (
-  sequence INTEGER PRIMARY KEY AUTOINCREMENT,
-  id TEXT NOT NULL UNIQUE,
-  principal TEXT NOT NULL,
-  priority INTEGER NOT NULL,
-  pinned INTEGER NOT NULL,
-  bytes INTEGER NOT NULL,
-  spec BLOB NOT NULL,
-  question BLOB NOT NULL,
-  state INTEGER NOT NULL,
-  create_time INTEGER NOT NULL,
-  start_time INTEGER,
-  end_time INTEGER,
-  expired_time INTEGER,
-  error BLOB NOT NULL,
-  engine_version TEXT NOT NULL,
-  restarts INTEGER NOT NULL,
-  cancel_request_id TEXT,
-  points INTEGER NOT NULL,
-  points_done INTEGER NOT NULL,
-  samples REAL NOT NULL,
-  work REAL NOT NULL,
-  grid BLOB NOT NULL  -- last, because SQLite reads a row up to the columns that are asked for
-) STRICT;
 CREATE INDEX jobs_by_state ON jobs (state, principal, points);
 CREATE INDEX jobs_by_principal ON jobs (principal, sequence, bytes, state);
 CREATE INDEX jobs_that_may_expire ON jobs (end_time, bytes)
@@ -179,8 +157,8 @@ absl::Status CheckFile(const std::string& path, const std::string& vfs) {
 
 void MakeTables(Database& database) {
   if (database.Integer("PRAGMA user_version") == kSchemaVersion) return;
-  database.Execute(absl::StrCat("BEGIN IMMEDIATE;", kTables,
-                                "PRAGMA application_id = ", kApplicationId,
+  database.Execute(absl::StrCat("BEGIN IMMEDIATE; CREATE TABLE jobs (", JobColumns(), ") STRICT;",
+                                kTables, "PRAGMA application_id = ", kApplicationId,
                                 "; PRAGMA user_version = ", kSchemaVersion, "; COMMIT;"));
   database.Rollback();  // after an error
 }

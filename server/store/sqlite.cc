@@ -73,6 +73,11 @@ void Query::Bind(double value) {
   if (statement_) sqlite3_bind_double(statement_.get(), next_parameter_++, value);
 }
 
+void Query::Bind(std::optional<absl::Time> time) {
+  if (time) return Bind(*time);
+  if (statement_) sqlite3_bind_null(statement_.get(), next_parameter_++);
+}
+
 void Query::Bind(absl::string_view text) {
   if (!statement_) return;
   sqlite3_bind_text64(statement_.get(), next_parameter_++, text.data(), text.size(),

@@ -62,6 +62,7 @@ class Query {
   void Bind(absl::string_view text);
   void Bind(Blob blob);
   void Bind(absl::Time time) { BindInteger(absl::ToUnixNanos(time)); }
+  void Bind(std::optional<absl::Time> time);  // empty: NULL
 
   // Goes to the first or the next row. False: there are no more rows, or an error.
   bool Next();

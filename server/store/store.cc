@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "server/observability/failpoint.h"
+#include "server/status/failpoint.h"
 #include "server/store/schema.h"
 #include "server/store/sweeper.h"
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/observability/failpoint.h"
-#include "server/observability/log.h"
+#include "server/status/failpoint.h"
+#include "server/status/log.h"
 #include "server/store/schema.h"
 #include "server/store/store.h"
 #include "server/store/sweeper.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "absl/strings/str_cat.h"
-#include "server/observability/failpoint.h"
+#include "server/status/failpoint.h"
 
 namespace ballpiston::server {
 namespace {

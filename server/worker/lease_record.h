@@ -15,7 +15,7 @@
 #include "absl/status/statusor.h"
 #include "ballpiston/storage/records.pb.h"
 #include "core/ensemble/ensemble_spec.h"
-#include "server/scheduling/lease.h"
+#include "server/compute/lease.h"
 
 namespace ballpiston::server {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/ensemble/chunk_fold.h"
-#include "server/scheduling/lease.h"
+#include "server/compute/lease.h"
 
 namespace ballpiston::server {
 

@@ -10,7 +10,7 @@
 #include "absl/functional/function_ref.h"
 #include "absl/strings/str_cat.h"
 #include "core/ensemble/experiment_kind.h"
-#include "server/observability/failpoint.h"
+#include "server/status/failpoint.h"
 #include "server/worker/chunk_file.h"
 #include "server/worker/crash_mark.h"
 #include "server/worker/lease_runner.h"

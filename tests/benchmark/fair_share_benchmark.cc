@@ -3,7 +3,7 @@
 #include <string>
 
 #include "benchmark/benchmark.h"
-#include "server/scheduling/fair_share.h"
+#include "server/compute/fair_share.h"
 
 namespace ballpiston::server {
 namespace {

@@ -30,10 +30,10 @@
 #include "absl/strings/str_format.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
+#include "server/book/job_book.h"
+#include "server/compute/scheduler.h"
 #include "server/convert/spec.h"
-#include "server/jobs/job_book.h"
 #include "server/processor_time.h"
-#include "server/scheduling/scheduler.h"
 #include "server/store/store.h"
 #include "tests/support/temporary_folder.h"
 

@@ -20,7 +20,9 @@ Words Joined(std::initializer_list<Words> parts) {
 
 ProcessOptions ClientCommand(const TemporaryFolder& home, Words words) {
   words.insert(words.begin(), ClientProgram());
-  return {.command = std::move(words), .environment = CleanEnvironment(home)};
+  ProcessOptions options = {.command = std::move(words), .environment = CleanEnvironment(home)};
+  options.environment["BALLPISTON_PYTHON"] = BALLPISTON_PYTHON;
+  return options;
 }
 
 ProcessOptions TestServer::Command(Words words) const {

@@ -62,6 +62,17 @@ TEST_F(Save, AnUnusableFileIsRejectedBeforeAJobIsMade) {
   EXPECT_EQ(Length(At(server.Json({"list"}), "jobs")), 0);
 }
 
+TEST_F(Save, ArraysNeedThePythonPackage) {
+  const TestServer server;
+  ProcessOptions run = server.Command(Joined({{"run"}, kQuickQuestion, {"--save", File("a.npz")}}));
+  run.environment["BALLPISTON_PYTHON"] = "false";
+  const ProcessResult refused = RunProgram(run);
+  EXPECT_THAT(refused, ExitsWith(4));
+  EXPECT_THAT(refused.err, HasSubstr("install python3-ballpiston and python3-numpy"));
+  EXPECT_EQ(Length(At(server.Json({"list"}), "jobs")), 0);
+  EXPECT_EQ(NamesIn(folder_.path()), std::vector<std::string>());
+}
+
 // A pipeline takes a file that exists for a complete one.
 TEST_F(Save, RunWritesNoFileIfTheJobFails) {
   const TestServer server;

@@ -1,8 +1,8 @@
 // CreateEnsembleJob: all checks before a job is made.
 #include "absl/strings/ascii.h"
 #include "ballpiston/v1/ensemble.pb.h"
-#include "server/api/request_check.h"
-#include "server/jobs/acceptance.h"
+#include "server/book/acceptance.h"
+#include "server/rpc/request_check.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"
 

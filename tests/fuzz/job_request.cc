@@ -1,8 +1,8 @@
 // Get, Cancel, Delete and Watch: a job's name, and the id of a cancellation.
 #include "ballpiston/v1/ensemble.pb.h"
-#include "server/api/request_check.h"
+#include "server/book/job_name.h"
 #include "server/convert/errors.h"
-#include "server/jobs/job_name.h"
+#include "server/rpc/request_check.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"
 

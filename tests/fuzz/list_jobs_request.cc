@@ -1,7 +1,7 @@
 // ListEnsembleJobs: sizes and tokens of pages, filters.
 #include "absl/time/time.h"
 #include "ballpiston/v1/ensemble.pb.h"
-#include "server/api/request_check.h"
+#include "server/rpc/request_check.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"
 

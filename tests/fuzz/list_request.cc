@@ -1,7 +1,7 @@
 // ListResults: names, sizes and tokens of pages.
 #include "ballpiston/v1/ensemble.pb.h"
-#include "server/api/request_check.h"
-#include "server/jobs/job_name.h"
+#include "server/book/job_name.h"
+#include "server/rpc/request_check.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"
 

@@ -1,7 +1,7 @@
 // A log message with any text of a client stays one well-formed line.
 #include <algorithm>
 
-#include "server/observability/log.h"
+#include "server/status/log.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace ballpiston::fuzz {

@@ -10,7 +10,7 @@
 #include "ballpiston/v1/ensemble.pb.h"
 #include "ballpiston/v1/spec.pb.h"
 #include "core/ensemble/ensemble_spec.h"
-#include "server/api/request_check.h"
+#include "server/rpc/request_check.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace ballpiston::fuzz {

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "absl/time/time.h"
-#include "server/jobs/job_message.h"
+#include "server/book/job_message.h"
 #include "server/store/job_record.h"
 #include "tests/fuzz/fuzz_target.h"
 

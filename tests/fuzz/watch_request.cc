@@ -1,8 +1,8 @@
 // WatchEnsembleJob: a job's name, and a resume token.
 #include "ballpiston/storage/tokens.pb.h"
 #include "ballpiston/v1/ensemble.pb.h"
-#include "server/api/request_check.h"
-#include "server/api/tokens.h"
+#include "server/rpc/request_check.h"
+#include "server/rpc/tokens.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"
 

@@ -43,4 +43,6 @@ expect result.csv ballpiston run conditional-mean-free-time --rho 0.5296 \
   --delta 0.1 --epsilon 0.1 --save "$work/result.csv"
 expect "# ensembleJobs/" head -1 "$work/result.csv"
 expect mean-free-time: ballpiston figure --list
+expect figures/cell.svg env BALLPISTON_PYTHON=/usr/bin/python3 \
+  ballpiston figure cell --out "$work/figures"
 echo "the installed tree works"

@@ -110,7 +110,7 @@ TEST(IncludeRules, DownwardIncludesArePermitted) {
                             "#include <cmath>\n#include \"core/sampling/direction.h\"\n"
                             "#include \"core/geometry/pair_geometry.h\"\n#include <Eigen/Core>\n"),
               IsEmpty());
-  EXPECT_THAT(WrongIncludes("server/jobs/x.cc",
+  EXPECT_THAT(WrongIncludes("server/book/x.cc",
                             "#include <thread>\n#include <sys/stat.h>\n"
                             "#include \"server/store/store.h\"\n"
                             "#include \"core/ensemble/chunk_plan.h\"\n"),
@@ -124,10 +124,10 @@ TEST(IncludeRules, GeometryIncludesNothingAboveIt) {
 
 TEST(IncludeRules, FoldersOfTheServerIncludeInOneDirection) {
   ExpectWrong("server/convert/x.h", "\"server/door/principal.h\"");
-  ExpectWrong("server/convert/x.h", "\"server/scheduling/lease.h\"");
-  ExpectWrong("server/scheduling/x.cc", "\"server/execution/thread_executor.h\"");
-  ExpectWrong("server/store/x.cc", "\"server/jobs/job.h\"");
-  ExpectWrong("server/door/x.cc", "\"server/api/call.h\"");
+  ExpectWrong("server/convert/x.h", "\"server/compute/lease.h\"");
+  ExpectWrong("server/compute/x.cc", "\"server/cluster/slurm_executor.h\"");
+  ExpectWrong("server/store/x.cc", "\"server/book/job.h\"");
+  ExpectWrong("server/door/x.cc", "\"server/rpc/call.h\"");
 }
 
 TEST(IncludeRules, ClosedFormAndSamplingAreSeparate) {
@@ -174,8 +174,8 @@ TEST(IncludeRules, TheClientIncludesOnlyTheProtos) {
 }
 
 TEST(IncludeRules, TheServerDoesNotIncludeTheClient) {
-  ExpectWrong("server/api/x.cc", "\"client/library/client.h\"");
-  ExpectWrong("server/api/x.cc", "\"tests/layout/include_rules.h\"");
+  ExpectWrong("server/rpc/x.cc", "\"client/library/client.h\"");
+  ExpectWrong("server/rpc/x.cc", "\"tests/layout/include_rules.h\"");
 }
 
 TEST(IncludeRules, ToolsIncludeOnlyTheCore) {
@@ -195,7 +195,7 @@ TEST(IncludeRules, OnlyTheirTestsIncludeTheTools) {
   const std::string tool = "\"tools/stability/report.h\"";
   EXPECT_THAT(WrongIncludes("tests/tools/stability/x.cc", "#include " + tool), IsEmpty());
   for (const char* path :
-       {"core/billiard/x.cc", "server/jobs/x.cc", "client/command/x.cc",
+       {"core/billiard/x.cc", "server/book/x.cc", "client/command/x.cc",
         "tools/method_comparison/x.cc", "tests/core/billiard/x.cc", "tests/end_to_end/x.cc"}) {
     ExpectWrong(path, tool);
   }
@@ -205,7 +205,7 @@ TEST(IncludeRules, OnlyTheirTestsIncludeTheTools) {
 TEST(IncludeRules, OneFolderOfTheServerParsesFlags) {
   EXPECT_THAT(WrongIncludes("server/command_line/x.cc", "#include <CLI/CLI.hpp>\n"), IsEmpty());
   ExpectWrong("server/command_line/x.cc", "\"core/ensemble/chunk_plan.h\"");
-  for (const char* path : {"server/api/x.cc", "server/main.cc"}) {
+  for (const char* path : {"server/rpc/x.cc", "server/main.cc"}) {
     ExpectWrong(path, "<CLI/CLI.hpp>");
   }
 }
@@ -216,9 +216,9 @@ TEST(IncludeRules, TheWorkerIncludesNoService) {
                             "#include \"server/worker/lease_record.h\"\n"
                             "#include \"ballpiston/storage/records.pb.h\"\n"),
               IsEmpty());
-  for (const char* include : {"\"ballpiston/v1/spec.pb.h\"", "\"server/convert/spec.h\"",
-                              "\"server/store/store.h\"", "\"server/scheduling/scheduler.h\"",
-                              "<grpcpp/grpcpp.h>", "<sqlite3.h>", "<openssl/sha.h>"}) {
+  for (const char* include :
+       {"\"ballpiston/v1/spec.pb.h\"", "\"server/convert/spec.h\"", "\"server/store/store.h\"",
+        "\"server/compute/scheduler.h\"", "<grpcpp/grpcpp.h>", "<sqlite3.h>", "<openssl/sha.h>"}) {
     ExpectWrong("server/worker/x.cc", include);
   }
 }
@@ -226,7 +226,7 @@ TEST(IncludeRules, TheWorkerIncludesNoService) {
 TEST(IncludeRules, PhysicsAndMessagesMeetInConvertOnly) {
   const std::string both =
       "#include \"core/ensemble/ensemble_spec.h\"\n#include \"ballpiston/v1/spec.pb.h\"\n";
-  EXPECT_THAT(WrongIncludes("server/jobs/x.cc", both), SizeIs(1));
+  EXPECT_THAT(WrongIncludes("server/book/x.cc", both), SizeIs(1));
   EXPECT_THAT(WrongIncludes("server/convert/x.cc", both), IsEmpty());
 }
 

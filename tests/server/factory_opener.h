@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "server/scheduling/point_opener.h"
+#include "server/compute/point_opener.h"
 
 namespace ballpiston::server {
 

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "server/execution/thread_executor.h"
-#include "server/scheduling/point_opener.h"
-#include "server/scheduling/scheduler.h"
+#include "server/compute/point_opener.h"
+#include "server/compute/scheduler.h"
+#include "server/compute/thread_executor.h"
 #include "tests/server/factory_opener.h"
 
 namespace ballpiston::server {

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/api/watch.h"
+#include "server/book/job_name.h"
 #include "server/convert/spec.h"
-#include "server/jobs/job_name.h"
+#include "server/rpc/watch.h"
 #include "server/store/job_record.h"
 #include "tests/server/requests.h"
 

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <utility>
 
-#include "tests/server/scheduling/remote_executor.h"
+#include "tests/server/compute/remote_executor.h"
 
 namespace ballpiston::server {
 namespace {

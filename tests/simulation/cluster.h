@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "server/compute/scheduler.h"
 #include "server/host.h"
-#include "server/scheduling/scheduler.h"
 #include "tests/simulation/machine.h"
 
 namespace ballpiston::server {

@@ -7,10 +7,10 @@
 #include <string>
 
 #include "absl/status/status.h"
-#include "server/execution/thread_executor.h"
-#include "server/jobs/job_book.h"
+#include "server/book/job_book.h"
+#include "server/compute/scheduler.h"
+#include "server/compute/thread_executor.h"
 #include "server/periodic_thread.h"
-#include "server/scheduling/scheduler.h"
 #include "server/store/store.h"
 #include "tests/fault/store/fault_disk.h"
 #include "tests/server/factory_opener.h"

@@ -10,7 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "server/jobs/job_name.h"
+#include "server/book/job_name.h"
 #include "server/store/job_record.h"
 #include "server/store/sweeper.h"
 #include "tests/fault/store/power_cut.h"

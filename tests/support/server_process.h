@@ -41,7 +41,7 @@ class ServerProcess {
   ServerProcess& operator=(const ServerProcess&) = delete;
 
   void Start();  // returns when the server listens; throws std::runtime_error if it ends instead
-  void Spawn(const std::string& failpoint = "");  // NAME:N of server/observability/failpoint.h
+  void Spawn(const std::string& failpoint = "");  // NAME:N of server/status/failpoint.h
   bool AwaitReady();                              // false if the server ended instead
 
   void Signal(int signal) const { process_->Signal(signal); }

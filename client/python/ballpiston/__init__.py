@@ -25,9 +25,6 @@ from ballpiston.errors import (
     FailedPrecondition,
     InvalidArgument,
     InvalidSpecification,
-    JobCancelled,
-    JobFailed,
-    JobNotSucceeded,
     NoPrivateServer,
     NotFound,
     PermissionDenied,
@@ -37,7 +34,7 @@ from ballpiston.errors import (
     Unavailable,
 )
 from ballpiston.histogram import Histogram
-from ballpiston.job import Job
+from ballpiston.job import Job, JobCancelled, JobFailed, JobNotSucceeded
 from ballpiston.plan import Plan
 from ballpiston.point import Estimate, Point
 from ballpiston.result import Result, load

@@ -8,6 +8,8 @@ from collections.abc import Iterable, Iterator
 from types import TracebackType
 from typing import Any
 
+import numpy.typing as npt
+
 from ballpiston.closed_forms import ClosedForms
 from ballpiston.connection import Connection
 from ballpiston.errors import ResourceExhausted
@@ -21,7 +23,7 @@ from ballpiston.settings import address_and_security
 from ballpiston.server_status import ServerStatus, server_status_of
 from ballpiston.specification import question_of, takes_question
 from ballpiston.spelling import from_spelling
-from ballpiston.trace import events_of
+from ballpiston.trace import columns_of, events_of
 from ballpiston.v1 import analytic_pb2, ensemble_pb2, server_pb2, spec_pb2, trace_pb2
 
 _COLLECTION = "ensembleJobs/"
@@ -173,13 +175,13 @@ class Client:
         fresh: bool = False,
         priority: int = 0,
         request_id: str | None = None,
-        progress: bool = True,
+        progress: bool | str = True,
         **question: Any,
     ) -> Result:
         """`submit` and `Job.watch` in one: waits for the job and returns its result.
 
         Args:
-            progress: False shows no bar.
+            progress: as that of `Job.watch`.
             experiment, fresh, priority, request_id: as those of `submit`.
 
         Raises:
@@ -305,17 +307,35 @@ class Client:
             >>> events = client.trace(rho=0.5296, delta=0.2, events=1000)
             >>> pandas.DataFrame(events).groupby("event")["free_time"].mean()
         """
-        request = trace_pb2.TraceOrbitRequest(
-            rho=real_number("rho", rho),
-            delta=real_number("delta", delta),
-            events=whole_number("events", events),
-            seed=whole_number("seed", seed),
+        return events_of(
+            self._connection, _orbit_request(rho, delta, events, seed, cells, temperature)
         )
-        if cells is not None:
-            request.cells = _only_shape(cells)
-        if temperature is not None:
-            request.temperature = real_number("temperature", temperature)
-        return events_of(self._connection, request)
+
+    def trace_arrays(
+        self,
+        *fields: str,
+        rho: float,
+        delta: float,
+        events: float,
+        seed: int = 0,
+        cells: Shapes | None = None,
+        temperature: float | None = None,
+    ) -> dict[str, npt.NDArray[Any]]:
+        """The events of `trace` as arrays, without the start: faster, for long orbits.
+
+        Args:
+            fields: of an event, such as "time", "event", "piston_energy"; NaN where absent.
+            rho, delta, events, seed, cells, temperature: as those of `trace`.
+
+        Raises:
+            ValueError: an event has no such field.
+
+        Example:
+            >>> orbit = client.trace_arrays("event", "free_time", rho=0.5296, delta=0.2, events=1e5)
+            >>> np.nanmean(orbit["free_time"][orbit["event"] == "ball_piston"])
+        """
+        request = _orbit_request(rho, delta, events, seed, cells, temperature)
+        return columns_of(self._connection, request, fields)
 
     def status(self) -> ServerStatus:
         """What the server is doing and what it permits. The first call to a server takes most of a
@@ -344,6 +364,27 @@ class Client:
 
 def _numbers_of(enum: Any, what: str, names: str | Iterable[str]) -> list[int]:
     return [from_spelling(enum, what, n) for n in ([names] if isinstance(names, str) else names)]
+
+
+def _orbit_request(
+    rho: float,
+    delta: float,
+    events: float,
+    seed: int,
+    cells: Shapes | None,
+    temperature: float | None,
+) -> Any:
+    request = trace_pb2.TraceOrbitRequest(
+        rho=real_number("rho", rho),
+        delta=real_number("delta", delta),
+        events=whole_number("events", events),
+        seed=whole_number("seed", seed),
+    )
+    if cells is not None:
+        request.cells = _only_shape(cells)
+    if temperature is not None:
+        request.temperature = real_number("temperature", temperature)
+    return request
 
 
 def _only_shape(cells: Shapes) -> str:

@@ -13,10 +13,6 @@ ValueError. They are raised before anything is sent.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from ballpiston.job import Job
 
 
 class Error(Exception):
@@ -96,18 +92,3 @@ class DeadlineExceeded(Unavailable):
 
 class NoPrivateServer(Unavailable):
     """The private server cannot be started, for instance because no program is installed."""
-
-
-class JobNotSucceeded(Error):
-    """The job that was watched ended without success. Its finished points stay:
-    `error.job.result()`."""
-
-    job: Job
-
-
-class JobFailed(JobNotSucceeded):
-    """The job that was watched has failed; the message says why."""
-
-
-class JobCancelled(JobNotSucceeded):
-    """The job that was watched has been cancelled."""

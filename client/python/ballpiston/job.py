@@ -10,14 +10,7 @@ from typing import Any
 
 from ballpiston.connection import Connection
 from ballpiston.error_details import details_of, error_of
-from ballpiston.errors import (
-    Error,
-    JobCancelled,
-    JobFailed,
-    JobNotSucceeded,
-    ResultsExpired,
-    Unavailable,
-)
+from ballpiston.errors import Error, ResultsExpired, Unavailable
 from ballpiston.progress import Progress, fraction_of, progress_on_screen
 from ballpiston.result import Result
 from ballpiston.spelling import spelling
@@ -26,6 +19,21 @@ from ballpiston.watch import has_ended, watch_job
 
 _PAGE = 1000
 _GLANCE_SECONDS = 2.0  # for a notebook that shows a job
+
+
+class JobNotSucceeded(Error):
+    """The job that was watched ended without success. Its finished points stay:
+    `error.job.result()`."""
+
+    job: Job
+
+
+class JobFailed(JobNotSucceeded):
+    """The job that was watched has failed; the message says why."""
+
+
+class JobCancelled(JobNotSucceeded):
+    """The job that was watched has been cancelled."""
 
 
 class Job:
@@ -118,7 +126,7 @@ class Job:
         self.message = self._call("GetEnsembleJob", request)
         return self
 
-    def watch(self, progress: bool = True) -> Result:
+    def watch(self, progress: bool | str = True) -> Result:
         """Waits until the job has ended and returns its result.
 
         A bar shows the progress in a terminal (on standard error) and in a notebook. The watch goes
@@ -126,7 +134,8 @@ class Job:
         message says how to watch it again.
 
         Args:
-            progress: False shows nothing.
+            progress: False shows nothing, "bar" shows the bar without a terminal too, "json"
+                writes lines of JSON to standard error.
 
         Raises:
             JobFailed: the job failed; the exception says why.

@@ -5,12 +5,16 @@ tqdm draws it if tqdm is installed. Where nobody looks, in a pipeline for instan
 
 from __future__ import annotations
 
+import json
 import sys
 import warnings
 from typing import Any, Protocol
 
+from google.protobuf import json_format
+
 from ballpiston.errors import Error
 from ballpiston.number_text import measured_text
+from ballpiston.v1 import ensemble_pb2
 
 _PLAIN_BAR_WIDTH = 20
 
@@ -69,11 +73,42 @@ class Progress:
             self._bar.show(self._fraction, text)
 
 
-def progress_on_screen(wanted: bool) -> Progress:
-    """With a bar if it is wanted and somebody looks: in a terminal or in a notebook."""
-    if not wanted or not (_is_notebook() or _is_terminal()):
-        return Progress(None)
-    return Progress(_new_bar())
+class JsonLines(Progress):
+    """Writes each message as one line of JSON to standard error, for programs."""
+
+    def __init__(self) -> None:
+        super().__init__(None)
+        self._job: dict[str, Any] = {}
+
+    def on_job(self, job: Any) -> None:
+        state = ensemble_pb2.EnsembleJob.State.Name(job.state)
+        self._job = {"job": job.name, "state": state}
+        self._write(job.progress)
+
+    def on_snapshot(self, snapshot: Any) -> None:
+        self._write(snapshot.progress)
+
+    def _write(self, progress: Any) -> None:
+        values = json_format.MessageToDict(
+            progress, including_default_value_fields=True, preserving_proto_field_name=True
+        )
+        line = self._job | {"progress": values}
+        print(json.dumps(line), file=sys.stderr, flush=True)
+
+
+def progress_on_screen(wanted: bool | str) -> Progress:
+    """True or "auto": with a bar if somebody looks, in a terminal or in a notebook; "bar": with a
+    bar; "json": lines of JSON; False or "none": nothing.
+
+    Raises:
+        ValueError: another text.
+    """
+    if wanted not in (True, False, "auto", "bar", "json", "none"):
+        raise ValueError(f"progress is {wanted!r}; permitted: auto, bar, json, none")
+    if wanted == "json":
+        return JsonLines()
+    is_seen = wanted in (True, "auto") and (_is_notebook() or _is_terminal())
+    return Progress(_new_bar() if is_seen or wanted == "bar" else None)
 
 
 def fraction_of(progress: Any) -> float:

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -497,37 +498,21 @@ TEST_F(CommandLineTest, FigureListsItsNames) {
   EXPECT_THAT(Ballpiston({"figure", "--list"}).out, HasSubstr("mean-free-time: "));
 }
 
-TEST_F(CommandLineTest, FigureCopiesItsScriptsAndPrintsTheirPaths) {
-  const std::string folder = home_.File("figures");
-  const Outcome outcome = Ballpiston({"figure", "mean-free-time", "--edit", "--out", folder});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(outcome.out, folder + "/mean-free-time.gnuplot\n" + folder + "/mean-free-time.sh\n");
-  WriteFile(folder + "/mean-free-time.sh", "# mine\n");
-  EXPECT_EQ(Ballpiston({"figure", "mean-free-time", "--edit", "--out", folder}).err,
-            "ballpiston: using " + folder +
-                "/mean-free-time.sh, which differs from the installed file; delete it to use the "
-                "installed file\n");
-  EXPECT_EQ(Contents(folder + "/mean-free-time.sh"), "# mine\n");
-}
-
-TEST_F(CommandLineTest, AFigureWithoutTheVariableExitsWithTwo) {
+// The package gets the flags as they were written, and the server in the environment.
+TEST_F(CommandLineTest, FigureStartsPythonAndReturnsItsExitCode) {
+  const std::string python = home_.File("python");
+  WriteFile(python,
+            "#!/bin/sh\necho \"$*\" $BALLPISTON_SERVER >" + home_.File("said") + "; exit 3\n");
+  std::filesystem::permissions(python, std::filesystem::perms::owner_all);
+  const ScopedVariable program("BALLPISTON_PYTHON", python);
+  const ScopedVariable server("BALLPISTON_SERVER");  // the figure sets it
   const Outcome outcome =
-      Ballpiston({"figure", "mean-free-time", "--out", home_.File("figures"), "--seconds", "9"});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.err, "ballpiston: --seconds: the figure mean-free-time has no such variable\n");
-}
-
-// Runs the script in the folder with the flags as variables, and returns its exit code.
-TEST_F(CommandLineTest, FigureRunsTheScriptInItsFolder) {
-  const std::string folder = home_.File("figures");
-  Ballpiston({"figure", "mean-free-time", "--edit", "--out", folder});
-  WriteFile(folder + "/mean-free-time.sh",
-            "echo ${rho:=1} ${delta:=2} $BALLPISTON_SERVER >mean-free-time.csv; exit 3\n");
-  const ScopedVariable server("BALLPISTON_SERVER"), rho("rho");  // the figure sets both
-  const Outcome outcome =
-      Ballpiston({"figure", "mean-free-time", "--out", folder, "--rho", "7", "--server", "h:1"});
+      Ballpiston({"figure", "mean-free-time", "--out", "figures", "--quick", "--samples", "7",
+                  "--relaxation-delta", "0.1,0.2", "--server", "h:1"});
   EXPECT_EQ(outcome.code, 3) << outcome.err;
-  EXPECT_EQ(Contents(folder + "/mean-free-time.csv"), "7 2 h:1\n");
+  EXPECT_EQ(Contents(home_.File("said")),
+            "-m ballpiston.figures mean-free-time --out figures --quick --relaxation-delta 0.1,0.2 "
+            "--samples 7 h:1\n");
 }
 
 }  // namespace

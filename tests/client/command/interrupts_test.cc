@@ -6,15 +6,14 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <latch>
 #include <string>
 #include <thread>
 
-#include "absl/strings/str_cat.h"
 #include "client/output/new_file.h"
+#include "tests/support/death_test_folder.h"
 
 namespace ballpiston::client {
 namespace {
@@ -44,12 +43,7 @@ sigset_t Signals() {
 void Send(int signal) { kill(getpid(), signal); }
 
 // The statements end the process; without a signal they would never end.
-class InterruptsDeathTest : public ::testing::Test {
- protected:
-  InterruptsDeathTest() { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
-};
-
-TEST_F(InterruptsDeathTest, EachSignalEndsTheProgram) {
+TEST(InterruptsDeathTest, EachSignalEndsTheProgram) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     EXPECT_EXIT(
         {
@@ -62,7 +56,7 @@ TEST_F(InterruptsDeathTest, EachSignalEndsTheProgram) {
   }
 }
 
-TEST_F(InterruptsDeathTest, TheInnermostFarewellRuns) {
+TEST(InterruptsDeathTest, TheInnermostFarewellRuns) {
   EXPECT_EXIT(
       {
         Interrupts interrupts;
@@ -78,7 +72,7 @@ TEST_F(InterruptsDeathTest, TheInnermostFarewellRuns) {
       AllOf(HasSubstr("inner"), Not(HasSubstr("outer")), Not(HasSubstr("ended"))));
 }
 
-TEST_F(InterruptsDeathTest, TheProgramEndsDuringAHangingFarewell) {
+TEST(InterruptsDeathTest, TheProgramEndsDuringAHangingFarewell) {
   EXPECT_EXIT(
       {
         Interrupts interrupts;
@@ -91,32 +85,22 @@ TEST_F(InterruptsDeathTest, TheProgramEndsDuringAHangingFarewell) {
       ExitedWithCode(130), "");
 }
 
-// A folder of this process, which the process that EXPECT_EXIT starts knows as well.
-std::string SharedFolder() {
-  const std::string own = absl::StrCat(testing::TempDir(), "interrupts-", getpid());
-  setenv("BALLPISTON_TEST_FOLDER", own.c_str(), 0);
-  const std::string folder = std::getenv("BALLPISTON_TEST_FOLDER");
-  std::filesystem::create_directories(folder);
-  return folder;
-}
-
-TEST_F(InterruptsDeathTest, NoPartOfAFileIsLeft) {
-  const std::string folder = SharedFolder();
+TEST(InterruptsDeathTest, NoPartOfAFileIsLeft) {
+  const DeathTestFolder folder;
   EXPECT_EXIT(
       {
         Interrupts interrupts;
-        NewFile file("--save", folder + "/result.csv");
+        NewFile file("--save", folder.path() + "/result.csv");
         file.out() << "half";
         Send(SIGINT);
         while (true) pause();
       },
       ExitedWithCode(130), "");
-  EXPECT_TRUE(std::filesystem::is_empty(folder));
-  std::filesystem::remove_all(folder);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 // After the scope its owner destroys objects that the farewell uses.
-TEST_F(InterruptsDeathTest, TheEndOfAScopeWaitsForItsFarewell) {
+TEST(InterruptsDeathTest, TheEndOfAScopeWaitsForItsFarewell) {
   EXPECT_EXIT(
       {
         Interrupts interrupts;

@@ -74,7 +74,23 @@ TEST_F(ReferenceTest, LinesHaveAtMost80Columns) {
   }
 }
 
-TEST_F(ReferenceTest, APageShowsEveryFlagAndArgument) {
+TEST_F(ReferenceTest, TheShortPageFitsAScreenAndNamesEveryFlag) {
+  for (const Verb& verb : Verbs()) {
+    const std::string page = ShortPage(&verb);
+    EXPECT_LE(std::count(page.begin(), page.end(), '\n'), kScreen) << page;
+    for (const Flag* flag : FlagsOf(verb)) EXPECT_THAT(page, HasSubstr(LongName(*flag)));
+  }
+}
+
+TEST_F(ReferenceTest, HelpIsShortAndAllIsWhole) {
+  const Verb& run = *std::find_if(Verbs().begin(), Verbs().end(),
+                                  [](const Verb& verb) { return verb.name == "run"; });
+  EXPECT_EQ(Ballpiston({"help", "run"}).out, ShortPage(&run));
+  EXPECT_EQ(Ballpiston({"run", "--help"}).out, ShortPage(&run));
+  EXPECT_EQ(Ballpiston({"help", "--all", "run"}).out, TextPage(&run));
+}
+
+TEST_F(ReferenceTest, AWholePageShowsEveryFlagAndArgument) {
   for (const Verb& verb : Verbs()) {
     const std::string page = TextPage(&verb);
     for (const Flag* flag : FlagsOf(verb)) {

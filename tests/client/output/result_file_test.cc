@@ -2,18 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <zip.h>
 
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "client/output/new_file.h"
-#include "client/output/npy_array.h"
 #include "tests/client/message_text.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
@@ -22,7 +16,6 @@
 namespace ballpiston::client {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -86,75 +79,6 @@ TEST(ResultFile, CsvBeginsWithItsProvenance) {
                               "\n# {\"experiment\":\"ENERGY_RELAXATION\""));
   EXPECT_THAT(csv, HasSubstr("\"seed\":\"77\""));
   EXPECT_THAT(csv, HasSubstr("}\nrho,delta,"));
-}
-
-struct Array {
-  std::string description;
-  std::string elements;
-
-  std::vector<double> Numbers() const {
-    std::vector<double> numbers(elements.size() / sizeof(double));
-    std::memcpy(numbers.data(), elements.data(), elements.size());
-    return numbers;
-  }
-};
-
-// As the description of NumPy's format says, independently of the writer.
-Array ParsedNpy(const std::string& bytes) {
-  EXPECT_EQ(bytes.substr(0, 8), std::string("\x93NUMPY\x01\x00", 8));
-  const size_t length =
-      static_cast<unsigned char>(bytes[8]) + 256u * static_cast<unsigned char>(bytes[9]);
-  EXPECT_EQ((10 + length) % 64, 0u);
-  return {bytes.substr(10, length), bytes.substr(10 + length)};
-}
-
-std::map<std::string, Array> ArraysOf(const std::string& archive) {
-  std::map<std::string, Array> arrays;
-  zip_source_t* source = zip_source_buffer_create(archive.data(), archive.size(), 0, nullptr);
-  zip_t* zip = zip_open_from_source(source, ZIP_RDONLY, nullptr);
-  if (zip == nullptr) return arrays;
-  for (zip_int64_t i = 0; i < zip_get_num_entries(zip, 0); ++i) {
-    zip_stat_t stat;
-    zip_stat_index(zip, static_cast<zip_uint64_t>(i), 0, &stat);
-    std::string bytes(stat.size, '\0');
-    zip_file_t* file = zip_fopen_index(zip, static_cast<zip_uint64_t>(i), 0);
-    zip_fread(file, bytes.data(), bytes.size());
-    zip_fclose(file);
-    arrays[stat.name] = ParsedNpy(bytes);
-  }
-  zip_discard(zip);
-  return arrays;
-}
-
-TEST(ResultFile, NpzHasAnArrayOverThePointsForEachQuantity) {
-  auto arrays = ArraysOf(Written({.is_npz = true}));
-  EXPECT_THAT(arrays["delta.npy"].Numbers(), ElementsAre(0.2, 0.1));
-  EXPECT_THAT(arrays["relaxation_time.npy"].Numbers(), ElementsAre(3.25, 4.5));
-  EXPECT_THAT(arrays["relaxation_time.npy"].description, HasSubstr("'shape': (2,), "));
-  const auto errors = arrays["relaxation_time_standard_error.npy"].Numbers();
-  ASSERT_EQ(errors.size(), 2u);
-  EXPECT_EQ(errors[0], 0.5);
-  EXPECT_TRUE(std::isnan(errors[1]));
-  EXPECT_THAT(arrays["model.npy"].description, HasSubstr("'<U8'"));  // billiard
-  EXPECT_THAT(arrays["provenance.npy"].description, HasSubstr("'shape': (), "));
-  EXPECT_FALSE(arrays.contains("epsilon.npy"));
-  EXPECT_FALSE(arrays.contains("curve_decay_position.npy"));
-}
-
-TEST(ResultFile, NpzFillsShorterRowsWithNan) {
-  auto arrays = ArraysOf(Written({.is_npz = true}));
-  EXPECT_THAT(arrays["histogram_energy_counts.npy"].description, HasSubstr("(2,2,2,)"));
-  const auto counts = arrays["histogram_energy_counts.npy"].Numbers();
-  EXPECT_THAT(std::vector(counts.begin(), counts.begin() + 4), ElementsAre(1, 2, 3, 4));
-  EXPECT_TRUE(std::isnan(counts[4]));
-  EXPECT_THAT(arrays["histogram_energy_time.npy"].description, HasSubstr("(2,2,)"));
-  EXPECT_THAT(arrays["histogram_alpha_minus_counts.npy"].description, HasSubstr("(2,3,)"));
-  EXPECT_THAT(arrays["curve_decay_value.npy"].Numbers()[1], 0.5);
-  EXPECT_TRUE(std::isnan(arrays["curve_decay_limit.npy"].Numbers()[0]));
-}
-
-TEST(ResultFile, TheSameResultGivesTheSameArchive) {
-  EXPECT_EQ(Written({.is_npz = true}), Written({.is_npz = true}));
 }
 
 // ---- files ----

@@ -55,6 +55,7 @@ class Home:
         self.folder = folder
         self.variables = {
             "BALLPISTON_PROGRAM": str(self.programs / "ballpiston"),
+            "BALLPISTON_PYTHON": sys.executable,
             "HOME": str(folder),
             "XDG_CONFIG_HOME": str(folder / "config"),
             "XDG_RUNTIME_DIR": str(folder),

@@ -36,30 +36,14 @@ def test_the_saved_document_is_that_of_the_command_line(
     assert saved == printed
 
 
-@pytest.mark.parametrize(
-    "question",
-    [
-        "first-hit --rho 0.5296 --delta 0.2,0.1 --epsilon 0.1,0.4 --exponent 1 --samples 500",
-        "energy-relaxation --rho 0.5296 --delta 0.2 --epsilon 0.1 --samples 200 --model markov",
-        "energy-relaxation --rho 0.5296 --delta 0.2 --model spectrum",
-        "gas-conduction --rho 0.5296 --delta 0.1 --cells 2,3 --hot 2 --cold 1 --samples 20",
-    ],
-)
-def test_the_arrays_are_those_of_the_command_line(
-    question: str, home: Home, tmp_path: Path
-) -> None:
-    file = str(tmp_path / "saved")
-    for ending in (".npz", ".json"):
-        home.command("run", *question.split(), "--resume", "--save", file + ending)
-    arrays = ballpiston.load(file + ".json").arrays()
-    saved = np.load(file + ".npz")
-    assert sorted(saved) == sorted(arrays)
-    for name in arrays:
-        if name == "provenance":
-            assert json.loads(str(saved[name])) == json.loads(str(arrays[name]))
-        elif arrays[name].dtype.kind == "U":
-            assert saved[name].tolist() == arrays[name].tolist(), name
-        else:
+def test_the_command_line_saves_the_same_arrays(home: Home, tmp_path: Path) -> None:
+    question = "first-hit --rho 0.5296 --delta 0.2 --epsilon 0.1,0.4 --exponent 1 --samples 500"
+    for name in ("saved.npz", "saved.json"):
+        home.command("run", *question.split(), "--resume", "--save", str(tmp_path / name))
+    arrays = ballpiston.load(tmp_path / "saved.json").arrays()
+    with np.load(tmp_path / "saved.npz") as saved:
+        assert sorted(saved) == sorted(arrays)
+        for name in arrays:
             np.testing.assert_array_equal(saved[name], arrays[name], name)
 
 

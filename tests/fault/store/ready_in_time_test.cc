@@ -9,9 +9,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "gtest/gtest.h"
+#include "server/book/job_book.h"
 #include "server/convert/fold_record.h"
 #include "server/convert/spec.h"
-#include "server/jobs/job_book.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
 #include "server/store/store.h"

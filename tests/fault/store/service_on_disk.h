@@ -14,7 +14,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "ballpiston/v1/ensemble.pb.h"
-#include "server/jobs/job_book.h"
+#include "server/book/job_book.h"
 #include "server/store/store.h"
 #include "tests/fault/store/fault_disk.h"
 #include "tests/server/thread_pool.h"

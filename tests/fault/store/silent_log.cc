@@ -1,6 +1,6 @@
 // Switches the log off. These tests make disks fail, and the log would report every failure.
 #include "gtest/gtest.h"
-#include "server/observability/log.h"
+#include "server/status/log.h"
 
 namespace ballpiston::server {
 namespace {

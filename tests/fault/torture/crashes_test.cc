@@ -10,7 +10,7 @@
 #include "client/library/client.h"
 #include "gmock/gmock.h"
 #include "google/rpc/error_details.pb.h"
-#include "server/observability/failpoint.h"
+#include "server/status/failpoint.h"
 #include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"

@@ -1,0 +1,97 @@
+"""Ball and piston as one billiard in three dimensions (a figure of the paper)
+
+The ball at (q1, q2) and the piston at q3 are one point of a three-dimensional billiard, seen here
+from below. Its vertical walls stand on the arcs of the ball's cell; its floor and ceiling are the
+piston's walls. The ball is left of the piston. Therefore the slanted plane q1 = q3, the collision
+surface, cuts off the lower end of the right tip.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+from ballpiston.client import Client
+from ballpiston.figures.parts import cell_outline, style
+from ballpiston.figures.parts.asking import RHO
+from ballpiston.figures.parts.tables import FloatArray, Tables, closed_forms
+
+EFFORT: dict[str, dict[str, Any]] = {}
+
+_WALL, _FLOOR, _EDGE = "#c3cfe6", "#f4f4f4", "#404040"
+_HIGHEST, _LOWEST = 1.1, 0.6  # heights of the drawing, in units of its width
+
+
+def measure(client: Client, *, rho: float = RHO, delta: float = 0.15) -> Tables:
+    """One row: the geometry."""
+    forms = client.analytic(rho, delta)
+    return {"cell-3d": closed_forms(forms, "rho", "delta", "lambda", "eta")}
+
+
+@style.styled
+def draw(tables: Tables) -> Figure:
+    """The walls, the floor and the collision surface, with labels beside them."""
+    at = {name: float(column[0]) for name, column in tables["cell-3d"].items()}
+    tip = 0.5 - at["lambda"] / 2
+    low = tip - at["delta"]
+    stretch = float(np.clip((1 - 2 * low) / (2 * tip), _LOWEST, _HIGHEST)) * 2 * tip / (1 - 2 * low)
+    ceiling = low + stretch * (1 - 2 * low)
+
+    def bottom(x: FloatArray) -> FloatArray:
+        """The walls' lower end: the floor or, right of it, the collision surface."""
+        return low + stretch * np.maximum(x - low, 0)
+
+    figure = style.picture(960, 800)
+    axes = figure.add_subplot(projection="3d", computed_zorder=False)
+    axes.set_axis_off()
+    axes.view_init(elev=-28, azim=-62)
+    axes.set(xlim=(-tip, tip), ylim=(-tip, tip), zlim=(low, ceiling))
+    axes.set_box_aspect((1, 1, (ceiling - low) / (2 * tip)), zoom=1.15)
+    for depth, disc in enumerate((3, 2, 0, 1)):  # from the back to the front
+        _draw_wall(axes, cell_outline.arc(at["rho"], disc), bottom, ceiling, depth)
+    _draw_strip(axes, at["rho"], np.linspace(-tip, low, 60), bottom, _FLOOR)
+    _draw_strip(axes, at["rho"], np.linspace(low, tip, 60), bottom, style.ORANGE)
+    style.axis_arrows(axes, (0.9 * tip, 0.3 * tip, low), 0.35 * tip, ("q₁", "q₂", "q₃"))
+    for place, text, more in (
+        ((0.62, 0.03), "collision surface: q₁ = q₃", {"color": style.ORANGE}),
+        ((0.03, 0.03), "floor: q₃ = 1/2 - λ/2 - δ", {}),
+        ((0.62, 0.95), "ceiling: q₃ = 1/2 + λ/2 + δ", {}),
+        ((0.03, 0.95), "blue: walls of the discs", {}),
+    ):
+        axes.text2D(*place, text, transform=axes.transAxes, **more)
+    if abs(stretch - 1) > 1e-12:
+        axes.text2D(0.62, 0.91, f"heights drawn × {stretch:.2g}", transform=axes.transAxes)
+    return figure
+
+
+def _draw_wall(axes: Any, arc: FloatArray, bottom: Any, ceiling: float, depth: int) -> None:
+    """On one arc, with light from the front, and its edges."""
+    x, y = arc[:, 0], arc[:, 1]
+    z = bottom(x)
+    faces = [
+        [(x[i], y[i], z[i]), (x[j], y[j], z[j]), (x[j], y[j], ceiling), (x[i], y[i], ceiling)]
+        for i, j in zip(range(len(x) - 1), range(1, len(x)))
+    ]
+    normals = np.column_stack([-np.diff(y), np.diff(x)])
+    light = np.abs(normals @ (0.9, -0.45)) / np.linalg.norm(normals, axis=1)
+    colours = np.column_stack([np.outer(0.75 + 0.25 * light, to_rgb(_WALL)), np.ones(len(faces))])
+    collection = Poly3DCollection(faces, facecolors=colours, edgecolors=colours, zorder=depth)
+    axes.add_collection3d(collection)
+    edge = {"color": _EDGE, "linewidth": 1.2, "zorder": depth}
+    axes.plot(x, y, z, **edge)
+    axes.plot(x, y, np.full_like(x, ceiling), **edge)
+    for i in (0, -1):
+        axes.plot([x[i], x[i]], [y[i], y[i]], [z[i], ceiling], **edge)
+
+
+def _draw_strip(axes: Any, rho: float, x: FloatArray, bottom: Any, colour: str) -> None:
+    """Of the floor or the collision surface, between the lower and the upper arcs."""
+    half, z = cell_outline.half_height(rho, x), bottom(x)
+    there = np.column_stack([x, half, z])
+    back = np.column_stack([x, -half, z])[::-1]
+    face = [np.concatenate([there, back])]
+    axes.add_collection3d(Poly3DCollection(face, facecolor=colour, edgecolor=_EDGE, zorder=9))

@@ -1,0 +1,89 @@
+"""Times to the first ball-piston collision in equilibrium, beside the exponential law
+
+One column for each energy of the piston. Above: the probability that ball and piston have not
+collided up to the time t after a collision, for several delta, and the exponential law (black).
+Below: the difference from the exponential law, with one standard error. Time is in units of the
+conditional mean free time, so that the exponential law is exp(-t). All points of a line come from
+the same hits. Therefore neighbouring points have nearly the same statistical error. The lines have
+steps, because the piston reaches the cell once in its period (2 lambda + 4 delta)/u.
+Time on two cores: quick 1 s, default 25 s, full 8 min.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ballpiston.client import Client
+from ballpiston.figures.parts import style
+from ballpiston.figures.parts.asking import RHO, first_hits
+from ballpiston.figures.parts.tables import Tables, curves, distinct, rows
+from ballpiston.parameter_lists import Numbers
+
+EFFORT = {
+    "quick": {"delta": "0.325,0.2,0.1,0.05", "samples": 30_000},
+    "full": {"samples": 20_000_000},
+}
+
+_LEAST = 2e-4  # the upper axis ends here
+
+
+def measure(
+    client: Client,
+    *,
+    rho: float = RHO,
+    delta: Numbers = "0.325,0.2,0.1,0.05,0.0125",
+    epsilon: Numbers = "0.03125,0.25,0.46875",
+    exponent: Numbers = 1,
+    samples: float = 1_000_000,
+    seed: int = 0,
+) -> Tables:
+    """The curves `survival`: the probability that ball and piston have not collided up to a time.
+    Their limit is the exponential law with the same mean free time, and `t` is the time in units of
+    this mean. `samples` are the first hits of each line."""
+    result = first_hits(client, rho, delta, epsilon, exponent, samples, seed)
+    survival = rows(curves(result), name="survival")
+    with np.errstate(divide="ignore"):
+        survival["t"] = -np.log(survival["limit"])
+    # If too few orbits have survived to measure the error, it is that of the exponential law.
+    limit = survival["limit"]
+    binomial = np.sqrt(limit * (1 - limit) / survival["samples"])
+    error = survival["standard_error"]
+    survival["error"] = np.where(np.isfinite(error), error, binomial)
+    return {"hitting-time": survival}
+
+
+@style.styled
+def draw(tables: Tables) -> Figure:
+    """Of several exponents only the first one."""
+    data = tables["hitting-time"]
+    data = rows(data, exponent=data["exponent"][0])
+    energies = distinct(data["epsilon"])
+    figure = style.picture(max(640, 100 + 320 * len(energies)), 760)
+    panels = figure.subplots(2, len(energies), sharex=True, sharey="row", squeeze=False)
+    longest = data["t"][np.isfinite(data["t"])].max()
+    t = np.linspace(0, longest, 200)
+    exponential: dict[str, Any] = {"color": style.BLACK, "linewidth": 1.2, "dashes": (6, 4)}
+    for (upper, lower), epsilon in zip(panels.T, energies):
+        upper.set_title(f"ε = {epsilon:g}")
+        for line, colour, _ in style.series(rows(data, epsilon=epsilon), "delta", "δ"):
+            seen = line["value"] > 0
+            upper.semilogy(line["t"][seen], line["value"][seen], color=colour)
+            excess = line["value"] - line["limit"]
+            style.error_points(lower, line["t"], excess, line["error"], colour, markersize=2)
+        upper.semilogy(t, np.exp(-t), **exponential)
+        style.level(lower, 0, **exponential)
+    excess = data["value"] - data["limit"]
+    # Linear below the largest standard error that a probability can have.
+    noise = 1 / np.sqrt(data["samples"][0])
+    for lower in panels[1]:
+        style.signed_log_axis(lower, noise, (excess - data["error"], excess + data["error"]))
+    panels[0, 0].set(ylim=(_LEAST, 1.3), ylabel="probability of no collision yet")
+    panels[1, 0].set(xlim=(0, 1.01 * longest))
+    style.outer_labels(panels[1:], "t/τ$_{bp}$(ε)", "minus the exponential")
+    handles = [style.line_handle("exponential", **exponential)]
+    handles += [style.line_handle(s.label, s.colour) for s in style.series(data, "delta", "δ")]
+    style.top_legend(figure, handles)
+    return figure

@@ -1,0 +1,104 @@
+"""Angles of first hits beside their equilibrium law, at several delta (the paper's histograms)
+
+Densities of the ingoing angle alpha of first hits that start from the outgoing law h^(n), for both
+directions sigma of the piston, and the equilibrium law h^(1) (filled). One row for each energy of
+the piston, one column for each delta. The band of a line is one standard error. The density of
+sigma = +1 is zero if the piston is faster than the ball, epsilon >= 1/4.
+Time on two cores: quick 1 s, default 10 s, full 1 min.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from ballpiston.client import Client
+from ballpiston.figures.parts import style
+from ballpiston.figures.parts.asking import ENERGIES, RHO, first_hits
+from ballpiston.figures.parts.tables import Table, Tables, distinct, histograms, rows, stacked
+from ballpiston.parameter_lists import Numbers
+
+EFFORT = {
+    "quick": {"samples": 20_000, "merged": 40},
+    "full": {"samples": 1_000_000, "merged": 10},
+}
+
+_SIGNS = ((-1, "−", style.ORANGE), (1, "+", style.BLUE))
+
+
+def measure(
+    client: Client,
+    *,
+    rho: float = RHO,
+    delta: Numbers = "0.325,0.175,0.0125",
+    epsilon: Numbers = ENERGIES,
+    exponent: Numbers = 0,
+    samples: float = 300_000,
+    seed: int = 0,
+    merged: int = 20,
+) -> Tables:
+    """Histograms with wider bins: `merged` of the server's 1000 bins are one bin of the picture.
+    Fewer samples need wider bins; otherwise the noise hides the deviation. `samples` are the first
+    hits of each panel."""
+    result = first_hits(client, rho, delta, epsilon, exponent, samples, seed)
+    return {"ingoing-law": merge(rows(histograms(result), name="alpha"), merged)}
+
+
+def merge(bins: Table, merged: int) -> Table:
+    """Histograms with `merged` neighbouring bins in one. Densities are means over a bin; `error` is
+    the standard error."""
+    keys = ("delta", "epsilon", "exponent", "sigma")
+    found = distinct(zip(*(bins[name] for name in keys)))
+    return stacked(_merged(rows(bins, **dict(zip(keys, key))), keys, merged) for key in found)
+
+
+def _merged(bins: Table, keys: tuple[str, ...], merged: int) -> Table:
+    starts = np.arange(0, len(bins["lower"]), merged)
+    ends = np.append(starts[1:], len(bins["lower"])) - 1
+    sizes = ends - starts + 1
+    lower, upper = bins["lower"][starts], bins["upper"][ends]
+    counts = np.add.reduceat(bins["count"], starts)
+    return {name: bins[name][starts] for name in keys} | {
+        "alpha": (lower + upper) / 2,
+        "density": np.add.reduceat(bins["density"], starts) / sizes,
+        "error": np.sqrt(counts) / (bins["samples"][0] * (upper - lower)),
+        "exact_density": np.add.reduceat(bins["exact_density"], starts) / sizes,
+    }
+
+
+@style.styled
+def draw(tables: Tables) -> Figure:
+    """Of several exponents only the first one."""
+    data = tables["ingoing-law"]
+    data = rows(data, exponent=data["exponent"][0])
+    deltas, energies = distinct(data["delta"]), distinct(data["epsilon"])
+    width = 760 if len(deltas) < 3 else 300 * len(deltas) + 60
+    figure = style.picture(width, 210 * len(energies) + 120)
+    panels = figure.subplots(
+        len(energies), len(deltas), sharex=True, sharey="row", squeeze=False
+    )
+    for row, epsilon in zip(panels, energies):
+        for axes, delta in zip(row, deltas):
+            for sigma, _, colour in _SIGNS:
+                _draw_law(axes, rows(data, delta=delta, epsilon=epsilon, sigma=sigma), colour)
+        row[0].set_ylim(0, None)
+        style.inside(row[0], 0.04, 0.88, f"ε = {epsilon:g}")
+    for axes, delta in zip(panels[0], deltas):
+        axes.set_title(f"δ = {delta:g}", loc="center")
+    panels[0, 0].set_xlim(-np.pi, np.pi)
+    panels[0, 0].set_xticks([-np.pi / 2, 0, np.pi / 2], ["−π/2", "0", "π/2"])
+    style.outer_labels(panels, "angle α", "density")
+    lines: list[Any] = [style.line_handle(f"σ = {sign}1", colour) for _, sign, colour in _SIGNS]
+    fills = [Patch(color=c, alpha=0.25, label=f"h$^{{(1)}}$, σ = {s}1") for _, s, c in _SIGNS]
+    style.top_legend(figure, lines + fills)
+    return figure
+
+
+def _draw_law(axes: Any, law: Table, colour: str) -> None:
+    low, high = law["density"] - law["error"], law["density"] + law["error"]
+    axes.fill_between(law["alpha"], law["exact_density"], color=colour, alpha=0.25, linewidth=0)
+    axes.fill_between(law["alpha"], low, high, color=colour, alpha=0.35, linewidth=0)
+    axes.plot(law["alpha"], law["density"], color=colour, linewidth=1.2)

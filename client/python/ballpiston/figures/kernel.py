@@ -1,0 +1,121 @@
+"""The jump kernel W, exact and from the billiard's orbits: the piston's energy after a collision
+
+The density W/f of the piston's energy after a collision, for several energies before it. Lines: the
+exact kernel, which diverges at 0 and at the largest energy, 1/2 - epsilon. Points: collisions of
+the billiard, with one standard error. By default it takes half a minute of one core.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ballpiston.client import Client
+from ballpiston.figures.parts import style
+from ballpiston.figures.parts.asking import RHO
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, rows, stacked
+from ballpiston.parameter_lists import Numbers
+
+EFFORT = {"quick": {"orbits": 3, "bins": 8}, "full": {"orbits": 1000, "bins": 40}}
+
+_EVENTS = 20_000  # of each orbit
+_WINDOW = 0.0125  # half width of the interval of energies around each epsilon
+_HIGHEST = 3.2  # density of a panel, in units of its mean
+
+
+def measure(
+    client: Client,
+    *,
+    rho: float = RHO,
+    delta: float = 0.3,
+    epsilon: Numbers = "0.05,0.125,0.25,0.4",
+    seed: int = 0,
+    orbits: int = 50,
+    bins: int = 20,
+) -> Tables:
+    """The exact densities at 499 energies after a collision, and the measured ones in bins. The
+    first orbit has the seed `seed`, the next ones have the next seeds. W depends neither on rho nor
+    on delta."""
+    forms = client.analytic(rho, delta, epsilon, outgoing_epsilon="0.001:0.499:499")
+    energies = forms["epsilon"][0]
+    outgoing = np.arange(1, 500) / 1000
+    exact = [
+        {
+            "epsilon": np.full(len(outgoing), energy),
+            "outgoing": outgoing,
+            "density": kernel / rate,  # W is a density of rates
+        }
+        for energy, rate, kernel in zip(energies, forms["f"][0], forms["kernel"][0])
+    ]
+    collisions = np.concatenate(
+        [_collisions(client, rho, delta, seed + k) for k in range(orbits)]
+    )
+    return {
+        "kernel-exact": stacked(exact),
+        "kernel-measured": densities(energies, collisions, bins),
+    }
+
+
+def _collisions(client: Client, rho: float, delta: float, seed: int) -> FloatArray:
+    """(collisions, 2): the piston's energies before and after each collision of one orbit."""
+    names = ("piston_energy_before", "piston_energy")
+    orbit = client.trace_arrays("event", *names, rho=rho, delta=delta, events=_EVENTS, seed=seed)
+    met = orbit["event"] == "ball_piston"
+    return np.column_stack([orbit[name][met] for name in names])
+
+
+def densities(energies: Iterable[float], collisions: FloatArray, bins: int) -> Table:
+    """Of the energy after the collisions whose energy before is near each of the energies.
+
+    The bins have equal widths in u = sqrt(2 epsilon) after the collision, because the density of u
+    is finite at 0. They end one window below the largest outgoing energy, 1/2 - epsilon, where W
+    diverges. Energies without a collision or without a bin are left out."""
+    return stacked(
+        part for energy in energies if (part := _densities_at(energy, collisions, bins))
+    )
+
+
+def _densities_at(energy: float, collisions: FloatArray, bins: int) -> Table:
+    before, after = collisions.T
+    chosen = after[np.abs(before - energy) < _WINDOW]
+    end = 1 - 2 * (energy + _WINDOW)
+    if end <= 0 or not len(chosen):
+        return {}
+    edges = np.linspace(0, np.sqrt(end), bins + 1)
+    u = (edges[:-1] + edges[1:]) / 2
+    counts, _ = np.histogram(np.sqrt(2 * chosen), edges)
+    scale = len(chosen) * u * np.sqrt(end) / bins
+    return {
+        "epsilon": np.full(bins, energy),
+        "outgoing": u**2 / 2,
+        "density": counts / scale,
+        "standard_error": np.sqrt(counts) / scale,
+        "count": counts,
+        "samples": np.full(bins, len(chosen)),
+    }
+
+
+@style.styled
+def draw(tables: Tables) -> Figure:
+    """One panel for each energy before the collision."""
+    energies = style.series(tables["kernel-exact"], "epsilon", "ε")
+    lines = (len(energies) + 1) // 2
+    figure = style.picture(960, 350 * lines)
+    panels = figure.subplots(lines, 2, sharex=True, squeeze=False)
+    for axes, (exact, colour, label) in zip(panels.flat, energies):
+        energy = exact["epsilon"][0]
+        seen = exact["density"] > 0
+        axes.plot(exact["outgoing"][seen], exact["density"][seen], color=style.BLACK)
+        if tables["kernel-measured"]:
+            near = rows(tables["kernel-measured"], epsilon=energy)
+            error = near["standard_error"]
+            style.error_points(axes, near["outgoing"], near["density"], error, colour)
+        axes.set_ylim(0, _HIGHEST / (0.5 - min(energy, 0.49)))
+        # Left or right of the curve that rises at 1/2 - epsilon.
+        style.inside(axes, 0.35 if energy < 0.2 else 0.85, 0.9, label, ha="center")
+    panels[0, 0].set_xlim(0, 0.5)
+    style.outer_labels(panels, "piston energy after, ε'", "W(ε, ε')/f(ε)")
+    style.remove_empty(panels, len(energies))
+    return figure

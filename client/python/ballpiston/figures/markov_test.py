@@ -1,0 +1,191 @@
+"""Relative entropies of first hits above their noise, and whether they oscillate in log(delta)
+
+The relative entropy of the ingoing law of first hits with respect to the equilibrium law h^(1),
+minus its noise floor, with one standard error, against delta. One panel for each outgoing law
+h^(n), one colour for each energy of the piston. The vertical axis is linear near 0, because noise
+makes values near the floor negative, and logarithmic elsewhere. Lines join the points of one
+energy. Time on two cores: quick 5 s, default 1 min, full 45 min.
+
+The tables: `markov-test-excess` has the points, `-decay` their means over octaves of delta, `-fit`
+the comparison of oscillating models (parts/oscillation.py), `-maxima` the maxima of the points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ballpiston.client import Client
+from ballpiston.figures.parts import oscillation, style
+from ballpiston.figures.parts.asking import ENERGIES, RHO, divergences, first_hits
+from ballpiston.figures.parts.tables import Table, Tables, distinct, rows, table
+from ballpiston.parameter_lists import Numbers
+
+EFFORT: dict[str, dict[str, Any]] = {
+    "quick": {"delta": "0.1:0.325:16:log", "samples": 30_000, "synthetic": 20},
+    "full": {"samples": 4_000_000},
+}
+
+_SPACINGS = ("spacing_of_log_delta", "spacing_of_inverse_delta")
+
+
+def measure(
+    client: Client,
+    *,
+    rho: float = RHO,
+    delta: Numbers = "0.03:0.325:44:log",
+    epsilon: Numbers = ENERGIES,
+    exponent: Numbers = "0,1,5,10",
+    samples: float = 100_000,
+    seed: int = 0,
+    synthetic: int = 200,
+) -> Tables:
+    """`samples` are the first hits of each point, `synthetic` the repetitions that calibrate a
+    probability."""
+    result = first_hits(client, rho, delta, epsilon, exponent, samples, seed)
+    points = excess(divergences(result))
+    return {
+        "markov-test-excess": points,
+        "markov-test-decay": decay(points),
+        "markov-test-fit": oscillation.fits(points, synthetic),
+        "markov-test-maxima": maxima(points),
+    }
+
+
+def excess(divergence: Table) -> Table:
+    """The relative entropy minus its noise floor, with its standard error. If the two laws are
+    equal, the standard error is the error of the floor."""
+    return {name: divergence[name] for name in ("delta", "epsilon", "exponent")} | {
+        "excess": divergence["value"] - divergence["noise_floor"],
+        "standard_error": np.fmax(divergence["standard_error"], divergence["noise_error"]),
+    }
+
+
+def decay(points: Table) -> Table:
+    """Does the excess decay differently if the piston is slower than the ball, epsilon < 1/4? The
+    mean excess over the deltas of each octave below the largest delta, and the ratio to the mean of
+    the first octave, if that mean is above 3 standard errors."""
+    largest = points["delta"].max()
+    found = []
+    for (epsilon, exponent), series in oscillation.series_of(points):
+        # With the factor a delta at the border of two octaves stays in its octave despite rounding.
+        octave = np.floor(np.log2(largest / series["delta"]) * (1 - 1e-9)).astype(int)
+        first = first_error = 0.0
+        for k in sorted(set(octave)):
+            chosen = octave == k
+            count = int(chosen.sum())
+            mean = series["excess"][chosen].mean()
+            error = np.sqrt(np.sum(series["standard_error"][chosen] ** 2)) / count
+            ratio = ratio_error = np.nan
+            if k == 0:
+                first, first_error = mean, error
+            elif first > 3 * first_error:
+                ratio = mean / first
+                ratio_error = np.hypot(error, ratio * first_error) / first
+            found.append(
+                {
+                    "epsilon": epsilon,
+                    "exponent": exponent,
+                    "lower_delta": largest / 2.0 ** (k + 1),
+                    "upper_delta": largest / 2.0**k,
+                    "points": count,
+                    "mean_excess": mean,
+                    "standard_error": error,
+                    "ratio": ratio,
+                    "ratio_error": ratio_error,
+                }
+            )
+    return table(found)
+
+
+def maxima(points: Table) -> Table:
+    """The maxima of the excess from the largest delta down, without a model. Their spacings in
+    log(delta) or in 1/delta are constant if the oscillation is periodic in that variable. The
+    equilibrium law, n = 1, is left out."""
+    found: list[dict[str, float]] = []
+    for (epsilon, exponent), series in oscillation.series_of(points):
+        if exponent == 1:
+            continue
+        falling = np.argsort(-series["delta"], kind="stable")
+        x, y, error = (
+            np.log(series["delta"])[falling],
+            series["excess"][falling],
+            series["standard_error"][falling],
+        )
+        places = [_top(x, y, i) for i in _highest_points(y, error)]
+        last = np.nan
+        for place in places:
+            found.append(
+                {
+                    "epsilon": epsilon,
+                    "exponent": exponent,
+                    "delta": np.exp(place),
+                    _SPACINGS[0]: last - place,
+                    _SPACINGS[1]: np.exp(-place) - np.exp(-last),
+                }
+            )
+            last = place
+    return table(found, ("epsilon", "exponent", "delta", *_SPACINGS))
+
+
+def _highest_points(y: Any, error: Any) -> Iterator[int]:
+    """The positions of the maxima. One counts if on both sides the excess falls by 15 percent and
+    by 3 standard errors before it is higher again."""
+
+    def is_lower(i: int, j: int) -> bool:
+        return bool(y[i] < 0.85 * y[j] and y[j] - y[i] > 3 * np.hypot(error[i], error[j]))
+
+    top = bottom = 0
+    is_rising = False
+    for i in range(1, len(y)):
+        if is_rising and y[i] > y[top]:
+            top = i
+        elif is_rising and is_lower(i, top):
+            yield top
+            is_rising, bottom = False, i
+        elif not is_rising and y[i] < y[bottom]:
+            bottom = i
+        elif not is_rising and is_lower(bottom, i):
+            is_rising, top = True, i
+
+
+def _top(x: Any, y: Any, i: int) -> float:
+    """x at the maximum of the parabola of log y through the point i and its neighbours."""
+    if min(y[i - 1 : i + 2]) <= 0:
+        return float(x[i])
+    after, before = (np.diff(np.log(y[i - 1 : i + 2])) / np.diff(x[i - 1 : i + 2]))[::-1]
+    if after == before:
+        return float(x[i])
+    half = (x[i + 1] - x[i - 1]) / 2
+    return float((x[i] + x[i - 1]) / 2 - before * half / (after - before))
+
+
+@style.styled
+def draw(tables: Tables) -> Figure:
+    """One panel for each exponent."""
+    data = tables["markov-test-excess"]
+    exponents = distinct(data["exponent"])
+    across = min(2, len(exponents))
+    down = -(-len(exponents) // across)
+    figure = style.picture(max(640, 540 * across), 420 * down + 40)
+    panels = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False)
+    low, high = data["excess"] - data["standard_error"], data["excess"] + data["standard_error"]
+    style.signed_log_axis(panels[0, 0], 2 * data["standard_error"].min(), (low, high))
+    panels[0, 0].set_xscale("log")
+    panels[0, 0].set_xlim(0.93 * data["delta"].min(), 1.07 * data["delta"].max())
+    for axes, exponent in zip(panels.flat, exponents):
+        style.level(axes, 0)
+        joined: dict[str, Any] = {"fmt": "o-", "linewidth": 1, "markersize": 3}
+        for part, colour, _ in style.series(rows(data, exponent=exponent), "epsilon", "ε"):
+            error = part["standard_error"]
+            style.error_points(axes, part["delta"], part["excess"], error, colour, **joined)
+        law = ", the equilibrium law" if exponent == 1 else ""
+        style.inside(axes, 0.03, 0.92, f"n = {exponent:g}{law}")
+        style.plain_log_ticks(axes.xaxis, (0.001, 0.003, 0.01, 0.03, 0.05, 0.1, 0.15, 0.2, 0.3))
+    style.outer_labels(panels, "δ", "relative entropy − noise floor")
+    style.remove_empty(panels, len(exponents))
+    style.top_legend(figure, style.point_handles(style.series(data, "epsilon", "ε")))
+    return figure

@@ -1,0 +1,132 @@
+"""Laws of the piston's energy at six times after a start at one energy, beside the master equation
+
+Densities of the piston's energy at several times after a start at one energy: from the billiard and
+the sampled jump process (points), and from the master equation (black steps). Below each panel: the
+ratio to the master equation, with one standard error. Two rows of panels for each start energy. The
+peak is the bin of the start energy: it contains the orbits without an exchange. Its share of all
+orbits, from the master equation, is above the panel.
+Time on two cores: quick 1 s, default 10 s, full 2 min.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ballpiston.client import Client
+from ballpiston.figures.parts import style
+from ballpiston.figures.parts.asking import RHO, answer, first, in_mean_free_times
+from ballpiston.figures.parts.tables import Table, Tables, distinct, histograms, rows, stacked
+from ballpiston.parameter_lists import Numbers
+
+EFFORT = {"quick": {"samples": 20_000}, "full": {"samples": 10_000_000}}
+
+_ACROSS = 3
+_RATIOS = (0.5, 1.5)
+
+
+def measure(
+    client: Client,
+    *,
+    rho: float = RHO,
+    delta: Numbers = "0.2,0.05",
+    epsilon: Numbers = 0.0625,
+    samples: float = 1_000_000,
+    seed: int = 0,
+) -> Tables:
+    """All laws, with times in units of the mean free time. `samples` are the orbits of each delta,
+    and of the jump process."""
+
+    def law(model: str, delta: Numbers) -> Table:
+        question = {"rho": rho, "epsilon": epsilon, "model": model, "delta": delta}
+        question |= {"samples": samples, "seed": seed}
+        result = answer(client, "energy-relaxation", **question)
+        return beside_exact(
+            in_mean_free_times(client, rows(histograms(result), name="piston_energy"))
+        )
+
+    # In units of the mean free time, the times and the law of the jump process are the same at
+    # every delta.
+    jumps = law("markov", first("delta", delta))
+    return {"master-equation": stacked([law("billiard", delta), jumps])}
+
+
+def beside_exact(bins: Table) -> Table:
+    """Densities with their binomial error, and their ratios to the master equation. A bin without
+    an orbit has the binomial error of the exact law."""
+    width = bins["upper"] - bins["lower"]
+    exact, density, samples = bins["exact_density"], bins["density"], bins["samples"]
+    share = np.where(bins["count"] > 0, bins["count"] / samples, exact * width)
+    error = np.sqrt(share * (1 - share) / samples) / width
+    return {name: bins[name] for name in ("model", "delta", "epsilon")} | {
+        "time": np.array([float(f"{t:.3g}") for t in bins["t"]]),
+        "lower": bins["lower"],
+        "upper": bins["upper"],
+        "density": density,
+        "error": error,
+        "exact": exact,
+        "ratio": density / exact,
+        "ratio_error": error / exact,
+    }
+
+
+@style.styled
+def draw(tables: Tables) -> Figure:
+    """Six times for each start energy."""
+    data = tables["master-equation"]
+    series = distinct(zip(data["model"], data["delta"]))
+    starts, times = distinct(data["epsilon"]), distinct(data["time"])
+    blocks = [
+        [(start, time) for time in times[k : k + _ACROSS]]
+        for start in starts
+        for k in range(0, len(times), _ACROSS)
+    ]
+    figure = style.picture(360 * _ACROSS + 90, 350 * len(blocks) + 60)
+    panels = figure.subplots(
+        2 * len(blocks),
+        _ACROSS,
+        sharex=True,
+        sharey="row",
+        squeeze=False,
+        gridspec_kw={"height_ratios": (2, 1) * len(blocks)},
+    )
+    for k, block in enumerate(blocks):
+        for upper, lower, (start, time) in zip(panels[2 * k], panels[2 * k + 1], block):
+            law = rows(data, epsilon=start, time=time)
+            _draw_law(upper, lower, law, series)
+            peak = 100 * _share_of_start(rows(law, model=series[0][0], delta=series[0][1]), start)
+            upper.set_title(
+                f"t = {time:g} τ$_{{bp}}$   (bin of ε = {start:g}: {peak:.3g} %)", fontsize=11
+            )
+        panels[2 * k, 0].set_ylabel("density")
+        panels[2 * k + 1, 0].set(ylim=_RATIOS, ylabel="ratio")
+    panels[0, 0].set_xlim(0, 0.5)
+    for axes in panels[-1]:
+        axes.set_xlabel("energy of the piston ε")
+    handles = [style.line_handle("master equation", style.BLACK, linewidth=1)]
+    for k, (model, delta) in enumerate(series):
+        label = "jump process" if model == "markov" else f"δ = {delta:g}"
+        handles.append(style.point_handle(label, style.colour(k)))
+    style.top_legend(figure, handles)
+    return figure
+
+
+def _draw_law(upper: Any, lower: Any, law: Table, series: list[Any]) -> None:
+    """The points of the series are side by side in their bin."""
+    for k, (model, delta) in enumerate(series):
+        part = rows(law, model=model, delta=delta)
+        place = part["lower"] + (k + 0.5) / len(series) * (part["upper"] - part["lower"])
+        seen = part["density"] > 0
+        dots: dict[str, Any] = {"color": style.colour(k), "markersize": 2}
+        upper.semilogy(place[seen], part["density"][seen], "o", **dots)
+        style.error_points(lower, place, part["ratio"], part["ratio_error"], **dots)
+    upper.step(part["lower"], part["exact"], where="post", color=style.BLACK, linewidth=1)
+    style.level(lower, 1)
+
+
+def _share_of_start(law: Table, start: float) -> float:
+    """The exact probability of the bin of the start energy."""
+    there = (law["lower"] <= start) & (start < law["upper"])
+    return float(np.sum((law["exact"] * (law["upper"] - law["lower"]))[there]))

@@ -1,0 +1,1 @@
+"""What the figures share: tables, questions, the style of the pictures, outlines of the cell."""

@@ -1,0 +1,46 @@
+"""The programs that some figures run in place of a question to the server (tools/README.md)."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from ballpiston.errors import Error, InvalidArgument
+from ballpiston.private_server import find_private_server
+
+
+class ProgramFailed(Error):
+    """A program of a figure is missing or failed."""
+
+
+class InvalidUse(ProgramFailed, InvalidArgument):
+    """A program rejects its arguments, and has said why."""
+
+
+def output_of(program: str, *arguments: str, quiet: bool = False) -> str:
+    """What the program prints. Its messages go to standard error; with `quiet` only if it fails.
+
+    Raises:
+        ProgramFailed: it cannot be started or fails. InvalidUse if it rejects its arguments.
+    """
+    path = shutil.which(program, path=os.pathsep.join([*_folders(), os.environ.get("PATH", "")]))
+    if path is None:
+        raise ProgramFailed(f"{program}: not found beside the program ballpiston, nor in PATH")
+    messages = subprocess.PIPE if quiet else None
+    ended = subprocess.run(
+        [path, *arguments], stdout=subprocess.PIPE, stderr=messages, text=True, check=False
+    )
+    if ended.returncode != 0:
+        sys.stderr.write(ended.stderr or "")
+        kind = InvalidUse if ended.returncode == 2 else ProgramFailed
+        raise kind(f"{program} failed with exit status {ended.returncode}")
+    return ended.stdout
+
+
+def _folders() -> list[str]:
+    """Of the program ballpiston, and beside it that of the programs that only figures use."""
+    folder = Path(find_private_server().program).resolve().parent
+    return [str(folder), str(folder.parent / "libexec" / "ballpiston")]

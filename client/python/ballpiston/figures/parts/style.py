@@ -1,0 +1,210 @@
+"""The style of all pictures, and what most of them draw."""
+
+from __future__ import annotations
+
+import functools
+import io
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import matplotlib
+import matplotlib.style
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+
+from ballpiston.document import write_atomically
+from ballpiston.figures.parts.tables import Table, Tables, distinct, rows
+
+BLUE, ORANGE, GREEN, PINK = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
+BLACK, GREY, EDGE = "#202020", "#808080", "#8c8c8c"
+DISC, REACH, OVERLAP = "#dcdcdc", "#e3ecfb", "#c8c8c8"  # of the cell
+# From slow to fast; it grows lighter, so it can also be read without colours.
+ENERGY = LinearSegmentedColormap.from_list(
+    "energy", ["#2b3a9e", "#6a5acd", "#c4243a", "#f28a1c", "#f5d000"]
+)
+
+_PIXELS = 100.0  # of an inch; sizes of pictures are in pixels
+_SHEET = Path(__file__).with_name("ballpiston.mplstyle")
+
+
+def styled(draw: Callable[[Tables], Figure]) -> Callable[[Tables], Figure]:
+    """Lets a function draw in the style of all pictures."""
+
+    @functools.wraps(draw)
+    def in_style(tables: Tables) -> Figure:
+        with matplotlib.style.context(_SHEET):
+            return draw(tables)
+
+    return in_style
+
+
+def save(figure: Figure, path: Path) -> None:
+    """As SVG or PNG, by the end of the path. The same picture gives the same file. A full disk
+    leaves the old file."""
+    ending = path.suffix.removeprefix(".")
+    buffer = io.BytesIO()
+    with matplotlib.style.context(_SHEET):
+        metadata = {"Date": None} if ending == "svg" else {}
+        figure.savefig(buffer, format=ending, metadata=metadata)
+    write_atomically(path, buffer.getvalue())
+
+
+def colour(index: int) -> str:
+    """Of the line of this number."""
+    cycle: list[str] = matplotlib.rcParams["axes.prop_cycle"].by_key()["color"]
+    return "#" + cycle[index % len(cycle)].lstrip("#")
+
+
+class Series(NamedTuple):
+    """The rows of a table that belong to one value, with the value's colour and label."""
+
+    part: Table
+    colour: str
+    label: str
+
+
+def series(whole: Table, name: str, symbol: str) -> list[Series]:
+    """One for each value of the column `name`, in the order of their first appearance."""
+    return [
+        Series(rows(whole, **{name: x}), colour(k), f"{symbol} = {x:g}")
+        for k, x in enumerate(distinct(whole[name]))
+    ]
+
+
+def picture(width: float, height: float) -> Figure:
+    """An empty figure; the size is in pixels."""
+    return Figure(figsize=(width / _PIXELS, height / _PIXELS))
+
+
+def bare_axes(figure: Figure, place: Any = 111) -> Any:
+    """Axes without a frame, for drawings. Lengths of x and y are equal."""
+    axes = figure.add_subplot(place)
+    axes.set_axis_off()
+    axes.set_aspect("equal")
+    return axes
+
+
+def axis_arrows(axes: Any, origin: Sequence[float], length: float, names: Sequence[str]) -> None:
+    """The directions of a drawing in three dimensions."""
+    for k, name in enumerate(names):
+        step = length * np.eye(3)[k]
+        axes.quiver(*origin, *step, color=BLACK, arrow_length_ratio=0.25, zorder=9)
+        axes.text(*(origin + 1.3 * step), name, ha="center", va="center")
+
+
+def title(axes: Axes, letter: str, text: str) -> None:
+    """Of one of several panels: a bold letter and a text."""
+    axes.set_title(rf"$\mathbf{{{letter}}}$  {text}")
+
+
+def error_points(
+    axes: Axes, x: Any, y: Any, error: Any, color: str, label: str = "", **more: Any
+) -> None:
+    """Points with one standard error; a missing error is not drawn."""
+    style = {"fmt": "o", "elinewidth": 1.1, "color": color} | more
+    error = np.where(np.isfinite(error), error, 0.0)
+    axes.errorbar(x, y, yerr=error, label=label or None, **style)
+
+
+def level(axes: Axes, y: float, **style: Any) -> None:
+    """A horizontal line over the whole panel, behind the points."""
+    axes.axhline(y, **({"color": BLACK, "linewidth": 1.0, "zorder": 1} | style))
+
+
+def point_handle(label: str, color: str, marker: str = "o", **style: Any) -> Line2D:
+    """An entry of a legend: points."""
+    return Line2D([], [], linestyle="", marker=marker, color=color, label=label, **style)
+
+
+def point_handles(several: Iterable[Series]) -> list[Line2D]:
+    """An entry of a legend for each series."""
+    return [point_handle(each.label, each.colour) for each in several]
+
+
+def line_handle(label: str, color: str, **style: Any) -> Line2D:
+    """An entry of a legend: a line."""
+    return Line2D([], [], color=color, label=label, **style)
+
+
+def inside(axes: Axes, x: float, y: float, text: str, **style: Any) -> None:
+    """A text in a panel; x and y are shares of its width and height."""
+    axes.text(x, y, text, transform=axes.transAxes, **style)
+
+
+def legend_above_data(axes: Axes, **style: Any) -> None:
+    """A legend in the panel, whose vertical axis is longer at the top so that no data are below."""
+    legend = axes.legend(loc="upper left", **style)
+    low, high = axes.get_ylim()
+    lines = len(legend.get_texts())
+    share = 0.06 + 0.26 * lines / axes.figure.get_figheight()  # a line has 0.26 inches
+    axes.set_ylim(low, low + (high - low) / (1 - share))
+
+
+def top_legend(figure: Figure, handles: Sequence[Any], columns: int = 0) -> None:
+    """One legend for all panels, in a strip of its own above them."""
+    columns = columns or len(handles)
+    lines = -(-len(handles) // columns)
+    height = (14 + 22 * lines) / _PIXELS / figure.get_figheight()
+    figure.legend(handles=handles, loc="upper center", ncol=columns, frameon=False)
+    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - height))
+
+
+def outer_labels(panels: Any, x: str, y: str) -> None:
+    """Labels of the axes at the lower and left panels only. `panels` is a matrix of axes."""
+    for axes in panels[-1, :]:
+        axes.set_xlabel(x)
+    for axes in panels[:, 0]:
+        axes.set_ylabel(y)
+
+
+def remove_empty(panels: Any, count: int) -> None:
+    """Removes all panels but the first `count`; the panels above them get labels at their axes."""
+    for axes in panels.flat[count:]:
+        axes.remove()
+    for axes in panels[-2:-1].flat[count - panels.size :] if count < panels.size else ():
+        axes.tick_params(labelbottom=True)
+        axes.set_xlabel(panels[-1, 0].get_xlabel())
+
+
+def signed_log_axis(axes: Axes, linear: float, values: Iterable[Any]) -> None:
+    """A vertical axis that is linear below `linear` and logarithmic above it, on both sides of 0,
+    over the finite values."""
+    numbers = np.concatenate([np.ravel(v) for v in values])
+    numbers = numbers[np.isfinite(numbers)]
+    lowest, highest = min(1.3 * numbers.min(), -linear), max(2 * numbers.max(), linear)
+    decades = range(int(np.floor(np.log10(2 * linear) + 0.5)), int(np.ceil(np.log10(highest))) + 1)
+    powers = [10.0**k for k in decades]
+    axes.set_yscale("asinh", linear_width=linear)
+    axes.set_ylim(lowest, highest)
+    axes.yaxis.set_major_locator(FixedLocator([-p for p in powers if p < -lowest] + [0.0] + powers))
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: power_text(y)))
+
+
+def plain_log_ticks(axis: Any, at: Sequence[float]) -> None:
+    """Decimal numbers at a logarithmic axis, instead of powers of ten."""
+    axis.set_major_locator(FixedLocator(at))
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+
+
+def power_text(x: float) -> str:
+    """Of a number with one digit, such as 6×10⁻¹⁵, -10⁻² or 0, as mathematical text."""
+    if x == 0:
+        return "0"
+    digit, exponent = f"{abs(x):.0e}".split("e")
+    factor = "" if digit == "1" else rf"{digit}\times "
+    return f"${'-' if x < 0 else ''}{factor}10^{{{int(exponent)}}}$"
+
+
+def energy_bar(figure: Figure, axes: Any, highest: float, label: str, **place: Any) -> Any:
+    """A colour bar of energies from 0 to `highest`; returns the scale of the colours."""
+    scale = ScalarMappable(Normalize(0, highest), ENERGY)
+    figure.colorbar(scale, ax=axes, label=label, **place)
+    return scale

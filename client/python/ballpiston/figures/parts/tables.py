@@ -1,0 +1,143 @@
+"""Tables: named columns of equal length. A figure's data are tables by name of file."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from ballpiston.closed_forms import ClosedForms
+from ballpiston.document import write_atomically
+from ballpiston.point import Point
+from ballpiston.result import Result
+
+FloatArray = npt.NDArray[np.float64]
+Table = dict[str, npt.NDArray[Any]]
+Tables = dict[str, Table]
+
+_ESTIMATE = ("standard_error", "exact", "noise_floor", "limit")
+
+
+def table(rows: Iterable[Mapping[str, Any]], names: Iterable[str] = ()) -> Table:
+    """Of rows with the same names; `names` are those of a table without rows. What is None becomes
+    NaN."""
+    rows = list(rows)
+    names = rows[0] if rows else names
+    return {n: np.array([np.nan if r[n] is None else r[n] for r in rows]) for n in names}
+
+
+def stacked(tables: Iterable[Table]) -> Table:
+    """One table below the other."""
+    tables = list(tables)
+    return {n: np.concatenate([t[n] for t in tables]) for n in (tables[0] if tables else ())}
+
+
+def rows(whole: Table, **wanted: Any) -> Table:
+    """The rows in which each named column has the wanted value."""
+    length = len(next(iter(whole.values()), ()))
+    mask = np.ones(length, dtype=bool)
+    for name, value in wanted.items():
+        mask &= whole[name] == value
+    return {name: column[mask] for name, column in whole.items()}
+
+
+def distinct(column: Iterable[Any]) -> list[Any]:
+    """The values, in the order of their first appearance."""
+    return list(dict.fromkeys(column))
+
+
+def estimates(result: Result) -> Table:
+    """One row for each estimate of each point, with the point's parameters."""
+
+    def of(point: Point) -> list[Table]:
+        found = point.estimates.values()
+        named = [{"name": e.name, "value": e.value} for e in found]
+        more = [{field: getattr(e, field) for field in _ESTIMATE} for e in found]
+        return [table(a | b for a, b in zip(named, more))]
+
+    return _of_points(result, of)
+
+
+def curves(result: Result) -> Table:
+    """One row for each time, or position, of each curve of each point."""
+
+    def of(point: Point) -> list[Table]:
+        return [
+            {
+                "name": np.full(len(c.x), c.name),
+                "position" if c.time is None else "time": c.x,
+                "value": c.value,
+                "standard_error": c.standard_error,
+                "limit": c.limit,
+            }
+            for c in point.curves
+        ]
+
+    return _of_points(result, of)
+
+
+def histograms(result: Result) -> Table:
+    """One row for each bin of each histogram of each point."""
+
+    def of(point: Point) -> list[Table]:
+        return [
+            {
+                "name": np.full(len(h.counts), h.name),
+                "sigma": np.full(len(h.counts), h.sigma),
+                "time": np.full(len(h.counts), np.nan if h.time is None else h.time),
+                "lower": h.edges[:-1],
+                "upper": h.edges[1:],
+                "count": h.counts,
+                "density": h.density,
+                "exact_density": h.expected_density,
+            }
+            for h in point.histograms
+        ]
+
+    return _of_points(result, of)
+
+
+def closed_forms(forms: ClosedForms, *names: str) -> Table:
+    """One row for each pair or, if a name has a value for each energy, for each pair and energy."""
+    columns = [forms[name] for name in names]
+    shape = np.broadcast_shapes(*(_as_matrix(column).shape for column in columns))
+    return {n: np.broadcast_to(_as_matrix(c), shape).ravel() for n, c in zip(names, columns)}
+
+
+def write(path: Path, whole: Table, comment: str = "") -> None:
+    """As CSV, with all digits; NaN is an empty cell. The comment is a line that begins with #."""
+    text = io.StringIO()
+    if comment:
+        text.write(f"# {comment}\n")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(whole)
+    for row in zip(*(column.tolist() for column in whole.values())):
+        writer.writerow(map(_cell, row))
+    write_atomically(path, text.getvalue().encode())
+
+
+def _cell(value: Any) -> Any:
+    """64 rather than 64.0."""
+    if not isinstance(value, float):
+        return value
+    return "" if np.isnan(value) else repr(value).removesuffix(".0")
+
+
+def _as_matrix(column: FloatArray) -> FloatArray:
+    return column[:, np.newaxis] if column.ndim == 1 else column
+
+
+def _of_points(result: Result, of: Callable[[Point], list[Table]]) -> Table:
+    parts: list[Table] = []
+    for point in result:
+        facts: dict[str, Union[float, str]] = dict(point.parameters)
+        facts |= {"model": point.model, "samples": point.samples}
+        for part in of(point):
+            length = len(next(iter(part.values()), ()))
+            parts.append({name: np.full(length, fact) for name, fact in facts.items()} | part)
+    return stacked(parts)

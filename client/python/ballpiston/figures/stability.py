@@ -1,0 +1,142 @@
+"""Failures of all engines and of naive methods in the situations where methods fail
+
+Failures per 100 starts of every method (columns) in every situation (rows). Failures are escapes,
+negative times, loops, hits after which the ball still flies into the wall, missed and phantom hits
+of the piston, and pistons beyond their walls. One start can fail several times. A cell is empty if
+the method was not run in the situation.
+
+It needs no server: the program `stability` counts the failures. With --full it takes about ten
+minutes on one core, else some seconds, with a small part of the starts.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from typing import Any
+
+from matplotlib.colors import LinearSegmentedColormap, LogNorm
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from ballpiston.figures.parts import style
+from ballpiston.figures.parts.programs import output_of
+from ballpiston.figures.parts.tables import Table, Tables, distinct, rows, table
+
+EFFORT: dict[str, dict[str, Any]] = {"quick": {}, "full": {"all_starts": True}}
+
+_KINDS = {
+    "escapes",
+    "negative times",
+    "loops",
+    "still inward",
+    "missed",
+    "phantoms",
+    "pistons beyond",
+}
+_NAIVE = 5  # the last columns are naive methods
+_METHODS = (
+    "lanes",
+    "lanes, single",
+    "reference",
+    "reference, single",
+    "reference, 64 bits",
+    "reference, 113 bits",
+    "jump process",
+    "nearest root",
+    "nearest root, no threshold",
+    "approaching disc",
+    "unit speed assumed",
+    "fixed steps of 1e-3",
+)
+_SHADES = LinearSegmentedColormap.from_list("", ["#fdf0d5", "#fdbf6f", "#e8603c", "#8c1d18"])
+_NO_FAILURE = "#d6e6f2"
+_LINE = 25  # height of a line, in pixels
+
+
+def measure(*, all_starts: bool = False) -> Tables:
+    """The counts of all situations and methods, and in `failures` the sum of all kinds."""
+    arguments = [] if all_starts else ["--quick"]
+    return {"stability": counts(output_of("stability", *arguments, quiet=not sys.stderr.isatty()))}
+
+
+def counts(report: str) -> Table:
+    """From the tables "All counts" of the program's report, which is Markdown. Only the first row
+    of a block of rows contains the case."""
+    found = []
+    section, case, number, titles = "", "", 0, [""]
+    for line in report.splitlines():
+        if start := re.match(r"<details>.*All counts: ([^<]*)<", line):
+            section = start[1]
+        elif line.startswith("</details>"):
+            section = ""
+        elif section and line.startswith("|") and not re.match(r"\|:?-", line):
+            cells = [cell.strip() for cell in line.strip("|").split("|")]
+            if cells[0] == "case":
+                titles = cells
+                continue
+            if cells[0]:
+                case, number = cells[0], number + 1
+            named = {title: cell.replace(",", "") for title, cell in zip(titles, cells)}
+            found.append(
+                {
+                    "section": section,
+                    "row": number,
+                    "case": case,
+                    "method": cells[1],
+                    "starts": int(named["starts"]),
+                    "failures": sum(int(named[kind]) for kind in _KINDS & named.keys()),
+                }
+            )
+    return table(found)
+
+
+@style.styled
+def draw(tables: Tables) -> Figure:
+    """One cell for each situation and method."""
+    data = tables["stability"]
+    sections, cases = distinct(data["section"]), distinct(data["row"])
+    lines = len(sections) + len(cases)
+    figure = style.picture(980, 200 + _LINE * lines)
+    axes = figure.add_subplot()
+    axes.set(xlim=(-0.5, len(_METHODS) - 0.5), ylim=(lines - 0.5, -0.5))
+    axes.grid(False)
+    line, ticks = 0, {}
+    for section in sections:
+        axes.text(-0.6, line, section, ha="right", va="center", fontsize=11, fontweight="bold")
+        line += 1
+        for number in distinct(rows(data, section=section)["row"]):
+            part = rows(data, row=number)
+            ticks[line] = part["case"][0]
+            _draw_cells(axes, part, line)
+            line += 1
+    axes.set_yticks(list(ticks), list(ticks.values()), fontsize=10)
+    axes.set_xticks(range(len(_METHODS)), _METHODS, fontsize=10, rotation=55, ha="left")
+    axes.xaxis.tick_top()
+    axes.minorticks_off()
+    axes.tick_params(length=0)
+    axes.set_frame_on(False)
+    axes.axvline(len(_METHODS) - _NAIVE - 0.5, color=style.BLACK, linewidth=1.5)
+    figure.text(0.01, 0.99, "failures per 100 starts", va="top", fontsize=13)
+    return figure
+
+
+def _draw_cells(axes: Any, part: Table, line: int) -> None:
+    shade = LogNorm(1e-4, 100, clip=True)
+    for method, starts, failures in zip(part["method"], part["starts"], part["failures"]):
+        x = _METHODS.index(method)
+        rate = 100 * failures / starts
+        colour = _SHADES(shade(rate)) if failures else _NO_FAILURE
+        axes.add_patch(Rectangle((x - 0.46, line - 0.42), 0.92, 0.84, facecolor=colour))
+        ink = "white" if rate > 2 else style.BLACK
+        axes.text(x, line, rate_text(rate), ha="center", va="center", fontsize=9, color=ink)
+
+
+def rate_text(rate: float) -> str:
+    """Such as 0, 4e-4, 0.12 or 35."""
+    if rate == 0:
+        return "0"
+    if rate < 0.01:
+        digit, exponent = f"{rate:.0e}".split("e")
+        return f"{digit}e{int(exponent)}"
+    return f"{rate:.2g}" if rate < 10 else f"{rate:.0f}"

@@ -1,0 +1,110 @@
+"""Temperatures along chains between a hot and a cold reservoir, and the linear law of T^(3/2)
+
+Temperatures of balls and pistons along chains of N cells between two reservoirs, against x/N, from
+the jump process (the limit delta -> 0) and from the billiard. If the conductivity grows as sqrt(T),
+T^(3/2) falls linearly. Lower panel: the difference from that line.
+Time on two cores: quick 2 s, default 50 s, full 15 min.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ballpiston.client import Client
+from ballpiston.figures.parts import style
+from ballpiston.figures.parts.asking import RHO, answer
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, curves, distinct, rows
+from ballpiston.parameter_lists import Shapes
+
+EFFORT: dict[str, dict[str, Any]] = {
+    "quick": {"cells": "2,4,8", "samples": 200, "billiard_samples": 20},
+    "full": {"samples": 20_000, "billiard_samples": 2000},
+}
+
+_ASIDE = 0.007  # shift of the billiard's points to the right, so that all points are visible
+_DARK = "#606060"
+
+
+def measure(
+    client: Client,
+    *,
+    rho: float = RHO,
+    delta: float = 0.1,
+    cells: Shapes = "4,8,16",
+    hot: float = 1.5,
+    cold: float = 0.5,
+    samples: float = 1000,
+    billiard_samples: float = 100,
+    seed: int = 0,
+) -> Tables:
+    """The profiles of both models, from replicas of chains of `cells`. The billiard costs about
+    fifty times as much as the jump process."""
+
+    def profile(model: str, samples: float) -> Table:
+        question = {"rho": rho, "delta": delta, "cells": cells, "hot": hot, "cold": cold}
+        question |= {"model": model, "samples": samples, "seed": seed}
+        return curves(answer(client, "gas-conduction", **question))
+
+    return {
+        "temperature-profile-markov": profile("markov", samples),
+        "temperature-profile-billiard": profile("billiard", billiard_samples),
+    }
+
+
+def linear_law(hot: float, cold: float, x: FloatArray) -> FloatArray:
+    """The temperature at the share x of the chain if T^(3/2) is linear."""
+    law: FloatArray = (hot**1.5 + (cold**1.5 - hot**1.5) * x) ** (2 / 3)
+    return law
+
+
+@style.styled
+def draw(tables: Tables) -> Figure:
+    """Points of the jump process are filled; balls are round, pistons square."""
+    markov = tables["temperature-profile-markov"]
+    hot, cold = float(markov["hot"][0]), float(markov["cold"][0])
+    lengths = distinct(markov["cells"])
+    figure = style.picture(960, 840)
+    panels = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3, 2)})
+    x = np.linspace(0, 1, 200)
+    panels[0].plot(x, linear_law(hot, cold, x), color=style.BLACK)
+    style.level(panels[1], 0)
+    handles = [style.line_handle("linear T$^{3/2}$", style.BLACK)]
+    for k, length in enumerate(lengths):
+        handles.append(style.point_handle(f"N = {length}", style.colour(k)))
+        for model in ("markov", "billiard"):
+            part = rows(tables[f"temperature-profile-{model}"], cells=length)
+            _draw_profile(panels, part, model, hot, cold, style.colour(k))
+    for model, name in (("markov", "δ → 0"), ("billiard", "billiard")):
+        for is_piston, body in ((False, "balls"), (True, "pistons")):
+            marker = _marker(model, is_piston)
+            handles.append(style.point_handle(f"{body}, {name}", _DARK, **marker))
+    panels[0].set_ylabel("temperature T")
+    panels[1].set(xlim=(-0.02, 1.03), xlabel="x/N", ylabel="T minus the line")
+    panels[0].legend(handles=handles)
+    return figure
+
+
+def _draw_profile(
+    panels: Any, part: Table, model: str, hot: float, cold: float, colour: str
+) -> None:
+    for is_piston in (False, True):  # pistons have whole positions
+        chosen = (part["position"] == np.floor(part["position"])) == is_piston
+        body = {name: column[chosen] for name, column in part.items()}
+        share = body["position"] / body["cells"].astype(float)
+        place = share + (_ASIDE if model == "billiard" else 0)
+        marker = _marker(model, is_piston)
+        panels[0].plot(place, body["value"], linestyle="", color=colour, **marker)
+        excess = body["value"] - linear_law(hot, cold, share)
+        dots = {"fmt": marker.pop("marker"), **marker}
+        style.error_points(panels[1], place, excess, body["standard_error"], colour, **dots)
+
+
+def _marker(model: str, is_piston: bool) -> dict[str, Any]:
+    return {
+        "marker": "s" if is_piston else "o",
+        "fillstyle": "full" if model == "markov" else "none",
+        "markersize": 5,
+    }

@@ -1,0 +1,117 @@
+#include "server/book/acceptance.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "server/convert/errors.h"
+#include "server/sha256.h"
+#include "server/store/sweeper.h"
+
+namespace ballpiston::server {
+namespace {
+
+bool Exceeds(double value, double limit) { return limit > 0 && value > limit; }
+
+// Refuses one more job of the principal if it would exceed a limit.
+void CheckQueue(Database& database, const Limits& limits, const JobRecord& job) {
+  const Load load = ActiveLoad(database, job.principal);
+  const std::string& principal = job.principal;
+  const auto check = [&](int64_t with_job, int64_t most, const char* reason, const char* flag,
+                         const std::string& what) {
+    if (most == 0 || with_job <= most) return;
+    database.Fail(LimitExceeded(reason, what, flag, static_cast<double>(most)));
+  };
+  check(load.jobs + 1, limits.max_active_jobs, "QUEUE_FULL", "max-active-jobs",
+        absl::StrCat(load.jobs, " jobs are active"));
+  check(load.own_jobs + 1, limits.max_active_jobs_per_principal, "TOO_MANY_JOBS",
+        "max-active-jobs-per-principal",
+        absl::StrCat(principal, " has ", load.own_jobs, " active jobs already"));
+  const int64_t points = load.points + job.points, own_points = load.own_points + job.points;
+  check(points, limits.max_active_points, "TOO_MANY_ACTIVE_POINTS", "max-active-points",
+        absl::StrCat("active jobs would have ", points, " points with this one"));
+  check(own_points, limits.max_active_points_per_principal, "TOO_MANY_ACTIVE_POINTS",
+        "max-active-points-per-principal",
+        absl::StrCat(principal, "'s active jobs would have ", own_points, " points with this one"));
+}
+
+// Results expire before the store is full, but those of pinned and active jobs do not.
+void CheckStoreSize(Database& database, const Limits& limits) {
+  if (limits.max_store_bytes == 0) return;
+  const int64_t used = UsedBytes(database);
+  if (used <= limits.max_store_bytes) return;
+  database.Fail(
+      LimitExceeded("TOO_MANY_STORED_BYTES",
+                    absl::StrCat("the store holds ", used, " bytes: unpin or delete some jobs"),
+                    "max-store-bytes", static_cast<double>(limits.max_store_bytes)));
+}
+
+std::optional<EarlierJob> FindOriginal(Database& database, const Acceptance& acceptance) {
+  const auto request = FindRequest(database, acceptance.record.principal, acceptance.request_id);
+  if (!request) return std::nullopt;
+  if (request->payload != acceptance.payload) {
+    database.Fail(RequestIdReused(acceptance.request_id));
+  }
+  auto job = FindJobBySequence(database, request->job, Grid::kIncluded);
+  return job ? std::optional(EarlierJob{*std::move(job)}) : std::nullopt;
+}
+
+std::optional<EarlierJob> FindEarlier(Database& database, const Acceptance& acceptance) {
+  if (auto original = FindOriginal(database, acceptance)) return original;
+  if (acceptance.fresh) return std::nullopt;
+  const JobRecord& record = acceptance.record;
+  auto answer = FindAnswer(database, record.principal, record.question);
+  return answer ? std::optional(EarlierJob{*std::move(answer), true}) : std::nullopt;
+}
+
+}  // namespace
+
+absl::Status CheckSize(const CheckedSpec& checked, const Limits& limits) {
+  const double points = static_cast<double>(PointCount(checked.spec));
+  if (Exceeds(points, static_cast<double>(limits.max_points_per_job))) {
+    return LimitExceeded("TOO_MANY_POINTS", absl::StrCat("the grid has ", points, " points"),
+                         "max-points-per-job", static_cast<double>(limits.max_points_per_job));
+  }
+  const Target& target = checked.spec.target;
+  const bool open_ended = target.tolerance || target.budget_seconds;
+  const int64_t of_a_point =
+      target.samples.value_or(target.collisions.value_or(open_ended ? 0 : kDefaultSamples));
+  const double samples = points * static_cast<double>(of_a_point);
+  if (!Exceeds(samples, limits.max_samples_per_job)) return absl::OkStatus();
+  return LimitExceeded("TOO_MANY_SAMPLES", absl::StrCat("the job takes ", samples, " samples"),
+                       "max-samples-per-job", limits.max_samples_per_job);
+}
+
+std::optional<EarlierJob> Judge(Database& database, const Limits& limits,
+                                const Acceptance& acceptance) {
+  std::optional<EarlierJob> earlier = FindEarlier(database, acceptance);
+  if (earlier) return earlier;
+  database.Fail(acceptance.fits);
+  CheckQueue(database, limits, acceptance.record);
+  CheckStoreSize(database, limits);
+  return std::nullopt;
+}
+
+// An answer from the store stores no request: a retry finds the same answer.
+std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
+  std::optional<EarlierJob> earlier = Judge(database, limits, acceptance);
+  if (earlier) return earlier;
+  JobRecord& record = acceptance.record;
+  InsertJob(database, record);
+  if (!acceptance.request_id.empty()) {
+    InsertRequest(database, record.principal, acceptance.request_id,
+                  {.payload = acceptance.payload, .job = record.sequence});
+  }
+  return std::nullopt;
+}
+
+std::string QuestionOf(const v1::EnsembleSpec& spec, const std::string& engine_version) {
+  if (spec.target().has_budget()) return std::string();
+  return Sha256(absl::StrCat(engine_version, "\n", QuestionBytes(spec)));
+}
+
+std::string PayloadOf(const v1::CreateEnsembleJobRequest& request) {
+  return Sha256(absl::StrCat(request.fresh() ? "fresh" : "", "\n", request.priority(), "\n",
+                             QuestionBytes(request.spec())));
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,119 @@
+// What memory knows about an active job: its progress, and numbered changes that wake watches.
+//
+// The job's row owns everything that is stored, above all the state (store/job_record.h). Memory
+// owns what is not stored yet: the numbers of the points that are being computed. JobMessage
+// (job_message.h) makes the job that clients see of both.
+//
+// Changes are numbered from 1. A watch remembers the number of the last change that it has sent and
+// asks for newer ones. So a slow watch may skip intermediate states, but always gets the newest.
+//
+// Finished points have numbers of their own. The store assigns them, and they stay valid after a
+// restart of the server (point_tables.h). A point counts as done, and can be sent, when it is
+// stored. The job keeps the newest kRecentPoints in memory; the store has all of them. Thread-safe.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ballpiston/v1/ensemble.pb.h"
+#include "ballpiston/v1/result.pb.h"
+#include "server/book/shared_copy.h"
+#include "server/mutex.h"
+#include "server/store/job_record.h"
+#include "server/store/point_tables.h"
+
+namespace ballpiston::server {
+
+inline constexpr size_t kRecentPoints = 100;
+
+struct FinishedPoint {
+  int64_t number = 0;
+  std::shared_ptr<const std::string> result;  // serialized v1::PointResult
+};
+
+// The job's row at one moment.
+struct StoredJob {
+  uint64_t change = 0;  // the number of the last change of state before the row was read
+  JobRecord record;
+};
+
+// The job's unfinished points at one moment.
+struct JobSnapshot {
+  struct Point {
+    uint64_t change = 0;     // the number of its last change
+    v1::PointResult result;  // without histograms and curves
+  };
+
+  uint64_t change = 0;        // the job's last change before the snapshot
+  int64_t finished = 0;       // the number of the last finished point then: none of `points` has it
+                              // or a smaller one
+  std::vector<Point> points;  // newest first
+};
+
+// Removes those points from the unfinished ones of a message that are also among its finished ones:
+// they were finished after the snapshot was made.
+void LeaveOutFinished(v1::StatisticsSnapshot& message);
+
+class Job {
+ public:
+  explicit Job(JobRecord row);
+
+  // The row when the job became active, without its specification.
+  const JobRecord& row() const { return row_; }
+
+  JobNumbers Numbers() const;
+  v1::JobProgress Progress() const;
+
+  // These three take no lock, because a thousand watches call them several times a second.
+  uint64_t last_change() const { return last_change_; }
+  uint64_t last_state_change() const { return last_state_change_; }
+  int64_t last_finished() const { return last_finished_; }  // the number of that point
+
+  // Call when a change of the row's state is committed.
+  void NoteStateChange();
+  // Waits for a change of state after number `after`, at most until the time `until`.
+  void AwaitStateChange(uint64_t after, std::chrono::steady_clock::time_point until);
+  // Ends all waits, now and later. Call it when the server stops.
+  void StopWaiting();
+
+  // Adds what was computed, or restored from a checkpoint. Returns the number of the change.
+  uint64_t Add(const JobNumbers& more);
+  // Adds a point that is stored now. Call in the order of the points' numbers.
+  void AddFinishedPoint(FinishedPoint point);
+  // Adds the points that an earlier process stored. Call before AddFinishedPoint.
+  void AddRestoredPoints(const std::vector<PointSize>& points);
+
+  // The finished points after number `after`, oldest first, at most `limit`. Empty if some of these
+  // points are no longer in memory.
+  std::optional<std::vector<FinishedPoint>> FinishedAfter(int64_t after, size_t limit) const;
+
+  SharedCopy<JobSnapshot>& snapshot() { return snapshot_; }
+  SharedCopy<StoredJob>& stored() { return stored_; }
+
+ private:
+  const bool open_ended_;  // the number of samples is not known in advance
+  const JobRecord row_;
+
+  mutable Mutex mutex_;
+  Condition state_changed_;
+  bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
+  JobNumbers numbers_ ABSL_GUARDED_BY(mutex_);
+  std::atomic<uint64_t> last_change_ = 1;
+  std::atomic<uint64_t> last_state_change_ = 1;
+  std::atomic<int64_t> last_finished_ = 0;
+  std::deque<FinishedPoint> recent_ ABSL_GUARDED_BY(mutex_);  // oldest first
+  // The number of the last point before those in recent_.
+  int64_t last_forgotten_ ABSL_GUARDED_BY(mutex_) = 0;
+
+  SharedCopy<JobSnapshot> snapshot_;
+  SharedCopy<StoredJob> stored_;
+};
+
+}  // namespace ballpiston::server

@@ -1,0 +1,188 @@
+#include "server/book/job_book.h"
+
+#include <optional>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "server/book/job_name.h"
+#include "server/book/retention.h"
+#include "server/convert/errors.h"
+#include "server/host.h"
+#include "server/status/failpoint.h"
+#include "server/status/log.h"
+
+namespace ballpiston::server {
+
+JobBook::JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
+                 std::shared_ptr<CrashRecord> crashes)
+    : store_(store),
+      limits_(limits),
+      scheduler_(scheduler),
+      crashes_(std::move(crashes)),
+      active_(store, scheduler, *crashes_) {}
+
+JobBook::~JobBook() {
+  Shutdown();
+  store_.Close();  // the store's thread calls this book when it has written a job's end
+}
+
+void JobBook::Shutdown() {
+  store_.StopWaiting();
+  scheduler_.Shutdown();
+  active_.StopWaiting();
+}
+
+JobRecord JobOf(Database& database, const Principal& caller, const std::string& id, Grid grid) {
+  std::optional<JobRecord> record = FindJob(database, id, grid);
+  if (record && caller.MaySee(record->principal)) return *std::move(record);
+  database.Fail(JobNotFound(JobName(id)));
+  return {};
+}
+
+// ---- new jobs ----
+
+Acceptance JobBook::NewAcceptance(const Principal& caller,
+                                  const v1::CreateEnsembleJobRequest& request,
+                                  const CheckedSpec& checked) const {
+  Acceptance acceptance;
+  JobRecord& record = acceptance.record;
+  record.principal = caller.name;
+  record.priority = request.priority();
+  record.spec = SpecBytes(request.spec());
+  record.engine_version = EngineVersion();
+  record.question = QuestionOf(request.spec(), record.engine_version);
+  record.numbers.bytes = static_cast<int64_t>(record.spec.size());
+  record.create_time = WallNow();
+  record.points = static_cast<int64_t>(PointCount(checked.spec));
+  acceptance.request_id = request.request_id();
+  acceptance.payload = PayloadOf(request);
+  acceptance.fresh = request.fresh();
+  acceptance.fits = CheckSize(checked, limits_);
+  return acceptance;
+}
+
+absl::StatusOr<v1::EnsembleJob> JobBook::Preview(const Principal& caller,
+                                                 const v1::CreateEnsembleJobRequest& request,
+                                                 const CheckedSpec& checked) {
+  const Acceptance acceptance = NewAcceptance(caller, request, checked);
+  const auto earlier =
+      store_.Read([&](Database& database) { return Judge(database, limits_, acceptance); });
+  if (!earlier.ok()) return StoreFailure(earlier.status());
+  if (!*earlier) return Message(acceptance.record, nullptr);
+  return Answer(caller, (*earlier)->record, (*earlier)->answered_from_store);
+}
+
+absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
+                                                const v1::CreateEnsembleJobRequest& request,
+                                                const CheckedSpec& checked) {
+  Acceptance acceptance = NewAcceptance(caller, request, checked);
+  acceptance.record.id = RandomId();
+  std::shared_ptr<Job> job;  // the new job, if there is one
+  const auto earlier = store_.Commit([&](Database& database) {
+    auto found = Accept(database, limits_, acceptance);
+    Failpoint("create.in_transaction");
+    job = found ? nullptr : active_.Add(acceptance.record);
+    return found;
+  });
+  Failpoint("create.committed");
+  if (!earlier.ok() || *earlier) active_.Remove(acceptance.record.id);
+  if (!earlier.ok()) return StoreFailure(earlier.status());
+  if (*earlier) return Answer(caller, (*earlier)->record, (*earlier)->answered_from_store);
+  StartRun(job, checked);
+  Failpoint("create.before_answer");
+  return Answer(caller, acceptance.record, false);
+}
+
+void JobBook::StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& checked) {
+  RunRequest run;
+  run.spec = checked.spec;
+  run.finished.assign(static_cast<size_t>(job->row().points), false);
+  active_.StartRun(job, std::move(run));
+}
+
+// The job's present state. If the job was deleted meanwhile, its state when it was found.
+absl::StatusOr<v1::EnsembleJob> JobBook::Answer(const Principal& caller, const JobRecord& record,
+                                                bool answered_from_store) {
+  absl::StatusOr<v1::EnsembleJob> job = Get(caller, record.id);
+  if (absl::IsNotFound(job.status())) job = Message(record, nullptr);
+  if (!job.ok()) return job.status();
+  // A cancellation or a new priority that came before the run was added did not find it.
+  if (job->state() == v1::EnsembleJob::CANCELLING) scheduler_.Cancel(record.sequence);
+  scheduler_.SetPriority(record.sequence, job->priority());
+  job->set_answered_from_store(answered_from_store);
+  return job;
+}
+
+// ---- changes of a job ----
+
+absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const std::string& id,
+                                                const std::string& request_id) {
+  bool begun = false;
+  const auto found = store_.Commit([&](Database& database) {
+    JobRecord record = JobOf(database, caller, id, Grid::kLeftOut);
+    begun = BeginCancellation(database, record.sequence, request_id);
+    Failpoint("cancel.in_transaction");
+    const bool is_replay = !request_id.empty() && record.cancel_request_id == request_id;
+    if (HasEnded(record.state) && !is_replay) {
+      database.Fail(JobAlreadyEnded(JobName(id), v1::EnsembleJob::State_Name(record.state)));
+    }
+    return record;
+  });
+  if (!found.ok()) return StoreFailure(found.status());
+  Failpoint("cancel.committed");
+  const std::shared_ptr<Job> job = active_.Find(id);
+  if (begun && job != nullptr) job->NoteStateChange();
+  scheduler_.Cancel(found->sequence);  // again if an earlier call came before the run was added
+  return Get(caller, id);
+}
+
+absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
+  const absl::Status deleted = store_.CommitDeletion([&](Database& database) {
+    const JobRecord record = JobOf(database, caller, id, Grid::kLeftOut);
+    if (!HasEnded(record.state)) {
+      database.Fail(JobStillActive(JobName(id), v1::EnsembleJob::State_Name(record.state)));
+    }
+    DeleteJob(database, record.sequence);
+    Failpoint("delete.in_transaction");
+  });
+  Failpoint("delete.committed");
+  return StoreFailure(deleted);
+}
+
+absl::StatusOr<v1::EnsembleJob> JobBook::Update(const Principal& caller, const std::string& id,
+                                                const JobChange& change) {
+  JobRecord record;
+  const absl::Status changed = store_.Commit([&](Database& database) {
+    record = JobOf(database, caller, id, Grid::kLeftOut);
+    if (change.pinned && record.expired_time) database.Fail(ResultsExpired(JobName(id)));
+    record.pinned = change.pinned.value_or(record.pinned);
+    record.priority = change.priority.value_or(record.priority);
+    UpdateJob(database, record);
+  });
+  if (!changed.ok()) return StoreFailure(changed);
+  scheduler_.SetPriority(record.sequence, record.priority);
+  return Get(caller, id);
+}
+
+// ---- limits ----
+
+void JobBook::KeepLimits(absl::Time now) {
+  const absl::Status kept = EnforceRetention(store_, limits_, now);
+  const bool is_new = std::exchange(limits_failure_, kept) != kept;
+  if (is_new && !kept.ok() && !store_.failing()) {
+    LogError(absl::StrCat("the limits on stored results cannot be enforced: ", kept.message()));
+  }
+}
+
+int64_t JobBook::CountExpiring(absl::Time now) {
+  if (limits_.retain_days == 0) return 0;
+  const absl::Time ended = now + kSoonToExpire - absl::Hours(24) * limits_.retain_days;
+  return store_.Read([&](Database& database) { return CountExpirable(database, ended); })
+      .value_or(0);
+}
+
+std::map<std::string, PrincipalJobs> JobBook::JobsByPrincipal() {
+  return store_.Read(&CountJobsByPrincipal).value_or(std::map<std::string, PrincipalJobs>());
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,171 @@
+// All jobs: the operations of the API's methods, without gRPC.
+//
+// A job is a row of the store. While it is active, memory also has its numbers (job.h), and the
+// scheduler its run. Every method reads the job's state from the committed row, so no client sees a
+// state that a restart could take back, or an older state after a newer one.
+//
+// Methods that write wait for the disk. Errors have reasons (server/convert/errors.h). Thread-safe.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "ballpiston/v1/ensemble.pb.h"
+#include "server/book/acceptance.h"
+#include "server/book/active_jobs.h"
+#include "server/book/job.h"
+#include "server/book/job_list.h"
+#include "server/compute/crash_record.h"
+#include "server/compute/scheduler.h"
+#include "server/convert/spec.h"
+#include "server/door/principal.h"
+#include "server/limits.h"
+#include "server/store/job_table.h"
+#include "server/store/store.h"
+
+namespace ballpiston::server {
+
+inline constexpr absl::Duration kSoonToExpire = absl::Hours(7 * 24);
+
+using JobsPage = PageOfJobs<v1::EnsembleJob>;
+
+// A job's row, and its numbers in memory.
+struct FoundJob {
+  JobRecord record;
+  std::shared_ptr<Job> active = nullptr;  // null if it has ended
+
+  // The number of the last finished point.
+  int64_t last_finished() const {
+    return active != nullptr ? active->last_finished() : record.numbers.points_done;
+  }
+};
+
+struct ResultsQuery {
+  int64_t first_point = 0;
+  int max_points = 1;
+  size_t max_bytes = 0;  // ends a page that has at least one point
+  bool histograms = true;
+};
+
+struct ResultsPage {
+  std::vector<v1::PointResult> points;
+  std::optional<int64_t> next_point;  // empty: this is the last page
+};
+
+// The fields of a job that its owner may change; empty: not changed.
+struct JobChange {
+  std::optional<bool> pinned = {};
+  std::optional<int32_t> priority = {};  // of an active job; has no effect on one that has ended
+};
+
+class JobBook {
+ public:
+  // Store and scheduler must outlive this.
+  JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
+          std::shared_ptr<CrashRecord> crashes = std::make_shared<CrashRecord>());
+  ~JobBook();  // shuts down, and closes the store
+
+  // Resumes the unfinished jobs of an earlier process. Call before anything else.
+  absl::Status Resume() { return active_.Resume(); }
+
+  // Stops the computation, and all waits for a change of a job. Unfinished jobs stay in the store
+  // as they are.
+  void Shutdown();
+
+  // The answer that Create would give now.
+  absl::StatusOr<v1::EnsembleJob> Preview(const Principal& caller,
+                                          const v1::CreateEnsembleJobRequest& request,
+                                          const CheckedSpec& checked);
+
+  // `checked` is the specification of the request, without violations; the request's id is in lower
+  // case. Returns an earlier job if this is a retry, or if an earlier job has the same question.
+  absl::StatusOr<v1::EnsembleJob> Create(const Principal& caller,
+                                         const v1::CreateEnsembleJobRequest& request,
+                                         const CheckedSpec& checked);
+
+  // For all methods below, a job that the caller may not see does not exist.
+  absl::StatusOr<v1::EnsembleJob> Cancel(const Principal& caller, const std::string& id,
+                                         const std::string& request_id);
+  absl::Status Delete(const Principal& caller, const std::string& id);
+  absl::StatusOr<v1::EnsembleJob> Update(const Principal& caller, const std::string& id,
+                                         const JobChange& change);
+
+  // ---- these only read (job_book_reads.cc) ----
+
+  absl::StatusOr<v1::EnsembleJob> Get(const Principal& caller, const std::string& id,
+                                      Grid grid = Grid::kIncluded);
+  absl::StatusOr<JobsPage> List(const Principal& caller, const JobsQuery& query);
+  absl::StatusOr<ResultsPage> Results(const Principal& caller, const std::string& id,
+                                      const ResultsQuery& query);
+  absl::StatusOr<v1::PointResult> Result(const Principal& caller, const std::string& id,
+                                         int64_t point);
+  // The result up to now of a point that is being computed, with histograms and curves. Empty if
+  // the point is not being computed.
+  absl::StatusOr<std::optional<v1::PointResult>> UnfinishedResult(const Principal& caller,
+                                                                  const std::string& id,
+                                                                  int64_t point);
+
+  // The job that clients see. `active`: null if it has ended.
+  v1::EnsembleJob Message(const JobRecord& record, const Job* active) const;
+
+  // ---- for watches ----
+
+  // Without its grid.
+  absl::StatusOr<FoundJob> FindWatched(const Principal& caller, const std::string& id);
+
+  // The row of a job that is or was active, without its grid; one read serves all watches. It is
+  // not older than the job's last change of state, or its last FindWatched.
+  absl::StatusOr<std::shared_ptr<const StoredJob>> Stored(Job& job);
+
+  // The newest `limit` unfinished points of the job. The snapshot is at most `max_age` old.
+  std::shared_ptr<const JobSnapshot> Snapshot(Job& job, std::chrono::milliseconds max_age,
+                                              size_t limit) const;
+
+  // The finished points after number `after`, in order, at most `limit`; fewer if they are large.
+  // `active` is null if the job has ended. No points: there are no more. May read the store.
+  absl::StatusOr<std::vector<FinishedPoint>> FinishedAfter(int64_t sequence, const Job* active,
+                                                           int64_t after, size_t limit);
+
+  // ---- the limits, and what the server's status shows ----
+
+  // Lets results expire at the time `now`. Call about once a second, from one thread at a time.
+  void KeepLimits(absl::Time now);
+
+  // Jobs whose results expire within kSoonToExpire. 0 if the store cannot be read.
+  int64_t CountExpiring(absl::Time now);
+  std::map<std::string, PrincipalJobs> JobsByPrincipal();  // empty if the store cannot be read
+  size_t active_jobs() const { return active_.size(); }
+  EndedJobs ended_jobs() const { return active_.ended(); }
+  int64_t engine_crashes() const { return crashes_->counted_deaths(); }
+
+ private:
+  Acceptance NewAcceptance(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
+                           const CheckedSpec& checked) const;
+  absl::StatusOr<v1::EnsembleJob> Answer(const Principal& caller, const JobRecord& record,
+                                         bool answered_from_store);
+  void StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& checked);
+  absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id, Grid grid);
+  absl::StatusOr<FoundJob> Find(const Principal& caller, const std::string& id, Grid grid);
+  // Adds the numbers in memory. If the job has ended since its row was read, reads the row again.
+  absl::StatusOr<FoundJob> WithNumbers(const Principal& caller, JobRecord record, Grid grid);
+
+  Store& store_;
+  const Limits limits_;
+  Scheduler& scheduler_;
+  const std::shared_ptr<CrashRecord> crashes_;
+  ActiveJobs active_;
+  absl::Status limits_failure_;  // of the last call of KeepLimits
+};
+
+// The job, or an error of the database: NOT_FOUND if the caller may not see it.
+JobRecord JobOf(Database& database, const Principal& caller, const std::string& id, Grid grid);
+
+}  // namespace ballpiston::server

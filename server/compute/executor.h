@@ -1,0 +1,43 @@
+// An executor computes leases of the scheduler: threads of this process, or another machine.
+//
+// An executor takes leases with Scheduler::Next. Of each lease it either reports all chunks, or
+// returns the lease (Scheduler::Return), or keeps it until the lease's stop is requested. It may
+// report chunks late, twice and in any order.
+#pragma once
+
+#include <cstdint>
+
+#include "server/compute/lease.h"
+
+namespace ballpiston::server {
+
+// What the scheduler has to know of an executor.
+struct ExecutorTraits {
+  // Opens points, takes every lease and shares a lease between turns. The scheduler waits for its
+  // turns to end before a run ends. An executor that is not local gets leases of chunks alone, and
+  // only of runs that are worth it.
+  bool local = true;
+};
+
+class Executor {
+ public:
+  virtual ~Executor() = default;
+
+  virtual ExecutorTraits traits() const = 0;
+
+  // Begins to take leases. Once, after the runs of an earlier process were added.
+  virtual void Start() = 0;
+
+  // There may be a new lease, or a lease may have been stopped. Called from any thread; must not
+  // wait and must not call the scheduler.
+  virtual void Wake() = 0;
+
+  // Whether a further turn at a lease that this executor has would find work. Called with the
+  // scheduler's lock held.
+  virtual bool HasTurn(int64_t lease) const = 0;
+
+  // Ends all calls of the scheduler. May be called more than once.
+  virtual void Shutdown() = 0;
+};
+
+}  // namespace ballpiston::server

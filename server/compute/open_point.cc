@@ -1,0 +1,128 @@
+#include "server/compute/open_point.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ballpiston::server {
+namespace {
+
+// Seconds of one core of a lease that may not have all the rest of its point.
+constexpr double kLeaseOfAPart = 60;
+
+}  // namespace
+
+OpenPoint::OpenPoint(std::shared_ptr<const PointExperiment> experiment)
+    : experiment_(std::move(experiment)), fold_(*experiment_) {}
+
+void OpenPoint::Resume(FoldState state) {
+  next_chunk_ = state.chunk;
+  fold_.Resume(std::move(state));
+}
+
+void OpenPoint::SkipUnneeded() {
+  while (next_chunk_ < chunks() && !fold_.Needs(next_chunk_)) ++next_chunk_;
+  std::erase_if(returned_, [this](const auto& chunk) { return !fold_.Needs(chunk.first); });
+}
+
+std::optional<std::pair<uint64_t, OpenPoint::Attempt>> OpenPoint::NextChunk(
+    const Capacity& capacity, const ChunkLimits& limits) const {
+  const ChunkPlan& plan = experiment_->plan();
+  const auto fits = [&](uint64_t chunk, const Attempt& attempt) {
+    if (!fold_.CanStart(chunk)) return false;
+    if (limits.local) return true;
+    const double seconds = plan.SecondsFor(static_cast<double>(plan.SamplesIn(chunk)));
+    return attempt.number <= limits.most_attempts && seconds <= capacity.longest_chunk;
+  };
+  for (const auto& [chunk, attempt] : returned_) {
+    if (fits(chunk, attempt)) return std::pair(chunk, attempt);
+  }
+  // Beyond the expected end the next chunk or stage alone, because it may be the last.
+  const uint64_t stage = std::max<uint64_t>(plan.groups(), 1);
+  const uint64_t next_end = (fold_.state().chunk / stage + 1) * stage;
+  const uint64_t expected = std::max(experiment_->expected_chunks(), next_end);
+  const uint64_t end = std::isinf(capacity.seconds) ? chunks() : std::min(expected, chunks());
+  if (next_chunk_ >= end || !fits(next_chunk_, Attempt())) return std::nullopt;
+  return std::pair(next_chunk_, Attempt());
+}
+
+void OpenPoint::Take(uint64_t chunk) {
+  if (chunk == next_chunk_) {
+    ++next_chunk_;
+    SkipUnneeded();
+  } else {
+    returned_.erase(chunk);
+  }
+}
+
+bool OpenPoint::AwaitsMemory(const Capacity& capacity) const {
+  const bool fits = memory.of_one_turn <= capacity.memory;
+  return !fits && !fold_.finished() && NextChunk(capacity, ChunkLimits()).has_value();
+}
+
+std::optional<Lease> OpenPoint::NextChunks(const Capacity& capacity, const ChunkLimits& limits) {
+  if (fold_.finished() || memory.of_one_turn > capacity.memory) return std::nullopt;
+  SkipUnneeded();
+  const auto first = NextChunk(capacity, limits);
+  if (!first) return std::nullopt;
+  const ChunkPlan& plan = experiment_->plan();
+  Lease lease;
+  lease.attempt = first->second.number;
+  lease.crashes = first->second.crashes;
+  if (limits.local) lease.memory = memory;
+  lease.experiment = experiment_;
+  lease.stop = stop();
+  lease.start.chunk = first->first;
+  lease.end = first->first;
+  const FoldState& state = fold_.state();
+  if (lease.end == state.chunk) lease.start = {state.chunk, state.blocks, state.partial};
+  const bool takes_the_rest = limits.local && std::isinf(capacity.seconds) &&
+                              memory.of_one_turn <= capacity.memory_of_the_rest &&
+                              fold_.waiting() == 0 && KnowsAllStarts();
+  if (takes_the_rest && lease.end == next_chunk_) {
+    lease.groups = state.complete.groups;
+    lease.end = next_chunk_ = chunks();
+    return lease;
+  }
+  if (plan.groups() > 0) {
+    lease.groups.resize(plan.groups());
+    lease.groups[lease.end % plan.groups()] = fold_.StartOf(lease.end);
+  }
+  const double seconds = std::isinf(capacity.seconds) ? kLeaseOfAPart : capacity.seconds;
+  for (auto next = first; next && *next == std::pair(lease.end, first->second);
+       next = NextChunk(capacity, limits)) {
+    Take(lease.end);
+    lease.seconds += plan.SecondsFor(static_cast<double>(plan.SamplesIn(lease.end)));
+    ++lease.end;
+    // The chunks of other groups can be computed at the same time.
+    if (lease.seconds >= seconds || plan.groups() > 0) break;
+  }
+  return lease;
+}
+
+bool OpenPoint::KnowsAllStarts() const {
+  return experiment_->plan().groups() == 0 || fold_.state().chunk == next_chunk_;
+}
+
+void OpenPoint::Return(uint64_t first, uint64_t end, int attempt, int crashes) {
+  for (uint64_t chunk = first; chunk < std::min(end, next_chunk_); ++chunk) {
+    if (fold_.Needs(chunk)) returned_[chunk] = {attempt, crashes};
+  }
+}
+
+// Chunks between those that were leased before and `first` are to be leased now.
+void OpenPoint::Adopt(uint64_t first, uint64_t end) {
+  SkipUnneeded();
+  const uint64_t before = next_chunk_;
+  next_chunk_ = std::max(next_chunk_, std::min(end, chunks()));
+  Return(before, std::min(first, next_chunk_), 1);
+  std::erase_if(returned_,
+                [&](const auto& chunk) { return chunk.first >= first && chunk.first < end; });
+}
+
+double OpenPoint::ExpectedSeconds() const {
+  const ChunkPlan& plan = experiment_->plan();
+  const auto expected = static_cast<double>(plan.SamplesBefore(experiment_->expected_chunks()));
+  return plan.SecondsFor(std::max(expected - static_cast<double>(fold_.PlannedSamples()), 0.0));
+}
+
+}  // namespace ballpiston::server

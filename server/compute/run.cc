@@ -1,0 +1,268 @@
+#include "server/compute/run.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace ballpiston::server {
+namespace {
+
+// An attempt ends without a result if the machine is lost or the time limit is too short. After
+// this many attempts this server computes the chunk.
+constexpr int kMostAttemptsElsewhere = 5;
+// Open points of a run that wait for executors elsewhere; each takes some 50 kB.
+constexpr size_t kMostOpenPoints = 2000;
+
+// Points that one lease opens. kCheapPoints: if opening a point finishes it, in some 3 to 100 us.
+// kPointsForElsewhere: if points may wait for executors elsewhere.
+constexpr size_t kCheapPoints = 128;
+constexpr size_t kPointsForElsewhere = 32;
+
+}  // namespace
+
+Run::Run(RunRequest request, SchedulerOptions options)
+    : key_(request.key),
+      generation_(request.generation),
+      principal_(std::move(request.principal)),
+      spec_(std::make_shared<const EnsembleSpec>(std::move(request.spec))),
+      finished_(std::move(request.finished)),
+      has_checkpoints_(request.has_checkpoints),
+      journal_(std::move(request.journal)),
+      options_(options),
+      shortfall_(std::move(request.shortfall)),
+      suspicion_(std::move(request.suspicion)) {
+  SkipFinishedPoints();
+  if (!suspicion_) return;
+  std::erase_if(suspicion_->points,
+                [this](size_t point) { return point >= finished_.size() || finished_[point]; });
+  for (const size_t point : suspicion_->points) OpenEarly(point);
+}
+
+// The point is the next to be opened, before those in grid order.
+void Run::OpenEarly(size_t point) {
+  if (opened_early_.insert(point).second) reopen_.insert(point);
+  SkipFinishedPoints();
+}
+
+void Run::SkipFinishedPoints() {
+  while (next_point_ < finished_.size() &&
+         (finished_[next_point_] || opened_early_.contains(next_point_))) {
+    ++next_point_;
+  }
+}
+
+// ---- leases ----
+
+std::optional<Lease> Run::NextLease(const Capacity& capacity, const ExecutorTraits& executor) {
+  if (stopped_) return std::nullopt;
+  if (!executor.local) {
+    std::optional<Lease> lease =
+        IsLarge() ? NextChunks(capacity, executor, finished_.size()) : std::nullopt;
+    hungry_elsewhere_ = !lease.has_value();
+    return lease;
+  }
+  if (IsWantedElsewhere()) return NextOpening();
+  awaited_memory_ = 0;
+  std::optional<Lease> lease = NextChunksOfPilot(capacity);
+  if (!lease) lease = NextChunks(capacity, executor, finished_.size());
+  return lease || awaited_memory_ > 0 ? std::move(lease) : NextOpening();
+}
+
+std::optional<Lease> Run::NextLeaseBefore(const Lease& held, const Capacity& capacity,
+                                          const ExecutorTraits& executor) {
+  if (held.pilot) return std::nullopt;
+  std::optional<Lease> lease = NextChunksOfPilot(capacity);
+  return lease ? std::move(lease) : NextChunks(capacity, executor, held.point);
+}
+
+std::optional<Lease> Run::NextChunksOfPilot(const Capacity& capacity) {
+  for (const auto& [place, pilot] : pilots_) {
+    auto lease = pilot->NextChunks(capacity, ChunkLimits());
+    if (!lease) {
+      NoteAwaited(*pilot, capacity);
+      continue;
+    }
+    lease->pilot = place;
+    if (const auto waiting = waiting_.find(place); waiting != waiting_.end()) {
+      lease->point = waiting->second.front();
+    }
+    return Completed(*std::move(lease));
+  }
+  return std::nullopt;
+}
+
+std::optional<Lease> Run::NextChunks(const Capacity& capacity, const ExecutorTraits& executor,
+                                     size_t end) {
+  const ChunkLimits limits =
+      executor.local ? ChunkLimits() : ChunkLimits{false, kMostAttemptsElsewhere};
+  for (auto next = leasable_.begin(); next != leasable_.end() && *next < end;) {
+    const size_t index = *next++;
+    if (IsHeldBack(index)) continue;
+    OpenPoint& point = *open_.at(index);
+    auto lease = point.NextChunks(capacity, limits);
+    if (lease) {
+      lease->point = index;
+      return Completed(*std::move(lease));
+    }
+    // Otherwise the point may have chunks for a local executor, although it has none for this one.
+    if (executor.local && !NoteAwaited(point, capacity)) leasable_.erase(index);
+  }
+  return std::nullopt;
+}
+
+// Whether the point has a lease that takes more memory than there is.
+bool Run::NoteAwaited(const OpenPoint& point, const Capacity& capacity) {
+  if (!point.AwaitsMemory(capacity)) return false;
+  const double needed = point.memory.of_one_turn;
+  awaited_memory_ = awaited_memory_ == 0 ? needed : std::min(awaited_memory_, needed);
+  return true;
+}
+
+bool Run::IsHeldBack(size_t point) const {
+  return suspicion_ && !suspicion_->points.empty() && !suspicion_->points.contains(point);
+}
+
+Lease Run::Completed(Lease lease) const {
+  lease.run = key_;
+  lease.generation = generation_;
+  lease.spec = spec_;
+  return lease;
+}
+
+bool Run::IsLarge() const {
+  if (sampled_points_ == 0 || spec_->target.budget_seconds) return false;
+  const auto unopened = static_cast<double>(finished_.size() - next_point_ + reopen_.size());
+  double seconds = unopened * sampled_seconds_ / sampled_points_;
+  for (const auto& [index, point] : open_) {
+    if (seconds >= options_.least_seconds_elsewhere) break;
+    seconds += point->ExpectedSeconds();
+  }
+  return seconds >= options_.least_seconds_elsewhere;
+}
+
+bool Run::IsWantedElsewhere() const {
+  return hungry_elsewhere_ && HasPointsToOpen() && open_.size() < kMostOpenPoints && IsLarge();
+}
+
+std::optional<Lease> Run::NextOpening() {
+  const size_t most = NeedsNoSamples(*spec_) ? kCheapPoints
+                      : IsWantedElsewhere()  ? kPointsForElsewhere
+                                             : 1;
+  Lease lease;
+  while (lease.opens.size() < most && !reopen_.empty()) {
+    lease.opens.push_back(reopen_.extract(reopen_.begin()).value());
+  }
+  while (lease.opens.size() < most && next_point_ < finished_.size() && !IsHeldBack(next_point_)) {
+    lease.opens.push_back(next_point_++);
+    SkipFinishedPoints();
+  }
+  if (lease.opens.empty()) return std::nullopt;
+  lease.stop = stop_opening_.get_token();
+  ++opening_;
+  return Completed(std::move(lease));
+}
+
+// ---- points ----
+
+void Run::PointOpened(size_t point, std::unique_ptr<OpenPoint> open) {
+  if (stopped_) open->RequestStop();
+  sampled_points_ += 1;
+  sampled_seconds_ += open->ExpectedSeconds();
+  if (const auto adopted = unopened_.extract(point)) {
+    for (const Lease& lease : adopted.mapped().all) open->Adopt(lease.start.chunk, lease.end);
+    for (const Lease& lease : adopted.mapped().returned) {
+      open->Return(lease.start.chunk, lease.end, lease.attempt, lease.crashes);
+    }
+  }
+  open_.emplace(point, std::move(open));
+  leasable_.insert(point);
+}
+
+void Run::PointAwaits(size_t point, const PilotPlace& place) { waiting_[place].push_back(point); }
+
+void Run::PilotOpened(const PilotPlace& place, std::unique_ptr<OpenPoint> open) {
+  if (stopped_) open->RequestStop();
+  pilots_.emplace(place, std::move(open));
+}
+
+void Run::PilotIsKnown(const PilotPlace& place) {
+  const auto found = waiting_.find(place);
+  if (found == waiting_.end()) return;
+  reopen_.insert(found->second.begin(), found->second.end());
+  waiting_.erase(found);
+}
+
+bool Run::Adopt(const Lease& lease) {
+  if (lease.generation != generation_ || lease.point >= finished_.size()) return false;
+  if (finished_[lease.point] || open_.contains(lease.point)) return false;
+  unopened_[lease.point].all.push_back(lease);
+  OpenEarly(lease.point);
+  return true;
+}
+
+OpenPoint* Run::Find(const Lease& lease) const {
+  if (lease.pilot) {
+    const auto pilot = pilots_.find(*lease.pilot);
+    return pilot == pilots_.end() ? nullptr : pilot->second.get();
+  }
+  const auto open = open_.find(lease.point);
+  return open == open_.end() ? nullptr : open->second.get();
+}
+
+void Run::Close(const Lease& lease) {
+  if (lease.pilot) {
+    pilots_.erase(*lease.pilot);
+  } else {
+    NoteProgress(lease.point);
+    leasable_.erase(lease.point);
+    open_.erase(lease.point);
+  }
+}
+
+void Run::Return(const Lease& lease, int attempt) {
+  if (OpenPoint* open = Find(lease)) {
+    open->Return(lease.start.chunk, lease.end, attempt, lease.crashes);
+    HasChunks(lease);
+  } else if (const auto unopened = unopened_.find(lease.point); unopened != unopened_.end()) {
+    unopened->second.returned.push_back(lease);
+    unopened->second.returned.back().attempt = attempt;
+  }
+}
+
+void Run::HasChunks(const Lease& lease) {
+  if (!lease.pilot && open_.contains(lease.point)) leasable_.insert(lease.point);
+}
+
+void Run::NoteProgress(size_t point) {
+  has_progressed_ = true;
+  if (suspicion_) suspicion_->points.erase(point);
+}
+
+const Suspicion* Run::refuted() const {
+  const bool is_refuted =
+      suspicion_ && has_progressed_ && suspicion_->points.empty() && waiting_.empty();
+  return is_refuted ? &*suspicion_ : nullptr;
+}
+
+// ---- the end ----
+
+void Run::Stop(absl::Status reason) {
+  if (std::exchange(stopped_, true)) return;
+  outcome_ = std::move(reason);
+  stop_opening_.request_stop();
+  for (const auto& [index, point] : open_) point->RequestStop();
+  for (const auto& [place, pilot] : pilots_) pilot->RequestStop();
+}
+
+void Run::NoteShortfall(Shortfall shortfall) {
+  if (shortfall_ && shortfall_->point < shortfall.point) return;
+  shortfall_ = std::move(shortfall);
+}
+
+bool Run::over() const {
+  if (turns_ > 0) return false;
+  const bool nothing_left =
+      open_.empty() && pilots_.empty() && waiting_.empty() && opening_ == 0 && !HasPointsToOpen();
+  return stopped_ || nothing_left;
+}
+
+}  // namespace ballpiston::server

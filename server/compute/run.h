@@ -1,0 +1,201 @@
+// The state of one job during its computation: its open points, its pilots, and its next lease.
+//
+// Points are opened in grid order, when no open point has a chunk left to lease, or ahead when an
+// executor elsewhere has no work; points of adopted leases come first. So a grid of 100,000 points
+// takes only the memory of its open points. A point that waits for a pilot takes a
+// few bytes. Not thread-safe: the scheduler's lock guards it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <stop_token>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "core/ensemble/ensemble_spec.h"
+#include "server/compute/executor.h"
+#include "server/compute/open_point.h"
+#include "server/compute/run_journal.h"
+
+namespace ballpiston::server {
+
+// A point that ended without reaching its tolerance, and the status that reports it.
+struct Shortfall {
+  size_t point = 0;
+  absl::Status status;
+};
+
+// The run was being computed when the process died, twice. It is computed alone until this process
+// has computed a chunk of each of these points, and the chunks are stored. Only these points are
+// computed until then. Without points: until any chunk is stored.
+struct Suspicion {
+  std::set<size_t> points = {};  // that were being computed at the last death
+  // Stores what was reported, which may take long, and ends the suspicion. False: not now.
+  std::function<bool()> clear;
+};
+
+struct RunRequest {
+  int64_t key = 0;         // greater for a newer job
+  int64_t generation = 0;  // tells apart jobs that had this key (after a backup)
+  std::string principal;   // the job's owner, for fair shares
+  int32_t priority = 0;    // among the principal's; higher first
+  EnsembleSpec spec;
+  std::vector<bool> finished;               // by point of the grid: nothing left to compute
+  bool has_checkpoints = false;             // ask the journal for them
+  std::optional<Shortfall> shortfall = {};  // of a finished point
+  std::optional<Suspicion> suspicion = {};
+  std::shared_ptr<RunJournal> journal;
+};
+
+struct SchedulerOptions {
+  // A run with less to compute, in seconds of one core at nominal speed, is computed here: to send
+  // it elsewhere would take longer.
+  double least_seconds_elsewhere = 60;
+  // Bytes. The leases that local executors hold take no more together, unless one does alone.
+  double memory_limit = std::numeric_limits<double>::infinity();
+};
+
+class Run {
+ public:
+  Run(RunRequest request, SchedulerOptions options);
+
+  int64_t key() const { return key_; }
+  const std::string& principal() const { return principal_; }
+  const EnsembleSpec& spec() const { return *spec_; }
+  bool has_checkpoints() const { return has_checkpoints_; }
+  RunJournal& journal() const { return *journal_; }
+
+  // A new lease for an executor of this kind; empty if there is none now.
+  std::optional<Lease> NextLease(const Capacity& capacity, const ExecutorTraits& executor);
+  // A new lease that goes before `held` (Lease::GoesBefore); empty if there is none.
+  std::optional<Lease> NextLeaseBefore(const Lease& held, const Capacity& capacity,
+                                       const ExecutorTraits& executor);
+
+  // Whether executors that are not local wait for points that nobody has opened: the next lease of
+  // a local executor opens points.
+  bool IsWantedElsewhere() const;
+
+  // Bytes that a lease of a local executor needs and that were not there when NextLease gave it
+  // none. 0: the run waits for no memory.
+  double awaited_memory() const { return awaited_memory_; }
+
+  // The leases of local executors, and their turns in progress: a run ends when there are none.
+  void TurnBegins() { ++turns_; }
+  void TurnEnds() { --turns_; }
+  bool HasTurns() const { return turns_ > 0; }
+
+  // Points of a lease that opens points: each is opened, finished, or waits for a pilot. Then the
+  // lease ends.
+  void PointOpened(size_t point, std::unique_ptr<OpenPoint> open);
+  void PointAwaits(size_t point, const PilotPlace& place);
+  void OpeningEnded() { --opening_; }
+  void PilotOpened(const PilotPlace& place, std::unique_ptr<OpenPoint> open);
+  // The points that wait for this pilot are to be opened again.
+  void PilotIsKnown(const PilotPlace& place);
+
+  // A lease of an earlier process; false if its point is finished.
+  bool Adopt(const Lease& lease);
+  void ForgetAdopted(size_t point) { unopened_.erase(point); }
+  // Whether the point has adopted leases and is not open yet.
+  bool IsUnopened(size_t point) const { return unopened_.contains(point); }
+
+  // Chunks of the lease that are still needed go out again, as this attempt.
+  void Return(const Lease& lease, int attempt);
+
+  // Null if the lease's point or pilot is not open (any more).
+  OpenPoint* Find(const Lease& lease) const;
+  void Close(const Lease& lease);
+  // The point may have chunks to lease again.
+  void HasChunks(const Lease& lease);
+  const std::map<size_t, std::unique_ptr<OpenPoint>>& open_points() const { return open_; }
+
+  // The point is finished, or has a chunk more that this process has computed.
+  void NoteProgress(size_t point);
+  // The same of a chunk that another machine has computed. It does not refute the suspicion that
+  // some point kills this process.
+  void NoteProgressElsewhere() { has_progressed_ = true; }
+  // Null, or the suspicion that is to be cleared: the run has progressed, and has no pilot that the
+  // next suspect may need.
+  const Suspicion* refuted() const;
+  bool IsSuspect() const { return suspicion_.has_value(); }
+  void EndSuspicion() { suspicion_.reset(); }
+
+  // Ends the run: it gives no more leases and requests the stop of those in progress. The first
+  // reason is kept.
+  void Stop(absl::Status reason);
+  bool stopped() const { return stopped_; }
+
+  // The run continues, and ends with this status unless it is stopped. The shortfall of the first
+  // point is kept.
+  void NoteShortfall(Shortfall shortfall);
+
+  // No turn is in progress, and no work is left.
+  bool over() const;
+  // Requires over().
+  absl::Status outcome() const { return stopped_ || !shortfall_ ? outcome_ : shortfall_->status; }
+
+  bool began() const { return began_; }
+  void set_began() { began_ = true; }
+
+ private:
+  struct AdoptedLeases {
+    std::vector<Lease> all;
+    std::vector<Lease> returned;  // of these; `attempt` is the next one
+  };
+
+  std::optional<Lease> NextChunksOfPilot(const Capacity& capacity);
+  // The lease has chunks of a point whose index is less than `end`.
+  std::optional<Lease> NextChunks(const Capacity& capacity, const ExecutorTraits& executor,
+                                  size_t end);
+  std::optional<Lease> NextOpening();
+  bool NoteAwaited(const OpenPoint& point, const Capacity& capacity);
+  // Whether only some points are computed now, and not this one.
+  bool IsHeldBack(size_t point) const;
+  bool HasPointsToOpen() const { return !reopen_.empty() || next_point_ < finished_.size(); }
+  // What is left takes long enough for executors that are not local.
+  bool IsLarge() const;
+  void OpenEarly(size_t point);
+  void SkipFinishedPoints();
+  Lease Completed(Lease lease) const;
+
+  const int64_t key_;
+  const int64_t generation_;
+  const std::string principal_;
+  const std::shared_ptr<const EnsembleSpec> spec_;
+  const std::vector<bool> finished_;
+  const bool has_checkpoints_;
+  const std::shared_ptr<RunJournal> journal_;
+  const SchedulerOptions options_;
+
+  std::map<size_t, std::unique_ptr<OpenPoint>> open_;
+  std::map<PilotPlace, std::unique_ptr<OpenPoint>> pilots_;
+  std::set<size_t> leasable_;  // open points that may have chunks to lease
+  std::map<PilotPlace, std::vector<size_t>> waiting_;
+  std::set<size_t> reopen_;  // points whose pilot is known now, or that have adopted leases
+  std::map<size_t, AdoptedLeases> unopened_;  // points with adopted leases that are not open yet
+  std::set<size_t> opened_early_;             // points not to be opened in grid order
+  size_t next_point_ = 0;
+  size_t opening_ = 0;  // leases that open points
+  size_t turns_ = 0;
+  double awaited_memory_ = 0;
+  bool hungry_elsewhere_ = false;  // an executor that is not local found nothing
+  double sampled_points_ = 0;      // opened ones
+  double sampled_seconds_ = 0;     // expected, of these
+  bool began_ = false;
+  bool stopped_ = false;
+  absl::Status outcome_;
+  std::optional<Shortfall> shortfall_;
+  std::optional<Suspicion> suspicion_;
+  bool has_progressed_ = false;
+  std::stop_source stop_opening_;
+};
+
+}  // namespace ballpiston::server

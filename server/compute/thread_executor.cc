@@ -1,0 +1,201 @@
+#include "server/compute/thread_executor.h"
+
+#include <deque>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "core/ensemble/chunk_fold.h"
+#include "server/compute/block_session.h"
+#include "server/compute/guarded.h"
+#include "server/status/failpoint.h"
+
+namespace ballpiston::server {
+
+// A lease at which several threads take turns.
+class ThreadExecutor::SharedLease : private BlockExchange {
+ public:
+  SharedLease(ThreadExecutor& executor, Lease lease)
+      : executor_(executor),
+        lease_(std::move(lease)),
+        fold_(lease_.experiment->plan(), lease_.start, lease_.end, lease_.groups) {}
+
+  bool IsStopped() const { return lease_.stop.stop_requested(); }
+
+  bool HasTurn() const {
+    MutexLock lock(mutex_);
+    return !resting_.empty() || fold_.HasNextBlock();
+  }
+
+  // One turn, in the session that has rested longest, or in a new one.
+  void Advance() {
+    std::unique_ptr<BlockSession> session = TakeSession();
+    if (!session->Advance()) return;
+    MutexLock lock(mutex_);
+    resting_.push_back(std::move(session));
+  }
+
+ private:
+  std::unique_ptr<BlockSession> TakeSession() {
+    MutexLock lock(mutex_);
+    if (resting_.empty()) {
+      BlockExchange& blocks = *this;
+      return std::make_unique<BlockSession>(blocks, lease_.experiment, lease_.stop);
+    }
+    std::unique_ptr<BlockSession> session = std::move(resting_.front());
+    resting_.pop_front();
+    return session;
+  }
+
+  std::optional<Block> NextBlock() override {
+    MutexLock lock(mutex_);
+    return IsStopped() ? std::nullopt : fold_.NextBlock();
+  }
+
+  void BlockDone(const Block& block, BlockResult result, double seconds) override {
+    executor_.blocks_.fetch_add(1, std::memory_order_relaxed);
+    LeaseReport report;
+    bool has_room = false;
+    {
+      MutexLock lock(mutex_);
+      const bool was_full = !fold_.HasNextBlock();
+      report = {fold_.Add(block, std::move(result)), fold_.partial(), seconds};
+      has_room = was_full && fold_.HasNextBlock();
+    }
+    executor_.scheduler_.Report(lease_, std::move(report)).IgnoreError();  // of chunks elsewhere
+    if (has_room) executor_.Wake();
+  }
+
+  void TurnEnds(double seconds) override {
+    LeaseReport report = {.seconds = seconds};
+    {
+      MutexLock lock(mutex_);
+      report.partial = fold_.partial();
+    }
+    executor_.scheduler_.Report(lease_, std::move(report)).IgnoreError();  // of chunks elsewhere
+  }
+
+  ThreadExecutor& executor_;
+  const Lease lease_;
+  mutable Mutex mutex_ ABSL_ACQUIRED_AFTER(executor_.mutex_);
+  ChunkFold fold_ ABSL_GUARDED_BY(mutex_);
+  std::deque<std::unique_ptr<BlockSession>> resting_ ABSL_GUARDED_BY(mutex_);
+};
+
+ThreadExecutor::ThreadExecutor(Scheduler& scheduler, int threads, double seconds,
+                               std::shared_ptr<CrashRecord> crashes)
+    : scheduler_(scheduler), workers_(threads), crashes_(std::move(crashes)) {
+  capacity_ = {.executor = scheduler.AddExecutor(*this), .seconds = seconds};
+}
+
+void ThreadExecutor::Start() {
+  MutexLock lock(mutex_);
+  for (int i = 0; i < workers_; ++i) threads_.emplace_back([this] { Work(); });
+}
+
+ThreadExecutor::~ThreadExecutor() {
+  Shutdown();
+  scheduler_.RemoveExecutor(capacity_.executor);
+}
+
+void ThreadExecutor::Wake() {
+  {
+    MutexLock lock(mutex_);
+    ++wakes_;
+  }
+  woken_.NotifyAll();
+}
+
+bool ThreadExecutor::HasTurn(int64_t lease) const {
+  MutexLock lock(mutex_);
+  const auto found = leases_.find(lease);
+  return found != leases_.end() && found->second->HasTurn();
+}
+
+void ThreadExecutor::Shutdown() {
+  std::vector<Thread> threads;
+  {
+    MutexLock lock(mutex_);
+    shutting_down_ = true;
+    threads.swap(threads_);
+  }
+  woken_.NotifyAll();
+  for (Thread& thread : threads) thread.join();
+}
+
+ThreadCounts ThreadExecutor::Counts() const {
+  return {.workers = workers_,
+          .busy = busy_.load(std::memory_order_relaxed),
+          .blocks = static_cast<double>(blocks_.load(std::memory_order_relaxed))};
+}
+
+void ThreadExecutor::Work() {
+  while (const std::optional<Lease> lease = AwaitLease()) TakeTurn(*lease);
+}
+
+std::optional<Lease> ThreadExecutor::AwaitLease() {
+  while (true) {
+    uint64_t seen = 0;
+    {
+      MutexLock lock(mutex_);
+      if (shutting_down_) return std::nullopt;
+      seen = wakes_;
+    }
+    DropStopped();
+    if (std::optional<Lease> lease = scheduler_.Next(capacity_)) return lease;
+    MutexLock lock(mutex_);
+    while (!shutting_down_ && wakes_ == seen) woken_.Wait(mutex_);
+  }
+}
+
+void ThreadExecutor::TakeTurn(const Lease& lease) {
+  busy_.fetch_add(1, std::memory_order_relaxed);
+  const double start = ProcessorSeconds();
+  Compute(lease);
+  const double seconds = ProcessorSeconds() - start;
+  busy_.fetch_sub(1, std::memory_order_relaxed);
+  if (scheduler_.EndTurn(lease, seconds)) return;
+  MutexLock lock(mutex_);
+  leases_.erase(lease.number);
+}
+
+// The record has the point only here, not while EndTurn waits for the disk.
+void ThreadExecutor::Compute(const Lease& lease) {
+  const RunName run = {lease.run, lease.generation};
+  for (const size_t point : lease.opens) {
+    const CrashRecord::Computing opening(*crashes_, run, point);
+    scheduler_.Open(lease, point);
+  }
+  if (lease.OpensPoints()) return;
+  const CrashRecord::Computing computing(*crashes_, run, lease.point);
+  CrashForSeed(lease.spec->seed);
+  const absl::Status advanced = Guarded(lease.point, [&] {
+    Find(lease)->Advance();
+    return absl::OkStatus();
+  });
+  if (!advanced.ok()) scheduler_.Fail(lease, advanced);
+}
+
+ThreadExecutor::SharedPointer ThreadExecutor::Find(const Lease& lease) {
+  SharedPointer found;
+  {
+    MutexLock lock(mutex_);
+    SharedPointer& shared = leases_[lease.number];
+    if (shared != nullptr) return shared;
+    found = shared = std::make_shared<SharedLease>(*this, lease);
+  }
+  Wake();  // the others can take turns at it
+  return found;
+}
+
+// Destroys their sessions without the lock.
+void ThreadExecutor::DropStopped() {
+  std::vector<SharedPointer> stopped;
+  MutexLock lock(mutex_);
+  for (auto lease = leases_.begin(); lease != leases_.end();) {
+    const bool is_stopped = lease->second->IsStopped();
+    if (is_stopped) stopped.push_back(std::move(lease->second));
+    lease = is_stopped ? leases_.erase(lease) : std::next(lease);
+  }
+}
+
+}  // namespace ballpiston::server

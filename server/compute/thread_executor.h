@@ -1,0 +1,74 @@
+// The threads of this process that compute leases.
+//
+// The threads share a lease: each computes blocks of its chunks in a session of its own
+// (block_session.h). Before every turn a thread asks the scheduler for the lease whose turn it is.
+// An exception from a block ends only the block's run, with a failure. Thread-safe.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "server/compute/crash_record.h"
+#include "server/compute/scheduler.h"
+#include "server/host.h"
+#include "server/mutex.h"
+
+namespace ballpiston::server {
+
+// The first two are of now, the third since the executor was made.
+struct ThreadCounts {
+  int workers = 0;
+  int busy = 0;
+  double blocks = 0;
+};
+
+class ThreadExecutor : public Executor {
+ public:
+  // The scheduler must outlive this. `seconds` bounds a lease (Capacity), so that something is left
+  // for other executors. The record always has the runs that are being computed.
+  ThreadExecutor(Scheduler& scheduler, int threads,
+                 double seconds = std::numeric_limits<double>::infinity(),
+                 std::shared_ptr<CrashRecord> crashes = std::make_shared<CrashRecord>());
+  ~ThreadExecutor() override;  // shuts down
+
+  ExecutorTraits traits() const override { return {.local = true}; }
+  void Start() override;
+  void Wake() override ABSL_LOCKS_EXCLUDED(mutex_);
+  bool HasTurn(int64_t lease) const override;
+  void Shutdown() override;
+
+  ThreadCounts Counts() const;  // takes no lock
+
+ private:
+  class SharedLease;
+  using SharedPointer = std::shared_ptr<SharedLease>;
+
+  void Work();
+  std::optional<Lease> AwaitLease();
+  void TakeTurn(const Lease& lease) ABSL_LOCKS_EXCLUDED(mutex_);
+  void Compute(const Lease& lease) ABSL_LOCKS_EXCLUDED(mutex_);
+  SharedPointer Find(const Lease& lease) ABSL_LOCKS_EXCLUDED(mutex_);
+  void DropStopped() ABSL_LOCKS_EXCLUDED(mutex_);
+
+  Scheduler& scheduler_;
+  const int workers_;
+  const std::shared_ptr<CrashRecord> crashes_;
+  Capacity capacity_;
+  std::atomic<int> busy_ = 0;
+  std::atomic<uint64_t> blocks_ = 0;
+
+  mutable Mutex mutex_;
+  Condition woken_;
+  uint64_t wakes_ ABSL_GUARDED_BY(mutex_) = 0;
+  bool shutting_down_ ABSL_GUARDED_BY(mutex_) = false;
+  std::map<int64_t, SharedPointer> leases_ ABSL_GUARDED_BY(mutex_);  // by number
+  std::vector<Thread> threads_ ABSL_GUARDED_BY(mutex_);
+};
+
+}  // namespace ballpiston::server

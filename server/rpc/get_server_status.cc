@@ -1,0 +1,119 @@
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include "absl/time/clock.h"
+#include "server/book/job_message.h"
+#include "server/convert/spec.h"
+#include "server/rpc/methods.h"
+#include "server/rpc/server_status.h"
+#include "server/version.h"
+
+namespace ballpiston::server {
+namespace {
+
+bool StoreFails(const Store& store) { return store.failing() || store.stalled(); }
+
+// 0 if there is no such file.
+double FileBytes(const std::string& path) {
+  struct stat found {};
+  return stat(path.c_str(), &found) == 0 ? static_cast<double>(found.st_size) : 0;
+}
+
+v1::SlurmStatus SlurmMessage(const SlurmStatus& slurm) {
+  v1::SlurmStatus message;
+  message.set_problem(slurm.problem);
+  message.set_waiting_tasks(slurm.waiting_tasks);
+  message.set_running_tasks(slurm.running_tasks);
+  message.set_submitted_tasks(slurm.submitted_tasks);
+  message.set_chunks(slurm.chunks);
+  message.set_lost_tasks(slurm.lost_tasks);
+  message.set_refused_files(slurm.refused_files);
+  message.set_queries(slurm.queries);
+  return message;
+}
+
+void AddWork(const ServiceContext& service, v1::ServerStatus& status) {
+  const ThreadCounts threads = service.threads.Counts();
+  const WorkCounts work = service.scheduler.Counts();
+  status.set_workers(threads.workers);
+  status.set_busy_workers(threads.busy);
+  status.set_blocks_computed(threads.blocks);
+  status.set_samples_computed(work.samples);
+  status.set_processor_seconds(work.processor_seconds);
+  if (service.slurm != nullptr) *status.mutable_slurm() = SlurmMessage(service.slurm->Status());
+}
+
+// Sets the numbers of each principal, and the totals of all principals.
+void AddPrincipals(const ServiceContext& service, v1::ServerStatus& status) {
+  std::map<std::string, int64_t> streams = service.quotas.streams.ByPrincipal();
+  for (const auto& [name, jobs] : service.book.JobsByPrincipal()) {
+    v1::PrincipalStatus& principal = *status.add_principals();
+    principal.set_principal(name);
+    principal.set_queued_jobs(static_cast<double>(jobs.queued));
+    principal.set_running_jobs(static_cast<double>(jobs.running + jobs.cancelling));
+    principal.set_streams(static_cast<double>(streams[name]));
+    principal.set_stored_jobs(static_cast<double>(jobs.stored));
+    principal.set_stored_bytes(static_cast<double>(jobs.bytes));
+    status.set_queued_jobs(status.queued_jobs() + principal.queued_jobs());
+    status.set_running_jobs(status.running_jobs() + principal.running_jobs());
+    status.set_stored_jobs(status.stored_jobs() + principal.stored_jobs());
+  }
+}
+
+v1::ServerLimits LimitsMessage(const Limits& limits) {
+  v1::ServerLimits message;
+  message.set_max_points_per_job(static_cast<double>(limits.max_points_per_job));
+  message.set_max_samples_per_job(limits.max_samples_per_job);
+  message.set_max_active_jobs_per_principal(
+      static_cast<double>(limits.max_active_jobs_per_principal));
+  message.set_max_active_points_per_principal(
+      static_cast<double>(limits.max_active_points_per_principal));
+  message.set_max_streams_per_principal(static_cast<double>(limits.max_streams_per_principal));
+  message.set_max_message_bytes(static_cast<double>(limits.max_message_bytes));
+  message.set_retain_days(limits.retain_days);
+  return message;
+}
+
+void RemoveHidden(const Principal& caller, v1::ServerStatus& status) {
+  auto& principals = *status.mutable_principals();
+  const auto hidden = std::remove_if(
+      principals.begin(), principals.end(),
+      [&](const v1::PrincipalStatus& one) { return !caller.MaySee(one.principal()); });
+  principals.erase(hidden, principals.end());
+}
+
+}  // namespace
+
+v1::ServerStatus StatusOf(const ServiceContext& service) {
+  v1::ServerStatus status;
+  status.set_state(service.draining            ? v1::ServerStatus::DRAINING
+                   : StoreFails(service.store) ? v1::ServerStatus::STORE_FAILING
+                                               : v1::ServerStatus::SERVING);
+  status.set_version(kVersion);
+  status.set_engine_version(EngineVersion());
+  SetTime(service.start_time, status.mutable_start_time());
+  status.set_streams(static_cast<double>(service.quotas.streams.taken()));
+  status.set_store_bytes(FileBytes(service.store_path) + FileBytes(service.store_path + "-wal"));
+  status.set_expiring_jobs(static_cast<double>(service.book.CountExpiring(absl::Now())));
+  AddWork(service, status);
+  AddPrincipals(service, status);
+  return status;
+}
+
+absl::StatusOr<v1::ServerStatus> GetServerStatus(ServiceContext& service, const Call& call,
+                                                 const v1::GetServerStatusRequest&) {
+  v1::ServerStatus status = StatusOf(service);
+  RemoveHidden(call.caller, status);
+  const MachineRates& rates = service.ladder.machine().rates;
+  status.mutable_rates()->set_jump(rates.jump);
+  status.mutable_rates()->set_wall_hit(rates.lanes.wall_hit);
+  *status.mutable_limits() = LimitsMessage(service.limits);
+  status.set_principal(call.caller.name);
+  status.set_role(RoleName(call.caller.role));
+  return status;
+}
+
+}  // namespace ballpiston::server

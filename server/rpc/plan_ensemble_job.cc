@@ -1,0 +1,71 @@
+#include <algorithm>
+#include <set>
+#include <thread>
+
+#include "server/convert/errors.h"
+#include "server/convert/plan.h"
+#include "server/convert/spec.h"
+#include "server/rpc/methods.h"
+
+namespace ballpiston::server {
+namespace {
+
+// A plan uses at most this many points, evenly spread over the grid.
+constexpr size_t kMostPoints = 1000;
+
+// In seconds of processor time.
+struct PlannedWork {
+  double points = 0;
+  double pilots = 0;   // each is run once
+  double stored = 0;   // of the store's thread
+  double longest = 0;  // by the clock, of a point with few samples, which do not occupy all workers
+
+  double Computed() const { return points + pilots; }
+  // Workers and the store's thread share the cores.
+  double Time(int workers) const {
+    const double cores = std::max(1.0, static_cast<double>(std::thread::hardware_concurrency()));
+    return std::max({Computed() / workers, stored, (Computed() + stored) / cores, longest});
+  }
+};
+
+double SecondsToStore(const Ladder& ladder, const MachineRates& rates) {
+  return ladder.answer.model == Model::kSpectrum ? rates.stored_spectrum : rates.stored_closed_form;
+}
+
+}  // namespace
+
+absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
+    ServiceContext& service, const Call&, const v1::PlanEnsembleJobRequest& request) {
+  CheckedSpec checked = CheckSpec(request.spec());
+  if (checked.violations.empty()) {
+    AddViolations(service.ladder.ViolationsHere(checked.spec), checked);
+  }
+  if (!checked.violations.empty()) return InvalidSpec(checked.violations);
+  const size_t points = PointCount(checked.spec), planned = std::min(points, kMostPoints);
+  v1::PlanEnsembleJobResponse response;
+  PlannedWork work;
+  std::set<PilotPlace> pilots;
+  for (size_t i = 0; i < planned; ++i) {
+    const PointParameters point = PointAt(checked.spec, i * points / planned);
+    Ladder ladder = service.ladder.LadderOf(checked.spec, point);
+    if (ladder.pilot && !pilots.insert(*ladder.pilot).second) ladder.DropPilot();
+    work.pilots += ladder.work_of_pilot;
+    work.points += ladder.Chosen().work.value_or(0) - ladder.work_of_pilot;
+    work.longest = std::max(work.longest, ladder.Chosen().time);
+    work.stored += SecondsToStore(ladder, service.ladder.machine().rates);
+    response.set_memory(std::max(response.memory(), ladder.Chosen().memory));
+    *response.add_points() = PointPlanMessage(point, ladder);
+  }
+  const Machine& machine = service.ladder.machine();
+  const double share = static_cast<double>(points) / static_cast<double>(planned);
+  work.points *= share;
+  work.stored *= share;
+  work.points += machine.rates.first_point;
+  response.set_point_count(static_cast<int32_t>(points));
+  response.set_work(work.Computed());
+  response.set_time(work.Time(machine.workers));
+  response.set_workers(machine.workers);
+  return response;
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <string>
+
+#include "prometheus/counter.h"
+#include "prometheus/gauge.h"
+#include "prometheus/registry.h"
+#include "server/rpc/server_status.h"
+
+namespace ballpiston::server {
+namespace {
+
+using prometheus::Labels;
+
+// The numbers of one scrape. A name that is used again adds to the same family.
+class Page {
+ public:
+  template <typename Number>
+  void Gauge(const std::string& name, const std::string& help, Number value,
+             const Labels& labels = {}) {
+    prometheus::BuildGauge().Name(name).Help(help).Register(registry_).Add(labels).Set(
+        static_cast<double>(value));
+  }
+
+  template <typename Number>
+  void Counter(const std::string& name, const std::string& help, Number value,
+               const Labels& labels = {}) {
+    prometheus::BuildCounter().Name(name).Help(help).Register(registry_).Add(labels).Increment(
+        static_cast<double>(value));
+  }
+
+  std::vector<prometheus::MetricFamily> Families() const { return registry_.Collect(); }
+
+ private:
+  prometheus::Registry registry_;
+};
+
+double SinceEpoch(absl::Time time) { return absl::ToDoubleSeconds(time - absl::UnixEpoch()); }
+
+void AddServer(const ServiceContext& service, const v1::ServerStatus& status, Page& page) {
+  page.Gauge("ballpiston_build_info", "Versions of this program; always 1.", 1,
+             {{"version", status.version()}, {"engine_version", status.engine_version()}});
+  page.Gauge("ballpiston_start_time_seconds", "Start time of the server, in seconds since 1970.",
+             SinceEpoch(service.start_time));
+  page.Gauge("ballpiston_draining", "1 while the server is stopping.", service.draining.load());
+  page.Counter("ballpiston_engine_crashes_total",
+               "Deaths of server processes on this data folder while they computed: crashes of the "
+               "engine, and kills for want of memory.",
+               service.book.engine_crashes());
+  page.Gauge("ballpiston_streams", "Open watches and traces.", status.streams());
+  page.Gauge("ballpiston_workers", "Threads that compute.", status.workers());
+  page.Gauge("ballpiston_busy_workers", "Threads that compute now.", status.busy_workers());
+  page.Counter("ballpiston_blocks_computed_total", "Computed blocks of samples.",
+               status.blocks_computed());
+  page.Counter("ballpiston_samples_computed_total", "Computed samples.", status.samples_computed());
+  page.Counter("ballpiston_processor_seconds_total", "Processor time of threads and cluster.",
+               status.processor_seconds());
+}
+
+void AddJobs(const JobBook& book, const v1::ServerStatus& status, Page& page) {
+  const std::string help = "Jobs that have not ended, by state. running: or being cancelled.";
+  page.Gauge("ballpiston_jobs", help, status.queued_jobs(), {{"state", "queued"}});
+  page.Gauge("ballpiston_jobs", help, status.running_jobs(), {{"state", "running"}});
+  page.Gauge("ballpiston_queue_length", "Jobs that wait for their first turn.",
+             status.queued_jobs());
+  const EndedJobs ended = book.ended_jobs();
+  const std::string total = "ballpiston_jobs_ended_total";
+  const std::string ended_help = "Jobs that ended, by their last state.";
+  page.Counter(total, ended_help, ended.succeeded, {{"state", "succeeded"}});
+  page.Counter(total, ended_help, ended.failed, {{"state", "failed"}});
+  page.Counter(total, ended_help, ended.cancelled, {{"state", "cancelled"}});
+  page.Gauge("ballpiston_expiring_jobs", "Jobs whose results expire within a week.",
+             status.expiring_jobs());
+}
+
+void AddStore(const Store& store, const v1::ServerStatus& status, Page& page) {
+  const Store::Counts counts = store.counts();
+  page.Gauge("ballpiston_store_bytes", "The store on disk, its log included.",
+             status.store_bytes());
+  page.Counter("ballpiston_store_commits_total", "Committed groups of writes.", counts.commits);
+  page.Counter("ballpiston_store_checkpoints_written_total",
+               "Checkpoints of unfinished points that were written.", counts.checkpoints_written);
+  page.Gauge("ballpiston_store_pending_writes", "Writes that wait.", counts.pending_writes);
+  page.Gauge("ballpiston_store_failing", "1 while the disk rejects writes or hangs.",
+             store.failing() || store.stalled());
+}
+
+void AddPrincipals(const v1::ServerStatus& status, Page& page) {
+  const size_t count = std::min(static_cast<size_t>(status.principals_size()), kMostPrincipals);
+  for (size_t i = 0; i < count; ++i) {
+    const v1::PrincipalStatus& usage = status.principals(static_cast<int>(i));
+    const Labels labels = {{"principal", usage.principal()}};
+    page.Gauge("ballpiston_principal_stored_jobs", "Stored jobs, including ended ones.",
+               usage.stored_jobs(), labels);
+    page.Gauge("ballpiston_principal_stored_bytes", "Bytes of stored specifications and results.",
+               usage.stored_bytes(), labels);
+  }
+}
+
+void AddSlurm(const v1::SlurmStatus& slurm, Page& page) {
+  const std::string tasks = "Tasks of job arrays, by state. submitted: since Slurm's last answer.";
+  page.Gauge("ballpiston_slurm_tasks", tasks, slurm.waiting_tasks(), {{"state", "waiting"}});
+  page.Gauge("ballpiston_slurm_tasks", tasks, slurm.running_tasks(), {{"state", "running"}});
+  page.Gauge("ballpiston_slurm_tasks", tasks, slurm.submitted_tasks(), {{"state", "submitted"}});
+  page.Gauge("ballpiston_slurm_failing", "1 while nothing can be submitted.",
+             !slurm.problem().empty());
+  page.Counter("ballpiston_slurm_chunks_total", "Chunks received.", slurm.chunks());
+  page.Counter("ballpiston_slurm_lost_tasks_total", "Tasks that ended without their last file.",
+               slurm.lost_tasks());
+  page.Counter("ballpiston_slurm_refused_files_total",
+               "Files with chunks that were damaged or of another job.", slurm.refused_files());
+  page.Counter("ballpiston_slurm_queries_total", "Queries of Slurm's queue.", slurm.queries());
+}
+
+}  // namespace
+
+std::vector<prometheus::MetricFamily> ServerMetrics(const ServiceContext& service,
+                                                    std::optional<absl::Time> certificate_expiry) {
+  const v1::ServerStatus status = StatusOf(service);
+  Page page;
+  AddServer(service, status, page);
+  AddJobs(service.book, status, page);
+  AddStore(service.store, status, page);
+  AddPrincipals(status, page);
+  if (status.has_slurm()) AddSlurm(status.slurm(), page);
+  if (certificate_expiry) {
+    page.Gauge("ballpiston_certificate_expiry_timestamp_seconds",
+               "Expiry of the server's certificate, in seconds since 1970.",
+               SinceEpoch(*certificate_expiry));
+  }
+  return page.Families();
+}
+
+}  // namespace ballpiston::server

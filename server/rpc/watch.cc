@@ -1,0 +1,256 @@
+#include "server/rpc/watch.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "ballpiston/storage/tokens.pb.h"
+#include "server/convert/errors.h"
+#include "server/convert/point_result.h"
+#include "server/host.h"
+#include "server/rpc/request_check.h"
+#include "server/rpc/result_name.h"
+#include "server/rpc/tokens.h"
+
+namespace ballpiston::server {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr size_t kMaxPoints = 100;  // of a kind in a message
+
+// Limit for all watches together. A snapshot takes some 50 us, mostly in gRPC.
+constexpr int64_t kSnapshotsPerSecond = 1000;
+
+// The longest time until a watch sees that its client has gone.
+constexpr std::chrono::seconds kLongestWait(1);
+
+// One watch. Its functions Tell... send one message, or return false if there is nothing to send.
+class Watch {
+ public:
+  Watch(JobBook& book, const WatchTiming& timing, const std::string& instance,
+        const v1::WatchEnsembleJobRequest& request, WatchReader& reader)
+      : book_(book),
+        timing_(timing),
+        instance_(instance),
+        request_(request),
+        reader_(reader),
+        next_heartbeat_(SteadyNow() + timing.heartbeat) {}
+
+  absl::Status Run() {
+    absl::Status status = FindJob();
+    while (status.ok() && !has_told_end_) {
+      status = Proceed();
+      if (status.ok()) status = TellNext();
+    }
+    return status;
+  }
+
+ private:
+  absl::Status FindJob() {
+    RequestCheck check;
+    id_ = check.JobId("name", request_.name());
+    if (!check.ok()) return check.status();
+    absl::StatusOr<FoundJob> job = book_.FindWatched(reader_.caller(), id_);
+    if (!job.ok()) return job.status();
+    job_ = *std::move(job);
+    ReadToken();
+    return absl::OkStatus();
+  }
+
+  // An administrator who lost that role sees only their own jobs.
+  absl::Status Proceed() {
+    const absl::Status status = reader_.Proceed();
+    const bool sees = reader_.caller().MaySee(job_.record.principal);
+    return status.ok() && !sees ? JobNotFound(request_.name()) : status;
+  }
+
+  // Sends a message if there is one, else waits.
+  absl::Status TellNext() {
+    message_.Clear();
+    const absl::StatusOr<bool> told = Tell();
+    if (told.ok() && !*told) AwaitNews();
+    return told.status();
+  }
+
+  // ---- when to send ----
+
+  void AwaitNews() const {
+    const Clock::time_point now = SteadyNow();
+    const Clock::time_point next_look =
+        next_snapshot_ > now ? next_snapshot_ : now + SnapshotInterval() / 4;
+    job_.active->AwaitStateChange(
+        told_state_,
+        std::min({next_look, next_heartbeat_, reader_.next_check(), now + kLongestWait}));
+  }
+
+  bool IsSnapshotDue(Clock::time_point now) const {
+    return now >= next_snapshot_ &&
+           (job_.active->last_change() > told_ || job_.active->last_finished() > told_finished_);
+  }
+
+  // Whether at least one full message of finished points waits.
+  bool IsBehind() const {
+    return job_.active->last_finished() - told_finished_ >= static_cast<int64_t>(kMaxPoints);
+  }
+
+  Clock::duration SnapshotInterval() const {
+    const std::chrono::milliseconds fair(reader_.watches() * 1000 / kSnapshotsPerSecond);
+    return std::max(timing_.snapshot, fair);
+  }
+
+  // ---- messages ----
+
+  // The job comes first.
+  absl::StatusOr<bool> Tell() {
+    if (job_.active == nullptr) return TellEnd(job_.record);
+    absl::StatusOr<bool> told = TellState();
+    if (told.ok() && !*told) told = TellSnapshot();
+    if (told.ok() && !*told) told = TellHeartbeat();
+    return told;
+  }
+
+  absl::StatusOr<bool> TellState() {
+    if (job_.active->last_state_change() <= told_state_) return false;
+    const auto stored = book_.Stored(*job_.active);
+    if (!stored.ok()) return stored.status();
+    const JobRecord& record = (*stored)->record;
+    if (HasEnded(record.state)) return TellEnd(record);
+    told_state_ = (*stored)->change;
+    if (std::exchange(told_as_, record.state) == record.state) return false;
+    *message_.mutable_job() = book_.Message(record, job_.active.get());
+    return Write();
+  }
+
+  // The points come from the store, which has all of them. The job in memory gets its last points
+  // after the commit that shows its end to readers.
+  absl::StatusOr<bool> TellEnd(const JobRecord& ended) {
+    const absl::StatusOr<bool> told =
+        TellFinishedPoints(book_.Message(ended, nullptr).progress(), nullptr);
+    if (!told.ok() || *told) return told;
+    absl::StatusOr<v1::EnsembleJob> job = book_.Get(reader_.caller(), id_, Grid::kLeftOut);
+    if (!job.ok()) return job.status();
+    // If the results expired since the job was found, some points may not have been sent.
+    if (job->results_expired() && !job_.record.expired_time) return ResultsExpired(request_.name());
+    *message_.mutable_job() = *std::move(job);
+    has_told_end_ = true;
+    return Write();
+  }
+
+  absl::StatusOr<bool> TellSnapshot() {
+    const Clock::time_point now = SteadyNow();
+    if (!IsSnapshotDue(now)) {
+      if (!IsBehind()) return false;
+      return TellFinishedPoints(job_.active->Progress(), job_.active.get());
+    }
+    next_snapshot_ = now + SnapshotInterval();
+    v1::StatisticsSnapshot& snapshot = *message_.mutable_snapshot();
+    *snapshot.mutable_progress() = job_.active->Progress();
+    AddUnfinishedPoints(snapshot);
+    const absl::StatusOr<bool> finished = AddFinishedPoints(job_.active.get());
+    if (!finished.ok()) return finished;
+    LeaveOutFinished(snapshot);
+    const std::string progress = snapshot.progress().SerializeAsString();
+    const bool same_progress = std::exchange(told_progress_, progress) == progress;
+    if (snapshot.points().empty() && !*finished && same_progress) return false;
+    return Write();
+  }
+
+  // An older snapshot may have a point as unfinished that was already sent as finished.
+  void AddUnfinishedPoints(v1::StatisticsSnapshot& snapshot) {
+    const auto shared = book_.Snapshot(*job_.active, timing_.snapshot, kMaxPoints);
+    if (shared->finished < told_finished_) return;
+    for (const JobSnapshot::Point& point : shared->points) {
+      if (point.change > told_) *snapshot.add_points() = Named(point.result, id_);
+    }
+    told_ = std::max(told_, shared->change);
+  }
+
+  absl::StatusOr<bool> TellFinishedPoints(const v1::JobProgress& progress, const Job* active) {
+    *message_.mutable_snapshot()->mutable_progress() = progress;
+    const absl::StatusOr<bool> added = AddFinishedPoints(active);
+    return added.ok() && *added ? Write() : added;
+  }
+
+  // Adds the next finished points to the message: those of `active`, or those of the store if
+  // `active` is null. False: there are none.
+  absl::StatusOr<bool> AddFinishedPoints(const Job* active) {
+    const auto points =
+        book_.FinishedAfter(job_.record.sequence, active, told_finished_, kMaxPoints);
+    if (!points.ok()) return points.status();
+    if (points->empty()) return false;
+    for (const FinishedPoint& point : *points) {
+      absl::StatusOr<v1::PointResult> result = ResultFromBytes(*point.result);
+      if (!result.ok()) return StoreFailure(result.status());
+      *message_.mutable_snapshot()->add_finished_points() = Named(*std::move(result), id_);
+    }
+    told_finished_ = points->back().number;
+    return true;
+  }
+
+  absl::StatusOr<bool> TellHeartbeat() {
+    if (SteadyNow() < next_heartbeat_) return false;
+    message_.Clear();  // it may have a snapshot without news
+    message_.mutable_heartbeat();
+    return Write();
+  }
+
+  // Writes the message with its token. True, or CANCELLED.
+  absl::StatusOr<bool> Write() {
+    message_.set_resume_token(Token());
+    if (!reader_.Write(message_)) return absl::CancelledError("the client is gone");
+    next_heartbeat_ = SteadyNow() + timing_.heartbeat;
+    return true;
+  }
+
+  // ---- resume tokens ----
+
+  std::string Token() const {
+    storage::ResumeToken token;
+    token.set_job(id_);
+    token.set_restarts(job_.record.restarts);
+    token.set_finished(told_finished_);
+    token.set_instance(instance_);
+    token.set_change(told_);
+    return TokenText(token);
+  }
+
+  void ReadToken() {
+    const auto told = ParseToken<storage::ResumeToken>(request_.resume_token());
+    if (!told || told->job() != id_ || told->restarts() != job_.record.restarts ||
+        told->finished() < 0 || told->finished() > job_.last_finished()) {
+      return;
+    }
+    told_finished_ = told->finished();
+    const bool of_this_life = job_.active != nullptr && told->instance() == instance_;
+    if (of_this_life && told->change() <= job_.active->last_change()) told_ = told->change();
+  }
+
+  JobBook& book_;
+  const WatchTiming& timing_;
+  const std::string& instance_;
+  const v1::WatchEnsembleJobRequest& request_;
+  WatchReader& reader_;
+  v1::WatchEnsembleJobResponse message_;
+
+  std::string id_;
+  FoundJob job_;
+  std::string told_progress_;
+  JobState told_as_ = v1::EnsembleJob::STATE_UNSPECIFIED;  // the last state that was sent
+  bool has_told_end_ = false;
+  uint64_t told_state_ = 0;  // numbers of the last changes that were sent
+  uint64_t told_ = 0;
+  int64_t told_finished_ = 0;  // number of the last finished point that was sent
+  Clock::time_point next_snapshot_;
+  Clock::time_point next_heartbeat_;
+};
+
+}  // namespace
+
+absl::Status RunWatch(JobBook& book, const WatchTiming& timing, const std::string& instance,
+                      const v1::WatchEnsembleJobRequest& request, WatchReader& reader) {
+  return Watch(book, timing, instance, request, reader).Run();
+}
+
+}  // namespace ballpiston::server

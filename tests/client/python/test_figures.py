@@ -1,0 +1,325 @@
+"""The figures measure what their predecessors measured, and their pictures hold their texts.
+
+figures_reference.json says how its tables were made.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import ballpiston
+from ballpiston import figures
+from ballpiston.figures import gas, ingoing_law, markov_test, rates, speed_accuracy, stability
+from ballpiston.figures.parts import command, oscillation, style, tables
+
+REFERENCE = json.loads(
+    Path(__file__).with_name("figures_reference.json").read_text(encoding="utf-8")
+)
+ROUNDING = 2e-5  # the scripts printed six digits
+SYNTHETIC = 200
+
+
+@pytest.fixture(scope="module")
+def measured() -> dict[str, tables.Tables]:
+    """What the test of a figure has measured, for the test of its picture."""
+    return {}
+
+
+def expect_equal(table: tables.Table, reference: dict[str, Any], name: str) -> None:
+    """Numbers within rounding; None in the reference is NaN."""
+    for column, values in reference["values"].items():
+        every = table[column]
+        assert len(every) == reference["rows"], name
+        expect_equal_values(every[:: reference["every"]], values, f"{name}: {column}")
+        if column in reference["sums"]:
+            tolerance = ROUNDING * np.nansum(np.abs(every))
+            assert np.nansum(every) == pytest.approx(
+                reference["sums"][column], abs=tolerance
+            ), f"{name}: {column}"
+
+
+def expect_equal_values(values: Any, expected: list[Any], name: str) -> None:
+    if values.dtype.kind in "US":
+        assert values.tolist() == expected, name
+    else:
+        numbers = np.array([np.nan if x is None else x for x in expected], dtype=float)
+        np.testing.assert_allclose(
+            values.astype(float), numbers, rtol=ROUNDING, atol=1e-12, err_msg=name
+        )
+
+
+@pytest.mark.parametrize("name", REFERENCE["figures"])
+def test_a_figure_measures_what_its_script_measured(
+    name: str, client: ballpiston.Client, measured: dict[str, tables.Tables]
+) -> None:
+    reference = REFERENCE["figures"][name]
+    module = importlib.import_module(f"ballpiston.figures.{name}")
+    measured[name] = module.measure(client, **reference["keywords"])
+    for table, expected in reference["tables"].items():
+        expect_equal(measured[name][table], expected, table)
+
+
+@pytest.mark.parametrize("name", REFERENCE["figures"])
+def test_texts_are_inside_the_picture(name: str, measured: dict[str, tables.Tables]) -> None:
+    if name not in measured:
+        pytest.skip("the figure was not measured")
+    expect_texts_inside(importlib.import_module(f"ballpiston.figures.{name}").draw(measured[name]))
+
+
+def expect_texts_inside(figure: Any) -> None:
+    from matplotlib.text import Text
+
+    figure.draw_without_rendering()
+    width, height = figure.bbox.size
+    for text in figure.findobj(Text):
+        if text.get_visible() and text.get_text() and text.axes is not None:
+            box = text.get_window_extent()
+            is_inside = box.x0 > -1 and box.y0 > -1 and box.x1 < width + 1 and box.y1 < height + 1
+            is_far = box.x0 > width or box.x1 < 0 or box.y0 > height or box.y1 < 0  # a clipped tick
+            assert is_inside or is_far, f"{text.get_text()!r} crosses the edge of the picture"
+
+
+# What the figures compute
+
+
+def analysis(name: str) -> Any:
+    return REFERENCE["analysis"][f"markov-test-{name}"]
+
+
+@pytest.fixture(scope="module")
+def excess() -> tables.Table:
+    return {name: np.array(values) for name, values in analysis("excess")["values"].items()}
+
+
+def test_the_decay_and_the_maxima_of_relative_entropies_are_those_of_the_script(
+    excess: tables.Table,
+) -> None:
+    expect_equal(markov_test.decay(excess), analysis("decay"), "decay")
+    expect_equal(markov_test.maxima(excess), analysis("maxima"), "maxima")
+
+
+def test_the_error_of_an_excess_is_at_least_that_of_the_noise_floor() -> None:
+    divergence = {name: np.full(2, 0.5) for name in ("delta", "epsilon", "exponent")}
+    divergence |= {"value": np.array([3.0, 3.0]), "noise_floor": np.array([1.0, 2.0])}
+    divergence |= {"standard_error": np.array([0.1, 0.4]), "noise_error": np.array([0.3, 0.2])}
+    points = markov_test.excess(divergence)
+    assert points["excess"].tolist() == [2.0, 1.0]
+    assert points["standard_error"].tolist() == [0.3, 0.4]
+
+
+@pytest.mark.parametrize(
+    "dip,error,count", [(0.7, 0.01, 2), (0.9, 0.01, 1), (0.7, 0.2, 1)], ids=["deep", "flat", "noisy"]
+)
+def test_a_dip_parts_two_maxima_if_it_is_deep_and_certain(
+    dip: float, error: float, count: int
+) -> None:
+    excess = np.array([0.1, 1.0, dip, 1.1, 0.1])
+    points = {name: np.full(5, 0.5) for name in ("epsilon", "exponent")}
+    points |= {"delta": np.geomspace(0.1, 0.3, 5), "excess": excess}
+    points["standard_error"] = np.full(5, error)
+    assert len(markov_test.maxima(points)["delta"]) == count
+
+
+# The random numbers differ from those of the script. A difference of two shares of 200 data sets
+# has a standard error of at most 0.05; ten times this is exceeded with a probability below 1e-20.
+def test_oscillations_are_fitted_as_by_the_script(excess: tables.Table) -> None:
+    fits = oscillation.fits(excess, SYNTHETIC)
+    reference = json.loads(json.dumps(analysis("fit")))
+    for name in ("false_alarm", "p_value"):
+        expected = reference["values"].pop(name)
+        for value, other in zip(fits[name], expected):
+            assert np.isnan(value) if other is None else abs(value - other) < 0.25
+    expect_equal(fits, reference, "fit")
+
+
+def test_an_oscillation_in_log_delta_is_found_with_its_period_and_amplitude() -> None:
+    delta = np.geomspace(0.02, 0.3, 60)
+    error = 0.01
+    wave = 0.3 * np.cos(2 * np.pi * np.log(delta) / 0.5)
+    noise = error * np.random.default_rng(1).standard_normal(60)
+    points = {
+        "delta": delta,
+        "epsilon": np.full(60, 0.4),
+        "exponent": np.full(60, 5.0),
+        "excess": delta**2 * np.exp(wave + noise),
+    }
+    points["standard_error"] = error * points["excess"]
+    found = tables.rows(oscillation.fits(points, 20), model="log(delta)", exponent=5.0)
+    assert found["b"][0] == pytest.approx(2, abs=0.02)
+    assert found["amplitude"][0] == pytest.approx(0.3, abs=0.02)
+    assert found["period"][0] == pytest.approx(0.5, abs=0.02)
+    assert found["false_alarm"][0] == 0
+    assert found["transform"][0] == 0
+
+
+def test_rates_of_windows_and_their_errors_count_every_batch() -> None:
+    batches = [np.array([1.0, 3.0]), np.array([2.0, 2.0])]
+    rate, error = rates.rate_of_windows(batches, np.array([1.0, 2.5]))
+    # P(t) = sum of min(gap, t)/sum of gaps: 4/8 and 7.5/8.
+    assert rate.tolist() == [4 / 8 / 1.0, 7.5 / 8 / 2.5]
+    # Both batches hit 2 of 4 at t = 1; at t = 2.5 they differ from 3.75 by -0.25 and +0.25.
+    assert error == pytest.approx([0.0, np.sqrt(2 * 0.25**2 * 2) / 8 / 2.5])
+
+
+def test_gaps_belong_to_the_batch_and_to_the_energy_of_their_end() -> None:
+    met, wall = "ball_piston", "ball_wall"
+    orbit = {
+        "time": np.arange(1.0, 17.0),
+        "event": np.array([met, wall] * 8),
+        "piston_energy_before": np.where(np.arange(16) % 4 == 0, 0.1, 0.3),
+    }
+    gaps = rates.batches_of_gaps(orbit, rates.Kind("ball_piston", np.nan, 0, 0.5, 1))
+    assert [batch.tolist() for batch in gaps] == [[1.0]] + [[2.0]] * 7
+    near = rates.batches_of_gaps(orbit, rates.Kind("conditional", 0.3, 0.2, 0.4, 1))
+    assert [batch.tolist() for batch in near] == [[], [2.0]] * 4
+
+
+def test_merged_bins_keep_the_probability() -> None:
+    count = np.arange(10.0)
+    bins = {name: np.full(10, 0.5) for name in ("delta", "epsilon", "exponent", "sigma")}
+    bins |= {"samples": np.full(10, 45.0), "lower": np.arange(10.0), "upper": np.arange(1.0, 11)}
+    bins |= {"count": count, "density": count / 45, "exact_density": np.full(10, 0.1)}
+    merged = ingoing_law.merge(bins, 4)
+    assert merged["density"] * [4, 4, 2] == pytest.approx([6 / 45, 22 / 45, 17 / 45])
+    assert merged["error"] == pytest.approx(np.sqrt([6, 22, 17]) / 45 / [4, 4, 2])
+    assert merged["alpha"].tolist() == [2.0, 6.0, 9.0]
+
+
+def test_a_chain_is_drawn_as_one_row(client: ballpiston.Client) -> None:
+    data = gas.measure(client, cells="4")
+    geometry = data["gas-geometry"]
+    assert (geometry["columns"][0], geometry["rows"][0]) == (4, 1)
+    assert len(data["gas-pistons"]["x"]) == 4
+    expect_texts_inside(gas.draw(data))
+
+
+def test_the_counts_of_failures_are_read_from_the_report() -> None:
+    report = "\n".join(REFERENCE["stability_report"])
+    expect_equal(stability.counts(report), REFERENCE["stability"], "stability")
+
+
+MEASUREMENTS = """rho,delta,epsilon,method,time_step,quantity,samples,wall_hits,work_seconds,value,\
+statistical_error,own_error,bias_resolved
+0.53,0.1,0.125,fixed-step,0.1,mean-free-time,100,2000,0.001,0.4,0.06,0.08,1
+0.53,0.1,0.125,fixed-step,0.1,mean-free-time,400,8000,0.004,0.4,0.03,0.3,1
+0.53,0.1,0.125,billiard,0,mean-free-time,400,8000,0.0001,0.01,0.03,0.05,0
+0.53,0.1,0.125,closed-form,0,mean-free-time,0,0,2e-7,6e-15,,,0
+0.53,0.1,0.125,billiard,0,ingoing-law,400,8000,0.0001,0.01,0.03,0.05,0
+0.53,0.1,0.125,billiard,0,trajectory,64,1000,0.00001,30,1,2,0
+"""
+
+
+def test_a_resolved_bias_is_part_of_the_expected_error() -> None:
+    data = speed_accuracy.measurements(MEASUREMENTS)
+    step, lanes = speed_accuracy.curves_of(data, "mean-free-time", 64)
+    assert (step.bias, lanes.bias) == (0.4, 0)
+    assert step.expected_error == pytest.approx([np.hypot(0.08, 0.4), 0.5])
+    of_chance, of_bias = 0.3**2 / np.sqrt(800), 0.4 * 0.03
+    assert step.error_of_error[1] == pytest.approx(np.hypot(of_chance, of_bias) / 0.5)
+    assert lanes.error_of_error == pytest.approx([0.05 / np.sqrt(800)])
+
+
+def test_measurements_without_a_gas_and_a_limit_are_drawn() -> None:
+    data = speed_accuracy.measurements(MEASUREMENTS)
+    figure = speed_accuracy.draw({"speed-accuracy": data})
+    expect_texts_inside(figure)
+    assert len(figure.axes) == 4
+
+
+def test_labels_are_moved_apart_downwards() -> None:
+    assert speed_accuracy.spread([8.0, 10.0, 1.0], 2.0) == [5.0, 10.0, 1.0]
+
+
+@pytest.mark.parametrize(
+    "seconds,text", [(195e-9, "195 ns"), (17.2e-3, "17 ms"), (1e-6, "1.0 µs"), (90, "90 s")]
+)
+def test_durations_have_two_digits(seconds: float, text: str) -> None:
+    assert speed_accuracy.duration(seconds) == text
+
+
+# Files
+
+
+def test_tables_are_written_with_all_digits(tmp_path: Path) -> None:
+    table = {"x": np.array([0.1, np.nan]), "name": np.array(["a, b", "c"])}
+    tables.write(tmp_path / "table.csv", table, "made by a test")
+    text = (tmp_path / "table.csv").read_text()
+    assert text == '# made by a test\nx,name\n0.1,"a, b"\n,c\n'
+
+
+def test_the_same_picture_gives_the_same_file(tmp_path: Path) -> None:
+    data = {"cell-3d": {"rho": np.array([0.65]), "delta": np.array([0.08])}}
+    data["cell-3d"] |= {"lambda": np.array([0.83]), "eta": np.array([0.1])}
+    module = importlib.import_module("ballpiston.figures.cell_3d")
+    files = [tmp_path / "a.svg", tmp_path / "b.svg"]
+    for file in files:
+        style.save(module.draw(data), file)
+    assert files[0].read_bytes() == files[1].read_bytes()
+    assert b"heights drawn" in files[0].read_bytes()
+
+
+def test_every_figure_has_its_parts() -> None:
+    for name in figures.names():
+        module = importlib.import_module(f"ballpiston.figures.{name.replace('-', '_')}")
+        assert set(module.EFFORT) <= {"quick", "full"}
+        assert callable(module.measure) and callable(module.draw)
+        assert module.__doc__ and not module.__doc__.splitlines()[0].endswith(".")
+
+
+@pytest.mark.parametrize(
+    "flags,text",
+    [
+        (["--samples", "3"], "--samples: the figure cell has no such variable"),
+        (["--seed", "1.5"], "--seed has to be a whole number"),
+        (["--delta", "0.1,0.2"], "--delta: '0.1,0.2' is not one number"),
+        (["--delta", "0.9"], "delta is 0.9; permitted"),
+    ],
+)
+def test_wrong_values_are_named(
+    flags: list[str], text: str, home: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert command.main(["cell", "--out", str(tmp_path), *flags]) == 2
+    assert text in capsys.readouterr().err
+
+
+def test_a_folder_that_cannot_be_made_is_named(
+    home: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "file"
+    file.touch()
+    assert command.main(["cell", "--out", str(file)]) == 2
+    assert f"--out: cannot write {file}: File exists" in capsys.readouterr().err
+
+
+# The client's functions that figures use
+
+
+def test_trace_arrays_have_the_fields_of_the_events(client: ballpiston.Client) -> None:
+    orbit = {"rho": 0.53, "delta": 0.3, "events": 300, "seed": 5}
+    names = ("time", "event", "free_time", "piston_energy")
+    arrays = client.trace_arrays(*names, **orbit)
+    _, *events = client.trace(**orbit)
+    for name in names:
+        expected = [event.get(name, np.nan) for event in events]
+        assert np.array_equal(arrays[name], expected, equal_nan=name != "event")
+    with pytest.raises(ValueError, match="no field 'tme'; did you mean"):
+        client.trace_arrays("tme", **orbit)
+
+
+def test_progress_as_json_has_one_line_for_each_message(
+    client: ballpiston.Client, capsys: pytest.CaptureFixture[str]
+) -> None:
+    job = client.submit("equilibrium", rho=0.53, delta=0.2, model="billiard", collisions=2000)
+    job.watch("json")
+    lines = [json.loads(line) for line in capsys.readouterr().err.splitlines()]
+    assert lines[-1]["job"] == job.name
+    assert lines[-1]["state"] == "SUCCEEDED"
+    assert lines[-1]["progress"]["points_done"] == 1
+    with pytest.raises(ValueError, match="permitted: auto, bar, json, none"):
+        job.watch("loud")

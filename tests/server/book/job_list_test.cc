@@ -1,0 +1,159 @@
+// The pages of a filtered list, over a store that is filled without a server.
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/book/job_book.h"
+#include "server/book/job_name.h"
+#include "server/convert/spec.h"
+#include "server/store/job_table.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/requests.h"
+#include "tests/server/thread_pool.h"
+#include "tests/support/await.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using v1::EnsembleJob;
+
+const Principal kOwner{"ann", Role::kSubmit};
+const Principal kStranger{"ben", Role::kSubmit};
+
+struct StoredJob {
+  std::string id;
+  JobState state = EnsembleJob::SUCCEEDED;
+  absl::Time create_time = absl::UnixEpoch();
+  v1::EnsembleSpec spec = Equilibrium(1, 2);
+};
+
+class JobList : public ::testing::Test {
+ protected:
+  // In the order of their creation.
+  void Insert(const std::vector<StoredJob>& jobs) {
+    ASSERT_OK(store_->Commit([&](Database& database) {
+      for (const StoredJob& job : jobs) {
+        JobRecord record;
+        record.id = job.id;
+        record.principal = kOwner.name;
+        record.spec = SpecBytes(job.spec);
+        record.state = job.state;
+        record.create_time = job.create_time;
+        InsertJob(database, record);
+      }
+    }));
+  }
+
+  void InsertMany(int count, const StoredJob& job) {
+    std::vector<StoredJob> jobs(static_cast<size_t>(count), job);
+    for (size_t i = 0; i < jobs.size(); ++i) jobs[i].id += std::to_string(i);
+    Insert(jobs);
+  }
+
+  JobsPage List(const JobsQuery& query, const Principal& caller = kOwner) {
+    auto page = book_->List(caller, query);
+    EXPECT_OK(page);
+    return page.ok() ? *std::move(page) : JobsPage();
+  }
+
+  static JobsQuery Query(JobFilter filter = {}) {
+    return {.filter = std::move(filter),
+            .before = std::numeric_limits<int64_t>::max(),
+            .max_jobs = 50,
+            .max_bytes = std::numeric_limits<size_t>::max()};
+  }
+
+  static std::vector<std::string> IdsOf(const JobsPage& page) {
+    std::vector<std::string> ids;
+    for (const EnsembleJob& job : page.jobs) ids.push_back(JobIdOf(job.name()).value_or(""));
+    return ids;
+  }
+
+  TemporaryFolder folder_;
+  std::unique_ptr<Store> store_ = *Store::Open(folder_.File("store"), {.stall = kNever});
+  ThreadPool pool_{1, FakeExperiments()};
+  std::unique_ptr<JobBook> book_ = std::make_unique<JobBook>(*store_, Limits(), pool_.scheduler());
+};
+
+TEST_F(JobList, AJobMatchesAllPartsOfTheFilter) {
+  const absl::Time noon = absl::FromUnixSeconds(43'200);
+  const absl::Time before = noon - absl::Nanoseconds(1);
+  Insert({{"early", EnsembleJob::FAILED, before, SmallFirstHit()},
+          {"match", EnsembleJob::FAILED, noon, SmallFirstHit()},
+          {"experiment", EnsembleJob::FAILED, noon, Equilibrium(1, 2)},
+          {"state", EnsembleJob::CANCELLED, noon, SmallFirstHit()}});
+  const JobsQuery query = Query({.states = {EnsembleJob::FAILED, EnsembleJob::SUCCEEDED},
+                                 .experiments = {v1::EnsembleSpec::FIRST_HIT},
+                                 .since = noon});
+  EXPECT_THAT(IdsOf(List(query)), ElementsAre("match"));
+  EXPECT_EQ(List(query).next_before, std::nullopt);
+  EXPECT_THAT(IdsOf(List(query, kStranger)), IsEmpty());
+}
+
+// The clock was set back between two jobs: the list has the order of acceptance.
+TEST_F(JobList, EveryJobSinceATimeIsListedIfTheClockWasSetBack) {
+  const absl::Time since = absl::FromUnixSeconds(1000);
+  Insert({{.id = "first", .create_time = since + absl::Hours(1)},
+          {.id = "early", .create_time = since - absl::Hours(1)},
+          {.id = "last", .create_time = since}});
+  EXPECT_THAT(IdsOf(List(Query({.since = since}))), ElementsAre("last", "first"));
+}
+
+TEST_F(JobList, APageReadsABoundedNumberOfJobs) {
+  Insert({{"match", EnsembleJob::FAILED}});
+  InsertMany(kMaxJobsRead, {.id = "other"});
+  JobsQuery query = Query({.states = {EnsembleJob::FAILED}});
+  const JobsPage first = List(query);
+  EXPECT_THAT(IdsOf(first), IsEmpty());
+  ASSERT_NE(first.next_before, std::nullopt);
+  query.before = *first.next_before;
+  EXPECT_THAT(IdsOf(List(query)), ElementsAre("match"));
+  EXPECT_EQ(List(query).next_before, std::nullopt);
+}
+
+TEST_F(JobList, APageReadsABoundedNumberOfBytes) {
+  Insert({{"match", EnsembleJob::FAILED}});
+  InsertMany(5, {.id = "large", .spec = LargeEquilibrium()});  // 720 kB each
+  JobsQuery query = Query({.states = {EnsembleJob::FAILED}});
+  query.max_bytes_read = size_t{2} << 20;
+  std::vector<size_t> sizes;
+  std::optional<int64_t> before = query.before;
+  for (; before; before = List(query).next_before) {
+    query.before = *before;
+    sizes.push_back(List(query).jobs.size());
+  }
+  EXPECT_THAT(sizes, ElementsAre(0, 0, 1));
+}
+
+TEST_F(JobList, APageReadsAtLeastOneJob) {
+  Insert({{"older"}, {"newer"}});
+  JobsQuery query = Query();
+  query.max_bytes_read = 1;
+  const JobsPage page = List(query);
+  EXPECT_THAT(IdsOf(page), ElementsAre("newer"));
+  EXPECT_EQ(page.next_before, std::optional<int64_t>(2));
+}
+
+TEST_F(JobList, AFullPageEndsWithoutLookingForAnotherMatch) {
+  InsertMany(1000, {.id = "other"});
+  InsertMany(2, {.id = "match", .state = EnsembleJob::FAILED});
+  JobsQuery query = Query({.states = {EnsembleJob::FAILED}});
+  query.max_jobs = 2;
+  const JobsPage full = List(query);
+  EXPECT_THAT(IdsOf(full), ElementsAre("match1", "match0"));
+  ASSERT_EQ(full.next_before, std::optional<int64_t>(1001));
+  query.before = *full.next_before;
+  EXPECT_THAT(IdsOf(List(query)), IsEmpty());
+  EXPECT_EQ(List(query).next_before, std::nullopt);
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,135 @@
+#include "server/cluster/run_command.h"
+
+#include <signal.h>
+
+#include <chrono>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include "absl/strings/str_cat.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/support/await.h"
+#include "tests/support/files.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr std::chrono::milliseconds kShort(50);
+// Longer than any test: a program that sleeps so long is killed.
+constexpr char kForever[] = "sleep 1000";
+
+Command Shell(const std::string& script) {
+  return {.words = {"sh", "-c", script}, .environment = {"PATH=/usr/bin:/bin"}};
+}
+
+absl::StatusOr<CommandOutput> RunShell(const std::string& script) {
+  return RunCommand(Shell(script), {});
+}
+
+TEST(RunCommand, GivesOutputErrorsAndExitCode) {
+  ASSERT_OK_AND_ASSIGN(const CommandOutput run, RunShell("echo a; echo b >&2; exit 3"));
+  EXPECT_EQ(run.output, "a\n");
+  EXPECT_EQ(run.errors, "b\n");
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_EQ(RunShell("exit 0")->exit_code, 0);
+  EXPECT_EQ(RunShell("exit 255")->exit_code, 255);
+}
+
+TEST(RunCommand, ASignalIsAnExitCodeFrom128) {
+  EXPECT_EQ(RunShell("kill -KILL $$")->exit_code, 128 + SIGKILL);
+  EXPECT_EQ(RunShell("kill -TERM $$")->exit_code, 128 + SIGTERM);
+}
+
+TEST(RunCommand, TheProgramHasTheGivenEnvironmentAlone) {
+  Command command = Shell("env");
+  command.environment = {"PATH=/usr/bin:/bin", "ONE=1", "TWO=a b"};
+  ASSERT_OK_AND_ASSIGN(const CommandOutput run, RunCommand(command, {}));
+  EXPECT_THAT(run.output, HasSubstr("ONE=1\n"));
+  EXPECT_THAT(run.output, HasSubstr("TWO=a b\n"));
+  EXPECT_THAT(run.output, ::testing::Not(HasSubstr("HOME=")));
+}
+
+TEST(RunCommand, TheInputIsRead) {
+  Command command = Shell("cat");
+  command.input = std::string(60'000, 'x');
+  EXPECT_EQ(RunCommand(command, {})->output, command.input);
+  command.input = "";
+  EXPECT_EQ(RunCommand(command, {})->output, "");
+}
+
+TEST(RunCommand, UnreadInputIsAccepted) {
+  Command command = Shell("exit 4");
+  command.input = std::string(60'000, 'x');
+  EXPECT_EQ(RunCommand(command, {})->exit_code, 4);
+}
+
+// More than the pipes hold, on both at the same time.
+TEST(RunCommand, LargeOutputsAreWhole) {
+  constexpr size_t kBytes = 3'000'000;
+  const std::string large = absl::StrCat("head -c ", kBytes, " /dev/zero");
+  ASSERT_OK_AND_ASSIGN(const CommandOutput run, RunShell(large + " >&2 & " + large + "; wait"));
+  EXPECT_EQ(run.output.size(), kBytes);
+  EXPECT_EQ(run.errors.size(), kBytes);
+}
+
+TEST(RunCommand, AProgramThatDoesNotExistIsNotFound) {
+  EXPECT_THAT(RunCommand({.words = {"no-such-program-4711"}}, {}),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr("no-such-program-4711")));
+}
+
+TEST(RunCommand, AFileThatIsNotAProgramIsUnavailable) {
+  const TemporaryFolder folder;
+  WriteFile(folder.File("text"), "text");
+  EXPECT_THAT(RunCommand({.words = {folder.File("text")}}, {}),
+              StatusIs(absl::StatusCode::kUnavailable, HasSubstr(folder.File("text"))));
+}
+
+TEST(RunCommand, TheProgramIsKilledAtTheLimit) {
+  Command command = Shell(absl::StrCat("exec ", kForever));
+  command.limit = kShort;
+  EXPECT_THAT(RunCommand(command, {}),
+              StatusIs(absl::StatusCode::kDeadlineExceeded, HasSubstr("sh")));
+}
+
+TEST(RunCommand, TheLimitHoldsForAProgramThatClosedItsOutput) {
+  Command command = Shell(absl::StrCat("exec >&- 2>&-; exec ", kForever));
+  command.limit = kShort;
+  EXPECT_THAT(RunCommand(command, {}), StatusIs(absl::StatusCode::kDeadlineExceeded));
+}
+
+TEST(RunCommand, TheProgramIsKilledWhenStopIsRequested) {
+  const TemporaryFolder folder;
+  const std::string pid_file = folder.File("pid");
+  Command command = Shell(absl::StrCat("echo $$ >", pid_file, "; exec ", kForever));
+  command.limit = kNever;
+  std::stop_source stop;
+  std::thread stopper([&] {
+    AwaitThat([&] { return !Contents(pid_file).empty(); });
+    stop.request_stop();
+  });
+  EXPECT_THAT(RunCommand(command, stop.get_token()), StatusIs(absl::StatusCode::kCancelled));
+  stopper.join();
+  EXPECT_NE(kill(std::stoi(Contents(pid_file)), 0), 0);
+}
+
+// The server blocks some signals and ignores SIGPIPE; the program gets the usual handling.
+TEST(RunCommand, TheProgramHasTheUsualSignals) {
+  sigset_t usr1, before;
+  sigemptyset(&usr1);
+  sigaddset(&usr1, SIGUSR1);
+  pthread_sigmask(SIG_BLOCK, &usr1, &before);
+  void (*const pipe)(int) = signal(SIGPIPE, SIG_IGN);
+  EXPECT_EQ(RunShell("kill -USR1 $$; exit 0")->exit_code, 128 + SIGUSR1);
+  EXPECT_EQ(RunShell("kill -PIPE $$; exit 0")->exit_code, 128 + SIGPIPE);
+  signal(SIGPIPE, pipe);
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+}  // namespace
+}  // namespace ballpiston::server

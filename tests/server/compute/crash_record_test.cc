@@ -1,0 +1,292 @@
+#include "server/compute/crash_record.h"
+
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "gtest/gtest.h"
+#include "server/fatal_signals.h"
+#include "tests/support/death_test_folder.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+constexpr RunName kFirst = {1, 10};
+constexpr RunName kSecond = {2, 20};
+constexpr RunName kThird = {3, 30};
+
+constexpr int kKilledFromOutside = 0;
+
+// Processes, one after the other, with the record in one folder.
+class CrashRecordTest : public testing::Test {
+ protected:
+  using Turns = std::map<RunName, std::set<size_t>>;  // points that are being computed
+
+  // A process begins, computes, and dies of the signal. What is in the record at this moment stays.
+  void LiveAndDie(const Turns& turns, int signal, const OutOfMemoryKills& at_start = {}) {
+    CrashRecord record(folder_.path(), at_start);
+    std::vector<std::unique_ptr<CrashRecord::Computing>> computing;
+    for (const auto& [run, points] : turns) {
+      for (const size_t point : points) {
+        computing.push_back(std::make_unique<CrashRecord::Computing>(record, run, point));
+      }
+    }
+    Die(signal);
+    while (!computing.empty()) computing.pop_back();  // the innermost first
+  }
+
+  void DieInAnExamination(const RunName& run) {
+    CrashRecord record(folder_.path(), {});
+    const CrashRecord::Examining examining(record, run);
+    Die(SIGSEGV);
+  }
+
+  void Die(int signal) {
+    if (signal != kKilledFromOutside) CrashRecord::NoteDeath(signal);
+    std::filesystem::copy_file(folder_.File("computing"), at_death_.File("computing"),
+                               std::filesystem::copy_options::overwrite_existing);
+    died_ = true;
+  }
+
+  // What the next process finds.
+  std::unique_ptr<CrashRecord> Next(const OutOfMemoryKills& now = {}) {
+    if (died_) {
+      std::filesystem::copy_file(at_death_.File("computing"), folder_.File("computing"),
+                                 std::filesystem::copy_options::overwrite_existing);
+    }
+    died_ = false;
+    return std::make_unique<CrashRecord>(folder_.path(), now);
+  }
+
+  const TemporaryFolder folder_;
+  const TemporaryFolder at_death_;
+  bool died_ = false;
+};
+
+TEST_F(CrashRecordTest, ADeathCountsForTheRunsThatWereBeingComputed) {
+  LiveAndDie({{kFirst, {4, 5}}, {kSecond, {7}}}, SIGSEGV);
+  const auto record = Next();
+  EXPECT_EQ(record->Deaths(kFirst), 1);
+  EXPECT_EQ(record->Deaths(kSecond), 1);
+  EXPECT_EQ(record->Deaths(kThird), 0);
+  EXPECT_EQ(record->LastPoints(kFirst), (std::set<size_t>{4, 5}));
+  EXPECT_EQ(record->LastPoints(kSecond), (std::set<size_t>{7}));
+  EXPECT_EQ(record->LastPoints(kThird), std::set<size_t>());
+  EXPECT_EQ(record->counted_deaths(), 1);
+}
+
+TEST_F(CrashRecordTest, TwoDeathsWithDifferentRunsMakeASuspectOfTheCommonOne) {
+  LiveAndDie({{kFirst, {0}}, {kSecond, {0}}}, SIGSEGV);
+  Next().reset();
+  LiveAndDie({{kSecond, {0}}, {kThird, {0}}}, SIGABRT);
+  const auto record = Next();
+  EXPECT_EQ(record->Deaths(kFirst), 1);
+  EXPECT_EQ(record->Deaths(kSecond), kDeathsOfASuspect);
+  EXPECT_EQ(record->Deaths(kThird), 1);
+}
+
+TEST_F(CrashRecordTest, AKillFromOutsideCountsForNothing) {
+  LiveAndDie({{kFirst, {0}}}, SIGSEGV);
+  Next().reset();
+  for (int i = 0; i < 5; ++i) {
+    LiveAndDie({{kFirst, {0}}}, kKilledFromOutside);
+    EXPECT_EQ(Next()->Deaths(kFirst), 1);
+  }
+  LiveAndDie({{kFirst, {0}}}, SIGSEGV);
+  EXPECT_EQ(Next()->Deaths(kFirst), 2);
+}
+
+TEST_F(CrashRecordTest, AKillFromOutsideKeepsThePointsOfTheLastDeath) {
+  LiveAndDie({{kFirst, {7}}}, SIGSEGV);
+  Next().reset();
+  LiveAndDie({{kFirst, {5}}}, kKilledFromOutside);
+  EXPECT_EQ(Next()->LastPoints(kFirst), (std::set<size_t>{7}));
+  LiveAndDie({{kSecond, {5}}}, SIGSEGV);
+  EXPECT_EQ(Next()->LastPoints(kFirst), (std::set<size_t>{7}));
+  DieInAnExamination(kFirst);
+  EXPECT_EQ(Next()->Deaths(kFirst), 2);
+  EXPECT_EQ(Next()->LastPoints(kFirst), (std::set<size_t>{7}));
+  LiveAndDie({{kFirst, {8, 9}}}, SIGSEGV);
+  EXPECT_EQ(Next()->Deaths(kFirst), 3);
+  EXPECT_EQ(Next()->LastPoints(kFirst), (std::set<size_t>{8, 9}));
+}
+
+TEST_F(CrashRecordTest, AnEndedTurnDoesNotCount) {
+  {
+    CrashRecord record(folder_.path(), {});
+    { const CrashRecord::Computing ended(record, kFirst, 0); }
+    const CrashRecord::Computing computing(record, kSecond, 0);
+    Die(SIGFPE);
+  }
+  const auto record = Next();
+  EXPECT_EQ(record->Deaths(kFirst), 0);
+  EXPECT_EQ(record->Deaths(kSecond), 1);
+}
+
+TEST_F(CrashRecordTest, ADeathIsCountedByOneStartOnly) {
+  LiveAndDie({{kFirst, {0}}}, SIGSEGV);
+  for (int start = 0; start < 3; ++start) EXPECT_EQ(Next()->Deaths(kFirst), 1);
+}
+
+TEST_F(CrashRecordTest, ADeathOfAThreadThatDoesNotComputeCountsForNothing) {
+  {
+    CrashRecord record(folder_.path(), {});
+    const CrashRecord::Computing computing(record, kFirst, 0);
+    std::thread([this] { Die(SIGSEGV); }).join();
+  }
+  EXPECT_EQ(Next()->Deaths(kFirst), 0);
+}
+
+TEST_F(CrashRecordTest, ADeathInAnExaminationCountsForItsRunAlone) {
+  {
+    CrashRecord record(folder_.path(), {});
+    const CrashRecord::Computing computing(record, kFirst, 0);
+    std::thread([&] {
+      const CrashRecord::Examining examining(record, kSecond);
+      Die(SIGSEGV);
+    }).join();
+  }
+  const auto record = Next();
+  EXPECT_EQ(record->Deaths(kFirst), 0);
+  EXPECT_EQ(record->Deaths(kSecond), 1);
+}
+
+TEST_F(CrashRecordTest, AnExaminationDuringATurnEndsBeforeIt) {
+  {
+    CrashRecord record(folder_.path(), {});
+    const CrashRecord::Computing computing(record, kFirst, 0);
+    { const CrashRecord::Examining examining(record, kSecond); }
+    Die(SIGSEGV);
+  }
+  const auto record = Next();
+  EXPECT_EQ(record->Deaths(kFirst), 1);
+  EXPECT_EQ(record->Deaths(kSecond), 0);
+}
+
+TEST_F(CrashRecordTest, AStoredChunkClearsTheRun) {
+  LiveAndDie({{kFirst, {0}}, {kSecond, {0}}}, SIGSEGV);
+  Next()->Clear(kFirst);
+  const auto record = Next();
+  EXPECT_EQ(record->Deaths(kFirst), 0);
+  EXPECT_EQ(record->Deaths(kSecond), 1);
+  record->ClearAllBut({kThird});
+  EXPECT_EQ(record->Deaths(kSecond), 0);
+}
+
+TEST_F(CrashRecordTest, AnOutOfMemoryKillCounts) {
+  const OutOfMemoryKills before = {"boot group", 7}, after = {"boot group", 8};
+  LiveAndDie({{kFirst, {0}}}, kKilledFromOutside, before);
+  EXPECT_EQ(Next(after)->Deaths(kFirst), 1);
+  EXPECT_EQ(Next(after)->Deaths(kFirst), 1);
+}
+
+TEST_F(CrashRecordTest, CountsOfDifferentBootsAreNotCompared) {
+  LiveAndDie({{kFirst, {0}}}, kKilledFromOutside, {"boot group", 7});
+  EXPECT_EQ(Next({"other boot group", 8})->Deaths(kFirst), 0);
+  LiveAndDie({{kFirst, {0}}}, kKilledFromOutside, {});
+  EXPECT_EQ(Next({})->Deaths(kFirst), 0);
+}
+
+TEST_F(CrashRecordTest, AnOutOfMemoryKillThatSystemdReportsCountsOnce) {
+  LiveAndDie({{kFirst, {0}}}, kKilledFromOutside);
+  std::ofstream(folder_.File(kOutOfMemoryFile)).flush();
+  EXPECT_EQ(Next()->Deaths(kFirst), 1);
+  EXPECT_FALSE(std::filesystem::exists(folder_.File(kOutOfMemoryFile)));
+  EXPECT_EQ(Next()->Deaths(kFirst), 1);
+}
+
+// Another run has the key: the store was restored from a backup, or a newer engine computes again.
+TEST_F(CrashRecordTest, AnotherGenerationOfARunIsAnotherRun) {
+  LiveAndDie({{kFirst, {0}}}, SIGSEGV);
+  EXPECT_EQ(Next()->Deaths({kFirst.run, kFirst.generation + 1}), 0);
+}
+
+TEST_F(CrashRecordTest, AFileOfAnotherFormatIsReplaced) {
+  std::ofstream(folder_.File("computing")) << std::string(100'000, 'x');
+  EXPECT_EQ(Next()->Deaths(kFirst), 0);
+  LiveAndDie({{kFirst, {0}}}, SIGSEGV);
+  EXPECT_EQ(Next()->Deaths(kFirst), 1);
+}
+
+TEST_F(CrashRecordTest, WithoutAFileTheRecordIsInMemory) {
+  std::filesystem::create_directory(folder_.File("computing"));
+  CrashRecord record(folder_.path(), {});
+  const CrashRecord::Computing computing(record, kFirst, 0);
+  EXPECT_EQ(record.Deaths(kFirst), 0);
+}
+
+// ---- real signals: each death is that of a process of its own ----
+
+int Overflow(int depth) {
+  volatile char frame[4096];
+  frame[0] = static_cast<char>(depth);
+  return depth == 0 ? frame[0] : Overflow(depth + 1) + frame[0];
+}
+
+class FatalSignalsDeathTest : public testing::Test {
+ protected:
+  template <typename Fault>
+  void DieInATurn(Fault fault) {
+    const rlimit no_core = {0, 0};
+    setrlimit(RLIMIT_CORE, &no_core);
+    NoteFatalSignals(CrashRecord::NoteDeath);
+    CrashRecord record(folder_.path(), {});
+    std::thread([&] {
+      const CrashRecord::Computing computing(record, kFirst, 0);
+      fault();
+    }).join();
+  }
+
+  // What the next process finds.
+  int Deaths() const { return CrashRecord(folder_.path(), {}).Deaths(kFirst); }
+
+ private:
+  const DeathTestFolder folder_;
+};
+
+TEST_F(FatalSignalsDeathTest, AFaultCounts) {
+  EXPECT_DEATH(DieInATurn([] { *static_cast<volatile int*>(nullptr) = 0; }), "");
+  EXPECT_EQ(Deaths(), 1);
+}
+
+TEST_F(FatalSignalsDeathTest, AStackOverflowCounts) {
+  EXPECT_DEATH(DieInATurn([] { Overflow(1); }), "");
+  EXPECT_EQ(Deaths(), 1);
+}
+
+TEST_F(FatalSignalsDeathTest, AnAbortCounts) {
+  EXPECT_DEATH(DieInATurn([] { abort(); }), "");
+  EXPECT_EQ(Deaths(), 1);
+}
+
+TEST_F(FatalSignalsDeathTest, AKillDoesNotCount) {
+  EXPECT_DEATH(DieInATurn([] { raise(SIGKILL); }), "");
+  EXPECT_EQ(Deaths(), 0);
+}
+
+TEST_F(FatalSignalsDeathTest, AFatalSignalOfAnotherProcessDoesNotCount) {
+  EXPECT_DEATH(DieInATurn([] {
+                 std::system(("kill -SEGV " + std::to_string(getpid())).c_str());
+                 pause();
+               }),
+               "");
+  EXPECT_EQ(Deaths(), 0);
+}
+
+TEST(OutOfMemoryKills, TheGroupStaysTheSame) {
+  const OutOfMemoryKills first = ReadOutOfMemoryKills(), second = ReadOutOfMemoryKills();
+  EXPECT_EQ(first.group, second.group);
+  EXPECT_GE(second.kills, first.kills);
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,142 @@
+#include "server/compute/model_ladder.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/engine_version.h"
+#include "core/experiment/all_experiments.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/store/point_tables.h"
+#include "tests/server/store_access.h"
+#include "tests/support/await.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Small enough a delta, and large enough a tolerance, that a pilot decides.
+EnsembleSpec Relaxation(std::vector<double> deltas = {0.005}) {
+  return {.experiment = &kEnergyRelaxation,
+          .grid = {{kRho, {0.5296}}, {kDelta, std::move(deltas)}},
+          .target = {.tolerance = 0.02}};
+}
+
+PilotPlace PlaceOf(const EnsembleSpec& spec) { return PilotPlaceFor(PointAt(spec, 0)); }
+
+class ModelLadderTest : public testing::Test {
+ protected:
+  ModelLadderTest() : store_(*Store::Open(folder_.File("store.sqlite3"), {.stall = kNever})) {}
+
+  // The experiment; runs a pilot, which costs nothing, if the ladder asks for one.
+  std::unique_ptr<const PointExperiment> Create(ModelLadder& ladder, const EnsembleSpec& spec) {
+    OpenedPoint opened = ladder.Open(spec, 0);
+    if (const auto* place = std::get_if<PilotPlace>(&opened)) {
+      ++runs_;
+      ladder.KeepPilot(*place, found_);
+      opened = ladder.Open(spec, 0);
+    }
+    return std::get<std::unique_ptr<const PointExperiment>>(std::move(opened));
+  }
+
+  std::optional<Pilot> Stored(const PilotPlace& place) {
+    EXPECT_OK(store_->Flush());
+    return ReadFrom(*store_, [&](Database& database) {
+      return FindPilot(database, std::string(kEngineVersion), place);
+    });
+  }
+
+  TemporaryFolder folder_;
+  std::unique_ptr<Store> store_;
+  int runs_ = 0;
+  Pilot found_ = {.difference = 0.01, .standard_error = 0.001};
+};
+
+TEST_F(ModelLadderTest, APilotIsRequestedOnceAndStored) {
+  const EnsembleSpec spec = Relaxation();
+  ModelLadder ladder(*store_, 2);
+  for (int asked = 0; asked < 3; ++asked) {
+    const auto experiment = Create(ladder, spec);
+    EXPECT_EQ(experiment->answer().model, Model::kSpectrum);
+    EXPECT_EQ(experiment->answer().model_error,
+              LimitErrorBound(found_, PlaceOf(spec), PointAt(spec, 0)));
+    EXPECT_THAT(experiment->answer().reason, HasSubstr("two sigma of a pilot at delta = "));
+  }
+  EXPECT_EQ(runs_, 1);
+  const auto stored = Stored(PlaceOf(spec));
+  ASSERT_TRUE(stored);
+  EXPECT_EQ(stored->difference, found_.difference);
+  EXPECT_EQ(stored->standard_error, found_.standard_error);
+}
+
+TEST_F(ModelLadderTest, AnotherServerUsesTheStoredPilot) {
+  const EnsembleSpec spec = Relaxation();
+  Answer first;
+  {
+    ModelLadder ladder(*store_, 2);
+    first = Create(ladder, spec)->answer();
+  }
+  ASSERT_OK(store_->Flush());
+  ModelLadder ladder(*store_, 7);
+  const Answer second = Create(ladder, spec)->answer();
+  EXPECT_EQ(runs_, 1);
+  EXPECT_EQ(second.model, first.model);
+  EXPECT_EQ(second.reason, first.reason);
+  EXPECT_EQ(second.model_error, first.model_error);
+}
+
+TEST_F(ModelLadderTest, TheBilliardIsChosenIfThePilotFindsALargeLimitError) {
+  found_.difference = 1;
+  ModelLadder ladder(*store_, 2);
+  const auto experiment = Create(ladder, Relaxation());
+  EXPECT_EQ(experiment->answer().model, Model::kBilliard);
+  EXPECT_THAT(experiment->answer().reason, HasSubstr("beyond the tolerance"));
+  EXPECT_EQ(runs_, 1);
+}
+
+TEST_F(ModelLadderTest, OneStoredPilotServesAllSmallerDeltas) {
+  ModelLadder ladder(*store_, 2);
+  for (const double delta : {0.005, 0.004, 0.003}) Create(ladder, Relaxation({delta}));
+  EXPECT_EQ(runs_, 1);
+}
+
+TEST_F(ModelLadderTest, PilotsRunOnlyIfNeeded) {
+  ModelLadder ladder(*store_, 2);
+  EnsembleSpec closed = Relaxation();
+  closed.experiment = &kEquilibrium;
+  EXPECT_EQ(Create(ladder, closed)->answer().model, Model::kClosedForm);
+  EnsembleSpec exact = Relaxation();
+  exact.target = {.samples = 100};
+  EXPECT_EQ(Create(ladder, exact)->answer().model, Model::kBilliard);
+  EnsembleSpec strict = Relaxation();
+  strict.target.tolerance = 1e-7;
+  EXPECT_EQ(Create(ladder, strict)->answer().model, Model::kBilliard);
+  EnsembleSpec told = Relaxation();
+  told.model = Model::kMarkov;
+  EXPECT_EQ(Create(ladder, told)->answer().model, Model::kMarkov);
+  EXPECT_EQ(runs_, 0);
+}
+
+TEST_F(ModelLadderTest, APlanRunsNoPilotAndSaysWhetherThereIsOne) {
+  const EnsembleSpec spec = Relaxation();
+  ModelLadder ladder(*store_, 2);
+  const Ladder before = ladder.LadderOf(spec, PointAt(spec, 0));
+  EXPECT_EQ(before.answer.model, Model::kSpectrum);
+  EXPECT_THAT(before.answer.reason, HasSubstr("expected of a pilot"));
+  EXPECT_EQ(runs_, 0);
+  EXPECT_FALSE(Stored(PlaceOf(spec)));
+  Create(ladder, spec);
+  const Ladder after = ladder.LadderOf(spec, PointAt(spec, 0));
+  EXPECT_THAT(after.answer.reason, HasSubstr("two sigma of a pilot at delta = "));
+  EXPECT_EQ(runs_, 1);
+  // After the pilot, the plan's work does not include a pilot.
+  EXPECT_LT(*after.Chosen().work, *before.Chosen().work);
+}
+
+}  // namespace
+}  // namespace ballpiston::server

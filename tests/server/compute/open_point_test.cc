@@ -1,0 +1,330 @@
+#include "server/compute/open_point.h"
+
+#include <memory>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "core/ensemble/point_fold.h"
+#include "core/experiment/all_experiments.h"
+#include "core/gas/gas_shape.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/server/compute/remote_executor.h"
+#include "tests/server/compute/run_requests.h"
+#include "tests/server/fake_experiments.h"
+
+namespace ballpiston::server {
+namespace {
+
+constexpr ChunkLimits kElsewhere = {.local = false, .most_attempts = 5};
+
+OpenPoint PointOf(const EnsembleSpec& spec) { return OpenPoint(FakeExperiments()(spec, 0)); }
+
+// First chunk, chunk after the last, attempt.
+using Range = std::tuple<uint64_t, uint64_t, int>;
+
+std::optional<Range> Next(OpenPoint& point, double seconds, const ChunkLimits& limits = {},
+                          double longest_chunk = kInfinity) {
+  const auto lease = point.NextChunks({.seconds = seconds, .longest_chunk = longest_chunk}, limits);
+  if (!lease) return std::nullopt;
+  return Range(lease->start.chunk, lease->end, lease->attempt);
+}
+
+std::optional<Range> Chunks(uint64_t first, uint64_t end, int attempt = 1) {
+  return Range(first, end, attempt);
+}
+
+void AddChunks(OpenPoint& point, uint64_t first, uint64_t end) {
+  Lease lease;
+  lease.start.chunk = first;
+  lease.end = end;
+  for (ChunkResult& chunk : ComputedChunks(lease, *point.experiment())) {
+    point.fold().Add(std::move(chunk));
+  }
+}
+
+TEST(OpenPoint, AnInfiniteCapacityTakesAllChunks) {
+  OpenPoint point = PointOf(SixChunks());
+  EXPECT_EQ(Next(point, kInfinity), Chunks(0, 6));
+  EXPECT_EQ(Next(point, kInfinity), std::nullopt);
+}
+
+TEST(OpenPoint, AFiniteCapacityTakesTheFewestChunksThatFillIt) {
+  OpenPoint point = PointOf(SixChunks());
+  EXPECT_EQ(Next(point, 0), Chunks(0, 1));
+  // Chunks 1 and 2 take 2.7 s and 5.4 s.
+  EXPECT_EQ(Next(point, 5), Chunks(1, 3));
+  EXPECT_EQ(Next(point, 1000), Chunks(3, 6));
+  EXPECT_EQ(Next(point, 0), std::nullopt);
+}
+
+TEST(OpenPoint, ALeaseStatesItsSeconds) {
+  OpenPoint point = PointOf(SixChunks());
+  const auto lease = point.NextChunks({.seconds = 5}, {});
+  const ChunkPlan& plan = point.experiment()->plan();
+  EXPECT_DOUBLE_EQ(lease->seconds, plan.SecondsFor(static_cast<double>(plan.SamplesBefore(3))));
+}
+
+TEST(OpenPoint, ALeaseContinuesTheBlocksOfAResumedPoint) {
+  OpenPoint point = PointOf(SixChunks());
+  const FoldState state = FakeState(SixChunks(), 0, 100);  // chunk 0 is complete, chunk 1 is not
+  point.Resume(state);
+  const auto lease = point.NextChunks({.seconds = 0}, {});
+  ASSERT_TRUE(lease);
+  EXPECT_EQ(lease->start.chunk, state.chunk);
+  EXPECT_EQ(lease->start.blocks, state.blocks);
+  EXPECT_TRUE(lease->start.merged == state.partial);
+  EXPECT_EQ(Next(point, 0), Chunks(state.chunk + 1, state.chunk + 2));
+}
+
+TEST(OpenPoint, ChunksThatArrivedEarlyAreSkipped) {
+  for (const double seconds : {0., 1000., kInfinity}) {
+    OpenPoint point = PointOf(SixChunks());
+    AddChunks(point, 2, 3);
+    std::vector<uint64_t> leased;
+    while (const auto next = Next(point, seconds)) {
+      for (uint64_t chunk = std::get<0>(*next); chunk < std::get<1>(*next); ++chunk) {
+        leased.push_back(chunk);
+      }
+    }
+    EXPECT_THAT(leased, testing::ElementsAre(0, 1, 3, 4, 5)) << seconds << " s";
+  }
+}
+
+TEST(OpenPoint, ReturnedChunksComeFirstAndKeepTheirAttempt) {
+  OpenPoint point = PointOf(SixChunks());
+  EXPECT_EQ(Next(point, 15), Chunks(0, 4));
+  AddChunks(point, 0, 1);
+  AddChunks(point, 2, 3);
+  point.Return(0, 4, 2);
+  EXPECT_EQ(Next(point, 1000), Chunks(1, 2, 2));
+  EXPECT_EQ(Next(point, 1000), Chunks(3, 4, 2));
+  EXPECT_EQ(Next(point, 1000), Chunks(4, 6, 1));
+}
+
+TEST(OpenPoint, AReturnedLeaseThatTookTheRestGoesOutAgain) {
+  OpenPoint point = PointOf(SixChunks());
+  EXPECT_EQ(Next(point, kInfinity), Chunks(0, 6));
+  point.Return(0, 6, 1);
+  EXPECT_EQ(Next(point, kInfinity), Chunks(0, 6));
+  EXPECT_EQ(Next(point, kInfinity), std::nullopt);
+}
+
+TEST(OpenPoint, ChunksThatWereNeverLeasedCannotBeReturned) {
+  OpenPoint point = PointOf(SixChunks());
+  EXPECT_EQ(Next(point, 0), Chunks(0, 1));
+  point.Return(0, 6, 7);
+  EXPECT_EQ(Next(point, 0), Chunks(0, 1, 7));
+  EXPECT_EQ(Next(point, 1000), Chunks(1, 6, 1));
+}
+
+TEST(OpenPoint, ChunksWithCrashesAreALeaseOfTheirOwn) {
+  OpenPoint point = PointOf(SixChunks());
+  EXPECT_EQ(Next(point, 15), Chunks(0, 4));
+  point.Return(0, 2, 2);
+  point.Return(2, 4, 2, 1);
+  EXPECT_EQ(Next(point, 1000), Chunks(0, 2, 2));
+  const auto crashed = point.NextChunks({.seconds = 1000}, ChunkLimits());
+  ASSERT_TRUE(crashed);
+  EXPECT_EQ(crashed->start.chunk, 2u);
+  EXPECT_EQ(crashed->end, 4u);
+  EXPECT_EQ(crashed->crashes, 1);
+  EXPECT_EQ(Next(point, 1000), Chunks(4, 6, 1));
+}
+
+TEST(OpenPoint, ALeaseTakesNoMoreMemoryThanThereIs) {
+  OpenPoint point = PointOf(SixChunks());
+  point.memory = {.of_one_turn = 100};
+  EXPECT_FALSE(point.AwaitsMemory({.memory = 100}));
+  EXPECT_TRUE(point.AwaitsMemory({.memory = 99}));
+  EXPECT_FALSE(point.NextChunks({.memory = 99}, ChunkLimits()));
+  EXPECT_FALSE(point.NextChunks({.seconds = 0, .memory = 99}, kElsewhere));
+  EXPECT_TRUE(point.NextChunks({.seconds = 0, .memory = 100}, kElsewhere));
+  EXPECT_TRUE(point.NextChunks({.memory = 100}, ChunkLimits()));
+  EXPECT_FALSE(point.AwaitsMemory({.memory = 99}));  // nothing is left
+}
+
+TEST(OpenPoint, ALargeLeaseDoesNotTakeTheRestOfAPoint) {
+  const EnsembleSpec two_minutes = FakeSpec(1, 3000);
+  for (const double bytes : {100., 101.}) {
+    OpenPoint point = PointOf(two_minutes);
+    point.memory = {.of_one_turn = bytes};
+    const auto lease = point.NextChunks({.memory_of_the_rest = 100}, ChunkLimits());
+    ASSERT_TRUE(lease);
+    EXPECT_EQ(lease->end == point.experiment()->plan().chunks(), bytes <= 100) << bytes;
+  }
+}
+
+TEST(OpenPoint, AChunkOfTooManyAttemptsIsForLocalExecutors) {
+  OpenPoint point = PointOf(SixChunks());
+  EXPECT_EQ(Next(point, 0, kElsewhere), Chunks(0, 1));
+  point.Return(0, 1, 5);
+  EXPECT_EQ(Next(point, 0, kElsewhere), Chunks(0, 1, 5));
+  point.Return(0, 1, 6);
+  EXPECT_EQ(Next(point, 0, kElsewhere), Chunks(1, 2));
+  EXPECT_EQ(Next(point, 0), Chunks(0, 1, 6));
+}
+
+TEST(OpenPoint, ALongChunkIsForLocalExecutors) {
+  for (const double seconds : {0., 1000., kInfinity}) {
+    OpenPoint point = PointOf(SixChunks());
+    constexpr double kLongest = 15;  // chunk 3 takes 10.7 s, chunk 4 takes 21.5 s
+    uint64_t end = 0;
+    while (const auto next = Next(point, seconds, kElsewhere, kLongest)) end = std::get<1>(*next);
+    EXPECT_EQ(end, 4u) << seconds << " s";
+    EXPECT_EQ(Next(point, 1000), Chunks(4, 6));
+  }
+}
+
+TEST(OpenPoint, AdoptedChunksAreNotLeasedUntilTheyAreReturned) {
+  for (const bool is_last_first : {false, true}) {
+    OpenPoint point = PointOf(SixChunks());
+    if (is_last_first) point.Adopt(4, 5);
+    point.Adopt(1, 2);
+    if (!is_last_first) point.Adopt(4, 5);
+    EXPECT_EQ(Next(point, 1000), Chunks(0, 1));
+    EXPECT_EQ(Next(point, 1000), Chunks(2, 4));
+    EXPECT_EQ(Next(point, 1000), Chunks(5, 6));
+    EXPECT_EQ(Next(point, 1000), std::nullopt);
+    point.Return(4, 5, 3);
+    EXPECT_EQ(Next(point, 1000), Chunks(4, 5, 3));
+  }
+}
+
+TEST(OpenPoint, AdoptedChunksBeyondThePlanAreIgnored) {
+  OpenPoint point = PointOf(SixChunks());
+  point.Adopt(5, 1'000'000);
+  EXPECT_EQ(Next(point, 1000), Chunks(0, 5));
+  EXPECT_EQ(Next(point, 1000), std::nullopt);
+}
+
+TEST(OpenPoint, ChunksOfAFinishedPointAreNotLeased) {
+  OpenPoint point = PointOf(SixChunks());
+  point.fold().Finish();
+  EXPECT_EQ(Next(point, kInfinity), std::nullopt);
+  EXPECT_EQ(Next(point, 1), std::nullopt);
+}
+
+// ---- a tolerance ----
+
+EnsembleSpec WithTolerance() {
+  EnsembleSpec spec = FakeSpec(1, 0);
+  spec.target = {.tolerance = 0.05};
+  return spec;
+}
+
+TEST(OpenPoint, AFiniteCapacityEndsAtTheExpectedEnd) {
+  OpenPoint point = PointOf(WithTolerance());
+  const uint64_t expected = point.experiment()->expected_chunks();
+  ASSERT_LT(expected, point.experiment()->plan().chunks());
+  EXPECT_EQ(Next(point, 1e6), Chunks(0, expected));
+  EXPECT_EQ(Next(point, 1e6), std::nullopt);
+}
+
+// The variance of these samples is larger than expected.
+void AddScatteredChunks(OpenPoint& point, uint64_t first, uint64_t end) {
+  Lease lease;
+  lease.start.chunk = first;
+  lease.end = end;
+  for (ChunkResult& chunk : ComputedChunks(lease, *point.experiment())) {
+    chunk.result.moments[0].m2 *= 1e4;
+    point.fold().Add(std::move(chunk));
+  }
+}
+
+TEST(OpenPoint, BeyondTheExpectedEndChunksComeOneByOne) {
+  OpenPoint point = PointOf(WithTolerance());
+  const uint64_t chunk = point.experiment()->expected_chunks();
+  ASSERT_LT(chunk + 1, point.experiment()->plan().chunks());
+  EXPECT_EQ(Next(point, 1e6), Chunks(0, chunk));
+  for (uint64_t next = chunk; next < chunk + 2; ++next) {
+    AddScatteredChunks(point, next == chunk ? 0 : next - 1, next);
+    EXPECT_EQ(Next(point, 1e6), Chunks(next, next + 1));
+    EXPECT_EQ(Next(point, 1e6), std::nullopt);
+  }
+}
+
+TEST(OpenPoint, AnInfiniteCapacityTakesChunksBeyondTheExpectedEnd) {
+  OpenPoint point = PointOf(WithTolerance());
+  const uint64_t chunks = point.experiment()->plan().chunks();
+  EXPECT_EQ(Next(point, kInfinity), Chunks(0, chunks));
+  OpenPoint with_an_early_chunk = PointOf(WithTolerance());
+  AddChunks(with_an_early_chunk, 1, 2);
+  EXPECT_EQ(Next(with_an_early_chunk, kInfinity), Chunks(0, 1));
+  EXPECT_EQ(Next(with_an_early_chunk, kInfinity), Chunks(2, chunks));
+}
+
+TEST(OpenPoint, ExpectedSecondsFallWithMergedChunks) {
+  OpenPoint point = PointOf(WithTolerance());
+  const ChunkPlan& plan = point.experiment()->plan();
+  const uint64_t expected = point.experiment()->expected_chunks();
+  const auto seconds = [&](uint64_t first, uint64_t end) {
+    return plan.SecondsFor(
+        static_cast<double>(plan.SamplesBefore(end) - plan.SamplesBefore(first)));
+  };
+  EXPECT_DOUBLE_EQ(point.ExpectedSeconds(), seconds(0, expected));
+  AddChunks(point, 0, 1);
+  EXPECT_DOUBLE_EQ(point.ExpectedSeconds(), seconds(1, expected));
+}
+
+// ---- samples that continue each other ----
+
+std::shared_ptr<const PointExperiment> SteadyExperiment() {
+  return PointExperiment::Create({.experiment = &kGasConduction,
+                                  .grid = {{kRho, {0.53}},
+                                           {kDelta, {0.1}},
+                                           {kCells, {CodeOf({.columns = 2})}},
+                                           {kHot, {2}},
+                                           {kCold, {1}}},
+                                  .target = {.samples = 1000},
+                                  .model = Model::kMarkov},
+                                 0);
+}
+
+ChunkResult Computed(const Lease& lease) {
+  ChunkFold fold(lease.experiment->plan(), lease.start, lease.end, lease.groups);
+  const Block block = *fold.NextBlock();
+  return fold.Add(block, *RunBlock(*lease.experiment, block)).front();
+}
+
+TEST(OpenPoint, GroupsOfTrajectoriesAreLeasesOfTheirOwn) {
+  OpenPoint point(SteadyExperiment());
+  std::vector<Lease> leases;
+  while (auto lease = point.NextChunks({.seconds = 1000}, kElsewhere)) leases.push_back(*lease);
+  ASSERT_EQ(leases.size(), 16u);  // the other chunks have no start yet
+  for (uint64_t group = 0; group < 16; ++group) {
+    EXPECT_EQ(leases[group].start.chunk, group);
+    EXPECT_EQ(leases[group].end, group + 1);
+  }
+  point.Return(5, 6, 2);
+  EXPECT_EQ(Next(point, 1000, kElsewhere), Chunks(5, 6, 2));
+  const ChunkResult first = Computed(leases[0]);
+  point.fold().Add(first);
+  const auto next = point.NextChunks({.seconds = 1000}, kElsewhere);
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->start.chunk, 16u);
+  EXPECT_EQ(next->groups[0], first.result.groups[0]);
+  EXPECT_FALSE(point.NextChunks({.seconds = 1000}, kElsewhere));
+}
+
+// All the rest is one lease only if the starts of its chunks are known.
+TEST(OpenPoint, ALeaseOfTheRestHasTheStatesOfAllGroups) {
+  OpenPoint point(SteadyExperiment());
+  const auto first = point.NextChunks({.seconds = 0}, {});
+  ASSERT_TRUE(first);
+  const auto second = point.NextChunks({}, {});
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->end, 2u);  // chunk 0, from which chunk 16 starts, is computed elsewhere
+  point.fold().Add(Computed(*first));
+  point.fold().Add(Computed(*second));
+  const auto rest = point.NextChunks({}, {});
+  ASSERT_TRUE(rest);
+  EXPECT_EQ(rest->start.chunk, 2u);
+  EXPECT_EQ(rest->end, point.experiment()->plan().chunks());
+  EXPECT_EQ(rest->groups, point.fold().state().complete.groups);
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,259 @@
+// Pilots in the scheduler: which run computes a pilot, which runs wait for it, and which run is
+// charged.
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/ensemble/point_fold.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/compute/scheduler.h"
+#include "server/compute/thread_executor.h"
+#include "tests/server/compute/fake_pilots.h"
+#include "tests/server/compute/recording_journal.h"
+#include "tests/server/compute/remote_executor.h"
+#include "tests/server/compute/run_requests.h"
+#include "tests/server/compute/stepped_executor.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::server {
+namespace {
+
+const PilotPlace kPlace = {.rho = 0.53, .delta = 0.1};
+
+// Runs with a seed below this need the pilot at kPlace, the others none.
+constexpr uint64_t kFirstSeedWithoutPilot = 100;
+
+std::optional<PilotPlace> OnePlace(const EnsembleSpec& spec, size_t) {
+  return spec.seed < kFirstSeedWithoutPilot ? std::optional(kPlace) : std::nullopt;
+}
+
+// A pilot takes 200 blocks; a turn here computes 64.
+constexpr uint64_t kBlocksOfATurn = 64;
+
+class PilotsTest : public testing::Test {
+ protected:
+  PilotsTest() : opener_(OnePlace), scheduler_(opener_, 1), local_(scheduler_) {}
+  ~PilotsTest() override { scheduler_.Shutdown(); }
+
+  // One point of 10 blocks. Runs of one principal take turns.
+  JournalPointer Add(int64_t key, uint64_t seed) {
+    auto journal = std::make_shared<RecordingJournal>();
+    scheduler_.Add(RunOf(key, SpecOf(seed), journal));
+    return journal;
+  }
+  static EnsembleSpec SpecOf(uint64_t seed) { return FakeSpec(2, 10, seed); }
+
+  // Takes turns of some blocks until the pilot has begun, and returns the run that computes it.
+  int64_t BeginPilot() {
+    while (const std::optional<Lease> lease = local_.Begin()) {
+      local_.End(*lease, 1);
+      if (lease->pilot) return lease->run;
+    }
+    return 0;
+  }
+
+  void ExpectRight(const RecordingJournal& journal, uint64_t seed) {
+    ASSERT_EQ(journal.ends, 1);
+    EXPECT_OK(*journal.outcome);
+    ExpectAllPointsRight(SpecOf(seed), journal);
+  }
+
+  FakePilotOpener opener_;
+  Scheduler scheduler_;
+  SteppedExecutor local_;
+};
+
+TEST_F(PilotsTest, APilotIsComputedOnceForAllRuns) {
+  const auto first = Add(1, 1), second = Add(2, 2), third = Add(3, 3);
+  while (local_.TakeTurn(kBlocksOfATurn)) {
+  }
+  ExpectRight(*first, 1);
+  ExpectRight(*second, 2);
+  ExpectRight(*third, 3);
+  EXPECT_EQ(opener_.opened(), 1);
+  const auto kept = opener_.kept();
+  ASSERT_EQ(kept.size(), 1u);
+  ASSERT_EQ(kept.at(kPlace).size(), 1u);
+  const FakePilot pilot;
+  EXPECT_EQ(kept.at(kPlace)[0].difference, PilotOf(pilot, *FoldPoint(pilot)).difference);
+}
+
+// More runs than threads wait for it.
+TEST_F(PilotsTest, APilotIsComputedOnceByAnyNumberOfThreads) {
+  for (const int threads : {1, 2, 8}) {
+    FakePilotOpener opener(OnePlace);
+    Scheduler scheduler(opener, threads);
+    ThreadExecutor executor(scheduler, threads);
+    executor.Start();
+    std::vector<JournalPointer> journals;
+    for (int64_t key = 1; key <= 10; ++key) {
+      journals.push_back(std::make_shared<RecordingJournal>());
+      scheduler.Add(RunOf(key, SpecOf(static_cast<uint64_t>(key)), journals.back()));
+    }
+    for (uint64_t i = 0; i < journals.size(); ++i) {
+      EXPECT_OK(journals[i]->AwaitEnd());
+      ExpectAllPointsRight(SpecOf(i + 1), *journals[i]);
+    }
+    EXPECT_EQ(opener.opened(), 1);
+    EXPECT_EQ(opener.kept().at(kPlace).size(), 1u);
+    scheduler.Shutdown();
+  }
+}
+
+TEST_F(PilotsTest, AnotherRunComputesThePilotIfItsRunIsCancelled) {
+  const auto first = Add(1, 1);
+  ASSERT_EQ(BeginPilot(), 1);
+  const auto second = Add(2, 2), third = Add(3, 3);
+  for (int turn = 0; turn < 4; ++turn) local_.TakeTurn(1);  // the new runs open their points
+  EXPECT_EQ(opener_.opened(), 1);
+  scheduler_.Cancel(1);
+  EXPECT_EQ(first->ends, 1);
+  local_.TakeAllTurns();
+  ExpectRight(*second, 2);
+  ExpectRight(*third, 3);
+  EXPECT_EQ(opener_.opened(), 2);
+  EXPECT_EQ(opener_.kept().at(kPlace).size(), 1u);
+}
+
+TEST_F(PilotsTest, APilotThatFailsEndsItsRunOnly) {
+  int blocks = 0;
+  FakePilotOpener opener(OnePlace, [&](size_t, uint64_t, std::stop_token) {
+    if (++blocks == 5) throw std::runtime_error("the pilot failed");
+  });
+  Scheduler scheduler(opener, 1);
+  SteppedExecutor local(scheduler);
+  const auto first = std::make_shared<RecordingJournal>();
+  const auto second = std::make_shared<RecordingJournal>();
+  scheduler.Add(RunOf(1, SpecOf(1), first));
+  scheduler.Add(RunOf(2, SpecOf(2), second));
+  local.TakeAllTurns();
+  scheduler.Shutdown();
+  const bool is_first = first->outcome && !first->outcome->ok();
+  EXPECT_THAT(*(is_first ? first : second)->outcome,
+              StatusIs(absl::StatusCode::kInternal, testing::HasSubstr("the pilot failed")));
+  ExpectRight(is_first ? *second : *first, is_first ? 2 : 1);
+  EXPECT_EQ(opener.opened(), 2);
+}
+
+// The first run is cancelled while it opens the pilot, the second starts the pilot again, and only
+// then the first run drops it. The third waits for the pilot of the second.
+TEST_F(PilotsTest, ACancelledRunLeavesThePilotToTheNextRun) {
+  SteppedExecutor others(scheduler_);
+  std::vector<JournalPointer> journals;
+  opener_.SetBeforePilot([&](int opened) {
+    if (opened > 1) return;
+    journals.push_back(Add(2, 2));
+    journals.push_back(Add(3, 3));
+    scheduler_.Cancel(1);
+    while (opener_.opened() < 2) ASSERT_TRUE(others.TakeTurn(1, 1));
+    for (int turn = 0; turn < 4; ++turn) others.TakeTurn(1, 1);  // the third run asks for it
+    throw std::runtime_error("the pilot cannot be opened");
+  });
+  const auto cancelled = Add(1, 1);
+  while (local_.TakeTurn(1, 1) || others.TakeTurn(1, 1)) {
+  }
+  ASSERT_EQ(journals.size(), 2u);
+  EXPECT_THAT(*cancelled->outcome, StatusIs(absl::StatusCode::kCancelled));
+  ExpectRight(*journals[0], 2);
+  ExpectRight(*journals[1], 3);
+  EXPECT_EQ(opener_.opened(), 2);
+  EXPECT_EQ(opener_.kept().at(kPlace).size(), 1u);
+}
+
+TEST_F(PilotsTest, ARunThatWaitsForAPilotHoldsNoThread) {
+  const auto waiting = Add(1, 1);
+  ASSERT_EQ(BeginPilot(), 1);
+  const auto other = Add(2, kFirstSeedWithoutPilot);
+  while (other->ends == 0) ASSERT_TRUE(local_.TakeTurn(1, 1));
+  ExpectRight(*other, kFirstSeedWithoutPilot);
+  EXPECT_TRUE(opener_.kept().empty());
+  local_.TakeAllTurns();
+  ExpectRight(*waiting, 1);
+}
+
+TEST_F(PilotsTest, ThePilotsWorkIsChargedToTheRunThatComputesIt) {
+  const auto first = Add(1, 1), second = Add(2, 2);
+  double pilots_work = 0;
+  int64_t owner = 0;
+  while (const std::optional<Lease> lease = local_.Begin()) {
+    const double seconds = lease->pilot ? 1 : 0;
+    if (lease->pilot) owner = lease->run;
+    pilots_work += seconds;
+    local_.End(*lease, kBlocksOfATurn, seconds);
+  }
+  EXPECT_EQ(pilots_work, 4);  // 200 blocks, at most 64 a turn
+  ASSERT_TRUE(owner == 1 || owner == 2);
+  EXPECT_EQ((owner == 1 ? first : second)->work, pilots_work);
+  EXPECT_EQ((owner == 1 ? second : first)->work, 0);
+}
+
+TEST_F(PilotsTest, APilotsSamplesAreNotTheRunsSamples) {
+  const auto journal = Add(1, 1);
+  local_.TakeAllTurns();
+  ExpectRight(*journal, 1);
+  for (const auto& [point, samples] : journal->merged) {
+    EXPECT_EQ(samples, 10 * kFakeSamplesPerBlock) << "point " << point;
+  }
+  EXPECT_EQ(journal->merged.size(), 2u);
+}
+
+TEST_F(PilotsTest, APilotStaysLocal) {
+  const EnsembleSpec spec = FakeSpec(4, 1500, 1);
+  FakePilotOpener opener([](const EnsembleSpec&, size_t index) {
+    return index == 1 ? std::optional(kPlace) : std::nullopt;
+  });
+  Scheduler scheduler(opener, 1);
+  SteppedExecutor local(scheduler);
+  RemoteExecutor elsewhere(scheduler);
+  const auto journal = std::make_shared<RecordingJournal>();
+  scheduler.Add(RunOf(1, spec, journal));
+  local.TakeTurn();  // opens point 0
+  int taken = 0;
+  while (const auto lease = elsewhere.Take()) {
+    EXPECT_FALSE(lease->pilot);
+    EXPECT_OK(elsewhere.ReportAll(*lease));
+    elsewhere.Return(*lease);
+    ++taken;
+    if (opener.opened() == 0) local.TakeTurn();  // opens the next points, and with them the pilot
+  }
+  EXPECT_GT(taken, 0);
+  local.TakeAllTurns();
+  EXPECT_OK(*journal->outcome);
+  ExpectAllPointsRight(spec, *journal);
+  EXPECT_EQ(opener.opened(), 1);
+  scheduler.Shutdown();
+}
+
+// An adopted point may need its pilot again, if the pilot's result could not be stored.
+TEST_F(PilotsTest, AnAdoptedPointMayNeedAPilot) {
+  FakePilotOpener opener(OnePlace);
+  Scheduler scheduler(opener, 1);
+  SteppedExecutor local(scheduler);
+  RemoteExecutor remote(scheduler);
+  const EnsembleSpec spec = FakeSpec(1, 1500, 1);
+  const auto journal = std::make_shared<RecordingJournal>();
+  scheduler.Add(RunOf(1, spec, journal));
+  Lease earlier;
+  earlier.run = 1;
+  earlier.executor = remote.number();
+  earlier.start.chunk = 2;
+  earlier.end = 4;
+  const auto adopted = scheduler.Adopt(earlier);
+  ASSERT_TRUE(adopted);
+  local.TakeAllTurns();
+  EXPECT_EQ(opener.kept().size(), 1u);
+  EXPECT_OK(remote.Report(*adopted, ComputedChunks(*adopted, *FakeExperiments()(spec, 0))));
+  local.TakeAllTurns();
+  ASSERT_TRUE(journal->outcome);
+  EXPECT_OK(*journal->outcome);
+  ExpectAllPointsRight(spec, *journal);
+  scheduler.Shutdown();
+}
+
+}  // namespace
+}  // namespace ballpiston::server

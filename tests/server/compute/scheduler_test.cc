@@ -1,0 +1,445 @@
+#include "server/compute/scheduler.h"
+
+#include <algorithm>
+#include <atomic>
+#include <ctime>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_format.h"
+#include "core/ensemble/point_fold.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/server/compute/recording_journal.h"
+#include "tests/server/compute/run_requests.h"
+#include "tests/server/compute/stepped_executor.h"
+#include "tests/server/factory_opener.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/thread_pool.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+
+JournalPointer AddRun(ThreadPool& pool, int64_t key, const EnsembleSpec& spec,
+                      const std::string& principal = "", int32_t priority = 0) {
+  auto journal = std::make_shared<RecordingJournal>();
+  RunRequest request = RunOf(key, spec, journal);
+  request.principal = principal;
+  request.priority = priority;
+  pool.Add(std::move(request));
+  return journal;
+}
+
+TEST(Scheduler, TheSameBitsWithAnyNumberOfWorkers) {
+  const EnsembleSpec spec = FakeSpec(20, 40);
+  for (const int workers : {1, 2, 8}) {
+    ThreadPool pool(workers, FakeExperiments());
+    const auto journal = AddRun(pool, 1, spec);
+    EXPECT_OK(journal->AwaitEnd());
+    ExpectAllPointsRight(spec, *journal);
+    EXPECT_EQ(journal->begun, 1);
+  }
+}
+
+TEST(Scheduler, EveryBlockOfAPointIsMergedOnce) {
+  const EnsembleSpec spec = FakeSpec(5, 100);
+  ThreadPool pool(8, FakeExperiments());
+  const auto journal = AddRun(pool, 1, spec);
+  ASSERT_OK(journal->AwaitEnd());
+  for (const auto& [point, samples] : journal->merged) {
+    EXPECT_EQ(samples, 100 * kFakeSamplesPerBlock);
+  }
+}
+
+TEST(Scheduler, APointIsResumedFromItsCheckpoint) {
+  const EnsembleSpec spec = FakeSpec(2, 80);
+  auto journal = std::make_shared<RecordingJournal>();
+  journal->stored[1] = FakeState(spec, 1, 45);
+  std::mutex mutex;
+  std::set<uint64_t> computed;
+  ThreadPool pool(3, FakeExperiments([&](size_t point, uint64_t block, std::stop_token) {
+                    std::lock_guard lock(mutex);
+                    if (point == 1) computed.insert(block);
+                  }));
+  pool.Add(RunOf(1, spec, journal));
+  ASSERT_OK(journal->AwaitEnd());
+  ExpectAllPointsRight(spec, *journal);
+  EXPECT_EQ(computed.size(), 35u);
+  EXPECT_EQ(*computed.begin(), 45u);
+  EXPECT_EQ(journal->restored[1], 45 * kFakeSamplesPerBlock);
+}
+
+TEST(Scheduler, APointWhoseCheckpointIsCompleteFinishesAtOnce) {
+  const EnsembleSpec spec = FakeSpec(1, 3);
+  auto journal = std::make_shared<RecordingJournal>();
+  journal->stored[0] = FakeState(spec, 0, 3);
+  std::atomic<int> computed = 0;
+  ThreadPool pool(2, FakeExperiments([&](size_t, uint64_t, std::stop_token) { ++computed; }));
+  pool.Add(RunOf(1, spec, journal));
+  ASSERT_OK(journal->AwaitEnd());
+  ExpectAllPointsRight(spec, *journal);
+  EXPECT_EQ(computed, 0);
+}
+
+TEST(Scheduler, ACheckpointOfAnotherShapeEndsTheRun) {
+  const EnsembleSpec spec = FakeSpec(1, 3);
+  auto journal = std::make_shared<RecordingJournal>();
+  journal->stored[0] = FakeState(spec, 0, 2);
+  journal->stored[0].partial.moments.resize(1000);
+  ThreadPool pool(2, FakeExperiments());
+  pool.Add(RunOf(1, spec, journal));
+  EXPECT_THAT(journal->AwaitEnd(), StatusIs(absl::StatusCode::kDataLoss));
+  EXPECT_TRUE(journal->finished.empty());
+}
+
+// A later pool continues from the state at the shutdown of the first one.
+TEST(Scheduler, AShutdownWritesACheckpoint) {
+  const EnsembleSpec spec = FakeSpec(1, 80);
+  Gate gate;
+  ThreadPool pool(1, GatedExperiments(gate, 50));
+  const auto journal = AddRun(pool, 1, spec);
+  gate.AwaitWaiting(1);
+  pool.Shutdown();
+  const auto later = std::make_shared<RecordingJournal>();
+  later->stored = journal->checkpoints;
+  ThreadPool next(2, FakeExperiments());
+  next.Add(RunOf(1, spec, later));
+  ASSERT_OK(later->AwaitEnd());
+  ExpectAllPointsRight(spec, *later);
+  EXPECT_EQ(later->restored[0], 50 * kFakeSamplesPerBlock);
+}
+
+// Another thread may have opened a later point and work on it.
+TEST(Scheduler, APointThatOpensLateGoesBeforeLaterOnes) {
+  FactoryOpener opener(FakeExperiments());
+  Scheduler scheduler(opener, 2);
+  SteppedExecutor executor(scheduler);
+  const auto journal = std::make_shared<RecordingJournal>();
+  scheduler.Add(RunOf(1, SixChunks(3), journal));
+  const auto opens_0 = executor.Begin(), opens_1 = executor.Begin();
+  ASSERT_TRUE(opens_0 && opens_1);
+  executor.End(*opens_1, 1);
+  const auto of_1 = executor.Begin();
+  ASSERT_EQ(of_1->point, 1u);
+  executor.End(*of_1, 1);
+  executor.End(*opens_0, 1);
+  const auto next = executor.Begin();
+  EXPECT_EQ(next->point, 0u);
+  executor.End(*next, 1);
+  executor.TakeAllTurns();
+  EXPECT_EQ(journal->ends, 1);
+}
+
+TEST(Scheduler, FinishedPointsAreNotComputedAgain) {
+  const EnsembleSpec spec = FakeSpec(4, 5);
+  auto journal = std::make_shared<RecordingJournal>();
+  ThreadPool pool(2, FakeExperiments());
+  RunRequest request = RunOf(1, spec, journal);
+  request.finished = {true, false, true, false};
+  pool.Add(std::move(request));
+  ASSERT_OK(journal->AwaitEnd());
+  ASSERT_EQ(journal->finished.size(), 2u);
+  EXPECT_TRUE(journal->finished.contains(1));
+  EXPECT_TRUE(journal->finished.contains(3));
+}
+
+TEST(Scheduler, ARunWithNothingToComputeEnds) {
+  auto journal = std::make_shared<RecordingJournal>();
+  ThreadPool pool(1, FakeExperiments());
+  RunRequest request = RunOf(1, FakeSpec(1, 5), journal);
+  request.finished = {true};
+  pool.Add(std::move(request));
+  EXPECT_OK(journal->AwaitEnd());
+  EXPECT_EQ(journal->begun, 0);
+}
+
+TEST(Scheduler, APointDoesNotRunFarAheadOfASlowBlock) {
+  Gate gate;
+  std::atomic<uint64_t> furthest = 0;
+  const EnsembleSpec spec = FakeSpec(1, 2 * ChunkFold::kWindow);
+  ThreadPool pool(4, FakeExperiments([&](size_t, uint64_t block, std::stop_token stop) {
+                    uint64_t seen = furthest;
+                    while (block > seen && !furthest.compare_exchange_weak(seen, block)) {
+                    }
+                    if (block == 0) gate.Pass(stop);
+                    // The last block of the window: no more can be handed out before the first.
+                    if (block == ChunkFold::kWindow - 1) {
+                      EXPECT_EQ(gate.waiting(), 1);
+                      gate.Open();
+                    }
+                  }));
+  const auto journal = AddRun(pool, 1, spec);
+  ASSERT_OK(journal->AwaitEnd());
+  ExpectAllPointsRight(spec, *journal);
+}
+
+// ---- budgets ----
+
+// This budget is spent when the first block is merged, on every machine.
+constexpr double kSpentAtOnce = 1e-12;
+
+EnsembleSpec FakeBudget(int points) {
+  EnsembleSpec spec = FakeSpec(points, 0);
+  spec.target = {.budget_seconds = kSpentAtOnce};
+  return spec;
+}
+
+TEST(Scheduler, ASpentBudgetEndsAPointAtABlocksEnd) {
+  const EnsembleSpec spec = FakeBudget(5);
+  for (const int workers : {1, 4}) {
+    ThreadPool pool(workers, FakeExperiments());
+    const auto journal = AddRun(pool, 1, spec);
+    EXPECT_OK(journal->AwaitEnd());
+    ASSERT_EQ(journal->finished.size(), 5u);
+    for (const auto& [point, merged] : journal->finished) {
+      const uint64_t blocks = journal->merged[point] / kFakeSamplesPerBlock;
+      // Blocks that were out of order when the first came are merged with it.
+      EXPECT_GE(blocks, 1u);
+      EXPECT_LT(blocks, 1000u);
+      EXPECT_TRUE(merged == FakeMerged(spec, point, blocks)) << "point " << point;
+    }
+  }
+}
+
+TEST(Scheduler, AnAmpleBudgetHasNoEffect) {
+  EnsembleSpec spec = FakeSpec(2, 0);
+  spec.target = {.budget_seconds = 1e6};
+  ThreadPool pool(2, FakeExperiments());
+  const auto journal = AddRun(pool, 1, spec);
+  EXPECT_OK(journal->AwaitEnd());
+  for (const auto& [point, merged] : journal->finished) {
+    EXPECT_TRUE(merged == FakeMerged(spec, point, 1000)) << "point " << point;
+  }
+}
+
+// With one worker one block is merged at a time, so nothing but the first.
+TEST(Scheduler, AMissedToleranceIsReportedAfterAllPointsAreFinished) {
+  EnsembleSpec spec = FakeBudget(5);
+  spec.target.tolerance = 0.001;
+  ThreadPool pool(1, FakeExperiments());
+  const auto journal = AddRun(pool, 1, spec);
+  const absl::Status outcome = journal->AwaitEnd();
+  EXPECT_THAT(outcome, StatusIs(absl::StatusCode::kDeadlineExceeded));
+  EXPECT_EQ(journal->finished.size(), 5u);
+  for (const auto& [point, merged] : journal->finished) {
+    EXPECT_TRUE(merged == FakeMerged(spec, point, 1)) << "point " << point;
+  }
+  // That of the point that came first.
+  const BlockResult merged = FakeMerged(spec, 0, 1);
+  const double reached = *merged.moments[0].StandardError() / merged.moments[0].mean;
+  EXPECT_EQ(std::string(outcome.message()),
+            absl::StrFormat("point 0: tolerance 0.001 was not reached within the budget of 1e-12 "
+                            "s: reached %.2g",
+                            reached));
+}
+
+TEST(Scheduler, AReachedToleranceEndsBeforeTheBudget) {
+  EnsembleSpec spec = FakeSpec(3, 0);
+  spec.target = {.tolerance = 0.05};
+  EnsembleSpec with_budget = spec;
+  with_budget.target.budget_seconds = 1e6;
+  for (const EnsembleSpec& asked : {spec, with_budget}) {
+    ThreadPool pool(1, FakeExperiments());
+    const auto journal = AddRun(pool, 1, asked);
+    EXPECT_OK(journal->AwaitEnd());
+    ASSERT_EQ(journal->finished.size(), 3u);
+    for (const auto& [point, merged] : journal->finished) {
+      EXPECT_GT(merged.samples, 64u);  // more than one chunk
+      EXPECT_LT(merged.samples, 1000 * kFakeSamplesPerBlock);
+      EXPECT_TRUE(merged == FakeMerged(spec, point, merged.samples / kFakeSamplesPerBlock));
+    }
+  }
+}
+
+TEST(Scheduler, APointWithoutBlocksFinishesAtOnceBesideOthers) {
+  EnsembleSpec spec = FakeSpec(4, 5);
+  ThreadPool pool(2, [](const EnsembleSpec& whole, size_t index) {
+    EnsembleSpec of_point = whole;
+    if (index % 2 == 0) of_point.target.samples = 0;  // the even ones need none
+    return FakeExperiments()(of_point, index);
+  });
+  const auto journal = AddRun(pool, 1, spec);
+  EXPECT_OK(journal->AwaitEnd());
+  ASSERT_EQ(journal->finished.size(), 4u);
+  for (const auto& [point, merged] : journal->finished) {
+    EXPECT_TRUE(merged == FakeMerged(spec, point, point % 2 == 0 ? 0 : 5)) << "point " << point;
+  }
+  EXPECT_EQ(journal->merged.size(), 2u);
+}
+
+TEST(Scheduler, ProcessorTimeIsReportedOfPilotsAndBlocksAlike) {
+  // Uses some processor time of the thread, also on a busy machine.
+  const auto compute = [] {
+    timespec begin{}, now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &begin);
+    do {
+      clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    } while (now.tv_sec == begin.tv_sec && now.tv_nsec - begin.tv_nsec < 2'000'000);
+  };
+  ThreadPool pool(2, [&](const EnsembleSpec& spec, size_t index) {
+    if (spec.seed == 2) compute();
+    return FakeExperiments([&, seed = spec.seed](size_t, uint64_t, std::stop_token) {
+      if (seed == 2) compute();
+    })(spec, index);
+  });
+  const auto idle = AddRun(pool, 1, FakeSpec(1, 4, 1));
+  ASSERT_OK(idle->AwaitEnd());
+  const auto busy = AddRun(pool, 2, FakeSpec(1, 4, 2));
+  ASSERT_OK(busy->AwaitEnd());
+  EXPECT_GT(idle->work, 0);
+  // At least one of five in each second of the clock: a turn of the second cuts one short.
+  EXPECT_GE(busy->work, 4 * 0.002);
+}
+
+TEST(Scheduler, ACancelledRunStopsAndEndsOnce) {
+  Gate gate;
+  ThreadPool pool(2, GatedExperiments(gate, 3));
+  const auto journal = AddRun(pool, 1, FakeSpec(10, 100));
+  gate.AwaitWaiting(2);
+  pool.Cancel(1);
+  pool.Cancel(1);
+  EXPECT_THAT(journal->AwaitEnd(), StatusIs(absl::StatusCode::kCancelled));
+  pool.Shutdown();
+  EXPECT_EQ(journal->ends, 1);
+  EXPECT_TRUE(journal->finished.empty());
+}
+
+TEST(Scheduler, AnExceptionFailsItsRunOnly) {
+  ThreadPool pool(2,
+                  FakeExperimentsBySeed([](uint64_t seed, size_t, uint64_t block, std::stop_token) {
+                    if (seed == 13 && block == 5)
+                      throw std::runtime_error("the ball left the cell");
+                    if (seed == 14 && block == 5) throw std::bad_alloc();
+                  }));
+  const auto bad = AddRun(pool, 1, FakeSpec(3, 20, 13));
+  const auto hungry = AddRun(pool, 2, FakeSpec(3, 20, 14));
+  const auto good = AddRun(pool, 3, FakeSpec(3, 20, 15));
+  EXPECT_OK(good->AwaitEnd());
+  EXPECT_THAT(std::string(bad->AwaitEnd().message()), HasSubstr("the ball left the cell"));
+  EXPECT_THAT(std::string(hungry->AwaitEnd().message()), HasSubstr("out of memory"));
+  ExpectAllPointsRight(FakeSpec(3, 20, 15), *good);
+}
+
+TEST(Scheduler, AFactoryThatThrowsFailsItsRun) {
+  ThreadPool pool(2, [](const EnsembleSpec&, size_t) -> std::unique_ptr<const PointExperiment> {
+    throw std::runtime_error("no such experiment");
+  });
+  const auto journal = AddRun(pool, 1, FakeSpec(3, 20));
+  EXPECT_THAT(std::string(journal->AwaitEnd().message()), HasSubstr("no such experiment"));
+}
+
+// A short run that is added after a long one ends before it.
+TEST(Scheduler, AShortRunDoesNotWaitForALongOne) {
+  Gate gate;
+  ThreadPool pool(
+      1, FakeExperimentsBySeed([&](uint64_t seed, size_t, uint64_t block, std::stop_token stop) {
+        if (seed == 1 && block == 10) gate.Pass(stop);  // until the short run has been added
+      }));
+  const auto long_run = AddRun(pool, 1, FakeSpec(1, 1'000'000'000, 1));
+  gate.AwaitWaiting(1);
+  const auto short_run = AddRun(pool, 2, FakeSpec(1, 10, 2));
+  gate.Open();
+  EXPECT_OK(short_run->AwaitEnd());
+  EXPECT_EQ(long_run->ends, 0);
+}
+
+// The runs are added while a first run blocks the only worker, so that all are present when it goes
+// on.
+TEST(Scheduler, AHigherPriorityIsServedFirst) {
+  Gate gate;
+  std::vector<uint64_t> begun;  // the seed of the run, for each block
+  ThreadPool pool(1,
+                  FakeExperimentsBySeed([&](uint64_t seed, size_t, uint64_t, std::stop_token stop) {
+                    begun.push_back(seed);
+                    if (seed == 1) gate.Pass(stop);
+                  }));
+  std::vector<JournalPointer> journals;
+  const auto add = [&](int64_t key, int32_t priority, uint64_t seed, int64_t blocks) {
+    journals.push_back(AddRun(pool, key, FakeSpec(2, blocks, seed), "a", priority));
+  };
+  add(1, 0, 1, 1);
+  gate.AwaitWaiting(1);
+  add(2, -7, 2, 10);
+  add(3, 0, 3, 10);
+  add(4, 7, 4, 10);
+  gate.Open();
+  for (const auto& journal : journals) EXPECT_OK(journal->AwaitEnd());
+  // The first run's second point comes when its priority's turn has come.
+  std::erase(begun, 1u);
+  std::vector<uint64_t> expected;
+  for (const uint64_t seed : {4u, 3u, 2u}) expected.insert(expected.end(), 20, seed);
+  EXPECT_EQ(begun, expected);
+}
+
+// Opening a point of the first run takes long. Nothing else delays that run.
+TEST(Scheduler, ARunWithoutTasksIsSkipped) {
+  Gate gate;
+  ThreadPool pool(2, [&](const EnsembleSpec& spec, size_t index) {
+    if (spec.seed == 1) gate.Pass({});
+    return FakeExperiments()(spec, index);
+  });
+  const auto first = AddRun(pool, 1, FakeSpec(1, 5, 1), "a", 100);
+  gate.AwaitWaiting(1);
+  const auto next = AddRun(pool, 2, FakeSpec(3, 50, 2), "a", -100);
+  EXPECT_OK(next->AwaitEnd());
+  EXPECT_EQ(first->ends, 0);
+  gate.Open();
+  EXPECT_OK(first->AwaitEnd());
+}
+
+TEST(Scheduler, TheSameBitsInAnyOrderOfTurns) {
+  struct Owner {
+    const char* principal;
+    int32_t priority;
+  };
+  for (const auto& owners : {std::vector<Owner>{{"a", 0}, {"a", 0}, {"a", 0}},
+                             std::vector<Owner>{{"a", -1}, {"a", 5}, {"a", 100}},
+                             std::vector<Owner>{{"c", 1}, {"b", 1}, {"a", -100}}}) {
+    ThreadPool pool(3, FakeExperiments());
+    std::vector<JournalPointer> journals;
+    for (size_t i = 0; i < owners.size(); ++i) {
+      journals.push_back(AddRun(pool, static_cast<int64_t>(i) + 1, FakeSpec(5, 40, i),
+                                owners[i].principal, owners[i].priority));
+    }
+    for (size_t i = 0; i < owners.size(); ++i) {
+      EXPECT_OK(journals[i]->AwaitEnd());
+      ExpectAllPointsRight(FakeSpec(5, 40, i), *journals[i]);
+    }
+  }
+}
+
+TEST(Scheduler, ShutdownLeavesUnfinishedRunsWithoutAnEnd) {
+  Gate gate;
+  ThreadPool pool(2, GatedExperiments(gate));
+  const auto journal = AddRun(pool, 1, FakeSpec(10, 100));
+  gate.AwaitWaiting(2);
+  pool.Shutdown();
+  EXPECT_EQ(journal->ends, 0);
+}
+
+TEST(Scheduler, ChangedSinceReturnsThePointsThatChanged) {
+  Gate gate;
+  ThreadPool pool(1, GatedExperiments(gate, 6));
+  const EnsembleSpec spec = FakeSpec(1, 100);
+  const auto journal = AddRun(pool, 1, spec);
+  gate.AwaitWaiting(1);
+  const auto live = pool.ChangedSince(1, 0, 10);
+  ASSERT_EQ(live.size(), 1u);
+  EXPECT_EQ(live[0].index, 0u);
+  EXPECT_EQ(live[0].version, 6u);
+  EXPECT_TRUE(live[0].merged == FakeMerged(spec, 0, 6));
+  EXPECT_TRUE(pool.ChangedSince(1, 6, 10).empty());
+  EXPECT_TRUE(pool.ChangedSince(2, 0, 10).empty());
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,247 @@
+#include "server/rpc/server_status.h"
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+#include "gmock/gmock.h"
+#include "grpcpp/create_channel.h"
+#include "grpcpp/server.h"
+#include "grpcpp/server_builder.h"
+#include "gtest/gtest.h"
+#include "prometheus/text_serializer.h"
+#include "server/convert/spec.h"
+#include "server/rpc/call.h"
+#include "server/rpc/methods.h"
+#include "server/rpc/services.h"
+#include "tests/server/error_details.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/hanging_disk.h"
+#include "tests/server/own_channel.h"
+#include "tests/server/requests.h"
+#include "tests/server/running_server.h"
+#include "tests/server/thread_pool.h"
+#include "tests/support/await.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+// The objects behind the API, without gRPC, so that a test can set the caller.
+class ServerStatusTest : public testing::Test {
+ protected:
+  explicit ServerStatusTest(const Store::Options& options = {.stall = kNever})
+      : store_(*Store::Open(folder_.File("store.sqlite3"), options)) {}
+  ~ServerStatusTest() override { gate_.Open(); }
+
+  void Submit(const std::string& principal, int points = 1) {
+    const v1::CreateEnsembleJobRequest request = FreshRequest(Equilibrium(points, 100));
+    ASSERT_OK(book_.Create({principal, Role::kSubmit}, request, CheckSpec(request.spec())));
+  }
+
+  v1::ServerStatus AskedBy(const std::string& principal, Role role) {
+    const Call call{.method = "GetServerStatus", .request_id = "", .caller = {principal, role}};
+    const auto status = GetServerStatus(context_, call, v1::GetServerStatusRequest());
+    EXPECT_OK(status);
+    return *status;
+  }
+
+  static std::unique_ptr<grpc::Server> Serve(grpc::Service& service, const std::string& address) {
+    return grpc::ServerBuilder()
+        .RegisterService(&service)
+        .AddListeningPort(address, grpc::InsecureServerCredentials())
+        .BuildAndStart();
+  }
+
+  TemporaryFolder folder_;
+  Gate gate_;
+  const Limits limits_ = {.max_active_jobs_per_principal = 7,
+                          .max_active_points_per_principal = 72,
+                          .max_samples_per_job = 0,
+                          .max_streams_per_principal = 73};
+  Authenticator authenticator_{/*needs_tokens=*/false};
+  std::unique_ptr<Store> store_;
+  ModelLadder ladder_{*store_, 2};
+  ThreadPool pool_{
+      2, FakeExperiments([this](size_t, uint64_t, std::stop_token stop) { gate_.Pass(stop); })};
+  JobBook book_{*store_, limits_, pool_.scheduler()};
+  Quotas quotas_{limits_};
+  Activity activity_;
+  std::atomic<bool> draining_ = false;
+  Streams streams_{authenticator_, std::chrono::seconds(10), draining_};
+  CallObserver calls_;
+  ServiceContext context_{.authenticator = authenticator_,
+                          .limits = limits_,
+                          .book = book_,
+                          .scheduler = pool_.scheduler(),
+                          .threads = pool_.threads(),
+                          .slurm = nullptr,
+                          .ladder = ladder_,
+                          .quotas = quotas_,
+                          .streams = streams_,
+                          .activity = activity_,
+                          .draining = draining_,
+                          .instance = "test",
+                          .timing = {},
+                          .store = *store_,
+                          .calls = calls_,
+                          .start_time = absl::FromUnixMicros(1'700'000'000'250'000),
+                          .store_path = folder_.File("store.sqlite3")};
+};
+
+// Answers every call of EvaluatePairs with an exception.
+class ThrowingService : public ServiceOf<v1::AnalyticService::Service> {
+ public:
+  using ServiceOf::ServiceOf;
+
+  grpc::Status EvaluatePairs(grpc::ServerContext* context, const v1::EvaluatePairsRequest*,
+                             v1::EvaluatePairsResponse*) override {
+    return ServeCall(service_, *context, {"EvaluatePairs", Role::kRead},
+                     [](const Call&) -> absl::Status { throw std::runtime_error("no memory"); });
+  }
+};
+
+TEST_F(ServerStatusTest, AnExceptionEndsTheCallOnly) {
+  ThrowingService service(context_);
+  const std::string address = "unix:" + folder_.File("socket");
+  const auto server = Serve(service, address);
+  TestClient client(OwnChannel(address));
+  for (int i = 0; i < 2; ++i) {
+    grpc::ClientContext context;
+    v1::EvaluatePairsResponse response;
+    EXPECT_THAT(client.analytic().EvaluatePairs(&context, {}, &response),
+                IsError(grpc::StatusCode::INTERNAL, "INTERNAL"));
+  }
+}
+
+TEST_F(ServerStatusTest, CountsQueuedAndRunningWork) {
+  Submit("alice");
+  gate_.AwaitWaiting(2);
+  Submit("bob");
+  const v1::ServerStatus status = AskedBy("root", Role::kAdmin);
+  EXPECT_EQ(status.state(), v1::ServerStatus::SERVING);
+  EXPECT_EQ(status.start_time().seconds(), 1'700'000'000);
+  EXPECT_EQ(status.start_time().nanos(), 250'000'000);
+  EXPECT_EQ(status.workers(), 2);
+  EXPECT_EQ(status.busy_workers(), 2);
+  EXPECT_EQ(status.running_jobs(), 1);
+  EXPECT_EQ(status.queued_jobs(), 1);
+  EXPECT_EQ(status.stored_jobs(), 2);
+  EXPECT_GT(status.store_bytes(), 4096);
+  EXPECT_GT(status.rates().wall_hit(), 0);
+  EXPECT_GT(status.rates().jump(), 0);
+  EXPECT_EQ(status.limits().max_active_jobs_per_principal(), 7);
+  EXPECT_EQ(status.limits().max_samples_per_job(), 0);
+  EXPECT_EQ(status.limits().max_active_points_per_principal(), 72);
+  EXPECT_EQ(status.limits().max_streams_per_principal(), 73);
+  EXPECT_EQ(status.engine_version(), EngineVersion());
+}
+
+TEST_F(ServerStatusTest, OnlyAnAdministratorSeesOtherPrincipals) {
+  Submit("alice");
+  gate_.AwaitWaiting(2);
+  Submit("bob");
+  Submit("bob");
+  const v1::ServerStatus all = AskedBy("root", Role::kAdmin);
+  EXPECT_EQ(all.principal(), "root");
+  EXPECT_EQ(all.role(), "admin");
+  ASSERT_EQ(all.principals_size(), 2);
+  EXPECT_EQ(all.principals(0).principal(), "alice");
+  EXPECT_EQ(all.principals(0).running_jobs(), 1);
+  EXPECT_EQ(all.principals(1).principal(), "bob");
+  EXPECT_EQ(all.principals(1).queued_jobs(), 2);
+
+  for (const Role role : {Role::kRead, Role::kSubmit}) {
+    const v1::ServerStatus own = AskedBy("alice", role);
+    ASSERT_EQ(own.principals_size(), 1);
+    EXPECT_EQ(own.principals(0).principal(), "alice");
+    EXPECT_EQ(own.DebugString().find("bob"), std::string::npos);
+    EXPECT_EQ(own.queued_jobs(), 2);  // of all principals, because they share the queue
+  }
+  EXPECT_EQ(AskedBy("carol", Role::kSubmit).principals_size(), 0);
+}
+
+TEST_F(ServerStatusTest, TheExpiryOfACertificateIsAMetricIfThereIsOne) {
+  const auto page = [this](std::optional<absl::Time> expiry) {
+    return prometheus::TextSerializer().Serialize(ServerMetrics(context_, expiry));
+  };
+  constexpr char kExpiry[] = "ballpiston_certificate_expiry_timestamp_seconds";
+  EXPECT_THAT(page(std::nullopt), testing::Not(testing::HasSubstr(kExpiry)));
+  EXPECT_THAT(page(absl::FromUnixSeconds(2'000'000'000)),
+              testing::HasSubstr(absl::StrCat("\n", kExpiry, " 2000000000\n")));
+}
+
+TEST_F(ServerStatusTest, AStoppingServerIsDraining) {
+  draining_ = true;
+  EXPECT_EQ(AskedBy("root", Role::kAdmin).state(), v1::ServerStatus::DRAINING);
+}
+
+TEST(ServerStatus, IsOpenToEveryAuthenticatedPrincipal) {
+  RunningServer server;
+  server.Succeeded(Equilibrium(2, 5));
+  const v1::ServerStatus status = server.Status();
+  EXPECT_EQ(status.principal(), "local");
+  EXPECT_EQ(status.role(), "admin");
+  EXPECT_EQ(status.blocks_computed(), 10);
+  EXPECT_EQ(status.samples_computed(), 10 * kFakeSamplesPerBlock);
+  EXPECT_EQ(status.limits().max_points_per_job(), Limits().max_points_per_job);
+  ASSERT_EQ(status.principals_size(), 1);
+  EXPECT_EQ(status.principals(0).principal(), "local");
+  EXPECT_EQ(status.principals(0).running_jobs(), 0);
+  EXPECT_EQ(status.principals(0).stored_jobs(), 1);
+  EXPECT_GT(status.principals(0).stored_bytes(), 100);
+  EXPECT_EQ(status.stored_jobs(), 1);
+}
+
+class HangingDiskTest : public ServerStatusTest {
+ protected:
+  HangingDiskTest() : HangingDiskTest(std::make_unique<HangingDisk>()) {}
+  ~HangingDiskTest() override {
+    disk_->Resume();
+    hanging_.join();
+    store_->Close();
+  }
+
+ private:
+  explicit HangingDiskTest(std::unique_ptr<HangingDisk> disk)
+      : ServerStatusTest({.stall = std::chrono::milliseconds(1), .vfs = disk->vfs()}),
+        disk_(std::move(disk)) {
+    disk_->Hang();
+    hanging_ = std::thread([this] {
+      const auto write = [](Database& database) { InsertChunk(database, 9, 0, 0, "x"); };
+      EXPECT_OK(store_->Commit(write));
+    });
+    disk_->AwaitHanging();
+    AwaitThat([this] { return store_->stalled(); });
+  }
+
+  std::unique_ptr<HangingDisk> disk_;
+  std::thread hanging_;
+};
+
+TEST_F(HangingDiskTest, TheStateIsStoreFailing) {
+  EXPECT_EQ(AskedBy("root", Role::kAdmin).state(), v1::ServerStatus::STORE_FAILING);
+}
+
+// One thread runs the calls, so a call that waited would block all later ones.
+TEST_F(HangingDiskTest, CallsThatWriteAreRefusedAtOnceAndReadsAnswered) {
+  EnsembleService service(context_);
+  const std::string address = "unix:" + folder_.File("socket");
+  const auto server = Serve(service, address);
+  TestClient client(OwnChannel(address));
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_THAT(client.Create(CreateRequest(Equilibrium(1, 1))),
+                IsError(grpc::StatusCode::UNAVAILABLE, "STORE_FAILED"));
+    EXPECT_EQ(client.List().jobs_size(), 0);
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::server

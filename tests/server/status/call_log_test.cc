@@ -1,0 +1,133 @@
+// The log lines of calls and jobs.
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "prometheus/text_serializer.h"
+#include "server/status/call_observer.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/requests.h"
+#include "tests/server/running_server.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::Each;
+using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAre;
+
+// The lines that are logged while `act` runs.
+template <typename Act>
+std::vector<std::string> LinesOf(Act act) {
+  testing::internal::CaptureStderr();
+  act();
+  return absl::StrSplit(testing::internal::GetCapturedStderr(), '\n', absl::SkipEmpty());
+}
+
+FailedCall Failure(absl::StatusCode code, const std::string& reason) {
+  return {.method = "GetEnsembleJob",
+          .principal = "alice",
+          .request_id = "r-1",
+          .code = code,
+          .reason = reason,
+          .message = "why",
+          .seconds = 0.5};
+}
+
+TEST(CallLog, AJobsLifeIsLoggedWithJobPrincipalAndRequest) {
+  std::string name;
+  const auto lines = LinesOf([&] {
+    RunningServer server;
+    grpc::ClientContext context;
+    context.AddMetadata("x-request-id", "my-request");
+    v1::EnsembleJob job;
+    ASSERT_OK(
+        server.ensemble().CreateEnsembleJob(&context, CreateRequest(Equilibrium(2, 3)), &job));
+    name = job.name();
+    server.AwaitEnd(name);
+    server.Get(name);  // reading is not logged
+    ASSERT_OK(server.Delete(name));
+  });
+  EXPECT_THAT(lines, UnorderedElementsAre(
+                         AllOf(HasSubstr("job accepted"), HasSubstr("request_id=my-request")),
+                         HasSubstr("job running"),
+                         AllOf(HasSubstr("job succeeded"), HasSubstr(" seconds="),
+                               HasSubstr(absl::StrCat(" samples=", 2 * 3 * kFakeSamplesPerBlock))),
+                         HasSubstr("job deleted")));
+  EXPECT_THAT(lines, Each(AllOf(HasSubstr("job=" + name), HasSubstr("principal=local"))));
+}
+
+TEST(CallLog, AFailedJobSaysWhy) {
+  const auto lines = LinesOf([] {
+    RunningServer server({.factory = FakeExperiments([](size_t, uint64_t, std::stop_token) {
+                            throw std::runtime_error("line one\nline two");
+                          })});
+    server.AwaitEnd(server.Submit(Equilibrium(1, 3)));
+  });
+  EXPECT_THAT(lines,
+              Contains(AllOf(HasSubstr("warning: job failed"), HasSubstr("line one\\nline two"))));
+}
+
+TEST(CallLog, CallsOverALimitAreLoggedAndInvalidCallsAreNot) {
+  const auto lines = LinesOf([&] {
+    RunningServer server({.limits = {.max_points_per_job = 10}});
+    EXPECT_FALSE(server.Create({}).ok());
+    EXPECT_FALSE(server.Create(CreateRequest(Equilibrium(11, 1))).ok());
+    grpc::ClientContext context;
+    v1::EnsembleJob job;
+    v1::GetEnsembleJobRequest none;
+    none.set_name("ensembleJobs/none");
+    EXPECT_THAT(server.ensemble().GetEnsembleJob(&context, none, &job),
+                StatusIs(grpc::StatusCode::NOT_FOUND));
+  });
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_THAT(lines[0],
+              AllOf(HasSubstr("warning: call rejected: the grid has 11 points"),
+                    HasSubstr("(method=CreateEnsembleJob principal=local request_id="),
+                    HasSubstr(" code=RESOURCE_EXHAUSTED reason=TOO_MANY_POINTS seconds=")));
+}
+
+TEST(CallLog, OnlyEventsForTheOperatorAreLogged) {
+  using absl::StatusCode;
+  const auto verdict = [](StatusCode code, const char* reason = "") {
+    return VerdictOn(Failure(code, reason));
+  };
+  EXPECT_EQ(verdict(StatusCode::kInternal), Verdict::kServerFailed);
+  EXPECT_EQ(verdict(StatusCode::kUnavailable, "STORE_FAILED"), Verdict::kServerFailed);
+  EXPECT_EQ(verdict(StatusCode::kUnavailable, "SHUTTING_DOWN"), Verdict::kOrdinary);
+  EXPECT_EQ(verdict(StatusCode::kResourceExhausted, "QUEUE_FULL"), Verdict::kLimitReached);
+  EXPECT_EQ(verdict(StatusCode::kUnauthenticated, "CREDENTIALS_MISSING"), Verdict::kNotLetIn);
+  EXPECT_EQ(verdict(StatusCode::kPermissionDenied, "ROLE_TOO_LOW"), Verdict::kNotLetIn);
+  for (const StatusCode code : {StatusCode::kCancelled, StatusCode::kInvalidArgument,
+                                StatusCode::kNotFound, StatusCode::kFailedPrecondition,
+                                StatusCode::kDeadlineExceeded, StatusCode::kUnimplemented}) {
+    EXPECT_EQ(verdict(code), Verdict::kOrdinary) << absl::StatusCodeToString(code);
+  }
+}
+
+TEST(CallLog, AllRefusedCallsAreCountedAndTenASecondLogged) {
+  CallObserver calls;
+  const FailedCall refused = Failure(absl::StatusCode::kUnauthenticated, "CREDENTIALS_INVALID");
+  const absl::Time begin = absl::FromUnixSeconds(1'700'000'000);
+  const auto lines = LinesOf([&] {
+    for (int i = 0; i < 500; ++i) calls.Failed(refused, begin + absl::Milliseconds(i));
+  });
+  EXPECT_EQ(lines.size(), 10u);
+  EXPECT_THAT(
+      prometheus::TextSerializer().Serialize(calls.metrics().Collect()),
+      HasSubstr("ballpiston_failed_authentications_total{reason=\"CREDENTIALS_INVALID\"} 500\n"));
+  // Calls that failed have lines of their own.
+  EXPECT_EQ(LinesOf([&] { calls.Failed(Failure(absl::StatusCode::kInternal, ""), begin); }).size(),
+            1u);
+  EXPECT_EQ(LinesOf([&] { calls.Failed(refused, begin + absl::Seconds(1)); }).size(), 1u);
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,219 @@
+// The metrics over HTTP.
+#include <cstdlib>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "gmock/gmock.h"
+#include "grpcpp/generic/generic_stub.h"
+#include "gtest/gtest.h"
+#include "tests/server/call_by_name.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/http_get.h"
+#include "tests/server/requests.h"
+#include "tests/server/rpc/watch_stream.h"
+#include "tests/server/running_server.h"
+#include "tests/support/await.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Key;
+using ::testing::MatchesRegex;
+using ::testing::Not;
+using ::testing::Pair;
+using ::testing::StartsWith;
+
+constexpr char kCreated[] =
+    "grpc_server_handled_total{grpc_code=\"OK\",grpc_method=\"CreateEnsembleJob\","
+    "grpc_service=\"ballpiston.v1.EnsembleService\",grpc_type=\"unary\"}";
+
+constexpr char kReflected[] =
+    "grpc_server_handled_total{grpc_code=\"OK\",grpc_method=\"ServerReflectionInfo\","
+    "grpc_service=\"grpc.reflection.v1alpha.ServerReflection\",grpc_type=\"bidi_stream\"}";
+
+constexpr char kSample[] =
+    R"(^[a-zA-Z_:][a-zA-Z0-9_:]*(\{([a-zA-Z_][a-zA-Z0-9_]*="([^"\\]|\\.)*",?)*\})? [^ ]+$)";
+
+// The values by name with labels. The test fails if a line is not in the text format.
+std::map<std::string, double> Samples(const std::string& page) {
+  std::map<std::string, double> samples;
+  std::istringstream lines(page.substr(page.find("\r\n\r\n") + 4));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("# HELP ", 0) == 0 || line.rfind("# TYPE ", 0) == 0) continue;
+    EXPECT_THAT(line, MatchesRegex(kSample));
+    const size_t space = line.rfind(' ');
+    const auto inserted =
+        samples.emplace(line.substr(0, space), std::strtod(line.c_str() + space, nullptr));
+    EXPECT_TRUE(inserted.second) << "twice: " << line;
+  }
+  return samples;
+}
+
+// Each test has several expectations, because the HTTP server of each test takes up to 2 s to stop.
+class MetricsTest : public testing::Test {
+ protected:
+  RunningServer& Start(bool held = false) {
+    server_.emplace(TestServerOptions{.factory = held ? GatedExperiments(gate_) : FakeExperiments(),
+                                      .limits = {.max_points_per_job = 10},
+                                      .metrics_listen = "localhost:0"});
+    return *server_;
+  }
+  std::string Address() { return server_->server().metrics_address(); }
+  std::string Page() { return HttpGet(Address(), "/metrics"); }
+  std::map<std::string, double> Metrics() { return Samples(Page()); }
+  // A client sees the end of a job or a stream just before it is counted.
+  void Await(const std::string& metric, double value) {
+    AwaitThat([&] { return Metrics().at(metric) == value; });
+  }
+
+  Gate gate_;
+  std::optional<RunningServer> server_;
+};
+
+TEST_F(MetricsTest, AHealthWatchEndedByItsClientIsNotLogged) {
+  testing::internal::CaptureStderr();
+  RunningServer& server = Start();
+  {
+    grpc::ClientContext context;
+    grpc::CompletionQueue queue;
+    const auto await = [&queue] {
+      void* tag = nullptr;
+      bool ok = false;
+      return queue.Next(&tag, &ok) && ok;
+    };
+    grpc::GenericStub stub(server.channel());
+    const auto call = stub.PrepareCall(&context, kWatchHealth, &queue);
+    call->StartCall(nullptr);
+    ASSERT_TRUE(await());
+    const grpc::Slice whole_server(kWholeServer);
+    call->WriteLast(grpc::ByteBuffer(&whole_server, 1), {}, nullptr);
+    ASSERT_TRUE(await());
+    grpc::ByteBuffer state;
+    call->Read(&state, nullptr);
+    ASSERT_TRUE(await());
+    context.TryCancel();
+    grpc::Status status;
+    call->Finish(&status, nullptr);
+    await();
+  }
+  const auto ended_as = [this](const std::string& code) {
+    const auto metrics = Metrics();
+    const auto found =
+        metrics.find("grpc_server_handled_total{grpc_code=\"" + code +
+                     "\",grpc_method=\"Watch\",grpc_service=\"grpc.health.v1.Health\","
+                     "grpc_type=\"server_stream\"}");
+    return found == metrics.end() ? 0 : found->second;
+  };
+  AwaitThat([&] { return ended_as("CANCELLED") + ended_as("UNKNOWN") > 0; });
+  EXPECT_EQ(ended_as("CANCELLED"), 1);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::Not(HasSubstr("call failed")));
+}
+
+TEST_F(MetricsTest, MethodsAndReasonsAreListedBeforeTheFirstCall) {
+  Start();
+  EXPECT_THAT(Address(), StartsWith("127.0.0.1:"));  // the HTTP server accepts no names
+  EXPECT_THAT(StartError({.metrics_listen = Address()}),
+              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr(Address())));
+  const auto metrics = Metrics();
+  EXPECT_THAT(metrics, Contains(Pair(kCreated, 0)));
+  EXPECT_THAT(metrics, Contains(Key("grpc_server_started_total{grpc_method=\"GetServerStatus\","
+                                    "grpc_service=\"ballpiston.v1.ServerService\","
+                                    "grpc_type=\"unary\"}")));
+  for (const char* counter : {"ballpiston_failed_authentications_total{reason=\"ROLE_TOO_LOW\"}",
+                              "ballpiston_limit_refusals_total{reason=\"QUEUE_FULL\"}"}) {
+    EXPECT_THAT(metrics, Contains(Pair(counter, 0)));
+  }
+}
+
+TEST_F(MetricsTest, CountersCountCallsJobsAndBlocks) {
+  RunningServer& server = Start();
+  std::string name;
+  for (int i = 0; i < 3; ++i) name = server.Succeeded(Equilibrium(2, 50));
+  EXPECT_FALSE(server.Create(CreateRequest(Equilibrium(11, 1))).ok());
+  EXPECT_OK(CallByName(server.channel(), kReflection, kListServices));
+  EXPECT_THAT(CallByName(server.channel(), "/no.such.Service/Method"),
+              StatusIs(grpc::StatusCode::UNIMPLEMENTED));
+  Await("ballpiston_jobs_ended_total{state=\"succeeded\"}", 3);
+  const auto metrics = Metrics();
+  EXPECT_THAT(Page(), Not(HasSubstr(name.substr(name.find('/') + 1))));  // no job's id
+  EXPECT_THAT(Page(), Not(HasSubstr("no.such")));  // clients could invent any number of methods
+  EXPECT_EQ(metrics.at(kCreated), 3);
+  EXPECT_EQ(metrics.at(kReflected), 1);
+  EXPECT_EQ(metrics.at("ballpiston_limit_refusals_total{reason=\"TOO_MANY_POINTS\"}"), 1);
+  EXPECT_EQ(metrics.at("ballpiston_principal_stored_jobs{principal=\"local\"}"), 3);
+  EXPECT_GT(metrics.at("ballpiston_principal_stored_bytes{principal=\"local\"}"), 0);
+  EXPECT_EQ(metrics.at("ballpiston_jobs_ended_total{state=\"succeeded\"}"), 3);
+  EXPECT_EQ(metrics.at("ballpiston_blocks_computed_total"), 3 * 2 * 50);
+  EXPECT_EQ(metrics.at("ballpiston_samples_computed_total"), 3 * 2 * 50 * kFakeSamplesPerBlock);
+  EXPECT_EQ(metrics.at("ballpiston_workers"), 2);
+  EXPECT_GT(metrics.at("ballpiston_store_commits_total"), 3);
+  EXPECT_GT(metrics.at("ballpiston_store_bytes"), 4096);
+  EXPECT_EQ(metrics.at("ballpiston_store_failing"), 0);
+  EXPECT_GT(metrics.at("ballpiston_processor_seconds_total"), 0);
+  EXPECT_EQ(metrics.at("grpc_server_handling_seconds_count{grpc_method=\"WatchEnsembleJob\","
+                       "grpc_service=\"ballpiston.v1.EnsembleService\",grpc_type="
+                       "\"server_stream\"}"),
+            3);
+}
+
+TEST_F(MetricsTest, ActiveJobsWorkersAndStreamsAreGauges) {
+  RunningServer& server = Start(true);
+  const std::string first = server.Submit(Equilibrium(2, 50));
+  gate_.AwaitWaiting(2);
+  const std::string second = server.Submit(Equilibrium(1, 1));
+  WatchStream watch(server, first);
+  ASSERT_TRUE(watch.Next());
+  const auto metrics = Metrics();
+  EXPECT_EQ(metrics.at("ballpiston_jobs{state=\"running\"}"), 1);
+  EXPECT_EQ(metrics.at("ballpiston_jobs{state=\"queued\"}"), 1);
+  EXPECT_EQ(metrics.at("ballpiston_queue_length"), 1);
+  EXPECT_EQ(metrics.at("ballpiston_busy_workers"), 2);
+  EXPECT_EQ(metrics.at("ballpiston_streams"), 1);
+  gate_.Open();
+  EXPECT_OK(watch.End());
+  server.AwaitEnd(second);
+  Await("ballpiston_streams", 0);
+  EXPECT_EQ(Metrics().at("ballpiston_jobs{state=\"running\"}"), 0);
+}
+
+TEST_F(MetricsTest, MalformedRequestsDoNotStopTheEndpoint) {
+  RunningServer& server = Start();
+  Connection silent(Address()), slow(Address());
+  slow.Send("GET /met");
+  for (const std::string& request :
+       {std::string("no HTTP at all\r\n\r\n"), "GET /" + std::string(100'000, 'a') + "\r\n\r\n",
+        std::string("GET /../../etc/passwd HTTP/1.1\r\n\r\n"),
+        std::string("POST /metrics HTTP/1.0\r\nContent-Length: 9\r\n\r\n"),
+        std::string(5000, '\0')}) {
+    Connection connection(Address());
+    connection.Send(request);
+    EXPECT_THAT(connection.ReadToTheEnd(), Not(HasSubstr(" 200 "))) << request.substr(0, 40);
+  }
+  EXPECT_THAT(HttpGet(Address(), "/"), HasSubstr(" 404 "));
+  EXPECT_EQ(Metrics().at("ballpiston_workers"), 2);
+  server.Shutdown();
+  const std::string page = Page();  // of the stopped server
+  EXPECT_THAT(page, StartsWith("HTTP/1.1 200 OK"));
+  EXPECT_THAT(page, Not(HasSubstr("ballpiston_")));
+}
+
+TEST_F(MetricsTest, OnlyLoopbackAddressesAreAccepted) {
+  for (const char* address :
+       {"0.0.0.0:9090", "192.168.1.1:9090", "[::]:9090", "example.org:9090", "9090", ":9090",
+        "127.0.0.1", "127.0.0.1:", "127.0.0.1:65536", "127.0.0.1:-1", "::1:9090", "[127.0.0.1]:1",
+        "127.0.0.1:9090,0.0.0.0:9091", "unix:/tmp/metrics", "127.0.0.1:90s"}) {
+    const absl::Status error = StartError({.metrics_listen = address});
+    EXPECT_THAT(error, StatusIs(absl::StatusCode::kInvalidArgument)) << address;
+    EXPECT_THAT(std::string(error.message()),
+                HasSubstr("--metrics-listen=" + std::string(address)));
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::server
