@@ -449,6 +449,15 @@ Trajectories TrajectoriesOfConduction(Model model, const PointParameters& point)
   return TimesAt(model, point).trajectories;
 }
 
+// With the states of all groups: those that are merged, those that arrive, and those that are
+// written.
+double MemoryOfConduction(Model model, const PointParameters& point) {
+  constexpr double kCopies = 3, kBytesOfACell = 60;
+  const auto trajectories = static_cast<double>(TimesAt(model, point).trajectories.count());
+  const auto cells = static_cast<double>(ShapeOf(point[kCells]).cells());
+  return MemoryOfReplicas(model, point) + kCopies * kBytesOfACell * trajectories * cells;
+}
+
 // The root of the current's variance in local equilibrium, 2 kappa T^2/(N t), over the current.
 // kappa T^2 grows as T^(5/2); Simpson's rule gives its mean over the gas. The last pistons pass the
 // current in portions, one for each crossing: their number scatters, and their energy as much. Slow
@@ -501,7 +510,7 @@ constinit const ExperimentKind kGasConduction = {.name = "gas-conduction",
                                                  .check_tolerance = CheckConductionTolerance,
                                                  .work = WorkOfGasConduction,
                                                  .collisions = ExchangesOfAConductionSample,
-                                                 .memory = MemoryOfReplicas,
+                                                 .memory = MemoryOfConduction,
                                                  .trajectories = TrajectoriesOfConduction};
 
 }  // namespace ballpiston

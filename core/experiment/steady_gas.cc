@@ -212,7 +212,9 @@ bool IsPossible(const SteadyTrajectory& trajectory, const GasGeometry& geometry)
          });
 }
 
-bool IsCount(double number) { return number >= 0 && number == std::floor(number); }
+bool IsCount(double number) {
+  return number >= 0 && number <= static_cast<double>(kMaxSamples) && number == std::floor(number);
+}
 
 }  // namespace
 

@@ -1,11 +1,15 @@
 #include "core/experiment/steady_group.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 
 namespace ballpiston {
 namespace {
+
+// More have no exact number. A damaged state may have any.
+constexpr double kMostWindows = 0x1p53;
 
 // Calls visit(number) for all numbers of a group, in the order in which they are stored. The
 // numbers may be changed.
@@ -25,7 +29,7 @@ class GroupNumbers {
   void Of(Moments& moments) {
     auto count = static_cast<double>(moments.count);
     visit_(count);
-    moments.count = static_cast<uint64_t>(count);
+    moments.count = static_cast<uint64_t>(std::clamp(count, 0.0, kMostWindows));
     for (double* const sum : {&moments.mean, &moments.m2, &moments.m3, &moments.m4}) visit_(*sum);
   }
 

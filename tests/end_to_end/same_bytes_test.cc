@@ -49,8 +49,8 @@ TEST(SameBytes, OfRelaxationMarkovPropertyAndGasesWithOneAndTwoWorkers) {
         "lyapunov --collisions 20000 --delta 0.2",
         "gas-equilibrium --verify --samples 96 --delta 0.19 --cells 3,2x2 --temperature 1",
         "gas-equilibrium --model markov --samples 200 --delta 0.19 --cells 3 --temperature 1",
-        "gas-conduction --samples 96 --delta 0.19,0.17 --cells 2 --hot 1.5 --cold 0.5",
-        "gas-conduction --samples 96 --delta 0.19 --cells 2x2 --hot 2 --cold 1 --model markov"}) {
+        "gas-conduction --samples 600 --delta 0.19,0.17 --cells 2 --hot 1.5 --cold 0.5",
+        "gas-conduction --samples 600 --delta 0.19 --cells 2x2 --hot 2 --cold 1 --model markov"}) {
     const Words words = Split("run " + question + " --rho 0.5296 --seed 3 --format json");
     const ProcessResult by_one = one.Client(words);
     ASSERT_THAT(by_one, ExitsWith(0));

@@ -17,16 +17,11 @@ PointEstimate RunSamples(const PointExperiment& experiment, const SampleRange& s
   const double begin = server::ThreadSeconds();
   const BlockResult merged =
       *RunBlock(experiment, {.first = samples.first, .samples = samples.count});
-  return EstimateOf(experiment, merged, server::ThreadSeconds() - begin);
-}
-
-PointEstimate EstimateOf(const PointExperiment& experiment, const BlockResult& merged,
-                         double seconds) {
   const Estimate estimate = experiment.FirstEstimate(merged);
   return {.value = estimate.value,
           .error = estimate.standard_error.value_or(0),
           .samples = merged.samples,
-          .seconds = seconds};
+          .seconds = server::ThreadSeconds() - begin};
 }
 
 }  // namespace ballpiston::method_comparison

@@ -36,8 +36,4 @@ SampleRange TruthOf(uint64_t samples);
 
 PointEstimate RunSamples(const PointExperiment& experiment, const SampleRange& samples);
 
-// The estimate of the merged block, with its processor time.
-PointEstimate EstimateOf(const PointExperiment& experiment, const BlockResult& merged,
-                         double seconds);
-
 }  // namespace ballpiston::method_comparison

@@ -62,10 +62,11 @@ class Places {
     Add(At(&kEnergyRelaxation, cell, orbits, model), epsilons);
   }
 
-  // With each of the cold reservoirs; the hot one has temperature 1.
-  void Conduction(const Cell& cell, const char* cells, int64_t replicas,
+  // With each of the cold reservoirs; the hot one has temperature 1. A sample is half a relaxation
+  // time; `runs` are twelve relaxation times each.
+  void Conduction(const Cell& cell, const char* cells, int64_t runs,
                   const std::vector<double>& colds) {
-    EnsembleSpec question = At(&kGasConduction, cell, replicas, Model::kMarkov);
+    EnsembleSpec question = At(&kGasConduction, cell, 24 * runs, Model::kMarkov);
     question.grid[kCells] = {CodeOf(*ParseGasShape(cells))};
     question.grid[kHot] = {1};
     for (const double cold : colds) {

@@ -1,7 +1,6 @@
 #include "server/worker/lease_runner.h"
 
 #include <map>
-#include <memory>
 #include <stop_token>
 #include <utility>
 #include <vector>
@@ -10,7 +9,6 @@
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "server/scheduling/open_point.h"
 #include "tests/server/worker/sample_leases.h"
 
 namespace ballpiston::server {
@@ -124,24 +122,29 @@ TEST(LeaseRunner, AStopLeavesTheChunksThatAreComplete) {
 TEST(LeaseRunner, LeasesContinueTheTrajectoriesOfASteadyState) {
   for (const Model model : kGasConduction.models) {
     const EnsembleSpec spec = SpecOf(kGasConduction, model, 600);
-    OpenPoint point(PointExperiment::Create(spec, 0));
-    while (!point.fold().finished()) {
-      std::vector<LeaseWork> work;
-      while (auto lease = point.NextChunks({.seconds = 60}, {.local = false})) {
-        lease->spec = std::make_shared<const EnsembleSpec>(spec);
-        const auto received = LeaseOfRecord(LeaseRecord(*lease, SomeJob()));
-        ASSERT_TRUE(received.ok()) << received.status();
-        work.push_back({received->lease});
-      }
-      ASSERT_EQ(work.size(), point.experiment()->plan().groups());
+    const auto experiment = PointExperiment::Create(spec, 0);
+    const uint64_t groups = experiment->plan().groups();
+    PointFold fold(*experiment);
+    for (uint64_t chunk = 0; chunk < experiment->plan().chunks(); ++chunk) {
+      IdentifiedLease lease = LeaseOf(spec, chunk, chunk + 1);
+      lease.lease.groups.resize(groups);
+      lease.lease.groups[chunk % groups] = fold.StartOf(chunk);
+      const auto received = LeaseOfRecord(LeaseRecord(lease.lease, lease.job));
+      ASSERT_TRUE(received.ok()) << received.status();
       Recorder recorder;
-      EXPECT_TRUE(RunLeases(work, recorder.stop.get_token(), recorder));
-      for (size_t i = work.size(); i-- > 0;) {
-        for (ChunkResult& chunk : recorder.chunks[i]) point.fold().Add(std::move(chunk));
-      }
+      EXPECT_TRUE(RunLeases({{received->lease}}, recorder.stop.get_token(), recorder));
+      fold.Add(recorder.chunks[0].at(0));
     }
-    EXPECT_EQ(point.fold().Merged(), FoldPoint(*point.experiment())) << Name(model);
+    EXPECT_TRUE(fold.finished());
+    EXPECT_EQ(fold.Merged(), FoldPoint(*experiment)) << Name(model);
   }
+}
+
+TEST(LeaseRunner, ALeaseWithoutTheStateOfItsGroupIsDamaged) {
+  const IdentifiedLease lease =
+      LeaseOf(SpecOf(kGasConduction, Model::kMarkov, 600), 16, 17);  // of the second stage
+  EXPECT_EQ(LeaseOfRecord(LeaseRecord(lease.lease, lease.job)).status().code(),
+            absl::StatusCode::kDataLoss);
 }
 
 // A task that starts again knows some chunks, from which later ones continue.
