@@ -48,16 +48,16 @@ inline const std::map<std::string_view, uint64_t> kGoldenBits = {
     {"markov, markov-property", 0xd0fe5bad12fb7f40},
     {"markov, gas-equilibrium of 3 cells", 0x39a98c9ecdbd66b1},
     {"markov, gas-equilibrium of 2x2 cells", 0x945dc9823229690c},
-    {"markov, gas-conduction of 3 cells", 0x99186d96f470b532},
-    {"markov, gas-conduction of 2x2 cells", 0x95692f06ff7230f3},
+    {"markov, gas-conduction of 3 cells", 0x39b7b41f5ec6b09d},
+    {"markov, gas-conduction of 2x2 cells", 0xa81894fbf3d78dd0},
     {"reference, gas-equilibrium of 3 cells", 0x37ef8064bf531e90},
     {"reference, gas-equilibrium of 2x2 cells", 0xf5e5094fa6431022},
-    {"reference, gas-conduction of 3 cells", 0xa711d4780cd26bbd},
-    {"reference, gas-conduction of 2x2 cells", 0xf9f0fe922f776dc3},
+    {"reference, gas-conduction of 3 cells", 0x7c2cd02db1b1c13c},
+    {"reference, gas-conduction of 2x2 cells", 0x60b9b2616bb25533},
     {"lanes, gas-equilibrium of 3 cells", 0x143762689baea53e},
     {"lanes, gas-equilibrium of 2x2 cells", 0x19b9d9d354c168bf},
-    {"lanes, gas-conduction of 3 cells", 0x14d8f3f82799b675},
-    {"lanes, gas-conduction of 2x2 cells", 0x4047c7b2fba4a374},
+    {"lanes, gas-conduction of 3 cells", 0x16f739b6d1d07bfb},
+    {"lanes, gas-conduction of 2x2 cells", 0x752f629f653b800a},
 };
 
 }  // namespace ballpiston
