@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "core/ensemble/block_run.h"
@@ -14,100 +13,62 @@ namespace {
 
 class LeaseRun : private BlockQueue {
  public:
-  LeaseRun(size_t index, const LeaseWork& work, const std::stop_token& stop,
-           ChunkReceiver& receiver);
+  LeaseRun(const Lease& lease, const std::stop_token& stop, ChunkReceiver& receiver)
+      : lease_(lease),
+        stop_(stop),
+        receiver_(receiver),
+        chunks_(lease.experiment->plan(), lease.start, lease.end) {
+    if (lease.start.chunk == 0) judge_.emplace(*lease.experiment);
+  }
 
-  bool Run();
+  bool Run() {
+    const std::unique_ptr<EngineRun> run = lease_.experiment->StartRun(*this);
+    while (!IsFinished() && !stop_.stop_requested()) run->Advance();
+    TellWork();
+    return IsFinished();
+  }
 
  private:
-  // The next chunk that is not known, from this one on; lease.end if there is none.
-  uint64_t NextMissing(uint64_t chunk) const;
-  uint64_t NextKnown(uint64_t chunk) const;
-  void Compute(uint64_t first, uint64_t end);
-  bool IsOver() const { return judge_ && judge_->finished(); }
-  void TellWork();
+  bool HasReachedItsTolerance() const { return judge_ && judge_->finished(); }
+  bool IsFinished() const { return chunks_.finished() || HasReachedItsTolerance(); }
 
-  std::optional<Block> Next() override { return IsOver() ? std::nullopt : chunks_->NextBlock(); }
-  void Done(const Block& block, BlockResult result) override;
-  bool Pause() override;
+  void TellWork() {
+    const double now = ThreadSeconds();
+    receiver_.Worked(now - std::exchange(worked_, now));
+  }
+
+  std::optional<Block> Next() override {
+    return HasReachedItsTolerance() ? std::nullopt : chunks_.NextBlock();
+  }
+
+  void Done(const Block& block, BlockResult result) override {
+    for (ChunkResult& chunk : chunks_.Add(block, std::move(result))) {
+      if (HasReachedItsTolerance()) return;
+      if (judge_) judge_->Add(chunk);
+      receiver_.ChunkDone(std::move(chunk));
+      TellWork();
+    }
+  }
+
+  bool Pause() override {
+    TellWork();
+    return HasReachedItsTolerance() || stop_.stop_requested();
+  }
+
   std::stop_token stop() const override { return stop_; }
 
-  const size_t index_;
   const Lease& lease_;
   const std::stop_token& stop_;
   ChunkReceiver& receiver_;
-  std::set<uint64_t> known_;
+  ChunkFold chunks_;
   std::optional<PointFold> judge_;  // of a lease that begins with chunk 0
-  std::optional<ChunkFold> chunks_;
   double worked_ = ThreadSeconds();  // the thread's processor time when it was last told
 };
 
-LeaseRun::LeaseRun(size_t index, const LeaseWork& work, const std::stop_token& stop,
-                   ChunkReceiver& receiver)
-    : index_(index), lease_(work.lease), stop_(stop), receiver_(receiver) {
-  if (lease_.start.chunk == 0) judge_.emplace(*lease_.experiment);
-  for (const ChunkResult& chunk : work.known) {
-    known_.insert(chunk.chunk);
-    if (judge_) judge_->Add(chunk);
-  }
-}
-
-uint64_t LeaseRun::NextMissing(uint64_t chunk) const {
-  while (chunk < lease_.end && known_.contains(chunk)) ++chunk;
-  return chunk;
-}
-
-uint64_t LeaseRun::NextKnown(uint64_t chunk) const {
-  const auto known = known_.lower_bound(chunk);
-  return known == known_.end() ? lease_.end : *known;
-}
-
-bool LeaseRun::Run() {
-  uint64_t chunk = NextMissing(lease_.start.chunk);
-  while (chunk < lease_.end && !IsOver() && !stop_.stop_requested()) {
-    const uint64_t end = NextKnown(chunk);
-    Compute(chunk, end);
-    chunk = NextMissing(end);
-  }
-  return !stop_.stop_requested();
-}
-
-void LeaseRun::Compute(uint64_t first, uint64_t end) {
-  const bool is_start = first == lease_.start.chunk;
-  chunks_.emplace(lease_.experiment->plan(), is_start ? lease_.start : PartialChunk{first}, end);
-  const std::unique_ptr<EngineRun> run = lease_.experiment->StartRun(*this);
-  while (!chunks_->finished() && !IsOver() && !stop_.stop_requested()) run->Advance();
-  TellWork();
-}
-
-void LeaseRun::TellWork() {
-  const double now = ThreadSeconds();
-  receiver_.Worked(index_, now - std::exchange(worked_, now));
-}
-
-void LeaseRun::Done(const Block& block, BlockResult result) {
-  for (ChunkResult& chunk : chunks_->Add(block, std::move(result))) {
-    if (IsOver()) return;
-    if (judge_) judge_->Add(chunk);
-    receiver_.ChunkDone(index_, std::move(chunk));
-    TellWork();
-  }
-}
-
-bool LeaseRun::Pause() {
-  TellWork();
-  return IsOver() || stop_.stop_requested();
-}
-
 }  // namespace
 
-bool RunLeases(const std::vector<LeaseWork>& work, const std::stop_token& stop,
-               ChunkReceiver& receiver) {
-  for (size_t i = 0; i < work.size(); ++i) {
-    if (!receiver.LeaseBegins(i)) continue;
-    if (!LeaseRun(i, work[i], stop, receiver).Run()) return false;
-  }
-  return !stop.stop_requested();
+bool RunLease(const Lease& lease, const std::stop_token& stop, ChunkReceiver& receiver) {
+  return LeaseRun(lease, stop, receiver).Run();
 }
 
 }  // namespace ballpiston::server
