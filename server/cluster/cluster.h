@@ -21,7 +21,7 @@ class Cluster {
   void Start();
 
   struct State {
-    std::string problem;  // empty: none
+    std::string problem = {};  // empty: none
     FolderStatus folder;
     SlurmStatus slurm;  // without Slurm: zeros
   };

@@ -75,9 +75,8 @@ JobIdentity FolderExecutor::IdentityOf(const Lease& lease) const {
 void FolderExecutor::Look() {
   const Clock::time_point now = SteadyNow();
   if (now < next_look_) return;
-  const std::chrono::duration<double> pause(static_cast<double>(leases_.size()) /
-                                            kLeasesListedASecond);
-  next_look_ = now + std::chrono::duration_cast<Clock::duration>(pause);
+  const double pause = static_cast<double>(leases_.size()) / kLeasesListedASecond - 1;
+  next_look_ = now + std::chrono::milliseconds(static_cast<int64_t>(1e3 * std::max(pause, 0.0)));
   absl::Status outcome;
   try {
     outcome = Prepare();
@@ -169,7 +168,7 @@ bool FolderExecutor::Report(const LeaseFileName& file) {
   if (laid != nullptr) {
     lease = {IdentityOf(laid->lease), laid->lease};
   } else if (status.ok()) {
-    absl::StatusOr<LeaseFile> begin = TakeLease(rest);
+    absl::StatusOr<LeaseFile> begin = server_.read_lease(rest);
     status = begin.status();
     if (begin.ok()) lease = std::move(begin->lease);
   }

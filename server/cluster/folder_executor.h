@@ -61,7 +61,7 @@ Pace PaceOf(const ClusterOptions& options, size_t leases);
 
 // The work that is in the folder, at one moment.
 struct FolderStatus {
-  std::string problem;  // empty: none
+  std::string problem = {};  // empty: none
   double waiting_leases = 0;
   double taken_leases = 0;
   // Since the start.
@@ -79,6 +79,7 @@ class FolderExecutor : public Executor {
     std::function<absl::Status()> flush;  // OK: all that was reported is on disk
     // Makes the folder ready; called before a look, and again every 30 s. The error is shown.
     std::function<absl::Status()> prepare;
+    LeaseReader read_lease = TakeLease;
   };
 
   // The scheduler must outlive this. Begins with Start.

@@ -46,7 +46,7 @@ struct SlurmQueue {
 };
 
 struct SlurmStatus {
-  std::string problem;  // empty: none
+  std::string problem = {};  // empty: none
   SlurmQueue queue;     // by Slurm's last answer
   double queries = 0;   // since the start
 };

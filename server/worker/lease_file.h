@@ -3,6 +3,7 @@
 // which chunks are whose, also to a later process of the server.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,6 +51,7 @@ std::string BytesOf(const LeaseChunks& chunks);
 
 // These take one frame off `bytes`. Errors of TakeFrame, LeaseOfRecord and LeaseChunksFromPayload.
 absl::StatusOr<LeaseFile> TakeLease(absl::string_view& bytes);
+using LeaseReader = std::function<absl::StatusOr<LeaseFile>(absl::string_view& bytes)>;
 absl::StatusOr<LeaseChunks> TakeChunks(absl::string_view& bytes);
 
 }  // namespace ballpiston::server

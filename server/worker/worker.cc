@@ -9,7 +9,6 @@
 #include "absl/strings/str_cat.h"
 #include "core/ensemble/experiment_kind.h"
 #include "server/status/failpoint.h"
-#include "server/worker/lease_file.h"
 #include "server/worker/lease_runner.h"
 
 namespace ballpiston::server {
@@ -155,7 +154,7 @@ class Worker {
     if (absl::IsNotFound(bytes.status())) return true;  // the server needs it no more
     if (!bytes.ok()) return Ended(name, Outcome::kReturned, bytes.status());
     absl::string_view rest = *bytes;
-    const absl::StatusOr<LeaseFile> file = TakeLease(rest);
+    const absl::StatusOr<LeaseFile> file = host_.read_lease(rest);
     if (absl::IsOutOfRange(file.status())) {  // the server still writes it
       const absl::Status back = files_.Move(name.Taken(), name.Todo());
       return absl::IsNotFound(back) || back.ok() ? absl::StatusOr<bool>(false) : back;

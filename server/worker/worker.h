@@ -16,6 +16,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
+#include "server/worker/lease_file.h"
 #include "server/worker/shared_files.h"
 
 namespace ballpiston::server {
@@ -37,6 +38,7 @@ struct WorkerHost {
   std::function<void(absl::string_view line)> report;  // one line for people, without its end
   // The worker begins to compute a lease: if the engine kills the worker, this file is to be moved.
   std::function<void(const std::string& from, const std::string& to)> lease_begins;
+  LeaseReader read_lease = TakeLease;
 };
 
 struct WorkerOptions {

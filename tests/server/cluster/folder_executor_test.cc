@@ -11,6 +11,7 @@
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "server/compute/crash_record.h"
 #include "server/worker/checked_file.h"
 #include "server/worker/worker.h"
 #include "tests/server/compute/recording_journal.h"
@@ -47,10 +48,9 @@ class FolderExecutorTest : public testing::Test {
     scheduler_ = std::make_unique<Scheduler>(opener_, 1,
                                              SchedulerOptions{.least_seconds_elsewhere = 0});
     local_ = std::make_unique<SteppedExecutor>(*scheduler_);
-    auto files = std::make_unique<Shared>(files_);
     options.lease = milliseconds(0);  // one chunk
     executor_ = std::make_unique<FolderExecutor>(
-        *scheduler_, options, std::move(files),
+        *scheduler_, options, std::make_unique<SameFiles>(files_),
         FolderExecutor::Server{.identity = "me",
                                .flush = [this] { return flush_; },
                                .prepare = [this] { return prepare_; }});
@@ -123,33 +123,6 @@ class FolderExecutorTest : public testing::Test {
     EXPECT_TRUE(journal.finished.at(0) == FoldPoint(*experiment));
     EXPECT_EQ(journal.merged.at(0), experiment->plan().samples());
   }
-
-  // Forwards to the files of the test.
-  class Shared : public SharedFiles {
-   public:
-    explicit Shared(FakeFiles& files) : files_(files) {}
-    absl::StatusOr<std::vector<std::string>> List(const std::string& a) override {
-      return files_.List(a);
-    }
-    absl::StatusOr<FileStamp> Create(const std::string& a, absl::string_view b) override {
-      return files_.Create(a, b);
-    }
-    absl::StatusOr<std::string> Read(const std::string& a, size_t b) override {
-      return files_.Read(a, b);
-    }
-    absl::Status Append(const std::string& a, absl::string_view b) override {
-      return files_.Append(a, b);
-    }
-    absl::Status Move(const std::string& a, const std::string& b) override {
-      return files_.Move(a, b);
-    }
-    absl::Status Touch(const std::string& a) override { return files_.Touch(a); }
-    absl::StatusOr<FileStamp> Stamp(const std::string& a) override { return files_.Stamp(a); }
-    absl::Status Remove(const std::string& a) override { return files_.Remove(a); }
-
-   private:
-    FakeFiles& files_;
-  };
 
   FakeFiles files_;
   absl::Status flush_, prepare_;

@@ -107,4 +107,32 @@ class FakeFiles : public SharedFiles {
   }
 };
 
+// The same files, for an owner who takes a pointer.
+class SameFiles : public SharedFiles {
+ public:
+  explicit SameFiles(FakeFiles& files) : files_(files) {}
+
+  absl::StatusOr<std::vector<std::string>> List(const std::string& subfolder) override {
+    return files_.List(subfolder);
+  }
+  absl::StatusOr<FileStamp> Create(const std::string& path, absl::string_view bytes) override {
+    return files_.Create(path, bytes);
+  }
+  absl::StatusOr<std::string> Read(const std::string& path, size_t offset) override {
+    return files_.Read(path, offset);
+  }
+  absl::Status Append(const std::string& path, absl::string_view bytes) override {
+    return files_.Append(path, bytes);
+  }
+  absl::Status Move(const std::string& from, const std::string& to) override {
+    return files_.Move(from, to);
+  }
+  absl::Status Touch(const std::string& path) override { return files_.Touch(path); }
+  absl::StatusOr<FileStamp> Stamp(const std::string& path) override { return files_.Stamp(path); }
+  absl::Status Remove(const std::string& path) override { return files_.Remove(path); }
+
+ private:
+  FakeFiles& files_;
+};
+
 }  // namespace ballpiston::server
