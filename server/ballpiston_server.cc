@@ -153,9 +153,9 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
       book_(*store_, options_.limits, scheduler_, crashes_),
       threads_(scheduler_, options_.workers, options_.cluster ? kLeaseBesideACluster : kWholePoint,
                crashes_),
-      cluster_(options_.cluster ? std::make_unique<Cluster>(
-                                      scheduler_, *options_.cluster, options_.slurm,
-                                      store_->identity(), [this] { return store_->Flush(); })
+      cluster_(options_.cluster ? std::make_unique<Cluster>(scheduler_, *options_.cluster,
+                                                            options_.slurm, store_->identity(),
+                                                            [this] { return store_->Flush(); })
                                 : nullptr),
       quotas_(options_.limits),
       streams_(door_->authenticator(), options_.watch.heartbeat, draining_),

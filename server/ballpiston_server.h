@@ -43,7 +43,7 @@ struct ServerOptions {
   int workers = 1;
   std::optional<ClusterOptions> cluster = {};  // empty: only this server's threads compute
   std::optional<SlurmOptions> slurm = {};      // of the cluster; empty: somebody starts its workers
-  std::shared_ptr<PointOpener> opener;     // null: the ladder of models opens points
+  std::shared_ptr<PointOpener> opener;         // null: the ladder of models opens points
   WatchTiming watch;
   ConnectionTiming connections;
   Limits limits;

@@ -32,7 +32,10 @@ Cluster::Cluster(Scheduler& scheduler, ClusterOptions options,
   auto tools = std::make_unique<SlurmTools>(*slurm, "bp-" + identity, options.folder);
   slurm_ = std::make_unique<SlurmWorkers>(
       *slurm, std::move(tools), [this] { return folder_.Status(); },
-      [options] { return CopyWorker(options.folder, options.worker); });
+      [options, identity] {
+        const absl::Status prepared = PrepareFolder(options.folder, identity);
+        return prepared.ok() ? CopyWorker(options.folder, options.worker) : prepared;
+      }); });
 }
 
 void Cluster::Start() {

@@ -91,9 +91,10 @@ absl::Status CheckOwnerFile(const std::string& folder, const std::string& identi
   const absl::StatusOr<std::string> found = files.Read("owner", 0);
   if (!found.ok()) return made.ok() ? found.status() : made;
   if (*found == identity) return absl::OkStatus();
-  return Refused(folder, absl::StrCat("is in use by another server (", *found, "; this one is ",
-                                      identity, "): use another folder, or remove the file owner "
-                                      "if that server is gone"));
+  return Refused(folder,
+                 absl::StrCat("is in use by another server (", *found, "; this one is ", identity,
+                              "): use another folder, or remove the file owner "
+                              "if that server is gone"));
 }
 
 }  // namespace

@@ -159,7 +159,8 @@ bool FolderExecutor::Report(const LeaseFileName& file) {
   const auto found = leases_.find(file.lease);
   Laid* const laid = found == leases_.end() ? nullptr : &found->second;
   const size_t offset = laid == nullptr ? 0 : laid->reported;
-  const std::string path = laid != nullptr && !file.outcome ? file.Taken() : file.Done(*file.outcome);
+  const std::string path =
+      laid != nullptr && !file.outcome ? file.Taken() : file.Done(*file.outcome);
   const absl::StatusOr<std::string> bytes = files_->Read(path, offset);
   if (absl::IsUnavailable(bytes.status()) || absl::IsNotFound(bytes.status())) return false;
   absl::string_view rest = bytes.ok() ? absl::string_view(*bytes) : absl::string_view();
@@ -221,8 +222,9 @@ void FolderExecutor::End(const LeaseFileName& file) {
   if (*file.outcome == Outcome::kNoMemory) {
     const double needed = MemoryOf(*lease.spec, lease.experiment->parameters(), 1);
     capacity_.memory = std::min(capacity_.memory, needed - 1);
-    Log(Severity::kWarning, absl::StrCat("cluster folder: worker ", file.worker, " has less than ", needed,
-                            " bytes of memory; this server's threads compute such points"));
+    Log(Severity::kWarning,
+        absl::StrCat("cluster folder: worker ", file.worker, " has less than ", needed,
+                     " bytes of memory; this server's threads compute such points"));
   }
   if (*file.outcome == Outcome::kLost) {
     MutexLock lock(mutex_);
@@ -312,7 +314,9 @@ absl::Status FolderExecutor::LayOne(Lease lease) {
   const Pace pace = PaceOf(options_, leases_.size());
   const LeaseFileName file = {absl::StrCat(process_, "-", ++laid_)};
   const std::string bytes = BytesOf(LeaseRecord(lease, IdentityOf(lease)), pace.touch);
-  const absl::StatusOr<FileStamp> stamp = files_->Create(file.Todo(), bytes);
+  // The folder may have changed while there was no work.
+  const absl::Status ready = leases_.empty() ? server_.prepare() : absl::OkStatus();
+  const absl::StatusOr<FileStamp> stamp = ready.ok() ? files_->Create(file.Todo(), bytes) : ready;
   if (!stamp.ok()) {
     scheduler_.Return(lease, false);
     return stamp.status();

@@ -38,7 +38,7 @@ namespace ballpiston::server {
 
 struct ClusterOptions {
   std::string folder = {};
-  std::string worker = {};                      // the program; empty: as installed
+  std::string worker = {};                       // the program; empty: as installed
   std::chrono::milliseconds least_work{60'000};  // a run with less to compute stays here
   std::chrono::milliseconds timeout{120'000};    // after which a silent lease is lost
   std::chrono::milliseconds lease{180'000};      // of computing, about

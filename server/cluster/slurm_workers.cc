@@ -113,7 +113,6 @@ std::vector<std::string> Environment() {
   return kept;
 }
 
-
 }  // namespace
 
 SlurmQueue ParseQueue(absl::string_view lines) {
@@ -146,18 +145,19 @@ std::vector<std::string> SlurmTools::Words(absl::string_view tool) const {
 }
 
 absl::Status SlurmTools::Submit(size_t workers, const std::stop_token& stop) {
-  Command command = {.words = Words("sbatch"),
-                     .environment = Environment(),
-                     .input = absl::StrCat("#!/bin/sh\nexec ", Quoted(folder_ + "/ballpiston-worker"),
-                                           " ", Quoted(folder_), "\n"),
-                     .limit = kSubmitLimit};
+  Command command = {
+      .words = Words("sbatch"),
+      .environment = Environment(),
+      .input = absl::StrCat("#!/bin/sh\nexec ", Quoted(folder_ + "/ballpiston-worker"), " ",
+                            Quoted(folder_), "\n"),
+      .limit = kSubmitLimit};
   std::vector<std::string>& words = command.words;
-  words.insert(words.end(), {"--parsable", absl::StrCat("--job-name=", name_),
-                             absl::StrCat("--array=0-", workers - 1),
-                             absl::StrCat("--time=", options_.time_limit_minutes),
-                             absl::StrCat("--signal=B:USR1@", kSecondsToFinish), "--requeue",
-                             "--open-mode=append", absl::StrCat("--chdir=", folder_),
-                             absl::StrCat("--output=", folder_, "/log/%a.log")});
+  words.insert(
+      words.end(),
+      {"--parsable", absl::StrCat("--job-name=", name_), absl::StrCat("--array=0-", workers - 1),
+       absl::StrCat("--time=", options_.time_limit_minutes),
+       absl::StrCat("--signal=B:USR1@", kSecondsToFinish), "--requeue", "--open-mode=append",
+       absl::StrCat("--chdir=", folder_), absl::StrCat("--output=", folder_, "/log/%a.log")});
   if (!options_.partition.empty())
     words.push_back(absl::StrCat("--partition=", options_.partition));
   if (!options_.account.empty()) words.push_back(absl::StrCat("--account=", options_.account));
@@ -184,8 +184,7 @@ absl::Status SlurmTools::Cancel(const std::stop_token& stop) {
 // ---- the workers ----
 
 SlurmWorkers::SlurmWorkers(const SlurmOptions& options, std::unique_ptr<SlurmTools> tools,
-                           std::function<FolderStatus()> work,
-                           std::function<absl::Status()> ready)
+                           std::function<FolderStatus()> work, std::function<absl::Status()> ready)
     : options_(options),
       tools_(std::move(tools)),
       work_(std::move(work)),
@@ -241,8 +240,7 @@ absl::Status SlurmWorkers::Steer(const FolderStatus& work) {
 }
 
 // Otherwise workers that cannot run would be submitted again for ever.
-absl::Status SlurmWorkers::CheckThatWorkersWork(const FolderStatus& work,
-                                                const SlurmQueue& queue) {
+absl::Status SlurmWorkers::CheckThatWorkersWork(const FolderStatus& work, const SlurmQueue& queue) {
   const bool were_in_vain = has_submitted_ && queue.waiting + queue.running == 0 &&
                             work.claims == claims_ && work.waiting_leases > 0;
   has_submitted_ = false;
@@ -262,7 +260,7 @@ absl::Status SlurmWorkers::Fill(size_t missing) {
     if (is_too_large && array_size_ > 1) {
       array_size_ = std::max(workers / 2, size_t{1});
       Log(Severity::kWarning, absl::StrCat("slurm: arrays have at most ", array_size_,
-                              " tasks now: set --slurm-max-array-size"));
+                                           " tasks now: set --slurm-max-array-size"));
       continue;
     }
     // An error does not prove that Slurm has no workers of this array.

@@ -47,8 +47,8 @@ struct SlurmQueue {
 
 struct SlurmStatus {
   std::string problem = {};  // empty: none
-  SlurmQueue queue;     // by Slurm's last answer
-  double queries = 0;   // since the start
+  SlurmQueue queue;          // by Slurm's last answer
+  double queries = 0;        // since the start
 };
 
 // The lines of `squeue --noheader --array --format=kQueueFormat`. Lines that cannot be read are

@@ -338,8 +338,8 @@ absl::Status SetCluster(Words& words, CommandLine& line) {
   }
   if (!absl::StartsWith(folder, "/")) {
     return absl::InvalidArgumentError(
-        absl::StrCat("--cluster-folder: \"", folder, "\" is not an absolute path, which --executor=",
-                     words.executor, " needs"));
+        absl::StrCat("--cluster-folder: \"", folder,
+                     "\" is not an absolute path, which --executor=", words.executor, " needs"));
   }
   line.server.cluster = std::move(words.cluster);
   if (words.executor == "slurm") line.server.slurm = std::move(words.slurm);

@@ -153,8 +153,8 @@ void Scheduler::DropStoppedLeases(const Run& run) {
     auto held = held_.lower_bound({i, run.key(), 0});
     const auto end = held_.lower_bound({i, run.key() + 1, 0});
     while (held != end) {
-      const bool drops = held->second.lease.stop.stop_requested() &&
-                         !(is_local && held->second.turns > 0);
+      const bool drops =
+          held->second.lease.stop.stop_requested() && !(is_local && held->second.turns > 0);
       if (drops && !is_local) executors_[i].shares.TurnEnds(run.key(), 0);
       held = drops ? Drop(held) : std::next(held);
     }

@@ -61,7 +61,7 @@ class LeaseRun : private BlockQueue {
   const std::stop_token& stop_;
   ChunkReceiver& receiver_;
   ChunkFold chunks_;
-  std::optional<PointFold> judge_;  // of a lease that begins with chunk 0
+  std::optional<PointFold> judge_;   // of a lease that begins with chunk 0
   double worked_ = ThreadSeconds();  // the thread's processor time when it was last told
 };
 

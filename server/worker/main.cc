@@ -182,7 +182,8 @@ int Compute(const CommandLine& line) {
 void AddFlags(CLI::App& app, CommandLine& line) {
   app.add_option("folder", line.folder, "the folder that the server has as --cluster-folder")
       ->required();
-  app.add_option("--for", line.for_seconds, "seconds after which the worker ends; default: no limit")
+  app.add_option("--for", line.for_seconds,
+                 "seconds after which the worker ends; default: no limit")
       ->check(CLI::PositiveNumber);
   app.add_option("--idle-seconds", line.worker.idle_seconds,
                  "the worker ends if it has found nothing to do for this time")

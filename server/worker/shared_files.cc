@@ -48,8 +48,8 @@ absl::Status CheckFile(const std::string& path, const struct stat& status) {
                                                     "; permitted: this user (", geteuid(), ")"));
   }
   if (static_cast<uint64_t>(status.st_size) <= kMaxCheckedFile) return absl::OkStatus();
-  return absl::ResourceExhaustedError(absl::StrCat(path, " has ", status.st_size,
-                                                   " bytes; permitted: at most ", kMaxCheckedFile));
+  return absl::ResourceExhaustedError(
+      absl::StrCat(path, " has ", status.st_size, " bytes; permitted: at most ", kMaxCheckedFile));
 }
 
 }  // namespace
@@ -133,8 +133,8 @@ absl::Status DiskFiles::Move(const std::string& from, const std::string& to) {
   if (rename(source.c_str(), target.c_str()) == 0) return absl::OkStatus();
   const int error = errno;
   struct stat status {};
-  const bool has_moved = error == ENOENT && lstat(target.c_str(), &status) == 0 &&
-                         lstat(source.c_str(), &status) != 0;
+  const bool has_moved =
+      error == ENOENT && lstat(target.c_str(), &status) == 0 && lstat(source.c_str(), &status) != 0;
   return has_moved ? absl::OkStatus() : Failed(source, "cannot be moved", error);
 }
 

@@ -4,8 +4,8 @@
 //   folder_benchmark [virtual seconds]
 //
 // Each row has workers that compute equilibrium chunks of a minute or less, with a scatter of 20 %.
-// No orbit is computed. The operations are those that a metadata server would see, of the server and
-// the workers together. The processor time is that of the server's looks, with the scheduler.
+// No orbit is computed. The operations are those that a metadata server would see, of the server
+// and the workers together. The processor time is that of the server's looks, with the scheduler.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -76,8 +76,8 @@ class Row {
     }
     const double half = seconds / 2, leases = ended_ - ended_before_;
     const Pace pace = PaceOf(options_, workers);
-    absl::PrintF("| %d | %.0f | %.0f | %.2f | %.1f | %.2f %% | %.2f | %.0f |\n", workers, pace.lease,
-                 pace.timeout, leases / half, (files_.operations - before_) / half,
+    absl::PrintF("| %d | %.0f | %.0f | %.2f | %.1f | %.2f %% | %.2f | %.0f |\n", workers,
+                 pace.lease, pace.timeout, leases / half, (files_.operations - before_) / half,
                  100 * server_ / half, 1e3 * server_ / std::max(leases, 1.0), 1e3 * longest_);
     std::fflush(stdout);
   }
@@ -92,13 +92,17 @@ class Row {
     bool operator<(const Event& other) const { return time > other.time; }
   };
 
-  double Scatter() { return 1 + 0.2 * (2 * static_cast<double>(machine_.Bits() >> 11) * 0x1p-53 - 1); }
+  double Scatter() {
+    return 1 + 0.2 * (2 * static_cast<double>(machine_.Bits() >> 11) * 0x1p-53 - 1);
+  }
   double Now() const { return std::chrono::duration<double>(machine_.now() - begin_).count(); }
   void At(double time, Event event) {
     event.time = time;
     events_.push(std::move(event));
   }
-  std::string Name(const Event& event) const { return absl::StrCat(event.lease, ".w", event.worker); }
+  std::string Name(const Event& event) const {
+    return absl::StrCat(event.lease, ".w", event.worker);
+  }
 
   void Take(Event event) {
     const auto names = *files_.List("todo");
@@ -147,9 +151,8 @@ class Row {
   Machine& machine_;
   const Machine::Clock::time_point begin_ = machine_.now();
   FakeFiles files_;
-  FactoryOpener opener_{[](const EnsembleSpec& spec, size_t index) {
-    return PointExperiment::Create(spec, index);
-  }};
+  FactoryOpener opener_{
+      [](const EnsembleSpec& spec, size_t index) { return PointExperiment::Create(spec, index); }};
   const JournalPointer journal_ = std::make_shared<RecordingJournal>();
   Scheduler scheduler_{opener_, 1};
   SteppedExecutor local_{scheduler_};

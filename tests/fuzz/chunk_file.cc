@@ -1,5 +1,5 @@
-// The chunks that a worker appends to a lease's file. The input is used as a whole frame, and as the
-// payload of a frame with a correct checksum. Chunks that fit a lease are merged.
+// The chunks that a worker appends to a lease's file. The input is used as a whole frame, and as
+// the payload of a frame with a correct checksum. Chunks that fit a lease are merged.
 #include "server/worker/chunk_file.h"
 
 #include <memory>

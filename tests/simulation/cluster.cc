@@ -78,9 +78,10 @@ void Cluster::WorkOnce() {
   const WorkerOptions options = {.name = absl::StrCat("worker", machine_.Bits())};
   const WorkerHost host = {
       .now = [this] { return machine_.now(); },
-      .sleep = [this](std::chrono::duration<double> time) {
-        machine_.Sleep(std::chrono::duration_cast<Machine::Clock::duration>(time));
-      },
+      .sleep =
+          [this](std::chrono::duration<double> time) {
+            machine_.Sleep(std::chrono::duration_cast<Machine::Clock::duration>(time));
+          },
       .random_bits = [this] { return machine_.Bits(); },
       .end = [this] { return EndOfWorker(); },
       .report = [](absl::string_view) {},

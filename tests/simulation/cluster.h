@@ -1,6 +1,6 @@
 // Machines elsewhere that share a folder with the server. The server's part and the loop of the
-// workers are the real ones; the folder is in memory. Workers are killed, stop for minutes, are late
-// or end early; operations of the folder fail, its clock jumps, and it is emptied.
+// workers are the real ones; the folder is in memory. Workers are killed, stop for minutes, are
+// late or end early; operations of the folder fail, its clock jumps, and it is emptied.
 #pragma once
 
 #include <functional>

@@ -218,13 +218,13 @@ TEST(Slurm, TasksThatReachTheirTimeLimitGiveTheSameBytes) {
 TEST(Slurm, ATaskThatHangsIsComputedAgainAfterItsTimeLimit) {
   const TemporaryFolder folder;
   const std::string worker = folder.File("worker");
-  WriteFile(worker,
-            absl::StrCat("#!/bin/sh\nif mkdir ", folder.File("hung"),
-                         " 2>/dev/null; then lease=$(ls \"$1/todo\" | head -n 1); "
-                         "mv \"$1/todo/$lease\" \"$1/taken/$lease.hung\"; "
-                         "trap '' USR1 TERM; while :; do sleep 1; done; fi\n",
-                         "exec ", BuildPath("bin/ballpiston-worker"), " \"$@\"\n"));
-  Sweep sweep({.flags = Joined({Split("--slurm-time-limit-minutes 1 --cluster-worker"), {worker}})});
+  WriteFile(worker, absl::StrCat("#!/bin/sh\nif mkdir ", folder.File("hung"),
+                                 " 2>/dev/null; then lease=$(ls \"$1/todo\" | head -n 1); "
+                                 "mv \"$1/todo/$lease\" \"$1/taken/$lease.hung\"; "
+                                 "trap '' USR1 TERM; while :; do sleep 1; done; fi\n",
+                                 "exec ", BuildPath("bin/ballpiston-worker"), " \"$@\"\n"));
+  Sweep sweep(
+      {.flags = Joined({Split("--slurm-time-limit-minutes 1 --cluster-worker"), {worker}})});
   sweep.Submit();
   sweep.ExpectTheSameBytes();
   EXPECT_GT(sweep.Counts().lost, 0);

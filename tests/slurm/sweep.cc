@@ -20,11 +20,10 @@ using google::protobuf::Struct;
 
 // A job of a few seconds is large enough, a lease takes some seconds, and Slurm is asked often.
 Words FlagsOf(const std::string& shared_folder, const SweepSetUp& set_up) {
-  return Joined(
-      {{"--executor=slurm", "--cluster-folder", shared_folder, "--cluster-least-seconds", "2",
-        "--slurm-query-seconds", "2", "--cluster-timeout-seconds", "10", "--cluster-lease-seconds",
-        absl::StrCat(set_up.lease_seconds)},
-       set_up.flags});
+  return Joined({{"--executor=slurm", "--cluster-folder", shared_folder, "--cluster-least-seconds",
+                  "2", "--slurm-query-seconds", "2", "--cluster-timeout-seconds", "10",
+                  "--cluster-lease-seconds", absl::StrCat(set_up.lease_seconds)},
+                 set_up.flags});
 }
 
 std::string PointsOfJob(const TestServer& server, const std::string& job) {
@@ -126,8 +125,8 @@ void Sweep::AwaitProblem(const std::string& text) const {
 }
 
 std::vector<pid_t> Sweep::Workers() const {
-  return ProcessesWith(
-      absl::StrCat("ballpiston-worker", std::string(1, '\0'), shared_folder(), std::string(1, '\0')));
+  return ProcessesWith(absl::StrCat("ballpiston-worker", std::string(1, '\0'), shared_folder(),
+                                    std::string(1, '\0')));
 }
 
 void Sweep::KillServer() {

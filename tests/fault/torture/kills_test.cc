@@ -218,10 +218,10 @@ TEST(Kills, LoseNothingThatWasAcknowledgedAndCountNothingTwice) {
 TEST(Kills, OfAServerWithAClusterLoseNothingAndCountNothingTwice) {
   Findings findings("kills of a server with a cluster");
   const StandInSlurm slurm;
-  const std::vector<std::string> flags = {"--executor=slurm",          "--cluster-folder",
-                                          slurm.shared_folder(),       "--cluster-least-seconds=0",
-                                          "--cluster-lease-seconds=1", "--cluster-timeout-seconds=3",
-                                          "--slurm-query-seconds=1",   "--slurm-workers=4"};
+  const std::vector<std::string> flags = {
+      "--executor=slurm",          "--cluster-folder",          slurm.shared_folder(),
+      "--cluster-least-seconds=0", "--cluster-lease-seconds=1", "--cluster-timeout-seconds=3",
+      "--slurm-query-seconds=1",   "--slurm-workers=4"};
   // In the short form all questions go to the cluster, so the server soon passes the cluster's
   // failpoints.
   std::vector<v1::EnsembleSpec> questions = LargeQuestions();

@@ -45,8 +45,8 @@ class FolderExecutorTest : public testing::Test {
     if (scheduler_ != nullptr) scheduler_->Shutdown();
     executor_.reset();
     local_.reset();
-    scheduler_ = std::make_unique<Scheduler>(opener_, 1,
-                                             SchedulerOptions{.least_seconds_elsewhere = 0});
+    scheduler_ =
+        std::make_unique<Scheduler>(opener_, 1, SchedulerOptions{.least_seconds_elsewhere = 0});
     local_ = std::make_unique<SteppedExecutor>(*scheduler_);
     options.lease = milliseconds(0);  // one chunk
     executor_ = std::make_unique<FolderExecutor>(
@@ -75,9 +75,7 @@ class FolderExecutorTest : public testing::Test {
   }
 
   // The number of the lease's first chunk.
-  uint64_t FirstChunkOf(const std::string& path) const {
-    return RecordIn(path).first_chunk();
-  }
+  uint64_t FirstChunkOf(const std::string& path) const { return RecordIn(path).first_chunk(); }
 
   storage::Lease RecordIn(const std::string& path) const {
     absl::string_view bytes = files_.files.at(path).bytes;
@@ -126,9 +124,8 @@ class FolderExecutorTest : public testing::Test {
 
   FakeFiles files_;
   absl::Status flush_, prepare_;
-  FactoryOpener opener_{[](const EnsembleSpec& spec, size_t index) {
-    return PointExperiment::Create(spec, index);
-  }};
+  FactoryOpener opener_{
+      [](const EnsembleSpec& spec, size_t index) { return PointExperiment::Create(spec, index); }};
   std::unique_ptr<Scheduler> scheduler_;
   std::unique_ptr<SteppedExecutor> local_;
   std::unique_ptr<FolderExecutor> executor_;
@@ -260,8 +257,8 @@ TEST_F(FolderExecutorTest, OtherNamesAreLeftAlone) {
 
 // ---- time-outs: of 0 s, so every look is late ----
 
-const ClusterOptions kNoTimeOut = {.timeout = milliseconds(0), .look = milliseconds(0),
-                                   .least_waiting = 2};
+const ClusterOptions kNoTimeOut = {
+    .timeout = milliseconds(0), .look = milliseconds(0), .least_waiting = 2};
 
 TEST_F(FolderExecutorTest, ALeaseThatNobodyTakesGoesBack) {
   Restart(kNoTimeOut);

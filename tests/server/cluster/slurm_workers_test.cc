@@ -82,7 +82,8 @@ TEST_F(SlurmWorkersTest, AsManyWorkersAreSubmittedAsThereAreLeases) {
 }
 
 TEST_F(SlurmWorkersTest, NoMoreWorkersThanTheFlagSays) {
-  SlurmWorkers workers = New({.workers = 10, .max_array_size = 4, .query_interval = milliseconds(0)});
+  SlurmWorkers workers =
+      New({.workers = 10, .max_array_size = 4, .query_interval = milliseconds(0)});
   work_ = {.waiting_leases = 100};
   workers.Look();
   EXPECT_THAT(slurm_.submitted, ElementsAre(4, 4, 2));
@@ -139,8 +140,7 @@ TEST_F(SlurmWorkersTest, AFolderThatIsNotReadyGetsNoWorkers) {
 }
 
 TEST_F(SlurmWorkersTest, WorkersThatEndInVainAreSubmittedOneByOne) {
-  SlurmWorkers workers =
-      New({.workers = 10, .query_interval = milliseconds(0)});
+  SlurmWorkers workers = New({.workers = 10, .query_interval = milliseconds(0)});
   work_ = {.waiting_leases = 5};
   workers.Look();
   workers.Look();
@@ -159,7 +159,8 @@ TEST_F(SlurmWorkersTest, WorkersThatWouldWaitForEverAreCancelled) {
 
 TEST(SlurmQueue, StatesAreCounted) {
   const SlurmQueue queue = ParseQueue(
-      "PENDING|Priority\nPENDING|Resources\nRUNNING|None\nCOMPLETING|None\nFAILED|None\nnonsense\n");
+      "PENDING|Priority\nPENDING|Resources\nRUNNING|None\nCOMPLETING|None\nFAILED|"
+      "None\nnonsense\n");
   EXPECT_EQ(queue.waiting, 2u);
   EXPECT_EQ(queue.running, 2u);
   EXPECT_EQ(queue.never, "");

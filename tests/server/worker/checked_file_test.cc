@@ -67,8 +67,7 @@ TEST(CheckedFile, TheBytesAfterAFrameAreLeft) {
 TEST(CheckedFile, AChangedPayloadIsCorrupted) {
   std::string file = SomeFile();
   file[60] ^= 1;
-  EXPECT_THAT(PayloadOf(file),
-              StatusIs(absl::StatusCode::kDataLoss, HasSubstr("corrupted")));
+  EXPECT_THAT(PayloadOf(file), StatusIs(absl::StatusCode::kDataLoss, HasSubstr("corrupted")));
 }
 
 TEST(CheckedFile, AnotherFileIsRefused) {
@@ -81,9 +80,8 @@ TEST(CheckedFile, AnotherFileIsRefused) {
 TEST(CheckedFile, ANewerFormatIsRefusedWithBothVersions) {
   std::string file = SomeFile();
   file[8] = 2;
-  EXPECT_THAT(PayloadOf(file),
-              StatusIs(absl::StatusCode::kUnimplemented,
-                       AllOf(HasSubstr("version 2"), HasSubstr("version 1"))));
+  EXPECT_THAT(PayloadOf(file), StatusIs(absl::StatusCode::kUnimplemented,
+                                        AllOf(HasSubstr("version 2"), HasSubstr("version 1"))));
 }
 
 }  // namespace

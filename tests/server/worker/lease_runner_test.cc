@@ -59,8 +59,7 @@ TEST(LeaseRunner, ChunksHaveTheBitsOfAWholePoint) {
 TEST(LeaseRunner, ComputesOnlyTheRestOfAChunkThatHasBlocks) {
   Lease lease = LeaseOf(SpecOf(kFirstHit, Model::kBilliard, 100'000), 1, 2).lease;
   lease.start.blocks = 1;
-  lease.start.merged =
-      RunBlock(*lease.experiment, lease.experiment->plan().BlockAt(1, 0)).value();
+  lease.start.merged = RunBlock(*lease.experiment, lease.experiment->plan().BlockAt(1, 0)).value();
   Recorder recorder;
   EXPECT_TRUE(recorder.Run(lease));
   EXPECT_TRUE(AreEqual(recorder.chunks, {AllChunks(*lease.experiment)[1]}));

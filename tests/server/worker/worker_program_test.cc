@@ -146,8 +146,8 @@ TEST_F(WorkerProgramTest, ASignalledWorkerGivesItsLeaseBackWithItsChunks) {
       if (!is_finished) {
         EXPECT_THAT(Done(), ElementsAre("a.returned"));
         ASSERT_FALSE(chunks.empty());
-        EXPECT_TRUE(AreEqual(chunks, {all.begin(), all.begin() + static_cast<ptrdiff_t>(
-                                                                     chunks.size())}));
+        EXPECT_TRUE(
+            AreEqual(chunks, {all.begin(), all.begin() + static_cast<ptrdiff_t>(chunks.size())}));
       }
       std::filesystem::remove(shared_ + "/done/" + NamesIn(shared_ + "/done")[0]);
       if (!is_finished) break;
