@@ -22,7 +22,7 @@ Cluster::Cluster(Scheduler& scheduler, ClusterOptions options,
                  const std::optional<SlurmOptions>& slurm, const std::string& identity,
                  std::function<absl::Status()> flush)
     : folder_(scheduler, slurm ? WithSlurm(options, *slurm) : options,
-              std::make_unique<DiskFiles>(options.folder),
+              std::make_unique<FolderFiles>(options.folder),
               {.identity = identity,
                .flush = std::move(flush),
                .prepare = [folder = options.folder, identity] {
@@ -35,7 +35,7 @@ Cluster::Cluster(Scheduler& scheduler, ClusterOptions options,
       [options, identity] {
         const absl::Status prepared = PrepareFolder(options.folder, identity);
         return prepared.ok() ? CopyWorker(options.folder, options.worker) : prepared;
-      }); });
+      });
 }
 
 void Cluster::Start() {

@@ -86,7 +86,7 @@ std::string InstalledWorker() {
 
 // One of two servers that begin with an empty folder makes the file.
 absl::Status CheckOwnerFile(const std::string& folder, const std::string& identity) {
-  DiskFiles files(folder);
+  FolderFiles files(folder);
   const absl::Status made = files.Create("owner", identity).status();
   const absl::StatusOr<std::string> found = files.Read("owner", 0);
   if (!found.ok()) return made.ok() ? found.status() : made;

@@ -162,7 +162,7 @@ int Compute(const CommandLine& line) {
   NoteFatalSignals(MoveFileOfLease);
   const SignalStack stack;
   Ending ending(line.for_seconds);
-  DiskFiles files(line.folder);
+  FolderFiles files(line.folder);
   const WorkerHost host = {.now = [] { return Clock::now(); },
                            .sleep = [&](auto time) { ending.Sleep(time); },
                            .random_bits = RandomBits,

@@ -54,7 +54,7 @@ absl::Status CheckFile(const std::string& path, const struct stat& status) {
 
 }  // namespace
 
-absl::StatusOr<std::vector<std::string>> DiskFiles::List(const std::string& subfolder) {
+absl::StatusOr<std::vector<std::string>> FolderFiles::List(const std::string& subfolder) {
   const std::string path = PathOf(subfolder);
   DIR* const folder = opendir(path.c_str());
   if (folder == nullptr) {
@@ -71,7 +71,7 @@ absl::StatusOr<std::vector<std::string>> DiskFiles::List(const std::string& subf
   return names;
 }
 
-absl::StatusOr<FileStamp> DiskFiles::Create(const std::string& path, absl::string_view bytes) {
+absl::StatusOr<FileStamp> FolderFiles::Create(const std::string& path, absl::string_view bytes) {
   const std::string whole = PathOf(path);
   const int descriptor = open(whole.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (descriptor < 0) {
@@ -90,7 +90,7 @@ absl::StatusOr<FileStamp> DiskFiles::Create(const std::string& path, absl::strin
 }
 
 // The file that is checked is the file that is read. O_NONBLOCK: opening a pipe must not wait.
-absl::StatusOr<std::string> DiskFiles::Read(const std::string& path, size_t offset) {
+absl::StatusOr<std::string> FolderFiles::Read(const std::string& path, size_t offset) {
   const std::string whole = PathOf(path);
   const int descriptor = open(whole.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) return Failed(whole, "cannot be opened", errno);
@@ -111,7 +111,7 @@ absl::StatusOr<std::string> DiskFiles::Read(const std::string& path, size_t offs
   return text;
 }
 
-absl::Status DiskFiles::Append(const std::string& path, absl::string_view bytes) {
+absl::Status FolderFiles::Append(const std::string& path, absl::string_view bytes) {
   const std::string whole = PathOf(path);
   const int descriptor = open(whole.c_str(), O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC);
   if (descriptor < 0) return Failed(whole, "cannot be written", errno);
@@ -128,7 +128,7 @@ absl::Status DiskFiles::Append(const std::string& path, absl::string_view bytes)
 
 // NFS may send the request twice, for example if the first answer is lost. Then the second answer
 // is ENOENT, although the file has moved.
-absl::Status DiskFiles::Move(const std::string& from, const std::string& to) {
+absl::Status FolderFiles::Move(const std::string& from, const std::string& to) {
   const std::string source = PathOf(from), target = PathOf(to);
   if (rename(source.c_str(), target.c_str()) == 0) return absl::OkStatus();
   const int error = errno;
@@ -138,7 +138,7 @@ absl::Status DiskFiles::Move(const std::string& from, const std::string& to) {
   return has_moved ? absl::OkStatus() : Failed(source, "cannot be moved", error);
 }
 
-absl::Status DiskFiles::Touch(const std::string& path) {
+absl::Status FolderFiles::Touch(const std::string& path) {
   const std::string whole = PathOf(path);
   if (utimensat(AT_FDCWD, whole.c_str(), nullptr, AT_SYMLINK_NOFOLLOW) == 0) {
     return absl::OkStatus();
@@ -146,14 +146,14 @@ absl::Status DiskFiles::Touch(const std::string& path) {
   return Failed(whole, "cannot be touched", errno);
 }
 
-absl::StatusOr<FileStamp> DiskFiles::Stamp(const std::string& path) {
+absl::StatusOr<FileStamp> FolderFiles::Stamp(const std::string& path) {
   const std::string whole = PathOf(path);
   struct stat status {};
   if (lstat(whole.c_str(), &status) == 0) return StampOf(status);
   return Failed(whole, "cannot be looked up", errno);
 }
 
-absl::Status DiskFiles::Remove(const std::string& path) {
+absl::Status FolderFiles::Remove(const std::string& path) {
   const std::string whole = PathOf(path);
   return unlink(whole.c_str()) == 0 ? absl::OkStatus() : Failed(whole, "cannot be removed", errno);
 }

@@ -58,9 +58,9 @@ class SharedFiles {
 };
 
 // A folder of this machine's file systems, local or not.
-class DiskFiles : public SharedFiles {
+class FolderFiles : public SharedFiles {
  public:
-  explicit DiskFiles(std::string folder) : folder_(std::move(folder)) {}
+  explicit FolderFiles(std::string folder) : folder_(std::move(folder)) {}
 
   absl::StatusOr<std::vector<std::string>> List(const std::string& subfolder) override;
   absl::StatusOr<FileStamp> Create(const std::string& path, absl::string_view bytes) override;

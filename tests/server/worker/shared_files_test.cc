@@ -21,17 +21,17 @@ using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 using Code = absl::StatusCode;
 
-class DiskFilesTest : public testing::Test {
+class FolderFilesTest : public testing::Test {
  protected:
-  DiskFilesTest() {
+  FolderFilesTest() {
     for (const char* name : {"todo", "taken"}) mkdir(folder_.File(name).c_str(), 0700);
   }
 
   const TemporaryFolder folder_;
-  DiskFiles files_ = DiskFiles(folder_.path());
+  FolderFiles files_ = FolderFiles(folder_.path());
 };
 
-TEST_F(DiskFilesTest, AFileIsMadeReadExtendedMovedAndRemoved) {
+TEST_F(FolderFilesTest, AFileIsMadeReadExtendedMovedAndRemoved) {
   ASSERT_OK_AND_ASSIGN(const FileStamp made, files_.Create("todo/a", "one"));
   EXPECT_EQ(made.bytes, 3u);
   EXPECT_THAT(files_.Stamp("todo/a"), IsOkAndHolds(made));
@@ -44,7 +44,7 @@ TEST_F(DiskFilesTest, AFileIsMadeReadExtendedMovedAndRemoved) {
   EXPECT_OK(files_.Remove("taken/a"));
 }
 
-TEST_F(DiskFilesTest, ATouchChangesTheStamp) {
+TEST_F(FolderFilesTest, ATouchChangesTheStamp) {
   ASSERT_OK(files_.Create("todo/a", "one").status());
   const timespec long_ago[2] = {{1, 0}, {1, 0}};
   utimensat(AT_FDCWD, folder_.File("todo/a").c_str(), long_ago, 0);
@@ -54,7 +54,7 @@ TEST_F(DiskFilesTest, ATouchChangesTheStamp) {
   EXPECT_NE(before, after);
 }
 
-TEST_F(DiskFilesTest, AFileThatIsNotThereIsNotFound) {
+TEST_F(FolderFilesTest, AFileThatIsNotThereIsNotFound) {
   EXPECT_THAT(files_.Read("todo/a", 0), StatusIs(Code::kNotFound));
   EXPECT_THAT(files_.Append("todo/a", "x"), StatusIs(Code::kNotFound));
   EXPECT_THAT(files_.Move("todo/a", "taken/a"), StatusIs(Code::kNotFound));
@@ -64,23 +64,23 @@ TEST_F(DiskFilesTest, AFileThatIsNotThereIsNotFound) {
 }
 
 // The second of two requests, of which NFS has lost the first answer.
-TEST_F(DiskFilesTest, AMoveThatHasHappenedAlreadySucceeds) {
+TEST_F(FolderFilesTest, AMoveThatHasHappenedAlreadySucceeds) {
   ASSERT_OK(files_.Create("taken/a", "one").status());
   EXPECT_OK(files_.Move("todo/a", "taken/a"));
 }
 
-TEST_F(DiskFilesTest, AFolderThatIsNotThereCannotBeUsed) {
+TEST_F(FolderFilesTest, AFolderThatIsNotThereCannotBeUsed) {
   EXPECT_THAT(files_.List("done"), StatusIs(Code::kUnavailable, HasSubstr("/done")));
   EXPECT_THAT(files_.Create("done/a", "x"), StatusIs(Code::kUnavailable, HasSubstr("/done/a")));
 }
 
-TEST_F(DiskFilesTest, AnExistingFileIsNotReplaced) {
+TEST_F(FolderFilesTest, AnExistingFileIsNotReplaced) {
   WriteFile(folder_.File("todo/a"), "old");
   EXPECT_FALSE(files_.Create("todo/a", "new").ok());
   EXPECT_THAT(files_.Read("todo/a", 0), IsOkAndHolds("old"));
 }
 
-TEST_F(DiskFilesTest, LinksAndPipesAreNotRead) {
+TEST_F(FolderFilesTest, LinksAndPipesAreNotRead) {
   WriteFile(folder_.File("secret"), "secret");
   ASSERT_EQ(symlink("../secret", folder_.File("todo/link").c_str()), 0);
   ASSERT_EQ(mkfifo(folder_.File("todo/pipe").c_str(), 0600), 0);
@@ -90,7 +90,7 @@ TEST_F(DiskFilesTest, LinksAndPipesAreNotRead) {
 }
 
 // A limit of the process has the effect of a full disk.
-TEST_F(DiskFilesTest, AFullDiskLeavesTheFileAsItWas) {
+TEST_F(FolderFilesTest, AFullDiskLeavesTheFileAsItWas) {
   ASSERT_OK(files_.Create("todo/a", "one").status());
   rlimit before = {};
   getrlimit(RLIMIT_FSIZE, &before);

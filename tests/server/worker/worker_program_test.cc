@@ -91,7 +91,7 @@ class WorkerProgramTest : public testing::Test {
 
   const TemporaryFolder folder_;
   const std::string shared_ = folder_.File("shared");
-  DiskFiles files_ = DiskFiles(shared_);
+  FolderFiles files_ = FolderFiles(shared_);
 };
 
 TEST_F(WorkerProgramTest, GivesTheBitsOfEveryExperiment) {
