@@ -61,7 +61,7 @@ absl::StatusOr<LeaseFile> TakeLease(absl::string_view& bytes) {
   storage::LeaseFile record;
   const bool is_read = record.ParseFromArray(payload->data(), static_cast<int>(payload->size()));
   const double seconds = record.touch_seconds();
-  if (!is_read || !std::isfinite(seconds) || seconds <= 0) {
+  if (!is_read || !std::isfinite(seconds) || seconds < 0) {
     return absl::DataLossError("the message of a lease's file cannot be read");
   }
   absl::StatusOr<IdentifiedLease> lease = LeaseOfRecord(record.lease());

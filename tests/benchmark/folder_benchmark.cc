@@ -42,7 +42,7 @@ constexpr double kRetry = 10;  // seconds until a worker without a lease looks a
 EnsembleSpec LongSpec() {
   EnsembleSpec spec = {.experiment = &kEquilibrium, .seed = 1, .model = Model::kBilliard};
   spec.grid = {{kRho, {0.53}}, {kDelta, {0.0125}}};
-  spec.target.collisions = 1'000'000'000'000'000;
+  spec.target.collisions = 1'000'000'000'000;
   return spec;
 }
 

@@ -36,7 +36,7 @@ EnsembleSpec ToySpec(const storage::Question& question, size_t point) {
 
 }  // namespace
 
-Cluster::Cluster(Machine& machine, Scheduler& scheduler, FakeFiles& files,
+SimulatedCluster::SimulatedCluster(Machine& machine, Scheduler& scheduler, FakeFiles& files,
                  ExperimentFactory experiments, std::function<absl::Status()> flush)
     : machine_(machine),
       files_(files),
@@ -52,18 +52,18 @@ Cluster::Cluster(Machine& machine, Scheduler& scheduler, FakeFiles& files,
   };
 }
 
-Cluster::~Cluster() {
+SimulatedCluster::~SimulatedCluster() {
   is_shutting_down_ = true;
   for (Thread& worker : workers_) worker.join();
   files_.before = nullptr;
 }
 
-void Cluster::Start() {
+void SimulatedCluster::Start() {
   executor_.Start();
   for (int i = 0; i < kWorkers; ++i) workers_.emplace_back([this] { Work(); });
 }
 
-void Cluster::Work() {
+void SimulatedCluster::Work() {
   while (!is_shutting_down_) {
     machine_.Sleep(machine_.UpTo(kLongestStart));
     Trouble();
@@ -74,7 +74,7 @@ void Cluster::Work() {
   }
 }
 
-void Cluster::WorkOnce() {
+void SimulatedCluster::WorkOnce() {
   const WorkerOptions options = {.name = absl::StrCat("worker", machine_.Bits())};
   const WorkerHost host = {
       .now = [this] { return machine_.now(); },
@@ -90,19 +90,19 @@ void Cluster::WorkOnce() {
   server::Work(files_, options, host).IgnoreError();  // of the folder
 }
 
-EndOfWork Cluster::EndOfWorker() {
+EndOfWork SimulatedCluster::EndOfWorker() {
   if (machine_.Chance(is_shutting_down_ ? 0.5 : 0.002)) throw Killed();
   if (is_shutting_down_) return EndOfWork::kNow;
   if (machine_.Chance(0.002)) machine_.Sleep(machine_.UpTo(kLongestStop));
   return machine_.Chance(0.002) ? EndOfWork::kAfterChunk : EndOfWork::kNotYet;
 }
 
-void Cluster::Trouble() {
+void SimulatedCluster::Trouble() {
   if (machine_.Chance(0.2)) files_.now += absl::Hours(machine_.Below(20)) - absl::Hours(10);
   if (machine_.Chance(0.05)) files_.files.clear();
 }
 
-absl::StatusOr<LeaseFile> Cluster::ReadLease(absl::string_view& bytes) const {
+absl::StatusOr<LeaseFile> SimulatedCluster::ReadLease(absl::string_view& bytes) const {
   const absl::StatusOr<absl::string_view> payload = TakeFrame(FrameKind::kLease, bytes);
   if (!payload.ok()) return payload.status();
   storage::LeaseFile file;

@@ -17,12 +17,12 @@
 
 namespace ballpiston::server {
 
-class Cluster {
+class SimulatedCluster {
  public:
   // The folder outlives the server. `flush` is that of the server's store.
-  Cluster(Machine& machine, Scheduler& scheduler, FakeFiles& files, ExperimentFactory experiments,
+  SimulatedCluster(Machine& machine, Scheduler& scheduler, FakeFiles& files, ExperimentFactory experiments,
           std::function<absl::Status()> flush);
-  ~Cluster();
+  ~SimulatedCluster();
 
   void Start();
 

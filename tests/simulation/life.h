@@ -48,7 +48,7 @@ class Life {
   FactoryOpener opener_;
   std::unique_ptr<Scheduler> scheduler_;
   std::unique_ptr<ThreadExecutor> threads_;
-  std::unique_ptr<Cluster> cluster_;
+  std::unique_ptr<SimulatedCluster> cluster_;
   std::unique_ptr<JobBook> book_;
   std::unique_ptr<PeriodicThread> limits_;
 };
