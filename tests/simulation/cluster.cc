@@ -37,7 +37,8 @@ EnsembleSpec ToySpec(const storage::Question& question, size_t point) {
 }  // namespace
 
 SimulatedCluster::SimulatedCluster(Machine& machine, Scheduler& scheduler, FakeFiles& files,
-                 ExperimentFactory experiments, std::function<absl::Status()> flush)
+                                   ExperimentFactory experiments,
+                                   std::function<absl::Status()> flush)
     : machine_(machine),
       files_(files),
       experiments_(std::move(experiments)),

@@ -20,8 +20,8 @@ namespace ballpiston::server {
 class SimulatedCluster {
  public:
   // The folder outlives the server. `flush` is that of the server's store.
-  SimulatedCluster(Machine& machine, Scheduler& scheduler, FakeFiles& files, ExperimentFactory experiments,
-          std::function<absl::Status()> flush);
+  SimulatedCluster(Machine& machine, Scheduler& scheduler, FakeFiles& files,
+                   ExperimentFactory experiments, std::function<absl::Status()> flush);
   ~SimulatedCluster();
 
   void Start();

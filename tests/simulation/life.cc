@@ -40,9 +40,9 @@ Life::Life(Machine& machine, FaultDisk& disk, FakeFiles* folder)
                                              SchedulerOptions{.least_seconds_elsewhere = 0})),
       threads_(std::make_unique<ThreadExecutor>(*scheduler_, kThreads)),
       cluster_(folder == nullptr ? nullptr
-                                 : std::make_unique<SimulatedCluster>(machine, *scheduler_, *folder,
-                                                             SlowExperiments(machine),
-                                                             [this] { return store_->Flush(); })) {
+                                 : std::make_unique<SimulatedCluster>(
+                                       machine, *scheduler_, *folder, SlowExperiments(machine),
+                                       [this] { return store_->Flush(); })) {
   status_ = Start(disk);
 }
 

@@ -3,10 +3,6 @@
 #include <cxxabi.h>
 #include <sys/mman.h>
 
-#ifdef __SANITIZE_ADDRESS__
-#include <sanitizer/common_interface_defs.h>
-#endif
-
 #include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
@@ -45,6 +41,8 @@ static Exceptions& ExceptionsNow() {
 // The address sanitizer has to know the stack on which the code goes on. Otherwise it takes
 // exceptions that unwind a simulated thread's stack for errors.
 #ifdef __SANITIZE_ADDRESS__
+extern "C" void __sanitizer_start_switch_fiber(void** save, const void* bottom, size_t bytes);
+extern "C" void __sanitizer_finish_switch_fiber(void* saved, const void** bottom, size_t* bytes);
 static void SwitchContext(ucontext_t& from, const ucontext_t& to) {
   void* fake_stack = nullptr;
   __sanitizer_start_switch_fiber(&fake_stack, to.uc_stack.ss_sp, to.uc_stack.ss_size);
