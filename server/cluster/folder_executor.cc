@@ -19,7 +19,9 @@ constexpr double kOperationsOfALease = 9;
 constexpr double kOperationsASecond = 100;
 constexpr std::chrono::seconds kBetweenPreparations(30);
 constexpr std::chrono::seconds kLongestBackoff(60);
-constexpr size_t kMostLaidAtOnce = 50;
+constexpr size_t kMostLaidAtOnce = 300;
+// A worker lists all waiting leases before it takes one.
+constexpr size_t kMostWaiting = 300;
 // A look lists all leases, so looks are rarer if there are many.
 constexpr double kLeasesListedASecond = 500;
 // One look is not enough: a worker may move the file between two listings.
@@ -295,7 +297,8 @@ absl::Status FolderExecutor::Lay() {
   if (SteadyNow() < next_laying_) return absl::OkStatus();
   for (size_t i = 0; i < kMostLaidAtOnce; ++i) {
     const size_t waiting = leases_.size() - taken_;
-    const bool has_enough = waiting >= std::max(options_.least_waiting, taken_);
+    const size_t wanted = std::max(options_.least_waiting, std::min(taken_, kMostWaiting));
+    const bool has_enough = waiting >= wanted;
     if (has_enough || leases_.size() >= options_.most_leases) break;
     capacity_.seconds = PaceOf(options_, leases_.size()).lease;
     std::optional<Lease> lease = scheduler_.Next(capacity_);
