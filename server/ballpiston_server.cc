@@ -38,9 +38,9 @@ constexpr double kLeaseBesideACluster = 60;
 
 SchedulerOptions OptionsOfScheduler(const ServerOptions& options) {
   SchedulerOptions scheduler;
-  if (options.slurm) {
+  if (options.cluster) {
     scheduler.least_seconds_elsewhere =
-        std::chrono::duration<double>(options.slurm->least_work).count();
+        std::chrono::duration<double>(options.cluster->least_work).count();
   }
   if (options.limits.max_memory_mib > 0) {
     scheduler.memory_limit = static_cast<double>(options.limits.max_memory_mib) * (1 << 20);
@@ -151,13 +151,12 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
       scheduler_(options_.opener ? *options_.opener : static_cast<PointOpener&>(ladder_),
                  options_.workers, OptionsOfScheduler(options_)),
       book_(*store_, options_.limits, scheduler_, crashes_),
-      threads_(scheduler_, options_.workers, options_.slurm ? kLeaseBesideACluster : kWholePoint,
+      threads_(scheduler_, options_.workers, options_.cluster ? kLeaseBesideACluster : kWholePoint,
                crashes_),
-      slurm_(options_.slurm
-                 ? std::make_unique<SlurmExecutor>(
-                       scheduler_, *options_.slurm, std::make_unique<SlurmTools>(*options_.slurm),
-                       store_->identity(), [this] { return store_->Flush(); }, crashes_)
-                 : nullptr),
+      cluster_(options_.cluster ? std::make_unique<Cluster>(scheduler_, *options_.cluster,
+                                                            options_.slurm, store_->identity(),
+                                                            [this] { return store_->Flush(); })
+                                : nullptr),
       quotas_(options_.limits),
       streams_(door_->authenticator(), options_.watch.heartbeat, draining_),
       context_{door_->authenticator(),
@@ -165,7 +164,7 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
                book_,
                scheduler_,
                threads_,
-               slurm_.get(),
+               cluster_.get(),
                ladder_,
                quotas_,
                streams_,
@@ -182,9 +181,8 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
       trace_(context_),
       server_(context_) {}
 
-// The cluster first: it adopts leases before a thread can take their chunks.
 void BallpistonServer::StartThreads() {
-  if (slurm_ != nullptr) slurm_->Start();
+  if (cluster_ != nullptr) cluster_->Start();
   threads_.Start();
   limits_ =
       std::make_unique<PeriodicThread>(kLimitsInterval, [this] { book_.KeepLimits(absl::Now()); });

@@ -14,7 +14,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "grpcpp/server.h"
-#include "server/cluster/slurm_executor.h"
+#include "server/cluster/cluster.h"
 #include "server/compute/model_ladder.h"
 #include "server/compute/scheduler.h"
 #include "server/compute/thread_executor.h"
@@ -41,8 +41,9 @@ struct ServerOptions {
   std::string listen;  // empty: a Unix socket in data_dir
   DoorOptions door;
   int workers = 1;
-  std::optional<SlurmOptions> slurm = {};  // empty: no cluster
-  std::shared_ptr<PointOpener> opener;     // null: the ladder of models opens points
+  std::optional<ClusterOptions> cluster = {};  // empty: only this server's threads compute
+  std::optional<SlurmOptions> slurm = {};      // of the cluster; empty: somebody starts its workers
+  std::shared_ptr<PointOpener> opener;         // null: the ladder of models opens points
   WatchTiming watch;
   ConnectionTiming connections;
   Limits limits;
@@ -105,7 +106,7 @@ class BallpistonServer {
   JobBook book_;
   // After the book: the executors' threads use the book.
   ThreadExecutor threads_;
-  std::unique_ptr<SlurmExecutor> slurm_;  // null without a cluster
+  std::unique_ptr<Cluster> cluster_;  // null without a cluster
   Quotas quotas_;
   Streams streams_;
   ServiceContext context_;

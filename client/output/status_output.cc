@@ -63,11 +63,15 @@ std::string Speed(const v1::ComputingRates& rates) {
                       " jumps/s per core");
 }
 
-std::string SlurmText(const v1::SlurmStatus& slurm) {
-  const std::string tasks = absl::StrCat(CountText(slurm.running_tasks()), " tasks run, ",
-                                         CountText(slurm.waiting_tasks()), " wait, ",
-                                         CountText(slurm.submitted_tasks()), " just submitted");
-  return slurm.problem().empty() ? tasks : absl::StrCat(tasks, "; ", slurm.problem());
+std::string ClusterText(const v1::ClusterStatus& cluster) {
+  std::string text = absl::StrCat(Counted(cluster.taken_leases(), "lease"), " taken, ",
+                                  CountText(cluster.waiting_leases()), " waiting");
+  const double workers = cluster.running_workers() + cluster.waiting_workers();
+  if (workers > 0) {
+    absl::StrAppend(&text, "; ", CountText(cluster.running_workers()), " workers run, ",
+                    CountText(cluster.waiting_workers()), " wait");
+  }
+  return cluster.problem().empty() ? text : absl::StrCat(text, "; ", cluster.problem());
 }
 
 void PrintServer(const v1::ServerStatus& status, absl::Time now, std::ostream& out) {
@@ -80,7 +84,7 @@ void PrintServer(const v1::ServerStatus& status, absl::Time now, std::ostream& o
                                      CountText(status.running_jobs()), " running, ",
                                      CountText(status.stored_jobs()), " in the store")});
   table.AddRow({"workers", absl::StrCat(status.busy_workers(), " of ", status.workers(), " busy")});
-  if (status.has_slurm()) table.AddRow({"slurm", SlurmText(status.slurm())});
+  if (status.has_cluster()) table.AddRow({"cluster", ClusterText(status.cluster())});
   table.AddRow({"computed", Computed(status)});
   if (status.has_rates()) table.AddRow({"speed", Speed(status.rates())});
   table.AddRow({"streams", CountText(status.streams())});

@@ -42,12 +42,13 @@ constexpr int64_t kLeastMessage = 1024;
 constexpr int64_t kMostMessage = int64_t{256} << 20;
 constexpr double kMostTransferMib = 1 << 20;
 constexpr int64_t kMostSlurmMinutes = 60 * 24 * 365;
-constexpr int64_t kMostSlurmTasks = 1'000'000;
+constexpr int64_t kMostSlurmWorkers = 1'000'000;
 
 // Values of flags that are converted after all flags were read.
 struct Words {
   std::string executor = "threads";
   std::string log_level = "info";
+  ClusterOptions cluster;
   SlurmOptions slurm;
 };
 
@@ -179,40 +180,45 @@ void AddDoorFlags(CLI::App& app, DoorOptions& door) {
           "is read, submit or admin. Without TLS this server's user needs none");
 }
 
-void AddSlurmFlags(CLI::App& app, Words& words) {
+void AddClusterFlags(CLI::App& app, Words& words) {
+  ClusterOptions& cluster = words.cluster;
+  BeginGroup(app, "Other machines, with --executor=folder or --executor=slurm");
+  AddWord(app, "--executor", words.executor, {"threads", "folder", "slurm"},
+          "threads: only this server's threads compute; folder: workers that you start also take\n"
+          "long work, from a shared folder; slurm: the server starts such workers with Slurm");
+  AddText(app, "--cluster-folder", cluster.folder, "DIR",
+          "folder that the server and all workers see under this absolute path. It belongs to the\n"
+          "server's user; other users cannot write it");
+  AddSeconds(app, "--cluster-least-seconds", cluster.least_work, 0, kDaySeconds,
+             "a job that takes less of one core is computed by this server alone");
+  AddSeconds(app, "--cluster-lease-seconds", cluster.lease, 1, kDaySeconds,
+             "computing time of a lease, about; longer if there are more than 600 workers");
+  AddSeconds(app, "--cluster-timeout-seconds", cluster.timeout, 1, kDaySeconds,
+             "a lease is given to another worker if its file does not change for this time");
+  AddText(app, "--cluster-worker", cluster.worker, "FILE",
+          "the program ballpiston-worker, which the server copies into the folder for Slurm;\n"
+          "default: the one installed with the server");
   SlurmOptions& slurm = words.slurm;
   BeginGroup(app, "Slurm, with --executor=slurm");
-  AddWord(app, "--executor", words.executor, {"threads", "slurm"},
-          "threads: only this server's threads compute; slurm: long work also goes to a cluster");
-  AddText(app, "--slurm-shared-folder", slurm.shared_folder, "DIR",
-          "folder that the server and all nodes of the cluster see under this absolute path. It\n"
-          "belongs to the server's user; other users cannot write it");
+  AddNumber(app, "--slurm-workers", slurm.workers, 1, kMostSlurmWorkers,
+            "workers that wait or run at the same time; each uses one core");
   AddText(app, "--slurm-partition", slurm.partition, "NAME",
           "partition; default: the cluster's default");
   AddText(app, "--slurm-account", slurm.account, "NAME", "account; default: the user's default");
   AddText(app, "--slurm-cluster", slurm.cluster, "NAME",
           "cluster, where a site has several; needs slurmdbd");
   AddNumber(app, "--slurm-time-limit-minutes", slurm.time_limit_minutes, 1, kMostSlurmMinutes,
-            "time limit of a task");
+            "time limit of a worker");
   app.add_option("--slurm-option", slurm.sbatch_options,
                  "one further word for sbatch, such as --slurm-option=--mem-per-cpu=500M; may be\n"
                  "given several times")
       ->type_name("WORD")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  AddNumber(app, "--slurm-max-tasks", slurm.max_tasks, 1, kMostSlurmTasks,
-            "tasks that wait or run at the same time; a task uses one core");
-  AddNumber(app, "--slurm-max-array-size", slurm.max_array_size, 1, kMostSlurmTasks,
+  AddNumber(app, "--slurm-max-array-size", slurm.max_array_size, 1, kMostSlurmWorkers,
             "tasks of one job array; less than the cluster's MaxArraySize");
-  AddSeconds(app, "--slurm-task-seconds", slurm.task_length, 1, kDaySeconds,
-             "computing time of a task, about; at most half of the time limit is used");
-  AddSeconds(app, "--slurm-least-seconds", slurm.least_work, 0, kDaySeconds,
-             "a job that takes less of one core is computed by this server alone");
   AddSeconds(app, "--slurm-query-seconds", slurm.query_interval, 1, 3600,
              "time between two queries of Slurm's queue");
-  AddText(app, "--slurm-worker", slurm.worker, "FILE",
-          "the program ballpiston-worker, which the server copies into the shared folder;\n"
-          "default: the one installed with the server");
 }
 
 struct LimitFlag {
@@ -323,18 +329,20 @@ absl::Status Parse(CLI::App& app, int argc, const char* const* argv, std::string
 
 // ---- combinations of flags ----
 
-absl::Status SetSlurm(Words& words, CommandLine& line) {
-  const std::string& folder = words.slurm.shared_folder;
+absl::Status SetCluster(Words& words, CommandLine& line) {
+  const std::string& folder = words.cluster.folder;
   if (words.executor == "threads") {
     if (folder.empty()) return absl::OkStatus();
-    return absl::InvalidArgumentError("--slurm-shared-folder needs --executor=slurm");
+    return absl::InvalidArgumentError(
+        "--cluster-folder needs --executor=folder or --executor=slurm");
   }
   if (!absl::StartsWith(folder, "/")) {
     return absl::InvalidArgumentError(
-        absl::StrCat("--slurm-shared-folder: \"", folder,
-                     "\" is not an absolute path, which --executor=slurm needs"));
+        absl::StrCat("--cluster-folder: \"", folder,
+                     "\" is not an absolute path, which --executor=", words.executor, " needs"));
   }
-  line.server.slurm = std::move(words.slurm);
+  line.server.cluster = std::move(words.cluster);
+  if (words.executor == "slurm") line.server.slurm = std::move(words.slurm);
   return absl::OkStatus();
 }
 
@@ -357,7 +365,7 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   app.footer(kExitCodes);
   AddServerFlags(app, line);
   AddDoorFlags(app, line.server.door);
-  AddSlurmFlags(app, words);
+  AddClusterFlags(app, words);
   AddLimitFlags(app, line.server.limits);
   AddLogFlags(app, line, words);
   AddCommands(app, line);
@@ -367,8 +375,8 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   line.log_level = words.log_level == "info"      ? Severity::kInfo
                    : words.log_level == "warning" ? Severity::kWarning
                                                   : Severity::kError;
-  const absl::Status slurm = SetSlurm(words, line);
-  if (!slurm.ok()) return slurm;
+  const absl::Status cluster = SetCluster(words, line);
+  if (!cluster.ok()) return cluster;
   return line;
 }
 

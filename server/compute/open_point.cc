@@ -109,16 +109,6 @@ void OpenPoint::Return(uint64_t first, uint64_t end, int attempt, int crashes) {
   }
 }
 
-// Chunks between those that were leased before and `first` are to be leased now.
-void OpenPoint::Adopt(uint64_t first, uint64_t end) {
-  SkipUnneeded();
-  const uint64_t before = next_chunk_;
-  next_chunk_ = std::max(next_chunk_, std::min(end, chunks()));
-  Return(before, std::min(first, next_chunk_), 1);
-  std::erase_if(returned_,
-                [&](const auto& chunk) { return chunk.first >= first && chunk.first < end; });
-}
-
 double OpenPoint::ExpectedSeconds() const {
   const ChunkPlan& plan = experiment_->plan();
   const auto expected = static_cast<double>(plan.SamplesBefore(experiment_->expected_chunks()));

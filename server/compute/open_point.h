@@ -42,9 +42,6 @@ class OpenPoint {
   // Chunks that were leased and are still needed go out again, as this attempt.
   void Return(uint64_t first, uint64_t end, int attempt, int crashes = 0);
 
-  // These chunks are leased already.
-  void Adopt(uint64_t first, uint64_t end);
-
   // Expected seconds of the chunks that are not merged, of one core at nominal speed.
   double ExpectedSeconds() const;
 

@@ -167,12 +167,6 @@ void Run::PointOpened(size_t point, std::unique_ptr<OpenPoint> open) {
   if (stopped_) open->RequestStop();
   sampled_points_ += 1;
   sampled_seconds_ += open->ExpectedSeconds();
-  if (const auto adopted = unopened_.extract(point)) {
-    for (const Lease& lease : adopted.mapped().all) open->Adopt(lease.start.chunk, lease.end);
-    for (const Lease& lease : adopted.mapped().returned) {
-      open->Return(lease.start.chunk, lease.end, lease.attempt, lease.crashes);
-    }
-  }
   open_.emplace(point, std::move(open));
   leasable_.insert(point);
 }
@@ -191,12 +185,9 @@ void Run::PilotIsKnown(const PilotPlace& place) {
   waiting_.erase(found);
 }
 
-bool Run::Adopt(const Lease& lease) {
-  if (lease.generation != generation_ || lease.point >= finished_.size()) return false;
-  if (finished_[lease.point] || open_.contains(lease.point)) return false;
-  unopened_[lease.point].all.push_back(lease);
-  OpenEarly(lease.point);
-  return true;
+bool Run::IsUnopened(size_t point) const {
+  if (stopped_ || point >= finished_.size() || finished_[point]) return false;
+  return reopen_.contains(point) || (point >= next_point_ && !opened_early_.contains(point));
 }
 
 OpenPoint* Run::Find(const Lease& lease) const {
@@ -222,9 +213,6 @@ void Run::Return(const Lease& lease, int attempt) {
   if (OpenPoint* open = Find(lease)) {
     open->Return(lease.start.chunk, lease.end, attempt, lease.crashes);
     HasChunks(lease);
-  } else if (const auto unopened = unopened_.find(lease.point); unopened != unopened_.end()) {
-    unopened->second.returned.push_back(lease);
-    unopened->second.returned.back().attempt = attempt;
   }
 }
 

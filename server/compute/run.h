@@ -1,9 +1,9 @@
 // The state of one job during its computation: its open points, its pilots, and its next lease.
 //
 // Points are opened in grid order, when no open point has a chunk left to lease, or ahead when an
-// executor elsewhere has no work; points of adopted leases come first. So a grid of 100,000 points
-// takes only the memory of its open points. A point that waits for a pilot takes a
-// few bytes. Not thread-safe: the scheduler's lock guards it.
+// executor elsewhere has no work. So a grid of 100,000 points takes only the memory of its open
+// points. A point that waits for a pilot takes a few bytes. Not thread-safe: the scheduler's lock
+// guards it.
 #pragma once
 
 #include <cstddef>
@@ -68,6 +68,7 @@ class Run {
   Run(RunRequest request, SchedulerOptions options);
 
   int64_t key() const { return key_; }
+  int64_t generation() const { return generation_; }
   const std::string& principal() const { return principal_; }
   const EnsembleSpec& spec() const { return *spec_; }
   bool has_checkpoints() const { return has_checkpoints_; }
@@ -101,11 +102,8 @@ class Run {
   // The points that wait for this pilot are to be opened again.
   void PilotIsKnown(const PilotPlace& place);
 
-  // A lease of an earlier process; false if its point is finished.
-  bool Adopt(const Lease& lease);
-  void ForgetAdopted(size_t point) { unopened_.erase(point); }
-  // Whether the point has adopted leases and is not open yet.
-  bool IsUnopened(size_t point) const { return unopened_.contains(point); }
+  // Whether the point is still to be opened.
+  bool IsUnopened(size_t point) const;
 
   // Chunks of the lease that are still needed go out again, as this attempt.
   void Return(const Lease& lease, int attempt);
@@ -146,11 +144,6 @@ class Run {
   void set_began() { began_ = true; }
 
  private:
-  struct AdoptedLeases {
-    std::vector<Lease> all;
-    std::vector<Lease> returned;  // of these; `attempt` is the next one
-  };
-
   std::optional<Lease> NextChunksOfPilot(const Capacity& capacity);
   // The lease has chunks of a point whose index is less than `end`.
   std::optional<Lease> NextChunks(const Capacity& capacity, const ExecutorTraits& executor,
@@ -179,9 +172,8 @@ class Run {
   std::map<PilotPlace, std::unique_ptr<OpenPoint>> pilots_;
   std::set<size_t> leasable_;  // open points that may have chunks to lease
   std::map<PilotPlace, std::vector<size_t>> waiting_;
-  std::set<size_t> reopen_;  // points whose pilot is known now, or that have adopted leases
-  std::map<size_t, AdoptedLeases> unopened_;  // points with adopted leases that are not open yet
-  std::set<size_t> opened_early_;             // points not to be opened in grid order
+  std::set<size_t> reopen_;        // points whose pilot is known now, and those of a suspicion
+  std::set<size_t> opened_early_;  // points not to be opened in grid order
   size_t next_point_ = 0;
   size_t opening_ = 0;  // leases that open points
   size_t turns_ = 0;

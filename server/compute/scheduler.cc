@@ -43,13 +43,6 @@ absl::Status DropImpossible(const OpenPoint& open, std::vector<ChunkResult>& chu
   return found;
 }
 
-// An adopted lease has no stop token.
-bool IsStopped(const Run& run, const Lease& lease) {
-  if (run.stopped() || lease.stop.stop_requested()) return true;
-  const OpenPoint* open = run.Find(lease);
-  return open != nullptr && open->fold().finished();
-}
-
 double ShareOfPoint(const OpenPoint& open, uint64_t samples) {
   return static_cast<double>(samples) / static_cast<double>(open.experiment()->plan().samples());
 }
@@ -153,26 +146,19 @@ void Scheduler::EndPilot(const Run& owner, const PilotPlace& place) {
   for (const auto& [key, run] : runs_) run->PilotIsKnown(place);
 }
 
-// Drops leases of the run. For executors elsewhere, also ends the run's turn at each of them.
-template <typename IsDropped>
-void Scheduler::DropLeases(const Run& run, IsDropped is_dropped) {
+// For executors elsewhere, also ends the run's turn at each of its leases.
+void Scheduler::DropStoppedLeases(const Run& run) {
   for (size_t i = 0; i < executors_.size(); ++i) {
+    const bool is_local = executors_[i].traits.local;
     auto held = held_.lower_bound({i, run.key(), 0});
     const auto end = held_.lower_bound({i, run.key() + 1, 0});
     while (held != end) {
-      const bool drops = is_dropped(held->second);
-      if (drops && !executors_[i].traits.local) executors_[i].shares.TurnEnds(run.key(), 0);
+      const bool drops =
+          held->second.lease.stop.stop_requested() && !(is_local && held->second.turns > 0);
+      if (drops && !is_local) executors_[i].shares.TurnEnds(run.key(), 0);
       held = drops ? Drop(held) : std::next(held);
     }
   }
-}
-
-void Scheduler::DropStoppedLeases(const Run& run) {
-  DropLeases(run, [&](const Held& held) {
-    mutex_.AssertHeld();
-    const bool is_local = executors_[held.lease.executor].traits.local;
-    return IsStopped(run, held.lease) && !(is_local && held.turns > 0);
-  });
 }
 
 void Scheduler::Conclude(const RunPointer& run) {
@@ -400,16 +386,6 @@ void Scheduler::Return(const Lease& lease, bool tried) {
   run->journal().AwaitRoom();
 }
 
-std::optional<Lease> Scheduler::Adopt(Lease lease) {
-  MutexLock lock(mutex_);
-  const RunPointer run = FindRun(lease.run);
-  lease.number = ++last_number_;
-  if (run == nullptr || !run->Adopt(lease)) return std::nullopt;
-  held_.emplace(KeyOf(lease), Held{lease, 1, 1});
-  executors_[lease.executor].shares.TurnBegins(lease.run);
-  return lease;
-}
-
 void Scheduler::ReturnCrashed(Lease lease) {
   ++lease.crashes;
   if (lease.crashes < kMostDeaths || !Needs(lease)) return Return(lease);
@@ -419,12 +395,6 @@ void Scheduler::ReturnCrashed(Lease lease) {
 bool Scheduler::Needs(const Lease& lease) const {
   MutexLock lock(mutex_);
   return held_.contains(KeyOf(lease));
-}
-
-bool Scheduler::IsUnopened(const Lease& lease) const {
-  MutexLock lock(mutex_);
-  const RunPointer run = FindRun(lease.run);
-  return run != nullptr && run->IsUnopened(lease.point);
 }
 
 void Scheduler::AwaitRoom() {
@@ -464,7 +434,8 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
   if (open->fold().finished()) {
     run.journal().PointFinished(index, *open->experiment(), open->fold().Merged(),
                                 open->fold().state().chunk_digests);
-    DropAdopted(run, index);
+    MutexLock lock(mutex_);
+    run.NoteProgress(index);
     return absl::OkStatus();
   }
   MutexLock lock(mutex_);
@@ -476,13 +447,6 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
 LeaseMemory Scheduler::MemoryOf(const Run& run, size_t index) {
   const double one = std::ceil(opener_.MemoryOf(run.spec(), index, 1));
   return {one, std::ceil(opener_.MemoryOf(run.spec(), index, 2)) - one};
-}
-
-void Scheduler::DropAdopted(Run& run, size_t index) {
-  MutexLock lock(mutex_);
-  run.NoteProgress(index);
-  run.ForgetAdopted(index);
-  DropLeases(run, [&](const Held& held) { return held.lease.point == index && !held.lease.pilot; });
 }
 
 absl::Status Scheduler::AwaitPilot(Run& run, size_t index, const PilotPlace& place) {
@@ -542,7 +506,8 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
     MutexLock lock(mutex_);
     is_elsewhere = !executors_[lease.executor].traits.local;
     run = FindRun(lease.run);
-    if (run != nullptr && !lease.pilot && run->IsUnopened(lease.point)) {
+    if (run != nullptr && run->generation() != lease.generation) run = nullptr;
+    if (run != nullptr && is_elsewhere && run->IsUnopened(lease.point)) {
       return absl::UnavailableError("the point is not open yet");
     }
     if (run != nullptr && is_elsewhere && IsPaused(*run)) {

@@ -96,7 +96,9 @@ class Scheduler {
   // Opens one of the points that the lease asks to open. May take long.
   void Open(const Lease& lease, size_t point);
 
-  // Chunks that nobody needs are dropped. Errors, of executors that are not local:
+  // Chunks that nobody needs are dropped. An executor that is not local may also report chunks of
+  // a lease that it does not have, or that an earlier process of this server gave; `run`,
+  // `generation`, `point` and `executor` of the lease are used. Errors, of such executors:
   //   DATA_LOSS    a chunk does not belong to its point; the others are merged
   //   UNAVAILABLE  the point is not open yet, or the run is paused: report again later
   absl::Status Report(const Lease& lease, LeaseReport report);
@@ -118,15 +120,8 @@ class Scheduler {
   // Returns when the disk has room for more reports.
   void AwaitRoom();
 
-  // A lease that an earlier process of this server gave to the executor: run, point, chunks and
-  // attempt of it. Its chunks are not leased again until it is returned. Before the first lease,
-  // and after the run was added. Returns the lease with its number; empty if it is not needed.
-  std::optional<Lease> Adopt(Lease lease);
-
   // Whether chunks of the lease may still be needed.
   bool Needs(const Lease& lease) const;
-  // Whether the point of an adopted lease is still to be opened.
-  bool IsUnopened(const Lease& lease) const;
 
   // The run ends with this status.
   void Fail(const Lease& lease, absl::Status why);
@@ -192,14 +187,10 @@ class Scheduler {
   void StopRun(Run& run, absl::Status why) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void EndPilot(const Run& owner, const PilotPlace& place) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void Charge(Run& run, const Lease& lease, double seconds) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  template <typename IsDropped>
-  void DropLeases(const Run& run, IsDropped is_dropped) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Leases whose stop was requested and at which no local turn is in progress.
   void DropStoppedLeases(const Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   absl::Status OpenOne(Run& run, size_t index) ABSL_LOCKS_EXCLUDED(mutex_);
-  // The adopted leases of a point that is finished.
-  void DropAdopted(Run& run, size_t index) ABSL_LOCKS_EXCLUDED(mutex_);
   LeaseMemory MemoryOf(const Run& run, size_t index);
   absl::Status AwaitPilot(Run& run, size_t index, const PilotPlace& place)
       ABSL_LOCKS_EXCLUDED(mutex_);

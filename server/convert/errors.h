@@ -54,7 +54,7 @@ absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const E
 
 inline constexpr char kEngineCrashed[] = "ENGINE_CRASHED";
 
-// INTERNAL, ENGINE_CRASHED: the engine killed the process, or the task of a cluster, `deaths` times
+// INTERNAL, ENGINE_CRASHED: the engine killed the process, or a worker elsewhere, `deaths` times
 // while it computed this; `what` names the job's part.
 absl::Status EngineCrashed(const std::string& what, int deaths);
 

@@ -22,16 +22,17 @@ double FileBytes(const std::string& path) {
   return stat(path.c_str(), &found) == 0 ? static_cast<double>(found.st_size) : 0;
 }
 
-v1::SlurmStatus SlurmMessage(const SlurmStatus& slurm) {
-  v1::SlurmStatus message;
-  message.set_problem(slurm.problem);
-  message.set_waiting_tasks(slurm.waiting_tasks);
-  message.set_running_tasks(slurm.running_tasks);
-  message.set_submitted_tasks(slurm.submitted_tasks);
-  message.set_chunks(slurm.chunks);
-  message.set_lost_tasks(slurm.lost_tasks);
-  message.set_refused_files(slurm.refused_files);
-  message.set_queries(slurm.queries);
+v1::ClusterStatus ClusterMessage(const Cluster::State& cluster) {
+  v1::ClusterStatus message;
+  message.set_problem(cluster.problem);
+  message.set_waiting_leases(cluster.folder.waiting_leases);
+  message.set_taken_leases(cluster.folder.taken_leases);
+  message.set_waiting_workers(static_cast<double>(cluster.slurm.queue.waiting));
+  message.set_running_workers(static_cast<double>(cluster.slurm.queue.running));
+  message.set_chunks(cluster.folder.chunks);
+  message.set_lost_leases(cluster.folder.lost_leases);
+  message.set_refused_files(cluster.folder.refused_files);
+  message.set_queries(cluster.slurm.queries);
   return message;
 }
 
@@ -43,7 +44,8 @@ void AddWork(const ServiceContext& service, v1::ServerStatus& status) {
   status.set_blocks_computed(threads.blocks);
   status.set_samples_computed(work.samples);
   status.set_processor_seconds(work.processor_seconds);
-  if (service.slurm != nullptr) *status.mutable_slurm() = SlurmMessage(service.slurm->Status());
+  if (service.cluster == nullptr) return;
+  *status.mutable_cluster() = ClusterMessage(service.cluster->Status());
 }
 
 // Sets the numbers of each principal, and the totals of all principals.

@@ -96,19 +96,23 @@ void AddPrincipals(const v1::ServerStatus& status, Page& page) {
   }
 }
 
-void AddSlurm(const v1::SlurmStatus& slurm, Page& page) {
-  const std::string tasks = "Tasks of job arrays, by state. submitted: since Slurm's last answer.";
-  page.Gauge("ballpiston_slurm_tasks", tasks, slurm.waiting_tasks(), {{"state", "waiting"}});
-  page.Gauge("ballpiston_slurm_tasks", tasks, slurm.running_tasks(), {{"state", "running"}});
-  page.Gauge("ballpiston_slurm_tasks", tasks, slurm.submitted_tasks(), {{"state", "submitted"}});
-  page.Gauge("ballpiston_slurm_failing", "1 while nothing can be submitted.",
-             !slurm.problem().empty());
-  page.Counter("ballpiston_slurm_chunks_total", "Chunks received.", slurm.chunks());
-  page.Counter("ballpiston_slurm_lost_tasks_total", "Tasks that ended without their last file.",
-               slurm.lost_tasks());
-  page.Counter("ballpiston_slurm_refused_files_total",
-               "Files with chunks that were damaged or of another job.", slurm.refused_files());
-  page.Counter("ballpiston_slurm_queries_total", "Queries of Slurm's queue.", slurm.queries());
+void AddCluster(const v1::ClusterStatus& cluster, Page& page) {
+  const std::string leases = "Leases in the cluster's folder, by state.";
+  page.Gauge("ballpiston_cluster_leases", leases, cluster.waiting_leases(), {{"state", "waiting"}});
+  page.Gauge("ballpiston_cluster_leases", leases, cluster.taken_leases(), {{"state", "taken"}});
+  const std::string workers = "Workers in Slurm's queue, by state.";
+  page.Gauge("ballpiston_cluster_workers", workers, cluster.waiting_workers(),
+             {{"state", "waiting"}});
+  page.Gauge("ballpiston_cluster_workers", workers, cluster.running_workers(),
+             {{"state", "running"}});
+  page.Gauge("ballpiston_cluster_failing", "1 while the folder or Slurm cannot be used.",
+             !cluster.problem().empty());
+  page.Counter("ballpiston_cluster_chunks_total", "Chunks received.", cluster.chunks());
+  page.Counter("ballpiston_cluster_lost_leases_total",
+               "Leases whose workers were silent for too long.", cluster.lost_leases());
+  page.Counter("ballpiston_cluster_refused_files_total",
+               "Files that were damaged or of another server.", cluster.refused_files());
+  page.Counter("ballpiston_cluster_queries_total", "Queries of Slurm's queue.", cluster.queries());
 }
 
 }  // namespace
@@ -121,7 +125,7 @@ std::vector<prometheus::MetricFamily> ServerMetrics(const ServiceContext& servic
   AddJobs(service.book, status, page);
   AddStore(service.store, status, page);
   AddPrincipals(status, page);
-  if (status.has_slurm()) AddSlurm(status.slurm(), page);
+  if (status.has_cluster()) AddCluster(status.cluster(), page);
   if (certificate_expiry) {
     page.Gauge("ballpiston_certificate_expiry_timestamp_seconds",
                "Expiry of the server's certificate, in seconds since 1970.",

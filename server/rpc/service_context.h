@@ -6,7 +6,7 @@
 
 #include "absl/time/time.h"
 #include "server/book/job_book.h"
-#include "server/cluster/slurm_executor.h"
+#include "server/cluster/cluster.h"
 #include "server/compute/model_ladder.h"
 #include "server/compute/scheduler.h"
 #include "server/compute/thread_executor.h"
@@ -27,7 +27,7 @@ struct ServiceContext {
   JobBook& book;
   const Scheduler& scheduler;
   const ThreadExecutor& threads;
-  const SlurmExecutor* slurm;  // null without a cluster
+  const Cluster* cluster;  // null without a cluster
   ModelLadder& ladder;
   Quotas& quotas;
   Streams& streams;

@@ -27,9 +27,9 @@ inline constexpr std::array<std::string_view, 24> kFailpoints = {
     "store.after_commit",       // the group is on disk; no client has an answer
     "block.merged",             // a block is merged into its point, not recorded
     "checkpoint.before_write",  // the transaction has begun
-    "slurm.tasks_written",      // the leases of an array are in a file, and not submitted
-    "slurm.submitted",          // Slurm has the array; the server knows nothing of it
-    "slurm.file_reported",      // the scheduler has a file's chunks; few are on disk
+    "cluster.laid",             // a lease is in the folder; the server does not count it yet
+    "cluster.submitted",        // Slurm has workers; the server knows nothing of them
+    "cluster.file_reported",    // the scheduler has a file's chunks; few are on disk
     "point.before_record",      // all its blocks are merged
     "point.recorded",           // its result waits to be written
     "job.before_end",           // all its points are finished; its end is not recorded

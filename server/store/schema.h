@@ -7,7 +7,7 @@
 //   results   (job, point) -> v1.PointResult without its details, of finished points
 //   details   (job, point) -> v1.PointResult, compressed: the details of those that have any
 //   dropped   deleted and expired jobs whose results are still being removed (sweeper.h)
-//   server    one row: a random name of this store, which is part of the names of its cluster jobs
+//   server    one row: a random name of this store, which owns its shared folder
 //   pilots    the limit's error that pilot runs measured, by place and engine
 //
 // `application_id` marks the file as a ballpiston store; `user_version` is the version of these

@@ -1,14 +1,24 @@
-// ballpiston-worker: computes one task of a job array. It uses files only, so it runs on machines
-// without network access to the server.
+// ballpiston-worker: computes leases from a shared folder. It uses files only, so it runs on
+// machines without network access to the server.
+#include <fcntl.h>
+#include <limits.h>
 #include <signal.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <cctype>
+#include <chrono>
+#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <stop_token>
+#include <limits>
+#include <mutex>
+#include <random>
 #include <string>
 #include <thread>
 
@@ -19,21 +29,26 @@
 #include "core/engine_version.h"
 #include "server/fatal_signals.h"
 #include "server/machine_memory.h"
-#include "server/worker/crash_mark.h"
-#include "server/worker/task_file.h"
-#include "server/worker/task_run.h"
+#include "server/worker/worker.h"
 
 namespace ballpiston::server {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr int kExitFailed = 1;
-constexpr int kExitUsage = 2;
 constexpr int kExitOtherVersion = 3;  // of the engine or of the files
 
+// A batch system sends SIGUSR1 a minute or more before it kills the worker. If the chunk is not
+// complete after this time, it is dropped.
+constexpr double kSecondsForAChunk = 50;
+// Of --for, for the end.
+constexpr double kSecondsToEnd = 5;
+
 struct CommandLine {
-  std::string task_file;
-  size_t task = 0;
-  TaskRunOptions run;
+  std::string folder;
+  double for_seconds = std::numeric_limits<double>::infinity();
+  WorkerOptions worker;
 };
 
 void Say(absl::string_view line) {
@@ -41,59 +56,84 @@ void Say(absl::string_view line) {
   std::fputs(text.c_str(), stderr);
 }
 
-// Requests a stop at the first SIGUSR1, SIGTERM or SIGINT. The signals must be blocked in all
-// threads, so this is made before any other thread.
-class SignalWatch {
+// When the worker has to end: at a signal, or when its time is over. SIGTERM and SIGINT mean now,
+// SIGUSR1 after the chunk. The signals must be blocked in all threads, so this is made before any
+// other thread.
+class Ending {
  public:
-  explicit SignalWatch(const std::stop_source& stop) {
+  explicit Ending(double for_seconds) {
+    last_ = std::max(for_seconds - kSecondsToEnd, 0.5 * for_seconds);
+    after_chunk_ = std::max(last_ - kSecondsForAChunk, 0.5 * last_);
     sigemptyset(&signals_);
     for (const int signal : {SIGUSR1, SIGTERM, SIGINT}) sigaddset(&signals_, signal);
     pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
-    thread_ = std::thread([this, stop] {
-      int signal = 0;
-      sigwait(&signals_, &signal);
-      std::stop_source(stop).request_stop();
-    });
+    thread_ = std::thread([this] { Wait(); });
   }
   // Wakes the thread if no signal came.
-  ~SignalWatch() {
-    pthread_kill(thread_.native_handle(), SIGUSR1);
+  ~Ending() {
+    is_over_ = true;
+    pthread_kill(thread_.native_handle(), SIGTERM);
     thread_.join();
   }
-  SignalWatch(const SignalWatch&) = delete;
-  SignalWatch& operator=(const SignalWatch&) = delete;
+  Ending(const Ending&) = delete;
+  Ending& operator=(const Ending&) = delete;
+
+  EndOfWork Get() const {
+    const double seconds = SecondsSinceStart();
+    if (seconds >= last_) return EndOfWork::kNow;
+    return seconds >= after_chunk_ ? EndOfWork::kAfterChunk : EndOfWork::kNotYet;
+  }
+
+  // Ends early if the worker has to end.
+  void Sleep(std::chrono::duration<double> time) {
+    std::unique_lock lock(mutex_);
+    const double end = std::min(SecondsSinceStart() + time.count(), after_chunk_.load());
+    const auto left = [&] { return std::min(end, after_chunk_.load()) - SecondsSinceStart(); };
+    while (left() > 0) signalled_.wait_for(lock, std::chrono::duration<double>(left()));
+  }
 
  private:
+  double SecondsSinceStart() const {
+    return std::chrono::duration<double>(Clock::now() - start_).count();
+  }
+
+  void Wait() {
+    while (!is_over_) {
+      int signal = 0;
+      sigwait(&signals_, &signal);
+      const double now = SecondsSinceStart();
+      const std::scoped_lock lock(mutex_);
+      after_chunk_ = std::min(after_chunk_.load(), now);
+      last_ = std::min(last_.load(), signal == SIGUSR1 ? now + kSecondsForAChunk : now);
+      signalled_.notify_all();
+    }
+  }
+
+  const Clock::time_point start_ = Clock::now();
+  std::atomic<double> after_chunk_, last_;  // seconds since the start
+  std::atomic<bool> is_over_ = false;
   sigset_t signals_;
+  std::mutex mutex_;
+  std::condition_variable signalled_;
   std::thread thread_;
 };
 
-void AddFlags(CLI::App& app, CommandLine& line) {
-  app.add_option("--task-file", line.task_file, "the tasks of the job array")->required();
-  app.add_option("--task", line.task, "the index of the task to compute")->required();
-  app.add_option("--out", line.run.folder, "the folder for the files with chunks")->required();
-  app.add_option("--flush-seconds", line.run.flush_seconds,
-                 "processor time between two files with complete chunks")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  app.add_option("--retry-seconds", line.run.retry_seconds,
-                 "wait before the next attempt if the folder is full or cannot be used")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--give-up-seconds", line.run.give_up_seconds, "the sum of these waits")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  app.set_version_flag("--version", std::string(kEngineVersion), "print the engine version");
+// ---- if the engine kills this process ----
+
+std::array<char, PATH_MAX> file_of_lease = {};  // empty: none
+std::array<char, PATH_MAX> file_after_crash = {};
+
+void MoveFileOfLease(int) { rename(file_of_lease.data(), file_after_crash.data()); }
+
+void SetPath(const std::string& path, std::array<char, PATH_MAX>& text) {
+  text = {};
+  if (path.size() < text.size()) path.copy(text.data(), path.size());
 }
 
-int Fail(const absl::Status& status) {
-  Say(status.message());
-  if (absl::IsUnimplemented(status)) return kExitOtherVersion;
-  return absl::IsInvalidArgument(status) ? kExitUsage : kExitFailed;
-}
+// ---- this machine ----
 
-// Bytes that the machine has for this task, and that Slurm gives it. Slurm says 0 for no limit.
-double TaskMemory() {
+// Bytes that the machine has for this process, and that Slurm gives it. Slurm says 0 for no limit.
+double WorkerMemory() {
   double bytes = MachineMemory();
   for (const char* name : {"SLURM_MEM_PER_CPU", "SLURM_MEM_PER_NODE"}) {
     const char* const text = std::getenv(name);
@@ -104,30 +144,75 @@ double TaskMemory() {
   return bytes;
 }
 
+// The machine's name without characters that have a meaning, and a random number.
+std::string WorkerName(uint64_t random) {
+  std::array<char, 65> host = {};
+  gethostname(host.data(), host.size() - 1);
+  std::string name = host.data();
+  std::erase_if(name, [](unsigned char c) { return std::isalnum(c) == 0 && c != '-'; });
+  return absl::StrCat(name, "-", getpid(), "-", absl::Hex(random, absl::kZeroPad16));
+}
+
+uint64_t RandomBits() {
+  static std::random_device& device = *new std::random_device;
+  return uint64_t{device()} << 32 | device();
+}
+
 int Compute(const CommandLine& line) {
-  NoteFatalSignals(LeaveCrashMark);
+  NoteFatalSignals(MoveFileOfLease);
   const SignalStack stack;
-  std::stop_source stop;
-  const SignalWatch watch(stop);
-  const absl::StatusOr<ArrayTask> task = ReadTask(line.task_file, line.task);
-  if (!task.ok()) return Fail(task.status());
-  const absl::Status status = RunTask(*task, line.run, stop, Say);
+  Ending ending(line.for_seconds);
+  FolderFiles files(line.folder);
+  const WorkerHost host = {.now = [] { return Clock::now(); },
+                           .sleep = [&](auto time) { ending.Sleep(time); },
+                           .random_bits = RandomBits,
+                           .end = [&] { return ending.Get(); },
+                           .report = Say,
+                           .lease_begins =
+                               [&](const std::string& from, const std::string& to) {
+                                 SetPath(files.PathOf(from), file_of_lease);
+                                 SetPath(files.PathOf(to), file_after_crash);
+                               }};
+  const absl::Status status = Work(files, line.worker, host);
   if (status.ok()) return 0;
   Say(status.message());
-  return kExitFailed;
+  return absl::IsUnimplemented(status) ? kExitOtherVersion : kExitFailed;
+}
+
+void AddFlags(CLI::App& app, CommandLine& line) {
+  app.add_option("folder", line.folder, "the folder that the server has as --cluster-folder")
+      ->required();
+  app.add_option("--for", line.for_seconds,
+                 "seconds after which the worker ends; default: no limit")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--idle-seconds", line.worker.idle_seconds,
+                 "the worker ends if it has found nothing to do for this time")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--retry-seconds", line.worker.retry_seconds,
+                 "wait before the next attempt if the folder is full or cannot be used")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--give-up-seconds", line.worker.give_up_seconds, "the sum of these waits")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.set_version_flag("--version", std::string(kEngineVersion), "print the engine version");
 }
 
 int Main(int argc, char** argv) {
   umask(0077);
   signal(SIGXFSZ, SIG_IGN);  // a file at its size limit is an error like a full disk
   CommandLine line;
-  line.run.memory = TaskMemory();
-  CLI::App app("Computes one task of a job array of ballpistond.", "ballpiston-worker");
+  line.worker.memory = WorkerMemory();
+  line.worker.name = WorkerName(RandomBits());
+  CLI::App app("Computes work of a ballpistond that shares a folder with this machine.",
+               "ballpiston-worker");
   AddFlags(app, line);
   try {
     app.parse(argc, argv);
     return Compute(line);
   } catch (const CLI::ParseError& error) {
+    constexpr int kExitUsage = 2;
     return app.exit(error) == 0 ? 0 : kExitUsage;
   } catch (const std::exception& error) {
     Say(error.what());

@@ -38,9 +38,10 @@ std::string Refusal(const Words& flags) {
 constexpr char kFlags[] =
     "listen data-dir workers watch-heartbeat-seconds idle-exit-seconds drain-seconds config "
     "tls-certificate tls-key access-file "
-    "executor slurm-shared-folder slurm-partition slurm-account slurm-cluster "
-    "slurm-time-limit-minutes slurm-option slurm-max-tasks slurm-max-array-size "
-    "slurm-task-seconds slurm-least-seconds slurm-query-seconds slurm-worker "
+    "executor cluster-folder cluster-least-seconds cluster-lease-seconds "
+    "cluster-timeout-seconds cluster-worker "
+    "slurm-workers slurm-partition slurm-account slurm-cluster slurm-time-limit-minutes "
+    "slurm-option slurm-max-array-size slurm-query-seconds "
     "max-active-jobs max-active-jobs-per-principal max-active-points "
     "max-active-points-per-principal max-points-per-job max-samples-per-job max-streams "
     "max-streams-per-principal max-calls-per-principal max-call-bytes-per-principal "
@@ -141,9 +142,9 @@ TEST(ServerFlags, ARefusalNamesFlagValueAndPermittedValues) {
       {{"--max-message-bytes=1023"}, "permitted: whole numbers, 1024 to 268435456"},
       {{"--max-transfer-mib=1048577"}, "permitted: whole numbers, 0 to 1048576"},
       {{"--log-level", "-1"}, "--log-level: -1 not in {info,warning,error}"},
-      {{"--executor=slurm"}, "--slurm-shared-folder: \"\" is not an absolute path"},
-      {{"--executor=slurm", "--slurm-shared-folder=a"}, "\"a\" is not an absolute path"},
-      {{"--slurm-shared-folder=/a"}, "--slurm-shared-folder needs --executor=slurm"},
+      {{"--executor=slurm"}, "--cluster-folder: \"\" is not an absolute path"},
+      {{"--executor=folder", "--cluster-folder=a"}, "\"a\" is not an absolute path"},
+      {{"--cluster-folder=/a"}, "--cluster-folder needs --executor=folder"},
       {{"--config=none"}, "none was not readable"},
       {{"--config=/"}, "/ was not readable"},
   };
@@ -224,8 +225,8 @@ TEST_F(ConfigFile, EachLineOfAFlagThatMayBeRepeatedCounts) {
   std::filesystem::create_directory(home_.File("shared"));
   std::filesystem::permissions(home_.File("shared"), std::filesystem::perms::owner_all);
   Write(
-      "executor = slurm\nslurm-least-seconds = 0\nslurm-worker = /bin/true\n"
-      "slurm-shared-folder = " +
+      "executor = slurm\ncluster-least-seconds = 0\ncluster-worker = /bin/true\n"
+      "cluster-folder = " +
       home_.File("shared") + "\nslurm-option = --mem-per-cpu=500M\nslurm-option = --exclusive\n");
   TestServer server({.flags = {"--config", Path()},
                      .launcher = {"env", "PATH=" + home_.File("") + ":" + std::getenv("PATH")}});

@@ -1,5 +1,5 @@
-// A worker's file with chunks. The input is used as a whole file, and as the payload of a file with
-// a correct checksum. Chunks that fit a lease are merged.
+// The chunks that a worker appends to a lease's file. The input is used as a whole frame, and as
+// the payload of a frame with a correct checksum. Chunks that fit a lease are merged.
 #include "server/worker/chunk_file.h"
 
 #include <memory>
@@ -45,48 +45,48 @@ void RequireMerged(const PointExperiment& experiment, const server::LeaseChunks&
   Require(fold.PlannedSamples() <= experiment.plan().samples(), "not more than was planned");
 }
 
-void CheckLeases(const server::ChunkFile& file) {
-  for (const server::LeaseChunks& chunks : file.leases) {
-    for (const server::IdentifiedLease& lease : KnownLeases()) {
-      const absl::Status fits = server::CheckLeaseChunks(lease, chunks);
-      Require(fits.ok() || absl::IsDataLoss(fits), "damage is DATA_LOSS");
-      if (fits.ok()) RequireMerged(*lease.lease.experiment, chunks);
-    }
+void CheckLeases(const server::LeaseChunks& chunks) {
+  for (const server::IdentifiedLease& lease : KnownLeases()) {
+    const absl::Status fits = server::CheckLeaseChunks(lease, chunks);
+    Require(fits.ok() || absl::IsDataLoss(fits), "damage is DATA_LOSS");
+    if (fits.ok()) RequireMerged(*lease.lease.experiment, chunks);
   }
 }
 
 void CheckPayload(absl::string_view payload) {
-  const absl::StatusOr<server::ChunkFile> file = server::ChunkFileFromPayload(payload);
-  if (!file.ok()) return Require(absl::IsDataLoss(file.status()), "damage is DATA_LOSS");
-  const std::string written = server::ChunkFilePayload(*file);
-  const absl::StatusOr<server::ChunkFile> again = server::ChunkFileFromPayload(written);
-  Require(again.ok() && server::ChunkFilePayload(*again) == written, "written bytes come back");
-  CheckLeases(*file);
+  const absl::StatusOr<server::LeaseChunks> chunks = server::LeaseChunksFromPayload(payload);
+  if (!chunks.ok()) return Require(absl::IsDataLoss(chunks.status()), "damage is DATA_LOSS");
+  const std::string written = server::LeaseChunksPayload(*chunks);
+  const absl::StatusOr<server::LeaseChunks> again = server::LeaseChunksFromPayload(written);
+  Require(again.ok() && server::LeaseChunksPayload(*again) == written, "written bytes come back");
+  CheckLeases(*chunks);
 }
 
 void CheckChunkFile(const std::string& input) {
-  const auto payload = server::PayloadOf(server::FileKind::kChunks, input);
+  absl::string_view bytes = input;
+  const auto payload = server::TakeFrame(server::FrameKind::kChunks, bytes);
   if (payload.ok()) CheckPayload(*payload);
-  const std::string frame = server::FrameOf(server::FileKind::kChunks, input);
-  const auto framed = server::PayloadOf(server::FileKind::kChunks, frame);
-  Require(framed.ok() && *framed == input, "a payload comes back");
+  const std::string frame = server::FrameOf(server::FrameKind::kChunks, input);
+  bytes = frame;
+  const auto framed = server::TakeFrame(server::FrameKind::kChunks, bytes);
+  Require(framed.ok() && *framed == input && bytes.empty(), "a payload comes back");
   CheckPayload(input);
 }
 
 std::vector<std::string> FilesOfEach() {
-  server::ChunkFile file = {.array = "array", .task = 3, .sequence = 2, .is_final = true};
+  std::vector<std::string> files;
   for (const server::IdentifiedLease& lease : KnownLeases()) {
-    file.leases.push_back({.lease = file.leases.size(),
-                           .chunks = {{0, lease.lease.experiment->EmptyResult()}},
-                           .processor_seconds = 0.5});
+    const std::string payload = server::LeaseChunksPayload(
+        {.chunks = {{0, lease.lease.experiment->EmptyResult()}}, .processor_seconds = 0.5});
+    files.push_back(payload);
+    files.push_back(server::FrameOf(server::FrameKind::kChunks, payload));
   }
-  const std::string payload = server::ChunkFilePayload(file);
-  return {payload, server::FrameOf(server::FileKind::kChunks, payload)};
+  return files;
 }
 
 const Registration kChunkFile({.name = "chunk_file",
                                .check = CheckChunkFile,
-                               .message = &storage::ChunkFile::default_instance(),
+                               .message = &storage::LeaseChunks::default_instance(),
                                .made_seeds = FilesOfEach});
 
 }  // namespace

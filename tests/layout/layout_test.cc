@@ -125,7 +125,7 @@ TEST(IncludeRules, GeometryIncludesNothingAboveIt) {
 TEST(IncludeRules, FoldersOfTheServerIncludeInOneDirection) {
   ExpectWrong("server/convert/x.h", "\"server/door/principal.h\"");
   ExpectWrong("server/convert/x.h", "\"server/compute/lease.h\"");
-  ExpectWrong("server/compute/x.cc", "\"server/cluster/slurm_executor.h\"");
+  ExpectWrong("server/compute/x.cc", "\"server/cluster/folder_executor.h\"");
   ExpectWrong("server/store/x.cc", "\"server/book/job.h\"");
   ExpectWrong("server/door/x.cc", "\"server/rpc/call.h\"");
 }

@@ -1,68 +1,124 @@
 #include "tests/simulation/cluster.h"
 
 #include <chrono>
+#include <memory>
+#include <string>
 #include <utility>
 
-#include "tests/server/compute/remote_executor.h"
+#include "absl/strings/str_cat.h"
+#include "server/convert/fold_record.h"
+#include "server/worker/checked_file.h"
+#include "server/worker/worker.h"
+#include "tests/server/fake_experiments.h"
 
 namespace ballpiston::server {
 namespace {
 
-constexpr int kMachines = 2;
-constexpr double kSecondsOfALease = 10;  // a toy sample takes 0.02 s
-constexpr std::chrono::seconds kLongestLook(20);
-constexpr std::chrono::seconds kLongestReport(30);
-constexpr std::chrono::minutes kLostAfter(5);
+constexpr int kWorkers = 2;
+constexpr std::chrono::seconds kLongestStart(60);
+constexpr std::chrono::minutes kLongestStop(5);
+
+// A toy sample takes 0.02 s.
+const ClusterOptions kOptions = {.lease = std::chrono::seconds(10), .least_waiting = 2};
+
+// The worker's machine loses its power.
+struct Killed {};
+
+// A spec that has the point, with the question's seed and target. Toy experiments need no more.
+EnsembleSpec ToySpec(const storage::Question& question, size_t point) {
+  EnsembleSpec spec = FakeSpec(static_cast<int>(point) + 1, 1, question.seed());
+  spec.target = {.estimate = question.estimate()};
+  if (question.has_samples()) spec.target.samples = question.samples();
+  if (question.has_collisions()) spec.target.collisions = question.collisions();
+  if (question.has_tolerance()) spec.target.tolerance = question.tolerance();
+  return spec;
+}
 
 }  // namespace
 
-Cluster::Cluster(Machine& machine, Scheduler& scheduler)
-    : machine_(machine), scheduler_(scheduler), number_(scheduler.AddExecutor(*this)) {}
-
-Cluster::~Cluster() {
-  Shutdown();
-  scheduler_.RemoveExecutor(number_);
+SimulatedCluster::SimulatedCluster(Machine& machine, Scheduler& scheduler, FakeFiles& files,
+                                   ExperimentFactory experiments,
+                                   std::function<absl::Status()> flush)
+    : machine_(machine),
+      files_(files),
+      experiments_(std::move(experiments)),
+      executor_(scheduler, kOptions, std::make_unique<SameFiles>(files),
+                {.identity = "me",
+                 .flush = std::move(flush),
+                 .prepare = [] { return absl::OkStatus(); },
+                 .read_lease = [this](absl::string_view& bytes) { return ReadLease(bytes); }}) {
+  files_.before = [this](const char*, const std::string&) {
+    const bool fails = !is_shutting_down_ && machine_.Chance(0.002);
+    return fails ? absl::UnavailableError("the folder does not answer") : absl::OkStatus();
+  };
 }
 
-void Cluster::Start() {
-  for (int i = 0; i < kMachines; ++i) threads_.emplace_back([this] { Work(); });
-}
-
-void Cluster::Shutdown() {
+SimulatedCluster::~SimulatedCluster() {
   is_shutting_down_ = true;
-  for (Thread& thread : std::exchange(threads_, {})) thread.join();
+  for (Thread& worker : workers_) worker.join();
+  files_.before = nullptr;
 }
 
-void Cluster::Work() {
+void SimulatedCluster::Start() {
+  executor_.Start();
+  for (int i = 0; i < kWorkers; ++i) workers_.emplace_back([this] { Work(); });
+}
+
+void SimulatedCluster::Work() {
   while (!is_shutting_down_) {
-    machine_.Sleep(machine_.UpTo(kLongestLook));
-    if (is_shutting_down_) return;
-    const std::optional<Lease> lease =
-        scheduler_.Next({.executor = number_, .seconds = kSecondsOfALease});
-    if (lease) Compute(*lease);
+    machine_.Sleep(machine_.UpTo(kLongestStart));
+    Trouble();
+    try {
+      WorkOnce();
+    } catch (const Killed&) {
+    }
   }
 }
 
-void Cluster::Compute(const Lease& lease) {
-  std::vector<ChunkResult> chunks = ComputedChunks(lease);
-  const bool is_lost = machine_.Chance(0.2), is_partial = machine_.Chance(0.3);
-  if (is_partial) chunks.resize(machine_.Below(chunks.size() + 1));
-  if (!is_lost) ReportInAnyOrder(lease, std::move(chunks));
-  const auto until = machine_.now() + kLostAfter;
-  while (!is_shutting_down_ && scheduler_.Needs(lease) && machine_.now() < until) {
-    machine_.Sleep(kLongestLook);
-  }
-  if (!is_shutting_down_) scheduler_.Return(lease);
+void SimulatedCluster::WorkOnce() {
+  const WorkerOptions options = {.name = absl::StrCat("worker", machine_.Bits())};
+  const WorkerHost host = {
+      .now = [this] { return machine_.now(); },
+      .sleep =
+          [this](std::chrono::duration<double> time) {
+            machine_.Sleep(std::chrono::duration_cast<Machine::Clock::duration>(time));
+          },
+      .random_bits = [this] { return machine_.Bits(); },
+      .end = [this] { return EndOfWorker(); },
+      .report = [](absl::string_view) {},
+      .lease_begins = [](const std::string&, const std::string&) {},
+      .read_lease = [this](absl::string_view& bytes) { return ReadLease(bytes); }};
+  server::Work(files_, options, host).IgnoreError();  // of the folder
 }
 
-void Cluster::ReportInAnyOrder(const Lease& lease, std::vector<ChunkResult> chunks) {
-  while (!chunks.empty()) {
-    machine_.Sleep(machine_.UpTo(kLongestReport));
-    if (is_shutting_down_) return;
-    const size_t i = machine_.Below(chunks.size());
-    scheduler_.Report(lease, {.chunks = {chunks[i]}, .seconds = 1}).IgnoreError();
-    if (machine_.Chance(0.8)) chunks.erase(chunks.begin() + static_cast<ptrdiff_t>(i));
-  }
+EndOfWork SimulatedCluster::EndOfWorker() {
+  if (machine_.Chance(is_shutting_down_ ? 0.5 : 0.002)) throw Killed();
+  if (is_shutting_down_) return EndOfWork::kNow;
+  if (machine_.Chance(0.002)) machine_.Sleep(machine_.UpTo(kLongestStop));
+  return machine_.Chance(0.002) ? EndOfWork::kAfterChunk : EndOfWork::kNotYet;
+}
+
+void SimulatedCluster::Trouble() {
+  if (machine_.Chance(0.2)) files_.now += absl::Hours(machine_.Below(20)) - absl::Hours(10);
+  if (machine_.Chance(0.05)) files_.files.clear();
+}
+
+absl::StatusOr<LeaseFile> SimulatedCluster::ReadLease(absl::string_view& bytes) const {
+  const absl::StatusOr<absl::string_view> payload = TakeFrame(FrameKind::kLease, bytes);
+  if (!payload.ok()) return payload.status();
+  storage::LeaseFile file;
+  if (!file.ParseFromString(std::string(*payload))) return absl::DataLossError("not a lease");
+  const storage::Lease& record = file.lease();
+  Lease lease;
+  lease.point = static_cast<size_t>(record.point());
+  lease.spec = std::make_shared<const EnsembleSpec>(ToySpec(record.question(), lease.point));
+  lease.experiment = experiments_(*lease.spec, lease.point);
+  lease.attempt = record.attempt();
+  lease.start = {record.first_chunk(), record.blocks(), ResultOfAccumulators(record.partial())};
+  lease.end = record.end_chunk();
+  return LeaseFile{
+      {{record.server(), record.job(), record.generation(), record.engine_version()}, lease},
+      file.touch_seconds()};
 }
 
 }  // namespace ballpiston::server

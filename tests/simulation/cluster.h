@@ -1,36 +1,44 @@
-// Machines elsewhere that compute leases: they report late, twice, out of order, in parts, or
-// return the lease after a long time.
+// Machines elsewhere that share a folder with the server. The server's part and the loop of the
+// workers are the real ones; the folder is in memory. Workers are killed, stop for minutes, are
+// late or end early; operations of the folder fail, its clock jumps, and it is emptied.
 #pragma once
 
+#include <functional>
 #include <vector>
 
+#include "absl/status/status.h"
+#include "server/cluster/folder_executor.h"
 #include "server/compute/scheduler.h"
 #include "server/host.h"
+#include "server/worker/worker.h"
+#include "tests/server/factory_opener.h"
+#include "tests/server/worker/fake_files.h"
 #include "tests/simulation/machine.h"
 
 namespace ballpiston::server {
 
-class Cluster : public Executor {
+class SimulatedCluster {
  public:
-  Cluster(Machine& machine, Scheduler& scheduler);
-  ~Cluster() override;
+  // The folder outlives the server. `flush` is that of the server's store.
+  SimulatedCluster(Machine& machine, Scheduler& scheduler, FakeFiles& files,
+                   ExperimentFactory experiments, std::function<absl::Status()> flush);
+  ~SimulatedCluster();
 
-  ExecutorTraits traits() const override { return {.local = false}; }
-  void Start() override;
-  void Wake() override {}  // the machines ask for leases at random times
-  bool HasTurn(int64_t) const override { return false; }
-  void Shutdown() override;
+  void Start();
 
  private:
   void Work();
-  void Compute(const Lease& lease);
-  void ReportInAnyOrder(const Lease& lease, std::vector<ChunkResult> chunks);
+  void WorkOnce();
+  EndOfWork EndOfWorker();
+  absl::StatusOr<LeaseFile> ReadLease(absl::string_view& bytes) const;
+  void Trouble();
 
   Machine& machine_;
-  Scheduler& scheduler_;
-  const size_t number_;
+  FakeFiles& files_;
+  const ExperimentFactory experiments_;
+  FolderExecutor executor_;
   bool is_shutting_down_ = false;
-  std::vector<Thread> threads_;
+  std::vector<Thread> workers_;
 };
 
 }  // namespace ballpiston::server

@@ -32,14 +32,17 @@ ExperimentFactory SlowExperiments(Machine& machine) {
 
 }  // namespace
 
-Life::Life(Machine& machine, FaultDisk& disk, bool has_cluster)
+Life::Life(Machine& machine, FaultDisk& disk, FakeFiles* folder)
     : machine_(machine),
       name_(absl::StrCat("life", machine.Bits())),
       opener_(SlowExperiments(machine)),
       scheduler_(std::make_unique<Scheduler>(opener_, kThreads,
                                              SchedulerOptions{.least_seconds_elsewhere = 0})),
       threads_(std::make_unique<ThreadExecutor>(*scheduler_, kThreads)),
-      cluster_(has_cluster ? std::make_unique<Cluster>(machine, *scheduler_) : nullptr) {
+      cluster_(folder == nullptr ? nullptr
+                                 : std::make_unique<SimulatedCluster>(
+                                       machine, *scheduler_, *folder, SlowExperiments(machine),
+                                       [this] { return store_->Flush(); })) {
   status_ = Start(disk);
 }
 

@@ -1,6 +1,6 @@
 // One life of the server in the simulated machine: the real store, book, scheduler and threads,
-// with toy experiments, on a disk that can fail, and a cluster that reports late, twice, out of
-// order or not at all.
+// with toy experiments, on a disk that can fail, and a cluster whose
+// workers fail.
 #pragma once
 
 #include <memory>
@@ -21,8 +21,9 @@ namespace ballpiston::server {
 
 class Life {
  public:
-  // Opens the store on the disk and resumes its jobs. `has_cluster`: leases also go to a cluster.
-  Life(Machine& machine, FaultDisk& disk, bool has_cluster);
+  // Opens the store on the disk and resumes its jobs. With a folder, leases also go to machines
+  // that share it.
+  Life(Machine& machine, FaultDisk& disk, FakeFiles* folder);
   ~Life();  // stops like a server after SIGTERM
 
   // Not OK: the reason why the server could not start. Then call no other function.
@@ -47,7 +48,7 @@ class Life {
   FactoryOpener opener_;
   std::unique_ptr<Scheduler> scheduler_;
   std::unique_ptr<ThreadExecutor> threads_;
-  std::unique_ptr<Cluster> cluster_;
+  std::unique_ptr<SimulatedCluster> cluster_;
   std::unique_ptr<JobBook> book_;
   std::unique_ptr<PeriodicThread> limits_;
 };

@@ -38,6 +38,21 @@ static Exceptions& ExceptionsNow() {
   return *reinterpret_cast<Exceptions*>(abi::__cxa_get_globals());
 }
 
+// The address sanitizer has to know the stack on which the code goes on. Otherwise it takes
+// exceptions that unwind a simulated thread's stack for errors.
+#ifdef __SANITIZE_ADDRESS__
+extern "C" void __sanitizer_start_switch_fiber(void** save, const void* bottom, size_t bytes);
+extern "C" void __sanitizer_finish_switch_fiber(void* saved, const void** bottom, size_t* bytes);
+static void SwitchContext(ucontext_t& from, const ucontext_t& to) {
+  void* fake_stack = nullptr;
+  __sanitizer_start_switch_fiber(&fake_stack, to.uc_stack.ss_sp, to.uc_stack.ss_size);
+  swapcontext(&from, &to);
+  __sanitizer_finish_switch_fiber(fake_stack, nullptr, nullptr);
+}
+#else
+static void SwitchContext(ucontext_t& from, const ucontext_t& to) { swapcontext(&from, &to); }
+#endif
+
 class Stack {
  public:
   Stack()
@@ -82,7 +97,7 @@ void Machine::Run(std::function<void()> main) {
   first->is_joined = true;
   current = this;
   running_ = first;
-  swapcontext(&outside_, &first->context);
+  SwitchContext(outside_, first->context);
   current = nullptr;
   if (is_stuck_) throw std::runtime_error("all threads wait, and none for a time");
 }
@@ -98,6 +113,13 @@ Machine::Fiber* Machine::Start(std::function<void()> run) {
 }
 
 void Machine::Enter() {
+#ifdef __SANITIZE_ADDRESS__
+  const void* stack = nullptr;
+  size_t bytes = 0;
+  __sanitizer_finish_switch_fiber(nullptr, &stack, &bytes);
+  stack_t& outside = current->outside_.uc_stack;  // the first thread comes from there
+  if (outside.ss_sp == nullptr) outside = {const_cast<void*>(stack), 0, bytes};
+#endif
   Fiber& self = *current->running_;
   self.run();
   self.run = nullptr;
@@ -118,7 +140,7 @@ bool Machine::Join(Fiber* fiber, Clock::time_point until) {
 
 void Machine::GiveUp() {
   is_stuck_ = true;
-  swapcontext(&running_->context, &outside_);
+  SwitchContext(running_->context, outside_);
 }
 
 void Machine::Yield() { Switch(); }
@@ -172,7 +194,7 @@ void Machine::Switch() {
   self->exceptions = ExceptionsNow();
   running_ = next;
   ExceptionsNow() = next != nullptr ? next->exceptions : Exceptions();
-  swapcontext(&self->context, next != nullptr ? &next->context : &outside_);
+  SwitchContext(self->context, next != nullptr ? next->context : outside_);
   // Now this thread runs again. The thread that ran before it may have ended.
   std::erase_if(fibers_, [](const auto& fiber) {
     return fiber->state == Fiber::State::kEnded && fiber->is_joined;

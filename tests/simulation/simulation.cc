@@ -145,7 +145,7 @@ class Simulation {
 
   void Start() {
     ++troubles_;
-    auto life = std::make_shared<Life>(machine_, *disk_, options_.cluster);
+    auto life = std::make_shared<Life>(machine_, *disk_, options_.cluster ? &folder_ : nullptr);
     const absl::Status started = life->status();
     Tell(absl::StrCat("the server starts: ", started.ToString()), true);
     if (started.ok()) {
@@ -273,6 +273,7 @@ class Simulation {
   const Machine::Clock::time_point begin_ = machine_.now();
   Expectations expectations_;
   std::unique_ptr<FaultDisk> disk_;
+  FakeFiles folder_;
   std::shared_ptr<Life> life_;
   ClientWorld world_;
   uint64_t troubles_ = 0;

@@ -41,7 +41,7 @@ TEST(Slurm, ASweepOnTheClusterGivesTheSameBytes) {
   sweep.Submit();
   sweep.AwaitRunningTasks();
   sweep.ExpectTheSameBytes();
-  const SlurmCounts counts = sweep.Counts();
+  const ClusterCounts counts = sweep.Counts();
   EXPECT_GT(counts.chunks, 0);
   EXPECT_EQ(counts.lost, 0);
   EXPECT_EQ(counts.refused, 0);
@@ -69,7 +69,7 @@ TEST(Slurm, CancellingTheJobEmptiesTheQueue) {
   EXPECT_THAT(sweep.server().Client({"cancel", sweep.job()}), ExitsWith(0));
   AwaitThat([&] { return sweep.cluster().Queue().empty(); });
   AwaitThat([&] { return sweep.Workers().empty(); });
-  AwaitThat([&] { return sweep.Counts().tasks() == 0; });
+  AwaitThat([&] { return sweep.Counts().leases == 0; });
 }
 
 // squeue, with a line in a file for each call.
@@ -158,7 +158,7 @@ TEST(Slurm, LostStateGivesTheSameBytes) {
       sweep.cluster().Tool({"sbatch", "--parsable", "--output=/dev/null", "--wrap=sleep 1000"});
   EXPECT_THAT(foreign, ExitsWith(0));
   sweep.ExpectTheSameBytes();
-  AwaitThat([&] { return sweep.Counts().tasks() == 0; });
+  AwaitThat([&] { return sweep.Counts().leases == 0; });
   EXPECT_EQ(sweep.cluster().Queue().size(), 1u) << "the job of others is cancelled";
   sweep.Note("the number of the job of others: " + foreign.out.substr(0, foreign.out.find('\n')));
 }
@@ -214,15 +214,17 @@ TEST(Slurm, TasksThatReachTheirTimeLimitGiveTheSameBytes) {
   sweep.Note(absl::StrCat(workers.size(), " workers were stopped"));
 }
 
-// The first task ignores every signal but SIGKILL.
+// The first worker takes a lease and ignores every signal but SIGKILL.
 TEST(Slurm, ATaskThatHangsIsComputedAgainAfterItsTimeLimit) {
   const TemporaryFolder folder;
   const std::string worker = folder.File("worker");
-  WriteFile(worker,
-            absl::StrCat("#!/bin/sh\nif mkdir ", folder.File("hung"),
-                         " 2>/dev/null; then trap '' USR1 TERM; while :; do sleep 1; done; fi\n",
-                         "exec ", BuildPath("bin/ballpiston-worker"), " \"$@\"\n"));
-  Sweep sweep({.flags = Joined({Split("--slurm-time-limit-minutes 1 --slurm-worker"), {worker}})});
+  WriteFile(worker, absl::StrCat("#!/bin/sh\nif mkdir ", folder.File("hung"),
+                                 " 2>/dev/null; then lease=$(ls \"$1/todo\" | head -n 1); "
+                                 "mv \"$1/todo/$lease\" \"$1/taken/$lease.hung\"; "
+                                 "trap '' USR1 TERM; while :; do sleep 1; done; fi\n",
+                                 "exec ", BuildPath("bin/ballpiston-worker"), " \"$@\"\n"));
+  Sweep sweep(
+      {.flags = Joined({Split("--slurm-time-limit-minutes 1 --cluster-worker"), {worker}})});
   sweep.Submit();
   sweep.ExpectTheSameBytes();
   EXPECT_GT(sweep.Counts().lost, 0);
@@ -251,7 +253,7 @@ TEST(Slurm, PreemptedTasksGiveTheSameBytes) {
 // ---- settings of the cluster ----
 
 TEST(Slurm, ArraysShrinkToTheClustersMaxArraySize) {
-  Sweep sweep({.cluster = {"MaxArraySize=3"}, .task_seconds = 1});
+  Sweep sweep({.cluster = {"MaxArraySize=3"}, .lease_seconds = 1});
   sweep.Submit();
   sweep.ExpectTheSameBytes();
   EXPECT_GT(sweep.Counts().chunks, 0);

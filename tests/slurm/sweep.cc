@@ -18,12 +18,12 @@ namespace {
 
 using google::protobuf::Struct;
 
-// A job of a few seconds is large enough, a task takes some seconds, and Slurm is asked often.
+// A job of a few seconds is large enough, a lease takes some seconds, and Slurm is asked often.
 Words FlagsOf(const std::string& shared_folder, const SweepSetUp& set_up) {
-  return Joined(
-      {{"--executor=slurm", "--slurm-shared-folder", shared_folder, "--slurm-least-seconds", "2",
-        "--slurm-query-seconds", "2", "--slurm-task-seconds", absl::StrCat(set_up.task_seconds)},
-       set_up.flags});
+  return Joined({{"--executor=slurm", "--cluster-folder", shared_folder, "--cluster-least-seconds",
+                  "2", "--slurm-query-seconds", "2", "--cluster-timeout-seconds", "10",
+                  "--cluster-lease-seconds", absl::StrCat(set_up.lease_seconds)},
+                 set_up.flags});
 }
 
 std::string PointsOfJob(const TestServer& server, const std::string& job) {
@@ -77,7 +77,7 @@ Sweep::~Sweep() {
   KeepCounts();
   const testing::TestInfo* const test = testing::UnitTest::GetInstance()->current_test_info();
   absl::PrintF(
-      "%s: %.0f s; by the cluster: %g chunks; %g tasks lost, %g files refused, %g queries%s\n",
+      "%s: %.0f s; by the cluster: %g chunks; %g leases lost, %g files refused, %g queries%s\n",
       test->name(), Seconds(), earlier_.chunks, earlier_.lost, earlier_.refused, earlier_.queries,
       notes_);
   std::fflush(stdout);
@@ -90,22 +90,22 @@ double Sweep::Seconds() const {
 
 void Sweep::Submit() { job_ = server_->Submit(SweepOf(set_up_.samples)); }
 
-SlurmCounts Sweep::Counts() const {
+ClusterCounts Sweep::Counts() const {
   const Struct status = server_->Json({"status"});
-  const google::protobuf::Value& slurm = At(status, "slurm");
-  const auto number = [&](const char* key) { return At(slurm, key).number_value(); };
-  return {.problem = At(slurm, "problem").string_value(),
-          .waiting = number("waiting_tasks"),
-          .running = number("running_tasks"),
-          .submitted = number("submitted_tasks"),
+  const google::protobuf::Value& cluster = At(status, "cluster");
+  const auto number = [&](const char* key) { return At(cluster, key).number_value(); };
+  return {.problem = At(cluster, "problem").string_value(),
+          .waiting = number("waiting_workers"),
+          .running = number("running_workers"),
+          .leases = number("waiting_leases") + number("taken_leases"),
           .chunks = number("chunks"),
-          .lost = number("lost_tasks"),
+          .lost = number("lost_leases"),
           .refused = number("refused_files"),
           .queries = number("queries")};
 }
 
 void Sweep::KeepCounts() {
-  const SlurmCounts now = Counts();
+  const ClusterCounts now = Counts();
   earlier_.chunks += now.chunks;
   earlier_.lost += now.lost;
   earlier_.refused += now.refused;
@@ -113,7 +113,7 @@ void Sweep::KeepCounts() {
 }
 
 void Sweep::AwaitTasks() const {
-  AwaitThat([this] { return Counts().tasks() > 0; });
+  AwaitThat([this] { return !cluster_.Queue().empty(); });
 }
 
 void Sweep::AwaitRunningTasks() const {
@@ -125,7 +125,8 @@ void Sweep::AwaitProblem(const std::string& text) const {
 }
 
 std::vector<pid_t> Sweep::Workers() const {
-  return ProcessesWith(absl::StrCat("--task-file", std::string(1, '\0'), shared_folder(), "/"));
+  return ProcessesWith(absl::StrCat("ballpiston-worker", std::string(1, '\0'), shared_folder(),
+                                    std::string(1, '\0')));
 }
 
 void Sweep::KillServer() {

@@ -14,18 +14,17 @@ namespace ballpiston {
 inline constexpr int kPoints = 16;
 Words SweepOf(int samples, int seed = 11);
 
-struct SlurmCounts {
+struct ClusterCounts {
   std::string problem;
-  double waiting = 0, running = 0, submitted = 0;
+  double waiting = 0, running = 0;  // workers
+  double leases = 0;
   double chunks = 0, lost = 0, refused = 0, queries = 0;
-
-  double tasks() const { return waiting + running + submitted; }
 };
 
 struct SweepSetUp {
   Words cluster = {};  // lines of slurm.conf
   Words flags = {};    // of the server
-  int task_seconds = 3;
+  int lease_seconds = 3;
   int samples = 1'000'000;
   int workers = 1;
   std::string path = {};  // first in the server's PATH
@@ -42,7 +41,7 @@ class Sweep {
 
   void Submit();
   const std::string& job() const { return job_; }
-  SlurmCounts Counts() const;
+  ClusterCounts Counts() const;
   void AwaitTasks() const;         // until the cluster has tasks of this server
   void AwaitRunningTasks() const;  // until workers run
   void AwaitProblem(const std::string& text) const;
@@ -63,7 +62,7 @@ class Sweep {
   const Cluster cluster_;
   std::unique_ptr<TestServer> server_;
   std::string job_;
-  SlurmCounts earlier_;  // of the server's processes that were killed
+  ClusterCounts earlier_;  // of the server's processes that were killed
   std::string notes_;
 };
 

@@ -12,8 +12,8 @@
 namespace ballpiston {
 namespace {
 
-// Below $arrays is a folder for each array: the script, the array's number, and for each task a
-// file with the number of its process.
+// Below $arrays is a folder for each array, NAME.NUMBER: the script, and for each task a file with
+// the number of its process.
 
 constexpr char kSbatch[] = R"sh(
 for word; do
@@ -22,8 +22,8 @@ for word; do
     --array=0-*) last=${word#--array=0-} ;;
   esac
 done
-array=$arrays/$name
-mkdir "$array" && cat >"$array/script" && echo $$ >"$array/number" || exit 1
+array=$arrays/$name.$$
+mkdir "$array" && cat >"$array/script" || exit 1
 for task in $(seq 0 "$last"); do
   echo "$name" >>"$arrays/../started"
   SLURM_ARRAY_TASK_ID=$task setsid sh "$array/script" </dev/null >/dev/null 2>&1 &
@@ -33,30 +33,21 @@ echo $$
 )sh";
 
 constexpr char kSqueue[] = R"sh(
-for file in "$arrays"/*/task.*; do
+for word; do
+  case $word in --name=*) name=${word#--name=} ;; esac
+done
+for file in "$arrays/$name".*/task.*; do
   read -r process <"$file" && readlink "/proc/$process/exe" >/dev/null || continue
-  read -r number <"${file%/*}/number"
-  array=${file%/*}
-  echo "$number|${file##*.}|${array##*/}|RUNNING|None"
+  echo "RUNNING|None"
 done 2>/dev/null
 exit 0
 )sh";
 
-// NUMBER_[0-3,7] after the name: those tasks alone.
 constexpr char kScancel[] = R"sh(
-tasks='*'
 for word; do
-  case $word in
-    --name=*) name=${word#--name=} ;;
-    *_\[*\]) list=${word#*_\[} tasks= ;;
-  esac
+  case $word in --name=*) name=${word#--name=} ;; esac
 done
-for range in $(echo "${list%\]}" | tr , ' '); do
-  tasks="$tasks $(seq "${range%-*}" "${range#*-}")"
-done
-for task in $tasks; do
-  for file in "$arrays"/$name/task.$task; do kill -KILL "$(cat "$file")"; done
-done 2>/dev/null
+for file in "$arrays"/$name.*/task.*; do kill -KILL "$(cat "$file")"; done 2>/dev/null
 exit 0
 )sh";
 

@@ -165,11 +165,11 @@
         DRAINING: ' The server is stopping: it accepts no jobs.',
         STORE_FAILING: ' The server cannot write to its disk.',
       }[status.state] ?? '';
-    const slurm = status.slurm?.problem ? ` Slurm: ${status.slurm.problem}.` : '';
+    const cluster = status.cluster?.problem ? ` Cluster: ${status.cluster.problem}.` : '';
     return (
       `${status.busy_workers} of ${status.workers} workers are busy; ` +
       `${jobs(status.running_jobs)} running, ${jobs(status.queued_jobs)} waiting, ` +
-      `${jobs(status.stored_jobs)} stored.${state}${slurm}`
+      `${jobs(status.stored_jobs)} stored.${state}${cluster}`
     );
   }
 

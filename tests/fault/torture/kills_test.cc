@@ -146,7 +146,7 @@ std::set<std::string> NamesOn(ConnectedServer& server) {
 std::vector<std::string_view> Failpoints(bool of_slurm) {
   std::vector<std::string_view> failpoints;
   for (const std::string_view failpoint : server::kFailpoints) {
-    if (failpoint.starts_with("slurm.") == of_slurm) failpoints.push_back(failpoint);
+    if (failpoint.starts_with("cluster.") == of_slurm) failpoints.push_back(failpoint);
   }
   return failpoints;
 }
@@ -213,14 +213,15 @@ TEST(Kills, LoseNothingThatWasAcknowledgedAndCountNothingTwice) {
   EXPECT_EQ(findings.Report(), "");
 }
 
-// Lives long enough for tasks to be submitted and read. Tasks of a killed server run on.
+// Lives long enough for workers to be submitted and files to be read. Workers of a killed server
+// run on.
 TEST(Kills, OfAServerWithAClusterLoseNothingAndCountNothingTwice) {
   Findings findings("kills of a server with a cluster");
   const StandInSlurm slurm;
-  const std::vector<std::string> flags = {"--executor=slurm",       "--slurm-shared-folder",
-                                          slurm.shared_folder(),    "--slurm-least-seconds=0",
-                                          "--slurm-task-seconds=1", "--slurm-query-seconds=1",
-                                          "--slurm-max-tasks=4"};
+  const std::vector<std::string> flags = {
+      "--executor=slurm",          "--cluster-folder",          slurm.shared_folder(),
+      "--cluster-least-seconds=0", "--cluster-lease-seconds=1", "--cluster-timeout-seconds=3",
+      "--slurm-query-seconds=1",   "--slurm-workers=4"};
   // In the short form all questions go to the cluster, so the server soon passes the cluster's
   // failpoints.
   std::vector<v1::EnsembleSpec> questions = LargeQuestions();
@@ -234,7 +235,7 @@ TEST(Kills, OfAServerWithAClusterLoseNothingAndCountNothingTwice) {
                      .failpoints = Failpoints(true),
                      .kills = Size(4, 200)},
                     findings);
-  findings.Count("tasks of the cluster", slurm.tasks());
+  findings.Count("workers of the cluster", slurm.tasks());
   EXPECT_GT(slurm.tasks(), 0);
   EXPECT_EQ(findings.Report(), "");
 }

@@ -486,142 +486,66 @@ Lease EarlierLease(const Cluster& cluster, uint64_t first, uint64_t end, size_t 
   Lease lease;
   lease.run = 1;
   lease.executor = cluster.remote.number();
-  lease.attempt = 3;
   lease.point = point;
   lease.start.chunk = first;
   lease.end = end;
   return lease;
 }
 
-absl::Status ReportAdopted(Cluster& cluster, const Lease& lease, const EnsembleSpec& spec) {
+absl::Status ReportEarlier(Cluster& cluster, const Lease& lease, const EnsembleSpec& spec) {
   const auto experiment = FakeExperiments()(spec, lease.point);
   return cluster.remote.Report(lease, ComputedChunks(lease, *experiment));
 }
 
-TEST(Scheduler, AdoptedChunksAreNotLeased) {
+TEST(Scheduler, ChunksOfAnEarlierProcessAreMerged) {
   Cluster cluster(kWholePoint);
-  const auto journal = cluster.Add(SixChunks());
-  const auto adopted = cluster.scheduler.Adopt(EarlierLease(cluster, 1, 3));
-  ASSERT_TRUE(adopted);
-  EXPECT_GT(adopted->number, 0);
-  ASSERT_TRUE(cluster.local.TakeTurn());  // opens the point
+  const auto journal = cluster.Begin(SixChunks());
+  EXPECT_OK(ReportEarlier(cluster, EarlierLease(cluster, 1, 3), SixChunks()));
   const std::vector<Lease> leases = cluster.TakeAll();
   ASSERT_EQ(leases.size(), 2u);
-  EXPECT_EQ(leases[0].start.chunk, 0u);
   EXPECT_EQ(leases[0].end, 1u);
   EXPECT_EQ(leases[1].start.chunk, 3u);
-  EXPECT_EQ(leases[1].end, 6u);
   for (const Lease& lease : leases) EXPECT_OK(cluster.remote.ReportAll(lease));
-  EXPECT_FALSE(cluster.local.TakeTurn());
-  EXPECT_TRUE(cluster.scheduler.Needs(*adopted));
-  EXPECT_OK(ReportAdopted(cluster, *adopted, SixChunks()));
-  EXPECT_FALSE(cluster.scheduler.Needs(*adopted));
   ExpectComplete(SixChunks(), *journal);
 }
 
-TEST(Scheduler, ReportsOfAdoptedLeasesAreMergedWhenThePointIsOpen) {
+TEST(Scheduler, AReportWaitsUntilItsPointIsOpen) {
   Cluster cluster(kWholePoint);
   const auto journal = cluster.Add(SixChunks(3));
-  const auto adopted = cluster.scheduler.Adopt(EarlierLease(cluster, 2, 4, 2));
-  ASSERT_TRUE(adopted);
-  EXPECT_THAT(ReportAdopted(cluster, *adopted, SixChunks(3)),
+  const Lease earlier = EarlierLease(cluster, 2, 4, 2);
+  EXPECT_THAT(ReportEarlier(cluster, earlier, SixChunks(3)),
               StatusIs(absl::StatusCode::kUnavailable));
-  EXPECT_TRUE(cluster.scheduler.Needs(*adopted));
   EXPECT_TRUE(journal->early.empty());
-  ASSERT_TRUE(cluster.local.TakeTurn());  // a point with adopted leases is opened first
-  EXPECT_OK(ReportAdopted(cluster, *adopted, SixChunks(3)));
+  while (absl::IsUnavailable(ReportEarlier(cluster, earlier, SixChunks(3)))) {
+    ASSERT_TRUE(cluster.local.TakeTurn());
+  }
   EXPECT_EQ(journal->early[2].size(), 2u);
   cluster.local.TakeAllTurns();
   ExpectComplete(SixChunks(3), *journal);
+  EXPECT_OK(ReportEarlier(cluster, earlier, SixChunks(3)));
 }
 
-TEST(Scheduler, AReturnedAdoptedLeaseGoesOutAgain) {
-  for (const bool is_open : {true, false}) {
-    Cluster cluster(kWholePoint);
-    const auto journal = cluster.Add(SixChunks());
-    const auto kept = cluster.scheduler.Adopt(EarlierLease(cluster, 0, 1));
-    const auto lost = cluster.scheduler.Adopt(EarlierLease(cluster, 1, 3));
-    ASSERT_TRUE(kept && lost);
-    if (is_open) cluster.local.TakeTurn();
-    cluster.remote.Return(*lost);
-    EXPECT_FALSE(cluster.scheduler.Needs(*lost));
-    if (!is_open) cluster.local.TakeTurn();
-    const auto again = cluster.remote.Take();
-    ASSERT_TRUE(again);
-    EXPECT_EQ(again->start.chunk, 1u);
-    EXPECT_EQ(again->end, 3u);
-    EXPECT_EQ(again->attempt, 4);
-    EXPECT_OK(cluster.remote.ReportAll(*again));
-    cluster.local.TakeAllTurns();
-    EXPECT_EQ(journal->ends, 0);
-    EXPECT_OK(ReportAdopted(cluster, *kept, SixChunks()));
-    ExpectComplete(SixChunks(), *journal);
-  }
+TEST(Scheduler, ReportsOfAnotherJobWithTheSameKeyAreDropped) {
+  Cluster cluster(kWholePoint);
+  const auto journal = cluster.Begin(SixChunks());
+  Lease other = EarlierLease(cluster, 0, 1);
+  other.generation = 7;
+  EXPECT_OK(ReportEarlier(cluster, other, SixChunks()));
+  EXPECT_TRUE(journal->merged.empty());
 }
 
-TEST(Scheduler, AdoptedLeasesOfAFinishedPointAreRefused) {
+TEST(Scheduler, ReportsOfFinishedPointsOfAnEarlierProcessAreDropped) {
   Cluster cluster;
   const auto journal = std::make_shared<RecordingJournal>();
   RunRequest request = RunOf(1, SixChunks(2), journal);
   request.finished = {true, false};
   cluster.scheduler.Add(std::move(request));
-  EXPECT_FALSE(cluster.scheduler.Adopt(EarlierLease(cluster, 0, 1, 0)));
-  EXPECT_FALSE(cluster.scheduler.Adopt(EarlierLease(cluster, 0, 1, 7)));
-  Lease of_another_run = EarlierLease(cluster, 0, 1, 1);
-  of_another_run.run = 2;
-  EXPECT_FALSE(cluster.scheduler.Adopt(of_another_run));
-  EXPECT_TRUE(cluster.scheduler.Adopt(EarlierLease(cluster, 0, 1, 1)));
-}
-
-// The earlier process stopped after the last chunk and before the point's result.
-TEST(Scheduler, AnAdoptedLeaseEndsIfThePointsCheckpointIsComplete) {
-  Cluster cluster;
-  const auto journal = std::make_shared<RecordingJournal>();
-  journal->stored[0] = FakeState(SixChunks(), 0, 1500);
-  cluster.scheduler.Add(RunOf(1, SixChunks(), journal));
-  const auto adopted = cluster.scheduler.Adopt(EarlierLease(cluster, 5, 6));
-  ASSERT_TRUE(adopted);
-  cluster.local.TakeAllTurns();
-  EXPECT_FALSE(cluster.scheduler.Needs(*adopted));
-  EXPECT_OK(ReportAdopted(cluster, *adopted, SixChunks()));
-  ExpectComplete(SixChunks(), *journal);
-}
-
-TEST(Scheduler, AdoptedLeasesEndWithACancelledRun) {
-  for (const bool is_open : {true, false}) {
-    Cluster cluster;
-    const auto journal = cluster.Add(SixChunks());
-    const auto adopted = cluster.scheduler.Adopt(EarlierLease(cluster, 1, 3));
-    if (is_open) cluster.local.TakeTurn();
-    cluster.scheduler.Cancel(1);
-    EXPECT_EQ(journal->ends, 1);
-    EXPECT_FALSE(cluster.scheduler.Needs(*adopted));
-    EXPECT_OK(ReportAdopted(cluster, *adopted, SixChunks()));
-  }
-}
-
-TEST(Scheduler, AnAdoptedLeaseMayContinueACheckpointAndEarlyChunks) {
-  Cluster first(kWholePoint);
-  const auto before = first.Begin(SixChunks());
-  const auto lease = first.remote.Take();
-  ASSERT_TRUE(lease);
-  std::vector<ChunkResult> chunks = ComputedChunks(*lease);
-  EXPECT_OK(first.remote.Report(*lease, {chunks[0], chunks[4]}));
-  first.scheduler.Shutdown();
-
-  Cluster later(kWholePoint);
-  const auto journal = std::make_shared<RecordingJournal>();
-  journal->stored = before->checkpoints;
-  journal->stored_chunks = before->early;
-  later.scheduler.Add(RunOf(1, SixChunks(), journal));
-  const auto adopted = later.scheduler.Adopt(EarlierLease(later, 0, 6));
-  ASSERT_TRUE(adopted);
-  later.local.TakeAllTurns();
-  EXPECT_EQ(journal->restored[0], 64u);
-  EXPECT_OK(later.remote.Report(*adopted, {chunks[1], chunks[2], chunks[3]}));
-  EXPECT_EQ(journal->merged[0] + 64, 1984u);
-  EXPECT_OK(later.remote.Report(*adopted, chunks));
-  ExpectComplete(SixChunks(), *journal);
+  EXPECT_OK(ReportEarlier(cluster, EarlierLease(cluster, 0, 1, 0), SixChunks(2)));
+  Lease beyond = EarlierLease(cluster, 0, 1, 0);
+  beyond.point = 7;
+  EXPECT_OK(cluster.remote.Report(beyond, {}));
+  cluster.scheduler.Cancel(1);
+  EXPECT_OK(ReportEarlier(cluster, EarlierLease(cluster, 0, 1, 1), SixChunks(2)));
 }
 
 }  // namespace

@@ -178,28 +178,6 @@ TEST(OpenPoint, ALongChunkIsForLocalExecutors) {
   }
 }
 
-TEST(OpenPoint, AdoptedChunksAreNotLeasedUntilTheyAreReturned) {
-  for (const bool is_last_first : {false, true}) {
-    OpenPoint point = PointOf(SixChunks());
-    if (is_last_first) point.Adopt(4, 5);
-    point.Adopt(1, 2);
-    if (!is_last_first) point.Adopt(4, 5);
-    EXPECT_EQ(Next(point, 1000), Chunks(0, 1));
-    EXPECT_EQ(Next(point, 1000), Chunks(2, 4));
-    EXPECT_EQ(Next(point, 1000), Chunks(5, 6));
-    EXPECT_EQ(Next(point, 1000), std::nullopt);
-    point.Return(4, 5, 3);
-    EXPECT_EQ(Next(point, 1000), Chunks(4, 5, 3));
-  }
-}
-
-TEST(OpenPoint, AdoptedChunksBeyondThePlanAreIgnored) {
-  OpenPoint point = PointOf(SixChunks());
-  point.Adopt(5, 1'000'000);
-  EXPECT_EQ(Next(point, 1000), Chunks(0, 5));
-  EXPECT_EQ(Next(point, 1000), std::nullopt);
-}
-
 TEST(OpenPoint, ChunksOfAFinishedPointAreNotLeased) {
   OpenPoint point = PointOf(SixChunks());
   point.fold().Finish();

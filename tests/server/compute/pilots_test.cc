@@ -229,31 +229,5 @@ TEST_F(PilotsTest, APilotStaysLocal) {
   scheduler.Shutdown();
 }
 
-// An adopted point may need its pilot again, if the pilot's result could not be stored.
-TEST_F(PilotsTest, AnAdoptedPointMayNeedAPilot) {
-  FakePilotOpener opener(OnePlace);
-  Scheduler scheduler(opener, 1);
-  SteppedExecutor local(scheduler);
-  RemoteExecutor remote(scheduler);
-  const EnsembleSpec spec = FakeSpec(1, 1500, 1);
-  const auto journal = std::make_shared<RecordingJournal>();
-  scheduler.Add(RunOf(1, spec, journal));
-  Lease earlier;
-  earlier.run = 1;
-  earlier.executor = remote.number();
-  earlier.start.chunk = 2;
-  earlier.end = 4;
-  const auto adopted = scheduler.Adopt(earlier);
-  ASSERT_TRUE(adopted);
-  local.TakeAllTurns();
-  EXPECT_EQ(opener.kept().size(), 1u);
-  EXPECT_OK(remote.Report(*adopted, ComputedChunks(*adopted, *FakeExperiments()(spec, 0))));
-  local.TakeAllTurns();
-  ASSERT_TRUE(journal->outcome);
-  EXPECT_OK(*journal->outcome);
-  ExpectAllPointsRight(spec, *journal);
-  scheduler.Shutdown();
-}
-
 }  // namespace
 }  // namespace ballpiston::server

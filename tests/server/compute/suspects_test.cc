@@ -200,13 +200,12 @@ TEST_F(SuspectsTest, ASuspectIsNotClearedBeforeItsPilots) {
     request.suspicion = Suspected(key);
     scheduler.Add(std::move(request));
   }
-  const auto elsewhere = scheduler.Adopt(EarlierLease(remote, 1, 1, 2));
-  ASSERT_TRUE(elsewhere);
+  const Lease elsewhere = EarlierLease(remote, 1, 1, 2);
   const auto first = local.Begin(), second = local.Begin();  // open the points at the same time
   ASSERT_TRUE(first && second);
   local.End(*first, 0);
   local.End(*second, 0);
-  EXPECT_OK(ReportAll(remote, *elsewhere, SixChunks(2)));
+  EXPECT_OK(ReportAll(remote, elsewhere, SixChunks(2)));
   EXPECT_THAT(cleared_, ElementsAre());
   local.TakeAllTurns();
   EXPECT_THAT(cleared_, ElementsAre(1, 2));
@@ -219,10 +218,9 @@ TEST_F(SuspectsTest, ASuspectIsNotClearedBeforeItsPilots) {
 TEST_F(SuspectsTest, AChunkOfAnotherMachineDoesNotClearAPoint) {
   RemoteExecutor remote(scheduler_);
   Add(2, Suspected(2, {0}));
-  const auto elsewhere = scheduler_.Adopt(EarlierLease(remote, 2, 1, 2));
-  ASSERT_TRUE(elsewhere);
+  const Lease elsewhere = EarlierLease(remote, 2, 1, 2);
   ASSERT_THAT(Turns(1, 0), ElementsAre(2));
-  EXPECT_OK(ReportAll(remote, *elsewhere, SixChunks(2)));
+  EXPECT_OK(ReportAll(remote, elsewhere, SixChunks(2)));
   EXPECT_THAT(Turns(1, 31), ElementsAre(2));
   EXPECT_THAT(cleared_, ElementsAre());
   EXPECT_THAT(Turns(1, 1), ElementsAre(2));

@@ -82,7 +82,7 @@ class ServerStatusTest : public testing::Test {
                           .book = book_,
                           .scheduler = pool_.scheduler(),
                           .threads = pool_.threads(),
-                          .slurm = nullptr,
+                          .cluster = nullptr,
                           .ladder = ladder_,
                           .quotas = quotas_,
                           .streams = streams_,

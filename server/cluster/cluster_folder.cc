@@ -1,4 +1,4 @@
-#include "server/cluster/shared_folder.h"
+#include "server/cluster/cluster_folder.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -12,25 +12,23 @@
 #include <utility>
 
 #include "absl/cleanup/cleanup.h"
+#include "absl/status/statusor.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "server/sha256.h"
-#include "server/store/folder_sync.h"
+#include "server/worker/shared_files.h"
 
 namespace ballpiston::server {
 namespace {
 
-namespace fs = std::filesystem;
-
 absl::Status Unusable(const std::string& path, int error) {
-  const std::string why = absl::StrCat("shared folder: ", path, ": ", std::strerror(error));
+  const std::string why = absl::StrCat("cluster folder: ", path, ": ", std::strerror(error));
   const bool is_full = error == ENOSPC || error == EDQUOT;
   return is_full ? absl::ResourceExhaustedError(why) : absl::UnavailableError(why);
 }
 
 absl::Status Refused(const std::string& path, const std::string& why) {
-  return absl::FailedPreconditionError(absl::StrCat("shared folder: ", path, " ", why));
+  return absl::FailedPreconditionError(absl::StrCat("cluster folder: ", path, " ", why));
 }
 
 absl::Status CheckOwner(const std::string& path) {
@@ -76,65 +74,49 @@ absl::Status WriteProgram(const std::string& path, const std::string& bytes) {
   return absl::OkStatus();
 }
 
-}  // namespace
-
-std::string TaskFileIn(const std::string& array_folder) {
-  return absl::StrCat(array_folder, "/tasks");
+// Beside this program, as in a build folder, or in libexec, as installed.
+std::string InstalledWorker() {
+  std::error_code error;
+  const std::filesystem::path folder =
+      std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  const std::filesystem::path beside = folder / "ballpiston-worker";
+  if (std::filesystem::exists(beside, error)) return beside;
+  return folder.parent_path() / "libexec/ballpiston/ballpiston-worker";
 }
 
-SharedFolder::SharedFolder(std::string folder, std::string identity)
-    : shared_(std::move(folder)), own_(absl::StrCat(shared_, "/", identity)) {}
+// One of two servers that begin with an empty folder makes the file.
+absl::Status CheckOwnerFile(const std::string& folder, const std::string& identity) {
+  FolderFiles files(folder);
+  const absl::Status made = files.Create("owner", identity).status();
+  const absl::StatusOr<std::string> found = files.Read("owner", 0);
+  if (!found.ok()) return made.ok() ? found.status() : made;
+  if (*found == identity) return absl::OkStatus();
+  return Refused(folder,
+                 absl::StrCat("is in use by another server (", *found, "; this one is ", identity,
+                              "): use another folder, or remove the file owner "
+                              "if that server is gone"));
+}
 
-absl::Status SharedFolder::Prepare() const {
-  if (!absl::StartsWith(shared_, "/")) return Refused(shared_, "is not an absolute path");
-  absl::Status status = CheckOwner(shared_);
-  if (status.ok()) status = MakeFolder(own_);
-  if (status.ok()) status = CheckOwner(own_);
+}  // namespace
+
+absl::Status PrepareFolder(const std::string& folder, const std::string& identity) {
+  if (!absl::StartsWith(folder, "/")) return Refused(folder, "is not an absolute path");
+  absl::Status status = CheckOwner(folder);
+  if (status.ok()) status = CheckOwnerFile(folder, identity);
+  for (const char* subfolder : {"todo", "taken", "done", "log"}) {
+    const std::string path = absl::StrCat(folder, "/", subfolder);
+    if (status.ok()) status = MakeFolder(path);
+    if (status.ok()) status = CheckOwner(path);
+  }
   return status;
 }
 
-absl::StatusOr<std::string> SharedFolder::CopyWorker(const std::string& program) const {
-  const absl::StatusOr<std::string> bytes = BytesOf(program);
+absl::Status CopyWorker(const std::string& folder, const std::string& worker) {
+  const absl::StatusOr<std::string> bytes = BytesOf(worker.empty() ? InstalledWorker() : worker);
   if (!bytes.ok()) return bytes.status();
-  const std::string hash = Sha256(*bytes);
-  std::string name = absl::StrCat(own_, "/ballpiston-worker-");
-  for (size_t i = 0; i < 8; ++i)
-    absl::StrAppendFormat(&name, "%02x", static_cast<uint8_t>(hash[i]));
-  const absl::StatusOr<std::string> copy = BytesOf(name);
-  if (copy.ok() && *copy == *bytes) return name;
-  const absl::Status written = WriteProgram(name, *bytes);
-  if (!written.ok()) return written;
-  return name;
-}
-
-std::string SharedFolder::PathOf(const std::string& array) const {
-  return absl::StrCat(own_, "/", array);
-}
-
-absl::Status SharedFolder::MakeArray(const std::string& array) const {
-  const std::string path = PathOf(array);
-  return mkdir(path.c_str(), 0700) == 0 ? absl::OkStatus() : Unusable(path, errno);
-}
-
-void SharedFolder::RemoveArray(const std::string& array) const {
-  std::error_code ignored;
-  fs::remove_all(PathOf(array), ignored);
-}
-
-absl::StatusOr<std::vector<std::string>> SharedFolder::ListArrays(const std::string& prefix) const {
-  std::error_code error;
-  std::vector<std::string> arrays;
-  for (fs::directory_iterator entry(own_, error), end; !error && entry != end;
-       entry.increment(error)) {
-    std::string name = entry->path().filename().string();
-    std::error_code unknown;  // of a broken link, which is not an array
-    const bool is_folder = entry->is_directory(unknown) && !entry->is_symlink(unknown);
-    if (absl::StartsWith(name, prefix) && is_folder) {
-      arrays.push_back(std::move(name));
-    }
-  }
-  if (error) return Unusable(own_, error.value());
-  return arrays;
+  const std::string path = absl::StrCat(folder, "/ballpiston-worker");
+  const absl::StatusOr<std::string> copy = BytesOf(path);
+  return copy.ok() && *copy == *bytes ? absl::OkStatus() : WriteProgram(path, *bytes);
 }
 
 }  // namespace ballpiston::server

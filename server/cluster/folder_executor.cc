@@ -1,0 +1,343 @@
+#include "server/cluster/folder_executor.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/engine_version.h"
+#include "core/ensemble/experiment_kind.h"
+#include "server/host.h"
+#include "server/status/failpoint.h"
+#include "server/status/log.h"
+
+namespace ballpiston::server {
+namespace {
+
+constexpr size_t kMostLeasesOfTheOptions = 600;
+constexpr double kOperationsOfALease = 9;
+constexpr double kOperationsASecond = 100;
+constexpr std::chrono::seconds kBetweenPreparations(30);
+constexpr std::chrono::seconds kLongestBackoff(60);
+constexpr size_t kMostLaidAtOnce = 300;
+// A worker lists all waiting leases before it takes one.
+constexpr size_t kMostWaiting = 300;
+// A look lists all leases, so looks are rarer if there are many.
+constexpr double kLeasesListedASecond = 500;
+// One look is not enough: a worker may move the file between two listings.
+constexpr int kMissingLooks = 2;
+
+double SecondsOf(std::chrono::milliseconds time) {
+  return std::chrono::duration<double>(time).count();
+}
+
+double SecondsBetween(std::chrono::steady_clock::time_point begin,
+                      std::chrono::steady_clock::time_point end) {
+  return std::chrono::duration<double>(end - begin).count();
+}
+
+}  // namespace
+
+Pace PaceOf(const ClusterOptions& options, size_t leases) {
+  const double lease = SecondsOf(options.lease), timeout = SecondsOf(options.timeout);
+  if (leases <= kMostLeasesOfTheOptions) return {lease, timeout / 6, timeout};
+  const double longer =
+      std::max(lease, static_cast<double>(leases) * kOperationsOfALease / kOperationsASecond);
+  return {longer, 1.1 * longer, std::max(timeout, longer * 4 / 3)};
+}
+
+FolderExecutor::FolderExecutor(Scheduler& scheduler, const ClusterOptions& options,
+                               std::unique_ptr<SharedFiles> files, Server server)
+    : scheduler_(scheduler),
+      options_(options),
+      files_(std::move(files)),
+      server_(std::move(server)),
+      process_(absl::StrCat(absl::Hex(RandomBits(), absl::kZeroPad16))),
+      capacity_{.executor = scheduler.AddExecutor(*this), .longest_chunk = options.longest_chunk} {}
+
+FolderExecutor::~FolderExecutor() {
+  Shutdown();
+  scheduler_.RemoveExecutor(capacity_.executor);
+}
+
+void FolderExecutor::Start() {
+  looking_ = std::make_unique<PeriodicThread>(options_.look, [this] { Look(); });
+}
+
+void FolderExecutor::Shutdown() { looking_.reset(); }
+
+JobIdentity FolderExecutor::IdentityOf(const Lease& lease) const {
+  return {.server = server_.identity,
+          .job = lease.run,
+          .generation = lease.generation,
+          .engine_version = std::string(kEngineVersion)};
+}
+
+// Leases end by their time-out even if the folder cannot be used.
+void FolderExecutor::Look() {
+  const Clock::time_point now = SteadyNow();
+  if (now < next_look_) return;
+  const double pause = static_cast<double>(leases_.size()) / kLeasesListedASecond - 1;
+  next_look_ = now + std::chrono::milliseconds(static_cast<int64_t>(1e3 * std::max(pause, 0.0)));
+  absl::Status outcome;
+  try {
+    outcome = Prepare();
+    if (outcome.ok()) outcome = Collect();
+    for (auto laid = leases_.begin(); laid != leases_.end();) LookAt(laid++);
+    if (outcome.ok()) outcome = Lay();
+  } catch (const std::exception& error) {
+    outcome = absl::InternalError(error.what());
+  }
+  NoteOutcome(outcome);
+}
+
+absl::Status FolderExecutor::Prepare() {
+  const Clock::time_point now = SteadyNow();
+  if (prepared_ && now - *prepared_ < kBetweenPreparations) return absl::OkStatus();
+  absl::Status prepared = server_.prepare();
+  if (prepared.ok()) prepared_ = now;
+  return prepared;
+}
+
+void FolderExecutor::NoteOutcome(const absl::Status& outcome) {
+  if (!outcome.ok()) prepared_.reset();
+  MutexLock lock(mutex_);
+  status_.taken_leases = static_cast<double>(taken_);
+  status_.waiting_leases = static_cast<double>(leases_.size() - taken_);
+  const std::string problem(outcome.message());
+  if (std::exchange(status_.problem, problem) == problem) return;
+  if (outcome.ok()) return LogInfo("cluster folder: works again");
+  LogError(absl::StrCat("cluster folder: ", problem));
+}
+
+void FolderExecutor::Refuse(const absl::Status& why) {
+  LogError(absl::StrCat("cluster folder: a file is refused: ", why.message()));
+  MutexLock lock(mutex_);
+  ++status_.refused_files;
+}
+
+// ---- files that workers have moved ----
+
+// taken/ first: a file that is moved between the two listings is in both.
+absl::Status FolderExecutor::Collect() {
+  const auto taken = files_->List("taken");
+  if (!taken.ok()) return taken.status();
+  const auto done = files_->List("done");
+  if (!done.ok()) return done.status();
+  for (const std::string& name : *taken) {
+    if (const auto file = ParseTaken(name)) NoteTaken(*file);
+  }
+  std::vector<LeaseFileName> reported;
+  for (const std::string& name : *done) {
+    const auto file = ParseDone(name);
+    if (file && Report(*file)) reported.push_back(*file);
+  }
+  if (reported.empty()) return absl::OkStatus();
+  Failpoint("cluster.file_reported");
+  absl::Status flushed = server_.flush();
+  if (!flushed.ok()) return flushed;  // the files are read again
+  for (const LeaseFileName& file : reported) End(file);
+  return absl::OkStatus();
+}
+
+void FolderExecutor::NoteTaken(const LeaseFileName& file) {
+  const auto found = leases_.find(file.lease);
+  if (found == leases_.end()) {
+    files_->Move(file.Taken(), file.Done(Outcome::kLost)).IgnoreError();  // it may be done now
+    return;
+  }
+  Laid& laid = found->second;
+  laid.missing = 0;
+  if (laid.worker == file.worker) return;
+  taken_ += laid.worker.empty();
+  laid.worker = file.worker;
+  laid.alive = laid.looked = SteadyNow();
+  MutexLock lock(mutex_);
+  ++status_.claims;
+}
+
+// False if the file has to stay: it cannot be read or reported now.
+bool FolderExecutor::Report(const LeaseFileName& file) {
+  const auto found = leases_.find(file.lease);
+  Laid* const laid = found == leases_.end() ? nullptr : &found->second;
+  const size_t offset = laid == nullptr ? 0 : laid->reported;
+  const std::string path =
+      laid != nullptr && !file.outcome ? file.Taken() : file.Done(*file.outcome);
+  const absl::StatusOr<std::string> bytes = files_->Read(path, offset);
+  if (absl::IsUnavailable(bytes.status()) || absl::IsNotFound(bytes.status())) return false;
+  absl::string_view rest = bytes.ok() ? absl::string_view(*bytes) : absl::string_view();
+  absl::Status status = bytes.status();
+  std::optional<IdentifiedLease> lease;
+  if (laid != nullptr) {
+    lease = {IdentityOf(laid->lease), laid->lease};
+  } else if (status.ok()) {
+    absl::StatusOr<LeaseFile> begin = server_.read_lease(rest);
+    status = begin.status();
+    if (begin.ok()) lease = std::move(begin->lease);
+  }
+  while (status.ok() && !rest.empty()) {
+    status = ReportChunks(*lease, rest);
+    if (laid != nullptr) laid->reported = offset + bytes->size() - rest.size();
+  }
+  if (absl::IsUnavailable(status)) return false;
+  if (!status.ok() && (file.outcome || !absl::IsOutOfRange(status))) {
+    Refuse(absl::Status(status.code(), absl::StrCat(path, ": ", status.message())));
+  }
+  return true;
+}
+
+// Reports one message, and takes it off the bytes unless it has to be reported later.
+absl::Status FolderExecutor::ReportChunks(const IdentifiedLease& identified,
+                                          absl::string_view& bytes) {
+  absl::string_view rest = bytes;
+  absl::StatusOr<LeaseChunks> chunks = TakeChunks(rest);
+  if (!chunks.ok()) return chunks.status();
+  Lease lease = identified.lease;
+  lease.run = identified.job.job;
+  lease.generation = identified.job.generation;
+  lease.executor = capacity_.executor;
+  absl::Status checked = identified.job.server == server_.identity
+                             ? CheckLeaseChunks(identified, *chunks)
+                             : absl::DataLossError("the lease is of another server");
+  if (!checked.ok()) return checked;
+  const auto number = static_cast<double>(chunks->chunks.size());
+  scheduler_.AwaitRoom();
+  const absl::Status reported = scheduler_.Report(
+      lease, {.chunks = std::move(chunks->chunks), .seconds = chunks->processor_seconds});
+  if (absl::IsUnavailable(reported)) return reported;
+  bytes = rest;
+  MutexLock lock(mutex_);
+  status_.chunks += number;
+  return reported;
+}
+
+// Its chunks are on disk.
+void FolderExecutor::End(const LeaseFileName& file) {
+  const absl::Status removed = files_->Remove(file.Done(*file.outcome));
+  const auto found = leases_.find(file.lease);
+  if (found == leases_.end() || (!removed.ok() && !absl::IsNotFound(removed))) return;
+  const Lease& lease = found->second.lease;
+  if (*file.outcome == Outcome::kCrashed) {
+    LogError(absl::StrCat("cluster folder: the engine crashed in worker ", file.worker));
+    scheduler_.ReturnCrashed(lease);
+  }
+  if (*file.outcome == Outcome::kNoMemory) {
+    const double needed = MemoryOf(*lease.spec, lease.experiment->parameters(), 1);
+    capacity_.memory = std::min(capacity_.memory, needed - 1);
+    Log(Severity::kWarning,
+        absl::StrCat("cluster folder: worker ", file.worker, " has less than ", needed,
+                     " bytes of memory; this server's threads compute such points"));
+  }
+  if (*file.outcome == Outcome::kLost) {
+    MutexLock lock(mutex_);
+    ++status_.lost_leases;
+  }
+  GiveBack(found, *file.outcome != Outcome::kNoMemory);
+}
+
+// Chunks of the lease that did not arrive go out again. No effect if the lease was returned before.
+void FolderExecutor::GiveBack(Leases::iterator laid, bool tried) {
+  scheduler_.Return(laid->second.lease, tried);
+  taken_ -= !laid->second.worker.empty();
+  leases_.erase(laid);
+}
+
+// ---- files that stay where they are ----
+
+void FolderExecutor::LookAt(Leases::iterator laid) {
+  const LeaseFileName file = {laid->first, laid->second.worker};
+  if (!scheduler_.Needs(laid->second.lease)) {
+    files_->Remove(file.worker.empty() ? file.Todo() : file.Taken()).IgnoreError();
+    return GiveBack(laid, true);
+  }
+  return file.worker.empty() ? LookAtWaiting(laid) : LookAtTaken(laid);
+}
+
+void FolderExecutor::LookAtWaiting(Leases::iterator laid) {
+  if (SecondsBetween(laid->second.alive, SteadyNow()) < laid->second.pace.timeout) return;
+  const absl::Status removed = files_->Remove(LeaseFileName{laid->first}.Todo());
+  if (absl::IsNotFound(removed)) return NoteMissing(laid);  // perhaps a worker has just taken it
+  GiveBack(laid, false);
+}
+
+void FolderExecutor::LookAtTaken(Leases::iterator laid) {
+  Laid& lease = laid->second;
+  const LeaseFileName file = {laid->first, lease.worker};
+  const Clock::time_point now = SteadyNow();
+  const bool is_late = SecondsBetween(lease.alive, now) >= lease.pace.timeout;
+  const bool is_due = SecondsBetween(lease.looked, now) >= 1.1 * lease.pace.touch;
+  if (!is_late && !is_due && lease.missing == 0) return;
+  lease.looked = now;
+  const absl::StatusOr<FileStamp> stamp = files_->Stamp(file.Taken());
+  if (absl::IsNotFound(stamp.status())) return NoteMissing(laid);
+  lease.missing = 0;
+  if (stamp.ok() && std::exchange(lease.stamp, *stamp) != *stamp) {
+    lease.alive = now;
+    if (stamp->bytes > lease.reported) Report(file);
+    return;
+  }
+  if (!is_late) return;
+  // Its chunks are read from done/ in the next look.
+  const absl::Status moved = files_->Move(file.Taken(), file.Done(Outcome::kLost));
+  if (!moved.ok() && !absl::IsNotFound(moved)) GiveBack(laid, true);
+}
+
+void FolderExecutor::NoteMissing(Leases::iterator laid) {
+  if (++laid->second.missing <= kMissingLooks) return;
+  {
+    MutexLock lock(mutex_);
+    ++status_.lost_leases;
+  }
+  GiveBack(laid, !laid->second.worker.empty());
+}
+
+// ---- new leases ----
+
+absl::Status FolderExecutor::Lay() {
+  if (SteadyNow() < next_laying_) return absl::OkStatus();
+  for (size_t i = 0; i < kMostLaidAtOnce; ++i) {
+    const size_t waiting = leases_.size() - taken_;
+    const size_t wanted = std::max(options_.least_waiting, std::min(taken_, kMostWaiting));
+    const bool has_enough = waiting >= wanted;
+    if (has_enough || leases_.size() >= options_.most_leases) break;
+    capacity_.seconds = PaceOf(options_, leases_.size()).lease;
+    std::optional<Lease> lease = scheduler_.Next(capacity_);
+    if (!lease) break;
+    absl::Status laid = LayOne(*std::move(lease));
+    if (laid.ok()) continue;
+    backoff_ = std::clamp(2 * backoff_, std::chrono::seconds(1), kLongestBackoff);
+    next_laying_ = SteadyNow() + backoff_;
+    return laid;
+  }
+  backoff_ = std::chrono::seconds(0);
+  return absl::OkStatus();
+}
+
+absl::Status FolderExecutor::LayOne(Lease lease) {
+  const Pace pace = PaceOf(options_, leases_.size());
+  const LeaseFileName file = {absl::StrCat(process_, "-", ++laid_)};
+  const std::string bytes = BytesOf(LeaseRecord(lease, IdentityOf(lease)), pace.touch);
+  // The folder may have changed while there was no work.
+  const absl::Status ready = leases_.empty() ? server_.prepare() : absl::OkStatus();
+  const absl::StatusOr<FileStamp> stamp = ready.ok() ? files_->Create(file.Todo(), bytes) : ready;
+  if (!stamp.ok()) {
+    scheduler_.Return(lease, false);
+    return stamp.status();
+  }
+  Failpoint("cluster.laid");
+  const Clock::time_point now = SteadyNow();
+  leases_.emplace(file.lease, Laid{.lease = std::move(lease),
+                                   .pace = pace,
+                                   .alive = now,
+                                   .looked = now,
+                                   .stamp = *stamp,
+                                   .reported = bytes.size()});
+  return absl::OkStatus();
+}
+
+FolderStatus FolderExecutor::Status() const {
+  MutexLock lock(mutex_);
+  return status_;
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,155 @@
+// Computes leases on machines that share a folder with the server: it lays leases into the folder,
+// and workers that somebody starts there take them (worker/worker.h).
+//
+// The folder is a means of transport and no store: it may be emptied at any time. The file of a
+// lease proves the chunks in it, whoever laid it (worker/lease_file.h). So a later process of the
+// server reads what the workers of an earlier one left. The server looks every second:
+//   - A lease in done/ ends. Its chunks are reported and on disk before its file is removed.
+//   - A lease in taken/ of which the server knows nothing is moved to done/, so its worker stops.
+//   - A lease that nobody takes goes back to the scheduler after the time-out, so this server's
+//     threads can compute it. If they have other work, the lease is laid again.
+//   - A lease is lost if its file does not change for the time-out. The server compares times of
+//     the folder with each other only, and measures the time-out with its own steady clock. So a
+//     clock that jumps loses no lease.
+// Properties, each with a test of its name:
+//   1. AFileOfAnEarlierProcessIsReported.  2. ALateWorkerChangesNothing.
+//   3. AJumpOfTheFoldersClockLosesNoLease.  4. AnEmptiedFolderLosesNoWork.
+// Thread-safe. One thread.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/compute/scheduler.h"
+#include "server/mutex.h"
+#include "server/periodic_thread.h"
+#include "server/worker/lease_file.h"
+#include "server/worker/shared_files.h"
+
+namespace ballpiston::server {
+
+struct ClusterOptions {
+  std::string folder = {};
+  std::string worker = {};                       // the program; empty: as installed
+  std::chrono::milliseconds least_work{60'000};  // a run with less to compute stays here
+  std::chrono::milliseconds timeout{120'000};    // after which a silent lease is lost
+  std::chrono::milliseconds lease{180'000};      // of computing, about
+  std::chrono::milliseconds look{1'000};         // between two looks
+  // A longer chunk, in seconds, is computed here.
+  double longest_chunk = std::numeric_limits<double>::infinity();
+  size_t most_leases = 10'000;  // that workers have, and that wait for one
+  size_t least_waiting = 16;    // leases that wait for a worker, if there is work
+};
+
+// How long leases are, and how often a worker touches the file of its own.
+struct Pace {
+  double lease, touch, timeout;  // seconds
+};
+
+// For so many leases at a time: a lease takes 9 metadata operations, and a touch and the look at it
+// take 2. Up to 600 leases all the options hold. With more, leases are so long that all operations
+// together are at most 100 a second, and a worker is late before it touches its file.
+Pace PaceOf(const ClusterOptions& options, size_t leases);
+
+// The work that is in the folder, at one moment.
+struct FolderStatus {
+  std::string problem = {};  // empty: none
+  double waiting_leases = 0;
+  double taken_leases = 0;
+  // Since the start.
+  double claims = 0;  // leases that workers took
+  double chunks = 0;
+  double lost_leases = 0;
+  double refused_files = 0;
+};
+
+class FolderExecutor : public Executor {
+ public:
+  // What the executor needs of the server.
+  struct Server {
+    std::string identity;                 // names it among all that may use the folder
+    std::function<absl::Status()> flush;  // OK: all that was reported is on disk
+    // Makes the folder ready; called before a look, and again every 30 s. The error is shown.
+    std::function<absl::Status()> prepare;
+    LeaseReader read_lease = TakeLease;
+  };
+
+  // The scheduler must outlive this. Begins with Start.
+  FolderExecutor(Scheduler& scheduler, const ClusterOptions& options,
+                 std::unique_ptr<SharedFiles> files, Server server);
+  ~FolderExecutor() override;  // shuts down
+
+  ExecutorTraits traits() const override { return {.local = false}; }
+  void Start() override;
+  void Wake() override {}  // it looks every second
+  bool HasTurn(int64_t) const override { return false; }
+  void Shutdown() override;  // workers go on
+
+  // What Start calls from its thread every second. Tests call it themselves.
+  void Look();
+
+  FolderStatus Status() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  // A lease that is in the folder.
+  struct Laid {
+    Lease lease;
+    Pace pace;
+    Clock::time_point alive;   // when it was laid or taken, or when its file had changed
+    Clock::time_point looked;  // at the file
+    FileStamp stamp;           // then
+    size_t reported = 0;       // bytes of the file
+    std::string worker = {};   // empty: nobody has taken it
+    int missing = 0;           // looks in a row in which the file was nowhere
+  };
+  using Leases = std::map<std::string, Laid>;  // by name
+
+  absl::Status Prepare();
+  absl::Status Collect();
+  void NoteTaken(const LeaseFileName& file);
+  bool Report(const LeaseFileName& file);
+  absl::Status ReportChunks(const IdentifiedLease& lease, absl::string_view& bytes);
+  void End(const LeaseFileName& file);
+  void LookAt(Leases::iterator laid);
+  void LookAtWaiting(Leases::iterator laid);
+  void LookAtTaken(Leases::iterator laid);
+  void NoteMissing(Leases::iterator laid);
+  void GiveBack(Leases::iterator laid, bool tried);
+  absl::Status Lay();
+  absl::Status LayOne(Lease lease);
+  void NoteOutcome(const absl::Status& outcome);
+  void Refuse(const absl::Status& why);
+  JobIdentity IdentityOf(const Lease& lease) const;
+
+  Scheduler& scheduler_;
+  const ClusterOptions options_;
+  const std::unique_ptr<SharedFiles> files_;
+  const Server server_;
+  const std::string process_;  // begins the names of this process's leases
+  Capacity capacity_;
+
+  // Used only by the thread that looks.
+  Leases leases_;
+  size_t taken_ = 0;  // of these
+  uint64_t laid_ = 0;
+  std::optional<Clock::time_point> prepared_;
+  Clock::time_point next_look_ = {};
+  Clock::time_point next_laying_ = {};
+  std::chrono::seconds backoff_{0};
+
+  mutable Mutex mutex_;
+  FolderStatus status_ ABSL_GUARDED_BY(mutex_);
+  std::unique_ptr<PeriodicThread> looking_;
+};
+
+}  // namespace ballpiston::server

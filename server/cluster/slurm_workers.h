@@ -1,0 +1,123 @@
+// Keeps workers of a shared folder in the queue of a Slurm cluster: as many as there are leases, at
+// most --slurm-workers.
+//
+// The workers are tasks of job arrays. They are all alike, and Slurm knows nothing of leases. So it
+// does not matter which of them Slurm loses, starts twice or never starts: the next query of the
+// queue counts those that are there, and the difference is submitted. All workers of a server have
+// one job name. One query in 30 s; none while there is no work. Thread-safe. One thread, because
+// Slurm's tools may block for minutes.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "server/cluster/folder_executor.h"
+#include "server/mutex.h"
+#include "server/periodic_thread.h"
+
+namespace ballpiston::server {
+
+struct SlurmOptions {
+  std::string partition = {};  // these three are empty for the cluster's defaults
+  std::string account = {};
+  std::string cluster = {};
+  int64_t time_limit_minutes = 60;
+  std::vector<std::string> sbatch_options = {};  // further words for sbatch
+  size_t workers = 1000;                         // that wait or run at a time
+  size_t max_array_size = 1000;                  // Slurm's MaxArraySize, less one
+  std::chrono::milliseconds query_interval{30'000};
+};
+
+// The server's workers in Slurm's queue.
+struct SlurmQueue {
+  size_t waiting = 0;
+  size_t running = 0;
+  std::string never = {};  // why one of them waits for ever; empty: none does
+};
+
+struct SlurmStatus {
+  std::string problem = {};  // empty: none
+  SlurmQueue queue;          // by Slurm's last answer
+  double queries = 0;        // since the start
+};
+
+// The lines of `squeue --noheader --array --format=kQueueFormat`. Lines that cannot be read are
+// left out.
+inline constexpr absl::string_view kQueueFormat = "%T|%r";
+SlurmQueue ParseQueue(absl::string_view lines);
+
+// Slurm's command-line tools. Tests have others.
+class SlurmTools {
+ public:
+  // `name`: of the jobs. `folder`: the shared one.
+  SlurmTools(const SlurmOptions& options, std::string name, std::string folder);
+  virtual ~SlurmTools() = default;
+
+  // The message of an error is Slurm's own. Slurm may have accepted the array nevertheless.
+  virtual absl::Status Submit(size_t workers, const std::stop_token& stop);
+  virtual absl::StatusOr<SlurmQueue> Query(const std::stop_token& stop);
+  virtual absl::Status Cancel(const std::stop_token& stop);  // all workers
+
+ private:
+  std::vector<std::string> Words(absl::string_view tool) const;
+
+  const SlurmOptions options_;
+  const std::string name_;
+  const std::string folder_;
+};
+
+// The longest chunk, in seconds, that a worker with this time limit can be expected to complete.
+double LongestChunk(const SlurmOptions& options);
+
+class SlurmWorkers {
+ public:
+  // `work`: what is in the folder now. `ready`: makes the folder ready for a worker.
+  SlurmWorkers(const SlurmOptions& options, std::unique_ptr<SlurmTools> tools,
+               std::function<FolderStatus()> work, std::function<absl::Status()> ready);
+  ~SlurmWorkers() { Shutdown(); }
+
+  void Start();
+  void Shutdown();  // the workers go on
+
+  // What Start calls from its thread every second. Tests call it themselves.
+  void Look();
+
+  SlurmStatus Status() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  absl::Status Steer(const FolderStatus& work);
+  absl::Status Fill(size_t missing);
+  absl::Status CheckThatWorkersWork(const FolderStatus& work, const SlurmQueue& queue);
+
+  const SlurmOptions options_;
+  const std::unique_ptr<SlurmTools> tools_;
+  const std::function<FolderStatus()> work_;
+  const std::function<absl::Status()> ready_;
+  std::stop_source stop_;
+
+  // Used only by the thread that looks.
+  size_t array_size_;
+  bool may_have_workers_ = true;  // of an earlier process
+  bool has_submitted_ = false;    // since the last query
+  double claims_ = 0;             // at the last query
+  Clock::time_point next_query_ = {};
+  std::chrono::milliseconds backoff_{0};
+
+  mutable Mutex mutex_;
+  SlurmStatus status_ ABSL_GUARDED_BY(mutex_);
+  std::unique_ptr<PeriodicThread> looking_;
+};
+
+}  // namespace ballpiston::server

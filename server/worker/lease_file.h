@@ -1,0 +1,57 @@
+// The file of a lease, and its names. The file begins with the lease; the worker appends the chunks
+// that it has computed; at its end the worker moves the file to done/. So the file alone proves
+// which chunks are whose, also to a later process of the server.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "server/worker/chunk_file.h"
+#include "server/worker/lease_record.h"
+
+namespace ballpiston::server {
+
+// How a worker has ended with a lease.
+enum class Outcome {
+  kFinished,  // every chunk that the lease needs is in the file
+  kReturned,  // the worker had to end
+  kLost,      // the worker was silent for too long; the server has moved the file
+  kCrashed,   // the engine killed the worker
+  kNoMemory,  // the lease needs more memory than the worker may use
+};
+
+// "LEASE", "LEASE.WORKER" or "LEASE.WORKER.OUTCOME".
+struct LeaseFileName {
+  std::string lease;
+  std::string worker = {};
+  std::optional<Outcome> outcome = {};
+
+  std::string Todo() const { return "todo/" + lease; }
+  std::string Taken() const { return "taken/" + lease + "." + worker; }
+  std::string Done(Outcome how) const;
+};
+
+// A file's name without its folder. Empty if it is not the name of a lease's file in that folder.
+std::optional<LeaseFileName> ParseTaken(absl::string_view name);
+std::optional<LeaseFileName> ParseDone(absl::string_view name);
+
+// The beginning of a lease's file.
+struct LeaseFile {
+  IdentifiedLease lease;
+  double touch_seconds = 20;  // the worker gives the file another time as often as this
+};
+
+std::string BytesOf(const storage::Lease& lease, double touch_seconds);
+std::string BytesOf(const LeaseChunks& chunks);
+
+// These take one frame off `bytes`. Errors of TakeFrame, LeaseOfRecord and LeaseChunksFromPayload.
+absl::StatusOr<LeaseFile> TakeLease(absl::string_view& bytes);
+using LeaseReader = std::function<absl::StatusOr<LeaseFile>(absl::string_view& bytes)>;
+absl::StatusOr<LeaseChunks> TakeChunks(absl::string_view& bytes);
+
+}  // namespace ballpiston::server

@@ -1,0 +1,198 @@
+#include "server/worker/worker.h"
+
+#include <algorithm>
+#include <optional>
+#include <stop_token>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "core/ensemble/experiment_kind.h"
+#include "server/status/failpoint.h"
+#include "server/worker/lease_runner.h"
+
+namespace ballpiston::server {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+using Clock = std::chrono::steady_clock;
+
+// Between two looks for a lease, without one. The first look is random, because many workers may
+// start at the same time.
+constexpr double kFirstLook = 1, kLongestLook = 20;
+
+Clock::duration InTicks(double seconds) {
+  return std::chrono::duration_cast<Clock::duration>(Seconds(seconds));
+}
+
+// Computes one lease that the worker has taken.
+class LeaseWork : private ChunkReceiver {
+ public:
+  LeaseWork(SharedFiles& files, const WorkerOptions& options, const WorkerHost& host,
+            LeaseFileName name, const LeaseFile& file)
+      : files_(files),
+        options_(options),
+        host_(host),
+        name_(std::move(name)),
+        lease_(file.lease),
+        between_touches_(InTicks(file.touch_seconds)),
+        last_touch_(host.now()) {
+    StartMessage();
+  }
+
+  absl::Status Run() {
+    CrashForSeed(lease_.lease.spec->seed);
+    const bool is_finished = RunLease(lease_.lease, stop_.get_token(), *this);
+    if (is_lost_) return absl::OkStatus();
+    const Outcome outcome = is_finished ? Outcome::kFinished : Outcome::kReturned;
+    absl::Status left = Retried([this] { return LeaveChunks(); });
+    if (left.ok()) left = Retried([&] { return files_.Move(name_.Taken(), name_.Done(outcome)); });
+    return absl::IsNotFound(left) ? absl::OkStatus() : left;
+  }
+
+ private:
+  void ChunkDone(ChunkResult chunk) override {
+    message_.chunks.push_back(std::move(chunk));
+    if (host_.end() != EndOfWork::kNotYet) stop_.request_stop();
+  }
+
+  void Worked(double seconds) override {
+    message_.processor_seconds += seconds;
+    if (host_.end() == EndOfWork::kNow) stop_.request_stop();
+    if (is_lost_ || host_.now() - last_touch_ < between_touches_) return;
+    last_touch_ = host_.now();
+    const absl::Status touched = LeaveChunks(true);
+    is_lost_ = absl::IsNotFound(touched);
+    if (is_lost_) stop_.request_stop();
+    if (!touched.ok()) host_.report(touched.message());
+  }
+
+  // Without chunks, touches the file if this is wanted.
+  absl::Status LeaveChunks(bool touches = false) {
+    if (message_.chunks.empty()) {
+      return touches ? files_.Touch(name_.Taken()) : absl::OkStatus();
+    }
+    absl::Status left = files_.Append(name_.Taken(), BytesOf(message_));
+    if (left.ok()) StartMessage();
+    return left;
+  }
+
+  void StartMessage() {
+    const auto& [job, lease] = lease_;
+    message_ = {.job = job, .point = lease.point, .attempt = lease.attempt};
+  }
+
+  // Again while the folder is full or cannot be used, but not for ever.
+  absl::Status Retried(const std::function<absl::Status()>& attempt) const {
+    for (double waited = 0;; waited += options_.retry_seconds) {
+      absl::Status status = attempt();
+      const bool may_pass = absl::IsUnavailable(status) || absl::IsResourceExhausted(status);
+      if (!may_pass || waited >= options_.give_up_seconds) return status;
+      host_.report(absl::StrCat(status.message(), "; retry in ", options_.retry_seconds, " s"));
+      host_.sleep(Seconds(options_.retry_seconds));
+    }
+  }
+
+  SharedFiles& files_;
+  const WorkerOptions& options_;
+  const WorkerHost& host_;
+  const LeaseFileName name_;
+  const IdentifiedLease& lease_;
+  const Clock::duration between_touches_;
+  Clock::time_point last_touch_;
+  std::stop_source stop_;
+  LeaseChunks message_;  // not in the file yet
+  bool is_lost_ = false;
+};
+
+class Worker {
+ public:
+  Worker(SharedFiles& files, const WorkerOptions& options, const WorkerHost& host)
+      : files_(files), options_(options), host_(host) {}
+
+  absl::Status Run() {
+    double look = kFirstLook * Random();
+    Clock::time_point last_work = host_.now();
+    while (host_.end() == EndOfWork::kNotYet) {
+      const absl::StatusOr<bool> worked = TakeOne();
+      const bool may_pass = worked.ok() || absl::IsUnavailable(worked.status()) ||
+                            absl::IsResourceExhausted(worked.status());
+      if (!may_pass) return worked.status();
+      if (worked.ok() && *worked) {
+        last_work = host_.now();
+        look = kFirstLook;
+        continue;
+      }
+      if (host_.now() - last_work >= InTicks(options_.idle_seconds)) return worked.status();
+      host_.sleep(Seconds(std::min(look, options_.idle_seconds)));
+      look = std::min(2 * look + kFirstLook * Random(), kLongestLook);
+    }
+    return absl::OkStatus();
+  }
+
+ private:
+  double Random() const { return 0x1p-64 * static_cast<double>(host_.random_bits()); }
+
+  // False if there is no lease to take.
+  absl::StatusOr<bool> TakeOne() {
+    absl::StatusOr<std::vector<std::string>> names = files_.List("todo");
+    if (!names.ok()) return names.status();
+    while (!names->empty()) {
+      std::string& any = (*names)[host_.random_bits() % names->size()];
+      const LeaseFileName name = {std::move(any), options_.name};
+      any = std::move(names->back());
+      names->pop_back();
+      const absl::Status taken = files_.Move(name.Todo(), name.Taken());
+      if (taken.ok()) return Compute(name);
+      if (!absl::IsNotFound(taken)) return taken;  // otherwise another worker has it
+    }
+    return false;
+  }
+
+  absl::StatusOr<bool> Compute(const LeaseFileName& name) {
+    const absl::StatusOr<std::string> bytes = files_.Read(name.Taken(), 0);
+    if (absl::IsNotFound(bytes.status())) return true;  // the server needs it no more
+    if (!bytes.ok()) return Ended(name, Outcome::kReturned, bytes.status());
+    absl::string_view rest = *bytes;
+    const absl::StatusOr<LeaseFile> file = host_.read_lease(rest);
+    if (absl::IsOutOfRange(file.status())) {  // the server still writes it
+      const absl::Status back = files_.Move(name.Taken(), name.Todo());
+      return absl::IsNotFound(back) || back.ok() ? absl::StatusOr<bool>(false) : back;
+    }
+    if (absl::IsUnimplemented(file.status())) {
+      files_.Move(name.Taken(), name.Todo()).IgnoreError();
+      return file.status();
+    }
+    if (!file.ok()) return Ended(name, Outcome::kReturned, file.status());
+    const Lease& lease = file->lease.lease;
+    const double needed = MemoryOf(*lease.spec, lease.experiment->parameters(), 1);
+    if (needed > options_.memory) {
+      return Ended(name, Outcome::kNoMemory,
+                   absl::OutOfRangeError(absl::StrCat("a lease needs ", needed,
+                                                      " bytes of memory; this worker may use ",
+                                                      options_.memory)));
+    }
+    host_.lease_begins(name.Taken(), name.Done(Outcome::kCrashed));
+    const absl::Status done = LeaseWork(files_, options_, host_, name, *file).Run();
+    if (!done.ok()) return done;
+    return true;
+  }
+
+  absl::StatusOr<bool> Ended(const LeaseFileName& name, Outcome outcome, const absl::Status& why) {
+    host_.report(absl::StrCat(name.lease, ": ", why.message()));
+    const absl::Status moved = files_.Move(name.Taken(), name.Done(outcome));
+    return moved.ok() || absl::IsNotFound(moved) ? absl::StatusOr<bool>(true) : moved;
+  }
+
+  SharedFiles& files_;
+  const WorkerOptions& options_;
+  const WorkerHost& host_;
+};
+
+}  // namespace
+
+absl::Status Work(SharedFiles& files, const WorkerOptions& options, const WorkerHost& host) {
+  return Worker(files, options, host).Run();
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,353 @@
+// The executor of a shared folder, step by step: the test looks, and does the workers' part.
+#include "server/cluster/folder_executor.h"
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "core/ensemble/point_fold.h"
+#include "core/experiment/all_experiments.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/compute/crash_record.h"
+#include "server/worker/checked_file.h"
+#include "server/worker/worker.h"
+#include "tests/server/compute/recording_journal.h"
+#include "tests/server/compute/remote_executor.h"
+#include "tests/server/compute/run_requests.h"
+#include "tests/server/compute/stepped_executor.h"
+#include "tests/server/factory_opener.h"
+#include "tests/server/worker/fake_files.h"
+#include "tests/server/worker/sample_leases.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::server {
+namespace {
+
+using std::chrono::milliseconds;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+// One point of six chunks and more. A lease has one.
+EnsembleSpec SomeSpec() { return SpecOf(kFirstHit, Model::kBilliard, 100'000); }
+
+class FolderExecutorTest : public testing::Test {
+ protected:
+  FolderExecutorTest() { Restart(); }
+  ~FolderExecutorTest() override { scheduler_->Shutdown(); }
+
+  // A new process of the server, with the same folder.
+  void Restart(ClusterOptions options = {.look = milliseconds(0), .least_waiting = 2}) {
+    if (scheduler_ != nullptr) scheduler_->Shutdown();
+    executor_.reset();
+    local_.reset();
+    scheduler_ =
+        std::make_unique<Scheduler>(opener_, 1, SchedulerOptions{.least_seconds_elsewhere = 0});
+    local_ = std::make_unique<SteppedExecutor>(*scheduler_);
+    options.lease = milliseconds(0);  // one chunk
+    executor_ = std::make_unique<FolderExecutor>(
+        *scheduler_, options, std::make_unique<SameFiles>(files_),
+        FolderExecutor::Server{.identity = "me",
+                               .flush = [this] { return flush_; },
+                               .prepare = [this] { return prepare_; }});
+  }
+
+  JournalPointer Begin(const EnsembleSpec& spec = SomeSpec()) {
+    auto journal = std::make_shared<RecordingJournal>();
+    scheduler_->Add(RunOf(1, spec, journal));
+    EXPECT_TRUE(local_->TakeTurn());  // opens the point
+    executor_->Look();
+    return journal;
+  }
+
+  std::vector<std::string> In(const std::string& subfolder) const {
+    return *FakeFiles(files_).List(subfolder);
+  }
+
+  // A worker takes the lease. Its file in taken/, without the folder.
+  std::string Take(const std::string& lease, const std::string& worker = "w") {
+    EXPECT_OK(files_.Move("todo/" + lease, absl::StrCat("taken/", lease, ".", worker)));
+    return absl::StrCat(lease, ".", worker);
+  }
+
+  // The number of the lease's first chunk.
+  uint64_t FirstChunkOf(const std::string& path) const { return RecordIn(path).first_chunk(); }
+
+  storage::Lease RecordIn(const std::string& path) const {
+    absl::string_view bytes = files_.files.at(path).bytes;
+    storage::LeaseFile record;
+    const auto payload = TakeFrame(FrameKind::kLease, bytes);
+    EXPECT_TRUE(payload.ok() && record.ParseFromString(std::string(*payload)));
+    return record.lease();
+  }
+
+  // The worker appends a message with the lease's chunks.
+  void Compute(const std::string& taken, const std::string& server = "me") {
+    absl::string_view bytes = files_.files.at("taken/" + taken).bytes;
+    const absl::StatusOr<LeaseFile> file = TakeLease(bytes);
+    ASSERT_OK(file.status());
+    LeaseChunks chunks = {.job = file->lease.job,
+                          .point = file->lease.lease.point,
+                          .attempt = file->lease.lease.attempt,
+                          .chunks = ComputedChunks(file->lease.lease),
+                          .processor_seconds = 1};
+    chunks.job.server = server;
+    EXPECT_OK(files_.Append("taken/" + taken, BytesOf(chunks)));
+  }
+
+  void End(const std::string& taken, const std::string& outcome = "finished") {
+    EXPECT_OK(files_.Move("taken/" + taken, absl::StrCat("done/", taken, ".", outcome)));
+  }
+
+  // Real workers compute what is left.
+  void ComputeAll(RecordingJournal& journal) {
+    WorkerHost host = {.now = [] { return std::chrono::steady_clock::time_point(); },
+                       .sleep = [](auto) {},
+                       .random_bits = [] { return 1; },
+                       .end = [] { return EndOfWork::kNotYet; },
+                       .report = [](absl::string_view) {},
+                       .lease_begins = [](const std::string&, const std::string&) {}};
+    for (int round = 0; round < 50 && !journal.outcome; ++round) {
+      EXPECT_OK(Work(files_, {.name = "real", .idle_seconds = 0}, host));
+      executor_->Look();
+    }
+    ASSERT_TRUE(journal.outcome);
+    EXPECT_OK(*journal.outcome);
+    const auto experiment = PointExperiment::Create(SomeSpec(), 0);
+    EXPECT_TRUE(journal.finished.at(0) == FoldPoint(*experiment));
+    EXPECT_EQ(journal.merged.at(0), experiment->plan().samples());
+  }
+
+  FakeFiles files_;
+  absl::Status flush_, prepare_;
+  FactoryOpener opener_{
+      [](const EnsembleSpec& spec, size_t index) { return PointExperiment::Create(spec, index); }};
+  std::unique_ptr<Scheduler> scheduler_;
+  std::unique_ptr<SteppedExecutor> local_;
+  std::unique_ptr<FolderExecutor> executor_;
+};
+
+TEST_F(FolderExecutorTest, WorkersGiveTheSameBytes) {
+  const auto journal = Begin();
+  EXPECT_THAT(In("todo"), SizeIs(2));
+  ComputeAll(*journal);
+  EXPECT_THAT(files_.files, IsEmpty());
+  EXPECT_GE(executor_->Status().chunks, 5);
+  EXPECT_EQ(executor_->Status().lost_leases, 0);
+}
+
+TEST_F(FolderExecutorTest, AFileStaysUntilItsChunksAreOnDisk) {
+  const auto journal = Begin();
+  const std::string taken = Take(In("todo")[0]);
+  Compute(taken);
+  End(taken);
+  flush_ = absl::UnavailableError("the disk is slow");
+  executor_->Look();
+  EXPECT_THAT(In("done"), ElementsAre(taken + ".finished"));
+  EXPECT_EQ(executor_->Status().problem, "the disk is slow");
+  flush_ = absl::OkStatus();
+  executor_->Look();
+  EXPECT_THAT(In("done"), IsEmpty());
+  EXPECT_EQ(executor_->Status().problem, "");
+  ComputeAll(*journal);
+}
+
+// The file in taken/ is moved away, so that its worker stops. The point is not open yet when the
+// later process looks for the first time.
+TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReported) {
+  const EnsembleSpec spec = SomeSpec();
+  Begin(spec);
+  const std::string taken = Take(In("todo")[0]);
+  Compute(taken);
+  Restart();
+  auto journal = std::make_shared<RecordingJournal>();
+  scheduler_->Add(RunOf(1, spec, journal));
+  executor_->Look();
+  executor_->Look();
+  EXPECT_THAT(In("taken"), IsEmpty());
+  EXPECT_THAT(In("done"), ElementsAre(taken + ".lost"));
+  EXPECT_TRUE(local_->TakeTurn());  // opens the point
+  executor_->Look();
+  EXPECT_THAT(In("done"), IsEmpty());
+  EXPECT_EQ(executor_->Status().chunks, 1);
+  ComputeAll(*journal);
+}
+
+TEST_F(FolderExecutorTest, ACancelledRunLeavesNoFile) {
+  const auto journal = Begin();
+  Take(In("todo")[0]);
+  executor_->Look();
+  scheduler_->Cancel(1);
+  executor_->Look();
+  EXPECT_THAT(files_.files, IsEmpty());
+  EXPECT_THAT(*journal->outcome, StatusIs(absl::StatusCode::kCancelled));
+}
+
+TEST_F(FolderExecutorTest, ACrashOfTheEngineIsCounted) {
+  const auto journal = Begin();
+  for (int death = 0; death < kMostDeaths; ++death) {
+    ASSERT_FALSE(journal->outcome);
+    std::string crashing;
+    for (const std::string& name : In("todo")) {
+      if (FirstChunkOf("todo/" + name) == 0) crashing = name;
+    }
+    ASSERT_NE(crashing, "");
+    End(Take(crashing), "crashed");
+    executor_->Look();
+  }
+  ASSERT_TRUE(journal->outcome);
+  EXPECT_THAT(*journal->outcome, StatusIs(absl::StatusCode::kInternal));
+}
+
+TEST_F(FolderExecutorTest, AReturnedLeaseIsLaidAgain) {
+  const auto journal = Begin();
+  const std::string name = In("todo")[0];
+  const uint64_t chunk = FirstChunkOf("todo/" + name);
+  End(Take(name), "returned");
+  executor_->Look();
+  std::vector<uint64_t> chunks;
+  for (const std::string& laid : In("todo")) chunks.push_back(FirstChunkOf("todo/" + laid));
+  EXPECT_THAT(chunks, testing::Contains(chunk));
+  ComputeAll(*journal);
+}
+
+TEST_F(FolderExecutorTest, DamagedFilesAreRefusedAndComputedAgain) {
+  const auto journal = Begin();
+  const std::string taken = Take(In("todo")[0]);
+  Compute(taken);
+  files_.files["taken/" + taken].bytes.back() ^= 1;
+  End(taken);
+  files_.files["done/unknown.w.finished"].bytes = "a foreign file of some length, of no server";
+  executor_->Look();
+  EXPECT_EQ(executor_->Status().refused_files, 2);
+  EXPECT_THAT(In("done"), IsEmpty());
+  ComputeAll(*journal);
+}
+
+TEST_F(FolderExecutorTest, ChunksForAnotherServerAreRefused) {
+  const auto journal = Begin();
+  const std::string taken = Take(In("todo")[0]);
+  Compute(taken, "another");
+  End(taken);
+  executor_->Look();
+  EXPECT_EQ(executor_->Status().refused_files, 1);
+  ComputeAll(*journal);
+}
+
+TEST_F(FolderExecutorTest, OtherNamesAreLeftAlone) {
+  Begin();
+  files_.files["done/.nfs0001"] = {};
+  files_.files["done/README"] = {};
+  executor_->Look();
+  EXPECT_THAT(In("done"), ElementsAre(".nfs0001", "README"));
+}
+
+// ---- time-outs: of 0 s, so every look is late ----
+
+const ClusterOptions kNoTimeOut = {
+    .timeout = milliseconds(0), .look = milliseconds(0), .least_waiting = 2};
+
+TEST_F(FolderExecutorTest, ALeaseThatNobodyTakesGoesBack) {
+  Restart(kNoTimeOut);
+  Begin();
+  const std::vector<std::string> before = In("todo");
+  executor_->Look();
+  EXPECT_THAT(In("todo"), SizeIs(2));
+  EXPECT_THAT(In("todo"), Each(testing::Not(testing::AnyOfArray(before))));
+  EXPECT_EQ(executor_->Status().lost_leases, 0);
+}
+
+TEST_F(FolderExecutorTest, ASilentWorkerLosesItsLease) {
+  Restart(kNoTimeOut);
+  const auto journal = Begin();
+  const std::string taken = Take(In("todo")[0]);
+  executor_->Look();
+  EXPECT_THAT(In("done"), ElementsAre(taken + ".lost"));
+  executor_->Look();
+  EXPECT_THAT(In("done"), IsEmpty());
+  EXPECT_EQ(executor_->Status().lost_leases, 1);
+  ComputeAll(*journal);
+}
+
+TEST_F(FolderExecutorTest, ALateWorkerChangesNothing) {
+  Restart(kNoTimeOut);
+  const auto journal = Begin();
+  const std::string taken = Take(In("todo")[0]);
+  executor_->Look();
+  executor_->Look();
+  EXPECT_THAT(files_.Append("taken/" + taken, "late"), StatusIs(absl::StatusCode::kNotFound));
+  EXPECT_THAT(files_.Move("taken/" + taken, "done/" + taken + ".finished"),
+              StatusIs(absl::StatusCode::kNotFound));
+  ComputeAll(*journal);
+}
+
+TEST_F(FolderExecutorTest, ChunksOfASilentWorkerCount) {
+  Restart(kNoTimeOut);
+  const auto journal = Begin();
+  const std::string taken = Take(In("todo")[0]);
+  Compute(taken);
+  for (int i = 0; i < 3; ++i) executor_->Look();
+  EXPECT_THAT(In("done"), IsEmpty());
+  EXPECT_EQ(executor_->Status().chunks, 1);
+  ComputeAll(*journal);
+}
+
+TEST_F(FolderExecutorTest, AJumpOfTheFoldersClockLosesNoLease) {
+  Restart(kNoTimeOut);
+  Begin();
+  const std::string taken = Take(In("todo")[0]);
+  for (const absl::Duration jump : {absl::Hours(10), -absl::Hours(20), absl::Hours(1)}) {
+    files_.now += jump;
+    EXPECT_OK(files_.Touch("taken/" + taken));
+    executor_->Look();
+    EXPECT_THAT(In("taken"), ElementsAre(taken));
+  }
+  EXPECT_EQ(executor_->Status().lost_leases, 0);
+}
+
+TEST_F(FolderExecutorTest, AnEmptiedFolderLosesNoWork) {
+  Restart(kNoTimeOut);
+  const auto journal = Begin();
+  Take(In("todo")[0]);
+  executor_->Look();
+  files_.files.clear();
+  for (int i = 0; i < 4; ++i) executor_->Look();
+  ComputeAll(*journal);
+}
+
+TEST_F(FolderExecutorTest, AFolderThatCannotBeUsedGivesItsLeasesBack) {
+  Restart(kNoTimeOut);
+  Begin();
+  Take(In("todo")[0]);
+  executor_->Look();
+  prepare_ = absl::FailedPreconditionError("can be written by other users");
+  files_.before = [](const char*, const std::string&) { return absl::UnavailableError("gone"); };
+  executor_->Look();
+  executor_->Look();
+  EXPECT_EQ(executor_->Status().problem, "can be written by other users");
+  EXPECT_EQ(executor_->Status().waiting_leases + executor_->Status().taken_leases, 0);
+}
+
+// ---- many workers ----
+
+TEST(Pace, ManyWorkersMakeAtMostAHundredOperationsASecond) {
+  const ClusterOptions options;
+  for (const size_t workers : {1, 100, 600, 601, 2000, 10'000, 50'000}) {
+    const Pace pace = PaceOf(options, workers);
+    const double touches = pace.touch >= pace.lease ? 0 : 2 / pace.touch;
+    const double operations = static_cast<double>(workers) * (9 / pace.lease + touches);
+    EXPECT_LE(operations, 101) << workers;
+    EXPECT_GT(pace.timeout, pace.touch);
+  }
+  EXPECT_EQ(PaceOf(options, 1).touch, 20);
+  EXPECT_EQ(PaceOf(options, 1).timeout, 120);
+  EXPECT_NEAR(PaceOf(options, 10'000).lease, 900, 1e-9);
+  EXPECT_NEAR(PaceOf(options, 10'000).timeout, 1200, 1e-9);
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,138 @@
+// A shared folder in memory, for tests of the server and its workers. It counts the operations that
+// a metadata server of a network file system would see, and can fail. Not thread-safe.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "server/worker/shared_files.h"
+
+namespace ballpiston::server {
+
+class FakeFiles : public SharedFiles {
+ public:
+  struct File {
+    std::string bytes;
+    absl::Time time;
+  };
+
+  // By path. A test may change it as another machine would.
+  std::map<std::string, File> files;
+  // The folder's clock.
+  absl::Time now = absl::UnixEpoch();
+  double operations = 0;
+  // Called before each operation; if its result is not OK, the operation fails with it.
+  std::function<absl::Status(const char* operation, const std::string& path)> before = nullptr;
+
+  absl::StatusOr<std::vector<std::string>> List(const std::string& subfolder) override {
+    const absl::Status begun = Begin("list", subfolder);
+    if (!begun.ok()) return begun;
+    std::vector<std::string> names;
+    const std::string prefix = subfolder + "/";
+    for (auto file = files.lower_bound(prefix); file != files.end(); ++file) {
+      if (!file->first.starts_with(prefix)) break;
+      names.push_back(file->first.substr(prefix.size()));
+    }
+    operations += static_cast<double>(names.size()) / kNamesOfAnAnswer;
+    return names;
+  }
+
+  absl::StatusOr<FileStamp> Create(const std::string& path, absl::string_view bytes) override {
+    const absl::Status begun = Begin("create", path);
+    if (!begun.ok()) return begun;
+    files[path] = {std::string(bytes), Tick()};
+    return FileStamp{files[path].time, bytes.size()};
+  }
+
+  absl::StatusOr<std::string> Read(const std::string& path, size_t offset) override {
+    const absl::Status begun = Find("read", path);
+    if (!begun.ok()) return begun;
+    const std::string& bytes = files[path].bytes;
+    return offset > bytes.size() ? "" : bytes.substr(offset);
+  }
+
+  absl::Status Append(const std::string& path, absl::string_view bytes) override {
+    absl::Status begun = Find("append", path);
+    if (!begun.ok()) return begun;
+    files[path].bytes.append(bytes.data(), bytes.size());
+    files[path].time = Tick();
+    return absl::OkStatus();
+  }
+
+  absl::Status Move(const std::string& from, const std::string& to) override {
+    absl::Status begun = Find("move", from);
+    if (!begun.ok()) return begun;
+    auto file = files.extract(from);
+    file.key() = to;
+    files.erase(to);
+    files.insert(std::move(file));
+    return absl::OkStatus();
+  }
+
+  absl::Status Touch(const std::string& path) override {
+    absl::Status begun = Find("touch", path);
+    if (begun.ok()) files[path].time = Tick();
+    return begun;
+  }
+
+  absl::StatusOr<FileStamp> Stamp(const std::string& path) override {
+    const absl::Status begun = Find("stamp", path);
+    if (!begun.ok()) return begun;
+    return FileStamp{files[path].time, files[path].bytes.size()};
+  }
+
+  absl::Status Remove(const std::string& path) override {
+    absl::Status begun = Find("remove", path);
+    if (begun.ok()) files.erase(path);
+    return begun;
+  }
+
+ private:
+  static constexpr double kNamesOfAnAnswer = 200;
+
+  absl::Time Tick() { return now += absl::Nanoseconds(1); }
+
+  absl::Status Begin(const char* operation, const std::string& path) {
+    ++operations;
+    return before ? before(operation, path) : absl::OkStatus();
+  }
+
+  absl::Status Find(const char* operation, const std::string& path) {
+    absl::Status begun = Begin(operation, path);
+    if (begun.ok() && !files.contains(path)) return absl::NotFoundError(path);
+    return begun;
+  }
+};
+
+// The same files, for an owner who takes a pointer.
+class SameFiles : public SharedFiles {
+ public:
+  explicit SameFiles(FakeFiles& files) : files_(files) {}
+
+  absl::StatusOr<std::vector<std::string>> List(const std::string& subfolder) override {
+    return files_.List(subfolder);
+  }
+  absl::StatusOr<FileStamp> Create(const std::string& path, absl::string_view bytes) override {
+    return files_.Create(path, bytes);
+  }
+  absl::StatusOr<std::string> Read(const std::string& path, size_t offset) override {
+    return files_.Read(path, offset);
+  }
+  absl::Status Append(const std::string& path, absl::string_view bytes) override {
+    return files_.Append(path, bytes);
+  }
+  absl::Status Move(const std::string& from, const std::string& to) override {
+    return files_.Move(from, to);
+  }
+  absl::Status Touch(const std::string& path) override { return files_.Touch(path); }
+  absl::StatusOr<FileStamp> Stamp(const std::string& path) override { return files_.Stamp(path); }
+  absl::Status Remove(const std::string& path) override { return files_.Remove(path); }
+
+ private:
+  FakeFiles& files_;
+};
+
+}  // namespace ballpiston::server

@@ -1,0 +1,201 @@
+#include "server/worker/worker.h"
+
+#include <chrono>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/ensemble/experiment_kind.h"
+#include "core/experiment/all_experiments.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/worker/lease_file.h"
+#include "tests/server/worker/fake_files.h"
+#include "tests/server/worker/sample_leases.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::server {
+namespace {
+
+using std::chrono::duration;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::UnorderedElementsAre;
+using Clock = std::chrono::steady_clock;
+
+// A worker whose time passes while it sleeps, and by `seconds_of_a_look` at each look at its clock.
+class WorkerTest : public testing::Test {
+ protected:
+  void Lay(const std::string& name, const IdentifiedLease& lease, double touch_seconds = 20) {
+    files_.files["todo/" + name] = {BytesOf(LeaseRecord(lease.lease, lease.job), touch_seconds),
+                                    files_.now};
+  }
+
+  absl::Status Run(WorkerOptions options = {}) {
+    if (options.name.empty()) options.name = "me";
+    return Work(files_, options,
+                {.now = [this] { return now_ += InTicks(seconds_of_a_look_); },
+                 .sleep = [this](duration<double> time) { now_ += InTicks(time.count()); },
+                 .random_bits = [this] { return random_ += 0x9e3779b97f4a7c15; },
+                 .end = [this] { return end_; },
+                 .report = [this](absl::string_view line) { lines_.emplace_back(line); },
+                 .lease_begins = [this](const std::string& from,
+                                        const std::string&) { begun_.push_back(from); }});
+  }
+
+  static Clock::duration InTicks(double seconds) {
+    return std::chrono::duration_cast<Clock::duration>(duration<double>(seconds));
+  }
+
+  std::set<std::string> Names() const {
+    std::set<std::string> names;
+    for (const auto& [name, file] : files_.files) names.insert(name);
+    return names;
+  }
+
+  // Of all messages in the file.
+  std::vector<ChunkResult> ChunksIn(const std::string& path) const {
+    absl::string_view bytes = files_.files.at(path).bytes;
+    EXPECT_OK(TakeLease(bytes).status());
+    std::vector<ChunkResult> all;
+    while (!bytes.empty()) {
+      const absl::StatusOr<LeaseChunks> some = TakeChunks(bytes);
+      if (!some.ok()) {
+        ADD_FAILURE() << some.status();
+        break;
+      }
+      all.insert(all.end(), some->chunks.begin(), some->chunks.end());
+    }
+    return all;
+  }
+
+  const IdentifiedLease lease_ = LeaseOf(SpecOf(kFirstHit, Model::kBilliard, 100'000));
+  const std::vector<ChunkResult> chunks_ = AllChunks(*lease_.lease.experiment);
+  FakeFiles files_;
+  Clock::time_point now_ = {};
+  double seconds_of_a_look_ = 0;
+  uint64_t random_ = 0;
+  EndOfWork end_ = EndOfWork::kNotYet;
+  std::vector<std::string> lines_, begun_;
+};
+
+TEST_F(WorkerTest, ComputesAllLeasesAndEndsWhenThereAreNoMore) {
+  Lay("a", lease_);
+  Lay("b", LeaseOf(*lease_.lease.spec, 1, 3));
+  EXPECT_OK(Run());
+  EXPECT_THAT(Names(), UnorderedElementsAre("done/a.me.finished", "done/b.me.finished"));
+  EXPECT_TRUE(AreEqual(ChunksIn("done/a.me.finished"), chunks_));
+  EXPECT_TRUE(AreEqual(ChunksIn("done/b.me.finished"), {chunks_[1], chunks_[2]}));
+  EXPECT_GE(now_, Clock::time_point() + std::chrono::seconds(60));
+  EXPECT_LE(now_, Clock::time_point() + std::chrono::seconds(90));
+}
+
+TEST_F(WorkerTest, OneOfTwoWorkersGetsALease) {
+  Lay("a", lease_);
+  Lay("b", lease_);
+  files_.before = [this](const char* operation, const std::string& path) {
+    if (std::string(operation) == "move" && path == "todo/a") files_.files.erase(path);
+    return absl::OkStatus();
+  };
+  EXPECT_OK(Run());
+  EXPECT_THAT(Names(), ElementsAre("done/b.me.finished"));
+}
+
+TEST_F(WorkerTest, ADroppedLeaseLeavesNothing) {
+  Lay("a", lease_, 1e-9);  // touches its file whenever it can
+  seconds_of_a_look_ = 1e-6;
+  int touches = 0;
+  files_.before = [&](const char* operation, const std::string& path) {
+    const std::string name = operation;
+    if (path == "taken/a.me" && (name == "touch" || name == "append") && ++touches == 2) {
+      files_.files.erase(path);
+    }
+    return absl::OkStatus();
+  };
+  EXPECT_OK(Run({.idle_seconds = 0}));
+  EXPECT_EQ(touches, 2);
+  EXPECT_THAT(Names(), IsEmpty());
+}
+
+TEST_F(WorkerTest, AWorkerThatMustEndGivesItsLeaseBack) {
+  Lay("a", lease_, 1e-9);
+  seconds_of_a_look_ = 1e-6;
+  files_.before = [this](const char* operation, const std::string&) {
+    if (std::string(operation) == "append") end_ = EndOfWork::kAfterChunk;
+    return absl::OkStatus();
+  };
+  EXPECT_OK(Run());
+  ASSERT_THAT(Names(), ElementsAre("done/a.me.returned"));
+  const size_t computed = ChunksIn("done/a.me.returned").size();
+  EXPECT_GE(computed, 1u);
+  EXPECT_LT(computed, chunks_.size());
+}
+
+TEST_F(WorkerTest, AFullFolderIsUsedAgainWhenItHasRoom) {
+  Lay("a", lease_);
+  int refusals = 3;
+  files_.before = [&](const char* operation, const std::string&) {
+    const bool refuses = std::string(operation) == "append" && refusals-- > 0;
+    return refuses ? absl::ResourceExhaustedError("no space left") : absl::OkStatus();
+  };
+  EXPECT_OK(Run());
+  EXPECT_TRUE(AreEqual(ChunksIn("done/a.me.finished"), chunks_));
+  EXPECT_THAT(lines_, testing::Contains("no space left; retry in 5 s"));
+}
+
+TEST_F(WorkerTest, AFolderThatStaysFullEndsTheWorker) {
+  Lay("a", lease_);
+  files_.before = [&](const char* operation, const std::string&) {
+    const bool refuses = std::string(operation) == "append";
+    return refuses ? absl::ResourceExhaustedError("no space left") : absl::OkStatus();
+  };
+  EXPECT_THAT(Run({.idle_seconds = 0}), StatusIs(absl::StatusCode::kResourceExhausted));
+  EXPECT_THAT(Names(), ElementsAre("taken/a.me"));
+}
+
+TEST_F(WorkerTest, ALeaseThatIsStillBeingWrittenIsTakenLater) {
+  Lay("a", lease_);
+  const std::string whole = files_.files["todo/a"].bytes;
+  files_.files["todo/a"].bytes.resize(whole.size() / 2);
+  int reads = 0;
+  files_.before = [&](const char* operation, const std::string& path) {
+    if (std::string(operation) == "read" && ++reads == 2) files_.files[path].bytes = whole;
+    return absl::OkStatus();
+  };
+  EXPECT_OK(Run());
+  EXPECT_TRUE(AreEqual(ChunksIn("done/a.me.finished"), chunks_));
+}
+
+TEST_F(WorkerTest, ALeaseOfAnotherEngineStaysForOtherWorkers) {
+  IdentifiedLease other = lease_;
+  other.job.engine_version = "1.2.3";
+  Lay("a", other);
+  EXPECT_THAT(Run(), StatusIs(absl::StatusCode::kUnimplemented, HasSubstr("1.2.3")));
+  EXPECT_THAT(Names(), ElementsAre("todo/a"));
+}
+
+TEST_F(WorkerTest, DamagedAndForeignFilesAreGivenBack) {
+  Lay("a", lease_);
+  files_.files["todo/a"].bytes[50] ^= 1;
+  files_.files["todo/b"].bytes = "#!/bin/sh\necho this is a script of some length\n";
+  EXPECT_OK(Run());
+  EXPECT_THAT(Names(), UnorderedElementsAre("done/a.me.returned", "done/b.me.returned"));
+  EXPECT_THAT(begun_, IsEmpty());
+}
+
+TEST_F(WorkerTest, ALeaseThatNeedsMoreMemoryIsGivenBack) {
+  Lay("a", lease_);
+  EXPECT_OK(Run({.memory = 1000}));
+  EXPECT_THAT(Names(), ElementsAre("done/a.me.no-memory"));
+  EXPECT_THAT(begun_, IsEmpty());
+}
+
+TEST_F(WorkerTest, AFolderThatCannotBeReadIsReportedWhenTheWorkerEnds) {
+  files_.before = [](const char*, const std::string&) { return absl::UnavailableError("gone"); };
+  EXPECT_THAT(Run(), StatusIs(absl::StatusCode::kUnavailable, HasSubstr("gone")));
+}
+
+}  // namespace
+}  // namespace ballpiston::server
