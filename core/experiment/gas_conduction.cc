@@ -88,6 +88,7 @@ struct SteadyTimes {
 // than about a minute.
 SteadyTimes TimesOfConduction(Model model, const GasGeometry& geometry, double cold) {
   const double longest_in_events = model == Model::kBilliardReference ? 0x1p29 : 0x1p33;
+  constexpr uint64_t kMostStretches = uint64_t{1} << 40;  // more take longer than any machine lasts
   SteadyTimes times = {.stretch = RelaxationTime(model, geometry, cold) / 2};
   Trajectories& trajectories = times.trajectories;
   trajectories.each = std::bit_floor(
@@ -95,7 +96,10 @@ SteadyTimes TimesOfConduction(Model model, const GasGeometry& geometry, double c
                            kMostTrajectories / trajectories.groups));
   const double events = static_cast<double>(trajectories.each) *
                         WorkOfReplica(model, geometry, times.stretch).Events();
-  while (events > longest_in_events * static_cast<double>(times.stretches)) times.stretches *= 2;
+  while (times.stretches < kMostStretches &&
+         events > longest_in_events * static_cast<double>(times.stretches)) {
+    times.stretches *= 2;
+  }
   times.stretch /= static_cast<double>(times.stretches);
   trajectories.warm_up = kWarmUp * times.stretches;
   return times;

@@ -189,6 +189,15 @@ TEST(GasConduction, AChunkTakesAboutAMinuteAtMost) {
   }
 }
 
+// Also where exchanges are so rare that no number of stretches makes one short.
+TEST(GasConduction, TheRarestExchangesHaveAPlan) {
+  EnsembleSpec spec = SpecBetween(2, 1, {.columns = 1'000'000});
+  spec.grid[kDelta] = {1e-150};
+  const PointParameters point = PointAt(spec, 0);
+  EXPECT_GT(kGasConduction.work(Model::kBilliard, point).Events(), 1e30);
+  EXPECT_EQ(kGasConduction.trajectories(Model::kBilliard, point).warm_up, uint64_t{1} << 41);
+}
+
 // ---- fluctuations ----
 
 // Between reservoirs of one temperature T the variance of the charge grows as 2 T^2 J/(hot - cold),
