@@ -113,8 +113,8 @@ TEST(LeaseRunner, LeasesContinueTheTrajectoriesOfASteadyState) {
       const auto received = LeaseOfRecord(LeaseRecord(lease.lease, lease.job));
       ASSERT_TRUE(received.ok()) << received.status();
       Recorder recorder;
-      EXPECT_TRUE(RunLeases({{received->lease}}, recorder.stop.get_token(), recorder));
-      fold.Add(recorder.chunks[0].at(0));
+      EXPECT_TRUE(RunLease(received->lease, recorder.stop.get_token(), recorder));
+      fold.Add(recorder.chunks.at(0));
     }
     EXPECT_TRUE(fold.finished());
     EXPECT_EQ(fold.Merged(), FoldPoint(*experiment)) << Name(model);
@@ -126,16 +126,6 @@ TEST(LeaseRunner, ALeaseWithoutTheStateOfItsGroupIsDamaged) {
       LeaseOf(SpecOf(kGasConduction, Model::kMarkov, 600), 16, 17);  // of the second stage
   EXPECT_EQ(LeaseOfRecord(LeaseRecord(lease.lease, lease.job)).status().code(),
             absl::StatusCode::kDataLoss);
-}
-
-// A task that starts again knows some chunks, from which later ones continue.
-TEST(LeaseRunner, KnownChunksAreContinued) {
-  LeaseWork work = {LeaseOf(SpecOf(kGasConduction, Model::kMarkov, 600)).lease};
-  const std::vector<ChunkResult> all = AllChunks(*work.lease.experiment);
-  work.known.assign(all.begin(), all.begin() + 20);
-  Recorder recorder;
-  EXPECT_TRUE(RunLeases({work}, recorder.stop.get_token(), recorder));
-  EXPECT_TRUE(AreEqual(recorder.chunks[0], {all.begin() + 20, all.end()}));
 }
 
 }  // namespace
