@@ -111,9 +111,14 @@ def test_shorter_curves_are_padded_with_nan(client: ballpiston.Client) -> None:
     assert lengths[0] < lengths[1] == position.shape[1]
     assert np.isnan(position[0]).sum() == lengths[1] - lengths[0]
     assert "curve_temperature_profile_time" not in arrays
-    # Two replicas are too few for a standard error: the array would have no value.
-    assert "heat_current_standard_error" not in arrays
-    assert np.all(np.isnan(result.error("heat_current")))
+
+
+def test_an_array_without_a_value_is_left_out(client: ballpiston.Client) -> None:
+    """A coefficient of variation has no error below 1,000 returns."""
+    question = {"rho": 0.5296, "delta": 0.1, "epsilon": 0.1, "exponent": 1, "samples": 100}
+    result = client.run("first-hit", **question)
+    assert "coefficient_of_variation_standard_error" not in result.arrays()
+    assert np.all(np.isnan(result.error("coefficient_of_variation")))
 
 
 def test_a_model_without_samples_has_no_counts(client: ballpiston.Client) -> None:

@@ -68,7 +68,8 @@ void CheckCounts(const EnsembleSpec& message, const std::vector<v1::PointResult>
   if (points.size() != PointCount(spec)) throw std::runtime_error("points are missing");
   for (const v1::PointResult& point : points) {
     const auto experiment = PointExperiment::Create(spec, static_cast<size_t>(point.index()));
-    const auto planned = static_cast<double>(experiment->plan().samples());
+    const ChunkPlan& plan = experiment->plan();
+    const auto planned = static_cast<double>(plan.samples() - plan.warm_up());
     if (spec.target.IsOpenEnded() || planned == point.samples()) continue;
     throw std::runtime_error(absl::StrCat("point ", point.index(), " of ",
                                           message.ShortDebugString(), " has ", point.samples(),

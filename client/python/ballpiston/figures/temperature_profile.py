@@ -20,8 +20,8 @@ from ballpiston.figures.parts.tables import FloatArray, Table, Tables, curves, d
 from ballpiston.parameter_lists import Shapes
 
 EFFORT: dict[str, dict[str, Any]] = {
-    "quick": {"cells": "2,4,8", "samples": 200, "billiard_samples": 20},
-    "full": {"samples": 20_000, "billiard_samples": 2000},
+    "quick": {"cells": "2,4,8", "samples": 4000, "billiard_samples": 500},
+    "full": {"samples": 500_000, "billiard_samples": 50_000},
 }
 
 _ASIDE = 0.007  # shift of the billiard's points to the right, so that all points are visible
@@ -36,11 +36,11 @@ def measure(
     cells: Shapes = "4,8,16",
     hot: float = 1.5,
     cold: float = 0.5,
-    samples: float = 1000,
-    billiard_samples: float = 100,
+    samples: float = 20_000,
+    billiard_samples: float = 2000,
     seed: int = 0,
 ) -> Tables:
-    """The profiles of both models, from replicas of chains of `cells`. The billiard costs about
+    """The profiles of both models, from stretches of chains of `cells`. The billiard costs about
     fifty times as much as the jump process."""
 
     def profile(model: str, samples: float) -> Table:

@@ -10,6 +10,7 @@ import importlib
 import importlib.util
 import inspect
 import json
+import re
 import sys
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
@@ -45,9 +46,18 @@ def main(arguments: list[str]) -> int:
             print(path)
     except tuple(kind for kind, _ in _EXIT_CODES) as error:
         if not isinstance(error, KeyboardInterrupt):
-            print(f"ballpiston: {error}", file=sys.stderr)
+            print(f"ballpiston: {_with_flags(error)}", file=sys.stderr)
         return next(code for kind, code in _EXIT_CODES if isinstance(error, kind))
     return 0
+
+
+def _with_flags(error: BaseException) -> str:
+    """The message, with flags in place of the specification's fields: --rho for spec.grid.rho[0]."""
+    message = str(error)
+    for field, _ in getattr(error, "violations", []):
+        flag = re.sub(r"\[\d+\]$", "", field).rpartition(".")[2].replace("_", "-")
+        message = message.replace(f"{field}:", f"--{flag}:")
+    return message
 
 
 def _parsed(arguments: list[str]) -> tuple[Namespace, dict[str, str]]:
