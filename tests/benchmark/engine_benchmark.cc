@@ -7,8 +7,6 @@
 // it. Contenders take turns of some 50 ms of processor time; a row shows each one's best turn, and
 // says if a neighbour disturbed it (turns.h). With --threads, how many times as much N threads do
 // as one, and how many times as much of the independent operations of the probe.
-#include <hwy/targets.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -22,9 +20,6 @@
 #include <thread>
 #include <vector>
 
-// After hwy/targets.h.
-#include <hwy/highway.h>
-
 #include "core/billiard/lane_frame.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
@@ -33,15 +28,11 @@
 #include "core/sampling/direction.h"
 #include "server/processor_time.h"
 #include "tests/benchmark/turns.h"
+#include "tests/benchmark/vector_targets.h"
 #include "tools/flows/lane_balls.h"
 
 namespace ballpiston {
 namespace {
-
-void Use(int64_t target) {
-  hwy::SetSupportedTargetsForTest(target);
-  hwy::GetChosenTarget().DeInit();
-}
 
 constexpr uint64_t kHits = 100'000, kBalls = 128;  // as many balls as the widest lanes have
 
@@ -247,13 +238,8 @@ void ShowThreads(unsigned threads) {
 }
 
 void ShowAll() {
-  std::vector<int64_t> targets = hwy::SupportedAndGeneratedTargets();
-  std::reverse(targets.begin(), targets.end());
-  for (const int64_t target : targets) {
-    if (target <= HWY_SSE4) ShowFlight(target);
-  }
-  for (const int64_t target : targets) {
-    if (target > HWY_SSE4) continue;
+  for (const int64_t target : VectorTargets()) ShowFlight(target);
+  for (const int64_t target : VectorTargets()) {
     ShowEngines("first-hit", &kFirstHit, 0.0125, target);
     ShowEngines("first-hit", &kFirstHit, 0.05, target);
     ShowEngines("equilibrium", &kEquilibrium, 0.05, target);

@@ -1,4 +1,4 @@
-// The gas's engines side by side, in one run, on one core: the time of a replica of an experiment,
+// The gas's engines side by side, in one run, on one core: the time of a sample of an experiment,
 // wall hits, events and exchanges a second, the bytes of a cell, and how the cost of an exchange or
 // a hit grows with the number of cells.
 //
@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
@@ -28,6 +29,7 @@
 #include "core/geometry/paper.h"
 #include "server/processor_time.h"
 #include "tests/benchmark/turns.h"
+#include "tests/benchmark/vector_targets.h"
 
 namespace ballpiston {
 namespace {
@@ -114,22 +116,30 @@ void ShowSpeed(double delta) {
   std::printf("\n");
 }
 
-// An experiment with a chain of some cells, in replicas.
-struct ReplicaContender {
+// An experiment with a chain of some cells: replicas, or stretches of trajectories.
+struct SampleContender {
   std::unique_ptr<const PointExperiment> point;
-  uint64_t replicas;  // of a turn
+  int64_t target;     // the vector instructions
+  uint64_t replicas;  // of a turn, if samples are independent
 
-  // Replicas a second. The plan's last chunk has enough replicas to fill the lanes.
+  // A group's first stretches; or replicas, as many as fill the lanes of the plan's last chunk.
+  Block BlockOf(uint64_t turn) const {
+    const ChunkPlan& plan = point->plan();
+    if (plan.groups() > 0) return plan.BlockAt(turn % plan.groups(), 0);
+    return {.chunk = plan.chunks() - 1, .first = turn * replicas, .samples = replicas};
+  }
+
+  // Samples a second.
   double Rate(uint64_t turn) const {
-    const Block block = {
-        .chunk = point->plan().chunks() - 1, .first = turn * replicas, .samples = replicas};
+    Use(target);
+    const Block block = BlockOf(turn);
     const double begin = server::ThreadSeconds();
     RunBlock(*point, block);
-    return static_cast<double>(replicas) / (server::ThreadSeconds() - begin);
+    return static_cast<double>(block.samples) / (server::ThreadSeconds() - begin);
   }
 };
 
-void ShowReplicas(const ExperimentKind* experiment, int64_t cells, double delta) {
+void ShowSamples(const ExperimentKind* experiment, int64_t cells, double delta) {
   constexpr int64_t kBalls = 192;  // as many as the lanes fly together
   EnsembleSpec spec = {
       .experiment = experiment,
@@ -138,22 +148,29 @@ void ShowReplicas(const ExperimentKind* experiment, int64_t cells, double delta)
   spec.target.samples = 1'000'000;
   if (experiment == &kGasEquilibrium) spec.grid[kTemperature] = {1};
   if (experiment == &kGasConduction) spec.grid[kHot] = {1.5}, spec.grid[kCold] = {0.5};
-  std::vector<ReplicaContender> contenders;
-  for (const Model model : {Model::kBilliard, Model::kBilliardReference, Model::kMarkov}) {
+  std::vector<SampleContender> contenders;
+  std::vector<std::string> names;
+  const auto add = [&](Model model, int64_t target, int64_t balls, const std::string& name) {
     spec.model = model;
-    const int64_t balls = model == Model::kBilliard ? kBalls : kBalls / 8;
-    contenders.push_back({PointExperiment::Create(spec, 0), static_cast<uint64_t>(balls / cells)});
+    contenders.push_back(
+        {PointExperiment::Create(spec, 0), target, static_cast<uint64_t>(balls / cells)});
+    names.push_back(name);
+  };
+  const std::vector<int64_t> targets = VectorTargets();
+  add(Model::kBilliardReference, targets.back(), kBalls / 8, "reference");
+  add(Model::kMarkov, targets.back(), kBalls / 8, "jump process");
+  for (const int64_t target : targets) {
+    add(Model::kBilliard, target, kBalls, absl::StrCat("lanes ", hwy::TargetName(target)));
   }
   const Turns turns(contenders, 12);
-  std::printf("%-15s cells %lld, delta %-4g, ms a replica:", std::string(experiment->name).c_str(),
+  std::printf("%-15s cells %lld, delta %-4g, ms a sample:", std::string(experiment->name).c_str(),
               static_cast<long long>(cells), delta);
-  const char* const names[] = {"lanes", "reference", "jump process"};
   for (size_t i = 0; i < contenders.size(); ++i) {
     std::vector<double> milliseconds = turns.Rates(i);
     for (double& rate : milliseconds) rate = 1e3 / rate;
-    ShowMedian(names[i], std::move(milliseconds), "");
+    ShowMedian(names[i].c_str(), std::move(milliseconds), "");
+    if (i > 1) std::printf(" (%.1f times the reference)", turns.Best(i) / turns.Best(0));
   }
-  std::printf("   lanes %.1f times the reference", turns.Best(0) / turns.Best(1));
   ShowDisturbance(turns);
   std::printf("\n");
 }
@@ -175,12 +192,12 @@ void ShowGrowth(const char* name, GasEngine engine, double slice, Unit unit) {
 }  // namespace ballpiston
 
 int main() {
-  using ballpiston::ShowReplicas, ballpiston::kGasConduction;
+  using ballpiston::ShowSamples, ballpiston::kGasConduction;
   for (const double delta : {0.2, 0.1, 0.05}) {
-    ShowReplicas(&ballpiston::kGasEquilibrium, 8, delta);
-    ShowReplicas(&kGasConduction, 1, delta);
-    ShowReplicas(&kGasConduction, 2, delta);
-    if (delta > 0.05) ShowReplicas(&kGasConduction, 8, delta);
+    ShowSamples(&ballpiston::kGasEquilibrium, 8, delta);
+    ShowSamples(&kGasConduction, 1, delta);
+    ShowSamples(&kGasConduction, 2, delta);
+    if (delta > 0.05) ShowSamples(&kGasConduction, 8, delta);
   }
   for (const double delta : {0.025, 0.05, 0.1, 0.2}) ballpiston::ShowSpeed(delta);
   ballpiston::ShowGrowth("lanes", ballpiston::GasEngine::kLanes, 4, ballpiston::Unit::kBallHits);
