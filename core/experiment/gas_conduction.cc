@@ -305,7 +305,7 @@ class GasConduction : public SteadyGas {
   static std::string NameOf(const Order& order) {
     return absl::StrCat("charge_cumulant_", order.number);
   }
-  // Of c_n/t, a row.
+  // The unit of c_n/t, for one row of the gas.
   double ScaleOf(const Order& order) const {
     return std::pow(temperature(), order.number + 0.5) / Rows();
   }
@@ -352,8 +352,8 @@ class GasConduction : public SteadyGas {
     return FromWindows(groups, [&](const auto& windows) { return RateOf(order.number, windows); });
   }
 
-  // Of the current, averaged over half a relaxation time: half of that time if the averages are
-  // independent.
+  // The integral time of the current's averages over half a relaxation time. It is half of that
+  // time if the averages are independent.
   std::optional<Estimate> AutocorrelationTime(const std::vector<SteadyGroup>& groups) const {
     if (!HasWindows(EstimatedWindow() + 1, kOrders[0].windows, groups)) return std::nullopt;
     const double half = WindowTime(of_half_);

@@ -74,7 +74,7 @@ class GroupRun : public EngineRun {
 
   std::vector<SteadyTrajectory>& trajectories() { return group_.trajectories; }
   double Now() const { return stretches_ * experiment_.stretch(); }
-  // Of a trajectory in this chunk.
+  // The random numbers of a trajectory in this chunk.
   GasRandom RandomOf(size_t trajectory) const {
     return experiment_.RandomOf(block_->chunk * experiment_.shape().trajectories + trajectory);
   }

@@ -2,7 +2,7 @@
 // and workers that somebody starts there take them (worker/worker.h).
 //
 // The folder is a means of transport and no store: it may be emptied at any time. The file of a
-// lease proves the chunks in it, whoever laid it (worker/lease_file.h). So a later process of the
+// lease proves the chunks in it (worker/lease_file.h). So a later process of the
 // server reads what the workers of an earlier one left. The server looks every second:
 //   - A lease in done/ ends. Its chunks are reported and on disk before its file is removed.
 //   - A lease in taken/ of which the server knows nothing is moved to done/, so its worker stops.
@@ -73,7 +73,7 @@ struct FolderStatus {
 
 class FolderExecutor : public Executor {
  public:
-  // What the executor needs of the server.
+  // The parts of the server that the executor uses.
   struct Server {
     std::string identity;                 // names it among all that may use the folder
     std::function<absl::Status()> flush;  // OK: all that was reported is on disk

@@ -85,7 +85,7 @@ def expect_texts_inside(figure: Any) -> None:
             assert is_inside or is_far, f"{text.get_text()!r} crosses the edge of the picture"
 
 
-# What the figures compute
+# The numbers that figures compute
 
 
 def analysis(name: str) -> Any:

@@ -146,7 +146,7 @@ std::vector<EnsembleSpec> SpecsOf(Engine engine) {
   if (engine != Engine::kLanesSingle) {
     for (const ExperimentKind* gas : {&kGasEquilibrium, &kGasConduction}) {
       for (const GasShape& shape : {GasShape{3}, GasShape{2, 2, true}}) {
-        // Of trajectories, two stages.
+        // 512 stretches of trajectories are two stages.
         const int64_t samples = gas == &kGasConduction ? 512 : 64;
         specs.push_back(SpecOf(gas, PaperGas(gas, 0.2, shape), {.samples = samples}));
       }

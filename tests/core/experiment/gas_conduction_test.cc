@@ -172,7 +172,8 @@ TEST(GasConduction, TheWarmUpGrowsWithTheTimeOfASlowPiston) {
   EXPECT_NEAR(exchanges(Model::kMarkov, 1e-10) / exchanges(Model::kMarkov, 0.01), 1, 1e-12);
 }
 
-// Of every gas. The first stage has at least one stretch after the warm-up, or is one of many.
+// This holds for every gas. The first stage has at least one stretch after the warm-up, or is one
+// of many.
 TEST(GasConduction, AChunkTakesAboutAMinuteAtMost) {
   for (const Model model : kModelsThatSampleGases) {
     for (const int64_t columns : {1, 10, 100, 1000, 100'000}) {

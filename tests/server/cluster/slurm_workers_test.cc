@@ -18,7 +18,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-// What the tools were asked, and what they answer.
+// Slurm's tools: their answers, and the calls that they got.
 struct FakeSlurm {
   SlurmQueue queue = {};
   absl::Status submits = {}, queries = {};

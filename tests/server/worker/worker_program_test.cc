@@ -63,7 +63,7 @@ class WorkerProgramTest : public testing::Test {
     return names;
   }
 
-  // Of the only file in done/.
+  // The chunks of the only file in done/.
   std::vector<ChunkResult> Chunks() {
     const std::vector<std::string> names = NamesIn(shared_ + "/done");
     if (names.size() != 1) return {};

@@ -55,7 +55,7 @@ class WorkerTest : public testing::Test {
     return names;
   }
 
-  // Of all messages in the file.
+  // The chunks of all messages in the file.
   std::vector<ChunkResult> ChunksIn(const std::string& path) const {
     absl::string_view bytes = files_.files.at(path).bytes;
     EXPECT_OK(TakeLease(bytes).status());
