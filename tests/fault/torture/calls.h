@@ -14,6 +14,8 @@ namespace ballpiston::torture {
 using Stub = v1::EnsembleService::Stub;
 
 constexpr std::chrono::seconds kTimeOfCall(20);  // after that the call is repeated
+// The pause before a client repeats a call that the server did not answer.
+inline constexpr std::chrono::milliseconds kPauseBeforeRepeating(20);
 
 // A call that reaches a server just as it stops is CANCELLED by gRPC, without a reason.
 inline bool WasNotAnswered(const absl::Status& status) {

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/time/clock.h"
 #include "client/library/error_text.h"
 #include "client/library/job_watch.h"
 #include "client/library/request_id.h"

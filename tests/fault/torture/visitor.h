@@ -18,7 +18,6 @@
 #include <string>
 #include <vector>
 
-#include "absl/status/statusor.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"

@@ -72,18 +72,6 @@ class CrashRecordTest : public testing::Test {
   bool died_ = false;
 };
 
-TEST_F(CrashRecordTest, ADeathCountsForTheRunsThatWereBeingComputed) {
-  LiveAndDie({{kFirst, {4, 5}}, {kSecond, {7}}}, SIGSEGV);
-  const auto record = Next();
-  EXPECT_EQ(record->Deaths(kFirst), 1);
-  EXPECT_EQ(record->Deaths(kSecond), 1);
-  EXPECT_EQ(record->Deaths(kThird), 0);
-  EXPECT_EQ(record->LastPoints(kFirst), (std::set<size_t>{4, 5}));
-  EXPECT_EQ(record->LastPoints(kSecond), (std::set<size_t>{7}));
-  EXPECT_EQ(record->LastPoints(kThird), std::set<size_t>());
-  EXPECT_EQ(record->counted_deaths(), 1);
-}
-
 TEST_F(CrashRecordTest, TwoDeathsWithDifferentRunsMakeASuspectOfTheCommonOne) {
   LiveAndDie({{kFirst, {0}}, {kSecond, {0}}}, SIGSEGV);
   Next().reset();
@@ -132,20 +120,6 @@ TEST_F(CrashRecordTest, AnEndedTurnDoesNotCount) {
   EXPECT_EQ(record->Deaths(kSecond), 1);
 }
 
-TEST_F(CrashRecordTest, ADeathIsCountedByOneStartOnly) {
-  LiveAndDie({{kFirst, {0}}}, SIGSEGV);
-  for (int start = 0; start < 3; ++start) EXPECT_EQ(Next()->Deaths(kFirst), 1);
-}
-
-TEST_F(CrashRecordTest, ADeathOfAThreadThatDoesNotComputeCountsForNothing) {
-  {
-    CrashRecord record(folder_.path(), {});
-    const CrashRecord::Computing computing(record, kFirst, 0);
-    std::thread([this] { Die(SIGSEGV); }).join();
-  }
-  EXPECT_EQ(Next()->Deaths(kFirst), 0);
-}
-
 TEST_F(CrashRecordTest, ADeathInAnExaminationCountsForItsRunAlone) {
   {
     CrashRecord record(folder_.path(), {});
@@ -158,18 +132,6 @@ TEST_F(CrashRecordTest, ADeathInAnExaminationCountsForItsRunAlone) {
   const auto record = Next();
   EXPECT_EQ(record->Deaths(kFirst), 0);
   EXPECT_EQ(record->Deaths(kSecond), 1);
-}
-
-TEST_F(CrashRecordTest, AnExaminationDuringATurnEndsBeforeIt) {
-  {
-    CrashRecord record(folder_.path(), {});
-    const CrashRecord::Computing computing(record, kFirst, 0);
-    { const CrashRecord::Examining examining(record, kSecond); }
-    Die(SIGSEGV);
-  }
-  const auto record = Next();
-  EXPECT_EQ(record->Deaths(kFirst), 1);
-  EXPECT_EQ(record->Deaths(kSecond), 0);
 }
 
 TEST_F(CrashRecordTest, AStoredChunkClearsTheRun) {
@@ -280,12 +242,6 @@ TEST_F(FatalSignalsDeathTest, AFatalSignalOfAnotherProcessDoesNotCount) {
                }),
                "");
   EXPECT_EQ(Deaths(), 0);
-}
-
-TEST(OutOfMemoryKills, TheGroupStaysTheSame) {
-  const OutOfMemoryKills first = ReadOutOfMemoryKills(), second = ReadOutOfMemoryKills();
-  EXPECT_EQ(first.group, second.group);
-  EXPECT_GE(second.kills, first.kills);
 }
 
 }  // namespace

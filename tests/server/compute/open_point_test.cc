@@ -45,12 +45,6 @@ void AddChunks(OpenPoint& point, uint64_t first, uint64_t end) {
   }
 }
 
-TEST(OpenPoint, AnInfiniteCapacityTakesAllChunks) {
-  OpenPoint point = PointOf(SixChunks());
-  EXPECT_EQ(Next(point, kInfinity), Chunks(0, 6));
-  EXPECT_EQ(Next(point, kInfinity), std::nullopt);
-}
-
 TEST(OpenPoint, AFiniteCapacityTakesTheFewestChunksThatFillIt) {
   OpenPoint point = PointOf(SixChunks());
   EXPECT_EQ(Next(point, 0), Chunks(0, 1));
@@ -58,13 +52,6 @@ TEST(OpenPoint, AFiniteCapacityTakesTheFewestChunksThatFillIt) {
   EXPECT_EQ(Next(point, 5), Chunks(1, 3));
   EXPECT_EQ(Next(point, 1000), Chunks(3, 6));
   EXPECT_EQ(Next(point, 0), std::nullopt);
-}
-
-TEST(OpenPoint, ALeaseStatesItsSeconds) {
-  OpenPoint point = PointOf(SixChunks());
-  const auto lease = point.NextChunks({.seconds = 5}, {});
-  const ChunkPlan& plan = point.experiment()->plan();
-  EXPECT_DOUBLE_EQ(lease->seconds, plan.SecondsFor(static_cast<double>(plan.SamplesBefore(3))));
 }
 
 TEST(OpenPoint, ALeaseContinuesTheBlocksOfAResumedPoint) {
@@ -102,22 +89,6 @@ TEST(OpenPoint, ReturnedChunksComeFirstAndKeepTheirAttempt) {
   EXPECT_EQ(Next(point, 1000), Chunks(1, 2, 2));
   EXPECT_EQ(Next(point, 1000), Chunks(3, 4, 2));
   EXPECT_EQ(Next(point, 1000), Chunks(4, 6, 1));
-}
-
-TEST(OpenPoint, AReturnedLeaseThatTookTheRestGoesOutAgain) {
-  OpenPoint point = PointOf(SixChunks());
-  EXPECT_EQ(Next(point, kInfinity), Chunks(0, 6));
-  point.Return(0, 6, 1);
-  EXPECT_EQ(Next(point, kInfinity), Chunks(0, 6));
-  EXPECT_EQ(Next(point, kInfinity), std::nullopt);
-}
-
-TEST(OpenPoint, ChunksThatWereNeverLeasedCannotBeReturned) {
-  OpenPoint point = PointOf(SixChunks());
-  EXPECT_EQ(Next(point, 0), Chunks(0, 1));
-  point.Return(0, 6, 7);
-  EXPECT_EQ(Next(point, 0), Chunks(0, 1, 7));
-  EXPECT_EQ(Next(point, 1000), Chunks(1, 6, 1));
 }
 
 TEST(OpenPoint, ChunksWithCrashesAreALeaseOfTheirOwn) {
@@ -178,13 +149,6 @@ TEST(OpenPoint, ALongChunkIsForLocalExecutors) {
   }
 }
 
-TEST(OpenPoint, ChunksOfAFinishedPointAreNotLeased) {
-  OpenPoint point = PointOf(SixChunks());
-  point.fold().Finish();
-  EXPECT_EQ(Next(point, kInfinity), std::nullopt);
-  EXPECT_EQ(Next(point, 1), std::nullopt);
-}
-
 // ---- a tolerance ----
 
 EnsembleSpec WithTolerance() {
@@ -222,29 +186,6 @@ TEST(OpenPoint, BeyondTheExpectedEndChunksComeOneByOne) {
     EXPECT_EQ(Next(point, 1e6), Chunks(next, next + 1));
     EXPECT_EQ(Next(point, 1e6), std::nullopt);
   }
-}
-
-TEST(OpenPoint, AnInfiniteCapacityTakesChunksBeyondTheExpectedEnd) {
-  OpenPoint point = PointOf(WithTolerance());
-  const uint64_t chunks = point.experiment()->plan().chunks();
-  EXPECT_EQ(Next(point, kInfinity), Chunks(0, chunks));
-  OpenPoint with_an_early_chunk = PointOf(WithTolerance());
-  AddChunks(with_an_early_chunk, 1, 2);
-  EXPECT_EQ(Next(with_an_early_chunk, kInfinity), Chunks(0, 1));
-  EXPECT_EQ(Next(with_an_early_chunk, kInfinity), Chunks(2, chunks));
-}
-
-TEST(OpenPoint, ExpectedSecondsFallWithMergedChunks) {
-  OpenPoint point = PointOf(WithTolerance());
-  const ChunkPlan& plan = point.experiment()->plan();
-  const uint64_t expected = point.experiment()->expected_chunks();
-  const auto seconds = [&](uint64_t first, uint64_t end) {
-    return plan.SecondsFor(
-        static_cast<double>(plan.SamplesBefore(end) - plan.SamplesBefore(first)));
-  };
-  EXPECT_DOUBLE_EQ(point.ExpectedSeconds(), seconds(0, expected));
-  AddChunks(point, 0, 1);
-  EXPECT_DOUBLE_EQ(point.ExpectedSeconds(), seconds(1, expected));
 }
 
 // ---- samples that continue each other ----

@@ -1,6 +1,5 @@
 #include "server/compute/scheduler.h"
 
-#include <algorithm>
 #include <atomic>
 #include <ctime>
 #include <memory>
@@ -50,16 +49,6 @@ TEST(Scheduler, TheSameBitsWithAnyNumberOfWorkers) {
   }
 }
 
-TEST(Scheduler, EveryBlockOfAPointIsMergedOnce) {
-  const EnsembleSpec spec = FakeSpec(5, 100);
-  ThreadPool pool(8, FakeExperiments());
-  const auto journal = AddRun(pool, 1, spec);
-  ASSERT_OK(journal->AwaitEnd());
-  for (const auto& [point, samples] : journal->merged) {
-    EXPECT_EQ(samples, 100 * kFakeSamplesPerBlock);
-  }
-}
-
 TEST(Scheduler, APointIsResumedFromItsCheckpoint) {
   const EnsembleSpec spec = FakeSpec(2, 80);
   auto journal = std::make_shared<RecordingJournal>();
@@ -76,18 +65,6 @@ TEST(Scheduler, APointIsResumedFromItsCheckpoint) {
   EXPECT_EQ(computed.size(), 35u);
   EXPECT_EQ(*computed.begin(), 45u);
   EXPECT_EQ(journal->restored[1], 45 * kFakeSamplesPerBlock);
-}
-
-TEST(Scheduler, APointWhoseCheckpointIsCompleteFinishesAtOnce) {
-  const EnsembleSpec spec = FakeSpec(1, 3);
-  auto journal = std::make_shared<RecordingJournal>();
-  journal->stored[0] = FakeState(spec, 0, 3);
-  std::atomic<int> computed = 0;
-  ThreadPool pool(2, FakeExperiments([&](size_t, uint64_t, std::stop_token) { ++computed; }));
-  pool.Add(RunOf(1, spec, journal));
-  ASSERT_OK(journal->AwaitEnd());
-  ExpectAllPointsRight(spec, *journal);
-  EXPECT_EQ(computed, 0);
 }
 
 TEST(Scheduler, ACheckpointOfAnotherShapeEndsTheRun) {
@@ -139,29 +116,6 @@ TEST(Scheduler, APointThatOpensLateGoesBeforeLaterOnes) {
   EXPECT_EQ(journal->ends, 1);
 }
 
-TEST(Scheduler, FinishedPointsAreNotComputedAgain) {
-  const EnsembleSpec spec = FakeSpec(4, 5);
-  auto journal = std::make_shared<RecordingJournal>();
-  ThreadPool pool(2, FakeExperiments());
-  RunRequest request = RunOf(1, spec, journal);
-  request.finished = {true, false, true, false};
-  pool.Add(std::move(request));
-  ASSERT_OK(journal->AwaitEnd());
-  ASSERT_EQ(journal->finished.size(), 2u);
-  EXPECT_TRUE(journal->finished.contains(1));
-  EXPECT_TRUE(journal->finished.contains(3));
-}
-
-TEST(Scheduler, ARunWithNothingToComputeEnds) {
-  auto journal = std::make_shared<RecordingJournal>();
-  ThreadPool pool(1, FakeExperiments());
-  RunRequest request = RunOf(1, FakeSpec(1, 5), journal);
-  request.finished = {true};
-  pool.Add(std::move(request));
-  EXPECT_OK(journal->AwaitEnd());
-  EXPECT_EQ(journal->begun, 0);
-}
-
 TEST(Scheduler, APointDoesNotRunFarAheadOfASlowBlock) {
   Gate gate;
   std::atomic<uint64_t> furthest = 0;
@@ -210,17 +164,6 @@ TEST(Scheduler, ASpentBudgetEndsAPointAtABlocksEnd) {
   }
 }
 
-TEST(Scheduler, AnAmpleBudgetHasNoEffect) {
-  EnsembleSpec spec = FakeSpec(2, 0);
-  spec.target = {.budget_seconds = 1e6};
-  ThreadPool pool(2, FakeExperiments());
-  const auto journal = AddRun(pool, 1, spec);
-  EXPECT_OK(journal->AwaitEnd());
-  for (const auto& [point, merged] : journal->finished) {
-    EXPECT_TRUE(merged == FakeMerged(spec, point, 1000)) << "point " << point;
-  }
-}
-
 // With one worker one block is merged at a time, so nothing but the first.
 TEST(Scheduler, AMissedToleranceIsReportedAfterAllPointsAreFinished) {
   EnsembleSpec spec = FakeBudget(5);
@@ -260,22 +203,6 @@ TEST(Scheduler, AReachedToleranceEndsBeforeTheBudget) {
   }
 }
 
-TEST(Scheduler, APointWithoutBlocksFinishesAtOnceBesideOthers) {
-  EnsembleSpec spec = FakeSpec(4, 5);
-  ThreadPool pool(2, [](const EnsembleSpec& whole, size_t index) {
-    EnsembleSpec of_point = whole;
-    if (index % 2 == 0) of_point.target.samples = 0;  // the even ones need none
-    return FakeExperiments()(of_point, index);
-  });
-  const auto journal = AddRun(pool, 1, spec);
-  EXPECT_OK(journal->AwaitEnd());
-  ASSERT_EQ(journal->finished.size(), 4u);
-  for (const auto& [point, merged] : journal->finished) {
-    EXPECT_TRUE(merged == FakeMerged(spec, point, point % 2 == 0 ? 0 : 5)) << "point " << point;
-  }
-  EXPECT_EQ(journal->merged.size(), 2u);
-}
-
 TEST(Scheduler, ProcessorTimeIsReportedOfPilotsAndBlocksAlike) {
   // Uses some processor time of the thread, also on a busy machine.
   const auto compute = [] {
@@ -300,19 +227,6 @@ TEST(Scheduler, ProcessorTimeIsReportedOfPilotsAndBlocksAlike) {
   EXPECT_GE(busy->work, 4 * 0.002);
 }
 
-TEST(Scheduler, ACancelledRunStopsAndEndsOnce) {
-  Gate gate;
-  ThreadPool pool(2, GatedExperiments(gate, 3));
-  const auto journal = AddRun(pool, 1, FakeSpec(10, 100));
-  gate.AwaitWaiting(2);
-  pool.Cancel(1);
-  pool.Cancel(1);
-  EXPECT_THAT(journal->AwaitEnd(), StatusIs(absl::StatusCode::kCancelled));
-  pool.Shutdown();
-  EXPECT_EQ(journal->ends, 1);
-  EXPECT_TRUE(journal->finished.empty());
-}
-
 TEST(Scheduler, AnExceptionFailsItsRunOnly) {
   ThreadPool pool(2,
                   FakeExperimentsBySeed([](uint64_t seed, size_t, uint64_t block, std::stop_token) {
@@ -335,21 +249,6 @@ TEST(Scheduler, AFactoryThatThrowsFailsItsRun) {
   });
   const auto journal = AddRun(pool, 1, FakeSpec(3, 20));
   EXPECT_THAT(std::string(journal->AwaitEnd().message()), HasSubstr("no such experiment"));
-}
-
-// A short run that is added after a long one ends before it.
-TEST(Scheduler, AShortRunDoesNotWaitForALongOne) {
-  Gate gate;
-  ThreadPool pool(
-      1, FakeExperimentsBySeed([&](uint64_t seed, size_t, uint64_t block, std::stop_token stop) {
-        if (seed == 1 && block == 10) gate.Pass(stop);  // until the short run has been added
-      }));
-  const auto long_run = AddRun(pool, 1, FakeSpec(1, 1'000'000'000, 1));
-  gate.AwaitWaiting(1);
-  const auto short_run = AddRun(pool, 2, FakeSpec(1, 10, 2));
-  gate.Open();
-  EXPECT_OK(short_run->AwaitEnd());
-  EXPECT_EQ(long_run->ends, 0);
 }
 
 // The runs are added while a first run blocks the only worker, so that all are present when it goes
@@ -378,52 +277,6 @@ TEST(Scheduler, AHigherPriorityIsServedFirst) {
   std::vector<uint64_t> expected;
   for (const uint64_t seed : {4u, 3u, 2u}) expected.insert(expected.end(), 20, seed);
   EXPECT_EQ(begun, expected);
-}
-
-// Opening a point of the first run takes long. Nothing else delays that run.
-TEST(Scheduler, ARunWithoutTasksIsSkipped) {
-  Gate gate;
-  ThreadPool pool(2, [&](const EnsembleSpec& spec, size_t index) {
-    if (spec.seed == 1) gate.Pass({});
-    return FakeExperiments()(spec, index);
-  });
-  const auto first = AddRun(pool, 1, FakeSpec(1, 5, 1), "a", 100);
-  gate.AwaitWaiting(1);
-  const auto next = AddRun(pool, 2, FakeSpec(3, 50, 2), "a", -100);
-  EXPECT_OK(next->AwaitEnd());
-  EXPECT_EQ(first->ends, 0);
-  gate.Open();
-  EXPECT_OK(first->AwaitEnd());
-}
-
-TEST(Scheduler, TheSameBitsInAnyOrderOfTurns) {
-  struct Owner {
-    const char* principal;
-    int32_t priority;
-  };
-  for (const auto& owners : {std::vector<Owner>{{"a", 0}, {"a", 0}, {"a", 0}},
-                             std::vector<Owner>{{"a", -1}, {"a", 5}, {"a", 100}},
-                             std::vector<Owner>{{"c", 1}, {"b", 1}, {"a", -100}}}) {
-    ThreadPool pool(3, FakeExperiments());
-    std::vector<JournalPointer> journals;
-    for (size_t i = 0; i < owners.size(); ++i) {
-      journals.push_back(AddRun(pool, static_cast<int64_t>(i) + 1, FakeSpec(5, 40, i),
-                                owners[i].principal, owners[i].priority));
-    }
-    for (size_t i = 0; i < owners.size(); ++i) {
-      EXPECT_OK(journals[i]->AwaitEnd());
-      ExpectAllPointsRight(FakeSpec(5, 40, i), *journals[i]);
-    }
-  }
-}
-
-TEST(Scheduler, ShutdownLeavesUnfinishedRunsWithoutAnEnd) {
-  Gate gate;
-  ThreadPool pool(2, GatedExperiments(gate));
-  const auto journal = AddRun(pool, 1, FakeSpec(10, 100));
-  gate.AwaitWaiting(2);
-  pool.Shutdown();
-  EXPECT_EQ(journal->ends, 0);
 }
 
 TEST(Scheduler, ChangedSinceReturnsThePointsThatChanged) {

@@ -1,8 +1,6 @@
 // Runs that were being computed when the process died are computed alone.
-#include <map>
 #include <memory>
 #include <set>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -130,20 +128,6 @@ TEST_F(SuspectsTest, ARunStaysASuspectWhileTheDiskFails) {
   EXPECT_THAT(Turns(1, 0), ElementsAre(1));
 }
 
-TEST_F(SuspectsTest, TheNextSuspectWaitsForTheTurnsOfOthers) {
-  Add(1, Suspected(1));
-  Add(2, Suspected(2));
-  ASSERT_THAT(Turns(2, 1), ElementsAre(1, 1));
-  const auto slow = local_.Begin();
-  ASSERT_TRUE(slow);
-  EXPECT_EQ(slow->run, 1);
-  ASSERT_THAT(Turns(1, 31), ElementsAre(1));  // at the same lease
-  EXPECT_THAT(cleared_, ElementsAre(1));
-  EXPECT_FALSE(local_.Begin());
-  local_.End(*slow, 1);
-  EXPECT_THAT(Turns(1, 0), ElementsAre(2));
-}
-
 TEST_F(SuspectsTest, ACancelledSuspectLetsTheOthersGoOn) {
   const auto innocent = Add(1), suspect = Add(2, Suspected(2));
   scheduler_.Cancel(2);
@@ -160,70 +144,6 @@ TEST_F(SuspectsTest, PointsThatAreFinishedNeedNoChunk) {
   request.suspicion = Suspected(2, {0, 7});
   scheduler_.Add(std::move(request));
   ASSERT_THAT(Turns(2, 32), ElementsAre(2, 2));
-  EXPECT_THAT(cleared_, ElementsAre(2));
-}
-
-TEST_F(SuspectsTest, APointWithoutSamplesIsProgress) {
-  EnsembleSpec closed = FakeSpec(300, 0);
-  Add(1, {}, closed);
-  Add(2, Suspected(2, {0}), closed);
-  EXPECT_THAT(Turns(1, 0), ElementsAre(2));
-  EXPECT_THAT(cleared_, ElementsAre(2));
-}
-
-// A lease that an earlier process gave to this executor.
-Lease EarlierLease(const RemoteExecutor& remote, int64_t run, uint64_t first, uint64_t end) {
-  Lease lease;
-  lease.run = run;
-  lease.executor = remote.number();
-  lease.start.chunk = first;
-  lease.end = end;
-  return lease;
-}
-
-absl::Status ReportAll(RemoteExecutor& remote, const Lease& lease, const EnsembleSpec& spec) {
-  return remote.Report(lease, ComputedChunks(lease, *FakeExperiments()(spec, lease.point)));
-}
-
-// The next suspect may need the pilot of the first, which would be paused.
-TEST_F(SuspectsTest, ASuspectIsNotClearedBeforeItsPilots) {
-  FakePilotOpener opener([](const EnsembleSpec&, size_t index) {
-    return index == 1 ? std::optional(PilotPlace{.rho = 0.53, .delta = 0.1}) : std::nullopt;
-  });
-  Scheduler scheduler(opener, 2);
-  SteppedExecutor local(scheduler);
-  RemoteExecutor remote(scheduler);
-  std::vector<JournalPointer> journals;
-  for (const int64_t key : {1, 2}) {
-    journals.push_back(std::make_shared<RecordingJournal>());
-    RunRequest request = RunOf(key, SixChunks(2), journals.back());
-    request.suspicion = Suspected(key);
-    scheduler.Add(std::move(request));
-  }
-  const Lease elsewhere = EarlierLease(remote, 1, 1, 2);
-  const auto first = local.Begin(), second = local.Begin();  // open the points at the same time
-  ASSERT_TRUE(first && second);
-  local.End(*first, 0);
-  local.End(*second, 0);
-  EXPECT_OK(ReportAll(remote, elsewhere, SixChunks(2)));
-  EXPECT_THAT(cleared_, ElementsAre());
-  local.TakeAllTurns();
-  EXPECT_THAT(cleared_, ElementsAre(1, 2));
-  for (const auto& journal : journals) {
-    ASSERT_EQ(journal->ends, 1);
-    ExpectAllPointsRight(SixChunks(2), *journal);
-  }
-}
-
-TEST_F(SuspectsTest, AChunkOfAnotherMachineDoesNotClearAPoint) {
-  RemoteExecutor remote(scheduler_);
-  Add(2, Suspected(2, {0}));
-  const Lease elsewhere = EarlierLease(remote, 2, 1, 2);
-  ASSERT_THAT(Turns(1, 0), ElementsAre(2));
-  EXPECT_OK(ReportAll(remote, elsewhere, SixChunks(2)));
-  EXPECT_THAT(Turns(1, 31), ElementsAre(2));
-  EXPECT_THAT(cleared_, ElementsAre());
-  EXPECT_THAT(Turns(1, 1), ElementsAre(2));
   EXPECT_THAT(cleared_, ElementsAre(2));
 }
 

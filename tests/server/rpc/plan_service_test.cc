@@ -1,4 +1,3 @@
-#include <filesystem>
 #include <map>
 #include <set>
 #include <vector>
@@ -167,13 +166,6 @@ TEST_F(PlanServiceTest, ABudgetBelowTheFirstSamplesIsRejected) {
   EXPECT_OK(Plan(spec, &plan));
 }
 
-TEST_F(PlanServiceTest, AGasHasTheTemperatureOneByDefault) {
-  v1::EnsembleSpec spec = PlanQuestion(v1::EnsembleSpec::GAS_EQUILIBRIUM);
-  spec.mutable_grid()->clear_temperature();
-  const v1::PlanEnsembleJobResponse plan = PlanOf(spec);
-  EXPECT_EQ(plan.points(0).parameters().temperature(), 1);
-}
-
 TEST_F(PlanServiceTest, MemoryIsThatOfTheLargestGas) {
   v1::EnsembleSpec spec = PlanQuestion(v1::EnsembleSpec::GAS_EQUILIBRIUM);
   spec.set_model(v1::EnsembleSpec::MARKOV);
@@ -182,14 +174,6 @@ TEST_F(PlanServiceTest, MemoryIsThatOfTheLargestGas) {
   const v1::PlanEnsembleJobResponse plan = PlanOf(spec);
   EXPECT_GT(plan.memory(), small + 1e7);
   EXPECT_LT(plan.memory(), 1e9);
-}
-
-// To measure what storing takes, the server makes a store for a moment.
-TEST_F(PlanServiceTest, MeasuringLeavesNoFilesBehind) {
-  PlanOf(PlanQuestion(v1::EnsembleSpec::EQUILIBRIUM));
-  for (const auto& file : std::filesystem::directory_iterator(folder_->path())) {
-    EXPECT_THAT(file.path().filename().string(), Not(HasSubstr("rates")));
-  }
 }
 
 TEST_F(PlanServiceTest, AnInvalidSpecIsRefusedAsByCreate) {
@@ -219,11 +203,6 @@ TEST_F(PlanServiceTest, ALargeGridIsPlannedByAThousandPointsEvenlySpread) {
     EXPECT_EQ(plan.points(i).parameters().delta(), spec.grid().delta(100 * i));
   }
   EXPECT_NEAR((plan.work() - FirstPoint()) / (100 * WorkOfPoints(plan)), 1, 1e-9);
-}
-
-TEST_F(PlanServiceTest, APlanCreatesNoJob) {
-  PlanOf(PlanQuestion(v1::EnsembleSpec::FIRST_HIT));
-  EXPECT_EQ(server_->List().jobs_size(), 0);
 }
 
 }  // namespace

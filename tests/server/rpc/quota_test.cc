@@ -164,12 +164,9 @@ class UnreadAnswers : public testing::Test {
   std::string name_;
 };
 
-TEST_F(UnreadAnswers, CountAsCallsInProgress) {
+TEST_F(UnreadAnswers, CountAsCallsInProgressWithTheirBytes) {
   Start({.max_calls_per_principal = 1});
   ExpectRefusedUntilLetGo("max-calls-per-principal");
-}
-
-TEST_F(UnreadAnswers, CountWithTheirBytes) {
   Start({.max_call_bytes_per_principal = 100'000});
   ExpectRefusedUntilLetGo("max-call-bytes-per-principal");
 }

@@ -56,7 +56,8 @@ bool TellsFinished(const WatchMessage& message) {
   return message.snapshot().finished_points_size() > 0;
 }
 
-// The messages of a watch and of the watches that resume it.
+// The finished points that a watch and the watches that resume it have sent. The simulation
+// (tests/simulation) compares such chains with the reference model.
 class Chain {
  public:
   // Watches until a message meets the condition, or to the end. Later messages are lost.
@@ -64,69 +65,29 @@ class Chain {
   void Watch(RunningServer& server, const std::string& name, Condition is_enough) {
     WatchStream stream(server, name, token_);
     while (const auto message = stream.Next()) {
-      Take(*message);
-      if (!is_enough(*message)) continue;
-      return stream.Leave();
+      EXPECT_FALSE(HasEnded(state_)) << "something came after the terminal state";
+      token_ = message->resume_token();
+      if (message->has_job()) state_ = message->job().state();
+      EXPECT_LE(message->snapshot().finished_points_size(), 100);
+      for (const auto& point : message->snapshot().finished_points()) {
+        finished_.push_back(point.index());
+      }
+      if (is_enough(*message)) return stream.Leave();
     }
-    end_ = stream.reader->Finish();
+    EXPECT_OK(stream.reader->Finish());
   }
   void WatchToTheEnd(RunningServer& server, const std::string& name) {
     Watch(server, name, [](const WatchMessage&) { return false; });
   }
 
-  // The server is restarted before the next watch, so progress that is not stored may be lost.
-  void ExpectRestart() { progress_.Clear(); }
-
   const std::vector<int>& finished() const { return finished_; }
   const std::string& token() const { return token_; }
-  // After the last watch.
-  EnsembleJob::State state() const { return state_; }
-  const grpc::Status& end() const { return end_; }
-  int terminal_messages() const { return terminal_messages_; }
+  EnsembleJob::State state() const { return state_; }  // the last one
 
  private:
-  void Take(const WatchMessage& message) {
-    EXPECT_EQ(terminal_messages_, 0) << "something came after the terminal state";
-    EXPECT_FALSE(message.resume_token().empty());
-    token_ = message.resume_token();
-    if (message.has_job()) TakeState(message.job());
-    if (!message.has_snapshot()) return;
-    TakeProgress(message.snapshot().progress());
-    EXPECT_LE(message.snapshot().points_size(), 100);
-    EXPECT_LE(message.snapshot().finished_points_size(), 100);
-    for (const auto& point : message.snapshot().finished_points()) {
-      finished_.push_back(point.index());
-    }
-    const std::set<int> told(finished_.begin(), finished_.end());
-    for (const auto& point : message.snapshot().points()) {
-      EXPECT_FALSE(told.contains(point.index())) << "unfinished, and told to be finished";
-    }
-  }
-  void TakeState(const EnsembleJob& job) {
-    // States come in the order of their numbers. Some may be skipped.
-    EXPECT_GE(job.state(), state_)
-        << EnsembleJob::State_Name(state_) << " -> " << EnsembleJob::State_Name(job.state());
-    state_ = job.state();
-    terminal_messages_ += HasEnded(state_);
-    TakeProgress(job.progress());
-  }
-  void TakeProgress(const v1::JobProgress& progress) {
-    EXPECT_GE(progress.points_done(), progress_.points_done());
-    EXPECT_GE(progress.samples(), progress_.samples());
-    // The store does not have the progress in unfinished points of a cancelled job.
-    if (!HasEnded(state_)) {
-      // Shares of points are added up as blocks come, which rounds.
-      EXPECT_GE(progress.fraction(), progress_.fraction() - 1e-12);
-    }
-    progress_ = progress;
-  }
-
   std::string token_;
   std::vector<int> finished_;
-  v1::JobProgress progress_;
   EnsembleJob::State state_ = EnsembleJob::STATE_UNSPECIFIED;
-  int terminal_messages_ = 0;
-  grpc::Status end_;
 };
 
 size_t DistinctOf(const std::vector<int>& points) {
@@ -181,40 +142,8 @@ TEST_F(WatchTest, AStreamHasTheJobThenSnapshotsThenTheEnd) {
   for (const WatchMessage& message : rest) EXPECT_FALSE(message.resume_token().empty());
 }
 
-TEST_F(WatchTest, EveryChangeOfStateIsSent) {
-  RunningServer& server = Start(3);
-  const std::string name = server.Submit(Equilibrium(1, 100));
-  WatchStream stream(server, name);
-  stream.Until(
-      [](const WatchMessage& message) { return message.job().state() == EnsembleJob::RUNNING; });
-  ASSERT_OK(server.Cancel(name));
-  const std::vector<WatchMessage> rest = stream.ToTheEnd();
-  ASSERT_FALSE(rest.empty());
-  EXPECT_EQ(rest.back().job().state(), EnsembleJob::CANCELLED);
-  EXPECT_OK(stream.reader->Finish());
-}
-
-// Begin, results and end of a short job are often committed together. The watch may read the end
-// before the job has its last points in memory.
-TEST_F(WatchTest, TheEndOfAShortJobComesAfterItsPoints) {
-  constexpr int kClients = 8, kJobs = 60;
-  constexpr size_t kPoints = 50;
-  RunningServer& server = Start();
-  std::vector<std::jthread> clients;
-  for (int client = 0; client < kClients; ++client) {
-    clients.emplace_back([&] {
-      for (int i = 0; i < kJobs; ++i) {
-        Chain chain;
-        chain.WatchToTheEnd(server, server.Submit(Equilibrium(kPoints, 1)));
-        EXPECT_EQ(chain.state(), EnsembleJob::SUCCEEDED);
-        EXPECT_EQ(chain.finished().size(), kPoints);
-      }
-    });
-  }
-}
-
-TEST_F(WatchTest, EachFinishedPointIsSentOnceInOrder) {
-  constexpr int kWatches = 200;
+TEST_F(WatchTest, ResumesAfterTheLastPointThatWasRead) {
+  constexpr int kWatches = 50;
   RunningServer& server = StartWithPermits();
   const std::string name = server.Submit(Equilibrium(2 * kWatches, 1));
   Chain chain;
@@ -225,7 +154,6 @@ TEST_F(WatchTest, EachFinishedPointIsSentOnceInOrder) {
                 [&](const WatchMessage& message) { return at_once || TellsFinished(message); });
   }
   chain.WatchToTheEnd(server, name);
-  EXPECT_OK(chain.end());
   EXPECT_EQ(chain.state(), EnsembleJob::SUCCEEDED);
   EXPECT_EQ(chain.finished().size(), 2u * kWatches);
   EXPECT_EQ(DistinctOf(chain.finished()), 2u * kWatches);
@@ -234,7 +162,7 @@ TEST_F(WatchTest, EachFinishedPointIsSentOnceInOrder) {
   EXPECT_EQ(later.finished(), chain.finished());
 }
 
-TEST_F(WatchTest, RestartsLoseAndRepeatNoFinishedPoint) {
+TEST_F(WatchTest, ResumesAfterARestartToo) {
   constexpr int kLives = 5;
   constexpr int kPointsOfALife = 150;  // more than are kept in memory
   const std::string name = StartWithPermits().Submit(Equilibrium(kLives * kPointsOfALife, 1));
@@ -245,50 +173,12 @@ TEST_F(WatchTest, RestartsLoseAndRepeatNoFinishedPoint) {
     permits_.Give(10);
     chain.Watch(*server_, name, TellsFinished);
     StartWithPermits();
-    chain.ExpectRestart();
   }
   permits_.Give(kLives * kPointsOfALife);
   chain.WatchToTheEnd(*server_, name);
   EXPECT_EQ(chain.state(), EnsembleJob::SUCCEEDED);
   EXPECT_EQ(chain.finished().size(), 1u * kLives * kPointsOfALife);
   EXPECT_EQ(DistinctOf(chain.finished()), 1u * kLives * kPointsOfALife);
-}
-
-TEST_F(WatchTest, StatesAndProgressNeverGoBack) {
-  RunningServer& server = StartWithPermits(1);
-  const std::string name = server.Submit(Equilibrium(3, 100));
-  Chain chain, other;  // the other one's snapshots are shared
-  for (int i = 0; i < 50; ++i) {
-    permits_.Give(4);
-    chain.Watch(server, name, [](const WatchMessage& message) {
-      return HasPoints(message) || TellsFinished(message);
-    });
-    other.Watch(server, name, [](const WatchMessage& message) { return message.has_snapshot(); });
-  }
-  ASSERT_OK(server.Cancel(name));
-  for (Chain* watched : {&chain, &other}) {
-    watched->WatchToTheEnd(server, name);
-    EXPECT_EQ(watched->state(), EnsembleJob::CANCELLED);
-    EXPECT_OK(watched->end());
-  }
-}
-
-// Three messages of points, and the end.
-TEST_F(WatchTest, TheTerminalStateIsSentOnce) {
-  RunningServer& server = Start();
-  const std::string name = server.Succeeded(Equilibrium(250, 1));
-  Chain chain;
-  chain.Watch(server, name, TellsFinished);
-  EXPECT_EQ(chain.finished().size(), 100u);
-  EXPECT_EQ(chain.terminal_messages(), 0);
-  const std::string token = chain.token();
-  chain.WatchToTheEnd(server, name);
-  EXPECT_EQ(DistinctOf(chain.finished()), 250u);
-  EXPECT_EQ(chain.terminal_messages(), 1);
-  EXPECT_OK(chain.end());
-  WatchStream rest(server, name, token);
-  EXPECT_EQ(rest.ToTheEnd().size(), 3u);
-  EXPECT_OK(rest.reader->Finish());
 }
 
 // Both to a watch that began before the end, when the job was active, and to a later watch.
@@ -495,22 +385,6 @@ TEST_F(WatchTest, APrincipalsStreamsAreLimited) {
   first.reset();
   // Then the server knows that the watch has ended.
   AwaitThat([&] { return WatchStream(server, name).Next().has_value(); });
-}
-
-// gRPC's own error would have no reason.
-TEST_F(WatchTest, WatchesLeaveThreadsToOtherCalls) {
-  constexpr int kMost = 100;
-  RunningServer& server =
-      StartWith({.factory = GatedExperiments(gate_), .limits = {.max_streams = kMost}});
-  const std::string name = server.Submit(Equilibrium(1, 5));
-  std::vector<std::unique_ptr<WatchStream>> watches;
-  for (int i = 0; i < kMost; ++i) {
-    watches.push_back(std::make_unique<WatchStream>(server, name));
-    ASSERT_TRUE(watches.back()->Next());
-  }
-  EXPECT_THAT(WatchStream(server, name).End(),
-              IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_STREAMS"));
-  EXPECT_EQ(server.Status().streams(), kMost);
 }
 
 // ---- many ----

@@ -197,29 +197,5 @@ TEST_F(BackupTest, CopiesMadeWhileAServerWorksAreSound) {
   client.join();
 }
 
-TEST_F(BackupTest, TheSizeIncludesTheLog) {
-  RunningServer server({.data_dir = folder_.path()});
-  server.Succeeded(Equilibrium(2, 3));
-  const auto log = std::filesystem::file_size(Store() + "-wal");
-  ASSERT_GT(log, 0u);
-  ASSERT_OK_AND_ASSIGN(const auto summary, CheckStore(Store()));
-  EXPECT_EQ(static_cast<uintmax_t>(summary.bytes), std::filesystem::file_size(Store()) + log);
-}
-
-// Neither the file nor its log changes. A checkpoint would write the log back.
-TEST_F(BackupTest, TheStoreIsNotWrittenByCopyingAndChecking) {
-  MakeStore();
-  RunningServer server({.data_dir = folder_.path()});
-  server.Succeeded(Equilibrium(2, 3));
-  server.AwaitEnd(unfinished_);  // nothing is left to write
-  const std::string file = Contents(Store());
-  const std::string log = Contents(Store() + "-wal");
-  ASSERT_FALSE(log.empty());
-  ASSERT_OK(BackupStore(Store(), Copy()));
-  ASSERT_OK(CheckStore(Store()));
-  EXPECT_EQ(Contents(Store()), file);
-  EXPECT_EQ(Contents(Store() + "-wal"), log);
-}
-
 }  // namespace
 }  // namespace ballpiston::server

@@ -2,9 +2,7 @@
 
 #include <filesystem>
 #include <string>
-#include <thread>
 
-#include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "server/store/backup.h"
