@@ -163,7 +163,8 @@ class Simulation {
     std::vector<DiskOperation> operations = disk_->operations();
     for (DiskOperation& done : operations) {
       // The names of the files are flushed all the same.
-      done.refused |= !options_.disk_flushes && done.kind == DiskOperation::Kind::kSync && !done.folder;
+      done.refused |=
+          !options_.disk_flushes && done.kind == DiskOperation::Kind::kSync && !done.folder;
     }
     DiskFiles left =
         AfterPowerCut(disk_->initial(), operations, operations.size(), survival, machine_.Bits());

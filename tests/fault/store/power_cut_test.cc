@@ -1,5 +1,5 @@
-// The model of a power cut, and cuts at every write and sync while a store is created. The simulation
-// (tests/simulation) cuts the power at random moments of a server's life.
+// The model of a power cut, and cuts at every write and sync while a store is created. The
+// simulation (tests/simulation) cuts the power at random moments of a server's life.
 
 #include "tests/fault/store/power_cut.h"
 

@@ -377,8 +377,8 @@ TEST_F(AcceptanceTest, OnlyTheRequestThatMadeTheJobIsStored) {
 
 // ---- limits ----
 
-// With `held` jobs of ann that wait at the gate, of one point each, the caller's request is refused.
-// All limits are 3.
+// With `held` jobs of ann that wait at the gate, of one point each, the caller's request is
+// refused. All limits are 3.
 struct LimitRow {
   Limits limits;
   int held;
@@ -393,15 +393,35 @@ TEST_F(AcceptanceTest, EachLimitNamesItsReasonAndItsFlag) {
   by_default.clear_target();
   const LimitRow rows[] = {
       {{.max_active_jobs = 3}, 3, kBen, Question(), "QUEUE_FULL", "max-active-jobs"},
-      {{.max_active_jobs_per_principal = 3}, 3, kAnn, Question(), "TOO_MANY_JOBS",
+      {{.max_active_jobs_per_principal = 3},
+       3,
+       kAnn,
+       Question(),
+       "TOO_MANY_JOBS",
        "max-active-jobs-per-principal"},
-      {{.max_active_points = 3, .max_active_points_per_principal = 0}, 3, kBen, Question(),
-       "TOO_MANY_ACTIVE_POINTS", "max-active-points"},
-      {{.max_active_points_per_principal = 3}, 3, kAnn, Question(), "TOO_MANY_ACTIVE_POINTS",
+      {{.max_active_points = 3, .max_active_points_per_principal = 0},
+       3,
+       kBen,
+       Question(),
+       "TOO_MANY_ACTIVE_POINTS",
+       "max-active-points"},
+      {{.max_active_points_per_principal = 3},
+       3,
+       kAnn,
+       Question(),
+       "TOO_MANY_ACTIVE_POINTS",
        "max-active-points-per-principal"},
-      {{.max_points_per_job = 3}, 0, kAnn, Equilibrium(4, 5), "TOO_MANY_POINTS",
+      {{.max_points_per_job = 3},
+       0,
+       kAnn,
+       Equilibrium(4, 5),
+       "TOO_MANY_POINTS",
        "max-points-per-job"},
-      {{.max_samples_per_job = 3}, 0, kAnn, Equilibrium(2, 2), "TOO_MANY_SAMPLES",
+      {{.max_samples_per_job = 3},
+       0,
+       kAnn,
+       Equilibrium(2, 2),
+       "TOO_MANY_SAMPLES",
        "max-samples-per-job"},
       {{.max_samples_per_job = 3}, 0, kAnn, by_default, "TOO_MANY_SAMPLES", "max-samples-per-job"}};
   for (const LimitRow& row : rows) {

@@ -53,17 +53,6 @@ std::vector<PointSize> RestoredPoints(size_t count) {
   return std::vector<PointSize>(count, {.point = 0, .samples = 100, .bytes = 1});
 }
 
-TEST(Job, ProgressIsTheShareOfWorkDone) {
-  Job job(JobWithPoints(4));
-  job.AddRestoredPoints(RestoredPoints(1));
-  job.Add({.samples = 50, .points_computed = 0.5});
-  const v1::JobProgress progress = job.Progress();
-  EXPECT_EQ(progress.points(), 4);
-  EXPECT_EQ(progress.points_done(), 1);
-  EXPECT_EQ(progress.samples(), 150);
-  EXPECT_EQ(progress.fraction(), 1.5 / 4);
-}
-
 TEST(Job, AToleranceGivesNoFraction) {
   v1::EnsembleSpec spec;
   spec.mutable_target()->set_tolerance(0.1);

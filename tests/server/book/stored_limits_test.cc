@@ -142,13 +142,6 @@ TEST_F(StoredLimitsTest, APinnedJobDoesNotExpire) {
   EXPECT_EQ(ReasonOf(book_->Result(kAlice, other, 3).status()), "RESULT_NOT_FOUND");
 }
 
-TEST_F(StoredLimitsTest, JobsThatExpireSoonAreCounted) {
-  Start({.retain_days = 30});
-  Done(kAlice, 1);
-  EXPECT_EQ(book_->CountExpiring(absl::Now() + 20 * kDay), 0);
-  EXPECT_EQ(book_->CountExpiring(absl::Now() + 24 * kDay), 1);
-}
-
 // The oldest results expire first. Then expired jobs are deleted. If pinned jobs still take too
 // much, no job is accepted.
 TEST_F(StoredLimitsTest, TheStoreKeepsItsBound) {
@@ -163,9 +156,8 @@ TEST_F(StoredLimitsTest, TheStoreKeepsItsBound) {
   }
   EXPECT_TRUE(Get(kAlice, ids.front()).results_expired());
   EXPECT_EQ(PointsOf(kAlice, ids.back()), 300u);
-  const int64_t free_pages = ReadFrom(*store_, [](Database& database) {
-    return database.Integer("PRAGMA freelist_count");
-  });
+  const int64_t free_pages = ReadFrom(
+      *store_, [](Database& database) { return database.Integer("PRAGMA freelist_count"); });
   EXPECT_LE(free_pages, kKeptPages);
   bool expired = true;
   for (const std::string& id : ids) {

@@ -2,8 +2,6 @@
 
 #include <chrono>
 #include <memory>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "gmock/gmock.h"

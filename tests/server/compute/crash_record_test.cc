@@ -82,17 +82,6 @@ TEST_F(CrashRecordTest, TwoDeathsWithDifferentRunsMakeASuspectOfTheCommonOne) {
   EXPECT_EQ(record->Deaths(kThird), 1);
 }
 
-TEST_F(CrashRecordTest, AKillFromOutsideCountsForNothing) {
-  LiveAndDie({{kFirst, {0}}}, SIGSEGV);
-  Next().reset();
-  for (int i = 0; i < 5; ++i) {
-    LiveAndDie({{kFirst, {0}}}, kKilledFromOutside);
-    EXPECT_EQ(Next()->Deaths(kFirst), 1);
-  }
-  LiveAndDie({{kFirst, {0}}}, SIGSEGV);
-  EXPECT_EQ(Next()->Deaths(kFirst), 2);
-}
-
 TEST_F(CrashRecordTest, AKillFromOutsideKeepsThePointsOfTheLastDeath) {
   LiveAndDie({{kFirst, {7}}}, SIGSEGV);
   Next().reset();
@@ -106,18 +95,6 @@ TEST_F(CrashRecordTest, AKillFromOutsideKeepsThePointsOfTheLastDeath) {
   LiveAndDie({{kFirst, {8, 9}}}, SIGSEGV);
   EXPECT_EQ(Next()->Deaths(kFirst), 3);
   EXPECT_EQ(Next()->LastPoints(kFirst), (std::set<size_t>{8, 9}));
-}
-
-TEST_F(CrashRecordTest, AnEndedTurnDoesNotCount) {
-  {
-    CrashRecord record(folder_.path(), {});
-    { const CrashRecord::Computing ended(record, kFirst, 0); }
-    const CrashRecord::Computing computing(record, kSecond, 0);
-    Die(SIGFPE);
-  }
-  const auto record = Next();
-  EXPECT_EQ(record->Deaths(kFirst), 0);
-  EXPECT_EQ(record->Deaths(kSecond), 1);
 }
 
 TEST_F(CrashRecordTest, ADeathInAnExaminationCountsForItsRunAlone) {
@@ -177,13 +154,6 @@ TEST_F(CrashRecordTest, AFileOfAnotherFormatIsReplaced) {
   EXPECT_EQ(Next()->Deaths(kFirst), 0);
   LiveAndDie({{kFirst, {0}}}, SIGSEGV);
   EXPECT_EQ(Next()->Deaths(kFirst), 1);
-}
-
-TEST_F(CrashRecordTest, WithoutAFileTheRecordIsInMemory) {
-  std::filesystem::create_directory(folder_.File("computing"));
-  CrashRecord record(folder_.path(), {});
-  const CrashRecord::Computing computing(record, kFirst, 0);
-  EXPECT_EQ(record.Deaths(kFirst), 0);
 }
 
 // ---- real signals: each death is that of a process of its own ----

@@ -169,43 +169,7 @@ TEST(Scheduler, AChunkThatContradictsItsMergedBlocksIsRefused) {
   ExpectComplete(SixChunks(), *journal);
 }
 
-// Valid chunks of the point that belong to another lease are merged and not computed again.
-TEST(Scheduler, AChunkOutsideItsLeaseIsMerged) {
-  Cluster cluster;
-  const auto journal = cluster.Begin(SixChunks());
-  const auto lease = cluster.remote.Take();
-  ASSERT_TRUE(lease);
-  Lease whole = *lease;
-  whole.end = kChunks;
-  EXPECT_OK(cluster.remote.Report(*lease, ComputedChunks(whole)));
-  ExpectComplete(SixChunks(), *journal);
-  EXPECT_FALSE(cluster.remote.Take());
-}
-
 // ---- leases ----
-
-TEST(Scheduler, AChunkStaysLocalAfterFiveAttempts) {
-  Cluster cluster;
-  const auto journal = cluster.Begin(SixChunks());
-  for (int attempt = 1; attempt <= 5; ++attempt) {
-    const auto lease = cluster.remote.Take();
-    ASSERT_TRUE(lease);
-    EXPECT_EQ(lease->start.chunk, 0u);
-    EXPECT_EQ(lease->attempt, attempt);
-    cluster.remote.Return(*lease);
-  }
-  for (const Lease& lease : cluster.TakeAll()) {
-    EXPECT_GT(lease.start.chunk, 0u);
-    EXPECT_OK(cluster.remote.ReportAll(lease));
-  }
-  const auto last = cluster.local.Begin();
-  ASSERT_TRUE(last);
-  EXPECT_EQ(last->start.chunk, 0u);
-  EXPECT_EQ(last->end, 1u);
-  EXPECT_EQ(last->attempt, 6);
-  cluster.local.End(*last, 1000);
-  ExpectComplete(SixChunks(), *journal);
-}
 
 TEST(Scheduler, AnUntriedLeaseCountsNoAttempt) {
   Cluster cluster;
@@ -252,19 +216,6 @@ TEST(Scheduler, PointsAreOpenedAheadForAHungryExecutorElsewhere) {
       cluster.local.End(*next, 1);
     }
   }
-}
-
-// The next chunk beyond the expected end can be leased when the chunks before it are merged. The
-// idle executors must be woken, even if the executor elsewhere takes no more.
-TEST(Scheduler, AReportFromElsewhereWakesTheExecutors) {
-  Cluster cluster(kWholePoint);
-  RemoteExecutor waiting(cluster.scheduler);
-  cluster.Begin(SixChunks(2));
-  const auto lease = cluster.remote.Take();
-  ASSERT_TRUE(lease);
-  const int wakes = waiting.wakes();
-  EXPECT_OK(cluster.remote.Report(*lease, {ComputedChunks(*lease)[0]}));
-  EXPECT_GT(waiting.wakes(), wakes);
 }
 
 TEST(Scheduler, WorkElsewhereIsChargedToItsRun) {
@@ -314,20 +265,6 @@ TEST(Scheduler, ARunThatFailsElsewhereEnds) {
   EXPECT_THAT(*journal->outcome, StatusIs(absl::StatusCode::kInternal, "the task failed"));
   EXPECT_FALSE(cluster.scheduler.Needs(*lease));
   EXPECT_GT(cluster.remote.wakes(), wakes);
-}
-
-TEST(Scheduler, NoLeaseIsGivenAfterTheShutdown) {
-  Cluster cluster;
-  const auto journal = cluster.Begin(SixChunks(2));
-  const auto lease = cluster.remote.Take();
-  ASSERT_TRUE(lease);
-  cluster.scheduler.Shutdown();
-  EXPECT_TRUE(lease->stop.stop_requested());
-  EXPECT_TRUE(cluster.remote.is_shut_down());
-  cluster.Add(SixChunks(), 2);
-  EXPECT_FALSE(cluster.scheduler.Next({.executor = cluster.remote.number()}));
-  EXPECT_FALSE(cluster.scheduler.Next({.executor = 0}));
-  EXPECT_EQ(journal->ends, 0);
 }
 
 // An earlier process gave the lease, and another job has the key now.

@@ -139,12 +139,6 @@ TEST(FairShare, AReturningPrincipalKeepsItsLead) {
   EXPECT_NEAR(served.at(1) / served.at(2), 1, 0.1);
 }
 
-TEST(FairShare, TheOlderRunComesFirstAtEqualTime) {
-  FairShare share;
-  AddRuns(share, {8, 7});
-  EXPECT_EQ(FirstRun(share), 7);
-}
-
 TEST(FairShare, BlocksInFlightAreCharged) {
   for (const bool of_one_principal : {false, true}) {
     FairShare share;

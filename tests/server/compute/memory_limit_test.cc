@@ -135,17 +135,5 @@ TEST_F(MemoryLimitTest, ALargePointGetsItsTurn) {
   for (const auto& journal : journals) EXPECT_EQ(journal->ends, 1);
 }
 
-TEST_F(MemoryLimitTest, AStoppedRunGivesItsMemoryBack) {
-  Add(1, 100);
-  local_.TakeTurn(0);
-  local_.TakeTurn(1);
-  const auto second = Add(2, 100);
-  local_.TakeTurn(0);
-  scheduler_.Cancel(1);
-  local_.TakeAllTurns();
-  ASSERT_EQ(second->ends, 1);
-  EXPECT_OK(*second->outcome);
-}
-
 }  // namespace
 }  // namespace ballpiston::server

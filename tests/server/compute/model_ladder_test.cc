@@ -99,12 +99,6 @@ TEST_F(ModelLadderTest, TheBilliardIsChosenIfThePilotFindsALargeLimitError) {
   EXPECT_EQ(runs_, 1);
 }
 
-TEST_F(ModelLadderTest, OneStoredPilotServesAllSmallerDeltas) {
-  ModelLadder ladder(*store_, 2);
-  for (const double delta : {0.005, 0.004, 0.003}) Create(ladder, Relaxation({delta}));
-  EXPECT_EQ(runs_, 1);
-}
-
 TEST_F(ModelLadderTest, PilotsRunOnlyIfNeeded) {
   ModelLadder ladder(*store_, 2);
   EnsembleSpec closed = Relaxation();

@@ -117,17 +117,6 @@ TEST(OpenPoint, ALeaseTakesNoMoreMemoryThanThereIs) {
   EXPECT_FALSE(point.AwaitsMemory({.memory = 99}));  // nothing is left
 }
 
-TEST(OpenPoint, ALargeLeaseDoesNotTakeTheRestOfAPoint) {
-  const EnsembleSpec two_minutes = FakeSpec(1, 3000);
-  for (const double bytes : {100., 101.}) {
-    OpenPoint point = PointOf(two_minutes);
-    point.memory = {.of_one_turn = bytes};
-    const auto lease = point.NextChunks({.memory_of_the_rest = 100}, ChunkLimits());
-    ASSERT_TRUE(lease);
-    EXPECT_EQ(lease->end == point.experiment()->plan().chunks(), bytes <= 100) << bytes;
-  }
-}
-
 TEST(OpenPoint, AChunkOfTooManyAttemptsIsForLocalExecutors) {
   OpenPoint point = PointOf(SixChunks());
   EXPECT_EQ(Next(point, 0, kElsewhere), Chunks(0, 1));
@@ -226,23 +215,6 @@ TEST(OpenPoint, GroupsOfTrajectoriesAreLeasesOfTheirOwn) {
   EXPECT_EQ(next->start.chunk, 16u);
   EXPECT_EQ(next->groups[0], first.result.groups[0]);
   EXPECT_FALSE(point.NextChunks({.seconds = 1000}, kElsewhere));
-}
-
-// All the rest is one lease only if the starts of its chunks are known.
-TEST(OpenPoint, ALeaseOfTheRestHasTheStatesOfAllGroups) {
-  OpenPoint point(SteadyExperiment());
-  const auto first = point.NextChunks({.seconds = 0}, {});
-  ASSERT_TRUE(first);
-  const auto second = point.NextChunks({}, {});
-  ASSERT_TRUE(second);
-  EXPECT_EQ(second->end, 2u);  // chunk 0, from which chunk 16 starts, is computed elsewhere
-  point.fold().Add(Computed(*first));
-  point.fold().Add(Computed(*second));
-  const auto rest = point.NextChunks({}, {});
-  ASSERT_TRUE(rest);
-  EXPECT_EQ(rest->start.chunk, 2u);
-  EXPECT_EQ(rest->end, point.experiment()->plan().chunks());
-  EXPECT_EQ(rest->groups, point.fold().state().complete.groups);
 }
 
 }  // namespace

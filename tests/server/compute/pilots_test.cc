@@ -115,17 +115,6 @@ TEST_F(PilotsTest, APilotThatFailsEndsItsRunOnly) {
   EXPECT_EQ(opener.opened(), 2);
 }
 
-TEST_F(PilotsTest, ARunThatWaitsForAPilotHoldsNoThread) {
-  const auto waiting = Add(1, 1);
-  ASSERT_EQ(BeginPilot(), 1);
-  const auto other = Add(2, kFirstSeedWithoutPilot);
-  while (other->ends == 0) ASSERT_TRUE(local_.TakeTurn(1, 1));
-  ExpectRight(*other, kFirstSeedWithoutPilot);
-  EXPECT_TRUE(opener_.kept().empty());
-  local_.TakeAllTurns();
-  ExpectRight(*waiting, 1);
-}
-
 TEST_F(PilotsTest, ThePilotsWorkIsChargedToTheRunThatComputesIt) {
   const auto first = Add(1, 1), second = Add(2, 2);
   double pilots_work = 0;

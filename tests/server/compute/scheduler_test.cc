@@ -95,27 +95,6 @@ TEST(Scheduler, AShutdownWritesACheckpoint) {
   EXPECT_EQ(later->restored[0], 50 * kFakeSamplesPerBlock);
 }
 
-// Another thread may have opened a later point and work on it.
-TEST(Scheduler, APointThatOpensLateGoesBeforeLaterOnes) {
-  FactoryOpener opener(FakeExperiments());
-  Scheduler scheduler(opener, 2);
-  SteppedExecutor executor(scheduler);
-  const auto journal = std::make_shared<RecordingJournal>();
-  scheduler.Add(RunOf(1, SixChunks(3), journal));
-  const auto opens_0 = executor.Begin(), opens_1 = executor.Begin();
-  ASSERT_TRUE(opens_0 && opens_1);
-  executor.End(*opens_1, 1);
-  const auto of_1 = executor.Begin();
-  ASSERT_EQ(of_1->point, 1u);
-  executor.End(*of_1, 1);
-  executor.End(*opens_0, 1);
-  const auto next = executor.Begin();
-  EXPECT_EQ(next->point, 0u);
-  executor.End(*next, 1);
-  executor.TakeAllTurns();
-  EXPECT_EQ(journal->ends, 1);
-}
-
 TEST(Scheduler, APointDoesNotRunFarAheadOfASlowBlock) {
   Gate gate;
   std::atomic<uint64_t> furthest = 0;
@@ -241,14 +220,6 @@ TEST(Scheduler, AnExceptionFailsItsRunOnly) {
   EXPECT_THAT(std::string(bad->AwaitEnd().message()), HasSubstr("the ball left the cell"));
   EXPECT_THAT(std::string(hungry->AwaitEnd().message()), HasSubstr("out of memory"));
   ExpectAllPointsRight(FakeSpec(3, 20, 15), *good);
-}
-
-TEST(Scheduler, AFactoryThatThrowsFailsItsRun) {
-  ThreadPool pool(2, [](const EnsembleSpec&, size_t) -> std::unique_ptr<const PointExperiment> {
-    throw std::runtime_error("no such experiment");
-  });
-  const auto journal = AddRun(pool, 1, FakeSpec(3, 20));
-  EXPECT_THAT(std::string(journal->AwaitEnd().message()), HasSubstr("no such experiment"));
 }
 
 // The runs are added while a first run blocks the only worker, so that all are present when it goes

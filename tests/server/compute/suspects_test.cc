@@ -88,36 +88,6 @@ TEST_F(SuspectsTest, TheChunksAreOfThePointsThatWereBeingComputed) {
   ExpectAllPointsRight(SixChunks(5), *suspect);
 }
 
-TEST_F(SuspectsTest, ASuspectHasOneLeaseOfOneChunkAtATime) {
-  Add(2, Suspected(2, {0, 1}));
-  ASSERT_THAT(Turns(1, 0), ElementsAre(2));
-  const auto lease = local_.Begin();
-  ASSERT_TRUE(lease);
-  EXPECT_EQ(lease->end, 1u);
-  EXPECT_FALSE(local_.Begin());
-  local_.End(*lease, 32);
-  EXPECT_THAT(Turns(2, 32), ElementsAre(2, 2));
-  EXPECT_THAT(cleared_, ElementsAre(2));
-}
-
-TEST_F(SuspectsTest, TheChunksAreInCheckpointsBeforeTheRunIsCleared) {
-  JournalPointer journal;
-  std::vector<uint64_t> stored_chunks;
-  journal = Add(2, Suspicion{.points = {0, 1}, .clear = [&] {
-                               for (const auto& [point, state] : journal->checkpoints) {
-                                 stored_chunks.push_back(state.chunk);
-                               }
-                               return true;
-                             }});
-  EXPECT_THAT(Turns(2, 31), ElementsAre(2, 2));
-  EXPECT_TRUE(journal->checkpoints.empty());
-  EXPECT_THAT(Turns(2, 1), ElementsAre(2, 2));  // ends the chunk and opens the next point
-  EXPECT_THAT(Turns(1, 31), ElementsAre(2));
-  EXPECT_THAT(stored_chunks, ElementsAre());
-  EXPECT_THAT(Turns(1, 1), ElementsAre(2));
-  EXPECT_THAT(stored_chunks, ElementsAre(1, 1));
-}
-
 TEST_F(SuspectsTest, ARunStaysASuspectWhileTheDiskFails) {
   Add(1);
   Add(2, Suspected(2));

@@ -188,8 +188,7 @@ TEST(Spec, ComesBackUnchanged) {
   // Messages name the budget as it was given, not as 0.30000000000000004.
   EXPECT_EQ(CheckSpec(messages[4]).spec.target.budget_seconds, 0.3);
   const CheckedSpec shapes = CheckSpec(messages.back());
-  EXPECT_EQ(shapes.spec.grid[kCells][4],
-            CodeOf({.columns = 4, .rows = 3, .is_lattice = true}));
+  EXPECT_EQ(shapes.spec.grid[kCells][4], CodeOf({.columns = 4, .rows = 3, .is_lattice = true}));
   EXPECT_EQ(ParametersMessage(PointAt(shapes.spec, 4)).cells(), "4x3");
 }
 
@@ -202,7 +201,8 @@ struct Violated {
   std::string description;  // of the first one; empty: not compared
 };
 
-v1::EnsembleSpec Changed(v1::EnsembleSpec spec, const std::function<void(v1::EnsembleSpec&)>& change) {
+v1::EnsembleSpec Changed(v1::EnsembleSpec spec,
+                         const std::function<void(v1::EnsembleSpec&)>& change) {
   change(spec);
   return spec;
 }
@@ -211,7 +211,8 @@ TEST(Spec, EveryBadFieldIsAViolation) {
   using Spec = v1::EnsembleSpec;
   const std::string range = "permitted: N or NxM, 1 to 1000000 cells in all";
   std::vector<Violated> rows;
-  const auto add = [&rows](const Spec& spec, std::vector<std::string> fields, std::string text = "") {
+  const auto add = [&rows](const Spec& spec, std::vector<std::string> fields,
+                           std::string text = "") {
     rows.push_back({spec, std::move(fields), std::move(text)});
   };
   for (const char* text : {"4y4", "0", "x", "1e9", "-3", "", "1001x1000", "4x"}) {
@@ -235,8 +236,7 @@ TEST(Spec, EveryBadFieldIsAViolation) {
     add(Changed(OneFirstHit(), [&](Spec& s) { s.mutable_target()->set_tolerance(wrong); }),
         {"spec.target.tolerance"});
   }
-  add(Changed(OneFirstHit(),
-              [](Spec& s) { s.set_precision(static_cast<Spec::Precision>(79)); }),
+  add(Changed(OneFirstHit(), [](Spec& s) { s.set_precision(static_cast<Spec::Precision>(79)); }),
       {"spec.precision"});
   add(Changed(OneFirstHit(), [](Spec& s) { s.set_model(static_cast<Spec::Model>(78)); }),
       {"spec.model"});
@@ -388,19 +388,6 @@ TEST(PointResult, ValuesThatDoNotExistAreLeftOut) {
   EXPECT_FALSE(result.parameters().has_epsilon());
   merged.moments[0].mean = kNan;
   EXPECT_EQ(PointResultOf(3, *experiment, merged).estimates_size(), 0);
-}
-
-// All orbits left the cell.
-TEST(PointResult, RemarkStandsForAnEstimateWithoutAValue) {
-  const auto experiment = PointExperiment::Create(CheckSpec(OneFirstHit()).spec, 0);
-  BlockResult merged = experiment->EmptyResult();
-  merged.health.escapes = 2;
-  const v1::PointResult result = PointResultOf(0, *experiment, merged);
-  EXPECT_EQ(result.estimates_size(), 0);
-  EXPECT_THAT(
-      result.remarks(),
-      testing::Contains("mean_hit_time has no value: nothing was measured in 0 samples and 2 "
-                        "orbits that left the cell"));
 }
 
 // An answer with everything that a result can hold.

@@ -71,14 +71,6 @@ TEST(AccessList, UnknownTokensAreInvalid) {
   }
 }
 
-TEST(AccessList, ATokenThatIsTooLongIsRefusedEvenIfItsHashIsListed) {
-  const std::string longest(kLongestToken, 'x');
-  const AccessList list = ParsedList("token " + HashText(longest) + " a read\ntoken " +
-                                     HashText(longest + "x") + " b read\n");
-  EXPECT_OK(list.OfToken(longest, kNoon));
-  EXPECT_THAT(list.OfToken(longest + "x", kNoon), IsRefusedAs("CREDENTIALS_INVALID"));
-}
-
 TEST(AccessList, AnEntryIsRefusedFromItsTimeOfExpiryOn) {
   const AccessList list = ParsedList(
       "token " + HashText("time") + " a read 2030-06-01T12:00:00Z\ntoken " + HashText("zone") +
@@ -177,12 +169,6 @@ TEST_F(AccessFile, OnlyARegularFileIsRead) {
               HasSubstr("is not a regular file"));
   EXPECT_THAT(AccessList::Read({"access-file", folder_.path()}),
               StatusIs(absl::StatusCode::kInvalidArgument));
-}
-
-TEST_F(AccessFile, AFileThatIsTooLongIsRefused) {
-  WriteFile(file_.path, std::string(kMaxSecurityFile + 1, '#'));
-  chmod(file_.path.c_str(), 0600);
-  EXPECT_THAT(std::string(AccessList::Read(file_).status().message()), HasSubstr("longer than"));
 }
 
 }  // namespace

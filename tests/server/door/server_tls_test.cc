@@ -35,8 +35,6 @@ class ServerTlsTest : public ::testing::Test {
   const TestAuthority other_{"another authority"};
 };
 
-TEST_F(ServerTlsTest, AGoodSetIsAccepted) { EXPECT_EQ(Error(), ""); }
-
 TEST_F(ServerTlsTest, AKeyOfAnotherCertificateIsRefused) {
   files_.Write("server.key", other_.Issue("x").key);
   EXPECT_THAT(Error(), HasSubstr("--tls-key="));

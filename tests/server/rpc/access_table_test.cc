@@ -154,35 +154,6 @@ TEST_F(AccessTable, UnknownJobsAreNotFoundAndMalformedNamesInvalid) {
   }
 }
 
-TEST_F(AccessTable, ListsHoldOwnJobsAndAnAdministratorsAll) {
-  const std::string job = JobOfAlice();
-  TestClient reader = ClientWith(kAliceReads);
-  for (TestClient* client : {&alice_, &reader, &ops_}) {
-    const v1::ListEnsembleJobsResponse list = client->List();
-    ASSERT_EQ(list.jobs_size(), 1);
-    EXPECT_EQ(list.jobs(0).name(), job);
-  }
-  EXPECT_EQ(bob_.List().jobs_size(), 0);
-}
-
-TEST_F(AccessTable, UnfinishedResultsBelongToThePrincipalOfTheJob) {
-  const std::string job = alice_.Submit(Equilibrium(1, 1'000'000'000'000));
-  v1::GetResultRequest request;
-  request.set_name(job + "/results/0");
-  request.set_unfinished(true);
-  const auto get = [&request](TestClient& client) {
-    grpc::ClientContext context;
-    v1::PointResult now;
-    return client.ensemble().GetResult(&context, request, &now);
-  };
-  AwaitThat([&] {  // until a worker has computed a part
-    EXPECT_EQ(ReasonOf(get(bob_)), "JOB_NOT_FOUND");
-    return get(alice_).ok() || HasFailure();
-  });
-  EXPECT_EQ(ReasonOf(get(bob_)), "JOB_NOT_FOUND");
-  EXPECT_OK(get(ops_));
-}
-
 // ---- tokens and request ids of another principal ----
 
 class ForeignTokens : public AccessTable {

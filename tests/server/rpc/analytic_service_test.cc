@@ -155,7 +155,7 @@ TEST_F(AnalyticServiceTest, EveryBadFieldIsNamed) {
          fill(126, 1, r.mutable_temperature());
        }},
       {{"delta[1]"}, {}, [](Request& r) { r.add_delta(1e-300); }},  // beyond the range of double
-      {{"delta[0]"},  // the exchange rate underflows
+      {{"delta[0]"},                                                // the exchange rate underflows
        {},
        [](Request& r) {
          r.set_delta(0, 1e-130);

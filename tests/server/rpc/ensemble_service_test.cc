@@ -62,7 +62,8 @@ BadRequest BadList(std::string field, std::string message,
           [request](RunningServer& server) { return ListError(server, request); }};
 }
 
-BadRequest BadResults(std::string field, const std::function<void(v1::ListResultsRequest&)>& change) {
+BadRequest BadResults(std::string field,
+                      const std::function<void(v1::ListResultsRequest&)>& change) {
   v1::ListResultsRequest request;
   request.set_parent("ensembleJobs/a");
   change(request);
@@ -87,8 +88,8 @@ grpc::Status Update(RunningServer& server, const v1::UpdateEnsembleJobRequest& r
   return server.ensemble().UpdateEnsembleJob(&context, request, job);
 }
 
-BadRequest BadUpdate(std::string field, std::string message,
-                     const std::vector<std::string>& paths, int priority = 0) {
+BadRequest BadUpdate(std::string field, std::string message, const std::vector<std::string>& paths,
+                     int priority = 0) {
   v1::UpdateEnsembleJobRequest request = UpdateRequest("ensembleJobs/a", paths);
   request.mutable_job()->set_priority(priority);
   return {std::move(field), std::move(message), [request](RunningServer& server) {
@@ -133,12 +134,15 @@ std::vector<BadRequest> BadRequests() {
       BadCreate("request_id", "", [](Create& r) { r.set_request_id("not a uuid"); }),
       BadCreate("priority", "-100 to 100", [](Create& r) { r.set_priority(101); }),
       BadCreate("priority", "-100 to 100", [](Create& r) { r.set_priority(-101); }),
-      {"request_id", "", [](RunningServer& server) { return server.Cancel("ensembleJobs/a", "x"); }},
+      {"request_id", "",
+       [](RunningServer& server) { return server.Cancel("ensembleJobs/a", "x"); }},
       BadList("page_size", "", [](List& r) { r.set_page_size(-1); }),
       BadList("page_token", "", [](List& r) { r.set_page_token("!!!"); }),
       BadList("page_token", "", [](List& r) { r.set_page_token("am9iczotMQ=="); }),
-      BadList("page_token", "", [](List& r) { r.set_page_token("cmVzdWx0czphOjE="); }),  // of results
-      BadList("states[1]", "is 0; permitted: QUEUED, RUNNING, CANCELLING, SUCCEEDED, FAILED, CANCELLED",
+      BadList("page_token", "",
+              [](List& r) { r.set_page_token("cmVzdWx0czphOjE="); }),  // of results
+      BadList("states[1]",
+              "is 0; permitted: QUEUED, RUNNING, CANCELLING, SUCCEEDED, FAILED, CANCELLED",
               [](List& r) {
                 r.add_states(EnsembleJob::RUNNING);
                 r.add_states(EnsembleJob::STATE_UNSPECIFIED);
@@ -359,9 +363,8 @@ TEST(EnsembleService, JobsAreFilteredByStateExperimentAndTime) {
               ElementsAre(queued, succeeded));
   EXPECT_THAT(listed([](auto& r) { r.add_experiments(v1::EnsembleSpec::FIRST_HIT); }),
               ElementsAre(running));
-  EXPECT_THAT(
-      listed([&](auto& r) { *r.mutable_since() = server.Get(running).create_time(); }),
-      ElementsAre(queued, running));
+  EXPECT_THAT(listed([&](auto& r) { *r.mutable_since() = server.Get(running).create_time(); }),
+              ElementsAre(queued, running));
   EXPECT_THAT(listed([](auto& r) { r.mutable_since()->set_seconds(253'402'300'799); }),
               ElementsAre());  // the end of the year 9999
 }

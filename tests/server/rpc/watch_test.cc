@@ -124,24 +124,6 @@ class WatchTest : public testing::Test {
   std::optional<RunningServer> server_;
 };
 
-TEST_F(WatchTest, AStreamHasTheJobThenSnapshotsThenTheEnd) {
-  RunningServer& server = Start(30);
-  const std::string name = server.Submit(Equilibrium(2, 100));
-  WatchStream stream(server, name);
-  const WatchMessage first = *stream.Next();
-  ASSERT_TRUE(first.has_job());
-  EXPECT_EQ(first.job().name(), name);
-  const WatchMessage snapshot = stream.Until(HasPoints);
-  EXPECT_GT(snapshot.snapshot().progress().samples(), 0);
-  EXPECT_EQ(snapshot.snapshot().points(0).estimates(0).name(), "mean");
-  gate_.Open();
-  const std::vector<WatchMessage> rest = stream.ToTheEnd();
-  EXPECT_OK(stream.reader->Finish());
-  ASSERT_FALSE(rest.empty());
-  EXPECT_EQ(rest.back().job().state(), EnsembleJob::SUCCEEDED);
-  for (const WatchMessage& message : rest) EXPECT_FALSE(message.resume_token().empty());
-}
-
 TEST_F(WatchTest, ResumesAfterTheLastPointThatWasRead) {
   constexpr int kWatches = 50;
   RunningServer& server = StartWithPermits();
@@ -317,18 +299,6 @@ TEST_F(WatchTest, ASlowReaderSkipsStatesOfUnfinishedPoints) {
            message.snapshot().points(0).samples() == 10'000 * kFakeSamplesPerBlock;
   });
   EXPECT_LT(messages, 10'000);
-}
-
-TEST_F(WatchTest, CancellingAWatchDoesNotCancelTheJob) {
-  RunningServer& server = Start(5);
-  const std::string name = server.Submit(Equilibrium(1, 50));
-  {
-    WatchStream stream(server, name);
-    ASSERT_TRUE(stream.Next());
-    stream.Leave();
-  }
-  gate_.Open();
-  EXPECT_EQ(server.AwaitEnd(name).state(), EnsembleJob::SUCCEEDED);
 }
 
 TEST_F(WatchTest, AStoppingServerEndsWatchesWithUnavailable) {

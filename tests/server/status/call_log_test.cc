@@ -1,5 +1,4 @@
 // The log lines of calls and jobs.
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -62,17 +61,6 @@ TEST(CallLog, AJobsLifeIsLoggedWithJobPrincipalAndRequest) {
                                HasSubstr(absl::StrCat(" samples=", 2 * 3 * kFakeSamplesPerBlock))),
                          HasSubstr("job deleted")));
   EXPECT_THAT(lines, Each(AllOf(HasSubstr("job=" + name), HasSubstr("principal=local"))));
-}
-
-TEST(CallLog, AFailedJobSaysWhy) {
-  const auto lines = LinesOf([] {
-    RunningServer server({.factory = FakeExperiments([](size_t, uint64_t, std::stop_token) {
-                            throw std::runtime_error("line one\nline two");
-                          })});
-    server.AwaitEnd(server.Submit(Equilibrium(1, 3)));
-  });
-  EXPECT_THAT(lines,
-              Contains(AllOf(HasSubstr("warning: job failed"), HasSubstr("line one\\nline two"))));
 }
 
 TEST(CallLog, CallsOverALimitAreLoggedAndInvalidCallsAreNot) {

@@ -51,25 +51,6 @@ TEST(LogLine, AnyTextGivesOneLineOfPrintableCharacters) {
   }
 }
 
-TEST(LogLine, ALongMessageWithTwelveLongFieldsIsCut) {
-  EXPECT_EQ(Warning(std::string(1500, 'x')).find("..."), std::string::npos);
-  EXPECT_THAT(Warning(std::string(1501, 'x')), HasSubstr(std::string(1500, 'x') + "...\n"));
-  const std::string text(10'000, '"');
-  const std::string line = Warning(text, {{"a", text},
-                                          {"b", text},
-                                          {"c", text},
-                                          {"d", text},
-                                          {"e", text},
-                                          {"f", text},
-                                          {"g", text},
-                                          {"h", text},
-                                          {"i", text},
-                                          {"j", text},
-                                          {"k", text},
-                                          {"l", text}});
-  EXPECT_LE(line.size() + std::string("2026-01-02T03:04:05.678Z ").size(), kMaxLogLine);
-}
-
 TEST(Log, LinesHaveATimeAndAtLeastTheChosenSeverity) {
   SetLogLevel(Severity::kWarning);
   testing::internal::CaptureStderr();

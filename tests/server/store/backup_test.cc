@@ -117,12 +117,6 @@ TEST_F(BackupTest, ADamagedPageIsReported) {
   EXPECT_FALSE(std::filesystem::exists(Copy()));
 }
 
-TEST_F(BackupTest, OnlyAStoreIsChecked) {
-  EXPECT_THAT(CheckStore(Store()), StatusIs(absl::StatusCode::kNotFound));
-  WriteFile(Store(), std::string(5000, 'x'));
-  EXPECT_THAT(CheckStore(Store()), StatusIs(absl::StatusCode::kFailedPrecondition));
-}
-
 TEST_F(BackupTest, ACopyIsOneFileOfMode0600) {
   MakeStore();
   ASSERT_OK_AND_ASSIGN(const auto summary, BackupStore(Store(), Copy()));
@@ -139,13 +133,6 @@ TEST_F(BackupTest, AnExistingFileIsNotOverwritten) {
   WriteFile(Copy(), "precious");
   EXPECT_THAT(BackupStore(Store(), Copy()), StatusIs(absl::StatusCode::kAlreadyExists));
   EXPECT_EQ(Contents(Copy()), "precious");
-}
-
-TEST_F(BackupTest, AMissingFolderIsReported) {
-  MakeStore();
-  EXPECT_THAT(BackupStore(Store(), folder_.File("no/copy")),
-              StatusIs(absl::StatusCode::kPermissionDenied));
-  EXPECT_THAT(BackupStore(folder_.File("none"), Copy()), StatusIs(absl::StatusCode::kNotFound));
 }
 
 TEST_F(BackupTest, ARestoredCopyResumesToTheSameBytes) {

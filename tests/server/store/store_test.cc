@@ -220,18 +220,6 @@ TEST_F(StoreTest, EveryKindOfWrongFileIsRefusedAndUntouched) {
   }
 }
 
-TEST_F(StoreTest, AFolderInItsPlaceIsRefused) {
-  std::filesystem::create_directory(File());
-  const auto store = Store::Open(File(), {});
-  EXPECT_THAT(store, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("is a folder")));
-  EXPECT_TRUE(std::filesystem::is_directory(File()));
-}
-
-TEST_F(StoreTest, AnEmptyFileBecomesAStore) {
-  WriteFile(File(), "");
-  EXPECT_GT(Insert(*Open(), Record("a")), 0);
-}
-
 TEST_F(StoreTest, AnImpossibleWriteIsRejectedAlone) {
   const auto store = Open({.delay = kNever});
   const auto broken = [](Database& database) {
@@ -369,21 +357,6 @@ TEST_F(StoreTest, AReadThatThrowsEndsItsTransaction) {
   EXPECT_OK(store->Read(count));
 }
 
-TEST_F(StoreTest, JobsAreReadOneByOneUntilTheReaderStops) {
-  const auto store = *Store::Open(folder_.File("store"), {.stall = kNever});
-  for (const char* id : {"a", "b", "c", "d"}) Insert(*store, Record(id));
-  std::vector<std::string> read;
-  const auto take = [&](const JobRecord& job) {
-    read.push_back(job.id + job.spec.grid);
-    return read.size() % 2 == 1;
-  };
-  for (const Grid grid : {Grid::kIncluded, Grid::kLeftOut}) {
-    ASSERT_OK(store->Read(
-        [&](Database& database) { ReadJobs(database, std::nullopt, 1000, grid, take); }));
-  }
-  EXPECT_THAT(read, testing::ElementsAre("dgrid", "cgrid", "d", "c"));
-}
-
 // A batch of two groups: each result has more bytes than half a group.
 TEST_F(StoreTest, AWriteIsToldWhenItsOwnGroupIsCommitted) {
   const auto store = Open({.delay = kNever});
@@ -398,13 +371,6 @@ TEST_F(StoreTest, AWriteIsToldWhenItsOwnGroupIsCommitted) {
   }
   ASSERT_OK(store->Flush());
   EXPECT_THAT(stored, testing::ElementsAre(1, 2));
-}
-
-TEST_F(StoreTest, AfterClosingWritesFail) {
-  const auto store = Open();
-  store->Close();
-  EXPECT_THAT(store->Flush(), StatusIs(absl::StatusCode::kUnavailable));
-  EXPECT_THAT(store->Read([](Database&) {}), StatusIs(absl::StatusCode::kUnavailable));
 }
 
 TEST_F(StoreTest, AnEarlierCancellationWinsOverTheEnd) {
