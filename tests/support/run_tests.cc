@@ -4,7 +4,6 @@
 
 #include "absl/strings/str_format.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/support/watchdog.h"
 
 namespace ballpiston {

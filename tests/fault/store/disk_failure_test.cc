@@ -9,7 +9,6 @@
 #include <thread>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/store/job_table.h"
 #include "server/store/store.h"
 #include "tests/fault/store/fault_disk.h"

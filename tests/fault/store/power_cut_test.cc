@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/store/schema.h"
 #include "server/store/sqlite.h"
 #include "tests/fault/store/fault_disk.h"

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/book/job_book.h"
 #include "server/book/job_name.h"
 #include "server/store/job_table.h"

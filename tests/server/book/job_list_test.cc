@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/book/job_book.h"
 #include "server/book/job_name.h"
 #include "server/convert/spec.h"

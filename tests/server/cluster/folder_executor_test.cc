@@ -10,7 +10,6 @@
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/compute/crash_record.h"
 #include "server/worker/checked_file.h"
 #include "server/worker/worker.h"
@@ -50,7 +49,7 @@ class FolderExecutorTest : public testing::Test {
     local_ = std::make_unique<SteppedExecutor>(*scheduler_);
     options.lease = milliseconds(0);  // one chunk
     executor_ = std::make_unique<FolderExecutor>(
-        *scheduler_, options, std::make_unique<SameFiles>(files_),
+        *scheduler_, options, std::make_unique<FakeFiles>(files_),
         FolderExecutor::Server{.identity = "me",
                                .flush = [this] { return flush_; },
                                .prepare = [this] { return prepare_; }});

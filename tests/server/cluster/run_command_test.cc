@@ -9,7 +9,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/support/await.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/compute/scheduler.h"
 #include "tests/server/compute/recording_journal.h"
 #include "tests/server/compute/remote_executor.h"

@@ -8,7 +8,6 @@
 #include "core/engine_version.h"
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/store/point_tables.h"
 #include "tests/server/store_access.h"
 #include "tests/support/await.h"

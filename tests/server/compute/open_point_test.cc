@@ -10,7 +10,6 @@
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/server/compute/remote_executor.h"
 #include "tests/server/compute/run_requests.h"
 #include "tests/server/fake_experiments.h"

@@ -6,7 +6,6 @@
 
 #include "core/ensemble/point_fold.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/compute/scheduler.h"
 #include "server/compute/thread_executor.h"
 #include "tests/server/compute/fake_pilots.h"

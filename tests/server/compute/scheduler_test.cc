@@ -14,7 +14,6 @@
 #include "absl/strings/str_format.h"
 #include "core/ensemble/point_fold.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/server/compute/recording_journal.h"
 #include "tests/server/compute/run_requests.h"
 #include "tests/server/compute/stepped_executor.h"

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/compute/scheduler.h"
 #include "tests/server/compute/fake_pilots.h"
 #include "tests/server/compute/recording_journal.h"

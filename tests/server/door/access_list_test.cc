@@ -7,7 +7,6 @@
 
 #include "absl/strings/escaping.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/sha256.h"
 #include "tests/server/error_details.h"
 #include "tests/support/files.h"

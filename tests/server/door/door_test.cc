@@ -8,15 +8,12 @@
 #include <memory>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/error_details.h"
-#include "tests/server/own_channel.h"
 #include "tests/server/running_server.h"
 #include "tests/server/secure_server.h"
 #include "tests/support/await.h"

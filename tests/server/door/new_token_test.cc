@@ -8,7 +8,6 @@
 #include <string>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/door/access_list.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"

@@ -9,14 +9,12 @@
 #include "gmock/gmock.h"
 #include "google/protobuf/descriptor.h"
 #include "google/protobuf/dynamic_message.h"
-#include "gtest/gtest.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/error_details.h"
 #include "tests/server/requests.h"
 #include "tests/server/rpc/watch_stream.h"
 #include "tests/server/running_server.h"
 #include "tests/server/secure_server.h"
-#include "tests/support/await.h"
 #include "tests/support/paths.h"
 #include "tests/support/status_matchers.h"
 
@@ -89,16 +87,7 @@ std::string TextOf(const grpc::Status& status) {
 
 class AccessTable : public ::testing::Test {
  protected:
-  TestClient ClientWith(const char* token) const {
-    return TestClient(server_.NewChannel(files_.Credentials(token)));
-  }
-
-  static std::string EndedJob(TestClient& client, int points) {
-    const std::string name = client.Submit(Equilibrium(points, 2));
-    client.AwaitEnd(name);
-    return name;
-  }
-  std::string JobOfAlice() { return EndedJob(alice_, 1); }
+  std::string JobOfAlice() { return alice_.Succeeded(Equilibrium(1, 2)); }
 
   // `shown` holds the authorization headers.
   std::string Outcome(const MethodDescriptor& method, const std::vector<std::string>& shown) {
@@ -108,9 +97,7 @@ class AccessTable : public ::testing::Test {
 
   LaboratoryFiles files_;
   RunningServer server_{Secure(files_)};
-  TestClient alice_ = ClientWith(kAlice);
-  TestClient bob_ = ClientWith(kBob);
-  TestClient ops_ = ClientWith(kOps);
+  TestClient alice_ = TestClient(server_.NewChannel(files_.Credentials(kAlice)));
 };
 
 TEST_F(AccessTable, EveryCredentialHasExactlyTheRightsOfItsRole) {
@@ -152,48 +139,6 @@ TEST_F(AccessTable, UnknownJobsAreNotFoundAndMalformedNamesInvalid) {
       EXPECT_THAT(DetailsOf(call(name)).fields, testing::ElementsAre(JobField(*method)->name()));
     }
   }
-}
-
-// ---- tokens and request ids of another principal ----
-
-class ForeignTokens : public AccessTable {
- protected:
-  static grpc::Status FirstResult(TestClient& client, const std::string& job,
-                                  const std::string& page, v1::ListResultsResponse* response) {
-    grpc::ClientContext context;
-    v1::ListResultsRequest request;
-    request.set_parent(job);
-    request.set_page_size(1);
-    request.set_page_token(page);
-    return client.ensemble().ListResults(&context, request, response);
-  }
-};
-
-TEST_F(ForeignTokens, PageTokensOfAnothersResultsAreRefused) {
-  const std::string alices = EndedJob(alice_, 2), bobs = EndedJob(bob_, 2);
-  v1::ListResultsResponse page, seen;
-  ASSERT_OK(FirstResult(alice_, alices, "", &page));
-  const std::string next = page.next_page_token();
-  ASSERT_FALSE(next.empty());
-  EXPECT_EQ(ReasonOf(FirstResult(bob_, alices, next, &seen)), "JOB_NOT_FOUND");
-  EXPECT_EQ(ReasonOf(FirstResult(bob_, bobs, next, &seen)), "INVALID_REQUEST");
-  EXPECT_EQ(seen.results_size(), 0);
-  EXPECT_OK(FirstResult(ops_, alices, next, &seen));
-  EXPECT_EQ(seen.results(0).name(), alices + "/results/1");
-}
-
-TEST_F(ForeignTokens, ResumeTokensOfAnothersWatchSkipNothing) {
-  const std::string alices = EndedJob(alice_, 3), bobs = EndedJob(bob_, 3);
-  const std::string resume = WatchStream(alice_, alices).ToTheEnd().back().resume_token();
-  WatchStream foreign(bob_, alices, resume);
-  EXPECT_FALSE(foreign.Next());
-  EXPECT_EQ(ReasonOf(foreign.End()), "JOB_NOT_FOUND");
-  WatchStream own(bob_, bobs, resume);
-  const std::vector<WatchMessage> told = own.ToTheEnd();
-  EXPECT_OK(own.End());
-  ASSERT_FALSE(told.empty());
-  EXPECT_EQ(told[0].snapshot().finished_points_size(), 3);
-  EXPECT_EQ(told.back().job().name(), bobs);
 }
 
 TEST_F(AccessTable, HeadersOtherThanOneBearerTokenAreInvalid) {

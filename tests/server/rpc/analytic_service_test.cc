@@ -4,7 +4,6 @@
 
 #include "core/geometry/paper.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/server/error_details.h"
 #include "tests/server/running_server.h"
 #include "tests/support/status_matchers.h"

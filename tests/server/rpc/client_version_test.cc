@@ -4,7 +4,6 @@
 
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/version.h"
 #include "tests/server/error_details.h"
 #include "tests/server/running_server.h"

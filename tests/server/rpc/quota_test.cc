@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"

@@ -13,7 +13,6 @@
 #include "grpcpp/create_channel.h"
 #include "grpcpp/server.h"
 #include "grpcpp/server_builder.h"
-#include "gtest/gtest.h"
 #include "prometheus/text_serializer.h"
 #include "server/convert/spec.h"
 #include "server/rpc/call.h"

@@ -9,7 +9,6 @@
 
 #include "core/geometry/paper.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/convert/trace.h"
 #include "tests/server/error_details.h"
 #include "tests/server/running_server.h"

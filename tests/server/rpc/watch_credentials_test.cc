@@ -3,7 +3,6 @@
 #include <string>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/own_channel.h"

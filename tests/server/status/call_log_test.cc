@@ -5,7 +5,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "prometheus/text_serializer.h"
 #include "server/status/call_observer.h"
 #include "tests/server/fake_experiments.h"

@@ -7,7 +7,6 @@
 
 #include "gmock/gmock.h"
 #include "grpcpp/generic/generic_stub.h"
-#include "gtest/gtest.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/http_get.h"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/store/check_store.h"
 #include "server/store/schema.h"
 #include "tests/server/fake_experiments.h"

@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"

@@ -9,7 +9,6 @@
 
 #include "absl/time/clock.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/store/data_directory.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/store/backup.h"
 #include "server/store/job_table.h"
 #include "server/store/schema.h"

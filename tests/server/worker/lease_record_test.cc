@@ -12,7 +12,6 @@
 #include "core/ensemble/random_stream.h"
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/convert/fold_record.h"
 #include "tests/server/worker/sample_leases.h"
 #include "tests/support/status_matchers.h"

@@ -7,7 +7,6 @@
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/server/worker/sample_leases.h"
 
 namespace ballpiston::server {

@@ -11,7 +11,6 @@
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/worker/chunk_file.h"
 #include "server/worker/lease_file.h"
 #include "server/worker/shared_files.h"
