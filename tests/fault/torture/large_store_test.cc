@@ -14,7 +14,6 @@
 #include "server/convert/spec.h"
 #include "server/store/job_table.h"
 #include "server/store/store.h"
-#include "tests/fault/torture/calls.h"
 #include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"

@@ -425,11 +425,12 @@ TEST_F(AcceptanceTest, EachLimitNamesItsReasonAndItsFlag) {
       {{.max_samples_per_job = 3}, 0, kAnn, by_default, "TOO_MANY_SAMPLES", "max-samples-per-job"}};
   for (const LimitRow& row : rows) {
     SCOPED_TRACE(row.flag);
+    const std::string id = "123e4567-e89b-12d3-a456-42661417400" + std::to_string(&row - rows);
     Start(row.limits);
     std::string held;
     for (int i = 0; i < row.held; ++i) held = Id(kAnn, FreshRequest(Equilibrium(1, 5, kHeldSeed)));
     for (int repeated = 0; repeated < 2; ++repeated) {  // a refused job does not count
-      const auto refused = Create(row.caller, CreateRequest(row.refused, kUuid));
+      const auto refused = Create(row.caller, CreateRequest(row.refused, id));
       EXPECT_THAT(refused, IsError(absl::StatusCode::kResourceExhausted, row.reason));
       EXPECT_THAT(std::string(refused.status().message()), HasSubstr(std::string("--") + row.flag));
       const ErrorDetails details = DetailsOf(refused.status());
@@ -440,10 +441,10 @@ TEST_F(AcceptanceTest, EachLimitNamesItsReasonAndItsFlag) {
     if (held.empty()) continue;
     ASSERT_OK(book_->Cancel(kAnn, held, ""));
     AwaitEnd(held);
-    // The points of another job are still active.
-    const auto smaller = FreshRequest(Equilibrium(1, 5), kUuid);
-    EXPECT_OK(Create(row.caller, smaller)) << "the id was not used up";
-    for (const std::string& id : ActiveJobs()) ASSERT_OK(book_->Cancel(kRoot, id, ""));
+    // No job was created with the id.
+    EXPECT_OK(Create(row.caller, FreshRequest(Equilibrium(1, 5), id)));
+    for (const std::string& job : ActiveJobs())
+      book_->Cancel(kRoot, job, "").status().IgnoreError();
     AwaitThat([this] { return ActiveJobs().empty(); });
   }
 }

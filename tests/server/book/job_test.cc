@@ -47,11 +47,6 @@ std::vector<int64_t> Numbers(const std::vector<FinishedPoint>& points) {
   return numbers;
 }
 
-// Points that an earlier process finished.
-std::vector<PointSize> RestoredPoints(size_t count) {
-  return std::vector<PointSize>(count, {.point = 0, .samples = 100, .bytes = 1});
-}
-
 TEST(Job, AToleranceGivesNoFraction) {
   v1::EnsembleSpec spec;
   spec.mutable_target()->set_tolerance(0.1);

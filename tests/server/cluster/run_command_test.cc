@@ -34,19 +34,21 @@ absl::StatusOr<CommandOutput> RunShell(const std::string& script) {
 TEST(RunCommand, GivesOutputErrorsAndExitCode) {
   const struct {
     const char* script;
-    CommandOutput expected;
-  } rows[] = {{"echo a; echo b >&2; exit 3", {.output = "a\n", .errors = "b\n", .exit_code = 3}},
-              {"exit 0", {.exit_code = 0}},
-              {"exit 255", {.exit_code = 255}},
-              {"kill -KILL $$", {.exit_code = 128 + SIGKILL}},
-              {"kill -TERM $$", {.exit_code = 128 + SIGTERM}}};
-  for (const auto& [script, expected] : rows) {
+    const char* output;
+    const char* errors;
+    int exit_code;
+  } rows[] = {{"echo a; echo b >&2; exit 3", "a\n", "b\n", 3},
+              {"exit 0", "", "", 0},
+              {"exit 255", "", "", 255},
+              {"kill -KILL $$", "", "", 128 + SIGKILL},
+              {"kill -TERM $$", "", "", 128 + SIGTERM}};
+  for (const auto& [script, output, errors, exit_code] : rows) {
     Command command = Shell(script);
     command.input = std::string(60'000, 'x');  // which nobody reads
     ASSERT_OK_AND_ASSIGN(const CommandOutput run, RunCommand(command, {}));
-    EXPECT_EQ(run.output, expected.output) << script;
-    EXPECT_EQ(run.errors, expected.errors) << script;
-    EXPECT_EQ(run.exit_code, expected.exit_code) << script;
+    EXPECT_EQ(run.output, output) << script;
+    EXPECT_EQ(run.errors, errors) << script;
+    EXPECT_EQ(run.exit_code, exit_code) << script;
   }
 }
 

@@ -32,7 +32,7 @@ class FakeFiles : public SharedFiles {
 
   // By path. A test may change it as another machine would.
   std::map<std::string, File>& files = folder_->files;
-  absl::Time& now = folder_->now;           // the folder's clock
+  absl::Time& now = folder_->now;            // the folder's clock
   double& operations = folder_->operations;  // that a metadata server of a network would see
   // Called before each operation; if its result is not OK, the operation fails with it.
   std::function<absl::Status(const char* operation, const std::string& path)>& before =
