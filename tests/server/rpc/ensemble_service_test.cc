@@ -182,7 +182,8 @@ TEST(EnsembleService, AllViolationsAreListedTogether) {
   spec.mutable_grid()->set_rho(0, 0.4);
   spec.mutable_target()->set_samples(0);
   EXPECT_THAT(DetailsOf(RunningServer().Create(CreateRequest(spec, "not a uuid"))).fields,
-              ElementsAre("request_id", "spec.grid.rho[0]", "spec.target.samples"));
+              testing::UnorderedElementsAre("request_id", "spec.grid.rho[0]",
+                                            "spec.target.samples"));
 }
 
 // ---- Create ----

@@ -105,6 +105,7 @@ TEST(LeaseRecord, APartOfAPointOfAGridComesBack) {
   lease.lease.point = 2;
   lease.lease.experiment = PointExperiment::Create(spec, 2);
   const PointExperiment& experiment = *lease.lease.experiment;
+  lease.lease.end = experiment.plan().chunks();
   lease.lease.start.blocks = 2;
   for (uint64_t i = 0; i < 2; ++i) {
     lease.lease.start.merged.Merge(RunBlock(experiment, experiment.plan().BlockAt(1, i)).value());
