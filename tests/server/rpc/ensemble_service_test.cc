@@ -413,6 +413,23 @@ TEST(EnsembleService, ResultsComeInGridOrderInPages) {
   for (int i = 0; i < 25; ++i) EXPECT_EQ(indices[static_cast<size_t>(i)], i);
 }
 
+TEST(EnsembleService, AnUnfinishedPointIsReadOnRequestOnly) {
+  Gate gate;
+  RunningServer server({.factory = GatedExperiments(gate, 3)});
+  v1::GetResultRequest request;
+  request.set_name(server.Submit(Equilibrium(1, 100)) + "/results/0");
+  gate.AwaitWaiting(2);  // three blocks are merged; the others wait
+  v1::PointResult result;
+  const auto get = [&] {
+    grpc::ClientContext context;
+    return server.ensemble().GetResult(&context, request, &result);
+  };
+  EXPECT_EQ(ReasonOf(get()), "RESULT_NOT_FOUND");
+  request.set_unfinished(true);
+  EXPECT_OK(get());
+  EXPECT_EQ(result.samples(), 3 * kFakeSamplesPerBlock);
+}
+
 TEST(EnsembleService, TheBasicViewHasNoHistograms) {
   RunningServer server({.factory = nullptr});  // the core's experiments
   const std::string name = server.Succeeded(SmallFirstHit());
