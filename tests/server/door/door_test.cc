@@ -72,7 +72,7 @@ std::string OwnTokenOf(const TemporaryFolder& data, const RunningServer& server)
   return text.substr(0, text.find('\n'));
 }
 
-TEST(Loopback, TheOwnTokenIsPrivateAndEndsWithTheServer) {
+TEST(Loopback, TheOwnTokenIsThatOfTheServersUserAndEndsWithTheServer) {
   const TemporaryFolder data;
   std::string first;
   {
@@ -81,6 +81,7 @@ TEST(Loopback, TheOwnTokenIsPrivateAndEndsWithTheServer) {
     EXPECT_EQ(ModeOf(file), 0600u);
     EXPECT_EQ(ModeOf(data.path() + "/tokens"), 0700u);
     first = OwnTokenOf(data, server);
+    EXPECT_OK(CallByName(server.channel(), kListJobs, "", Bearer(first)));
   }
   EXPECT_TRUE(std::filesystem::is_empty(data.path() + "/tokens"));
   RunningServer server({.data_dir = data.path(), .listen = "127.0.0.1:0"});
