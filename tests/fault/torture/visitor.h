@@ -70,8 +70,8 @@ class Visitor {
 
   struct OwnJob {
     size_t question = 0;
-    std::string request_id;
-    std::string name;
+    std::string request_id = {};
+    std::string name = {};
     bool is_cancelled = false;  // and acknowledged
     bool has_ended = false;
   };
