@@ -181,6 +181,9 @@ TEST(Spec, ComesBackUnchanged) {
     messages.back().mutable_grid()->add_cells(shape);
   }
   for (v1::EnsembleSpec& message : messages) {
+    if (message.model() == v1::EnsembleSpec::MODEL_UNSPECIFIED) {
+      message.set_model(v1::EnsembleSpec::AUTO);
+    }
     message.set_precision(v1::EnsembleSpec::DOUBLE);
     EXPECT_EQ(SpecMessage(CheckSpec(message).spec).DebugString(), message.DebugString());
   }

@@ -125,7 +125,7 @@ TEST_F(AnalyticServiceTest, EveryBadFieldIsNamed) {
          r.add_beta(std::numeric_limits<double>::infinity());
        }},
       {{"temperature[0]", "temperature[1]", "temperature[2]", "temperature[3]"},
-       {"temperature[2]: 1e-121 is not in [1e-120, 1e+120]"},
+       {"temperature[0]: 0 is not in [1e-120, 1e+120]"},
        [](Request& r) {
          for (const double wrong : {0.0, -1.0, 1e-121, kNan}) r.add_temperature(wrong);
        }},
