@@ -165,7 +165,7 @@ void KillUnderVisitors(const Scene& scene, Findings& findings) {
   ConnectedServer server(scene.server);
   std::vector<Visitor> visitors;
   for (int i = 0; i < Size(2, 6); ++i) {
-    visitors.emplace_back(server.NewClient(), exam, static_cast<uint64_t>(i), findings);
+    visitors.emplace_back(server.Connect(), exam, static_cast<uint64_t>(i), findings);
   }
   std::atomic<bool> enough = false;
   std::vector<std::jthread> threads;

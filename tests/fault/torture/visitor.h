@@ -8,6 +8,8 @@
 // The simulation (tests/simulation) checks more rules, with more kinds of calls.
 #pragma once
 
+#include <grpcpp/grpcpp.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -22,12 +24,14 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/time/time.h"
 #include "client/library/client.h"
 #include "client/library/error_text.h"
 #include "client/library/request_id.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"
 #include "tests/fault/torture/sizes.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::torture {
@@ -40,8 +44,13 @@ struct Exam {
 // Not thread-safe.
 class Visitor {
  public:
-  Visitor(client::Client client, const Exam& exam, uint64_t seed, Findings& findings)
-      : client_(std::move(client)), exam_(exam), findings_(findings), random_(seed) {}
+  Visitor(const std::shared_ptr<grpc::Channel>& channel, const Exam& exam, uint64_t seed,
+          Findings& findings)
+      : channel_(channel),
+        client_(channel, absl::FromChrono(kPatience)),
+        exam_(exam),
+        findings_(findings),
+        random_(seed) {}
 
   void VisitUntil(const std::atomic<bool>& enough) {
     while (!enough) DoSomething();
@@ -88,6 +97,8 @@ class Visitor {
       findings_.Count("calls without an answer, repeated");
       if (was_repeated != nullptr) *was_repeated = true;
       std::this_thread::sleep_for(kPauseBeforeRepeating);
+      // If nobody waits, gRPC checks only every 5 s whether the channel is connected again.
+      channel_->WaitForConnected(std::chrono::system_clock::now() + kPauseBeforeRepeating);
     }
   }
 
@@ -176,6 +187,7 @@ class Visitor {
     findings_.Wrong(absl::StrCat(job.name, " (question ", job.question, "): ", what));
   }
 
+  const std::shared_ptr<grpc::Channel> channel_;
   const client::Client client_;
   const Exam& exam_;
   Findings& findings_;
