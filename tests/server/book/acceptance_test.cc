@@ -291,7 +291,7 @@ TEST(Question, TheDefaultEstimateMayBeNamedOrLeftOut) {
   EXPECT_NE(question_of("exchange_rate"), question_of(""));
 }
 
-TEST(Payload, EveryFieldExceptTheIdIsPartOfTheHash) {
+TEST(Payload, EveryFieldExceptTheIdAndTheLabelsIsPartOfTheHash) {
   const v1::CreateEnsembleJobRequest request = CreateRequest(Question(), kUuid);
   std::map<std::string, std::string> fields = {{PayloadOf(request), "none"}};
   const auto expect_new = [&](const FieldDescriptor& field,
@@ -302,8 +302,10 @@ TEST(Payload, EveryFieldExceptTheIdIsPartOfTheHash) {
   const google::protobuf::Descriptor& type = *v1::CreateEnsembleJobRequest::descriptor();
   for (int i = 0; i < type.field_count(); ++i) {
     const FieldDescriptor& field = *type.field(i);
-    // validate_only stores no request, so its payload does not matter.
-    if (field.name() == "spec" || field.name() == "request_id" || field.name() == "validate_only") {
+    // validate_only stores no request, so its payload does not matter. Labels are added to the job
+    // that answers, so a retry may change them.
+    if (field.name() == "spec" || field.name() == "request_id" || field.name() == "labels" ||
+        field.name() == "validate_only") {
       continue;
     }
     v1::CreateEnsembleJobRequest changed = request;
