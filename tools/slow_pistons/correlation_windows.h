@@ -11,7 +11,8 @@
 // idle(W) = 45 int_0^1 (u^2/2 - 1/6)^2 (1 - exp(-r(u) W))/r(u) du, with the rate r of jumps.
 //
 // All values are in mean free times of ball and piston. Properties, each with the test that bears
-// its name: 1. WindowsAreThoseOfTheJumpProcess.
+// its name: 1. WindowsAreThoseOfTheJumpProcess.  2. LimitOfAllIsTheIntegralTime.
+//   3. LimitOfIdleIsThatOfTheMidpointRule.
 #pragma once
 
 #include <array>

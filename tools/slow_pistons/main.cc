@@ -43,7 +43,8 @@ int PrintIdle(const Arguments& arguments) {
   std::cout << "piston,time,share,share_error,limit,limit_error\n";
   for (size_t k = 0; k < pistons.size(); ++k) {
     for (size_t i = 0; i < kIdleTimes.size(); ++i) {
-      std::cout << absl::StrFormat("%d,%g,%s,%s\n", k, kIdleTimes[i], Row(pistons[k][i].share), Row(pistons[k][i].limit));
+      std::cout << absl::StrFormat("%d,%g,%s,%s\n", k, kIdleTimes[i], Row(pistons[k][i].share),
+                                   Row(pistons[k][i].limit));
     }
   }
   return 0;
@@ -84,7 +85,11 @@ int Run(int argc, char** argv) {
       ->check(CLI::Range(2, 1000000000));
   for (CLI::App* verb : {idle, windows}) verb->fallthrough();
   app.require_subcommand(1);
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& parse_error) {
+    return app.exit(parse_error) == 0 ? 0 : 2;
+  }
   const int status = windows->parsed() ? PrintWindows(arguments) : PrintIdle(arguments);
   return std::cout.good() ? status : 1;
 }

@@ -2,11 +2,12 @@
 
 N c_n/(kappa_0 t): the cumulants of the energy that passes through a chain of N cells in a long time
 t, over the conductivity kappa_0 at temperature 1, each divided by its limit of the additivity
-principle. Lines are polynomials in 1/N. Time on one core: quick 10 s, default 2 min, full 12 min.
+principle. Lines are polynomials in 1/N. Time on one core: quick 10 s, default 2 min, full 25 min.
 """
 
 from __future__ import annotations
 
+from collections import defaultdict
 from typing import Any
 
 import numpy as np
@@ -16,19 +17,22 @@ from ballpiston.client import Client
 from ballpiston.figures.parts import fits, style
 from ballpiston.figures.parts.asking import RHO, answer
 from ballpiston.figures.parts.charge import growth
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, rows, table
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct, rows, table
 from ballpiston.parameter_lists import Shapes
 from ballpiston.point import Point
+from ballpiston.result import Result
 
 EFFORT = {
     "quick": {"cells": "4,6,8,12", "collisions": 2e7},
-    "full": {"cells": "4,6,8,12,16,24,32,64", "collisions": 1e9},
+    "full": {"cells": "4,6,8,12,16,24,32,64", "collisions": 3e8, "runs": 4},
 }
 
 _RATIO = 1 - 0.0018073  # the chain's conductivity over the static one (docs/conductivity.md)
+_CAPACITY = 1.5  # of a cell, for heat
 _NODES = 40  # of Gauss's quadrature
+_POINTS = 400  # of the grid of the slowest profile
 _DEGREE = 2  # of the polynomials in 1/N
-_FIRST_WINDOW = 1  # of the growth: one relaxation time
+_WINDOWS = 5  # 1/2, 1, 2, 4 and 8 relaxation times
 
 
 def measure(
@@ -37,16 +41,26 @@ def measure(
     rho: float = RHO,
     delta: float = 0.2,
     cells: Shapes = "4,6,8,12,16,24,32",
+    repeated: Shapes = "6,8,12,16",
     hot: float = 1.5,
     cold: float = 0.5,
     collisions: float = 1e8,
+    runs: int = 1,
     seed: int = 0,
 ) -> Tables:
-    """The scaled cumulants of each chain, from `collisions` exchanges, and their extrapolations."""
-    question = {"rho": rho, "delta": delta, "cells": cells, "hot": hot, "cold": cold}
-    question |= {"model": "markov", "collisions": collisions, "seed": seed}
-    result = answer(client, "gas-conduction", **question)
-    found = table(row for point in result for row in _scaled(point, (hot + cold) / 2))
+    """The scaled cumulants of each chain, from `collisions` exchanges, and their extrapolations. The
+    chains of `repeated` have `runs` runs, with different seeds, and the others one."""
+
+    def gas(cells: Shapes, seed: int) -> Result:
+        question = {"rho": rho, "delta": delta, "cells": cells, "hot": hot, "cold": cold}
+        question |= {"model": "markov", "collisions": collisions, "seed": seed}
+        return answer(client, "gas-conduction", **question)
+
+    results = [gas(cells, seed)] + [gas(repeated, seed + run) for run in range(1, runs)]
+    rate = slowest_rate(hot, cold)
+    found = mean_of_runs(
+        table(row for r in results for point in r for row in _scaled(point, (hot + cold) / 2, rate))
+    )
     return {"full-counting": found, "full-counting-limits": extrapolated(found, hot, cold)}
 
 
@@ -63,69 +77,111 @@ def limits(hot: float, cold: float) -> FloatArray:
     return np.array([i1, i2 / i1, third, fourth])
 
 
+def slowest_rate(hot: float, cold: float) -> float:
+    """The least eigenvalue m of f'' = -m T^(-1/2) f, f(0) = f(1) = 0, where T^(3/2) is linear. The
+    slowest temperature profile of a long chain decays at the rate m kappa_0/(1.5 N^2)."""
+    x = np.arange(1, _POINTS) / _POINTS
+    fourth_root = (hot**1.5 + (cold**1.5 - hot**1.5) * x) ** (1 / 6)
+    second = 2 * np.eye(len(x)) - np.eye(len(x), k=1) - np.eye(len(x), k=-1)
+    matrix = fourth_root[:, np.newaxis] * second * fourth_root * _POINTS**2
+    return float(np.linalg.eigvalsh(matrix)[0])
+
+
+def _scaled(point: Point, temperature: float, rate: float) -> list[dict[str, float]]:
+    """One row for each cumulant and window. `time` is in units of the slowest decay; it is infinite
+    for the current."""
+    cells = int(point.parameters["cells"])
+    ratio = point["conductivity_ratio"] * np.sqrt(temperature)
+    kappa = _RATIO * point["conductivity"] / ratio
+    unit = cells / kappa
+    current, error = point["heat_current"], point.error("heat_current")
+    assert error is not None
+    found = [(1, np.inf, current, error)]
+    for order in (2, 3, 4):
+        grown = growth(point, order)
+        time = grown["time"] * rate * kappa / (_CAPACITY * cells**2)
+        chosen = (column[:_WINDOWS] for column in (time, grown["value"], grown["standard_error"]))
+        found += [(order, *numbers) for numbers in zip(*chosen)]
+    return [
+        {"cells": cells, "order": n, "time": t, "value": unit * value, "standard_error": unit * e}
+        for n, t, value, e in found
+    ]
+
+
+def mean_of_runs(found: Table) -> Table:
+    """With equal weights: the error of a cumulant grows with its value, so weights from errors would
+    give a mean that is too small. Windows that not every run of a chain has are left out."""
+    groups = defaultdict(list)
+    columns = (found[name].tolist() for name in found)
+    for cells, order, time, value, error in zip(*columns):
+        groups[cells, order, time].append((value, error))
+    runs = {cells: len(groups[cells, 1, np.inf]) for cells in distinct(found["cells"])}
+    return table(
+        {
+            "cells": cells,
+            "order": order,
+            "time": time,
+            "runs": len(group),
+            "value": np.mean([value for value, _ in group]),
+            "standard_error": np.sqrt(sum(error**2 for _, error in group)) / len(group),
+        }
+        for (cells, order, time), group in groups.items()
+        if len(group) == runs[cells]
+    )
+
+
+def transient(time: FloatArray) -> FloatArray:
+    """What exp(-t) in a cumulant adds to [c_n(2 t) - c_n(t)]/t."""
+    finite = np.where(np.isfinite(time), time, 1.0)
+    added: FloatArray = (np.exp(-2 * finite) - np.exp(-finite)) / finite
+    return np.where(np.isfinite(time), added, 0.0)
+
+
 def extrapolated(found: Table, hot: float, cold: float) -> Table:
-    """The polynomials a0 + a1/N + a2/N^2, the error of a0, and the limits. Cumulants of fewer than
-    four chains have no row."""
+    """Fits of a0 + a1/N + a2/N^2 + b transient, where b is 0 for the first two cumulants, and the
+    limits."""
     fitted = []
     for order, limit in enumerate(limits(hot, cold), 1):
         part = rows(found, order=order)
-        if len(part["cells"]) <= _DEGREE + 1:
-            continue
         terms = fits.powers(1 / part["cells"].astype(float), _DEGREE)
+        if order > 2:
+            terms = np.column_stack([terms, transient(part["time"])])
         fit = fits.linear(terms, part["value"], part["standard_error"])
-        row = {"order": order, "limit": limit}
-        row |= {f"a{k}": coefficient for k, coefficient in enumerate(fit.coefficients)}
-        row |= {"standard_error": fit.errors[0], "chi_squared": fit.chi_squared}
-        fitted.append(row | {"freedom": fit.freedom})
+        row = {"order": order, "limit": limit, "standard_error": fit.errors[0]}
+        names = [f"a{k}" for k in range(_DEGREE + 1)] + ["b"]
+        row |= {"b": 0.0} | dict(zip(names, fit.coefficients))
+        fitted.append(row | {"chi_squared": fit.chi_squared, "freedom": fit.freedom})
     return table(fitted)
-
-
-def _scaled(point: Point, temperature: float) -> list[dict[str, float]]:
-    """One row for each cumulant of which there is an error."""
-    cells = int(point.parameters["cells"])
-    ratio = point.estimates["conductivity_ratio"].value
-    static = point.estimates["conductivity"].value / ratio / np.sqrt(temperature)
-    unit = cells / (_RATIO * static)
-    current = point.estimates["heat_current"]
-    assert current.standard_error is not None
-    values = {1: (current.value, current.standard_error)}
-    for order in (2, 3, 4):
-        grown = growth(point, order)
-        if len(grown["time"]) > _FIRST_WINDOW:
-            chosen = grown["value"][_FIRST_WINDOW], grown["standard_error"][_FIRST_WINDOW]
-            values[order] = chosen
-    return [
-        {"cells": cells, "order": n, "value": unit * value, "standard_error": unit * error}
-        for n, (value, error) in values.items()
-    ]
 
 
 @style.styled
 def draw(tables: Tables) -> Figure:
-    """One panel for each cumulant."""
+    """One panel for each cumulant. A point is the mean over the windows, without the transient."""
     figure = style.picture(960, 720)
     panels = figure.subplots(2, 2)
     names = ("mean", "variance", "third cumulant", "fourth cumulant")
     for order, (axes, name) in enumerate(zip(panels.flat, names), 1):
         style.title(axes, "abcd"[order - 1], name)
         fit = rows(tables["full-counting-limits"], order=order)
-        if len(fit["order"]):
-            _draw_cumulant(axes, rows(tables["full-counting"], order=order), fit)
+        _draw_cumulant(axes, rows(tables["full-counting"], order=order), fit)
     style.outer_labels(panels, "1/N", "over its limit")
     return figure
 
 
 def _draw_cumulant(axes: Any, part: Table, fit: Table) -> None:
     limit = fit["limit"][0]
-    share = 1 / part["cells"].astype(float)
+    settled = part | {"value": part["value"] - fit["b"][0] * transient(part["time"])}
+    chains = [rows(settled, cells=cells) for cells in distinct(part["cells"])]
+    means = [fits.mean(chain["value"], chain["standard_error"]) for chain in chains]
+    share = np.array([1 / chain["cells"][0] for chain in chains])
     x = np.linspace(0, 1.05 * share.max(), 100)
     curve = fits.powers(x, _DEGREE) @ [fit[f"a{k}"][0] for k in range(_DEGREE + 1)]
     style.level(axes, 1, color=style.ORANGE, label=f"limit {limit:.5g}")
     axes.plot(x, curve / limit, color=style.GREY)
-    error = part["standard_error"] / limit
-    style.error_points(axes, share, part["value"] / limit, error, style.BLUE)
-    extrapolated_error = fit["standard_error"] / limit
+    value = np.array([mean.coefficients[0] for mean in means]) / limit
+    error = np.array([mean.errors[0] for mean in means]) / limit
+    style.error_points(axes, share, value, error, style.BLUE)
     end = {"color": style.GREEN, "label": "N → ∞"}
-    style.error_points(axes, [0], fit["a0"] / limit, extrapolated_error, **end)
-    axes.set_xlim(-0.02 * x[-1], x[-1])
+    style.error_points(axes, [0], fit["a0"] / limit, fit["standard_error"] / limit, **end)
+    axes.set(xlim=(-0.02 * x[-1], x[-1]), ylim=(0.85, 1.3))
     axes.legend()

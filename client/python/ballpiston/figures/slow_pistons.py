@@ -30,12 +30,12 @@ from ballpiston.result import Result
 
 EFFORT: dict[str, dict[str, Any]] = {
     "quick": {"delta": "0.2", "cold": "0.1,0.01", "samples": 1e5, "blocks": 4},
-    "full": {"samples": 5e6, "blocks": 40},
+    "full": {"samples": 3e6, "blocks": 20},
 }
 
 _BLOCK = 1e6  # of time, in which the program measures a
-_IDLE_TIME = 128.0  # at which a is taken
-_FIRST = 3  # the first window of a fit: 8 stretches, which are 4 relaxation times
+_IDLE_TIME = 64.0  # s at which a is taken
+_FITTED = slice(2, 9)  # the windows of a fit: from 2 to 128 relaxation times
 _CURVE = "charge_cumulant_2_by_window"
 _COLD = 0.01  # where delta varies, and of the jump process
 
@@ -46,8 +46,8 @@ def measure(
     rho: float = RHO,
     delta: Numbers = "0.2,0.15,0.1",
     cold: Numbers = "0.5,0.1,0.03,0.01,0.001",
-    samples: float = 1e6,
-    blocks: float = 8,
+    samples: float = 3e5,
+    blocks: float = 6,
     seed: int = 0,
 ) -> Tables:
     """The variance by window, a of each piston, and the growth beside its law. The hot temperature
@@ -98,18 +98,20 @@ def _growth_and_law(point: Point, idle: Table) -> dict[str, float]:
 
 
 def _growth(point: Point) -> dict[str, float]:
-    """A fit of v(2 t) - v(t) = growth ln 2 + b/t, from 4 relaxation times on; v is Var(Q)/t."""
-    found = {name: column[_FIRST:] for name, column in increase(point, 2).items()}
+    """A fit of v(2 t) - v(t) = growth ln 2 + b/t, where v is Var(Q)/t."""
+    found = {name: column[_FITTED] for name, column in increase(point, 2).items()}
     terms = np.column_stack([np.full(len(found["time"]), np.log(2)), 1 / found["time"]])
     fit = fits.linear(terms, found["value"], found["standard_error"])
     at = point.parameters
     row = {"delta": float(at["delta"]), "cold": float(at["cold"])}
-    row |= {"from": found["time"][0], "growth": fit.coefficients[0]}
-    return row | {
-        "growth_error": fit.errors[0],
-        "chi_squared": fit.chi_squared,
-        "freedom": fit.freedom,
-    }
+    row |= {"from": found["time"][0], "variance": _variance(point)}
+    row |= {"growth": fit.coefficients[0], "growth_error": fit.errors[0]}
+    return row | {"chi_squared": fit.chi_squared, "freedom": fit.freedom}
+
+
+def _variance(point: Point) -> float:
+    """Var(Q)/t at the first window of the fit."""
+    return float(point.curve(_CURVE).value[_FITTED.start])
 
 
 @style.styled
@@ -138,12 +140,12 @@ def _draw_windows(axes: Any, windows: Table, delta: float) -> None:
         part = rows(windows, model=model, cold=cold)
         if not len(part["time"]):
             continue
-        value, error = part["value"], part["standard_error"]
         label = f"cold {cold:g}" + (", jump process" if model == "markov" else "")
-        first = value[_FIRST]
+        shown = {n: part[n][_FITTED] for n in ("time", "value", "standard_error")}
+        first = shown["value"][0]
+        value, error = shown["value"] / first, shown["standard_error"] / first
         dots = {"label": label, "markersize": 4, "linestyle": "-", "linewidth": 0.8}
-        shown = (c[_FIRST:] for c in (part["time"], value / first, error / first))
-        style.error_points(axes, *shown, style.colour(k), **dots)
+        style.error_points(axes, shown["time"], value, error, style.colour(k), **dots)
     axes.set_xscale("log")
     axes.set(xlabel="t")
     axes.legend()
