@@ -67,7 +67,7 @@ def measure(
 def limits(hot: float, cold: float) -> FloatArray:
     """N c_n/(kappa_0 t) for n = 1 to 4 by the additivity principle, with the conductivity
     kappa_0 sqrt(T) and the mobility 2 kappa_0 T^(5/2) (Bodineau and Derrida 2004)."""
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)  # type: ignore[no-untyped-call]
     t = (hot + cold) / 2 + (hot - cold) / 2 * nodes
     i1, i2, i3, i4 = (
         (hot - cold) / 2 * weights @ (np.sqrt(t) * (2 * t**2.5) ** (n - 1)) for n in range(1, 5)
@@ -96,7 +96,7 @@ def _scaled(point: Point, temperature: float, rate: float) -> list[dict[str, flo
     unit = cells / kappa
     current, error = point["heat_current"], point.error("heat_current")
     assert error is not None
-    found = [(1, np.inf, current, error)]
+    found: list[tuple[Any, ...]] = [(1, np.inf, current, error)]
     for order in (2, 3, 4):
         grown = growth(point, order)
         time = grown["time"] * rate * kappa / (_CAPACITY * cells**2)

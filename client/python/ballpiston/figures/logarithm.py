@@ -4,9 +4,10 @@ The integral over the energy's autocorrelation in equilibrium, over a window, ha
 that do not collide between the two times (idle), and pairs that do (met). Differences from the
 limit delta -> 0 are shares of the limit's integral time.
 
-a  the growth of both parts beyond a window of 8 mean free times, at the second delta; the line is
+a  the growth of both parts beyond a window of 8 mean free times, at the first delta; the line is
    the law of slow pistons
-b  the differences at 8 mean free times over x, with x = (lambda + 2 delta)/tau_bp, by log(1/x)
+b  the differences at 8 mean free times over x = (lambda + 2 delta)/tau_bp, against log(1/x); lines
+   are fits
 
 The program `slow_pistons` measures them. Time on one core: quick 5 s, default 2 min, full 15 min.
 """
@@ -22,7 +23,15 @@ from ballpiston.client import Client
 from ballpiston.figures.parts import fits, style
 from ballpiston.figures.parts.asking import RHO
 from ballpiston.figures.parts.programs import table_of
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, rows, stacked, table
+from ballpiston.figures.parts.tables import (
+    FloatArray,
+    Table,
+    Tables,
+    distinct,
+    rows,
+    stacked,
+    table,
+)
 from ballpiston.parameter_lists import Numbers, number_list
 
 EFFORT: dict[str, dict[str, Any]] = {"quick": {"samples": 2048}, "full": {"samples": 131_072}}
@@ -30,8 +39,9 @@ EFFORT: dict[str, dict[str, Any]] = {"quick": {"samples": 2048}, "full": {"sampl
 PARTS = ("all", "idle", "met")
 _INTEGRAL_TIME = 0.541387668432  # of the limit, in mean free times (docs/markov-limit.md)
 _AT_REST = 1.25  # e^2/<e^2> of a piston at rest, with e = ep - 1/6
+_ASIDE = 0.03  # shift of points, so that all are visible
+_SHOWN = (-4, 6)  # of panel b
 _FEWER_BELOW = 0.05  # orbits cost 1/delta^2; below this delta there are fewer of them
-_LARGEST_FITTED = 0.15  # delta
 
 
 def measure(
@@ -75,10 +85,9 @@ def excess(windows: Table, part: str) -> tuple[FloatArray, FloatArray]:
 
 
 def logarithms_of_delta(whole: Table) -> Table:
-    """Of each part at the first window, fits of the difference by a x + b x log(1/x), for delta up
-    to 0.15; and by a x alone."""
+    """Of each part at the first window, fits of the difference by a x + b x log(1/x), and by a x
+    alone."""
     first = rows(whole, window=whole["window"].min())
-    first = {name: column[first["delta"] <= _LARGEST_FITTED] for name, column in first.items()}
     x, found = first["x"], []
     for part in PARTS:
         both = fits.linear(np.column_stack([x, x * np.log(1 / x)]), *excess(first, part))
@@ -92,16 +101,31 @@ def logarithms_of_delta(whole: Table) -> Table:
 
 
 def logarithms_of_window(whole: Table) -> Table:
-    """Of both parts, the growth from the second window to the last one over the growth of idle pairs
-    that slow pistons alone would give. The error is that of the growth from the first window."""
-    lengths = np.unique(whole["window"])
-    last, second = rows(whole, window=lengths[-1]), rows(whole, window=lengths[1])
-    law = last["law"] * np.log(lengths[-1] / lengths[1])
-    columns = {"delta": last["delta"], "law": last["law"] / _INTEGRAL_TIME}
-    for part in ("idle", "met"):
-        columns[part] = (last[f"later_{part}"] - second[f"later_{part}"]) / law
-        columns[f"{part}_error"] = last[f"later_{part}_error"] / law
-    return columns
+    """Of both parts and at each delta from 0.05 on, a fit of the growth from W to 2 W by
+    ratio law ln 2 + c/(2 W). `law` is that of slow pistons; slow balls have a term 1/W."""
+    found = []
+    for delta in distinct(whole["delta"]):
+        windows = rows(whole, delta=delta)
+        if delta < _FEWER_BELOW:
+            continue  # too few orbits have a piston that is slow enough
+        row = {"delta": delta, "law": windows["law"][0] / _INTEGRAL_TIME}
+        for part in PARTS[1:]:
+            fit = _growth(windows, part)
+            row |= {part: fit.coefficients[0], f"{part}_error": fit.errors[0]}
+            row |= {f"{part}_chi_squared": fit.chi_squared, "freedom": fit.freedom}
+        found.append(row)
+    return table(found)
+
+
+def _growth(windows: Table, part: str) -> fits.Fit:
+    """The errors are those of increments that are independent of each other."""
+    limit = windows["limit_idle"] * (1 if part == "idle" else -1)
+    limit += 0 if part == "idle" else windows["limit_all"]
+    value = np.diff(windows[f"later_{part}"] - limit)
+    error = np.sqrt(np.diff(windows[f"later_{part}_error"] ** 2))
+    shorter = windows["window"][:-1]
+    terms = np.column_stack([windows["law"][:-1] * np.log(2), 1 / (2 * shorter)])
+    return fits.linear(terms, value, error)
 
 
 @style.styled
@@ -110,15 +134,20 @@ def draw(tables: Tables) -> Figure:
     figure = style.picture(960, 480)
     left, right = figure.subplots(1, 2)
     whole = tables["logarithm"]
-    _draw_growth(left, rows(whole, delta=np.unique(whole["delta"])[-2]))
+    _draw_growth(left, rows(whole, delta=whole["delta"][0]))
     first = rows(whole, window=whole["window"].min())
     for k, part in enumerate(PARTS):
         value, error = excess(first, part)
-        shown = np.log(1 / first["x"]), value / first["x"], error / first["x"]
+        logarithm = np.log(1 / first["x"])
+        fit = rows(tables["logarithm-delta"], part=part)
+        line = np.linspace(logarithm.min(), logarithm.max(), 2)
+        right.plot(line, fit["a"] + fit["b"] * line, color=style.colour(k))
+        shown = logarithm + _ASIDE * (k - 1), value / first["x"], error / first["x"]
         style.error_points(right, *shown, style.colour(k), part)
     style.level(right, 0)
-    right.set(xlabel="log(1/x)", ylabel="difference/x")
-    right.legend()
+    style.title(right, "b", "difference up to 8, over x")
+    right.set(xlabel="log(1/x)", ylim=_SHOWN)
+    right.legend(loc="lower left")
     return figure
 
 
@@ -129,7 +158,9 @@ def _draw_growth(axes: Any, windows: Table) -> None:
     for k, part in enumerate(PARTS[1:], 1):
         value, error = (windows[f"later_{part}{end}"] / _INTEGRAL_TIME for end in ("", "_error"))
         style.error_points(axes, windows["window"], value, error, style.colour(k), part)
-    axes.set_xscale("log", base=2)
-    delta = windows["delta"][0]
-    axes.set(xlabel="window, mean free times", ylabel=f"growth beyond 8, δ = {delta:g}")
+    style.level(axes, 0)
+    axes.set_xscale("log")
+    style.plain_log_ticks(axes.xaxis, windows["window"].tolist())
+    style.title(axes, "a", f"growth beyond 8, δ = {windows['delta'][0]:g}")
+    axes.set(xlabel="window, mean free times")
     axes.legend()

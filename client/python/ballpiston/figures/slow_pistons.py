@@ -144,7 +144,7 @@ def _draw_windows(axes: Any, windows: Table, delta: float) -> None:
         shown = {n: part[n][_FITTED] for n in ("time", "value", "standard_error")}
         first = shown["value"][0]
         value, error = shown["value"] / first, shown["standard_error"] / first
-        dots = {"label": label, "markersize": 4, "linestyle": "-", "linewidth": 0.8}
+        dots: dict[str, Any] = {"label": label, "markersize": 4, "linestyle": "-", "linewidth": 0.8}
         style.error_points(axes, shown["time"], value, error, style.colour(k), **dots)
     axes.set_xscale("log")
     axes.set(xlabel="t")

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -45,9 +46,8 @@ def output_of(program: str, *arguments: str, quiet: bool = False) -> str:
 
 def table_of(program: str, *arguments: str) -> Table:
     """The table that the program prints as CSV; all its columns are numbers."""
-    columns = np.genfromtxt(
-        output_of(program, *arguments).splitlines(), delimiter=",", names=True, ndmin=1
-    )
+    lines = output_of(program, *arguments).splitlines()
+    columns: Any = np.genfromtxt(lines, delimiter=",", names=True, ndmin=1)
     return {name: columns[name] for name in columns.dtype.names or ()}
 
 
