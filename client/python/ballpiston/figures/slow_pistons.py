@@ -13,6 +13,7 @@ The program `slow_pistons` measures a. Time on one core: quick 20 s, default 3 m
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -30,12 +31,13 @@ from ballpiston.result import Result
 
 EFFORT: dict[str, dict[str, Any]] = {
     "quick": {"delta": "0.2", "cold": "0.1,0.01", "samples": 1e5, "blocks": 4},
-    "full": {"samples": 3e6, "blocks": 20},
+    "full": {"samples": 3e6, "runs": 2, "blocks": 20},
 }
 
 _BLOCK = 1e6  # of time, in which the program measures a
 _IDLE_TIME = 64.0  # s at which a is taken
-_FITTED = slice(2, 9)  # the windows of a fit: from 2 to 128 relaxation times
+_FROM, _TO = 3, 300  # the windows of a fit: 4 to 256 stretches, which are half a relaxation time
+_SHOWN = slice(2, 10)  # of the windows, from 4 stretches on
 _CURVE = "charge_cumulant_2_by_window"
 _COLD = 0.01  # where delta varies, and of the jump process
 
@@ -47,71 +49,74 @@ def measure(
     delta: Numbers = "0.2,0.15,0.1",
     cold: Numbers = "0.5,0.1,0.03,0.01,0.001",
     samples: float = 3e5,
-    blocks: float = 6,
+    runs: int = 1,
+    blocks: int = 6,
     seed: int = 0,
 ) -> Tables:
     """The variance by window, a of each piston, and the growth beside its law. The hot temperature
     is 1. All of `cold` are measured at the first delta, all of `delta` at the cold temperature
-    0.01. `samples` are stretches of the chain; `blocks`, of a million units of time, measure a."""
+    0.01, in `runs` runs with different seeds. `samples` are stretches of the chain; `blocks`, of a
+    million units of time, measure a."""
 
-    def gas(model: str, delta: Numbers, cold: Numbers) -> Result:
+    def gas(model: str, delta: Numbers, cold: Numbers, seed: int) -> Result:
         question = {"rho": rho, "delta": delta, "cells": 1, "hot": 1, "cold": cold, "seed": seed}
         return answer(client, "gas-conduction", model=model, samples=samples, **question)
 
     one, *others = number_list("delta", delta)
-    cases = [gas("billiard", one, cold)]
-    if others:
-        cases.append(gas("billiard", others, _COLD))
-    points = [point for result in cases for point in result]
-    idle = [_idle(point, blocks, seed) for point in points]
-    controls = [gas("billiard", one, 1), gas("markov", one, _COLD)]
+    results = [
+        [gas("billiard", one, cold, s)] + ([gas("billiard", others, _COLD, s)] if others else [])
+        for s in range(seed, seed + runs)
+    ]
+    controls = [gas("billiard", one, 1, seed), gas("markov", one, _COLD, seed)]
+    cases = list(zip(*([point for result in run for point in result] for run in results)))
+    idle = [_idle(case[0], blocks, seed) for case in cases]
     return {
-        "slow-pistons-windows": stacked([curves(r, _CURVE) for r in cases + controls]),
+        "slow-pistons-windows": stacked([curves(r, _CURVE) for r in results[0] + controls]),
         "slow-pistons-idle": stacked(idle),
-        "slow-pistons": table(map(_growth_and_law, points, idle)),
-        "slow-pistons-controls": table(_growth(point) | {"model": point.model} for result in controls for point in result),
+        "slow-pistons": table(map(_growth_and_law, cases, idle)),
+        "slow-pistons-controls": table(
+            _growth([point]) | {"model": point.model} for result in controls for point in result
+        ),
     }
 
 
-def _idle(point: Point, blocks: float, seed: int) -> Table:
+def _idle(point: Point, blocks: int, seed: int) -> Table:
     """a of each piston, at several times s."""
     at = point.parameters
     flags = {"rho": at["rho"], "delta": at["delta"], "seed": seed}
-    flags |= {"cold": at["cold"], "block": _BLOCK, "blocks": int(blocks)}
+    flags |= {"cold": at["cold"], "block": _BLOCK, "blocks": blocks}
     texts = [text for name, value in flags.items() for text in (f"--{name}", f"{value!r}")]
     found = table_of("slow_pistons", "idle", *texts)
     length = len(found["time"])
     return {name: np.full(length, at[name]) for name in ("delta", "cold")} | found
 
 
-def _growth_and_law(point: Point, idle: Table) -> dict[str, float]:
+def _growth_and_law(runs: Sequence[Point], idle: Table) -> dict[str, float]:
     """The growth in an e-fold of the window, and 2 a J^2."""
     pistons = rows(idle, time=_IDLE_TIME)
     share, share_error = pistons["limit"].sum(), np.hypot(*pistons["limit_error"])
-    current = point["heat_current"]
+    current = float(np.mean([point["heat_current"] for point in runs]))
     law, law_error = 2 * share * current**2, 2 * share_error * current**2
-    row = _growth(point)
+    row = _growth(runs)
     ratio = row["growth"] / law
     error = np.hypot(row["growth_error"] / law, ratio * law_error / law)
     row |= {"current": current, "a": share, "a_error": share_error, "law": law}
     return row | {"ratio": ratio, "ratio_error": float(error)}
 
 
-def _growth(point: Point) -> dict[str, float]:
-    """A fit of v(2 t) - v(t) = growth ln 2 + b/t, where v is Var(Q)/t."""
-    found = {name: column[_FITTED] for name, column in increase(point, 2).items()}
-    terms = np.column_stack([np.full(len(found["time"]), np.log(2)), 1 / found["time"]])
-    fit = fits.linear(terms, found["value"], found["standard_error"])
-    at = point.parameters
-    row = {"delta": float(at["delta"]), "cold": float(at["cold"])}
-    row |= {"from": found["time"][0], "variance": _variance(point)}
+def _growth(runs: Sequence[Point]) -> dict[str, float]:
+    """A fit of v(2 t) - v(t) = growth ln 2 + b/t to all runs, where v is Var(Q)/t."""
+    found = stacked([increase(point, 2) for point in runs])
+    shortest = found["time"].min()
+    is_fitted = (found["time"] > _FROM * shortest) & (found["time"] < _TO * shortest)
+    time = found["time"][is_fitted]
+    terms = np.column_stack([np.full(len(time), np.log(2)), 1 / time])
+    fit = fits.linear(terms, found["value"][is_fitted], found["standard_error"][is_fitted])
+    at = runs[0].parameters
+    row = {"delta": float(at["delta"]), "cold": float(at["cold"]), "from": time.min()}
     row |= {"growth": fit.coefficients[0], "growth_error": fit.errors[0]}
+    row |= {"b": fit.coefficients[1], "b_error": fit.errors[1]}
     return row | {"chi_squared": fit.chi_squared, "freedom": fit.freedom}
-
-
-def _variance(point: Point) -> float:
-    """Var(Q)/t at the first window of the fit."""
-    return float(point.curve(_CURVE).value[_FITTED.start])
 
 
 @style.styled
@@ -141,7 +146,7 @@ def _draw_windows(axes: Any, windows: Table, delta: float) -> None:
         if not len(part["time"]):
             continue
         label = f"cold {cold:g}" + (", jump process" if model == "markov" else "")
-        shown = {n: part[n][_FITTED] for n in ("time", "value", "standard_error")}
+        shown = {n: part[n][_SHOWN] for n in ("time", "value", "standard_error")}
         first = shown["value"][0]
         value, error = shown["value"] / first, shown["standard_error"] / first
         dots: dict[str, Any] = {"label": label, "markersize": 4, "linestyle": "-", "linewidth": 0.8}
