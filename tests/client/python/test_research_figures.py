@@ -64,19 +64,6 @@ def test_the_slowest_rate_near_equilibrium_is_that_of_a_sine() -> None:
     assert full_counting.slowest_rate(1.0, 1.0) == pytest.approx(np.pi**2, rel=1e-4)
 
 
-def test_runs_of_a_chain_are_averaged_with_equal_weights() -> None:
-    found = {
-        "cells": np.array([4, 4, 4, 4, 4]),
-        "order": np.array([1, 1, 2, 2, 2]),
-        "time": np.array([np.inf, np.inf, 1.0, 1.0, 2.0]),
-        "value": np.array([1.0, 3.0, 5.0, 6.0, 9.0]),
-        "standard_error": np.array([0.3, 0.4, 1.0, 1.0, 1.0]),
-    }
-    mean = full_counting.mean_of_runs(found)
-    assert mean["value"].tolist() == [2.0, 5.5]  # one run lacks the longer window
-    assert mean["standard_error"] == pytest.approx([0.25, np.sqrt(0.5)])
-
-
 def windows_of(x: Any, excess: Any) -> dict[str, Any]:
     ones = np.ones(len(x))
     windows = {"x": x, "window": 8 * ones, "limit_all": 0.5 * ones, "limit_idle": 0.9 * ones}

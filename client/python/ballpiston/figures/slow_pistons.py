@@ -13,7 +13,6 @@ The program `slow_pistons` measures a. Time on one core: quick 20 s, default 3 m
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -31,7 +30,7 @@ from ballpiston.result import Result
 
 EFFORT: dict[str, dict[str, Any]] = {
     "quick": {"delta": "0.2", "cold": "0.1,0.01", "samples": 1e5, "blocks": 4},
-    "full": {"samples": 3e6, "runs": 2, "blocks": 20},
+    "full": {"samples": 3e6, "blocks": 20},
 }
 
 _BLOCK = 1e6  # of time, in which the program measures a
@@ -49,33 +48,28 @@ def measure(
     delta: Numbers = "0.2,0.15,0.1",
     cold: Numbers = "0.5,0.1,0.03,0.01,0.001",
     samples: float = 3e5,
-    runs: int = 1,
     blocks: int = 6,
     seed: int = 0,
 ) -> Tables:
     """The variance by window, a of each piston, and the growth beside its law. The hot temperature
     is 1. All of `cold` are measured at the first delta, all of `delta` at the cold temperature
-    0.01, in `runs` runs with different seeds. `samples` are stretches of the chain; `blocks`, of a
-    million units of time, measure a."""
+    0.01. `samples` are stretches of the chain; `blocks`, of a million units of time, measure a."""
 
-    def gas(model: str, delta: Numbers, cold: Numbers, seed: int) -> Result:
+    def gas(model: str, delta: Numbers, cold: Numbers) -> Result:
         question = {"rho": rho, "delta": delta, "cells": 1, "hot": 1, "cold": cold, "seed": seed}
         return answer(client, "gas-conduction", model=model, samples=samples, **question)
 
     one, *others = number_list("delta", delta)
-    results = [
-        [gas("billiard", one, cold, s)] + ([gas("billiard", others, _COLD, s)] if others else [])
-        for s in range(seed, seed + runs)
-    ]
-    controls = [gas("billiard", one, 1, seed), gas("markov", one, _COLD, seed)]
-    cases = list(zip(*([point for result in run for point in result] for run in results)))
-    idle = [_idle(case[0], blocks, seed) for case in cases]
+    cases = [gas("billiard", one, cold)] + ([gas("billiard", others, _COLD)] if others else [])
+    points = [point for result in cases for point in result]
+    controls = [gas("billiard", one, 1), gas("markov", one, _COLD)]
+    idle = [_idle(point, blocks, seed) for point in points]
     return {
-        "slow-pistons-windows": stacked([curves(r, _CURVE) for r in results[0] + controls]),
+        "slow-pistons-windows": stacked([curves(r, _CURVE) for r in cases + controls]),
         "slow-pistons-idle": stacked(idle),
-        "slow-pistons": table(map(_growth_and_law, cases, idle)),
+        "slow-pistons": table(map(_growth_and_law, points, idle)),
         "slow-pistons-controls": table(
-            _growth([point]) | {"model": point.model} for result in controls for point in result
+            _growth(point) | {"model": point.model} for result in controls for point in result
         ),
     }
 
@@ -91,30 +85,32 @@ def _idle(point: Point, blocks: int, seed: int) -> Table:
     return {name: np.full(length, at[name]) for name in ("delta", "cold")} | found
 
 
-def _growth_and_law(runs: Sequence[Point], idle: Table) -> dict[str, float]:
+def _growth_and_law(point: Point, idle: Table) -> dict[str, float]:
     """The growth in an e-fold of the window, and 2 a J^2."""
     pistons = rows(idle, time=_IDLE_TIME)
     share, share_error = pistons["limit"].sum(), np.hypot(*pistons["limit_error"])
-    current = float(np.mean([point["heat_current"] for point in runs]))
+    current = point["heat_current"]
     law, law_error = 2 * share * current**2, 2 * share_error * current**2
-    row = _growth(runs)
+    row = _growth(point)
     ratio = row["growth"] / law
     error = np.hypot(row["growth_error"] / law, ratio * law_error / law)
     row |= {"current": current, "a": share, "a_error": share_error, "law": law}
     return row | {"ratio": ratio, "ratio_error": float(error)}
 
 
-def _growth(runs: Sequence[Point]) -> dict[str, float]:
-    """A fit of v(2 t) - v(t) = growth ln 2 + b/t to all runs, where v is Var(Q)/t."""
-    found = stacked([increase(point, 2) for point in runs])
+def _growth(point: Point) -> dict[str, float]:
+    """A fit of v(2 t) - v(t) = growth ln 2 + b/t, where v is Var(Q)/t; and v at the first window of
+    the fit, as `variance`."""
+    found = increase(point, 2)
     shortest = found["time"].min()
     is_fitted = (found["time"] > _FROM * shortest) & (found["time"] < _TO * shortest)
     time = found["time"][is_fitted]
     terms = np.column_stack([np.full(len(time), np.log(2)), 1 / time])
     fit = fits.linear(terms, found["value"][is_fitted], found["standard_error"][is_fitted])
-    at = runs[0].parameters
+    at = point.parameters
     row = {"delta": float(at["delta"]), "cold": float(at["cold"]), "from": time.min()}
-    row |= {"growth": fit.coefficients[0], "growth_error": fit.errors[0]}
+    row |= {"variance": found["shorter"][is_fitted][0], "growth": fit.coefficients[0]}
+    row |= {"growth_error": fit.errors[0]}
     row |= {"b": fit.coefficients[1], "b_error": fit.errors[1]}
     return row | {"chi_squared": fit.chi_squared, "freedom": fit.freedom}
 

@@ -28,10 +28,10 @@ def increase(point: Point, order: int) -> Table:
 
 
 def _combined(point: Point, order: int, longer: float) -> Table:
-    """longer v(2 t) - v(t)"""
+    """longer v(2 t) - v(t), and v(t) as `shorter`."""
     names = {curve.name for curve in point.curves}
     if (name := f"charge_cumulant_{order}_by_window") not in names:
-        return {part: np.empty(0) for part in ("time", "value", "standard_error")}
+        return {part: np.empty(0) for part in ("time", "shorter", "value", "standard_error")}
     curve = point.curve(name)
     v, error = curve.value, curve.standard_error
     correlation = 2 ** ((1 - order) / 2)
@@ -39,6 +39,7 @@ def _combined(point: Point, order: int, longer: float) -> Table:
     variance -= 2 * longer * correlation * error[1:] * error[:-1]
     return {
         "time": curve.x[:-1],
+        "shorter": v[:-1],
         "value": longer * v[1:] - v[:-1],
         "standard_error": np.sqrt(variance),
     }
