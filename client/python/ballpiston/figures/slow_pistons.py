@@ -34,7 +34,6 @@ EFFORT: dict[str, dict[str, Any]] = {
 }
 
 _BLOCK = 1e6  # of time, in which the program measures a
-_OF_CONTROLS = 4  # samples of the cases without growth, over those of the others
 _IDLE_TIME = 64.0  # s at which a is taken
 _FROM, _TO = 3, 300  # the windows of a fit: 4 to 256 stretches, which are half a relaxation time
 _SHOWN = slice(2, 10)  # of the windows, from 4 stretches on
@@ -54,18 +53,16 @@ def measure(
 ) -> Tables:
     """The variance by window, a of each piston, and the growth beside its law. The hot temperature
     is 1. All of `cold` are measured at the first delta, all of `delta` at the cold temperature
-    0.01. `samples` are stretches of the chain, and equilibrium and the jump process have four times
-    as many; `blocks`, of a million units of time, measure a."""
+    0.01. `samples` are stretches of the chain; `blocks`, of a million units of time, measure a."""
 
-    def gas(model: str, delta: Numbers, cold: Numbers, samples: float = samples) -> Result:
+    def gas(model: str, delta: Numbers, cold: Numbers) -> Result:
         question = {"rho": rho, "delta": delta, "cells": 1, "hot": 1, "cold": cold, "seed": seed}
         return answer(client, "gas-conduction", model=model, samples=samples, **question)
 
     one, *others = number_list("delta", delta)
     cases = [gas("billiard", one, cold)] + ([gas("billiard", others, _COLD)] if others else [])
     points = [point for result in cases for point in result]
-    more = _OF_CONTROLS * samples
-    controls = [gas("billiard", one, 1, more), gas("markov", one, _COLD, more)]
+    controls = [gas("billiard", one, 1), gas("markov", one, _COLD)]
     idle = [_idle(point, blocks, seed) for point in points]
     return {
         "slow-pistons-windows": stacked([curves(r, _CURVE) for r in cases + controls]),
