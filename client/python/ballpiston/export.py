@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 from argparse import ArgumentParser
+from importlib import import_module
 from pathlib import Path
 
 from ballpiston.client import connect
@@ -19,9 +20,9 @@ _ENDINGS = (".csv", ".npz", ".parquet")
 def _check(path: Path) -> None:
     if path.suffix not in _ENDINGS:
         raise ValueError(f"--out: {path} does not end with {', '.join(_ENDINGS)}")
-    if path.suffix == ".parquet":
-        import pandas  # noqa: F401
-        import pyarrow  # noqa: F401
+    if path.suffix == ".parquet":  # before anything is asked
+        for module in ("pandas", "pyarrow"):
+            import_module(module)
 
 
 def _main(arguments: list[str]) -> list[Path]:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any, Union
+from typing import Any
 
 from ballpiston.parameter_lists import number_list, shape_list
 from ballpiston.point import PARAMETERS
 from ballpiston.suggestion import did_you_mean
 
-# A pandas.DataFrame, a mapping of columns, or an iterable of rows.
-Points = Union[Mapping[str, Any], Iterable[Mapping[str, Any]], Any]
+# A pandas.DataFrame, a mapping of columns, or an iterable of rows that are mappings.
+Points = Any
 
 
 def add_points(points: Points, grid: Any) -> None:
@@ -30,15 +30,17 @@ def add_points(points: Points, grid: Any) -> None:
         if len(getattr(grid, name)) > 0:
             raise TypeError(f"points has the column {name}, and {name} is given: give one of them")
         of_column = f"points, column {name}"
-        read = shape_list if name == "cells" else number_list
-        getattr(grid, name).extend(read(of_column, values))
+        if name == "cells":
+            grid.cells.extend(shape_list(of_column, values))
+        else:
+            getattr(grid, name).extend(number_list(of_column, values))
         grid.table.append(name)
 
 
 def _columns(points: Points) -> dict[str, list[Any]]:
     if isinstance(points, Mapping) or hasattr(points, "columns"):
         return {name: list(points[name]) for name in points}
-    rows = list(points)
+    rows = list(points) if isinstance(points, Iterable) else [points]
     if not all(isinstance(row, Mapping) for row in rows):
         raise TypeError(
             "points has to be a pandas.DataFrame, a dict of columns or a list of dicts, not "

@@ -189,7 +189,7 @@ def test_the_collisions_of_a_job_are_read_as_records(home: Home, tmp_path: Path)
         assert sum(len(part) for part in client.sample("first-hit", **question, samples=5_000)) == 5_000
     assert records["sample"].tolist() == list(range(5_000))
     assert records["time"].mean() == pytest.approx(result["mean_hit_time"][0], rel=1e-12)
-    np.testing.assert_array_equal(records["ball_vx_after"], records["piston_vx"])
+    np.testing.assert_allclose(records["ball_vx_after"], records["piston_vx"], atol=1e-14)
 
     for ending in ("csv", "npz"):
         out = tmp_path / f"hits.{ending}"
