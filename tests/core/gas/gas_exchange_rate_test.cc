@@ -116,11 +116,6 @@ TEST(GasExchangeRate, ExceedsThePairsRateByTheStatedAmount) {
   EXPECT_NEAR(InfiniteGasExchangeRate(lattice, 1) / PairRate(lattice), 1.0494, 5e-5);
 }
 
-double ExcessAt(double delta, const char* shape) {
-  const GasGeometry gas = GasOf(kPaperRho, delta, shape);
-  return InfiniteGasExchangeRate(gas, 1) / PairRate(gas) - 1;
-}
-
 // Given the pistons, a ball is anywhere in its free area. So the mean of (height of the piston in
 // the cell)/(free area) is the density on the collision surface of a contact. Four standard errors:
 // 6e-5 false alarms each. They are 0.05 % of the rate; the pair's rate is 2 to 5 % off.
