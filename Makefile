@@ -15,7 +15,7 @@ AARCH64_PACKAGES := g++-aarch64-linux-gnu qemu-user libabsl-dev:arm64 libhwy-dev
 SLURM_PACKAGES := munge slurmctld slurmd slurm-client procps
 DEB_PACKAGES := debhelper dh-python help2man lintian
 WEB_PACKAGES = chromium $(shell command -v npm >/dev/null || echo nodejs npm)
-PROGRAMS := ballpiston ballpistond ballpiston-worker conductivity method_comparison stability pages
+PROGRAMS := ballpiston ballpistond ballpiston-worker conductivity method_comparison slow_pistons stability pages
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder

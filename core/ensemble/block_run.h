@@ -10,10 +10,19 @@
 #include <utility>
 
 #include "core/billiard/engine_run.h"
+#include "core/billiard/orbits.h"
 #include "core/ensemble/block_result.h"
 #include "core/ensemble/chunk_plan.h"
 
 namespace ballpiston {
+
+// Sees every collision of the orbits of a pair, in the order of time within an orbit.
+class CollisionObserver {
+ public:
+  virtual ~CollisionObserver() = default;
+  // `orbit`: its index within the block.
+  virtual void Observe(const Block& block, uint64_t orbit, const Collision& collision) = 0;
+};
 
 // The thread that advances the run calls these functions.
 class BlockQueue {
@@ -26,6 +35,8 @@ class BlockQueue {
   virtual bool Pause() = 0;
   // Stop is requested when the run's results are no longer needed.
   virtual std::stop_token stop() const = 0;
+  // Null: nobody wants to see the collisions. The run asks once.
+  virtual CollisionObserver* observer() { return nullptr; }
 };
 
 // Computes one block after the other with

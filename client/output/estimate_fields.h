@@ -1,27 +1,11 @@
-// The estimates of a point as rows of a table, and the optional fields of a row.
+// The optional fields of an estimate.
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "ballpiston/v1/result.pb.h"
 
 namespace ballpiston::client {
-
-// The estimates in their order, then the divergence and its noise floor if the point has them.
-inline std::vector<v1::Estimate> EstimatesOf(const v1::PointResult& point) {
-  std::vector<v1::Estimate> rows(point.estimates().begin(), point.estimates().end());
-  if (!point.has_kl_divergence()) return rows;
-  const v1::KlDivergence& kl = point.kl_divergence();
-  const auto add = [&rows](const char* name, double value, double error) {
-    rows.emplace_back().set_name(name);
-    rows.back().set_value(value);
-    rows.back().set_standard_error(error);
-  };
-  add("kl_divergence", kl.value(), kl.standard_error());
-  add("kl_noise_floor", kl.noise_floor(), kl.noise_error());
-  return rows;
-}
 
 // An optional field of an estimate.
 struct Field {
