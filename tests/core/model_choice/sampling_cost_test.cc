@@ -115,6 +115,9 @@ TEST(SamplingCost, CostIsTheSumOverEvents) {
   EXPECT_DOUBLE_EQ(Cost(collision, OnlyOf(&EngineRate::wall_hit)), hits);
   EXPECT_DOUBLE_EQ(Cost(collision, OnlyOf(&EngineRate::collision)), 1);
   EXPECT_EQ(Cost(collision, OnlyOf(&EngineRate::sample)), 0);
+  MachineRates reference;  // which has an event for each hit and for each collision
+  reference.reference.wall_hit = 1;
+  EXPECT_GE(Cost(Asked("equilibrium model=billiard_reference"), reference), hits + 1);
   const double collisions = CollisionsPerOrbit(PointAt(orbit, 0));
   EXPECT_DOUBLE_EQ(Cost(orbit, OnlyOf(&EngineRate::wall_hit)), hits * collisions);
   EXPECT_DOUBLE_EQ(Cost(orbit, OnlyOf(&EngineRate::collision)), collisions);
