@@ -94,6 +94,11 @@ TEST(EnsembleSpec, HugeGridsAreRejectedWithoutExpansion) {
   spec.grid[kEpsilon].assign(1000, 0.1);
   spec.grid[kExponent].assign(2000, 1);
   EXPECT_THAT(Violations(spec), ElementsAre(Names("grid", "2000000000 points")));
+  spec.grid[kEpsilon].resize(100);
+  spec.grid[kExponent].resize(1);
+  EXPECT_THAT(Violations(spec), IsEmpty());  // kMaxPoints
+  spec.grid[kDelta].push_back(0.01);
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid", "100100 points")));
 }
 
 TEST(EnsembleSpec, TargetsAreChecked) {

@@ -148,7 +148,11 @@ TEST_F(Fold, TheFirstBlocksOfAChunkCountOnce) {
     for (int repeat = 0; repeat < 2; ++repeat) samples += fold.AddPartial(blocks.partial());
     EXPECT_EQ(samples, fold.Merged().samples);
   }
-  EXPECT_EQ(fold.AddPartial({.chunk = 1, .blocks = 1, .merged = blocks_[0].result}), 0u);
+  const BlockResult merged = fold.Merged();
+  for (const uint64_t chunk : {0u, 1u}) {  // fewer blocks than are known; of a later chunk
+    fold.AddPartial({.chunk = chunk, .blocks = 1, .merged = blocks_[0].result});
+    EXPECT_EQ(fold.Merged(), merged);
+  }
   samples += fold.Add(chunks_[0]);
   EXPECT_EQ(samples, chunks_[0].result.samples);
   EXPECT_EQ(fold.Merged(), chunks_[0].result);
@@ -226,6 +230,9 @@ TEST(PointFold, AToleranceOfLongSamplesIsJudgedAfter64) {
   }
   EXPECT_TRUE(fold.finished());
   EXPECT_TRUE(point->ReachesTolerance(fold.Merged()));
+  PointFold resumed(*point);
+  resumed.Resume(fold.state());
+  EXPECT_TRUE(resumed.finished());
 }
 
 }  // namespace
