@@ -356,8 +356,8 @@ TEST(Payload, EveryFieldExceptTheIdAndTheLabelsIsPartOfTheHash) {
     const FieldDescriptor& field = *type.field(i);
     // validate_only stores no request, so its payload does not matter.
     // Labels are added to the job that answers, so a retry may change them.
-    if (field.name() == "spec" || field.name() == "request_id" ||
-        field.name() == "validate_only" || field.name() == "labels") {
+    if (field.name() == "spec" || field.name() == "request_id" || field.name() == "validate_only" ||
+        field.name() == "labels") {
       continue;
     }
     v1::CreateEnsembleJobRequest changed = request;
