@@ -162,7 +162,7 @@ TEST(Spec, ComesBackUnchanged) {
   std::vector<v1::EnsembleSpec> messages(5, OneFirstHit());
   messages[0].set_model(v1::EnsembleSpec::BILLIARD_REFERENCE);
   messages[1].set_verify(true);
-  messages[2].clear_target();
+  messages[2].mutable_target()->Clear();  // an absent one comes back as an empty one
   messages[3].mutable_target()->set_collisions(5);
   messages[4].mutable_target()->mutable_budget()->set_nanos(300'000'000);
   for (const char* estimate : {"", "exchange_rate", "conductivity"}) {
