@@ -89,8 +89,8 @@ class OrbitSource {
   virtual bool FollowsTangents() const { return false; }
   virtual void FollowEvent(uint64_t /*orbit*/, const Event&, const PairState& /*after*/) {}
   virtual void FollowWait(uint64_t /*orbit*/, const BallMap&) {}
-  // The device that computes the flights of kLanes instead of the processor; null: none. Orbits with
-  // tangents never use it. It must outlive the run.
+  // The device that computes the flights of kLanes instead of the processor; null: none. Orbits
+  // with tangents never use it. It must outlive the run.
   virtual OrbitDevice* Device() const { return nullptr; }
   // True if the engine should return. The engine asks about 5000 times a second, and at least every
   // 0.05 s if a call of Start or Collide takes at most 10 us for each orbit.
@@ -101,6 +101,8 @@ class OrbitSource {
 class OrbitDevice {
  public:
   virtual ~OrbitDevice() = default;
+  // About how many orbits all runs together have in progress at the same time.
+  virtual uint64_t orbits() const = 0;
   // Null if the device cannot be used; then the processor computes.
   virtual std::unique_ptr<EngineRun> Start(const PairGeometry& geometry, OrbitSource& source) = 0;
 };

@@ -26,20 +26,8 @@ constexpr double kRoundingOfAPath = 1e-9;
 uint32_t SignBit(double sign) { return sign < 0 ? kSign : 0; }
 double SignOf(uint32_t bits) { return IsSet(bits) ? -1 : 1; }
 
-FlightBall BallOf(const LaneFrame& frame) {
-  return {.h = frame.h,
-          .e = frame.e,
-          .c = frame.c,
-          .s = frame.s,
-          .path = 0,
-          .a = SignBit(frame.a),
-          .ab = SignBit(frame.a * frame.b),
-          .m = SignBit(frame.m)};
-}
-
 LaneFrame FrameOf(const FlightBall& ball) {
-  return {ball.h,         ball.e, ball.c, ball.s, SignOf(ball.a), SignOf(ball.a ^ ball.ab),
-          SignOf(ball.m)};
+  return {ball.h, ball.e, ball.c, ball.s, SignOf(ball.a), SignOf(ball.a ^ ball.ab), SignOf(ball.m)};
 }
 
 // The rest of the burst of a report that was a false alarm: `report` is of what happens next, if
@@ -257,15 +245,15 @@ class DeviceRun : public EngineRun {
     }
     const LaneOrbit& orbit = entered.orbit;
     const LaneEntry entry = in_lane_.Enter(orbit, start.state, kSlack<double>);
-    queue_.push_back({.ball = BallOf(entry.ball),
-                      .phase = entry.phase,
-                      .ratio = entry.ratio,
-                      .path_before = 0,
-                      .longest_path = orbit.longest_wait * orbit.ball_speed * scale_ *
-                                      (1 + kRoundingOfAPath),
-                      .bursts = 0,
-                      .in_reach = entry.in_reach ? kSign : 0,
-                      .orbit = number});
+    queue_.push_back(
+        {.ball = BallOf(entry.ball),
+         .phase = entry.phase,
+         .ratio = entry.ratio,
+         .path_before = 0,
+         .longest_path = orbit.longest_wait * orbit.ball_speed * scale_ * (1 + kRoundingOfAPath),
+         .bursts = 0,
+         .in_reach = entry.in_reach ? kSign : 0,
+         .orbit = number});
   }
 
   PairGeometry geometry_;
@@ -276,10 +264,10 @@ class DeviceRun : public EngineRun {
   double scale_;
   OrbitInLane in_lane_;
   bool is_flying_ = false;
-  uint32_t bursts_ = 8;            // of a launch
-  size_t lanes_with_orbits_ = 0;   // after the last landing
-  size_t reserve_ = 64;            // orbits that wait for a lane
-  std::vector<FlightLane> queue_;  // the orbits that have no lane yet
+  uint32_t bursts_ = 8;                  // of a launch
+  size_t lanes_with_orbits_ = 0;         // after the last landing
+  size_t reserve_ = 64;                  // orbits that wait for a lane
+  std::vector<FlightLane> queue_;        // the orbits that have no lane yet
   std::vector<OrbitInProgress> orbits_;  // by number
   std::vector<uint32_t> free_;           // numbers
   size_t in_progress_ = 0;
@@ -293,6 +281,17 @@ class DeviceRun : public EngineRun {
 };
 
 }  // namespace
+
+FlightBall BallOf(const LaneFrame& frame) {
+  return {.h = frame.h,
+          .e = frame.e,
+          .c = frame.c,
+          .s = frame.s,
+          .path = 0,
+          .a = SignBit(frame.a),
+          .ab = SignBit(frame.a * frame.b),
+          .m = SignBit(frame.m)};
+}
 
 FlightProgram ProgramOf(const PairGeometry& geometry) {
   const FlightConstants<double> flight(geometry);
@@ -311,10 +310,12 @@ FlightProgram ProgramOf(const PairGeometry& geometry) {
           .looks_first = flights == kMostFlights};
 }
 
-// With twice as many lanes as keep the device busy, half of the runs can be busy with their sources.
+// With twice as many lanes as keep the device busy, half of the runs can be busy with their
+// sources.
 OrbitsOnDevice::OrbitsOnDevice(std::unique_ptr<FlightDevice> device, size_t runs,
                                std::function<void(const absl::Status&)> on_failure)
     : device_(std::move(device)),
+      runs_(runs),
       lanes_(std::clamp<size_t>(2 * device_->lanes() / runs, 1, device_->lanes())),
       on_failure_(std::move(on_failure)) {}
 

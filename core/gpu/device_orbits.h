@@ -13,12 +13,14 @@
 #include <memory>
 
 #include "absl/status/status.h"
+#include "core/billiard/lane_frame.h"
 #include "core/billiard/orbits.h"
 #include "core/gpu/flight_device.h"
 
 namespace ballpiston {
 
 FlightProgram ProgramOf(const PairGeometry& geometry);
+FlightBall BallOf(const LaneFrame& frame);  // both in the lanes' units
 
 // Thread-safe.
 class OrbitsOnDevice : public OrbitDevice {
@@ -31,12 +33,14 @@ class OrbitsOnDevice : public OrbitDevice {
   const FlightDevice& device() const { return *device_; }
   bool has_failed() const { return has_failed_; }
 
+  uint64_t orbits() const override { return runs_ * lanes_; }
   std::unique_ptr<EngineRun> Start(const PairGeometry& geometry, OrbitSource& source) override;
 
  private:
   void Fail(const absl::Status& status);
 
   const std::unique_ptr<FlightDevice> device_;
+  const size_t runs_;
   const size_t lanes_;  // of a run
   const std::function<void(const absl::Status&)> on_failure_;
   std::atomic<bool> has_failed_ = false;

@@ -1,8 +1,9 @@
 // One lane of flights, as plain functions that a processor and a GPU execute: the flight of
-// billiard/lane_flight-inl.h, the burst and the tests of billiard/lane_burst-inl.h, one ball instead
-// of a vector. Those files derive the formulas and define the symbols and units. Every operation
-// here is the same operation, in the same order, as there: exact, correctly rounded, or fused where
-// std::fma is written. So the bits are the same, if the compiler does not fuse other operations.
+// billiard/lane_flight-inl.h, the burst and the tests of billiard/lane_burst-inl.h, one ball
+// instead of a vector. Those files derive the formulas and define the symbols and units. Every
+// operation here is the same operation, in the same order, as there: exact, correctly rounded, or
+// fused where std::fma is written. So the bits are the same, if the compiler does not fuse other
+// operations.
 //
 // A sign of the compass is in the top bit of a word: set for -1. The other bits have no meaning.
 #pragma once
@@ -165,8 +166,8 @@ BALLPISTON_HOST_DEVICE bool MayHaveMet(const FlightProgram& k, const FlightLane&
 
 // Flies from flight `first` to the end of the burst. If something happens in a flight, returns it;
 // `lane` is then as before this flight, `flight` is its number, and `path_after` the path after it.
-BALLPISTON_HOST_DEVICE FlightNews FlyBurst(const FlightProgram& k, FlightLane& lane,
-                                           uint32_t first, uint32_t& flight, double& path_after) {
+BALLPISTON_HOST_DEVICE FlightNews FlyBurst(const FlightProgram& k, FlightLane& lane, uint32_t first,
+                                           uint32_t& flight, double& path_after) {
   FlightBall ball = lane.ball;
   bool in_reach = IsSet(lane.in_reach);
   for (flight = first; flight < k.flights; ++flight) {

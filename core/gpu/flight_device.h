@@ -27,7 +27,7 @@ class FlightBatch {
   virtual absl::Status Launch(std::span<const FlightLane> starts, uint32_t bursts) = 0;
 
   struct Landing {
-    size_t taken = 0;                             // of the starts
+    size_t taken = 0;                            // of the starts
     std::span<const FlightReport> reports = {};  // in any order; valid until the next Launch
   };
   // Waits until all lanes have flown. Once after each Launch.

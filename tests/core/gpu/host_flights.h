@@ -1,6 +1,7 @@
 // A stand-in for a device: flies the lanes on the processor, and fails when a test wants it.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
@@ -42,7 +43,8 @@ class HostDevice : public FlightDevice {
     size_t lanes() const override { return lanes_.size(); }
 
     absl::Status Launch(std::span<const FlightLane> starts, uint32_t bursts) override {
-      if (device_.faults_.launch == device_.launches_) return absl::UnavailableError("no launch");
+      const int launch = device_.launches_++;
+      if (device_.faults_.launch == launch) return absl::UnavailableError("no launch");
       starts_.assign(starts.begin(), starts.end());
       taken_ = 0;
       reports_.clear();
@@ -53,8 +55,7 @@ class HostDevice : public FlightDevice {
         return true;
       };
       const std::optional<int> alarm = device_.faults_.false_alarm;
-      const bool alarms = alarm && device_.launches_ % *alarm == 0;
-      ++device_.launches_;
+      const bool alarms = alarm && launch % *alarm == 0;
       for (FlightLane& lane : lanes_) {
         if (alarms && lane.orbit != kNoOrbit) report(FalseAlarm(lane));
         FlyLane(program_, bursts, lane, next, report);
@@ -86,7 +87,7 @@ class HostDevice : public FlightDevice {
 
   const size_t lanes_;
   const HostFaults faults_;
-  int makes_ = 0, launches_ = 0, landings_ = 0;
+  std::atomic<int> makes_ = 0, launches_ = 0, landings_ = 0;
 };
 
 }  // namespace ballpiston
