@@ -127,6 +127,18 @@ TEST_F(ChunkFoldTest, BlocksHandedOutAreLimitedByTheWindow) {
   EXPECT_FALSE(fold.NextBlock());
 }
 
+TEST_F(ChunkFoldTest, TheWindowOfADeviceHoldsItsLongestOrbits) {
+  const ChunkPlan plan(1'000'000'000, Engine::kLanes, 10'000);
+  ASSERT_EQ(plan.MostInABlock(), 1024u);
+  EXPECT_EQ(ChunkFold::WindowFor(plan, 1), ChunkFold::kWindow);
+  EXPECT_EQ(ChunkFold::WindowFor(plan, 200 * 1024), 3200u);
+  EXPECT_EQ(ChunkFold::WindowFor(plan, 1'000'000'000), 16 * ChunkFold::kWindow);
+  ChunkFold fold(plan, {}, plan.chunks(), {}, 3200);
+  uint64_t handed_out = 0;
+  while (fold.NextBlock()) ++handed_out;
+  EXPECT_EQ(handed_out, 3200u);
+}
+
 TEST_F(PointFoldTest, ResultIsIndependentOfArrivalOrder) {
   const BlockResult expected = *FoldPoint(*point_);
   auto shuffled = chunks_;
