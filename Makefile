@@ -15,7 +15,7 @@ AARCH64_PACKAGES := g++-aarch64-linux-gnu qemu-user libabsl-dev:arm64 libhwy-dev
 SLURM_PACKAGES := munge slurmctld slurmd slurm-client procps
 DEB_PACKAGES := debhelper dh-python help2man lintian
 WEB_PACKAGES = chromium $(shell command -v npm >/dev/null || echo nodejs npm)
-PROGRAMS := ballpiston ballpistond ballpiston-worker conductivity method_comparison stability pages
+PROGRAMS := ballpiston ballpistond ballpiston-worker conductivity method_comparison slow_pistons stability pages
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder
@@ -61,11 +61,12 @@ bench: build/release/.$(PRESETS_PREFIX)benchmarks ## Build, then run the benchma
 
 stability: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods, measure the model errors; write STABILITY_OUT, by default stability.md (12 minutes)
 	@cmake --build build/release --target stability
-	@build/release/bin/stability --out '$(STABILITY_OUT)'
+	@build/release/bin/stability >'$(STABILITY_OUT)'
 
 stability-table: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods; write the tables into docs/stability.md (12 minutes)
 	@cmake --build build/release --target stability
-	@build/release/bin/stability --into docs/stability.md
+	@build/release/bin/stability >build/release/stability.md
+	@sed -i -e '/stability:begin/r build/release/stability.md' -e '/stability:begin/,/stability:end/{//!d}' docs/stability.md
 
 conductivity: build/release/.$(PRESETS_PREFIX)programs ## Compute the constants of the conductivity in the limit of rare collisions (1 minute)
 	@cmake --build build/release --target conductivity

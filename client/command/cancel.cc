@@ -2,15 +2,17 @@
 // state.
 #include "absl/strings/str_cat.h"
 #include "client/command/connection.h"
+#include "client/command/selection.h"
 #include "client/library/request_id.h"
 #include "client/output/spelling.h"
 
 namespace ballpiston::client {
 
 VerbResult Cancel(const Options& options, Terminal& terminal) {
-  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-    absl::Status first_error;
-    for (const std::string& name : options.jobs) {
+  return WithJobs(options, terminal, kActiveStates, [&](const auto& connection, const auto& names) {
+    absl::Status first_error = Confirm("cancel", names, options, terminal);
+    if (!first_error.ok()) return VerbResult(first_error);
+    for (const std::string& name : names) {
       const std::string id = NewRequestId();  // the same for a retry
       const auto job = connection.Ask([&] { return connection.client.Cancel(name, id); });
       first_error.Update(job.status());
@@ -19,8 +21,7 @@ VerbResult Cancel(const Options& options, Terminal& terminal) {
       terminal.Note(absl::StrCat(name, ": ", job->progress().points_done(), " of ",
                                  job->progress().points(), " points are finished and stay"));
     }
-    if (!first_error.ok()) return first_error;
-    return ExitCode::kDone;
+    return first_error.ok() ? VerbResult(ExitCode::kDone) : first_error;
   });
 }
 

@@ -65,6 +65,7 @@ ParsedVerb Add(CLI::App& program, const Verb& verb) {
     if (flag->name.empty()) continue;
     CLI::Option* const option = flag->value.IsSwitch() ? parsed.app->add_flag(flag->name)
                                                        : parsed.app->add_option(flag->name);
+    if (flag->value.is_repeatable) option->take_all();
     parsed.flags[flag] = option;
   }
   return parsed;
@@ -216,7 +217,7 @@ class WordParser {
     Settings settings;
     for (const auto& [flag, option] : parsed_.at(&verb).flags) {
       if (option->empty()) continue;
-      settings[flag] = {option->results().front(), Source::kCommandLine};
+      settings[flag] = {absl::StrJoin(option->results(), ","), Source::kCommandLine};
     }
     return settings;
   }

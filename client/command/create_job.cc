@@ -10,6 +10,7 @@
 #include "client/command/interrupts.h"
 #include "client/library/error_text.h"
 #include "client/library/request_id.h"
+#include "client/output/number_text.h"
 
 namespace ballpiston::client {
 namespace {
@@ -73,11 +74,18 @@ absl::StatusOr<v1::EnsembleJob> CreateJob(const Connection& connection,
                                           const v1::EnsembleSpec& spec, const Options& options,
                                           const Terminal& terminal) {
   CreateOptions create = options.create;
+  create.labels = options.labels;
   if (options.resume && create.request_id.empty()) {
     return Resume(connection, spec, create, terminal);
   }
   if (create.request_id.empty()) create.request_id = NewRequestId();
   return CreateOnce(connection, spec, create, terminal);
+}
+
+std::string ContinuesText(const v1::EnsembleJob& job) {
+  if (job.continues().empty()) return "";
+  return absl::StrCat("continues ", job.continues(), ": ", ExactText(job.continued_samples()),
+                      " samples are in the store (--fresh computes them again)");
 }
 
 std::string FromStoreText(const v1::EnsembleJob& job) {

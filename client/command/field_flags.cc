@@ -1,13 +1,16 @@
 #include "client/command/field_flags.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
+#include "client/command/points_file.h"
 #include "client/library/error_text.h"
 
 namespace ballpiston::client {
@@ -21,8 +24,21 @@ std::string FlagNamed(absl::string_view field) {
   return absl::StrCat("--", absl::StrReplaceAll(last.substr(0, last.find('[')), {{"_", "-"}}));
 }
 
-std::string NameOf(const std::string& field, const Verb& verb) {
+// "points.csv, line 4" for grid.delta[2], unless the command line has the flag of that list.
+std::optional<std::string> LineOfPoint(absl::string_view field, const Options& options) {
+  const bool has_flag = options.given.contains(FlagNamed(field));
+  size_t row = 0;
+  if (options.points_file.empty() || has_flag || !absl::ConsumePrefix(&field, "spec.grid.") ||
+      !absl::ConsumeSuffix(&field, "]") ||
+      !absl::SimpleAtoi(field.substr(field.find('[') + 1), &row)) {
+    return std::nullopt;
+  }
+  return absl::StrCat(options.points_file, ", line ", LineOfRow(row));
+}
+
+std::string NameOf(const std::string& field, const Verb& verb, const Options& options) {
   if (field == "spec.experiment") return "EXPERIMENT";
+  if (const auto line = LineOfPoint(field, options)) return *line;
   const std::string name = FlagNamed(field);
   const std::vector<const Flag*> flags = FlagsOf(verb);
   const bool is_flag = std::any_of(flags.begin(), flags.end(),
@@ -48,7 +64,7 @@ std::string MessageWithFlags(const absl::Status& error, const Verb& verb, const 
     const bool is_of_file = has_file && absl::StartsWith(field, kSpec);
     const std::string in_flags =
         is_of_file ? absl::StrCat(absl::StripPrefix(field, kSpec), ": ", description)
-                   : absl::StrCat(NameOf(field, verb), ": ", WithTargetFlags(description));
+                   : absl::StrCat(NameOf(field, verb, options), ": ", WithTargetFlags(description));
     message = absl::StrReplaceAll(message, {{absl::StrCat(field, ": ", description), in_flags}});
   }
   return message;

@@ -4,11 +4,8 @@
 // The modules of the figures are NAME.py in ballpiston/figures, in the folder of Python packages
 // that belongs to this program. The package knows which flags a figure has
 // (client/python/ballpiston/figures/parts/command.py).
-#include <signal.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <set>
 #include <vector>
@@ -16,13 +13,9 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
-#include "client/command/config_file.h"
-#include "client/command/follow_job.h"
-#include "client/command/interrupts.h"
 #include "client/command/python.h"
 #include "client/command/suggestion.h"
 #include "client/command/verb_table.h"
-#include "client/library/child_process.h"
 #include "client/library/installed_files.h"
 #include "client/library/server_process.h"
 
@@ -30,6 +23,8 @@ namespace ballpiston::client {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr char kFigurePackages[] = "python3-ballpiston and python3-matplotlib";
 
 fs::path FiguresFolder() { return PythonPackage() / "figures"; }
 
@@ -39,9 +34,9 @@ fs::path ModuleOf(const std::string& figure) {
 
 absl::Status CheckInstalled() {
   if (!FigureNames().empty()) return absl::OkStatus();
-  return absl::FailedPreconditionError(
-      absl::StrCat("figures need the Python package in ", FiguresFolder().string(),
-                   ": install the packages python3-ballpiston and python3-matplotlib"));
+  return absl::FailedPreconditionError(absl::StrCat("figures need the Python package in ",
+                                                    FiguresFolder().string(),
+                                                    ": install the packages ", kFigurePackages));
 }
 
 // A module begins with """TITLE.
@@ -72,46 +67,14 @@ absl::Status CheckName(const Options& options) {
   return absl::InvalidArgumentError("--out is missing: name a folder for data and pictures");
 }
 
-std::vector<std::string> Command(const Options& options) {
-  std::vector<std::string> command =
-      PythonCommand({"-m", "ballpiston.figures", options.figure, "--out", options.out});
-  if (options.effort != "default") command.push_back("--" + options.effort);
-  if (options.edit) command.push_back("--edit");
+std::vector<std::string> ArgumentsOf(const Options& options) {
+  std::vector<std::string> arguments = {options.figure, "--out", options.out};
+  if (options.effort != "default") arguments.push_back("--" + options.effort);
+  if (options.edit) arguments.push_back("--edit");
   for (const auto& [name, value] : options.variables) {
-    command.insert(command.end(), {"--" + absl::StrReplaceAll(name, {{"_", "-"}}), value});
+    arguments.insert(arguments.end(), {"--" + absl::StrReplaceAll(name, {{"_", "-"}}), value});
   }
-  return command;
-}
-
-// The flags of `figure` that choose the server and the progress, for the package, which starts this
-// program if it needs a private server. The user's config file has no effect on it.
-void SetEnvironment(const Options& options) {
-  const auto set = [](const std::string& name, const std::string& value) {
-    setenv(name.c_str(), value.c_str(), 1);
-  };
-  set("BALLPISTON_PROGRAM", ProgramBeside("ballpiston"));
-  set("BALLPISTON_SERVER_PROGRAM", UsualServerProgram());
-  for (const auto& [name, value] : options.inherited) set(name, value);
-  set("BALLPISTON_CONFIG", "/dev/null");
-  if (StyleOf(options) == ProgressStyle::kNone) set("BALLPISTON_PROGRESS", "none");
-}
-
-// An interruption ends the package and every program that it has started; its jobs continue.
-absl::StatusOr<int> RunPackage(const Options& options, const Terminal& terminal) {
-  const absl::StatusOr<pid_t> pid =
-      StartChild({.command = Command(options), .folder = "", .output = "", .own_group = true});
-  if (!pid.ok()) {
-    return absl::FailedPreconditionError(
-        absl::StrCat("figures need Python, but ", pid.status().message(),
-                     ": install the packages python3-ballpiston and python3-matplotlib"));
-  }
-  const Interrupts::Scope scope(terminal.interrupts, [&] {
-    kill(-*pid, SIGINT);
-    WaitForChild(*pid).IgnoreError();
-    terminal.err << (isatty(STDERR_FILENO) ? "\r\x1b[K" : "")
-                 << "The figure is not finished: run the same command again.\n";
-  });
-  return WaitForChild(*pid);
+  return arguments;
 }
 
 }  // namespace
@@ -132,11 +95,8 @@ std::vector<std::string> FigureNames() {
 VerbResult Figure(const Options& options, Terminal& terminal) {
   if (options.list) return ListFigures(terminal);
   if (absl::Status bad = CheckName(options); !bad.ok()) return bad;
-  SetEnvironment(options);
-  terminal.out.flush();
-  const absl::StatusOr<int> status = RunPackage(options, terminal);
-  if (!status.ok()) return status.status();
-  return ExitCodeOf(*status);
+  return RunPythonProgram("ballpiston.figures", ArgumentsOf(options), kFigurePackages, options,
+                          terminal);
 }
 
 }  // namespace ballpiston::client

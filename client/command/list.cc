@@ -11,6 +11,7 @@ VerbResult ListJobs(const Options& options, Terminal& terminal) {
     return absl::InvalidArgumentError(absl::StrCat("--limit: ", options.limit, " is less than 1"));
   }
   v1::ListEnsembleJobsRequest request = options.which_jobs;
+  request.mutable_labels()->insert(options.labels.begin(), options.labels.end());
   request.set_view(JobViewFor(options.format));
   return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
     const auto jobs =

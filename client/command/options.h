@@ -24,6 +24,7 @@ enum class Completion { kBash, kZsh, kFish, kWords };
 
 struct Options {
   v1::EnsembleSpec spec;
+  std::string points_file;  // the table of points
   std::string spec_file;
   std::string again;  // the job whose specification is used again
   v1::EvaluatePairsRequest closed_forms;
@@ -32,7 +33,12 @@ struct Options {
   CreateOptions create;
   bool resume = false;
   std::vector<std::string> jobs;  // names, ensembleJobs/ID
-  bool undo = false;              // of pin
+  // Of a new job; else those that select jobs, or the changes of a job's labels.
+  std::map<std::string, std::string> labels;
+  std::string command;  // to run when a watched job ends
+  bool any = false;     // a watch of several jobs ends with the first of them
+  bool yes = false;     // act on all selected jobs without a question
+  bool undo = false;    // of pin
   v1::ListEnsembleJobsRequest which_jobs;
   int64_t limit = Client::kAllJobs;
   std::optional<int64_t> point;  // absent: all points

@@ -1,12 +1,18 @@
 #include "client/command/python.h"
 
+#include <signal.h>
+#include <unistd.h>
+
 #include <cstdlib>
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "client/command/config_file.h"
+#include "client/command/follow_job.h"
+#include "client/command/interrupts.h"
 #include "client/library/child_process.h"
+#include "client/library/server_process.h"
 
 namespace ballpiston::client {
 namespace {
@@ -24,6 +30,18 @@ std::string PythonPath() {
   return absl::StrCat(PythonPackage().parent_path().string(), others.empty() ? "" : ":", others);
 }
 
+// The package starts this program if it needs a private server.
+void SetEnvironment(const Options& options) {
+  const auto set = [](const std::string& name, const std::string& value) {
+    setenv(name.c_str(), value.c_str(), 1);
+  };
+  set("BALLPISTON_PROGRAM", ProgramBeside("ballpiston"));
+  set("BALLPISTON_SERVER_PROGRAM", UsualServerProgram());
+  for (const auto& [name, value] : options.inherited) set(name, value);
+  set("BALLPISTON_CONFIG", "/dev/null");
+  if (StyleOf(options) == ProgressStyle::kNone) set("BALLPISTON_PROGRESS", "none");
+}
+
 }  // namespace
 
 fs::path PythonPackage() {
@@ -37,6 +55,30 @@ std::vector<std::string> PythonCommand(const std::vector<std::string>& arguments
   std::vector<std::string> command = {Interpreter()};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return command;
+}
+
+VerbResult RunPythonProgram(const std::string& module, const std::vector<std::string>& arguments,
+                            const std::string& packages, const Options& options,
+                            Terminal& terminal) {
+  SetEnvironment(options);
+  terminal.out.flush();
+  std::vector<std::string> words = {"-m", module};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  const absl::StatusOr<pid_t> pid =
+      StartChild({.command = PythonCommand(words), .own_group = true});
+  if (!pid.ok()) {
+    return absl::FailedPreconditionError(absl::StrCat(
+        "this needs Python, but ", pid.status().message(), ": install the packages ", packages));
+  }
+  const Interrupts::Scope scope(terminal.interrupts, [&] {
+    kill(-*pid, SIGINT);
+    WaitForChild(*pid).IgnoreError();
+    terminal.err << (isatty(STDERR_FILENO) ? "\r\x1b[K" : "")
+                 << "This is not finished: run the same command again.\n";
+  });
+  const absl::StatusOr<int> status = WaitForChild(*pid);
+  if (!status.ok()) return status.status();
+  return ExitCodeOf(*status);
 }
 
 absl::Status CheckPython(const std::string& purpose, const std::vector<std::string>& modules,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "client/command/verbs.h"
 
 namespace ballpiston::client {
 
@@ -18,6 +19,14 @@ std::filesystem::path PythonPackage();
 // message; `packages` are Debian's names.
 absl::Status CheckPython(const std::string& purpose, const std::vector<std::string>& modules,
                          const std::string& packages);
+
+// Runs a program of the package: python3 -m MODULE ARGUMENT... The flags of the options that choose
+// the server and the progress are in its environment, and the user's config file has no effect on
+// it. An interruption ends the program and all that it has started; its jobs continue. `packages`
+// are Debian's names, for the error if there is no Python.
+VerbResult RunPythonProgram(const std::string& module, const std::vector<std::string>& arguments,
+                            const std::string& packages, const Options& options,
+                            Terminal& terminal);
 
 // The command that runs the interpreter with these arguments. Adds the package to PYTHONPATH of
 // this process, which the interpreter inherits.

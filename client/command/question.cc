@@ -6,6 +6,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "client/command/points_file.h"
 #include "client/command/spec_file.h"
 #include "client/command/verb_table.h"
 #include "client/output/spelling.h"
@@ -65,7 +66,12 @@ absl::StatusOr<v1::EnsembleSpec> SpecOf(const Options& options) {
         "), or give --spec FILE or --again JOB"));
   }
   if (absl::Status bad = CheckOneTarget(options.given); !bad.ok()) return bad;
-  return options.spec;
+  v1::EnsembleSpec spec = options.spec;
+  if (options.points_file.empty()) return spec;
+  if (absl::Status bad = ReadPoints(options.points_file, *spec.mutable_grid()); !bad.ok()) {
+    return bad;
+  }
+  return spec;
 }
 
 VerbResult WithQuestion(const Options& options, const Terminal& terminal,

@@ -4,6 +4,7 @@
 #include "absl/time/clock.h"
 #include "client/command/connection.h"
 #include "client/command/hint.h"
+#include "client/command/selection.h"
 #include "client/output/json.h"
 #include "client/output/new_file.h"
 #include "client/web/one_file_page.h"
@@ -76,17 +77,18 @@ VerbResult ReportJobs(const Options& options, Terminal& terminal) {
   if (absl::Status bad = CheckNewFile("--out", options.out); !bad.ok()) return bad;
   const auto files = ReadPageFiles();
   if (!files.ok()) return files.status();
-  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-    const auto data = Data(connection, options.jobs);
-    if (!data.ok()) return data.status();
-    const auto page = OneFilePage(*files, "report.html", *data);
-    if (!page.ok()) return page.status();
-    NewFile file("--out", options.out);
-    file.out() << *page;
-    if (absl::Status kept = file.Keep(); !kept.ok()) return kept;
-    terminal.out << options.out << '\n';
-    return ExitCode::kDone;
-  });
+  return WithJobs(options, terminal, {},
+                  [&](const auto& connection, const auto& names) -> VerbResult {
+                    const auto data = Data(connection, names);
+                    if (!data.ok()) return data.status();
+                    const auto page = OneFilePage(*files, "report.html", *data);
+                    if (!page.ok()) return page.status();
+                    NewFile file("--out", options.out);
+                    file.out() << *page;
+                    if (absl::Status kept = file.Keep(); !kept.ok()) return kept;
+                    terminal.out << options.out << '\n';
+                    return ExitCode::kDone;
+                  });
 }
 
 }  // namespace ballpiston::client

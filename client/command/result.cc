@@ -1,7 +1,10 @@
 // ballpiston result: prints or saves a job's finished points, or one of them.
+#include <algorithm>
+
 #include "absl/strings/str_cat.h"
 #include "client/command/connection.h"
 #include "client/command/print_result.h"
+#include "client/command/selection.h"
 
 namespace ballpiston::client {
 namespace {
@@ -13,15 +16,28 @@ absl::Status Check(const Options& options) {
   return CheckSave(options);
 }
 
+absl::Status TooManyForAFile(size_t jobs) {
+  return absl::InvalidArgumentError(absl::StrCat("--save writes the result of one job, not of ",
+                                                 jobs, "; ballpiston export writes those of many"));
+}
+
 }  // namespace
 
 VerbResult Result(const Options& options, Terminal& terminal) {
   if (absl::Status bad = Check(options); !bad.ok()) return bad;
-  return WithServer(options, terminal, [&](const Connection& connection) {
-    const std::string& name = options.jobs.front();
-    if (options.point) return PrintPoint(connection, name, *options.point, options, terminal);
-    return PrintResult(connection, name, options, terminal);
-  });
+  return WithJobs(
+      options, terminal, {}, [&](const auto& connection, const auto& names) -> VerbResult {
+        if (names.size() > 1 && !options.save.empty()) return TooManyForAFile(names.size());
+        ExitCode worst = ExitCode::kDone;
+        for (const std::string& name : names) {
+          const VerbResult result =
+              options.point ? PrintPoint(connection, name, *options.point, options, terminal)
+                            : PrintResult(connection, name, options, terminal);
+          if (!result.ok()) return result;
+          worst = std::max(worst, *result);
+        }
+        return worst;
+      });
 }
 
 }  // namespace ballpiston::client

@@ -16,8 +16,10 @@ VerbResult Run(const Options& options, Terminal& terminal) {
         const auto made = CreateJob(connection, spec, options, terminal);
         if (!made.ok()) return made.status();
         const bool is_silent = options.quiet || options.progress == ProgressStyle::kNone;
-        if (made->answered_from_store() && !is_silent) {
-          ProgressReporter(StyleOf(options), terminal.err, made->name()).Note(FromStoreText(*made));
+        const std::string reused =
+            made->answered_from_store() ? FromStoreText(*made) : ContinuesText(*made);
+        if (!reused.empty() && !is_silent) {
+          ProgressReporter(StyleOf(options), terminal.err, made->name()).Note(reused);
         }
         const auto end = FollowJob(connection, made->name(), StyleOf(options), terminal);
         if (!end.ok()) return end.status();

@@ -2,29 +2,16 @@
 
 #include <google/protobuf/util/json_util.h>
 
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iostream>
-#include <sstream>
-
 #include "absl/status/status.h"
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
+#include "client/command/text_file.h"
 #include "client/library/quoted.h"
 
 namespace ballpiston::client {
 namespace {
-
-// Throws no exception if a read fails; stream iterators could.
-std::string ReadAll(std::istream& in) {
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 absl::Status BadFile(absl::string_view name, absl::string_view reason) {
   return absl::InvalidArgumentError(absl::StrCat("--spec ", name, ": ", reason));
@@ -48,11 +35,9 @@ void DropSignsOfZeros(v1::EnsembleSpec& spec) {
 }  // namespace
 
 absl::StatusOr<v1::EnsembleSpec> ReadSpecFile(const std::string& path) {
-  if (path == "-") return ParseSpec("standard input", ReadAll(std::cin));
-  std::ifstream in(path);
-  if (!in) return BadFile(path, std::strerror(errno));
-  if (std::filesystem::is_directory(path)) return BadFile(path, "is a folder");
-  return ParseSpec(path, ReadAll(in));
+  const absl::StatusOr<TextFile> file = ReadTextFile("--spec", path);
+  if (!file.ok()) return file.status();
+  return ParseSpec(file->name, file->text);
 }
 
 absl::StatusOr<v1::EnsembleSpec> ParseSpec(absl::string_view name, const std::string& json) {

@@ -13,6 +13,7 @@ VerbResult Submit(const Options& options, Terminal& terminal) {
         const auto job = CreateJob(connection, spec, options, terminal);
         if (!job.ok()) return job.status();
         if (job->answered_from_store()) terminal.Note(FromStoreText(*job));
+        if (!job->continues().empty()) terminal.Note(ContinuesText(*job));
         terminal.out << job->name() << '\n';
         return ExitCode::kDone;
       });

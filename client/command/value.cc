@@ -1,6 +1,7 @@
 #include "client/command/value.h"
 
 #include <algorithm>
+#include <map>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/numbers.h"
@@ -62,6 +63,16 @@ absl::StatusOr<std::string> ParseRequestId(const std::string& text) {
   return NotPermitted(text, "is not a UUID like 123e4567-e89b-12d3-a456-426614174000");
 }
 
+absl::StatusOr<std::map<std::string, std::string>> ParseLabels(const std::string& text) {
+  std::map<std::string, std::string> labels;
+  for (const absl::string_view label : absl::StrSplit(text, ',')) {
+    const size_t equals = label.find('=');
+    if (equals == label.npos) return NotPermitted(label, "is not a label: write KEY=VALUE");
+    labels[std::string(label.substr(0, equals))] = std::string(label.substr(equals + 1));
+  }
+  return labels;
+}
+
 absl::StatusOr<absl::Time> ParseDate(const std::string& text) {
   absl::Time time;
   std::string error;
@@ -115,6 +126,18 @@ Value RequestId() {
     options.create.request_id = std::move(id);
   };
   return Parsed("UUID", ParseRequestId, store);
+}
+
+// Adds to the labels that were given before.
+Value Labels(std::string name) {
+  using Map = std::map<std::string, std::string>;
+  const Store<Map> store = [](Options& options, Map labels) {
+    labels.merge(options.labels);
+    options.labels = std::move(labels);
+  };
+  Value value = Parsed(std::move(name), ParseLabels, store);
+  value.is_repeatable = true;
+  return value;
 }
 
 Value Variable(std::string name, std::string variable) {

@@ -27,6 +27,7 @@ struct Value {
   std::function<absl::Status(const std::string& text, Options& options)> read;
   Offer offer = Offer::kNothing;
   std::vector<std::string> choices = {};
+  bool is_repeatable = false;  // a flag that is given twice is read as one with a comma between
 
   bool IsSwitch() const { return name.empty(); }
 };
@@ -53,6 +54,7 @@ Value Words(std::string name, Store<std::string> store);  // each word
 Value Date(Store<absl::Time> store);
 Value Job(Store<std::string> store);                     // ensembleJobs/ID
 Value RequestId();                                       // a UUID
+Value Labels(std::string name);                          // KEY=VALUE, separated by commas
 Value Variable(std::string name, std::string variable);  // of a figure
 Value Passed(std::string name, std::string flag);        // to ballpistond, with its flag
 

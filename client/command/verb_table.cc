@@ -177,7 +177,11 @@ const FlagGroup kGrid = {
       "is 1)"},
      {"--hot", Grid(&v1::Grid::mutable_hot), "temperatures of the hot reservoir, 1e-120 to 1e120"},
      {"--cold", Grid(&v1::Grid::mutable_cold),
-      "temperatures of the cold reservoir, 1e-120 to 1e120"}}};
+      "temperatures of the cold reservoir, 1e-120 to 1e120"},
+     {"--points", File(To(&Options::points_file)),
+      "CSV file with a table of points; its header names the parameters, in any order; the flags "
+      "of "
+      "other parameters multiply the table; - is standard input"}}};
 
 const std::vector<std::string> kTargets = {"samples", "collisions", "tolerance", "budget"};
 
@@ -235,7 +239,9 @@ const FlagGroup kJob = {
      {"--request-id", RequestId(),
       "idempotency key: a retry with the same UUID returns the original job"},
      {"--priority", Count([](Options& o, int64_t n) { o.create.priority = Clamped(n); }),
-      "-100 to 100, by default 0; the server runs your jobs with a higher priority first"}},
+      "-100 to 100, by default 0; the server runs your jobs with a higher priority first"},
+     {"--label", Labels("KEY=VALUE"),
+      "a label of the job, by which it can be found again; may be repeated"}},
     /*is_everyday=*/false};
 
 const FlagGroup kFormat = {"Output",
@@ -321,12 +327,31 @@ const FlagGroup kListFilter = {
         o.which_jobs.mutable_since()->set_seconds(absl::ToUnixSeconds(time));
       }),
       "only jobs submitted at this time (UTC) or later"},
+     {"--label", Labels("KEY=VALUE"), "only jobs with this label; may be repeated"},
      {"--limit", Count(To(&Options::limit)), "largest number of jobs to list, by default all"}}};
+
+const FlagGroup kSelection = {
+    "Which jobs",
+    {{"--label", Labels("KEY=VALUE"),
+      "instead of names: all jobs with this label; may be repeated, for jobs with all of them"}}};
+
+const FlagGroup kConfirmed = {
+    kSelection.title,
+    {kSelection.flags[0],
+     {"--yes", Switch(To(&Options::yes)), "act on all of them; by default the program asks"}}};
 
 const FlagGroup kPoint = {
     "Which points",
     {{"--point", Count([](Options& o, int64_t index) { o.point = index; }),
       "only the point with this position in the grid, from 0; by default all finished points"}}};
+
+const FlagGroup kWatch = {
+    "Watch",
+    {{"--exec", Text("COMMAND", To(&Options::command)),
+      "run this command of the shell when a job ends; its environment has BALLPISTON_JOB and "
+      "BALLPISTON_JOB_STATE"},
+     {"--any", Switch(To(&Options::any)),
+      "return when one of the jobs has ended; the others go on"}}};
 
 const FlagGroup kPin = {
     "Pin", {{"--undo", Switch(To(&Options::undo)), "unpin: the results may expire again"}}};
@@ -373,6 +398,14 @@ const FlagGroup kVariables = {
 
 const FlagGroup kReport = {
     "Report", {{"--out", File(To(&Options::out)), "the HTML file to write; required"}}};
+
+const FlagGroup kExport = {
+    "Export",
+    {{"--out", File(To(&Options::out)), "the file to write, .csv, .npz or .parquet; required"}}};
+
+const FlagGroup kSampleFile = {
+    "File",
+    {{"--out", File(To(&Options::out)), "the file to write, .csv, .npz or .parquet; required"}}};
 
 const FlagGroup kWeb = {
     "Page",
@@ -427,6 +460,7 @@ const Argument kExperiment = {
     "the experiment to run", Argument::kOptional};
 const Argument kOneJob = {Job(kJobs), "ensembleJobs/ID, or the ID alone"};
 const Argument kSomeJobs = {Job(kJobs), "ensembleJobs/ID, or the ID alone", Argument::kSeveral};
+const Argument kJobsOrLabels = {Job(kJobs), "ensembleJobs/ID, or the ID alone", Argument::kAny};
 
 // ---- verbs ----
 
@@ -462,16 +496,19 @@ std::vector<Verb> JobVerbs() {
        &Submit},
       {"watch",
        "show a job's progress until it ends",
-       "Ctrl-C ends the client, but not the job.",
-       {kOneJob},
-       With({&kProgress, &kServer}, {}),
-       {"watch ensembleJobs/ID", "watch ID --progress json 2>progress.jsonl"},
+       "Ctrl-C ends the client, but not the jobs. Of several jobs it prints each name and state "
+       "when "
+       "the job ends.",
+       {kJobsOrLabels},
+       With({&kWatch, &kSelection, &kProgress, &kServer}, {}),
+       {"watch ensembleJobs/ID", "watch ID --progress json 2>progress.jsonl",
+        "watch --label run=7 --any --exec ./next.sh"},
        &Watch},
       {"result",
        "print a job's result: the points that it has finished so far",
        "",
-       {kOneJob},
-       With({&kPoint, &kResultFormat, &kSave, &kServer}, {}),
+       {kJobsOrLabels},
+       With({&kSelection, &kPoint, &kResultFormat, &kSave, &kServer}, {}),
        {"result ensembleJobs/ID", "result ID --save result.json",
         "result ID --point 17 --format json >point.json"},
        &Result},
@@ -486,9 +523,9 @@ std::vector<Verb> JobVerbs() {
       {"cancel",
        "stop jobs; the points that they finished stay",
        "Prints each job's name and state.",
-       {kSomeJobs},
-       With({&kServer}, {}),
-       {"cancel ensembleJobs/ID", "cancel ID1 ID2"},
+       {kJobsOrLabels},
+       With({&kConfirmed, &kServer}, {}),
+       {"cancel ensembleJobs/ID", "cancel ID1 ID2", "cancel --label run=7 --yes"},
        &Cancel},
       {"pin",
        "keep the results of jobs: they do not expire",
@@ -497,12 +534,25 @@ std::vector<Verb> JobVerbs() {
        With({&kPin, &kServer}, {}),
        {"pin ensembleJobs/ID", "pin --undo ID1 ID2"},
        &Pin},
+      {"label",
+       "set and remove labels of a job",
+       "KEY=VALUE sets a label, KEY= removes it. Prints the job's name and its labels. list, "
+       "result, "
+       "report, cancel and delete find jobs by --label.",
+       {kOneJob,
+        {Labels("KEY=VALUE"),
+         "a key of a-z, 0-9 and _ . -, and a value of letters, digits and _ . "
+         ": / @ + -, each of at most 63 characters",
+         Argument::kSeveral}},
+       With({&kServer}, {}),
+       {"label ensembleJobs/ID run=7 who=pilot", "label ID who="},
+       &Label},
       {"delete",
        "delete ended jobs and their results",
        "Prints the name of each job that it deleted.",
-       {kSomeJobs},
-       With({&kServer}, {}),
-       {"delete ensembleJobs/ID", "delete ID1 ID2"},
+       {kJobsOrLabels},
+       With({&kConfirmed, &kServer}, {}),
+       {"delete ensembleJobs/ID", "delete ID1 ID2", "delete --label who=pilot"},
        &Delete}};
 }
 
@@ -614,6 +664,20 @@ std::vector<Verb> AllVerbs() {
          "trace --rho 0.5296 --delta 0.1 --cells 4x3 --events 1000 | "
          "jq -r 'select(.event == \"ball_piston\") | [.time, .ball, .ball_energy] | @tsv'"},
         &Trace}});
+  append(
+      {{"sample",
+        "write the collisions of a point's samples to a file",
+        "A row for each ball-piston collision: sample, times, place, velocities before and after, "
+        "energies. They are the collisions that `run` with the same flags averages. One point, "
+        "of an experiment with a pair. .npz and .parquet need Python with the package "
+        "ballpiston. Prints the path of the file. proto/ballpiston/v1/trace.proto describes the "
+        "columns.",
+        {kExperiment},
+        With(kQuestion, {&kSampleFile, &kServer}),
+        {"sample first-hit --rho 0.5296 --delta 0.2 --epsilon 0.125 --exponent 1 --samples 1e5 "
+         "--out hits.npz",
+         "sample equilibrium --rho 0.5296 --delta 0.2 --collisions 1e4 --out collisions.csv"},
+        &Sample}});
   append({{"figure",
            "draw a figure: data, SVG and PNG",
            "After an interruption, the same command resumes the jobs of the figure. If the --out "
@@ -625,12 +689,21 @@ std::vector<Verb> AllVerbs() {
            With({&kFigure, &kVariables, &kProgress, &kServer}, {}),
            {"figure mean-free-time --out figures", "figure mean-free-time --edit --out figures"},
            &Figure},
+          {"export",
+           "write the estimates of many jobs to one file",
+           "A row for each estimate of each point, with the job, its labels, seed, engine version "
+           "and parameters. Without JOB and --label: of all your jobs. Needs Python with the "
+           "package ballpiston, and for .parquet pandas and pyarrow. Prints the path of the file.",
+           {{Job(kJobs), "ensembleJobs/ID, or the ID alone", Argument::kAny}},
+           With({&kExport, &kSelection, &kServer}, {}),
+           {"export --label run=7 --out run7.csv", "export ID1 ID2 --out two.parquet"},
+           &Export},
           {"report",
            "write one HTML file with the pictures, tables and specifications of jobs",
            "The file needs neither a server nor a network. It contains the first 12 points of each "
            "job in full, and the estimates of up to 10,000 points. Prints the path of the file.",
-           {kSomeJobs},
-           With({&kReport, &kServer}, {}),
+           {kJobsOrLabels},
+           With({&kReport, &kSelection, &kServer}, {}),
            {"report ensembleJobs/ID --out report.html", "report ID1 ID2 --out sweep.html"},
            &ReportJobs},
           {"web",

@@ -26,6 +26,19 @@ void AwaitConnection(grpc::ChannelInterface& channel, const std::stop_token& sto
   }
 }
 
+// Until the stream ends or `on_message` returns false; then the call is cancelled, and the status
+// is OK.
+template <typename Message>
+absl::Status ReadStream(grpc::ClientContext& context, grpc::ClientReaderInterface<Message>& reader,
+                        const std::function<bool(const Message&)>& on_message) {
+  Message message;
+  bool is_wanted = true;
+  while (is_wanted && reader.Read(&message)) is_wanted = on_message(message);
+  if (!is_wanted) context.TryCancel();
+  const absl::Status end = FromGrpc(reader.Finish());
+  return is_wanted ? end : absl::OkStatus();
+}
+
 }  // namespace
 
 Client::Client(const std::shared_ptr<grpc::ChannelInterface>& channel, absl::Duration timeout)
@@ -43,6 +56,7 @@ absl::StatusOr<v1::EnsembleJob> Client::Create(const v1::EnsembleSpec& spec,
   request.set_request_id(options.request_id.empty() ? NewRequestId() : options.request_id);
   request.set_fresh(options.fresh);
   request.set_priority(options.priority);
+  request.mutable_labels()->insert(options.labels.begin(), options.labels.end());
   return CallUnary(*ensembles_, &Stub::CreateEnsembleJob, request, timeout_);
 }
 
@@ -86,6 +100,15 @@ absl::StatusOr<v1::EnsembleJob> Client::Pin(const std::string& name, bool pinned
   request.mutable_job()->set_name(name);
   request.mutable_job()->set_pinned(pinned);
   request.mutable_update_mask()->add_paths("pinned");
+  return CallUnary(*ensembles_, &Stub::UpdateEnsembleJob, request, timeout_);
+}
+
+absl::StatusOr<v1::EnsembleJob> Client::SetLabels(
+    const std::string& name, const std::map<std::string, std::string>& labels) const {
+  v1::UpdateEnsembleJobRequest request;
+  request.mutable_job()->set_name(name);
+  request.mutable_job()->mutable_labels()->insert(labels.begin(), labels.end());
+  request.mutable_update_mask()->add_paths("labels");
   return CallUnary(*ensembles_, &Stub::UpdateEnsembleJob, request, timeout_);
 }
 
@@ -134,13 +157,17 @@ absl::StatusOr<v1::EvaluatePairsResponse> Client::EvaluatePairs(
 absl::Status Client::Trace(const v1::TraceOrbitRequest& request,
                            const TraceCallback& on_message) const {
   grpc::ClientContext context;
-  const auto reader = trace_->TraceOrbit(&context, request);
-  v1::TraceOrbitResponse message;
-  bool is_wanted = true;
-  while (is_wanted && reader->Read(&message)) is_wanted = on_message(message);
-  if (!is_wanted) context.TryCancel();
-  const absl::Status end = FromGrpc(reader->Finish());
-  return is_wanted ? end : absl::OkStatus();
+  return ReadStream<v1::TraceOrbitResponse>(context, *trace_->TraceOrbit(&context, request),
+                                            on_message);
+}
+
+absl::Status Client::Sample(const v1::EnsembleSpec& spec,
+                            const CollisionsCallback& on_message) const {
+  grpc::ClientContext context;
+  v1::SampleCollisionsRequest request;
+  *request.mutable_spec() = spec;
+  return ReadStream<v1::SampleCollisionsResponse>(
+      context, *trace_->SampleCollisions(&context, request), on_message);
 }
 
 absl::StatusOr<v1::ServerStatus> Client::Status() const {

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <stop_token>
 #include <string>
@@ -40,6 +41,7 @@ struct CreateOptions {
   std::string request_id = {};
   bool fresh = false;    // computes the job even if the server has the answer in its store
   int32_t priority = 0;  // -100 to 100; of one user's jobs the job with the highest runs first
+  std::map<std::string, std::string> labels = {};  // added to those of the job
 };
 
 class Client {
@@ -68,6 +70,9 @@ class Client {
   // The results of a pinned job do not expire. With `pinned` false they may expire again.
   //   FAILED_PRECONDITION  RESULTS_EXPIRED
   absl::StatusOr<v1::EnsembleJob> Pin(const std::string& name, bool pinned) const;
+  // Replaces the job's labels.
+  absl::StatusOr<v1::EnsembleJob> SetLabels(const std::string& name,
+                                            const std::map<std::string, std::string>& labels) const;
   // Do not retry: if the first attempt deleted the job, the second reports that it does not exist.
   absl::Status Delete(const std::string& name) const;
 
@@ -94,6 +99,10 @@ class Client {
   // trace ends or `on_message` returns false. Returns OK in both cases.
   using TraceCallback = std::function<bool(const v1::TraceOrbitResponse&)>;
   absl::Status Trace(const v1::TraceOrbitRequest& request, const TraceCallback& on_message) const;
+
+  // The same with the collisions of a point's samples: the specification has one point.
+  using CollisionsCallback = std::function<bool(const v1::SampleCollisionsResponse&)>;
+  absl::Status Sample(const v1::EnsembleSpec& spec, const CollisionsCallback& on_message) const;
 
   // The first call takes nearly a second, because the server measures its speed.
   absl::StatusOr<v1::ServerStatus> Status() const;

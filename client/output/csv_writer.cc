@@ -10,7 +10,7 @@
 
 #include "absl/strings/str_join.h"
 #include "client/output/csv_row.h"
-#include "client/output/estimate_rows.h"
+#include "client/output/estimate_fields.h"
 #include "client/output/number_text.h"
 #include "client/output/parameter_text.h"
 #include "client/output/spelling.h"
@@ -68,7 +68,7 @@ class EstimateCsvWriter : public CsvWriter {
 
   std::vector<Cells> Rows(const v1::PointResult& point) const override {
     std::vector<Cells> rows;
-    for (const v1::Estimate& estimate : EstimatesOf(point)) {
+    for (const v1::Estimate& estimate : point.estimates()) {
       Cells row = {estimate.name(), ExactText(estimate.value())};
       for (const Field& field : {kError, kExact, kZScore, kModelError, kNoiseFloor, kLimit}) {
         row.push_back(Optional(field.Of(estimate)));

@@ -1,10 +1,12 @@
 #include "client/output/job_list.h"
 
 #include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "absl/time/time.h"
 #include "client/output/csv_row.h"
 #include "client/output/json.h"
@@ -54,6 +56,7 @@ struct Differences {
   bool principals = false;
   bool priorities = false;
   bool results = false;
+  bool labels = false;
 };
 
 Differences DifferencesOf(const std::vector<v1::EnsembleJob>& jobs, absl::Time now) {
@@ -62,20 +65,22 @@ Differences DifferencesOf(const std::vector<v1::EnsembleJob>& jobs, absl::Time n
     differ.principals |= job.principal() != jobs.front().principal();
     differ.priorities |= job.priority() != 0;
     differ.results |= !ResultsText(job, now).empty();
+    differ.labels |= !job.labels().empty();
   }
   return differ;
 }
 
 void PrintCsv(const std::vector<v1::EnsembleJob>& jobs, std::ostream& out) {
   out << "name,experiment,state,points_done,points,samples,create_time,end_time,principal,"
-         "priority,pinned,expire_time,results_expired,stored_bytes\n";
+         "priority,pinned,expire_time,results_expired,stored_bytes,labels\n";
   for (const v1::EnsembleJob& job : jobs) {
     std::vector<std::string> cells = CellsOf(job);
     cells.push_back(job.principal());  // it may hold any character
     const auto truth = [](bool holds) { return holds ? "true" : "false"; };
-    cells.insert(cells.end(), {absl::StrCat(job.priority()), truth(job.pinned()),
-                               TimeText(job.has_expire_time(), job.expire_time()),
-                               truth(job.results_expired()), ExactText(job.stored_bytes())});
+    cells.insert(cells.end(),
+                 {absl::StrCat(job.priority()), truth(job.pinned()),
+                  TimeText(job.has_expire_time(), job.expire_time()), truth(job.results_expired()),
+                  ExactText(job.stored_bytes()), LabelsText(job)});
     out << CsvRow(cells);
   }
 }
@@ -89,18 +94,25 @@ void PrintTable(const std::vector<v1::EnsembleJob>& jobs, absl::Time now, std::o
   if (differ.principals) columns.push_back({"principal", kLeft});
   if (differ.priorities) columns.push_back({"priority"});
   if (differ.results) columns.push_back({"results", kLeft});
+  if (differ.labels) columns.push_back({"labels", kLeft});
   TextTable table(std::move(columns));
   for (const v1::EnsembleJob& job : jobs) {
     std::vector<std::string> cells = CellsOf(job);
     if (differ.principals) cells.push_back(job.principal());
     if (differ.priorities) cells.push_back(absl::StrCat(job.priority()));
     if (differ.results) cells.push_back(ResultsText(job, now));
+    if (differ.labels) cells.push_back(LabelsText(job));
     table.AddRow(std::move(cells));
   }
   table.Print(out);
 }
 
 }  // namespace
+
+std::string LabelsText(const v1::EnsembleJob& job) {
+  const std::map<std::string, std::string> labels(job.labels().begin(), job.labels().end());
+  return absl::StrJoin(labels, " ", absl::PairFormatter("="));
+}
 
 void PrintJobs(const std::vector<v1::EnsembleJob>& jobs, absl::Time now, Format format,
                std::ostream& out) {

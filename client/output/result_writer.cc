@@ -11,7 +11,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "client/output/csv_writer.h"
-#include "client/output/estimate_rows.h"
+#include "client/output/estimate_fields.h"
 #include "client/output/json.h"
 #include "client/output/model_reasons.h"
 #include "client/output/number_text.h"
@@ -89,7 +89,7 @@ class TableWriter : public ResultWriter {
     points_.push_back({point.parameters(),
                        Spelling(point.model()),
                        ExactText(point.samples()),
-                       EstimatesOf(point),
+                       {point.estimates().begin(), point.estimates().end()},
                        {point.remarks().begin(), point.remarks().end()}});
   }
 

@@ -12,13 +12,11 @@
 //   csv-curves  the same first columns up to samples, then name,time,position,value,
 //           standard_error,limit; one row for each point of a curve
 //
-// In tables and CSV a Kullback-Leibler divergence has two separate rows, kl_divergence and
-// kl_noise_floor. Absent values are empty. A table has the column model only if the points have
-// different models, and model_error, noise_floor and limit only if an estimate has the value. Each
-// remark is a line below the estimates of its point, and the reasons for the models are below the
-// table (model_reasons.h). CSV has no remarks. Tables and csv have neither histograms nor curves.
-// The same points give the same bytes: the names of the points, which have the job's id, are left
-// out.
+// Absent values are empty. A table has the column model only if the points have different models,
+// and model_error, noise_floor and limit only if an estimate has the value. Each remark is a line
+// below the estimates of its point, and the reasons for the models are below the table
+// (model_reasons.h). CSV has no remarks. Tables and csv have neither histograms nor curves. The
+// same points give the same bytes: the names of the points, which have the job's id, are left out.
 #pragma once
 
 #include <memory>

@@ -76,6 +76,7 @@ class BlockOrbits : public EngineRun, private OrbitSource {
               BlockQueue& queue)
       : time_limit_(time_limit),
         queue_(queue),
+        observer_(queue.observer()),
         blocks_(queue, [make](const Block& block) { return WatchedOrbits(make(block)); }),
         run_(StartOrbits(engine, geometry, *this)) {}
 
@@ -93,6 +94,9 @@ class BlockOrbits : public EngineRun, private OrbitSource {
 
   void Collide(std::span<OrbitCollision> collisions) override {
     for (auto& [orbit, collision, after] : collisions) {
+      if (observer_ != nullptr) {
+        observer_->Observe(blocks_.BlockOf(orbit), blocks_.IndexOf(orbit), collision);
+      }
       after = blocks_.WorkOf(orbit).Collide(blocks_.IndexOf(orbit), collision);
       if (after == AfterCollision::kEnd) blocks_.End(orbit);
     }
@@ -118,6 +122,7 @@ class BlockOrbits : public EngineRun, private OrbitSource {
 
   double time_limit_;
   BlockQueue& queue_;
+  CollisionObserver* const observer_;
   OpenBlocks<WatchedOrbits<Orbits>> blocks_;
   std::unique_ptr<EngineRun> run_;
 };

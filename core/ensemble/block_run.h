@@ -16,6 +16,14 @@
 
 namespace ballpiston {
 
+// Sees every collision of the orbits of a pair, in the order of time within an orbit.
+class CollisionObserver {
+ public:
+  virtual ~CollisionObserver() = default;
+  // `orbit`: its index within the block.
+  virtual void Observe(const Block& block, uint64_t orbit, const Collision& collision) = 0;
+};
+
 // The thread that advances the run calls these functions.
 class BlockQueue {
  public:
@@ -30,6 +38,8 @@ class BlockQueue {
   virtual OrbitDevice* device() const { return nullptr; }
   // Stop is requested when the run's results are no longer needed.
   virtual std::stop_token stop() const = 0;
+  // Null: nobody wants to see the collisions. The run asks once.
+  virtual CollisionObserver* observer() { return nullptr; }
 };
 
 // Computes one block after the other with

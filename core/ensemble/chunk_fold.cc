@@ -46,10 +46,15 @@ std::vector<ChunkResult> ChunkFold::Add(const Block& block, BlockResult result) 
   }
   early_.Add(place, std::move(result));
   while (const std::optional<BlockResult> next = early_.Take(NextPlace())) {
+    const bool is_last = partial_.blocks + 1 == plan_.BlocksIn(partial_.chunk);
+    PartialChunk whole_blocks;
+    if (is_last && partial_.chunk >= plan_.FirstCutChunk()) whole_blocks = partial_;
     partial_.merged.Merge(*next);
+    ++partial_.blocks;
     --handed_out_;
-    if (++partial_.blocks < plan_.BlocksIn(partial_.chunk)) continue;
-    complete.push_back({partial_.chunk, std::exchange(partial_.merged, {})});
+    if (!is_last) continue;
+    complete.push_back(
+        {partial_.chunk, std::exchange(partial_.merged, {}), std::move(whole_blocks)});
     partial_.blocks = 0;
     ++partial_.chunk;
   }

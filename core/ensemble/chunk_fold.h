@@ -31,6 +31,8 @@ struct PartialChunk {
 struct ChunkResult {
   uint64_t chunk = 0;
   BlockResult result = {};
+  // Of a chunk that the plan's end cuts short: its blocks but the last one. Empty if not known.
+  PartialChunk whole_blocks = {};
 };
 
 class ChunkFold {

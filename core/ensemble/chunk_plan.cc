@@ -125,6 +125,12 @@ uint64_t ChunkPlan::ChunksFor(double samples) const {
   return std::max<uint64_t>(StagesWith(static_cast<uint64_t>(steps)), 1) * ChunksOfAStage();
 }
 
+uint64_t ChunkPlan::FirstCutChunk() const {
+  const uint64_t stages = StagesWith(steps_);
+  const bool is_cut = stages > 0 && StepsBefore(stages) > steps_;
+  return (is_cut ? stages - 1 : stages) * ChunksOfAStage();
+}
+
 uint64_t ChunkPlan::SamplesBefore(uint64_t chunk) const {
   return std::min(FirstSample(chunk), samples_);
 }

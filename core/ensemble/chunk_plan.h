@@ -88,6 +88,10 @@ class ChunkPlan {
   uint64_t ChunksFor(double samples) const;
   uint64_t SamplesBefore(uint64_t chunk) const;  // chunk <= chunks()
 
+  // The first chunk that has fewer samples than it would have in a plan with more samples; chunks()
+  // if there is none.
+  uint64_t FirstCutChunk() const;
+
  private:
   // A stage is a chunk, or the chunks of all groups. A step is a sample, or a stretch of each
   // trajectory.

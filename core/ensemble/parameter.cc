@@ -1,5 +1,7 @@
 #include "core/ensemble/parameter.h"
 
+#include <algorithm>
+
 #include "absl/strings/str_cat.h"
 #include "core/arithmetic/number_text.h"
 #include "core/gas/gas_shape.h"
@@ -57,10 +59,25 @@ Grid::Grid(std::initializer_list<std::pair<const Parameter&, std::vector<double>
   for (const auto& [parameter, values] : lists) (*this)[parameter] = values;
 }
 
+const Parameter* Grid::FirstColumn() const {
+  const auto found = std::ranges::find_if(
+      kParameters, [this](const Parameter* parameter) { return IsColumn(*parameter); });
+  return found == kParameters.end() ? nullptr : *found;
+}
+
+std::span<const double> Grid::Beside(const Parameter& parameter, size_t index,
+                                     const Parameter& other) const {
+  const std::span<const double> values = (*this)[other];
+  const bool are_of_a_row = IsColumn(parameter) && IsColumn(other);
+  return are_of_a_row ? values.subspan(index, 1) : values;
+}
+
 double Grid::PointCount() const {
-  double points = 1;
-  for (const std::vector<double>& list : lists_) {
-    if (!list.empty()) points *= static_cast<double>(list.size());
+  const Parameter* const column = FirstColumn();
+  double points = column == nullptr ? 1 : static_cast<double>((*this)[*column].size());
+  for (const Parameter* parameter : kParameters) {
+    const std::vector<double>& list = (*this)[*parameter];
+    if (!IsColumn(*parameter) && !list.empty()) points *= static_cast<double>(list.size());
   }
   return points;
 }
@@ -68,9 +85,12 @@ double Grid::PointCount() const {
 PointParameters Grid::PointAt(size_t index) const {
   PointParameters point;
   for (size_t i = kParameters.size(); i-- > 0;) {
-    if (lists_[i].empty()) continue;
+    if (is_column_[i] || lists_[i].empty()) continue;
     point.Set(*kParameters[i], lists_[i][index % lists_[i].size()]);
     index /= lists_[i].size();
+  }
+  for (const Parameter* parameter : kParameters) {
+    if (IsColumn(*parameter)) point.Set(*parameter, (*this)[*parameter][index]);
   }
   return point;
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -66,6 +67,9 @@ class PointParameters {
 };
 
 // The product of lists. An empty list means that the parameter is absent at every point.
+//
+// Some lists can be the columns of a table: they have equally many values, and the values with the
+// same index belong together. The grid is then the product of the table's rows and the other lists.
 class Grid {
  public:
   Grid() = default;
@@ -76,11 +80,22 @@ class Grid {
   }
   std::vector<double>& operator[](const Parameter& parameter) { return lists_[parameter.index]; }
 
-  double PointCount() const;                    // exact below 2^53
-  PointParameters PointAt(size_t index) const;  // index < PointCount(); last list varies fastest
+  void MakeColumn(const Parameter& parameter) { is_column_[parameter.index] = true; }
+  bool IsColumn(const Parameter& parameter) const { return is_column_[parameter.index]; }
+  // The first column; null without a table. The number of its values is that of the rows.
+  const Parameter* FirstColumn() const;
+  // The values of `other` that occur together with value `index` of `parameter`.
+  std::span<const double> Beside(const Parameter& parameter, size_t index,
+                                 const Parameter& other) const;
+
+  // All columns must be equally long in these two functions.
+  double PointCount() const;  // exact below 2^53
+  // index < PointCount(). The last list varies fastest, the table slowest.
+  PointParameters PointAt(size_t index) const;
 
  private:
   std::array<std::vector<double>, kParameters.size()> lists_ = {};
+  std::array<bool, kParameters.size()> is_column_ = {};
 };
 
 }  // namespace ballpiston

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/ensemble/experiment_kind.h"
@@ -115,6 +116,13 @@ PointSummary PointExperiment::Summarize(const BlockResult& merged) const {
       .samples = merged.samples, .estimates = EstimatesOf(table_, merged), .health = merged.health};
   AddDetails(merged, summary);
   return summary;
+}
+
+double RelativeError(const Estimate& estimate) {
+  if (!estimate.standard_error || estimate.value == 0) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return *estimate.standard_error / std::fabs(estimate.value);
 }
 
 bool MeetsTolerance(const Estimate& estimate, double tolerance) {

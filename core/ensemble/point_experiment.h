@@ -42,6 +42,9 @@ struct Answer {
   std::optional<double> ModelErrorOf(std::string_view name, bool is_first) const;
 };
 
+// The relative standard error; infinite if there is none.
+double RelativeError(const Estimate& estimate);
+
 // Whether the estimate's relative standard error, if it has one, is at most `tolerance`.
 bool MeetsTolerance(const Estimate& estimate, double tolerance);
 
@@ -90,6 +93,8 @@ class PointExperiment {
 
   // Whether `merged`, the complete chunks, reaches the tolerance; false if there is no tolerance.
   bool ReachesTolerance(const BlockResult& merged) const;
+
+  const std::optional<double>& tolerance() const { return tolerance_; }
 
   // The orbits and replicas of a run use these two.
   Engine engine() const { return engine_; }

@@ -1,5 +1,6 @@
 #include "core/ensemble/point_fold.h"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -29,6 +30,7 @@ bool PointFold::CanStart(uint64_t chunk) const {
 uint64_t PointFold::Add(ChunkResult chunk) {
   if (!Needs(chunk.chunk)) return 0;
   early_.Add(chunk.chunk, std::move(chunk.result));
+  if (chunk.whole_blocks.blocks > 0) whole_blocks_ = std::move(chunk.whole_blocks);
   uint64_t samples = 0;
   while (const std::optional<BlockResult> next = early_.Take(state_.chunk)) {
     samples += MergeNext(*next);
@@ -36,7 +38,27 @@ uint64_t PointFold::Add(ChunkResult chunk) {
   return samples;
 }
 
+void PointFold::JudgeLast() {
+  if (state_.chunk == 0 || !experiment_.plan().IsJudgedAfter(state_.chunk - 1)) return;
+  const double error = RelativeError(experiment_.FirstEstimate(state_.complete));
+  state_.least_error = std::min(state_.least_error, error);
+}
+
+void PointFold::KeepContinuation() {
+  before_the_cut_ = state_;
+  if (whole_blocks_.blocks <= state_.blocks) return;
+  before_the_cut_->blocks = whole_blocks_.blocks;
+  before_the_cut_->partial = std::move(whole_blocks_.merged);
+}
+
+std::optional<FoldState> PointFold::Continuation() const {
+  const bool is_cut = state_.chunk > experiment_.plan().FirstCutChunk();
+  return is_cut ? before_the_cut_ : state_;
+}
+
 uint64_t PointFold::MergeNext(const BlockResult& chunk) {
+  JudgeLast();
+  if (state_.chunk == experiment_.plan().FirstCutChunk()) KeepContinuation();
   const uint64_t known = std::exchange(state_.partial, {}).samples;
   state_.complete.Merge(chunk);
   state_.chunk_digests.push_back(DigestOf(chunk));

@@ -3,13 +3,19 @@
 // The fold merges chunks into the point in order. A chunk that arrives early waits until all chunks
 // before it are merged. So the merged result has the same bits for every order of arrival. The fold
 // judges a tolerance when it merges a chunk. When the target is reached, the point is finished, and
-// the fold drops every later chunk. Properties, each with a test of its name:
+// the fold drops every later chunk.
+//
+// A finished point can be continued: a fold of the same question with a larger target resumes from
+// its continuation, and gives the same bits as if it had computed everything. Properties, each with
+// a test of its name:
 //   1. ResultIsIndependentOfArrivalOrder.  2. ResumedFoldGivesTheSameBits.
+//   3. AContinuedPointHasTheBitsOfOneLongRun.
 // Not thread-safe.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <stop_token>
 #include <utility>
@@ -28,6 +34,10 @@ struct FoldState {
   BlockResult complete = {};                 // the merged result of all complete chunks
   BlockResult partial = {};                  // the merged blocks of that chunk
   std::vector<uint64_t> chunk_digests = {};  // of the complete chunks, in order (DigestOf)
+  // The smallest relative error of the first estimate at the ends of chunks before the last
+  // complete one at which a tolerance is judged. A fold with this tolerance or a larger one would
+  // have ended there.
+  double least_error = std::numeric_limits<double>::infinity();
 };
 
 class PointFold {
@@ -64,10 +74,16 @@ class PointFold {
   bool HasBlocks() const { return state_.chunk > 0 || state_.blocks > 0; }
   BlockResult Merged() const;       // the result of all merged chunks and blocks
   uint64_t PlannedSamples() const;  // of the merged blocks, including escaped orbits
+
+  // Of a finished point: the state without what the end of its plan cut short. Empty if it is not
+  // known.
+  std::optional<FoldState> Continuation() const;
   size_t waiting() const { return early_.size(); }
 
  private:
   uint64_t MergeNext(const BlockResult& chunk);
+  void JudgeLast();
+  void KeepContinuation();
   bool ReachesTolerance() const;  // after the last complete chunk
 
   const PointExperiment& experiment_;
@@ -75,6 +91,8 @@ class PointFold {
   FoldState state_;
   bool finished_;
   InOrder<uint64_t, BlockResult> early_;  // by chunk
+  PartialChunk whole_blocks_;             // of the chunk that is cut
+  std::optional<FoldState> before_the_cut_;
 };
 
 // A whole point computed in one place: all its chunks, and their fold.

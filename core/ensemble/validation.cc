@@ -41,13 +41,39 @@ bool HasTooManyPoints(const Grid& grid) {
   return grid.PointCount() > static_cast<double>(kMaxPoints);
 }
 
+size_t RowsOf(const Grid& grid) { return grid[*grid.FirstColumn()].size(); }
+
+bool IsWrongColumn(const Grid& grid, const Parameter& parameter) {
+  const size_t size = grid[parameter].size();
+  return grid.IsColumn(parameter) && (size == 0 || size != RowsOf(grid));
+}
+
+bool HasWrongColumn(const Grid& grid) {
+  return std::ranges::any_of(
+      kParameters, [&grid](const Parameter* parameter) { return IsWrongColumn(grid, *parameter); });
+}
+
+// Whether PointAt may be called, for a number of points that is permitted.
+bool HasPoints(const Grid& grid) { return !HasWrongColumn(grid) && !HasTooManyPoints(grid); }
+
 void CheckPointCount(const Grid& grid, Found& found) {
   if (!HasTooManyPoints(grid)) return;
   found.push_back({"grid", absl::StrFormat("has %.0f points; permitted: 1 to %d", grid.PointCount(),
                                            kMaxPoints)});
 }
 
+void CheckTable(const Grid& grid, Found& found) {
+  for (const Parameter* parameter : kParameters) {
+    if (!IsWrongColumn(grid, *parameter)) continue;
+    found.push_back(
+        {ListOf(*parameter),
+         absl::StrCat("has ", grid[*parameter].size(), " values, but the table has ",
+                      std::max<size_t>(RowsOf(grid), 1), " rows; permitted: a value a row")});
+  }
+}
+
 void CheckLists(const EnsembleSpec& spec, Found& found) {
+  CheckTable(spec.grid, found);
   for (const Parameter* parameter : kParameters) {
     CheckUse(*spec.experiment, *parameter, spec.grid[*parameter].size(), found);
   }
@@ -64,7 +90,7 @@ void CheckEachValue(const Parameter& parameter, const std::vector<double>& value
 }
 
 void CheckValues(const EnsembleSpec& spec, Found& found) {
-  if (HasTooManyPoints(spec.grid)) return;  // already reported
+  if (!HasPoints(spec.grid)) return;  // already reported
   for (const Parameter* parameter : kParameters) {
     CheckEachValue(*parameter, spec.grid[*parameter], found);
   }
@@ -98,7 +124,7 @@ void CheckTolerance(const EnsembleSpec& spec, Found& found) {
   const bool is_known = spec.experiment->FindAim(spec.target.estimate) != nullptr;
   const bool can_be_missed =
       is_known && spec.experiment->check_tolerance != nullptr && !IsAnsweredByClosedForm(spec);
-  if (can_be_missed && !HasTooManyPoints(spec.grid)) spec.experiment->check_tolerance(spec, found);
+  if (can_be_missed && HasPoints(spec.grid)) spec.experiment->check_tolerance(spec, found);
 }
 
 std::string NamesOfAims(const ExperimentKind& experiment, Model model) {

@@ -259,7 +259,7 @@ class FirstHitExperiment : public ReturnExperiment {
       summary.histograms.push_back({"alpha", sigma, histogram});
     }
     summary.curves = {SurvivalCurve(merged.histograms.back())};
-    if (merged.samples > 0) summary.kl_divergence = DistanceFromEquilibrium(merged);
+    if (merged.samples > 0) AddDistanceFromEquilibrium(merged, summary);
   }
 
  private:
@@ -274,6 +274,15 @@ class FirstHitExperiment : public ReturnExperiment {
     return [](const BlockResult& merged) {
       return Estimate{.value = MeanOf(merged.moments[kSigma], 0).value, .standard_error = 0};
     };
+  }
+
+  void AddDistanceFromEquilibrium(const BlockResult& merged, PointSummary& summary) const {
+    const KlDivergence distance = DistanceFromEquilibrium(merged);
+    summary.kl_divergence = distance;
+    summary.estimates.push_back({.name = "kl_divergence",
+                                 .value = distance.value,
+                                 .standard_error = distance.standard_error,
+                                 .noise_floor = distance.noise_floor});
   }
 
   KlDivergence DistanceFromEquilibrium(const BlockResult& merged) const {

@@ -22,6 +22,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -410,12 +411,18 @@ class GasConduction : public SteadyGas {
   ProfilePlaces places_;
 };
 
+// Passes by NaN.
+double LargestOf(std::span<const double> values) {
+  double largest = 0;
+  for (const double value : values) largest = std::fmax(largest, value);
+  return largest;
+}
+
 void CheckConductionGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
   CheckGasGrid(spec, found);
-  const std::vector<double>&hot = spec.grid[kHot], &cold = spec.grid[kCold];
-  double largest_cold = 0;
-  for (const double value : cold) largest_cold = std::fmax(largest_cold, value);  // passes by NaN
+  const std::vector<double>& hot = spec.grid[kHot];
   for (size_t i = 0; i < hot.size(); ++i) {
+    const double largest_cold = LargestOf(spec.grid.Beside(kHot, i, kCold));
     if (!(hot[i] < largest_cold)) continue;
     found.push_back({absl::StrFormat("grid.hot[%d]", i),
                      absl::StrFormat("hot is %s, below cold = %s; permitted: hot >= cold",
@@ -424,15 +431,15 @@ void CheckConductionGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& 
 }
 
 void CheckConductionTolerance(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
-  for (const double hot : spec.grid[kHot]) {
-    for (const double cold : spec.grid[kCold]) {
-      if (hot != cold) continue;
-      found.push_back({"target.tolerance",
-                       absl::StrFormat("is relative, but the heat current is 0 if hot = cold = %s; "
-                                       "permitted in this case: samples, collisions or a budget",
-                                       NumberText(hot))});
-      return;
-    }
+  for (size_t i = 0; i < spec.grid[kHot].size(); ++i) {
+    const double hot = spec.grid[kHot][i];
+    const std::span<const double> cold = spec.grid.Beside(kHot, i, kCold);
+    if (std::ranges::find(cold, hot) == cold.end()) continue;
+    found.push_back({"target.tolerance",
+                     absl::StrFormat("is relative, but the heat current is 0 if hot = cold = %s; "
+                                     "permitted in this case: samples, collisions or a budget",
+                                     NumberText(hot))});
+    return;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "absl/strings/str_cat.h"
@@ -51,9 +52,9 @@ struct RangeOfRho {
   bool IsEmpty() const { return largest == kMinRho; }
 };
 
-RangeOfRho RangeIn(const Grid& grid) {
+RangeOfRho RangeOf(std::span<const double> radii) {
   RangeOfRho range;
-  for (const double rho : grid[kRho]) {
+  for (const double rho : radii) {
     if (!ValidateRho(rho).ok()) continue;
     range.largest = std::fmax(range.largest, rho);
     range.smallest = std::fmin(range.smallest, rho);
@@ -158,11 +159,10 @@ void CheckBilliardDomain(const EnsembleSpec& spec, std::vector<FieldViolation>& 
 // The largest valid rho has the smallest bound, and the smallest rho has the longest times, so it
 // is enough to check each delta with these two.
 void CheckDeltas(const Grid& grid, DeltaValidation validate, std::vector<FieldViolation>& found) {
-  const RangeOfRho range = RangeIn(grid);
-  if (range.IsEmpty()) return;
   const std::vector<double>& deltas = grid[kDelta];
   for (size_t i = 0; i < deltas.size(); ++i) {
-    if (!ValidateSomeDelta(deltas[i]).ok()) continue;  // already reported
+    const RangeOfRho range = RangeOf(grid.Beside(kDelta, i, kRho));
+    if (range.IsEmpty() || !ValidateSomeDelta(deltas[i]).ok()) continue;  // already reported
     if (const auto wrong = WrongDelta(range.smallest, range.largest, deltas[i], validate)) {
       found.push_back({absl::StrFormat("grid.delta[%d]", i), *wrong});
     }
@@ -171,7 +171,7 @@ void CheckDeltas(const Grid& grid, DeltaValidation validate, std::vector<FieldVi
 
 void CheckPairGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
   CheckDeltas(spec.grid, ValidatePairDelta, found);
-  if (!RangeIn(spec.grid).IsEmpty()) CheckBilliardDomain(spec, found);
+  if (!RangeOf(spec.grid[kRho]).IsEmpty()) CheckBilliardDomain(spec, found);
 }
 
 SampleWork WorkOfACollision(const PairGeometry& geometry) {

@@ -23,8 +23,8 @@ PairGeometry GeometryOf(const PointParameters& point);
 
 using DeltaValidation = absl::Status (*)(double rho, double delta);
 
-// Finds deltas that are not permitted at the largest rho, and deltas so small that the mean free
-// time of the smallest rho is so large that its powers leave the range of double.
+// Finds deltas that are not permitted at the largest rho beside them, and deltas so small that the
+// mean free time of the smallest rho is so large that its powers leave the range of double.
 void CheckDeltas(const Grid& grid, DeltaValidation validate, std::vector<FieldViolation>& found);
 
 // Whether a billiard engine of the spec's precision is sound at the point

@@ -3,8 +3,10 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/book/job_name.h"
 #include "server/convert/errors.h"
 #include "server/sha256.h"
+#include "server/store/labels.h"
 #include "server/store/sweeper.h"
 
 namespace ballpiston::server {
@@ -63,6 +65,45 @@ std::optional<EarlierJob> FindEarlier(Database& database, const Acceptance& acce
   return answer ? std::optional(EarlierJob{*std::move(answer), true}) : std::nullopt;
 }
 
+void AddLabels(Database& database, const Labels& more, JobRecord& record) {
+  Labels labels = LabelsOf(record.labels);
+  for (const auto& [key, value] : more) labels.insert_or_assign(key, value);
+  if (labels.size() > kMostLabels) {
+    database.Fail(InvalidRequest(
+        {{"labels", absl::StrCat("would give ", JobName(record.id), " ", labels.size(),
+                                 "; permitted: at most ", kMostLabels)}}));
+  }
+  record.labels = LabelsText(labels);
+  if (!more.empty()) UpdateJob(database, record);
+}
+
+// The number of samples or collisions; none with a tolerance.
+std::optional<int64_t> CountOf(const v1::Target& target) {
+  if (target.has_tolerance()) return std::nullopt;
+  if (target.has_samples()) return target.samples();
+  return target.has_collisions() ? target.collisions() : kDefaultSamples;
+}
+
+// Whether a job with the first target may continue one with the second.
+bool AsksForMore(const v1::Target& target, const v1::Target& earlier) {
+  const std::optional<int64_t> count = CountOf(target), before = CountOf(earlier);
+  if (count && before) return *count > *before;
+  return count || before || target.tolerance() < earlier.tolerance();
+}
+
+// Sets which job the new one continues, if there is one.
+void Continue(Database& database, JobRecord& record) {
+  const auto target_of = [&database](const JobRecord& job) {
+    return database.ValueOf(SpecFromBytes({job.spec.rest})).target();
+  };
+  for (const JobRecord& earlier : FindFamily(database, record.principal, record.family)) {
+    if (!AsksForMore(target_of(record), target_of(earlier))) continue;
+    record.continues = earlier.id;
+    record.continued_samples = earlier.numbers.samples;
+    return;
+  }
+}
+
 }  // namespace
 
 absl::Status CheckSize(const CheckedSpec& checked, const Limits& limits) {
@@ -81,20 +122,23 @@ absl::Status CheckSize(const CheckedSpec& checked, const Limits& limits) {
                        "max-samples-per-job", limits.max_samples_per_job);
 }
 
-std::optional<EarlierJob> Judge(Database& database, const Limits& limits,
-                                const Acceptance& acceptance) {
+std::optional<EarlierJob> Judge(Database& database, const Limits& limits, Acceptance& acceptance) {
   std::optional<EarlierJob> earlier = FindEarlier(database, acceptance);
   if (earlier) return earlier;
   database.Fail(acceptance.fits);
   CheckQueue(database, limits, acceptance.record);
   CheckStoreSize(database, limits);
+  if (!acceptance.fresh) Continue(database, acceptance.record);
   return std::nullopt;
 }
 
 // An answer from the store stores no request: a retry finds the same answer.
 std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
   std::optional<EarlierJob> earlier = Judge(database, limits, acceptance);
-  if (earlier) return earlier;
+  if (earlier) {
+    AddLabels(database, LabelsOf(acceptance.record.labels), earlier->record);
+    return earlier;
+  }
   JobRecord& record = acceptance.record;
   InsertJob(database, record);
   if (!acceptance.request_id.empty()) {
@@ -107,6 +151,14 @@ std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Accep
 std::string QuestionOf(const v1::EnsembleSpec& spec, const std::string& engine_version) {
   if (spec.target().has_budget()) return std::string();
   return Sha256(absl::StrCat(engine_version, "\n", QuestionBytes(spec)));
+}
+
+std::string FamilyOf(const v1::EnsembleSpec& spec, const std::string& engine_version) {
+  if (spec.target().has_budget()) return std::string();
+  v1::EnsembleSpec family = spec;
+  family.mutable_target()->clear_kind();
+  if (family.target().ByteSizeLong() == 0) family.clear_target();
+  return Sha256(absl::StrCat(engine_version, "\nfamily\n", QuestionBytes(family)));
 }
 
 std::string PayloadOf(const v1::CreateEnsembleJobRequest& request) {

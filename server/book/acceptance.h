@@ -5,6 +5,13 @@
 // set. Any other request must keep the limits: on a job's size, on active jobs and their points,
 // and on the size of the store. All this is decided inside one transaction of the store. The store
 // runs its transactions one after the other, so many equal requests at the same time make one job.
+//
+// A new job continues an earlier one that SUCCEEDED in answering the same question with a smaller
+// number of samples or a larger tolerance: each point begins where that job's point ended, if the
+// same model answers it. So the job computes only the difference, and its result has the bytes of
+// one long run. If that job is deleted meanwhile, the points begin anew.
+//
+// The request's labels are added to those of the job that answers it, new or old.
 #pragma once
 
 #include <optional>
@@ -34,9 +41,9 @@ struct EarlierJob {
   bool answered_from_store = false;  // it answers the question; else the request is its own again
 };
 
-// Empty: a new job is to be made. INVALID_ARGUMENT or RESOURCE_EXHAUSTED: the request is refused.
-std::optional<EarlierJob> Judge(Database& database, const Limits& limits,
-                                const Acceptance& acceptance);
+// Empty: a new job is to be made, and its record says which job it continues. INVALID_ARGUMENT or
+// RESOURCE_EXHAUSTED: the request is refused.
+std::optional<EarlierJob> Judge(Database& database, const Limits& limits, Acceptance& acceptance);
 // The same; then stores the new job and its request.
 std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance);
 
@@ -46,6 +53,9 @@ absl::Status CheckSize(const CheckedSpec& checked, const Limits& limits);
 // A hash of everything that determines the answer: the whole specification with its seed, and the
 // engine's version. Empty if the job has a budget, because the answer then depends on the machine.
 std::string QuestionOf(const v1::EnsembleSpec& spec, const std::string& engine_version);
+
+// The same without the target's number of samples, collisions or tolerance. Empty with a budget.
+std::string FamilyOf(const v1::EnsembleSpec& spec, const std::string& engine_version);
 
 // A hash of the whole request except its id.
 std::string PayloadOf(const v1::CreateEnsembleJobRequest& request);

@@ -48,9 +48,11 @@ Acceptance JobBook::NewAcceptance(const Principal& caller,
   JobRecord& record = acceptance.record;
   record.principal = caller.name;
   record.priority = request.priority();
+  record.labels = LabelsText({request.labels().begin(), request.labels().end()});
   record.spec = SpecBytes(request.spec());
   record.engine_version = EngineVersion();
   record.question = QuestionOf(request.spec(), record.engine_version);
+  record.family = FamilyOf(request.spec(), record.engine_version);
   record.numbers.bytes = static_cast<int64_t>(record.spec.size());
   record.create_time = WallNow();
   record.points = static_cast<int64_t>(PointCount(checked.spec));
@@ -64,7 +66,7 @@ Acceptance JobBook::NewAcceptance(const Principal& caller,
 absl::StatusOr<v1::EnsembleJob> JobBook::Preview(const Principal& caller,
                                                  const v1::CreateEnsembleJobRequest& request,
                                                  const CheckedSpec& checked) {
-  const Acceptance acceptance = NewAcceptance(caller, request, checked);
+  Acceptance acceptance = NewAcceptance(caller, request, checked);
   const auto earlier =
       store_.Read([&](Database& database) { return Judge(database, limits_, acceptance); });
   if (!earlier.ok()) return StoreFailure(earlier.status());
@@ -97,6 +99,7 @@ void JobBook::StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& check
   RunRequest run;
   run.spec = checked.spec;
   run.finished.assign(static_cast<size_t>(job->row().points), false);
+  run.has_checkpoints = !job->row().continues.empty();
   active_.StartRun(job, std::move(run));
 }
 
@@ -157,6 +160,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Update(const Principal& caller, const s
     if (change.pinned && record.expired_time) database.Fail(ResultsExpired(JobName(id)));
     record.pinned = change.pinned.value_or(record.pinned);
     record.priority = change.priority.value_or(record.priority);
+    if (change.labels) record.labels = LabelsText(*change.labels);
     UpdateJob(database, record);
   });
   if (!changed.ok()) return StoreFailure(changed);

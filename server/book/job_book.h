@@ -29,6 +29,7 @@
 #include "server/door/principal.h"
 #include "server/limits.h"
 #include "server/store/job_table.h"
+#include "server/store/labels.h"
 #include "server/store/store.h"
 
 namespace ballpiston::server {
@@ -64,6 +65,7 @@ struct ResultsPage {
 struct JobChange {
   std::optional<bool> pinned = {};
   std::optional<int32_t> priority = {};  // of an active job; has no effect on one that has ended
+  std::optional<Labels> labels = {};     // in place of all earlier ones
 };
 
 class JobBook {

@@ -11,6 +11,7 @@
 #include "server/convert/deterministic_bytes.h"
 #include "server/convert/errors.h"
 #include "server/convert/fold_record.h"
+#include "server/convert/point_end.h"
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
 #include "server/host.h"
@@ -109,6 +110,26 @@ void RecordEnd(Store& store, const std::shared_ptr<Job>& job, const JobJournal::
   });
 }
 
+// Empty if the job that is continued is gone, or does not have the point.
+std::optional<EarlierPoint> ReadEarlier(Database& database, const std::string& job, int64_t point) {
+  const std::optional<JobRecord> record =
+      job.empty() ? std::nullopt : FindJob(database, job, Grid::kLeftOut);
+  if (!record || record->expired_time) return std::nullopt;
+  const std::optional<PointEnd> end = ReadEnd(database, record->sequence, point);
+  if (!end) return std::nullopt;
+  return EarlierPoint{static_cast<Model>(end->model), database.ValueOf(EndFromBytes(end->state))};
+}
+
+// Empty if no other job can continue the point.
+PointEnd PointEndOf(const JobRecord& job, const PointExperiment& experiment,
+                    const PointFold& fold) {
+  if (job.family.empty() || experiment.plan().samples() == 0) return {};
+  const std::optional<FoldState> state = fold.Continuation();
+  const bool has_samples = state && (state->chunk > 0 || state->blocks > 0);
+  if (!has_samples) return {};
+  return {static_cast<int32_t>(experiment.answer().model), EndBytes(*state)};
+}
+
 }  // namespace
 
 JobJournal::JobJournal(std::shared_ptr<Job> job, Store& store, bool resumed, OnEnded on_ended)
@@ -140,6 +161,7 @@ absl::StatusOr<StoredPoint> JobJournal::ReadPoint(size_t point) {
     for (const std::string& chunk : ReadChunks(database, sequence, index)) {
       stored.chunks.push_back(database.ValueOf(ChunkFromBytes(chunk)));
     }
+    if (!stored.state) stored.earlier = ReadEarlier(database, job_->row().continues, index);
     return stored;
   });
 }
@@ -169,18 +191,20 @@ void JobJournal::ChunkIsEarly(size_t point, const ChunkResult& chunk) {
 void JobJournal::Worked(double seconds) { job_->Add({.work = seconds}); }
 
 void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
-                               const BlockResult& merged,
-                               const std::vector<uint64_t>& chunk_digests) {
+                               const PointFold& fold) {
   if (experiment.plan().samples() == 0) job_->Add({.points_computed = 1});  // computed without one
+  const BlockResult merged = fold.Merged();
   const PointSummary summary = experiment.Summarize(merged);
   PointRow row = {static_cast<int64_t>(point), static_cast<double>(summary.samples),
                   DeterministicBytes(ResultOf(point, experiment, summary)),
-                  DetailsBytes(DetailsOf(summary, chunk_digests))};
+                  DetailsBytes(DetailsOf(summary, fold.state().chunk_digests))};
+  row.end = PointEndOf(job_->row(), experiment, fold);
   row.has_checkpoint = resumed_ || experiment.plan().samples() > 0;
   auto told = std::make_shared<const std::string>(row.result);
   // A result does not count the samples of a warm-up.
   job_->Add({.samples = row.samples - static_cast<double>(merged.samples),
-             .bytes = static_cast<int64_t>(row.result.size() + row.details.size())});
+             .bytes = static_cast<int64_t>(row.result.size() + row.details.size() +
+                                           row.end.state.size())});
   Failpoint("point.before_record");
   store_.RecordResult(job_->row().sequence, std::move(row),
                       [job = job_, told = std::move(told)](int64_t number) {

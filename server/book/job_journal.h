@@ -20,7 +20,8 @@ class JobJournal : public RunJournal {
   // The store's thread calls it with the job's row.
   using OnEnded = std::function<void(const JobRecord& ended)>;
 
-  // `resumed`: an earlier process may have stored checkpoints. `on_ended` is called when the end of
+  // `resumed`: an earlier process may have stored checkpoints. Points of a job that continues
+  // another one begin where its points ended (acceptance.h). `on_ended` is called when the end of
   // the job is on disk, unless the job had ended before. The store must outlive this.
   JobJournal(std::shared_ptr<Job> job, Store& store, bool resumed, OnEnded on_ended);
 
@@ -30,8 +31,8 @@ class JobJournal : public RunJournal {
   void Checkpoint(size_t point, const FoldState& state) override;
   void ChunkIsEarly(size_t point, const ChunkResult& chunk) override;
   void Worked(double seconds) override;
-  void PointFinished(size_t point, const PointExperiment& experiment, const BlockResult& merged,
-                     const std::vector<uint64_t>& chunk_digests) override;
+  void PointFinished(size_t point, const PointExperiment& experiment,
+                     const PointFold& fold) override;
   void Ended(const absl::Status& outcome) override;
   void AwaitRoom() override;
 

@@ -11,7 +11,7 @@ namespace {
 // the constant.
 size_t MostBytesOf(const JobRecord& record) {
   return 512 + record.principal.size() + record.engine_version.size() + record.spec.size() +
-         record.error.size();
+         record.labels.size() + record.error.size();
 }
 
 // Collects the jobs of one page, newest first, until one of the query's bounds is reached.
@@ -66,6 +66,7 @@ bool JobFilter::MatchesState(JobState state) const {
 
 bool JobFilter::Matches(const JobRecord& record) const {
   if (!MatchesState(record.state) || record.create_time < since) return false;
+  if (!labels.empty() && !HasLabels(LabelsOf(record.labels), labels)) return false;
   if (experiments.empty()) return true;
   const absl::StatusOr<v1::EnsembleSpec> spec = SpecFromBytes(record.spec);
   return spec.ok() && experiments.contains(spec->experiment());

@@ -12,6 +12,7 @@
 #include "ballpiston/v1/spec.pb.h"
 #include "server/store/job_record.h"
 #include "server/store/job_table.h"
+#include "server/store/labels.h"
 #include "server/store/sqlite.h"
 
 namespace ballpiston::server {
@@ -26,6 +27,7 @@ struct JobFilter {
   std::set<JobState> states = {};                           // empty: any
   std::set<v1::EnsembleSpec::Experiment> experiments = {};  // empty: any
   absl::Time since = absl::InfinitePast();                  // the job was created then or later
+  Labels labels = {};                                       // the job has all of these
 
   bool MatchesState(JobState state) const;
   // Whether the job matches all parts. A specification that cannot be read has no experiment.

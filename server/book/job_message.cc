@@ -4,6 +4,7 @@
 
 #include "server/book/job_name.h"
 #include "server/convert/spec.h"
+#include "server/store/labels.h"
 
 namespace ballpiston::server {
 namespace {
@@ -59,6 +60,9 @@ v1::EnsembleJob JobMessage(const JobRecord& record, const JobNumbers& numbers, d
   job.set_principal(record.principal);
   job.set_priority(record.priority);
   job.set_pinned(record.pinned);
+  if (!record.continues.empty()) job.set_continues(JobName(record.continues));
+  job.set_continued_samples(record.continued_samples);
+  for (const auto& [key, value] : LabelsOf(record.labels)) (*job.mutable_labels())[key] = value;
   job.set_results_expired(record.expired_time.has_value());
   job.set_stored_bytes(static_cast<double>(numbers.bytes));
   return job;

@@ -89,6 +89,8 @@ absl::Status ActiveJobs::RestartOlder(std::vector<JobRecord>& unfinished) {
     if (!message.ok() || !CheckSpec(*message).violations.empty()) continue;
     record.engine_version = EngineVersion();
     record.question = QuestionOf(*message, record.engine_version);
+    record.family = FamilyOf(*message, record.engine_version);
+    record.continues.clear();
     ++record.restarts;
     older.push_back(&record);
     LogInfo(
@@ -97,7 +99,7 @@ absl::Status ActiveJobs::RestartOlder(std::vector<JobRecord>& unfinished) {
   if (older.empty()) return absl::OkStatus();
   return store_.CommitDeletion([&](Database& database) {
     for (const JobRecord* record : older) {
-      RestartJob(database, record->sequence, record->engine_version, record->question);
+      RestartJob(database, *record);
     }
   });
 }

@@ -18,9 +18,16 @@
 
 namespace ballpiston::server {
 
+// Where a point of an earlier job ended, which asked the same question with another target.
+struct EarlierPoint {
+  Model model = Model::kAuto;
+  FoldState state;
+};
+
 struct StoredPoint {
-  std::optional<FoldState> state;        // empty: there is no checkpoint
-  std::vector<ChunkResult> chunks = {};  // that arrived early
+  std::optional<FoldState> state;            // empty: there is no checkpoint
+  std::vector<ChunkResult> chunks = {};      // that arrived early
+  std::optional<EarlierPoint> earlier = {};  // if there is no checkpoint
 };
 
 class RunJournal {
@@ -37,7 +44,7 @@ class RunJournal {
   // The run's first turn begins.
   virtual void Began() = 0;
 
-  // What an earlier process stored of an unfinished point.
+  // What an earlier process stored of an unfinished point, or an earlier job of the same point.
   virtual absl::StatusOr<StoredPoint> ReadPoint(size_t point) = 0;
 
   // The scheduler holds its lock during this call and the next three, so they must be quick, must
@@ -55,10 +62,9 @@ class RunJournal {
   // Seconds of processor time that an executor has just spent on the run.
   virtual void Worked(double seconds) = 0;
 
-  // May be slow. The digests are those of the point's complete chunks.
+  // May be slow. `fold` is finished.
   virtual void PointFinished(size_t point, const PointExperiment& experiment,
-                             const BlockResult& merged,
-                             const std::vector<uint64_t>& chunk_digests) = 0;
+                             const PointFold& fold) = 0;
 
   // OK: every point is finished. CANCELLED: the run was stopped. Otherwise the reason of failure.
   virtual void Ended(const absl::Status& outcome) = 0;

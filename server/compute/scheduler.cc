@@ -432,8 +432,7 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
     if (!resumed.ok()) return resumed;
   }
   if (open->fold().finished()) {
-    run.journal().PointFinished(index, *open->experiment(), open->fold().Merged(),
-                                open->fold().state().chunk_digests);
+    run.journal().PointFinished(index, *open->experiment(), open->fold());
     MutexLock lock(mutex_);
     run.NoteProgress(index);
     return absl::OkStatus();
@@ -480,6 +479,9 @@ absl::Status Scheduler::Resume(Run& run, size_t index, OpenPoint& open) {
     absl::Status checked = CheckFoldState(*open.experiment(), *stored->state);
     if (!checked.ok()) return checked;
     open.Resume(*std::move(stored->state));
+  } else if (stored->earlier && stored->earlier->model == open.experiment()->answer().model &&
+             CanContinueFrom(*open.experiment(), stored->earlier->state)) {
+    open.Resume(std::move(stored->earlier->state));
   }
   for (ChunkResult& chunk : stored->chunks) {
     absl::Status checked = CheckChunk(*open.experiment(), chunk);
@@ -607,12 +609,10 @@ void Scheduler::FinishPoint(const RunPointer& run, const Lease& lease) {
   }
   // A finished merge does not change, and only this thread closes the point.
   absl::Status told = Guarded(lease.point, [&] {
-    const BlockResult merged = open->fold().Merged();
     if (lease.pilot) {
-      opener_.KeepPilot(*lease.pilot, PilotOf(*open->experiment(), merged));
+      opener_.KeepPilot(*lease.pilot, PilotOf(*open->experiment(), open->fold().Merged()));
     } else {
-      run->journal().PointFinished(lease.point, *open->experiment(), merged,
-                                   open->fold().state().chunk_digests);
+      run->journal().PointFinished(lease.point, *open->experiment(), open->fold());
     }
     return absl::OkStatus();
   });

@@ -87,6 +87,7 @@ bool IsPossible(const PointExperiment& experiment, const FoldState& state) {
   const ChunkPlan& plan = experiment.plan();
   const uint64_t chunks = plan.chunks();
   if (state.chunk_digests.size() != state.chunk) return false;
+  if (!(state.least_error >= 0)) return false;
   if (state.chunk == 0 && state.blocks == 0)
     return false;  // none is written before the first block
   const bool is_in_the_plan = state.chunk < chunks && state.blocks < plan.BlocksIn(state.chunk);
@@ -139,6 +140,7 @@ std::string FoldRecordBytes(const FoldState& state) {
   FillAccumulators(state.complete, *record.mutable_complete());
   FillAccumulators(state.partial, *record.mutable_partial());
   record.mutable_chunk_digests()->Assign(state.chunk_digests.begin(), state.chunk_digests.end());
+  record.set_least_error(state.least_error);
   return DeterministicBytes(record);
 }
 
@@ -151,7 +153,8 @@ absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes) {
                    .blocks = record.blocks(),
                    .complete = ResultOfAccumulators(record.complete()),
                    .partial = ResultOfAccumulators(record.partial()),
-                   .chunk_digests = {record.chunk_digests().begin(), record.chunk_digests().end()}};
+                   .chunk_digests = {record.chunk_digests().begin(), record.chunk_digests().end()},
+                   .least_error = record.least_error()};
 }
 
 std::string ChunkRecordBytes(const ChunkResult& chunk) {
@@ -170,6 +173,12 @@ absl::StatusOr<ChunkResult> ChunkFromBytes(const std::string& bytes) {
 absl::Status CheckFoldState(const PointExperiment& experiment, const FoldState& state) {
   if (IsPossible(experiment, state)) return absl::OkStatus();
   return absl::DataLossError("a stored checkpoint does not fit its experiment");
+}
+
+bool CanContinueFrom(const PointExperiment& experiment, const FoldState& state) {
+  const std::optional<double>& tolerance = experiment.tolerance();
+  const bool has_ended_before = tolerance && state.least_error <= *tolerance;
+  return !has_ended_before && IsPossible(experiment, state);
 }
 
 absl::Status CheckChunk(const PointExperiment& experiment, const ChunkResult& chunk) {

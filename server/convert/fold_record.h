@@ -33,4 +33,8 @@ absl::Status CheckFoldState(const PointExperiment& experiment, const FoldState& 
 // The same for a whole chunk.
 absl::Status CheckChunk(const PointExperiment& experiment, const ChunkResult& chunk);
 
+// Whether the experiment can continue from the end of an earlier one, which had another target: the
+// state is possible, and no earlier chunk reached the tolerance.
+bool CanContinueFrom(const PointExperiment& experiment, const FoldState& state);
+
 }  // namespace ballpiston::server

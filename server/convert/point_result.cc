@@ -1,16 +1,13 @@
 #include "server/convert/point_result.h"
 
-#define ZLIB_CONST  // zlib does not change its input
-#include <zlib.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "server/convert/compressed.h"
 #include "server/convert/spec.h"
 
 namespace ballpiston::server {
@@ -97,26 +94,6 @@ bool HasNeeded(const PointParameters& point, const ExperimentKind& experiment) {
   });
 }
 
-// Empty unless the bytes are whole, with the right sum at their end. (Protobuf's
-// GzipInputStream does not notice that the end is missing.)
-std::optional<std::string> Uncompressed(const std::string& bytes) {
-  z_stream stream{};
-  stream.next_in = reinterpret_cast<const Bytef*>(bytes.data());
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  int code = inflateInit(&stream);
-  std::string plain;
-  std::array<char, 16384> part;
-  while (code == Z_OK) {
-    stream.next_out = reinterpret_cast<Bytef*>(part.data());
-    stream.avail_out = part.size();
-    code = inflate(&stream, Z_NO_FLUSH);
-    plain.append(part.data(), part.size() - stream.avail_out);
-  }
-  inflateEnd(&stream);
-  if (code != Z_STREAM_END || stream.avail_in > 0) return std::nullopt;
-  return plain;
-}
-
 }  // namespace
 
 v1::PointResult ResultOf(size_t index, const PointExperiment& experiment,
@@ -177,13 +154,7 @@ absl::StatusOr<v1::PointResult> ResultFromBytes(const std::string& bytes) {
 
 std::string DetailsBytes(const v1::PointResult& details) {
   const std::string plain = details.SerializeAsString();
-  if (plain.empty()) return "";
-  uLongf size = compressBound(plain.size());
-  std::string bytes(size, '\0');
-  compress2(reinterpret_cast<Bytef*>(bytes.data()), &size,
-            reinterpret_cast<const Bytef*>(plain.data()), plain.size(), Z_BEST_SPEED);
-  bytes.resize(size);
-  return bytes;
+  return plain.empty() ? "" : Compressed(plain);
 }
 
 absl::StatusOr<v1::PointResult> DetailsFromBytes(const std::string& bytes) {

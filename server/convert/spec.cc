@@ -10,6 +10,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "absl/strings/string_view.h"
 #include "core/engine_version.h"
 #include "core/ensemble/experiment_kind.h"
@@ -24,8 +25,8 @@ namespace {
 
 using Violations = std::vector<FieldViolation>;
 
-// A message can hold millions of unknown fields of a few bytes each; at most this many are listed.
-constexpr int kMaxUnknownFields = 100;
+// A message can hold millions of wrong fields of a few bytes each; at most this many are listed.
+constexpr int kMostListed = 100;
 
 // Adds a violation for an unknown number of an enumeration.
 void AddUnknownNumber(const char* field, int number, Violations& violations) {
@@ -92,6 +93,10 @@ double CellsOf(const std::string& text, int index, Violations& violations) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+void NameOfParameter(std::string* out, const Parameter* parameter) {
+  absl::StrAppend(out, parameter->name);
+}
+
 // A list with more texts than a grid has points is not read: its length is a violation.
 std::vector<double> CodesOf(const v1::Grid& message, Violations& violations) {
   const auto size = static_cast<size_t>(message.cells_size());
@@ -102,6 +107,23 @@ std::vector<double> CodesOf(const v1::Grid& message, Violations& violations) {
     codes[i] = CellsOf(message.cells(index), index, violations);
   }
   return codes;
+}
+
+// Marks the lists that `table` names.
+void MakeColumns(const v1::Grid& message, Grid& grid, Violations& violations) {
+  for (int i = 0; i < message.table_size(); ++i) {
+    const auto found = std::ranges::find(kParameters, message.table(i), &Parameter::name);
+    const bool is_new = found != kParameters.end() && !grid.IsColumn(**found);
+    if (is_new) {
+      grid.MakeColumn(**found);
+      continue;
+    }
+    violations.push_back(
+        {absl::StrCat("spec.grid.table[", i, "]"),
+         absl::StrCat("is ", Shown(message.table(i)), "; permitted: ",
+                      absl::StrJoin(kParameters, ", ", NameOfParameter), ", each once")});
+    if (i == kMostListed) return;
+  }
 }
 
 Grid GridOf(const v1::Grid& message, Violations& violations) {
@@ -116,6 +138,7 @@ Grid GridOf(const v1::Grid& message, Violations& violations) {
     }
   }
   grid[kCells] = CodesOf(message, violations);
+  MakeColumns(message, grid, violations);
   return grid;
 }
 
@@ -136,7 +159,7 @@ Target TargetOf(const v1::Target& message) {
 void AddUnknownFields(const char* path, const google::protobuf::Message& message,
                       Violations& violations) {
   const auto& unknown = message.GetReflection()->GetUnknownFields(message);
-  for (int i = 0; i < std::min(unknown.field_count(), kMaxUnknownFields); ++i) {
+  for (int i = 0; i < std::min(unknown.field_count(), kMostListed); ++i) {
     violations.push_back({path, absl::StrCat("field number ", unknown.field(i).number(),
                                              " is not one this server knows; is it older than "
                                              "its client?")});

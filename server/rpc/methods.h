@@ -39,8 +39,9 @@
 #define BALLPISTON_ENSEMBLE_STREAMS(STREAM) \
   STREAM(WatchEnsembleJob, v1::WatchEnsembleJobRequest, v1::WatchEnsembleJobResponse, Role::kRead)
 
-#define BALLPISTON_TRACE_STREAMS(STREAM) \
-  STREAM(TraceOrbit, v1::TraceOrbitRequest, v1::TraceOrbitResponse, Role::kSubmit)
+#define BALLPISTON_TRACE_STREAMS(STREAM)                                           \
+  STREAM(TraceOrbit, v1::TraceOrbitRequest, v1::TraceOrbitResponse, Role::kSubmit) \
+  STREAM(SampleCollisions, v1::SampleCollisionsRequest, v1::SampleCollisionsResponse, Role::kSubmit)
 
 namespace ballpiston::server {
 

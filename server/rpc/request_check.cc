@@ -5,8 +5,10 @@
 #include <set>
 #include <utility>
 
+#include "absl/functional/function_ref.h"
 #include "absl/strings/ascii.h"
 #include "absl/strings/escaping.h"
+#include "absl/strings/match.h"
 #include "absl/time/time.h"
 #include "google/protobuf/descriptor.h"
 #include "google/protobuf/generated_enum_reflection.h"
@@ -86,10 +88,51 @@ int32_t RequestCheck::Priority(const char* field, int32_t priority) {
   return priority;
 }
 
+namespace {
+
+bool IsLabelText(const std::string& text, absl::FunctionRef<bool(unsigned char)> is_permitted) {
+  constexpr size_t kLongest = 63;
+  return !text.empty() && text.size() <= kLongest && std::ranges::all_of(text, is_permitted);
+}
+
+bool IsLabelKey(const std::string& key) {
+  const auto is_permitted = [](unsigned char c) {
+    return absl::ascii_islower(c) || absl::ascii_isdigit(c) || c == '_' || c == '.' || c == '-';
+  };
+  return IsLabelText(key, is_permitted) && absl::ascii_islower(static_cast<unsigned char>(key[0]));
+}
+
+bool IsLabelValue(const std::string& value) {
+  return IsLabelText(value, [](unsigned char c) {
+    return absl::ascii_isalnum(c) || absl::StrContains("_.:/@+-", static_cast<char>(c));
+  });
+}
+
+}  // namespace
+
+Labels RequestCheck::LabelsIn(const char* field, const LabelsField& message) {
+  const Labels labels(message.begin(), message.end());
+  if (labels.size() > kMostLabels) {
+    Add(field, absl::StrCat("has ", labels.size(), " labels; permitted: at most ", kMostLabels));
+    return {};
+  }
+  for (const auto& [key, value] : labels) {
+    if (!IsLabelKey(key)) {
+      Add(field, absl::StrCat("has the key ", Quoted(key),
+                              "; permitted: 1 to 63 of a-z, 0-9 and _ . -, first a letter"));
+    }
+    if (!IsLabelValue(value)) {
+      Add(field, absl::StrCat("has the value ", Quoted(value), " of ", Quoted(key),
+                              "; permitted: 1 to 63 letters, digits and _ . : / @ + -"));
+    }
+  }
+  return labels;
+}
+
 // ---- updates ----
 
 JobChange RequestCheck::Change(const v1::UpdateEnsembleJobRequest& request) {
-  constexpr char kPermitted[] = "; permitted: pinned, priority";
+  constexpr char kPermitted[] = "; permitted: pinned, priority, labels";
   JobChange change;
   const auto& paths = request.update_mask().paths();
   if (paths.empty()) Add("update_mask", absl::StrCat("is empty", kPermitted));
@@ -98,6 +141,8 @@ JobChange RequestCheck::Change(const v1::UpdateEnsembleJobRequest& request) {
       change.pinned = request.job().pinned();
     } else if (path == "priority") {
       change.priority = Priority("job.priority", request.job().priority());
+    } else if (path == "labels") {
+      change.labels = LabelsIn("job.labels", request.job().labels());
     } else {
       Add("update_mask", absl::StrCat("has ", Quoted(path), kPermitted));
     }
@@ -131,6 +176,7 @@ JobFilter RequestCheck::Filter(const v1::ListEnsembleJobsRequest& request) {
   JobFilter filter;
   filter.states = Values<JobState>("states", request.states());
   filter.experiments = Values<v1::EnsembleSpec::Experiment>("experiments", request.experiments());
+  filter.labels = LabelsIn("labels", request.labels());
   if (!request.has_since()) return filter;
   const auto& since = request.since();
   Range("since.seconds", since.seconds(), kFirstSecond, kLastSecond);

@@ -17,6 +17,7 @@
 #include "ballpiston/v1/ensemble.pb.h"
 #include "server/book/job_book.h"
 #include "server/book/job_list.h"
+#include "server/convert/deterministic_bytes.h"
 #include "server/convert/errors.h"
 #include "server/rpc/tokens.h"
 #include "server/sha256.h"
@@ -33,7 +34,7 @@ std::string ListOf(Request request) {
   request.clear_page_size();
   request.clear_page_token();
   request.clear_view();
-  return Sha256(absl::StrCat(request.GetTypeName(), request.SerializeAsString())).substr(0, 8);
+  return Sha256(absl::StrCat(request.GetTypeName(), DeterministicBytes(request))).substr(0, 8);
 }
 
 template <typename Request>
@@ -53,6 +54,10 @@ class RequestCheck {
   std::string RequestId(const std::string& request_id);
 
   int32_t Priority(const char* field, int32_t priority);
+
+  // At most kMostLabels; the permitted characters are in ensemble.proto.
+  using LabelsField = google::protobuf::Map<std::string, std::string>;
+  Labels LabelsIn(const char* field, const LabelsField& labels);
 
   // The fields in the request's mask.
   JobChange Change(const v1::UpdateEnsembleJobRequest& request);

@@ -7,6 +7,7 @@
 #include "ballpiston/v1/ensemble.pb.h"
 #include "google/rpc/status.pb.h"
 #include "server/convert/fold_record.h"
+#include "server/convert/point_end.h"
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
 #include "server/store/schema.h"
@@ -67,7 +68,8 @@ class StoreCheck {
     database_.Execute("BEGIN");
     for (const auto part :
          {&StoreCheck::CheckPages, &StoreCheck::Count, &StoreCheck::FindContradictions,
-          &StoreCheck::CheckJobs, &StoreCheck::CheckResults, &StoreCheck::CheckCheckpoints}) {
+          &StoreCheck::CheckJobs, &StoreCheck::CheckResults, &StoreCheck::CheckEnds,
+          &StoreCheck::CheckCheckpoints}) {
       (this->*part)();
       const absl::Status status = database_.TakeStatus();
       if (absl::IsUnavailable(status)) return status;
@@ -136,6 +138,14 @@ class StoreCheck {
         status = absl::DataLossError(absl::StrCat("is of point ", result->index()));
       }
       FoundIn(absl::StrCat("the result of ", PointOf(row)), status);
+    }
+  }
+
+  void CheckEnds() {
+    Query row = database_.Select("SELECT job, point, state FROM ends");
+    while (row.Next()) {
+      FoundIn(absl::StrCat("the end of ", PointOf(row)),
+              EndFromBytes(row.Get<std::string>(2)).status());
     }
   }
 

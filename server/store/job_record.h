@@ -42,8 +42,12 @@ struct JobRecord {
   std::string principal;  // the job's owner
   int32_t priority = 0;   // among the principal's; higher first
   bool pinned = false;    // its results do not expire
+  std::string labels;     // as text (labels.h)
   StoredSpec spec;        // its grid is empty if it was not read
   std::string question;   // hash of the question (book/acceptance.h); empty: always compute
+  std::string family;     // hash of the question without its target; empty: cannot be continued
+  std::string continues;  // the id of the job whose points this one continues, or empty
+  double continued_samples = 0;  // of that job
   JobState state = v1::EnsembleJob::QUEUED;
   absl::Time create_time;
   std::optional<absl::Time> start_time;

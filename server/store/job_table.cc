@@ -29,9 +29,13 @@ void VisitColumns(Record& job, Visit visit) {
   visit("principal", "TEXT NOT NULL", job.principal);
   visit("priority", "INTEGER NOT NULL", job.priority);
   visit("pinned", "INTEGER NOT NULL", job.pinned);
+  visit("labels", "TEXT NOT NULL", job.labels);
   visit("bytes", "INTEGER NOT NULL", job.numbers.bytes);
   visit("spec", "BLOB NOT NULL", job.spec.rest);
   visit("question", "BLOB NOT NULL", job.question);
+  visit("family", "BLOB NOT NULL", job.family);
+  visit("continues", "TEXT NOT NULL", job.continues);
+  visit("continued_samples", "REAL NOT NULL", job.continued_samples);
   visit("state", "INTEGER NOT NULL", job.state);
   visit("create_time", "INTEGER NOT NULL", job.create_time);
   visit("start_time", "INTEGER", job.start_time);
@@ -160,6 +164,19 @@ std::optional<JobRecord> FindAnswer(Database& database, const std::string& princ
                   principal, Blob{question}, v1::EnsembleJob::SUCCEEDED);
 }
 
+std::vector<JobRecord> FindFamily(Database& database, const std::string& principal,
+                                  const std::string& family) {
+  std::vector<JobRecord> records;
+  if (family.empty()) return records;
+  Query query = database.Select(
+      SelectJobs(Grid::kLeftOut,
+                 "principal = ? AND family = ? AND family <> x'' AND state = ?"
+                 " AND expired_time IS NULL ORDER BY samples DESC, sequence LIMIT ?"),
+      principal, Blob{family}, v1::EnsembleJob::SUCCEEDED, kMostOfAFamily);
+  while (query.Next()) records.push_back(RecordOf(query));
+  return records;
+}
+
 void InsertRequest(Database& database, const std::string& principal, const std::string& request_id,
                    const RequestRecord& record) {
   database.Run("INSERT INTO requests (principal, request_id, payload, job) VALUES (?, ?, ?, ?)",
@@ -247,20 +264,21 @@ std::optional<JobRecord> EndJob(Database& database, int64_t sequence, const JobE
   return FindJobBySequence(database, sequence, Grid::kIncluded);
 }
 
-void RestartJob(Database& database, int64_t sequence, const std::string& engine_version,
-                const std::string& question) {
+void RestartJob(Database& database, const JobRecord& record) {
+  const int64_t sequence = record.sequence;
   DropCheckpoints(database, sequence);
   database.Run("DELETE FROM results WHERE job = ?", sequence);
   database.Run("DELETE FROM details WHERE job = ?", sequence);
+  database.Run("DELETE FROM ends WHERE job = ?", sequence);
   database.Run(
-      "UPDATE jobs SET engine_version = ?, question = ?, restarts = restarts + 1"
-      " WHERE sequence = ?",
-      engine_version, Blob{question}, sequence);
+      "UPDATE jobs SET engine_version = ?, question = ?, family = ?, continues = '',"
+      " continued_samples = 0, restarts = restarts + 1 WHERE sequence = ?",
+      record.engine_version, Blob{record.question}, Blob{record.family}, record.sequence);
 }
 
 void UpdateJob(Database& database, const JobRecord& record) {
-  database.Run("UPDATE jobs SET pinned = ?, priority = ? WHERE sequence = ?", record.pinned,
-               record.priority, record.sequence);
+  database.Run("UPDATE jobs SET pinned = ?, priority = ?, labels = ? WHERE sequence = ?",
+               record.pinned, record.priority, record.labels, record.sequence);
 }
 
 std::vector<JobSize> ListExpirable(Database& database, absl::Time ended_before, int most) {

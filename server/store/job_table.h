@@ -41,6 +41,12 @@ std::optional<JobRecord> FindJobBySequence(Database& database, int64_t sequence,
 std::optional<JobRecord> FindAnswer(Database& database, const std::string& principal,
                                     const std::string& question);
 
+// The principal's jobs that SUCCEEDED, with this JobRecord::family and their results, without their
+// grids: at most kMostOfAFamily, those with the most samples first.
+inline constexpr int kMostOfAFamily = 20;
+std::vector<JobRecord> FindFamily(Database& database, const std::string& principal,
+                                  const std::string& family);
+
 // For each principal and request id, the job that the request made.
 struct RequestRecord {
   std::string payload;  // a hash of the request without its id
@@ -94,11 +100,11 @@ struct JobEnd {
 // state was requested. Returns the job's new row; empty if the job is not active.
 std::optional<JobRecord> EndJob(Database& database, int64_t sequence, const JobEnd& end);
 
-// Starts a job of another engine version again: drops its results and sets its engine version.
-void RestartJob(Database& database, int64_t sequence, const std::string& engine_version,
-                const std::string& question);
+// Starts a job of another engine version again: drops its results and sets what depends on the
+// engine's version.
+void RestartJob(Database& database, const JobRecord& record);
 
-// Stores what a client may change of a job: whether it is pinned, and its priority.
+// Stores what a client may change of a job: whether it is pinned, its priority and its labels.
 void UpdateJob(Database& database, const JobRecord& record);
 
 struct JobSize {

@@ -44,11 +44,24 @@ int64_t InsertResult(Database& database, int64_t job, const PointRow& row) {
     database.Run("INSERT INTO details (job, point, record) VALUES (?, ?, ?)", job, row.point,
                  Blob{row.details});
   }
+  if (number > 0 && !row.end.state.empty()) {
+    database.Run("INSERT INTO ends (job, point, model, state) VALUES (?, ?, ?, ?)", job, row.point,
+                 row.end.model, Blob{row.end.state});
+  }
   if (row.has_checkpoint) {
     database.Run("DELETE FROM checkpoints WHERE job = ? AND point = ?", job, row.point);
     database.Run("DELETE FROM chunks WHERE job = ? AND point = ?", job, row.point);
   }
   return number;
+}
+
+std::optional<PointEnd> ReadEnd(Database& database, int64_t job, int64_t point) {
+  Query query =
+      database.Select("SELECT model, state FROM ends WHERE job = ? AND point = ?", job, point);
+  if (!query.Next()) return std::nullopt;
+  PointEnd end;
+  query.ReadInto(end.model, end.state);
+  return end;
 }
 
 void ReadResultsStoredAfter(Database& database, int64_t job, int64_t after,
@@ -82,8 +95,10 @@ int64_t CountResults(Database& database, int64_t job) {
 std::vector<PointSize> ListFinishedPoints(Database& database, int64_t job) {
   std::vector<PointSize> points;
   Query query = database.Select(
-      "SELECT point, samples, length(result) + ifnull(length(record), 0) FROM results"
-      " LEFT JOIN details USING (job, point) WHERE job = ? ORDER BY point",
+      "SELECT point, samples,"
+      " length(result) + ifnull(length(record), 0) + ifnull(length(state), 0) FROM results"
+      " LEFT JOIN details USING (job, point) LEFT JOIN ends USING (job, point)"
+      " WHERE job = ? ORDER BY point",
       job);
   while (query.Next()) {
     PointSize& point = points.emplace_back();

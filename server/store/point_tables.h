@@ -29,6 +29,12 @@ void InsertChunk(Database& database, int64_t job, int64_t point, int64_t chunk,
 // The records of the point's waiting chunks, in order.
 std::vector<std::string> ReadChunks(Database& database, int64_t job, int64_t point);
 
+// Where a finished point ended: another job can continue it from there.
+struct PointEnd {
+  int32_t model = 0;  // that answered
+  std::string state;  // a compressed storage.Checkpoint; empty: the point cannot be continued
+};
+
 struct PointRow {
   int64_t point = 0;
   double samples = 0;
@@ -36,12 +42,16 @@ struct PointRow {
   // The same of the details, compressed; empty if there are none or not read.
   std::string details = {};
   bool has_checkpoint = true;  // may have a checkpoint or chunks
+  PointEnd end = {};           // not read with the results
 };
 
 // Stores a point's result and drops its checkpoint and chunks. The first writer wins. Returns the
 // number of the result among the job's results, 1, 2, 3, ... in the order of storing; 0 if the
 // point already had a result.
 int64_t InsertResult(Database& database, int64_t job, const PointRow& row);
+
+// Empty if the point is not finished or cannot be continued.
+std::optional<PointEnd> ReadEnd(Database& database, int64_t job, int64_t point);
 
 enum class Details { kLeftOut, kIncluded };
 
@@ -60,7 +70,7 @@ int64_t CountResults(Database& database, int64_t job);
 struct PointSize {
   int64_t point = 0;
   double samples = 0;
-  int64_t bytes = 0;  // of its result and details
+  int64_t bytes = 0;  // of its result, its details and its end
 };
 
 // All finished points, in grid order.

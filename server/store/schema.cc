@@ -21,6 +21,7 @@ CREATE INDEX jobs_that_may_expire ON jobs (end_time, bytes)
   WHERE end_time IS NOT NULL AND expired_time IS NULL AND pinned = 0;
 CREATE INDEX jobs_that_expired ON jobs (end_time, bytes) WHERE expired_time IS NOT NULL;
 CREATE INDEX jobs_by_question ON jobs (principal, question) WHERE question <> x'';
+CREATE INDEX jobs_by_family ON jobs (principal, family) WHERE family <> x'';
 CREATE TABLE requests (
   principal TEXT NOT NULL,
   request_id TEXT NOT NULL,
@@ -54,6 +55,13 @@ CREATE TABLE details (
   job INTEGER NOT NULL,
   point INTEGER NOT NULL,
   record BLOB NOT NULL,
+  PRIMARY KEY (job, point)
+) STRICT;
+CREATE TABLE ends (
+  job INTEGER NOT NULL,
+  point INTEGER NOT NULL,
+  model INTEGER NOT NULL,
+  state BLOB NOT NULL,
   PRIMARY KEY (job, point)
 ) STRICT;
 CREATE TABLE dropped (

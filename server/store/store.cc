@@ -110,7 +110,7 @@ void Store::RecordChunk(int64_t job, int64_t point, uint64_t chunk, std::string 
 
 void Store::RecordResult(int64_t job, PointRow row, std::function<void(int64_t number)> stored) {
   const auto number = std::make_shared<int64_t>(0);
-  Write write = {.bytes = row.result.size() + row.details.size(),
+  Write write = {.bytes = row.result.size() + row.details.size() + row.end.state.size(),
                  .job = job,
                  .point = row.point,
                  .is_result = true};

@@ -10,7 +10,7 @@ namespace {
 
 void DropSome(Database& database, int64_t job) {
   int64_t dropped = 0;
-  for (const char* table : {"details", "results"}) {
+  for (const char* table : {"ends", "details", "results"}) {
     database.Run(absl::StrCat("DELETE FROM ", table, " WHERE rowid IN (SELECT rowid FROM ", table,
                               " WHERE job = ? LIMIT ?)"),
                  job, kSweptRows - dropped);

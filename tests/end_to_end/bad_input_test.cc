@@ -169,7 +169,7 @@ std::vector<BadInput> Table(const std::string& cancelled) {
       {"dance", 2, {"'dance' is not a verb; verbs are "}},
       {"wach none", 2, {"'wach' is not a verb", "did you mean watch?"}},
       {"run first-hit extra", 2, {"not expected: 'extra'"}},
-      {"watch", 2, {"watch needs JOB"}},
+      {"watch", 2, {"name a JOB, or give --label KEY=VALUE"}},
       {"list --limit 0", 2, {"--limit: 0"}},
       {"list --since yesterday", 2, {"--since: 'yesterday' is not a date (UTC)"}},
       {"list --state runing", 2, {"--state: 'runing'", "did you mean running?"}},

@@ -123,11 +123,28 @@ TEST_F(FigureTest, QuickAndFullExcludeEachOther) {
 TEST_F(FigureTest, ListPrintsTheNamesOfTheFigures) {
   const ProcessResult result = server_.Client({"figure", "--list"});
   EXPECT_THAT(result, ExitsWith(0));
-  for (const std::string name :
-       {"cell", "cell-3d", "collision-surface", "conductivity", "gas", "hitting-time",
-        "ingoing-law", "kernel", "markov-test", "master-equation", "mean-free-time", "orbit",
-        "rates", "relative-entropy", "relaxation", "spectrum", "speed-accuracy", "stability",
-        "temperature-profile"}) {
+  for (const std::string name : {"cell",
+                                 "cell-3d",
+                                 "collision-surface",
+                                 "conductivity",
+                                 "full-counting",
+                                 "gas",
+                                 "hitting-time",
+                                 "ingoing-law",
+                                 "kernel",
+                                 "logarithm",
+                                 "markov-test",
+                                 "master-equation",
+                                 "mean-free-time",
+                                 "orbit",
+                                 "rates",
+                                 "relative-entropy",
+                                 "relaxation",
+                                 "slow-pistons",
+                                 "spectrum",
+                                 "speed-accuracy",
+                                 "stability",
+                                 "temperature-profile"}) {
     EXPECT_THAT("\n" + result.out, HasSubstr("\n" + name + ": "));
   }
 }

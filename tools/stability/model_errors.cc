@@ -194,12 +194,6 @@ Estimate Reference(const EnsembleSpec& question, const Estimate& by_model) {
   return FirstEstimate(billiard, kSeedOfBilliard);
 }
 
-// A sample without a stated error proves nothing.
-double RelativeError(const Estimate& estimate) {
-  constexpr double kUnknown = std::numeric_limits<double>::infinity();
-  return std::fabs(estimate.standard_error.value_or(kUnknown) / estimate.value);
-}
-
 }  // namespace
 
 double ModelError::Stated() const {

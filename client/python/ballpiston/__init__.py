@@ -15,8 +15,10 @@ The messages and stubs of the protocol are in ballpiston.v1.
 """
 
 from ballpiston._version import __version__
+from ballpiston.async_watch import Update
 from ballpiston.client import Client, connect
 from ballpiston.closed_forms import ClosedForms
+from ballpiston.collisions import Collisions
 from ballpiston.curve import Curve
 from ballpiston.errors import (
     DataLoss,
@@ -33,6 +35,7 @@ from ballpiston.errors import (
     Unauthenticated,
     Unavailable,
 )
+from ballpiston.estimates_table import estimates_table
 from ballpiston.histogram import Histogram
 from ballpiston.job import Job, JobCancelled, JobFailed, JobNotSucceeded
 from ballpiston.plan import Plan
@@ -44,6 +47,7 @@ from ballpiston.specification import specification
 __all__ = [
     "Client",
     "ClosedForms",
+    "Collisions",
     "Curve",
     "DataLoss",
     "DeadlineExceeded",
@@ -68,8 +72,10 @@ __all__ = [
     "ServerStatus",
     "Unauthenticated",
     "Unavailable",
+    "Update",
     "__version__",
     "connect",
+    "estimates_table",
     "load",
     "specification",
 ]

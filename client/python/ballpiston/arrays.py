@@ -4,7 +4,7 @@
     model, samples                  (points,)
     NAME, NAME_standard_error, NAME_exact, NAME_z_score, NAME_model_error, NAME_noise_floor,
     NAME_limit, NAME_batches        (points,)  for each estimate; NaN where absent
-    kl_divergence, kl_divergence_standard_error, _noise_floor, _noise_error, _cells
+    kl_divergence_noise_error, kl_divergence_cells
                                     (points,)  if there is a divergence
     health_escapes, health_max_energy_error
                                     (points,)
@@ -39,7 +39,7 @@ Array = npt.NDArray[Any]
 Arrays = dict[str, Array]
 
 _SIGNS = {1: "_plus", -1: "_minus"}
-_DIVERGENCE_FIELDS = ("standard_error", "noise_floor", "noise_error", "cells")
+_DIVERGENCE_FIELDS = ("noise_error", "cells")
 
 
 def arrays_of(job: Any, points: Sequence[Any]) -> Arrays:
@@ -109,8 +109,7 @@ def _divergence_arrays(points: Sequence[Any]) -> Arrays:
     def field(name: str) -> Array:
         return _floats(np.nan if kl is None else getattr(kl, name) for kl in column)
 
-    fields = {f"kl_divergence_{name}": field(name) for name in _DIVERGENCE_FIELDS}
-    return {"kl_divergence": field("value"), **fields}
+    return {f"kl_divergence_{name}": field(name) for name in _DIVERGENCE_FIELDS}
 
 
 def _health_arrays(points: Sequence[Any]) -> Arrays:

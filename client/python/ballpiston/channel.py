@@ -12,6 +12,7 @@ import json
 from typing import Any
 
 import grpc
+import grpc.aio
 
 from ballpiston._version import __version__
 from ballpiston.channel_security import ChannelSecurity, check, credentials_of
@@ -66,9 +67,18 @@ def open_channel(address: str, security: ChannelSecurity) -> Any:
         ValueError: not an address, or security that does not fit together or cannot be read.
         PermissionDenied: a secret file is open to other users.
     """
+    return _open(grpc, address, security)
+
+
+def open_async_channel(address: str, security: ChannelSecurity) -> Any:
+    """The same for an event loop, a grpc.aio.Channel. Only the loop that opens it may use it."""
+    return _open(grpc.aio, address, security)
+
+
+def _open(module: Any, address: str, security: ChannelSecurity) -> Any:
     target = grpc_target(address)
     check(security, address)
     credentials = credentials_of(security)
     if credentials is None:
-        return grpc.insecure_channel(target, options=_ARGUMENTS)
-    return grpc.secure_channel(target, credentials, options=_ARGUMENTS)
+        return module.insecure_channel(target, options=_ARGUMENTS)
+    return module.secure_channel(target, credentials, options=_ARGUMENTS)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import sys
 import uuid
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from types import TracebackType
 from typing import Any
 
 import numpy.typing as npt
 
 from ballpiston.closed_forms import ClosedForms
+from ballpiston.collisions import Collisions
 from ballpiston.connection import Connection
 from ballpiston.errors import ResourceExhausted
 from ballpiston.job import Job
@@ -134,6 +135,7 @@ class Client:
         fresh: bool = False,
         priority: int = 0,
         request_id: str | None = None,
+        labels: Mapping[str, str] | None = None,
         **question: Any,
     ) -> Job:
         """Asks a question and returns the job at once; it is then on the server's disk.
@@ -148,6 +150,8 @@ class Client:
             fresh: compute, even if the server has stored the answer.
             priority: -100 to 100; of your own jobs those with a higher one run first.
             request_id: a UUID, the idempotency key: a retry with it returns the original job.
+            labels: short texts by which `client.jobs(labels=...)` finds the job; they are added to
+                those of a job that answers from the store.
 
         Raises:
             TypeError: a keyword that does not exist; the message suggests the nearest one.
@@ -164,6 +168,7 @@ class Client:
             request_id=request_id or str(uuid.uuid4()),
             fresh=fresh,
             priority=priority,
+            labels=labels,
         )
         return Job(self._connection, self._create(request))
 
@@ -175,6 +180,7 @@ class Client:
         fresh: bool = False,
         priority: int = 0,
         request_id: str | None = None,
+        labels: Mapping[str, str] | None = None,
         progress: bool | str = True,
         **question: Any,
     ) -> Result:
@@ -182,13 +188,18 @@ class Client:
 
         Args:
             progress: as that of `Job.watch`.
-            experiment, fresh, priority, request_id: as those of `submit`.
+            experiment, fresh, priority, request_id, labels: as those of `submit`.
 
         Raises:
             JobFailed, JobCancelled: the job did not succeed; `error.job` is the job.
         """
         job = self.submit(
-            experiment, fresh=fresh, priority=priority, request_id=request_id, **question
+            experiment,
+            fresh=fresh,
+            priority=priority,
+            request_id=request_id,
+            labels=labels,
+            **question,
         )
         return job.watch(progress=progress)
 
@@ -223,6 +234,7 @@ class Client:
         *,
         state: str | Iterable[str] = (),
         experiment: str | Iterable[str] = (),
+        labels: Mapping[str, str] | None = None,
         limit: int | None = 50,
     ) -> list[Job]:
         """Your jobs, the newest first.
@@ -231,11 +243,13 @@ class Client:
             state: one or several of "queued", "running", "cancelling", "succeeded", "failed",
                 "cancelled"; empty: any.
             experiment: one or several; empty: any.
+            labels: only jobs with all of these.
             limit: at most so many; None: all.
         """
         request = ensemble_pb2.ListEnsembleJobsRequest(
             states=_numbers_of(ensemble_pb2.EnsembleJob.State, "state", state),
             experiments=_numbers_of(spec_pb2.EnsembleSpec.Experiment, "experiment", experiment),
+            labels=labels,
         )
         jobs: list[Job] = []
         while limit is None or len(jobs) < limit:
@@ -336,6 +350,23 @@ class Client:
         """
         request = _orbit_request(rho, delta, events, seed, cells, temperature)
         return columns_of(self._connection, request, fields)
+
+    @takes_question
+    def sample(self, experiment: Any, **question: Any) -> Collisions:
+        """The collisions of a point's samples, for observables of one's own: those that `run` with
+        the same arguments averages.
+
+        Args:
+            experiment: one with a ball-piston pair, with the keywords of
+                `ballpiston.specification` for one point and a number of samples or collisions; or a
+                whole specification.
+
+        Example:
+            >>> hits = client.sample("first-hit", rho=0.5296, delta=0.2, epsilon=0.125, exponent=1,
+            ...                      samples=1e5).all()
+            >>> np.corrcoef(hits["free_time"], hits["y"])
+        """
+        return Collisions(self._connection, question_of(experiment, question))
 
     def status(self) -> ServerStatus:
         """What the server is doing and what it permits. The first call to a server takes most of a

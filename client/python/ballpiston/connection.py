@@ -71,7 +71,7 @@ class Connection:
         """The answer to a single attempt, apart from those of the channel's retry policy."""
         try:
             seconds = self.timeout if timeout is None else timeout
-            return method(request, timeout=seconds, metadata=self._metadata())
+            return method(request, timeout=seconds, metadata=self.metadata())
         except grpc.RpcError as error:
             raise self.error_of(error) from None
 
@@ -80,14 +80,15 @@ class Connection:
         not interrupt: a call that is interrupted while it begins is never read by gRPC, and the
         interpreter would wait for it forever at its exit."""
         with ThreadPoolExecutor(max_workers=1) as thread:
-            begun = thread.submit(method, request, metadata=self._metadata())
+            begun = thread.submit(method, request, metadata=self.metadata())
             try:
                 return begun.result()
             except KeyboardInterrupt:
                 begun.result().cancel()
                 raise
 
-    def _metadata(self) -> list[tuple[str, str]]:
+    def metadata(self) -> list[tuple[str, str]]:
+        """Of a call: the token for a server on the loopback, if one is to be sent."""
         return self._loopback_token.metadata()
 
     def error_of(self, rpc_error: grpc.RpcError) -> Error:

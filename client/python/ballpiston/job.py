@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import asyncio
 import sys
 import uuid
+from collections.abc import AsyncIterator
 from datetime import datetime, timezone
 from html import escape
 from typing import Any
 
+from ballpiston.async_watch import Update, watch_updates
 from ballpiston.connection import Connection
 from ballpiston.error_details import details_of, error_of
 from ballpiston.errors import Error, ResultsExpired, Unavailable
 from ballpiston.progress import Progress, fraction_of, progress_on_screen
 from ballpiston.result import Result
+from ballpiston.specification import set_target
 from ballpiston.spelling import spelling
 from ballpiston.v1 import ensemble_pb2, spec_pb2
 from ballpiston.watch import has_ended, watch_job
@@ -104,6 +108,11 @@ class Job:
         return bool(self.message.pinned)
 
     @property
+    def labels(self) -> dict[str, str]:
+        """Short texts by which `client.jobs(labels=...)` finds it."""
+        return dict(self.message.labels)
+
+    @property
     def created(self) -> datetime | None:
         """When the server accepted it, in UTC."""
         return self._time("create_time")
@@ -117,6 +126,11 @@ class Job:
     def ended(self) -> datetime | None:
         """When it ended; None before that."""
         return self._time("end_time")
+
+    @property
+    def continues(self) -> str:
+        """The name of the job whose points it continues, or empty."""
+        return str(self.message.continues)
 
     # ---- actions ----
 
@@ -155,6 +169,64 @@ class Job:
             raise
         self._raise_unless_succeeded()
         return self.result()
+
+    def extend(
+        self,
+        *,
+        samples: float | None = None,
+        collisions: float | None = None,
+        tolerance: float | None = None,
+    ) -> Job:
+        """Asks the same question with more samples or collisions, or a smaller tolerance. The new
+        job continues this one if it has succeeded: it computes only the difference, and its result
+        has the bytes of one long run.
+
+        Example:
+            >>> more = client.job(name).extend(samples=1e7)
+            >>> more.continues, more.watch()
+        """
+        spec = spec_pb2.EnsembleSpec()
+        spec.CopyFrom(self.refresh().specification)
+        estimate = spec.target.estimate
+        spec.target.Clear()
+        spec.target.estimate = estimate
+        set_target(spec, samples, collisions, tolerance, None)
+        request = ensemble_pb2.CreateEnsembleJobRequest(
+            spec=spec, request_id=str(uuid.uuid4()), labels=self.labels
+        )
+        return Job(self._connection, self._call("CreateEnsembleJob", request))
+
+    async def updates(self) -> AsyncIterator[Update]:
+        """What changes until the job has ended, for an event loop: the wait needs no thread.
+
+        Example:
+            >>> async for update in job.updates():
+            ...     print(update.state, update.progress)
+
+        Raises:
+            Unavailable: the server did not answer for two minutes. The job goes on.
+        """
+        specification = self.message.spec
+        async for update in watch_updates(self._connection, self.name):
+            if isinstance(update, Update):
+                yield update
+                continue
+            self.message = update
+            self.message.spec.CopyFrom(specification)  # a watch leaves out the grid
+
+    async def result_async(self) -> Result:
+        """`watch` for an event loop, without a bar.
+
+        Example:
+            >>> results = await asyncio.gather(*(job.result_async() for job in jobs))
+
+        Raises:
+            JobFailed, JobCancelled, Unavailable: as `watch`.
+        """
+        async for _ in self.updates():
+            pass
+        self._raise_unless_succeeded()
+        return await asyncio.to_thread(self.result)
 
     def result(self) -> Result:
         """The points that are finished now. It does not wait.
@@ -195,6 +267,20 @@ class Job:
         request = ensemble_pb2.UpdateEnsembleJobRequest(
             job=ensemble_pb2.EnsembleJob(name=self.name, pinned=pinned),
             update_mask={"paths": ["pinned"]},
+        )
+        self.message = self._call("UpdateEnsembleJob", request)
+        return self
+
+    def label(self, **labels: str | None) -> Job:
+        """Sets these labels and keeps the others; None removes a label.
+
+        Example:
+            >>> job.label(run="7", who=None)
+        """
+        kept = {k: v for k, v in (self.refresh().labels | labels).items() if v is not None}
+        request = ensemble_pb2.UpdateEnsembleJobRequest(
+            job=ensemble_pb2.EnsembleJob(name=self.name, labels=kept),
+            update_mask={"paths": ["labels"]},
         )
         self.message = self._call("UpdateEnsembleJob", request)
         return self

@@ -10,7 +10,7 @@ from ballpiston.histogram import Histogram, choose_histogram, histograms_of
 from ballpiston.number_text import measured_text
 from ballpiston.spelling import spelling
 from ballpiston.suggestion import did_you_mean
-from ballpiston.v1 import result_pb2, spec_pb2
+from ballpiston.v1 import spec_pb2
 
 # The parameters of a grid. The last one varies fastest.
 PARAMETERS = ("rho", "delta", "epsilon", "exponent", "cells", "temperature", "hot", "cold")
@@ -97,7 +97,7 @@ class Point:
     @property
     def estimates(self) -> dict[str, Estimate]:
         """All of them by name, in the order of the answer."""
-        return {message.name: _estimate(message) for message in estimate_messages(self.message)}
+        return {message.name: _estimate(message) for message in self.message.estimates}
 
     def __getitem__(self, name: str) -> float:
         return self._named(name).value
@@ -143,22 +143,6 @@ def parameters_of(message: Any) -> dict[str, float | str]:
     parameters = message.parameters
     names = [n for n in PARAMETERS if n in ("rho", "delta") or parameters.HasField(n)]
     return {name: getattr(parameters, name) for name in names}
-
-
-def estimate_messages(message: Any) -> list[Any]:
-    """The estimates of a PointResult. A divergence is one more estimate, kl_divergence."""
-    messages = list(message.estimates)
-    if message.HasField("kl_divergence"):
-        kl = message.kl_divergence
-        messages.append(
-            result_pb2.Estimate(
-                name="kl_divergence",
-                value=kl.value,
-                standard_error=kl.standard_error,
-                noise_floor=kl.noise_floor,
-            )
-        )
-    return messages
 
 
 def unknown_estimate(name: object, names: list[str]) -> str:

@@ -14,7 +14,7 @@ from ballpiston.arrays import Arrays, arrays_of, optional_floats, parameter_arra
 from ballpiston.curve import Curve
 from ballpiston.document import document_of, read_document, write_atomically
 from ballpiston.histogram import Histogram
-from ballpiston.point import Point, estimate_messages, unknown_estimate
+from ballpiston.point import Point, unknown_estimate
 from ballpiston.result_table import html_table, text_table
 from ballpiston.spelling import spelling
 from ballpiston.v1 import ensemble_pb2, spec_pb2
@@ -233,7 +233,7 @@ class Result:
 
     def _by_name(self) -> list[dict[str, Any]]:
         if self._estimates is None:
-            self._estimates = [{e.name: e for e in estimate_messages(m)} for m in self.messages]
+            self._estimates = [{e.name: e for e in m.estimates} for m in self.messages]
         return self._estimates
 
     def _column(self, name: str) -> list[Any]:

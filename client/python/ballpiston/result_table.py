@@ -7,7 +7,7 @@ from html import escape
 from typing import Any
 
 from ballpiston.number_text import measured_text
-from ballpiston.point import estimate_messages, parameters_of
+from ballpiston.point import parameters_of
 from ballpiston.spelling import spelling
 from ballpiston.v1 import spec_pb2
 
@@ -47,7 +47,7 @@ def _row(point: Any) -> Row:
     }
     row["model"] = spelling(spec_pb2.EnsembleSpec.Model, point.model)
     row["samples"] = f"{point.samples:.15g}"
-    for estimate in estimate_messages(point):
+    for estimate in point.estimates:
         error = estimate.standard_error if estimate.HasField("standard_error") else None
         row[estimate.name] = measured_text(estimate.value, error)
         if estimate.HasField("z_score"):

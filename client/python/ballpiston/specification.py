@@ -20,6 +20,7 @@ from ballpiston.parameter_lists import (
     shape_list,
     whole_number,
 )
+from ballpiston.points_table import Points, add_points
 from ballpiston.spelling import from_spelling
 from ballpiston.suggestion import did_you_mean
 from ballpiston.v1 import spec_pb2
@@ -40,6 +41,7 @@ def specification(
     temperature: Numbers | None = None,
     hot: Numbers | None = None,
     cold: Numbers | None = None,
+    points: Points | None = None,
     samples: float | None = None,
     collisions: float | None = None,
     tolerance: float | None = None,
@@ -66,6 +68,9 @@ def specification(
             at most 10^6 cells in all.
         temperature: of a gas in equilibrium; 1e-120 to 1e120, by default 1.
         hot, cold: temperatures of the reservoirs; 1e-120 to 1e120, hot >= cold.
+        points: a table of points in place of lists: a pandas.DataFrame, a dict of columns, or a
+            list of dicts. The lists of other parameters multiply the table, whose rows vary
+            slowest.
         samples: first hits, orbits or replicas of a gas, for each point; 1 to 10^12.
         collisions: ball-piston collisions for each point; 1 to 10^12.
         tolerance: relative standard error of the first estimate; between 0 and 1.
@@ -99,7 +104,9 @@ def specification(
             getattr(spec.grid, name).extend(number_list(name, values))
     if cells is not None:
         spec.grid.cells.extend(shape_list("cells", cells))
-    _set_target(spec, samples, collisions, tolerance, budget)
+    if points is not None:
+        add_points(points, spec.grid)
+    set_target(spec, samples, collisions, tolerance, budget)
     if estimate is not None:
         spec.target.estimate = estimate
     spec.seed = _within("seed", seed, 0, _MOST_SEED)
@@ -160,7 +167,7 @@ _KEYWORDS = {
     if parameter.kind is parameter.KEYWORD_ONLY
 }
 # Those of submit and run, for suggestions.
-_JOB_KEYWORDS = ("fresh", "priority", "request_id", "progress")
+_JOB_KEYWORDS = ("fresh", "priority", "request_id", "labels", "progress")
 
 
 def _check_keywords(question: Mapping[str, Any]) -> None:
@@ -170,13 +177,19 @@ def _check_keywords(question: Mapping[str, Any]) -> None:
             raise TypeError(f"there is no keyword {name!r}{hint}")
 
 
-def _set_target(
+def set_target(
     spec: Any,
     samples: float | None,
     collisions: float | None,
     tolerance: float | None,
     budget: float | None,
 ) -> None:
+    """Sets the target of an EnsembleSpec.
+
+    Raises:
+        TypeError: targets that exclude each other.
+        ValueError: a number that cannot be sent.
+    """
     values = {"samples": samples, "collisions": collisions}
     values |= {"tolerance": tolerance, "budget": budget}
     given = [name for name, value in values.items() if value is not None]

@@ -51,9 +51,13 @@ def _column(events: Any, name: str, is_optional: bool) -> list[Any]:
 
 
 def _messages(connection: Connection, request: Any) -> Iterator[Any]:
-    """If the private server stops before the start arrives, it is started again and asked once
+    return stream_messages(connection, connection.traces.TraceOrbit, request)
+
+
+def stream_messages(connection: Connection, method: Any, request: Any) -> Iterator[Any]:
+    """The messages of a stream. If the private server stops before the start arrives, it is started again and asked once
     more; later a repetition would begin with the start again."""
-    call = connection.open_stream(connection.traces.TraceOrbit, request)
+    call = connection.open_stream(method, request)
     try:
         try:
             first = next(call)
@@ -61,7 +65,7 @@ def _messages(connection: Connection, request: Any) -> Iterator[Any]:
             if connection.private is None or error.code() != grpc.StatusCode.UNAVAILABLE:
                 raise
             connection.revive()
-            call = connection.open_stream(connection.traces.TraceOrbit, request)
+            call = connection.open_stream(method, request)
             first = next(call)
         yield first
         yield from call

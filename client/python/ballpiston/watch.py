@@ -1,9 +1,9 @@
 """Following a job to its end, through restarts of the server and cut connections.
 
 If the stream breaks, the watch attaches again with the last resume token that it saw, after pauses
-that double from 0.1 s to 5 s, or as long as the server's error says, until nothing was heard for two minutes. A stream is broken by
-UNAVAILABLE, by CANCELLED without a reason, as from a server that stops, and by an end without a
-terminal state. Every other error ends the watch.
+that double from 0.1 s to 5 s, or as long as the server's error says, until nothing was heard for
+two minutes. A stream is broken by UNAVAILABLE, by CANCELLED without a reason, as from a server that
+stops, and by an end without a terminal state. Every other error ends the watch.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ballpiston.connection import Connection
 from ballpiston.errors import Error, Unavailable
 from ballpiston.v1 import ensemble_pb2
 
-_LONGEST_CONNECTING = 1.0  # seconds
+LONGEST_CONNECTING = 1.0  # seconds
 
 _ENDED = (
     ensemble_pb2.EnsembleJob.SUCCEEDED,
@@ -87,57 +87,54 @@ def watch_job(
         Unavailable: the watch gave up.
         Error: any other error of the server.
     """
-    return _Watch(connection, name, observer, pauses).follow()
+    watch = Attachments(name, observer, pauses)
+    while True:
+        why = _read_stream(connection, watch)
+        if watch.ended is not None:
+            return watch.ended
+        time.sleep(watch.pause_after(why))
+        try:
+            connection.revive(LONGEST_CONNECTING)
+        except Unavailable:
+            pass  # the next attempt reports what goes wrong
 
 
-class _Watch:
-    def __init__(
-        self, connection: Connection, name: str, observer: Observer, pauses: Pauses
-    ) -> None:
-        self._connection = connection
+class Attachments:
+    """What a watch has seen over all its streams.
+
+    Attributes:
+        request: of the next stream; it has the last resume token.
+        ended: the job, once it has ended.
+    """
+
+    def __init__(self, name: str, observer: Observer, pauses: Pauses = Pauses()) -> None:
         self._observer = observer
         self._pauses = pauses
         self._pace = ReattachPace(pauses, time.monotonic())
-        self._request = ensemble_pb2.WatchEnsembleJobRequest(name=name)
-        self._ended: Any = None
+        self.request = ensemble_pb2.WatchEnsembleJobRequest(name=name)
+        self.ended: Any = None
 
-    def follow(self) -> Any:
-        while True:
-            why = self._read_stream()
-            if self._ended is not None:
-                return self._ended
-            if not _is_broken_stream(why):
-                raise why
-            self._wait_to_reattach(why)
-
-    def _read_stream(self) -> Error:
-        """One attachment, to its end, and why it ended."""
-        stream = self._connection.open_stream(
-            self._connection.ensembles.WatchEnsembleJob, self._request
-        )
-        try:
-            for message in stream:
-                self._handle(message)
-        except grpc.RpcError as error:
-            return self._connection.error_of(error)
-        finally:
-            stream.cancel()
-        return Unavailable(
-            "the server ended the watch before the end of the job", code="UNAVAILABLE"
-        )
-
-    def _handle(self, message: Any) -> None:
+    def handle(self, message: Any) -> None:
+        """A message of a stream."""
         self._pace.heard(time.monotonic())
         if message.resume_token:
-            self._request.resume_token = message.resume_token
+            self.request.resume_token = message.resume_token
         if message.HasField("job"):
             if has_ended(message.job.state):
-                self._ended = message.job
+                self.ended = message.job
             self._observer.on_job(message.job)
         elif message.HasField("snapshot"):
             self._observer.on_snapshot(message.snapshot)
 
-    def _wait_to_reattach(self, why: Error) -> None:
+    def pause_after(self, why: Error) -> float:
+        """Seconds until the next stream, after one that `why` ended.
+
+        Raises:
+            Error: `why`, if it does not say that the stream broke.
+            Unavailable: it is time to give up.
+        """
+        if not _is_broken_stream(why):
+            raise why
         pause = self._pace.next_pause(time.monotonic(), why.retry_delay)
         if pause is None:
             silence = f"{self._pauses.give_up_after:g} s"
@@ -145,11 +142,25 @@ class _Watch:
                 f"gave up watching after {silence} without the server: {why}", code="UNAVAILABLE"
             ) from why
         self._observer.on_disconnect(why, pause)
-        time.sleep(pause)
-        try:
-            self._connection.revive(_LONGEST_CONNECTING)
-        except Unavailable:
-            pass  # the next attempt reports what goes wrong
+        return pause
+
+
+def ended_early() -> Error:
+    """Why a stream ended that had no error and no ended job."""
+    return Unavailable("the server ended the watch before the end of the job", code="UNAVAILABLE")
+
+
+def _read_stream(connection: Connection, watch: Attachments) -> Error:
+    """One stream to its end, and why it ended."""
+    stream = connection.open_stream(connection.ensembles.WatchEnsembleJob, watch.request)
+    try:
+        for message in stream:
+            watch.handle(message)
+    except grpc.RpcError as error:
+        return connection.error_of(error)
+    finally:
+        stream.cancel()
+    return ended_early()
 
 
 def _is_broken_stream(why: Error) -> bool:

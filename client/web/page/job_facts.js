@@ -42,9 +42,11 @@
   const chosen = (name) => (/UNSPECIFIED$/.test(name ?? '') ? null : words(name));
 
   function specFacts(spec) {
-    const grid = Object.entries(spec?.grid ?? {}).filter(([, values]) => values.length);
+    const {table = [], ...lists} = spec?.grid ?? {};
+    const grid = Object.entries(lists).filter(([, values]) => values.length);
     return facts([
       ...grid.map(([name, values]) => [symbolOf(name), gridText(values)]),
+      ['Rows of a table', table.map(symbolOf).join(', ')],
       ['Target', targetText(spec?.target)],
       ['Model', chosen(spec?.model) ?? 'auto'],
       ['Precision', chosen(spec?.precision) ?? 'double'],
@@ -89,9 +91,18 @@
     return durationText((new Date(job.end_time) - new Date(job.start_time)) / 1000);
   }
 
+  function labelsText(labels) {
+    return Object.entries(labels ?? {})
+      .map(([key, value]) => `${key}=${value}`)
+      .sort()
+      .join(', ');
+  }
+
   function jobFacts(job) {
     return facts([
       ['Job', element('code', {}, job.name)],
+      ['Labels', labelsText(job.labels)],
+      ['Continues', job.continues && element('code', {}, job.continues)],
       ['Principal', job.principal],
       ['Created', wholeTime(job.create_time)],
       ['Began', wholeTime(job.start_time)],

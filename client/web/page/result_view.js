@@ -72,14 +72,6 @@
     return table(caption, COLUMNS, rows, {class: 'estimates'});
   }
 
-  function entropyText(kl) {
-    if (!kl) return null;
-    const noise = isNumber(kl.noise_floor)
-      ? `; expected for equal laws: ${withError(kl.noise_floor, kl.noise_error)}`
-      : '';
-    return `${withError(kl.value, kl.standard_error)}${noise} (${countText(kl.cells)} cells)`;
-  }
-
   function healthText(health) {
     if (!health) return null;
     const escapes =
@@ -97,7 +89,6 @@
       ['Model', words(point.model)],
       ['Why this model', point.reason],
       ['Samples', point.samples > 0 ? countText(point.samples) : null],
-      ['Relative entropy to h⁽¹⁾', entropyText(point.kl_divergence)],
       ['Health', healthText(point.health)],
     ]);
   }

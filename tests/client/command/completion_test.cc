@@ -98,7 +98,7 @@ TEST_F(CompletionTest, OffersTheJobsOfARunningServer) {
   EXPECT_EQ(Offers({"cancel", "abc", "--verbose", ""}), Offers({"watch", ""}));
   EXPECT_EQ(Offers({"pin", "--undo", "abc", ""}), Offers({"watch", ""}));
   EXPECT_EQ(Offers({"submit", "--again", ""}), Offers({"watch", ""}));
-  EXPECT_THAT(Offers({"watch", "abc", ""}), Contains(StartsWith("--progress\t")));
+  EXPECT_THAT(Offers({"label", "abc", ""}), Contains(StartsWith("--server\t")));
 }
 
 TEST_F(CompletionTest, RequestsJobsWithoutGrids) {

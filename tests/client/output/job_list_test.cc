@@ -67,9 +67,9 @@ ensembleJobs/a  first-hit    succeeded     1       1        0  1970-01-01T00:00:
 TEST(JobList, CsvHasARowForEachJob) {
   EXPECT_EQ(
       PrintedJobs(Format::kCsv),
-      R"(name,experiment,state,points_done,points,samples,create_time,end_time,principal,priority,pinned,expire_time,results_expired,stored_bytes
-ensembleJobs/b,equilibrium,running,3,10,1234567,2023-11-14T22:13:20Z,,ann,0,false,,false,0
-ensembleJobs/a,first-hit,succeeded,1,1,0,1970-01-01T00:00:00Z,1970-01-01T00:01:00Z,ann,0,false,,false,0
+      R"(name,experiment,state,points_done,points,samples,create_time,end_time,principal,priority,pinned,expire_time,results_expired,stored_bytes,labels
+ensembleJobs/b,equilibrium,running,3,10,1234567,2023-11-14T22:13:20Z,,ann,0,false,,false,0,
+ensembleJobs/a,first-hit,succeeded,1,1,0,1970-01-01T00:00:00Z,1970-01-01T00:01:00Z,ann,0,false,,false,0,
 )");
 }
 
@@ -111,7 +111,7 @@ TEST(JobList, CsvAndJsonShowTheExpiryOfResults) {
   std::ostringstream csv, json;
   PrintJobs({job}, kNow, Format::kCsv, csv);
   PrintJobs({job}, kNow, Format::kJsonl, json);
-  EXPECT_THAT(csv.str(), EndsWith(",true,2023-11-14T22:13:20Z,true,70048\n"));
+  EXPECT_THAT(csv.str(), EndsWith(",true,2023-11-14T22:13:20Z,true,70048,\n"));
   for (const char* field : {"\"pinned\":true", "\"expire_time\":\"2023-11-14T22:13:20Z\"",
                             "\"results_expired\":true", "\"stored_bytes\":70048"}) {
     EXPECT_THAT(json.str(), HasSubstr(field));

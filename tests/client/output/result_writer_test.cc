@@ -95,12 +95,10 @@ TEST(ResultTable, AlignsAndRounds) {
   EXPECT_EQ(
       Written(Format::kTable),
       R"(first-hit, model billiard-reference, seed 7, engine 1  (ensembleJobs/abc, succeeded, 2 of 2 points)
- rho  delta  epsilon  exponent  samples  estimate            value    error  exact      z
-0.53    0.2        0         1    10000  mean_hit_time       21.63     0.12  21.62  +0.08
-0.53    0.2        0         1    10000  mean_sigma          -0.25
-0.53    0.2        0         1    10000  kl_divergence     0.00500  0.00020
-0.53    0.2        0         1    10000  kl_noise_floor    0.00250  0.00010
-0.53    0.1     0.25         1    10000  mean_hit_time   1.000e-07  2.0e-09
+ rho  delta  epsilon  exponent  samples  estimate           value    error  exact      z
+0.53    0.2        0         1    10000  mean_hit_time      21.63     0.12  21.62  +0.08
+0.53    0.2        0         1    10000  mean_sigma         -0.25
+0.53    0.1     0.25         1    10000  mean_hit_time  1.000e-07  2.0e-09
 )");
 }
 
@@ -149,8 +147,6 @@ TEST(ResultCsv, HasARowForEachPointAndEstimate) {
       R"(rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score,model_error,noise_floor,limit
 0.53,0.2,0,1,billiard-reference,10000,mean_hit_time,21.63214,0.1234,21.62257,0.0775527,,,
 0.53,0.2,0,1,billiard-reference,10000,mean_sigma,-0.25,,,,,,
-0.53,0.2,0,1,billiard-reference,10000,kl_divergence,0.005,2e-04,,,,,
-0.53,0.2,0,1,billiard-reference,10000,kl_noise_floor,0.0025,1e-04,,,,,
 0.53,0.1,0.25,1,billiard-reference,10000,mean_hit_time,1e-07,2e-09,,,,,
 )");
 }
@@ -225,7 +221,7 @@ TEST(ResultJson, HasReasonsAndCurves) {
 
 TEST(ResultJson, HasTheProtosNamesAndKeepsDefaults) {
   EXPECT_EQ(Written(Format::kJson), R"({"client_version": ")" BALLPISTON_VERSION R"(",
-"job": {"name":"ensembleJobs/abc","spec":{"experiment":"FIRST_HIT","target":{"estimate":"","samples":"10000"},"seed":"7","model":"MODEL_UNSPECIFIED","precision":"PRECISION_UNSPECIFIED","verify":false},"state":"SUCCEEDED","progress":{"points":2,"points_done":2,"samples":20000,"fraction":1},"engine_version":"1","work":0,"principal":"","priority":0,"answered_from_store":false,"pinned":false,"results_expired":false,"stored_bytes":0},
+"job": {"name":"ensembleJobs/abc","spec":{"experiment":"FIRST_HIT","target":{"estimate":"","samples":"10000"},"seed":"7","model":"MODEL_UNSPECIFIED","precision":"PRECISION_UNSPECIFIED","verify":false},"state":"SUCCEEDED","progress":{"points":2,"points_done":2,"samples":20000,"fraction":1},"engine_version":"1","work":0,"principal":"","priority":0,"answered_from_store":false,"pinned":false,"results_expired":false,"stored_bytes":0,"labels":{},"continues":"","continued_samples":0},
 "points": [
 {"index":0,"parameters":{"rho":0.53,"delta":0.2,"epsilon":0,"exponent":1},"model":"BILLIARD_REFERENCE","reason":"","samples":10000,"estimates":[{"name":"mean_hit_time","value":21.63214,"standard_error":0.1234,"exact":21.62257,"z_score":0.0775527},{"name":"mean_sigma","value":-0.25}],"kl_divergence":{"value":0.005,"noise_floor":0.0025,"cells":2000,"noise_error":0.0001,"standard_error":0.0002},"health":{"escapes":0,"max_energy_error":1e-12},"remarks":[],"histograms":[{"name":"alpha","sigma":1,"lower":0,"upper":0.5,"counts":[1,0],"expected_probabilities":[]}],"curves":[],"chunk_digests":[]},
 {"index":1,"parameters":{"rho":0.53,"delta":0.1,"epsilon":0.25,"exponent":1},"model":"BILLIARD_REFERENCE","reason":"","samples":10000,"estimates":[{"name":"mean_hit_time","value":1e-07,"standard_error":2e-09}],"remarks":[],"histograms":[],"curves":[],"chunk_digests":[]}
@@ -243,7 +239,8 @@ TEST(ResultJson, IsADocumentWithoutPoints) {
             "\",\n\"job\": "
             "{\"name\":\"\",\"state\":\"STATE_UNSPECIFIED\",\"engine_version\":\"\",\"work\":0,"
             "\"principal\":\"\",\"priority\":0,\"answered_from_store\":false,\"pinned\":false,"
-            "\"results_expired\":false,\"stored_bytes\":0},\n"
+            "\"results_expired\":false,\"stored_bytes\":0,\"labels\":{},\"continues\":\"\","
+            "\"continued_samples\":0},\n"
             "\"points\": [\n]}\n");
 }
 

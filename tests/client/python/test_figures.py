@@ -8,6 +8,7 @@ from __future__ import annotations
 import importlib
 import json
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -251,6 +252,19 @@ def test_tables_are_written_with_all_digits(tmp_path: Path) -> None:
     tables.write(tmp_path / "table.csv", table, "made by a test")
     text = (tmp_path / "table.csv").read_text()
     assert text == '# made by a test\nx,name\n0.1,"a, b"\n,c\n'
+
+
+def test_curves_of_one_name_are_chosen_from_a_result() -> None:
+    x = np.array([0.0, 1.0])
+    parts = {"x": x, "value": x, "standard_error": x, "limit": x}
+    profile = SimpleNamespace(name="temperature_profile", time=None, **parts)
+    cumulant = SimpleNamespace(name="charge_cumulant_2_by_window", time=x, **parts)
+    facts = {"parameters": {"hot": 2.0}, "model": "markov", "samples": 3.0}
+    result: Any = [SimpleNamespace(curves=[profile, cumulant], **facts)]
+    chosen = tables.curves(result, "temperature_profile")
+    assert chosen["position"].tolist() == [0, 1]
+    assert "time" not in chosen
+    assert tables.curves(result, "charge_cumulant_2_by_window")["time"].tolist() == [0, 1]
 
 
 def test_the_same_picture_gives_the_same_file(tmp_path: Path) -> None:

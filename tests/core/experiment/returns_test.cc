@@ -1,12 +1,8 @@
 #include "core/experiment/returns.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/ensemble/block_orbits.h"
-#include "tests/core/geometries.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 
 namespace ballpiston {
@@ -81,6 +77,9 @@ TEST(ReturnTimes, HistogramsAndDivergenceUseOnlyTheAngle) {
       RunPoint(SpecOf(&kFirstHit, PaperPoint(0.2, 0.3, 1), {.samples = 1'000}, Model::kBilliard));
   ASSERT_EQ(summary.histograms.size(), 1u);
   EXPECT_EQ(summary.kl_divergence->cells, 1000);
+  EXPECT_EQ(summary.estimates.back().name, "kl_divergence");
+  EXPECT_EQ(summary.estimates.back().value, summary.kl_divergence->value);
+  EXPECT_EQ(summary.estimates.back().noise_floor, summary.kl_divergence->noise_floor);
 }
 
 }  // namespace

@@ -151,7 +151,9 @@ class JobJournalTest : public testing::Test {
   void Finish(size_t point) {
     const EnsembleSpec spec = FakeSpec(3, 1);
     const auto experiment = FakeExperiments()(spec, point);
-    journal_->PointFinished(point, *experiment, FakeMerged(spec, point, 1), {});
+    PointFold fold(*experiment);
+    fold.Resume({.chunk = 1, .complete = FakeMerged(spec, point, 1)});
+    journal_->PointFinished(point, *experiment, fold);
   }
 
   TemporaryFolder folder_;

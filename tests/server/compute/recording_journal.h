@@ -47,10 +47,9 @@ class RecordingJournal : public RunJournal {
     work += seconds;
   }
 
-  void PointFinished(size_t point, const PointExperiment&, const BlockResult& result,
-                     const std::vector<uint64_t>&) override {
+  void PointFinished(size_t point, const PointExperiment&, const PointFold& fold) override {
     std::lock_guard lock(mutex);
-    finished.emplace(point, result);
+    finished.emplace(point, fold.Merged());
   }
 
   void Ended(const absl::Status& status) override {

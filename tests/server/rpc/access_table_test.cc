@@ -38,7 +38,7 @@ const std::map<std::string, Role>& LeastRoles() {
       {"PlanEnsembleJob", Role::kRead},     {"ListResults", Role::kRead},
       {"UpdateEnsembleJob", Role::kSubmit}, {"GetResult", Role::kRead},
       {"EvaluatePairs", Role::kRead},       {"GetServerStatus", Role::kRead},
-      {"TraceOrbit", Role::kSubmit}};
+      {"TraceOrbit", Role::kSubmit},        {"SampleCollisions", Role::kSubmit}};
   return *roles;
 }
 

@@ -593,10 +593,12 @@ TEST_F(StoreTest, ADeletedJobLeavesNothingAndItsSequenceIsNotUsedAgain) {
 
 TEST_F(StoreTest, ARestartForAnotherEngineDropsTheResults) {
   const auto store = Open();
-  const int64_t job = Insert(*store, Record("a"));
+  JobRecord record = Record("a");
+  const int64_t job = record.sequence = Insert(*store, record);
   store->RecordResult(job, {0, 1, "r"});
   store->RecordCheckpoint(job, 1, 0, [] { return "r"; });
-  ASSERT_OK(store->Commit([&](Database& database) { RestartJob(database, job, "2", "q"); }));
+  record.engine_version = "2";
+  ASSERT_OK(store->Commit([&](Database& database) { RestartJob(database, record); }));
   EXPECT_TRUE(Results(*store, job).empty());
   EXPECT_FALSE(Checkpoint(*store, job, 1));
   EXPECT_EQ(Find(*store, "a")->engine_version, "2");

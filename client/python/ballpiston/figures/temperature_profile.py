@@ -46,7 +46,7 @@ def measure(
     def profile(model: str, samples: float) -> Table:
         question = {"rho": rho, "delta": delta, "cells": cells, "hot": hot, "cold": cold}
         question |= {"model": model, "samples": samples, "seed": seed}
-        return curves(answer(client, "gas-conduction", **question))
+        return curves(answer(client, "gas-conduction", **question), "temperature_profile")
 
     return {
         "temperature-profile-markov": profile("markov", samples),

@@ -10,7 +10,6 @@ import importlib
 import importlib.util
 import inspect
 import json
-import re
 import sys
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
@@ -18,46 +17,15 @@ from types import ModuleType
 from typing import Any
 
 import ballpiston
-from ballpiston import errors
 from ballpiston.document import write_atomically
 from ballpiston.figures import names
 from ballpiston.figures.parts import style, tables
 from ballpiston.parameter_lists import number_list, whole_number
-
-# The exit codes of the program ballpiston; the first class that an error belongs to counts.
-_EXIT_CODES: list[tuple[type[BaseException], int]] = [
-    (errors.InvalidArgument, 2),
-    (errors.Unavailable, 3),
-    (errors.NotFound, 5),
-    (errors.PermissionDenied, 6),
-    (errors.Unauthenticated, 6),
-    (errors.Error, 4),
-    (KeyboardInterrupt, 130),
-    (OSError, 4),
-    (ValueError, 2),
-    (TypeError, 2),
-]
-
+from ballpiston.program import run_program
 
 def main(arguments: list[str]) -> int:
     """Returns the exit code."""
-    try:
-        for path in _run(_parsed(arguments)):
-            print(path)
-    except tuple(kind for kind, _ in _EXIT_CODES) as error:
-        if not isinstance(error, KeyboardInterrupt):
-            print(f"ballpiston: {_with_flags(error)}", file=sys.stderr)
-        return next(code for kind, code in _EXIT_CODES if isinstance(error, kind))
-    return 0
-
-
-def _with_flags(error: BaseException) -> str:
-    """The message, with flags in place of the specification's fields: --rho for spec.grid.rho[0]."""
-    message = str(error)
-    for field, _ in getattr(error, "violations", []):
-        flag = re.sub(r"\[\d+\]$", "", field).rpartition(".")[2].replace("_", "-")
-        message = message.replace(f"{field}:", f"--{flag}:")
-    return message
+    return run_program(lambda words: _run(_parsed(words)), arguments)
 
 
 def _parsed(arguments: list[str]) -> tuple[Namespace, dict[str, str]]:

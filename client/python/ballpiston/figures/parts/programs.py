@@ -7,8 +7,12 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from ballpiston.errors import Error, InvalidArgument
+from ballpiston.figures.parts.tables import Table
 from ballpiston.private_server import find_private_server
 
 
@@ -38,6 +42,13 @@ def output_of(program: str, *arguments: str, quiet: bool = False) -> str:
         kind = InvalidUse if ended.returncode == 2 else ProgramFailed
         raise kind(f"{program} failed with exit status {ended.returncode}")
     return ended.stdout
+
+
+def table_of(program: str, *arguments: str) -> Table:
+    """The table that the program prints as CSV; all its columns are numbers."""
+    lines = output_of(program, *arguments).splitlines()
+    columns: Any = np.genfromtxt(lines, delimiter=",", names=True, ndmin=1)
+    return {name: columns[name] for name in columns.dtype.names or ()}
 
 
 def _folders() -> list[str]:

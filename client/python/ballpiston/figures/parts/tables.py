@@ -63,8 +63,9 @@ def estimates(result: Result) -> Table:
     return _of_points(result, of)
 
 
-def curves(result: Result) -> Table:
-    """One row for each time, or position, of each curve of each point."""
+def curves(result: Result, *names: str) -> Table:
+    """One row for each time, or position, of each curve of each point; if there are names, of these
+    curves only. Functions of time and of the position do not fit into one table."""
 
     def of(point: Point) -> list[Table]:
         return [
@@ -76,6 +77,7 @@ def curves(result: Result) -> Table:
                 "limit": c.limit,
             }
             for c in point.curves
+            if not names or c.name in names
         ]
 
     return _of_points(result, of)

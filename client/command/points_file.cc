@@ -1,0 +1,132 @@
+#include "client/command/points_file.h"
+
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
+#include "client/command/number_list.h"
+#include "client/command/shape_list.h"
+#include "client/command/suggestion.h"
+#include "client/command/text_file.h"
+#include "client/library/quoted.h"
+
+namespace ballpiston::client {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using Columns = std::vector<const FieldDescriptor*>;
+using Texts = std::vector<absl::string_view>;
+
+class PointsReader {
+ public:
+  PointsReader(const std::string& name, v1::Grid& grid) : name_(name), grid_(grid) {}
+
+  absl::Status Read(absl::string_view csv) {
+    absl::ConsumePrefix(&csv, "\xEF\xBB\xBF");  // a mark that some programs write first
+    Texts lines = absl::StrSplit(csv, '\n');
+    while (!lines.empty() && absl::StripAsciiWhitespace(lines.back()).empty()) lines.pop_back();
+    if (lines.empty()) return Bad("is empty; its first line names the parameters");
+    if (lines.size() == 1) return Bad("has no row below its header");
+    if (absl::Status bad = ReadHeader(Cells(lines.front())); !bad.ok()) return bad;
+    if (lines.size() - 1 > kMaxListLength) {
+      return Bad(absl::StrCat("has ", lines.size() - 1, " rows; permitted: 1 to ", kMaxListLength));
+    }
+    for (size_t row = 0; row + 1 < lines.size(); ++row) {
+      if (absl::Status bad = ReadRow(row, Cells(lines[row + 1])); !bad.ok()) return bad;
+    }
+    return absl::OkStatus();
+  }
+
+ private:
+  absl::Status Bad(absl::string_view reason) const {
+    return absl::InvalidArgumentError(absl::StrCat("--points ", name_, ": ", reason));
+  }
+
+  static Texts Cells(absl::string_view line) {
+    Texts cells = absl::StrSplit(line, ',');
+    for (absl::string_view& cell : cells) cell = absl::StripAsciiWhitespace(cell);
+    return cells;
+  }
+
+  // The lists of a grid, except the names of the table's columns.
+  static std::vector<std::string> Parameters() {
+    std::vector<std::string> names;
+    for (int i = 0; i < v1::Grid::descriptor()->field_count(); ++i) {
+      names.push_back(v1::Grid::descriptor()->field(i)->name());
+    }
+    std::erase(names, "table");
+    return names;
+  }
+
+  absl::Status ReadHeader(const Texts& names) {
+    const std::vector<std::string> parameters = Parameters();
+    for (const absl::string_view name : names) {
+      const auto found = std::find(parameters.begin(), parameters.end(), name);
+      if (found == parameters.end()) {
+        return Bad(absl::StrCat("line 1: the column ", NotOneOf(name, parameters)));
+      }
+      const FieldDescriptor* field = v1::Grid::descriptor()->FindFieldByName(*found);
+      if (std::find(columns_.begin(), columns_.end(), field) != columns_.end()) {
+        return Bad(absl::StrCat("line 1: the column ", name, " is there twice"));
+      }
+      if (grid_.GetReflection()->FieldSize(grid_, field) > 0) {
+        return Bad(absl::StrCat("has the column ", name, ", and --", name,
+                                " is given; permitted: one of them"));
+      }
+      columns_.push_back(field);
+      grid_.add_table(*found);
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status ReadRow(size_t row, const Texts& cells) {
+    const std::string line = absl::StrCat("line ", LineOfRow(row));
+    if (cells.size() != columns_.size()) {
+      return Bad(absl::StrCat(line, " has ", cells.size(), " values; the header names ",
+                              columns_.size(), " columns"));
+    }
+    for (size_t i = 0; i < cells.size(); ++i) {
+      const absl::Status added = Add(*columns_[i], cells[i]);
+      if (added.ok()) continue;
+      return Bad(absl::StrCat(line, ", column ", columns_[i]->name(), ": ", added.message()));
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status Add(const FieldDescriptor& column, absl::string_view text) {
+    const google::protobuf::Reflection& reflection = *grid_.GetReflection();
+    if (column.cpp_type() == FieldDescriptor::CPPTYPE_STRING) {
+      absl::StatusOr<std::string> shape = ParseShape(text);
+      if (shape.ok()) reflection.AddString(&grid_, &column, *std::move(shape));
+      return shape.status();
+    }
+    const absl::StatusOr<double> number = ParseNumber(text);
+    if (number.ok()) reflection.AddDouble(&grid_, &column, *number);
+    return number.status();
+  }
+
+  const std::string& name_;
+  v1::Grid& grid_;
+  Columns columns_;
+};
+
+}  // namespace
+
+absl::Status ReadPoints(const std::string& path, v1::Grid& grid) {
+  const absl::StatusOr<TextFile> file = ReadTextFile("--points", path);
+  if (!file.ok()) return file.status();
+  return ParsePoints(file->name, file->text, grid);
+}
+
+absl::Status ParsePoints(const std::string& name, absl::string_view csv, v1::Grid& grid) {
+  return PointsReader(name, grid).Read(csv);
+}
+
+}  // namespace ballpiston::client

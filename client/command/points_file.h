@@ -1,0 +1,24 @@
+// A table of points from a CSV file: a header with the names of parameters, in any order, then a
+// row for each point. --points reads it.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/strings/string_view.h"
+#include "ballpiston/v1/spec.pb.h"
+
+namespace ballpiston::client {
+
+// Row k of the table, from 0, is this line of the file.
+constexpr size_t LineOfRow(size_t row) { return row + 2; }
+
+// Reads the file, or standard input if the path is `-`, into the lists of the grid, and names them
+// in its table. INVALID_ARGUMENT names the line and the column of an error.
+absl::Status ReadPoints(const std::string& path, v1::Grid& grid);
+
+// `name` stands for the file in errors.
+absl::Status ParsePoints(const std::string& name, absl::string_view csv, v1::Grid& grid);
+
+}  // namespace ballpiston::client

@@ -1,0 +1,51 @@
+// ballpiston sample: writes the collisions of a point's samples to a file, as CSV or, by the Python
+// package, as NumPy arrays.
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "client/command/python.h"
+#include "client/command/question.h"
+#include "client/output/collision_csv.h"
+#include "client/output/json.h"
+#include "client/output/new_file.h"
+
+namespace ballpiston::client {
+namespace {
+
+VerbResult WriteCsv(const Connection& connection, const v1::EnsembleSpec& spec,
+                    const std::string& path, Terminal& terminal) {
+  NewFile file("--out", path);
+  PrintCollisionHeader(file.out());
+  const absl::Status read =
+      connection.client.Sample(spec, [&](const v1::SampleCollisionsResponse& message) {
+        PrintCollisions(message, file.out());
+        return file.out().good();
+      });
+  if (!read.ok()) return read;
+  if (absl::Status kept = file.Keep(); !kept.ok()) return kept;
+  terminal.out << path << '\n';
+  return ExitCode::kDone;
+}
+
+absl::Status CheckOut(const std::string& path) {
+  const bool is_known = absl::EndsWith(path, ".csv") || absl::EndsWith(path, ".npz") ||
+                        absl::EndsWith(path, ".parquet");
+  if (is_known) return CheckNewFile("--out", path);
+  return absl::InvalidArgumentError("--out: name a file .csv, .npz or .parquet");
+}
+
+}  // namespace
+
+VerbResult Sample(const Options& options, Terminal& terminal) {
+  if (absl::Status bad = CheckOut(options.out); !bad.ok()) return bad;
+  return WithQuestion(
+      options, terminal,
+      [&](const Connection& connection, const v1::EnsembleSpec& spec) -> VerbResult {
+        if (absl::EndsWith(options.out, ".csv")) {
+          return WriteCsv(connection, spec, options.out, terminal);
+        }
+        return RunPythonProgram("ballpiston.sample", {Json(spec), "--out", options.out},
+                                "python3-ballpiston", options, terminal);
+      });
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,62 @@
+#include "client/command/selection.h"
+
+#include <iostream>
+
+#include "absl/status/status.h"
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "client/output/number_text.h"
+
+namespace ballpiston::client {
+namespace {
+
+absl::Status CheckSelection(const Options& options) {
+  if (options.jobs.empty() && options.labels.empty()) {
+    return absl::InvalidArgumentError("name a JOB, or give --label KEY=VALUE");
+  }
+  if (options.jobs.empty() || options.labels.empty()) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      "--label and names of jobs exclude each other: give one of them");
+}
+
+absl::StatusOr<std::vector<std::string>> SelectedJobs(const Connection& connection,
+                                                      const Options& options,
+                                                      const JobStates& states) {
+  if (options.labels.empty()) return options.jobs;
+  v1::ListEnsembleJobsRequest request;
+  request.set_view(v1::ListEnsembleJobsRequest::BASIC);
+  request.mutable_labels()->insert(options.labels.begin(), options.labels.end());
+  for (const auto state : states) request.add_states(state);
+  const auto jobs = connection.Ask([&] { return connection.client.List(request); });
+  if (!jobs.ok()) return jobs.status();
+  if (jobs->empty()) return absl::NotFoundError("no job with these labels is there to act on");
+  std::vector<std::string> names;
+  for (const v1::EnsembleJob& job : *jobs) names.push_back(job.name());
+  return names;
+}
+
+}  // namespace
+
+VerbResult WithJobs(const Options& options, const Terminal& terminal, const JobStates& states,
+                    const VerbOfJobs& verb) {
+  if (absl::Status bad = CheckSelection(options); !bad.ok()) return bad;
+  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
+    const auto names = SelectedJobs(connection, options, states);
+    if (!names.ok()) return names.status();
+    return verb(connection, *names);
+  });
+}
+
+absl::Status Confirm(const std::string& action, const std::vector<std::string>& names,
+                     const Options& options, const Terminal& terminal) {
+  if (options.labels.empty() || options.yes) return absl::OkStatus();
+  terminal.err << action << ' ' << Counted(static_cast<double>(names.size()), "job") << "? [y/N] "
+               << std::flush;
+  std::string answer;
+  std::getline(std::cin, answer);
+  absl::AsciiStrToLower(&answer);
+  if (answer == "y" || answer == "yes") return absl::OkStatus();
+  return absl::CancelledError("nothing was changed (--yes answers the question)");
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,77 @@
+"""The collisions of a point's samples as NumPy arrays: the raw data behind its estimates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ballpiston.connection import Connection
+from ballpiston.trace import stream_messages
+from ballpiston.v1 import trace_pb2
+
+Records = npt.NDArray[Any]
+
+_FIELDS = [field.name for field in trace_pb2.SampleCollisionsResponse.DESCRIPTOR.fields]
+# By number of the field, from 1. All have 8 bytes.
+_RECORD = np.dtype([(name, "<u8" if name == "sample" else "<f8") for name in _FIELDS])
+
+
+class Collisions:
+    """An iterator of structured arrays, each of at most 1,024 collisions in the order of samples.
+    The server computes only as fast as they are read.
+
+    The fields: sample, time (since the orbit's start), free_time, x, y, ball_vx, ball_vy, piston_vx,
+    ball_vx_after, piston_vx_after, piston_energy, piston_energy_after.
+    """
+
+    def __init__(self, connection: Connection, spec: Any) -> None:
+        request = trace_pb2.SampleCollisionsRequest(spec=spec)
+        self._messages = stream_messages(connection, connection.traces.SampleCollisions, request)
+
+    def __iter__(self) -> Iterator[Records]:
+        return self
+
+    def __next__(self) -> Records:
+        return _records_of(next(self._messages))
+
+    def all(self) -> Records:
+        """The rest as one array."""
+        parts = list(self)
+        return np.concatenate(parts) if parts else np.empty(0, _RECORD)
+
+    def to_parquet(self, path: Path | str) -> None:
+        """Writes the rest as a file of columns.
+
+        Raises:
+            ModuleNotFoundError: this needs pandas and pyarrow.
+        """
+        import pandas
+
+        pandas.DataFrame(self.all()).to_parquet(path, index=False)
+
+
+def _records_of(message: Any) -> Records:
+    """From the wire format, where a column is its number, its length in bytes and an array of
+    little-endian numbers of 8 bytes: ten times as fast as through a list of numbers."""
+    records = np.empty(len(message.sample), _RECORD)
+    wire, at = message.SerializeToString(), 0
+    while at < len(wire):
+        name = _FIELDS[(wire[at] >> 3) - 1]
+        length, at = _varint(wire, at + 1)
+        records[name] = np.frombuffer(wire, _RECORD[name], length // 8, at)
+        at += length
+    return records
+
+
+def _varint(wire: bytes, at: int) -> tuple[int, int]:
+    """The number at this place, and the place after it."""
+    value = shift = 0
+    while wire[at] & 0x80:
+        value |= (wire[at] & 0x7F) << shift
+        shift += 7
+        at += 1
+    return value | wire[at] << shift, at + 1

@@ -1,0 +1,86 @@
+"""The estimates of many jobs in one table: a row for each estimate of each point."""
+
+from __future__ import annotations
+
+import csv
+import sys
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ballpiston.errors import ResultsExpired
+from ballpiston.job import Job
+from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS
+
+Table = dict[str, npt.NDArray[Any]]
+
+_OF_JOB = ("job", "labels", "experiment", "seed", "engine_version")
+_TEXTS = (*_OF_JOB, "cells", "model", "name")
+_COLUMNS = (*_OF_JOB, "index", *PARAMETERS, "model", "samples", "name", "value", *ESTIMATE_FIELDS)
+
+
+def estimates_table(jobs: Iterable[Job]) -> Table:
+    """Columns of equal length, NaN or "" where a value is absent. Jobs whose results have expired
+    are left out, with a note on standard error."""
+    rows = [row for job in jobs for row in _rows(job)]
+    return {
+        name: np.array([row.get(name, "" if name in _TEXTS else np.nan) for row in rows])
+        for name in _COLUMNS
+    }
+
+
+def _rows(job: Job) -> Iterator[dict[str, Any]]:
+    try:
+        result = job.result()
+    except ResultsExpired:
+        print(f"ballpiston: {job.name} is left out: its results have expired", file=sys.stderr)
+        return
+    of_job = {
+        "job": job.name,
+        "labels": " ".join(f"{key}={value}" for key, value in sorted(job.labels.items())),
+        "experiment": job.experiment,
+        "seed": str(job.specification.seed),  # it may have more digits than a float
+        "engine_version": job.message.engine_version,
+    }
+    for point in result:
+        of_point = {"index": point.index, "model": point.model, "samples": point.message.samples}
+        for estimate in point.message.estimates:
+            fields = {f: getattr(estimate, f) for f in ESTIMATE_FIELDS if estimate.HasField(f)}
+            value = {"name": estimate.name, "value": estimate.value}
+            yield {**of_job, **point.parameters, **of_point, **value, **fields}
+
+
+def write_table(path: Path, table: Table) -> None:
+    """Writes .csv, .npz or .parquet by the ending: the whole file or none.
+
+    Raises:
+        ModuleNotFoundError: .parquet needs pandas and pyarrow.
+    """
+    part = path.with_name(f".{path.name}.part")
+    try:
+        _write(part, path.suffix, table)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _write(path: Path, ending: str, table: Table) -> None:
+    if ending == ".csv":
+        with path.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(table)
+            writer.writerows(map(_texts, zip(*(column.tolist() for column in table.values()))))
+    elif ending == ".npz":
+        with path.open("wb") as file:
+            np.savez_compressed(file, **table)
+    else:
+        import pandas
+
+        pandas.DataFrame(table).to_parquet(path, index=False)
+
+
+def _texts(row: Iterable[Any]) -> list[str]:
+    return ["" if value != value else str(value) for value in row]  # NaN differs from itself

@@ -1,0 +1,156 @@
+"""Cumulants of the charge through chains of the jump process against 1/N, and their limits
+
+N c_n/(kappa_0 t): the cumulants of the energy that passes through a chain of N cells in a long time
+t, over the conductivity kappa_0 at temperature 1, each divided by its limit of the additivity
+principle. Lines are polynomials in 1/N. Time on one core: quick 10 s, default 3 min, full 10 min.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ballpiston.client import Client
+from ballpiston.figures.parts import fits, style
+from ballpiston.figures.parts.asking import RHO, answer
+from ballpiston.figures.parts.charge import growth
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct, rows, table
+from ballpiston.parameter_lists import Shapes
+from ballpiston.point import Point
+
+EFFORT = {
+    "quick": {"cells": "4,6,8,12", "collisions": 2e7},
+    "full": {"cells": "4,6,8,12,16,24,32,64", "collisions": 3e8},
+}
+
+_RATIO = 1 - 0.0018073  # the chain's conductivity over the static one (docs/conductivity.md)
+_CAPACITY = 1.5  # of a cell, for heat
+_NODES = 40  # of Gauss's quadrature
+_POINTS = 400  # of the grid of the slowest profile
+_DEGREE = 2  # of the polynomials in 1/N
+_WINDOWS = 5  # 1/2, 1, 2, 4 and 8 relaxation times
+
+
+def measure(
+    client: Client,
+    *,
+    rho: float = RHO,
+    delta: float = 0.2,
+    cells: Shapes = "4,6,8,12,16,24,32",
+    hot: float = 1.5,
+    cold: float = 0.5,
+    collisions: float = 1e8,
+    seed: int = 0,
+) -> Tables:
+    """The scaled cumulants of each chain, from `collisions` exchanges, and their extrapolations."""
+    question = {"rho": rho, "delta": delta, "cells": cells, "hot": hot, "cold": cold}
+    question |= {"model": "markov", "collisions": collisions, "seed": seed}
+    result = answer(client, "gas-conduction", **question)
+    rate = slowest_rate(hot, cold)
+    found = table(row for point in result for row in _scaled(point, (hot + cold) / 2, rate))
+    return {"full-counting": found, "full-counting-limits": extrapolated(found, hot, cold)}
+
+
+def limits(hot: float, cold: float) -> FloatArray:
+    """N c_n/(kappa_0 t) for n = 1 to 4 by the additivity principle, with the conductivity
+    kappa_0 sqrt(T) and the mobility 2 kappa_0 T^(5/2) (Bodineau and Derrida 2004)."""
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)  # type: ignore[no-untyped-call]
+    t = (hot + cold) / 2 + (hot - cold) / 2 * nodes
+    i1, i2, i3, i4 = (
+        (hot - cold) / 2 * weights @ (np.sqrt(t) * (2 * t**2.5) ** (n - 1)) for n in range(1, 5)
+    )
+    third = 3 * (i3 * i1 - i2**2) / i1**3
+    fourth = 3 * (5 * i4 * i1**2 - 14 * i1 * i2 * i3 + 9 * i2**3) / i1**5
+    return np.array([i1, i2 / i1, third, fourth])
+
+
+def slowest_rate(hot: float, cold: float) -> float:
+    """The least eigenvalue m of f'' = -m T^(-1/2) f, f(0) = f(1) = 0, where T^(3/2) is linear. The
+    slowest temperature profile of a long chain decays at the rate m kappa_0/(1.5 N^2)."""
+    x = np.arange(1, _POINTS) / _POINTS
+    fourth_root = (hot**1.5 + (cold**1.5 - hot**1.5) * x) ** (1 / 6)
+    second = 2 * np.eye(len(x)) - np.eye(len(x), k=1) - np.eye(len(x), k=-1)
+    matrix = fourth_root[:, np.newaxis] * second * fourth_root * _POINTS**2
+    return float(np.linalg.eigvalsh(matrix)[0])
+
+
+def _scaled(point: Point, temperature: float, rate: float) -> list[dict[str, float]]:
+    """One row for each cumulant and window. `time` is in units of the slowest decay; it is infinite
+    for the current."""
+    cells = int(point.parameters["cells"])
+    ratio = point["conductivity_ratio"] * np.sqrt(temperature)
+    kappa = _RATIO * point["conductivity"] / ratio
+    unit = cells / kappa
+    current, error = point["heat_current"], point.error("heat_current")
+    assert error is not None
+    found: list[tuple[Any, ...]] = [(1, np.inf, current, error)]
+    for order in (2, 3, 4):
+        grown = growth(point, order)
+        time = grown["time"] * rate * kappa / (_CAPACITY * cells**2)
+        chosen = (column[:_WINDOWS] for column in (time, grown["value"], grown["standard_error"]))
+        found += [(order, *numbers) for numbers in zip(*chosen)]
+    return [
+        {"cells": cells, "order": n, "time": t, "value": unit * value, "standard_error": unit * e}
+        for n, t, value, e in found
+    ]
+
+
+def transient(time: FloatArray) -> FloatArray:
+    """What exp(-t) in a cumulant adds to [c_n(2 t) - c_n(t)]/t."""
+    finite = np.where(np.isfinite(time), time, 1.0)
+    added: FloatArray = (np.exp(-2 * finite) - np.exp(-finite)) / finite
+    return np.where(np.isfinite(time), added, 0.0)
+
+
+def extrapolated(found: Table, hot: float, cold: float) -> Table:
+    """Fits of a0 + a1/N + a2/N^2 + b transient, where b is 0 for the first two cumulants, and the
+    limits. `plain_chi_squared` is that of a fit with b = 0."""
+    fitted = []
+    for order, limit in enumerate(limits(hot, cold), 1):
+        part = rows(found, order=order)
+        terms = fits.powers(1 / part["cells"].astype(float), _DEGREE)
+        plain = fit = fits.linear(terms, part["value"], part["standard_error"])
+        if order > 2:
+            terms = np.column_stack([terms, transient(part["time"])])
+            fit = fits.linear(terms, part["value"], part["standard_error"])
+        row = {"order": order, "limit": limit, "standard_error": fit.errors[0]}
+        names = [f"a{k}" for k in range(_DEGREE + 1)] + ["b"]
+        row |= {"b": 0.0} | dict(zip(names, fit.coefficients))
+        row |= {"chi_squared": fit.chi_squared, "freedom": fit.freedom}
+        fitted.append(row | {"plain_chi_squared": plain.chi_squared})
+    return table(fitted)
+
+
+@style.styled
+def draw(tables: Tables) -> Figure:
+    """One panel for each cumulant. A point is the mean over the windows, without the transient."""
+    figure = style.picture(960, 720)
+    panels = figure.subplots(2, 2)
+    names = ("mean", "variance", "third cumulant", "fourth cumulant")
+    for order, (axes, name) in enumerate(zip(panels.flat, names), 1):
+        style.title(axes, "abcd"[order - 1], name)
+        fit = rows(tables["full-counting-limits"], order=order)
+        _draw_cumulant(axes, rows(tables["full-counting"], order=order), fit)
+    style.outer_labels(panels, "1/N", "over its limit")
+    return figure
+
+
+def _draw_cumulant(axes: Any, part: Table, fit: Table) -> None:
+    limit = fit["limit"][0]
+    settled = part | {"value": part["value"] - fit["b"][0] * transient(part["time"])}
+    chains = [rows(settled, cells=cells) for cells in distinct(part["cells"])]
+    means = [fits.mean(chain["value"], chain["standard_error"]) for chain in chains]
+    share = np.array([1 / chain["cells"][0] for chain in chains])
+    x = np.linspace(0, 1.05 * share.max(), 100)
+    curve = fits.powers(x, _DEGREE) @ [fit[f"a{k}"][0] for k in range(_DEGREE + 1)]
+    style.level(axes, 1, color=style.ORANGE, label=f"limit {limit:.5g}")
+    axes.plot(x, curve / limit, color=style.GREY)
+    value = np.array([mean.coefficients[0] for mean in means]) / limit
+    error = np.array([mean.errors[0] for mean in means]) / limit
+    style.error_points(axes, share, value, error, style.BLUE)
+    end = {"color": style.GREEN, "label": "N → ∞"}
+    style.error_points(axes, [0], fit["a0"] / limit, fit["standard_error"] / limit, **end)
+    axes.set(xlim=(-0.02 * x[-1], x[-1]), ylim=(0.85, 1.3))
+    axes.legend()

@@ -1,0 +1,166 @@
+"""The billiard's integral time beyond its limit: which part of it is a logarithm of delta
+
+The integral over the energy's autocorrelation in equilibrium, over a window, has two parts: pairs
+that do not collide between the two times (idle), and pairs that do (met). Differences from the
+limit delta -> 0 are shares of the limit's integral time.
+
+a  the growth of both parts beyond a window of 8 mean free times, at the first delta; the line is
+   the law of slow pistons
+b  the differences at 8 mean free times over x = (lambda + 2 delta)/tau_bp, against log(1/x); lines
+   are fits
+
+The program `slow_pistons` measures them. Time on one core: quick 5 s, default 2 min, full 15 min.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ballpiston.client import Client
+from ballpiston.figures.parts import fits, style
+from ballpiston.figures.parts.asking import RHO
+from ballpiston.figures.parts.programs import table_of
+from ballpiston.figures.parts.tables import (
+    FloatArray,
+    Table,
+    Tables,
+    distinct,
+    rows,
+    stacked,
+    table,
+)
+from ballpiston.parameter_lists import Numbers, number_list
+
+EFFORT: dict[str, dict[str, Any]] = {"quick": {"samples": 2048}, "full": {"samples": 131_072}}
+
+PARTS = ("all", "idle", "met")
+_INTEGRAL_TIME = 0.541387668432  # of the limit, in mean free times (docs/markov-limit.md)
+_AT_REST = 1.25  # e^2/<e^2> of a piston at rest, with e = ep - 1/6
+_ASIDE = 0.03  # shift of points, so that all are visible
+_SHOWN = (-4, 6)  # of panel b
+_FEWER_BELOW = 0.05  # orbits cost 1/delta^2; below this delta there are fewer of them
+
+
+def measure(
+    client: Client,
+    *,
+    rho: float = RHO,
+    delta: Numbers = "0.2,0.14,0.1,0.07,0.05,0.025",
+    samples: float = 16_384,
+    seed: int = 0,
+) -> Tables:
+    """The parts of the integral at each delta by window, from `samples` orbits of 256 mean free times, and
+    the fits. At delta below 0.05 there are orbits (delta/0.05)^2."""
+    forms = client.analytic(rho, delta)
+    found = []
+    for d, width, tau in zip(
+        number_list("delta", delta), forms["lambda"].tolist(), forms["tau_ball_piston"].tolist()
+    ):
+        count = int(samples * min(1.0, (d / _FEWER_BELOW) ** 2))
+        flags = {"rho": rho, "delta": d, "orbits": count, "seed": seed}
+        texts = [text for name, value in flags.items() for text in (f"--{name}", f"{value!r}")]
+        windows = table_of("slow_pistons", "windows", *texts)
+        facts = {"delta": d, "x": (width + 2 * d) / tau}
+        facts["law"] = _AT_REST * (width + d) ** 2 / (width + 2 * d) / tau
+        ones = np.ones(len(windows["window"]))
+        found.append({name: fact * ones for name, fact in facts.items()} | windows)
+    whole = stacked(found)
+    return {
+        "logarithm": whole,
+        "logarithm-delta": logarithms_of_delta(whole),
+        "logarithm-window": logarithms_of_window(whole),
+    }
+
+
+def excess(windows: Table, part: str) -> tuple[FloatArray, FloatArray]:
+    """The difference of a part from its limit, a share of the limit's integral time, and its
+    error."""
+    limits = {"all": windows["limit_all"], "idle": windows["limit_idle"]}
+    limits["met"] = limits["all"] - limits["idle"]
+    value = windows[part] - limits[part]
+    return value / _INTEGRAL_TIME, windows[f"{part}_error"] / _INTEGRAL_TIME
+
+
+def logarithms_of_delta(whole: Table) -> Table:
+    """Of each part at the first window, fits of the difference by a x + b x log(1/x), and by a x
+    alone."""
+    first = rows(whole, window=whole["window"].min())
+    x, found = first["x"], []
+    for part in PARTS:
+        both = fits.linear(np.column_stack([x, x * np.log(1 / x)]), *excess(first, part))
+        plain = fits.linear(x[:, np.newaxis], *excess(first, part))
+        row = {"part": part, "a": both.coefficients[0], "a_error": both.errors[0]}
+        row |= {"b": both.coefficients[1], "b_error": both.errors[1]}
+        row |= {"chi_squared": both.chi_squared, "freedom": both.freedom}
+        row |= {"plain_a": plain.coefficients[0], "plain_a_error": plain.errors[0]}
+        found.append(row | {"plain_chi_squared": plain.chi_squared, "plain_freedom": plain.freedom})
+    return table(found)
+
+
+def logarithms_of_window(whole: Table) -> Table:
+    """Of both parts and at each delta from 0.05 on, a fit of the growth from W to 2 W by
+    ratio law ln 2 + c/(2 W). `law` is that of slow pistons; slow balls have a term 1/W."""
+    found = []
+    for delta in distinct(whole["delta"]):
+        windows = rows(whole, delta=delta)
+        if delta < _FEWER_BELOW:
+            continue  # too few orbits have a piston that is slow enough
+        row = {"delta": delta, "law": windows["law"][0] / _INTEGRAL_TIME}
+        for part in PARTS[1:]:
+            fit = _growth(windows, part)
+            row |= {part: fit.coefficients[0], f"{part}_error": fit.errors[0]}
+            row |= {f"{part}_chi_squared": fit.chi_squared, "freedom": fit.freedom}
+        found.append(row)
+    return table(found)
+
+
+def _growth(windows: Table, part: str) -> fits.Fit:
+    """The errors are those of increments that are independent of each other."""
+    limit = windows["limit_idle"] * (1 if part == "idle" else -1)
+    limit += 0 if part == "idle" else windows["limit_all"]
+    value = np.diff(windows[f"later_{part}"] - limit)
+    error = np.sqrt(np.diff(windows[f"later_{part}_error"] ** 2))
+    shorter = windows["window"][:-1]
+    terms = np.column_stack([windows["law"][:-1] * np.log(2), 1 / (2 * shorter)])
+    return fits.linear(terms, value, error)
+
+
+@style.styled
+def draw(tables: Tables) -> Figure:
+    """Both panels."""
+    figure = style.picture(960, 480)
+    left, right = figure.subplots(1, 2)
+    whole = tables["logarithm"]
+    _draw_growth(left, rows(whole, delta=whole["delta"][0]))
+    first = rows(whole, window=whole["window"].min())
+    for k, part in enumerate(PARTS):
+        value, error = excess(first, part)
+        logarithm = np.log(1 / first["x"])
+        fit = rows(tables["logarithm-delta"], part=part)
+        line = np.linspace(logarithm.min(), logarithm.max(), 2)
+        right.plot(line, fit["a"] + fit["b"] * line, color=style.colour(k))
+        shown = logarithm + _ASIDE * (k - 1), value / first["x"], error / first["x"]
+        style.error_points(right, *shown, style.colour(k), part)
+    style.level(right, 0)
+    style.title(right, "b", "difference up to 8, over x")
+    right.set(xlabel="log(1/x)", ylim=_SHOWN)
+    right.legend(loc="lower left")
+    return figure
+
+
+def _draw_growth(axes: Any, windows: Table) -> None:
+    logarithm = np.log(windows["window"] / windows["window"][0])
+    law = windows["law"] * logarithm / _INTEGRAL_TIME
+    axes.plot(windows["window"], law, color=style.BLACK, label="law of slow pistons")
+    for k, part in enumerate(PARTS[1:], 1):
+        value, error = (windows[f"later_{part}{end}"] / _INTEGRAL_TIME for end in ("", "_error"))
+        style.error_points(axes, windows["window"], value, error, style.colour(k), part)
+    style.level(axes, 0)
+    axes.set_xscale("log")
+    style.plain_log_ticks(axes.xaxis, windows["window"].tolist())
+    style.title(axes, "a", f"growth beyond 8, δ = {windows['delta'][0]:g}")
+    axes.set(xlabel="window, mean free times")
+    axes.legend()

@@ -1,0 +1,45 @@
+"""Growth of the cumulants of the charge of gas-conduction, from window to window.
+
+The result has v(t) = c_n(t)/t at windows that double. Its part that falls as 1/t cancels in
+
+    growth(t) = [c_n(2 t) - c_n(t)]/t = 2 v(2 t) - v(t)
+
+If successive windows are independent and Gaussian, the estimates of v(t) and v(2 t) have the
+correlation 2^((1 - n)/2), and the estimates of v(2 t) - v(t) at different t are independent for
+n = 2. The errors here are those.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ballpiston.figures.parts.tables import Table
+from ballpiston.point import Point
+
+
+def growth(point: Point, order: int) -> Table:
+    """The growth between the windows `time` and 2 `time`."""
+    return _combined(point, order, longer=2.0)
+
+
+def increase(point: Point, order: int) -> Table:
+    """v(2 t) - v(t), which is 0 at long times if c_n grows as t."""
+    return _combined(point, order, longer=1.0)
+
+
+def _combined(point: Point, order: int, longer: float) -> Table:
+    """longer v(2 t) - v(t), and v(t) as `shorter`."""
+    names = {curve.name for curve in point.curves}
+    if (name := f"charge_cumulant_{order}_by_window") not in names:
+        return {part: np.empty(0) for part in ("time", "shorter", "value", "standard_error")}
+    curve = point.curve(name)
+    v, error = curve.value, curve.standard_error
+    correlation = 2 ** ((1 - order) / 2)
+    variance = (longer * error[1:]) ** 2 + error[:-1] ** 2
+    variance -= 2 * longer * correlation * error[1:] * error[:-1]
+    return {
+        "time": curve.x[:-1],
+        "shorter": v[:-1],
+        "value": longer * v[1:] - v[:-1],
+        "standard_error": np.sqrt(variance),
+    }

@@ -1,0 +1,38 @@
+"""Weighted least squares: linear models of independent values with known errors."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ballpiston.figures.parts.tables import FloatArray
+
+
+class Fit(NamedTuple):
+    """Coefficients with their standard errors, and chi-squared with its degrees of freedom."""
+
+    coefficients: FloatArray
+    errors: FloatArray
+    chi_squared: float
+    freedom: int
+
+
+def linear(terms: FloatArray, values: FloatArray, errors: FloatArray) -> Fit:
+    """values = terms @ coefficients; one row of `terms` for each value."""
+    weighted = terms / errors[:, np.newaxis]
+    covariance = np.linalg.inv(weighted.T @ weighted)
+    coefficients = covariance @ weighted.T @ (values / errors)
+    residuals = (values - terms @ coefficients) / errors
+    freedom = len(values) - terms.shape[1]
+    return Fit(coefficients, np.sqrt(np.diag(covariance)), float(residuals @ residuals), freedom)
+
+
+def powers(x: FloatArray, highest: int) -> FloatArray:
+    """The terms 1, x, ..., x^highest of a polynomial."""
+    return np.vander(x, highest + 1, increasing=True)
+
+
+def mean(values: FloatArray, errors: FloatArray) -> Fit:
+    """The weighted mean."""
+    return linear(np.ones((len(values), 1)), values, errors)

@@ -1,0 +1,152 @@
+"""Slow pistons between two reservoirs: the variance of the charge grows as t ln t
+
+The charge Q is the energy that passes through one cell from a hot to a cold reservoir in a time t.
+Slow pistons block it for long times. The law is that Var(Q)/t grows by 2 a J^2 in each e-fold of t,
+with the current J and a = lim s P(a piston exchanges nothing during s), summed over both pistons.
+
+a  Var(Q)/t over its value at the first window: the billiard at the first delta, in equilibrium, and
+   the jump process
+b  the growth of Var(Q)/t over the law, at each cold temperature and at each delta
+
+The program `slow_pistons` measures a. Time on one core: quick 20 s, default 3 min, full 20 min.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ballpiston.client import Client
+from ballpiston.figures.parts import fits, style
+from ballpiston.figures.parts.asking import RHO, answer
+from ballpiston.figures.parts.charge import increase
+from ballpiston.figures.parts.programs import table_of
+from ballpiston.figures.parts.tables import Table, Tables, curves, rows, stacked, table
+from ballpiston.parameter_lists import Numbers, number_list
+from ballpiston.point import Point
+from ballpiston.result import Result
+
+EFFORT: dict[str, dict[str, Any]] = {
+    "quick": {"delta": "0.2", "cold": "0.1,0.01", "samples": 1e5, "blocks": 4},
+    "full": {"samples": 3e6, "blocks": 20},
+}
+
+_BLOCK = 1e6  # of time, in which the program measures a
+_IDLE_TIME = 64.0  # s at which a is taken
+_FROM, _TO = 3, 300  # the windows of a fit: 4 to 256 stretches, which are half a relaxation time
+_SHOWN = slice(2, 10)  # of the windows, from 4 stretches on
+_CURVE = "charge_cumulant_2_by_window"
+_COLD = 0.01  # where delta varies, and of the jump process
+
+
+def measure(
+    client: Client,
+    *,
+    rho: float = RHO,
+    delta: Numbers = "0.2,0.15,0.1",
+    cold: Numbers = "0.5,0.1,0.03,0.01,0.001",
+    samples: float = 3e5,
+    blocks: int = 6,
+    seed: int = 0,
+) -> Tables:
+    """The variance by window, a of each piston, and the growth beside its law. The hot temperature
+    is 1. All of `cold` are measured at the first delta, all of `delta` at the cold temperature
+    0.01. `samples` are stretches of the chain; `blocks`, of a million units of time, measure a."""
+
+    def gas(model: str, delta: Numbers, cold: Numbers) -> Result:
+        question = {"rho": rho, "delta": delta, "cells": 1, "hot": 1, "cold": cold, "seed": seed}
+        return answer(client, "gas-conduction", model=model, samples=samples, **question)
+
+    one, *others = number_list("delta", delta)
+    cases = [gas("billiard", one, cold)] + ([gas("billiard", others, _COLD)] if others else [])
+    points = [point for result in cases for point in result]
+    controls = [gas("billiard", one, 1), gas("markov", one, _COLD)]
+    idle = [_idle(point, blocks, seed) for point in points]
+    return {
+        "slow-pistons-windows": stacked([curves(r, _CURVE) for r in cases + controls]),
+        "slow-pistons-idle": stacked(idle),
+        "slow-pistons": table(map(_growth_and_law, points, idle)),
+        "slow-pistons-controls": table(
+            _growth(point) | {"model": point.model} for result in controls for point in result
+        ),
+    }
+
+
+def _idle(point: Point, blocks: int, seed: int) -> Table:
+    """a of each piston, at several times s."""
+    at = point.parameters
+    flags = {"rho": at["rho"], "delta": at["delta"], "seed": seed}
+    flags |= {"cold": at["cold"], "block": _BLOCK, "blocks": blocks}
+    texts = [text for name, value in flags.items() for text in (f"--{name}", f"{value!r}")]
+    found = table_of("slow_pistons", "idle", *texts)
+    length = len(found["time"])
+    return {name: np.full(length, at[name]) for name in ("delta", "cold")} | found
+
+
+def _growth_and_law(point: Point, idle: Table) -> dict[str, float]:
+    """The growth in an e-fold of the window, and 2 a J^2."""
+    pistons = rows(idle, time=_IDLE_TIME)
+    share, share_error = pistons["limit"].sum(), np.hypot(*pistons["limit_error"])
+    current = point["heat_current"]
+    law, law_error = 2 * share * current**2, 2 * share_error * current**2
+    row = _growth(point)
+    ratio = row["growth"] / law
+    error = np.hypot(row["growth_error"] / law, ratio * law_error / law)
+    row |= {"current": current, "a": share, "a_error": share_error, "law": law}
+    return row | {"ratio": ratio, "ratio_error": float(error)}
+
+
+def _growth(point: Point) -> dict[str, float]:
+    """A fit of v(2 t) - v(t) = growth ln 2 + b/t, where v is Var(Q)/t; and v at the first window of
+    the fit, as `variance`."""
+    found = increase(point, 2)
+    shortest = found["time"].min()
+    is_fitted = (found["time"] > _FROM * shortest) & (found["time"] < _TO * shortest)
+    time = found["time"][is_fitted]
+    terms = np.column_stack([np.full(len(time), np.log(2)), 1 / time])
+    fit = fits.linear(terms, found["value"][is_fitted], found["standard_error"][is_fitted])
+    at = point.parameters
+    row = {"delta": float(at["delta"]), "cold": float(at["cold"]), "from": time.min()}
+    row |= {"variance": found["shorter"][is_fitted][0], "growth": fit.coefficients[0]}
+    row |= {"growth_error": fit.errors[0]}
+    row |= {"b": fit.coefficients[1], "b_error": fit.errors[1]}
+    return row | {"chi_squared": fit.chi_squared, "freedom": fit.freedom}
+
+
+@style.styled
+def draw(tables: Tables) -> Figure:
+    """Both panels."""
+    figure = style.picture(960, 480)
+    left, right = figure.subplots(1, 2)
+    found = tables["slow-pistons"]
+    _draw_windows(left, tables["slow-pistons-windows"], found["delta"][0])
+    style.level(right, 1)
+    x = np.arange(len(found["ratio"]))
+    style.error_points(right, x, found["ratio"], found["ratio_error"], style.BLUE)
+    labels = [f"{delta:g}\n{cold:g}" for delta, cold in zip(found["delta"], found["cold"])]
+    right.set_xticks(x, labels)
+    right.minorticks_off()
+    right.set(xlabel="δ, cold temperature", xlim=(-0.5, len(x) - 0.5))
+    style.title(left, "a", "Var(Q)/t over its first value")
+    style.title(right, "b", "growth over 2aJ²")
+    return figure
+
+
+def _draw_windows(axes: Any, windows: Table, delta: float) -> None:
+    windows = rows(windows, delta=delta)
+    cases = [("billiard", cold) for cold in (0.001, 0.01, 0.1, 1.0)] + [("markov", _COLD)]
+    for k, (model, cold) in enumerate(cases):
+        part = rows(windows, model=model, cold=cold)
+        if not len(part["time"]):
+            continue
+        label = f"cold {cold:g}" + (", jump process" if model == "markov" else "")
+        shown = {n: part[n][_SHOWN] for n in ("time", "value", "standard_error")}
+        first = shown["value"][0]
+        value, error = shown["value"] / first, shown["standard_error"] / first
+        dots: dict[str, Any] = {"label": label, "markersize": 4, "linestyle": "-", "linewidth": 0.8}
+        style.error_points(axes, shown["time"], value, error, style.colour(k), **dots)
+    axes.set_xscale("log")
+    axes.set(xlabel="t")
+    axes.legend()

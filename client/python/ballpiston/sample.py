@@ -1,0 +1,44 @@
+"""ballpiston sample EXPERIMENT ... --out FILE: python3 -m ballpiston.sample SPECIFICATION --out FILE
+
+Writes the collisions of a point's samples to FILE, .npz (one array a column) or .parquet.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from argparse import ArgumentParser
+from pathlib import Path
+
+import numpy as np
+
+from ballpiston.client import connect
+from ballpiston.program import run_program
+
+
+def _main(arguments: list[str]) -> list[Path]:
+    parser = ArgumentParser(prog="ballpiston sample", allow_abbrev=False)
+    parser.add_argument("specification", type=json.loads)
+    parser.add_argument("--out", required=True, type=Path)
+    options = parser.parse_args(arguments)
+    part = options.out.with_name(f".{options.out.name}.part")
+    try:
+        with connect() as client:
+            collisions = client.sample(options.specification)
+            if options.out.suffix == ".npz":
+                records = collisions.all()
+                with part.open("wb") as file:
+                    np.savez_compressed(file, **{n: records[n] for n in records.dtype.names or ()})
+            else:
+                collisions.to_parquet(part)
+        part.replace(options.out)
+    finally:
+        part.unlink(missing_ok=True)
+    return [options.out]
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(run_program(_main, sys.argv[1:]))
+    except ImportError as error:
+        sys.exit(f"ballpiston: --out FILE.parquet needs pandas and pyarrow: {error}")

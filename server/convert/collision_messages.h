@@ -1,0 +1,39 @@
+// Converts the core's records of collisions to the messages of TraceService.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "ballpiston/v1/trace.pb.h"
+#include "core/ensemble/collision_sampler.h"
+
+namespace ballpiston::server {
+
+inline constexpr size_t kCollisionsOfMessage = 1024;
+
+// Upper bound of the memory of a sampler, its records and a message.
+inline constexpr int64_t kBytesOfSampler = int64_t{48} << 20;
+
+// The messages of one request. Not thread-safe.
+class CollisionMessages {
+ public:
+  // INVALID_ARGUMENT with every violation.
+  static absl::StatusOr<CollisionMessages> Create(const v1::SampleCollisionsRequest& request);
+
+  // Fills the message with the next collisions, at most kCollisionsOfMessage. It is empty at the
+  // end only. A call computes for at most some 0.1 s.
+  void FillNext(v1::SampleCollisionsResponse& message);
+
+ private:
+  explicit CollisionMessages(const EnsembleSpec& spec);
+
+  std::unique_ptr<const PointExperiment> experiment_;
+  std::unique_ptr<CollisionSampler> sampler_;
+  std::vector<CollisionRecord> records_;  // of the present block
+  size_t next_ = 0;
+};
+
+}  // namespace ballpiston::server

@@ -1,0 +1,218 @@
+"""Tables of points, labels, exports, extensions, and watches in an event loop."""
+
+from __future__ import annotations
+
+import asyncio
+import csv
+import re
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import ENDLESS, FIRST_HITS, Home
+
+import ballpiston
+
+TABLE = {"rho": [0.53, 0.6, 0.55], "delta": [0.1, 0.05, 0.2]}
+OF_THE_TABLE = {"epsilon": 0.125, "exponent": 1, "samples": 100}
+
+
+def hits(seed: int) -> dict[str, Any]:
+    """A question of a few milliseconds."""
+    return {**FIRST_HITS, "seed": seed}
+
+
+def test_a_table_has_the_answers_of_its_points_alone(client: ballpiston.Client) -> None:
+    together = client.run("first-hit", points=TABLE, **OF_THE_TABLE, progress=False)
+    for i, (rho, delta) in enumerate(zip(TABLE["rho"], TABLE["delta"])):
+        alone = client.run("first-hit", rho=rho, delta=delta, **OF_THE_TABLE, progress=False)
+        assert together["mean_hit_time"][i] == alone["mean_hit_time"][0]
+
+
+def test_a_table_may_be_a_frame_or_rows(client: ballpiston.Client) -> None:
+    pandas = pytest.importorskip("pandas")
+    rows = [{"rho": rho, "delta": delta} for rho, delta in zip(*TABLE.values())]
+    asked = [
+        ballpiston.specification("first-hit", points=points, **OF_THE_TABLE)
+        for points in (TABLE, rows, pandas.DataFrame(TABLE))
+    ]
+    assert asked[0] == asked[1] == asked[2]
+    assert list(asked[0].grid.table) == ["rho", "delta"]
+
+
+@pytest.mark.parametrize(
+    "points, message",
+    [
+        ({"rho": [0.53], "detla": [0.1]}, "'detla' is not a parameter; did you mean 'delta'?"),
+        ([{"rho": 0.53}, {"delta": 0.1}], "row 1: has the keys delta; row 0 has rho"),
+        ([{"rho": 0.53}, {"rho": "x"}], "points, column rho has to be a number, not 'x'"),
+        ({"rho": [0.53], "epsilon": [0.1]}, "points has the column epsilon, and epsilon is given"),
+        ([], "points has no row"),
+        (7, "has to be a pandas.DataFrame"),
+    ],
+)
+def test_an_error_of_a_table_names_the_column_or_the_row(points: object, message: str) -> None:
+    with pytest.raises((TypeError, ValueError), match=re.escape(message)):
+        ballpiston.specification("first-hit", points=points, **OF_THE_TABLE)
+
+
+def test_a_labelled_job_is_found_relabelled_and_selected(home: Home) -> None:
+    with ballpiston.connect() as client:
+        labels = {"run": "found", "who": "pilot"}
+        job = client.submit(**hits(101), labels=labels)
+        assert job.labels == labels
+        other = client.submit(**hits(102), labels={"run": "found"})
+        found = client.jobs(labels={"run": "found"})
+        assert [j.name for j in found] == [other.name, job.name]
+        assert [j.name for j in client.jobs(labels=labels)] == [job.name]
+        assert job.label(who=None, day="7").labels == {"run": "found", "day": "7"}
+        for labelled in (job, other):
+            labelled.watch(progress=False)
+    assert home.command("label", job.name, "day=", "a.b=x/y") == f"{job.name} a.b=x/y run=found\n"
+    assert home.command("list", "--label", "run=found", "--format", "csv").count("\n") == 3
+    assert home.command("watch", "--label", "run=found", "--exec", 'echo "$BALLPISTON_JOB_STATE"')
+    assert home.command("result", "--label", "run=found").count("mean_hit_time") == 8
+    deleted = home.command("delete", "--label", "run=found", "--yes")
+    assert sorted(deleted.split("\n")) == ["", *sorted(f"{j.name} deleted" for j in (job, other))]
+
+
+def test_an_answer_from_the_store_takes_the_labels_on(client: ballpiston.Client) -> None:
+    first = client.submit(**hits(103), labels={"a": "1"})
+    first.watch(progress=False)
+    again = client.submit(**hits(103), labels={"b": "2"})
+    assert again.name == first.name
+    assert again.labels == {"a": "1", "b": "2"}
+
+
+@pytest.mark.parametrize(
+    "labels, message",
+    [
+        ({"Run": "7"}, 'has the key "Run"; permitted: 1 to 63 of a-z'),
+        ({"run": "a b"}, 'has the value "a b" of "run"; permitted: 1 to 63 letters'),
+        ({"run": ""}, 'has the value "" of "run"'),
+        ({"k" * 64: "1"}, "permitted: 1 to 63"),
+        ({f"k{i}": "1" for i in range(33)}, "has 33 labels; permitted: at most 32"),
+    ],
+)
+def test_a_wrong_label_is_refused(
+    client: ballpiston.Client, labels: dict[str, str], message: str
+) -> None:
+    with pytest.raises(ballpiston.InvalidArgument, match=re.escape(message)):
+        client.submit(**FIRST_HITS, labels=labels)
+
+
+def test_cancel_by_label_asks_and_takes_no_for_an_answer(home: Home) -> None:
+    with ballpiston.connect() as client:
+        job = client.submit(**ENDLESS, labels={"run": "endless"})
+        words = [home.programs / "ballpiston", "cancel", "--label", "run=endless"]
+        asked = subprocess.run(words, input="n\n", capture_output=True, text=True, check=False)
+        assert "cancel 1 job? [y/N]" in asked.stderr and "nothing was changed" in asked.stderr
+        assert not job.has_ended
+        assert subprocess.run(words, input="y\n", text=True, check=False).returncode == 0
+        assert job.refresh().message.state != ballpiston.v1.ensemble_pb2.EnsembleJob.RUNNING
+
+
+def test_an_extended_job_has_the_bytes_of_one_long_run(client: ballpiston.Client) -> None:
+    question: dict[str, Any] = dict(rho=0.53, delta=[0.1, 0.2], epsilon=0.125, exponent=1, seed=104)
+    job = client.submit("first-hit", **question, samples=3_000)
+    job.watch(progress=False)
+    for samples in (20_000, 50_000):
+        longer = job.extend(samples=samples)
+        assert longer.continues == job.name
+        extended = longer.watch(progress=False)
+        job = longer
+    at_once = client.run("first-hit", **question, samples=50_000, fresh=True, progress=False)
+    assert [p.message for p in extended] == [p.message for p in at_once]
+
+
+def test_a_smaller_tolerance_continues_a_larger_one(client: ballpiston.Client) -> None:
+    question: dict[str, Any] = dict(rho=0.53, delta=0.2, epsilon=0.125, exponent=1, seed=105)
+    job = client.submit("first-hit", **question, tolerance=0.02)
+    job.watch(progress=False)
+    longer = job.extend(tolerance=0.005)
+    assert longer.continues == job.name
+    assert client.submit("first-hit", **question, tolerance=0.01, fresh=True).continues == ""
+    at_once = client.run("first-hit", **question, tolerance=0.005, fresh=True, progress=False)
+    assert [p.message for p in longer.watch(progress=False)] == [p.message for p in at_once]
+    assert job.extend(tolerance=0.05).continues == ""
+
+
+def test_the_estimates_of_many_jobs_are_one_table(home: Home, tmp_path: Path) -> None:
+    with ballpiston.connect() as client:
+        jobs = [client.submit(**hits(s), labels={"run": "table"}) for s in (106, 107)]
+        results = [job.watch(progress=False) for job in jobs]
+        table = ballpiston.estimates_table(client.jobs(labels={"run": "table"}))
+    times = table["value"][table["name"] == "mean_hit_time"]
+    assert set(times) == {time for result in results for time in result["mean_hit_time"]}
+    assert set(table["seed"]) == {"106", "107"} and set(table["labels"]) == {"run=table"}
+
+    for ending in ("csv", "npz"):
+        out = tmp_path / f"table.{ending}"
+        assert home.command("export", "--label", "run=table", "--out", str(out)) == f"{out}\n"
+    arrays = np.load(tmp_path / "table.npz")
+    for name, column in table.items():
+        np.testing.assert_array_equal(arrays[name], column)
+    rows = list(csv.DictReader((tmp_path / "table.csv").open()))
+    assert [float(row["value"]) for row in rows] == table["value"].tolist()
+
+
+def test_an_event_loop_watches_many_jobs(client: ballpiston.Client) -> None:
+    jobs = [client.submit(**hits(seed)) for seed in (108, 109, 110)]
+
+    async def watch() -> list[ballpiston.Result]:
+        updates = [update async for update in jobs[0].updates()]
+        assert updates[-1].state == "succeeded" and updates[-1].progress == 1
+        return await asyncio.gather(*(job.result_async() for job in jobs))
+
+    results = asyncio.run(watch())
+    for job, result in zip(jobs, results):
+        np.testing.assert_array_equal(result["mean_hit_time"], job.result()["mean_hit_time"])
+
+
+def test_the_end_of_a_cancelled_job_is_an_error_in_an_event_loop(
+    client: ballpiston.Client,
+) -> None:
+    job = client.submit(**ENDLESS)
+    job.cancel()
+    with pytest.raises(ballpiston.JobCancelled):
+        asyncio.run(job.result_async())
+
+
+def test_the_collisions_of_a_job_are_read_as_records(home: Home, tmp_path: Path) -> None:
+    words = "first-hit --rho 0.53 --delta 0.2 --epsilon 0.125 --exponent 1 --samples 5000".split()
+    with ballpiston.connect() as client:
+        question: dict[str, Any] = dict(rho=0.53, delta=0.2, epsilon=0.125, exponent=1)
+        records = client.sample("first-hit", **question, samples=5_000).all()
+        result = client.run("first-hit", **question, samples=5_000, progress=False)
+        assert sum(len(part) for part in client.sample("first-hit", **question, samples=5_000)) == 5_000
+    assert records["sample"].tolist() == list(range(5_000))
+    assert records["time"].mean() == pytest.approx(result["mean_hit_time"][0], rel=1e-12)
+    np.testing.assert_allclose(records["ball_vx_after"], records["piston_vx"], atol=1e-14)
+
+    for ending in ("csv", "npz"):
+        out = tmp_path / f"hits.{ending}"
+        assert home.command("sample", *words, "--out", str(out)) == f"{out}\n"
+    arrays = np.load(tmp_path / "hits.npz")
+    read = np.genfromtxt(tmp_path / "hits.csv", delimiter=",", names=True)
+    for name in records.dtype.names:
+        np.testing.assert_array_equal(arrays[name], records[name])
+        np.testing.assert_array_equal(read[name], records[name])
+
+
+@pytest.mark.parametrize(
+    "question, message",
+    [
+        ({"delta": [0.1, 0.2]}, "has 2 points; permitted: one"),
+        ({"delta": 0.1, "tolerance": 0.1}, "has a tolerance or a budget; permitted: samples"),
+        ({"delta": 0.1, "model": "spectrum"}, "is spectrum; permitted: auto, billiard"),
+        ({"delta": 0.1, "experiment": "gas-equilibrium", "cells": 2}, "an experiment with a pair"),
+    ],
+)
+def test_what_has_no_collisions_to_read_is_refused(
+    client: ballpiston.Client, question: dict[str, Any], message: str
+) -> None:
+    question = {"experiment": "energy-relaxation", "rho": 0.53, **question}
+    with pytest.raises(ballpiston.InvalidSpecification, match=re.escape(message)):
+        client.sample(**question).all()

@@ -1,0 +1,93 @@
+"""The numbers that the figures of docs/research compute."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ballpiston.figures import full_counting, logarithm
+from ballpiston.figures.parts import charge, fits
+
+
+def test_a_fit_finds_the_coefficients_of_a_polynomial() -> None:
+    x = np.array([0.1, 0.2, 0.3, 0.5])
+    fit = fits.linear(fits.powers(x, 1), 2 + 3 * x, np.full(4, 0.1))
+    assert fit.coefficients == pytest.approx([2, 3])
+    assert (fit.chi_squared, fit.freedom) == (pytest.approx(0, abs=1e-20), 2)
+
+
+def test_a_mean_has_the_error_of_independent_values() -> None:
+    fit = fits.mean(np.array([1.0, 3.0]), np.array([1.0, 1.0]))
+    assert (fit.coefficients[0], fit.errors[0]) == pytest.approx((2, np.sqrt(0.5)))
+    assert (fit.chi_squared, fit.freedom) == (pytest.approx(2), 1)
+
+
+def point_with_curve(order: int, value: Any, error: Any) -> Any:
+    time = 2.0 ** np.arange(len(value))
+    name = f"charge_cumulant_{order}_by_window"
+    curve = SimpleNamespace(name=name, x=time, value=value, standard_error=error)
+    return SimpleNamespace(curves=[curve], curve=lambda _: curve)
+
+
+def test_the_growth_of_a_cumulant_does_not_contain_a_constant() -> None:
+    time = 2.0 ** np.arange(5)
+    point = point_with_curve(3, 7 + 4 / time, np.ones(5))
+    assert charge.growth(point, 3)["value"] == pytest.approx(np.full(4, 7))
+    assert len(charge.growth(point, 4)["value"]) == 0
+
+
+def test_the_increase_of_the_variance_has_the_error_of_the_shorter_window() -> None:
+    error = 0.1 * np.sqrt(2.0) ** np.arange(5)  # independent windows
+    point = point_with_curve(2, np.ones(5), error)
+    assert charge.increase(point, 2)["value"] == pytest.approx(np.zeros(4))
+    assert charge.increase(point, 2)["standard_error"] == pytest.approx(error[:-1])
+
+
+def test_limits_of_full_counting_are_those_of_the_closed_integrals() -> None:
+    i1, i2, i3, i4 = (
+        2 ** (n - 1) * (1.5 ** (p := (5 * n - 2) / 2) - 0.5**p) / p for n in range(1, 5)
+    )
+    fourth = 3 * (5 * i4 * i1**2 - 14 * i1 * i2 * i3 + 9 * i2**3) / i1**5
+    expected = [i1, i2 / i1, 3 * (i3 * i1 - i2**2) / i1**3, fourth]
+    assert full_counting.limits(1.5, 0.5) == pytest.approx(expected, rel=1e-12)
+    assert expected == pytest.approx([0.98904, 2.52770, 6.92784, 34.2513], rel=5e-6)
+
+
+def test_the_noise_near_equilibrium_is_that_of_equilibrium() -> None:
+    assert full_counting.limits(1.001, 0.999)[1] == pytest.approx(2, rel=1e-5)
+
+
+def test_the_slowest_rate_near_equilibrium_is_that_of_a_sine() -> None:
+    assert full_counting.slowest_rate(1.0, 1.0) == pytest.approx(np.pi**2, rel=1e-4)
+
+
+def windows_of(x: Any, excess: Any) -> dict[str, Any]:
+    ones = np.ones(len(x))
+    windows = {"x": x, "window": 8 * ones, "limit_all": 0.5 * ones, "limit_idle": 0.9 * ones}
+    limits = {"all": 0.5, "idle": 0.9, "met": -0.4}
+    for part, limit in limits.items():
+        windows |= {part: limit + 0.541387668432 * excess, f"{part}_error": 0.001 * ones}
+    return windows
+
+
+def test_a_logarithm_of_delta_is_found_with_its_factor() -> None:
+    x = np.array([0.05, 0.02, 0.01, 0.002])
+    found = logarithm.logarithms_of_delta(windows_of(x, 0.3 * x + 0.4 * x * np.log(1 / x)))
+    assert found["part"].tolist() == ["all", "idle", "met"]
+    assert found["a"] == pytest.approx(np.full(3, 0.3))
+    assert found["b"] == pytest.approx(np.full(3, 0.4))
+    assert (found["plain_chi_squared"] > 20).all()
+
+
+def test_a_logarithm_of_the_window_is_found_beside_a_part_that_ends() -> None:
+    window = 8 * 2.0 ** np.arange(5)
+    zeros, law = np.zeros(5), 0.01
+    grown = law * np.log(window / 8) + 0.2 * (1 / 8 - 1 / window)
+    whole = {"delta": zeros + 0.2, "window": window, "law": zeros + law}
+    whole |= {"limit_all": zeros, "limit_idle": zeros, "later_idle": grown, "later_met": -grown}
+    whole |= {f"later_{part}_error": 0.001 * np.arange(5) for part in ("idle", "met")}
+    found = logarithm.logarithms_of_window(whole)
+    assert (found["idle"][0], found["met"][0]) == pytest.approx((1, -1))

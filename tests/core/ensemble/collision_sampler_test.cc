@@ -1,0 +1,85 @@
+#include "core/ensemble/collision_sampler.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "core/ensemble/point_fold.h"
+#include "core/statistics/moments.h"
+#include "tests/core/one_point_spec.h"
+
+namespace ballpiston {
+namespace {
+
+std::vector<CollisionRecord> AllRecords(const PointExperiment& point, TargetUnit unit) {
+  std::vector<CollisionRecord> all;
+  CollisionSampler sampler(point, unit);
+  for (auto records = sampler.NextRecords(); !records.empty(); records = sampler.NextRecords()) {
+    all.insert(all.end(), records.begin(), records.end());
+  }
+  return all;
+}
+
+// The mean of the times, in the order of the fold: samples in blocks, blocks in chunks, chunks.
+Moments Folded(const ChunkPlan& plan, const std::vector<CollisionRecord>& records) {
+  Moments point;
+  for (uint64_t chunk = 0; chunk < plan.chunks(); ++chunk) {
+    Moments of_chunk;
+    for (uint64_t index = 0; index < plan.BlocksIn(chunk); ++index) {
+      const Block block = plan.BlockAt(chunk, index);
+      Moments of_block;
+      for (uint64_t i = 0; i < block.samples; ++i) of_block.Add(records[block.first + i].time);
+      of_chunk.Merge(of_block);
+    }
+    point.Merge(of_chunk);
+  }
+  return point;
+}
+
+TEST(CollisionSampler, ReturnsAreThoseThatTheJobFolds) {
+  for (const Model model : {Model::kBilliard, Model::kBilliardReference}) {
+    const auto point = PointExperiment::Create(
+        SpecOf(&kFirstHit, PaperPoint(0.2, 0.125, 1), {.samples = 20'000}, model, 3), 0);
+    const std::vector<CollisionRecord> records = AllRecords(*point, TargetUnit::kSamples);
+    ASSERT_EQ(records.size(), 20'000u);
+    for (size_t i = 0; i < records.size(); ++i) ASSERT_EQ(records[i].sample, i);
+    EXPECT_EQ(Folded(point->plan(), records), FoldPoint(*point)->moments.front());
+  }
+}
+
+TEST(CollisionSampler, CollisionsInEquilibriumAreInTheOrderOfTheirOrbits) {
+  const auto point = PointExperiment::Create(
+      SpecOf(&kEquilibrium, PaperPoint(0.2), {.collisions = 30'000}, Model::kBilliard), 0);
+  const std::vector<CollisionRecord> records = AllRecords(*point, TargetUnit::kCollisions);
+  ASSERT_EQ(records.size(), 30'000u);
+  Moments times;
+  for (size_t i = 0; i < records.size(); ++i) {
+    const CollisionRecord& record = records[i];
+    ASSERT_EQ(record.sample, i);
+    const bool begins = record.time == record.free_time;
+    ASSERT_TRUE(begins || record.time == records[i - 1].time + record.free_time);
+    times.Add(record.free_time);
+  }
+  const Estimate estimate = point->FirstEstimate(*FoldPoint(*point));
+  EXPECT_NEAR(times.mean / estimate.value, 1, 1e-12);
+}
+
+// The components along x are exchanged, so both energies add up to 1/2 before and after.
+TEST(CollisionSampler, ARecordHasTheExchange) {
+  const auto point = PointExperiment::Create(
+      SpecOf(&kEquilibrium, PaperPoint(0.2), {.collisions = 1'000}, Model::kBilliard), 0);
+  for (const CollisionRecord& record : AllRecords(*point, TargetUnit::kCollisions)) {
+    const PairState &before = record.before, &after = record.after;
+    EXPECT_NEAR(after.piston_velocity, before.ball_speed * before.direction.x(), 1e-12);
+    EXPECT_NEAR(after.ball_speed * after.direction.x(), before.piston_velocity, 1e-12);
+    EXPECT_NEAR(EnergyOf(before), 0.5, 1e-12);
+    EXPECT_NEAR(EnergyOf(after), 0.5, 1e-12);
+    EXPECT_NEAR(before.position.x(), before.piston, 1e-12);
+    EXPECT_GT(before.ball_speed * before.direction.x(), before.piston_velocity);
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston
