@@ -17,6 +17,7 @@
 #include "server/rpc/reflection_check.h"
 #include "server/rpc/server_status.h"
 #include "server/status/failpoint.h"
+#include "server/status/log.h"
 
 namespace ballpiston::server {
 namespace {
@@ -102,6 +103,21 @@ absl::StatusOr<ListenAddress> ParseMetricsAddress(const std::string& text) {
       "localhost (metrics are not encrypted; let others reach them through a proxy or a tunnel)"));
 }
 
+absl::StatusOr<std::unique_ptr<OrbitsOnDevice>> OpenDevice(const ServerOptions& options) {
+  if (options.device == kProcessor) return nullptr;
+  absl::StatusOr<std::unique_ptr<FlightDevice>> device = OpenCuda();
+  if (!device.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "--device=", options.device, ": ", device.status().message(), "; permitted here: cpu"));
+  }
+  LogInfo(absl::StrCat("flights are computed by ", (*device)->name()));
+  return std::make_unique<OrbitsOnDevice>(
+      *std::move(device), static_cast<size_t>(options.workers), [](const absl::Status& failure) {
+        LogError(absl::StrCat("the GPU fails, and the processor computes until the next start (",
+                              failure.message(), ")"));
+      });
+}
+
 absl::Status CannotListen(const ListenAddress& address) {
   return absl::FailedPreconditionError(absl::StrCat(
       "--listen=", address.Text(),
@@ -120,12 +136,15 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
   if (!address.ok()) return address.status();
   auto door = Door::Create(options.door, *address);
   if (!door.ok()) return door.status();
+  auto device = OpenDevice(options);
+  if (!device.ok()) return device.status();
   absl::StatusOr<std::unique_ptr<Store>> store =
       Store::Open(directory->FilePath(kStoreFile), options.store);
   if (!store.ok()) return store.status();
   try {
-    std::unique_ptr<BallpistonServer> server(new BallpistonServer(
-        std::move(options), *std::move(directory), *address, *std::move(door), *std::move(store)));
+    std::unique_ptr<BallpistonServer> server(
+        new BallpistonServer(std::move(options), *std::move(directory), *address, *std::move(door),
+                             *std::move(device), *std::move(store)));
     absl::Status status = server->book_.Resume();
     if (status.ok()) server->StartThreads();
     if (status.ok()) status = server->StartMetrics();
@@ -140,6 +159,7 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
 
 BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory directory,
                                    ListenAddress address, std::unique_ptr<Door> door,
+                                   std::unique_ptr<OrbitsOnDevice> device,
                                    std::unique_ptr<Store> store)
     : options_(std::move(options)),
       directory_(std::move(directory)),
@@ -151,8 +171,9 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
       scheduler_(options_.opener ? *options_.opener : static_cast<PointOpener&>(ladder_),
                  options_.workers, OptionsOfScheduler(options_)),
       book_(*store_, options_.limits, scheduler_, crashes_),
+      device_(std::move(device)),
       threads_(scheduler_, options_.workers, options_.cluster ? kLeaseBesideACluster : kWholePoint,
-               crashes_),
+               crashes_, device_.get()),
       cluster_(options_.cluster ? std::make_unique<Cluster>(scheduler_, *options_.cluster,
                                                             options_.slurm, store_->identity(),
                                                             [this] { return store_->Flush(); })
@@ -164,6 +185,7 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
                book_,
                scheduler_,
                threads_,
+               device_.get(),
                cluster_.get(),
                ladder_,
                quotas_,

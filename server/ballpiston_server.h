@@ -13,6 +13,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "core/gpu/device_orbits.h"
 #include "grpcpp/server.h"
 #include "server/cluster/cluster.h"
 #include "server/compute/model_ladder.h"
@@ -36,11 +37,16 @@ struct ConnectionTiming {
   std::chrono::milliseconds ping_timeout{20'000};   // limit for the client's answer
 };
 
+// Values of --device.
+inline constexpr char kProcessor[] = "cpu";
+inline constexpr char kGpu[] = "gpu";
+
 struct ServerOptions {
   std::string data_dir = DataDirectory::Default();
   std::string listen;  // empty: a Unix socket in data_dir
   DoorOptions door;
   int workers = 1;
+  std::string device = kProcessor;  // or kGpu; computes the flights of pairs for the workers
   std::optional<ClusterOptions> cluster = {};  // empty: only this server's threads compute
   std::optional<SlurmOptions> slurm = {};      // of the cluster; empty: somebody starts its workers
   std::shared_ptr<PointOpener> opener;         // null: the ladder of models opens points
@@ -81,7 +87,8 @@ class BallpistonServer {
 
  private:
   BallpistonServer(ServerOptions options, DataDirectory directory, ListenAddress address,
-                   std::unique_ptr<Door> door, std::unique_ptr<Store> store);
+                   std::unique_ptr<Door> door, std::unique_ptr<OrbitsOnDevice> device,
+                   std::unique_ptr<Store> store);
 
   void StartThreads();
   absl::Status Listen();
@@ -104,6 +111,7 @@ class BallpistonServer {
   ModelLadder ladder_;
   Scheduler scheduler_;
   JobBook book_;
+  std::unique_ptr<OrbitsOnDevice> device_;  // null: the processor
   // After the book: the executors' threads use the book.
   ThreadExecutor threads_;
   std::unique_ptr<Cluster> cluster_;  // null without a cluster

@@ -14,16 +14,13 @@
 
 #include <hwy/highway.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>
 
+#include "core/billiard/lane_constants.h"
 #include "core/billiard/lane_flight-inl.h"
-#include "core/billiard/piston_wave.h"
-#include "core/geometry/pair_geometry.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ballpiston {
@@ -32,37 +29,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr size_t kVectors = 6;
 constexpr size_t kLag = 2;
-constexpr size_t kMostFlights = 12;  // of a lane in a burst
 constexpr size_t kMostSteps = kVectors * kMostFlights;
-
-// Rounding in the lanes must not hide a collision; a false alarm costs little.
-template <typename T>
-inline constexpr double kSlack = sizeof(T) == 8 ? 1e-11 : 1e-3;
-
-// The largest c'^2 - 2 that counts as a rounding error. Rounding causes a few ulps.
-template <typename T>
-inline constexpr T kMissedByRounding = sizeof(T) == 8 ? T(1e-12) : T(1e-5);
-
-// The piston's reach and its wave, in the lanes' units. x of a ball is in squared units.
-template <typename T>
-struct ReachConstants {
-  ReachConstants(const PairGeometry& geometry, double scale) {
-    const PistonWave wave(geometry);
-    const double square = scale * scale, stroke = wave.stroke();
-    left = static_cast<T>(square * (wave.left() - kSlack<T>));
-    period = static_cast<T>(square * 2 * stroke);
-    phase_at_tip = static_cast<T>((geometry.delta() + 2 * kSlack<T>) / (2 * stroke));
-    // The arc with the right tip is x = 1/2 + rho sin(angle - 45 degrees), up to 45 degrees.
-    const double sine = std::max((wave.left() - kSlack<T> - 0.5) / geometry.rho(), -1.0);
-    edge = static_cast<T>(scale * std::sin(std::asin(sine) + M_PI_4));
-  }
-  T left;    // from this x on the piston can reach the ball
-  T period;  // of the piston, as a length
-  T phase_at_tip;
-  // The place on an arc from which the piston at the arc's tip can reach the arc. Places are
-  // measured along the arc from its middle: (q_x - q_y)/2.
-  T edge;
-};
 
 // The lanes whose ball, on a wall, is within reach of a piston: at the arc's tip toward -y of the
 // frame (above), or at the tip toward -x (below).

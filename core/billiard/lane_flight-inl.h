@@ -45,33 +45,16 @@
 
 #include <hwy/highway.h>
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
+#include "core/billiard/lane_constants.h"
 #include "core/billiard/lane_frame.h"
-#include "core/geometry/pair_geometry.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ballpiston {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-template <typename T>
-struct FlightConstants {
-  explicit FlightConstants(const PairGeometry& geometry)
-      : scale(M_SQRT2 / geometry.rho()),
-        sqrt_2(static_cast<T>(M_SQRT2)),
-        half_height(static_cast<T>(scale * scale / 2)),
-        length_squared(static_cast<T>(1 / (scale * scale))),
-        tip(static_cast<T>(0.5 - geometry.lambda() / 2)) {}
-
-  double scale;  // of h, e, c, s and lengths in lanes
-  T sqrt_2;      // rho
-  T half_height;
-  T length_squared;
-  T tip;  // from the cell's centre
-};
 
 template <typename T>
 inline constexpr size_t kMostLanes = HWY_MAX_BYTES / sizeof(T);

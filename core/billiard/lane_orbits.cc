@@ -19,10 +19,9 @@
 
 #include "core/billiard/exchange.h"
 #include "core/billiard/lane_burst-inl.h"
-#include "core/billiard/lane_frame.h"
+#include "core/billiard/lane_constants.h"
+#include "core/billiard/lane_orbit.h"
 #include "core/billiard/lane_tangents-inl.h"
-#include "core/billiard/longest_wait.h"
-#include "core/billiard/piston_wave.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ballpiston {
@@ -45,38 +44,21 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr int kBurstsBetweenLooks = 512;
 constexpr int64_t kCallsBetweenLooks = 4096;
 
-// A ball slower than this counts as at rest. The lanes cannot fly it.
-constexpr double kAtRest = 1e-18;
-
-// A start this near to a wall may be on it.
-constexpr double kOnAWall = 1e-9;
-
-// An orbit in a lane, since it entered at its start or its last collision.
-struct LaneOrbit {
-  uint64_t orbit = 0;
-  double ball_speed = 1;  // at least kAtRest
-  double piston_speed = 0;
-  double entry_phase = 0;
-  uint64_t entry_burst = 0;
-  double longest_wait = 0;  // for the piston
-};
-
 // With kFollowsTangents the maps of the balls' flights are computed beside the flights.
 template <typename T, bool kFollowsTangents>
 class LaneOrbits : public EngineRun {
  public:
   LaneOrbits(const PairGeometry& geometry, OrbitSource& source)
       : geometry_(geometry),
-        wave_(geometry),
         flight_constants_(geometry),
         reach_constants_(geometry, flight_constants_.scale),
         source_(source),
-        limit_(source.TimeLimit()),
-        longest_wait_(geometry),
+        in_lane_(geometry, flight_constants_.scale, source.TimeLimit()),
         flights_(FlightsInABurst(geometry)),
         steps_(flights_ * kVectors),
         pistons_(kVectors),
-        orbit_(Width() * kVectors) {
+        orbit_(Width() * kVectors),
+        entry_burst_(orbit_.size()) {
     for (size_t lane = orbit_.size(); lane-- > 0;) idle_.push_back(lane);
   }
 
@@ -104,16 +86,9 @@ class LaneOrbits : public EngineRun {
     uint32_t lanes;                        // that have orbits
   };
 
-  // A lane that has a collision flies on to the end of the burst, and those flights are lost. So a
-  // burst is short where collisions are frequent.
-  static size_t FlightsInABurst(const PairGeometry& geometry) {
-    return static_cast<size_t>(std::clamp(1.7 / geometry.delta(), 4.0, double{kMostFlights}));
-  }
-
   size_t VectorOf(size_t lane) const { return lane / Width(); }
   size_t InVector(size_t lane) const { return lane % Width(); }
   bool IsRunning() const { return idle_.size() < orbit_.size(); }
-  bool HasTimeLimit() const { return limit_ < std::numeric_limits<double>::infinity(); }
 
   // ---- a burst ----
 
@@ -229,7 +204,7 @@ class LaneOrbits : public EngineRun {
     const V square = hn::NegMulAdd(c, c, hn::Set(d, T(2)));
     const V left_cell = hn::Add(square, hn::Set(d, kMissedByRounding<T>));
     ForLanes(t, SignBits(d, left_cell) & pistons_[t % kVectors].lanes,
-             [&](size_t lane) { Report(lane, Escape()); });
+             [&](size_t lane) { Report(lane, OrbitInLane::Escape()); });
   }
 
   void LookForCollisions(size_t t, uint32_t lanes) {
@@ -247,19 +222,6 @@ class LaneOrbits : public EngineRun {
     }
   }
 
-  static Collision Escape() {
-    Collision collision;
-    collision.escaped = true;
-    return collision;
-  }
-  // The orbit has waited for `time`, which is longer than permitted.
-  Collision Overdue(double time) const {
-    Collision collision;
-    collision.time = time;
-    (HasTimeLimit() ? collision.expired : collision.escaped) = true;
-    return collision;
-  }
-
   // The orbit leaves the lane; Resolve reports the collision to the source.
   void Report(size_t lane, const Collision& collision) {
     pistons_[VectorOf(lane)].lanes &= ~(uint32_t{1} << InVector(lane));
@@ -271,56 +233,33 @@ class LaneOrbits : public EngineRun {
   std::optional<Collision> FindCollision(size_t t, size_t lane) const {
     const size_t i = InVector(lane);
     const Pistons& piston = pistons_[VectorOf(lane)];
-    const LaneOrbit& orbit = orbit_[lane];
     const Balls<T>& from = burst_.slot(t);
-    const double inverse = 1 / flight_constants_.scale;
-    const LaneFrame frame = Scaled(from.Frame(i), inverse);
-    Collision collision;
-    PairState& state = collision.state;
-    state.position = PositionInCell(frame);
-    state.direction = DirectionInCell(frame);
-    state.direction *= OneOverLength(state.direction);
-    const double phase = PhaseOf(piston, i, from.path[i]) * 2 * wave_.stroke();
-    const double ratio = orbit.piston_speed / orbit.ball_speed;
-    const double length = (burst_.slot(t + kVectors).path[i] - from.path[i]) * inverse;
-    const std::optional<PistonWave::Collision> first = wave_.FirstCollision(
-        phase, ratio, state.position.x() - wave_.left(), state.direction.x(), length);
-    if (!first) return std::nullopt;
-    const double path = (piston.path[i] + static_cast<double>(from.path[i])) * inverse + first->way;
-    collision.time = path / orbit.ball_speed;
-    if (collision.time > orbit.longest_wait) return Overdue(collision.time);
-    state.position += state.direction * first->way;
-    state.ball_speed = orbit.ball_speed;
-    state.piston = state.position.x();
-    state.piston_velocity = first->piston_goes_right ? orbit.piston_speed : -orbit.piston_speed;
-    collision.ball_wall_hits = (bursts_ - 1 - orbit.entry_burst) * flights_ + t / kVectors;
-    collision.piston_wall_hits = wave_.Hits(orbit.entry_phase, path * ratio);
+    const std::optional<OrbitInLane::Meeting> met = in_lane_.Meet(
+        orbit_[lane],
+        {.ball = from.Frame(i),
+         .phase = PhaseOf(piston, i, from.path[i]),
+         .path = piston.path[i] + static_cast<double>(from.path[i]),
+         .length = static_cast<double>(burst_.slot(t + kVectors).path[i] - from.path[i]),
+         .flights = (bursts_ - 1 - entry_burst_[lane]) * flights_ + t / kVectors});
+    if (!met) return std::nullopt;
     if constexpr (kFollowsTangents) {
-      source_.FollowWait(orbit.orbit,
-                         tangents_.MapTo(burst_, t, i, first->way, flight_constants_.scale));
+      const bool is_overdue = met->collision.escaped || met->collision.expired;
+      if (!is_overdue) {
+        source_.FollowWait(orbit_[lane].orbit,
+                           tangents_.MapTo(burst_, t, i, met->way, flight_constants_.scale));
+      }
     }
-    return collision;
+    return met->collision;
   }
 
-  // The piston comes to a ball at rest, wherever rounding puts the ball in its lane.
   void CollideIfAtRest(size_t lane, const PairState& start) {
-    if (start.ball_speed >= kAtRest) return;
-    const LaneOrbit& orbit = orbit_[lane];
-    const std::optional<double> way =
-        wave_.WayToBallAtRest(orbit.entry_phase, start.position.x() - wave_.left());
-    const double time = way ? *way / orbit.piston_speed : std::numeric_limits<double>::infinity();
-    if (!(time <= orbit.longest_wait)) return Report(lane, Overdue(time));
-    Collision collision = {.state = start, .time = time};
-    collision.state.ball_speed = 0;
-    collision.state.piston = start.position.x();
-    collision.state.piston_velocity = -orbit.piston_speed;
-    collision.piston_wall_hits = orbit.entry_phase < wave_.stroke() ? 1 : 0;  // the right one
-    Report(lane, collision);
+    const std::optional<Collision> collision = in_lane_.MeetAtRest(orbit_[lane], start);
+    if (collision) Report(lane, *collision);
   }
 
   // The piston's phase when the ball has gone `path` in this burst, in periods, at least 0 and
-  // below
-  // 1. It has the same bits as PhaseAfter of the whole vector.
+  // below 1.
+  // It has the same bits as PhaseAfter of the whole vector.
   static double PhaseOf(const Pistons& piston, size_t i, T path) {
     const hn::CappedTag<T, 1> d;
     const auto phase =
@@ -372,36 +311,28 @@ class LaneOrbits : public EngineRun {
       idle_.pop_back();
       parked_ = std::min(parked_, idle_.size());
       Enter(lane, starts_[i]);
-      if (InsideCell(geometry_, starts_[i].state.position, kOnAWall)) {
+      if (InsideCell(geometry_, starts_[i].state.position, kOnAWallAtStart)) {
         CollideIfAtRest(lane, starts_[i].state);
       } else {
-        Report(lane, Escape());
+        Report(lane, OrbitInLane::Escape());
       }
     }
   }
 
   void Enter(size_t lane, const OrbitStart& start) {
-    const PairState& state = start.state;
     const size_t v = VectorOf(lane), i = InVector(lane);
-    const double ball_speed = std::max(state.ball_speed, kAtRest);
-    const double piston_speed = std::fabs(state.piston_velocity);
-    const double scale = flight_constants_.scale, period = 2 * wave_.stroke();
-    orbit_[lane] = {.orbit = start.orbit,
-                    .ball_speed = ball_speed,
-                    .piston_speed = piston_speed,
-                    .entry_phase = wave_.Phase(state),
-                    .entry_burst = bursts_,
-                    .longest_wait = HasTimeLimit() ? limit_ : longest_wait_.From(state)};
+    orbit_[lane] = in_lane_.Orbit(start);
+    entry_burst_[lane] = bursts_;
+    const LaneEntry entry = in_lane_.Enter(orbit_[lane], start.state, kSlack<T>);
     Balls<T>& balls = burst_.slot(v);
-    balls.Set(i, Scaled(FrameOfBall(state.position, state.direction), scale));
+    balls.Set(i, entry.ball);
     balls.path[i] = 0;
     const uint32_t bit = uint32_t{1} << i;
-    const bool in_reach = state.position.x() >= wave_.left() - kSlack<T>;
     uint16_t& lanes = burst_.in_reach(v);
-    lanes = static_cast<uint16_t>(in_reach ? lanes | bit : lanes & ~bit);
+    lanes = static_cast<uint16_t>(entry.in_reach ? lanes | bit : lanes & ~bit);
     Pistons& piston = pistons_[v];
-    piston.phase[i] = static_cast<T>(orbit_[lane].entry_phase / period);
-    piston.ratio[i] = static_cast<T>(piston_speed / ball_speed / (scale * period));
+    piston.phase[i] = static_cast<T>(entry.phase);
+    piston.ratio[i] = static_cast<T>(entry.ratio);
     piston.path[i] = 0;
     piston.lanes |= bit;
     if constexpr (kFollowsTangents) tangents_.Restart(v, i);
@@ -420,29 +351,27 @@ class LaneOrbits : public EngineRun {
     for (size_t lane = 0; lane < orbit_.size(); ++lane) {
       const Pistons& piston = pistons_[VectorOf(lane)];
       if ((piston.lanes >> InVector(lane) & 1) == 0) continue;
-      const double time =
-          piston.path[InVector(lane)] / flight_constants_.scale / orbit_[lane].ball_speed;
-      if (time > orbit_[lane].longest_wait) Report(lane, Overdue(time));
+      const double time = in_lane_.TimeOf(orbit_[lane], piston.path[InVector(lane)]);
+      if (time > orbit_[lane].longest_wait) Report(lane, in_lane_.Overdue(time));
     }
     Refill();
   }
 
   PairGeometry geometry_;
-  PistonWave wave_;
   FlightConstants<T> flight_constants_;
   ReachConstants<T> reach_constants_;
   OrbitSource& source_;
-  double limit_;  // time without a collision
-  LongestWait longest_wait_;
+  OrbitInLane in_lane_;
   size_t flights_, steps_;  // of a lane, and of a vector, in a burst
   LaneBurst<T> burst_;
   std::vector<Pistons> pistons_;
   uint64_t bursts_ = 0;
-  std::vector<LaneOrbit> orbit_;  // by lane
-  std::vector<size_t> idle_;      // lanes without an orbit
-  size_t parked_ = 0;             // of them, the first ones
-  bool source_is_empty_ = false;  // at the last call of Start
-  std::vector<size_t> collided_;  // lanes of the collisions
+  std::vector<LaneOrbit> orbit_;       // by lane
+  std::vector<uint64_t> entry_burst_;  // by lane
+  std::vector<size_t> idle_;           // lanes without an orbit
+  size_t parked_ = 0;                  // of them, the first ones
+  bool source_is_empty_ = false;       // at the last call of Start
+  std::vector<size_t> collided_;       // lanes of the collisions
   std::vector<OrbitCollision> collisions_;
   int64_t calls_left_ = 0;              // starts and collisions until the next call of Pause
   std::vector<size_t> reported_lanes_;  // of the collisions that Resolve is resolving

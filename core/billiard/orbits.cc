@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "core/billiard/lane_orbits.h"
 #include "core/billiard/longest_wait.h"
@@ -69,6 +70,12 @@ class ReferenceOrbits : public EngineRun {
   OrbitCollision current_;
 };
 
+std::unique_ptr<EngineRun> StartLanes(const PairGeometry& geometry, OrbitSource& source) {
+  OrbitDevice* const device = source.FollowsTangents() ? nullptr : source.Device();
+  std::unique_ptr<EngineRun> run = device == nullptr ? nullptr : device->Start(geometry, source);
+  return run == nullptr ? StartLaneOrbits(geometry, source) : std::move(run);
+}
+
 }  // namespace
 
 void Collision::Add(const Event& event) {
@@ -80,7 +87,7 @@ void Collision::Add(const Event& event) {
 
 std::unique_ptr<EngineRun> StartOrbits(Engine engine, const PairGeometry& geometry,
                                        OrbitSource& source) {
-  if (engine == Engine::kLanes) return StartLaneOrbits(geometry, source);
+  if (engine == Engine::kLanes) return StartLanes(geometry, source);
   if (engine == Engine::kLanesSingle) return StartLaneOrbitsSingle(geometry, source);
   return std::make_unique<ReferenceOrbits>(geometry, source);
 }

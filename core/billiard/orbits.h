@@ -63,6 +63,8 @@ struct OrbitCollision {
   AfterCollision after = AfterCollision::kEnd;
 };
 
+class OrbitDevice;
+
 // Supplies the starts of orbits and receives their collisions, both in batches. The thread that
 // runs the orbits calls the source. The order of calls for different orbits depends on the engine,
 // so a source must keep its measurements by orbit and combine them in the order of the orbits'
@@ -87,9 +89,22 @@ class OrbitSource {
   virtual bool FollowsTangents() const { return false; }
   virtual void FollowEvent(uint64_t /*orbit*/, const Event&, const PairState& /*after*/) {}
   virtual void FollowWait(uint64_t /*orbit*/, const BallMap&) {}
+  // The device that computes the flights of kLanes instead of the processor; null: none. Orbits
+  // with tangents never use it. It must outlive the run.
+  virtual OrbitDevice* Device() const { return nullptr; }
   // True if the engine should return. The engine asks about 5000 times a second, and at least every
   // 0.05 s if a call of Start or Collide takes at most 10 us for each orbit.
   virtual bool Pause() = 0;
+};
+
+// Computes orbits to the bits of kLanes (gpu/device_orbits.h). Thread-safe.
+class OrbitDevice {
+ public:
+  virtual ~OrbitDevice() = default;
+  // About how many orbits all runs together have in progress at the same time.
+  virtual uint64_t orbits() const = 0;
+  // Null if the device cannot be used; then the processor computes.
+  virtual std::unique_ptr<EngineRun> Start(const PairGeometry& geometry, OrbitSource& source) = 0;
 };
 
 // Orbits in progress. An engine keeps as many lanes full as the source can fill. The source must

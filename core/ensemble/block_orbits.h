@@ -117,6 +117,7 @@ class BlockOrbits : public EngineRun, private OrbitSource {
   }
 
   double TimeLimit() const override { return time_limit_; }
+  OrbitDevice* Device() const override { return queue_.device(); }
   bool Pause() override { return queue_.Pause(); }
 
   double time_limit_;

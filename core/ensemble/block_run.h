@@ -33,6 +33,9 @@ class BlockQueue {
   virtual void Done(const Block& block, BlockResult result) = 0;
   // True if the run should return. The run asks at least every 0.05 s.
   virtual bool Pause() = 0;
+  // The device that may compute the orbits of a pair (billiard/orbits.h); null: none. The results
+  // do not depend on it.
+  virtual OrbitDevice* device() const { return nullptr; }
   // Stop is requested when the run's results are no longer needed.
   virtual std::stop_token stop() const = 0;
   // Null: nobody wants to see the collisions. The run asks once.

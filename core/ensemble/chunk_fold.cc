@@ -1,19 +1,27 @@
 #include "core/ensemble/chunk_fold.h"
 
+#include <algorithm>
+
 namespace ballpiston {
 
 ChunkFold::ChunkFold(const ChunkPlan& plan, PartialChunk start, uint64_t end,
-                     std::vector<GroupState> groups)
+                     std::vector<GroupState> groups, uint64_t window)
     : plan_(plan),
       end_(end),
+      window_(window),
       partial_(std::move(start)),
       next_(NextPlace()),
       groups_(std::move(groups)) {
   groups_.resize(plan.groups());
 }
 
+uint64_t ChunkFold::WindowFor(const ChunkPlan& plan, uint64_t orbits) {
+  constexpr uint64_t kLongestOrbit = 16, kMost = 16 * kWindow;
+  return std::clamp(kLongestOrbit * orbits / plan.MostInABlock(), kWindow, kMost);
+}
+
 bool ChunkFold::HasNextBlock() const {
-  if (next_.first >= end_ || handed_out_ >= kWindow) return false;
+  if (next_.first >= end_ || handed_out_ >= window_) return false;
   return next_.first < plan_.groups() || plan_.groups() == 0 || !StartOf(next_.first).empty();
 }
 

@@ -40,11 +40,14 @@ class ChunkFold {
   // Chunks start.chunk ... end - 1 of the plan, without the first start.blocks blocks. `groups` has
   // the states from which chunks of the range start whose groups have no earlier chunk in it.
   ChunkFold(const ChunkPlan& plan, PartialChunk start, uint64_t end,
-            std::vector<GroupState> groups = {});
+            std::vector<GroupState> groups = {}, uint64_t window = kWindow);
 
   // The maximum number of blocks that are handed out but not merged. It bounds the memory of blocks
   // that wait for a slow one. A smaller window would leave lanes empty.
   static constexpr uint64_t kWindow = 1024;
+  // The window of a device that has so many orbits in progress. The longest orbit of a block takes
+  // about ten times as long as the mean orbit, and later blocks must fill the lanes until it ends.
+  static uint64_t WindowFor(const ChunkPlan& plan, uint64_t orbits);
 
   // Returns each block once; empty if no block may be handed out now.
   std::optional<Block> NextBlock();
@@ -69,6 +72,7 @@ class ChunkFold {
 
   ChunkPlan plan_;
   uint64_t end_;
+  uint64_t window_;
   PartialChunk partial_;
   Place next_;               // of the next block to hand out
   uint64_t handed_out_ = 0;  // blocks that are handed out but not merged

@@ -103,10 +103,10 @@ uint64_t PointFold::PlannedSamples() const {
   return plan.BlockAt(state_.chunk, state_.blocks).first;
 }
 
-LocalPoint::LocalPoint(const PointExperiment& experiment)
+LocalPoint::LocalPoint(const PointExperiment& experiment, uint64_t window)
     : experiment_(experiment),
       fold_(experiment),
-      chunks_(experiment.plan(), {}, experiment.plan().chunks()) {}
+      chunks_(experiment.plan(), {}, experiment.plan().chunks(), {}, window) {}
 
 std::optional<Block> LocalPoint::NextBlock() {
   return finished() ? std::nullopt : chunks_.NextBlock();

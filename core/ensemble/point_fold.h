@@ -99,7 +99,7 @@ class PointFold {
 class LocalPoint : private BlockQueue {
  public:
   // The experiment must outlive this object.
-  explicit LocalPoint(const PointExperiment& experiment);
+  explicit LocalPoint(const PointExperiment& experiment, uint64_t window = ChunkFold::kWindow);
 
   // The next block to compute; empty if no block is left or the point is finished
   // (ChunkFold::NextBlock).

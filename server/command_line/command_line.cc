@@ -154,6 +154,9 @@ void AddServerFlags(CLI::App& app, CommandLine& line) {
           "folder of jobs and results, created if it does not exist; one server at a time uses it")
       ->capture_default_str();
   AddNumber(app, "--workers", line.server.workers, 1, kMostWorkers, "threads that compute");
+  AddWord(app, "--device", line.server.device, {kProcessor, kGpu},
+          "what computes the flights of pairs for these threads; results do not depend on it. gpu\n"
+          "needs a program that was built with CUDA, and a device");
   AddSeconds(app, "--watch-heartbeat-seconds", line.server.watch.heartbeat, 0.01, 3600,
              "a watch with nothing new to send sends a heartbeat after this time");
   AddSeconds(app, "--idle-exit-seconds", line.idle_exit, 0, kMostSeconds,

@@ -12,8 +12,12 @@ constexpr std::chrono::milliseconds kTurn(50);
 }  // namespace
 
 BlockSession::BlockSession(BlockExchange& exchange,
-                           std::shared_ptr<const PointExperiment> experiment, std::stop_token stop)
-    : exchange_(exchange), experiment_(std::move(experiment)), stop_(std::move(stop)) {}
+                           std::shared_ptr<const PointExperiment> experiment, std::stop_token stop,
+                           OrbitDevice* device)
+    : exchange_(exchange),
+      experiment_(std::move(experiment)),
+      stop_(std::move(stop)),
+      device_(device) {}
 
 bool BlockSession::Advance() {
   end_of_turn_ = SteadyNow() + kTurn;

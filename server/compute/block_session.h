@@ -25,9 +25,9 @@ class BlockExchange {
 
 class BlockSession : private BlockQueue {
  public:
-  // The exchange must outlive the session.
+  // The exchange and the device must outlive the session. `device` may be null (BlockQueue).
   BlockSession(BlockExchange& exchange, std::shared_ptr<const PointExperiment> experiment,
-               std::stop_token stop);
+               std::stop_token stop, OrbitDevice* device = nullptr);
 
   // Runs one turn. False if the session has no work left or was stopped; it can be destroyed then.
   bool Advance();
@@ -38,11 +38,13 @@ class BlockSession : private BlockQueue {
   std::optional<Block> Next() override { return exchange_.NextBlock(); }
   void Done(const Block& block, BlockResult result) override;
   bool Pause() override;
+  OrbitDevice* device() const override { return device_; }
   std::stop_token stop() const override { return stop_; }
 
   BlockExchange& exchange_;
   const std::shared_ptr<const PointExperiment> experiment_;
   const std::stop_token stop_;
+  OrbitDevice* const device_;
   Clock::time_point end_of_turn_;
   double worked_ = 0;  // the thread's processor time at the last report
   std::unique_ptr<EngineRun> blocks_;

@@ -17,7 +17,8 @@ class ThreadExecutor::SharedLease : private BlockExchange {
   SharedLease(ThreadExecutor& executor, Lease lease)
       : executor_(executor),
         lease_(std::move(lease)),
-        fold_(lease_.experiment->plan(), lease_.start, lease_.end, lease_.groups) {}
+        fold_(lease_.experiment->plan(), lease_.start, lease_.end, lease_.groups,
+              WindowFor(executor.device_)) {}
 
   bool IsStopped() const { return lease_.stop.stop_requested(); }
 
@@ -35,11 +36,17 @@ class ThreadExecutor::SharedLease : private BlockExchange {
   }
 
  private:
+  uint64_t WindowFor(const OrbitDevice* device) const {
+    if (device == nullptr) return ChunkFold::kWindow;
+    return ChunkFold::WindowFor(lease_.experiment->plan(), device->orbits());
+  }
+
   std::unique_ptr<BlockSession> TakeSession() {
     MutexLock lock(mutex_);
     if (resting_.empty()) {
       BlockExchange& blocks = *this;
-      return std::make_unique<BlockSession>(blocks, lease_.experiment, lease_.stop);
+      return std::make_unique<BlockSession>(blocks, lease_.experiment, lease_.stop,
+                                            executor_.device_);
     }
     std::unique_ptr<BlockSession> session = std::move(resting_.front());
     resting_.pop_front();
@@ -82,8 +89,8 @@ class ThreadExecutor::SharedLease : private BlockExchange {
 };
 
 ThreadExecutor::ThreadExecutor(Scheduler& scheduler, int threads, double seconds,
-                               std::shared_ptr<CrashRecord> crashes)
-    : scheduler_(scheduler), workers_(threads), crashes_(std::move(crashes)) {
+                               std::shared_ptr<CrashRecord> crashes, OrbitDevice* device)
+    : scheduler_(scheduler), workers_(threads), crashes_(std::move(crashes)), device_(device) {
   capacity_ = {.executor = scheduler.AddExecutor(*this), .seconds = seconds};
 }
 

@@ -31,10 +31,12 @@ struct ThreadCounts {
 class ThreadExecutor : public Executor {
  public:
   // The scheduler must outlive this. `seconds` bounds a lease (Capacity), so that something is left
-  // for other executors. The record always has the runs that are being computed.
+  // for other executors. The record always has the runs that are being computed. `device`, which
+  // must outlive this and may be null, computes flights for the threads.
   ThreadExecutor(Scheduler& scheduler, int threads,
                  double seconds = std::numeric_limits<double>::infinity(),
-                 std::shared_ptr<CrashRecord> crashes = std::make_shared<CrashRecord>());
+                 std::shared_ptr<CrashRecord> crashes = std::make_shared<CrashRecord>(),
+                 OrbitDevice* device = nullptr);
   ~ThreadExecutor() override;  // shuts down
 
   ExecutorTraits traits() const override { return {.local = true}; }
@@ -59,6 +61,7 @@ class ThreadExecutor : public Executor {
   Scheduler& scheduler_;
   const int workers_;
   const std::shared_ptr<CrashRecord> crashes_;
+  OrbitDevice* const device_;
   Capacity capacity_;
   std::atomic<int> busy_ = 0;
   std::atomic<uint64_t> blocks_ = 0;

@@ -46,6 +46,11 @@ void AddServer(const ServiceContext& service, const v1::ServerStatus& status, Pa
                "Deaths of server processes on this data folder while they computed: crashes of the "
                "engine, and kills for want of memory.",
                service.book.engine_crashes());
+  if (service.device != nullptr) {
+    page.Gauge("ballpiston_device_failed",
+               "1 after the GPU failed: the processor computes until the next start.",
+               service.device->has_failed());
+  }
   page.Gauge("ballpiston_streams", "Open watches and traces.", status.streams());
   page.Gauge("ballpiston_workers", "Threads that compute.", status.workers());
   page.Gauge("ballpiston_busy_workers", "Threads that compute now.", status.busy_workers());

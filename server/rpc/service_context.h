@@ -5,6 +5,7 @@
 #include <string>
 
 #include "absl/time/time.h"
+#include "core/gpu/device_orbits.h"
 #include "server/book/job_book.h"
 #include "server/cluster/cluster.h"
 #include "server/compute/model_ladder.h"
@@ -27,7 +28,8 @@ struct ServiceContext {
   JobBook& book;
   const Scheduler& scheduler;
   const ThreadExecutor& threads;
-  const Cluster* cluster;  // null without a cluster
+  const OrbitsOnDevice* device = nullptr;  // null without a device
+  const Cluster* cluster;                  // null without a cluster
   ModelLadder& ladder;
   Quotas& quotas;
   Streams& streams;

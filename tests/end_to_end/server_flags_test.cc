@@ -16,6 +16,7 @@
 namespace ballpiston {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 ProcessResult Server(const Words& flags) {
@@ -36,7 +37,7 @@ std::string Refusal(const Words& flags) {
 
 // The flags of --help, by group.
 constexpr char kFlags[] =
-    "listen data-dir workers watch-heartbeat-seconds idle-exit-seconds drain-seconds config "
+    "listen data-dir workers device watch-heartbeat-seconds idle-exit-seconds drain-seconds config "
     "tls-certificate tls-key access-file "
     "executor cluster-folder cluster-least-seconds cluster-lease-seconds "
     "cluster-timeout-seconds cluster-worker "
@@ -142,6 +143,7 @@ TEST(ServerFlags, ARefusalNamesFlagValueAndPermittedValues) {
       {{"--max-message-bytes=1023"}, "permitted: whole numbers, 1024 to 268435456"},
       {{"--max-transfer-mib=1048577"}, "permitted: whole numbers, 0 to 1048576"},
       {{"--log-level", "-1"}, "--log-level: -1 not in {info,warning,error}"},
+      {{"--device=tpu"}, "--device: tpu not in {cpu,gpu}"},
       {{"--executor=slurm"}, "--cluster-folder: \"\" is not an absolute path"},
       {{"--executor=folder", "--cluster-folder=a"}, "\"a\" is not an absolute path"},
       {{"--cluster-folder=/a"}, "--cluster-folder needs --executor=folder"},
@@ -153,6 +155,12 @@ TEST(ServerFlags, ARefusalNamesFlagValueAndPermittedValues) {
     flags.insert(flags.begin(), "--check");  // no server, even if a value is accepted by mistake
     EXPECT_THAT(Refusal(flags), HasSubstr(row.message));
   }
+}
+
+TEST(ServerFlags, ADeviceThatIsNotThereIsRefused) {
+  const Words flags = {"--device=gpu", "--idle-exit-seconds=0.1"};
+  if (Server(flags).exit_code == 0) GTEST_SKIP() << "there is a device";
+  EXPECT_THAT(Refusal(flags), AllOf(HasSubstr("--device=gpu: "), HasSubstr("permitted here: cpu")));
 }
 
 // A shell passes an empty value if a variable is not set. The server then takes neither the default

@@ -22,6 +22,7 @@ class SourceOfNumbered : public OrbitSource {
     for (auto& [orbit, collision, after] : collisions) after = orbits_.Collide(orbit, collision);
   }
   double TimeLimit() const override { return orbits_.TimeLimit(); }
+  OrbitDevice* Device() const override { return orbits_.Device(); }
   bool Pause() override { return stop_.stop_requested(); }
 
  private:

@@ -15,6 +15,7 @@ class NumberedOrbits {
   virtual ~NumberedOrbits() = default;
   virtual PairState Start(uint64_t orbit) = 0;
   virtual AfterCollision Collide(uint64_t orbit, const Collision& collision) = 0;
+  virtual OrbitDevice* Device() const { return nullptr; }
   virtual double TimeLimit() const { return std::numeric_limits<double>::infinity(); }
 };
 

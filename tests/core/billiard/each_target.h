@@ -17,6 +17,11 @@ inline bool HasFusedMultiplyAdd(int64_t target) {
 #endif
 }
 
+// Whether the lanes use fused multiply-add by default.
+inline bool LanesAreFused() {
+  return HasFusedMultiplyAdd(hwy::SupportedAndGeneratedTargets().front());  // the best
+}
+
 inline void ForEachTarget(const std::function<void(int64_t target)>& test) {
   for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
     SCOPED_TRACE(hwy::TargetName(target));

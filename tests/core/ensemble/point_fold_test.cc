@@ -170,6 +170,18 @@ TEST_F(Fold, BlocksGivenOutAreLimitedByTheWindow) {
   for (const bool has_more : {true, true, false}) EXPECT_EQ(fold.NextBlock().has_value(), has_more);
 }
 
+TEST_F(Fold, TheWindowOfADeviceHoldsItsLongestOrbits) {
+  const ChunkPlan plan(1'000'000'000, Engine::kLanes, 10'000);
+  ASSERT_EQ(plan.MostInABlock(), 1024u);
+  EXPECT_EQ(ChunkFold::WindowFor(plan, 1), ChunkFold::kWindow);
+  EXPECT_EQ(ChunkFold::WindowFor(plan, 200 * 1024), 3200u);
+  EXPECT_EQ(ChunkFold::WindowFor(plan, 1'000'000'000), 16 * ChunkFold::kWindow);
+  ChunkFold fold(plan, {}, plan.chunks(), {}, 3200);
+  uint64_t given_out = 0;
+  while (fold.NextBlock()) ++given_out;
+  EXPECT_EQ(given_out, 3200u);
+}
+
 TEST_F(Fold, EarlyChunksWait) {
   PointFold fold(*point_);
   EXPECT_TRUE(fold.Needs(1));

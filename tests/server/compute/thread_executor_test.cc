@@ -6,7 +6,11 @@
 #include <memory>
 #include <utility>
 
+#include "core/gpu/device_orbits.h"
 #include "gtest/gtest.h"
+#include "tests/core/billiard/each_target.h"
+#include "tests/core/gpu/host_flights.h"
+#include "tests/core/one_point_spec.h"
 #include "tests/server/compute/recording_journal.h"
 #include "tests/server/compute/run_requests.h"
 #include "tests/server/factory_opener.h"
@@ -47,6 +51,39 @@ TEST(ThreadExecutor, ARunIsInTheRecordOnlyWhileItIsComputed) {
   scheduler.Shutdown();
   EXPECT_EQ(CrashRecord(in_a_block.path(), after).Deaths({1, 0}), 1);
   EXPECT_EQ(CrashRecord(in_a_wait.path(), after).Deaths({1, 0}), 0);
+}
+
+// ---- a device ----
+
+std::unique_ptr<const PointExperiment> OpenReal(const EnsembleSpec& spec, size_t index) {
+  return PointExperiment::Create(spec, index);
+}
+
+BlockResult ResultOf(const EnsembleSpec& spec, OrbitDevice* device) {
+  FactoryOpener opener(OpenReal);
+  Scheduler scheduler(opener, 2);
+  ThreadExecutor threads(scheduler, 2, kInfinity, std::make_shared<CrashRecord>(), device);
+  const auto journal = std::make_shared<RecordingJournal>();
+  scheduler.Add(RunOf(1, spec, journal));
+  threads.Start();
+  EXPECT_OK(journal->AwaitEnd());
+  scheduler.Shutdown();
+  return journal->finished.at(0);
+}
+
+// Processors without fused multiply-add give other bits than devices.
+TEST(ThreadExecutor, AJobOnADeviceHasTheSameBitsAlsoIfTheDeviceFails) {
+  if (!LanesAreFused()) GTEST_SKIP();
+  const EnsembleSpec spec =
+      SpecOf(&kFirstHit, PaperPoint(0.2, 0.125, 1), {.samples = 3000}, Model::kBilliard);
+  const BlockResult expected = ResultOf(spec, nullptr);
+  for (const HostFaults& faults : {HostFaults(), HostFaults{.make = 1}, HostFaults{.land = 3}}) {
+    int failures = 0;
+    OrbitsOnDevice device(std::make_unique<HostDevice>(64, faults), 2,
+                          [&](const absl::Status&) { ++failures; });
+    EXPECT_TRUE(ResultOf(spec, &device) == expected);
+    EXPECT_EQ(failures, faults.make || faults.land ? 1 : 0);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,269 @@
+// The flights of a GPU (core/gpu) beside those of all threads of this machine. Needs a build with
+// BALLPISTON_CUDA.
+//
+//   gpu_benchmark kernel DELTA        the kernel alone: wall hits a second
+//   gpu_benchmark bits                many questions: the bits of both
+//   gpu_benchmark speed DELTA HITS    first-hit with about so many wall hits: time and bits of both
+//   gpu_benchmark full                the memory of the device is full: the bits are the same
+//   gpu_benchmark lost                the device is lost while it computes: the same
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "core/billiard/lane_constants.h"
+#include "core/billiard/lane_orbit.h"
+#include "core/ensemble/block_orbits.h"
+#include "core/ensemble/point_fold.h"
+#include "core/experiment/all_experiments.h"
+#include "core/experiment/expected_returns.h"
+#include "core/geometry/paper.h"
+#include "core/gpu/device_orbits.h"
+#include "core/sampling/invariant_measure.h"
+#include "tests/benchmark/break_device.h"
+
+namespace ballpiston {
+namespace {
+
+constexpr double kEpsilon0 = 0.125;
+
+double Now() {
+  const auto time = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(time).count();
+}
+
+unsigned AllThreads() { return std::max(std::thread::hardware_concurrency(), 1u); }
+
+// ---- a point in several threads ----
+
+struct SharedPoint {
+  SharedPoint(const PointExperiment& experiment, const OrbitDevice* device)
+      : point(experiment, device == nullptr
+                              ? ChunkFold::kWindow
+                              : ChunkFold::WindowFor(experiment.plan(), device->orbits())) {}
+  std::mutex mutex;
+  LocalPoint point;
+};
+
+class Queue : public BlockQueue {
+ public:
+  Queue(SharedPoint& shared, OrbitDevice* device) : shared_(shared), device_(device) {}
+  std::optional<Block> Next() override {
+    const std::lock_guard lock(shared_.mutex);
+    return shared_.point.NextBlock();
+  }
+  void Done(const Block& block, BlockResult result) override {
+    const std::lock_guard lock(shared_.mutex);
+    shared_.point.Add(block, std::move(result));
+  }
+  bool Pause() override { return IsFinished(); }
+  OrbitDevice* device() const override { return device_; }
+  std::stop_token stop() const override { return {}; }
+  bool IsFinished() const {
+    const std::lock_guard lock(shared_.mutex);
+    return shared_.point.finished();
+  }
+
+ private:
+  SharedPoint& shared_;
+  OrbitDevice* device_;
+};
+
+struct Computed {
+  BlockResult merged;
+  double seconds;
+};
+
+Computed Compute(const PointExperiment& experiment, unsigned threads, OrbitDevice* device) {
+  SharedPoint shared(experiment, device);
+  const double begin = Now();
+  std::vector<std::thread> running;
+  for (unsigned i = 0; i < threads; ++i) {
+    running.emplace_back([&] {
+      Queue queue(shared, device);
+      const std::unique_ptr<EngineRun> run = experiment.StartRun(queue);
+      while (!queue.IsFinished()) {
+        if (run->Advance()) std::this_thread::sleep_for(std::chrono::microseconds(200));
+      }
+    });
+  }
+  for (std::thread& thread : running) thread.join();
+  return {shared.point.Merged(), Now() - begin};
+}
+
+std::unique_ptr<OrbitsOnDevice> Open(unsigned runs) {
+  auto device = OpenCuda();
+  if (!device.ok()) {
+    std::printf("%s\n", std::string(device.status().message()).c_str());
+    std::exit(1);
+  }
+  return std::make_unique<OrbitsOnDevice>(*std::move(device), runs, [](const absl::Status& status) {
+    std::printf("  the device fails: %s\n", std::string(status.message()).c_str());
+  });
+}
+
+EnsembleSpec Question(const ExperimentKind* experiment, double rho, double delta, double epsilon,
+                      double samples) {
+  EnsembleSpec spec = {.experiment = experiment,
+                       .grid = {{kRho, {rho}}, {kDelta, {delta}}},
+                       .seed = 5,
+                       .model = Model::kBilliard};
+  if (experiment == &kEquilibrium) {
+    spec.target.collisions = static_cast<int64_t>(samples);
+    return spec;
+  }
+  spec.target.samples = static_cast<int64_t>(samples);
+  if (experiment == &kFirstHit || experiment == &kConditionalMeanFreeTime) {
+    spec.grid[kEpsilon] = {epsilon};
+  }
+  if (experiment == &kFirstHit) spec.grid[kExponent] = {1};
+  return spec;
+}
+
+// ---- the kernel alone ----
+
+std::vector<FlightLane> SomeLanes(const PairGeometry& geometry, size_t count) {
+  const double scale = FlightConstants<double>(geometry).scale;
+  const OrbitInLane in_lane(geometry, scale, kNoTimeLimit);
+  std::vector<FlightLane> lanes;
+  for (size_t i = 0; i < count; ++i) {
+    CounterRandom random(1, 2, i);
+    const PairState state = DrawFromFlowMeasure(geometry, random);
+    const LaneOrbit orbit = in_lane.Orbit({i, state});
+    const LaneEntry entry = in_lane.Enter(orbit, state, kSlack<double>);
+    lanes.push_back({.ball = BallOf(entry.ball),
+                     .phase = entry.phase,
+                     .ratio = entry.ratio,
+                     .path_before = 0,
+                     .longest_path = 1e300,
+                     .bursts = 0,
+                     .in_reach = entry.in_reach ? kSign : 0,
+                     .orbit = static_cast<uint32_t>(i)});
+  }
+  return lanes;
+}
+
+// Lanes whose orbits have ended take the same starts again.
+void ShowKernel(double delta) {
+  const std::unique_ptr<FlightDevice> device = std::move(OpenCuda()).value();
+  const PairGeometry geometry = PairGeometry::Create(kPaperRho, delta).value();
+  const FlightProgram program = ProgramOf(geometry);
+  const size_t count = device->lanes();
+  const auto batch = std::move(device->MakeBatch(program, count)).value();
+  const std::vector<FlightLane> starts = SomeLanes(geometry, 2 * count);
+  const auto bursts = static_cast<uint32_t>(6000 / program.flights);
+  double least = 1e300;
+  size_t reports = 0;
+  for (int launch = 0; launch < 8; ++launch) {
+    const double begin = Now();
+    batch->Launch(starts, bursts).IgnoreError();
+    reports = batch->Land().value().reports.size();
+    least = std::min(least, Now() - begin);
+  }
+  const double hits = static_cast<double>(count) * bursts * program.flights;
+  std::printf("%s, %zu lanes, delta %g: %.3g wall hits/s (%.3g hits in %.4g s, %zu orbits ended)\n",
+              device->name().c_str(), count, delta, hits / least, hits, least, reports);
+}
+
+// ---- questions ----
+
+bool Compare(const char* name, const PointExperiment& experiment, const Computed& processor,
+             const Computed& device) {
+  const bool same = DigestOf(processor.merged) == DigestOf(device.merged);
+  const Estimate estimate = experiment.FirstEstimate(device.merged);
+  std::printf("%-28s %s  samples %llu  %.9g  digest %016llx  processor %.3g s, device %.3g s\n",
+              name, same ? "same bits" : "OTHER BITS",
+              static_cast<unsigned long long>(device.merged.samples), estimate.value,
+              static_cast<unsigned long long>(DigestOf(device.merged)), processor.seconds,
+              device.seconds);
+  std::fflush(stdout);
+  return same;
+}
+
+bool ShowBits() {
+  constexpr double kEvents = 2e9;
+  const auto device = Open(AllThreads());
+  bool same = true;
+  for (const double rho : {0.501, kPaperRho, 0.7}) {
+    for (const double share : {0.9, 0.3, 0.05}) {
+      const double delta = share * PairDeltaBound(rho);
+      for (const ExperimentKind* kind : {&kEquilibrium, &kConditionalMeanFreeTime, &kFirstHit,
+                                         &kMarkovProperty, &kEnergyRelaxation}) {
+        const auto some = PointExperiment::Create(Question(kind, rho, delta, kEpsilon0, 100), 0);
+        const double samples = kEvents / some->plan().events_per_sample();
+        const auto experiment =
+            PointExperiment::Create(Question(kind, rho, delta, kEpsilon0, samples), 0);
+        const Computed processor = Compute(*experiment, AllThreads(), nullptr);
+        const Computed on_device = Compute(*experiment, AllThreads(), device.get());
+        std::printf("rho %-8.4g delta %-8.3g ", rho, delta);
+        same &= Compare(std::string(kind->name).c_str(), *experiment, processor, on_device);
+      }
+    }
+  }
+  return same;
+}
+
+bool ShowSpeed(double delta, double hits) {
+  const PairGeometry geometry = PairGeometry::Create(kPaperRho, delta).value();
+  const double hits_of_a_return = HitsPerReturn(geometry, kEpsilon0).ball_wall;
+  const auto experiment = PointExperiment::Create(
+      Question(&kFirstHit, kPaperRho, delta, kEpsilon0, hits / hits_of_a_return), 0);
+  const Computed processor = Compute(*experiment, AllThreads(), nullptr);
+  const double exact = *experiment->FirstEstimate(processor.merged).exact;
+  const double flown = processor.merged.moments[0].mean *
+                       static_cast<double>(processor.merged.samples) / exact * hits_of_a_return;
+  std::printf("first-hit, delta %g: %.4g wall hits, %.4g a return\n", delta, flown,
+              hits_of_a_return);
+  std::printf("  processor, %2u threads: %.3g wall hits/s\n", AllThreads(),
+              flown / processor.seconds);
+  bool same = true;
+  for (unsigned threads = 1; threads <= AllThreads(); threads *= 2) {
+    const auto device = Open(threads);
+    const Computed on_device = Compute(*experiment, threads, device.get());
+    std::printf("  device,    %2u threads: %.3g wall hits/s, %.1f times the processor\n", threads,
+                flown / on_device.seconds, processor.seconds / on_device.seconds);
+    same &= Compare("", *experiment, processor, on_device);
+  }
+  return same;
+}
+
+// ---- faults ----
+
+bool ShowFault(const char* name, const std::function<void()>& fault, double seconds) {
+  const auto experiment =
+      PointExperiment::Create(Question(&kFirstHit, kPaperRho, 0.0125, kEpsilon0, 3e6), 0);
+  const Computed processor = Compute(*experiment, AllThreads(), nullptr);
+  const auto device = Open(AllThreads());
+  std::printf("%s\n", name);
+  std::thread faulty([&] {
+    std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+    fault();
+  });
+  if (seconds == 0) faulty.join();
+  const Computed on_device = Compute(*experiment, AllThreads(), device.get());
+  if (faulty.joinable()) faulty.join();
+  return Compare("  first-hit", *experiment, processor, on_device) && device->has_failed();
+}
+
+bool Run(int argc, char** argv) {
+  const std::string what = argc > 1 ? argv[1] : "";
+  const double delta = argc > 2 ? std::atof(argv[2]) : 0.0125;
+  if (what == "kernel") ShowKernel(delta);
+  if (what == "bits") return ShowBits();
+  if (what == "speed") return ShowSpeed(delta, argc > 3 ? std::atof(argv[3]) : 1e11);
+  if (what == "full") return ShowFault("the memory of the device is full:", FillDevice, 0);
+  if (what == "lost") return ShowFault("the device is lost after 0.2 s:", BreakDevice, 0.2);
+  return true;
+}
+
+}  // namespace
+}  // namespace ballpiston
+
+int main(int argc, char** argv) { return ballpiston::Run(argc, argv) ? 0 : 1; }
