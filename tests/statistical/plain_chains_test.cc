@@ -1,12 +1,13 @@
-// gas-conduction by the jump process beside a plain program, which shares no physics with core/
-// (tests/oracle/plain_jump_chain.h): the current, its noise, the exchange rate and the
-// temperatures.
+// gas-conduction by the billiard and by the jump process beside plain programs, which share no
+// physics with core/ (tests/oracle/plain_billiard_chain.h, plain_jump_chain.h): the current, its
+// noise, the exchange rate and the temperatures.
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
+#include "tests/oracle/plain_billiard_chain.h"
 #include "tests/oracle/plain_jump_chain.h"
 #include "tests/support/nightly.h"
 
@@ -32,7 +33,8 @@ double Noise(const std::vector<double>& charges, double window) {
   return (*twice.Variance() - *single.Variance()) / window;
 }
 
-void AddRun(PlainJumpChain& chain, double window, PlainResult& result) {
+template <typename Chain>
+void AddRun(Chain chain, double window, PlainResult& result) {
   chain.Run(4 * window);
   chain.Forget();
   std::vector<double> charges;
@@ -51,14 +53,14 @@ void AddRun(PlainJumpChain& chain, double window, PlainResult& result) {
 }
 
 // A window is several times the longest relaxation time, which is about (N + 1)^2/3 exchange times.
-PlainResult PlainRuns(size_t cells, double density) {
+// `density`: of the exchanges (plain_jump_chain.h); `start` makes the chain of a seed.
+template <typename Start>
+PlainResult PlainRuns(size_t cells, double density, Start start) {
   PlainResult result;
   result.temperatures.resize(2 * cells - 1);
   const auto length = static_cast<double>(cells + 1);
   for (unsigned run = 0; run < kRuns; ++run) {
-    PlainJumpChain chain(cells, density, kHotEnd, kColdEnd,
-                         1000 * run + static_cast<unsigned>(cells));
-    AddRun(chain, 4 * length * length / density, result);
+    AddRun(start(1000 * run + static_cast<unsigned>(cells)), 4 * length * length / density, result);
   }
   return result;
 }
@@ -97,6 +99,15 @@ void Compare(const PointSummary& product, const PlainResult& plain, Comparison& 
   }
 }
 
+double DensityOf(const PointParameters& point) {
+  const GasGeometry gas = GasGeometryOf(point, GasEnds::kReservoirs);
+  return std::sqrt(std::numbers::pi) * InfiniteGasExchangeRate(gas, 1);
+}
+
+PointSummary ByTheProduct(const PointParameters& point, Model model, int64_t samples) {
+  return RunPoint(SpecOf(&kGasConduction, point, {.samples = samples}, model, 3));
+}
+
 // 20 comparisons, or 38 in the nightly test. With errors of 64 runs and 128 trajectories, one is
 // above 4.5 standard errors for one seed in 1000, and the mean square above 2 for one in 200, if
 // all are independent.
@@ -104,13 +115,34 @@ TEST(PlainChains, TheJumpProcessBetweenReservoirsIsThatOfAPlainProgram) {
   Comparison comparison;
   for (const int64_t cells : {1, 2, 4, 8}) {
     if (cells > 4 && !IsNightly()) break;
+    const auto count = static_cast<size_t>(cells);
     const PointParameters point = PaperGas(&kGasConduction, 0.2, GasShape{cells});
-    const EnsembleSpec spec =
-        SpecOf(&kGasConduction, point, {.samples = 240'000}, Model::kMarkov, 3);
-    const GasGeometry gas = GasGeometryOf(point, GasEnds::kReservoirs);
-    const double density = std::sqrt(std::numbers::pi) * InfiniteGasExchangeRate(gas, 1);
-    const PointSummary product = RunPoint(spec);
-    Compare(product, PlainRuns(static_cast<size_t>(cells), density), comparison);
+    const double density = DensityOf(point);
+    Compare(ByTheProduct(point, Model::kMarkov, 240'000),
+            PlainRuns(count, density,
+                      [&](unsigned seed) {
+                        return PlainJumpChain(count, density, kHotEnd, kColdEnd, seed);
+                      }),
+            comparison);
+  }
+  EXPECT_LT(comparison.MeanSquare(), 2);
+}
+
+// 10 comparisons, or 24 in the nightly test; the rates of false alarms are as above.
+TEST(PlainChains, TheBilliardBetweenReservoirsIsThatOfAPlainProgram) {
+  constexpr double kDelta = 0.15;
+  Comparison comparison;
+  for (const int64_t cells : {1, 2, 4}) {
+    if (cells > 2 && !IsNightly()) break;
+    const auto count = static_cast<size_t>(cells);
+    const PointParameters point = PaperGas(&kGasConduction, kDelta, GasShape{cells});
+    Compare(ByTheProduct(point, Model::kBilliard, 60'000),
+            PlainRuns(count, DensityOf(point),
+                      [&](unsigned seed) {
+                        return PlainBilliardChain(count, kPaperRho, kDelta, kHotEnd, kColdEnd,
+                                                  seed);
+                      }),
+            comparison);
   }
   EXPECT_LT(comparison.MeanSquare(), 2);
 }

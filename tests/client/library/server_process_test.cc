@@ -102,6 +102,7 @@ TEST_F(ServerProcessTest, AServerThatDoesNotListenIsFoundAndReported) {
 TEST_F(ServerProcessTest, ErrorNamesAServerThatIsStillStopping) {
   ASSERT_OK(StartServer(Program(absl::StrCat("trap '' TERM\n", kLock, kListen, kWait))));
   const pid_t pid = FindServer(data_)->pid;
+  ASSERT_GT(pid, 0);
   EXPECT_THAT(StopServer(data_, absl::Milliseconds(50)),
               StatusIs(absl::StatusCode::kDeadlineExceeded,
                        EndsWith(absl::StrCat("(process ", pid, ") is still stopping"))));

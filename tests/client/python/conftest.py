@@ -85,9 +85,12 @@ class Home:
         return subprocess.Popen(command, stdout=-1, stderr=-1, text=True, **options)
 
     def server_id(self) -> int | None:
-        """The process id of the server; None if none has started."""
+        """The process id of the server; None if none runs. The file keeps the id of a server that
+        was killed, and another process may have it by now."""
         with contextlib.suppress(OSError, ValueError):
-            return int((self.folder / "ballpiston" / "lock").read_text())
+            process = int((self.folder / "ballpiston" / "lock").read_text())
+            if str(self.folder).encode() in Path(f"/proc/{process}/cmdline").read_bytes():
+                return process
         return None
 
     def end_server(self, how: signal.Signals) -> None:

@@ -181,9 +181,9 @@ TEST(EnsembleService, AllViolationsAreListedTogether) {
   v1::EnsembleSpec spec = SmallFirstHit();
   spec.mutable_grid()->set_rho(0, 0.4);
   spec.mutable_target()->set_samples(0);
-  EXPECT_THAT(DetailsOf(RunningServer().Create(CreateRequest(spec, "not a uuid"))).fields,
-              testing::UnorderedElementsAre("request_id", "spec.grid.rho[0]",
-                                            "spec.target.samples"));
+  EXPECT_THAT(
+      DetailsOf(RunningServer().Create(CreateRequest(spec, "not a uuid"))).fields,
+      testing::UnorderedElementsAre("request_id", "spec.grid.rho[0]", "spec.target.samples"));
 }
 
 // ---- Create ----
