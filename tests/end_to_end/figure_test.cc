@@ -133,6 +133,7 @@ TEST_F(FigureTest, ListPrintsTheNamesOfTheFigures) {
                                  "ingoing-law",
                                  "kernel",
                                  "logarithm",
+                                 "lyapunov",
                                  "markov-test",
                                  "master-equation",
                                  "mean-free-time",

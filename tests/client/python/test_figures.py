@@ -16,7 +16,15 @@ import pytest
 
 import ballpiston
 from ballpiston import figures
-from ballpiston.figures import gas, ingoing_law, markov_test, rates, speed_accuracy, stability
+from ballpiston.figures import (
+    gas,
+    ingoing_law,
+    lyapunov,
+    markov_test,
+    rates,
+    speed_accuracy,
+    stability,
+)
 from ballpiston.figures.parts import command, oscillation, style, tables
 
 REFERENCE = json.loads(
@@ -198,6 +206,12 @@ def test_a_chain_is_drawn_as_one_row(client: ballpiston.Client) -> None:
     assert (geometry["columns"][0], geometry["rows"][0]) == (4, 1)
     assert len(data["gas-pistons"]["x"]) == 4
     expect_texts_inside(gas.draw(data))
+
+
+def test_lyapunov_exponents_are_drawn_beside_what_is_computed(client: ballpiston.Client) -> None:
+    data = lyapunov.measure(client, delta="0.2,0.05", collisions=6400, samples=512)
+    assert data["lyapunov"]["samples"].tolist() == [6400, 6400]
+    expect_texts_inside(lyapunov.draw(data))
 
 
 def test_the_counts_of_failures_are_read_from_the_report() -> None:

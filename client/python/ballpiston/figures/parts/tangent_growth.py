@@ -59,11 +59,12 @@ class Collisions(NamedTuple):
 
 
 class Growth(NamedTuple):
-    """lambda_2 in a collision: its mean with its standard error, and without the terms in 1/t."""
+    """lambda_2 in a collision: its mean with its standard error, and the mean without the terms in 1/t,
+    which is that for long waits."""
 
     value: float
     error: float
-    without_shear: float
+    long_waits: float
 
 
 def collision_rate(piston_speed: FloatArray) -> FloatArray:
