@@ -114,7 +114,8 @@ def test_drawn_collisions_have_the_invariant_measure() -> None:
     # Near the tip the cell is a wedge, so the mean depth is 2/3 of delta, within a share of
     # delta/lambda. The standard error is 0.0008 of delta; a bound of 0.007 is never exceeded.
     depth = (1 - width) / 2 - hits.x
-    assert (depth.mean() / delta, abs(hits.y).max() / delta) == pytest.approx((2 / 3, width), abs=0.007)
+    assert depth.mean() / delta == pytest.approx(2 / 3, abs=0.007)
+    assert abs(hits.y).max() / delta == pytest.approx(width, abs=0.007)
     logarithms = np.log(hits.ball_vy**2 / np.abs(hits.ball_vx * hits.piston_v))
     error = logarithms.std() / np.sqrt(count)  # five of them: a false alarm in two million
     assert abs(logarithms.mean() - tangent_growth.mean_log_velocities()) < 5 * error

@@ -91,7 +91,8 @@ def _curve(client: Client, rho: float, samples: int, seed: int) -> Table:
 def laws(whole: Table) -> Table:
     """Fits to delta <= 0.05 of `value`: by A; by A tau^B; by A + B log(tau); by the same and a term
     sqrt(delta); of what remains of `value` without the computed terms, by A + B log(tau); and
-    `computed` itself, without a coefficient. A fit to fewer points than coefficients is left out."""
+    `computed` itself, without a coefficient. Fits to fewer points than coefficients are left
+    out."""
     is_rare = whole["delta"] <= _RARE
     rare = {name: column[is_rare] for name, column in whole.items()}
     value, error, log_tau = rare["value"], rare["value_error"], np.log(rare["tau"])

@@ -1,4 +1,4 @@
-"""The second Lyapunov exponent at rare ball-piston collisions, from the statistics of one collision.
+"""The second Lyapunov exponent at rare ball-piston collisions, from statistics of one collision.
 
 core/billiard/tangent_map.h and tangent_plane.h define the tangent vectors: (a, A) of the ball and
 (b, B) of both bodies. In a wait of the time t the ball's part grows exponentially, to the direction
@@ -7,24 +7,25 @@ sheared by
 
   S(t) = (1 t; 0 1).
 
-At a collision both parts are mixed by (c s; s -c), with c^2 + s^2 = 1 and |c| = |p p'|/(v v'). Here
-p and p' are the piston's velocities before and after, v and v' the ball's speeds, and a prime is
-always after. In the next wait the ball's part grows, unless it has the stable direction (1, -v' k').
-In the plane of the two growing vectors one vector has the first direction. Subtract the multiple of
-it that leaves the other vector in the stable direction. Then the other vector's part (b, B) has been
-mapped, up to its sign, by
+At a collision both parts are mixed by (c s; s -c), with c^2 + s^2 = 1 and c = p p'/(v v'). Here p
+is the piston's velocity and v the ball's speed, and a prime means after the collision. In the next
+wait the ball's part grows, unless it has the stable direction (1, -v' k').
+
+In the plane of the two growing vectors one vector has the direction that grows in a wait. Subtract
+the multiple of it that leaves the other vector in the stable direction of the next wait. This has
+mapped the other vector's part (b, B), up to its sign, by
 
   M = c (1 - P) + P/c,     P the projection on (1, v k) along (1, -v' k').
 
-So lambda_2 in a collision is the Lyapunov exponent of a product of matrices M S(t) of the
-determinant 1. If waits are long, each S turns the vector to (1, 0), and to (1, 1/t) in the next
-order. The growth in a collision is then
+So lambda_2 in a collision is the Lyapunov exponent of a product of the matrices M S(t), whose
+determinant is 1. If waits are long, each S turns the vector to (1, 0), and in the next order to
+(1, 1/t). The growth in a collision is then
 
   G = ln |[S(t') M S(t)]_12 / t| = ln t' + ln |M_21| + terms that vanish for t, t' -> infinity,
   |M_21| = vy^2 / |p p'| * k k' / (v k + v' k').
 
-Where vy = 0, M_21 vanishes. Then the terms in 1/t and 1/t' count, if vy^2 is below about 1/t. This
-has a probability of order 1/sqrt(t).
+Where vy = 0, M_21 vanishes. There the terms in 1/t and 1/t' count: if vy^2 is below about 1/t,
+which has a probability of order 1/sqrt(t).
 
 The distributions are those of the limit of rare collisions: velocities on the unit sphere have a
 density proportional to (vx - p)+, and the wait after a collision is exponential, with a rate that
@@ -59,8 +60,8 @@ class Collisions(NamedTuple):
 
 
 class Growth(NamedTuple):
-    """lambda_2 in a collision: its mean with its standard error, and the mean without the terms in 1/t,
-    which is that for long waits."""
+    """lambda_2 in a collision: its mean with its standard error, and the mean without the
+    terms in 1/t, for long waits."""
 
     value: float
     error: float
@@ -68,12 +69,13 @@ class Growth(NamedTuple):
 
 
 def collision_rate(piston_speed: FloatArray) -> FloatArray:
-    """The rate of collisions at a piston's speed below 1, over its mean: phi of the closed forms."""
+    """The rate of collisions at a piston's speed, over its mean: phi of the closed forms."""
     ball_speed = np.sqrt(1 - piston_speed**2)
     cosine = np.minimum(piston_speed / ball_speed, 1)
     angle, sine = np.arccos(cosine), np.sqrt(1 - cosine**2)
     approach = (ball_speed * sine - piston_speed * angle) / np.pi + piston_speed / 2
-    return approach * 2 * np.sqrt(2)
+    rate: FloatArray = approach * 2 * np.sqrt(2)
+    return rate
 
 
 def draw(rng: np.random.Generator, rho: float, delta: float, count: int) -> Collisions:
@@ -100,7 +102,8 @@ def mixing_matrix(c: FloatArray, unstable: FloatArray, stable: FloatArray) -> Fl
     """M, where the directions of P are (1, unstable) and (1, -stable)."""
     ones = np.ones_like(unstable)
     projection = np.array([[stable, ones], [unstable * stable, unstable]]) / (unstable + stable)
-    return c * (np.eye(2)[:, :, np.newaxis] - projection) + projection / c
+    matrix: FloatArray = c * (np.eye(2)[:, :, np.newaxis] - projection) + projection / c
+    return matrix
 
 
 def stable_curvature(
@@ -154,7 +157,7 @@ def mean_log_velocities() -> float:
 def _remainders(
     rng: np.random.Generator, rho: float, delta: float, tau: float, count: int
 ) -> FloatArray:
-    """G less ln t'/tau and ln(vy^2/|p p'|), and the same of its first two terms: two rows."""
+    """Two rows: G less ln t' and ln(vy^2/|p p'|), and the same of ln t' + ln |M_21|."""
     collisions = draw(rng, rho, delta, count)
     p, p_after = np.abs(collisions.piston_v), np.abs(collisions.ball_vx)
     earlier = tau * rng.exponential(size=count) / collision_rate(p)
@@ -162,7 +165,8 @@ def _remainders(
     m = mixing(rho, collisions)
     grown = m[0, 0] + m[0, 1] / earlier + later * (m[1, 0] + m[1, 1] / earlier)
     velocities = collisions.ball_vy**2 / (p * p_after)
-    return np.log(np.abs([grown / later, m[1, 0]]) / velocities)
+    remainders: FloatArray = np.log(np.abs([grown / later, m[1, 0]]) / velocities)
+    return remainders
 
 
 def _next_hit(
@@ -193,7 +197,8 @@ def _depths(rng: np.random.Generator, rho: float, delta: float, count: int) -> F
 
 def _half_height(rho: float, depth: FloatArray) -> FloatArray:
     beyond = depth * (depth + _width(rho))  # (depth + lambda/2)^2 - lambda^2/4
-    return beyond / (0.5 + np.sqrt(0.25 - beyond))
+    height: FloatArray = beyond / (0.5 + np.sqrt(0.25 - beyond))
+    return height
 
 
 def _width(rho: float) -> float:
