@@ -141,6 +141,7 @@ TEST_F(FigureTest, ListPrintsTheNamesOfTheFigures) {
                                  "rates",
                                  "relative-entropy",
                                  "relaxation",
+                                 "section",
                                  "slow-pistons",
                                  "spectrum",
                                  "speed-accuracy",
