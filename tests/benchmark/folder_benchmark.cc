@@ -159,7 +159,7 @@ class Row {
   const ClusterOptions options_ = {.most_leases = 1'000'000};
   FolderExecutor executor_{scheduler_,
                            options_,
-                           std::make_unique<SameFiles>(files_),
+                           std::make_unique<FakeFiles>(files_),
                            {.identity = "me",
                             .flush = [] { return absl::OkStatus(); },
                             .prepare = [] { return absl::OkStatus(); }}};

@@ -6,7 +6,8 @@
 // The first table: chunks from one executor elsewhere, as fast as the server accepts them. The
 // second: a sweep of first-hit jobs on clusters of two sizes. No orbit is computed: every chunk is
 // one valid result with the number of samples that the chunk has. Each row runs in a process of its
-// own, so that its peak memory is its own.
+// own, so that its peak memory is its own. The tables of docs/cluster.md are from here.
+
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,7 +18,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -35,6 +35,7 @@
 #include "server/convert/spec.h"
 #include "server/processor_time.h"
 #include "server/store/store.h"
+#include "tests/server/factory_opener.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
@@ -50,64 +51,44 @@ void ExitUnless(const absl::Status& ok) {
 
 // ---- what a row costs ----
 
-double ProcessSeconds() {
-  rusage used = {};
-  getrusage(RUSAGE_SELF, &used);
+double ProcessSeconds(const rusage& used) {
   const auto seconds = [](const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
   };
   return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
-double PeakMegabytes() {
+rusage UsedByProcess() {
   rusage used = {};
   getrusage(RUSAGE_SELF, &used);
-  return static_cast<double>(used.ru_maxrss) / 1024;
+  return used;
 }
 
-double BytesWritten() {
-  std::ifstream file("/proc/self/io");
-  std::string name;
-  double value = 0;
-  while (file >> name >> value) {
-    if (name == "wchar:") return value;
-  }
-  return 0;
-}
+double PeakMegabytes() { return static_cast<double>(UsedByProcess().ru_maxrss) / 1024; }
 
-struct Cost {
-  double wall = 0;
-  double scheduler = 0;  // processor seconds of the calling thread, without the simulation's own
-  double store = 0;      // processor seconds of the other threads
-  double bytes = 0;      // given to the file
-};
-
-// Measures calls of the server, and the whole.
+// The server's processor time: that of its calls in this thread, and of all other threads.
 class Meter {
  public:
   template <typename Call>
   auto Measure(const Call& call) {
     const double begin = ThreadSeconds();
-    struct Finally {
-      double& total;
-      double begin;
-      ~Finally() { total += ThreadSeconds() - begin; }
-    } finally{calls_, begin};
-    return call();
+    auto result = call();
+    calls_ += ThreadSeconds() - begin;
+    return result;
   }
 
-  Cost Total() const {
-    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin_;
-    const double all = ProcessSeconds() - process_begin_;
-    const double here = ThreadSeconds() - thread_begin_;
-    return {wall.count(), calls_, all - here, BytesWritten() - bytes_begin_};
+  double ServerSeconds() const {
+    return calls_ + ProcessSeconds(UsedByProcess()) - process_begin_ -
+           (ThreadSeconds() - thread_begin_);
+  }
+  double WallSeconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }
 
  private:
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  const double process_begin_ = ProcessSeconds();
+  const double process_begin_ = ProcessSeconds(UsedByProcess());
   const double thread_begin_ = ThreadSeconds();
-  const double bytes_begin_ = BytesWritten();
   double calls_ = 0;
 };
 
@@ -135,15 +116,6 @@ class SimulatedExecutor : public Executor {
   std::atomic<bool> is_woken_ = true;
 };
 
-// Without a choice of the model.
-class CoreOpener : public PointOpener {
- public:
-  OpenedPoint Open(const EnsembleSpec& spec, size_t index) override {
-    return PointExperiment::Create(spec, index);
-  }
-  void KeepPilot(const PilotPlace&, const Pilot&) override {}
-};
-
 class Server {
  public:
   explicit Server(double lease_seconds)
@@ -160,11 +132,6 @@ class Server {
     v1::CreateEnsembleJobRequest request;
     *request.mutable_spec() = spec;
     const CheckedSpec checked = CheckSpec(request.spec());
-    if (!checked.violations.empty()) {
-      std::fprintf(stderr, "%s: %s\n", checked.violations[0].field.c_str(),
-                   checked.violations[0].description.c_str());
-      std::exit(1);
-    }
     ExitUnless(book_.Create({"ann", Role::kSubmit}, request, checked).status());
   }
 
@@ -177,7 +144,8 @@ class Server {
  private:
   TemporaryFolder folder_;
   std::unique_ptr<Store> store_;
-  CoreOpener opener_;
+  FactoryOpener opener_{
+      [](const EnsembleSpec& spec, size_t index) { return PointExperiment::Create(spec, index); }};
   Scheduler scheduler_;
   SimulatedExecutor local_;
   SimulatedExecutor remote_;
@@ -230,27 +198,13 @@ v1::EnsembleSpec SpecOf(const ExperimentKind& kind, double delta, int64_t sample
 
 // ---- chunks as fast as possible ----
 
-enum class Order { kInOrder, kRandom, kOneCommitAChunk };
-
-std::string NameOf(Order order) {
-  switch (order) {
-    case Order::kInOrder:
-      return "in order";
-    case Order::kRandom:
-      return "random";
-    case Order::kOneCommitAChunk:
-      return "in order, a commit a chunk";
-  }
-  return "";
-}
-
 void OpenOnePoint(Server& server) {
   const auto lease = server.scheduler().Next(server.local().capacity());
   for (const size_t point : lease->opens) server.scheduler().Open(*lease, point);
   server.scheduler().EndTurn(*lease, 0);
 }
 
-void AcceptChunks(const ExperimentKind& kind, Order order, size_t chunks) {
+void AcceptChunks(const ExperimentKind& kind, bool in_order, size_t chunks) {
   Server server(0);  // a lease is one chunk
   server.Create(SpecOf(kind, 0.0125, kMaxSamples, 1));
   OpenOnePoint(server);
@@ -261,7 +215,7 @@ void AcceptChunks(const ExperimentKind& kind, Order order, size_t chunks) {
     leases.push_back(*std::move(lease));
   }
   std::mt19937_64 random(1);
-  if (order == Order::kRandom) std::shuffle(leases.begin(), leases.end(), random);
+  if (!in_order) std::shuffle(leases.begin(), leases.end(), random);
   FakeChunks computed;
   Meter meter;
   for (const Lease& lease : leases) {
@@ -271,14 +225,12 @@ void AcceptChunks(const ExperimentKind& kind, Order order, size_t chunks) {
       server.scheduler().Return(lease);
       return 0;
     });
-    if (order == Order::kOneCommitAChunk) server.store().Flush().IgnoreError();
   }
   server.store().Flush().IgnoreError();
-  const Cost cost = meter.Total();
   const auto n = static_cast<double>(leases.size());
-  absl::PrintF("| %s | %s | %d | %.0f | %.0f | %.0f | %.1f | %.0f |\n", std::string(kind.name),
-               NameOf(order), leases.size(), n / cost.wall, 1e6 * cost.scheduler / n,
-               1e6 * cost.store / n, cost.bytes / n / 1024, PeakMegabytes());
+  absl::PrintF("| %s | %s | %.0f | %.0f | %.0f |\n", std::string(kind.name),
+               in_order ? "in order" : "random", n / meter.WallSeconds(),
+               1e6 * meter.ServerSeconds() / n, PeakMegabytes());
   std::fflush(stdout);
   std::_Exit(0);  // the job is not finished
 }
@@ -301,14 +253,9 @@ class Sweep {
   }
 
   void Print(double delta, int points) const {
-    const Cost cost = meter_.Total();
-    const double server = cost.scheduler + cost.store;
-    absl::PrintF(
-        "| %g | %d | %d | %.0f | %.0f | %.0f %% | %d | %d | %d | %.2f | %.2f | %.4f %% | %.2f %% | "
-        "%.0f | %.0f |\n",
-        delta, points, cores_, work_, now_, 100 * work_elsewhere_ / (now_ * double(cores_)),
-        leases_, chunks_, local_chunks_, cost.scheduler, cost.store, 100 * server / work_,
-        100 * server / now_, cost.bytes / 1e6, PeakMegabytes());
+    absl::PrintF("| %g | %d | %d | %.0f | %.0f | %.0f %% | %.1f | %.0f |\n", delta, points, cores_,
+                 work_, now_, 100 * work_elsewhere_ / (now_ * double(cores_)),
+                 meter_.ServerSeconds(), PeakMegabytes());
     std::fflush(stdout);
   }
 
@@ -356,7 +303,6 @@ class Sweep {
     std::optional<Lease> lease = Next(server_.remote());
     if (!lease) return false;
     --idle_[0];
-    ++leases_;
     const bool lost = random_() % 100 == 0;
     Begin({.lost = lost, .lease = *std::move(lease)});
     return true;
@@ -366,7 +312,7 @@ class Sweep {
     const double jitter = 0.8 + 0.4 * static_cast<double>(random_() >> 11) * 0x1p-53;
     event.time = now_ + event.lease.seconds * jitter;
     work_ += event.lease.seconds * jitter;
-    (event.local ? work_here_ : work_elsewhere_) += event.lease.seconds * jitter;
+    if (!event.local) work_elsewhere_ += event.lease.seconds * jitter;
     events_.push(std::move(event));
   }
 
@@ -378,7 +324,6 @@ class Sweep {
     const Lease& lease = event.lease;
     std::vector<ChunkResult> chunks;
     if (!event.lost) chunks = computed_.Of(lease);
-    (event.local ? local_chunks_ : chunks_) += chunks.size();
     meter_.Measure([&] {
       Scheduler& scheduler = server_.scheduler();
       if (!chunks.empty()) {
@@ -402,8 +347,7 @@ class Sweep {
   const size_t cores_ = idle_[0];
   std::priority_queue<Event> events_;
   double now_ = 0;  // virtual
-  double work_ = 0, work_here_ = 0, work_elsewhere_ = 0;
-  size_t leases_ = 0, chunks_ = 0, local_chunks_ = 0;
+  double work_ = 0, work_elsewhere_ = 0;
 };
 
 void SweepOrbits(double delta, int points, size_t cores) {
@@ -428,18 +372,16 @@ void InOwnProcess(const std::function<void()>& row) {
 
 void PrintTables(size_t chunks, int points) {
   std::puts(
-      "| experiment | order | chunks | chunks/s | scheduler us/chunk | store us/chunk | "
-      "KiB/chunk | peak MB |\n|---|---|---|---|---|---|---|---|");
+      "| experiment | order | chunks/s | server us/chunk | peak MB |\n"
+      "|---|---|---|---|---|");
   for (const ExperimentKind* kind : {&kEquilibrium, &kFirstHit}) {
-    for (const Order order : {Order::kInOrder, Order::kRandom, Order::kOneCommitAChunk}) {
-      InOwnProcess([&] { AcceptChunks(*kind, order, chunks); });
+    for (const bool in_order : {true, false}) {
+      InOwnProcess([&] { AcceptChunks(*kind, in_order, chunks); });
     }
   }
   std::puts(
       "\n| delta | points of 1e9 orbits | cores | work, core s | virtual s | cores busy | "
-      "leases | chunks elsewhere | chunks here | scheduler s | store s | server/work | "
-      "server/virtual time | MB written | peak MB |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
+      "server's processor s | peak MB |\n|---|---|---|---|---|---|---|---|");
   for (const double delta : {0.1, 0.0125}) {
     for (const int size : {1, points}) {
       for (const size_t cores : {size_t{1'000}, size_t{100'000}}) {

@@ -17,9 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<FuzzTarget>& MutableTargets() {
-  static auto* const targets = new std::vector<FuzzTarget>;
-  return *targets;
+std::vector<FuzzTarget> AllTargets() {
+  std::vector<FuzzTarget> all;
+  for (const auto& some :
+       {RequestTargets(), StoredTargets(), ServerTextTargets(), ClientTargets()}) {
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
 }
 
 std::string TextOf(const fs::path& path) {
@@ -40,9 +44,17 @@ std::string BytesSpelledBy(const fs::path& path, const google::protobuf::Message
 
 }  // namespace
 
-Registration::Registration(FuzzTarget target) { MutableTargets().push_back(std::move(target)); }
+const std::vector<FuzzTarget>& Targets() {
+  static const auto* const targets = new std::vector<FuzzTarget>(AllTargets());
+  return *targets;
+}
 
-const std::vector<FuzzTarget>& Targets() { return MutableTargets(); }
+const FuzzTarget& TargetOf(const std::string& name) {
+  for (const FuzzTarget& target : Targets()) {
+    if (target.name == name) return target;
+  }
+  throw std::out_of_range("no fuzz target " + name);
+}
 
 void Require(bool is_so, const char* what) {
   if (!is_so) throw std::logic_error(what);

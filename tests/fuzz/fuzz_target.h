@@ -1,11 +1,9 @@
 // A fuzz target: a kind of input from outside, the code that reads it, and the properties that must
 // hold for the result.
 //
-// Each target has a file of its own, which ends in
-//   const Registration kStoredSpec({.name = "stored_spec", .check = CheckStoredSpec, ...});
-// The same file makes two programs: NAME_fuzz with libFuzzer (libfuzzer.cc), and a part of
-// fuzz_test (seeds_test.cc), which runs the seeds and some thousands of changed ones with any
-// compiler.
+// Each of the files below ends in a table of its targets. A target makes a program, NAME_fuzz, with
+// libFuzzer (libfuzzer.cc), and a part of fuzz_test (seeds_test.cc), which runs the seeds and some
+// thousands of changed ones with any compiler.
 //
 // A check is a function of its input alone, quick (below 50 us for nearly every input), and never
 // computes a block.
@@ -26,12 +24,26 @@ struct FuzzTarget {
   std::vector<std::string> (*made_seeds)() = nullptr;  // besides the files
 };
 
-struct Registration {
-  explicit Registration(FuzzTarget target);
-};
+// A check of the message that the input spells. It holds for any other input.
+template <typename Message, void (*check)(const Message& message, const std::string& bytes)>
+FuzzTarget OfMessage(const std::string& name, std::vector<std::string> (*made_seeds)() = nullptr) {
+  const auto check_bytes = [](const std::string& bytes) {
+    Message message;
+    if (message.ParseFromString(bytes)) check(message, bytes);
+  };
+  return {name, check_bytes, &Message::default_instance(), made_seeds};
+}
 
-// All targets of this program.
+std::vector<FuzzTarget> RequestTargets();     // requests.cc
+std::vector<FuzzTarget> StoredTargets();      // stored_records.cc
+std::vector<FuzzTarget> ServerTextTargets();  // server_texts.cc
+std::vector<FuzzTarget> ClientTargets();      // client_texts.cc
+
+// All of them.
 const std::vector<FuzzTarget>& Targets();
+
+// One of them; throws std::out_of_range if there is none of this name.
+const FuzzTarget& TargetOf(const std::string& name);
 
 // Throws std::logic_error unless `is_so`.
 void Require(bool is_so, const char* what);

@@ -1,4 +1,4 @@
-// The program of one target under libFuzzer.
+// The program of one target under libFuzzer: of the target BALLPISTON_FUZZ_TARGET.
 //
 //   NAME_fuzz --write_seeds=FOLDER_OF_SEEDS CORPUS   writes the seeds into CORPUS, and ends
 //   NAME_fuzz [LIBFUZZER_FLAG...] CORPUS             libFuzzer's own command line
@@ -21,18 +21,23 @@ namespace {
 
 constexpr char kWriteSeeds[] = "--write_seeds=";
 
+const FuzzTarget& Target() {
+  static const FuzzTarget& target = TargetOf(BALLPISTON_FUZZ_TARGET);
+  return target;
+}
+
 // Protobuf must not log an error for each of a million inputs.
 const google::protobuf::LogSilencer silence;
 
 void WriteSeeds(const std::string& folder, const std::string& corpus) {
   int number = 0;
-  for (const std::string& seed : SeedsOf(Targets().front(), folder)) {
+  for (const std::string& seed : SeedsOf(Target(), folder)) {
     std::ofstream(corpus + "/seed" + std::to_string(number++), std::ios::binary) << seed;
   }
 }
 
 size_t MutateInput(uint8_t* data, size_t size, size_t max_size, unsigned seed) {
-  const FuzzTarget& target = Targets().front();
+  const FuzzTarget& target = Target();
   Dice dice(seed);
   if (target.message == nullptr || dice.OneIn(4)) return LLVMFuzzerMutate(data, size, max_size);
   std::string bytes(reinterpret_cast<const char*>(data), size);
@@ -54,7 +59,7 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  ballpiston::fuzz::Targets().front().check({reinterpret_cast<const char*>(data), size});
+  ballpiston::fuzz::Target().check({reinterpret_cast<const char*>(data), size});
   return 0;
 }
 

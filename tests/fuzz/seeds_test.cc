@@ -81,10 +81,7 @@ TEST(Fault, NamesTheRuleAndTheInput) {
 
 // Changed messages must pass the first checks often enough, or the search would be useless.
 TEST(MutateFields, MakesSpecificationsOfBothKinds) {
-  std::vector<std::string> seeds;
-  for (const FuzzTarget& target : Targets()) {
-    if (target.name == "stored_spec") seeds = SeedsOf(target, kSeeds);
-  }
+  const std::vector<std::string> seeds = SeedsOf(TargetOf("stored_spec"), kSeeds);
   ASSERT_FALSE(seeds.empty());
   Dice dice(1);
   int accepted = 0, refused = 0;

@@ -2,172 +2,47 @@
 
 #include <algorithm>
 #include <array>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "tests/support/files.h"
+#include "tests/support/paths.h"
+
 namespace ballpiston {
 namespace {
 
-using Prefixes = std::vector<std::string_view>;
-
 struct Rule {
-  std::string_view folder;
-  Prefixes may_include;   // folders of the project, then libraries
-  bool operating_system;  // threads, clocks and the headers of POSIX
+  std::string folder;
+  std::vector<std::string> may_include;  // prefixes
+  bool operating_system = false;
 };
 
-// The first row whose folder contains the file applies.
-const std::vector<Rule>& Rules() {
-  static const auto* const rules = new std::vector<Rule>{
-      {"core/arithmetic/", {"core/arithmetic/", "absl/", "boost/"}, false},
-      {"core/geometry/", {"core/arithmetic/", "core/geometry/", "Eigen/", "absl/"}, false},
-      {"core/closed_form/",
-       {"core/arithmetic/", "core/geometry/", "core/closed_form/", "Eigen/", "absl/"},
-       false},
-      {"core/sampling/",
-       {"core/arithmetic/", "core/geometry/", "core/sampling/", "Eigen/", "absl/", "Random123/"},
-       false},
-      {"core/billiard/",
-       {"core/arithmetic/", "core/geometry/", "core/closed_form/", "core/sampling/",
-        "core/billiard/", "Eigen/", "absl/", "hwy/"},
-       false},
-      {"core/markov/",
-       {"core/arithmetic/", "core/geometry/", "core/closed_form/", "core/sampling/", "core/markov/",
-        "core/statistics/", "Eigen/", "absl/", "hwy/"},
-       false},
-      {"core/conductivity/", {"core/arithmetic/", "core/conductivity/", "hwy/"}, false},
-      {"core/statistics/", {"core/arithmetic/", "core/statistics/", "Eigen/", "absl/"}, false},
-      {"core/gas/",
-       {"core/arithmetic/", "core/geometry/", "core/closed_form/", "core/sampling/",
-        "core/billiard/", "core/markov/", "core/conductivity/", "core/statistics/", "core/gas/",
-        "Eigen/", "absl/", "hwy/"},
-       false},
-      {"core/ensemble/",
-       {"core/arithmetic/", "core/geometry/", "core/sampling/", "core/billiard/",
-        "core/statistics/", "core/gas/gas_shape.h", "core/ensemble/", "absl/"},
-       false},
-      {"core/experiment/",
-       {"core/arithmetic/", "core/geometry/", "core/closed_form/", "core/sampling/",
-        "core/billiard/", "core/markov/", "core/conductivity/", "core/statistics/", "core/gas/",
-        "core/ensemble/", "core/experiment/", "Eigen/", "absl/"},
-       false},
-      {"core/model_choice/", {"core/", "Eigen/", "absl/"}, false},
-      {"core/engine_version.h", {}, false},
-      {"core/examples/", {"ballpiston/core/"}, false},  // programs outside the project
-      {"server/command_line/", {"server/", "absl/", "CLI/"}, true},
-      {"server/status/",
-       {"server/status/", "server/mutex.h", "google/", "absl/", "grpc/", "grpcpp/", "prometheus/"},
-       true},
-      {"server/convert/",
-       {"core/", "server/convert/", "ballpiston/v1/", "ballpiston/storage/", "google/", "absl/",
-        "grpcpp/support/status.h"},
-       true},
-      {"server/door/",
-       {"server/door/", "server/convert/errors.h", "server/status/",
-        "server/store/data_directory.h", "server/store/folder_sync.h", "server/mutex.h",
-        "server/sha256.h", "absl/", "grpc/", "grpcpp/", "openssl/"},
-       true},
-      {"server/store/",
-       {"core/model_choice/limit_error.h", "server/store/", "server/convert/", "server/status/",
-        "server/host.h", "server/mutex.h", "ballpiston/v1/", "google/", "absl/", "sqlite3.h"},
-       true},
-      {"server/compute/",
-       {"core/", "server/compute/", "server/convert/", "server/store/", "server/status/",
-        "server/fatal_signals.h", "server/host.h", "server/machine_memory.h", "server/mutex.h",
-        "server/processor_time.h", "ballpiston/storage/", "absl/"},
-       true},
-      {"server/worker/",
-       {"core/", "server/worker/", "server/convert/deterministic_bytes.h",
-        "server/convert/fold_record.h", "server/fatal_signals.h", "server/machine_memory.h",
-        "server/status/failpoint.h", "server/processor_time.h", "server/compute/lease.h",
-        "server/store/folder_sync.h", "ballpiston/storage/", "absl/", "CLI/", "hwy/", "xxhash.h"},
-       true},
-      {"server/cluster/",
-       {"core/", "server/cluster/", "server/compute/", "server/worker/", "server/convert/",
-        "server/status/", "server/host.h", "server/mutex.h", "server/periodic_thread.h",
-        "ballpiston/storage/", "absl/"},
-       true},
-      {"server/book/",
-       {"core/", "server/book/", "server/compute/", "server/store/", "server/convert/",
-        "server/door/", "server/status/", "server/limits.h", "server/host.h", "server/mutex.h",
-        "server/sha256.h", "ballpiston/v1/", "ballpiston/storage/", "google/", "absl/"},
-       true},
-      {"server/sha256.cc", {"server/sha256.h", "openssl/"}, false},
-      {"server/",
-       {"core/", "server/", "ballpiston/v1/", "ballpiston/storage/", "google/", "absl/", "grpc/",
-        "grpcpp/", "sqlite3.h", "prometheus/"},
-       true},
-      {"client/web/",
-       {"client/web/", "client/library/", "client/output/", "ballpiston/v1/", "google/", "absl/",
-        "grpcpp/", "httplib.h"},
-       true},
-      {"client/examples/", {"ballpiston/client/"}, false},
-      {"client/output/",
-       {"client/library/", "client/output/", "ballpiston/v1/", "ballpiston/file/v1/", "google/",
-        "absl/", "zip.h"},
-       true},
-      {"client/",
-       {"client/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/", "CLI/"},
-       true},
-      {"tools/conductivity/",
-       {"core/conductivity/conductivity.h", "tools/conductivity/", "Eigen/", "absl/"},
-       false},
-      {"tools/flows/", {"core/", "tools/flows/", "Eigen/", "boost/", "hwy/"}, false},
-      {"tools/method_comparison/",
-       {"core/", "server/processor_time.h", "tools/method_comparison/", "tools/flows/", "Eigen/",
-        "absl/", "CLI/"},
-       true},
-      {"tools/slow_pistons/",
-       {"core/", "tools/slow_pistons/", "tools/flows/", "absl/", "CLI/"},
-       true},
-      {"tools/stability/",
-       {"core/", "tools/stability/", "tools/flows/", "Eigen/", "absl/", "hwy/"},
-       true},
-      {"tests/support/", {"tests/support/", "absl/", "gtest/", "gmock/"}, true},
-      {"tests/core/",
-       {"core/", "tools/flows/", "tests/core/", "tests/oracle/", "tests/support/", "Eigen/",
-        "absl/", "hwy/", "gtest/", "gmock/"},
-       true},
-      {"tests/statistical/",
-       {"core/", "tools/flows/", "tests/core/", "tests/oracle/", "tests/statistical/",
-        "tests/support/", "Eigen/", "absl/", "hwy/", "gtest/", "gmock/"},
-       true},
-      {"tests/oracle/",
-       {"core/", "tools/flows/", "tests/oracle/", "tests/support/", "Eigen/", "absl/", "hwy/",
-        "gtest/"},
-       true},
-      {"tests/benchmark/",
-       {"core/", "server/", "tools/flows/", "tests/benchmark/", "tests/oracle/",
-        "tests/server/compute/", "tests/server/factory_opener.h", "tests/server/worker/",
-        "tests/simulation/", "tests/support/", "absl/", "hwy/", "benchmark/"},
-       true},
-      {"tests/sanitizer/",
-       {"server/mutex.h", "ballpiston/v1/", "absl/", "grpc/", "grpcpp/", "sanitizer/"},
-       true},
-      {"tests/tools/",
-       {"core/", "tools/", "tests/tools/", "tests/core/", "tests/oracle/", "tests/support/",
-        "Eigen/", "absl/", "gtest/", "gmock/"},
-       true},
-      {"tests/client/",
-       {"client/", "tests/client/", "tests/support/", "ballpiston/v1/", "ballpiston/file/v1/",
-        "google/", "absl/", "grpc/", "zip.h", "grpcpp/", "CLI/", "gtest/", "gmock/"},
-       true},
-      {"tests/server/worker/",
-       {"core/", "server/convert/fold_record.h", "server/worker/lease_record.h", "server/worker/",
-        "tests/server/worker/", "tests/support/", "ballpiston/storage/", "absl/", "gtest/",
-        "gmock/"},
-       true},
-      {"tests/",
-       {"core/", "server/", "client/", "tests/", "ballpiston/v1/", "ballpiston/storage/", "google/",
-        "absl/", "grpc/", "grpcpp/", "sqlite3.h", "openssl/", "prometheus/", "Eigen/", "gtest/",
-        "gmock/", "benchmark/", "httplib.h"},
-       true},
-  };
-  return *rules;
+// A row begins with a folder and a colon; the words after it, on this line and the next ones, are
+// what it may include.
+std::vector<Rule> ReadRules() {
+  std::istringstream lines(Contents(SourcePath("tests/layout/include_rules.txt")));
+  std::vector<Rule> rules;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("#")) continue;
+    std::istringstream words(line);
+    for (std::string word; words >> word;) {
+      if (word.ends_with(":")) {
+        word.pop_back();
+        rules.push_back({.folder = word, .may_include = {word}});
+      } else if (word == "system") {
+        rules.back().operating_system = true;
+      } else {
+        rules.back().may_include.push_back(word);
+      }
+    }
+  }
+  return rules;
 }
 
+template <typename Prefixes>
 bool StartsWithAny(std::string_view path, const Prefixes& prefixes) {
   return std::any_of(prefixes.begin(), prefixes.end(),
                      [&](std::string_view prefix) { return path.starts_with(prefix); });
@@ -175,10 +50,15 @@ bool StartsWithAny(std::string_view path, const Prefixes& prefixes) {
 
 // Whether a header of C++ or Abseil has threads or clocks.
 bool IsThreadOrClock(std::string_view include) {
-  static constexpr std::array<std::string_view, 6> kStandard = {
-      "thread", "future", "mutex", "condition_variable", "chrono", "ctime"};
-  return std::find(kStandard.begin(), kStandard.end(), include) != kStandard.end() ||
-         StartsWithAny(include, {"absl/synchronization/", "absl/time/"});
+  constexpr std::array<std::string_view, 8> kPrefixes = {"thread",
+                                                         "future",
+                                                         "mutex",
+                                                         "condition_variable",
+                                                         "chrono",
+                                                         "ctime",
+                                                         "absl/synchronization/",
+                                                         "absl/time/"};
+  return StartsWithAny(include, kPrefixes);
 }
 
 // <vector>, <cmath>, ...
@@ -188,9 +68,9 @@ bool IsStandardHeader(std::string_view include) {
 
 // <unistd.h>, <sys/stat.h>, <thread>, ...
 bool IsOperatingSystemHeader(std::string_view include) {
+  constexpr std::array<std::string_view, 3> kFolders = {"sys/", "arpa/", "netinet/"};
   if (include == "sqlite3.h") return false;
-  return include.find('/') == std::string_view::npos ||
-         StartsWithAny(include, {"sys/", "arpa/", "netinet/"});
+  return include.find('/') == std::string_view::npos || StartsWithAny(include, kFolders);
 }
 
 bool IsAllowed(const Rule& rule, std::string_view include) {
@@ -209,42 +89,27 @@ bool JoinsPhysicsAndMessages(std::string_view path, const std::vector<std::strin
   return some("core/") && some("ballpiston/v1/");
 }
 
-void SkipBlanks(std::string_view& text) {
-  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
-}
-
-// Removes `word` and the blanks before it from the text if the text begins with them.
-bool Skip(std::string_view word, std::string_view& text) {
-  SkipBlanks(text);
-  if (!text.starts_with(word)) return false;
-  text.remove_prefix(word.size());
-  return true;
-}
-
-// The file that the line includes; empty if none.
-std::string IncludedBy(std::string_view line) {
-  if (!Skip("#", line) || !Skip("include", line)) return "";
-  if (!Skip("<", line) && !Skip("\"", line)) return "";
-  return std::string(line.substr(0, line.find_first_of(">\"")));
-}
-
 }  // namespace
 
 std::vector<std::string> IncludesOf(std::string_view text) {
+  static const std::regex kInclude(R"([ \t]*#[ \t]*include[ \t]*[<"]([^>"]*)[>"].*)");
   std::vector<std::string> found;
   std::istringstream lines{std::string(text)};
   for (std::string line; std::getline(lines, line);) {
-    const std::string include = IncludedBy(line);
-    if (!include.empty()) found.push_back(include);
+    const size_t first = line.find_first_not_of(" \t");
+    if (first == std::string::npos || line[first] != '#') continue;
+    std::smatch include;
+    if (std::regex_match(line, include, kInclude)) found.push_back(include[1]);
   }
   return found;
 }
 
 std::vector<std::string> WrongIncludes(std::string_view path, std::string_view text) {
+  static const auto* const rules = new std::vector<Rule>(ReadRules());
   const std::string file(path);
-  const auto rule = std::find_if(Rules().begin(), Rules().end(),
+  const auto rule = std::find_if(rules->begin(), rules->end(),
                                  [&](const Rule& row) { return path.starts_with(row.folder); });
-  if (rule == Rules().end()) return {file + " lies in a folder without a rule"};
+  if (rule == rules->end()) return {file + " lies in a folder without a rule"};
 
   std::vector<std::string> wrong;
   const std::vector<std::string> includes = IncludesOf(text);

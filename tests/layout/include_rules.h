@@ -1,17 +1,11 @@
-// Rules for the includes of each folder of the project.
+// Rules for the includes of each folder of the project: include_rules.txt.
 //
 //   core:    arithmetic <- geometry <- closed_form, sampling <- billiard, markov <- experiment <-
-//            model_choice; statistics knows no physics. Libraries: Eigen, Highway, Random123,
-//            Boost's quadrature, Abseil and C++'s own, without threads and clocks.
-//   server:  core and the protos.   client: the protos only.   Neither knows the other. Flags are
-//            parsed by CLI11, which is slow to compile: in the server only command_line/ has it.
-//   tools:   the core, and tools/flows, which has numbers of more bits from Boost. Only their tests
-//            know them.
+//            model_choice; statistics knows no physics.
+//   server:  core and the protos.   client: the protos only.   Neither knows the other.
+//   tools:   the core, and tools/flows. Only their tests know them.
 //   server/convert alone includes the core's physics and the API's messages in one file.
 //   tests:   of a layer know that layer, and tests/support.
-//
-// A new folder needs a row in the table of include_rules.cc: a file of a folder without a row is a
-// violation.
 #pragma once
 
 #include <string>

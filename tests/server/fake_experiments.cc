@@ -67,45 +67,6 @@ class FakeExperiment : public PointExperiment {
   const BeforeBlock before_block_;
 };
 
-class HeldUpExperiment : public PointExperiment {
- public:
-  HeldUpExperiment(const EnsembleSpec& spec, size_t index, BeforeSample before_sample)
-      : HeldUpExperiment(spec, PointExperiment::Create(spec, index), index,
-                         std::move(before_sample)) {}
-
-  HeldUpExperiment(const EnsembleSpec& spec, std::unique_ptr<const PointExperiment> real,
-                   size_t index, BeforeSample before_sample)
-      : PointExperiment(spec, real->parameters(), real->plan()),
-        real_(std::move(real)),
-        index_(index),
-        before_sample_(std::move(before_sample)) {
-    SetMeasurements(real_->EmptyResult(), {});
-  }
-
-  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
-    return RunOneByOne(
-        queue,
-        [this](const Block& block, const std::stop_token& stop) -> std::optional<BlockResult> {
-          before_sample_(index_, block.first, stop);
-          if (stop.stop_requested()) return std::nullopt;  // a short block would not notice
-          return RunBlock(*real_, block, stop);
-        });
-  }
-  uint64_t CountsOfASample() const override { return real_->CountsOfASample(); }
-  bool CanContinue(const GroupState& state) const override { return real_->CanContinue(state); }
-  Estimate FirstEstimate(const BlockResult& merged) const override {
-    return real_->FirstEstimate(merged);
-  }
-  PointSummary Summarize(const BlockResult& merged) const override {
-    return real_->Summarize(merged);
-  }
-
- private:
-  const std::unique_ptr<const PointExperiment> real_;
-  const size_t index_;
-  const BeforeSample before_sample_;
-};
-
 LocalPoint AfterBlocks(const PointExperiment& experiment, uint64_t blocks) {
   LocalPoint point(experiment);
   for (uint64_t i = 0; i < blocks; ++i) {
@@ -161,12 +122,6 @@ ExperimentFactory GatedExperiments(Gate& gate, uint64_t first_block) {
   return FakeExperiments([&gate, first_block](size_t, uint64_t block, std::stop_token stop) {
     if (block >= first_block) gate.Pass(stop);
   });
-}
-
-ExperimentFactory HeldUpExperiments(BeforeSample before_sample) {
-  return [before_sample = std::move(before_sample)](const EnsembleSpec& spec, size_t index) {
-    return std::make_unique<const HeldUpExperiment>(spec, index, before_sample);
-  };
 }
 
 EnsembleSpec FakeSpec(int points, int64_t blocks, uint64_t seed) {

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
-#include <optional>
 #include <stop_token>
 
 #include "core/ensemble/point_fold.h"
@@ -47,11 +46,6 @@ ExperimentFactory FakeExperimentsBySeed(BeforeBlockOfSeed before_block);
 
 // Fake experiments. Blocks with the number `first_block` or a greater one wait at the gate.
 ExperimentFactory GatedExperiments(Gate& gate, uint64_t first_block = 0);
-
-// The core's experiments, with a call at the start of each block, which its first sample
-// identifies.
-using BeforeSample = std::function<void(size_t point, uint64_t first, std::stop_token stop)>;
-ExperimentFactory HeldUpExperiments(BeforeSample before_sample);
 
 // One rho, `points` deltas, `blocks` blocks each.
 EnsembleSpec FakeSpec(int points, int64_t blocks, uint64_t seed = 1);

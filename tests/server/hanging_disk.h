@@ -1,37 +1,51 @@
-// A file system for SQLite that stops answering when the test says so: writes to logs wait.
+// A disk in memory for SQLite that stops answering when the test says so: its next operation waits.
 #pragma once
 
 #include <condition_variable>
-#include <memory>
 #include <mutex>
 #include <string>
+
+#include "tests/fault/store/fault_disk.h"
+#include "tests/support/await.h"
 
 namespace ballpiston::server {
 
 class HangingDisk {
  public:
-  HangingDisk();
-  ~HangingDisk();  // no connection may be left
-  HangingDisk(const HangingDisk&) = delete;
-  HangingDisk& operator=(const HangingDisk&) = delete;
+  HangingDisk() {
+    disk_.SetBeforeOperation([this] { Pass(); });
+  }
 
-  const std::string& vfs() const { return name_; }
+  const std::string& vfs() const { return disk_.vfs(); }
 
-  void Hang();          // from the next write on
-  void AwaitHanging();  // until a write waits
-  void Resume();
+  void Hang() {
+    std::lock_guard lock(mutex_);
+    hangs_ = true;
+  }
+  void AwaitHanging() {
+    std::unique_lock lock(mutex_);
+    AwaitNotified(changed_, lock, [this] { return waiting_ > 0; });
+  }
+  void Resume() {
+    std::lock_guard lock(mutex_);
+    hangs_ = false;
+    changed_.notify_all();
+  }
 
  private:
-  struct Vfs;
+  void Pass() {
+    std::unique_lock lock(mutex_);
+    ++waiting_;
+    changed_.notify_all();
+    changed_.wait(lock, [this] { return !hangs_; });
+    --waiting_;
+  }
 
-  void Pass();
-
-  const std::string name_;
-  std::unique_ptr<Vfs> registered_;
   std::mutex mutex_;
   std::condition_variable changed_;
   bool hangs_ = false;
   int waiting_ = 0;
+  FaultDisk disk_;
 };
 
 }  // namespace ballpiston::server

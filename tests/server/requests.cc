@@ -1,9 +1,5 @@
 #include "tests/server/requests.h"
 
-#include <random>
-
-#include "server/convert/point_result.h"
-
 namespace ballpiston::server {
 
 v1::EnsembleSpec Equilibrium(int points, int64_t blocks, uint64_t seed) {
@@ -28,14 +24,6 @@ v1::EnsembleSpec SmallFirstHit() {
   spec.mutable_target()->set_samples(4096);
   spec.set_seed(42);
   return spec;
-}
-
-std::string LargeDetails(int bins) {
-  std::mt19937_64 random;
-  v1::PointResult details;
-  v1::Histogram& histogram = *details.add_histograms();
-  for (int i = 0; i < bins; ++i) histogram.add_counts(static_cast<double>(random()));
-  return DetailsBytes(details);
 }
 
 v1::CreateEnsembleJobRequest CreateRequest(const v1::EnsembleSpec& spec,

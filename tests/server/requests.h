@@ -21,10 +21,6 @@ v1::EnsembleSpec LargeEquilibrium();
 // For the core's experiments: six points of 4096 samples.
 v1::EnsembleSpec SmallFirstHit();
 
-// The stored details of a result, with a histogram of random counts, which hardly shrink: each
-// takes some seven bytes.
-std::string LargeDetails(int bins);
-
 v1::CreateEnsembleJobRequest CreateRequest(const v1::EnsembleSpec& spec,
                                            const std::string& request_id = "");
 // The same, but the answer must not come from the store.

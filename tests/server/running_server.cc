@@ -7,7 +7,6 @@
 #include "gtest/gtest.h"
 #include "tests/server/factory_opener.h"
 #include "tests/server/own_channel.h"
-#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {

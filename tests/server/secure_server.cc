@@ -2,8 +2,6 @@
 
 #include <sys/stat.h>
 
-#include <utility>
-
 #include "server/door/access_list.h"
 #include "server/sha256.h"
 #include "tests/support/files.h"

@@ -8,12 +8,10 @@
 #include <filesystem>
 #include <future>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include "gmock/gmock.h"
 #include "grpcpp/generic/generic_stub.h"
-#include "gtest/gtest.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/hanging_disk.h"
@@ -65,12 +63,6 @@ TEST(StartStop, ADataFolderInUseIsRefused) {
   EXPECT_FALSE(std::filesystem::exists(folder.File("server.address")));
 }
 
-TEST(StartStop, ASocketOfAnotherServerIsRefused) {
-  RunningServer server;
-  ExpectStartRefused({.listen = server.address()}, "a server is listening there");
-  server.Submit(Equilibrium(1, 2));  // the first server still answers
-}
-
 TEST(StartStop, OtherFilesAtASocketsPathStay) {
   const TemporaryFolder folder;
   const std::string precious = folder.File("precious"), datagrams = folder.File("datagrams");
@@ -93,12 +85,6 @@ TEST(StartStop, AStaleSocketIsReplaced) {
   ASSERT_EQ(mknod(stale.c_str(), S_IFSOCK | 0777, 0), 0);
   RunningServer server({.data_dir = folder.path()});
   server.Submit(Equilibrium(1, 2));
-}
-
-TEST(StartStop, ADamagedStoreIsRefused) {
-  TemporaryFolder folder;
-  WriteFile(folder.File("store.sqlite3"), std::string(10'000, 'x'));
-  ExpectStartRefused({.data_dir = folder.path()}, "damaged");
 }
 
 // The server drops three blocks that never end, and begins no other one.

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"

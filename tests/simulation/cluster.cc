@@ -42,7 +42,7 @@ SimulatedCluster::SimulatedCluster(Machine& machine, Scheduler& scheduler, FakeF
     : machine_(machine),
       files_(files),
       experiments_(std::move(experiments)),
-      executor_(scheduler, kOptions, std::make_unique<SameFiles>(files),
+      executor_(scheduler, kOptions, std::make_unique<FakeFiles>(files),
                 {.identity = "me",
                  .flush = std::move(flush),
                  .prepare = [] { return absl::OkStatus(); },

@@ -1,10 +1,8 @@
 #include "tests/simulation/expectations.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "core/ensemble/block_run.h"
 #include "core/ensemble/point_fold.h"
 #include "server/book/job_name.h"
 #include "server/convert/deterministic_bytes.h"

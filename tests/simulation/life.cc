@@ -5,7 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/host.h"
-#include "tests/fault/store/service_on_disk.h"
+#include "tests/fault/store/fault_disk.h"
 #include "tests/server/factory_opener.h"
 #include "tests/server/fake_experiments.h"
 

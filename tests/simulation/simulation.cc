@@ -10,7 +10,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "server/book/job_name.h"
 #include "server/store/job_record.h"
 #include "server/store/sweeper.h"
 #include "tests/fault/store/power_cut.h"
@@ -25,6 +24,7 @@ using std::chrono::seconds;
 constexpr seconds kBetweenCalls(5), kBetweenEvents(40), kLongestTrouble(60);
 constexpr milliseconds kSlowOperation(20);
 constexpr seconds kHang(20);
+constexpr uint64_t kMostOperations = 30;
 constexpr hours kPeace(6);  // enough for all jobs
 constexpr size_t kStoryLines = 60;
 
@@ -134,6 +134,7 @@ class Simulation {
     const uint64_t choice = machine_.Below(12);
     if (choice < 2 && options_.crashes) return Die("killed", Survival::kEverything);
     if (choice < 4 && options_.power_cuts) {
+      if (machine_.Chance(0.7)) AwaitMiddleOfAWrite();
       return Die("power cut", kSurvivals[machine_.Below(std::size(kSurvivals))]);
     }
     if (choice < 5 && options_.restarts) return Restart();
@@ -159,7 +160,12 @@ class Simulation {
     ++deaths_;
     Tell(how, true);
     life_->Die();
-    const std::vector<DiskOperation> operations = disk_->operations();
+    std::vector<DiskOperation> operations = disk_->operations();
+    for (DiskOperation& done : operations) {
+      // The names of the files are flushed all the same.
+      done.refused |=
+          !options_.disk_flushes && done.kind == DiskOperation::Kind::kSync && !done.folder;
+    }
     DiskFiles left =
         AfterPowerCut(disk_->initial(), operations, operations.size(), survival, machine_.Bits());
     disk_->Refuse(FaultDisk::Refusal::kWriteError, operations.size());
@@ -167,6 +173,15 @@ class Simulation {
     disk_ = std::make_unique<FaultDisk>(std::move(left));
     is_in_trouble_ = false;
     Start();
+  }
+
+  // Some operations of the disk later, so mostly within a commit or a checkpoint.
+  void AwaitMiddleOfAWrite() {
+    BeginTrouble("the disk hangs in an operation");
+    disk_->SetBeforeOperation([this, left = machine_.Below(kMostOperations)]() mutable {
+      if (left-- == 0) machine_.Sleep(kHang);
+    });
+    machine_.Sleep(seconds(1));
   }
 
   void Restart() {

@@ -21,6 +21,7 @@ struct SimulationOptions {
   bool full_disk = true;
   bool bad_disk = true;
   bool cluster = true;
+  bool disk_flushes = true;  // false: the disk reports flushes that it has not done
   ClientHabits habits = {};
 };
 std::string TextOf(const SimulationOptions& options);

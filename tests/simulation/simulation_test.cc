@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
+#include <optional>
 #include <random>
 #include <string>
 
@@ -61,6 +62,13 @@ TEST(Simulation, OneSeedIsOneWorld) {
   const SimulationReport once = Simulate(options), again = Simulate(options);
   EXPECT_EQ(once.steps, again.steps);
   EXPECT_EQ(once.last_bits, again.last_bits);
+}
+
+// The server does not start on such a disk, or acknowledged jobs are lost.
+TEST(Simulation, ADiskThatReportsFalseFlushesIsDetected) {
+  for (uint64_t seed = 1; seed <= 3; ++seed) {
+    EXPECT_TRUE(Simulate({.seed = seed, .disk_flushes = false}).finding) << seed;
+  }
 }
 
 }  // namespace

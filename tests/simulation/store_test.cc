@@ -7,7 +7,6 @@
 
 #include "gtest/gtest.h"
 #include "tests/fault/store/fault_disk.h"
-#include "tests/fault/store/service_on_disk.h"
 #include "tests/simulation/machine.h"
 #include "tests/support/status_matchers.h"
 

@@ -1,7 +1,5 @@
 #include "tests/slurm/cluster.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cctype>
 #include <filesystem>

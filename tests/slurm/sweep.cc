@@ -4,9 +4,7 @@
 #include <sys/stat.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <map>
-#include <stdexcept>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -52,11 +50,6 @@ void ExpectSamples(const std::string& points, int samples) {
 
 std::string Launcher(const Cluster& cluster) { return "SLURM_CONF=" + cluster.conf(); }
 
-std::string PathWith(const std::string& first) {
-  const std::string path = std::getenv("PATH");
-  return absl::StrCat("PATH=", first, first.empty() ? "" : ":", path);
-}
-
 }  // namespace
 
 Words SweepOf(int samples, int seed) {
@@ -67,10 +60,9 @@ Words SweepOf(int samples, int seed) {
 
 Sweep::Sweep(SweepSetUp set_up) : set_up_(std::move(set_up)), cluster_(set_up_.cluster) {
   mkdir(shared_folder().c_str(), 0700);
-  server_ = std::make_unique<TestServer>(
-      ServerSetUp{.workers = set_up_.workers,
-                  .flags = FlagsOf(shared_folder(), set_up_),
-                  .launcher = {"env", Launcher(cluster_), PathWith(set_up_.path)}});
+  server_ = std::make_unique<TestServer>(ServerSetUp{.workers = set_up_.workers,
+                                                     .flags = FlagsOf(shared_folder(), set_up_),
+                                                     .launcher = {"env", Launcher(cluster_)}});
 }
 
 Sweep::~Sweep() {

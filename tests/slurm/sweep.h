@@ -27,7 +27,6 @@ struct SweepSetUp {
   int lease_seconds = 3;
   int samples = 1'000'000;
   int workers = 1;
-  std::string path = {};  // first in the server's PATH
 };
 
 class Sweep {

@@ -1,29 +1,20 @@
 // Return times at fixed energies: their errors, and the cases without an error.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <iostream>
-
 #include "core/billiard/single_precision.h"
-#include "core/geometry/pair_geometry.h"
-#include "core/statistics/moments.h"
-#include "tests/core/one_point_spec.h"
+#include "tests/core/asked.h"
+#include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 #include "tests/support/nightly.h"
 
 namespace ballpiston {
 namespace {
 
-EnsembleSpec SpecOfReturns(double share, double epsilon, int64_t samples, uint64_t seed) {
-  return SpecOf(&kConditionalMeanFreeTime, PaperPoint(share * PairDeltaBound(kPaperRho), epsilon),
-                {.samples = samples}, Model::kBilliard, seed);
-}
-
 // For a resting piston the variance is infinite; its integral diverges only logarithmically. So the
 // mean of 1e5 samples is within some percent of the mean over the visited volume, and far from the
 // limit of slow pistons, which is 14 times as large.
 TEST(ConditionalMeanFreeTime, OfARestingPistonHasTheCorrectMeanWithoutAnError) {
-  const PointSummary summary = RunPoint(SpecOfReturns(0.2, 0, 100'000, 4));
+  const PointSummary summary =
+      RunPoint(Asked("conditional-mean-free-time delta=0.065 epsilon=0 samples=100000 "
+                     "model=billiard seed=4"));
   ASSERT_EQ(summary.estimates.size(), 1u);
   EXPECT_FALSE(summary.estimates[0].standard_error);
   EXPECT_NEAR(summary.estimates[0].value / *summary.estimates[0].exact, 1, 0.1);
@@ -32,7 +23,9 @@ TEST(ConditionalMeanFreeTime, OfARestingPistonHasTheCorrectMeanWithoutAnError) {
 // A piston so slow that its round trips, which dominate the mean, are rarely in the sample: 10,000
 // returns contain a round trip for half of the seeds, 500 returns for 4 % of the seeds.
 TEST(ConditionalMeanFreeTime, GivesNoErrorIfLongReturnsAreTooRare) {
-  const PointSummary summary = RunPoint(SpecOfReturns(0.3, 1e-12, 500, 5));
+  const PointSummary summary =
+      RunPoint(Asked("conditional-mean-free-time delta=0.0975 epsilon=1e-12 samples=500 "
+                     "model=billiard seed=5"));
   EXPECT_FALSE(summary.estimates[0].standard_error);
   EXPECT_LT(summary.estimates[0].value, 0.5 * *summary.estimates[0].exact);
 }
@@ -46,45 +39,16 @@ TEST(ConditionalMeanFreeTime, GivesNoErrorIfLongReturnsAreTooRare) {
 TEST(ConditionalMeanFreeTime, ErrorsAreValidWhenAToleranceStops) {
   const uint64_t seeds = IsNightly() ? 2000 : 500;
   double within_one = 0, within_two = 0;
-  for (uint64_t seed = 0; seed < seeds; ++seed) {
-    EnsembleSpec spec = SpecOf(&kConditionalMeanFreeTime, PaperPoint(0.05, 0.25),
-                               {.tolerance = 0.02}, Model::kBilliard, seed);
+  EnsembleSpec spec =
+      Asked("conditional-mean-free-time delta=0.05 epsilon=0.25 tolerance=0.02 model=billiard");
+  for (spec.seed = 0; spec.seed < seeds; ++spec.seed) {
     const double z = std::fabs(*RunPoint(spec).estimates[0].ZScore());
     within_one += z <= 1;
     within_two += z <= 2;
   }
   const auto count = static_cast<double>(seeds);
-  std::cout << "within one error " << within_one / count << ", two " << within_two / count << "\n";
   EXPECT_NEAR(within_one / count, 0.6827, 4 * std::sqrt(0.6827 * 0.3173 / count));
   EXPECT_NEAR(within_two / count, 0.9545, 4 * std::sqrt(0.9545 * 0.0455 / count));
-}
-
-// As for the equilibrium; here samples are independent, so the variance is 1 but for the skewness.
-TEST(ConditionalMeanFreeTime, ErrorsAreValidOverManySeeds) {
-  Moments z;
-  for (uint64_t seed = 0; seed < 200; ++seed) {
-    z.Add(*RunPoint(SpecOfReturns(0.6, 0.125, 5000, seed)).estimates[0].ZScore());
-  }
-  EXPECT_NEAR(z.mean, 0, 4 * 0.071);
-  EXPECT_NEAR(*z.Variance(), 1, 4 * 0.1);
-}
-
-// With the fewest long returns that permit an error, 50 to 60, skewness changes the z-scores: their
-// variance is about 1.2. Windows of 4 errors of 200 seeds: 6e-5 false alarms each.
-TEST(ConditionalMeanFreeTime, ErrorsAreValidWithFewLongReturns) {
-  for (const double epsilon : {1e-6, 0.5 - 1e-6}) {
-    Moments z;
-    for (uint64_t seed = 0; seed < 200; ++seed) {
-      const int64_t samples = epsilon < 0.25 ? 900 : 5000;
-      const auto score = RunPoint(SpecOfReturns(0.3, epsilon, samples, seed)).estimates[0].ZScore();
-      ASSERT_TRUE(score);
-      z.Add(*score);
-    }
-    std::cout << "epsilon " << epsilon << ": mean " << z.mean << "  variance " << *z.Variance()
-              << "\n";
-    EXPECT_NEAR(z.mean, 0, 4 * 0.08);
-    EXPECT_NEAR(*z.Variance(), 1.2, 4 * 0.12);
-  }
 }
 
 // Narrow tips, wide tips, and a cell so small that rounding matters most. The windows are the
@@ -100,8 +64,7 @@ TEST(ConditionalMeanFreeTime, SinglePrecisionIsWithinItsStatedError) {
     const PointSummary summary = RunPoint(spec);
     const Estimate& time = summary.estimates[0];
     const double off = time.value / *time.exact - 1, error = *time.standard_error / *time.exact;
-    std::cout << "rho " << rho << ": " << off << " +- " << error << "\n";
-    EXPECT_LT(std::fabs(off), kSinglePrecisionError + 4 * error);
+    EXPECT_LT(std::fabs(off), kSinglePrecisionError + 4 * error) << rho;
     EXPECT_EQ(summary.health.escapes, 0u);
   }
 }

@@ -7,21 +7,14 @@
 // (Bonferroni).
 #include "core/experiment/energy_relaxation.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
-#include <iomanip>
-#include <iostream>
-#include <optional>
-#include <vector>
 
 #include "core/ensemble/point_experiment.h"
 #include "core/experiment/expected_limit_error.h"
 #include "core/model_choice/limit_error.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 #include "tests/support/nightly.h"
 
@@ -99,14 +92,6 @@ double LargestScore(const Curve& curve, size_t first) {
   return largest;
 }
 
-void Print(const Curve& curve) {
-  for (size_t i = 0; i < curve.points.size(); i += 4) {
-    const CurvePoint& point = curve.points[i];
-    std::cout << std::setprecision(4) << "t " << point.at << "  " << point.value << " +- "
-              << *point.standard_error << "  limit " << *point.limit << "\n";
-  }
-}
-
 // Half a million orbits, 20 million jumps; nightly four times as many. False alarms: 3e-5 for the
 // curve, 33 * 6.8e-6 for the lags, 6e-5 for the integral; 3e-4 in all.
 TEST(EnergyRelaxation, AutocorrelationOfTheJumpProcessMatchesTheSpectrum) {
@@ -114,7 +99,6 @@ TEST(EnergyRelaxation, AutocorrelationOfTheJumpProcessMatchesTheSpectrum) {
   const Blocks blocks = RunInBlocks(IsNightly() ? 512 : 128, 4096, 0);
   const PointSummary& summary = blocks.summary;
   const Curve& curve = summary.curves.front();
-  Print(curve);
   EXPECT_GT(curve.points.front().value, 0.99);
   // Down to `smallest` every point differs from zero by more than five standard errors.
   EXPECT_LT(*curve.points.back().limit, 1e-3);
@@ -124,9 +108,6 @@ TEST(EnergyRelaxation, AutocorrelationOfTheJumpProcessMatchesTheSpectrum) {
   const Eigen::VectorXd limit = LimitOf(curve, 0);
   const double score = HotellingScore(blocks.curves, limit);
   const Estimate& time = summary.estimates.front();
-  std::cout << "curve " << score << ", largest of a lag " << LargestScore(curve, 0)
-            << ", integral time " << time.value << " +- " << *time.standard_error << ", z "
-            << *time.ZScore() << "\n";
   EXPECT_LT(score, 4);
   EXPECT_LT(LargestScore(curve, 0), 4.5);
   EXPECT_LT(std::fabs(*time.ZScore()), 4);
@@ -146,10 +127,7 @@ TEST(EnergyRelaxation, MeanEnergyOfTheJumpProcessMatchesTheSpectrum) {
     const Eigen::VectorXd limit = LimitOf(curve, 2);
     const double score = HotellingScore(blocks.curves, limit);
     const Estimate& time = summary.estimates.front();
-    std::cout << "from " << epsilon << ": curve " << score << ", largest of a lag "
-              << LargestScore(curve, 1) << ", time " << time.value << " +- " << *time.standard_error
-              << ", z " << *time.ZScore() << "\n";
-    EXPECT_LT(score, 4);
+    EXPECT_LT(score, 4) << epsilon;
     EXPECT_LT(LargestScore(curve, 1), 4.5);
     EXPECT_LT(std::fabs(*time.ZScore()), 4);
     // The test detects a curve that is 3 % nearer to its end, nightly 2 %.
@@ -170,17 +148,11 @@ Difference FromLimit(const PointSummary& summary) {
   return {time.value / *time.limit - 1, *time.standard_error / *time.limit};
 }
 
-void Print(const char* of, const Difference& difference) {
-  std::cout << of << std::setprecision(3) << 100 * difference.value << " % +- "
-            << 100 * difference.standard_error << " %\n";
-}
-
 // Slow pistons return after a fixed period: 4.9 % +- 0.1 % was measured with 4 million orbits.
 // Windows of 4 errors of both: 6e-5.
 TEST(EnergyRelaxation, BilliardIsSlowerThanTheLimitAtLargeDelta) {
   const Difference large =
       FromLimit(RunPoint(SpecOfOrbits(Model::kBilliard, 0.2, IsNightly() ? 200'000 : 100'000)));
-  Print("delta = 0.2: ", large);
   EXPECT_GT(large.value, 10 * large.standard_error);
   EXPECT_NEAR(large.value, 0.049, 4 * std::hypot(large.standard_error, 0.001));
 }
@@ -194,8 +166,6 @@ TEST(EnergyRelaxation, BilliardIsNearTheLimitAtSmallDelta) {
   const PilotPlace place = PilotPlaceFor(point);
   const auto run = PilotExperiment(place);
   const Pilot pilot = PilotOf(*run, *FoldPoint(*run));
-  Print("delta = 0.05: ", small);
-  Print("pilot: ", {pilot.difference, pilot.standard_error});
   EXPECT_LT(std::fabs(small.value), ExpectedLimitError(point) + 4 * small.standard_error);
   EXPECT_LT(std::fabs(small.value),
             LimitErrorBound(pilot, place, point) + 4 * small.standard_error);
@@ -243,8 +213,7 @@ TEST(EnergyRelaxation, LawsOfManyWalksSolveTheMasterEquation) {
       const KlDivergence distance =
           RelativeEntropy(summary.histograms[i].histogram.counts, expected[i]);
       const double z = (distance.value - distance.noise_floor) / distance.noise_error;
-      std::cout << epsilon << " " << *summary.histograms[i].time << " z " << z << "\n";
-      EXPECT_LT(std::fabs(z), 4.5);
+      EXPECT_LT(std::fabs(z), 4.5) << epsilon << " at " << *summary.histograms[i].time;
     }
   }
 }

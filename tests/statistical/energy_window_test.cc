@@ -14,19 +14,11 @@
 //
 // exactly, for every delta and every width. The factor sqrt(2 ep), the piston's speed, is the
 // inverse of the equilibrium density of the piston's energy.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <iostream>
-#include <vector>
-
 #include "core/closed_form/conditional_rate.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/sampling/invariant_measure.h"
 #include "core/statistics/batch_means.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 #include "tests/oracle/gauss_legendre.h"
 #include "tests/support/nightly.h"
 #include "tools/flows/numbered_orbits.h"
@@ -147,12 +139,8 @@ TEST(EnergyWindows, SampledTimesMatchTheExactTimesOfTheWindow) {
     const BatchMeans spacings = SampledWindows().Spacings(i);
     const double return_z = ZScoreOf(returns, exact.mean_return);
     const double spacing_z = ZScoreOf(spacings, exact.spacing);
-    std::cout << "window " << kEnergyWindows[i].energy << ", width " << kEnergyWindows[i].width
-              << ": mean return time " << *returns.Ratio() << " +- " << *returns.StandardError()
-              << ", z " << return_z << "; spacing " << *spacings.Ratio() << " +- "
-              << *spacings.StandardError() << ", z " << spacing_z << "\n";
-    EXPECT_LT(std::fabs(return_z), 4);
-    EXPECT_LT(std::fabs(spacing_z), 4);
+    EXPECT_LT(std::fabs(return_z), 4) << "window " << i;
+    EXPECT_LT(std::fabs(spacing_z), 4) << "window " << i;
   }
 }
 

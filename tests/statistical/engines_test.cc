@@ -1,13 +1,7 @@
 // Compares both engines with all closed forms that exist. The reference has a tenth of the samples,
 // because it takes some ten times as long.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <tuple>
-
-#include "core/geometry/pair_geometry.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 #include "tests/support/nightly.h"
 

@@ -1,11 +1,6 @@
 // Compares the first-hit experiment with a table that an independent program computed.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <iomanip>
-#include <iostream>
-
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 #include "tests/oracle/reference_table.h"
 
@@ -48,8 +43,6 @@ TEST_P(FirstHitTable, AgreesWithAnIndependentProgram) {
   const double cv_z = CombinedZ(summary.estimates[3].value, *summary.estimates[3].standard_error,
                                 reference("coefficient_of_variation"),
                                 std::hypot(*summary.estimates[3].standard_error, 5e-5));
-  std::cout << std::fixed << std::setprecision(2) << "z: time " << time_z << "  cos " << cos_z
-            << "  sigma " << sigma_z << "  kl " << kl_z << "  cv " << cv_z << "\n";
   // The table's is that of the chi-squared law; the thinnest cells have some counts only.
   EXPECT_NEAR(kl.noise_floor / reference("kl_noise"), 1, 0.02);
   EXPECT_LT(std::fabs(time_z), 4);

@@ -1,17 +1,10 @@
 // Compares the laws of the gas in lanes with those of the reference gas. Each engine runs its own
 // replicas. The points range from narrow tips to nearly vanishing cells, in several shapes.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <utility>
-#include <vector>
-
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_run.h"
 #include "core/gas/hit_rates.h"
-#include "core/geometry/paper.h"
 #include "tests/core/gas/gases.h"
+#include "tests/core/preamble.h"
 #include "tests/oracle/two_sample.h"
 #include "tests/statistical/gas_samples.h"
 #include "tests/support/nightly.h"

@@ -1,20 +1,9 @@
 // Gases in equilibrium: exchange rates, laws of energies, and a chain between equal reservoirs.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <tuple>
-#include <utility>
-#include <vector>
-
 #include "core/gas/current_meter.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_run.h"
-#include "core/geometry/paper.h"
 #include "tests/core/gas/gases.h"
+#include "tests/core/preamble.h"
 #include "tests/oracle/one_sample.h"
 #include "tests/statistical/gas_samples.h"
 #include "tests/support/nightly.h"

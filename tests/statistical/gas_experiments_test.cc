@@ -1,17 +1,10 @@
 // Long runs of the experiments with a gas. Compares them with exact values and with independent
 // programs (tests/data/gas.csv), and the stated errors with measured errors.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <iostream>
-#include <numbers>
-#include <utility>
-#include <vector>
-
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 #include "tests/support/nightly.h"
 
@@ -42,11 +35,7 @@ double StatedOverMeasured(const EnsembleSpec& spec) {
   const Estimate& first = summary.estimates.front();
   const double stated = AimOf(spec).error(spec.model, PointAt(spec, 0)) /
                         std::sqrt(static_cast<double>(summary.samples));
-  const double ratio = stated * std::fabs(first.value) / *first.standard_error;
-  std::cout << spec.experiment->name << " by " << Name(spec.model) << ", "
-            << Text(ShapeOf(spec.grid[kCells][0])) << " cells, delta " << spec.grid[kDelta][0]
-            << ": stated over measured " << ratio << "\n";
-  return ratio;
+  return stated * std::fabs(first.value) / *first.standard_error;
 }
 
 // An error measured with 400 replicas is itself known to 1/sqrt(800) = 3.5 %, with the nightly
@@ -94,9 +83,6 @@ TEST(GasExperiments, ConductivityOfTheJumpProcessMatchesTheSpectrum) {
     const double of_static = GasExchangeRate(GeometryAt(spec), 1) / 2;
     const double plain = merged.moments[0].mean / of_static;
     const double plain_error = *merged.moments[0].StandardError() / of_static;
-    std::cout << Text(shape) << ": " << ratio.value << " +- " << *ratio.standard_error
-              << ", without the test function " << plain << " +- " << plain_error << ", limit "
-              << *ratio.limit << "\n";
     EXPECT_LT(std::fabs(ratio.value - *ratio.limit), 4 * *ratio.standard_error + 3e-6);
     EXPECT_LT(std::fabs(plain - *ratio.limit), 4 * plain_error + 3e-6);
     EXPECT_LT(*ratio.standard_error, 1.5e-5 * std::sqrt(fewer));
@@ -129,8 +115,6 @@ TEST(GasExperiments, StatedErrorsOfTheCurrentMatchTheMeasuredErrors) {
 
 // Of the difference, in units of both errors. 4 are exceeded once in 16,000 cases.
 void ExpectAgrees(const Estimate& measured, double value, double error) {
-  std::cout << measured.name << " " << measured.value << " +- " << *measured.standard_error
-            << ", independently " << value << " +- " << error << "\n";
   EXPECT_LT(std::fabs(measured.value - value), 4 * std::hypot(*measured.standard_error, error));
 }
 
@@ -179,31 +163,12 @@ TEST(GasExperiments, ExchangeRatesAndTemperaturesInEquilibriumAreExact) {
     const PointSummary summary = RunPoint(Equilibrium(0.2, {4, 4, true}, model, replicas));
     for (size_t i = 0; i < 3; ++i) {
       const Estimate& estimate = summary.estimates[i];
-      std::cout << Name(model) << ": " << estimate.name << " z " << *estimate.ZScore() << "\n";
-      EXPECT_LT(std::fabs(*estimate.ZScore()), 4);
+      EXPECT_LT(std::fabs(*estimate.ZScore()), 4) << Name(model) << " " << estimate.name;
     }
     for (size_t i = 3; i < 5; ++i) {
       const Estimate& divergence = summary.estimates[i];
       EXPECT_LT(divergence.value, *divergence.noise_floor + 4 * *divergence.standard_error);
     }
-  }
-}
-
-// z-scores of 200 seeds: their variance has the standard error 0.1, their mean 0.07. Windows of
-// four errors: 6e-5 false alarms each. With 64 replicas the ratio's tails are heavier than the
-// normal law's (1.03 expected).
-TEST(GasExperiments, ErrorsInEquilibriumAreValidOverManySeeds) {
-  std::vector<Moments> z(3);
-  for (uint64_t seed = 0; seed < 200; ++seed) {
-    EnsembleSpec spec = Equilibrium(0.2, {3}, Model::kBilliard, 64);
-    spec.seed = seed;
-    const PointSummary summary = RunPoint(spec);
-    for (size_t i = 0; i < z.size(); ++i) z[i].Add(*summary.estimates[i].ZScore());
-  }
-  for (const Moments& moments : z) {
-    std::cout << "mean " << moments.mean << "  variance " << *moments.Variance() << "\n";
-    EXPECT_NEAR(moments.mean, 0, 4 * 0.071);
-    EXPECT_NEAR(*moments.Variance(), 1.03, 4 * 0.1);
   }
 }
 

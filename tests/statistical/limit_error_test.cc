@@ -1,16 +1,9 @@
 // The stated error of the limit against billiard runs at points that were not used to find its
 // constants.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <iostream>
-#include <optional>
-#include <random>
-
 #include "core/experiment/energy_relaxation.h"
 #include "core/experiment/expected_limit_error.h"
-#include "core/geometry/pair_geometry.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 #include "tests/support/nightly.h"
 
@@ -84,11 +77,7 @@ TEST(LimitError, StatedErrorCoversTheBilliard) {
     const Ratio ratio = DifferenceOverBound(point, 100 + static_cast<uint64_t>(i));
     outside += ratio.value - 2 * ratio.standard_error > 1;
     outside_of_a_quarter += ratio.value - 2 * ratio.standard_error > 1.0 / 4;
-    std::cout << "rho " << point[kRho] << "  delta " << point[kDelta] << "  epsilon "
-              << point.Find(kEpsilon).value_or(-1) << ": " << ratio.value << " +- "
-              << ratio.standard_error << " of the bound\n";
   }
-  std::cout << outside << " outside, " << outside_of_a_quarter << " outside of a quarter\n";
   EXPECT_LE(outside, kMostOutside);
   EXPECT_GT(outside_of_a_quarter, kMostOutside);
 }

@@ -1,20 +1,9 @@
 // If collisions are too rare to sample, the lanes and the reference are compared by the joint law
 // of the ball after a thousand wall hits. The piston needs no comparison, because its position is a
 // function of time only.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <iomanip>
-#include <iostream>
-#include <vector>
-
 #include "core/billiard/reference_flow.h"
-#include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 #include "tests/oracle/two_sample.h"
 #include "tools/flows/lane_balls.h"
 
@@ -117,8 +106,6 @@ TEST_P(LongFlights, AgreeInLawAfterAThousandHits) {
   const double lengths =
       oracle::KolmogorovSmirnov(Values(reference, length), Values(lanes, length));
   const double places = oracle::KolmogorovSmirnov(Values(reference, place), Values(lanes, place));
-  std::cout << std::setprecision(3) << "rho " << GetParam() << ": joint law " << joint
-            << ", last flight " << lengths << ", place " << places << "\n";
   EXPECT_LT(joint, 4);
   EXPECT_LT(lengths, 2.3);
   EXPECT_LT(places, 2.3);

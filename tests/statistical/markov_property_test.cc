@@ -1,16 +1,7 @@
 // The Markov property of the billiard's energy exchanges, and the deviations from it at larger
 // delta: every estimate of the experiment at delta = 0.3, 0.2, 0.1, 0.05.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <iomanip>
-#include <iostream>
-#include <map>
-#include <string>
-#include <vector>
-
-#include "core/statistics/moments.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 #include "tests/support/nightly.h"
 
@@ -36,12 +27,6 @@ std::vector<Estimates> Measured() {
   std::vector<Estimates> measured;
   for (const double delta : kDeltas) {
     measured.push_back(At(delta, Collisions()));
-    std::cout << "delta " << delta << std::setprecision(3);
-    for (const auto& [name, estimate] : measured.back()) {
-      std::cout << "  " << name << " " << estimate.value << " +- " << *estimate.standard_error;
-      if (estimate.noise_floor) std::cout << " (" << *estimate.noise_floor << ")";
-    }
-    std::cout << "\n";
   }
   return measured;
 }

@@ -1,20 +1,11 @@
 // gas-conduction by the jump process beside a plain program, which shares no physics with core/
 // (tests/oracle/plain_jump_chain.h): the current, its noise, the exchange rate and the
 // temperatures.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <iostream>
-#include <numbers>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/gas_exchange_rate.h"
-#include "core/statistics/moments.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 #include "tests/oracle/plain_jump_chain.h"
 #include "tests/support/nightly.h"
@@ -78,8 +69,6 @@ class Comparison {
            std::optional<double> error) {
     ASSERT_TRUE(error.has_value()) << name;
     const double z = (value - plain.mean) / std::hypot(plain.StandardError().value(), *error);
-    std::cout << name << ": " << value << " +- " << *error << ", plain " << plain.mean << " +- "
-              << plain.StandardError().value() << ", z " << z << "\n";
     EXPECT_LT(std::fabs(z), 4.5) << name;
     squares_.Add(z * z);
   }

@@ -1,23 +1,12 @@
 // Compares the laws of the billiard in lanes and of the reference. Each has an independent sample
 // of first hits: 100,000 (nightly 400,000) at twenty points from cusps to vanishing cells, over
 // energies and outgoing laws, and fewer at corners of the domain.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <iomanip>
-#include <iostream>
-#include <vector>
-
 #include "core/arithmetic/elementary_functions.h"
 #include "core/closed_form/ingoing_law.h"
 #include "core/experiment/expected_returns.h"
 #include "core/experiment/returns.h"
-#include "core/geometry/paper.h"
 #include "core/statistics/histogram.h"
-#include "core/statistics/moments.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 #include "tests/core/run_orbits.h"
 #include "tests/oracle/two_sample.h"
 #include "tests/support/nightly.h"
@@ -120,9 +109,6 @@ TEST_P(TwoEngines, AgreeInMeansAndLaws) {
   for (size_t i = 0; i < 3; ++i) scores[i] = Score(reference.means()[i], lanes.means()[i]);
   const double square = oracle::ChiSquareScore(reference.Counts(), lanes.Counts());
   const double distance = oracle::KolmogorovSmirnov(reference.times(), lanes.times());
-  std::cout << std::fixed << std::setprecision(2) << "z: time " << scores[0] << "  cos "
-            << scores[1] << "  sigma " << scores[2] << "  ingoing law " << square
-            << "; return times " << distance << "\n";
   EXPECT_EQ(reference.escapes() + lanes.escapes(), 0u);
   for (const double score : scores) EXPECT_LT(std::fabs(score), 4);
   EXPECT_LT(square, 4);

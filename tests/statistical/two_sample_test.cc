@@ -1,13 +1,7 @@
 // Tests of the two-sample tests: results are small for samples of one law, large for two laws.
 #include "tests/oracle/two_sample.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
-#include "core/sampling/counter_random.h"
-#include "core/statistics/moments.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston::oracle {
 namespace {

@@ -4,7 +4,6 @@
 
 #include "absl/strings/str_format.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/support/watchdog.h"
 
 namespace ballpiston {
@@ -42,7 +41,7 @@ int RunTests(int argc, char** argv) {
   testing::InitGoogleMock(&argc, argv);
   // A forked copy of a process with threads may hang: another thread may hold the allocator's lock.
   GTEST_FLAG_SET(death_test_style, "threadsafe");
-  WatchTests(argv[0]);
+  WatchTests();
   testing::UnitTest::GetInstance()->listeners().Append(new ProcessorTimes);  // gtest owns it
   return RUN_ALL_TESTS();
 }

@@ -12,7 +12,6 @@
 
 #include "absl/status/status.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 
 namespace ballpiston {
 

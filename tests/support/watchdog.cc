@@ -5,15 +5,12 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
-#include <exception>
 #include <mutex>
 #include <string>
 #include <thread>
 
-#include "absl/debugging/symbolize.h"
 #include "absl/strings/str_cat.h"
 #include "gtest/gtest.h"
-#include "tests/support/thread_stacks.h"
 
 namespace ballpiston {
 namespace {
@@ -21,7 +18,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 std::chrono::duration<double> Patience() {
-  const char* const seconds = std::getenv("BALLPISTON_STACKS_AFTER");
+  const char* const seconds = std::getenv("BALLPISTON_HANGS_AFTER");
   return std::chrono::duration<double>(seconds == nullptr ? 15 * 60 : std::atof(seconds));
 }
 
@@ -41,7 +38,7 @@ class Watchdog {
     const std::lock_guard lock(mutex_);
     // Made beforehand, because a hanging thread may hold the allocator's lock.
     report_ = absl::StrCat("[  HANGS?  ] ", what, " has not ended after ", patience_.count(),
-                           " s or more; the stacks of all threads:\n");
+                           " s or more\n");
     SetDeadline();
     changed_.notify_one();
   }
@@ -53,13 +50,6 @@ class Watchdog {
       changed_.wait_until(lock, deadline_);
       if (Clock::now() < deadline_) continue;
       Write(report_);
-      lock.unlock();  // the test may end meanwhile
-      try {
-        WriteThreadStacks(STDERR_FILENO);
-      } catch (const std::exception&) {  // e.g. no file can be opened
-        Write("  cannot be read\n");
-      }
-      lock.lock();
       SetDeadline();
     }
   }
@@ -91,8 +81,7 @@ class WatchedTests : public testing::EmptyTestEventListener {
 
 }  // namespace
 
-void WatchTests(const char* program) {
-  absl::InitializeSymbolizer(program);
+void WatchTests() {
   testing::UnitTest::GetInstance()->listeners().Append(new WatchedTests);  // gtest owns it
 }
 

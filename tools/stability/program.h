@@ -1,12 +1,9 @@
 // The arguments, the output and the exit status of the program `stability`.
 //
-//   stability [--quick] [--out FILE | --into FILE]
+//   stability [--quick]
 //
-// The computation takes minutes. Therefore the program first checks that FILE can be written. If
-// FILE cannot be written at the end, the tables go to standard output, so that they are not lost.
-//
-// Exit status: 0 success; 1 if FILE cannot be written, or if the report has complaints (then the
-// tables are still written), or if the report cannot be made (no tables); 2 for wrong arguments.
+// Exit status: 0 success; 1 if the report has complaints (after the tables), if it cannot be made
+// (no tables), or if standard output cannot be written; 2 for wrong arguments.
 #pragma once
 
 #include <functional>

@@ -1,15 +1,6 @@
 #include "core/arithmetic/elementary_functions.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <iostream>
-#include <limits>
-#include <numbers>
-
-#include "core/sampling/counter_random.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

@@ -11,32 +11,17 @@
 // logarithms come from the C library. The summaries of experiments that are compared with the limit
 // are not compared either, because the spectrum contributes to their estimates. Neither are the
 // summaries of gases, because the exact exchange rate contributes to them.
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cstdint>
-#include <functional>
-#include <iomanip>
-#include <iostream>
 #include <mutex>
-#include <optional>
-#include <set>
-#include <sstream>
-#include <string>
 #include <thread>
-#include <utility>
-#include <vector>
 
-#include "absl/strings/str_cat.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
-#include "core/geometry/paper.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/billiard/golden_bits.h"
 #include "tests/core/billiard/recorded_collisions.h"
-#include "tests/core/geometries.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

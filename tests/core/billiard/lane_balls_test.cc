@@ -1,17 +1,8 @@
 // Tests the records of FlyLaneBalls. single_flight_test.cc tests the flights themselves.
 #include "tools/flows/lane_balls.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <tuple>
-#include <vector>
-
-#include "core/geometry/paper.h"
-#include "core/sampling/counter_random.h"
 #include "tests/core/billiard/each_target.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {
@@ -76,13 +67,6 @@ TEST(LaneBalls, EachBallIsIndependentOfTheOthers) {
       }
     }
   });
-}
-
-// Both are computed from the same frame, as sums of a few rounded terms below 1.
-TEST(LaneBalls, AbscissaAgreesWithThePosition) {
-  for (const LaneHit& hit : Flown(MiddleStarts(100), kRecordedHits)) {
-    ASSERT_NEAR(hit.x, PositionInCell(hit.frame).x(), 8 * 0x1p-53);
-  }
 }
 
 }  // namespace

@@ -1,38 +1,12 @@
 #include "core/billiard/lane_frame.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/billiard/reference_flow.h"
-#include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 #include "tools/flows/lane_balls.h"
 
 namespace ballpiston {
 namespace {
-
-// Every wall hit of an orbit, and so all discs and directions, to some ulps.
-TEST(LaneFrame, ConversionToTheFrameAndBackIsTheIdentity) {
-  for (const double rho : {0.501, kPaperRho, 0.7}) {
-    const PairGeometry geometry = GeometryAtShare(rho, 0.3);
-    CounterRandom random(1, 2, 3);
-    ReferenceFlow flow(geometry, DrawFromCollisionMeasure(geometry, random));
-    for (int i = 0; i < 10'000; ++i) {
-      const Event event = flow.Step();
-      if (event.kind == EventKind::kBallPiston) flow.ExchangeComponents();
-      if (event.kind != EventKind::kBallWall) continue;
-      const PairState& state = flow.state();
-      const LaneFrame frame = FrameOfBallOnWall(state.position, state.direction);
-      ASSERT_NEAR((PositionInCell(frame) - state.position).norm(), 0, 1e-14);
-      ASSERT_NEAR((DirectionInCell(frame) - state.direction).norm(), 0, 1e-15);
-      ASSERT_NEAR(frame.h * frame.h + frame.e * frame.e, 0.5, 1e-15);
-      ASSERT_GE(frame.s, 0);
-      ASSERT_EQ(std::fabs(frame.a) + std::fabs(frame.b) + std::fabs(frame.m), 3);
-    }
-  }
-}
 
 // Balls anywhere in the cell, in any direction: the conversion to the frame and back is the
 // identity, and the next wall hit is that of the reference.

@@ -1,14 +1,8 @@
 #include "core/billiard/longest_wait.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "core/sampling/collision_surface.h"
 #include "core/sampling/outgoing_law.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 #include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {

@@ -1,49 +1,45 @@
 #include "core/billiard/orbits.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <random>
-#include <span>
-#include <utility>
-#include <vector>
-
-#include "core/geometry/paper.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/billiard/recorded_collisions.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 #include "tests/core/stopped.h"
 #include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {
 namespace {
 
-TEST(Orbits, EveryOrbitEnds) {
-  const PairGeometry geometry = PaperGeometry(0.1);
-  for (const Engine engine : kEngines) {
-    for (const uint64_t orbits :
-         {1u, 2u, 11u, 12u, 13u, 23u, 24u, 25u, 47u, 48u, 49u, 95u, 96u, 97u, 1000u}) {
-      const RecordedCollisions recorded = Recorded(engine, geometry, orbits, 3);
-      for (const auto& collisions : recorded.by_orbit()) ASSERT_EQ(collisions.size(), 3u);
+void ExpectCollisionsOnTheSurface(const PairGeometry& geometry, const RecordedCollisions& recorded,
+                                  size_t collisions_of_an_orbit, double rounding) {
+  for (const auto& collisions : recorded.by_orbit()) {
+    ASSERT_EQ(collisions.size(), collisions_of_an_orbit);
+    for (const Collision& collision : collisions) {
+      const PairState& state = collision.state;
+      ASSERT_FALSE(collision.escaped);
+      ASSERT_LE(EnergyError(state), rounding);
+      ASSERT_TRUE(InsideCell(geometry, state.position, rounding));
+      ASSERT_NEAR(state.position.x(), state.piston, rounding);
+      ASSERT_GT(state.ball_speed * state.direction.x(), state.piston_velocity);
     }
   }
 }
 
-TEST(Orbits, ContactsAreOnTheCollisionSurfaceAndApproaching) {
+TEST(Orbits, EveryOrbitMeetsThePistonOnTheCollisionSurface) {
+  const PairGeometry geometry = PaperGeometry(0.1);
+  for (const Engine engine : kEngines) {
+    const double rounding = engine == Engine::kLanesSingle ? 1e-5 : 1e-12;
+    for (const uint64_t orbits :
+         {1u, 2u, 11u, 12u, 13u, 23u, 24u, 25u, 47u, 48u, 49u, 95u, 96u, 97u, 1000u}) {
+      SCOPED_TRACE(testing::Message() << orbits << " by engine " << static_cast<int>(engine));
+      ExpectCollisionsOnTheSurface(geometry, Recorded(engine, geometry, orbits, 3), 3, rounding);
+    }
+  }
   for (const double share : {1.0, 0.3, 0.03}) {
-    const PairGeometry geometry = GeometryAtShare(kPaperRho, share);
-    const RecordedCollisions recorded = Recorded(Engine::kLanes, geometry, 500, 4);
-    for (const auto& collisions : recorded.by_orbit()) {
-      for (const Collision& collision : collisions) {
-        const PairState& state = collision.state;
-        ASSERT_FALSE(collision.escaped);
-        ASSERT_LE(EnergyError(state), 1e-14);
-        ASSERT_TRUE(InsideCell(geometry, state.position, 1e-12));
-        ASSERT_NEAR(state.position.x(), state.piston, 1e-12);
-        ASSERT_GT(state.ball_speed * state.direction.x(), state.piston_velocity);
-      }
+    const PairGeometry other = GeometryAtShare(kPaperRho, share);
+    const RecordedCollisions lanes = Recorded(Engine::kLanes, other, 500, 4);
+    ExpectCollisionsOnTheSurface(other, lanes, 4, 1e-12);
+    for (const auto& collisions : lanes.by_orbit()) {
+      ASSERT_LE(EnergyError(collisions.back().state), 1e-14);
     }
   }
 }
@@ -89,45 +85,53 @@ TEST(Orbits, LanesMeetThePistonWhereTheReferenceDoes) {
 }
 
 // The same pair for every orbit. Records the ends of the orbits.
-class WithTimeLimit : public NumberedOrbits {
+class OfOnePair : public NumberedOrbits {
  public:
-  WithTimeLimit(const PairState& state, double limit, uint64_t orbits)
-      : state_(state), limit_(limit), ends_(orbits) {}
+  OfOnePair(const PairState& state, double limit, AfterCollision after = AfterCollision::kEnd)
+      : state_(state), limit_(limit), after_(after) {}
   PairState Start(uint64_t) override { return state_; }
   AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
     ends_[orbit].push_back(collision);
-    return AfterCollision::kEnd;
+    return after_;
   }
   double TimeLimit() const override { return limit_; }
-  const std::vector<std::vector<Collision>>& ends() const { return ends_; }
+
+  // The end of each of so many orbits. They have one each.
+  std::vector<Collision> Ends(Engine engine, const PairGeometry& geometry, uint64_t orbits) {
+    ends_.assign(orbits, {});
+    EXPECT_TRUE(RunOrbits(engine, geometry, orbits, *this));
+    std::vector<Collision> all;
+    for (const std::vector<Collision>& ends : ends_) {
+      EXPECT_EQ(ends.size(), 1u);
+      all.insert(all.end(), ends.begin(), ends.end());
+    }
+    return all;
+  }
 
  private:
   PairState state_;
   double limit_;
+  AfterCollision after_;
   std::vector<std::vector<Collision>> ends_;
 };
 
 // The ball is within the piston's reach; the piston moves in either direction, at any phase.
 TEST(Orbits, ThePistonMeetsABallAtRestAtItsPlace) {
   const PairGeometry geometry = PaperGeometry(0.2);
-  const double left = geometry.piston_left(), right = geometry.piston_right();
+  const double left = geometry.piston_left(), right = geometry.piston_right(), piston = 0.5;
   for (const Engine engine : kEngines) {
     for (const double velocity : {-1.0, 1.0}) {
       for (const double depth : {0.01, 0.1, 0.19}) {
-        const double x = left + depth, piston = 0.5;
-        WithTimeLimit source(
-            {.position = {x, 0}, .ball_speed = 0, .piston = piston, .piston_velocity = velocity},
-            1000, 70);
-        ASSERT_TRUE(RunOrbits(engine, geometry, 70, source));
+        const double x = left + depth;
         const double way = velocity < 0 ? piston - x : right - piston + right - x;
-        for (const std::vector<Collision>& ends : source.ends()) {
-          ASSERT_EQ(ends.size(), 1u);
-          EXPECT_FALSE(ends[0].expired);
-          EXPECT_NEAR(ends[0].time, way, engine == Engine::kLanesSingle ? 1e-6 : 1e-14);
-          EXPECT_EQ(ends[0].ball_wall_hits, 0u);
-          EXPECT_EQ(ends[0].piston_wall_hits, velocity < 0 ? 0u : 1u);
-          EXPECT_EQ(ends[0].state.ball_speed, 0);
-          EXPECT_EQ(ends[0].state.piston_velocity, -1);
+        OfOnePair source({.position = {x, 0}, .piston = piston, .piston_velocity = velocity}, 1000);
+        for (const Collision& end : source.Ends(engine, geometry, 70)) {
+          EXPECT_FALSE(end.expired);
+          EXPECT_NEAR(end.time, way, engine == Engine::kLanesSingle ? 1e-6 : 1e-14);
+          EXPECT_EQ(end.ball_wall_hits, 0u);
+          EXPECT_EQ(end.piston_wall_hits, velocity < 0 ? 0u : 1u);
+          EXPECT_EQ(end.state.ball_speed, 0);
+          EXPECT_EQ(end.state.piston_velocity, -1);
         }
       }
     }
@@ -142,83 +146,43 @@ TEST(Orbits, StopEndsOrbits) {
   }
 }
 
-// A ball beyond the left tip, on its way out.
+// A ball beyond the left tip, on its way out, and a source that always continues.
 TEST(Orbits, AStartOutsideOfTheCellEscapes) {
-  class Outside : public NumberedOrbits {
-   public:
-    PairState Start(uint64_t) override {
-      return {.position = {-0.9, 0}, .direction = {-1, 0}, .ball_speed = 1, .piston = 0.5};
-    }
-    AfterCollision Collide(uint64_t, const Collision& collision) override {
-      escapes_ += collision.escaped;
-      return AfterCollision::kGoOn;
-    }
-    int escapes_ = 0;
-  };
   for (const Engine engine : kEngines) {
-    Outside source;
-    EXPECT_TRUE(RunOrbits(engine, kPaperPair, 3, source));
-    EXPECT_EQ(source.escapes_, 3);
+    OfOnePair source({.position = {-0.9, 0}, .direction = {-1, 0}, .ball_speed = 1, .piston = 0.5},
+                     INFINITY, AfterCollision::kGoOn);
+    for (const Collision& end : source.Ends(engine, kPaperPair, 3)) EXPECT_TRUE(end.escaped);
   }
 }
-
-// Orbits from equilibrium that are followed until one of them escapes.
-class UntilAnEscape : public RecordedCollisions {
- public:
-  using RecordedCollisions::RecordedCollisions;
-
-  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
-    if (collision.escaped) stop_.request_stop();
-    return RecordedCollisions::Collide(orbit, collision);
-  }
-  std::stop_token token() const { return stop_.get_token(); }
-
- private:
-  std::stop_source stop_;
-};
 
 // In single precision the lanes cannot resolve a cell that nearly vanishes.
 TEST(Orbits, EscapesInLanesAreReported) {
   const PairGeometry geometry = GeometryAtShare(kMaxRho - 1e-5, 1);
-  UntilAnEscape single(geometry, 100'000, 20);
-  EXPECT_FALSE(RunOrbits(Engine::kLanesSingle, geometry, 100'000, single, single.token()));
-  EXPECT_TRUE(single.token().stop_requested());
-}
-
-// A ball that never meets the resting piston, and a source that always continues.
-TEST(Orbits, AnOrbitEndsAtItsTimeLimitEvenIfTheSourceContinues) {
-  class GoesOn : public NumberedOrbits {
+  class UntilAnEscape : public RecordedCollisions {
    public:
-    PairState Start(uint64_t) override {
-      return {.position = {0, 0}, .direction = {0, 1}, .ball_speed = 1, .piston = 0.5};
+    using RecordedCollisions::RecordedCollisions;
+    AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+      if (collision.escaped) stop.request_stop();
+      return RecordedCollisions::Collide(orbit, collision);
     }
-    AfterCollision Collide(uint64_t, const Collision& collision) override {
-      ended_ += collision.expired;
-      return AfterCollision::kGoOn;
-    }
-    double TimeLimit() const override { return 10; }
-    int ended_ = 0;
+    std::stop_source stop;
   };
-  for (const Engine engine : kEngines) {
-    GoesOn source;
-    EXPECT_TRUE(RunOrbits(engine, PaperGeometry(0.1), 3, source));
-    EXPECT_EQ(source.ended_, 3);
-  }
+  UntilAnEscape single(geometry, 100'000, 20);
+  EXPECT_FALSE(RunOrbits(Engine::kLanesSingle, geometry, 100'000, single, single.stop.get_token()));
+  EXPECT_TRUE(single.stop.stop_requested());
 }
 
 // Pairs that do not meet within a time of 1e9: the piston is at rest, or nearly, out of the ball's
 // reach; or the ball is at rest, or nearly, out of the piston's reach.
 std::vector<PairState> PairsApart(const PairGeometry& geometry) {
-  const Eigen::Vector2d slant = {0.6, 0.8};
+  const Eigen::Vector2d place = {-0.1, 0.02}, slant = {0.6, 0.8};
   std::vector<PairState> pairs;
-  for (const double slow : {0.0, 1e-12, -1e-300}) {
-    pairs.push_back({.position = {-0.1, 0.02},
+  for (const double slow : {0.0, 1e-12, 1e-300}) {
+    pairs.push_back({.position = place,
                      .direction = slant,
                      .piston = geometry.piston_right() - 1e-3,
                      .piston_velocity = slow});
-  }
-  for (const double slow : {0.0, 1e-12, 1e-300}) {
-    pairs.push_back({.position = {-0.1, 0.02},
+    pairs.push_back({.position = place,
                      .direction = slant,
                      .ball_speed = slow,
                      .piston = geometry.piston_right(),
@@ -227,19 +191,20 @@ std::vector<PairState> PairsApart(const PairGeometry& geometry) {
   return pairs;
 }
 
+// Also if the source would continue.
 TEST(Orbits, TimeLimitEndsPairsThatDoNotMeet) {
   const PairGeometry geometry = PaperGeometry(0.1);
   constexpr double kLimit = 1000;
   for (const Engine engine : kEngines) {
     for (const PairState& pair : PairsApart(geometry)) {
-      for (const uint64_t orbits : {1u, 70u}) {
-        WithTimeLimit source(pair, kLimit, orbits);
-        ASSERT_TRUE(RunOrbits(engine, geometry, orbits, source));
-        for (const std::vector<Collision>& ends : source.ends()) {
-          ASSERT_EQ(ends.size(), 1u);
-          EXPECT_TRUE(ends[0].expired);
-          EXPECT_FALSE(ends[0].escaped);
-          EXPECT_GT(ends[0].time, kLimit);
+      for (const AfterCollision after : {AfterCollision::kEnd, AfterCollision::kGoOn}) {
+        OfOnePair source(pair, kLimit, after);
+        for (const uint64_t orbits : {1u, 70u}) {
+          for (const Collision& end : source.Ends(engine, geometry, orbits)) {
+            EXPECT_TRUE(end.expired);
+            EXPECT_FALSE(end.escaped);
+            EXPECT_GT(end.time, kLimit);
+          }
         }
       }
     }

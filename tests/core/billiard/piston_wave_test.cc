@@ -1,13 +1,6 @@
 #include "core/billiard/piston_wave.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
-#include "core/sampling/counter_random.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {
@@ -98,32 +91,29 @@ TEST(PistonWave, FirstCollisionOfASlowBallIsOnItsPath) {
   }
 }
 
-TEST(PistonWave, ABallThatLeavesHasNoCollision) {
-  const PistonWave wave(PaperGeometry(0.1));
-  for (const double ux : {0.0, -1e-300, -1.0}) {
-    EXPECT_FALSE(wave.FirstCollision(0.05, 1, -0.01, ux, 0.5));
-  }
-  EXPECT_FALSE(wave.FirstCollision(2 * wave.stroke(), 0, -0.01, 1, 0.005));  // does not come so far
-  EXPECT_FALSE(wave.FirstCollision(0.05, 1, -0.01, 1e-300, 0.5));
-}
-
-TEST(PistonWave, ABallMeetsARestingPistonAtThePistonsPlace) {
-  const PistonWave wave(PaperGeometry(0.1));
-  const Approach a = {.phase = 0.07, .ratio = 0, .x = -0.2, .ux = 0.5, .length = 1};
-  const std::optional<PistonWave::Collision> collision = FirstCollision(wave, a);
-  ASSERT_TRUE(collision);
-  EXPECT_NEAR(collision->way, 0.27 / 0.5, 1e-15);
-}
-
-// The ball touches the piston and moves in the same direction, slower. The piston comes back.
-TEST(PistonWave, AReturningPistonMeetsABallAtRest) {
+TEST(PistonWave, CollisionsInSpecialCases) {
   const PistonWave wave(PaperGeometry(0.1));
   const double stroke = wave.stroke();
-  const Approach a = {.phase = 0.05, .ratio = 1e18, .x = 0.05, .ux = 1, .length = 0.3};
-  const std::optional<PistonWave::Collision> collision = FirstCollision(wave, a);
-  ASSERT_TRUE(collision);
-  EXPECT_NEAR(collision->way * a.ratio, 2 * (stroke - 0.05), 1e-12);
-  EXPECT_FALSE(collision->piston_goes_right);
+  struct Case {
+    const char* what;
+    Approach approach;
+    std::optional<double> way;
+  };
+  for (const Case& row :
+       {Case{"a ball that stands", {0.05, 1, -0.01, 0, 0.5}, {}},
+        {"a ball that leaves", {0.05, 1, -0.01, -1, 0.5}, {}},
+        {"a ball that hardly leaves", {0.05, 1, -0.01, -1e-300, 0.5}, {}},
+        {"a ball that hardly comes", {0.05, 1, -0.01, 1e-300, 0.5}, {}},
+        {"a ball that does not come so far", {2 * stroke, 0, -0.01, 1, 0.005}, {}},
+        {"a piston at rest", {0.07, 0, -0.2, 0.5, 1}, 0.27 / 0.5},
+        // The ball touches the piston and moves in the same direction, slower.
+        {"the piston returns", {0.05, 1e18, 0.05, 1, 0.3}, 2 * (stroke - 0.05) / 1e18}}) {
+    const auto collision = FirstCollision(wave, row.approach);
+    ASSERT_EQ(collision.has_value(), row.way.has_value()) << row.what;
+    if (!collision) continue;
+    EXPECT_NEAR(collision->way / *row.way, 1, 1e-12) << row.what;
+    EXPECT_FALSE(collision->piston_goes_right && row.approach.ratio > 0) << row.what;
+  }
 }
 
 TEST(PistonWave, WayToBallAtRestIsThatOfThePiston) {

@@ -1,20 +1,12 @@
 // Tangent vectors against differences of nearby orbits in 256 bits, and those of the lanes against
 // those of the reference.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <span>
 #include <type_traits>
-#include <vector>
 
 #include "core/billiard/orbits.h"
 #include "core/billiard/tangent_frame.h"
 #include "core/billiard/tangent_plane.h"
-#include "core/sampling/counter_random.h"
 #include "core/sampling/invariant_measure.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 #include "tools/flows/precise_flow.h"
 
 namespace ballpiston {

@@ -1,10 +1,6 @@
 #include "core/closed_form/circular_segment.h"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
-#include "gtest/gtest.h"
+#include "tests/core/preamble.h"
 #include "tools/flows/quad_precision.h"
 
 namespace ballpiston {
@@ -24,13 +20,6 @@ TEST(CircularSegment, AngleMinusSineOfATinyAngleIsItsCube) {
   EXPECT_EQ(AngleMinusSine(0), 0);
   // One rounding of the cube and one of the quotient.
   EXPECT_NEAR(AngleMinusSine(1e-50), 1e-150 / 6, 1e-165);
-}
-
-TEST(CircularSegment, ChordAngleInvertsTheChord) {
-  for (double angle = 1e-9; angle < 3; angle *= 1.1) {
-    // The arcsine's slope at angle = 3 amplifies an ulp by 1/cos(1.5) = 14.
-    EXPECT_NEAR(ChordAngle(0.7, 2 * 0.7 * std::sin(angle / 2)) / angle, 1, 1e-14);
-  }
 }
 
 TEST(CircularSegment, SegmentsOfAHalfAndAWholeDisc) {

@@ -1,15 +1,9 @@
 #include "core/closed_form/exchange_rate.h"
 
-#include <cmath>
-#include <numbers>
-#include <random>
-
 #include "core/closed_form/canonical_measure.h"
 #include "core/closed_form/kernel_moments.h"
 #include "core/closed_form/mean_free_time.h"
-#include "core/geometry/paper.h"
-#include "gtest/gtest.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 #include "tests/oracle/canonical_average.h"
 #include "tests/oracle/measures_by_quadrature.h"
 #include "tests/oracle/reference_table.h"
@@ -38,17 +32,6 @@ TEST(ExchangeRate, AccurateAtRandomGeometries) {
     EXPECT_LE(RelativeError(RareLimitExchangeRate(rho, temperature),
                             Sqrt(t / QuadPi()) / exact.cell_area),
               kExchangeRateRelativeError);
-  }
-}
-
-TEST(ExchangeRate, RareLimitIsTheLimitOfTheRate) {
-  for (double rho : {0.501, kPaperRho, 0.6, 0.65, 0.7}) {
-    for (double fraction : {1e-3, 1e-6, 1e-9}) {
-      const double delta = fraction * PairDeltaBound(rho);
-      const double scaled = ExchangeRateOf(GeometryOf(rho, delta), 3) / delta / delta;
-      // As for the mean free time: the leading correction is a few delta/lambda.
-      EXPECT_NEAR(scaled / RareLimitExchangeRate(rho, 3), 1, 1e-13 + 4 * delta / Lambda(rho));
-    }
   }
 }
 
@@ -83,43 +66,6 @@ TEST(ExchangeRate, HalfTheRateIsTheStaticConductivity) {
     const double conducted = (CurrentBetween(temperature, difference) / difference) / 2;
     const double rate = AveragesAt(1 / temperature).mean_f;
     EXPECT_NEAR(conducted / StaticConductivity(rate), 1, 1e-4);
-  }
-}
-
-// A row of a table that an independent program for the many-cell gas has computed.
-struct ReferenceGas {
-  size_t row;
-  double freedoms;           // degrees of freedom
-  double contacts_per_ball;  // 2 in a chain, 4 in a lattice
-};
-
-// The rate of a contact in the gas over that in the pair. On average a piston takes the fraction g
-// of a ball's area; at a contact the piston takes no area from its other ball. Terms in g^2, which
-// are 1e-5 here, are neglected.
-double GasOverPair(const PairGeometry& geometry, double contacts_per_ball) {
-  const double stroke = geometry.lambda() + 2 * geometry.delta();
-  const double g = 1 - Measures(geometry).volume / (stroke * CellArea(geometry.rho()));
-  const double free = 1 - contacts_per_ball * g;
-  return (1 - g) * (free + g) / (free * free);
-}
-
-// The gas of n degrees of freedom had the fixed energy n T/2, whose mean speeds are larger than
-// those of the canonical measure at T.
-double FixedOverCanonical(double n) {
-  return std::sqrt(n / 2) * std::exp(std::lgamma(n / 2) - std::lgamma((n + 1) / 2));
-}
-
-// 4 standard errors of the table, 0.9 to 1.2 %: two comparisons, 6e-5 false alarms each.
-TEST(ExchangeRate, AgreesWithReferenceGases) {
-  const ReferenceTable table("gas.csv");
-  for (const ReferenceGas& gas : {ReferenceGas{3, 6 * 3, 2}, ReferenceGas{4, 16 * 2 + 32, 4}}) {
-    const PairGeometry geometry =
-        GeometryOf(table.Input(gas.row, "rho"), table.Input(gas.row, "delta"));
-    const double expected = ExchangeRateOf(geometry, 1) *
-                            GasOverPair(geometry, gas.contacts_per_ball) *
-                            FixedOverCanonical(gas.freedoms);
-    EXPECT_NEAR(table.Input(gas.row, "value"), expected,
-                4 * table.Input(gas.row, "standard_error"));
   }
 }
 

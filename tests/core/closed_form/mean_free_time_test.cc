@@ -1,13 +1,6 @@
 #include "core/closed_form/mean_free_time.h"
 
-#include <cmath>
-#include <numbers>
-#include <random>
-
-#include "core/geometry/pair_geometry.h"
-#include "core/geometry/paper.h"
-#include "gtest/gtest.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 #include "tests/oracle/measures_by_quadrature.h"
 
 namespace ballpiston {
@@ -43,14 +36,6 @@ TEST(MeanFreeTime, RareLimitRateIsTheLimitOfTheRate) {
       EXPECT_NEAR(rate / RareLimitRate(rho), 1, 1e-13 + 4 * delta / Lambda(rho)) << rho;
     }
   }
-}
-
-TEST(MeanFreeTime, RareLimitRateIsOneOverTheCell) {
-  // Eq. taubpmftdelta as printed, where it does not cancel.
-  const double rho = 0.55;
-  const double l = Lambda(rho);
-  const double printed = 1 / (2 * sqrt2 * (1 - l - rho * rho * (pi - 4 * std::atan(l))));
-  EXPECT_NEAR(RareLimitRate(rho) / printed, 1, 1e-14);  // a tenfold cancellation in `printed`
 }
 
 // The two orders of limits in the footnote. In both, rho - 1/2 and delta tend to zero together;

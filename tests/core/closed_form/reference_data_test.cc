@@ -1,16 +1,11 @@
 // The library, and the printed formulas in plain double, against 25-digit reference values.
-#include <cstdlib>
-#include <numbers>
-#include <string>
-
 #include "absl/strings/match.h"
 #include "core/closed_form/conditional_rate.h"
 #include "core/closed_form/kernel.h"
 #include "core/closed_form/kernel_moments.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/closed_form/pair_measures.h"
-#include "core/geometry/pair_geometry.h"
-#include "gtest/gtest.h"
+#include "tests/core/preamble.h"
 #include "tests/oracle/reference_table.h"
 #include "tools/flows/printed_formulas.h"
 

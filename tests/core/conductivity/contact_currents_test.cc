@@ -1,12 +1,6 @@
 #include "core/conductivity/contact_currents.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <random>
-#include <vector>
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

@@ -1,10 +1,6 @@
 #include "core/ensemble/block_result.h"
 
-#include <gtest/gtest.h>
-
-#include <set>
-#include <utility>
-#include <vector>
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {
@@ -21,20 +17,16 @@ BlockResult Sample(double x) {
   result.histograms[0].Add(x);
   result.histograms[0].Add(2 * x);
   result.health = {.escapes = 1, .max_energy_error = x};
+  result.groups = {{}, GroupState({x, 2})};
   return result;
 }
 
-TEST(BlockResult, MergeWithEmptyIsIdentity) {
-  const BlockResult whole = Sample(1);
-  BlockResult left, right = whole;
-  left.Merge(whole);
-  right.Merge({});
-  EXPECT_EQ(left, whole);
-  EXPECT_EQ(right, whole);
-}
-
-TEST(BlockResult, MergeKeepsEverySample) {
-  BlockResult merged = Sample(1);
+TEST(BlockResult, MergeKeepsEverySampleAndHasAnIdentity) {
+  BlockResult merged;
+  merged.Merge(Sample(1));
+  EXPECT_EQ(merged, Sample(1));
+  merged.Merge({});
+  EXPECT_EQ(merged, Sample(1));
   merged.Merge(Sample(2));
   EXPECT_EQ(merged.samples, 4u);
   EXPECT_EQ(merged.moments[0].count, 4u);
@@ -55,64 +47,49 @@ TEST(BlockResult, TheNewerStateOfAGroupReplacesTheOlder) {
             (std::vector<GroupState>{GroupState({1}), GroupState({3}), GroupState({4})}));
 }
 
-TEST(BlockResult, ShapesDifferInNumbersAndBins) {
-  const BlockResult block = Sample(1);
-  EXPECT_TRUE(Sample(2).HasShapeOf(block));
-  BlockResult moments = block, means = block, histograms = block, bins = block, range = block,
-              groups = block;
-  groups.groups.emplace_back();
-  moments.moments.emplace_back();
-  means.batch_means.clear();
-  histograms.histograms.push_back(block.histograms[0]);
-  bins.histograms[0].counts.pop_back();
-  range.histograms[0].upper = 11;
-  for (const BlockResult& other : {moments, means, histograms, bins, range, groups}) {
-    EXPECT_FALSE(other.HasShapeOf(block));
-    EXPECT_FALSE(block.HasShapeOf(other));
+struct Change {
+  const char* what;
+  std::function<void(BlockResult&)> change;
+  bool of_shape = false;
+};
+
+const Change kChanges[] = {
+    {"samples", [](BlockResult& r) { r.samples ^= 1; }},
+    {"a count", [](BlockResult& r) { r.moments[0].count ^= uint64_t{1} << 63; }},
+    {"a sign", [](BlockResult& r) { r.moments[0].mean = -r.moments[0].mean; }},
+    {"a last digit", [](BlockResult& r) { r.moments[0].m2 *= 1 + 1e-15; }},
+    {"batches", [](BlockResult& r) { r.batch_means[0].batches += 1; }},
+    {"a batch's last number", [](BlockResult& r) { r.batch_means[0].c_dd += 1; }},
+    {"the sign of zero", [](BlockResult& r) { r.histograms[0].lower = -0.0; }},
+    {"a bin", [](BlockResult& r) { r.histograms[0].counts[2] += 1; }},
+    {"the order of bins",
+     [](BlockResult& r) { std::swap(r.histograms[0].counts[0], r.histograms[0].counts[1]); }},
+    {"escapes", [](BlockResult& r) { r.health.escapes = 0; }},
+    {"the energy's error", [](BlockResult& r) { r.health.max_energy_error *= 2; }},
+    {"a group's state",
+     [](BlockResult& r) {
+       r.groups[1] = GroupState({1, 3});
+     }},
+    {"the upper end", [](BlockResult& r) { r.histograms[0].upper = 11; }, true},
+    {"one bin more", [](BlockResult& r) { r.histograms[0].counts.push_back(0); }, true},
+    {"other moments", [](BlockResult& r) { r.moments.emplace_back(); }, true},
+    {"no batch means", [](BlockResult& r) { r.batch_means.clear(); }, true},
+    {"no histograms", [](BlockResult& r) { r.histograms.clear(); }, true},
+    {"one group less", [](BlockResult& r) { r.groups.pop_back(); }, true},
+};
+
+TEST(BlockResult, EveryNumberChangesTheDigestAndSomeTheShape) {
+  const BlockResult before = Sample(1);
+  std::set<uint64_t> digests = {DigestOf(before)};
+  EXPECT_EQ(DigestOf(Sample(1)), DigestOf(before));
+  for (const Change& change : kChanges) {
+    SCOPED_TRACE(change.what);
+    BlockResult changed = before;
+    change.change(changed);
+    EXPECT_TRUE(digests.insert(DigestOf(changed)).second);
+    EXPECT_EQ(changed.HasShapeOf(before), !change.of_shape);
+    EXPECT_EQ(before.HasShapeOf(changed), !change.of_shape);
   }
-}
-
-BlockResult Digested() {
-  BlockResult result;
-  result.samples = 3;
-  result.moments = {{1, 2, 3, 4, 5}, {6, 7, 8, 9, 10}};
-  result.batch_means = {{1, 2, 3, 4, 5, 6}};
-  result.histograms = {{0, 1, {1, 2, 3}}};
-  result.health = {.escapes = 1, .max_energy_error = 1e-15};
-  result.groups = {{}, GroupState({1, 2})};
-  return result;
-}
-
-TEST(BlockDigest, EveryNumberChangesTheDigest) {
-  std::vector<BlockResult> changed(16, Digested());
-  changed[0].samples ^= 1;
-  changed[1].moments[1].count ^= uint64_t{1} << 63;
-  changed[2].moments[1].mean = -changed[2].moments[1].mean;
-  changed[3].moments[0].m4 += 1e-15 * changed[3].moments[0].m4;
-  changed[4].batch_means[0].batches += 1;
-  changed[5].batch_means[0].c_dd += 1;
-  changed[6].histograms[0].lower = -0.0;
-  changed[7].histograms[0].upper = 2;
-  changed[8].histograms[0].counts[2] += 1;
-  changed[9].histograms[0].counts.push_back(0);
-  changed[10].health.escapes = 0;
-  changed[11].health.max_energy_error = 2e-15;
-  changed[12].moments.pop_back();
-  changed[13].histograms.clear();
-  changed[14].groups[1] = GroupState({1, 3});
-  changed[15].groups.pop_back();
-  std::set<uint64_t> digests = {DigestOf(Digested())};
-  for (const BlockResult& result : changed) digests.insert(DigestOf(result));
-  EXPECT_EQ(digests.size(), changed.size() + 1);
-  EXPECT_EQ(DigestOf(Digested()), DigestOf(Digested()));
-}
-
-TEST(BlockDigest, NumbersInAnotherOrderHaveAnotherDigest) {
-  BlockResult swapped = Digested(), counts = Digested();
-  std::swap(swapped.moments[0], swapped.moments[1]);
-  std::swap(counts.histograms[0].counts[0], counts.histograms[0].counts[1]);
-  EXPECT_NE(DigestOf(swapped), DigestOf(Digested()));
-  EXPECT_NE(DigestOf(counts), DigestOf(Digested()));
 }
 
 }  // namespace

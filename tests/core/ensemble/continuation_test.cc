@@ -11,7 +11,7 @@
 namespace ballpiston {
 namespace {
 
-struct Asked {
+struct SampledQuestion {
   const ExperimentKind* experiment;
   Model model;
   PointParameters point;
@@ -19,11 +19,11 @@ struct Asked {
 };
 
 // Counts that end within a block, within a chunk, at the end of a chunk, and in the first chunk.
-std::vector<Asked> EveryExperimentThatSamples() {
+std::vector<SampledQuestion> EveryExperimentThatSamples() {
   const PointParameters pair = PaperPoint(0.2), from = PaperPoint(0.2, 0.125),
                         law = PaperPoint(0.2, 0.125, 1);
   const std::vector<int64_t> counts = {700, 5'000, 65'000};
-  std::vector<Asked> asked;
+  std::vector<SampledQuestion> asked;
   for (const Model model : {Model::kBilliard, Model::kBilliardReference}) {
     asked.push_back({&kEquilibrium, model, pair, {5'000, 40'000}});
     asked.push_back({&kConditionalMeanFreeTime, model, from, counts});
@@ -40,11 +40,11 @@ std::vector<Asked> EveryExperimentThatSamples() {
   return asked;
 }
 
-std::unique_ptr<const PointExperiment> PointOf(const Asked& asked, const Target& target) {
+std::unique_ptr<const PointExperiment> PointOf(const SampledQuestion& asked, const Target& target) {
   return PointExperiment::Create(SpecOf(asked.experiment, asked.point, target, asked.model, 7), 0);
 }
 
-Target TargetOf(const Asked& asked, int64_t count) {
+Target TargetOf(const SampledQuestion& asked, int64_t count) {
   const bool counts_samples = asked.experiment->unit == TargetUnit::kSamples;
   return counts_samples ? Target{.samples = count} : Target{.collisions = count};
 }
@@ -71,10 +71,10 @@ PointFold Continued(const PointExperiment& point, const std::optional<FoldState>
   return fold;
 }
 
-class Continuation : public testing::TestWithParam<Asked> {};
+class Continuation : public testing::TestWithParam<SampledQuestion> {};
 
 TEST_P(Continuation, AContinuedPointHasTheBitsOfOneLongRun) {
-  const Asked& asked = GetParam();
+  const SampledQuestion& asked = GetParam();
   std::optional<FoldState> state;
   uint64_t computed = 0;
   for (const int64_t count : asked.counts) {
@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(OfEveryExperiment, Continuation,
 
 // Of returns, whose blocks are small.
 TEST(ContinuationOfSamples, ComputesNoWholeBlockAgain) {
-  const Asked asked = {&kFirstHit, Model::kBilliard, PaperPoint(0.2, 0.125, 1), {}};
+  const SampledQuestion asked = {&kFirstHit, Model::kBilliard, PaperPoint(0.2, 0.125, 1), {}};
   uint64_t first = 0, second = 0;
   const auto shorter = PointOf(asked, TargetOf(asked, 100'000));
   const std::optional<FoldState> state = Continued(*shorter, std::nullopt, first).Continuation();
@@ -105,7 +105,8 @@ TEST(ContinuationOfSamples, ComputesNoWholeBlockAgain) {
 
 // A tolerance that an earlier chunk has reached would have ended the run there.
 TEST(ContinuationOfSamples, TheStateKnowsTheLeastErrorBeforeItsLastChunk) {
-  const Asked asked = {&kConditionalMeanFreeTime, Model::kBilliard, PaperPoint(0.2, 0.125), {}};
+  const SampledQuestion asked = {
+      &kConditionalMeanFreeTime, Model::kBilliard, PaperPoint(0.2, 0.125), {}};
   uint64_t computed = 0;
   const auto tolerant = PointOf(asked, {.tolerance = 0.01});
   const PointFold fold = Continued(*tolerant, std::nullopt, computed);

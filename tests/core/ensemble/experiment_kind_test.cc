@@ -1,13 +1,16 @@
+// The predicted memory of a point. The measured numbers are the growth of the resident memory of a
+// process.
 #include "core/ensemble/experiment_kind.h"
-
-#include <gtest/gtest.h>
 
 #include "core/ensemble/chunk_fold.h"
 #include "core/ensemble/point_experiment.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {
+
+constexpr GasShape kChain = {.columns = 1'000'000};
 
 EnsembleSpec Gas(const GasShape& shape, Model model, int64_t replicas = 64) {
   return SpecOf(&kGasEquilibrium, PaperGas(&kGasEquilibrium, 0.1, shape), {.samples = replicas},
@@ -18,48 +21,37 @@ double Memory(const EnsembleSpec& spec, int threads = 1) {
   return MemoryOf(spec, PointAt(spec, 0), threads);
 }
 
-// Growth of the resident memory of a process, while it computes one replica.
-TEST(PointMemory, IsAboveTheMeasuredMemoryAndOfItsOrder) {
-  const GasShape chain = {.columns = 1'000'000};
+TEST(PointMemory, IsAboveTheMemoryOfOneReplicaAndOfItsOrder) {
   const GasShape lattice = {.columns = 1000, .rows = 1000, .is_lattice = true};
-  const struct {
-    GasShape shape;
-    Model model;
-    double measured;
-  } kMeasured[] = {{chain, Model::kBilliard, 361e6},
-                   {lattice, Model::kBilliard, 425e6},
-                   {chain, Model::kMarkov, 130.9e6},
-                   {lattice, Model::kMarkov, 185.1e6},
-                   {chain, Model::kBilliardReference, 297.6e6}};
-  for (const auto& [shape, model, measured] : kMeasured) {
+  for (const auto& [shape, model, measured] : {std::tuple(kChain, Model::kBilliard, 361e6),
+                                               {lattice, Model::kBilliard, 425e6},
+                                               {kChain, Model::kMarkov, 130.9e6},
+                                               {lattice, Model::kMarkov, 185.1e6},
+                                               {kChain, Model::kBilliardReference, 297.6e6}}) {
     EXPECT_GT(Memory(Gas(shape, model)), measured) << Name(model);
     EXPECT_LT(Memory(Gas(shape, model)), 2.5 * measured) << Name(model);
   }
 }
 
 TEST(PointMemory, EachThreadHasReplicasOfItsOwn) {
-  const GasShape large = {.columns = 1'000'000};
-  const double one = Memory(Gas(large, Model::kBilliard)),
-               four = Memory(Gas(large, Model::kBilliard), 4);
-  EXPECT_GT(four, 3.5 * one);
-  EXPECT_EQ(Memory(Gas(large, Model::kBilliard, 1), 4), one);  // no more threads than replicas
+  const double one = Memory(Gas(kChain, Model::kBilliard));
+  EXPECT_GT(Memory(Gas(kChain, Model::kBilliard), 4), 3.5 * one);
+  EXPECT_EQ(Memory(Gas(kChain, Model::kBilliard, 1), 4), one);  // no more threads than replicas
 }
 
 TEST(PointMemory, IsSmallForPairsAndForAnswersWithoutSamples) {
-  const EnsembleSpec pair = SpecOf(&kEquilibrium, PaperPoint(0.1), {}, Model::kBilliard);
-  EXPECT_LT(Memory(pair, 8), 150e6);
-  EXPECT_LT(Memory(Gas({.columns = 1'000'000}, Model::kClosedForm), 8), 10e6);
-  EXPECT_LT(Memory(Gas({.columns = 1'000'000}, Model::kAuto), 8), 10e6);
+  EXPECT_LT(Memory(SpecOf(&kEquilibrium, PaperPoint(0.1), {}, Model::kBilliard), 8), 150e6);
+  EXPECT_LT(Memory(Gas(kChain, Model::kClosedForm), 8), 10e6);
+  EXPECT_LT(Memory(Gas(kChain, Model::kAuto), 8), 10e6);
 }
 
-// Growth of the resident memory of a process, while it computes blocks of 32,768 to 65,536 samples.
+// Measured with blocks of 32,768 to 65,536 samples.
 TEST(PointMemory, CountsTheSamplesOfABlock) {
   const auto of_a_thread = [](const ExperimentKind* experiment, const PointParameters& point,
                               Model model) {
     return MemoryOfAThread(SpecOf(experiment, point, {.samples = 1'000'000}, model), point);
   };
-  const PointParameters point = PaperPoint(0.3, 0.3);
-  EXPECT_GT(of_a_thread(&kEnergyRelaxation, point, Model::kMarkov), 20.6e6);
+  EXPECT_GT(of_a_thread(&kEnergyRelaxation, PaperPoint(0.3, 0.3), Model::kMarkov), 20.6e6);
   EXPECT_GT(of_a_thread(&kEnergyRelaxation, PaperPoint(0.3, 0), Model::kBilliard), 16.0e6);
   EXPECT_GT(of_a_thread(&kFirstHit, PaperPoint(0.3, 0.1, 1), Model::kBilliard), 8.4e6);
   EXPECT_LT(of_a_thread(&kEnergyRelaxation, PaperPoint(0.01, 0.3), Model::kBilliard), 15e6);
@@ -67,13 +59,11 @@ TEST(PointMemory, CountsTheSamplesOfABlock) {
 
 // Results that wait for a slow block: the window's number of histograms.
 TEST(PointMemory, CountsTheWaitingResults) {
-  for (const ExperimentKind* experiment : {&kMarkovProperty, &kFirstHit}) {
-    const PointParameters point =
-        experiment == &kFirstHit ? PaperPoint(0.2, 0.1, 1) : PaperPoint(0.2);
+  for (const auto& [experiment, point] : {std::pair(&kFirstHit, PaperPoint(0.2, 0.1, 1)),
+                                          std::pair(&kMarkovProperty, PaperPoint(0.2))}) {
     const EnsembleSpec spec = SpecOf(experiment, point, {}, Model::kBilliard);
-    const auto point_experiment = PointExperiment::Create(spec, 0);
     double bytes = 0;
-    for (const Histogram& histogram : point_experiment->EmptyResult().histograms) {
+    for (const Histogram& histogram : PointExperiment::Create(spec, 0)->EmptyResult().histograms) {
       bytes += static_cast<double>(histogram.counts.size() * sizeof(uint64_t));
     }
     EXPECT_GT(experiment->memory_of_a_result, bytes) << experiment->name;

@@ -1,119 +1,164 @@
 #include "core/ensemble/point_fold.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <memory>
-#include <random>
-#include <vector>
-
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
+#include "tests/core/stopped.h"
 
 namespace ballpiston {
 namespace {
 
-std::unique_ptr<const PointExperiment> Point(const Target& target) {
-  return PointExperiment::Create(SpecOf(&kConditionalMeanFreeTime, PaperPoint(0.02, 0.125), target),
-                                 0);
+std::unique_ptr<const PointExperiment> Point(const Target& target, double delta = 0.02) {
+  return PointExperiment::Create(
+      SpecOf(&kConditionalMeanFreeTime, PaperPoint(delta, 0.125), target, Model::kBilliard), 0);
 }
 
-// All blocks of a point's chunks, in order.
-struct ComputedBlock {
-  Block block;
-  BlockResult result;
-};
+// The blocks of a point of 1000 samples and their chunks, both in order.
+class Fold : public testing::Test {
+ protected:
+  struct Computed {
+    Block block;
+    BlockResult result;
+  };
 
-std::vector<ComputedBlock> BlocksOf(const PointExperiment& point) {
-  std::vector<ComputedBlock> blocks;
-  ChunkFold fold(point.plan(), {}, point.plan().chunks());
-  while (const auto block = fold.NextBlock()) blocks.push_back({*block, *RunBlock(point, *block)});
-  return blocks;
-}
+  Fold() {
+    ChunkFold fold = AllChunks();
+    while (const auto block = fold.NextBlock()) {
+      blocks_.push_back({*block, *RunBlock(*point_, *block)});
+      Add(fold, blocks_.back(), chunks_);
+    }
+    EXPECT_TRUE(fold.finished());
+    EXPECT_GT(chunks_.size(), 2u);
+  }
 
-std::vector<ChunkResult> Fold(ChunkFold& fold, const std::vector<ComputedBlock>& blocks) {
-  std::vector<ChunkResult> chunks;
-  for (const ComputedBlock& computed : blocks) {
+  ChunkFold AllChunks(const PartialChunk& begun = {}) const {
+    return {point_->plan(), begun, point_->plan().chunks()};
+  }
+  // All blocks are given out.
+  ChunkFold GivenOut() const {
+    ChunkFold fold = AllChunks();
+    while (fold.NextBlock()) continue;
+    return fold;
+  }
+  static void Add(ChunkFold& fold, const Computed& computed, std::vector<ChunkResult>& chunks) {
     for (ChunkResult& chunk : fold.Add(computed.block, computed.result)) {
       chunks.push_back(std::move(chunk));
     }
   }
-  return chunks;
-}
-
-void ExpectEqual(const std::vector<ChunkResult>& a, const std::vector<ChunkResult>& b) {
-  ASSERT_EQ(a.size(), b.size());
-  for (size_t i = 0; i < a.size(); ++i) {
-    EXPECT_EQ(a[i].chunk, b[i].chunk);
-    EXPECT_EQ(a[i].result, b[i].result) << "chunk " << a[i].chunk;
+  void ExpectChunks(const std::vector<ChunkResult>& found) const {
+    ASSERT_EQ(found.size(), chunks_.size());
+    for (size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].chunk, chunks_[i].chunk);
+      EXPECT_EQ(found[i].result, chunks_[i].result) << "chunk " << i;
+    }
   }
-}
-
-class FoldTest : public testing::Test {
- protected:
-  ChunkFold WholeRange() const { return {point_->plan(), PartialChunk(), point_->plan().chunks()}; }
 
   const std::unique_ptr<const PointExperiment> point_ = Point({.samples = 1000});
-  const std::vector<ComputedBlock> blocks_ = BlocksOf(*point_);
-  ChunkFold in_order_ = WholeRange();
-  const std::vector<ChunkResult> chunks_ = Fold(in_order_, blocks_);
+  std::vector<Computed> blocks_;
+  std::vector<ChunkResult> chunks_;
 };
 
-using ChunkFoldTest = FoldTest;
-using PointFoldTest = FoldTest;
-
-TEST_F(ChunkFoldTest, ChunksAreIndependentOfTheOrderOfBlocks) {
-  ASSERT_GT(chunks_.size(), 2u);
-  EXPECT_TRUE(in_order_.finished());
-  auto shuffled = blocks_;
+TEST_F(Fold, BlocksAndChunksInAnyOrderGiveTheSameBits) {
+  const BlockResult expected = *FoldPoint(*point_);
+  auto blocks = blocks_;
+  auto arrived = chunks_;
   for (unsigned seed = 0; seed < 20; ++seed) {
-    std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(seed));
-    ChunkFold fold = WholeRange();
-    while (fold.NextBlock()) continue;
-    ExpectEqual(Fold(fold, shuffled), chunks_);
+    std::mt19937 random(seed);
+    std::shuffle(blocks.begin(), blocks.end(), random);
+    std::shuffle(arrived.begin(), arrived.end(), random);
+    ChunkFold fold = GivenOut();
+    std::vector<ChunkResult> chunks;
+    for (const Computed& block : blocks) Add(fold, block, chunks);
+    ExpectChunks(chunks);
     EXPECT_TRUE(fold.finished());
+    PointFold point(*point_);
+    uint64_t samples = 0;
+    for (const ChunkResult& chunk : arrived) samples += point.Add(chunk);
+    EXPECT_TRUE(point.finished());
+    EXPECT_EQ(point.Merged(), expected);
+    EXPECT_EQ(samples, 1000u);
+    EXPECT_EQ(point.PlannedSamples(), 1000u);
   }
+  // Merging in another order gives other bits, or the comparisons above would prove nothing.
+  BlockResult backwards;
+  for (auto chunk = chunks_.rbegin(); chunk != chunks_.rend(); ++chunk) {
+    backwards.Merge(chunk->result);
+  }
+  EXPECT_NE(backwards, expected);
 }
 
-TEST_F(ChunkFoldTest, AResumedChunkHasTheSameBits) {
-  for (size_t n = 0; n < blocks_.size(); n += 7) {
-    ChunkFold before = WholeRange();
-    const auto cut = blocks_.begin() + static_cast<ptrdiff_t>(n);
-    std::vector<ChunkResult> chunks = Fold(before, {blocks_.begin(), cut});
-    ChunkFold after(point_->plan(), before.partial(), point_->plan().chunks());
-    for (auto computed = cut; computed != blocks_.end(); ++computed) {
-      ASSERT_EQ(after.NextBlock(), computed->block);
-      for (ChunkResult& chunk : after.Add(computed->block, computed->result)) {
-        chunks.push_back(std::move(chunk));
-      }
+TEST_F(Fold, AResumedChunkHasTheSameBits) {
+  for (size_t cut = 0; cut < blocks_.size(); cut += 7) {
+    std::vector<ChunkResult> chunks;
+    ChunkFold before = GivenOut();
+    for (size_t i = 0; i < cut; ++i) Add(before, blocks_[i], chunks);
+    ChunkFold after = AllChunks(before.partial());
+    for (size_t i = cut; i < blocks_.size(); ++i) {
+      ASSERT_EQ(after.NextBlock(), blocks_[i].block);
+      Add(after, blocks_[i], chunks);
     }
     EXPECT_FALSE(after.NextBlock());
-    ExpectEqual(chunks, chunks_);
+    ExpectChunks(chunks);
   }
 }
 
-TEST_F(ChunkFoldTest, ARangeHasOnlyItsChunks) {
+TEST_F(Fold, AResumedPointHasTheSameBits) {
+  for (size_t cut = 0; cut <= chunks_.size(); ++cut) {
+    PointFold before(*point_), after(*point_);
+    for (size_t i = 0; i < cut; ++i) before.Add(chunks_[i]);
+    after.Resume(before.state());
+    EXPECT_EQ(after.PlannedSamples(), before.PlannedSamples());
+    for (size_t i = cut; i < chunks_.size(); ++i) after.Add(chunks_[i]);
+    EXPECT_TRUE(after.finished());
+    EXPECT_EQ(after.Merged(), *FoldPoint(*point_)) << cut;
+  }
+}
+
+TEST_F(Fold, ARangeHasOnlyItsChunks) {
   ChunkFold fold(point_->plan(), {.chunk = 1}, 3);
   std::vector<ChunkResult> chunks;
   while (const auto block = fold.NextBlock()) {
-    for (ChunkResult& chunk : fold.Add(*block, *RunBlock(*point_, *block))) {
-      chunks.push_back(std::move(chunk));
-    }
+    Add(fold, {*block, *RunBlock(*point_, *block)}, chunks);
   }
-  ExpectEqual(chunks, {chunks_[1], chunks_[2]});
+  ASSERT_EQ(chunks.size(), 2u);
+  for (const size_t i : {0, 1}) EXPECT_EQ(chunks[i].result, chunks_[1 + i].result);
 }
 
-TEST_F(ChunkFoldTest, ABlockCountsOnce) {
-  ChunkFold fold = WholeRange();
-  while (fold.NextBlock()) continue;
+TEST_F(Fold, BlocksAndChunksCountOnce) {
+  ChunkFold fold = GivenOut();
+  PointFold point(*point_);
   for (int repeat = 0; repeat < 3; ++repeat) {
-    fold.Add(blocks_[0].block, blocks_[0].result);
-    fold.Add(blocks_[2].block, blocks_[2].result);
+    for (const size_t i : {0, 2}) {
+      fold.Add(blocks_[i].block, blocks_[i].result);
+      point.Add(chunks_[i]);
+    }
   }
   EXPECT_EQ(fold.partial().merged, blocks_[0].result);
   EXPECT_EQ(fold.waiting(), 1u);
+  EXPECT_EQ(point.Merged(), chunks_[0].result);
 }
 
-TEST_F(ChunkFoldTest, BlocksHandedOutAreLimitedByTheWindow) {
+TEST_F(Fold, TheFirstBlocksOfAChunkCountOnce) {
+  PointFold fold(*point_);
+  ChunkFold blocks = GivenOut();
+  uint64_t samples = 0;
+  for (size_t i = 0; i < 5; ++i) {
+    for (ChunkResult& chunk : blocks.Add(blocks_[i].block, blocks_[i].result)) {
+      samples += fold.Add(std::move(chunk));
+    }
+    for (int repeat = 0; repeat < 2; ++repeat) samples += fold.AddPartial(blocks.partial());
+    EXPECT_EQ(samples, fold.Merged().samples);
+  }
+  const BlockResult merged = fold.Merged();
+  for (const uint64_t chunk : {0u, 1u}) {  // fewer blocks than are known; of a later chunk
+    fold.AddPartial({.chunk = chunk, .blocks = 1, .merged = blocks_[0].result});
+    EXPECT_EQ(fold.Merged(), merged);
+  }
+  samples += fold.Add(chunks_[0]);
+  EXPECT_EQ(samples, chunks_[0].result.samples);
+  EXPECT_EQ(fold.Merged(), chunks_[0].result);
+}
+
+TEST_F(Fold, BlocksGivenOutAreLimitedByTheWindow) {
   const auto endless = Point({.tolerance = 1e-5});
   ChunkFold fold(endless->plan(), {}, endless->plan().chunks());
   std::vector<Block> blocks;
@@ -122,48 +167,10 @@ TEST_F(ChunkFoldTest, BlocksHandedOutAreLimitedByTheWindow) {
   fold.Add(blocks[1], blocks_[1].result);
   EXPECT_FALSE(fold.NextBlock());  // the first block is not yet computed
   fold.Add(blocks[0], blocks_[0].result);
-  EXPECT_TRUE(fold.NextBlock());
-  EXPECT_TRUE(fold.NextBlock());
-  EXPECT_FALSE(fold.NextBlock());
+  for (const bool has_more : {true, true, false}) EXPECT_EQ(fold.NextBlock().has_value(), has_more);
 }
 
-TEST_F(PointFoldTest, ResultIsIndependentOfArrivalOrder) {
-  const BlockResult expected = *FoldPoint(*point_);
-  auto shuffled = chunks_;
-  for (unsigned seed = 0; seed < 20; ++seed) {
-    std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(seed));
-    PointFold fold(*point_);
-    uint64_t samples = 0;
-    for (const ChunkResult& chunk : shuffled) samples += fold.Add(chunk);
-    EXPECT_TRUE(fold.finished());
-    EXPECT_EQ(fold.Merged(), expected);
-    EXPECT_EQ(samples, 1000u);
-    EXPECT_EQ(fold.PlannedSamples(), 1000u);
-  }
-}
-
-TEST_F(PointFoldTest, MergingInAnotherOrderGivesOtherBits) {  // or the test above proves nothing
-  BlockResult backwards;
-  for (auto chunk = chunks_.rbegin(); chunk != chunks_.rend(); ++chunk) {
-    backwards.Merge(chunk->result);
-  }
-  EXPECT_NE(backwards, *FoldPoint(*point_));
-}
-
-TEST_F(PointFoldTest, ResumedFoldGivesTheSameBits) {
-  for (size_t n = 0; n <= chunks_.size(); ++n) {
-    PointFold before(*point_);
-    for (size_t i = 0; i < n; ++i) before.Add(chunks_[i]);
-    PointFold after(*point_);
-    after.Resume(before.state());
-    EXPECT_EQ(after.PlannedSamples(), before.PlannedSamples());
-    for (size_t i = n; i < chunks_.size(); ++i) after.Add(chunks_[i]);
-    EXPECT_TRUE(after.finished());
-    EXPECT_EQ(after.Merged(), *FoldPoint(*point_)) << n;
-  }
-}
-
-TEST_F(PointFoldTest, EarlyChunksWait) {
+TEST_F(Fold, EarlyChunksWait) {
   PointFold fold(*point_);
   EXPECT_TRUE(fold.Needs(1));
   EXPECT_EQ(fold.Add(chunks_[1]), 0u);
@@ -174,34 +181,7 @@ TEST_F(PointFoldTest, EarlyChunksWait) {
   EXPECT_EQ(fold.waiting(), 0u);
 }
 
-TEST_F(PointFoldTest, AChunkCountsOnce) {
-  PointFold fold(*point_);
-  for (int repeat = 0; repeat < 3; ++repeat) {
-    fold.Add(chunks_[0]);
-    fold.Add(chunks_[2]);
-  }
-  EXPECT_EQ(fold.Merged(), chunks_[0].result);
-}
-
-TEST_F(PointFoldTest, TheFirstBlocksOfAChunkCountOnce) {
-  PointFold fold(*point_);
-  ChunkFold blocks = WholeRange();
-  while (blocks.NextBlock()) continue;
-  uint64_t samples = 0;
-  for (size_t i = 0; i < 5; ++i) {
-    for (ChunkResult& chunk : blocks.Add(blocks_[i].block, blocks_[i].result)) {
-      samples += fold.Add(std::move(chunk));
-    }
-    for (int repeat = 0; repeat < 2; ++repeat) samples += fold.AddPartial(blocks.partial());
-    EXPECT_EQ(samples, fold.Merged().samples);
-  }
-  EXPECT_EQ(fold.AddPartial({.chunk = 1, .blocks = 1, .merged = blocks_[0].result}), 0u);
-  samples += fold.Add(chunks_[0]);
-  EXPECT_EQ(samples, chunks_[0].result.samples);
-  EXPECT_EQ(fold.Merged(), chunks_[0].result);
-}
-
-TEST_F(PointFoldTest, FinishKeepsMergedChunksAndDropsWaitingChunks) {
+TEST_F(Fold, FinishKeepsMergedChunksAndDropsWaitingChunks) {
   PointFold fold(*point_);
   fold.Add(chunks_[0]);
   fold.Add(chunks_[2]);
@@ -212,9 +192,9 @@ TEST_F(PointFoldTest, FinishKeepsMergedChunksAndDropsWaitingChunks) {
   EXPECT_FALSE(fold.Needs(3));
 }
 
-TEST_F(PointFoldTest, LocalPointMatchesTheFold) {
+TEST_F(Fold, ALocalPointGivesTheSameBits) {
   LocalPoint local(*point_);
-  for (const ComputedBlock& computed : blocks_) {
+  for (const Computed& computed : blocks_) {
     ASSERT_EQ(local.NextBlock(), computed.block);
     local.Add(computed.block, computed.result);
     EXPECT_EQ(local.Merged().samples, computed.block.first + computed.block.samples);
@@ -224,7 +204,7 @@ TEST_F(PointFoldTest, LocalPointMatchesTheFold) {
 }
 
 // The tolerance is reached within a chunk; the fold continues to the chunk's end.
-TEST_F(PointFoldTest, AToleranceIsJudgedAtTheEndsOfChunks) {
+TEST(PointFold, AToleranceIsJudgedAtTheEndsOfChunks) {
   const auto point = Point({.tolerance = 0.1});
   const uint64_t samples = FoldPoint(*point)->samples;
   EXPECT_GT(samples, 64u);
@@ -232,15 +212,13 @@ TEST_F(PointFoldTest, AToleranceIsJudgedAtTheEndsOfChunks) {
   while (point->plan().FirstSample(chunk) < samples) ++chunk;
   EXPECT_EQ(point->plan().FirstSample(chunk), samples);
   EXPECT_TRUE(point->ReachesTolerance(*FoldPoint(*point)));
+  EXPECT_FALSE(FoldPoint(*Point({.tolerance = 1e-5}), Stopped()));
 }
 
 // A sample takes hours here, so that a chunk has one sample. All samples agree, but the tolerance
 // is judged after 64.
-TEST_F(PointFoldTest, AToleranceOfLongSamplesIsJudgedAfter64) {
-  const auto point =
-      PointExperiment::Create(SpecOf(&kConditionalMeanFreeTime, PaperPoint(1e-6, 0.125),
-                                     {.tolerance = 0.5}, Model::kBilliard),
-                              0);
+TEST(PointFold, AToleranceOfLongSamplesIsJudgedAfter64) {
+  const auto point = Point({.tolerance = 0.5}, 1e-6);
   ASSERT_EQ(point->plan().SamplesIn(0), 1u);
   PointFold fold(*point);
   for (uint64_t chunk = 0; chunk < 64; ++chunk) {
@@ -252,12 +230,9 @@ TEST_F(PointFoldTest, AToleranceOfLongSamplesIsJudgedAfter64) {
   }
   EXPECT_TRUE(fold.finished());
   EXPECT_TRUE(point->ReachesTolerance(fold.Merged()));
-}
-
-TEST_F(PointFoldTest, StopEndsIt) {
-  std::stop_source stop;
-  stop.request_stop();
-  EXPECT_FALSE(FoldPoint(*Point({.tolerance = 1e-5}), stop.get_token()));
+  PointFold resumed(*point);
+  resumed.Resume(fold.state());
+  EXPECT_TRUE(resumed.finished());
 }
 
 }  // namespace

@@ -1,21 +1,13 @@
 #include "core/experiment/energy_relaxation.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-#include <utility>
-#include <vector>
-
 #include "core/billiard/reference_flow.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/point_fold.h"
 #include "core/ensemble/random_stream.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
-#include "tests/core/geometries.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 
 namespace ballpiston {
@@ -27,16 +19,6 @@ EnsembleSpec SpecOfOrbits(const PointParameters& point, Model model, int64_t sam
 
 EnergyRelaxation RelaxationAt(double delta, std::optional<double> epsilon = {}) {
   return {PaperGeometry(delta), PaperPoint(delta, epsilon)};
-}
-
-TEST(EnergyRelaxation, OrbitsLastAsLongAsTheMeasurement) {
-  const double tau = MeanFreeTimesOf(PaperGeometry(0.1)).ball_piston;
-  const EnergyRelaxation decay = RelaxationAt(0.1, 0.01);
-  const EnergyRelaxation equilibrium = RelaxationAt(0.1);
-  EXPECT_NEAR(decay.orbit_time() / tau, kWindowTimes, 1e-8);
-  EXPECT_NEAR(equilibrium.orbit_time() / tau, kOriginTimes + kWindowTimes, 1e-8);
-  EXPECT_EQ(CollisionsPerOrbit(PaperPoint(0.1, 0.01)), kWindowTimes);
-  EXPECT_EQ(CollisionsPerOrbit(PaperPoint(0.1)), kOriginTimes + kWindowTimes);
 }
 
 // The orbit keeps its energy: the curve is flat, and the integral is the window times this value.

@@ -1,16 +1,10 @@
 #include "core/experiment/expected_returns.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/billiard/orbits.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/returns.h"
-#include "core/geometry/paper.h"
-#include "core/statistics/moments.h"
 #include "tests/core/billiard/recorded_collisions.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 #include "tests/core/run_orbits.h"
 
 namespace ballpiston {

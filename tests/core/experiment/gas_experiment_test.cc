@@ -1,32 +1,13 @@
 // The common properties of both experiments with a gas, by every model that samples.
 #include "core/experiment/gas_experiment.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <map>
-#include <memory>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "absl/strings/str_cat.h"
 #include "core/ensemble/point_fold.h"
 #include "tests/core/experiment/gas_questions.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {
-
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::Field;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 constexpr const ExperimentKind* kGases[] = {&kGasEquilibrium, &kGasConduction};
 
@@ -161,37 +142,6 @@ TEST(GasExperiment, AReplicaDependsOnlyOnItsNumber) {
   }
 }
 
-// From every number of merged blocks.
-TEST(GasExperiment, AResumedFoldHasTheSameBits) {
-  for (const EnsembleSpec& spec : OneOfEach(80)) {
-    SCOPED_TRACE(Described(spec));
-    const auto point = PointExperiment::Create(spec, 0);
-    const BlockResult whole = *FoldPoint(*point);
-    ChunkFold blocks(point->plan(), {}, point->plan().chunks());
-    LocalPoint local(*point);
-    for (int i = 0; i < 5; ++i) {
-      const std::optional<Block> block = local.NextBlock();
-      ASSERT_TRUE(block);
-      local.Add(*block, *RunBlock(*point, *block));
-    }
-    PointFold resumed(*point);
-    resumed.Resume(local.State());
-    EXPECT_EQ(resumed.PlannedSamples(), local.Merged().samples);
-    ChunkFold rest(point->plan(),
-                   {.chunk = resumed.state().chunk,
-                    .blocks = resumed.state().blocks,
-                    .merged = resumed.state().partial},
-                   point->plan().chunks());
-    while (const std::optional<Block> block = rest.NextBlock()) {
-      for (ChunkResult& chunk : rest.Add(*block, *RunBlock(*point, *block))) {
-        resumed.Add(std::move(chunk));
-      }
-    }
-    EXPECT_TRUE(resumed.finished());
-    EXPECT_EQ(resumed.Merged(), whole);
-  }
-}
-
 // A histogram has at most CountsOfASample() counts for each sample. The server checks this bound
 // when it reads a checkpoint.
 TEST(GasExperiment, CountsOfASampleBoundEveryHistogram) {
@@ -206,84 +156,6 @@ TEST(GasExperiment, CountsOfASampleBoundEveryHistogram) {
       EXPECT_EQ(largest, 5 * point->CountsOfASample()) << Described(spec);
     }
   }
-}
-
-// ---- bad input ----
-
-EnsembleSpec Valid(const ExperimentKind* kind) { return SpecOf(kind, PaperGas(kind, 0.1)); }
-
-TEST(GasExperiment, DeltaUpToTheGasBoundIsPermitted) {
-  for (const ExperimentKind* kind : kGases) {
-    EnsembleSpec spec = Valid(kind);
-    spec.grid[kDelta] = {0.2, GasDeltaBound(kPaperRho)};
-    EXPECT_THAT(Violations(spec), IsEmpty());
-    // The largest rho decides, and the pair's bound is larger.
-    spec.grid[kRho] = {kPaperRho, 0.6};
-    spec.grid[kDelta] = {0.09, 0.1, 0.16};
-    EXPECT_THAT(Violations(spec), ElementsAre(AllOf(Violates("grid.delta[1]",
-                                                             "rho = 0.6: 0 < delta <= "
-                                                             "rho/sqrt(2) - lambda/2 = 0.0926"),
-                                                    Violates("grid.delta[1]",
-                                                             "the bound of a gas, where no two "
-                                                             "pistons may overlap")),
-                                              Violates("grid.delta[2]", "the bound of a gas")));
-  }
-}
-
-TEST(GasExperiment, DeltaWithTimesOutsideTheRangeOfDoubleIsRejected) {
-  for (const ExperimentKind* kind : kGases) {
-    EnsembleSpec spec = Valid(kind);
-    spec.grid[kDelta] = {1e-160};
-    EXPECT_THAT(Violations(spec), ElementsAre(Violates("grid.delta[0]", "too small")));
-  }
-}
-
-TEST(GasExperiment, SinglePrecisionIsRejected) {
-  for (const ExperimentKind* kind : kGases) {
-    EnsembleSpec spec = Valid(kind);
-    spec.precision = Precision::kSingle;
-    EXPECT_THAT(Violations(spec),
-                ElementsAre(Violates("precision", "is single; permitted for a gas: double")));
-  }
-}
-
-TEST(GasExperiment, CellsWithoutAShapeAreRejected) {
-  for (const ExperimentKind* kind : kGases) {
-    EnsembleSpec spec = Valid(kind);
-    for (const double code : {0.0, -1.0, 0.5, 1e9, 1e300, std::nan(""), HUGE_VAL}) {
-      spec.grid[kCells] = {1, code};
-      EXPECT_THAT(Violations(spec), ElementsAre(Violates("grid.cells[1]", "1 to 1000000"))) << code;
-    }
-    spec.grid[kCells] = {1, 2, CodeOf({1000, 1000, true}), CodeOf({1, 1, true}), 1e6};
-    EXPECT_THAT(Violations(spec), IsEmpty());
-    spec.grid[kCells] = {};
-    EXPECT_THAT(Violations(spec), ElementsAre(Violates("grid.cells", "needs at least one")));
-  }
-}
-
-TEST(GasExperiment, NumbersThatAreNaNAreRejectedWithTheirField) {
-  for (const ExperimentKind* kind : kGases) {
-    for (const ParameterUse& use : kind->parameters) {
-      EnsembleSpec spec = Valid(kind);
-      spec.grid[*use.parameter] = {std::nan("")};
-      EXPECT_THAT(Violations(spec),
-                  ElementsAre(Field(&FieldViolation::field,
-                                    absl::StrCat("grid.", use.parameter->name, "[0]"))));
-    }
-  }
-}
-
-TEST(GasExperiment, AnotherExperimentsParametersAreRejected) {
-  EnsembleSpec equilibrium = Valid(&kGasEquilibrium), conduction = Valid(&kGasConduction);
-  equilibrium.grid[kHot] = {2};
-  equilibrium.grid[kEpsilon] = {0.1};
-  conduction.grid[kTemperature] = {1};
-  EXPECT_THAT(Violations(equilibrium),
-              testing::UnorderedElementsAre(
-                  Violates("grid.hot", "gas-equilibrium does not use this list"),
-                  Violates("grid.epsilon", "gas-equilibrium does not use this list")));
-  EXPECT_THAT(Violations(conduction),
-              ElementsAre(Violates("grid.temperature", "gas-conduction does not use this list")));
 }
 
 }  // namespace

@@ -1,19 +1,9 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <optional>
-#include <span>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 #include "core/arithmetic/elementary_functions.h"
 #include "core/closed_form/kernel_moments.h"
 #include "core/experiment/markov_property_statistics.h"
-#include "core/sampling/counter_random.h"
 #include "core/statistics/group_scatter.h"
-#include "core/statistics/moments.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 #include "tests/core/stopped.h"
 

@@ -1,12 +1,8 @@
 #include "core/experiment/returns.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/ensemble/block_orbits.h"
-#include "tests/core/geometries.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 
 namespace ballpiston {

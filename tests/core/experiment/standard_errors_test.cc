@@ -1,30 +1,14 @@
 // Which estimates have a standard error, and what stands in its place.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <iostream>
-#include <limits>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-
 #include "core/closed_form/ingoing_law.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/expected_returns.h"
-#include "core/geometry/paper.h"
 #include "core/model_choice/limit_error.h"
-#include "tests/core/geometries.h"
-#include "tests/core/one_point_spec.h"
+#include "tests/core/asked.h"
+#include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 
 namespace ballpiston {
 namespace {
-
-PointParameters PairAt(double rho, double delta, std::optional<double> epsilon = {}) {
-  return {{kRho, rho}, {kDelta, delta}, {kEpsilon, epsilon}};
-}
 
 bool HasRemark(const PointSummary& summary, std::string_view text) {
   return std::ranges::any_of(summary.remarks, [text](const std::string& remark) {
@@ -32,51 +16,96 @@ bool HasRemark(const PointSummary& summary, std::string_view text) {
   });
 }
 
-// 256 samples at energies where the expected samples of the rarer sign are just below and just
-// above
-// 50. The measured mean would give the error to half of the seeds.
-TEST(StandardErrors, OfMeanSigmaDoesNotDependOnTheSample) {
-  for (const double exponent : {0, 1, 3}) {
-    for (const double epsilon : {0.07, 0.085}) {
-      const double exact = IngoingLaw(epsilon).MeanSigma();
-      const bool is_shown = 256 * (1 + exact) / 2 >= 50;
-      EXPECT_EQ(is_shown, epsilon < 0.08) << exact;
-      for (uint64_t seed = 0; seed < 20; ++seed) {
-        const EnsembleSpec spec = SpecOf(&kFirstHit, PaperPoint(0.2, epsilon, exponent),
-                                         {.samples = 256}, Model::kBilliard, seed);
-        const Estimate sigma = Named("mean_sigma", RunPoint(spec).estimates);
-        EXPECT_EQ(sigma.standard_error.has_value(), is_shown) << exponent << " " << seed;
-      }
-    }
+PointSummary Answered(const std::string& question) { return RunPoint(Asked(question)); }
+
+bool HasError(const std::string& estimate, const std::string& question) {
+  return Named(estimate, Answered(question).estimates).standard_error.has_value();
+}
+
+// Whether an estimate has an error depends on the number of samples, and a remark says how many are
+// needed. A chain of two is more skewed than a lattice, and squares of times are more skewed than
+// times.
+TEST(StandardErrors, NeedANumberOfSamples) {
+  struct Row {
+    const char* question;
+    const char* estimate;
+    bool has_error;
+    const char* remark = "";
+  };
+  for (const Row& row : {
+           Row{"equilibrium delta=0.2 model=billiard collisions=500", "mean_free_time_ball_piston",
+               true},
+           {"equilibrium delta=0.2 model=billiard collisions=499", "mean_free_time_ball_piston",
+            false, "these need 500 collisions"},
+           {"lyapunov delta=0.2 model=billiard collisions=3200", "lyapunov_1", true},
+           {"lyapunov delta=0.2 model=billiard collisions=3199", "lyapunov_1", false},
+           {"energy-relaxation delta=0.2 model=billiard samples=400", "relaxation_time", true},
+           {"energy-relaxation delta=0.2 model=billiard samples=399", "relaxation_time", false,
+            "errors need 400 orbits"},
+           {"markov-property delta=0.2 model=markov collisions=1600", "memory_correlation", true},
+           {"markov-property delta=0.2 model=markov collisions=1568", "memory_correlation", false,
+            "these need 50 orbits of 32 collisions"},
+           {"gas-equilibrium delta=0.2 model=markov samples=1000", "conductivity", false,
+            "this needs 250000 replicas"},
+           {"gas-equilibrium delta=0.2 cells=2x1 model=markov samples=999", "conductivity", false,
+            "this needs 1000 replicas"},
+           {"gas-equilibrium delta=0.2 cells=2x1 model=markov samples=1000", "conductivity", true},
+           {"conditional-mean-free-time delta=0.2 model=billiard samples=64",
+            "mean_free_time_conditional", true},
+           {"conditional-mean-free-time delta=0.2 model=billiard samples=999",
+            "coefficient_of_variation", false},
+           {"conditional-mean-free-time delta=0.2 model=billiard samples=1000",
+            "coefficient_of_variation", true},
+           {"conditional-mean-free-time delta=0.05 model=billiard samples=1000 epsilon=0",
+            "mean_free_time_conditional", false, "the variance of return times is infinite"},
+           {"first-hit delta=0.05 model=billiard samples=1000 epsilon=0", "mean_hit_time", false,
+            "the variance of return times is infinite"},
+           {"first-hit delta=0.05 model=billiard samples=1000 epsilon=1e-12", "mean_hit_time",
+            false, "are expected in 1000 samples; an error needs 50"},
+           {"first-hit delta=0.05 model=billiard samples=1000 epsilon=0.1", "mean_hit_time", true},
+           {"first-hit delta=0.05 model=billiard samples=10 epsilon=0", "mean_hit_time", false},
+       }) {
+    SCOPED_TRACE(row.question);
+    const PointSummary summary = Answered(row.question);
+    EXPECT_EQ(Named(row.estimate, summary.estimates).standard_error.has_value(), row.has_error);
+    EXPECT_TRUE(*row.remark == 0 || HasRemark(summary, row.remark));
   }
 }
 
-TEST(StandardErrors, MeanOfAConstantSignIsExact) {
-  const EnsembleSpec spec =
-      SpecOf(&kFirstHit, PaperPoint(0.2, 0.3, 0), {.samples = 64}, Model::kBilliard);
-  const Estimate sigma = Named("mean_sigma", RunPoint(spec).estimates);
-  EXPECT_EQ(sigma.value, -1);
-  EXPECT_EQ(sigma.standard_error, 0);
-  EXPECT_EQ(sigma.batches, 0u);
+// 256 samples at energies where the expected samples of the rarer sign are just below and just
+// above 50. The measured mean would give the error to half of the seeds.
+TEST(StandardErrors, OfMeanSigmaDoesNotDependOnTheSample) {
+  for (const double epsilon : {0.07, 0.085}) {
+    const bool is_shown = 256 * (1 + IngoingLaw(epsilon).MeanSigma()) / 2 >= 50;
+    EXPECT_EQ(is_shown, epsilon < 0.08);
+    for (int seed = 0; seed < 20; ++seed) {
+      const std::string question = absl::StrCat("first-hit delta=0.2 samples=256 model=billiard",
+                                                " epsilon=", epsilon, " seed=", seed);
+      EXPECT_EQ(HasError("mean_sigma", absl::StrCat(question, " exponent=", seed % 3)), is_shown);
+    }
+  }
+  const Estimate constant = Named(
+      "mean_sigma",
+      Answered("first-hit delta=0.2 epsilon=0.3 exponent=0 samples=64 model=billiard").estimates);
+  EXPECT_EQ(constant.value, -1);
+  EXPECT_EQ(constant.standard_error, 0);
+  EXPECT_EQ(constant.batches, 0u);
 }
 
 // A body at rest that is out of reach of the other keeps its energy, so that orbits that do not
 // meet have no scatter.
 TEST(StandardErrors, OfARelaxationNeedOrbitsThatMeet) {
-  for (const PointParameters& point :
-       {PairAt(0.6, 0.0194, 0.5), PairAt(kPaperRho, 0.0125, 0), PairAt(0.707, 1e-4, 0)}) {
-    EnsembleSpec spec = SpecOf(&kEnergyRelaxation, point, {.samples = 64}, Model::kBilliard);
-    const PointSummary summary = RunPoint(spec);
+  for (const std::string start : {"rho=0.6 delta=0.0194 epsilon=0.5", "delta=0.0125 epsilon=0",
+                                  "rho=0.707 delta=1e-4 epsilon=0"}) {
+    const std::string question = "energy-relaxation " + start;
+    const PointSummary summary = Answered(question + " samples=64 model=billiard");
     for (const Estimate& estimate : summary.estimates) EXPECT_FALSE(estimate.standard_error);
     EXPECT_FALSE(summary.curves[0].points.back().standard_error);
     EXPECT_TRUE(HasRemark(summary, "there are no standard errors: ball and piston meet in about"));
-    spec.target = {.tolerance = 0.03};
-    const auto point_of_job = PointExperiment::Create(spec, 0);
-    EXPECT_FALSE(point_of_job->ReachesTolerance(
-        *RunBlock(*point_of_job, point_of_job->plan().BlockAt(0, 0))));
-    spec.target = {.samples = 64};
-    spec.model = Model::kMarkov;  // walks of the jump process always meet
-    EXPECT_TRUE(RunPoint(spec).estimates[0].standard_error);
+    const auto point =
+        PointExperiment::Create(Asked(question + " tolerance=0.03 model=billiard"), 0);
+    EXPECT_FALSE(point->ReachesTolerance(*RunBlock(*point, point->plan().BlockAt(0, 0))));
+    EXPECT_TRUE(HasError("decay_integral", question + " samples=64 model=markov"));
   }
 }
 
@@ -91,9 +120,8 @@ TEST(StandardErrors, ShareThatMeetsIsAboutTheMeasuredOne) {
                                        {0.02, 1e-3},
                                        {0.1, 0.02},
                                        {0.1, 0.4999}}) {
-    const PointParameters point = PaperPoint(delta, epsilon);
-    const PointSummary summary =
-        RunPoint(SpecOf(&kEnergyRelaxation, point, {.samples = 2000}, Model::kBilliard));
+    const PointSummary summary = Answered(absl::StrCat(
+        "energy-relaxation model=billiard samples=2000 delta=", delta, " epsilon=", epsilon));
     const Histogram& at_end = summary.histograms.back().histogram;
     Histogram start = Histogram::OfBins(at_end.lower, at_end.upper, at_end.counts.size());
     start.Add(epsilon);
@@ -102,102 +130,26 @@ TEST(StandardErrors, ShareThatMeetsIsAboutTheMeasuredOne) {
     const double measured = 1 - static_cast<double>(at_end.counts[bin]) / 2000;
     const double window = *summary.histograms.back().time;
     const double share = ShareThatMeets(PaperGeometry(delta), epsilon, window);
-    std::cout << delta << " " << epsilon << ": " << share << ", measured " << measured << "\n";
     EXPECT_GT(share / measured, 0.6) << delta << " " << epsilon;
     EXPECT_LT(share / measured, 1.6) << delta << " " << epsilon;
   }
 }
 
-TEST(StandardErrors, OfARelaxationInEquilibriumNeed400Orbits) {
-  for (const int64_t orbits : {399, 400}) {
-    const PointSummary summary = RunPoint(
-        SpecOf(&kEnergyRelaxation, PaperPoint(0.2), {.samples = orbits}, Model::kBilliard));
-    EXPECT_EQ(summary.estimates[0].standard_error.has_value(), orbits == 400);
-    EXPECT_EQ(HasRemark(summary, "errors need 400 orbits"), orbits < 400);
-  }
-}
-
-TEST(StandardErrors, RemarkSaysWhyAReturnTimeHasNone) {
-  for (const ExperimentKind* experiment : {&kFirstHit, &kConditionalMeanFreeTime}) {
-    const auto at = [experiment](double epsilon, int64_t samples) {
-      PointParameters point = PaperPoint(0.05, epsilon);
-      if (experiment == &kFirstHit) point.Set(kExponent, 1);
-      return RunPoint(SpecOf(experiment, point, {.samples = samples}, Model::kBilliard));
-    };
-    for (const double epsilon : {0.0, 1e-12}) {
-      const PointSummary summary = at(epsilon, 1000);
-      EXPECT_FALSE(summary.estimates[0].standard_error);
-      EXPECT_TRUE(HasRemark(summary, "the mean return time has no standard error"));
-    }
-    EXPECT_TRUE(HasRemark(at(0, 1000), "the variance of return times is infinite"));
-    EXPECT_TRUE(HasRemark(at(1e-12, 1000), "are expected in 1000 samples; an error needs 50"));
-    EXPECT_TRUE(at(0.1, 1000).remarks.empty());
-    EXPECT_TRUE(at(0, 10).remarks.empty());  // ten samples never have an error
-  }
-}
-
-TEST(StandardErrors, RemarkSaysHowManySamplesTheyNeed) {
-  const auto at = [](const ExperimentKind* experiment, const PointParameters& point, Model model,
-                     const Target& target) {
-    return RunPoint(SpecOf(experiment, point, target, model));
-  };
-  for (const int64_t collisions : {499, 500}) {
-    const PointSummary summary =
-        at(&kEquilibrium, PaperPoint(0.2), Model::kBilliard, {.collisions = collisions});
-    EXPECT_EQ(summary.estimates[0].standard_error.has_value(), collisions == 500);
-    EXPECT_EQ(HasRemark(summary, "these need 500 collisions"), collisions < 500);
-  }
-  for (const int64_t collisions : {49 * 32, 50 * 32}) {
-    const PointSummary summary =
-        at(&kMarkovProperty, PaperPoint(0.2), Model::kMarkov, {.collisions = collisions});
-    for (const Estimate& estimate : summary.estimates) {
-      EXPECT_EQ(estimate.standard_error.has_value(), collisions == 50 * 32) << estimate.name;
-    }
-    EXPECT_EQ(HasRemark(summary, "these need 50 orbits of 32 collisions"), collisions < 50 * 32);
-  }
-  const auto conductivity = [&](const GasShape& shape, int64_t replicas) {
-    return at(&kGasEquilibrium, PaperGas(&kGasEquilibrium, 0.2, shape), Model::kMarkov,
-              {.samples = replicas});
-  };
-  // A chain of two is more skewed than a lattice.
-  EXPECT_TRUE(HasRemark(conductivity({.columns = 2}, 1000), "this needs 250000 replicas"));
-  const GasShape lattice = {.columns = 2, .rows = 1, .is_lattice = true};
-  EXPECT_TRUE(HasRemark(conductivity(lattice, 999), "this needs 1000 replicas"));
-  const PointSummary enough = conductivity(lattice, 1000);
-  EXPECT_FALSE(HasRemark(enough, "the conductivity has no standard error"));
-  EXPECT_TRUE(Named("conductivity", enough.estimates).standard_error);
-}
-
-// The squares of the times are much more skewed than the times.
-TEST(StandardErrors, OfACoefficientOfVariationNeedsAThousandReturns) {
-  const auto at = [](int64_t samples) {
-    return RunPoint(SpecOf(&kConditionalMeanFreeTime, PaperPoint(0.2, 0.125), {.samples = samples},
-                           Model::kBilliard))
-        .estimates;
-  };
-  EXPECT_TRUE(Named("mean_free_time_conditional", at(64)).standard_error);
-  EXPECT_FALSE(Named("coefficient_of_variation", at(999)).standard_error);
-  EXPECT_TRUE(Named("coefficient_of_variation", at(1000)).standard_error);
-}
-
 // A resting ball next to the tip: all returns take the same time but for 1e-13 of it.
 TEST(StandardErrors, AreAtLeastTheRoundingOfTheMean) {
-  const EnsembleSpec spec = SpecOf(&kConditionalMeanFreeTime, PairAt(kPaperRho, 1e-13, 0.5),
-                                   {.samples = 20'000}, Model::kBilliardReference);
-  const Estimate time = RunPoint(spec).estimates[0];
+  const Estimate time = Answered(
+                            "conditional-mean-free-time delta=1e-13 epsilon=0.5 samples=20000 "
+                            "model=billiard_reference")
+                            .estimates[0];
   EXPECT_GE(*time.standard_error, 2e-14 * time.value);
   EXPECT_LT(std::fabs(*time.ZScore()), 2);
 }
 
 TEST(StandardErrors, ValueIsMissingWhereNothingWasMeasured) {
-  for (const ExperimentKind* experiment : {&kEquilibrium, &kConditionalMeanFreeTime, &kFirstHit,
-                                           &kEnergyRelaxation, &kMarkovProperty}) {
-    PointParameters point = PaperPoint(0.2);
-    if (experiment == &kConditionalMeanFreeTime || experiment == &kFirstHit)
-      point.Set(kEpsilon, 0.1);
-    if (experiment == &kFirstHit) point.Set(kExponent, 1);
+  for (const char* experiment : {"equilibrium", "conditional-mean-free-time", "first-hit",
+                                 "energy-relaxation", "markov-property"}) {
     const auto all_escaped =
-        PointExperiment::Create(SpecOf(experiment, point, {}, Model::kBilliard), 0);
+        PointExperiment::Create(Asked(absl::StrCat(experiment, " model=billiard")), 0);
     const PointSummary summary = all_escaped->Summarize(all_escaped->EmptyResult());
     for (const Estimate& estimate : summary.estimates) {
       EXPECT_TRUE(std::isnan(estimate.value)) << estimate.name;
@@ -208,11 +160,10 @@ TEST(StandardErrors, ValueIsMissingWhereNothingWasMeasured) {
 }
 
 TEST(StandardErrors, PilotWithoutOneGivesNoBound) {
-  const PilotPlace place = PilotPlaceFor(PairAt(kPaperRho, 0.1, 0));
+  const PilotPlace place = PilotPlaceFor(PaperPoint(0.1, 0));
   const auto pilot = PilotExperiment(place);
   const Pilot without = PilotOf(*pilot, pilot->EmptyResult());
-  EXPECT_EQ(LimitErrorBound(without, place, PointOf(place)),
-            std::numeric_limits<double>::infinity());
+  EXPECT_EQ(LimitErrorBound(without, place, PointOf(place)), HUGE_VAL);
 }
 
 }  // namespace

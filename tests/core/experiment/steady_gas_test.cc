@@ -1,16 +1,10 @@
 // Samples that continue each other, with the experiment `gas-conduction`.
 #include "core/experiment/steady_gas.h"
 
-#include <gtest/gtest.h>
-
-#include <memory>
-#include <random>
-#include <utility>
-#include <vector>
-
 #include "core/ensemble/point_fold.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {
@@ -71,13 +65,6 @@ TEST(SteadyGas, AResumedPointHasTheSameBits) {
     }
   }
   EXPECT_EQ(resumed.Merged(), whole);
-}
-
-TEST(SteadyGas, SameBitsOnEveryTargetWithFusedMultiplyAdd) {
-  const auto point = PointOf(Model::kBilliard, 600);
-  std::vector<BlockResult> results;
-  ForEachFusedTarget([&] { results.push_back(*FoldPoint(*point)); });
-  for (const BlockResult& result : results) EXPECT_EQ(result, results[0]);
 }
 
 TEST(SteadyGas, SamplesAreRoundedUpToStretchesOfEveryTrajectory) {

@@ -1,10 +1,6 @@
 #include "core/experiment/steady_group.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numeric>
-#include <vector>
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

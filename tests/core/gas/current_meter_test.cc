@@ -1,12 +1,7 @@
 #include "core/gas/current_meter.h"
 
-#include <gtest/gtest.h>
-
-#include <numeric>
-#include <random>
-#include <vector>
-
 #include "core/gas/gas_meter.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

@@ -1,19 +1,9 @@
 #include "core/gas/gas_exchange_rate.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <numbers>
-#include <vector>
-
-#include "absl/strings/str_cat.h"
 #include "core/closed_form/exchange_rate.h"
 #include "core/geometry/cell_profile.h"
-#include "core/geometry/paper.h"
-#include "core/statistics/moments.h"
 #include "tests/core/gas/gases.h"
+#include "tests/core/preamble.h"
 #include "tests/oracle/gas_configurations.h"
 
 namespace ballpiston {
@@ -60,12 +50,6 @@ TEST(GasExchangeRate, ToriCountEveryConfiguration) {
       }
     }
   }
-}
-
-// A piston has one cell on both of its sides: Z = 1 - 4 z.
-TEST(GasExchangeRate, TheSmallestTorusHasAClosedForm) {
-  for (const double z : {0.0, 1e-3, 0.02})
-    ExpectSameRate(CrowdingFactor({1, 1, true}, z), 1 / (1 - 4 * z));
 }
 
 // F is 1 if no piston takes area from a cell.
@@ -130,24 +114,6 @@ TEST(GasExchangeRate, ExceedsThePairsRateByTheStatedAmount) {
   const GasGeometry chain = GasOf(kPaperRho, 0.2, "3"), lattice = GasOf(kPaperRho, 0.2, "2x2");
   EXPECT_NEAR(InfiniteGasExchangeRate(chain, 1) / PairRate(chain), 1.0240, 5e-5);
   EXPECT_NEAR(InfiniteGasExchangeRate(lattice, 1) / PairRate(lattice), 1.0494, 5e-5);
-}
-
-double ExcessAt(double delta, const char* shape) {
-  const GasGeometry gas = GasOf(kPaperRho, delta, shape);
-  return InfiniteGasExchangeRate(gas, 1) / PairRate(gas) - 1;
-}
-
-// To first order the excess is z in a chain and 2 z in a lattice, z = delta^3/3 (1 + O(delta)).
-TEST(GasExchangeRate, TheExcessFallsAsDeltaCubed) {
-  for (const char* shape : {"3", "2x2"}) {
-    double before = 1;
-    for (const double delta : {0.02, 0.01, 0.005}) {
-      const double distance = std::fabs(ExcessAt(delta, shape) / ExcessAt(delta / 2, shape) - 8);
-      EXPECT_LT(distance, 0.6 * before) << shape << " " << delta;
-      before = distance;
-    }
-    EXPECT_LT(before, 0.1);
-  }
 }
 
 // Given the pistons, a ball is anywhere in its free area. So the mean of (height of the piston in

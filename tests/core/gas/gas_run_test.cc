@@ -1,18 +1,10 @@
 #include "core/gas/gas_run.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <cstdint>
 #include <deque>
-#include <memory>
-#include <utility>
-#include <vector>
 
 #include "core/gas/gas_exchange_rate.h"
-#include "core/geometry/paper.h"
 #include "tests/core/gas/gases.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {
@@ -78,28 +70,28 @@ class Replicas {
 
 class GasRunOfEngine : public testing::TestWithParam<GasEngine> {};
 
-TEST_P(GasRunOfEngine, ManyShortCallsGiveTheBitsOfOneCall) {
-  for (const char* shape : {"1", "2", "3x2"}) {
+// In a long run every engine moves the origin of its times, after some thousand events of each
+// body.
+TEST_P(GasRunOfEngine, CallsAndNeighboursDoNotChangeTheBits) {
+  struct Run {
+    const char* shape;
+    double end;
+    std::vector<int> calls;
+  };
+  for (const Run& run : {Run{"1", kEnd, {2, 7, 1000}}, {"3x2", kEnd, {7}}, {"2", 2000, {3000}}}) {
     for (const GasEnds ends : {GasEnds::kPeriodic, GasEnds::kReservoirs}) {
-      const GasGeometry gas = GasOf(kPaperRho, 0.2, shape, ends);
-      const std::vector<uint64_t> whole = Replicas(GetParam(), gas, 0, 3).BitsAfter(1);
-      for (const int calls : {2, 7, 1000}) {
-        EXPECT_EQ(Replicas(GetParam(), gas, 0, 3).BitsAfter(calls), whole) << shape;
+      const GasGeometry gas = GasOf(kPaperRho, 0.2, run.shape, ends);
+      const std::vector<uint64_t> whole = Replicas(GetParam(), gas, 0, 3).BitsAfter(1, run.end);
+      for (const int calls : run.calls) {
+        EXPECT_EQ(Replicas(GetParam(), gas, 0, 3).BitsAfter(calls, run.end), whole) << run.shape;
       }
+      std::vector<uint64_t> alone;
+      for (uint64_t replica = 0; replica < 3; ++replica) {
+        const auto bits = Replicas(GetParam(), gas, replica, 1).BitsAfter(3, run.end);
+        alone.insert(alone.end(), bits.begin(), bits.end());
+      }
+      EXPECT_EQ(alone, whole) << run.shape;
     }
-  }
-}
-
-// A time in which every engine moves the origin of its times, some thousand events of each body.
-TEST_P(GasRunOfEngine, LongRunsInManyCallsGiveTheBitsOfOneCall) {
-  constexpr double kLongAfter = 2000;
-  for (const GasEnds ends : {GasEnds::kPeriodic, GasEnds::kReservoirs}) {
-    const GasGeometry gas = GasOf(kPaperRho, 0.2, "2", ends);
-    const std::vector<uint64_t> whole = Replicas(GetParam(), gas, 0, 2).BitsAfter(1, kLongAfter);
-    EXPECT_EQ(Replicas(GetParam(), gas, 0, 2).BitsAfter(3000, kLongAfter), whole);
-    EXPECT_EQ(
-        Replicas(GetParam(), gas, 1, 1).BitsAfter(13, kLongAfter),
-        std::vector<uint64_t>(whole.begin() + static_cast<int64_t>(whole.size() / 2), whole.end()));
   }
 }
 
@@ -112,17 +104,6 @@ TEST_P(GasRunOfEngine, PausesDivideARunAndKeepItsBits) {
     EXPECT_EQ(paused.BitsWithPauses(end, parts), whole.BitsWithoutWarmUp(end));
     EXPECT_GE(parts, 3);
   }
-}
-
-TEST_P(GasRunOfEngine, ReplicasDoNotDependOnTheirNeighbours) {
-  const GasGeometry gas = GasOf(kPaperRho, 0.2, "3", GasEnds::kReservoirs);
-  const std::vector<uint64_t> together = Replicas(GetParam(), gas, 0, 5).BitsAfter(1);
-  std::vector<uint64_t> alone;
-  for (uint64_t replica = 0; replica < 5; ++replica) {
-    const std::vector<uint64_t> bits = Replicas(GetParam(), gas, replica, 1).BitsAfter(3);
-    alone.insert(alone.end(), bits.begin(), bits.end());
-  }
-  EXPECT_EQ(alone, together);
 }
 
 INSTANTIATE_TEST_SUITE_P(GasRun, GasRunOfEngine,

@@ -1,17 +1,10 @@
 #include "core/gas/jump_current.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <string>
-#include <vector>
-
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_meter.h"
-#include "core/geometry/paper.h"
 #include "core/sampling/direction.h"
 #include "tests/core/gas/gases.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

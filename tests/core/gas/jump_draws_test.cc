@@ -1,16 +1,9 @@
 #include "core/gas/jump_draws.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
-#include <numbers>
-#include <vector>
 
 #include "tests/core/billiard/each_target.h"
+#include "tests/core/preamble.h"
 #include "tests/oracle/one_sample.h"
 
 namespace ballpiston {
@@ -85,20 +78,6 @@ TEST(JumpDraws, ProposalsHaveTheirLaws) {
   EXPECT_LT(oracle::KolmogorovSmirnov(sines, uniform), 2.3);
   EXPECT_LT(oracle::KolmogorovSmirnov(angles, uniform), 2.3);
   EXPECT_LT(oracle::KolmogorovSmirnov(waits, [](double x) { return -std::expm1(-x); }), 2.3);
-}
-
-TEST(JumpDraws, SameBitsOnEveryTargetWithFusedMultiplyAdd) {
-  std::vector<JumpAttempts> attempts;
-  std::vector<JumpProposals> proposals;
-  ForEachFusedTarget([&] {
-    CounterRandom random(1, 2, 6);
-    DrawJumpAttempts(TwoKinds(), random, attempts.emplace_back());
-    DrawJumpProposals(random, proposals.emplace_back());
-  });
-  for (size_t i = 1; i < attempts.size(); ++i) {
-    EXPECT_EQ(std::memcmp(&attempts[i], &attempts[0], sizeof(JumpAttempts)), 0);
-    EXPECT_EQ(std::memcmp(&proposals[i], &proposals[0], sizeof(JumpProposals)), 0);
-  }
 }
 
 }  // namespace

@@ -1,17 +1,10 @@
 #include "core/gas/jump_gas.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <numbers>
-#include <vector>
-
 #include "core/closed_form/kernel_distribution.h"
 #include "core/closed_form/kernel_moments.h"
 #include "core/gas/gas_meter.h"
-#include "core/geometry/paper.h"
 #include "tests/core/gas/gases.h"
+#include "tests/core/preamble.h"
 #include "tests/oracle/gauss_legendre.h"
 #include "tests/oracle/one_sample.h"
 

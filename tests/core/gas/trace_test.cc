@@ -1,20 +1,10 @@
 #include "core/gas/trace.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <map>
-#include <string>
-#include <tuple>
-#include <utility>
-
 #include "core/closed_form/mean_free_time.h"
 #include "core/gas/canonical_gas.h"
-#include "core/gas/gas_exchange_rate.h"
 #include "core/gas/reference_gas.h"
-#include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {
@@ -65,6 +55,13 @@ TEST(Trace, PairTraceMatchesTheReferenceFlow) {
   }
 }
 
+double EnergyGain(const TraceEvent& event) {
+  double gain = 0;
+  if (event.ball) gain += event.ball->after.energy - event.ball->energy_before;
+  if (event.piston) gain += event.piston->after.energy - event.piston->energy_before;
+  return gain;
+}
+
 TEST(Trace, GasTraceMatchesTheReferenceGas) {
   for (const char* shape : {"1", "5", "1x1", "4x3"}) {
     const GasGeometry gas = Gas(shape);
@@ -93,141 +90,70 @@ TEST(Trace, GasTraceMatchesTheReferenceGas) {
 }
 
 // The pistons of a cell are on its four sides, up to the periodic boundary.
-TEST(Trace, BallAndPistonExchangeAtTheSamePlace) {
-  const GasGeometry gas = Gas("4x3");
-  const auto trace = TraceGas(gas, GasStart(gas));
-  for (int exchanges = 0; exchanges < 1000;) {
-    const auto event = trace->Next();
-    if (event->kind != EventKind::kBallPiston) continue;
-    ++exchanges;
-    const int axis = gas.IsAlongX(event->piston->index) ? 0 : 1;
-    const double cells = axis == 0 ? 4 : 3;
-    const double distance = event->ball->after.position[axis] - event->piston->after.position[axis];
-    ASSERT_NEAR(std::remainder(distance, cells), 0, kRounding);
-    ASSERT_EQ(event->piston->after.velocity[1 - axis], 0);
-  }
+void ExpectAtTheSamePlace(const GasGeometry& gas, const TraceEvent& event) {
+  const int axis = gas.IsAlongX(event.piston->index) ? 0 : 1;
+  const auto cells = static_cast<double>(axis == 0 ? gas.shape().columns : gas.shape().rows);
+  const double distance = event.ball->after.position[axis] - event.piston->after.position[axis];
+  EXPECT_NEAR(std::remainder(distance, cells), 0, kRounding);
+  EXPECT_EQ(event.piston->after.velocity[1 - axis], 0);
 }
 
-double EnergyOfAll(const Trace& trace) {
-  double sum = 0;
-  for (const TracedBody& ball : trace.Balls()) sum += ball.energy;
-  for (const TracedBody& piston : trace.Pistons()) sum += piston.energy;
-  return sum;
-}
-
-double EnergyGain(const TraceEvent& event) {
-  double gain = 0;
-  if (event.ball) gain += event.ball->after.energy - event.ball->energy_before;
-  if (event.piston) gain += event.piston->after.energy - event.piston->energy_before;
-  return gain;
-}
-
-TEST(Trace, EveryEventConservesEnergy) {
-  const GasGeometry gas = Gas("4x3");
-  const auto pair = TracePair(kPaperPair, PairStart(1));
-  const auto lattice = TraceGas(gas, GasStart(gas));
-  EXPECT_NEAR(EnergyOfAll(*pair), 0.5, 1e-15);
-  for (const auto& trace : {pair.get(), lattice.get()}) {
-    const double energy = EnergyOfAll(*trace);
-    for (int i = 0; i < 10'000; ++i) {
-      const auto event = trace->Next();
-      ASSERT_NEAR(EnergyGain(*event), 0, 1e-14 * energy);
-      if (event->kind != EventKind::kBallPiston) {
-        ASSERT_EQ(EnergyGain(*event), 0);
-      }
-      for (const auto& change : {event->ball, event->piston}) {
-        if (!change) continue;
-        ASSERT_NEAR(change->after.velocity.squaredNorm() / 2, change->after.energy, 1e-14 * energy);
-      }
-    }
-  }
-}
-
-// Also checks that the energy before an event is that after the previous event.
-TEST(Trace, BodiesFlyStraightBetweenTheirEvents) {
+// A body's energy before an event is that after its previous event. A free time counts from the
+// last event of the same kind and bodies.
+TEST(Trace, EventsConserveEnergyAndEndStraightFlights) {
   const GasGeometry gas = Gas("4x3");
   const auto trace = TraceGas(gas, GasStart(gas));
   using Flight = std::pair<double, TracedBody>;  // since
   std::map<std::pair<bool, int64_t>, Flight> flights;
-  for (const TracedBody& ball : trace->Balls()) {
-    flights[{true, static_cast<int64_t>(flights.size())}] = {0, ball};
+  double energy = 0;
+  for (const bool is_ball : {true, false}) {
+    for (const TracedBody& body : is_ball ? trace->Balls() : trace->Pistons()) {
+      const int64_t index = static_cast<int64_t>(flights.size()) - (is_ball ? 0 : gas.balls());
+      flights[{is_ball, index}] = {0, body};
+      energy += body.energy;
+    }
   }
-  for (const TracedBody& piston : trace->Pistons()) {
-    flights[{false, static_cast<int64_t>(flights.size()) - gas.balls()}] = {0, piston};
-  }
-  for (int i = 0; i < 5000; ++i) {
+  std::map<std::tuple<EventKind, int64_t, int64_t>, double> last;
+  for (int i = 0; i < 10'000; ++i) {
     const auto event = trace->Next();
+    const bool is_exchange = event->kind == EventKind::kBallPiston;
+    ASSERT_NEAR(EnergyGain(*event), 0, is_exchange ? 1e-14 * energy : 0);
+    if (is_exchange) ExpectAtTheSamePlace(gas, *event);
     for (const bool is_ball : {true, false}) {
       const auto& change = is_ball ? event->ball : event->piston;
       if (!change) continue;
-      Flight& flight = flights.at({is_ball, change->index});
-      const Eigen::Vector2d expected =
-          flight.second.position + (event->time - flight.first) * flight.second.velocity;
+      auto& [since, body] = flights.at({is_ball, change->index});
+      const Eigen::Vector2d expected = body.position + (event->time - since) * body.velocity;
       ASSERT_LT((change->after.position - expected).norm(), kRounding);
-      ASSERT_EQ(change->energy_before, flight.second.energy);
-      flight = {event->time, change->after};
+      ASSERT_EQ(change->energy_before, body.energy);
+      ASSERT_NEAR(change->after.velocity.squaredNorm() / 2, change->after.energy, 1e-14 * energy);
+      since = event->time;
+      body = change->after;
     }
-  }
-}
-
-TEST(Trace, FreeTimesCountFromTheSameKindAndBodies) {
-  const GasGeometry gas = Gas("4x3");
-  const auto trace = TraceGas(gas, GasStart(gas));
-  std::map<std::tuple<EventKind, int64_t, int64_t>, double> last;
-  for (int i = 0; i < 5000; ++i) {
-    const auto event = trace->Next();
     const auto [place, is_first] =
         last.try_emplace({event->kind, event->ball ? event->ball->index : -1,
                           event->piston ? event->piston->index : -1},
                          event->time);
     ASSERT_EQ(event->free_time.has_value(), !is_first);
-    if (event->free_time) {
+    if (!is_first) {
       ASSERT_EQ(*event->free_time, event->time - place->second);
     }
     place->second = event->time;
   }
 }
 
-struct Mean {
-  double sum = 0;
-  int count = 0;
-};
-
-std::map<EventKind, Mean> MeanFreeTimesOf(Trace& trace, int events) {
-  std::map<EventKind, Mean> means;
-  for (int i = 0; i < events; ++i) {
-    const auto event = trace.Next();
-    if (!event->free_time) continue;
-    means[event->kind].sum += *event->free_time;
-    ++means[event->kind].count;
-  }
-  return means;
-}
-
 // Tolerances of a million events, relative: five times the root mean square error over 20 seeds.
 TEST(Trace, FreeTimesHaveTheMeansOfTheClosedForms) {
-  const auto pair = TracePair(kPaperPair, PairStart(2));
-  const auto times = MeanFreeTimesOf(*pair, 1'000'000);
-  const auto expect = [&](EventKind kind, double expected, double tolerance) {
-    EXPECT_NEAR(times.at(kind).sum / times.at(kind).count, expected, tolerance * expected);
-  };
-  const ballpiston::MeanFreeTimes exact = MeanFreeTimesFrom(Measures(kPaperPair));
-  expect(EventKind::kBallPiston, exact.ball_piston, 0.036);
-  expect(EventKind::kBallWall, exact.ball_wall, 0.014);
-  expect(EventKind::kPistonWall, exact.piston_wall, 0.028);
-}
-
-// The orbit keeps its energy E, and the rate grows as its root: the canonical rate at temperature 1
-// is the mean over E, whose law is Gamma(n), 2 n degrees of freedom.
-TEST(Trace, ExchangesOfAGasHaveItsExchangeRate) {
-  const GasGeometry gas = Gas("3x3");
-  constexpr double kHalfOfFreedom = 9 + 18 / 2.0;
-  const double mean_root =
-      std::exp(std::lgamma(kHalfOfFreedom + 0.5) - std::lgamma(kHalfOfFreedom));
-  const auto trace = TraceGas(gas, GasStart(gas));
-  const double rate = GasExchangeRate(gas, 1) * std::sqrt(EnergyOfAll(*trace)) / mean_root;
-  const Mean exchanges = MeanFreeTimesOf(*trace, 1'000'000).at(EventKind::kBallPiston);
-  EXPECT_NEAR(exchanges.sum / exchanges.count * rate, 1, 0.028);
+  const auto trace = TracePair(kPaperPair, PairStart(2));
+  std::map<EventKind, Moments> times;
+  for (int i = 0; i < 1'000'000; ++i) {
+    const auto event = trace->Next();
+    if (event->free_time) times[event->kind].Add(*event->free_time);
+  }
+  const MeanFreeTimes exact = MeanFreeTimesFrom(Measures(kPaperPair));
+  EXPECT_NEAR(times[EventKind::kBallPiston].mean / exact.ball_piston, 1, 0.036);
+  EXPECT_NEAR(times[EventKind::kBallWall].mean / exact.ball_wall, 1, 0.014);
+  EXPECT_NEAR(times[EventKind::kPistonWall].mean / exact.piston_wall, 1, 0.028);
 }
 
 }  // namespace

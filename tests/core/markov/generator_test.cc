@@ -1,15 +1,7 @@
 #include "core/markov/generator.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <iomanip>
-#include <iostream>
-#include <vector>
-
 #include "core/closed_form/kernel_moments.h"
+#include "tests/core/preamble.h"
 #include "tests/oracle/energy_cells.h"
 #include "tests/oracle/gauss_legendre.h"
 
@@ -66,38 +58,29 @@ TEST(Generator, ConservesProbability) {
 
 // A finer mesh contains all functions of a coarser mesh. So by the minimax principle eigenvalues
 // cannot rise, except by rounding.
-void ExpectBelow(const Eigen::VectorXd& finer, const Eigen::VectorXd& coarser) {
-  constexpr double kRounding = 1e-14;
-  for (Eigen::Index k = 1; k <= 5 && coarser.size() > 0; ++k) {
-    EXPECT_LE(finer[k], coarser[k] + kRounding);
-  }
-}
-
 TEST(Generator, RatesConvergeFromAbove) {
+  constexpr double kRounding = 1e-14;
   const double best = Generator({.degree = 12, .levels = 6}).rates()[1];
-  std::cout << "gap " << std::setprecision(13) << best << "; above it by\n"
-            << "| degree | 1 level | 2 levels | 3 levels | 4 levels | 5 levels |\n"
-            << "|-------:|--------:|---------:|---------:|---------:|---------:|\n"
-            << std::setprecision(1) << std::scientific;
   std::vector<Eigen::VectorXd> of_less_degree(6);
   for (const int degree : {2, 3, 4, 5, 6, 8, 10}) {
-    std::cout << "| " << degree;
     Eigen::VectorXd of_fewer_levels;
     for (int levels = 1; levels <= 5; ++levels) {
       const Eigen::VectorXd rates = Generator({.degree = degree, .levels = levels}).rates();
-      ExpectBelow(rates, of_less_degree[static_cast<size_t>(levels)]);
-      ExpectBelow(rates, of_fewer_levels);
-      std::cout << " | " << rates[1] - best;
-      if (degree >= 8) {
-        EXPECT_NEAR(rates[1], best, 1e-13);
+      Eigen::VectorXd& coarser = of_less_degree[static_cast<size_t>(levels)];
+      for (Eigen::Index k = 1; k <= 5; ++k) {
+        if (degree > 2) {
+          EXPECT_LE(rates[k], coarser[k] + kRounding);
+        }
+        if (levels > 1) {
+          EXPECT_LE(rates[k], of_fewer_levels[k] + kRounding);
+        }
       }
-      of_less_degree[static_cast<size_t>(levels)] = of_fewer_levels = rates;
+      EXPECT_NEAR(rates[1], best, degree >= 8 ? 1e-13 : 1e-3);
+      // The coarsest gap differs from the limit, so the test shows convergence.
+      EXPECT_TRUE(rates[1] - best > 1e-7 || degree > 2 || levels > 1);
+      coarser = of_fewer_levels = rates;
     }
-    std::cout << " |\n";
   }
-  std::cout << std::defaultfloat;
-  // The coarsest gap differs from the limit, so the test shows convergence.
-  EXPECT_GT(Generator({.degree = 2, .levels = 1}).rates()[1] - best, 1e-7);
 }
 
 // Three from below, without the 0, and two from above, where the kernel is negative: energies that
@@ -114,28 +97,10 @@ TEST(Generator, IsolatedRatesMatchEnergyCells) {
   const Eigen::VectorXd rates = IsolatedRates(InUse().rates());
   const Eigen::VectorXd cells = oracle::FromEnergyCells(
       200, [](const oracle::EnergyCells& of) { return IsolatedRates(of.Rates()); });
-  std::cout << std::setprecision(12) << "rates " << rates.transpose() << "\nby cells "
-            << cells.transpose() << "\n";
   constexpr double kErrors[] = {1e-9, 2e-8, 2e-8, 1e-6, 1e-6};
   for (Eigen::Index k = 0; k < rates.size(); ++k) EXPECT_NEAR(rates[k], cells[k], kErrors[k]) << k;
   EXPECT_LT(rates[2], kContinuumBottom);
   EXPECT_GT(rates[3], kContinuumTop);
-}
-
-// The cells do not use the closed form.
-TEST(Generator, JumpRateMatchesTheRateOfLeavingACell) {
-  constexpr Eigen::Index kCells = 64;
-  const oracle::EnergyCells cells(kCells);
-  for (Eigen::Index i = 0; i < kCells; ++i) {
-    const double a = static_cast<double>(i) / kCells, b = static_cast<double>(i + 1) / kCells;
-    const auto rate = [](Quad u) {
-      return PairCollisionRate(std::pow(static_cast<double>(u), 2) / 2);
-    };
-    const double middle = std::clamp(M_SQRT1_2, a, b);  // a root's branch point
-    const Quad mean =
-        (oracle::Integrate(rate, a, middle) + oracle::Integrate(rate, middle, b)) * kCells;
-    EXPECT_NEAR(cells.leaving()[i], static_cast<double>(mean), 1e-6) << i;
-  }
 }
 
 TEST(Generator, ContinuumIsTheRangeOfTheJumpRate) {
@@ -191,36 +156,6 @@ TEST(Generator, EvolutionObeysTheMasterEquation) {
     for (const double u : {0.0, 0.01, 0.2, 0.5, 0.7, M_SQRT1_2, 0.71, 0.9, 0.99, 1.0}) {
       const double derivative = -decayed.cwiseProduct(InUse().rates()).dot(InUse().At(u));
       EXPECT_NEAR(ApplyL(mean, u), derivative, 1e-8 * scale) << "t " << t << ", u " << u;
-    }
-  }
-}
-
-// A unit mass at any place keeps its total, and becomes uniform.
-TEST(Generator, MassIsConservedAndEndsUniform) {
-  const Eigen::VectorXd one = InUse().Coefficients([](double) { return 1.0; });
-  EXPECT_NEAR(one.squaredNorm(), 1, 1e-14);
-  for (int i = 0; i <= 50; ++i) {
-    const Eigen::VectorXd mass = InUse().At(i / 50.0);
-    for (const double t : {0.0, 3.0, 300.0}) {
-      const Eigen::VectorXd later =
-          mass.cwiseProduct((-InUse().rates() * t).array().exp().matrix());
-      // At u = 1 the shortest element, of a measure of about 1e-10, determines the rounding error.
-      // Measured: 7e-11 on x86, 1.1e-10 on AArch64.
-      EXPECT_NEAR(one.dot(later), 1, 4e-10) << i << " " << t;
-      if (t == 300) {
-        EXPECT_NEAR(EnergyOf(InUse()).dot(later), 1.0 / 6, 1e-10);
-      }
-    }
-  }
-}
-
-TEST(Generator, CoefficientsRepresentAFunction) {
-  for (const auto& function : std::vector<std::function<double(double)>>{
-           [](double u) { return u * u / 2; }, [](double u) { return std::exp(u); },
-           [](double u) { return std::fabs(u - M_SQRT1_2); }}) {
-    const Eigen::VectorXd coefficients = InUse().Coefficients(function);
-    for (int i = 0; i <= 100; ++i) {
-      EXPECT_NEAR(coefficients.dot(InUse().At(i / 100.0)), function(i / 100.0), 1e-9);
     }
   }
 }

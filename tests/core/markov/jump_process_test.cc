@@ -1,17 +1,8 @@
 #include "core/markov/jump_process.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <vector>
-
 #include "core/closed_form/kernel_moments.h"
-#include "core/sampling/counter_random.h"
 #include "tests/core/billiard/each_target.h"
+#include "tests/core/preamble.h"
 #include "tests/oracle/gauss_legendre.h"
 #include "tests/oracle/scalar_jump.h"
 #include "tools/flows/quad_precision.h"
@@ -79,15 +70,6 @@ TEST(JumpProcess, InvertsTheDistributionOfW) {
   }
 }
 
-TEST(JumpProcess, JumpsFurtherUpForAGreaterUniformNumber) {
-  for (const double u : Energies()) {
-    for (int k = 1; k + 1 < 1000; ++k) {
-      ASSERT_LE(oracle::JumpFrom(u, 0.5, k / 1000.0).u,
-                oracle::JumpFrom(u, 0.5, (k + 1) / 1000.0).u);
-    }
-  }
-}
-
 TEST(JumpProcess, WaitsWithTheRateOfCollisions) {
   for (const double u : Energies()) {
     const ExactLaw law(u);
@@ -103,50 +85,6 @@ TEST(JumpProcess, WaitsWithTheRateOfCollisions) {
     EXPECT_NEAR(
         -std::log(0.5) / oracle::JumpFrom(u, 0.5, 0.5).waiting_time / PairCollisionRate(u * u / 2),
         1, kJumpError + kKernelMomentsRelativeError);
-  }
-}
-
-TEST(JumpProcess, BallAtRestStopsThePiston) {
-  for (const double v : UniformNumbers()) EXPECT_EQ(oracle::JumpFrom(1, 0.5, v).u, 0);
-}
-
-double Rate(double u) { return std::log(2.0) / oracle::JumpFrom(u, 0.5, 0.5).waiting_time; }
-
-// The probability of a jump from u to below `end`, found by bisection.
-double Below(double u, double end) {
-  double low = 0, high = 1;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = (low + high) / 2;
-    (oracle::JumpFrom(u, 0.5, middle).u < end ? low : high) = middle;
-  }
-  return (low + high) / 2;
-}
-
-struct Interval {
-  double from, to;
-};
-
-// Jumps a unit of time from one to the other, where u is uniform.
-double Flux(const Interval& a, const Interval& b) {
-  return static_cast<double>(oracle::Integrate(
-      [&](Quad x) {
-        const auto u = static_cast<double>(x);
-        return Rate(u) * (Below(u, b.to) - Below(u, b.from));
-      },
-      a.from, a.to));
-}
-
-// Intervals with nothing singular in between: u^2 + u'^2 < 1, on either side of 1/sqrt 2. Each
-// probability is right to some 1e-16, of fluxes of 1e-3 and more.
-TEST(JumpProcess, DetailedBalance) {
-  const std::vector<Interval> intervals = {{0, 0.1},    {0.1, 0.3}, {0.3, 0.45},
-                                           {0.45, 0.6}, {0.6, 0.7}, {0.72, 0.8}};
-  for (size_t i = 0; i < intervals.size(); ++i) {
-    for (size_t j = 0; j < i; ++j) {
-      const Interval &a = intervals[i], &b = intervals[j];
-      if (a.to * a.to + b.to * b.to > 0.95) continue;
-      EXPECT_NEAR(Flux(a, b) / Flux(b, a), 1, 1e-12) << a.from << " " << b.from;
-    }
   }
 }
 

@@ -1,11 +1,7 @@
 #include "core/markov/relaxation_spectrum.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "core/closed_form/kernel_moments.h"
+#include "tests/core/preamble.h"
 #include "tests/oracle/energy_cells.h"
 #include "tests/oracle/gauss_legendre.h"
 
@@ -165,16 +161,6 @@ TEST(RelaxationSpectrum, MeanEnergyRelaxesFromTheInitialEnergy) {
       EXPECT_GT(energy, -kRounding);
       EXPECT_LT(energy, 0.5 + kRounding);
     }
-  }
-}
-
-// From below the mean energy rises to 1/6, from above it falls to 1/6; at long times with the gap.
-TEST(RelaxationSpectrum, MeanEnergyEndsWithTheGap) {
-  for (const double epsilon : {0.01, 0.4}) {
-    const auto off = [&](double t) {
-      return Spectrum().MeanEnergy(epsilon, t).value - kMeanPistonEnergy;
-    };
-    EXPECT_NEAR(std::log(off(100) / off(102)) / 2, Spectrum().Gap().value, 0.002);
   }
 }
 

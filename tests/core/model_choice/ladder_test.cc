@@ -1,88 +1,128 @@
 #include "core/model_choice/ladder.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <string>
-#include <utility>
-
-#include "absl/strings/str_cat.h"
 #include "core/billiard/single_precision.h"
 #include "core/experiment/energy_relaxation.h"
 #include "core/experiment/expected_limit_error.h"
 #include "tests/core/model_choice/questions.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+// ---- choices that need no pilot ----
 
-const Target kTargets[] = {{}, {.tolerance = 1e-6}, {.tolerance = 0.1}, {.budget_seconds = 1}};
+struct Chosen {
+  const char* question;
+  Model model;
+  const char* reason = "";
+};
 
-TEST(Ladder, AutoChoosesTheClosedFormIfThereIsOne) {
-  for (const ExperimentKind* experiment : {&kEquilibrium, &kConditionalMeanFreeTime}) {
-    for (const Target& target : kTargets) {
-      const std::optional<Answer> answer = Choice(Asked(experiment, 0.1, target), MayNotBeAsked);
-      EXPECT_EQ(answer->model, Model::kClosedForm);
-      EXPECT_EQ(answer->model_error, 0);
-      EXPECT_THAT(answer->reason, HasSubstr("exact"));
+TEST(Ladder, ModelsAreChosenWithAReason) {
+  constexpr Model kClosed = Model::kClosedForm, kBilliard = Model::kBilliard;
+  constexpr Model kSpectrum = Model::kSpectrum, kMarkov = Model::kMarkov;
+  for (const Chosen& row : {
+           // A closed form is exact for every target, unless the question is to verify it.
+           Chosen{"equilibrium", kClosed, "exact"},
+           {"equilibrium tolerance=1e-6", kClosed, "exact"},
+           {"conditional-mean-free-time budget=1", kClosed, "exact"},
+           {"equilibrium verify=yes", kBilliard, "verify"},
+           {"conditional-mean-free-time verify=yes", kBilliard, "verify"},
+           // Only the billiard measures laws: no target makes another model answer.
+           {"first-hit", kBilliard},
+           {"first-hit tolerance=0.1", kBilliard},
+           {"first-hit budget=1", kBilliard},
+           {"markov-property", kBilliard},
+           {"markov-property budget=1", kBilliard},
+           // Without a tolerance the answer is that of an exact model.
+           {"energy-relaxation delta=1e-4", kBilliard},
+           {"energy-relaxation delta=1e-4 samples=10", kBilliard},
+           {"energy-relaxation delta=1e-4 collisions=10", kBilliard},
+           {"gas-conduction delta=1e-3", kBilliard},
+           {"gas-conduction delta=1e-3 samples=10", kBilliard},
+           {"gas-equilibrium delta=1e-4 estimate=conductivity", kBilliard, "without a tolerance"},
+           {"gas-equilibrium delta=1e-4 estimate=conductivity samples=10", kBilliard},
+           // Around the mean energy there is no relaxation time, and the limit's error is unknown.
+           {"energy-relaxation delta=0.01 epsilon=0.15", kBilliard},
+           {"energy-relaxation delta=0.01 epsilon=0.15 budget=1e-3", kBilliard},
+           // The three reasons for using no pilot. The limit is 5 % off at delta = 0.2; two errors
+           // of a pilot are 1 % at its place, and 1e-3 at a tenth of its delta.
+           {"energy-relaxation delta=0.2 tolerance=0.01", kBilliard, "beyond the tolerance"},
+           {"energy-relaxation delta=0.0097 tolerance=0.0007", kBilliard, "could not establish"},
+           {"energy-relaxation delta=0.09 tolerance=0.05", kBilliard, "before a pilot"},
+           // The discs nearly touch: a pilot would take years.
+           {"energy-relaxation rho=0.50000378 delta=7e-9 epsilon=0 tolerance=0.1", kSpectrum,
+            "is within the tolerance"},
+           // Beyond the billiard's domain the limit answers without a pilot.
+           {"energy-relaxation delta=1e-12 tolerance=0.01", kSpectrum,
+            "not sound at this rho and delta"},
+           {"energy-relaxation delta=1e-12 budget=1", kSpectrum, "not sound at this rho and delta"},
+           // A budget weighs the statistical error against that of the model.
+           {"energy-relaxation delta=0.3 budget=1", kBilliard},
+           {"gas-conduction delta=0.0125 budget=1e-3", kMarkov},
+           {"gas-conduction delta=0.0125 budget=1e5", kBilliard},
+           {"gas-conduction delta=0.2 budget=1", kBilliard},
+           {"gas-equilibrium delta=1e-4 estimate=conductivity budget=1", kSpectrum},
+           {"gas-equilibrium delta=0.2 estimate=conductivity budget=1e6", kBilliard},
+           {"gas-equilibrium delta=0.01 estimate=conductivity tolerance=0.05", kSpectrum},
+           {"gas-equilibrium delta=0.2 estimate=conductivity tolerance=0.05", kBilliard},
+           // Next to a very cold reservoir the jump process is nine times too large.
+           {"gas-conduction hot=1 cold=1e-6 tolerance=0.12", kBilliard},
+       }) {
+    SCOPED_TRACE(row.question);
+    const EnsembleSpec spec = Asked(row.question);
+    const Answer answer = *Choice(spec);
+    EXPECT_EQ(answer.model, row.model) << Name(answer.model);
+    EXPECT_THAT(answer.reason, HasSubstr(row.reason));
+    EXPECT_EQ(answer.model_error > 0, IsOfTheLimit(row.model));
+  }
+}
+
+TEST(Ladder, ANamedModelAnswersWithAnyError) {
+  for (const ExperimentKind* experiment : kAllExperiments) {
+    for (const Model model : experiment->models) {
+      EnsembleSpec spec = OnePointOf(experiment);
+      spec.model = model;
+      const Answer answer = *Choice(spec);
+      EXPECT_EQ(answer.model, model);
+      std::optional<double> error = 0;
+      if (IsOfTheLimit(model)) {
+        const auto* of_limit = AimOf(spec).limit_error;
+        error = of_limit ? std::optional(of_limit->expected(PointAt(spec, 0))) : std::nullopt;
+      }
+      EXPECT_EQ(answer.model_error, error);
     }
   }
 }
 
-TEST(Ladder, VerifyChoosesTheBilliardDespiteAClosedForm) {
-  for (const ExperimentKind* experiment : {&kEquilibrium, &kConditionalMeanFreeTime}) {
-    EnsembleSpec spec = Asked(experiment, 0.1);
-    spec.verify = true;
-    const std::optional<Answer> answer = Choice(spec, MayNotBeAsked);
-    EXPECT_EQ(answer->model, Model::kBilliard);
-    EXPECT_THAT(answer->reason, HasSubstr("verify"));
+TEST(Ladder, ListsEveryModelCheapestFirstWithReasons) {
+  for (const ExperimentKind* experiment : kAllExperiments) {
+    const EnsembleSpec spec = OnePointOf(experiment);
+    const Ladder ladder = Planned(spec);
+    ASSERT_EQ(ladder.rungs.size(), std::size(kLadder));
+    for (size_t i = 0; i < ladder.rungs.size(); ++i) {
+      const Rung& rung = ladder.rungs[i];
+      EXPECT_EQ(rung.model, kLadder[i]);
+      EXPECT_EQ(rung.answers, experiment->IsAnsweredBy(rung.model));
+      EXPECT_FALSE(rung.reason.empty());
+      EXPECT_EQ(rung.work > 0, rung.answers);
+    }
+    EXPECT_TRUE(ladder.Chosen().answers);
+    EXPECT_EQ(ladder.Chosen().model, ladder.answer.model);
+    EXPECT_EQ(ladder.answer.model, Choice(spec)->model);
   }
+  const Ladder beyond = Planned(Asked("energy-relaxation delta=1e-12 tolerance=0.01"));
+  for (const Rung& rung : beyond.rungs) EXPECT_EQ(rung.answers, IsOfTheLimit(rung.model));
 }
 
-// Only the billiard measures laws: neither a tolerance nor a budget makes another model answer.
-TEST(Ladder, AutoChoosesTheBilliardIfNoCheaperModelAnswers) {
-  for (const ExperimentKind* experiment : {&kFirstHit, &kMarkovProperty}) {
-    for (const Target& target : kTargets) {
-      if (experiment == &kMarkovProperty && target.tolerance) continue;
-      const std::optional<Answer> answer = Choice(Asked(experiment, 0.1, target), MayNotBeAsked);
-      EXPECT_EQ(answer->model, Model::kBilliard);
-      EXPECT_EQ(answer->model_error, 0);
-    }
-  }
-}
-
-TEST(Ladder, WithoutAToleranceRelaxationUsesTheBilliard) {
-  for (const double delta : {0.3, 1e-4}) {
-    for (const Target& target : {Target{}, Target{.samples = 10}, Target{.collisions = 10}}) {
-      EXPECT_EQ(Choice(Relaxation(delta, target), MayNotBeAsked)->model, Model::kBilliard);
-    }
-  }
-}
-
-// Beyond the billiard's domain the limit answers without a pilot.
-TEST(Ladder, TheLimitAnswersWhereTheBilliardIsNotSound) {
-  for (const Target& target : {Target{.tolerance = 0.01}, Target{.budget_seconds = 1}}) {
-    const EnsembleSpec spec = Relaxation(1e-12, target);
-    ASSERT_TRUE(Violations(spec).empty());
-    const Answer answer = *Choice(spec, MayNotBeAsked);
-    EXPECT_EQ(answer.model, Model::kSpectrum);
-    EXPECT_GT(*answer.model_error, 0);
-    EXPECT_THAT(answer.reason, HasSubstr("not sound at this rho and delta"));
-    const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked);
-    for (const Rung& rung : ladder.rungs) {
-      EXPECT_EQ(rung.answers, IsOfTheLimit(rung.model)) << Name(rung.model);
-    }
-  }
-}
+// ---- pilots ----
 
 // Deltas and tolerances over five decades each: a pilot is used at most once, at the point's place,
-// and then its result decides.
+// and then its result decides, on every machine.
 TEST(Ladder, APilotRunsOnlyIfItCanDecide) {
+  Machine slower = SomeMachine();
+  slower.rates.lanes.wall_hit *= 100;
+  slower.rates.jump *= 3;
+  slower.workers = 64;
   int asked = 0, told_without = 0;
   for (double delta = 0.3; delta > 1e-5; delta /= 2) {
     for (double tolerance = 0.5; tolerance > 1e-6; tolerance /= 2) {
@@ -95,16 +135,20 @@ TEST(Ladder, APilotRunsOnlyIfItCanDecide) {
         const double there = share * tolerance * place.delta / delta;
         const Pilot pilot = {.difference = std::max(there - 2 * error_of_pilot, 0.0),
                              .standard_error = error_of_pilot};
-        MadeUpPilots pilots(pilot);
+        MadeUpPilots pilots(pilot), of_slower(pilot);
         const Answer answer = *Choice(spec, pilots.source());
+        const Answer other = *Choice(spec, of_slower.source(), slower);
+        EXPECT_EQ(answer.model, other.model);
+        EXPECT_EQ(answer.reason, other.reason);
+        EXPECT_EQ(answer.model_error, other.model_error);
+        EXPECT_EQ(pilots.asked(), of_slower.asked());
         if (pilots.asked().empty()) {
           EXPECT_EQ(answer.model, Model::kBilliard) << delta << " to " << tolerance;
           ++told_without;
           continue;
         }
         ++asked;
-        ASSERT_EQ(pilots.asked().size(), 1u);
-        EXPECT_EQ(pilots.asked()[0], place);
+        EXPECT_THAT(pilots.asked(), ElementsAre(place));
         EXPECT_EQ(answer.model, share < 1 ? Model::kSpectrum : Model::kBilliard);
         EXPECT_EQ(answer.model_error, share < 1 ? LimitErrorBound(pilot, place, point) : 0);
         EXPECT_LE(*answer.model_error, tolerance);
@@ -116,225 +160,122 @@ TEST(Ladder, APilotRunsOnlyIfItCanDecide) {
   EXPECT_GT(told_without, 100);
 }
 
-// The three reasons for using no pilot.
-TEST(Ladder, TheReasonForRunningNoPilotIsStated) {
-  // The limit is 5 % off at delta = 0.2.
-  EXPECT_THAT(Choice(Relaxation(0.2, {.tolerance = 0.01}), MayNotBeAsked)->reason,
-              HasSubstr("beyond the tolerance"));
-  // Two errors of a pilot are 1 % at its place, and 1e-3 at a tenth of its delta.
-  EXPECT_THAT(Choice(Relaxation(0.0097, {.tolerance = 0.0007}), MayNotBeAsked)->reason,
-              HasSubstr("could not establish"));
-  EXPECT_THAT(Choice(Relaxation(0.09, {.tolerance = 0.05}), MayNotBeAsked)->reason,
-              HasSubstr("before a pilot"));
-}
-
-// The discs nearly touch: a collision takes 1e9 times as many wall hits as in the paper's cell.
-TEST(Ladder, APilotOfYearsIsSkipped) {
-  EnsembleSpec spec = Relaxation(7e-9, {.tolerance = 0.1});
-  spec.grid[kRho] = {0.50000378};
-  spec.grid[kEpsilon] = {0};
-  const Answer answer = *Choice(spec, MayNotBeAsked);
-  EXPECT_EQ(answer.model, Model::kSpectrum);
-  EXPECT_THAT(answer.reason, HasSubstr("is within the tolerance"));
-}
-
 TEST(Ladder, OnePilotServesAllSmallerDeltas) {
-  const Pilot pilot = {.difference = 0.01, .standard_error = 0.005};
-  std::optional<PilotPlace> place;
+  MadeUpPilots pilots(Pilot{.difference = 0.01, .standard_error = 0.005});
   for (const double delta : {0.03, 0.01, 0.001}) {
-    MadeUpPilots pilots(pilot);
-    const EnsembleSpec spec = Relaxation(delta, {.tolerance = 0.01});
-    const Answer answer = *Choice(spec, pilots.source());
-    ASSERT_EQ(pilots.asked().size(), 1u) << delta;
-    if (place) {
-      EXPECT_EQ(*place, pilots.asked()[0]);
-    }
-    place = pilots.asked()[0];
+    const Answer answer = *Choice(Relaxation(delta, {.tolerance = 0.01}), pilots.source());
     EXPECT_EQ(answer.model, Model::kSpectrum);
-    EXPECT_NEAR(*answer.model_error, 0.02 * delta / place->delta, 1e-15);
+    EXPECT_NEAR(*answer.model_error, 0.02 * delta / pilots.asked()[0].delta, 1e-15);
   }
+  EXPECT_THAT(pilots.asked(), SizeIs(3));
+  EXPECT_THAT(pilots.asked(), Each(pilots.asked()[0]));
 }
 
 // From an energy far from both ends the error scales as in equilibrium. For a resting piston the
 // limit does not apply at any delta.
 TEST(Ladder, APilotServesADecayToo) {
   MadeUpPilots pilots(Pilot{.difference = 0.01, .standard_error = 0.01});
-  EnsembleSpec spec = Relaxation(0.0125, {.tolerance = 0.02});
-  spec.grid[kEpsilon] = {0.4};
-  EXPECT_EQ(Choice(spec, pilots.source())->model, Model::kSpectrum);
+  const std::string question = "energy-relaxation delta=0.0125 tolerance=0.02 epsilon=";
+  EXPECT_EQ(Choice(Asked(question + "0.4"), pilots.source())->model, Model::kSpectrum);
+  EXPECT_EQ(Choice(Asked(question + "1e-6"), pilots.source())->model, Model::kBilliard);
   ASSERT_EQ(pilots.asked().size(), 1u);
   EXPECT_GT(pilots.asked()[0].delta, 0.0125);
   EXPECT_EQ(pilots.asked()[0].epsilon, 0.4);
-  spec.grid[kEpsilon] = {1e-6};
-  EXPECT_EQ(Choice(spec, pilots.source())->model, Model::kBilliard);
-  EXPECT_EQ(pilots.asked().size(), 1u);
 }
 
 TEST(Ladder, WithoutThePilotsResultThereIsNoAnswer) {
-  MadeUpPilots stopped(std::nullopt);
-  EXPECT_FALSE(Choice(Relaxation(0.01, {.tolerance = 0.01}), stopped.source()));
-  EXPECT_EQ(stopped.asked().size(), 1u);
-}
-
-TEST(Ladder, WithAToleranceEveryMachineMakesTheSameChoice) {
-  const Pilot pilot = {.difference = 0.01, .standard_error = 0.005};
-  for (double delta = 0.3; delta > 1e-4; delta /= 1.7) {
-    for (double tolerance = 0.5; tolerance > 1e-5; tolerance /= 3) {
-      const EnsembleSpec spec = Relaxation(delta, {.tolerance = tolerance});
-      MadeUpPilots here(pilot), there(pilot);
-      const Answer one = *Choice(spec, here.source());
-      const Answer other = *Choice(spec, there.source(), SlowerMachine());
-      EXPECT_EQ(one.model, other.model);
-      EXPECT_EQ(one.reason, other.reason);
-      EXPECT_EQ(one.model_error, other.model_error);
-      EXPECT_EQ(here.asked(), there.asked());
-    }
-  }
-}
-
-// With a budget alone AUTO chooses the model with the smallest error within the budget.
-TEST(Ladder, BudgetChoosesTheBilliardIfItsErrorIsSmaller) {
-  double turn = 0;
-  for (double seconds = 1e-3; seconds < 1e5; seconds *= 2) {
-    const Answer answer = *Choice(Relaxation(0.0125, {.budget_seconds = seconds}), MayNotBeAsked);
-    if (turn == 0 && answer.model == Model::kBilliard) turn = seconds;
-    EXPECT_EQ(answer.model, turn == 0 ? Model::kSpectrum : Model::kBilliard) << seconds;
-    EXPECT_EQ(*answer.model_error, turn == 0 ? ExpectedLimitError(PaperPoint(0.0125)) : 0);
-  }
-  EXPECT_GT(turn, 1);
-  EXPECT_LT(turn, 1e4);
-  EXPECT_EQ(Choice(Relaxation(0.3, {.budget_seconds = 1}), MayNotBeAsked)->model, Model::kBilliard);
-}
-
-TEST(Ladder, BudgetIsSharedByWorkersAndPoints) {
-  EnsembleSpec spec = Relaxation(0.1, {.budget_seconds = 6});
-  EXPECT_EQ(BudgetOfAPoint(spec, 4), 24);
-  spec.grid[kDelta] = {0.1, 0.2, 0.3};
-  EXPECT_EQ(BudgetOfAPoint(spec, 4), 8);
-}
-
-// The point ends with the tolerance or the budget, whichever is reached first.
-TEST(Ladder, BudgetWithToleranceChoosesTheBilliardIfItReachesTheTolerance) {
-  const auto choice = [](double tolerance, double seconds) {
-    const Target target = {.tolerance = tolerance, .budget_seconds = seconds};
-    return Choice(Relaxation(0.0125, target), MayNotBeAsked)->model;
-  };
-  const double limit = ExpectedLimitError(PaperPoint(0.0125));
-  EXPECT_EQ(choice(0.5, 1), Model::kBilliard);
-  EXPECT_EQ(choice(1.01 * limit, 1), Model::kSpectrum);
-  EXPECT_EQ(choice(0.99 * limit, 1), Model::kBilliard);  // the limit is beyond the tolerance
-  EXPECT_EQ(choice(1e-5, 1e5), Model::kBilliard);
-}
-
-// Near 1/sqrt 2 the limit's error is large, and the billiard is not sound.
-TEST(Ladder, ABudgetDoesNotLetTheLimitMissATolerance) {
-  for (const std::optional<double> tolerance : {std::optional<double>(), {0.9}, {0.01}}) {
-    EnsembleSpec spec = Relaxation(1.2e-10, {.tolerance = tolerance, .budget_seconds = 1});
-    spec.grid[kRho] = {kMaxRho - 1e-10};
-    EXPECT_EQ(Violations(spec).empty(), tolerance != 0.01);
-  }
-}
-
-// A plan and its result have an error from the same number of samples on.
-TEST(Ladder, SamplesBelowThoseOfAnErrorHaveNoPlannedError) {
-  for (const int64_t collisions : {499, 500}) {
-    EnsembleSpec spec = Asked(&kEquilibrium, 0.1, {.collisions = collisions});
-    spec.model = Model::kBilliard;
-    const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked);
-    EXPECT_EQ(ladder.Chosen().statistical_error.has_value(), collisions == 500);
-  }
-}
-
-// Without a relaxation time the limit's error is unknown.
-TEST(Ladder, AroundTheMeanEnergyRelaxationUsesTheBilliard) {
-  for (const Target& target : {Target{}, Target{.budget_seconds = 1e-3}}) {
-    EnsembleSpec spec = Relaxation(0.01, target);
-    spec.grid[kEpsilon] = {0.15};
-    EXPECT_EQ(Choice(spec, MayNotBeAsked)->model, Model::kBilliard);
-    MadeUpPilots none(std::nullopt);
-    const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), none.source());
-    EXPECT_FALSE(ladder.rungs[1].model_error);
-    EXPECT_FALSE(ladder.Chosen().statistical_error);
-    EXPECT_TRUE(none.asked().empty());
-  }
+  EXPECT_FALSE(Choice(Relaxation(0.01, {.tolerance = 0.01}), Unknown));
 }
 
 // The result of a pilot that has not run is predicted, and its cost is part of the answer's work,
 // unless another point of the grid runs the pilot.
 TEST(Ladder, AnUnknownPilotIsPartOfTheWork) {
   const EnsembleSpec spec = Relaxation(0.001, {.tolerance = 0.01});
-  MadeUpPilots none(std::nullopt);
-  Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), none.source());
+  const MachineRates rates = SomeMachine().rates;
+  Ladder ladder = Planned(spec);
   EXPECT_EQ(ladder.answer.model, Model::kSpectrum);
   EXPECT_EQ(ladder.pilot, PilotPlaceFor(PointAt(spec, 0)));
-  EXPECT_EQ(ladder.work_of_pilot, SecondsOfPilot(*ladder.pilot, SomeMachine().rates));
+  EXPECT_EQ(ladder.work_of_pilot, SecondsOfPilot(*ladder.pilot, rates));
   EXPECT_GT(ladder.work_of_pilot, 0.1);
-  EXPECT_DOUBLE_EQ(*ladder.Chosen().work, SomeMachine().rates.spectrum + ladder.work_of_pilot);
+  EXPECT_DOUBLE_EQ(*ladder.Chosen().work, rates.spectrum + ladder.work_of_pilot);
   EXPECT_DOUBLE_EQ(ladder.Chosen().time, *ladder.Chosen().work);
   EXPECT_THAT(ladder.Chosen().reason, HasSubstr("with the pilot"));
-  ladder.DropPilot();
-  EXPECT_NEAR(*ladder.Chosen().work, SomeMachine().rates.spectrum, 1e-12);
-  EXPECT_NEAR(ladder.Chosen().time, SomeMachine().rates.spectrum, 1e-12);
-  EXPECT_THAT(ladder.Chosen().reason, Not(HasSubstr("with the pilot")));
-  EXPECT_FALSE(ladder.pilot);
-  ladder.DropPilot();  // no more than once
-  EXPECT_NEAR(*ladder.Chosen().work, SomeMachine().rates.spectrum, 1e-12);
-}
-
-// No pilot checks the bound for a gas, so the bound alone decides.
-TEST(Ladder, TheJumpProcessAnswersWhereItsBoundIsWithinHalfOfTheTolerance) {
-  for (double delta = 0.2; delta > 1e-3; delta /= 2) {
-    const double bound = ExpectedLimitErrorOfConduction(PaperGas(&kGasConduction, delta));
-    for (const double share : {0.999, 1.001}) {
-      const EnsembleSpec spec = Asked(&kGasConduction, delta, {.tolerance = 2 * bound / share});
-      const Answer answer = *Choice(spec, MayNotBeAsked);
-      EXPECT_EQ(answer.model, share < 1 ? Model::kMarkov : Model::kBilliard) << delta;
-      EXPECT_EQ(answer.model_error, share < 1 ? bound : 0) << delta;
-      EXPECT_THAT(answer.reason, HasSubstr(share < 1 ? "within half" : "beyond half"));
-    }
-    for (const Target& target : {Target{}, Target{.samples = 10}, Target{.collisions = 10}}) {
-      EXPECT_EQ(Choice(Asked(&kGasConduction, delta, target), MayNotBeAsked)->model,
-                Model::kBilliard);
-    }
+  for (int repeat = 0; repeat < 2; ++repeat) {
+    ladder.DropPilot();
+    EXPECT_NEAR(*ladder.Chosen().work, rates.spectrum, 1e-12);
+    EXPECT_NEAR(ladder.Chosen().time, rates.spectrum, 1e-12);
+    EXPECT_THAT(ladder.Chosen().reason, Not(HasSubstr("with the pilot")));
+    EXPECT_FALSE(ladder.pilot);
   }
 }
 
-EnsembleSpec Conductivity(double delta, Target target = {}) {
-  target.estimate = "conductivity";
-  return Asked(&kGasEquilibrium, delta, target);
+TEST(Ladder, ModelErrorIsFromAPilotIfOneIsKnown) {
+  const EnsembleSpec spec = Relaxation(0.01);
+  const PointParameters point = PointAt(spec, 0);
+  const Pilot pilot = {.difference = 0.02, .standard_error = 0.005};
+  const Ladder without = Planned(spec);
+  const Ladder with = Planned(spec, SomeMachine(), MadeUpPilots(pilot).source());
+  for (const size_t i : {1u, 2u}) {
+    EXPECT_EQ(without.rungs[i].model_error, ExpectedLimitError(point));
+    EXPECT_THAT(without.rungs[i].reason, HasSubstr("expected"));
+    EXPECT_EQ(with.rungs[i].model_error, LimitErrorBound(pilot, PilotPlaceFor(point), point));
+    EXPECT_THAT(with.rungs[i].reason, HasSubstr("of a pilot at delta"));
+  }
 }
 
-double BoundOfConductivity(const EnsembleSpec& spec) {
-  return kGasEquilibrium.FindAim("conductivity")->limit_error->expected(PointAt(spec, 0));
+// ---- bounds that decide ----
+
+double BoundOf(const EnsembleSpec& spec) {
+  return AimOf(spec).limit_error->expected(PointAt(spec, 0));
+}
+
+// No pilot checks the bound for a gas, so the bound alone decides: the spectrum's is that of the
+// tolerance, and the jump process adds a statistical error, for which half of it is left.
+TEST(Ladder, TheLimitAnswersForAGasWhereItsBoundIsWithinTheTolerance) {
+  struct Limit {
+    const char* question;
+    Model model;
+    double share;  // of the tolerance
+    const char *within, *beyond;
+  };
+  for (const Limit& limit :
+       {Limit{"gas-conduction", Model::kMarkov, 0.5, "within half", "beyond half"},
+        {"gas-equilibrium estimate=conductivity", Model::kSpectrum, 1, "is within the tolerance",
+         "is beyond the tolerance"}}) {
+    for (double delta = 0.2; delta > 1e-3; delta /= 2) {
+      EnsembleSpec spec = Asked(limit.question);
+      spec.grid[kDelta] = {delta};
+      const double bound = BoundOf(spec);
+      for (const double share : {0.999, 1.001}) {
+        spec.target.tolerance = bound / limit.share / share;
+        const Answer answer = *Choice(spec);
+        EXPECT_EQ(answer.model, share < 1 ? limit.model : Model::kBilliard) << delta;
+        EXPECT_EQ(answer.model_error, share < 1 ? bound : 0) << delta;
+        EXPECT_THAT(answer.reason, HasSubstr(share < 1 ? limit.within : limit.beyond));
+      }
+    }
+  }
 }
 
 // The bound of the limit, that of the gas's size, and the error of the spectrum's value. One cell
 // has no correlations at all, and another exchange rate. In a lattice few rows count too.
 TEST(Ladder, TheBoundOfTheConductivityCountsTheSizeOfTheGas) {
-  EnsembleSpec spec = Conductivity(0.01);
-  spec.grid[kCells] = {CodeOf({.columns = 8})};
-  const double of_limit = 1.5 * ExpectedLimitError(PaperPoint(0.01));
-  EXPECT_NEAR(BoundOfConductivity(spec), of_limit + 1.04e-5, 1e-8);
-  spec.grid[kCells] = {CodeOf({.columns = 2})};
-  EXPECT_NEAR(BoundOfConductivity(spec), of_limit + 5e-4, 1e-6);
-  spec = Conductivity(0.2);
-  spec.grid[kCells] = {CodeOf({.columns = 1})};
-  EXPECT_NEAR(BoundOfConductivity(spec),
-              1.5 * ExpectedLimitError(PaperPoint(0.2)) + 0.0018 + 0.0119, 1e-4);
-  spec = Conductivity(1e-6);
-  for (const auto& [rows, error] : {std::pair(1, 2.7e-4), std::pair(2, 5e-5), std::pair(8, 2e-5)}) {
-    spec.grid[kCells] = {CodeOf({.columns = 8, .rows = rows, .is_lattice = true})};
-    EXPECT_NEAR(BoundOfConductivity(spec), error, 1e-6) << rows;
+  struct Size {
+    const char* cells;
+    double delta, error, tolerance;
+  };
+  for (const Size& size : {Size{"8", 0.01, 1.04e-5, 1e-8},
+                           {"2", 0.01, 5e-4, 1e-6},
+                           {"1", 0.2, 0.0018 + 0.0119, 1e-4},
+                           {"8x1", 1e-6, 2.7e-4, 1e-6},
+                           {"8x2", 1e-6, 5e-5, 1e-6},
+                           {"8x8", 1e-6, 2e-5, 1e-6}}) {
+    const EnsembleSpec spec = Asked(absl::StrCat(
+        "gas-equilibrium estimate=conductivity cells=", size.cells, " delta=", size.delta));
+    EXPECT_NEAR(BoundOf(spec), 1.5 * ExpectedLimitError(PaperPoint(size.delta)) + size.error,
+                size.tolerance)
+        << size.cells;
   }
-}
-
-// In one column the conductivity has no scatter but rounding, which never reaches this tolerance.
-TEST(Ladder, AToleranceBelowRoundingTakesAllSamplesInOneColumn) {
-  EnsembleSpec spec = Conductivity(0.03, {.tolerance = 1e-200});
-  spec.model = Model::kMarkov;
-  spec.grid[kCells] = {CodeOf({.columns = 1})};
-  const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked);
-  EXPECT_EQ(ladder.Chosen().samples, kMaxSamples);
 }
 
 // The cold wall's slow pistons: more of them at a lower temperature, at a larger delta, and in a
@@ -356,342 +297,79 @@ TEST(Ladder, TheBoundOfTheHeatCurrentGrowsTowardsAColdReservoir) {
   EXPECT_NEAR(bound(1e-5, 1, 1e-4) / bound(1e-6, 1, 1e-4), 100, 5);
 }
 
-// The question of 0.12 that the jump process answered nine times too large.
-TEST(Ladder, TheBilliardAnswersNextToAVeryColdReservoir) {
-  EnsembleSpec spec = Asked(&kGasConduction, 0.1, {.tolerance = 0.12});
-  spec.grid[kHot] = {1};
-  spec.grid[kCold] = {1e-6};
-  EXPECT_EQ(Choice(spec, MayNotBeAsked)->model, Model::kBilliard);
-}
-
-TEST(Ladder, TheSpectrumAnswersTheConductivityWhereItsBoundIsWithinTheTolerance) {
-  EXPECT_EQ(Choice(Conductivity(0.01, {.tolerance = 0.05}), MayNotBeAsked)->model,
-            Model::kSpectrum);
-  EXPECT_EQ(Choice(Conductivity(0.2, {.tolerance = 0.05}), MayNotBeAsked)->model, Model::kBilliard);
-  for (double delta = 0.2; delta > 1e-3; delta /= 2) {
-    const double bound = BoundOfConductivity(Conductivity(delta));
-    for (const double share : {0.999, 1.001}) {
-      const EnsembleSpec spec = Conductivity(delta, {.tolerance = bound / share});
-      const Answer answer = *Choice(spec, MayNotBeAsked);
-      EXPECT_EQ(answer.model, share < 1 ? Model::kSpectrum : Model::kBilliard) << delta;
-      EXPECT_EQ(answer.model_error, share < 1 ? bound : 0) << delta;
-      EXPECT_THAT(answer.reason,
-                  HasSubstr(share < 1 ? "is within the tolerance" : "is beyond the tolerance"));
-    }
-  }
-}
-
-TEST(Ladder, WithoutAToleranceTheConductivityUsesTheBilliard) {
-  for (const Target& target : {Target{}, Target{.samples = 10}, Target{.collisions = 10}}) {
-    const Answer answer = *Choice(Conductivity(1e-4, target), MayNotBeAsked);
-    EXPECT_EQ(answer.model, Model::kBilliard);
-    EXPECT_THAT(answer.reason, HasSubstr("without a tolerance"));
-  }
-  EXPECT_EQ(Choice(Conductivity(1e-4, {.budget_seconds = 1}), MayNotBeAsked)->model,
-            Model::kSpectrum);
-  EXPECT_EQ(Choice(Conductivity(0.2, {.budget_seconds = 1e6}), MayNotBeAsked)->model,
-            Model::kBilliard);
-}
-
 TEST(Ladder, ThePlanRefersToTheNamedEstimate) {
-  EnsembleSpec spec = Conductivity(0.01, {.tolerance = 0.05});
-  const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked);
+  const EnsembleSpec spec =
+      Asked("gas-equilibrium delta=0.01 tolerance=0.05 estimate=conductivity");
+  const Ladder ladder = Planned(spec);
   EXPECT_FALSE(ladder.rungs[0].answers);
   EXPECT_EQ(ladder.rungs[0].reason, "there is no closed form for conductivity");
-  const double bound = BoundOfConductivity(spec);
-  for (const size_t i : {1, 2}) EXPECT_EQ(ladder.rungs[i].model_error, bound);
+  for (const size_t i : {1, 2}) EXPECT_EQ(ladder.rungs[i].model_error, BoundOf(spec));
   EXPECT_EQ(ladder.rungs[1].statistical_error, 0);
-  const double one = kGasEquilibrium.FindAim("conductivity")->error(spec.model, PointAt(spec, 0));
   const Rung& billiard = ladder.rungs[3];
-  EXPECT_EQ(billiard.statistical_error, one / std::sqrt(*billiard.samples));
-  // The same question with the default estimate.
-  spec.target.estimate = "exchange_rate";
-  const Ladder of_rate = LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked);
+  EXPECT_EQ(billiard.statistical_error,
+            AimOf(spec).error(spec.model, PointAt(spec, 0)) / std::sqrt(*billiard.samples));
+  const Ladder of_rate =
+      Planned(Asked("gas-equilibrium delta=0.01 tolerance=0.05 estimate=exchange_rate"));
   EXPECT_EQ(of_rate.answer.model, Model::kClosedForm);
   EXPECT_FALSE(of_rate.rungs[1].model_error);
 }
 
-TEST(Ladder, ABudgetWeighsTheStatisticalErrorOfTheJumpProcess) {
-  const EnsembleSpec scarce = Asked(&kGasConduction, 0.0125, {.budget_seconds = 1e-3});
-  EXPECT_EQ(Choice(scarce, MayNotBeAsked)->model, Model::kMarkov);
-  const EnsembleSpec plenty = Asked(&kGasConduction, 0.0125, {.budget_seconds = 1e5});
-  EXPECT_EQ(Choice(plenty, MayNotBeAsked)->model, Model::kBilliard);
-  const EnsembleSpec near_the_bound = Asked(&kGasConduction, 0.2, {.budget_seconds = 1});
-  EXPECT_EQ(Choice(near_the_bound, MayNotBeAsked)->model, Model::kBilliard);
+// The conductivity has the error of the limit, whichever estimate is the first.
+TEST(Ladder, TheLimitsErrorIsKnownForEveryEstimateThatHasOne) {
+  const Answer answer = *Choice(Asked("gas-equilibrium delta=0.01 model=spectrum"));
+  EXPECT_FALSE(answer.ModelErrorOf("exchange_rate", true));
+  const double error = BoundOf(Asked("gas-equilibrium delta=0.01 estimate=conductivity"));
+  EXPECT_EQ(answer.ModelErrorOf("conductivity", false), error);
+  EXPECT_EQ(answer.ModelErrorOf("conductivity_ratio", false), error);
+  const Answer conduction = *Choice(Asked("gas-conduction delta=0.01 model=markov"));
+  EXPECT_GT(*conduction.model_error, 0);
+  EXPECT_EQ(conduction.ModelErrorOf("conductivity", false), conduction.model_error);
+  EXPECT_FALSE(conduction.ModelErrorOf("temperature_ball", false));
+  EXPECT_EQ(Choice(Asked("gas-conduction delta=0.01 model=billiard"))
+                ->ModelErrorOf("temperature_ball", false),
+            0);
 }
 
-TEST(Ladder, ANamedModelAnswersWithAnyError) {
-  for (const ExperimentKind* experiment : kAllExperiments) {
-    for (const Model model : kLadder) {
-      if (!experiment->IsAnsweredBy(model)) continue;
-      EnsembleSpec spec = Asked(experiment, 0.2);
-      spec.model = model;
-      const Answer answer = *Choice(spec, MayNotBeAsked);
-      EXPECT_EQ(answer.model, model);
-      const bool limit = model == Model::kSpectrum || model == Model::kMarkov;
-      if (!limit) {
-        EXPECT_EQ(answer.model_error, 0);
-      } else if (AimOf(spec).limit_error != nullptr) {
-        EXPECT_EQ(answer.model_error, AimOf(spec).limit_error->expected(PointAt(spec, 0)));
-      } else {
-        EXPECT_FALSE(answer.model_error);  // unknown
-      }
-    }
+// ---- budgets ----
+
+// With a budget alone AUTO chooses the model with the smallest error within the budget.
+TEST(Ladder, BudgetChoosesTheBilliardIfItsErrorIsSmaller) {
+  double turn = 0;
+  for (double seconds = 1e-3; seconds < 1e5; seconds *= 2) {
+    const Answer answer = *Choice(Relaxation(0.0125, {.budget_seconds = seconds}));
+    if (turn == 0 && answer.model == Model::kBilliard) turn = seconds;
+    EXPECT_EQ(answer.model, turn == 0 ? Model::kSpectrum : Model::kBilliard) << seconds;
+    EXPECT_EQ(*answer.model_error, turn == 0 ? ExpectedLimitError(PaperPoint(0.0125)) : 0);
+  }
+  EXPECT_GT(turn, 1);
+  EXPECT_LT(turn, 1e4);
+}
+
+// The point ends with the tolerance or the budget, whichever is reached first.
+TEST(Ladder, BudgetWithToleranceChoosesTheBilliardIfItReachesTheTolerance) {
+  const double limit = ExpectedLimitError(PaperPoint(0.0125));
+  for (const auto& [tolerance, seconds, model] :
+       {std::tuple(0.5, 1.0, Model::kBilliard),
+        {1.01 * limit, 1.0, Model::kSpectrum},
+        {0.99 * limit, 1.0, Model::kBilliard},  // the limit is beyond the tolerance
+        {1e-5, 1e5, Model::kBilliard}}) {
+    const Target target = {.tolerance = tolerance, .budget_seconds = seconds};
+    EXPECT_EQ(Choice(Relaxation(0.0125, target))->model, model) << tolerance;
   }
 }
 
-TEST(Ladder, ListsEveryModelCheapestFirstWithReasons) {
-  for (const ExperimentKind* experiment : kAllExperiments) {
-    MadeUpPilots none(std::nullopt);
-    const EnsembleSpec spec = Asked(experiment, 0.05);
-    const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), none.source());
-    ASSERT_EQ(ladder.rungs.size(), std::size(kLadder));
-    for (size_t i = 0; i < ladder.rungs.size(); ++i) {
-      const Rung& rung = ladder.rungs[i];
-      EXPECT_EQ(rung.model, kLadder[i]);
-      EXPECT_EQ(rung.answers, experiment->IsAnsweredBy(rung.model));
-      EXPECT_FALSE(rung.reason.empty());
-      EXPECT_EQ(rung.work.has_value(), rung.answers);
-      if (rung.answers) {
-        EXPECT_GT(*rung.work, 0);
-      }
-    }
-    EXPECT_TRUE(ladder.Chosen().answers);
-    EXPECT_EQ(ladder.Chosen().model, ladder.answer.model);
-    EXPECT_EQ(ladder.answer.model, Choice(spec, none.source())->model);
+// Near 1/sqrt 2 the limit's error is large, and the billiard is not sound.
+TEST(Ladder, ABudgetDoesNotLetTheLimitMissATolerance) {
+  for (const std::optional<double> tolerance : {std::optional<double>(), {0.9}, {0.01}}) {
+    EnsembleSpec spec = Relaxation(1.2e-10, {.tolerance = tolerance, .budget_seconds = 1});
+    spec.grid[kRho] = {kMaxRho - 1e-10};
+    EXPECT_EQ(Violations(spec).empty(), tolerance != 0.01);
   }
 }
 
-TEST(Ladder, SamplesAreThoseThatTheTargetNeeds) {
-  const auto rung = [](const EnsembleSpec& spec, Model model) {
-    MadeUpPilots none(std::nullopt);
-    const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), none.source());
-    return *std::find_if(ladder.rungs.begin(), ladder.rungs.end(),
-                         [model](const Rung& r) { return r.model == model; });
-  };
-  for (const Model model : {Model::kMarkov, Model::kBilliard, Model::kBilliardReference}) {
-    EXPECT_EQ(rung(Relaxation(0.1, {.samples = 123}), model).samples, 123);
-    EXPECT_EQ(rung(Relaxation(0.1, {.collisions = 4000}), model).samples, 100);  // of 40 each
-    EXPECT_EQ(rung(Relaxation(0.1), model).samples, kDefaultSamples);
-    const Rung to_tolerance = rung(Relaxation(0.1, {.tolerance = 0.002}), model);
-    EXPECT_LE(*to_tolerance.statistical_error, 0.002);
-    EXPECT_GT(*to_tolerance.statistical_error, 0.0015);
-    const Rung in_time = rung(Relaxation(0.1, {.budget_seconds = 3}), model);
-    EXPECT_LE(*in_time.work, 3);
-    EXPECT_GT(*in_time.work, 2.9);
-    // The tolerance first, if the time allows it.
-    const Rung either = rung(Relaxation(0.1, {.tolerance = 0.3, .budget_seconds = 100}), model);
-    EXPECT_LT(*either.work, 100);
-    EXPECT_EQ(*either.samples, *rung(Relaxation(0.1, {.tolerance = 0.3}), model).samples);
-  }
-  for (const Model model : {Model::kSpectrum, Model::kClosedForm}) {
-    const Rung exact =
-        rung(Asked(model == Model::kSpectrum ? &kEnergyRelaxation : &kEquilibrium, 0.1), model);
-    EXPECT_EQ(exact.samples, 0);
-    EXPECT_EQ(exact.statistical_error, 0);
-  }
-}
-
-// 200 points of one sample each were planned at 2 ms and took 0.8 s.
-TEST(Ladder, AFirstHitsWorkCountsItsSummary) {
-  const EnsembleSpec spec = Asked(&kFirstHit, 0.1, {.samples = 1});
-  const Ladder ladder =
-      LadderFor(spec, PointAt(spec, 0), SomeMachine(), MadeUpPilots(std::nullopt).source());
-  EXPECT_GT(*ladder.Chosen().work, 1e-3);
-  EXPECT_LT(*ladder.Chosen().work, 5e-3);
-}
-
-TEST(Ladder, ModelErrorIsFromAPilotIfOneIsKnown) {
-  const EnsembleSpec spec = Relaxation(0.01);
-  const PointParameters point = PointAt(spec, 0);
-  const Pilot pilot = {.difference = 0.02, .standard_error = 0.005};
-  MadeUpPilots none(std::nullopt), known(pilot);
-  const Ladder without = LadderFor(spec, point, SomeMachine(), none.source());
-  const Ladder with = LadderFor(spec, point, SomeMachine(), known.source());
-  for (const size_t i : {1u, 2u}) {
-    EXPECT_EQ(without.rungs[i].model_error, ExpectedLimitError(point));
-    EXPECT_THAT(without.rungs[i].reason, HasSubstr("expected"));
-    EXPECT_EQ(with.rungs[i].model_error, LimitErrorBound(pilot, PilotPlaceFor(point), point));
-    EXPECT_THAT(with.rungs[i].reason, HasSubstr("of a pilot at delta"));
-  }
-}
-
-EnsembleSpec InSinglePrecision(EnsembleSpec spec) {
-  spec.precision = Precision::kSingle;
-  return spec;
-}
-
-// In single precision the billiard is not exact, for every reason of its choice.
-TEST(Ladder, SinglePrecisionHasAModelError) {
-  EnsembleSpec verified = InSinglePrecision(Asked(&kEquilibrium, 0.1));
-  verified.verify = true;
-  EnsembleSpec named = InSinglePrecision(Asked(&kFirstHit, 0.1));
-  named.model = Model::kBilliard;
-  EnsembleSpec beside_the_zone = InSinglePrecision(Relaxation(0.1, {.tolerance = 0.01}));
-  beside_the_zone.grid[kEpsilon] = {0.11};
-  for (const EnsembleSpec& spec :
-       {verified, named, beside_the_zone, InSinglePrecision(Asked(&kFirstHit, 0.1)),
-        InSinglePrecision(Relaxation(0.1)), InSinglePrecision(Relaxation(0.2, {.tolerance = 0.01})),
-        InSinglePrecision(Relaxation(0.3, {.budget_seconds = 100}))}) {
-    const Answer answer = *Choice(spec, MayNotBeAsked);
-    EXPECT_EQ(answer.model, Model::kBilliard);
-    EXPECT_EQ(answer.model_error, kSinglePrecisionError);
-    EXPECT_THAT(answer.reason, Not(HasSubstr("exact")));
-    MadeUpPilots none(std::nullopt);
-    const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), none.source());
-    const Rung& billiard = ladder.Chosen();
-    EXPECT_EQ(billiard.model_error, kSinglePrecisionError);
-    EXPECT_THAT(billiard.reason, AllOf(HasSubstr("single"), Not(HasSubstr("exact"))));
-    // The reference is always in double precision.
-    EXPECT_EQ(ladder.rungs.back().model_error, 0);
-    EXPECT_EQ(ladder.rungs.back().reason, "exact");
-  }
-}
-
-// Distances between laws tend to 0, so their relative error has no meaning.
-TEST(Ladder, SinglePrecisionsErrorIsUnknownWithoutARelativeError) {
-  const EnsembleSpec spec = InSinglePrecision(Asked(&kMarkovProperty, 0.1));
-  const Answer answer = *Choice(spec, MayNotBeAsked);
-  EXPECT_FALSE(answer.model_error);
-  EXPECT_THAT(answer.reason, Not(HasSubstr("exact")));
-}
-
-TEST(Ladder, SinglePrecisionAffectsOnlyTheLanes) {
-  const Answer closed = *Choice(InSinglePrecision(Asked(&kEquilibrium, 0.1)), MayNotBeAsked);
-  EXPECT_EQ(closed.model, Model::kClosedForm);
-  EXPECT_EQ(closed.model_error, 0);
-  MadeUpPilots pilots(Pilot{.difference = 0.01, .standard_error = 0.005});
-  const Answer spectrum =
-      *Choice(InSinglePrecision(Relaxation(0.0125, {.tolerance = 0.01})), pilots.source());
-  EXPECT_EQ(spectrum.model, Model::kSpectrum);
-  EXPECT_EQ(pilots.asked().size(), 1u);
-}
-
-TEST(Ladder, SinglePrecisionRejectsAToleranceBelowItsError) {
-  for (const Model model : {Model::kAuto, Model::kBilliard}) {
-    for (const ExperimentKind* experiment : {&kEnergyRelaxation, &kFirstHit}) {
-      EnsembleSpec spec =
-          InSinglePrecision(Asked(experiment, 0.2, {.tolerance = 0.99 * kSinglePrecisionError}));
-      spec.model = model;
-      const std::vector<FieldViolation> found = ToleranceViolations(spec);
-      ASSERT_EQ(found.size(), 1u);
-      EXPECT_EQ(found[0].field, "target.tolerance");
-      EXPECT_THAT(found[0].description, HasSubstr("or precision double"));
-      spec.target.tolerance = 1.01 * kSinglePrecisionError;
-      EXPECT_TRUE(ToleranceViolations(spec).empty());
-      spec.target.tolerance = 0.99 * kSinglePrecisionError;
-      spec.precision = Precision::kDouble;
-      EXPECT_TRUE(ToleranceViolations(spec).empty());
-    }
-  }
-}
-
-TEST(Ladder, ReducedModelsRejectAToleranceBelowTheirError) {
-  const auto violations = [](const ExperimentKind* experiment, Model model, double tolerance,
-                             double delta) {
-    EnsembleSpec spec = Asked(experiment, delta, {.tolerance = tolerance});
-    spec.model = model;
-    return ToleranceViolations(spec);
-  };
-  for (const Model model : {Model::kSpectrum, Model::kMarkov}) {
-    const double error = ExpectedLimitError(PaperPoint(0.2));
-    const auto found = violations(&kEnergyRelaxation, model, 0.99 * error, 0.2);
-    ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(found[0].field, "target.tolerance");
-    EXPECT_THAT(found[0].description, HasSubstr("model auto or billiard"));
-    EXPECT_TRUE(violations(&kEnergyRelaxation, model, 1.01 * error, 0.2).empty());
-    EXPECT_TRUE(violations(&kEnergyRelaxation, model, error / 10, 0.01).empty());
-  }
-  EXPECT_EQ(violations(&kEquilibrium, Model::kClosedForm, 1e-17, 0.2).size(), 1u);
-  EXPECT_TRUE(violations(&kEquilibrium, Model::kClosedForm, 1e-12, 0.2).empty());
-  for (const Model model : {Model::kAuto, Model::kBilliard, Model::kBilliardReference}) {
-    EXPECT_TRUE(violations(&kEnergyRelaxation, model, 1e-5, 0.2).empty());
-    // The largest permitted number of samples limits the tolerance of a model that samples.
-    EXPECT_EQ(violations(&kEnergyRelaxation, model, 1e-9, 0.2).size(), 1u);
-  }
-  // The worst point of the grid counts. Without a tolerance there is no violation.
-  EnsembleSpec spec = Relaxation(0.01, {.tolerance = 0.01});
-  spec.model = Model::kSpectrum;
-  EXPECT_TRUE(ToleranceViolations(spec).empty());
-  spec.grid[kDelta] = {0.01, 0.2};
-  EXPECT_EQ(ToleranceViolations(spec).size(), 1u);
-  spec.target = {};
-  EXPECT_TRUE(ToleranceViolations(spec).empty());
-}
-
-// ---- what cannot be done ----
-
-EnsembleSpec Conduction(const GasShape& shape, Model model, const Target& target) {
-  EnsembleSpec spec = SpecOf(&kGasConduction, PaperGas(&kGasConduction, 0.1, shape), target);
-  spec.model = model;
-  return spec;
-}
-
-// A question that needs years is planned. One that needs longer than any machine lasts is rejected.
-TEST(Ladder, ALongGasIsPlannedUntilItsTimeIsBeyondAllMachines) {
-  const auto asked = [](int64_t columns) {
-    EnsembleSpec spec =
-        SpecOf(&kGasConduction, PaperGas(&kGasConduction, 0.1, {.columns = columns}),
-               {.tolerance = 0.05}, Model::kMarkov);
-    return std::pair(spec, LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked));
-  };
-  const auto [long_gas, ladder] = asked(100'000);
-  EXPECT_THAT(ToleranceViolations(long_gas), testing::IsEmpty());
-  EXPECT_THAT(TimeViolations(long_gas), testing::IsEmpty());
-  EXPECT_GT(ladder.Chosen().time, 1e8);
-  EXPECT_LE(*ladder.Chosen().statistical_error, 0.05);
-  EXPECT_EQ(TimeViolations(asked(1'000'000).first).size(), 1u);
-}
-
-// A chain of 100 had to wait hours for its first chunk, and one of 300 was refused.
-TEST(Ladder, ChainsOfHundredsTakeMinutes) {
-  for (const auto& [columns, seconds] : {std::pair(100, 1200.), std::pair(300, 3 * 3600.)}) {
-    PointParameters point = PaperGas(&kGasConduction, 0.05, {.columns = columns});
-    point.Set(kHot, 2);
-    point.Set(kCold, 1);
-    const EnsembleSpec spec = SpecOf(&kGasConduction, point, {.tolerance = 0.05}, Model::kBilliard);
-    EXPECT_LT(LadderFor(spec, point, SomeMachine(), MayNotBeAsked).Chosen().time, seconds);
-  }
-}
-
-// From epsilon = 1/2 only the orbits meet whose ball starts within the piston's reach.
-TEST(Ladder, ATolerancePlansTheSamplesThatAnErrorNeeds) {
-  EnsembleSpec spec = Relaxation(0.05, {.tolerance = 0.5});
-  spec.model = Model::kBilliard;
-  spec.grid[kEpsilon] = {0.5};
-  const PointParameters point = PointAt(spec, 0);
-  const double needed = AimOf(spec).SamplesForAnError(spec.model, point);
-  EXPECT_GT(needed, 1000);
-  EXPECT_GE(SamplesFor(0.5, spec, point), needed);
-  EXPECT_THAT(ToleranceViolations(spec), testing::IsEmpty());
-}
-
-TEST(Ladder, AToleranceWhoseEventsAreTooRareIsRejected) {
-  EnsembleSpec spec = Relaxation(1e-8, {.tolerance = 0.5});
-  spec.model = Model::kBilliard;
-  spec.grid[kEpsilon] = {0.5};
-  EXPECT_THAT(ToleranceViolations(spec),
-              testing::ElementsAre(testing::Field(
-                  &FieldViolation::description,
-                  AllOf(HasSubstr("is 0.5"), HasSubstr("delta = 1e-08"), HasSubstr("permitted")))));
-}
-
-// At delta = 1e-9 a collision takes 10^18 wall hits.
-TEST(Ladder, ATimeThatNoMachineHasIsRejected) {
-  for (const Target& target :
-       {Target{}, Target{.samples = 1000}, Target{.collisions = 1'000'000}}) {
-    EnsembleSpec spec = Relaxation(1e-9, target);
-    spec.model = Model::kBilliard;
-    ASSERT_TRUE(Violations(spec).empty());
-    const std::vector<FieldViolation> found = TimeViolations(spec);
-    ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(found[0].field, target.collisions ? "target.collisions" : "target.samples");
-    EXPECT_THAT(found[0].description,
-                AllOf(HasSubstr("delta = 1e-09"), HasSubstr("up to 1e+10 s")));
-    spec.grid[kDelta] = {0.01};
-    EXPECT_TRUE(TimeViolations(spec).empty());
-  }
-  EXPECT_TRUE(TimeViolations(Asked(&kEquilibrium, 1e-100)).empty());  // the closed form answers
+TEST(Ladder, BudgetIsSharedByWorkersAndPoints) {
+  EXPECT_EQ(BudgetOfAPoint(Asked("energy-relaxation delta=0.1 budget=6"), 4), 24);
+  EXPECT_EQ(BudgetOfAPoint(Asked("energy-relaxation delta=0.1,0.2,0.3 budget=6"), 4), 8);
 }
 
 Machine InLanes24() {
@@ -701,94 +379,216 @@ Machine InLanes24() {
   return machine;
 }
 
-// A budget that ends before the first block is complete would be exceeded.
-TEST(Ladder, ABudgetBelowTheFirstSamplesIsRejectedWithTheLeastBudget) {
-  EnsembleSpec spec = Asked(&kEquilibrium, 3e-5, {.budget_seconds = 0.3});
-  spec.model = Model::kBilliard;
+double LeastBudget(EnsembleSpec spec) {
   const std::vector<FieldViolation> found = MachineViolations(spec, InLanes24());
-  ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].field, "target.budget");
-  EXPECT_THAT(found[0].description, HasSubstr("is 0.3 s"));
-  const std::string& text = found[0].description;
+  EXPECT_THAT(found, ElementsAre(Field(&FieldViolation::field, "target.budget")));
+  const std::string& text = found.at(0).description;
   const double least = std::stod(text.substr(text.find(">= ") + 3));
-  EXPECT_GT(least, 50);
-  EXPECT_LT(least, 500);
   spec.target.budget_seconds = least;
   EXPECT_TRUE(MachineViolations(spec, InLanes24()).empty());
-  const Ladder ladder = LadderFor(spec, PointAt(spec, 0), InLanes24(), MayNotBeAsked);
-  EXPECT_GE(*ladder.Chosen().samples, 1);
-  EXPECT_LE(*ladder.Chosen().work, 2 * least);
-  // Two points need twice the budget.
-  spec.grid[kDelta] = {3e-5, 4e-5};
-  EXPECT_EQ(MachineViolations(spec, InLanes24()).size(), 1u);
-  spec.target.budget_seconds = 2 * least;
-  EXPECT_TRUE(MachineViolations(spec, InLanes24()).empty());
+  EXPECT_GE(*Planned(spec, InLanes24()).Chosen().samples, 1);
+  EXPECT_LE(*Planned(spec, InLanes24()).Chosen().work, 2 * least);
+  return least;
+}
+
+// A budget that ends before the first block is complete would be exceeded.
+TEST(Ladder, ABudgetBelowTheFirstSamplesIsRejectedWithTheLeastBudget) {
+  const double least = LeastBudget(Asked("equilibrium delta=3e-5 budget=0.3 model=billiard"));
+  EXPECT_GT(least, 50);
+  EXPECT_LT(least, 500);
+  EXPECT_NEAR(LeastBudget(Asked("equilibrium delta=3e-5,4e-5 budget=0.3 model=billiard")),
+              2 * least, 1e-3 * least);
 }
 
 // AUTO takes the jump process if the billiard has no samples within the budget.
 TEST(Ladder, TheLeastBudgetOfAutoIsThatOfTheCheapestModel) {
-  EnsembleSpec spec = Asked(&kGasConduction, 0.01, {.budget_seconds = 1e-6});
-  const auto least = [&spec](Model model) {
-    spec.model = model;
-    spec.target.budget_seconds = 1e-6;
-    const std::vector<FieldViolation> found = MachineViolations(spec, InLanes24());
-    EXPECT_EQ(found.size(), 1u);
-    const std::string& text = found.at(0).description;
-    return std::stod(text.substr(text.find(">= ") + 3));
-  };
-  const double by_billiard = least(Model::kBilliard), by_auto = least(Model::kAuto);
-  EXPECT_EQ(by_auto, least(Model::kMarkov));
-  EXPECT_LT(by_auto, by_billiard / 10);
-  spec.model = Model::kAuto;
-  spec.target.budget_seconds = by_auto;
-  EXPECT_TRUE(MachineViolations(spec, InLanes24()).empty());
-  const Ladder ladder = LadderFor(spec, PointAt(spec, 0), InLanes24(), MayNotBeAsked);
-  EXPECT_EQ(ladder.answer.model, Model::kMarkov);
-  EXPECT_GE(*ladder.Chosen().samples, 1);
-}
-
-TEST(Ladder, AShortBudgetIsAnsweredWithoutSamplesWherePossible) {
-  EXPECT_TRUE(
-      MachineViolations(Asked(&kEquilibrium, 3e-5, {.budget_seconds = 1e-6}), InLanes24()).empty());
-  const EnsembleSpec spec = Relaxation(1e-5, {.budget_seconds = 0.01});
+  const std::string question = "gas-conduction delta=0.01 budget=1e-6";
+  const double by_auto = LeastBudget(Asked(question));
+  EXPECT_EQ(by_auto, LeastBudget(Asked(question + " model=markov")));
+  EXPECT_LT(by_auto, LeastBudget(Asked(question + " model=billiard")) / 10);
+  EXPECT_TRUE(MachineViolations(Asked("equilibrium delta=3e-5 budget=1e-6"), InLanes24()).empty());
+  const EnsembleSpec spec = Asked("energy-relaxation delta=1e-5 budget=0.01");
   EXPECT_TRUE(MachineViolations(spec, InLanes24()).empty());
   EXPECT_EQ(Choice(spec, MayNotBeAsked, InLanes24())->model, Model::kSpectrum);
+}
+
+// ---- samples ----
+
+TEST(Ladder, SamplesAreThoseThatTheTargetNeeds) {
+  const auto rung = [](const std::string& question, Model model) {
+    const Ladder ladder = Planned(Asked(question));
+    return *std::ranges::find(ladder.rungs, model, &Rung::model);
+  };
+  const std::string relaxation = "energy-relaxation";
+  for (const Model model : {Model::kMarkov, Model::kBilliard, Model::kBilliardReference}) {
+    EXPECT_EQ(rung(relaxation + " samples=123", model).samples, 123);
+    EXPECT_EQ(rung(relaxation + " collisions=4000", model).samples, 100);  // of 40 each
+    EXPECT_EQ(rung(relaxation, model).samples, kDefaultSamples);
+    const Rung to_tolerance = rung(relaxation + " tolerance=0.002", model);
+    EXPECT_LE(*to_tolerance.statistical_error, 0.002);
+    EXPECT_GT(*to_tolerance.statistical_error, 0.0015);
+    const Rung in_time = rung(relaxation + " budget=3", model);
+    EXPECT_LE(*in_time.work, 3);
+    EXPECT_GT(*in_time.work, 2.9);
+    // The tolerance first, if the time allows it.
+    const Rung either = rung(relaxation + " tolerance=0.3 budget=100", model);
+    EXPECT_LT(*either.work, 100);
+    EXPECT_EQ(*either.samples, *rung(relaxation + " tolerance=0.3", model).samples);
+  }
+  for (const Rung& exact :
+       {rung(relaxation, Model::kSpectrum), rung("equilibrium", Model::kClosedForm)}) {
+    EXPECT_EQ(exact.samples, 0);
+    EXPECT_EQ(exact.statistical_error, 0);
+  }
+  // A first hit's work counts its summary: 200 points of one sample each took 0.8 s.
+  const double work = *Planned(Asked("first-hit samples=1")).Chosen().work;
+  EXPECT_GT(work, 1e-3);
+  EXPECT_LT(work, 5e-3);
+}
+
+// A plan and its result have an error from the same number of samples on.
+TEST(Ladder, SamplesBelowThoseOfAnErrorHaveNoPlannedError) {
+  for (const int collisions : {499, 500}) {
+    const EnsembleSpec spec =
+        Asked(absl::StrCat("equilibrium model=billiard collisions=", collisions));
+    EXPECT_EQ(Planned(spec).Chosen().statistical_error.has_value(), collisions == 500);
+  }
+  EXPECT_FALSE(
+      Planned(Asked("energy-relaxation delta=0.01 epsilon=0.15")).Chosen().statistical_error);
+  // From epsilon = 1/2 only the orbits meet whose ball starts within the piston's reach.
+  const EnsembleSpec spec =
+      Asked("energy-relaxation delta=0.05 epsilon=0.5 tolerance=0.5 model=billiard");
+  const double needed = AimOf(spec).SamplesForAnError(spec.model, PointAt(spec, 0));
+  EXPECT_GT(needed, 1000);
+  EXPECT_GE(SamplesFor(0.5, spec, PointAt(spec, 0)), needed);
+  EXPECT_THAT(ToleranceViolations(spec), IsEmpty());
+}
+
+// In one column the conductivity has no scatter but rounding, which never reaches this tolerance.
+TEST(Ladder, AToleranceBelowRoundingTakesAllSamplesInOneColumn) {
+  const EnsembleSpec spec = Asked(
+      "gas-equilibrium estimate=conductivity delta=0.03 cells=1 tolerance=1e-200 model=markov");
+  EXPECT_EQ(Planned(spec).Chosen().samples, kMaxSamples);
+}
+
+// ---- single precision ----
+
+// In single precision the billiard is not exact, for every reason of its choice.
+TEST(Ladder, SinglePrecisionHasAModelErrorInLanesOnly) {
+  for (const char* question :
+       {"equilibrium verify=yes", "first-hit model=billiard", "first-hit", "energy-relaxation",
+        "energy-relaxation tolerance=0.01 epsilon=0.11",
+        "energy-relaxation delta=0.2 tolerance=0.01", "energy-relaxation delta=0.3 budget=100"}) {
+    const EnsembleSpec spec = Asked(absl::StrCat(question, " precision=single"));
+    const Answer answer = *Choice(spec);
+    EXPECT_EQ(answer.model, Model::kBilliard);
+    EXPECT_EQ(answer.model_error, kSinglePrecisionError);
+    EXPECT_THAT(answer.reason, Not(HasSubstr("exact")));
+    const Ladder ladder = Planned(spec);
+    EXPECT_EQ(ladder.Chosen().model_error, kSinglePrecisionError);
+    EXPECT_THAT(ladder.Chosen().reason, AllOf(HasSubstr("single"), Not(HasSubstr("exact"))));
+    // The reference is always in double precision.
+    EXPECT_EQ(ladder.rungs.back().model_error, 0);
+    EXPECT_EQ(ladder.rungs.back().reason, "exact");
+  }
+  EXPECT_EQ(Choice(Asked("equilibrium precision=single"))->model_error, 0);
+  MadeUpPilots pilots(Pilot{.difference = 0.01, .standard_error = 0.005});
+  EXPECT_EQ(Choice(Asked("energy-relaxation delta=0.0125 tolerance=0.01 precision=single"),
+                   pilots.source())
+                ->model,
+            Model::kSpectrum);
+  // Distances between laws tend to 0, so their relative error has no meaning.
+  const Answer laws = *Choice(Asked("markov-property precision=single"));
+  EXPECT_FALSE(laws.model_error);
+  EXPECT_THAT(laws.reason, Not(HasSubstr("exact")));
+}
+
+// ---- what cannot be done ----
+
+TEST(Ladder, AToleranceBelowTheModelsErrorIsRejected) {
+  const double limit = ExpectedLimitError(PaperPoint(0.2));
+  struct Row {
+    std::string question;
+    double least;  // a tolerance
+    const char* text;
+  };
+  for (const Row& row :
+       {Row{"energy-relaxation model=spectrum", limit, "model auto or billiard"},
+        {"energy-relaxation model=markov", limit, "model auto or billiard"},
+        {"energy-relaxation precision=single", kSinglePrecisionError, "or precision double"},
+        {"first-hit precision=single model=billiard", kSinglePrecisionError,
+         "or precision double"}}) {
+    EnsembleSpec spec = Asked(row.question + " delta=0.2");
+    spec.target.tolerance = 0.99 * row.least;
+    EXPECT_THAT(ToleranceViolations(spec),
+                ElementsAre(AllOf(Field(&FieldViolation::field, "target.tolerance"),
+                                  Field(&FieldViolation::description, HasSubstr(row.text)))));
+    spec.target.tolerance = 1.01 * row.least;
+    EXPECT_THAT(ToleranceViolations(spec), IsEmpty());
+  }
+  for (const auto& [question, violations] : std::vector<std::pair<const char*, size_t>>{
+           {"equilibrium delta=0.2 model=closed_form tolerance=1e-17", 1},
+           {"equilibrium delta=0.2 model=closed_form tolerance=1e-12", 0},
+           // The largest permitted number of samples limits the tolerance of a model that samples.
+           {"energy-relaxation delta=0.2 tolerance=1e-5", 0},
+           {"energy-relaxation delta=0.2 tolerance=1e-9", 1},
+           {"energy-relaxation delta=0.2 tolerance=1e-9 model=billiard_reference", 1},
+           // The worst point of the grid counts.
+           {"energy-relaxation delta=0.01 tolerance=0.01 model=spectrum", 0},
+           {"energy-relaxation delta=0.01,0.2 tolerance=0.01 model=spectrum", 1},
+           {"energy-relaxation delta=0.01,0.2 model=spectrum", 0}}) {
+    EXPECT_THAT(ToleranceViolations(Asked(question)), SizeIs(violations)) << question;
+  }
+  EXPECT_THAT(ToleranceViolations(
+                  Asked("energy-relaxation delta=1e-8 epsilon=0.5 tolerance=0.5 model=billiard")),
+              ElementsAre(Field(
+                  &FieldViolation::description,
+                  AllOf(HasSubstr("is 0.5"), HasSubstr("delta = 1e-08"), HasSubstr("permitted")))));
+}
+
+// A question that needs years is planned. One that needs longer than any machine lasts is rejected.
+TEST(Ladder, ATimeThatNoMachineHasIsRejected) {
+  // At delta = 1e-9 a collision takes 10^18 wall hits.
+  for (const std::string target : {"samples=1000", "collisions=1e6", "seed=1"}) {
+    const std::string question = "energy-relaxation model=billiard " + target;
+    const char* field = target[0] == 'c' ? "target.collisions" : "target.samples";
+    EXPECT_THAT(
+        TimeViolations(Asked(question + " delta=1e-9")),
+        ElementsAre(AllOf(Field(&FieldViolation::field, field),
+                          Field(&FieldViolation::description,
+                                AllOf(HasSubstr("delta = 1e-09"), HasSubstr("up to 1e+10 s"))))));
+    EXPECT_THAT(TimeViolations(Asked(question + " delta=0.01")), IsEmpty());
+  }
+  EXPECT_THAT(TimeViolations(Asked("equilibrium delta=1e-100")), IsEmpty());  // the closed form
+  const std::string gas = "gas-conduction tolerance=0.05 model=markov cells=";
+  EXPECT_THAT(ToleranceViolations(Asked(gas + "100000")), IsEmpty());
+  EXPECT_THAT(TimeViolations(Asked(gas + "100000")), IsEmpty());
+  const Ladder ladder = Planned(Asked(gas + "100000"));
+  EXPECT_GT(ladder.Chosen().time, 1e8);
+  EXPECT_LE(*ladder.Chosen().statistical_error, 0.05);
+  EXPECT_THAT(TimeViolations(Asked(gas + "1000000")), SizeIs(1));
+}
+
+// A chain of 100 had to wait hours for its first chunk, and one of 300 was refused.
+TEST(Ladder, ChainsOfHundredsTakeMinutes) {
+  const std::string gas = "gas-conduction delta=0.05 hot=2 cold=1 tolerance=0.05 model=billiard";
+  EXPECT_LT(Planned(Asked(gas + " cells=100")).Chosen().time, 1200);
+  EXPECT_LT(Planned(Asked(gas + " cells=300")).Chosen().time, 3 * 3600);
 }
 
 TEST(Ladder, AQuestionBeyondTheMemoryIsRejected) {
   Machine machine = SomeMachine();
   machine.memory = 1e8;
-  const GasShape large = {.columns = 1000, .rows = 1000, .is_lattice = true};
-  const EnsembleSpec spec = Conduction(large, Model::kBilliard, {.samples = 1});
-  const std::vector<FieldViolation> found = MachineViolations(spec, machine);
-  ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].field, "grid.cells[0]");
-  EXPECT_THAT(found[0].description,
-              AllOf(HasSubstr("is 1000x1000, which needs"), HasSubstr("up to 100 MB")));
+  const EnsembleSpec spec = Asked("gas-conduction cells=1000x1000 model=billiard samples=1");
+  EXPECT_THAT(MachineViolations(spec, machine),
+              ElementsAre(AllOf(
+                  Field(&FieldViolation::field, "grid.cells[0]"),
+                  Field(&FieldViolation::description, AllOf(HasSubstr("is 1000x1000, which needs"),
+                                                            HasSubstr("up to 100 MB"))))));
   machine.memory = 4e9;  // a replica takes 0.4 GB, and its state 48 MB, of which there are 16
   EXPECT_TRUE(MachineViolations(spec, machine).empty());
-  const Ladder ladder = LadderFor(spec, PointAt(spec, 0), machine, MayNotBeAsked);
-  EXPECT_GT(ladder.Chosen().memory, 3e8);
-  EXPECT_LT(ladder.Chosen().memory, 4e9);
-}
-
-// The conductivity has the error of the limit, whichever estimate is the first.
-TEST(Ladder, TheLimitsErrorIsKnownForEveryEstimateThatHasOne) {
-  EnsembleSpec rate = Asked(&kGasEquilibrium, 0.01);
-  rate.model = Model::kSpectrum;
-  const Answer answer = *Choice(rate, MayNotBeAsked);
-  EXPECT_FALSE(answer.ModelErrorOf("exchange_rate", true));
-  const double error = BoundOfConductivity(Conductivity(0.01));
-  EXPECT_EQ(answer.ModelErrorOf("conductivity", false), error);
-  EXPECT_EQ(answer.ModelErrorOf("conductivity_ratio", false), error);
-  EnsembleSpec current = Asked(&kGasConduction, 0.01);
-  current.model = Model::kMarkov;
-  const Answer conduction = *Choice(current, MayNotBeAsked);
-  EXPECT_GT(*conduction.model_error, 0);
-  EXPECT_EQ(conduction.ModelErrorOf("conductivity", false), conduction.model_error);
-  EXPECT_FALSE(conduction.ModelErrorOf("temperature_ball", false));
-  current.model = Model::kBilliard;
-  EXPECT_EQ(Choice(current, MayNotBeAsked)->ModelErrorOf("temperature_ball", false), 0);
+  EXPECT_GT(Planned(spec, machine).Chosen().memory, 3e8);
+  EXPECT_LT(Planned(spec, machine).Chosen().memory, 4e9);
 }
 
 }  // namespace

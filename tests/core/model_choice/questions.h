@@ -1,4 +1,4 @@
-// Questions for the ladder, a machine to predict for, and pilots that are made up.
+// A machine to predict for, and pilots that are made up.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/expected_limit_error.h"
 #include "core/model_choice/ladder.h"
-#include "tests/core/one_point_spec.h"
+#include "tests/core/asked.h"
 
 namespace ballpiston {
 
@@ -26,25 +26,8 @@ inline Machine SomeMachine() {
   return machine;
 }
 
-inline Machine SlowerMachine() {
-  Machine machine = SomeMachine();
-  machine.rates.lanes.wall_hit *= 100;
-  machine.rates.jump *= 3;
-  machine.workers = 64;
-  return machine;
-}
-
-inline EnsembleSpec Asked(const ExperimentKind* experiment, double delta,
-                          const Target& target = {}) {
-  PointParameters point = PaperPoint(delta);
-  if (experiment == &kConditionalMeanFreeTime) point = PaperPoint(delta, 0.125);
-  if (experiment == &kFirstHit) point = PaperPoint(delta, 0.125, 1);
-  if (IsOfAGas(experiment)) point = PaperGas(experiment, delta);
-  return SpecOf(experiment, point, target);
-}
-
 inline EnsembleSpec Relaxation(double delta, const Target& target = {}) {
-  return Asked(&kEnergyRelaxation, delta, target);
+  return SpecOf(&kEnergyRelaxation, PaperPoint(delta), target);
 }
 
 // Returns the same pilot for every place, and records the places.
@@ -69,10 +52,18 @@ inline std::optional<Pilot> MayNotBeAsked(const PilotPlace&) {
   return std::nullopt;
 }
 
-inline std::optional<Answer> Choice(const EnsembleSpec& spec, const PilotSource& pilots,
+inline std::optional<Pilot> Unknown(const PilotPlace&) { return std::nullopt; }
+
+inline std::optional<Answer> Choice(const EnsembleSpec& spec,
+                                    const PilotSource& pilots = MayNotBeAsked,
                                     const Machine& machine = SomeMachine()) {
   EXPECT_TRUE(Violations(spec).empty());
   return ChooseAnswer(spec, PointAt(spec, 0), machine, pilots);
+}
+
+inline Ladder Planned(const EnsembleSpec& spec, const Machine& machine = SomeMachine(),
+                      const PilotSource& pilots = Unknown) {
+  return LadderFor(spec, PointAt(spec, 0), machine, pilots);
 }
 
 }  // namespace ballpiston

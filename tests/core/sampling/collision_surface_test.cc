@@ -1,15 +1,8 @@
 #include "core/sampling/collision_surface.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/closed_form/pair_measures.h"
 #include "core/geometry/cell_profile.h"
-#include "core/geometry/pair_state.h"
-#include "core/geometry/paper.h"
-#include "core/statistics/moments.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

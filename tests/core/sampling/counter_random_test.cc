@@ -1,12 +1,7 @@
 #include "core/sampling/counter_random.h"
 
-#include <gtest/gtest.h>
-
-#include <set>
-#include <vector>
-
 #include "core/sampling/direction.h"
-#include "core/statistics/moments.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

@@ -1,12 +1,7 @@
 #include "core/sampling/invariant_measure.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/closed_form/pair_measures.h"
-#include "core/statistics/moments.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {
@@ -25,19 +20,6 @@ TEST(FlowMeasure, StatesAreValidAndEnergiesAreBeta) {
   }
   EXPECT_NEAR(u.mean, 0.5, 5 * *u.StandardError());  // false alarms 1e-6 each
   EXPECT_NEAR(u_squared.mean, 1.0 / 3, 5 * *u_squared.StandardError());
-}
-
-// The share of states whose piston is left of the cell's tip is (|G| - A (lambda + delta))/|G|.
-TEST(FlowMeasure, PistonsPositionsAreUniformOnTheVolume) {
-  const PairMeasures measures = Measures(kPaperPair);
-  const double expected =
-      1 - measures.cell_area * (kPaperPair.lambda() + kPaperPair.delta()) / measures.volume;
-  CounterRandom random(5, 0, 0);
-  Moments left;
-  for (int i = 0; i < 200'000; ++i) {
-    left.Add(DrawFromFlowMeasure(kPaperPair, random).piston < kPaperPair.tip() ? 1 : 0);
-  }
-  EXPECT_NEAR(left.mean, expected, 5 * *left.StandardError());
 }
 
 // At given energies positions have the law of mu, directions are uniform, and both signs of the

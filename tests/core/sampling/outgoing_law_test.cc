@@ -1,11 +1,6 @@
 #include "core/sampling/outgoing_law.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <tuple>
-
-#include "core/statistics/moments.h"
+#include "tests/core/preamble.h"
 #include "tests/support/nightly.h"
 
 namespace ballpiston {

@@ -1,16 +1,11 @@
 #include "core/statistics/batch_means.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "core/sampling/counter_random.h"
-#include "core/statistics/moments.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {
 
-TEST(BatchMeans, MergeEqualsSinglePass) {
+TEST(BatchMeans, MergeEqualsSinglePassAndHasAnIdentity) {
   CounterRandom random(3, 0, 0);
   BatchMeans whole, first, second;
   for (int i = 0; i < 1000; ++i) {
@@ -24,20 +19,13 @@ TEST(BatchMeans, MergeEqualsSinglePass) {
   // Rounding of sums of 1000 terms in another order.
   EXPECT_NEAR(*first.Ratio(), *whole.Ratio(), 1e-13 * *whole.Ratio());
   EXPECT_NEAR(*first.StandardError(), *whole.StandardError(), 1e-9 * *whole.StandardError());
+  BatchMeans copy;
+  copy.Merge(whole);
+  copy.Merge({});
+  EXPECT_EQ(copy, whole);
 }
 
-TEST(BatchMeans, MergeWithEmptyIsIdentity) {
-  BatchMeans whole;
-  whole.Add(3, 2);
-  whole.Add(5, 4);
-  BatchMeans left, right = whole;
-  left.Merge(whole);
-  right.Merge({});
-  EXPECT_EQ(left, whole);
-  EXPECT_EQ(right, whole);
-}
-
-TEST(BatchMeans, ErrorOfIndependentTermsIsTheUsualOne) {
+TEST(BatchMeans, OfUnitDenominatorsAreTheUsualMeanAndError) {
   CounterRandom random(5, 0, 0);
   BatchMeans batches;
   Moments moments;
@@ -52,20 +40,16 @@ TEST(BatchMeans, ErrorOfIndependentTermsIsTheUsualOne) {
 
 TEST(BatchMeans, BatchesOfUnequalLengthGiveTheRatioOfTotals) {
   BatchMeans batches;
+  EXPECT_FALSE(batches.Ratio());
   batches.Add(10, 1);
+  EXPECT_FALSE(batches.StandardError());
   batches.Add(60, 3);
   EXPECT_DOUBLE_EQ(*batches.Ratio(), 70.0 / 4);
   // Residuals -7.5 and +7.5 about the ratio: sqrt(2 (112.5)/(2 1))/(2) by hand.
   EXPECT_DOUBLE_EQ(*batches.StandardError(), std::sqrt(2 * 7.5 * 7.5 / 2) / 2);
-}
-
-TEST(BatchMeans, TooFewBatchesHaveNoError) {
-  BatchMeans batches;
-  EXPECT_FALSE(batches.Ratio());
-  batches.Add(1, 0);
-  EXPECT_FALSE(batches.Ratio());
-  batches.Add(1, 2);
-  EXPECT_TRUE(batches.StandardError());
+  BatchMeans empty;
+  empty.Add(1, 0);
+  EXPECT_FALSE(empty.Ratio());
 }
 
 // For a series with correlation time 10, single terms as batches understate the error by a factor

@@ -1,9 +1,6 @@
 #include "core/statistics/cumulants.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

@@ -1,13 +1,6 @@
 #include "core/statistics/group_scatter.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <vector>
-
-#include "core/sampling/counter_random.h"
-#include "core/statistics/moments.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

@@ -1,12 +1,7 @@
 #include "core/statistics/kolmogorov_smirnov.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <random>
-
 #include "core/statistics/group_scatter.h"
-#include "core/statistics/moments.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {
@@ -21,22 +16,15 @@ KolmogorovSmirnov OfIndependent(const Histogram& histogram) {
 }
 
 TEST(KolmogorovSmirnov, IsTheLargestDifferenceAtAnEdge) {
-  const KolmogorovSmirnov measured = OfIndependent(Counts({2, 6, 1, 1}));
-  EXPECT_DOUBLE_EQ(measured.distance, 0.3);                             // 8/10 below 1/2
+  EXPECT_DOUBLE_EQ(OfIndependent(Counts({2, 6, 1, 1})).distance, 0.3);  // 8/10 below 1/2
   EXPECT_DOUBLE_EQ(OfIndependent(Counts({0, 0, 5, 5})).distance, 0.5);  // below, too
   EXPECT_EQ(OfIndependent(Counts({7, 7, 7, 7})).distance, 0);
-}
-
-// At a distance of many noise floors the error is that of a share.
-TEST(KolmogorovSmirnov, ErrorFarFromTheUniformLawIsThatOfAShare) {
-  const KolmogorovSmirnov measured = OfIndependent(Counts({200, 600, 100, 100}));
-  EXPECT_NEAR(measured.standard_error, std::sqrt(0.8 * 0.2 / 1000), 0.001);
-}
-
-TEST(KolmogorovSmirnov, OneSampleHasADistanceAndAnError) {
-  const KolmogorovSmirnov measured = OfIndependent(Counts({1, 0, 0, 0}));
-  EXPECT_DOUBLE_EQ(measured.distance, 0.75);
-  EXPECT_GT(measured.standard_error, 0);
+  const KolmogorovSmirnov of_one = OfIndependent(Counts({1, 0, 0, 0}));
+  EXPECT_DOUBLE_EQ(of_one.distance, 0.75);
+  EXPECT_GT(of_one.standard_error, 0);
+  // At a distance of many noise floors the error is that of a share.
+  EXPECT_NEAR(OfIndependent(Counts({200, 600, 100, 100})).standard_error,
+              std::sqrt(0.8 * 0.2 / 1000), 0.001);
 }
 
 // 2000 repetitions: the mean is known to 0.26/sqrt(2000) = 0.006 of 1/sqrt(N), window 4 of these:

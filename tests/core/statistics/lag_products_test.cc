@@ -1,8 +1,6 @@
 #include "core/statistics/lag_products.h"
 
-#include <gtest/gtest.h>
-
-#include <vector>
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

@@ -1,6 +1,6 @@
 #include "core/statistics/stated_error.h"
 
-#include <gtest/gtest.h>
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

@@ -24,6 +24,9 @@ struct sqlite3_vfs;
 
 namespace ballpiston::server {
 
+// Where tests keep a store on such a disk.
+inline constexpr char kStorePath[] = "/data/store.sqlite3";
+
 // Contents by path.
 using DiskFiles = std::map<std::string, std::string>;
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/book/job_book.h"
 #include "server/book/job_name.h"
 #include "server/convert/spec.h"
@@ -131,28 +130,6 @@ TEST_F(JobList, APageReadsABoundedNumberOfBytes) {
     sizes.push_back(List(query).jobs.size());
   }
   EXPECT_THAT(sizes, ElementsAre(0, 0, 1));
-}
-
-TEST_F(JobList, APageReadsAtLeastOneJob) {
-  Insert({{"older"}, {"newer"}});
-  JobsQuery query = Query();
-  query.max_bytes_read = 1;
-  const JobsPage page = List(query);
-  EXPECT_THAT(IdsOf(page), ElementsAre("newer"));
-  EXPECT_EQ(page.next_before, std::optional<int64_t>(2));
-}
-
-TEST_F(JobList, AFullPageEndsWithoutLookingForAnotherMatch) {
-  InsertMany(1000, {.id = "other"});
-  InsertMany(2, {.id = "match", .state = EnsembleJob::FAILED});
-  JobsQuery query = Query({.states = {EnsembleJob::FAILED}});
-  query.max_jobs = 2;
-  const JobsPage full = List(query);
-  EXPECT_THAT(IdsOf(full), ElementsAre("match1", "match0"));
-  ASSERT_EQ(full.next_before, std::optional<int64_t>(1001));
-  query.before = *full.next_before;
-  EXPECT_THAT(IdsOf(List(query)), IsEmpty());
-  EXPECT_EQ(List(query).next_before, std::nullopt);
 }
 
 }  // namespace

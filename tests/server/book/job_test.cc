@@ -1,19 +1,14 @@
 #include "server/book/job.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
-#include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/book/job_book.h"
 #include "server/book/job_journal.h"
 #include "server/book/job_message.h"
@@ -23,11 +18,9 @@
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
 #include "tests/server/fake_experiments.h"
-#include "tests/server/hanging_disk.h"
 #include "tests/server/store_access.h"
 #include "tests/server/thread_pool.h"
 #include "tests/support/await.h"
-#include "tests/support/nightly.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -54,38 +47,12 @@ std::vector<int64_t> Numbers(const std::vector<FinishedPoint>& points) {
   return numbers;
 }
 
-// Points that an earlier process finished.
-std::vector<PointSize> RestoredPoints(size_t count) {
-  return std::vector<PointSize>(count, {.point = 0, .samples = 100, .bytes = 1});
-}
-
-TEST(Job, ProgressIsTheShareOfWorkDone) {
-  Job job(JobWithPoints(4));
-  job.AddRestoredPoints(RestoredPoints(1));
-  job.Add({.samples = 50, .points_computed = 0.5});
-  const v1::JobProgress progress = job.Progress();
-  EXPECT_EQ(progress.points(), 4);
-  EXPECT_EQ(progress.points_done(), 1);
-  EXPECT_EQ(progress.samples(), 150);
-  EXPECT_EQ(progress.fraction(), 1.5 / 4);
-}
-
 TEST(Job, AToleranceGivesNoFraction) {
   v1::EnsembleSpec spec;
   spec.mutable_target()->set_tolerance(0.1);
   JobRecord record = JobWithPoints(4);
   record.spec = SpecBytes(spec);
   EXPECT_FALSE(Job(record).Progress().has_fraction());
-}
-
-TEST(Job, APointIsDoneWhenItIsStored) {
-  Job job(JobWithPoints(2));
-  EXPECT_EQ(job.Progress().points_done(), 0);
-  const uint64_t before = job.last_change();
-  job.AddFinishedPoint(FinishedPointOf(1));
-  EXPECT_EQ(job.Progress().points_done(), 1);
-  EXPECT_EQ(job.last_finished(), 1);
-  EXPECT_GT(job.last_change(), before);
 }
 
 TEST(Job, FinishedPointsComeInTheirOrderAndTheNewestAreKept) {
@@ -97,17 +64,6 @@ TEST(Job, FinishedPointsComeInTheirOrderAndTheNewestAreKept) {
   EXPECT_THAT(Numbers(*job.FinishedAfter(250, 3)), testing::ElementsAre(251, 252, 253));
   EXPECT_THAT(Numbers(*job.FinishedAfter(298, 10)), testing::ElementsAre(299, 300));
   EXPECT_TRUE(job.FinishedAfter(300, 10)->empty());
-}
-
-TEST(Job, RestoredPointsAreNotKept) {
-  Job job(JobWithPoints(1000));
-  job.AddRestoredPoints(RestoredPoints(70));
-  EXPECT_EQ(job.last_finished(), 70);
-  EXPECT_EQ(job.FinishedAfter(69, 10), std::nullopt);
-  EXPECT_TRUE(job.FinishedAfter(70, 10)->empty());
-  job.AddFinishedPoint(FinishedPointOf(75));
-  EXPECT_THAT(Numbers(*job.FinishedAfter(70, 10)), testing::ElementsAre(75));
-  EXPECT_EQ(job.Progress().points_done(), 71);
 }
 
 TEST(SharedCopy, AnOldCopyIsReplacedIfTheJobHasChanged) {
@@ -142,11 +98,11 @@ class JobJournalTest : public testing::Test {
     journal_.emplace(job_, *store_, false, nullptr);
   }
 
-  JobRecord Row(const std::string& id) {
-    return *ReadFrom(*store_,
-                     [&](Database& database) { return FindJob(database, id, Grid::kIncluded); });
+  JobRecord Row() {
+    return *ReadFrom(*store_, [this](Database& database) {
+      return FindJob(database, record_.id, Grid::kIncluded);
+    });
   }
-  JobRecord Row() { return Row(record_.id); }
 
   void Finish(size_t point) {
     const EnsembleSpec spec = FakeSpec(3, 1);
@@ -193,16 +149,6 @@ TEST_F(JobJournalTest, TheStoreHasThePointsUnderTheSameNumbers) {
   EXPECT_EQ(job_->last_finished(), 3);
 }
 
-// The points are stored only after Ended was called.
-TEST_F(JobJournalTest, TheEndCountsPointsThatAreNotStoredYet) {
-  for (const size_t point : {0u, 1u, 2u}) Finish(point);
-  journal_->Ended(absl::OkStatus());
-  ASSERT_OK(store_->Flush());
-  EXPECT_EQ(Row().state, EnsembleJob::SUCCEEDED);
-  EXPECT_EQ(Row().numbers.points_done, 3);
-  EXPECT_EQ(job_->Progress().points_done(), 3);
-}
-
 TEST_F(JobJournalTest, AJobWithMissingResultsFails) {
   for (const size_t point : {0u, 2u}) Finish(point);
   journal_->Ended(absl::OkStatus());
@@ -235,90 +181,19 @@ TEST_F(JobJournalTest, AJobWhoseEndTheStoreRejectsFails) {
   EXPECT_GT(job_->last_state_change(), change);
 }
 
-// Two runs end the same jobs, one in success and one in failure, while a client cancels them.
-TEST_F(JobJournalTest, TheFirstEndOfAJobIsItsEnd) {
-  std::vector<JobRecord> records(IsNightly() ? 10'000 : 1'000, JobWithPoints(0));
-  for (size_t i = 0; i < records.size(); ++i) records[i].id = absl::StrCat("job-", i);
-  ASSERT_OK(store_->Commit([&](Database& database) {
-    for (JobRecord& record : records) InsertJob(database, record);
-  }));
-  std::map<std::string, std::vector<JobState>> ends;  // the store's thread writes them
-  const auto note = [&](const JobRecord& ended) { ends[ended.id].push_back(ended.state); };
-  const auto end_all = [&](const absl::Status& outcome) {
-    for (const JobRecord& record : records) {
-      const auto job = std::make_shared<Job>(record);
-      JobJournal(job, *store_, false, note).Ended(outcome);
-    }
-  };
-  std::thread succeeds(end_all, absl::OkStatus());
-  std::thread fails(end_all, absl::InternalError("why"));
-  for (const JobRecord& record : records) {
-    store_->RecordSoon([sequence = record.sequence](Database& database) {
-      BeginCancellation(database, sequence, "");
-    });
-  }
-  succeeds.join();
-  fails.join();
-  ASSERT_OK(store_->Flush());
-  for (const JobRecord& record : records) {
-    const JobState state = Row(record.id).state;
-    EXPECT_THAT(ends[record.id], testing::ElementsAre(state)) << record.id;
-    EXPECT_TRUE(HasEnded(state));
-    EXPECT_EQ(Row(record.id).error.empty(), state != EnsembleJob::FAILED);
-  }
-}
-
-// The store's thread calls the book when it has written the end of a job.
-TEST(JobBook, IsDestroyedAfterTheLastWriteOfAHangingDisk) {
-  const TemporaryFolder folder;
-  HangingDisk disk;
-  const auto store = *Store::Open(folder.File("store"),
-                                  {.stall = std::chrono::milliseconds(1), .vfs = disk.vfs()});
-  ThreadPool pool(1, FakeExperiments());
-  auto book = std::make_unique<JobBook>(*store, Limits(), pool.scheduler());
-  const auto write = [](Database& database) { InsertChunk(database, 9, 0, 0, "x"); };
-  disk.Hang();
-  store->RecordSoon(write);
-  disk.AwaitHanging();
-  store->Record(write);
-  AwaitThat([&] { return store->stalled(); });
-  std::atomic<bool> is_destroyed = false;
-  int64_t pending = -1;
-  std::thread destroys([&] {
-    book.reset();
-    pending = store->counts().pending_writes;
-    is_destroyed = true;
-  });
-  // Waits until the destructor closes the store: a closing store rejects records.
-  const auto is_closing = std::make_shared<std::atomic<bool>>(false);
-  AwaitThat([&] {
-    store->Record(write, [is_closing](const absl::Status& done) { *is_closing = !done.ok(); });
-    return *is_closing || is_destroyed;
-  });
-  disk.Resume();
-  destroys.join();
-  EXPECT_EQ(pending, 0);
-}
-
-TEST(LeaveOutFinished, APointInBothListsIsKeptAsFinishedOnly) {
-  v1::StatisticsSnapshot message;
-  for (const int index : {4, 2, 7}) message.add_points()->set_index(index);
-  for (const int index : {1, 2}) message.add_finished_points()->set_index(index);
-  LeaveOutFinished(message);
-  ASSERT_EQ(message.points_size(), 2);
-  EXPECT_EQ(message.points(0).index(), 4);
-  EXPECT_EQ(message.points(1).index(), 7);
-  EXPECT_EQ(message.finished_points_size(), 2);
-}
-
-TEST(JobName, OnlyJobsHaveJobNames) {
+TEST(JobName, OnlyJobsAndResultsHaveTheirNames) {
   EXPECT_EQ(JobIdOf("ensembleJobs/0a-9"), "0a-9");
-  const std::string too_long(64, 'a');
+  EXPECT_EQ(ResultIdOf("ensembleJobs/a-1/results/7")->job, "a-1");
+  EXPECT_EQ(ResultIdOf("ensembleJobs/a-1/results/7")->point, 7);
   for (const std::string& name :
-       {std::string(), std::string("ensembleJobs/"), "jobs/a" + too_long,
-        std::string("ensembleJobs/A"), std::string("ensembleJobs/a/b"), "ensembleJobs/" + too_long,
-        std::string("a"), std::string("ensembleJobs/a b")}) {
+       {std::string(), std::string("ensembleJobs/"), std::string("ensembleJobs/A"),
+        std::string("ensembleJobs/a/b"), "ensembleJobs/" + std::string(64, 'a'), std::string("a"),
+        std::string("ensembleJobs/a b"), std::string("ensembleJobs/a/results/"),
+        std::string("ensembleJobs/a/results/-1"), std::string("ensembleJobs/a/results/07"),
+        std::string("ensembleJobs/A/results/7"), std::string("results/7"),
+        std::string("ensembleJobs/a/results/99999999999")}) {
     EXPECT_EQ(JobIdOf(name), std::nullopt) << name;
+    EXPECT_FALSE(ResultIdOf(name)) << name;
   }
   EXPECT_TRUE(JobIdOf(JobName(RandomId())));
   EXPECT_NE(RandomId(), RandomId());

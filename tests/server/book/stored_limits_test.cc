@@ -2,13 +2,11 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/book/job_book.h"
 #include "server/book/job_name.h"
 #include "server/store/check_store.h"
@@ -124,19 +122,6 @@ TEST_F(StoredLimitsTest, ResultsExpireAndTheSpecificationStays) {
   ExpectSound();
 }
 
-// The same question is computed again, to the same bytes.
-TEST_F(StoredLimitsTest, AnExpiredJobCanBeComputedAgain) {
-  Start({.retain_days = 1});
-  const std::string id = Done(kAlice, 1);
-  const std::string bytes =
-      book_->Results(kAlice, id, {.max_points = 1})->points.front().SerializeAsString();
-  book_->KeepLimits(absl::Now() + 2 * kDay);
-  const std::string again = Done(kAlice, 1);
-  EXPECT_NE(again, id);
-  EXPECT_EQ(book_->Results(kAlice, again, {.max_points = 1})->points.front().SerializeAsString(),
-            bytes);
-}
-
 TEST_F(StoredLimitsTest, APinnedJobDoesNotExpire) {
   Start({.retain_days = 1});
   const std::string pinned = Done(kAlice, 1), other = Done(kAlice, 2);
@@ -155,41 +140,6 @@ TEST_F(StoredLimitsTest, APinnedJobDoesNotExpire) {
   EXPECT_EQ(ReasonOf(book_->Update(kBob, other, {.pinned = true}).status()), "JOB_NOT_FOUND");
 }
 
-TEST_F(StoredLimitsTest, AnActiveJobDoesNotExpireAndCanBePinned) {
-  Gate gate;
-  Start({.retain_days = 1}, GatedExperiments(gate));
-  const std::string id = *JobIdOf(Create(kAlice, 1)->name());
-  gate.AwaitWaiting(1);
-  EXPECT_TRUE(book_->Update(kAlice, id, {.pinned = true})->pinned());
-  book_->KeepLimits(absl::Now() + 100 * kDay);
-  gate.Open();
-  AwaitEnd(kAlice, id);
-  EXPECT_TRUE(Get(kAlice, id).pinned());
-  book_->KeepLimits(absl::Now() + 100 * kDay);
-  EXPECT_EQ(PointsOf(kAlice, id), 3u);
-}
-
-// A change of one field leaves the other as it is. The priority of a job that has ended can be
-// changed, also if its results have expired.
-TEST_F(StoredLimitsTest, AnUpdateChangesOnlyItsFields) {
-  Start({.retain_days = 1});
-  const std::string id = Done(kAlice, 1);
-  ASSERT_OK(book_->Update(kAlice, id, {.pinned = true}));
-  EXPECT_TRUE(book_->Update(kAlice, id, {.priority = 7})->pinned());
-  ASSERT_OK_AND_ASSIGN(const EnsembleJob job, book_->Update(kAlice, id, {.pinned = false}));
-  EXPECT_EQ(job.priority(), 7);
-  EXPECT_FALSE(job.pinned());
-  book_->KeepLimits(absl::Now() + 2 * kDay);
-  EXPECT_EQ(book_->Update(kAlice, id, {.priority = 8})->priority(), 8);
-}
-
-TEST_F(StoredLimitsTest, JobsThatExpireSoonAreCounted) {
-  Start({.retain_days = 30});
-  Done(kAlice, 1);
-  EXPECT_EQ(book_->CountExpiring(absl::Now() + 20 * kDay), 0);
-  EXPECT_EQ(book_->CountExpiring(absl::Now() + 24 * kDay), 1);
-}
-
 // The oldest results expire first. Then expired jobs are deleted. If pinned jobs still take too
 // much, no job is accepted.
 TEST_F(StoredLimitsTest, TheStoreKeepsItsBound) {
@@ -204,6 +154,9 @@ TEST_F(StoredLimitsTest, TheStoreKeepsItsBound) {
   }
   EXPECT_TRUE(Get(kAlice, ids.front()).results_expired());
   EXPECT_EQ(PointsOf(kAlice, ids.back()), 300u);
+  const int64_t free_pages = ReadFrom(
+      *store_, [](Database& database) { return database.Integer("PRAGMA freelist_count"); });
+  EXPECT_LE(free_pages, kKeptPages);
   bool expired = true;
   for (const std::string& id : ids) {
     const bool now = Get(kAlice, id).results_expired();
@@ -236,28 +189,11 @@ TEST_F(StoredLimitsTest, JobsAndBytesOfEachPrincipalAreCounted) {
   EXPECT_EQ(static_cast<double>(before.at("alice").bytes),
             Get(kAlice, first).stored_bytes() + Get(kAlice, second).stored_bytes());
   EXPECT_EQ(before.at("bob").stored, 1);
+  EXPECT_EQ(ReasonOf(book_->Result(kAlice, second, 3).status()), "RESULT_NOT_FOUND");
   ASSERT_OK(book_->Delete(kAlice, first));
   EXPECT_EQ(book_->JobsByPrincipal().at("alice").stored, 1);
   EXPECT_EQ(static_cast<double>(book_->JobsByPrincipal().at("alice").bytes),
             Get(kAlice, second).stored_bytes());
-}
-
-TEST_F(StoredLimitsTest, OneResultByItsName) {
-  Start({});
-  const std::string id = Done(kAlice, 1);
-  EXPECT_EQ(book_->Result(kAlice, id, 2)->index(), 2);
-  EXPECT_EQ(ReasonOf(book_->Result(kAlice, id, 3).status()), "RESULT_NOT_FOUND");
-  EXPECT_EQ(ReasonOf(book_->Result(kBob, id, 2).status()), "JOB_NOT_FOUND");
-}
-
-TEST(ResultNameTest, NamesAJobAndAPoint) {
-  EXPECT_EQ(ResultIdOf("ensembleJobs/a-1/results/7")->point, 7);
-  EXPECT_EQ(ResultIdOf("ensembleJobs/a-1/results/7")->job, "a-1");
-  for (const char* name : {"ensembleJobs/a/results/", "ensembleJobs/a/results/-1",
-                           "ensembleJobs/a/results/07", "ensembleJobs/A/results/7", "results/7",
-                           "ensembleJobs/a/results/99999999999", "ensembleJobs/a"}) {
-    EXPECT_FALSE(ResultIdOf(name)) << name;
-  }
 }
 
 }  // namespace

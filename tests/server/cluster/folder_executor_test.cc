@@ -10,7 +10,6 @@
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/compute/crash_record.h"
 #include "server/worker/checked_file.h"
 #include "server/worker/worker.h"
@@ -50,7 +49,7 @@ class FolderExecutorTest : public testing::Test {
     local_ = std::make_unique<SteppedExecutor>(*scheduler_);
     options.lease = milliseconds(0);  // one chunk
     executor_ = std::make_unique<FolderExecutor>(
-        *scheduler_, options, std::make_unique<SameFiles>(files_),
+        *scheduler_, options, std::make_unique<FakeFiles>(files_),
         FolderExecutor::Server{.identity = "me",
                                .flush = [this] { return flush_; },
                                .prepare = [this] { return prepare_; }});
@@ -177,16 +176,6 @@ TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReported) {
   ComputeAll(*journal);
 }
 
-TEST_F(FolderExecutorTest, ACancelledRunLeavesNoFile) {
-  const auto journal = Begin();
-  Take(In("todo")[0]);
-  executor_->Look();
-  scheduler_->Cancel(1);
-  executor_->Look();
-  EXPECT_THAT(files_.files, IsEmpty());
-  EXPECT_THAT(*journal->outcome, StatusIs(absl::StatusCode::kCancelled));
-}
-
 TEST_F(FolderExecutorTest, ACrashOfTheEngineIsCounted) {
   const auto journal = Begin();
   for (int death = 0; death < kMostDeaths; ++death) {
@@ -203,63 +192,27 @@ TEST_F(FolderExecutorTest, ACrashOfTheEngineIsCounted) {
   EXPECT_THAT(*journal->outcome, StatusIs(absl::StatusCode::kInternal));
 }
 
-TEST_F(FolderExecutorTest, AReturnedLeaseIsLaidAgain) {
-  const auto journal = Begin();
-  const std::string name = In("todo")[0];
-  const uint64_t chunk = FirstChunkOf("todo/" + name);
-  End(Take(name), "returned");
-  executor_->Look();
-  std::vector<uint64_t> chunks;
-  for (const std::string& laid : In("todo")) chunks.push_back(FirstChunkOf("todo/" + laid));
-  EXPECT_THAT(chunks, testing::Contains(chunk));
-  ComputeAll(*journal);
-}
-
 TEST_F(FolderExecutorTest, DamagedFilesAreRefusedAndComputedAgain) {
   const auto journal = Begin();
   const std::string taken = Take(In("todo")[0]);
   Compute(taken);
   files_.files["taken/" + taken].bytes.back() ^= 1;
   End(taken);
+  const std::string of_another_server = Take(In("todo")[0]);
+  Compute(of_another_server, "another");
+  End(of_another_server);
   files_.files["done/unknown.w.finished"].bytes = "a foreign file of some length, of no server";
+  files_.files["done/.nfs0001"] = {};  // is left alone
   executor_->Look();
-  EXPECT_EQ(executor_->Status().refused_files, 2);
-  EXPECT_THAT(In("done"), IsEmpty());
+  EXPECT_EQ(executor_->Status().refused_files, 3);
+  EXPECT_THAT(In("done"), ElementsAre(".nfs0001"));
   ComputeAll(*journal);
-}
-
-TEST_F(FolderExecutorTest, ChunksForAnotherServerAreRefused) {
-  const auto journal = Begin();
-  const std::string taken = Take(In("todo")[0]);
-  Compute(taken, "another");
-  End(taken);
-  executor_->Look();
-  EXPECT_EQ(executor_->Status().refused_files, 1);
-  ComputeAll(*journal);
-}
-
-TEST_F(FolderExecutorTest, OtherNamesAreLeftAlone) {
-  Begin();
-  files_.files["done/.nfs0001"] = {};
-  files_.files["done/README"] = {};
-  executor_->Look();
-  EXPECT_THAT(In("done"), ElementsAre(".nfs0001", "README"));
 }
 
 // ---- time-outs: of 0 s, so every look is late ----
 
 const ClusterOptions kNoTimeOut = {
     .timeout = milliseconds(0), .look = milliseconds(0), .least_waiting = 2};
-
-TEST_F(FolderExecutorTest, ALeaseThatNobodyTakesGoesBack) {
-  Restart(kNoTimeOut);
-  Begin();
-  const std::vector<std::string> before = In("todo");
-  executor_->Look();
-  EXPECT_THAT(In("todo"), SizeIs(2));
-  EXPECT_THAT(In("todo"), Each(testing::Not(testing::AnyOfArray(before))));
-  EXPECT_EQ(executor_->Status().lost_leases, 0);
-}
 
 TEST_F(FolderExecutorTest, ASilentWorkerLosesItsLease) {
   Restart(kNoTimeOut);
@@ -270,52 +223,6 @@ TEST_F(FolderExecutorTest, ASilentWorkerLosesItsLease) {
   executor_->Look();
   EXPECT_THAT(In("done"), IsEmpty());
   EXPECT_EQ(executor_->Status().lost_leases, 1);
-  ComputeAll(*journal);
-}
-
-TEST_F(FolderExecutorTest, ALateWorkerChangesNothing) {
-  Restart(kNoTimeOut);
-  const auto journal = Begin();
-  const std::string taken = Take(In("todo")[0]);
-  executor_->Look();
-  executor_->Look();
-  EXPECT_THAT(files_.Append("taken/" + taken, "late"), StatusIs(absl::StatusCode::kNotFound));
-  EXPECT_THAT(files_.Move("taken/" + taken, "done/" + taken + ".finished"),
-              StatusIs(absl::StatusCode::kNotFound));
-  ComputeAll(*journal);
-}
-
-TEST_F(FolderExecutorTest, ChunksOfASilentWorkerCount) {
-  Restart(kNoTimeOut);
-  const auto journal = Begin();
-  const std::string taken = Take(In("todo")[0]);
-  Compute(taken);
-  for (int i = 0; i < 3; ++i) executor_->Look();
-  EXPECT_THAT(In("done"), IsEmpty());
-  EXPECT_EQ(executor_->Status().chunks, 1);
-  ComputeAll(*journal);
-}
-
-TEST_F(FolderExecutorTest, AJumpOfTheFoldersClockLosesNoLease) {
-  Restart(kNoTimeOut);
-  Begin();
-  const std::string taken = Take(In("todo")[0]);
-  for (const absl::Duration jump : {absl::Hours(10), -absl::Hours(20), absl::Hours(1)}) {
-    files_.now += jump;
-    EXPECT_OK(files_.Touch("taken/" + taken));
-    executor_->Look();
-    EXPECT_THAT(In("taken"), ElementsAre(taken));
-  }
-  EXPECT_EQ(executor_->Status().lost_leases, 0);
-}
-
-TEST_F(FolderExecutorTest, AnEmptiedFolderLosesNoWork) {
-  Restart(kNoTimeOut);
-  const auto journal = Begin();
-  Take(In("todo")[0]);
-  executor_->Look();
-  files_.files.clear();
-  for (int i = 0; i < 4; ++i) executor_->Look();
   ComputeAll(*journal);
 }
 

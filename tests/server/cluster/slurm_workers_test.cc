@@ -2,12 +2,9 @@
 
 #include <chrono>
 #include <memory>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {

@@ -72,18 +72,6 @@ class CrashRecordTest : public testing::Test {
   bool died_ = false;
 };
 
-TEST_F(CrashRecordTest, ADeathCountsForTheRunsThatWereBeingComputed) {
-  LiveAndDie({{kFirst, {4, 5}}, {kSecond, {7}}}, SIGSEGV);
-  const auto record = Next();
-  EXPECT_EQ(record->Deaths(kFirst), 1);
-  EXPECT_EQ(record->Deaths(kSecond), 1);
-  EXPECT_EQ(record->Deaths(kThird), 0);
-  EXPECT_EQ(record->LastPoints(kFirst), (std::set<size_t>{4, 5}));
-  EXPECT_EQ(record->LastPoints(kSecond), (std::set<size_t>{7}));
-  EXPECT_EQ(record->LastPoints(kThird), std::set<size_t>());
-  EXPECT_EQ(record->counted_deaths(), 1);
-}
-
 TEST_F(CrashRecordTest, TwoDeathsWithDifferentRunsMakeASuspectOfTheCommonOne) {
   LiveAndDie({{kFirst, {0}}, {kSecond, {0}}}, SIGSEGV);
   Next().reset();
@@ -92,17 +80,6 @@ TEST_F(CrashRecordTest, TwoDeathsWithDifferentRunsMakeASuspectOfTheCommonOne) {
   EXPECT_EQ(record->Deaths(kFirst), 1);
   EXPECT_EQ(record->Deaths(kSecond), kDeathsOfASuspect);
   EXPECT_EQ(record->Deaths(kThird), 1);
-}
-
-TEST_F(CrashRecordTest, AKillFromOutsideCountsForNothing) {
-  LiveAndDie({{kFirst, {0}}}, SIGSEGV);
-  Next().reset();
-  for (int i = 0; i < 5; ++i) {
-    LiveAndDie({{kFirst, {0}}}, kKilledFromOutside);
-    EXPECT_EQ(Next()->Deaths(kFirst), 1);
-  }
-  LiveAndDie({{kFirst, {0}}}, SIGSEGV);
-  EXPECT_EQ(Next()->Deaths(kFirst), 2);
 }
 
 TEST_F(CrashRecordTest, AKillFromOutsideKeepsThePointsOfTheLastDeath) {
@@ -120,32 +97,6 @@ TEST_F(CrashRecordTest, AKillFromOutsideKeepsThePointsOfTheLastDeath) {
   EXPECT_EQ(Next()->LastPoints(kFirst), (std::set<size_t>{8, 9}));
 }
 
-TEST_F(CrashRecordTest, AnEndedTurnDoesNotCount) {
-  {
-    CrashRecord record(folder_.path(), {});
-    { const CrashRecord::Computing ended(record, kFirst, 0); }
-    const CrashRecord::Computing computing(record, kSecond, 0);
-    Die(SIGFPE);
-  }
-  const auto record = Next();
-  EXPECT_EQ(record->Deaths(kFirst), 0);
-  EXPECT_EQ(record->Deaths(kSecond), 1);
-}
-
-TEST_F(CrashRecordTest, ADeathIsCountedByOneStartOnly) {
-  LiveAndDie({{kFirst, {0}}}, SIGSEGV);
-  for (int start = 0; start < 3; ++start) EXPECT_EQ(Next()->Deaths(kFirst), 1);
-}
-
-TEST_F(CrashRecordTest, ADeathOfAThreadThatDoesNotComputeCountsForNothing) {
-  {
-    CrashRecord record(folder_.path(), {});
-    const CrashRecord::Computing computing(record, kFirst, 0);
-    std::thread([this] { Die(SIGSEGV); }).join();
-  }
-  EXPECT_EQ(Next()->Deaths(kFirst), 0);
-}
-
 TEST_F(CrashRecordTest, ADeathInAnExaminationCountsForItsRunAlone) {
   {
     CrashRecord record(folder_.path(), {});
@@ -158,18 +109,6 @@ TEST_F(CrashRecordTest, ADeathInAnExaminationCountsForItsRunAlone) {
   const auto record = Next();
   EXPECT_EQ(record->Deaths(kFirst), 0);
   EXPECT_EQ(record->Deaths(kSecond), 1);
-}
-
-TEST_F(CrashRecordTest, AnExaminationDuringATurnEndsBeforeIt) {
-  {
-    CrashRecord record(folder_.path(), {});
-    const CrashRecord::Computing computing(record, kFirst, 0);
-    { const CrashRecord::Examining examining(record, kSecond); }
-    Die(SIGSEGV);
-  }
-  const auto record = Next();
-  EXPECT_EQ(record->Deaths(kFirst), 1);
-  EXPECT_EQ(record->Deaths(kSecond), 0);
 }
 
 TEST_F(CrashRecordTest, AStoredChunkClearsTheRun) {
@@ -215,13 +154,6 @@ TEST_F(CrashRecordTest, AFileOfAnotherFormatIsReplaced) {
   EXPECT_EQ(Next()->Deaths(kFirst), 0);
   LiveAndDie({{kFirst, {0}}}, SIGSEGV);
   EXPECT_EQ(Next()->Deaths(kFirst), 1);
-}
-
-TEST_F(CrashRecordTest, WithoutAFileTheRecordIsInMemory) {
-  std::filesystem::create_directory(folder_.File("computing"));
-  CrashRecord record(folder_.path(), {});
-  const CrashRecord::Computing computing(record, kFirst, 0);
-  EXPECT_EQ(record.Deaths(kFirst), 0);
 }
 
 // ---- real signals: each death is that of a process of its own ----
@@ -280,12 +212,6 @@ TEST_F(FatalSignalsDeathTest, AFatalSignalOfAnotherProcessDoesNotCount) {
                }),
                "");
   EXPECT_EQ(Deaths(), 0);
-}
-
-TEST(OutOfMemoryKills, TheGroupStaysTheSame) {
-  const OutOfMemoryKills first = ReadOutOfMemoryKills(), second = ReadOutOfMemoryKills();
-  EXPECT_EQ(first.group, second.group);
-  EXPECT_GE(second.kills, first.kills);
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/ensemble/point_fold.h"
 #include "server/compute/point_opener.h"
 #include "tests/server/fake_experiments.h"
 
@@ -60,11 +59,8 @@ class FakePilotOpener : public PointOpener {
   }
 
   std::unique_ptr<const PointExperiment> OpenPilot(const PilotPlace&) override {
-    {
-      std::lock_guard lock(mutex_);
-      ++opened_;
-    }
-    if (before_pilot_) before_pilot_(opened());
+    std::lock_guard lock(mutex_);
+    ++opened_;
     return std::make_unique<const FakePilot>(before_pilots_block_);
   }
 
@@ -72,9 +68,6 @@ class FakePilotOpener : public PointOpener {
     std::lock_guard lock(mutex_);
     kept_[place].push_back(pilot);
   }
-
-  // Called with the number of pilots that began, when one begins.
-  void SetBeforePilot(std::function<void(int opened)> before) { before_pilot_ = std::move(before); }
 
   int opened() const {
     std::lock_guard lock(mutex_);
@@ -90,7 +83,6 @@ class FakePilotOpener : public PointOpener {
  private:
   const PlaceOfPoint place_of_;
   const BeforeBlock before_pilots_block_;
-  std::function<void(int)> before_pilot_;
   mutable std::mutex mutex_;
   int opened_ = 0;  // pilots that began
   std::map<PilotPlace, std::vector<Pilot>> kept_;

@@ -105,19 +105,6 @@ TEST_F(MemoryLimitTest, OnePointAloneMayTakeMore) {
   EXPECT_OK(*large->outcome);
 }
 
-// A lease of little memory ends after a minute of one core, so that the third run does not wait for
-// the end of a point of two minutes.
-TEST_F(MemoryLimitTest, ALongPointLetsOthersIn) {
-  const auto first = Add(1, 60), second = Add(2, 40), third = Add(3, 40);
-  bool third_began = false;
-  while (first->finished.empty() && second->finished.empty()) {
-    third_began |= TurnsAtOnce(8, 100).contains(3);
-  }
-  EXPECT_TRUE(third_began);
-  local_.TakeAllTurns();
-  for (const auto& journal : {first, second, third}) EXPECT_EQ(journal->ends, 1);
-}
-
 // The first of them can be computed by one thread only, the second by two.
 TEST_F(MemoryLimitTest, FurtherThreadsTakeMemoryToo) {
   for (const auto& [bytes, threads] : {std::pair(60, 1u), std::pair(40, 2u)}) {
@@ -146,60 +133,6 @@ TEST_F(MemoryLimitTest, ALargePointGetsItsTurn) {
   local_.End(*lease, kAllBlocks);
   local_.TakeAllTurns();
   for (const auto& journal : journals) EXPECT_EQ(journal->ends, 1);
-}
-
-// It fits beside the run that waits.
-TEST_F(MemoryLimitTest, ASmallPointNeedNotWaitBehindALargeOne) {
-  const auto first = Add(1, 60), large = Add(2, 70);
-  while (!TurnsAtOnce(8, 100).contains(1)) continue;
-  TurnsAtOnce(8, 100);
-  const auto small = Add(3, 20);
-  while (!TurnsAtOnce(8, 100).contains(3)) continue;
-  EXPECT_TRUE(large->merged.empty());
-  local_.TakeAllTurns();
-  for (const auto& journal : {first, large, small}) EXPECT_EQ(journal->ends, 1);
-}
-
-// The cluster takes the chunks for which it waited. The small run, too small for the cluster, goes
-// before it because of its priority.
-TEST_F(MemoryLimitTest, ARunThatNoLongerWaitsHoldsNobodyUp) {
-  RemoteExecutor remote(scheduler_, 1e6);
-  Add(1, 60);
-  scheduler_.Add(RunOf(2, FakeSpec(1, 3000, 70), std::make_shared<RecordingJournal>()));
-  ASSERT_TRUE(BeginChunks());
-  ASSERT_FALSE(BeginChunks());
-  RunRequest small = RunOf(3, FakeSpec(1, 1000, 35), std::make_shared<RecordingJournal>());
-  small.priority = 1;
-  scheduler_.Add(std::move(small));
-  ASSERT_FALSE(BeginChunks());
-  while (remote.Take().value().run != 2) continue;
-  const auto lease = BeginChunks();
-  ASSERT_TRUE(lease);
-  EXPECT_EQ(lease->run, 3);
-}
-
-TEST_F(MemoryLimitTest, SuspectsKeepToTheLimit) {
-  for (const int64_t key : {1, 2}) {
-    bytes_[key] = 60;
-    auto journal = std::make_shared<RecordingJournal>();
-    RunRequest request = RunOf(key, SpecOfBytes(60), journal);
-    request.suspicion = Suspicion{.points = {0, 1}, .clear = [] { return true; }};
-    scheduler_.Add(std::move(request));
-  }
-  for (int round = 0; round < 20; ++round) TurnsAtOnce(8, 20);
-  EXPECT_EQ(most_bytes_, 60);
-}
-
-TEST_F(MemoryLimitTest, AStoppedRunGivesItsMemoryBack) {
-  Add(1, 100);
-  local_.TakeTurn(0);
-  local_.TakeTurn(1);
-  const auto second = Add(2, 100);
-  local_.TakeTurn(0);
-  scheduler_.Cancel(1);
-  local_.TakeAllTurns();
-  ASSERT_EQ(second->ends, 1);
-  EXPECT_OK(*second->outcome);
 }
 
 }  // namespace

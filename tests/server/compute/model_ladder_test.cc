@@ -8,7 +8,6 @@
 #include "core/engine_version.h"
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/store/point_tables.h"
 #include "tests/server/store_access.h"
 #include "tests/support/await.h"
@@ -96,12 +95,6 @@ TEST_F(ModelLadderTest, TheBilliardIsChosenIfThePilotFindsALargeLimitError) {
   const auto experiment = Create(ladder, Relaxation());
   EXPECT_EQ(experiment->answer().model, Model::kBilliard);
   EXPECT_THAT(experiment->answer().reason, HasSubstr("beyond the tolerance"));
-  EXPECT_EQ(runs_, 1);
-}
-
-TEST_F(ModelLadderTest, OneStoredPilotServesAllSmallerDeltas) {
-  ModelLadder ladder(*store_, 2);
-  for (const double delta : {0.005, 0.004, 0.003}) Create(ladder, Relaxation({delta}));
   EXPECT_EQ(runs_, 1);
 }
 

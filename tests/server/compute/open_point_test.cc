@@ -10,7 +10,6 @@
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/server/compute/remote_executor.h"
 #include "tests/server/compute/run_requests.h"
 #include "tests/server/fake_experiments.h"
@@ -45,12 +44,6 @@ void AddChunks(OpenPoint& point, uint64_t first, uint64_t end) {
   }
 }
 
-TEST(OpenPoint, AnInfiniteCapacityTakesAllChunks) {
-  OpenPoint point = PointOf(SixChunks());
-  EXPECT_EQ(Next(point, kInfinity), Chunks(0, 6));
-  EXPECT_EQ(Next(point, kInfinity), std::nullopt);
-}
-
 TEST(OpenPoint, AFiniteCapacityTakesTheFewestChunksThatFillIt) {
   OpenPoint point = PointOf(SixChunks());
   EXPECT_EQ(Next(point, 0), Chunks(0, 1));
@@ -58,13 +51,6 @@ TEST(OpenPoint, AFiniteCapacityTakesTheFewestChunksThatFillIt) {
   EXPECT_EQ(Next(point, 5), Chunks(1, 3));
   EXPECT_EQ(Next(point, 1000), Chunks(3, 6));
   EXPECT_EQ(Next(point, 0), std::nullopt);
-}
-
-TEST(OpenPoint, ALeaseStatesItsSeconds) {
-  OpenPoint point = PointOf(SixChunks());
-  const auto lease = point.NextChunks({.seconds = 5}, {});
-  const ChunkPlan& plan = point.experiment()->plan();
-  EXPECT_DOUBLE_EQ(lease->seconds, plan.SecondsFor(static_cast<double>(plan.SamplesBefore(3))));
 }
 
 TEST(OpenPoint, ALeaseContinuesTheBlocksOfAResumedPoint) {
@@ -104,22 +90,6 @@ TEST(OpenPoint, ReturnedChunksComeFirstAndKeepTheirAttempt) {
   EXPECT_EQ(Next(point, 1000), Chunks(4, 6, 1));
 }
 
-TEST(OpenPoint, AReturnedLeaseThatTookTheRestGoesOutAgain) {
-  OpenPoint point = PointOf(SixChunks());
-  EXPECT_EQ(Next(point, kInfinity), Chunks(0, 6));
-  point.Return(0, 6, 1);
-  EXPECT_EQ(Next(point, kInfinity), Chunks(0, 6));
-  EXPECT_EQ(Next(point, kInfinity), std::nullopt);
-}
-
-TEST(OpenPoint, ChunksThatWereNeverLeasedCannotBeReturned) {
-  OpenPoint point = PointOf(SixChunks());
-  EXPECT_EQ(Next(point, 0), Chunks(0, 1));
-  point.Return(0, 6, 7);
-  EXPECT_EQ(Next(point, 0), Chunks(0, 1, 7));
-  EXPECT_EQ(Next(point, 1000), Chunks(1, 6, 1));
-}
-
 TEST(OpenPoint, ChunksWithCrashesAreALeaseOfTheirOwn) {
   OpenPoint point = PointOf(SixChunks());
   EXPECT_EQ(Next(point, 15), Chunks(0, 4));
@@ -146,17 +116,6 @@ TEST(OpenPoint, ALeaseTakesNoMoreMemoryThanThereIs) {
   EXPECT_FALSE(point.AwaitsMemory({.memory = 99}));  // nothing is left
 }
 
-TEST(OpenPoint, ALargeLeaseDoesNotTakeTheRestOfAPoint) {
-  const EnsembleSpec two_minutes = FakeSpec(1, 3000);
-  for (const double bytes : {100., 101.}) {
-    OpenPoint point = PointOf(two_minutes);
-    point.memory = {.of_one_turn = bytes};
-    const auto lease = point.NextChunks({.memory_of_the_rest = 100}, ChunkLimits());
-    ASSERT_TRUE(lease);
-    EXPECT_EQ(lease->end == point.experiment()->plan().chunks(), bytes <= 100) << bytes;
-  }
-}
-
 TEST(OpenPoint, AChunkOfTooManyAttemptsIsForLocalExecutors) {
   OpenPoint point = PointOf(SixChunks());
   EXPECT_EQ(Next(point, 0, kElsewhere), Chunks(0, 1));
@@ -176,13 +135,6 @@ TEST(OpenPoint, ALongChunkIsForLocalExecutors) {
     EXPECT_EQ(end, 4u) << seconds << " s";
     EXPECT_EQ(Next(point, 1000), Chunks(4, 6));
   }
-}
-
-TEST(OpenPoint, ChunksOfAFinishedPointAreNotLeased) {
-  OpenPoint point = PointOf(SixChunks());
-  point.fold().Finish();
-  EXPECT_EQ(Next(point, kInfinity), std::nullopt);
-  EXPECT_EQ(Next(point, 1), std::nullopt);
 }
 
 // ---- a tolerance ----
@@ -224,29 +176,6 @@ TEST(OpenPoint, BeyondTheExpectedEndChunksComeOneByOne) {
   }
 }
 
-TEST(OpenPoint, AnInfiniteCapacityTakesChunksBeyondTheExpectedEnd) {
-  OpenPoint point = PointOf(WithTolerance());
-  const uint64_t chunks = point.experiment()->plan().chunks();
-  EXPECT_EQ(Next(point, kInfinity), Chunks(0, chunks));
-  OpenPoint with_an_early_chunk = PointOf(WithTolerance());
-  AddChunks(with_an_early_chunk, 1, 2);
-  EXPECT_EQ(Next(with_an_early_chunk, kInfinity), Chunks(0, 1));
-  EXPECT_EQ(Next(with_an_early_chunk, kInfinity), Chunks(2, chunks));
-}
-
-TEST(OpenPoint, ExpectedSecondsFallWithMergedChunks) {
-  OpenPoint point = PointOf(WithTolerance());
-  const ChunkPlan& plan = point.experiment()->plan();
-  const uint64_t expected = point.experiment()->expected_chunks();
-  const auto seconds = [&](uint64_t first, uint64_t end) {
-    return plan.SecondsFor(
-        static_cast<double>(plan.SamplesBefore(end) - plan.SamplesBefore(first)));
-  };
-  EXPECT_DOUBLE_EQ(point.ExpectedSeconds(), seconds(0, expected));
-  AddChunks(point, 0, 1);
-  EXPECT_DOUBLE_EQ(point.ExpectedSeconds(), seconds(1, expected));
-}
-
 // ---- samples that continue each other ----
 
 std::shared_ptr<const PointExperiment> SteadyExperiment() {
@@ -285,23 +214,6 @@ TEST(OpenPoint, GroupsOfTrajectoriesAreLeasesOfTheirOwn) {
   EXPECT_EQ(next->start.chunk, 16u);
   EXPECT_EQ(next->groups[0], first.result.groups[0]);
   EXPECT_FALSE(point.NextChunks({.seconds = 1000}, kElsewhere));
-}
-
-// All the rest is one lease only if the starts of its chunks are known.
-TEST(OpenPoint, ALeaseOfTheRestHasTheStatesOfAllGroups) {
-  OpenPoint point(SteadyExperiment());
-  const auto first = point.NextChunks({.seconds = 0}, {});
-  ASSERT_TRUE(first);
-  const auto second = point.NextChunks({}, {});
-  ASSERT_TRUE(second);
-  EXPECT_EQ(second->end, 2u);  // chunk 0, from which chunk 16 starts, is computed elsewhere
-  point.fold().Add(Computed(*first));
-  point.fold().Add(Computed(*second));
-  const auto rest = point.NextChunks({}, {});
-  ASSERT_TRUE(rest);
-  EXPECT_EQ(rest->start.chunk, 2u);
-  EXPECT_EQ(rest->end, point.experiment()->plan().chunks());
-  EXPECT_EQ(rest->groups, point.fold().state().complete.groups);
 }
 
 }  // namespace

@@ -3,13 +3,9 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "core/ensemble/point_fold.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/compute/scheduler.h"
 #include "server/compute/thread_executor.h"
 #include "tests/server/compute/fake_pilots.h"
@@ -83,28 +79,6 @@ TEST_F(PilotsTest, APilotIsComputedOnceForAllRuns) {
   EXPECT_EQ(kept.at(kPlace)[0].difference, PilotOf(pilot, *FoldPoint(pilot)).difference);
 }
 
-// More runs than threads wait for it.
-TEST_F(PilotsTest, APilotIsComputedOnceByAnyNumberOfThreads) {
-  for (const int threads : {1, 2, 8}) {
-    FakePilotOpener opener(OnePlace);
-    Scheduler scheduler(opener, threads);
-    ThreadExecutor executor(scheduler, threads);
-    executor.Start();
-    std::vector<JournalPointer> journals;
-    for (int64_t key = 1; key <= 10; ++key) {
-      journals.push_back(std::make_shared<RecordingJournal>());
-      scheduler.Add(RunOf(key, SpecOf(static_cast<uint64_t>(key)), journals.back()));
-    }
-    for (uint64_t i = 0; i < journals.size(); ++i) {
-      EXPECT_OK(journals[i]->AwaitEnd());
-      ExpectAllPointsRight(SpecOf(i + 1), *journals[i]);
-    }
-    EXPECT_EQ(opener.opened(), 1);
-    EXPECT_EQ(opener.kept().at(kPlace).size(), 1u);
-    scheduler.Shutdown();
-  }
-}
-
 TEST_F(PilotsTest, AnotherRunComputesThePilotIfItsRunIsCancelled) {
   const auto first = Add(1, 1);
   ASSERT_EQ(BeginPilot(), 1);
@@ -140,42 +114,6 @@ TEST_F(PilotsTest, APilotThatFailsEndsItsRunOnly) {
   EXPECT_EQ(opener.opened(), 2);
 }
 
-// The first run is cancelled while it opens the pilot, the second starts the pilot again, and only
-// then the first run drops it. The third waits for the pilot of the second.
-TEST_F(PilotsTest, ACancelledRunLeavesThePilotToTheNextRun) {
-  SteppedExecutor others(scheduler_);
-  std::vector<JournalPointer> journals;
-  opener_.SetBeforePilot([&](int opened) {
-    if (opened > 1) return;
-    journals.push_back(Add(2, 2));
-    journals.push_back(Add(3, 3));
-    scheduler_.Cancel(1);
-    while (opener_.opened() < 2) ASSERT_TRUE(others.TakeTurn(1, 1));
-    for (int turn = 0; turn < 4; ++turn) others.TakeTurn(1, 1);  // the third run asks for it
-    throw std::runtime_error("the pilot cannot be opened");
-  });
-  const auto cancelled = Add(1, 1);
-  while (local_.TakeTurn(1, 1) || others.TakeTurn(1, 1)) {
-  }
-  ASSERT_EQ(journals.size(), 2u);
-  EXPECT_THAT(*cancelled->outcome, StatusIs(absl::StatusCode::kCancelled));
-  ExpectRight(*journals[0], 2);
-  ExpectRight(*journals[1], 3);
-  EXPECT_EQ(opener_.opened(), 2);
-  EXPECT_EQ(opener_.kept().at(kPlace).size(), 1u);
-}
-
-TEST_F(PilotsTest, ARunThatWaitsForAPilotHoldsNoThread) {
-  const auto waiting = Add(1, 1);
-  ASSERT_EQ(BeginPilot(), 1);
-  const auto other = Add(2, kFirstSeedWithoutPilot);
-  while (other->ends == 0) ASSERT_TRUE(local_.TakeTurn(1, 1));
-  ExpectRight(*other, kFirstSeedWithoutPilot);
-  EXPECT_TRUE(opener_.kept().empty());
-  local_.TakeAllTurns();
-  ExpectRight(*waiting, 1);
-}
-
 TEST_F(PilotsTest, ThePilotsWorkIsChargedToTheRunThatComputesIt) {
   const auto first = Add(1, 1), second = Add(2, 2);
   double pilots_work = 0;
@@ -190,43 +128,6 @@ TEST_F(PilotsTest, ThePilotsWorkIsChargedToTheRunThatComputesIt) {
   ASSERT_TRUE(owner == 1 || owner == 2);
   EXPECT_EQ((owner == 1 ? first : second)->work, pilots_work);
   EXPECT_EQ((owner == 1 ? second : first)->work, 0);
-}
-
-TEST_F(PilotsTest, APilotsSamplesAreNotTheRunsSamples) {
-  const auto journal = Add(1, 1);
-  local_.TakeAllTurns();
-  ExpectRight(*journal, 1);
-  for (const auto& [point, samples] : journal->merged) {
-    EXPECT_EQ(samples, 10 * kFakeSamplesPerBlock) << "point " << point;
-  }
-  EXPECT_EQ(journal->merged.size(), 2u);
-}
-
-TEST_F(PilotsTest, APilotStaysLocal) {
-  const EnsembleSpec spec = FakeSpec(4, 1500, 1);
-  FakePilotOpener opener([](const EnsembleSpec&, size_t index) {
-    return index == 1 ? std::optional(kPlace) : std::nullopt;
-  });
-  Scheduler scheduler(opener, 1);
-  SteppedExecutor local(scheduler);
-  RemoteExecutor elsewhere(scheduler);
-  const auto journal = std::make_shared<RecordingJournal>();
-  scheduler.Add(RunOf(1, spec, journal));
-  local.TakeTurn();  // opens point 0
-  int taken = 0;
-  while (const auto lease = elsewhere.Take()) {
-    EXPECT_FALSE(lease->pilot);
-    EXPECT_OK(elsewhere.ReportAll(*lease));
-    elsewhere.Return(*lease);
-    ++taken;
-    if (opener.opened() == 0) local.TakeTurn();  // opens the next points, and with them the pilot
-  }
-  EXPECT_GT(taken, 0);
-  local.TakeAllTurns();
-  EXPECT_OK(*journal->outcome);
-  ExpectAllPointsRight(spec, *journal);
-  EXPECT_EQ(opener.opened(), 1);
-  scheduler.Shutdown();
 }
 
 }  // namespace

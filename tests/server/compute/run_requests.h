@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <utility>
 
 #include "core/ensemble/point_fold.h"
 #include "gtest/gtest.h"

@@ -1,6 +1,5 @@
 #include "server/compute/scheduler.h"
 
-#include <algorithm>
 #include <atomic>
 #include <ctime>
 #include <memory>
@@ -15,7 +14,6 @@
 #include "absl/strings/str_format.h"
 #include "core/ensemble/point_fold.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/server/compute/recording_journal.h"
 #include "tests/server/compute/run_requests.h"
 #include "tests/server/compute/stepped_executor.h"
@@ -50,16 +48,6 @@ TEST(Scheduler, TheSameBitsWithAnyNumberOfWorkers) {
   }
 }
 
-TEST(Scheduler, EveryBlockOfAPointIsMergedOnce) {
-  const EnsembleSpec spec = FakeSpec(5, 100);
-  ThreadPool pool(8, FakeExperiments());
-  const auto journal = AddRun(pool, 1, spec);
-  ASSERT_OK(journal->AwaitEnd());
-  for (const auto& [point, samples] : journal->merged) {
-    EXPECT_EQ(samples, 100 * kFakeSamplesPerBlock);
-  }
-}
-
 TEST(Scheduler, APointIsResumedFromItsCheckpoint) {
   const EnsembleSpec spec = FakeSpec(2, 80);
   auto journal = std::make_shared<RecordingJournal>();
@@ -76,18 +64,6 @@ TEST(Scheduler, APointIsResumedFromItsCheckpoint) {
   EXPECT_EQ(computed.size(), 35u);
   EXPECT_EQ(*computed.begin(), 45u);
   EXPECT_EQ(journal->restored[1], 45 * kFakeSamplesPerBlock);
-}
-
-TEST(Scheduler, APointWhoseCheckpointIsCompleteFinishesAtOnce) {
-  const EnsembleSpec spec = FakeSpec(1, 3);
-  auto journal = std::make_shared<RecordingJournal>();
-  journal->stored[0] = FakeState(spec, 0, 3);
-  std::atomic<int> computed = 0;
-  ThreadPool pool(2, FakeExperiments([&](size_t, uint64_t, std::stop_token) { ++computed; }));
-  pool.Add(RunOf(1, spec, journal));
-  ASSERT_OK(journal->AwaitEnd());
-  ExpectAllPointsRight(spec, *journal);
-  EXPECT_EQ(computed, 0);
 }
 
 TEST(Scheduler, ACheckpointOfAnotherShapeEndsTheRun) {
@@ -116,50 +92,6 @@ TEST(Scheduler, AShutdownWritesACheckpoint) {
   ASSERT_OK(later->AwaitEnd());
   ExpectAllPointsRight(spec, *later);
   EXPECT_EQ(later->restored[0], 50 * kFakeSamplesPerBlock);
-}
-
-// Another thread may have opened a later point and work on it.
-TEST(Scheduler, APointThatOpensLateGoesBeforeLaterOnes) {
-  FactoryOpener opener(FakeExperiments());
-  Scheduler scheduler(opener, 2);
-  SteppedExecutor executor(scheduler);
-  const auto journal = std::make_shared<RecordingJournal>();
-  scheduler.Add(RunOf(1, SixChunks(3), journal));
-  const auto opens_0 = executor.Begin(), opens_1 = executor.Begin();
-  ASSERT_TRUE(opens_0 && opens_1);
-  executor.End(*opens_1, 1);
-  const auto of_1 = executor.Begin();
-  ASSERT_EQ(of_1->point, 1u);
-  executor.End(*of_1, 1);
-  executor.End(*opens_0, 1);
-  const auto next = executor.Begin();
-  EXPECT_EQ(next->point, 0u);
-  executor.End(*next, 1);
-  executor.TakeAllTurns();
-  EXPECT_EQ(journal->ends, 1);
-}
-
-TEST(Scheduler, FinishedPointsAreNotComputedAgain) {
-  const EnsembleSpec spec = FakeSpec(4, 5);
-  auto journal = std::make_shared<RecordingJournal>();
-  ThreadPool pool(2, FakeExperiments());
-  RunRequest request = RunOf(1, spec, journal);
-  request.finished = {true, false, true, false};
-  pool.Add(std::move(request));
-  ASSERT_OK(journal->AwaitEnd());
-  ASSERT_EQ(journal->finished.size(), 2u);
-  EXPECT_TRUE(journal->finished.contains(1));
-  EXPECT_TRUE(journal->finished.contains(3));
-}
-
-TEST(Scheduler, ARunWithNothingToComputeEnds) {
-  auto journal = std::make_shared<RecordingJournal>();
-  ThreadPool pool(1, FakeExperiments());
-  RunRequest request = RunOf(1, FakeSpec(1, 5), journal);
-  request.finished = {true};
-  pool.Add(std::move(request));
-  EXPECT_OK(journal->AwaitEnd());
-  EXPECT_EQ(journal->begun, 0);
 }
 
 TEST(Scheduler, APointDoesNotRunFarAheadOfASlowBlock) {
@@ -210,17 +142,6 @@ TEST(Scheduler, ASpentBudgetEndsAPointAtABlocksEnd) {
   }
 }
 
-TEST(Scheduler, AnAmpleBudgetHasNoEffect) {
-  EnsembleSpec spec = FakeSpec(2, 0);
-  spec.target = {.budget_seconds = 1e6};
-  ThreadPool pool(2, FakeExperiments());
-  const auto journal = AddRun(pool, 1, spec);
-  EXPECT_OK(journal->AwaitEnd());
-  for (const auto& [point, merged] : journal->finished) {
-    EXPECT_TRUE(merged == FakeMerged(spec, point, 1000)) << "point " << point;
-  }
-}
-
 // With one worker one block is merged at a time, so nothing but the first.
 TEST(Scheduler, AMissedToleranceIsReportedAfterAllPointsAreFinished) {
   EnsembleSpec spec = FakeBudget(5);
@@ -260,22 +181,6 @@ TEST(Scheduler, AReachedToleranceEndsBeforeTheBudget) {
   }
 }
 
-TEST(Scheduler, APointWithoutBlocksFinishesAtOnceBesideOthers) {
-  EnsembleSpec spec = FakeSpec(4, 5);
-  ThreadPool pool(2, [](const EnsembleSpec& whole, size_t index) {
-    EnsembleSpec of_point = whole;
-    if (index % 2 == 0) of_point.target.samples = 0;  // the even ones need none
-    return FakeExperiments()(of_point, index);
-  });
-  const auto journal = AddRun(pool, 1, spec);
-  EXPECT_OK(journal->AwaitEnd());
-  ASSERT_EQ(journal->finished.size(), 4u);
-  for (const auto& [point, merged] : journal->finished) {
-    EXPECT_TRUE(merged == FakeMerged(spec, point, point % 2 == 0 ? 0 : 5)) << "point " << point;
-  }
-  EXPECT_EQ(journal->merged.size(), 2u);
-}
-
 TEST(Scheduler, ProcessorTimeIsReportedOfPilotsAndBlocksAlike) {
   // Uses some processor time of the thread, also on a busy machine.
   const auto compute = [] {
@@ -300,19 +205,6 @@ TEST(Scheduler, ProcessorTimeIsReportedOfPilotsAndBlocksAlike) {
   EXPECT_GE(busy->work, 4 * 0.002);
 }
 
-TEST(Scheduler, ACancelledRunStopsAndEndsOnce) {
-  Gate gate;
-  ThreadPool pool(2, GatedExperiments(gate, 3));
-  const auto journal = AddRun(pool, 1, FakeSpec(10, 100));
-  gate.AwaitWaiting(2);
-  pool.Cancel(1);
-  pool.Cancel(1);
-  EXPECT_THAT(journal->AwaitEnd(), StatusIs(absl::StatusCode::kCancelled));
-  pool.Shutdown();
-  EXPECT_EQ(journal->ends, 1);
-  EXPECT_TRUE(journal->finished.empty());
-}
-
 TEST(Scheduler, AnExceptionFailsItsRunOnly) {
   ThreadPool pool(2,
                   FakeExperimentsBySeed([](uint64_t seed, size_t, uint64_t block, std::stop_token) {
@@ -327,29 +219,6 @@ TEST(Scheduler, AnExceptionFailsItsRunOnly) {
   EXPECT_THAT(std::string(bad->AwaitEnd().message()), HasSubstr("the ball left the cell"));
   EXPECT_THAT(std::string(hungry->AwaitEnd().message()), HasSubstr("out of memory"));
   ExpectAllPointsRight(FakeSpec(3, 20, 15), *good);
-}
-
-TEST(Scheduler, AFactoryThatThrowsFailsItsRun) {
-  ThreadPool pool(2, [](const EnsembleSpec&, size_t) -> std::unique_ptr<const PointExperiment> {
-    throw std::runtime_error("no such experiment");
-  });
-  const auto journal = AddRun(pool, 1, FakeSpec(3, 20));
-  EXPECT_THAT(std::string(journal->AwaitEnd().message()), HasSubstr("no such experiment"));
-}
-
-// A short run that is added after a long one ends before it.
-TEST(Scheduler, AShortRunDoesNotWaitForALongOne) {
-  Gate gate;
-  ThreadPool pool(
-      1, FakeExperimentsBySeed([&](uint64_t seed, size_t, uint64_t block, std::stop_token stop) {
-        if (seed == 1 && block == 10) gate.Pass(stop);  // until the short run has been added
-      }));
-  const auto long_run = AddRun(pool, 1, FakeSpec(1, 1'000'000'000, 1));
-  gate.AwaitWaiting(1);
-  const auto short_run = AddRun(pool, 2, FakeSpec(1, 10, 2));
-  gate.Open();
-  EXPECT_OK(short_run->AwaitEnd());
-  EXPECT_EQ(long_run->ends, 0);
 }
 
 // The runs are added while a first run blocks the only worker, so that all are present when it goes
@@ -378,52 +247,6 @@ TEST(Scheduler, AHigherPriorityIsServedFirst) {
   std::vector<uint64_t> expected;
   for (const uint64_t seed : {4u, 3u, 2u}) expected.insert(expected.end(), 20, seed);
   EXPECT_EQ(begun, expected);
-}
-
-// Opening a point of the first run takes long. Nothing else delays that run.
-TEST(Scheduler, ARunWithoutTasksIsSkipped) {
-  Gate gate;
-  ThreadPool pool(2, [&](const EnsembleSpec& spec, size_t index) {
-    if (spec.seed == 1) gate.Pass({});
-    return FakeExperiments()(spec, index);
-  });
-  const auto first = AddRun(pool, 1, FakeSpec(1, 5, 1), "a", 100);
-  gate.AwaitWaiting(1);
-  const auto next = AddRun(pool, 2, FakeSpec(3, 50, 2), "a", -100);
-  EXPECT_OK(next->AwaitEnd());
-  EXPECT_EQ(first->ends, 0);
-  gate.Open();
-  EXPECT_OK(first->AwaitEnd());
-}
-
-TEST(Scheduler, TheSameBitsInAnyOrderOfTurns) {
-  struct Owner {
-    const char* principal;
-    int32_t priority;
-  };
-  for (const auto& owners : {std::vector<Owner>{{"a", 0}, {"a", 0}, {"a", 0}},
-                             std::vector<Owner>{{"a", -1}, {"a", 5}, {"a", 100}},
-                             std::vector<Owner>{{"c", 1}, {"b", 1}, {"a", -100}}}) {
-    ThreadPool pool(3, FakeExperiments());
-    std::vector<JournalPointer> journals;
-    for (size_t i = 0; i < owners.size(); ++i) {
-      journals.push_back(AddRun(pool, static_cast<int64_t>(i) + 1, FakeSpec(5, 40, i),
-                                owners[i].principal, owners[i].priority));
-    }
-    for (size_t i = 0; i < owners.size(); ++i) {
-      EXPECT_OK(journals[i]->AwaitEnd());
-      ExpectAllPointsRight(FakeSpec(5, 40, i), *journals[i]);
-    }
-  }
-}
-
-TEST(Scheduler, ShutdownLeavesUnfinishedRunsWithoutAnEnd) {
-  Gate gate;
-  ThreadPool pool(2, GatedExperiments(gate));
-  const auto journal = AddRun(pool, 1, FakeSpec(10, 100));
-  gate.AwaitWaiting(2);
-  pool.Shutdown();
-  EXPECT_EQ(journal->ends, 0);
 }
 
 TEST(Scheduler, ChangedSinceReturnsThePointsThatChanged) {

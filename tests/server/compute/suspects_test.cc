@@ -1,13 +1,10 @@
 // Runs that were being computed when the process died are computed alone.
-#include <map>
 #include <memory>
 #include <set>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/compute/scheduler.h"
 #include "tests/server/compute/fake_pilots.h"
 #include "tests/server/compute/recording_journal.h"
@@ -90,36 +87,6 @@ TEST_F(SuspectsTest, TheChunksAreOfThePointsThatWereBeingComputed) {
   ExpectAllPointsRight(SixChunks(5), *suspect);
 }
 
-TEST_F(SuspectsTest, ASuspectHasOneLeaseOfOneChunkAtATime) {
-  Add(2, Suspected(2, {0, 1}));
-  ASSERT_THAT(Turns(1, 0), ElementsAre(2));
-  const auto lease = local_.Begin();
-  ASSERT_TRUE(lease);
-  EXPECT_EQ(lease->end, 1u);
-  EXPECT_FALSE(local_.Begin());
-  local_.End(*lease, 32);
-  EXPECT_THAT(Turns(2, 32), ElementsAre(2, 2));
-  EXPECT_THAT(cleared_, ElementsAre(2));
-}
-
-TEST_F(SuspectsTest, TheChunksAreInCheckpointsBeforeTheRunIsCleared) {
-  JournalPointer journal;
-  std::vector<uint64_t> stored_chunks;
-  journal = Add(2, Suspicion{.points = {0, 1}, .clear = [&] {
-                               for (const auto& [point, state] : journal->checkpoints) {
-                                 stored_chunks.push_back(state.chunk);
-                               }
-                               return true;
-                             }});
-  EXPECT_THAT(Turns(2, 31), ElementsAre(2, 2));
-  EXPECT_TRUE(journal->checkpoints.empty());
-  EXPECT_THAT(Turns(2, 1), ElementsAre(2, 2));  // ends the chunk and opens the next point
-  EXPECT_THAT(Turns(1, 31), ElementsAre(2));
-  EXPECT_THAT(stored_chunks, ElementsAre());
-  EXPECT_THAT(Turns(1, 1), ElementsAre(2));
-  EXPECT_THAT(stored_chunks, ElementsAre(1, 1));
-}
-
 TEST_F(SuspectsTest, ARunStaysASuspectWhileTheDiskFails) {
   Add(1);
   Add(2, Suspected(2));
@@ -128,20 +95,6 @@ TEST_F(SuspectsTest, ARunStaysASuspectWhileTheDiskFails) {
   disk_works_ = true;
   EXPECT_THAT(Turns(1, 1), ElementsAre(2));
   EXPECT_THAT(Turns(1, 0), ElementsAre(1));
-}
-
-TEST_F(SuspectsTest, TheNextSuspectWaitsForTheTurnsOfOthers) {
-  Add(1, Suspected(1));
-  Add(2, Suspected(2));
-  ASSERT_THAT(Turns(2, 1), ElementsAre(1, 1));
-  const auto slow = local_.Begin();
-  ASSERT_TRUE(slow);
-  EXPECT_EQ(slow->run, 1);
-  ASSERT_THAT(Turns(1, 31), ElementsAre(1));  // at the same lease
-  EXPECT_THAT(cleared_, ElementsAre(1));
-  EXPECT_FALSE(local_.Begin());
-  local_.End(*slow, 1);
-  EXPECT_THAT(Turns(1, 0), ElementsAre(2));
 }
 
 TEST_F(SuspectsTest, ACancelledSuspectLetsTheOthersGoOn) {
@@ -160,70 +113,6 @@ TEST_F(SuspectsTest, PointsThatAreFinishedNeedNoChunk) {
   request.suspicion = Suspected(2, {0, 7});
   scheduler_.Add(std::move(request));
   ASSERT_THAT(Turns(2, 32), ElementsAre(2, 2));
-  EXPECT_THAT(cleared_, ElementsAre(2));
-}
-
-TEST_F(SuspectsTest, APointWithoutSamplesIsProgress) {
-  EnsembleSpec closed = FakeSpec(300, 0);
-  Add(1, {}, closed);
-  Add(2, Suspected(2, {0}), closed);
-  EXPECT_THAT(Turns(1, 0), ElementsAre(2));
-  EXPECT_THAT(cleared_, ElementsAre(2));
-}
-
-// A lease that an earlier process gave to this executor.
-Lease EarlierLease(const RemoteExecutor& remote, int64_t run, uint64_t first, uint64_t end) {
-  Lease lease;
-  lease.run = run;
-  lease.executor = remote.number();
-  lease.start.chunk = first;
-  lease.end = end;
-  return lease;
-}
-
-absl::Status ReportAll(RemoteExecutor& remote, const Lease& lease, const EnsembleSpec& spec) {
-  return remote.Report(lease, ComputedChunks(lease, *FakeExperiments()(spec, lease.point)));
-}
-
-// The next suspect may need the pilot of the first, which would be paused.
-TEST_F(SuspectsTest, ASuspectIsNotClearedBeforeItsPilots) {
-  FakePilotOpener opener([](const EnsembleSpec&, size_t index) {
-    return index == 1 ? std::optional(PilotPlace{.rho = 0.53, .delta = 0.1}) : std::nullopt;
-  });
-  Scheduler scheduler(opener, 2);
-  SteppedExecutor local(scheduler);
-  RemoteExecutor remote(scheduler);
-  std::vector<JournalPointer> journals;
-  for (const int64_t key : {1, 2}) {
-    journals.push_back(std::make_shared<RecordingJournal>());
-    RunRequest request = RunOf(key, SixChunks(2), journals.back());
-    request.suspicion = Suspected(key);
-    scheduler.Add(std::move(request));
-  }
-  const Lease elsewhere = EarlierLease(remote, 1, 1, 2);
-  const auto first = local.Begin(), second = local.Begin();  // open the points at the same time
-  ASSERT_TRUE(first && second);
-  local.End(*first, 0);
-  local.End(*second, 0);
-  EXPECT_OK(ReportAll(remote, elsewhere, SixChunks(2)));
-  EXPECT_THAT(cleared_, ElementsAre());
-  local.TakeAllTurns();
-  EXPECT_THAT(cleared_, ElementsAre(1, 2));
-  for (const auto& journal : journals) {
-    ASSERT_EQ(journal->ends, 1);
-    ExpectAllPointsRight(SixChunks(2), *journal);
-  }
-}
-
-TEST_F(SuspectsTest, AChunkOfAnotherMachineDoesNotClearAPoint) {
-  RemoteExecutor remote(scheduler_);
-  Add(2, Suspected(2, {0}));
-  const Lease elsewhere = EarlierLease(remote, 2, 1, 2);
-  ASSERT_THAT(Turns(1, 0), ElementsAre(2));
-  EXPECT_OK(ReportAll(remote, elsewhere, SixChunks(2)));
-  EXPECT_THAT(Turns(1, 31), ElementsAre(2));
-  EXPECT_THAT(cleared_, ElementsAre());
-  EXPECT_THAT(Turns(1, 1), ElementsAre(2));
   EXPECT_THAT(cleared_, ElementsAre(2));
 }
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/http_get.h"
 #include "tests/server/running_server.h"
@@ -20,13 +19,6 @@ namespace ballpiston::server {
 namespace {
 
 using ::testing::HasSubstr;
-
-TEST(ConnectionBounds, TheSettingsLimitTheStreamsOfAConnection) {
-  RunningServer server({.listen = "127.0.0.1:0"});
-  Connection connection(server.address());
-  // The server's settings come first: SETTINGS_MAX_CONCURRENT_STREAMS is 3, and 2,048 is 0x800.
-  EXPECT_THAT(connection.ReadSome(), HasSubstr(std::string("\0\x3\0\0\x8\0", 6)));
-}
 
 // A client, HTTP/2 by hand, whose requests never end: each announces more than it sends.
 class EndlessRequests {

@@ -5,13 +5,9 @@
 #include <sys/stat.h>
 
 #include <filesystem>
-#include <set>
 #include <string>
-#include <thread>
-#include <vector>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/door/access_list.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
@@ -59,25 +55,6 @@ TEST_F(NewToken, ExpiresAfterItsDays) {
   const auto list = AccessList::Read(file_);
   EXPECT_OK(list->OfToken(token, kIssueTime + 29.9 * absl::Hours(24)));
   EXPECT_FALSE(list->OfToken(token, kIssueTime + 30 * absl::Hours(24)).ok());
-}
-
-TEST_F(NewToken, IsAppendedAfterALineWithoutAnEnd) {
-  Issue("alice:read");
-  const std::string line = Contents(file_.path);
-  WriteFile(file_.path, line.substr(0, line.size() - 1));
-  Issue("bob:read");
-  ASSERT_OK_AND_ASSIGN(const auto list, AccessList::Read(file_));
-  EXPECT_EQ(list.size(), 2u);
-}
-
-TEST_F(NewToken, ConcurrentTokensAreAllKeptAndAllDifferent) {
-  std::vector<std::string> tokens(8);
-  std::vector<std::thread> threads;
-  for (std::string& token : tokens) threads.emplace_back([&] { token = Issue("alice:read"); });
-  for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(std::set<std::string>(tokens.begin(), tokens.end()).size(), tokens.size());
-  ASSERT_OK_AND_ASSIGN(const auto list, AccessList::Read(file_));
-  for (const std::string& token : tokens) EXPECT_OK(list.OfToken(token, kIssueTime));
 }
 
 TEST_F(NewToken, AnOpenOrMalformedFileStaysUnchanged) {

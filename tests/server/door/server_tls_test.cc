@@ -8,7 +8,6 @@
 #include <string>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/server/secure_server.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
@@ -16,6 +15,7 @@
 namespace ballpiston::server {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -35,56 +35,44 @@ class ServerTlsTest : public ::testing::Test {
   const TestAuthority other_{"another authority"};
 };
 
-TEST_F(ServerTlsTest, AGoodSetIsAccepted) { EXPECT_EQ(Error(), ""); }
-
-TEST_F(ServerTlsTest, AKeyOfAnotherCertificateIsRefused) {
-  files_.Write("server.key", other_.Issue("x").key);
-  EXPECT_THAT(Error(), HasSubstr("--tls-key="));
-  EXPECT_THAT(Error(), HasSubstr("is not the key of the certificate in --tls-certificate="));
-}
-
-// The clock may be set only later.
-TEST_F(ServerTlsTest, AnExpiredOrFutureCertificateIsRead) {
+TEST_F(ServerTlsTest, PairsOfKeyAndCertificateAreAccepted) {
   using std::chrono::hours;
+  EXPECT_EQ(Error(), "");
+  // The clock may be set only later.
   for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
     files_.WriteCertificate(files_.authority().Issue("x", validity));
     EXPECT_EQ(Error(), "");
   }
-}
-
-TEST_F(ServerTlsTest, AKeyThatOthersMayReadIsRefused) {
-  chmod(files_.options().tls_key.c_str(), 0644);
-  EXPECT_THAT(Error(), HasSubstr("open to other users (mode 0644)"));
-}
-
-TEST_F(ServerTlsTest, AFileThatIsNotPemIsRefused) {
-  for (const char* text : {"", "nonsense", "-----BEGIN CERTIFICATE-----\nAAAA\n"}) {
-    files_.Write("server.pem", text);
-    EXPECT_THAT(Error(), HasSubstr("--tls-certificate")) << text;
-  }
-  files_.WriteCertificate({files_.authority().Issue("good").certificate, "nonsense"});
-  EXPECT_THAT(Error(), HasSubstr("has no private key"));
-}
-
-TEST_F(ServerTlsTest, AMissingFileIsNamed) {
-  unlink(files_.options().tls_key.c_str());
-  EXPECT_THAT(Error(), HasSubstr("--tls-key="));
-  EXPECT_THAT(Error(), HasSubstr("No such file"));
-}
-
-// Some authorities deliver the key and the certificate in one file.
-TEST_F(ServerTlsTest, KeyAndCertificateMayBeInOneFile) {
+  // Some authorities deliver the key and the certificate in one file.
   const KeyAndCertificate made = files_.authority().Issue("x");
   const std::string both = made.certificate + made.key;
   files_.WriteCertificate({both, both});
   EXPECT_EQ(Error(), "");
 }
 
-// gRPC would take that certificate.
-TEST_F(ServerTlsTest, AnotherCertificateBesideTheKeyIsRefused) {
-  const KeyAndCertificate made = files_.authority().Issue("x");
-  files_.WriteCertificate({made.certificate, made.key + other_.Issue("y").certificate});
-  EXPECT_THAT(Error(), HasSubstr("is not the key of the certificate"));
+TEST_F(ServerTlsTest, OtherFilesAreRefused) {
+  const KeyAndCertificate made = files_.authority().Issue("x"), other = other_.Issue("y");
+  const struct {
+    KeyAndCertificate files;
+    const char* error;
+  } rows[] = {
+      {{made.certificate, other.key}, "--tls-key="},
+      {{made.certificate, other.key}, "is not the key of the certificate in --tls-certificate="},
+      // gRPC would take the certificate beside the key.
+      {{made.certificate, made.key + other.certificate}, "is not the key of the certificate"},
+      {{made.certificate, "nonsense"}, "has no private key"},
+      {{"", made.key}, "--tls-certificate"},
+      {{"nonsense", made.key}, "--tls-certificate"},
+      {{"-----BEGIN CERTIFICATE-----\nAAAA\n", made.key}, "--tls-certificate"}};
+  for (const auto& [files, error] : rows) {
+    files_.WriteCertificate(files);
+    EXPECT_THAT(Error(), HasSubstr(error));
+  }
+  files_.WriteCertificate(made);
+  chmod(files_.options().tls_key.c_str(), 0644);
+  EXPECT_THAT(Error(), HasSubstr("open to other users (mode 0644)"));
+  unlink(files_.options().tls_key.c_str());
+  EXPECT_THAT(Error(), AllOf(HasSubstr("--tls-key="), HasSubstr("No such file")));
 }
 
 }  // namespace

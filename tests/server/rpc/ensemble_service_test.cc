@@ -1,16 +1,12 @@
 #include <cctype>
+#include <functional>
 #include <limits>
-#include <mutex>
-#include <set>
-#include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
@@ -25,7 +21,170 @@ using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 using v1::EnsembleJob;
 
-constexpr char kUnknownJob[] = "ensembleJobs/unknown";
+// ---- bad requests ----
+
+// A field that is not as permitted, and what the error says about it.
+struct BadRequest {
+  std::string field;
+  std::string message;  // a part of it
+  std::function<grpc::Status(RunningServer&)> call;
+};
+
+// Create with the small first-hit job, changed.
+BadRequest BadSpec(std::string field, std::string message,
+                   const std::function<void(v1::EnsembleSpec&)>& change) {
+  v1::EnsembleSpec spec = SmallFirstHit();
+  change(spec);
+  return {std::move(field), std::move(message),
+          [spec](RunningServer& server) { return server.Create(CreateRequest(spec)); }};
+}
+
+BadRequest BadCreate(std::string field, std::string message,
+                     const std::function<void(v1::CreateEnsembleJobRequest&)>& change) {
+  v1::CreateEnsembleJobRequest request = CreateRequest(Equilibrium(1, 2));
+  change(request);
+  return {std::move(field), std::move(message),
+          [request](RunningServer& server) { return server.Create(request); }};
+}
+
+grpc::Status ListError(RunningServer& server, const v1::ListEnsembleJobsRequest& request) {
+  grpc::ClientContext context;
+  v1::ListEnsembleJobsResponse response;
+  return server.ensemble().ListEnsembleJobs(&context, request, &response);
+}
+
+BadRequest BadList(std::string field, std::string message,
+                   const std::function<void(v1::ListEnsembleJobsRequest&)>& change) {
+  v1::ListEnsembleJobsRequest request;
+  change(request);
+  return {std::move(field), std::move(message),
+          [request](RunningServer& server) { return ListError(server, request); }};
+}
+
+BadRequest BadResults(std::string field,
+                      const std::function<void(v1::ListResultsRequest&)>& change) {
+  v1::ListResultsRequest request;
+  request.set_parent("ensembleJobs/a");
+  change(request);
+  return {std::move(field), "", [request](RunningServer& server) {
+            grpc::ClientContext context;
+            v1::ListResultsResponse response;
+            return server.ensemble().ListResults(&context, request, &response);
+          }};
+}
+
+v1::UpdateEnsembleJobRequest UpdateRequest(const std::string& name,
+                                           const std::vector<std::string>& paths) {
+  v1::UpdateEnsembleJobRequest request;
+  request.mutable_job()->set_name(name);
+  for (const std::string& path : paths) request.mutable_update_mask()->add_paths(path);
+  return request;
+}
+
+grpc::Status Update(RunningServer& server, const v1::UpdateEnsembleJobRequest& request,
+                    EnsembleJob* job) {
+  grpc::ClientContext context;
+  return server.ensemble().UpdateEnsembleJob(&context, request, job);
+}
+
+BadRequest BadUpdate(std::string field, std::string message, const std::vector<std::string>& paths,
+                     int priority = 0) {
+  v1::UpdateEnsembleJobRequest request = UpdateRequest("ensembleJobs/a", paths);
+  request.mutable_job()->set_priority(priority);
+  return {std::move(field), std::move(message), [request](RunningServer& server) {
+            EnsembleJob job;
+            return Update(server, request, &job);
+          }};
+}
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+std::vector<BadRequest> BadRequests() {
+  using Spec = v1::EnsembleSpec;
+  using Create = v1::CreateEnsembleJobRequest;
+  using List = v1::ListEnsembleJobsRequest;
+  using Results = v1::ListResultsRequest;
+  return {
+      BadSpec("spec.experiment", "", [](Spec& s) { s.clear_experiment(); }),
+      BadSpec("spec.grid.rho[0]", "0.4", [](Spec& s) { s.mutable_grid()->set_rho(0, 0.4); }),
+      BadSpec("spec.grid.delta[3]", "-1", [](Spec& s) { s.mutable_grid()->add_delta(-1); }),
+      BadSpec("spec.grid.epsilon[2]", "nan", [](Spec& s) { s.mutable_grid()->add_epsilon(kNan); }),
+      BadSpec("spec.grid.exponent[1]", "inf",
+              [](Spec& s) { s.mutable_grid()->add_exponent(kInfinite); }),
+      BadSpec("spec.grid.cells", "does not use", [](Spec& s) { s.mutable_grid()->add_cells("4"); }),
+      BadSpec("spec.grid.cold[0]", "does not use", [](Spec& s) { s.mutable_grid()->add_cold(0); }),
+      BadSpec("spec.grid", "points",  // 10^9 of them
+              [](Spec& s) {
+                for (int i = 0; i < 1000; ++i) {
+                  s.mutable_grid()->add_rho(0.53 + 1e-6 * i);
+                  s.mutable_grid()->add_delta(0.1 + 1e-6 * i);
+                  s.mutable_grid()->add_epsilon(0.1 + 1e-6 * i);
+                }
+              }),
+      BadSpec("spec.grid.rho[1]", "left out",  // of thousands of violations
+              [](Spec& s) {
+                for (int i = 0; i < 10'000; ++i) s.mutable_grid()->add_rho(-1);
+              }),
+      BadSpec("spec.target.samples", "0", [](Spec& s) { s.mutable_target()->set_samples(0); }),
+      BadSpec("spec.target.budget", "",
+              [](Spec& s) { s.mutable_target()->mutable_budget()->set_seconds(5); }),
+      BadSpec("spec.model", "99", [](Spec& s) { s.set_model(static_cast<Spec::Model>(99)); }),
+      BadCreate("request_id", "", [](Create& r) { r.set_request_id("not a uuid"); }),
+      BadCreate("priority", "-100 to 100", [](Create& r) { r.set_priority(101); }),
+      BadCreate("priority", "-100 to 100", [](Create& r) { r.set_priority(-101); }),
+      {"request_id", "",
+       [](RunningServer& server) { return server.Cancel("ensembleJobs/a", "x"); }},
+      BadList("page_size", "", [](List& r) { r.set_page_size(-1); }),
+      BadList("page_token", "", [](List& r) { r.set_page_token("!!!"); }),
+      BadList("page_token", "", [](List& r) { r.set_page_token("am9iczotMQ=="); }),
+      BadList("page_token", "",
+              [](List& r) { r.set_page_token("cmVzdWx0czphOjE="); }),  // of results
+      BadList("states[1]",
+              "is 0; permitted: QUEUED, RUNNING, CANCELLING, SUCCEEDED, FAILED, CANCELLED",
+              [](List& r) {
+                r.add_states(EnsembleJob::RUNNING);
+                r.add_states(EnsembleJob::STATE_UNSPECIFIED);
+              }),
+      BadList("states[0]", "(and 99 more)",  // of millions
+              [](List& r) {
+                for (int i = 0; i < 4'000'000; ++i) r.add_states(EnsembleJob::STATE_UNSPECIFIED);
+              }),
+      BadList("experiments[0]", "is -1",
+              [](List& r) { r.add_experiments(static_cast<Spec::Experiment>(-1)); }),
+      BadList("since.seconds", "is 253402300800; permitted: -62135596800 to 253402300799",
+              [](List& r) { r.mutable_since()->set_seconds(253'402'300'800); }),
+      BadList("since.nanos", "", [](List& r) { r.mutable_since()->set_nanos(-1); }),
+      BadResults("page_size", [](Results& r) { r.set_page_size(-5); }),
+      BadResults("page_token", [](Results& r) { r.set_page_token("x"); }),
+      BadResults("view", [](Results& r) { r.set_view(static_cast<Results::View>(9)); }),
+      BadUpdate("job.priority", "", {"priority"}, 101),
+      BadUpdate("update_mask", "permitted: pinned, priority", {}),
+      BadUpdate("update_mask", "permitted: pinned, priority", {"*"}),
+      BadUpdate("update_mask", "permitted: pinned, priority", {"pinned", "state"}),
+      BadUpdate("update_mask", "permitted: pinned, priority", {"job.pinned"})};
+}
+
+TEST(EnsembleService, EveryBadFieldIsNamed) {
+  RunningServer server;
+  for (const BadRequest& bad : BadRequests()) {
+    SCOPED_TRACE(bad.field);
+    const grpc::Status status = bad.call(server);
+    EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT, HasSubstr(bad.message)));
+    EXPECT_THAT(ReasonOf(status), testing::AnyOf("INVALID_SPEC", "INVALID_REQUEST"));
+    EXPECT_THAT(DetailsOf(status).fields, testing::Contains(bad.field));
+  }
+  EXPECT_EQ(server.List().jobs_size(), 0);
+}
+
+TEST(EnsembleService, AllViolationsAreListedTogether) {
+  v1::EnsembleSpec spec = SmallFirstHit();
+  spec.mutable_grid()->set_rho(0, 0.4);
+  spec.mutable_target()->set_samples(0);
+  EXPECT_THAT(DetailsOf(RunningServer().Create(CreateRequest(spec, "not a uuid"))).fields,
+              testing::UnorderedElementsAre("request_id", "spec.grid.rho[0]",
+                                            "spec.target.samples"));
+}
 
 // ---- Create ----
 
@@ -49,73 +208,7 @@ TEST(EnsembleService, AJobRunsToItsEnd) {
   EXPECT_EQ(now.SerializeAsString(), ended.SerializeAsString());
 }
 
-TEST(EnsembleService, AllViolationsAreListedWithTheirPaths) {
-  v1::EnsembleSpec spec = SmallFirstHit();
-  spec.mutable_grid()->set_rho(0, 0.4);
-  spec.mutable_grid()->add_delta(-1);
-  spec.mutable_grid()->add_epsilon(std::numeric_limits<double>::quiet_NaN());
-  spec.mutable_grid()->add_exponent(std::numeric_limits<double>::infinity());
-  spec.mutable_grid()->add_cells("4x4");
-  spec.mutable_grid()->add_cells("4y4");
-  spec.mutable_grid()->add_cold(0);
-  spec.mutable_target()->set_samples(0);
-  spec.set_model(static_cast<v1::EnsembleSpec::Model>(99));
-  const grpc::Status status = RunningServer().Create(CreateRequest(spec, "not a uuid"));
-  EXPECT_THAT(status, IsError(grpc::StatusCode::INVALID_ARGUMENT, "INVALID_SPEC"));
-  EXPECT_THAT(DetailsOf(status).fields,
-              IsSupersetOf({"spec.grid.rho[0]", "spec.grid.delta[3]", "spec.grid.epsilon[2]",
-                            "spec.grid.exponent[1]", "spec.grid.cells", "spec.grid.cells[1]",
-                            "spec.grid.cold", "spec.grid.cold[0]", "spec.target.samples",
-                            "spec.model", "request_id"}));
-}
-
-TEST(EnsembleService, AnEmptyRequestIsRefused) {
-  const grpc::Status status = RunningServer().Create({});
-  EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT));
-  EXPECT_THAT(DetailsOf(status).fields, IsSupersetOf({"spec.experiment"}));
-}
-
-TEST(EnsembleService, AnAbsurdGridIsRefused) {
-  v1::EnsembleSpec spec = SmallFirstHit();
-  spec.mutable_grid()->clear_rho();
-  spec.mutable_grid()->clear_delta();
-  for (int i = 0; i < 1000; ++i) {
-    spec.mutable_grid()->add_rho(0.53 + 1e-6 * i);
-    spec.mutable_grid()->add_delta(0.1 + 1e-6 * i);
-  }
-  for (int i = 0; i < 998; ++i) spec.mutable_grid()->add_epsilon(0.1 + 1e-6 * i);
-  const grpc::Status status = RunningServer().Create(CreateRequest(spec));  // 10^9 points
-  EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT));
-  EXPECT_THAT(DetailsOf(status).fields, IsSupersetOf({"spec.grid"}));
-}
-
-TEST(EnsembleService, ABudgetBesideSamplesIsRefused) {
-  v1::EnsembleSpec spec = SmallFirstHit();
-  spec.mutable_target()->mutable_budget()->set_seconds(5);
-  const grpc::Status status = RunningServer().Create(CreateRequest(spec));
-  EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT));
-  EXPECT_THAT(DetailsOf(status).fields, ElementsAre("spec.target.budget"));
-}
-
-TEST(EnsembleService, ThousandsOfViolationsArriveAsInvalidArgument) {
-  v1::EnsembleSpec spec = SmallFirstHit();
-  for (int i = 0; i < 10'000; ++i) spec.mutable_grid()->add_rho(-1);
-  const grpc::Status status = RunningServer().Create(CreateRequest(spec));
-  EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT, HasSubstr("left out")));
-}
-
-TEST(EnsembleService, ValidateOnlyCreatesNoJob) {
-  RunningServer server;
-  v1::CreateEnsembleJobRequest request = CreateRequest(Equilibrium(7, 10), kUuid);
-  request.set_validate_only(true);
-  const EnsembleJob job = server.Created(request);
-  EXPECT_EQ(job.name(), "");
-  EXPECT_EQ(job.progress().points(), 7);
-  EXPECT_EQ(job.state(), EnsembleJob::QUEUED);
-  EXPECT_EQ(server.List().jobs_size(), 0);
-}
-
-TEST(EnsembleService, ARetryReturnsTheSameJob) {
+TEST(EnsembleService, ARetryInUpperCaseReturnsTheSameJob) {
   RunningServer server;
   const EnsembleJob first = server.Created(CreateRequest(Equilibrium(1, 5), kUuid));
   server.AwaitEnd(first.name());
@@ -125,391 +218,6 @@ TEST(EnsembleService, ARetryReturnsTheSameJob) {
   EXPECT_EQ(again.name(), first.name());
   EXPECT_EQ(again.state(), EnsembleJob::SUCCEEDED);
 }
-
-TEST(EnsembleService, ARequestIdWithAnotherSpecIsRefused) {
-  RunningServer server;
-  ASSERT_OK(server.Create(CreateRequest(Equilibrium(1, 5), kUuid)));
-  EXPECT_THAT(server.Create(CreateRequest(Equilibrium(1, 6), kUuid)),
-              IsError(grpc::StatusCode::INVALID_ARGUMENT, "REQUEST_ID_REUSED"));
-}
-
-TEST(EnsembleService, ConcurrentCreatesWithOneRequestIdMakeOneJob) {
-  RunningServer server;
-  std::mutex mutex;
-  std::set<std::string> names;
-  std::vector<std::thread> threads;
-  for (int i = 0; i < 64; ++i) {
-    threads.emplace_back([&] {
-      const EnsembleJob job = server.Created(CreateRequest(Equilibrium(1, 5), kUuid));
-      // Each thread can watch the job at once, also if another thread's call created it.
-      EXPECT_EQ(server.AwaitEnd(job.name()).state(), EnsembleJob::SUCCEEDED);
-      std::lock_guard lock(mutex);
-      names.insert(job.name());
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(names.size(), 1u);
-  EXPECT_EQ(server.List().jobs_size(), 1);
-}
-
-TEST(EnsembleService, AnExceptionFailsTheJobOnly) {
-  RunningServer server(
-      {.factory = FakeExperimentsBySeed([](uint64_t seed, size_t, uint64_t, std::stop_token) {
-         if (seed == 13) throw std::runtime_error("the ball left the cell");
-       })});
-  const EnsembleJob failed = server.AwaitEnd(server.Submit(Equilibrium(2, 5, 13)));
-  EXPECT_EQ(failed.state(), EnsembleJob::FAILED);
-  EXPECT_THAT(failed.error().message(), HasSubstr("the ball left the cell"));
-  server.Succeeded(Equilibrium(2, 5));
-}
-
-// ---- names ----
-
-TEST(EnsembleService, UnknownJobsAreNotFound) {
-  RunningServer server;
-  grpc::ClientContext get, results, watch;
-  v1::GetEnsembleJobRequest get_request;
-  get_request.set_name(kUnknownJob);
-  EnsembleJob job;
-  v1::ListResultsRequest results_request;
-  results_request.set_parent(kUnknownJob);
-  v1::ListResultsResponse points;
-  v1::WatchEnsembleJobRequest watch_request;
-  watch_request.set_name(kUnknownJob);
-  for (const grpc::Status& status :
-       {server.ensemble().GetEnsembleJob(&get, get_request, &job), server.Cancel(kUnknownJob),
-        server.Delete(kUnknownJob),
-        server.ensemble().ListResults(&results, results_request, &points),
-        server.ensemble().WatchEnsembleJob(&watch, watch_request)->Finish()}) {
-    EXPECT_THAT(status, IsError(grpc::StatusCode::NOT_FOUND, "JOB_NOT_FOUND"));
-    EXPECT_THAT(status.error_message(), HasSubstr(kUnknownJob));
-  }
-}
-
-TEST(EnsembleService, MalformedNamesAreInvalid) {
-  RunningServer server;
-  grpc::ClientContext get, results, watch;
-  v1::GetEnsembleJobRequest get_request;
-  get_request.set_name("jobs/1");
-  EnsembleJob job;
-  v1::ListResultsRequest results_request;
-  v1::ListResultsResponse points;
-  const std::vector<std::pair<grpc::Status, std::string>> answers = {
-      {server.ensemble().GetEnsembleJob(&get, get_request, &job), "name"},
-      {server.Cancel("ensembleJobs/"), "name"},
-      {server.Delete("ensembleJobs/A B"), "name"},
-      {server.ensemble().ListResults(&results, results_request, &points), "parent"},
-      {server.ensemble().WatchEnsembleJob(&watch, {})->Finish(), "name"}};
-  for (const auto& [status, field] : answers) {
-    EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT));
-    EXPECT_THAT(DetailsOf(status).fields, ElementsAre(field));
-  }
-}
-
-// ---- Cancel, Delete ----
-
-TEST(EnsembleService, ACancelledJobEndsAndKeepsItsFinishedPoints) {
-  Gate gate;
-  RunningServer server(
-      {.factory = FakeExperiments([&gate](size_t point, uint64_t, std::stop_token stop) {
-         if (point >= 2) gate.Pass(stop);
-       })});
-  const std::string name = server.Submit(Equilibrium(5, 10));
-  gate.AwaitWaiting(2);
-  ASSERT_OK(server.Cancel(name));
-  EXPECT_EQ(server.AwaitEnd(name).state(), EnsembleJob::CANCELLED);
-  EXPECT_EQ(server.ResultBytes(name).size(), 2u);
-  EXPECT_EQ(server.Get(name).progress().points_done(), 2);
-}
-
-TEST(EnsembleService, AnEndedJobCannotBeCancelled) {
-  RunningServer server;
-  const std::string name = server.Succeeded(Equilibrium(1, 5));
-  const grpc::Status status = server.Cancel(name);
-  EXPECT_THAT(status, IsError(grpc::StatusCode::FAILED_PRECONDITION, "JOB_ALREADY_ENDED"));
-  EXPECT_THAT(status.error_message(), HasSubstr("SUCCEEDED"));
-}
-
-TEST(EnsembleService, ARetriedCancellationSucceeds) {
-  Gate gate;
-  RunningServer server({.factory = GatedExperiments(gate, 3)});
-  const std::string name = server.Submit(Equilibrium(1, 100));
-  ASSERT_OK(server.Cancel(name, kUuid));
-  server.AwaitEnd(name);
-  EXPECT_OK(server.Cancel(name, kUuid));
-  const grpc::Status status = server.Cancel(name, kOtherUuid);
-  EXPECT_EQ(ReasonOf(status), "JOB_ALREADY_ENDED");
-  EXPECT_THAT(status.error_message(), HasSubstr("CANCELLED"));
-}
-
-TEST(EnsembleService, ACancellationsRequestIdMustBeAUuid) {
-  EXPECT_THAT(DetailsOf(RunningServer().Cancel(kUnknownJob, "x")).fields,
-              ElementsAre("request_id"));
-}
-
-TEST(EnsembleService, AnActiveJobCannotBeDeleted) {
-  Gate gate;
-  RunningServer server({.factory = GatedExperiments(gate, 3)});
-  const std::string name = server.Submit(Equilibrium(1, 100));
-  EXPECT_THAT(server.Delete(name),
-              IsError(grpc::StatusCode::FAILED_PRECONDITION, "JOB_STILL_ACTIVE"));
-}
-
-TEST(EnsembleService, ADeletedJobIsGone) {
-  RunningServer server;
-  const std::string name = server.Succeeded(Equilibrium(1, 5));
-  ASSERT_OK(server.Delete(name));
-  EXPECT_THAT(server.Delete(name), StatusIs(grpc::StatusCode::NOT_FOUND));
-}
-
-// ---- List ----
-
-TEST(EnsembleService, JobsAreListedNewestFirstInPages) {
-  RunningServer server;
-  std::vector<std::string> names;
-  for (int i = 0; i < 5; ++i) names.insert(names.begin(), server.Submit(Equilibrium(1, 2)));
-  std::vector<std::string> listed;
-  std::vector<int> sizes;
-  v1::ListEnsembleJobsRequest request;
-  request.set_page_size(2);
-  for (const auto& page : server.Pages(request)) {
-    for (const auto& job : page.jobs()) listed.push_back(job.name());
-    sizes.push_back(page.jobs_size());
-  }
-  EXPECT_EQ(listed, names);
-  EXPECT_THAT(sizes, ElementsAre(2, 2, 1));
-}
-
-TEST(EnsembleService, APageThatEndsWithTheListHasNoToken) {
-  RunningServer server;
-  for (int i = 0; i < 2; ++i) server.Submit(Equilibrium(1, 2));
-  v1::ListEnsembleJobsRequest request;
-  request.set_page_size(2);
-  EXPECT_EQ(server.List(request).next_page_token(), "");
-}
-
-TEST(EnsembleService, PagesOfLargeJobsStayBelowTwoMebibytes) {
-  Gate gate;
-  RunningServer server({.factory = GatedExperiments(gate)});
-  for (int i = 0; i < 4; ++i) server.Submit(LargeEquilibrium());
-  const auto pages = server.Pages(v1::ListEnsembleJobsRequest());
-  int listed = 0;
-  for (const auto& page : pages) {
-    EXPECT_LT(page.ByteSizeLong(), size_t{2} << 20);
-    listed += page.jobs_size();
-  }
-  EXPECT_EQ(listed, 4);
-  EXPECT_EQ(pages.size(), 2u);
-}
-
-std::vector<std::string> NamesOf(const v1::ListEnsembleJobsResponse& page) {
-  std::vector<std::string> names;
-  for (const EnsembleJob& job : page.jobs()) names.push_back(job.name());
-  return names;
-}
-
-TEST(EnsembleService, JobsAreFilteredByTheirPresentState) {
-  Gate gate;
-  RunningServer server(
-      {.workers = 1,
-       .factory = FakeExperimentsBySeed([&](uint64_t seed, size_t, uint64_t, std::stop_token stop) {
-         if (seed == 2) gate.Pass(stop);
-       })});
-  const std::string succeeded = server.Succeeded(Equilibrium(1, 2));
-  const std::string running = server.Submit(Equilibrium(1, 2, 2));
-  gate.AwaitWaiting(1);
-  const std::string queued = server.Submit(Equilibrium(1, 2, 3));  // the only worker waits
-  const auto listed = [&](const std::vector<EnsembleJob::State>& states) {
-    v1::ListEnsembleJobsRequest request;
-    for (const EnsembleJob::State state : states) request.add_states(state);
-    return NamesOf(server.List(request));
-  };
-  EXPECT_THAT(listed({}), ElementsAre(queued, running, succeeded));
-  EXPECT_THAT(listed({EnsembleJob::QUEUED}), ElementsAre(queued));
-  EXPECT_THAT(listed({EnsembleJob::RUNNING}), ElementsAre(running));
-  EXPECT_THAT(listed({EnsembleJob::SUCCEEDED, EnsembleJob::QUEUED, EnsembleJob::QUEUED}),
-              ElementsAre(queued, succeeded));
-  EXPECT_THAT(listed({EnsembleJob::FAILED}), ElementsAre());
-}
-
-TEST(EnsembleService, JobsAreFilteredByExperiment) {
-  RunningServer server;
-  const std::string equilibrium = server.Submit(Equilibrium(1, 2));
-  const std::string first_hit = server.Submit(SmallFirstHit());
-  const auto listed = [&](const std::vector<v1::EnsembleSpec::Experiment>& experiments) {
-    v1::ListEnsembleJobsRequest request;
-    for (const auto experiment : experiments) request.add_experiments(experiment);
-    return NamesOf(server.List(request));
-  };
-  EXPECT_THAT(listed({v1::EnsembleSpec::EQUILIBRIUM}), ElementsAre(equilibrium));
-  EXPECT_THAT(listed({v1::EnsembleSpec::FIRST_HIT}), ElementsAre(first_hit));
-  EXPECT_THAT(listed({v1::EnsembleSpec::FIRST_HIT, v1::EnsembleSpec::EQUILIBRIUM}),
-              ElementsAre(first_hit, equilibrium));
-  EXPECT_THAT(listed({v1::EnsembleSpec::MARKOV_PROPERTY}), ElementsAre());
-}
-
-TEST(EnsembleService, JobsAreFilteredByTheirTimeOfCreation) {
-  RunningServer server;
-  std::vector<EnsembleJob> jobs;
-  for (const int points : {1, 2, 3}) {
-    jobs.push_back(server.Created(CreateRequest(Equilibrium(points, 2))));
-  }
-  v1::ListEnsembleJobsRequest request;
-  *request.mutable_since() = jobs[1].create_time();
-  EXPECT_THAT(NamesOf(server.List(request)), ElementsAre(jobs[2].name(), jobs[1].name()));
-  request.mutable_since()->set_seconds(253'402'300'799);  // the end of the year 9999
-  EXPECT_THAT(NamesOf(server.List(request)), ElementsAre());
-}
-
-// The view and the size of the page may change from page to page.
-TEST(EnsembleService, APageTokenIsValidOnlyWithItsFilters) {
-  RunningServer server;
-  const std::string oldest = server.Succeeded(Equilibrium(1, 2, 1));
-  const std::string older = server.Submit(Equilibrium(1, 2, 2));
-  server.Submit(Equilibrium(1, 2, 3));
-  v1::ListEnsembleJobsRequest request;
-  request.add_experiments(v1::EnsembleSpec::EQUILIBRIUM);
-  request.set_page_size(1);
-  request.set_page_token(server.List(request).next_page_token());
-  request.set_page_size(2);
-  request.set_view(v1::ListEnsembleJobsRequest::BASIC);
-  EXPECT_THAT(NamesOf(server.List(request)), ElementsAre(older, oldest));
-  const auto refused = [&server](const v1::ListEnsembleJobsRequest& other) {
-    grpc::ClientContext context;
-    v1::ListEnsembleJobsResponse response;
-    return server.ensemble().ListEnsembleJobs(&context, other, &response);
-  };
-  v1::ListEnsembleJobsRequest states = request, experiments = request, since = request;
-  states.add_states(EnsembleJob::SUCCEEDED);
-  experiments.clear_experiments();
-  since.mutable_since()->set_seconds(1);
-  for (const auto& other : {states, experiments, since}) {
-    EXPECT_THAT(refused(other), IsError(grpc::StatusCode::INVALID_ARGUMENT, "INVALID_REQUEST"));
-    EXPECT_THAT(DetailsOf(refused(other)).fields, ElementsAre("page_token"));
-  }
-}
-
-TEST(EnsembleService, WrongFiltersAreRefusedWithWhatIsPermitted) {
-  RunningServer server;
-  v1::ListEnsembleJobsRequest request;
-  request.add_states(EnsembleJob::RUNNING);
-  request.add_states(EnsembleJob::STATE_UNSPECIFIED);
-  request.add_states(static_cast<EnsembleJob::State>(7));
-  request.add_experiments(v1::EnsembleSpec::EXPERIMENT_UNSPECIFIED);
-  request.add_experiments(static_cast<v1::EnsembleSpec::Experiment>(-1));
-  request.mutable_since()->set_seconds(253'402'300'800);
-  request.mutable_since()->set_nanos(-1);
-  const auto refused = [&] {
-    grpc::ClientContext context;
-    v1::ListEnsembleJobsResponse response;
-    return server.ensemble().ListEnsembleJobs(&context, request, &response);
-  };
-  EXPECT_THAT(refused(), IsError(grpc::StatusCode::INVALID_ARGUMENT, "INVALID_REQUEST"));
-  EXPECT_THAT(refused().error_message(),
-              HasSubstr("states[1]: is 0; permitted: QUEUED, RUNNING, CANCELLING, SUCCEEDED, "
-                        "FAILED, CANCELLED"));
-  EXPECT_THAT(DetailsOf(refused()).fields,
-              ElementsAre("states[1]", "states[2]", "experiments[0]", "experiments[1]",
-                          "since.seconds", "since.nanos"));
-  request.clear_states();
-  request.clear_experiments();
-  EXPECT_THAT(refused().error_message(),
-              HasSubstr("since.seconds: is 253402300800; permitted: -62135596800 to "
-                        "253402300799"));
-}
-
-TEST(EnsembleService, MillionsOfWrongFiltersAreRefused) {
-  RunningServer server;
-  v1::ListEnsembleJobsRequest request;
-  for (int i = 0; i < 4'000'000; ++i) request.add_states(EnsembleJob::STATE_UNSPECIFIED);
-  grpc::ClientContext context;
-  v1::ListEnsembleJobsResponse response;
-  EXPECT_THAT(server.ensemble().ListEnsembleJobs(&context, request, &response),
-              StatusIs(grpc::StatusCode::INVALID_ARGUMENT, HasSubstr("(and 99 more)")));
-}
-
-TEST(EnsembleService, BadPagesAreRefused) {
-  RunningServer server;
-  const std::string name = server.Submit(Equilibrium(1, 2));
-  for (const char* token : {"x", "!!!", "am9iczotMQ==", "cmVzdWx0czphOjE="}) {
-    grpc::ClientContext context;
-    v1::ListEnsembleJobsRequest request;
-    request.set_page_size(-1);
-    request.set_page_token(token);
-    v1::ListEnsembleJobsResponse response;
-    const grpc::Status status = server.ensemble().ListEnsembleJobs(&context, request, &response);
-    EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT));
-    EXPECT_THAT(DetailsOf(status).fields, ElementsAre("page_size", "page_token")) << token;
-  }
-  grpc::ClientContext context;
-  v1::ListResultsRequest request;
-  request.set_parent(name);
-  request.set_page_size(-5);
-  request.set_page_token("x");
-  request.set_view(static_cast<v1::ListResultsRequest::View>(9));
-  v1::ListResultsResponse response;
-  EXPECT_THAT(DetailsOf(server.ensemble().ListResults(&context, request, &response)).fields,
-              ElementsAre("page_size", "page_token", "view"));
-}
-
-// ---- Updates ----
-
-grpc::Status Update(RunningServer& server, const v1::UpdateEnsembleJobRequest& request,
-                    EnsembleJob* job = nullptr) {
-  grpc::ClientContext context;
-  EnsembleJob answer;
-  const grpc::Status status =
-      server.ensemble().UpdateEnsembleJob(&context, request, job == nullptr ? &answer : job);
-  return status;
-}
-
-v1::UpdateEnsembleJobRequest UpdateRequest(const std::string& name,
-                                           const std::vector<std::string>& paths) {
-  v1::UpdateEnsembleJobRequest request;
-  request.mutable_job()->set_name(name);
-  for (const std::string& path : paths) request.mutable_update_mask()->add_paths(path);
-  return request;
-}
-
-TEST(EnsembleService, AnUpdateSetsTheFieldsOfItsMask) {
-  RunningServer server;
-  const std::string name = server.Succeeded(Equilibrium(1, 2));
-  v1::UpdateEnsembleJobRequest request = UpdateRequest(name, {"pinned"});
-  request.mutable_job()->set_pinned(true);
-  request.mutable_job()->set_priority(500);  // is not in the mask
-  EnsembleJob job;
-  EXPECT_OK(Update(server, request, &job));
-  EXPECT_TRUE(job.pinned());
-  EXPECT_EQ(job.priority(), 0);
-  request = UpdateRequest(name, {"priority"});
-  request.mutable_job()->set_priority(-7);
-  EXPECT_OK(Update(server, request, &job));
-  EXPECT_TRUE(job.pinned());
-  EXPECT_EQ(job.priority(), -7);
-  EXPECT_OK(Update(server, UpdateRequest(name, {"pinned", "priority"})));
-  EXPECT_FALSE(server.Get(name).pinned());
-  EXPECT_EQ(server.Get(name).priority(), 0);
-}
-
-TEST(EnsembleService, WrongMasksAreRefusedWithWhatIsPermitted) {
-  RunningServer server;
-  const std::string name = server.Submit(Equilibrium(1, 2));
-  const std::vector<std::vector<std::string>> masks = {
-      {}, {"*"}, {"spec"}, {"pinned", "state"}, {"job.pinned"}, {""}};
-  for (const auto& paths : masks) {
-    const grpc::Status status = Update(server, UpdateRequest(name, paths));
-    EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT,
-                                 HasSubstr("permitted: pinned, priority")));
-    EXPECT_THAT(DetailsOf(status).fields, ElementsAre("update_mask"));
-  }
-  v1::UpdateEnsembleJobRequest request = UpdateRequest("jobs/1", {"priority"});
-  request.mutable_job()->set_priority(101);
-  EXPECT_THAT(DetailsOf(Update(server, request)).fields, ElementsAre("job.name", "job.priority"));
-  EXPECT_EQ(ReasonOf(Update(server, UpdateRequest("ensembleJobs/none", {"pinned"}))),
-            "JOB_NOT_FOUND");
-}
-
-// ---- Errors ----
 
 // gRPC's own retries obey the metadata.
 TEST(EnsembleService, ALimitThatWaitingCuresTellsHowLong) {
@@ -532,6 +240,157 @@ TEST(EnsembleService, ALimitThatWaitingCuresTellsHowLong) {
   EXPECT_EQ(pushback(6), "");       // TOO_MANY_POINTS
 }
 
+// ---- Cancel, Delete, Update ----
+
+TEST(EnsembleService, ACancelledJobEndsAndKeepsItsFinishedPoints) {
+  Gate gate;
+  RunningServer server(
+      {.factory = FakeExperiments([&gate](size_t point, uint64_t, std::stop_token stop) {
+         if (point >= 2) gate.Pass(stop);
+       })});
+  const std::string name = server.Submit(Equilibrium(5, 10));
+  gate.AwaitWaiting(2);
+  ASSERT_OK(server.Cancel(name));
+  EXPECT_EQ(server.AwaitEnd(name).state(), EnsembleJob::CANCELLED);
+  EXPECT_EQ(server.ResultBytes(name).size(), 2u);
+  EXPECT_EQ(server.Get(name).progress().points_done(), 2);
+}
+
+TEST(EnsembleService, OnlyARetryCancelsAnEndedJob) {
+  Gate gate;
+  RunningServer server({.factory = GatedExperiments(gate, 3)});
+  const std::string name = server.Submit(Equilibrium(1, 100));
+  ASSERT_OK(server.Cancel(name, kUuid));
+  server.AwaitEnd(name);
+  EXPECT_OK(server.Cancel(name, kUuid));
+  const grpc::Status status = server.Cancel(name, kOtherUuid);
+  EXPECT_THAT(status, IsError(grpc::StatusCode::FAILED_PRECONDITION, "JOB_ALREADY_ENDED"));
+  EXPECT_THAT(status.error_message(), HasSubstr("CANCELLED"));
+}
+
+TEST(EnsembleService, OnlyAnEndedJobCanBeDeleted) {
+  Gate gate;
+  RunningServer server({.factory = GatedExperiments(gate, 3)});
+  const std::string name = server.Submit(Equilibrium(1, 100));
+  EXPECT_THAT(server.Delete(name),
+              IsError(grpc::StatusCode::FAILED_PRECONDITION, "JOB_STILL_ACTIVE"));
+  gate.Open();
+  server.AwaitEnd(name);
+  EXPECT_OK(server.Delete(name));
+  EXPECT_THAT(server.Delete(name), IsError(grpc::StatusCode::NOT_FOUND, "JOB_NOT_FOUND"));
+}
+
+TEST(EnsembleService, AnUpdateSetsTheFieldsOfItsMask) {
+  RunningServer server;
+  const std::string name = server.Succeeded(Equilibrium(1, 2));
+  v1::UpdateEnsembleJobRequest request = UpdateRequest(name, {"pinned"});
+  request.mutable_job()->set_pinned(true);
+  request.mutable_job()->set_priority(500);  // is not in the mask
+  EnsembleJob job;
+  EXPECT_OK(Update(server, request, &job));
+  EXPECT_TRUE(job.pinned());
+  EXPECT_EQ(job.priority(), 0);
+  request = UpdateRequest(name, {"priority"});
+  request.mutable_job()->set_priority(-7);
+  EXPECT_OK(Update(server, request, &job));
+  EXPECT_TRUE(job.pinned());
+  EXPECT_EQ(job.priority(), -7);
+  EXPECT_OK(Update(server, UpdateRequest(name, {"pinned", "priority"}), &job));
+  EXPECT_FALSE(server.Get(name).pinned());
+  EXPECT_EQ(server.Get(name).priority(), 0);
+}
+
+// ---- List ----
+
+std::vector<std::string> NamesOf(const v1::ListEnsembleJobsResponse& page) {
+  std::vector<std::string> names;
+  for (const EnsembleJob& job : page.jobs()) names.push_back(job.name());
+  return names;
+}
+
+TEST(EnsembleService, JobsAreListedNewestFirstInPages) {
+  RunningServer server;
+  std::vector<std::string> names;
+  for (int i = 0; i < 5; ++i) names.insert(names.begin(), server.Submit(Equilibrium(1, 2)));
+  std::vector<std::string> listed;
+  std::vector<int> sizes;
+  v1::ListEnsembleJobsRequest request;
+  request.set_page_size(2);
+  for (const auto& page : server.Pages(request)) {
+    for (const auto& job : page.jobs()) listed.push_back(job.name());
+    sizes.push_back(page.jobs_size());
+  }
+  EXPECT_EQ(listed, names);
+  EXPECT_THAT(sizes, ElementsAre(2, 2, 1));
+}
+
+TEST(EnsembleService, PagesOfLargeJobsStayBelowTwoMebibytes) {
+  Gate gate;
+  RunningServer server({.factory = GatedExperiments(gate)});
+  for (int i = 0; i < 4; ++i) server.Submit(LargeEquilibrium());
+  const auto pages = server.Pages(v1::ListEnsembleJobsRequest());
+  int listed = 0;
+  for (const auto& page : pages) {
+    EXPECT_LT(page.ByteSizeLong(), size_t{2} << 20);
+    listed += page.jobs_size();
+  }
+  EXPECT_EQ(listed, 4);
+  EXPECT_EQ(pages.size(), 2u);
+}
+
+TEST(EnsembleService, JobsAreFilteredByStateExperimentAndTime) {
+  Gate gate;
+  RunningServer server(
+      {.workers = 1,
+       .factory = FakeExperimentsBySeed([&](uint64_t seed, size_t, uint64_t, std::stop_token stop) {
+         if (seed == 42) gate.Pass(stop);
+       })});
+  const std::string succeeded = server.Succeeded(Equilibrium(1, 2));
+  const std::string running = server.Submit(SmallFirstHit());
+  gate.AwaitWaiting(1);
+  const std::string queued = server.Submit(Equilibrium(1, 2, 3));  // the only worker waits
+  const auto listed = [&](const std::function<void(v1::ListEnsembleJobsRequest&)>& filter) {
+    v1::ListEnsembleJobsRequest request;
+    filter(request);
+    return NamesOf(server.List(request));
+  };
+  EXPECT_THAT(listed([](auto&) {}), ElementsAre(queued, running, succeeded));
+  EXPECT_THAT(listed([](auto& r) { r.add_states(EnsembleJob::RUNNING); }), ElementsAre(running));
+  EXPECT_THAT(listed([](auto& r) {
+                r.add_states(EnsembleJob::SUCCEEDED);
+                r.add_states(EnsembleJob::QUEUED);
+              }),
+              ElementsAre(queued, succeeded));
+  EXPECT_THAT(listed([](auto& r) { r.add_experiments(v1::EnsembleSpec::FIRST_HIT); }),
+              ElementsAre(running));
+  EXPECT_THAT(listed([&](auto& r) { *r.mutable_since() = server.Get(running).create_time(); }),
+              ElementsAre(queued, running));
+  EXPECT_THAT(listed([](auto& r) { r.mutable_since()->set_seconds(253'402'300'799); }),
+              ElementsAre());  // the end of the year 9999
+}
+
+// The view and the size of the page may change from page to page.
+TEST(EnsembleService, APageTokenIsValidOnlyWithItsFilters) {
+  RunningServer server;
+  const std::string oldest = server.Succeeded(Equilibrium(1, 2, 1));
+  const std::string older = server.Submit(Equilibrium(1, 2, 2));
+  server.Submit(Equilibrium(1, 2, 3));
+  v1::ListEnsembleJobsRequest request;
+  request.add_experiments(v1::EnsembleSpec::EQUILIBRIUM);
+  request.set_page_size(1);
+  request.set_page_token(server.List(request).next_page_token());
+  request.set_page_size(2);
+  request.set_view(v1::ListEnsembleJobsRequest::BASIC);
+  EXPECT_THAT(NamesOf(server.List(request)), ElementsAre(older, oldest));
+  v1::ListEnsembleJobsRequest states = request, experiments = request, since = request;
+  states.add_states(EnsembleJob::SUCCEEDED);
+  experiments.clear_experiments();
+  since.mutable_since()->set_seconds(1);
+  for (const auto& other : {states, experiments, since}) {
+    EXPECT_THAT(DetailsOf(ListError(server, other)).fields, ElementsAre("page_token"));
+  }
+}
+
 // ---- Results ----
 
 TEST(EnsembleService, ResultsComeInGridOrderInPages) {
@@ -552,6 +411,23 @@ TEST(EnsembleService, ResultsComeInGridOrderInPages) {
   }
   EXPECT_THAT(sizes, ElementsAre(10, 10, 5));
   for (int i = 0; i < 25; ++i) EXPECT_EQ(indices[static_cast<size_t>(i)], i);
+}
+
+TEST(EnsembleService, AnUnfinishedPointIsReadOnRequestOnly) {
+  Gate gate;
+  RunningServer server({.factory = GatedExperiments(gate, 3)});
+  v1::GetResultRequest request;
+  request.set_name(server.Submit(Equilibrium(1, 100)) + "/results/0");
+  gate.AwaitWaiting(2);  // three blocks are merged; the others wait
+  v1::PointResult result;
+  const auto get = [&] {
+    grpc::ClientContext context;
+    return server.ensemble().GetResult(&context, request, &result);
+  };
+  EXPECT_EQ(ReasonOf(get()), "RESULT_NOT_FOUND");
+  request.set_unfinished(true);
+  EXPECT_OK(get());
+  EXPECT_EQ(result.samples(), 3 * kFakeSamplesPerBlock);
 }
 
 TEST(EnsembleService, TheBasicViewHasNoHistograms) {

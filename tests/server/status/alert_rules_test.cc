@@ -5,7 +5,6 @@
 #include <string>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/support/files.h"
 #include "tests/support/paths.h"
 
@@ -38,10 +37,6 @@ TEST(AlertRules, EveryMetricIsServed) {
   const auto named = MetricsNamedIn(Contents(SourcePath("server/prometheus/alerts.yml")));
   EXPECT_THAT(named, Contains("ballpiston_store_failing"));
   EXPECT_THAT(ServedMetrics(), IsSupersetOf(named));
-}
-
-TEST(AlertRules, AMissingMetricIsDetected) {
-  EXPECT_THAT(ServedMetrics(), Not(IsSupersetOf(MetricsNamedIn("ballpiston_disk_failing == 1"))));
 }
 
 }  // namespace

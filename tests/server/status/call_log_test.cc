@@ -1,12 +1,10 @@
 // The log lines of calls and jobs.
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "prometheus/text_serializer.h"
 #include "server/status/call_observer.h"
 #include "tests/server/fake_experiments.h"
@@ -62,17 +60,6 @@ TEST(CallLog, AJobsLifeIsLoggedWithJobPrincipalAndRequest) {
                                HasSubstr(absl::StrCat(" samples=", 2 * 3 * kFakeSamplesPerBlock))),
                          HasSubstr("job deleted")));
   EXPECT_THAT(lines, Each(AllOf(HasSubstr("job=" + name), HasSubstr("principal=local"))));
-}
-
-TEST(CallLog, AFailedJobSaysWhy) {
-  const auto lines = LinesOf([] {
-    RunningServer server({.factory = FakeExperiments([](size_t, uint64_t, std::stop_token) {
-                            throw std::runtime_error("line one\nline two");
-                          })});
-    server.AwaitEnd(server.Submit(Equilibrium(1, 3)));
-  });
-  EXPECT_THAT(lines,
-              Contains(AllOf(HasSubstr("warning: job failed"), HasSubstr("line one\\nline two"))));
 }
 
 TEST(CallLog, CallsOverALimitAreLoggedAndInvalidCallsAreNot) {

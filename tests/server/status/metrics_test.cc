@@ -4,17 +4,16 @@
 #include <optional>
 #include <sstream>
 #include <string>
-#include <thread>
 
 #include "gmock/gmock.h"
 #include "grpcpp/generic/generic_stub.h"
-#include "gtest/gtest.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/http_get.h"
 #include "tests/server/requests.h"
 #include "tests/server/rpc/watch_stream.h"
 #include "tests/server/running_server.h"
+#include "tests/server/unread_call.h"
 #include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
@@ -80,27 +79,9 @@ TEST_F(MetricsTest, AHealthWatchEndedByItsClientIsNotLogged) {
   testing::internal::CaptureStderr();
   RunningServer& server = Start();
   {
-    grpc::ClientContext context;
-    grpc::CompletionQueue queue;
-    const auto await = [&queue] {
-      void* tag = nullptr;
-      bool ok = false;
-      return queue.Next(&tag, &ok) && ok;
-    };
-    grpc::GenericStub stub(server.channel());
-    const auto call = stub.PrepareCall(&context, kWatchHealth, &queue);
-    call->StartCall(nullptr);
-    ASSERT_TRUE(await());
-    const grpc::Slice whole_server(kWholeServer);
-    call->WriteLast(grpc::ByteBuffer(&whole_server, 1), {}, nullptr);
-    ASSERT_TRUE(await());
-    grpc::ByteBuffer state;
-    call->Read(&state, nullptr);
-    ASSERT_TRUE(await());
-    context.TryCancel();
-    grpc::Status status;
-    call->Finish(&status, nullptr);
-    await();
+    UnreadCall watch(server.channel(), kWatchHealth);
+    watch.Send(kWholeServer);
+    watch.AwaitAnswer();
   }
   const auto ended_as = [this](const std::string& code) {
     const auto metrics = Metrics();
@@ -113,22 +94,6 @@ TEST_F(MetricsTest, AHealthWatchEndedByItsClientIsNotLogged) {
   AwaitThat([&] { return ended_as("CANCELLED") + ended_as("UNKNOWN") > 0; });
   EXPECT_EQ(ended_as("CANCELLED"), 1);
   EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::Not(HasSubstr("call failed")));
-}
-
-TEST_F(MetricsTest, MethodsAndReasonsAreListedBeforeTheFirstCall) {
-  Start();
-  EXPECT_THAT(Address(), StartsWith("127.0.0.1:"));  // the HTTP server accepts no names
-  EXPECT_THAT(StartError({.metrics_listen = Address()}),
-              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr(Address())));
-  const auto metrics = Metrics();
-  EXPECT_THAT(metrics, Contains(Pair(kCreated, 0)));
-  EXPECT_THAT(metrics, Contains(Key("grpc_server_started_total{grpc_method=\"GetServerStatus\","
-                                    "grpc_service=\"ballpiston.v1.ServerService\","
-                                    "grpc_type=\"unary\"}")));
-  for (const char* counter : {"ballpiston_failed_authentications_total{reason=\"ROLE_TOO_LOW\"}",
-                              "ballpiston_limit_refusals_total{reason=\"QUEUE_FULL\"}"}) {
-    EXPECT_THAT(metrics, Contains(Pair(counter, 0)));
-  }
 }
 
 TEST_F(MetricsTest, CountersCountCallsJobsAndBlocks) {

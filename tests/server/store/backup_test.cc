@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/store/check_store.h"
 #include "server/store/schema.h"
 #include "tests/server/fake_experiments.h"
@@ -117,12 +116,6 @@ TEST_F(BackupTest, ADamagedPageIsReported) {
   EXPECT_FALSE(std::filesystem::exists(Copy()));
 }
 
-TEST_F(BackupTest, OnlyAStoreIsChecked) {
-  EXPECT_THAT(CheckStore(Store()), StatusIs(absl::StatusCode::kNotFound));
-  WriteFile(Store(), std::string(5000, 'x'));
-  EXPECT_THAT(CheckStore(Store()), StatusIs(absl::StatusCode::kFailedPrecondition));
-}
-
 TEST_F(BackupTest, ACopyIsOneFileOfMode0600) {
   MakeStore();
   ASSERT_OK_AND_ASSIGN(const auto summary, BackupStore(Store(), Copy()));
@@ -139,13 +132,6 @@ TEST_F(BackupTest, AnExistingFileIsNotOverwritten) {
   WriteFile(Copy(), "precious");
   EXPECT_THAT(BackupStore(Store(), Copy()), StatusIs(absl::StatusCode::kAlreadyExists));
   EXPECT_EQ(Contents(Copy()), "precious");
-}
-
-TEST_F(BackupTest, AMissingFolderIsReported) {
-  MakeStore();
-  EXPECT_THAT(BackupStore(Store(), folder_.File("no/copy")),
-              StatusIs(absl::StatusCode::kPermissionDenied));
-  EXPECT_THAT(BackupStore(folder_.File("none"), Copy()), StatusIs(absl::StatusCode::kNotFound));
 }
 
 TEST_F(BackupTest, ARestoredCopyResumesToTheSameBytes) {
@@ -195,30 +181,6 @@ TEST_F(BackupTest, CopiesMadeWhileAServerWorksAreSound) {
   }
   done = true;
   client.join();
-}
-
-TEST_F(BackupTest, TheSizeIncludesTheLog) {
-  RunningServer server({.data_dir = folder_.path()});
-  server.Succeeded(Equilibrium(2, 3));
-  const auto log = std::filesystem::file_size(Store() + "-wal");
-  ASSERT_GT(log, 0u);
-  ASSERT_OK_AND_ASSIGN(const auto summary, CheckStore(Store()));
-  EXPECT_EQ(static_cast<uintmax_t>(summary.bytes), std::filesystem::file_size(Store()) + log);
-}
-
-// Neither the file nor its log changes. A checkpoint would write the log back.
-TEST_F(BackupTest, TheStoreIsNotWrittenByCopyingAndChecking) {
-  MakeStore();
-  RunningServer server({.data_dir = folder_.path()});
-  server.Succeeded(Equilibrium(2, 3));
-  server.AwaitEnd(unfinished_);  // nothing is left to write
-  const std::string file = Contents(Store());
-  const std::string log = Contents(Store() + "-wal");
-  ASSERT_FALSE(log.empty());
-  ASSERT_OK(BackupStore(Store(), Copy()));
-  ASSERT_OK(CheckStore(Store()));
-  EXPECT_EQ(Contents(Store()), file);
-  EXPECT_EQ(Contents(Store() + "-wal"), log);
 }
 
 }  // namespace

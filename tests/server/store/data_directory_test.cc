@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -67,65 +66,47 @@ TEST_F(DataFolder, ANewFolderHasMode0700WhateverTheMask) {
   EXPECT_EQ(Mode(), 0700u);
 }
 
-TEST_F(DataFolder, AnOpenEmptyFolderIsClosedAndThatIsLogged) {
-  for (const mode_t mode : {0755u, 0750u, 0711u, 0777u, 0770u}) {
-    Make(mode);
+// Which existing folders a server takes: other users may read files of a folder that was open.
+TEST_F(DataFolder, AFolderIsClosedIfNothingButAServersFilesIsInIt) {
+  const struct {
+    mode_t mode;
+    std::vector<std::string> files;
+    mode_t afterwards;
+    std::string refusal;
+  } rows[] = {{0755, {}, 0700, ""},
+              {0711, {}, 0700, ""},
+              {0770, {}, 0700, ""},
+              {0755, {"lock", "notes.txt"}, 0700, ""},
+              {0755, {"store.sqlite3", "notes.txt"}, 0700, ""},
+              {0755, {"server.log"}, 0700, ""},  // of a client that starts a server
+              {0700, {"thesis.tex"}, 0700, ""},
+              {0755, {"thesis.tex"}, 0755, "mode 0755"},
+              {01777, {}, 01777, "mode 1777"}};
+  for (const auto& row : rows) {
+    Make(row.mode);
+    for (const std::string& name : row.files) WriteFile(path_ + "/" + name, "");
+    SCOPED_TRACE(testing::PrintToString(row.files));
     ::testing::internal::CaptureStderr();
-    EXPECT_OK(DataDirectory::Open(path_));
-    EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("is 0700 now"));
-    EXPECT_EQ(Mode(), 0700u);
-  }
-}
-
-TEST_F(DataFolder, AnOpenFolderOfAServerIsClosedWhateverElseIsInIt) {
-  for (const char* name : {"lock", "store.sqlite3"}) {
-    Make(0755);
-    WriteFile(path_ + "/" + name, "");
-    WriteFile(path_ + "/notes.txt", "");
-    EXPECT_OK(DataDirectory::Open(path_)) << name;
-    EXPECT_EQ(Mode(), 0700u) << name;
+    const auto directory = DataDirectory::Open(path_);
+    const std::string log = ::testing::internal::GetCapturedStderr();
+    EXPECT_EQ(Mode(), row.afterwards);
+    EXPECT_EQ(log.find("is 0700 now") != log.npos, row.mode != row.afterwards);
+    if (row.refusal.empty()) {
+      EXPECT_OK(directory);
+    } else {
+      EXPECT_THAT(directory, StatusIs(absl::StatusCode::kPermissionDenied,
+                                      testing::AllOf(HasSubstr(row.refusal), HasSubstr(path_))));
+      EXPECT_FALSE(std::filesystem::exists(path_ + "/lock"));
+    }
     std::filesystem::remove_all(path_);
   }
 }
 
-// A client that starts a server creates the log file before.
-TEST_F(DataFolder, AnOpenFolderWithOnlyAClientsLogIsClosed) {
-  Make(0755);
-  WriteFile(path_ + "/server.log", "");
-  EXPECT_OK(DataDirectory::Open(path_));
-  EXPECT_EQ(Mode(), 0700u);
-}
-
-// Other users may read these files.
-TEST_F(DataFolder, AnOpenFolderWithOtherFilesIsRefusedAndUnchanged) {
-  Make(0755);
-  WriteFile(path_ + "/thesis.tex", "");
-  std::filesystem::create_symlink("/run/lock", path_ + "/lock");  // as in /var
-  const auto directory = DataDirectory::Open(path_);
-  EXPECT_THAT(directory, StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("mode 0755")));
-  EXPECT_THAT(std::string(directory.status().message()), HasSubstr(path_ + "/ballpiston"));
-  EXPECT_EQ(Mode(), 0755u);
-}
-
-TEST_F(DataFolder, AClosedFolderWithOtherFilesIsAccepted) {
-  Make(0700);
-  WriteFile(path_ + "/thesis.tex", "");
-  EXPECT_OK(DataDirectory::Open(path_));
-}
-
-TEST_F(DataFolder, AClosedFolderIsUnchangedAndNothingIsLogged) {
-  Make(0700);
-  ::testing::internal::CaptureStderr();
-  EXPECT_OK(DataDirectory::Open(path_));
-  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-}
-
-TEST_F(DataFolder, AFolderOfAllUsersIsRefusedAndUnchanged) {
-  Make(01777);
-  const auto directory = DataDirectory::Open(path_);
-  EXPECT_THAT(directory, StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("mode 1777")));
-  EXPECT_EQ(Mode(), 01777u);
-  EXPECT_TRUE(std::filesystem::is_empty(path_));  // not even a lock
+TEST_F(DataFolder, AFileInItsPlaceIsRefused) {
+  WriteFile(path_, "x");
+  for (const std::string& path : {path_, path_ + "/below"}) {
+    EXPECT_THAT(DataDirectory::Open(path), StatusIs(absl::StatusCode::kPermissionDenied));
+  }
 }
 
 TEST_F(DataFolder, AnOpenFolderOfAnotherUserIsRefused) {

@@ -1,23 +1,17 @@
 #include "server/store/store.h"
 
-#include <sys/stat.h>
-
-#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <new>
 #include <optional>
-#include <stop_token>
 #include <thread>
 #include <vector>
 
 #include "absl/time/clock.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/store/data_directory.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
-#include "server/store/schema.h"
 #include "tests/server/hanging_disk.h"
 #include "tests/server/store_access.h"
 #include "tests/support/await.h"
@@ -139,15 +133,6 @@ TEST_F(StoreTest, TheReaderCannotWrite) {
   EXPECT_FALSE(store->Read([](Database& database) { database.Execute("DELETE FROM jobs"); }).ok());
 }
 
-TEST_F(StoreTest, ANewerVersionIsRefusedAndUntouched) {
-  Open().reset();
-  ChangeStore(File(), "PRAGMA user_version = 99");
-  const std::string before = Contents(File());
-  const auto store = Store::Open(File(), {});
-  EXPECT_THAT(store, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("version 99")));
-  EXPECT_EQ(Contents(File()), before);
-}
-
 TEST_F(StoreTest, APilotIsFoundByItsEngineAndItsPlaceAlone) {
   const PilotPlace in_equilibrium = {.rho = 0.53, .delta = 0.1};
   const PilotPlace at_zero = {.rho = 0.53, .delta = 0.1, .epsilon = 0.0};
@@ -178,37 +163,6 @@ TEST_F(StoreTest, APilotIsFoundByItsEngineAndItsPlaceAlone) {
   EXPECT_FALSE(StoredPilot(*store, "3", from_energy));
   EXPECT_FALSE(StoredPilot(*store, "2", {.rho = 0.53, .delta = 0.2}));
   EXPECT_FALSE(StoredPilot(*store, "2", {.rho = 0.54, .delta = 0.1}));
-}
-
-TEST_F(StoreTest, AFileThatIsNotADatabaseIsRejectedAndUnchanged) {
-  WriteFile(File(), std::string(5000, 'x'));
-  const auto store = Store::Open(File(), {});
-  EXPECT_THAT(store, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("damaged")));
-  EXPECT_EQ(Contents(File()), std::string(5000, 'x'));
-}
-
-TEST_F(StoreTest, ADamagedPageIsRefusedAndUntouched) {
-  {
-    const auto store = Open();
-    for (int i = 0; i < 200; ++i) Insert(*store, Record("job-" + std::to_string(i)));
-  }
-  std::string contents = Contents(File());
-  ASSERT_GT(contents.size(), 20000u);
-  // From the second page on, because the first page has the schema.
-  contents.replace(4096, contents.size() - 4096, contents.size() - 4096, '\x55');
-  WriteFile(File(), contents);
-  const auto store = Store::Open(File(), {});
-  EXPECT_THAT(store, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("damaged")));
-  EXPECT_EQ(Contents(File()), contents);
-}
-
-TEST_F(StoreTest, ATruncatedFileIsRefused) {
-  {
-    const auto store = Open();
-    for (int i = 0; i < 200; ++i) Insert(*store, Record("job-" + std::to_string(i)));
-  }
-  std::filesystem::resize_file(File(), std::filesystem::file_size(File()) / 2);
-  EXPECT_THAT(Store::Open(File(), {}), StatusIs(absl::StatusCode::kFailedPrecondition));
 }
 
 // SQLite may make an empty log and an index beside the file.
@@ -265,30 +219,6 @@ TEST_F(StoreTest, EveryKindOfWrongFileIsRefusedAndUntouched) {
   }
 }
 
-TEST_F(StoreTest, AFolderInItsPlaceIsRefused) {
-  std::filesystem::create_directory(File());
-  const auto store = Store::Open(File(), {});
-  EXPECT_THAT(store, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("is a folder")));
-  EXPECT_TRUE(std::filesystem::is_directory(File()));
-}
-
-TEST_F(StoreTest, AnEmptyFileBecomesAStore) {
-  WriteFile(File(), "");
-  EXPECT_GT(Insert(*Open(), Record("a")), 0);
-}
-
-// The log of a store that was in use, put beside another.
-TEST_F(StoreTest, TheLogOfAnotherStoreIsRejected) {
-  TemporaryFolder other;
-  MakeStore(other.File("store.sqlite3"), 20);
-  // The log has only some of the store's pages. A log with all pages would be a whole store.
-  const auto used = Store::Open(other.File("store.sqlite3"), {});
-  Insert(**used, Record("other"));
-  MakeStore(File(), 200);
-  std::filesystem::copy_file(other.File("store.sqlite3-wal"), File() + "-wal");
-  ExpectRefusedAndUntouched(File(), "damaged");
-}
-
 TEST_F(StoreTest, AnImpossibleWriteIsRejectedAlone) {
   const auto store = Open({.delay = kNever});
   const auto broken = [](Database& database) {
@@ -336,21 +266,6 @@ TEST_F(StoreTest, AChangeThatRunsOutOfMemoryIsRetried) {
   EXPECT_EQ(Checkpoint(*store, 1, 0), "kept");
 }
 
-TEST_F(StoreTest, AnotherProgramsDatabaseIsRefused) {
-  ChangeStore(File(), "CREATE TABLE recipes (name TEXT)");
-  const auto store = Store::Open(File(), {});
-  EXPECT_THAT(std::string(store.status().message()), HasSubstr("not a ballpiston store"));
-}
-
-TEST_F(StoreTest, TheLastCheckpointCounts) {
-  const auto store = Open();
-  store->RecordCheckpoint(1, 2, 0, [] { return "first"; });
-  ASSERT_OK(store->Flush());
-  store->RecordCheckpoint(1, 2, 0, [] { return "second"; });
-  ASSERT_OK(store->Flush());
-  EXPECT_EQ(Checkpoint(*store, 1, 2), "second");
-}
-
 TEST_F(StoreTest, TheFirstWriterOfAResultWins) {
   const auto store = Open();
   store->RecordResult(1, {2, 10, "first"});
@@ -380,17 +295,6 @@ TEST_F(StoreTest, OnlyTheLastCheckpointOfAGroupIsWritten) {
   EXPECT_EQ(Checkpoint(*store, 1, 0), "9");
 }
 
-TEST_F(StoreTest, ConcurrentCommitsShareTheDisksTime) {
-  const auto store = Open();
-  std::vector<std::thread> threads;
-  for (int i = 0; i < 64; ++i) {
-    threads.emplace_back([&, i] { Insert(*store, Record("job-" + std::to_string(i))); });
-  }
-  for (std::thread& thread : threads) thread.join();
-  for (int i = 0; i < 64; ++i) EXPECT_TRUE(Find(*store, "job-" + std::to_string(i)));
-  EXPECT_LE(store->counts().commits, 64);
-}
-
 TEST_F(StoreTest, CheckpointsOfAFinishedPointAreNeitherWrittenNorKept) {
   const auto store = Open({.delay = kNever});
   store->RecordCheckpoint(1, 0, 0, [] { return "r"; });
@@ -405,14 +309,6 @@ TEST_F(StoreTest, CheckpointsOfAFinishedPointAreNeitherWrittenNorKept) {
   EXPECT_EQ(Checkpoint(*store, 1, 5), "other");
 }
 
-TEST_F(StoreTest, ClosingWritesWhatIsPending) {
-  {
-    const auto store = Open({.delay = kNever});
-    store->RecordCheckpoint(1, 0, 0, [] { return "r"; });
-  }
-  EXPECT_EQ(Checkpoint(*Open(), 1, 0), "r");
-}
-
 TEST_F(StoreTest, DoneIsCalledInOrderAfterTheCommit) {
   const auto store = Open();
   std::vector<int> order;
@@ -425,30 +321,6 @@ TEST_F(StoreTest, DoneIsCalledInOrderAfterTheCommit) {
   }
   ASSERT_OK(store->Flush());
   EXPECT_THAT(order, testing::ElementsAre(0, 1, 2, 3, 4));
-}
-
-TEST_F(StoreTest, AFailedCommitReturnsItsErrorAndHasNoEffect) {
-  const auto store = Open();
-  const absl::Status failed = store->Commit([](Database& database) {
-    JobRecord record = Record("half");
-    InsertJob(database, record);
-    database.Fail(absl::UnavailableError("disk full"));
-  });
-  EXPECT_THAT(failed, StatusIs(absl::StatusCode::kUnavailable));
-  EXPECT_FALSE(Find(*store, "half"));
-}
-
-TEST_F(StoreTest, RecordsAreRetriedUntilTheDiskWorks) {
-  const auto store =
-      Open({.delay = std::chrono::milliseconds(1), .retry = std::chrono::milliseconds(1)});
-  int attempts = 0;
-  store->RecordCheckpoint(1, 0, 0, [] { return "kept"; });
-  store->Record([&](Database& database) {
-    if (++attempts < 4) database.Fail(absl::UnavailableError("disk full"));
-  });
-  AwaitThat([&] { return store->Flush().ok(); });
-  EXPECT_EQ(attempts, 4);
-  EXPECT_EQ(Checkpoint(*store, 1, 0), "kept");
 }
 
 TEST_F(StoreTest, AHangingDiskRejectsRequestsAndServesReads) {
@@ -472,35 +344,6 @@ TEST_F(StoreTest, AHangingDiskRejectsRequestsAndServesReads) {
   EXPECT_TRUE(run);
 }
 
-// A server that stops has a deadline.
-TEST_F(StoreTest, AFlushDoesNotWaitForAHangingDisk) {
-  HangingDisk disk;
-  const auto store = *Store::Open(folder_.File("store"),
-                                  {.stall = std::chrono::milliseconds(50), .vfs = disk.vfs()});
-  disk.Hang();
-  store->RecordSoon(WriteSomething);
-  disk.AwaitHanging();
-  EXPECT_THAT(store->Flush(), StatusIs(absl::StatusCode::kUnavailable));
-  disk.Resume();
-  AwaitThat([&] { return store->Flush().ok(); });
-}
-
-// Closing waits for the calls that read.
-TEST_F(StoreTest, EachReaderGetsAConnectionInTurn) {
-  const auto store = Open({.readers = 2});
-  std::atomic<int> read = 0;
-  std::vector<std::thread> threads;
-  for (int i = 0; i < 16; ++i) {
-    threads.emplace_back([&] {
-      EXPECT_OK(store->Read(
-          [](Database& database) { return database.Integer("SELECT count(*) FROM jobs"); }));
-      ++read;
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(read, 16);
-}
-
 // Else the next reader would get a connection whose transaction is open.
 TEST_F(StoreTest, AReadThatThrowsEndsItsTransaction) {
   const auto store = Open({.readers = 1});
@@ -511,21 +354,6 @@ TEST_F(StoreTest, AReadThatThrowsEndsItsTransaction) {
   const auto run_out_of_memory = [](Database&) { throw std::bad_alloc(); };
   EXPECT_THROW(store->Read(run_out_of_memory).IgnoreError(), std::bad_alloc);
   EXPECT_OK(store->Read(count));
-}
-
-TEST_F(StoreTest, JobsAreReadOneByOneUntilTheReaderStops) {
-  const auto store = *Store::Open(folder_.File("store"), {.stall = kNever});
-  for (const char* id : {"a", "b", "c", "d"}) Insert(*store, Record(id));
-  std::vector<std::string> read;
-  const auto take = [&](const JobRecord& job) {
-    read.push_back(job.id + job.spec.grid);
-    return read.size() % 2 == 1;
-  };
-  for (const Grid grid : {Grid::kIncluded, Grid::kLeftOut}) {
-    ASSERT_OK(store->Read(
-        [&](Database& database) { ReadJobs(database, std::nullopt, 1000, grid, take); }));
-  }
-  EXPECT_THAT(read, testing::ElementsAre("dgrid", "cgrid", "d", "c"));
 }
 
 // A batch of two groups: each result has more bytes than half a group.
@@ -544,93 +372,12 @@ TEST_F(StoreTest, AWriteIsToldWhenItsOwnGroupIsCommitted) {
   EXPECT_THAT(stored, testing::ElementsAre(1, 2));
 }
 
-TEST_F(StoreTest, AfterClosingWritesFail) {
-  const auto store = Open();
-  store->Close();
-  EXPECT_THAT(store->Flush(), StatusIs(absl::StatusCode::kUnavailable));
-  EXPECT_THAT(store->Read([](Database&) {}), StatusIs(absl::StatusCode::kUnavailable));
-}
-
 TEST_F(StoreTest, AnEarlierCancellationWinsOverTheEnd) {
   const auto store = Open();
   const int64_t job = Insert(*store, Record("a"));
   EXPECT_TRUE(Cancel(*store, job));
   EXPECT_EQ(End(*store, job, v1::EnsembleJob::SUCCEEDED), v1::EnsembleJob::CANCELLED);
   EXPECT_EQ(Find(*store, "a")->error, "");
-}
-
-TEST_F(StoreTest, ALaterCancellationHasNoEffect) {
-  const auto store = Open();
-  const int64_t job = Insert(*store, Record("a"));
-  EXPECT_EQ(End(*store, job, v1::EnsembleJob::SUCCEEDED), v1::EnsembleJob::SUCCEEDED);
-  EXPECT_FALSE(Cancel(*store, job));
-  EXPECT_EQ(Find(*store, "a")->state, v1::EnsembleJob::SUCCEEDED);
-}
-
-TEST_F(StoreTest, AnEndedJobKeepsItsProgressAndNoBlocks) {
-  const auto store = Open();
-  const int64_t job = Insert(*store, Record("a"));
-  store->RecordCheckpoint(job, 0, 0, [] { return "r"; });
-  End(*store, job, v1::EnsembleJob::FAILED);
-  const auto found = Find(*store, "a");
-  EXPECT_EQ(found->numbers.points_done, 2);
-  EXPECT_EQ(found->numbers.samples, 7.5);
-  EXPECT_EQ(found->numbers.work, 0.25);
-  EXPECT_EQ(found->error, "why");
-  EXPECT_TRUE(found->end_time);
-  EXPECT_FALSE(Checkpoint(*store, job, 0));
-}
-
-TEST_F(StoreTest, ADeletedJobLeavesNothingAndItsSequenceIsNotUsedAgain) {
-  const auto store = Open();
-  const int64_t job = Insert(*store, Record("a"));
-  store->RecordResult(job, {0, 1, "r"});
-  ASSERT_OK(store->CommitDeletion([&](Database& database) { DeleteJob(database, job); }));
-  EXPECT_FALSE(Find(*store, "a"));
-  AwaitThat([&] { return Results(*store, job).empty(); });
-  EXPECT_GT(Insert(*store, Record("a")), job);
-}
-
-TEST_F(StoreTest, ARestartForAnotherEngineDropsTheResults) {
-  const auto store = Open();
-  JobRecord record = Record("a");
-  const int64_t job = record.sequence = Insert(*store, record);
-  store->RecordResult(job, {0, 1, "r"});
-  store->RecordCheckpoint(job, 1, 0, [] { return "r"; });
-  record.engine_version = "2";
-  ASSERT_OK(store->Commit([&](Database& database) { RestartJob(database, record); }));
-  EXPECT_TRUE(Results(*store, job).empty());
-  EXPECT_FALSE(Checkpoint(*store, job, 1));
-  EXPECT_EQ(Find(*store, "a")->engine_version, "2");
-}
-
-TEST(DataDirectory, IsMadeForItsOwnerOnly) {
-  TemporaryFolder folder;
-  const auto directory = DataDirectory::Open(folder.File("a/b"));
-  ASSERT_OK(directory);
-  struct stat found {};
-  ASSERT_EQ(stat(directory->path().c_str(), &found), 0);
-  EXPECT_EQ(found.st_mode & 0777, 0700u);
-}
-
-TEST(DataDirectory, IsHeldByOneAtATime) {
-  TemporaryFolder folder;
-  {
-    const auto first = DataDirectory::Open(folder.path());
-    ASSERT_OK(first);
-    const auto second = DataDirectory::Open(folder.path());
-    EXPECT_THAT(second, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("in use")));
-  }
-  EXPECT_OK(DataDirectory::Open(folder.path()));
-}
-
-TEST(DataDirectory, AFileInItsPlaceIsNotWritable) {
-  TemporaryFolder folder;
-  WriteFile(folder.File("file"), "x");
-  EXPECT_THAT(DataDirectory::Open(folder.File("file")),
-              StatusIs(absl::StatusCode::kPermissionDenied));
-  EXPECT_THAT(DataDirectory::Open(folder.File("file/below")),
-              StatusIs(absl::StatusCode::kPermissionDenied));
 }
 
 }  // namespace

@@ -2,11 +2,8 @@
 
 #include <filesystem>
 #include <string>
-#include <thread>
 
-#include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/store/backup.h"
 #include "server/store/job_table.h"
 #include "server/store/schema.h"

@@ -5,7 +5,6 @@
 
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/worker/checked_file.h"
 #include "server/worker/lease_file.h"
 #include "tests/server/worker/sample_leases.h"
@@ -36,11 +35,15 @@ TEST(ChunkFile, ComesBackExactly) {
   EXPECT_OK(CheckLeaseChunks(lease, back));
 }
 
-TEST(ChunkFile, AMessageThatCannotBeReadIsDataLoss) {
+TEST(ChunkFile, DamageIsDataLossWithItsField) {
   EXPECT_THAT(LeaseChunksFromPayload("\xff\xff"), StatusIs(absl::StatusCode::kDataLoss));
-}
-
-TEST(ChunkFile, ImpossibleNumbersAreDataLossWithTheirField) {
+  const std::string unread = FrameOf(FrameKind::kLease, "\xff\xff");
+  absl::string_view rest = unread;
+  EXPECT_THAT(TakeLease(rest), StatusIs(absl::StatusCode::kDataLoss));
+  const IdentifiedLease lease = LeaseOf(SpecOf(kFirstHit, Model::kBilliard));
+  const std::string never = BytesOf(LeaseRecord(lease.lease, lease.job), -1);
+  rest = never;
+  EXPECT_THAT(TakeLease(rest), StatusIs(absl::StatusCode::kDataLoss));
   LeaseChunks chunks = {.attempt = 0};
   EXPECT_THAT(LeaseChunksFromPayload(LeaseChunksPayload(chunks)),
               StatusIs(absl::StatusCode::kDataLoss, HasSubstr("attempt")));
@@ -100,16 +103,6 @@ TEST(LeaseFile, ALeaseAndItsChunksComeBack) {
   ASSERT_OK_AND_ASSIGN(const LeaseChunks chunks, TakeChunks(rest));
   EXPECT_OK(CheckLeaseChunks(begin.lease, chunks));
   EXPECT_TRUE(rest.empty());
-}
-
-TEST(LeaseFile, AMessageThatCannotBeReadIsDataLoss) {
-  const std::string unread = FrameOf(FrameKind::kLease, "\xff\xff");
-  absl::string_view rest = unread;
-  EXPECT_THAT(TakeLease(rest), StatusIs(absl::StatusCode::kDataLoss));
-  const IdentifiedLease lease = LeaseOf(SpecOf(kFirstHit, Model::kBilliard));
-  const std::string never = BytesOf(LeaseRecord(lease.lease, lease.job), -1);
-  rest = never;
-  EXPECT_THAT(TakeLease(rest), StatusIs(absl::StatusCode::kDataLoss));
 }
 
 }  // namespace

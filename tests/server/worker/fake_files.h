@@ -1,10 +1,11 @@
-// A shared folder in memory, for tests of the server and its workers. It counts the operations that
-// a metadata server of a network file system would see, and can fail. Not thread-safe.
+// A shared folder in memory, for tests of the server and its workers. It can fail. Copies are the
+// same folder. Not thread-safe.
 #pragma once
 
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,19 +14,29 @@
 namespace ballpiston::server {
 
 class FakeFiles : public SharedFiles {
- public:
   struct File {
     std::string bytes;
     absl::Time time;
   };
+  struct Folder {
+    std::map<std::string, File> files;
+    absl::Time now = absl::UnixEpoch();
+    double operations = 0;
+    std::function<absl::Status(const char* operation, const std::string& path)> before = nullptr;
+  };
+  const std::shared_ptr<Folder> folder_;
+
+ public:
+  FakeFiles() : folder_(std::make_shared<Folder>()) {}
+  FakeFiles(const FakeFiles& other) : folder_(other.folder_) {}
 
   // By path. A test may change it as another machine would.
-  std::map<std::string, File> files;
-  // The folder's clock.
-  absl::Time now = absl::UnixEpoch();
-  double operations = 0;
+  std::map<std::string, File>& files = folder_->files;
+  absl::Time& now = folder_->now;            // the folder's clock
+  double& operations = folder_->operations;  // that a metadata server of a network would see
   // Called before each operation; if its result is not OK, the operation fails with it.
-  std::function<absl::Status(const char* operation, const std::string& path)> before = nullptr;
+  std::function<absl::Status(const char* operation, const std::string& path)>& before =
+      folder_->before;
 
   absl::StatusOr<std::vector<std::string>> List(const std::string& subfolder) override {
     const absl::Status begun = Begin("list", subfolder);
@@ -105,34 +116,6 @@ class FakeFiles : public SharedFiles {
     if (begun.ok() && !files.contains(path)) return absl::NotFoundError(path);
     return begun;
   }
-};
-
-// The same files, for an owner who takes a pointer.
-class SameFiles : public SharedFiles {
- public:
-  explicit SameFiles(FakeFiles& files) : files_(files) {}
-
-  absl::StatusOr<std::vector<std::string>> List(const std::string& subfolder) override {
-    return files_.List(subfolder);
-  }
-  absl::StatusOr<FileStamp> Create(const std::string& path, absl::string_view bytes) override {
-    return files_.Create(path, bytes);
-  }
-  absl::StatusOr<std::string> Read(const std::string& path, size_t offset) override {
-    return files_.Read(path, offset);
-  }
-  absl::Status Append(const std::string& path, absl::string_view bytes) override {
-    return files_.Append(path, bytes);
-  }
-  absl::Status Move(const std::string& from, const std::string& to) override {
-    return files_.Move(from, to);
-  }
-  absl::Status Touch(const std::string& path) override { return files_.Touch(path); }
-  absl::StatusOr<FileStamp> Stamp(const std::string& path) override { return files_.Stamp(path); }
-  absl::Status Remove(const std::string& path) override { return files_.Remove(path); }
-
- private:
-  FakeFiles& files_;
 };
 
 }  // namespace ballpiston::server

@@ -7,7 +7,6 @@
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/server/worker/sample_leases.h"
 
 namespace ballpiston::server {
@@ -81,23 +80,6 @@ TEST(LeaseRunner, StopsAtTheTolerance) {
   EXPECT_EQ(fold.Merged(), FoldPoint(*lease.experiment));
 }
 
-// The judge needs all chunks of the point.
-TEST(LeaseRunner, ALeaseOfLaterChunksIsComputedWhole) {
-  EnsembleSpec spec = SpecOf(kFirstHit, Model::kBilliard);
-  spec.target = {.tolerance = 0.9};
-  Recorder recorder;
-  EXPECT_TRUE(recorder.Run(LeaseOf(spec, 2, 5).lease));
-  EXPECT_THAT(recorder.Numbers(), ElementsAre(2, 3, 4));
-}
-
-TEST(LeaseRunner, AStopLeavesTheChunksThatAreComplete) {
-  const EnsembleSpec spec = SpecOf(kFirstHit, Model::kBilliard, 100'000);
-  Recorder recorder(2);
-  EXPECT_FALSE(recorder.Run(LeaseOf(spec, 1, 6).lease));
-  EXPECT_EQ(recorder.Numbers().front(), 1u);
-  EXPECT_LT(recorder.Numbers().size(), 5u);
-}
-
 // Each lease has a chunk of one group, and travels as a message. The next chunk of the group starts
 // with what the lease has reported.
 TEST(LeaseRunner, LeasesContinueTheTrajectoriesOfASteadyState) {
@@ -119,13 +101,6 @@ TEST(LeaseRunner, LeasesContinueTheTrajectoriesOfASteadyState) {
     EXPECT_TRUE(fold.finished());
     EXPECT_EQ(fold.Merged(), FoldPoint(*experiment)) << Name(model);
   }
-}
-
-TEST(LeaseRunner, ALeaseWithoutTheStateOfItsGroupIsDamaged) {
-  const IdentifiedLease lease =
-      LeaseOf(SpecOf(kGasConduction, Model::kMarkov, 600), 16, 17);  // of the second stage
-  EXPECT_EQ(LeaseOfRecord(LeaseRecord(lease.lease, lease.job)).status().code(),
-            absl::StatusCode::kDataLoss);
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include "server/worker/shared_files.h"
 
-#include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -9,7 +8,6 @@
 #include <string>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -42,16 +40,6 @@ TEST_F(FolderFilesTest, AFileIsMadeReadExtendedMovedAndRemoved) {
   EXPECT_THAT(files_.List("taken"), IsOkAndHolds(UnorderedElementsAre("a")));
   EXPECT_THAT(files_.List("todo"), IsOkAndHolds(testing::IsEmpty()));
   EXPECT_OK(files_.Remove("taken/a"));
-}
-
-TEST_F(FolderFilesTest, ATouchChangesTheStamp) {
-  ASSERT_OK(files_.Create("todo/a", "one").status());
-  const timespec long_ago[2] = {{1, 0}, {1, 0}};
-  utimensat(AT_FDCWD, folder_.File("todo/a").c_str(), long_ago, 0);
-  ASSERT_OK_AND_ASSIGN(const FileStamp before, files_.Stamp("todo/a"));
-  EXPECT_OK(files_.Touch("todo/a"));
-  ASSERT_OK_AND_ASSIGN(const FileStamp after, files_.Stamp("todo/a"));
-  EXPECT_NE(before, after);
 }
 
 TEST_F(FolderFilesTest, AFileThatIsNotThereIsNotFound) {

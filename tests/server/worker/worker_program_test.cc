@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -12,7 +11,6 @@
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/worker/chunk_file.h"
 #include "server/worker/lease_file.h"
 #include "server/worker/shared_files.h"
@@ -94,17 +92,6 @@ class WorkerProgramTest : public testing::Test {
   FolderFiles files_ = FolderFiles(shared_);
 };
 
-TEST_F(WorkerProgramTest, GivesTheBitsOfEveryExperiment) {
-  for (const EnsembleSpec& spec : EverySampledSpec()) {
-    const IdentifiedLease lease = LeaseOf(spec);
-    Lay("a", lease);
-    ASSERT_THAT(RunProgram(Command()), ExitsWith(0));
-    ASSERT_THAT(Done(), ElementsAre("a.finished"));
-    EXPECT_TRUE(AreEqual(Chunks(), AllChunks(*lease.lease.experiment))) << NameOf(spec);
-    std::filesystem::remove(shared_ + "/done/" + NamesIn(shared_ + "/done")[0]);
-  }
-}
-
 TEST_F(WorkerProgramTest, ACrashMovesTheLeaseThatWasComputed) {
   EnsembleSpec crash = SpecOf(kEquilibrium, Model::kBilliard);
   crash.seed = 13;
@@ -155,23 +142,7 @@ TEST_F(WorkerProgramTest, ASignalledWorkerGivesItsLeaseBackWithItsChunks) {
   }
 }
 
-TEST_F(WorkerProgramTest, EndsAfterTheTimeThatItHas) {
-  Lay("a", LeaseOf(SpecOf(kEquilibrium, Model::kBilliardReference, 100'000'000)));
-  EXPECT_THAT(RunProgram(Command({"--for=0.2"})), ExitsWith(0));
-  EXPECT_THAT(Done(), ElementsAre("a.returned"));
-}
-
 // ---- errors ----
-
-TEST_F(WorkerProgramTest, AnotherEngineVersionIsRefused) {
-  IdentifiedLease lease = LeaseOf(SpecOf(kFirstHit, Model::kBilliard));
-  lease.job.engine_version = "0.0.1";
-  Lay("a", lease);
-  const ProcessResult result = RunProgram(Command());
-  EXPECT_THAT(result, ExitsWith(3));
-  EXPECT_THAT(result.err, AllOf(HasSubstr("0.0.1"), HasSubstr(kEngineVersion)));
-  EXPECT_THAT(NamesIn(shared_ + "/todo"), ElementsAre("a"));
-}
 
 TEST_F(WorkerProgramTest, WrongFlagsAreUsageErrors) {
   EXPECT_THAT(RunProgram({.command = {WorkerProgram()}}), ExitsWith(2));

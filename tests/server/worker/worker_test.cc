@@ -3,13 +3,10 @@
 #include <chrono>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "core/ensemble/experiment_kind.h"
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "server/worker/lease_file.h"
 #include "tests/server/worker/fake_files.h"
 #include "tests/server/worker/sample_leases.h"
@@ -92,33 +89,6 @@ TEST_F(WorkerTest, ComputesAllLeasesAndEndsWhenThereAreNoMore) {
   EXPECT_LE(now_, Clock::time_point() + std::chrono::seconds(90));
 }
 
-TEST_F(WorkerTest, OneOfTwoWorkersGetsALease) {
-  Lay("a", lease_);
-  Lay("b", lease_);
-  files_.before = [this](const char* operation, const std::string& path) {
-    if (std::string(operation) == "move" && path == "todo/a") files_.files.erase(path);
-    return absl::OkStatus();
-  };
-  EXPECT_OK(Run());
-  EXPECT_THAT(Names(), ElementsAre("done/b.me.finished"));
-}
-
-TEST_F(WorkerTest, ADroppedLeaseLeavesNothing) {
-  Lay("a", lease_, 1e-9);  // touches its file whenever it can
-  seconds_of_a_look_ = 1e-6;
-  int touches = 0;
-  files_.before = [&](const char* operation, const std::string& path) {
-    const std::string name = operation;
-    if (path == "taken/a.me" && (name == "touch" || name == "append") && ++touches == 2) {
-      files_.files.erase(path);
-    }
-    return absl::OkStatus();
-  };
-  EXPECT_OK(Run({.idle_seconds = 0}));
-  EXPECT_EQ(touches, 2);
-  EXPECT_THAT(Names(), IsEmpty());
-}
-
 TEST_F(WorkerTest, AWorkerThatMustEndGivesItsLeaseBack) {
   Lay("a", lease_, 1e-9);
   seconds_of_a_look_ = 1e-6;
@@ -143,16 +113,6 @@ TEST_F(WorkerTest, AFullFolderIsUsedAgainWhenItHasRoom) {
   EXPECT_OK(Run());
   EXPECT_TRUE(AreEqual(ChunksIn("done/a.me.finished"), chunks_));
   EXPECT_THAT(lines_, testing::Contains("no space left; retry in 5 s"));
-}
-
-TEST_F(WorkerTest, AFolderThatStaysFullEndsTheWorker) {
-  Lay("a", lease_);
-  files_.before = [&](const char* operation, const std::string&) {
-    const bool refuses = std::string(operation) == "append";
-    return refuses ? absl::ResourceExhaustedError("no space left") : absl::OkStatus();
-  };
-  EXPECT_THAT(Run({.idle_seconds = 0}), StatusIs(absl::StatusCode::kResourceExhausted));
-  EXPECT_THAT(Names(), ElementsAre("taken/a.me"));
 }
 
 TEST_F(WorkerTest, ALeaseThatIsStillBeingWrittenIsTakenLater) {

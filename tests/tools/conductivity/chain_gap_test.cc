@@ -1,10 +1,7 @@
 #include "tools/conductivity/chain_gap.h"
 
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "core/markov/relaxation_spectrum.h"
+#include "tests/core/preamble.h"
 #include "tests/support/nightly.h"
 
 namespace ballpiston {

@@ -1,9 +1,6 @@
 #include "tools/conductivity/cluster_basis.h"
 
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <vector>
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

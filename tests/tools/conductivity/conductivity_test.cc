@@ -1,11 +1,8 @@
 #include "tools/conductivity/conductivity.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Cholesky>
-#include <cmath>
-#include <vector>
 
+#include "tests/core/preamble.h"
 #include "tests/support/nightly.h"
 #include "tools/conductivity/contact_matrix.h"
 #include "tools/conductivity/galerkin_form.h"

@@ -1,12 +1,8 @@
 #include "tools/conductivity/contact_matrix.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Eigenvalues>
-#include <cmath>
-#include <numbers>
-#include <vector>
 
+#include "tests/core/preamble.h"
 #include "tests/oracle/gauss_legendre.h"
 #include "tools/conductivity/gamma_law.h"
 

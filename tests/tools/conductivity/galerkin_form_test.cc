@@ -1,12 +1,8 @@
 #include "tools/conductivity/galerkin_form.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Eigenvalues>
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <vector>
+
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

@@ -1,8 +1,6 @@
 #include "tools/conductivity/gamma_law.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

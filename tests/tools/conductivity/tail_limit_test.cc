@@ -1,9 +1,6 @@
 #include "tools/conductivity/tail_limit.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

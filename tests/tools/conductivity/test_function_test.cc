@@ -1,11 +1,8 @@
 #include "core/conductivity/test_function.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
 #include <ostream>
 
+#include "tests/core/preamble.h"
 #include "tools/conductivity/conductivity.h"
 #include "tools/conductivity/contact_matrix.h"
 #include "tools/conductivity/gamma_law.h"

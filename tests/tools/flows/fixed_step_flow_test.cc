@@ -1,11 +1,7 @@
 #include "tools/flows/fixed_step_flow.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/sampling/invariant_measure.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

@@ -1,11 +1,7 @@
 #include "tools/flows/fixed_step_gas.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "core/geometry/paper.h"
 #include "tests/core/gas/gases.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

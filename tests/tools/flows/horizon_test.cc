@@ -7,22 +7,10 @@
 // flow, and not much earlier: errors of up to 8 units per flight (single_flight_test.cc), summed as
 // a geometric series with this factor, equal about 13 units at the start, or log 13/log 2.5 = 3
 // hits.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <iomanip>
-#include <iostream>
-#include <string>
-#include <vector>
-
 #include "core/billiard/lane_frame.h"
 #include "core/billiard/reference_flow.h"
-#include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 #include "tools/flows/lane_balls.h"
 #include "tools/flows/precise_flow.h"
 #include "tools/flows/rounded_to.h"

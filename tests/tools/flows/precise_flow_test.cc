@@ -1,13 +1,8 @@
 #include "tools/flows/precise_flow.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "core/billiard/reference_flow.h"
 #include "core/sampling/invariant_measure.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 #include "tools/flows/rounded_to.h"
 
 namespace ballpiston {

@@ -1,11 +1,7 @@
 #include "tools/method_comparison/energy_relaxation_runs.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/markov/relaxation_spectrum.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston::method_comparison {
 namespace {

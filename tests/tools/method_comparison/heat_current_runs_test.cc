@@ -1,11 +1,6 @@
 #include "tools/method_comparison/heat_current_runs.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
-#include "core/geometry/paper.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston::method_comparison {
 namespace {

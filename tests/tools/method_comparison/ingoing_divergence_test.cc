@@ -1,8 +1,6 @@
 #include "tools/method_comparison/ingoing_divergence.h"
 
-#include <gtest/gtest.h>
-
-#include <numeric>
+#include "tests/core/preamble.h"
 
 namespace ballpiston::method_comparison {
 namespace {

@@ -1,6 +1,6 @@
 #include "tools/method_comparison/limit_floor.h"
 
-#include <gtest/gtest.h>
+#include "tests/core/preamble.h"
 
 namespace ballpiston::method_comparison {
 namespace {

@@ -1,22 +1,11 @@
 #include "tools/method_comparison/method_comparison.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <map>
-#include <set>
-#include <tuple>
-#include <vector>
-
-#include "core/geometry/paper.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston::method_comparison {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::EndsWith;
-using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
 // The smallest comparison: it takes a few tenths of a second.

@@ -1,9 +1,6 @@
 #include "tools/method_comparison/point_runs.h"
 
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <vector>
+#include "tests/core/preamble.h"
 
 namespace ballpiston::method_comparison {
 namespace {

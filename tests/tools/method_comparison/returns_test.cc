@@ -1,12 +1,8 @@
 #include "tools/method_comparison/returns.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/closed_form/conditional_rate.h"
 #include "core/statistics/kl_divergence.h"
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston::method_comparison {
 namespace {

@@ -1,11 +1,6 @@
 #include "tools/method_comparison/trajectory_horizon.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-
-#include "tests/core/geometries.h"
+#include "tests/core/preamble.h"
 #include "tools/flows/rounded_to.h"
 
 namespace ballpiston::method_comparison {

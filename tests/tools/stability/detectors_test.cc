@@ -1,12 +1,8 @@
 // The checks of collisions find planted failures: a watch receives the collisions of a correct
 // engine with omissions or changes. The naive methods show that the checks of single hits find
 // failures: the program complains about a check that finds none for any method.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "core/sampling/invariant_measure.h"
+#include "tests/core/preamble.h"
 #include "tools/flows/numbered_orbits.h"
 #include "tools/stability/ball_watch.h"
 #include "tools/stability/energy_drift.h"
@@ -55,16 +51,31 @@ Failures Watched(Tampered::Change change) {
   return watch.Finish();
 }
 
-TEST(Detectors, UnchangedCollisionsGiveNoFailure) {
-  const Failures failures = Watched([](Collision&) {});
-  EXPECT_EQ(failures.hits, 2000u);
-  EXPECT_GT(failures.looked_back, 300u);
-  EXPECT_EQ(failures.Total(), 0u);
-}
+struct Planted {
+  const char* what;
+  Tampered::Change change;
+  uint64_t Failures::*counted;
+  uint64_t least;
+};
 
-TEST(Detectors, ALateCollisionIsAPhantom) {
-  const Failures failures = Watched([](Collision& c) { c.time += 1e-6; });
-  EXPECT_GT(failures.phantoms, 100u);
+TEST(Detectors, PlantedFailuresAreCounted) {
+  for (const Planted& planted :
+       {Planted{"a late collision is a phantom", [](Collision& c) { c.time += 1e-6; },
+                &Failures::phantoms, 100},
+        {"a turned velocity", [](Collision& c) { c.state.direction = -c.state.direction; },
+         &Failures::inward, 100},
+        {"a negative time", [](Collision& c) { c.time = -c.time; }, &Failures::negative_times, 100},
+        {"an escape that is reported", [](Collision& c) { c.escaped = true; }, &Failures::escapes,
+         500},
+        {"an escape that is not", [](Collision& c) { c.state.position.y() += 0.3; },
+         &Failures::escapes, 500}}) {
+    EXPECT_GE(Watched(planted.change).*planted.counted, planted.least) << planted.what;
+  }
+  EXPECT_GT(Watched([](Collision& c) { c.state.ball_speed *= 1 + 1e-9; }).energy, 1e-10);
+  const Failures unchanged = Watched([](Collision&) {});
+  EXPECT_EQ(unchanged.hits, 2000u);
+  EXPECT_GT(unchanged.looked_back, 300u);
+  EXPECT_EQ(unchanged.Total(), 0u);
 }
 
 // One step from the start to the second collision: the ball passes through the piston in between.
@@ -96,20 +107,7 @@ TEST(Detectors, AnOmittedCollisionIsMissed) {
   EverySecond source(watch, starts.size());
   RunOrbits(Engine::kReference, Geometry(), starts.size(), source);
   EXPECT_GT(watch.Finish().missed, 10u);
-}
-
-TEST(Detectors, AnOmittedOrbitIsMissed) {
-  const std::vector<PairState> starts = Starts();
-  CollisionWatch watch(Geometry(), kEpsilon, starts, 1);
-  EXPECT_EQ(watch.Finish().missed, 500u);
-}
-
-TEST(Detectors, TurnedVelocitiesEscapesAndTimesAreDetected) {
-  EXPECT_GT(Watched([](Collision& c) { c.state.direction = -c.state.direction; }).inward, 100u);
-  EXPECT_GT(Watched([](Collision& c) { c.time = -c.time; }).negative_times, 100u);
-  EXPECT_EQ(Watched([](Collision& c) { c.escaped = true; }).escapes, 500u);
-  EXPECT_EQ(Watched([](Collision& c) { c.state.position.y() += 0.3; }).escapes, 500u);
-  EXPECT_GT(Watched([](Collision& c) { c.state.ball_speed *= 1 + 1e-9; }).energy, 1e-10);
+  EXPECT_EQ(CollisionWatch(Geometry(), kEpsilon, starts, 1).Finish().missed, 500u);  // all orbits
 }
 
 TEST(Detectors, ANanEnergyErrorIsInfiniteAndAMissingErrorIsNan) {
@@ -139,41 +137,35 @@ TEST(Detectors, AnEnergyThatIsNotANumberDrifts) {
 }
 
 // On a wall of the lower left disc, halfway between its tips.
-class OnTheWall : public ::testing::Test {
- protected:
-  PairGeometry geometry_ = Geometry();
-  Eigen::Vector2d normal_ = Eigen::Vector2d(1, 1).normalized();
-  Eigen::Vector2d position_ = Eigen::Vector2d(-0.5, -0.5) + geometry_.rho() * normal_;
-  BallWatch watch_ = BallWatch(geometry_, kEpsilon);
-  Failures failures_;
-};
-
-TEST_F(OnTheWall, ALeavingBallGivesNoFailure) {
-  EXPECT_TRUE(watch_.Hit(position_, normal_, 0.1, failures_));
-  EXPECT_EQ(failures_.Total(), 0u);
-}
-
-TEST_F(OnTheWall, AnInwardBallIsDetected) {
-  watch_.Hit(position_, -normal_, 0.1, failures_);
-  EXPECT_EQ(failures_.inward, 1u);
-}
-
-TEST_F(OnTheWall, ABallInsideADiscHasEscaped) {
-  EXPECT_FALSE(watch_.Hit(position_ - 1e-13 * normal_, normal_, 0.1, failures_));
-  EXPECT_FALSE(watch_.Hit({NAN, 0}, normal_, 0.1, failures_));
-  EXPECT_EQ(failures_.escapes, 2u);
-}
-
-TEST_F(OnTheWall, TimesOfMinusAnUlpAreNegative) {
-  watch_.Hit(position_, normal_, -1e-17, failures_);
-  EXPECT_EQ(failures_.negative_times, 1u);
-}
-
-// At rho = 0.6 the tips permit two successive hits, and rounding a few more.
-TEST_F(OnTheWall, ABallThatStaysIsALoop) {
+TEST(Detectors, HitsOfAWallAreChecked) {
+  const PairGeometry geometry = Geometry();
+  const Eigen::Vector2d normal = Eigen::Vector2d(1, 1).normalized();
+  const Eigen::Vector2d wall = Eigen::Vector2d(-0.5, -0.5) + geometry.rho() * normal;
+  struct Hit {
+    const char* what;
+    Eigen::Vector2d position, direction;
+    double time;
+    uint64_t Failures::*counted = nullptr;
+  };
+  for (const Hit& hit :
+       {Hit{"a leaving ball", wall, normal, 0.1},
+        {"an inward ball", wall, -normal, 0.1, &Failures::inward},
+        {"a ball inside a disc", wall - 1e-13 * normal, normal, 0.1, &Failures::escapes},
+        {"a ball nowhere", {NAN, 0}, normal, 0.1, &Failures::escapes},
+        {"a time of minus an ulp", wall, normal, -1e-17, &Failures::negative_times}}) {
+    Failures failures;
+    const bool goes_on =
+        BallWatch(geometry, kEpsilon).Hit(hit.position, hit.direction, hit.time, failures);
+    EXPECT_EQ(goes_on, hit.counted != &Failures::escapes) << hit.what;
+    EXPECT_EQ(failures.Total(), hit.counted == nullptr ? 0u : 1u) << hit.what;
+    EXPECT_TRUE(hit.counted == nullptr || failures.*hit.counted == 1) << hit.what;
+  }
+  // At rho = 0.6 the tips permit two successive hits, and rounding a few more.
+  BallWatch watch(geometry, kEpsilon);
+  Failures failures;
   int hits = 0;
-  while (watch_.Hit(position_, normal_, 0, failures_)) ASSERT_LT(++hits, 20);
-  EXPECT_EQ(failures_.loops, 1u);
+  while (watch.Hit(wall, normal, 0, failures)) ASSERT_LT(++hits, 20);
+  EXPECT_EQ(failures.loops, 1u);
   EXPECT_GT(hits, 2);
 }
 

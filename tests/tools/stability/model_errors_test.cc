@@ -1,25 +1,16 @@
 // The stated errors of the models against differences that were measured once, and stored.
 #include "tools/stability/model_errors.h"
 
-#include <cmath>
-#include <cstdlib>
 #include <fstream>
-#include <string>
-#include <vector>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
-#include "gmock/gmock.h"
-#include "gtest/gtest.h"
+#include "tests/core/preamble.h"
 #include "tests/support/paths.h"
 
 namespace ballpiston::stability {
 namespace {
-
-using ::testing::Contains;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 constexpr char kFile[] = "tests/data/model_errors.csv";
 

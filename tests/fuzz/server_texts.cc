@@ -1,14 +1,14 @@
-// The access file, the credentials of a call, and --new-token. Errors do not quote the rejected
-// text.
-#include "server/door/access_list.h"
-
+// Texts that the server reads or writes.
+#include <algorithm>
 #include <vector>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_split.h"
 #include "absl/time/time.h"
+#include "server/door/access_list.h"
 #include "server/door/authenticator.h"
 #include "server/door/new_token.h"
+#include "server/status/log.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"
 
@@ -53,6 +53,8 @@ void RequireSilence(const absl::Status& error, const std::string& text) {
   }
 }
 
+// The access file, the credentials of a call, and --new-token. Errors do not quote the rejected
+// text.
 void CheckAccessList(const std::string& text) {
   const auto list = server::AccessList::Parse({"access-file", "FILE"}, text);
   if (list.ok()) {
@@ -69,7 +71,39 @@ void CheckAccessList(const std::string& text) {
           "a token is somebody's");
 }
 
-const Registration kAccessList({.name = "access_list", .check = CheckAccessList});
+void RequireOneLine(const std::string& line) {
+  Require(line.size() <= server::kMaxLogLine, "a line fits into a pipe");
+  Require(!line.empty() && line.find('\n') == line.size() - 1, "it is one");
+  const auto is_printable = [](char c) { return c >= ' ' && c <= '~'; };
+  Require(std::all_of(line.begin(), line.end() - 1, is_printable), "a line is printable ASCII");
+}
+
+// Repeats the text until a message with it must be cut.
+std::string Repeated(const std::string& text) {
+  std::string repeated;
+  while (!text.empty() && repeated.size() < server::kMaxLogLine) repeated += text;
+  return repeated;
+}
+
+// A log message with any text of a client stays one well-formed line.
+void CheckLogLine(const std::string& text) {
+  const std::string message = IsOneIn(63, text) ? Repeated(text) : text;
+  RequireOneLine(server::LogLine(server::Severity::kError, message,
+                                 {{"principal", message}, {"seconds", 0.5}}));
+}
+
+std::vector<std::string> Texts() {
+  return {"ensembleJobs/1f0c was cancelled", "two\nlines and a \"quote\\",
+          "\xe2\x80\xa8\xf0\x9f\x8e\xb1", "\xff\xfe\xc3(\x1b[2J", std::string(49, 'x')};
+}
 
 }  // namespace
+
+std::vector<FuzzTarget> ServerTextTargets() {
+  return {
+      {"access_list", CheckAccessList},
+      {"log_line", CheckLogLine, nullptr, Texts},
+  };
+}
+
 }  // namespace ballpiston::fuzz

@@ -1,0 +1,275 @@
+// The records of the store, and the file of a lease: damage is DATA_LOSS.
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "absl/time/time.h"
+#include "ballpiston/storage/records.pb.h"
+#include "core/ensemble/point_experiment.h"
+#include "core/ensemble/point_fold.h"
+#include "core/experiment/all_experiments.h"
+#include "core/gas/gas_shape.h"
+#include "server/book/job_message.h"
+#include "server/convert/deterministic_bytes.h"
+#include "server/convert/errors.h"
+#include "server/convert/fold_record.h"
+#include "server/convert/point_result.h"
+#include "server/convert/spec.h"
+#include "server/store/job_record.h"
+#include "server/worker/checked_file.h"
+#include "server/worker/chunk_file.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/rules.h"
+
+namespace ballpiston::fuzz {
+namespace {
+
+// The specification in a job's row, as a restart reads it.
+void CheckStoredSpec(const std::string& bytes) {
+  const absl::StatusOr<v1::EnsembleSpec> spec = server::SpecFromBytes({bytes});
+  if (!spec.ok()) return Require(absl::IsDataLoss(spec.status()), "damage is DATA_LOSS");
+  const server::StoredSpec stored = server::SpecBytes(*spec);
+  const absl::StatusOr<v1::EnsembleSpec> again = server::SpecFromBytes(stored);
+  Require(again.ok() && server::SpecBytes(*again) == stored, "stored bytes come back");
+  RequireJudged(*spec, bytes);
+}
+
+using Experiments = std::vector<std::unique_ptr<const PointExperiment>>;
+
+// One of each shape of block; both signs of the piston's velocity, and one.
+Experiments OneOfEach() {
+  const Grid pair = {{kRho, {0.53}}, {kDelta, {0.1}}};
+  Grid energy = pair, hit = pair, fast = pair;
+  energy[kEpsilon] = {0.125};
+  hit[kEpsilon] = {0.125};
+  hit[kExponent] = {1};
+  fast[kEpsilon] = {0.375};
+  fast[kExponent] = {5};
+  Grid periodic = pair, conducting = pair;
+  periodic[kCells] = conducting[kCells] = {CodeOf({.columns = 4})};
+  periodic[kTemperature] = {2};
+  conducting[kHot] = {2};
+  conducting[kCold] = {1};
+  const Target samples = {.samples = 1000}, collisions = {.collisions = 1000};
+  Experiments experiments;
+  for (const EnsembleSpec& spec : std::vector<EnsembleSpec>{
+           {.experiment = &kEquilibrium, .grid = pair, .target = collisions},
+           {.experiment = &kConditionalMeanFreeTime, .grid = energy, .target = samples},
+           {.experiment = &kFirstHit, .grid = hit, .target = samples},
+           {.experiment = &kFirstHit, .grid = fast, .target = samples},
+           {.experiment = &kEnergyRelaxation, .grid = pair, .target = samples},
+           {.experiment = &kMarkovProperty, .grid = pair, .target = collisions},
+           {.experiment = &kGasEquilibrium, .grid = periodic, .target = samples},
+           {.experiment = &kGasConduction, .grid = conducting, .target = samples}}) {
+    experiments.push_back(PointExperiment::Create(spec, 0));
+  }
+  return experiments;
+}
+
+const Experiments& Known() {
+  static const auto* const experiments = new Experiments(OneOfEach());
+  return *experiments;
+}
+
+void RequireResumed(const PointExperiment& experiment, const FoldState& state) {
+  PointFold fold(experiment);
+  fold.Resume(state);
+  Require(fold.PlannedSamples() <= experiment.plan().samples(), "not more than was planned");
+  if (!fold.HasBlocks()) return;
+  const BlockResult merged = fold.Merged();
+  Require(merged.samples == state.complete.samples + state.partial.samples, "no sample is lost");
+  Require(merged.HasShapeOf(experiment.EmptyResult()), "merging keeps the shape");
+  const v1::PointResult result = server::ResultOf(3, experiment, experiment.Summarize(merged));
+  Require(server::ResultFromBytes(result.SerializeAsString()).ok(),
+          "what was merged can be stored");
+}
+
+void RequireStored(const FoldState& state) {
+  const std::string stored = server::FoldRecordBytes(state);
+  const absl::StatusOr<FoldState> again = server::FoldStateFromBytes(stored);
+  Require(again.ok() && server::FoldRecordBytes(*again) == stored, "stored bytes come back");
+}
+
+// A checkpoint's record: read, checked against each experiment and, if it fits, resumed and
+// summarized.
+void CheckStoredFold(const std::string& bytes) {
+  const absl::StatusOr<FoldState> state = server::FoldStateFromBytes(bytes);
+  if (!state.ok()) return Require(absl::IsDataLoss(state.status()), "damage is DATA_LOSS");
+  if (IsOneIn(4, bytes)) RequireStored(*state);
+  for (const auto& experiment : Known()) {
+    const absl::Status fits = server::CheckFoldState(*experiment, *state);
+    Require(fits.ok() || absl::IsDataLoss(fits), "damage is DATA_LOSS");
+    if (fits.ok()) RequireResumed(*experiment, *state);
+  }
+}
+
+std::vector<std::string> FoldsOfEach() {
+  std::vector<std::string> folds;
+  for (const auto& experiment : Known()) {
+    folds.push_back(server::FoldRecordBytes({.blocks = 1, .partial = experiment->EmptyResult()}));
+  }
+  return folds;
+}
+
+// As ReadShortfall does.
+void CheckShortfall(const v1::PointResult& result, const std::string& bytes) {
+  constexpr double kTolerance = 0.01;
+  const EnsembleSpec spec = {.target = {.tolerance = kTolerance, .budget_seconds = 1.0}};
+  const Estimate reached = server::FirstEstimateOf(result);
+  if (MeetsTolerance(reached, kTolerance)) return;
+  RequireSendable(server::ToleranceNotReached(spec, 0, reached), bytes);
+}
+
+// A finished point's result or its details, as pages of results and a restart read them.
+void CheckStoredResult(const std::string& bytes) {
+  const absl::StatusOr<v1::PointResult> details = server::DetailsFromBytes(bytes);
+  Require(details.ok() || absl::IsDataLoss(details.status()), "damage of details is DATA_LOSS");
+  const absl::StatusOr<v1::PointResult> result = server::ResultFromBytes(bytes);
+  if (!result.ok()) return Require(absl::IsDataLoss(result.status()), "damage is DATA_LOSS");
+  const std::string stored = server::DeterministicBytes(*result);
+  const absl::StatusOr<v1::PointResult> again = server::ResultFromBytes(stored);
+  Require(again.ok() && server::DeterministicBytes(*again) == stored,
+          "reading a stored result gives the message that was stored");
+  CheckShortfall(*result, bytes);
+  const v1::PointResult told = server::WithDetails({}, *result, kEquilibrium);
+  Require(told.histograms_size() == result->histograms_size(), "clients get every histogram");
+}
+
+int64_t TakeInteger(std::string_view& bytes) {
+  int64_t number = 0;
+  const size_t size = std::min(bytes.size(), sizeof(number));
+  std::memcpy(&number, bytes.data(), size);
+  bytes.remove_prefix(size);
+  return number;
+}
+
+std::string TakeText(std::string_view& bytes, size_t length) {
+  const std::string text(bytes.substr(0, length));
+  bytes.remove_prefix(text.size());
+  return text;
+}
+
+server::JobRecord RowOf(std::string_view bytes) {
+  server::JobRecord row;
+  row.id = "0123456789abcdef";
+  row.state = static_cast<server::JobState>(TakeInteger(bytes));
+  row.create_time = absl::FromUnixNanos(TakeInteger(bytes));
+  row.start_time = absl::FromUnixNanos(TakeInteger(bytes));
+  row.end_time = absl::FromUnixNanos(TakeInteger(bytes));
+  row.points = TakeInteger(bytes);
+  row.numbers.points_done = TakeInteger(bytes);
+  row.numbers.samples = std::bit_cast<double>(TakeInteger(bytes));
+  row.numbers.work = std::bit_cast<double>(TakeInteger(bytes));
+  const auto length = static_cast<unsigned char>(TakeText(bytes, 1)[0]);
+  row.spec.rest = TakeText(bytes, length);
+  row.error = std::string(bytes);
+  return row;
+}
+
+// The message that the API makes from a job's row, with all its columns.
+//
+// Eight bytes each: state, times of creation, start and end, points, points done, samples, work;
+// then one byte that says how long the specification is, the specification, the error.
+void CheckStoredJob(const std::string& bytes) {
+  const server::JobRecord row = RowOf(bytes);
+  const v1::EnsembleJob job = server::JobMessage(row, row.numbers, 400);
+  for (const auto& time : {job.create_time(), job.start_time(), job.end_time()}) {
+    Require(time.nanos() >= 0 && time.nanos() < 1'000'000'000, "a time is one");
+  }
+  v1::EnsembleJob sent;
+  Require(sent.ParseFromString(job.SerializeAsString()), "a row can be sent");
+  Require(!server::HasEnded(job.state()) || !v1::EnsembleJob::State_Name(job.state()).empty(),
+          "an end has a name");
+}
+
+std::vector<std::string> Rows() {
+  return {std::string(65, '\1'), std::string(80, '\0'), std::string(200, '\x08')};
+}
+
+using Leases = std::vector<server::IdentifiedLease>;
+
+server::IdentifiedLease LeaseOf(const EnsembleSpec& spec) {
+  server::Lease lease;
+  lease.experiment = PointExperiment::Create(spec, 0);
+  lease.end = lease.experiment->plan().chunks();
+  return {{}, std::move(lease)};
+}
+
+// One with moments and histograms, one with batch means, and one with a tolerance.
+const Leases& KnownLeases() {
+  const Grid pair = {{kRho, {0.53}}, {kDelta, {0.1}}};
+  Grid hit = pair;
+  hit[kEpsilon] = {0.125};
+  hit[kExponent] = {1};
+  static const auto* const leases = new Leases{
+      LeaseOf({.experiment = &kMarkovProperty, .grid = pair, .target = {.collisions = 1000}}),
+      LeaseOf({.experiment = &kEquilibrium, .grid = pair, .target = {.collisions = 1000}}),
+      LeaseOf({.experiment = &kFirstHit, .grid = hit, .target = {.tolerance = 0.1}})};
+  return *leases;
+}
+
+void RequireMerged(const PointExperiment& experiment, const server::LeaseChunks& chunks) {
+  PointFold fold(experiment);
+  for (const ChunkResult& chunk : chunks.chunks) fold.Add(chunk);
+  Require(fold.PlannedSamples() <= experiment.plan().samples(), "not more than was planned");
+}
+
+void CheckLeases(const server::LeaseChunks& chunks) {
+  for (const server::IdentifiedLease& lease : KnownLeases()) {
+    const absl::Status fits = server::CheckLeaseChunks(lease, chunks);
+    Require(fits.ok() || absl::IsDataLoss(fits), "damage is DATA_LOSS");
+    if (fits.ok()) RequireMerged(*lease.lease.experiment, chunks);
+  }
+}
+
+void CheckPayload(absl::string_view payload) {
+  const absl::StatusOr<server::LeaseChunks> chunks = server::LeaseChunksFromPayload(payload);
+  if (!chunks.ok()) return Require(absl::IsDataLoss(chunks.status()), "damage is DATA_LOSS");
+  const std::string written = server::LeaseChunksPayload(*chunks);
+  const absl::StatusOr<server::LeaseChunks> again = server::LeaseChunksFromPayload(written);
+  Require(again.ok() && server::LeaseChunksPayload(*again) == written, "written bytes come back");
+  CheckLeases(*chunks);
+}
+
+// The chunks that a worker appends to a lease's file. The input is used as a whole frame, and as
+// the payload of a frame with a correct checksum. Chunks that fit a lease are merged.
+void CheckChunkFile(const std::string& input) {
+  absl::string_view bytes = input;
+  const auto payload = server::TakeFrame(server::FrameKind::kChunks, bytes);
+  if (payload.ok()) CheckPayload(*payload);
+  const std::string frame = server::FrameOf(server::FrameKind::kChunks, input);
+  bytes = frame;
+  const auto framed = server::TakeFrame(server::FrameKind::kChunks, bytes);
+  Require(framed.ok() && *framed == input && bytes.empty(), "a payload comes back");
+  CheckPayload(input);
+}
+
+std::vector<std::string> FilesOfEach() {
+  std::vector<std::string> files;
+  for (const server::IdentifiedLease& lease : KnownLeases()) {
+    const std::string payload = server::LeaseChunksPayload(
+        {.chunks = {{0, lease.lease.experiment->EmptyResult()}}, .processor_seconds = 0.5});
+    files.push_back(payload);
+    files.push_back(server::FrameOf(server::FrameKind::kChunks, payload));
+  }
+  return files;
+}
+
+}  // namespace
+
+std::vector<FuzzTarget> StoredTargets() {
+  return {
+      {"stored_spec", CheckStoredSpec, &v1::EnsembleSpec::default_instance()},
+      {"stored_fold", CheckStoredFold, &storage::Checkpoint::default_instance(), FoldsOfEach},
+      {"stored_result", CheckStoredResult, &v1::PointResult::default_instance()},
+      {"stored_job", CheckStoredJob, nullptr, Rows},
+      {"chunk_file", CheckChunkFile, &storage::LeaseChunks::default_instance(), FilesOfEach},
+  };
+}
+
+}  // namespace ballpiston::fuzz
