@@ -80,12 +80,14 @@ def _computed(growth: Growth) -> dict[str, float]:
 
 
 def _curve(client: Client, rho: float, samples: int, seed: int) -> Table:
-    """With the same random numbers at every delta, so that the curve is smooth."""
-    deltas = mean_free_times(client, rho, _CURVE)
-    return table(
-        {"delta": d, "tau": tau} | _computed(second_exponent(rho, d, tau, samples // 8, seed))
-        for d, tau in deltas.items()
-    )
+    """With the same random numbers at every delta, so that the curve is smooth; the limit, at the
+    first delta, with more of them."""
+    found = []
+    for delta, tau in mean_free_times(client, rho, _CURVE).items():
+        count = samples if delta == _LIMIT else samples // 8
+        growth = second_exponent(rho, delta, tau, count, seed)
+        found.append({"delta": delta, "tau": tau} | _computed(growth))
+    return table(found)
 
 
 def laws(whole: Table) -> Table:

@@ -10,9 +10,9 @@ ball's velocity is sqrt(1 - u^2) (cos alpha, sin alpha), and dv = du dalpha. The
 over its hemisphere is sqrt(2) pi. So alpha and u have the density, summed over the signs of p,
   f(alpha, u) = sum of max(0, sqrt(1 - u^2) cos(alpha) - p) / (sqrt(2) pi).
 
-The ball's height y is independent of velocities. The surface has at y the depths from s(y) to
-delta, with (s + lambda/2)^2 = rho^2 - (1/2 - |y|)^2. So y has a density proportional to
-delta - s(y). Bins are equal in energy, but densities are those of u, which are finite at u = 0.
+The ball's height y is independent of velocities. At y the surface has the depths s(y) to delta,
+with (s + lambda/2)^2 = rho^2 - (1/2 - |y|)^2, so y has a density proportional to delta - s(y). Bins
+are equal in energy, but densities are those of u, which are finite at u = 0.
 Time on one core: quick 1 s, default 10 s, full 30 s.
 """
 
@@ -89,10 +89,10 @@ def _section(name: str, edges: Any, of: FloatArray, hits: Records, finer: FloatA
     weight = len(hits) * np.outer(np.diff(edges[0]), np.diff(np.sqrt(2 * edges[1])))
     lower, epsilon = np.meshgrid(edges[0][:-1], edges[1][:-1], indexing="ij")
     exact = finer.reshape(len(count), _FINER, -1, _FINER).mean(axis=(1, 3))
-    columns = {"lower": lower, "epsilon": epsilon, "count": count, "expected": exact * weight}
+    columns: Table = {"section": np.full(count.size, name), "lower": lower, "epsilon": epsilon}
+    columns |= {"count": count, "expected": exact * weight}
     columns |= {"density": count / weight, "exact_density": exact}
-    found: Table = {"section": np.full(count.size, name)}
-    return found | {column: values.ravel() for column, values in columns.items()}
+    return {name: column.ravel() for name, column in columns.items()}
 
 
 def _chi_squared(section: Table) -> dict[str, Any]:
