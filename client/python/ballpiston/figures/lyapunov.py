@@ -7,7 +7,7 @@ computes it from the statistics of one collision, without a fit.
 a  lambda_2 in a collision over the mean free time tau, and its law for delta -> 0
 b  the same less log(tau), over the root of delta
 
-Time on one core: quick 10 s, default 1 min, full 7 min.
+Time on one core: quick 10 s, default 1 min, full 8 min.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from ballpiston.figures.parts.tangent_growth import Growth, second_exponent
 from ballpiston.parameter_lists import Numbers, number_list
 
 EFFORT: dict[str, dict[str, Any]] = {
-    "quick": {"delta": "0.3,0.05,0.03,0.02,0.01", "collisions": 1e4, "samples": 2**14},
-    "full": {"collisions": 1e6, "samples": 2**18},
+    "quick": {"delta": "0.3,0.05,0.03,0.02,0.015,0.01", "collisions": 1e4, "samples": 2**14},
+    "full": {"collisions": 1e6, "samples": 2**20},
 }
 
 _FEWER_BELOW = 0.02  # collisions cost 1/delta^2; below this delta there are fewer of them
 _FEWEST = 6400  # for which the server states errors
-_RARE = 0.05  # fits are to this delta and below
+_RARE = 0.03  # fits are to this delta and below
 _LIMIT = 1e-7  # a delta that stands for the limit
 _CURVE = "0.0000001,0.000001,0.00001:0.001:9:log,0.0014:0.3:30:log"
 
@@ -91,7 +91,7 @@ def _curve(client: Client, rho: float, samples: int, seed: int) -> Table:
 
 
 def laws(whole: Table) -> Table:
-    """Fits to delta <= 0.05 of `value`: by A; by A tau^B; by A + B log(tau); by the same and a term
+    """Fits to delta <= 0.03 of `value`: by A; by A tau^B; by A + B log(tau); by the same and a term
     sqrt(delta); of what remains of `value` without the computed terms, by A + B log(tau); and
     `computed` itself, without a coefficient. Fits to fewer points than coefficients are left
     out."""

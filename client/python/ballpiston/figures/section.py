@@ -12,8 +12,7 @@ over its hemisphere is sqrt(2) pi. So alpha and u have the density, summed over 
 
 The ball's height y is independent of velocities. At y the surface has the depths s(y) to delta,
 with (s + lambda/2)^2 = rho^2 - (1/2 - |y|)^2, so y has a density proportional to delta - s(y). Bins
-are equal in energy, but densities are those of u, which are finite at u = 0.
-Time on one core: quick 1 s, default 10 s, full 30 s.
+are equal in energy; densities are those of u, finite at 0. Time: default 10 s, full 30 s of a core.
 """
 
 from __future__ import annotations
@@ -49,7 +48,7 @@ def measure(
     question = {"rho": rho, "delta": delta, "collisions": collisions, "seed": seed}
     hits = client.sample("equilibrium", model="billiard", **question).all()
     angles = np.arctan2(hits["ball_vy"], hits["ball_vx"])
-    (height,) = client.analytic(rho, delta)["eta"]
+    height = client.analytic(rho, delta)["eta"][0]
     symmetric, energies = np.linspace(-1, 1, bins + 1), np.linspace(0, 0.5, bins + 1)
     alpha, y, u = np.pi * symmetric, height / 2 * symmetric, _finer(np.sqrt(2 * energies))
     velocities = density_of_velocities(_finer(alpha)[:, np.newaxis], u)
