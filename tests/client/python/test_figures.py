@@ -16,7 +16,16 @@ import pytest
 
 import ballpiston
 from ballpiston import figures
-from ballpiston.figures import gas, ingoing_law, markov_test, rates, speed_accuracy, stability
+from ballpiston.figures import (
+    gas,
+    ingoing_law,
+    lyapunov,
+    markov_test,
+    rates,
+    section,
+    speed_accuracy,
+    stability,
+)
 from ballpiston.figures.parts import command, oscillation, style, tables
 
 REFERENCE = json.loads(
@@ -198,6 +207,23 @@ def test_a_chain_is_drawn_as_one_row(client: ballpiston.Client) -> None:
     assert (geometry["columns"][0], geometry["rows"][0]) == (4, 1)
     assert len(data["gas-pistons"]["x"]) == 4
     expect_texts_inside(gas.draw(data))
+
+
+def test_lyapunov_exponents_are_drawn_beside_what_is_computed(client: ballpiston.Client) -> None:
+    data = lyapunov.measure(client, delta="0.2,0.05", collisions=6400, samples=512)
+    assert data["lyapunov"]["samples"].tolist() == [6400, 6400]
+    expect_texts_inside(lyapunov.draw(data))
+
+
+# Chi-squared of collisions that are nearly independent; beyond 6 standard deviations in 1e-8.
+def test_collisions_have_the_invariant_density(client: ballpiston.Client) -> None:
+    data = section.measure(client, delta=0.2, collisions=50_000, bins=10)
+    for name in ("alpha", "y"):
+        part = tables.rows(data["section"], section=name)
+        assert part["count"].sum() == pytest.approx(part["expected"].sum(), rel=1e-3) == 50_000
+    for chi_squared, bins in zip(*(data["section-test"][n] for n in ("chi_squared", "bins"))):
+        assert abs(chi_squared - bins) < 6 * np.sqrt(2 * bins)
+    expect_texts_inside(section.draw(data))
 
 
 def test_the_counts_of_failures_are_read_from_the_report() -> None:

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ballpiston.figures import full_counting, logarithm
-from ballpiston.figures.parts import charge, fits
+import ballpiston
+from ballpiston.figures import full_counting, logarithm, lyapunov
+from ballpiston.figures.parts import charge, fits, tangent_growth
 
 
 def test_a_fit_finds_the_coefficients_of_a_polynomial() -> None:
@@ -91,3 +92,80 @@ def test_a_logarithm_of_the_window_is_found_beside_a_part_that_ends() -> None:
     whole |= {f"later_{part}_error": 0.001 * np.arange(5) for part in ("idle", "met")}
     found = logarithm.logarithms_of_window(whole)
     assert (found["idle"][0], found["met"][0]) == pytest.approx((1, -1))
+
+
+# The second Lyapunov exponent
+
+RHO = 0.53
+
+
+def test_the_rate_of_collisions_is_that_of_the_closed_forms(client: ballpiston.Client) -> None:
+    forms = client.analytic(RHO, 0.1, "0.01,0.125,0.25,0.3,0.49")
+    rates = tangent_growth.collision_rate(np.sqrt(2 * forms["epsilon"][0]))
+    assert rates == pytest.approx(forms["phi"][0], rel=1e-12)
+
+
+def test_drawn_collisions_have_the_invariant_measure() -> None:
+    count, delta = 100_000, 1e-3
+    hits = tangent_growth.draw(np.random.default_rng(1), RHO, delta, count)
+    width = np.sqrt(4 * RHO**2 - 1)
+    assert (hits.ball_vx > hits.piston_v).all()
+    assert hits.ball_vx**2 + hits.ball_vy**2 + hits.piston_v**2 == pytest.approx(np.ones(count))
+    # Near the tip the cell is a wedge, so the mean depth is 2/3 of delta, within a share of
+    # delta/lambda. The standard error is 0.0008 of delta; a bound of 0.007 is never exceeded.
+    depth = (1 - width) / 2 - hits.x
+    assert depth.mean() / delta == pytest.approx(2 / 3, abs=0.007)
+    assert abs(hits.y).max() / delta == pytest.approx(width, abs=0.007)
+    logarithms = np.log(hits.ball_vy**2 / np.abs(hits.ball_vx * hits.piston_v))
+    error = logarithms.std() / np.sqrt(count)  # five of them: a false alarm in two million
+    assert abs(logarithms.mean() - tangent_growth.mean_log_velocities()) < 5 * error
+
+
+def test_a_ball_between_two_opposite_discs_has_the_curvature_of_its_periodic_orbit() -> None:
+    gap = np.sqrt(2) - 2 * RHO
+    at_disc = np.sqrt(1 / RHO**2 + 2 / (RHO * gap)) - 1 / RHO  # k = k/(1 - k gap) - 2/rho
+    centre, along = np.zeros(1), np.full(1, np.sqrt(0.5))
+    found = tangent_growth.stable_curvature(RHO, centre, centre, along, along)
+    assert found == pytest.approx([at_disc / (1 - at_disc * gap / 2)], rel=1e-9)
+
+
+def test_a_collision_stretches_the_unstable_and_contracts_the_stable_direction() -> None:
+    c, unstable, stable = (np.array([value]) for value in (0.3, 2.0, 5.0))
+    m = tangent_growth.mixing_matrix(c, unstable, stable)[:, :, 0]
+    assert m @ [1, 2] == pytest.approx(np.array([1, 2]) / 0.3)
+    assert m @ [1, -5] == pytest.approx(np.array([1, -5]) * 0.3)
+
+
+def test_the_second_exponent_is_that_of_the_billiard(client: ballpiston.Client) -> None:
+    delta = 0.05
+    tau = float(client.analytic(RHO, delta)["tau_ball_piston"][0])
+    computed = tangent_growth.second_exponent(RHO, delta, tau, samples=16_384)
+    question = {"rho": RHO, "delta": delta, "collisions": 20_000, "seed": 1}
+    point = client.run("lyapunov", estimate="lyapunov_2_per_collision", **question)[0]
+    measured = point.estimates["lyapunov_2_per_collision"]
+    error = np.hypot(computed.error, float(measured.standard_error or np.nan))
+    assert error < 0.03
+    assert abs(measured.value - computed.value) < 5 * error  # a false alarm in two million
+    assert computed.value - computed.long_waits > 0.2  # the terms in 1/t are tested, too
+
+
+def measured_exponents(tau: Any) -> dict[str, Any]:
+    ones = np.ones(len(tau))
+    whole = {"delta": 1 / np.sqrt(tau), "tau": tau, "computed": np.log(tau) - 1 / np.sqrt(tau)}
+    whole |= {"value": np.log(tau) + 0.5 - 1 / np.sqrt(tau), "value_error": 0.01 * ones}
+    return whole | {"computed_error": 0.001 * ones}
+
+
+def test_a_logarithm_of_the_mean_free_time_is_told_from_a_power() -> None:
+    found = lyapunov.laws(measured_exponents(np.array([10.0, 2e3, 5e3, 1e4, 1e6])))
+    of = dict(zip(found["law"].tolist(), zip(found["B"], found["chi_squared"], found["freedom"])))
+    assert of["logarithm and computed terms"] == pytest.approx((1, 0, 2), abs=1e-9)
+    assert of["power"][1] > 100 and of["constant"][1] > 1000
+    assert of["computed"][1:] == pytest.approx((4 * 0.5**2 / (0.01**2 + 0.001**2), 4))
+
+
+def test_fits_without_enough_points_are_left_out() -> None:
+    assert lyapunov.laws(measured_exponents(np.array([10.0, 2e3])))["law"].tolist() == [
+        "constant",
+        "computed",
+    ]
