@@ -68,6 +68,13 @@ absl::StatusOr<v1::EnsembleJob> Resume(const Connection& connection, const v1::E
   }
 }
 
+std::string FromStoreText(const v1::EnsembleJob& job) {
+  const absl::Time end = absl::FromUnixSeconds(job.end_time().seconds());
+  return absl::StrCat("answered from the store: ", job.name(), ", computed ",
+                      absl::FormatTime("%Y-%m-%d %H:%M UTC", end, absl::UTCTimeZone()),
+                      " (--fresh computes it again)");
+}
+
 }  // namespace
 
 absl::StatusOr<v1::EnsembleJob> CreateJob(const Connection& connection,
@@ -82,17 +89,11 @@ absl::StatusOr<v1::EnsembleJob> CreateJob(const Connection& connection,
   return CreateOnce(connection, spec, create, terminal);
 }
 
-std::string ContinuesText(const v1::EnsembleJob& job) {
+std::string ReusedText(const v1::EnsembleJob& job) {
+  if (job.answered_from_store()) return FromStoreText(job);
   if (job.continues().empty()) return "";
   return absl::StrCat("continues ", job.continues(), ": ", ExactText(job.continued_samples()),
                       " samples are in the store (--fresh computes them again)");
-}
-
-std::string FromStoreText(const v1::EnsembleJob& job) {
-  const absl::Time end = absl::FromUnixSeconds(job.end_time().seconds());
-  return absl::StrCat("answered from the store: ", job.name(), ", computed ",
-                      absl::FormatTime("%Y-%m-%d %H:%M UTC", end, absl::UTCTimeZone()),
-                      " (--fresh computes it again)");
 }
 
 }  // namespace ballpiston::client

@@ -21,11 +21,9 @@ absl::StatusOr<v1::EnsembleJob> CreateJob(const Connection& connection,
                                           const v1::EnsembleSpec& spec, const Options& options,
                                           const Terminal& terminal);
 
-// The note for a job with answered_from_store:
+// The note for a job that uses what is stored, else empty:
 //   answered from the store: NAME, computed 2026-11-21 12:00 UTC (--fresh computes it again)
-// "continues ensembleJobs/ID: 100000 samples are in the store", or empty.
-std::string ContinuesText(const v1::EnsembleJob& job);
-
-std::string FromStoreText(const v1::EnsembleJob& job);
+//   continues NAME: 100000 samples are in the store (--fresh computes them again)
+std::string ReusedText(const v1::EnsembleJob& job);
 
 }  // namespace ballpiston::client

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "client/command/config_file.h"
@@ -74,7 +75,7 @@ VerbResult RunPythonProgram(const std::string& module, const std::vector<std::st
     kill(-*pid, SIGINT);
     WaitForChild(*pid).IgnoreError();
     terminal.err << (isatty(STDERR_FILENO) ? "\r\x1b[K" : "")
-                 << "This is not finished: run the same command again.\n";
+                 << "The file is not finished: run the same command again.\n";
   });
   const absl::StatusOr<int> status = WaitForChild(*pid);
   if (!status.ok()) return status.status();
@@ -91,6 +92,16 @@ absl::Status CheckPython(const std::string& purpose, const std::vector<std::stri
       absl::StrCat(purpose, " needs the Python package: ", Interpreter(), " cannot import ",
                    absl::StrJoin(modules, ", "), "; install ", packages,
                    ", or name an interpreter that has them with BALLPISTON_PYTHON"));
+}
+
+absl::Status CheckPythonFor(const std::string& out) {
+  if (!absl::EndsWith(out, ".parquet")) {
+    return CheckPython("--out " + out, {"ballpiston", "numpy"},
+                       "python3-ballpiston and python3-numpy");
+  }
+  return CheckPython(
+      "--out " + out, {"ballpiston", "pandas", "pyarrow"},
+      "python3-ballpiston and python3-pandas, and pyarrow from the Python Package Index");
 }
 
 }  // namespace ballpiston::client

@@ -20,6 +20,9 @@ std::filesystem::path PythonPackage();
 absl::Status CheckPython(const std::string& purpose, const std::vector<std::string>& modules,
                          const std::string& packages);
 
+// The same for the file that --out names: .parquet needs more modules.
+absl::Status CheckPythonFor(const std::string& out);
+
 // Runs a program of the package: python3 -m MODULE ARGUMENT... The flags of the options that choose
 // the server and the progress are in its environment, and the user's config file has no effect on
 // it. An interruption ends the program and all that it has started; its jobs continue. `packages`

@@ -16,8 +16,7 @@ VerbResult Run(const Options& options, Terminal& terminal) {
         const auto made = CreateJob(connection, spec, options, terminal);
         if (!made.ok()) return made.status();
         const bool is_silent = options.quiet || options.progress == ProgressStyle::kNone;
-        const std::string reused =
-            made->answered_from_store() ? FromStoreText(*made) : ContinuesText(*made);
+        const std::string reused = ReusedText(*made);
         if (!reused.empty() && !is_silent) {
           ProgressReporter(StyleOf(options), terminal.err, made->name()).Note(reused);
         }

@@ -29,7 +29,10 @@ VerbResult WriteCsv(const Connection& connection, const v1::EnsembleSpec& spec,
 absl::Status CheckOut(const std::string& path) {
   const bool is_known = absl::EndsWith(path, ".csv") || absl::EndsWith(path, ".npz") ||
                         absl::EndsWith(path, ".parquet");
-  if (is_known) return CheckNewFile("--out", path);
+  if (is_known) {
+    const absl::Status bad = CheckNewFile("--out", path);
+    return bad.ok() && !absl::EndsWith(path, ".csv") ? CheckPythonFor(path) : bad;
+  }
   return absl::InvalidArgumentError("--out: name a file .csv, .npz or .parquet");
 }
 

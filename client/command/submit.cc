@@ -12,8 +12,7 @@ VerbResult Submit(const Options& options, Terminal& terminal) {
       [&](const Connection& connection, const v1::EnsembleSpec& spec) -> VerbResult {
         const auto job = CreateJob(connection, spec, options, terminal);
         if (!job.ok()) return job.status();
-        if (job->answered_from_store()) terminal.Note(FromStoreText(*job));
-        if (!job->continues().empty()) terminal.Note(ContinuesText(*job));
+        if (const std::string reused = ReusedText(*job); !reused.empty()) terminal.Note(reused);
         terminal.out << job->name() << '\n';
         return ExitCode::kDone;
       });

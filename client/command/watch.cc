@@ -23,7 +23,9 @@ class Watches {
   Watches(const Connection& connection, const std::vector<std::string>& names) {
     for (const std::string& name : names) {
       threads_.emplace_back([this, &connection, name](const std::stop_token& stop) {
-        Add(connection.client.Watch(name, {}, {}, stop));
+        WatchOptions options;
+        options.before_reattach = [this, &connection] { Revive(connection); };
+        Add(connection.client.Watch(name, {}, options, stop));
       });
     }
   }
@@ -44,6 +46,14 @@ class Watches {
     added_.notify_one();
   }
 
+  // One thread starts a private server that has stopped. If this fails, the watch reports the
+  // error.
+  void Revive(const Connection& connection) {
+    const std::lock_guard lock(reviving_);
+    connection.Revive().IgnoreError();
+  }
+
+  std::mutex reviving_;
   std::mutex mutex_;
   std::condition_variable added_;
   std::deque<Ended> ended_;
@@ -75,21 +85,23 @@ VerbResult WatchSeveral(const Connection& connection, const std::vector<std::str
                         const Options& options, Terminal& terminal) {
   Watches watches(connection, names);
   const size_t count = options.any ? 1 : names.size();
+  absl::Status first_error;
   ExitCode worst = ExitCode::kDone;
   for (size_t i = 0; i < count; ++i) {
     const Ended job = watches.Next();
     if (job.ok()) terminal.out << job->name() << ' ' << Spelling(job->state()) << std::endl;
     const VerbResult result = Finish(job, options, terminal);
-    if (!result.ok()) return result;
-    worst = std::max(worst, *result);
+    first_error.Update(result.status());
+    if (result.ok()) worst = std::max(worst, *result);
   }
-  return worst;
+  return first_error.ok() ? VerbResult(worst) : first_error;
 }
 
 }  // namespace
 
 VerbResult Watch(const Options& options, Terminal& terminal) {
-  return WithJobs(options, terminal, {}, [&](const auto& connection, const auto& names) {
+  const JobStates states = options.any ? kActiveStates : JobStates();
+  return WithJobs(options, terminal, states, [&](const auto& connection, const auto& names) {
     if (names.size() > 1) return WatchSeveral(connection, names, options, terminal);
     return Finish(FollowJob(connection, names.front(), StyleOf(options), terminal), options,
                   terminal);

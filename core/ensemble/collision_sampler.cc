@@ -8,22 +8,33 @@
 namespace ballpiston {
 namespace {
 
-// Samples in progress or waiting, enough to keep the lanes full where blocks are small. A block of
-// as many samples is the only one beside the block that is read.
+// Collisions in progress or waiting: enough to keep the lanes full, and a bound of the memory.
 constexpr uint64_t kMostOpen = 1 << 16;
 
 constexpr double kSpeed = 1;  // sqrt(2 E) of a pair
 
+// So many samples have some `most` collisions.
+uint64_t SamplesWith(double most, double collisions_of_a_sample) {
+  return static_cast<uint64_t>(std::max(most / std::max(collisions_of_a_sample, 1.0), 1.0));
+}
+
 }  // namespace
 
-CollisionSampler::CollisionSampler(const PointExperiment& experiment, TargetUnit unit)
-    : experiment_(experiment), unit_(unit), run_(experiment.StartRun(*this)) {}
+// Orbits do not depend on the division into blocks, so a block of orbits with many collisions is
+// computed in parts.
+CollisionSampler::CollisionSampler(const PointExperiment& experiment, const ExperimentKind& kind,
+                                   std::function<bool()> pause)
+    : experiment_(experiment),
+      counts_orbits_(kind.unit == TargetUnit::kSamples),
+      most_in_a_part_(SamplesWith(
+          kMostOpen / 4.0, kind.collisions(experiment.answer().model, experiment.parameters()))),
+      pause_(std::move(pause)),
+      run_(experiment.StartRun(*this)) {}
 
-std::vector<CollisionRecord> CollisionSampler::NextRecords() {
-  while (!Pause()) {
-    const bool has_ended = run_->Advance() && open_.empty();
-    if (has_ended) return {};
-  }
+std::optional<std::vector<CollisionRecord>> CollisionSampler::NextRecords() {
+  if (!IsReady()) run_->Advance();
+  if (HasEnded()) return std::nullopt;
+  if (!IsReady()) return std::vector<CollisionRecord>();
   OpenBlock done = std::move(open_.front());
   open_.pop_front();
   open_samples_ -= done.block.samples;
@@ -37,7 +48,7 @@ std::vector<CollisionRecord> CollisionSampler::InOrder(OpenBlock open) const {
   for (const auto& [orbit, found] : open.records) {
     const bool goes_on = !records.empty() && orbit == open.records[records.size() - 1].orbit;
     CollisionRecord record = found;
-    record.sample = open.block.first + (unit_ == TargetUnit::kSamples ? orbit : records.size());
+    record.sample = open.block.first + (counts_orbits_ ? orbit : records.size());
     record.time = record.free_time + (goes_on ? records.back().time : 0);
     records.push_back(record);
   }
@@ -50,15 +61,23 @@ CollisionSampler::OpenBlock& CollisionSampler::Find(const Block& block) {
 
 std::optional<Block> CollisionSampler::Next() {
   const ChunkPlan& plan = experiment_.plan();
-  if (open_samples_ >= kMostOpen || chunk_ == plan.chunks()) return std::nullopt;
-  const Block block = plan.BlockAt(chunk_, index_);
-  if (++index_ == plan.BlocksIn(chunk_)) {
-    ++chunk_;
-    index_ = 0;
+  if (chunk_ == plan.chunks()) return std::nullopt;
+  Block part = plan.BlockAt(chunk_, index_);
+  part.first += in_block_;
+  part.samples -= in_block_;
+  if (counts_orbits_) part.samples = std::min(part.samples, most_in_a_part_);
+  if (open_samples_ + part.samples > 4 * most_in_a_part_ && !open_.empty()) return std::nullopt;
+  in_block_ += part.samples;
+  if (in_block_ == plan.BlockAt(chunk_, index_).samples) {
+    in_block_ = 0;
+    if (++index_ == plan.BlocksIn(chunk_)) {
+      ++chunk_;
+      index_ = 0;
+    }
   }
-  open_.push_back({block});
-  open_samples_ += block.samples;
-  return block;
+  open_.push_back({part});
+  open_samples_ += part.samples;
+  return part;
 }
 
 void CollisionSampler::Done(const Block& block, BlockResult) { Find(block).is_done = true; }

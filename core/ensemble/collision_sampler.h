@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -28,13 +29,15 @@ struct CollisionRecord {
 
 class CollisionSampler : private BlockQueue, private CollisionObserver {
  public:
-  // `unit`: of the experiment's target. The experiment must outlive this; it must be one with a
-  // pair, answered by a billiard.
-  CollisionSampler(const PointExperiment& experiment, TargetUnit unit);
+  // The experiment, of this kind, must outlive this; it must be one with a pair, answered by a
+  // billiard. Where `pause` is true, NextRecords returns soon.
+  CollisionSampler(const PointExperiment& experiment, const ExperimentKind& kind,
+                   std::function<bool()> pause);
 
-  // The records of the next block, of at most some 65,536 samples; empty after the last block. An
-  // orbit has no record of an escape or an expiry at its end.
-  std::vector<CollisionRecord> NextRecords();
+  // Records that follow the earlier ones, some 65,536 at most; none if the pause came before the
+  // next ones were complete. Empty after the last record. An orbit has no record of an escape or an
+  // expiry at its end.
+  std::optional<std::vector<CollisionRecord>> NextRecords();
 
  private:
   struct OfOrbit {
@@ -50,18 +53,23 @@ class CollisionSampler : private BlockQueue, private CollisionObserver {
   OpenBlock& Find(const Block& block);
   std::vector<CollisionRecord> InOrder(OpenBlock open) const;
 
+  bool HasEnded() const { return open_.empty() && chunk_ == experiment_.plan().chunks(); }
+  bool IsReady() const { return !open_.empty() && open_.front().is_done; }
+
   std::optional<Block> Next() override;
   void Done(const Block& block, BlockResult result) override;
-  bool Pause() override { return !open_.empty() && open_.front().is_done; }
+  bool Pause() override { return IsReady() || pause_(); }
   std::stop_token stop() const override { return {}; }
   CollisionObserver* observer() override { return this; }
   void Observe(const Block& block, uint64_t orbit, const Collision& collision) override;
 
   const PointExperiment& experiment_;
-  const TargetUnit unit_;
+  const bool counts_orbits_;  // a sample is an orbit
+  const uint64_t most_in_a_part_;
+  const std::function<bool()> pause_;
   std::deque<OpenBlock> open_;  // in order
   uint64_t open_samples_ = 0;
-  uint64_t chunk_ = 0, index_ = 0;  // of the next block
+  uint64_t chunk_ = 0, index_ = 0, in_block_ = 0;  // where the next part begins
   std::unique_ptr<EngineRun> run_;
 };
 

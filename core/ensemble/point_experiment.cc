@@ -119,6 +119,7 @@ PointSummary PointExperiment::Summarize(const BlockResult& merged) const {
 }
 
 double RelativeError(const Estimate& estimate) {
+  if (estimate.standard_error == 0) return 0;
   if (!estimate.standard_error || estimate.value == 0) {
     return std::numeric_limits<double>::infinity();
   }

@@ -65,6 +65,7 @@ std::optional<EarlierJob> FindEarlier(Database& database, const Acceptance& acce
   return answer ? std::optional(EarlierJob{*std::move(answer), true}) : std::nullopt;
 }
 
+// Adds the labels to the record. Refuses more than a job may have.
 void AddLabels(Database& database, const Labels& more, JobRecord& record) {
   Labels labels = LabelsOf(record.labels);
   for (const auto& [key, value] : more) labels.insert_or_assign(key, value);
@@ -74,7 +75,6 @@ void AddLabels(Database& database, const Labels& more, JobRecord& record) {
                                  "; permitted: at most ", kMostLabels)}}));
   }
   record.labels = LabelsText(labels);
-  if (!more.empty()) UpdateJob(database, record);
 }
 
 // The number of samples or collisions; none with a tolerance.
@@ -84,11 +84,14 @@ std::optional<int64_t> CountOf(const v1::Target& target) {
   return target.has_collisions() ? target.collisions() : kDefaultSamples;
 }
 
-// Whether a job with the first target may continue one with the second.
-bool AsksForMore(const v1::Target& target, const v1::Target& earlier) {
-  const std::optional<int64_t> count = CountOf(target), before = CountOf(earlier);
-  if (count && before) return *count > *before;
-  return count || before || target.tolerance() < earlier.tolerance();
+// Whether a job with this target may continue the earlier one. A tolerance may have been reached
+// before the end of a number of samples; then the points begin anew.
+bool AsksForMore(const v1::Target& target, const JobRecord& earlier, const v1::Target& before) {
+  if (earlier.numbers.samples == 0) return false;
+  const std::optional<int64_t> count = CountOf(target);
+  const auto points = static_cast<double>(earlier.points);
+  if (count) return static_cast<double>(*count) * points > earlier.numbers.samples;
+  return CountOf(before) || target.tolerance() < before.tolerance();
 }
 
 // Sets which job the new one continues, if there is one.
@@ -97,7 +100,7 @@ void Continue(Database& database, JobRecord& record) {
     return database.ValueOf(SpecFromBytes({job.spec.rest})).target();
   };
   for (const JobRecord& earlier : FindFamily(database, record.principal, record.family)) {
-    if (!AsksForMore(target_of(record), target_of(earlier))) continue;
+    if (!AsksForMore(target_of(record), earlier, target_of(earlier))) continue;
     record.continues = earlier.id;
     record.continued_samples = earlier.numbers.samples;
     return;
@@ -124,6 +127,9 @@ absl::Status CheckSize(const CheckedSpec& checked, const Limits& limits) {
 
 std::optional<EarlierJob> Judge(Database& database, const Limits& limits, Acceptance& acceptance) {
   std::optional<EarlierJob> earlier = FindEarlier(database, acceptance);
+  if (earlier && earlier->answered_from_store) {
+    AddLabels(database, LabelsOf(acceptance.record.labels), earlier->record);
+  }
   if (earlier) return earlier;
   database.Fail(acceptance.fits);
   CheckQueue(database, limits, acceptance.record);
@@ -135,10 +141,8 @@ std::optional<EarlierJob> Judge(Database& database, const Limits& limits, Accept
 // An answer from the store stores no request: a retry finds the same answer.
 std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
   std::optional<EarlierJob> earlier = Judge(database, limits, acceptance);
-  if (earlier) {
-    AddLabels(database, LabelsOf(acceptance.record.labels), earlier->record);
-    return earlier;
-  }
+  if (earlier && !acceptance.record.labels.empty()) UpdateJob(database, earlier->record);
+  if (earlier) return earlier;
   JobRecord& record = acceptance.record;
   InsertJob(database, record);
   if (!acceptance.request_id.empty()) {

@@ -9,9 +9,10 @@
 // A new job continues an earlier one that SUCCEEDED in answering the same question with a smaller
 // number of samples or a larger tolerance: each point begins where that job's point ended, if the
 // same model answers it. So the job computes only the difference, and its result has the bytes of
-// one long run. If that job is deleted meanwhile, the points begin anew.
+// one long run. If that job is deleted meanwhile, the points begin anew. If another machine
+// computed a point's last chunk, the part of it that the target cut short is computed again.
 //
-// The request's labels are added to those of the job that answers it, new or old.
+// The request's labels are added to those of the earlier job that answers its question.
 #pragma once
 
 #include <optional>
@@ -30,7 +31,7 @@ namespace ballpiston::server {
 struct Acceptance {
   JobRecord record;        // the new job, if there is one
   std::string request_id;  // unique for the principal; may be empty
-  std::string payload;     // a hash of the request without its id
+  std::string payload;     // a hash of the request without its id and its labels
   bool fresh = false;      // do not return an earlier job
   absl::Status fits;       // of CheckSize; used for new jobs only
 };
@@ -57,7 +58,7 @@ std::string QuestionOf(const v1::EnsembleSpec& spec, const std::string& engine_v
 // The same without the target's number of samples, collisions or tolerance. Empty with a budget.
 std::string FamilyOf(const v1::EnsembleSpec& spec, const std::string& engine_version);
 
-// A hash of the whole request except its id.
+// A hash of the whole request except its id and its labels.
 std::string PayloadOf(const v1::CreateEnsembleJobRequest& request);
 
 }  // namespace ballpiston::server

@@ -117,7 +117,11 @@ std::optional<EarlierPoint> ReadEarlier(Database& database, const std::string& j
   if (!record || record->expired_time) return std::nullopt;
   const std::optional<PointEnd> end = ReadEnd(database, record->sequence, point);
   if (!end) return std::nullopt;
-  return EarlierPoint{static_cast<Model>(end->model), database.ValueOf(EndFromBytes(end->state))};
+  absl::StatusOr<FoldState> state = EndFromBytes(end->state);
+  if (state.ok()) return EarlierPoint{static_cast<Model>(end->model), *std::move(state)};
+  LogError(absl::StrCat("point ", point, " of ", JobName(job),
+                        " cannot be continued and is computed anew: ", state.status().message()));
+  return std::nullopt;
 }
 
 // Empty if no other job can continue the point.

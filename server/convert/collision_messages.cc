@@ -1,28 +1,36 @@
 #include "server/convert/collision_messages.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 #include "absl/strings/str_cat.h"
 #include "core/ensemble/experiment_kind.h"
+#include "core/experiment/all_experiments.h"
 #include "server/convert/errors.h"
 #include "server/convert/spec.h"
 
 namespace ballpiston::server {
 namespace {
 
-bool HasAPair(const ExperimentKind& kind) {
-  return std::ranges::none_of(kind.parameters,
-                              [](const ParameterUse& use) { return use.parameter == &kCells; });
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds kTurnOfASampler(50);
+
+// An orbit of lyapunov has collisions that its estimates leave out.
+bool HasCollisionsToRead(const ExperimentKind& kind) {
+  return &kind != &kLyapunov && std::ranges::none_of(kind.parameters, [](const ParameterUse& use) {
+    return use.parameter == &kCells;
+  });
 }
 
 void CheckForCollisions(CheckedSpec& checked) {
   if (!checked.violations.empty()) return;
   const EnsembleSpec& spec = checked.spec;
   std::vector<FieldViolation> found;
-  if (!HasAPair(*spec.experiment)) {
-    found.push_back({"experiment", absl::StrCat("is ", spec.experiment->name,
-                                                "; permitted: an experiment with a pair")});
+  if (!HasCollisionsToRead(*spec.experiment)) {
+    found.push_back(
+        {"experiment", absl::StrCat("is ", spec.experiment->name,
+                                    "; permitted: an experiment with a pair, except lyapunov")});
   }
   if (!IsABilliard(spec.model)) {
     found.push_back({"model", absl::StrCat("is ", Name(spec.model),
@@ -57,7 +65,10 @@ void AddRow(const CollisionRecord& record, v1::SampleCollisionsResponse& message
 
 CollisionMessages::CollisionMessages(const EnsembleSpec& spec)
     : experiment_(PointExperiment::Create(spec, 0)),
-      sampler_(std::make_unique<CollisionSampler>(*experiment_, spec.experiment->unit)) {}
+      end_of_turn_(std::make_unique<Clock::time_point>()),
+      sampler_(std::make_unique<CollisionSampler>(
+          *experiment_, *spec.experiment,
+          [end = end_of_turn_.get()] { return Clock::now() >= *end; })) {}
 
 absl::StatusOr<CollisionMessages> CollisionMessages::Create(
     const v1::SampleCollisionsRequest& request) {
@@ -71,13 +82,17 @@ absl::StatusOr<CollisionMessages> CollisionMessages::Create(
   return CollisionMessages(checked.spec);
 }
 
-void CollisionMessages::FillNext(v1::SampleCollisionsResponse& message) {
+bool CollisionMessages::FillNext(v1::SampleCollisionsResponse& message) {
   if (next_ == records_.size()) {
-    records_ = sampler_->NextRecords();
+    *end_of_turn_ = Clock::now() + kTurnOfASampler;
+    std::optional<std::vector<CollisionRecord>> records = sampler_->NextRecords();
+    if (!records) return false;
+    records_ = *std::move(records);
     next_ = 0;
   }
   const size_t end = std::min(records_.size(), next_ + kCollisionsOfMessage);
   for (; next_ < end; ++next_) AddRow(records_[next_], message);
+  return true;
 }
 
 }  // namespace ballpiston::server

@@ -177,7 +177,8 @@ absl::Status CheckFoldState(const PointExperiment& experiment, const FoldState& 
 
 bool CanContinueFrom(const PointExperiment& experiment, const FoldState& state) {
   const std::optional<double>& tolerance = experiment.tolerance();
-  const bool has_ended_before = tolerance && state.least_error <= *tolerance;
+  constexpr double kRounding = 1 + 1e-12;  // of the quotient in least_error
+  const bool has_ended_before = tolerance && state.least_error <= *tolerance * kRounding;
   return !has_ended_before && IsPossible(experiment, state);
 }
 

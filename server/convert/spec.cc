@@ -202,6 +202,8 @@ void AddViolations(std::vector<FieldViolation> found, CheckedSpec& checked) {
 }
 
 void AddDefaults(v1::EnsembleSpec& message) {
+  // The order of the names means nothing.
+  if (message.grid().table_size() > 1) std::ranges::sort(*message.mutable_grid()->mutable_table());
   const ExperimentKind* const experiment =
       FindExperiment(static_cast<uint64_t>(message.experiment()));
   if (experiment == nullptr) return;

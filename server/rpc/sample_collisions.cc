@@ -7,10 +7,10 @@ namespace ballpiston::server {
 namespace {
 
 // Takes a turn for each message, so other calls can compute between two messages.
-void FillInTurn(ServiceContext& service, const Stream& stream, CollisionMessages& messages,
+bool FillInTurn(ServiceContext& service, const Stream& stream, CollisionMessages& messages,
                 v1::SampleCollisionsResponse& message) {
   const Quota::Part turn = service.quotas.turns.Await(stream.caller().name);
-  messages.FillNext(message);
+  return messages.FillNext(message);
 }
 
 }  // namespace
@@ -26,8 +26,8 @@ absl::Status SampleCollisions(ServiceContext& service, Stream& stream,
   while (true) {
     if (const absl::Status proceed = stream.Proceed(); !proceed.ok()) return proceed;
     message.Clear();
-    FillInTurn(service, stream, *messages, message);
-    if (message.sample().empty()) return absl::OkStatus();
+    if (!FillInTurn(service, stream, *messages, message)) return absl::OkStatus();
+    if (message.sample().empty()) continue;
     if (!writer.Write(message)) return absl::CancelledError("the client is gone");
   }
 }

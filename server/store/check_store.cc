@@ -45,6 +45,9 @@ constexpr const char* kContradictions[] = {
     "SELECT 'details without a result: job ' || job || ', point ' || point FROM details"
     " LEFT JOIN results USING (job, point) WHERE finish IS NULL"
     " AND job NOT IN (SELECT job FROM dropped)",
+    "SELECT 'an end without a result: job ' || job || ', point ' || point FROM ends"
+    " LEFT JOIN results USING (job, point) WHERE finish IS NULL"
+    " AND job NOT IN (SELECT job FROM dropped)",
     "SELECT 'a checkpoint without a point of an active job: job ' || job || ', point ' || point"
     " FROM checkpoints LEFT JOIN jobs ON sequence = job"
     " WHERE sequence IS NULL OR point < 0 OR point >= points OR state >= 4",

@@ -128,12 +128,12 @@ TEST(PlainChains, TheJumpProcessBetweenReservoirsIsThatOfAPlainProgram) {
   EXPECT_LT(comparison.MeanSquare(), 2);
 }
 
-// 10 comparisons, or 24 in the nightly test; the rates of false alarms are as above.
+// 4 comparisons, or 20 in the nightly test; the rates of false alarms are as above.
 TEST(PlainChains, TheBilliardBetweenReservoirsIsThatOfAPlainProgram) {
   constexpr double kDelta = 0.15;
   Comparison comparison;
   for (const int64_t cells : {1, 2, 4}) {
-    if (cells > 2 && !IsNightly()) break;
+    if (cells > 1 && !IsNightly()) break;
     const auto count = static_cast<size_t>(cells);
     const PointParameters point = PaperGas(&kGasConduction, kDelta, GasShape{cells});
     Compare(ByTheProduct(point, Model::kBilliard, 60'000),

@@ -60,13 +60,15 @@ def stream_messages(connection: Connection, method: Any, request: Any) -> Iterat
     call = connection.open_stream(method, request)
     try:
         try:
-            first = next(call)
+            first = next(call, None)
         except grpc.RpcError as error:
             if connection.private is None or error.code() != grpc.StatusCode.UNAVAILABLE:
                 raise
             connection.revive()
             call = connection.open_stream(method, request)
-            first = next(call)
+            first = next(call, None)
+        if first is None:
+            return
         yield first
         yield from call
     except grpc.RpcError as error:
