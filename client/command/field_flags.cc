@@ -33,7 +33,8 @@ std::optional<std::string> LineOfPoint(absl::string_view field, const Options& o
       !absl::SimpleAtoi(field.substr(field.find('[') + 1), &row)) {
     return std::nullopt;
   }
-  return absl::StrCat(options.points_file, ", line ", LineOfRow(row));
+  const std::string& path = options.points_file;
+  return absl::StrCat(path == "-" ? "standard input" : path, ", line ", LineOfRow(row));
 }
 
 std::string NameOf(const std::string& field, const Verb& verb, const Options& options) {

@@ -1,4 +1,5 @@
-// ballpiston label: sets and removes labels of a job. Prints the job's name and its labels.
+// ballpiston label: sets and removes labels of a job. Prints the job's name and its labels. Of two
+// changes at the same time the later one may undo the other.
 #include "absl/strings/str_cat.h"
 #include "client/command/connection.h"
 #include "client/output/job_list.h"

@@ -16,9 +16,14 @@ absl::Status Check(const Options& options) {
   return CheckSave(options);
 }
 
-absl::Status TooManyForAFile(size_t jobs) {
-  return absl::InvalidArgumentError(absl::StrCat("--save writes the result of one job, not of ",
-                                                 jobs, "; ballpiston export writes those of many"));
+bool IsCsv(Format format) {
+  return format == Format::kCsv || format == Format::kCsvHistograms || format == Format::kCsvCurves;
+}
+
+absl::Status TooMany(size_t jobs) {
+  return absl::InvalidArgumentError(
+      absl::StrCat("--save and CSV are for the result of one job, not of ", jobs,
+                   "; ballpiston export writes the estimates of many"));
 }
 
 }  // namespace
@@ -27,7 +32,9 @@ VerbResult Result(const Options& options, Terminal& terminal) {
   if (absl::Status bad = Check(options); !bad.ok()) return bad;
   return WithJobs(
       options, terminal, {}, [&](const auto& connection, const auto& names) -> VerbResult {
-        if (names.size() > 1 && !options.save.empty()) return TooManyForAFile(names.size());
+        if (names.size() > 1 && (!options.save.empty() || IsCsv(options.format))) {
+          return TooMany(names.size());
+        }
         ExitCode worst = ExitCode::kDone;
         for (const std::string& name : names) {
           const VerbResult result =

@@ -5,7 +5,9 @@
 #include "absl/status/status.h"
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "client/output/number_text.h"
+#include "client/output/spelling.h"
 
 namespace ballpiston::client {
 namespace {
@@ -19,6 +21,15 @@ absl::Status CheckSelection(const Options& options) {
       "--label and names of jobs exclude each other: give one of them");
 }
 
+absl::Status NoneFound(const JobStates& states) {
+  const auto spelled = [](std::string* out, v1::EnsembleJob::State state) {
+    absl::StrAppend(out, Spelling(state));
+  };
+  return absl::NotFoundError(absl::StrCat("no job has these labels",
+                                          states.empty() ? "" : " and one of the states ",
+                                          absl::StrJoin(states, ", ", spelled)));
+}
+
 absl::StatusOr<std::vector<std::string>> SelectedJobs(const Connection& connection,
                                                       const Options& options,
                                                       const JobStates& states) {
@@ -29,7 +40,7 @@ absl::StatusOr<std::vector<std::string>> SelectedJobs(const Connection& connecti
   for (const auto state : states) request.add_states(state);
   const auto jobs = connection.Ask([&] { return connection.client.List(request); });
   if (!jobs.ok()) return jobs.status();
-  if (jobs->empty()) return absl::NotFoundError("no job with these labels is there to act on");
+  if (jobs->empty()) return NoneFound(states);
   std::vector<std::string> names;
   for (const v1::EnsembleJob& job : *jobs) names.push_back(job.name());
   return names;

@@ -537,8 +537,7 @@ std::vector<Verb> JobVerbs() {
       {"label",
        "set and remove labels of a job",
        "KEY=VALUE sets a label, KEY= removes it. Prints the job's name and its labels. list, "
-       "result, "
-       "report, cancel and delete find jobs by --label.",
+       "watch, result, export, report, cancel and delete find jobs by --label.",
        {kOneJob,
         {Labels("KEY=VALUE"),
          "a key of a-z, 0-9 and _ . -, and a value of letters, digits and _ . "

@@ -411,7 +411,7 @@ class GasConduction : public SteadyGas {
   ProfilePlaces places_;
 };
 
-// Passes by NaN.
+// Ignores NaN.
 double LargestOf(std::span<const double> values) {
   double largest = 0;
   for (const double value : values) largest = std::fmax(largest, value);

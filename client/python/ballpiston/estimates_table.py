@@ -11,20 +11,21 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ballpiston.errors import ResultsExpired
+from ballpiston.errors import NotFound, ResultsExpired
 from ballpiston.job import Job
 from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS
 
 Table = dict[str, npt.NDArray[Any]]
 
-_OF_JOB = ("job", "labels", "experiment", "seed", "engine_version")
+_OF_JOB = ("job", "labels", "state", "experiment", "seed", "engine_version")
 _TEXTS = (*_OF_JOB, "cells", "model", "name")
 _COLUMNS = (*_OF_JOB, "index", *PARAMETERS, "model", "samples", "name", "value", *ESTIMATE_FIELDS)
 
 
 def estimates_table(jobs: Iterable[Job]) -> Table:
-    """Columns of equal length, NaN or "" where a value is absent. Jobs whose results have expired
-    are left out, with a note on standard error."""
+    """Columns of equal length, NaN or "" where a value is absent: of each job the points that are
+    finished. Jobs whose results have expired and jobs that were deleted meanwhile are left out, with
+    a note on standard error."""
     rows = [row for job in jobs for row in _rows(job)]
     return {
         name: np.array([row.get(name, "" if name in _TEXTS else np.nan) for row in rows])
@@ -35,12 +36,14 @@ def estimates_table(jobs: Iterable[Job]) -> Table:
 def _rows(job: Job) -> Iterator[dict[str, Any]]:
     try:
         result = job.result()
-    except ResultsExpired:
-        print(f"ballpiston: {job.name} is left out: its results have expired", file=sys.stderr)
+    except (ResultsExpired, NotFound) as error:
+        why = str(error).splitlines()[0]
+        print(f"ballpiston: {job.name} is left out: {why}", file=sys.stderr)
         return
     of_job = {
         "job": job.name,
         "labels": " ".join(f"{key}={value}" for key, value in sorted(job.labels.items())),
+        "state": job.state,
         "experiment": job.experiment,
         "seed": str(job.specification.seed),  # it may have more digits than a float
         "engine_version": job.message.engine_version,

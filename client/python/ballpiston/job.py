@@ -272,7 +272,8 @@ class Job:
         return self
 
     def label(self, **labels: str | None) -> Job:
-        """Sets these labels and keeps the others; None removes a label.
+        """Sets these labels and keeps the others; None removes a label. Of two changes at the same
+        time the later one may undo the other.
 
         Example:
             >>> job.label(run="7", who=None)

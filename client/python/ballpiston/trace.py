@@ -55,8 +55,8 @@ def _messages(connection: Connection, request: Any) -> Iterator[Any]:
 
 
 def stream_messages(connection: Connection, method: Any, request: Any) -> Iterator[Any]:
-    """The messages of a stream. If the private server stops before the start arrives, it is started again and asked once
-    more; later a repetition would begin with the start again."""
+    """The messages of a stream. If the private server stops before the first one arrives, it is
+    started again and asked once more; later a repetition would begin at the start again."""
     call = connection.open_stream(method, request)
     try:
         try:
