@@ -128,7 +128,8 @@ TEST(PlainChains, TheJumpProcessBetweenReservoirsIsThatOfAPlainProgram) {
   EXPECT_LT(comparison.MeanSquare(), 2);
 }
 
-// 4 comparisons, or 20 in the nightly test; the rates of false alarms are as above.
+// 4 comparisons, or 20 in the nightly test. Of 4 independent ones the mean square is above 3.5 for
+// one seed in 140.
 TEST(PlainChains, TheBilliardBetweenReservoirsIsThatOfAPlainProgram) {
   constexpr double kDelta = 0.15;
   Comparison comparison;
@@ -144,7 +145,7 @@ TEST(PlainChains, TheBilliardBetweenReservoirsIsThatOfAPlainProgram) {
                       }),
             comparison);
   }
-  EXPECT_LT(comparison.MeanSquare(), 2);
+  EXPECT_LT(comparison.MeanSquare(), 3.5);
 }
 
 }  // namespace
