@@ -1,57 +1,38 @@
-// A test's counts and errors. The counts are printed when the test ends.
+// A test's counts and errors. The program prints them as a table when it ends.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
 #include <cstdint>
-#include <iostream>
 #include <map>
 #include <mutex>
 #include <string>
-#include <utility>
 #include <vector>
-
-#include "absl/strings/str_join.h"
 
 namespace ballpiston::torture {
 
 // Thread-safe.
 class Findings {
  public:
-  explicit Findings(std::string test) : test_(std::move(test)) {}
-  ~Findings() {
-    for (const auto& [what, count] : counts_) {
-      std::cout << test_ << ": " << what << ": " << count << "\n";
-    }
-  }
+  explicit Findings(std::string section) : section_(std::move(section)) {}
+  ~Findings();  // adds the counts to the table
 
-  void Count(const std::string& what, int64_t by = 1) {
-    const std::lock_guard lock(mutex_);
-    counts_[what] += by;
-  }
-  void Wrong(const std::string& what) {  // a broken promise
-    const std::lock_guard lock(mutex_);
-    wrong_.push_back(what);
-  }
+  void Count(const std::string& what, int64_t by = 1);
+  void Note(const std::string& what, const std::string& value);  // a measured number, as text
+  void Wrong(const std::string& what);                           // a broken promise
 
-  int64_t count(const std::string& what) const {
-    const std::lock_guard lock(mutex_);
-    const auto found = counts_.find(what);
-    return found == counts_.end() ? 0 : found->second;
-  }
-
+  int64_t count(const std::string& what) const;
   // The first errors, one a line; empty if there are none.
-  std::string Report() const {
-    const std::lock_guard lock(mutex_);
-    const size_t shown = std::min<size_t>(wrong_.size(), 20);
-    return absl::StrJoin(wrong_.begin(), wrong_.begin() + static_cast<ptrdiff_t>(shown), "\n");
-  }
+  std::string Report() const;
 
  private:
-  const std::string test_;
+  const std::string section_;
   mutable std::mutex mutex_;
   std::map<std::string, int64_t> counts_;
+  std::map<std::string, std::string> notes_;
   std::vector<std::string> wrong_;
+  mutable bool judged_ = false;  // Report was called
 };
+
+// Prints the table of all tests that have ended.
+void PrintTable();
 
 }  // namespace ballpiston::torture

@@ -17,6 +17,7 @@
 
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "client/library/client.h"
 #include "server/status/failpoint.h"
 #include "tests/fault/torture/connected_server.h"
@@ -26,6 +27,7 @@
 #include "tests/fault/torture/visitor.h"
 #include "tests/support/await.h"
 #include "tests/support/stand_in_slurm.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::torture {
 namespace {
@@ -178,13 +180,16 @@ void KillUnderVisitors(const Scene& scene, Findings& findings) {
     server.KillHard();
     server.Start();
   };
+  const auto start = std::chrono::steady_clock::now();
   Killer killer(server, scene.pace, findings);
   KillManyTimes(scene.kills, scene.failpoints, killer, findings);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  findings.Note("seconds of killing", absl::StrFormat("%.0f", took.count()));
 
   // No client may have compared a result before a kill. The last server therefore runs until one
   // has.
   server.Start();
-  AwaitThat([&] { return findings.count("jobs compared byte by byte") > 0; });
+  AwaitThat([&] { return findings.count("results compared byte by byte") > 0; });
   enough = true;
   threads.clear();  // waits for them
   std::move(end_visits).Cancel();

@@ -117,12 +117,6 @@ EnsembleSpec ManyPoints(int points, int64_t samples) {
   return WithSamples(std::move(spec), samples);
 }
 
-EnsembleSpec ClosedForms(int points) {
-  std::vector<double> deltas;
-  for (int i = 0; i < points; ++i) deltas.push_back(0.1 + 1e-6 * i);
-  return Question(EnsembleSpec::EQUILIBRIUM, EnsembleSpec::CLOSED_FORM, deltas);
-}
-
 EnsembleSpec Endless() {
   return WithSamples(
       Question(EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME, EnsembleSpec::BILLIARD, {0.2}, {0.25}),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -22,9 +23,6 @@ std::vector<v1::EnsembleSpec> LargeQuestions();
 
 // Many points of similar cost.
 v1::EnsembleSpec ManyPoints(int points, int64_t samples);
-
-// Points that take no samples.
-v1::EnsembleSpec ClosedForms(int points);
 
 // Never ends by itself; saturates the workers with turns of some 50 ms.
 v1::EnsembleSpec Endless();

@@ -1,96 +1,136 @@
-// Readers that stall take bounded memory in the server, and do not delay its stop. They are a
-// process that opens watches and then stops (SIGSTOP): neither the watches nor gRPC read what the
-// server sends. The test program itself is that process if its first argument says so.
-#include <grpcpp/grpcpp.h>
+// Stalled readers use bounded memory in the server, and no time of the engine.
 #include <gtest/gtest.h>
-#include <signal.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <memory>
+#include <algorithm>
+#include <chrono>
+#include <optional>
 #include <string>
-#include <vector>
+#include <thread>
 
-#include "ballpiston/v1/ensemble.grpc.pb.h"
+#include "absl/strings/str_format.h"
+#include "tests/fault/torture/bare_engine.h"
 #include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
+#include "tests/fault/torture/hung_readers.h"
 #include "tests/fault/torture/questions.h"
 #include "tests/fault/torture/sizes.h"
-#include "tests/server/own_channel.h"
-#include "tests/support/process.h"
-#include "tests/support/run_tests.h"
+#include "tests/fault/torture/windows.h"
+#include "tests/support/await.h"
 
 namespace ballpiston::torture {
 namespace {
 
-constexpr char kReadersFlag[] = "--stalled_readers";  // COUNT ADDRESS JOB
-constexpr double kMostMiB = 64;                       // of all readers
-constexpr int kPoints = 20'000;  // some MB for each watch, far more than gRPC holds
+constexpr double kMostMiB = 64;  // of all readers
+constexpr double kMostLoss = 0.01;
+constexpr int kPoints = 40'000;  // many, so that the unread data is large
+constexpr int kFinishedBefore = 600;
+constexpr int kFinishedMeanwhile = 10;
+constexpr int kWorkers = 2;
+// Readers that get messages for so long have not stalled.
+constexpr std::chrono::milliseconds kLongestToStall = kPatience;
 
-// A watch with a connection of its own.
-struct StalledReader {
-  StalledReader(const std::string& address, const std::string& job)
-      : stub(v1::EnsembleService::NewStub(
-            server::OwnChannel(address, nullptr, server::SmallWindow()))) {
-    v1::WatchEnsembleJobRequest request;
-    request.set_name(job);
-    stream = stub->WatchEnsembleJob(&context, request);
-    stream->WaitForInitialMetadata();  // the first message is on its way
+class StalledReaders : public testing::Test {
+ protected:
+  StalledReaders() : server_({.workers = kWorkers}) {
+    server_.Start();
+    client_.emplace(server_.NewClient());
+    name_ = OrThrow(client_->Create(ManyPoints(kPoints, Size(3'000, 60'000)))).name();
+    AwaitFinished(kFinishedBefore);
   }
 
-  std::unique_ptr<v1::EnsembleService::Stub> stub;
-  grpc::ClientContext context;
-  std::unique_ptr<grpc::ClientReader<v1::WatchEnsembleJobResponse>> stream;
+  int Finished() const { return client_->Get(name_)->progress().points_done(); }
+
+  void AwaitFinished(int points) const {
+    AwaitThat([&] { return Finished() >= std::min(points, kPoints); });
+  }
+
+  // The cost of a sample, relative to the bare engine at the same time, because the machine's speed
+  // changes.
+  struct Costs {
+    double processor = 0, time = 0;
+  };
+  Costs Look() {
+    Window server, bare;
+    for (int i = 0; i < windows_; ++i) {
+      server += ServerWindow(server_, *client_, name_, length_);
+      bare += engine_.RunInsteadOf(server_, length_);
+    }
+    return {server.ProcessorCost() / bare.ProcessorCost(), server.Cost() / bare.Cost()};
+  }
+
+  struct Stalled {
+    Costs costs;
+    int silent = 0;    // readers that got no message meanwhile
+    int finished = 0;  // points, meanwhile
+  };
+  Stalled LookWithReaders() {
+    HungReaders hung(readers_, server_.address(), name_);
+    std::this_thread::sleep_for(to_stall_);
+    const int first = Finished();
+    const Costs costs = Look();
+    most_mib_ = std::max(most_mib_, server_.ResidentMiB() - mib_without_);
+    AwaitFinished(first + kFinishedMeanwhile);  // otherwise silence would prove nothing
+    const int last = Finished();
+    // A message made at either of the two moments may have either number.
+    return {costs, hung.WakeAndCountSilent(first, last), last - first};
+  }
+
+  // Measures with stalled readers, and checks that they have stalled. If the server was too busy to
+  // send them enough in time, new readers get more time.
+  Costs LookWithStalled() {
+    Stalled stalled = LookWithReaders();
+    while (stalled.silent < readers_ && to_stall_ < kLongestToStall) {
+      to_stall_ *= 2;
+      stalled = LookWithReaders();
+    }
+    findings_.Count("readers stalled", readers_);
+    findings_.Count("of which were told nothing meanwhile", stalled.silent);
+    findings_.Count("points that finished meanwhile", stalled.finished);
+    return stalled.costs;
+  }
+
+  // The order alternates, because the cost of the question grows with time.
+  void Round(bool stalled_first) {
+    Costs stalled;
+    if (stalled_first) stalled = LookWithStalled();
+    std::this_thread::sleep_for(pause_);  // the time to recover
+    const Costs quiet = Look();
+    if (!stalled_first) stalled = LookWithStalled();
+    processor_.Add(stalled.processor, quiet.processor);
+    time_.Add(stalled.time, quiet.time);
+  }
+
+  const int readers_ = Size(10, 250);
+  const int windows_ = Size(1, 15);
+  const std::chrono::milliseconds length_{HoldsToTimes() ? 300 : 50}, pause_{Size(150, 2000)};
+  std::chrono::milliseconds to_stall_ = pause_;
+  Findings findings_{"stalled readers"};
+  BareEngine engine_{Endless(), kWorkers};
+  ConnectedServer server_;
+  std::optional<client::Client> client_;
+  std::string name_;
+  double mib_without_ = 0;
+  PairedRatio processor_, time_;
+  double most_mib_ = 0;
 };
 
-[[noreturn]] void RunStalledReaders(int count, const std::string& address, const std::string& job) {
-  std::vector<std::unique_ptr<StalledReader>> readers;
-  for (int i = 0; i < count; ++i) {
-    readers.push_back(std::make_unique<StalledReader>(address, job));
+TEST_F(StalledReaders, UseBoundedMemoryAndNoEngineTime) {
+  mib_without_ = server_.ResidentMiB();
+  const int rounds = Size(2, 20);
+  for (int i = 0; i < rounds; ++i) Round(i % 2 == 1);
+  findings_.Count("readers at once", readers_);
+  findings_.Note("most memory of all, MiB", absl::StrFormat("%.1f", most_mib_));
+  findings_.Note("processor time a sample, with over without", processor_.Text());
+  findings_.Note("time a sample, with over without", time_.Text());
+  EXPECT_EQ(findings_.count("of which were told nothing meanwhile"),
+            findings_.count("readers stalled"));
+  EXPECT_GE(findings_.count("points that finished meanwhile"), kFinishedMeanwhile * rounds);
+  EXPECT_LE(most_mib_, kMostMiB);
+  if (HoldsToTimes()) {
+    EXPECT_LT(processor_.ratio() - 1, kMostLoss + 2 * processor_.StandardError());
+    EXPECT_LT(processor_.StandardError(), kMostLoss) << "too noisy to tell";
   }
-  raise(SIGSTOP);
-  std::_Exit(0);
-}
-
-// Waits until the server has used no processor time for a while: it has sent what it can.
-void AwaitQuiet(const ConnectedServer& server) {
-  int quiet = 0;
-  double before = server.ProcessorSeconds();
-  AwaitThat([&] {
-    const double now = server.ProcessorSeconds();
-    quiet = now - before < 1e-3 ? quiet + 1 : 0;
-    if (quiet == 0) before = now;
-    return quiet == 200;
-  });
-}
-
-TEST(StalledReaders, TakeBoundedMemoryAndDoNotDelayTheStop) {
-  Findings findings("stalled readers");
-  const int readers = Size(40, 250);
-  ConnectedServer server({.flags = {"--drain-seconds=0.1"}});
-  server.Start();
-  const client::Client client = server.NewClient();
-  const std::string job = OrThrow(client.Create(ClosedForms(kPoints))).name();
-  OrThrow(client.Watch(job, {}, {.give_up_after = absl::FromChrono(kPatience)}));
-  const double before = server.ResidentMiB();
-  Process stalled({.command = {std::filesystem::read_symlink("/proc/self/exe"), kReadersFlag,
-                               std::to_string(readers), server.address(), job}});
-  ASSERT_TRUE(stalled.WaitUntilStopped()) << stalled.Wait().err;
-  AwaitQuiet(server);
-  const double growth = server.ResidentMiB() - before;
-  findings.Count("readers", readers);
-  findings.Count("MiB in the server", static_cast<int64_t>(growth));
-  EXPECT_LT(growth, kMostMiB);
-  EXPECT_EQ(server.Stop(), 0);
 }
 
 }  // namespace
 }  // namespace ballpiston::torture
-
-int main(int argc, char** argv) {
-  using namespace ballpiston;
-  if (argc == 5 && std::string(argv[1]) == torture::kReadersFlag) {
-    torture::RunStalledReaders(std::atoi(argv[2]), argv[3], argv[4]);
-  }
-  return RunTests(argc, argv);
-}

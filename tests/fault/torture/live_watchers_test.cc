@@ -1,0 +1,199 @@
+// The server stays healthy with a thousand watchers of one job, and stops in time.
+#include <grpcpp/generic/generic_stub.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <list>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "absl/strings/str_format.h"
+#include "client/library/client.h"
+#include "client/library/job_watch.h"
+#include "tests/fault/torture/connected_server.h"
+#include "tests/fault/torture/findings.h"
+#include "tests/fault/torture/questions.h"
+#include "tests/fault/torture/sizes.h"
+#include "tests/support/await.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::torture {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kMostHealthSeconds = 0.05;
+constexpr size_t kConnectionsOfWatchers = 10;
+constexpr double kDrainSeconds = 1;
+
+// A watch without a thread of its own.
+class LiveWatcher : public grpc::ClientReadReactor<v1::WatchEnsembleJobResponse> {
+ public:
+  LiveWatcher(v1::EnsembleService::Stub& stub, const std::string& job) {
+    request_.set_name(job);
+    context_.set_deadline(std::chrono::system_clock::now() + kPatience);
+    stub.async()->WatchEnsembleJob(&context_, &request_, this);
+    StartRead(&message_);
+    StartCall();
+  }
+
+  void OnReadDone(bool ok) override {
+    if (!ok) return;
+    ++heard_;
+    if (message_.has_job() && client::HasEnded(message_.job().state())) ++ends_;
+    StartRead(&message_);
+  }
+  void OnDone(const grpc::Status& status) override { done_.set_value(status.ok()); }
+
+  bool AwaitOk() { return done_.get_future().get(); }
+  int heard() const { return heard_; }
+  int ends() const { return ends_; }
+
+ private:
+  grpc::ClientContext context_;
+  v1::WatchEnsembleJobRequest request_;
+  v1::WatchEnsembleJobResponse message_;
+  std::atomic<int> heard_ = 0, ends_ = 0;
+  std::promise<bool> done_;
+};
+
+// One health check of the whole server, in seconds.
+double HealthCheckSeconds(grpc::GenericStub& stub) {
+  const grpc::Slice nothing;
+  grpc::ByteBuffer request(&nothing, 1), response;
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + kPatience);
+  std::promise<grpc::Status> done;
+  const auto start = Clock::now();
+  stub.UnaryCall(&context, "/grpc.health.v1.Health/Check", {}, &request, &response,
+                 [&](grpc::Status status) { done.set_value(std::move(status)); });
+  const grpc::Status status = done.get_future().get();
+  EXPECT_OK(status);
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// The 99th percentile of many checks, one every few milliseconds.
+double HealthP99(grpc::GenericStub& stub, int checks) {
+  std::vector<double> seconds;
+  for (int i = 0; i < checks; ++i) {
+    seconds.push_back(HealthCheckSeconds(stub));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  std::sort(seconds.begin(), seconds.end());
+  return seconds[static_cast<size_t>(0.99 * static_cast<double>(seconds.size() - 1))];
+}
+
+// Creates jobs until the server rejects one; returns how many it accepted.
+int FillQueue(const client::Client& client) {
+  std::atomic<int> asked = 0, taken = 0;
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 16; ++i) {
+    threads.emplace_back([&] {
+      while (true) {
+        v1::EnsembleSpec spec = Endless();
+        spec.set_seed(static_cast<uint64_t>(1'000 + asked++));
+        const auto job = client.Create(spec);
+        if (!job.ok()) {
+          EXPECT_THAT(job, StatusIs(absl::StatusCode::kResourceExhausted));
+          return;
+        }
+        ++taken;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  return taken;
+}
+
+class LiveWatchers : public testing::Test {
+ protected:
+  LiveWatchers()
+      : queue_(Size(100, 1000)),
+        server_({.workers = 2,
+                 .flags = {absl::StrFormat("--max-active-jobs-per-principal=%d", queue_),
+                           absl::StrFormat("--drain-seconds=%g", kDrainSeconds)}}) {
+    server_.Start();
+    for (size_t i = 0; i < kConnectionsOfWatchers; ++i) {
+      stubs_.push_back(v1::EnsembleService::NewStub(server_.Connect()));
+    }
+  }
+
+  void Attach(int count, const std::string& job) {
+    for (int i = 0; i < count; ++i) {
+      watchers_.emplace_back(*stubs_[static_cast<size_t>(i) % kConnectionsOfWatchers], job);
+    }
+  }
+
+  // Waits until each watcher has received this many messages.
+  void AwaitHeard(int messages) const {
+    for (const LiveWatcher& watcher : watchers_) {
+      AwaitThat([&] { return watcher.heard() >= messages; });
+    }
+  }
+
+  void CheckEnds() {
+    for (LiveWatcher& watcher : watchers_) {
+      EXPECT_TRUE(watcher.AwaitOk());
+      EXPECT_EQ(watcher.ends(), 1);
+      findings_.Count("terminal messages, then OK", watcher.ends());
+      findings_.Count("messages", watcher.heard());
+    }
+  }
+
+  double Health(const std::string& when) {
+    grpc::GenericStub stub(server_.Connect());
+    const double p99 = HealthP99(stub, Size(10, 2000));
+    findings_.Note("health p99, ms, " + when, absl::StrFormat("%.1f", 1e3 * p99));
+    return p99;
+  }
+
+  const int queue_;  // its length
+  Findings findings_{"live watchers"};
+  ConnectedServer server_;
+  std::vector<std::unique_ptr<v1::EnsembleService::Stub>> stubs_;
+  std::list<LiveWatcher> watchers_;
+};
+
+TEST_F(LiveWatchers, AllGetTheEndAndHealthAnswersWithAFullQueue) {
+  const client::Client client = server_.NewClient();
+  Health("a quiet server");
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, client.Create(Endless()));
+  Health("one job");
+  const double mib_without = server_.ResidentMiB();
+  Attach(Size(100, 1000), job.name());
+  AwaitHeard(3);
+  findings_.Count("watchers at once", static_cast<int64_t>(watchers_.size()));
+  findings_.Note("their memory in all, MiB",
+                 absl::StrFormat("%.1f", server_.ResidentMiB() - mib_without));
+  Health("one job, all watching");
+  EXPECT_EQ(FillQueue(client), queue_ - 1);
+  findings_.Count("jobs in the full queue", queue_);
+  const double p99 = Health("a full queue, all watching");
+  ASSERT_OK(client.Cancel(job.name()));
+  CheckEnds();
+  if (HoldsToTimes()) {
+    EXPECT_LT(p99, kMostHealthSeconds);
+  }
+}
+
+TEST_F(LiveWatchers, DoNotDelayTheStop) {
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, server_.NewClient().Create(Endless()));
+  Attach(Size(100, 1000), job.name());
+  AwaitHeard(1);
+  const auto start = Clock::now();
+  EXPECT_EQ(server_.Stop(), 0);
+  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  findings_.Note("seconds to stop", absl::StrFormat("%.2f", seconds));
+  for (LiveWatcher& watcher : watchers_) EXPECT_FALSE(watcher.AwaitOk());
+  if (HoldsToTimes()) {
+    EXPECT_LT(seconds, kDrainSeconds);
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::torture

@@ -1,0 +1,83 @@
+// The cost of the service compared with the engine alone.
+#include <gtest/gtest.h>
+#include <sched.h>
+
+#include <chrono>
+#include <string>
+
+#include "tests/fault/torture/bare_engine.h"
+#include "tests/fault/torture/connected_server.h"
+#include "tests/fault/torture/findings.h"
+#include "tests/fault/torture/questions.h"
+#include "tests/fault/torture/sizes.h"
+#include "tests/fault/torture/windows.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::torture {
+namespace {
+
+constexpr double kMostOverhead = 0.02;
+// A busy machine may interrupt the short form at any moment, but processor time does not count
+// waiting.
+constexpr double kMostRatioOfShortForm = 3;
+// A window has at least ten blocks, so an incomplete block at its end does not matter.
+constexpr double kLeastSamples = 10 * 65536;
+
+// Programs and threads that this thread starts meanwhile run on the first cores only, because other
+// programs may slow some cores more than others.
+class OnFirstCores {
+ public:
+  explicit OnFirstCores(int count) {
+    sched_getaffinity(0, sizeof(before_), &before_);
+    cpu_set_t first;
+    CPU_ZERO(&first);
+    for (int core = 0; core < CPU_SETSIZE && CPU_COUNT(&first) < count; ++core) {
+      if (CPU_ISSET(core, &before_)) CPU_SET(core, &first);
+    }
+    sched_setaffinity(0, sizeof(first), &first);
+  }
+  ~OnFirstCores() { sched_setaffinity(0, sizeof(before_), &before_); }
+  OnFirstCores(const OnFirstCores&) = delete;
+  OnFirstCores& operator=(const OnFirstCores&) = delete;
+
+ private:
+  cpu_set_t before_;
+};
+
+// Runs the same question on both in turn. While one computes, the other is stopped.
+void Compare(int workers, const std::string& name, Findings& findings) {
+  const OnFirstCores pinned(workers);
+  const v1::EnsembleSpec question = Endless();
+  BareEngine engine(question, workers);
+  ConnectedServer server({.workers = workers});
+  server.Start();
+  const client::Client client = server.NewClient();
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, client.Create(question));
+  const std::chrono::milliseconds length(HoldsToTimes() ? 300 : 30);
+  engine.Run(length);  // both warm
+  ServerWindow(server, client, job.name(), length);
+  PairedRatio processor, wall;
+  for (int i = 0; i < Size(1, 400); ++i) {
+    const Window with = ServerWindow(server, client, job.name(), length, kLeastSamples);
+    const Window bare = engine.RunInsteadOf(server, length, kLeastSamples);
+    processor.Add(with.ProcessorCost(), bare.ProcessorCost());
+    wall.Add(with.Cost(), bare.Cost());
+    findings.Count("pairs of windows");
+  }
+  findings.Note("processor time a sample, " + name, processor.Text());
+  findings.Note("time a sample, " + name, wall.Text());
+  EXPECT_LT(processor.ratio(), kMostRatioOfShortForm) << name;
+  if (HoldsToTimes()) {
+    EXPECT_LT(processor.ratio() - 1, kMostOverhead + 2 * processor.StandardError()) << name;
+    EXPECT_LT(processor.StandardError(), kMostOverhead / 2) << "too noisy to tell";
+  }
+}
+
+TEST(Overhead, OfTheServiceIsSmall) {
+  Findings findings("overhead");
+  Compare(1, "1 worker", findings);
+  Compare(2, "2 workers", findings);
+}
+
+}  // namespace
+}  // namespace ballpiston::torture
