@@ -1,6 +1,6 @@
 // gas-conduction by the billiard and by the jump process beside plain programs, which share no
 // physics with core/ (tests/oracle/plain_billiard_chain.h, plain_jump_chain.h): the current, its
-// noise, the exchange rate and the temperatures.
+// cumulants, the exchange rate and the temperatures.
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/gas_exchange_rate.h"
@@ -19,18 +19,35 @@ constexpr unsigned kRuns = 64;
 constexpr int kWindows = 128;  // of a run; pairs of them make the windows of twice the length
 
 struct PlainResult {
-  Moments current, noise, rate;
+  Moments current, rate;
+  std::array<Moments, 3> cumulants;  // the second to the fourth
   std::vector<Moments>
       temperatures;  // ball, piston, ball, ..., ball: without the outermost pistons
 };
 
-// The growth of the variance with the window, in a unit of time: a constant part of the variance
-// cancels.
-double Noise(const std::vector<double>& charges, double window) {
-  Moments single, twice;
-  for (const double charge : charges) single.Add(charge);
-  for (size_t i = 0; i + 1 < charges.size(); i += 2) twice.Add(charges[i] + charges[i + 1]);
-  return (*twice.Variance() - *single.Variance()) / window;
+// The second to the fourth cumulant, without bias (Fisher's k-statistics).
+std::array<double, 3> Cumulants(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  const double mean = std::reduce(values.begin(), values.end()) / n;
+  double square = 0, cube = 0, fourth = 0;
+  for (const double value : values) {
+    square += std::pow(value - mean, 2) / n;
+    cube += std::pow(value - mean, 3) / n;
+    fourth += std::pow(value - mean, 4) / n;
+  }
+  return {square * n / (n - 1), cube * n * n / ((n - 1) * (n - 2)),
+          ((n + 1) * fourth - 3 * (n - 1) * square * square) * n * n /
+              ((n - 1) * (n - 2) * (n - 3))};
+}
+
+// How the cumulants grow with the window, in a unit of time: constant parts cancel.
+std::array<double, 3> CumulantGrowths(const std::vector<double>& charges, double window) {
+  std::vector<double> pairs;
+  for (size_t i = 0; i + 1 < charges.size(); i += 2) pairs.push_back(charges[i] + charges[i + 1]);
+  const std::array single = Cumulants(charges);
+  std::array growths = Cumulants(pairs);
+  for (size_t i = 0; i < growths.size(); ++i) growths[i] = (growths[i] - single[i]) / window;
+  return growths;
 }
 
 template <typename Chain>
@@ -44,7 +61,8 @@ void AddRun(Chain chain, double window, PlainResult& result) {
     charges.push_back(chain.charge() - before);
   }
   result.current.Add(chain.charge() / chain.time());
-  result.noise.Add(Noise(charges, window));
+  const std::array growths = CumulantGrowths(charges, window);
+  for (size_t i = 0; i < growths.size(); ++i) result.cumulants[i].Add(growths[i]);
   result.rate.Add(chain.rate());
   for (size_t i = 0; i < result.temperatures.size(); ++i) {
     result.temperatures[i].Add(i % 2 == 0 ? chain.ball_temperature(i / 2)
@@ -89,7 +107,9 @@ void Compare(const PointSummary& product, const PlainResult& plain, Comparison& 
     ADD_FAILURE() << "no estimate " << name;
   };
   add("heat_current", plain.current);
-  add("charge_cumulant_2", plain.noise);
+  add("charge_cumulant_2", plain.cumulants[0]);
+  add("charge_cumulant_3", plain.cumulants[1]);
+  add("charge_cumulant_4", plain.cumulants[2]);
   add("exchange_rate", plain.rate);
   const std::vector<CurvePoint>& profile = product.curves.front().points;
   ASSERT_EQ(profile.size(), plain.temperatures.size() + 2);
@@ -108,17 +128,17 @@ PointSummary ByTheProduct(const PointParameters& point, Model model, int64_t sam
   return RunPoint(SpecOf(&kGasConduction, point, {.samples = samples}, model, 3));
 }
 
-// 20 comparisons, or 38 in the nightly test. With errors of 64 runs and 128 trajectories, one is
-// above 4.5 standard errors for one seed in 1000, and the mean square above 2 for one in 200, if
+// 26 comparisons, or 82 in the nightly test. With errors of 64 runs and 128 trajectories, one is
+// above 4.5 standard errors for one seed in 500, and the mean square above 2 for one in 500, if
 // all are independent.
 TEST(PlainChains, TheJumpProcessBetweenReservoirsIsThatOfAPlainProgram) {
   Comparison comparison;
-  for (const int64_t cells : {1, 2, 4, 8}) {
+  for (const int64_t cells : {1, 2, 4, 8, 16}) {
     if (cells > 4 && !IsNightly()) break;
     const auto count = static_cast<size_t>(cells);
     const PointParameters point = PaperGas(&kGasConduction, 0.2, GasShape{cells});
     const double density = DensityOf(point);
-    Compare(ByTheProduct(point, Model::kMarkov, 240'000),
+    Compare(ByTheProduct(point, Model::kMarkov, 264'000),
             PlainRuns(count, density,
                       [&](unsigned seed) {
                         return PlainJumpChain(count, density, kHotEnd, kColdEnd, seed);
@@ -128,16 +148,16 @@ TEST(PlainChains, TheJumpProcessBetweenReservoirsIsThatOfAPlainProgram) {
   EXPECT_LT(comparison.MeanSquare(), 2);
 }
 
-// 4 comparisons, or 20 in the nightly test. Of 4 independent ones the mean square is above 3.5 for
-// one seed in 140.
+// 6 comparisons, or 82 in the nightly test. Of 6 independent ones the mean square is above 3.5 for
+// one seed in 500.
 TEST(PlainChains, TheBilliardBetweenReservoirsIsThatOfAPlainProgram) {
   constexpr double kDelta = 0.15;
   Comparison comparison;
-  for (const int64_t cells : {1, 2, 4}) {
+  for (const int64_t cells : {1, 2, 4, 8, 16}) {
     if (cells > 1 && !IsNightly()) break;
     const auto count = static_cast<size_t>(cells);
     const PointParameters point = PaperGas(&kGasConduction, kDelta, GasShape{cells});
-    Compare(ByTheProduct(point, Model::kBilliard, 60'000),
+    Compare(ByTheProduct(point, Model::kBilliard, 264'000),
             PlainRuns(count, DensityOf(point),
                       [&](unsigned seed) {
                         return PlainBilliardChain(count, kPaperRho, kDelta, kHotEnd, kColdEnd,

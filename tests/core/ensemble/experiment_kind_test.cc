@@ -63,7 +63,8 @@ TEST(PointMemory, CountsTheWaitingResults) {
                                           std::pair(&kMarkovProperty, PaperPoint(0.2))}) {
     const EnsembleSpec spec = SpecOf(experiment, point, {}, Model::kBilliard);
     double bytes = 0;
-    for (const Histogram& histogram : PointExperiment::Create(spec, 0)->EmptyResult().histograms) {
+    const BlockResult result = PointExperiment::Create(spec, 0)->EmptyResult();
+    for (const Histogram& histogram : result.histograms) {
       bytes += static_cast<double>(histogram.counts.size() * sizeof(uint64_t));
     }
     EXPECT_GT(experiment->memory_of_a_result, bytes) << experiment->name;
