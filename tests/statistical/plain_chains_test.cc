@@ -35,9 +35,9 @@ std::array<double, 3> Cumulants(const std::vector<double>& values) {
     cube += std::pow(value - mean, 3) / n;
     fourth += std::pow(value - mean, 4) / n;
   }
-  return {square * n / (n - 1), cube * n * n / ((n - 1) * (n - 2)),
-          ((n + 1) * fourth - 3 * (n - 1) * square * square) * n * n /
-              ((n - 1) * (n - 2) * (n - 3))};
+  return {
+      square * n / (n - 1), cube * n * n / ((n - 1) * (n - 2)),
+      ((n + 1) * fourth - 3 * (n - 1) * square * square) * n * n / ((n - 1) * (n - 2) * (n - 3))};
 }
 
 // How the cumulants grow with the window, in a unit of time: constant parts cancel.
