@@ -15,9 +15,10 @@ extern const ExperimentKind kMarkovProperty;
 extern const ExperimentKind kGasEquilibrium;
 extern const ExperimentKind kGasConduction;
 extern const ExperimentKind kLyapunov;
+extern const ExperimentKind kGasLyapunov;
 
 inline constexpr std::array kAllExperiments = {
-    &kEquilibrium,    &kConditionalMeanFreeTime, &kFirstHit,      &kEnergyRelaxation,
-    &kMarkovProperty, &kGasEquilibrium,          &kGasConduction, &kLyapunov};
+    &kEquilibrium,    &kConditionalMeanFreeTime, &kFirstHit, &kEnergyRelaxation, &kMarkovProperty,
+    &kGasEquilibrium, &kGasConduction,           &kLyapunov, &kGasLyapunov};
 
 }  // namespace ballpiston

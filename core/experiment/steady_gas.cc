@@ -16,13 +16,6 @@
 namespace ballpiston {
 namespace {
 
-double EnergyOf(const GasState& state) {
-  double sum = 0;
-  for (const GasBall& ball : state.balls) sum += ballpiston::EnergyOf(ball);
-  for (const GasPiston& piston : state.pistons) sum += ballpiston::EnergyOf(piston);
-  return sum;
-}
-
 // A ball has two degrees of freedom at its temperature T, a piston one: the variance of a kinetic
 // energy is T^2/2 for each.
 double VarianceOfEnergy(const GasGeometry& geometry, const TemperatureProfile& temperature) {

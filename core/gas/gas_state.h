@@ -24,5 +24,11 @@ struct GasState {
 
 inline double EnergyOf(const GasBall& ball) { return ball.speed * ball.speed / 2; }
 inline double EnergyOf(const GasPiston& piston) { return piston.velocity * piston.velocity / 2; }
+inline double EnergyOf(const GasState& state) {
+  double sum = 0;
+  for (const GasBall& ball : state.balls) sum += EnergyOf(ball);
+  for (const GasPiston& piston : state.pistons) sum += EnergyOf(piston);
+  return sum;
+}
 
 }  // namespace ballpiston

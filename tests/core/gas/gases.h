@@ -42,11 +42,4 @@ inline double GapTo(const GasGeometry& geometry, const GasState& state, int64_t 
          SeenToward(direction, position).x();
 }
 
-inline double EnergyOf(const GasState& state) {
-  double sum = 0;
-  for (const GasBall& ball : state.balls) sum += EnergyOf(ball);
-  for (const GasPiston& piston : state.pistons) sum += EnergyOf(piston);
-  return sum;
-}
-
 }  // namespace ballpiston

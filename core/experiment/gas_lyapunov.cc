@@ -1,0 +1,280 @@
+// The Lyapunov exponents of a periodic gas that are not negative, and their sum, which is the
+// entropy by Pesin's formula, by the reference's events (gas/gas_tangents.h). The exponents of the
+// negative times are theirs with the opposite signs.
+//
+// All velocities times s make all exponents times s. So the canonical ensemble adds nothing but the
+// law of the energy's root, and every replica has the energy whose root is the canonical mean:
+//   sqrt E = sqrt T gamma(f/2 + 1/2)/gamma(f/2),   f degrees of freedom.
+// A replica starts from the canonical ensemble, with its velocities scaled to this energy. In its
+// warm-up the tangent vectors turn to their directions. It is one batch of the batch means.
+// Replicas run at temperature 1, and results are scaled.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "core/arithmetic/elementary_functions.h"
+#include "core/ensemble/open_blocks.h"
+#include "core/experiment/all_experiments.h"
+#include "core/experiment/gas_experiment.h"
+#include "core/gas/gas_tangents.h"
+#include "core/gas/hit_rates.h"
+
+namespace ballpiston {
+namespace {
+
+// The tangent vectors take a time of the third power of the number of cells.
+constexpr int64_t kMostCells = 32;
+
+// The batch means: of the entropy, of the exchanges, and of the exponents.
+enum GasRatio : size_t { kEntropyOfAll, kExchanges, kFirstExponent };
+
+GasGeometry PeriodicGas(const PointParameters& point) {
+  return GasGeometryOf(point, GasEnds::kPeriodic);
+}
+
+// The times of a replica at temperature 1. In mean times between exchanges of a ball and a piston,
+// the last vectors turn in 3 with one column and in 20 with 16, as measured.
+struct Times {
+  explicit Times(const GasGeometry& geometry)
+      : start(WithoutLastBits(ExchangesBefore(geometry) / InfiniteGasExchangeRate(geometry, 1))),
+        end(3 * start) {}
+
+  static double ExchangesBefore(const GasGeometry& geometry) {
+    return 8 + static_cast<double>(std::max(geometry.shape().columns, geometry.shape().rows));
+  }
+
+  double start;  // of the measurement
+  double end;
+};
+
+// The energy whose root is the canonical mean at temperature 1.
+double MeanEnergy(const GasGeometry& geometry) {
+  const double half = static_cast<double>(DegreesOfFreedom(geometry)) / 2;
+  return WithoutLastBits(std::exp(2 * (std::lgamma(half + 0.5) - std::lgamma(half))));
+}
+
+GasState DrawAtEnergy(const GasGeometry& geometry, double energy, CounterRandom random) {
+  GasState state = DrawGas(geometry, TemperatureProfile(1), random);
+  const double factor = std::sqrt(energy / EnergyOf(state));
+  for (GasBall& ball : state.balls) ball.speed *= factor;
+  for (GasPiston& piston : state.pistons) piston.velocity *= factor;
+  return state;
+}
+
+// A gas with its tangent vectors.
+class FollowedGas {
+ public:
+  FollowedGas(const GasGeometry& geometry, const GasState& start)
+      : gas_(geometry, start, ThermalWalls()),
+        tangents_(geometry, VelocitiesAcross(geometry, start)),
+        energy_at_start_(EnergyOf(start)) {}
+
+  // Returns false at a pause; then to be called again. `nanoseconds`: of an event, about.
+  bool AdvanceTo(double time, double nanoseconds, Pauses& pauses) {
+    while (gas_.NextTime() <= time) {
+      const GasEvent event = gas_.Step();
+      tangents_.Follow(event, gas_);
+      if (event.kind == EventKind::kBallPiston) ++exchanges_;
+      if (event.kind == EventKind::kEscape) ++escapes_;
+      if (pauses.After(nanoseconds)) return false;
+    }
+    return true;
+  }
+
+  // Since the last call.
+  std::vector<double> TakeGrowth(double time) { return tangents_.TakeGrowth(time); }
+  uint64_t TakeExchanges() { return std::exchange(exchanges_, 0); }
+
+  Health HealthAt(double time) const {
+    return {.escapes = escapes_,
+            .max_energy_error = std::fabs(EnergyOf(gas_.StateAt(time)) / energy_at_start_ - 1)};
+  }
+
+ private:
+  ReferenceGas gas_;
+  GasTangents tangents_;
+  double energy_at_start_;
+  uint64_t exchanges_ = 0;
+  uint64_t escapes_ = 0;
+};
+
+std::vector<Measurement> Table(const GasGeometry& geometry, double temperature,
+                               absl::string_view aim) {
+  const double scale = std::sqrt(temperature);
+  const auto exponent = [scale](size_t k) {
+    return Measurement{absl::StrCat("lyapunov_", k + 1), RatioAt(kFirstExponent + k), scale};
+  };
+  std::vector<Measurement> table = {
+      exponent(0),
+      {"entropy_per_ball", RatioAt(kEntropyOfAll), scale / static_cast<double>(geometry.balls())},
+      {"exchange_rate", RatioAt(kExchanges), scale}};
+  table[2].exact = GasExchangeRate(geometry, temperature);
+  for (size_t k = 1; k + 1 < DegreesOfFreedom(geometry); ++k) table.push_back(exponent(k));
+  const auto first = std::ranges::find(table, aim, &Measurement::name);
+  std::rotate(table.begin(), first, first + 1);
+  return table;
+}
+
+// Of an event with its tangent vectors, measured with 1 to 32 cells.
+double NanosecondsOfAnEvent(const GasGeometry& geometry) {
+  const auto f = static_cast<double>(DegreesOfFreedom(geometry));
+  return 120 + 18 * f + 1.2 * f * f;
+}
+
+class GasLyapunov : public GasExperiment {
+ public:
+  GasLyapunov(const EnsembleSpec& spec, const PointParameters& point)
+      : GasExperiment(spec, point, PeriodicGas(point), point[kTemperature]),
+        energy_(MeanEnergy(geometry())) {
+    const size_t exponents = DegreesOfFreedom(geometry()) - 1;
+    SetMeasurements({.batch_means = std::vector<BatchMeans>(kFirstExponent + exponents)},
+                    Table(geometry(), temperature(), AimOf(spec).name));
+  }
+
+  TemperatureProfile TemperaturesAtStart() const override { return TemperatureProfile(1); }
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override;
+
+  FollowedGas Start(uint64_t sample) const {
+    return {geometry(), DrawAtEnergy(geometry(), energy_, RandomOf(sample).OfStart())};
+  }
+
+  // The growth and the exchanges of a replica in a time.
+  void Measure(const std::vector<double>& growth, uint64_t exchanges, double time,
+               BlockResult& result) const {
+    std::vector<BatchMeans>& ratios = result.batch_means;
+    ratios[kEntropyOfAll].Add(std::accumulate(growth.begin(), growth.end(), 0.0), time);
+    ratios[kExchanges].Add(static_cast<double>(exchanges),
+                           static_cast<double>(geometry().contacts()) * time);
+    for (size_t k = 0; k < growth.size(); ++k) ratios[kFirstExponent + k].Add(growth[k], time);
+  }
+
+ private:
+  double energy_;
+};
+
+// One replica after the other.
+class FollowedGases : public EngineRun {
+ public:
+  FollowedGases(const GasLyapunov& experiment, BlockQueue& queue)
+      : experiment_(experiment),
+        queue_(queue),
+        nanoseconds_(NanosecondsOfAnEvent(experiment.geometry())),
+        times_(experiment.geometry()) {}
+
+  bool Advance() override {
+    Pauses pauses([this] { return queue_.Pause(); });
+    while (block_ || (block_ = queue_.Next())) {
+      if (!AdvanceReplica(pauses)) return false;
+      if (result_.samples < block_->samples) continue;
+      queue_.Done(*std::exchange(block_, std::nullopt), std::exchange(result_, {}));
+    }
+    return true;
+  }
+
+ private:
+  bool AdvanceReplica(Pauses& pauses) {
+    if (result_.samples == 0 && !gas_) result_ = experiment_.EmptyResult();
+    if (!gas_) gas_.emplace(experiment_.Start(block_->first + result_.samples));
+    if (!is_warm_ && !gas_->AdvanceTo(times_.start, nanoseconds_, pauses)) return false;
+    if (!std::exchange(is_warm_, true)) {
+      gas_->TakeGrowth(times_.start);
+      gas_->TakeExchanges();
+    }
+    if (!gas_->AdvanceTo(times_.end, nanoseconds_, pauses)) return false;
+    experiment_.Measure(gas_->TakeGrowth(times_.end), gas_->TakeExchanges(),
+                        times_.end - times_.start, result_);
+    result_.health.Merge(gas_->HealthAt(times_.end));
+    ++result_.samples;
+    gas_.reset();
+    is_warm_ = false;
+    return true;
+  }
+
+  const GasLyapunov& experiment_;
+  BlockQueue& queue_;
+  double nanoseconds_;
+  Times times_;
+  std::optional<Block> block_;
+  BlockResult result_;  // of the block's replicas so far
+  std::optional<FollowedGas> gas_;
+  bool is_warm_ = false;
+};
+
+std::unique_ptr<EngineRun> GasLyapunov::StartRun(BlockQueue& queue) const {
+  return std::make_unique<FollowedGases>(*this, queue);
+}
+
+void CheckCells(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
+  CheckGasGrid(spec, found);
+  const std::vector<double>& cells = spec.grid[kCells];
+  for (size_t i = 0; i < cells.size(); ++i) {
+    const GasShape shape = ShapeOf(cells[i]);
+    if (shape.cells() <= kMostCells) continue;
+    found.push_back({absl::StrFormat("grid.cells[%d]", i),
+                     absl::StrFormat("is %s; permitted for gas-lyapunov: 1 to %d cells",
+                                     Text(shape), kMostCells)});
+  }
+}
+
+double ExchangesOfAReplica(const GasGeometry& geometry) {
+  return static_cast<double>(geometry.contacts()) * 3 * Times::ExchangesBefore(geometry);
+}
+
+// Both models are the reference with its tangent vectors. `wall_hit`: its nanoseconds for a wall
+// hit, by the engine that the model has elsewhere.
+SampleWork WorkOfGasLyapunov(Model model, const PointParameters& point) {
+  const GasGeometry geometry = PeriodicGas(point);
+  const double wall_hit = model == Model::kBilliardReference ? 60 : 2.7;
+  const double time = Times(geometry).end;
+  const HitRates rates = HitRatesOf(geometry.pair());
+  const double events = time * (rates.of_a_ball * static_cast<double>(geometry.balls()) +
+                                rates.of_a_piston * static_cast<double>(geometry.pistons())) +
+                        ExchangesOfAReplica(geometry);
+  return {.ball_wall = events * NanosecondsOfAnEvent(geometry) / wall_hit,
+          .starts = static_cast<double>(geometry.balls()),
+          .together = 1};
+}
+
+double CollisionsOfAReplica(Model, const PointParameters& point) {
+  return ExchangesOfAReplica(PeriodicGas(point));
+}
+
+// A replica, with its tangent vectors, and the blocks in progress.
+double MemoryOfGasLyapunov(Model, const PointParameters& point) {
+  const auto f = static_cast<double>(DegreesOfFreedom(PeriodicGas(point)));
+  return MemoryOfReplicas(Model::kBilliardReference, point) + 16 * f * (f + 2);
+}
+
+// Measured relative errors.
+double ErrorOfTheFirst(Model, const PointParameters&) { return 0.06; }
+double ErrorOfTheEntropy(Model, const PointParameters&) { return 0.06; }
+
+constexpr ParameterUse kParametersOfGasLyapunov[] = {
+    {&kRho}, {&kDelta}, {&kCells}, {.parameter = &kTemperature, .default_value = 1}};
+
+constexpr AimedEstimate kAimsOfGasLyapunov[] = {
+    {.name = "lyapunov_1", .models = kBilliards, .error = ErrorOfTheFirst},
+    {.name = "entropy_per_ball", .models = kBilliards, .error = ErrorOfTheEntropy}};
+
+}  // namespace
+
+constinit const ExperimentKind kGasLyapunov = {.name = "gas-lyapunov",
+                                               .number = 9,
+                                               .parameters = kParametersOfGasLyapunov,
+                                               .models = kBilliards,
+                                               .aims = kAimsOfGasLyapunov,
+                                               .create = CreateAs<GasLyapunov>,
+                                               .check_grid = CheckCells,
+                                               .work = WorkOfGasLyapunov,
+                                               .collisions = CollisionsOfAReplica,
+                                               .memory = MemoryOfGasLyapunov};
+
+}  // namespace ballpiston

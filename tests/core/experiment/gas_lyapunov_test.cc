@@ -1,0 +1,85 @@
+#include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
+#include "tests/core/run_point.h"
+
+namespace ballpiston {
+namespace {
+
+EnsembleSpec GasAskedAt(const GasShape& shape, double share, double temperature, int64_t replicas,
+                        Model model = Model::kBilliard) {
+  const double rho = 0.53;
+  return SpecOf(&kGasLyapunov,
+                {{kRho, rho},
+                 {kDelta, share * GasDeltaBound(rho)},
+                 {kCells, CodeOf(shape)},
+                 {kTemperature, temperature}},
+                {.samples = replicas}, model);
+}
+
+double ValueOf(const std::string& name, const PointSummary& summary) {
+  return Named(name, summary.estimates).value;
+}
+
+// False alarms: 6e-5 for each shape.
+TEST(GasLyapunov, TheEnergyIsThatOfTheCanonicalMeanOfRates) {
+  for (const GasShape& shape :
+       {GasShape{1, 1, false}, GasShape{3, 1, false}, GasShape{2, 2, true}}) {
+    const PointSummary summary = RunPoint(GasAskedAt(shape, 0.95, 3, 100));
+    EXPECT_LT(std::fabs(*Named("exchange_rate", summary.estimates).ZScore()), 4) << Text(shape);
+    EXPECT_EQ(summary.health.escapes, 0u);
+    EXPECT_LT(summary.health.max_energy_error, 1e-12);
+  }
+}
+
+TEST(GasLyapunov, ExponentsAreInOrderAndTheirSumIsTheEntropy) {
+  const PointSummary summary = RunPoint(GasAskedAt({4, 1, false}, 0.5, 1, 60));
+  double sum = ValueOf("lyapunov_1", summary);
+  for (int k = 2; k <= 11; ++k) {
+    const double exponent = ValueOf(absl::StrCat("lyapunov_", k), summary);
+    EXPECT_LT(exponent, ValueOf(absl::StrCat("lyapunov_", k - 1), summary));
+    EXPECT_GT(exponent, 0);
+    sum += exponent;
+  }
+  EXPECT_NEAR(ValueOf("entropy_per_ball", summary), sum / 4, 1e-12 * sum);
+}
+
+// A ball alone in its cell has the exponent lambda_cell at speed 1. Where exchanges are rare, the
+// pair's first exponent is that times a ball's mean speed, pi/4 at the energy 1/2; the gas's entropy
+// a ball is that times the mean speed sqrt(pi T/2), and a slow part: each exchange adds about
+// ln(time between exchanges) + 0.6. A fifth of the slow part is left for terms that are smaller. The
+// scatter has 3e-5 false alarms.
+TEST(GasLyapunov, TheEntropyIsThatOfTheCellsWhereExchangesAreRare) {
+  constexpr double kDeltaHere = 0.04, kTemperatureHere = 2;
+  const PointSummary of_pair = RunPoint(SpecOf(&kLyapunov, {{kRho, 0.53}, {kDelta, kDeltaHere}},
+                                               {.collisions = 20'000}, Model::kBilliard));
+  const double of_cell = ValueOf("lyapunov_1", of_pair) * 4 / std::numbers::pi;
+  EnsembleSpec spec = GasAskedAt({2, 1, false}, 1, kTemperatureHere, 100);
+  spec.grid[kDelta] = {kDeltaHere};
+  const PointSummary gas = RunPoint(spec);
+  const double rate = ValueOf("exchange_rate", gas);
+  const double slow = 2 * rate * (0.6 - std::log(rate / std::sqrt(kTemperatureHere)));
+  const double scatter = *Named("entropy_per_ball", gas.estimates).standard_error;
+  EXPECT_NEAR(ValueOf("entropy_per_ball", gas),
+              std::sqrt(std::numbers::pi * kTemperatureHere / 2) * of_cell + slow,
+              0.2 * slow + 4.2 * 1.2 * scatter);
+}
+
+TEST(GasLyapunov, BothBilliardsAreTheReference) {
+  const GasShape shape = {2, 1, false};
+  const auto of = [&](Model model) { return RunPoint(GasAskedAt(shape, 0.5, 1, 60, model)); };
+  const PointSummary lanes = of(Model::kBilliard), reference = of(Model::kBilliardReference);
+  for (size_t i = 0; i < lanes.estimates.size(); ++i) {
+    EXPECT_NEAR(lanes.estimates[i].value, reference.estimates[i].value,
+                1e-14 * reference.estimates[i].value);
+  }
+}
+
+TEST(GasLyapunov, BigGasesAreRefused) {
+  EnsembleSpec spec = GasAskedAt({33, 1, false}, 0.5, 1, 60);
+  EXPECT_THAT(Violations(spec),
+              Contains(Field(&FieldViolation::description,
+                             HasSubstr("is 33; permitted for gas-lyapunov: 1 to 32 cells"))));
+}
+
+}  // namespace
+}  // namespace ballpiston

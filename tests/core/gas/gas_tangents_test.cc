@@ -1,0 +1,160 @@
+#include "core/gas/gas_tangents.h"
+
+#include "tests/core/gas/gases.h"
+#include "tests/core/preamble.h"
+
+namespace ballpiston {
+namespace {
+
+using Vector = GasTangents::Vector;
+
+// In the order of a vector's components.
+Vector ComponentsOf(const GasState& state) {
+  Vector components;
+  for (const GasBall& ball : state.balls) {
+    const Eigen::Vector2d velocity = ball.speed * ball.direction;
+    for (const double x : {ball.position.x(), ball.position.y(), velocity.x(), velocity.y()}) {
+      components.push_back(x);
+    }
+  }
+  for (const GasPiston& piston : state.pistons) {
+    components.insert(components.end(), {piston.offset, piston.velocity});
+  }
+  return components;
+}
+
+GasState StateWith(const Vector& components, GasState state) {
+  auto at = components.begin();
+  for (GasBall& ball : state.balls) {
+    ball.position = {at[0], at[1]};
+    const Eigen::Vector2d velocity(at[2], at[3]);
+    ball.speed = velocity.norm();
+    ball.direction = velocity / ball.speed;
+    at += 4;
+  }
+  for (GasPiston& piston : state.pistons) {
+    piston = {.offset = at[0], .velocity = at[1]};
+    at += 2;
+  }
+  return state;
+}
+
+Vector Sum(const Vector& a, double factor, const Vector& b) {
+  Vector sum = a;
+  for (size_t i = 0; i < sum.size(); ++i) sum[i] += factor * b[i];
+  return sum;
+}
+
+double Product(const Vector& a, const Vector& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+struct OrbitEnd {
+  std::vector<std::tuple<EventKind, int64_t, int64_t>> events;
+  size_t exchanges = 0;
+  Vector components;
+};
+
+OrbitEnd OrbitTo(double time, const GasGeometry& geometry, const GasState& start) {
+  ReferenceGas gas(geometry, start, ThermalWalls());
+  OrbitEnd end;
+  while (gas.NextTime() <= time) {
+    const GasEvent event = gas.Step();
+    end.events.emplace_back(event.kind, event.ball, event.piston);
+    if (event.kind == EventKind::kBallPiston) ++end.exchanges;
+  }
+  end.components = ComponentsOf(gas.StateAt(time));
+  return end;
+}
+
+Vector GrowthTo(double time, const GasGeometry& geometry, const GasState& start,
+                const std::vector<Vector>& vectors) {
+  ReferenceGas gas(geometry, start, ThermalWalls());
+  GasTangents tangents(geometry, vectors);
+  while (gas.NextTime() <= time) {
+    const GasEvent event = gas.Step();
+    tangents.Follow(event, gas);
+  }
+  return tangents.TakeGrowth(time);
+}
+
+// The difference of two orbits that start apart by twice `apart` along `vector`, over this
+// distance. Empty if their events differ.
+Vector DifferenceAlong(const Vector& vector, double time, const GasGeometry& geometry,
+                       const GasState& start) {
+  constexpr double kApart = 1e-7;
+  const auto orbit = [&](double distance) {
+    return OrbitTo(time, geometry, StateWith(Sum(ComponentsOf(start), distance, vector), start));
+  };
+  const OrbitEnd forward = orbit(kApart), back = orbit(-kApart);
+  if (forward.events != back.events) return {};
+  Vector difference = Sum(forward.components, -1, back.components);
+  for (double& component : difference) component /= 2 * kApart;
+  return difference;
+}
+
+// Growth up to exp(6). The differences have a rounding of 1e-16 exp(6)/1e-7 and a third order of
+// (1e-7 exp(6))^2 times the curvature of fronts; grazing hits have the largest.
+TEST(GasTangents, NearbyGasesDivergeAsPredicted) {
+  size_t exchanges = 0, compared = 0;
+  for (const char* const shape : {"1", "2", "3", "2x2"}) {
+    const GasGeometry geometry = GasAtShare(0.53, 0.95, shape);
+    for (uint64_t sample = 0; sample < 40; ++sample) {
+      const GasState start = GasInEquilibrium(geometry, 1, 31, sample);
+      const std::vector<Vector> across = VelocitiesAcross(geometry, start);
+      const double time = 1.2;
+      const Vector growth = GrowthTo(time, geometry, start, {across[0], across[1]});
+      const Vector a = DifferenceAlong(across[0], time, geometry, start);
+      const Vector b = DifferenceAlong(across[1], time, geometry, start);
+      if (growth[0] > 6 || growth[1] > 6 || a.empty() || b.empty()) continue;
+      const double aa = Product(a, a), ab = Product(a, b);
+      EXPECT_NEAR(growth[0], std::log(aa) / 2, 1e-4) << shape << " " << sample;
+      EXPECT_NEAR(growth[1], std::log(Product(b, b) - ab * ab / aa) / 2, 1e-4)
+          << shape << " " << sample;
+      exchanges += OrbitTo(time, geometry, start).exchanges;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 60u);
+  EXPECT_GT(exchanges, 40u);
+}
+
+std::vector<Vector> WholeBasis(const GasGeometry& geometry) {
+  std::vector<Vector> basis(2 * DegreesOfFreedom(geometry), Vector(2 * DegreesOfFreedom(geometry)));
+  for (size_t k = 0; k < basis.size(); ++k) basis[k][k] = 1;
+  return basis;
+}
+
+// The maps preserve volumes, so the sum is 0 but for rounding, which costs the smallest vector the
+// most digits. The exponents of a finite orbit are pairs up to the growth while vectors of nearly equal
+// exponents turn, which is 70 at most here.
+TEST(GasTangents, ExponentsOfAGasComeInPairs) {
+  for (const char* const shape : {"1", "2", "2x2"}) {
+    const GasGeometry geometry = GasAtShare(0.53, 0.95, shape);
+    const double time = 5000;
+    const Vector growth =
+        GrowthTo(time, geometry, GasInEquilibrium(geometry, 1, 32, 0), WholeBasis(geometry));
+    const size_t f = DegreesOfFreedom(geometry);
+    EXPECT_NEAR(std::accumulate(growth.begin(), growth.end(), 0.0) / time, 0, 1e-7);
+    for (size_t k = 0; k < f; ++k) {
+      EXPECT_NEAR((growth[k] + growth[2 * f - 1 - k]) / time, 0, 0.02) << shape << " " << k;
+    }
+    EXPECT_NEAR(growth[f - 1] / time, 0, 0.02) << shape;
+    EXPECT_GT(growth[f - 2] / time, 0.03) << shape;
+  }
+}
+
+TEST(GasTangents, VelocitiesAcrossKeepTheEnergy) {
+  const GasGeometry geometry = GasAtShare(0.53, 0.5, "2x2");
+  const GasState start = GasInEquilibrium(geometry, 1, 33, 0);
+  const std::vector<Vector> across = VelocitiesAcross(geometry, start);
+  ASSERT_EQ(across.size(), DegreesOfFreedom(geometry) - 1);
+  const double energy = EnergyOf(start);
+  for (const Vector& vector : across) {
+    const GasState moved = StateWith(Sum(ComponentsOf(start), 1e-5, vector), start);
+    EXPECT_NEAR(EnergyOf(moved), energy, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston
