@@ -85,7 +85,8 @@ Value NameOfEstimate() {
                    "lyapunov_2",
                    "entropy",
                    "lyapunov_1_per_collision",
-                   "lyapunov_2_per_collision"};
+                   "lyapunov_2_per_collision",
+                   "entropy_per_ball"};
   return value;
 }
 
@@ -212,7 +213,7 @@ const FlagGroup kMethod = {
       "by default auto, the cheapest model that gives the estimate"},
      {"--estimate", NameOfEstimate(),
       "the estimate of --tolerance and --model auto; the result prints it first; "
-      "gas-equilibrium and lyapunov have a choice"},
+      "gas-equilibrium, lyapunov and gas-lyapunov have a choice"},
      {"--precision",
       OneOf<Spec::Precision>(
           "PRECISION", EnumChoices<Spec::Precision>(),

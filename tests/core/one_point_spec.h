@@ -1,6 +1,7 @@
 // Specifications of one point.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -20,7 +21,7 @@ inline PointParameters PaperPoint(double delta, std::optional<double> epsilon = 
 inline PointParameters PaperGas(const ExperimentKind* experiment, double delta,
                                 const GasShape& shape = {.columns = 2}) {
   PointParameters point = {{kRho, kPaperRho}, {kDelta, delta}, {kCells, CodeOf(shape)}};
-  if (experiment == &kGasEquilibrium) point.Set(kTemperature, 2);
+  if (experiment == &kGasEquilibrium || experiment == &kGasLyapunov) point.Set(kTemperature, 2);
   if (experiment == &kGasConduction) {
     point.Set(kHot, 1.5);
     point.Set(kCold, 0.5);
@@ -33,7 +34,8 @@ inline constexpr Model kModelsThatSampleGases[] = {Model::kMarkov, Model::kBilli
                                                    Model::kBilliardReference};
 
 inline bool IsOfAGas(const ExperimentKind* experiment) {
-  return experiment == &kGasEquilibrium || experiment == &kGasConduction;
+  const auto is_cells = [](const ParameterUse& use) { return use.parameter == &kCells; };
+  return std::ranges::any_of(experiment->parameters, is_cells);
 }
 
 inline EnsembleSpec SpecOf(const ExperimentKind* experiment, const PointParameters& point,

@@ -47,6 +47,7 @@ TEST(SameBytes, OfRelaxationMarkovPropertyAndGasesWithOneAndTwoWorkers) {
         "markov-property --collisions 20000 --delta 0.2",
         "markov-property --collisions 20000 --delta 0.2 --model markov",
         "lyapunov --collisions 20000 --delta 0.2",
+        "gas-lyapunov --samples 64 --delta 0.19 --cells 2,2x2",
         "gas-equilibrium --verify --samples 96 --delta 0.19 --cells 3,2x2 --temperature 1",
         "gas-equilibrium --model markov --samples 200 --delta 0.19 --cells 3 --temperature 1",
         "gas-conduction --samples 600 --delta 0.19,0.17 --cells 2 --hot 1.5 --cold 0.5",

@@ -40,6 +40,8 @@ class Drawing {
 
  private:
   bool Extreme() { return dice_.Chance(0.35); }
+  // The time of a replica of gas-lyapunov grows with the third power of the cells, at most 32.
+  bool TakesAnyGas() const { return &experiment_ != &kGasLyapunov; }
 
   void AddList(const Parameter& parameter) {
     const size_t values = dice_.Chance(0.85) ? 1 : 2 + dice_.Below(2);
@@ -56,7 +58,7 @@ class Drawing {
     if (&parameter == &kDelta) return grid.add_delta(Delta(dice_, bound_, Extreme()));
     if (&parameter == &kEpsilon) return grid.add_epsilon(Epsilon(dice_, Extreme()));
     if (&parameter == &kExponent) return grid.add_exponent(Exponent(dice_, Extreme()));
-    if (&parameter == &kCells) return grid.add_cells(Cells(dice_, Extreme()));
+    if (&parameter == &kCells) return grid.add_cells(Cells(dice_, Extreme() && TakesAnyGas()));
     if (&parameter == &kTemperature) return grid.add_temperature(Temperature(dice_, Extreme()));
     if (&parameter == &kHot) return grid.add_hot(Temperature(dice_, Extreme()));
     const double hot = *std::min_element(grid.hot().begin(), grid.hot().end());

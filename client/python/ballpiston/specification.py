@@ -78,8 +78,9 @@ def specification(
             fails if some point does not reach it. Of samples, collisions, tolerance and budget give
             at most one, or tolerance and budget together.
         estimate: the estimate that the tolerance refers to; "gas-equilibrium" has a choice between
-            "exchange_rate" and "conductivity", and "lyapunov" between "lyapunov_1", "lyapunov_2",
-            "entropy", "lyapunov_1_per_collision" and "lyapunov_2_per_collision".
+            "exchange_rate" and "conductivity", "lyapunov" between "lyapunov_1", "lyapunov_2",
+            "entropy", "lyapunov_1_per_collision" and "lyapunov_2_per_collision", and
+            "gas-lyapunov" between "lyapunov_1" and "entropy_per_ball".
         seed: of the random numbers; 0 to 2^64 - 1. The same question and seed give the same
             numbers.
         model: "auto", "closed-form", "spectrum", "markov", "billiard" or "billiard-reference".

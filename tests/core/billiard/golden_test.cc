@@ -129,7 +129,7 @@ std::vector<EnsembleSpec> SpecsOf(Engine engine) {
       SpecOf(&kMarkovProperty, PaperPoint(0.2), {.collisions = 5000}),
       SpecOf(&kLyapunov, PaperPoint(0.2), {.collisions = 5000})};
   if (engine != Engine::kLanesSingle) {
-    for (const ExperimentKind* gas : {&kGasEquilibrium, &kGasConduction}) {
+    for (const ExperimentKind* gas : {&kGasEquilibrium, &kGasConduction, &kGasLyapunov}) {
       for (const GasShape& shape : {GasShape{3}, GasShape{2, 2, true}}) {
         // 512 stretches of trajectories are two stages.
         const int64_t samples = gas == &kGasConduction ? 512 : 64;

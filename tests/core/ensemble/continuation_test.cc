@@ -31,6 +31,7 @@ std::vector<SampledQuestion> EveryExperimentThatSamples() {
     asked.push_back({&kEnergyRelaxation, model, pair, {100, 700}});
     asked.push_back({&kMarkovProperty, model, pair, {3'000, 20'000}});
     asked.push_back({&kLyapunov, model, pair, {3'000, 20'000}});
+    asked.push_back({&kGasLyapunov, model, PaperGas(&kGasLyapunov, 0.2), {70, 300}});
   }
   for (const Model model : kModelsThatSampleGases) {
     asked.push_back({&kGasEquilibrium, model, PaperGas(&kGasEquilibrium, 0.2), {70, 300}});

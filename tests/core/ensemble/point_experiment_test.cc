@@ -33,7 +33,8 @@ std::vector<EnsembleSpec> OneOfEach() {
           {&kMarkovProperty, pair, collisions},
           {&kLyapunov, pair, {.collisions = 3200}},
           {&kGasEquilibrium, PaperGas(&kGasEquilibrium, 0.2), gases},
-          {&kGasConduction, PaperGas(&kGasConduction, 0.2), gases}}) {
+          {&kGasConduction, PaperGas(&kGasConduction, 0.2), gases},
+          {&kGasLyapunov, PaperGas(&kGasLyapunov, 0.2), gases}}) {
       if (!experiment->IsAnsweredBy(model)) continue;
       specs.push_back(SpecOf(experiment, point, target, model, 42));
       specs.back().grid[kDelta] = {0.2, IsOfAGas(experiment) ? 0.15 : 0.3};

@@ -44,10 +44,10 @@ TEST(GasLyapunov, ExponentsAreInOrderAndTheirSumIsTheEntropy) {
 }
 
 // A ball alone in its cell has the exponent lambda_cell at speed 1. Where exchanges are rare, the
-// pair's first exponent is that times a ball's mean speed, pi/4 at the energy 1/2; the gas's entropy
-// a ball is that times the mean speed sqrt(pi T/2), and a slow part: each exchange adds about
-// ln(time between exchanges) + 0.6. A fifth of the slow part is left for terms that are smaller. The
-// scatter has 3e-5 false alarms.
+// pair's first exponent is that times a ball's mean speed, pi/4 at the energy 1/2; the gas's
+// entropy a ball is that times the mean speed sqrt(pi T/2), and a slow part: each exchange adds
+// about ln(time between exchanges) + 0.6. A fifth of the slow part is left for terms that are
+// smaller. The scatter has 3e-5 false alarms.
 TEST(GasLyapunov, TheEntropyIsThatOfTheCellsWhereExchangesAreRare) {
   constexpr double kDeltaHere = 0.04, kTemperatureHere = 2;
   const PointSummary of_pair = RunPoint(SpecOf(&kLyapunov, {{kRho, 0.53}, {kDelta, kDeltaHere}},

@@ -126,8 +126,8 @@ std::vector<Vector> WholeBasis(const GasGeometry& geometry) {
 }
 
 // The maps preserve volumes, so the sum is 0 but for rounding, which costs the smallest vector the
-// most digits. The exponents of a finite orbit are pairs up to the growth while vectors of nearly equal
-// exponents turn, which is 70 at most here.
+// most digits. The exponents of a finite orbit are pairs up to the growth while vectors of nearly
+// equal exponents turn, which is 70 at most here.
 TEST(GasTangents, ExponentsOfAGasComeInPairs) {
   for (const char* const shape : {"1", "2", "2x2"}) {
     const GasGeometry geometry = GasAtShare(0.53, 0.95, shape);

@@ -1,4 +1,4 @@
-"""The collisions of ball and piston as a section of the orbits, beside their invariant density
+"""Sections of the orbits: collisions of ball and piston, and wall hits, beside their exact densities
 
 Each collision is a point of the collision surface. The invariant measure of the map from collision
 to collision is dq dv (v.n), the paper's measure nu_bp: positions q are uniform on the surface, and
@@ -12,11 +12,17 @@ over its hemisphere is sqrt(2) pi. So alpha and u have the density, summed over 
 
 The ball's height y is independent of velocities. At y the surface has the depths s(y) to delta,
 with (s + lambda/2)^2 = rho^2 - (1/2 - |y|)^2, so y has a density proportional to delta - s(y). Bins
-are equal in energy; densities are those of u, finite at 0. Time: default 10 s, full 30 s of a core.
+are equal in energy; densities are those of u, finite at 0.
+
+The ball's wall hits, of one long orbit, are points of its boundary map: s along the cell's edge, and
+the angle phi of the outgoing velocity to the normal. s counts arcs, from the left tip
+counterclockwise. The invariant density is uniform in sin(phi), and proportional to the length of the
+piston's stroke that is on the right of s. Time: default 25 s, full 60 s of a core.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -24,11 +30,14 @@ from matplotlib.figure import Figure
 
 from ballpiston.client import Client
 from ballpiston.collisions import Records
-from ballpiston.figures.parts import style
+from ballpiston.figures.parts import cell_outline, style
 from ballpiston.figures.parts.asking import RHO
 from ballpiston.figures.parts.tables import FloatArray, Table, Tables, rows, stacked, table
 
-EFFORT = {"quick": {"collisions": 1e4, "bins": 12}, "full": {"collisions": 3e6, "bins": 50}}
+EFFORT = {
+    "quick": {"collisions": 1e4, "events": 1e4, "bins": 12},
+    "full": {"collisions": 3e6, "events": 1e6, "bins": 50},
+}
 
 _FINER = 16  # points in a bin along each axis, for exact means
 _FEWEST = 10.0  # expected collisions in a bin that counts for chi-squared
@@ -40,25 +49,49 @@ def measure(
     rho: float = RHO,
     delta: float = 0.1,
     collisions: float = 1e6,
+    events: float = 3e5,
     bins: int = 30,
     seed: int = 0,
 ) -> Tables:
-    """Collisions in equilibrium, in bins of alpha or y and of the piston's energy; their exact
-    densities; and chi-squared, to which the correlation of collisions adds a few units only."""
-    question = {"rho": rho, "delta": delta, "collisions": collisions, "seed": seed}
-    hits = client.sample("equilibrium", model="billiard", **question).all()
-    angles = np.arctan2(hits["ball_vy"], hits["ball_vx"])
+    """Collisions in equilibrium, in bins of alpha or y and of the piston's energy; wall hits among
+    the events of an orbit, in bins of s and sin(phi); their exact densities; and chi-squared, to
+    which the correlation of collisions and of hits adds a few units only."""
+    question = {"rho": rho, "delta": delta, "seed": seed}
+    hits = client.sample("equilibrium", model="billiard", collisions=collisions, **question).all()
+    orbit = client.trace_arrays(*_FIELDS_OF_A_HIT, events=events, **question)
+    sections = [*_of_collisions(client, rho, delta, hits, bins), _of_walls(rho, delta, orbit, bins)]
+    return {"section": stacked(sections), "section-test": table(map(_chi_squared, sections))}
+
+
+_FIELDS_OF_A_HIT = ("event", "ball_x", "ball_y", "ball_vx", "ball_vy")
+
+
+def _of_collisions(
+    client: Client, rho: float, delta: float, hits: Records, bins: int
+) -> tuple[Table, Table]:
+    """In alpha and in y, and in the energy."""
     height = client.analytic(rho, delta)["eta"][0]
     symmetric, energies = np.linspace(-1, 1, bins + 1), np.linspace(0, 0.5, bins + 1)
-    alpha, y, u = np.pi * symmetric, height / 2 * symmetric, _finer(np.sqrt(2 * energies))
-    velocities = density_of_velocities(_finer(alpha)[:, np.newaxis], u)
+    alpha, y, u = np.pi * symmetric, height / 2 * symmetric, np.sqrt(2 * energies)
+    velocities = density_of_velocities(_finer(alpha)[:, np.newaxis], _finer(u))
     heights = density_of_heights(rho, delta, _finer(y))[:, np.newaxis]
     products = heights / (height * heights.mean()) * 2 * np.pi * velocities.mean(axis=0)
-    sections = [
-        _section("alpha", [alpha, energies], angles, hits, velocities),
-        _section("y", [y, energies], hits["y"], hits, products),
-    ]
-    return {"section": stacked(sections), "section-test": table(map(_chi_squared, sections))}
+    angles, energy = np.arctan2(hits["ball_vy"], hits["ball_vx"]), hits["piston_energy"]
+    return (
+        _section("alpha", (angles, energy), (alpha, energies), (alpha, u), velocities),
+        _section("y", (hits["y"], energy), (y, energies), (y, u), products),
+    )
+
+
+def _of_walls(rho: float, delta: float, orbit: Mapping[str, Any], bins: int) -> Table:
+    """In s and in sin(phi)."""
+    x, y, vx, vy = (orbit[name][orbit["event"] == "ball_wall"] for name in _FIELDS_OF_A_HIT[1:])
+    edges = np.linspace(0, 4, bins + 1), np.linspace(-1, 1, bins + 1)
+    strokes = stroke_on_the_right(rho, delta, _finer(edges[0]))
+    exact = np.outer(strokes / (4 * strokes.mean()), np.full(_FINER * bins, 0.5))
+    s, normal_x, normal_y = cell_outline.place_on_outline(rho, x, y)
+    sines = (normal_x * vy - normal_y * vx) / np.hypot(vx, vy)
+    return _section("s", (s, sines), edges, edges, exact)
 
 
 def density_of_velocities(alpha: FloatArray, u: FloatArray) -> FloatArray:
@@ -75,6 +108,14 @@ def density_of_heights(rho: float, delta: float, y: FloatArray) -> FloatArray:
     return density
 
 
+def stroke_on_the_right(rho: float, delta: float, s: FloatArray) -> FloatArray:
+    """The length of the piston's stroke that is on the right of the place s of the cell's edge."""
+    stroke = cell_outline.overlap_length(rho) + 2 * delta
+    x = cell_outline.point_of_outline(rho, s)[:, 0]
+    length: FloatArray = np.minimum(stroke, 0.5 + stroke / 2 - x)
+    return length
+
+
 def _finer(edges: FloatArray) -> FloatArray:
     """The middles of _FINER parts of each bin."""
     parts = (np.arange(_FINER) + 0.5) / _FINER
@@ -82,15 +123,16 @@ def _finer(edges: FloatArray) -> FloatArray:
     return middles.ravel()
 
 
-def _section(name: str, edges: Any, of: FloatArray, hits: Records, finer: FloatArray) -> Table:
-    """One row for each bin. `finer` has the exact density at _FINER^2 points of each."""
-    count, _, _ = np.histogram2d(of, hits["piston_energy"], edges)
-    weight = len(hits) * np.outer(np.diff(edges[0]), np.diff(np.sqrt(2 * edges[1])))
-    lower, epsilon = np.meshgrid(edges[0][:-1], edges[1][:-1], indexing="ij")
-    exact = finer.reshape(len(count), _FINER, -1, _FINER).mean(axis=(1, 3))
-    columns: Table = {"section": np.full(count.size, name), "lower": lower, "epsilon": epsilon}
-    columns |= {"count": count, "expected": exact * weight}
-    columns |= {"density": count / weight, "exact_density": exact}
+def _section(name: str, points: Any, edges: Any, scaled: Any, exact: FloatArray) -> Table:
+    """One row for each bin. `scaled`: the edges in the variables of the density; `exact` has it at
+    _FINER^2 points of each bin."""
+    count, _, _ = np.histogram2d(*points, edges)
+    weight = len(points[0]) * np.outer(*map(np.diff, scaled))
+    expected = exact.reshape(len(count), _FINER, -1, _FINER).mean(axis=(1, 3))
+    first, second = np.meshgrid(edges[0][:-1], edges[1][:-1], indexing="ij")
+    columns: Table = {"section": np.full(count.size, name), "first": first, "second": second}
+    columns |= {"count": count, "expected": expected * weight}
+    columns |= {"density": count / weight, "exact_density": expected}
     return {name: column.ravel() for name, column in columns.items()}
 
 
@@ -100,21 +142,29 @@ def _chi_squared(section: Table) -> dict[str, Any]:
     return {"section": section["section"][0], "chi_squared": terms.sum(), "bins": len(terms)}
 
 
+_AXES = {
+    "alpha": ("direction of the ball α", "piston energy ε"),
+    "y": ("place y", "piston energy ε"),
+    "s": ("place along the edge s, in arcs", "sin φ"),
+}
+
+
 @style.styled
 def draw(tables: Tables) -> Figure:
-    """Collisions left, their exact density right."""
-    figure = style.picture(960, 800)
-    panels = figure.subplots(2, 2, sharey=True, sharex="row")
-    for line, letters, (name, label) in zip(panels, ("ab", "cd"), (("alpha", "α"), ("y", "y"))):
+    """Collisions and wall hits left, their exact density right."""
+    figure = style.picture(960, 1180)
+    panels = figure.subplots(3, 2, sharey="row", sharex="row")
+    for line, letters, (name, labels) in zip(panels, ("ab", "cd", "ef"), _AXES.items()):
         part = rows(tables["section"], section=name)
         for axes, letter, column in zip(line, letters, ("density", "exact_density")):
-            x, y = (np.unique(part[edges]) for edges in ("lower", "epsilon"))
-            box = (x[0], 2 * x[-1] - x[-2], 0, 2 * y[-1] - y[-2])
+            x, y = (np.unique(part[edges]) for edges in ("first", "second"))
+            box = (x[0], 2 * x[-1] - x[-2], y[0], 2 * y[-1] - y[-2])
             shown: dict[str, Any] = {"origin": "lower", "aspect": "auto", "cmap": style.ENERGY}
             shown |= {"vmin": 0, "vmax": part["exact_density"].max(), "extent": box}
             axes.imshow(part[column].reshape(len(x), -1).T, **shown)
             axes.grid(False)
-            axes.set(xlabel=label)
-            style.title(axes, letter, "collisions" if column == "density" else "exact density")
-        line[0].set(ylabel="piston energy ε")
+            axes.set(xlabel=labels[0])
+            measured = "wall hits" if name == "s" else "collisions"
+            style.title(axes, letter, measured if column == "density" else "exact density")
+        line[0].set(ylabel=labels[1])
     return figure
