@@ -1,5 +1,6 @@
 #include "core/billiard/tangent_frame.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -57,9 +58,23 @@ std::array<double, TangentFrame::kExponents> TangentFrame::TakeGrowth() {
   return std::exchange(growth_, {});
 }
 
+// The disc is the one in the ball's quadrant, n its normal. With the unit tangent t = (-n_y, n_x)
+// and the direction u = cos(phi) n + sin(phi) t after the hit, s = dr.t + tan(phi) dr.n.
 void TangentFrame::ReflectBall(const PairState& after) {
-  const DiscHit hit(after.position, after.direction, after.ball_speed, rho_);
-  for (auto& [x, y, q, vx, vy, p] : tangents_) hit.Map(x, y, vx, vy);
+  const double ux = after.direction.x(), uy = after.direction.y();
+  const double nx = (after.position.x() - std::copysign(0.5, after.position.x())) / rho_;
+  const double ny = (after.position.y() - std::copysign(0.5, after.position.y())) / rho_;
+  const double cosine = std::max(nx * ux + ny * uy, kSmallestCosine<double>);
+  const double tangent_of_phi = (nx * uy - ny * ux) / cosine;
+  const double kick = 2 * after.ball_speed / rho_;
+  for (auto& [x, y, q, vx, vy, p] : tangents_) {
+    const double dr_n = x * nx + y * ny, dr_t = y * nx - x * ny, dw_n = vx * nx + vy * ny;
+    const double turn = kick * (dr_t + tangent_of_phi * dr_n);
+    x -= 2 * dr_n * nx;
+    y -= 2 * dr_n * ny;
+    vx -= 2 * dw_n * nx + turn * uy;
+    vy -= 2 * dw_n * ny - turn * ux;
+  }
 }
 
 void TangentFrame::ReflectPiston() {

@@ -32,9 +32,6 @@
 // left and right. BallMap is the product of these maps, without the signs.
 #pragma once
 
-#include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace ballpiston {
@@ -51,38 +48,5 @@ struct BallMap {
 // A ball grazes with a smaller cos(phi) only by rounding.
 template <typename Real>
 inline constexpr double kSmallestCosine = std::numeric_limits<Real>::digits > 24 ? 1e-8 : 1e-4;
-
-// The map at a disc, of the differences (x, y) of positions and (vx, vy) of velocities of the ball.
-// With the unit tangent t = (-n_y, n_x) and the direction u = cos(phi) n + sin(phi) t after the
-// hit, s = dr.t + tan(phi) dr.n.
-class DiscHit {
- public:
-  // Position from the cell's centre, and direction, after the hit. The disc, of the radius rho, is
-  // the one in the ball's quadrant.
-  DiscHit(const Eigen::Vector2d& position, const Eigen::Vector2d& direction, double speed,
-          double rho)
-      : ux_(direction.x()),
-        uy_(direction.y()),
-        nx_((position.x() - std::copysign(0.5, position.x())) / rho),
-        ny_((position.y() - std::copysign(0.5, position.y())) / rho),
-        tangent_of_phi_((nx_ * uy_ - ny_ * ux_) /
-                        std::max(nx_ * ux_ + ny_ * uy_, kSmallestCosine<double>)),
-        kick_(2 * speed / rho) {}
-
-  void Map(double& x, double& y, double& vx, double& vy) const {
-    const double dr_n = x * nx_ + y * ny_, dr_t = y * nx_ - x * ny_, dw_n = vx * nx_ + vy * ny_;
-    const double turn = kick_ * (dr_t + tangent_of_phi_ * dr_n);
-    x -= 2 * dr_n * nx_;
-    y -= 2 * dr_n * ny_;
-    vx -= 2 * dw_n * nx_ + turn * uy_;
-    vy -= 2 * dw_n * ny_ - turn * ux_;
-  }
-
- private:
-  double ux_, uy_;  // the direction
-  double nx_, ny_;  // the normal
-  double tangent_of_phi_;
-  double kick_;
-};
 
 }  // namespace ballpiston

@@ -74,7 +74,7 @@ class FollowedGas {
  public:
   FollowedGas(const GasGeometry& geometry, const GasState& start)
       : gas_(geometry, start, ThermalWalls()),
-        tangents_(geometry, VelocitiesAcross(geometry, start)),
+        tangents_(geometry, start, VelocitiesAcross(geometry, start)),
         energy_at_start_(EnergyOf(start)) {}
 
   // Returns false at a pause; then to be called again. `nanoseconds`: of an event, about.

@@ -1,7 +1,9 @@
 #include "core/gas/gas_tangents.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "core/arithmetic/elementary_functions.h"
@@ -10,9 +12,18 @@
 namespace ballpiston {
 namespace {
 
-// In two hits of each ball lengths grow by a factor of some hundreds, and by 10^7 at most if one
-// ball is fast. The smallest vector loses this factor in precision.
-constexpr size_t kHitsOfABallTogether = 2;
+// In four hits of a ball lengths grow by some hundreds, and by more of a fast ball, which hits more
+// often. The smallest vector loses the square of this factor in precision.
+constexpr size_t kHitsOfABallTogether = 4;
+
+// Of components that are all 0.
+constexpr double kPowerOfZero = -1e15;
+
+// 2^power, for whole numbers up to 1023; 0 where it is below the normal numbers.
+double PowerOfTwo(double power) {
+  if (power < -1022) return 0;
+  return std::bit_cast<double>(static_cast<uint64_t>(static_cast<int64_t>(power) + 1023) << 52);
+}
 
 // The indices of velocities among a vector's components, and the gas's velocity there.
 std::vector<std::pair<size_t, double>> VelocitiesOf(const GasState& state) {
@@ -32,34 +43,44 @@ std::vector<std::pair<size_t, double>> VelocitiesOf(const GasState& state) {
 
 }  // namespace
 
-GasTangents::GasTangents(const GasGeometry& geometry, const std::vector<Vector>& start)
-    : balls_(static_cast<size_t>(geometry.balls())),
-      pistons_(static_cast<size_t>(geometry.pistons())),
-      count_(start.size()),
-      rho_(geometry.pair().rho()),
-      rows_(2 * DegreesOfFreedom(geometry) * count_),
-      times_(balls_ + pistons_),
-      growth_(count_),
-      vector_(2 * DegreesOfFreedom(geometry)),
-      shares_(count_) {
-  for (size_t k = 0; k < count_; ++k) {
-    for (size_t i = 0; i < vector_.size(); ++i) Row(i)[k] = start[k][i];
+GasTangents::GasTangents(const GasGeometry& geometry, const GasState& start,
+                         const std::vector<Vector>& vectors)
+    : rho_(geometry.pair().rho()),
+      freedoms_(DegreesOfFreedom(geometry), Freedom(vectors.size())),
+      growth_(vectors.size()),
+      products_(vectors.size()),
+      powers_(vectors.size()) {
+  for (const GasBall& ball : start.balls) directions_.push_back(ball.direction);
+  for (size_t k = 0; k < vectors.size(); ++k) {
+    const double* from = vectors[k].data();
+    for (int64_t ball = 0; ball < geometry.balls(); ++ball, from += 4) {
+      const Eigen::Vector2d& u = start.balls[static_cast<size_t>(ball)].direction;
+      const Eigen::Vector2d position(from[0], from[1]), velocity(from[2], from[3]);
+      const Eigen::Vector2d across(-u.y(), u.x());
+      Across(ball).position[k] = across.dot(position);
+      Across(ball).velocity[k] = across.dot(velocity);
+      Along(ball).position[k] = u.dot(position);
+      Along(ball).velocity[k] = u.dot(velocity);
+    }
+    for (int64_t piston = 0; piston < geometry.pistons(); ++piston, from += 2) {
+      OfPiston(piston).position[k] = from[0];
+      OfPiston(piston).velocity[k] = from[1];
+    }
   }
 }
 
 void GasTangents::Follow(const GasEvent& event, const ReferenceGas& gas) {
-  if (event.ball >= 0) MoveBall(event.ball, event.time);
-  if (event.piston >= 0) MovePiston(event.piston, event.time);
+  Move(event);
   switch (event.kind) {
     case EventKind::kBallWall:
       ReflectBall(event.ball, gas.BallAt(event.ball, event.time));
-      if (++hits_ >= kHitsOfABallTogether * balls_) Orthonormalise(event.time);
+      if (++hits_ >= kHitsOfABallTogether * directions_.size()) Orthonormalise(event.time);
       break;
     case EventKind::kPistonWall:
-      ReflectPiston(event.piston);
+      OfPiston(event.piston).ChangeSigns();
       break;
     case EventKind::kBallPiston:
-      Exchange(event);
+      Exchange(event, gas.BallAt(event.ball, event.time));
       break;
     case EventKind::kEscape:
       break;
@@ -68,70 +89,147 @@ void GasTangents::Follow(const GasEvent& event, const ReferenceGas& gas) {
 
 std::vector<double> GasTangents::TakeGrowth(double time) {
   Orthonormalise(time);
-  return std::exchange(growth_, std::vector<double>(count_));
+  return std::exchange(growth_, std::vector<double>(growth_.size()));
 }
 
-void GasTangents::MoveBall(int64_t ball, double time) {
-  double& last = times_[static_cast<size_t>(ball)];
-  const double wait = time - std::exchange(last, time);
-  const size_t row = RowOfBall(ball);
-  AddTimes(wait, row + 2, row);
-  AddTimes(wait, row + 3, row + 1);
+void GasTangents::Move(const GasEvent& event) {
+  if (event.ball >= 0) {
+    Across(event.ball).MoveTo(event.time);
+    Along(event.ball).MoveTo(event.time);
+  }
+  if (event.piston >= 0) OfPiston(event.piston).MoveTo(event.time);
 }
 
-void GasTangents::MovePiston(int64_t piston, double time) {
-  double& last = times_[balls_ + static_cast<size_t>(piston)];
-  const size_t row = RowOfPiston(piston);
-  AddTimes(time - std::exchange(last, time), row + 1, row);
+void GasTangents::Freedom::MoveTo(double now) {
+  const double wait = now - std::exchange(time, now);
+  for (size_t k = 0; k < position.size(); ++k) position[k] += wait * velocity[k];
 }
 
-void GasTangents::AddTimes(double time, size_t velocity, size_t position) {
-  const double* const from = Row(velocity);
-  double* const to = Row(position);
-  for (size_t k = 0; k < count_; ++k) to[k] += time * from[k];
+void GasTangents::Freedom::ChangeSigns() {
+  for (double& x : position) x = -x;
+  for (double& v : velocity) v = -v;
 }
 
+// The disc is the one in the ball's quadrant, n its normal, u the ball's direction after the hit:
+// cos(phi) = n.u.
 void GasTangents::ReflectBall(int64_t ball, const GasBall& after) {
-  const DiscHit hit(after.position, after.direction, after.speed, rho_);
-  const size_t row = RowOfBall(ball);
-  double *const x = Row(row), *const y = Row(row + 1);
-  double *const vx = Row(row + 2), *const vy = Row(row + 3);
-  for (size_t k = 0; k < count_; ++k) hit.Map(x[k], y[k], vx[k], vy[k]);
+  const double x = after.position.x(), y = after.position.y();
+  const Eigen::Vector2d& u = after.direction;
+  const double cosine =
+      ((x - std::copysign(0.5, x)) * u.x() + (y - std::copysign(0.5, y)) * u.y()) / rho_;
+  const double kick = 2 * after.speed / (rho_ * std::max(cosine, kSmallestCosine<double>));
+  Freedom& across = Across(ball);
+  for (size_t k = 0; k < across.position.size(); ++k) {
+    across.velocity[k] += kick * across.position[k];
+  }
+  across.ChangeSigns();
+  directions_[static_cast<size_t>(ball)] = u;
 }
 
-void GasTangents::ReflectPiston(int64_t piston) {
-  double* const first = Row(RowOfPiston(piston));
-  for (size_t k = 0; k < 2 * count_; ++k) first[k] = -first[k];
+// In components along the piston's axis and across it, the first change places with the piston's.
+void GasTangents::Exchange(const GasEvent& event, const GasBall& after) {
+  Eigen::Vector2d& direction = directions_[static_cast<size_t>(event.ball)];
+  const bool is_along_x = IsAlongX(event.direction);
+  const auto turned = [is_along_x](const Eigen::Vector2d& u) {
+    return is_along_x ? u : Eigen::Vector2d(u.y(), -u.x());
+  };
+  const Eigen::Vector2d before = turned(direction), now = turned(after.direction);
+  Freedom &across = Across(event.ball), &along = Along(event.ball);
+  Freedom& piston = OfPiston(event.piston);
+  for (size_t k = 0; k < growth_.size(); ++k) {
+    const double of_ball = std::max(across.power[k], along.power[k]);
+    const double of_all = std::max(of_ball, piston.power[k]);
+    const double of_across = PowerOfTwo(across.power[k] - of_ball);
+    const double of_along = PowerOfTwo(along.power[k] - of_ball);
+    const double of_off_axis = PowerOfTwo(of_ball - of_all);
+    const double of_piston = PowerOfTwo(piston.power[k] - of_all);
+    const auto exchange = [&](double& a, double& l, double& q) {
+      const double on_axis = before.x() * of_along * l - before.y() * of_across * a;
+      const double off_axis =
+          of_off_axis * (before.y() * of_along * l + before.x() * of_across * a);
+      a = now.x() * off_axis - now.y() * of_piston * q;
+      l = now.y() * off_axis + now.x() * of_piston * q;
+      q = on_axis;
+    };
+    exchange(across.position[k], along.position[k], piston.position[k]);
+    exchange(across.velocity[k], along.velocity[k], piston.velocity[k]);
+    across.power[k] = along.power[k] = of_all;
+    piston.power[k] = of_ball;
+  }
+  direction = after.direction;
 }
 
-// Positions and velocities along the piston's axis change places.
-void GasTangents::Exchange(const GasEvent& event) {
-  const size_t axis = IsAlongX(event.direction) ? 0 : 1;
-  const size_t ball = RowOfBall(event.ball) + axis, piston = RowOfPiston(event.piston);
-  std::swap_ranges(Row(ball), Row(ball) + count_, Row(piston));
-  std::swap_ranges(Row(ball + 2), Row(ball + 2) + count_, Row(piston + 1));
-}
-
-// The sums are written out, in one order on every processor: of each vector with all later ones.
+// The sums are written out, in one order on every processor.
 void GasTangents::Orthonormalise(double time) {
   hits_ = 0;
-  for (size_t ball = 0; ball < balls_; ++ball) MoveBall(static_cast<int64_t>(ball), time);
-  for (size_t i = 0; i < pistons_; ++i) MovePiston(static_cast<int64_t>(i), time);
-  for (size_t k = 0; k < count_; ++k) {
-    std::fill(shares_.begin() + static_cast<std::ptrdiff_t>(k), shares_.end(), 0.0);
-    for (size_t i = 0; i < vector_.size(); ++i) {
-      const double* const row = Row(i);
-      vector_[i] = row[k];
-      for (size_t j = k; j < count_; ++j) shares_[j] += row[k] * row[j];
+  for (Freedom& freedom : freedoms_) {
+    freedom.MoveTo(time);
+    freedom.SetPowers();
+  }
+  for (size_t k = 0; k < growth_.size(); ++k) {
+    MultiplyByLater(k);
+    SubtractFromLater(k);
+    Normalise(k);
+  }
+}
+
+// So that the larger one of position and velocity is between 1 and 2.
+void GasTangents::Freedom::SetPowers() {
+  for (size_t k = 0; k < position.size(); ++k) {
+    const double largest = std::max(std::fabs(position[k]), std::fabs(velocity[k]));
+    if (largest == 0) {
+      power[k] = kPowerOfZero;
+      continue;
     }
-    const double squared = shares_[k], length = std::sqrt(squared);
-    growth_[k] += Log(length);
-    for (size_t i = 0; i < vector_.size(); ++i) {
-      double* const row = Row(i);
-      const double component = vector_[i] / squared;
-      for (size_t j = k + 1; j < count_; ++j) row[j] -= component * shares_[j];
-      row[k] = vector_[i] / length;
+    const int exponent = std::ilogb(largest);
+    position[k] = std::ldexp(position[k], -exponent);
+    velocity[k] = std::ldexp(velocity[k], -exponent);
+    power[k] += exponent;
+  }
+}
+
+void GasTangents::MultiplyByLater(size_t k) {
+  std::fill(products_.begin(), products_.end(), 0.0);
+  std::fill(powers_.begin(), powers_.end(), 2 * kPowerOfZero);
+  for (const Freedom& of : freedoms_) {
+    for (size_t j = k; j < powers_.size(); ++j) {
+      powers_[j] = std::max(powers_[j], of.power[k] + of.power[j]);
     }
+  }
+  for (const auto& [position, velocity, power, time] : freedoms_) {
+    for (size_t j = k; j < products_.size(); ++j) {
+      products_[j] += (position[k] * position[j] + velocity[k] * velocity[j]) *
+                      PowerOfTwo(power[k] + power[j] - powers_[j]);
+    }
+  }
+}
+
+// The products become the later vectors' shares of this one.
+void GasTangents::SubtractFromLater(size_t k) {
+  for (size_t j = k + 1; j < products_.size(); ++j) {
+    products_[j] /= products_[k];
+    powers_[j] -= powers_[k];
+  }
+  for (auto& [position, velocity, power, time] : freedoms_) {
+    for (size_t j = k + 1; j < products_.size(); ++j) {
+      const double of_share = powers_[j] + power[k], largest = std::max(power[j], of_share);
+      const double kept = PowerOfTwo(power[j] - largest);
+      const double share = products_[j] * PowerOfTwo(of_share - largest);
+      position[j] = kept * position[j] - share * position[k];
+      velocity[j] = kept * velocity[j] - share * velocity[k];
+      power[j] = largest;
+    }
+  }
+}
+
+void GasTangents::Normalise(size_t k) {
+  const double length = std::sqrt(products_[k]);
+  const double power_of_length = powers_[k] / 2;  // whole: of the product with itself
+  growth_[k] += Log(length) + power_of_length * std::numbers::ln2;
+  for (auto& [position, velocity, power, time] : freedoms_) {
+    position[k] /= length;
+    velocity[k] /= length;
+    power[k] -= power_of_length;
   }
 }
 
