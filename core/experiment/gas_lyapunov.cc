@@ -126,7 +126,7 @@ std::vector<Measurement> Table(const GasGeometry& geometry, double temperature,
 // Of an event with its tangent vectors, measured with 1 to 32 cells.
 double NanosecondsOfAnEvent(const GasGeometry& geometry) {
   const auto f = static_cast<double>(DegreesOfFreedom(geometry));
-  return 120 + 18 * f + 1.2 * f * f;
+  return 70 + 37 * f + 1.7 * f * f;
 }
 
 class GasLyapunov : public GasExperiment {

@@ -56,7 +56,7 @@ def measure(
     """Collisions in equilibrium, in bins of alpha or y and of the piston's energy; wall hits among
     the events of an orbit, in bins of s and sin(phi); their exact densities; and chi-squared, to
     which the correlation of collisions and of hits adds a few units only."""
-    question = {"rho": rho, "delta": delta, "seed": seed}
+    question: dict[str, Any] = {"rho": rho, "delta": delta, "seed": seed}
     hits = client.sample("equilibrium", model="billiard", collisions=collisions, **question).all()
     orbit = client.trace_arrays(*_FIELDS_OF_A_HIT, events=events, **question)
     sections = [*_of_collisions(client, rho, delta, hits, bins), _of_walls(rho, delta, orbit, bins)]
@@ -126,7 +126,7 @@ def _finer(edges: FloatArray) -> FloatArray:
 def _section(name: str, points: Any, edges: Any, scaled: Any, exact: FloatArray) -> Table:
     """One row for each bin. `scaled`: the edges in the variables of the density; `exact` has it at
     _FINER^2 points of each bin."""
-    count, _, _ = np.histogram2d(*points, edges)
+    count, _, _ = np.histogram2d(points[0], points[1], edges)
     weight = len(points[0]) * np.outer(*map(np.diff, scaled))
     expected = exact.reshape(len(count), _FINER, -1, _FINER).mean(axis=(1, 3))
     first, second = np.meshgrid(edges[0][:-1], edges[1][:-1], indexing="ij")
