@@ -13,13 +13,15 @@ TEST_PACKAGES := libgtest-dev libgmock-dev python3-grpcio python3-numpy python3-
   python3-setuptools python3-wheel python3-venv mypy
 AARCH64_PACKAGES := g++-aarch64-linux-gnu qemu-user libabsl-dev:arm64 libhwy-dev:arm64 libgtest-dev:arm64 libgmock-dev:arm64
 SLURM_PACKAGES := munge slurmctld slurmd slurm-client procps
-DEB_PACKAGES := debhelper dh-python help2man lintian
+DOCS_PACKAGES := doxygen furo python3-breathe python3-myst-parser python3-sphinx
+NOTEBOOK_PACKAGES := python3-nbconvert python3-ipykernel
+DEB_PACKAGES := $(DOCS_PACKAGES) debhelper dh-python help2man lintian
 WEB_PACKAGES = chromium $(shell command -v npm >/dev/null || echo nodejs npm)
 PROGRAMS := ballpiston ballpistond ballpiston-worker conductivity method_comparison slow_pistons stability pages
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder
-.PHONY: build test check test-asan test-tsan test-long demo chart ladder bench conductivity stability stability-table torture test-slurm test-alerts test-web mutation questions deb oci aarch64 fuzz simulation thread-safety nightly format check-format tidy setup clean help
+.PHONY: build test check test-asan test-tsan test-long demo docs tutorials chart ladder bench conductivity stability stability-table torture test-slurm test-alerts test-web mutation questions deb oci aarch64 fuzz simulation thread-safety nightly format check-format tidy setup clean help
 
 build: build/release/.$(PRESETS_PREFIX)programs ## Build the programs, optimised, in build/release/bin (the default)
 	@cmake --build build/release --target $(PROGRAMS)
@@ -48,6 +50,15 @@ test-long: build/release/.$(PRESETS_PREFIX)tests ## Run the tests of laws and bi
 
 demo: build ## Run the paper's sweep with a real server and client
 	@scripts/demo.sh build/release/bin
+
+docs: ## Build the site of all pages, tutorials and interfaces in build/docs/html, and check its links (1 minute)
+	@scripts/setup.sh $(DOCS_PACKAGES)
+	@docs/site/build_site.py build/docs
+
+tutorials: build ## Run the notebooks of client/examples/python again and store their output in them (1 minute)
+	@scripts/setup.sh $(NOTEBOOK_PACKAGES)
+	@cmake --build build/release --target python_package
+	@scripts/tutorials.sh build/release/bin build/release/python
 
 chart: build ## Chart speed against accuracy for every method, on this machine (2 minutes)
 	@scripts/chart.sh build/release/bin
@@ -125,8 +136,8 @@ thread-safety: ## Check with Clang that the server holds the right mutexes, in t
 	@scripts/setup.sh clang
 	@scripts/thread-safety.sh
 
-nightly: ## Run the checks that take hours: test-tsan, test-long, aarch64, tidy, torture, test-slurm, test-alerts, test-web, stability, mutation, questions, simulation, and ten minutes of each fuzz target
-	@status=0; for task in test-tsan test-long aarch64 tidy torture test-slurm test-alerts test-web stability mutation questions simulation "fuzz FUZZ_SECONDS=600"; do \
+nightly: ## Run the checks that take hours: test-tsan, test-long, aarch64, tidy, torture, test-slurm, test-alerts, test-web, docs, stability, mutation, questions, simulation, and ten minutes of each fuzz target
+	@status=0; for task in test-tsan test-long aarch64 tidy torture test-slurm test-alerts test-web docs stability mutation questions simulation "fuzz FUZZ_SECONDS=600"; do \
 	  printf '\n== make %s\n' "$$task"; $(MAKE) $$task || { status=1; failed+=" $${task%% *}"; }; \
 	done; echo "nightly: failed:$${failed:- none}"; exit $$status
 

@@ -39,9 +39,10 @@ double Exp(double x);
 // The natural logarithm. Domain: x in [1e-290, 1e290].
 double Log(double x);
 
-// x rounded to 30 bits, for a number that depends on functions of the C library: a mean free time,
-// and every sum that is measured in units of it. After rounding, the difference between processors
-// remains only for about one geometry in a million, next to a rounding edge. Rounding changes
+// x rounded to 30 bits. Use it for numbers that depend on functions of the C library, whose last
+// bits differ between processors: a mean free time, and times measured in it. After rounding, a
+// difference remains only for about one geometry in a million, whose number is about half-way
+// between two rounded numbers. Rounding changes
 // results by much less than their statistical errors.
 double WithoutLastBits(double x);
 

@@ -5,7 +5,7 @@
 // kappa_0 is half of the exchange rate. Correlations lower the conductivity kappa. The correction
 // kappa/kappa_0 - 1 is a universal number for each lattice: it is independent of the temperature
 // and of the cell's shape. So it is a constant here; tools/conductivity computes it by Varadhan's
-// variational formula. docs/conductivity.md has the tables.
+// variational formula. docs/research/conductivity.md has the tables.
 #pragma once
 
 namespace ballpiston {

@@ -31,8 +31,8 @@ struct Health {
   friend bool operator==(const Health&, const Health&) = default;
 };
 
-// Where a group of trajectories has arrived, in numbers whose meaning the experiment knows; empty
-// before the group's first block. Copies share the numbers, which do not change.
+// The state that a group of trajectories has reached, in numbers whose meaning the experiment
+// knows; empty before the group's first block. Copies share the numbers, which do not change.
 class GroupState {
  public:
   GroupState() = default;

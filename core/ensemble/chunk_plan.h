@@ -5,7 +5,8 @@
 // Chunk k has base 2^k samples, up to a maximum that takes about a minute at nominal speed. base
 // takes a few milliseconds or is 64 samples, whichever is more. So a computation of 10 ms ends
 // after about 10 ms, and the tolerance of a computation of hours is judged at most a few hundred
-// times. The stated error stays correct, because the sizes at which the tolerance is judged double.
+// times. A computation that ends when its error is small enough tends to state too small an error.
+// Here it does not, because the number of samples about doubles from one judgement to the next.
 //
 // If 64 samples take more than a minute, all chunks have fewer samples: as many as take a minute,
 // or one. A tolerance is then judged after each 64 samples.

@@ -14,8 +14,9 @@
 
 namespace ballpiston {
 
-// `Work` is the work of one block:
-//   uint64_t count() const;    the number of its parts, at least 1
+// The blocks that an engine computes at the same time. `Work` computes one block. It consists of
+// parts, such as orbits, and has these functions:
+//   uint64_t count() const;    the number of parts, at least 1
 //   BlockResult Result();      called once, after all parts have ended
 template <typename Work>
 class OpenBlocks {

@@ -335,7 +335,7 @@ double ErrorOfConductivity(Model model, const PointParameters& point) {
 
 // The relative difference between the infinite gas, whose conductivity the spectrum gives, and a
 // gas of this shape in the limit. The values are bounds of measured differences
-// (docs/conductivity.md). In one column no correlation lowers the conductivity.
+// (docs/research/conductivity.md). In one column no correlation lowers the conductivity.
 double ErrorOfSize(const GasGeometry& geometry) {
   constexpr double kOfColumns[] = {0.00182, 5e-4, 2e-4, 7e-5};
   constexpr double kOfRows[] = {2.6e-4, 4e-5};

@@ -1,10 +1,10 @@
 // How long results are kept: Limits::retain_days and Limits::max_store_bytes.
 //
 // The results of a job that is not pinned expire `retain_days` after its end. If the store takes
-// more than kFullShare of its bound, results expire earlier, those of the jobs that ended first;
-// when none are left, expired jobs are deleted in the same order. The data of active and pinned
-// jobs are never removed here, so the store may grow beyond the bound; then no new job is accepted
-// (acceptance.h).
+// more than kFullShare of its bound, results expire earlier, beginning with the job that ended
+// first. If no results are left that can expire, the expired jobs are deleted in the same order.
+// The data of active and pinned jobs are never removed here, so the store may grow beyond the
+// bound; then no new job is accepted (acceptance.h).
 #pragma once
 
 #include "absl/status/status.h"

@@ -75,7 +75,7 @@ class CrashRecord {
 
   // The deaths that count for the run.
   int Deaths(const RunName& run) const;
-  // The points of the run that were being computed at its last death that counts.
+  // The points of the run that were being computed at the last of the deaths that count for it.
   std::set<size_t> LastPoints(const RunName& run) const;
   // The run's deaths count no more.
   void Clear(const RunName& run);

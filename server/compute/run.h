@@ -93,8 +93,8 @@ class Run {
   void TurnEnds() { --turns_; }
   bool HasTurns() const { return turns_ > 0; }
 
-  // Points of a lease that opens points: each is opened, finished, or waits for a pilot. Then the
-  // lease ends.
+  // A lease to open points reports for each of its points that it is open or finished, or that it
+  // waits for a pilot. Then OpeningEnded ends the lease.
   void PointOpened(size_t point, std::unique_ptr<OpenPoint> open);
   void PointAwaits(size_t point, const PilotPlace& place);
   void OpeningEnded() { --opening_; }

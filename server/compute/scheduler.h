@@ -113,8 +113,8 @@ class Scheduler {
   // attempt if the executor `tried` to compute them. May wait for the disk.
   void Return(const Lease& lease, bool tried = true);
 
-  // The same after an attempt that died of itself. After kMostDeaths of the lease the run fails:
-  // ENGINE_CRASHED.
+  // The same after an attempt whose process crashed. After kMostDeaths crashes of the lease the run
+  // fails with ENGINE_CRASHED.
   void ReturnCrashed(Lease lease);
 
   // Returns when the disk has room for more reports.

@@ -1,5 +1,6 @@
 // Computes the corrections of the heat conductivity, and the gaps of closed chains, and prints them
-// with their convergence: the tables of docs/conductivity.md. README.md describes the arguments.
+// with their convergence: the tables of docs/research/conductivity.md. README.md describes the
+// arguments.
 #include <absl/strings/str_format.h>
 #include <absl/strings/str_join.h>
 

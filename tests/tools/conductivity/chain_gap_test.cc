@@ -55,8 +55,8 @@ void HasTheDocumentedGap(const std::vector<int>& chain, std::vector<int> degrees
   EXPECT_LT(gap.error, (IsNightly() ? 2e-6 : 5e-5) * gap.value);
 }
 
-// The values of docs/conductivity.md, by day from fewer degrees. The stated error is the change by
-// the last term, which can be half of the true error.
+// The values of docs/research/conductivity.md, by day from fewer degrees. The stated error is the
+// change by the last term, which can be half of the true error.
 TEST(ChainGap, ChainsHaveTheirDocumentedGaps) {
   HasTheDocumentedGap({2, 1, 2}, {12, 14, 16, 18, 20}, {0.113388479, 2e-9});
   HasTheDocumentedGap({1, 2, 1}, {12, 14, 16, 18, 20}, {0.146330848, 1e-9});

@@ -25,7 +25,7 @@ EFFORT = {
     "full": {"cells": "4,6,8,12,16,24,32,64", "collisions": 3e8},
 }
 
-_RATIO = 1 - 0.0018073  # the chain's conductivity over the static one (docs/conductivity.md)
+_RATIO = 1 - 0.0018073  # the chain's ratio (docs/research/conductivity.md)
 _CAPACITY = 1.5  # of a cell, for heat
 _NODES = 40  # of Gauss's quadrature
 _POINTS = 400  # of the grid of the slowest profile

@@ -37,7 +37,7 @@ from ballpiston.parameter_lists import Numbers, number_list
 EFFORT: dict[str, dict[str, Any]] = {"quick": {"samples": 2048}, "full": {"samples": 131_072}}
 
 PARTS = ("all", "idle", "met")
-_INTEGRAL_TIME = 0.541387668432  # of the limit, in mean free times (docs/markov-limit.md)
+_INTEGRAL_TIME = 0.541387668432  # of the limit, in mean free times (docs/research/markov-limit.md)
 _AT_REST = 1.25  # e^2/<e^2> of a piston at rest, with e = ep - 1/6
 _ASIDE = 0.03  # shift of points, so that all are visible
 _SHOWN = (-4, 6)  # of panel b

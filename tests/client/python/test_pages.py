@@ -1,0 +1,143 @@
+"""Links of the pages lead somewhere, and their commands are right."""
+
+from __future__ import annotations
+
+import functools
+import re
+import subprocess
+from pathlib import Path
+
+import pages
+import pytest
+from conftest import LIMIT, PROJECT, Home
+from pages import Command
+
+PAGES = pages.pages()
+# The reference is made from the table of verbs and flags, and other tests check it.
+COMMANDS = [
+    command for page in PAGES if page.name != "command-line.md" for command in pages.commands(page)
+]
+# Seconds of a processor: questions for which `plan` predicts less are asked. Those whose answer the
+# page shows may take longer.
+QUICK, QUICK_IF_SHOWN = 0.2, 2.0
+
+
+def dead_links(page: Path, text: str) -> list[str]:
+    """The relative links of the text that lead nowhere. `page` is the file that it is in."""
+    dead = []
+    for link in pages.links(text):
+        target, _, anchor = link.partition("#")
+        path = (page.parent / target).resolve() if target else page
+        if not path.exists():
+            dead.append(link)
+        elif anchor and anchor not in pages.anchors(text if path == page else pages.text_of(path)):
+            dead.append(link)
+    return dead
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(PROJECT)))
+def test_every_link_leads_to_a_file_and_a_heading(page: Path) -> None:
+    assert dead_links(page, pages.text_of(page)) == []
+
+
+def missing_files(page: Path, text: str) -> list[str]:
+    """The paths of files and folders in backquotes that do not exist, neither in the project nor in
+    the page's folder. Patterns and placeholders in capitals are no paths."""
+    named = re.compile(rf"(?:{'|'.join(pages.FOLDERS)}|scripts)/[a-z0-9_./-]+")
+    paths = [code for code in pages.code_in_lines(text) if named.fullmatch(code)]
+    folders = [PROJECT, page.parent]
+    return [path for path in paths if not any((folder / path).exists() for folder in folders)]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(PROJECT)))
+def test_every_path_of_the_project_exists(page: Path) -> None:
+    assert missing_files(page, pages.text_of(page)) == []
+
+
+@functools.cache
+def flags_of_verbs(home: Home) -> dict[str, set[str]]:
+    """Those without a verb have the empty key."""
+    reference = home.command("help", "--format", "markdown")
+    verbs = re.findall(r"^## ballpiston (.+)$", reference, re.MULTILINE) + [""]
+    flag = re.compile(r"(?<![\w-])--?[a-z][\w-]*")
+    return {verb: set(flag.findall(home.command("help", "--all", *verb.split()))) for verb in verbs}
+
+
+def unknown_word(home: Home, words: list[str]) -> str | None:
+    """The first word that is no verb, or no flag of the verb."""
+    table = flags_of_verbs(home)
+    verb = next(verb for verb in table if words[: len(verb.split())] == verb.split())
+    if not verb and not words[0].startswith("-"):
+        return words[0]
+    own = words[: words.index("--")] if "--" in words else words  # the rest is for ballpistond
+    given = [word.partition("=")[0] for word in own if re.match(r"--?[a-z]", word)]
+    return next((flag for flag in given if flag not in table[verb]), None)
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=str)
+def test_every_command_has_a_verb_and_flags_of_the_program(home: Home, command: Command) -> None:
+    assert unknown_word(home, command.words) is None
+
+
+def test_commands_in_sentences_have_verbs_and_flags_of_the_program(home: Home) -> None:
+    for page in PAGES:
+        for code in pages.code_in_lines(pages.text_of(page)):
+            for words in pages.calls(code) if code.startswith("ballpiston ") else []:
+                assert unknown_word(home, words) is None, f"{page}: {code}"
+
+
+# Questions that are whole in the command line.
+QUESTIONS = [
+    command
+    for command in COMMANDS
+    if command.words[0] in ["analytic", "plan", "run", "submit", "trace"]
+    and not {"--spec", "--points", "--save"} & set(command.words)
+]
+
+
+def is_quick(home: Home, command: Command) -> bool:
+    verb, *rest = command.words
+    if verb == "run":
+        if "--format" in rest:
+            place = rest.index("--format")
+            del rest[place : place + 2]
+        limit = QUICK_IF_SHOWN if command.shown else QUICK
+        return bool(home.command_json("plan", *rest)["work"] < limit)
+    if verb == "trace":
+        return int(rest[rest.index("--events") + 1]) <= 1000
+    return verb in ["analytic", "plan"]
+
+
+def numbers(text: str) -> set[str]:
+    return set(re.findall(r"(?<![\w.])[+-]?\d+\.\d+(?![\w.])", text))
+
+
+@pytest.mark.parametrize("command", QUESTIONS, ids=str)
+def test_quick_questions_have_the_shown_answer_and_others_are_accepted(
+    home: Home, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    quick = is_quick(home, command)
+    if not quick:
+        monkeypatch.setenv("BALLPISTON_SERVER", "unix:/none/socket")
+    done = subprocess.run(
+        [home.programs / "ballpiston", *command.words],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=LIMIT,
+    )
+    # Without a server: the words are right, and no server answers.
+    assert done.returncode == (0 if quick else 3), done.stderr
+    if quick and command.words[0] != "plan":  # which predicts times
+        assert numbers(command.shown) <= numbers(done.stdout)
+
+
+# Tests of the tests.
+def test_planted_errors_are_found(home: Home) -> None:
+    page = PROJECT / "docs" / "README.md"
+    text = "# Words\n[a](limits.md) [b](#words) [c](none.md) [d](limits.md#none) [e](#none)"
+    assert dead_links(page, text) == ["none.md", "limits.md#none", "#none"]
+    assert missing_files(page, "`core/README.md` and `core/none.md`") == ["core/none.md"]
+    assert unknown_word(home, ["run", "first-hit", "--rho", "0.53"]) is None
+    assert unknown_word(home, ["run", "first-hit", "--radius", "0.53"]) == "--radius"
+    assert unknown_word(home, ["ran", "first-hit"]) == "ran"
