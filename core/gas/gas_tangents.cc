@@ -8,12 +8,13 @@
 
 #include "core/arithmetic/elementary_functions.h"
 #include "core/billiard/tangent_map.h"
+#include "core/sampling/counter_random.h"
 
 namespace ballpiston {
 namespace {
 
-// In four hits of a ball lengths grow by some hundreds, and by more of a fast ball, which hits more
-// often. The smallest vector loses the square of this factor in precision.
+// In four hits of a ball lengths grow by some hundreds, and by more for a fast ball, which hits
+// more often. The smallest vector loses the square of this factor in precision.
 constexpr size_t kHitsOfABallTogether = 4;
 
 // Of components that are all 0.
@@ -126,7 +127,7 @@ void GasTangents::ReflectBall(int64_t ball, const GasBall& after) {
   directions_[static_cast<size_t>(ball)] = u;
 }
 
-// In components along the piston's axis and across it, the first change places with the piston's.
+// The ball's components along the piston's axis change places with the piston's.
 void GasTangents::Exchange(const GasEvent& event, const GasBall& after) {
   Eigen::Vector2d& direction = directions_[static_cast<size_t>(event.ball)];
   const bool is_along_x = IsAlongX(event.direction);
@@ -173,7 +174,7 @@ void GasTangents::Orthonormalise(double time) {
   }
 }
 
-// So that the larger one of position and velocity is between 1 and 2.
+// Chooses powers so that the larger one of position and velocity is in [1, 2).
 void GasTangents::Freedom::SetPowers() {
   for (size_t k = 0; k < position.size(); ++k) {
     const double largest = std::max(std::fabs(position[k]), std::fabs(velocity[k]));
@@ -233,22 +234,24 @@ void GasTangents::Normalise(size_t k) {
   }
 }
 
-// The projections across w of all velocities but the one along which w is largest.
+// Every ball's velocity has components along and across its path, at random. If a component were 0,
+// rounding would decide when the vector turns to that ball.
 std::vector<GasTangents::Vector> VelocitiesAcross(const GasGeometry& geometry,
                                                   const GasState& state) {
   const auto w = VelocitiesOf(state);
-  const auto largest = std::ranges::max_element(
-      w, {}, [](const auto& velocity) { return std::fabs(velocity.second); });
   double squared = 0;
   for (const auto& [component, velocity] : w) squared += velocity * velocity;
   std::vector<GasTangents::Vector> vectors;
-  for (auto along = w.begin(); along != w.end(); ++along) {
-    if (along == largest) continue;
-    GasTangents::Vector& vector =
-        vectors.emplace_back(GasTangents::Vector(2 * DegreesOfFreedom(geometry)));
-    vector[along->first] = 1;
-    const double share = along->second / squared;
-    for (const auto& [component, velocity] : w) vector[component] -= share * velocity;
+  for (size_t k = 0; k + 1 < w.size(); ++k) {
+    CounterRandom random(0, 0, k);
+    GasTangents::Vector vector(2 * DegreesOfFreedom(geometry));
+    double product = 0;
+    for (const auto& [component, velocity] : w) {
+      vector[component] = random.Uniform() - 0.5;
+      product += vector[component] * velocity;
+    }
+    for (const auto& [component, velocity] : w) vector[component] -= product / squared * velocity;
+    vectors.push_back(std::move(vector));
   }
   return vectors;
 }

@@ -10,17 +10,20 @@
 // that take part, and they are moved, as the reference moves them, only at their own events.
 //
 // The flow and the energy have the exponents 0, and the others come in pairs of opposite signs. So
-// there are f - 1 exponents that are not negative. Vectors that start as velocities across the
-// gas's velocity w stay across the flow and do not change the energy, so f - 1 of them measure
-// these exponents. After some wall hits Gram and Schmidt's method makes the vectors orthonormal in
-// their order, and the logarithms of the factors are added up.
+// f - 1 exponents are positive. Vectors that start without positions, with velocities orthogonal to
+// the gas's velocity w, stay orthogonal to the flow and do not change the energy, so f - 1 of them
+// measure these exponents. After some wall hits Gram and Schmidt's method makes the vectors
+// orthonormal in their order, and the logarithms of the factors are added up.
 //
-// Where exchanges are rare, each of the first vectors soon has the direction of one ball. What it
-// has of another ball decays, to exp(-1000) and less, and must be kept with its digits: this ball
-// may become the faster one. Therefore a number is m 2^power, with a power for each degree of
-// freedom of a vector; and the components across a path, which grow fast, are separate from those
-// along it, whose rounding would hide them. (With Cartesian components in plain doubles the first
-// exponent of four cells was 2 % too small at delta = 0.03 and 10 % at 0.02; the sum was right.)
+// Where exchanges are rare, each of the first vectors soon has the direction of one ball. Its
+// components at the other balls decay, to exp(-1000) and less. They must keep their relative
+// precision, because another ball may become the faster one. Therefore a number is m 2^power, with
+// a power for each degree of freedom of a vector; and the components across a path, which grow
+// fast, are separate from those along it, whose rounding would hide them. (With Cartesian
+// components in plain doubles the first exponent of four cells was 2 % too small at delta = 0.03
+// and 10 % at 0.02; the sum was right.)
+//
+// Waits are differences of times since the start, so they have an error of 1e-9 at a time of 1e7.
 //
 // Properties, each with a test of its name: 1. NearbyGasesDivergeAsPredicted.
 // 2. ExponentsOfAGasComeInPairs. 3. SmallComponentsAreKept. Not thread-safe.

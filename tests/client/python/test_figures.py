@@ -215,13 +215,15 @@ def test_lyapunov_exponents_are_drawn_beside_what_is_computed(client: ballpiston
     expect_texts_inside(lyapunov.draw(data))
 
 
-# Chi-squared of collisions that are nearly independent; beyond 6 standard deviations in 1e-8.
-def test_collisions_have_the_invariant_density(client: ballpiston.Client) -> None:
+# Chi-squared of collisions, and of the hits of an orbit, that are nearly independent; beyond 6
+# standard deviations of a normal law in 1e-6. Few collisions are outside of all bins. Of an orbit's
+# events 83 % are wall hits, give or take 1 %.
+def test_collisions_and_wall_hits_have_the_invariant_density(client: ballpiston.Client) -> None:
     data = section.measure(client, delta=0.2, collisions=50_000, events=60_000, bins=10)
     for name in ("alpha", "y", "s"):
         part = tables.rows(data["section"], section=name)
         assert part["count"].sum() == pytest.approx(part["expected"].sum(), rel=1e-3)
-        assert part["count"].sum() == (50_000 if name != "s" else pytest.approx(51_000, rel=0.1))
+        assert part["count"].sum() == (50_000 if name != "s" else pytest.approx(50_000, rel=0.04))
     for chi_squared, bins in zip(*(data["section-test"][n] for n in ("chi_squared", "bins"))):
         assert abs(chi_squared - bins) < 6 * np.sqrt(2 * bins)
     expect_texts_inside(section.draw(data))
