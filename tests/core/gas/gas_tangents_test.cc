@@ -148,7 +148,7 @@ TEST(GasTangents, ExponentsOfAGasComeInPairs) {
 
 // ---- many digits ----
 
-// Below the rest of the last vector is exp(-900) of its length: 1,300 bits, and then 700 more.
+// Below the rest of the last vector is exp(-800) of its length: 1,300 bits, and then 700 more.
 using Exact = boost::multiprecision::number<
     boost::multiprecision::cpp_bin_float<2000, boost::multiprecision::digit_base_2>>;
 using ExactVector = std::vector<Exact>;
@@ -239,24 +239,52 @@ class CartesianTangents {
   std::vector<ExactVector> vectors_;
 };
 
-// The components of a fast ball's vector at slower balls become as small as exp(-300); they grow
-// again when such a ball becomes the faster one, which here exchanges the second vector and the
-// third. A growth of 900 has a rounding of some 1e-10.
-TEST(GasTangents, SmallComponentsAreKept) {
+// The first exponent, the sum of those of the balls, and each slower one. Rounding decides when the
+// second and the third vector change places. A growth of 900 has a rounding of some 1e-10.
+TEST(GasTangents, GrowthsAreThoseOfManyDigits) {
   const GasGeometry geometry = GasOf(0.53, 0.05, "3");
-  const GasState start = GasInEquilibrium(geometry, 1, 34, 3);
-  const std::vector<Vector> across = VelocitiesAcross(geometry, start);
-  ReferenceGas gas(geometry, start, ThermalWalls());
-  GasTangents tangents(geometry, start, across);
-  CartesianTangents exact(geometry, across);
-  const double time = 150;
-  while (gas.NextTime() <= time) {
-    const GasEvent event = gas.Step();
-    tangents.Follow(event, gas);
-    exact.Follow(event, gas);
+  for (const uint64_t sample : {0, 3}) {
+    const GasState start = GasInEquilibrium(geometry, 1, 34, sample);
+    const std::vector<Vector> across = VelocitiesAcross(geometry, start);
+    ReferenceGas gas(geometry, start, ThermalWalls());
+    GasTangents tangents(geometry, start, across);
+    CartesianTangents exact(geometry, across);
+    const double time = 120;
+    while (gas.NextTime() <= time) {
+      const GasEvent event = gas.Step();
+      tangents.Follow(event, gas);
+      exact.Follow(event, gas);
+    }
+    const Vector growth = tangents.TakeGrowth(time), expected = exact.GrowthAt(time);
+    EXPECT_NEAR(growth[0], expected[0], 1e-8);
+    EXPECT_NEAR(growth[1] + growth[2], expected[1] + expected[2], 1e-8);
+    for (size_t k = 3; k < growth.size(); ++k) EXPECT_NEAR(growth[k], expected[k], 1e-8) << k;
   }
-  const Vector growth = tangents.TakeGrowth(time), expected = exact.GrowthAt(time);
-  for (size_t k = 0; k < growth.size(); ++k) EXPECT_NEAR(growth[k], expected[k], 1e-8) << k;
+}
+
+// Vectors that start with the velocity of one ball turn to the direction of the first exponent. The
+// components of each of them at slower balls become as small as exp(-1000); they grow again when
+// such a ball becomes the faster one.
+TEST(GasTangents, SmallComponentsAreKept) {
+  const GasGeometry geometry = GasOf(0.53, 0.02, "4");
+  for (uint64_t sample = 0; sample < 4; ++sample) {
+    const GasState start = GasInEquilibrium(geometry, 1, 34, sample);
+    std::vector<double> grown;
+    for (const size_t ball : {0u, 2u}) {
+      Vector vector(2 * DegreesOfFreedom(geometry));
+      vector[4 * ball + 2] = 1;
+      ReferenceGas gas(geometry, start, ThermalWalls());
+      GasTangents tangents(geometry, start, {vector});
+      for (const double time : {10'000.0, 20'000.0}) {
+        while (gas.NextTime() <= time) {
+          const GasEvent event = gas.Step();
+          tangents.Follow(event, gas);
+        }
+        grown.push_back(tangents.TakeGrowth(time)[0]);
+      }
+    }
+    EXPECT_NEAR(grown[1], grown[3], 1e-6);
+  }
 }
 
 TEST(GasTangents, VelocitiesAcrossKeepTheEnergy) {
