@@ -54,14 +54,14 @@ inline const std::map<std::string_view, uint64_t> kGoldenBits = {
     {"reference, gas-equilibrium of 2x2 cells", 0xf5e5094fa6431022},
     {"reference, gas-conduction of 3 cells", 0x7c2cd02db1b1c13c},
     {"reference, gas-conduction of 2x2 cells", 0x60b9b2616bb25533},
-    {"reference, gas-lyapunov of 3 cells", 0xde968c36dce64ff7},
-    {"reference, gas-lyapunov of 2x2 cells", 0x2b3773dfd3fd270b},
+    {"reference, gas-lyapunov of 3 cells", 0xf26830e8d257a0dd},
+    {"reference, gas-lyapunov of 2x2 cells", 0x114348ed613dc11a},
     {"lanes, gas-equilibrium of 3 cells", 0x143762689baea53e},
     {"lanes, gas-equilibrium of 2x2 cells", 0x19b9d9d354c168bf},
     {"lanes, gas-conduction of 3 cells", 0x16f739b6d1d07bfb},
     {"lanes, gas-conduction of 2x2 cells", 0x752f629f653b800a},
-    {"lanes, gas-lyapunov of 3 cells", 0xde968c36dce64ff7},
-    {"lanes, gas-lyapunov of 2x2 cells", 0x2b3773dfd3fd270b},
+    {"lanes, gas-lyapunov of 3 cells", 0xf26830e8d257a0dd},
+    {"lanes, gas-lyapunov of 2x2 cells", 0x114348ed613dc11a},
 };
 
 }  // namespace ballpiston
