@@ -23,9 +23,8 @@ struct GasEnergyRun {
   void Add(double error);
 };
 
-// True if the mean is above four of its standard errors and above an ulp, or is not a number. The
-// standard error comes from 48 gases: Student's t with 47 degrees of freedom, 2e-4 false alarms per
-// run.
+// Whether the mean is a trend (energy_drift.h). Its standard error comes from 48 gases: Student's t
+// with 47 degrees of freedom, 2e-4 false alarms per run.
 bool HasTrend(const GasEnergyRun& run);
 // The limit of the worst error, in ulps times the square root of the number of exchanges of one
 // gas.
@@ -33,5 +32,6 @@ inline constexpr double kUlpsOfAWalk = 4;
 bool LosesEnergy(const GasEnergyRun& run);
 
 std::vector<GasEnergyRun> GasEnergyRuns(double effort);
+std::string GasEnergyTable(const std::vector<GasEnergyRun>& runs);
 
 }  // namespace ballpiston::stability

@@ -8,8 +8,7 @@
 #include <limits>
 #include <span>
 
-#include "core/gas/gas_run.h"
-#include "tools/stability/error_size.h"
+#include "tools/flows/metered_gases.h"
 
 namespace ballpiston::stability {
 namespace {
@@ -31,12 +30,10 @@ GasState Moved(double most, const GasGeometry& geometry, GasState state, Counter
   return state;
 }
 
-GasReading ByReference(const GasGeometry& geometry, const GasReplica& replica, double time) {
-  GasMeter meter(geometry, replica.state);
-  StartGases(GasEngine::kReference, geometry, 1,
-             {GasStart{replica.state, replica.walls, replica.random, &meter}})
-      ->AdvanceTo(time);
-  return ReadingOf(meter);
+GasReading ByReference(const GasGeometry& geometry, const GasStart& replica, double time) {
+  MeteredGases gases(GasEngine::kReference, geometry, {replica});
+  gases.AdvanceTo(time);
+  return ReadingOf(gases.meters().front());
 }
 
 double Distance(const GasReading& a, const GasReading& b) {
@@ -49,14 +46,14 @@ double Distance(const GasReading& a, const GasReading& b) {
 
 // Compares the reading with the reference, from the same start and, at each scale, from `each`
 // neighbouring starts.
-Failures AsNeighboursTell(const GasGeometry& geometry, const GasReplica& replica, double time,
+Failures AsNeighboursTell(const GasGeometry& geometry, const GasStart& replica, double time,
                           const GasReading& reading, std::span<const double> scales, int each) {
   const GasReading middle = ByReference(geometry, replica, time);
   CounterRandom random(kNeighbourSeed, 0, 0);
   double nearest = Distance(reading, middle), spread = 0;
   for (const double scale : scales) {
     for (int i = 0; i < each; ++i) {
-      GasReplica moved = replica;
+      GasStart moved = replica;
       moved.state = Moved(scale * kGasEpsilon, geometry, replica.state, random);
       const GasReading other = ByReference(geometry, moved, time);
       nearest = std::min(nearest, Distance(reading, other));
@@ -84,7 +81,7 @@ GasReading ReadingOf(const GasMeter& meter) {
   return reading;
 }
 
-Failures LookBack(const GasGeometry& geometry, const GasReplica& replica, double time,
+Failures LookBack(const GasGeometry& geometry, const GasStart& replica, double time,
                   const GasReading& reading) {
   static constexpr std::array<double, 1> kBeyondRounding = {64};
   static constexpr std::array<double, 4> kScales = {1, 4, 16, 64};

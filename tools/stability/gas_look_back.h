@@ -7,8 +7,8 @@
 
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_meter.h"
+#include "core/gas/gas_run.h"
 #include "tools/stability/failures.h"
-#include "tools/stability/gas_methods.h"
 
 namespace ballpiston::stability {
 
@@ -27,7 +27,7 @@ GasReading ReadingOf(const GasMeter& meter);
 // duration of a few flights. A difference counts if the engine differs from all neighbours by more
 // than they differ from each other. It counts as missed if the engine had fewer exchanges than the
 // reference, else as a phantom.
-Failures LookBack(const GasGeometry& geometry, const GasReplica& replica, double time,
+Failures LookBack(const GasGeometry& geometry, const GasStart& replica, double time,
                   const GasReading& reading);
 
 // Checks a replica that started with the energy `start`. Counts escapes, also if an energy is not a

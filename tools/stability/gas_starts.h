@@ -5,7 +5,7 @@
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_state.h"
 #include "core/sampling/counter_random.h"
-#include "tools/stability/drawn_starts.h"
+#include "tools/stability/pair_starts.h"
 
 namespace ballpiston::stability {
 

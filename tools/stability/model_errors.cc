@@ -22,6 +22,7 @@
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/paper.h"
 #include "core/model_choice/ladder.h"
+#include "tools/stability/markdown_table.h"
 
 namespace ballpiston::stability {
 namespace {
@@ -285,6 +286,18 @@ std::vector<std::string> BrokenClaims(const std::vector<ModelError>& errors) {
         count.all - count.tight, count.all));
   }
   return broken;
+}
+
+std::string ModelErrorTable(const std::vector<ModelError>& errors) {
+  MarkdownTable table(
+      {"claim", "place", "difference", "its standard error", "stated", "ratio", "at most 4 times"});
+  for (const ModelError& error : errors) {
+    table.Add({ClaimOf(error.question), PlaceOf(error.question), SignedText(error.difference),
+               ErrorText(error.standard_error), ErrorText(error.Stated()),
+               error.Counts() ? absl::StrFormat("%.2f", error.Ratio()) : "-",
+               YesOrNo(error.IsTight())});
+  }
+  return table.Text(2);
 }
 
 }  // namespace ballpiston::stability

@@ -11,6 +11,8 @@
 
 namespace ballpiston::stability {
 
+using DrawStart = PairState(const PairGeometry& geometry, CounterRandom& random);
+
 // Any orbit, drawn from the invariant measure of the return map.
 PairState AnyCollision(const PairGeometry& geometry, CounterRandom& random);
 

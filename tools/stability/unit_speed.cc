@@ -10,11 +10,9 @@
 namespace ballpiston::stability {
 namespace {
 
-using UnitSpeedFlow = TextbookFlow<TextbookRule::kUnitSpeed>;
-
 uint64_t HitsBefore(const PairGeometry& geometry, const PairState& start) {
   constexpr double kGone = 1e-3;  // depth inside a disc, in cells; far above rounding errors
-  UnitSpeedFlow flow(geometry, start);
+  TextbookFlow<TextbookRule::kUnitSpeed> flow(geometry, start);
   for (uint64_t hits = 0;; ++hits) {
     if (flow.Step().kind == EventKind::kEscape) return hits;
     if (!InsideCell(geometry, flow.state().position, kGone)) return hits;
