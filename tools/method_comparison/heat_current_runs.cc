@@ -1,7 +1,6 @@
 #include "tools/method_comparison/heat_current_runs.h"
 
 #include <algorithm>
-#include <deque>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -11,10 +10,10 @@
 #include "core/experiment/steady_gas.h"
 #include "core/gas/canonical_gas.h"
 #include "core/gas/gas_meter.h"
-#include "core/gas/gas_run.h"
 #include "core/statistics/batch_means.h"
 #include "server/processor_time.h"
 #include "tools/flows/fixed_step_gas.h"
+#include "tools/flows/metered_gases.h"
 
 namespace ballpiston::method_comparison {
 namespace {
@@ -102,20 +101,16 @@ void MeasureByFixedSteps(const SteadyGas& gas, double time_step, uint64_t sample
 
 // Replicas that run together, to fill the lanes.
 void MeasureTogether(const SteadyGas& gas, const SampleRange& samples, BatchMeans& means) {
-  std::deque<GasMeter> meters;
   std::vector<GasStart> starts;
   for (uint64_t i = samples.first; i < samples.first + samples.count; ++i) {
     const GasRandom random = gas.RandomOf(i);
-    const GasState start = StartOf(gas, random);
-    starts.push_back(
-        {start, gas.WallsOf(random), random, &meters.emplace_back(gas.geometry(), start)});
+    starts.push_back({StartOf(gas, random), gas.WallsOf(random), random, nullptr});
   }
-  const auto run =
-      StartGases(gas.gas_engine(), gas.geometry(), gas.exchange_rate(), std::move(starts));
-  run->AdvanceTo(TimeToRelax(gas));
-  for (GasMeter& meter : meters) meter.Begin(TimeToRelax(gas));
-  run->AdvanceTo(TimeToTheEnd(gas));
-  for (GasMeter& meter : meters) {
+  MeteredGases gases(gas.gas_engine(), gas.geometry(), std::move(starts));
+  gases.AdvanceTo(TimeToRelax(gas));
+  for (GasMeter& meter : gases.meters()) meter.Begin(TimeToRelax(gas));
+  gases.AdvanceTo(TimeToTheEnd(gas));
+  for (GasMeter& meter : gases.meters()) {
     meter.End(TimeToTheEnd(gas));
     Add(gas, meter, means);
   }

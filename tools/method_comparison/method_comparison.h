@@ -9,7 +9,7 @@
 //                  with the cells of `first-hit`. value = its Kullback-Leibler divergence from the
 //                  exact law minus the noise floor, which is the mean divergence of samples from
 //                  the exact law: (cells - 1)/(2 samples), or its value for few samples per cell
-//                  (ingoing_divergence.h). The difference can be negative.
+//                  (core/statistics/kl_divergence.h). The difference can be negative.
 //   kTrajectory    single orbits of the ball against a twin of 256 bits. A sample is one orbit.
 //                  value = mean number of wall hits until they are kParted apart; work/wall_hits is
 //                  the cost of one hit.
