@@ -12,7 +12,7 @@
 #include "tools/flows/metered_gases.h"
 #include "tools/stability/energy_drift.h"
 #include "tools/stability/failures.h"
-#include "tools/stability/fixed_step_gas_events.h"
+#include "tools/stability/fixed_step_events.h"
 #include "tools/stability/markdown_table.h"
 #include "tools/stability/textbook_gas.h"
 

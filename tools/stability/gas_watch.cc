@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tools/stability/pair_watch.h"
+#include "tools/stability/tip_sequence.h"
 
 namespace ballpiston::stability {
 namespace {
@@ -21,14 +21,11 @@ double PlaceSlack(double epsilon, double time, double speed) {
 
 GasWatch::GasWatch(const GasGeometry& geometry, const GasState& start, const ThermalWalls& walls,
                    double epsilon)
-    : geometry_(geometry),
-      walls_(walls),
-      look_(geometry.pair(), epsilon),
-      epsilon_(epsilon),
-      short_(ShortFlight(geometry.pair(), epsilon)),
-      longest_standstill_(LongestStandstill(geometry.pair())) {
+    : geometry_(geometry), walls_(walls), look_(geometry.pair(), epsilon), epsilon_(epsilon) {
+  const Standstill standstill(ShortFlight(geometry.pair(), epsilon),
+                              LongestStandstill(geometry.pair()));
   for (const GasBall& ball : start.balls) {
-    balls_.push_back({ball});
+    balls_.push_back({ball, standstill});
     start_energy_ += EnergyOf(ball);
   }
   for (const GasPiston& piston : start.pistons) {
@@ -94,20 +91,13 @@ bool GasWatch::IsBeyond(const Ball& ball, Direction direction, const Piston& pis
 bool GasWatch::SeeBall(const GasEvent& event, const GasBall& after, Failures& failures) {
   Ball& ball = balls_[Index(event.ball)];
   const double length = (event.time - ball.since) * ball.state.speed;
-  ball.standstill = length < short_ ? ball.standstill + 1 : 0;
   ball.state = after;
   ball.since = event.time;
-  if (!(look_.Depth(after.position) <= AnywhereSlack(epsilon_))) {
-    ++failures.escapes;
-    return false;
-  }
-  failures.deepest = std::max(failures.deepest, look_.Depth(after.position));
+  if (!look_.IsInCell(after.position, failures)) return false;
   if (event.kind == EventKind::kBallWall) {
     failures.inward += look_.HeadsInward(after.position, after.direction);
   }
-  if (ball.standstill <= longest_standstill_) return true;
-  ++failures.loops;
-  return false;
+  return !ball.standstill.See(length, failures);
 }
 
 void GasWatch::SeePiston(const GasEvent& event, const GasPiston& after) {

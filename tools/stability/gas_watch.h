@@ -35,8 +35,8 @@ class GasWatch {
  private:
   struct Ball {
     GasBall state;
+    Standstill standstill;
     double since = 0;
-    uint64_t standstill = 0;
   };
   struct Piston {
     GasPiston state;
@@ -56,8 +56,6 @@ class GasWatch {
   ThermalWalls walls_;
   BallWatch look_;
   double epsilon_;
-  double short_;
-  uint64_t longest_standstill_;
   std::vector<Ball> balls_;
   std::vector<Piston> pistons_;
   double start_energy_ = 0;

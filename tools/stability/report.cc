@@ -1,6 +1,5 @@
 #include "tools/stability/report.h"
 
-#include <cstdint>
 #include <iostream>
 
 #include "absl/strings/str_cat.h"
@@ -82,22 +81,15 @@ std::vector<std::string> BlindLooks(const Results& results) {
   return blind;
 }
 
-std::string UnitSpeedSentence() {
-  const std::vector<uint64_t> hits = HitsBeforeEscape(40);
-  return absl::StrCat("\nOrbits whose hit times assume unit speed leave the cell after ",
-                      hits[hits.size() / 2], " hits (median of ", hits.size(),
-                      " starts at the paper's radius; ", hits.front(), " at the earliest, ",
-                      hits.back(), " at the latest).\n");
-}
-
 std::string Text(const Results& results) {
   return absl::StrCat(
       "Made by the program `stability`; what is counted, and how: `tools/stability/README.md`. "
       "e escapes, n negative times, l loops, i still heading inward, m missed piston hits, "
       "p phantom ones, b pistons beyond their walls; - not run.\n\n**The ball alone**\n\n",
       SummaryTable(results.ball), "\n**Ball and piston**\n\n", SummaryTable(results.pair),
-      "\n**The gas**\n\n", SummaryTable(results.gas), UnitSpeedSentence(), "\n**Energy**\n\n",
-      EnergyTable(results.energy), "\nGases of 4x3 cells:\n\n", GasEnergyTable(results.gas_energy),
+      "\n**The gas**\n\n", SummaryTable(results.gas), "\n", UnitSpeedSentence(),
+      "\n\n**Energy**\n\n", EnergyTable(results.energy), "\nGases of 4x3 cells:\n\n",
+      GasEnergyTable(results.gas_energy),
       "\n**Model errors**: billiard over model - 1, and the error that is stated; ratio: (the "
       "difference - 2 standard errors)/stated, - where the standard error is above half of the "
       "stated error\n\n",
