@@ -2,7 +2,9 @@
 
 #include <memory>
 
+#include "core/ensemble/block_result.h"
 #include "core/ensemble/point_experiment.h"
+#include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/energy_relaxation.h"
 #include "core/experiment/expected_returns.h"
@@ -31,7 +33,15 @@ double EnergyRelaxationRuns::PredictedSecondsPerOrbit() const {
 }
 
 PointEstimate EnergyRelaxationRuns::Run(Method method, const SampleRange& samples) const {
-  return RunSamples(*PointExperiment::Create(SpecOf(geometry_, seed_, method), 0), samples);
+  const auto experiment = PointExperiment::Create(SpecOf(geometry_, seed_, method), 0);
+  const double begin = server::ThreadSeconds();
+  const BlockResult merged =
+      *RunBlock(*experiment, {.first = samples.first, .samples = samples.count});
+  const Estimate estimate = experiment->FirstEstimate(merged);
+  return {.value = estimate.value,
+          .error = estimate.standard_error.value_or(0),
+          .samples = merged.samples,
+          .seconds = server::ThreadSeconds() - begin};
 }
 
 PointEstimate EnergyRelaxationRuns::BySpectrum() const {

@@ -1,8 +1,8 @@
 // Measures the relaxation time of the piston's energy in equilibrium, and its cost, by the billiard
 // and by the limit of rare collisions (experiment/energy_relaxation.h).
 //
-// Runs are those of point_runs.h; a sample is an orbit. Property, with a test of
-// its name:
+// Runs are those of point_runs.h; a sample is an orbit. A run computes its samples as the service
+// would, as one block. Property, with a test of its name:
 //   1. TheJumpProcessAgreesWithTheSpectrum within its error.
 #pragma once
 

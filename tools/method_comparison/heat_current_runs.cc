@@ -106,7 +106,7 @@ void MeasureTogether(const SteadyGas& gas, const SampleRange& samples, BatchMean
     const GasRandom random = gas.RandomOf(i);
     starts.push_back({StartOf(gas, random), gas.WallsOf(random), random, nullptr});
   }
-  MeteredGases gases(gas.gas_engine(), gas.geometry(), std::move(starts));
+  MeteredGases gases(gas.gas_engine(), gas.geometry(), gas.exchange_rate(), std::move(starts));
   gases.AdvanceTo(TimeToRelax(gas));
   for (GasMeter& meter : gases.meters()) meter.Begin(TimeToRelax(gas));
   gases.AdvanceTo(TimeToTheEnd(gas));

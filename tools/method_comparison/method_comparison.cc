@@ -7,9 +7,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
-#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -79,22 +77,20 @@ double ErrorOfDivergence(double noise_error, double excess, uint64_t samples) {
 
 class Comparison {
  public:
-  Comparison(const MethodComparisonSpec& spec, const PairGeometry& geometry,
-             std::vector<PairGeometry> relaxing,
+  Comparison(const MethodComparisonSpec& spec,
              const std::function<void(const MethodMeasurement&)>& tell)
       : spec_(spec),
-        geometry_(geometry),
-        relaxing_(std::move(relaxing)),
+        geometry_(PairGeometry::Create(spec.rho, spec.delta).value()),
         tell_(tell),
-        exact_(ConditionalMeanFreeTime(geometry, spec.epsilon)),
+        exact_(ConditionalMeanFreeTime(geometry_, spec.epsilon)),
         probabilities_(IngoingProbabilities(spec.epsilon)) {}
 
   void Run() {
     CompareReturns(Quantity::kMeanFreeTime);
     CompareReturns(Quantity::kIngoingLaw);
     CompareTrajectories();
-    for (const PairGeometry& geometry : relaxing_) {
-      CompareRelaxationTimesOf({geometry, spec_.seed});
+    for (const double delta : spec_.relaxation_deltas) {
+      CompareRelaxationTimesOf({PairGeometry::Create(spec_.rho, delta).value(), spec_.seed});
     }
     if (spec_.gas_delta > 0) CompareHeatCurrents({spec_.rho, spec_.gas_delta, spec_.seed});
     for (const auto& [delta, floor] : floors_) tell_(floor);
@@ -118,9 +114,11 @@ class Comparison {
   // Makes and tells runs of increasing numbers of samples, beginning with `samples`; returns the
   // longest one. `expected`: the seconds of the first run. A run without a sample is not told.
   template <typename Run>
-  MethodMeasurement Climb(uint64_t samples, double expected, const Run& run) const {
+  MethodMeasurement Climb(uint64_t samples, double expected, const Run& run,
+                          size_t most_rungs = SIZE_MAX) const {
     MethodMeasurement longest;
-    for (size_t rung = 0; expected <= Limit(); ++rung, samples *= kRungFactor) {
+    for (size_t rung = 0; rung < most_rungs && expected <= Limit();
+         ++rung, samples *= kRungFactor) {
       const MethodMeasurement measurement = run(rung, samples);
       expected = *measurement.work * kRungFactor;
       if (measurement.samples == 0) continue;
@@ -215,15 +213,17 @@ class Comparison {
       rungs.back().FlyAhead(kTwinHits);
       expected = (server::ThreadSeconds() - begin) * kRungFactor;
     }
-    for (const MethodVariant& variant : SampledVariants()) ClimbTrajectories(variant, rungs);
+    for (const MethodVariant& variant : SampledVariants()) {
+      const auto run = [&](size_t rung, uint64_t) {
+        return Measured(variant, HorizonOf(variant, geometry_, rungs[rung]));
+      };
+      Climb(kFewestOrbits, 0, run, rungs.size());
+    }
   }
 
-  void ClimbTrajectories(const MethodVariant& variant, std::span<TwinOrbits> rungs) const {
-    double expected = 0;
-    for (size_t rung = 0; rung < rungs.size() && expected <= Limit(); ++rung) {
-      const TrajectoryHorizon horizon = HorizonOf(variant, geometry_, rungs[rung]);
-      const double error = horizon.hits.StandardError().value_or(0);
-      Tell({.method = variant.method,
+  MethodMeasurement Measured(const MethodVariant& variant, const TrajectoryHorizon& horizon) const {
+    const double error = horizon.hits.StandardError().value_or(0);
+    return {.method = variant.method,
             .time_step = variant.time_step,
             .quantity = Quantity::kTrajectory,
             .delta = spec_.delta,
@@ -232,9 +232,7 @@ class Comparison {
             .work = horizon.seconds,
             .value = horizon.hits.mean,
             .statistical_error = error,
-            .own_error = error});
-      expected = horizon.seconds * kRungFactor;
-    }
+            .own_error = error};
   }
 
   void CompareRelaxationTimesOf(const EnergyRelaxationRuns& runs) {
@@ -301,7 +299,6 @@ class Comparison {
 
   const MethodComparisonSpec spec_;
   const PairGeometry geometry_;
-  const std::vector<PairGeometry> relaxing_;
   const std::function<void(const MethodMeasurement&)>& tell_;
   const double exact_;
   const std::vector<double> probabilities_;
@@ -359,11 +356,7 @@ double DefaultGasDelta(double rho) {
 
 void CompareMethods(const MethodComparisonSpec& spec,
                     const std::function<void(const MethodMeasurement&)>& tell) {
-  std::vector<PairGeometry> relaxing;
-  for (const double delta : spec.relaxation_deltas) {
-    relaxing.push_back(PairGeometry::Create(spec.rho, delta).value());
-  }
-  Comparison(spec, PairGeometry::Create(spec.rho, spec.delta).value(), relaxing, tell).Run();
+  Comparison(spec, tell).Run();
 }
 
 }  // namespace ballpiston::method_comparison

@@ -1,15 +1,12 @@
-// Runs samples of a point of an experiment as the service would, and measures their cost.
+// Runs of samples of an experiment's point.
 //
 // A run of n samples has the samples n ... 2 n - 1 of the point's stream. Therefore runs of 64,
 // 256, 1024, ... samples have no sample in common. The samples of the truth are in the gaps between
-// the runs. A run is one block; it is not divided into chunks and blocks like a job. Property, with
-// a test of its name: 1. RunsHaveNoSampleInCommon, truth included.
+// the runs. Property, with a test of its name: 1. RunsHaveNoSampleInCommon, truth included.
 #pragma once
 
+#include <bit>
 #include <cstdint>
-
-#include "core/ensemble/block_result.h"
-#include "core/ensemble/point_experiment.h"
 
 namespace ballpiston::method_comparison {
 
@@ -32,8 +29,10 @@ struct SampleRange {
 // The samples of a run; `samples` is 64, 256, 1024, ...
 inline SampleRange RunOf(uint64_t samples) { return {samples, samples}; }
 // The samples of the truth; `samples` is any power of two.
-SampleRange TruthOf(uint64_t samples);
-
-PointEstimate RunSamples(const PointExperiment& experiment, const SampleRange& samples);
+inline SampleRange TruthOf(uint64_t samples) {
+  // The runs are [4^k, 2 4^k). The gap that starts at 2 4^k has the same length.
+  const bool is_start_of_run = std::countr_zero(samples) % 2 == 0;
+  return {is_start_of_run ? 2 * samples : samples, samples};
+}
 
 }  // namespace ballpiston::method_comparison
