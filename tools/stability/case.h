@@ -9,6 +9,7 @@
 #include <iostream>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "tools/stability/failures.h"
@@ -101,5 +102,23 @@ std::vector<CaseResult> RunCases(const std::vector<Case<Geometry, Start>>& cases
   }
   return results;
 }
+
+// ---- the results as tables in Markdown ----
+
+// A row for each case, a column for each method, failures by letter.
+std::string SummaryTable(const std::vector<CaseResult>& cases);
+
+struct CountColumn {
+  std::string head;
+  std::variant<uint64_t Failures::*, double Failures::*> number;
+};
+using CountColumns = std::vector<CountColumn>;
+
+CountColumns ColumnsOfBall();
+CountColumns ColumnsOfPair();
+CountColumns ColumnsOfGas();
+
+// A row for each case and method.
+std::string CountTable(const std::vector<CaseResult>& cases, const CountColumns& columns);
 
 }  // namespace ballpiston::stability

@@ -1,10 +1,10 @@
 #include "tools/stability/cases.h"
 
 #include "core/geometry/paper.h"
+#include "core/sampling/invariant_measure.h"
 #include "tools/stability/gas_starts.h"
 #include "tools/stability/pair_starts.h"
 #include "tools/stability/tip_sequence.h"
-#include "tools/stability/wall_starts.h"
 
 namespace ballpiston::stability {
 namespace {
@@ -127,7 +127,7 @@ std::vector<PairCase> PairCases() {
   }
   return {
       {"any orbits, also rho - 1/2 = 1e-6, 1e-9 and 1/sqrt 2 - rho = 1e-3", Each(any, 2'000, 20),
-       Pair(AnyCollision)},
+       Pair(DrawFromCollisionMeasure)},
       {"piston's edge: wall and piston at one instant", Each(usual, 500'000, 1),
        Pair(AimedAtPistonsEdge)},
       {"piston as it turns at its wall", Each(usual, kMany, 1), Pair(AimedAtPistonsTurn)},

@@ -1,5 +1,3 @@
-#include "tools/stability/energy_drift.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,12 +8,13 @@
 #include "tools/flows/lane_balls.h"
 #include "tools/flows/numbered_orbits.h"
 #include "tools/flows/precise_flow.h"
+#include "tools/stability/energy.h"
 #include "tools/stability/failures.h"
 #include "tools/stability/fixed_step_events.h"
 #include "tools/stability/flow_precision.h"
 #include "tools/stability/markdown_table.h"
+#include "tools/stability/pair_starts.h"
 #include "tools/stability/textbook_flow.h"
-#include "tools/stability/wall_starts.h"
 
 namespace ballpiston::stability {
 namespace {
@@ -103,10 +102,10 @@ EnergyRecord PairByEvents(uint64_t hits) {
 
 }  // namespace
 
-bool IsTrend(double value, double standard_error) {
+bool EnergyChange::IsTrend() const {
   const double size = std::fabs(value);
   // Written as a negation, so that a number that is not a number is a trend.
-  return !(size <= 4 * standard_error || size <= std::numeric_limits<double>::epsilon());
+  return !(size <= 4 * error || size <= std::numeric_limits<double>::epsilon());
 }
 
 void EnergyRecord::Add(double share_of_run, double error) {
@@ -117,7 +116,7 @@ void EnergyRecord::Add(double share_of_run, double error) {
   worst_ = std::max(worst_, ErrorSize(error));
 }
 
-EnergyRecord::Line EnergyRecord::Fit() const {
+EnergyChange EnergyRecord::Drift() const {
   // From -1/2 to 1/2, with the mean 0.
   const auto x = [](size_t i) { return (static_cast<double>(i) + 0.5) / kStretches - 0.5; };
   double sum = 0, xy = 0, xx = 0, squares = 0;
@@ -133,20 +132,16 @@ EnergyRecord::Line EnergyRecord::Fit() const {
   return {xy / xx, std::sqrt(squares / (kStretches - 2) / xx)};
 }
 
-bool Drifts(const EnergyRun& run) {
-  const auto [drift, error] = run.record.Fit();
-  return IsTrend(drift, error);
-}
-
-bool LosesEnergy(const EnergyRun& run) { return Drifts(run) || !(run.record.Worst() <= 1e-14); }
-
 std::vector<EnergyRun> EnergyRuns(double effort) {
   using enum TextbookRule;
+  constexpr double kPermitted = 1e-14;
   std::vector<EnergyRun> runs;
   const auto add = [&](const char* what, uint64_t orbits, const char* method, bool promised,
                        double full, EnergyRecord (*run)(uint64_t hits)) {
     const auto hits = std::max<uint64_t>(static_cast<uint64_t>(full * effort), 20'000);
-    runs.push_back({method, what, hits, orbits, promised, run(hits)});
+    const EnergyRecord record = run(hits);
+    runs.push_back(
+        {method, what, orbits, hits, promised, record.Worst(), kPermitted, record.Drift()});
   };
   add("ball alone, u^2", kBalls, "lanes", true, 1e9, BallsInLanes<FlyLaneBalls>);
   add("ball alone, u^2", kBalls, "lanes, single", false, 1e9, BallsInLanes<FlyLaneBallsSingle>);
@@ -170,10 +165,9 @@ std::string EnergyTable(const std::vector<EnergyRun>& runs) {
   MarkdownTable table({"method", "what", "orbits", "wall hits", "worst dE/E", "drift over the run",
                        "its standard error", "a trend"});
   for (const EnergyRun& run : runs) {
-    const auto [drift, error] = run.record.Fit();
     table.Add({run.method, run.what, CountText(run.orbits), CountText(run.hits),
-               ErrorText(run.record.Worst()), SignedText(drift), ErrorText(error),
-               YesOrNo(Drifts(run))});
+               ErrorText(run.worst), SignedText(run.change.value), ErrorText(run.change.error),
+               YesOrNo(run.change.IsTrend())});
   }
   return table.Text(2);
 }

@@ -1,5 +1,3 @@
-#include "tools/stability/gas_energy.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -10,7 +8,7 @@
 #include "core/gas/gas_run.h"
 #include "core/geometry/paper.h"
 #include "tools/flows/metered_gases.h"
-#include "tools/stability/energy_drift.h"
+#include "tools/stability/energy.h"
 #include "tools/stability/failures.h"
 #include "tools/stability/fixed_step_events.h"
 #include "tools/stability/markdown_table.h"
@@ -44,16 +42,27 @@ double TimeOf(double exchanges) {
 
 double TotalEnergy(const GasState& state) { return GasMeter(EnergyGas(), state).TotalEnergy(); }
 
-GasEnergyRun OfEngine(const char* name, GasEngine engine, double exchanges) {
-  GasEnergyRun run = {.method = name, .promised = true};
+EnergyRun RunOf(const char* method, bool promised, const GasEnergyRecord& record) {
+  return {method,
+          "gases",
+          kGases,
+          record.exchanges(),
+          promised,
+          record.Worst(),
+          record.LongestWalk(),
+          record.Mean()};
+}
+
+EnergyRun OfEngine(const char* method, GasEngine engine, double exchanges) {
+  GasEnergyRecord record;
   const std::vector<GasStart> starts = EnergyStarts();
   MeteredGases gases(engine, EnergyGas(), starts);
   gases.AdvanceTo(TimeOf(exchanges));
   for (size_t i = 0; i < starts.size(); ++i) {
-    run.exchanges += gases.meters()[i].exchanges();
-    run.Add(gases.meters()[i].TotalEnergy() / TotalEnergy(starts[i].state) - 1);
+    const GasMeter& meter = gases.meters()[i];
+    record.Add(meter.exchanges(), meter.TotalEnergy() / TotalEnergy(starts[i].state) - 1);
   }
-  return run;
+  return RunOf(method, true, record);
 }
 
 template <typename Gas>
@@ -67,40 +76,37 @@ GasState StateOf(const Gas& gas, double time) {
 }
 
 template <typename Gas>
-GasEnergyRun OfEvents(const char* name, double exchanges) {
-  GasEnergyRun run = {.method = name, .promised = false};
+EnergyRun OfEvents(const char* method, double exchanges) {
+  GasEnergyRecord record;
   const double end = TimeOf(exchanges);
   for (const GasStart& start : EnergyStarts()) {
     Gas gas(EnergyGas(), start.state, {});
+    uint64_t made = 0;
     bool has_escaped = false;
     while (!has_escaped && gas.NextTime() <= end) {
       const EventKind kind = gas.Step().kind;
-      run.exchanges += kind == EventKind::kBallPiston;
+      made += kind == EventKind::kBallPiston;
       has_escaped = kind == EventKind::kEscape;
     }
-    run.Add(TotalEnergy(StateOf(gas, end)) / TotalEnergy(start.state) - 1);
+    record.Add(made, TotalEnergy(StateOf(gas, end)) / TotalEnergy(start.state) - 1);
   }
-  return run;
+  return RunOf(method, false, record);
 }
 
 }  // namespace
 
-void GasEnergyRun::Add(double error) {
-  errors.Add(error);
-  worst = std::max(worst, ErrorSize(error));
+void GasEnergyRecord::Add(uint64_t exchanges, double error) {
+  exchanges_ += exchanges;
+  errors_.Add(error);
+  worst_ = std::max(worst_, ErrorSize(error));
 }
 
-bool HasTrend(const GasEnergyRun& run) {
-  return IsTrend(run.errors.mean, run.errors.StandardError().value_or(0));
+double GasEnergyRecord::LongestWalk() const {
+  const double each = static_cast<double>(exchanges_) / static_cast<double>(errors_.count);
+  return 4 * std::numeric_limits<double>::epsilon() * (1 + std::sqrt(each));
 }
 
-bool LosesEnergy(const GasEnergyRun& run) {
-  constexpr double kUlp = std::numeric_limits<double>::epsilon();
-  const double each = static_cast<double>(run.exchanges) / static_cast<double>(run.errors.count);
-  return HasTrend(run) || !(run.worst <= kUlpsOfAWalk * kUlp * (1 + std::sqrt(each)));
-}
-
-std::vector<GasEnergyRun> GasEnergyRuns(double effort) {
+std::vector<EnergyRun> GasEnergyRuns(double effort) {
   using enum TextbookRule;
   const auto exchanges = [effort](double full) { return std::max(full * effort, 100.0); };
   return {
@@ -113,13 +119,13 @@ std::vector<GasEnergyRun> GasEnergyRuns(double effort) {
   };
 }
 
-std::string GasEnergyTable(const std::vector<GasEnergyRun>& runs) {
+std::string GasEnergyTable(const std::vector<EnergyRun>& runs) {
   MarkdownTable table({"method", "gases", "piston hits", "worst dE/E", "mean at the end",
                        "its standard error", "a trend"});
-  for (const GasEnergyRun& run : runs) {
-    table.Add({run.method, CountText(run.errors.count), CountText(run.exchanges),
-               ErrorText(run.worst), SignedText(run.errors.mean),
-               ErrorText(run.errors.StandardError().value_or(0)), YesOrNo(HasTrend(run))});
+  for (const EnergyRun& run : runs) {
+    table.Add({run.method, CountText(run.orbits), CountText(run.hits), ErrorText(run.worst),
+               SignedText(run.change.value), ErrorText(run.change.error),
+               YesOrNo(run.change.IsTrend())});
   }
   return table.Text(1);
 }

@@ -5,7 +5,7 @@
 #include "core/gas/pauses.h"
 #include "server/processor_time.h"
 #include "tools/flows/metered_gases.h"
-#include "tools/stability/gas_look_back.h"
+#include "tools/stability/gas_watch.h"
 
 namespace ballpiston::stability {
 namespace {

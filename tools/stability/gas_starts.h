@@ -1,5 +1,5 @@
 // Starts of gases just before situations in which methods fail. The fastest body has about speed 1.
-// wall_starts.h defines the offsets.
+// pair_starts.h defines the offsets.
 #pragma once
 
 #include "core/gas/gas_geometry.h"

@@ -1,8 +1,7 @@
-#include "tools/stability/methods.h"
-
 #include "core/billiard/reference_flow.h"
 #include "core/gas/reference_gas.h"
 #include "tools/flows/precise_flow.h"
+#include "tools/stability/cases.h"
 #include "tools/stability/fixed_step_events.h"
 #include "tools/stability/gas_runs.h"
 #include "tools/stability/pair_runs.h"

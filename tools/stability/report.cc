@@ -4,11 +4,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "tools/stability/cancellation.h"
-#include "tools/stability/case_tables.h"
+#include "tools/stability/case.h"
 #include "tools/stability/cases.h"
-#include "tools/stability/energy_drift.h"
-#include "tools/stability/gas_energy.h"
-#include "tools/stability/methods.h"
+#include "tools/stability/energy.h"
 #include "tools/stability/model_errors.h"
 #include "tools/stability/reversal.h"
 #include "tools/stability/unit_speed.h"
@@ -22,7 +20,7 @@ struct Results {
   std::vector<CaseResult> gas;
   std::string reversals;
   std::vector<EnergyRun> energy;
-  std::vector<GasEnergyRun> gas_energy;
+  std::vector<EnergyRun> gas_energy;
   std::vector<ModelError> model_errors;
 };
 
@@ -57,12 +55,12 @@ std::vector<std::string> BrokenPromises(const Results& results) {
     if (!method.promised || method.failures.Total() == 0) return;
     broken.push_back(absl::StrCat(method.method, " fails: ", result.name));
   });
-  const auto check = [&](const auto& run, const std::string& what) {
-    if (!run.promised || !LosesEnergy(run)) return;
-    broken.push_back(absl::StrCat(run.method, " loses energy: ", what));
-  };
-  for (const EnergyRun& run : results.energy) check(run, run.what);
-  for (const GasEnergyRun& run : results.gas_energy) check(run, "gases");
+  for (const auto* runs : {&results.energy, &results.gas_energy}) {
+    for (const EnergyRun& run : *runs) {
+      if (!run.promised || !run.LosesEnergy()) continue;
+      broken.push_back(absl::StrCat(run.method, " loses energy: ", run.what));
+    }
+  }
   for (const std::string& claim : BrokenClaims(results.model_errors)) broken.push_back(claim);
   return broken;
 }

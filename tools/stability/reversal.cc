@@ -18,8 +18,8 @@
 #include "tools/stability/fixed_step_events.h"
 #include "tools/stability/flow_precision.h"
 #include "tools/stability/markdown_table.h"
+#include "tools/stability/pair_starts.h"
 #include "tools/stability/textbook_flow.h"
-#include "tools/stability/wall_starts.h"
 
 namespace ballpiston::stability {
 namespace {

@@ -7,8 +7,8 @@
 #include "absl/strings/str_cat.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/paper.h"
+#include "tools/stability/pair_starts.h"
 #include "tools/stability/textbook_flow.h"
-#include "tools/stability/wall_starts.h"
 
 namespace ballpiston::stability {
 namespace {

@@ -6,8 +6,7 @@
 #include "tests/core/preamble.h"
 #include "tools/flows/metered_gases.h"
 #include "tools/stability/cases.h"
-#include "tools/stability/gas_energy.h"
-#include "tools/stability/gas_look_back.h"
+#include "tools/stability/energy.h"
 #include "tools/stability/gas_runs.h"
 #include "tools/stability/gas_watch.h"
 
@@ -206,29 +205,41 @@ TEST(GasDetectors, OnlyAGasWithoutThermalWallsReportsItsEnergyError) {
   }
 }
 
-GasEnergyRun RunWithErrors(double mean, double scatter) {
-  GasEnergyRun run = {.method = "", .promised = true, .exchanges = 4 * 10'000};
-  for (const int sign : {-1, 1, -1, 1}) run.Add(mean + sign * scatter);
-  return run;
+GasEnergyRecord RecordWithErrors(double mean, double scatter) {
+  GasEnergyRecord record;
+  for (const int sign : {-1, 1, -1, 1}) record.Add(10'000, mean + sign * scatter);
+  return record;
+}
+
+bool LosesEnergy(const GasEnergyRecord& record) {
+  const EnergyRun run = {.method = "lanes",
+                         .what = "gases",
+                         .orbits = 4,
+                         .hits = record.exchanges(),
+                         .promised = true,
+                         .worst = record.Worst(),
+                         .permitted = record.LongestWalk(),
+                         .change = record.Mean()};
+  return run.LosesEnergy();
 }
 
 // 1e4 exchanges each: a random walk of ulps reaches about 2e-14.
 TEST(GasDetectors, ALossOfEnergyIsATrendOrMoreThanAWalk) {
-  EXPECT_FALSE(LosesEnergy(RunWithErrors(0, 2e-14)));
-  EXPECT_FALSE(HasTrend(RunWithErrors(1e-14, 2e-14)));
-  EXPECT_TRUE(HasTrend(RunWithErrors(2e-14, 1e-15)));
-  EXPECT_TRUE(LosesEnergy(RunWithErrors(2e-14, 1e-15)));
-  EXPECT_TRUE(LosesEnergy(RunWithErrors(0, 1e-12)));
+  EXPECT_FALSE(LosesEnergy(RecordWithErrors(0, 2e-14)));
+  EXPECT_FALSE(RecordWithErrors(1e-14, 2e-14).Mean().IsTrend());
+  EXPECT_TRUE(RecordWithErrors(2e-14, 1e-15).Mean().IsTrend());
+  EXPECT_TRUE(LosesEnergy(RecordWithErrors(2e-14, 1e-15)));
+  EXPECT_TRUE(LosesEnergy(RecordWithErrors(0, 1e-12)));
 }
 
 TEST(GasDetectors, AnEnergyErrorThatIsNotANumberIsATrendAndTheWorstError) {
   for (const double error : {std::nan(""), HUGE_VAL}) {
-    GasEnergyRun run = RunWithErrors(0, 1e-15);
-    run.Add(error);
-    run.Add(1e-15);
-    EXPECT_EQ(run.worst, HUGE_VAL);
-    EXPECT_TRUE(HasTrend(run));
-    EXPECT_TRUE(LosesEnergy(run));
+    GasEnergyRecord record = RecordWithErrors(0, 1e-15);
+    record.Add(10'000, error);
+    record.Add(10'000, 1e-15);
+    EXPECT_EQ(record.Worst(), HUGE_VAL);
+    EXPECT_TRUE(record.Mean().IsTrend());
+    EXPECT_TRUE(LosesEnergy(record));
   }
 }
 

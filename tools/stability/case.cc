@@ -1,4 +1,4 @@
-#include "tools/stability/case_tables.h"
+#include "tools/stability/case.h"
 
 #include "absl/strings/str_cat.h"
 #include "tools/stability/markdown_table.h"
