@@ -1,5 +1,3 @@
-#include "tools/method_comparison/heat_current_runs.h"
-
 #include <algorithm>
 #include <memory>
 #include <utility>
@@ -10,13 +8,21 @@
 #include "core/experiment/steady_gas.h"
 #include "core/gas/canonical_gas.h"
 #include "core/gas/gas_meter.h"
+#include "core/gas/gas_shape.h"
 #include "core/statistics/batch_means.h"
 #include "server/processor_time.h"
 #include "tools/flows/fixed_step_gas.h"
 #include "tools/flows/metered_gases.h"
+#include "tools/method_comparison/point_runs.h"
 
 namespace ballpiston::method_comparison {
 namespace {
+
+// A ball between two pistons. At the same work the error grows as the number of cells. With more
+// cells the error would hide the bias of the limit.
+constexpr GasShape kComparedChain = {.columns = 1};
+constexpr double kComparedHot = 1.5;
+constexpr double kComparedCold = 0.5;
 
 Model ModelOf(Method method) {
   switch (method) {
@@ -30,15 +36,14 @@ Model ModelOf(Method method) {
 }
 
 // The gas of the experiment gas-conduction.
-std::unique_ptr<const PointExperiment> ExperimentOf(double rho, double delta, uint64_t seed,
-                                                    Method method) {
+std::unique_ptr<const PointExperiment> ExperimentOf(const HeatCurrentRuns& runs, Method method) {
   const EnsembleSpec spec = {.experiment = &kGasConduction,
-                             .grid = {{kRho, {rho}},
-                                      {kDelta, {delta}},
+                             .grid = {{kRho, {runs.rho}},
+                                      {kDelta, {runs.delta}},
                                       {kCells, {CodeOf(kComparedChain)}},
                                       {kHot, {kComparedHot}},
                                       {kCold, {kComparedCold}}},
-                             .seed = seed,
+                             .seed = runs.seed,
                              .model = ModelOf(method)};
   return PointExperiment::Create(spec, 0);
 }
@@ -121,7 +126,7 @@ void MeasureTogether(const SteadyGas& gas, const SampleRange& samples, BatchMean
 double HeatCurrentRuns::PredictedSecondsPerReplica(const MethodVariant& variant) const {
   constexpr double kPerStep = 4e-8, kPerHit = 1e-9, kPerEvent = 5e-8, kPerExchange = 4e-7,
                    kPerJump = 4e-8;
-  const auto experiment = ExperimentOf(rho_, delta_, seed_, variant.method);
+  const auto experiment = ExperimentOf(*this, variant.method);
   const SteadyGas& gas = AsGas(*experiment);
   const double time = TimeToTheEnd(gas);
   if (variant.method == Method::kFixedStep) return kPerStep * time / variant.time_step;
@@ -132,7 +137,7 @@ double HeatCurrentRuns::PredictedSecondsPerReplica(const MethodVariant& variant)
 
 PointEstimate HeatCurrentRuns::Run(const MethodVariant& variant, const SampleRange& samples) const {
   constexpr uint64_t kTogether = 64;
-  const auto experiment = ExperimentOf(rho_, delta_, seed_, variant.method);
+  const auto experiment = ExperimentOf(*this, variant.method);
   const SteadyGas& gas = AsGas(*experiment);
   const double begin = server::ThreadSeconds();
   const uint64_t end = samples.first + samples.count;

@@ -21,13 +21,10 @@
 #include "core/statistics/kl_divergence.h"
 #include "core/statistics/stated_error.h"
 #include "server/processor_time.h"
-#include "tools/method_comparison/energy_relaxation_runs.h"
-#include "tools/method_comparison/heat_current_runs.h"
 #include "tools/method_comparison/limit_floor.h"
 #include "tools/method_comparison/point_runs.h"
 #include "tools/method_comparison/returns.h"
 #include "tools/method_comparison/trajectory_horizon.h"
-#include "tools/method_comparison/twin_orbits.h"
 
 namespace ballpiston::method_comparison {
 namespace {
@@ -239,7 +236,7 @@ class Comparison {
     const uint64_t orbits = SamplesOfTruth(runs.PredictedSecondsPerOrbit());
     if (orbits < kFewestTruthOrbits) return;
     const PointEstimate limit = runs.BySpectrum();  // first, so that no run computes the spectrum
-    const Subject subject = {Quantity::kRelaxationTime, runs.delta(),
+    const Subject subject = {Quantity::kRelaxationTime, runs.geometry.delta(),
                              runs.Run(Method::kLanes, TruthOf(orbits))};
     const auto climb = [&](Method method) {
       return Climb(kFewestRelaxations, 0, [&](size_t, uint64_t samples) {
@@ -250,13 +247,13 @@ class Comparison {
     climb(Method::kMarkov);
     const MethodMeasurement spectrum = Compared(subject, {Method::kSpectrum}, limit);
     Tell(spectrum);
-    floors_.try_emplace(runs.delta(), LimitFloorOf(spectrum, billiard));
+    floors_.try_emplace(subject.delta, LimitFloorOf(spectrum, billiard));
   }
 
   void CompareHeatCurrents(const HeatCurrentRuns& runs) {
     const uint64_t replicas = SamplesOfTruth(runs.PredictedSecondsPerReplica({Method::kLanes}));
     if (replicas < kFewestTruthReplicas) return;
-    const Subject subject = {Quantity::kHeatCurrent, runs.delta(),
+    const Subject subject = {Quantity::kHeatCurrent, runs.delta,
                              runs.Run({Method::kLanes}, TruthOf(replicas))};
     for (const MethodVariant& variant : GasVariants()) {
       const double expected = runs.PredictedSecondsPerReplica(variant) * kFewestOrbits;

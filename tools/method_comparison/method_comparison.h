@@ -20,7 +20,7 @@
 //                  one orbit. value = |measured - truth|/truth. The truth comes from many more
 //                  orbits by kLanes: the curves of the limit tend to the limit's bias.
 //   kHeatCurrent   the heat current of one cell between reservoirs at 1.5 and 0.5
-//                  (heat_current_runs.h): by kFixedStep, kReference and kLanes, and by kMarkov,
+//                  (point_runs.h): by kFixedStep, kReference and kLanes, and by kMarkov,
 //                  which has the bias of the limit. A sample is a replica. The value and the truth
 //                  are defined as for kRelaxationTime.
 // A sixth quantity follows from the relaxation times:
