@@ -134,7 +134,7 @@ class Comparison {
                   RunReturns(variant, geometry_, spec_.epsilon, Stream(quantity, rung), samples));
             });
     }
-    Tell(quantity == Quantity::kMeanFreeTime ? ClosedMeanFreeTime() : ClosedIngoingLaw());
+    Tell(ClosedForm(quantity));
   }
 
   MethodMeasurement Measured(Quantity quantity, const MethodVariant& variant,
@@ -182,21 +182,19 @@ class Comparison {
     return variance_of_times_.emplace(returns.times.Variance().value_or(0));
   }
 
-  MethodMeasurement ClosedMeanFreeTime() const {
-    return {.method = Method::kClosedForm,
-            .quantity = Quantity::kMeanFreeTime,
-            .delta = spec_.delta,
-            .work = server::SecondsOf([&] { ConditionalMeanFreeTime(geometry_, spec_.epsilon); }),
-            .value = kMeanFreeTimeRelativeError + kConditionalRateRelativeError};
-  }
-
   // If each cell of a law has a relative error e, the divergence of the law is at most e^2/2.
-  MethodMeasurement ClosedIngoingLaw() const {
-    return {.method = Method::kClosedForm,
-            .quantity = Quantity::kIngoingLaw,
-            .delta = spec_.delta,
-            .work = server::SecondsOf([&] { IngoingProbabilities(spec_.epsilon); }),
-            .value = kIngoingLawRelativeError * kIngoingLawRelativeError / 2};
+  MethodMeasurement ClosedForm(Quantity quantity) const {
+    MethodMeasurement measurement = {
+        .method = Method::kClosedForm, .quantity = quantity, .delta = spec_.delta};
+    if (quantity == Quantity::kMeanFreeTime) {
+      measurement.work =
+          server::SecondsOf([&] { ConditionalMeanFreeTime(geometry_, spec_.epsilon); });
+      measurement.value = kMeanFreeTimeRelativeError + kConditionalRateRelativeError;
+    } else {
+      measurement.work = server::SecondsOf([&] { IngoingProbabilities(spec_.epsilon); });
+      measurement.value = kIngoingLawRelativeError * kIngoingLawRelativeError / 2;
+    }
+    return measurement;
   }
 
   // All methods use the same twins. The twins cost more than any method and therefore determine the

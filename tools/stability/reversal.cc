@@ -189,43 +189,56 @@ class PairReversal {
   FirstCollisions back_;
 };
 
+// ---- the table ----
+
+void AddRow(const char* what, const char* method,
+            const std::function<Distances(uint64_t hits)>& distances, MarkdownTable& table) {
+  std::vector<std::string> row = {what, method};
+  for (const uint64_t hits : kReversalHits) row.push_back(ErrorText(Median(distances(hits))));
+  table.Add(row);
+}
+
+void AddBalls(uint64_t orbits, MarkdownTable& table) {
+  using enum TextbookRule;
+  const Starts starts = DrawnStarts(0, orbits, AnywhereOnWall);
+  const auto add = [&](const char* method, Distances (*fly)(const Starts&, uint64_t)) {
+    AddRow(
+        "ball alone", method, [&](uint64_t hits) { return fly(starts, hits); }, table);
+  };
+  add("lanes", InLanes<FlyLaneBalls>);
+  add("lanes, single", InLanes<FlyLaneBallsSingle>);
+  add("reference", ByEvents<ReferenceFlow>);
+  add("reference, single", ByEvents<EventFlow<float>>);
+  add("reference, 64 bits", ByEvents<EventFlow<long double>>);
+  add("reference, 113 bits", ByEvents<EventFlow<Quadruple>>);
+  add("nearest root", ByEvents<TextbookFlow<kPositiveRoot>>);
+  add("nearest root, no threshold", ByEvents<TextbookFlow<kAnyRoot>>);
+  add("approaching disc", ByEvents<TextbookFlow<kApproaching>>);
+  add("unit speed assumed", ByEvents<TextbookFlow<kUnitSpeed>>);
+  add("fixed steps of 1e-3", ByEvents<FixedStepEvents>);
+}
+
+void AddPairs(uint64_t orbits, MarkdownTable& table) {
+  const Starts starts = DrawnStarts(1, orbits, DrawFromCollisionMeasure);
+  const auto add = [&](const char* method, Engine engine) {
+    const PairReversal reversal(engine, starts);
+    AddRow(
+        "from collision to collision with the piston", method,
+        [&](uint64_t hits) { return reversal.AfterHits(hits); }, table);
+  };
+  add("lanes", Engine::kLanes);
+  add("lanes, single", Engine::kLanesSingle);
+  add("reference", Engine::kReference);
+}
+
 }  // namespace
 
 std::string ReversalTable(uint64_t orbits) {
-  using enum TextbookRule;
   std::vector<std::string> head = {"what", "method"};
   for (const uint64_t hits : kReversalHits) head.push_back(absl::StrCat(hits, " hits"));
   MarkdownTable table(head);
-  const auto add = [&](const char* what, const char* method,
-                       const std::function<Distances(uint64_t)>& distances) {
-    std::vector<std::string> row = {what, method};
-    for (const uint64_t hits : kReversalHits) row.push_back(ErrorText(Median(distances(hits))));
-    table.Add(row);
-  };
-  const Starts walls = DrawnStarts(0, orbits, AnywhereOnWall);
-  const auto ball = [&](const char* method, Distances (*fly)(const Starts&, uint64_t)) {
-    add("ball alone", method, [&](uint64_t hits) { return fly(walls, hits); });
-  };
-  ball("lanes", InLanes<FlyLaneBalls>);
-  ball("lanes, single", InLanes<FlyLaneBallsSingle>);
-  ball("reference", ByEvents<ReferenceFlow>);
-  ball("reference, single", ByEvents<EventFlow<float>>);
-  ball("reference, 64 bits", ByEvents<EventFlow<long double>>);
-  ball("reference, 113 bits", ByEvents<EventFlow<Quadruple>>);
-  ball("nearest root", ByEvents<TextbookFlow<kPositiveRoot>>);
-  ball("nearest root, no threshold", ByEvents<TextbookFlow<kAnyRoot>>);
-  ball("approaching disc", ByEvents<TextbookFlow<kApproaching>>);
-  ball("unit speed assumed", ByEvents<TextbookFlow<kUnitSpeed>>);
-  ball("fixed steps of 1e-3", ByEvents<FixedStepEvents>);
-  const Starts collisions = DrawnStarts(1, 20 * orbits, DrawFromCollisionMeasure);
-  const auto pair = [&](const char* method, Engine engine) {
-    const PairReversal reversal(engine, collisions);
-    add("from collision to collision with the piston", method,
-        [&](uint64_t hits) { return reversal.AfterHits(hits); });
-  };
-  pair("lanes", Engine::kLanes);
-  pair("lanes, single", Engine::kLanesSingle);
-  pair("reference", Engine::kReference);
+  AddBalls(orbits, table);
+  AddPairs(20 * orbits, table);
   return table.Text(2);
 }
 
