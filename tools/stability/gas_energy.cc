@@ -43,14 +43,14 @@ double TimeOf(double exchanges) {
 double TotalEnergy(const GasState& state) { return GasMeter(EnergyGas(), state).TotalEnergy(); }
 
 EnergyRun RunOf(const char* method, bool promised, const GasEnergyRecord& record) {
-  return {method,
-          "gases",
-          kGases,
-          record.exchanges(),
-          promised,
-          record.Worst(),
-          record.LongestWalk(),
-          record.Mean()};
+  return {.method = method,
+          .what = "gases",
+          .orbits = kGases,
+          .hits = record.exchanges(),
+          .promised = promised,
+          .worst = record.Worst(),
+          .permitted = record.LongestWalk(),
+          .change = record.Mean()};
 }
 
 EnergyRun OfEngine(const char* method, GasEngine engine, double exchanges) {
