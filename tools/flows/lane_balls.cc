@@ -119,6 +119,14 @@ namespace ballpiston {
 HWY_EXPORT(FlyBallsDouble);
 HWY_EXPORT(FlyBallsSingle);
 
+std::vector<LaneFrame> OnTheirWalls(std::span<const PairState> starts) {
+  std::vector<LaneFrame> frames;
+  for (const PairState& start : starts) {
+    frames.push_back(FrameOfBallOnWall(start.position, start.direction));
+  }
+  return frames;
+}
+
 void FlyLaneBalls(const PairGeometry& geometry, std::span<const LaneFrame> starts, uint64_t hits,
                   std::span<LaneHit> recorded) {
   HWY_DYNAMIC_DISPATCH(FlyBallsDouble)(geometry, starts, hits, recorded);

@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/billiard/lane_frame.h"
 #include "core/geometry/pair_geometry.h"
+#include "core/geometry/pair_state.h"
 
 namespace ballpiston {
 
@@ -16,13 +18,16 @@ struct LaneHit {
   double x;         // abscissa of the ball in the cell; the engine compares it with the piston's
 };
 
-// Flies each ball to its next `hits` hits, in double or in single precision. `recorded` has
-// n * starts.size() elements, where n divides `hits`. Every (hits/n)-th hit of a ball is recorded;
-// the j-th record of ball i is recorded[i * n + j]. With n = hits all hits are recorded, with n = 1
-// the last hit, with n = 0 no hit.
-void FlyLaneBalls(const PairGeometry& geometry, std::span<const LaneFrame> starts, uint64_t hits,
-                  std::span<LaneHit> recorded);
-void FlyLaneBallsSingle(const PairGeometry& geometry, std::span<const LaneFrame> starts,
-                        uint64_t hits, std::span<LaneHit> recorded);
+// The frames of balls that are on their walls.
+std::vector<LaneFrame> OnTheirWalls(std::span<const PairState> starts);
+
+// Flies each ball to its next `hits` hits. `recorded` has n * starts.size() elements, where n
+// divides `hits`. Every (hits/n)-th hit of a ball is recorded; the j-th record of ball i is
+// recorded[i * n + j]. With n = hits all hits are recorded, with n = 1 the last hit, with n = 0 no
+// hit.
+using FlyLanes = void(const PairGeometry& geometry, std::span<const LaneFrame> starts,
+                      uint64_t hits, std::span<LaneHit> recorded);
+FlyLanes FlyLaneBalls;        // in double precision
+FlyLanes FlyLaneBallsSingle;  // in single precision
 
 }  // namespace ballpiston

@@ -1,7 +1,4 @@
-#include "tools/method_comparison/heat_current_runs.h"
-
 #include <algorithm>
-#include <deque>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -11,13 +8,21 @@
 #include "core/experiment/steady_gas.h"
 #include "core/gas/canonical_gas.h"
 #include "core/gas/gas_meter.h"
-#include "core/gas/gas_run.h"
+#include "core/gas/gas_shape.h"
 #include "core/statistics/batch_means.h"
 #include "server/processor_time.h"
 #include "tools/flows/fixed_step_gas.h"
+#include "tools/flows/metered_gases.h"
+#include "tools/method_comparison/point_runs.h"
 
 namespace ballpiston::method_comparison {
 namespace {
+
+// A ball between two pistons. At the same work the error grows as the number of cells. With more
+// cells the error would hide the bias of the limit.
+constexpr GasShape kComparedChain = {.columns = 1};
+constexpr double kComparedHot = 1.5;
+constexpr double kComparedCold = 0.5;
 
 Model ModelOf(Method method) {
   switch (method) {
@@ -31,15 +36,14 @@ Model ModelOf(Method method) {
 }
 
 // The gas of the experiment gas-conduction.
-std::unique_ptr<const PointExperiment> ExperimentOf(double rho, double delta, uint64_t seed,
-                                                    Method method) {
+std::unique_ptr<const PointExperiment> ExperimentOf(const HeatCurrentRuns& runs, Method method) {
   const EnsembleSpec spec = {.experiment = &kGasConduction,
-                             .grid = {{kRho, {rho}},
-                                      {kDelta, {delta}},
+                             .grid = {{kRho, {runs.rho}},
+                                      {kDelta, {runs.delta}},
                                       {kCells, {CodeOf(kComparedChain)}},
                                       {kHot, {kComparedHot}},
                                       {kCold, {kComparedCold}}},
-                             .seed = seed,
+                             .seed = runs.seed,
                              .model = ModelOf(method)};
   return PointExperiment::Create(spec, 0);
 }
@@ -102,20 +106,16 @@ void MeasureByFixedSteps(const SteadyGas& gas, double time_step, uint64_t sample
 
 // Replicas that run together, to fill the lanes.
 void MeasureTogether(const SteadyGas& gas, const SampleRange& samples, BatchMeans& means) {
-  std::deque<GasMeter> meters;
   std::vector<GasStart> starts;
   for (uint64_t i = samples.first; i < samples.first + samples.count; ++i) {
     const GasRandom random = gas.RandomOf(i);
-    const GasState start = StartOf(gas, random);
-    starts.push_back(
-        {start, gas.WallsOf(random), random, &meters.emplace_back(gas.geometry(), start)});
+    starts.push_back({StartOf(gas, random), gas.WallsOf(random), random, nullptr});
   }
-  const auto run =
-      StartGases(gas.gas_engine(), gas.geometry(), gas.exchange_rate(), std::move(starts));
-  run->AdvanceTo(TimeToRelax(gas));
-  for (GasMeter& meter : meters) meter.Begin(TimeToRelax(gas));
-  run->AdvanceTo(TimeToTheEnd(gas));
-  for (GasMeter& meter : meters) {
+  MeteredGases gases(gas.gas_engine(), gas.geometry(), gas.exchange_rate(), std::move(starts));
+  gases.AdvanceTo(TimeToRelax(gas));
+  for (GasMeter& meter : gases.meters()) meter.Begin(TimeToRelax(gas));
+  gases.AdvanceTo(TimeToTheEnd(gas));
+  for (GasMeter& meter : gases.meters()) {
     meter.End(TimeToTheEnd(gas));
     Add(gas, meter, means);
   }
@@ -126,7 +126,7 @@ void MeasureTogether(const SteadyGas& gas, const SampleRange& samples, BatchMean
 double HeatCurrentRuns::PredictedSecondsPerReplica(const MethodVariant& variant) const {
   constexpr double kPerStep = 4e-8, kPerHit = 1e-9, kPerEvent = 5e-8, kPerExchange = 4e-7,
                    kPerJump = 4e-8;
-  const auto experiment = ExperimentOf(rho_, delta_, seed_, variant.method);
+  const auto experiment = ExperimentOf(*this, variant.method);
   const SteadyGas& gas = AsGas(*experiment);
   const double time = TimeToTheEnd(gas);
   if (variant.method == Method::kFixedStep) return kPerStep * time / variant.time_step;
@@ -137,7 +137,7 @@ double HeatCurrentRuns::PredictedSecondsPerReplica(const MethodVariant& variant)
 
 PointEstimate HeatCurrentRuns::Run(const MethodVariant& variant, const SampleRange& samples) const {
   constexpr uint64_t kTogether = 64;
-  const auto experiment = ExperimentOf(rho_, delta_, seed_, variant.method);
+  const auto experiment = ExperimentOf(*this, variant.method);
   const SteadyGas& gas = AsGas(*experiment);
   const double begin = server::ThreadSeconds();
   const uint64_t end = samples.first + samples.count;

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <numbers>
 #include <optional>
-#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -22,14 +21,10 @@
 #include "core/statistics/kl_divergence.h"
 #include "core/statistics/stated_error.h"
 #include "server/processor_time.h"
-#include "tools/method_comparison/energy_relaxation_runs.h"
-#include "tools/method_comparison/heat_current_runs.h"
-#include "tools/method_comparison/ingoing_divergence.h"
 #include "tools/method_comparison/limit_floor.h"
 #include "tools/method_comparison/point_runs.h"
 #include "tools/method_comparison/returns.h"
 #include "tools/method_comparison/trajectory_horizon.h"
-#include "tools/method_comparison/twin_orbits.h"
 
 namespace ballpiston::method_comparison {
 namespace {
@@ -54,24 +49,21 @@ constexpr double kTruthTimes = 8;
 // 113 bits.
 constexpr size_t kTwinHits = 110;
 
-std::vector<MethodVariant> SampledVariants() {
+// Fixed steps, and these methods.
+std::vector<MethodVariant> FixedStepsAnd(std::initializer_list<Method> methods) {
   std::vector<MethodVariant> variants;
   for (const double step : kTimeSteps) variants.push_back({Method::kFixedStep, step});
-  for (const Method method :
-       {Method::kReferenceSingle, Method::kReference, Method::kReferenceLongDouble,
-        Method::kReferenceQuadruple, Method::kLanes, Method::kLanesSingle}) {
-    variants.push_back({method});
-  }
+  for (const Method method : methods) variants.push_back({method});
   return variants;
 }
 
+std::vector<MethodVariant> SampledVariants() {
+  return FixedStepsAnd({Method::kReferenceSingle, Method::kReference, Method::kReferenceLongDouble,
+                        Method::kReferenceQuadruple, Method::kLanes, Method::kLanesSingle});
+}
+
 std::vector<MethodVariant> GasVariants() {
-  std::vector<MethodVariant> variants;
-  for (const double step : kTimeSteps) variants.push_back({Method::kFixedStep, step});
-  for (const Method method : {Method::kReference, Method::kLanes, Method::kMarkov}) {
-    variants.push_back({method});
-  }
-  return variants;
+  return FixedStepsAnd({Method::kReference, Method::kLanes, Method::kMarkov});
 }
 
 // The error of the chi-squared law, plus the scatter that a real divergence adds.
@@ -82,22 +74,20 @@ double ErrorOfDivergence(double noise_error, double excess, uint64_t samples) {
 
 class Comparison {
  public:
-  Comparison(const MethodComparisonSpec& spec, const PairGeometry& geometry,
-             std::vector<PairGeometry> relaxing,
+  Comparison(const MethodComparisonSpec& spec,
              const std::function<void(const MethodMeasurement&)>& tell)
       : spec_(spec),
-        geometry_(geometry),
-        relaxing_(std::move(relaxing)),
+        geometry_(PairGeometry::Create(spec.rho, spec.delta).value()),
         tell_(tell),
-        exact_(ConditionalMeanFreeTime(geometry, spec.epsilon)),
+        exact_(ConditionalMeanFreeTime(geometry_, spec.epsilon)),
         probabilities_(IngoingProbabilities(spec.epsilon)) {}
 
   void Run() {
     CompareReturns(Quantity::kMeanFreeTime);
     CompareReturns(Quantity::kIngoingLaw);
     CompareTrajectories();
-    for (const PairGeometry& geometry : relaxing_) {
-      CompareRelaxationTimesOf({geometry, spec_.seed});
+    for (const double delta : spec_.relaxation_deltas) {
+      CompareRelaxationTimesOf({PairGeometry::Create(spec_.rho, delta).value(), spec_.seed});
     }
     if (spec_.gas_delta > 0) CompareHeatCurrents({spec_.rho, spec_.gas_delta, spec_.seed});
     for (const auto& [delta, floor] : floors_) tell_(floor);
@@ -118,20 +108,33 @@ class Comparison {
     tell_(measurement);
   }
 
-  void CompareReturns(Quantity quantity) {
-    for (const MethodVariant& variant : SampledVariants()) ClimbReturns(quantity, variant);
-    Tell(quantity == Quantity::kMeanFreeTime ? ClosedMeanFreeTime() : ClosedIngoingLaw());
+  // Makes and tells runs of increasing numbers of samples, beginning with `samples`; returns the
+  // longest one. `expected`: the seconds of the first run. A run without a sample is not told.
+  template <typename Run>
+  MethodMeasurement Climb(uint64_t samples, double expected, const Run& run,
+                          size_t most_rungs = SIZE_MAX) const {
+    MethodMeasurement longest;
+    for (size_t rung = 0; rung < most_rungs && expected <= Limit();
+         ++rung, samples *= kRungFactor) {
+      const MethodMeasurement measurement = run(rung, samples);
+      expected = *measurement.work * kRungFactor;
+      if (measurement.samples == 0) continue;
+      longest = measurement;
+      Tell(longest);
+    }
+    return longest;
   }
 
-  void ClimbReturns(Quantity quantity, const MethodVariant& variant) {
-    double expected = PredictedSeconds(variant, geometry_, spec_.epsilon, kFewestReturns);
-    uint64_t samples = kFewestReturns;
-    for (uint64_t rung = 0; expected <= Limit(); ++rung, samples *= kRungFactor) {
-      const ReturnStatistics returns =
-          RunReturns(variant, geometry_, spec_.epsilon, Stream(quantity, rung), samples);
-      if (returns.times.count > 0) Tell(Measured(quantity, variant, returns));
-      expected = returns.seconds * kRungFactor;
+  void CompareReturns(Quantity quantity) {
+    for (const MethodVariant& variant : SampledVariants()) {
+      Climb(kFewestReturns, PredictedSeconds(variant, geometry_, spec_.epsilon, kFewestReturns),
+            [&](size_t rung, uint64_t samples) {
+              return Measured(
+                  quantity, variant,
+                  RunReturns(variant, geometry_, spec_.epsilon, Stream(quantity, rung), samples));
+            });
     }
+    Tell(ClosedForm(quantity));
   }
 
   MethodMeasurement Measured(Quantity quantity, const MethodVariant& variant,
@@ -143,11 +146,12 @@ class Comparison {
                                      .samples = returns.times.count,
                                      .wall_hits = returns.wall_hits,
                                      .work = returns.seconds};
+    if (returns.times.count == 0) return measurement;
     if (quantity == Quantity::kMeanFreeTime) {
       measurement.value = std::fabs(returns.times.mean - exact_) / exact_;
       measurement.statistical_error = ErrorOfMean(returns.times) / exact_;
     } else {
-      const KlDivergence kl = RelativeEntropy(returns.ingoing.Counts(), probabilities_);
+      const KlDivergence kl = RelativeEntropy(returns.IngoingCounts(), probabilities_);
       measurement.value = kl.value - kl.noise_floor;
       measurement.statistical_error =
           ErrorOfDivergence(kl.noise_error, measurement.value, returns.times.count);
@@ -178,21 +182,19 @@ class Comparison {
     return variance_of_times_.emplace(returns.times.Variance().value_or(0));
   }
 
-  MethodMeasurement ClosedMeanFreeTime() const {
-    return {.method = Method::kClosedForm,
-            .quantity = Quantity::kMeanFreeTime,
-            .delta = spec_.delta,
-            .work = server::SecondsOf([&] { ConditionalMeanFreeTime(geometry_, spec_.epsilon); }),
-            .value = kMeanFreeTimeRelativeError + kConditionalRateRelativeError};
-  }
-
   // If each cell of a law has a relative error e, the divergence of the law is at most e^2/2.
-  MethodMeasurement ClosedIngoingLaw() const {
-    return {.method = Method::kClosedForm,
-            .quantity = Quantity::kIngoingLaw,
-            .delta = spec_.delta,
-            .work = server::SecondsOf([&] { IngoingProbabilities(spec_.epsilon); }),
-            .value = kIngoingLawRelativeError * kIngoingLawRelativeError / 2};
+  MethodMeasurement ClosedForm(Quantity quantity) const {
+    MethodMeasurement measurement = {
+        .method = Method::kClosedForm, .quantity = quantity, .delta = spec_.delta};
+    if (quantity == Quantity::kMeanFreeTime) {
+      measurement.work =
+          server::SecondsOf([&] { ConditionalMeanFreeTime(geometry_, spec_.epsilon); });
+      measurement.value = kMeanFreeTimeRelativeError + kConditionalRateRelativeError;
+    } else {
+      measurement.work = server::SecondsOf([&] { IngoingProbabilities(spec_.epsilon); });
+      measurement.value = kIngoingLawRelativeError * kIngoingLawRelativeError / 2;
+    }
+    return measurement;
   }
 
   // All methods use the same twins. The twins cost more than any method and therefore determine the
@@ -206,15 +208,17 @@ class Comparison {
       rungs.back().FlyAhead(kTwinHits);
       expected = (server::ThreadSeconds() - begin) * kRungFactor;
     }
-    for (const MethodVariant& variant : SampledVariants()) ClimbTrajectories(variant, rungs);
+    for (const MethodVariant& variant : SampledVariants()) {
+      const auto run = [&](size_t rung, uint64_t) {
+        return Measured(variant, HorizonOf(variant, geometry_, rungs[rung]));
+      };
+      Climb(kFewestOrbits, 0, run, rungs.size());
+    }
   }
 
-  void ClimbTrajectories(const MethodVariant& variant, std::span<TwinOrbits> rungs) {
-    double expected = 0;
-    for (size_t rung = 0; rung < rungs.size() && expected <= Limit(); ++rung) {
-      const TrajectoryHorizon horizon = HorizonOf(variant, geometry_, rungs[rung]);
-      const double error = horizon.hits.StandardError().value_or(0);
-      Tell({.method = variant.method,
+  MethodMeasurement Measured(const MethodVariant& variant, const TrajectoryHorizon& horizon) const {
+    const double error = horizon.hits.StandardError().value_or(0);
+    return {.method = variant.method,
             .time_step = variant.time_step,
             .quantity = Quantity::kTrajectory,
             .delta = spec_.delta,
@@ -223,38 +227,39 @@ class Comparison {
             .work = horizon.seconds,
             .value = horizon.hits.mean,
             .statistical_error = error,
-            .own_error = error});
-      expected = horizon.seconds * kRungFactor;
-    }
+            .own_error = error};
   }
 
   void CompareRelaxationTimesOf(const EnergyRelaxationRuns& runs) {
     const uint64_t orbits = SamplesOfTruth(runs.PredictedSecondsPerOrbit());
     if (orbits < kFewestTruthOrbits) return;
     const PointEstimate limit = runs.BySpectrum();  // first, so that no run computes the spectrum
-    const Subject subject = {Quantity::kRelaxationTime, runs.delta(),
+    const Subject subject = {Quantity::kRelaxationTime, runs.geometry.delta(),
                              runs.Run(Method::kLanes, TruthOf(orbits))};
     const auto climb = [&](Method method) {
-      return Climb(subject, {method}, 0,
-                   [&](const SampleRange& samples) { return runs.Run(method, samples); });
+      return Climb(kFewestRelaxations, 0, [&](size_t, uint64_t samples) {
+        return Compared(subject, {method}, runs.Run(method, RunOf(samples)));
+      });
     };
     const MethodMeasurement billiard = climb(Method::kLanes);
     climb(Method::kMarkov);
     const MethodMeasurement spectrum = Compared(subject, {Method::kSpectrum}, limit);
     Tell(spectrum);
-    floors_.try_emplace(runs.delta(), LimitFloorOf(spectrum, billiard));
+    floors_.try_emplace(subject.delta, LimitFloorOf(spectrum, billiard));
   }
 
   void CompareHeatCurrents(const HeatCurrentRuns& runs) {
     const uint64_t replicas = SamplesOfTruth(runs.PredictedSecondsPerReplica({Method::kLanes}));
     if (replicas < kFewestTruthReplicas) return;
-    const Subject subject = {Quantity::kHeatCurrent, runs.delta(),
+    const Subject subject = {Quantity::kHeatCurrent, runs.delta,
                              runs.Run({Method::kLanes}, TruthOf(replicas))};
     for (const MethodVariant& variant : GasVariants()) {
       const double expected = runs.PredictedSecondsPerReplica(variant) * kFewestOrbits;
       // The truth's time is long enough for the smallest number of replicas of any engine.
-      Climb(subject, variant, variant.method == Method::kFixedStep ? expected : 0,
-            [&](const SampleRange& samples) { return runs.Run(variant, samples); });
+      Climb(kFewestOrbits, variant.method == Method::kFixedStep ? expected : 0,
+            [&](size_t, uint64_t samples) {
+              return Compared(subject, variant, runs.Run(variant, RunOf(samples)));
+            });
     }
   }
 
@@ -272,24 +277,6 @@ class Comparison {
     PointEstimate truth;
   };
 
-  // Makes runs of increasing numbers of samples and returns the longest run. `expected`: the
-  // seconds of the first run; 0 if the first run is always made.
-  template <typename Run>
-  MethodMeasurement Climb(const Subject& subject, const MethodVariant& variant, double expected,
-                          const Run& run) const {
-    MethodMeasurement longest;
-    const bool relaxes = subject.quantity == Quantity::kRelaxationTime;
-    uint64_t samples = relaxes ? kFewestRelaxations : kFewestOrbits;
-    for (; expected <= Limit(); samples *= kRungFactor) {
-      const PointEstimate measured = run(RunOf(samples));
-      expected = measured.seconds * kRungFactor;
-      if (measured.error == 0) continue;  // nearly all samples were lost
-      longest = Compared(subject, variant, measured);
-      Tell(longest);
-    }
-    return longest;
-  }
-
   static MethodMeasurement Compared(const Subject& subject, const MethodVariant& variant,
                                     const PointEstimate& measured) {
     const PointEstimate& truth = subject.truth;
@@ -298,7 +285,7 @@ class Comparison {
             .time_step = variant.time_step,
             .quantity = subject.quantity,
             .delta = subject.delta,
-            .samples = measured.samples,
+            .samples = measured.error == 0 ? 0 : measured.samples,  // nearly all were lost
             .work = measured.seconds,
             .value = std::fabs(ratio - 1),
             .statistical_error = std::hypot(measured.error, ratio * truth.error) / truth.value,
@@ -307,27 +294,11 @@ class Comparison {
 
   const MethodComparisonSpec spec_;
   const PairGeometry geometry_;
-  const std::vector<PairGeometry> relaxing_;
   const std::function<void(const MethodMeasurement&)>& tell_;
   const double exact_;
   const std::vector<double> probabilities_;
   std::optional<double> variance_of_times_;
   std::map<double, MethodMeasurement, std::greater<>> floors_;  // by delta
-};
-
-// Collects all violations, each with its flag.
-class Check {
- public:
-  void Permit(bool permitted, const std::string& violation) {
-    if (!permitted) violations_.push_back(violation);
-  }
-  void Permit(const std::string& flag, const absl::Status& status) {
-    Permit(status.ok(), absl::StrCat(flag, ": ", status.message()));
-  }
-  std::vector<std::string> Taken() { return std::move(violations_); }
-
- private:
-  std::vector<std::string> violations_;
 };
 
 // If rho is not permitted, checks only what does not depend on rho. `validate` needs a valid rho.
@@ -339,26 +310,31 @@ absl::Status ValidateDelta(double rho, double delta,
 }  // namespace
 
 std::vector<std::string> Violations(const MethodComparisonSpec& spec) {
-  Check check;
-  check.Permit("--rho", ValidateRho(spec.rho));
-  check.Permit("--delta", ValidateDelta(spec.rho, spec.delta));
-  check.Permit(spec.relaxation_deltas.size() <= kMaxRelaxationDeltas,
-               absl::StrCat("--relaxation-delta: ", spec.relaxation_deltas.size(),
-                            " values; permitted: at most ", kMaxRelaxationDeltas));
+  std::vector<std::string> violations;
+  const auto permit = [&](bool permitted, const std::string& violation) {
+    if (!permitted) violations.push_back(violation);
+  };
+  const auto check = [&](const char* flag, const absl::Status& status) {
+    permit(status.ok(), absl::StrCat(flag, ": ", status.message()));
+  };
+  check("--rho", ValidateRho(spec.rho));
+  check("--delta", ValidateDelta(spec.rho, spec.delta));
+  permit(spec.relaxation_deltas.size() <= kMaxRelaxationDeltas,
+         absl::StrCat("--relaxation-delta: ", spec.relaxation_deltas.size(),
+                      " values; permitted: at most ", kMaxRelaxationDeltas));
   for (const double delta : spec.relaxation_deltas) {
-    check.Permit("--relaxation-delta", ValidateDelta(spec.rho, delta));
+    check("--relaxation-delta", ValidateDelta(spec.rho, delta));
   }
   if (spec.gas_delta != 0) {
-    check.Permit("gas_delta", ValidateDelta(spec.rho, spec.gas_delta, ValidateGasDelta));
+    check("gas_delta", ValidateDelta(spec.rho, spec.gas_delta, ValidateGasDelta));
   }
-  check.Permit(spec.epsilon > 0 && spec.epsilon < 0.5,
-               absl::StrCat("--epsilon: ", NumberText(spec.epsilon), " is not in (0, 1/2)"));
-  check.Permit(
-      spec.seconds_per_curve >= kMinSecondsPerCurve &&
-          spec.seconds_per_curve <= kMaxSecondsPerCurve,
-      absl::StrCat("--seconds: ", NumberText(spec.seconds_per_curve), " is not in [",
-                   NumberText(kMinSecondsPerCurve), ", ", NumberText(kMaxSecondsPerCurve), "]"));
-  return check.Taken();
+  permit(spec.epsilon > 0 && spec.epsilon < 0.5,
+         absl::StrCat("--epsilon: ", NumberText(spec.epsilon), " is not in (0, 1/2)"));
+  permit(spec.seconds_per_curve >= kMinSecondsPerCurve &&
+             spec.seconds_per_curve <= kMaxSecondsPerCurve,
+         absl::StrCat("--seconds: ", NumberText(spec.seconds_per_curve), " is not in [",
+                      NumberText(kMinSecondsPerCurve), ", ", NumberText(kMaxSecondsPerCurve), "]"));
+  return violations;
 }
 
 std::vector<double> DefaultRelaxationDeltas(double rho) {
@@ -375,11 +351,7 @@ double DefaultGasDelta(double rho) {
 
 void CompareMethods(const MethodComparisonSpec& spec,
                     const std::function<void(const MethodMeasurement&)>& tell) {
-  std::vector<PairGeometry> relaxing;
-  for (const double delta : spec.relaxation_deltas) {
-    relaxing.push_back(PairGeometry::Create(spec.rho, delta).value());
-  }
-  Comparison(spec, PairGeometry::Create(spec.rho, spec.delta).value(), relaxing, tell).Run();
+  Comparison(spec, tell).Run();
 }
 
 }  // namespace ballpiston::method_comparison

@@ -9,7 +9,7 @@
 //                  with the cells of `first-hit`. value = its Kullback-Leibler divergence from the
 //                  exact law minus the noise floor, which is the mean divergence of samples from
 //                  the exact law: (cells - 1)/(2 samples), or its value for few samples per cell
-//                  (ingoing_divergence.h). The difference can be negative.
+//                  (core/statistics/kl_divergence.h). The difference can be negative.
 //   kTrajectory    single orbits of the ball against a twin of 256 bits. A sample is one orbit.
 //                  value = mean number of wall hits until they are kParted apart; work/wall_hits is
 //                  the cost of one hit.
@@ -20,7 +20,7 @@
 //                  one orbit. value = |measured - truth|/truth. The truth comes from many more
 //                  orbits by kLanes: the curves of the limit tend to the limit's bias.
 //   kHeatCurrent   the heat current of one cell between reservoirs at 1.5 and 0.5
-//                  (heat_current_runs.h): by kFixedStep, kReference and kLanes, and by kMarkov,
+//                  (point_runs.h): by kFixedStep, kReference and kLanes, and by kMarkov,
 //                  which has the bias of the limit. A sample is a replica. The value and the truth
 //                  are defined as for kRelaxationTime.
 // A sixth quantity follows from the relaxation times:

@@ -5,7 +5,6 @@
 
 #include "core/closed_form/conditional_rate.h"
 #include "core/experiment/expected_returns.h"
-#include "core/experiment/returns.h"
 #include "server/processor_time.h"
 #include "tools/method_comparison/method_orbits.h"
 
@@ -33,9 +32,7 @@ class CountedReturns : public NumberedOrbits {
   void AddTo(ReturnStatistics& statistics) const {
     statistics.wall_hits += wall_hits_;
     for (const std::optional<Return>& hit : returns_.returns()) {
-      if (!hit) continue;
-      statistics.times.Add(hit->time);
-      statistics.ingoing.Add(*hit);
+      if (hit) statistics.Add(*hit);
     }
   }
 
@@ -44,34 +41,32 @@ class CountedReturns : public NumberedOrbits {
   uint64_t wall_hits_ = 0;
 };
 
-// The predicted time of one event, or of one time step.
-double PredictedSecondsPerEvent(Method method) {
-  switch (method) {
-    case Method::kFixedStep:
-      return 3e-9;
-    case Method::kReferenceSingle:
-    case Method::kReference:
-      return 4e-8;
-    case Method::kReferenceLongDouble:
-      return 1e-7;
-    case Method::kReferenceQuadruple:
-      return 3e-6;
-    case Method::kLanes:
-    case Method::kLanesSingle:
-      return 4e-9;
-    case Method::kClosedForm:
-    case Method::kMarkov:
-    case Method::kSpectrum:
-      break;
+}  // namespace
+
+std::vector<double> IngoingProbabilities(double epsilon) {
+  std::vector<double> probabilities;
+  for (const std::vector<double>& bins : IngoingBinProbabilities(IngoingLaw(epsilon))) {
+    probabilities.insert(probabilities.end(), bins.begin(), bins.end());
   }
-  return 0;
+  return probabilities;
 }
 
-}  // namespace
+void ReturnStatistics::Add(const Return& hit) {
+  times.Add(hit.time);
+  CountIngoing(hit, ingoing);
+}
+
+std::vector<uint64_t> ReturnStatistics::IngoingCounts() const {
+  std::vector<uint64_t> counts;
+  for (const Histogram& histogram : ingoing) {
+    counts.insert(counts.end(), histogram.counts.begin(), histogram.counts.end());
+  }
+  return counts;
+}
 
 ReturnStatistics RunReturns(const MethodVariant& variant, const PairGeometry& geometry,
                             double epsilon, const RandomStream& random, uint64_t samples) {
-  ReturnStatistics statistics = {.times = {}, .ingoing = IngoingCounts(epsilon)};
+  ReturnStatistics statistics = {.ingoing = EmptyIngoingHistograms(IngoingLaw(epsilon))};
   const double begin = server::ThreadSeconds();
   const uint64_t batch = BatchSize(variant.method);
   for (uint64_t first = 0; first < samples; first += batch) {
@@ -90,7 +85,7 @@ double PredictedSeconds(const MethodVariant& variant, const PairGeometry& geomet
   const double events = variant.method == Method::kFixedStep
                             ? ConditionalMeanFreeTime(geometry, epsilon) / variant.time_step
                             : HitsPerReturn(geometry, epsilon).Events();
-  return static_cast<double>(samples) * events * PredictedSecondsPerEvent(variant.method);
+  return static_cast<double>(samples) * events * PropertiesOf(variant.method).seconds_per_event;
 }
 
 }  // namespace ballpiston::method_comparison

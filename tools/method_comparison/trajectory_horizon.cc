@@ -4,11 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "core/billiard/reference_flow.h"
 #include "server/processor_time.h"
-#include "tools/flows/fixed_step_flow.h"
 #include "tools/flows/lane_balls.h"
 #include "tools/flows/rounded_to.h"
+#include "tools/method_comparison/method_orbits.h"
 
 namespace ballpiston::method_comparison {
 namespace {
@@ -19,21 +18,6 @@ struct Itineraries {
   double seconds = 0;
 };
 
-// Runs one orbit after the other with `fly`, which fills an itinerary from a start.
-template <typename Start, typename Fly>
-Itineraries FlyEach(const std::vector<Start>& starts, uint64_t hits, const Fly& fly) {
-  Itineraries result;
-  result.orbits.resize(starts.size());
-  for (std::vector<BallAt>& places : result.orbits) places.reserve(hits);
-  result.seconds = server::SecondsOf([&] {
-    for (size_t i = 0; i < starts.size(); ++i) {
-      result.orbits[i].clear();
-      fly(starts[i], result.orbits[i]);
-    }
-  });
-  return result;
-}
-
 template <typename To>
 std::vector<PairStateOf<To>> Starts(const TwinOrbits& twins) {
   std::vector<PairStateOf<To>> starts;
@@ -41,51 +25,51 @@ std::vector<PairStateOf<To>> Starts(const TwinOrbits& twins) {
   return starts;
 }
 
+template <typename Orbit>
+void FlyOrbit(Orbit orbit, uint64_t hits, std::vector<BallAt>& places) {
+  for (Collision way; places.size() < hits;) {
+    orbit.Advance(way);
+    if (way.escaped) return;
+    if (way.ball_wall_hits == places.size()) continue;
+    places.push_back({way.time, orbit.state().position});
+  }
+}
+
+// One orbit after the other. `begin` makes an orbit from a start.
+template <typename Real, typename Begin>
+Itineraries FlyEach(const TwinOrbits& twins, uint64_t hits, const Begin& begin) {
+  const std::vector<PairStateOf<Real>> starts = Starts<Real>(twins);
+  Itineraries result;
+  result.orbits.resize(starts.size());
+  for (std::vector<BallAt>& places : result.orbits) places.reserve(hits);
+  result.seconds = server::SecondsOf([&] {
+    for (size_t i = 0; i < starts.size(); ++i) {
+      result.orbits[i].clear();
+      FlyOrbit(begin(starts[i]), hits, result.orbits[i]);
+    }
+  });
+  return result;
+}
+
 template <typename Real>
 Itineraries FlyEvents(const PairGeometry& geometry, const TwinOrbits& twins, uint64_t hits) {
-  const auto fly = [&](const PairStateOf<Real>& start, std::vector<BallAt>& places) {
-    EventFlow<Real> flow(geometry, start);
-    double time = 0;
-    while (places.size() < hits) {
-      const EventOf<Real> event = flow.Step();
-      if (event.kind != EventKind::kBallWall) return;  // lost
-      time += static_cast<double>(event.duration);
-      const auto& position = flow.state().position;
-      places.push_back(
-          {time, {static_cast<double>(position.x()), static_cast<double>(position.y())}});
-    }
-  };
-  return FlyEach(Starts<Real>(twins), hits, fly);
+  return FlyEach<Real>(twins, hits, [&](const PairStateOf<Real>& start) {
+    return EventOrbit<Real>(geometry, start);
+  });
 }
 
 Itineraries FlyFixedSteps(const PairGeometry& geometry, double time_step, const TwinOrbits& twins,
                           uint64_t hits) {
-  constexpr uint64_t kMostSteps = 1024;
-  const auto fly = [&](const PairState& start, std::vector<BallAt>& places) {
-    FixedStepFlow flow(geometry, start, time_step);
-    uint64_t steps = 0;
-    while (places.size() < hits) {
-      const FixedSteps done = flow.Advance(kMostSteps);
-      steps += done.steps;
-      if (done.lost) return;
-      if (!done.ball_wall) continue;
-      places.push_back({static_cast<double>(steps) * time_step, flow.state().position});
-    }
-  };
-  return FlyEach(Starts<double>(twins), hits, fly);
+  return FlyEach<double>(twins, hits, [&](const PairState& start) {
+    return FixedStepOrbit(geometry, start, time_step);
+  });
 }
-
-using LaneFlights = void(const PairGeometry&, std::span<const LaneFrame>, uint64_t,
-                         std::span<LaneHit>);
 
 // The measured time does not include the records of the positions: the lanes are so fast that the
 // records would dominate.
-Itineraries FlyLanes(LaneFlights& fly, const PairGeometry& geometry, const TwinOrbits& twins,
-                     uint64_t hits) {
-  std::vector<LaneFrame> frames;
-  for (const PairState& start : Starts<double>(twins)) {
-    frames.push_back(FrameOfBallOnWall(start.position, start.direction));
-  }
+Itineraries FlyInLanes(FlyLanes& fly, const PairGeometry& geometry, const TwinOrbits& twins,
+                       uint64_t hits) {
+  const std::vector<LaneFrame> frames = OnTheirWalls(Starts<double>(twins));
   std::vector<LaneHit> recorded(frames.size() * hits);
   fly(geometry, frames, hits, recorded);
   Itineraries result;
@@ -115,9 +99,9 @@ Itineraries Fly(const MethodVariant& variant, const PairGeometry& geometry, cons
     case Method::kReferenceQuadruple:
       return FlyEvents<Quadruple>(geometry, twins, hits);
     case Method::kLanes:
-      return FlyLanes(FlyLaneBalls, geometry, twins, hits);
+      return FlyInLanes(FlyLaneBalls, geometry, twins, hits);
     case Method::kLanesSingle:
-      return FlyLanes(FlyLaneBallsSingle, geometry, twins, hits);
+      return FlyInLanes(FlyLaneBallsSingle, geometry, twins, hits);
     case Method::kClosedForm:
     case Method::kMarkov:
     case Method::kSpectrum:

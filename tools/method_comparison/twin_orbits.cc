@@ -1,9 +1,8 @@
-#include "tools/method_comparison/twin_orbits.h"
-
 #include <algorithm>
 
 #include "core/sampling/invariant_measure.h"
 #include "tools/flows/rounded_to.h"
+#include "tools/method_comparison/trajectory_horizon.h"
 
 namespace ballpiston::method_comparison {
 namespace {

@@ -33,8 +33,7 @@ double ShortFlight(const PairGeometry& geometry, double epsilon) {
 BallWatch::BallWatch(const PairGeometry& geometry, double epsilon)
     : rho_(geometry.rho()),
       epsilon_(epsilon),
-      short_(ShortFlight(geometry, epsilon)),
-      longest_sequence_(LongestTipSequence(geometry)) {}
+      standstill_(ShortFlight(geometry, epsilon), LongestTipSequence(geometry)) {}
 
 bool BallWatch::Hit(const Eigen::Vector2d& position, const Eigen::Vector2d& direction,
                     double length, Failures& failures) {
@@ -47,10 +46,19 @@ bool BallWatch::Hit(const Eigen::Vector2d& position, const Eigen::Vector2d& dire
   }
   failures.deepest = std::max(failures.deepest, depth);
   failures.inward += HeadsInward(position, direction);
-  sequence_ = length < short_ ? sequence_ + 1 : 0;
-  if (sequence_ <= longest_sequence_) return true;
-  ++failures.loops;
-  return false;
+  return !standstill_.See(length, failures);
+}
+
+bool BallWatch::IsInCell(const Eigen::Vector2d& position, Failures& failures) const {
+  // Away from walls the cosine that magnified the rounding error is unknown; therefore this is the
+  // depth for the worst case, a grazing ball.
+  const double slack = kPositionUlps * std::sqrt(epsilon_), depth = Depth(position);
+  if (!(depth <= slack)) {
+    ++failures.escapes;
+    return false;
+  }
+  failures.deepest = std::max(failures.deepest, depth);
+  return true;
 }
 
 double BallWatch::Depth(const Eigen::Vector2d& position) const {

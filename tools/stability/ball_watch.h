@@ -23,6 +23,24 @@ inline constexpr double kShortUlps = 4096;
 // kShortUlps; less in a cell that has nearly vanished.
 double ShortFlight(const PairGeometry& geometry, double epsilon);
 
+// Counts successive flights, or events, that are too short to be motion.
+class Standstill {
+ public:
+  Standstill(double short_flight, uint64_t most) : short_(short_flight), most_(most) {}
+
+  // Counts a loop and returns true if there are more in succession than an orbit can have.
+  bool See(double length, Failures& failures) {
+    count_ = length < short_ ? count_ + 1 : 0;
+    failures.loops += count_ > most_;
+    return count_ > most_;
+  }
+
+ private:
+  double short_;
+  uint64_t most_;
+  uint64_t count_ = 0;
+};
+
 class BallWatch {
  public:
   BallWatch(const PairGeometry& geometry, double epsilon);
@@ -32,21 +50,23 @@ class BallWatch {
   bool Hit(const Eigen::Vector2d& position, const Eigen::Vector2d& direction, double length,
            Failures& failures);
 
-  // The depth inside a disc; negative outside.
-  double Depth(const Eigen::Vector2d& position) const;
+  // Checks a ball anywhere in the cell. Returns false if it is too deep inside a disc, or nowhere:
+  // this counts as an escape.
+  bool IsInCell(const Eigen::Vector2d& position, Failures& failures) const;
+
   // The error of the position of a ball that has hit the walls that it touches.
   double Slack(const Eigen::Vector2d& position, const Eigen::Vector2d& direction) const;
   bool HeadsInward(const Eigen::Vector2d& position, const Eigen::Vector2d& direction) const;
 
  private:
+  // The depth inside a disc; negative outside.
+  double Depth(const Eigen::Vector2d& position) const;
   bool IsEscape(double depth, const Eigen::Vector2d& position,
                 const Eigen::Vector2d& direction) const;
 
   double rho_;
   double epsilon_;
-  double short_;
-  uint64_t longest_sequence_;
-  uint64_t sequence_ = 0;  // number of short flights in succession
+  Standstill standstill_;
 };
 
 }  // namespace ballpiston::stability

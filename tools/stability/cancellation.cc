@@ -1,6 +1,5 @@
 #include "tools/stability/cancellation.h"
 
-#include <cmath>
 #include <numbers>
 
 #include "absl/strings/str_cat.h"
@@ -9,6 +8,7 @@
 #include "core/geometry/paper.h"
 #include "tools/flows/printed_formulas.h"
 #include "tools/flows/quad_precision.h"
+#include "tools/stability/markdown_table.h"
 
 namespace ballpiston::stability {
 namespace {
@@ -21,48 +21,40 @@ struct ThreeWays {
         library(Measures(geometry)),
         exact(MeasuresAsPrinted<Quad>(geometry.rho(), geometry.delta(), QuadPi())) {}
 
+  // `measure` takes one of the measures.
+  template <typename Measure>
+  void AddTo(MarkdownTable& table, const char* name, const std::string& where,
+             const Measure& measure) const {
+    table.Add({name, where, ErrorText(RelativeError(measure(printed), measure(exact))),
+               ErrorText(RelativeError(measure(library), measure(exact)))});
+  }
+
   PrintedMeasures<double> printed;
   PairMeasures library;
   PrintedMeasures<Quad> exact;
 };
 
-Cancellation Compared(std::string quantity, std::string where, double printed, double library,
-                      Quad exact) {
-  return {std::move(quantity), std::move(where), RelativeError(printed, exact),
-          RelativeError(library, exact)};
-}
+}  // namespace
 
-void AddSmallDelta(std::vector<Cancellation>& rows) {
+std::string CancellationTable() {
+  MarkdownTable table({"quantity", "where", "as printed", "core/closed_form"});
+  const auto eta = [](const auto& measures) { return measures.eta; };
   for (const double delta : {1e-2, 1e-4, 1e-6, 1e-8}) {
     const ThreeWays m(*PairGeometry::Create(kPaperRho, delta));
     const std::string where = absl::StrCat("rho = 0.5296, delta = ", delta);
-    rows.push_back(Compared("dG_bp", where, m.printed.area_ball_piston, m.library.area_ball_piston,
-                            m.exact.area_ball_piston));
-    rows.push_back(Compared("eta", where, m.printed.eta, m.library.eta, m.exact.eta));
+    m.AddTo(table, "dG_bp", where, [](const auto& measures) { return measures.area_ball_piston; });
+    m.AddTo(table, "eta", where, eta);
   }
-}
-
-void AddVanishingCell(std::vector<Cancellation>& rows) {
   for (const double distance : {1e-2, 1e-4, 1e-6, 1e-8}) {
     const double rho = kMaxRho - distance;
     const ThreeWays m(*PairGeometry::Create(rho, 0.5 * PairDeltaBound(rho)));
     const std::string where =
         absl::StrCat("1/sqrt 2 - rho = ", distance, ", delta = half its bound");
-    rows.push_back(
-        Compared("cell", where, m.printed.cell_area, m.library.cell_area, m.exact.cell_area));
-    rows.push_back(Compared("dG_bw", where, m.printed.area_ball_wall, m.library.area_ball_wall,
-                            m.exact.area_ball_wall));
-    rows.push_back(Compared("eta", where, m.printed.eta, m.library.eta, m.exact.eta));
+    m.AddTo(table, "cell", where, [](const auto& measures) { return measures.cell_area; });
+    m.AddTo(table, "dG_bw", where, [](const auto& measures) { return measures.area_ball_wall; });
+    m.AddTo(table, "eta", where, eta);
   }
-}
-
-}  // namespace
-
-std::vector<Cancellation> Cancellations() {
-  std::vector<Cancellation> rows;
-  AddSmallDelta(rows);
-  AddVanishingCell(rows);
-  return rows;
+  return table.Text(2);
 }
 
 }  // namespace ballpiston::stability

@@ -2,17 +2,10 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 namespace ballpiston::stability {
 
-struct Cancellation {
-  std::string quantity;
-  std::string where;
-  double printed;  // relative error of the printed formula, evaluated in double
-  double library;  // of core/closed_form
-};
-
-std::vector<Cancellation> Cancellations();
+// Relative errors of the printed formulas, evaluated in double, and of core/closed_form.
+std::string CancellationTable();
 
 }  // namespace ballpiston::stability

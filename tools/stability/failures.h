@@ -6,9 +6,13 @@
 #include <cstdint>
 #include <limits>
 
-#include "tools/stability/error_size.h"
-
 namespace ballpiston::stability {
+
+// The size of an error of the energy. An error that is not a number becomes infinite. Otherwise it
+// would pass every limit: std::max drops NaN, and a comparison with NaN is false.
+inline double ErrorSize(double error) {
+  return std::isnan(error) ? std::numeric_limits<double>::infinity() : std::fabs(error);
+}
 
 struct Failures {
   uint64_t orbits = 0;
@@ -28,25 +32,39 @@ struct Failures {
   static constexpr double kNoEnergy = std::numeric_limits<double>::quiet_NaN();
 
   void SeeEnergy(double error) { energy = std::fmax(energy, ErrorSize(error)); }  // fmax drops NaN
-
-  uint64_t Total() const {
-    return escapes + negative_times + loops + inward + missed + phantoms + beyond_walls;
-  }
-
-  void Merge(const Failures& other) {
-    orbits += other.orbits;
-    hits += other.hits;
-    escapes += other.escapes;
-    negative_times += other.negative_times;
-    loops += other.loops;
-    inward += other.inward;
-    looked_back += other.looked_back;
-    missed += other.missed;
-    phantoms += other.phantoms;
-    beyond_walls += other.beyond_walls;
-    deepest = std::max(deepest, other.deepest);
-    energy = std::fmax(energy, other.energy);
-  }
+  uint64_t Total() const;  // failures of all kinds
+  void Merge(const Failures& other);
 };
+
+// A kind of failure. README.md says when it is counted.
+struct FailureKind {
+  uint64_t Failures::*count;
+  const char* letter;
+  const char* name;
+};
+
+inline constexpr FailureKind kFailureKinds[] = {
+    {&Failures::escapes, "e", "escape"},
+    {&Failures::negative_times, "n", "negative time"},
+    {&Failures::loops, "l", "loop"},
+    {&Failures::inward, "i", "hit that leaves the ball heading inward"},
+    {&Failures::missed, "m", "missed piston"},
+    {&Failures::phantoms, "p", "phantom hit"},
+    {&Failures::beyond_walls, "b", "piston beyond its wall"}};
+
+inline uint64_t Failures::Total() const {
+  uint64_t total = 0;
+  for (const FailureKind& kind : kFailureKinds) total += this->*kind.count;
+  return total;
+}
+
+inline void Failures::Merge(const Failures& other) {
+  for (const FailureKind& kind : kFailureKinds) this->*kind.count += other.*kind.count;
+  orbits += other.orbits;
+  hits += other.hits;
+  looked_back += other.looked_back;
+  deepest = std::max(deepest, other.deepest);
+  energy = std::fmax(energy, other.energy);
+}
 
 }  // namespace ballpiston::stability

@@ -1,5 +1,3 @@
-#include "tools/stability/gas_energy.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -7,11 +5,13 @@
 
 #include "core/gas/canonical_gas.h"
 #include "core/gas/gas_exchange_rate.h"
+#include "core/gas/gas_run.h"
 #include "core/geometry/paper.h"
-#include "tools/stability/error_size.h"
-#include "tools/stability/fixed_step_gas_events.h"
-#include "tools/stability/gas_methods.h"
-#include "tools/stability/metered_gases.h"
+#include "tools/flows/metered_gases.h"
+#include "tools/stability/energy.h"
+#include "tools/stability/failures.h"
+#include "tools/stability/fixed_step_events.h"
+#include "tools/stability/markdown_table.h"
 #include "tools/stability/textbook_gas.h"
 
 namespace ballpiston::stability {
@@ -19,20 +19,19 @@ namespace {
 
 constexpr uint64_t kGasEnergySeed = 25;
 constexpr uint64_t kGases = 48;
-constexpr double kUlp = std::numeric_limits<double>::epsilon();
 
 GasGeometry EnergyGas() {
   return *GasGeometry::Create(kPaperRho, 0.2, *ParseGasShape("4x3"), GasEnds::kPeriodic);
 }
 
-std::vector<GasReplica> EnergyReplicas() {
-  std::vector<GasReplica> replicas;
+std::vector<GasStart> EnergyStarts() {
+  std::vector<GasStart> starts;
   for (uint64_t i = 0; i < kGases; ++i) {
     const GasRandom random(kGasEnergySeed, 0, i);
     CounterRandom of_start = random.OfStart();
-    replicas.push_back({DrawGas(EnergyGas(), TemperatureProfile(1), of_start), {}, random});
+    starts.push_back({DrawGas(EnergyGas(), TemperatureProfile(1), of_start), {}, random, nullptr});
   }
-  return replicas;
+  return starts;
 }
 
 // The time in which each gas has about this number of exchanges.
@@ -41,19 +40,30 @@ double TimeOf(double exchanges) {
   return exchanges / (static_cast<double>(gas.contacts()) * GasExchangeRate(gas, 1));
 }
 
-GasEnergyRun OfEngine(const char* name, GasEngine engine, double exchanges) {
-  GasEnergyRun run = {.method = name, .promised = true};
-  const std::vector<GasReplica> replicas = EnergyReplicas();
-  MeteredGases gases(engine, EnergyGas(), replicas);
-  gases.AdvanceTo(TimeOf(exchanges));
-  for (size_t i = 0; i < gases.size(); ++i) {
-    run.exchanges += gases.meter(i).exchanges();
-    run.Add(gases.meter(i).TotalEnergy() / gases.EnergyAtStart(i) - 1);
-  }
-  return run;
+double TotalEnergy(const GasState& state) { return GasMeter(EnergyGas(), state).TotalEnergy(); }
+
+EnergyRun RunOf(const char* method, bool promised, const GasEnergyRecord& record) {
+  return {.method = method,
+          .what = "gases",
+          .orbits = kGases,
+          .hits = record.exchanges(),
+          .promised = promised,
+          .worst = record.Worst(),
+          .permitted = record.LongestWalk(),
+          .change = record.Mean()};
 }
 
-double TotalEnergy(const GasState& state) { return GasMeter(EnergyGas(), state).TotalEnergy(); }
+EnergyRun OfEngine(const char* method, GasEngine engine, double exchanges) {
+  GasEnergyRecord record;
+  const std::vector<GasStart> starts = EnergyStarts();
+  MeteredGases gases(engine, EnergyGas(), starts);
+  gases.AdvanceTo(TimeOf(exchanges));
+  for (size_t i = 0; i < starts.size(); ++i) {
+    const GasMeter& meter = gases.meters()[i];
+    record.Add(meter.exchanges(), meter.TotalEnergy() / TotalEnergy(starts[i].state) - 1);
+  }
+  return RunOf(method, true, record);
+}
 
 template <typename Gas>
 GasState StateOf(const Gas& gas, double time) {
@@ -66,50 +76,58 @@ GasState StateOf(const Gas& gas, double time) {
 }
 
 template <typename Gas>
-GasEnergyRun OfEvents(const char* name, double exchanges) {
-  GasEnergyRun run = {.method = name, .promised = false};
+EnergyRun OfEvents(const char* method, double exchanges) {
+  GasEnergyRecord record;
   const double end = TimeOf(exchanges);
-  for (const GasReplica& replica : EnergyReplicas()) {
-    Gas gas(EnergyGas(), replica.state, {});
+  for (const GasStart& start : EnergyStarts()) {
+    Gas gas(EnergyGas(), start.state, {});
+    uint64_t made = 0;
     bool has_escaped = false;
     while (!has_escaped && gas.NextTime() <= end) {
       const EventKind kind = gas.Step().kind;
-      run.exchanges += kind == EventKind::kBallPiston;
+      made += kind == EventKind::kBallPiston;
       has_escaped = kind == EventKind::kEscape;
     }
-    run.Add(TotalEnergy(StateOf(gas, end)) / TotalEnergy(replica.state) - 1);
+    record.Add(made, TotalEnergy(StateOf(gas, end)) / TotalEnergy(start.state) - 1);
   }
-  return run;
+  return RunOf(method, false, record);
 }
 
 }  // namespace
 
-void GasEnergyRun::Add(double error) {
-  errors.Add(error);
-  worst = std::max(worst, ErrorSize(error));
+void GasEnergyRecord::Add(uint64_t exchanges, double error) {
+  exchanges_ += exchanges;
+  errors_.Add(error);
+  worst_ = std::max(worst_, ErrorSize(error));
 }
 
-bool HasTrend(const GasEnergyRun& run) {
-  const double mean = std::fabs(run.errors.mean);
-  // Written as a negation, so that a mean or a standard error that is not a number is a trend.
-  return !(mean <= 4 * run.errors.StandardError().value_or(0) || mean <= kUlp);
+double GasEnergyRecord::LongestWalk() const {
+  const double each = static_cast<double>(exchanges_) / static_cast<double>(errors_.count);
+  return 4 * std::numeric_limits<double>::epsilon() * (1 + std::sqrt(each));
 }
 
-bool LosesEnergy(const GasEnergyRun& run) {
-  const double each = static_cast<double>(run.exchanges) / static_cast<double>(run.errors.count);
-  return HasTrend(run) || !(run.worst <= kUlpsOfAWalk * kUlp * (1 + std::sqrt(each)));
-}
-
-std::vector<GasEnergyRun> GasEnergyRuns(double effort) {
+std::vector<EnergyRun> GasEnergyRuns(double effort) {
+  using enum TextbookRule;
   const auto exchanges = [effort](double full) { return std::max(full * effort, 100.0); };
   return {
       OfEngine("lanes", GasEngine::kLanes, exchanges(5e4)),
       OfEngine("reference", GasEngine::kReference, exchanges(5e4)),
       OfEngine("jump process", GasEngine::kJumps, exchanges(5e5)),
-      OfEvents<TextbookGas<TextbookRule::kPositiveRoot>>("nearest root", exchanges(2e3)),
-      OfEvents<TextbookGas<TextbookRule::kApproaching>>("approaching disc", exchanges(2e3)),
+      OfEvents<TextbookGas<kPositiveRoot>>("nearest root", exchanges(2e3)),
+      OfEvents<TextbookGas<kApproaching>>("approaching disc", exchanges(2e3)),
       OfEvents<FixedStepGasEvents>("fixed steps of 1e-3", exchanges(5e2)),
   };
+}
+
+std::string GasEnergyTable(const std::vector<EnergyRun>& runs) {
+  MarkdownTable table({"method", "gases", "piston hits", "worst dE/E", "mean at the end",
+                       "its standard error", "a trend"});
+  for (const EnergyRun& run : runs) {
+    table.Add({run.method, CountText(run.orbits), CountText(run.hits), ErrorText(run.worst),
+               SignedText(run.change.value), ErrorText(run.change.error),
+               YesOrNo(run.change.IsTrend())});
+  }
+  return table.Text(1);
 }
 
 }  // namespace ballpiston::stability

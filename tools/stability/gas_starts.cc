@@ -13,7 +13,7 @@
 #include "core/gas/reference_gas.h"
 #include "core/gas/thermal_walls.h"
 #include "core/sampling/direction.h"
-#include "tools/stability/wall_starts.h"
+#include "tools/stability/pair_starts.h"
 
 namespace ballpiston::stability {
 namespace {

@@ -1,11 +1,11 @@
 // Starts of gases just before situations in which methods fail. The fastest body has about speed 1.
-// wall_starts.h defines the offsets.
+// pair_starts.h defines the offsets.
 #pragma once
 
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_state.h"
 #include "core/sampling/counter_random.h"
-#include "tools/stability/drawn_starts.h"
+#include "tools/stability/pair_starts.h"
 
 namespace ballpiston::stability {
 

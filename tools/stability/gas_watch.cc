@@ -2,10 +2,14 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <span>
 
-#include "tools/stability/pair_watch.h"
+#include "tools/flows/metered_gases.h"
+#include "tools/stability/tip_sequence.h"
 
 namespace ballpiston::stability {
 namespace {
@@ -19,16 +23,15 @@ double PlaceSlack(double epsilon, double time, double speed) {
 
 }  // namespace
 
+// ---- by events ----
+
 GasWatch::GasWatch(const GasGeometry& geometry, const GasState& start, const ThermalWalls& walls,
                    double epsilon)
-    : geometry_(geometry),
-      walls_(walls),
-      look_(geometry.pair(), epsilon),
-      epsilon_(epsilon),
-      short_(ShortFlight(geometry.pair(), epsilon)),
-      longest_standstill_(LongestStandstill(geometry.pair())) {
+    : geometry_(geometry), walls_(walls), look_(geometry.pair(), epsilon), epsilon_(epsilon) {
+  const Standstill standstill(ShortFlight(geometry.pair(), epsilon),
+                              LongestStandstill(geometry.pair()));
   for (const GasBall& ball : start.balls) {
-    balls_.push_back({ball});
+    balls_.push_back({ball, standstill});
     start_energy_ += EnergyOf(ball);
   }
   for (const GasPiston& piston : start.pistons) {
@@ -94,20 +97,13 @@ bool GasWatch::IsBeyond(const Ball& ball, Direction direction, const Piston& pis
 bool GasWatch::SeeBall(const GasEvent& event, const GasBall& after, Failures& failures) {
   Ball& ball = balls_[Index(event.ball)];
   const double length = (event.time - ball.since) * ball.state.speed;
-  ball.standstill = length < short_ ? ball.standstill + 1 : 0;
   ball.state = after;
   ball.since = event.time;
-  if (!(look_.Depth(after.position) <= AnywhereSlack(epsilon_))) {
-    ++failures.escapes;
-    return false;
-  }
-  failures.deepest = std::max(failures.deepest, look_.Depth(after.position));
+  if (!look_.IsInCell(after.position, failures)) return false;
   if (event.kind == EventKind::kBallWall) {
     failures.inward += look_.HeadsInward(after.position, after.direction);
   }
-  if (ball.standstill <= longest_standstill_) return true;
-  ++failures.loops;
-  return false;
+  return !ball.standstill.See(length, failures);
 }
 
 void GasWatch::SeePiston(const GasEvent& event, const GasPiston& after) {
@@ -132,6 +128,104 @@ double GasWatch::EnergyError() const {
   for (const Ball& ball : balls_) energy += EnergyOf(ball.state);
   for (const Piston& piston : pistons_) energy += EnergyOf(piston.state);
   return std::fabs(energy / start_energy_ - 1);
+}
+
+// ---- by meters ----
+
+namespace {
+
+constexpr double kGasEpsilon = std::numeric_limits<double>::epsilon();
+constexpr uint64_t kNeighbourSeed = 25;
+
+// A neighbouring start: every number is changed by at most `most`.
+GasState Moved(double most, const GasGeometry& geometry, GasState state, CounterRandom& random) {
+  const auto off = [&] { return most * (2 * random.Uniform() - 1); };
+  const double reach = geometry.reach();
+  for (GasBall& ball : state.balls) {
+    ball.position += Eigen::Vector2d(off(), off());
+    ball.direction = (ball.direction + Eigen::Vector2d(off(), off())).normalized();
+  }
+  for (GasPiston& piston : state.pistons) {
+    piston.offset = std::clamp(piston.offset + off(), -reach, reach);
+  }
+  return state;
+}
+
+GasReading ByReference(const GasGeometry& geometry, const GasStart& replica, double time) {
+  MeteredGases gases(GasEngine::kReference, geometry, {replica});
+  gases.AdvanceTo(time);
+  return ReadingOf(gases.meters().front());
+}
+
+double Distance(const GasReading& a, const GasReading& b) {
+  double distance = 0;
+  for (size_t i = 0; i < a.energies.size(); ++i) {
+    distance = std::max(distance, ErrorSize(a.energies[i] - b.energies[i]));
+  }
+  return distance;
+}
+
+// Compares the reading with the reference, from the same start and, at each scale, from `each`
+// neighbouring starts.
+Failures AsNeighboursTell(const GasGeometry& geometry, const GasStart& replica, double time,
+                          const GasReading& reading, std::span<const double> scales, int each) {
+  const GasReading middle = ByReference(geometry, replica, time);
+  CounterRandom random(kNeighbourSeed, 0, 0);
+  double nearest = Distance(reading, middle), spread = 0;
+  for (const double scale : scales) {
+    for (int i = 0; i < each; ++i) {
+      GasStart moved = replica;
+      moved.state = Moved(scale * kGasEpsilon, geometry, replica.state, random);
+      const GasReading other = ByReference(geometry, moved, time);
+      nearest = std::min(nearest, Distance(reading, other));
+      spread = std::max(spread, Distance(middle, other));
+    }
+  }
+  Failures found;
+  // Two neighbours differ by at most twice their largest difference from the middle.
+  if (nearest <= 1e4 * kGasEpsilon * middle.Total() + 2 * spread) return found;
+  (reading.exchanges < middle.exchanges ? found.missed : found.phantoms) = 1;
+  return found;
+}
+
+}  // namespace
+
+double GasReading::Total() const {
+  double sum = 0;
+  for (const double energy : energies) sum += energy;
+  return sum;
+}
+
+GasReading ReadingOf(const GasMeter& meter) {
+  GasReading reading = {.energies = {}, .exchanges = meter.exchanges()};
+  for (size_t i = 0; i < meter.bodies(); ++i) reading.energies.push_back(meter.Energy(i));
+  return reading;
+}
+
+Failures LookBack(const GasGeometry& geometry, const GasStart& replica, double time,
+                  const GasReading& reading) {
+  static constexpr std::array<double, 1> kBeyondRounding = {64};
+  static constexpr std::array<double, 4> kScales = {1, 4, 16, 64};
+  Failures found = AsNeighboursTell(geometry, replica, time, reading, kBeyondRounding, 2);
+  // The middle has rounding errors too. In a tip, or for a grazing ball, an ulp decides, and two
+  // neighbours are not enough.
+  if (found.Total() > 0) found = AsNeighboursTell(geometry, replica, time, reading, kScales, 500);
+  found.looked_back = reading.exchanges;
+  return found;
+}
+
+Failures LookAtEnergies(const GasGeometry& geometry, const GasMeter& meter, double start) {
+  const GasReading reading = ReadingOf(meter);
+  const bool is_valid = std::ranges::all_of(
+      reading.energies, [](double energy) { return energy >= 0 && std::isfinite(energy); });
+  Failures found;
+  found.orbits = 1;
+  found.hits = reading.exchanges;
+  found.escapes = meter.escapes() + (is_valid ? 0 : 1);
+  if (geometry.ends() == GasEnds::kPeriodic) {
+    found.SeeEnergy(std::fabs(reading.Total() / start - 1));
+  }
+  return found;
 }
 
 }  // namespace ballpiston::stability

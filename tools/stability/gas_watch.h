@@ -1,9 +1,5 @@
-// Checks a gas after each of its events, for methods that report all events.
-//
-// Between two of its events a body moves in a straight line. The watch moves every body from its
-// last event to its next event and checks there that the ball is not beyond one of its pistons, and
-// that the piston is not beyond the ends of its path. At a contact this check covers the whole time
-// between the two events, because the gap between a ball and a piston changes linearly.
+// Checks gases: after each event if the method reports all events, else through their meters, by
+// the exchanges of a short run, and by the energies at the end of any run.
 #pragma once
 
 #include <cstddef>
@@ -11,6 +7,8 @@
 #include <vector>
 
 #include "core/gas/gas_geometry.h"
+#include "core/gas/gas_meter.h"
+#include "core/gas/gas_run.h"
 #include "core/gas/gas_state.h"
 #include "core/gas/reference_gas.h"
 #include "core/gas/thermal_walls.h"
@@ -19,6 +17,12 @@
 
 namespace ballpiston::stability {
 
+// Checks every event of one gas.
+//
+// Between two of its events a body moves in a straight line. The watch moves every body from its
+// last event to its next event and checks there that the ball is not beyond one of its pistons, and
+// that the piston is not beyond the ends of its path. At a contact this check covers the whole time
+// between the two events, because the gap between a ball and a piston changes linearly.
 class GasWatch {
  public:
   // `walls` says which pistons get energy from outside.
@@ -35,8 +39,8 @@ class GasWatch {
  private:
   struct Ball {
     GasBall state;
+    Standstill standstill;
     double since = 0;
-    uint64_t standstill = 0;
   };
   struct Piston {
     GasPiston state;
@@ -56,13 +60,33 @@ class GasWatch {
   ThermalWalls walls_;
   BallWatch look_;
   double epsilon_;
-  double short_;
-  uint64_t longest_standstill_;
   std::vector<Ball> balls_;
   std::vector<Piston> pistons_;
   double start_energy_ = 0;
   double given_ = 0;  // the energy from thermal walls
   double last_ = 0;   // the time of the latest event
 };
+
+// The reading of a gas's meter at one time.
+struct GasReading {
+  std::vector<double> energies;  // by body
+  uint64_t exchanges = 0;
+
+  double Total() const;
+};
+
+GasReading ReadingOf(const GasMeter& meter);
+
+// Compares the reading of a replica at `time` with the readings of the reference gas, from the same
+// start and from neighbouring starts. Rounding errors grow with every hit: therefore `time` is the
+// duration of a few flights. A difference counts if the engine differs from all neighbours by more
+// than they differ from each other. It counts as missed if the engine had fewer exchanges than the
+// reference, else as a phantom.
+Failures LookBack(const GasGeometry& geometry, const GasStart& replica, double time,
+                  const GasReading& reading);
+
+// Checks a replica that started with the energy `start`. Counts escapes, also if an energy is not a
+// number, and, without thermal walls, the error of the energy.
+Failures LookAtEnergies(const GasGeometry& geometry, const GasMeter& meter, double start);
 
 }  // namespace ballpiston::stability

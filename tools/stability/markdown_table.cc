@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -33,6 +34,12 @@ std::string Rule(const std::vector<size_t>& widths, size_t labels) {
 }
 
 }  // namespace
+
+void MarkdownTable::Add(std::vector<std::string> row) {
+  const std::string before = std::exchange(group_, row.front());
+  if (group_ == before) row.front().clear();
+  rows_.push_back(std::move(row));
+}
 
 std::string MarkdownTable::Text(size_t labels) const {
   std::vector<size_t> widths(rows_.front().size(), 1);

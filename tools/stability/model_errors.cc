@@ -22,6 +22,7 @@
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/paper.h"
 #include "core/model_choice/ladder.h"
+#include "tools/stability/markdown_table.h"
 
 namespace ballpiston::stability {
 namespace {
@@ -59,7 +60,9 @@ class Places {
   // In equilibrium, or from each of the energies.
   void Relaxation(Model model, const Cell& cell, int64_t orbits,
                   const std::vector<double>& epsilons = {}) {
-    Add(At(&kEnergyRelaxation, cell, orbits, model), epsilons);
+    const EnsembleSpec question = At(&kEnergyRelaxation, cell, orbits, model);
+    if (epsilons.empty()) questions_.push_back(question);
+    Add(question, ballpiston::kEpsilon, epsilons);
   }
 
   // With each of the cold reservoirs; the hot one has temperature 1. A sample is half a relaxation
@@ -69,10 +72,7 @@ class Places {
     EnsembleSpec question = At(&kGasConduction, cell, 24 * runs, Model::kMarkov);
     question.grid[kCells] = {CodeOf(*ParseGasShape(cells))};
     question.grid[kHot] = {1};
-    for (const double cold : colds) {
-      question.grid[kCold] = {cold};
-      questions_.push_back(question);
-    }
+    Add(question, kCold, colds);
   }
 
   void Conductivity(Model model, const Cell& cell, const char* cells, int64_t replicas) {
@@ -83,10 +83,10 @@ class Places {
     questions_.push_back(question);
   }
 
-  void SinglePrecision(const Cell& cell, int64_t returns, double epsilon) {
+  void SinglePrecision(const Cell& cell, int64_t returns) {
     EnsembleSpec question = At(&kConditionalMeanFreeTime, cell, returns, Model::kBilliard);
     question.precision = Precision::kSingle;
-    Add(question, {epsilon});
+    Add(question, ballpiston::kEpsilon, {0.25});
   }
 
   const std::vector<EnsembleSpec>& questions() const { return questions_; }
@@ -100,10 +100,9 @@ class Places {
             .model = model};
   }
 
-  void Add(EnsembleSpec question, const std::vector<double>& epsilons) {
-    if (epsilons.empty()) questions_.push_back(question);
-    for (const double epsilon : epsilons) {
-      question.grid[ballpiston::kEpsilon] = {epsilon};
+  void Add(EnsembleSpec question, const Parameter& parameter, const std::vector<double>& values) {
+    for (const double value : values) {
+      question.grid[parameter] = {value};
       questions_.push_back(question);
     }
   }
@@ -170,9 +169,9 @@ void AddConductivity(Places& places) {
 
 void AddSinglePrecision(Places& places) {
   for (const double rho : {kNearHalf, 0.65, kSmallCell}) {
-    places.SinglePrecision(OfPair(rho, 1), 20'000'000, 0.25);
+    places.SinglePrecision(OfPair(rho, 1), 20'000'000);
   }
-  places.SinglePrecision(OfPair(kLargestSingle, 1), 10'000'000, 0.25);
+  places.SinglePrecision(OfPair(kLargestSingle, 1), 10'000'000);
 }
 
 // ---- a measurement ----
@@ -285,6 +284,18 @@ std::vector<std::string> BrokenClaims(const std::vector<ModelError>& errors) {
         count.all - count.tight, count.all));
   }
   return broken;
+}
+
+std::string ModelErrorTable(const std::vector<ModelError>& errors) {
+  MarkdownTable table(
+      {"claim", "place", "difference", "its standard error", "stated", "ratio", "at most 4 times"});
+  for (const ModelError& error : errors) {
+    table.Add({ClaimOf(error.question), PlaceOf(error.question), SignedText(error.difference),
+               ErrorText(error.standard_error), ErrorText(error.Stated()),
+               error.Counts() ? absl::StrFormat("%.2f", error.Ratio()) : "-",
+               YesOrNo(error.IsTight())});
+  }
+  return table.Text(2);
 }
 
 }  // namespace ballpiston::stability

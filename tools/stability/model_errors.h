@@ -48,4 +48,6 @@ std::vector<ModelError> ModelErrors();  // with all samples
 // places tight, or without a place that counts.
 std::vector<std::string> BrokenClaims(const std::vector<ModelError>& errors);
 
+std::string ModelErrorTable(const std::vector<ModelError>& errors);
+
 }  // namespace ballpiston::stability

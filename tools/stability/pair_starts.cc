@@ -8,8 +8,6 @@
 #include "core/geometry/cell_profile.h"
 #include "core/sampling/collision_surface.h"
 #include "core/sampling/direction.h"
-#include "core/sampling/invariant_measure.h"
-#include "tools/stability/wall_starts.h"
 
 namespace ballpiston::stability {
 namespace {
@@ -95,10 +93,6 @@ PairState JustAfterCollision(const PairGeometry& geometry, double ball, double p
 }
 
 }  // namespace
-
-PairState AnyCollision(const PairGeometry& geometry, CounterRandom& random) {
-  return DrawFromCollisionMeasure(geometry, random);
-}
 
 PairState AimedAtPistonsEdge(const PairGeometry& geometry, CounterRandom& random) {
   return Backwards(geometry, [&] {

@@ -1,8 +1,7 @@
-// Starts of ball-piston pairs just before situations in which methods fail. wall_starts.h defines
-// the offsets.
+// Starts of balls alone and of ball-piston pairs: anywhere, or just before situations in which
+// methods fail.
 //
-// Most starts are computed backwards: the state in the target situation is reversed and moved over
-// a few wall hits. In this way an engine makes a few hits before it reaches the situation.
+// The offset from the target is +-10^-k, k = 3 ... 17, or exactly 0: one of 16 values at random.
 #pragma once
 
 #include "core/geometry/pair_geometry.h"
@@ -11,8 +10,28 @@
 
 namespace ballpiston::stability {
 
-// Any orbit, drawn from the invariant measure of the return map.
-PairState AnyCollision(const PairGeometry& geometry, CounterRandom& random);
+double RandomOffset(CounterRandom& random);
+
+using DrawStart = PairState(const PairGeometry& geometry, CounterRandom& random);
+
+// ---- a ball alone ----
+//
+// On a wall, with a velocity away from it. The piston rests at its right wall, out of the ball's
+// reach.
+
+// A wall point, uniform in the angle at the disc's centre; the direction follows the cosine law.
+PairState AnywhereOnWall(const PairGeometry& geometry, CounterRandom& random);
+
+// From a wall in sight of a tip towards that tip; the direction has an offset.
+PairState AimedAtTip(const PairGeometry& geometry, CounterRandom& random);
+
+// Past a disc in sight with impact parameter rho (1 - offset).
+PairState AimedToGraze(const PairGeometry& geometry, CounterRandom& random);
+
+// ---- ball and piston ----
+//
+// Most starts are computed backwards: the state in the target situation is reversed and moved over
+// a few wall hits. In this way an engine makes a few hits before it reaches the situation.
 
 // The ball hits the wall at the end of the piston, in the wedge between the two: it hits wall and
 // piston at the same instant, up to the offset.

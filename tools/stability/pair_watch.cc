@@ -29,38 +29,31 @@ bool Exceeds(const std::vector<double>& values, double slack) {
 
 }  // namespace
 
-uint64_t LongestStandstill(const PairGeometry& geometry) {
-  return 64 + 4 * LongestTipSequence(geometry);
-}
-
-double AnywhereSlack(double epsilon) { return kPositionUlps * std::sqrt(epsilon); }
-
 PairWatch::PairWatch(const PairGeometry& geometry, double epsilon)
     : ball_(geometry, epsilon),
       epsilon_(epsilon),
       short_(ShortFlight(geometry, epsilon)),
-      longest_standstill_(LongestStandstill(geometry)) {}
+      standstill_(short_, LongestStandstill(geometry)) {}
 
 bool PairWatch::See(const PairState& state, EventKind kind, double duration, Failures& failures) {
   failures.negative_times += duration < 0;
-  if (kind == EventKind::kEscape || !(ball_.Depth(state.position) <= AnywhereSlack(epsilon_))) {
+  if (kind == EventKind::kEscape) {
     ++failures.escapes;
     return false;
   }
-  failures.deepest = std::max(failures.deepest, ball_.Depth(state.position));
+  if (!ball_.IsInCell(state.position, failures)) return false;
   if (kind == EventKind::kBallWall)
     failures.inward += ball_.HeadsInward(state.position, state.direction);
   failures.hits += kind == EventKind::kBallPiston;
   failures.looked_back += kind == EventKind::kBallPiston;
-  standstill_ = duration < short_ ? standstill_ + 1 : 0;
-  failures.loops += standstill_ > longest_standstill_;
+  const bool stands = standstill_.See(duration, failures);
   // In a corner several events happen at the same time. The ball may be beyond the piston until its
   // collision is reported.
   const double beyond = state.position.x() - state.piston;
   const bool missed = duration > short_ && beyond > kPositionUlps * epsilon_ &&
                       beyond > ball_.Slack(state.position, state.direction);
   failures.missed += missed;
-  return standstill_ <= longest_standstill_ && !missed;
+  return !stands && !missed;
 }
 
 void PairWatch::SeeExchanged(const PairState& state, Failures& failures) {
@@ -69,29 +62,17 @@ void PairWatch::SeeExchanged(const PairState& state, Failures& failures) {
 
 CollisionWatch::CollisionWatch(const PairGeometry& geometry, double epsilon,
                                std::span<const PairState> starts, uint64_t collisions)
-    : geometry_(geometry),
-      ball_(geometry, epsilon),
-      epsilon_(epsilon),
-      starts_(starts),
-      collisions_(collisions),
-      longest_standstill_(LongestStandstill(geometry)),
-      orbits_(starts.size()) {}
-
-PairState CollisionWatch::Start(uint64_t orbit) {
-  orbits_[orbit].departure = starts_[orbit];
-  return starts_[orbit];
+    : geometry_(geometry), ball_(geometry, epsilon), epsilon_(epsilon), collisions_(collisions) {
+  const Standstill standstill(kShortUlps * epsilon, LongestStandstill(geometry));
+  for (const PairState& start : starts) orbits_.push_back({start, standstill});
 }
 
 AfterCollision CollisionWatch::Collide(uint64_t i, const Collision& collision) {
   Orbit& orbit = orbits_[i];
   const PairState& state = collision.state;
-  const double depth = ball_.Depth(state.position);
-  if (collision.escaped || !(depth <= AnywhereSlack(epsilon_))) {
-    ++failures_.escapes;
-    return End(orbit);
-  }
+  failures_.escapes += collision.escaped;
+  if (collision.escaped || !ball_.IsInCell(state.position, failures_)) return End(orbit);
   ++failures_.hits;
-  failures_.deepest = std::max(failures_.deepest, depth);
   failures_.negative_times += collision.time < 0;
   failures_.SeeEnergy(EnergyError(state));
   failures_.inward += Approach(state) < -kDirectionUlps * epsilon_;
@@ -99,12 +80,8 @@ AfterCollision CollisionWatch::Collide(uint64_t i, const Collision& collision) {
   ReferenceFlow flow(geometry_, state);
   flow.ExchangeComponents();
   orbit.departure = flow.state();
-  orbit.standstill = collision.time < kShortUlps * epsilon_ ? orbit.standstill + 1 : 0;
-  if (orbit.standstill <= longest_standstill_) {
-    return ++orbit.collisions < collisions_ ? AfterCollision::kGoOn : End(orbit);
-  }
-  ++failures_.loops;
-  return End(orbit);
+  const bool stands = orbit.standstill.See(collision.time, failures_);
+  return !stands && ++orbit.collisions < collisions_ ? AfterCollision::kGoOn : End(orbit);
 }
 
 void CollisionWatch::LookBack(const PairState& departure, const Collision& collision) {

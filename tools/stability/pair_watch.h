@@ -16,16 +16,6 @@
 
 namespace ballpiston::stability {
 
-// The largest number of successive events without time between them. In a corner of walls and
-// piston there are a few hits. If the piston presses the ball into a tip, there is a tip sequence
-// between any two of these hits.
-uint64_t LongestStandstill(const PairGeometry& geometry);
-
-// The permitted depth inside a disc of a ball that is not on a wall. There the cosine that
-// magnified the rounding error is unknown; therefore this is the depth for the worst case, a
-// grazing ball.
-double AnywhereSlack(double epsilon);
-
 // Checks every event of one orbit.
 class PairWatch {
  public:
@@ -40,8 +30,7 @@ class PairWatch {
   BallWatch ball_;
   double epsilon_;
   double short_;
-  uint64_t longest_standstill_;
-  uint64_t standstill_ = 0;
+  Standstill standstill_;
 };
 
 // Checks many orbits of an engine that reports only collisions. To find a missed collision, the
@@ -55,7 +44,7 @@ class CollisionWatch : public NumberedOrbits {
   CollisionWatch(const PairGeometry& geometry, double epsilon, std::span<const PairState> starts,
                  uint64_t collisions);
 
-  PairState Start(uint64_t orbit) override;
+  PairState Start(uint64_t orbit) override { return orbits_[orbit].departure; }
   AfterCollision Collide(uint64_t orbit, const Collision& collision) override;
 
   // An orbit that has not reached its end counts as a missed piston.
@@ -64,8 +53,8 @@ class CollisionWatch : public NumberedOrbits {
  private:
   struct Orbit {
     PairState departure;
+    Standstill standstill;
     uint64_t collisions = 0;
-    uint64_t standstill = 0;
     bool ended = false;
   };
 
@@ -77,9 +66,7 @@ class CollisionWatch : public NumberedOrbits {
   PairGeometry geometry_;
   BallWatch ball_;
   double epsilon_;
-  std::span<const PairState> starts_;
   uint64_t collisions_;
-  uint64_t longest_standstill_;
   std::vector<Orbit> orbits_;
   Failures failures_;
 };

@@ -22,4 +22,11 @@ inline uint64_t LongestTipSequence(const PairGeometry& geometry) {
   return static_cast<uint64_t>(std::numbers::pi / (2 * std::atan(geometry.lambda()))) + 8;
 }
 
+// The largest number of successive events without time between them. In a corner of walls and
+// piston there are a few hits. If the piston presses the ball into a tip, there is a tip sequence
+// between any two of these hits.
+inline uint64_t LongestStandstill(const PairGeometry& geometry) {
+  return 64 + 4 * LongestTipSequence(geometry);
+}
+
 }  // namespace ballpiston::stability

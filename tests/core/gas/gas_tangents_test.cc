@@ -1,9 +1,8 @@
 #include "core/gas/gas_tangents.h"
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
-
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
+#include "tools/flows/precise_flow.h"  // boost/multiprecision
 
 namespace ballpiston {
 namespace {

@@ -1,13 +1,12 @@
-#include "tools/method_comparison/energy_relaxation_runs.h"
-
 #include "core/markov/relaxation_spectrum.h"
 #include "tests/core/preamble.h"
+#include "tools/method_comparison/point_runs.h"
 
 namespace ballpiston::method_comparison {
 namespace {
 
 TEST(EnergyRelaxationRuns, RunsHaveTheRequestedOrbitsAndOtherOrbitsGiveOtherValues) {
-  const EnergyRelaxationRuns runs(PaperGeometry(0.2), 5);
+  const EnergyRelaxationRuns runs = {PaperGeometry(0.2), 5};
   for (const Method method : {Method::kLanes, Method::kMarkov}) {
     const PointEstimate run = runs.Run(method, RunOf(64));
     const PointEstimate again = runs.Run(method, RunOf(64));
@@ -24,7 +23,7 @@ TEST(EnergyRelaxationRuns, RunsHaveTheRequestedOrbitsAndOtherOrbitsGiveOtherValu
 // False alarms: one in 15,000 seeds, and the seed is fixed.
 TEST(EnergyRelaxationRuns, TheJumpProcessAgreesWithTheSpectrum) {
   for (const double delta : {0.2, 0.0125}) {
-    const EnergyRelaxationRuns runs(PaperGeometry(delta), 6);
+    const EnergyRelaxationRuns runs = {PaperGeometry(delta), 6};
     const PointEstimate limit = runs.BySpectrum();
     const PointEstimate measured = runs.Run(Method::kMarkov, RunOf(4096));
     EXPECT_LT(std::fabs(measured.value - limit.value), 4 * measured.error) << delta;
@@ -34,7 +33,7 @@ TEST(EnergyRelaxationRuns, TheJumpProcessAgreesWithTheSpectrum) {
 
 // The spectrum needs no samples; its error is the discretisation error.
 TEST(EnergyRelaxationRuns, TheSpectrumTakesNoSamples) {
-  const EnergyRelaxationRuns runs(PaperGeometry(0.1), 0);
+  const EnergyRelaxationRuns runs = {PaperGeometry(0.1), 0};
   const PointEstimate limit = runs.BySpectrum();
   EXPECT_EQ(limit.samples, 0u);
   EXPECT_GT(limit.seconds, 0);
@@ -42,8 +41,8 @@ TEST(EnergyRelaxationRuns, TheSpectrumTakesNoSamples) {
 }
 
 TEST(EnergyRelaxationRuns, RarerCollisionsCostMore) {
-  const double seconds = EnergyRelaxationRuns(PaperGeometry(0.025), 0).PredictedSecondsPerOrbit();
-  EXPECT_GT(seconds, 5 * EnergyRelaxationRuns(PaperGeometry(0.2), 0).PredictedSecondsPerOrbit());
+  const EnergyRelaxationRuns rare = {PaperGeometry(0.025), 0}, frequent = {PaperGeometry(0.2), 0};
+  EXPECT_GT(rare.PredictedSecondsPerOrbit(), 5 * frequent.PredictedSecondsPerOrbit());
 }
 
 }  // namespace

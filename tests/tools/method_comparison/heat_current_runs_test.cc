@@ -1,6 +1,5 @@
-#include "tools/method_comparison/heat_current_runs.h"
-
 #include "tests/core/preamble.h"
+#include "tools/method_comparison/point_runs.h"
 
 namespace ballpiston::method_comparison {
 namespace {

@@ -5,7 +5,7 @@
 #include "tests/core/preamble.h"
 #include "tools/flows/numbered_orbits.h"
 #include "tools/stability/ball_watch.h"
-#include "tools/stability/energy_drift.h"
+#include "tools/stability/energy.h"
 #include "tools/stability/pair_watch.h"
 
 namespace ballpiston::stability {
@@ -125,15 +125,14 @@ TEST(Detectors, ANanEnergyErrorIsInfiniteAndAMissingErrorIsNan) {
 }
 
 TEST(Detectors, AnEnergyThatIsNotANumberDrifts) {
-  EnergyRun run = {
-      .method = "", .what = "", .hits = 0, .orbits = 1, .promised = true, .record = {}};
-  for (const double share : {0.1, 0.5, 0.9}) run.record.Add(share, 0);
-  EXPECT_FALSE(Drifts(run));
-  EXPECT_EQ(run.record.Worst(), 0);
-  run.record.Add(0.7, std::nan(""));
-  run.record.Add(0.8, 0);
-  EXPECT_TRUE(Drifts(run));
-  EXPECT_EQ(run.record.Worst(), HUGE_VAL);
+  EnergyRecord record;
+  for (const double share : {0.1, 0.5, 0.9}) record.Add(share, 0);
+  EXPECT_FALSE(record.Drift().IsTrend());
+  EXPECT_EQ(record.Worst(), 0);
+  record.Add(0.7, std::nan(""));
+  record.Add(0.8, 0);
+  EXPECT_TRUE(record.Drift().IsTrend());
+  EXPECT_EQ(record.Worst(), HUGE_VAL);
 }
 
 // On a wall of the lower left disc, halfway between its tips.

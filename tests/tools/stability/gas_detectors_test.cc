@@ -1,20 +1,14 @@
 // The checks of gases find planted failures: a watch receives changed events of the reference gas,
 // or an engine's reading is changed.
-#include <unistd.h>
-
-#include <csignal>
-#include <stdexcept>
-
 #include "core/gas/canonical_gas.h"
 #include "core/gas/reference_gas.h"
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
-#include "tools/stability/gas_cases.h"
-#include "tools/stability/gas_energy.h"
-#include "tools/stability/gas_look_back.h"
+#include "tools/flows/metered_gases.h"
+#include "tools/stability/cases.h"
+#include "tools/stability/energy.h"
+#include "tools/stability/gas_runs.h"
 #include "tools/stability/gas_watch.h"
-#include "tools/stability/metered_gases.h"
-#include "tools/stability/own_process.h"
 
 namespace ballpiston::stability {
 namespace {
@@ -22,9 +16,10 @@ namespace {
 GasGeometry Ring() { return GasOf(kPaperRho, 0.2, "3"); }
 GasGeometry Chain() { return GasOf(kPaperRho, 0.2, "3", GasEnds::kReservoirs); }
 
-GasReplica AReplica(const GasGeometry& geometry) {
+GasStart AReplica(const GasGeometry& geometry) {
   const GasRandom random(91, 0, 0);
-  return {GasInEquilibrium(geometry, 1, 92, 0), ThermalWalls(geometry, 2, 1, random), random};
+  return {GasInEquilibrium(geometry, 1, 92, 0), ThermalWalls(geometry, 2, 1, random), random,
+          nullptr};
 }
 
 // Changes an event before the watch receives it. If the change returns false, the event is omitted.
@@ -41,7 +36,7 @@ struct WatchedGas {
 };
 
 WatchedGas WatchGas(const GasGeometry& geometry, const Change& change, int events = 2000) {
-  const GasReplica replica = AReplica(geometry);
+  const GasStart replica = AReplica(geometry);
   ReferenceGas gas(geometry, replica.state, replica.walls);
   GasWatch watch(geometry, replica.state, replica.walls, std::numeric_limits<double>::epsilon());
   WatchedGas watched;
@@ -125,7 +120,7 @@ TEST(GasDetectors, PlantedFailuresAreCounted) {
 }
 
 TEST(GasDetectors, ABallThatStandsStillIsALoop) {
-  const GasReplica replica = AReplica(Ring());
+  const GasStart replica = AReplica(Ring());
   GasWatch watch(Ring(), replica.state, replica.walls, std::numeric_limits<double>::epsilon());
   ReferenceGas gas(Ring(), replica.state, replica.walls);
   GasEvent hit = gas.Step();
@@ -154,10 +149,10 @@ class GasLookBack : public ::testing::Test {
     Failures failures;
     for (uint64_t i = 0; i < 50; ++i) {
       const GasRandom random(93, 0, i);
-      const GasReplica replica = {GasInEquilibrium(Ring(), 1, 94, i), {}, random};
-      MeteredGases gases(GasEngine::kLanes, Ring(), {&replica, 1});
+      const GasStart replica = {GasInEquilibrium(Ring(), 1, 94, i), {}, random, nullptr};
+      MeteredGases gases(GasEngine::kLanes, Ring(), {replica});
       gases.AdvanceTo(kTime);
-      GasReading reading = ReadingOf(gases.meter(0));
+      GasReading reading = ReadingOf(gases.meters().front());
       if (reading.exchanges == 0) continue;
       change(reading);
       failures.Merge(LookBack(Ring(), replica, kTime, reading));
@@ -210,76 +205,54 @@ TEST(GasDetectors, OnlyAGasWithoutThermalWallsReportsItsEnergyError) {
   }
 }
 
-GasEnergyRun RunWithErrors(double mean, double scatter) {
-  GasEnergyRun run = {.method = "", .promised = true, .exchanges = 4 * 10'000};
-  for (const int sign : {-1, 1, -1, 1}) run.Add(mean + sign * scatter);
-  return run;
+GasEnergyRecord RecordWithErrors(double mean, double scatter) {
+  GasEnergyRecord record;
+  for (const int sign : {-1, 1, -1, 1}) record.Add(10'000, mean + sign * scatter);
+  return record;
+}
+
+bool LosesEnergy(const GasEnergyRecord& record) {
+  const EnergyRun run = {.method = "lanes",
+                         .what = "gases",
+                         .orbits = 4,
+                         .hits = record.exchanges(),
+                         .promised = true,
+                         .worst = record.Worst(),
+                         .permitted = record.LongestWalk(),
+                         .change = record.Mean()};
+  return run.LosesEnergy();
 }
 
 // 1e4 exchanges each: a random walk of ulps reaches about 2e-14.
 TEST(GasDetectors, ALossOfEnergyIsATrendOrMoreThanAWalk) {
-  EXPECT_FALSE(LosesEnergy(RunWithErrors(0, 2e-14)));
-  EXPECT_FALSE(HasTrend(RunWithErrors(1e-14, 2e-14)));
-  EXPECT_TRUE(HasTrend(RunWithErrors(2e-14, 1e-15)));
-  EXPECT_TRUE(LosesEnergy(RunWithErrors(2e-14, 1e-15)));
-  EXPECT_TRUE(LosesEnergy(RunWithErrors(0, 1e-12)));
+  EXPECT_FALSE(LosesEnergy(RecordWithErrors(0, 2e-14)));
+  EXPECT_FALSE(RecordWithErrors(1e-14, 2e-14).Mean().IsTrend());
+  EXPECT_TRUE(RecordWithErrors(2e-14, 1e-15).Mean().IsTrend());
+  EXPECT_TRUE(LosesEnergy(RecordWithErrors(2e-14, 1e-15)));
+  EXPECT_TRUE(LosesEnergy(RecordWithErrors(0, 1e-12)));
 }
 
 TEST(GasDetectors, AnEnergyErrorThatIsNotANumberIsATrendAndTheWorstError) {
   for (const double error : {std::nan(""), HUGE_VAL}) {
-    GasEnergyRun run = RunWithErrors(0, 1e-15);
-    run.Add(error);
-    run.Add(1e-15);
-    EXPECT_EQ(run.worst, HUGE_VAL);
-    EXPECT_TRUE(HasTrend(run));
-    EXPECT_TRUE(LosesEnergy(run));
+    GasEnergyRecord record = RecordWithErrors(0, 1e-15);
+    record.Add(10'000, error);
+    record.Add(10'000, 1e-15);
+    EXPECT_EQ(record.Worst(), HUGE_VAL);
+    EXPECT_TRUE(record.Mean().IsTrend());
+    EXPECT_TRUE(LosesEnergy(record));
   }
 }
 
-TEST(OwnProcess, ReturnsTheResult) {
-  const auto failures = InOwnProcess([] { return Failures{.orbits = 3, .missed = 2}; }, 5);
-  ASSERT_TRUE(failures.has_value());
-  EXPECT_EQ(failures->orbits, 3u);
-  EXPECT_EQ(failures->missed, 2u);
-}
-
-TEST(OwnProcess, EndsAnEndlessComputation) {
-  volatile bool for_ever = true;
-  const auto endless = [&] {
-    while (for_ever) {
-    }
-    return Failures();
-  };
-  EXPECT_FALSE(InOwnProcess(endless, 1).has_value());
-}
-
-// The system sends SIGKILL if there is no memory left.
-TEST(OwnProcess, AnyOtherEndWithoutAResultIsAnError) {
-  const std::vector<std::function<void()>> ends = {[] { std::abort(); }, [] { raise(SIGKILL); },
-                                                   [] { _exit(EXIT_SUCCESS); }, [] { throw 1; }};
-  for (const auto& end : ends) {
-    const auto compute = [&end] {
-      end();
-      return Failures();
-    };
-    EXPECT_THROW(InOwnProcess(compute, 1), std::runtime_error);
-  }
-}
-
-// The inner process requests more than the hard limit of the outer process. Only the superuser may
-// raise a hard limit.
-TEST(OwnProcess, ALimitThatCannotBeSetIsAnError) {
-  const auto has_failed = [] {
-    constexpr uid_t kNobody = 65534;
-    if (geteuid() == 0 && setuid(kNobody) != 0) _exit(EXIT_FAILURE);
-    try {
-      InOwnProcess([] { return Failures(); }, 60);
-    } catch (const std::runtime_error&) {
-      return Failures{.orbits = 1};
-    }
-    return Failures();
-  };
-  EXPECT_EQ(InOwnProcess(has_failed, 5).value().orbits, 1u);
+// These gases need more processor time than they may take.
+TEST(GasDetectors, LaneGasesThatTakeTooLongAreALoop) {
+  const std::vector<GasStart> starts(50, AReplica(Ring()));
+  const Failures usual = RunLaneGases(Ring(), starts, 30);
+  EXPECT_EQ(usual.orbits, 50u);
+  EXPECT_GT(usual.hits, 50u);
+  EXPECT_EQ(usual.Total(), 0u);
+  const Failures endless = RunLaneGases(Ring(), starts, 1'000'000, 0);
+  EXPECT_EQ(endless.orbits, 50u);
+  EXPECT_EQ(endless.loops, 1u);
 }
 
 void ExpectBallsInCellsAndBeforePistons(const GasGeometry& geometry, const GasState& state,
@@ -295,10 +268,9 @@ void ExpectBallsInCellsAndBeforePistons(const GasGeometry& geometry, const GasSt
 
 TEST(GasStarts, BallsAreInTheirCellsAndBeforeTheirPistons) {
   for (const GasCase& gas_case : GasCases()) {
-    for (const GasGeometry& geometry : gas_case.geometries) {
-      for (uint64_t draw = 0; draw < 20; ++draw) {
-        CounterRandom random(95, 0, draw);
-        ExpectBallsInCellsAndBeforePistons(geometry, gas_case.start(geometry, random),
+    for (const auto& place : gas_case.places) {
+      for (uint64_t i = 0; i < 20; ++i) {
+        ExpectBallsInCellsAndBeforePistons(place.geometry, gas_case.start(place.geometry, i).state,
                                            gas_case.name);
       }
     }

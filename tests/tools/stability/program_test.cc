@@ -19,7 +19,7 @@ class Program : public ::testing::Test {
   int Run(const std::vector<std::string>& arguments) {
     const auto make_report = [this](double effort) {
       efforts_.push_back(effort);
-      if (fails_) throw std::runtime_error("fork: no memory");
+      if (fails_) throw std::runtime_error("no memory");
       return Report{.text = "| tables |\n", .complaints = complaints_};
     };
     return RunProgram(arguments, make_report, out_, error_);
@@ -61,7 +61,7 @@ TEST_F(Program, AReportThatCannotBeMadeExitsWithOne) {
   fails_ = true;
   EXPECT_EQ(Run({}), 1);
   EXPECT_EQ(out_.str(), "");
-  EXPECT_EQ(error_.str(), "stability: cannot compute the tables: fork: no memory\n");
+  EXPECT_EQ(error_.str(), "stability: cannot compute the tables: no memory\n");
 }
 
 TEST_F(Program, ClosedStandardOutputExitsWithOne) {

@@ -1,9 +1,9 @@
-#include "tools/stability/wall_starts.h"
-
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 
 #include "core/billiard/reference_flow.h"
+#include "tools/stability/pair_starts.h"
 
 namespace ballpiston::stability {
 namespace {
@@ -38,6 +38,15 @@ bool LeavesWall(const Vector2d& position, const Vector2d& direction) {
   return direction.dot(position - centre) > 0;
 }
 
+PairState BallAlone(const PairGeometry& geometry, const Vector2d& position,
+                    const Vector2d& direction) {
+  return {.position = position,
+          .direction = direction.normalized(),
+          .ball_speed = 1,
+          .piston = geometry.piston_right(),
+          .piston_velocity = 0};
+}
+
 // The point where a ball from `position` hits the next wall.
 Vector2d WallAhead(const PairGeometry& geometry, const Vector2d& position,
                    const Vector2d& direction) {
@@ -54,15 +63,6 @@ double RandomOffset(CounterRandom& random) {
                                                       1e-14, 1e-15, 1e-16, 1e-17};
   const uint64_t bits = random.Bits();
   return kOffsets[bits >> 60] * ((bits & 1) != 0 ? 1 : -1);
-}
-
-PairState BallAlone(const PairGeometry& geometry, const Vector2d& position,
-                    const Vector2d& direction) {
-  return {.position = position,
-          .direction = direction.normalized(),
-          .ball_speed = 1,
-          .piston = geometry.piston_right(),
-          .piston_velocity = 0};
 }
 
 PairState AnywhereOnWall(const PairGeometry& geometry, CounterRandom& random) {

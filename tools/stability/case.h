@@ -1,0 +1,124 @@
+// A situation in which methods fail, a method, and the failures of all methods in all situations.
+// The same for each of three systems: the ball alone, ball and piston, and the gas.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <iostream>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "tools/stability/failures.h"
+
+namespace ballpiston::stability {
+
+template <typename Geometry>
+struct Place {
+  Geometry geometry;
+  uint64_t starts;  // in the full table
+  uint64_t length;  // of each run
+};
+
+template <typename Geometry, typename Start>
+struct Case {
+  std::string name;
+  std::vector<Place<Geometry>> places;
+  // The start of this number, which does not depend on the starts before it.
+  std::function<Start(const Geometry& geometry, uint64_t number)> start;
+};
+
+template <typename Geometry, typename Start>
+struct Method {
+  std::string name;
+  double share;   // of a case's starts; less than 1 for slow methods
+  bool promised;  // the method promises zeros everywhere
+  // Runs each start for this length, and checks it: wall hits of a ball alone, collisions of a
+  // pair, or a gas for the time of so many flights of a ball of speed 1.
+  Failures (*run)(const Geometry& geometry, std::span<const Start> starts, uint64_t length);
+  // Whether the checks are exact enough at this geometry; null: always.
+  bool (*can_be_checked)(const Geometry& geometry) = nullptr;
+};
+
+struct MethodResult {
+  std::string method;
+  bool promised;
+  Failures failures;
+};
+
+struct CaseResult {
+  std::string name;
+  std::vector<MethodResult> methods;  // the same methods in each case
+};
+
+// Starts that run together. They fill the lanes, and fit into memory.
+inline constexpr uint64_t kTogether = 4096;
+
+// The number of a method's starts. If a single start is thousands of times more than wanted, none
+// runs; methods that promise zeros run it nevertheless.
+template <typename Method>
+uint64_t StartsOf(const Method& method, uint64_t all, double effort) {
+  constexpr double kFewestWanted = 2e-4;
+  const double wanted = static_cast<double>(all) * effort * method.share;
+  if (wanted < kFewestWanted && !method.promised) return 0;
+  return static_cast<uint64_t>(std::ceil(wanted));
+}
+
+template <typename Geometry, typename Start>
+Failures RunCase(const Case<Geometry, Start>& one, const Method<Geometry, Start>& method,
+                 double effort) {
+  Failures failures;
+  for (const auto& [geometry, all, length] : one.places) {
+    if (method.can_be_checked && !method.can_be_checked(geometry)) continue;
+    const uint64_t starts = StartsOf(method, all, effort), loops = failures.loops;
+    for (uint64_t first = 0; first < starts; first += kTogether) {
+      // A loop breaks a promise; the other starts would only cost time.
+      if (method.promised && failures.loops > loops) break;
+      std::vector<Start> together;
+      const uint64_t end = std::min(first + kTogether, starts);
+      for (uint64_t i = first; i < end; ++i) together.push_back(one.start(geometry, i));
+      failures.Merge(method.run(geometry, together, length));
+    }
+  }
+  return failures;
+}
+
+// Runs the cases' numbers of starts, times `effort` and the method's share. All methods have the
+// same starts. Prints progress on standard error.
+template <typename Geometry, typename Start>
+std::vector<CaseResult> RunCases(const std::vector<Case<Geometry, Start>>& cases,
+                                 const std::vector<Method<Geometry, Start>>& methods,
+                                 double effort) {
+  std::vector<CaseResult> results;
+  for (const Case<Geometry, Start>& one : cases) {
+    std::cerr << "stability: " << one.name << std::endl;
+    CaseResult& result = results.emplace_back(CaseResult{.name = one.name, .methods = {}});
+    for (const Method<Geometry, Start>& method : methods) {
+      result.methods.push_back({method.name, method.promised, RunCase(one, method, effort)});
+    }
+  }
+  return results;
+}
+
+// ---- the results as tables in Markdown ----
+
+// A row for each case, a column for each method, failures by letter.
+std::string SummaryTable(const std::vector<CaseResult>& cases);
+
+struct CountColumn {
+  std::string head;
+  std::variant<uint64_t Failures::*, double Failures::*> number;
+};
+using CountColumns = std::vector<CountColumn>;
+
+CountColumns ColumnsOfBall();
+CountColumns ColumnsOfPair();
+CountColumns ColumnsOfGas();
+
+// A row for each case and method.
+std::string CountTable(const std::vector<CaseResult>& cases, const CountColumns& columns);
+
+}  // namespace ballpiston::stability
