@@ -38,7 +38,7 @@ struct Lease {
   int attempt = 1;  // greater than 1 if an executor returned some of the chunks
   int crashes = 0;  // earlier attempts that died of themselves (Scheduler::ReturnCrashed)
 
-  std::shared_ptr<const EnsembleSpec> spec;  // of the run
+  std::shared_ptr<const EnsembleSpec> spec = {};  // of the run
   std::vector<size_t> opens = {};            // points to open; empty: the lease has chunks
 
   size_t point = 0;                      // of the run's grid
@@ -63,6 +63,14 @@ struct Lease {
     if (pilot.has_value() != other.pilot.has_value()) return pilot.has_value();
     return point < other.point;
   }
+};
+
+// What an executor computed of a lease.
+struct LeaseReport {
+  std::vector<ChunkResult> chunks = {};  // complete ones, in any order
+  // Of the first chunk that is not complete; or no blocks. Dropped unless the executor is local.
+  PartialChunk partial = {};
+  double seconds = 0;  // of processor time since the previous report about this point
 };
 
 // The work that an executor can take now, in seconds of one core at nominal speed.

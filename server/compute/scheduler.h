@@ -47,14 +47,6 @@ struct LivePoint {
   BlockResult merged;
 };
 
-// What an executor computed of a lease.
-struct LeaseReport {
-  std::vector<ChunkResult> chunks = {};  // complete ones, in any order
-  // Of the first chunk that is not complete; or no blocks. Dropped unless the executor is local.
-  PartialChunk partial = {};
-  double seconds = 0;  // of processor time since the previous report about this point
-};
-
 // Totals since the scheduler was made.
 struct WorkCounts {
   double samples = 0;

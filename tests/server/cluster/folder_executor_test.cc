@@ -78,24 +78,19 @@ class FolderExecutorTest : public testing::Test {
 
   storage::Lease RecordIn(const std::string& path) const {
     absl::string_view bytes = files_.files.at(path).bytes;
-    storage::LeaseFile record;
-    const auto payload = TakeFrame(FrameKind::kLease, bytes);
+    storage::Lease record;
+    const auto payload = TakeFrame(bytes);
     EXPECT_TRUE(payload.ok() && record.ParseFromString(std::string(*payload)));
-    return record.lease();
+    return record;
   }
 
   // The worker appends a message with the lease's chunks.
-  void Compute(const std::string& taken, const std::string& server = "me") {
+  void Compute(const std::string& taken) {
     absl::string_view bytes = files_.files.at("taken/" + taken).bytes;
     const absl::StatusOr<LeaseFile> file = TakeLease(bytes);
     ASSERT_OK(file.status());
-    LeaseChunks chunks = {.job = file->lease.job,
-                          .point = file->lease.lease.point,
-                          .attempt = file->lease.lease.attempt,
-                          .chunks = ComputedChunks(file->lease.lease),
-                          .processor_seconds = 1};
-    chunks.job.server = server;
-    EXPECT_OK(files_.Append("taken/" + taken, BytesOf(chunks)));
+    const LeaseReport report = {.chunks = ComputedChunks(file->lease), .seconds = 1};
+    EXPECT_OK(files_.Append("taken/" + taken, BytesOf(report)));
   }
 
   void End(const std::string& taken, const std::string& outcome = "finished") {
@@ -198,9 +193,9 @@ TEST_F(FolderExecutorTest, DamagedFilesAreRefusedAndComputedAgain) {
   Compute(taken);
   files_.files["taken/" + taken].bytes.back() ^= 1;
   End(taken);
-  const std::string of_another_server = Take(In("todo")[0]);
-  Compute(of_another_server, "another");
-  End(of_another_server);
+  storage::Lease of_another_server = RecordIn("todo/" + In("todo")[0]);
+  of_another_server.set_server("another");
+  files_.files["done/another-1.w.finished"].bytes = BytesOf(of_another_server);
   files_.files["done/unknown.w.finished"].bytes = "a foreign file of some length, of no server";
   files_.files["done/.nfs0001"] = {};  // is left alone
   executor_->Look();
