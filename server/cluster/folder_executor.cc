@@ -52,7 +52,9 @@ FolderExecutor::FolderExecutor(Scheduler& scheduler, const ClusterOptions& optio
       files_(std::move(files)),
       server_(std::move(server)),
       process_(absl::StrCat(absl::Hex(RandomBits(), absl::kZeroPad16))),
-      capacity_{.executor = scheduler.AddExecutor(*this), .longest_chunk = options.longest_chunk} {}
+      capacity_{.executor = scheduler.AddExecutor(*this),
+                .local = false,
+                .longest_chunk = options.longest_chunk} {}
 
 FolderExecutor::~FolderExecutor() {
   Shutdown();
@@ -183,6 +185,7 @@ absl::Status FolderExecutor::TakeEarlier(absl::string_view& bytes, Lease& lease)
   if (file->server != server_.identity) return absl::DataLossError("it is of another server");
   lease = std::move(file->lease);
   lease.executor = capacity_.executor;
+  lease.local = false;
   return absl::OkStatus();
 }
 
@@ -191,8 +194,11 @@ absl::Status FolderExecutor::ReportChunks(const Lease& lease, absl::string_view&
   absl::string_view rest = bytes;
   absl::StatusOr<LeaseReport> report = TakeReport(rest);
   if (!report.ok()) return report.status();
+  const bool has_others = std::ranges::any_of(report->chunks, [&](const ChunkResult& chunk) {
+    return chunk.chunk < lease.start.chunk || chunk.chunk >= lease.end;
+  });
+  if (has_others) return absl::DataLossError("it has chunks of another lease");
   const auto chunks = static_cast<double>(report->chunks.size());
-  scheduler_.AwaitRoom();
   const absl::Status reported = scheduler_.Report(lease, *std::move(report));
   if (absl::IsUnavailable(reported)) return reported;
   bytes = rest;

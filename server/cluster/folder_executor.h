@@ -87,7 +87,6 @@ class FolderExecutor : public Executor {
                  std::unique_ptr<SharedFiles> files, Server server);
   ~FolderExecutor() override;  // shuts down
 
-  ExecutorTraits traits() const override { return {.local = false}; }
   void Start() override;
   void Wake() override {}  // it looks every second
   bool HasTurn(int64_t) const override { return false; }

@@ -84,12 +84,14 @@ class FolderExecutorTest : public testing::Test {
     return record;
   }
 
-  // The worker appends a message with the lease's chunks.
-  void Compute(const std::string& taken) {
+  // The worker appends a message with the lease's chunks, or with the first one after them.
+  void Compute(const std::string& taken, bool beyond = false) {
     absl::string_view bytes = files_.files.at("taken/" + taken).bytes;
-    const absl::StatusOr<LeaseFile> file = TakeLease(bytes);
+    absl::StatusOr<LeaseFile> file = TakeLease(bytes);
     ASSERT_OK(file.status());
-    const LeaseReport report = {.chunks = ComputedChunks(file->lease), .seconds = 1};
+    Lease& lease = file->lease;
+    if (beyond) lease.start = {.chunk = lease.end++};
+    const LeaseReport report = {.chunks = ComputedChunks(lease), .seconds = 1};
     EXPECT_OK(files_.Append("taken/" + taken, BytesOf(report)));
   }
 
@@ -196,10 +198,13 @@ TEST_F(FolderExecutorTest, DamagedFilesAreRefusedAndComputedAgain) {
   storage::Lease of_another_server = RecordIn("todo/" + In("todo")[0]);
   of_another_server.set_server("another");
   files_.files["done/another-1.w.finished"].bytes = BytesOf(of_another_server);
+  const std::string beyond = Take(In("todo")[0]);
+  Compute(beyond, true);
+  End(beyond);
   files_.files["done/unknown.w.finished"].bytes = "a foreign file of some length, of no server";
   files_.files["done/.nfs0001"] = {};  // is left alone
   executor_->Look();
-  EXPECT_EQ(executor_->Status().refused_files, 3);
+  EXPECT_EQ(executor_->Status().refused_files, 4);
   EXPECT_THAT(In("done"), ElementsAre(".nfs0001"));
   ComputeAll(*journal);
 }
