@@ -106,14 +106,19 @@ void JobBook::StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& check
 // The job's present state. If the job was deleted meanwhile, its state when it was found.
 absl::StatusOr<v1::EnsembleJob> JobBook::Answer(const Principal& caller, const JobRecord& record,
                                                 bool answered_from_store) {
-  absl::StatusOr<v1::EnsembleJob> job = Get(caller, record.id);
-  if (absl::IsNotFound(job.status())) job = Message(record, nullptr);
-  if (!job.ok()) return job.status();
-  // A cancellation or a new priority that came before the run was added did not find it.
-  if (job->state() == v1::EnsembleJob::CANCELLING) scheduler_.Cancel(record.sequence);
-  scheduler_.SetPriority(record.sequence, job->priority());
-  job->set_answered_from_store(answered_from_store);
+  absl::StatusOr<FoundJob> found = Find(caller, record.id, Grid::kIncluded);
+  if (absl::IsNotFound(found.status())) found = FoundJob{record};
+  if (!found.ok()) return found.status();
+  TellScheduler(found->record);  // a change that came before the run was added did not find it
+  v1::EnsembleJob job = Message(found->record, found->active.get());
+  job.set_answered_from_store(answered_from_store);
   return job;
+}
+
+// What a client can change of a run.
+void JobBook::TellScheduler(const JobRecord& row) {
+  if (row.state == v1::EnsembleJob::CANCELLING) scheduler_.Cancel(row.sequence);
+  scheduler_.SetPriority(row.sequence, row.priority);
 }
 
 // ---- changes of a job ----
@@ -129,13 +134,14 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
     if (HasEnded(record.state) && !is_replay) {
       database.Fail(JobAlreadyEnded(JobName(id), v1::EnsembleJob::State_Name(record.state)));
     }
+    if (begun) record.state = v1::EnsembleJob::CANCELLING;
     return record;
   });
   if (!found.ok()) return StoreFailure(found.status());
   Failpoint("cancel.committed");
   const std::shared_ptr<Job> job = active_.Find(id);
   if (begun && job != nullptr) job->NoteStateChange();
-  scheduler_.Cancel(found->sequence);  // again if an earlier call came before the run was added
+  TellScheduler(*found);
   return Get(caller, id);
 }
 
@@ -164,7 +170,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Update(const Principal& caller, const s
     UpdateJob(database, record);
   });
   if (!changed.ok()) return StoreFailure(changed);
-  scheduler_.SetPriority(record.sequence, record.priority);
+  TellScheduler(record);
   return Get(caller, id);
 }
 

@@ -153,6 +153,7 @@ class JobBook {
                            const CheckedSpec& checked) const;
   absl::StatusOr<v1::EnsembleJob> Answer(const Principal& caller, const JobRecord& record,
                                          bool answered_from_store);
+  void TellScheduler(const JobRecord& row);
   void StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& checked);
   absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id, Grid grid);
   absl::StatusOr<FoundJob> Find(const Principal& caller, const std::string& id, Grid grid);

@@ -164,7 +164,7 @@ std::shared_ptr<const JobSnapshot> JobBook::Snapshot(Job& job, std::chrono::mill
         JobSnapshot snapshot;
         snapshot.change = job.last_change();  // read before the points, which may be newer
         snapshot.finished = job.last_finished();
-        for (const LivePoint& point : scheduler_.ChangedSince(job.row().sequence, 0, limit)) {
+        for (const LivePoint& point : scheduler_.NewestPoints(job.row().sequence, limit)) {
           snapshot.points.push_back(
               {point.version, ResultOf(point.index, *point.experiment,
                                        point.experiment->Summarize(point.merged))});

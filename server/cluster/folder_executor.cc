@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "core/engine_version.h"
 #include "core/ensemble/experiment_kind.h"
 #include "server/host.h"
 #include "server/status/failpoint.h"
@@ -53,7 +52,9 @@ FolderExecutor::FolderExecutor(Scheduler& scheduler, const ClusterOptions& optio
       files_(std::move(files)),
       server_(std::move(server)),
       process_(absl::StrCat(absl::Hex(RandomBits(), absl::kZeroPad16))),
-      capacity_{.executor = scheduler.AddExecutor(*this), .longest_chunk = options.longest_chunk} {}
+      capacity_{.executor = scheduler.AddExecutor(*this),
+                .local = false,
+                .longest_chunk = options.longest_chunk} {}
 
 FolderExecutor::~FolderExecutor() {
   Shutdown();
@@ -65,13 +66,6 @@ void FolderExecutor::Start() {
 }
 
 void FolderExecutor::Shutdown() { looking_.reset(); }
-
-JobIdentity FolderExecutor::IdentityOf(const Lease& lease) const {
-  return {.server = server_.identity,
-          .job = lease.run,
-          .generation = lease.generation,
-          .engine_version = std::string(kEngineVersion)};
-}
 
 // Leases end by their time-out even if the folder cannot be used.
 void FolderExecutor::Look() {
@@ -167,16 +161,14 @@ bool FolderExecutor::Report(const LeaseFileName& file) {
   if (absl::IsUnavailable(bytes.status()) || absl::IsNotFound(bytes.status())) return false;
   absl::string_view rest = bytes.ok() ? absl::string_view(*bytes) : absl::string_view();
   absl::Status status = bytes.status();
-  std::optional<IdentifiedLease> lease;
+  Lease lease;
   if (laid != nullptr) {
-    lease = {IdentityOf(laid->lease), laid->lease};
+    lease = laid->lease;
   } else if (status.ok()) {
-    absl::StatusOr<LeaseFile> begin = server_.read_lease(rest);
-    status = begin.status();
-    if (begin.ok()) lease = std::move(begin->lease);
+    status = TakeEarlier(rest, lease);
   }
   while (status.ok() && !rest.empty()) {
-    status = ReportChunks(*lease, rest);
+    status = ReportChunks(lease, rest);
     if (laid != nullptr) laid->reported = offset + bytes->size() - rest.size();
   }
   if (absl::IsUnavailable(status)) return false;
@@ -186,28 +178,32 @@ bool FolderExecutor::Report(const LeaseFileName& file) {
   return true;
 }
 
-// Reports one message, and takes it off the bytes unless it has to be reported later.
-absl::Status FolderExecutor::ReportChunks(const IdentifiedLease& identified,
-                                          absl::string_view& bytes) {
-  absl::string_view rest = bytes;
-  absl::StatusOr<LeaseChunks> chunks = TakeChunks(rest);
-  if (!chunks.ok()) return chunks.status();
-  Lease lease = identified.lease;
-  lease.run = identified.job.job;
-  lease.generation = identified.job.generation;
+// Takes the lease of an earlier process off the bytes of its file.
+absl::Status FolderExecutor::TakeEarlier(absl::string_view& bytes, Lease& lease) const {
+  absl::StatusOr<LeaseFile> file = server_.read_lease(bytes);
+  if (!file.ok()) return file.status();
+  if (file->server != server_.identity) return absl::DataLossError("it is of another server");
+  lease = std::move(file->lease);
   lease.executor = capacity_.executor;
-  absl::Status checked = identified.job.server == server_.identity
-                             ? CheckLeaseChunks(identified, *chunks)
-                             : absl::DataLossError("the lease is of another server");
-  if (!checked.ok()) return checked;
-  const auto number = static_cast<double>(chunks->chunks.size());
-  scheduler_.AwaitRoom();
-  const absl::Status reported = scheduler_.Report(
-      lease, {.chunks = std::move(chunks->chunks), .seconds = chunks->processor_seconds});
+  lease.local = false;
+  return absl::OkStatus();
+}
+
+// Reports one message, and takes it off the bytes unless it has to be reported later.
+absl::Status FolderExecutor::ReportChunks(const Lease& lease, absl::string_view& bytes) {
+  absl::string_view rest = bytes;
+  absl::StatusOr<LeaseReport> report = TakeReport(rest);
+  if (!report.ok()) return report.status();
+  const bool has_others = std::ranges::any_of(report->chunks, [&](const ChunkResult& chunk) {
+    return chunk.chunk < lease.start.chunk || chunk.chunk >= lease.end;
+  });
+  if (has_others) return absl::DataLossError("it has chunks of another lease");
+  const auto chunks = static_cast<double>(report->chunks.size());
+  const absl::Status reported = scheduler_.Report(lease, *std::move(report));
   if (absl::IsUnavailable(reported)) return reported;
   bytes = rest;
   MutexLock lock(mutex_);
-  status_.chunks += number;
+  status_.chunks += chunks;
   return reported;
 }
 
@@ -316,7 +312,7 @@ absl::Status FolderExecutor::Lay() {
 absl::Status FolderExecutor::LayOne(Lease lease) {
   const Pace pace = PaceOf(options_, leases_.size());
   const LeaseFileName file = {absl::StrCat(process_, "-", ++laid_)};
-  const std::string bytes = BytesOf(LeaseRecord(lease, IdentityOf(lease)), pace.touch);
+  const std::string bytes = BytesOf(LeaseRecord(lease, server_.identity, pace.touch));
   // The folder may have changed while there was no work.
   const absl::Status ready = leases_.empty() ? server_.prepare() : absl::OkStatus();
   const absl::StatusOr<FileStamp> stamp = ready.ok() ? files_->Create(file.Todo(), bytes) : ready;

@@ -87,7 +87,6 @@ class FolderExecutor : public Executor {
                  std::unique_ptr<SharedFiles> files, Server server);
   ~FolderExecutor() override;  // shuts down
 
-  ExecutorTraits traits() const override { return {.local = false}; }
   void Start() override;
   void Wake() override {}  // it looks every second
   bool HasTurn(int64_t) const override { return false; }
@@ -118,7 +117,8 @@ class FolderExecutor : public Executor {
   absl::Status Collect();
   void NoteTaken(const LeaseFileName& file);
   bool Report(const LeaseFileName& file);
-  absl::Status ReportChunks(const IdentifiedLease& lease, absl::string_view& bytes);
+  absl::Status TakeEarlier(absl::string_view& bytes, Lease& lease) const;
+  absl::Status ReportChunks(const Lease& lease, absl::string_view& bytes);
   void End(const LeaseFileName& file);
   void LookAt(Leases::iterator laid);
   void LookAtWaiting(Leases::iterator laid);
@@ -129,7 +129,6 @@ class FolderExecutor : public Executor {
   absl::Status LayOne(Lease lease);
   void NoteOutcome(const absl::Status& outcome);
   void Refuse(const absl::Status& why);
-  JobIdentity IdentityOf(const Lease& lease) const;
 
   Scheduler& scheduler_;
   const ClusterOptions options_;

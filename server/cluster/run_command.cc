@@ -1,18 +1,16 @@
 #include "server/cluster/run_command.h"
 
-#include <fcntl.h>
-#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <thread>
-#include <utility>
 
 #include "absl/cleanup/cleanup.h"
 #include "absl/status/status.h"
@@ -24,41 +22,35 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr size_t kMostOutput = size_t{64} << 20;
-constexpr std::chrono::milliseconds kLook(50);  // between two checks of the stop token
-// Usually a program ends immediately after it has closed its output.
-constexpr std::chrono::milliseconds kPause(1);
+constexpr std::chrono::milliseconds kLook(5);  // between two looks at the program
 
-class Descriptor {
+// A file in memory: the standard input or output of the program.
+class MemoryFile {
  public:
-  explicit Descriptor(int number = -1) : number_(number) {}
-  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
+  explicit MemoryFile(const std::string& text = {}) : number_(memfd_create("", MFD_CLOEXEC)) {
+    const ssize_t written = write(number_, text.data(), text.size());
+    is_written_ = written == static_cast<ssize_t>(text.size()) && lseek(number_, 0, SEEK_SET) == 0;
   }
-  ~Descriptor() { Close(); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~MemoryFile() { close(number_); }
 
   int number() const { return number_; }
-  bool open() const { return number_ >= 0; }
-  void Close() {
-    if (open()) close(std::exchange(number_, -1));
+  bool is_written() const { return is_written_; }
+
+  std::string Contents() const {
+    struct stat status {};
+    fstat(number_, &status);
+    std::string text(std::min(static_cast<size_t>(status.st_size), kMostOutput), '\0');
+    const ssize_t size = pread(number_, text.data(), text.size(), 0);
+    text.resize(static_cast<size_t>(std::max(size, ssize_t{0})));
+    return text;
   }
 
  private:
-  int number_;
+  const int number_;  // less than 0: there is no memory
+  bool is_written_;
 };
-
-struct Pipe {
-  Descriptor read, write;
-};
-
-absl::StatusOr<Pipe> NewPipe() {
-  std::array<int, 2> ends;
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) {
-    return absl::UnavailableError(absl::StrCat("no pipe: ", std::strerror(errno)));
-  }
-  return Pipe{Descriptor(ends[0]), Descriptor(ends[1])};
-}
 
 std::vector<char*> Pointers(const std::vector<std::string>& texts) {
   std::vector<char*> pointers;
@@ -68,8 +60,8 @@ std::vector<char*> Pointers(const std::vector<std::string>& texts) {
 }
 
 // The server blocks and ignores some signals. The program gets the default settings.
-absl::StatusOr<pid_t> Start(const Command& command, const Pipe& in, const Pipe& out,
-                            const Pipe& err) {
+absl::StatusOr<pid_t> Start(const Command& command, const MemoryFile& in, const MemoryFile& out,
+                            const MemoryFile& err) {
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawnattr_t attributes;
@@ -78,9 +70,9 @@ absl::StatusOr<pid_t> Start(const Command& command, const Pipe& in, const Pipe& 
     posix_spawn_file_actions_destroy(&files);
     posix_spawnattr_destroy(&attributes);
   };
-  posix_spawn_file_actions_adddup2(&files, in.read.number(), STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&files, out.write.number(), STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&files, err.write.number(), STDERR_FILENO);
+  posix_spawn_file_actions_adddup2(&files, in.number(), STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&files, out.number(), STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&files, err.number(), STDERR_FILENO);
   sigset_t none, all;
   sigemptyset(&none);
   sigfillset(&all);
@@ -97,92 +89,37 @@ absl::StatusOr<pid_t> Start(const Command& command, const Pipe& in, const Pipe& 
   return error == ENOENT ? absl::NotFoundError(why) : absl::UnavailableError(why);
 }
 
-// Reads the available output. Closes the descriptor at its end.
-void ReadInto(std::string& text, Descriptor& from) {
-  std::array<char, 65536> buffer;
-  const ssize_t n = read(from.number(), buffer.data(), buffer.size());
-  if (n > 0 && text.size() < kMostOutput) text.append(buffer.data(), static_cast<size_t>(n));
-  if (n == 0 || (n < 0 && errno != EINTR && errno != EAGAIN)) from.Close();
-}
-
-// Whether a program may go on. Not OK: the program must be killed.
-class Bounds {
- public:
-  Bounds(const Command& command, const std::stop_token& stop)
-      : command_(command), stop_(stop), end_(Clock::now() + command.limit) {}
-
-  absl::Status Check() const {
-    if (stop_.stop_requested()) return absl::CancelledError("stopped");
-    if (Clock::now() < end_) return absl::OkStatus();
-    return absl::DeadlineExceededError(absl::StrCat(command_.words[0], " did not end within ",
-                                                    command_.limit.count() / 1000, " s"));
-  }
-
- private:
-  const Command& command_;
-  const std::stop_token& stop_;
-  const Clock::time_point end_;
-};
-
-// Reads both outputs until they are closed.
-absl::Status Collect(const Bounds& bounds, Descriptor& out, Descriptor& err,
-                     CommandOutput& result) {
-  while (out.open() || err.open()) {
-    const absl::Status status = bounds.Check();
-    if (!status.ok()) return status;
-    std::array<pollfd, 2> polled = {pollfd{out.number(), POLLIN, 0},
-                                    pollfd{err.number(), POLLIN, 0}};
-    if (poll(polled.data(), polled.size(), static_cast<int>(kLook.count())) <= 0) continue;
-    if (polled[0].revents != 0) ReadInto(result.output, out);
-    if (polled[1].revents != 0) ReadInto(result.errors, err);
-  }
-  return absl::OkStatus();
-}
-
-// Waits for the end of a program, which may go on after it has closed its output.
-absl::Status AwaitEnd(pid_t pid, const Bounds& bounds) {
-  while (true) {
-    siginfo_t ended = {};
-    const int waited = waitid(P_PID, static_cast<id_t>(pid), &ended, WEXITED | WNOHANG | WNOWAIT);
-    if (waited == 0 && ended.si_pid == pid) return absl::OkStatus();
-    const absl::Status status = bounds.Check();
-    if (!status.ok()) return status;
-    std::this_thread::sleep_for(kPause);
-  }
-}
-
-int ExitCodeOf(pid_t pid) {
+// The exit code as in CommandOutput; or an error, and the program is killed.
+absl::StatusOr<int> AwaitExitCode(pid_t pid, const Command& command, const std::stop_token& stop) {
+  const Clock::time_point end = Clock::now() + command.limit;
   int status = 0;
-  while (waitpid(pid, &status, 0) < 0 && errno == EINTR) continue;
+  while (waitpid(pid, &status, WNOHANG) != pid) {
+    const bool is_stopped = stop.stop_requested();
+    if (!is_stopped && Clock::now() < end) {
+      std::this_thread::sleep_for(kLook);
+      continue;
+    }
+    kill(pid, SIGKILL);
+    while (waitpid(pid, &status, 0) < 0 && errno == EINTR) continue;
+    if (is_stopped) return absl::CancelledError("stopped");
+    return absl::DeadlineExceededError(
+        absl::StrCat(command.words[0], " did not end within ", command.limit.count() / 1000, " s"));
+  }
   return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
 }  // namespace
 
 absl::StatusOr<CommandOutput> RunCommand(const Command& command, const std::stop_token& stop) {
-  absl::StatusOr<Pipe> in = NewPipe(), out = NewPipe(), err = NewPipe();
-  for (const auto* pipe : {&in, &out, &err}) {
-    if (!pipe->ok()) return pipe->status();
+  const MemoryFile in(command.input), out, err;
+  for (const MemoryFile* file : {&in, &out, &err}) {
+    if (!file->is_written()) return absl::UnavailableError("no memory to run a program");
   }
-  // Fits into an empty pipe, which holds 64 KiB.
-  const size_t bytes = std::min<size_t>(command.input.size(), 65536);
-  if (write(in->write.number(), command.input.data(), bytes) != static_cast<ssize_t>(bytes)) {
-    return absl::UnavailableError("a pipe cannot be written");
-  }
-  in->write.Close();
-  const absl::StatusOr<pid_t> pid = Start(command, *in, *out, *err);
+  const absl::StatusOr<pid_t> pid = Start(command, in, out, err);
   if (!pid.ok()) return pid.status();
-  in->read.Close();
-  out->write.Close();
-  err->write.Close();
-  CommandOutput result;
-  const Bounds bounds(command, stop);
-  absl::Status ended = Collect(bounds, out->read, err->read, result);
-  if (ended.ok()) ended = AwaitEnd(*pid, bounds);
-  if (!ended.ok()) kill(*pid, SIGKILL);
-  result.exit_code = ExitCodeOf(*pid);
-  if (!ended.ok()) return ended;
-  return result;
+  const absl::StatusOr<int> exit_code = AwaitExitCode(*pid, command, stop);
+  if (!exit_code.ok()) return exit_code.status();
+  return CommandOutput{*exit_code, out.Contents(), err.Contents()};
 }
 
 }  // namespace ballpiston::server

@@ -13,13 +13,13 @@ namespace ballpiston::server {
 struct Command {
   std::vector<std::string> words;             // the program, looked up in PATH, and its arguments
   std::vector<std::string> environment = {};  // NAME=VALUE
-  std::string input = {};                     // of its standard input; at most 64 KiB
+  std::string input = {};                     // of its standard input
   std::chrono::milliseconds limit{10'000};
 };
 
 struct CommandOutput {
   int exit_code = 0;   // 128 and the number of the signal that ended it
-  std::string output;  // standard output, at most 64 MiB
+  std::string output;  // standard output; this and the errors at most 64 MiB
   std::string errors;  // standard error
 };
 

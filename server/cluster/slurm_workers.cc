@@ -3,7 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
+#include <span>
 #include <utility>
 
 #include "absl/strings/match.h"
@@ -12,7 +12,6 @@
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
-#include "server/cluster/run_command.h"
 #include "server/host.h"
 #include "server/status/failpoint.h"
 #include "server/status/log.h"
@@ -37,40 +36,33 @@ constexpr std::chrono::milliseconds kLongestPause(600'000);
 
 // Reasons of Slurm 22.05. A task waits for an operator; quotas and limits of the number of jobs are
 // not among them, because they pass.
-constexpr std::array kForever = {absl::string_view("AccountNotAllowed"),
-                                 absl::string_view("BadConstraints"),
-                                 absl::string_view("InvalidAccount"),
-                                 absl::string_view("InvalidQOS"),
-                                 absl::string_view("JobHeldAdmin"),
-                                 absl::string_view("JobHeldUser"),
-                                 absl::string_view("JobLaunchFailure"),
-                                 absl::string_view("PartitionConfig"),
-                                 absl::string_view("PartitionDown"),
-                                 absl::string_view("PartitionInactive"),
-                                 absl::string_view("PartitionNodeLimit"),
-                                 absl::string_view("PartitionTimeLimit"),
-                                 absl::string_view("QOSMinCpuNotSatisfied"),
-                                 absl::string_view("QOSNotAllowed"),
-                                 absl::string_view("QOSTimeLimit"),
-                                 absl::string_view("launch failed requeued held"),
-                                 absl::string_view("launch_failed_requeued_held")};
+constexpr absl::string_view kForever[] = {"AccountNotAllowed",
+                                          "BadConstraints",
+                                          "InvalidAccount",
+                                          "InvalidQOS",
+                                          "JobHeldAdmin",
+                                          "JobHeldUser",
+                                          "JobLaunchFailure",
+                                          "PartitionConfig",
+                                          "PartitionDown",
+                                          "PartitionInactive",
+                                          "PartitionNodeLimit",
+                                          "PartitionTimeLimit",
+                                          "QOSMinCpuNotSatisfied",
+                                          "QOSNotAllowed",
+                                          "QOSTimeLimit",
+                                          "launch failed requeued held",
+                                          "launch_failed_requeued_held"};
 // Limits of one job, such as QOSMaxWallDurationPerJobLimit.
 constexpr absl::string_view kOfOneJob = "PerJobLimit";
 
-bool IsWaiting(absl::string_view state) {
-  return state == "PENDING" || state == "REQUEUED" || state == "REQUEUE_HOLD" ||
-         state == "REQUEUE_FED" || state == "SPECIAL_EXIT" || state == "RESV_DEL_HOLD";
-}
+constexpr absl::string_view kWaiting[] = {"PENDING",     "REQUEUED",     "REQUEUE_HOLD",
+                                          "REQUEUE_FED", "SPECIAL_EXIT", "RESV_DEL_HOLD"};
+constexpr absl::string_view kRunning[] = {"RUNNING", "COMPLETING", "CONFIGURING", "SUSPENDED",
+                                          "STOPPED", "SIGNALING",  "RESIZING",    "STAGE_OUT"};
 
-bool IsRunning(absl::string_view state) {
-  return state == "RUNNING" || state == "COMPLETING" || state == "CONFIGURING" ||
-         state == "SUSPENDED" || state == "STOPPED" || state == "SIGNALING" ||
-         state == "RESIZING" || state == "STAGE_OUT";
-}
-
-bool WaitsForever(absl::string_view reason) {
-  return absl::EndsWith(reason, kOfOneJob) ||
-         std::find(kForever.begin(), kForever.end(), reason) != kForever.end();
+bool IsOneOf(std::span<const absl::string_view> words, absl::string_view word) {
+  return std::ranges::find(words, word) != words.end();
 }
 
 // The tool's error messages, in one line.
@@ -88,14 +80,6 @@ std::string ErrorsOf(const CommandOutput& output) {
 // Quotes a word for sh.
 std::string Quoted(const std::string& word) {
   return absl::StrCat("'", absl::StrReplaceAll(word, {{"'", "'\\''"}}), "'");
-}
-
-// The tool ran, and whether it succeeded.
-absl::StatusOr<CommandOutput> Succeeded(absl::StatusOr<CommandOutput> run,
-                                        const std::string& tool) {
-  if (!run.ok()) return run.status();
-  if (run->exit_code == 0) return run;
-  return absl::UnavailableError(absl::StrCat(tool, ": ", ErrorsOf(*run)));
 }
 
 // This process's environment without the variables that change what the tools do.
@@ -120,10 +104,11 @@ SlurmQueue ParseQueue(absl::string_view lines) {
   for (const absl::string_view line : absl::StrSplit(lines, '\n', absl::SkipEmpty())) {
     const std::vector<std::string> fields = absl::StrSplit(line, absl::MaxSplits('|', 1));
     if (fields.size() != 2) continue;
-    queue.running += IsRunning(fields[0]);
-    if (!IsWaiting(fields[0])) continue;
+    queue.running += IsOneOf(kRunning, fields[0]);
+    if (!IsOneOf(kWaiting, fields[0])) continue;
     ++queue.waiting;
-    if (WaitsForever(fields[1])) queue.never = fields[1];
+    const bool is_forever = IsOneOf(kForever, fields[1]) || absl::EndsWith(fields[1], kOfOneJob);
+    if (is_forever) queue.never = fields[1];
   }
   return queue;
 }
@@ -138,47 +123,53 @@ double LongestChunk(const SlurmOptions& options) {
 SlurmTools::SlurmTools(const SlurmOptions& options, std::string name, std::string folder)
     : options_(options), name_(std::move(name)), folder_(std::move(folder)) {}
 
-std::vector<std::string> SlurmTools::Words(absl::string_view tool) const {
-  std::vector<std::string> words = {std::string(tool)};
-  if (!options_.cluster.empty()) words.push_back(absl::StrCat("--clusters=", options_.cluster));
-  return words;
+absl::StatusOr<std::string> SlurmTools::Run(Command command, const std::stop_token& stop) const {
+  const std::string tool = command.words[0];
+  if (!options_.cluster.empty()) {
+    command.words.insert(command.words.begin() + 1, absl::StrCat("--clusters=", options_.cluster));
+  }
+  command.environment = Environment();
+  absl::StatusOr<CommandOutput> run = RunCommand(command, stop);
+  if (!run.ok()) return run.status();
+  if (run->exit_code == 0) return std::move(run->output);
+  return absl::UnavailableError(absl::StrCat(tool, ": ", ErrorsOf(*run)));
 }
 
 absl::Status SlurmTools::Submit(size_t workers, const std::stop_token& stop) {
-  Command command = {
-      .words = Words("sbatch"),
-      .environment = Environment(),
-      .input = absl::StrCat("#!/bin/sh\nexec ", Quoted(folder_ + "/ballpiston-worker"), " ",
-                            Quoted(folder_), "\n"),
-      .limit = kSubmitLimit};
-  std::vector<std::string>& words = command.words;
-  words.insert(
-      words.end(),
-      {"--parsable", absl::StrCat("--job-name=", name_), absl::StrCat("--array=0-", workers - 1),
-       absl::StrCat("--time=", options_.time_limit_minutes),
-       absl::StrCat("--signal=B:USR1@", kSecondsToFinish), "--requeue", "--open-mode=append",
-       absl::StrCat("--chdir=", folder_), absl::StrCat("--output=", folder_, "/log/%a.log")});
-  if (!options_.partition.empty())
+  std::vector<std::string> words = {"sbatch",
+                                    "--parsable",
+                                    absl::StrCat("--job-name=", name_),
+                                    absl::StrCat("--array=0-", workers - 1),
+                                    absl::StrCat("--time=", options_.time_limit_minutes),
+                                    absl::StrCat("--signal=B:USR1@", kSecondsToFinish),
+                                    "--requeue",
+                                    "--open-mode=append",
+                                    absl::StrCat("--chdir=", folder_),
+                                    absl::StrCat("--output=", folder_, "/log/%a.log")};
+  if (!options_.partition.empty()) {
     words.push_back(absl::StrCat("--partition=", options_.partition));
+  }
   if (!options_.account.empty()) words.push_back(absl::StrCat("--account=", options_.account));
   words.insert(words.end(), options_.sbatch_options.begin(), options_.sbatch_options.end());
-  return Succeeded(RunCommand(command, stop), "sbatch").status();
+  const std::string script = absl::StrCat(
+      "#!/bin/sh\nexec ", Quoted(folder_ + "/ballpiston-worker"), " ", Quoted(folder_), "\n");
+  return Run({.words = std::move(words), .input = script, .limit = kSubmitLimit}, stop).status();
 }
 
 absl::StatusOr<SlurmQueue> SlurmTools::Query(const std::stop_token& stop) {
-  Command command = {.words = Words("squeue"), .environment = Environment(), .limit = kOtherLimit};
-  command.words.insert(command.words.end(),
-                       {"--noheader", "--me", "--array", absl::StrCat("--name=", name_),
-                        absl::StrCat("--format=", kQueueFormat)});
-  const auto run = Succeeded(RunCommand(command, stop), "squeue");
-  if (!run.ok()) return run.status();
-  return ParseQueue(run->output);
+  const absl::StatusOr<std::string> lines =
+      Run({.words = {"squeue", "--noheader", "--me", "--array", absl::StrCat("--name=", name_),
+                     absl::StrCat("--format=", kQueueFormat)},
+           .limit = kOtherLimit},
+          stop);
+  if (!lines.ok()) return lines.status();
+  return ParseQueue(*lines);
 }
 
 absl::Status SlurmTools::Cancel(const std::stop_token& stop) {
-  Command command = {.words = Words("scancel"), .environment = Environment(), .limit = kOtherLimit};
-  command.words.insert(command.words.end(), {"--me", absl::StrCat("--name=", name_)});
-  return Succeeded(RunCommand(command, stop), "scancel").status();
+  return Run({.words = {"scancel", "--me", absl::StrCat("--name=", name_)}, .limit = kOtherLimit},
+             stop)
+      .status();
 }
 
 // ---- the workers ----

@@ -22,6 +22,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "server/cluster/folder_executor.h"
+#include "server/cluster/run_command.h"
 #include "server/mutex.h"
 #include "server/periodic_thread.h"
 
@@ -69,7 +70,8 @@ class SlurmTools {
   virtual absl::Status Cancel(const std::stop_token& stop);  // all workers
 
  private:
-  std::vector<std::string> Words(absl::string_view tool) const;
+  // What the tool prints. Sets the rest of the command.
+  absl::StatusOr<std::string> Run(Command command, const std::stop_token& stop) const;
 
   const SlurmOptions options_;
   const std::string name_;

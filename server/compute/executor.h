@@ -3,27 +3,19 @@
 // An executor takes leases with Scheduler::Next. Of each lease it either reports all chunks, or
 // returns the lease (Scheduler::Return), or keeps it until the lease's stop is requested. It may
 // report chunks late, twice and in any order.
+//
+// A local executor (Capacity::local) opens points, takes every lease and shares a lease between
+// turns. The scheduler waits for its turns to end before a run ends. Another executor gets leases
+// of chunks alone, and only of runs that are worth it.
 #pragma once
 
 #include <cstdint>
 
-#include "server/compute/lease.h"
-
 namespace ballpiston::server {
-
-// What the scheduler has to know of an executor.
-struct ExecutorTraits {
-  // Opens points, takes every lease and shares a lease between turns. The scheduler waits for its
-  // turns to end before a run ends. An executor that is not local gets leases of chunks alone, and
-  // only of runs that are worth it.
-  bool local = true;
-};
 
 class Executor {
  public:
   virtual ~Executor() = default;
-
-  virtual ExecutorTraits traits() const = 0;
 
   // Begins to take leases. Once, after the runs of an earlier process were added.
   virtual void Start() = 0;

@@ -6,7 +6,7 @@
 namespace ballpiston::server {
 namespace {
 
-// The assumed cost before a run has had a turn: the nominal length of a turn (block_session.cc).
+// The assumed cost before a run has had a turn: the nominal length of a turn (thread_executor.cc).
 constexpr double kExpectedTurnSeconds = 0.05;
 
 }  // namespace

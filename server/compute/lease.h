@@ -24,7 +24,7 @@
 namespace ballpiston::server {
 
 // Bytes, upper bounds: with one turn at a time, and for each further turn at the same time. What a
-// turn takes is kept until the next turn (block_session.h).
+// turn takes is kept until the next turn (thread_executor.cc).
 struct LeaseMemory {
   double of_one_turn = 0;
   double of_a_further_turn = 0;
@@ -35,11 +35,12 @@ struct Lease {
   int64_t run = 0;     // these two are RunRequest's key and generation
   int64_t generation = 0;
   size_t executor = 0;
-  int attempt = 1;  // greater than 1 if an executor returned some of the chunks
-  int crashes = 0;  // earlier attempts that died of themselves (Scheduler::ReturnCrashed)
+  bool local = true;  // as of Capacity
+  int attempt = 1;    // greater than 1 if an executor returned some of the chunks
+  int crashes = 0;    // earlier attempts that died of themselves (Scheduler::ReturnCrashed)
 
-  std::shared_ptr<const EnsembleSpec> spec;  // of the run
-  std::vector<size_t> opens = {};            // points to open; empty: the lease has chunks
+  std::shared_ptr<const EnsembleSpec> spec = {};  // of the run
+  std::vector<size_t> opens = {};                 // points to open; empty: the lease has chunks
 
   size_t point = 0;                      // of the run's grid
   std::optional<PilotPlace> pilot = {};  // the chunks are of this pilot, for which the point waits
@@ -65,9 +66,18 @@ struct Lease {
   }
 };
 
+// What an executor computed of a lease.
+struct LeaseReport {
+  std::vector<ChunkResult> chunks = {};  // complete ones, in any order
+  // Of the first chunk that is not complete; or no blocks. Dropped unless the executor is local.
+  PartialChunk partial = {};
+  double seconds = 0;  // of processor time since the previous report about this point
+};
+
 // The work that an executor can take now, in seconds of one core at nominal speed.
 struct Capacity {
   size_t executor = 0;  // its number, as the scheduler gave it
+  bool local = true;    // its threads are this process's (executor.h)
   // A lease has the fewest chunks that take as long as this.
   double seconds = std::numeric_limits<double>::infinity();
   // Bytes. A lease takes no more with one turn at a time.

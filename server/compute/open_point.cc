@@ -3,21 +3,72 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/convert/fold_record.h"
+
 namespace ballpiston::server {
 namespace {
 
 // Seconds of one core of a lease that may not have all the rest of its point.
 constexpr double kLeaseOfAPart = 60;
+// An attempt elsewhere ends without a result if the machine is lost or the time limit is too short.
+// After this many attempts this server computes the chunk.
+constexpr int kMostAttemptsElsewhere = 5;
 
 }  // namespace
 
 OpenPoint::OpenPoint(std::shared_ptr<const PointExperiment> experiment)
     : experiment_(std::move(experiment)), fold_(*experiment_) {}
 
-void OpenPoint::Resume(FoldState state) {
+// ---- what was computed before ----
+
+absl::Status OpenPoint::Resume(StoredPoint stored) {
+  // With a budget the earlier process may have chosen a model that samples, and this one a model
+  // that does not.
+  if (fold_.finished()) return absl::OkStatus();
+  if (stored.state) {
+    absl::Status checked = CheckFoldState(*experiment_, *stored.state);
+    if (!checked.ok()) return checked;
+    ContinueFrom(*std::move(stored.state));
+  } else if (stored.earlier && stored.earlier->model == experiment_->answer().model &&
+             CanContinueFrom(*experiment_, stored.earlier->state)) {
+    ContinueFrom(std::move(stored.earlier->state));
+  }
+  for (ChunkResult& chunk : stored.chunks) {
+    absl::Status checked = CheckChunk(*experiment_, chunk);
+    if (!checked.ok()) return checked;
+    fold_.Add(std::move(chunk));
+  }
+  return absl::OkStatus();
+}
+
+void OpenPoint::ContinueFrom(FoldState state) {
   next_chunk_ = state.chunk;
   fold_.Resume(std::move(state));
 }
+
+absl::Status OpenPoint::DropImpossible(std::vector<ChunkResult>& chunks) const {
+  absl::Status found;
+  std::erase_if(chunks, [&](const ChunkResult& chunk) {
+    const absl::Status checked = Check(chunk);
+    if (!checked.ok()) found = checked;
+    return !checked.ok();
+  });
+  return found;
+}
+
+absl::Status OpenPoint::Check(const ChunkResult& chunk) const {
+  const FoldState& state = fold_.state();
+  if (chunk.chunk == state.chunk && chunk.result.samples < state.partial.samples) {
+    return absl::DataLossError("a chunk has fewer samples than its merged blocks");
+  }
+  return CheckChunk(*experiment_, chunk);
+}
+
+double OpenPoint::ShareOf(uint64_t samples) const {
+  return static_cast<double>(samples) / static_cast<double>(experiment_->plan().samples());
+}
+
+// ---- leases ----
 
 void OpenPoint::SkipUnneeded() {
   while (next_chunk_ < chunks() && !fold_.Needs(next_chunk_)) ++next_chunk_;
@@ -25,13 +76,13 @@ void OpenPoint::SkipUnneeded() {
 }
 
 std::optional<std::pair<uint64_t, OpenPoint::Attempt>> OpenPoint::NextChunk(
-    const Capacity& capacity, const ChunkLimits& limits) const {
+    const Capacity& capacity) const {
   const ChunkPlan& plan = experiment_->plan();
   const auto fits = [&](uint64_t chunk, const Attempt& attempt) {
     if (!fold_.CanStart(chunk)) return false;
-    if (limits.local) return true;
+    if (capacity.local) return true;
     const double seconds = plan.SecondsFor(static_cast<double>(plan.SamplesIn(chunk)));
-    return attempt.number <= limits.most_attempts && seconds <= capacity.longest_chunk;
+    return attempt.number <= kMostAttemptsElsewhere && seconds <= capacity.longest_chunk;
   };
   for (const auto& [chunk, attempt] : returned_) {
     if (fits(chunk, attempt)) return std::pair(chunk, attempt);
@@ -56,26 +107,26 @@ void OpenPoint::Take(uint64_t chunk) {
 
 bool OpenPoint::AwaitsMemory(const Capacity& capacity) const {
   const bool fits = memory.of_one_turn <= capacity.memory;
-  return !fits && !fold_.finished() && NextChunk(capacity, ChunkLimits()).has_value();
+  return !fits && !fold_.finished() && NextChunk(capacity).has_value();
 }
 
-std::optional<Lease> OpenPoint::NextChunks(const Capacity& capacity, const ChunkLimits& limits) {
+std::optional<Lease> OpenPoint::NextChunks(const Capacity& capacity) {
   if (fold_.finished() || memory.of_one_turn > capacity.memory) return std::nullopt;
   SkipUnneeded();
-  const auto first = NextChunk(capacity, limits);
+  const auto first = NextChunk(capacity);
   if (!first) return std::nullopt;
   const ChunkPlan& plan = experiment_->plan();
-  Lease lease;
+  Lease lease = {.executor = capacity.executor, .local = capacity.local};
   lease.attempt = first->second.number;
   lease.crashes = first->second.crashes;
-  if (limits.local) lease.memory = memory;
+  if (lease.local) lease.memory = memory;
   lease.experiment = experiment_;
   lease.stop = stop();
   lease.start.chunk = first->first;
   lease.end = first->first;
   const FoldState& state = fold_.state();
   if (lease.end == state.chunk) lease.start = {state.chunk, state.blocks, state.partial};
-  const bool takes_the_rest = limits.local && std::isinf(capacity.seconds) &&
+  const bool takes_the_rest = lease.local && std::isinf(capacity.seconds) &&
                               memory.of_one_turn <= capacity.memory_of_the_rest &&
                               fold_.waiting() == 0 && KnowsAllStarts();
   if (takes_the_rest && lease.end == next_chunk_) {
@@ -89,7 +140,7 @@ std::optional<Lease> OpenPoint::NextChunks(const Capacity& capacity, const Chunk
   }
   const double seconds = std::isinf(capacity.seconds) ? kLeaseOfAPart : capacity.seconds;
   for (auto next = first; next && *next == std::pair(lease.end, first->second);
-       next = NextChunk(capacity, limits)) {
+       next = NextChunk(capacity)) {
     Take(lease.end);
     lease.seconds += plan.SecondsFor(static_cast<double>(plan.SamplesIn(lease.end)));
     ++lease.end;

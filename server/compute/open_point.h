@@ -2,24 +2,20 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
 #include <stop_token>
 #include <utility>
+#include <vector>
 
+#include "absl/status/status.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
 #include "server/compute/lease.h"
+#include "server/compute/run_journal.h"
 
 namespace ballpiston::server {
-
-// The chunks that an executor may have.
-struct ChunkLimits {
-  bool local = true;  // every chunk; else no longer ones than Capacity::longest_chunk
-  int most_attempts = std::numeric_limits<int>::max();
-};
 
 class OpenPoint {
  public:
@@ -29,18 +25,26 @@ class OpenPoint {
   PointFold& fold() { return fold_; }
   const PointFold& fold() const { return fold_; }
 
-  // Continues from a state, and then takes chunks that arrived early. Before any chunk is leased.
-  void Resume(FoldState state);
+  // Continues from what the store has of the point. Before any chunk is leased. DATA_LOSS if it
+  // does not fit the experiment.
+  absl::Status Resume(StoredPoint stored);
 
   // The chunks of the next lease, as `start`, `end`, `attempt` and `seconds`; empty if there is
   // none for this capacity now.
-  std::optional<Lease> NextChunks(const Capacity& capacity, const ChunkLimits& limits);
+  std::optional<Lease> NextChunks(const Capacity& capacity);
 
   // There is a lease for a local executor, but it takes more memory than the capacity has.
   bool AwaitsMemory(const Capacity& capacity) const;
 
   // Chunks that were leased and are still needed go out again, as this attempt.
   void Return(uint64_t first, uint64_t end, int attempt, int crashes = 0);
+
+  // Removes chunks that the experiment cannot have computed, or that do not have the point's merged
+  // blocks. DATA_LOSS if there are any.
+  absl::Status DropImpossible(std::vector<ChunkResult>& chunks) const;
+
+  // Of the point's planned samples.
+  double ShareOf(uint64_t samples) const;
 
   // Expected seconds of the chunks that are not merged, of one core at nominal speed.
   double ExpectedSeconds() const;
@@ -61,11 +65,12 @@ class OpenPoint {
     friend bool operator==(const Attempt&, const Attempt&) = default;
   };
   // The first chunk to lease and its attempt.
-  std::optional<std::pair<uint64_t, Attempt>> NextChunk(const Capacity& capacity,
-                                                        const ChunkLimits& limits) const;
+  std::optional<std::pair<uint64_t, Attempt>> NextChunk(const Capacity& capacity) const;
   // Whether the states from which the chunks that were never leased start are known.
   bool KnowsAllStarts() const;
   void Take(uint64_t chunk);
+  void ContinueFrom(FoldState state);
+  absl::Status Check(const ChunkResult& chunk) const;
   void SkipUnneeded();
   uint64_t chunks() const { return experiment_->plan().chunks(); }
 

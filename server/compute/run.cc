@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/model_choice/ladder.h"
+#include "server/convert/errors.h"
+
 namespace ballpiston::server {
 namespace {
 
-// An attempt ends without a result if the machine is lost or the time limit is too short. After
-// this many attempts this server computes the chunk.
-constexpr int kMostAttemptsElsewhere = 5;
 // Open points of a run that wait for executors elsewhere; each takes some 50 kB.
 constexpr size_t kMostOpenPoints = 2000;
 
@@ -17,9 +17,12 @@ constexpr size_t kMostOpenPoints = 2000;
 constexpr size_t kCheapPoints = 128;
 constexpr size_t kPointsForElsewhere = 32;
 
+// Seconds of work on a point between two checkpoints, for each local worker.
+constexpr double kBetweenCheckpoints = 0.1;
+
 }  // namespace
 
-Run::Run(RunRequest request, SchedulerOptions options)
+Run::Run(RunRequest request, SchedulerOptions options, int workers)
     : key_(request.key),
       generation_(request.generation),
       principal_(std::move(request.principal)),
@@ -28,6 +31,7 @@ Run::Run(RunRequest request, SchedulerOptions options)
       has_checkpoints_(request.has_checkpoints),
       journal_(std::move(request.journal)),
       options_(options),
+      workers_(workers),
       shortfall_(std::move(request.shortfall)),
       suspicion_(std::move(request.suspicion)) {
   SkipFinishedPoints();
@@ -52,31 +56,29 @@ void Run::SkipFinishedPoints() {
 
 // ---- leases ----
 
-std::optional<Lease> Run::NextLease(const Capacity& capacity, const ExecutorTraits& executor) {
+std::optional<Lease> Run::NextLease(const Capacity& capacity) {
   if (stopped_) return std::nullopt;
-  if (!executor.local) {
-    std::optional<Lease> lease =
-        IsLarge() ? NextChunks(capacity, executor, finished_.size()) : std::nullopt;
+  if (!capacity.local) {
+    std::optional<Lease> lease = IsLarge() ? NextChunks(capacity, finished_.size()) : std::nullopt;
     hungry_elsewhere_ = !lease.has_value();
     return lease;
   }
   if (IsWantedElsewhere()) return NextOpening();
   awaited_memory_ = 0;
   std::optional<Lease> lease = NextChunksOfPilot(capacity);
-  if (!lease) lease = NextChunks(capacity, executor, finished_.size());
+  if (!lease) lease = NextChunks(capacity, finished_.size());
   return lease || awaited_memory_ > 0 ? std::move(lease) : NextOpening();
 }
 
-std::optional<Lease> Run::NextLeaseBefore(const Lease& held, const Capacity& capacity,
-                                          const ExecutorTraits& executor) {
+std::optional<Lease> Run::NextLeaseBefore(const Lease& held, const Capacity& capacity) {
   if (held.pilot) return std::nullopt;
   std::optional<Lease> lease = NextChunksOfPilot(capacity);
-  return lease ? std::move(lease) : NextChunks(capacity, executor, held.point);
+  return lease ? std::move(lease) : NextChunks(capacity, held.point);
 }
 
 std::optional<Lease> Run::NextChunksOfPilot(const Capacity& capacity) {
   for (const auto& [place, pilot] : pilots_) {
-    auto lease = pilot->NextChunks(capacity, ChunkLimits());
+    auto lease = pilot->NextChunks(capacity);
     if (!lease) {
       NoteAwaited(*pilot, capacity);
       continue;
@@ -90,21 +92,18 @@ std::optional<Lease> Run::NextChunksOfPilot(const Capacity& capacity) {
   return std::nullopt;
 }
 
-std::optional<Lease> Run::NextChunks(const Capacity& capacity, const ExecutorTraits& executor,
-                                     size_t end) {
-  const ChunkLimits limits =
-      executor.local ? ChunkLimits() : ChunkLimits{false, kMostAttemptsElsewhere};
+std::optional<Lease> Run::NextChunks(const Capacity& capacity, size_t end) {
   for (auto next = leasable_.begin(); next != leasable_.end() && *next < end;) {
     const size_t index = *next++;
     if (IsHeldBack(index)) continue;
     OpenPoint& point = *open_.at(index);
-    auto lease = point.NextChunks(capacity, limits);
+    auto lease = point.NextChunks(capacity);
     if (lease) {
       lease->point = index;
       return Completed(*std::move(lease));
     }
     // Otherwise the point may have chunks for a local executor, although it has none for this one.
-    if (executor.local && !NoteAwaited(point, capacity)) leasable_.erase(index);
+    if (capacity.local && !NoteAwaited(point, capacity)) leasable_.erase(index);
   }
   return std::nullopt;
 }
@@ -229,6 +228,82 @@ const Suspicion* Run::refuted() const {
   const bool is_refuted =
       suspicion_ && has_progressed_ && suspicion_->points.empty() && waiting_.empty();
   return is_refuted ? &*suspicion_ : nullptr;
+}
+
+// ---- reports ----
+
+// A chunk of another machine does not refute the suspicion that some point kills this process.
+uint64_t Run::Merge(const Lease& lease, OpenPoint& open, LeaseReport report) {
+  PointFold& fold = open.fold();
+  open.work += report.seconds;
+  uint64_t samples = 0;
+  const bool has_chunks = !report.chunks.empty();
+  if (has_chunks && !lease.pilot && lease.local) NoteProgress(lease.point);
+  has_progressed_ |= has_chunks && !lease.pilot;
+  for (ChunkResult& chunk : report.chunks) {
+    const bool is_early = fold.Needs(chunk.chunk) && chunk.chunk > fold.state().chunk;
+    if (is_early && !lease.pilot) journal_->ChunkIsEarly(lease.point, chunk);
+    samples += fold.Add(std::move(chunk));
+  }
+  samples += fold.AddPartial(report.partial);
+  if (lease.pilot) return samples;
+  HasChunks(lease);
+  if (samples > 0) {
+    open.version = journal_->Merged(
+        {.point = lease.point, .samples = samples, .share_of_point = open.ShareOf(samples)});
+  }
+  if (!fold.finished()) EndIfBudgetIsSpent(lease.point, open);
+  // The files of an executor elsewhere may go when the lease ends, so its chunks are written now.
+  const bool at_once = !lease.local || (IsSuspect() && has_chunks);
+  if (!fold.finished() && samples > 0) CheckpointIfDue(lease.point, open, at_once);
+  return samples;
+}
+
+void Run::EndIfBudgetIsSpent(size_t index, OpenPoint& open) {
+  const Target& target = spec_->target;
+  if (!target.budget_seconds || !open.fold().HasBlocks()) return;
+  if (open.work < BudgetOfAPoint(*spec_, workers_)) return;
+  open.fold().Finish();
+  if (!target.tolerance) return;
+  const Estimate reached = open.experiment()->FirstEstimate(open.fold().Merged());
+  if (MeetsTolerance(reached, *target.tolerance)) return;
+  NoteShortfall({index, ToleranceNotReached(*spec_, index, reached)});
+}
+
+void Run::CheckpointIfDue(size_t index, OpenPoint& open, bool at_once) {
+  const double between = at_once ? 0 : kBetweenCheckpoints * workers_;
+  if (!open.fold().HasBlocks() || open.work < open.work_at_checkpoint + between) return;
+  open.work_at_checkpoint = open.work;
+  journal_->Checkpoint(index, open.fold().state());
+}
+
+void Run::WriteCheckpoints() {
+  for (const auto& [index, point] : open_) {
+    const bool has_news = point->work > point->work_at_checkpoint;
+    if (has_news && !point->fold().finished()) CheckpointIfDue(index, *point, true);
+  }
+}
+
+// ---- for watches ----
+
+std::optional<LivePoint> Run::Unfinished(size_t index) const {
+  const auto found = open_.find(index);
+  if (found == open_.end() || !found->second->fold().HasBlocks()) return std::nullopt;
+  const OpenPoint& point = *found->second;
+  return LivePoint{index, point.version, point.experiment(), point.fold().Merged()};
+}
+
+std::vector<LivePoint> Run::NewestPoints(size_t limit) const {
+  std::vector<std::pair<uint64_t, size_t>> newest;
+  for (const auto& [index, point] : open_) {
+    const bool finished = point->fold().finished();  // will be reported as finished
+    if (point->fold().HasBlocks() && !finished) newest.emplace_back(point->version, index);
+  }
+  std::sort(newest.rbegin(), newest.rend());
+  if (newest.size() > limit) newest.resize(limit);
+  std::vector<LivePoint> points;
+  for (const auto& [number, index] : newest) points.push_back(*Unfinished(index));
+  return points;
 }
 
 // ---- the end ----

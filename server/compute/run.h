@@ -21,7 +21,6 @@
 
 #include "absl/status/status.h"
 #include "core/ensemble/ensemble_spec.h"
-#include "server/compute/executor.h"
 #include "server/compute/open_point.h"
 #include "server/compute/run_journal.h"
 
@@ -63,9 +62,18 @@ struct SchedulerOptions {
   double memory_limit = std::numeric_limits<double>::infinity();
 };
 
+// An open point as it was at one moment.
+struct LivePoint {
+  size_t index = 0;
+  uint64_t version = 0;
+  std::shared_ptr<const PointExperiment> experiment;
+  BlockResult merged;
+};
+
 class Run {
  public:
-  Run(RunRequest request, SchedulerOptions options);
+  // `workers`: the threads of local executors, for budgets and checkpoints.
+  Run(RunRequest request, SchedulerOptions options, int workers);
 
   int64_t key() const { return key_; }
   int64_t generation() const { return generation_; }
@@ -74,11 +82,10 @@ class Run {
   bool has_checkpoints() const { return has_checkpoints_; }
   RunJournal& journal() const { return *journal_; }
 
-  // A new lease for an executor of this kind; empty if there is none now.
-  std::optional<Lease> NextLease(const Capacity& capacity, const ExecutorTraits& executor);
+  // A new lease for an executor; empty if there is none now.
+  std::optional<Lease> NextLease(const Capacity& capacity);
   // A new lease that goes before `held` (Lease::GoesBefore); empty if there is none.
-  std::optional<Lease> NextLeaseBefore(const Lease& held, const Capacity& capacity,
-                                       const ExecutorTraits& executor);
+  std::optional<Lease> NextLeaseBefore(const Lease& held, const Capacity& capacity);
 
   // Whether executors that are not local wait for points that nobody has opened: the next lease of
   // a local executor opens points.
@@ -111,15 +118,20 @@ class Run {
   // Null if the lease's point or pilot is not open (any more).
   OpenPoint* Find(const Lease& lease) const;
   void Close(const Lease& lease);
-  // The point may have chunks to lease again.
-  void HasChunks(const Lease& lease);
-  const std::map<size_t, std::unique_ptr<OpenPoint>>& open_points() const { return open_; }
+
+  // Merges what was computed of the lease into `open`, its point or pilot, and tells the journal.
+  // Returns the number of merged samples.
+  uint64_t Merge(const Lease& lease, OpenPoint& open, LeaseReport report);
+  // Of unfinished points with work since their last checkpoint.
+  void WriteCheckpoints();
+
+  // Copies of the unfinished points, those that changed last first, at most `limit`.
+  std::vector<LivePoint> NewestPoints(size_t limit) const;
+  // A copy of an unfinished point, if some of it is computed.
+  std::optional<LivePoint> Unfinished(size_t index) const;
 
   // The point is finished, or has a chunk more that this process has computed.
   void NoteProgress(size_t point);
-  // The same of a chunk that another machine has computed. It does not refute the suspicion that
-  // some point kills this process.
-  void NoteProgressElsewhere() { has_progressed_ = true; }
   // Null, or the suspicion that is to be cleared: the run has progressed, and has no pilot that the
   // next suspect may need.
   const Suspicion* refuted() const;
@@ -130,10 +142,6 @@ class Run {
   // reason is kept.
   void Stop(absl::Status reason);
   bool stopped() const { return stopped_; }
-
-  // The run continues, and ends with this status unless it is stopped. The shortfall of the first
-  // point is kept.
-  void NoteShortfall(Shortfall shortfall);
 
   // No turn is in progress, and no work is left.
   bool over() const;
@@ -146,10 +154,16 @@ class Run {
  private:
   std::optional<Lease> NextChunksOfPilot(const Capacity& capacity);
   // The lease has chunks of a point whose index is less than `end`.
-  std::optional<Lease> NextChunks(const Capacity& capacity, const ExecutorTraits& executor,
-                                  size_t end);
+  std::optional<Lease> NextChunks(const Capacity& capacity, size_t end);
   std::optional<Lease> NextOpening();
   bool NoteAwaited(const OpenPoint& point, const Capacity& capacity);
+  // The lease's point may have chunks to lease again.
+  void HasChunks(const Lease& lease);
+  void EndIfBudgetIsSpent(size_t index, OpenPoint& open);
+  void CheckpointIfDue(size_t index, OpenPoint& open, bool at_once);
+  // The run continues, and ends with this status unless it is stopped. The shortfall of the first
+  // point is kept.
+  void NoteShortfall(Shortfall shortfall);
   // Whether only some points are computed now, and not this one.
   bool IsHeldBack(size_t point) const;
   bool HasPointsToOpen() const { return !reopen_.empty() || next_point_ < finished_.size(); }
@@ -167,6 +181,7 @@ class Run {
   const bool has_checkpoints_;
   const std::shared_ptr<RunJournal> journal_;
   const SchedulerOptions options_;
+  const int workers_;
 
   std::map<size_t, std::unique_ptr<OpenPoint>> open_;
   std::map<PilotPlace, std::unique_ptr<OpenPoint>> pilots_;

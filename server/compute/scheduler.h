@@ -11,8 +11,7 @@
 //   4. APilotIsComputedOnceForAllRuns.
 //   5. AStoppedRunEndsWhenItsTurnsHaveEnded.
 //   6. TheLeasesOfThisServerTakeNoMoreMemoryThanTheLimit.
-//   7. ALargePointGetsItsTurn. The first run that finds too little memory waits. Leases that begin
-//      later, of other runs, leave it as much as it needs.
+//   7. ALargePointGetsItsTurn (held_leases.h).
 //   8. SuspectsAreComputedAloneOneAfterTheOther. A suspect is a run that was being computed at two
 //      deaths of the process (crash_record.h): other runs pause, and executors elsewhere too. It
 //      has one lease of one chunk at a time, so it holds no memory when it pauses.
@@ -26,34 +25,18 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <tuple>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "server/compute/executor.h"
 #include "server/compute/fair_share.h"
+#include "server/compute/held_leases.h"
 #include "server/compute/lease.h"
 #include "server/compute/point_opener.h"
 #include "server/compute/run.h"
 #include "server/mutex.h"
 
 namespace ballpiston::server {
-
-// An open point as it was at one moment.
-struct LivePoint {
-  size_t index = 0;
-  uint64_t version = 0;
-  std::shared_ptr<const PointExperiment> experiment;
-  BlockResult merged;
-};
-
-// What an executor computed of a lease.
-struct LeaseReport {
-  std::vector<ChunkResult> chunks = {};  // complete ones, in any order
-  // Of the first chunk that is not complete; or no blocks. Dropped unless the executor is local.
-  PartialChunk partial = {};
-  double seconds = 0;  // of processor time since the previous report about this point
-};
 
 // Totals since the scheduler was made.
 struct WorkCounts {
@@ -101,6 +84,7 @@ class Scheduler {
   // `generation`, `point` and `executor` of the lease are used. Errors, of such executors:
   //   DATA_LOSS    a chunk does not belong to its point; the others are merged
   //   UNAVAILABLE  the point is not open yet, or the run is paused: report again later
+  // Of such an executor, returns when the disk has room for more reports.
   absl::Status Report(const Lease& lease, LeaseReport report);
 
   // For a local executor: a turn at the lease ends, after its last report. `seconds`: processor
@@ -117,20 +101,13 @@ class Scheduler {
   // fails with ENGINE_CRASHED.
   void ReturnCrashed(Lease lease);
 
-  // Returns when the disk has room for more reports.
-  void AwaitRoom();
-
   // Whether chunks of the lease may still be needed.
   bool Needs(const Lease& lease) const;
 
-  // The run ends with this status.
-  void Fail(const Lease& lease, absl::Status why);
-
   // ---- for watches ----
 
-  // Copies of the run's unfinished points that changed after `version`, newest first, at most
-  // `limit`.
-  std::vector<LivePoint> ChangedSince(int64_t run, uint64_t version, size_t limit) const;
+  // Copies of the run's unfinished points, those that changed last first, at most `limit`.
+  std::vector<LivePoint> NewestPoints(int64_t run, size_t limit) const;
 
   // A copy of an unfinished point, if some of it is computed.
   std::optional<LivePoint> Unfinished(int64_t run, size_t index) const;
@@ -140,50 +117,18 @@ class Scheduler {
  private:
   struct Member {        // an executor
     Executor* executor;  // null: removed
-    ExecutorTraits traits;
     FairShare shares;
   };
 
-  // A lease that an executor has, by executor, run, and the lease's number.
-  using HeldKey = std::tuple<size_t, int64_t, int64_t>;
-  struct Held {
-    Lease lease;
-    int turns = 0;       // of a local executor
-    int most_turns = 0;  // at a time until now
-  };
-  // A run that waits for memory.
-  struct Waiting {
-    int64_t run;
-    double memory;       // bytes that it needs
-    int64_t last_lease;  // before it waited
-    double later = 0;    // bytes of leases that began later
-  };
   using RunPointer = std::shared_ptr<Run>;
-  using HeldLeases = std::map<HeldKey, Held>;
-
-  static HeldKey KeyOf(const Lease& lease) { return {lease.executor, lease.run, lease.number}; }
 
   RunPointer FindRun(int64_t key) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  Capacity CapacityFor(const Run& run, const Capacity& capacity) const
+  // For a new lease of a local executor.
+  Capacity WithBounds(const Capacity& capacity, const Run& run) const
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  double FreeMemory(bool is_later) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  bool IsLater(const Lease& lease) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void AddMemory(const Lease& lease, double bytes) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void NoteWaiting(const Run& run, bool has_lease) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  HeldLeases::iterator Drop(HeldLeases::iterator held) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::optional<Lease> Choose(const Capacity& capacity) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::optional<Lease> NextOf(Run& run, const Capacity& capacity)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  Held* HeldWithTurn(const Run& run, size_t executor) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  bool HoldsLease(const Run& run) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void BeginTurn(Held& held) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void Merge(Run& run, const Lease& lease, OpenPoint& open, LeaseReport report)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void EndIfBudgetIsSpent(Run& run, const Lease& lease, OpenPoint& open)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void CheckpointIfDue(Run& run, const Lease& lease, OpenPoint& open, bool at_once)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void WriteCheckpoints(Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void StopRun(Run& run, absl::Status why) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void EndPilot(const Run& owner, const PilotPlace& place) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void Charge(Run& run, const Lease& lease, double seconds) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
@@ -198,8 +143,7 @@ class Scheduler {
   void FinishPoint(const RunPointer& run, const Lease& lease) ABSL_LOCKS_EXCLUDED(mutex_);
   void Conclude(const RunPointer& run) ABSL_LOCKS_EXCLUDED(mutex_);
   bool IsPaused(const Run& run) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  bool MayTakeTurn(const Run& run, const Member& member) const
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  bool MayTakeTurn(const Run& run, bool is_local) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void ClearIfRefuted(const RunPointer& run) ABSL_LOCKS_EXCLUDED(mutex_);
   void EndPilotsOf(const Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::vector<Executor*> Executors() const ABSL_LOCKS_EXCLUDED(mutex_);
@@ -217,9 +161,6 @@ class Scheduler {
   std::map<int64_t, RunPointer> runs_ ABSL_GUARDED_BY(mutex_);
   std::deque<int64_t> suspects_ ABSL_GUARDED_BY(mutex_);  // the first is computed alone
   HeldLeases held_ ABSL_GUARDED_BY(mutex_);
-  double held_memory_ ABSL_GUARDED_BY(mutex_) = 0;  // bytes of held_
-  std::optional<Waiting> waiting_ ABSL_GUARDED_BY(mutex_);
-  int64_t last_number_ ABSL_GUARDED_BY(mutex_) = 0;
   std::map<PilotPlace, int64_t> pilots_ ABSL_GUARDED_BY(mutex_);  // in progress, and by which run
 };
 

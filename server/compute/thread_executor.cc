@@ -1,18 +1,25 @@
 #include "server/compute/thread_executor.h"
 
+#include <chrono>
 #include <deque>
+#include <stop_token>
 #include <utility>
 
 #include "absl/status/status.h"
+#include "core/ensemble/block_run.h"
 #include "core/ensemble/chunk_fold.h"
-#include "server/compute/block_session.h"
 #include "server/compute/guarded.h"
 #include "server/status/failpoint.h"
 
 namespace ballpiston::server {
+namespace {
+
+constexpr std::chrono::milliseconds kTurn(50);
+
+}  // namespace
 
 // A lease at which several threads take turns.
-class ThreadExecutor::SharedLease : private BlockExchange {
+class ThreadExecutor::SharedLease {
  public:
   SharedLease(ThreadExecutor& executor, Lease lease)
       : executor_(executor),
@@ -29,36 +36,70 @@ class ThreadExecutor::SharedLease : private BlockExchange {
 
   // One turn, in the session that has rested longest, or in a new one.
   void Advance() {
-    std::unique_ptr<BlockSession> session = TakeSession();
+    std::unique_ptr<Session> session = TakeSession();
     if (!session->Advance()) return;
     MutexLock lock(mutex_);
     resting_.push_back(std::move(session));
   }
 
  private:
+  // Computes blocks of the lease in turns of about 50 ms. Between turns it keeps its orbits where
+  // they are, and any thread may take the next turn.
+  class Session : private BlockQueue {
+   public:
+    explicit Session(SharedLease& lease) : lease_(lease) {}
+
+    // Runs one turn. False if the session has no work left or was stopped; it can be destroyed
+    // then.
+    bool Advance() {
+      end_of_turn_ = SteadyNow() + kTurn;
+      worked_ = ProcessorSeconds();
+      if (blocks_ == nullptr) blocks_ = lease_.lease_.experiment->StartRun(*this);
+      const bool is_idle = blocks_->Advance();
+      lease_.TurnEnds(TakeSeconds());
+      return !is_idle && !lease_.IsStopped();
+    }
+
+   private:
+    // Of processor time, since the turn began or its previous block was done.
+    double TakeSeconds() {
+      const double now = ProcessorSeconds();
+      return now - std::exchange(worked_, now);
+    }
+
+    std::optional<Block> Next() override { return lease_.NextBlock(); }
+    void Done(const Block& block, BlockResult result) override {
+      lease_.BlockDone(block, std::move(result), TakeSeconds());
+    }
+    bool Pause() override { return lease_.IsStopped() || SteadyNow() >= end_of_turn_; }
+    OrbitDevice* device() const override { return lease_.executor_.device_; }
+    std::stop_token stop() const override { return lease_.lease_.stop; }
+
+    SharedLease& lease_;
+    std::chrono::steady_clock::time_point end_of_turn_;
+    double worked_ = 0;  // the thread's processor time at the last report
+    std::unique_ptr<EngineRun> blocks_;
+  };
+
   uint64_t WindowFor(const OrbitDevice* device) const {
     if (device == nullptr) return ChunkFold::kWindow;
     return ChunkFold::WindowFor(lease_.experiment->plan(), device->orbits());
   }
 
-  std::unique_ptr<BlockSession> TakeSession() {
+  std::unique_ptr<Session> TakeSession() {
     MutexLock lock(mutex_);
-    if (resting_.empty()) {
-      BlockExchange& blocks = *this;
-      return std::make_unique<BlockSession>(blocks, lease_.experiment, lease_.stop,
-                                            executor_.device_);
-    }
-    std::unique_ptr<BlockSession> session = std::move(resting_.front());
+    if (resting_.empty()) return std::make_unique<Session>(*this);
+    std::unique_ptr<Session> session = std::move(resting_.front());
     resting_.pop_front();
     return session;
   }
 
-  std::optional<Block> NextBlock() override {
+  std::optional<Block> NextBlock() {
     MutexLock lock(mutex_);
     return IsStopped() ? std::nullopt : fold_.NextBlock();
   }
 
-  void BlockDone(const Block& block, BlockResult result, double seconds) override {
+  void BlockDone(const Block& block, BlockResult result, double seconds) {
     executor_.blocks_.fetch_add(1, std::memory_order_relaxed);
     LeaseReport report;
     bool has_room = false;
@@ -72,7 +113,7 @@ class ThreadExecutor::SharedLease : private BlockExchange {
     if (has_room) executor_.Wake();
   }
 
-  void TurnEnds(double seconds) override {
+  void TurnEnds(double seconds) {
     LeaseReport report = {.seconds = seconds};
     {
       MutexLock lock(mutex_);
@@ -85,7 +126,7 @@ class ThreadExecutor::SharedLease : private BlockExchange {
   const Lease lease_;
   mutable Mutex mutex_ ABSL_ACQUIRED_AFTER(executor_.mutex_);
   ChunkFold fold_ ABSL_GUARDED_BY(mutex_);
-  std::deque<std::unique_ptr<BlockSession>> resting_ ABSL_GUARDED_BY(mutex_);
+  std::deque<std::unique_ptr<Session>> resting_ ABSL_GUARDED_BY(mutex_);
 };
 
 ThreadExecutor::ThreadExecutor(Scheduler& scheduler, int threads, double seconds,
@@ -179,7 +220,7 @@ void ThreadExecutor::Compute(const Lease& lease) {
     Find(lease)->Advance();
     return absl::OkStatus();
   });
-  if (!advanced.ok()) scheduler_.Fail(lease, advanced);
+  if (!advanced.ok()) scheduler_.Stop(lease.run, advanced);
 }
 
 ThreadExecutor::SharedPointer ThreadExecutor::Find(const Lease& lease) {

@@ -1,7 +1,7 @@
 // The threads of this process that compute leases.
 //
-// The threads share a lease: each computes blocks of its chunks in a session of its own
-// (block_session.h). Before every turn a thread asks the scheduler for the lease whose turn it is.
+// The threads share a lease: each computes blocks of its chunks in a session of its own. Before
+// every turn a thread asks the scheduler for the lease whose turn it is.
 // An exception from a block ends only the block's run, with a failure. Thread-safe.
 #pragma once
 
@@ -39,7 +39,6 @@ class ThreadExecutor : public Executor {
                  OrbitDevice* device = nullptr);
   ~ThreadExecutor() override;  // shuts down
 
-  ExecutorTraits traits() const override { return {.local = true}; }
   void Start() override;
   void Wake() override ABSL_LOCKS_EXCLUDED(mutex_);
   bool HasTurn(int64_t lease) const override;

@@ -117,10 +117,6 @@ absl::Status InvalidRequest(const std::vector<FieldViolation>& violations) {
   return Invalid("INVALID_REQUEST", violations);
 }
 
-absl::Status InvalidField(std::string field, std::string description) {
-  return InvalidRequest({{std::move(field), std::move(description)}});
-}
-
 absl::Status RequestIdReused(const std::string& request_id) {
   return WithReason(absl::InvalidArgumentError(absl::StrCat(
                         "request_id ", request_id, " was used before with a different request")),

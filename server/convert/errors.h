@@ -27,7 +27,6 @@ inline constexpr size_t kMaxErrorDetails = 6 * 1024;
 // INVALID_ARGUMENT, with every violation; at least one.
 absl::Status InvalidSpec(const std::vector<FieldViolation>& violations);
 absl::Status InvalidRequest(const std::vector<FieldViolation>& violations);
-absl::Status InvalidField(std::string field, std::string description);  // the same, for one field
 absl::Status RequestIdReused(const std::string& request_id);
 
 absl::Status JobNotFound(const std::string& name);     // NOT_FOUND

@@ -133,6 +133,15 @@ BlockResult ResultOfAccumulators(const storage::Accumulators& record) {
   return result;
 }
 
+void FillChunk(const ChunkResult& chunk, storage::Chunk& record) {
+  record.set_chunk(chunk.chunk);
+  FillAccumulators(chunk.result, *record.mutable_result());
+}
+
+ChunkResult ChunkOf(const storage::Chunk& record) {
+  return {.chunk = record.chunk(), .result = ResultOfAccumulators(record.result())};
+}
+
 std::string FoldRecordBytes(const FoldState& state) {
   storage::Checkpoint record;
   record.set_chunk(state.chunk);
@@ -159,15 +168,14 @@ absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes) {
 
 std::string ChunkRecordBytes(const ChunkResult& chunk) {
   storage::Chunk record;
-  record.set_chunk(chunk.chunk);
-  FillAccumulators(chunk.result, *record.mutable_result());
+  FillChunk(chunk, record);
   return DeterministicBytes(record);
 }
 
 absl::StatusOr<ChunkResult> ChunkFromBytes(const std::string& bytes) {
   storage::Chunk record;
   if (!record.ParseFromString(bytes)) return absl::DataLossError("a stored chunk cannot be read");
-  return ChunkResult{.chunk = record.chunk(), .result = ResultOfAccumulators(record.result())};
+  return ChunkOf(record);
 }
 
 absl::Status CheckFoldState(const PointExperiment& experiment, const FoldState& state) {

@@ -19,6 +19,8 @@ void FillAccumulators(const BlockResult& result, storage::Accumulators& record);
 void FillGroup(const GroupState& group, storage::Group& record);
 GroupState GroupOf(const storage::Group& record);
 BlockResult ResultOfAccumulators(const storage::Accumulators& record);
+void FillChunk(const ChunkResult& chunk, storage::Chunk& record);
+ChunkResult ChunkOf(const storage::Chunk& record);
 
 std::string FoldRecordBytes(const FoldState& state);
 absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes);  // DATA_LOSS

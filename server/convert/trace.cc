@@ -133,17 +133,19 @@ v1::TraceStart StartMessage(const v1::TraceOrbitRequest& request, const PairGeom
 
 }  // namespace
 
-void TraceMessages::FillNext(v1::TraceOrbitResponse& message) {
+bool TraceMessages::FillNext(v1::TraceOrbitResponse& message) {
   if (start_) {
     *message.mutable_start() = *std::move(start_);
     start_.reset();
-    return;
+    return true;
   }
+  if (events_left_ == 0) return false;
   for (int i = 0; i < kEventsOfMessage && events_left_ > 0; ++i) {
     const std::optional<TraceEvent> event = trace_->Next();
     if (event) Fill(*event, *message.add_events());
     events_left_ = event ? events_left_ - 1 : 0;
   }
+  return true;
 }
 
 absl::StatusOr<TraceMessages> TraceMessages::Create(const v1::TraceOrbitRequest& request) {

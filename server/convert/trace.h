@@ -30,10 +30,9 @@ class TraceMessages {
   // Draws the orbit's start. INVALID_ARGUMENT with every violation.
   static absl::StatusOr<TraceMessages> Create(const v1::TraceOrbitRequest& request);
 
-  // Fills the message with the start (in the first message) and the next events, at most
-  // kEventsOfMessage.
-  void FillNext(v1::TraceOrbitResponse& message);
-  bool HasEnded() const { return events_left_ == 0; }
+  // Fills the message with the start (in the first message) or the next events, at most
+  // kEventsOfMessage. False after the last event.
+  bool FillNext(v1::TraceOrbitResponse& message);
 
  private:
   static TraceMessages OfPair(const v1::TraceOrbitRequest& request, const PairGeometry& pair);

@@ -1,17 +1,4 @@
-// The tables of the store, and the checks of a file before it is used as a store.
-//
-//   jobs      one row a job; `sequence` orders them by age and names the job in the next five
-//   requests  (principal, request id) -> the job that the request made
-//   checkpoints  (job, point) -> storage.Checkpoint, of unfinished points of active jobs
-//   chunks    (job, point, chunk) -> storage.Chunk, of chunks that wait for an earlier one
-//   results   (job, point) -> v1.PointResult without its details, of finished points
-//   details   (job, point) -> v1.PointResult, compressed: the details of those that have any
-//   dropped   deleted and expired jobs whose results are still being removed (sweeper.h)
-//   server    one row: a random name of this store, which owns its shared folder
-//   pilots    the limit's error that pilot runs measured, by place and engine
-//
-// `application_id` marks the file as a ballpiston store; `user_version` is the version of these
-// tables.
+// The tables of the store (server/README.md), and the checks of a file before it becomes a store.
 #pragma once
 
 #include <cstdint>

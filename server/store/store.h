@@ -81,15 +81,13 @@ class Store {
   // Returns when the change is on disk: OK and what the change has returned, or the error. If the
   // disk hangs, returns UNAVAILABLE at once and does not run the change.
   template <typename Function>
-  auto Commit(Function change, bool frees_space = false) {
-    return Returned(change, [&](Change run) {
-      return CommitRequest({.change = std::move(run), .frees_space = frees_space});
-    });
+  auto Commit(Function change) {
+    return Committed(change, false);
   }
   // As Commit, for a change that frees space.
   template <typename Function>
   auto CommitDeletion(Function change) {
-    return Commit(std::move(change), true);
+    return Committed(change, true);
   }
 
   void Record(Change change, Done done = nullptr);
@@ -185,6 +183,13 @@ class Store {
       const absl::Status status = run([&](Database& database) { result = function(database); });
       return status.ok() ? absl::StatusOr<Result>(*std::move(result)) : status;
     }
+  }
+
+  template <typename Function>
+  auto Committed(Function& change, bool frees_space) {
+    return Returned(change, [&](Change run) {
+      return CommitRequest({.change = std::move(run), .frees_space = frees_space});
+    });
   }
 
   Store(std::unique_ptr<Database> writer, Options options, std::string path, std::string identity);

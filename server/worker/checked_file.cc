@@ -13,7 +13,7 @@ namespace {
 
 // The first byte is not text, and the line ends show a transfer that changed them.
 constexpr absl::string_view kMagic("\211BPW\r\n\032\n", 8);
-constexpr size_t kVersionAt = 8, kKindAt = 12, kLengthAt = 16, kHeader = 24, kChecksum = 16;
+constexpr size_t kVersionAt = 8, kLengthAt = 12, kHeader = 20, kChecksum = 16;
 static_assert(kHeader + kChecksum == kFrameBytes);
 
 void Append(uint64_t number, size_t bytes, std::string& text) {
@@ -32,7 +32,7 @@ std::string ChecksumOf(absl::string_view text) {
   return {reinterpret_cast<const char*>(canonical.digest), kChecksum};
 }
 
-absl::Status CheckBeginning(FrameKind kind, absl::string_view file) {
+absl::Status CheckBeginning(absl::string_view file) {
   const size_t known = std::min(file.size(), kMagic.size());
   if (file.substr(0, known) != kMagic.substr(0, known)) {
     return absl::InvalidArgumentError("is not a file of ballpiston");
@@ -40,30 +40,25 @@ absl::Status CheckBeginning(FrameKind kind, absl::string_view file) {
   if (file.size() < kFrameBytes) {
     return absl::OutOfRangeError(absl::StrCat("is truncated: it has only ", file.size(), " bytes"));
   }
-  const uint64_t version = NumberAt(file, kVersionAt, 4), found = NumberAt(file, kKindAt, 4);
-  if (version != kFormatVersion) {
-    return absl::UnimplementedError(absl::StrCat("has format version ", version,
-                                                 "; this program knows version ", kFormatVersion));
-  }
-  if (found == static_cast<uint64_t>(kind)) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrCat("is a file of kind ", found, "; expected: kind ", static_cast<uint32_t>(kind)));
+  const uint64_t version = NumberAt(file, kVersionAt, 4);
+  if (version == kFormatVersion) return absl::OkStatus();
+  return absl::UnimplementedError(absl::StrCat("has format version ", version,
+                                               "; this program knows version ", kFormatVersion));
 }
 
 }  // namespace
 
-std::string FrameOf(FrameKind kind, absl::string_view payload) {
+std::string FrameOf(absl::string_view payload) {
   std::string file(kMagic);
   file.reserve(payload.size() + kFrameBytes);
   Append(kFormatVersion, 4, file);
-  Append(static_cast<uint64_t>(kind), 4, file);
   Append(payload.size(), 8, file);
   file.append(payload.data(), payload.size());
   return file + ChecksumOf(file);
 }
 
-absl::StatusOr<absl::string_view> TakeFrame(FrameKind kind, absl::string_view& bytes) {
-  const absl::Status checked = CheckBeginning(kind, bytes);
+absl::StatusOr<absl::string_view> TakeFrame(absl::string_view& bytes) {
+  const absl::Status checked = CheckBeginning(bytes);
   if (!checked.ok()) return checked;
   const uint64_t length = NumberAt(bytes, kLengthAt, 8), has = bytes.size() - kFrameBytes;
   if (length > has) {

@@ -2,11 +2,13 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "ballpiston/storage/records.pb.h"
 #include "server/convert/deterministic_bytes.h"
+#include "server/convert/fold_record.h"
 #include "server/worker/checked_file.h"
 
 namespace ballpiston::server {
@@ -17,6 +19,21 @@ constexpr std::pair<Outcome, absl::string_view> kOutcomes[] = {{Outcome::kFinish
                                                                {Outcome::kLost, "lost"},
                                                                {Outcome::kCrashed, "crashed"},
                                                                {Outcome::kNoMemory, "no-memory"}};
+
+absl::Status Unreadable() {
+  return absl::DataLossError("a message of a lease's file cannot be read");
+}
+
+bool IsDuration(double seconds) { return std::isfinite(seconds) && seconds >= 0; }
+
+template <typename Message>
+absl::StatusOr<Message> TakeMessage(absl::string_view& bytes) {
+  const absl::StatusOr<absl::string_view> payload = TakeFrame(bytes);
+  if (!payload.ok()) return payload.status();
+  Message message;
+  if (message.ParseFromArray(payload->data(), static_cast<int>(payload->size()))) return message;
+  return Unreadable();
+}
 
 }  // namespace
 
@@ -44,35 +61,29 @@ std::optional<LeaseFileName> ParseDone(absl::string_view name) {
   return file->outcome ? file : std::nullopt;
 }
 
-std::string BytesOf(const storage::Lease& lease, double touch_seconds) {
-  storage::LeaseFile record;
-  *record.mutable_lease() = lease;
-  record.set_touch_seconds(touch_seconds);
-  return FrameOf(FrameKind::kLease, DeterministicBytes(record));
-}
+std::string BytesOf(const storage::Lease& lease) { return FrameOf(DeterministicBytes(lease)); }
 
-std::string BytesOf(const LeaseChunks& chunks) {
-  return FrameOf(FrameKind::kChunks, LeaseChunksPayload(chunks));
+std::string BytesOf(const LeaseReport& report) {
+  storage::LeaseChunks record;
+  for (const ChunkResult& chunk : report.chunks) FillChunk(chunk, *record.add_chunks());
+  record.set_processor_seconds(report.seconds);
+  return FrameOf(DeterministicBytes(record));
 }
 
 absl::StatusOr<LeaseFile> TakeLease(absl::string_view& bytes) {
-  const absl::StatusOr<absl::string_view> payload = TakeFrame(FrameKind::kLease, bytes);
-  if (!payload.ok()) return payload.status();
-  storage::LeaseFile record;
-  const bool is_read = record.ParseFromArray(payload->data(), static_cast<int>(payload->size()));
-  const double seconds = record.touch_seconds();
-  if (!is_read || !std::isfinite(seconds) || seconds < 0) {
-    return absl::DataLossError("the message of a lease's file cannot be read");
-  }
-  absl::StatusOr<IdentifiedLease> lease = LeaseOfRecord(record.lease());
-  if (!lease.ok()) return lease.status();
-  return LeaseFile{*std::move(lease), seconds};
+  const absl::StatusOr<storage::Lease> record = TakeMessage<storage::Lease>(bytes);
+  if (!record.ok()) return record.status();
+  if (!IsDuration(record->touch_seconds())) return Unreadable();
+  return LeaseOfRecord(*record);
 }
 
-absl::StatusOr<LeaseChunks> TakeChunks(absl::string_view& bytes) {
-  const absl::StatusOr<absl::string_view> payload = TakeFrame(FrameKind::kChunks, bytes);
-  if (!payload.ok()) return payload.status();
-  return LeaseChunksFromPayload(*payload);
+absl::StatusOr<LeaseReport> TakeReport(absl::string_view& bytes) {
+  const absl::StatusOr<storage::LeaseChunks> record = TakeMessage<storage::LeaseChunks>(bytes);
+  if (!record.ok()) return record.status();
+  if (!IsDuration(record->processor_seconds())) return Unreadable();
+  LeaseReport report = {.seconds = record->processor_seconds()};
+  for (const storage::Chunk& chunk : record->chunks()) report.chunks.push_back(ChunkOf(chunk));
+  return report;
 }
 
 }  // namespace ballpiston::server

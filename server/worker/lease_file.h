@@ -6,12 +6,9 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "server/worker/chunk_file.h"
 #include "server/worker/lease_record.h"
 
 namespace ballpiston::server {
@@ -40,18 +37,14 @@ struct LeaseFileName {
 std::optional<LeaseFileName> ParseTaken(absl::string_view name);
 std::optional<LeaseFileName> ParseDone(absl::string_view name);
 
-// The beginning of a lease's file.
-struct LeaseFile {
-  IdentifiedLease lease;
-  double touch_seconds = 20;  // the worker gives the file another time as often as this
-};
+std::string BytesOf(const storage::Lease& lease);
+// The complete chunks, and the seconds.
+std::string BytesOf(const LeaseReport& report);
 
-std::string BytesOf(const storage::Lease& lease, double touch_seconds);
-std::string BytesOf(const LeaseChunks& chunks);
-
-// These take one frame off `bytes`. Errors of TakeFrame, LeaseOfRecord and LeaseChunksFromPayload.
+// These take one frame off `bytes`. Errors of TakeFrame and LeaseOfRecord; DATA_LOSS if the frame's
+// message cannot be read.
 absl::StatusOr<LeaseFile> TakeLease(absl::string_view& bytes);
 using LeaseReader = std::function<absl::StatusOr<LeaseFile>(absl::string_view& bytes)>;
-absl::StatusOr<LeaseChunks> TakeChunks(absl::string_view& bytes);
+absl::StatusOr<LeaseReport> TakeReport(absl::string_view& bytes);
 
 }  // namespace ballpiston::server

@@ -9,23 +9,20 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cctype>
 #include <chrono>
-#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <limits>
-#include <mutex>
 #include <random>
 #include <string>
-#include <thread>
 
 #include "absl/status/status.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
+#include "absl/time/time.h"
 #include "core/engine_version.h"
 #include "server/fatal_signals.h"
 #include "server/machine_memory.h"
@@ -57,28 +54,19 @@ void Say(absl::string_view line) {
 }
 
 // When the worker has to end: at a signal, or when its time is over. SIGTERM and SIGINT mean now,
-// SIGUSR1 after the chunk. The signals must be blocked in all threads, so this is made before any
-// other thread.
+// SIGUSR1 after the chunk. The signals are blocked; the worker takes them when it asks or sleeps.
 class Ending {
  public:
-  explicit Ending(double for_seconds) {
-    last_ = std::max(for_seconds - kSecondsToEnd, 0.5 * for_seconds);
-    after_chunk_ = std::max(last_ - kSecondsForAChunk, 0.5 * last_);
+  explicit Ending(double for_seconds)
+      : last_(std::max(for_seconds - kSecondsToEnd, 0.5 * for_seconds)),
+        after_chunk_(std::max(last_ - kSecondsForAChunk, 0.5 * last_)) {
     sigemptyset(&signals_);
     for (const int signal : {SIGUSR1, SIGTERM, SIGINT}) sigaddset(&signals_, signal);
     pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
-    thread_ = std::thread([this] { Wait(); });
   }
-  // Wakes the thread if no signal came.
-  ~Ending() {
-    is_over_ = true;
-    pthread_kill(thread_.native_handle(), SIGTERM);
-    thread_.join();
-  }
-  Ending(const Ending&) = delete;
-  Ending& operator=(const Ending&) = delete;
 
-  EndOfWork Get() const {
+  EndOfWork Get() {
+    AwaitSignal(0);
     const double seconds = SecondsSinceStart();
     if (seconds >= last_) return EndOfWork::kNow;
     return seconds >= after_chunk_ ? EndOfWork::kAfterChunk : EndOfWork::kNotYet;
@@ -86,10 +74,9 @@ class Ending {
 
   // Ends early if the worker has to end.
   void Sleep(std::chrono::duration<double> time) {
-    std::unique_lock lock(mutex_);
-    const double end = std::min(SecondsSinceStart() + time.count(), after_chunk_.load());
-    const auto left = [&] { return std::min(end, after_chunk_.load()) - SecondsSinceStart(); };
-    while (left() > 0) signalled_.wait_for(lock, std::chrono::duration<double>(left()));
+    const double end = SecondsSinceStart() + time.count();
+    const auto left = [&] { return std::min(end, after_chunk_) - SecondsSinceStart(); };
+    while (left() > 0) AwaitSignal(left());
   }
 
  private:
@@ -97,25 +84,18 @@ class Ending {
     return std::chrono::duration<double>(Clock::now() - start_).count();
   }
 
-  void Wait() {
-    while (!is_over_) {
-      int signal = 0;
-      sigwait(&signals_, &signal);
-      const double now = SecondsSinceStart();
-      const std::scoped_lock lock(mutex_);
-      after_chunk_ = std::min(after_chunk_.load(), now);
-      last_ = std::min(last_.load(), signal == SIGUSR1 ? now + kSecondsForAChunk : now);
-      signalled_.notify_all();
-    }
+  void AwaitSignal(double most_seconds) {
+    const timespec time = absl::ToTimespec(absl::Seconds(std::max(most_seconds, 0.0)));
+    const int signal = sigtimedwait(&signals_, nullptr, &time);
+    if (signal < 0) return;
+    const double now = SecondsSinceStart();
+    after_chunk_ = std::min(after_chunk_, now);
+    last_ = std::min(last_, signal == SIGUSR1 ? now + kSecondsForAChunk : now);
   }
 
   const Clock::time_point start_ = Clock::now();
-  std::atomic<double> after_chunk_, last_;  // seconds since the start
-  std::atomic<bool> is_over_ = false;
+  double last_, after_chunk_;  // seconds since the start
   sigset_t signals_;
-  std::mutex mutex_;
-  std::condition_variable signalled_;
-  std::thread thread_;
 };
 
 // ---- if the engine kills this process ----

@@ -36,13 +36,11 @@ class LeaseWork : private ChunkReceiver {
         name_(std::move(name)),
         lease_(file.lease),
         between_touches_(InTicks(file.touch_seconds)),
-        last_touch_(host.now()) {
-    StartMessage();
-  }
+        last_touch_(host.now()) {}
 
   absl::Status Run() {
-    CrashForSeed(lease_.lease.spec->seed);
-    const bool is_finished = RunLease(lease_.lease, stop_.get_token(), *this);
+    CrashForSeed(lease_.spec->seed);
+    const bool is_finished = RunLease(lease_, stop_.get_token(), *this);
     if (is_lost_) return absl::OkStatus();
     const Outcome outcome = is_finished ? Outcome::kFinished : Outcome::kReturned;
     absl::Status left = Retried([this] { return LeaveChunks(); });
@@ -52,12 +50,12 @@ class LeaseWork : private ChunkReceiver {
 
  private:
   void ChunkDone(ChunkResult chunk) override {
-    message_.chunks.push_back(std::move(chunk));
+    report_.chunks.push_back(std::move(chunk));
     if (host_.end() != EndOfWork::kNotYet) stop_.request_stop();
   }
 
   void Worked(double seconds) override {
-    message_.processor_seconds += seconds;
+    report_.seconds += seconds;
     if (host_.end() == EndOfWork::kNow) stop_.request_stop();
     if (is_lost_ || host_.now() - last_touch_ < between_touches_) return;
     last_touch_ = host_.now();
@@ -69,17 +67,12 @@ class LeaseWork : private ChunkReceiver {
 
   // Without chunks, touches the file if this is wanted.
   absl::Status LeaveChunks(bool touches = false) {
-    if (message_.chunks.empty()) {
+    if (report_.chunks.empty()) {
       return touches ? files_.Touch(name_.Taken()) : absl::OkStatus();
     }
-    absl::Status left = files_.Append(name_.Taken(), BytesOf(message_));
-    if (left.ok()) StartMessage();
+    absl::Status left = files_.Append(name_.Taken(), BytesOf(report_));
+    if (left.ok()) report_ = {};
     return left;
-  }
-
-  void StartMessage() {
-    const auto& [job, lease] = lease_;
-    message_ = {.job = job, .point = lease.point, .attempt = lease.attempt};
   }
 
   // Again while the folder is full or cannot be used, but not for ever.
@@ -97,11 +90,11 @@ class LeaseWork : private ChunkReceiver {
   const WorkerOptions& options_;
   const WorkerHost& host_;
   const LeaseFileName name_;
-  const IdentifiedLease& lease_;
+  const Lease& lease_;
   const Clock::duration between_touches_;
   Clock::time_point last_touch_;
   std::stop_source stop_;
-  LeaseChunks message_;  // not in the file yet
+  LeaseReport report_;  // not in the file yet
   bool is_lost_ = false;
 };
 
@@ -164,7 +157,7 @@ class Worker {
       return file.status();
     }
     if (!file.ok()) return Ended(name, Outcome::kReturned, file.status());
-    const Lease& lease = file->lease.lease;
+    const Lease& lease = file->lease;
     const double needed = MemoryOf(*lease.spec, lease.experiment->parameters(), 1);
     if (needed > options_.memory) {
       return Ended(name, Outcome::kNoMemory,

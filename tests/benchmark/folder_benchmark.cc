@@ -112,7 +112,7 @@ class Row {
     const std::string bytes = *files_.Read("taken/" + Name(event), 0);
     absl::string_view rest = bytes;
     const LeaseFile file = *TakeLease(rest);
-    event.end = Now() + file.lease.lease.seconds * Scatter();
+    event.end = Now() + SecondsOf(file.lease) * Scatter();
     event.touch = file.touch_seconds;
     At(std::min(event.end, Now() + event.touch), std::move(event));
   }
@@ -124,15 +124,18 @@ class Row {
       return At(std::min(event.end, event.time + event.touch), std::move(event));
     }
     absl::string_view bytes = files_.files.at(taken).bytes;
-    const IdentifiedLease lease = TakeLease(bytes)->lease;
-    const std::string message = BytesOf(LeaseChunks{.job = lease.job,
-                                                    .point = lease.lease.point,
-                                                    .chunks = Chunks(lease.lease),
-                                                    .processor_seconds = lease.lease.seconds});
-    files_.Append(taken, message).IgnoreError();
+    const Lease lease = TakeLease(bytes)->lease;
+    const LeaseReport report = {.chunks = Chunks(lease), .seconds = SecondsOf(lease)};
+    files_.Append(taken, BytesOf(report)).IgnoreError();
     files_.Move(taken, absl::StrCat("done/", Name(event), ".finished")).IgnoreError();
     ++ended_;
     At(Now(), {event.worker});
+  }
+
+  static double SecondsOf(const Lease& lease) {
+    const ChunkPlan& plan = lease.experiment->plan();
+    const uint64_t begin = plan.BlockAt(lease.start.chunk, lease.start.blocks).first;
+    return plan.SecondsFor(static_cast<double>(plan.SamplesBefore(lease.end) - begin));
   }
 
   // One result, with the number of samples that each chunk has.

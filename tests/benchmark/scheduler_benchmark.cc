@@ -98,9 +98,8 @@ class Meter {
 class SimulatedExecutor : public Executor {
  public:
   SimulatedExecutor(Scheduler& scheduler, bool local, double seconds)
-      : local_(local), capacity_{.executor = scheduler.AddExecutor(*this), .seconds = seconds} {}
+      : capacity_{.executor = scheduler.AddExecutor(*this), .local = local, .seconds = seconds} {}
 
-  ExecutorTraits traits() const override { return {.local = local_}; }
   void Start() override {}
   void Wake() override { is_woken_ = true; }
   bool HasTurn(int64_t) const override { return false; }  // a lease is one turn
@@ -111,7 +110,6 @@ class SimulatedExecutor : public Executor {
   void set_woken(bool woken) { is_woken_ = woken; }
 
  private:
-  const bool local_;
   const Capacity capacity_;
   std::atomic<bool> is_woken_ = true;
 };

@@ -208,9 +208,8 @@ void CheckTraceRequest(const v1::TraceOrbitRequest& request, const std::string& 
   v1::TraceOrbitResponse message;
   messages->FillNext(message);
   RequireStart(message.start());
-  Require(!messages->HasEnded(), "events follow");
   message.Clear();
-  messages->FillNext(message);
+  Require(messages->FillNext(message), "events follow");
   double time = 0;
   for (const v1::TraceEvent& event : message.events()) {
     Require(event.event() != v1::TraceEvent::escape, "no ball escapes");

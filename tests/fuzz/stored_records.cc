@@ -22,7 +22,7 @@
 #include "server/convert/spec.h"
 #include "server/store/job_record.h"
 #include "server/worker/checked_file.h"
-#include "server/worker/chunk_file.h"
+#include "server/worker/lease_file.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"
 
@@ -191,71 +191,68 @@ std::vector<std::string> Rows() {
   return {std::string(65, '\1'), std::string(80, '\0'), std::string(200, '\x08')};
 }
 
-using Leases = std::vector<server::IdentifiedLease>;
-
-server::IdentifiedLease LeaseOf(const EnsembleSpec& spec) {
-  server::Lease lease;
-  lease.experiment = PointExperiment::Create(spec, 0);
-  lease.end = lease.experiment->plan().chunks();
-  return {{}, std::move(lease)};
-}
+using Experiments = std::vector<std::unique_ptr<const PointExperiment>>;
 
 // One with moments and histograms, one with batch means, and one with a tolerance.
-const Leases& KnownLeases() {
+const Experiments& KnownExperiments() {
   const Grid pair = {{kRho, {0.53}}, {kDelta, {0.1}}};
   Grid hit = pair;
   hit[kEpsilon] = {0.125};
   hit[kExponent] = {1};
-  static const auto* const leases = new Leases{
-      LeaseOf({.experiment = &kMarkovProperty, .grid = pair, .target = {.collisions = 1000}}),
-      LeaseOf({.experiment = &kEquilibrium, .grid = pair, .target = {.collisions = 1000}}),
-      LeaseOf({.experiment = &kFirstHit, .grid = hit, .target = {.tolerance = 0.1}})};
-  return *leases;
+  static const auto* const known = [&] {
+    auto* experiments = new Experiments;
+    for (const EnsembleSpec& spec : std::vector<EnsembleSpec>{
+             {.experiment = &kMarkovProperty, .grid = pair, .target = {.collisions = 1000}},
+             {.experiment = &kEquilibrium, .grid = pair, .target = {.collisions = 1000}},
+             {.experiment = &kFirstHit, .grid = hit, .target = {.tolerance = 0.1}}}) {
+      experiments->push_back(PointExperiment::Create(spec, 0));
+    }
+    return experiments;
+  }();
+  return *known;
 }
 
-void RequireMerged(const PointExperiment& experiment, const server::LeaseChunks& chunks) {
+// Merges the chunks that the experiment can have computed, as the scheduler does.
+void RequireMerged(const PointExperiment& experiment, const std::vector<ChunkResult>& chunks) {
   PointFold fold(experiment);
-  for (const ChunkResult& chunk : chunks.chunks) fold.Add(chunk);
+  for (const ChunkResult& chunk : chunks) {
+    const absl::Status fits = server::CheckChunk(experiment, chunk);
+    Require(fits.ok() || absl::IsDataLoss(fits), "damage is DATA_LOSS");
+    if (fits.ok()) fold.Add(chunk);
+  }
   Require(fold.PlannedSamples() <= experiment.plan().samples(), "not more than was planned");
 }
 
-void CheckLeases(const server::LeaseChunks& chunks) {
-  for (const server::IdentifiedLease& lease : KnownLeases()) {
-    const absl::Status fits = server::CheckLeaseChunks(lease, chunks);
-    Require(fits.ok() || absl::IsDataLoss(fits), "damage is DATA_LOSS");
-    if (fits.ok()) RequireMerged(*lease.lease.experiment, chunks);
-  }
-}
-
-void CheckPayload(absl::string_view payload) {
-  const absl::StatusOr<server::LeaseChunks> chunks = server::LeaseChunksFromPayload(payload);
-  if (!chunks.ok()) return Require(absl::IsDataLoss(chunks.status()), "damage is DATA_LOSS");
-  const std::string written = server::LeaseChunksPayload(*chunks);
-  const absl::StatusOr<server::LeaseChunks> again = server::LeaseChunksFromPayload(written);
-  Require(again.ok() && server::LeaseChunksPayload(*again) == written, "written bytes come back");
-  CheckLeases(*chunks);
+void CheckFrame(const std::string& frame) {
+  absl::string_view bytes = frame;
+  const absl::StatusOr<server::LeaseReport> report = server::TakeReport(bytes);
+  if (!report.ok()) return;
+  const std::string written = server::BytesOf(*report);
+  absl::string_view rest = written;
+  const absl::StatusOr<server::LeaseReport> again = server::TakeReport(rest);
+  Require(again.ok() && server::BytesOf(*again) == written, "written bytes come back");
+  for (const auto& experiment : KnownExperiments()) RequireMerged(*experiment, report->chunks);
 }
 
 // The chunks that a worker appends to a lease's file. The input is used as a whole frame, and as
-// the payload of a frame with a correct checksum. Chunks that fit a lease are merged.
+// the payload of a frame with a correct checksum. Chunks that fit an experiment are merged.
 void CheckChunkFile(const std::string& input) {
-  absl::string_view bytes = input;
-  const auto payload = server::TakeFrame(server::FrameKind::kChunks, bytes);
-  if (payload.ok()) CheckPayload(*payload);
-  const std::string frame = server::FrameOf(server::FrameKind::kChunks, input);
-  bytes = frame;
-  const auto framed = server::TakeFrame(server::FrameKind::kChunks, bytes);
+  CheckFrame(input);
+  const std::string frame = server::FrameOf(input);
+  absl::string_view bytes = frame;
+  const auto framed = server::TakeFrame(bytes);
   Require(framed.ok() && *framed == input && bytes.empty(), "a payload comes back");
-  CheckPayload(input);
+  CheckFrame(frame);
 }
 
 std::vector<std::string> FilesOfEach() {
   std::vector<std::string> files;
-  for (const server::IdentifiedLease& lease : KnownLeases()) {
-    const std::string payload = server::LeaseChunksPayload(
-        {.chunks = {{0, lease.lease.experiment->EmptyResult()}}, .processor_seconds = 0.5});
-    files.push_back(payload);
-    files.push_back(server::FrameOf(server::FrameKind::kChunks, payload));
+  for (const auto& experiment : KnownExperiments()) {
+    const std::string frame = server::BytesOf(
+        server::LeaseReport{.chunks = {{0, experiment->EmptyResult()}}, .seconds = 0.5});
+    absl::string_view bytes = frame;
+    files.emplace_back(*server::TakeFrame(bytes));
+    files.push_back(frame);
   }
   return files;
 }

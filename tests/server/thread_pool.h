@@ -31,8 +31,8 @@ class ThreadPool {
   void Add(RunRequest request) { scheduler_.Add(std::move(request)); }
   void Cancel(int64_t run) { scheduler_.Cancel(run); }
   void Shutdown() { scheduler_.Shutdown(); }
-  std::vector<LivePoint> ChangedSince(int64_t run, uint64_t version, size_t limit) const {
-    return scheduler_.ChangedSince(run, version, limit);
+  std::vector<LivePoint> NewestPoints(int64_t run, size_t limit) const {
+    return scheduler_.NewestPoints(run, limit);
   }
 
  private:

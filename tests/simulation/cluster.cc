@@ -104,21 +104,17 @@ void SimulatedCluster::Trouble() {
 }
 
 absl::StatusOr<LeaseFile> SimulatedCluster::ReadLease(absl::string_view& bytes) const {
-  const absl::StatusOr<absl::string_view> payload = TakeFrame(FrameKind::kLease, bytes);
+  const absl::StatusOr<absl::string_view> payload = TakeFrame(bytes);
   if (!payload.ok()) return payload.status();
-  storage::LeaseFile file;
-  if (!file.ParseFromString(std::string(*payload))) return absl::DataLossError("not a lease");
-  const storage::Lease& record = file.lease();
-  Lease lease;
+  storage::Lease record;
+  if (!record.ParseFromString(std::string(*payload))) return absl::DataLossError("not a lease");
+  Lease lease = {.run = record.job(), .generation = record.generation()};
   lease.point = static_cast<size_t>(record.point());
   lease.spec = std::make_shared<const EnsembleSpec>(ToySpec(record.question(), lease.point));
   lease.experiment = experiments_(*lease.spec, lease.point);
-  lease.attempt = record.attempt();
   lease.start = {record.first_chunk(), record.blocks(), ResultOfAccumulators(record.partial())};
   lease.end = record.end_chunk();
-  return LeaseFile{
-      {{record.server(), record.job(), record.generation(), record.engine_version()}, lease},
-      file.touch_seconds()};
+  return LeaseFile{record.server(), lease, record.touch_seconds()};
 }
 
 }  // namespace ballpiston::server

@@ -78,24 +78,21 @@ class FolderExecutorTest : public testing::Test {
 
   storage::Lease RecordIn(const std::string& path) const {
     absl::string_view bytes = files_.files.at(path).bytes;
-    storage::LeaseFile record;
-    const auto payload = TakeFrame(FrameKind::kLease, bytes);
+    storage::Lease record;
+    const auto payload = TakeFrame(bytes);
     EXPECT_TRUE(payload.ok() && record.ParseFromString(std::string(*payload)));
-    return record.lease();
+    return record;
   }
 
-  // The worker appends a message with the lease's chunks.
-  void Compute(const std::string& taken, const std::string& server = "me") {
+  // The worker appends a message with the lease's chunks, or with the first one after them.
+  void Compute(const std::string& taken, bool beyond = false) {
     absl::string_view bytes = files_.files.at("taken/" + taken).bytes;
-    const absl::StatusOr<LeaseFile> file = TakeLease(bytes);
+    absl::StatusOr<LeaseFile> file = TakeLease(bytes);
     ASSERT_OK(file.status());
-    LeaseChunks chunks = {.job = file->lease.job,
-                          .point = file->lease.lease.point,
-                          .attempt = file->lease.lease.attempt,
-                          .chunks = ComputedChunks(file->lease.lease),
-                          .processor_seconds = 1};
-    chunks.job.server = server;
-    EXPECT_OK(files_.Append("taken/" + taken, BytesOf(chunks)));
+    Lease& lease = file->lease;
+    if (beyond) lease.start = {.chunk = lease.end++};
+    const LeaseReport report = {.chunks = ComputedChunks(lease), .seconds = 1};
+    EXPECT_OK(files_.Append("taken/" + taken, BytesOf(report)));
   }
 
   void End(const std::string& taken, const std::string& outcome = "finished") {
@@ -198,13 +195,16 @@ TEST_F(FolderExecutorTest, DamagedFilesAreRefusedAndComputedAgain) {
   Compute(taken);
   files_.files["taken/" + taken].bytes.back() ^= 1;
   End(taken);
-  const std::string of_another_server = Take(In("todo")[0]);
-  Compute(of_another_server, "another");
-  End(of_another_server);
+  storage::Lease of_another_server = RecordIn("todo/" + In("todo")[0]);
+  of_another_server.set_server("another");
+  files_.files["done/another-1.w.finished"].bytes = BytesOf(of_another_server);
+  const std::string beyond = Take(In("todo")[0]);
+  Compute(beyond, true);
+  End(beyond);
   files_.files["done/unknown.w.finished"].bytes = "a foreign file of some length, of no server";
   files_.files["done/.nfs0001"] = {};  // is left alone
   executor_->Look();
-  EXPECT_EQ(executor_->Status().refused_files, 3);
+  EXPECT_EQ(executor_->Status().refused_files, 4);
   EXPECT_THAT(In("done"), ElementsAre(".nfs0001"));
   ComputeAll(*journal);
 }

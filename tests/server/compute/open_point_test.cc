@@ -13,20 +13,22 @@
 #include "tests/server/compute/remote_executor.h"
 #include "tests/server/compute/run_requests.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
 
-constexpr ChunkLimits kElsewhere = {.local = false, .most_attempts = 5};
+constexpr bool kElsewhere = false;
 
 OpenPoint PointOf(const EnsembleSpec& spec) { return OpenPoint(FakeExperiments()(spec, 0)); }
 
 // First chunk, chunk after the last, attempt.
 using Range = std::tuple<uint64_t, uint64_t, int>;
 
-std::optional<Range> Next(OpenPoint& point, double seconds, const ChunkLimits& limits = {},
+std::optional<Range> Next(OpenPoint& point, double seconds, bool local = true,
                           double longest_chunk = kInfinity) {
-  const auto lease = point.NextChunks({.seconds = seconds, .longest_chunk = longest_chunk}, limits);
+  const auto lease =
+      point.NextChunks({.local = local, .seconds = seconds, .longest_chunk = longest_chunk});
   if (!lease) return std::nullopt;
   return Range(lease->start.chunk, lease->end, lease->attempt);
 }
@@ -56,8 +58,8 @@ TEST(OpenPoint, AFiniteCapacityTakesTheFewestChunksThatFillIt) {
 TEST(OpenPoint, ALeaseContinuesTheBlocksOfAResumedPoint) {
   OpenPoint point = PointOf(SixChunks());
   const FoldState state = FakeState(SixChunks(), 0, 100);  // chunk 0 is complete, chunk 1 is not
-  point.Resume(state);
-  const auto lease = point.NextChunks({.seconds = 0}, {});
+  ASSERT_OK(point.Resume({.state = state}));
+  const auto lease = point.NextChunks({.seconds = 0});
   ASSERT_TRUE(lease);
   EXPECT_EQ(lease->start.chunk, state.chunk);
   EXPECT_EQ(lease->start.blocks, state.blocks);
@@ -96,7 +98,7 @@ TEST(OpenPoint, ChunksWithCrashesAreALeaseOfTheirOwn) {
   point.Return(0, 2, 2);
   point.Return(2, 4, 2, 1);
   EXPECT_EQ(Next(point, 1000), Chunks(0, 2, 2));
-  const auto crashed = point.NextChunks({.seconds = 1000}, ChunkLimits());
+  const auto crashed = point.NextChunks({.seconds = 1000});
   ASSERT_TRUE(crashed);
   EXPECT_EQ(crashed->start.chunk, 2u);
   EXPECT_EQ(crashed->end, 4u);
@@ -109,10 +111,10 @@ TEST(OpenPoint, ALeaseTakesNoMoreMemoryThanThereIs) {
   point.memory = {.of_one_turn = 100};
   EXPECT_FALSE(point.AwaitsMemory({.memory = 100}));
   EXPECT_TRUE(point.AwaitsMemory({.memory = 99}));
-  EXPECT_FALSE(point.NextChunks({.memory = 99}, ChunkLimits()));
-  EXPECT_FALSE(point.NextChunks({.seconds = 0, .memory = 99}, kElsewhere));
-  EXPECT_TRUE(point.NextChunks({.seconds = 0, .memory = 100}, kElsewhere));
-  EXPECT_TRUE(point.NextChunks({.memory = 100}, ChunkLimits()));
+  EXPECT_FALSE(point.NextChunks({.memory = 99}));
+  EXPECT_FALSE(point.NextChunks({.local = false, .seconds = 0, .memory = 99}));
+  EXPECT_TRUE(point.NextChunks({.local = false, .seconds = 0, .memory = 100}));
+  EXPECT_TRUE(point.NextChunks({.memory = 100}));
   EXPECT_FALSE(point.AwaitsMemory({.memory = 99}));  // nothing is left
 }
 
@@ -199,7 +201,7 @@ ChunkResult Computed(const Lease& lease) {
 TEST(OpenPoint, GroupsOfTrajectoriesAreLeasesOfTheirOwn) {
   OpenPoint point(SteadyExperiment());
   std::vector<Lease> leases;
-  while (auto lease = point.NextChunks({.seconds = 1000}, kElsewhere)) leases.push_back(*lease);
+  while (auto lease = point.NextChunks({.local = false, .seconds = 1000})) leases.push_back(*lease);
   ASSERT_EQ(leases.size(), 16u);  // the other chunks have no start yet
   for (uint64_t group = 0; group < 16; ++group) {
     EXPECT_EQ(leases[group].start.chunk, group);
@@ -209,11 +211,11 @@ TEST(OpenPoint, GroupsOfTrajectoriesAreLeasesOfTheirOwn) {
   EXPECT_EQ(Next(point, 1000, kElsewhere), Chunks(5, 6, 2));
   const ChunkResult first = Computed(leases[0]);
   point.fold().Add(first);
-  const auto next = point.NextChunks({.seconds = 1000}, kElsewhere);
+  const auto next = point.NextChunks({.local = false, .seconds = 1000});
   ASSERT_TRUE(next);
   EXPECT_EQ(next->start.chunk, 16u);
   EXPECT_EQ(next->groups[0], first.result.groups[0]);
-  EXPECT_FALSE(point.NextChunks({.seconds = 1000}, kElsewhere));
+  EXPECT_FALSE(point.NextChunks({.local = false, .seconds = 1000}));
 }
 
 }  // namespace

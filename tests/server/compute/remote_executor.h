@@ -59,12 +59,12 @@ class RemoteExecutor : public Executor {
                           double longest_chunk = std::numeric_limits<double>::infinity())
       : scheduler_(scheduler),
         capacity_{.executor = scheduler.AddExecutor(*this),
+                  .local = false,
                   .seconds = seconds,
                   .longest_chunk = longest_chunk} {}
 
   ~RemoteExecutor() override { scheduler_.RemoveExecutor(capacity_.executor); }
 
-  ExecutorTraits traits() const override { return {.local = false}; }
   void Start() override {}
   void Wake() override { ++wakes_; }
   bool HasTurn(int64_t) const override { return false; }
@@ -85,7 +85,7 @@ class RemoteExecutor : public Executor {
     if (!is_shut_down_) scheduler_.Return(lease, tried);
   }
   void Fail(const Lease& lease, absl::Status why) {
-    if (!is_shut_down_) scheduler_.Fail(lease, std::move(why));
+    if (!is_shut_down_) scheduler_.Stop(lease.run, std::move(why));
   }
 
  private:

@@ -249,19 +249,19 @@ TEST(Scheduler, AHigherPriorityIsServedFirst) {
   EXPECT_EQ(begun, expected);
 }
 
-TEST(Scheduler, ChangedSinceReturnsThePointsThatChanged) {
+TEST(Scheduler, NewestPointsAreThoseWithBlocks) {
   Gate gate;
   ThreadPool pool(1, GatedExperiments(gate, 6));
   const EnsembleSpec spec = FakeSpec(1, 100);
   const auto journal = AddRun(pool, 1, spec);
   gate.AwaitWaiting(1);
-  const auto live = pool.ChangedSince(1, 0, 10);
+  const auto live = pool.NewestPoints(1, 10);
   ASSERT_EQ(live.size(), 1u);
   EXPECT_EQ(live[0].index, 0u);
   EXPECT_EQ(live[0].version, 6u);
   EXPECT_TRUE(live[0].merged == FakeMerged(spec, 0, 6));
-  EXPECT_TRUE(pool.ChangedSince(1, 6, 10).empty());
-  EXPECT_TRUE(pool.ChangedSince(2, 0, 10).empty());
+  EXPECT_TRUE(pool.NewestPoints(1, 0).empty());
+  EXPECT_TRUE(pool.NewestPoints(2, 10).empty());
 }
 
 }  // namespace

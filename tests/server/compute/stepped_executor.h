@@ -23,7 +23,6 @@ class SteppedExecutor : public Executor {
 
   ~SteppedExecutor() override { scheduler_.RemoveExecutor(capacity_.executor); }
 
-  ExecutorTraits traits() const override { return {.local = true}; }
   void Start() override {}
   void Wake() override {}
   bool HasTurn(int64_t lease) const override {
@@ -72,7 +71,7 @@ class SteppedExecutor : public Executor {
       }
       return absl::OkStatus();
     });
-    if (!computed.ok()) scheduler_.Fail(lease, computed);
+    if (!computed.ok()) scheduler_.Stop(lease.run, computed);
   }
 
   // Without work there is nothing to write at a shutdown.

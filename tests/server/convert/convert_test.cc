@@ -590,7 +590,7 @@ TEST(Errors, ViolationsThatDoNotFitAreCounted) {
 TEST(Errors, TextIsCutBetweenCharacters) {
   std::string text;
   for (int i = 0; i < 1000; ++i) text += "\xc3\xa9";  // e with an accent
-  const grpc::Status status = GrpcStatus(InvalidField("a", text));
+  const grpc::Status status = GrpcStatus(InvalidRequest({{"a", text}}));
   EXPECT_TRUE(RpcStatusOf(status).IsInitialized());
   const std::string message = status.error_message();
   EXPECT_NE(message.find("\xa9..."), std::string::npos);

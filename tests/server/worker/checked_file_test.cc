@@ -11,25 +11,23 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr FrameKind kKind = FrameKind::kChunks;
-
 std::string SomePayload() {
   std::string payload;
   for (int i = 0; i < 100; ++i) payload.push_back(static_cast<char>(i * 37));
   return payload;
 }
 
-absl::StatusOr<std::string> PayloadOf(absl::string_view file, FrameKind kind = kKind) {
-  const absl::StatusOr<absl::string_view> payload = TakeFrame(kind, file);
+absl::StatusOr<std::string> PayloadOf(absl::string_view file) {
+  const absl::StatusOr<absl::string_view> payload = TakeFrame(file);
   if (!payload.ok()) return payload.status();
   return std::string(payload->data(), payload->size());
 }
 
-std::string SomeFile() { return FrameOf(kKind, SomePayload()); }
+std::string SomeFile() { return FrameOf(SomePayload()); }
 
 TEST(CheckedFile, ThePayloadComesBack) {
   EXPECT_THAT(PayloadOf(SomeFile()), IsOkAndHolds(SomePayload()));
-  EXPECT_THAT(PayloadOf(FrameOf(kKind, "")), IsOkAndHolds(""));
+  EXPECT_THAT(PayloadOf(FrameOf("")), IsOkAndHolds(""));
   EXPECT_EQ(SomeFile().size(), SomePayload().size() + kFrameBytes);
 }
 
@@ -55,19 +53,17 @@ TEST(CheckedFile, AShorterFileIsRejected) {
 }
 
 TEST(CheckedFile, TheBytesAfterAFrameAreLeft) {
-  const std::string file = SomeFile() + FrameOf(kKind, "second") + "x";
+  const std::string file = SomeFile() + FrameOf("second") + "x";
   absl::string_view rest = file;
-  EXPECT_THAT(TakeFrame(kKind, rest), IsOkAndHolds(SomePayload()));
-  EXPECT_THAT(TakeFrame(kKind, rest), IsOkAndHolds("second"));
-  EXPECT_FALSE(TakeFrame(kKind, rest).ok());
+  EXPECT_THAT(TakeFrame(rest), IsOkAndHolds(SomePayload()));
+  EXPECT_THAT(TakeFrame(rest), IsOkAndHolds("second"));
+  EXPECT_FALSE(TakeFrame(rest).ok());
   EXPECT_EQ(rest, "x");
 }
 
 TEST(CheckedFile, AnotherFileIsRefused) {
   EXPECT_THAT(PayloadOf("#!/bin/bash\necho this is a script of some length\n"),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("not a file of ballpiston")));
-  EXPECT_THAT(PayloadOf(SomeFile(), FrameKind::kLease),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("kind 4; expected: kind 3")));
 }
 
 TEST(CheckedFile, ANewerFormatIsRefusedWithBothVersions) {

@@ -23,9 +23,9 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 // Through the bytes of the record.
-absl::StatusOr<IdentifiedLease> ReadBack(const IdentifiedLease& lease) {
+absl::StatusOr<LeaseFile> ReadBack(const Lease& lease) {
   storage::Lease record;
-  if (!record.ParseFromString(LeaseRecord(lease.lease, lease.job).SerializeAsString())) {
+  if (!record.ParseFromString(LeaseRecord(lease, "a server", 2.5).SerializeAsString())) {
     return absl::InternalError("the record cannot be parsed");
   }
   return LeaseOfRecord(record);
@@ -68,17 +68,19 @@ void ExpectSameExperiment(const Lease& original, const Lease& back) {
   EXPECT_EQ(FirstSamples(a), FirstSamples(b));
 }
 
-void ExpectComesBack(const IdentifiedLease& lease) {
-  ASSERT_OK_AND_ASSIGN(const IdentifiedLease back, ReadBack(lease));
-  EXPECT_EQ(back.job, lease.job);
-  EXPECT_EQ(back.lease.point, lease.lease.point);
-  EXPECT_EQ(back.lease.attempt, lease.lease.attempt);
-  EXPECT_EQ(back.lease.crashes, lease.lease.crashes);
-  EXPECT_EQ(back.lease.start.chunk, lease.lease.start.chunk);
-  EXPECT_EQ(back.lease.start.blocks, lease.lease.start.blocks);
-  EXPECT_EQ(back.lease.start.merged, lease.lease.start.merged);
-  EXPECT_EQ(back.lease.end, lease.lease.end);
-  ExpectSameExperiment(lease.lease, back.lease);
+void ExpectComesBack(const Lease& lease) {
+  ASSERT_OK_AND_ASSIGN(const LeaseFile file, ReadBack(lease));
+  EXPECT_EQ(file.server, "a server");
+  EXPECT_EQ(file.touch_seconds, 2.5);
+  const Lease& back = file.lease;
+  EXPECT_EQ(back.run, lease.run);
+  EXPECT_EQ(back.generation, lease.generation);
+  EXPECT_EQ(back.point, lease.point);
+  EXPECT_EQ(back.start.chunk, lease.start.chunk);
+  EXPECT_EQ(back.start.blocks, lease.start.blocks);
+  EXPECT_EQ(back.start.merged, lease.start.merged);
+  EXPECT_EQ(back.end, lease.end);
+  ExpectSameExperiment(lease, back);
 }
 
 TEST(LeaseRecord, EveryQuestionKeepsItsPlanAndItsBits) {
@@ -101,14 +103,14 @@ TEST(LeaseRecord, EveryQuestionKeepsItsPlanAndItsBits) {
 TEST(LeaseRecord, APartOfAPointOfAGridComesBack) {
   EnsembleSpec spec = SpecOf(kMarkovProperty, Model::kBilliard, 1'000'000);
   spec.grid[kDelta] = {0.1, 0.07, 1.0 / 30};
-  IdentifiedLease lease = LeaseOf(spec, 1);
-  lease.lease.point = 2;
-  lease.lease.experiment = PointExperiment::Create(spec, 2);
-  const PointExperiment& experiment = *lease.lease.experiment;
-  lease.lease.end = experiment.plan().chunks();
-  lease.lease.start.blocks = 2;
+  Lease lease = LeaseOf(spec, 1);
+  lease.point = 2;
+  lease.experiment = PointExperiment::Create(spec, 2);
+  const PointExperiment& experiment = *lease.experiment;
+  lease.end = experiment.plan().chunks();
+  lease.start.blocks = 2;
   for (uint64_t i = 0; i < 2; ++i) {
-    lease.lease.start.merged.Merge(RunBlock(experiment, experiment.plan().BlockAt(1, i)).value());
+    lease.start.merged.Merge(RunBlock(experiment, experiment.plan().BlockAt(1, i)).value());
   }
   ExpectComesBack(lease);
 }
@@ -119,105 +121,79 @@ TEST(LeaseRecord, TheJumpProcessInSinglePrecisionComesBack) {
   EnsembleSpec spec = SpecOf(kEnergyRelaxation, Model::kAuto);
   spec.precision = Precision::kSingle;
   spec.verify = true;
-  IdentifiedLease lease = LeaseOf(spec);
-  lease.lease.experiment = PointExperiment::Create(spec, 0, {.model = Model::kMarkov});
-  lease.lease.end = lease.lease.experiment->plan().chunks();
+  Lease lease = LeaseOf(spec);
+  lease.experiment = PointExperiment::Create(spec, 0, {.model = Model::kMarkov});
+  lease.end = lease.experiment->plan().chunks();
   ExpectComesBack(lease);
 }
 
 // ---- damage ----
 
-struct Damage {
-  std::string field;
-  std::function<void(storage::Lease&)> harm;
-};
+using Harm = std::function<void(storage::Lease&)>;
 
-storage::Lease GoodRecord() {
-  const IdentifiedLease lease = LeaseOf(SpecOf(kFirstHit, Model::kBilliard));
-  return LeaseRecord(lease.lease, lease.job);
-}
+storage::Lease GoodRecord() { return RecordOf(LeaseOf(SpecOf(kFirstHit, Model::kBilliard))); }
 
-storage::Value& ValueOf(storage::Lease& record, const Parameter& parameter) {
-  for (storage::Value& value : *record.mutable_question()->mutable_point()) {
-    if (value.parameter() == parameter.index) return value;
+void ExpectRefused(const std::vector<Harm>& harms) {
+  ASSERT_OK(LeaseOfRecord(GoodRecord()));
+  for (size_t i = 0; i < harms.size(); ++i) {
+    SCOPED_TRACE(i);
+    storage::Lease record = GoodRecord();
+    harms[i](record);
+    EXPECT_THAT(LeaseOfRecord(record), StatusIs(absl::StatusCode::kDataLoss));
   }
-  return *record.mutable_question()->add_point();
 }
 
-void ExpectRefused(const Damage& damage) {
-  storage::Lease record = GoodRecord();
-  damage.harm(record);
-  EXPECT_THAT(LeaseOfRecord(record),
-              StatusIs(absl::StatusCode::kDataLoss, HasSubstr("field " + damage.field)));
+// A question whose parameter has this value.
+Harm With(const Parameter& parameter, double value) {
+  return [&parameter, value](storage::Lease& record) {
+    (*record.mutable_question()->mutable_values())[static_cast<uint32_t>(parameter.index)] = value;
+  };
 }
 
-TEST(LeaseRecord, ADamagedQuestionIsDataLossWithItsField) {
+TEST(LeaseRecord, AnImpossibleQuestionIsDataLoss) {
   using Record = storage::Lease;
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  ASSERT_OK(LeaseOfRecord(GoodRecord()));
-  for (const Damage& damage : std::vector<Damage>{
-           {"question.experiment", [](Record& r) { r.clear_question(); }},
-           {"question.experiment", [](Record& r) { r.mutable_question()->set_experiment(999); }},
-           {"question.model", [](Record& r) { r.mutable_question()->clear_model(); }},
-           {"question.model",
-            [](Record& r) {
-              r.mutable_question()->set_model(static_cast<storage::Question::Model>(77));
-            }},
-           {"question.model",
-            [](Record& r) { r.mutable_question()->set_model(storage::Question::MARKOV); }},
-           {"question.single_precision",
-            [](Record& r) {
-              r.mutable_question()->set_model(storage::Question::BILLIARD_REFERENCE);
-              r.mutable_question()->set_single_precision(true);
-            }},
-           {"question.point.parameter",
-            [](Record& r) {
-              r.mutable_question()->add_point()->set_parameter(kParameters.size());
-            }},
-           {"question.point",
-            [](Record& r) { r.mutable_question()->add_point()->set_parameter(0); }},
-           {"question.grid.rho", [](Record& r) { ValueOf(r, kRho).set_value(kNan); }},
-           {"question.grid.delta", [](Record& r) { ValueOf(r, kDelta).set_value(-1); }},
-           {"question.grid.delta", [](Record& r) { ValueOf(r, kDelta).set_value(0.49); }},
-           {"question.grid.epsilon", [](Record& r) { ValueOf(r, kEpsilon).set_value(0.6); }},
-           {"question.grid.rho", [](Record& r) { r.mutable_question()->clear_point(); }},
-           {"question.grid.cells",
-            [](Record& r) { r.mutable_question()->add_point()->set_parameter(kCells.index); }},
-           {"question.target.samples", [](Record& r) { r.mutable_question()->set_samples(0); }},
-           {"question.target.samples", [](Record& r) { r.mutable_question()->set_samples(-7); }},
-           {"question.target.collisions",
-            [](Record& r) { r.mutable_question()->set_collisions(9); }},
-           {"question.target.estimate",
-            [](Record& r) { r.mutable_question()->set_estimate("conductivity"); }},
-           {"question.target.tolerance",
-            [](Record& r) { r.mutable_question()->set_tolerance(kNan); }},
-       }) {
-    SCOPED_TRACE(damage.field);
-    ExpectRefused(damage);
-  }
+  const auto with_model = [](Model model) {
+    return [model](Record& r) { r.mutable_question()->set_model(static_cast<uint32_t>(model)); };
+  };
+  ExpectRefused({
+      [](Record& r) { r.clear_question(); },
+      [](Record& r) { r.mutable_question()->set_experiment(999); },
+      [](Record& r) { r.mutable_question()->set_model(77); },
+      with_model(Model::kAuto),
+      with_model(Model::kClosedForm),
+      with_model(Model::kMarkov),
+      [](Record& r) { (*r.mutable_question()->mutable_values())[kParameters.size()] = 1; },
+      With(kRho, kNan),
+      With(kDelta, -1),
+      With(kDelta, 0.49),
+      With(kEpsilon, 0.6),
+      With(kCells, 0),
+      [](Record& r) { r.mutable_question()->clear_values(); },
+      [](Record& r) { r.mutable_question()->set_samples(0); },
+      [](Record& r) { r.mutable_question()->set_samples(-7); },
+      [](Record& r) { r.mutable_question()->set_collisions(9); },
+      [](Record& r) { r.mutable_question()->set_estimate("conductivity"); },
+      [](Record& r) { r.mutable_question()->set_tolerance(kNan); },
+  });
 }
 
-TEST(LeaseRecord, DamagedChunksAreDataLossWithTheirField) {
+TEST(LeaseRecord, ImpossibleChunksAreDataLoss) {
   using Record = storage::Lease;
-  for (const Damage& damage :
-       std::vector<Damage>{{"point", [](Record& r) { r.set_point(-1); }},
-                           {"point", [](Record& r) { r.set_point(kMaxPoints); }},
-                           {"attempt", [](Record& r) { r.set_attempt(0); }},
-                           {"crashes", [](Record& r) { r.set_crashes(-1); }},
-                           {"first_chunk", [](Record& r) { r.set_first_chunk(~uint64_t{0}); }},
-                           {"first_chunk", [](Record& r) { r.set_first_chunk(r.end_chunk()); }},
-                           {"end_chunk", [](Record& r) { r.set_end_chunk(0); }},
-                           {"end_chunk", [](Record& r) { r.set_end_chunk(r.end_chunk() + 1); }},
-                           {"blocks", [](Record& r) { r.set_blocks(~uint64_t{0}); }},
-                           {"partial", [](Record& r) { r.set_blocks(1); }},
-                           {"partial", [](Record& r) { r.mutable_partial()->set_samples(1); }},
-                           {"partial", [](Record& r) {
-                              r.set_blocks(1);
-                              r.mutable_partial()->set_samples(~uint64_t{0});
-                            }}}) {
-    SCOPED_TRACE(damage.field);
-    ExpectRefused(damage);
-  }
+  ExpectRefused({
+      [](Record& r) { r.set_first_chunk(~uint64_t{0}); },
+      [](Record& r) { r.set_first_chunk(r.end_chunk()); },
+      [](Record& r) { r.set_end_chunk(0); },
+      [](Record& r) { r.set_end_chunk(r.end_chunk() + 1); },
+      [](Record& r) { r.set_blocks(~uint64_t{0}); },
+      [](Record& r) { r.set_blocks(1); },
+      [](Record& r) { r.mutable_partial()->set_samples(1); },
+      [](Record& r) {
+        r.set_blocks(1);
+        r.mutable_partial()->set_samples(~uint64_t{0});
+      },
+      [](Record& r) { r.add_groups()->add_numbers(1); },
+  });
 }
 
 TEST(LeaseRecord, AnotherEngineVersionIsRefusedWithBothVersions) {

@@ -89,10 +89,10 @@ TEST(LeaseRunner, LeasesContinueTheTrajectoriesOfASteadyState) {
     const uint64_t groups = experiment->plan().groups();
     PointFold fold(*experiment);
     for (uint64_t chunk = 0; chunk < experiment->plan().chunks(); ++chunk) {
-      IdentifiedLease lease = LeaseOf(spec, chunk, chunk + 1);
-      lease.lease.groups.resize(groups);
-      lease.lease.groups[chunk % groups] = fold.StartOf(chunk);
-      const auto received = LeaseOfRecord(LeaseRecord(lease.lease, lease.job));
+      Lease lease = LeaseOf(spec, chunk, chunk + 1);
+      lease.groups.resize(groups);
+      lease.groups[chunk % groups] = fold.StartOf(chunk);
+      const auto received = LeaseOfRecord(RecordOf(lease));
       ASSERT_TRUE(received.ok()) << received.status();
       Recorder recorder;
       EXPECT_TRUE(RunLease(received->lease, recorder.stop.get_token(), recorder));

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "core/engine_version.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
@@ -63,20 +62,18 @@ std::string NameOf(const EnsembleSpec& spec) {
   return absl::StrCat(spec.experiment->name, " by ", Name(spec.model));
 }
 
-JobIdentity SomeJob() {
-  return {.server = "a server", .job = 12, .generation = 3, .engine_version = kEngineVersion};
-}
-
-IdentifiedLease LeaseOf(const EnsembleSpec& spec, uint64_t first, uint64_t end) {
-  Lease lease;
+Lease LeaseOf(const EnsembleSpec& spec, uint64_t first, uint64_t end) {
+  Lease lease = {.run = 12, .generation = 3};
   lease.spec = std::make_shared<const EnsembleSpec>(spec);
   lease.experiment = PointExperiment::Create(spec, 0);
   lease.point = 5;
-  lease.attempt = 2;
-  lease.crashes = 1;
   lease.start.chunk = first;
   lease.end = end == 0 ? lease.experiment->plan().chunks() : end;
-  return {SomeJob(), std::move(lease)};
+  return lease;
+}
+
+storage::Lease RecordOf(const Lease& lease, double touch_seconds) {
+  return LeaseRecord(lease, "a server", touch_seconds);
 }
 
 std::vector<ChunkResult> AllChunks(const PointExperiment& experiment) {

@@ -23,11 +23,11 @@ std::vector<EnsembleSpec> EverySampledSpec();
 
 std::string NameOf(const EnsembleSpec& spec);  // for messages
 
-// This program's engine.
-JobIdentity SomeJob();
-
 // Chunks first ... end - 1 of the spec's point; end 0 means all.
-IdentifiedLease LeaseOf(const EnsembleSpec& spec, uint64_t first = 0, uint64_t end = 0);
+Lease LeaseOf(const EnsembleSpec& spec, uint64_t first = 0, uint64_t end = 0);
+
+// The record of the lease, from some server.
+storage::Lease RecordOf(const Lease& lease, double touch_seconds = 20);
 
 // All chunks of the plan, computed block by block.
 std::vector<ChunkResult> AllChunks(const PointExperiment& experiment);

@@ -11,7 +11,6 @@
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
 #include "gmock/gmock.h"
-#include "server/worker/chunk_file.h"
 #include "server/worker/lease_file.h"
 #include "server/worker/shared_files.h"
 #include "tests/server/worker/sample_leases.h"
@@ -41,8 +40,8 @@ class WorkerProgramTest : public testing::Test {
     }
   }
 
-  void Lay(const std::string& name, const IdentifiedLease& lease, double touch_seconds = 20) {
-    const std::string bytes = BytesOf(LeaseRecord(lease.lease, lease.job), touch_seconds);
+  void Lay(const std::string& name, const Lease& lease, double touch_seconds = 20) {
+    const std::string bytes = BytesOf(RecordOf(lease, touch_seconds));
     ASSERT_OK(files_.Create("todo/" + name, bytes).status());
   }
 
@@ -70,7 +69,7 @@ class WorkerProgramTest : public testing::Test {
     EXPECT_OK(TakeLease(rest).status());
     std::vector<ChunkResult> all;
     while (!rest.empty()) {
-      const absl::StatusOr<LeaseChunks> some = TakeChunks(rest);
+      const absl::StatusOr<LeaseReport> some = TakeReport(rest);
       if (!some.ok()) return {};
       all.insert(all.end(), some->chunks.begin(), some->chunks.end());
     }
@@ -120,15 +119,14 @@ TEST_F(WorkerProgramTest, ASignalledWorkerGivesItsLeaseBackWithItsChunks) {
   for (const int signal : {SIGUSR1, SIGTERM}) {
     for (int samples = 40'000;; samples *= 2) {
       ASSERT_LT(samples, 10'000'000) << "the worker does not end at a signal";
-      const IdentifiedLease lease =
-          LeaseOf(SpecOf(kEquilibrium, Model::kBilliardReference, samples));
-      const size_t bytes = BytesOf(LeaseRecord(lease.lease, lease.job), 1e-9).size();
+      const Lease lease = LeaseOf(SpecOf(kEquilibrium, Model::kBilliardReference, samples));
+      const size_t bytes = BytesOf(RecordOf(lease, 1e-9)).size();
       Lay("a", lease, 1e-9);
       Process worker(Command());
       AwaitThat([&] { return !Done().empty() || LargestIn("taken") > bytes; });
       worker.Signal(signal);
       ASSERT_THAT(worker.Wait(), ExitsWith(0));
-      const std::vector<ChunkResult> chunks = Chunks(), all = AllChunks(*lease.lease.experiment);
+      const std::vector<ChunkResult> chunks = Chunks(), all = AllChunks(*lease.experiment);
       const bool is_finished = Done() == std::vector<std::string>{"a.finished"};
       if (!is_finished) {
         EXPECT_THAT(Done(), ElementsAre("a.returned"));

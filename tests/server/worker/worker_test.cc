@@ -25,9 +25,8 @@ using Clock = std::chrono::steady_clock;
 // A worker whose time passes while it sleeps, and by `seconds_of_a_look` at each look at its clock.
 class WorkerTest : public testing::Test {
  protected:
-  void Lay(const std::string& name, const IdentifiedLease& lease, double touch_seconds = 20) {
-    files_.files["todo/" + name] = {BytesOf(LeaseRecord(lease.lease, lease.job), touch_seconds),
-                                    files_.now};
+  void Lay(const std::string& name, const Lease& lease, double touch_seconds = 20) {
+    files_.files["todo/" + name] = {BytesOf(RecordOf(lease, touch_seconds)), files_.now};
   }
 
   absl::Status Run(WorkerOptions options = {}) {
@@ -58,7 +57,7 @@ class WorkerTest : public testing::Test {
     EXPECT_OK(TakeLease(bytes).status());
     std::vector<ChunkResult> all;
     while (!bytes.empty()) {
-      const absl::StatusOr<LeaseChunks> some = TakeChunks(bytes);
+      const absl::StatusOr<LeaseReport> some = TakeReport(bytes);
       if (!some.ok()) {
         ADD_FAILURE() << some.status();
         break;
@@ -68,8 +67,8 @@ class WorkerTest : public testing::Test {
     return all;
   }
 
-  const IdentifiedLease lease_ = LeaseOf(SpecOf(kFirstHit, Model::kBilliard, 100'000));
-  const std::vector<ChunkResult> chunks_ = AllChunks(*lease_.lease.experiment);
+  const Lease lease_ = LeaseOf(SpecOf(kFirstHit, Model::kBilliard, 100'000));
+  const std::vector<ChunkResult> chunks_ = AllChunks(*lease_.experiment);
   FakeFiles files_;
   Clock::time_point now_ = {};
   double seconds_of_a_look_ = 0;
@@ -80,7 +79,7 @@ class WorkerTest : public testing::Test {
 
 TEST_F(WorkerTest, ComputesAllLeasesAndEndsWhenThereAreNoMore) {
   Lay("a", lease_);
-  Lay("b", LeaseOf(*lease_.lease.spec, 1, 3));
+  Lay("b", LeaseOf(*lease_.spec, 1, 3));
   EXPECT_OK(Run());
   EXPECT_THAT(Names(), UnorderedElementsAre("done/a.me.finished", "done/b.me.finished"));
   EXPECT_TRUE(AreEqual(ChunksIn("done/a.me.finished"), chunks_));
@@ -129,9 +128,9 @@ TEST_F(WorkerTest, ALeaseThatIsStillBeingWrittenIsTakenLater) {
 }
 
 TEST_F(WorkerTest, ALeaseOfAnotherEngineStaysForOtherWorkers) {
-  IdentifiedLease other = lease_;
-  other.job.engine_version = "1.2.3";
-  Lay("a", other);
+  storage::Lease other = RecordOf(lease_);
+  other.set_engine_version("1.2.3");
+  files_.files["todo/a"] = {BytesOf(other), files_.now};
   EXPECT_THAT(Run(), StatusIs(absl::StatusCode::kUnimplemented, HasSubstr("1.2.3")));
   EXPECT_THAT(Names(), ElementsAre("todo/a"));
 }

@@ -1,0 +1,113 @@
+#include "server/compute/held_leases.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace ballpiston::server {
+namespace {
+
+// Leases with all the rest of a point, which may last for hours, take at most this share of the
+// memory together. So a run that waits for memory seldom waits for one of them.
+constexpr double kShareOfTheRest = 0.25;
+
+}  // namespace
+
+// ---- leases ----
+
+HeldLeases::Held& HeldLeases::Add(Lease lease) {
+  lease.number = ++last_number_;
+  const Key key = KeyOf(lease);
+  return held_.emplace(key, Held{std::move(lease)}).first->second;
+}
+
+HeldLeases::Held* HeldLeases::FirstWithTurn(int64_t run, size_t number, const Executor& executor) {
+  Held* first = nullptr;
+  const auto end = held_.lower_bound({run, false, number + 1, 0});
+  for (auto next = held_.lower_bound({run, false, number, 0}); next != end; ++next) {
+    Held& held = next->second;
+    const Lease& lease = held.lease;
+    const bool has_memory = held.turns < held.most_turns ||
+                            lease.memory.of_a_further_turn <= FreeMemory(IsLater(lease));
+    if (lease.stop.stop_requested() || !has_memory) continue;
+    if (first != nullptr && !lease.GoesBefore(first->lease)) continue;
+    if (executor.HasTurn(lease.number)) first = &held;
+  }
+  return first;
+}
+
+const Lease& HeldLeases::BeginTurn(Held& held) {
+  const LeaseMemory& memory = held.lease.memory;
+  if (++held.turns > held.most_turns) {
+    AddMemory(held.lease, held.turns == 1 ? memory.of_one_turn : memory.of_a_further_turn);
+    held.most_turns = held.turns;
+  }
+  return held.lease;
+}
+
+bool HeldLeases::EndTurn(const Lease& lease, bool has_turn) {
+  const auto held = held_.find(KeyOf(lease));
+  if (held == held_.end()) return false;
+  const bool ends = --held->second.turns == 0 && !has_turn;
+  if (ends) Drop(held);
+  return !ends && !lease.stop.stop_requested();
+}
+
+bool HeldLeases::HasLocal(int64_t run) const {
+  return held_.lower_bound({run, false, 0, 0}) != held_.lower_bound({run, true, 0, 0});
+}
+
+std::vector<size_t> HeldLeases::RemoveStopped(int64_t run) {
+  std::vector<size_t> executors;
+  auto next = held_.lower_bound({run, false, 0, 0});
+  for (const auto end = held_.lower_bound({run + 1, false, 0, 0}); next != end;) {
+    const auto& [lease, turns, most_turns] = next->second;
+    const bool drops = lease.stop.stop_requested() && !(lease.local && turns > 0);
+    if (drops && !lease.local) executors.push_back(lease.executor);
+    next = drops ? Drop(next) : std::next(next);
+  }
+  return executors;
+}
+
+HeldLeases::Leases::iterator HeldLeases::Drop(Leases::iterator held) {
+  const auto& [lease, turns, most_turns] = held->second;
+  AddMemory(lease, -lease.memory.of_one_turn - (most_turns - 1) * lease.memory.of_a_further_turn);
+  return held_.erase(held);
+}
+
+// ---- memory ----
+
+Capacity HeldLeases::WithMemory(Capacity capacity, int64_t run) const {
+  const bool another_waits = waiting_ && waiting_->run != run;
+  if (another_waits || memory_ > 0) capacity.memory = FreeMemory(another_waits);
+  capacity.memory_of_the_rest = kShareOfTheRest * limit_ - memory_;
+  return capacity;
+}
+
+// Bytes that a lease of a local executor can still take, if it began after a run began to wait.
+double HeldLeases::FreeMemory(bool is_later) const {
+  const double free = limit_ - memory_;
+  return is_later ? std::min(free, limit_ - waiting_->memory - waiting_->later) : free;
+}
+
+bool HeldLeases::IsLater(const Lease& lease) const {
+  return waiting_ && lease.number > waiting_->last_lease;
+}
+
+void HeldLeases::AddMemory(const Lease& lease, double bytes) {
+  memory_ += bytes;
+  if (IsLater(lease)) waiting_->later += bytes;
+}
+
+void HeldLeases::NoteAwaited(int64_t run, double memory) {
+  const double needed = HasLocal(run) ? 0 : memory;
+  if (needed > 0 && !waiting_) waiting_ = {run, needed, last_number_};
+  if (needed == 0) EndWaiting(run);
+}
+
+bool HeldLeases::EndWaiting(int64_t run) {
+  const bool waits = waiting_ && waiting_->run == run;
+  if (waits) waiting_.reset();
+  return waits;
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,51 @@
+// TraceOrbit: the start and the events of one orbit. SampleCollisions: the collisions of a point's
+// samples. A message is computed when the reader has taken the previous one. The request bounds the
+// cost of a trace (convert/trace.h).
+#include "server/convert/collision_messages.h"
+#include "server/convert/trace.h"
+#include "server/rpc/methods.h"
+
+namespace ballpiston::server {
+namespace {
+
+// Takes a turn for each message, so other calls can compute between two messages.
+template <typename Messages, typename Response>
+bool FillInTurn(ServiceContext& service, const Stream& stream, Messages& messages,
+                Response& message) {
+  const Quota::Part turn = service.quotas.turns.Await(stream.caller().name);
+  return messages.FillNext(message);
+}
+
+// Sends all messages for the request. `bytes`: upper bound of the memory that they take.
+template <typename Messages, typename Request, typename Response>
+absl::Status SendAll(ServiceContext& service, Stream& stream, const Request& request, int64_t bytes,
+                     grpc::ServerWriter<Response>& writer) {
+  const auto memory = service.quotas.call_bytes.Take(stream.caller().name, bytes);
+  if (!memory.ok()) return memory.status();
+  absl::StatusOr<Messages> messages = Messages::Create(request);
+  if (!messages.ok()) return messages.status();
+  Response message;
+  while (FillInTurn(service, stream, *messages, message)) {
+    if (const absl::Status proceed = stream.Proceed(); !proceed.ok()) return proceed;
+    const bool is_empty = message.ByteSizeLong() == 0;
+    if (!is_empty && !writer.Write(message)) return absl::CancelledError("the client is gone");
+    message.Clear();
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::Status TraceOrbit(ServiceContext& service, Stream& stream,
+                        const v1::TraceOrbitRequest& request,
+                        grpc::ServerWriter<v1::TraceOrbitResponse>& writer) {
+  return SendAll<TraceMessages>(service, stream, request, kBytesOfTrace, writer);
+}
+
+absl::Status SampleCollisions(ServiceContext& service, Stream& stream,
+                              const v1::SampleCollisionsRequest& request,
+                              grpc::ServerWriter<v1::SampleCollisionsResponse>& writer) {
+  return SendAll<CollisionMessages>(service, stream, request, kBytesOfSampler, writer);
+}
+
+}  // namespace ballpiston::server
