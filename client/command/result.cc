@@ -16,10 +16,6 @@ absl::Status Check(const Options& options) {
   return CheckSave(options);
 }
 
-bool IsCsv(Format format) {
-  return format == Format::kCsv || format == Format::kCsvHistograms || format == Format::kCsvCurves;
-}
-
 absl::Status TooMany(size_t jobs) {
   return absl::InvalidArgumentError(
       absl::StrCat("--save and CSV are for the result of one job, not of ", jobs,

@@ -20,10 +20,14 @@ inline std::string SpellingOfName(absl::string_view enum_name) {
 }
 
 // A value that this version does not know is printed as its number.
+inline std::string Spelling(const google::protobuf::EnumDescriptor& type, int number) {
+  const auto* value = type.FindValueByNumber(number);
+  return value == nullptr ? std::to_string(number) : SpellingOfName(value->name());
+}
+
 template <typename Enum>
 std::string Spelling(Enum value) {
-  const auto* descriptor = google::protobuf::GetEnumDescriptor<Enum>()->FindValueByNumber(value);
-  return descriptor == nullptr ? std::to_string(value) : SpellingOfName(descriptor->name());
+  return Spelling(*google::protobuf::GetEnumDescriptor<Enum>(), value);
 }
 
 // All values except UNSPECIFIED.
