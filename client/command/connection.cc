@@ -95,6 +95,13 @@ absl::Status NameServer(const absl::Status& status, const Connection& connection
                                                 : ConnectionHint(connection.security, message)));
 }
 
+absl::Status HintIfExpired(const absl::Status& status, const Connection& connection,
+                           const std::string& job) {
+  if (ErrorReason(status) != "RESULTS_EXPIRED") return status;
+  return WithHint(status, absl::StrCat("To compute them again: ballpiston submit --again ", job,
+                                       connection.flags));
+}
+
 VerbResult WithServer(const Options& options, const Terminal& terminal, const VerbOfServer& verb) {
   return RunOver(Connect(options, &ConnectToLocalServer), terminal, verb);
 }

@@ -8,10 +8,8 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
 #include "google/rpc/error_details.pb.h"
-#include "google/rpc/status.pb.h"
 
 namespace ballpiston::client {
 namespace {
@@ -42,14 +40,6 @@ std::string LinesOf(const std::vector<FieldViolation>& violations) {
     absl::StrAppend(&lines, "\n  ", field, ": ", description);
   }
   return lines;
-}
-
-// Empty if the error is not the server's.
-google::rpc::Status DetailsOf(const absl::Status& status) {
-  google::rpc::Status details;
-  const auto payload = status.GetPayload(kStatusPayload);
-  if (!payload || !details.ParseFromString(std::string(*payload))) details.Clear();
-  return details;
 }
 
 int LeftOut(const google::rpc::ErrorInfo& info) {
@@ -104,20 +94,35 @@ absl::Status FromGrpc(const grpc::Status& status) {
   return result;
 }
 
+google::rpc::Status ErrorDetails(const absl::Status& status) {
+  google::rpc::Status details;
+  const auto payload = status.GetPayload(kStatusPayload);
+  if (!payload || !details.ParseFromString(std::string(*payload))) details.Clear();
+  return details;
+}
+
 std::string ErrorReason(const absl::Status& status) {
-  const auto info = Find<google::rpc::ErrorInfo>(DetailsOf(status));
+  const auto info = Find<google::rpc::ErrorInfo>(ErrorDetails(status));
   return info ? info->reason() : "";
 }
 
+absl::Status WithHint(const absl::Status& status, absl::string_view hint) {
+  absl::Status with_hint(status.code(), absl::StrCat(status.message(), "\n", hint));
+  status.ForEachPayload([&](absl::string_view type, const absl::Cord& payload) {
+    with_hint.SetPayload(type, payload);
+  });
+  return with_hint;
+}
+
 absl::Duration RetryDelay(const absl::Status& status) {
-  const auto retry = Find<google::rpc::RetryInfo>(DetailsOf(status));
+  const auto retry = Find<google::rpc::RetryInfo>(ErrorDetails(status));
   if (!retry) return absl::ZeroDuration();
   const auto& delay = retry->retry_delay();
   return absl::Seconds(delay.seconds()) + absl::Nanoseconds(delay.nanos());
 }
 
 std::vector<FieldViolation> ErrorViolations(const absl::Status& status) {
-  return ViolationsOf(DetailsOf(status));
+  return ViolationsOf(ErrorDetails(status));
 }
 
 }  // namespace ballpiston::client

@@ -21,7 +21,9 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/strings/string_view.h"
 #include "absl/time/time.h"
+#include "google/rpc/status.pb.h"
 
 namespace ballpiston::client {
 
@@ -31,9 +33,15 @@ inline constexpr char kStatusPayload[] = "type.googleapis.com/google.rpc.Status"
 // The same code, with the text above as its message.
 absl::Status FromGrpc(const grpc::Status& status);
 
+// What the server attached; empty if the error is not the server's.
+google::rpc::Status ErrorDetails(const absl::Status& status);
+
 // The ErrorInfo's reason, e.g. "JOB_NOT_FOUND"; empty if the server gave no reason or was not
 // reached.
 std::string ErrorReason(const absl::Status& status);
+
+// The same error with the same details, and the hint for the user on a separate line.
+absl::Status WithHint(const absl::Status& status, absl::string_view hint);
 
 // The least time to wait before a retry: the RetryInfo of the server's error; 0 without one.
 absl::Duration RetryDelay(const absl::Status& status);

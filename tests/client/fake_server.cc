@@ -165,6 +165,7 @@ FakeServer::~FakeServer() {
 }
 
 void FakeServer::Start() {
+  if (server_ != nullptr) return;
   grpc::ServerBuilder builder;
   builder.AddListeningPort(Address(), grpc::InsecureServerCredentials());
   builder.SetMaxReceiveMessageSize(largest_request);

@@ -140,7 +140,8 @@ class FakeServer {
   std::string Address() const { return "unix:" + SocketPath(); }
   std::string SocketPath() const { return folder_.File("socket"); }
   std::shared_ptr<grpc::Channel> Channel() const;  // made by OpenChannel
-  void Start();                                    // set the answers before this call
+  // Set the answers before this call. Further calls do nothing.
+  void Start();
 
  private:
   const TemporaryFolder folder_;
