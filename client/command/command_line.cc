@@ -373,7 +373,6 @@ Verbosity VerbosityOf(const Options& options) {
   return options.verbose ? Verbosity::kVerbose : Verbosity::kNormal;
 }
 
-// Prints the page, or what the verb prints.
 VerbResult Act(const CommandLine& line, Terminal& terminal) {
   terminal.out << line.page;
   if (line.verb == nullptr) return ExitCode::kDone;

@@ -162,7 +162,6 @@ std::string SplitValue(Strings& words) {
   return last.substr(0, equals + 1);
 }
 
-// Completes the last word.
 Strings Offers(Strings words, const Options& options, const Terminal& terminal) {
   if (words.empty()) words = {""};
   const std::string prefix = SplitValue(words);

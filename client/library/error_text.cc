@@ -8,6 +8,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
 #include "google/rpc/error_details.pb.h"
 
@@ -104,14 +105,6 @@ google::rpc::Status ErrorDetails(const absl::Status& status) {
 std::string ErrorReason(const absl::Status& status) {
   const auto info = Find<google::rpc::ErrorInfo>(ErrorDetails(status));
   return info ? info->reason() : "";
-}
-
-absl::Status WithHint(const absl::Status& status, absl::string_view hint) {
-  absl::Status with_hint(status.code(), absl::StrCat(status.message(), "\n", hint));
-  status.ForEachPayload([&](absl::string_view type, const absl::Cord& payload) {
-    with_hint.SetPayload(type, payload);
-  });
-  return with_hint;
 }
 
 absl::Duration RetryDelay(const absl::Status& status) {

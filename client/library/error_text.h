@@ -21,7 +21,6 @@
 #include <vector>
 
 #include "absl/status/status.h"
-#include "absl/strings/string_view.h"
 #include "absl/time/time.h"
 #include "google/rpc/status.pb.h"
 
@@ -39,9 +38,6 @@ google::rpc::Status ErrorDetails(const absl::Status& status);
 // The ErrorInfo's reason, e.g. "JOB_NOT_FOUND"; empty if the server gave no reason or was not
 // reached.
 std::string ErrorReason(const absl::Status& status);
-
-// The same error with the same details, and the hint for the user on a separate line.
-absl::Status WithHint(const absl::Status& status, absl::string_view hint);
 
 // The least time to wait before a retry: the RetryInfo of the server's error; 0 without one.
 absl::Duration RetryDelay(const absl::Status& status);

@@ -29,7 +29,6 @@ std::optional<double> NumberIn(const google::protobuf::Message& message, const s
 // The names of all fields in the proto's order.
 Cells FieldNames(const google::protobuf::Descriptor& type);
 
-// Appends the cells of `more`.
 Cells Joined(Cells cells, const Cells& more);
 
 }  // namespace ballpiston::client

@@ -21,7 +21,6 @@ std::string BytesText(double bytes) {
   return absl::StrFormat("%.*f %s", unit > 0 && bytes < 9.95 ? 1 : 0, bytes, units[unit]);
 }
 
-// Large counts are shortened.
 std::string CountText(double count) {
   return count < 1e7 ? ExactText(count) : absl::StrFormat("%.3g", count);
 }
