@@ -55,10 +55,8 @@ ParsedVerb Add(CLI::App& program, const Verb& verb) {
   ParsedVerb parsed{.app = AppOf(program, verb.name), .arguments = {}, .flags = {}};
   for (const Argument& argument : verb.arguments) {
     CLI::Option* option = parsed.app->add_option(argument.value.name);
-    const bool many = argument.number == Argument::kSeveral || argument.number == Argument::kAny;
-    if (many) option->expected(CLI::detail::expected_max_vector_size);
-    option->required(argument.number == Argument::kRequired ||
-                     argument.number == Argument::kSeveral);
+    if (argument.IsMany()) option->expected(CLI::detail::expected_max_vector_size);
+    option->required(argument.IsRequired());
     parsed.arguments.push_back(option);
   }
   for (const Flag* flag : FlagsOf(verb)) {
@@ -375,7 +373,6 @@ Verbosity VerbosityOf(const Options& options) {
   return options.verbose ? Verbosity::kVerbose : Verbosity::kNormal;
 }
 
-// Prints the page, or what the verb prints.
 VerbResult Act(const CommandLine& line, Terminal& terminal) {
   terminal.out << line.page;
   if (line.verb == nullptr) return ExitCode::kDone;

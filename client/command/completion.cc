@@ -90,8 +90,7 @@ const Argument* ArgumentAt(const Verb& verb, const Strings& words, size_t begin)
   if (before < verb.arguments.size()) return &verb.arguments[before];
   if (verb.arguments.empty()) return nullptr;
   const Argument& last = verb.arguments.back();
-  const bool many = last.number == Argument::kSeveral || last.number == Argument::kAny;
-  return many ? &last : nullptr;
+  return last.IsMany() ? &last : nullptr;
 }
 
 // The possible next words of the verbs that begin with the words so far.
@@ -163,7 +162,6 @@ std::string SplitValue(Strings& words) {
   return last.substr(0, equals + 1);
 }
 
-// Completes the last word.
 Strings Offers(Strings words, const Options& options, const Terminal& terminal) {
   if (words.empty()) words = {""};
   const std::string prefix = SplitValue(words);

@@ -48,6 +48,14 @@ struct Connection {
 // Adds the server's address to an error of the connection. Does not change the server's own errors.
 absl::Status NameServer(const absl::Status& status, const Connection& connection);
 
+// The same error with the same details, and the hint for the user on a separate line.
+absl::Status WithHint(const absl::Status& status, absl::string_view hint);
+
+// If the results of the job have expired, adds the command that computes them again. Returns any
+// other status unchanged.
+absl::Status HintIfExpired(const absl::Status& status, const Connection& connection,
+                           const std::string& job);
+
 using VerbOfServer = std::function<VerbResult(const Connection&)>;
 
 // Connects and runs `verb`. If the server does not answer, the error names the server.

@@ -6,7 +6,6 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/time/time.h"
-#include "client/command/hint.h"
 #include "client/command/interrupts.h"
 #include "client/library/error_text.h"
 #include "client/library/request_id.h"

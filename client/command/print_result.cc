@@ -1,12 +1,13 @@
 #include "client/command/print_result.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
 #include "absl/strings/str_cat.h"
 #include "client/command/follow_job.h"
-#include "client/command/hint.h"
 #include "client/command/python.h"
+#include "client/command/selection.h"
 #include "client/library/child_process.h"
 #include "client/output/new_file.h"
 #include "client/output/number_text.h"
@@ -119,6 +120,24 @@ VerbResult End(const v1::EnsembleJob& job, Destination& destination, Terminal& t
   return ExitCode::kDone;
 }
 
+VerbResult PrintPoint(const Connection& connection, const std::string& name, int64_t index,
+                      const Options& options, Terminal& terminal) {
+  const auto point = connection.Ask([&] { return connection.client.Point(name, index); });
+  if (!point.ok()) return HintIfExpired(point.status(), connection, name);
+  const auto job = connection.Ask([&] { return connection.client.Get(name); });
+  if (!job.ok()) return job.status();
+  Destination destination(options, terminal);
+  destination.writer().Begin(*job);
+  AddPoint(*point, destination.writer(), terminal.err);
+  return End(*job, destination, terminal);
+}
+
+absl::Status TooMany(size_t jobs) {
+  return absl::InvalidArgumentError(
+      absl::StrCat("--save and CSV are for the result of one job, not of ", jobs,
+                   "; ballpiston export writes the estimates of many"));
+}
+
 }  // namespace
 
 absl::Status CheckSave(const Options& options) {
@@ -142,16 +161,26 @@ VerbResult PrintResult(const Connection& connection, const std::string& name,
   return End(*job, destination, terminal);
 }
 
-VerbResult PrintPoint(const Connection& connection, const std::string& name, int64_t index,
-                      const Options& options, Terminal& terminal) {
-  const auto point = connection.Ask([&] { return connection.client.Point(name, index); });
-  if (!point.ok()) return HintIfExpired(point.status(), connection, name);
-  const auto job = connection.Ask([&] { return connection.client.Get(name); });
-  if (!job.ok()) return job.status();
-  Destination destination(options, terminal);
-  destination.writer().Begin(*job);
-  AddPoint(*point, destination.writer(), terminal.err);
-  return End(*job, destination, terminal);
+VerbResult Result(const Options& options, Terminal& terminal) {
+  if (options.point.value_or(0) < 0) {
+    return absl::InvalidArgumentError(absl::StrCat("--point: ", *options.point, " is below 0"));
+  }
+  if (absl::Status bad = CheckSave(options); !bad.ok()) return bad;
+  return WithJobs(
+      options, terminal, {}, [&](const auto& connection, const auto& names) -> VerbResult {
+        if (names.size() > 1 && (!options.save.empty() || IsCsv(options.format))) {
+          return TooMany(names.size());
+        }
+        ExitCode worst = ExitCode::kDone;
+        for (const std::string& name : names) {
+          const VerbResult result =
+              options.point ? PrintPoint(connection, name, *options.point, options, terminal)
+                            : PrintResult(connection, name, options, terminal);
+          if (!result.ok()) return result;
+          worst = std::max(worst, *result);
+        }
+        return worst;
+      });
 }
 
 }  // namespace ballpiston::client

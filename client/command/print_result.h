@@ -1,7 +1,7 @@
-// Fetches a job's finished points, or one of them, and prints them.
+// Fetches a job's finished points and prints them: the end of `run`. print_result.cc also has the
+// verb `result`.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include "client/command/connection.h"
@@ -19,9 +19,5 @@ absl::Status CheckSave(const Options& options);
 VerbResult PrintResult(const Connection& connection, const std::string& name,
                        const Options& options, Terminal& terminal,
                        bool answered_from_store = false);
-
-// The same for the point at `index` of the grid.
-VerbResult PrintPoint(const Connection& connection, const std::string& name, int64_t index,
-                      const Options& options, Terminal& terminal);
 
 }  // namespace ballpiston::client

@@ -61,9 +61,11 @@ absl::StatusOr<v1::EnsembleSpec> SpecOf(const Options& options) {
     return ReadSpecFile(options.spec_file);
   }
   if (options.spec.experiment() == v1::EnsembleSpec::EXPERIMENT_UNSPECIFIED) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "name an EXPERIMENT (", absl::StrJoin(Spellings<v1::EnsembleSpec::Experiment>(), ", "),
-        "), or give --spec FILE or --again JOB"));
+    const auto name = [](std::string* out, const auto& choice) { out->append(choice.first); };
+    return absl::InvalidArgumentError(
+        absl::StrCat("name an EXPERIMENT (",
+                     absl::StrJoin(EnumChoices<v1::EnsembleSpec::Experiment>(), ", ", name),
+                     "), or give --spec FILE or --again JOB"));
   }
   if (absl::Status bad = CheckOneTarget(options.given); !bad.ok()) return bad;
   v1::EnsembleSpec spec = options.spec;

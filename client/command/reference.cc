@@ -53,11 +53,8 @@ Section SectionOf(const FlagGroup& group) {
 }
 
 std::string SynopsisOf(const Argument& argument) {
-  const bool many = argument.number == Argument::kSeveral || argument.number == Argument::kAny;
-  const bool needed =
-      argument.number == Argument::kRequired || argument.number == Argument::kSeveral;
-  const std::string word = absl::StrCat(argument.value.name, many ? "..." : "");
-  return needed ? absl::StrCat(" ", word) : absl::StrCat(" [", word, "]");
+  const std::string word = absl::StrCat(argument.value.name, argument.IsMany() ? "..." : "");
+  return argument.IsRequired() ? absl::StrCat(" ", word) : absl::StrCat(" [", word, "]");
 }
 
 Page PageOf(const Verb& verb) {

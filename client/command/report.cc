@@ -3,11 +3,10 @@
 #include "absl/strings/str_join.h"
 #include "absl/time/clock.h"
 #include "client/command/connection.h"
-#include "client/command/hint.h"
 #include "client/command/selection.h"
 #include "client/output/json.h"
 #include "client/output/new_file.h"
-#include "client/web/one_file_page.h"
+#include "client/web/page_files.h"
 
 namespace ballpiston::client {
 namespace {

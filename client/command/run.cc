@@ -1,4 +1,4 @@
-// ballpiston run: submits a job, watches it and prints its result.
+// ballpiston submit and run: submit a job; run also watches it and prints its result.
 #include "absl/strings/str_cat.h"
 #include "client/command/connection.h"
 #include "client/command/create_job.h"
@@ -7,6 +7,18 @@
 #include "client/command/question.h"
 
 namespace ballpiston::client {
+
+VerbResult Submit(const Options& options, Terminal& terminal) {
+  return WithQuestion(
+      options, terminal,
+      [&](const Connection& connection, const v1::EnsembleSpec& spec) -> VerbResult {
+        const auto job = CreateJob(connection, spec, options, terminal);
+        if (!job.ok()) return job.status();
+        if (const std::string reused = ReusedText(*job); !reused.empty()) terminal.Note(reused);
+        terminal.out << job->name() << '\n';
+        return ExitCode::kDone;
+      });
+}
 
 VerbResult Run(const Options& options, Terminal& terminal) {
   if (absl::Status bad = CheckSave(options); !bad.ok()) return bad;

@@ -1,20 +1,40 @@
 // ballpiston sample: writes the collisions of a point's samples to a file, as CSV or, by the Python
 // package, as NumPy arrays.
+#include <google/protobuf/descriptor.h>
+
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "client/command/python.h"
 #include "client/command/question.h"
-#include "client/output/collision_csv.h"
+#include "client/output/csv_row.h"
+#include "client/output/field_text.h"
 #include "client/output/json.h"
 #include "client/output/new_file.h"
 
 namespace ballpiston::client {
 namespace {
 
+// A column for each field of the message, a row for each collision. Numbers read back as the same
+// double.
+void PrintCollisions(const v1::SampleCollisionsResponse& message, std::ostream& out) {
+  const google::protobuf::Reflection& reflection = *message.GetReflection();
+  const google::protobuf::Descriptor& type = *message.GetDescriptor();
+  for (int row = 0; row < message.sample_size(); ++row) {
+    Cells cells;
+    for (int i = 0; i < type.field_count(); ++i) {
+      const auto* const field = type.field(i);
+      const bool is_number = field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE;
+      cells.push_back(is_number ? ExactText(reflection.GetRepeatedDouble(message, field, row))
+                                : absl::StrCat(reflection.GetRepeatedUInt64(message, field, row)));
+    }
+    out << CsvRow(cells);
+  }
+}
+
 VerbResult WriteCsv(const Connection& connection, const v1::EnsembleSpec& spec,
                     const std::string& path, Terminal& terminal) {
   NewFile file("--out", path);
-  PrintCollisionHeader(file.out());
+  file.out() << CsvRow(FieldNames(*v1::SampleCollisionsResponse::descriptor()));
   const absl::Status read =
       connection.client.Sample(spec, [&](const v1::SampleCollisionsResponse& message) {
         PrintCollisions(message, file.out());

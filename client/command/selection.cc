@@ -1,12 +1,8 @@
 #include "client/command/selection.h"
 
-#include <iostream>
-
 #include "absl/status/status.h"
-#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "client/output/number_text.h"
 #include "client/output/spelling.h"
 
 namespace ballpiston::client {
@@ -56,18 +52,6 @@ VerbResult WithJobs(const Options& options, const Terminal& terminal, const JobS
     if (!names.ok()) return names.status();
     return verb(connection, *names);
   });
-}
-
-absl::Status Confirm(const std::string& action, const std::vector<std::string>& names,
-                     const Options& options, const Terminal& terminal) {
-  if (options.labels.empty() || options.yes) return absl::OkStatus();
-  terminal.err << action << ' ' << Counted(static_cast<double>(names.size()), "job") << "? [y/N] "
-               << std::flush;
-  std::string answer;
-  std::getline(std::cin, answer);
-  absl::AsciiStrToLower(&answer);
-  if (answer == "y" || answer == "yes") return absl::OkStatus();
-  return absl::CancelledError("nothing was changed (--yes answers the question)");
 }
 
 }  // namespace ballpiston::client

@@ -26,9 +26,4 @@ using VerbOfJobs =
 VerbResult WithJobs(const Options& options, const Terminal& terminal, const JobStates& states,
                     const VerbOfJobs& verb);
 
-// With --label and without --yes, prints how many jobs `action` ("delete") concerns, and reads the
-// answer. CANCELLED if it is not y or yes.
-absl::Status Confirm(const std::string& action, const std::vector<std::string>& names,
-                     const Options& options, const Terminal& terminal);
-
 }  // namespace ballpiston::client

@@ -1,15 +1,16 @@
-// ballpiston server: starts, stops, checks and backs up servers on this machine, makes tokens, and
-// shows the status of any server.
+// ballpiston server: starts, stops, checks and backs up servers on this machine, and makes tokens.
+#include <signal.h>
+
 #include <filesystem>
 #include <utility>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
-#include "absl/time/clock.h"
-#include "client/command/ballpistond.h"
+#include "absl/strings/str_join.h"
 #include "client/command/connection.h"
+#include "client/command/interrupts.h"
+#include "client/library/child_process.h"
 #include "client/library/server_process.h"
-#include "client/output/status_output.h"
 
 namespace ballpiston::client {
 namespace {
@@ -63,6 +64,19 @@ absl::Status MakeFolder(const std::string& folder) {
       absl::StrCat("--data-dir: cannot make the folder ", folder, ": ", error.message()));
 }
 
+// Runs a command of ballpistond that starts no server, and waits for its end. Its output is this
+// program's output.
+VerbResult RunBallpistond(std::vector<std::string> flags, const Terminal& terminal) {
+  flags.insert(flags.begin(), UsualServerProgram());
+  terminal.Detail(absl::StrJoin(flags, " "));
+  const auto pid = StartChild({.command = std::move(flags), .folder = "", .output = ""});
+  if (!pid.ok()) return absl::FailedPreconditionError(pid.status().message());
+  const Interrupts::Scope scope(terminal.interrupts, [&] { kill(*pid, SIGTERM); });
+  const absl::StatusOr<int> status = WaitForChild(*pid);
+  if (!status.ok()) return status.status();
+  return ExitCodeOf(*status);
+}
+
 VerbResult RunOnStore(const Options& options, std::vector<std::string> flags,
                       const Terminal& terminal) {
   const absl::StatusOr<ServerProgram> program = ProgramOf(options);
@@ -97,22 +111,6 @@ VerbResult ServerStop(const Options& options, Terminal&) {
   if (!program.ok()) return program.status();
   if (absl::Status stopped = StopServer(program->folder); !stopped.ok()) return stopped;
   return ExitCode::kDone;
-}
-
-VerbResult ServerAddress(const Options& options, Terminal& terminal) {
-  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-    terminal.out << connection.address << '\n';
-    return ExitCode::kDone;
-  });
-}
-
-VerbResult ServerStatus(const Options& options, Terminal& terminal) {
-  return WithRunningServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-    const auto status = connection.client.Status();
-    if (!status.ok()) return status.status();
-    PrintStatus(*status, absl::Now(), options.format, terminal.out);
-    return ExitCode::kDone;
-  });
 }
 
 VerbResult ServerToken(const Options& options, Terminal& terminal) {

@@ -61,16 +61,6 @@ Value Passed(std::string name, std::string flag);        // to ballpistond, with
 template <typename T>
 using Choices = std::vector<std::pair<std::string, T>>;
 
-// All values of a proto enumeration except UNSPECIFIED.
-template <typename Enum>
-Choices<Enum> EnumChoices() {
-  Choices<Enum> choices;
-  for (const std::string& name : Spellings<Enum>()) {
-    choices.emplace_back(name, *FromSpelling<Enum>(name));
-  }
-  return choices;
-}
-
 // Also accepts capitals and underscores, as in JSON.
 template <typename T>
 Value OneOf(std::string name, Choices<T> choices, Store<T> store) {

@@ -181,8 +181,7 @@ const FlagGroup kGrid = {
       "temperatures of the cold reservoir, 1e-120 to 1e120"},
      {"--points", File(To(&Options::points_file)),
       "CSV file with a table of points; its header names the parameters, in any order; the flags "
-      "of "
-      "other parameters multiply the table; - is standard input"}}};
+      "of other parameters multiply the table; - is standard input"}}};
 
 const std::vector<std::string> kTargets = {"samples", "collisions", "tolerance", "budget"};
 
@@ -212,8 +211,8 @@ const FlagGroup kMethod = {
                          [](Options& o, Spec::Model model) { o.spec.set_model(model); }),
       "by default auto, the cheapest model that gives the estimate"},
      {"--estimate", NameOfEstimate(),
-      "the estimate of --tolerance and --model auto; the result prints it first; "
-      "gas-equilibrium, lyapunov and gas-lyapunov have a choice"},
+      "the estimate of --tolerance and --model auto; the result prints it first; gas-equilibrium, "
+      "lyapunov and gas-lyapunov have a choice"},
      {"--precision",
       OneOf<Spec::Precision>(
           "PRECISION", EnumChoices<Spec::Precision>(),
@@ -257,8 +256,8 @@ const FlagGroup kStatusFormat = {
 const FlagGroup kResultFormat = {
     "Output",
     {{"--format", OneOf("FORMAT", ResultFormats(), To(&Options::format)),
-      "format on standard output; by default table; csv has the estimates, "
-      "csv-histograms the bins of all histograms, csv-curves the points of all curves"}}};
+      "format on standard output; by default table; csv has the estimates, csv-histograms the bins "
+      "of all histograms, csv-curves the points of all curves"}}};
 
 const FlagGroup kSave = {
     "File",
@@ -267,19 +266,18 @@ const FlagGroup kSave = {
       "the versions; prints the file's path. .json has everything, .npz NumPy arrays (this needs "
       "the Python package), .csv the estimates, or what --format selects"}}};
 
-const FlagGroup kProgress = {
-    "Progress",
-    {{"--progress",
-      OneOf("STYLE",
-            Choices<ProgressStyle>{{"auto", ProgressStyle::kAuto},
-                                   {"bar", ProgressStyle::kBar},
-                                   {"json", ProgressStyle::kJson},
-                                   {"none", ProgressStyle::kNone}},
-            To(&Options::progress)),
-      "progress on standard error; by default auto, which shows a bar if standard error is a "
-      "terminal, else nothing",
-      "BALLPISTON_PROGRESS"}},
-    /*is_everyday=*/false};
+const FlagGroup kProgress = {"Progress",
+                             {{"--progress",
+                               OneOf("STYLE",
+                                     Choices<ProgressStyle>{{"auto", ProgressStyle::kAuto},
+                                                            {"bar", ProgressStyle::kBar},
+                                                            {"json", ProgressStyle::kJson},
+                                                            {"none", ProgressStyle::kNone}},
+                                     To(&Options::progress)),
+                               "progress on standard error; by default auto, which shows a bar if "
+                               "standard error is a terminal, else nothing",
+                               "BALLPISTON_PROGRESS"}},
+                             /*is_everyday=*/false};
 
 const FlagGroup kClosedForms = {
     kListForm,
@@ -303,8 +301,8 @@ const FlagGroup kTrace = {
       "the pistons' penetration, above 0, up to (1 - lambda)/2 for a pair and rho/sqrt(2) - "
       "lambda/2 for a gas; required"},
      {"--cells", Shape([](Options& o, std::string cells) { o.trace.set_cells(std::move(cells)); }),
-      "a periodic gas of this shape instead of a pair: N, a chain of N cells, or NxM, a lattice "
-      "of N columns and M rows; at most 1,000 cells"},
+      "a periodic gas of this shape instead of a pair: N, a chain of N cells, or NxM, a lattice of "
+      "N columns and M rows; at most 1,000 cells"},
      {"--temperature", Number("X", [](Options& o, double x) { o.trace.set_temperature(x); }),
       "temperature of the gas, 1e-120 to 1e120, by default 1; a pair has the energy 1/2"},
      {"--seed", Seed([](Options& o, uint64_t seed) { o.trace.set_seed(seed); }),
@@ -346,13 +344,12 @@ const FlagGroup kPoint = {
     {{"--point", Count([](Options& o, int64_t index) { o.point = index; }),
       "only the point with this position in the grid, from 0; by default all finished points"}}};
 
-const FlagGroup kWatch = {
-    "Watch",
-    {{"--exec", Text("COMMAND", To(&Options::command)),
-      "run this command of the shell when a job ends; its environment has BALLPISTON_JOB and "
-      "BALLPISTON_JOB_STATE"},
-     {"--any", Switch(To(&Options::any)),
-      "return when one of the jobs has ended; the others go on"}}};
+const FlagGroup kWatch = {"Watch",
+                          {{"--exec", Text("COMMAND", To(&Options::command)),
+                            "run this command of the shell when a job ends; its environment has "
+                            "BALLPISTON_JOB and BALLPISTON_JOB_STATE"},
+                           {"--any", Switch(To(&Options::any)),
+                            "return when one of the jobs has ended; the others go on"}}};
 
 const FlagGroup kPin = {
     "Pin", {{"--undo", Switch(To(&Options::undo)), "unpin: the results may expire again"}}};
@@ -418,8 +415,7 @@ const FlagGroup kDataFolder = {
       "the data folder of a server on this machine; by default the private server's folder"},
      {"", Text("ADDRESS", To(&Options::server)),
       "if this variable or server in the config file is set, give --data-dir: your commands then "
-      "do "
-      "not use the private server",
+      "do not use the private server",
       "BALLPISTON_SERVER"}}};
 
 const FlagGroup kStart = {"Settings",
@@ -468,14 +464,43 @@ const Argument kJobsOrLabels = {Job(kJobs), "ensembleJobs/ID, or the ID alone", 
 const std::vector<const FlagGroup*> kQuestion = {&kGrid, &kTarget, &kMethod};
 
 std::vector<const FlagGroup*> With(std::vector<const FlagGroup*> groups,
-                                   std::vector<const FlagGroup*> more) {
+                                   std::vector<const FlagGroup*> more = {}) {
   groups.insert(groups.end(), more.begin(), more.end());
   groups.push_back(&kCommon);
   return groups;
 }
 
-std::vector<Verb> JobVerbs() {
+Verb StatusVerb(const std::string& name, const std::string& summary) {
+  return {name,
+          summary,
+          "Starts no server.",
+          {},
+          With({&kStatusFormat, &kServer}),
+          {"server status",
+           "server status --server lab.example.org:50051 --ca authority.pem --token-file ada.token "
+           "--format json"},
+          &ServerStatus};
+}
+
+std::vector<Verb> AllVerbs() {
   return {
+      {"analytic",
+       "evaluate the closed forms",
+       "Prints one set of values for every pair of rho and delta.",
+       {},
+       With({&kClosedForms, &kFormat, &kServer}),
+       {"analytic --rho 0.5296 --delta 0.2 --epsilon 0.1,0.2",
+        "analytic --rho 0.5296 --delta 0.1:0.3:5 --temperature 1:2:3 --format csv"},
+       &Analytic},
+      {"plan",
+       "show the cost and the accuracy of each model",
+       "Runs nothing.",
+       {kExperiment},
+       With(kQuestion, {&kFormat, &kServer}),
+       {"plan energy-relaxation --rho 0.5296 --delta 0.2,0.0125 --tolerance 0.01",
+        "plan first-hit --rho 0.5296 --delta 0.1 --epsilon 0.125 --exponent 1 --samples 1e6 "
+        "--format csv"},
+       &Plan},
       {"run",
        "submit a job, watch it, print its result",
        "Ctrl-C ends the client, but not the job; the message says how to watch the job again. If "
@@ -498,10 +523,9 @@ std::vector<Verb> JobVerbs() {
       {"watch",
        "show a job's progress until it ends",
        "Ctrl-C ends the client, but not the jobs. Of several jobs it prints each name and state "
-       "when "
-       "the job ends.",
+       "when the job ends.",
        {kJobsOrLabels},
-       With({&kWatch, &kSelection, &kProgress, &kServer}, {}),
+       With({&kWatch, &kSelection, &kProgress, &kServer}),
        {"watch ensembleJobs/ID", "watch ID --progress json 2>progress.jsonl",
         "watch --label run=7 --any --exec ./next.sh"},
        &Watch},
@@ -509,7 +533,7 @@ std::vector<Verb> JobVerbs() {
        "print a job's result: the points that it has finished so far",
        "",
        {kJobsOrLabels},
-       With({&kSelection, &kPoint, &kResultFormat, &kSave, &kServer}, {}),
+       With({&kSelection, &kPoint, &kResultFormat, &kSave, &kServer}),
        {"result ensembleJobs/ID", "result ID --save result.json",
         "result ID --point 17 --format json >point.json"},
        &Result},
@@ -518,21 +542,21 @@ std::vector<Verb> JobVerbs() {
        "The column 'results' shows which jobs are pinned, and which results have expired or will "
        "expire within a week.",
        {},
-       With({&kListFilter, &kFormat, &kServer}, {}),
+       With({&kListFilter, &kFormat, &kServer}),
        {"list --state running,queued", "list --experiment first-hit --since 2026-01-31 --limit 10"},
        &ListJobs},
       {"cancel",
        "stop jobs; the points that they finished stay",
        "Prints each job's name and state.",
        {kJobsOrLabels},
-       With({&kConfirmed, &kServer}, {}),
+       With({&kConfirmed, &kServer}),
        {"cancel ensembleJobs/ID", "cancel ID1 ID2", "cancel --label run=7 --yes"},
        &Cancel},
       {"pin",
        "keep the results of jobs: they do not expire",
        "Prints each job's name, and whether it is pinned now.",
        {kSomeJobs},
-       With({&kPin, &kServer}, {}),
+       With({&kPin, &kServer}),
        {"pin ensembleJobs/ID", "pin --undo ID1 ID2"},
        &Pin},
       {"label",
@@ -541,23 +565,80 @@ std::vector<Verb> JobVerbs() {
        "watch, result, export, report, cancel and delete find jobs by --label.",
        {kOneJob,
         {Labels("KEY=VALUE"),
-         "a key of a-z, 0-9 and _ . -, and a value of letters, digits and _ . "
-         ": / @ + -, each of at most 63 characters",
+         "a key of a-z, 0-9 and _ . -, and a value of letters, digits and _ . : / @ + -, each of "
+         "at most 63 characters",
          Argument::kSeveral}},
-       With({&kServer}, {}),
+       With({&kServer}),
        {"label ensembleJobs/ID run=7 who=pilot", "label ID who="},
        &Label},
       {"delete",
        "delete ended jobs and their results",
        "Prints the name of each job that it deleted.",
        {kJobsOrLabels},
-       With({&kConfirmed, &kServer}, {}),
+       With({&kConfirmed, &kServer}),
        {"delete ensembleJobs/ID", "delete ID1 ID2", "delete --label who=pilot"},
-       &Delete}};
-}
-
-std::vector<Verb> ServerVerbs() {
-  std::vector<Verb> verbs = {
+       &Delete},
+      {"trace",
+       "print one orbit, event by event, as JSON lines",
+       "The first line is the start: the geometry, and the positions and velocities of all bodies. "
+       "Every other line is an event (ball_piston, ball_wall or piston_wall): its time, the time "
+       "since the last event of the same kind with the same bodies (free_time), and the position, "
+       "velocity and energies of each body that takes part. The same command always prints the "
+       "same lines. proto/ballpiston/v1/trace.proto describes the fields.",
+       {},
+       With({&kTrace, &kServer}),
+       {"trace --rho 0.5296 --delta 0.2 --events 1000 >orbit.jsonl",
+        "trace --rho 0.5296 --delta 0.1 --cells 4x3 --events 1000 | jq -r 'select(.event == "
+        "\"ball_piston\") | [.time, .ball, .ball_energy] | @tsv'"},
+       &Trace},
+      {"sample",
+       "write the collisions of a point's samples to a file",
+       "A row for each ball-piston collision: sample, times, place, velocities before and after, "
+       "energies. They are the collisions that `run` with the same flags averages. One point, of "
+       "an experiment with a pair. .npz and .parquet need Python with the package ballpiston. "
+       "Prints the path of the file. proto/ballpiston/v1/trace.proto describes the columns.",
+       {kExperiment},
+       With(kQuestion, {&kSampleFile, &kServer}),
+       {"sample first-hit --rho 0.5296 --delta 0.2 --epsilon 0.125 --exponent 1 --samples 1e5 "
+        "--out hits.npz",
+        "sample equilibrium --rho 0.5296 --delta 0.2 --collisions 1e4 --out collisions.csv"},
+       &Sample},
+      {"figure",
+       "draw a figure: data, SVG and PNG",
+       "After an interruption, the same command resumes the jobs of the figure. If the --out "
+       "folder already contains the figure's module, the command uses it unchanged. Figures need "
+       "Python with the package ballpiston and matplotlib: python3-ballpiston, python3-matplotlib.",
+       {{Text("NAME", To(&Options::figure), Offer::kFigure), "one of the names that --list prints",
+         Argument::kOptional}},
+       With({&kFigure, &kVariables, &kProgress, &kServer}),
+       {"figure mean-free-time --out figures", "figure mean-free-time --edit --out figures"},
+       &Figure},
+      {"export",
+       "write the estimates of many jobs to one file",
+       "A row for each estimate of each point, with the job, its labels, seed, engine version and "
+       "parameters. Without JOB and --label: of all your jobs. Needs Python with the package "
+       "ballpiston, and for .parquet pandas and pyarrow. Prints the path of the file.",
+       {{Job(kJobs), "ensembleJobs/ID, or the ID alone", Argument::kAny}},
+       With({&kExport, &kSelection, &kServer}),
+       {"export --label run=7 --out run7.csv", "export ID1 ID2 --out two.parquet"},
+       &Export},
+      {"report",
+       "write one HTML file with the pictures, tables and specifications of jobs",
+       "The file needs neither a server nor a network. It contains the first 12 points of each job "
+       "in full, and the estimates of up to 10,000 points. Prints the path of the file.",
+       {kJobsOrLabels},
+       With({&kReport, &kSelection, &kServer}),
+       {"report ensembleJobs/ID --out report.html", "report ID1 ID2 --out sweep.html"},
+       &ReportJobs},
+      {"web",
+       "show jobs and results in a browser, and forward JSON calls to the server",
+       "Prints the address of the page, with an access token, and serves the page on this machine "
+       "until Ctrl-C. The same address answers calls of the API as JSON in the Connect protocol, "
+       "for curl and notebooks: client/README.md has examples.",
+       {},
+       With({&kWeb, &kServer}),
+       {"web", "web --port 8080 --server lab.example.org:50051 --ca authority.pem"},
+       &Web},
       {"server start",
        "start a server on this machine, print its address",
        "The server runs until it is stopped. If a server already runs in the data folder, the "
@@ -566,16 +647,16 @@ std::vector<Verb> ServerVerbs() {
        {{Words("FLAG",
                [](Options& o, std::string flag) { o.server_flags.push_back(std::move(flag)); }),
          "flags for ballpistond, after --", Argument::kAny}},
-       With({&kDataFolder, &kStart}, {}),
+       With({&kDataFolder, &kStart}),
        {"server start",
-        "server start --data-dir data --listen 127.0.0.1:50051 --workers 8 -- "
-        "--metrics-listen 127.0.0.1:9464"},
+        "server start --data-dir data --listen 127.0.0.1:50051 --workers 8 -- --metrics-listen "
+        "127.0.0.1:9464"},
        &ServerStart},
       {"server stop",
        "stop a server on this machine",
        "Returns when the server has ended. The server resumes its jobs when it is started again.",
        {},
-       With({&kDataFolder}, {}),
+       With({&kDataFolder}),
        {"server stop", "server stop --data-dir data"},
        &ServerStop},
       {"server address",
@@ -583,25 +664,17 @@ std::vector<Verb> ServerVerbs() {
        "Starts the private server if the address is its address and it does not run. Programs in "
        "other languages can connect there.",
        {},
-       With({&kServer}, {}),
+       With({&kServer}),
        {"server address", "server address --server lab.example.org:50051 --ca authority.pem"},
        &ServerAddress},
-      {"server status",
-       "show the server's load and its limits",
-       "Starts no server.",
-       {},
-       With({&kStatusFormat, &kServer}, {}),
-       {"server status",
-        "server status --server lab.example.org:50051 --ca authority.pem "
-        "--token-file ada.token --format json"},
-       &ServerStatus},
+      StatusVerb("server status", "show the server's load and its limits"),
       {"server token",
        "make a token, append its hash to an access file, print the token",
        "ROLE is read, submit or admin. The token is printed once; keep it in a file that other "
        "users cannot read.",
        {{Text("PRINCIPAL:ROLE[:DAYS]", To(&Options::credential)),
          "the user, the role, and the days until the token expires"}},
-       With({&kToken}, {}),
+       With({&kToken}),
        {"server token ada:submit --access-file access | (umask 077; cat >ada.token)",
         "server token backup:read:365 --access-file access | (umask 077; cat >backup.token)"},
        &ServerToken},
@@ -609,137 +682,40 @@ std::vector<Verb> ServerVerbs() {
        "copy a server's store to a file, and check the copy",
        "The server can be running.",
        {{File(To(&Options::file)), "the file to write; it must not exist"}},
-       With({&kDataFolder}, {}),
+       With({&kDataFolder}),
        {"server backup store-2026-01-31.sqlite3", "server backup copy.sqlite3 --data-dir data"},
        &ServerBackup},
       {"server check",
        "check the whole store of a server",
        "The server can be running. The exit code is 0 if the store is sound.",
        {},
-       With({&kDataFolder}, {}),
+       With({&kDataFolder}),
        {"server check", "server check --data-dir data"},
-       &ServerCheck}};
-  Verb status = *std::find_if(verbs.begin(), verbs.end(),
-                              [](const Verb& verb) { return verb.name == "server status"; });
-  status.name = "status";
-  status.summary = "the same as server status";
-  verbs.push_back(std::move(status));
-  return verbs;
-}
-
-std::vector<Verb> AllVerbs() {
-  std::vector<Verb> verbs = {
-      {"analytic",
-       "evaluate the closed forms",
-       "Prints one set of values for every pair of rho and delta.",
-       {},
-       With({&kClosedForms, &kFormat, &kServer}, {}),
-       {"analytic --rho 0.5296 --delta 0.2 --epsilon 0.1,0.2",
-        "analytic --rho 0.5296 --delta 0.1:0.3:5 --temperature 1:2:3 --format csv"},
-       &Analytic},
-      {"plan",
-       "show the cost and the accuracy of each model",
-       "Runs nothing.",
-       {kExperiment},
-       With(kQuestion, {&kFormat, &kServer}),
-       {"plan energy-relaxation --rho 0.5296 --delta 0.2,0.0125 --tolerance 0.01",
-        "plan first-hit --rho 0.5296 --delta 0.1 --epsilon 0.125 --exponent 1 --samples 1e6 "
-        "--format csv"},
-       &Plan}};
-  const auto append = [&verbs](std::vector<Verb> more) {
-    verbs.insert(verbs.end(), more.begin(), more.end());
-  };
-  append(JobVerbs());
-  append(
-      {{"trace",
-        "print one orbit, event by event, as JSON lines",
-        "The first line is the start: the geometry, and the positions and velocities of all "
-        "bodies. Every other line is an event (ball_piston, ball_wall or piston_wall): its time, "
-        "the time since the last event of the same kind with the same bodies (free_time), and the "
-        "position, velocity and energies of each body that takes part. The same command always "
-        "prints the same lines. proto/ballpiston/v1/trace.proto describes the fields.",
-        {},
-        With({&kTrace, &kServer}, {}),
-        {"trace --rho 0.5296 --delta 0.2 --events 1000 >orbit.jsonl",
-         "trace --rho 0.5296 --delta 0.1 --cells 4x3 --events 1000 | "
-         "jq -r 'select(.event == \"ball_piston\") | [.time, .ball, .ball_energy] | @tsv'"},
-        &Trace}});
-  append(
-      {{"sample",
-        "write the collisions of a point's samples to a file",
-        "A row for each ball-piston collision: sample, times, place, velocities before and after, "
-        "energies. They are the collisions that `run` with the same flags averages. One point, "
-        "of an experiment with a pair. .npz and .parquet need Python with the package "
-        "ballpiston. Prints the path of the file. proto/ballpiston/v1/trace.proto describes the "
-        "columns.",
-        {kExperiment},
-        With(kQuestion, {&kSampleFile, &kServer}),
-        {"sample first-hit --rho 0.5296 --delta 0.2 --epsilon 0.125 --exponent 1 --samples 1e5 "
-         "--out hits.npz",
-         "sample equilibrium --rho 0.5296 --delta 0.2 --collisions 1e4 --out collisions.csv"},
-        &Sample}});
-  append({{"figure",
-           "draw a figure: data, SVG and PNG",
-           "After an interruption, the same command resumes the jobs of the figure. If the --out "
-           "folder already contains the figure's module, the command uses it unchanged. Figures "
-           "need Python with the package ballpiston and matplotlib: python3-ballpiston, "
-           "python3-matplotlib.",
-           {{Text("NAME", To(&Options::figure), Offer::kFigure),
-             "one of the names that --list prints", Argument::kOptional}},
-           With({&kFigure, &kVariables, &kProgress, &kServer}, {}),
-           {"figure mean-free-time --out figures", "figure mean-free-time --edit --out figures"},
-           &Figure},
-          {"export",
-           "write the estimates of many jobs to one file",
-           "A row for each estimate of each point, with the job, its labels, seed, engine version "
-           "and parameters. Without JOB and --label: of all your jobs. Needs Python with the "
-           "package ballpiston, and for .parquet pandas and pyarrow. Prints the path of the file.",
-           {{Job(kJobs), "ensembleJobs/ID, or the ID alone", Argument::kAny}},
-           With({&kExport, &kSelection, &kServer}, {}),
-           {"export --label run=7 --out run7.csv", "export ID1 ID2 --out two.parquet"},
-           &Export},
-          {"report",
-           "write one HTML file with the pictures, tables and specifications of jobs",
-           "The file needs neither a server nor a network. It contains the first 12 points of each "
-           "job in full, and the estimates of up to 10,000 points. Prints the path of the file.",
-           {kJobsOrLabels},
-           With({&kReport, &kSelection, &kServer}, {}),
-           {"report ensembleJobs/ID --out report.html", "report ID1 ID2 --out sweep.html"},
-           &ReportJobs},
-          {"web",
-           "show jobs and results in a browser, and forward JSON calls to the server",
-           "Prints the address of the page, with an access token, and serves the page on this "
-           "machine until Ctrl-C. The same address answers calls of the API as JSON in the Connect "
-           "protocol, for curl and notebooks: client/README.md has examples.",
-           {},
-           With({&kWeb, &kServer}, {}),
-           {"web", "web --port 8080 --server lab.example.org:50051 --ca authority.pem"},
-           &Web}});
-  append(ServerVerbs());
-  append({{"help",
-           "print the help of the program or of a verb",
-           "",
-           {{Words("VERB", kWords), "words of the verb, such as: server start", Argument::kAny}},
-           With({&kPage}, {}),
-           {"help run", "help --all run", "help --format man --out man1"},
-           &Help},
-          {"completion",
-           "print a script that completes command lines in a shell",
-           "The script also completes names of jobs if a server is running.",
-           {{OneOf("SHELL",
-                   Choices<Completion>{{"bash", Completion::kBash},
-                                       {"zsh", Completion::kZsh},
-                                       {"fish", Completion::kFish},
-                                       {"words", Completion::kWords}},
-                   To(&Options::completion)),
-             "the shell; only the scripts use 'words'"},
-            {Words("WORD", kWords), "after --: the words so far; the last word is completed",
-             Argument::kAny}},
-           With({&kServer}, {}),
-           {"completion bash >~/.local/share/bash-completion/completions/ballpiston",
-            "completion fish >~/.config/fish/completions/ballpiston.fish"},
-           &Complete}});
-  return verbs;
+       &ServerCheck},
+      StatusVerb("status", "the same as server status"),
+      {"help",
+       "print the help of the program or of a verb",
+       "",
+       {{Words("VERB", kWords), "words of the verb, such as: server start", Argument::kAny}},
+       With({&kPage}),
+       {"help run", "help --all run", "help --format man --out man1"},
+       &Help},
+      {"completion",
+       "print a script that completes command lines in a shell",
+       "The script also completes names of jobs if a server is running.",
+       {{OneOf("SHELL",
+               Choices<Completion>{{"bash", Completion::kBash},
+                                   {"zsh", Completion::kZsh},
+                                   {"fish", Completion::kFish},
+                                   {"words", Completion::kWords}},
+               To(&Options::completion)),
+         "the shell; only the scripts use 'words'"},
+        {Words("WORD", kWords), "after --: the words so far; the last word is completed",
+         Argument::kAny}},
+       With({&kServer}),
+       {"completion bash >~/.local/share/bash-completion/completions/ballpiston",
+        "completion fish >~/.config/fish/completions/ballpiston.fish"},
+       &Complete}};
 }
 
 }  // namespace

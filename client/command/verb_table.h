@@ -34,6 +34,9 @@ struct Argument {
   Value value;
   std::string text;
   enum { kRequired, kOptional, kSeveral, kAny } number = kRequired;  // kSeveral: at least one
+
+  bool IsMany() const { return number == kSeveral || number == kAny; }
+  bool IsRequired() const { return number == kRequired || number == kSeveral; }
 };
 
 struct Verb {
@@ -43,7 +46,7 @@ struct Verb {
   std::vector<Argument> arguments;
   std::vector<const FlagGroup*> groups;
   std::vector<std::string> examples;  // without the program's name
-  VerbResult (*act)(const Options& options, Terminal& terminal);
+  VerbFunction* act;
 };
 
 // In the order in which help shows them.

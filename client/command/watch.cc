@@ -60,7 +60,6 @@ class Watches {
   std::vector<std::jthread> threads_;  // the destructor stops them
 };
 
-// Runs the command of --exec for a job that has ended.
 VerbResult RunCommand(const v1::EnsembleJob& job, const Options& options) {
   if (options.command.empty()) return ExitCode::kDone;
   const absl::StatusOr<int> status =

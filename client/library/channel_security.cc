@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <cstring>
+#include <fstream>
 #include <map>
 #include <utility>
 
@@ -15,7 +17,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "client/library/own_token.h"
+#include "client/library/local_server.h"
 #include "client/library/server_address.h"
 
 namespace ballpiston::client {
@@ -133,6 +135,14 @@ absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> TlsCredentials(
 }
 
 }  // namespace
+
+std::string OwnToken(const std::string& address) {
+  char machine[HOST_NAME_MAX + 1] = {};
+  gethostname(machine, HOST_NAME_MAX);
+  std::string token;
+  std::ifstream(StateFolder() + "/tokens/" + machine + "/" + address) >> token;
+  return token;
+}
 
 absl::Status CheckSecurity(const ChannelSecurity& security, absl::string_view address) {
   if (absl::StartsWith(address, "unix:") && (security.HasTls() || security.HasToken())) {

@@ -6,7 +6,7 @@
 //   token            sent with every call, over TLS or to a loopback address
 //
 // Without TLS and without a token, the client sends to a loopback address the token of its own
-// user's server, if one listens there (own_token.h).
+// user's server, if one listens there.
 #pragma once
 
 #include <grpcpp/grpcpp.h>
@@ -29,6 +29,12 @@ struct ChannelSecurity {
   bool HasTls() const { return tls || !ca.empty(); }
   bool HasToken() const { return !token_file.empty() || !token.empty(); }
 };
+
+// The token that a server on the loopback makes for its own user at each start; empty if no server
+// of this user listens at `address`. The server keeps the token in a file that only this user can
+// read, whose name is the address, in a folder for each machine that shares the home folder:
+//   $XDG_STATE_HOME/ballpiston/tokens/MACHINE/127.0.0.1:50051    (~/.local/state if it is not set)
+std::string OwnToken(const std::string& address);
 
 // Checks that the settings fit each other and the address. Reads no file. INVALID_ARGUMENT names
 // the fault, e.g. a token for another machine without encryption.

@@ -5,8 +5,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
+#include "client/library/error_text.h"
 #include "client/library/request_id.h"
-#include "client/library/unary_call.h"
 
 namespace ballpiston::client {
 namespace {
@@ -14,6 +14,20 @@ namespace {
 using Stub = v1::EnsembleService::StubInterface;
 
 constexpr int kPageSize = 1000;
+
+// One call with one answer and a deadline. `method` is one of the stub's.
+template <typename Stub, typename Request, typename Response>
+absl::StatusOr<Response> CallUnary(Stub& stub,
+                                   grpc::Status (Stub::*method)(grpc::ClientContext*,
+                                                                const Request&, Response*),
+                                   const Request& request, absl::Duration timeout) {
+  grpc::ClientContext context;
+  context.set_deadline(absl::ToChronoTime(absl::Now() + timeout));
+  Response response;
+  absl::Status status = FromGrpc((stub.*method)(&context, request, &response));
+  if (!status.ok()) return status;
+  return response;
+}
 
 // gRPC checks only every 5 s whether a channel has reconnected, unless a caller waits for it.
 constexpr absl::Duration kLongestConnecting = absl::Seconds(1);

@@ -11,7 +11,6 @@
 #include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
 #include "google/rpc/error_details.pb.h"
-#include "google/rpc/status.pb.h"
 
 namespace ballpiston::client {
 namespace {
@@ -42,14 +41,6 @@ std::string LinesOf(const std::vector<FieldViolation>& violations) {
     absl::StrAppend(&lines, "\n  ", field, ": ", description);
   }
   return lines;
-}
-
-// Empty if the error is not the server's.
-google::rpc::Status DetailsOf(const absl::Status& status) {
-  google::rpc::Status details;
-  const auto payload = status.GetPayload(kStatusPayload);
-  if (!payload || !details.ParseFromString(std::string(*payload))) details.Clear();
-  return details;
 }
 
 int LeftOut(const google::rpc::ErrorInfo& info) {
@@ -104,20 +95,27 @@ absl::Status FromGrpc(const grpc::Status& status) {
   return result;
 }
 
+google::rpc::Status ErrorDetails(const absl::Status& status) {
+  google::rpc::Status details;
+  const auto payload = status.GetPayload(kStatusPayload);
+  if (!payload || !details.ParseFromString(std::string(*payload))) details.Clear();
+  return details;
+}
+
 std::string ErrorReason(const absl::Status& status) {
-  const auto info = Find<google::rpc::ErrorInfo>(DetailsOf(status));
+  const auto info = Find<google::rpc::ErrorInfo>(ErrorDetails(status));
   return info ? info->reason() : "";
 }
 
 absl::Duration RetryDelay(const absl::Status& status) {
-  const auto retry = Find<google::rpc::RetryInfo>(DetailsOf(status));
+  const auto retry = Find<google::rpc::RetryInfo>(ErrorDetails(status));
   if (!retry) return absl::ZeroDuration();
   const auto& delay = retry->retry_delay();
   return absl::Seconds(delay.seconds()) + absl::Nanoseconds(delay.nanos());
 }
 
 std::vector<FieldViolation> ErrorViolations(const absl::Status& status) {
-  return ViolationsOf(DetailsOf(status));
+  return ViolationsOf(ErrorDetails(status));
 }
 
 }  // namespace ballpiston::client

@@ -22,6 +22,7 @@
 
 #include "absl/status/status.h"
 #include "absl/time/time.h"
+#include "google/rpc/status.pb.h"
 
 namespace ballpiston::client {
 
@@ -30,6 +31,9 @@ inline constexpr char kStatusPayload[] = "type.googleapis.com/google.rpc.Status"
 
 // The same code, with the text above as its message.
 absl::Status FromGrpc(const grpc::Status& status);
+
+// What the server attached; empty if the error is not the server's.
+google::rpc::Status ErrorDetails(const absl::Status& status);
 
 // The ErrorInfo's reason, e.g. "JOB_NOT_FOUND"; empty if the server gave no reason or was not
 // reached.

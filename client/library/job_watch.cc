@@ -50,7 +50,6 @@ class Watch {
  private:
   static absl::Status Stopped() { return absl::CancelledError("the watch was stopped"); }
 
-  // Reads one stream to its end.
   absl::Status ReadStream() {
     grpc::ClientContext context;
     std::stop_callback cancel(stop_, [&context] { context.TryCancel(); });

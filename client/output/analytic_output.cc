@@ -1,71 +1,45 @@
 #include "client/output/analytic_output.h"
 
 #include <google/protobuf/descriptor.h>
-#include <google/protobuf/message.h>
 
 #include <string>
 #include <utility>
 
 #include "absl/strings/str_format.h"
 #include "client/output/csv_row.h"
+#include "client/output/field_text.h"
 #include "client/output/json.h"
-#include "client/output/number_text.h"
 #include "client/output/text_table.h"
 
 namespace ballpiston::client {
 namespace {
 
-using google::protobuf::FieldDescriptor;
-using google::protobuf::Message;
-using Cells = std::vector<std::string>;
-
-// Each number field of a message is a column, in the proto's order.
-std::vector<const FieldDescriptor*> Columns(const google::protobuf::Descriptor& descriptor) {
-  std::vector<const FieldDescriptor*> columns;
-  for (int i = 0; i < descriptor.field_count(); ++i) {
-    const FieldDescriptor* field = descriptor.field(i);
-    const bool is_number = field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE;
-    if (is_number && !field->is_repeated()) columns.push_back(field);
-  }
-  return columns;
-}
-
+// The fields that are columns: all but the lists, which have tables of their own.
 template <typename Type>
-Cells Names() {
-  Cells names;
-  for (const FieldDescriptor* column : Columns(*Type::descriptor()))
-    names.push_back(column->name());
+Cells Columns() {
+  const google::protobuf::Descriptor& type = *Type::descriptor();
+  Cells names = FieldNames(type);
+  std::erase_if(names, [&type](const std::string& name) {
+    return type.FindFieldByName(name)->is_repeated();
+  });
   return names;
 }
 
-Cells Values(const Message& message, std::string (*text)(double)) {
-  Cells cells;
-  for (const FieldDescriptor* column : Columns(*message.GetDescriptor())) {
-    cells.push_back(text(message.GetReflection()->GetDouble(message, column)));
-  }
-  return cells;
-}
-
-Cells Joined(Cells cells, const Cells& more, const Cells& still_more) {
-  cells.insert(cells.end(), more.begin(), more.end());
-  cells.insert(cells.end(), still_more.begin(), still_more.end());
-  return cells;
-}
-
 void PrintCsv(const v1::EvaluatePairsResponse& response, std::ostream& out) {
-  const Cells energies = Names<v1::EnergyAnalytics>(), averages = Names<v1::CanonicalAnalytics>();
+  const Cells pairs = Columns<v1::PairAnalytics>(), energies = Columns<v1::EnergyAnalytics>(),
+              averages = Columns<v1::CanonicalAnalytics>();
   const Cells no_energy(energies.size()), no_averages(averages.size());
-  out << CsvRow(Joined(Names<v1::PairAnalytics>(), energies, averages));
+  out << CsvRow(Joined(Joined(pairs, energies), averages));
   for (const v1::PairAnalytics& pair : response.points()) {
-    const Cells cells = Values(pair, &ExactText);
+    const Cells cells = FieldTexts(pair, pairs);
     if (pair.energies().empty() && pair.canonical().empty()) {
-      out << CsvRow(Joined(cells, no_energy, no_averages));
+      out << CsvRow(Joined(Joined(cells, no_energy), no_averages));
     }
     for (const auto& energy : pair.energies()) {
-      out << CsvRow(Joined(cells, Values(energy, &ExactText), no_averages));
+      out << CsvRow(Joined(Joined(cells, FieldTexts(energy, energies)), no_averages));
     }
     for (const auto& row : pair.canonical()) {
-      out << CsvRow(Joined(cells, no_energy, Values(row, &ExactText)));
+      out << CsvRow(Joined(Joined(cells, no_energy), FieldTexts(row, averages)));
     }
   }
 }
@@ -73,25 +47,21 @@ void PrintCsv(const v1::EvaluatePairsResponse& response, std::ostream& out) {
 std::string TableCell(double x) { return Measured(x, 0).value; }
 
 void PrintQuantities(const v1::PairAnalytics& pair, std::ostream& out) {
-  TextTable table({{"quantity", TextTable::Column::kLeft}, {"value", TextTable::Column::kLeft}});
-  const Cells names = Names<v1::PairAnalytics>(), values = Values(pair, &TableCell);
-  for (size_t i = 0; i < names.size(); ++i) table.AddRow({names[i], values[i]});
+  TextTable table({"quantity", "value"}, {"quantity", "value"});
+  for (const std::string& name : Columns<v1::PairAnalytics>()) {
+    table.AddRow({name, FieldText(pair, name, &TableCell)});
+  }
   table.Print(out);
-}
-
-TextTable TableOf(const Cells& titles) {
-  std::vector<TextTable::Column> columns;
-  for (const std::string& title : titles) columns.push_back({title});
-  return TextTable(columns);
 }
 
 void PrintEnergies(const v1::PairAnalytics& pair, const std::vector<double>& outgoing,
                    std::ostream& out) {
-  Cells titles = Names<v1::EnergyAnalytics>();
+  const Cells columns = Columns<v1::EnergyAnalytics>();
+  Cells titles = columns;
   for (const double energy : outgoing) titles.push_back(absl::StrFormat("W(%g)", energy));
-  TextTable table = TableOf(titles);
+  TextTable table(titles);
   for (const v1::EnergyAnalytics& energy : pair.energies()) {
-    Cells cells = Values(energy, &TableCell);
+    Cells cells = FieldTexts(energy, columns, &TableCell);
     for (const double w : energy.kernel()) cells.push_back(TableCell(w));
     table.AddRow(std::move(cells));
   }
@@ -100,8 +70,9 @@ void PrintEnergies(const v1::PairAnalytics& pair, const std::vector<double>& out
 }
 
 void PrintCanonical(const v1::PairAnalytics& pair, std::ostream& out) {
-  TextTable table = TableOf(Names<v1::CanonicalAnalytics>());
-  for (const auto& row : pair.canonical()) table.AddRow(Values(row, &TableCell));
+  const Cells columns = Columns<v1::CanonicalAnalytics>();
+  TextTable table(columns);
+  for (const auto& row : pair.canonical()) table.AddRow(FieldTexts(row, columns, &TableCell));
   out << '\n';
   table.Print(out, 2);
 }
@@ -129,9 +100,7 @@ void PrintAnalytics(const v1::EvaluatePairsResponse& response,
       return PrintJsonDocument("points", response.points(), out);
     case Format::kJsonl:
       return PrintJsonLines(response.points(), out);
-    case Format::kCsv:
-    case Format::kCsvHistograms:
-    case Format::kCsvCurves:
+    default:
       return PrintCsv(response, out);
   }
 }

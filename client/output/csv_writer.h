@@ -9,9 +9,9 @@
 
 namespace ballpiston::client {
 
-// `out` must outlive the writers.
-std::unique_ptr<ResultWriter> NewEstimateCsvWriter(std::ostream& out);
-std::unique_ptr<ResultWriter> NewHistogramCsvWriter(std::ostream& out);
-std::unique_ptr<ResultWriter> NewCurveCsvWriter(std::ostream& out);
+// `out` must outlive the writer. With `has_comment` the first lines begin with # and hold the job,
+// the versions of engine and client, and the specification.
+std::unique_ptr<ResultWriter> NewCsvWriter(Format format, std::ostream& out,
+                                           bool has_comment = false);
 
 }  // namespace ballpiston::client

@@ -12,4 +12,6 @@ enum class Format {
   kCsvCurves       // one row for each point of a curve
 };
 
+constexpr bool IsCsv(Format format) { return format >= Format::kCsv; }
+
 }  // namespace ballpiston::client

@@ -1,6 +1,8 @@
 #include "client/output/job_list.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -9,30 +11,24 @@
 #include "absl/strings/str_join.h"
 #include "absl/time/time.h"
 #include "client/output/csv_row.h"
+#include "client/output/field_text.h"
 #include "client/output/json.h"
-#include "client/output/number_text.h"
-#include "client/output/spelling.h"
 #include "client/output/text_table.h"
 
 namespace ballpiston::client {
 namespace {
 
-std::string TimeText(bool present, const google::protobuf::Timestamp& time) {
-  if (!present) return "";
-  const absl::Time instant = absl::FromUnixSeconds(time.seconds());
-  return absl::FormatTime("%Y-%m-%dT%H:%M:%SZ", instant, absl::UTCTimeZone());
-}
-
-std::vector<std::string> CellsOf(const v1::EnsembleJob& job) {
-  return {job.name(),
-          Spelling(job.spec().experiment()),
-          Spelling(job.state()),
-          absl::StrCat(job.progress().points_done()),
-          absl::StrCat(job.progress().points()),
-          ExactText(job.progress().samples()),
-          TimeText(job.has_create_time(), job.create_time()),
-          TimeText(job.has_end_time(), job.end_time())};
-}
+// The columns of every list, and those that CSV has too. Their titles in CSV are the last names.
+const Cells kFields = {"name",
+                       "spec.experiment",
+                       "state",
+                       "progress.points_done",
+                       "progress.points",
+                       "progress.samples",
+                       "create_time",
+                       "end_time"};
+const Cells kMoreInCsv = {"principal",   "priority",        "pinned",
+                          "expire_time", "results_expired", "stored_bytes"};
 
 // "expires in 3 days", "expires in 5 hours": the remaining time, rounded down.
 std::string ExpiryText(absl::Duration left) {
@@ -51,57 +47,49 @@ std::string ResultsText(const v1::EnsembleJob& job, absl::Time now) {
   return job.has_expire_time() && left <= kSoon ? ExpiryText(left) : "";
 }
 
-// The optional columns that the table needs.
-struct Differences {
-  bool principals = false;
-  bool priorities = false;
-  bool results = false;
-  bool labels = false;
-};
-
-Differences DifferencesOf(const std::vector<v1::EnsembleJob>& jobs, absl::Time now) {
-  Differences differ;
+void PrintCsv(const std::vector<v1::EnsembleJob>& jobs, std::ostream& out) {
+  const Cells fields = Joined(kFields, kMoreInCsv);
+  Cells titles;
+  for (const std::string& field : fields) titles.push_back(field.substr(field.rfind('.') + 1));
+  out << CsvRow(Joined(titles, {"labels"}));
   for (const v1::EnsembleJob& job : jobs) {
-    differ.principals |= job.principal() != jobs.front().principal();
-    differ.priorities |= job.priority() != 0;
-    differ.results |= !ResultsText(job, now).empty();
-    differ.labels |= !job.labels().empty();
+    out << CsvRow(Joined(FieldTexts(job, fields), {LabelsText(job)}));
   }
-  return differ;
 }
 
-void PrintCsv(const std::vector<v1::EnsembleJob>& jobs, std::ostream& out) {
-  out << "name,experiment,state,points_done,points,samples,create_time,end_time,principal,"
-         "priority,pinned,expire_time,results_expired,stored_bytes,labels\n";
-  for (const v1::EnsembleJob& job : jobs) {
-    std::vector<std::string> cells = CellsOf(job);
-    cells.push_back(job.principal());  // it may hold any character
-    const auto truth = [](bool holds) { return holds ? "true" : "false"; };
-    cells.insert(cells.end(),
-                 {absl::StrCat(job.priority()), truth(job.pinned()),
-                  TimeText(job.has_expire_time(), job.expire_time()), truth(job.results_expired()),
-                  ExactText(job.stored_bytes()), LabelsText(job)});
-    out << CsvRow(cells);
-  }
+// A column that the table has only if the cell of some job is not the usual one.
+struct OptionalColumn {
+  std::string title, usual;
+  std::function<std::string(const v1::EnsembleJob&)> text;
+};
+
+std::vector<OptionalColumn> OptionalColumns(const std::vector<v1::EnsembleJob>& jobs,
+                                            absl::Time now) {
+  const auto field = [](const std::string& name) {
+    return [name](const v1::EnsembleJob& job) { return FieldText(job, name); };
+  };
+  std::vector<OptionalColumn> columns = {
+      {"principal", jobs.empty() ? "" : jobs.front().principal(), field("principal")},
+      {"priority", "0", field("priority")},
+      {"results", "", [now](const v1::EnsembleJob& job) { return ResultsText(job, now); }},
+      {"labels", "", &LabelsText}};
+  std::erase_if(columns, [&jobs](const OptionalColumn& column) {
+    return std::all_of(jobs.begin(), jobs.end(), [&column](const v1::EnsembleJob& job) {
+      return column.text(job) == column.usual;
+    });
+  });
+  return columns;
 }
 
 void PrintTable(const std::vector<v1::EnsembleJob>& jobs, absl::Time now, std::ostream& out) {
-  constexpr auto kLeft = TextTable::Column::kLeft;
-  const Differences differ = DifferencesOf(jobs, now);
-  std::vector<TextTable::Column> columns = {
-      {"name", kLeft}, {"experiment", kLeft}, {"state", kLeft},   {"done"},
-      {"points"},      {"samples"},           {"created", kLeft}, {"ended", kLeft}};
-  if (differ.principals) columns.push_back({"principal", kLeft});
-  if (differ.priorities) columns.push_back({"priority"});
-  if (differ.results) columns.push_back({"results", kLeft});
-  if (differ.labels) columns.push_back({"labels", kLeft});
-  TextTable table(std::move(columns));
+  const std::vector<OptionalColumn> optional = OptionalColumns(jobs, now);
+  Cells titles = {"name", "experiment", "state", "done", "points", "samples", "created", "ended"};
+  for (const OptionalColumn& column : optional) titles.push_back(column.title);
+  TextTable table(titles, {"name", "experiment", "state", "created", "ended", "principal",
+                           "results", "labels"});
   for (const v1::EnsembleJob& job : jobs) {
-    std::vector<std::string> cells = CellsOf(job);
-    if (differ.principals) cells.push_back(job.principal());
-    if (differ.priorities) cells.push_back(absl::StrCat(job.priority()));
-    if (differ.results) cells.push_back(ResultsText(job, now));
-    if (differ.labels) cells.push_back(LabelsText(job));
+    Cells cells = FieldTexts(job, kFields);
+    for (const OptionalColumn& column : optional) cells.push_back(column.text(job));
     table.AddRow(std::move(cells));
   }
   table.Print(out);
@@ -123,9 +111,7 @@ void PrintJobs(const std::vector<v1::EnsembleJob>& jobs, absl::Time now, Format 
       return PrintJsonDocument("jobs", jobs, out);
     case Format::kJsonl:
       return PrintJsonLines(jobs, out);
-    case Format::kCsv:
-    case Format::kCsvHistograms:
-    case Format::kCsvCurves:
+    default:
       return PrintCsv(jobs, out);
   }
 }

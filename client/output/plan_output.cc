@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "client/output/csv_row.h"
+#include "client/output/field_text.h"
 #include "client/output/json.h"
 #include "client/output/model_reasons.h"
 #include "client/output/number_text.h"
@@ -18,12 +19,6 @@
 
 namespace ballpiston::client {
 namespace {
-
-using Cells = std::vector<std::string>;
-
-void Append(const Cells& more, Cells& cells) {
-  cells.insert(cells.end(), more.begin(), more.end());
-}
 
 bool IsChosen(const v1::PointPlan& point, const v1::ModelPlan& model) {
   return point.model() == model.model() && model.model() != v1::EnsembleSpec::MODEL_UNSPECIFIED;
@@ -35,29 +30,18 @@ std::string WholeReason(const v1::PointPlan& point, const v1::ModelPlan& model) 
   return absl::StrCat(point.reason(), "; ", model.reason());
 }
 
-Cells CsvCells(const ParameterColumns& parameters, const v1::PointPlan& point,
-               const v1::ModelPlan& model) {
-  const auto number = [](bool known, double x) { return known ? ExactText(x) : ""; };
-  const auto truth = [](bool holds) { return holds ? "true" : "false"; };
-  Cells cells = parameters.Cells(point.parameters());
-  Append({Spelling(model.model()), truth(IsChosen(point, model)), truth(model.answers()),
-          number(model.has_samples(), model.samples()), number(model.has_work(), model.work()),
-          number(model.has_relative_statistical_error(), model.relative_statistical_error()),
-          number(model.has_relative_model_error(), model.relative_model_error()),
-          WholeReason(point, model)},
-         cells);
-  return cells;
-}
-
 void PrintCsv(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& plan,
               std::ostream& out) {
-  const ParameterColumns parameters(spec.grid());
-  out << absl::StrJoin(parameters.Titles(), ",")
-      << ",model,chosen,answers,samples,work,relative_statistical_error,relative_model_error,"
-         "reason\n";
+  const Cells parameters = ParametersInCsv(spec.grid());
+  const Cells fields = {"answers", "samples", "work", "relative_statistical_error",
+                        "relative_model_error"};
+  out << CsvRow(Joined(Joined(Joined(parameters, {"model", "chosen"}), fields), {"reason"}));
   for (const v1::PointPlan& point : plan.points()) {
     for (const v1::ModelPlan& model : point.models()) {
-      out << CsvRow(CsvCells(parameters, point, model));
+      const char* const chosen = IsChosen(point, model) ? "true" : "false";
+      const Cells begin =
+          Joined(FieldTexts(point.parameters(), parameters), {Spelling(model.model()), chosen});
+      out << CsvRow(Joined(Joined(begin, FieldTexts(model, fields)), {WholeReason(point, model)}));
     }
   }
 }
@@ -104,29 +88,18 @@ std::string RelativeError(double error) {
 const Cells kCostTitles = {"samples", "work", "stat. error", "model error"};
 
 Cells CostCells(const v1::ModelPlan& model) {
-  return {model.has_samples() ? SampleCountText(model.samples()) : "",
-          model.has_work() ? DurationText(model.work()) : "",
-          model.has_relative_statistical_error() ? RelativeError(model.relative_statistical_error())
-                                                 : "",
-          model.has_relative_model_error() ? RelativeError(model.relative_model_error()) : ""};
-}
-
-TextTable LadderTable() {
-  constexpr auto kLeft = TextTable::Column::kLeft;
-  std::vector<TextTable::Column> columns = {{"", kLeft}, {"model", kLeft}, {"answers", kLeft}};
-  for (const std::string& title : kCostTitles) columns.push_back({title});
-  columns.push_back({"remark", kLeft});
-  return TextTable(columns);
+  return {FieldText(model, "samples", &SampleCountText), FieldText(model, "work", &DurationText),
+          FieldText(model, "relative_statistical_error", &RelativeError),
+          FieldText(model, "relative_model_error", &RelativeError)};
 }
 
 void PrintLadder(const v1::PointPlan& point, std::ostream& out) {
-  TextTable table = LadderTable();
+  TextTable table(Joined(Joined({"", "model", "answers"}, kCostTitles), {"remark"}),
+                  {"", "model", "answers", "remark"});
   for (const v1::ModelPlan& model : point.models()) {
-    Cells cells = {IsChosen(point, model) ? ">" : "", Spelling(model.model()),
-                   model.answers() ? "yes" : "no"};
-    Append(CostCells(model), cells);
-    cells.push_back(model.reason());
-    table.AddRow(std::move(cells));
+    const Cells begin = {IsChosen(point, model) ? ">" : "", Spelling(model.model()),
+                         model.answers() ? "yes" : "no"};
+    table.AddRow(Joined(Joined(begin, CostCells(model)), {model.reason()}));
   }
   out << '\n' << ParameterText(point.parameters()) << '\n';
   table.Print(out, 1);
@@ -142,24 +115,13 @@ const v1::ModelPlan& ChosenModel(const v1::PointPlan& point) {
   return v1::ModelPlan::default_instance();
 }
 
-TextTable ChoiceTable(const ParametersShown& shown) {
-  std::vector<TextTable::Column> columns;
-  for (const std::string& title : shown.Titles()) columns.push_back({title});
-  columns.push_back({"model", TextTable::Column::kLeft});
-  for (const std::string& title : kCostTitles) columns.push_back({title});
-  return TextTable(columns);
-}
-
 void PrintChoices(const v1::PlanEnsembleJobResponse& plan, std::ostream& out) {
-  ParametersShown shown;
+  const Cells parameters = ParametersOf(plan.points());
+  TextTable table(Joined(Joined(parameters, {"model"}), kCostTitles), {"model"});
   ModelReasons reasons;
-  for (const v1::PointPlan& point : plan.points()) shown.Include(point.parameters());
-  TextTable table = ChoiceTable(shown);
   for (const v1::PointPlan& point : plan.points()) {
-    Cells cells = shown.Cells(point.parameters());
-    cells.push_back(ModelName(point.model()));
-    Append(CostCells(ChosenModel(point)), cells);
-    table.AddRow(std::move(cells));
+    const Cells cells = FieldTexts(point.parameters(), parameters, &TenDigits);
+    table.AddRow(Joined(Joined(cells, {ModelName(point.model())}), CostCells(ChosenModel(point))));
     reasons.Add(point.parameters(), point.model(), point.reason());
   }
   out << '\n';
@@ -200,9 +162,7 @@ void PrintPlan(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& 
       return;
     case Format::kJsonl:
       return PrintJsonLines(plan.points(), out);
-    case Format::kCsv:
-    case Format::kCsvHistograms:
-    case Format::kCsvCurves:
+    default:
       return PrintCsv(spec, plan, out);
   }
 }

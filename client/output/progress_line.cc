@@ -6,8 +6,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
-#include "client/output/number_text.h"
+#include "client/output/field_text.h"
 
 namespace ballpiston::client {
 namespace {
@@ -32,23 +33,23 @@ std::string Rate(double rate) {
 
 // Uses the short names of the closed forms: tau_ball_piston for mean_free_time_ball_piston.
 std::string Estimate(const v1::Estimate& estimate) {
-  std::optional<double> error;
-  if (estimate.has_standard_error()) error = estimate.standard_error();
+  const std::optional<double> error = NumberIn(estimate, "standard_error");
   const MeasuredText text = Measured(estimate.value(), error);
   return absl::StrCat(absl::StrReplaceAll(estimate.name(), {{"mean_free_time", "tau"}}), " ",
                       text.value, error ? " +- " : "", text.error);
 }
 
+// All but rho, with short names: (delta 0.1 epsilon 0.25 n 1).
 std::string Parameters(const v1::PointParameters& parameters) {
-  std::string text = absl::StrFormat("delta %.4g", parameters.delta());
-  if (parameters.has_epsilon()) absl::StrAppendFormat(&text, " epsilon %.4g", parameters.epsilon());
-  if (parameters.has_exponent()) absl::StrAppendFormat(&text, " n %.4g", parameters.exponent());
-  if (parameters.has_cells()) absl::StrAppend(&text, " cells ", parameters.cells());
-  if (parameters.has_temperature())
-    absl::StrAppendFormat(&text, " T %.4g", parameters.temperature());
-  if (parameters.has_hot()) absl::StrAppendFormat(&text, " hot %.4g", parameters.hot());
-  if (parameters.has_cold()) absl::StrAppendFormat(&text, " cold %.4g", parameters.cold());
-  return absl::StrCat("(", text, ")");
+  const NumberForm four_digits = [](double x) { return absl::StrFormat("%.4g", x); };
+  Cells texts;
+  for (const std::string& name : FieldNames(*v1::PointParameters::descriptor())) {
+    const std::string value = FieldText(parameters, name, four_digits);
+    if (name == "rho" || value.empty()) continue;
+    texts.push_back(absl::StrCat(
+        absl::StrReplaceAll(name, {{"exponent", "n"}, {"temperature", "T"}}), " ", value));
+  }
+  return absl::StrCat("(", absl::StrJoin(texts, " "), ")");
 }
 
 }  // namespace

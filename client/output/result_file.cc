@@ -1,39 +1,12 @@
 #include "client/output/result_file.h"
 
-#include <utility>
-
 #include "absl/status/status.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "client/library/quoted.h"
-#include "client/output/json.h"
+#include "client/output/csv_writer.h"
 
 namespace ballpiston::client {
-namespace {
-
-bool IsCsv(Format format) {
-  return format == Format::kCsv || format == Format::kCsvHistograms || format == Format::kCsvCurves;
-}
-
-class CommentedCsvWriter : public ResultWriter {
- public:
-  CommentedCsvWriter(Format format, std::ostream& out)
-      : out_(out), rows_(NewResultWriter(format, out)) {}
-
-  void Begin(const v1::EnsembleJob& job) override {
-    out_ << "# " << job.name() << ", engine " << job.engine_version() << ", client "
-         << BALLPISTON_VERSION << "\n# " << Json(job.spec()) << '\n';
-    rows_->Begin(job);
-  }
-  void Add(const v1::PointResult& point) override { rows_->Add(point); }
-  void End() override { rows_->End(); }
-
- private:
-  std::ostream& out_;
-  std::unique_ptr<ResultWriter> rows_;
-};
-
-}  // namespace
 
 absl::StatusOr<FileFormat> FormatOfFile(const std::string& path, Format asked) {
   const bool any = asked == Format::kTable;
@@ -51,7 +24,7 @@ absl::StatusOr<FileFormat> FormatOfFile(const std::string& path, Format asked) {
 }
 
 std::unique_ptr<ResultWriter> NewResultFileWriter(const FileFormat& format, std::ostream& out) {
-  if (IsCsv(format.format)) return std::make_unique<CommentedCsvWriter>(format.format, out);
+  if (IsCsv(format.format)) return NewCsvWriter(format.format, out, /*has_comment=*/true);
   return NewResultWriter(format.format, out);
 }
 

@@ -11,10 +11,9 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "client/output/csv_writer.h"
-#include "client/output/estimate_fields.h"
+#include "client/output/field_text.h"
 #include "client/output/json.h"
 #include "client/output/model_reasons.h"
-#include "client/output/number_text.h"
 #include "client/output/parameter_text.h"
 #include "client/output/spelling.h"
 #include "client/output/text_table.h"
@@ -59,23 +58,17 @@ class JsonWriter : public ResultWriter {
 };
 
 // Columns that a table has only if at least one estimate has the value.
-struct ExtraColumn {
-  const char* title;
-  Field field;
-  // An error is printed with two digits; another value ends at the estimate's decimal place.
-  bool is_error;
-};
-constexpr ExtraColumn kExtraColumns[] = {{"model_error", kModelError, true},
-                                         {"noise_floor", kNoiseFloor, false},
-                                         {"limit", kLimit, false}};
+const Cells kExtraColumns = {"model_error", "noise_floor", "limit"};
 
-std::string ExtraCell(const ExtraColumn& column, const v1::Estimate& row) {
-  const std::optional<double> x = column.field.Of(row);
+// An error is printed with two digits; another value ends at the estimate's decimal place.
+std::string ExtraCell(const std::string& column, const v1::Estimate& row) {
+  const std::optional<double> x = NumberIn(row, column);
   if (!x) return "";
-  return column.is_error ? TwoDigits(*x) : Measured(row.value(), kError.Of(row), x).exact;
+  if (column == "model_error") return TwoDigits(*x);
+  return Measured(row.value(), NumberIn(row, "standard_error"), x).exact;
 }
 
-// Keeps the rows until the end, when the widths of the columns are known.
+// Keeps the points until the end, when the widths of the columns are known.
 class TableWriter : public ResultWriter {
  public:
   explicit TableWriter(std::ostream& out) : out_(out) {}
@@ -84,43 +77,28 @@ class TableWriter : public ResultWriter {
 
   void Add(const v1::PointResult& point) override {
     models_.insert(Spelling(point.model()));
-    parameters_.Include(point.parameters());
     reasons_.Add(point.parameters(), point.model(), point.reason());
-    points_.push_back({point.parameters(),
-                       Spelling(point.model()),
-                       ExactText(point.samples()),
-                       {point.estimates().begin(), point.estimates().end()},
-                       {point.remarks().begin(), point.remarks().end()}});
+    points_.push_back(point);
   }
 
   void End() override {
-    FindExtraColumns();
+    std::erase_if(extra_columns_, [this](const std::string& column) { return IsEmpty(column); });
+    point_columns_ = ParametersOf(points_);
     out_ << Heading() << '\n';
-    TextTable table(Columns());
-    for (const Point& point : points_) AddRows(point, table);
+    TextTable table(Titles(), {"model", "estimate"});
+    for (const v1::PointResult& point : points_) AddRows(point, table);
     if (!points_.empty()) table.Print(out_);
     reasons_.Print(out_);
   }
 
  private:
-  struct Point {
-    v1::PointParameters parameters;
-    std::string model, samples;
-    std::vector<v1::Estimate> rows;
-    std::vector<std::string> remarks;
-  };
-
   bool HasSeveralModels() const { return models_.size() > 1; }
 
-  void FindExtraColumns() {
-    for (const ExtraColumn& column : kExtraColumns) {
-      const bool present = std::any_of(points_.begin(), points_.end(), [&](const Point& point) {
-        return std::any_of(point.rows.begin(), point.rows.end(), [&](const v1::Estimate& row) {
-          return column.field.Of(row).has_value();
-        });
-      });
-      if (present) extra_columns_.push_back(column);
-    }
+  bool IsEmpty(const std::string& column) const {
+    return std::all_of(points_.begin(), points_.end(), [&](const v1::PointResult& point) {
+      return std::none_of(point.estimates().begin(), point.estimates().end(),
+                          [&](const v1::Estimate& row) { return NumberIn(row, column); });
+    });
   }
 
   std::string Heading() const {
@@ -133,44 +111,39 @@ class TableWriter : public ResultWriter {
                         " points)");
   }
 
-  std::vector<TextTable::Column> Columns() const {
-    std::vector<TextTable::Column> columns;
-    for (const std::string& title : parameters_.Titles()) columns.push_back({title});
-    if (HasSeveralModels()) columns.push_back({"model", TextTable::Column::kLeft});
-    columns.push_back({"samples"});
-    columns.push_back({"estimate", TextTable::Column::kLeft});
-    for (const char* title : {"value", "error", "exact", "z"}) columns.push_back({title});
-    for (const ExtraColumn& column : extra_columns_) columns.push_back({column.title});
-    return columns;
+  Cells Titles() const {
+    Cells titles = point_columns_;
+    if (HasSeveralModels()) titles.push_back("model");
+    titles.insert(titles.end(), {"samples", "estimate", "value", "error", "exact", "z"});
+    return Joined(std::move(titles), extra_columns_);
   }
 
-  std::vector<std::string> PointCells(const Point& point) const {
-    std::vector<std::string> cells = parameters_.Cells(point.parameters);
-    if (HasSeveralModels()) cells.push_back(point.model);
-    cells.push_back(point.samples);
+  Cells PointCells(const v1::PointResult& point) const {
+    Cells cells = FieldTexts(point.parameters(), point_columns_, &TenDigits);
+    if (HasSeveralModels()) cells.push_back(Spelling(point.model()));
+    cells.push_back(ExactText(point.samples()));
     return cells;
   }
 
-  void AddRows(const Point& point, TextTable& table) const {
-    const std::vector<std::string> point_cells = PointCells(point);
-    for (const v1::Estimate& row : point.rows) {
-      std::vector<std::string> cells = point_cells;
-      const MeasuredText text = Measured(row.value(), kError.Of(row), kExact.Of(row));
+  void AddRows(const v1::PointResult& point, TextTable& table) const {
+    const Cells point_cells = PointCells(point);
+    for (const v1::Estimate& row : point.estimates()) {
+      const MeasuredText text =
+          Measured(row.value(), NumberIn(row, "standard_error"), NumberIn(row, "exact"));
       const std::string z = row.has_z_score() ? absl::StrFormat("%+.2f", row.z_score()) : "";
-      cells.insert(cells.end(), {row.name(), text.value, text.error, text.exact, z});
-      for (const ExtraColumn& column : extra_columns_) cells.push_back(ExtraCell(column, row));
+      Cells cells = Joined(point_cells, {row.name(), text.value, text.error, text.exact, z});
+      for (const std::string& column : extra_columns_) cells.push_back(ExtraCell(column, row));
       table.AddRow(std::move(cells));
     }
-    for (const std::string& remark : point.remarks) table.AddLine("remark: " + remark);
+    for (const std::string& remark : point.remarks()) table.AddLine("remark: " + remark);
   }
 
   std::ostream& out_;
   v1::EnsembleJob job_;
-  std::vector<Point> points_;
+  std::vector<v1::PointResult> points_;
   std::set<std::string> models_;
-  ParametersShown parameters_;
   ModelReasons reasons_;
-  std::vector<ExtraColumn> extra_columns_;
+  Cells point_columns_, extra_columns_ = kExtraColumns;
 };
 
 }  // namespace
@@ -181,16 +154,11 @@ std::unique_ptr<ResultWriter> NewResultWriter(Format format, std::ostream& out) 
       return std::make_unique<JsonWriter>(out);
     case Format::kJsonl:
       return std::make_unique<JsonlWriter>(out);
-    case Format::kCsv:
-      return NewEstimateCsvWriter(out);
-    case Format::kCsvHistograms:
-      return NewHistogramCsvWriter(out);
-    case Format::kCsvCurves:
-      return NewCurveCsvWriter(out);
     case Format::kTable:
-      break;
+      return std::make_unique<TableWriter>(out);
+    default:
+      return NewCsvWriter(format, out);
   }
-  return std::make_unique<TableWriter>(out);
 }
 
 v1::ListResultsRequest::View ViewFor(Format format) {

@@ -4,12 +4,11 @@
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/generated_enum_reflection.h>
 
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/ascii.h"
-#include "absl/strings/match.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/string_view.h"
 
@@ -20,35 +19,27 @@ inline std::string SpellingOfName(absl::string_view enum_name) {
 }
 
 // A value that this version does not know is printed as its number.
+inline std::string Spelling(const google::protobuf::EnumDescriptor& type, int number) {
+  const auto* value = type.FindValueByNumber(number);
+  return value == nullptr ? std::to_string(number) : SpellingOfName(value->name());
+}
+
 template <typename Enum>
 std::string Spelling(Enum value) {
-  const auto* descriptor = google::protobuf::GetEnumDescriptor<Enum>()->FindValueByNumber(value);
-  return descriptor == nullptr ? std::to_string(value) : SpellingOfName(descriptor->name());
+  return Spelling(*google::protobuf::GetEnumDescriptor<Enum>(), value);
 }
 
-// All values except UNSPECIFIED.
+// The spellings and the values of all but UNSPECIFIED.
 template <typename Enum>
-std::vector<std::string> Spellings() {
-  const auto* descriptor = google::protobuf::GetEnumDescriptor<Enum>();
-  std::vector<std::string> names;
-  for (int i = 0; i < descriptor->value_count(); ++i) {
-    if (descriptor->value(i)->number() != 0)
-      names.push_back(SpellingOfName(descriptor->value(i)->name()));
+std::vector<std::pair<std::string, Enum>> EnumChoices() {
+  const auto* type = google::protobuf::GetEnumDescriptor<Enum>();
+  std::vector<std::pair<std::string, Enum>> choices;
+  for (int i = 0; i < type->value_count(); ++i) {
+    const auto* value = type->value(i);
+    if (value->number() == 0) continue;
+    choices.emplace_back(SpellingOfName(value->name()), static_cast<Enum>(value->number()));
   }
-  return names;
-}
-
-template <typename Enum>
-std::optional<Enum> FromSpelling(absl::string_view text) {
-  const auto* descriptor = google::protobuf::GetEnumDescriptor<Enum>();
-  const std::string wanted = absl::StrReplaceAll(text, {{"_", "-"}});
-  for (int i = 0; i < descriptor->value_count(); ++i) {
-    const auto* value = descriptor->value(i);
-    if (value->number() != 0 && SpellingOfName(value->name()) == wanted) {
-      return static_cast<Enum>(value->number());
-    }
-  }
-  return std::nullopt;
+  return choices;
 }
 
 }  // namespace ballpiston::client

@@ -5,15 +5,13 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/output/field_text.h"
 #include "client/output/json.h"
-#include "client/output/number_text.h"
 #include "client/output/spelling.h"
 #include "client/output/text_table.h"
 
 namespace ballpiston::client {
 namespace {
-
-constexpr auto kLeft = TextTable::Column::kLeft;
 
 // 68 KiB, 1.2 GiB.
 std::string BytesText(double bytes) {
@@ -23,7 +21,6 @@ std::string BytesText(double bytes) {
   return absl::StrFormat("%.*f %s", unit > 0 && bytes < 9.95 ? 1 : 0, bytes, units[unit]);
 }
 
-// Large counts are shortened.
 std::string CountText(double count) {
   return count < 1e7 ? ExactText(count) : absl::StrFormat("%.3g", count);
 }
@@ -44,8 +41,7 @@ std::string SpeedText(double seconds) {
 std::string Started(const v1::ServerStatus& status, absl::Time now) {
   const absl::Time start = absl::FromUnixSeconds(status.start_time().seconds());
   const double up = std::max(0.0, absl::ToDoubleSeconds(now - start));  // clocks may differ
-  return absl::StrCat(absl::FormatTime("%Y-%m-%dT%H:%M:%SZ", start, absl::UTCTimeZone()), ", ",
-                      DurationText(up), " ago");
+  return absl::StrCat(FieldText(status, "start_time"), ", ", DurationText(up), " ago");
 }
 
 std::string Computed(const v1::ServerStatus& status) {
@@ -75,7 +71,7 @@ std::string ClusterText(const v1::ClusterStatus& cluster) {
 }
 
 void PrintServer(const v1::ServerStatus& status, absl::Time now, std::ostream& out) {
-  TextTable table({{"server", kLeft}, {status.version(), kLeft}});
+  TextTable table({"server", status.version()}, {"server", status.version()});
   table.AddRow({"engine", status.engine_version()});
   table.AddRow({"state", Spelling(status.state())});
   table.AddRow({"started", Started(status, now)});
@@ -94,7 +90,7 @@ void PrintServer(const v1::ServerStatus& status, absl::Time now, std::ostream& o
 }
 
 void PrintLimits(const v1::ServerLimits& limits, std::ostream& out) {
-  TextTable table({{"limit", kLeft}, {"most"}});
+  TextTable table({"limit", "most"}, {"limit"});
   table.AddRow({"points of a job", LimitText(limits.max_points_per_job())});
   table.AddRow({"samples of a job", LimitText(limits.max_samples_per_job())});
   table.AddRow({"active jobs of a principal", LimitText(limits.max_active_jobs_per_principal())});
@@ -109,8 +105,8 @@ void PrintLimits(const v1::ServerLimits& limits, std::ostream& out) {
 
 void PrintPrincipals(const v1::ServerStatus& status, std::ostream& out) {
   if (status.principals().empty()) return;
-  TextTable table(
-      {{"principal", kLeft}, {"queued"}, {"running"}, {"streams"}, {"stored"}, {"stored bytes"}});
+  TextTable table({"principal", "queued", "running", "streams", "stored", "stored bytes"},
+                  {"principal"});
   for (const v1::PrincipalStatus& principal : status.principals()) {
     table.AddRow({principal.principal(), CountText(principal.queued_jobs()),
                   CountText(principal.running_jobs()), CountText(principal.streams()),

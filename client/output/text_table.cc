@@ -18,15 +18,13 @@ size_t Width(const std::string& text) {
 
 }  // namespace
 
-TextTable::TextTable(std::vector<Column> columns)
-    : columns_(std::move(columns)), widths_(columns_.size(), 0) {
-  std::vector<std::string> titles;
-  for (const Column& column : columns_) titles.push_back(column.title);
+TextTable::TextTable(std::vector<std::string> titles, std::set<std::string> left)
+    : left_(std::move(left)), widths_(titles.size(), 0) {
   AddRow(std::move(titles));
 }
 
 void TextTable::AddRow(std::vector<std::string> row) {
-  row.resize(columns_.size());
+  row.resize(widths_.size());
   for (size_t i = 0; i < row.size(); ++i) widths_[i] = std::max(widths_[i], Width(row[i]));
   rows_.push_back({.cells = std::move(row), .line = ""});
 }
@@ -40,7 +38,7 @@ std::string TextTable::Line(const Row& row, size_t indent) const {
   for (size_t i = 0; i < row.cells.size(); ++i) {
     const std::string& cell = row.cells[i];
     const std::string padding(widths_[i] - Width(cell), ' ');
-    const bool left = columns_[i].alignment == Column::kLeft;
+    const bool left = left_.contains(rows_[0].cells[i]);
     absl::StrAppend(&line, i == 0 ? "" : "  ", left ? "" : padding, cell, left ? padding : "");
   }
   absl::StripTrailingAsciiWhitespace(&line);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <ostream>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -9,12 +10,8 @@ namespace ballpiston::client {
 
 class TextTable {
  public:
-  struct Column {
-    std::string title;
-    enum { kLeft, kRight } alignment = kRight;
-  };
-
-  explicit TextTable(std::vector<Column> columns);
+  // `left`: the titles of the columns that are aligned left.
+  explicit TextTable(std::vector<std::string> titles, std::set<std::string> left = {});
 
   // One text for each column.
   void AddRow(std::vector<std::string> row);
@@ -31,7 +28,7 @@ class TextTable {
 
   std::string Line(const Row& row, size_t indent) const;
 
-  std::vector<Column> columns_;
+  const std::set<std::string> left_;
   std::vector<size_t> widths_;
   std::vector<Row> rows_;
 };

@@ -13,7 +13,6 @@
 #include "absl/strings/strip.h"
 #include "client/library/error_text.h"
 #include "client/output/json.h"
-#include "google/rpc/status.pb.h"
 
 namespace ballpiston::client {
 namespace {
@@ -27,14 +26,6 @@ constexpr char kEndFlag = 2;
 std::string CodeName(absl::StatusCode code) {
   if (code == absl::StatusCode::kCancelled) return "canceled";  // the protocol spells it with one l
   return absl::AsciiStrToLower(absl::StatusCodeToString(code));
-}
-
-google::rpc::Status AttachedStatus(const absl::Status& status) {
-  google::rpc::Status attached;
-  if (const auto payload = status.GetPayload(kStatusPayload)) {
-    attached.ParseFromString(std::string(*payload));
-  }
-  return attached;
 }
 
 Struct DetailOf(const google::protobuf::Any& any) {
@@ -56,7 +47,7 @@ Struct ErrorOf(const absl::Status& status) {
   auto& fields = *error.mutable_fields();
   fields["code"].set_string_value(CodeName(status.code()));
   fields["message"].set_string_value(std::string(status.message()));
-  const google::rpc::Status attached = AttachedStatus(status);
+  const google::rpc::Status attached = ErrorDetails(status);
   if (attached.details().empty()) return error;
   ListValue& details = *fields["details"].mutable_list_value();
   for (const google::protobuf::Any& any : attached.details()) {

@@ -2,8 +2,8 @@
 
 #include <google/protobuf/message.h>
 #include <google/protobuf/util/json_util.h>
-#include <grpcpp/generic/generic_stub.h>
-#include <grpcpp/support/proto_buffer_reader.h>
+#include <grpcpp/impl/codegen/proto_utils.h>
+#include <grpcpp/support/sync_stream.h>
 
 #include "absl/status/statusor.h"
 #include "absl/strings/ascii.h"
@@ -27,7 +27,7 @@ std::unique_ptr<Message> New(const Descriptor* type) {
   return std::unique_ptr<Message>(MessageFactory::generated_factory()->GetPrototype(type)->New());
 }
 
-absl::StatusOr<grpc::ByteBuffer> RequestBytes(const JsonCall& call) {
+absl::StatusOr<std::unique_ptr<Message>> RequestOf(const JsonCall& call) {
   const Descriptor* type = call.method->input_type();
   const auto bad = [type](absl::string_view reason) {
     return absl::InvalidArgumentError(
@@ -36,77 +36,11 @@ absl::StatusOr<grpc::ByteBuffer> RequestBytes(const JsonCall& call) {
   const std::string json = call.request.empty() ? "{}" : call.request;
   // The parser accepts `null` and a bare string as an empty message.
   if (!absl::StartsWith(absl::StripLeadingAsciiWhitespace(json), "{")) return bad("not an object");
-  const std::unique_ptr<Message> request = New(type);
+  std::unique_ptr<Message> request = New(type);
   const auto status = google::protobuf::util::JsonStringToMessage(json, request.get());
   // The parser's message contains the wrong value in full, even if it is very long.
   if (!status.ok()) return bad(Shortened(std::string(status.message()), kLongestMessage));
-  const grpc::Slice slice(request->SerializeAsString());
-  return grpc::ByteBuffer(&slice, 1);
-}
-
-absl::StatusOr<std::string> AnswerJson(const Descriptor* type, grpc::ByteBuffer& bytes) {
-  const std::unique_ptr<Message> answer = New(type);
-  grpc::ProtoBufferReader reader(&bytes);
-  if (answer->ParseFromZeroCopyStream(&reader)) return Json(*answer);
-  return absl::InternalError(absl::StrCat("the answer is not a ", type->full_name()));
-}
-
-// One call with one operation at a time. A method with a single answer is a stream of one message.
-class BlockingCall {
- public:
-  BlockingCall(const std::shared_ptr<grpc::Channel>& channel, const JsonCall& call) {
-    if (call.timeout < absl::InfiniteDuration()) {
-      context_.set_deadline(absl::ToChronoTime(absl::Now() + call.timeout));
-    }
-    const std::string path =
-        absl::StrCat("/", call.method->service()->full_name(), "/", call.method->name());
-    call_ = grpc::GenericStub(channel).PrepareCall(&context_, path, &queue_);
-  }
-
-  ~BlockingCall() {
-    queue_.Shutdown();
-    Wait();
-  }
-
-  bool Send(const grpc::ByteBuffer& request) {
-    call_->StartCall(nullptr);
-    if (!Wait()) return false;
-    call_->WriteLast(request, grpc::WriteOptions(), nullptr);
-    return Wait();
-  }
-
-  bool Receive(grpc::ByteBuffer& answer) {
-    call_->Read(&answer, nullptr);
-    return Wait();
-  }
-
-  grpc::Status Finish() {
-    grpc::Status status;
-    call_->Finish(&status, nullptr);
-    Wait();
-    return status;
-  }
-
-  void Cancel() { context_.TryCancel(); }
-
- private:
-  // Waits until the current operation ends.
-  bool Wait() {
-    void* tag = nullptr;
-    bool done = false;
-    return queue_.Next(&tag, &done) && done;
-  }
-
-  grpc::ClientContext context_;
-  grpc::CompletionQueue queue_;
-  std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;
-};
-
-// Cancels the call. `status` is OK if the receiver wants no more answers.
-absl::Status End(BlockingCall& call, const absl::Status& status) {
-  call.Cancel();
-  call.Finish();
-  return status;
+  return request;
 }
 
 }  // namespace
@@ -132,18 +66,27 @@ JsonCall WithRequestId(JsonCall call) {
   return call;
 }
 
-absl::Status CallWithJson(const std::shared_ptr<grpc::Channel>& channel, const JsonCall& json_call,
+absl::Status CallWithJson(const std::shared_ptr<grpc::Channel>& channel, const JsonCall& call,
                           const JsonReceiver& receive) {
-  const absl::StatusOr<grpc::ByteBuffer> request = RequestBytes(json_call);
+  const absl::StatusOr<std::unique_ptr<Message>> request = RequestOf(call);
   if (!request.ok()) return request.status();
-  BlockingCall call(channel, json_call);
-  grpc::ByteBuffer bytes;
-  for (bool more = call.Send(*request) && call.Receive(bytes); more; more = call.Receive(bytes)) {
-    const absl::StatusOr<std::string> answer = AnswerJson(json_call.method->output_type(), bytes);
-    if (!answer.ok()) return End(call, answer.status());
-    if (!receive(*answer)) return End(call, absl::OkStatus());
+  grpc::ClientContext context;
+  if (call.timeout < absl::InfiniteDuration()) {
+    context.set_deadline(absl::ToChronoTime(absl::Now() + call.timeout));
   }
-  return FromGrpc(call.Finish());
+  const std::string path =
+      absl::StrCat("/", call.method->service()->full_name(), "/", call.method->name());
+  // As in generated code. A method with a single answer is a stream of one message.
+  const grpc::internal::RpcMethod method(path.c_str(), grpc::internal::RpcMethod::SERVER_STREAMING);
+  const std::unique_ptr<grpc::ClientReader<Message>> reader(
+      grpc::internal::ClientReaderFactory<Message>::Create(channel.get(), method, &context,
+                                                           **request));
+  const std::unique_ptr<Message> answer = New(call.method->output_type());
+  bool is_wanted = true;
+  while (is_wanted && reader->Read(answer.get())) is_wanted = receive(Json(*answer));
+  if (!is_wanted) context.TryCancel();
+  const absl::Status end = FromGrpc(reader->Finish());
+  return is_wanted ? end : absl::OkStatus();
 }
 
 }  // namespace ballpiston::client

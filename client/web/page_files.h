@@ -5,6 +5,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 
 namespace ballpiston::client {
 
@@ -13,7 +14,16 @@ struct PageFile {
   std::string content;
 };
 
-// The files by name, for instance index.html. FAILED_PRECONDITION if the page is not installed.
-absl::StatusOr<std::map<std::string, PageFile>> ReadPageFiles();
+using PageFiles = std::map<std::string, PageFile>;  // by name, for instance index.html
+
+// FAILED_PRECONDITION if the page is not installed.
+absl::StatusOr<PageFiles> ReadPageFiles();
+
+// The page with its style sheets, scripts and data in one text, which needs neither a server nor a
+// network. Replaces each <link rel="stylesheet" href="NAME"> and <script src="NAME" defer></script>
+// by the content of the file NAME, and <!-- data --> by the JSON, as
+// <script type="application/json" id="data">. FAILED_PRECONDITION if a file is not installed.
+absl::StatusOr<std::string> OneFilePage(const PageFiles& files, const std::string& name,
+                                        absl::string_view json);
 
 }  // namespace ballpiston::client

@@ -81,8 +81,7 @@ absl::StatusOr<std::optional<absl::Duration>> TimeoutOf(const Request& request) 
 
 class WebServer::Implementation {
  public:
-  Implementation(std::map<std::string, PageFile> files, Call call)
-      : files_(std::move(files)), call_(std::move(call)) {
+  Implementation(PageFiles files, Call call) : files_(std::move(files)), call_(std::move(call)) {
     server_.new_task_queue = [] { return new httplib::ThreadPool(kMostConnections); };
     server_.set_payload_max_length(kMostRequestBytes);
     server_.set_write_timeout(kPatience);
@@ -189,13 +188,13 @@ class WebServer::Implementation {
         });
   }
 
-  const std::map<std::string, PageFile> files_;
+  const PageFiles files_;
   const Call call_;
   std::optional<PageAccess> access_;
   httplib::Server server_;
 };
 
-WebServer::WebServer(std::map<std::string, PageFile> files, Call call)
+WebServer::WebServer(PageFiles files, Call call)
     : implementation_(std::make_unique<Implementation>(std::move(files), std::move(call))) {}
 
 WebServer::~WebServer() = default;

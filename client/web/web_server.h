@@ -27,7 +27,7 @@ class WebServer {
   using Call = std::function<absl::Status(const JsonCall&, const JsonReceiver&)>;
 
   // Several threads may use `call` at the same time.
-  WebServer(std::map<std::string, PageFile> files, Call call);
+  WebServer(PageFiles files, Call call);
   ~WebServer();
 
   // `port` 0 chooses a free port. UNAVAILABLE if the port is not free.

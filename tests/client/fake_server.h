@@ -3,6 +3,7 @@
 
 #include <grpcpp/grpcpp.h>
 
+#include <algorithm>
 #include <latch>
 #include <memory>
 #include <mutex>
@@ -17,6 +18,28 @@
 
 namespace ballpiston::client {
 
+// INVALID_ARGUMENT with the details that a server attaches: one violation.
+grpc::Status InvalidSpec(const std::string& field, const std::string& description);
+
+// RESOURCE_EXHAUSTED with the details that a server attaches.
+grpc::Status LimitExceeded(const std::string& reason, const std::string& message);
+
+// NOT_FOUND with the details a server attaches.
+grpc::Status JobNotFound(const std::string& name);
+
+// NOT_FOUND with the details a server attaches.
+grpc::Status ResultNotFound(const std::string& name);
+
+// FAILED_PRECONDITION with the details that a server attaches. The fake server answers with it if a
+// test sets results_expired of the job.
+grpc::Status ResultsExpired(const std::string& name);
+
+inline constexpr char kJobName[] = "ensembleJobs/abc";  // the name that JobIn gives
+
+v1::WatchEnsembleJobResponse JobMessage(const v1::EnsembleJob& job, const std::string& token);
+v1::WatchEnsembleJobResponse SnapshotMessage(double samples, const std::string& token);
+v1::EnsembleJob JobIn(v1::EnsembleJob::State state);
+
 // The messages and the final status that the server sends to one watch. With `hangs` it sends the
 // final status only when the server stops.
 struct WatchScript {
@@ -27,6 +50,8 @@ struct WatchScript {
 
 class FakeEnsembleService final : public v1::EnsembleService::Service {
  public:
+  using Context = grpc::ServerContext;
+
   // The answers. Tests set them before they use the server.
   std::vector<WatchScript> watches;  // one per watch; further watches use the last script
   std::vector<v1::EnsembleJob> jobs;
@@ -53,36 +78,148 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
     std::vector<v1::ListResultsRequest> results;
     std::vector<v1::GetResultRequest> result;
   };
-  Requests Asked() const;
+  Requests Asked() const {
+    const std::lock_guard lock(mutex_);
+    return asked_;
+  }
 
-  grpc::Status CreateEnsembleJob(grpc::ServerContext*, const v1::CreateEnsembleJobRequest* request,
-                                 v1::EnsembleJob* job) override;
-  grpc::Status GetEnsembleJob(grpc::ServerContext*, const v1::GetEnsembleJobRequest* request,
-                              v1::EnsembleJob* job) override;
-  grpc::Status ListEnsembleJobs(grpc::ServerContext*, const v1::ListEnsembleJobsRequest* request,
-                                v1::ListEnsembleJobsResponse* page) override;
-  grpc::Status CancelEnsembleJob(grpc::ServerContext*, const v1::CancelEnsembleJobRequest* request,
-                                 v1::EnsembleJob* job) override;
-  grpc::Status UpdateEnsembleJob(grpc::ServerContext* context,
-                                 const v1::UpdateEnsembleJobRequest* request,
-                                 v1::EnsembleJob* job) override;
-  grpc::Status DeleteEnsembleJob(grpc::ServerContext*, const v1::DeleteEnsembleJobRequest* request,
-                                 google::protobuf::Empty*) override;
-  grpc::Status WatchEnsembleJob(grpc::ServerContext*, const v1::WatchEnsembleJobRequest* request,
-                                grpc::ServerWriter<v1::WatchEnsembleJobResponse>* writer) override;
-  grpc::Status PlanEnsembleJob(grpc::ServerContext*, const v1::PlanEnsembleJobRequest* request,
-                               v1::PlanEnsembleJobResponse* response) override;
-  grpc::Status ListResults(grpc::ServerContext*, const v1::ListResultsRequest* request,
-                           v1::ListResultsResponse* page) override;
-  grpc::Status GetResult(grpc::ServerContext*, const v1::GetResultRequest* request,
-                         v1::PointResult* point) override;
+  grpc::Status CreateEnsembleJob(Context*, const v1::CreateEnsembleJobRequest* request,
+                                 v1::EnsembleJob* job) override {
+    const std::lock_guard lock(mutex_);
+    asked_.create.push_back(*request);
+    if (unavailable_attempts-- > 0) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
+    if (!create_end.ok()) return create_end;
+    *job = jobs.at(0);
+    if (asked_.create.size() <= created_states.size()) {
+      job->set_state(created_states[asked_.create.size() - 1]);
+    }
+    job->set_answered_from_store(answers_from_store);
+    return grpc::Status::OK;
+  }
+
+  grpc::Status GetEnsembleJob(Context*, const v1::GetEnsembleJobRequest* request,
+                              v1::EnsembleJob* job) override {
+    const v1::EnsembleJob* found = Find(request->name());
+    if (found == nullptr) return JobNotFound(request->name());
+    *job = *found;
+    return grpc::Status::OK;
+  }
+
+  grpc::Status ListEnsembleJobs(Context*, const v1::ListEnsembleJobsRequest* request,
+                                v1::ListEnsembleJobsResponse* page) override {
+    const std::lock_guard lock(mutex_);
+    asked_.list.push_back(*request);
+    const size_t from = request->page_token().empty() ? 0 : std::stoul(request->page_token());
+    const auto size = static_cast<size_t>(std::min(page_size, request->page_size()));
+    const size_t to = std::min(from + size, jobs.size());
+    for (size_t i = from; i < to; ++i) *page->add_jobs() = jobs[i];
+    if (to < jobs.size()) page->set_next_page_token(std::to_string(to));
+    return grpc::Status::OK;
+  }
+
+  grpc::Status CancelEnsembleJob(Context*, const v1::CancelEnsembleJobRequest* request,
+                                 v1::EnsembleJob* job) override {
+    const std::lock_guard lock(mutex_);
+    asked_.cancel.push_back(*request);
+    if (unavailable_attempts-- > 0) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
+    *job = JobIn(v1::EnsembleJob::CANCELLED);
+    job->set_name(request->name());
+    const auto first = std::find_if(
+        asked_.cancel.begin(), asked_.cancel.end(),
+        [&](const v1::CancelEnsembleJobRequest& asked) { return asked.name() == request->name(); });
+    if (first->request_id() == request->request_id()) return grpc::Status::OK;
+    return grpc::Status(grpc::StatusCode::FAILED_PRECONDITION, "has ended already");
+  }
+
+  grpc::Status UpdateEnsembleJob(Context* context, const v1::UpdateEnsembleJobRequest* request,
+                                 v1::EnsembleJob* job) override {
+    const std::lock_guard lock(mutex_);
+    asked_.update.push_back(*request);
+    if (unavailable_attempts-- > 0) {
+      if (!pushback.empty()) context->AddTrailingMetadata("grpc-retry-pushback-ms", pushback);
+      return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
+    }
+    const std::string& name = request->job().name();
+    if (Find(name) == nullptr) return JobNotFound(name);
+    if (HasExpired(name)) return ResultsExpired(name);
+    *job = *Find(name);
+    job->set_pinned(request->job().pinned());
+    return grpc::Status::OK;
+  }
+
+  grpc::Status DeleteEnsembleJob(Context*, const v1::DeleteEnsembleJobRequest* request,
+                                 google::protobuf::Empty*) override {
+    const std::lock_guard lock(mutex_);
+    asked_.remove.push_back(*request);
+    if (unavailable_attempts-- > 0) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
+    return Find(request->name()) == nullptr ? JobNotFound(request->name()) : grpc::Status::OK;
+  }
+
+  grpc::Status WatchEnsembleJob(Context*, const v1::WatchEnsembleJobRequest* request,
+                                grpc::ServerWriter<v1::WatchEnsembleJobResponse>* writer) override {
+    const WatchScript script = NextScript(*request);
+    for (const v1::WatchEnsembleJobResponse& message : script.messages) writer->Write(message);
+    if (script.hangs) released_.wait();
+    return script.end;
+  }
+
+  grpc::Status PlanEnsembleJob(Context*, const v1::PlanEnsembleJobRequest* request,
+                               v1::PlanEnsembleJobResponse* response) override {
+    const std::lock_guard lock(mutex_);
+    asked_.plan.push_back(*request);
+    *response = plan;
+    return plan_end;
+  }
+
+  grpc::Status ListResults(Context*, const v1::ListResultsRequest* request,
+                           v1::ListResultsResponse* page) override {
+    const std::lock_guard lock(mutex_);
+    asked_.results.push_back(*request);
+    if (HasExpired(request->parent())) return ResultsExpired(request->parent());
+    if (!request->page_token().empty() && unavailable_later_pages-- > 0) {
+      return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
+    }
+    const size_t from = request->page_token().empty() ? 0 : std::stoul(request->page_token());
+    const size_t to = std::min(from + static_cast<size_t>(page_size), points.size());
+    for (size_t i = from; i < to; ++i) *page->add_results() = points[i];
+    if (to < points.size()) page->set_next_page_token(std::to_string(to));
+    return grpc::Status::OK;
+  }
+
+  grpc::Status GetResult(Context*, const v1::GetResultRequest* request,
+                         v1::PointResult* point) override {
+    const std::lock_guard lock(mutex_);
+    asked_.result.push_back(*request);
+    const std::string job = request->name().substr(0, request->name().find("/results/"));
+    if (Find(job) == nullptr) return JobNotFound(job);
+    if (HasExpired(job)) return ResultsExpired(job);
+    for (const v1::PointResult& each : points) {
+      if (request->name() != job + "/results/" + std::to_string(each.index())) continue;
+      *point = each;
+      return grpc::Status::OK;
+    }
+    return ResultNotFound(request->name());
+  }
 
   void Release() { released_.count_down(); }  // ends watches that hang
 
  private:
-  WatchScript NextScript(const v1::WatchEnsembleJobRequest& request);
-  const v1::EnsembleJob* Find(const std::string& name) const;
-  bool HasExpired(const std::string& name) const;
+  WatchScript NextScript(const v1::WatchEnsembleJobRequest& request) {
+    const std::lock_guard lock(mutex_);
+    asked_.watch.push_back(request);
+    return watches.at(std::min(asked_.watch.size(), watches.size()) - 1);
+  }
+
+  const v1::EnsembleJob* Find(const std::string& name) const {
+    const auto found = std::find_if(jobs.begin(), jobs.end(),
+                                    [&](const v1::EnsembleJob& job) { return job.name() == name; });
+    return found == jobs.end() ? nullptr : &*found;
+  }
+
+  bool HasExpired(const std::string& name) const {
+    const v1::EnsembleJob* const job = Find(name);
+    return job != nullptr && job->results_expired();
+  }
 
   mutable std::mutex mutex_;
   Requests asked_;
@@ -140,33 +277,12 @@ class FakeServer {
   std::string Address() const { return "unix:" + SocketPath(); }
   std::string SocketPath() const { return folder_.File("socket"); }
   std::shared_ptr<grpc::Channel> Channel() const;  // made by OpenChannel
-  void Start();                                    // set the answers before this call
+  // Set the answers before this call. Further calls do nothing.
+  void Start();
 
  private:
   const TemporaryFolder folder_;
   std::unique_ptr<grpc::Server> server_;
 };
-
-// INVALID_ARGUMENT with the details that a server attaches: one violation.
-grpc::Status InvalidSpec(const std::string& field, const std::string& description);
-
-// RESOURCE_EXHAUSTED with the details that a server attaches.
-grpc::Status LimitExceeded(const std::string& reason, const std::string& message);
-
-// NOT_FOUND with the details a server attaches.
-grpc::Status JobNotFound(const std::string& name);
-
-// NOT_FOUND with the details a server attaches.
-grpc::Status ResultNotFound(const std::string& name);
-
-// FAILED_PRECONDITION with the details that a server attaches. The fake server answers with it if a
-// test sets results_expired of the job.
-grpc::Status ResultsExpired(const std::string& name);
-
-inline constexpr char kJobName[] = "ensembleJobs/abc";  // the name that JobIn gives
-
-v1::WatchEnsembleJobResponse JobMessage(const v1::EnsembleJob& job, const std::string& token);
-v1::WatchEnsembleJobResponse SnapshotMessage(double samples, const std::string& token);
-v1::EnsembleJob JobIn(v1::EnsembleJob::State state);
 
 }  // namespace ballpiston::client

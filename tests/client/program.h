@@ -20,6 +20,11 @@ struct Outcome {
   int code;
   std::string out;
   std::string err;
+
+  bool operator==(const Outcome&) const = default;
+  friend std::ostream& operator<<(std::ostream& out, const Outcome& outcome) {
+    return out << "exit code " << outcome.code << "\n" << outcome.out << outcome.err;
+  }
 };
 
 inline Outcome Ballpiston(const std::vector<std::string>& words) {
@@ -62,7 +67,7 @@ class EmptyHome {
   std::map<std::string, ScopedVariable> variables_;
 };
 
-// Adds a server with one succeeded job of one point. The test starts the server.
+// Adds a server with one succeeded job of one point.
 class ProgramTest : public ::testing::Test {
  protected:
   ProgramTest() {
@@ -76,7 +81,9 @@ class ProgramTest : public ::testing::Test {
     estimate->set_value(1.5);
   }
 
-  Outcome WithServer(std::vector<std::string> words) const {
+  // Starts the server, if it does not run yet.
+  Outcome WithServer(std::vector<std::string> words) {
+    server_.Start();
     words.insert(words.end(), {"--server", server_.Address()});
     return Ballpiston(words);
   }

@@ -196,7 +196,6 @@ TEST_F(CommandLineTest, TheFlagsThatChooseTheServerAreKept) {
 TEST_F(CommandLineTest, QuietPrintsResultsAndErrorsOnly) {
   job().set_state(v1::EnsembleJob::RUNNING);
   server_.ensemble.answers_from_store = true;
-  server_.Start();
   for (const Words& words :
        {Words{"submit", "first-hit"}, {"result", "abc"}, {"cancel", "abc"}, {"run", "first-hit"}}) {
     Words quiet = words;
@@ -209,7 +208,6 @@ TEST_F(CommandLineTest, QuietPrintsResultsAndErrorsOnly) {
 }
 
 TEST_F(CommandLineTest, VerboseNamesServerRequestAndJob) {
-  server_.Start();
   const Outcome outcome = WithServer({"submit", "first-hit", "-v"});
   EXPECT_EQ(outcome.out, "ensembleJobs/abc\n");
   const std::string id = server_.ensemble.Asked().create.at(0).request_id();
@@ -228,7 +226,6 @@ TEST_F(CommandLineTest, ErrorsAreRedOnATerminal) {
 // The server answers with bytes that are not UTF-8. Protocol Buffers would log this.
 TEST_F(CommandLineTest, NoLibraryLogsToStandardError) {
   job().set_name("ensembleJobs/\xff");
-  server_.Start();
   testing::internal::CaptureStderr();
   EXPECT_NE(WithServer({"submit", "first-hit"}).code, 0);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
@@ -237,22 +234,17 @@ TEST_F(CommandLineTest, NoLibraryLogsToStandardError) {
 // ---- jobs ----
 
 TEST_F(CommandLineTest, SubmitPrintsTheNameAlone) {
-  server_.Start();
-  const Outcome outcome = WithServer({"submit", "first-hit", "--rho", "0.53"});
-  EXPECT_EQ(outcome.code, 0);
-  EXPECT_EQ(outcome.out, "ensembleJobs/abc\n");
-  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(WithServer({"submit", "first-hit", "--rho", "0.53"}),
+            (Outcome{0, "ensembleJobs/abc\n", ""}));
 }
 
 TEST_F(CommandLineTest, RunPrintsTheResult) {
-  server_.Start();
   const Outcome outcome = WithServer({"run", "first-hit", "--format", "csv"});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_THAT(outcome.out, HasSubstr("mean_hit_time,1.5,,,,,,\n"));
 }
 
 TEST_F(CommandLineTest, TablesAreRequestedWithoutHistograms) {
-  server_.Start();
   WithServer({"result", "abc"});
   WithServer({"result", "abc", "--format", "json"});
   ASSERT_EQ(server_.ensemble.Asked().results.size(), 2u);
@@ -263,7 +255,6 @@ TEST_F(CommandLineTest, TablesAreRequestedWithoutHistograms) {
 TEST_F(CommandLineTest, ResultNotesThatAJobIsActive) {
   job().set_state(v1::EnsembleJob::RUNNING);
   job().mutable_progress()->set_points(9);
-  server_.Start();
   const Outcome outcome = WithServer({"result", "ensembleJobs/abc"});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_THAT(outcome.out, HasSubstr("mean_hit_time"));
@@ -275,7 +266,6 @@ TEST_F(CommandLineTest, AFailedJobExitsWithFourAndPrintsItsReasonAndPoints) {
   job().set_state(v1::EnsembleJob::FAILED);
   job().mutable_error()->set_message("tolerance not reached within the budget: point 0");
   server_.ensemble.watches = {{{JobMessage(job(), "t")}, grpc::Status::OK}};
-  server_.Start();
   for (const Words& words : {Words{"run", "first-hit"}, {"result", "abc"}, {"watch", "abc"}}) {
     const Outcome outcome = WithServer(words);
     EXPECT_EQ(outcome.code, 4);
@@ -287,42 +277,33 @@ TEST_F(CommandLineTest, AFailedJobExitsWithFourAndPrintsItsReasonAndPoints) {
 
 TEST_F(CommandLineTest, AnUnknownJobExitsWithFive) {
   server_.ensemble.watches = {{{}, JobNotFound("ensembleJobs/none")}};
-  server_.Start();
+  const Outcome unknown{5, "", "ballpiston: no such job: ensembleJobs/none (JOB_NOT_FOUND)\n"};
   for (const char* verb : {"watch", "result", "pin", "delete"}) {
-    const Outcome outcome = WithServer({verb, "none"});
-    EXPECT_EQ(outcome.code, 5) << verb;
-    EXPECT_EQ(outcome.err, "ballpiston: no such job: ensembleJobs/none (JOB_NOT_FOUND)\n");
+    EXPECT_EQ(WithServer({verb, "none"}), unknown) << verb;
   }
 }
 
 TEST_F(CommandLineTest, CancelPrintsTheStateOfEachJob) {
-  server_.Start();
-  const Outcome outcome = WithServer({"cancel", "abc", "ensembleJobs/d"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(outcome.out, "ensembleJobs/abc cancelled\nensembleJobs/d cancelled\n");
-  EXPECT_EQ(outcome.err,
-            "ensembleJobs/abc: 0 of 0 points are finished and stay\n"
-            "ensembleJobs/d: 0 of 0 points are finished and stay\n");
+  EXPECT_EQ(WithServer({"cancel", "abc", "ensembleJobs/d"}),
+            (Outcome{0, "ensembleJobs/abc cancelled\nensembleJobs/d cancelled\n",
+                     "ensembleJobs/abc: 0 of 0 points are finished and stay\n"
+                     "ensembleJobs/d: 0 of 0 points are finished and stay\n"}));
 }
 
 TEST_F(CommandLineTest, CancelOfAnEndedJobExitsWithFourAfterAllJobs) {
-  server_.Start();
   WithServer({"cancel", "b"});
-  const Outcome again = WithServer({"cancel", "-q", "a", "b", "c"});
-  EXPECT_EQ(again.code, 4);
-  EXPECT_EQ(again.out, "ensembleJobs/a cancelled\nensembleJobs/c cancelled\n");
-  EXPECT_EQ(again.err, "ballpiston: has ended already\n");
+  EXPECT_EQ(WithServer({"cancel", "-q", "a", "b", "c"}),
+            (Outcome{4, "ensembleJobs/a cancelled\nensembleJobs/c cancelled\n",
+                     "ballpiston: has ended already\n"}));
 }
 
 TEST_F(CommandLineTest, PinPrintsEachJobOnceItIsPinned) {
   server_.ensemble.jobs.push_back(job());
   job().set_name("ensembleJobs/d");
-  server_.Start();
   for (int i = 0; i < 2; ++i) {  // the second pin changes nothing
-    const Outcome pinned = WithServer({"pin", "abc", "none", "d"});
-    EXPECT_EQ(pinned.code, 5);
-    EXPECT_EQ(pinned.out, "ensembleJobs/abc pinned\nensembleJobs/d pinned\n");
-    EXPECT_EQ(pinned.err, "ballpiston: no such job: ensembleJobs/none (JOB_NOT_FOUND)\n");
+    EXPECT_EQ(WithServer({"pin", "abc", "none", "d"}),
+              (Outcome{5, "ensembleJobs/abc pinned\nensembleJobs/d pinned\n",
+                       "ballpiston: no such job: ensembleJobs/none (JOB_NOT_FOUND)\n"}));
   }
   const Outcome unpinned = WithServer({"pin", "--undo", "abc"});
   EXPECT_EQ(unpinned.code, 0) << unpinned.err;
@@ -332,7 +313,6 @@ TEST_F(CommandLineTest, PinPrintsEachJobOnceItIsPinned) {
 
 TEST_F(CommandLineTest, ExpiredResultsExitWithFourAndTheCommandThatComputesThemAgain) {
   job().set_results_expired(true);
-  server_.Start();
   const std::string error =
       "ballpiston: ensembleJobs/abc: its results have expired (RESULTS_EXPIRED)\n"
       "To compute them again: ballpiston submit --again ensembleJobs/abc --server " +
@@ -341,24 +321,19 @@ TEST_F(CommandLineTest, ExpiredResultsExitWithFourAndTheCommandThatComputesThemA
                              {"result", "abc", "--format", "json"},
                              {"result", "abc", "--point", "0"},
                              {"pin", "abc"}}) {
-    const Outcome outcome = WithServer(words);
-    EXPECT_EQ(outcome.code, 4);
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(outcome.err, error);
+    EXPECT_EQ(WithServer(words), (Outcome{4, "", error}));
   }
 }
 
 TEST_F(CommandLineTest, DeletePrintsEachDeletedJob) {
   server_.ensemble.jobs.push_back(job());
   job().set_name("ensembleJobs/d");
-  server_.Start();
   const Outcome outcome = WithServer({"delete", "abc", "d", "none"});
   EXPECT_EQ(outcome.code, 5);
   EXPECT_EQ(outcome.out, "ensembleJobs/abc deleted\nensembleJobs/d deleted\n");
 }
 
 TEST_F(CommandLineTest, ListRequestsGridsForJsonOnly) {
-  server_.Start();
   WithServer({"list"});
   WithServer({"list", "--format", "csv"});
   WithServer({"list", "--format", "json"});
@@ -372,12 +347,10 @@ TEST_F(CommandLineTest, ListRequestsGridsForJsonOnly) {
 TEST_F(CommandLineTest, ListSaysWhenResultsExpire) {
   const absl::Time expiry = absl::Now() + absl::Hours(3 * 24 + 12);
   job().mutable_expire_time()->set_seconds(absl::ToUnixSeconds(expiry));
-  server_.Start();
   EXPECT_THAT(WithServer({"list"}).out, EndsWith("  expires in 3 days\n"));
 }
 
 TEST_F(CommandLineTest, ListSendsItsFilters) {
-  server_.Start();
   const Outcome outcome =
       WithServer({"list", "--state", "running,queued", "--experiment", "first_hit,equilibrium",
                   "--since", "2026-01-31", "--limit", "10"});
@@ -393,7 +366,6 @@ TEST_F(CommandLineTest, ListSendsItsFilters) {
 
 TEST_F(CommandLineTest, ListWithALimitEndsThere) {
   server_.ensemble.jobs.assign(9, job());
-  server_.Start();
   const std::string out = WithServer({"list", "--limit", "3", "--format", "jsonl"}).out;
   EXPECT_EQ(std::count(out.begin(), out.end(), '\n'), 3);
   const std::string all = WithServer({"list", "--format", "jsonl"}).out;
@@ -402,7 +374,6 @@ TEST_F(CommandLineTest, ListWithALimitEndsThere) {
 
 TEST_F(CommandLineTest, EscapedOrbitsAreReported) {
   server_.ensemble.points[0].mutable_health()->set_escapes(3);
-  server_.Start();
   EXPECT_THAT(WithServer({"result", "abc"}).err, HasSubstr("point 0: 3 orbits left the cell"));
 }
 
@@ -410,7 +381,6 @@ TEST_F(CommandLineTest, PlanPrintsTheLadderAndCreatesNoJob) {
   v1::PointPlan* point = server_.ensemble.plan.add_points();
   point->set_model(v1::EnsembleSpec::SPECTRUM);
   point->add_models()->set_model(v1::EnsembleSpec::SPECTRUM);
-  server_.Start();
   const Outcome outcome = WithServer({"plan", "energy-relaxation", "--rho", "0.53", "--tolerance",
                                       "1e-3", "--budget", "10", "--verify", "--format", "csv"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -426,36 +396,32 @@ TEST_F(CommandLineTest, PlanPrintsTheLadderAndCreatesNoJob) {
   EXPECT_TRUE(spec.verify());
 }
 
-TEST_F(CommandLineTest, AnErrorOfASpecificationFromAFileNamesItsField) {
-  server_.ensemble.plan_end = InvalidSpec("spec.grid.rho[0]", "is 0.9");
-  server_.Start();
+TEST_F(CommandLineTest, AnInvalidSpecificationExitsWithTwoAndNamesTheFlagOrTheField) {
   const std::string file = home_.File("question.json");
   WriteFile(file, R"({"experiment": "EQUILIBRIUM"})");
-  const Outcome outcome = WithServer({"plan", "--spec", file});
-  EXPECT_EQ(outcome.err, "ballpiston: grid.rho[0]: is 0.9 (INVALID_SPEC)\n");
-}
-
-TEST_F(CommandLineTest, AnErrorMayNameATargetsFlag) {
-  server_.ensemble.plan_end = InvalidSpec("spec.target", "use target.collisions");
-  server_.Start();
-  EXPECT_EQ(WithServer({"plan", "equilibrium"}).err,
-            "ballpiston: target: use --collisions (INVALID_SPEC)\n");
-}
-
-TEST_F(CommandLineTest, AnInvalidSpecificationExitsWithTwo) {
-  server_.ensemble.plan_end = InvalidSpec("spec.target.tolerance", "-1 is not in (0, 1)");
-  server_.Start();
-  const Outcome outcome = WithServer({"plan", "equilibrium", "--tolerance", "-1"});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(outcome.err, "ballpiston: --tolerance: -1 is not in (0, 1) (INVALID_SPEC)\n");
+  const struct {
+    std::string field, description;
+    Words words;
+    std::string error;
+  } cases[] = {
+      {"spec.target.tolerance",
+       "-1 is not in (0, 1)",
+       {"equilibrium", "--tolerance", "-1"},
+       "--tolerance: -1 is not in (0, 1)"},
+      {"spec.target", "use target.collisions", {"equilibrium"}, "target: use --collisions"},
+      {"spec.grid.rho[0]", "is 0.9", {"--spec", file}, "grid.rho[0]: is 0.9"}};
+  for (const auto& [field, description, words, error] : cases) {
+    server_.ensemble.plan_end = InvalidSpec(field, description);
+    Words plan = words;
+    plan.insert(plan.begin(), "plan");
+    EXPECT_EQ(WithServer(plan), (Outcome{2, "", "ballpiston: " + error + " (INVALID_SPEC)\n"}));
+  }
 }
 
 // ---- closed forms and the server ----
 
 TEST_F(CommandLineTest, AnalyticPrintsTheAnswer) {
   server_.analytic.response.add_points()->set_rho(0.53);
-  server_.Start();
   const Outcome outcome =
       WithServer({"analytic", "--rho", "0.53", "--delta", "0.1", "--format", "jsonl"});
   EXPECT_EQ(outcome.code, 0);
@@ -463,7 +429,6 @@ TEST_F(CommandLineTest, AnalyticPrintsTheAnswer) {
 }
 
 TEST_F(CommandLineTest, AnalyticSendsEveryList) {
-  server_.Start();
   WithServer({"analytic", "--rho", "0.53", "--delta", "0.1", "--epsilon", "0.2,0.3",
               "--outgoing-epsilon", "0.4", "--beta", "5", "--temperature", "6:8:3"});
   EXPECT_THAT(server_.analytic.asked.rho(), ElementsAre(0.53));
@@ -477,7 +442,6 @@ TEST_F(CommandLineTest, AnalyticSendsEveryList) {
 TEST_F(CommandLineTest, StatusPrintsTheServersAnswer) {
   server_.server.status.set_version("1.2.3");
   server_.server.status.set_queued_jobs(17);
-  server_.Start();
   const Outcome table = WithServer({"status"});
   EXPECT_EQ(table.code, 0) << table.err;
   EXPECT_THAT(table.out, HasSubstr("server    1.2.3\n"));

@@ -40,7 +40,7 @@ TEST_F(ConnectionTest, TheServerMayComeFromTheEnvironmentOrTheConfigFile) {
 
 TEST_F(ConnectionTest, WithoutAServerExitsWithThreeAndNamesIt) {
   for (const char* verb : {"list", "status"}) {
-    const Outcome outcome = WithServer({verb});
+    const Outcome outcome = Ballpiston({verb, "--server", server_.Address()});
     EXPECT_EQ(outcome.code, 3);
     EXPECT_THAT(outcome.err,
                 StartsWith("ballpiston: no answer from the server at " + server_.Address() + ": "));

@@ -67,7 +67,6 @@ class PrintPointTest : public ProgramTest {
     second.set_index(1);
     second.mutable_estimates(0)->set_value(2.5);
     server_.ensemble.points.push_back(second);
-    server_.Start();
   }
 };
 
@@ -91,11 +90,10 @@ TEST_F(PrintPointTest, ASinglePointHasTheSameFormatAsAllPoints) {
 }
 
 TEST_F(PrintPointTest, WithoutThePointOrTheJobExitsWithFiveAndNoOutput) {
-  const Outcome beyond = WithServer({"result", "abc", "--point", "2", "--format", "json"});
-  EXPECT_EQ(beyond.code, 5);
-  EXPECT_EQ(beyond.out, "");
-  EXPECT_EQ(beyond.err,
-            "ballpiston: no such result: ensembleJobs/abc/results/2 (RESULT_NOT_FOUND)\n");
+  EXPECT_EQ(
+      WithServer({"result", "abc", "--point", "2", "--format", "json"}),
+      (Outcome{5, "",
+               "ballpiston: no such result: ensembleJobs/abc/results/2 (RESULT_NOT_FOUND)\n"}));
   const Outcome unknown = WithServer({"result", "none", "--point", "0"});
   EXPECT_EQ(unknown.code, 5);
   EXPECT_EQ(unknown.err, "ballpiston: no such job: ensembleJobs/none (JOB_NOT_FOUND)\n");

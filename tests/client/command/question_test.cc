@@ -126,7 +126,6 @@ class QuestionOfJobTest : public ProgramTest {
 };
 
 TEST_F(QuestionOfJobTest, TheSpecificationOfAJobIsSubmittedAgain) {
-  server_.Start();
   for (const char* verb : {"submit", "run"}) {
     const Outcome outcome = WithServer({verb, "--again", "abc", "--priority", "3"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -138,13 +137,11 @@ TEST_F(QuestionOfJobTest, TheSpecificationOfAJobIsSubmittedAgain) {
 }
 
 TEST_F(QuestionOfJobTest, TheSpecificationOfAJobIsPlanned) {
-  server_.Start();
   EXPECT_EQ(WithServer({"plan", "--again", "ensembleJobs/abc"}).code, 0);
   EXPECT_EQ(server_.ensemble.Asked().plan.at(0).spec().seed(), 7u);
 }
 
 TEST_F(QuestionOfJobTest, AJobExcludesExperimentGridTargetAndMethod) {
-  server_.Start();
   for (const std::vector<std::string>& words : {std::vector<std::string>{"first-hit"},
                                                 {"--rho", "0.53"},
                                                 {"--samples", "9"},
@@ -165,11 +162,8 @@ TEST_F(QuestionOfJobTest, AJobExcludesExperimentGridTargetAndMethod) {
 }
 
 TEST_F(QuestionOfJobTest, WithAnUnknownJobNothingIsSubmitted) {
-  server_.Start();
-  const Outcome outcome = WithServer({"submit", "--again", "none"});
-  EXPECT_EQ(outcome.code, 5);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(outcome.err, "ballpiston: no such job: ensembleJobs/none (JOB_NOT_FOUND)\n");
+  EXPECT_EQ(WithServer({"submit", "--again", "none"}),
+            (Outcome{5, "", "ballpiston: no such job: ensembleJobs/none (JOB_NOT_FOUND)\n"}));
   EXPECT_THAT(server_.ensemble.Asked().create, testing::IsEmpty());
 }
 

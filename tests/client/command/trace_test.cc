@@ -35,7 +35,6 @@ class TraceTest : public ProgramTest {
 };
 
 TEST_F(TraceTest, SendsTheFlags) {
-  server_.Start();
   EXPECT_EQ(WithServer(kTrace).code, 0);
   const v1::TraceOrbitRequest& asked = server_.trace.asked;
   EXPECT_EQ(asked.rho(), 0.53);
@@ -47,7 +46,6 @@ TEST_F(TraceTest, SendsTheFlags) {
 }
 
 TEST_F(TraceTest, WithoutATemperatureTheServersDefaultIsUsed) {
-  server_.Start();
   EXPECT_EQ(WithServer({"trace", "--rho", "0.53", "--delta", "0.1", "--events", "3"}).code, 0);
   EXPECT_FALSE(server_.trace.asked.has_temperature());
   EXPECT_EQ(server_.trace.asked.cells(), "");
@@ -55,7 +53,6 @@ TEST_F(TraceTest, WithoutATemperatureTheServersDefaultIsUsed) {
 
 // Absent fields are left out; an index or a time of 0 is printed.
 TEST_F(TraceTest, PrintsTheStartAndEachEventAsALine) {
-  server_.Start();
   const Outcome outcome = WithServer(kTrace);
   EXPECT_EQ(outcome.err, "");
   const std::vector<std::string> lines = absl::StrSplit(outcome.out, '\n');
@@ -69,7 +66,6 @@ TEST_F(TraceTest, PrintsTheStartAndEachEventAsALine) {
 
 TEST_F(TraceTest, AnErrorAfterSomeLinesIsReported) {
   server_.trace.end = grpc::Status(grpc::StatusCode::UNAVAILABLE, "the server is stopping");
-  server_.Start();
   const Outcome outcome = WithServer(kTrace);
   EXPECT_EQ(outcome.code, 3);
   EXPECT_THAT(outcome.out, HasSubstr("\"time\":3"));

@@ -10,7 +10,6 @@
 #include <string>
 
 #include "client/library/connection_hint.h"
-#include "client/library/own_token.h"
 #include "client/library/server_address.h"
 #include "tests/support/files.h"
 #include "tests/support/scoped_variable.h"

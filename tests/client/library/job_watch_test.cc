@@ -149,13 +149,6 @@ TEST_F(JobWatch, GivesUpAfterTheConfiguredTime) {
                                  "reset")));
 }
 
-TEST_F(JobWatch, AttachesAgainToAnUnavailableServer) {
-  Start({Unavailable(), Unavailable(), Unavailable(), Succeeded()});
-  EXPECT_OK(Watch());
-  EXPECT_THAT(pauses_, SizeIs(3));
-  EXPECT_THAT(Tokens(), SizeIs(4));
-}
-
 // Each attempt receives a message before it fails: the server is alive. The message restarts both
 // the pauses and the time to give up (reattach_pace_test.cc).
 TEST_F(JobWatch, ThePaceStartsAgainWithEveryMessage) {
@@ -164,18 +157,6 @@ TEST_F(JobWatch, ThePaceStartsAgainWithEveryMessage) {
   Start(watches);
   EXPECT_OK(Watch());
   EXPECT_THAT(pauses_, AllOf(SizeIs(100), Each(Le(1.25))));
-}
-
-TEST_F(JobWatch, PausesDoubleUpToTheirMaximum) {
-  std::vector<WatchScript> watches(8, Unavailable());
-  watches.push_back(Succeeded());
-  Start(watches);
-  EXPECT_OK(Watch());
-  const double expected[] = {1, 2, 4, 4, 4, 4, 4, 4};
-  ASSERT_EQ(pauses_.size(), std::size(expected));
-  for (size_t i = 0; i < pauses_.size(); ++i) {
-    EXPECT_THAT(pauses_[i], AllOf(Ge(expected[i] * 0.999), Le(expected[i] * 1.251)));
-  }
 }
 
 TEST_F(JobWatch, RunsTheHookBeforeEachNewAttempt) {

@@ -10,7 +10,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-v1::PointParameters ParametersOf(const std::string& text) {
+v1::PointParameters At(const std::string& text) {
   return FromText<v1::PointParameters>("rho: 0.53 delta: 0.1 " + text);
 }
 
@@ -18,42 +18,30 @@ constexpr char kAll[] =
     R"(epsilon: 0.25 exponent: 1 cells: "4x3" temperature: 1.00000000001 hot: 2 cold: 0)";
 
 TEST(ParameterText, NamesTheParametersOfThePoint) {
-  EXPECT_EQ(ParameterText(ParametersOf("")), "rho 0.53, delta 0.1");
-  EXPECT_EQ(ParameterText(ParametersOf(kAll)),
+  EXPECT_EQ(ParameterText(At("")), "rho 0.53, delta 0.1");
+  EXPECT_EQ(ParameterText(At(kAll)),
             "rho 0.53, delta 0.1, epsilon 0.25, exponent 1, cells 4x3, temperature 1, hot 2, "
             "cold 0");
 }
 
-TEST(ParameterColumns, OfAPairAreTheSameInEveryFile) {
-  const ParameterColumns columns{v1::Grid()};
-  EXPECT_THAT(columns.Titles(), ElementsAre("rho", "delta", "epsilon", "exponent"));
-  EXPECT_THAT(columns.Cells(ParametersOf("")), ElementsAre("0.53", "0.1", "", ""));
+TEST(ParametersInCsv, OfAPairAreTheSameInEveryFile) {
+  EXPECT_THAT(ParametersInCsv(v1::Grid()), ElementsAre("rho", "delta", "epsilon", "exponent"));
 }
 
-TEST(ParameterColumns, OfAGasAreThoseOfTheGrid) {
-  const ParameterColumns conduction{
-      FromText<v1::Grid>("cells: ['4x3', '8'] hot: [2, 3] cold: 1 rho: 0.53")};
-  EXPECT_THAT(conduction.Titles(),
+TEST(ParametersInCsv, OfAGasAreThoseOfTheGrid) {
+  EXPECT_THAT(ParametersInCsv(FromText<v1::Grid>("cells: ['4x3', '8'] hot: [2, 3] cold: 1")),
               ElementsAre("rho", "delta", "epsilon", "exponent", "cells", "hot", "cold"));
-  EXPECT_THAT(conduction.Cells(ParametersOf("cells: '4x3' hot: 2 cold: 1")),
-              ElementsAre("0.53", "0.1", "", "", "4x3", "2", "1"));
-  const ParameterColumns equilibrium{FromText<v1::Grid>("temperature: 1")};
-  EXPECT_THAT(equilibrium.Titles(),
+  EXPECT_THAT(ParametersInCsv(FromText<v1::Grid>("temperature: 1")),
               ElementsAre("rho", "delta", "epsilon", "exponent", "temperature"));
-  EXPECT_THAT(equilibrium.Cells(ParametersOf(kAll)),
-              ElementsAre("0.53", "0.1", "0.25", "1", "1.00000000001"));  // exact
 }
 
-TEST(ParametersShown, AreTheParametersOfAnyPoint) {
-  ParametersShown shown;
-  EXPECT_THAT(shown.Titles(), ElementsAre("rho", "delta"));
-  shown.Include(ParametersOf("temperature: 0.5"));
-  shown.Include(ParametersOf("cells: '12' cold: 0"));
-  shown.Include(ParametersOf(""));
-  EXPECT_THAT(shown.Titles(), ElementsAre("rho", "delta", "cells", "temperature", "cold"));
-  EXPECT_THAT(shown.Cells(ParametersOf("cells: '12' cold: 0")),
-              ElementsAre("0.53", "0.1", "12", "", "0"));
-  EXPECT_THAT(shown.Cells(ParametersOf(kAll)), ElementsAre("0.53", "0.1", "4x3", "1", "0"));
+TEST(ParametersOfPoints, AreTheParametersOfAnyPoint) {
+  std::vector<v1::PointResult> points;
+  EXPECT_THAT(ParametersOf(points), ElementsAre("rho", "delta"));
+  for (const char* text : {"temperature: 0.5", "cells: '12' cold: 0", ""}) {
+    *points.emplace_back().mutable_parameters() = At(text);
+  }
+  EXPECT_THAT(ParametersOf(points), ElementsAre("rho", "delta", "cells", "temperature", "cold"));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ std::string PrintedTable(const TextTable& table) {
 }
 
 TEST(TextTable, AlignsNumbersRightAndTextLeft) {
-  TextTable table({{"name", TextTable::Column::kLeft}, {"value"}});
+  TextTable table({"name", "value"}, {"name"});
   table.AddRow({"a", "1"});
   table.AddRow({"longer", "22.5"});
   table.AddRow({"b"});
@@ -26,7 +26,7 @@ TEST(TextTable, AlignsNumbersRightAndTextLeft) {
 }
 
 TEST(TextTable, LineLiesAcrossAllColumns) {
-  TextTable table({{"name", TextTable::Column::kLeft}, {"value"}});
+  TextTable table({"name", "value"}, {"name"});
   table.AddRow({"a", "1"});
   table.AddLine("remark: wider than both columns");
   table.AddRow({"b", "22"});
@@ -39,7 +39,7 @@ TEST(TextTable, LineLiesAcrossAllColumns) {
 
 // µ has two bytes.
 TEST(TextTable, MeasuresWidthInCharacters) {
-  TextTable table({{"work"}, {"n"}});
+  TextTable table({"work", "n"});
   table.AddRow({"120 µs", "1"});
   table.AddRow({"3.2 min", "2"});
   EXPECT_EQ(PrintedTable(table),

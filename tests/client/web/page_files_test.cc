@@ -1,4 +1,4 @@
-#include "client/web/one_file_page.h"
+#include "client/web/page_files.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

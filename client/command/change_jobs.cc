@@ -1,0 +1,110 @@
+// ballpiston cancel, delete, pin and label: each changes jobs, and prints the new state of each.
+#include <functional>
+#include <iostream>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "client/command/connection.h"
+#include "client/command/selection.h"
+#include "client/library/request_id.h"
+#include "client/output/job_list.h"
+#include "client/output/number_text.h"
+#include "client/output/spelling.h"
+
+namespace ballpiston::client {
+namespace {
+
+// Changes every job, also after an error. Returns the first error.
+VerbResult ForEach(const std::vector<std::string>& names,
+                   const std::function<absl::Status(const std::string& name)>& change) {
+  absl::Status first_error;
+  for (const std::string& name : names) first_error.Update(change(name));
+  return first_error.ok() ? VerbResult(ExitCode::kDone) : first_error;
+}
+
+// With --label and without --yes, prints how many jobs `action` ("delete") concerns, and reads the
+// answer. CANCELLED if it is not y or yes.
+absl::Status Confirm(const std::string& action, const std::vector<std::string>& names,
+                     const Options& options, const Terminal& terminal) {
+  if (options.labels.empty() || options.yes) return absl::OkStatus();
+  terminal.err << action << ' ' << Counted(static_cast<double>(names.size()), "job") << "? [y/N] "
+               << std::flush;
+  std::string answer;
+  std::getline(std::cin, answer);
+  absl::AsciiStrToLower(&answer);
+  if (answer == "y" || answer == "yes") return absl::OkStatus();
+  return absl::CancelledError("nothing was changed (--yes answers the question)");
+}
+
+absl::Status CancelJob(const Connection& connection, const std::string& name,
+                       const Terminal& terminal) {
+  const std::string id = NewRequestId();  // the same for a retry
+  const auto job = connection.Ask([&] { return connection.client.Cancel(name, id); });
+  if (!job.ok()) return job.status();
+  terminal.out << job->name() << ' ' << Spelling(job->state()) << std::endl;
+  terminal.Note(absl::StrCat(name, ": ", job->progress().points_done(), " of ",
+                             job->progress().points(), " points are finished and stay"));
+  return absl::OkStatus();
+}
+
+// A delete is not retried: if its answer was lost, a second attempt would find no such job.
+absl::Status DeleteJob(const Connection& connection, const std::string& name,
+                       const Terminal& terminal) {
+  const absl::Status status = connection.client.Delete(name);
+  if (status.ok()) terminal.out << name << " deleted" << std::endl;
+  const bool is_open = absl::IsUnavailable(status) || absl::IsDeadlineExceeded(status);
+  if (is_open) terminal.err << "ballpiston: " << name << " may have been deleted" << std::endl;
+  return status;
+}
+
+using ChangeOfJob = absl::Status (*)(const Connection& connection, const std::string& name,
+                                     const Terminal& terminal);
+
+VerbResult ChangeConfirmed(const std::string& action, ChangeOfJob change, const JobStates& states,
+                           const Options& options, const Terminal& terminal) {
+  return WithJobs(
+      options, terminal, states, [&](const auto& connection, const auto& names) -> VerbResult {
+        const absl::Status confirmed = Confirm(action, names, options, terminal);
+        if (!confirmed.ok()) return confirmed;
+        return ForEach(names, [&](const auto& name) { return change(connection, name, terminal); });
+      });
+}
+
+}  // namespace
+
+VerbResult Cancel(const Options& options, Terminal& terminal) {
+  return ChangeConfirmed("cancel", &CancelJob, kActiveStates, options, terminal);
+}
+
+VerbResult Delete(const Options& options, Terminal& terminal) {
+  return ChangeConfirmed("delete", &DeleteJob, kEndedStates, options, terminal);
+}
+
+VerbResult Pin(const Options& options, Terminal& terminal) {
+  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
+    return ForEach(options.jobs, [&](const std::string& name) -> absl::Status {
+      const auto job = connection.Ask([&] { return connection.client.Pin(name, !options.undo); });
+      if (!job.ok()) return HintIfExpired(job.status(), connection, name);
+      terminal.out << job->name() << (job->pinned() ? " pinned" : " unpinned") << std::endl;
+      return absl::OkStatus();
+    });
+  });
+}
+
+// Of two changes at the same time the later one may undo the other.
+VerbResult Label(const Options& options, Terminal& terminal) {
+  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
+    const std::string& name = options.jobs.front();
+    const auto job = connection.Ask([&] { return connection.client.Get(name); });
+    if (!job.ok()) return job.status();
+    std::map<std::string, std::string> labels(job->labels().begin(), job->labels().end());
+    for (const auto& [key, value] : options.labels) labels[key] = value;
+    std::erase_if(labels, [](const auto& label) { return label.second.empty(); });
+    const auto changed = connection.Ask([&] { return connection.client.SetLabels(name, labels); });
+    if (!changed.ok()) return changed.status();
+    terminal.out << changed->name() << ' ' << LabelsText(*changed) << '\n';
+    return ExitCode::kDone;
+  });
+}
+
+}  // namespace ballpiston::client

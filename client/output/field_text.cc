@@ -1,0 +1,76 @@
+#include "client/output/field_text.h"
+
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/timestamp.pb.h>
+
+#include "absl/strings/str_cat.h"
+#include "absl/time/time.h"
+#include "client/output/spelling.h"
+
+namespace ballpiston::client {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+
+std::string TimeText(const google::protobuf::Timestamp& time) {
+  return absl::FormatTime("%Y-%m-%dT%H:%M:%SZ", absl::FromUnixSeconds(time.seconds()),
+                          absl::UTCTimeZone());
+}
+
+std::string TextOf(const Message& message, const FieldDescriptor* field, NumberForm form) {
+  const google::protobuf::Reflection& reflection = *message.GetReflection();
+  switch (field->cpp_type()) {
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      return form(reflection.GetDouble(message, field));
+    case FieldDescriptor::CPPTYPE_INT32:
+      return absl::StrCat(reflection.GetInt32(message, field));
+    case FieldDescriptor::CPPTYPE_BOOL:
+      return reflection.GetBool(message, field) ? "true" : "false";
+    case FieldDescriptor::CPPTYPE_ENUM:
+      return Spelling(*field->enum_type(), reflection.GetEnumValue(message, field));
+    case FieldDescriptor::CPPTYPE_STRING:
+      return reflection.GetString(message, field);
+    default:
+      return TimeText(
+          dynamic_cast<const google::protobuf::Timestamp&>(reflection.GetMessage(message, field)));
+  }
+}
+
+}  // namespace
+
+std::string FieldText(const Message& message, const std::string& path, NumberForm form) {
+  const size_t dot = path.find('.');
+  const FieldDescriptor* field = message.GetDescriptor()->FindFieldByName(path.substr(0, dot));
+  const google::protobuf::Reflection& reflection = *message.GetReflection();
+  if (dot != std::string::npos) {
+    return FieldText(reflection.GetMessage(message, field), path.substr(dot + 1), form);
+  }
+  if (field->has_presence() && !reflection.HasField(message, field)) return "";
+  return TextOf(message, field, form);
+}
+
+Cells FieldTexts(const Message& message, const Cells& paths, NumberForm form) {
+  Cells cells;
+  for (const std::string& path : paths) cells.push_back(FieldText(message, path, form));
+  return cells;
+}
+
+std::optional<double> NumberIn(const Message& message, const std::string& name) {
+  const FieldDescriptor* field = message.GetDescriptor()->FindFieldByName(name);
+  if (!message.GetReflection()->HasField(message, field)) return std::nullopt;
+  return message.GetReflection()->GetDouble(message, field);
+}
+
+Cells FieldNames(const google::protobuf::Descriptor& type) {
+  Cells names;
+  for (int i = 0; i < type.field_count(); ++i) names.push_back(type.field(i)->name());
+  return names;
+}
+
+Cells Joined(Cells cells, const Cells& more) {
+  cells.insert(cells.end(), more.begin(), more.end());
+  return cells;
+}
+
+}  // namespace ballpiston::client
