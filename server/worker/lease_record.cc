@@ -50,7 +50,8 @@ Target TargetOf(const storage::Question& record) {
 bool IsPossible(EnsembleSpec spec) {
   const Model model = std::exchange(spec.model, Model::kAuto);
   spec.verify = true;
-  return Violations(spec).empty() && AimOf(spec).IsAnsweredBy(model);
+  return model != Model::kAuto && TakesSamples(model) && Violations(spec).empty() &&
+         AimOf(spec).IsAnsweredBy(model);
 }
 
 // Empty if the question has violations.

@@ -33,7 +33,7 @@ TEST(Draw, AsksEveryExperimentByEveryModelWithEveryTarget) {
     ++precisions[question.spec.precision()];
     permitted += server::CheckSpec(question.spec).violations.empty();
   }
-  EXPECT_EQ(experiments.size(), 8);
+  EXPECT_EQ(experiments.size(), std::size(kAllExperiments));
   EXPECT_EQ(models.size(), 6);
   EXPECT_EQ(targets.size(), 4);
   EXPECT_EQ(precisions.size(), 2);

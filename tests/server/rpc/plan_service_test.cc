@@ -56,7 +56,8 @@ v1::EnsembleSpec PlanQuestion(v1::EnsembleSpec::Experiment experiment) {
                            experiment == v1::EnsembleSpec::FIRST_HIT;
   if (from_energy) spec.mutable_grid()->add_epsilon(0.1);
   if (experiment == v1::EnsembleSpec::FIRST_HIT) spec.mutable_grid()->add_exponent(1);
-  if (experiment == v1::EnsembleSpec::GAS_EQUILIBRIUM) {
+  if (experiment == v1::EnsembleSpec::GAS_EQUILIBRIUM ||
+      experiment == v1::EnsembleSpec::GAS_LYAPUNOV) {
     spec.mutable_grid()->add_cells("4x3");
     spec.mutable_grid()->add_temperature(2);
   }

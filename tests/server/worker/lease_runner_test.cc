@@ -44,7 +44,7 @@ class Recorder : public ChunkReceiver {
 TEST(LeaseRunner, ChunksHaveTheBitsOfAWholePoint) {
   for (const EnsembleSpec& spec : EverySampledSpec()) {
     SCOPED_TRACE(NameOf(spec));
-    const Lease lease = LeaseOf(spec).lease;
+    const Lease lease = LeaseOf(spec);
     Recorder recorder;
     EXPECT_TRUE(recorder.Run(lease));
     EXPECT_TRUE(AreEqual(recorder.chunks, AllChunks(*lease.experiment)));
@@ -56,7 +56,7 @@ TEST(LeaseRunner, ChunksHaveTheBitsOfAWholePoint) {
 }
 
 TEST(LeaseRunner, ComputesOnlyTheRestOfAChunkThatHasBlocks) {
-  Lease lease = LeaseOf(SpecOf(kFirstHit, Model::kBilliard, 100'000), 1, 2).lease;
+  Lease lease = LeaseOf(SpecOf(kFirstHit, Model::kBilliard, 100'000), 1, 2);
   lease.start.blocks = 1;
   lease.start.merged = RunBlock(*lease.experiment, lease.experiment->plan().BlockAt(1, 0)).value();
   Recorder recorder;
@@ -67,7 +67,7 @@ TEST(LeaseRunner, ComputesOnlyTheRestOfAChunkThatHasBlocks) {
 TEST(LeaseRunner, StopsAtTheTolerance) {
   EnsembleSpec spec = SpecOf(kFirstHit, Model::kBilliard);
   spec.target = {.tolerance = 0.003};
-  const Lease lease = LeaseOf(spec).lease;
+  const Lease lease = LeaseOf(spec);
   Recorder recorder;
   EXPECT_TRUE(recorder.Run(lease));
   EXPECT_GT(recorder.chunks.size(), 1u);
