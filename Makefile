@@ -15,7 +15,7 @@ AARCH64_PACKAGES := g++-aarch64-linux-gnu qemu-user libabsl-dev:arm64 libhwy-dev
 SLURM_PACKAGES := munge slurmctld slurmd slurm-client procps
 DOCS_PACKAGES := doxygen furo python3-breathe python3-myst-parser python3-sphinx
 NOTEBOOK_PACKAGES := python3-nbconvert python3-ipykernel
-DEB_PACKAGES := $(DOCS_PACKAGES) debhelper dh-python help2man lintian
+DEB_PACKAGES := $(DOCS_PACKAGES) build-essential debhelper dh-python help2man lintian
 WEB_PACKAGES = chromium $(shell command -v npm >/dev/null || echo nodejs npm)
 PROGRAMS := ballpiston ballpistond ballpiston-worker conductivity method_comparison slow_pistons stability pages
 
