@@ -25,7 +25,7 @@ double SomeValueOf(const Parameter& parameter) {
 bool Samples(Model model) { return model != Model::kClosedForm && model != Model::kSpectrum; }
 
 bool IsGas(const ExperimentKind& kind) {
-  return &kind == &kGasEquilibrium || &kind == &kGasConduction;
+  return &kind == &kGasEquilibrium || &kind == &kGasConduction || &kind == &kGasLyapunov;
 }
 
 // A sample of a gas is more work than other samples. The first chunk has 64 replicas. Of samples
