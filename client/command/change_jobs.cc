@@ -91,7 +91,7 @@ VerbResult Pin(const Options& options, Terminal& terminal) {
   });
 }
 
-// Of two changes at the same time the later one may undo the other.
+// If two clients change the labels of a job at the same time, the later change may undo the other.
 VerbResult Label(const Options& options, Terminal& terminal) {
   return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
     const std::string& name = options.jobs.front();

@@ -32,7 +32,7 @@ inline constexpr char kStatusPayload[] = "type.googleapis.com/google.rpc.Status"
 // The same code, with the text above as its message.
 absl::Status FromGrpc(const grpc::Status& status);
 
-// What the server attached; empty if the error is not the server's.
+// The details that the server attached to its error. Empty if the error is not the server's.
 google::rpc::Status ErrorDetails(const absl::Status& status);
 
 // The ErrorInfo's reason, e.g. "JOB_NOT_FOUND"; empty if the server gave no reason or was not

@@ -16,7 +16,8 @@
 namespace ballpiston::client {
 namespace {
 
-// What a file has below the parameters, the model and the number of samples of each point.
+// The columns of a CSV file that follow the parameters, the model and the number of samples, and
+// the rows that a point has in them.
 struct Rows {
   Cells titles;
   std::vector<Cells> (*of)(const v1::PointResult& point);

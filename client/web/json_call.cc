@@ -76,7 +76,8 @@ absl::Status CallWithJson(const std::shared_ptr<grpc::Channel>& channel, const J
   }
   const std::string path =
       absl::StrCat("/", call.method->service()->full_name(), "/", call.method->name());
-  // As in generated code. A method with a single answer is a stream of one message.
+  // This is how the generated stubs of gRPC call a method. A method with a single answer is called
+  // as a stream of one message.
   const grpc::internal::RpcMethod method(path.c_str(), grpc::internal::RpcMethod::SERVER_STREAMING);
   const std::unique_ptr<grpc::ClientReader<Message>> reader(
       grpc::internal::ClientReaderFactory<Message>::Create(channel.get(), method, &context,

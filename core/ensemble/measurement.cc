@@ -1,5 +1,6 @@
 #include "core/ensemble/measurement.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -41,6 +42,12 @@ std::vector<Estimate> EstimatesOf(const std::vector<Measurement>& table,
     if (auto estimate = row.Of(merged)) estimates.push_back(*std::move(estimate));
   }
   return estimates;
+}
+
+std::vector<Measurement> WithFirst(std::vector<Measurement> table, absl::string_view name) {
+  const auto row = std::ranges::find(table, name, &Measurement::name);
+  std::rotate(table.begin(), row, row + 1);
+  return table;
 }
 
 Estimate MeanOf(const Moments& sample, double events) {

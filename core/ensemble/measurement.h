@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/strings/string_view.h"
 #include "core/ensemble/block_result.h"
 #include "core/ensemble/point_summary.h"
 
@@ -33,6 +34,9 @@ struct Measurement {
 
 // All estimates of a table that the sample is large enough for.
 std::vector<Estimate> EstimatesOf(const std::vector<Measurement>& table, const BlockResult& merged);
+
+// The table with the row of this name, which it must have, in the first place.
+std::vector<Measurement> WithFirst(std::vector<Measurement> table, absl::string_view name);
 
 Estimate MeanOf(const Moments& sample, double events);
 Estimate RatioOf(const BatchMeans& sample, double events);

@@ -122,10 +122,6 @@ std::vector<Row> WithConductivity(std::vector<Row> rows, const std::vector<Row>&
   return rows;
 }
 
-GasGeometry PeriodicGasOf(const PointParameters& point) {
-  return GasGeometryOf(point, GasEnds::kPeriodic);
-}
-
 class GasEquilibrium : public GasReplicas {
  public:
   GasEquilibrium(const EnsembleSpec& spec, const PointParameters& point)
@@ -374,8 +370,6 @@ std::vector<std::vector<double>> SpeedProbabilitiesAt(const PointParameters&) {
   return {SpeedProbabilities(kBodies[0]), SpeedProbabilities(kBodies[1])};
 }
 
-constexpr ParameterUse kParametersOfGasEquilibrium[] = {
-    {&kRho}, {&kDelta}, {&kCells}, {.parameter = &kTemperature, .default_value = 1}};
 constexpr Model kModelsOfGasEquilibrium[] = {Model::kClosedForm, Model::kSpectrum, Model::kMarkov,
                                              Model::kBilliard, Model::kBilliardReference};
 constexpr Model kModelsOfConductivity[] = {Model::kSpectrum, Model::kMarkov, Model::kBilliard,
@@ -398,7 +392,7 @@ constexpr AimedEstimate kAimsOfGasEquilibrium[] = {
 
 constinit const ExperimentKind kGasEquilibrium = {.name = "gas-equilibrium",
                                                   .number = 6,
-                                                  .parameters = kParametersOfGasEquilibrium,
+                                                  .parameters = kParametersOfAPeriodicGas,
                                                   .unit = TargetUnit::kEither,
                                                   .models = kModelsOfGasEquilibrium,
                                                   .aims = kAimsOfGasEquilibrium,

@@ -20,6 +20,13 @@ namespace ballpiston {
 
 // Requires valid parameters.
 GasGeometry GasGeometryOf(const PointParameters& point, GasEnds ends);
+inline GasGeometry PeriodicGasOf(const PointParameters& point) {
+  return GasGeometryOf(point, GasEnds::kPeriodic);
+}
+
+// The parameters of an experiment with a periodic gas.
+inline constexpr ParameterUse kParametersOfAPeriodicGas[] = {
+    {&kRho}, {&kDelta}, {&kCells}, {.parameter = &kTemperature, .default_value = 1}};
 
 // Finds deltas beyond the gas's bound at the largest rho, and single precision, which gases do not
 // have.

@@ -10,8 +10,9 @@
 // of the batch means. Replicas run at temperature 1, and results are scaled.
 //
 // lambda_2 to lambda_N of N >= 3 balls have no standard error. Which vector takes over which ball
-// can depend on components below the rounding of larger ones: with numbers of 53 and of 64 bits
-// these exponents differ by up to 0.4 % (lambda_8 of eight cells), and all others not at all.
+// can depend on components below the rounding of larger ones: between numbers of 53 and of 64 bits
+// these exponents differ by 0.4 % (lambda_8 of eight cells) and less, and the others in no digit of
+// six.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -26,7 +27,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "core/arithmetic/elementary_functions.h"
-#include "core/ensemble/open_blocks.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/gas_tangents.h"
@@ -40,10 +40,6 @@ constexpr int64_t kMostCells = 32;
 
 // The batch means: of the entropy, of the exchanges, and of the exponents.
 enum GasRatio : size_t { kEntropyOfAll, kExchanges, kFirstExponent };
-
-GasGeometry PeriodicGas(const PointParameters& point) {
-  return GasGeometryOf(point, GasEnds::kPeriodic);
-}
 
 // The times of a replica at temperature 1. The last vectors have their directions after 3 mean
 // times between exchanges of a ball and a piston with one column, and after 20 with 16, as
@@ -142,12 +138,10 @@ std::vector<Measurement> Table(const GasGeometry& geometry, double temperature,
       {"exchange_rate", RatioAt(kExchanges), scale}};
   table[2].exact = GasExchangeRate(geometry, temperature);
   for (size_t k = 1; k + 1 < DegreesOfFreedom(geometry); ++k) table.push_back(exponent(k));
-  const auto first = std::ranges::find(table, aim, &Measurement::name);
-  std::rotate(table.begin(), first, first + 1);
-  return table;
+  return WithFirst(std::move(table), aim);
 }
 
-// Of an event with its tangent vectors, measured with 1 to 32 cells.
+// The time that an event takes with its tangent vectors, measured with 1 to 32 cells.
 double NanosecondsOfAnEvent(const GasGeometry& geometry) {
   const auto f = static_cast<double>(DegreesOfFreedom(geometry));
   return 70 + 37 * f + 1.7 * f * f;
@@ -156,7 +150,7 @@ double NanosecondsOfAnEvent(const GasGeometry& geometry) {
 class GasLyapunov : public GasExperiment {
  public:
   GasLyapunov(const EnsembleSpec& spec, const PointParameters& point)
-      : GasExperiment(spec, point, PeriodicGas(point), point[kTemperature]),
+      : GasExperiment(spec, point, PeriodicGasOf(point), point[kTemperature]),
         energy_(MeanEnergy(geometry())) {
     const size_t exponents = DegreesOfFreedom(geometry()) - 1;
     SetMeasurements({.batch_means = std::vector<BatchMeans>(kFirstExponent + exponents)},
@@ -184,8 +178,8 @@ class GasLyapunov : public GasExperiment {
   void AddDetails(const BlockResult&, PointSummary& summary) const override {
     if (geometry().balls() <= 2) return;
     summary.remarks.push_back(absl::StrFormat(
-        "lyapunov_2 to lyapunov_%d have no standard errors, because rounding changes them by up to "
-        "1 %%; it does not change the others",
+        "lyapunov_2 to lyapunov_%d have no standard errors, because they depend on rounding; the "
+        "others do not",
         geometry().balls()));
   }
 
@@ -261,7 +255,7 @@ void CheckCells(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
 // Both models are the reference with its tangent vectors. `wall_hit`: the nanoseconds of a wall hit
 // in the engine that the model has in other experiments.
 SampleWork WorkOfGasLyapunov(Model model, const PointParameters& point) {
-  const GasGeometry geometry = PeriodicGas(point);
+  const GasGeometry geometry = PeriodicGasOf(point);
   const double wall_hit = model == Model::kBilliardReference ? 60 : 2.7;
   const double time = Times(geometry).end;
   const HitRates rates = HitRatesOf(geometry.pair());
@@ -274,12 +268,12 @@ SampleWork WorkOfGasLyapunov(Model model, const PointParameters& point) {
 }
 
 double CollisionsOfAReplica(Model, const PointParameters& point) {
-  return Times::Exchanges(PeriodicGas(point));
+  return Times::Exchanges(PeriodicGasOf(point));
 }
 
 // A replica, with its tangent vectors, and the blocks in progress.
 double MemoryOfGasLyapunov(Model, const PointParameters& point) {
-  const auto f = static_cast<double>(DegreesOfFreedom(PeriodicGas(point)));
+  const auto f = static_cast<double>(DegreesOfFreedom(PeriodicGasOf(point)));
   return MemoryOfReplicas(Model::kBilliardReference, point) + 40 * f * (f + 2);
 }
 
@@ -289,9 +283,6 @@ double ErrorOfTheEntropy(Model, const PointParameters& point) {
   return 0.053 * std::pow(static_cast<double>(ShapeOf(point[kCells]).cells()), -0.45);
 }
 
-constexpr ParameterUse kParametersOfGasLyapunov[] = {
-    {&kRho}, {&kDelta}, {&kCells}, {.parameter = &kTemperature, .default_value = 1}};
-
 constexpr AimedEstimate kAimsOfGasLyapunov[] = {
     {.name = "lyapunov_1", .models = kBilliards, .error = ErrorOfTheFirst},
     {.name = "entropy_per_ball", .models = kBilliards, .error = ErrorOfTheEntropy}};
@@ -300,7 +291,7 @@ constexpr AimedEstimate kAimsOfGasLyapunov[] = {
 
 constinit const ExperimentKind kGasLyapunov = {.name = "gas-lyapunov",
                                                .number = 9,
-                                               .parameters = kParametersOfGasLyapunov,
+                                               .parameters = kParametersOfAPeriodicGas,
                                                .models = kBilliards,
                                                .aims = kAimsOfGasLyapunov,
                                                .create = CreateAs<GasLyapunov>,

@@ -11,7 +11,6 @@
 //
 // The billiard's lanes follow two tangent vectors. The reference follows six, and reports the other
 // four exponents and the sum of all six as they were measured.
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -126,7 +125,6 @@ class FollowedOrbits : public OrbitsInEquilibrium {
 
 bool IsByReference(Model model) { return model == Model::kBilliardReference; }
 
-// The row of the estimate `aim` comes first.
 std::vector<Measurement> Table(const PairGeometry& geometry, Model model, absl::string_view aim) {
   const auto ratio = [](std::string name, size_t index) {
     return Measurement{.name = std::move(name), .reading = RatioAt(index, kOrbitsPerCollision)};
@@ -144,9 +142,7 @@ std::vector<Measurement> Table(const PairGeometry& geometry, Model model, absl::
     }
     table.push_back(ratio("lyapunov_sum", kRatios + kFurtherRatios - 1));
   }
-  const auto first = std::ranges::find(table, aim, &Measurement::name);
-  std::rotate(table.begin(), first, first + 1);
-  return table;
+  return WithFirst(std::move(table), aim);
 }
 
 class LyapunovExperiment : public PairExperiment {

@@ -17,7 +17,7 @@ namespace {
 // more often. The smallest vector loses the square of this factor in precision.
 constexpr size_t kHitsOfABallTogether = 4;
 
-// Of components that are all 0.
+// The power of a degree of freedom whose position and velocity are 0.
 constexpr double kPowerOfZero = -1e15;
 
 // 2^power, for whole numbers up to 1023; 0 where it is below the normal numbers.
@@ -130,11 +130,9 @@ void GasTangents::ReflectBall(int64_t ball, const GasBall& after) {
 // The ball's components along the piston's axis change places with the piston's.
 void GasTangents::Exchange(const GasEvent& event, const GasBall& after) {
   Eigen::Vector2d& direction = directions_[static_cast<size_t>(event.ball)];
-  const bool is_along_x = IsAlongX(event.direction);
-  const auto turned = [is_along_x](const Eigen::Vector2d& u) {
-    return is_along_x ? u : Eigen::Vector2d(u.y(), -u.x());
-  };
-  const Eigen::Vector2d before = turned(direction), now = turned(after.direction);
+  const Direction axis = IsAlongX(event.direction) ? Direction::kRight : Direction::kUp;
+  const Eigen::Vector2d before = SeenToward(axis, direction);
+  const Eigen::Vector2d now = SeenToward(axis, after.direction);
   Freedom &across = Across(event.ball), &along = Along(event.ball);
   Freedom& piston = OfPiston(event.piston);
   for (size_t k = 0; k < growth_.size(); ++k) {

@@ -91,7 +91,7 @@ class GasTangents {
   std::vector<Freedom> freedoms_;            // of the balls, across and along, then of the pistons
   std::vector<Eigen::Vector2d> directions_;  // of the balls
   std::vector<double> growth_;
-  // Of one vector with all later ones, their products m 2^power.
+  // The scalar products of one vector with all later ones: m 2^power.
   std::vector<double> products_, powers_;
   size_t hits_ = 0;  // of walls by balls, since the vectors were orthonormal
 };

@@ -1,7 +1,7 @@
 """Comments of the project's C++ and protos, as text for the site.
 
-As a program it is Doxygen's input filter: it prints a header with its ordinary comments as those
-that Doxygen reads.
+Doxygen runs this file as a program for each header. The program prints the header, and changes its
+ordinary comments to the kind of comments that Doxygen reads.
 """
 
 import itertools

@@ -115,7 +115,8 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Answer(const Principal& caller, const J
   return job;
 }
 
-// What a client can change of a run.
+// Passes on the two changes that a client can make to a run: it is cancelled, or its priority
+// changes.
 void JobBook::TellScheduler(const JobRecord& row) {
   if (row.state == v1::EnsembleJob::CANCELLING) scheduler_.Cancel(row.sequence);
   scheduler_.SetPriority(row.sequence, row.priority);
