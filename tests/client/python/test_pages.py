@@ -46,7 +46,20 @@ def missing_files(page: Path, text: str) -> list[str]:
     named = re.compile(rf"(?:{'|'.join(pages.FOLDERS)}|scripts)/[a-z0-9_./-]+")
     paths = [code for code in pages.code_in_lines(text) if named.fullmatch(code)]
     folders = [PROJECT, page.parent]
-    return [path for path in paths if not any((folder / path).exists() for folder in folders)]
+    sources = [code for code in pages.code_in_lines(text) if _SOURCE.fullmatch(code)]
+    return [path for path in paths if not any((folder / path).exists() for folder in folders)] + [
+        name for name in sources if name not in source_names()
+    ]
+
+
+_SOURCE = re.compile(r"[a-z0-9_]+(?:-inl)?\.(?:h|cc|proto)")
+
+
+@functools.cache
+def source_names() -> set[str]:
+    """The names of all headers, sources and protos, which pages may name without their folder."""
+    files = (file for folder in pages.FOLDERS for file in (PROJECT / folder).rglob("*"))
+    return {file.name for file in files if _SOURCE.fullmatch(file.name)}
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(PROJECT)))
