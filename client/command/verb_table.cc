@@ -72,8 +72,7 @@ Value Budget() {
   return value;
 }
 
-// Shell completion offers the names for gas-equilibrium, the only experiment with a choice. The
-// server checks the name.
+// Shell completion offers the names of all experiments with a choice. The server checks the name.
 Value NameOfEstimate() {
   Value value = Text(
       "NAME",
