@@ -160,15 +160,14 @@ bool FolderExecutor::Report(const LeaseFileName& file) {
   const absl::StatusOr<std::string> bytes = files_->Read(path, offset);
   if (absl::IsUnavailable(bytes.status()) || absl::IsNotFound(bytes.status())) return false;
   absl::string_view rest = bytes.ok() ? absl::string_view(*bytes) : absl::string_view();
-  absl::Status status = bytes.status();
-  Lease lease;
-  if (laid != nullptr) {
-    lease = laid->lease;
-  } else if (status.ok()) {
-    status = TakeEarlier(rest, lease);
-  }
+  const auto lease_of_file = [&]() -> absl::StatusOr<Lease> {
+    if (!bytes.ok()) return bytes.status();
+    return laid != nullptr ? laid->lease : TakeEarlier(rest);
+  };
+  const absl::StatusOr<Lease> lease = lease_of_file();
+  absl::Status status = lease.status();
   while (status.ok() && !rest.empty()) {
-    status = ReportChunks(lease, rest);
+    status = ReportChunks(*lease, rest);
     if (laid != nullptr) laid->reported = offset + bytes->size() - rest.size();
   }
   if (absl::IsUnavailable(status)) return false;
@@ -179,14 +178,14 @@ bool FolderExecutor::Report(const LeaseFileName& file) {
 }
 
 // Takes the lease of an earlier process off the bytes of its file.
-absl::Status FolderExecutor::TakeEarlier(absl::string_view& bytes, Lease& lease) const {
+absl::StatusOr<Lease> FolderExecutor::TakeEarlier(absl::string_view& bytes) const {
   absl::StatusOr<LeaseFile> file = server_.read_lease(bytes);
   if (!file.ok()) return file.status();
   if (file->server != server_.identity) return absl::DataLossError("it is of another server");
-  lease = std::move(file->lease);
+  Lease lease = std::move(file->lease);
   lease.executor = capacity_.executor;
   lease.local = false;
-  return absl::OkStatus();
+  return lease;
 }
 
 // Reports one message, and takes it off the bytes unless it has to be reported later.

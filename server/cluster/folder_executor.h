@@ -28,6 +28,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/status/statusor.h"
 #include "server/compute/scheduler.h"
 #include "server/mutex.h"
 #include "server/periodic_thread.h"
@@ -117,7 +118,7 @@ class FolderExecutor : public Executor {
   absl::Status Collect();
   void NoteTaken(const LeaseFileName& file);
   bool Report(const LeaseFileName& file);
-  absl::Status TakeEarlier(absl::string_view& bytes, Lease& lease) const;
+  absl::StatusOr<Lease> TakeEarlier(absl::string_view& bytes) const;
   absl::Status ReportChunks(const Lease& lease, absl::string_view& bytes);
   void End(const LeaseFileName& file);
   void LookAt(Leases::iterator laid);

@@ -165,10 +165,9 @@ TEST_P(SlurmFault, GivesTheSameBytes) {
   Sweep sweep(GetParam().set_up);
   GetParam().tell(sweep);
   sweep.ExpectTheSameBytes();
-  const ClusterCounts counts = sweep.Counts();
-  EXPECT_EQ(counts.problem, "");
+  AwaitThat([&] { return sweep.Counts().problem.empty(); });
   if (GetParam().loses_leases) {
-    EXPECT_GT(counts.lost, 0);
+    EXPECT_GT(sweep.Counts().lost, 0);
   }
 }
 
@@ -215,8 +214,9 @@ TEST(Slurm, ATaskThatHangsIsComputedAgainAfterItsTimeLimit) {
 
 // ---- without faults ----
 
+// On a slow machine no lease is late either.
 TEST(Slurm, ASweepOnTheClusterGivesTheSameBytes) {
-  Sweep sweep;
+  Sweep sweep({.timeout_seconds = 900});
   sweep.Submit();
   sweep.AwaitRunningTasks();
   sweep.ExpectTheSameBytes();
@@ -224,7 +224,7 @@ TEST(Slurm, ASweepOnTheClusterGivesTheSameBytes) {
   EXPECT_GT(counts.chunks, 0);
   EXPECT_EQ(counts.lost, 0);
   EXPECT_EQ(counts.refused, 0);
-  EXPECT_EQ(counts.problem, "");
+  AwaitThat([&] { return sweep.Counts().problem.empty(); });
   EXPECT_NE(sweep.cluster().Tool({"sacct"}).exit_code, 0) << "the cluster has accounting";
 }
 

@@ -19,8 +19,9 @@ using google::protobuf::Struct;
 // A job of a few seconds is large enough, a lease takes some seconds, and Slurm is asked often.
 Words FlagsOf(const std::string& shared_folder, const SweepSetUp& set_up) {
   return Joined({{"--executor=slurm", "--cluster-folder", shared_folder, "--cluster-least-seconds",
-                  "2", "--slurm-query-seconds", "2", "--cluster-timeout-seconds", "10",
-                  "--cluster-lease-seconds", absl::StrCat(set_up.lease_seconds)},
+                  "2", "--slurm-query-seconds", "2", "--cluster-timeout-seconds",
+                  absl::StrCat(set_up.timeout_seconds), "--cluster-lease-seconds",
+                  absl::StrCat(set_up.lease_seconds)},
                  set_up.flags});
 }
 

@@ -25,6 +25,7 @@ struct SweepSetUp {
   Words cluster = {};  // lines of slurm.conf
   Words flags = {};    // of the server
   int lease_seconds = 3;
+  int timeout_seconds = 10;  // of a lease
   int samples = 1'000'000;
   int workers = 1;
 };
