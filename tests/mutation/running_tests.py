@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import os
 import re
 import shutil
@@ -18,8 +19,9 @@ _PARTS = 4  # of each program
 class Part:
     """A part of a program's tests, as a process."""
 
-    def __init__(self, program: Path, index: int, temporary: Path) -> None:
-        self._command = program
+    def __init__(self, program: Path, index: int, temporary: Path, processor: str) -> None:
+        """`processor`: seconds of processor time after which the kernel ends it, or `unlimited`."""
+        self._command = ["prlimit", f"--cpu={processor}:", "setpriv", "--pdeathsig", "KILL", program]
         self._environment = {
             **os.environ,
             "GTEST_FAIL_FAST": "1",
@@ -34,7 +36,7 @@ class Part:
         self.starts += 1
         with self.output.open("w") as output:
             self._process = subprocess.Popen(
-                ["setpriv", "--pdeathsig", "KILL", self._command],
+                self._command,
                 env=self._environment,
                 stdout=output,
                 stderr=output,
@@ -69,12 +71,14 @@ class Part:
 def first_failure(programs: list[Path], jobs: int, seconds: float, log: Path) -> str | None:
     """The first test that fails, or after so many seconds `hang: ` and the tests that still run.
 
-    `log` gets their output. A part that fails or hangs runs once more, and only the second time
-    counts, because a busy machine can make a test fail too.
+    A part also ends after a fifth of that in processor time: an endless loop needs no more on a
+    busy machine. `log` gets their output. A part that fails or hangs runs once more, and only the
+    second time counts, because a busy machine can make a test fail too.
     """
     temporary = Path(tempfile.mkdtemp(prefix="mutation-"))
     temporary.chmod(0o1777)  # like /tmp: a test is a server of several users
-    waiting = [Part(program, i, temporary) for program in programs for i in range(_PARTS)]
+    processor = "unlimited" if math.isinf(seconds) else str(math.ceil(seconds / 5))
+    waiting = [Part(it, i, temporary, processor) for it in programs for i in range(_PARTS)]
     running: list[Part] = []
     has_hung = False
     deadline = time.monotonic() + seconds

@@ -61,11 +61,15 @@ class FirstFailureTest(unittest.TestCase):
         self.assertEqual(self.first_failure(RUN + HANG), f"hang: {names}")
         self.assertEqual(self.hangs(), 2)
 
+    def test_an_endless_loop_ends_by_its_processor_time(self) -> None:
+        loop = f'[ "$GTEST_SHARD_INDEX" = 1 ] || exit 0\n{RUN}while :; do :; done'
+        self.assertEqual(self.first_failure(loop), "Suite.Test1 (exit status -24)")
+
     def test_a_part_that_has_ended_can_be_killed(self) -> None:
         program = self.folder / "program"
         program.write_text("#!/bin/sh\n")
         program.chmod(0o700)
-        part = running_tests.Part(program, 0, self.folder)
+        part = running_tests.Part(program, 0, self.folder, "unlimited")
         part.start()
         while not part.has_ended():
             pass
