@@ -13,7 +13,15 @@ namespace ballpiston {
 namespace {
 
 // Below $arrays is a folder for each array, NAME.NUMBER: the script, and for each task a file with
-// the number of its process.
+// the number of its process and the time when the process began. The system gives the number of an
+// ended process to another one, perhaps to the server, which must not be killed.
+constexpr char kProcesses[] = R"sh(
+born() { cut -d' ' -f22 "/proc/$1/stat" 2>/dev/null; }
+# Whether the process of the task's file lives. Sets $process.
+lives() {
+  read -r process time <"$1" && [ -n "$time" ] && [ "$(born "$process")" = "$time" ]
+}
+)sh";
 
 constexpr char kSbatch[] = R"sh(
 for word; do
@@ -27,7 +35,7 @@ mkdir "$array" && cat >"$array/script" || exit 1
 for task in $(seq 0 "$last"); do
   echo "$name" >>"$arrays/../started"
   SLURM_ARRAY_TASK_ID=$task setsid sh "$array/script" </dev/null >/dev/null 2>&1 &
-  echo $! >"$array/task.$task"
+  echo "$! $(born $!)" >"$array/task.$task"
 done
 echo $$
 )sh";
@@ -37,8 +45,7 @@ for word; do
   case $word in --name=*) name=${word#--name=} ;; esac
 done
 for file in "$arrays/$name".*/task.*; do
-  read -r process <"$file" && readlink "/proc/$process/exe" >/dev/null || continue
-  echo "RUNNING|None"
+  if lives "$file"; then echo "RUNNING|None"; fi
 done 2>/dev/null
 exit 0
 )sh";
@@ -47,7 +54,9 @@ constexpr char kScancel[] = R"sh(
 for word; do
   case $word in --name=*) name=${word#--name=} ;; esac
 done
-for file in "$arrays"/$name.*/task.*; do kill -KILL "$(cat "$file")"; done 2>/dev/null
+for file in "$arrays"/$name.*/task.*; do
+  if lives "$file"; then kill -KILL "$process"; fi
+done 2>/dev/null
 exit 0
 )sh";
 
@@ -59,7 +68,7 @@ StandInSlurm::StandInSlurm() {
   mkdir(folder_.File("programs").c_str(), 0700);
   const auto write = [&](const std::string& name, const char* script) {
     const std::string path = folder_.File("programs/" + name);
-    WriteFile(path, "#!/bin/sh\narrays='" + folder_.File("arrays") + "'" + script);
+    WriteFile(path, "#!/bin/sh\narrays='" + folder_.File("arrays") + "'" + kProcesses + script);
     chmod(path.c_str(), 0700);
   };
   write("sbatch", kSbatch);
