@@ -333,6 +333,20 @@ TEST_F(CommandLineTest, DeletePrintsEachDeletedJob) {
   EXPECT_EQ(outcome.out, "ensembleJobs/abc deleted\nensembleJobs/d deleted\n");
 }
 
+TEST_F(CommandLineTest, LabelsSelectTheJobsOfTheServersList) {
+  server_.ensemble.jobs.push_back(job());
+  job().set_name("ensembleJobs/d");
+  const Words words = {"delete", "--label", "run=7", "--yes"};
+  EXPECT_EQ(WithServer(words),
+            (Outcome{0, "ensembleJobs/d deleted\nensembleJobs/abc deleted\n", ""}));
+  const v1::ListEnsembleJobsRequest list = server_.ensemble.Asked().list.at(0);
+  EXPECT_EQ(list.labels().at("run"), "7");
+  EXPECT_THAT(list.states(), ElementsAre(v1::EnsembleJob::SUCCEEDED, v1::EnsembleJob::FAILED,
+                                         v1::EnsembleJob::CANCELLED));
+  server_.ensemble.jobs.clear();
+  EXPECT_EQ(WithServer(words).code, 5);
+}
+
 TEST_F(CommandLineTest, ListRequestsGridsForJsonOnly) {
   WithServer({"list"});
   WithServer({"list", "--format", "csv"});
