@@ -215,8 +215,9 @@ class Client::Reader : public WatchReader {
   // Within one life of the server progress never goes back.
   void Progressed(const v1::JobProgress& now) {
     if (now.points_done() < progress_.points_done() || now.samples() < progress_.samples()) {
-      throw Violation("progress", id_,
-                      absl::StrCat(now.ShortDebugString(), " after ", progress_.ShortDebugString()));
+      throw Violation(
+          "progress", id_,
+          absl::StrCat(now.ShortDebugString(), " after ", progress_.ShortDebugString()));
     }
     progress_ = now;
   }

@@ -25,7 +25,8 @@ void PrintReport(int) {
 void Watch(const std::string& what) {
   const char* const given = std::getenv("BALLPISTON_HANGS_AFTER");
   const double seconds = given == nullptr ? 15 * 60 : std::atof(given);
-  setitimer(ITIMER_REAL, nullptr, nullptr);
+  const itimerval off = {};
+  setitimer(ITIMER_REAL, &off, nullptr);
   std::snprintf(report, sizeof(report), "[  HANGS?  ] %s has not ended after %g s or more\n",
                 what.c_str(), seconds);
   const auto whole = static_cast<time_t>(seconds);
