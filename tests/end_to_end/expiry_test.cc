@@ -1,7 +1,5 @@
 // A server whose store is bounded: the oldest results expire, those of a pinned job stay, and an
 // expired question can be asked again.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <string>
 
@@ -73,20 +71,6 @@ TEST(Expiry, OldResultsExpireUnlessPinnedAndCanBeComputedAgain) {
     EXPECT_NE(NameOf(again), expired);
     EXPECT_EQ(PointsOf(again.out), PointsOf(old.out));
   }
-}
-
-TEST(Expiry, APointHasANameOfItsOwn) {
-  const TestServer server;
-  const std::string name = server.Submit(kQuickQuestion);
-  ASSERT_THAT(server.Client({"watch", name}), ExitsWith(0));
-  const google::protobuf::Struct one = server.Json({"result", name, "--point", "1"});
-  const google::protobuf::Struct all = server.Json({"result", name});
-  ASSERT_EQ(Length(At(one, "points")), 1);
-  EXPECT_EQ(At(one, "points", 0, "delta").number_value(),
-            At(all, "points", 1, "delta").number_value());
-  const ProcessResult beyond = server.Client({"result", name, "--point", "2"});
-  EXPECT_THAT(beyond, Not(ExitsWith(0)));
-  EXPECT_THAT(beyond.err, HasSubstr("results/2"));
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 // Figures, each from one command, and resumed after an interruption. What the figures compute is
 // tested in tests/client/python/test_figures.py.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 
 #include <filesystem>
@@ -118,37 +116,6 @@ TEST_F(FigureTest, QuickAndFullExcludeEachOther) {
   const ProcessResult result = server_.Client(Split("figure cell --quick --full --out " + folder_));
   EXPECT_THAT(result, ExitsWith(2));
   EXPECT_THAT(result.err, HasSubstr("--quick and --full exclude each other"));
-}
-
-TEST_F(FigureTest, ListPrintsTheNamesOfTheFigures) {
-  const ProcessResult result = server_.Client({"figure", "--list"});
-  EXPECT_THAT(result, ExitsWith(0));
-  for (const std::string name : {"cell",
-                                 "cell-3d",
-                                 "collision-surface",
-                                 "conductivity",
-                                 "full-counting",
-                                 "gas",
-                                 "hitting-time",
-                                 "ingoing-law",
-                                 "kernel",
-                                 "logarithm",
-                                 "lyapunov",
-                                 "markov-test",
-                                 "master-equation",
-                                 "mean-free-time",
-                                 "orbit",
-                                 "rates",
-                                 "relative-entropy",
-                                 "relaxation",
-                                 "section",
-                                 "slow-pistons",
-                                 "spectrum",
-                                 "speed-accuracy",
-                                 "stability",
-                                 "temperature-profile"}) {
-    EXPECT_THAT("\n" + result.out, HasSubstr("\n" + name + ": "));
-  }
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 // Ctrl-C, SIGTERM and SIGHUP while the client watches a job: the client ends at once, the job goes
 // on.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 
 #include <memory>

@@ -1,9 +1,6 @@
 // What users do with jobs: run, submit, watch, result, list, cancel, delete.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "tests/end_to_end/programs.h"
@@ -15,10 +12,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-ProcessResult RunQuick(const TestServer& server, const std::string& flags) {
-  return server.Client(Joined({{"run"}, kQuickQuestion, Split(flags)}));
-}
-
 TEST(Run, PrintsATableWithExactValues) {
   const TestServer server;
   const ProcessResult result =
@@ -29,53 +22,6 @@ TEST(Run, PrintsATableWithExactValues) {
   EXPECT_THAT(result.out, HasSubstr("mean_free_time_ball_piston"));
   EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 6);
   EXPECT_EQ(result.err, "");  // not a terminal: no progress
-}
-
-TEST(Run, JsonHasTheContractsShape) {
-  const TestServer server;
-  const auto json = server.Json(Joined({{"run"}, kQuickQuestion}));
-  EXPECT_THAT(At(json, "job", "name").string_value(), StartsWith("ensembleJobs/"));
-  EXPECT_EQ(At(json, "job", "state").string_value(), "SUCCEEDED");
-  EXPECT_EQ(At(json, "job", "spec", "seed").string_value(), "7");  // 64 bits: a string
-  EXPECT_EQ(Length(At(json, "points")), 2);
-  for (int i = 0; i < 2; ++i) {
-    EXPECT_EQ(At(json, "points", i, "index").number_value(), i);
-    EXPECT_EQ(At(json, "points", i, "parameters", "rho").number_value(), 0.53);
-    EXPECT_EQ(At(json, "points", i, "parameters", "delta").number_value(), i == 0 ? 0.2 : 0.1);
-    EXPECT_EQ(At(json, "points", i, "parameters", "epsilon").number_value(), 0.1);
-    EXPECT_EQ(At(json, "points", i, "parameters", "exponent").number_value(), 1);
-    EXPECT_EQ(At(json, "points", i, "model").string_value(), "BILLIARD");
-    EXPECT_EQ(At(json, "points", i, "samples").number_value(), 2000);
-    EXPECT_EQ(At(json, "points", i, "estimates", 0, "name").string_value(), "mean_hit_time");
-    EXPECT_GT(At(json, "points", i, "estimates", 0, "standard_error").number_value(), 0);
-    EXPECT_LT(std::abs(At(json, "points", i, "estimates", 0, "z_score").number_value()), 5);
-    EXPECT_EQ(At(json, "points", i, "kl_divergence", "cells").number_value(), 2000);
-    EXPECT_EQ(Length(At(json, "points", i, "histograms")), 2);
-    EXPECT_EQ(At(json, "points", i, "health", "escapes").number_value(), 0);
-    EXPECT_TRUE(At(json, "points", i, "health", "escapes").has_number_value());
-  }
-}
-
-TEST(Run, CsvAndJsonlHaveALineForEachEstimateOrPoint) {
-  const TestServer server;
-  const ProcessResult csv = RunQuick(server, "--format csv");
-  EXPECT_THAT(
-      csv.out,
-      StartsWith("rho,delta,epsilon,exponent,model,samples,name,value,"
-                 "standard_error,exact,z_score,model_error,noise_floor,limit\n0.53,0.2,0.1,1,"));
-  const ProcessResult jsonl = RunQuick(server, "--format jsonl");
-  EXPECT_EQ(std::count(jsonl.out.begin(), jsonl.out.end(), '\n'), 2);
-  ParseJson(jsonl.out.substr(0, jsonl.out.find('\n')));
-}
-
-TEST(Run, ProgressGoesToStandardErrorOnly) {
-  const TestServer server;
-  const ProcessResult bar = RunQuick(server, "--progress bar");
-  EXPECT_THAT(bar.err, HasSubstr("2/2 points"));
-  EXPECT_EQ(bar.out.find('\r'), std::string::npos);
-  const ProcessResult json = RunQuick(server, "--fresh --progress json");
-  const auto first = ParseJson(json.err.substr(0, json.err.find('\n')));
-  EXPECT_THAT(At(first, "job").string_value(), StartsWith("ensembleJobs/"));
 }
 
 TEST(Run, TakesASpecificationFromAFileOrStandardInput) {
@@ -94,6 +40,27 @@ TEST(Run, TakesASpecificationFromAFileOrStandardInput) {
   EXPECT_EQ(PointsOf(file.out), PointsOf(flags.out));
 }
 
+TEST(Run, ARepeatedQuestionIsAnsweredFromTheStoreUnlessItIsFresh) {
+  const TestServer server;
+  const auto run = [&](const Words& flags) {
+    const ProcessResult result =
+        server.Client(Joined({{"run", "--format", "json"}, kQuickQuestion, flags}));
+    EXPECT_THAT(result, ExitsWith(0));
+    return result;
+  };
+  const auto name = [](const ProcessResult& result) {
+    return At(ParseJson(result.out), "job", "name").string_value();
+  };
+  const ProcessResult first = run({}), again = run({}), fresh = run({"--fresh"});
+  EXPECT_THAT(again.err, StartsWith("answered from the store: " + name(first) + ", computed 2"));
+  EXPECT_EQ(name(again), name(first));
+  EXPECT_EQ(fresh.err, "");
+  EXPECT_NE(name(fresh), name(first));
+  for (const ProcessResult& later : {again, fresh}) {
+    EXPECT_EQ(PointsOf(later.out), PointsOf(first.out));
+  }
+}
+
 TEST(Submit, PrintsTheNameThatWatchAndResultTake) {
   const TestServer server;
   const ProcessResult submitted = server.Client(Joined({{"submit"}, kQuickQuestion}));
@@ -110,15 +77,6 @@ TEST(Submit, PrintsTheNameThatWatchAndResultTake) {
   EXPECT_THAT(list.out, HasSubstr(name + ",first-hit,succeeded,2,2,4000,"));
 }
 
-TEST(List, ShowsTheNewestFirst) {
-  const TestServer server;
-  const std::string older = server.Submit(kQuickQuestion);
-  const std::string newer = server.Submit(Joined({kQuickQuestion, {"--fresh"}}));
-  const auto json = server.Json({"list"});
-  EXPECT_EQ(At(json, "jobs", 0, "name").string_value(), newer);
-  EXPECT_EQ(At(json, "jobs", 1, "name").string_value(), older);
-}
-
 TEST(Cancel, StopsAJobOnce) {
   const TestServer server;
   const std::string job = server.Submit(kEndlessQuestion);
@@ -132,24 +90,6 @@ TEST(Cancel, StopsAJobOnce) {
   const ProcessResult result = server.Client({"result", job});
   EXPECT_THAT(result, ExitsWith(4));
   EXPECT_THAT(result.err, HasSubstr(job + " cancelled"));
-}
-
-TEST(Delete, RemovesAnEndedJob) {
-  const TestServer server;
-  const std::string job = server.Submit(kQuickQuestion);
-  EXPECT_THAT(server.Client({"watch", job}), ExitsWith(0));
-  EXPECT_THAT(server.Client({"delete", job}), ExitsWith(0));
-  EXPECT_THAT(server.Client({"result", job}), ExitsWith(5));
-  EXPECT_THAT(server.Client({"delete", job}), ExitsWith(5));
-}
-
-TEST(Result, OfAnActiveJobHoldsTheFinishedPoints) {
-  const TestServer server;
-  const std::string job = server.Submit(kEndlessQuestion);
-  const ProcessResult result = server.Client({"result", job, "--format", "json"});
-  EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_THAT(result.err, HasSubstr(job + " is still "));
-  EXPECT_EQ(Length(At(ParseJson(result.out), "points")), 0);
 }
 
 // The reader takes one line and ends: `ballpiston result JOB | head -n 1`.
@@ -175,16 +115,6 @@ TEST(Result, AFullDiskIsAnError) {
        .environment = CleanEnvironment(server.folder())});
   EXPECT_THAT(full, ExitsWith(4));
   EXPECT_THAT(full.err, HasSubstr("cannot write standard output: No space left"));
-}
-
-TEST(Analytic, AnswersWithoutAJob) {
-  const TestServer server;
-  const auto json =
-      server.Json(Split("analytic --rho 0.529561127988977 --delta 0.1,0.2 --epsilon 0.25,0.5"));
-  EXPECT_EQ(Length(At(json, "points")), 2);
-  EXPECT_DOUBLE_EQ(At(json, "points", 0, "lambda").number_value(), 0.3489125293076057);
-  EXPECT_EQ(At(json, "points", 1, "energies", 0, "phi").number_value(), 1);  // 2 sqrt(1/4)
-  EXPECT_EQ(Length(At(server.Json({"list"}), "jobs")), 0);
 }
 
 }  // namespace

@@ -1,6 +1,4 @@
 // The client is thin: its binary holds nothing of core or server.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <sstream>
 #include <string>

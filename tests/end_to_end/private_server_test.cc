@@ -1,7 +1,5 @@
 // The private server, which the client starts itself.
 #include <fcntl.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/file.h>
 #include <unistd.h>
@@ -98,14 +96,6 @@ TEST_F(PrivateServerTest, AServerLocksItsFolderAndWritesItsIdAndAddressThere) {
   EXPECT_EQ(Contents(State("server.address")), "unix:" + State("server.socket") + "\n");
 }
 
-TEST_F(PrivateServerTest, TheNextCommandFindsTheSameServer) {
-  ASSERT_THAT(Client(kRun), ExitsWith(0));
-  const std::vector<int> before = Servers();
-  const ProcessResult list = Client(kList);
-  EXPECT_EQ(Length(At(ParseJson(list.out), "jobs")), 1);
-  EXPECT_EQ(Servers(), before);
-}
-
 TEST_F(PrivateServerTest, ManyClientsAtOnceEndUpOnOneServer) {
   const ProcessOptions run = Command(Joined({kRun, {"--fresh"}}));  // each run creates a job
   std::vector<std::unique_ptr<Process>> clients;
@@ -142,23 +132,6 @@ TEST_F(PrivateServerTest, TheWatchingClientStartsAKilledServerAgain) {
   const ProcessResult result = run.Wait();
   EXPECT_THAT(result, ExitsWith(0));
   EXPECT_EQ(Length(At(ParseJson(result.out), "points")), 2);
-}
-
-TEST_F(PrivateServerTest, AServerThatCannotStartIsExplained) {
-  ProcessOptions options = Command({"list"});
-  options.environment["BALLPISTON_SERVER_PROGRAM"] = "/bin/false";
-  const ProcessResult result = RunProgram(options);
-  EXPECT_THAT(result, ExitsWith(3));
-  EXPECT_THAT(result.err, HasSubstr("/bin/false ended at once with exit status 1"));
-  EXPECT_THAT(result.err, HasSubstr(State("server.log")));
-}
-
-TEST_F(PrivateServerTest, ALongHomeWorksToo) {
-  ProcessOptions options = Command(kRun);
-  options.environment["HOME"] = home_.File(std::string(120, 'x'));
-  options.environment["TMPDIR"] = home_.path();
-  const ProcessResult result = RunProgram(options);
-  EXPECT_THAT(result, ExitsWith(0));
 }
 
 TEST_F(PrivateServerTest, StatusAsksTheRunningServerAndStartsNone) {

@@ -1,6 +1,5 @@
-// The same question gives the same bytes: whatever the number of workers, and through kill -9.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+// The same question gives the same bytes through kill -9. That the number of workers changes
+// nothing is tested in tests/server/restart_test.cc.
 #include <signal.h>
 
 #include <string>
@@ -14,7 +13,6 @@ namespace {
 const Words kQuestion = Split(
     "first-hit --rho 0.529561127988977 --delta 0.2,0.1 --epsilon 0.1,0.4 --exponent 1 --seed 11 "
     "--samples 300000");
-constexpr int kPoints = 4;
 
 std::string Points(const TestServer& server, const std::string& job) {
   const ProcessResult result = server.Client({"result", job, "--format", "json"});
@@ -22,41 +20,11 @@ std::string Points(const TestServer& server, const std::string& job) {
   return PointsOf(result.out);
 }
 
-std::string PointsWithWorkers(int workers) {
-  const TestServer server(workers);
+std::string UndisturbedPoints() {
+  const TestServer server;
   const std::string job = server.Submit(kQuestion);
   EXPECT_THAT(server.Client({"watch", job}), ExitsWith(0));
   return Points(server, job);
-}
-
-TEST(SameBytes, WithOneTwoAndEightWorkers) {
-  const std::string one = PointsWithWorkers(1);
-  EXPECT_EQ(Length(At(ParseJson("{" + one), "points")), kPoints);
-  EXPECT_EQ(PointsWithWorkers(2), one);
-  EXPECT_EQ(PointsWithWorkers(8), one);
-}
-
-// By every model that samples.
-TEST(SameBytes, OfRelaxationMarkovPropertyAndGasesWithOneAndTwoWorkers) {
-  const TestServer one(1), two(2);
-  for (const std::string question :
-       {"energy-relaxation --samples 500 --delta 0.2,0.1",
-        "energy-relaxation --samples 200 --delta 0.2 --epsilon 0.05,0.4",
-        "energy-relaxation --samples 2000 --delta 0.1 --model markov",
-        "energy-relaxation --tolerance 0.1 --delta 0.1 --model markov",
-        "markov-property --collisions 20000 --delta 0.2",
-        "markov-property --collisions 20000 --delta 0.2 --model markov",
-        "lyapunov --collisions 20000 --delta 0.2",
-        "gas-lyapunov --samples 64 --delta 0.19 --cells 2,2x2",
-        "gas-equilibrium --verify --samples 96 --delta 0.19 --cells 3,2x2 --temperature 1",
-        "gas-equilibrium --model markov --samples 200 --delta 0.19 --cells 3 --temperature 1",
-        "gas-conduction --samples 600 --delta 0.19,0.17 --cells 2 --hot 1.5 --cold 0.5",
-        "gas-conduction --samples 600 --delta 0.19 --cells 2x2 --hot 2 --cold 1 --model markov"}) {
-    const Words words = Split("run " + question + " --rho 0.5296 --seed 3 --format json");
-    const ProcessResult by_one = one.Client(words);
-    ASSERT_THAT(by_one, ExitsWith(0));
-    EXPECT_EQ(PointsOf(two.Client(words).out), PointsOf(by_one.out)) << question;
-  }
 }
 
 // The server is killed when the result of the second point waits to be written, and again after the
@@ -77,10 +45,10 @@ TEST(SameBytes, ThroughKillNineAndRestart) {
   EXPECT_EQ(server.AwaitEnd(), 128 + SIGKILL);
   server.Start();
   EXPECT_THAT(watch->Wait(), ExitsWith(0));
-  EXPECT_EQ(Points(server, job), PointsWithWorkers(2));
+  EXPECT_EQ(Points(server, job), UndisturbedPoints());
 }
 
-// The comparison of the tests above can fail.
+// The comparison of the test above can fail.
 TEST(SameBytes, AnotherSeedGivesOtherBytes) {
   const TestServer server;
   std::string points[2];

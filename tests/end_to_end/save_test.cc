@@ -1,7 +1,5 @@
 // Results in files: saved in each format, and computed again.
-#include <gmock/gmock.h>
 #include <google/protobuf/util/json_util.h>
-#include <gtest/gtest.h>
 
 #include <string>
 #include <vector>

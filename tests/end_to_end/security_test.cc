@@ -1,6 +1,4 @@
 // The programs with TLS and tokens, as an operator and a user use them.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -20,9 +18,7 @@
 namespace ballpiston {
 namespace {
 
-using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 class Security : public ::testing::Test {
  protected:

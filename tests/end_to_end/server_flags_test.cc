@@ -1,6 +1,4 @@
 // The flags of ballpistond: their spelling, their permitted values, and the file of --config.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -87,21 +85,6 @@ TEST(ServerFlags, HelpHasDefaultsRangesAndExitCodesInShortLines) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
 }
 
-TEST(ServerFlags, DataDirIsAlsoSpelledWithAnUnderscore) {
-  const TemporaryFolder home;
-  const std::string address = "unix:" + home.File("socket");
-  Process server(ServerCommand(
-      home, {"--listen", address, "--data_dir", home.File("data"), "--workers", "1"}));
-  ASSERT_TRUE(server.WaitForErr("listening on " + address));
-  for (const Words& spelling :
-       {Words{"--data-dir", home.File("data")}, Words{"--data-dir=" + home.File("data")},
-        Words{"--data_dir=" + home.File("data")}}) {
-    Words flags = spelling;
-    flags.push_back("--check");
-    EXPECT_THAT(Server(flags).out, HasSubstr("the store is sound"));
-  }
-}
-
 // ---- refusals ----
 
 TEST(ServerFlags, ARefusalNamesFlagValueAndPermittedValues) {
@@ -173,6 +156,26 @@ TEST(ServerFlags, AMissingOrEmptyValueIsRefused) {
       EXPECT_THAT(Refusal(flags), HasSubstr(flag + ": needs a value"));
     }
   }
+}
+
+TEST(ServerFlags, AServerThatCannotStartSaysWhyAndExits) {
+  const TestServer first({.listen = "127.0.0.1:0"});
+  const TemporaryFolder home;
+  WriteFile(home.File("file"), "not a folder");
+  const std::string socket = "unix:" + home.File("socket");
+  const struct {
+    std::string listen, data_dir;
+    int exit_code;
+    std::string message;
+  } rows[] = {{socket, first.data_dir(), 2, "in use by another ballpistond"},
+              {first.address(), home.File("data"), 2, first.address()},
+              {socket, home.File("file/data"), 6, "is not writable"}};
+  for (const auto& [listen, data_dir, exit_code, message] : rows) {
+    const ProcessResult second = RunServer(home, {"--listen", listen, "--data-dir", data_dir});
+    EXPECT_THAT(second, ExitsWith(exit_code));
+    EXPECT_THAT(second.err, HasSubstr(message));
+  }
+  EXPECT_THAT(first.Client({"list"}), ExitsWith(0));  // the first server still answers
 }
 
 // ---- the file of --config ----

@@ -1,6 +1,4 @@
 // `ballpiston server`: starts, finds, checks and stops servers of this machine.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 
 #include <filesystem>
@@ -67,13 +65,6 @@ TEST_F(ServerVerbTest, StartsAServerInAFolderWithFlags) {
   EXPECT_THAT(Server("stop", named_), ExitsWith(0));
 }
 
-TEST_F(ServerVerbTest, AWrongServerFlagIsReportedWithTheServersLastLogLine) {
-  const ProcessResult result = Server("start", Joined({named_, {"--", "--speed=3"}}));
-  EXPECT_THAT(result, ExitsWith(2));
-  EXPECT_THAT(result.err, HasSubstr("--speed"));
-  EXPECT_THAT(result.err, HasSubstr("server.log"));
-}
-
 // The lock file of a folder that another machine uses holds the number of a process of that
 // machine.
 TEST_F(ServerVerbTest, StopIgnoresProcessesThatDoNotUseTheFolder) {
@@ -88,12 +79,6 @@ TEST_F(ServerVerbTest, StopIgnoresProcessesThatDoNotUseTheFolder) {
   EXPECT_THAT(result, ExitsWith(3));
   EXPECT_THAT(result.err, HasSubstr("is on another machine"));
   EXPECT_EQ(kill(stranger.pid(), 0), 0);
-}
-
-TEST_F(ServerVerbTest, ThePrivateServerHasAnAddressOfItsOwn) {
-  const ProcessResult result = Server("start", {"--listen", "127.0.0.1:0"});
-  EXPECT_THAT(result, ExitsWith(2));
-  EXPECT_THAT(result.err, HasSubstr("--listen: "));
 }
 
 TEST_F(ServerVerbTest, MakesATokenForTheAccessFile) {

@@ -1,6 +1,4 @@
 // The figure that the program `method_comparison` measures, without a server.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 
 #include <filesystem>

@@ -1,7 +1,5 @@
 // The figure of the failures that the program `stability` counts, without a server. The figure
 // fails if a method fails where it promises not to.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <string>
 

@@ -1,6 +1,4 @@
 // Commands for a store, and limits of a server, as an operator uses them.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <filesystem>
 #include <string>
@@ -50,18 +48,6 @@ TEST(StoreCommands, AFileOfAnotherFormatIsRejectedWithExitCodeTwo) {
     EXPECT_THAT(result.err, HasSubstr("store.sqlite3"));
     EXPECT_EQ(result.out, "");
   }
-}
-
-TEST(StoreCommands, ExcludeEachOther) {
-  const TemporaryFolder home;
-  const std::string access = home.File("access");
-  const ProcessResult result =
-      RunServer(home, {"--data_dir", home.File("data"), "--check", "--backup=x", "--access-file",
-                       access, "--new-token=a:submit"});
-  EXPECT_THAT(result, ExitsWith(2));
-  EXPECT_THAT(result.err, HasSubstr("--new-token excludes --check"));
-  EXPECT_EQ(result.out, "");
-  EXPECT_FALSE(std::filesystem::exists(access));
 }
 
 TEST(Limits, ErrorsNameTheFlagOfTheLimit) {

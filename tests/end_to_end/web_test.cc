@@ -1,7 +1,5 @@
 // `ballpiston web` and `ballpiston report`: calls as curl and a browser make them, against a real
 // server.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <httplib.h>
 #include <signal.h>
 
@@ -120,39 +118,6 @@ TEST_F(WebTest, AJobIsSubmittedWatchedAndReadAsByTheClient) {
   };
   EXPECT_EQ(results->body,
             absl::StrCat("{\"results\":[", named(0), ",", named(1), "],\"next_page_token\":\"\"}"));
-}
-
-double CountsIn(const google::protobuf::Struct& point) {
-  double sum = 0;
-  for (const auto& count : At(point, "histograms", 0, "counts").list_value().values()) {
-    sum += count.number_value();
-  }
-  return sum;
-}
-
-TEST_F(WebTest, HistogramsOfARunningPointFillUp) {
-  const std::string job = server_.Submit(
-      Split("first-hit --rho 0.53 --delta 0.1 --epsilon 0.3 --exponent 1 --samples 1000000000000"));
-  const std::string name = absl::StrCat("{\"name\": \"", job, "/results/0\"");
-  const auto get = [&](const char* rest) {
-    return Post(std::string(kJobs) + "GetResult", name + rest);
-  };
-  EXPECT_EQ(get("}")->status, 404);
-  double before = 0;
-  int growths = 0;
-  AwaitThat([&] {
-    const httplib::Result now = get(", \"unfinished\": true}");
-    if (now->status == 404) return false;  // no worker has begun
-    EXPECT_EQ(now->status, 200) << now->body;
-    const auto point = ParseJson(now->body);
-    EXPECT_EQ(CountsIn(point), At(point, "samples").number_value());
-    EXPECT_EQ(Length(At(point, "histograms", 0, "expected_probabilities")), 1000);
-    if (CountsIn(point) > before) ++growths;
-    before = CountsIn(point);
-    return growths == 3 || HasFailure();
-  });
-  EXPECT_EQ(get("}")->status, 404);
-  EXPECT_THAT(server_.Client({"cancel", job}), ExitsWith(0));
 }
 
 TEST_F(WebTest, ErrorsHaveTheServersCodesReasonsAndViolations) {

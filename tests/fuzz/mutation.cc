@@ -1,8 +1,8 @@
 #include "tests/fuzz/mutation.h"
 
-#include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <string_view>
@@ -17,75 +17,56 @@ using google::protobuf::Reflection;
 
 constexpr int kLongestList = 12;
 
+using Double = std::numeric_limits<double>;
+constexpr double kInf = Double::infinity(), kNan = Double::quiet_NaN();
+constexpr double kMax = Double::max(), kMin = Double::min(), kTiny = Double::denorm_min();
+constexpr double kPaper = 0.529561127988977, kAboveHalf = 0.50000000000000011;
+constexpr double kBelowSqrt = 0.70710678118654746, kAboveSqrt = 0.70710678118654757;
+
 // Bounds of domains, and numbers outside every domain.
-constexpr std::array kNumbers = {0.0,
-                                 -0.0,
-                                 0.5,
-                                 0.25,
-                                 1.0 / 6,
-                                 0.1,
-                                 0.01,
-                                 1e-3,
-                                 1e-5,
-                                 1e-9,
-                                 0.53,
-                                 0.529561127988977,
-                                 0.6,
-                                 0.7,
-                                 0.70710678118654746,
-                                 0.70710678118654757,
-                                 0.50000000000000011,
-                                 1.0,
-                                 2.0,
-                                 60.0,
-                                 1000.0,
-                                 -1.0,
-                                 1e6,
-                                 1e300,
-                                 1e-300,
-                                 5e-324,
-                                 std::numeric_limits<double>::max(),
-                                 std::numeric_limits<double>::min(),
-                                 std::numeric_limits<double>::infinity(),
-                                 -std::numeric_limits<double>::infinity(),
-                                 std::numeric_limits<double>::quiet_NaN()};
+constexpr double kNumbers[] = {0,    0.1,   0.25,   0.5,        1.0 / 6,    0.53,       0.6,  0.7,
+                               1,    2,     60,     1e3,        1e6,        1e300,      kMax, kInf,
+                               kNan, -kInf, kPaper, kAboveHalf, kBelowSqrt, kAboveSqrt, -0.0, -1,
+                               0.01, 1e-3,  1e-5,   1e-9,       1e-300,     kMin,       kTiny};
 
-constexpr std::array<int64_t, 18> kIntegers = {0,
-                                               1,
-                                               2,
-                                               -1,
-                                               5,
-                                               50,
-                                               100,
-                                               1000,
-                                               1001,
-                                               10'000,
-                                               999'999'999,
-                                               1'000'000'000'000,
-                                               1'000'000'000'001,
-                                               std::numeric_limits<int32_t>::max(),
-                                               std::numeric_limits<int32_t>::min(),
-                                               std::numeric_limits<int64_t>::max(),
-                                               std::numeric_limits<int64_t>::min(),
-                                               7};
+constexpr int64_t kMost = std::numeric_limits<int64_t>::max();
+constexpr int64_t kLeast = std::numeric_limits<int64_t>::min();
+constexpr int64_t kIntegers[] = {0,
+                                 1,
+                                 2,
+                                 -1,
+                                 5,
+                                 7,
+                                 50,
+                                 100,
+                                 1000,
+                                 1001,
+                                 10'000,
+                                 999'999'999,
+                                 1'000'000'000'000,
+                                 1'000'000'000'001,
+                                 INT32_MAX,
+                                 INT32_MIN,
+                                 kMost,
+                                 kLeast};
 
-constexpr std::array<std::string_view, 12> kWords = {"",
-                                                     "ensembleJobs/",
-                                                     "ensembleJobs/0123456789abcdef",
-                                                     "123e4567-e89b-12d3-a456-426614174000",
-                                                     "am9iczo1",
-                                                     "am9iczo1MA",
-                                                     "\xff",
-                                                     "\xc3\xa9",
-                                                     "-",
-                                                     "4x3",
-                                                     "1000001",
-                                                     "type.googleapis.com/google.rpc.ErrorInfo"};
+constexpr std::string_view kWords[] = {"",
+                                       "-",
+                                       "\xff",
+                                       "\xc3\xa9",
+                                       "4x3",
+                                       "1000001",
+                                       "am9iczo1",
+                                       "am9iczo1MA",
+                                       "ensembleJobs/",
+                                       "ensembleJobs/0123456789abcdef",
+                                       "123e4567-e89b-12d3-a456-426614174000",
+                                       "type.googleapis.com/google.rpc.ErrorInfo"};
 
 double Number(Dice& dice, double now) {
   switch (dice.Below(4)) {
     case 0:
-      return kNumbers[dice.Below(kNumbers.size())];
+      return kNumbers[dice.Below(std::size(kNumbers))];
     case 1:
       return std::nextafter(now, dice.OneIn(2) ? -1e308 : 1e308);
     case 2:
@@ -99,7 +80,7 @@ double Number(Dice& dice, double now) {
 int64_t Integer(Dice& dice, int64_t now) {
   switch (dice.Below(3)) {
     case 0:
-      return kIntegers[dice.Below(kIntegers.size())];
+      return kIntegers[dice.Below(std::size(kIntegers))];
     case 1:
       return static_cast<int64_t>(static_cast<uint64_t>(now) + (dice.OneIn(2) ? 1u : ~uint64_t{0}));
     default:
@@ -108,7 +89,7 @@ int64_t Integer(Dice& dice, int64_t now) {
 }
 
 std::string Text(Dice& dice, std::string now) {
-  if (dice.OneIn(3)) return std::string(kWords[dice.Below(kWords.size())]);
+  if (dice.OneIn(3)) return std::string(kWords[dice.Below(std::size(kWords))]);
   MutateBytes(dice, now);
   return now;
 }
@@ -207,7 +188,7 @@ void MutateBytes(Dice& dice, std::string& bytes) {
       bytes.insert(at, 1, random);
       return;
     case 1:
-      bytes.insert(at, kWords[dice.Below(kWords.size())]);
+      bytes.insert(at, kWords[dice.Below(std::size(kWords))]);
       return;
     case 2:
       bytes.insert(at, std::to_string(Integer(dice, 0)));

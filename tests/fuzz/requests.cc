@@ -1,6 +1,6 @@
-// The requests of all calls; of GetServerStatus there is nothing to read.
+// The requests of all calls; of GetServerStatus there is nothing to read. That accepted questions
+// can be planned is checked by tests/questions.
 #include <cmath>
-#include <optional>
 
 #include "absl/strings/ascii.h"
 #include "absl/time/time.h"
@@ -8,12 +8,10 @@
 #include "ballpiston/v1/analytic.pb.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "ballpiston/v1/trace.pb.h"
-#include "core/model_choice/ladder.h"
 #include "server/book/acceptance.h"
 #include "server/book/job_name.h"
 #include "server/convert/analytic.h"
 #include "server/convert/errors.h"
-#include "server/convert/plan.h"
 #include "server/convert/spec.h"
 #include "server/convert/trace.h"
 #include "server/rpc/request_check.h"
@@ -40,33 +38,6 @@ void CheckCreateRequest(const v1::CreateEnsembleJobRequest& request, const std::
   Require(!server::PayloadOf(request).empty(), "a request has a hash");
   Require(server::QuestionOf(request.spec(), "1").empty() == request.spec().target().has_budget(),
           "a question has a hash, unless it depends on the machine");
-}
-
-// Planning takes longer than all else that is done with a request.
-constexpr size_t kMostPoints = 16;
-
-bool IsSize(const std::optional<double>& x) { return !x || (std::isfinite(*x) && *x >= 0); }
-
-void RequirePlanned(const EnsembleSpec& spec, size_t index) {
-  const PointParameters point = PointAt(spec, index);
-  Ladder ladder =
-      LadderFor(spec, point, Machine(), [](const PilotPlace&) { return std::optional<Pilot>(); });
-  ladder.DropPilot();
-  Require(ladder.Chosen().answers, "the chosen model answers");
-  const v1::PointPlan plan = server::PointPlanMessage(point, ladder);
-  for (const Rung& rung : ladder.rungs) {
-    Require(IsSize(rung.samples) && IsSize(rung.work), "samples and work are sizes");
-    Require(IsSize(rung.statistical_error) && IsSize(rung.model_error), "errors are sizes");
-    Require(!rung.reason.empty(), "a rung has a reason");
-  }
-  Require(plan.models_size() == static_cast<int>(ladder.rungs.size()), "every rung is told");
-}
-
-// PlanEnsembleJob: the ladder of an accepted specification, with no pilot run yet.
-void CheckPlanRequest(const v1::PlanEnsembleJobRequest& request, const std::string& /*bytes*/) {
-  const server::CheckedSpec checked = server::CheckSpec(request.spec());
-  if (!checked.violations.empty() || PointCount(checked.spec) > kMostPoints) return;
-  RequirePlanned(checked.spec, PointCount(checked.spec) - 1);
 }
 
 // ListResults: names, sizes and tokens of pages.
@@ -224,7 +195,6 @@ void CheckTraceRequest(const v1::TraceOrbitRequest& request, const std::string& 
 std::vector<FuzzTarget> RequestTargets() {
   return {
       OfMessage<v1::CreateEnsembleJobRequest, CheckCreateRequest>("create_request"),
-      OfMessage<v1::PlanEnsembleJobRequest, CheckPlanRequest>("plan_request"),
       OfMessage<v1::ListResultsRequest, CheckListRequest>("list_request"),
       OfMessage<v1::ListEnsembleJobsRequest, CheckListJobsRequest>("list_jobs_request"),
       OfMessage<v1::CancelEnsembleJobRequest, CheckJobRequest>("job_request"),

@@ -85,11 +85,13 @@ std::string Repeated(const std::string& text) {
   return repeated;
 }
 
-// A log message with any text of a client stays one well-formed line.
+// A log message with any text of a client stays one well-formed line that keeps its last field.
 void CheckLogLine(const std::string& text) {
   const std::string message = IsOneIn(63, text) ? Repeated(text) : text;
-  RequireOneLine(server::LogLine(server::Severity::kError, message,
-                                 {{"principal", message}, {"seconds", 0.5}}));
+  const std::string line = server::LogLine(server::Severity::kError, message,
+                                           {{"principal", message}, {"seconds", 0.5}});
+  RequireOneLine(line);
+  Require(line.ends_with("seconds=0.5)\n"), "the last field stays");
 }
 
 std::vector<std::string> Texts() {

@@ -1,4 +1,4 @@
-// Asks many questions, shrinks those that break a check, and prints what became of them.
+// Asks many questions, and prints what became of them.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,6 @@ struct Size {
   uint64_t questions = 300;
   // Questions that are planned above this processor time are started and stopped.
   double most_seconds = 0.01;
-  bool is_nightly = false;  // reports wrong plans and late cancels too
 };
 
 // The size of `make test`, or the one that the environment chooses (README.md).
@@ -24,10 +23,9 @@ Size SizeFromEnvironment();
 
 using Asker = std::function<Report(const Question&)>;
 
-// Prints the counts by experiment and outcome, the seconds of each check and, if it is nightly,
-// plans that were wrong by more than a factor of 5 and cancels of more than 2 s. Prints each kind
-// of failure when it is found: the broken check, and the command that shows it. Returns the number
-// of questions that break a check.
+// Prints the counts by experiment and outcome, and the seconds of each check. Prints each kind of
+// failure when it is found: the broken check, and the command that shows it. Returns the number of
+// questions that break a check.
 int AskAll(const std::string& name, const Size& size, const Asker& ask);
 
 }  // namespace ballpiston::questions

@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "gmock/gmock.h"
+#include "google/protobuf/text_format.h"
 #include "tests/questions/agreement_check.h"
 #include "tests/questions/answer_check.h"
 #include "tests/questions/finite_check.h"
@@ -29,50 +31,43 @@ v1::EnsembleSpec QuestionWithASmallRho() {
   return spec;
 }
 
-v1::PointResult GoodResult() {
-  v1::PointResult result;
-  result.set_model(v1::EnsembleSpec::BILLIARD);
-  result.set_samples(1000);
-  v1::Estimate& estimate = *result.add_estimates();
-  estimate.set_name("mean_hit_time");
-  estimate.set_value(10);
-  estimate.set_standard_error(0.1);
-  estimate.set_model_error(0);
-  return result;
+template <typename Message>
+Message FromText(const std::string& text) {
+  Message message;
+  EXPECT_TRUE(google::protobuf::TextFormat::MergeFromString(text, &message)) << text;
+  return message;
 }
 
-TEST(Checks, AGoodAnswerPasses) {
-  EXPECT_THAT(CheckAnswer(QuestionWithASmallRho(), GoodResult()), IsEmpty());
+// A later value replaces an earlier one.
+v1::PointResult ResultWith(const std::string& estimate, const std::string& more = "") {
+  return FromText<v1::PointResult>(
+      "model: BILLIARD samples: 1000 estimates { name: 'mean_hit_time' value: 10 model_error: 0 " +
+      estimate + " } " + more);
 }
 
 TEST(Checks, EveryDefectOfAnAnswerIsFound) {
-  v1::PointResult result = GoodResult();
-  result.mutable_estimates(0)->set_exact(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_THAT(CheckAnswer(QuestionWithASmallRho(), result), Breaks(kFiniteCheck));
-
-  for (const double error : {0.0, 1e-17}) {
-    result = GoodResult();
-    result.mutable_estimates(0)->set_standard_error(error);
-    EXPECT_THAT(CheckAnswer(QuestionWithASmallRho(), result), Breaks(kFalseZeroCheck)) << error;
+  const std::string error = "standard_error: 0.1";
+  const struct {
+    v1::PointResult result;
+    const char* broken;  // null: none
+  } rows[] = {{ResultWith(error), nullptr},
+              {ResultWith(error + " exact: nan"), kFiniteCheck},
+              {ResultWith("standard_error: 0"), kFalseZeroCheck},
+              {ResultWith("standard_error: 1e-17"), kFalseZeroCheck},
+              {ResultWith(""), kMeasuredCheck},
+              {ResultWith("", "remarks: 'too few returns'"), nullptr},
+              {ResultWith(error, "samples: 0"), kMeasuredCheck},
+              {ResultWith(error, "health { escapes: 1 }"), kHealthCheck},
+              {ResultWith(error, "histograms { expected_probabilities: 0.99999 }"), kLawCheck}};
+  for (const auto& [result, broken] : rows) {
+    SCOPED_TRACE(result.ShortDebugString());
+    const Findings findings = CheckAnswer(QuestionWithASmallRho(), result);
+    if (broken == nullptr) {
+      EXPECT_THAT(findings, IsEmpty());
+    } else {
+      EXPECT_THAT(findings, Breaks(broken));
+    }
   }
-
-  result = GoodResult();
-  result.mutable_estimates(0)->clear_standard_error();
-  EXPECT_THAT(CheckAnswer(QuestionWithASmallRho(), result), Breaks(kMeasuredCheck));
-  result.add_remarks("too few returns");
-  EXPECT_THAT(CheckAnswer(QuestionWithASmallRho(), result), IsEmpty());
-
-  result = GoodResult();
-  result.set_samples(0);
-  EXPECT_THAT(CheckAnswer(QuestionWithASmallRho(), result), Breaks(kMeasuredCheck));
-
-  result = GoodResult();
-  result.mutable_health()->set_escapes(1);
-  EXPECT_THAT(CheckAnswer(QuestionWithASmallRho(), result), Breaks(kHealthCheck));
-
-  result = GoodResult();
-  result.add_histograms()->add_expected_probabilities(1 - 1e-5);
-  EXPECT_THAT(CheckAnswer(QuestionWithASmallRho(), result), Breaks(kLawCheck));
 }
 
 TEST(Checks, ASummaryWithoutANumberIsFound) {
@@ -85,27 +80,15 @@ TEST(Checks, ASummaryWithoutANumberIsFound) {
 }
 
 TEST(Checks, EveryDefectOfAPlanIsFound) {
-  v1::PointPlan good;
-  good.set_model(v1::EnsembleSpec::BILLIARD);
-  v1::ModelPlan& model = *good.add_models();
-  model.set_model(v1::EnsembleSpec::BILLIARD);
-  model.set_answers(true);
-  model.set_samples(64);
-  model.set_work(0.1);
-  EXPECT_THAT(CheckPlan(good), IsEmpty());
-
-  v1::PointPlan plan = good;
-  plan.mutable_models(0)->set_samples(0);
-  EXPECT_THAT(CheckPlan(plan), Breaks(kPlanCheck));
-  plan = good;
-  plan.mutable_models(0)->clear_work();
-  EXPECT_THAT(CheckPlan(plan), Breaks(kPlanCheck));
-  plan = good;
-  plan.mutable_models(0)->set_work(1e115);
-  EXPECT_THAT(CheckPlan(plan), Breaks(kPlanCheck));
-  plan = good;
-  plan.set_model(v1::EnsembleSpec::MARKOV);
-  EXPECT_THAT(CheckPlan(plan), Breaks(kPlanCheck));
+  const auto plan = [](const std::string& numbers, const std::string& more = "") {
+    return CheckPlan(FromText<v1::PointPlan>(
+        "model: BILLIARD models { model: BILLIARD answers: true " + numbers + " } " + more));
+  };
+  EXPECT_THAT(plan("samples: 64 work: 0.1"), IsEmpty());
+  EXPECT_THAT(plan("samples: 0 work: 0.1"), Breaks(kPlanCheck));
+  EXPECT_THAT(plan("samples: 64"), Breaks(kPlanCheck));
+  EXPECT_THAT(plan("samples: 64 work: 1e115"), Breaks(kPlanCheck));
+  EXPECT_THAT(plan("samples: 64 work: 0.1", "model: MARKOV"), Breaks(kPlanCheck));
 }
 
 TEST(Checks, MemoryBeyondThePlanIsFound) {
@@ -134,24 +117,18 @@ TEST(Checks, ARefusalNeedsFieldValueAndRange) {
 }
 
 TEST(Checks, ADifferenceBeyondTheErrorsIsFound) {
-  const auto with = [](double value, double error, double model_error) {
-    v1::PointResult result = GoodResult();
-    result.mutable_estimates(0)->set_value(value);
-    result.mutable_estimates(0)->set_standard_error(error);
-    result.mutable_estimates(0)->set_model_error(model_error);
-    return result;
-  };
-  EXPECT_THAT(Disagreements({with(10, 0.1, 0), with(10.7, 0.1, 0)}), IsEmpty());
-  EXPECT_THAT(Disagreements({with(10, 0.1, 0), with(10.8, 0.1, 0)}), Breaks(kAgreementCheck));
-  EXPECT_THAT(Disagreements({with(10, 0.1, 0), with(10.8, 0.1, 0.2)}), IsEmpty());
+  const auto with = [](const std::string& estimate) { return ResultWith(estimate); };
+  const v1::PointResult ten = with("standard_error: 0.1");
+  EXPECT_THAT(Disagreements({ten, with("value: 10.7 standard_error: 0.1")}), IsEmpty());
+  EXPECT_THAT(Disagreements({ten, with("value: 10.8 standard_error: 0.1")}),
+              Breaks(kAgreementCheck));
+  EXPECT_THAT(Disagreements({ten, with("value: 10.8 standard_error: 0.1 model_error: 0.2")}),
+              IsEmpty());
+  EXPECT_THAT(Disagreements({with("standard_error: 0.1 exact: 10.6")}), Breaks(kAgreementCheck));
 
-  v1::PointResult unknown = with(20, 0.1, 0);
+  v1::PointResult unknown = with("value: 20 standard_error: 0.1");
   unknown.mutable_estimates(0)->clear_model_error();
-  EXPECT_THAT(Disagreements({with(10, 0.1, 0), unknown}), IsEmpty());
-
-  v1::PointResult wrong = with(10, 0.1, 0);
-  wrong.mutable_estimates(0)->set_exact(10.6);
-  EXPECT_THAT(Disagreements({wrong}), Breaks(kAgreementCheck));
+  EXPECT_THAT(Disagreements({ten, unknown}), IsEmpty());
 }
 
 }  // namespace

@@ -119,11 +119,9 @@ class Asking {
 
   bool Stop() {
     report_.outcome = "stopped";
-    const double start = ProcessorSeconds();
     const PeakMemory peak;
     StartAndStop(SpecOfPoint(0), 0, ladders_[0].answer);
     Add(CheckMemory(PlannedMemory(0), peak.Bytes()));
-    report_.cancel_seconds = ProcessorSeconds() - start;
     return true;
   }
 

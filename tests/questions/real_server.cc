@@ -50,7 +50,6 @@ class Conversation {
     const auto job =
         Timed("server: create", [&] { return client_.Create(question_.spec, {.fresh = true}); });
     if (!job.ok()) return Failed(job.status());
-    report_.planned = plan->work();
     // A pilot takes seconds, and a plan knows it.
     const bool is_long = !(plan->work() <= most_seconds);
     const auto end = is_long ? Timed("server: cancel", [&] { return Cancel(job->name()); })
@@ -130,14 +129,11 @@ class Conversation {
     const auto begun = AwaitState(
         name, [](v1::EnsembleJob::State state) { return state != v1::EnsembleJob::QUEUED; });
     if (!begun.ok()) return begun.status();
-    const absl::Time start = absl::Now();
     const auto cancelled = client_.Cancel(name);
     if (!cancelled.ok() && !absl::IsFailedPrecondition(cancelled.status())) {
       return cancelled.status();
     }
-    const auto end = AwaitEnd(name);
-    report_.cancel_seconds = absl::ToDoubleSeconds(absl::Now() - start);
-    return end;
+    return AwaitEnd(name);
   }
 
   void Judge(const v1::EnsembleJob& job) {
@@ -145,7 +141,6 @@ class Conversation {
     switch (job.state()) {
       case v1::EnsembleJob::SUCCEEDED:
         report_.outcome = "answered";
-        report_.spent = job.work();
         return JudgeResults(job);
       case v1::EnsembleJob::CANCELLED:
         report_.outcome = "cancelled";

@@ -29,7 +29,6 @@ std::string Text(const Report& report) {
   for (const auto& [check, seconds] : report.seconds) {
     absl::StrAppend(&text, "seconds\t", check, "\t", seconds, "\n");
   }
-  absl::StrAppend(&text, "cancel\t", report.cancel_seconds, "\n");
   return text;
 }
 
@@ -38,7 +37,6 @@ Report ReportFromText(const std::string& text) {
   for (const auto& line : absl::StrSplit(text, '\n')) {
     const std::vector<std::string> words = absl::StrSplit(line, '\t');
     if (words[0] == "outcome" && words.size() == 2) report.outcome = words[1];
-    if (words[0] == "cancel" && words.size() == 2) report.cancel_seconds = Number(words[1]);
     if (words.size() != 3) continue;
     if (words[0] == "finding") report.findings.push_back({words[1], Unescaped(words[2])});
     if (words[0] == "seconds") report.seconds[words[1]] = Number(words[2]);

@@ -18,9 +18,6 @@ struct Report {
   std::string outcome;  // answered, refused, stopped, ...
   Findings findings = {};
   std::map<std::string, double> seconds = {};  // by check
-  double planned = 0;         // processor seconds of a computed answer; 0: not compared
-  double spent = 0;           // likewise
-  double cancel_seconds = 0;  // from the wish to stop to the end
 
   bool Breaks(const std::string& check) const {
     for (const Finding& finding : findings) {

@@ -3,13 +3,10 @@
 #include <utility>
 #include <vector>
 
-#include "gtest/gtest.h"
-#include "tests/server/factory_opener.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/server/requests.h"
 #include "tests/server/running_server.h"
+#include "tests/server/spec_message.h"
 #include "tests/server/store_access.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/server/worker/sample_leases.h"
 
 namespace ballpiston::server {
 namespace {
@@ -22,91 +19,25 @@ TestServerOptions InFolder(const TemporaryFolder& folder, int workers = 2,
   return {.data_dir = folder.path(), .workers = workers, .factory = std::move(factory)};
 }
 
-// All these questions name the model, because a held-up experiment has no reason for its choice.
-v1::EnsembleSpec FirstHitByBilliard() {
-  v1::EnsembleSpec spec = SmallFirstHit();
-  spec.set_model(v1::EnsembleSpec::BILLIARD);
-  return spec;
-}
-
-v1::EnsembleSpec SmallEquilibrium() {
-  v1::EnsembleSpec spec = Equilibrium(3, 5000, 7);
-  spec.set_model(v1::EnsembleSpec::BILLIARD);
-  return spec;
-}
-
-v1::EnsembleSpec SmallMeanFreeTime() {
-  v1::EnsembleSpec spec = SmallFirstHit();
-  spec.set_experiment(v1::EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME);
-  spec.set_model(v1::EnsembleSpec::BILLIARD);
-  spec.mutable_grid()->clear_exponent();
-  return spec;
-}
-
-v1::EnsembleSpec SmallRelaxation(v1::EnsembleSpec::Model model) {
-  v1::EnsembleSpec spec = SmallFirstHit();
-  spec.set_experiment(v1::EnsembleSpec::ENERGY_RELAXATION);
-  spec.set_model(model);
-  spec.mutable_grid()->clear_epsilon();
-  spec.mutable_grid()->clear_exponent();
-  spec.mutable_target()->set_samples(1024);
-  return spec;
-}
-
-v1::EnsembleSpec SmallMarkovProperty() {
-  v1::EnsembleSpec spec = SmallRelaxation(v1::EnsembleSpec::BILLIARD);
-  spec.set_experiment(v1::EnsembleSpec::MARKOV_PROPERTY);
-  spec.mutable_target()->set_collisions(8192);
-  return spec;
-}
-
-v1::EnsembleSpec SmallGas(v1::EnsembleSpec::Experiment experiment, v1::EnsembleSpec::Model model) {
-  v1::EnsembleSpec spec = SmallRelaxation(model);
-  spec.set_experiment(experiment);
-  spec.mutable_grid()->clear_delta();
-  for (const double delta : {0.19, 0.17, 0.15}) spec.mutable_grid()->add_delta(delta);
-  spec.mutable_grid()->add_cells("1");
-  if (experiment == v1::EnsembleSpec::GAS_EQUILIBRIUM) {
-    spec.mutable_grid()->add_temperature(2);
-  } else {
-    spec.mutable_grid()->add_hot(2);
-    spec.mutable_grid()->add_cold(1);
-  }
-  // Two chunks of replicas, or four stages of trajectories, of which half a point has one and a
-  // half.
-  const bool is_steady = experiment == v1::EnsembleSpec::GAS_CONDUCTION;
-  spec.mutable_target()->set_samples(is_steady ? 1000 : 96);
-  return spec;
-}
-
-std::vector<v1::EnsembleSpec> AllExperiments() {
-  return {FirstHitByBilliard(),
-          SmallEquilibrium(),
-          SmallMeanFreeTime(),
-          SmallRelaxation(v1::EnsembleSpec::BILLIARD),
-          SmallMarkovProperty(),
-          SmallGas(v1::EnsembleSpec::GAS_EQUILIBRIUM, v1::EnsembleSpec::BILLIARD),
-          SmallGas(v1::EnsembleSpec::GAS_CONDUCTION, v1::EnsembleSpec::BILLIARD)};
-}
-
-// The results of a server. If `factory` is null, it runs the core's experiments.
-std::vector<std::string> BytesAt(int workers, const v1::EnsembleSpec& spec,
-                                 ExperimentFactory factory = nullptr) {
-  RunningServer server({.workers = workers, .factory = std::move(factory)});
-  return server.ResultBytes(server.Succeeded(spec));
-}
-
+// Of every experiment, by every model that samples: the core's experiments, not fake ones.
 TEST(Restart, TheSameBytesAtOneTwoAndEightWorkers) {
-  std::vector<v1::EnsembleSpec> specs = AllExperiments();
-  specs.push_back(SmallFirstHit());  // AUTO, which gives a reason
-  specs.push_back(SmallRelaxation(v1::EnsembleSpec::MARKOV));
-  specs.push_back(SmallGas(v1::EnsembleSpec::GAS_EQUILIBRIUM, v1::EnsembleSpec::MARKOV));
-  specs.push_back(SmallGas(v1::EnsembleSpec::GAS_CONDUCTION, v1::EnsembleSpec::MARKOV));
-  for (const v1::EnsembleSpec& spec : specs) {
-    const std::vector<std::string> one = BytesAt(1, spec);
-    EXPECT_FALSE(one.empty());
-    EXPECT_EQ(BytesAt(2, spec), one);
-    EXPECT_EQ(BytesAt(8, spec), one);
+  std::vector<v1::EnsembleSpec> specs = {
+      SmallFirstHit()};  // six points; AUTO, which gives a reason
+  for (const EnsembleSpec& spec : EverySampledSpec()) specs.push_back(SpecMessage(spec));
+  const auto bytes_at = [&](int workers) {
+    RunningServer server({.workers = workers, .factory = nullptr});
+    std::vector<std::vector<std::string>> bytes;
+    for (const v1::EnsembleSpec& spec : specs) {
+      bytes.push_back(server.ResultBytes(server.Succeeded(spec)));
+    }
+    return bytes;
+  };
+  const auto one = bytes_at(1), two = bytes_at(2), eight = bytes_at(8);
+  for (size_t i = 0; i < specs.size(); ++i) {
+    SCOPED_TRACE(specs[i].ShortDebugString());
+    EXPECT_FALSE(one[i].empty());
+    EXPECT_EQ(two[i], one[i]);
+    EXPECT_EQ(eight[i], one[i]);
   }
 }
 

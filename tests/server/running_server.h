@@ -1,4 +1,5 @@
-// A whole server in the test's process, and clients of it.
+// A whole server in the test's process, and clients of it. What most tests of a server use comes
+// with this header: fake experiments, requests, matchers of errors, waits, temporary folders.
 //
 //   RunningServer server;  // fake experiments, a Unix socket in a temporary folder
 //   const std::string name = server.Submit(Equilibrium(2, 50));
@@ -20,9 +21,12 @@
 #include "grpcpp/channel.h"
 #include "grpcpp/security/credentials.h"
 #include "server/ballpiston_server.h"
+#include "tests/server/error_details.h"
 #include "tests/server/factory_opener.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/requests.h"
 #include "tests/support/await.h"
+#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {

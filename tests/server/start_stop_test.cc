@@ -10,20 +10,13 @@
 #include <string>
 #include <utility>
 
-#include "gmock/gmock.h"
 #include "grpcpp/generic/generic_stub.h"
 #include "tests/server/call_by_name.h"
-#include "tests/server/fake_experiments.h"
 #include "tests/server/hanging_disk.h"
 #include "tests/server/http_get.h"
-#include "tests/server/requests.h"
-#include "tests/server/running_server.h"
 #include "tests/server/secure_server.h"
 #include "tests/server/unread_call.h"
-#include "tests/support/await.h"
 #include "tests/support/files.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
 namespace {
@@ -121,6 +114,7 @@ TEST(StartStop, HungClientsDoNotDelayAStop) {
   watch.Send(request.SerializeAsString());
   UnreadCall health(server.channel(), kWatchHealth);
   health.Send(kWholeServer);
+  const UnreadCall without_message(server.channel(), kGetJob);
   server.Shutdown(std::chrono::milliseconds(300));
   EXPECT_THAT(CallByName(server.channel(), kCheckHealth), StatusIs(grpc::StatusCode::UNAVAILABLE));
 }
@@ -164,7 +158,8 @@ TEST(StartStop, HealthIsServedForTheWholeAndForEachService) {
   }
 }
 
-TEST(StartStop, OnlyTheServiceThatNeedsTheStoreStopsServingWhileTheDiskHangs) {
+// One thread runs the calls, so a call that waited for the disk would block all later ones.
+TEST(StartStop, WhileTheDiskHangsCallsThatWriteAreRefusedAndReadsAnswered) {
   HangingDisk disk;
   RunningServer server({.store = {.stall = std::chrono::milliseconds(1), .vfs = disk.vfs()}});
   const auto is_serving = [&] {
@@ -175,6 +170,12 @@ TEST(StartStop, OnlyTheServiceThatNeedsTheStoreStopsServingWhileTheDiskHangs) {
   AwaitThat([&] { return !is_serving(); });
   EXPECT_EQ(HealthOf(server, ""), kServing);
   EXPECT_EQ(HealthOf(server, "ballpiston.v1.AnalyticService"), kServing);
+  EXPECT_EQ(server.Status().state(), v1::ServerStatus::STORE_FAILING);
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_THAT(server.Create(CreateRequest(Equilibrium(1, 1))),
+                IsError(grpc::StatusCode::UNAVAILABLE, "STORE_FAILED"));
+    EXPECT_EQ(server.List().jobs_size(), 0);
+  }
   disk.Resume();
   AwaitThat(is_serving);
 }

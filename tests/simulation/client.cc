@@ -193,19 +193,35 @@ class Client::Reader : public WatchReader {
   bool Write(const v1::WatchEnsembleJobResponse& message) override {
     world_.machine.Sleep(world_.machine.UpTo(kLongestRead));
     if (call_->is_over() || world_.machine.Chance(kLeaves)) return false;
+    if (chain_.has_ended) throw Violation("watch", id_, "a message after the end");
     chain_.token = message.resume_token();
     for (const v1::PointResult& point : message.snapshot().finished_points()) {
       world_.tell(absl::StrCat("watch ", id_, ": point ", point.index()));
       chain_.points.push_back(point);
       chain_.points.back().clear_name();  // results of the book have none
     }
-    if (message.has_job()) Saw(message.job().state());
+    if (message.has_job()) {
+      Progressed(message.job().progress());
+      Saw(message.job().state());
+    } else if (message.has_snapshot()) {
+      Progressed(message.snapshot().progress());
+    }
     world_.expectations.Watched(id_, chain_.points, state_);
     before_ = world_.expectations.Known(id_);  // of the next message
     return true;
   }
 
  private:
+  // Within one life of the server progress never goes back.
+  void Progressed(const v1::JobProgress& now) {
+    if (now.points_done() < progress_.points_done() || now.samples() < progress_.samples()) {
+      throw Violation(
+          "progress", id_,
+          absl::StrCat(now.ShortDebugString(), " after ", progress_.ShortDebugString()));
+    }
+    progress_ = now;
+  }
+
   void Saw(v1::EnsembleJob::State state) {
     world_.tell(absl::StrCat("watch ", id_, ": ", v1::EnsembleJob::State_Name(state)));
     world_.expectations.Saw(id_, before_, state);
@@ -218,6 +234,7 @@ class Client::Reader : public WatchReader {
   const std::string id_;
   Chain& chain_;
   KnownJob before_;
+  v1::JobProgress progress_;
   v1::EnsembleJob::State state_ = v1::EnsembleJob::QUEUED;
   const Principal caller_ = LocalPrincipal();
 };

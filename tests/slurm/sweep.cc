@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <cstdio>
+#include <iostream>
 #include <map>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "tests/support/await.h"
 
 namespace ballpiston {
@@ -67,18 +66,7 @@ Sweep::Sweep(SweepSetUp set_up) : set_up_(std::move(set_up)), cluster_(set_up_.c
 }
 
 Sweep::~Sweep() {
-  KeepCounts();
-  const testing::TestInfo* const test = testing::UnitTest::GetInstance()->current_test_info();
-  absl::PrintF(
-      "%s: %.0f s; by the cluster: %g chunks; %g leases lost, %g files refused, %g queries%s\n",
-      test->name(), Seconds(), earlier_.chunks, earlier_.lost, earlier_.refused, earlier_.queries,
-      notes_);
-  std::fflush(stdout);
-  if (testing::Test::HasFailure()) absl::PrintF("%s\n", server_->log());
-}
-
-double Sweep::Seconds() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  if (testing::Test::HasFailure()) std::cerr << server_->log() << std::endl;
 }
 
 void Sweep::Submit() { job_ = server_->Submit(SweepOf(set_up_.samples)); }
@@ -88,21 +76,10 @@ ClusterCounts Sweep::Counts() const {
   const google::protobuf::Value& cluster = At(status, "cluster");
   const auto number = [&](const char* key) { return At(cluster, key).number_value(); };
   return {.problem = At(cluster, "problem").string_value(),
-          .waiting = number("waiting_workers"),
-          .running = number("running_workers"),
           .leases = number("waiting_leases") + number("taken_leases"),
           .chunks = number("chunks"),
           .lost = number("lost_leases"),
-          .refused = number("refused_files"),
-          .queries = number("queries")};
-}
-
-void Sweep::KeepCounts() {
-  const ClusterCounts now = Counts();
-  earlier_.chunks += now.chunks;
-  earlier_.lost += now.lost;
-  earlier_.refused += now.refused;
-  earlier_.queries += now.queries;
+          .refused = number("refused_files")};
 }
 
 void Sweep::AwaitTasks() const {
@@ -123,7 +100,6 @@ std::vector<pid_t> Sweep::Workers() const {
 }
 
 void Sweep::KillServer() {
-  KeepCounts();
   server_->KillHard();
   server_->Start();
 }

@@ -1,7 +1,6 @@
 // A real server with a Slurm cluster, and one job that is large enough for the cluster.
 #pragma once
 
-#include <chrono>
 #include <memory>
 #include <string>
 
@@ -16,9 +15,8 @@ Words SweepOf(int samples, int seed = 11);
 
 struct ClusterCounts {
   std::string problem;
-  double waiting = 0, running = 0;  // workers
   double leases = 0;
-  double chunks = 0, lost = 0, refused = 0, queries = 0;
+  double chunks = 0, lost = 0, refused = 0;
 };
 
 struct SweepSetUp {
@@ -33,7 +31,7 @@ struct SweepSetUp {
 class Sweep {
  public:
   explicit Sweep(SweepSetUp set_up = {});  // the cluster and the server run
-  ~Sweep();                                // prints a line with what was counted
+  ~Sweep();                                // prints the server's log if the test failed
 
   const Cluster& cluster() const { return cluster_; }
   TestServer& server() { return *server_; }
@@ -51,19 +49,12 @@ class Sweep {
   // Waits for the end. The test fails unless the job succeeded, each point has the number of
   // samples that was asked for, and the bytes are those of a server that has threads alone.
   void ExpectTheSameBytes();
-  void Note(const std::string& what) { notes_ += "; " + what; }
 
  private:
-  double Seconds() const;  // since the constructor began
-  void KeepCounts();
-
   const SweepSetUp set_up_;
-  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   const Cluster cluster_;
   std::unique_ptr<TestServer> server_;
   std::string job_;
-  ClusterCounts earlier_;  // of the server's processes that were killed
-  std::string notes_;
 };
 
 }  // namespace ballpiston

@@ -1,87 +1,58 @@
 #include "tests/support/watchdog.h"
 
+#include <signal.h>
+#include <sys/time.h>
 #include <unistd.h>
 
-#include <chrono>
-#include <condition_variable>
+#include <cstdio>
 #include <cstdlib>
-#include <mutex>
+#include <cstring>
 #include <string>
-#include <thread>
 
-#include "absl/strings/str_cat.h"
 #include "gtest/gtest.h"
 
 namespace ballpiston {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+// What the signal handler prints, which may not allocate.
+char report[500];
 
-std::chrono::duration<double> Patience() {
-  const char* const seconds = std::getenv("BALLPISTON_HANGS_AFTER");
-  return std::chrono::duration<double>(seconds == nullptr ? 15 * 60 : std::atof(seconds));
+void PrintReport(int) {
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, report, std::strlen(report));
 }
 
-void Write(const std::string& text) {
-  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
+// From now on the timer prints that this has not ended.
+void Watch(const std::string& what) {
+  const char* const given = std::getenv("BALLPISTON_HANGS_AFTER");
+  const double seconds = given == nullptr ? 15 * 60 : std::atof(given);
+  const itimerval off = {};
+  setitimer(ITIMER_REAL, &off, nullptr);
+  std::snprintf(report, sizeof(report), "[  HANGS?  ] %s has not ended after %g s or more\n",
+                what.c_str(), seconds);
+  const auto whole = static_cast<time_t>(seconds);
+  const timeval time = {whole,
+                        static_cast<suseconds_t>(1e6 * (seconds - static_cast<double>(whole)))};
+  const itimerval again_and_again = {.it_interval = time, .it_value = time};
+  setitimer(ITIMER_REAL, &again_and_again, nullptr);
 }
-
-// Watches the current test or set-up, or the program's end. It is never destroyed.
-class Watchdog {
- public:
-  Watchdog() {
-    Start("the beginning of the program");
-    std::thread([this] { Watch(); }).detach();
-  }
-
-  void Start(const std::string& what) {
-    const std::lock_guard lock(mutex_);
-    // Made beforehand, because a hanging thread may hold the allocator's lock.
-    report_ = absl::StrCat("[  HANGS?  ] ", what, " has not ended after ", patience_.count(),
-                           " s or more\n");
-    SetDeadline();
-    changed_.notify_one();
-  }
-
- private:
-  void Watch() {
-    std::unique_lock lock(mutex_);
-    while (true) {
-      changed_.wait_until(lock, deadline_);
-      if (Clock::now() < deadline_) continue;
-      Write(report_);
-      SetDeadline();
-    }
-  }
-
-  void SetDeadline() {
-    deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(patience_);
-  }
-
-  const std::chrono::duration<double> patience_ = Patience();
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::string report_;
-  Clock::time_point deadline_;
-};
 
 class WatchedTests : public testing::EmptyTestEventListener {
  public:
   void OnTestStart(const testing::TestInfo& test) override {
-    watchdog_.Start(absl::StrCat(test.test_suite_name(), ".", test.name()));
+    Watch(std::string(test.test_suite_name()) + "." + test.name());
   }
-  void OnTestEnd(const testing::TestInfo&) override { watchdog_.Start("a set-up"); }
-  void OnTestProgramEnd(const testing::UnitTest&) override {
-    watchdog_.Start("the end of the program");
-  }
-
- private:
-  Watchdog& watchdog_ = *new Watchdog;
+  void OnTestEnd(const testing::TestInfo&) override { Watch("a set-up"); }
+  void OnTestProgramEnd(const testing::UnitTest&) override { Watch("the end of the program"); }
 };
 
 }  // namespace
 
 void WatchTests() {
+  struct sigaction action = {};
+  action.sa_handler = PrintReport;
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGALRM, &action, nullptr);
+  Watch("the beginning of the program");
   testing::UnitTest::GetInstance()->listeners().Append(new WatchedTests);  // gtest owns it
 }
 

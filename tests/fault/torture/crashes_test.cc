@@ -22,7 +22,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr int kJobs = 10;
 constexpr int kDeaths = 3;
@@ -94,22 +93,6 @@ TEST(Crashes, OneJobFailsAndTheOthersHaveTheirBytes) {
                     HasSubstr(absl::StrCat("job=", names.back())), HasSubstr("seed: 13")));
   findings.Count("deaths", kDeaths);
   findings.Count("other jobs with the same bytes", same);
-}
-
-// Whatever is computed when it comes.
-TEST(Crashes, AKillFromOutsideCountsForNothing) {
-  ConnectedServer server;
-  const std::vector<std::string> names = SubmitAll(server, {Endless()});
-  for (int life = 0; life < 2 * kDeaths; ++life) {
-    server.Start();
-    AwaitThat([&] { return OrThrow(server.NewClient().Get(names[0])).progress().samples() > 0; });
-    server.KillHard();
-  }
-  server.Start();
-  AwaitThat([&] {
-    return OrThrow(server.NewClient().Get(names[0])).state() == v1::EnsembleJob::RUNNING;
-  });
-  EXPECT_THAT(server.log(), Not(HasSubstr("died")));
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "client/library/job_watch.h"
 #include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
+#include "tests/fault/torture/hung_readers.h"
 #include "tests/fault/torture/questions.h"
 #include "tests/fault/torture/sizes.h"
 #include "tests/support/await.h"
@@ -145,6 +146,15 @@ class LiveWatchers : public testing::Test {
     }
   }
 
+  // From SIGTERM to the process's end.
+  double SecondsToStop(const std::string& clients) {
+    const auto start = Clock::now();
+    EXPECT_EQ(server_.Stop(), 0);
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    findings_.Note("seconds to stop, " + clients, absl::StrFormat("%.2f", seconds));
+    return seconds;
+  }
+
   double Health(const std::string& when) {
     grpc::GenericStub stub(server_.Connect());
     const double p99 = HealthP99(stub, Size(10, 2000));
@@ -185,13 +195,21 @@ TEST_F(LiveWatchers, DoNotDelayTheStop) {
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, server_.NewClient().Create(Endless()));
   Attach(Size(100, 1000), job.name());
   AwaitHeard(1);
-  const auto start = Clock::now();
-  EXPECT_EQ(server_.Stop(), 0);
-  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  findings_.Note("seconds to stop", absl::StrFormat("%.2f", seconds));
+  const double seconds = SecondsToStop("live watchers");
   for (LiveWatcher& watcher : watchers_) EXPECT_FALSE(watcher.AwaitOk());
   if (HoldsToTimes()) {
     EXPECT_LT(seconds, kDrainSeconds);
+  }
+}
+
+// The server waits for them until its time to drain is over.
+TEST_F(LiveWatchers, ThatStallDoNotDelayTheStopMuch) {
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job,
+                       server_.NewClient().Create(ManyPoints(20'000, 1'000)));
+  const HungReaders stalled(20, server_.address(), job.name());
+  const double seconds = SecondsToStop("stalled watchers");
+  if (HoldsToTimes()) {
+    EXPECT_LT(seconds, kDrainSeconds + 1);
   }
 }
 

@@ -2,15 +2,13 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 
-#include <chrono>
 #include <string>
 
-#include "tests/fault/torture/bare_engine.h"
 #include "tests/fault/torture/connected_server.h"
+#include "tests/fault/torture/costs.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"
 #include "tests/fault/torture/sizes.h"
-#include "tests/fault/torture/windows.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::torture {
@@ -20,9 +18,6 @@ constexpr double kMostOverhead = 0.02;
 // A busy machine may interrupt the short form at any moment, but processor time does not count
 // waiting.
 constexpr double kMostRatioOfShortForm = 3;
-// A window has at least ten blocks, so an incomplete block at its end does not matter.
-constexpr double kLeastSamples = 10 * 65536;
-
 // Programs and threads that this thread starts meanwhile run on the first cores only, because other
 // programs may slow some cores more than others.
 class OnFirstCores {
@@ -44,28 +39,22 @@ class OnFirstCores {
   cpu_set_t before_;
 };
 
-// Runs the same question on both in turn. While one computes, the other is stopped.
+// The same question for both in turn. While the engine computes, the server is idle.
 void Compare(int workers, const std::string& name, Findings& findings) {
   const OnFirstCores pinned(workers);
-  const v1::EnsembleSpec question = Endless();
-  BareEngine engine(question, workers);
+  const v1::EnsembleSpec question = ManyPoints(1, Size(300'000, 10'000'000));
   ConnectedServer server({.workers = workers});
   server.Start();
   const client::Client client = server.NewClient();
-  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, client.Create(question));
-  const std::chrono::milliseconds length(HoldsToTimes() ? 300 : 30);
-  engine.Run(length);  // both warm
-  ServerWindow(server, client, job.name(), length);
-  PairedRatio processor, wall;
-  for (int i = 0; i < Size(1, 400); ++i) {
-    const Window with = ServerWindow(server, client, job.name(), length, kLeastSamples);
-    const Window bare = engine.RunInsteadOf(server, length, kLeastSamples);
-    processor.Add(with.ProcessorCost(), bare.ProcessorCost());
-    wall.Add(with.Cost(), bare.Cost());
-    findings.Count("pairs of windows");
+  ServerCost(server, client, question);  // both warm
+  EngineCost(question);
+  PairedRatio processor;
+  for (int i = 0; i < Size(1, 60); ++i) {
+    const double with = ServerCost(server, client, question);
+    processor.Add(with, EngineCost(question));
+    findings.Count("pairs of answers");
   }
   findings.Note("processor time a sample, " + name, processor.Text());
-  findings.Note("time a sample, " + name, wall.Text());
   EXPECT_LT(processor.ratio(), kMostRatioOfShortForm) << name;
   if (HoldsToTimes()) {
     EXPECT_LT(processor.ratio() - 1, kMostOverhead + 2 * processor.StandardError()) << name;

@@ -1,5 +1,6 @@
 // Stalled readers use bounded memory in the server, and no time of the engine.
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include <algorithm>
 #include <chrono>
@@ -8,13 +9,12 @@
 #include <thread>
 
 #include "absl/strings/str_format.h"
-#include "tests/fault/torture/bare_engine.h"
 #include "tests/fault/torture/connected_server.h"
+#include "tests/fault/torture/costs.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/hung_readers.h"
 #include "tests/fault/torture/questions.h"
 #include "tests/fault/torture/sizes.h"
-#include "tests/fault/torture/windows.h"
 #include "tests/support/await.h"
 
 namespace ballpiston::torture {
@@ -44,22 +44,18 @@ class StalledReaders : public testing::Test {
     AwaitThat([&] { return Finished() >= std::min(points, kPoints); });
   }
 
-  // The cost of a sample, relative to the bare engine at the same time, because the machine's speed
-  // changes.
-  struct Costs {
-    double processor = 0, time = 0;
-  };
-  Costs Look() {
-    Window server, bare;
-    for (int i = 0; i < windows_; ++i) {
-      server += ServerWindow(server_, *client_, name_, length_);
-      bare += engine_.RunInsteadOf(server_, length_);
-    }
-    return {server.ProcessorCost() / bare.ProcessorCost(), server.Cost() / bare.Cost()};
+  // The processor time of a sample, relative to that of the engine alone, because the machine's
+  // speed changes.
+  double Cost() {
+    const double cost = ServerCost(server_, *client_, name_, least_samples_);
+    server_.Signal(SIGSTOP);
+    const double engine = EngineCost(reference_);
+    server_.Signal(SIGCONT);
+    return cost / engine;
   }
 
   struct Stalled {
-    Costs costs;
+    double cost = 0;
     int silent = 0;    // readers that got no message meanwhile
     int finished = 0;  // points, meanwhile
   };
@@ -67,17 +63,17 @@ class StalledReaders : public testing::Test {
     HungReaders hung(readers_, server_.address(), name_);
     std::this_thread::sleep_for(to_stall_);
     const int first = Finished();
-    const Costs costs = Look();
+    const double cost = Cost();
     most_mib_ = std::max(most_mib_, server_.ResidentMiB() - mib_without_);
     AwaitFinished(first + kFinishedMeanwhile);  // otherwise silence would prove nothing
     const int last = Finished();
     // A message made at either of the two moments may have either number.
-    return {costs, hung.WakeAndCountSilent(first, last), last - first};
+    return {cost, hung.WakeAndCountSilent(first, last), last - first};
   }
 
   // Measures with stalled readers, and checks that they have stalled. If the server was too busy to
   // send them enough in time, new readers get more time.
-  Costs LookWithStalled() {
+  double CostWithStalled() {
     Stalled stalled = LookWithReaders();
     while (stalled.silent < readers_ && to_stall_ < kLongestToStall) {
       to_stall_ *= 2;
@@ -86,31 +82,30 @@ class StalledReaders : public testing::Test {
     findings_.Count("readers stalled", readers_);
     findings_.Count("of which were told nothing meanwhile", stalled.silent);
     findings_.Count("points that finished meanwhile", stalled.finished);
-    return stalled.costs;
+    return stalled.cost;
   }
 
   // The order alternates, because the cost of the question grows with time.
   void Round(bool stalled_first) {
-    Costs stalled;
-    if (stalled_first) stalled = LookWithStalled();
+    double stalled = 0;
+    if (stalled_first) stalled = CostWithStalled();
     std::this_thread::sleep_for(pause_);  // the time to recover
-    const Costs quiet = Look();
-    if (!stalled_first) stalled = LookWithStalled();
-    processor_.Add(stalled.processor, quiet.processor);
-    time_.Add(stalled.time, quiet.time);
+    const double quiet = Cost();
+    if (!stalled_first) stalled = CostWithStalled();
+    processor_.Add(stalled, quiet);
   }
 
   const int readers_ = Size(10, 250);
-  const int windows_ = Size(1, 15);
-  const std::chrono::milliseconds length_{HoldsToTimes() ? 300 : 50}, pause_{Size(150, 2000)};
+  const double least_samples_ = Size(30'000, 10'000'000);
+  const v1::EnsembleSpec reference_ = ManyPoints(1, Size(100'000, 5'000'000));
+  const std::chrono::milliseconds pause_{Size(150, 2000)};
   std::chrono::milliseconds to_stall_ = pause_;
   Findings findings_{"stalled readers"};
-  BareEngine engine_{Endless(), kWorkers};
   ConnectedServer server_;
   std::optional<client::Client> client_;
   std::string name_;
   double mib_without_ = 0;
-  PairedRatio processor_, time_;
+  PairedRatio processor_;
   double most_mib_ = 0;
 };
 
@@ -121,7 +116,6 @@ TEST_F(StalledReaders, UseBoundedMemoryAndNoEngineTime) {
   findings_.Count("readers at once", readers_);
   findings_.Note("most memory of all, MiB", absl::StrFormat("%.1f", most_mib_));
   findings_.Note("processor time a sample, with over without", processor_.Text());
-  findings_.Note("time a sample, with over without", time_.Text());
   EXPECT_EQ(findings_.count("of which were told nothing meanwhile"),
             findings_.count("readers stalled"));
   EXPECT_GE(findings_.count("points that finished meanwhile"), kFinishedMeanwhile * rounds);

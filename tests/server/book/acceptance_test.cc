@@ -2,30 +2,14 @@
 #include "server/book/acceptance.h"
 
 #include <functional>
-#include <limits>
 #include <map>
-#include <memory>
-#include <mutex>
-#include <set>
-#include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
-#include "gmock/gmock.h"
-#include "server/book/job_book.h"
-#include "server/book/job_name.h"
 #include "server/store/job_table.h"
-#include "tests/server/error_details.h"
-#include "tests/server/factory_opener.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/server/requests.h"
+#include "tests/server/book/book_test.h"
 #include "tests/server/running_server.h"
 #include "tests/server/store_access.h"
-#include "tests/server/thread_pool.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
 namespace {
@@ -34,70 +18,10 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using v1::EnsembleJob;
 
-constexpr uint64_t kFailingSeed = 13;
-constexpr uint64_t kHeldSeed = 14;
-
-const Principal kAnn{"ann", Role::kSubmit};
-const Principal kBen{"ben", Role::kSubmit};
-const Principal kRoot{"root", Role::kAdmin};
-
 v1::EnsembleSpec Question(uint64_t seed = 1) { return Equilibrium(2, 5, seed); }
 
-// Jobs with the seeds above fail, or wait at the gate.
-class AcceptanceTest : public testing::Test {
+class AcceptanceTest : public BookTest {
  protected:
-  AcceptanceTest() { Start({}); }
-  ~AcceptanceTest() override { Stop(); }
-
-  // A new process of the server, on the same store.
-  void Start(const Limits& limits) {
-    Stop();
-    limits_ = limits;
-    ASSERT_OK_AND_ASSIGN(store_,
-                         Store::Open(folder_.File("store"),
-                                     {.delay = std::chrono::milliseconds(1), .stall = kNever}));
-    pool_ = std::make_unique<ThreadPool>(2, Experiments());
-    book_ = std::make_unique<JobBook>(*store_, limits_, pool_->scheduler());
-    ASSERT_OK(book_->Resume());
-  }
-
-  void Stop() {
-    book_.reset();
-    pool_.reset();
-    store_.reset();
-  }
-
-  ExperimentFactory Experiments() {
-    return FakeExperimentsBySeed([this](uint64_t seed, size_t, uint64_t, std::stop_token stop) {
-      if (seed == kFailingSeed) throw std::runtime_error("the ball left the cell");
-      if (seed == kHeldSeed) gate_.Pass(stop);
-    });
-  }
-
-  absl::StatusOr<EnsembleJob> Create(const Principal& caller,
-                                     const v1::CreateEnsembleJobRequest& request) {
-    return book_->Create(caller, request, CheckSpec(request.spec()));
-  }
-
-  // The id of the created or returned job.
-  std::string Id(const Principal& caller, const v1::CreateEnsembleJobRequest& request) {
-    const auto job = Create(caller, request);
-    EXPECT_OK(job);
-    return job.ok() ? *JobIdOf(job->name()) : "";
-  }
-
-  EnsembleJob::State AwaitEnd(const std::string& id) {
-    AwaitThat([&] { return HasEnded(book_->Get(kRoot, id)->state()); });
-    return book_->Get(kRoot, id)->state();
-  }
-
-  // Creates a job, waits for SUCCEEDED, and returns its id.
-  std::string Answered(const Principal& caller, const v1::CreateEnsembleJobRequest& request) {
-    const std::string id = Id(caller, request);
-    EXPECT_EQ(AwaitEnd(id), EnsembleJob::SUCCEEDED);
-    return id;
-  }
-
   // Expects that the request creates a new job.
   void ExpectComputed(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
                       const std::string& earlier) {
@@ -106,28 +30,37 @@ class AcceptanceTest : public testing::Test {
     EXPECT_FALSE(job.answered_from_store());
   }
 
-  std::vector<EnsembleJob> Jobs() {
-    return book_
-        ->List(kRoot, {.before = std::numeric_limits<int64_t>::max(),
-                       .max_jobs = 1000,
-                       .max_bytes = std::numeric_limits<size_t>::max()})
-        ->jobs;
-  }
-
-  std::vector<std::string> ActiveJobs() {
-    std::vector<std::string> ids;
-    for (const EnsembleJob& job : Jobs()) {
-      if (!HasEnded(job.state())) ids.push_back(*JobIdOf(job.name()));
+  // With three jobs of ann that wait at the gate, of one point each, the caller's request is
+  // refused because of the limit of 3.
+  void ExpectLimit(const Limits& limits, const std::string& reason, const std::string& flag,
+                   const Principal& caller = kAnn,
+                   const v1::EnsembleSpec& refused_spec = Equilibrium(1, 1)) {
+    SCOPED_TRACE(flag);
+    const std::string request_id =
+        "123e4567-e89b-12d3-a456-42661417400" + std::to_string(checked_++);
+    Start(limits);
+    std::vector<std::string> held;
+    for (int i = 0; i < 3; ++i)
+      held.push_back(Id(kAnn, FreshRequest(Equilibrium(1, 3, kHeldSeed))));
+    for (int repeated = 0; repeated < 2; ++repeated) {  // a refused job does not count
+      const auto refused = Create(caller, FreshRequest(refused_spec, request_id));
+      EXPECT_THAT(refused, IsError(absl::StatusCode::kResourceExhausted, reason));
+      EXPECT_THAT(std::string(refused.status().message()), HasSubstr("--" + flag));
+      const ErrorDetails details = DetailsOf(refused.status());
+      EXPECT_EQ(details.domain, "ballpiston");
+      EXPECT_EQ(details.metadata.at("flag"), flag);
+      EXPECT_EQ(details.metadata.at("limit"), "3");
     }
-    return ids;
+    for (const std::string& id : held) {
+      ASSERT_OK(book_->Cancel(kAnn, id, ""));
+      AwaitEnd(id);
+    }
+    // There is room now, and no job was created with the id.
+    AwaitEnd(Id(caller, FreshRequest(Equilibrium(1, 1), request_id)));
   }
 
-  Limits limits_;
-  Gate gate_;
-  TemporaryFolder folder_;
-  std::unique_ptr<Store> store_;
-  std::unique_ptr<ThreadPool> pool_;
-  std::unique_ptr<JobBook> book_;
+ private:
+  int checked_ = 0;
 };
 
 // ---- the same question ----
@@ -141,22 +74,16 @@ TEST_F(AcceptanceTest, TheSameQuestionIsAnsweredByTheJobThatSucceeded) {
     EXPECT_EQ(again.name(), JobName(first));
     EXPECT_EQ(again.state(), EnsembleJob::SUCCEEDED);
     EXPECT_TRUE(again.answered_from_store());
-    EXPECT_FALSE(book_->Get(kAnn, first)->answered_from_store());  // only Create says so
-    Start({});
+    EXPECT_FALSE(Get(first).answered_from_store());  // only Create says so
+    Start();
   }
-  EXPECT_EQ(Jobs().size(), 1u);
+  EXPECT_EQ(List().jobs.size(), 1u);
 }
 
 TEST_F(AcceptanceTest, AnotherQuestionAndAFreshAnswerAreComputed) {
   const std::string first = Answered(kAnn, CreateRequest(Question()));
   ExpectComputed(kAnn, FreshRequest(Question()), first);
-  std::vector<v1::EnsembleSpec> others(5, Question());
-  others[0].set_seed(2);
-  others[1].set_model(v1::EnsembleSpec::BILLIARD);
-  others[2].set_precision(v1::EnsembleSpec::SINGLE);
-  others[3].set_verify(true);
-  others[4].mutable_target()->set_collisions(6);
-  for (const v1::EnsembleSpec& other : others) ExpectComputed(kAnn, CreateRequest(other), first);
+  ExpectComputed(kAnn, CreateRequest(Question(2)), first);
 }
 
 TEST_F(AcceptanceTest, AnswersAreOnlyForTheirPrincipal) {
@@ -321,22 +248,6 @@ TEST(Payload, EveryFieldExceptTheIdAndTheLabelsIsPartOfTheHash) {
 
 // ---- the same request ----
 
-TEST_F(AcceptanceTest, ConcurrentRequestsWithOneIdMakeOneJob) {
-  std::mutex mutex;
-  std::set<std::string> ids;
-  std::vector<std::jthread> threads;
-  for (int i = 0; i < 64; ++i) {
-    threads.emplace_back([&] {
-      const std::string id = Id(kAnn, FreshRequest(Question(), kUuid));
-      std::lock_guard lock(mutex);
-      ids.insert(id);
-    });
-  }
-  threads.clear();  // waits for them
-  EXPECT_EQ(ids.size(), 1u);
-  EXPECT_EQ(Jobs().size(), 1u);
-}
-
 TEST_F(AcceptanceTest, ARequestIdOfAnotherRequestIsRefused) {
   const std::string first = Id(kAnn, CreateRequest(Question(), kUuid));
   std::vector<v1::CreateEnsembleJobRequest> others(3, CreateRequest(Question(), kUuid));
@@ -349,9 +260,9 @@ TEST_F(AcceptanceTest, ARequestIdOfAnotherRequestIsRefused) {
                   IsError(absl::StatusCode::kInvalidArgument, "REQUEST_ID_REUSED"));
     }
     EXPECT_EQ(Id(kAnn, CreateRequest(Question(), kUuid)), first);
-    Start({});
+    Start();
   }
-  EXPECT_EQ(Jobs().size(), 1u);
+  EXPECT_EQ(List().jobs.size(), 1u);
 }
 
 TEST_F(AcceptanceTest, EachPrincipalHasItsOwnRequestIds) {
@@ -378,76 +289,20 @@ TEST_F(AcceptanceTest, OnlyTheRequestThatMadeTheJobIsStored) {
 
 // ---- limits ----
 
-// With `held` jobs of ann that wait at the gate, of one point each, the caller's request is
-// refused. All limits are 3.
-struct LimitRow {
-  Limits limits;
-  int held;
-  Principal caller;
-  v1::EnsembleSpec refused;
-  const char* reason;
-  const char* flag;
-};
-
 TEST_F(AcceptanceTest, EachLimitNamesItsReasonAndItsFlag) {
-  v1::EnsembleSpec by_default = Equilibrium(5, 1);
+  v1::EnsembleSpec by_default = Equilibrium(1, 1);
   by_default.clear_target();
-  const LimitRow rows[] = {
-      {{.max_active_jobs = 3}, 3, kBen, Question(), "QUEUE_FULL", "max-active-jobs"},
-      {{.max_active_jobs_per_principal = 3},
-       3,
-       kAnn,
-       Question(),
-       "TOO_MANY_JOBS",
-       "max-active-jobs-per-principal"},
-      {{.max_active_points = 3, .max_active_points_per_principal = 0},
-       3,
-       kBen,
-       Question(),
-       "TOO_MANY_ACTIVE_POINTS",
-       "max-active-points"},
-      {{.max_active_points_per_principal = 3},
-       3,
-       kAnn,
-       Question(),
-       "TOO_MANY_ACTIVE_POINTS",
-       "max-active-points-per-principal"},
-      {{.max_points_per_job = 3},
-       0,
-       kAnn,
-       Equilibrium(4, 5),
-       "TOO_MANY_POINTS",
-       "max-points-per-job"},
-      {{.max_samples_per_job = 3},
-       0,
-       kAnn,
-       Equilibrium(2, 2),
-       "TOO_MANY_SAMPLES",
-       "max-samples-per-job"},
-      {{.max_samples_per_job = 3}, 0, kAnn, by_default, "TOO_MANY_SAMPLES", "max-samples-per-job"}};
-  for (const LimitRow& row : rows) {
-    SCOPED_TRACE(row.flag);
-    const std::string id = "123e4567-e89b-12d3-a456-42661417400" + std::to_string(&row - rows);
-    Start(row.limits);
-    std::string held;
-    for (int i = 0; i < row.held; ++i) held = Id(kAnn, FreshRequest(Equilibrium(1, 5, kHeldSeed)));
-    for (int repeated = 0; repeated < 2; ++repeated) {  // a refused job does not count
-      const auto refused = Create(row.caller, CreateRequest(row.refused, id));
-      EXPECT_THAT(refused, IsError(absl::StatusCode::kResourceExhausted, row.reason));
-      EXPECT_THAT(std::string(refused.status().message()), HasSubstr(std::string("--") + row.flag));
-      const ErrorDetails details = DetailsOf(refused.status());
-      EXPECT_EQ(details.domain, "ballpiston");
-      EXPECT_EQ(details.metadata.at("flag"), row.flag);
-      EXPECT_EQ(details.metadata.at("limit"), "3");
-    }
-    if (held.empty()) continue;
-    ASSERT_OK(book_->Cancel(kAnn, held, ""));
-    AwaitEnd(held);
-    // No job was created with the id.
-    EXPECT_OK(Create(row.caller, FreshRequest(Equilibrium(1, 5), id)));
-    for (const std::string& job : ActiveJobs())
-      book_->Cancel(kRoot, job, "").status().IgnoreError();
-    AwaitThat([this] { return ActiveJobs().empty(); });
+  ExpectLimit({.max_active_jobs = 3}, "QUEUE_FULL", "max-active-jobs", kBen);
+  ExpectLimit({.max_active_jobs_per_principal = 3}, "TOO_MANY_JOBS",
+              "max-active-jobs-per-principal");
+  ExpectLimit({.max_active_points = 3, .max_active_points_per_principal = 0},
+              "TOO_MANY_ACTIVE_POINTS", "max-active-points", kBen);
+  ExpectLimit({.max_active_points_per_principal = 3}, "TOO_MANY_ACTIVE_POINTS",
+              "max-active-points-per-principal");
+  ExpectLimit({.max_points_per_job = 3}, "TOO_MANY_POINTS", "max-points-per-job", kAnn,
+              Equilibrium(4, 1));
+  for (const v1::EnsembleSpec& large : {Equilibrium(2, 2), by_default}) {
+    ExpectLimit({.max_samples_per_job = 3}, "TOO_MANY_SAMPLES", "max-samples-per-job", kAnn, large);
   }
 }
 

@@ -6,7 +6,6 @@
 
 #include "server/book/acceptance.h"
 #include "tests/server/running_server.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {

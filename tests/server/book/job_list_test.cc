@@ -1,21 +1,11 @@
 // The pages of a filtered list, over a store that is filled without a server.
 #include <limits>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "gmock/gmock.h"
-#include "server/book/job_book.h"
-#include "server/book/job_name.h"
-#include "server/convert/spec.h"
 #include "server/store/job_table.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/server/requests.h"
-#include "tests/server/thread_pool.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/server/book/book_test.h"
 
 namespace ballpiston::server {
 namespace {
@@ -24,9 +14,6 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using v1::EnsembleJob;
 
-const Principal kOwner{"ann", Role::kSubmit};
-const Principal kStranger{"ben", Role::kSubmit};
-
 struct StoredJob {
   std::string id;
   JobState state = EnsembleJob::SUCCEEDED;
@@ -34,7 +21,7 @@ struct StoredJob {
   v1::EnsembleSpec spec = Equilibrium(1, 2);
 };
 
-class JobList : public ::testing::Test {
+class JobList : public BookTest {
  protected:
   // In the order of their creation.
   void Insert(const std::vector<StoredJob>& jobs) {
@@ -42,7 +29,7 @@ class JobList : public ::testing::Test {
       for (const StoredJob& job : jobs) {
         JobRecord record;
         record.id = job.id;
-        record.principal = kOwner.name;
+        record.principal = kAnn.name;
         record.spec = SpecBytes(job.spec);
         record.state = job.state;
         record.create_time = job.create_time;
@@ -57,7 +44,7 @@ class JobList : public ::testing::Test {
     Insert(jobs);
   }
 
-  JobsPage List(const JobsQuery& query, const Principal& caller = kOwner) {
+  JobsPage List(const JobsQuery& query, const Principal& caller = kAnn) {
     auto page = book_->List(caller, query);
     EXPECT_OK(page);
     return page.ok() ? *std::move(page) : JobsPage();
@@ -75,11 +62,6 @@ class JobList : public ::testing::Test {
     for (const EnsembleJob& job : page.jobs) ids.push_back(JobIdOf(job.name()).value_or(""));
     return ids;
   }
-
-  TemporaryFolder folder_;
-  std::unique_ptr<Store> store_ = *Store::Open(folder_.File("store"), {.stall = kNever});
-  ThreadPool pool_{1, FakeExperiments()};
-  std::unique_ptr<JobBook> book_ = std::make_unique<JobBook>(*store_, Limits(), pool_.scheduler());
 };
 
 TEST_F(JobList, AJobMatchesAllPartsOfTheFilter) {
@@ -94,7 +76,7 @@ TEST_F(JobList, AJobMatchesAllPartsOfTheFilter) {
                                  .since = noon});
   EXPECT_THAT(IdsOf(List(query)), ElementsAre("match"));
   EXPECT_EQ(List(query).next_before, std::nullopt);
-  EXPECT_THAT(IdsOf(List(query, kStranger)), IsEmpty());
+  EXPECT_THAT(IdsOf(List(query, kBen)), IsEmpty());
 }
 
 // The clock was set back between two jobs: the list has the order of acceptance.

@@ -119,36 +119,6 @@ class JobJournalTest : public testing::Test {
   std::optional<JobJournal> journal_;
 };
 
-TEST_F(JobJournalTest, OnlyStoredChangesAreSent) {
-  journal_->Began();
-  Finish(2);
-  Finish(0);
-  EXPECT_EQ(Row().state, EnsembleJob::QUEUED);
-  EXPECT_EQ(job_->last_finished(), 0);
-  ASSERT_OK(store_->Flush());
-  EXPECT_EQ(Row().state, EnsembleJob::RUNNING);
-  const auto told = *job_->FinishedAfter(0, 10);
-  EXPECT_THAT(Numbers(told), testing::ElementsAre(1, 2));
-  EXPECT_EQ(ResultFromBytes(*told[0].result)->index(), 2);
-  EXPECT_EQ(ResultFromBytes(*told[1].result)->index(), 0);
-}
-
-TEST_F(JobJournalTest, TheStoreHasThePointsUnderTheSameNumbers) {
-  for (const size_t point : {2u, 0u, 1u}) Finish(point);
-  Finish(0);  // the first writer wins: no number for this one
-  ASSERT_OK(store_->Flush());
-  std::vector<std::pair<int64_t, int64_t>> stored;
-  ASSERT_OK(store_->Read([&](Database& database) {
-    ReadResultsStoredAfter(database, record_.sequence, 1,
-                           [&](int64_t number, const std::string& result) {
-                             stored.emplace_back(number, ResultFromBytes(result)->index());
-                             return true;
-                           });
-  }));
-  EXPECT_THAT(stored, testing::ElementsAre(testing::Pair(2, 0), testing::Pair(3, 1)));
-  EXPECT_EQ(job_->last_finished(), 3);
-}
-
 TEST_F(JobJournalTest, AJobWithMissingResultsFails) {
   for (const size_t point : {0u, 2u}) Finish(point);
   journal_->Ended(absl::OkStatus());

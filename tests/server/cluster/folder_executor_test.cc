@@ -26,10 +26,8 @@ namespace ballpiston::server {
 namespace {
 
 using std::chrono::milliseconds;
-using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-using ::testing::SizeIs;
 
 // One point of six chunks and more. A lease has one.
 EnsembleSpec SomeSpec() { return SpecOf(kFirstHit, Model::kBilliard, 100'000); }
@@ -126,15 +124,6 @@ class FolderExecutorTest : public testing::Test {
   std::unique_ptr<SteppedExecutor> local_;
   std::unique_ptr<FolderExecutor> executor_;
 };
-
-TEST_F(FolderExecutorTest, WorkersGiveTheSameBytes) {
-  const auto journal = Begin();
-  EXPECT_THAT(In("todo"), SizeIs(2));
-  ComputeAll(*journal);
-  EXPECT_THAT(files_.files, IsEmpty());
-  EXPECT_GE(executor_->Status().chunks, 5);
-  EXPECT_EQ(executor_->Status().lost_leases, 0);
-}
 
 TEST_F(FolderExecutorTest, AFileStaysUntilItsChunksAreOnDisk) {
   const auto journal = Begin();

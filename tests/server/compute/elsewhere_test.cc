@@ -1,10 +1,10 @@
-// The scheduler with executors elsewhere: which leases they get, and how their reports are merged.
-// The local executor takes its turns when the test says so, so every schedule can be repeated.
-#include <algorithm>
+// The scheduler with executors elsewhere: which leases they get, and which of their reports count.
+// That any order of reports gives the same bytes is tested by
+// tests/core/ensemble/point_fold_test.cc and tests/simulation. The local executor takes its turns
+// when the test says so, so every schedule can be repeated.
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -28,11 +28,7 @@ constexpr double kWholePoint = 1000;
 
 class Cluster {
  public:
-  explicit Cluster(double seconds = kOneChunk, double longest_chunk = kInfinity)
-      : opener_(FakeExperiments()),
-        scheduler(opener_, 1),
-        local(scheduler),
-        remote(scheduler, seconds, longest_chunk) {}
+  explicit Cluster(double seconds = kOneChunk) : remote(scheduler, seconds) {}
   ~Cluster() { scheduler.Shutdown(); }
 
   JournalPointer Add(const EnsembleSpec& spec, int64_t key = 1) {
@@ -54,12 +50,9 @@ class Cluster {
     return leases;
   }
 
- private:
-  FactoryOpener opener_;
-
- public:
-  Scheduler scheduler;
-  SteppedExecutor local;
+  FactoryOpener opener{FakeExperiments()};
+  Scheduler scheduler{opener, 1};
+  SteppedExecutor local{scheduler};
   RemoteExecutor remote;
 };
 
@@ -68,33 +61,11 @@ void ExpectComplete(const EnsembleSpec& spec, const RecordingJournal& journal) {
   EXPECT_OK(*journal.outcome);
   ExpectAllPointsRight(spec, journal);
   for (const auto& [point, samples] : journal.merged) {
-    const auto before = journal.restored.find(point);
-    const uint64_t restored = before == journal.restored.end() ? 0 : before->second;
-    EXPECT_EQ(samples + restored, journal.finished.at(point).samples) << "point " << point;
+    EXPECT_EQ(samples, journal.finished.at(point).samples) << "point " << point;
   }
 }
 
 // ---- reports ----
-
-TEST(Scheduler, TheSameBitsForEveryOrderOfReports) {
-  std::vector<size_t> order(kChunks);
-  std::iota(order.begin(), order.end(), 0);
-  std::vector<ChunkResult> computed;
-  do {
-    Cluster cluster;
-    const auto journal = cluster.Begin(SixChunks());
-    const std::vector<Lease> leases = cluster.TakeAll();
-    ASSERT_EQ(leases.size(), kChunks);
-    if (computed.empty()) {
-      for (const Lease& lease : leases) computed.push_back(ComputedChunks(lease)[0]);
-    }
-    for (const size_t chunk : order) {
-      EXPECT_OK(cluster.remote.Report(leases[chunk], {computed[chunk]}));
-    }
-    ExpectComplete(SixChunks(), *journal);
-    if (testing::Test::HasFailure()) break;
-  } while (std::next_permutation(order.begin(), order.end()));
-}
 
 TEST(Scheduler, AChunkCountsOnceHoweverOftenItIsReported) {
   Cluster cluster;
@@ -251,19 +222,6 @@ TEST(Scheduler, AStoppedRunEndsWhenItsTurnsHaveEnded) {
   EXPECT_OK(cluster.remote.ReportAll(*elsewhere));
   cluster.remote.Return(*elsewhere);
   EXPECT_EQ(journal->ends, 1);
-}
-
-TEST(Scheduler, ARunThatFailsElsewhereEnds) {
-  Cluster cluster;
-  const auto journal = cluster.Begin(SixChunks());
-  const auto lease = cluster.remote.Take();
-  ASSERT_TRUE(lease);
-  const int wakes = cluster.remote.wakes();
-  cluster.remote.Fail(*lease, absl::InternalError("the task failed"));
-  ASSERT_EQ(journal->ends, 1);
-  EXPECT_THAT(*journal->outcome, StatusIs(absl::StatusCode::kInternal, "the task failed"));
-  EXPECT_FALSE(cluster.scheduler.Needs(*lease));
-  EXPECT_GT(cluster.remote.wakes(), wakes);
 }
 
 // An earlier process gave the lease, and another job has the key now.

@@ -89,32 +89,6 @@ TEST_F(ModelLadderTest, AnotherServerUsesTheStoredPilot) {
   EXPECT_EQ(second.model_error, first.model_error);
 }
 
-TEST_F(ModelLadderTest, TheBilliardIsChosenIfThePilotFindsALargeLimitError) {
-  found_.difference = 1;
-  ModelLadder ladder(*store_, 2);
-  const auto experiment = Create(ladder, Relaxation());
-  EXPECT_EQ(experiment->answer().model, Model::kBilliard);
-  EXPECT_THAT(experiment->answer().reason, HasSubstr("beyond the tolerance"));
-  EXPECT_EQ(runs_, 1);
-}
-
-TEST_F(ModelLadderTest, PilotsRunOnlyIfNeeded) {
-  ModelLadder ladder(*store_, 2);
-  EnsembleSpec closed = Relaxation();
-  closed.experiment = &kEquilibrium;
-  EXPECT_EQ(Create(ladder, closed)->answer().model, Model::kClosedForm);
-  EnsembleSpec exact = Relaxation();
-  exact.target = {.samples = 100};
-  EXPECT_EQ(Create(ladder, exact)->answer().model, Model::kBilliard);
-  EnsembleSpec strict = Relaxation();
-  strict.target.tolerance = 1e-7;
-  EXPECT_EQ(Create(ladder, strict)->answer().model, Model::kBilliard);
-  EnsembleSpec told = Relaxation();
-  told.model = Model::kMarkov;
-  EXPECT_EQ(Create(ladder, told)->answer().model, Model::kMarkov);
-  EXPECT_EQ(runs_, 0);
-}
-
 TEST_F(ModelLadderTest, APlanRunsNoPilotAndSaysWhetherThereIsOne) {
   const EnsembleSpec spec = Relaxation();
   ModelLadder ladder(*store_, 2);

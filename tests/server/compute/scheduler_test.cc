@@ -37,17 +37,6 @@ JournalPointer AddRun(ThreadPool& pool, int64_t key, const EnsembleSpec& spec,
   return journal;
 }
 
-TEST(Scheduler, TheSameBitsWithAnyNumberOfWorkers) {
-  const EnsembleSpec spec = FakeSpec(20, 40);
-  for (const int workers : {1, 2, 8}) {
-    ThreadPool pool(workers, FakeExperiments());
-    const auto journal = AddRun(pool, 1, spec);
-    EXPECT_OK(journal->AwaitEnd());
-    ExpectAllPointsRight(spec, *journal);
-    EXPECT_EQ(journal->begun, 1);
-  }
-}
-
 TEST(Scheduler, APointIsResumedFromItsCheckpoint) {
   const EnsembleSpec spec = FakeSpec(2, 80);
   auto journal = std::make_shared<RecordingJournal>();
@@ -92,26 +81,6 @@ TEST(Scheduler, AShutdownWritesACheckpoint) {
   ASSERT_OK(later->AwaitEnd());
   ExpectAllPointsRight(spec, *later);
   EXPECT_EQ(later->restored[0], 50 * kFakeSamplesPerBlock);
-}
-
-TEST(Scheduler, APointDoesNotRunFarAheadOfASlowBlock) {
-  Gate gate;
-  std::atomic<uint64_t> furthest = 0;
-  const EnsembleSpec spec = FakeSpec(1, 2 * ChunkFold::kWindow);
-  ThreadPool pool(4, FakeExperiments([&](size_t, uint64_t block, std::stop_token stop) {
-                    uint64_t seen = furthest;
-                    while (block > seen && !furthest.compare_exchange_weak(seen, block)) {
-                    }
-                    if (block == 0) gate.Pass(stop);
-                    // The last block of the window: no more can be handed out before the first.
-                    if (block == ChunkFold::kWindow - 1) {
-                      EXPECT_EQ(gate.waiting(), 1);
-                      gate.Open();
-                    }
-                  }));
-  const auto journal = AddRun(pool, 1, spec);
-  ASSERT_OK(journal->AwaitEnd());
-  ExpectAllPointsRight(spec, *journal);
 }
 
 // ---- budgets ----
@@ -247,21 +216,6 @@ TEST(Scheduler, AHigherPriorityIsServedFirst) {
   std::vector<uint64_t> expected;
   for (const uint64_t seed : {4u, 3u, 2u}) expected.insert(expected.end(), 20, seed);
   EXPECT_EQ(begun, expected);
-}
-
-TEST(Scheduler, NewestPointsAreThoseWithBlocks) {
-  Gate gate;
-  ThreadPool pool(1, GatedExperiments(gate, 6));
-  const EnsembleSpec spec = FakeSpec(1, 100);
-  const auto journal = AddRun(pool, 1, spec);
-  gate.AwaitWaiting(1);
-  const auto live = pool.NewestPoints(1, 10);
-  ASSERT_EQ(live.size(), 1u);
-  EXPECT_EQ(live[0].index, 0u);
-  EXPECT_EQ(live[0].version, 6u);
-  EXPECT_TRUE(live[0].merged == FakeMerged(spec, 0, 6));
-  EXPECT_TRUE(pool.NewestPoints(1, 0).empty());
-  EXPECT_TRUE(pool.NewestPoints(2, 10).empty());
 }
 
 }  // namespace

@@ -7,13 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "gmock/gmock.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/http_get.h"
 #include "tests/server/running_server.h"
 #include "tests/server/unread_call.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {

@@ -11,14 +11,9 @@
 
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
-#include "gmock/gmock.h"
 #include "tests/server/call_by_name.h"
-#include "tests/server/error_details.h"
-#include "tests/server/running_server.h"
 #include "tests/server/secure_server.h"
-#include "tests/support/await.h"
 #include "tests/support/files.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {

@@ -7,10 +7,8 @@
 #include <chrono>
 #include <string>
 
-#include "gmock/gmock.h"
 #include "tests/server/secure_server.h"
 #include "tests/support/files.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {

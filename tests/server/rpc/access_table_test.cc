@@ -6,17 +6,12 @@
 #include <vector>
 
 #include "ballpiston/v1/server.pb.h"
-#include "gmock/gmock.h"
 #include "google/protobuf/descriptor.h"
 #include "google/protobuf/dynamic_message.h"
 #include "tests/server/call_by_name.h"
-#include "tests/server/error_details.h"
-#include "tests/server/requests.h"
 #include "tests/server/rpc/watch_stream.h"
-#include "tests/server/running_server.h"
 #include "tests/server/secure_server.h"
 #include "tests/support/paths.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {

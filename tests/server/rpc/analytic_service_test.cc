@@ -1,18 +1,10 @@
 #include <cmath>
-#include <functional>
-#include <limits>
 
 #include "core/geometry/paper.h"
-#include "gmock/gmock.h"
-#include "tests/server/error_details.h"
 #include "tests/server/running_server.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::ElementsAreArray;
-using ::testing::HasSubstr;
 
 class AnalyticServiceTest : public testing::Test {
  protected:
@@ -91,84 +83,6 @@ TEST_F(AnalyticServiceTest, TheWholeRangeOfTemperaturesIsAnswered) {
     for (const double value : {row.mean_f(), row.mean_h(), row.exchange_rate(),
                                row.static_conductivity(), row.rare_limit_exchange_rate()}) {
       EXPECT_TRUE(std::isnormal(value)) << row.DebugString();
-    }
-  }
-}
-
-// One rho and one delta are right; each row changes the request.
-struct BadPairs {
-  std::vector<std::string> fields;
-  std::vector<std::string> words;  // of the message
-  std::function<void(v1::EvaluatePairsRequest&)> change;
-};
-
-TEST_F(AnalyticServiceTest, EveryBadFieldIsNamed) {
-  using Request = v1::EvaluatePairsRequest;
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const auto fill = [](int count, double value, auto* list) {
-    for (int i = 0; i < count; ++i) list->Add(value);
-  };
-  const BadPairs rows[] = {
-      {{"rho", "delta"}, {}, [](Request& r) { r.Clear(); }},
-      {{"rho[1]", "delta[1]", "delta[2]"},
-       {},
-       [](Request& r) {
-         r.add_rho(0.4);
-         r.add_delta(-1);
-         r.add_delta(kNan);
-       }},
-      {{"epsilon[0]", "outgoing_epsilon[0]", "beta[0]"},
-       {},
-       [](Request& r) {
-         r.add_epsilon(0.6);
-         r.add_outgoing_epsilon(0.5);
-         r.add_beta(std::numeric_limits<double>::infinity());
-       }},
-      {{"temperature[0]", "temperature[1]", "temperature[2]", "temperature[3]"},
-       {"temperature[0]: 0 is not in [1e-120, 1e+120]"},
-       [](Request& r) {
-         for (const double wrong : {0.0, -1.0, 1e-121, kNan}) r.add_temperature(wrong);
-       }},
-      {{"delta[0]"},  // beyond the bound of the second rho, the smaller one
-       {"0.3;", "0.6:", "(1 - lambda)/2"},
-       [](Request& r) {
-         r.add_rho(0.6);
-         r.set_delta(0, 0.3);
-       }},
-      {{"rho"},  // too many pairs
-       {},
-       [&](Request& r) {
-         fill(100, 0.53, r.mutable_rho());
-         fill(100, 0.1, r.mutable_delta());
-       }},
-      {{"epsilon"},  // too many values for 101 pairs
-       {},
-       [&](Request& r) {
-         fill(100, 0.53, r.mutable_rho());
-         fill(200, 0.1, r.mutable_epsilon());
-       }},
-      {{"temperature"},
-       {},
-       [&](Request& r) {
-         fill(100, 0.53, r.mutable_rho());
-         fill(126, 1, r.mutable_temperature());
-       }},
-      {{"delta[1]"}, {}, [](Request& r) { r.add_delta(1e-300); }},  // beyond the range of double
-      {{"delta[0]"},                                                // the exchange rate underflows
-       {},
-       [](Request& r) {
-         r.set_delta(0, 1e-130);
-         r.add_temperature(1e-120);
-       }}};
-  const Request right = request_;
-  for (const BadPairs& row : rows) {
-    request_ = right;
-    row.change(request_);
-    const grpc::Status status = Evaluate();
-    EXPECT_THAT(status, IsError(grpc::StatusCode::INVALID_ARGUMENT, "INVALID_REQUEST"));
-    EXPECT_THAT(DetailsOf(status).fields, ElementsAreArray(row.fields));
-    for (const std::string& word : row.words) {
-      EXPECT_THAT(status.error_message(), HasSubstr(word));
     }
   }
 }

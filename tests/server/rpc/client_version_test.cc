@@ -3,11 +3,8 @@
 #include <string>
 
 #include "ballpiston/v1/ensemble.grpc.pb.h"
-#include "gmock/gmock.h"
 #include "server/version.h"
-#include "tests/server/error_details.h"
 #include "tests/server/running_server.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {

@@ -1,19 +1,15 @@
 #include <vector>
 
-#include "gmock/gmock.h"
-#include "tests/server/error_details.h"
-#include "tests/server/requests.h"
+#include "core/experiment/all_experiments.h"
 #include "tests/server/running_server.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/server/spec_message.h"
+#include "tests/server/worker/sample_leases.h"
 
 namespace ballpiston::server {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsSupersetOf;
-using ::testing::Not;
 
 // One server for all: measuring its rates takes some 0.3 s.
 class PlanServiceTest : public testing::Test {
@@ -47,26 +43,10 @@ class PlanServiceTest : public testing::Test {
   static inline RunningServer* server_ = nullptr;
 };
 
-v1::EnsembleSpec PlanQuestion(v1::EnsembleSpec::Experiment experiment) {
-  v1::EnsembleSpec spec;
-  spec.set_experiment(experiment);
-  spec.mutable_grid()->add_rho(0.53);
-  spec.mutable_grid()->add_delta(0.1);
-  const bool from_energy = experiment == v1::EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME ||
-                           experiment == v1::EnsembleSpec::FIRST_HIT;
-  if (from_energy) spec.mutable_grid()->add_epsilon(0.1);
-  if (experiment == v1::EnsembleSpec::FIRST_HIT) spec.mutable_grid()->add_exponent(1);
-  if (experiment == v1::EnsembleSpec::GAS_EQUILIBRIUM ||
-      experiment == v1::EnsembleSpec::GAS_LYAPUNOV) {
-    spec.mutable_grid()->add_cells("4x3");
-    spec.mutable_grid()->add_temperature(2);
-  }
-  if (experiment == v1::EnsembleSpec::GAS_CONDUCTION) {
-    spec.mutable_grid()->add_cells("4");
-    spec.mutable_grid()->add_hot(1.5);
-    spec.mutable_grid()->add_cold(0.5);
-  }
-  return spec;
+v1::EnsembleSpec QuestionOf(const ExperimentKind& kind, Model model = Model::kAuto) {
+  EnsembleSpec spec = SpecOf(kind, model);
+  spec.target = {};
+  return SpecMessage(spec);
 }
 
 double WorkOfPoints(const v1::PlanEnsembleJobResponse& plan) {
@@ -80,16 +60,15 @@ double WorkOfPoints(const v1::PlanEnsembleJobResponse& plan) {
 }
 
 TEST_F(PlanServiceTest, EveryExperimentHasItsLadderCheapestFirst) {
-  for (int number = v1::EnsembleSpec_Experiment_Experiment_MIN + 1;
-       number <= v1::EnsembleSpec_Experiment_Experiment_MAX; ++number) {
-    const auto experiment = static_cast<v1::EnsembleSpec::Experiment>(number);
-    const v1::PlanEnsembleJobResponse plan = PlanOf(PlanQuestion(experiment));
-    SCOPED_TRACE(v1::EnsembleSpec::Experiment_Name(experiment));
+  for (const ExperimentKind* kind : AllExperiments()) {
+    const v1::EnsembleSpec question = QuestionOf(*kind);
+    const v1::PlanEnsembleJobResponse plan = PlanOf(question);
+    SCOPED_TRACE(kind->name);
     ASSERT_EQ(plan.points_size(), 1);
     EXPECT_EQ(plan.point_count(), 1);
     const v1::PointPlan& point = plan.points(0);
     EXPECT_NE(point.reason(), "");
-    EXPECT_EQ(point.parameters().delta(), 0.1);
+    EXPECT_EQ(point.parameters().delta(), question.grid().delta(0));
     std::vector<v1::EnsembleSpec::Model> order;
     for (const v1::ModelPlan& model : point.models()) {
       order.push_back(model.model());
@@ -106,12 +85,12 @@ TEST_F(PlanServiceTest, EveryExperimentHasItsLadderCheapestFirst) {
 
 // The extra time of a job's first point, because caches are cold.
 double PlanServiceTest::FirstPoint() {
-  const v1::PlanEnsembleJobResponse plan = PlanOf(PlanQuestion(v1::EnsembleSpec::EQUILIBRIUM));
+  const v1::PlanEnsembleJobResponse plan = PlanOf(QuestionOf(kEquilibrium));
   return plan.work() - WorkOfPoints(plan);
 }
 
 TEST_F(PlanServiceTest, TheWorkIsThatOfTheChosenOneOverAllPoints) {
-  v1::EnsembleSpec spec = PlanQuestion(v1::EnsembleSpec::FIRST_HIT);
+  v1::EnsembleSpec spec = QuestionOf(kFirstHit);
   for (const double delta : {0.2, 0.05}) spec.mutable_grid()->add_delta(delta);
   const v1::PlanEnsembleJobResponse plan = PlanOf(spec);
   ASSERT_EQ(plan.points_size(), 3);
@@ -124,7 +103,7 @@ TEST_F(PlanServiceTest, TheWorkIsThatOfTheChosenOneOverAllPoints) {
 
 // At delta = 1e-6 the lanes of a worker need many minutes until their first orbits end.
 TEST_F(PlanServiceTest, ABudgetBelowTheFirstSamplesIsRejected) {
-  v1::EnsembleSpec spec = PlanQuestion(v1::EnsembleSpec::EQUILIBRIUM);
+  v1::EnsembleSpec spec = QuestionOf(kEquilibrium);
   spec.mutable_grid()->set_delta(0, 1e-6);
   spec.set_model(v1::EnsembleSpec::BILLIARD);
   spec.mutable_target()->mutable_budget()->set_seconds(1);
@@ -139,8 +118,7 @@ TEST_F(PlanServiceTest, ABudgetBelowTheFirstSamplesIsRejected) {
 }
 
 TEST_F(PlanServiceTest, MemoryIsThatOfTheLargestGas) {
-  v1::EnsembleSpec spec = PlanQuestion(v1::EnsembleSpec::GAS_EQUILIBRIUM);
-  spec.set_model(v1::EnsembleSpec::MARKOV);
+  v1::EnsembleSpec spec = QuestionOf(kGasEquilibrium, Model::kMarkov);
   const double small = PlanOf(spec).memory();
   spec.mutable_grid()->add_cells("1000x100");
   const v1::PlanEnsembleJobResponse plan = PlanOf(spec);
@@ -148,21 +126,8 @@ TEST_F(PlanServiceTest, MemoryIsThatOfTheLargestGas) {
   EXPECT_LT(plan.memory(), 1e9);
 }
 
-TEST_F(PlanServiceTest, AnInvalidSpecIsRefusedAsByCreate) {
-  v1::EnsembleSpec spec = PlanQuestion(v1::EnsembleSpec::ENERGY_RELAXATION);
-  spec.mutable_grid()->set_rho(0, 0.4);
-  spec.mutable_grid()->add_epsilon(0.7);
-  spec.mutable_target()->set_tolerance(0);
-  v1::PlanEnsembleJobResponse plan;
-  const grpc::Status status = Plan(spec, &plan);
-  EXPECT_THAT(status, IsError(grpc::StatusCode::INVALID_ARGUMENT, "INVALID_SPEC"));
-  EXPECT_THAT(DetailsOf(status).fields,
-              IsSupersetOf({"spec.grid.rho[0]", "spec.grid.epsilon[0]", "spec.target.tolerance"}));
-  EXPECT_THAT(Plan({}, &plan), StatusIs(grpc::StatusCode::INVALID_ARGUMENT));
-}
-
 TEST_F(PlanServiceTest, ALargeGridIsPlannedByAThousandPointsEvenlySpread) {
-  v1::EnsembleSpec spec = PlanQuestion(v1::EnsembleSpec::ENERGY_RELAXATION);
+  v1::EnsembleSpec spec = QuestionOf(kEnergyRelaxation);
   // The billiard needs no pilots; the number of pilots is not the number of points.
   spec.set_model(v1::EnsembleSpec::BILLIARD);
   spec.mutable_target()->set_tolerance(0.01);

@@ -10,15 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "gmock/gmock.h"
 #include "tests/server/call_by_name.h"
-#include "tests/server/error_details.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/server/requests.h"
 #include "tests/server/running_server.h"
 #include "tests/server/unread_call.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {

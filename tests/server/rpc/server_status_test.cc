@@ -6,10 +6,8 @@
 #include <stdexcept>
 #include <stop_token>
 #include <string>
-#include <thread>
 
 #include "absl/strings/str_cat.h"
-#include "gmock/gmock.h"
 #include "grpcpp/create_channel.h"
 #include "grpcpp/server.h"
 #include "grpcpp/server_builder.h"
@@ -18,16 +16,9 @@
 #include "server/rpc/call.h"
 #include "server/rpc/methods.h"
 #include "server/rpc/services.h"
-#include "tests/server/error_details.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/server/hanging_disk.h"
 #include "tests/server/own_channel.h"
-#include "tests/server/requests.h"
 #include "tests/server/running_server.h"
 #include "tests/server/thread_pool.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
 namespace {
@@ -35,8 +26,6 @@ namespace {
 // The objects behind the API, without gRPC, so that a test can set the caller.
 class ServerStatusTest : public testing::Test {
  protected:
-  explicit ServerStatusTest(const Store::Options& options = {.stall = kNever})
-      : store_(*Store::Open(folder_.File("store.sqlite3"), options)) {}
   ~ServerStatusTest() override { gate_.Open(); }
 
   void Submit(const std::string& principal, int points = 1) {
@@ -65,7 +54,7 @@ class ServerStatusTest : public testing::Test {
                           .max_samples_per_job = 0,
                           .max_streams_per_principal = 73};
   Authenticator authenticator_{/*needs_tokens=*/false};
-  std::unique_ptr<Store> store_;
+  std::unique_ptr<Store> store_ = *Store::Open(folder_.File("store.sqlite3"), {.stall = kNever});
   ModelLadder ladder_{*store_, 2};
   ThreadPool pool_{
       2, FakeExperiments([this](size_t, uint64_t, std::stop_token stop) { gate_.Pass(stop); })};
@@ -176,46 +165,6 @@ TEST_F(ServerStatusTest, TheExpiryOfACertificateIsAMetricIfThereIsOne) {
   EXPECT_THAT(page(std::nullopt), testing::Not(testing::HasSubstr(kExpiry)));
   EXPECT_THAT(page(absl::FromUnixSeconds(2'000'000'000)),
               testing::HasSubstr(absl::StrCat("\n", kExpiry, " 2000000000\n")));
-}
-
-class HangingDiskTest : public ServerStatusTest {
- protected:
-  HangingDiskTest() : HangingDiskTest(std::make_unique<HangingDisk>()) {}
-  ~HangingDiskTest() override {
-    disk_->Resume();
-    hanging_.join();
-    store_->Close();
-  }
-
- private:
-  explicit HangingDiskTest(std::unique_ptr<HangingDisk> disk)
-      : ServerStatusTest({.stall = std::chrono::milliseconds(1), .vfs = disk->vfs()}),
-        disk_(std::move(disk)) {
-    disk_->Hang();
-    hanging_ = std::thread([this] {
-      const auto write = [](Database& database) { InsertChunk(database, 9, 0, 0, "x"); };
-      EXPECT_OK(store_->Commit(write));
-    });
-    disk_->AwaitHanging();
-    AwaitThat([this] { return store_->stalled(); });
-  }
-
-  std::unique_ptr<HangingDisk> disk_;
-  std::thread hanging_;
-};
-
-// One thread runs the calls, so a call that waited would block all later ones.
-TEST_F(HangingDiskTest, CallsThatWriteAreRefusedAtOnceAndReadsAnswered) {
-  EXPECT_EQ(AskedBy("root", Role::kAdmin).state(), v1::ServerStatus::STORE_FAILING);
-  EnsembleService service(context_);
-  const std::string address = "unix:" + folder_.File("socket");
-  const auto server = Serve(service, address);
-  TestClient client(OwnChannel(address));
-  for (int i = 0; i < 20; ++i) {
-    EXPECT_THAT(client.Create(CreateRequest(Equilibrium(1, 1))),
-                IsError(grpc::StatusCode::UNAVAILABLE, "STORE_FAILED"));
-    EXPECT_EQ(client.List().jobs_size(), 0);
-  }
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include <chrono>
 #include <cmath>
-#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,19 +8,12 @@
 #include <vector>
 
 #include "core/geometry/paper.h"
-#include "gmock/gmock.h"
 #include "server/convert/trace.h"
-#include "tests/server/error_details.h"
-#include "tests/server/running_server.h"
 #include "tests/server/secure_server.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
 
-using ::testing::ElementsAreArray;
-using ::testing::HasSubstr;
 using ::testing::Not;
 
 v1::TraceOrbitRequest TraceRequest(int64_t events, const std::string& cells = "") {
@@ -143,6 +136,22 @@ TEST_F(TraceServiceTest, EventsHaveTheBodiesThatTakePart) {
   EXPECT_GT(exchanges, 0);
 }
 
+// The time since the pair's last event of the same kind. A pair has one ball and one piston.
+TEST_F(TraceServiceTest, FreeTimesAreBetweenEventsOfOneKind) {
+  std::map<int, double> last;  // time, by kind
+  for (const auto& message : Trace(TraceRequest(2000))) {
+    for (const v1::TraceEvent& event : message.events()) {
+      const auto before = last.find(event.event());
+      EXPECT_EQ(event.has_free_time(), before != last.end());
+      if (before != last.end()) {
+        EXPECT_NEAR(event.free_time(), event.time() - before->second, 1e-9);
+      }
+      last[event.event()] = event.time();
+    }
+  }
+  EXPECT_EQ(last.size(), 3u);
+}
+
 TEST_F(TraceServiceTest, TheSameRequestHasTheSameBytes) {
   const auto bytes = [this](uint64_t seed) {
     v1::TraceOrbitRequest request = TraceRequest(2000, "3x3");
@@ -153,44 +162,6 @@ TEST_F(TraceServiceTest, TheSameRequestHasTheSameBytes) {
   };
   EXPECT_EQ(bytes(7), bytes(7));
   EXPECT_NE(bytes(7), bytes(8));
-}
-
-// ---- bad requests ----
-
-TEST_F(TraceServiceTest, EveryBadFieldIsNamed) {
-  using Request = v1::TraceOrbitRequest;
-  const struct {
-    std::vector<std::string> fields;
-    std::string message;  // a part of it
-    std::function<void(Request&)> change;
-  } rows[] = {{{"rho", "delta", "cells", "temperature", "events"},
-               "",
-               [](Request& r) {
-                 r.Clear();
-                 r.set_cells("2x");
-                 r.set_temperature(0);
-               }},
-              {{"events"}, "is 0; permitted: 1 to 1000000", [](Request& r) { r.set_events(0); }},
-              {{"events"}, "is 1000001", [](Request& r) { r.set_events(kMaxTracedEvents + 1); }},
-              {{"cells"},
-               "1001 has 1001 cells; permitted in a trace: 1 to 1000",
-               [](Request& r) { r.set_cells("1001"); }},
-              {{"cells"}, "x\\n", [](Request& r) { r.set_cells("x\n"); }},
-              {{"delta"},  // permitted for a pair
-               "no two pistons may overlap",
-               [](Request& r) {
-                 r.set_cells("4");
-                 r.set_delta(0.3);
-               }},
-              {{"temperature"}, "", [](Request& r) { r.set_temperature(1); }}};  // a pair has none
-  for (const auto& row : rows) {
-    Request request = TraceRequest(1);
-    row.change(request);
-    const grpc::Status refused = Refusal(request);
-    EXPECT_THAT(refused, IsError(grpc::StatusCode::INVALID_ARGUMENT, "INVALID_REQUEST"));
-    EXPECT_THAT(DetailsOf(refused).fields, ElementsAreArray(row.fields));
-    EXPECT_THAT(refused.error_message(), HasSubstr(row.message));
-  }
 }
 
 // ---- limits, and the end ----

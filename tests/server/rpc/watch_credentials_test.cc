@@ -2,16 +2,9 @@
 #include <chrono>
 #include <string>
 
-#include "gmock/gmock.h"
-#include "tests/server/error_details.h"
-#include "tests/server/fake_experiments.h"
 #include "tests/server/own_channel.h"
-#include "tests/server/requests.h"
 #include "tests/server/rpc/watch_stream.h"
-#include "tests/server/running_server.h"
 #include "tests/server/secure_server.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {

@@ -4,13 +4,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "gmock/gmock.h"
 #include "prometheus/text_serializer.h"
 #include "server/status/call_observer.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/server/requests.h"
 #include "tests/server/running_server.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {

@@ -5,17 +5,11 @@
 #include <sstream>
 #include <string>
 
-#include "gmock/gmock.h"
 #include "grpcpp/generic/generic_stub.h"
 #include "tests/server/call_by_name.h"
-#include "tests/server/fake_experiments.h"
 #include "tests/server/http_get.h"
-#include "tests/server/requests.h"
 #include "tests/server/rpc/watch_stream.h"
-#include "tests/server/running_server.h"
 #include "tests/server/unread_call.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {

@@ -7,16 +7,11 @@
 #include <thread>
 #include <vector>
 
-#include "gmock/gmock.h"
 #include "server/store/check_store.h"
 #include "server/store/schema.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/server/requests.h"
 #include "tests/server/running_server.h"
 #include "tests/server/store_access.h"
 #include "tests/support/files.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
 namespace {

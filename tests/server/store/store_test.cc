@@ -4,7 +4,6 @@
 #include <functional>
 #include <new>
 #include <optional>
-#include <thread>
 #include <vector>
 
 #include "absl/time/clock.h"
@@ -12,7 +11,6 @@
 #include "server/store/data_directory.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
-#include "tests/server/hanging_disk.h"
 #include "tests/server/store_access.h"
 #include "tests/support/await.h"
 #include "tests/support/files.h"
@@ -36,8 +34,6 @@ JobRecord Record(const std::string& id) {
   record.points = 3;
   return record;
 }
-
-void WriteSomething(Database& database) { InsertChunk(database, 9, 0, 0, "x"); }
 
 class StoreTest : public testing::Test {
  protected:
@@ -114,18 +110,6 @@ TEST_F(StoreTest, AJobIsThereAfterReopening) {
   EXPECT_EQ(found->priority, -3);
   EXPECT_EQ(found->question, "question of a");
   EXPECT_EQ(found->points, 3);
-}
-
-TEST_F(StoreTest, WritesAreFlushedToTheDisk) {
-  const auto store = Open();
-  std::string mode;
-  int64_t synchronous = 0;
-  ASSERT_OK(store->Commit([&](Database& database) {
-    mode = database.First<std::string>("PRAGMA journal_mode").value_or("");
-    synchronous = database.Integer("PRAGMA synchronous");
-  }));
-  EXPECT_EQ(mode, "wal");
-  EXPECT_EQ(synchronous, 2);  // FULL
 }
 
 TEST_F(StoreTest, TheReaderCannotWrite) {
@@ -321,27 +305,6 @@ TEST_F(StoreTest, DoneIsCalledInOrderAfterTheCommit) {
   }
   ASSERT_OK(store->Flush());
   EXPECT_THAT(order, testing::ElementsAre(0, 1, 2, 3, 4));
-}
-
-TEST_F(StoreTest, AHangingDiskRejectsRequestsAndServesReads) {
-  HangingDisk disk;
-  const auto store = *Store::Open(folder_.File("store"),
-                                  {.stall = std::chrono::milliseconds(1), .vfs = disk.vfs()});
-  disk.Hang();
-  std::thread hanging([&] { EXPECT_OK(store->Commit(WriteSomething)); });
-  disk.AwaitHanging();
-  AwaitThat([&] { return store->stalled(); });
-  EXPECT_FALSE(store->failing());
-  bool run = false;
-  const auto change = [&](Database&) { run = true; };
-  EXPECT_THAT(store->Commit(change), StatusIs(absl::StatusCode::kUnavailable));
-  EXPECT_FALSE(run);
-  EXPECT_OK(store->Read(CountJobsByPrincipal));
-  disk.Resume();
-  hanging.join();
-  // The store accepts changes again when its thread has seen the end of the disk call.
-  AwaitThat([&] { return store->Commit(change).ok(); });
-  EXPECT_TRUE(run);
 }
 
 // Else the next reader would get a connection whose transaction is open.

@@ -144,17 +144,5 @@ TEST_F(WorkerTest, DamagedAndForeignFilesAreGivenBack) {
   EXPECT_THAT(begun_, IsEmpty());
 }
 
-TEST_F(WorkerTest, ALeaseThatNeedsMoreMemoryIsGivenBack) {
-  Lay("a", lease_);
-  EXPECT_OK(Run({.memory = 1000}));
-  EXPECT_THAT(Names(), ElementsAre("done/a.me.no-memory"));
-  EXPECT_THAT(begun_, IsEmpty());
-}
-
-TEST_F(WorkerTest, AFolderThatCannotBeReadIsReportedWhenTheWorkerEnds) {
-  files_.before = [](const char*, const std::string&) { return absl::UnavailableError("gone"); };
-  EXPECT_THAT(Run(), StatusIs(absl::StatusCode::kUnavailable, HasSubstr("gone")));
-}
-
 }  // namespace
 }  // namespace ballpiston::server

@@ -1,33 +1,21 @@
-#include "tests/fault/torture/windows.h"
+#include "tests/fault/torture/costs.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <stdexcept>
-#include <thread>
 
 #include "absl/strings/str_format.h"
 #include "client/library/job_watch.h"
+#include "core/ensemble/point_fold.h"
+#include "server/convert/spec.h"
+#include "server/processor_time.h"
 #include "tests/fault/torture/questions.h"
 #include "tests/support/await.h"
 
 namespace ballpiston::torture {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-struct Reading {
-  double samples = 0;
-  double processor_seconds = 0;
-  Clock::time_point at;
-};
-
-Reading Read(const ServerProcess& server, const client::Client& client, const std::string& job) {
-  const v1::EnsembleJob now = OrThrow(client.Get(job));
-  if (client::HasEnded(now.state())) throw std::runtime_error("the job is too short to measure");
-  return {now.progress().samples(), server.ProcessorSeconds(), Clock::now()};
-}
 
 // For a normal law: standard deviation / median deviation, and standard error of the median / that
 // of the mean.
@@ -50,18 +38,36 @@ double Median(std::vector<double> values) {
 
 }  // namespace
 
-Window ServerWindow(const ServerProcess& server, const client::Client& client,
-                    const std::string& job, std::chrono::milliseconds length,
-                    double least_samples) {
-  const Reading start = Read(server, client, job);
-  Reading end;
+double EngineCost(const v1::EnsembleSpec& question) {
+  const auto experiment = PointExperiment::Create(server::CheckSpec(question).spec, 0);
+  const double start = server::ThreadSeconds();
+  const auto samples = static_cast<double>(FoldPoint(*experiment)->samples);
+  return (server::ThreadSeconds() - start) / samples;
+}
+
+double ServerCost(const ServerProcess& server, const client::Client& client,
+                  const v1::EnsembleSpec& question) {
+  const double start = server.ProcessorSeconds();
+  const std::string name = OrThrow(client.Create(question, {.fresh = true})).name();
+  const v1::EnsembleJob end =
+      OrThrow(client.Watch(name, {}, {.give_up_after = absl::FromChrono(kPatience)}));
+  return (server.ProcessorSeconds() - start) / end.progress().samples();
+}
+
+double ServerCost(const ServerProcess& server, const client::Client& client, const std::string& job,
+                  double least_samples) {
+  const auto samples = [&] {
+    const v1::EnsembleJob now = OrThrow(client.Get(job));
+    if (client::HasEnded(now.state())) throw std::runtime_error("the job is too short to measure");
+    return now.progress().samples();
+  };
+  const double before = samples(), start = server.ProcessorSeconds();
+  double more = 0;
   AwaitThat([&] {
-    std::this_thread::sleep_for(length);
-    end = Read(server, client, job);
-    return end.samples - start.samples >= least_samples;
+    more = samples() - before;
+    return more >= least_samples;
   });
-  return {end.samples - start.samples, end.processor_seconds - start.processor_seconds,
-          std::chrono::duration<double>(end.at - start.at).count()};
+  return (server.ProcessorSeconds() - start) / more;
 }
 
 void PairedRatio::Add(double first, double second) {

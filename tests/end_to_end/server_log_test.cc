@@ -1,7 +1,5 @@
-// The status of a server, and its log.
+// The log of a server.
 #include <fcntl.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -15,36 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr char kIdle[] = "workers   0 of 2 busy\n";
-
-// Asks until all workers are idle: a worker may be busy for a moment after the end of the job.
-ProcessResult StatusOfIdle(const TestServer& server) {
-  ProcessResult table;
-  do {
-    table = server.Client({"status"});
-  } while (table.exit_code == 0 && table.out.find(kIdle) == std::string::npos);
-  return table;
-}
-
-TEST(Status, CountsJobsAndSamples) {
-  const TestServer server(2);
-  server.Json(Split("run equilibrium --rho 0.53 --delta 0.2 --collisions 5000 --verify"));
-  const ProcessResult table = StatusOfIdle(server);
-  EXPECT_THAT(table, ExitsWith(0));
-  EXPECT_THAT(table.out, HasSubstr("state     serving\n"));
-  EXPECT_THAT(table.out, HasSubstr(kIdle));
-  EXPECT_THAT(table.out, HasSubstr("0 queued, 0 running, 1 in the store\n"));
-  EXPECT_THAT(table.out, HasSubstr("wall hits/s"));
-  EXPECT_EQ(table.err, "");
-
-  const auto json = server.Json({"status"});
-  EXPECT_EQ(At(json, "state").string_value(), "SERVING");
-  EXPECT_GE(At(json, "samples_computed").number_value(), 5000);
-  EXPECT_GT(At(json, "rates", "wall_hit").number_value(), 0);
-  EXPECT_EQ(At(json, "principal").string_value(), "local");
-}
-
-TEST(Status, TheLogNamesTheAddressOfTheMetrics) {
+TEST(ServerLog, NamesTheAddressOfTheMetrics) {
   TestServer server({.flags = {"--metrics-listen", "127.0.0.1:0"}});
   EXPECT_EQ(server.Stop(), 0);
   EXPECT_THAT(server.log(), HasSubstr("metrics at http://127.0.0.1:"));
@@ -75,7 +44,7 @@ class FullPipe {
   int descriptor_ = -1;
 };
 
-TEST(Status, TheServerGoesOnWhenNobodyReadsItsLog) {
+TEST(ServerLog, TheServerGoesOnWhenNobodyReadsItsLog) {
   const TemporaryFolder home;
   const FullPipe log(home.File("log"));
   ServerProcess server({.flags = {"--drain-seconds", "1"},
@@ -91,14 +60,6 @@ TEST(Status, TheServerGoesOnWhenNobodyReadsItsLog) {
   log.Read();
   EXPECT_EQ(server.Stop(), 0);
   EXPECT_THAT(log.Read(), HasSubstr("warning: lines were dropped: the log was not read (lines="));
-}
-
-TEST(Status, MetricsForOtherMachinesAreRejected) {
-  const TemporaryFolder home;
-  const ProcessResult result =
-      RunServer(home, {"--data_dir", home.File("data"), "--metrics-listen", "0.0.0.0:9090"});
-  EXPECT_THAT(result, ExitsWith(2));
-  EXPECT_THAT(result.err, HasSubstr("--metrics-listen=0.0.0.0:9090 is not a loopback address"));
 }
 
 }  // namespace

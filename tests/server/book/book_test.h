@@ -1,0 +1,103 @@
+// A book of jobs with its store and its threads: a server without gRPC, which a test can restart.
+#pragma once
+
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "server/book/job_book.h"
+#include "server/book/job_name.h"
+#include "server/convert/spec.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/requests.h"
+#include "tests/server/thread_pool.h"
+#include "tests/support/await.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::server {
+
+inline const Principal kAnn{"ann", Role::kSubmit};
+inline const Principal kBen{"ben", Role::kSubmit};
+inline const Principal kRoot{"root", Role::kAdmin};
+
+// Jobs with these seeds fail, or wait at the gate.
+inline constexpr uint64_t kFailingSeed = 1013, kHeldSeed = 1014;
+
+class BookTest : public testing::Test {
+ protected:
+  BookTest() { Start(); }
+  ~BookTest() override { Stop(); }
+
+  // A new process of the server, on the same store.
+  void Start(const Limits& limits = {}) {
+    Stop();
+    limits_ = limits;
+    ASSERT_OK_AND_ASSIGN(store_, Store::Open(path_, {.delay = std::chrono::milliseconds(1),
+                                                     .stall = kNever,
+                                                     .reserve_bytes = 0}));
+    pool_ = std::make_unique<ThreadPool>(
+        2, FakeExperimentsBySeed([this](uint64_t seed, size_t, uint64_t, std::stop_token stop) {
+          if (seed == kFailingSeed) throw std::runtime_error("the ball left the cell");
+          if (seed == kHeldSeed) gate_.Pass(stop);
+        }));
+    book_ = std::make_unique<JobBook>(*store_, limits_, pool_->scheduler());
+    ASSERT_OK(book_->Resume());
+  }
+
+  void Stop() {
+    book_.reset();
+    pool_.reset();
+    store_.reset();
+  }
+
+  absl::StatusOr<v1::EnsembleJob> Create(const Principal& caller,
+                                         const v1::CreateEnsembleJobRequest& request) {
+    return book_->Create(caller, request, CheckSpec(request.spec()));
+  }
+
+  // The id of the created or returned job.
+  std::string Id(const Principal& caller, const v1::CreateEnsembleJobRequest& request) {
+    const auto job = Create(caller, request);
+    EXPECT_OK(job);
+    return job.ok() ? *JobIdOf(job->name()) : "";
+  }
+
+  v1::EnsembleJob Get(const std::string& id) { return book_->Get(kRoot, id).value(); }
+
+  v1::EnsembleJob::State AwaitEnd(const std::string& id) {
+    AwaitThat([&] { return HasEnded(Get(id).state()); });
+    return Get(id).state();
+  }
+
+  // Creates a job, waits for SUCCEEDED, and returns its id.
+  std::string Answered(const Principal& caller, const v1::CreateEnsembleJobRequest& request) {
+    const std::string id = Id(caller, request);
+    EXPECT_EQ(AwaitEnd(id), v1::EnsembleJob::SUCCEEDED);
+    return id;
+  }
+
+  JobsPage List(const Principal& caller = kRoot, JobFilter filter = {}) {
+    return book_
+        ->List(caller, {.filter = std::move(filter),
+                        .before = std::numeric_limits<int64_t>::max(),
+                        .max_jobs = 1000,
+                        .max_bytes = std::numeric_limits<size_t>::max()})
+        .value();
+  }
+
+  Gate gate_;
+  const TemporaryFolder folder_;
+  const std::string path_ = folder_.File("store.sqlite3");
+  Limits limits_;
+  std::unique_ptr<Store> store_;
+  std::unique_ptr<ThreadPool> pool_;
+  std::unique_ptr<JobBook> book_;
+};
+
+}  // namespace ballpiston::server

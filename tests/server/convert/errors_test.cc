@@ -1,0 +1,89 @@
+#include "server/convert/errors.h"
+
+#include <string>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "google/rpc/error_details.pb.h"
+#include "tests/server/error_details.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(Errors, CarryReasonDomainAndMetadata) {
+  const grpc::Status status = GrpcStatus(JobNotFound("ensembleJobs/x"));
+  EXPECT_THAT(status, StatusIs(grpc::StatusCode::NOT_FOUND, HasSubstr("ensembleJobs/x")));
+  const ErrorDetails details = DetailsOf(status);
+  EXPECT_EQ(details.reason, "JOB_NOT_FOUND");
+  EXPECT_EQ(details.domain, "ballpiston");
+  EXPECT_EQ(details.metadata.at("name"), "ensembleJobs/x");
+}
+
+absl::Duration RetryDetail(const absl::Status& status) {
+  const google::rpc::Status error = RpcStatus(status);
+  google::rpc::RetryInfo retry;
+  for (const auto& detail : error.details()) detail.UnpackTo(&retry);
+  return absl::Seconds(retry.retry_delay().seconds());
+}
+
+TEST(Errors, SayHowLongToWaitWhereWaitingHelps) {
+  const auto limit = [](const std::string& reason) { return LimitExceeded(reason, "it", "f", 1); };
+  for (const absl::Status& cured :
+       {ShuttingDown(), StoreFailure(absl::ResourceExhaustedError("full")),
+        StoreFailure(absl::UnavailableError("fails")), limit("TOO_MANY_CALLS"),
+        limit("TOO_MANY_STREAMS"), limit("TOO_MANY_JOBS"), limit("TOO_MANY_ACTIVE_POINTS"),
+        limit("QUEUE_FULL")}) {
+    EXPECT_GT(RetryDetail(cured), absl::ZeroDuration()) << cured;
+    EXPECT_EQ(RetryDelayOf(RpcStatus(cured)), RetryDetail(cured));
+  }
+  for (const absl::Status& lasting :
+       {limit("TOO_MANY_POINTS"), limit("TOO_MANY_SAMPLES"), limit("TOO_MANY_STORED_BYTES"),
+        StoreFailure(absl::DataLossError("damaged")), JobNotFound("x")}) {
+    EXPECT_EQ(RetryDetail(lasting), absl::ZeroDuration()) << lasting;
+    EXPECT_EQ(RetryDelayOf(RpcStatus(lasting)), absl::ZeroDuration());
+  }
+}
+
+TEST(Errors, AToleranceThatWasNotReachedNamesPointToleranceBudgetAndError) {
+  EnsembleSpec spec = FakeSpec(1, 0);
+  spec.target = {.tolerance = 1e-6, .budget_seconds = 0.25};
+  const absl::Status missed =
+      ToleranceNotReached(spec, 17, {.name = "time", .value = -8, .standard_error = 0.04});
+  EXPECT_THAT(missed,
+              StatusIs(absl::StatusCode::kDeadlineExceeded,
+                       "point 17: tolerance 1e-06 was not reached within the budget of 0.25 s: "
+                       "reached 0.005"));
+  const absl::Status without = ToleranceNotReached(spec, 0, {.name = "time", .value = 8});
+  EXPECT_THAT(std::string(without.message()), HasSubstr("reached an unknown error"));
+  // A job's error keeps its reason. An error without a reason gets that of a failed computation.
+  EXPECT_EQ(ReasonOf(WithDefaultReason(missed, "COMPUTATION_FAILED")), "TOLERANCE_NOT_REACHED");
+  EXPECT_EQ(ReasonOf(WithDefaultReason(absl::InternalError("lost"), "COMPUTATION_FAILED")),
+            "COMPUTATION_FAILED");
+}
+
+TEST(Errors, ViolationsThatDoNotFitAreCounted) {
+  std::vector<FieldViolation> violations;
+  for (int i = 0; i < 5000; ++i) {
+    violations.push_back({"spec.grid.rho[" + std::to_string(i) + "]", std::string(90, 'x')});
+  }
+  const grpc::Status status = GrpcStatus(InvalidSpec(violations));
+  EXPECT_LT(status.error_details().size(), kMaxErrorDetails);
+  const ErrorDetails details = DetailsOf(status);
+  EXPECT_GT(details.fields.size(), 20u);
+  const std::string left_out = std::to_string(5000 - details.fields.size());
+  EXPECT_EQ(details.metadata.at("violations_left_out"), left_out);
+  EXPECT_THAT(status.error_message(), HasSubstr(left_out));
+}
+
+TEST(Errors, TextIsCutBetweenCharacters) {
+  std::string text;
+  for (int i = 0; i < 1000; ++i) text += "\xc3\xa9";  // e with an accent
+  EXPECT_THAT(GrpcStatus(InvalidRequest({{"a", text}})).error_message(), HasSubstr("\xa9..."));
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,197 @@
+#include "server/convert/spec.h"
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "absl/strings/ascii.h"
+#include "core/experiment/all_experiments.h"
+#include "core/gas/gas_shape.h"
+#include "gmock/gmock.h"
+#include "google/protobuf/text_format.h"
+#include "tests/server/spec_message.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+
+v1::EnsembleSpec FromText(const std::string& text) {
+  v1::EnsembleSpec spec;
+  EXPECT_TRUE(google::protobuf::TextFormat::MergeFromString(text, &spec)) << text;
+  return spec;
+}
+
+// Each text may go on: a later value replaces an earlier one, and values of lists are added.
+const std::string kHit =
+    "experiment: FIRST_HIT seed: 18446744073709551615 "
+    "grid { rho: 0.53 delta: 0.1 epsilon: 0.25 exponent: 1 } ";
+const std::string kGas = "experiment: GAS_EQUILIBRIUM grid { rho: 0.53 delta: 0.1 } ";
+const std::string kRelaxation = "experiment: ENERGY_RELAXATION grid { rho: 0.53 delta: 0.1 } ";
+
+TEST(Spec, ComesBackUnchanged) {
+  std::vector<std::string> texts = {
+      "model: BILLIARD_REFERENCE target { samples: 1000 }", "model: AUTO verify: true target {}",
+      "model: AUTO target { collisions: 5 }",
+      R"(model: AUTO grid { cells: ["1", "12", "1x1", "4x3", "1000000", "1x1000000"] } target {})"};
+  for (const std::string estimate : {"exchange_rate", "conductivity"}) {
+    texts.push_back("model: AUTO target { tolerance: 0.05 estimate: \"" + estimate + "\" }");
+  }
+  for (const int nanos : {1, 7, 123'456'789, 300'000'000, 999'999'999}) {  // to the nanosecond
+    for (const int seconds : {0, 1, 86'400}) {
+      texts.push_back("model: AUTO target { tolerance: 0.01 budget { seconds: " +
+                      std::to_string(seconds) + " nanos: " + std::to_string(nanos) + " } }");
+    }
+  }
+  for (const std::string& text : texts) {
+    const v1::EnsembleSpec message = FromText(kHit + text + " precision: DOUBLE");
+    EXPECT_EQ(SpecMessage(CheckSpec(message).spec).DebugString(), message.DebugString());
+  }
+  // Messages name the budget as it was given, not as 0.30000000000000004.
+  EXPECT_EQ(
+      CheckSpec(FromText("target { budget { nanos: 300000000 } }")).spec.target.budget_seconds,
+      0.3);
+  EXPECT_EQ(CheckSpec(FromText(R"(grid { cells: "4x3" })")).spec.grid[kCells][0],
+            CodeOf({.columns = 4, .rows = 3, .is_lattice = true}));
+}
+
+// ---- violations ----
+
+std::vector<std::string> ViolatedFields(const CheckedSpec& checked) {
+  std::vector<std::string> fields;
+  for (const FieldViolation& violation : checked.violations) fields.push_back(violation.field);
+  return fields;
+}
+
+// What only messages can have; the ranges are tested in tests/core/ensemble/ensemble_spec_test.cc.
+TEST(Spec, EveryBadFieldIsAViolation) {
+  struct Row {
+    std::string spec;
+    std::vector<std::string> fields;  // each has one violation, in this order
+    std::string description = {};     // of the first one; empty: not compared
+  };
+  const std::string range = "; permitted: N or NxM, 1 to 1000000 cells in all";
+  const std::string long_text(1'000'000, 'y');
+  std::vector<Row> rows = {
+      // Strange text is escaped and shortened.
+      {kGas + R"(grid { cells: "\033[2J" })",
+       {"spec.grid.cells[0]"},
+       "cells is \"\\033[2J\"" + range},
+      {kGas + "grid { cells: '" + long_text + "' }",
+       {"spec.grid.cells[0]"},
+       "cells is \"" + std::string(100, 'y') + "...\"" + range},
+      {kGas + R"(grid { cells: "4" } target { estimate: "\033[2J)" + long_text + "\" }",
+       {"spec.target.estimate"},
+       "is \\033[2J" + std::string(96, 'y') +
+           "...; permitted with gas-equilibrium: exchange_rate, conductivity"},
+      {kHit + R"(grid { cells: "4" })",
+       {"spec.grid.cells"},
+       "has 1 values; first-hit does not use this list"},
+      {kHit + "precision: 79", {"spec.precision"}},
+      {kHit + "model: 78", {"spec.model"}},
+      {kHit + "experiment: 77", {"spec.experiment"}},
+      // A tolerance below the model's own error.
+      {kRelaxation + "target { tolerance: 1e-4 } model: MARKOV", {"spec.target.tolerance"}},
+      {kRelaxation + "target { tolerance: 1e-4 } model: SPECTRUM", {"spec.target.tolerance"}},
+      {kRelaxation + "target { tolerance: 1e-4 } model: AUTO", {}},
+      {kRelaxation + "target { tolerance: 1e-4 } model: BILLIARD", {}}};
+  for (const std::string cells : {"4y4", "0", "x", "1e9", "-3", "", "1001x1000", "4x"}) {
+    rows.push_back({kGas + "grid { cells: '" + cells + "' }",
+                    {"spec.grid.cells[0]"},
+                    "cells is \"" + cells + "\"" + range});
+  }
+  for (const std::string wrong : {"nan", "inf", "-inf"}) {
+    rows.push_back({kHit + "grid { rho: " + wrong + " }", {"spec.grid.rho[1]"}});
+    rows.push_back({kHit + "target { tolerance: " + wrong + " }", {"spec.target.tolerance"}});
+  }
+  for (const Row& row : rows) {
+    SCOPED_TRACE(row.spec.substr(0, 200));
+    const CheckedSpec checked = CheckSpec(FromText(row.spec));
+    EXPECT_THAT(ViolatedFields(checked), testing::ElementsAreArray(row.fields));
+    if (row.description.empty()) continue;
+    EXPECT_EQ(checked.violations.at(0).description, row.description);
+  }
+}
+
+// A message of 4 MiB may hold two million of them.
+TEST(Spec, FieldsOfANewerClientAreRefusedAndSomeOfThemListed) {
+  v1::EnsembleSpec message = FromText(kHit);
+  const auto add = [&message] {
+    message.GetReflection()->MutableUnknownFields(&message)->AddVarint(100, 1);
+  };
+  add();
+  EXPECT_THAT(ViolatedFields(CheckSpec(message)), testing::ElementsAre("spec"));
+  for (int i = 0; i < 10'000; ++i) add();
+  EXPECT_GE(CheckSpec(message).violations.size(), 1u);
+  EXPECT_LE(CheckSpec(message).violations.size(), 1000u);
+}
+
+// A message of 4 MiB holds two million empty texts.
+TEST(Spec, ATooLongListOfShapesIsNotParsed) {
+  v1::EnsembleSpec message = FromText(kHit);
+  for (int i = 0; i <= kMaxPoints; ++i) message.mutable_grid()->add_cells("");
+  EXPECT_THAT(ViolatedFields(CheckSpec(message)),
+              testing::UnorderedElementsAre("spec.grid", "spec.grid.cells"));
+  message.mutable_grid()->mutable_cells()->RemoveLast();
+  EXPECT_EQ(CheckSpec(message).violations.size(), static_cast<size_t>(kMaxPoints) + 1);
+}
+
+// ---- defaults and names ----
+
+TEST(Spec, DefaultValuesAreWrittenIntoEmptyLists) {
+  const auto with_defaults = [](const std::string& text) {
+    v1::EnsembleSpec spec = FromText(text);
+    AddDefaults(spec);
+    return spec.ShortDebugString();
+  };
+  EXPECT_EQ(with_defaults(kGas), FromText(kGas + "grid { temperature: 1 }").ShortDebugString());
+  for (const std::string& text : {kGas + "grid { temperature: 2 }", kHit}) {
+    EXPECT_EQ(with_defaults(text), FromText(text).ShortDebugString());
+  }
+}
+
+// Each experiment with every model that answers it, and no other.
+TEST(Spec, EveryValueOfEveryEnumerationComesBack) {
+  const auto* experiments = v1::EnsembleSpec::Experiment_descriptor();
+  const auto* models = v1::EnsembleSpec::Model_descriptor();
+  std::set<const ExperimentKind*> seen_experiments;
+  std::set<Model> seen_models;
+  for (int e = 0; e < experiments->value_count(); ++e) {
+    for (int m = 0; m < models->value_count(); ++m) {
+      const v1::EnsembleSpec message =
+          FromText(kHit + "precision: SINGLE experiment: " + experiments->value(e)->name() +
+                   " model: " + models->value(m)->name());
+      const CheckedSpec checked = CheckSpec(message);
+      for (const FieldViolation& violation : checked.violations) {
+        EXPECT_THAT(violation.description,
+                    testing::Not(HasSubstr("is not a value this server knows")));
+      }
+      seen_experiments.insert(checked.spec.experiment);
+      seen_models.insert(checked.spec.model);
+      const v1::EnsembleSpec back = SpecMessage(checked.spec);
+      EXPECT_EQ(back.experiment(), message.experiment());
+      EXPECT_EQ(back.precision(), v1::EnsembleSpec::SINGLE);
+      if (message.model() != v1::EnsembleSpec::MODEL_UNSPECIFIED) {
+        EXPECT_EQ(back.model(), message.model());
+      }
+    }
+  }
+  EXPECT_EQ(seen_experiments.size(), static_cast<size_t>(experiments->value_count()));
+  EXPECT_EQ(seen_experiments.size(), AllExperiments().size() + 1);  // and the missing one
+  EXPECT_EQ(seen_models.size(), static_cast<size_t>(models->value_count()) - 1);  // AUTO twice
+}
+
+TEST(Spec, ExperimentsHaveOneName) {
+  for (const ExperimentKind* kind : AllExperiments()) {
+    const auto* value = v1::EnsembleSpec::Experiment_descriptor()->FindValueByNumber(
+        static_cast<int>(kind->number));
+    ASSERT_NE(value, nullptr) << kind->name;
+    std::string name = absl::AsciiStrToLower(value->name());
+    std::replace(name.begin(), name.end(), '_', '-');
+    EXPECT_EQ(name, kind->name);
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::server

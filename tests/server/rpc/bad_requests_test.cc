@@ -1,0 +1,163 @@
+// Bad requests of all methods: the error names the fields and says what is permitted. All ranges of
+// a specification are in tests/core/ensemble/ensemble_spec_test.cc, its texts in
+// convert/spec_test.cc.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "google/protobuf/descriptor.h"
+#include "google/protobuf/dynamic_message.h"
+#include "google/protobuf/text_format.h"
+#include "tests/server/call_by_name.h"
+#include "tests/server/running_server.h"
+
+namespace ballpiston::server {
+namespace {
+
+using Fields = std::vector<std::string>;
+
+const char kAndMore[] = "...";
+
+struct BadRequest {
+  std::string method;
+  std::string request;       // in text format; a later value replaces an earlier one or is added
+  Fields fields;             // that the error names; kAndMore: and others
+  std::string message = {};  // a part of it
+};
+
+std::string Times(int count, const std::string& text) {
+  std::string all;
+  for (int i = 0; i < count; ++i) all += text;
+  return all;
+}
+
+std::vector<BadRequest> BadRequests() {
+  const std::string kJobs = "ballpiston.v1.EnsembleService.";
+  const std::string create = kJobs + "CreateEnsembleJob", plan = kJobs + "PlanEnsembleJob";
+  const std::string cancel = kJobs + "CancelEnsembleJob", update = kJobs + "UpdateEnsembleJob";
+  const std::string list = kJobs + "ListEnsembleJobs", results = kJobs + "ListResults";
+  const std::string pairs = "ballpiston.v1.AnalyticService.EvaluatePairs";
+  const std::string trace = "ballpiston.v1.TraceService.TraceOrbit";
+  const std::string hit =
+      "spec { experiment: FIRST_HIT target { samples: 64 } "
+      "grid { rho: 0.53 delta: [0.3, 0.25, 0.2] epsilon: [0.1, 0.4] exponent: 1 } } ";
+  const auto with = [&hit](const std::string& change) { return hit + "spec { " + change + " }"; };
+  const std::string mask = "permitted: pinned, priority";
+  const std::string job = "job { name: 'ensembleJobs/a' } ";
+  const std::string of_job = "parent: 'ensembleJobs/a' ";
+  const std::string pair = "rho: 0.53 delta: 0.2 ";
+  const std::string orbit = "rho: 0.53 delta: 0.15 events: 1 ";
+  return {
+      {create, with("experiment: 0"), {"spec.experiment"}},
+      {create, with("grid { rho: 0.4 }"), {"spec.grid.rho[1]"}, "0.4"},
+      {create, with("grid { delta: -1 }"), {"spec.grid.delta[3]"}, "-1"},
+      {create, with("grid { epsilon: nan }"), {"spec.grid.epsilon[2]"}, "nan"},
+      {create, with("grid { exponent: inf }"), {"spec.grid.exponent[1]"}, "inf"},
+      {create, with("grid { cells: '4' }"), {"spec.grid.cells"}, "does not use"},
+      {create, with("grid { cold: 0 }"), {"spec.grid.cold", "spec.grid.cold[0]"}, "does not use"},
+      {create,  // 10^9 points
+       with("grid { " + Times(1000, "rho: 0.53 delta: 0.1 epsilon: 0.1 ") + "}"),
+       {"spec.grid"},
+       "points"},
+      {create,
+       with("grid { " + Times(10'000, "rho: -1 ") + "}"),
+       {"spec.grid.rho[1]", kAndMore},
+       "left out"},
+      {create, with("target { samples: 0 }"), {"spec.target.samples"}, "0"},
+      {create, with("target { budget { seconds: 5 } }"), {"spec.target.budget"}},
+      {create, with("model: 99"), {"spec.model"}, "99"},
+      {create, hit + "request_id: 'not a uuid'", {"request_id"}},
+      {create, hit + "priority: 101", {"priority"}, "-100 to 100"},
+      {create, hit + "priority: -101", {"priority"}, "-100 to 100"},
+      {create,
+       with("grid { rho: 0.4 } target { samples: 0 }") + "request_id: 'x'",
+       {"request_id", "spec.grid.rho[1]", "spec.target.samples"}},
+      {plan,
+       with("grid { rho: 0.4 epsilon: 0.7 } target { tolerance: 0 }"),
+       {"spec.grid.rho[1]", "spec.grid.epsilon[2]", "spec.target.tolerance"}},
+      {cancel, "name: 'ensembleJobs/a' request_id: 'x'", {"request_id"}},
+      {update, job + "job { priority: 101 } update_mask { paths: 'priority' }", {"job.priority"}},
+      {update, job, {"update_mask"}, mask},
+      {update, job + "update_mask { paths: '*' }", {"update_mask"}, mask},
+      {update, job + "update_mask { paths: ['pinned', 'state'] }", {"update_mask"}, mask},
+      {update, job + "update_mask { paths: 'job.pinned' }", {"update_mask"}, mask},
+      {list, "page_size: -1", {"page_size"}},
+      {list, "page_token: '!!!'", {"page_token"}},
+      {list, "page_token: 'am9iczotMQ=='", {"page_token"}},
+      {list, "page_token: 'cmVzdWx0czphOjE='", {"page_token"}},  // of results
+      {list,
+       "states: [RUNNING, STATE_UNSPECIFIED]",
+       {"states[1]"},
+       "is 0; permitted: QUEUED, RUNNING, CANCELLING, SUCCEEDED, FAILED, CANCELLED"},
+      {list, Times(1'000'000, "states: 0 "), {"states[0]", kAndMore}, "(and 99 more)"},
+      {list, "experiments: -1", {"experiments[0]"}, "is -1"},
+      {list,
+       "since { seconds: 253402300800 }",
+       {"since.seconds"},
+       "is 253402300800; permitted: -62135596800 to 253402300799"},
+      {list, "since { nanos: -1 }", {"since.nanos"}},
+      {results, of_job + "page_size: -5", {"page_size"}},
+      {results, of_job + "page_token: 'x'", {"page_token"}},
+      {results, of_job + "view: 9", {"view"}},
+      {pairs, "", {"rho", "delta"}},
+      {pairs, pair + "rho: 0.4 delta: [-1, nan]", {"rho[1]", "delta[1]", "delta[2]"}},
+      {pairs,
+       pair + "epsilon: 0.6 outgoing_epsilon: 0.5 beta: inf",
+       {"epsilon[0]", "outgoing_epsilon[0]", "beta[0]"}},
+      {pairs,
+       pair + "temperature: [0, -1, 1e-121, nan]",
+       {"temperature[0]", "temperature[1]", "temperature[2]", "temperature[3]"},
+       "temperature[0]: 0 is not in [1e-120, 1e+120]"},
+      // Beyond the bound of the second rho, the smaller one.
+      {pairs, "rho: [0.53, 0.6] delta: 0.3", {"delta[0]"}, "0.6: 0 < delta <= (1 - lambda)/2"},
+      {pairs, Times(101, pair), {"rho"}},  // too many pairs
+      {pairs, Times(100, "rho: 0.53 ") + "delta: 0.1 " + Times(201, "epsilon: 0.1 "), {"epsilon"}},
+      {pairs,
+       Times(100, "rho: 0.53 ") + "delta: 0.1 " + Times(126, "temperature: 1 "),
+       {"temperature"}},
+      {pairs, pair + "delta: 1e-300", {"delta[1]"}},  // beyond the range of double
+      {pairs, "rho: 0.53 delta: 1e-130 temperature: 1e-120", {"delta[0]"}},  // the rate underflows
+      {trace, "cells: '2x' temperature: 0", {"rho", "delta", "cells", "temperature", "events"}},
+      {trace, orbit + "events: 0", {"events"}, "is 0; permitted: 1 to 1000000"},
+      {trace, orbit + "events: 1000001", {"events"}, "is 1000001"},
+      {trace,
+       orbit + "cells: '1001'",
+       {"cells"},
+       "1001 has 1001 cells; permitted in a trace: 1 to 1000"},
+      {trace, orbit + R"(cells: "x\n")", {"cells"}, "x\\n"},
+      {trace, orbit + "cells: '4' delta: 0.3", {"delta"}, "no two pistons may overlap"},
+      {trace, orbit + "temperature: 1", {"temperature"}}};  // a pair has none
+}
+
+grpc::Status Send(const RunningServer& server, const BadRequest& bad) {
+  const auto* method =
+      google::protobuf::DescriptorPool::generated_pool()->FindMethodByName(bad.method);
+  google::protobuf::DynamicMessageFactory factory;
+  const std::unique_ptr<google::protobuf::Message> request(
+      factory.GetPrototype(method->input_type())->New());
+  EXPECT_TRUE(google::protobuf::TextFormat::MergeFromString(bad.request, request.get()));
+  return CallByName(server.channel(), "/" + method->service()->full_name() + "/" + method->name(),
+                    request->SerializeAsString());
+}
+
+TEST(BadRequests, EveryBadFieldIsNamed) {
+  RunningServer server;
+  for (BadRequest& bad : BadRequests()) {
+    SCOPED_TRACE(bad.method + " " + bad.request.substr(0, 200));
+    const grpc::Status status = Send(server, bad);
+    EXPECT_THAT(status,
+                StatusIs(grpc::StatusCode::INVALID_ARGUMENT, testing::HasSubstr(bad.message)));
+    EXPECT_THAT(ReasonOf(status), testing::AnyOf("INVALID_SPEC", "INVALID_REQUEST"));
+    const Fields named = DetailsOf(status).fields;
+    if (bad.fields.back() == kAndMore) {
+      bad.fields.pop_back();
+      EXPECT_THAT(named, testing::IsSupersetOf(bad.fields));
+    } else {
+      EXPECT_THAT(named, testing::UnorderedElementsAreArray(bad.fields));
+    }
+  }
+  EXPECT_EQ(server.List().jobs_size(), 0);
+}
+
+}  // namespace
+}  // namespace ballpiston::server
