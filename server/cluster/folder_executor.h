@@ -11,9 +11,8 @@
 //   - A lease is lost if its file does not change for the time-out. The server compares times of
 //     the folder with each other only, and measures the time-out with its own steady clock. So a
 //     clock that jumps loses no lease.
-// Properties, each with a test of its name:
-//   1. AFileOfAnEarlierProcessIsReported.  2. ALateWorkerChangesNothing.
-//   3. AJumpOfTheFoldersClockLosesNoLease.  4. AnEmptiedFolderLosesNoWork.
+// A late worker changes nothing, and a folder that is emptied loses no work (checked in
+// tests/simulation).
 // Thread-safe. One thread.
 #pragma once
 

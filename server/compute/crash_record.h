@@ -6,8 +6,8 @@
 // nothing. A death of the process counts if the process died of itself in a thread that computed a
 // run (NoteDeath), or if the kernel killed it for want of memory (OutOfMemoryKills). It counts once
 // for each run that was being computed. Properties, each with a test of its name:
-//   1. ADeathCountsForTheRunsThatWereBeingComputed.
-//   2. AKillFromOutsideCountsForNothing. It changes nothing: the points of the last death stay.
+//   1. TwoDeathsWithDifferentRunsMakeASuspectOfTheCommonOne.
+//   2. AKillFromOutsideKeepsThePointsOfTheLastDeath. It counts for nothing.
 //   3. AStoredChunkClearsTheRun.
 //   4. AnOutOfMemoryKillCounts.
 //   5. ADeathInAnExaminationCountsForItsRunAlone.

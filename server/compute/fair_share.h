@@ -15,15 +15,13 @@
 // A choice takes the time of a look-up, plus the time to skip runs without a task. For the threads
 // there are no more such runs than threads, because threads hold all work of such a run. For an
 // executor elsewhere every small run is such a run. Properties, each with a test of its name:
-//   1. UnequalBlocksGetEqualTime.
-//   2. PrincipalsGetEqualTimeWhateverTheirJobs.
-//   3. AHigherPriorityGoesFirstWithinItsPrincipal.
-//   4. APriorityDoesNotTakeFromOtherPrincipals.
-//   5. ANewPrincipalGetsItsShareAtOnce.
-//   6. ANewRunStartsAtTheLeastCharge.
-//   7. UnusedTimeGivesNoCredit.
-//   8. AReturningPrincipalKeepsItsLead.
-//   9. AChangedPriorityCountsFromTheNextTurn.
+//   1. PrincipalsGetEqualTimeWhateverTheirJobs.
+//   2. AHigherPriorityGoesFirstWithinItsPrincipal.
+//   3. APriorityDoesNotTakeFromOtherPrincipals.
+//   4. ANewRunStartsAtTheLeastCharge.
+//   5. UnusedTimeGivesNoCredit.
+//   6. AReturningPrincipalKeepsItsLead.
+//   7. AChangedPriorityCountsFromTheNextTurn.
 // Not thread-safe.
 #pragma once
 

@@ -7,11 +7,12 @@
 // each row that is read (book/shared_copy.h). With many watches each gets snapshots less often, so
 // that all of them together take at most kSnapshotsPerSecond.
 //
-// Properties of a watch and of the watches that resume it, each with a test of its name:
-//   1. EachFinishedPointIsSentOnceInOrder: also over restarts, and before the terminal state.
-//   2. StatesAndProgressNeverGoBack: progress within a life of the server.
-//   3. TheTerminalStateIsSentOnce, last, and then OK. So the watch of a job that has ended begins
-//      with the finished points that were not sent yet.
+// Properties of a watch and of the watches that resume it (checked in tests/simulation):
+//   1. Each finished point is sent once, in order: also over restarts, and before the terminal
+//      state.
+//   2. States never go back; progress does not within a life of the server.
+//   3. The terminal state is sent once, last, and then OK. So the watch of a job that has ended
+//      begins with the finished points that were not sent yet.
 //
 // The resume token names the job, the number of its restarts by other engines, and the last
 // finished point that was sent. For unfinished points it also has the server process and the last

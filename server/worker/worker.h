@@ -2,10 +2,8 @@
 // leaves the chunks there, until there is nothing to do or it has to end.
 //
 // A worker knows that a lease is still its own because its file is there. If the server has taken
-// the file away, the worker drops the lease at the next touch. Properties, each with a test of its
-// name:
-//   1. OneOfTwoWorkersGetsALease.  2. ADroppedLeaseLeavesNothing.
-//   3. AWorkerThatMustEndGivesItsLeaseBack.
+// the file away, the worker drops the lease at the next touch. A worker that has to end gives its
+// lease back.
 #pragma once
 
 #include <chrono>
