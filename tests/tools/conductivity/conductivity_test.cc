@@ -49,25 +49,6 @@ TEST(Conductivity, FunctionsOfOnePairHaveTheirKnownValues) {
   EXPECT_NEAR(ConductivityBound(BallPistonChain(), {2, 2}, 16), pairs(BallPistonChain()), 1e-12);
 }
 
-// For spheres the first function is p_1 p_2 - p_2 p_1 of two neighbours, with the value -1/5025.
-TEST(Conductivity, FirstBoundOfSpheresIsAFraction) {
-  EXPECT_NEAR(ConductivityBound(EqualSitesChain(3), {2, 2}, 3), -1.0 / 5025, 1e-16);
-}
-
-TEST(Conductivity, BoundFallsWithDegreeAndCluster) {
-  for (const SiteLattice& lattice : {BallPistonChain(), EqualSitesChain(3), BallPistonLattice()}) {
-    double last = 0;
-    for (const int degree : {3, 4, 5}) {
-      const double bound = ConductivityBound(lattice, {2, 3}, degree);
-      EXPECT_LT(bound, last - 1e-7);
-      last = bound;
-    }
-    const double larger = ConductivityBound(lattice, {3, 3}, 5);
-    EXPECT_LT(larger, last - 1e-7);
-    EXPECT_LT(ConductivityBound(lattice, {3, 4}, 5), larger + 1e-12);
-  }
-}
-
 // A unit of the published last digit: the value here is -0.0003725 (see kSphereChainCorrection).
 TEST(Conductivity, SpheresHaveThePublishedValue) {
   const ConductivityRatio spheres =

@@ -92,17 +92,5 @@ TEST(TrajectoryHorizon, AllHitsAreCounted) {
   EXPECT_GT(horizon.seconds, 0);
 }
 
-TEST(TwinOrbits, PositionsAreOnTheOrbit) {
-  TwinOrbits twins(kPaperPair, kStreamOfTwins, 1);
-  EventFlow<TwinNumber> flow(kPaperPair, twins.Start(0));
-  const Eigen::Vector2d start = RoundedTo<double>(twins.Start(0)).position;
-  EXPECT_EQ(twins.PositionAt(0, 0), start);
-  const double duration = static_cast<double>(flow.Step().duration);
-  const Eigen::Vector2d hit = RoundedTo<double>(flow.state()).position;
-  EXPECT_NEAR((*twins.PositionAt(0, duration / 2) - (start + hit) / 2).norm(), 0, 1e-15);
-  EXPECT_NEAR((*twins.PositionAt(0, duration) - hit).norm(), 0, 1e-15);
-  EXPECT_EQ(twins.PositionAt(0, 1e9), std::nullopt);
-}
-
 }  // namespace
 }  // namespace ballpiston::method_comparison
