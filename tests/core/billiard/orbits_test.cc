@@ -84,37 +84,6 @@ TEST(Orbits, LanesMeetThePistonWhereTheReferenceDoes) {
   EXPECT_GT(later, 100);
 }
 
-// The same pair for every orbit. Records the ends of the orbits.
-class OfOnePair : public NumberedOrbits {
- public:
-  OfOnePair(const PairState& state, double limit, AfterCollision after = AfterCollision::kEnd)
-      : state_(state), limit_(limit), after_(after) {}
-  PairState Start(uint64_t) override { return state_; }
-  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
-    ends_[orbit].push_back(collision);
-    return after_;
-  }
-  double TimeLimit() const override { return limit_; }
-
-  // The end of each of so many orbits. They have one each.
-  std::vector<Collision> Ends(Engine engine, const PairGeometry& geometry, uint64_t orbits) {
-    ends_.assign(orbits, {});
-    EXPECT_TRUE(RunOrbits(engine, geometry, orbits, *this));
-    std::vector<Collision> all;
-    for (const std::vector<Collision>& ends : ends_) {
-      EXPECT_EQ(ends.size(), 1u);
-      all.insert(all.end(), ends.begin(), ends.end());
-    }
-    return all;
-  }
-
- private:
-  PairState state_;
-  double limit_;
-  AfterCollision after_;
-  std::vector<std::vector<Collision>> ends_;
-};
-
 TEST(Orbits, StopEndsOrbits) {
   const PairGeometry geometry = PaperGeometry(1e-7);
   for (const Engine engine : kEngines) {
@@ -138,45 +107,6 @@ TEST(Orbits, EscapesInLanesAreReported) {
   UntilAnEscape single(geometry, 100'000, 20);
   EXPECT_FALSE(RunOrbits(Engine::kLanesSingle, geometry, 100'000, single, single.stop.get_token()));
   EXPECT_TRUE(single.stop.stop_requested());
-}
-
-// Pairs that do not meet within a time of 1e9: the piston is at rest, or nearly, out of the ball's
-// reach; or the ball is at rest, or nearly, out of the piston's reach.
-std::vector<PairState> PairsApart(const PairGeometry& geometry) {
-  const Eigen::Vector2d place = {-0.1, 0.02}, slant = {0.6, 0.8};
-  std::vector<PairState> pairs;
-  for (const double slow : {0.0, 1e-12, 1e-300}) {
-    pairs.push_back({.position = place,
-                     .direction = slant,
-                     .piston = geometry.piston_right() - 1e-3,
-                     .piston_velocity = slow});
-    pairs.push_back({.position = place,
-                     .direction = slant,
-                     .ball_speed = slow,
-                     .piston = geometry.piston_right(),
-                     .piston_velocity = -1});
-  }
-  return pairs;
-}
-
-// Also if the source would continue.
-TEST(Orbits, TimeLimitEndsPairsThatDoNotMeet) {
-  const PairGeometry geometry = PaperGeometry(0.1);
-  constexpr double kLimit = 1000;
-  for (const Engine engine : kEngines) {
-    for (const PairState& pair : PairsApart(geometry)) {
-      for (const AfterCollision after : {AfterCollision::kEnd, AfterCollision::kGoOn}) {
-        OfOnePair source(pair, kLimit, after);
-        for (const uint64_t orbits : {1u, 70u}) {
-          for (const Collision& end : source.Ends(engine, geometry, orbits)) {
-            EXPECT_TRUE(end.expired);
-            EXPECT_FALSE(end.escaped);
-            EXPECT_GT(end.time, kLimit);
-          }
-        }
-      }
-    }
-  }
 }
 
 class CollisionsWithin : public RecordedCollisions {
