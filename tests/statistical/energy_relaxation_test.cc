@@ -10,9 +10,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/point_experiment.h"
-#include "core/experiment/expected_limit_error.h"
-#include "core/model_choice/limit_error.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
@@ -157,48 +156,6 @@ TEST(EnergyRelaxation, BilliardIsSlowerThanTheLimitAtLargeDelta) {
   EXPECT_NEAR(large.value, 0.049, 4 * std::hypot(large.standard_error, 0.001));
 }
 
-// The expected limit error is a bound of the difference, and so is the bound from a pilot at a
-// larger delta: 4 errors of the billiard's result, 6e-5.
-TEST(EnergyRelaxation, BilliardIsNearTheLimitAtSmallDelta) {
-  const PointParameters point = PaperPoint(0.05);
-  const Difference small = FromLimit(
-      RunPoint(SpecOfOrbits(Model::kBilliard, point[kDelta], IsNightly() ? 60'000 : 20'000)));
-  const PilotPlace place = PilotPlaceFor(point);
-  const auto run = PilotExperiment(place);
-  const Pilot pilot = PilotOf(*run, *FoldPoint(*run));
-  EXPECT_LT(std::fabs(small.value), ExpectedLimitError(point) + 4 * small.standard_error);
-  EXPECT_LT(std::fabs(small.value),
-            LimitErrorBound(pilot, place, point) + 4 * small.standard_error);
-  const double at_place = ExpectedLimitError(PaperPoint(place.delta));
-  EXPECT_LT(std::fabs(pilot.difference), at_place + 4 * pilot.standard_error);
-}
-
-double Score(const CurvePoint& a, const CurvePoint& b) {
-  return std::fabs(a.value - b.value) / std::hypot(*a.standard_error, *b.standard_error);
-}
-
-// In equilibrium C(0) is the variance of the energies, 1/45 at every delta. With it there are 36
-// scores below 4.5, 2e-4 false alarms; orbits are independent.
-TEST(EnergyRelaxation, EnginesAgree) {
-  const int64_t of_lanes = IsNightly() ? 100'000 : 50'000, of_reference = of_lanes / 5;
-  EnsembleSpec reference = SpecOfOrbits(Model::kBilliardReference, 0.2, of_reference);
-  reference.seed = 3;
-  const PointSummary lanes = RunPoint(SpecOfOrbits(Model::kBilliard, 0.2, of_lanes));
-  const PointSummary slow = RunPoint(reference);
-  EXPECT_EQ(lanes.health.escapes + slow.health.escapes, 0u);
-  EXPECT_EQ(lanes.samples, static_cast<uint64_t>(of_lanes));
-  EXPECT_EQ(slow.samples, static_cast<uint64_t>(of_reference));
-  for (const PointSummary* summary : {&lanes, &slow}) {
-    const CurvePoint& start = summary->curves[0].points[0];
-    EXPECT_NEAR(start.value, 1, 4.5 * *start.standard_error);
-  }
-  const Estimate &a = lanes.estimates[0], &b = slow.estimates[0];
-  EXPECT_NEAR(a.value, b.value, 4.5 * std::hypot(*a.standard_error, *b.standard_error));
-  for (size_t i = 0; i < kLags; ++i) {
-    EXPECT_LT(Score(lanes.curves[0].points[i], slow.curves[0].points[i]), 4.5) << "lag " << i;
-  }
-}
-
 // The master equation's solution, from initial energies at which an expansion only in
 // eigenfunctions had errors of percents in some bins: relative entropies of half a
 // million walks (nightly 3 million) within 4.5 errors, a false alarm in 12,000 seeds.
@@ -214,6 +171,8 @@ TEST(EnergyRelaxation, LawsOfManyWalksSolveTheMasterEquation) {
           RelativeEntropy(summary.histograms[i].histogram.counts, expected[i]);
       const double z = (distance.value - distance.noise_floor) / distance.noise_error;
       EXPECT_LT(std::fabs(z), 4.5) << epsilon << " at " << *summary.histograms[i].time;
+      EXPECT_NEAR(*summary.histograms[i].time / MeanFreeTimesOf(PaperGeometry(0.1)).ball_piston,
+                  0.25 * static_cast<double>(kLawLags[i]), 1e-8);
     }
   }
 }
