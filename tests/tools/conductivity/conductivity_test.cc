@@ -18,13 +18,11 @@ GalerkinForm PairsOf(const SiteLattice& lattice, int degree) {
   return {lattice, basis, ContactMatrix(lattice.dimensions, degree)};
 }
 
-// Sites are half a cell apart, so kappa_0 = E/4 for balls and pistons.
+// Balls and pistons are half a cell apart, so kappa_0 = E/4. Of equal sites it is the exchange
+// rate.
 TEST(Conductivity, StaticConductivityIsHalfTheExchangeRate) {
   EXPECT_NEAR(PairsOf(BallPistonChain(), 3).field_energy() / 4, kContactRate / 2, 1e-14);
   EXPECT_NEAR(PairsOf(BallPistonLattice(), 3).field_energy() / 4, kContactRate / 2, 1e-14);
-}
-
-TEST(Conductivity, StaticConductivityOfEqualSitesIsTheExchangeRate) {
   for (const int dimension : {2, 3}) {
     const SiteLattice chain = EqualSitesChain(dimension);
     const ClusterBasis basis(chain, ChainClusters(chain, 2), {.degree = 3});
