@@ -148,7 +148,7 @@ check-format: ## Print the lines that are not formatted
 	@scripts/format.sh --check
 
 tidy: ## Compile every file alone with Clang and warnings as errors, and run clang-tidy on all files
-	@scripts/setup.sh clang clang-tidy libbenchmark-dev
+	@scripts/setup.sh clang clang-tidy
 	@$(MAKE) build/single/.$(PRESETS_PREFIX)tests
 	@cmake --build --preset single
 	@run-clang-tidy -quiet -p build/single '$(CURDIR)/(core|server|client|tests|tools)/' \
@@ -181,6 +181,6 @@ build/%/.$(PRESETS_PREFIX)tests: CMakePresets.json | setup
 	@touch $(@D)/.$(PRESETS_PREFIX)programs $@
 
 build/%/.$(PRESETS_PREFIX)benchmarks: CMakePresets.json | setup
-	@scripts/setup.sh libbenchmark-dev $(TEST_PACKAGES)
+	@scripts/setup.sh $(TEST_PACKAGES)
 	@$(call configure,-DBALLPISTON_TESTS=ON -DBALLPISTON_BENCHMARKS=ON)
 	@touch $(@D)/.$(PRESETS_PREFIX)programs $(@D)/.$(PRESETS_PREFIX)tests $@

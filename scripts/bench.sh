@@ -2,10 +2,9 @@
 # Runs the benchmarks one after the other, pinned to the first core that this process may use. Then
 # runs engine_benchmark on two cores, if there are two.
 #
-#   scripts/bench.sh FOLDER_OF_PROGRAMS [BENCHMARK_FLAG...]
+#   scripts/bench.sh FOLDER_OF_PROGRAMS
 set -euo pipefail
 folder=$1
-shift
 
 shopt -s nullglob
 benchmarks=("$folder"/*_benchmark)
@@ -16,7 +15,7 @@ fi
 core=$(taskset -pc $$ | sed 's/.*: //; s/[,-].*//')
 for benchmark in "${benchmarks[@]}"; do
   echo "== $(basename "$benchmark") on core $core"
-  taskset -c "$core" "$benchmark" "$@"
+  taskset -c "$core" "$benchmark"
 done
 if (($(nproc) > 1)); then
   echo "== engine_benchmark on two cores"

@@ -9,7 +9,7 @@
 // the fourth and the sum of all six are 0 in exact arithmetic for any orbit, because the flow
 // and the energy are the third and the fourth vector: they show errors of the maps and of rounding.
 //
-// Properties, each with a test of its name: 1. NearbyOrbitsDivergeAsPredicted.
+// Properties, each with a test of its name: 1. EveryEngineHasTheExponentsOfAnotherProgram.
 // 2. ExponentsComeInPairs.
 #pragma once
 

@@ -11,9 +11,7 @@
 // double.
 //
 // Properties, each with the test that bears its name:
-//   1. DensityIntegratesToOne.
-//   2. AveragesEqualIntegralsOfTheMoments: integrals of kernel_moments.h over P.
-//   3. AveragesSatisfyTheIdentities of eq. nucanavg.
+//   1. AveragesEqualIntegralsOfTheMoments: integrals of kernel_moments.h over P.
 //
 // Pure functions: safe from any thread.
 #pragma once

@@ -9,7 +9,7 @@
 //
 // Properties, each with the test that bears its name:
 //   1. AngleMinusSineIsAccurate to kAngleMinusSineRelativeError, unless angle^3 underflows.
-//   2. ChordAngleInvertsTheChord: chord = 2 r sin(angle/2).
+//   2. AngleMinusSineOfATinyAngleIsItsCube.
 //
 // Pure functions: safe from any thread.
 #pragma once

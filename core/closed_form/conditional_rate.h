@@ -8,9 +8,9 @@
 // unit speed. Domain: ep in [0, 1/2], every PairGeometry.
 //
 // Properties, each with the test that bears its name:
-//   1. AccurateAtRandomEnergies: relative error below kConditionalRateRelativeError.
-//   2. PhiIsContinuousAndIncreasing, from sqrt(8)/pi through phi(1/4) = 1 to sqrt(2).
-//   3. AveragesToTheUnconditionalRate: int phi dep/sqrt(2 ep) = 1, eq. intcnuep.
+//   1. AccurateForEveryEnergy: relative error below kConditionalRateRelativeError. Phi increases
+//      from sqrt(8)/pi through phi(1/4) = 1 to sqrt(2).
+//   2. AveragesToTheUnconditionalRate: int phi dep/sqrt(2 ep) = 1, eq. intcnuep.
 //
 // Pure functions: safe from any thread.
 #pragma once

@@ -20,9 +20,7 @@
 //
 // Properties, each with the test that bears its name:
 //   1. AccurateAtRandomGeometries: relative error below kExchangeRateRelativeError.
-//   2. RareLimitIsTheLimitOfTheRate.
-//   3. IsTheAverageOfTheMicrocanonicalRate, 1/tau_bp at energy 1/2, over the pair's energy.
-//   4. HalfTheRateIsTheStaticConductivity: the energy that the kernel carries between a ball
+//   2. StaticConductivityIsHalfTheExchangeRate: the energy that the kernel carries between a ball
 //      and a piston of slightly different temperatures, half a cell apart, gives the static
 //      conductivity.
 //

@@ -19,10 +19,9 @@
 //   1. BinProbabilityIsTheIntegralOfTheDensity, without cancellation on narrow bins and next to
 //      AlphaMax.
 //   2. OnlyThePermittedIntervalCounts, also in a bin that reaches beyond it.
-//   3. ProbabilitiesSumToOne over sigma, and to SigmaProbability over a partition of alpha.
-//   4. MeansAreIntegralsOfTheDensity: MeanCosAlpha = sqrt(eb)/(4 f), MeanSigma = -sqrt(ep)/(2 f).
-//   5. PistonAtRestGivesBothSignsEqually (ep = 0), BallAtRestHasUniformAlpha (ep = 1/2).
-//   6. ContinuousWhereBallAndPistonAreEquallyFast (ep = 1/4).
+//   3. IntervalsAndMeansAreThoseOfTheDensity: MeanCosAlpha = sqrt(eb)/(4 f),
+//      MeanSigma = -sqrt(ep)/(2 f).
+// At ep = 0 both signs have the same law, and at ep = 1/2 alpha is uniform.
 //
 // The error bound of a bin is relative and treats AlphaMax, a double, as exact. On a bin of width w
 // at AlphaMax the rounding of AlphaMax changes the probability by a relative 1e-16/w.

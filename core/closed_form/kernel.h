@@ -13,10 +13,10 @@
 // Properties, each with the test that bears its name:
 //   1. AccurateAtRandomEnergies: relative error below kKernelRelativeError; and for PairKernel
 //      AccurateWhereTheBallKeepsLittleEnergy, ep + ep_out -> 1/2.
-//   2. DetailedBalance: W(eb, ep -> ep_out)/sqrt(ep) is symmetric in ep and ep_out at fixed total
-//      energy, 1/sqrt(ep) being the microcanonical density.
-//   3. IntegratesToItsMoments: with weights 1, zeta, zeta^2, zeta = ep_out - ep, to the f, j, h of
-//      kernel_moments.h.
+//   2. AreIntegralsOfTheKernel: with weights 1, zeta, zeta^2, zeta = ep_out - ep, it integrates to
+//      the f, j, h of kernel_moments.h.
+// Detailed balance: W(eb, ep -> ep_out)/sqrt(ep) is symmetric in ep and ep_out at fixed total
+// energy, 1/sqrt(ep) being the microcanonical density.
 //
 // Pure functions: safe from any thread.
 #pragma once

@@ -14,11 +14,9 @@
 //
 // Properties, each with the test that bears its name:
 //   1. AccurateAtRandomEnergies: relative error of F and of the rate below
-//      kKernelDistributionRelativeError; and AccurateWhereTheBallKeepsLittleEnergy.
+//      kKernelDistributionRelativeError, also where the ball keeps little energy.
 //   2. RisesFromZeroToOne: F reaches 1 at ep_out = eb, and falls nowhere except by rounding.
 //   3. SlopeIsTheKernelOverItsRate.
-//   4. DetailedBalanceOfCollisions: in equilibrium, collisions that take the piston's energy from
-//      below x to below y are as frequent as those from below y to below x.
 // Uses only +, -, *, /, sqrt and Atan2, so the bits are the same on every processor.
 //
 // Immutable: safe to share between threads.

@@ -11,12 +11,11 @@
 // lose digits near the zero of j.
 //
 // Properties, each with the test that bears its name:
-//   1. AccurateOverTheWholeRange: relative error below kKernelMomentsRelativeError; and
+//   1. AccurateForEveryEnergy: relative error below kKernelMomentsRelativeError; and
 //      CurrentIsAccurateThroughItsZero.
 //   2. CurrentFlowsToTheSlowPiston: j > 0 exactly when ep < kCurrentZeroRatio eb.
-//   3. HomogeneousInTheEnergies: f, j, h scale with their powers 1/2, 3/2, 5/2.
-//   4. ContinuousWhereBallAndPistonAreEquallyFast, where the paper's two branches meet.
-//   5. AreIntegralsOfTheKernel.
+//   3. AreIntegralsOfTheKernel.
+// f, j, h scale with the powers 1/2, 3/2, 5/2 of the energies.
 //
 // Pure functions: safe from any thread.
 #pragma once

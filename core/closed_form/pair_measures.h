@@ -15,13 +15,10 @@
 // delta below 1e-140 areas approach the smallest doubles, and the error bound may not hold.
 //
 // Properties, each with the test that bears its name:
-//   1. AccurateAtRandomGeometries, AccurateWhereTheCellVanishes (rho -> 1/sqrt(2)),
-//      AccurateAtTheBound (of delta), AccurateAtTheSmallestRadius (rho -> 1/2): relative error
-//      below kPairMeasuresRelativeError.
-//   2. PistonAtTheBoundHalvesTheCell: |dG_bp|/sqrt(2) = cell/2 at delta = (1 - lambda)/2.
-//   3. PistonWallAreaIsTwoCellsMinusTheProjection: |dG_pw| + |dG_bp|/sqrt(2) = 2 cell.
-//   4. VolumeGrowsByThePistonWallArea: d|G|/d delta = |dG_pw|.
-//   5. RareCollisionsSeeAWedge: |dG_bp| = sqrt(2) lambda delta^2 as delta -> 0.
+//   1. AccurateForEveryGeometry: relative error below kPairMeasuresRelativeError.
+//   2. RareCollisionsSeeAWedge: |dG_bp| = sqrt(2) lambda delta^2 as delta -> 0.
+// |dG_bp|/sqrt(2) is half of the cell at delta = (1 - lambda)/2; |dG_pw| + |dG_bp|/sqrt(2) is twice
+// the cell; d|G|/d delta = |dG_pw|.
 //
 // Pure functions: safe from any thread.
 #pragma once

@@ -5,10 +5,8 @@
 // them. Where the samples of a point continue each other (chunk_plan.h), a block's result also has
 // the state of its group, from which the group's next block starts. Merging keeps the newer state.
 // Properties, each with a test of its name:
-//   1. MergeWithEmptyIsIdentity.  2. MergeKeepsEverySample.
-//   3. EveryBlockHasTheShapeOfTheEmptyOne.
-//   4. EveryNumberChangesTheDigest.  5. NumbersInAnotherOrderHaveAnotherDigest.
-//   6. TheNewerStateOfAGroupReplacesTheOlder.
+//   1. MergeKeepsEverySampleAndHasAnIdentity.  2. EveryNumberChangesTheDigestAndSomeTheShape.
+//   3. TheNewerStateOfAGroupReplacesTheOlder.
 #pragma once
 
 #include <cstdint>

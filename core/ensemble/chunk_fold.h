@@ -4,7 +4,7 @@
 // until all blocks before it are merged. So a chunk's result has the same bits for every order of
 // arrival. Where samples continue each other, a block is handed out when its group's previous block
 // has arrived. Properties, each with a test of its name:
-//   1. ChunksAreIndependentOfTheOrderOfBlocks.  2. AResumedChunkHasTheSameBits.
+//   1. BlocksAndChunksInAnyOrderGiveTheSameBits.  2. AResumedChunkHasTheSameBits.
 //   3. ABlockStartsWhereThePreviousOneOfItsGroupEnded.
 // Not thread-safe.
 #pragma once

@@ -8,8 +8,8 @@
 // A finished point can be continued: a fold of the same question with a larger target resumes from
 // its continuation, and gives the same bits as if it had computed everything. Properties, each with
 // a test of its name:
-//   1. ResultIsIndependentOfArrivalOrder.  2. ResumedFoldGivesTheSameBits.
-//   3. AContinuedPointHasTheBitsOfOneLongRun.
+//   1. BlocksAndChunksInAnyOrderGiveTheSameBits.
+//   2. AContinuedPointHasTheBitsOfOneLongRun.
 // Not thread-safe.
 #pragma once
 

@@ -10,8 +10,8 @@
 // such pair is left. Two such pairs that share a ball or a piston exclude each other, because the
 // parts of a cell that its pistons cut off do not overlap. In this case the method is exact (Guo,
 // Jerrum, Liu 2017). Properties, each with the test that bears its name:
-//   1. PistonsHaveTheirExactLaw: in rings of one and of two cells, and in a lattice.
-//   2. EnergiesHaveTheirGammaLaws.
+//   1. PositionsMatchPlainRejection, in chains and in lattices.
+//   2. EnergiesHaveTheirGammaLawsAtTheLocalTemperature.
 #pragma once
 
 #include <algorithm>

@@ -12,7 +12,6 @@
 //
 // Properties, each with the test that bears its name:
 //   1. StepsHoldTheWholeCurrent.  2. CountsProductsOfDifferentExchanges.
-//   3. SquaredExchangesGiveTheStaticConductivity.
 #pragma once
 
 #include <cstddef>

@@ -15,7 +15,6 @@
 // ball and a piston) per unit of time. Properties, each with the test that bears its name:
 //   1. RingsAreTracesOfTheirTransferOperator.  2. ToriCountEveryConfiguration.
 //   3. LargeGasesTendToTheInfiniteOne, to kGasExchangeRateRelativeError.
-//   4. AgreesWithSampledConfigurations.
 #pragma once
 
 #include "core/gas/gas_geometry.h"

@@ -14,10 +14,9 @@
 // the rounding of times and of paths does not grow with the time since the start.
 // Properties, each with the test that bears its name:
 //   1. AgreesWithTheReferenceEventByEvent, until the rounding errors have grown.
-//   2. ManyShortCallsGiveTheBitsOfOneCall.  3. ReplicasDoNotDependOnTheirNeighbours.
-//   4. EnergyIsConserved.
-//   5. BallsThatMeetPistonsInTipsStayInTheirCells.
-//   6. AnEscapedBallStopsAndCountsOnce.  7. AGasContinuesFromItsState.
+//   2. CallsAndNeighboursDoNotChangeTheBits.  3. KeepsItsEnergyOverMillionsOfHits.
+//   4. BallsThatMeetPistonsInTipsStayInTheirCells.
+//   5. AnEscapedBallStopsAndCountsOnce.  6. AGasContinuesFromItsState.
 #pragma once
 
 #include <cstddef>

@@ -4,9 +4,8 @@
 //
 // A body is moved only at its own events: its time is that of its last wall hit or exchange.
 // Properties, each with a test of its name:
-//   1. OneBallAndOnePistonMoveLikeThePair.  2. ReversedVelocitiesRetraceTheirWay.
-//   3. EnergyIsConserved.
-//   4. LongRunsKeepTheDigitsOfTheirTimes: inside, times count from an origin that moves on, so that
+//   1. OneBallAndOnePistonMoveLikeThePair.  2. BallsStayInTheirCellsAndBeforeTheirPistons.
+//   3. LongRunsKeepTheDigitsOfTheirTimes: inside, times count from an origin that moves on, so that
 //      their rounding does not grow with the time since the start.
 //
 // Times are in cells over unit speed. One object is one gas. Not thread-safe.

@@ -12,8 +12,8 @@
 //
 // Properties, each with a test of its name:
 //   1. PairTraceMatchesTheReferenceFlow.  2. GasTraceMatchesTheReferenceGas.
-//   3. EveryEventConservesEnergy.    4. BodiesFlyStraightBetweenTheirEvents.
-//   5. FreeTimesCountFromTheSameKindAndBodies.
+//   3. EventsConserveEnergyAndEndStraightFlights. Free times count from the last event of the same
+//      kind and bodies.
 //
 // Units: lengths are cells, masses 1. One object is one orbit. Not thread-safe.
 #pragma once

@@ -19,7 +19,7 @@
 //
 // Units: rates |dG_bp|/|G|, times |G|/|dG_bp|. Properties, each with the test that bears its name:
 //   1. ConservesProbability: L 1 = 0, and L is symmetric, to kGeneratorRoundingError.
-//   2. RatesConvergeFromAbove as degree and levels grow.
+//   2. EvolutionObeysTheMasterEquation. Rates converge from above as degree and levels grow.
 //
 // Immutable; safe to share between threads.
 #pragma once

@@ -22,9 +22,10 @@
 // Properties, each with the test that bears its name:
 //   1. InvertsTheDistributionOfW: u' is the exact quantile within a relative kJumpError.
 //   2. WaitsWithTheRateOfCollisions, within a relative kJumpError.
-//   3. DetailedBalance: the stationary law is uniform in u.
-//   4. LanesMatchTheScalarDefinition (tests/oracle/scalar_jump.h), within a relative kJumpError.
-//   5. SameBitsOnEveryProcessor with fused multiply-add, and WalkersAreIndependentOfEachOther.
+//   3. LanesMatchTheScalarDefinition (tests/oracle/scalar_jump.h), within a relative kJumpError.
+//   4. TakeTheirWordsFromTheirSamples: walkers are independent of each other.
+// The stationary law is uniform in u. The bits are the same on every processor with fused
+// multiply-add.
 #pragma once
 
 #include <cstddef>

@@ -5,8 +5,8 @@
 // follows from the scatter of numerator - ratio * denominator between batches. The error has no
 // bias if batches are independent, or long compared with the correlation time. Batches of unequal
 // length have the correct weights. Properties, each with a test of its name:
-//   1. MergeEqualsSinglePass, to rounding.  2. MergeWithEmptyIsIdentity, bit for bit.
-//   3. ErrorOfIndependentTermsIsTheUsualOne, for batches of single independent terms.
+//   1. MergeEqualsSinglePassAndHasAnIdentity: to rounding, and the identity bit for bit.
+//   2. LongBatchesGiveValidErrorsOfACorrelatedSeries.
 #pragma once
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 //
 // Values at or beyond an end count in the bin at that end: a rounded value may leave its interval
 // by an ulp, and no sample may be lost. Property, with a test of its name:
-//   1. MergeAddsCounts: exactly, in any order.
+//   1. CountsInTheBinThatHoldsTheValue. Merging adds counts, exactly and in any order.
 #pragma once
 
 #include <cstddef>

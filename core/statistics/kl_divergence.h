@@ -6,7 +6,7 @@
 // (cells - 1)/(2 N), is not used, because it holds only above about ten samples per cell. Natural
 // logarithms. Properties, each with a test of its name:
 //   1. NoiseFloorIsTheMeanUnderTheExactLaw, to 1e-3 of itself at every N.
-//   2. ErrorsHoldForEqualLaws and ErrorsHoldForUnequalLaws.
+//   2. ErrorsAreTheScatterOfRepetitions, for equal and for unequal laws.
 //   3. ErrorsHoldForCorrelatedSamples, of DivergenceWithinRows.
 #pragma once
 

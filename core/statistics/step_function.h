@@ -3,7 +3,7 @@
 // The function starts at time 0; the last value holds for ever. Averages over time origins need the
 // function up to origins + the longest lag. Properties, each with a test of its name:
 //   1. IntegralIsExact: of the product with a later window, piece by piece, without a time step.
-//   2. SamplesHoldTheLastValue.
+//   2. SamplesAreTheValuesAtTheirTimes.
 // Not thread-safe while Add is called.
 #pragma once
 

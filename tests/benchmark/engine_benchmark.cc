@@ -16,17 +16,18 @@
 #include <cstring>
 #include <functional>
 #include <limits>
-#include <optional>
+#include <memory>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "core/billiard/lane_frame.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "core/geometry/paper.h"
 #include "core/sampling/direction.h"
-#include "server/processor_time.h"
 #include "tests/benchmark/turns.h"
 #include "tests/benchmark/vector_targets.h"
 #include "tools/flows/lane_balls.h"
@@ -50,86 +51,59 @@ std::vector<LaneFrame> BallsFromTheMiddleOfAnArc(uint64_t seed) {
   return balls;
 }
 
-struct FlightContender {
-  int64_t target;
-  bool single;
+// Returns the number of hits.
+double HitsInLanes(int64_t target, bool single, uint64_t turn) {
+  Use(target);
+  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.05);
+  (single ? FlyLaneBallsSingle : FlyLaneBalls)(geometry, BallsFromTheMiddleOfAnArc(turn), kHits,
+                                               {});
+  return kHits * kBalls;
+}
 
-  // Wall hits a second.
-  double Rate(uint64_t turn) const {
-    Use(target);
-    const std::vector<LaneFrame> starts = BallsFromTheMiddleOfAnArc(turn);
-    const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.05);
-    const double begin = server::ThreadSeconds();
-    (single ? FlyLaneBallsSingle : FlyLaneBalls)(geometry, starts, kHits, {});
-    return kHits * kBalls / (server::ThreadSeconds() - begin);
-  }
-};
+Eigen::Vector2d Centre(int disc) {
+  return {(disc & 1) != 0 ? 0.5 : -0.5, (disc & 2) != 0 ? 0.5 : -0.5};
+}
 
-// One ball after the other, one event after the other: the nearest of the roots over all discs,
-// then u - 2 (u . n) n, its length set to 1 again.
-struct ScalarContender {
-  double Rate(uint64_t turn) const {
-    constexpr uint64_t kScalarHits = 500'000;
-    const LaneFrame start = BallsFromTheMiddleOfAnArc(turn)[0];
-    Eigen::Vector2d position = PositionInCell(start), direction = DirectionInCell(start);
-    int left = -1;  // the disc
-    const double begin = server::ThreadSeconds();
-    for (uint64_t hit = 0; hit < kScalarHits; ++hit) Fly(position, direction, left);
-    const double rate = kScalarHits / (server::ThreadSeconds() - begin);
-    volatile double used = position.x();
-    static_cast<void>(used);
-    return rate;
-  }
-
-  static void Fly(Eigen::Vector2d& position, Eigen::Vector2d& direction, int& left) {
-    double nearest = std::numeric_limits<double>::infinity();
-    int next = left;
-    for (int disc = 0; disc < 4; ++disc) {
-      if (disc == left) continue;
-      const Eigen::Vector2d away = position - Centre(disc);
-      const double along = direction.dot(away);
-      const double square = along * along - (away.squaredNorm() - kPaperRho * kPaperRho);
-      if (along >= 0 || square < 0) continue;
-      const double distance = -along - std::sqrt(square);
-      if (distance < nearest) {
-        nearest = distance;
-        next = disc;
-      }
+// As billiard codes have it: the nearest of the roots over all discs, then u - 2 (u . n) n, its
+// length set to 1 again.
+void Fly(Eigen::Vector2d& position, Eigen::Vector2d& direction, int& left) {
+  double nearest = std::numeric_limits<double>::infinity();
+  int next = left;
+  for (int disc = 0; disc < 4; ++disc) {
+    if (disc == left) continue;
+    const Eigen::Vector2d away = position - Centre(disc);
+    const double along = direction.dot(away);
+    const double square = along * along - (away.squaredNorm() - kPaperRho * kPaperRho);
+    if (along >= 0 || square < 0) continue;
+    const double distance = -along - std::sqrt(square);
+    if (distance < nearest) {
+      nearest = distance;
+      next = disc;
     }
-    position += direction * std::min(nearest, 1.0);
-    const Eigen::Vector2d normal = (position - Centre(next)).normalized();
-    direction = (direction - normal * (2 * direction.dot(normal))).normalized();
-    left = next;
   }
+  position += direction * std::min(nearest, 1.0);
+  const Eigen::Vector2d normal = (position - Centre(next)).normalized();
+  direction = (direction - normal * (2 * direction.dot(normal))).normalized();
+  left = next;
+}
 
-  static Eigen::Vector2d Centre(int disc) {
-    return {(disc & 1) != 0 ? 0.5 : -0.5, (disc & 2) != 0 ? 0.5 : -0.5};
-  }
-};
-
-// Either, for Turns.
-struct BallContender {
-  std::optional<FlightContender> lanes;
-
-  double Rate(uint64_t turn) const {
-    return lanes ? lanes->Rate(turn) : ScalarContender().Rate(turn);
-  }
-};
+double ScalarHits(uint64_t turn) {
+  constexpr uint64_t kScalarHits = 500'000;
+  const LaneFrame start = BallsFromTheMiddleOfAnArc(turn)[0];
+  Eigen::Vector2d position = PositionInCell(start), direction = DirectionInCell(start);
+  int left = -1;  // the disc
+  for (uint64_t hit = 0; hit < kScalarHits; ++hit) Fly(position, direction, left);
+  Keep(position.x());
+  return kScalarHits;
+}
 
 void ShowFlight(int64_t target) {
-  const std::vector<BallContender> contenders = {
-      {}, {FlightContender{target, false}}, {FlightContender{target, true}}};
-  const Turns turns(contenders, 15);
-  const double cycles = CyclesPerSecond();
-  const char* const names[] = {"scalar", "double", "single"};
-  for (size_t i = 0; i < contenders.size(); ++i) {
-    const double rate = turns.Best(i);
-    std::printf("%-6s %-7s %8.1f million wall hits/s   %6.2f ns a hit   %6.2f cycles   %5.1f times",
-                hwy::TargetName(target), names[i], rate * 1e-6, 1e9 / rate, cycles / rate,
-                rate / turns.Best(0));
-    ShowDisturbance(turns);
-    std::printf("\n");
-  }
+  const auto lanes = [target](const char* precision, bool single) -> Contender {
+    return {absl::StrCat("wall hits, ", hwy::TargetName(target), " ", precision),
+            [=](uint64_t turn) { return HitsInLanes(target, single, turn); }};
+  };
+  ShowRates({{"wall hits, scalar", ScalarHits}, lanes("double", false), lanes("single", true)}, 15,
+            " times");
 }
 
 EnsembleSpec Question(const ExperimentKind* experiment, double delta, Model model,
@@ -157,46 +131,38 @@ Block BlockOfATurn(const PointExperiment& point, uint64_t turn) {
   return {.first = turn * samples, .samples = samples};
 }
 
-struct EngineContender {
-  int64_t target;
-  const PointExperiment* point;
-  double exact_time;  // of a sample
-
-  // Samples a second; by the time they flew, not by their number: blocks differ by luck.
-  double Rate(uint64_t turn) const {
-    Use(target);
-    const Block block = BlockOfATurn(*point, turn);
-    const double begin = server::ThreadSeconds();
-    const BlockResult result = *RunBlock(*point, block);
-    const double elapsed = server::ThreadSeconds() - begin;
-    const double flown = result.moments.empty()
-                             ? *result.batch_means[0].Ratio() * static_cast<double>(result.samples)
-                             : result.moments[0].mean * static_cast<double>(result.samples);
-    return flown / exact_time / elapsed;
-  }
-};
+// Samples of a turn, by the time that they flew, not by their number: blocks differ by luck.
+double SamplesOfATurn(const PointExperiment& point, double exact_time, uint64_t turn) {
+  const BlockResult result = *RunBlock(point, BlockOfATurn(point, turn));
+  const double mean =
+      result.moments.empty() ? *result.batch_means[0].Ratio() : result.moments[0].mean;
+  return mean * static_cast<double>(result.samples) / exact_time;
+}
 
 double ExactTime(const PointExperiment& point) {
   return *point.FirstEstimate(*RunBlock(point, {.samples = 1})).exact;
 }
 
 void ShowEngines(const char* name, const ExperimentKind* experiment, double delta, int64_t target) {
-  const auto reference = PointExperiment::Create(
-      Question(experiment, delta, Model::kBilliardReference, Precision::kDouble), 0);
-  const auto lanes =
-      PointExperiment::Create(Question(experiment, delta, Model::kBilliard, Precision::kDouble), 0);
-  const auto single =
-      PointExperiment::Create(Question(experiment, delta, Model::kBilliard, Precision::kSingle), 0);
-  const double time = ExactTime(*reference);
-  const std::vector<EngineContender> contenders = {
-      {target, reference.get(), time}, {target, lanes.get(), time}, {target, single.get(), time}};
+  std::vector<Contender> contenders;
+  double events = 0;  // of a sample by the reference
+  for (const auto& [model, precision] : {std::pair(Model::kBilliardReference, Precision::kDouble),
+                                         {Model::kBilliard, Precision::kDouble},
+                                         {Model::kBilliard, Precision::kSingle}}) {
+    const std::shared_ptr<const PointExperiment> point =
+        PointExperiment::Create(Question(experiment, delta, model, precision), 0);
+    if (contenders.empty()) events = point->plan().events_per_sample();
+    contenders.push_back({"", [point, target, time = ExactTime(*point)](uint64_t turn) {
+                            Use(target);
+                            return SamplesOfATurn(*point, time, turn);
+                          }});
+  }
   const Turns turns(contenders, 12);
   std::printf(
       "%-6s %-12s delta %-7g reference %9.0f samples/s (%5.1f million events/s)   "
       "billiard %9.0f: %5.1f times   single: %5.1f times",
-      hwy::TargetName(target), name, delta, turns.Best(0),
-      turns.Best(0) * reference->plan().events_per_sample() * 1e-6, turns.Best(1),
-      turns.Best(1) / turns.Best(0), turns.Best(2) / turns.Best(0));
+      hwy::TargetName(target), name, delta, turns.Best(0), turns.Best(0) * events * 1e-6,
+      turns.Best(1), turns.Best(1) / turns.Best(0), turns.Best(2) / turns.Best(0));
   ShowDisturbance(turns);
   std::printf("\n");
 }

@@ -27,7 +27,6 @@
 #include "core/gas/gas_run.h"
 #include "core/gas/hit_rates.h"
 #include "core/geometry/paper.h"
-#include "server/processor_time.h"
 #include "tests/benchmark/turns.h"
 #include "tests/benchmark/vector_targets.h"
 
@@ -64,20 +63,17 @@ class RunningGas {
     bytes_ = (BytesInUse() - before) / static_cast<double>(geometry_.balls());
   }
 
-  double Rate(uint64_t) const {
+  // Returns the work of the next slice.
+  double Advance() {
     const uint64_t exchanges = meter_->exchanges();
-    const double begin = server::ThreadSeconds();
     run_->AdvanceTo(time_ += slice_);
-    const double seconds = server::ThreadSeconds() - begin;
-    const auto balls = static_cast<double>(geometry_.balls());
-    const double pistons = static_cast<double>(geometry_.pistons());
-    double work = static_cast<double>(meter_->exchanges() - exchanges);
-    if (unit_ == Unit::kBallHits) work = slice_ * balls * HitRatesOf(geometry_.pair()).of_a_ball;
-    if (unit_ == Unit::kAllHits) {
-      work += slice_ * (balls * HitRatesOf(geometry_.pair()).of_a_ball +
-                        pistons * HitRatesOf(geometry_.pair()).of_a_piston);
-    }
-    return work / seconds;
+    const HitRates rates = HitRatesOf(geometry_.pair());
+    const double ball_hits = slice_ * static_cast<double>(geometry_.balls()) * rates.of_a_ball;
+    if (unit_ == Unit::kBallHits) return ball_hits;
+    const auto exchanged = static_cast<double>(meter_->exchanges() - exchanges);
+    if (unit_ == Unit::kExchanges) return exchanged;
+    return exchanged + ball_hits +
+           slice_ * static_cast<double>(geometry_.pistons()) * rates.of_a_piston;
   }
 
   double bytes() const { return bytes_; }
@@ -92,9 +88,17 @@ class RunningGas {
   Unit unit_;
   std::unique_ptr<GasMeter> meter_;
   std::unique_ptr<GasRun> run_;
-  mutable double time_ = 0;
+  double time_ = 0;
   double bytes_ = 0;
 };
+
+Turns TurnsOf(std::vector<RunningGas>& gases, int turns) {
+  std::vector<Contender> contenders;
+  for (RunningGas& gas : gases) {
+    contenders.push_back({"", [&gas](uint64_t) { return gas.Advance(); }});
+  }
+  return {contenders, turns};
+}
 
 std::vector<double> Millions(std::vector<double> rates) {
   for (double& rate : rates) rate /= 1e6;
@@ -106,7 +110,7 @@ void ShowSpeed(double delta) {
   gases.emplace_back(GasEngine::kLanes, 100, delta, 50, Unit::kBallHits);
   gases.emplace_back(GasEngine::kReference, 100, delta, 3, Unit::kAllHits);
   gases.emplace_back(GasEngine::kJumps, 100, delta, 1 / (delta * delta), Unit::kExchanges);
-  const Turns turns(gases, 12);
+  const Turns turns = TurnsOf(gases, 12);
   std::printf("100x100, delta %-6g", delta);
   ShowMedian("lanes", Millions(turns.Rates(0)), " million wall hits/s");
   ShowMedian("reference", Millions(turns.Rates(1)), " million events/s");
@@ -116,28 +120,13 @@ void ShowSpeed(double delta) {
   std::printf("\n");
 }
 
-// An experiment with a chain of some cells: replicas, or stretches of trajectories.
-struct SampleContender {
-  std::unique_ptr<const PointExperiment> point;
-  int64_t target;     // the vector instructions
-  uint64_t replicas;  // of a turn, if samples are independent
-
-  // A group's first stretches; or replicas, as many as fill the lanes of the plan's last chunk.
-  Block BlockOf(uint64_t turn) const {
-    const ChunkPlan& plan = point->plan();
-    if (plan.groups() > 0) return plan.BlockAt(turn % plan.groups(), 0);
-    return {.chunk = plan.chunks() - 1, .first = turn * replicas, .samples = replicas};
-  }
-
-  // Samples a second.
-  double Rate(uint64_t turn) const {
-    Use(target);
-    const Block block = BlockOf(turn);
-    const double begin = server::ThreadSeconds();
-    RunBlock(*point, block);
-    return static_cast<double>(block.samples) / (server::ThreadSeconds() - begin);
-  }
-};
+// Samples of an experiment with a chain: a group's first stretches; or replicas, as many as fill
+// the lanes of the plan's last chunk.
+Block BlockOf(const PointExperiment& point, uint64_t replicas, uint64_t turn) {
+  const ChunkPlan& plan = point.plan();
+  if (plan.groups() > 0) return plan.BlockAt(turn % plan.groups(), 0);
+  return {.chunk = plan.chunks() - 1, .first = turn * replicas, .samples = replicas};
+}
 
 void ShowSamples(const ExperimentKind* experiment, int64_t cells, double delta) {
   constexpr int64_t kBalls = 192;  // as many as the lanes fly together
@@ -148,13 +137,17 @@ void ShowSamples(const ExperimentKind* experiment, int64_t cells, double delta) 
   spec.target.samples = 1'000'000;
   if (experiment == &kGasEquilibrium) spec.grid[kTemperature] = {1};
   if (experiment == &kGasConduction) spec.grid[kHot] = {1.5}, spec.grid[kCold] = {0.5};
-  std::vector<SampleContender> contenders;
-  std::vector<std::string> names;
+  std::vector<Contender> contenders;
   const auto add = [&](Model model, int64_t target, int64_t balls, const std::string& name) {
     spec.model = model;
-    contenders.push_back(
-        {PointExperiment::Create(spec, 0), target, static_cast<uint64_t>(balls / cells)});
-    names.push_back(name);
+    const std::shared_ptr<const PointExperiment> point = PointExperiment::Create(spec, 0);
+    contenders.push_back({name, [=](uint64_t turn) {
+                            Use(target);
+                            const Block block =
+                                BlockOf(*point, static_cast<uint64_t>(balls / cells), turn);
+                            RunBlock(*point, block);
+                            return static_cast<double>(block.samples);
+                          }});
   };
   const std::vector<int64_t> targets = VectorTargets();
   add(Model::kBilliardReference, targets.back(), kBalls / 8, "reference");
@@ -168,7 +161,7 @@ void ShowSamples(const ExperimentKind* experiment, int64_t cells, double delta) 
   for (size_t i = 0; i < contenders.size(); ++i) {
     std::vector<double> milliseconds = turns.Rates(i);
     for (double& rate : milliseconds) rate = 1e3 / rate;
-    ShowMedian(names[i].c_str(), std::move(milliseconds), "");
+    ShowMedian(contenders[i].name.c_str(), std::move(milliseconds), "");
     if (i > 1) std::printf(" (%.1f times the reference)", turns.Best(i) / turns.Best(0));
   }
   ShowDisturbance(turns);
@@ -181,7 +174,7 @@ void ShowGrowth(const char* name, GasEngine engine, double slice, Unit unit) {
   std::vector<RunningGas> gases;
   gases.emplace_back(engine, 32, kDelta, slice * 1000, unit);
   gases.emplace_back(engine, 1000, kDelta, slice, unit);
-  const Turns turns(gases, 8);
+  const Turns turns = TurnsOf(gases, 8);
   std::printf("%-13s delta %g: %.0f bytes a cell; cost at 1,000,000 cells %.2f times that at 1024",
               name, kDelta, gases[1].bytes(), turns.Best(0) / turns.Best(1));
   ShowDisturbance(turns);

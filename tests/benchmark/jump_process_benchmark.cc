@@ -1,22 +1,18 @@
-// Jumps a second of the pair's jump process: the scalar definition, and the lanes with every
-// instruction set, beside the collisions a second of the billiard that the process is the limit
-// of. One run measures all of them, so their ratios hold although clocks and neighbours change.
-#include <benchmark/benchmark.h>
-#include <hwy/targets.h>
-
-#include <algorithm>
-#include <cstdint>
+// Jumps a second of the pair's jump process: the scalar definition, the lanes with every
+// instruction set, and the parts of a jump in lanes; beside them the collisions a second of the
+// billiard that the process is the limit of.
+//
+//   jump_process_benchmark
 #include <string>
 #include <vector>
 
-// After hwy/targets.h.
-#include <hwy/highway.h>
-
+#include "absl/strings/str_cat.h"
 #include "core/geometry/paper.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/counter_random.h"
 #include "core/sampling/invariant_measure.h"
-#include "server/processor_time.h"
+#include "tests/benchmark/turns.h"
+#include "tests/benchmark/vector_targets.h"
 #include "tests/oracle/scalar_jump.h"
 #include "tools/flows/numbered_orbits.h"
 
@@ -24,25 +20,6 @@ namespace ballpiston {
 namespace {
 
 constexpr double kDelta = 0.0125;
-
-// The best of the pieces measured so far; 0 before.
-double scalar_jumps_per_second = 0;
-double billiard_collisions_per_second = 0;
-
-// Runs pieces of some work until the time is over; the best rate counts, as that with the least
-// work of other programs in it. `piece` does `count` things.
-template <typename Piece>
-double BestRate(benchmark::State& state, double count, const Piece& piece) {
-  double best = 0;
-  for (auto _ : state) {
-    const double begin = server::ThreadSeconds();
-    piece();
-    best = std::max(best, count / (server::ThreadSeconds() - begin));
-  }
-  state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(count));
-  state.counters["best/s"] = best;
-  return best;
-}
 
 // Starts in equilibrium and ends an orbit after some collisions.
 class Equilibrium : public NumberedOrbits {
@@ -65,92 +42,75 @@ class Equilibrium : public NumberedOrbits {
   std::vector<uint64_t> collisions_;
 };
 
-void Billiard(benchmark::State& state) {
+double CollisionsOfTheBilliard(uint64_t) {
   constexpr uint64_t kOrbits = 1000;
   const PairGeometry geometry = *PairGeometry::Create(kPaperRho, kDelta);
-  billiard_collisions_per_second = BestRate(state, kOrbits * Equilibrium::kCollisions, [&] {
-    Equilibrium source(geometry, kOrbits);
-    RunOrbits(Engine::kLanes, geometry, kOrbits, source);
-  });
+  Equilibrium source(geometry, kOrbits);
+  RunOrbits(Engine::kLanes, geometry, kOrbits, source);
+  return double{kOrbits * Equilibrium::kCollisions};
 }
 
-void ShowRatios(benchmark::State& state, double rate) {
-  if (scalar_jumps_per_second > 0) state.counters["x scalar"] = rate / scalar_jumps_per_second;
-  if (billiard_collisions_per_second > 0) {
-    state.counters["x billiard"] = rate / billiard_collisions_per_second;
-  }
-}
-
-void ScalarJumps(benchmark::State& state) {
+double ScalarJumps(uint64_t turn) {
   constexpr int kJumps = 10'000;
   double u = 0.5;
-  CounterRandom random(1, 2, 3);
-  scalar_jumps_per_second = BestRate(state, kJumps, [&] {
-    for (int n = 0; n < kJumps; ++n) {
-      const double waiting = random.Uniform();
-      const oracle::Jump jump = oracle::JumpFrom(u, waiting, random.Uniform());
-      benchmark::DoNotOptimize(jump.waiting_time);
-      u = jump.u;
-    }
-  });
-  ShowRatios(state, scalar_jumps_per_second);
+  CounterRandom random(1, 2, turn);
+  for (int n = 0; n < kJumps; ++n) {
+    const double waiting = random.Uniform();
+    const oracle::Jump jump = oracle::JumpFrom(u, waiting, random.Uniform());
+    Keep(jump.waiting_time);
+    u = jump.u;
+  }
+  return kJumps;
 }
 
-void LaneJumps(benchmark::State& state, int64_t target) {
+double JumpsInLanes(int64_t target) {
   constexpr size_t kWalkers = 1024;
-  constexpr int kJumps = 20;
-  hwy::SetSupportedTargetsForTest(target);
-  hwy::GetChosenTarget().DeInit();
+  constexpr int kJumps = 200;
+  Use(target);
   JumpWalkers walkers(1, 2, 3, std::vector<double>(kWalkers, 0.5));
-  ShowRatios(state, BestRate(state, kWalkers * kJumps, [&] {
-               for (int n = 0; n < kJumps; ++n) walkers.Jump();
-               benchmark::DoNotOptimize(walkers.u().data());
-             }));
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().DeInit();
+  for (int n = 0; n < kJumps; ++n) walkers.Jump();
+  Keep(walkers.u()[0]);
+  return double{kWalkers * kJumps};
 }
 
-// The parts of a jump in lanes, with what instructions the machine has.
-void WordsOfJumps(benchmark::State& state) {
+// The parts of a jump in lanes, each for two jumps of every walker of a group.
+constexpr int kGroups = 1000;
+
+double WordsOfJumps(uint64_t turn) {
   JumpWords drawn;
-  uint64_t block = 0;
-  BestRate(state, 2 * kJumpGroup * 100, [&] {
-    for (int n = 0; n < 100; ++n) DrawJumpWords(1, 2, 3, block++, drawn);
-    benchmark::DoNotOptimize(drawn);
-  });
+  for (uint64_t n = 0; n < kGroups; ++n) DrawJumpWords(1, 2, 3, turn * kGroups + n, drawn);
+  Keep(static_cast<double>(drawn.words[0][0]));
+  return 2.0 * kJumpGroup * kGroups;
 }
 
-void JumpsOfGivenWords(benchmark::State& state) {
+double JumpsOfGivenWords(uint64_t) {
   JumpWords drawn;
   DrawJumpWords(1, 2, 3, 4, drawn);
   std::vector<double> u(kJumpGroup, 0.5), times(kJumpGroup);
-  BestRate(state, 2 * kJumpGroup * 100, [&] {
-    for (int n = 0; n < 100; ++n) {
-      for (size_t word = 0; word < 4; word += 2) {
-        JumpInLanes(drawn.words[word], drawn.words[word + 1], u.data(), times.data());
-      }
+  for (int n = 0; n < kGroups; ++n) {
+    for (size_t word = 0; word < 4; word += 2) {
+      JumpInLanes(drawn.words[word], drawn.words[word + 1], u.data(), times.data());
     }
-    benchmark::DoNotOptimize(times.data());
-  });
+  }
+  Keep(times[0]);
+  return 2.0 * kJumpGroup * kGroups;
 }
 
-void Register() {
-  benchmark::RegisterBenchmark("Billiard, delta 0.0125: collisions", Billiard)->MinTime(2);
-  benchmark::RegisterBenchmark("JumpFrom, scalar: jumps", ScalarJumps);
-  for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    const std::string name = std::string("JumpWalkers, ") + hwy::TargetName(target) + ": jumps";
-    benchmark::RegisterBenchmark(name.c_str(), LaneJumps, target);
+// The first is the yardstick of the ratios.
+std::vector<Contender> Contenders() {
+  std::vector<Contender> all = {
+      {"jumps, scalar", ScalarJumps},
+      {"collisions of the billiard, delta 0.0125", CollisionsOfTheBilliard}};
+  for (const int64_t target : VectorTargets()) {
+    all.push_back({absl::StrCat("jumps, lanes ", hwy::TargetName(target)),
+                   [target](uint64_t) { return JumpsInLanes(target); }});
   }
-  benchmark::RegisterBenchmark("of which random words", WordsOfJumps);
-  benchmark::RegisterBenchmark("of which the jumps", JumpsOfGivenWords);
+  all.push_back({"of which random words", WordsOfJumps});
+  all.push_back({"of which the jumps", JumpsOfGivenWords});
+  return all;
 }
 
 }  // namespace
 }  // namespace ballpiston
 
-int main(int argc, char** argv) {
-  ballpiston::Register();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  benchmark::RunSpecifiedBenchmarks();
-}
+int main() { ballpiston::ShowRates(ballpiston::Contenders(), 30, " times the first"); }

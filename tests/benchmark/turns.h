@@ -10,7 +10,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "server/processor_time.h"
@@ -60,14 +62,27 @@ inline double CyclesPerSecond() {
   return 3 * kSteps / least;
 }
 
+// The compiler may not leave out the computation of the value.
+inline void Keep(double value) { asm volatile("" : : "g"(value) : "memory"); }
+
+struct Contender {
+  std::string name;
+  std::function<double(uint64_t turn)> work;  // returns how much it has done
+
+  // How much a second of processor time would do.
+  double Rate(uint64_t turn) const {
+    const double begin = server::ThreadSeconds();
+    const double done = work(turn);
+    return done / (server::ThreadSeconds() - begin);
+  }
+};
+
 // Rates of contenders that take turns.
 class Turns {
  public:
-  // contenders[i].Rate(turn) does some work and returns how much of it a second of processor time
-  // would do. There are at least `turns` turns, and up to three times as many: the turns go on
-  // until five for each contender, on average, had no neighbour.
-  template <typename Contenders>
-  Turns(const Contenders& contenders, int turns) {
+  // There are at least `turns` turns, and up to three times as many: the turns go on until five for
+  // each contender, on average, had no neighbour.
+  Turns(const std::vector<Contender>& contenders, int turns) {
     for (int turn = 0; turn < turns || (turn < 3 * turns && !IsQuietEnough(contenders.size()));
          ++turn) {
       for (size_t i = 0; i < contenders.size(); ++i) {
@@ -135,6 +150,22 @@ inline void ShowMedian(const char* name, std::vector<double> values, const char*
 inline void ShowDisturbance(const Turns& turns) {
   if (turns.disturbed() == 0) return;
   std::printf("  [a neighbour in %zu of %zu turns]", turns.disturbed(), turns.turns());
+}
+
+// A line for each contender: its best rate, the time and the cycles of one thing, and, with a text
+// for it, the rate over that of the first.
+inline void ShowRates(const std::vector<Contender>& contenders, int least_turns,
+                      const char* over_the_first) {
+  const Turns turns(contenders, least_turns);
+  const double cycles = CyclesPerSecond();
+  for (size_t i = 0; i < contenders.size(); ++i) {
+    const double rate = turns.Best(i);
+    std::printf("%-42s %9.2f million/s   %8.2f ns   %8.2f cycles", contenders[i].name.c_str(),
+                rate * 1e-6, 1e9 / rate, cycles / rate);
+    if (*over_the_first != 0) std::printf("   %6.3g%s", rate / turns.Best(0), over_the_first);
+    ShowDisturbance(turns);
+    std::printf("\n");
+  }
 }
 
 }  // namespace ballpiston

@@ -16,6 +16,11 @@ inline PointSummary RunPoint(const EnsembleSpec& spec, size_t index = 0) {
   return point->Summarize(*FoldPoint(*point));
 }
 
+// The summary of measured samples by the spec's experiment.
+inline PointSummary Summarized(const EnsembleSpec& spec, const BlockResult& merged) {
+  return PointExperiment::Create(spec, 0)->Summarize(merged);
+}
+
 inline const Estimate& Named(std::string_view name, const std::vector<Estimate>& estimates) {
   for (const Estimate& estimate : estimates) {
     if (estimate.name == name) return estimate;

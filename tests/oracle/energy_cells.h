@@ -32,15 +32,12 @@ class EnergyCells {
     minus_l_ = -(up_to.bottomRightCorner(n, n) - up_to.topRightCorner(n, n) -
                  up_to.bottomLeftCorner(n, n) + up_to.topLeftCorner(n, n)) /
                width;
-    leaving_ = -minus_l_.rowwise().sum();
-    minus_l_.diagonal() += leaving_;
+    // The rate at which each cell is left, its own included: the mean of the jump rate over it.
+    minus_l_.diagonal() -= minus_l_.rowwise().sum();
     for (Eigen::Index i = 0; i < n; ++i) {
       energy_[i] = (std::pow(Edge(i + 1), 3) - std::pow(Edge(i), 3)) / (6 * width) - 1.0 / 6;
     }
   }
-
-  // Rate at which each cell is left, its own included: the mean of the jump rate over it.
-  const Eigen::VectorXd& leaving() const { return leaving_; }
 
   // Eigenvalues of -L, ascending.
   Eigen::VectorXd Rates() const {
@@ -76,7 +73,6 @@ class EnergyCells {
 
   Eigen::MatrixXd minus_l_;
   Eigen::VectorXd energy_;  // mean of ep - 1/6 over each cell
-  Eigen::VectorXd leaving_;
 };
 
 // The limit of `value` for many cells, from n, 2 n and 4 n cells, with errors 1/n^2 and 1/n^3.

@@ -44,11 +44,6 @@ class ChainByQuadrature {
     }
   }
 
-  double cell_area() const { return static_cast<double>(cell_area_); }
-  double stroke() const { return static_cast<double>(lambda_ + 2 * delta_); }
-  // Ascending.
-  const Vector& offsets() const { return offsets_; }
-
   // Mean fraction of a cell that a piston takes from the cell on one of its sides.
   double MeanFraction() const { return taken_left_.dot(weights_) / (stroke() * cell_area()); }
 
@@ -60,21 +55,10 @@ class ChainByQuadrature {
     return std::sqrt(temperature / std::numbers::pi) * contact / (others * Kernel()).trace();
   }
 
-  // Densities of a piston's offset at the nodes, times their weights; they sum to 1.
-  Vector LawInRing(int cells) const { return Normalised(Power(Kernel(), cells).diagonal()); }
-  // In a chain between reservoirs, of the piston with so many cells on its left.
-  Vector LawInChain(int cells, int on_left) const {
-    const Matrix left = Power(Kernel(), on_left), right = Power(Kernel(), cells - on_left);
-    // The kernel has the weight of the node on its right; the first piston has it from here.
-    return Normalised((left.transpose() * weights_).cwiseProduct(right.rowwise().sum()));
-  }
-
-  // The probability, under such a law, that the offset is in the part.
-  double InPart(const Vector& law, int part) const {
-    return law.segment<kGaussNodes>(part * kGaussNodes).sum();
-  }
-
  private:
+  double cell_area() const { return static_cast<double>(cell_area_); }
+  double stroke() const { return static_cast<double>(lambda_ + 2 * delta_); }
+
   // The area between the tip and a depth, and the height of the cell there.
   Quad HeightAt(Quad depth) const {
     const Quad along = lambda_ / 2 + depth;
@@ -86,7 +70,6 @@ class ChainByQuadrature {
 
   void AddNode(Quad offset, Quad weight) {
     const Quad left = -lambda_ / 2 - offset, right = offset - lambda_ / 2;
-    offsets_[nodes_] = static_cast<double>(offset);
     weights_[nodes_] = static_cast<double>(weight);
     taken_left_[nodes_] = left > 0 ? static_cast<double>(AreaTo(left)) : 0;
     taken_right_[nodes_] = right > 0 ? static_cast<double>(AreaTo(right)) : 0;
@@ -117,11 +100,10 @@ class ChainByQuadrature {
     }
     return power;
   }
-  static Vector Normalised(const Vector& law) { return law / law.sum(); }
 
   Quad rho_, delta_, lambda_, cell_area_ = 0;
   int nodes_ = 0;
-  Vector offsets_, weights_, taken_left_, taken_right_, height_left_;
+  Vector weights_, taken_left_, taken_right_, height_left_;
 };
 
 // F = -(1/(4 N M)) d log Z/dz of a torus of so many columns and rows.

@@ -1,4 +1,4 @@
-// Return times at fixed energies: their errors, and the cases without an error.
+// Return times at fixed energies: their errors.
 #include "core/billiard/single_precision.h"
 #include "tests/core/asked.h"
 #include "tests/core/preamble.h"
@@ -7,28 +7,6 @@
 
 namespace ballpiston {
 namespace {
-
-// For a resting piston the variance is infinite; its integral diverges only logarithmically. So the
-// mean of 1e5 samples is within some percent of the mean over the visited volume, and far from the
-// limit of slow pistons, which is 14 times as large.
-TEST(ConditionalMeanFreeTime, OfARestingPistonHasTheCorrectMeanWithoutAnError) {
-  const PointSummary summary =
-      RunPoint(Asked("conditional-mean-free-time delta=0.065 epsilon=0 samples=100000 "
-                     "model=billiard seed=4"));
-  ASSERT_EQ(summary.estimates.size(), 1u);
-  EXPECT_FALSE(summary.estimates[0].standard_error);
-  EXPECT_NEAR(summary.estimates[0].value / *summary.estimates[0].exact, 1, 0.1);
-}
-
-// A piston so slow that its round trips, which dominate the mean, are rarely in the sample: 10,000
-// returns contain a round trip for half of the seeds, 500 returns for 4 % of the seeds.
-TEST(ConditionalMeanFreeTime, GivesNoErrorIfLongReturnsAreTooRare) {
-  const PointSummary summary =
-      RunPoint(Asked("conditional-mean-free-time delta=0.0975 epsilon=1e-12 samples=500 "
-                     "model=billiard seed=5"));
-  EXPECT_FALSE(summary.estimates[0].standard_error);
-  EXPECT_LT(summary.estimates[0].value, 0.5 * *summary.estimates[0].exact);
-}
 
 // The tolerance is judged at doubling numbers of samples. This rarely stops too early by chance, so
 // the stated error stays valid. Of 10,000 seeds 69.6 % were within one stated error and 95.3 %

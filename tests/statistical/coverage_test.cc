@@ -199,12 +199,5 @@ TEST(ZScores, HaveTheVarianceOneOverManySeeds) {
   }
 }
 
-TEST(ZScores, FewerThanFiveHundredCollisionsGetNoError) {
-  for (const Estimate& estimate :
-       RunPoint(Asked("equilibrium delta=0.0975 collisions=499 model=billiard seed=1")).estimates) {
-    EXPECT_FALSE(estimate.standard_error) << estimate.name;
-  }
-}
-
 }  // namespace
 }  // namespace ballpiston

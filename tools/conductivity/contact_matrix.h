@@ -14,8 +14,7 @@
 // rate is kContactRate. Domain: 1 <= d_a, d_b <= 100, 1 <= degree <= 40.
 // Error: kContactMatrixError. Properties, each with the test that bears its name:
 //   1. AgreesWithAnIndependentQuadrature.  2. ConservesTheEnergyOfThePair.
-//   3. IsSymmetricAndPositiveSemidefinite.  4. SwappedSitesSwapTheIndices.
-//   5. HighDegreesAreExactToRounding.
+//   3. HighDegreesAreExactToRounding.
 //
 // Immutable; safe to share between threads.
 #pragma once

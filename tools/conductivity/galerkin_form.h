@@ -11,9 +11,8 @@
 // part of A is the leading part of the ContactMatrix, up to the total degree less the environment's
 // degree. Blocks of the same degree are multiplied together.
 //
-// Units: those of contact_matrix.h; lengths are distances of neighbouring sites. Properties, each
-// with the test that bears its name:
-//   1. AgreesWithTheDefinitionOnARing.  2. IsSymmetricAndPositive.
+// Units: those of contact_matrix.h; lengths are distances of neighbouring sites. The tests
+// of conductivity.h compare its results with published and with sampled values.
 //
 // Immutable; safe to share between threads.
 #pragma once

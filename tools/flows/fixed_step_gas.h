@@ -4,7 +4,7 @@
 // a new speed. Then the balls move. A ball inside a disc is pushed out. A ball that has passed a
 // piston exchanges energy with it, up to a step too late. A lost ball stops. Properties, each with
 // a test of its name: 1. KeepsItsEnergy, to rounding.
-// 2. ABallThatHasPassedAPistonExchanges, in each direction. 3. ThermalWallsGiveNewSpeeds.
+// 2. ABallThatHasPassedAPistonExchanges, in each direction. 3. AllMethodsAgree, with thermal walls.
 //
 // One object is one gas; not for sharing between threads.
 #pragma once

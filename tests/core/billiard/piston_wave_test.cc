@@ -116,15 +116,5 @@ TEST(PistonWave, CollisionsInSpecialCases) {
   }
 }
 
-TEST(PistonWave, WayToBallAtRestIsThatOfThePiston) {
-  const PistonWave wave(PaperGeometry(0.1));
-  const double period = 2 * wave.stroke();
-  EXPECT_NEAR(*wave.WayToBallAtRest(0.05, 0.05), period - 0.1, 1e-15);   // touches, goes right
-  EXPECT_NEAR(*wave.WayToBallAtRest(period - 0.07, 0.05), 0.02, 1e-15);  // goes left
-  EXPECT_EQ(wave.WayToBallAtRest(period - 0.05, 0.05 + 1e-16), 0);  // rounded beyond the piston
-  EXPECT_EQ(wave.WayToBallAtRest(0.05, 0), period - 0.05);          // at the end of its reach
-  EXPECT_FALSE(wave.WayToBallAtRest(0.05, -1e-17));
-}
-
 }  // namespace
 }  // namespace ballpiston

@@ -44,4 +44,17 @@ inline RecordedCollisions Recorded(Engine engine, const PairGeometry& geometry, 
   return recorded;
 }
 
+inline void ExpectSameBits(const Collision& first, const Collision& second) {
+  EXPECT_EQ(first.escaped, second.escaped);
+  if (first.escaped) return;
+  EXPECT_EQ(first.time, second.time);
+  EXPECT_EQ(first.state.position, second.state.position);
+  EXPECT_EQ(first.state.direction, second.state.direction);
+  EXPECT_EQ(first.state.ball_speed, second.state.ball_speed);
+  EXPECT_EQ(first.state.piston, second.state.piston);
+  EXPECT_EQ(first.state.piston_velocity, second.state.piston_velocity);
+  EXPECT_EQ(first.ball_wall_hits, second.ball_wall_hits);
+  EXPECT_EQ(first.piston_wall_hits, second.piston_wall_hits);
+}
+
 }  // namespace ballpiston

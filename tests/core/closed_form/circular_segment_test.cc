@@ -22,10 +22,5 @@ TEST(CircularSegment, AngleMinusSineOfATinyAngleIsItsCube) {
   EXPECT_NEAR(AngleMinusSine(1e-50), 1e-150 / 6, 1e-165);
 }
 
-TEST(CircularSegment, SegmentsOfAHalfAndAWholeDisc) {
-  EXPECT_DOUBLE_EQ(SegmentArea(0.6, std::numbers::pi), 0.18 * std::numbers::pi);
-  EXPECT_DOUBLE_EQ(SegmentArea(0.6, 2 * std::numbers::pi), 0.36 * std::numbers::pi);
-}
-
 }  // namespace
 }  // namespace ballpiston

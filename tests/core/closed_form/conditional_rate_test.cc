@@ -25,16 +25,6 @@ TEST(ConditionalRate, AccurateForEveryEnergy) {
   }
 }
 
-TEST(ConditionalRate, PhiIsContinuousAndIncreasing) {
-  EXPECT_EQ(Phi(0.25), 1);
-  EXPECT_NEAR(Phi(std::nextafter(0.25, 0.0)), 1, 4e-16);
-  EXPECT_NEAR(Phi(std::nextafter(0.25, 1.0)), 1, 4e-16);
-  // The slope of phi at 1/4 is 2.
-  EXPECT_NEAR(Phi(0.25 - 1e-10), 1 - 2e-10, 1e-14);
-  EXPECT_NEAR(Phi(0.25 + 1e-10), 1 + 2e-10, 1e-14);
-  for (double ep = 0; ep < 0.499; ep += 0.001) EXPECT_LT(Phi(ep), Phi(ep + 0.001)) << ep;
-}
-
 // Eq. intcnuep. With ep = u^2/2 the weight becomes du; the cut at ep = 1/4 lies at u = 1/sqrt(2),
 // where phi has a kink (d^(3/2)).
 TEST(ConditionalRate, AveragesToTheUnconditionalRate) {

@@ -122,25 +122,5 @@ TEST(IngoingLaw, IntervalsAndMeansAreThoseOfTheDensity) {
   }
 }
 
-TEST(IngoingLaw, PistonAtRestGivesBothSignsEqually) {
-  const IngoingLaw law(0);
-  EXPECT_DOUBLE_EQ(law.AlphaMax(1), M_PI / 2);
-  EXPECT_DOUBLE_EQ(law.AlphaMax(-1), M_PI / 2);
-  EXPECT_DOUBLE_EQ(law.SigmaProbability(1), 0.5);
-  EXPECT_EQ(law.MeanSigma(), 0);
-  EXPECT_DOUBLE_EQ(law.MeanCosAlpha(), M_PI / 4);  // of (1/2) cos alpha on |alpha| < pi/2
-}
-
-TEST(IngoingLaw, BallAtRestHasUniformAlpha) {
-  const IngoingLaw law(0.5);
-  EXPECT_EQ(law.AlphaMax(1), 0);
-  EXPECT_DOUBLE_EQ(law.AlphaMax(-1), M_PI);
-  EXPECT_DOUBLE_EQ(law.BinProbability(-1, 1, 2), 1 / (2 * M_PI));
-  EXPECT_DOUBLE_EQ(law.Density(-1, M_PI), 1 / (2 * M_PI));
-  EXPECT_DOUBLE_EQ(law.SigmaProbability(-1), 1);
-  EXPECT_EQ(law.MeanCosAlpha(), 0);
-  EXPECT_DOUBLE_EQ(law.MeanSigma(), -1);
-}
-
 }  // namespace
 }  // namespace ballpiston

@@ -69,24 +69,5 @@ TEST(Kernel, ValuesAtTheEdgesOfItsDomain) {
   EXPECT_DOUBLE_EQ(PairKernel(0.25, 1e-310), 1 / (2 * M_PI * std::sqrt(1e-310)));
 }
 
-TEST(Kernel, DetailedBalance) {
-  for (double total : {0.5, 3.0}) {
-    for (double x : {1e-9, 0.1, 0.3, 0.7}) {
-      for (double y : {1e-5, 0.05, 0.25}) {
-        const double a = x * total;
-        const double b = y * total;
-        // Rounding of total - a, amplified by at most 20 in these points, and a few operations.
-        EXPECT_NEAR(
-            Kernel(total - a, a, b) / std::sqrt(a) / (Kernel(total - b, b, a) / std::sqrt(b)), 1,
-            1e-14);
-      }
-    }
-  }
-  for (double a : {1e-9, 0.1, 0.3}) {
-    EXPECT_NEAR(PairKernel(a, 0.19) / std::sqrt(a) / (PairKernel(0.19, a) / std::sqrt(0.19)), 1,
-                1e-15);
-  }
-}
-
 }  // namespace
 }  // namespace ballpiston

@@ -10,9 +10,6 @@ namespace {
 
 using std::numbers::sqrt2;
 
-constexpr double kRadii[] = {0.5 + 1e-12, 0.5 + 1e-6, 0.501, kPaperRho,
-                             0.6,         0.65,       0.7,   kMaxRho - 1e-7};
-
 double WorstError(const PairMeasures& m, const PrintedMeasures<Quad>& exact) {
   return std::max({RelativeError(m.eta, exact.eta), RelativeError(m.cell_area, exact.cell_area),
                    RelativeError(m.volume, exact.volume),
@@ -65,19 +62,6 @@ TEST(PairMeasures, AccurateForEveryGeometry) {
         WorstError(Measures(GeometryOf(rho, delta)), oracle::MeasuresByQuadrature(rho, delta)),
         kPairMeasuresRelativeError)
         << rho << " " << share;
-  }
-}
-
-TEST(PairMeasures, AreasAndVolumesAddUp) {
-  for (double rho : kRadii) {
-    const PairMeasures at_bound = Measures(GeometryOf(rho, PairDeltaBound(rho)));
-    EXPECT_NEAR(at_bound.area_ball_piston / sqrt2 / at_bound.cell_area, 0.5,
-                kPairMeasuresRelativeError);
-    EXPECT_NEAR(at_bound.eta / PairDeltaBound(rho), 2, 1e-9);  // slope 1/lambda at lambda -> 0
-    const PairMeasures m = Measures(GeometryOf(rho, 0.7 * PairDeltaBound(rho)));
-    EXPECT_NEAR((m.area_piston_wall + m.area_ball_piston / sqrt2) / m.cell_area, 2,
-                2 * kPairMeasuresRelativeError);
-    EXPECT_EQ(CellArea(rho), m.cell_area);
   }
 }
 

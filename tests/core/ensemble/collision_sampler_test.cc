@@ -1,15 +1,8 @@
 #include "core/ensemble/collision_sampler.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <memory>
-#include <vector>
-
 #include "core/ensemble/point_fold.h"
-#include "core/statistics/moments.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

@@ -1,12 +1,7 @@
 // A finished point can be continued with a larger target, to the bits of one long run.
-#include <gtest/gtest.h>
-
-#include <memory>
-#include <optional>
-#include <vector>
-
 #include "core/ensemble/point_fold.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {

@@ -367,32 +367,5 @@ TEST(EnsembleSpec, ThePermittedCollisionsAreThoseOfTheLargestNumberOfSamples) {
   EXPECT_EQ(SamplesAskedFor(spec, PointAt(spec, 0)), static_cast<uint64_t>(kMaxSamples));
 }
 
-TEST(EnsembleSpec, EachExperimentFindsItsAimsByName) {
-  for (const ExperimentKind* experiment : kAllExperiments) {
-    EXPECT_EQ(experiment->FindAim(""), &experiment->aims.front());
-    for (const AimedEstimate& aim : experiment->aims) {
-      EXPECT_EQ(experiment->FindAim(aim.name), &aim);
-      for (const Model model : aim.models) EXPECT_TRUE(experiment->IsAnsweredBy(model));
-    }
-  }
-}
-
-TEST(EnsembleSpec, TheEstimateDecidesWhetherTheClosedFormAnswers) {
-  for (const auto& [estimate, answers] :
-       {std::pair("", true), {"exchange_rate", true}, {"conductivity", false}}) {
-    EnsembleSpec spec = OnePointOf(&kGasEquilibrium);
-    spec.target.estimate = estimate;
-    EXPECT_EQ(IsAnsweredByClosedForm(spec), answers);
-    EXPECT_EQ(NeedsNoSamples(spec), answers);
-  }
-}
-
-TEST(EnsembleSpec, NamesAreAsUsersWriteThem) {
-  EXPECT_EQ(kEnergyRelaxation.name, "energy-relaxation");
-  EXPECT_EQ(kMarkovProperty.name, "markov-property");
-  EXPECT_EQ(Name(Model::kSpectrum), "spectrum");
-  EXPECT_EQ(Name(Model::kMarkov), "markov");
-}
-
 }  // namespace
 }  // namespace ballpiston

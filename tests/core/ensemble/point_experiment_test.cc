@@ -82,6 +82,36 @@ TEST_P(EachExperiment, BlocksAreAPureFunctionOfTheirIndexAndSeed) {
   EXPECT_NE(*RunBlock(*PointExperiment::Create(spec_, 0), late), later);
 }
 
+// Walkers walk in groups, and balls of several orbits fly together in lanes. Only sums round in the
+// order of the blocks. An orbit in equilibrium ends with its block, and the walks of the Markov
+// property are numbered from their block's first sample.
+TEST_P(EachExperiment, ASampleDependsOnlyOnItsNumber) {
+  if (Is(kEquilibrium) || Is(kLyapunov) || (Is(kMarkovProperty) && IsBy(Model::kMarkov))) return;
+  const uint64_t n = IsOfAGas(spec_.experiment) ? 2 : 256;
+  const BlockResult together = *RunBlock(*point_, {.samples = 3 * n});
+  BlockResult parts = *RunBlock(*point_, {.samples = n / 2});
+  parts.Merge(*RunBlock(*point_, {.first = n / 2, .samples = 5 * n / 2}));
+  EXPECT_EQ(parts.samples, together.samples);
+  EXPECT_EQ(parts.histograms, together.histograms);
+  for (size_t i = 0; i < together.moments.size(); ++i) {
+    const Moments& all = together.moments[i];
+    const double size = std::fabs(all.mean) + std::sqrt(all.Variance().value());
+    EXPECT_NEAR(parts.moments[i].mean, all.mean, 1e-12 * size) << i;
+  }
+  for (size_t i = 0; i < together.batch_means.size(); ++i) {
+    const double all = together.batch_means[i].mean_numerator;
+    EXPECT_NEAR(parts.batch_means[i].mean_numerator, all, 1e-12 * std::fabs(all)) << i;
+  }
+}
+
+// The server checks this bound when it reads a checkpoint.
+TEST_P(EachExperiment, CountsOfASampleBoundEveryHistogram) {
+  const BlockResult block = *RunBlock(*point_, {.samples = 64});
+  for (const Histogram& histogram : block.histograms) {
+    EXPECT_LE(histogram.Total(), block.samples * point_->CountsOfASample());
+  }
+}
+
 TEST_P(EachExperiment, ResultDoesNotDependOnTheRestOfTheGrid) {
   const BlockResult in_grid = Folded(spec_, 1);
   EXPECT_NE(in_grid, Folded(spec_, 0));

@@ -101,28 +101,6 @@ TEST_F(Fold, AResumedChunkHasTheSameBits) {
   }
 }
 
-TEST_F(Fold, AResumedPointHasTheSameBits) {
-  for (size_t cut = 0; cut <= chunks_.size(); ++cut) {
-    PointFold before(*point_), after(*point_);
-    for (size_t i = 0; i < cut; ++i) before.Add(chunks_[i]);
-    after.Resume(before.state());
-    EXPECT_EQ(after.PlannedSamples(), before.PlannedSamples());
-    for (size_t i = cut; i < chunks_.size(); ++i) after.Add(chunks_[i]);
-    EXPECT_TRUE(after.finished());
-    EXPECT_EQ(after.Merged(), *FoldPoint(*point_)) << cut;
-  }
-}
-
-TEST_F(Fold, ARangeHasOnlyItsChunks) {
-  ChunkFold fold(point_->plan(), {.chunk = 1}, 3);
-  std::vector<ChunkResult> chunks;
-  while (const auto block = fold.NextBlock()) {
-    Add(fold, {*block, *RunBlock(*point_, *block)}, chunks);
-  }
-  ASSERT_EQ(chunks.size(), 2u);
-  for (const size_t i : {0, 1}) EXPECT_EQ(chunks[i].result, chunks_[1 + i].result);
-}
-
 TEST_F(Fold, BlocksAndChunksCountOnce) {
   ChunkFold fold = GivenOut();
   PointFold point(*point_);
@@ -202,17 +180,6 @@ TEST_F(Fold, FinishKeepsMergedChunksAndDropsWaitingChunks) {
   EXPECT_EQ(fold.Merged(), chunks_[0].result);
   EXPECT_EQ(fold.waiting(), 0u);
   EXPECT_FALSE(fold.Needs(3));
-}
-
-TEST_F(Fold, ALocalPointGivesTheSameBits) {
-  LocalPoint local(*point_);
-  for (const Computed& computed : blocks_) {
-    ASSERT_EQ(local.NextBlock(), computed.block);
-    local.Add(computed.block, computed.result);
-    EXPECT_EQ(local.Merged().samples, computed.block.first + computed.block.samples);
-  }
-  EXPECT_FALSE(local.NextBlock());
-  EXPECT_EQ(local.Merged(), *FoldPoint(*point_));
 }
 
 // The tolerance is reached within a chunk; the fold continues to the chunk's end.

@@ -1,17 +1,11 @@
 // A grid whose points stand in a table.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "core/ensemble/ensemble_spec.h"
 #include "core/experiment/all_experiments.h"
+#include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 
 namespace ballpiston {
 namespace {
-
-using testing::ElementsAre;
-using testing::Field;
-using testing::IsEmpty;
 
 EnsembleSpec TableOf(std::vector<double> rho, std::vector<double> delta) {
   EnsembleSpec spec = {.experiment = &kFirstHit,

@@ -4,7 +4,6 @@
 #include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/point_fold.h"
 #include "core/ensemble/random_stream.h"
-#include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
@@ -19,20 +18,6 @@ EnsembleSpec SpecOfOrbits(const PointParameters& point, Model model, int64_t sam
 
 EnergyRelaxation RelaxationAt(double delta, std::optional<double> epsilon = {}) {
   return {PaperGeometry(delta), PaperPoint(delta, epsilon)};
-}
-
-// The orbit keeps its energy: the curve is flat, and the integral is the window times this value.
-TEST(EnergyRelaxation, AnOrbitWithoutCollisionsKeepsItsEnergy) {
-  constexpr double kEnergy = 0.4, kOff = kEnergy - kMeanPistonEnergy;
-  const double tau = MeanFreeTimesOf(PaperGeometry(0.1)).ball_piston;
-  const std::vector<double> decay = RelaxationAt(0.1, kEnergy).Measure(StepFunction(kEnergy));
-  ASSERT_EQ(decay.size(), 1 + kLags);
-  EXPECT_NEAR(decay[0], kOff * kWindowTimes * tau, 1e-8 * tau);
-  for (size_t i = 0; i < kLags; ++i) EXPECT_EQ(decay[1 + i], kEnergy);
-  const std::vector<double> equilibrium = RelaxationAt(0.1).Measure(StepFunction(kEnergy));
-  ASSERT_EQ(equilibrium.size(), 1 + kLags);
-  EXPECT_NEAR(equilibrium[0], 45 * kOff * kOff * kWindowTimes * tau, 1e-7 * tau);
-  for (size_t i = 0; i < kLags; ++i) EXPECT_NEAR(equilibrium[1 + i], 45 * kOff * kOff, 1e-12);
 }
 
 // A pulse, from 1/6 + a to 1/6 - a and back, over half the window: the product over a lag is -a^2
@@ -87,47 +72,6 @@ TEST(EnergyRelaxation, OrbitsMatchTheReferenceFlow) {
       energy = std::pow(flow.state().piston_velocity, 2) / 2;
     }
     EXPECT_NEAR(block.moments[0].mean, integral, 1e-12 * time);
-  }
-}
-
-// The test follows the walker of the first sample itself, in a stream that no billiard uses.
-TEST(EnergyRelaxation, AWalkFollowsTheJumpProcess) {
-  constexpr double kEnergy = 0.01;
-  const PointParameters point = PaperPoint(0.2, kEnergy);
-  const EnsembleSpec spec = SpecOfOrbits(point, Model::kMarkov, 1);
-  const BlockResult block = *FoldPoint(*PointExperiment::Create(spec, 0));
-  const EnergyRelaxation relaxation(kPaperPair, point);
-  const uint64_t stream = PointStream(spec, point);
-  JumpWalkers walker(spec.seed, stream, 0, {std::sqrt(2 * kEnergy)});
-  StepFunction energy(kEnergy);
-  while (energy.last_jump() < relaxation.orbit_time()) {
-    walker.Jump();
-    energy.Add(relaxation.unit() * walker.waiting_times()[0], std::pow(walker.u()[0], 2) / 2);
-  }
-  const std::vector<double> expected = relaxation.Measure(energy);
-  for (size_t i = 0; i < expected.size(); ++i) {
-    EXPECT_NEAR(block.moments[i].mean, expected[i], 1e-13 * std::fabs(expected[i])) << i;
-  }
-}
-
-// Runs the same 2048 walks in blocks of fewer and of more than 256, the number that walk in step.
-TEST(EnergyRelaxation, AWalkDoesNotDependOnTheBlock) {
-  for (const std::optional<double> epsilon : {std::optional<double>(), std::optional(0.01)}) {
-    const EnsembleSpec spec = SpecOfOrbits(PaperPoint(0.2, epsilon), Model::kMarkov, 2048);
-    const auto point = PointExperiment::Create(spec, 0);
-    const auto in_blocks_of = [&](uint64_t size) {
-      BlockResult merged;
-      for (uint64_t first = 0; first < 2048; first += size) {
-        merged.Merge(*RunBlock(*point, {.first = first, .samples = size}));
-      }
-      return merged;
-    };
-    const BlockResult of_small = in_blocks_of(128), of_large = in_blocks_of(1024);
-    ASSERT_EQ(of_small.samples, of_large.samples);
-    for (size_t i = 0; i < of_small.moments.size(); ++i) {
-      EXPECT_NEAR(of_small.moments[i].mean, of_large.moments[i].mean,
-                  1e-12 * std::fabs(of_small.moments[i].mean));
-    }
   }
 }
 
@@ -202,27 +146,6 @@ TEST(EnergyRelaxation, CurveOfTheLimitMatchesTheSpectrum) {
     EXPECT_NEAR(decay.points[i].value, spectrum.MeanEnergy(0.4, time / unit).value, 1e-13);
   }
   EXPECT_NEAR(decay.points[0].value, 0.4, 1e-12);
-}
-
-// The law of eq. meq, solved by the spectrum, against walks of the jump process. A divergence has
-// a nearly normal law with 61 bins; of the 30 comparisons one is beyond 4.5 standard deviations by
-// chance once in 5,000 seeds.
-TEST(EnergyRelaxation, LawsOfTheJumpProcessSolveTheMasterEquation) {
-  for (const double epsilon : {0.01, 0.125, 0.25, 0.375, 0.49}) {
-    const PointParameters point = PaperPoint(0.1, epsilon);
-    const PointSummary summary = RunPoint(SpecOfOrbits(point, Model::kMarkov, 20'000));
-    const auto expected = kEnergyRelaxation.expected_probabilities(point);
-    ASSERT_EQ(summary.histograms.size(), kLawLags.size());
-    ASSERT_EQ(expected.size(), kLawLags.size());
-    for (size_t i = 0; i < expected.size(); ++i) {
-      const NamedHistogram& law = summary.histograms[i];
-      EXPECT_NEAR(*law.time / MeanFreeTimesOf(PaperGeometry(0.1)).ball_piston,
-                  0.25 * static_cast<double>(kLawLags[i]), 1e-8);
-      const KlDivergence distance = RelativeEntropy(law.histogram.counts, expected[i]);
-      EXPECT_LT(std::fabs(distance.value - distance.noise_floor), 4.5 * distance.noise_error)
-          << epsilon << " " << i;
-    }
-  }
 }
 
 TEST(EnergyRelaxation, LawsRequireAnInitialEnergy) {

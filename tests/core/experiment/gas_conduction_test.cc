@@ -2,7 +2,6 @@
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/gas_exchange_rate.h"
-#include "tests/core/experiment/gas_questions.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
@@ -157,24 +156,6 @@ TEST(GasConduction, TheWarmUpIsThatOfTheSlowestPart) {
   EXPECT_NEAR(at_cold(Model::kMarkov, 1e-10) / at_cold(Model::kMarkov, 0.01), 1, 1e-12);
 }
 
-// This holds for every gas. The first stage has at least one stretch after the warm-up, or is one
-// of many.
-TEST(GasConduction, AChunkTakesAboutAMinuteAtMost) {
-  for (const Model model : kModelsThatSampleGases) {
-    for (const int64_t columns : {1, 10, 100, 1000, 100'000}) {
-      EnsembleSpec spec = SpecBetween(2, 1, {.columns = columns}, model);
-      spec.target = {.tolerance = 0.01};
-      const ChunkPlan plan = PointExperiment::Create(spec, 0)->plan();
-      for (const uint64_t stage : {0, 1, 2, 30}) {
-        const uint64_t chunk = stage * plan.groups();
-        if (chunk >= plan.chunks()) break;
-        EXPECT_LE(plan.SecondsFor(static_cast<double>(plan.SamplesIn(chunk))), 60)
-            << Name(model) << " " << columns;
-      }
-    }
-  }
-}
-
 // Also where exchanges are so rare that no number of stretches makes one short.
 TEST(GasConduction, TheRarestExchangesHaveAPlan) {
   EnsembleSpec spec = SpecBetween(2, 1, {.columns = 1'000'000});
@@ -185,26 +166,6 @@ TEST(GasConduction, TheRarestExchangesHaveAPlan) {
 }
 
 // ---- fluctuations ----
-
-// Between reservoirs of one temperature T the variance of the charge grows as 2 T^2 J/(hot - cold),
-// with the current J at nearly equal temperatures: the fluctuation-dissipation theorem.
-TEST(GasConduction, TheVarianceOfTheChargeFollowsFromTheCurrent) {
-  const auto estimates = [](double hot, double cold) {
-    EnsembleSpec spec = SpecBetween(hot, cold, {.columns = 2}, Model::kMarkov);
-    spec.target = {.samples = 400'000};
-    return RunPoint(spec).estimates;
-  };
-  const std::vector<Estimate> equal = estimates(2, 2), unequal = estimates(2.2, 1.8);
-  const Estimate &variance = Named("charge_cumulant_2", equal),
-                 &current = Named("heat_current", unequal);
-  const double expected = 2 * 4 * current.value / 0.4;
-  const double error = std::hypot(*variance.standard_error, 2 * 4 * *current.standard_error / 0.4);
-  EXPECT_LT(error, 0.1 * expected);
-  // Four standard errors, Student's law with 15 degrees of freedom: one false alarm in 900 seeds.
-  EXPECT_NEAR(variance.value, expected, 4 * error);
-  const Estimate& third = Named("charge_cumulant_3", equal);
-  EXPECT_NEAR(third.value, 0, 4 * *third.standard_error);  // both directions are alike
-}
 
 TEST(GasConduction, AShortRunStatesNoCumulants) {
   EXPECT_THAT(NamesOf(RunPoint(SpecBetween(3, 1, {.columns = 2}, Model::kMarkov))),

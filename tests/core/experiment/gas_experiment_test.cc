@@ -2,7 +2,6 @@
 #include "core/experiment/gas_experiment.h"
 
 #include "core/ensemble/point_fold.h"
-#include "tests/core/experiment/gas_questions.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 
@@ -123,39 +122,6 @@ TEST(GasExperiment, TheDrawOfABigGasAsksForPauses) {
   const std::unique_ptr<EngineRun> run = point->StartRun(queue);
   while (queue.results.empty()) run->Advance();
   EXPECT_GE(queue.asked, 11);  // 5 of them in the draw
-}
-
-TEST(GasExperiment, AReplicaDependsOnlyOnItsNumber) {
-  for (const EnsembleSpec& spec : OneOfEach(12)) {
-    SCOPED_TRACE(Described(spec));
-    const auto point = PointExperiment::Create(spec, 0);
-    BlockResult one_by_one = point->EmptyResult();
-    const BlockResult together = *RunBlock(*point, {.samples = 4});
-    for (uint64_t i = 0; i < 4; ++i)
-      one_by_one.Merge(*RunBlock(*point, {.first = i, .samples = 1}));
-    EXPECT_EQ(one_by_one.samples, together.samples);
-    EXPECT_EQ(one_by_one.histograms, together.histograms);
-    for (size_t i = 0; i < together.batch_means.size(); ++i) {
-      const double expected = together.batch_means[i].mean_numerator;
-      EXPECT_NEAR(one_by_one.batch_means[i].mean_numerator, expected, 1e-13 * std::fabs(expected));
-    }
-  }
-}
-
-// A histogram has at most CountsOfASample() counts for each sample. The server checks this bound
-// when it reads a checkpoint.
-TEST(GasExperiment, CountsOfASampleBoundEveryHistogram) {
-  for (const EnsembleSpec& spec : OneOfEach(12)) {
-    const auto point = PointExperiment::Create(spec, 0);
-    const BlockResult block = *RunBlock(*point, {.samples = 5});
-    uint64_t largest = 0;
-    for (const Histogram& histogram : block.histograms) {
-      largest = std::max(largest, histogram.Total());
-    }
-    if (!block.histograms.empty()) {
-      EXPECT_EQ(largest, 5 * point->CountsOfASample()) << Described(spec);
-    }
-  }
 }
 
 }  // namespace

@@ -164,21 +164,6 @@ TEST(MarkovProperty, AStoppedWalkHasNoResult) {
   EXPECT_FALSE(RunBlock(*point, {.samples = 64}, Stopped()));
 }
 
-// The orbits of a block do not depend on its size: 96 orbits walk in two groups.
-TEST(MarkovProperty, AWalkDoesNotDependOnTheBlock) {
-  const auto point = PointExperiment::Create(
-      SpecOf(&kMarkovProperty, PaperPoint(0.2), {.collisions = 4096}, Model::kMarkov), 0);
-  const BlockResult together = *RunBlock(*point, {.samples = 96 * kExchangesPerOrbit});
-  BlockResult first = *RunBlock(*point, {.samples = 64 * kExchangesPerOrbit});
-  EXPECT_EQ(first.samples, 64 * kExchangesPerOrbit);
-  EXPECT_EQ(together.samples, 96 * kExchangesPerOrbit);
-  for (size_t i = 0; i < first.histograms.size(); ++i) {
-    for (size_t bin = 0; bin < first.histograms[i].counts.size(); ++bin) {
-      ASSERT_LE(first.histograms[i].counts[bin], together.histograms[i].counts[bin]);
-    }
-  }
-}
-
 TEST(MarkovProperty, CountsEveryCollisionOnce) {
   for (const Model model : {Model::kBilliard, Model::kBilliardReference, Model::kMarkov}) {
     for (const int64_t collisions : {1, 33, 1000, 40'000}) {

@@ -72,15 +72,5 @@ TEST(ReturnTimes, IntegralOfTheSurvivalIsTheMeanHitTime) {
   }
 }
 
-TEST(ReturnTimes, HistogramsAndDivergenceUseOnlyTheAngle) {
-  const PointSummary summary =
-      RunPoint(SpecOf(&kFirstHit, PaperPoint(0.2, 0.3, 1), {.samples = 1'000}, Model::kBilliard));
-  ASSERT_EQ(summary.histograms.size(), 1u);
-  EXPECT_EQ(summary.kl_divergence->cells, 1000);
-  EXPECT_EQ(summary.estimates.back().name, "kl_divergence");
-  EXPECT_EQ(summary.estimates.back().value, summary.kl_divergence->value);
-  EXPECT_EQ(summary.estimates.back().noise_floor, summary.kl_divergence->noise_floor);
-}
-
 }  // namespace
 }  // namespace ballpiston

@@ -2,7 +2,6 @@
 #include "core/experiment/steady_gas.h"
 
 #include "core/ensemble/point_fold.h"
-#include "tests/core/billiard/each_target.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 
@@ -45,31 +44,6 @@ TEST(SteadyGas, AnyDivisionGivesTheSameBits) {
       EXPECT_EQ(state.chunk_digests, whole.State().chunk_digests) << Name(model);
     }
   }
-}
-
-TEST(SteadyGas, AResumedPointHasTheSameBits) {
-  const auto point = PointOf(Model::kMarkov);
-  const BlockResult whole = *FoldPoint(*point);
-  LocalPoint begun(*point);
-  for (int i = 0; i < 21; ++i) {
-    const Block block = *begun.NextBlock();
-    begun.Add(block, *RunBlock(*point, block));
-  }
-  PointFold resumed(*point);
-  resumed.Resume(begun.State());
-  std::vector<GroupState> starts = resumed.state().complete.groups;
-  ChunkFold rest(point->plan(), {resumed.state().chunk}, point->plan().chunks(), starts);
-  while (const auto block = rest.NextBlock()) {
-    for (ChunkResult& done : rest.Add(*block, *RunBlock(*point, *block))) {
-      resumed.Add(std::move(done));
-    }
-  }
-  EXPECT_EQ(resumed.Merged(), whole);
-}
-
-TEST(SteadyGas, SamplesAreRoundedUpToStretchesOfEveryTrajectory) {
-  const auto point = PointOf(Model::kMarkov, 257);
-  EXPECT_EQ(point->Summarize(*FoldPoint(*point)).samples, 384u);
 }
 
 // The first chunks start with nothing; every group's next chunk starts where it has ended.

@@ -8,9 +8,6 @@
 namespace ballpiston {
 namespace {
 
-constexpr Direction kDirections[] = {Direction::kRight, Direction::kUp, Direction::kLeft,
-                                     Direction::kDown};
-
 class EachGasGeometry : public testing::TestWithParam<std::tuple<const char*, GasEnds>> {
  protected:
   bool IsRing() const { return gas_.ends() == GasEnds::kPeriodic; }
@@ -75,24 +72,6 @@ TEST_P(EachGasGeometry, NeighboursShareAPistonHalfWayBetweenThem) {
   }
 }
 
-TEST(GasGeometry, CountsOfBallsPistonsAndContacts) {
-  struct Counts {
-    const char* shape;
-    int64_t balls, pistons, pistons_between_reservoirs, contacts;
-  };
-  for (const Counts& counts : {Counts{"1", 1, 1, 2, 2}, Counts{"7", 7, 7, 8, 14},
-                               Counts{"1x1", 1, 2, 3, 4}, Counts{"4x3", 12, 24, 27, 48},
-                               Counts{"1x5", 5, 10, 15, 20}, Counts{"5x1", 5, 10, 11, 20}}) {
-    for (const GasEnds ends : {GasEnds::kPeriodic, GasEnds::kReservoirs}) {
-      const GasGeometry gas = GasOf(kPaperRho, 0.1, counts.shape, ends);
-      EXPECT_EQ(gas.balls(), counts.balls);
-      EXPECT_EQ(gas.contacts(), counts.contacts);
-      EXPECT_EQ(gas.pistons(),
-                ends == GasEnds::kPeriodic ? counts.pistons : counts.pistons_between_reservoirs);
-    }
-  }
-}
-
 auto Created(double rho, double delta) {
   return GasGeometry::Create(rho, delta, {}, GasEnds::kPeriodic);
 }
@@ -131,20 +110,6 @@ TEST(GasGeometry, PistonsAtTheBoundTouch) {
     const double height = 0.5 - std::sqrt(rho * rho - way * way);  // half of the piston's there
     EXPECT_NEAR(0.5 - way, height, 1e-15) << rho;
     EXPECT_EQ(gas.reach(), gas.pair().lambda() / 2 + gas.pair().delta());
-  }
-}
-
-// The view is turned, not mirrored: a vector 90 degrees to the left stays 90 degrees to the left.
-TEST(GasGeometry, EveryPistonLiesOnTheRightAfterTurning) {
-  const Eigen::Vector2d v(0.3, -0.7), pistons[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-  for (const Direction direction : kDirections) {
-    const int quarter_turns = static_cast<int>(direction);
-    EXPECT_EQ(SeenToward(direction, pistons[quarter_turns]), Eigen::Vector2d(1, 0));
-    EXPECT_EQ(SeenToward(direction, pistons[(quarter_turns + 1) % 4]), Eigen::Vector2d(0, 1));
-    EXPECT_EQ(SignOf(direction), pistons[quarter_turns].sum());
-    EXPECT_EQ(SeenFrom(direction, SeenToward(direction, v)), v);
-    EXPECT_EQ(SeenToward(Opposite(direction), v), -SeenToward(direction, v));
-    EXPECT_EQ(Opposite(Opposite(direction)), direction);
   }
 }
 

@@ -1,41 +1,41 @@
 #include "core/gas/gas_run.h"
 
-#include <deque>
-
-#include "core/gas/gas_exchange_rate.h"
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
+#include "tools/flows/metered_gases.h"
 
 namespace ballpiston {
 namespace {
 
 constexpr double kWarmUp = 7, kEnd = 60;
 
-// Replicas of a gas between unequal reservoirs, or of a periodic one.
+// Of a gas between unequal reservoirs, or of a periodic one.
+std::vector<GasStart> StartsOf(const GasGeometry& geometry, uint64_t first, uint64_t count) {
+  std::vector<GasStart> starts;
+  for (uint64_t replica = first; replica < first + count; ++replica) {
+    const GasRandom random(91, 0, replica);
+    CounterRandom of_start = random.OfStart();
+    GasState state = DrawGas(geometry, TemperatureProfile(1), of_start);
+    starts.push_back({std::move(state), ThermalWalls(geometry, 2, 1, random), random, nullptr});
+  }
+  return starts;
+}
+
 class Replicas {
  public:
-  Replicas(GasEngine engine, const GasGeometry& geometry, uint64_t first, uint64_t count) {
-    std::vector<GasStart> starts;
-    for (uint64_t replica = first; replica < first + count; ++replica) {
-      const GasRandom random(91, 0, replica);
-      CounterRandom of_start = random.OfStart();
-      const GasState state = DrawGas(geometry, TemperatureProfile(1), of_start);
-      ThermalWalls walls(geometry, 2, 1, random);
-      starts.push_back({state, std::move(walls), random, &meters_.emplace_back(geometry, state)});
-    }
-    run_ = StartGases(engine, geometry, GasExchangeRate(geometry, 1), std::move(starts));
-  }
+  Replicas(GasEngine engine, const GasGeometry& geometry, uint64_t first, uint64_t count)
+      : gases_(engine, geometry, StartsOf(geometry, first, count)) {}
 
   // The window of measurement in so many calls.
   std::vector<uint64_t> BitsAfter(int calls, double end = kEnd) {
-    run_->AdvanceTo(kWarmUp);
-    for (GasMeter& meter : meters_) meter.Begin(kWarmUp);
-    for (int i = 1; i <= calls; ++i) run_->AdvanceTo(kWarmUp + (end - kWarmUp) * i / calls);
+    gases_.AdvanceTo(kWarmUp);
+    for (GasMeter& meter : gases_.meters()) meter.Begin(kWarmUp);
+    for (int i = 1; i <= calls; ++i) gases_.AdvanceTo(kWarmUp + (end - kWarmUp) * i / calls);
     return Bits(end);
   }
 
   std::vector<uint64_t> BitsWithoutWarmUp(double end) {
-    run_->AdvanceTo(end);
+    gases_.AdvanceTo(end);
     return Bits(end);
   }
 
@@ -43,7 +43,7 @@ class Replicas {
   std::vector<uint64_t> BitsWithPauses(double end, int& parts) {
     for (bool is_there = false; !is_there; ++parts) {
       Pauses always([] { return true; });
-      is_there = run_->AdvanceTo(end, always);
+      is_there = gases_.AdvanceTo(end, always);
     }
     return Bits(end);
   }
@@ -51,7 +51,7 @@ class Replicas {
  private:
   std::vector<uint64_t> Bits(double end) {
     std::vector<uint64_t> bits;
-    for (GasMeter& meter : meters_) {
+    for (GasMeter& meter : gases_.meters()) {
       meter.End(end);
       EXPECT_EQ(meter.escapes(), 0u);
       bits.push_back(meter.exchanges());
@@ -64,8 +64,7 @@ class Replicas {
     return bits;
   }
 
-  std::deque<GasMeter> meters_;  // the run has their addresses
-  std::unique_ptr<GasRun> run_;
+  MeteredGases gases_;
 };
 
 class GasRunOfEngine : public testing::TestWithParam<GasEngine> {};

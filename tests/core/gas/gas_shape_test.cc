@@ -1,5 +1,6 @@
 #include "core/gas/gas_shape.h"
 
+#include "absl/strings/str_split.h"
 #include "tests/core/preamble.h"
 #include "tests/support/status_matchers.h"
 
@@ -30,34 +31,12 @@ TEST(GasShape, TextAndCodeDetermineTheShape) {
 }
 
 TEST(GasShape, MalformedTextsAreRejectedAndQuoted) {
-  for (const std::string text : {"",
-                                 "0",
-                                 "x",
-                                 "4x",
-                                 "x4",
-                                 "4x0",
-                                 "0x4",
-                                 "-3",
-                                 "+3",
-                                 " 4",
-                                 "4 ",
-                                 "4\n",
-                                 "4X4",
-                                 "1e3",
-                                 "4.0",
-                                 "0x10",
-                                 "4x4x4",
-                                 "4xx4",
-                                 "4x-1",
-                                 "4 x 4",
-                                 "1000001",
-                                 "1001x1000",
-                                 "four",
-                                 "4,4",
-                                 "99999999999999999999",
-                                 "4x99999999999999999999",
-                                 "99999999999999999999x4",
-                                 "4294967296x4294967296"}) {
+  const std::vector<std::string> malformed = absl::StrSplit(
+      "|0|x|4x|x4|4x0|0x4|-3|+3| 4|4 |4\n|4X4|1e3|4.0|0x10|4x4x4|4xx4|4x-1|4 x 4|1000001|1001x1000|"
+      "four|4,4|99999999999999999999|4x99999999999999999999|99999999999999999999x4|"
+      "4294967296x4294967296",
+      '|');
+  for (const std::string& text : malformed) {
     EXPECT_THAT(ParseGasShape(text), StatusIs(absl::StatusCode::kInvalidArgument,
                                               AllOf(HasSubstr("cells is \"" + text + "\""),
                                                     HasSubstr("N or NxM"), HasSubstr("1000000"))));

@@ -2,27 +2,11 @@
 
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
-#include "tools/flows/precise_flow.h"  // boost/multiprecision
 
 namespace ballpiston {
 namespace {
 
 using Vector = GasTangents::Vector;
-
-// In the order of a vector's components.
-Vector ComponentsOf(const GasState& state) {
-  Vector components;
-  for (const GasBall& ball : state.balls) {
-    const Eigen::Vector2d velocity = ball.speed * ball.direction;
-    for (const double x : {ball.position.x(), ball.position.y(), velocity.x(), velocity.y()}) {
-      components.push_back(x);
-    }
-  }
-  for (const GasPiston& piston : state.pistons) {
-    components.insert(components.end(), {piston.offset, piston.velocity});
-  }
-  return components;
-}
 
 GasState StateWith(const Vector& components, GasState state) {
   auto at = components.begin();
@@ -142,122 +126,6 @@ TEST(GasTangents, ExponentsOfAGasComeInPairs) {
     }
     EXPECT_NEAR(growth[f - 1] / time, 0, 0.02) << shape;
     EXPECT_GT(growth[f - 2] / time, 0.03) << shape;
-  }
-}
-
-// ---- many digits ----
-
-// Below the rest of the last vector is exp(-800) of its length: 1,300 bits, and then 700 more.
-using Exact = boost::multiprecision::number<
-    boost::multiprecision::cpp_bin_float<2000, boost::multiprecision::digit_base_2>>;
-using ExactVector = std::vector<Exact>;
-
-// All vectors in Cartesian components, without Gram and Schmidt's method until the end.
-class CartesianTangents {
- public:
-  CartesianTangents(const GasGeometry& geometry, const std::vector<Vector>& vectors)
-      : balls_(static_cast<size_t>(geometry.balls())),
-        rho_(geometry.pair().rho()),
-        times_(balls_ + static_cast<size_t>(geometry.pistons())) {
-    for (const Vector& vector : vectors) vectors_.emplace_back(vector.begin(), vector.end());
-  }
-
-  void Follow(const GasEvent& event, const ReferenceGas& gas) {
-    if (event.ball >= 0) Move(static_cast<size_t>(event.ball), event.time);
-    if (event.piston >= 0) Move(balls_ + static_cast<size_t>(event.piston), event.time);
-    if (event.kind == EventKind::kBallWall) {
-      Reflect(First(static_cast<size_t>(event.ball)), gas.BallAt(event.ball, event.time));
-    }
-    const size_t piston = First(balls_ + static_cast<size_t>(std::max<int64_t>(event.piston, 0)));
-    const size_t ball = First(static_cast<size_t>(std::max<int64_t>(event.ball, 0)));
-    const size_t axis = IsAlongX(event.direction) ? 0 : 1;
-    for (ExactVector& v : vectors_) {
-      if (event.kind == EventKind::kPistonWall) {
-        v[piston] = -v[piston];
-        v[piston + 1] = -v[piston + 1];
-      } else if (event.kind == EventKind::kBallPiston) {
-        std::swap(v[ball + axis], v[piston]);
-        std::swap(v[ball + 2 + axis], v[piston + 1]);
-      }
-    }
-  }
-
-  // The logarithms of the factors by which the vectors have grown since the start.
-  Vector GrowthAt(double time) {
-    for (size_t body = 0; body < times_.size(); ++body) Move(body, time);
-    Vector growth;
-    std::vector<ExactVector> rest = vectors_;
-    for (size_t k = 0; k < rest.size(); ++k) {
-      const Exact squared = Product(rest[k], rest[k]);
-      growth.push_back(log(squared).convert_to<double>() / 2);
-      for (size_t j = k + 1; j < rest.size(); ++j) {
-        const Exact share = Product(rest[k], rest[j]) / squared;
-        for (size_t i = 0; i < rest[j].size(); ++i) rest[j][i] -= share * rest[k][i];
-      }
-    }
-    return growth;
-  }
-
- private:
-  static Exact Product(const ExactVector& a, const ExactVector& b) {
-    return std::inner_product(a.begin(), a.end(), b.begin(), Exact(0));
-  }
-
-  // Of the body's components.
-  size_t First(size_t body) const { return body < balls_ ? 4 * body : 2 * (balls_ + body); }
-
-  void Move(size_t body, double time) {
-    const double wait = time - std::exchange(times_[body], time);
-    const size_t first = First(body), positions = body < balls_ ? 2 : 1;
-    for (ExactVector& v : vectors_) {
-      for (size_t i = first; i < first + positions; ++i) v[i] += wait * v[i + positions];
-    }
-  }
-
-  // billiard/tangent_map.h.
-  void Reflect(size_t first, const GasBall& after) {
-    const Eigen::Vector2d centre(std::copysign(0.5, after.position.x()),
-                                 std::copysign(0.5, after.position.y()));
-    const Eigen::Vector2d n = (after.position - centre) / rho_, t(-n.y(), n.x());
-    const Eigen::Vector2d& u = after.direction;
-    const double slope = u.dot(t) / u.dot(n), kick = 2 * after.speed / rho_;
-    for (ExactVector& v : vectors_) {
-      Exact &x = v[first], &y = v[first + 1], &vx = v[first + 2], &vy = v[first + 3];
-      const Exact across = x * n.x() + y * n.y(), velocity = vx * n.x() + vy * n.y();
-      const Exact turn = kick * (x * t.x() + y * t.y() + slope * across);
-      x -= 2 * across * n.x();
-      y -= 2 * across * n.y();
-      vx -= 2 * velocity * n.x() + turn * u.y();
-      vy -= 2 * velocity * n.y() - turn * u.x();
-    }
-  }
-
-  size_t balls_;
-  double rho_;
-  std::vector<double> times_;
-  std::vector<ExactVector> vectors_;
-};
-
-// The first exponent, the sum of those of the balls, and each slower one. Rounding decides when the
-// second and the third vector change places. A growth of 900 has a rounding of some 1e-10.
-TEST(GasTangents, GrowthsAreThoseOfManyDigits) {
-  const GasGeometry geometry = GasOf(0.53, 0.05, "3");
-  for (const uint64_t sample : {0, 3}) {
-    const GasState start = GasInEquilibrium(geometry, 1, 34, sample);
-    const std::vector<Vector> across = VelocitiesAcross(geometry, start);
-    ReferenceGas gas(geometry, start, ThermalWalls());
-    GasTangents tangents(geometry, start, across);
-    CartesianTangents exact(geometry, across);
-    const double time = 120;
-    while (gas.NextTime() <= time) {
-      const GasEvent event = gas.Step();
-      tangents.Follow(event, gas);
-      exact.Follow(event, gas);
-    }
-    const Vector growth = tangents.TakeGrowth(time), expected = exact.GrowthAt(time);
-    EXPECT_NEAR(growth[0], expected[0], 1e-8);
-    EXPECT_NEAR(growth[1] + growth[2], expected[1] + expected[2], 1e-8);
-    for (size_t k = 3; k < growth.size(); ++k) EXPECT_NEAR(growth[k], expected[k], 1e-8) << k;
   }
 }
 

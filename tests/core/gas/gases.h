@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "absl/strings/string_view.h"
 #include "core/gas/canonical_gas.h"
@@ -30,6 +31,21 @@ inline GasState GasInEquilibrium(const GasGeometry& geometry, double temperature
                                  uint64_t sample) {
   CounterRandom random(seed, 0, sample);
   return DrawGas(geometry, TemperatureProfile(temperature), random);
+}
+
+// All positions and velocities, in the order of a tangent vector's components.
+inline std::vector<double> ComponentsOf(const GasState& state) {
+  std::vector<double> components;
+  for (const GasBall& ball : state.balls) {
+    const Eigen::Vector2d velocity = ball.speed * ball.direction;
+    for (const double x : {ball.position.x(), ball.position.y(), velocity.x(), velocity.y()}) {
+      components.push_back(x);
+    }
+  }
+  for (const GasPiston& piston : state.pistons) {
+    components.insert(components.end(), {piston.offset, piston.velocity});
+  }
+  return components;
 }
 
 // The distance from the ball to the piston that it sees in this direction; negative if the ball is

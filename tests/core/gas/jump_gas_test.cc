@@ -5,7 +5,6 @@
 #include "core/gas/gas_meter.h"
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
-#include "tests/oracle/gauss_legendre.h"
 #include "tests/oracle/one_sample.h"
 
 namespace ballpiston {
@@ -108,87 +107,6 @@ TEST(JumpGas, PairsFollowTheJumpProcess) {
     EXPECT_LT(oracle::KolmogorovSmirnov(places, [](double x) { return x; }), 2.3);
     EXPECT_LT(oracle::ChiSquareScoreOf(counts, rates), 4);
     ++row;
-  }
-}
-
-// The same in a lattice of one cell: two pistons, each met from both sides. False alarms: 1e-4.
-TEST(JumpGas, APistonThatABallSeesTwiceHasTwoContacts) {
-  const GasGeometry torus = GasOf(kPaperRho, 0.2, "1x1");
-  const GasState start = WithEnergies({1}, {0.5, 0.1});
-  const double sum = 2 * (ContactRate(1, 0.5) + ContactRate(1, 0.1));
-  std::vector<double> times;
-  for (uint64_t replica = 0; replica < kReplicas; ++replica) {
-    const CounterRandom random(82, 0, replica);
-    times.push_back(
-        sum * Find(JumpGas(torus, kDensity, ThermalWalls(), random), torus, start, 0.3 / sum).time);
-  }
-  EXPECT_LT(oracle::KolmogorovSmirnov(times, Exponential), 2.3);
-}
-
-// An outermost piston has a thermal velocity at every instant: the rate is the thermal mean. One
-// cell between a hot and a cold reservoir. False alarms: 1e-4.
-TEST(JumpGas, OutermostPistonsAreThermal) {
-  constexpr double kHot = 3, kCold = 0.5, kBall = 1;
-  const GasGeometry chain = GasOf(kPaperRho, 0.2, "1", GasEnds::kReservoirs);
-  // The initial energies of these pistons have no effect.
-  const GasState start = WithEnergies({kBall}, {17, 1e-3});
-  const auto thermal_rate = [&](double temperature) {
-    const auto integrand = [&](Quad v3) {
-      const auto v = static_cast<double>(v3);
-      return std::exp(-v * v / (2 * temperature)) * ContactRate(kBall, v * v / 2);
-    };
-    const double width = std::sqrt(temperature), speed = std::sqrt(2 * kBall);
-    const Quad all = oracle::IntegrateToRoot(integrand, 0, speed) +
-                     oracle::Integrate(integrand, speed, speed + 5 * width) +
-                     oracle::Integrate(integrand, speed + 5 * width, speed + 12 * width);
-    return static_cast<double>(all) * 2 / (width * std::sqrt(2 * std::numbers::pi));
-  };
-  const double hot = thermal_rate(kHot), cold = thermal_rate(kCold);
-  std::vector<double> times;
-  std::vector<uint64_t> counts(2);
-  for (uint64_t replica = 0; replica < kReplicas; ++replica) {
-    const GasRandom random(83, 0, replica);
-    const FirstExchange first =
-        Find(JumpGas(chain, kDensity, ThermalWalls(chain, kHot, kCold, random), random.OfJumps()),
-             chain, start, 0.3 / (hot + cold));
-    times.push_back(first.time * (hot + cold));
-    ++counts[first.piston];
-    EXPECT_EQ(first.piston_energy, (first.piston == 0 ? kHot : kCold) / 2);
-  }
-  EXPECT_LT(oracle::KolmogorovSmirnov(times, Exponential), 2.3);
-  EXPECT_LT(oracle::ChiSquareScoreOf(counts,
-                                     std::vector<double>{hot / (hot + cold), cold / (hot + cold)}),
-            4);
-}
-
-// A ring is isolated. An exchange rounds each energy.
-TEST(JumpGas, EnergyIsConserved) {
-  const GasGeometry gas = GasOf(kPaperRho, 0.2, "4x4");
-  const GasState start = GasInEquilibrium(gas, 1, 84, 0);
-  GasMeter meter(gas, start);
-  JumpGas jumps(gas, kDensity, ThermalWalls(), CounterRandom(84, 0, 0));
-  jumps.Begin(start);
-  jumps.AdvanceTo(5000, meter);
-  EXPECT_GT(meter.exchanges(), 10'000u);
-  double sum = 0;
-  for (size_t body = 0; body < meter.bodies(); ++body) sum += meter.Energy(body);
-  EXPECT_NEAR(sum / EnergyOf(start), 1, 1e-13);
-}
-
-// Twice the density is the same gas, twice as fast.
-TEST(JumpGas, DensityIsAScaleOfTime) {
-  const GasGeometry gas = GasOf(kPaperRho, 0.2, "5");
-  const GasState start = GasInEquilibrium(gas, 1, 85, 0);
-  GasMeter slow(gas, start), fast(gas, start);
-  for (const double density : {1, 2}) {
-    JumpGas jumps(gas, density, ThermalWalls(), CounterRandom(85, 0, 0));
-    jumps.Begin(start);
-    jumps.AdvanceTo(200 / density, density == 1 ? slow : fast);
-  }
-  EXPECT_GT(slow.exchanges(), 100u);
-  EXPECT_EQ(slow.exchanges(), fast.exchanges());
-  for (size_t body = 0; body < slow.bodies(); ++body) {
-    EXPECT_EQ(slow.Energy(body), fast.Energy(body));
   }
 }
 

@@ -1,14 +1,9 @@
 #include "core/gas/lane_gas.h"
 
-#include <deque>
-
-#include "core/gas/gas_exchange_rate.h"
-#include "core/gas/gas_meter.h"
-#include "core/gas/gas_run.h"
 #include "core/gas/hit_rates.h"
-#include "tests/core/billiard/each_target.h"
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
+#include "tools/flows/metered_gases.h"
 
 namespace ballpiston {
 namespace {
@@ -22,17 +17,16 @@ struct Outcome {
 
 Outcome OutcomeOf(GasEngine engine, const GasGeometry& geometry, uint64_t replicas, double time,
                   double hot = 1, double cold = 1) {
-  std::deque<GasMeter> meters;
   std::vector<GasStart> starts;
   for (uint64_t i = 0; i < replicas; ++i) {
     const GasRandom random(41, 0, i);
-    const GasState state = GasInEquilibrium(geometry, 1, 42, i);
-    starts.push_back({state, ThermalWalls(geometry, hot, cold, random), random,
-                      &meters.emplace_back(geometry, state)});
+    starts.push_back({GasInEquilibrium(geometry, 1, 42, i),
+                      ThermalWalls(geometry, hot, cold, random), random, nullptr});
   }
-  StartGases(engine, geometry, GasExchangeRate(geometry, 1), std::move(starts))->AdvanceTo(time);
+  MeteredGases gases(engine, geometry, std::move(starts));
+  gases.AdvanceTo(time);
   Outcome outcome;
-  for (const GasMeter& meter : meters) {
+  for (const GasMeter& meter : gases.meters()) {
     for (size_t body = 0; body < meter.bodies(); ++body) {
       outcome.energies.push_back(meter.Energy(body));
     }
@@ -91,18 +85,16 @@ TEST(LaneGas, AGasContinuesFromItsState) {
         run->AdvanceTo(kTime);
         return run->StateOf(0);
       };
-      const GasState lanes = state_of(GasEngine::kLanes), ref = state_of(GasEngine::kReference);
-      for (size_t b = 0; b < ref.balls.size(); ++b) {
-        EXPECT_NEAR((lanes.balls[b].position - ref.balls[b].position).norm(), 0, kRounding);
-        EXPECT_NEAR((lanes.balls[b].direction - ref.balls[b].direction).norm(), 0, kRounding);
-        EXPECT_NEAR(lanes.balls[b].speed, ref.balls[b].speed, kRounding);
-      }
-      for (size_t p = 0; p < ref.pistons.size(); ++p) {
-        EXPECT_NEAR(lanes.pistons[p].offset, ref.pistons[p].offset, kRounding);
-        EXPECT_NEAR(lanes.pistons[p].velocity, ref.pistons[p].velocity, kRounding);
-      }
+      const std::vector<double> lanes = ComponentsOf(state_of(GasEngine::kLanes)),
+                                reference = ComponentsOf(state_of(GasEngine::kReference));
+      for (size_t k = 0; k < lanes.size(); ++k) EXPECT_NEAR(lanes[k], reference[k], kRounding);
     }
   }
+}
+
+MeteredGases InLanes(const GasGeometry& gas, const GasState& state) {
+  const GasRandom random(45, 0, 0);
+  return {GasEngine::kLanes, gas, {{state, ThermalWalls(gas, 1, 1, random), random, nullptr}}};
 }
 
 // The piston moves ahead of the ball. Both reach the tip at the same time, to within some ulps.
@@ -119,10 +111,9 @@ uint64_t MeetInTheTip(const GasGeometry& gas, CounterRandom& random) {
   state.pistons.resize(static_cast<size_t>(gas.pistons()));
   state.pistons[0] = {.offset = tip.x() - kWay * speed * direction.x() - 0.5 + off,
                       .velocity = speed * direction.x()};
-  GasMeter meter(gas, state);
-  std::vector<GasStart> starts;
-  starts.push_back({state, ThermalWalls(), GasRandom(0, 0, 0), &meter});
-  StartGases(GasEngine::kLanes, gas, GasExchangeRate(gas, 1), std::move(starts))->AdvanceTo(1);
+  MeteredGases gases = InLanes(gas, state);
+  gases.AdvanceTo(1);
+  const GasMeter& meter = gases.meters().front();
   EXPECT_EQ(meter.escapes(), 0u);
   EXPECT_NEAR(meter.TotalEnergy(), EnergyOf(state), 1e-14);
   return meter.exchanges();
@@ -150,14 +141,12 @@ TEST(LaneGas, AnEscapedBallStopsAndCountsOnce) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "3");
   GasState state = GasInEquilibrium(gas, 1, 44, 0);
   state.balls[1] = {.position = {0.47, 0.4}, .direction = {1, 0}, .speed = 1};
-  GasMeter meter(gas, state);
-  std::vector<GasStart> starts;
-  starts.push_back({state, ThermalWalls(), GasRandom(1, 1, 1), &meter});
-  const auto run = StartGases(GasEngine::kLanes, gas, GasExchangeRate(gas, 1), std::move(starts));
-  run->AdvanceTo(1);
+  MeteredGases gases = InLanes(gas, state);
+  const GasMeter& meter = gases.meters().front();
+  gases.AdvanceTo(1);
   EXPECT_EQ(meter.escapes(), 1u);
   const double energy = meter.Energy(1);
-  run->AdvanceTo(100);
+  gases.AdvanceTo(100);
   EXPECT_EQ(meter.escapes(), 1u);
   EXPECT_EQ(meter.Energy(1), energy);
 }
@@ -165,17 +154,12 @@ TEST(LaneGas, AnEscapedBallStopsAndCountsOnce) {
 // Here a cell is as small as the rounding of places, and balls escape soon.
 TEST(LaneGas, AGasThatLosesItsBallsEnds) {
   const GasGeometry gas = GasOf(0.7071067811865475, 4.4e-17, "3", GasEnds::kReservoirs);
-  const GasRandom random(45, 0, 0);
-  const GasState state = GasInEquilibrium(gas, 1, 45, 0);
-  GasMeter meter(gas, state);
-  std::vector<GasStart> starts;
-  starts.push_back({state, ThermalWalls(gas, 1, 1, random), random, &meter});
-  const auto run = StartGases(GasEngine::kLanes, gas, GasExchangeRate(gas, 1), std::move(starts));
+  MeteredGases gases = InLanes(gas, GasInEquilibrium(gas, 1, 45, 0));
   int asked = 0;
   Pauses pauses([&] { return ++asked > 100; });
-  EXPECT_TRUE(run->AdvanceTo(100'000 * MeanFlight(gas.pair()), pauses));
-  EXPECT_GT(meter.escapes(), 0u);
-  EXPECT_LE(meter.escapes(), 3u);
+  EXPECT_TRUE(gases.AdvanceTo(100'000 * MeanFlight(gas.pair()), pauses));
+  EXPECT_GT(gases.meters().front().escapes(), 0u);
+  EXPECT_LE(gases.meters().front().escapes(), 3u);
 }
 
 // A gas at rest except for one piston, which comes to a resting ball within its reach.
@@ -187,14 +171,12 @@ TEST(LaneGas, ThePistonMeetsABallAtRestAtItsPlace) {
   const auto piston = static_cast<size_t>(gas.PistonOf(1, Direction::kRight));
   state.balls[1].position = {gas.pair().tip() - 0.05, 0};
   state.pistons[piston] = {.offset = 0, .velocity = -1};
-  GasMeter meter(gas, state);
-  std::vector<GasStart> starts;
-  starts.push_back({state, ThermalWalls(), GasRandom(1, 1, 1), &meter});
-  const auto run = StartGases(GasEngine::kLanes, gas, 1, std::move(starts));
+  MeteredGases gases = InLanes(gas, state);
+  const GasMeter& meter = gases.meters().front();
   const double way = gas.pair().lambda() / 2 + 0.05;
-  run->AdvanceTo(way - 1e-6);
+  gases.AdvanceTo(way - 1e-6);
   EXPECT_EQ(meter.exchanges(), 0u);
-  run->AdvanceTo(way + 1e-6);
+  gases.AdvanceTo(way + 1e-6);
   EXPECT_EQ(meter.exchanges(), 1u);
   EXPECT_NEAR(meter.Energy(1), 0.5, 1e-12);  // the ball has the piston's velocity
   EXPECT_EQ(meter.Energy(3 + piston), 0);

@@ -119,61 +119,6 @@ TEST(ReferenceGas, OneBallAndOnePistonMoveLikeThePair) {
   EXPECT_GT(exchanges, 200);
 }
 
-GasState Reversed(GasState state) {
-  for (GasBall& ball : state.balls) ball.direction = -ball.direction;
-  for (GasPiston& piston : state.pistons) piston.velocity = -piston.velocity;
-  return state;
-}
-
-void RunTo(ReferenceGas& gas, double time) {
-  while (gas.NextTime() <= time) gas.Step();
-}
-
-// The gas runs until each ball has hit fifteen walls on average, and back. An error of 1e-16 grows
-// threefold a wall hit on both runs, and an exchange passes it on to another ball. The error of
-// half of the balls is below 1e-9. It is largest for fast balls that graze discs; few errors reach
-// 0.01.
-TEST(ReferenceGas, ReversedVelocitiesRetraceTheirWay) {
-  size_t off = 0, near = 0, balls = 0, exchanges = 0;
-  for (const char* shape : {"1", "2", "12", "1x1", "4x3"}) {
-    const GasGeometry gas = GasOf(kPaperRho, 0.2, shape);
-    for (uint64_t sample = 0; sample < 20; ++sample) {
-      const GasState start = GasInEquilibrium(gas, 1, 72, sample);
-      ReferenceGas there = GasFrom(gas, start);
-      double end = 0;
-      for (int64_t hits = 0; hits < 15 * gas.balls();) {
-        const GasEvent event = there.Step();
-        hits += event.kind == EventKind::kBallWall;
-        exchanges += event.kind == EventKind::kBallPiston;
-        end = event.time;
-      }
-      end = (end + there.NextTime()) / 2;
-      ReferenceGas back = GasFrom(gas, Reversed(there.StateAt(end)));
-      RunTo(back, end);
-      const GasState reached = Reversed(back.StateAt(end));
-      for (size_t i = 0; i < start.balls.size(); ++i) {
-        const double error = (reached.balls[i].position - start.balls[i].position).norm();
-        ++balls;
-        off += error > 0.01;
-        near += error < 1e-9;
-      }
-    }
-  }
-  EXPECT_GT(exchanges, balls / 2);
-  EXPECT_LT(off, balls / 20);
-  EXPECT_GT(near, balls / 2);
-}
-
-// Speeds carry an ulp from each exchange, at random.
-TEST(ReferenceGas, EnergyIsConserved) {
-  const GasGeometry gas = GasOf(kPaperRho, 0.2, "8x8");
-  const GasState start = GasInEquilibrium(gas, 1, 73, 0);
-  ReferenceGas moving = GasFrom(gas, start);
-  double time = 0;
-  for (int i = 0; i < 1'000'000; ++i) time = moving.Step().time;
-  EXPECT_NEAR(EnergyOf(moving.StateAt(time)) / EnergyOf(start), 1, 1e-13);
-}
-
 // Slacks: an ulp of a place in a cell, some more where two discs are nearly tangent, as in
 // reference_flow_test.cc. A place is that of the last event moved on, which rounds again.
 TEST(ReferenceGas, BallsStayInTheirCellsAndBeforeTheirPistons) {

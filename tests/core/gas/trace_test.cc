@@ -1,9 +1,8 @@
 #include "core/gas/trace.h"
 
-#include "core/closed_form/mean_free_time.h"
-#include "core/gas/canonical_gas.h"
 #include "core/gas/reference_gas.h"
 #include "core/sampling/invariant_measure.h"
+#include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
 
 namespace ballpiston {
@@ -16,15 +15,9 @@ PairState PairStart(uint64_t sample) {
   return DrawFromFlowMeasure(kPaperPair, random);
 }
 
-GasGeometry Gas(const std::string& shape) {
-  return GasGeometry::Create(kPaperRho, 0.15, ParseGasShape(shape).value(), GasEnds::kPeriodic)
-      .value();
-}
+GasGeometry Gas(const char* shape) { return GasOf(kPaperRho, 0.15, shape); }
 
-GasState GasStart(const GasGeometry& gas) {
-  CounterRandom random(29, 0, 0);
-  return DrawGas(gas, TemperatureProfile(1.5), random);
-}
+GasState StartOfTrace(const GasGeometry& gas) { return GasInEquilibrium(gas, 1.5, 29, 0); }
 
 TEST(Trace, PairTraceMatchesTheReferenceFlow) {
   const PairState start = PairStart(0);
@@ -65,7 +58,7 @@ double EnergyGain(const TraceEvent& event) {
 TEST(Trace, GasTraceMatchesTheReferenceGas) {
   for (const char* shape : {"1", "5", "1x1", "4x3"}) {
     const GasGeometry gas = Gas(shape);
-    const GasState start = GasStart(gas);
+    const GasState start = StartOfTrace(gas);
     const auto trace = TraceGas(gas, start);
     ReferenceGas moving(gas, start, ThermalWalls());
     for (int i = 0; i < 5000; ++i) {
@@ -102,7 +95,7 @@ void ExpectAtTheSamePlace(const GasGeometry& gas, const TraceEvent& event) {
 // last event of the same kind and bodies.
 TEST(Trace, EventsConserveEnergyAndEndStraightFlights) {
   const GasGeometry gas = Gas("4x3");
-  const auto trace = TraceGas(gas, GasStart(gas));
+  const auto trace = TraceGas(gas, StartOfTrace(gas));
   using Flight = std::pair<double, TracedBody>;  // since
   std::map<std::pair<bool, int64_t>, Flight> flights;
   double energy = 0;
@@ -140,20 +133,6 @@ TEST(Trace, EventsConserveEnergyAndEndStraightFlights) {
     }
     place->second = event->time;
   }
-}
-
-// Tolerances of a million events, relative: five times the root mean square error over 20 seeds.
-TEST(Trace, FreeTimesHaveTheMeansOfTheClosedForms) {
-  const auto trace = TracePair(kPaperPair, PairStart(2));
-  std::map<EventKind, Moments> times;
-  for (int i = 0; i < 1'000'000; ++i) {
-    const auto event = trace->Next();
-    if (event->free_time) times[event->kind].Add(*event->free_time);
-  }
-  const MeanFreeTimes exact = MeanFreeTimesFrom(Measures(kPaperPair));
-  EXPECT_NEAR(times[EventKind::kBallPiston].mean / exact.ball_piston, 1, 0.036);
-  EXPECT_NEAR(times[EventKind::kBallWall].mean / exact.ball_wall, 1, 0.014);
-  EXPECT_NEAR(times[EventKind::kPistonWall].mean / exact.piston_wall, 1, 0.028);
 }
 
 }  // namespace

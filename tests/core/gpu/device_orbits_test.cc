@@ -2,21 +2,13 @@
 // device fails. tests/benchmark/gpu_benchmark.cc compares a GPU.
 #include "core/gpu/device_orbits.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "core/billiard/lane_constants.h"
 #include "core/ensemble/point_fold.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/billiard/recorded_collisions.h"
-#include "tests/core/geometries.h"
 #include "tests/core/gpu/host_flights.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/core/preamble.h"
 #include "tools/flows/lane_balls.h"
 
 namespace ballpiston {
@@ -74,19 +66,6 @@ class OrbitsOf : public RecordedCollisions {
   OrbitDevice* device_;
 };
 
-void ExpectSame(const Collision& first, const Collision& second) {
-  ASSERT_EQ(first.escaped, second.escaped);
-  if (first.escaped) return;
-  ASSERT_EQ(first.time, second.time);
-  ASSERT_EQ(first.ball_wall_hits, second.ball_wall_hits);
-  ASSERT_EQ(first.piston_wall_hits, second.piston_wall_hits);
-  ASSERT_EQ(first.state.position, second.state.position);
-  ASSERT_EQ(first.state.direction, second.state.direction);
-  ASSERT_EQ(first.state.ball_speed, second.state.ball_speed);
-  ASSERT_EQ(first.state.piston, second.state.piston);
-  ASSERT_EQ(first.state.piston_velocity, second.state.piston_velocity);
-}
-
 // What the orbits of a device reported, and its failures.
 struct Outcome {
   std::vector<std::vector<Collision>> collisions;
@@ -113,7 +92,7 @@ void ExpectBitsOfTheLanes(const PairGeometry& geometry, uint64_t orbits, size_t 
     for (uint64_t orbit = 0; orbit < orbits; ++orbit) {
       ASSERT_EQ(lanes.by_orbit()[orbit].size(), outcome.collisions[orbit].size());
       for (size_t i = 0; i < lanes.by_orbit()[orbit].size(); ++i) {
-        ExpectSame(lanes.by_orbit()[orbit][i], outcome.collisions[orbit][i]);
+        ExpectSameBits(lanes.by_orbit()[orbit][i], outcome.collisions[orbit][i]);
       }
     }
   });

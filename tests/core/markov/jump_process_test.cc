@@ -158,57 +158,5 @@ TEST(JumpWalkers, TakeTheirWordsFromTheirSamples) {
   }
 }
 
-// Energies and times after some jumps, as bits.
-std::vector<uint64_t> BitsOf(const JumpWalkers& walkers) {
-  std::vector<uint64_t> bits;
-  for (const double x : walkers.u()) bits.push_back(std::bit_cast<uint64_t>(x));
-  for (const double x : walkers.waiting_times()) bits.push_back(std::bit_cast<uint64_t>(x));
-  return bits;
-}
-
-std::vector<uint64_t> BitsAfter(int jumps, uint64_t first, std::vector<double> starts) {
-  JumpWalkers walkers(3, 4, first, std::move(starts));
-  for (int n = 0; n < jumps; ++n) walkers.Jump();
-  return BitsOf(walkers);
-}
-
-TEST(JumpWalkers, WalkersAreIndependentOfEachOther) {
-  const std::vector<double> starts = Starts(100);
-  const std::vector<uint64_t> all = BitsAfter(7, 5, starts);
-  for (const size_t count : {1u, 2u, 31u, 32u, 33u, 64u, 99u}) {
-    for (const size_t from : {0u, 1u, 40u}) {
-      const size_t to = std::min(from + count, starts.size());
-      const std::vector<uint64_t> some = BitsAfter(
-          7, 5 + from,
-          {starts.begin() + static_cast<long>(from), starts.begin() + static_cast<long>(to)});
-      for (size_t i = 0; i < to - from; ++i) {
-        ASSERT_EQ(some[i], all[from + i]);
-        ASSERT_EQ(some[to - from + i], all[100 + from + i]);
-      }
-    }
-  }
-  EXPECT_TRUE(BitsAfter(3, 0, {}).empty());
-}
-
-// FNV-1a.
-uint64_t Hash(const std::vector<uint64_t>& words) {
-  uint64_t hash = 0xcbf29ce484222325;
-  for (const uint64_t word : words) hash = (hash ^ word) * 0x100000001b3;
-  return hash;
-}
-
-// The values since the last intended change. A failure prints the new value.
-constexpr uint64_t kFirstJump = 0x49c16fa40bbb71, kTenthJump = 0x52df7e3171c109d0;
-
-TEST(JumpWalkers, SameBitsOnEveryProcessor) {
-  ForEachTarget([&](int64_t target) {
-    if (!HasFusedMultiplyAdd(target)) return;
-    EXPECT_EQ(Hash(BitsAfter(1, 0, Starts(10'000))), kFirstJump);
-    // Jumps contract differences, so the bits of one jump are the most sensitive. Later jumps check
-    // the order of the words.
-    EXPECT_EQ(Hash(BitsAfter(10, 0, Starts(1000))), kTenthJump);
-  });
-}
-
 }  // namespace
 }  // namespace ballpiston

@@ -110,21 +110,6 @@ TEST(RelaxationSpectrum, AutocorrelationSatisfiesSemigroupAndInitialSlope) {
   EXPECT_LT(Spectrum().Autocorrelation(35).value, 1e-3);
 }
 
-TEST(RelaxationSpectrum, AutocorrelationIsASumOfDecaysNoSlowerThanTheGap) {
-  EXPECT_NEAR(Spectrum().Autocorrelation(0).value, 1, 1e-14);
-  const double gap = Spectrum().Gap().value;
-  double before = Spectrum().Autocorrelation(0.5).value, before_that = 1;
-  for (double t = 1; t < 200; t += 0.5) {
-    const double now = Spectrum().Autocorrelation(t).value;
-    EXPECT_GT(now, 0);
-    EXPECT_LE(now, before * std::exp(-gap * 0.5));
-    EXPECT_LE(before * before, now * before_that * (1 + 1e-12));  // convex in its logarithm
-    before_that = before, before = now;
-  }
-  // At long times the rate is the gap.
-  EXPECT_NEAR(std::log(before_that / before) / 0.5, gap, 1e-4);
-}
-
 TEST(RelaxationSpectrum, IntegralsMatchTheCurves) {
   for (const double window : {0.3, 4.0, 32.0}) {
     EXPECT_NEAR(Spectrum().CorrelationTime(window).value,

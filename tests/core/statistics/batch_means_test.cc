@@ -25,19 +25,6 @@ TEST(BatchMeans, MergeEqualsSinglePassAndHasAnIdentity) {
   EXPECT_EQ(copy, whole);
 }
 
-TEST(BatchMeans, OfUnitDenominatorsAreTheUsualMeanAndError) {
-  CounterRandom random(5, 0, 0);
-  BatchMeans batches;
-  Moments moments;
-  for (int i = 0; i < 1000; ++i) {
-    const double x = random.Uniform();
-    batches.Add(x, 1);
-    moments.Add(x);
-  }
-  EXPECT_NEAR(*batches.Ratio(), moments.mean, 1e-14);
-  EXPECT_NEAR(*batches.StandardError(), *moments.StandardError(), 1e-14);
-}
-
 TEST(BatchMeans, BatchesOfUnequalLengthGiveTheRatioOfTotals) {
   BatchMeans batches;
   EXPECT_FALSE(batches.Ratio());

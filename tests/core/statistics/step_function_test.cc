@@ -65,20 +65,6 @@ TEST(StepFunction, IntegralIsExact) {
   }
 }
 
-// A value of 1 for a time 1, then 0: int_0^1 dt (1 - t) = 1/2 with a window of 1 or more, and
-// int_0^1 min(1/4, 1 - t) dt = 3/16 + 1/32 with one of 1/4.
-TEST(StepFunction, CorrelationOfAPulseMatchesHandCalculation) {
-  StepFunction pulse(1);
-  pulse.Add(1, 0);
-  EXPECT_DOUBLE_EQ(pulse.CorrelationIntegral(0, 1, 1), 0.5);
-  EXPECT_DOUBLE_EQ(pulse.CorrelationIntegral(0, 1, 100), 0.5);
-  EXPECT_DOUBLE_EQ(pulse.CorrelationIntegral(0, 4, 100), 0.125);
-  EXPECT_DOUBLE_EQ(pulse.CorrelationIntegral(0, 1, 0.25), 7.0 / 32);
-  EXPECT_DOUBLE_EQ(pulse.CorrelationIntegral(0, 0.5, 0.25), 0.25);
-  // After subtraction of 1/2 the two halves of the square wave cancel.
-  EXPECT_DOUBLE_EQ(pulse.Integral(0.5, 2), 0);
-}
-
 // Jumps anywhere, on samples and by an ulp beside them.
 TEST(StepFunction, SamplesAreTheValuesAtTheirTimes) {
   CounterRandom random(1, 2, 3);
@@ -104,25 +90,6 @@ TEST(StepFunction, SamplesAreTheValuesAtTheirTimes) {
       ASSERT_EQ(samples[i], static_cast<double>(later - jumps.begin() - 1));
     }
   }
-}
-
-TEST(StepFunction, PiecesWithoutDurationHaveNoEffect) {
-  StepFunction with(1), without(1);
-  with.Add(0, -1), with.Add(0, 1);
-  for (StepFunction* function : {&with, &without}) function->Add(2, 3);
-  with.Add(0, 100), with.Add(0, 3);
-  EXPECT_EQ(with.Samples(0.5, 9), without.Samples(0.5, 9));
-  EXPECT_EQ(with.Integral(0.1, 7), without.Integral(0.1, 7));
-  EXPECT_DOUBLE_EQ(with.CorrelationIntegral(0.1, 5, 3), without.CorrelationIntegral(0.1, 5, 3));
-}
-
-// Values beyond origins + window have no effect, and neither has the end of the record.
-TEST(StepFunction, OnlyOriginsAndWindowCount) {
-  StepFunction longer(1), shorter(1);
-  for (StepFunction* function : {&longer, &shorter}) function->Add(1, 0.25), function->Add(3, 0.75);
-  longer.Add(10, -50);
-  EXPECT_EQ(longer.CorrelationIntegral(0.5, 8, 6), shorter.CorrelationIntegral(0.5, 8, 6));
-  EXPECT_NE(longer.CorrelationIntegral(0.5, 8, 6.5), shorter.CorrelationIntegral(0.5, 8, 6.5));
 }
 
 }  // namespace

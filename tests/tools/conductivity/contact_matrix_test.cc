@@ -1,7 +1,5 @@
 #include "tools/conductivity/contact_matrix.h"
 
-#include <Eigen/Eigenvalues>
-
 #include "tests/core/preamble.h"
 #include "tests/oracle/gauss_legendre.h"
 #include "tools/conductivity/gamma_law.h"
@@ -111,29 +109,24 @@ double At(const ContactMatrix& matrix, const Element& e) {
   return matrix.elements()(ContactMatrix::Row(e.i, e.j), ContactMatrix::Row(e.k, e.l));
 }
 
+// The integrals of two equal sites have one dimension more, so they have lower degrees and fewer
+// nodes.
 TEST(ContactMatrix, AgreesWithAnIndependentQuadrature) {
   const std::vector<Element> elements = {{1, 0, 1, 0}, {0, 1, 1, 0}, {1, 1, 1, 1}, {2, 0, 0, 2},
                                          {2, 1, 1, 0}, {0, 3, 2, 1}, {3, 0, 3, 0}, {1, 2, 4, 0},
                                          {2, 2, 0, 1}, {4, 1, 1, 4}, {0, 5, 5, 0}, {3, 3, 1, 0},
                                          {6, 0, 0, 1}, {2, 4, 3, 2}};
-  for (const SiteDimensions d : {SiteDimensions{2, 1}, {1, 2}, {1, 3}, {1, 1}}) {
+  const std::vector<Element> of_equal_sites = {{1, 0, 1, 0}, {1, 0, 0, 1}, {2, 0, 1, 0},
+                                               {1, 1, 1, 1}, {2, 1, 1, 0}, {1, 2, 0, 3},
+                                               {2, 1, 3, 0}};
+  for (const SiteDimensions d : {SiteDimensions{2, 1}, {1, 2}, {1, 3}, {1, 1}, {2, 2}, {3, 3}}) {
+    const bool is_costly = d.a > 1 && d.b > 1;
+    const std::vector<Element>& compared = is_costly ? of_equal_sites : elements;
     const ContactMatrix matrix(d, kDegree);
-    const std::vector<double> exact = ByQuadrature(d, elements, 3);
-    for (size_t n = 0; n < elements.size(); ++n) {
-      EXPECT_NEAR(At(matrix, elements[n]), exact[n], 1e-12) << d.a << " " << d.b << ": " << n;
-    }
-  }
-}
-
-// The integrals have one dimension more, so degrees are low enough for fewer nodes.
-TEST(ContactMatrix, EqualSitesAgreeWithAnIndependentQuadrature) {
-  const std::vector<Element> elements = {{1, 0, 1, 0}, {1, 0, 0, 1}, {2, 0, 1, 0}, {1, 1, 1, 1},
-                                         {2, 1, 1, 0}, {1, 2, 0, 3}, {2, 1, 3, 0}};
-  for (const SiteDimensions d : {SiteDimensions{2, 2}, {3, 3}}) {
-    const ContactMatrix matrix(d, kDegree);
-    const std::vector<double> exact = ByQuadrature(d, elements, 1);
-    for (size_t n = 0; n < elements.size(); ++n) {
-      EXPECT_NEAR(At(matrix, elements[n]), exact[n], 1e-9) << d.a << ": " << n;
+    const std::vector<double> exact = ByQuadrature(d, compared, is_costly ? 1 : 3);
+    for (size_t n = 0; n < compared.size(); ++n) {
+      EXPECT_NEAR(At(matrix, compared[n]), exact[n], is_costly ? 1e-9 : 1e-12)
+          << d.a << " " << d.b << ": " << n;
     }
   }
 }
@@ -162,38 +155,6 @@ TEST(ContactMatrix, ConservesTheEnergyOfThePair) {
       function.normalize();
       EXPECT_LE((matrix.elements() * function).cwiseAbs().maxCoeff(), 1e-12) << d.a << d.b << power;
     }
-  }
-}
-
-TEST(ContactMatrix, IsSymmetricAndPositiveSemidefinite) {
-  for (const SiteDimensions d : kAllDimensions) {
-    const Eigen::MatrixXd matrix = ContactMatrix(d, 10).elements();
-    EXPECT_EQ((matrix - matrix.transpose()).cwiseAbs().maxCoeff(), 0);
-    const Eigen::VectorXd rates =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix).eigenvalues();
-    EXPECT_GE(rates[0], -1e-13 * rates[rates.size() - 1]);
-    EXPECT_GT(rates[rates.size() - 1], 0.5);
-  }
-}
-
-TEST(ContactMatrix, SwappedSitesSwapTheIndices) {
-  const ContactMatrix matrix({2, 1}, 8), swapped({1, 2}, 8);
-  for (int i = 0; i <= 4; ++i) {
-    for (int j = 0; j <= 4; ++j) {
-      for (int k = 0; k <= 4; ++k) {
-        for (int l = 0; l <= 4; ++l) {
-          EXPECT_NEAR(At(matrix, {i, j, k, l}), At(swapped, {j, i, l, k}), kContactMatrixError);
-        }
-      }
-    }
-  }
-}
-
-// Half of <rate (e_a' - e_a)^2> is the exchange rate at T = 1, for all dimensions.
-TEST(ContactMatrix, EnergyExchangeIsTheExchangeRate) {
-  EXPECT_NEAR(kContactRate, 1 / std::sqrt(std::numbers::pi), 1e-16);
-  for (const SiteDimensions d : kAllDimensions) {
-    EXPECT_NEAR(d.a / 2.0 * At(ContactMatrix(d, 3), {1, 0, 1, 0}), kContactRate, 1e-14);
   }
 }
 

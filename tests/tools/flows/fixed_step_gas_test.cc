@@ -67,30 +67,6 @@ TEST(FixedStepGas, ABallThatHasPassedAPistonExchanges) {
   }
 }
 
-TEST(FixedStepGas, ThermalWallsGiveNewSpeeds) {
-  const GasGeometry geometry = GasOf(kPaperRho, 0.2, "2", GasEnds::kReservoirs);
-  const GasState start = GasInEquilibrium(geometry, 1, 82, 0);
-  const ThermalWalls walls(geometry, 2, 1, GasRandom(83, 0, 0));
-  FixedStepGas gas(geometry, start, walls, 1e-3);
-  int changed = 0, kept = 0;
-  while (gas.time() < 100) {
-    std::vector<GasPiston> before;
-    for (int64_t i = 0; i < geometry.pistons(); ++i) before.push_back(gas.PistonNow(i));
-    for (const GasEvent& event : gas.Advance()) {
-      if (event.kind != EventKind::kPistonWall) continue;
-      const double was = before[static_cast<size_t>(event.piston)].velocity;
-      const double now = gas.PistonNow(event.piston).velocity;
-      const bool is_thermal = event.piston == (was < 0 ? 0 : 2);
-      (is_thermal ? changed : kept) += 1;
-      ASSERT_LE(std::fabs(gas.PistonNow(event.piston).offset), geometry.reach());
-      if (was * now > 0) continue;  // it collided with a ball in the same step
-      ASSERT_EQ(now == -was, !is_thermal);
-    }
-  }
-  EXPECT_GT(changed, 20);
-  EXPECT_GT(kept, 20);
-}
-
 TEST(FixedStepGas, ALostBallStops) {
   const GasGeometry cusps = GasOf(0.5001, 0.2, "2");
   GasState state;

@@ -31,15 +31,6 @@ TEST(EnergyRelaxationRuns, TheJumpProcessAgreesWithTheSpectrum) {
   }
 }
 
-// The spectrum needs no samples; its error is the discretisation error.
-TEST(EnergyRelaxationRuns, TheSpectrumTakesNoSamples) {
-  const EnergyRelaxationRuns runs = {PaperGeometry(0.1), 0};
-  const PointEstimate limit = runs.BySpectrum();
-  EXPECT_EQ(limit.samples, 0u);
-  EXPECT_GT(limit.seconds, 0);
-  EXPECT_LT(limit.error, 1e-6 * limit.value);
-}
-
 TEST(EnergyRelaxationRuns, RarerCollisionsCostMore) {
   const EnergyRelaxationRuns rare = {PaperGeometry(0.025), 0}, frequent = {PaperGeometry(0.2), 0};
   EXPECT_GT(rare.PredictedSecondsPerOrbit(), 5 * frequent.PredictedSecondsPerOrbit());

@@ -1,13 +1,5 @@
 // The program as a process, with the smallest budget.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
-
+#include "tests/core/preamble.h"
 #include "tests/support/paths.h"
 #include "tests/support/process.h"
 
@@ -15,8 +7,6 @@ namespace ballpiston::method_comparison {
 namespace {
 
 using ::testing::EndsWith;
-using ::testing::HasSubstr;
-using ::testing::Not;
 using ::testing::StartsWith;
 
 ProcessResult RunComparison(std::vector<std::string> flags) {

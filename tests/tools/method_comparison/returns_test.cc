@@ -39,16 +39,6 @@ TEST(Returns, EnginesShowNoBias) {
   }
 }
 
-TEST(Returns, CoarseStepsShowABias) {
-  const double exact = ConditionalMeanFreeTime(kPaperPair, kEpsilonOfReturns);
-  const std::vector<double> probabilities = IngoingProbabilities(kEpsilonOfReturns);
-  const auto returns =
-      RunReturns({Method::kFixedStep, 0.1}, kPaperPair, kEpsilonOfReturns, {21, 1}, 16384);
-  EXPECT_GT(std::fabs(returns.times.mean - exact), 10 * *returns.times.StandardError());
-  const KlDivergence kl = RelativeEntropy(returns.IngoingCounts(), probabilities);
-  EXPECT_GT(kl.value, kl.noise_floor + 10 * kl.noise_error);
-}
-
 // The bias of the mean free time at two time steps, a factor of three apart, against the closed
 // form: about 12% and 4%, with standard errors of 0.5% and 0.4%. Therefore the standard error of
 // the measured order is 0.09. The limit is 4.5 standard errors about 1, with 7e-6 false alarms (the
@@ -89,24 +79,6 @@ TEST(Returns, AllMethodsStartFromTheSameStates) {
     EXPECT_NEAR(one.times.mean, reference.times.mean, 1e-3) << static_cast<int>(engine.method);
     EXPECT_EQ(one.wall_hits, reference.wall_hits) << static_cast<int>(engine.method);
   }
-}
-
-TEST(Returns, ProbabilitiesAreThoseOfAllCells) {
-  EXPECT_EQ(IngoingProbabilities(0.125).size(), 2000);
-  EXPECT_EQ(IngoingProbabilities(0.3).size(), 1000);
-  for (const double epsilon : {0.01, 0.125, 0.3}) {
-    const std::vector<double> cells = IngoingProbabilities(epsilon);
-    EXPECT_NEAR(std::accumulate(cells.begin(), cells.end(), 0.0), 1, 1e-13);
-  }
-}
-
-TEST(Returns, CountsAreInTheOrderOfTheProbabilities) {
-  ReturnStatistics returns = {.ingoing = EmptyIngoingHistograms(IngoingLaw(0.125))};
-  returns.Add({.direction = {1, 1e-9}, .sigma = -1});
-  returns.Add({.direction = {1, 1e-9}, .sigma = +1});
-  EXPECT_EQ(returns.IngoingCounts().size(), 2000);
-  EXPECT_EQ(returns.IngoingCounts()[500], 1);
-  EXPECT_EQ(returns.IngoingCounts()[1500], 1);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "tools/method_comparison/trajectory_horizon.h"
 
 #include "tests/core/preamble.h"
-#include "tools/flows/rounded_to.h"
 
 namespace ballpiston::method_comparison {
 namespace {
@@ -82,26 +81,6 @@ TEST(TrajectoryHorizon, SmallerStepsHaveALongerHorizon) {
   }
   EXPECT_GT(before, 3);
   EXPECT_LT(before, 8);  // log(1e-3/1e-4), and hits with smaller errors: far below any engine
-}
-
-TEST(TrajectoryHorizon, AllHitsAreCounted) {
-  const TrajectoryHorizon horizon = HorizonOfMethod(Method::kLanes);
-  EXPECT_EQ(horizon.hits.count, kTwins);
-  EXPECT_EQ(horizon.wall_hits % kTwins, 0);
-  EXPECT_GT(static_cast<double>(horizon.wall_hits), horizon.hits.mean * kTwins);
-  EXPECT_GT(horizon.seconds, 0);
-}
-
-TEST(TwinOrbits, PositionsAreOnTheOrbit) {
-  TwinOrbits twins(kPaperPair, kStreamOfTwins, 1);
-  EventFlow<TwinNumber> flow(kPaperPair, twins.Start(0));
-  const Eigen::Vector2d start = RoundedTo<double>(twins.Start(0)).position;
-  EXPECT_EQ(twins.PositionAt(0, 0), start);
-  const double duration = static_cast<double>(flow.Step().duration);
-  const Eigen::Vector2d hit = RoundedTo<double>(flow.state()).position;
-  EXPECT_NEAR((*twins.PositionAt(0, duration / 2) - (start + hit) / 2).norm(), 0, 1e-15);
-  EXPECT_NEAR((*twins.PositionAt(0, duration) - hit).norm(), 0, 1e-15);
-  EXPECT_EQ(twins.PositionAt(0, 1e9), std::nullopt);
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 #include "tools/slow_pistons/correlation_windows.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include "tests/core/preamble.h"
 
 namespace ballpiston::slow_pistons {
 namespace {

@@ -1,9 +1,6 @@
 #include "tools/slow_pistons/idle_pistons.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
+#include "tests/core/preamble.h"
 
 namespace ballpiston::slow_pistons {
 namespace {

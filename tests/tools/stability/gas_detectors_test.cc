@@ -5,7 +5,6 @@
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
 #include "tools/flows/metered_gases.h"
-#include "tools/stability/cases.h"
 #include "tools/stability/energy.h"
 #include "tools/stability/gas_runs.h"
 #include "tools/stability/gas_watch.h"
@@ -253,28 +252,6 @@ TEST(GasDetectors, LaneGasesThatTakeTooLongAreALoop) {
   const Failures endless = RunLaneGases(Ring(), starts, 1'000'000, 0);
   EXPECT_EQ(endless.orbits, 50u);
   EXPECT_EQ(endless.loops, 1u);
-}
-
-void ExpectBallsInCellsAndBeforePistons(const GasGeometry& geometry, const GasState& state,
-                                        const std::string& name) {
-  for (int64_t ball = 0; ball < geometry.balls(); ++ball) {
-    const auto& position = state.balls[static_cast<size_t>(ball)].position;
-    EXPECT_TRUE(InsideCell(geometry.pair(), position, 1e-9)) << name;
-    for (int i = 0; i < geometry.directions(); ++i) {
-      EXPECT_GE(GapTo(geometry, state, ball, geometry.DirectionAt(i)), 0) << name;
-    }
-  }
-}
-
-TEST(GasStarts, BallsAreInTheirCellsAndBeforeTheirPistons) {
-  for (const GasCase& gas_case : GasCases()) {
-    for (const auto& place : gas_case.places) {
-      for (uint64_t i = 0; i < 20; ++i) {
-        ExpectBallsInCellsAndBeforePistons(place.geometry, gas_case.start(place.geometry, i).state,
-                                           gas_case.name);
-      }
-    }
-  }
 }
 
 }  // namespace
