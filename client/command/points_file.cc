@@ -16,6 +16,7 @@
 #include "client/command/suggestion.h"
 #include "client/command/text_file.h"
 #include "client/library/quoted.h"
+#include "client/output/number_text.h"
 
 namespace ballpiston::client {
 namespace {
@@ -89,8 +90,9 @@ class PointsReader {
   absl::Status ReadRow(size_t row, const Texts& cells) {
     const std::string line = absl::StrCat("line ", LineOfRow(row));
     if (cells.size() != columns_.size()) {
-      return Bad(absl::StrCat(line, " has ", cells.size(), " values; the header names ",
-                              columns_.size(), " columns"));
+      return Bad(absl::StrCat(line, " has ", Counted(static_cast<double>(cells.size()), "value"),
+                              "; the header names ",
+                              Counted(static_cast<double>(columns_.size()), "column")));
     }
     for (size_t i = 0; i < cells.size(); ++i) {
       const absl::Status added = Add(*columns_[i], cells[i]);

@@ -24,11 +24,13 @@ const ParameterUse* UseOf(const ExperimentKind& experiment, const Parameter& par
   return nullptr;
 }
 
+std::string Values(size_t count) { return absl::StrCat(count, count == 1 ? " value" : " values"); }
+
 void CheckUse(const ExperimentKind& experiment, const Parameter& parameter, size_t size,
               Found& found) {
   const ParameterUse* use = UseOf(experiment, parameter);
   if (use == nullptr && size != 0) {
-    found.push_back({ListOf(parameter), absl::StrCat("has ", size, " values; ", experiment.name,
+    found.push_back({ListOf(parameter), absl::StrCat("has ", Values(size), "; ", experiment.name,
                                                      " does not use this list")});
   }
   if (use != nullptr && use->needed && !use->default_value && size == 0) {
@@ -67,7 +69,7 @@ void CheckTable(const Grid& grid, Found& found) {
     if (!IsWrongColumn(grid, *parameter)) continue;
     found.push_back(
         {ListOf(*parameter),
-         absl::StrCat("has ", grid[*parameter].size(), " values, but the table has ",
+         absl::StrCat("has ", Values(grid[*parameter].size()), ", but the table has ",
                       std::max<size_t>(RowsOf(grid), 1), " rows; permitted: a value a row")});
   }
 }

@@ -288,8 +288,17 @@ void FolderExecutor::NoteMissing(Leases::iterator laid) {
 
 // ---- new leases ----
 
+// After a failure the next attempt comes later, and until then the failure stands.
 absl::Status FolderExecutor::Lay() {
-  if (SteadyNow() < next_laying_) return absl::OkStatus();
+  if (SteadyNow() < next_laying_) return laying_;
+  laying_ = LaySome();
+  backoff_ = laying_.ok() ? std::chrono::seconds(0)
+                          : std::clamp(2 * backoff_, std::chrono::seconds(1), kLongestBackoff);
+  next_laying_ = SteadyNow() + backoff_;
+  return laying_;
+}
+
+absl::Status FolderExecutor::LaySome() {
   for (size_t i = 0; i < kMostLaidAtOnce; ++i) {
     const size_t waiting = leases_.size() - taken_;
     const size_t wanted = std::max(options_.least_waiting, std::min(taken_, kMostWaiting));
@@ -299,12 +308,8 @@ absl::Status FolderExecutor::Lay() {
     std::optional<Lease> lease = scheduler_.Next(capacity_);
     if (!lease) break;
     absl::Status laid = LayOne(*std::move(lease));
-    if (laid.ok()) continue;
-    backoff_ = std::clamp(2 * backoff_, std::chrono::seconds(1), kLongestBackoff);
-    next_laying_ = SteadyNow() + backoff_;
-    return laid;
+    if (!laid.ok()) return laid;
   }
-  backoff_ = std::chrono::seconds(0);
   return absl::OkStatus();
 }
 

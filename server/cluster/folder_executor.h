@@ -126,6 +126,7 @@ class FolderExecutor : public Executor {
   void NoteMissing(Leases::iterator laid);
   void GiveBack(Leases::iterator laid, bool tried);
   absl::Status Lay();
+  absl::Status LaySome();
   absl::Status LayOne(Lease lease);
   void NoteOutcome(const absl::Status& outcome);
   void Refuse(const absl::Status& why);
@@ -145,6 +146,7 @@ class FolderExecutor : public Executor {
   Clock::time_point next_look_ = {};
   Clock::time_point next_laying_ = {};
   std::chrono::seconds backoff_{0};
+  absl::Status laying_;  // the outcome of the last attempt to lay leases
 
   mutable Mutex mutex_;
   FolderStatus status_ ABSL_GUARDED_BY(mutex_);

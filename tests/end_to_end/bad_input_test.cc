@@ -40,7 +40,7 @@ std::vector<BadInput> Table(const std::string& cancelled) {
        {"--cells: has 3 values; first-hit does not use this list",
         "--cells: cells is \"-3\"; permitted: N or NxM, 1 to 1000000 cells in all",
         "--temperature: temperature is 0; permitted: ",
-        "--hot: has 1 values; first-hit does not use this list", "--cold: "}},
+        "--hot: has 1 value; first-hit does not use this list", "--cold: "}},
       {conduction + "--hot 1 --cold 2",
        2,
        {"--hot: hot is 1, below cold = 2; permitted: hot >= cold"}},

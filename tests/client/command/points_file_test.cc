@@ -41,10 +41,10 @@ TEST(PointsFile, AnErrorNamesTheLineAndTheColumn) {
       {"rho,table\n0.5,0.1\n", "line 1: the column 'table' is not one of"},
       {"rho,rho\n0.5,0.1\n", "line 1: the column rho is there twice"},
       {"rho,epsilon\n0.5,0.1\n", "has the column epsilon, and --epsilon is given"},
-      {"rho,delta\n0.5,0.1\n0.5\n", "line 3 has 1 values; the header names 2 columns"},
+      {"rho,delta\n0.5,0.1\n0.5\n", "line 3 has 1 value; the header names 2 columns"},
       {"rho,delta\n0.5,0.1\n0.5,x\n", "line 3, column delta: 'x' is not a decimal number"},
       {"rho,delta\n0.5,\n", "line 2, column delta: '' is not a decimal number"},
-      {"rho,delta\n\n0.5,0.1\n", "line 2 has 1 values"},
+      {"rho,delta\n\n0.5,0.1\n", "line 2 has 1 value;"},
       {"cells\n2x\n", "line 2, column cells: '2x' is not a shape"}};
   for (const Wrong& wrong : kWrong) {
     v1::Grid grid;

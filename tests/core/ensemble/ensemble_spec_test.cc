@@ -83,7 +83,7 @@ TEST(EnsembleSpec, EveryViolationIsReportedAtOnce) {
          "grid.exponent[1]: 1001", "grid.cells: does not use this list",
          "grid.temperature: has 3 values; first-hit does not use this list",
          "grid.temperature[2]: temperature is -1",
-         "grid.hot: has 1 values; first-hit does not use this list", "grid.cold: has 2 values",
+         "grid.hot: has 1 value; first-hit does not use this list", "grid.cold: has 2 values",
          "grid.cold[1]: cold is 0", "target: more than one", "target.samples: is 0",
          "target.tolerance: 0 < tolerance < 1", "model: markov", "precision: single"}}});
 }

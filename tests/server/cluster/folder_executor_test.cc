@@ -228,6 +228,20 @@ TEST_F(FolderExecutorTest, AFolderThatCannotBeUsedGivesItsLeasesBack) {
   EXPECT_EQ(executor_->Status().waiting_leases + executor_->Status().taken_leases, 0);
 }
 
+// The pauses double from a second to a minute: 10 attempts take 6 minutes.
+TEST_F(FolderExecutorTest, AFullFolderIsTriedMoreAndMoreRarely) {
+  int attempts = 0;
+  files_.before = [&](const std::string& operation, const std::string&) {
+    attempts += operation == "create";
+    return operation == "create" ? absl::UnavailableError("full") : absl::OkStatus();
+  };
+  Begin();
+  for (int look = 0; look < 100; ++look) executor_->Look();
+  EXPECT_GE(attempts, 1);
+  EXPECT_LE(attempts, 10);
+  EXPECT_EQ(executor_->Status().problem, "full");
+}
+
 // ---- many workers ----
 
 TEST(Pace, ManyWorkersMakeAtMostAHundredOperationsASecond) {

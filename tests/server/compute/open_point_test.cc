@@ -37,13 +37,15 @@ std::optional<Range> Chunks(uint64_t first, uint64_t end, int attempt = 1) {
   return Range(first, end, attempt);
 }
 
-void AddChunks(OpenPoint& point, uint64_t first, uint64_t end) {
+std::vector<ChunkResult> ChunksOf(const OpenPoint& point, uint64_t first, uint64_t end) {
   Lease lease;
   lease.start.chunk = first;
   lease.end = end;
-  for (ChunkResult& chunk : ComputedChunks(lease, *point.experiment())) {
-    point.fold().Add(std::move(chunk));
-  }
+  return ComputedChunks(lease, *point.experiment());
+}
+
+void AddChunks(OpenPoint& point, uint64_t first, uint64_t end) {
+  for (ChunkResult& chunk : ChunksOf(point, first, end)) point.fold().Add(std::move(chunk));
 }
 
 TEST(OpenPoint, AFiniteCapacityTakesTheFewestChunksThatFillIt) {
@@ -79,6 +81,13 @@ TEST(OpenPoint, ChunksThatArrivedEarlyAreSkipped) {
     }
     EXPECT_THAT(leased, testing::ElementsAre(0, 1, 3, 4, 5)) << seconds << " s";
   }
+}
+
+TEST(OpenPoint, StoredChunksAreNotLeasedAgain) {
+  OpenPoint point = PointOf(SixChunks());
+  ASSERT_OK(point.Resume({.chunks = ChunksOf(point, 1, 3)}));
+  EXPECT_EQ(Next(point, 1000), Chunks(0, 1));
+  EXPECT_EQ(Next(point, 1000), Chunks(3, 6));
 }
 
 TEST(OpenPoint, ReturnedChunksComeFirstAndKeepTheirAttempt) {

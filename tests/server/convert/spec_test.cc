@@ -87,7 +87,7 @@ TEST(Spec, EveryBadFieldIsAViolation) {
            "...; permitted with gas-equilibrium: exchange_rate, conductivity"},
       {kHit + R"(grid { cells: "4" })",
        {"spec.grid.cells"},
-       "has 1 values; first-hit does not use this list"},
+       "has 1 value; first-hit does not use this list"},
       {kHit + "precision: 79", {"spec.precision"}},
       {kHit + "model: 78", {"spec.model"}},
       {kHit + "experiment: 77", {"spec.experiment"}},
