@@ -24,14 +24,16 @@ const ParameterUse* UseOf(const ExperimentKind& experiment, const Parameter& par
   return nullptr;
 }
 
-std::string Values(size_t count) { return absl::StrCat(count, count == 1 ? " value" : " values"); }
+std::string Counted(size_t count, absl::string_view noun) {
+  return absl::StrCat(count, " ", noun, count == 1 ? "" : "s");
+}
 
 void CheckUse(const ExperimentKind& experiment, const Parameter& parameter, size_t size,
               Found& found) {
   const ParameterUse* use = UseOf(experiment, parameter);
   if (use == nullptr && size != 0) {
-    found.push_back({ListOf(parameter), absl::StrCat("has ", Values(size), "; ", experiment.name,
-                                                     " does not use this list")});
+    found.push_back({ListOf(parameter), absl::StrCat("has ", Counted(size, "value"), "; ",
+                                                     experiment.name, " does not use this list")});
   }
   if (use != nullptr && use->needed && !use->default_value && size == 0) {
     found.push_back({ListOf(parameter),
@@ -69,8 +71,9 @@ void CheckTable(const Grid& grid, Found& found) {
     if (!IsWrongColumn(grid, *parameter)) continue;
     found.push_back(
         {ListOf(*parameter),
-         absl::StrCat("has ", Values(grid[*parameter].size()), ", but the table has ",
-                      std::max<size_t>(RowsOf(grid), 1), " rows; permitted: a value a row")});
+         absl::StrCat("has ", Counted(grid[*parameter].size(), "value"), ", but the table has ",
+                      Counted(std::max<size_t>(RowsOf(grid), 1), "row"),
+                      "; permitted: a value a row")});
   }
 }
 

@@ -77,6 +77,7 @@ void FolderExecutor::Look() {
   try {
     outcome = Prepare();
     if (outcome.ok()) outcome = Collect();
+    if (!outcome.ok()) prepared_.reset();
     for (auto laid = leases_.begin(); laid != leases_.end();) LookAt(laid++);
     if (outcome.ok()) outcome = Lay();
   } catch (const std::exception& error) {
@@ -94,7 +95,6 @@ absl::Status FolderExecutor::Prepare() {
 }
 
 void FolderExecutor::NoteOutcome(const absl::Status& outcome) {
-  if (!outcome.ok()) prepared_.reset();
   MutexLock lock(mutex_);
   status_.taken_leases = static_cast<double>(taken_);
   status_.waiting_leases = static_cast<double>(leases_.size() - taken_);
@@ -288,10 +288,12 @@ void FolderExecutor::NoteMissing(Leases::iterator laid) {
 
 // ---- new leases ----
 
-// After a failure the next attempt comes later, and until then the failure stands.
+// After a failure, waits for `backoff_` and returns the same failure. It is forgotten when a lease
+// is laid, or when there is none to lay.
 absl::Status FolderExecutor::Lay() {
   if (SteadyNow() < next_laying_) return laying_;
   laying_ = LaySome();
+  if (!laying_.ok()) prepared_.reset();
   backoff_ = laying_.ok() ? std::chrono::seconds(0)
                           : std::clamp(2 * backoff_, std::chrono::seconds(1), kLongestBackoff);
   next_laying_ = SteadyNow() + backoff_;

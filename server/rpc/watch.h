@@ -10,7 +10,7 @@
 // Properties of a watch and of the watches that resume it (checked in tests/simulation):
 //   1. Each finished point is sent once, in order: also over restarts, and before the terminal
 //      state.
-//   2. States never go back; progress does not within a life of the server.
+//   2. A state never goes back. Progress never goes back within one watch.
 //   3. The terminal state is sent once, last, and then OK. So the watch of a job that has ended
 //      begins with the finished points that were not sent yet.
 //

@@ -1,6 +1,6 @@
-// What the parts of the core cost that are not an engine in lanes: a closed form, the first row of
-// the model ladder; the start of a sample, to compare with the flight that follows; an event of the
-// reference, the yardstick of the engines.
+// Costs of the core outside the lanes: a closed form, the first row of the model ladder; the start
+// of a sample, to compare with the flight that follows; an event of the reference, with which the
+// engines are compared.
 //
 //   core_benchmark
 #include <string>

@@ -64,8 +64,8 @@ Eigen::Vector2d Centre(int disc) {
   return {(disc & 1) != 0 ? 0.5 : -0.5, (disc & 2) != 0 ? 0.5 : -0.5};
 }
 
-// As billiard codes have it: the nearest of the roots over all discs, then u - 2 (u . n) n, its
-// length set to 1 again.
+// The method of most billiard codes: the nearest of the roots over all discs, then u - 2 (u . n) n;
+// then the direction is normalised.
 void Fly(Eigen::Vector2d& position, Eigen::Vector2d& direction, int& left) {
   double nearest = std::numeric_limits<double>::infinity();
   int next = left;
@@ -131,7 +131,7 @@ Block BlockOfATurn(const PointExperiment& point, uint64_t turn) {
   return {.first = turn * samples, .samples = samples};
 }
 
-// Samples of a turn, by the time that they flew, not by their number: blocks differ by luck.
+// The samples of a turn, counted by their flight time, in which blocks of the same size differ.
 double SamplesOfATurn(const PointExperiment& point, double exact_time, uint64_t turn) {
   const BlockResult result = *RunBlock(point, BlockOfATurn(point, turn));
   const double mean =

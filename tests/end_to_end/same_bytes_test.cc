@@ -1,5 +1,5 @@
-// The same question gives the same bytes through kill -9. That the number of workers changes
-// nothing is tested in tests/server/restart_test.cc.
+// The same question gives the same bytes through kill -9. tests/server/restart_test.cc tests
+// that the number of workers changes nothing.
 #include <signal.h>
 
 #include <string>

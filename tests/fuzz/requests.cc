@@ -1,5 +1,5 @@
-// The requests of all calls; of GetServerStatus there is nothing to read. That accepted questions
-// can be planned is checked by tests/questions.
+// The requests of all calls; of GetServerStatus there is nothing to read. tests/questions checks
+// that accepted questions can be planned.
 #include <cmath>
 
 #include "absl/strings/ascii.h"

@@ -71,14 +71,15 @@ class Part:
 def first_failure(programs: list[Path], jobs: int, seconds: float, log: Path) -> str | None:
     """The first test that fails, or after so many seconds `hang: ` and the tests that still run.
 
-    A part also ends after a fifth of that in processor time: an endless loop needs no more on a
-    busy machine. `log` gets their output. A part that fails or hangs runs once more, and only the
-    second time counts, because a busy machine can make a test fail too.
+    Each process of a part also ends after a fifth of `seconds` in processor time on each core: so an
+    endless loop takes no longer on a busy machine. `log` gets the output of the parts. A part that
+    fails or hangs runs once more, and only the second time counts, because a busy machine can make
+    a test fail too.
     """
     temporary = Path(tempfile.mkdtemp(prefix="mutation-"))
     temporary.chmod(0o1777)  # like /tmp: a test is a server of several users
-    processor = "unlimited" if math.isinf(seconds) else str(math.ceil(seconds / 5))
-    waiting = [Part(it, i, temporary, processor) for it in programs for i in range(_PARTS)]
+    processor = _fifth_on_all_cores(seconds)
+    waiting = [Part(p, i, temporary, processor) for p in programs for i in range(_PARTS)]
     running: list[Part] = []
     has_hung = False
     deadline = time.monotonic() + seconds
@@ -109,3 +110,9 @@ def first_failure(programs: list[Path], jobs: int, seconds: float, log: Path) ->
         for part in running:
             part.kill()
         shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _fifth_on_all_cores(seconds: float) -> str:
+    if math.isinf(seconds):
+        return "unlimited"
+    return str(math.ceil(seconds / 5 * (os.cpu_count() or 1)))

@@ -213,7 +213,7 @@ TEST(Slurm, ATaskThatHangsIsComputedAgainAfterItsTimeLimit) {
 
 // ---- without faults ----
 
-// On a slow machine no lease is late either.
+// The time-out is long, so no lease is late on a slow machine.
 TEST(Slurm, ASweepOnTheClusterGivesTheSameBytes) {
   Sweep sweep({.timeout_seconds = 900});
   sweep.Submit();

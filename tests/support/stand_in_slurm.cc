@@ -17,9 +17,10 @@ namespace {
 // ended process to another one, perhaps to the server, which must not be killed.
 constexpr char kProcesses[] = R"sh(
 born() { cut -d' ' -f22 "/proc/$1/stat" 2>/dev/null; }
-# Whether the process of the task's file lives. Sets $process.
+# Whether the process of the task's file lives; a zombie has no program. Sets $process.
 lives() {
-  read -r process time <"$1" && [ -n "$time" ] && [ "$(born "$process")" = "$time" ]
+  read -r process time <"$1" && [ -n "$time" ] && [ "$(born "$process")" = "$time" ] &&
+    readlink "/proc/$process/exe" >/dev/null
 }
 )sh";
 

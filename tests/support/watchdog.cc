@@ -4,6 +4,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -14,14 +15,16 @@
 namespace ballpiston {
 namespace {
 
-// What the signal handler prints, which may not allocate.
+// The signal handler prints this text, because a handler may not allocate.
 char report[500];
 
 void PrintReport(int) {
+  const int before = errno;
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, report, std::strlen(report));
+  errno = before;
 }
 
-// From now on the timer prints that this has not ended.
+// From now on the timer reports that `what` has not ended.
 void Watch(const std::string& what) {
   const char* const given = std::getenv("BALLPISTON_HANGS_AFTER");
   const double seconds = given == nullptr ? 15 * 60 : std::atof(given);

@@ -203,7 +203,7 @@ TEST_F(LiveWatchers, DoNotDelayTheStop) {
 }
 
 // The server waits for them until its time to drain is over.
-TEST_F(LiveWatchers, ThatStallDoNotDelayTheStopMuch) {
+TEST_F(LiveWatchers, DelayTheStopByTheDrainAtMostIfTheyStall) {
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job,
                        server_.NewClient().Create(ManyPoints(20'000, 1'000)));
   const HungReaders stalled(20, server_.address(), job.name());

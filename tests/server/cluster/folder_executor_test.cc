@@ -228,8 +228,8 @@ TEST_F(FolderExecutorTest, AFolderThatCannotBeUsedGivesItsLeasesBack) {
   EXPECT_EQ(executor_->Status().waiting_leases + executor_->Status().taken_leases, 0);
 }
 
-// The pauses double from a second to a minute: 10 attempts take 6 minutes.
-TEST_F(FolderExecutorTest, AFullFolderIsTriedMoreAndMoreRarely) {
+// The pauses double from a second to a minute: the 10th attempt comes after 4 minutes.
+TEST_F(FolderExecutorTest, AFullFolderIsTriedAgainAfterAPause) {
   int attempts = 0;
   files_.before = [&](const std::string& operation, const std::string&) {
     attempts += operation == "create";

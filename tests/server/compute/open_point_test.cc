@@ -83,9 +83,11 @@ TEST(OpenPoint, ChunksThatArrivedEarlyAreSkipped) {
   }
 }
 
-TEST(OpenPoint, StoredChunksAreNotLeasedAgain) {
+TEST(OpenPoint, OnlyChunksThatAreNotStoredAreLeased) {
   OpenPoint point = PointOf(SixChunks());
-  ASSERT_OK(point.Resume({.chunks = ChunksOf(point, 1, 3)}));
+  StoredPoint stored;
+  stored.chunks = ChunksOf(point, 1, 3);
+  ASSERT_OK(point.Resume(std::move(stored)));
   EXPECT_EQ(Next(point, 1000), Chunks(0, 1));
   EXPECT_EQ(Next(point, 1000), Chunks(3, 6));
 }

@@ -55,23 +55,18 @@ inline ChunkResult WithNumber(ChunkResult chunk, uint64_t number) {
 class RemoteExecutor : public Executor {
  public:
   // A lease has the fewest chunks that take `seconds`; a fake sample takes 0.02 s.
-  explicit RemoteExecutor(Scheduler& scheduler, double seconds = 10,
-                          double longest_chunk = std::numeric_limits<double>::infinity())
+  explicit RemoteExecutor(Scheduler& scheduler, double seconds = 10)
       : scheduler_(scheduler),
-        capacity_{.executor = scheduler.AddExecutor(*this),
-                  .local = false,
-                  .seconds = seconds,
-                  .longest_chunk = longest_chunk} {}
+        capacity_{.executor = scheduler.AddExecutor(*this), .local = false, .seconds = seconds} {}
 
   ~RemoteExecutor() override { scheduler_.RemoveExecutor(capacity_.executor); }
 
   void Start() override {}
-  void Wake() override { ++wakes_; }
+  void Wake() override {}
   bool HasTurn(int64_t) const override { return false; }
   void Shutdown() override { is_shut_down_ = true; }
 
   size_t number() const { return capacity_.executor; }
-  int wakes() const { return wakes_; }
   bool is_shut_down() const { return is_shut_down_; }
 
   // These call the scheduler unless this is shut down.
@@ -84,14 +79,10 @@ class RemoteExecutor : public Executor {
   void Return(const Lease& lease, bool tried = true) {
     if (!is_shut_down_) scheduler_.Return(lease, tried);
   }
-  void Fail(const Lease& lease, absl::Status why) {
-    if (!is_shut_down_) scheduler_.Stop(lease.run, std::move(why));
-  }
 
  private:
   Scheduler& scheduler_;
   const Capacity capacity_;
-  std::atomic<int> wakes_ = 0;
   std::atomic<bool> is_shut_down_ = false;
 };
 

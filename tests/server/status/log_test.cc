@@ -5,7 +5,7 @@
 namespace ballpiston::server {
 namespace {
 
-// That any text gives one line of printable characters is tested by tests/fuzz (log_line).
+// tests/fuzz (log_line) tests that any text gives one line of printable characters.
 TEST(LogLine, IsAMessageForPeople) {
   EXPECT_EQ(LogLine(Severity::kWarning, "the server's \"disk\"",
                     {{"job", "ensembleJobs/1"},

@@ -144,5 +144,10 @@ TEST_F(WorkerTest, DamagedAndForeignFilesAreGivenBack) {
   EXPECT_THAT(begun_, IsEmpty());
 }
 
+TEST_F(WorkerTest, AFolderThatCannotBeReadIsReportedWhenTheWorkerEnds) {
+  files_.before = [](const char*, const std::string&) { return absl::UnavailableError("gone"); };
+  EXPECT_THAT(Run(), StatusIs(absl::StatusCode::kUnavailable, HasSubstr("gone")));
+}
+
 }  // namespace
 }  // namespace ballpiston::server

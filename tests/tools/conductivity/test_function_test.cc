@@ -1,0 +1,105 @@
+#include "core/conductivity/test_function.h"
+
+#include <ostream>
+
+#include "tests/core/preamble.h"
+#include "tools/conductivity/conductivity.h"
+#include "tools/conductivity/contact_matrix.h"
+#include "tools/conductivity/gamma_law.h"
+
+namespace ballpiston {
+namespace {
+
+constexpr size_t kTerms = TestFunction::kTerms;
+using TermValues = TestFunction::Values;
+using Squares = std::array<TermValues, kTerms>;
+
+struct Case {
+  const char* name;
+  bool is_lattice;
+  TestFunction f;
+  ExtrapolatedValue correction;
+
+  friend void PrintTo(const Case& c, std::ostream* os) { *os << c.name; }
+};
+
+// Means and covariances of the functions of a body, whose energy has a Gamma law.
+struct Law {
+  template <typename F>
+  Law(double shape, F values) {
+    const GammaQuadrature rule = GammaNodes(shape, 60);
+    for (Eigen::Index i = 0; i < rule.nodes.size(); ++i) {
+      const TermValues at = values(rule.nodes[i]);
+      for (size_t r = 0; r < kTerms; ++r) {
+        mean[r] += rule.weights[i] * at[r];
+        for (size_t q = 0; q < kTerms; ++q) covariance[r][q] += rule.weights[i] * at[r] * at[q];
+      }
+    }
+    for (size_t r = 0; r < kTerms; ++r) {
+      for (size_t q = 0; q < kTerms; ++q) covariance[r][q] -= mean[r] * mean[q];
+    }
+  }
+
+  TermValues mean = {};
+  Squares covariance = {};
+};
+
+double Contracted(const Squares& matrix, const TermValues& v) {
+  double sum = 0;
+  for (size_t r = 0; r < kTerms; ++r) {
+    for (size_t q = 0; q < kTerms; ++q) sum += matrix[r][q] * v[r] * v[q];
+  }
+  return sum;
+}
+
+// Varadhan's formula for f. An exchange changes X + f by the pair's own part, and by products with
+// the bodies beside the pair, which are independent of it: their covariances are enough. A lattice
+// has as many contacts along y, where the ball's two neighbours along x count. The quadrature is
+// that of contact_matrix.cc.
+double BoundOf(const Case& c) {
+  constexpr int kNodes = 40;
+  const Law ball(1, [&](double e) { return c.f.OfBall(e); });
+  const Law piston(0.5, [&](double e) { return c.f.OfPiston(e); });
+  const GammaQuadrature t = GammaNodes(2, kNodes), y = GammaNodes(1.5, kNodes),
+                        g = GammaNodes(0.5, kNodes);
+  double with_f = 0, alone = 0;
+  for (int i = 0; i < kNodes; ++i) {
+    for (int j = 0; j < kNodes; ++j) {
+      for (int k = 0; k < kNodes; ++k) {
+        const double r = std::sqrt(t.nodes[i] * y.nodes[j]);
+        const double middle = (t.nodes[i] + y.nodes[j]) / 2;
+        const double weight = t.weights[i] * y.weights[j] * g.weights[k] / (r * r);
+        const TermValues u = c.f.OfBall(middle + r + g.nodes[k]), w = c.f.OfPiston(middle - r);
+        const TermValues u1 = c.f.OfBall(middle - r + g.nodes[k]), w1 = c.f.OfPiston(middle + r);
+        double own = 2 * r;
+        TermValues of_ball, of_piston;
+        for (size_t term = 0; term < kTerms; ++term) {
+          own += (u1[term] - ball.mean[term]) * (w1[term] - piston.mean[term]) -
+                 (u[term] - ball.mean[term]) * (w[term] - piston.mean[term]);
+          of_ball[term] = u1[term] - u[term];
+          of_piston[term] = w1[term] - w[term];
+        }
+        with_f += weight * (own * own + Contracted(ball.covariance, of_piston) +
+                            (c.is_lattice ? 3 : 1) * Contracted(piston.covariance, of_ball));
+        alone += weight * 4 * r * r;
+      }
+    }
+  }
+  return with_f / alone - 1;
+}
+
+class TestFunctionTest : public testing::TestWithParam<Case> {};
+
+TEST_P(TestFunctionTest, HasItsBound) {
+  EXPECT_NEAR(BoundOf(GetParam()), GetParam().f.bound, 1e-10);
+  EXPECT_GT(GetParam().f.bound, GetParam().correction.value);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, TestFunctionTest,
+    testing::Values(Case{"chain", false, kChainTestFunction, kChainCorrection},
+                    Case{"lattice", true, kLatticeTestFunction, kLatticeCorrection}),
+    [](const testing::TestParamInfo<Case>& tested) { return tested.param.name; });
+
+}  // namespace
+}  // namespace ballpiston
