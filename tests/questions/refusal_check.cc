@@ -54,7 +54,9 @@ Texts TextsOfGridField(const v1::Grid& grid, absl::string_view path) {
   const Texts texts = TextsOfList(grid, *list);
   size_t index = 0;
   if (parts.size() < 2 || !absl::SimpleAtoi(parts[1], &index)) {
-    return {texts.empty() ? "is empty" : absl::StrCat("has ", texts.size(), " values")};
+    return {texts.empty()
+                ? "is empty"
+                : absl::StrCat("has ", texts.size(), texts.size() == 1 ? " value" : " values")};
   }
   return index < texts.size() ? Texts{texts[index]} : Texts();
 }
