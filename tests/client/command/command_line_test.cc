@@ -88,6 +88,8 @@ TEST_F(CommandLineTest, WrongUsageExitsWithTwoAndOneLine) {
                             {"pin", "a", "B"},
                             {"result", "a", "--point", "-1"},
                             {"result", "a", "--point", "first"},
+                            {"result", "a", "--save", "a.pdf"},
+                            {"result", "a", "--save", "/nonexistent/a.json"},
                             {"submit", "--again", "A"},
                             {"submit", "--again", "a", "first-hit"},
                             {"plan"},

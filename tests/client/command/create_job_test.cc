@@ -105,6 +105,14 @@ TEST_F(CreateJobTest, AnAnswerFromTheStoreIsNoted) {
   EXPECT_THAT(quiet.out, HasSubstr("\"answered_from_store\":true"));
 }
 
+TEST_F(CreateJobTest, AContinuedAnswerIsNoted) {
+  job().set_continues("ensembleJobs/d");
+  job().set_continued_samples(1'000'000);
+  EXPECT_EQ(WithServer({"submit", "equilibrium"}).err,
+            "continues ensembleJobs/d: 1000000 samples are in the store (--fresh computes them "
+            "again)\n");
+}
+
 TEST_F(CreateJobTest, AComputedAnswerHasNoNote) {
   EXPECT_EQ(WithServer({"submit", "equilibrium"}).err, "");
   const Outcome run = WithServer({"run", "equilibrium", "--format", "json"});

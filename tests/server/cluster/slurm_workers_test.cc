@@ -168,7 +168,7 @@ TEST(SlurmQueue, StatesAreCounted) {
 
 TEST(LongestChunk, IsHalfOfTheTimeLimitLessTheEnd) {
   EXPECT_EQ(LongestChunk({.time_limit_minutes = 60}), 0.5 * (3600 - 90));
-  EXPECT_GT(LongestChunk({.time_limit_minutes = 1}), 0);
+  EXPECT_EQ(LongestChunk({.time_limit_minutes = 1}), 0.5);
 }
 
 }  // namespace
