@@ -72,6 +72,7 @@ SilentTlsConnection::SilentTlsConnection(const std::string& address)
   BIO_get_ssl(connection_.get(), &ssl);
   const unsigned char alpn[] = "\x02h2";
   SSL_set_alpn_protos(ssl, alpn, 3);
+  SSL_set_quiet_shutdown(ssl, 1);  // a farewell to a server that is gone would raise SIGPIPE
   if (BIO_do_connect(connection_.get()) != 1) return;
   const std::unique_ptr<X509, void (*)(X509*)> shown(SSL_get1_peer_certificate(ssl), &X509_free);
   char name[256] = "";
