@@ -25,7 +25,7 @@
 //   3. LanesMatchTheScalarDefinition (tests/oracle/scalar_jump.h), within a relative kJumpError.
 //   4. TakeTheirWordsFromTheirSamples: walkers are independent of each other.
 // The stationary law is uniform in u. The bits are the same on every processor with fused
-// multiply-add.
+// multiply-add (tests/core/billiard/golden_test.cc).
 #pragma once
 
 #include <cstddef>

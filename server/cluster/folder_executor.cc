@@ -82,6 +82,7 @@ void FolderExecutor::Look() {
     if (outcome.ok()) outcome = Lay();
   } catch (const std::exception& error) {
     outcome = absl::InternalError(error.what());
+    prepared_.reset();
   }
   NoteOutcome(outcome);
 }
@@ -288,8 +289,8 @@ void FolderExecutor::NoteMissing(Leases::iterator laid) {
 
 // ---- new leases ----
 
-// After a failure, waits for `backoff_` and returns the same failure. It is forgotten when a lease
-// is laid, or when there is none to lay.
+// After a failure, does nothing for `backoff_` but return the same failure. Then it tries again: if
+// there is nothing to lay, it succeeds.
 absl::Status FolderExecutor::Lay() {
   if (SteadyNow() < next_laying_) return laying_;
   laying_ = LaySome();

@@ -9,6 +9,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/layout/include_rules.h"
+#include "tests/layout/source_files.h"
 #include "tests/support/files.h"
 #include "tests/support/paths.h"
 
@@ -20,20 +21,6 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
-
-// Text by path, of all C++ files of the project.
-std::map<std::string, std::string> SourceFiles() {
-  const std::filesystem::path root = SourcePath("");
-  std::map<std::string, std::string> files;
-  for (const char* folder : {"core", "server", "client", "tests", "tools"}) {
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
-      const std::string extension = entry.path().extension();
-      if (extension != ".h" && extension != ".cc") continue;
-      files[entry.path().lexically_relative(root)] = Contents(entry.path());
-    }
-  }
-  return files;
-}
 
 std::vector<std::string> Words(const std::string& text) {
   std::istringstream words(text);

@@ -1,7 +1,7 @@
 // Headers list properties of their code, "each with a test of its name" or "the test that bears its
 // name". These tests exist.
 #include <algorithm>
-#include <filesystem>
+#include <map>
 #include <regex>
 #include <sstream>
 #include <string>
@@ -9,8 +9,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/support/files.h"
-#include "tests/support/paths.h"
+#include "tests/layout/source_files.h"
 
 namespace ballpiston {
 namespace {
@@ -18,7 +17,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-// A line for each comment.
+// The comments of a source, each on one line.
 std::string Comments(const std::string& source) {
   std::istringstream lines(source);
   std::string comments;
@@ -28,7 +27,7 @@ std::string Comments(const std::string& source) {
   return comments;
 }
 
-// The names of all lists.
+// The names in all lists of properties.
 std::vector<std::string> StatedProperties(const std::string& header) {
   static const std::regex property(R"([0-9]\. ([A-Z][a-z]*[A-Z]\w*))");
   const std::string comments = Comments(header), begin = "its name:";
@@ -44,7 +43,7 @@ std::vector<std::string> StatedProperties(const std::string& header) {
   return names;
 }
 
-// Of these names, those that no test in the sources has.
+// The names among these that no test in the sources has.
 std::vector<std::string> WithoutTest(const std::vector<std::string>& names,
                                      const std::string& sources) {
   std::vector<std::string> missing;
@@ -54,24 +53,18 @@ std::vector<std::string> WithoutTest(const std::vector<std::string>& names,
   return missing;
 }
 
-std::vector<std::string> FilesIn(const std::string& folder, const std::string& extension) {
-  std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(SourcePath(folder))) {
-    if (entry.path().extension() == extension) files.push_back(entry.path());
-  }
-  return files;
-}
-
 TEST(StatedProperties, HaveATestOfTheirName) {
+  const std::map<std::string, std::string> files = SourceFiles();
   std::string tests;
-  for (const std::string& file : FilesIn("tests", ".cc")) tests += Contents(file);
+  for (const auto& [path, text] : files) {
+    if (path.starts_with("tests/") && path.ends_with(".cc")) tests += text;
+  }
   size_t stated = 0;
-  for (const char* folder : {"core", "server", "client", "tools"}) {
-    for (const std::string& file : FilesIn(folder, ".h")) {
-      const std::vector<std::string> names = StatedProperties(Contents(file));
-      EXPECT_THAT(WithoutTest(names, tests), IsEmpty()) << file;
-      stated += names.size();
-    }
+  for (const auto& [path, text] : files) {
+    if (path.starts_with("tests/") || !path.ends_with(".h")) continue;
+    const std::vector<std::string> names = StatedProperties(text);
+    EXPECT_THAT(WithoutTest(names, tests), IsEmpty()) << path;
+    stated += names.size();
   }
   EXPECT_GT(stated, 100u);
 }

@@ -16,7 +16,7 @@
 namespace ballpiston::questions {
 namespace {
 
-// Of questions with the same broken check, experiment and model so many are printed.
+// The number of questions that are printed with the same broken check, experiment and model.
 constexpr int kPrintedOfAKind = 3;
 
 // A campaign may be cut short.

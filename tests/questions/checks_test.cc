@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "gmock/gmock.h"
-#include "google/protobuf/text_format.h"
 #include "tests/questions/agreement_check.h"
 #include "tests/questions/answer_check.h"
 #include "tests/questions/finite_check.h"
 #include "tests/questions/memory_check.h"
 #include "tests/questions/plan_check.h"
 #include "tests/questions/refusal_check.h"
+#include "tests/support/message_text.h"
 
 namespace ballpiston::questions {
 namespace {
@@ -29,13 +29,6 @@ v1::EnsembleSpec QuestionWithASmallRho() {
   spec.mutable_grid()->add_rho(0.4);
   spec.mutable_grid()->add_delta(0.1);
   return spec;
-}
-
-template <typename Message>
-Message FromText(const std::string& text) {
-  Message message;
-  EXPECT_TRUE(google::protobuf::TextFormat::MergeFromString(text, &message)) << text;
-  return message;
 }
 
 // A later value replaces an earlier one.

@@ -19,7 +19,7 @@ TestServerOptions InFolder(const TemporaryFolder& folder, int workers = 2,
   return {.data_dir = folder.path(), .workers = workers, .factory = std::move(factory)};
 }
 
-// Of every experiment, by every model that samples: the core's experiments, not fake ones.
+// The jobs use the real experiments of the core: each experiment with each model that samples.
 TEST(Restart, TheSameBytesAtOneTwoAndEightWorkers) {
   std::vector<v1::EnsembleSpec> specs = {
       SmallFirstHit()};  // six points; AUTO, which gives a reason

@@ -212,7 +212,7 @@ class Client::Reader : public WatchReader {
   }
 
  private:
-  // Within one life of the server progress never goes back.
+  // The progress that one watch sends never goes back.
   void Progressed(const v1::JobProgress& now) {
     if (now.points_done() < progress_.points_done() || now.samples() < progress_.samples()) {
       throw Violation(

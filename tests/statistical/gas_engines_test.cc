@@ -1,12 +1,11 @@
 // Compares the laws of the gas in lanes with those of the reference gas. Each engine runs its own
 // replicas. The points range from narrow tips to nearly vanishing cells, in several shapes.
-#include "core/gas/canonical_gas.h"
 #include "core/gas/gas_exchange_rate.h"
-#include "core/gas/gas_meter.h"
 #include "core/gas/gas_run.h"
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
 #include "tests/oracle/two_sample.h"
+#include "tests/statistical/gas_samples.h"
 #include "tests/support/nightly.h"
 
 namespace ballpiston {
@@ -38,37 +37,6 @@ std::vector<GasPoint> Points() {
   return points;
 }
 
-// Of all replicas.
-struct SamplesOfEngine {
-  std::vector<double> exchanges;
-  std::vector<double> carried;         // energy
-  std::vector<double> balls, pistons;  // energies at the end
-};
-
-SamplesOfEngine MeasureBy(GasEngine engine, const GasGeometry& gas, const GasPoint& point,
-                          double time, uint64_t seed) {
-  const auto columns = static_cast<double>(gas.shape().columns);
-  SamplesOfEngine samples;
-  for (uint64_t replica = 0; replica < (IsNightly() ? 1000u : 600u); ++replica) {
-    const GasRandom random(seed, 0, replica);
-    CounterRandom of_start = random.OfStart();
-    GasState state = DrawGas(gas, TemperatureProfile(point.hot, point.cold, columns), of_start);
-    GasMeter meter(gas, state);
-    std::vector<GasStart> starts;
-    starts.push_back(
-        {std::move(state), ThermalWalls(gas, point.hot, point.cold, random), random, &meter});
-    StartGases(engine, gas, GasExchangeRate(gas, 1), std::move(starts))->AdvanceTo(time);
-    meter.End(time);
-    EXPECT_EQ(meter.escapes(), 0u);
-    samples.exchanges.push_back(static_cast<double>(meter.exchanges()));
-    samples.carried.push_back(meter.carried());
-    for (size_t body = 0; body < meter.bodies(); ++body) {
-      (body < meter.balls() ? samples.balls : samples.pistons).push_back(meter.Energy(body));
-    }
-  }
-  return samples;
-}
-
 class TwoGasEngines : public testing::TestWithParam<GasPoint> {};
 
 // Each replica runs for some ten exchanges of each contact. Four laws are compared: the number of
@@ -81,8 +49,17 @@ TEST_P(TwoGasEngines, HaveTheSameLaws) {
   const GasEnds ends = point.hot == point.cold ? GasEnds::kPeriodic : GasEnds::kReservoirs;
   const GasGeometry gas = GasAtShare(point.rho, point.share, point.shape, ends);
   const double time = 10 / InfiniteGasExchangeRate(gas, (point.hot + point.cold) / 2);
-  const SamplesOfEngine reference = MeasureBy(GasEngine::kReference, gas, point, time, 31);
-  const SamplesOfEngine lanes = MeasureBy(GasEngine::kLanes, gas, point, time, 32);
+  const auto samples_by = [&](GasEngine engine, uint64_t seed) {
+    return Measure({.engine = engine,
+                    .geometry = gas,
+                    .replicas = IsNightly() ? 1000u : 600u,
+                    .time = time,
+                    .seed = seed,
+                    .hot = point.hot,
+                    .cold = point.cold});
+  };
+  const GasSamples reference = samples_by(GasEngine::kReference, 31);
+  const GasSamples lanes = samples_by(GasEngine::kLanes, 32);
   EXPECT_LT(oracle::KolmogorovSmirnov(reference.exchanges, lanes.exchanges), 2.3);
   EXPECT_LT(oracle::KolmogorovSmirnov(reference.carried, lanes.carried), 2.3);
   EXPECT_LT(oracle::KolmogorovSmirnov(reference.balls, lanes.balls), 2.3);

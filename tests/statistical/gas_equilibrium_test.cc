@@ -3,40 +3,21 @@
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
 #include "tests/oracle/one_sample.h"
+#include "tests/statistical/gas_samples.h"
 #include "tests/support/nightly.h"
-#include "tools/flows/metered_gases.h"
 
 namespace ballpiston {
 namespace {
 
 constexpr uint64_t kGasSeed = 21;
 
-MeteredGases ReplicaOf(GasEngine engine, const GasGeometry& gas, uint64_t replica) {
-  const GasRandom random(kGasSeed, static_cast<uint64_t>(engine), replica);
-  CounterRandom of_start = random.OfStart();
-  return {engine, gas, {{DrawGas(gas, TemperatureProfile(1), of_start), {}, random, nullptr}}};
-}
-
-// Of all replicas, at T = 1.
-struct GasSamples {
-  Moments rate;                        // exchanges of a contact in a unit of time
-  std::vector<double> balls, pistons;  // energies at the end
-};
-
-GasSamples Measure(GasEngine engine, const GasGeometry& gas, uint64_t replicas, double duration) {
-  GasSamples samples;
-  for (uint64_t replica = 0; replica < replicas; ++replica) {
-    MeteredGases run = ReplicaOf(engine, gas, replica);
-    run.AdvanceTo(duration);
-    const GasMeter& meter = run.meters().front();
-    EXPECT_EQ(meter.escapes(), 0u);
-    samples.rate.Add(static_cast<double>(meter.exchanges()) / duration /
-                     static_cast<double>(gas.contacts()));
-    for (size_t body = 0; body < meter.bodies(); ++body) {
-      (body < meter.balls() ? samples.balls : samples.pistons).push_back(meter.Energy(body));
-    }
+// Exchanges of a contact in a unit of time, by replica.
+Moments RateOf(const GasSamples& samples, const GasTask& task) {
+  Moments rate;
+  for (const double exchanges : samples.exchanges) {
+    rate.Add(exchanges / task.time / static_cast<double>(task.geometry.contacts()));
   }
-  return samples;
+  return rate;
 }
 
 // Gamma(1) of balls, Gamma(1/2) of pistons. Each distance exceeds 2.3 in 5e-5 of all cases.
@@ -56,10 +37,11 @@ class GasInEquilibriumOf : public testing::TestWithParam<std::tuple<GasEngine, c
 TEST_P(GasInEquilibriumOf, HasItsExactRateAndItsGammaLaws) {
   const auto& [engine, shape] = GetParam();
   const GasGeometry gas = GasOf(kPaperRho, 0.2, shape);
-  const GasSamples samples =
-      Measure(engine, gas, static_cast<uint64_t>(20'000 / gas.contacts()), 50);
-  const double exact = GasExchangeRate(gas, 1), error = *samples.rate.StandardError();
-  EXPECT_NEAR(samples.rate.mean, exact, 4 * error);
+  const GasTask task = {engine, gas, static_cast<uint64_t>(20'000 / gas.contacts()), 50, kGasSeed};
+  const GasSamples samples = Measure(task);
+  const Moments rate = RateOf(samples, task);
+  const double exact = GasExchangeRate(gas, 1), error = *rate.StandardError();
+  EXPECT_NEAR(rate.mean, exact, 4 * error);
   EXPECT_LT(error, 0.007 * exact);
   ExpectGammaLaws(samples);
 }
@@ -76,8 +58,9 @@ INSTANTIATE_TEST_SUITE_P(Lanes, GasInEquilibriumOf,
 // After a hundred exchanges of each contact, of one large gas. False alarms: 1e-4.
 TEST(JumpGas, KeepsTheGammaLaws) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "100x40");
-  const GasSamples samples = Measure(GasEngine::kJumps, gas, 2, 1000);
-  EXPECT_LT(std::fabs(samples.rate.mean / GasExchangeRate(gas, 1) - 1), 0.02);
+  const GasTask task = {GasEngine::kJumps, gas, 2, 1000, kGasSeed};
+  const GasSamples samples = Measure(task);
+  EXPECT_LT(std::fabs(RateOf(samples, task).mean / GasExchangeRate(gas, 1) - 1), 0.02);
   ExpectGammaLaws(samples);
 }
 
@@ -89,7 +72,7 @@ TEST(LaneGas, KeepsItsEnergyOverMillionsOfHits) {
   const double all_hits = IsNightly() ? 1e8 : 2e7;
   const GasGeometry gas = GasOf(kPaperRho, 0.1, "32x32");
   const double hits_of_time = HitRatesOf(gas.pair()).of_a_ball * static_cast<double>(gas.balls());
-  MeteredGases run = ReplicaOf(GasEngine::kLanes, gas, 0);
+  MeteredGases run = ReplicaOf({GasEngine::kLanes, gas, 1, 0, kGasSeed}, 0);
   const GasMeter& meter = run.meters().front();
   const double energy = meter.TotalEnergy();
   for (int i = 1; i <= kStretches; ++i) {

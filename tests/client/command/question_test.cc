@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "absl/strings/str_split.h"
-#include "tests/client/message_text.h"
 #include "tests/client/program.h"
+#include "tests/support/message_text.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::client {

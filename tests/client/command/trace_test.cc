@@ -8,8 +8,8 @@
 
 #include "absl/strings/str_split.h"
 #include "client/library/client.h"
-#include "tests/client/message_text.h"
 #include "tests/client/program.h"
+#include "tests/support/message_text.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::client {

@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "tests/client/message_text.h"
+#include "tests/support/message_text.h"
 
 namespace ballpiston::client {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "ballpiston/v1/ensemble.pb.h"
 #include "ballpiston/v1/result.pb.h"
-#include "tests/client/message_text.h"
+#include "tests/support/message_text.h"
 
 namespace ballpiston::client {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "tests/client/message_text.h"
+#include "tests/support/message_text.h"
 
 namespace ballpiston::client {
 namespace {

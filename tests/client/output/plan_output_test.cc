@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string>
 
-#include "tests/client/message_text.h"
+#include "tests/support/message_text.h"
 
 namespace ballpiston::client {
 namespace {

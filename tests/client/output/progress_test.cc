@@ -16,7 +16,7 @@
 #include "client/output/progress_line.h"
 #include "client/output/progress_meter.h"
 #include "client/output/progress_reporter.h"
-#include "tests/client/message_text.h"
+#include "tests/support/message_text.h"
 
 namespace ballpiston::client {
 namespace {

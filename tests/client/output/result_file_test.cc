@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "client/output/new_file.h"
-#include "tests/client/message_text.h"
 #include "tests/support/files.h"
+#include "tests/support/message_text.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/client/message_text.h"
+#include "tests/support/message_text.h"
 
 namespace ballpiston::client {
 namespace {

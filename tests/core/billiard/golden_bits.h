@@ -62,6 +62,8 @@ inline const std::map<std::string_view, uint64_t> kGoldenBits = {
     {"lanes, gas-conduction of 2x2 cells", 0x752f629f653b800a},
     {"lanes, gas-lyapunov of 3 cells", 0xf26830e8d257a0dd},
     {"lanes, gas-lyapunov of 2x2 cells", 0x114348ed613dc11a},
+    {"jump process, walkers after 1 jumps", 0x0049c16fa40bbb71},
+    {"jump process, walkers after 10 jumps", 0x52df7e3171c109d0},
 };
 
 }  // namespace ballpiston

@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kWarmUp = 7, kEnd = 60;
 
-// Of a gas between unequal reservoirs, or of a periodic one.
+// The starts of replicas. The geometry's ends say whether the gas is periodic or between reservoirs
+// of unequal temperatures.
 std::vector<GasStart> StartsOf(const GasGeometry& geometry, uint64_t first, uint64_t count) {
   std::vector<GasStart> starts;
   for (uint64_t replica = first; replica < first + count; ++replica) {

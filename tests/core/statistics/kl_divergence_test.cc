@@ -133,7 +133,8 @@ TEST(KlDivergence, NoiseMatchesSamplesFromTheLaw) {
   }
 }
 
-// Of the density 1 + tilt (2 x - 1) on [0, 1], by inversion of x + tilt (x^2 - x).
+// A number with the density 1 + tilt (2 x - 1) on [0, 1]. It solves x + tilt (x^2 - x) = u, where u
+// is uniform.
 double Tilted(double tilt, double u) {
   const double b = 1 - tilt;
   return tilt == 0 ? u : (std::sqrt(b * b + 4 * tilt * u) - b) / (2 * tilt);

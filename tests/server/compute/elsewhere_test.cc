@@ -1,7 +1,7 @@
 // The scheduler with executors elsewhere: which leases they get, and which of their reports count.
 // tests/core/ensemble/point_fold_test.cc and tests/simulation test that any order of reports gives
-// the same bytes. The local executor takes its turns
-// when the test says so, so every schedule can be repeated.
+// the same bytes. The local executor takes its turns when the test says so, so every schedule can
+// be repeated.
 #include <cstdint>
 #include <limits>
 #include <memory>

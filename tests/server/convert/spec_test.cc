@@ -9,21 +9,17 @@
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
 #include "gmock/gmock.h"
-#include "google/protobuf/text_format.h"
 #include "tests/server/spec_message.h"
+#include "tests/support/message_text.h"
 
 namespace ballpiston::server {
 namespace {
 
 using ::testing::HasSubstr;
 
-v1::EnsembleSpec FromText(const std::string& text) {
-  v1::EnsembleSpec spec;
-  EXPECT_TRUE(google::protobuf::TextFormat::MergeFromString(text, &spec)) << text;
-  return spec;
-}
+v1::EnsembleSpec SpecOfText(const std::string& text) { return FromText<v1::EnsembleSpec>(text); }
 
-// Each text may go on: a later value replaces an earlier one, and values of lists are added.
+// Each text may go on, as FromText permits.
 const std::string kHit =
     "experiment: FIRST_HIT seed: 18446744073709551615 "
     "grid { rho: 0.53 delta: 0.1 epsilon: 0.25 exponent: 1 } ";
@@ -45,14 +41,14 @@ TEST(Spec, ComesBackUnchanged) {
     }
   }
   for (const std::string& text : texts) {
-    const v1::EnsembleSpec message = FromText(kHit + text + " precision: DOUBLE");
+    const v1::EnsembleSpec message = SpecOfText(kHit + text + " precision: DOUBLE");
     EXPECT_EQ(SpecMessage(CheckSpec(message).spec).DebugString(), message.DebugString());
   }
-  // Messages name the budget as it was given, not as 0.30000000000000004.
+  // Error messages print the budget, so it is exactly 0.3, and not 0.30000000000000004.
   EXPECT_EQ(
-      CheckSpec(FromText("target { budget { nanos: 300000000 } }")).spec.target.budget_seconds,
+      CheckSpec(SpecOfText("target { budget { nanos: 300000000 } }")).spec.target.budget_seconds,
       0.3);
-  EXPECT_EQ(CheckSpec(FromText(R"(grid { cells: "4x3" })")).spec.grid[kCells][0],
+  EXPECT_EQ(CheckSpec(SpecOfText(R"(grid { cells: "4x3" })")).spec.grid[kCells][0],
             CodeOf({.columns = 4, .rows = 3, .is_lattice = true}));
 }
 
@@ -64,7 +60,8 @@ std::vector<std::string> ViolatedFields(const CheckedSpec& checked) {
   return fields;
 }
 
-// What only messages can have; the ranges are tested in tests/core/ensemble/ensemble_spec_test.cc.
+// These violations are possible in messages only. tests/core/ensemble/ensemble_spec_test.cc tests
+// the ranges of all fields.
 TEST(Spec, EveryBadFieldIsAViolation) {
   struct Row {
     std::string spec;
@@ -107,7 +104,7 @@ TEST(Spec, EveryBadFieldIsAViolation) {
   }
   for (const Row& row : rows) {
     SCOPED_TRACE(row.spec.substr(0, 200));
-    const CheckedSpec checked = CheckSpec(FromText(row.spec));
+    const CheckedSpec checked = CheckSpec(SpecOfText(row.spec));
     EXPECT_THAT(ViolatedFields(checked), testing::ElementsAreArray(row.fields));
     if (row.description.empty()) continue;
     EXPECT_EQ(checked.violations.at(0).description, row.description);
@@ -116,7 +113,7 @@ TEST(Spec, EveryBadFieldIsAViolation) {
 
 // A message of 4 MiB may hold two million of them.
 TEST(Spec, FieldsOfANewerClientAreRefusedAndSomeOfThemListed) {
-  v1::EnsembleSpec message = FromText(kHit);
+  v1::EnsembleSpec message = SpecOfText(kHit);
   const auto add = [&message] {
     message.GetReflection()->MutableUnknownFields(&message)->AddVarint(100, 1);
   };
@@ -129,7 +126,7 @@ TEST(Spec, FieldsOfANewerClientAreRefusedAndSomeOfThemListed) {
 
 // A message of 4 MiB holds two million empty texts.
 TEST(Spec, ATooLongListOfShapesIsNotParsed) {
-  v1::EnsembleSpec message = FromText(kHit);
+  v1::EnsembleSpec message = SpecOfText(kHit);
   for (int i = 0; i <= kMaxPoints; ++i) message.mutable_grid()->add_cells("");
   EXPECT_THAT(ViolatedFields(CheckSpec(message)),
               testing::UnorderedElementsAre("spec.grid", "spec.grid.cells"));
@@ -141,13 +138,13 @@ TEST(Spec, ATooLongListOfShapesIsNotParsed) {
 
 TEST(Spec, DefaultValuesAreWrittenIntoEmptyLists) {
   const auto with_defaults = [](const std::string& text) {
-    v1::EnsembleSpec spec = FromText(text);
+    v1::EnsembleSpec spec = SpecOfText(text);
     AddDefaults(spec);
     return spec.ShortDebugString();
   };
-  EXPECT_EQ(with_defaults(kGas), FromText(kGas + "grid { temperature: 1 }").ShortDebugString());
+  EXPECT_EQ(with_defaults(kGas), SpecOfText(kGas + "grid { temperature: 1 }").ShortDebugString());
   for (const std::string& text : {kGas + "grid { temperature: 2 }", kHit}) {
-    EXPECT_EQ(with_defaults(text), FromText(text).ShortDebugString());
+    EXPECT_EQ(with_defaults(text), SpecOfText(text).ShortDebugString());
   }
 }
 
@@ -160,8 +157,8 @@ TEST(Spec, EveryValueOfEveryEnumerationComesBack) {
   for (int e = 0; e < experiments->value_count(); ++e) {
     for (int m = 0; m < models->value_count(); ++m) {
       const v1::EnsembleSpec message =
-          FromText(kHit + "precision: SINGLE experiment: " + experiments->value(e)->name() +
-                   " model: " + models->value(m)->name());
+          SpecOfText(kHit + "precision: SINGLE experiment: " + experiments->value(e)->name() +
+                     " model: " + models->value(m)->name());
       const CheckedSpec checked = CheckSpec(message);
       for (const FieldViolation& violation : checked.violations) {
         EXPECT_THAT(violation.description,
