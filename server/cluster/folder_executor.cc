@@ -160,22 +160,24 @@ bool FolderExecutor::Report(const LeaseFileName& file) {
       laid != nullptr && !file.outcome ? file.Taken() : file.Done(*file.outcome);
   const absl::StatusOr<std::string> bytes = files_->Read(path, offset);
   if (absl::IsUnavailable(bytes.status()) || absl::IsNotFound(bytes.status())) return false;
-  absl::string_view rest = bytes.ok() ? absl::string_view(*bytes) : absl::string_view();
-  const auto lease_of_file = [&]() -> absl::StatusOr<Lease> {
-    if (!bytes.ok()) return bytes.status();
-    return laid != nullptr ? laid->lease : TakeEarlier(rest);
-  };
-  const absl::StatusOr<Lease> lease = lease_of_file();
-  absl::Status status = lease.status();
-  while (status.ok() && !rest.empty()) {
-    status = ReportChunks(*lease, rest);
-    if (laid != nullptr) laid->reported = offset + bytes->size() - rest.size();
-  }
+  const absl::Status status = bytes.ok() ? ReportBytes(*bytes, laid) : bytes.status();
   if (absl::IsUnavailable(status)) return false;
   if (!status.ok() && (file.outcome || !absl::IsOutOfRange(status))) {
     Refuse(absl::Status(status.code(), absl::StrCat(path, ": ", status.message())));
   }
   return true;
+}
+
+// `laid` is null for the lease of an earlier process, which its file has in front.
+absl::Status FolderExecutor::ReportBytes(absl::string_view bytes, Laid* laid) {
+  const absl::StatusOr<Lease> lease = laid != nullptr ? laid->lease : TakeEarlier(bytes);
+  absl::Status status = lease.status();
+  while (status.ok() && !bytes.empty()) {
+    const size_t left = bytes.size();
+    status = ReportChunks(*lease, bytes);
+    if (laid != nullptr) laid->reported += left - bytes.size();
+  }
+  return status;
 }
 
 // Takes the lease of an earlier process off the bytes of its file.

@@ -117,6 +117,7 @@ class FolderExecutor : public Executor {
   absl::Status Collect();
   void NoteTaken(const LeaseFileName& file);
   bool Report(const LeaseFileName& file);
+  absl::Status ReportBytes(absl::string_view bytes, Laid* laid);
   absl::StatusOr<Lease> TakeEarlier(absl::string_view& bytes) const;
   absl::Status ReportChunks(const Lease& lease, absl::string_view& bytes);
   void End(const LeaseFileName& file);
