@@ -6,7 +6,6 @@
 #include "absl/strings/str_cat.h"
 #include "client/command/connection.h"
 #include "client/command/selection.h"
-#include "client/library/request_id.h"
 #include "client/output/job_list.h"
 #include "client/output/number_text.h"
 #include "client/output/spelling.h"
@@ -38,8 +37,7 @@ absl::Status Confirm(const std::string& action, const std::vector<std::string>& 
 
 absl::Status CancelJob(const Connection& connection, const std::string& name,
                        const Terminal& terminal) {
-  const std::string id = NewRequestId();  // the same for a retry
-  const auto job = connection.Ask([&] { return connection.client.Cancel(name, id); });
+  const auto job = connection.client.Cancel(name);
   if (!job.ok()) return job.status();
   terminal.out << job->name() << ' ' << Spelling(job->state()) << std::endl;
   terminal.Note(absl::StrCat(name, ": ", job->progress().points_done(), " of ",
@@ -83,7 +81,7 @@ VerbResult Delete(const Options& options, Terminal& terminal) {
 VerbResult Pin(const Options& options, Terminal& terminal) {
   return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
     return ForEach(options.jobs, [&](const std::string& name) -> absl::Status {
-      const auto job = connection.Ask([&] { return connection.client.Pin(name, !options.undo); });
+      const auto job = connection.client.Pin(name, !options.undo);
       if (!job.ok()) return HintIfExpired(job.status(), connection, name);
       terminal.out << job->name() << (job->pinned() ? " pinned" : " unpinned") << std::endl;
       return absl::OkStatus();
@@ -95,12 +93,12 @@ VerbResult Pin(const Options& options, Terminal& terminal) {
 VerbResult Label(const Options& options, Terminal& terminal) {
   return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
     const std::string& name = options.jobs.front();
-    const auto job = connection.Ask([&] { return connection.client.Get(name); });
+    const auto job = connection.client.Get(name);
     if (!job.ok()) return job.status();
     std::map<std::string, std::string> labels(job->labels().begin(), job->labels().end());
     for (const auto& [key, value] : options.labels) labels[key] = value;
     std::erase_if(labels, [](const auto& label) { return label.second.empty(); });
-    const auto changed = connection.Ask([&] { return connection.client.SetLabels(name, labels); });
+    const auto changed = connection.client.SetLabels(name, labels);
     if (!changed.ok()) return changed.status();
     terminal.out << changed->name() << ' ' << LabelsText(*changed) << '\n';
     return ExitCode::kDone;

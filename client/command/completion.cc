@@ -162,9 +162,20 @@ std::string SplitValue(Strings& words) {
   return last.substr(0, equals + 1);
 }
 
-Strings Offers(Strings words, const Options& options, const Terminal& terminal) {
+// The server that the words name; empty if none.
+std::string ServerIn(const Strings& words) {
+  const std::string flag = LongName(ServerFlags().flags.front());
+  for (size_t i = 0; i + 1 < words.size(); ++i) {
+    if (words[i] == flag && i + 2 < words.size()) return words[i + 1];
+    if (absl::StartsWith(words[i], flag + "=")) return words[i].substr(flag.size() + 1);
+  }
+  return "";
+}
+
+Strings Offers(Strings words, Options options, const Terminal& terminal) {
   if (words.empty()) words = {""};
   const std::string prefix = SplitValue(words);
+  if (const std::string server = ServerIn(words); !server.empty()) options.server = server;
   size_t length = 0;
   const Verb* const verb = FindVerb(words, length);
   if (verb == nullptr) return VerbOffers(words);

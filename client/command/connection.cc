@@ -1,6 +1,7 @@
 #include "client/command/connection.h"
 
 #include <algorithm>
+#include <mutex>
 
 #include "absl/status/status.h"
 #include "absl/strings/match.h"
@@ -11,6 +12,7 @@
 #include "client/library/channel.h"
 #include "client/library/connection_hint.h"
 #include "client/library/error_text.h"
+#include "client/library/local_server.h"
 
 namespace ballpiston::client {
 namespace {
@@ -37,30 +39,39 @@ absl::StatusOr<Connection> ConnectTo(const std::string& address, const Options& 
   return Connection{.address = address,
                     .channel = *channel,
                     .client = Client(*channel),
-                    .local = {},
+                    .revival = {},
                     .flags = options.connection,
                     .security = security};
 }
 
-// Connects to a private server: starts it, or only finds it.
-using PrivateWay = absl::StatusOr<std::shared_ptr<grpc::Channel>> (*)(const LocalServer&);
+// A private server stops when it is idle. Of several threads one starts it again.
+Revival RevivalOf(const LocalServer& server, const std::shared_ptr<grpc::Channel>& channel) {
+  return [server, channel, mutex = std::make_shared<std::mutex>()] {
+    const std::lock_guard lock(*mutex);
+    absl::Status started = ConnectToLocalServer(server).status();
+    // After a failed attempt this channel pauses. A call during the pause would fail at once.
+    if (started.ok()) channel->WaitForConnected(absl::ToChronoTime(absl::Now() + kReviveTimeout));
+    return started;
+  };
+}
 
-absl::StatusOr<Connection> ConnectPrivately(PrivateWay connect) {
-  absl::StatusOr<LocalServer> local = FindLocalServer();
-  if (!local.ok()) return local.status();
-  auto channel = connect(*local);
+absl::StatusOr<Connection> ConnectPrivately(bool may_start) {
+  const absl::StatusOr<LocalServer> server = FindLocalServer();
+  if (!server.ok()) return server.status();
+  const auto channel = may_start ? ConnectToLocalServer(*server) : ConnectIfRunning(*server);
   if (!channel.ok()) return channel.status();
-  return Connection{.address = local->Address(),
+  const Revival revival = may_start ? RevivalOf(*server, *channel) : Revival();
+  return Connection{.address = server->Address(),
                     .channel = *channel,
-                    .client = Client(*channel),
-                    .local = *local,
+                    .client = Client(*channel, kCallTimeout, revival),
+                    .revival = revival,
                     .flags = "",
                     .security = {}};
 }
 
-absl::StatusOr<Connection> Connect(const Options& options, PrivateWay connect) {
+absl::StatusOr<Connection> Connect(const Options& options, bool may_start) {
   if (!options.server.empty()) return ConnectTo(options.server, options);
-  if (!HasSecurityFlags(options)) return ConnectPrivately(connect);
+  if (!HasSecurityFlags(options)) return ConnectPrivately(may_start);
   return absl::InvalidArgumentError(
       "the private server uses neither TLS nor a token; name another server with --server");
 }
@@ -74,14 +85,6 @@ VerbResult RunOver(const absl::StatusOr<Connection>& connection, const Terminal&
 }
 
 }  // namespace
-
-absl::Status Connection::Revive() const {
-  if (!local) return absl::OkStatus();
-  if (absl::Status started = ConnectToLocalServer(*local).status(); !started.ok()) return started;
-  // After a failed attempt this channel pauses. A call during the pause would fail at once.
-  channel->WaitForConnected(absl::ToChronoTime(absl::Now() + kReviveTimeout));
-  return absl::OkStatus();
-}
 
 // An error without a reason is an error of the connection; the server's errors have a reason.
 absl::Status NameServer(const absl::Status& status, const Connection& connection) {
@@ -111,12 +114,12 @@ absl::Status HintIfExpired(const absl::Status& status, const Connection& connect
 }
 
 VerbResult WithServer(const Options& options, const Terminal& terminal, const VerbOfServer& verb) {
-  return RunOver(Connect(options, &ConnectToLocalServer), terminal, verb);
+  return RunOver(Connect(options, true), terminal, verb);
 }
 
 VerbResult WithRunningServer(const Options& options, const Terminal& terminal,
                              const VerbOfServer& verb) {
-  return RunOver(Connect(options, &ConnectIfRunning), terminal, verb);
+  return RunOver(Connect(options, false), terminal, verb);
 }
 
 }  // namespace ballpiston::client

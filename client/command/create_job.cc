@@ -1,8 +1,5 @@
 #include "client/command/create_job.h"
 
-#include <limits>
-#include <utility>
-
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/time/time.h"
@@ -42,7 +39,7 @@ absl::StatusOr<v1::EnsembleJob> CreateOnce(const Connection& connection,
     terminal.err << "The server may have accepted the job. With --request-id " << options.request_id
                  << " the same command returns this job.\n";
   });
-  auto job = connection.Ask([&] { return connection.client.Create(spec, options); });
+  auto job = connection.client.Create(spec, options);
   if (!job.ok()) return HintIfLimit(job.status());
   terminal.Detail(absl::StrCat("job ", job->name()));
   return job;
@@ -52,7 +49,7 @@ absl::StatusOr<v1::EnsembleJob> CreateOnce(const Connection& connection,
 // next id creates a new job.
 absl::StatusOr<v1::EnsembleJob> Resume(const Connection& connection, const v1::EnsembleSpec& spec,
                                        CreateOptions options, const Terminal& terminal) {
-  const auto status = connection.Ask([&] { return connection.client.Status(); });
+  const auto status = connection.client.Status();
   if (!status.ok()) return status.status();
   const std::string question = absl::StrCat(status->engine_version(), " ", options.fresh, " ",
                                             options.priority, " ", spec.SerializeAsString(), " ");

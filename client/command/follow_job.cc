@@ -33,10 +33,7 @@ absl::StatusOr<v1::EnsembleJob> FollowJob(const Connection& connection, const st
   ProgressReporter reporter(style, terminal.err, name);
   const std::string farewell = Farewell(connection, name);
   const Interrupts::Scope scope(terminal.interrupts, [&] { reporter.Farewell(farewell); });
-  WatchOptions options;
-  // If the restart fails, the watch reports the error.
-  options.before_reattach = [&connection] { connection.Revive().IgnoreError(); };
-  absl::StatusOr<v1::EnsembleJob> job = connection.client.Watch(name, Report(reporter), options);
+  absl::StatusOr<v1::EnsembleJob> job = connection.client.Watch(name, Report(reporter));
   reporter.OnEnd();
   if (absl::IsUnavailable(job.status())) reporter.Note(farewell);
   return job;

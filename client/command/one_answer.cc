@@ -13,8 +13,7 @@ namespace ballpiston::client {
 
 VerbResult Analytic(const Options& options, Terminal& terminal) {
   return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-    const auto response =
-        connection.Ask([&] { return connection.client.EvaluatePairs(options.closed_forms); });
+    const auto response = connection.client.EvaluatePairs(options.closed_forms);
     if (!response.ok()) return response.status();
     const auto& outgoing = options.closed_forms.outgoing_epsilon();
     PrintAnalytics(*response, {outgoing.begin(), outgoing.end()}, options.format, terminal.out);
@@ -26,7 +25,7 @@ VerbResult Plan(const Options& options, Terminal& terminal) {
   return WithQuestion(
       options, terminal,
       [&](const Connection& connection, const v1::EnsembleSpec& spec) -> VerbResult {
-        const auto plan = connection.Ask([&] { return connection.client.Plan(spec); });
+        const auto plan = connection.client.Plan(spec);
         if (!plan.ok()) return plan.status();
         PrintPlan(spec, *plan, options.format, terminal.out);
         return ExitCode::kDone;
@@ -41,8 +40,7 @@ VerbResult ListJobs(const Options& options, Terminal& terminal) {
   request.mutable_labels()->insert(options.labels.begin(), options.labels.end());
   request.set_view(JobViewFor(options.format));
   return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-    const auto jobs =
-        connection.Ask([&] { return connection.client.List(request, options.limit); });
+    const auto jobs = connection.client.List(request, options.limit);
     if (!jobs.ok()) return jobs.status();
     PrintJobs(*jobs, absl::Now(), options.format, terminal.out);
     return ExitCode::kDone;

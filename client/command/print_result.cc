@@ -101,8 +101,7 @@ absl::Status PrintPoints(const Connection& connection, const v1::EnsembleJob& jo
                          Destination& destination, std::ostream& err) {
   std::string token;
   do {
-    const auto page = connection.Ask(
-        [&] { return connection.client.ResultsPage(job.name(), destination.view(), token); });
+    const auto page = connection.client.ResultsPage(job.name(), destination.view(), token);
     if (!page.ok()) return HintIfExpired(page.status(), connection, job.name());
     if (token.empty()) destination.writer().Begin(job);
     for (const v1::PointResult& point : page->results()) {
@@ -122,9 +121,9 @@ VerbResult End(const v1::EnsembleJob& job, Destination& destination, Terminal& t
 
 VerbResult PrintPoint(const Connection& connection, const std::string& name, int64_t index,
                       const Options& options, Terminal& terminal) {
-  const auto point = connection.Ask([&] { return connection.client.Point(name, index); });
+  const auto point = connection.client.Point(name, index);
   if (!point.ok()) return HintIfExpired(point.status(), connection, name);
-  const auto job = connection.Ask([&] { return connection.client.Get(name); });
+  const auto job = connection.client.Get(name);
   if (!job.ok()) return job.status();
   Destination destination(options, terminal);
   destination.writer().Begin(*job);
@@ -152,7 +151,7 @@ absl::Status CheckSave(const Options& options) {
 
 VerbResult PrintResult(const Connection& connection, const std::string& name,
                        const Options& options, Terminal& terminal, bool answered_from_store) {
-  auto job = connection.Ask([&] { return connection.client.Get(name); });
+  auto job = connection.client.Get(name);
   if (!job.ok()) return job.status();
   job->set_answered_from_store(answered_from_store);
   Destination destination(options, terminal);

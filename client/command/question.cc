@@ -82,7 +82,7 @@ VerbResult WithQuestion(const Options& options, const Terminal& terminal,
   if (!spec.ok()) return spec.status();
   return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
     if (options.again.empty()) return verb(connection, *spec);
-    const auto job = connection.Ask([&] { return connection.client.Get(options.again); });
+    const auto job = connection.client.Get(options.again);
     if (!job.ok()) return job.status();
     return verb(connection, job->spec());
   });

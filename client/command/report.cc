@@ -25,8 +25,7 @@ absl::StatusOr<Points> PointsOf(const Connection& connection, const std::string&
   do {
     const bool pictured = points.json.size() < kMostPictured;
     const auto view = pictured ? v1::ListResultsRequest::FULL : v1::ListResultsRequest::BASIC;
-    const auto page =
-        connection.Ask([&] { return connection.client.ResultsPage(name, view, token); });
+    const auto page = connection.client.ResultsPage(name, view, token);
     if (!page.ok()) return HintIfExpired(page.status(), connection, name);
     for (v1::PointResult point : page->results()) {
       if (points.json.size() >= kMostPictured) {
@@ -45,7 +44,7 @@ absl::StatusOr<std::string> JobJson(const Connection& connection, const std::str
   const absl::StatusOr<Points> points = PointsOf(connection, name);
   if (!points.ok()) return points.status();
   // Fetched after the points, so that its count includes all of them.
-  const auto job = connection.Ask([&] { return connection.client.Get(name); });
+  const auto job = connection.client.Get(name);
   if (!job.ok()) return job.status();
   const int64_t left_out = points->is_complete ? 0
                                                : job->progress().points_done() -

@@ -34,7 +34,7 @@ absl::StatusOr<std::vector<std::string>> SelectedJobs(const Connection& connecti
   request.set_view(v1::ListEnsembleJobsRequest::BASIC);
   request.mutable_labels()->insert(options.labels.begin(), options.labels.end());
   for (const auto state : states) request.add_states(state);
-  const auto jobs = connection.Ask([&] { return connection.client.List(request); });
+  const auto jobs = connection.client.List(request);
   if (!jobs.ok()) return jobs.status();
   if (jobs->empty()) return NoneFound(states);
   std::vector<std::string> names;

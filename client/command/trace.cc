@@ -17,18 +17,8 @@ bool Print(const v1::TraceOrbitResponse& message, std::ostream& out) {
 
 VerbResult Trace(const Options& options, Terminal& terminal) {
   return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-    bool has_begun = false;
-    const auto print = [&](const v1::TraceOrbitResponse& message) {
-      has_begun = true;
-      return Print(message, terminal.out);
-    };
-    const auto trace = [&] { return connection.client.Trace(options.trace, print); };
-    absl::Status status = trace();
-    // The private server may have been about to stop.
-    if (absl::IsUnavailable(status) && !has_begun && connection.local) {
-      status = connection.Revive();
-      if (status.ok()) status = trace();
-    }
+    const absl::Status status = connection.client.Trace(
+        options.trace, [&](const auto& message) { return Print(message, terminal.out); });
     if (!status.ok()) return status;
     return ExitCode::kDone;
   });

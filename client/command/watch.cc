@@ -23,9 +23,7 @@ class Watches {
   Watches(const Connection& connection, const std::vector<std::string>& names) {
     for (const std::string& name : names) {
       threads_.emplace_back([this, &connection, name](const std::stop_token& stop) {
-        WatchOptions options;
-        options.before_reattach = [this, &connection] { Revive(connection); };
-        Add(connection.client.Watch(name, {}, options, stop));
+        Add(connection.client.Watch(name, {}, {}, stop));
       });
     }
   }
@@ -46,14 +44,6 @@ class Watches {
     added_.notify_one();
   }
 
-  // One thread starts a private server that has stopped. If this fails, the watch reports the
-  // error.
-  void Revive(const Connection& connection) {
-    const std::lock_guard lock(reviving_);
-    connection.Revive().IgnoreError();
-  }
-
-  std::mutex reviving_;
   std::mutex mutex_;
   std::condition_variable added_;
   std::deque<Ended> ended_;

@@ -21,8 +21,8 @@ absl::Status CallThrough(const Connection& connection, const JsonCall& once,
     });
   };
   absl::Status status = attempt();
-  if (absl::IsUnavailable(status) && !has_begun && connection.local) {
-    status = connection.Revive();
+  if (absl::IsUnavailable(status) && !has_begun && connection.revival) {
+    status = connection.revival();
     if (status.ok()) status = attempt();
   }
   return NameServer(status, connection);

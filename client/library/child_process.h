@@ -1,4 +1,4 @@
-// Starts other programs: servers and the scripts of figures.
+// Starts other programs: servers, the Python package, and commands of the user.
 //
 // A child process does not inherit this program's signal settings or open files: it starts with no
 // signal blocked or ignored, and with only the three standard files open.

@@ -44,11 +44,19 @@ struct CreateOptions {
   std::map<std::string, std::string> labels = {};  // added to those of the job
 };
 
+inline constexpr absl::Duration kCallTimeout = absl::Seconds(60);
+
+// Starts a server again that has stopped. OK also if it runs.
+using Revival = std::function<absl::Status()>;
+
 class Client {
  public:
-  // `timeout` limits each single call, but not a watch or a trace.
+  // `timeout` limits each single call, but not a watch or a stream. `revival`: if the server is
+  // unavailable, a call that is safe to repeat starts the server again and is repeated once, with
+  // the same request id; a stream is repeated only before its first message. Several threads may
+  // call it at once.
   explicit Client(const std::shared_ptr<grpc::ChannelInterface>& channel,
-                  absl::Duration timeout = absl::Seconds(60));
+                  absl::Duration timeout = kCallTimeout, Revival revival = {});
 
   // Returns the new job, or an earlier job with the same specification. In the second case
   // answered_from_store is set; no other call sets it.
@@ -63,17 +71,17 @@ class Client {
   static constexpr int64_t kAllJobs = std::numeric_limits<int64_t>::max();
   absl::StatusOr<std::vector<v1::EnsembleJob>> List(v1::ListEnsembleJobsRequest request = {},
                                                     int64_t most = kAllJobs) const;
-  // `request_id` is an idempotency key, as in CreateOptions: a retry with the same key succeeds,
-  // although the job has ended by then.
-  absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& name,
-                                         const std::string& request_id = {}) const;
+  // Sends an idempotency key, so that a retry of the channel succeeds, although the job has ended
+  // by then.
+  absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& name) const;
   // The results of a pinned job do not expire. With `pinned` false they may expire again.
   //   FAILED_PRECONDITION  RESULTS_EXPIRED
   absl::StatusOr<v1::EnsembleJob> Pin(const std::string& name, bool pinned) const;
   // Replaces the job's labels.
   absl::StatusOr<v1::EnsembleJob> SetLabels(const std::string& name,
                                             const std::map<std::string, std::string>& labels) const;
-  // Do not retry: if the first attempt deleted the job, the second reports that it does not exist.
+  // Never repeated: if the first attempt deleted the job, the second reports that it does not
+  // exist.
   absl::Status Delete(const std::string& name) const;
 
   // The finished points in grid order, page by page, so that a large result need not fit into
@@ -113,12 +121,23 @@ class Client {
                                         std::stop_token stop = {}) const;
 
  private:
+  template <typename Stub, typename Request, typename Response>
+  absl::StatusOr<Response> Ask(Stub& stub,
+                               grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&,
+                                                            Response*),
+                               const Request& request) const;
+  // `open` starts the stream with the context that it gets.
+  template <typename Message, typename Open>
+  absl::Status Read(const Open& open, const std::function<bool(const Message&)>& on_message) const;
+  bool IsBack(absl::Status& status) const;
+
   std::shared_ptr<grpc::ChannelInterface> channel_;
   std::shared_ptr<v1::EnsembleService::StubInterface> ensembles_;
   std::shared_ptr<v1::AnalyticService::StubInterface> analytic_;
   std::shared_ptr<v1::TraceService::StubInterface> trace_;
   std::shared_ptr<v1::ServerService::StubInterface> server_;
   absl::Duration timeout_;
+  Revival revival_;
 };
 
 }  // namespace ballpiston::client

@@ -33,8 +33,13 @@ bool IsBrokenStream(const absl::Status& end) {
 class Watch {
  public:
   Watch(v1::EnsembleService::StubInterface& stub, const WatchCallbacks& callbacks,
-        const WatchOptions& options, std::stop_token stop)
-      : stub_(stub), callbacks_(callbacks), options_(options), stop_(std::move(stop)) {}
+        const WatchOptions& options, std::stop_token stop,
+        const std::function<void()>& before_reattach)
+      : stub_(stub),
+        callbacks_(callbacks),
+        options_(options),
+        stop_(std::move(stop)),
+        before_reattach_(before_reattach) {}
 
   absl::StatusOr<v1::EnsembleJob> Follow(const std::string& name) {
     request_.set_name(name);
@@ -85,7 +90,7 @@ class Watch {
     }
     if (callbacks_.on_disconnect) callbacks_.on_disconnect(why, *pause);
     if (!Pause(*pause, stop_)) return Stopped();
-    if (options_.before_reattach) options_.before_reattach();
+    before_reattach_();
     return absl::OkStatus();
   }
 
@@ -93,6 +98,7 @@ class Watch {
   const WatchCallbacks& callbacks_;
   const WatchOptions& options_;
   const std::stop_token stop_;
+  const std::function<void()>& before_reattach_;
   v1::WatchEnsembleJobRequest request_;
   std::optional<v1::EnsembleJob> ended_;
   ReattachPace pace_{options_, Clock::now()};
@@ -107,8 +113,9 @@ bool HasEnded(v1::EnsembleJob::State state) {
 
 absl::StatusOr<v1::EnsembleJob> WatchJob(v1::EnsembleService::StubInterface& stub,
                                          const std::string& name, const WatchCallbacks& callbacks,
-                                         const WatchOptions& options, std::stop_token stop) {
-  return Watch(stub, callbacks, options, std::move(stop)).Follow(name);
+                                         const WatchOptions& options, std::stop_token stop,
+                                         const std::function<void()>& before_reattach) {
+  return Watch(stub, callbacks, options, std::move(stop), before_reattach).Follow(name);
 }
 
 }  // namespace ballpiston::client

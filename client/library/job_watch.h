@@ -36,7 +36,6 @@ struct WatchOptions {
   absl::Duration initial_backoff = absl::Milliseconds(100);
   absl::Duration max_backoff = absl::Seconds(5);
   absl::Duration give_up_after = absl::Minutes(2);
-  std::function<void()> before_reattach = {};  // e.g. starts a private server again
 };
 
 // SUCCEEDED, FAILED or CANCELLED.
@@ -44,9 +43,10 @@ bool HasEnded(v1::EnsembleJob::State state);
 
 // Blocks until the job has ended, and returns the ended job, without its grid. CANCELLED if `stop`
 // was requested (the job continues), UNAVAILABLE if the watch gave up, else the server's error.
-absl::StatusOr<v1::EnsembleJob> WatchJob(v1::EnsembleService::StubInterface& stub,
-                                         const std::string& name, const WatchCallbacks& callbacks,
-                                         const WatchOptions& options = {},
-                                         std::stop_token stop = {});
+// Calls `before_reattach` after each pause.
+absl::StatusOr<v1::EnsembleJob> WatchJob(
+    v1::EnsembleService::StubInterface& stub, const std::string& name,
+    const WatchCallbacks& callbacks, const WatchOptions& options, std::stop_token stop = {},
+    const std::function<void()>& before_reattach = [] {});
 
 }  // namespace ballpiston::client

@@ -2,9 +2,8 @@
 //
 //   bar   one line, redrawn: bar, points, samples per second, time left, and the current
 //         estimate of the point that changed last
-//   json  one file.v1.WatchProgress per line, with the points that changed: the unfinished points
-//   first,
-//         then the finished points; within each group the newest first
+//   json  one file.v1.WatchProgress per line, with the points that changed: the unfinished
+//         points first, then the finished points; within each group the newest first
 //   none  only notes
 //
 // Thread-safe: the thread that handles Ctrl-C calls Farewell while another thread redraws the bar.

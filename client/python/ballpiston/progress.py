@@ -10,8 +10,7 @@ import sys
 import warnings
 from typing import Any, Protocol
 
-from google.protobuf import json_format
-
+from ballpiston.document import json_of
 from ballpiston.errors import Error
 from ballpiston.number_text import measured_text
 from ballpiston.v1 import ensemble_pb2
@@ -89,10 +88,7 @@ class JsonLines(Progress):
         self._write(snapshot.progress)
 
     def _write(self, progress: Any) -> None:
-        values = json_format.MessageToDict(
-            progress, including_default_value_fields=True, preserving_proto_field_name=True
-        )
-        line = self._job | {"progress": values}
+        line = self._job | {"progress": json_of(progress)}
         print(json.dumps(line), file=sys.stderr, flush=True)
 
 

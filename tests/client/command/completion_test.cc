@@ -101,6 +101,14 @@ TEST_F(CompletionTest, OffersTheJobsOfARunningServer) {
   EXPECT_THAT(Offers({"label", "abc", ""}), Contains(StartsWith("--server\t")));
 }
 
+TEST_F(CompletionTest, OffersTheJobsOfTheServerThatTheWordsName) {
+  server_.Start();
+  const std::string& address = server_.Address();
+  EXPECT_THAT(Offers({"watch", "--server", address, ""}), ElementsAre("ensembleJobs/abc"));
+  EXPECT_THAT(Offers({"watch", "--server=" + address, ""}), ElementsAre("ensembleJobs/abc"));
+  EXPECT_THAT(Offers({"watch", "--server", "=", address, ""}), ElementsAre("ensembleJobs/abc"));
+}
+
 TEST_F(CompletionTest, RequestsJobsWithoutGrids) {
   home_.UseAsPrivateServer(server_.Address());
   server_.Start();

@@ -43,15 +43,14 @@ class PrintResultTest : public ::testing::Test {
   Connection connection_{.address = server_.Address(),
                          .channel = channel_,
                          .client = Client(channel_),
-                         .local = {},
+                         .revival = {},
                          .flags = "",
                          .security = {}};
   std::ostringstream out_, err_;
 };
 
 TEST_F(PrintResultTest, RepeatsAPageAfterAPrivateServerWasRevived) {
-  connection_.local =
-      LocalServer{.folder = "/", .socket = server_.SocketPath(), .program = "never-started"};
+  connection_.client = Client(channel_, kCallTimeout, [] { return absl::OkStatus(); });
   EXPECT_THAT(Print(), IsOkAndHolds(ExitCode::kDone));
   const std::vector<std::string> lines = absl::StrSplit(out_.str(), '\n', absl::SkipEmpty());
   ASSERT_EQ(lines.size(), 5u) << out_.str();  // each point once

@@ -175,14 +175,6 @@ TEST_F(VerbsTest, ListSendsItsFilters) {
   EXPECT_EQ(asked[0].page_size(), 10);
 }
 
-TEST_F(VerbsTest, ListWithALimitEndsThere) {
-  server_.ensemble.jobs.assign(9, job());
-  const std::string out = WithServer({"list", "--limit", "3", "--format", "jsonl"}).out;
-  EXPECT_EQ(std::count(out.begin(), out.end(), '\n'), 3);
-  const std::string all = WithServer({"list", "--format", "jsonl"}).out;
-  EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 9);
-}
-
 TEST_F(VerbsTest, EscapedOrbitsAreReported) {
   server_.ensemble.points[0].mutable_health()->set_escapes(3);
   EXPECT_THAT(WithServer({"result", "abc"}).err, HasSubstr("point 0: 3 orbits left the cell"));

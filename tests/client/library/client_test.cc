@@ -29,37 +29,12 @@ class ClientTest : public ::testing::Test {
   FakeServer server_;
 };
 
-// The channel repeats the call. The server recognises the repetition by the request id.
-TEST_F(ClientTest, CreateIsRepeatedWithTheSameRequestId) {
-  server_.ensemble.unavailable_attempts = 2;
-  v1::EnsembleSpec spec;
-  spec.set_seed(7);
-  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, StartServer().Create(spec));
-  EXPECT_EQ(job.name(), kJobName);
-  const auto requests = server_.ensemble.Asked().create;
-  ASSERT_EQ(requests.size(), 3u);
-  EXPECT_EQ(requests[0].request_id(), requests[2].request_id());
-  EXPECT_EQ(requests[2].spec().seed(), 7u);
-}
-
 TEST_F(ClientTest, EachCreateHasANewRequestId) {
   const Client client = StartServer();
   ASSERT_OK(client.Create(v1::EnsembleSpec()));
   ASSERT_OK(client.Create(v1::EnsembleSpec()));
   EXPECT_NE(server_.ensemble.Asked().create[0].request_id(),
             server_.ensemble.Asked().create[1].request_id());
-}
-
-TEST_F(ClientTest, CreateSendsItsOptions) {
-  const Client client = StartServer();
-  ASSERT_OK(client.Create(v1::EnsembleSpec()));
-  ASSERT_OK(client.Create(v1::EnsembleSpec(), {.request_id = "id", .fresh = true, .priority = -7}));
-  const auto asked = server_.ensemble.Asked().create;
-  EXPECT_FALSE(asked[0].fresh());
-  EXPECT_EQ(asked[0].priority(), 0);
-  EXPECT_EQ(asked[1].request_id(), "id");
-  EXPECT_TRUE(asked[1].fresh());
-  EXPECT_EQ(asked[1].priority(), -7);
 }
 
 TEST_F(ClientTest, ListGathersAllPages) {
@@ -95,25 +70,6 @@ TEST_F(ClientTest, WithoutAServerIsUnavailable) {
   const Client client(server_.Channel());  // the server is not started
   EXPECT_THAT(client.List(), StatusIs(absl::StatusCode::kUnavailable));
   EXPECT_THAT(client.Delete("ensembleJobs/a"), StatusIs(absl::StatusCode::kUnavailable));
-}
-
-TEST_F(ClientTest, CancelSendsARequestId) {
-  ASSERT_OK(StartServer().Cancel("ensembleJobs/a"));
-  const auto asked = server_.ensemble.Asked().cancel;
-  ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].name(), "ensembleJobs/a");
-  EXPECT_NE(asked[0].request_id(), "");
-}
-
-TEST_F(ClientTest, ARepeatedCancelSendsTheSameRequestId) {
-  const Client client = StartServer();
-  const std::string id = "123e4567-e89b-12d3-a456-426614174000";
-  ASSERT_OK(client.Cancel("ensembleJobs/a", id));
-  client.Cancel("ensembleJobs/a", id).status().IgnoreError();
-  const auto asked = server_.ensemble.Asked().cancel;
-  ASSERT_EQ(asked.size(), 2u);
-  EXPECT_EQ(asked[0].request_id(), id);
-  EXPECT_EQ(asked[1].request_id(), id);
 }
 
 // By default a gRPC server accepts messages of up to 4 MiB; the client sends larger ones.
@@ -163,28 +119,6 @@ TEST_F(ClientTest, ARetryWaitsAsLongAsTheServerAsks) {
   const absl::Time begin = absl::Now();
   EXPECT_OK(client.Pin(kJobName, true));
   EXPECT_GE(absl::Now() - begin, absl::Milliseconds(800));
-}
-
-TEST_F(ClientTest, APinCanBeUndone) {
-  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, StartServer().Pin(kJobName, false));
-  EXPECT_FALSE(job.pinned());
-  EXPECT_FALSE(server_.ensemble.Asked().update.at(0).job().pinned());
-}
-
-TEST_F(ClientTest, APointIsNamedByItsIndex) {
-  for (int i = 0; i < 3; ++i) server_.ensemble.points.emplace_back().set_index(i);
-  const Client client = StartServer();
-  ASSERT_OK_AND_ASSIGN(const v1::PointResult point, client.Point(kJobName, 2));
-  EXPECT_EQ(point.index(), 2);
-  EXPECT_EQ(server_.ensemble.Asked().result.at(0).name(), "ensembleJobs/abc/results/2");
-  EXPECT_EQ(ErrorReason(client.Point(kJobName, 3).status()), "RESULT_NOT_FOUND");
-}
-
-// A second delete would report that the job does not exist.
-TEST_F(ClientTest, ADeleteIsSentOnce) {
-  server_.ensemble.unavailable_attempts = 1;
-  EXPECT_THAT(StartServer().Delete(kJobName), StatusIs(absl::StatusCode::kUnavailable));
-  EXPECT_EQ(server_.ensemble.Asked().remove.size(), 1u);
 }
 
 }  // namespace

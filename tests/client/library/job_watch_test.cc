@@ -62,7 +62,8 @@ class JobWatch : public ::testing::Test {
       pauses_.push_back(absl::ToDoubleMilliseconds(pause));
       after_disconnect_();
     };
-    return Client(server_.Channel()).Watch(kJobName, callbacks, options_, stop_.get_token());
+    return Client(server_.Channel(), kCallTimeout, revival_)
+        .Watch(kJobName, callbacks, options_, stop_.get_token());
   }
 
   std::vector<std::string> Tokens() const {
@@ -74,6 +75,7 @@ class JobWatch : public ::testing::Test {
 
   FakeServer server_;
   WatchOptions options_;
+  Revival revival_;
   std::stop_source stop_;
   std::function<void()> after_snapshot_ = [] {}, after_disconnect_ = [] {};
   std::vector<Job::State> states_;
@@ -159,10 +161,13 @@ TEST_F(JobWatch, ThePaceStartsAgainWithEveryMessage) {
   EXPECT_THAT(pauses_, AllOf(SizeIs(100), Each(Le(1.25))));
 }
 
-TEST_F(JobWatch, RunsTheHookBeforeEachNewAttempt) {
+TEST_F(JobWatch, StartsTheServerAgainBeforeEachNewAttempt) {
   Start({Unavailable(), Unavailable(), Succeeded()});
   int revivals = 0;
-  options_.before_reattach = [&revivals] { ++revivals; };
+  revival_ = [&revivals] {
+    ++revivals;
+    return absl::OkStatus();
+  };
   EXPECT_OK(Watch());
   EXPECT_EQ(revivals, 2);
 }

@@ -260,12 +260,5 @@ TEST(ResultWriter, OnlyJsonAndCsvOfHistogramsOrCurvesRequestTheFullView) {
   EXPECT_EQ(ViewFor(Format::kCsv), v1::ListResultsRequest::BASIC);
 }
 
-TEST(ResultWriter, SamePointsGiveTheSameBytes) {
-  for (const Format format : {Format::kTable, Format::kJson, Format::kJsonl, Format::kCsv,
-                              Format::kCsvHistograms, Format::kCsvCurves}) {
-    EXPECT_EQ(Written(format), Written(format));
-  }
-}
-
 }  // namespace
 }  // namespace ballpiston::client
