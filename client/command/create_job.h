@@ -12,7 +12,7 @@
 
 namespace ballpiston::client {
 
-// A retry (Connection::Ask) uses the same request id: if a private server stored the job and
+// A retry (library/client.h) uses the same request id: if a private server stored the job and
 // stopped before it answered, the retry returns that job. If the user interrupts the call, a
 // message shows the id. With --resume the id is derived from the specification and the engine's
 // version.

@@ -13,15 +13,17 @@ Messages have the protocol's own field names; fields with their default value ar
 
 from __future__ import annotations
 
+import functools
 import inspect
 import json
 import os
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from google.protobuf import json_format
+from google.protobuf.descriptor import FieldDescriptor
 
 from ballpiston._version import __version__
 from ballpiston.v1 import ensemble_pb2, result_pb2
@@ -66,9 +68,11 @@ def read_document(path: Path) -> tuple[Any, list[Any]]:
         )
     try:
         document = json.loads(data)
-        job = _parsed(document["job"], ensemble_pb2.EnsembleJob())
-        points = [_parsed(point, result_pb2.PointResult()) for point in document["points"]]
-    except (ValueError, KeyError, TypeError, json_format.ParseError) as error:
+        job = ensemble_pb2.EnsembleJob()
+        json_format.ParseDict(document["job"], job, ignore_unknown_fields=True)
+        fields_of = _fields_of(result_pb2.PointResult.DESCRIPTOR)
+        points = [result_pb2.PointResult(**fields_of(point)) for point in document["points"]]
+    except (ValueError, KeyError, TypeError, AttributeError, json_format.ParseError) as error:
         raise ValueError(f"{path} is not a saved result: {error!r}") from error
     return job, points
 
@@ -87,8 +91,40 @@ def write_atomically(path: Path, data: bytes) -> None:
         raise
 
 
-def _parsed(value: Any, message: Any) -> Any:
-    return json_format.ParseDict(value, message, ignore_unknown_fields=True)
+@functools.cache
+def _fields_of(message: Any) -> Callable[[dict[str, Any]], dict[str, Any]]:
+    """From the JSON of a message to the arguments of its constructor, without unknown fields.
+
+    Results have no maps, bytes or messages of other packages. json_format reads those too, but
+    takes five times as long, 10 s for 100,000 points.
+    """
+    readers = {field.name: _reader_of(field) for field in message.fields}
+
+    def fields(value: dict[str, Any]) -> dict[str, Any]:
+        return {
+            name: readers[name](given)
+            for name, given in value.items()
+            if name in readers and given is not None
+        }
+
+    return fields
+
+
+def _reader_of(field: Any) -> Callable[[Any], Any]:
+    numbers = {
+        FieldDescriptor.CPPTYPE_INT64: int,  # a string in the JSON of other programs
+        FieldDescriptor.CPPTYPE_UINT64: int,
+        FieldDescriptor.CPPTYPE_DOUBLE: float,  # for instance "NaN"
+    }
+    is_message = field.type == FieldDescriptor.TYPE_MESSAGE
+    read = _fields_of(field.message_type) if is_message else numbers.get(field.cpp_type, _same)
+    if field.label == FieldDescriptor.LABEL_REPEATED:
+        return lambda values: [read(value) for value in values]
+    return read
+
+
+def _same(value: Any) -> Any:
+    return value
 
 
 def _current_umask() -> int:
