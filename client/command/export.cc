@@ -20,7 +20,7 @@ VerbResult Export(const Options& options, Terminal& terminal) {
     arguments.insert(arguments.end(), {"--label", absl::StrCat(key, "=", value)});
   }
   arguments.insert(arguments.end(), options.jobs.begin(), options.jobs.end());
-  return RunPythonProgram("ballpiston.export", arguments, "python3-ballpiston", options, terminal);
+  return RunPythonProgram("ballpiston.export", arguments, options, terminal);
 }
 
 }  // namespace ballpiston::client

@@ -95,8 +95,12 @@ std::vector<std::string> FigureNames() {
 VerbResult Figure(const Options& options, Terminal& terminal) {
   if (options.list) return ListFigures(terminal);
   if (absl::Status bad = CheckName(options); !bad.ok()) return bad;
-  return RunPythonProgram("ballpiston.figures", ArgumentsOf(options), kFigurePackages, options,
-                          terminal);
+  if (absl::Status bad =
+          CheckPython("figure " + options.figure, {"ballpiston", "matplotlib"}, kFigurePackages);
+      !bad.ok()) {
+    return bad;
+  }
+  return RunPythonProgram("ballpiston.figures", ArgumentsOf(options), options, terminal);
 }
 
 }  // namespace ballpiston::client

@@ -59,18 +59,14 @@ std::vector<std::string> PythonCommand(const std::vector<std::string>& arguments
 }
 
 VerbResult RunPythonProgram(const std::string& module, const std::vector<std::string>& arguments,
-                            const std::string& packages, const Options& options,
-                            Terminal& terminal) {
+                            const Options& options, Terminal& terminal) {
   SetEnvironment(options);
   terminal.out.flush();
   std::vector<std::string> words = {"-m", module};
   words.insert(words.end(), arguments.begin(), arguments.end());
   const absl::StatusOr<pid_t> pid =
       StartChild({.command = PythonCommand(words), .own_group = true});
-  if (!pid.ok()) {
-    return absl::FailedPreconditionError(absl::StrCat(
-        "this needs Python, but ", pid.status().message(), ": install the packages ", packages));
-  }
+  if (!pid.ok()) return pid.status();
   const Interrupts::Scope scope(terminal.interrupts, [&] {
     kill(-*pid, SIGINT);
     WaitForChild(*pid).IgnoreError();

@@ -25,11 +25,10 @@ absl::Status CheckPythonFor(const std::string& out);
 
 // Runs a program of the package: python3 -m MODULE ARGUMENT... The flags of the options that choose
 // the server and the progress are in its environment, and the user's config file has no effect on
-// it. An interruption ends the program and all that it has started; its jobs continue. `packages`
-// are Debian's names, for the error if there is no Python.
+// it. An interruption ends the program and all that it has started; its jobs continue. Check before
+// whether the interpreter has what the program needs.
 VerbResult RunPythonProgram(const std::string& module, const std::vector<std::string>& arguments,
-                            const std::string& packages, const Options& options,
-                            Terminal& terminal);
+                            const Options& options, Terminal& terminal);
 
 // The command that runs the interpreter with these arguments. Adds the package to PYTHONPATH of
 // this process, which the interpreter inherits.

@@ -66,8 +66,8 @@ VerbResult Sample(const Options& options, Terminal& terminal) {
         if (absl::EndsWith(options.out, ".csv")) {
           return WriteCsv(connection, spec, options.out, terminal);
         }
-        return RunPythonProgram("ballpiston.sample", {Json(spec), "--out", options.out},
-                                "python3-ballpiston", options, terminal);
+        return RunPythonProgram("ballpiston.sample", {Json(spec), "--out", options.out}, options,
+                                terminal);
       });
 }
 

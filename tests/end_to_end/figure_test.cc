@@ -63,7 +63,7 @@ TEST_F(FigureTest, AMissingPythonIsNamed) {
   options.environment["BALLPISTON_PYTHON"] = "/no/python3";
   const ProcessResult result = RunProgram(options);
   EXPECT_THAT(result, ExitsWith(4));
-  EXPECT_THAT(result.err, HasSubstr("install the packages python3-ballpiston"));
+  EXPECT_THAT(result.err, HasSubstr("install python3-ballpiston and python3-matplotlib"));
 }
 
 TEST_F(FigureTest, WithoutMatplotlibItsPackageIsNamed) {
@@ -74,7 +74,7 @@ TEST_F(FigureTest, WithoutMatplotlibItsPackageIsNamed) {
   options.environment["PYTHONPATH"] = modules;
   const ProcessResult result = RunProgram(options);
   EXPECT_THAT(result, ExitsWith(4));
-  EXPECT_THAT(result.err, HasSubstr("install the package python3-matplotlib"));
+  EXPECT_THAT(result.err, HasSubstr("cannot import ballpiston, matplotlib; install"));
 }
 
 TEST_F(FigureTest, AWrongValueLeavesNoData) {
