@@ -37,7 +37,6 @@ namespace ballpiston {
 namespace {
 
 constexpr size_t kSpeedBins = 120;
-constexpr size_t kSpeedsOfAPart = 4096;
 constexpr double kMostSpeed = 6;  // one in 10^8 of a ball's speeds is larger, in the last bin
 
 // Replicas of gases with more contacts are too short to measure the conductivity. A smaller gas has
@@ -144,19 +143,10 @@ class GasEquilibrium : public GasReplicas {
     return std::make_unique<CarriedCurrent>(start.balls.size(), exchange_rate(), duration());
   }
 
-  size_t MeasuredParts() const override {
-    const auto bodies = static_cast<size_t>(geometry().balls() + geometry().pistons());
-    return 1 + (bodies + kSpeedsOfAPart - 1) / kSpeedsOfAPart;
-  }
-
-  void MeasurePart(size_t part, const GasMeter& meter, BlockResult& result) const override {
-    if (part == 0) {
-      AddMeans(meter, 0, result);
-      if (meter.current() != nullptr) AddCurrent(meter.current()->Result(), result.moments);
-      return;
-    }
-    const size_t end = std::min(part * kSpeedsOfAPart, meter.bodies());
-    for (size_t i = (part - 1) * kSpeedsOfAPart; i < end; ++i) {
+  void Measure(const GasMeter& meter, BlockResult& result) const override {
+    AddMeans(meter, 0, result);
+    if (meter.current() != nullptr) AddCurrent(meter.current()->Result(), result.moments);
+    for (size_t i = 0; i < meter.bodies(); ++i) {
       result.histograms[i < meter.balls() ? 0 : 1].Add(std::sqrt(2 * meter.Energy(i)));
     }
   }

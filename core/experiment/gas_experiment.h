@@ -69,10 +69,8 @@ class GasReplicas : public GasExperiment {
   double duration() const { return duration_; }  // of a replica, at temperature 1
   // A meter of the current of a replica with this start; null if the current is not measured.
   virtual std::unique_ptr<CurrentMeter> CurrentOf(const GasState&) const { return nullptr; }
-  // A replica's numbers are added part by part, because a big gas has to look at pauses. The first
-  // part has the numbers of the whole gas.
-  virtual size_t MeasuredParts() const = 0;
-  virtual void MeasurePart(size_t part, const GasMeter& meter, BlockResult& result) const = 0;
+  // Adds a replica's numbers.
+  virtual void Measure(const GasMeter& meter, BlockResult& result) const = 0;
 
  protected:
   // Rounds the duration (WithoutLastBits), because its last bits depend on the C library.

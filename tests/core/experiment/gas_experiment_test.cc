@@ -41,14 +41,10 @@ class ListedBlocks : public BlockQueue {
   void Done(const Block& block, BlockResult result) override {
     EXPECT_TRUE(results.emplace(block.first, std::move(result)).second) << "computed twice";
   }
-  bool Pause() override {
-    ++asked;
-    return pauses_;
-  }
+  bool Pause() override { return pauses_; }
   std::stop_token stop() const override { return {}; }
 
   std::map<uint64_t, BlockResult> results;
-  int asked = 0;
   size_t taken_before_first_result = 0;
 
  private:
@@ -111,17 +107,6 @@ TEST(GasExperiment, ARunTakesAQuarterOfItsChunkAtMost) {
     EXPECT_EQ(queue.taken_before_first_result, c.together)
         << Name(c.model) << " " << c.columns << " " << c.samples;
   }
-}
-
-// The jump process of a big gas takes less time than the draw of its start.
-TEST(GasExperiment, TheDrawOfABigGasAsksForPauses) {
-  const PointParameters gas = PaperGas(&kGasEquilibrium, 0.2, {150, 100, true});
-  const auto point =
-      PointExperiment::Create(SpecOf(&kGasEquilibrium, gas, {.samples = 1}, Model::kMarkov, 42), 0);
-  ListedBlocks queue(BlocksOf(1, 1), true);
-  const std::unique_ptr<EngineRun> run = point->StartRun(queue);
-  while (queue.results.empty()) run->Advance();
-  EXPECT_GE(queue.asked, 11);  // 5 of them in the draw
 }
 
 }  // namespace
