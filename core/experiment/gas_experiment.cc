@@ -226,23 +226,6 @@ GasReplicas::GasReplicas(const EnsembleSpec& spec, const PointParameters& point,
                          const GasGeometry& geometry, double duration, double temperature)
     : GasExperiment(spec, point, geometry, temperature), duration_(WithoutLastBits(duration)) {}
 
-void GasReplicas::AddMeans(const GasMeter& meter, size_t first, BlockResult& result) const {
-  result.batch_means[first].Add(static_cast<double>(meter.exchanges()),
-                                static_cast<double>(geometry().contacts()) * meter.duration());
-  double balls = 0, pistons = 0;
-  for (size_t i = 0; i < meter.bodies(); ++i) {
-    (i < meter.balls() ? balls : pistons) += meter.MeanEnergy(i);
-  }
-  result.batch_means[first + 1].Add(balls, static_cast<double>(geometry().balls()));
-  result.batch_means[first + 2].Add(2 * pistons, static_cast<double>(geometry().pistons()));
-}
-
-std::vector<Measurement> GasReplicas::MeansFrom(size_t first) const {
-  return {{"exchange_rate", RatioAt(first), std::sqrt(temperature())},
-          {"temperature_ball", RatioAt(first + 1), temperature()},
-          {"temperature_piston", RatioAt(first + 2), temperature()}};
-}
-
 std::unique_ptr<EngineRun> GasReplicas::StartRun(BlockQueue& queue) const {
   return std::make_unique<GasBlocks>(*this, queue);
 }

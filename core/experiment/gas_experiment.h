@@ -2,10 +2,8 @@
 // starts from a random state of its own. All gases run at temperature 1; results are scaled.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "core/ensemble/experiment_kind.h"
@@ -76,14 +74,6 @@ class GasReplicas : public GasExperiment {
   // Rounds the duration (WithoutLastBits), because its last bits depend on the C library.
   GasReplicas(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
               double duration, double temperature);
-
-  static constexpr size_t kMeansOfAReplica = 3;
-
-  // Adds one replica to three batch means, at the indices `first` to `first + 2`: exchanges over
-  // (contacts times duration); the mean energy of a ball; twice the mean energy of a piston.
-  void AddMeans(const GasMeter& meter, size_t first, BlockResult& result) const;
-  // The rows of these three.
-  std::vector<Measurement> MeansFrom(size_t first) const;
 
  private:
   double duration_;
