@@ -17,6 +17,7 @@
 //   2. CallsAndNeighboursDoNotChangeTheBits.  3. KeepsItsEnergyOverMillionsOfHits.
 //   4. BallsThatMeetPistonsInTipsStayInTheirCells.
 //   5. AnEscapedBallStopsAndCountsOnce.  6. AGasContinuesFromItsState.
+//   7. PistonsKeepTheirMotionWhenTheOriginMoves.
 #pragma once
 
 #include <cstddef>
