@@ -327,14 +327,14 @@ double MemoryOfOrbits(Model model, const PointParameters& point) {
          kBlocks * kOfAnOrbit * static_cast<double>(plan.MostInABlock());
 }
 
-// At energies that have no relaxation time, for which a tolerance is not permitted, the first
-// estimate is the decay integral.
 double CollisionsOfASample(Model, const PointParameters& point) {
   return CollisionsPerOrbit(point);
 }
 
 constexpr absl::string_view kMultiplesOfTheTime[] = {"decay_integral"};
 
+// At energies that have no relaxation time, for which a tolerance is not permitted, the first
+// estimate is the decay integral.
 constexpr AimedEstimate kAimsOfRelaxation[] = {{.name = "relaxation_time",
                                                 .models = kModelsOfRelaxation,
                                                 .error = ErrorOfAnOrbit,

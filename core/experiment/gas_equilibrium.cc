@@ -37,7 +37,6 @@ namespace ballpiston {
 namespace {
 
 constexpr size_t kSpeedBins = 120;
-constexpr size_t kSpeedsOfAPart = 4096;
 constexpr double kMostSpeed = 6;  // one in 10^8 of a ball's speeds is larger, in the last bin
 
 // Replicas of gases with more contacts are too short to measure the conductivity. A smaller gas has
@@ -104,6 +103,10 @@ double EventsOfCurrents(Model model, const GasShape& shape) {
   return shape.columns * shape.rows < 16 ? 0.05 : 0.1;
 }
 
+// The batch means: exchanges over (contacts times duration); the mean energy of a ball; twice the
+// mean energy of a piston.
+enum GasMean : size_t { kRate, kOfBalls, kOfPistons, kMeansOfAReplica };
+
 // Where moments begin: [0] the conductivity without a test function (gas/jump_current.h); those
 // with windows of 0 to kWindow steps; the current's autocorrelation at 1 to kWindow steps.
 constexpr size_t kFirstWindow = 1;
@@ -144,19 +147,10 @@ class GasEquilibrium : public GasReplicas {
     return std::make_unique<CarriedCurrent>(start.balls.size(), exchange_rate(), duration());
   }
 
-  size_t MeasuredParts() const override {
-    const auto bodies = static_cast<size_t>(geometry().balls() + geometry().pistons());
-    return 1 + (bodies + kSpeedsOfAPart - 1) / kSpeedsOfAPart;
-  }
-
-  void MeasurePart(size_t part, const GasMeter& meter, BlockResult& result) const override {
-    if (part == 0) {
-      AddMeans(meter, 0, result);
-      if (meter.current() != nullptr) AddCurrent(meter.current()->Result(), result.moments);
-      return;
-    }
-    const size_t end = std::min(part * kSpeedsOfAPart, meter.bodies());
-    for (size_t i = (part - 1) * kSpeedsOfAPart; i < end; ++i) {
+  void Measure(const GasMeter& meter, BlockResult& result) const override {
+    AddMeans(meter, result.batch_means);
+    if (meter.current() != nullptr) AddCurrent(meter.current()->Result(), result.moments);
+    for (size_t i = 0; i < meter.bodies(); ++i) {
       result.histograms[i < meter.balls() ? 0 : 1].Add(std::sqrt(2 * meter.Energy(i)));
     }
   }
@@ -185,6 +179,17 @@ class GasEquilibrium : public GasReplicas {
   }
 
  private:
+  void AddMeans(const GasMeter& meter, std::vector<BatchMeans>& means) const {
+    means[kRate].Add(static_cast<double>(meter.exchanges()),
+                     static_cast<double>(geometry().contacts()) * meter.duration());
+    double balls = 0, pistons = 0;
+    for (size_t i = 0; i < meter.bodies(); ++i) {
+      (i < meter.balls() ? balls : pistons) += meter.MeanEnergy(i);
+    }
+    means[kOfBalls].Add(balls, static_cast<double>(geometry().balls()));
+    means[kOfPistons].Add(2 * pistons, static_cast<double>(geometry().pistons()));
+  }
+
   static void AddCurrent(const GreenKubo& current, std::vector<Moments>& moments) {
     moments[0].Add(current.plain);
     for (size_t i = 0; i <= kWindow; ++i) moments[kFirstWindow + i].Add(current.conductivity[i]);
@@ -202,7 +207,9 @@ class GasEquilibrium : public GasReplicas {
   double StaticConductivity() const { return InfiniteGasExchangeRate(geometry(), 1) / 2; }
 
   std::vector<Measurement> Table() const {
-    std::vector<Measurement> table = MeansFrom(0);
+    std::vector<Measurement> table = {{"exchange_rate", RatioAt(kRate), std::sqrt(temperature())},
+                                      {"temperature_ball", RatioAt(kOfBalls), temperature()},
+                                      {"temperature_piston", RatioAt(kOfPistons), temperature()}};
     table[0].exact = GasExchangeRate(geometry(), temperature());
     table[1].exact = table[2].exact = temperature();
     for (size_t i = 0; i < kBodies.size(); ++i) {

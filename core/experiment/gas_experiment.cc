@@ -44,26 +44,10 @@ struct ReplicasOfBlock {
 struct Replica {
   uint64_t number;  // of OpenBlocks
   std::unique_ptr<GasMeter> meter;
-  double energy_at_start = 0;
-};
-
-// The draw of a replica's start.
-struct StartDraw {
-  StartDraw(const GasExperiment& experiment, const GasRandom& random, uint64_t number)
-      : random(random),
-        of_start(random.OfStart()),
-        draw(experiment.geometry(), experiment.TemperaturesAtStart(), of_start),
-        replica{number, nullptr} {}
-
-  GasRandom random;
-  CounterRandom of_start;
-  GasDraw draw;
-  GasState state = {};  // once it is drawn
-  Replica replica;      // has a meter from then on
+  double energy_at_start;
 };
 
 // Computes several replicas at a time, of several blocks if these are small, to fill the lanes.
-// These functions return false at a pause.
 class GasBlocks : public EngineRun {
  public:
   GasBlocks(const GasReplicas& experiment, BlockQueue& queue)
@@ -74,105 +58,57 @@ class GasBlocks : public EngineRun {
   bool Advance() override {
     Pauses pauses([this] { return queue_.Pause(); });
     do {
-      if (stage_ == Stage::kBeginning && !Begin(pauses)) return false;
-      if (stage_ == Stage::kBeginning) return true;
-      if (!RunToTheEnd(pauses)) return false;
+      if (run_ == nullptr) Begin();
+      if (run_ == nullptr) return true;
+      if (!run_->AdvanceTo(experiment_.duration(), pauses)) return false;
+      run_.reset();
+      for (const Replica& replica : running_) Measure(replica);
+      running_.clear();
     } while (!queue_.Pause());
     return false;
   }
 
  private:
-  enum class Stage { kBeginning, kRunning, kMeasuring };
-
   // The other engines run one replica at a time, because more would not make them faster.
   size_t MostTogether(const Block& block) const {
     if (experiment_.gas_engine() != GasEngine::kLanes) return 1;
     return TogetherInLanes(experiment_.geometry().balls(), experiment_.plan(), block.chunk);
   }
 
-  // Starts replicas until there are enough, if the queue has any.
-  bool Begin(Pauses& pauses) {
-    while (draw_ != nullptr || (!IsFull() && BeginDraw())) {
-      if (!Draw(pauses)) return false;
+  // Starts replicas until there are enough, if the queue has any now. The first replica determines
+  // the number of replicas in the run.
+  void Begin() {
+    std::vector<GasStart> starts;
+    for (size_t most = 1; starts.size() < most;) {
+      const std::optional<uint64_t> number = blocks_.Next();
+      if (!number) break;
+      if (starts.empty()) most = MostTogether(blocks_.BlockOf(*number));
+      starts.push_back(Draw(*number));
     }
-    if (starts_.empty()) return true;
+    if (starts.empty()) return;
     run_ = StartGases(experiment_.gas_engine(), experiment_.geometry(), experiment_.exchange_rate(),
-                      std::exchange(starts_, {}));
-    stage_ = Stage::kRunning;
-    return true;
+                      std::move(starts));
   }
 
-  bool IsFull() const { return !starts_.empty() && starts_.size() >= most_together_; }
-
-  // False if the queue has no more replicas now. The first replica determines the number of
-  // replicas in the run.
-  bool BeginDraw() {
-    const std::optional<uint64_t> number = blocks_.Next();
-    if (!number) return false;
-    const Block& block = blocks_.BlockOf(*number);
-    if (starts_.empty()) most_together_ = MostTogether(block);
-    const GasRandom random = experiment_.RandomOf(block.first + blocks_.IndexOf(*number));
-    draw_ = std::make_unique<StartDraw>(experiment_, random, *number);
-    return true;
+  GasStart Draw(uint64_t number) {
+    const GasRandom random =
+        experiment_.RandomOf(blocks_.BlockOf(number).first + blocks_.IndexOf(number));
+    CounterRandom of_start = random.OfStart();
+    GasState state = DrawGas(experiment_.geometry(), experiment_.TemperaturesAtStart(), of_start);
+    auto meter = std::make_unique<GasMeter>(experiment_.geometry(), state);
+    meter->MeasureCurrent(experiment_.CurrentOf(state));
+    const double energy = meter->TotalEnergy();
+    running_.push_back({number, std::move(meter), energy});
+    return {std::move(state), experiment_.WallsOf(random), random, running_.back().meter.get()};
   }
 
-  bool Draw(Pauses& pauses) {
-    auto& [number, meter, energy_at_start] = draw_->replica;
-    if (meter == nullptr) {
-      if (!draw_->draw.Advance(pauses)) return false;
-      draw_->state = draw_->draw.Take();
-      meter = std::make_unique<GasMeter>(experiment_.geometry());
-    }
-    if (!meter->Place(draw_->state, pauses)) return false;
-    meter->MeasureCurrent(experiment_.CurrentOf(draw_->state));
-    energy_at_start = meter->TotalEnergy();
-    const GasRandom& random = draw_->random;
-    starts_.push_back({std::move(draw_->state), experiment_.WallsOf(random), random, meter.get()});
-    running_.push_back(std::move(draw_->replica));
-    draw_.reset();
-    return true;
-  }
-
-  bool RunToTheEnd(Pauses& pauses) {
-    if (stage_ == Stage::kRunning) {
-      const double time = experiment_.duration();
-      const auto end = [&](Replica& it) { return it.meter->End(time, pauses); };
-      if (!run_->AdvanceTo(time, pauses) || !ForEachRunning(end)) return false;
-      run_.reset();
-      stage_ = Stage::kMeasuring;
-    }
-    if (!ForEachRunning([&](Replica& it) { return Measure(it, pauses); })) return false;
-    running_.clear();
-    stage_ = Stage::kBeginning;
-    return true;
-  }
-
-  // Calls step(replica) for all replicas that run, until it returns false.
-  template <typename Step>
-  bool ForEachRunning(const Step& step) {
-    for (; next_replica_ < running_.size(); ++next_replica_) {
-      if (!step(running_[next_replica_])) return false;
-    }
-    next_replica_ = 0;
-    return true;
-  }
-
-  bool Measure(const Replica& replica, Pauses& pauses) {
-    const auto bodies =
-        static_cast<double>(experiment_.geometry().balls() + experiment_.geometry().pistons());
-    const size_t parts = experiment_.MeasuredParts();
-    const double nanoseconds = kToMeasureABody * bodies / static_cast<double>(parts);
+  void Measure(const Replica& replica) {
+    replica.meter->End(experiment_.duration());
     BlockResult& result = blocks_.WorkOf(replica.number).result;
-    if (!ForEachWithPauses(next_part_, parts, nanoseconds, pauses, [&](size_t part) {
-          experiment_.MeasurePart(part, *replica.meter, result);
-        })) {
-      return false;
-    }
-    next_part_ = 0;
+    experiment_.Measure(*replica.meter, result);
     AddHealth(replica, result.health);
     ++result.samples;
     blocks_.End(replica.number);
-    return true;
   }
 
   void AddHealth(const Replica& replica, Health& health) const {
@@ -187,16 +123,8 @@ class GasBlocks : public EngineRun {
   const GasReplicas& experiment_;
   BlockQueue& queue_;
   OpenBlocks<ReplicasOfBlock> blocks_;
-  std::unique_ptr<StartDraw> draw_;  // of the next replica, if begun
-  std::vector<GasStart> starts_;
-  size_t most_together_ = 0;
   std::vector<Replica> running_;
-  size_t next_replica_ = 0;  // with which a call that paused goes on
-  size_t next_part_ = 0;     // of the measurement of that replica
-  std::unique_ptr<GasRun> run_;
-  Stage stage_ = Stage::kBeginning;
-
-  static constexpr double kToMeasureABody = 20;  // nanoseconds
+  std::unique_ptr<GasRun> run_;  // of them; null if there are none
 };
 
 // Hits of the outermost pistons at their thermal walls per unit of time at temperature 1: every
@@ -297,23 +225,6 @@ GasEngine GasExperiment::gas_engine() const {
 GasReplicas::GasReplicas(const EnsembleSpec& spec, const PointParameters& point,
                          const GasGeometry& geometry, double duration, double temperature)
     : GasExperiment(spec, point, geometry, temperature), duration_(WithoutLastBits(duration)) {}
-
-void GasReplicas::AddMeans(const GasMeter& meter, size_t first, BlockResult& result) const {
-  result.batch_means[first].Add(static_cast<double>(meter.exchanges()),
-                                static_cast<double>(geometry().contacts()) * meter.duration());
-  double balls = 0, pistons = 0;
-  for (size_t i = 0; i < meter.bodies(); ++i) {
-    (i < meter.balls() ? balls : pistons) += meter.MeanEnergy(i);
-  }
-  result.batch_means[first + 1].Add(balls, static_cast<double>(geometry().balls()));
-  result.batch_means[first + 2].Add(2 * pistons, static_cast<double>(geometry().pistons()));
-}
-
-std::vector<Measurement> GasReplicas::MeansFrom(size_t first) const {
-  return {{"exchange_rate", RatioAt(first), std::sqrt(temperature())},
-          {"temperature_ball", RatioAt(first + 1), temperature()},
-          {"temperature_piston", RatioAt(first + 2), temperature()}};
-}
 
 std::unique_ptr<EngineRun> GasReplicas::StartRun(BlockQueue& queue) const {
   return std::make_unique<GasBlocks>(*this, queue);

@@ -2,10 +2,8 @@
 // starts from a random state of its own. All gases run at temperature 1; results are scaled.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "core/ensemble/experiment_kind.h"
@@ -69,23 +67,13 @@ class GasReplicas : public GasExperiment {
   double duration() const { return duration_; }  // of a replica, at temperature 1
   // A meter of the current of a replica with this start; null if the current is not measured.
   virtual std::unique_ptr<CurrentMeter> CurrentOf(const GasState&) const { return nullptr; }
-  // A replica's numbers are added part by part, because a big gas has to look at pauses. The first
-  // part has the numbers of the whole gas.
-  virtual size_t MeasuredParts() const = 0;
-  virtual void MeasurePart(size_t part, const GasMeter& meter, BlockResult& result) const = 0;
+  // Adds a replica's numbers.
+  virtual void Measure(const GasMeter& meter, BlockResult& result) const = 0;
 
  protected:
   // Rounds the duration (WithoutLastBits), because its last bits depend on the C library.
   GasReplicas(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
               double duration, double temperature);
-
-  static constexpr size_t kMeansOfAReplica = 3;
-
-  // Adds one replica to three batch means, at the indices `first` to `first + 2`: exchanges over
-  // (contacts times duration); the mean energy of a ball; twice the mean energy of a piston.
-  void AddMeans(const GasMeter& meter, size_t first, BlockResult& result) const;
-  // The rows of these three.
-  std::vector<Measurement> MeansFrom(size_t first) const;
 
  private:
   double duration_;

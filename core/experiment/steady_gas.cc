@@ -31,7 +31,7 @@ double VarianceOfEnergy(const GasGeometry& geometry, const TemperatureProfile& t
 }
 
 // Computes chunks, each of which is a block: some stretches of all trajectories of a group, which
-// run together. Functions return false at a pause.
+// run together.
 class GroupRun : public EngineRun {
  public:
   GroupRun(const SteadyGas& experiment, BlockQueue& queue)
@@ -45,8 +45,6 @@ class GroupRun : public EngineRun {
         if (!block_) return true;
         Begin();
       }
-      if (run_ == nullptr && !DrawStarts(pauses)) return false;
-      if (run_ == nullptr) Start();
       if (!RunToTheEnd(pauses)) return false;
       BlockResult result = Result();
       queue_.Done(*std::exchange(block_, std::nullopt), std::move(result));
@@ -55,16 +53,6 @@ class GroupRun : public EngineRun {
   }
 
  private:
-  // The start of a trajectory that is being drawn.
-  struct StartDraw {
-    StartDraw(const SteadyGas& experiment, const GasRandom& random)
-        : of_start(random.OfStart()),
-          draw(experiment.geometry(), experiment.TemperaturesAtStart(), of_start) {}
-
-    CounterRandom of_start;
-    GasDraw draw;
-  };
-
   std::vector<SteadyTrajectory>& trajectories() { return group_.trajectories; }
   double Now() const { return stretches_ * experiment_.stretch(); }
   // The random numbers of a trajectory in this chunk.
@@ -76,23 +64,24 @@ class GroupRun : public EngineRun {
     const SteadyShape& shape = experiment_.shape();
     const bool is_first = block_->start.empty();
     group_ = is_first ? shape.NewGroup() : shape.Read(block_->start);
-    drawn_ = is_first ? 0 : shape.trajectories;
+    if (is_first) DrawStarts();
     stretches_ = 0;
     is_measuring_ = group_.measured > 0;
+    Start();
   }
 
-  bool DrawStarts(Pauses& pauses) {
-    for (; drawn_ < trajectories().size(); ++drawn_) {
-      if (draw_ == nullptr) draw_ = std::make_unique<StartDraw>(experiment_, RandomOf(drawn_));
-      if (!draw_->draw.Advance(pauses)) return false;
-      SteadyTrajectory& trajectory = trajectories()[drawn_];
-      trajectory.state = draw_->draw.Take();
+  void DrawStarts() {
+    for (size_t i = 0; i < trajectories().size(); ++i) {
+      CounterRandom of_start = RandomOf(i).OfStart();
+      SteadyTrajectory& trajectory = trajectories()[i];
+      trajectory.state =
+          DrawGas(experiment_.geometry(), experiment_.TemperaturesAtStart(), of_start);
       trajectory.energy = EnergyOf(trajectory.state);
-      draw_.reset();
     }
-    return true;
   }
 
+  // The warm-up is judged before the jump process sets its outermost pistons' energies: these may
+  // differ from the energies of the state by rounding.
   void Start() {
     std::vector<GasStart> starts;
     meters_.clear();
@@ -103,12 +92,13 @@ class GroupRun : public EngineRun {
       starts.push_back({std::move(trajectories()[i].state), experiment_.WallsOf(random), random,
                         &meters_.back()});
     }
-    run_ = StartGases(experiment_.gas_engine(), experiment_.geometry(), experiment_.exchange_rate(),
-                      std::move(starts));
     carried_.assign(meters_.size(), 0);
     BeginStretch();
+    run_ = StartGases(experiment_.gas_engine(), experiment_.geometry(), experiment_.exchange_rate(),
+                      std::move(starts));
   }
 
+  // Returns false at a pause.
   bool RunToTheEnd(Pauses& pauses) {
     const double end = static_cast<double>(block_->samples) /
                        static_cast<double>(experiment_.shape().trajectories);
@@ -180,8 +170,6 @@ class GroupRun : public EngineRun {
   BlockQueue& queue_;
   std::optional<Block> block_;
   SteadyGroup group_;
-  size_t drawn_ = 0;  // trajectories that have a start
-  std::unique_ptr<StartDraw> draw_;
   std::vector<GasMeter> meters_;
   std::unique_ptr<GasRun> run_;
   double stretches_ = 0;  // of this chunk

@@ -16,15 +16,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <utility>
-#include <vector>
 
 #include "core/arithmetic/elementary_functions.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_state.h"
-#include "core/gas/pauses.h"
 #include "core/sampling/counter_random.h"
 
 namespace ballpiston {
@@ -52,49 +47,7 @@ class TemperatureProfile {
   double ratio_;  // (cold/hot)^(3/2)
 };
 
-// Draws a gas, with pauses. A gas of 10^6 cells takes a second.
-class GasDraw {
- public:
-  // The geometry and the random numbers must outlive the draw.
-  GasDraw(const GasGeometry& geometry, const TemperatureProfile& temperature,
-          CounterRandom& random);
-
-  // Returns true when the gas is complete, and false at a pause; then to be called again.
-  bool Advance(Pauses& pauses);
-  GasState Take() { return std::move(state_); }  // of a complete gas, once
-
- private:
-  struct Contact {
-    int64_t ball;
-    Direction direction;
-  };
-
-  GasBall& BallAt(int64_t i) { return state_.balls[static_cast<size_t>(i)]; }
-  GasPiston& PistonAt(int64_t i) { return state_.pistons[static_cast<size_t>(i)]; }
-
-  bool DrawPlaces(Pauses& pauses);
-  void DrawPlace(GasBall& ball);
-  void DrawPlace(GasPiston& piston);
-  bool Separate(Pauses& pauses);
-  bool IsBeyond(const Contact& contact);
-  void LookForWrong(int64_t ball);
-  void DrawAgain(const Contact& contact);
-  void BeginRound();
-  bool DrawVelocities(Pauses& pauses);
-
-  const GasGeometry& geometry_;
-  TemperatureProfile temperature_;
-  CounterRandom& random_;
-  GasState state_;
-  // Of a round of the rejection: the balls that may be beyond a piston; the contacts in which they
-  // are, which are then drawn again; and the balls that may be beyond a piston after that.
-  std::vector<int64_t> suspects_, next_suspects_;
-  std::vector<Contact> wrong_;
-  // The numbers of steps that are done, in the order of the draw.
-  size_t placed_balls_ = 0, placed_pistons_ = 0, looked_at_ = 0, drawn_again_ = 0;
-  size_t moving_balls_ = 0, moving_pistons_ = 0;
-};
-
+// Draws a gas. One of 10^6 cells takes a second.
 GasState DrawGas(const GasGeometry& geometry, const TemperatureProfile& temperature,
                  CounterRandom& random);
 

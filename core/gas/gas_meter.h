@@ -2,8 +2,7 @@
 // each body's mean energy. The engine reports every exchange to the meter, in the order of time.
 // The meter forwards exchanges to a meter of the current, if it has one.
 //
-// Bodies are the balls, then the pistons. Placing, beginning and ending take a time in proportion
-// to their number; a function that returns false at a pause must be called again. Not thread-safe.
+// Bodies are the balls, then the pistons. Not thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +14,6 @@
 #include "core/gas/current_meter.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_state.h"
-#include "core/gas/pauses.h"
 
 namespace ballpiston {
 
@@ -31,18 +29,11 @@ struct GasExchange {
 
 class GasMeter {
  public:
-  explicit GasMeter(const GasGeometry& geometry) : balls_(static_cast<size_t>(geometry.balls())) {
-    bodies_.reserve(static_cast<size_t>(geometry.balls() + geometry.pistons()));
-  }
-  GasMeter(const GasGeometry& geometry, const GasState& start) : GasMeter(geometry) {
-    Place(start, NoPauses());
-  }
-
-  bool Place(const GasState& start, Pauses& pauses) {
-    return ForEachBody(start.balls.size() + start.pistons.size(), pauses, [&](size_t i) {
-      bodies_.push_back(
-          {.energy = i < balls_ ? EnergyOf(start.balls[i]) : EnergyOf(start.pistons[i - balls_])});
-    });
+  GasMeter(const GasGeometry& geometry, const GasState& start)
+      : balls_(static_cast<size_t>(geometry.balls())) {
+    bodies_.reserve(start.balls.size() + start.pistons.size());
+    for (const GasBall& ball : start.balls) bodies_.push_back({.energy = EnergyOf(ball)});
+    for (const GasPiston& piston : start.pistons) bodies_.push_back({.energy = EnergyOf(piston)});
   }
 
   // The current is measured from time 0 on.
@@ -50,13 +41,11 @@ class GasMeter {
   const CurrentMeter* current() const { return current_.get(); }  // or null
 
   // Discards all earlier measurements except the current.
-  bool Begin(double time, Pauses& pauses = NoPauses()) {
+  void Begin(double time) {
     begin_ = time;
     exchanges_ = 0;
     carried_ = 0;
-    return ForEachBody(bodies_.size(), pauses, [&](size_t i) {
-      bodies_[i] = {.energy = bodies_[i].energy, .since = time};
-    });
+    for (Body& body : bodies_) body = {.energy = body.energy, .since = time};
   }
 
   void Exchange(const GasExchange& exchange) {
@@ -79,11 +68,10 @@ class GasMeter {
   // A ball has left its cell, which is a defect.
   void CountEscape() { ++escapes_; }
 
-  bool End(double time, Pauses& pauses = NoPauses()) {
-    if (next_ == 0 && current_ != nullptr) current_->End(time);
+  void End(double time) {
+    if (current_ != nullptr) current_->End(time);
     end_ = time;
-    return ForEachBody(bodies_.size(), pauses,
-                       [&](size_t i) { Set(time, bodies_[i].energy, bodies_[i]); });
+    for (Body& body : bodies_) Set(time, body.energy, body);
   }
 
   uint64_t escapes() const { return escapes_; }  // since the start
@@ -109,14 +97,6 @@ class GasMeter {
     double integral = 0;  // of its energy up to that time
   };
 
-  template <typename Step>
-  bool ForEachBody(size_t bodies, Pauses& pauses, const Step& step) {
-    constexpr double kNanoseconds = 10;
-    if (!ForEachWithPauses(next_, bodies, kNanoseconds, pauses, step)) return false;
-    next_ = 0;
-    return true;
-  }
-
   static void Set(double time, double energy, Body& body) {
     body.integral += body.energy * (time - body.since);
     body.energy = energy;
@@ -125,7 +105,6 @@ class GasMeter {
 
   size_t balls_;
   std::vector<Body> bodies_;
-  size_t next_ = 0;  // the body with which a call that paused goes on
   double begin_ = 0;
   double end_ = 0;
   uint64_t escapes_ = 0;

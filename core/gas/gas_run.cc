@@ -1,7 +1,6 @@
 #include "core/gas/gas_run.h"
 
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <utility>
 
@@ -12,9 +11,7 @@
 namespace ballpiston {
 namespace {
 
-// Nanoseconds.
-constexpr double kOfAnEvent = 300;
-constexpr double kToAllocateABody = 20;
+constexpr double kNanosecondsOfAnEvent = 300;
 
 void Record(ReferenceGas& gas, GasMeter& meter) {
   const GasEvent event = gas.Step();
@@ -31,7 +28,7 @@ void Record(ReferenceGas& gas, GasMeter& meter) {
 bool Advance(ReferenceGas& gas, double time, GasMeter& meter, Pauses& pauses) {
   while (gas.NextTime() <= time) {
     Record(gas, meter);
-    if (pauses.After(kOfAnEvent)) return false;
+    if (pauses.After(kNanosecondsOfAnEvent)) return false;
   }
   return true;
 }
@@ -47,48 +44,33 @@ bool Advance(JumpGas& gas, double time, GasMeter& meter, Pauses& pauses) {
 template <typename Gas>
 class SeparateGases : public GasRun {
  public:
-  // `make` makes a gas that has not begun.
-  SeparateGases(const GasGeometry& geometry, std::vector<GasStart> replicas,
-                std::function<Gas(GasStart&)> make)
-      : bodies_(static_cast<double>(geometry.balls() + geometry.pistons())),
-        starts_(std::move(replicas)),
-        make_(std::move(make)) {
-    gases_.reserve(starts_.size());
+  // `make` makes a gas from its start.
+  template <typename Make>
+  SeparateGases(std::vector<GasStart> replicas, const Make& make) {
+    gases_.reserve(replicas.size());
+    for (GasStart& start : replicas) gases_.push_back({make(start), *start.meter});
   }
 
   bool AdvanceTo(double time, Pauses& pauses) override {
-    if (!Begin(pauses)) return false;
-    for (size_t i = 0; i < gases_.size(); ++i) {
-      if (!Advance(gases_[i], time, *starts_[i].meter, pauses)) return false;
+    for (auto& [gas, meter] : gases_) {
+      if (!Advance(gas, time, meter, pauses)) return false;
     }
     time_ = time;
     return true;
   }
 
   GasState StateOf(size_t replica) const override {
-    return ballpiston::StateOf(gases_[replica], time_);
+    return ballpiston::StateOf(gases_[replica].gas, time_);
   }
 
  private:
-  bool Begin(Pauses& pauses) {
-    for (; begun_ < starts_.size(); ++begun_) {
-      GasStart& start = starts_[begun_];
-      if (gases_.size() == begun_) {
-        gases_.push_back(make_(start));
-        if (pauses.After(kToAllocateABody * bodies_)) return false;
-      }
-      if (!gases_.back().Begin(start.state, pauses)) return false;
-      start.state = {};
-    }
-    return true;
-  }
+  struct Metered {
+    Gas gas;
+    GasMeter& meter;
+  };
 
-  double bodies_;
-  std::vector<GasStart> starts_;
-  std::function<Gas(GasStart&)> make_;
-  size_t begun_ = 0;  // gases that are complete
+  std::vector<Metered> gases_;
   double time_ = 0;
-  std::vector<Gas> gases_;
 };
 
 // In the jump process the outermost pistons have their mean energy from the start.
@@ -105,20 +87,19 @@ std::unique_ptr<GasRun> StartGases(GasEngine engine, const GasGeometry& geometry
                                    double exchange_rate, std::vector<GasStart> replicas) {
   switch (engine) {
     case GasEngine::kJumps:
-      return std::make_unique<SeparateGases<JumpGas>>(
-          geometry, std::move(replicas),
-          [geometry, density = std::sqrt(std::numbers::pi) * exchange_rate](GasStart& start) {
-            SetOutermost(geometry, start);
-            return JumpGas(geometry, density, std::move(start.walls), start.random.OfJumps());
-          });
+      return std::make_unique<SeparateGases<JumpGas>>(std::move(replicas), [&](GasStart& start) {
+        SetOutermost(geometry, start);
+        return JumpGas(geometry, std::sqrt(std::numbers::pi) * exchange_rate, start.state,
+                       std::move(start.walls), start.random.OfJumps());
+      });
     case GasEngine::kLanes:
       return std::make_unique<LaneGas>(geometry, exchange_rate, std::move(replicas));
     case GasEngine::kReference:
       break;
   }
-  return std::make_unique<SeparateGases<ReferenceGas>>(
-      geometry, std::move(replicas),
-      [geometry](GasStart& start) { return ReferenceGas(geometry, std::move(start.walls)); });
+  return std::make_unique<SeparateGases<ReferenceGas>>(std::move(replicas), [&](GasStart& start) {
+    return ReferenceGas(geometry, start.state, std::move(start.walls));
+  });
 }
 
 }  // namespace ballpiston

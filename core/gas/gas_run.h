@@ -5,7 +5,7 @@
 //   kJumps      the limit of rare collisions: a jump process of the energies (jump_gas.h).
 //
 // A replica's numbers depend only on its start, not on the times of the calls, on pauses or on
-// other replicas. The replicas are prepared in the first call of AdvanceTo.
+// other replicas.
 #pragma once
 
 #include <cstddef>

@@ -46,7 +46,7 @@ class JumpCurrent : public CurrentMeter {
   void End(double time) override { AddUntil(time); }
   GreenKubo Result() const override;
 
-  // 2 J and 2 J' at the present energies, in the units of conductivity/contact_matrix.h.
+  // 2 J and 2 J' at the present energies, in the units of conductivity/contact_currents.h.
   double current() const { return current_; }
   double current_left() const { return current_left_; }
 

@@ -15,35 +15,26 @@ constexpr double kBallsRatePerPiston = 1 / std::numbers::pi;
 constexpr double kPistonsRate = 2 * 0.5;
 
 constexpr double kNanosecondsOfAnExchange = 100;
-constexpr double kNanosecondsOfABody = 10;
 
 // The rates are found again after as many exchanges as there are bodies, or after:
 constexpr size_t kFewestExchanges = 64;
 
 }  // namespace
 
-JumpGas::JumpGas(const GasGeometry& geometry, double density, ThermalWalls walls,
-                 const CounterRandom& random)
+JumpGas::JumpGas(const GasGeometry& geometry, double density, const GasState& start,
+                 ThermalWalls walls, const CounterRandom& random)
     : geometry_(geometry),
       density_(density),
       walls_(std::move(walls)),
       random_(random),
-      balls_(static_cast<size_t>(geometry.balls())) {
-  speeds_.reserve(balls_ + static_cast<size_t>(geometry.pistons()));
-}
-
-bool JumpGas::Begin(const GasState& start, Pauses& pauses) {
-  const auto take = [&](size_t body) { speeds_.push_back(SpeedAtStart(body, start)); };
-  size_t next = speeds_.size();
-  if (!ForEachWithPauses(next, balls_ + start.pistons.size(), kNanosecondsOfABody, pauses, take)) {
-    return false;
-  }
+      balls_(start.balls.size()) {
+  speeds_.resize(balls_ + start.pistons.size());
+  for (size_t body = 0; body < speeds_.size(); ++body) speeds_[body] = SpeedAtStart(body, start);
   const auto count = static_cast<double>(balls_);
   kinds_[0] = {.count = count};
-  kinds_[1] = {.first = count, .count = static_cast<double>(speeds_.size()) - count};
+  kinds_[1] = {.first = count, .count = static_cast<double>(start.pistons.size())};
   FindRates();
   FindNext();
-  return true;
 }
 
 double JumpGas::SpeedAtStart(size_t body, const GasState& start) const {

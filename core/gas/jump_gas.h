@@ -35,12 +35,9 @@ namespace ballpiston {
 
 class JumpGas {
  public:
-  JumpGas(const GasGeometry& geometry, double density, ThermalWalls walls,
+  // At least one ball or piston must move.
+  JumpGas(const GasGeometry& geometry, double density, const GasState& start, ThermalWalls walls,
           const CounterRandom& random);
-
-  // Takes the start. At least one ball or piston must move. Returns false at a pause; then it must
-  // be called again.
-  bool Begin(const GasState& start, Pauses& pauses = NoPauses());
 
   // Exchanges until `time`, and reports the exchanges to the meter. There an outermost piston has
   // its mean energy. Returns false at a pause; then it must be called again with the same time.

@@ -29,8 +29,6 @@ constexpr size_t kBodiesAtATime = 1536;
 constexpr double kFlightsOfAPeriod = 1024;
 
 // Nanoseconds.
-constexpr double kToPutABall = 200;
-constexpr double kToPutAPiston = 20;
 constexpr double kOfAStep = 300;     // of a replica, without the flights
 constexpr double kToFlyABall = 120;  // one of many
 
@@ -55,57 +53,46 @@ LaneGas::LaneGas(const GasGeometry& geometry, double exchange_rate, std::vector<
       pistons_each_(static_cast<uint32_t>(geometry.pistons())),
       exchange_rate_(exchange_rate),
       mean_flight_(MeanFlight(geometry.pair())),
-      period_(PeriodOf(mean_flight_)),
-      starts_(std::move(replicas)) {
-  const size_t balls = starts_.size() * balls_each_, pistons = starts_.size() * pistons_each_;
+      period_(PeriodOf(mean_flight_)) {
+  const size_t balls = replicas.size() * balls_each_;
   gas_.balls.reserve(balls);
-  gas_.pistons.reserve(pistons);
+  gas_.pistons.reserve(replicas.size() * pistons_each_);
   from_.reserve(balls);
   to_.reserve(balls);
   collisions_.reserve(balls);
   visits_.reserve(balls);
-  replicas_.reserve(starts_.size());
-  for (GasStart& start : starts_) {
-    const auto number = static_cast<uint32_t>(replicas_.size());
-    EventQueue queue(balls_each_ + start.walls.Count());
-    replicas_.push_back({.walls = std::move(start.walls),
-                         .meter = start.meter,
-                         .queue = std::move(queue),
-                         .first_ball = number * balls_each_,
-                         .first_piston = number * pistons_each_,
-                         .begun = BodiesOfAReplica()});
-  }
-}
-
-bool LaneGas::Place(Pauses& pauses) {
-  if (starts_.empty()) return true;
-  if (!ForEachWithPauses(placed_balls_, starts_.size() * balls_each_, kToPutABall, pauses,
-                         [this](size_t i) { PlaceBall(i); }) ||
-      !ForEachWithPauses(placed_pistons_, starts_.size() * pistons_each_, kToPutAPiston, pauses,
-                         [this](size_t i) { PlacePiston(i); })) {
-    return false;
-  }
+  replicas_.reserve(replicas.size());
+  for (GasStart& start : replicas) Add(std::move(start));
   ChooseWindow();
-  starts_.clear();
-  return true;
 }
 
-void LaneGas::PlaceBall(size_t number) {
-  const GasBall& ball = starts_[number / balls_each_].state.balls[number % balls_each_];
+void LaneGas::Add(GasStart start) {
+  const auto number = static_cast<uint32_t>(replicas_.size());
+  EventQueue queue(balls_each_ + start.walls.Count());
+  replicas_.push_back({.walls = std::move(start.walls),
+                       .meter = start.meter,
+                       .queue = std::move(queue),
+                       .first_ball = number * balls_each_,
+                       .first_piston = number * pistons_each_,
+                       .begun = BodiesOfAReplica()});
+  for (const GasBall& ball : start.state.balls) Place(ball);
+  for (const GasPiston& piston : start.state.pistons) Place(piston);
+}
+
+void LaneGas::Place(const GasBall& ball) {
   to_.push_back(PlacedBall(gas_, ball.position, ball.direction));
   from_.push_back(to_.back());
   collisions_.emplace_back();
   visits_.push_back(0);
   const double speed = std::max(ball.speed, kAtRest);
   gas_.balls.push_back({.speed = speed, .slowness = 1 / speed});
-  FindPistons(static_cast<uint32_t>(number));
+  FindPistons(static_cast<uint32_t>(gas_.balls.size()) - 1);
 }
 
-void LaneGas::PlacePiston(size_t number) {
-  const GasPiston& piston = starts_[number / pistons_each_].state.pistons[number % pistons_each_];
+void LaneGas::Place(const GasPiston& piston) {
   const PairState seen = {.piston = 0.5 + piston.offset, .piston_velocity = piston.velocity};
   gas_.pistons.push_back({.speed = std::fabs(piston.velocity), .phase = gas_.wave.Phase(seen)});
-  FindArrival(replicas_[number / pistons_each_], static_cast<uint32_t>(number));
+  FindArrival(replicas_.back(), static_cast<uint32_t>(gas_.pistons.size()) - 1);
 }
 
 void LaneGas::FindPistons(uint32_t ball) {
@@ -132,7 +119,6 @@ void LaneGas::ChooseWindow() {
 }
 
 bool LaneGas::AdvanceTo(double time, Pauses& pauses) {
-  if (!Place(pauses)) return false;
   if (time > time_) {
     time_ = time;
     for (uint32_t i = 0; i < replicas_.size(); ++i) active_.push_back(i);

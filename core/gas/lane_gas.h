@@ -17,6 +17,7 @@
 //   2. CallsAndNeighboursDoNotChangeTheBits.  3. KeepsItsEnergyOverMillionsOfHits.
 //   4. BallsThatMeetPistonsInTipsStayInTheirCells.
 //   5. AnEscapedBallStopsAndCountsOnce.  6. AGasContinuesFromItsState.
+//   7. PistonsKeepTheirMotionWhenTheOriginMoves.
 #pragma once
 
 #include <cstddef>
@@ -57,9 +58,9 @@ class LaneGas : public GasRun {
 
   GasBall BallNow(const Replica& replica, uint32_t ball) const;
   GasPiston PistonNow(const Replica& replica, uint32_t piston) const;
-  bool Place(Pauses& pauses);
-  void PlaceBall(size_t number);
-  void PlacePiston(size_t number);
+  void Add(GasStart start);
+  void Place(const GasBall& ball);
+  void Place(const GasPiston& piston);
   void FindPistons(uint32_t ball);
   void ChooseWindow();
 
@@ -90,10 +91,8 @@ class LaneGas : public GasRun {
   uint32_t pistons_each_;
   double exchange_rate_;
   double mean_flight_;
-  double period_;                 // of the origin's moves
-  double window_ = 0;             // of time
-  std::vector<GasStart> starts_;  // until all bodies are placed
-  size_t placed_balls_ = 0, placed_pistons_ = 0;
+  double period_;      // of the origin's moves
+  double window_ = 0;  // of time
   std::vector<Replica> replicas_;
   // By ball. `from_` is the ball before the flight in which the window begins, or in which its last
   // exchange in the window is. `to_` is the ball before the flight in which the window ends.

@@ -5,7 +5,6 @@
 // a pause. Not thread-safe.
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <utility>
 
@@ -39,18 +38,6 @@ class Pauses {
 inline Pauses& NoPauses() {
   thread_local Pauses never;
   return never;
-}
-
-// Calls step(next), step(next + 1), ..., step(end - 1), each of which takes about so many
-// nanoseconds. Returns false if there is a pause; the next call with the same `next` continues.
-template <typename Step>
-bool ForEachWithPauses(size_t& next, size_t end, double nanoseconds, Pauses& pauses,
-                       const Step& step) {
-  while (next < end) {
-    step(next++);
-    if (pauses.After(nanoseconds)) return false;
-  }
-  return true;
 }
 
 }  // namespace ballpiston

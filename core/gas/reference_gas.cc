@@ -14,37 +14,23 @@ namespace {
 // event in a thousand.
 constexpr uint64_t kEventsFromAnOrigin = 1024;
 
-// Nanoseconds.
-constexpr double kToBeginWithAPiston = 50;
-constexpr double kToBeginWithABall = 200;
-
 }  // namespace
 
 ReferenceGas::ReferenceGas(const GasGeometry& geometry, const GasState& state, ThermalWalls walls)
-    : ReferenceGas(geometry, std::move(walls)) {
-  Begin(state, NoPauses());
-}
-
-ReferenceGas::ReferenceGas(const GasGeometry& geometry, ThermalWalls walls)
     : geometry_(geometry),
       cell_walls_(geometry.pair()),
       thermal_walls_(std::move(walls)),
       queue_(Place(geometry.pistons())) {
-  balls_.reserve(Index(geometry.balls()));
-  pistons_.reserve(Index(geometry.pistons()));
-}
-
-bool ReferenceGas::Begin(const GasState& state, Pauses& pauses) {
-  size_t piston = pistons_.size(), ball = balls_.size();
-  return ForEachWithPauses(piston, state.pistons.size(), kToBeginWithAPiston, pauses,
-                           [&](size_t i) {
-                             TimePiston(pistons_.emplace_back(Piston{.state = state.pistons[i]}));
-                             SchedulePiston(static_cast<int64_t>(i));
-                           }) &&
-         ForEachWithPauses(ball, state.balls.size(), kToBeginWithABall, pauses, [&](size_t i) {
-           Aim(balls_.emplace_back(Ball{.state = state.balls[i]}));
-           LookAround(static_cast<int64_t>(i));
-         });
+  pistons_.reserve(state.pistons.size());
+  for (const GasPiston& piston : state.pistons) {
+    TimePiston(pistons_.emplace_back(Piston{.state = piston}));
+    SchedulePiston(static_cast<int64_t>(pistons_.size()) - 1);
+  }
+  balls_.reserve(state.balls.size());
+  for (const GasBall& ball : state.balls) {
+    Aim(balls_.emplace_back(Ball{.state = ball}));
+    LookAround(static_cast<int64_t>(balls_.size()) - 1);
+  }
 }
 
 GasEvent ReferenceGas::Step() {

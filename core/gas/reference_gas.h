@@ -21,7 +21,6 @@
 #include "core/gas/event_queue.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_state.h"
-#include "core/gas/pauses.h"
 #include "core/gas/thermal_walls.h"
 #include "core/geometry/pair_state.h"
 
@@ -38,11 +37,6 @@ struct GasEvent {
 class ReferenceGas {
  public:
   ReferenceGas(const GasGeometry& geometry, const GasState& state, ThermalWalls walls);
-
-  // The same in parts: the gas is complete when Begin has returned true. At a pause Begin returns
-  // false; then it must be called again with the same state.
-  ReferenceGas(const GasGeometry& geometry, ThermalWalls walls);
-  bool Begin(const GasState& state, Pauses& pauses);
 
   // The time of the next event; infinite if there is none.
   double NextTime() const { return origin_ + queue_.First().time; }

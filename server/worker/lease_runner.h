@@ -18,8 +18,8 @@ class ChunkReceiver {
   virtual ~ChunkReceiver() = default;
   // A complete chunk. Chunks arrive in order.
   virtual void ChunkDone(ChunkResult chunk) = 0;
-  // Processor time since the last call. Called at least every 0.05 s, and after each complete
-  // chunk.
+  // Processor time since the last call. Called when the run asks whether to pause
+  // (BlockQueue::Pause), and after each complete chunk.
   virtual void Worked(double seconds) = 0;
 };
 

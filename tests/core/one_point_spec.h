@@ -29,7 +29,7 @@ inline PointParameters PaperGas(const ExperimentKind* experiment, double delta,
   return point;
 }
 
-// By which both experiments with a gas can be asked.
+// By which gas-equilibrium and gas-conduction can be asked.
 inline constexpr Model kModelsThatSampleGases[] = {Model::kMarkov, Model::kBilliard,
                                                    Model::kBilliardReference};
 

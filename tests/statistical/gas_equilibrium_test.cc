@@ -1,67 +1,80 @@
 // Gases in equilibrium: exchange rates, laws of energies, and the conservation of energy.
+#include "core/experiment/gas_experiment.h"
 #include "core/gas/hit_rates.h"
 #include "tests/core/gas/gases.h"
+#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
+#include "tests/core/run_point.h"
 #include "tests/oracle/one_sample.h"
-#include "tests/statistical/gas_samples.h"
 #include "tests/support/nightly.h"
+#include "tools/flows/metered_gases.h"
 
 namespace ballpiston {
 namespace {
 
 constexpr uint64_t kGasSeed = 21;
 
-// Exchanges of a contact in a unit of time, by replica.
-Moments RateOf(const GasSamples& samples, const GasTask& task) {
-  Moments rate;
-  for (const double exchanges : samples.exchanges) {
-    rate.Add(exchanges / task.time / static_cast<double>(task.geometry.contacts()));
-  }
-  return rate;
-}
+class GasInEquilibriumOf : public testing::TestWithParam<std::tuple<Model, const char*>> {};
 
-// Gamma(1) of balls, Gamma(1/2) of pistons. Each distance exceeds 2.3 in 5e-5 of all cases.
-void ExpectGammaLaws(const GasSamples& samples) {
-  EXPECT_LT(oracle::KolmogorovSmirnov(samples.balls, [](double e) { return -std::expm1(-e); }),
-            2.3);
-  EXPECT_LT(
-      oracle::KolmogorovSmirnov(samples.pistons, [](double e) { return std::erf(std::sqrt(e)); }),
-      2.3);
-}
-
-class GasInEquilibriumOf : public testing::TestWithParam<std::tuple<GasEngine, const char*>> {};
-
-// The mean over the canonical ensemble, from many replicas. The rate differs by four standard
-// errors, of 0.2 % to 0.6 % each, in 6e-5 of all cases; the final energies of all bodies are
-// independent. Together 2e-4 false alarms each.
+// Means over the canonical ensemble, from many replicas, and the laws of the speeds at their ends.
+// Each of three means differs by four standard errors in 6e-5 of all cases; that of the rate is
+// 0.3 % to 0.6 %. A divergence exceeds its noise by four standard errors as rarely or more rarely.
+// Together 3e-4 false alarms each.
 TEST_P(GasInEquilibriumOf, HasItsExactRateAndItsGammaLaws) {
-  const auto& [engine, shape] = GetParam();
-  const GasGeometry gas = GasOf(kPaperRho, 0.2, shape);
-  const GasTask task = {engine, gas, static_cast<uint64_t>(20'000 / gas.contacts()), 50, kGasSeed};
-  const GasSamples samples = Measure(task);
-  const Moments rate = RateOf(samples, task);
-  const double exact = GasExchangeRate(gas, 1), error = *rate.StandardError();
-  EXPECT_NEAR(rate.mean, exact, 4 * error);
-  EXPECT_LT(error, 0.007 * exact);
-  ExpectGammaLaws(samples);
+  const auto& [model, shape] = GetParam();
+  const PointParameters gas = PaperGas(&kGasEquilibrium, 0.2, ShapeNamed(shape));
+  const int64_t replicas = 20'000 / ShapeNamed(shape).contacts();
+  const PointSummary summary =
+      RunPoint(SpecOf(&kGasEquilibrium, gas, {.samples = replicas}, model, kGasSeed));
+  for (const char* name : {"exchange_rate", "temperature_ball", "temperature_piston"}) {
+    const Estimate& mean = Named(name, summary.estimates);
+    EXPECT_LT(std::fabs(*mean.ZScore()), 4) << name;
+  }
+  const Estimate& rate = Named("exchange_rate", summary.estimates);
+  EXPECT_LT(*rate.standard_error, 0.007 * *rate.exact);
+  for (const char* name : {"ball_speed_divergence", "piston_speed_divergence"}) {
+    const Estimate& divergence = Named(name, summary.estimates);
+    EXPECT_LT(divergence.value, *divergence.noise_floor + 4 * *divergence.standard_error) << name;
+  }
+  EXPECT_EQ(summary.health.escapes, 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, GasInEquilibriumOf,
-                         testing::Combine(testing::Values(GasEngine::kReference, GasEngine::kJumps),
-                                          testing::Values("1", "2", "5", "1x1", "2x1", "1x3",
-                                                          "4x4")));
-// The lanes are slow in small gases.
-INSTANTIATE_TEST_SUITE_P(Lanes, GasInEquilibriumOf,
-                         testing::Combine(testing::Values(GasEngine::kLanes),
-                                          testing::Values("2", "1x1", "4x4")));
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, GasInEquilibriumOf,
+    testing::Combine(testing::Values(Model::kBilliardReference, Model::kMarkov, Model::kBilliard),
+                     testing::Values("1", "2", "5", "1x1", "2x1", "1x3", "4x4")));
 
-// After a hundred exchanges of each contact, of one large gas. False alarms: 1e-4.
+// Replicas of a gas at temperature 1.
+MeteredGases StartedGases(GasEngine engine, const GasGeometry& gas, uint64_t replicas) {
+  std::vector<GasStart> starts;
+  for (uint64_t i = 0; i < replicas; ++i) {
+    starts.push_back({GasInEquilibrium(gas, 1, kGasSeed, i), ThermalWalls(),
+                      GasRandom(kGasSeed, 0, i), nullptr});
+  }
+  return {engine, gas, std::move(starts)};
+}
+
+// After a hundred exchanges of each contact, of two large gases: Gamma(1) of balls, Gamma(1/2) of
+// pistons. False alarms: 1e-4.
 TEST(JumpGas, KeepsTheGammaLaws) {
+  constexpr double kTime = 1000;
+  constexpr uint64_t kReplicas = 2;
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "100x40");
-  const GasTask task = {GasEngine::kJumps, gas, 2, 1000, kGasSeed};
-  const GasSamples samples = Measure(task);
-  EXPECT_LT(std::fabs(RateOf(samples, task).mean / GasExchangeRate(gas, 1) - 1), 0.02);
-  ExpectGammaLaws(samples);
+  MeteredGases run = StartedGases(GasEngine::kJumps, gas, kReplicas);
+  run.AdvanceTo(kTime);
+  double exchanges = 0;
+  std::vector<double> balls, pistons;
+  for (const GasMeter& meter : run.meters()) {
+    exchanges += static_cast<double>(meter.exchanges());
+    for (size_t body = 0; body < meter.bodies(); ++body) {
+      (body < meter.balls() ? balls : pistons).push_back(meter.Energy(body));
+    }
+  }
+  const double rate = exchanges / (kReplicas * kTime * static_cast<double>(gas.contacts()));
+  EXPECT_LT(std::fabs(rate / GasExchangeRate(gas, 1) - 1), 0.02);
+  EXPECT_LT(oracle::KolmogorovSmirnov(balls, [](double e) { return -std::expm1(-e); }), 2.3);
+  EXPECT_LT(oracle::KolmogorovSmirnov(pistons, [](double e) { return std::erf(std::sqrt(e)); }),
+            2.3);
 }
 
 // A gas runs for 2e7 (nightly 1e8) wall hits of its balls, in ten stretches. Each exchange rounds
@@ -72,7 +85,7 @@ TEST(LaneGas, KeepsItsEnergyOverMillionsOfHits) {
   const double all_hits = IsNightly() ? 1e8 : 2e7;
   const GasGeometry gas = GasOf(kPaperRho, 0.1, "32x32");
   const double hits_of_time = HitRatesOf(gas.pair()).of_a_ball * static_cast<double>(gas.balls());
-  MeteredGases run = ReplicaOf({GasEngine::kLanes, gas, 1, 0, kGasSeed}, 0);
+  MeteredGases run = StartedGases(GasEngine::kLanes, gas, 1);
   const GasMeter& meter = run.meters().front();
   const double energy = meter.TotalEnergy();
   for (int i = 1; i <= kStretches; ++i) {

@@ -45,7 +45,7 @@ Target TargetOf(const SampledQuestion& asked, int64_t count) {
   return counts_samples ? Target{.samples = count} : Target{.collisions = count};
 }
 
-// Computes the rest of the point; `merges` counts the samples that were not in the state.
+// Computes the rest of the point; `samples` counts the samples that were not in the state.
 PointFold Continued(const PointExperiment& point, const std::optional<FoldState>& state,
                     uint64_t& samples) {
   PointFold fold(point);

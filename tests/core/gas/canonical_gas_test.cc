@@ -169,24 +169,6 @@ TEST(CanonicalGas, SpeedsOfThermalWallsHaveTheFluxLaw) {
   EXPECT_LT(oracle::KolmogorovSmirnov(thermal, GammaHalf), 2.3);
 }
 
-// A pause whenever one is possible.
-TEST(CanonicalGas, PausesDivideADrawAndKeepItsNumbers) {
-  const GasGeometry gas = CrowdedGas("150x150", GasEnds::kReservoirs);
-  const TemperatureProfile profile(2, 1, 150);
-  CounterRandom random(70, 0, 0), paused_random(70, 0, 0), other_random(70, 0, 1);
-  const GasState whole = DrawGas(gas, profile, random);
-  GasDraw draw(gas, profile, paused_random);
-  int parts = 1;
-  const auto advance = [&draw] {
-    Pauses always([] { return true; });
-    return draw.Advance(always);
-  };
-  while (!advance()) ++parts;
-  EXPECT_GE(parts, 6);  // of at most some 4,000 cells
-  EXPECT_EQ(ComponentsOf(draw.Take()), ComponentsOf(whole));
-  EXPECT_NE(DrawGas(gas, profile, other_random).balls[0].position, whole.balls[0].position);
-}
-
 // Down to the smallest ratio of the permitted temperatures. Long double has 11 bits more.
 TEST(TemperatureProfile, PowerThreeHalvesIsLinearForEveryRatioOfTemperatures) {
   for (const double hot : {1e120, 1.0, 1e-120}) {

@@ -137,27 +137,6 @@ TEST(GasMeter, CountsAndAverages) {
   EXPECT_EQ(meter.Energy(0), 3);
 }
 
-// 600,000 bodies take some 10 ms.
-TEST(GasMeter, OfABigGasLooksAtPauses) {
-  const GasGeometry gas = GasOf(kPaperRho, 0.2, "500x400");
-  GasState start;
-  start.balls.resize(200'000, {.speed = std::sqrt(2.0)});
-  start.pistons.resize(400'000, {.velocity = 1});
-  Pauses always([] { return true; });
-  GasMeter meter(gas);
-  const auto calls_of = [](const auto& function) {
-    int calls = 1;
-    while (!function()) ++calls;
-    return calls;
-  };
-  EXPECT_GE(calls_of([&] { return meter.Place(start, always); }), 3);
-  EXPECT_EQ(meter.TotalEnergy(), 400'000);
-  EXPECT_GE(calls_of([&] { return meter.Begin(1, always); }), 3);
-  EXPECT_GE(calls_of([&] { return meter.End(3, always); }), 3);
-  EXPECT_DOUBLE_EQ(meter.MeanEnergy(0), 1);
-  EXPECT_DOUBLE_EQ(meter.MeanEnergy(599'999), 0.5);
-}
-
 TEST(GasMeter, ExchangesAlongYCarryNoEnergyAlongX) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "2x2");
   GasMeter meter(gas, GasInEquilibrium(gas, 1, 92, 0));

@@ -50,7 +50,6 @@ FirstExchange AfterOne(GasMeter& meter, const GasState& start, double end) {
 
 // Steps that end before the first exchange are final; one that ends after the second is halved.
 FirstExchange Find(JumpGas gas, const GasGeometry& geometry, const GasState& start, double step) {
-  gas.Begin(start);
   for (double begin = 0;;) {
     JumpGas next = gas;
     GasMeter meter(geometry, start);
@@ -96,7 +95,7 @@ TEST(JumpGas, PairsFollowTheJumpProcess) {
     for (uint64_t replica = 0; replica < kReplicas; ++replica) {
       const CounterRandom random(81, row, replica);
       const FirstExchange first =
-          Find(JumpGas(ring, kDensity, ThermalWalls(), random), ring, start, 0.3 / sum);
+          Find(JumpGas(ring, kDensity, start, ThermalWalls(), random), ring, start, 0.3 / sum);
       times.push_back(first.time * sum);
       ++counts[2 * first.ball + first.piston];
       const double eb = e.balls[first.ball], ep = e.pistons[first.piston];
