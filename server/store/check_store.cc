@@ -7,7 +7,6 @@
 #include "ballpiston/v1/ensemble.pb.h"
 #include "google/rpc/status.pb.h"
 #include "server/convert/fold_record.h"
-#include "server/convert/point_end.h"
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
 #include "server/store/schema.h"

@@ -34,7 +34,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kExitFailed = 1;
-constexpr int kExitOtherVersion = 3;  // of the engine or of the files
+constexpr int kExitOtherVersion = 3;  // of the engine
 
 // A batch system sends SIGUSR1 a minute or more before it kills the worker. If the chunk is not
 // complete after this time, it is dropped.
