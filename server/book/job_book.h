@@ -49,6 +49,11 @@ struct FoundJob {
   }
 };
 
+struct FinishedPoint {
+  int64_t number = 0;
+  std::string result;  // serialized v1::PointResult
+};
+
 struct ResultsQuery {
   int64_t first_point = 0;
   int max_points = 1;
@@ -120,19 +125,14 @@ class JobBook {
 
   // ---- for watches ----
 
-  // Without its grid.
-  absl::StatusOr<FoundJob> FindWatched(const Principal& caller, const std::string& id);
-
-  // The row of a job that is or was active, without its grid; one read serves all watches. It is
-  // not older than the job's last change of state, or its last FindWatched.
-  absl::StatusOr<std::shared_ptr<const StoredJob>> Stored(Job& job);
+  absl::StatusOr<FoundJob> Find(const Principal& caller, const std::string& id, Grid grid);
 
   // The newest `limit` unfinished points of the job. The snapshot is at most `max_age` old.
   std::shared_ptr<const JobSnapshot> Snapshot(Job& job, std::chrono::milliseconds max_age,
                                               size_t limit) const;
 
   // The finished points after number `after`, in order, at most `limit`; fewer if they are large.
-  // `active` is null if the job has ended. No points: there are no more. May read the store.
+  // `active` is null if the job has ended. No points: there are no more.
   absl::StatusOr<std::vector<FinishedPoint>> FinishedAfter(int64_t sequence, const Job* active,
                                                            int64_t after, size_t limit);
 
@@ -156,7 +156,6 @@ class JobBook {
   void TellScheduler(const JobRecord& row);
   void StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& checked);
   absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id, Grid grid);
-  absl::StatusOr<FoundJob> Find(const Principal& caller, const std::string& id, Grid grid);
   // Adds the numbers in memory. If the job has ended since its row was read, reads the row again.
   absl::StatusOr<FoundJob> WithNumbers(const Principal& caller, JobRecord record, Grid grid);
 

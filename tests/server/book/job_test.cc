@@ -37,16 +37,6 @@ JobRecord JobWithPoints(int64_t points) {
   return record;
 }
 
-FinishedPoint FinishedPointOf(int number) {
-  return {number, std::make_shared<const std::string>(std::to_string(number))};
-}
-
-std::vector<int64_t> Numbers(const std::vector<FinishedPoint>& points) {
-  std::vector<int64_t> numbers;
-  for (const FinishedPoint& point : points) numbers.push_back(point.number);
-  return numbers;
-}
-
 TEST(Job, AToleranceGivesNoFraction) {
   v1::EnsembleSpec spec;
   spec.mutable_target()->set_tolerance(0.1);
@@ -55,35 +45,23 @@ TEST(Job, AToleranceGivesNoFraction) {
   EXPECT_FALSE(Job(record).Progress().has_fraction());
 }
 
-TEST(Job, FinishedPointsComeInTheirOrderAndTheNewestAreKept) {
-  Job job(JobWithPoints(1000));
-  for (int number = 1; number <= 300; ++number) job.AddFinishedPoint(FinishedPointOf(number));
-  const auto last = static_cast<int64_t>(300 - kRecentPoints);
-  EXPECT_EQ(job.FinishedAfter(last - 1, 10), std::nullopt);
-  EXPECT_EQ(job.FinishedAfter(last, 1000)->size(), kRecentPoints);
-  EXPECT_THAT(Numbers(*job.FinishedAfter(250, 3)), testing::ElementsAre(251, 252, 253));
-  EXPECT_THAT(Numbers(*job.FinishedAfter(298, 10)), testing::ElementsAre(299, 300));
-  EXPECT_TRUE(job.FinishedAfter(300, 10)->empty());
-}
-
-TEST(SharedCopy, AnOldCopyIsReplacedIfTheJobHasChanged) {
-  SharedCopy<JobSnapshot> shared;
-  uint64_t made = 0;
-  const auto make = [&made]() -> absl::StatusOr<JobSnapshot> {
+TEST(Job, AnOldSnapshotIsReplacedIfTheJobHasChanged) {
+  Job job(JobWithPoints(1));
+  int made = 0;
+  const auto make = [&] {
+    ++made;
     JobSnapshot snapshot;
-    snapshot.change = ++made;
+    snapshot.change = job.last_change();
     return snapshot;
   };
   const auto ever = std::chrono::hours(1);
   const auto never = std::chrono::milliseconds(0);
-  const auto first = *shared.Get(1, ever, make);
-  EXPECT_EQ(*shared.Get(2, ever, make), first);   // young
-  EXPECT_EQ(*shared.Get(1, never, make), first);  // nothing changed
-  const auto second = *shared.Get(2, never, make);
-  EXPECT_EQ(second->change, 2u);
-  EXPECT_EQ(made, 2u);
-  shared.Drop();
-  EXPECT_EQ((*shared.Get(2, ever, make))->change, 3u);
+  const auto first = job.Snapshot(ever, make);
+  EXPECT_EQ(job.Snapshot(never, make), first);  // nothing changed
+  const uint64_t change = job.Add({.samples = 1});
+  EXPECT_EQ(job.Snapshot(ever, make), first);  // young
+  EXPECT_EQ(job.Snapshot(never, make)->change, change);
+  EXPECT_EQ(made, 2);
 }
 
 class JobJournalTest : public testing::Test {
