@@ -170,8 +170,8 @@ class StoreCheck {
 
 }  // namespace
 
-absl::StatusOr<StoreSummary> CheckStore(const std::string& path, const std::string& vfs) {
-  const auto database = OpenStoreToRead(path, vfs);
+absl::StatusOr<StoreSummary> CheckStore(const std::string& path) {
+  const auto database = OpenStoreToRead(path);
   if (!database.ok()) return database.status();
   absl::StatusOr<StoreSummary> summary = StoreCheck(**database).Run();
   if (summary.ok()) summary->bytes = FileBytes(path) + FileBytes(path + "-wal");
