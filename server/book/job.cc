@@ -66,10 +66,15 @@ uint64_t Job::Add(const JobNumbers& more) {
   return ++last_change_;
 }
 
-void Job::NoteFinishedPoint(int64_t number) {
+void Job::AddFinishedPoint(FinishedPoint point) {
   MutexLock lock(mutex_);
   ++numbers_.points_done;
-  last_finished_ = number;
+  last_finished_ = point.number;
+  recent_.push_back(std::move(point));
+  if (recent_.size() > kRecentPoints) {
+    last_forgotten_ = recent_.front().number;
+    recent_.pop_front();
+  }
   ++last_change_;
 }
 
@@ -79,8 +84,17 @@ void Job::AddRestoredPoints(const std::vector<PointSize>& points) {
     numbers_.Add(
         {.points_done = 1, .samples = point.samples, .bytes = point.bytes, .points_computed = 1});
   }
-  last_finished_ = numbers_.points_done;
+  last_finished_ = last_forgotten_ = numbers_.points_done;
   ++last_change_;
+}
+
+std::optional<std::vector<FinishedPoint>> Job::FinishedAfter(int64_t after, size_t limit) const {
+  MutexLock lock(mutex_);
+  if (after < last_forgotten_) return std::nullopt;
+  const auto is_older = [](int64_t number, const FinishedPoint& p) { return number < p.number; };
+  const auto first = std::upper_bound(recent_.begin(), recent_.end(), after, is_older);
+  const auto left = static_cast<size_t>(recent_.end() - first);
+  return std::vector<FinishedPoint>(first, first + static_cast<ptrdiff_t>(std::min(left, limit)));
 }
 
 std::shared_ptr<const JobSnapshot> Job::Snapshot(std::chrono::milliseconds max_age,

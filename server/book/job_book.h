@@ -49,11 +49,6 @@ struct FoundJob {
   }
 };
 
-struct FinishedPoint {
-  int64_t number = 0;
-  std::string result;  // serialized v1::PointResult
-};
-
 struct ResultsQuery {
   int64_t first_point = 0;
   int max_points = 1;
@@ -132,7 +127,7 @@ class JobBook {
                                               size_t limit) const;
 
   // The finished points after number `after`, in order, at most `limit`; fewer if they are large.
-  // `active` is null if the job has ended. No points: there are no more.
+  // `active` is null if the job has ended. No points: there are no more. May read the store.
   absl::StatusOr<std::vector<FinishedPoint>> FinishedAfter(int64_t sequence, const Job* active,
                                                            int64_t after, size_t limit);
 

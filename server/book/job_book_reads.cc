@@ -155,13 +155,16 @@ std::shared_ptr<const JobSnapshot> JobBook::Snapshot(Job& job, std::chrono::mill
 absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(int64_t sequence,
                                                                   const Job* active, int64_t after,
                                                                   size_t limit) {
+  if (active != nullptr) {
+    if (auto recent = active->FinishedAfter(after, limit)) return *std::move(recent);
+  }
   std::vector<FinishedPoint> points;
   size_t bytes = 0;
   const auto take = [&](int64_t number, std::string result) {
     // A point that the job does not have yet would give a token that the job does not know.
     if (active != nullptr && number > active->last_finished()) return false;
     bytes += result.size();
-    points.push_back({number, std::move(result)});
+    points.push_back({number, std::make_shared<const std::string>(std::move(result))});
     return points.size() < limit && bytes < kMaxBytesOfPoints;
   };
   const auto read = store_.Read([&](Database& database) {

@@ -182,7 +182,7 @@ class Watch {
     if (!points.ok()) return points.status();
     if (points->empty()) return false;
     for (const FinishedPoint& point : *points) {
-      absl::StatusOr<v1::PointResult> result = ResultFromBytes(point.result);
+      absl::StatusOr<v1::PointResult> result = ResultFromBytes(*point.result);
       if (!result.ok()) return StoreFailure(result.status());
       *message_.mutable_snapshot()->add_finished_points() = Named(*std::move(result), id_);
     }
