@@ -19,7 +19,7 @@ readonly PACKAGES=(
   libabsl-dev libeigen3-dev libhwy-dev librandom123-dev        # the core
   libboost-dev                                                 # its numbers of more than 64 bits
   libsqlite3-dev libssl-dev                                    # the store, the door
-  libxxhash-dev                                                # files of the server and its workers
+  zlib1g-dev                                                   # compressed rows and files
   prometheus-cpp-dev                                           # metrics
   libcli11-dev                                                 # the flags of both programs
   libcpp-httplib-dev pkgconf                                   # the client's page

@@ -53,7 +53,7 @@ std::optional<EarlierJob> FindOriginal(Database& database, const Acceptance& acc
   if (request->payload != acceptance.payload) {
     database.Fail(RequestIdReused(acceptance.request_id));
   }
-  auto job = FindJobBySequence(database, request->job, Grid::kIncluded);
+  auto job = FindJobBySequence(database, request->job);
   return job ? std::optional(EarlierJob{*std::move(job)}) : std::nullopt;
 }
 

@@ -6,6 +6,7 @@
 #include "absl/container/flat_hash_set.h"
 #include "server/book/job_message.h"
 #include "server/convert/spec.h"
+#include "server/host.h"
 
 namespace ballpiston::server {
 
@@ -94,6 +95,19 @@ std::optional<std::vector<FinishedPoint>> Job::FinishedAfter(int64_t after, size
   const auto first = std::upper_bound(recent_.begin(), recent_.end(), after, is_older);
   const auto left = static_cast<size_t>(recent_.end() - first);
   return std::vector<FinishedPoint>(first, first + static_cast<ptrdiff_t>(std::min(left, limit)));
+}
+
+std::shared_ptr<const JobSnapshot> Job::Snapshot(std::chrono::milliseconds max_age,
+                                                 absl::FunctionRef<JobSnapshot()> make) {
+  const uint64_t change = last_change_;
+  MutexLock lock(snapshot_mutex_);
+  const auto now = SteadyNow();
+  const bool fits =
+      snapshot_ != nullptr && (snapshot_->change >= change || now - snapshot_time_ < max_age);
+  if (fits) return snapshot_;
+  snapshot_ = std::make_shared<const JobSnapshot>(make());
+  snapshot_time_ = now;
+  return snapshot_;
 }
 
 }  // namespace ballpiston::server

@@ -9,7 +9,8 @@
 //
 // Finished points have numbers of their own. The store assigns them, and they stay valid after a
 // restart of the server (point_tables.h). A point counts as done, and can be sent, when it is
-// stored. The job keeps the newest kRecentPoints in memory; the store has all of them. Thread-safe.
+// stored. The job keeps the newest kRecentPoints in memory, because reads of the store by a
+// thousand watches would delay other calls; the store has all of them. Thread-safe.
 #pragma once
 
 #include <atomic>
@@ -22,9 +23,9 @@
 #include <string>
 #include <vector>
 
+#include "absl/functional/function_ref.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "ballpiston/v1/result.pb.h"
-#include "server/book/shared_copy.h"
 #include "server/mutex.h"
 #include "server/store/job_record.h"
 #include "server/store/point_tables.h"
@@ -36,12 +37,6 @@ inline constexpr size_t kRecentPoints = 100;
 struct FinishedPoint {
   int64_t number = 0;
   std::shared_ptr<const std::string> result;  // serialized v1::PointResult
-};
-
-// The job's row at one moment.
-struct StoredJob {
-  uint64_t change = 0;  // the number of the last change of state before the row was read
-  JobRecord record;
 };
 
 // The job's unfinished points at one moment.
@@ -94,8 +89,11 @@ class Job {
   // points are no longer in memory.
   std::optional<std::vector<FinishedPoint>> FinishedAfter(int64_t after, size_t limit) const;
 
-  SharedCopy<JobSnapshot>& snapshot() { return snapshot_; }
-  SharedCopy<StoredJob>& stored() { return stored_; }
+  // The snapshot that all watches of the job share, because it needs the scheduler's lock. Returns
+  // the last one if nothing has changed since it was made, or if it is younger than `max_age`.
+  // Otherwise calls `make`, in one thread at a time.
+  std::shared_ptr<const JobSnapshot> Snapshot(std::chrono::milliseconds max_age,
+                                              absl::FunctionRef<JobSnapshot()> make);
 
  private:
   const bool open_ended_;  // the number of samples is not known in advance
@@ -112,8 +110,9 @@ class Job {
   // The number of the last point before those in recent_.
   int64_t last_forgotten_ ABSL_GUARDED_BY(mutex_) = 0;
 
-  SharedCopy<JobSnapshot> snapshot_;
-  SharedCopy<StoredJob> stored_;
+  Mutex snapshot_mutex_;
+  std::shared_ptr<const JobSnapshot> snapshot_ ABSL_GUARDED_BY(snapshot_mutex_);
+  std::chrono::steady_clock::time_point snapshot_time_ ABSL_GUARDED_BY(snapshot_mutex_);
 };
 
 }  // namespace ballpiston::server

@@ -120,12 +120,7 @@ class JobBook {
 
   // ---- for watches ----
 
-  // Without its grid.
-  absl::StatusOr<FoundJob> FindWatched(const Principal& caller, const std::string& id);
-
-  // The row of a job that is or was active, without its grid; one read serves all watches. It is
-  // not older than the job's last change of state, or its last FindWatched.
-  absl::StatusOr<std::shared_ptr<const StoredJob>> Stored(Job& job);
+  absl::StatusOr<FoundJob> Find(const Principal& caller, const std::string& id, Grid grid);
 
   // The newest `limit` unfinished points of the job. The snapshot is at most `max_age` old.
   std::shared_ptr<const JobSnapshot> Snapshot(Job& job, std::chrono::milliseconds max_age,
@@ -156,7 +151,6 @@ class JobBook {
   void TellScheduler(const JobRecord& row);
   void StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& checked);
   absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id, Grid grid);
-  absl::StatusOr<FoundJob> Find(const Principal& caller, const std::string& id, Grid grid);
   // Adds the numbers in memory. If the job has ended since its row was read, reads the row again.
   absl::StatusOr<FoundJob> WithNumbers(const Principal& caller, JobRecord record, Grid grid);
 

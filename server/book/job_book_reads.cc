@@ -136,42 +136,20 @@ absl::StatusOr<std::optional<v1::PointResult>> JobBook::UnfinishedResult(const P
 
 // ---- for watches ----
 
-absl::StatusOr<FoundJob> JobBook::FindWatched(const Principal& caller, const std::string& id) {
-  absl::StatusOr<FoundJob> found = Find(caller, id, Grid::kLeftOut);
-  // The shared row may be older than what another method has returned.
-  if (found.ok() && found->active != nullptr) found->active->stored().Drop();
-  return found;
-}
-
-absl::StatusOr<std::shared_ptr<const StoredJob>> JobBook::Stored(Job& job) {
-  const auto read_row = [&]() -> absl::StatusOr<StoredJob> {
-    const uint64_t change = job.last_state_change();  // before the row, which may be newer
-    const auto record = store_.Read([&](Database& database) {
-      return FindJobBySequence(database, job.row().sequence, Grid::kLeftOut);
-    });
-    if (!record.ok()) return StoreFailure(record.status());
-    if (!*record) return JobNotFound(JobName(job.row().id));
-    return StoredJob{change, **record};
-  };
-  return job.stored().Get(job.last_state_change(), std::chrono::milliseconds(0), read_row);
-}
-
 std::shared_ptr<const JobSnapshot> JobBook::Snapshot(Job& job, std::chrono::milliseconds max_age,
                                                      size_t limit) const {
-  const auto snapshot =
-      job.snapshot().Get(job.last_change(), max_age, [&]() -> absl::StatusOr<JobSnapshot> {
-        const CrashRecord::Examining examining(*crashes_, RunOf(job.row()));
-        JobSnapshot snapshot;
-        snapshot.change = job.last_change();  // read before the points, which may be newer
-        snapshot.finished = job.last_finished();
-        for (const LivePoint& point : scheduler_.NewestPoints(job.row().sequence, limit)) {
-          snapshot.points.push_back(
-              {point.version, ResultOf(point.index, *point.experiment,
-                                       point.experiment->Summarize(point.merged))});
-        }
-        return snapshot;
-      });
-  return *snapshot;
+  return job.Snapshot(max_age, [&] {
+    const CrashRecord::Examining examining(*crashes_, RunOf(job.row()));
+    JobSnapshot snapshot;
+    snapshot.change = job.last_change();  // read before the points, which may be newer
+    snapshot.finished = job.last_finished();
+    for (const LivePoint& point : scheduler_.NewestPoints(job.row().sequence, limit)) {
+      snapshot.points.push_back(
+          {point.version,
+           ResultOf(point.index, *point.experiment, point.experiment->Summarize(point.merged))});
+    }
+    return snapshot;
+  });
 }
 
 absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(int64_t sequence,

@@ -11,7 +11,6 @@
 #include "server/convert/deterministic_bytes.h"
 #include "server/convert/errors.h"
 #include "server/convert/fold_record.h"
-#include "server/convert/point_end.h"
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
 #include "server/host.h"

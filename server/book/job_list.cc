@@ -1,5 +1,6 @@
 #include "server/book/job_list.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "server/convert/spec.h"
@@ -66,7 +67,7 @@ bool JobFilter::MatchesState(JobState state) const {
 
 bool JobFilter::Matches(const JobRecord& record) const {
   if (!MatchesState(record.state) || record.create_time < since) return false;
-  if (!labels.empty() && !HasLabels(LabelsOf(record.labels), labels)) return false;
+  if (!labels.empty() && !std::ranges::includes(LabelsOf(record.labels), labels)) return false;
   if (experiments.empty()) return true;
   const absl::StatusOr<v1::EnsembleSpec> spec = SpecFromBytes(record.spec);
   return spec.ok() && experiments.contains(spec->experiment());

@@ -82,12 +82,13 @@ class FolderExecutor : public Executor {
     LeaseReader read_lease = TakeLease;
   };
 
-  // The scheduler must outlive this. Begins with Start.
+  // The scheduler must outlive this.
   FolderExecutor(Scheduler& scheduler, const ClusterOptions& options,
                  std::unique_ptr<SharedFiles> files, Server server);
   ~FolderExecutor() override;  // shuts down
 
-  void Start() override;
+  // Begins to take leases. Call it once, after the runs of an earlier process were added.
+  void Start();
   void Wake() override {}  // it looks every second
   bool HasTurn(int64_t) const override { return false; }
   void Shutdown() override;  // workers go on

@@ -1,5 +1,6 @@
 #include "server/cluster/run_command.h"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/mman.h>
@@ -24,19 +25,15 @@ using Clock = std::chrono::steady_clock;
 constexpr size_t kMostOutput = size_t{64} << 20;
 constexpr std::chrono::milliseconds kLook(5);  // between two looks at the program
 
-// A file in memory: the standard input or output of the program.
+// A file in memory: the standard output of the program, or its errors.
 class MemoryFile {
  public:
-  explicit MemoryFile(const std::string& text = {}) : number_(memfd_create("", MFD_CLOEXEC)) {
-    const ssize_t written = write(number_, text.data(), text.size());
-    is_written_ = written == static_cast<ssize_t>(text.size()) && lseek(number_, 0, SEEK_SET) == 0;
-  }
+  MemoryFile() : number_(memfd_create("", MFD_CLOEXEC)) {}
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
   ~MemoryFile() { close(number_); }
 
-  int number() const { return number_; }
-  bool is_written() const { return is_written_; }
+  int number() const { return number_; }  // less than 0: there is no memory
 
   std::string Contents() const {
     struct stat status {};
@@ -48,8 +45,7 @@ class MemoryFile {
   }
 
  private:
-  const int number_;  // less than 0: there is no memory
-  bool is_written_;
+  const int number_;
 };
 
 std::vector<char*> Pointers(const std::vector<std::string>& texts) {
@@ -60,8 +56,7 @@ std::vector<char*> Pointers(const std::vector<std::string>& texts) {
 }
 
 // The server blocks and ignores some signals. The program gets the default settings.
-absl::StatusOr<pid_t> Start(const Command& command, const MemoryFile& in, const MemoryFile& out,
-                            const MemoryFile& err) {
+absl::StatusOr<pid_t> Start(const Command& command, const MemoryFile& out, const MemoryFile& err) {
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawnattr_t attributes;
@@ -70,9 +65,9 @@ absl::StatusOr<pid_t> Start(const Command& command, const MemoryFile& in, const 
     posix_spawn_file_actions_destroy(&files);
     posix_spawnattr_destroy(&attributes);
   };
-  posix_spawn_file_actions_adddup2(&files, in.number(), STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&files, out.number(), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&files, err.number(), STDERR_FILENO);
+  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   sigset_t none, all;
   sigemptyset(&none);
   sigfillset(&all);
@@ -111,11 +106,11 @@ absl::StatusOr<int> AwaitExitCode(pid_t pid, const Command& command, const std::
 }  // namespace
 
 absl::StatusOr<CommandOutput> RunCommand(const Command& command, const std::stop_token& stop) {
-  const MemoryFile in(command.input), out, err;
-  for (const MemoryFile* file : {&in, &out, &err}) {
-    if (!file->is_written()) return absl::UnavailableError("no memory to run a program");
+  const MemoryFile out, err;
+  if (out.number() < 0 || err.number() < 0) {
+    return absl::UnavailableError("no memory to run a program");
   }
-  const absl::StatusOr<pid_t> pid = Start(command, in, out, err);
+  const absl::StatusOr<pid_t> pid = Start(command, out, err);
   if (!pid.ok()) return pid.status();
   const absl::StatusOr<int> exit_code = AwaitExitCode(*pid, command, stop);
   if (!exit_code.ok()) return exit_code.status();

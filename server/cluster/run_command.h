@@ -13,7 +13,6 @@ namespace ballpiston::server {
 struct Command {
   std::vector<std::string> words;             // the program, looked up in PATH, and its arguments
   std::vector<std::string> environment = {};  // NAME=VALUE
-  std::string input = {};                     // of its standard input
   std::chrono::milliseconds limit{10'000};
 };
 
@@ -23,8 +22,9 @@ struct CommandOutput {
   std::string errors;  // standard error
 };
 
-// Kills the program at the limit (DEADLINE_EXCEEDED) and when stop is requested (CANCELLED).
-// NOT_FOUND if there is no such program; UNAVAILABLE if the system cannot start it.
+// The program's standard input is empty. Kills the program at the limit (DEADLINE_EXCEEDED) and
+// when stop is requested (CANCELLED). NOT_FOUND if there is no such program; UNAVAILABLE if the
+// system cannot start it.
 absl::StatusOr<CommandOutput> RunCommand(const Command& command, const std::stop_token& stop);
 
 }  // namespace ballpiston::server

@@ -136,24 +136,24 @@ absl::StatusOr<std::string> SlurmTools::Run(Command command, const std::stop_tok
 }
 
 absl::Status SlurmTools::Submit(size_t workers, const std::stop_token& stop) {
-  std::vector<std::string> words = {"sbatch",
-                                    "--parsable",
-                                    absl::StrCat("--job-name=", name_),
-                                    absl::StrCat("--array=0-", workers - 1),
-                                    absl::StrCat("--time=", options_.time_limit_minutes),
-                                    absl::StrCat("--signal=B:USR1@", kSecondsToFinish),
-                                    "--requeue",
-                                    "--open-mode=append",
-                                    absl::StrCat("--chdir=", folder_),
-                                    absl::StrCat("--output=", folder_, "/log/%a.log")};
+  std::vector<std::string> words = {
+      "sbatch",
+      "--parsable",
+      absl::StrCat("--job-name=", name_),
+      absl::StrCat("--array=0-", workers - 1),
+      absl::StrCat("--time=", options_.time_limit_minutes),
+      absl::StrCat("--signal=B:USR1@", kSecondsToFinish),
+      "--requeue",
+      "--open-mode=append",
+      absl::StrCat("--chdir=", folder_),
+      absl::StrCat("--output=", folder_, "/log/%a.log"),
+      absl::StrCat("--wrap=exec ", Quoted(folder_ + "/ballpiston-worker"), " ", Quoted(folder_))};
   if (!options_.partition.empty()) {
     words.push_back(absl::StrCat("--partition=", options_.partition));
   }
   if (!options_.account.empty()) words.push_back(absl::StrCat("--account=", options_.account));
   words.insert(words.end(), options_.sbatch_options.begin(), options_.sbatch_options.end());
-  const std::string script = absl::StrCat(
-      "#!/bin/sh\nexec ", Quoted(folder_ + "/ballpiston-worker"), " ", Quoted(folder_), "\n");
-  return Run({.words = std::move(words), .input = script, .limit = kSubmitLimit}, stop).status();
+  return Run({.words = std::move(words), .limit = kSubmitLimit}, stop).status();
 }
 
 absl::StatusOr<SlurmQueue> SlurmTools::Query(const std::stop_token& stop) {

@@ -17,9 +17,6 @@ class Executor {
  public:
   virtual ~Executor() = default;
 
-  // Begins to take leases. Once, after the runs of an earlier process were added.
-  virtual void Start() = 0;
-
   // There may be a new lease, or a lease may have been stopped. Called from any thread; must not
   // wait and must not call the scheduler.
   virtual void Wake() = 0;

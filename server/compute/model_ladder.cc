@@ -1,5 +1,7 @@
 #include "server/compute/model_ladder.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>

@@ -39,7 +39,8 @@ class ThreadExecutor : public Executor {
                  OrbitDevice* device = nullptr);
   ~ThreadExecutor() override;  // shuts down
 
-  void Start() override;
+  // Begins to take leases. Call it once, after the runs of an earlier process were added.
+  void Start();
   void Wake() override ABSL_LOCKS_EXCLUDED(mutex_);
   bool HasTurn(int64_t lease) const override;
   void Shutdown() override;

@@ -5,33 +5,65 @@
 
 #include <array>
 
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+
 namespace ballpiston::server {
+namespace {
 
-std::string Compressed(const std::string& plain) {
-  uLongf size = compressBound(plain.size());
-  std::string bytes(size, '\0');
-  compress2(reinterpret_cast<Bytef*>(bytes.data()), &size,
-            reinterpret_cast<const Bytef*>(plain.data()), plain.size(), Z_BEST_SPEED);
-  bytes.resize(size);
-  return bytes;
-}
+// For the window, zlib takes the logarithm of its size and one of these numbers.
+constexpr int kAsGzip = 16, kOfEitherFormat = 32;
+constexpr int kDefaultMemory = 8;
 
-std::optional<std::string> Uncompressed(const std::string& bytes) {
+z_stream StreamFrom(absl::string_view bytes) {
   z_stream stream{};
   stream.next_in = reinterpret_cast<const Bytef*>(bytes.data());
   stream.avail_in = static_cast<uInt>(bytes.size());
-  int code = inflateInit(&stream);
+  return stream;
+}
+
+}  // namespace
+
+std::string Compressed(absl::string_view plain, Checksum checksum) {
+  z_stream stream = StreamFrom(plain);
+  const int window = MAX_WBITS + (checksum == Checksum::kCrc32 ? kAsGzip : 0);
+  deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, window, kDefaultMemory, Z_DEFAULT_STRATEGY);
+  std::string bytes(deflateBound(&stream, plain.size()), '\0');
+  stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
+  stream.avail_out = static_cast<uInt>(bytes.size());
+  deflate(&stream, Z_FINISH);
+  bytes.resize(stream.total_out);
+  deflateEnd(&stream);
+  return bytes;
+}
+
+absl::StatusOr<std::string> TakeCompressed(absl::string_view& bytes, size_t most) {
+  z_stream stream = StreamFrom(bytes);
+  int code = inflateInit2(&stream, MAX_WBITS + kOfEitherFormat);
   std::string plain;
   std::array<char, 16384> part;
-  while (code == Z_OK) {
+  while (code == Z_OK && plain.size() <= most) {
     stream.next_out = reinterpret_cast<Bytef*>(part.data());
     stream.avail_out = part.size();
     code = inflate(&stream, Z_NO_FLUSH);
     plain.append(part.data(), part.size() - stream.avail_out);
   }
   inflateEnd(&stream);
-  if (code != Z_STREAM_END || stream.avail_in > 0) return std::nullopt;
+  if (code == Z_BUF_ERROR) {
+    return absl::OutOfRangeError(
+        absl::StrCat("is truncated: it has only ", bytes.size(), " bytes"));
+  }
+  if (code != Z_STREAM_END || plain.size() > most) {
+    return absl::DataLossError("is corrupted, or is not a file of ballpiston");
+  }
+  bytes.remove_prefix(bytes.size() - stream.avail_in);
   return plain;
+}
+
+std::optional<std::string> Uncompressed(absl::string_view bytes) {
+  absl::StatusOr<std::string> plain = TakeCompressed(bytes, std::string::npos);
+  if (!plain.ok() || !bytes.empty()) return std::nullopt;
+  return *std::move(plain);
 }
 
 }  // namespace ballpiston::server

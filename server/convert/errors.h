@@ -2,10 +2,9 @@
 //
 // A status made here carries as absl payloads its google.rpc.ErrorInfo (domain "ballpiston"), where
 // the request is wrong a google.rpc.BadRequest, and where waiting helps a google.rpc.RetryInfo.
-// GrpcStatus packs them as google.rpc.Status
-// into the error details, which together stay below kMaxErrorDetails: gRPC refuses trailers of
-// 8 KiB. Violations that do not fit are counted in the metadata `violations_left_out` and in the
-// message. Pure functions.
+// GrpcStatus packs them as google.rpc.Status into the error details, which together stay below
+// kMaxErrorDetails: gRPC refuses trailers of 8 KiB. Violations that do not fit are counted in the
+// metadata `violations_left_out` and in the message. Pure functions.
 #pragma once
 
 #include <cstddef>

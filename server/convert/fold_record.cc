@@ -1,9 +1,11 @@
 #include "server/convert/fold_record.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "absl/status/status.h"
 #include "ballpiston/storage/records.pb.h"
+#include "server/convert/compressed.h"
 #include "server/convert/deterministic_bytes.h"
 
 namespace ballpiston::server {
@@ -164,6 +166,14 @@ absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes) {
                    .partial = ResultOfAccumulators(record.partial()),
                    .chunk_digests = {record.chunk_digests().begin(), record.chunk_digests().end()},
                    .least_error = record.least_error()};
+}
+
+std::string EndBytes(const FoldState& state) { return Compressed(FoldRecordBytes(state)); }
+
+absl::StatusOr<FoldState> EndFromBytes(const std::string& bytes) {
+  const std::optional<std::string> plain = Uncompressed(bytes);
+  if (plain) return FoldStateFromBytes(*plain);
+  return absl::DataLossError("the stored end of a point cannot be read");
 }
 
 std::string ChunkRecordBytes(const ChunkResult& chunk) {

@@ -25,6 +25,10 @@ ChunkResult ChunkOf(const storage::Chunk& record);
 std::string FoldRecordBytes(const FoldState& state);
 absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes);  // DATA_LOSS
 
+// Compressed: where a finished point ended, from which another job can continue it.
+std::string EndBytes(const FoldState& state);
+absl::StatusOr<FoldState> EndFromBytes(const std::string& bytes);  // DATA_LOSS
+
 std::string ChunkRecordBytes(const ChunkResult& chunk);
 absl::StatusOr<ChunkResult> ChunkFromBytes(const std::string& bytes);  // DATA_LOSS
 

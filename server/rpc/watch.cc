@@ -52,7 +52,7 @@ class Watch {
     RequestCheck check;
     id_ = check.JobId("name", request_.name());
     if (!check.ok()) return check.status();
-    absl::StatusOr<FoundJob> job = book_.FindWatched(reader_.caller(), id_);
+    absl::StatusOr<FoundJob> job = book_.Find(reader_.caller(), id_, Grid::kLeftOut);
     if (!job.ok()) return job.status();
     job_ = *std::move(job);
     ReadToken();
@@ -112,12 +112,13 @@ class Watch {
   }
 
   absl::StatusOr<bool> TellState() {
-    if (job_.active->last_state_change() <= told_state_) return false;
-    const auto stored = book_.Stored(*job_.active);
-    if (!stored.ok()) return stored.status();
-    const JobRecord& record = (*stored)->record;
+    const uint64_t change = job_.active->last_state_change();  // before the row, which may be newer
+    if (change <= told_state_) return false;
+    const absl::StatusOr<FoundJob> found = book_.Find(reader_.caller(), id_, Grid::kLeftOut);
+    if (!found.ok()) return found.status();
+    const JobRecord& record = found->record;
     if (HasEnded(record.state)) return TellEnd(record);
-    told_state_ = (*stored)->change;
+    told_state_ = change;
     if (std::exchange(told_as_, record.state) == record.state) return false;
     *message_.mutable_job() = book_.Message(record, job_.active.get());
     return Write();

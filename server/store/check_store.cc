@@ -7,7 +7,6 @@
 #include "ballpiston/v1/ensemble.pb.h"
 #include "google/rpc/status.pb.h"
 #include "server/convert/fold_record.h"
-#include "server/convert/point_end.h"
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
 #include "server/store/schema.h"
@@ -171,8 +170,8 @@ class StoreCheck {
 
 }  // namespace
 
-absl::StatusOr<StoreSummary> CheckStore(const std::string& path, const std::string& vfs) {
-  const auto database = OpenStoreToRead(path, vfs);
+absl::StatusOr<StoreSummary> CheckStore(const std::string& path) {
+  const auto database = OpenStoreToRead(path);
   if (!database.ok()) return database.status();
   absl::StatusOr<StoreSummary> summary = StoreCheck(**database).Run();
   if (summary.ok()) summary->bytes = FileBytes(path) + FileBytes(path + "-wal");

@@ -34,8 +34,7 @@ struct StoreSummary {
 // point has a checkpoint.
 //   NOT_FOUND            no such file
 //   FAILED_PRECONDITION  not a ballpiston store, newer, or too damaged to be opened
-absl::StatusOr<StoreSummary> CheckStore(const std::string& path,
-                                        const std::string& vfs = std::string());
+absl::StatusOr<StoreSummary> CheckStore(const std::string& path);
 
 // Some lines of text for people, without a newline after the last.
 std::string SummaryText(const StoreSummary& summary);

@@ -26,7 +26,7 @@
 namespace ballpiston::server {
 namespace {
 
-constexpr char kLockFile[] = "lock";  // clients read both files (client/library/local_server.cc)
+constexpr char kLockFile[] = "lock";  // clients read both files (client/library/server_process.cc)
 constexpr char kAddressFile[] = "server.address";
 constexpr char kClientsLog[] = "server.log";  // log of a server that a client starts
 

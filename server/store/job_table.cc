@@ -151,8 +151,8 @@ std::optional<JobRecord> FindJob(Database& database, const std::string& id, Grid
   return FirstJob(database, grid, "id = ?", id);
 }
 
-std::optional<JobRecord> FindJobBySequence(Database& database, int64_t sequence, Grid grid) {
-  return FirstJob(database, grid, "sequence = ?", sequence);
+std::optional<JobRecord> FindJobBySequence(Database& database, int64_t sequence) {
+  return FirstJob(database, Grid::kIncluded, "sequence = ?", sequence);
 }
 
 std::optional<JobRecord> FindAnswer(Database& database, const std::string& principal,
@@ -261,7 +261,7 @@ std::optional<JobRecord> EndJob(Database& database, int64_t sequence, const JobE
       end.numbers.points_done, end.numbers.samples, end.numbers.work, end.numbers.bytes, sequence);
   if (!has_ended) return std::nullopt;
   DropCheckpoints(database, sequence);
-  return FindJobBySequence(database, sequence, Grid::kIncluded);
+  return FindJobBySequence(database, sequence);
 }
 
 void RestartJob(Database& database, const JobRecord& record) {

@@ -35,7 +35,7 @@ std::string JobColumns();
 void InsertJob(Database& database, JobRecord& record);
 
 std::optional<JobRecord> FindJob(Database& database, const std::string& id, Grid grid);
-std::optional<JobRecord> FindJobBySequence(Database& database, int64_t sequence, Grid grid);
+std::optional<JobRecord> FindJobBySequence(Database& database, int64_t sequence);
 
 // The principal's oldest job that SUCCEEDED in answering the question (JobRecord::question).
 std::optional<JobRecord> FindAnswer(Database& database, const std::string& principal,

@@ -1,6 +1,5 @@
 #include "server/store/labels.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -21,13 +20,6 @@ Labels LabelsOf(absl::string_view text) {
         std::pair<std::string, std::string>(absl::StrSplit(line, absl::MaxSplits('=', 1))));
   }
   return labels;
-}
-
-bool HasLabels(const Labels& labels, const Labels& wanted) {
-  return std::ranges::all_of(wanted, [&labels](const auto& label) {
-    const auto found = labels.find(label.first);
-    return found != labels.end() && found->second == label.second;
-  });
 }
 
 }  // namespace ballpiston::server

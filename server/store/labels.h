@@ -17,7 +17,4 @@ inline constexpr size_t kMostLabels = 32;  // of a job
 std::string LabelsText(const Labels& labels);
 Labels LabelsOf(absl::string_view text);
 
-// Whether `labels` has all of `wanted`.
-bool HasLabels(const Labels& labels, const Labels& wanted);
-
 }  // namespace ballpiston::server

@@ -6,8 +6,8 @@
 
 namespace ballpiston::server {
 
-absl::Status ReaderPool::Add(const std::string& path, const std::string& vfs) {
-  auto reader = Database::Open(path, Database::Mode::kReadOnly, vfs);
+absl::Status ReaderPool::Add(const std::string& path) {
+  auto reader = Database::Open(path, Database::Mode::kReadOnly);
   if (!reader.ok()) return reader.status();
   MutexLock lock(mutex_);
   free_.push_back(*std::move(reader));

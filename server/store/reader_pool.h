@@ -16,7 +16,7 @@ namespace ballpiston::server {
 class ReaderPool {
  public:
   // Adds a connection. Call before the first Read.
-  absl::Status Add(const std::string& path, const std::string& vfs);
+  absl::Status Add(const std::string& path);
 
   // Runs `read` on one of the connections, in a transaction: it sees the store at one moment. Waits
   // while all connections are in use. UNAVAILABLE after Close.

@@ -7,7 +7,7 @@ namespace ballpiston::server {
 
 void Reserve::Take() {
   if (bytes_ == 0) return;
-  const auto file = Database::Open(path_, Database::Mode::kReadWrite, vfs_);
+  const auto file = Database::Open(path_, Database::Mode::kReadWrite);
   if (file.ok()) {
     (*file)->Execute(
         absl::StrCat("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;"
@@ -21,7 +21,7 @@ void Reserve::Take() {
 
 void Reserve::Release() {
   held_ = false;
-  Database::RemoveFile(path_, vfs_);
+  Database::RemoveFile(path_);
 }
 
 }  // namespace ballpiston::server

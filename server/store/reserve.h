@@ -8,15 +8,13 @@
 
 #include <cstddef>
 #include <string>
-#include <utility>
 
 namespace ballpiston::server {
 
 class Reserve {
  public:
-  // `vfs` is as in Database::Open. The constructor does not write the file.
-  Reserve(const std::string& store, size_t bytes, std::string vfs)
-      : path_(store + "-reserve"), bytes_(bytes), vfs_(std::move(vfs)) {}
+  // The constructor does not write the file.
+  Reserve(const std::string& store, size_t bytes) : path_(store + "-reserve"), bytes_(bytes) {}
 
   bool held() const { return held_; }
   void Take();     // writes the file, if there is room
@@ -25,7 +23,6 @@ class Reserve {
  private:
   const std::string path_;
   const size_t bytes_;
-  const std::string vfs_;
   bool held_ = false;
 };
 

@@ -109,12 +109,12 @@ absl::Status CheckIsNoFolder(const std::string& path) {
 // A store with tables has a log beside it; bytes 18 and 19 of its header say so. A file without
 // this mark but with a log beside it is a backup that replaced another store: SQLite would read the
 // other store's pages into it.
-absl::Status CheckLog(const std::string& path, Database& database, const std::string& vfs) {
+absl::Status CheckLog(const std::string& path, Database& database) {
   const std::string start = database.FileStart(20);
   if (!database.status().ok()) return RefusedFor(path, database.TakeStatus());
   const bool empty = start.front() == '\0';
   const bool logged = start[18] == 2 && start[19] == 2;
-  if (empty || logged || !Database::Exists(path + "-wal", vfs)) return absl::OkStatus();
+  if (empty || logged || !Database::Exists(path + "-wal")) return absl::OkStatus();
   return Refused(path, absl::StrCat("has the log of another store beside it: move ", path,
                                     "-wal away if this is a restored copy"));
 }
@@ -151,15 +151,15 @@ absl::Status CheckContents(const std::string& path, Database& database) {
 
 // Through a connection that cannot write. A journal beside the file is left by an interrupted
 // creation: it has the undo data, which the writing connection applies.
-absl::Status CheckFile(const std::string& path, const std::string& vfs) {
+absl::Status CheckFile(const std::string& path) {
   const absl::Status file = CheckIsNoFolder(path);
   if (!file.ok()) return file;
-  if (!Database::Exists(path, vfs) || Database::Exists(path + "-journal", vfs)) {
+  if (!Database::Exists(path) || Database::Exists(path + "-journal")) {
     return absl::OkStatus();
   }
-  const auto database = Database::Open(path, Database::Mode::kReadOnly, vfs);
+  const auto database = Database::Open(path, Database::Mode::kReadOnly);
   if (!database.ok()) return RefusedFor(path, database.status());
-  const absl::Status log = CheckLog(path, **database, vfs);
+  const absl::Status log = CheckLog(path, **database);
   return log.ok() ? CheckContents(path, **database) : log;
 }
 
@@ -189,16 +189,15 @@ absl::Status Prepare(Database& database) {
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<Database>> OpenStoreToRead(const std::string& path,
-                                                          const std::string& vfs) {
+absl::StatusOr<std::unique_ptr<Database>> OpenStoreToRead(const std::string& path) {
   absl::Status checked = CheckIsNoFolder(path);
   if (!checked.ok()) return checked;
-  if (!Database::Exists(path, vfs)) {
+  if (!Database::Exists(path)) {
     return absl::NotFoundError(absl::StrCat("there is no store ", path));
   }
-  auto database = Database::Open(path, Database::Mode::kReadOnly, vfs);
+  auto database = Database::Open(path, Database::Mode::kReadOnly);
   if (!database.ok()) return RefusedFor(path, database.status());
-  checked = CheckLog(path, **database, vfs);
+  checked = CheckLog(path, **database);
   bool unfinished = false;
   if (checked.ok()) checked = CheckKind(path, **database, unfinished);
   if (checked.ok() && unfinished) checked = Refused(path, "has no tables yet");
@@ -206,11 +205,10 @@ absl::StatusOr<std::unique_ptr<Database>> OpenStoreToRead(const std::string& pat
   return database;
 }
 
-absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path,
-                                                        const std::string& vfs) {
-  const absl::Status checked = CheckFile(path, vfs);
+absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path) {
+  const absl::Status checked = CheckFile(path);
   if (!checked.ok()) return checked;
-  auto database = Database::Open(path, Database::Mode::kReadWrite, vfs);
+  auto database = Database::Open(path, Database::Mode::kReadWrite);
   if (!database.ok()) return absl::PermissionDeniedError(database.status().message());
   bool unfinished = false;  // again: opening may have undone an interrupted change
   const absl::Status kind = CheckKind(path, **database, unfinished);

@@ -18,12 +18,10 @@ inline constexpr int64_t kApplicationId = 0x62706973;  // "bpis"
 //   FAILED_PRECONDITION  damaged, of a newer version, or of another program
 //   UNAVAILABLE          its disk is full or fails, or the file is not readable
 //   PERMISSION_DENIED    the file is not writable
-absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path,
-                                                        const std::string& vfs = std::string());
+absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path);
 
 // A read-only connection to a store. Errors as above, except that only the pages that opening reads
 // are checked for damage. NOT_FOUND if there is no such file.
-absl::StatusOr<std::unique_ptr<Database>> OpenStoreToRead(const std::string& path,
-                                                          const std::string& vfs = std::string());
+absl::StatusOr<std::unique_ptr<Database>> OpenStoreToRead(const std::string& path);
 
 }  // namespace ballpiston::server

@@ -48,8 +48,6 @@ absl::Status Failure(sqlite3* connection) {
           absl::StrCat("store: ", sqlite3_errmsg(connection))};
 }
 
-const char* VfsName(const std::string& vfs) { return vfs.empty() ? nullptr : vfs.c_str(); }
-
 }  // namespace
 
 bool IsOfTheDisk(const absl::Status& status) {
@@ -115,13 +113,11 @@ std::optional<absl::Time> Query::Time(int column) const {
   return absl::FromUnixNanos(Integer(column));
 }
 
-absl::StatusOr<std::unique_ptr<Database>> Database::Open(const std::string& path, Mode mode,
-                                                         const std::string& vfs) {
+absl::StatusOr<std::unique_ptr<Database>> Database::Open(const std::string& path, Mode mode) {
   const int flags =
       mode == Mode::kReadOnly ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
   sqlite3* connection = nullptr;
-  const int code =
-      sqlite3_open_v2(path.c_str(), &connection, flags | SQLITE_OPEN_NOMUTEX, VfsName(vfs));
+  const int code = sqlite3_open_v2(path.c_str(), &connection, flags | SQLITE_OPEN_NOMUTEX, nullptr);
   auto database = std::unique_ptr<Database>(new Database(connection));
   if (code != SQLITE_OK) return Failure(connection);
   sqlite3_extended_result_codes(connection, 1);
@@ -129,16 +125,16 @@ absl::StatusOr<std::unique_ptr<Database>> Database::Open(const std::string& path
   return database;
 }
 
-bool Database::Exists(const std::string& path, const std::string& vfs) {
-  sqlite3_vfs* const files = sqlite3_vfs_find(VfsName(vfs));
+bool Database::Exists(const std::string& path) {
+  sqlite3_vfs* const files = sqlite3_vfs_find(nullptr);
   int exists = 0;
   return files != nullptr &&
          files->xAccess(files, path.c_str(), SQLITE_ACCESS_EXISTS, &exists) == SQLITE_OK &&
          exists != 0;
 }
 
-void Database::RemoveFile(const std::string& path, const std::string& vfs) {
-  sqlite3_vfs* const files = sqlite3_vfs_find(VfsName(vfs));
+void Database::RemoveFile(const std::string& path) {
+  sqlite3_vfs* const files = sqlite3_vfs_find(nullptr);
   if (files != nullptr) files->xDelete(files, path.c_str(), 0);
 }
 

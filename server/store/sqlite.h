@@ -106,15 +106,13 @@ class Database {
  public:
   enum class Mode { kReadOnly, kReadWrite };
 
-  // `vfs` names one of SQLite's file systems; empty: that of the operating system.
-  static absl::StatusOr<std::unique_ptr<Database>> Open(const std::string& path, Mode mode,
-                                                        const std::string& vfs = std::string());
+  static absl::StatusOr<std::unique_ptr<Database>> Open(const std::string& path, Mode mode);
 
   // Whether the file exists and is not empty.
-  static bool Exists(const std::string& path, const std::string& vfs = std::string());
+  static bool Exists(const std::string& path);
 
   // Errors are not reported.
-  static void RemoveFile(const std::string& path, const std::string& vfs);
+  static void RemoveFile(const std::string& path);
 
   ~Database();
 

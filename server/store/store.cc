@@ -20,14 +20,14 @@ absl::Status Closed() { return absl::UnavailableError("store: closed"); }
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Store>> Store::Open(const std::string& path, Options options) {
-  auto writer = OpenStoreFile(path, options.vfs);
+  auto writer = OpenStoreFile(path);
   if (!writer.ok()) return writer.status();
   auto identity = (*writer)->First<std::string>("SELECT identity FROM server");
   if (!(*writer)->status().ok()) return (*writer)->TakeStatus();
-  auto store = std::unique_ptr<Store>(
-      new Store(*std::move(writer), std::move(options), path, identity.value_or("")));
+  auto store =
+      std::unique_ptr<Store>(new Store(*std::move(writer), options, path, identity.value_or("")));
   for (int i = 0; i < store->options_.readers; ++i) {
-    const absl::Status added = store->readers_.Add(path, store->options_.vfs);
+    const absl::Status added = store->readers_.Add(path);
     if (!added.ok()) return added;
   }
   store->Start();
@@ -36,11 +36,11 @@ absl::StatusOr<std::unique_ptr<Store>> Store::Open(const std::string& path, Opti
 
 Store::Store(std::unique_ptr<Database> writer, Options options, std::string path,
              std::string identity)
-    : options_(std::move(options)),
+    : options_(options),
       path_(std::move(path)),
       identity_(std::move(identity)),
       writer_(std::move(writer)),
-      reserve_(path_, options_.reserve_bytes, options_.vfs) {}
+      reserve_(path_, options_.reserve_bytes) {}
 
 void Store::Start() {
   reserve_.Take();

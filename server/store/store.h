@@ -71,7 +71,6 @@ class Store {
     // Disk space for deletions. It is larger than the part of the log that may not fit into the
     // file.
     size_t reserve_bytes = 16 << 20;
-    std::string vfs = {};  // of SQLite; empty: the operating system's
   };
 
   // Errors as OpenStoreFile.

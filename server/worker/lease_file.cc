@@ -7,9 +7,10 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "ballpiston/storage/records.pb.h"
+#include "server/convert/compressed.h"
 #include "server/convert/deterministic_bytes.h"
 #include "server/convert/fold_record.h"
-#include "server/worker/checked_file.h"
+#include "server/worker/shared_files.h"
 
 namespace ballpiston::server {
 namespace {
@@ -28,11 +29,16 @@ bool IsDuration(double seconds) { return std::isfinite(seconds) && seconds >= 0;
 
 template <typename Message>
 absl::StatusOr<Message> TakeMessage(absl::string_view& bytes) {
-  const absl::StatusOr<absl::string_view> payload = TakeFrame(bytes);
-  if (!payload.ok()) return payload.status();
+  const absl::StatusOr<std::string> plain = TakeCompressed(bytes, kMaxSharedFile);
+  if (!plain.ok()) return plain.status();
   Message message;
-  if (message.ParseFromArray(payload->data(), static_cast<int>(payload->size()))) return message;
+  if (message.ParseFromString(*plain)) return message;
   return Unreadable();
+}
+
+template <typename Message>
+std::string BytesOfMessage(const Message& message) {
+  return Compressed(DeterministicBytes(message), Checksum::kCrc32);
 }
 
 }  // namespace
@@ -61,13 +67,13 @@ std::optional<LeaseFileName> ParseDone(absl::string_view name) {
   return file->outcome ? file : std::nullopt;
 }
 
-std::string BytesOf(const storage::Lease& lease) { return FrameOf(DeterministicBytes(lease)); }
+std::string BytesOf(const storage::Lease& lease) { return BytesOfMessage(lease); }
 
 std::string BytesOf(const LeaseReport& report) {
   storage::LeaseChunks record;
   for (const ChunkResult& chunk : report.chunks) FillChunk(chunk, *record.add_chunks());
   record.set_processor_seconds(report.seconds);
-  return FrameOf(DeterministicBytes(record));
+  return BytesOfMessage(record);
 }
 
 absl::StatusOr<LeaseFile> TakeLease(absl::string_view& bytes) {

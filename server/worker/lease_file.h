@@ -1,6 +1,9 @@
 // The file of a lease, and its names. The file begins with the lease; the worker appends the chunks
 // that it has computed; at its end the worker moves the file to done/. So the file alone proves
 // which chunks are whose, also to a later process of the server.
+//
+// Each part of the file is a message of storage/records.proto as a stream in gzip's format, whose
+// checksum proves that it is complete (convert/compressed.h).
 #pragma once
 
 #include <functional>
@@ -41,7 +44,7 @@ std::string BytesOf(const storage::Lease& lease);
 // The complete chunks, and the seconds.
 std::string BytesOf(const LeaseReport& report);
 
-// These take one frame off `bytes`. Errors of TakeFrame and LeaseOfRecord; DATA_LOSS if the frame's
+// These take one message off `bytes`. Errors of TakeCompressed and LeaseOfRecord; DATA_LOSS if the
 // message cannot be read.
 absl::StatusOr<LeaseFile> TakeLease(absl::string_view& bytes);
 using LeaseReader = std::function<absl::StatusOr<LeaseFile>(absl::string_view& bytes)>;

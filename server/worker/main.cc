@@ -34,7 +34,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kExitFailed = 1;
-constexpr int kExitOtherVersion = 3;  // of the engine or of the files
+constexpr int kExitOtherVersion = 3;  // of the engine
 
 // A batch system sends SIGUSR1 a minute or more before it kills the worker. If the chunk is not
 // complete after this time, it is dropped.
@@ -72,10 +72,12 @@ class Ending {
     return seconds >= after_chunk_ ? EndOfWork::kAfterChunk : EndOfWork::kNotYet;
   }
 
-  // Ends early if the worker has to end.
+  // Returns early when the worker has to end after its chunk, and again when it has to end now. A
+  // signal may move both times.
   void Sleep(std::chrono::duration<double> time) {
-    const double end = SecondsSinceStart() + time.count();
-    const auto left = [&] { return std::min(end, after_chunk_) - SecondsSinceStart(); };
+    const double begin = SecondsSinceStart(), end = begin + time.count();
+    const auto next_end = [&] { return begin < after_chunk_ ? after_chunk_ : last_; };
+    const auto left = [&] { return std::min(end, next_end()) - SecondsSinceStart(); };
     while (left() > 0) AwaitSignal(left());
   }
 
@@ -173,7 +175,8 @@ void AddFlags(CLI::App& app, CommandLine& line) {
                  "wait before the next attempt if the folder is full or cannot be used")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--give-up-seconds", line.worker.give_up_seconds, "the sum of these waits")
+  app.add_option("--give-up-seconds", line.worker.give_up_seconds,
+                 "for these attempts with one lease")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.set_version_flag("--version", std::string(kEngineVersion), "print the engine version");

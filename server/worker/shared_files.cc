@@ -12,7 +12,6 @@
 
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
-#include "server/worker/checked_file.h"
 
 namespace ballpiston::server {
 namespace {
@@ -47,9 +46,9 @@ absl::Status CheckFile(const std::string& path, const struct stat& status) {
     return absl::PermissionDeniedError(absl::StrCat(path, " belongs to user ", status.st_uid,
                                                     "; permitted: this user (", geteuid(), ")"));
   }
-  if (static_cast<uint64_t>(status.st_size) <= kMaxCheckedFile) return absl::OkStatus();
+  if (static_cast<uint64_t>(status.st_size) <= kMaxSharedFile) return absl::OkStatus();
   return absl::ResourceExhaustedError(
-      absl::StrCat(path, " has ", status.st_size, " bytes; permitted: at most ", kMaxCheckedFile));
+      absl::StrCat(path, " has ", status.st_size, " bytes; permitted: at most ", kMaxSharedFile));
 }
 
 }  // namespace
@@ -101,7 +100,7 @@ absl::StatusOr<std::string> FolderFiles::Read(const std::string& path, size_t of
   if (!checked.ok()) return checked;
   std::string text;
   char buffer[1 << 16];
-  while (text.size() <= kMaxCheckedFile) {
+  while (text.size() <= kMaxSharedFile) {
     const auto at = static_cast<off_t>(offset + text.size());
     const ssize_t size = pread(descriptor, buffer, sizeof(buffer), at);
     if (size == 0) break;

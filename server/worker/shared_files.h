@@ -21,6 +21,8 @@
 
 namespace ballpiston::server {
 
+inline constexpr size_t kMaxSharedFile = size_t{64} << 20;  // bytes of a file that can be read
+
 // A changed file has another stamp.
 struct FileStamp {
   absl::Time time;  // by the folder's own clock, which may differ from every other

@@ -1,8 +1,10 @@
 #include "server/worker/worker.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -20,6 +22,9 @@ using Clock = std::chrono::steady_clock;
 // Between two looks for a lease, without one. The first look is random, because many workers may
 // start at the same time.
 constexpr double kFirstLook = 1, kLongestLook = 20;
+
+// A server that lives has written a lease after this time.
+constexpr double kLongestWrite = 20;
 
 Clock::duration InTicks(double seconds) {
   return std::chrono::duration_cast<Clock::duration>(Seconds(seconds));
@@ -75,12 +80,15 @@ class LeaseWork : private ChunkReceiver {
     return left;
   }
 
-  // Again while the folder is full or cannot be used, but not for ever.
+  // Again while the folder is full or cannot be used, but not for ever. A wait may end early, so
+  // the clock counts, and not the number of attempts.
   absl::Status Retried(const std::function<absl::Status()>& attempt) const {
-    for (double waited = 0;; waited += options_.retry_seconds) {
+    const Clock::time_point last = host_.now() + InTicks(options_.give_up_seconds);
+    while (true) {
       absl::Status status = attempt();
       const bool may_pass = absl::IsUnavailable(status) || absl::IsResourceExhausted(status);
-      if (!may_pass || waited >= options_.give_up_seconds) return status;
+      const bool is_over = host_.now() >= last || host_.end() == EndOfWork::kNow;
+      if (!may_pass || is_over) return status;
       host_.report(absl::StrCat(status.message(), "; retry in ", options_.retry_seconds, " s"));
       host_.sleep(Seconds(options_.retry_seconds));
     }
@@ -136,22 +144,22 @@ class Worker {
       any = std::move(names->back());
       names->pop_back();
       const absl::Status taken = files_.Move(name.Todo(), name.Taken());
-      if (taken.ok()) return Compute(name);
-      if (!absl::IsNotFound(taken)) return taken;  // otherwise another worker has it
+      if (absl::IsNotFound(taken)) continue;  // another worker has it
+      if (!taken.ok()) return taken;
+      const absl::StatusOr<bool> computed = Compute(name);
+      if (!computed.ok() || *computed) return computed;
     }
     return false;
   }
 
+  // False if the file is not complete yet: another lease can be taken.
   absl::StatusOr<bool> Compute(const LeaseFileName& name) {
     const absl::StatusOr<std::string> bytes = files_.Read(name.Taken(), 0);
     if (absl::IsNotFound(bytes.status())) return true;  // the server needs it no more
     if (!bytes.ok()) return Ended(name, Outcome::kReturned, bytes.status());
     absl::string_view rest = *bytes;
     const absl::StatusOr<LeaseFile> file = host_.read_lease(rest);
-    if (absl::IsOutOfRange(file.status())) {  // the server still writes it
-      const absl::Status back = files_.Move(name.Taken(), name.Todo());
-      return absl::IsNotFound(back) || back.ok() ? absl::StatusOr<bool>(false) : back;
-    }
+    if (absl::IsOutOfRange(file.status())) return LeaveIncomplete(name, file.status());
     if (absl::IsUnimplemented(file.status())) {
       files_.Move(name.Taken(), name.Todo()).IgnoreError();
       return file.status();
@@ -171,6 +179,16 @@ class Worker {
     return true;
   }
 
+  // The server still writes the file, or it was killed while it did. Then the next server, which
+  // does not know the lease, removes it from done/.
+  absl::StatusOr<bool> LeaveIncomplete(const LeaseFileName& name, const absl::Status& why) {
+    const Clock::time_point first_look = incomplete_.emplace(name.lease, host_.now()).first->second;
+    const bool is_left = host_.now() - first_look >= InTicks(kLongestWrite);
+    if (is_left) return Ended(name, Outcome::kReturned, why);
+    const absl::Status back = files_.Move(name.Taken(), name.Todo());
+    return absl::IsNotFound(back) || back.ok() ? absl::StatusOr<bool>(false) : back;
+  }
+
   absl::StatusOr<bool> Ended(const LeaseFileName& name, Outcome outcome, const absl::Status& why) {
     host_.report(absl::StrCat(name.lease, ": ", why.message()));
     const absl::Status moved = files_.Move(name.Taken(), name.Done(outcome));
@@ -180,6 +198,7 @@ class Worker {
   SharedFiles& files_;
   const WorkerOptions& options_;
   const WorkerHost& host_;
+  std::map<std::string, Clock::time_point> incomplete_;  // by lease: the first look at its file
 };
 
 }  // namespace

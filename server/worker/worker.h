@@ -29,7 +29,7 @@ enum class EndOfWork {
 // The worker's machine. Tests have another.
 struct WorkerHost {
   std::function<std::chrono::steady_clock::time_point()> now;
-  // May return earlier if the worker has to end.
+  // May return earlier when `end` changes.
   std::function<void(std::chrono::duration<double>)> sleep;
   std::function<uint64_t()> random_bits;
   std::function<EndOfWork()> end;
@@ -43,7 +43,7 @@ struct WorkerOptions {
   std::string name = {};         // unique among all workers; letters, digits, '-' and '_'
   double idle_seconds = 60;      // without a lease: the worker ends
   double retry_seconds = 5;      // between two attempts to use a folder that is full or not there
-  double give_up_seconds = 120;  // sum of these waits for one lease
+  double give_up_seconds = 120;  // for these attempts with one lease; less if the end is kNow
   // Bytes. A lease that needs more is given back: it would end the worker (MemoryOf).
   double memory = std::numeric_limits<double>::infinity();
 };

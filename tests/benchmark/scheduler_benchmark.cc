@@ -100,7 +100,6 @@ class SimulatedExecutor : public Executor {
   SimulatedExecutor(Scheduler& scheduler, bool local, double seconds)
       : capacity_{.executor = scheduler.AddExecutor(*this), .local = local, .seconds = seconds} {}
 
-  void Start() override {}
   void Wake() override { is_woken_ = true; }
   bool HasTurn(int64_t) const override { return false; }  // a lease is one turn
   void Shutdown() override {}

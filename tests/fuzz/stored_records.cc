@@ -15,13 +15,13 @@
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
 #include "server/book/job_message.h"
+#include "server/convert/compressed.h"
 #include "server/convert/deterministic_bytes.h"
 #include "server/convert/errors.h"
 #include "server/convert/fold_record.h"
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
 #include "server/store/job_record.h"
-#include "server/worker/checked_file.h"
 #include "server/worker/lease_file.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"
@@ -223,8 +223,8 @@ void RequireMerged(const PointExperiment& experiment, const std::vector<ChunkRes
   Require(fold.PlannedSamples() <= experiment.plan().samples(), "not more than was planned");
 }
 
-void CheckFrame(const std::string& frame) {
-  absl::string_view bytes = frame;
+void CheckReport(const std::string& compressed) {
+  absl::string_view bytes = compressed;
   const absl::StatusOr<server::LeaseReport> report = server::TakeReport(bytes);
   if (!report.ok()) return;
   const std::string written = server::BytesOf(*report);
@@ -234,25 +234,21 @@ void CheckFrame(const std::string& frame) {
   for (const auto& experiment : KnownExperiments()) RequireMerged(*experiment, report->chunks);
 }
 
-// The chunks that a worker appends to a lease's file. The input is used as a whole frame, and as
-// the payload of a frame with a correct checksum. Chunks that fit an experiment are merged.
+// The chunks that a worker appends to a lease's file. The input is used as compressed bytes, and as
+// their contents with a correct checksum. Chunks that fit an experiment are merged.
 void CheckChunkFile(const std::string& input) {
-  CheckFrame(input);
-  const std::string frame = server::FrameOf(input);
-  absl::string_view bytes = frame;
-  const auto framed = server::TakeFrame(bytes);
-  Require(framed.ok() && *framed == input && bytes.empty(), "a payload comes back");
-  CheckFrame(frame);
+  CheckReport(input);
+  const std::string compressed = server::Compressed(input, server::Checksum::kCrc32);
+  Require(server::Uncompressed(compressed) == input, "compressed bytes come back");
+  CheckReport(compressed);
 }
 
 std::vector<std::string> FilesOfEach() {
   std::vector<std::string> files;
   for (const auto& experiment : KnownExperiments()) {
-    const std::string frame = server::BytesOf(
-        server::LeaseReport{.chunks = {{0, experiment->EmptyResult()}}, .seconds = 0.5});
-    absl::string_view bytes = frame;
-    files.emplace_back(*server::TakeFrame(bytes));
-    files.push_back(frame);
+    files.push_back(server::BytesOf(
+        server::LeaseReport{.chunks = {{0, experiment->EmptyResult()}}, .seconds = 0.5}));
+    files.push_back(*server::Uncompressed(files.back()));
   }
   return files;
 }

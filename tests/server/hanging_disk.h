@@ -3,7 +3,6 @@
 
 #include <condition_variable>
 #include <mutex>
-#include <string>
 
 #include "tests/fault/store/fault_disk.h"
 #include "tests/support/await.h"
@@ -15,8 +14,6 @@ class HangingDisk {
   HangingDisk() {
     disk_.SetBeforeOperation([this] { Pass(); });
   }
-
-  const std::string& vfs() const { return disk_.vfs(); }
 
   void Hang() {
     std::lock_guard lock(mutex_);

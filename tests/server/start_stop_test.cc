@@ -161,7 +161,7 @@ TEST(StartStop, HealthIsServedForTheWholeAndForEachService) {
 // One thread runs the calls, so a call that waited for the disk would block all later ones.
 TEST(StartStop, WhileTheDiskHangsCallsThatWriteAreRefusedAndReadsAnswered) {
   HangingDisk disk;
-  RunningServer server({.store = {.stall = std::chrono::milliseconds(1), .vfs = disk.vfs()}});
+  RunningServer server({.store = {.stall = std::chrono::milliseconds(1)}});
   const auto is_serving = [&] {
     return HealthOf(server, "ballpiston.v1.EnsembleService") == kServing;
   };

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/convert/compressed.h"
 #include "server/convert/fold_record.h"
-#include "server/worker/checked_file.h"
 #include "server/worker/worker.h"
 #include "tests/server/fake_experiments.h"
 
@@ -104,10 +104,10 @@ void SimulatedCluster::Trouble() {
 }
 
 absl::StatusOr<LeaseFile> SimulatedCluster::ReadLease(absl::string_view& bytes) const {
-  const absl::StatusOr<absl::string_view> payload = TakeFrame(bytes);
-  if (!payload.ok()) return payload.status();
+  const absl::StatusOr<std::string> plain = TakeCompressed(bytes, kMaxSharedFile);
+  if (!plain.ok()) return plain.status();
   storage::Lease record;
-  if (!record.ParseFromString(std::string(*payload))) return absl::DataLossError("not a lease");
+  if (!record.ParseFromString(*plain)) return absl::DataLossError("not a lease");
   Lease lease = {.run = record.job(), .generation = record.generation()};
   lease.point = static_cast<size_t>(record.point());
   lease.spec = std::make_shared<const EnsembleSpec>(ToySpec(record.question(), lease.point));

@@ -16,11 +16,10 @@ constexpr int kThreads = 2;
 constexpr std::chrono::milliseconds kLongestBlock(200);
 constexpr std::chrono::seconds kBetweenLimits(1);
 
-Store::Options StoreOptions(const FaultDisk& disk) {
+Store::Options StoreOptions() {
   Store::Options options;
   options.readers = 2;  // so that calls wait for one
   options.reserve_bytes = size_t{256} << 10;
-  options.vfs = disk.vfs();
   return options;
 }
 
@@ -32,7 +31,7 @@ ExperimentFactory SlowExperiments(Machine& machine) {
 
 }  // namespace
 
-Life::Life(Machine& machine, FaultDisk& disk, FakeFiles* folder)
+Life::Life(Machine& machine, FakeFiles* folder)
     : machine_(machine),
       name_(absl::StrCat("life", machine.Bits())),
       opener_(SlowExperiments(machine)),
@@ -43,11 +42,11 @@ Life::Life(Machine& machine, FaultDisk& disk, FakeFiles* folder)
                                  : std::make_unique<SimulatedCluster>(
                                        machine, *scheduler_, *folder, SlowExperiments(machine),
                                        [this] { return store_->Flush(); })) {
-  status_ = Start(disk);
+  status_ = Start();
 }
 
-absl::Status Life::Start(FaultDisk& disk) {
-  absl::StatusOr<std::unique_ptr<Store>> store = Store::Open(kStorePath, StoreOptions(disk));
+absl::Status Life::Start() {
+  absl::StatusOr<std::unique_ptr<Store>> store = Store::Open(kStorePath, StoreOptions());
   if (!store.ok()) return store.status();
   store_ = *std::move(store);
   book_ = std::make_unique<JobBook>(*store_, Limits(), *scheduler_);

@@ -1,6 +1,5 @@
 // One life of the server in the simulated machine: the real store, book, scheduler and threads,
-// with toy experiments, on a disk that can fail, and a cluster whose
-// workers fail.
+// with toy experiments, on a disk that can fail, and a cluster whose workers fail.
 #pragma once
 
 #include <memory>
@@ -12,7 +11,6 @@
 #include "server/compute/thread_executor.h"
 #include "server/periodic_thread.h"
 #include "server/store/store.h"
-#include "tests/fault/store/fault_disk.h"
 #include "tests/server/factory_opener.h"
 #include "tests/simulation/cluster.h"
 #include "tests/simulation/machine.h"
@@ -21,9 +19,9 @@ namespace ballpiston::server {
 
 class Life {
  public:
-  // Opens the store on the disk and resumes its jobs. With a folder, leases also go to machines
-  // that share it.
-  Life(Machine& machine, FaultDisk& disk, FakeFiles* folder);
+  // Opens the store on the FaultDisk and resumes its jobs. With a folder, leases also go to
+  // machines that share it.
+  Life(Machine& machine, FakeFiles* folder);
   ~Life();  // stops like a server after SIGTERM
 
   // Not OK: the reason why the server could not start. Then call no other function.
@@ -38,7 +36,7 @@ class Life {
   bool is_over() const { return is_over_; }
 
  private:
-  absl::Status Start(FaultDisk& disk);
+  absl::Status Start();
 
   Machine& machine_;
   const std::string name_;

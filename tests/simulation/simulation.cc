@@ -146,7 +146,7 @@ class Simulation {
 
   void Start() {
     ++troubles_;
-    auto life = std::make_shared<Life>(machine_, *disk_, options_.cluster ? &folder_ : nullptr);
+    auto life = std::make_shared<Life>(machine_, options_.cluster ? &folder_ : nullptr);
     const absl::Status started = life->status();
     Tell(absl::StrCat("the server starts: ", started.ToString()), true);
     if (started.ok()) {

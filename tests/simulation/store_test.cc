@@ -21,7 +21,7 @@ TEST(SimulatedStore, AFlushIsNotOkWhileAnEarlierRecordWaits) {
     Machine machine(seed);
     machine.Run([&] {
       FaultDisk disk;
-      const std::unique_ptr<Store> store = *Store::Open(kStorePath, {.vfs = disk.vfs()});
+      const std::unique_ptr<Store> store = *Store::Open(kStorePath, {});
       disk.Refuse(FaultDisk::Refusal::kWriteError, disk.operation_count());
       store->RecordChunk(1, 0, 5, "chunk");
       machine.Sleep(seconds(3));  // it was tried, and waits

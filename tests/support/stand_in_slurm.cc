@@ -29,10 +29,11 @@ for word; do
   case $word in
     --job-name=*) name=${word#--job-name=} ;;
     --array=0-*) last=${word#--array=0-} ;;
+    --wrap=*) script=${word#--wrap=} ;;
   esac
 done
 array=$arrays/$name.$$
-mkdir "$array" && cat >"$array/script" || exit 1
+mkdir "$array" && echo "$script" >"$array/script" || exit 1
 for task in $(seq 0 "$last"); do
   echo "$name" >>"$arrays/../started"
   SLURM_ARRAY_TASK_ID=$task setsid sh "$array/script" </dev/null >/dev/null 2>&1 &

@@ -29,7 +29,6 @@ class DiskFailure : public testing::Test {
   std::unique_ptr<Store> Open(Store::Options options = {}) const {
     options.stall = kNever;
     options.retry = std::chrono::milliseconds(1);
-    options.vfs = disk_.vfs();
     auto store = Store::Open(kStorePath, options);
     EXPECT_OK(store);
     return *std::move(store);
@@ -66,11 +65,11 @@ TEST_F(DiskFailure, ADiskErrorAtTheStartIsNotReportedAsDamage) {
   for (const Refusal refusal : {Refusal::kFull, Refusal::kWriteError, Refusal::kSyncError}) {
     FaultDisk disk;
     disk.Refuse(refusal, 0);
-    EXPECT_THAT(Store::Open(kStorePath, {.vfs = disk.vfs()}),
+    EXPECT_THAT(Store::Open(kStorePath, {}),
                 StatusIs(absl::StatusCode::kUnavailable,
                          testing::AllOf(HasSubstr("it is unchanged"), Not(HasSubstr("move it")))));
     disk.StopRefusing();
-    EXPECT_OK(Store::Open(kStorePath, {.vfs = disk.vfs()}));
+    EXPECT_OK(Store::Open(kStorePath, {}));
   }
 }
 

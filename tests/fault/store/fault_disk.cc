@@ -37,7 +37,7 @@ struct Methods {
 
   static OpenFile& Of(sqlite3_file* file) { return *reinterpret_cast<OpenFile*>(file); }
   static FaultDisk& Of(sqlite3_vfs* vfs) { return *static_cast<FaultDisk*>(vfs->pAppData); }
-  static sqlite3_vfs* System() { return sqlite3_vfs_find(nullptr); }
+  static sqlite3_vfs* System() { return sqlite3_vfs_find("unix"); }
 
   // ---- files ----
 
@@ -323,7 +323,7 @@ FaultDisk::FaultDisk(DiskFiles files) : name_(UniqueName()), initial_(std::move(
   registered_->xSleep = Methods::Sleep;
   registered_->xCurrentTime = Methods::CurrentTime;
   registered_->xGetLastError = Methods::LastError;
-  sqlite3_vfs_register(registered_.get(), 0);
+  sqlite3_vfs_register(registered_.get(), 1);
 }
 
 FaultDisk::~FaultDisk() { sqlite3_vfs_unregister(registered_.get()); }

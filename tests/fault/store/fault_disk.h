@@ -1,10 +1,11 @@
 // A disk in memory for SQLite. It logs all operations, and rejects those that the test selects.
 //
-// It is a file system of SQLite's (`vfs()` is its name) and behaves as SQLite's own for Unix does:
-// the name of a log or journal is flushed with its first sync, bytes outside those written are
-// never changed, an empty file counts as not existing, locks and the log's index are shared by all
-// connections of the process. Every write, truncation, sync, creation and deletion is one
-// operation, numbered from 0; power_cut.h says what a cut at any of them would leave. Thread-safe.
+// While it lives, it is SQLite's file system for every connection that is opened; of several disks
+// it is the newest one. It behaves as SQLite's own for Unix does: the name of a log or journal is
+// flushed with its first sync, bytes outside those written are never changed, an empty file counts
+// as not existing, locks and the log's index are shared by all connections of the process. Every
+// write, truncation, sync, creation and deletion is one operation, numbered from 0; power_cut.h
+// says what a cut at any of them would leave. Thread-safe.
 #pragma once
 
 #include <array>
@@ -51,8 +52,6 @@ class FaultDisk {
 
   FaultDisk(const FaultDisk&) = delete;
   FaultDisk& operator=(const FaultDisk&) = delete;
-
-  const std::string& vfs() const { return name_; }
 
   // Refuses operations of that kind (a full disk and a write error: writes; a sync error: syncs)
   // among those with numbers first, first + 1, ..., first + count - 1.

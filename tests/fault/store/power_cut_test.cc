@@ -20,13 +20,13 @@ using ::testing::Not;
 
 TEST(PowerCut, AnInterruptedCreationIsCompletedAtTheNextStart) {
   FaultDisk disk;
-  ASSERT_TRUE(OpenStoreFile(kStorePath, disk.vfs()).ok());
+  ASSERT_TRUE(OpenStoreFile(kStorePath).ok());
   const std::vector<DiskOperation> operations = disk.operations();
   ASSERT_GT(operations.size(), 10u);
   for (size_t cut = 0; cut <= operations.size(); ++cut) {
     for (const Survival survival : kSurvivals) {
       FaultDisk left(AfterPowerCut({}, operations, cut, survival, 1));
-      const auto database = OpenStoreFile(kStorePath, left.vfs());
+      const auto database = OpenStoreFile(kStorePath);
       ASSERT_TRUE(database.ok()) << database.status() << " at " << cut;
       EXPECT_EQ((*database)->First<std::string>("PRAGMA integrity_check"), "ok");
       EXPECT_EQ((*database)->Integer("PRAGMA user_version"), kSchemaVersion);

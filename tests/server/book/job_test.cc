@@ -66,24 +66,23 @@ TEST(Job, FinishedPointsComeInTheirOrderAndTheNewestAreKept) {
   EXPECT_TRUE(job.FinishedAfter(300, 10)->empty());
 }
 
-TEST(SharedCopy, AnOldCopyIsReplacedIfTheJobHasChanged) {
-  SharedCopy<JobSnapshot> shared;
-  uint64_t made = 0;
-  const auto make = [&made]() -> absl::StatusOr<JobSnapshot> {
+TEST(Job, AnOldSnapshotIsReplacedIfTheJobHasChanged) {
+  Job job(JobWithPoints(1));
+  int made = 0;
+  const auto make = [&] {
+    ++made;
     JobSnapshot snapshot;
-    snapshot.change = ++made;
+    snapshot.change = job.last_change();
     return snapshot;
   };
   const auto ever = std::chrono::hours(1);
   const auto never = std::chrono::milliseconds(0);
-  const auto first = *shared.Get(1, ever, make);
-  EXPECT_EQ(*shared.Get(2, ever, make), first);   // young
-  EXPECT_EQ(*shared.Get(1, never, make), first);  // nothing changed
-  const auto second = *shared.Get(2, never, make);
-  EXPECT_EQ(second->change, 2u);
-  EXPECT_EQ(made, 2u);
-  shared.Drop();
-  EXPECT_EQ((*shared.Get(2, ever, make))->change, 3u);
+  const auto first = job.Snapshot(ever, make);
+  EXPECT_EQ(job.Snapshot(never, make), first);  // nothing changed
+  const uint64_t change = job.Add({.samples = 1});
+  EXPECT_EQ(job.Snapshot(ever, make), first);  // young
+  EXPECT_EQ(job.Snapshot(never, make)->change, change);
+  EXPECT_EQ(made, 2);
 }
 
 class JobJournalTest : public testing::Test {

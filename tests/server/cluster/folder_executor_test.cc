@@ -11,7 +11,7 @@
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
 #include "server/compute/crash_record.h"
-#include "server/worker/checked_file.h"
+#include "server/convert/compressed.h"
 #include "server/worker/worker.h"
 #include "tests/server/compute/recording_journal.h"
 #include "tests/server/compute/remote_executor.h"
@@ -77,8 +77,8 @@ class FolderExecutorTest : public testing::Test {
   storage::Lease RecordIn(const std::string& path) const {
     absl::string_view bytes = files_.files.at(path).bytes;
     storage::Lease record;
-    const auto payload = TakeFrame(bytes);
-    EXPECT_TRUE(payload.ok() && record.ParseFromString(std::string(*payload)));
+    const auto plain = TakeCompressed(bytes, kMaxSharedFile);
+    EXPECT_TRUE(plain.ok() && record.ParseFromString(*plain));
     return record;
   }
 

@@ -23,7 +23,6 @@ class SteppedExecutor : public Executor {
 
   ~SteppedExecutor() override { scheduler_.RemoveExecutor(capacity_.executor); }
 
-  void Start() override {}
   void Wake() override {}
   bool HasTurn(int64_t lease) const override {
     const auto found = folds_.find(lease);

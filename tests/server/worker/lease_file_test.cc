@@ -5,7 +5,7 @@
 
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
-#include "server/worker/checked_file.h"
+#include "server/convert/compressed.h"
 #include "tests/server/worker/sample_leases.h"
 #include "tests/support/status_matchers.h"
 
@@ -54,8 +54,8 @@ void ExpectDataLoss(Take take, const std::string& bytes) {
 
 TEST(LeaseFile, DamageIsDataLoss) {
   const Lease lease = LeaseOf(SpecOf(kFirstHit, Model::kBilliard));
-  ExpectDataLoss(TakeLease, FrameOf("\xff\xff"));
-  ExpectDataLoss(TakeReport, FrameOf("\xff\xff"));
+  ExpectDataLoss(TakeLease, Compressed("\xff\xff"));
+  ExpectDataLoss(TakeReport, Compressed("\xff\xff"));
   for (const double seconds :
        {-1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     ExpectDataLoss(TakeLease, BytesOf(RecordOf(lease, seconds)));

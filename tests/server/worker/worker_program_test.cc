@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 #include "core/engine_version.h"
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
@@ -163,6 +164,15 @@ TEST_F(WorkerProgramTest, GivesUpOnAFullFolder) {
   EXPECT_THAT(result, ExitsWith(1));
   EXPECT_THAT(result.err, AllOf(HasSubstr("cannot be written"), HasSubstr("retry in")));
   EXPECT_THAT(Done(), IsEmpty());
+}
+
+// Without waits it would fail 240 times.
+TEST_F(WorkerProgramTest, WaitsBetweenItsLastAttempts) {
+  Lay("a", LeaseOf(SpecOf(kFirstHit, Model::kBilliard)));
+  ProcessOptions command = Command({"--retry-seconds=0.5", "--for=4"});
+  command.command.insert(command.command.begin(), {"/usr/bin/prlimit", "--fsize=100:100"});
+  const std::vector<std::string> lines = absl::StrSplit(RunProgram(command).err, '\n');
+  EXPECT_LE(lines.size(), 20u);
 }
 
 // ---- the file of the program ----

@@ -1,6 +1,8 @@
 #include "server/worker/worker.h"
 
+#include <algorithm>
 #include <chrono>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -33,12 +35,18 @@ class WorkerTest : public testing::Test {
     if (options.name.empty()) options.name = "me";
     return Work(files_, options,
                 {.now = [this] { return now_ += InTicks(seconds_of_a_look_); },
-                 .sleep = [this](duration<double> time) { now_ += InTicks(time.count()); },
+                 .sleep =
+                     [this](duration<double> time) {
+                       now_ += InTicks(std::min(time.count(), longest_sleep_));
+                     },
                  .random_bits = [this] { return random_ += 0x9e3779b97f4a7c15; },
                  .end = [this] { return end_; },
                  .report = [this](absl::string_view line) { lines_.emplace_back(line); },
-                 .lease_begins = [this](const std::string& from,
-                                        const std::string&) { begun_.push_back(from); }});
+                 .lease_begins =
+                     [this](const std::string& from, const std::string&) {
+                       begun_.push_back(from);
+                       begun_at_.push_back(now_);
+                     }});
   }
 
   static Clock::duration InTicks(double seconds) {
@@ -72,9 +80,11 @@ class WorkerTest : public testing::Test {
   FakeFiles files_;
   Clock::time_point now_ = {};
   double seconds_of_a_look_ = 0;
+  double longest_sleep_ = std::numeric_limits<double>::infinity();
   uint64_t random_ = 0;
   EndOfWork end_ = EndOfWork::kNotYet;
   std::vector<std::string> lines_, begun_;
+  std::vector<Clock::time_point> begun_at_;
 };
 
 TEST_F(WorkerTest, ComputesAllLeasesAndEndsWhenThereAreNoMore) {
@@ -114,6 +124,35 @@ TEST_F(WorkerTest, AFullFolderIsUsedAgainWhenItHasRoom) {
   EXPECT_THAT(lines_, testing::Contains("no space left; retry in 5 s"));
 }
 
+// Also if waits end early.
+TEST_F(WorkerTest, AWorkerThatMustEndAfterItsChunkWaitsTwoMinutesForRoom) {
+  Lay("a", lease_);
+  Clock::time_point first = {};
+  files_.before = [&](const char* operation, const std::string&) {
+    if (std::string(operation) != "append") return absl::OkStatus();
+    if (end_ == EndOfWork::kNotYet) first = now_;
+    end_ = EndOfWork::kAfterChunk;
+    return absl::ResourceExhaustedError("no space left");
+  };
+  longest_sleep_ = 0.1;
+  EXPECT_THAT(Run(), StatusIs(absl::StatusCode::kResourceExhausted));
+  EXPECT_GE(now_ - first, std::chrono::minutes(2));
+  EXPECT_LE(now_ - first, std::chrono::minutes(3));
+}
+
+TEST_F(WorkerTest, AWorkerThatMustEndNowDoesNotWaitForRoom) {
+  Lay("a", lease_);
+  int attempts = 0;
+  files_.before = [&](const char* operation, const std::string&) {
+    if (std::string(operation) != "append") return absl::OkStatus();
+    if (++attempts == 3) end_ = EndOfWork::kNow;
+    return absl::ResourceExhaustedError("no space left");
+  };
+  EXPECT_OK(Run());
+  EXPECT_EQ(attempts, 3);
+  EXPECT_THAT(Names(), ElementsAre("taken/a.me"));
+}
+
 TEST_F(WorkerTest, ALeaseThatIsStillBeingWrittenIsTakenLater) {
   Lay("a", lease_);
   const std::string whole = files_.files["todo/a"].bytes;
@@ -125,6 +164,22 @@ TEST_F(WorkerTest, ALeaseThatIsStillBeingWrittenIsTakenLater) {
   };
   EXPECT_OK(Run());
   EXPECT_TRUE(AreEqual(ChunksIn("done/a.me.finished"), chunks_));
+}
+
+// The server was killed while it wrote them, or still writes them.
+TEST_F(WorkerTest, IncompleteFilesDelayNoOtherLeaseAndAreGivenBackAtLast) {
+  Lay("z", lease_);
+  const std::string& whole = files_.files["todo/z"].bytes;
+  for (const std::string name : {"a", "b", "c", "d", "e", "f"}) {
+    files_.files["todo/" + name].bytes = whole.substr(0, whole.size() / 2);
+  }
+  EXPECT_OK(Run());
+  EXPECT_THAT(begun_, ElementsAre("taken/z.me"));
+  EXPECT_THAT(begun_at_, ElementsAre(Clock::time_point()));
+  EXPECT_THAT(Names(),
+              UnorderedElementsAre("done/a.me.returned", "done/b.me.returned", "done/c.me.returned",
+                                   "done/d.me.returned", "done/e.me.returned", "done/f.me.returned",
+                                   "done/z.me.finished"));
 }
 
 TEST_F(WorkerTest, ALeaseOfAnotherEngineStaysForOtherWorkers) {

@@ -1,0 +1,85 @@
+#include "server/convert/compressed.h"
+
+#include <string>
+
+#include "gmock/gmock.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr size_t kMost = 1000;
+
+std::string SomeBytes() {
+  std::string bytes;
+  for (int i = 0; i < 100; ++i) bytes.push_back(static_cast<char>(i * 37));
+  return bytes;
+}
+
+// Of one stream.
+absl::StatusOr<std::string> ContentsOf(absl::string_view stream) {
+  return TakeCompressed(stream, kMost);
+}
+
+TEST(Compressed, BothFormatsComeBack) {
+  for (const Checksum checksum : {Checksum::kAdler32, Checksum::kCrc32}) {
+    for (const std::string& plain : {std::string(), SomeBytes(), std::string(100'000, 'a')}) {
+      EXPECT_EQ(Uncompressed(Compressed(plain, checksum)), plain);
+    }
+  }
+}
+
+// All other values of every byte: of the header, the contents and the checksum.
+TEST(Compressed, AChangedByteGivesNoOtherBytes) {
+  for (const Checksum checksum : {Checksum::kAdler32, Checksum::kCrc32}) {
+    const std::string good = Compressed(SomeBytes(), checksum);
+    for (size_t at = 0; at < good.size(); ++at) {
+      for (int change = 1; change < 256; ++change) {
+        std::string stream = good;
+        stream[at] = static_cast<char>(good[at] ^ change);
+        ASSERT_EQ(ContentsOf(stream).value_or(SomeBytes()), SomeBytes())
+            << "byte " << at << " changed by " << change;
+      }
+    }
+  }
+}
+
+TEST(Compressed, AShorterStreamIsTruncated) {
+  for (const Checksum checksum : {Checksum::kAdler32, Checksum::kCrc32}) {
+    const std::string good = Compressed(SomeBytes(), checksum);
+    for (size_t size = 0; size < good.size(); ++size) {
+      ASSERT_THAT(ContentsOf(good.substr(0, size)),
+                  StatusIs(absl::StatusCode::kOutOfRange, HasSubstr("truncated")))
+          << size;
+    }
+  }
+}
+
+TEST(Compressed, TheBytesAfterAStreamAreLeft) {
+  const std::string bytes = Compressed(SomeBytes(), Checksum::kCrc32) + Compressed("second") + "x";
+  EXPECT_EQ(Uncompressed(bytes), std::nullopt);
+  absl::string_view rest = bytes;
+  EXPECT_THAT(TakeCompressed(rest, kMost), IsOkAndHolds(SomeBytes()));
+  EXPECT_THAT(TakeCompressed(rest, kMost), IsOkAndHolds("second"));
+  EXPECT_FALSE(TakeCompressed(rest, kMost).ok());
+  EXPECT_EQ(rest, "x");
+}
+
+TEST(Compressed, AnotherFileIsDataLoss) {
+  EXPECT_THAT(ContentsOf("#!/bin/bash\necho this is a script of some length\n"),
+              StatusIs(absl::StatusCode::kDataLoss, HasSubstr("not a file of ballpiston")));
+}
+
+TEST(Compressed, AStreamOfTooManyBytesIsDataLoss) {
+  EXPECT_THAT(ContentsOf(Compressed(std::string(kMost, 'a'))),
+              IsOkAndHolds(testing::SizeIs(kMost)));
+  for (const size_t size : {kMost + 1, size_t{10'000'000}}) {
+    EXPECT_THAT(ContentsOf(Compressed(std::string(size, 'a'))),
+                StatusIs(absl::StatusCode::kDataLoss));
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::server
