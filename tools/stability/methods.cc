@@ -6,7 +6,6 @@
 #include "tools/stability/gas_runs.h"
 #include "tools/stability/pair_runs.h"
 #include "tools/stability/textbook_flow.h"
-#include "tools/stability/textbook_gas.h"
 
 namespace ballpiston::stability {
 
@@ -46,13 +45,10 @@ std::vector<PairMethod> PairMethods() {
 }
 
 std::vector<GasMethod> GasMethods() {
-  using enum TextbookRule;
   return {
       {"lanes", 1, true, RunLaneGases},
       {"reference", 1, true, RunGasesByEvents<ReferenceGas>},
       {"jump process", 1, true, RunJumpGases},
-      {"nearest root", 0.02, false, RunGasesByEvents<TextbookGas<kPositiveRoot>>},
-      {"approaching disc", 0.02, false, RunGasesByEvents<TextbookGas<kApproaching>>},
       {"fixed steps of 1e-3", 0.01, false, RunGasesByEvents<FixedStepGasEvents>},
   };
 }
