@@ -1,5 +1,5 @@
 // The engines side by side, in one run: what a wall hit costs, and how many times as many samples a
-// second the lanes give as the reference does.
+// second the lanes give as the reference does. First the closed form, which needs no engine.
 //
 //   engine_benchmark [--threads N]
 //
@@ -23,6 +23,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/billiard/lane_frame.h"
+#include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
@@ -203,7 +204,20 @@ void ShowThreads(unsigned threads) {
       threads, orbits, probe, threads);
 }
 
+void ShowClosedForm() {
+  constexpr uint64_t kGeometries = 500'000;
+  const auto turn_of = [](uint64_t turn) {
+    for (uint64_t i = 0; i < kGeometries; ++i) {
+      const double delta = 0.1 + 1e-9 * static_cast<double>(turn * kGeometries + i);
+      Keep(MeanFreeTimesOf(*PairGeometry::Create(kPaperRho, delta)).ball_piston);
+    }
+    return double{kGeometries};
+  };
+  ShowRates({{"closed form: three mean free times", turn_of}}, 12, "");
+}
+
 void ShowAll() {
+  ShowClosedForm();
   for (const int64_t target : VectorTargets()) ShowFlight(target);
   for (const int64_t target : VectorTargets()) {
     ShowEngines("first-hit", &kFirstHit, 0.0125, target);

@@ -14,20 +14,35 @@ FixedStepFlow::FixedStepFlow(const PairGeometry& geometry, const PairState& stat
       piston_(state.piston),
       piston_velocity_(state.piston_velocity) {}
 
-FixedSteps FixedStepFlow::Advance(uint64_t most) {
-  FixedSteps result;
-  result.steps = MoveFreely(most);
-  if (result.steps > 1) ball_.MovedFreely();
-  result.ball_wall = ball_.Repair();
-  result.piston_wall = RepairPiston();
-  result.ball_piston = ball_.position.x() > piston_ && ball_.velocity.x() > piston_velocity_;
-  result.lost = ball_.IsLost();
-  return result;
+Event FixedStepFlow::Step() {
+  constexpr uint64_t kMostSteps = 1'000'000'000;
+  uint64_t steps = 0;
+  while (pending_.empty() && steps < kMostSteps) steps += Advance();
+  Event event = {EventKind::kEscape, time_step_ * static_cast<double>(steps)};
+  if (!pending_.empty()) {
+    event.kind = pending_.back();
+    pending_.pop_back();
+  }
+  return event;
+}
+
+// Makes steps until a repair is needed, but not many; returns their number.
+uint64_t FixedStepFlow::Advance() {
+  const uint64_t steps = MoveFreely();
+  if (steps > 1) ball_.MovedFreely();
+  const bool ball_wall = ball_.Repair(), piston_wall = RepairPiston();
+  const bool meet = ball_.position.x() > piston_ && ball_.velocity.x() > piston_velocity_;
+  if (meet) pending_.push_back(EventKind::kBallPiston);
+  if (piston_wall) pending_.push_back(EventKind::kPistonWall);
+  if (ball_wall) pending_.push_back(EventKind::kBallWall);
+  if (ball_.IsLost()) pending_.push_back(EventKind::kEscape);
+  return steps;
 }
 
 // The disc in the ball's quadrant is the nearest disc. This loop is the whole cost of the flow:
 // everything is in registers.
-uint64_t FixedStepFlow::MoveFreely(uint64_t most) {
+uint64_t FixedStepFlow::MoveFreely() {
+  constexpr uint64_t kMost = 1024;  // then Advance finds a ball that has left the cell
   double x = ball_.position.x(), y = ball_.position.y(), piston = piston_;
   const double dx = ball_.velocity.x() * time_step_, dy = ball_.velocity.y() * time_step_;
   const double dp = piston_velocity_ * time_step_;
@@ -40,7 +55,7 @@ uint64_t FixedStepFlow::MoveFreely(uint64_t most) {
     const double to_x = 0.5 - std::fabs(x), to_y = 0.5 - std::fabs(y);
     wrong = (to_x * to_x + to_y * to_y < rho_squared_) | (x > piston) | (piston < piston_left_) |
             (piston > piston_right_);
-  } while (++steps < most && !wrong);
+  } while (++steps < kMost && !wrong);
   ball_.position = {x, y};
   piston_ = piston;
   return steps;

@@ -10,40 +10,38 @@
 // larger than the step divided by the mean flight. Contacts shorter than a step are missed.
 // Properties, each with a test of its name: 1. EnergyStaysExact, to rounding.
 // 2. TimeIsBiasedToFirstOrderInTheStep.
+// 3. OnlyReflectionsAndCollisionsAreEvents: pushing a ball out, or letting it pass, is none.
 //
 // One object is one orbit; not for sharing between threads.
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
+#include "core/billiard/event_flow.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
 #include "tools/flows/fixed_step_ball.h"
 
 namespace ballpiston {
 
-// The events in the last of several time steps. There may be none.
-struct FixedSteps {
-  uint64_t steps = 0;
-  bool ball_wall = false;
-  bool piston_wall = false;
-  bool ball_piston = false;  // they still approach: call ExchangeComponents() before the next step
-  bool lost = false;         // the ball left the unit cell, or is wedged between two discs
-};
-
+// The same interface as ReferenceFlow.
 class FixedStepFlow {
  public:
   // time_step > 0.
-  FixedStepFlow(const PairGeometry& geometry, const PairState& state, double time_step);
+  FixedStepFlow(const PairGeometry& geometry, const PairState& state, double time_step = 1e-3);
 
-  // Makes steps until a repair is needed, but at most `most` steps; `most` >= 1.
-  FixedSteps Advance(uint64_t most);
+  // Makes steps until there is an event. All events of one step but the first take no time.
+  // kEscape: the ball left the unit cell, is wedged between two discs, or has no event for 1e9
+  // steps.
+  Event Step();
   void ExchangeComponents();
 
   PairState state() const;
 
  private:
-  uint64_t MoveFreely(uint64_t most);
+  uint64_t Advance();
+  uint64_t MoveFreely();
   bool RepairPiston();
 
   double time_step_;
@@ -54,6 +52,7 @@ class FixedStepFlow {
   FixedStepBall ball_;
   double piston_;
   double piston_velocity_;
+  std::vector<EventKind> pending_;  // the events of the last step; the next one is at the end
 };
 
 }  // namespace ballpiston

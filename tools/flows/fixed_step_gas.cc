@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace ballpiston {
@@ -17,12 +18,24 @@ FixedStepGas::FixedStepGas(const GasGeometry& geometry, const GasState& start, T
   }
 }
 
-const std::vector<GasEvent>& FixedStepGas::Advance() {
+double FixedStepGas::NextTime() {
+  constexpr double kLongTime = 1000;
+  const double end = Now() + kLongTime;
+  while (told_ == events_.size() && Now() < end) Advance();
+  return told_ == events_.size() ? std::numeric_limits<double>::infinity() : events_[told_].time;
+}
+
+GasEvent FixedStepGas::Step() {
+  NextTime();
+  return events_[told_++];
+}
+
+void FixedStepGas::Advance() {
   events_.clear();
+  told_ = 0;
   ++steps_;
   for (int64_t piston = 0; piston < geometry_.pistons(); ++piston) MovePiston(piston);
   for (int64_t ball = 0; ball < geometry_.balls(); ++ball) MoveBall(ball);
-  return events_;
 }
 
 void FixedStepGas::MovePiston(int64_t number) {
@@ -33,7 +46,7 @@ void FixedStepGas::MovePiston(int64_t number) {
   piston.offset = std::copysign(2 * geometry_.reach(), piston.offset) - piston.offset;
   const double speed = is_thermal ? walls_.DrawSpeed(number) : std::fabs(piston.velocity);
   piston.velocity = -std::copysign(speed, piston.velocity);
-  events_.push_back({.kind = EventKind::kPistonWall, .time = time(), .piston = number});
+  events_.push_back({.kind = EventKind::kPistonWall, .time = Now(), .piston = number});
 }
 
 void FixedStepGas::MoveBall(int64_t number) {
@@ -41,12 +54,12 @@ void FixedStepGas::MoveBall(int64_t number) {
   if (ball.is_lost) return;
   ball.moving.position += ball.moving.velocity * time_step_;
   if (ball.moving.Repair()) {
-    events_.push_back({.kind = EventKind::kBallWall, .time = time(), .ball = number});
+    events_.push_back({.kind = EventKind::kBallWall, .time = Now(), .ball = number});
   }
   for (int i = 0; i < geometry_.directions(); ++i) Collide(number, geometry_.DirectionAt(i));
   ball.is_lost = ball.moving.IsLost();
   if (ball.is_lost) {
-    events_.push_back({.kind = EventKind::kEscape, .time = time(), .ball = number});
+    events_.push_back({.kind = EventKind::kEscape, .time = Now(), .ball = number});
   }
 }
 
@@ -65,10 +78,10 @@ void FixedStepGas::Collide(int64_t number, Direction direction) {
   position.x() = place;
   ball.position = SeenFrom(direction, position);
   ball.velocity = SeenFrom(direction, velocity);
-  events_.push_back({EventKind::kBallPiston, time(), number, piston_number, direction});
+  events_.push_back({EventKind::kBallPiston, Now(), number, piston_number, direction});
 }
 
-GasBall FixedStepGas::BallNow(int64_t number) const {
+GasBall FixedStepGas::BallAt(int64_t number, double /*time*/) const {
   const FixedStepBall& ball = balls_[static_cast<size_t>(number)].moving;
   const double speed = ball.velocity.norm();
   GasBall state = {.position = ball.position, .speed = speed};

@@ -21,18 +21,24 @@
 
 namespace ballpiston {
 
+// The same interface as ReferenceGas.
 class FixedStepGas {
  public:
   // time_step > 0.
   FixedStepGas(const GasGeometry& geometry, const GasState& start, ThermalWalls walls,
-               double time_step);
+               double time_step = 1e-3);
 
-  // One time step. Returns its events (usually none); their time is the end of the step.
-  const std::vector<GasEvent>& Advance();
+  // Makes steps until there is an event, and returns the time of the end of its step; infinity if
+  // nothing happens for a time of 1000.
+  double NextTime();
+  // The next event. NextTime() must be finite.
+  GasEvent Step();
 
-  double time() const { return static_cast<double>(steps_) * time_step_; }
-  GasBall BallNow(int64_t ball) const;
-  GasPiston PistonNow(int64_t piston) const { return pistons_[static_cast<size_t>(piston)]; }
+  // At the end of the last step, whatever the time.
+  GasBall BallAt(int64_t ball, double time) const;
+  GasPiston PistonAt(int64_t piston, double /*time*/) const {
+    return pistons_[static_cast<size_t>(piston)];
+  }
 
  private:
   struct Ball {
@@ -40,6 +46,8 @@ class FixedStepGas {
     bool is_lost = false;
   };
 
+  double Now() const { return static_cast<double>(steps_) * time_step_; }
+  void Advance();
   void MovePiston(int64_t number);
   void MoveBall(int64_t number);
   void Collide(int64_t number, Direction direction);
@@ -50,7 +58,8 @@ class FixedStepGas {
   uint64_t steps_ = 0;
   std::vector<Ball> balls_;
   std::vector<GasPiston> pistons_;
-  std::vector<GasEvent> events_;
+  std::vector<GasEvent> events_;  // of the last step
+  size_t told_ = 0;               // of these events
 };
 
 }  // namespace ballpiston

@@ -1,9 +1,15 @@
-// A state of the flow in another number type.
+// A flow's number type, and its state in another number type.
 #pragma once
+
+#include <type_traits>
+#include <utility>
 
 #include "core/geometry/pair_state.h"
 
 namespace ballpiston {
+
+template <typename Flow>
+using RealOf = std::remove_cvref_t<decltype(std::declval<Flow>().state().ball_speed)>;
 
 // Each number is rounded separately.
 template <typename To, typename From>

@@ -76,9 +76,10 @@ void Add(const SteadyGas& gas, const GasMeter& meter, BatchMeans& means) {
 void Tell(const FixedStepGas& gas, const GasEvent& event, GasMeter& meter) {
   if (event.kind == EventKind::kBallPiston) {
     meter.Exchange({event.time, event.ball, event.piston, event.direction,
-                    EnergyOf(gas.BallNow(event.ball)), EnergyOf(gas.PistonNow(event.piston))});
+                    EnergyOf(gas.BallAt(event.ball, event.time)),
+                    EnergyOf(gas.PistonAt(event.piston, event.time))});
   } else if (event.kind == EventKind::kPistonWall) {
-    meter.SetPiston(event.time, event.piston, EnergyOf(gas.PistonNow(event.piston)));
+    meter.SetPiston(event.time, event.piston, EnergyOf(gas.PistonAt(event.piston, event.time)));
   } else if (event.kind == EventKind::kEscape) {
     meter.CountEscape();
   }
@@ -86,9 +87,7 @@ void Tell(const FixedStepGas& gas, const GasEvent& event, GasMeter& meter) {
 
 // Stops earlier if a ball is lost.
 void AdvanceTo(double time, FixedStepGas& gas, GasMeter& meter) {
-  while (gas.time() < time && meter.escapes() == 0) {
-    for (const GasEvent& event : gas.Advance()) Tell(gas, event, meter);
-  }
+  while (meter.escapes() == 0 && gas.NextTime() <= time) Tell(gas, gas.Step(), meter);
 }
 
 void MeasureByFixedSteps(const SteadyGas& gas, double time_step, uint64_t sample,
@@ -98,9 +97,9 @@ void MeasureByFixedSteps(const SteadyGas& gas, double time_step, uint64_t sample
   GasMeter meter(gas.geometry(), start);
   FixedStepGas steps(gas.geometry(), start, gas.WallsOf(random), time_step);
   AdvanceTo(TimeToRelax(gas), steps, meter);
-  meter.Begin(steps.time());
+  meter.Begin(TimeToRelax(gas));
   AdvanceTo(TimeToTheEnd(gas), steps, meter);
-  meter.End(steps.time());
+  meter.End(TimeToTheEnd(gas));
   if (meter.escapes() == 0) Add(gas, meter, means);
 }
 

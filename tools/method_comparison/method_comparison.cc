@@ -89,7 +89,7 @@ class Comparison {
     for (const double delta : spec_.relaxation_deltas) {
       CompareRelaxationTimesOf({PairGeometry::Create(spec_.rho, delta).value(), spec_.seed});
     }
-    if (spec_.gas_delta > 0) CompareHeatCurrents({spec_.rho, spec_.gas_delta, spec_.seed});
+    CompareHeatCurrents({spec_.rho, GasDelta(spec_.rho), spec_.seed});
     for (const auto& [delta, floor] : floors_) tell_(floor);
   }
 
@@ -301,10 +301,9 @@ class Comparison {
   std::map<double, MethodMeasurement, std::greater<>> floors_;  // by delta
 };
 
-// If rho is not permitted, checks only what does not depend on rho. `validate` needs a valid rho.
-absl::Status ValidateDelta(double rho, double delta,
-                           absl::Status (*validate)(double, double) = ValidatePairDelta) {
-  return ValidateRho(rho).ok() ? validate(rho, delta) : ValidateSomeDelta(delta);
+// If rho is not permitted, checks only what does not depend on rho.
+absl::Status ValidateDelta(double rho, double delta) {
+  return ValidateRho(rho).ok() ? ValidatePairDelta(rho, delta) : ValidateSomeDelta(delta);
 }
 
 }  // namespace
@@ -325,9 +324,6 @@ std::vector<std::string> Violations(const MethodComparisonSpec& spec) {
   for (const double delta : spec.relaxation_deltas) {
     check("--relaxation-delta", ValidateDelta(spec.rho, delta));
   }
-  if (spec.gas_delta != 0) {
-    check("gas_delta", ValidateDelta(spec.rho, spec.gas_delta, ValidateGasDelta));
-  }
   permit(spec.epsilon > 0 && spec.epsilon < 0.5,
          absl::StrCat("--epsilon: ", NumberText(spec.epsilon), " is not in (0, 1/2)"));
   permit(spec.seconds_per_curve >= kMinSecondsPerCurve &&
@@ -343,9 +339,8 @@ std::vector<double> DefaultRelaxationDeltas(double rho) {
   return deltas;
 }
 
-double DefaultGasDelta(double rho) {
+double GasDelta(double rho) {
   constexpr double kUsual = 0.2;
-  if (!ValidateRho(rho).ok()) return 0;
   return ValidateGasDelta(rho, kUsual).ok() ? kUsual : GasDeltaBound(rho);
 }
 

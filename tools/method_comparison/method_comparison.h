@@ -94,7 +94,6 @@ struct MethodComparisonSpec {
   double seconds_per_curve = 1;  // approximate work of each method's largest run
   uint64_t seed = 0;
   std::vector<double> relaxation_deltas = {};  // for kRelaxationTime; if empty, it is left out
-  double gas_delta = 0;                        // for kHeatCurrent; if 0, it is left out
 };
 
 struct MethodMeasurement {
@@ -111,15 +110,14 @@ struct MethodMeasurement {
   std::optional<bool> bias_resolved = {};  // empty for kTrajectory: its value is not a deviation
 };
 
-// One sentence for each value that is not permitted. It begins with the program's flag, or with
-// gas_delta, which has no flag: the program uses DefaultGasDelta.
+// One sentence for each value that is not permitted. It begins with the program's flag.
 std::vector<std::string> Violations(const MethodComparisonSpec& spec);
 
 // The values among 0.2, 0.1, 0.05 and 0.025 that rho permits.
 std::vector<double> DefaultRelaxationDeltas(double rho);
 
-// 0.2, or the gas's bound if that is smaller; 0 if rho is not valid.
-double DefaultGasDelta(double rho);
+// For kHeatCurrent: 0.2, or the gas's bound if that is smaller. rho must be valid.
+double GasDelta(double rho);
 
 // Calls `tell` with each measurement as soon as it is made. The order is by quantity, then delta
 // (in the order of the list), then method, then time step (descending), then samples (ascending).

@@ -1,12 +1,13 @@
 #include "tools/method_comparison/method_orbits.h"
 
+#include "tools/flows/fixed_step_flow.h"
 #include "tools/flows/precise_flow.h"
 
 namespace ballpiston::method_comparison {
 namespace {
 
-template <typename Orbit>
-void RunOrbit(Orbit orbit, uint64_t index, NumberedOrbits& source) {
+template <typename Flow>
+void RunOrbit(FlowOrbit<Flow> orbit, uint64_t index, NumberedOrbits& source) {
   for (Collision collision;;) {
     if (!orbit.Advance(collision)) continue;
     collision.state = orbit.state();
@@ -16,17 +17,12 @@ void RunOrbit(Orbit orbit, uint64_t index, NumberedOrbits& source) {
   }
 }
 
-template <typename Real>
-void RunEventOrbits(const PairGeometry& geometry, uint64_t orbits, NumberedOrbits& source) {
+template <typename Flow, typename... TimeStep>
+void RunFlows(const PairGeometry& geometry, uint64_t orbits, NumberedOrbits& source,
+              TimeStep... time_step) {
   for (uint64_t i = 0; i < orbits; ++i) {
-    RunOrbit(EventOrbit<Real>(geometry, RoundedTo<Real>(source.Start(i))), i, source);
-  }
-}
-
-void RunFixedStepOrbits(double time_step, const PairGeometry& geometry, uint64_t orbits,
-                        NumberedOrbits& source) {
-  for (uint64_t i = 0; i < orbits; ++i) {
-    RunOrbit(FixedStepOrbit(geometry, source.Start(i), time_step), i, source);
+    const auto start = RoundedTo<RealOf<Flow>>(source.Start(i));
+    RunOrbit(FlowOrbit<Flow>(geometry, start, time_step...), i, source);
   }
 }
 
@@ -36,13 +32,13 @@ void RunMethodOrbits(const MethodVariant& variant, const PairGeometry& geometry,
                      NumberedOrbits& source) {
   switch (variant.method) {
     case Method::kFixedStep:
-      return RunFixedStepOrbits(variant.time_step, geometry, orbits, source);
+      return RunFlows<FixedStepFlow>(geometry, orbits, source, variant.time_step);
     case Method::kReferenceSingle:
-      return RunEventOrbits<float>(geometry, orbits, source);
+      return RunFlows<EventFlow<float>>(geometry, orbits, source);
     case Method::kReferenceLongDouble:
-      return RunEventOrbits<long double>(geometry, orbits, source);
+      return RunFlows<EventFlow<long double>>(geometry, orbits, source);
     case Method::kReferenceQuadruple:
-      return RunEventOrbits<Quadruple>(geometry, orbits, source);
+      return RunFlows<EventFlow<Quadruple>>(geometry, orbits, source);
     case Method::kReference:
       RunOrbits(Engine::kReference, geometry, orbits, source);
       return;

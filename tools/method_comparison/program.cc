@@ -96,7 +96,6 @@ int RunProgram(int argc, const char* const* argv, std::ostream& out, std::ostrea
   if (absl::StrJoin(app.get_option("--relaxation-delta")->results(), "").empty()) {
     spec.relaxation_deltas = DefaultRelaxationDeltas(spec.rho);
   }
-  spec.gas_delta = DefaultGasDelta(spec.rho);
   const std::vector<std::string> violations = Violations(spec);
   for (const std::string& violation : violations) {
     error << "method_comparison: " << violation << "\n";

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/processor_time.h"
+#include "tools/flows/fixed_step_flow.h"
 #include "tools/flows/lane_balls.h"
 #include "tools/flows/rounded_to.h"
 #include "tools/method_comparison/method_orbits.h"
@@ -25,8 +26,8 @@ std::vector<PairStateOf<To>> Starts(const TwinOrbits& twins) {
   return starts;
 }
 
-template <typename Orbit>
-void FlyOrbit(Orbit orbit, uint64_t hits, std::vector<BallAt>& places) {
+template <typename Flow>
+void FlyOrbit(FlowOrbit<Flow> orbit, uint64_t hits, std::vector<BallAt>& places) {
   for (Collision way; places.size() < hits;) {
     orbit.Advance(way);
     if (way.escaped) return;
@@ -35,34 +36,21 @@ void FlyOrbit(Orbit orbit, uint64_t hits, std::vector<BallAt>& places) {
   }
 }
 
-// One orbit after the other. `begin` makes an orbit from a start.
-template <typename Real, typename Begin>
-Itineraries FlyEach(const TwinOrbits& twins, uint64_t hits, const Begin& begin) {
-  const std::vector<PairStateOf<Real>> starts = Starts<Real>(twins);
+// One orbit after the other.
+template <typename Flow, typename... TimeStep>
+Itineraries FlyEach(const PairGeometry& geometry, const TwinOrbits& twins, uint64_t hits,
+                    TimeStep... time_step) {
+  const auto starts = Starts<RealOf<Flow>>(twins);
   Itineraries result;
   result.orbits.resize(starts.size());
   for (std::vector<BallAt>& places : result.orbits) places.reserve(hits);
   result.seconds = server::SecondsOf([&] {
     for (size_t i = 0; i < starts.size(); ++i) {
       result.orbits[i].clear();
-      FlyOrbit(begin(starts[i]), hits, result.orbits[i]);
+      FlyOrbit(FlowOrbit<Flow>(geometry, starts[i], time_step...), hits, result.orbits[i]);
     }
   });
   return result;
-}
-
-template <typename Real>
-Itineraries FlyEvents(const PairGeometry& geometry, const TwinOrbits& twins, uint64_t hits) {
-  return FlyEach<Real>(twins, hits, [&](const PairStateOf<Real>& start) {
-    return EventOrbit<Real>(geometry, start);
-  });
-}
-
-Itineraries FlyFixedSteps(const PairGeometry& geometry, double time_step, const TwinOrbits& twins,
-                          uint64_t hits) {
-  return FlyEach<double>(twins, hits, [&](const PairState& start) {
-    return FixedStepOrbit(geometry, start, time_step);
-  });
 }
 
 // The measured time does not include the records of the positions: the lanes are so fast that the
@@ -89,15 +77,15 @@ Itineraries Fly(const MethodVariant& variant, const PairGeometry& geometry, cons
                 uint64_t hits) {
   switch (variant.method) {
     case Method::kFixedStep:
-      return FlyFixedSteps(geometry, variant.time_step, twins, hits);
+      return FlyEach<FixedStepFlow>(geometry, twins, hits, variant.time_step);
     case Method::kReferenceSingle:
-      return FlyEvents<float>(geometry, twins, hits);
+      return FlyEach<EventFlow<float>>(geometry, twins, hits);
     case Method::kReference:
-      return FlyEvents<double>(geometry, twins, hits);
+      return FlyEach<EventFlow<double>>(geometry, twins, hits);
     case Method::kReferenceLongDouble:
-      return FlyEvents<long double>(geometry, twins, hits);
+      return FlyEach<EventFlow<long double>>(geometry, twins, hits);
     case Method::kReferenceQuadruple:
-      return FlyEvents<Quadruple>(geometry, twins, hits);
+      return FlyEach<EventFlow<Quadruple>>(geometry, twins, hits);
     case Method::kLanes:
       return FlyInLanes(FlyLaneBalls, geometry, twins, hits);
     case Method::kLanesSingle:

@@ -5,12 +5,12 @@
 #include "core/billiard/reference_flow.h"
 #include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
+#include "tools/flows/fixed_step_flow.h"
 #include "tools/flows/lane_balls.h"
 #include "tools/flows/numbered_orbits.h"
 #include "tools/flows/precise_flow.h"
 #include "tools/stability/energy.h"
 #include "tools/stability/failures.h"
-#include "tools/stability/fixed_step_events.h"
 #include "tools/stability/flow_precision.h"
 #include "tools/stability/markdown_table.h"
 #include "tools/stability/pair_starts.h"
@@ -157,7 +157,7 @@ std::vector<EnergyRun> EnergyRuns(double effort) {
   pair("reference, 113 bits", true, 1e6, PairByEvents<EventFlow<Quadruple>>);
   pair("nearest root", false, 1e8, PairByEvents<TextbookFlow<kPositiveRoot>>);
   pair("approaching disc", false, 1e8, PairByEvents<TextbookFlow<kApproaching>>);
-  pair("fixed steps of 1e-3", false, 1e6, PairByEvents<FixedStepEvents>);
+  pair("fixed steps of 1e-3", false, 1e6, PairByEvents<FixedStepFlow>);
   return runs;
 }
 

@@ -5,16 +5,12 @@
 #include <cmath>
 #include <limits>
 #include <type_traits>
-#include <utility>
 
 #include "core/billiard/lane_frame.h"
 #include "core/geometry/pair_state.h"
 #include "tools/flows/rounded_to.h"
 
 namespace ballpiston::stability {
-
-template <typename Flow>
-using RealOf = std::remove_cvref_t<decltype(std::declval<Flow>().state().ball_speed)>;
 
 // At least the epsilon of a double: the checks themselves are computed in double.
 template <typename Flow>

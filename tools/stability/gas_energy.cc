@@ -10,9 +10,7 @@
 #include "tools/flows/metered_gases.h"
 #include "tools/stability/energy.h"
 #include "tools/stability/failures.h"
-#include "tools/stability/fixed_step_events.h"
 #include "tools/stability/markdown_table.h"
-#include "tools/stability/textbook_gas.h"
 
 namespace ballpiston::stability {
 namespace {
@@ -42,17 +40,6 @@ double TimeOf(double exchanges) {
 
 double TotalEnergy(const GasState& state) { return GasMeter(EnergyGas(), state).TotalEnergy(); }
 
-EnergyRun RunOf(const char* method, bool promised, const GasEnergyRecord& record) {
-  return {.method = method,
-          .what = "gases",
-          .orbits = kGases,
-          .hits = record.exchanges(),
-          .promised = promised,
-          .worst = record.Worst(),
-          .permitted = record.LongestWalk(),
-          .change = record.Mean()};
-}
-
 EnergyRun OfEngine(const char* method, GasEngine engine, double exchanges) {
   GasEnergyRecord record;
   const std::vector<GasStart> starts = EnergyStarts();
@@ -62,35 +49,14 @@ EnergyRun OfEngine(const char* method, GasEngine engine, double exchanges) {
     const GasMeter& meter = gases.meters()[i];
     record.Add(meter.exchanges(), meter.TotalEnergy() / TotalEnergy(starts[i].state) - 1);
   }
-  return RunOf(method, true, record);
-}
-
-template <typename Gas>
-GasState StateOf(const Gas& gas, double time) {
-  GasState state;
-  for (int64_t i = 0; i < EnergyGas().balls(); ++i) state.balls.push_back(gas.BallAt(i, time));
-  for (int64_t i = 0; i < EnergyGas().pistons(); ++i) {
-    state.pistons.push_back(gas.PistonAt(i, time));
-  }
-  return state;
-}
-
-template <typename Gas>
-EnergyRun OfEvents(const char* method, double exchanges) {
-  GasEnergyRecord record;
-  const double end = TimeOf(exchanges);
-  for (const GasStart& start : EnergyStarts()) {
-    Gas gas(EnergyGas(), start.state, {});
-    uint64_t made = 0;
-    bool has_escaped = false;
-    while (!has_escaped && gas.NextTime() <= end) {
-      const EventKind kind = gas.Step().kind;
-      made += kind == EventKind::kBallPiston;
-      has_escaped = kind == EventKind::kEscape;
-    }
-    record.Add(made, TotalEnergy(StateOf(gas, end)) / TotalEnergy(start.state) - 1);
-  }
-  return RunOf(method, false, record);
+  return {.method = method,
+          .what = "gases",
+          .orbits = kGases,
+          .hits = record.exchanges(),
+          .promised = true,
+          .worst = record.Worst(),
+          .permitted = record.LongestWalk(),
+          .change = record.Mean()};
 }
 
 }  // namespace
@@ -107,15 +73,11 @@ double GasEnergyRecord::LongestWalk() const {
 }
 
 std::vector<EnergyRun> GasEnergyRuns(double effort) {
-  using enum TextbookRule;
   const auto exchanges = [effort](double full) { return std::max(full * effort, 100.0); };
   return {
       OfEngine("lanes", GasEngine::kLanes, exchanges(5e4)),
       OfEngine("reference", GasEngine::kReference, exchanges(5e4)),
       OfEngine("jump process", GasEngine::kJumps, exchanges(5e5)),
-      OfEvents<TextbookGas<kPositiveRoot>>("nearest root", exchanges(2e3)),
-      OfEvents<TextbookGas<kApproaching>>("approaching disc", exchanges(2e3)),
-      OfEvents<FixedStepGasEvents>("fixed steps of 1e-3", exchanges(5e2)),
   };
 }
 

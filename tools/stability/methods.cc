@@ -1,12 +1,12 @@
 #include "core/billiard/reference_flow.h"
 #include "core/gas/reference_gas.h"
+#include "tools/flows/fixed_step_flow.h"
+#include "tools/flows/fixed_step_gas.h"
 #include "tools/flows/precise_flow.h"
 #include "tools/stability/cases.h"
-#include "tools/stability/fixed_step_events.h"
 #include "tools/stability/gas_runs.h"
 #include "tools/stability/pair_runs.h"
 #include "tools/stability/textbook_flow.h"
-#include "tools/stability/textbook_gas.h"
 
 namespace ballpiston::stability {
 
@@ -23,7 +23,7 @@ std::vector<PairMethod> BallMethods() {
       {"nearest root, no threshold", 0.01, false, FlyByEvents<TextbookFlow<kAnyRoot>>},
       {"approaching disc", 0.01, false, FlyByEvents<TextbookFlow<kApproaching>>},
       {"unit speed assumed", 0.01, false, FlyByEvents<TextbookFlow<kUnitSpeed>>},
-      {"fixed steps of 1e-3", 1e-3, false, FlyByEvents<FixedStepEvents>},
+      {"fixed steps of 1e-3", 1e-3, false, FlyByEvents<FixedStepFlow>},
   };
 }
 
@@ -41,19 +41,16 @@ std::vector<PairMethod> PairMethods() {
       {"nearest root", 0.02, false, RunByEvents<TextbookFlow<kPositiveRoot>>, large},
       {"nearest root, no threshold", 0.02, false, RunByEvents<TextbookFlow<kAnyRoot>>, large},
       {"approaching disc", 0.02, false, RunByEvents<TextbookFlow<kApproaching>>, large},
-      {"fixed steps of 1e-3", 2e-4, false, RunByEvents<FixedStepEvents>, large},
+      {"fixed steps of 1e-3", 2e-4, false, RunByEvents<FixedStepFlow>, large},
   };
 }
 
 std::vector<GasMethod> GasMethods() {
-  using enum TextbookRule;
   return {
       {"lanes", 1, true, RunLaneGases},
       {"reference", 1, true, RunGasesByEvents<ReferenceGas>},
       {"jump process", 1, true, RunJumpGases},
-      {"nearest root", 0.02, false, RunGasesByEvents<TextbookGas<kPositiveRoot>>},
-      {"approaching disc", 0.02, false, RunGasesByEvents<TextbookGas<kApproaching>>},
-      {"fixed steps of 1e-3", 0.01, false, RunGasesByEvents<FixedStepGasEvents>},
+      {"fixed steps of 1e-3", 0.01, false, RunGasesByEvents<FixedStepGas>},
   };
 }
 

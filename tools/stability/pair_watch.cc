@@ -63,7 +63,7 @@ void PairWatch::SeeExchanged(const PairState& state, Failures& failures) {
 CollisionWatch::CollisionWatch(const PairGeometry& geometry, double epsilon,
                                std::span<const PairState> starts, uint64_t collisions)
     : geometry_(geometry), ball_(geometry, epsilon), epsilon_(epsilon), collisions_(collisions) {
-  const Standstill standstill(kShortUlps * epsilon, LongestStandstill(geometry));
+  const Standstill standstill(ShortFlight(geometry, epsilon), LongestStandstill(geometry));
   for (const PairState& start : starts) orbits_.push_back({start, standstill});
 }
 

@@ -13,8 +13,8 @@ Counts the failures, measures the errors that models state, and prints tables in
 takes about twelve minutes on one core. The starts are fixed: the same program gives the same
 tables. Progress and errors go to standard error.
 
-  --quick      run a thousandth of the starts (of slow methods sometimes none) and a tenth of the
-               reversals, and no model errors: seconds instead of minutes
+  --quick      run a thousandth of the starts (of slow methods sometimes none), and no model
+               errors: seconds instead of minutes
   --help       print this text
 
 Exit status: 0 success; 1 an engine failed although it promises zeros, or a stated model error does

@@ -8,7 +8,6 @@
 #include "tools/stability/cases.h"
 #include "tools/stability/energy.h"
 #include "tools/stability/model_errors.h"
-#include "tools/stability/reversal.h"
 #include "tools/stability/unit_speed.h"
 
 namespace ballpiston::stability {
@@ -18,7 +17,6 @@ struct Results {
   std::vector<CaseResult> ball;
   std::vector<CaseResult> pair;
   std::vector<CaseResult> gas;
-  std::string reversals;
   std::vector<EnergyRun> energy;
   std::vector<EnergyRun> gas_energy;
   std::vector<ModelError> model_errors;
@@ -29,8 +27,6 @@ Results RunAll(double effort) {
   results.ball = RunCases(BallCases(), BallMethods(), effort);
   results.pair = RunCases(PairCases(), PairMethods(), effort);
   results.gas = RunCases(GasCases(), GasMethods(), effort);
-  std::cerr << "stability: reversal" << std::endl;
-  results.reversals = ReversalTable(effort < 1 ? 100 : 1000);
   std::cerr << "stability: energy" << std::endl;
   results.energy = EnergyRuns(effort);
   results.gas_energy = GasEnergyRuns(effort);
@@ -92,10 +88,8 @@ std::string Text(const Results& results) {
       "difference - 2 standard errors)/stated, - where the standard error is above half of the "
       "stated error\n\n",
       ModelErrorTable(results.model_errors),
-      "\n**Reversal**: distance from the start, in cells, after so many hits and as many back; "
-      "medians\n\n",
-      results.reversals, "\n**Closed forms where they cancel**: relative errors\n\n",
-      CancellationTable(), "\n<details><summary>All counts: the ball alone</summary>\n\n",
+      "\n**Closed forms where they cancel**: relative errors\n\n", CancellationTable(),
+      "\n<details><summary>All counts: the ball alone</summary>\n\n",
       CountTable(results.ball, ColumnsOfBall()),
       "\n</details>\n\n<details><summary>All counts: ball and piston</summary>\n\n",
       CountTable(results.pair, ColumnsOfPair()),

@@ -244,6 +244,21 @@ TEST_F(FolderExecutorTest, AFullFolderIsTriedAgainAfterAPause) {
 
 // ---- many workers ----
 
+// Of the server and its worker, as PaceOf assumes. A look lists taken/ and done/ for all leases.
+TEST_F(FolderExecutorTest, ALeaseTakesNineOperations) {
+  double leases = 0, looks = 0;
+  files_.before = [&](const std::string& operation, const std::string& path) {
+    leases += operation == "create";
+    looks += operation == "list" && path == "taken";
+    return absl::OkStatus();
+  };
+  ComputeAll(*Begin());
+  const double operations = files_.operations - 2 * looks;
+  EXPECT_GE(leases, 6);
+  EXPECT_GT(operations, 8 * leases);
+  EXPECT_LE(operations, 9 * leases);
+}
+
 TEST(Pace, ManyWorkersMakeAtMostAHundredOperationsASecond) {
   const ClusterOptions options;
   for (const size_t workers : {1, 100, 600, 601, 2000, 10'000, 50'000}) {

@@ -10,35 +10,6 @@ namespace {
 constexpr SiteDimensions kAllDimensions[] = {{2, 1}, {1, 2}, {2, 2}, {3, 3}, {1, 1}};
 
 constexpr int kDegree = 6;
-using Polynomials = Eigen::Vector<double, kDegree + 1>;
-
-// Laguerre's polynomials by their sums, normalised, with positive leading coefficients.
-class LaguerreSums {
- public:
-  explicit LaguerreSums(double shape) {
-    for (int n = 0; n <= kDegree; ++n) {
-      const double square =
-          std::exp(std::lgamma(n + shape) - std::lgamma(n + 1) - std::lgamma(shape));
-      for (int i = 0; i <= n; ++i) {
-        const double size = std::exp(std::lgamma(n + shape) - std::lgamma(n - i + 1) -
-                                     std::lgamma(shape + i) - std::lgamma(i + 1));
-        coefficient_(n, i) = ((n + i) % 2 == 0 ? size : -size) / std::sqrt(square);
-      }
-    }
-  }
-
-  Polynomials operator()(double x) const {
-    Polynomials p = Polynomials::Zero();
-    for (int n = 0; n <= kDegree; ++n) {
-      for (int i = n; i >= 0; --i) p[n] = p[n] * x + coefficient_(n, i);
-    }
-    return p;
-  }
-
- private:
-  Eigen::Matrix<double, kDegree + 1, kDegree + 1> coefficient_;
-};
-
 struct Point {
   double x;
   double weight;
@@ -78,7 +49,8 @@ struct Element {
 // v_b = mean - half have the density exp(-mean^2 - half^2)/pi in mean and half.
 std::vector<double> ByQuadrature(SiteDimensions d, const std::vector<Element>& elements,
                                  int panels) {
-  const LaguerreSums p(d.a / 2.0), q(d.b / 2.0);
+  const auto p = [d](double x) { return GammaPolynomials(d.a / 2.0, kDegree, x); };
+  const auto q = [d](double x) { return GammaPolynomials(d.b / 2.0, kDegree, x); };
   std::vector<double> sums(elements.size());
   for (const Point& mean : Panels(panels, 10)) {
     for (const Point& half : Panels(panels, 10)) {
@@ -88,11 +60,11 @@ std::vector<double> ByQuadrature(SiteDimensions d, const std::vector<Element>& e
             mean.weight * half.weight * std::exp(-(va * va + vb * vb) / 2) / std::numbers::pi;
         if (density < 1e-40) continue;
         for (const Point& a : EnergyPoints(d.a - 1, panels)) {
-          const Polynomials pa = p(a.x + va * va / 2), after_a = p(a.x + vb * vb / 2);
+          const Eigen::VectorXd pa = p(a.x + va * va / 2), after_a = p(a.x + vb * vb / 2);
           for (const Point& b : EnergyPoints(d.b - 1, panels)) {
             const double rate = density * a.weight * b.weight * (va - vb);
             if (rate < 1e-40) continue;
-            const Polynomials qb = q(b.x + vb * vb / 2), after_b = q(b.x + va * va / 2);
+            const Eigen::VectorXd qb = q(b.x + vb * vb / 2), after_b = q(b.x + va * va / 2);
             for (size_t n = 0; n < elements.size(); ++n) {
               const auto [i, j, k, l] = elements[n];
               sums[n] -= rate * pa[i] * qb[j] * (after_a[k] * after_b[l] - pa[k] * qb[l]);

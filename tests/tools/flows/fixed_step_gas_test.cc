@@ -8,15 +8,9 @@ namespace {
 
 double EnergyNow(const FixedStepGas& gas, const GasGeometry& geometry) {
   double sum = 0;
-  for (int64_t i = 0; i < geometry.balls(); ++i) sum += EnergyOf(gas.BallNow(i));
-  for (int64_t i = 0; i < geometry.pistons(); ++i) sum += EnergyOf(gas.PistonNow(i));
+  for (int64_t i = 0; i < geometry.balls(); ++i) sum += EnergyOf(gas.BallAt(i, 0));
+  for (int64_t i = 0; i < geometry.pistons(); ++i) sum += EnergyOf(gas.PistonAt(i, 0));
   return sum;
-}
-
-int CountOf(EventKind kind, const std::vector<GasEvent>& events) {
-  int count = 0;
-  for (const GasEvent& event : events) count += event.kind == kind;
-  return count;
 }
 
 // Each repair has an error of a few ulps; there are about 1e4 repairs.
@@ -26,10 +20,10 @@ TEST(FixedStepGas, KeepsItsEnergy) {
     const GasState start = GasInEquilibrium(geometry, 1, 81, 0);
     FixedStepGas gas(geometry, start, ThermalWalls(), 1e-3);
     int exchanges = 0, escapes = 0;
-    while (gas.time() < 200) {
-      const std::vector<GasEvent>& events = gas.Advance();
-      exchanges += CountOf(EventKind::kBallPiston, events);
-      escapes += CountOf(EventKind::kEscape, events);
+    while (gas.NextTime() < 200) {
+      const EventKind kind = gas.Step().kind;
+      exchanges += kind == EventKind::kBallPiston;
+      escapes += kind == EventKind::kEscape;
     }
     EXPECT_GT(exchanges, 10) << shape;
     EXPECT_EQ(escapes, 0) << shape;
@@ -52,18 +46,17 @@ TEST(FixedStepGas, ABallThatHasPassedAPistonExchanges) {
                       .speed = 0.8};
     state.pistons[static_cast<size_t>(piston)] = {.offset = -0.3 * sign, .velocity = -0.6 * sign};
     FixedStepGas gas(geometry, state, ThermalWalls(), 0.02);
-    for (int i = 0; i < 3; ++i) ASSERT_TRUE(gas.Advance().empty());
-    const std::vector<GasEvent> events = gas.Advance();
-    ASSERT_EQ(events.size(), 1u);
-    EXPECT_EQ(events[0].kind, EventKind::kBallPiston);
-    EXPECT_EQ(events[0].ball, 4);
-    EXPECT_EQ(events[0].piston, piston);
-    EXPECT_EQ(events[0].direction, direction);
-    EXPECT_DOUBLE_EQ(events[0].time, 0.08);
-    const GasBall ball = gas.BallNow(4);
+    EXPECT_DOUBLE_EQ(gas.NextTime(), 0.08);
+    const GasEvent event = gas.Step();
+    EXPECT_EQ(event.kind, EventKind::kBallPiston);
+    EXPECT_EQ(event.ball, 4);
+    EXPECT_EQ(event.piston, piston);
+    EXPECT_EQ(event.direction, direction);
+    EXPECT_DOUBLE_EQ(event.time, 0.08);
+    const GasBall ball = gas.BallAt(4, event.time);
     EXPECT_DOUBLE_EQ(ball.speed, 0.6);
     EXPECT_EQ(SeenToward(direction, ball.direction).x(), -1);
-    EXPECT_DOUBLE_EQ(gas.PistonNow(piston).velocity, 0.8 * sign);
+    EXPECT_DOUBLE_EQ(gas.PistonAt(piston, event.time).velocity, 0.8 * sign);
   }
 }
 
@@ -73,10 +66,11 @@ TEST(FixedStepGas, ALostBallStops) {
   state.balls = {{.position = {0, 0}, .direction = {1, 0}, .speed = 1}, {}};
   state.pistons = {{.offset = cusps.reach()}, {.offset = cusps.reach()}};
   FixedStepGas gas(cusps, state, ThermalWalls(), 0.51);
-  EXPECT_EQ(CountOf(EventKind::kEscape, gas.Advance()), 1);
-  const double x = gas.BallNow(0).position.x();
-  EXPECT_TRUE(gas.Advance().empty());
-  EXPECT_EQ(gas.BallNow(0).position.x(), x);
+  const GasEvent event = gas.Step();
+  EXPECT_EQ(event.kind, EventKind::kEscape);
+  const double x = gas.BallAt(0, event.time).position.x();
+  EXPECT_EQ(gas.NextTime(), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(gas.BallAt(0, event.time).position.x(), x);
 }
 
 }  // namespace

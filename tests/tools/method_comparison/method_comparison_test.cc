@@ -14,8 +14,7 @@ const MethodComparisonSpec kSmallestComparison = {.rho = kPaperRho,
                                                   .epsilon = 0.125,
                                                   .seconds_per_curve = 0.01,
                                                   .seed = 4,
-                                                  .relaxation_deltas = {0.2, 0.3},
-                                                  .gas_delta = 0.15};
+                                                  .relaxation_deltas = {0.2, 0.3}};
 
 // Neither has samples.
 bool IsComputed(Method method) {
@@ -66,7 +65,7 @@ TEST(MethodComparison, EveryMethodComputesItsQuantities) {
     EXPECT_TRUE(curves.contains({Quantity::kLimitFloor, delta, Method::kSpectrum, -0.0})) << delta;
   }
   for (const Method method : {Method::kReference, Method::kLanes, Method::kMarkov}) {
-    EXPECT_TRUE(curves.contains({Quantity::kHeatCurrent, 0.15, method, -0.0}));
+    EXPECT_TRUE(curves.contains({Quantity::kHeatCurrent, 0.2, method, -0.0}));
   }
 }
 
@@ -190,18 +189,14 @@ TEST(MethodComparison, ViolationsNameFlagValueAndRange) {
         {&Spec::seconds_per_curve,
          {0.009, 61.0, std::nan("")},
          "--seconds: ",
-         " is not in [0.01, 60]"},
-        // 0.21 is permitted for the pair, but not for the gas.
-        {&Spec::gas_delta, {-0.1, 0.21, 0.4, std::nan("")}, "gas_delta: delta is "}}) {
+         " is not in [0.01, 60]"}}) {
     for (const double value : row.values) {
       EXPECT_THAT(Violations(WithField(row.field, value)),
                   ElementsAre(AllOf(StartsWith(row.begin), EndsWith(row.end))));
     }
   }
-  for (const double delta : {0.0, 0.2}) {
-    EXPECT_THAT(Violations(WithField(&Spec::gas_delta, delta)), IsEmpty());
-  }
   Spec spec = kSmallestComparison;
+  EXPECT_THAT(Violations(spec), IsEmpty());
   spec.relaxation_deltas = {0.1, 0.5};
   EXPECT_THAT(Violations(spec), ElementsAre(StartsWith("--relaxation-delta: ")));
   spec.relaxation_deltas = std::vector<double>(kMaxRelaxationDeltas + 1, 0.1);
@@ -209,25 +204,22 @@ TEST(MethodComparison, ViolationsNameFlagValueAndRange) {
 }
 
 TEST(MethodComparison, DefaultDeltasArePermitted) {
-  EXPECT_EQ(DefaultGasDelta(kPaperRho), 0.2);
-  EXPECT_EQ(DefaultGasDelta(0.65), GasDeltaBound(0.65));
-  EXPECT_EQ(DefaultGasDelta(0.3), 0);
+  EXPECT_EQ(GasDelta(kPaperRho), 0.2);
+  EXPECT_EQ(GasDelta(0.65), GasDeltaBound(0.65));
   EXPECT_THAT(DefaultRelaxationDeltas(kPaperRho), ElementsAre(0.2, 0.1, 0.05, 0.025));
   EXPECT_THAT(DefaultRelaxationDeltas(0.65), ElementsAre(0.05, 0.025));
 }
 
 // The mean free time grows as 1/delta^2. What would take too long is left out at once: the engines
-// here, and the smaller delta of the relaxation times. So are quantities without a delta.
+// here, and the smaller delta of the relaxation times.
 TEST(MethodComparison, RareCollisionsLeaveOutSlowMethods) {
   MethodComparisonSpec spec = WithField(&MethodComparisonSpec::delta, 1e-9);
   spec.relaxation_deltas = {1e-9, 0.2};
-  spec.gas_delta = 0;
   std::set<Method> of_mean_free_time;
   std::set<double> relaxation_deltas;
   for (const MethodMeasurement& m : Compare(spec)) {
     if (m.quantity == Quantity::kMeanFreeTime) of_mean_free_time.insert(m.method);
     if (m.quantity == Quantity::kRelaxationTime) relaxation_deltas.insert(m.delta);
-    EXPECT_NE(m.quantity, Quantity::kHeatCurrent);
   }
   EXPECT_EQ(of_mean_free_time, std::set<Method>{Method::kClosedForm});
   EXPECT_EQ(relaxation_deltas, std::set<double>{0.2});

@@ -62,6 +62,8 @@ TEST(Detectors, PlantedFailuresAreCounted) {
   for (const Planted& planted :
        {Planted{"a late collision is a phantom", [](Collision& c) { c.time += 1e-6; },
                 &Failures::phantoms, 100},
+        {"an early collision is a phantom", [](Collision& c) { c.time -= 1e-6; },
+         &Failures::phantoms, 100},
         {"a turned velocity", [](Collision& c) { c.state.direction = -c.state.direction; },
          &Failures::inward, 100},
         {"a negative time", [](Collision& c) { c.time = -c.time; }, &Failures::negative_times, 100},
