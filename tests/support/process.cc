@@ -141,16 +141,6 @@ bool Process::WaitFor(const Stream& stream, const std::string& text) {
   return found();
 }
 
-bool Process::WaitUntilStopped() const {
-  siginfo_t state = {};
-  if (waited_) return false;
-  AwaitThat([&] {
-    waitid(P_PID, static_cast<id_t>(pid_), &state, WSTOPPED | WEXITED | WNOWAIT | WNOHANG);
-    return state.si_pid != 0;
-  });
-  return state.si_code == CLD_STOPPED;
-}
-
 bool Process::EndsWithin(std::chrono::milliseconds time) const {
   if (waited_) return true;
   pollfd end{static_cast<int>(syscall(SYS_pidfd_open, pid_, 0)), POLLIN, 0};

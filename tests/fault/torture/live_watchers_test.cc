@@ -17,9 +17,9 @@
 #include "client/library/job_watch.h"
 #include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
-#include "tests/fault/torture/hung_readers.h"
 #include "tests/fault/torture/questions.h"
 #include "tests/fault/torture/sizes.h"
+#include "tests/fault/torture/stalled_watches.h"
 #include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
@@ -206,7 +206,7 @@ TEST_F(LiveWatchers, DoNotDelayTheStop) {
 TEST_F(LiveWatchers, DelayTheStopByTheDrainAtMostIfTheyStall) {
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job,
                        server_.NewClient().Create(ManyPoints(20'000, 1'000)));
-  const HungReaders stalled(20, server_.address(), job.name());
+  const StalledWatches stalled(20, server_.address(), job.name());
   const double seconds = SecondsToStop("stalled watchers");
   if (HoldsToTimes()) {
     EXPECT_LT(seconds, kDrainSeconds + 1);
