@@ -10,6 +10,7 @@
 
 #include <cerrno>
 #include <cstdlib>
+#include <fstream>
 #include <stdexcept>
 
 namespace ballpiston {
@@ -178,5 +179,14 @@ ProcessResult Process::Wait() {
 }
 
 ProcessResult RunProgram(const ProcessOptions& options) { return Process(options).Wait(); }
+
+double MiBOf(const std::string& process, const std::string& line) {
+  std::ifstream status("/proc/" + process + "/status");
+  for (std::string word; status >> word;) {
+    double kib = 0;
+    if (word == line && status >> kib) return kib / 1024;
+  }
+  return 0;
+}
 
 }  // namespace ballpiston

@@ -105,4 +105,7 @@ std::string Process::WaitForErrLine(Wanted wanted) {
 
 ProcessResult RunProgram(const ProcessOptions& options);
 
+// A line of /proc/PROCESS/status, such as "VmRSS:", in MiB. `process`: a number, or "self".
+double MiBOf(const std::string& process, const std::string& line);
+
 }  // namespace ballpiston
