@@ -9,8 +9,8 @@
 #include <future>
 #include <string>
 
+#include "tests/fault/store/fault_disk.h"
 #include "tests/server/call_by_name.h"
-#include "tests/server/hanging_disk.h"
 #include "tests/server/http_get.h"
 #include "tests/server/secure_server.h"
 #include "tests/support/files.h"
@@ -149,12 +149,14 @@ TEST(StartStop, HealthIsServedForTheWholeAndForEachService) {
 
 // One thread runs the calls, so a call that waited for the disk would block all later ones.
 TEST(StartStop, WhileTheDiskHangsCallsThatWriteAreRefusedAndReadsAnswered) {
-  HangingDisk disk;
+  FaultDisk disk;
+  std::atomic<bool> hangs = false;
+  disk.SetBeforeOperation([&hangs] { hangs.wait(true); });
   RunningServer server({.store = {.stall = std::chrono::milliseconds(1), .vfs = disk.vfs()}});
   const auto is_serving = [&] {
     return HealthOf(server, "ballpiston.v1.EnsembleService") == kServing;
   };
-  disk.Hang();
+  hangs = true;
   const auto waiting = std::async([&] { server.Create(CreateRequest(Equilibrium(1, 1))); });
   AwaitThat([&] { return !is_serving(); });
   EXPECT_EQ(HealthOf(server, ""), kServing);
@@ -165,7 +167,8 @@ TEST(StartStop, WhileTheDiskHangsCallsThatWriteAreRefusedAndReadsAnswered) {
                 IsError(grpc::StatusCode::UNAVAILABLE, "STORE_FAILED"));
     EXPECT_EQ(server.List().jobs_size(), 0);
   }
-  disk.Resume();
+  hangs = false;
+  hangs.notify_all();
   AwaitThat(is_serving);
 }
 
