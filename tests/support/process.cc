@@ -10,6 +10,7 @@
 
 #include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <stdexcept>
 
@@ -98,7 +99,10 @@ Process::Process(const ProcessOptions& options) {
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   for (const int end : {in.read, out.write, err.write}) close(end);
-  if (error != 0) throw std::runtime_error("cannot start " + command[0]);
+  if (error != 0) {
+    throw std::runtime_error("cannot start " + options.command.at(0) +
+                             " with setpriv: " + std::strerror(error));
+  }
   writer_ = std::thread([input = options.input, end = in.write] { WriteAll(end, input); });
   out_.descriptor = out.read;
   err_.descriptor = err.read;
