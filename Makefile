@@ -46,7 +46,7 @@ test-asan test-tsan: test-%: build/%/.$(PRESETS_PREFIX)tests
 
 test-long: build/release/.$(PRESETS_PREFIX)tests ## Run the tests of laws and bits at their full size (15 minutes)
 	@cmake --build build/release --target statistical_test core_test conductivity_test server_test
-	@BALLPISTON_NIGHTLY=1 ctest --preset release --timeout 3600 -R '^(statistical|core|conductivity|server)_test' -j$(TEST_JOBS)
+	@BALLPISTON_NIGHTLY=1 ctest --preset release -R '^(statistical|core|conductivity|server)_test' -j$(TEST_JOBS)
 
 demo: build ## Run the paper's sweep with a real server and client
 	@scripts/demo.sh build/release/bin

@@ -3,7 +3,7 @@
 
     scripts/test-times.py [FOLDER_OF_THE_BUILD]
 
-The tests write their times into FOLDER_OF_THE_BUILD/test-times (tests/support/run_tests.h); `make
+The tests write their times into FOLDER_OF_THE_BUILD/test-times (tests/support/test_main.cc); `make
 test` empties this folder first. The times include the programs that a test started and that have
 ended.
 """

@@ -4,8 +4,7 @@
 // A stream ends with a checksum of the plain bytes, so damage passes only if the checksum happens
 // to be right:
 //   kAdler32  zlib's format (RFC 1950), for rows of the store: 4 bytes. Weak for short messages,
-//   but
-//             SQLite and the disk rarely damage a row.
+//             but SQLite and the disk rarely damage a row.
 //   kCrc32    gzip's format (RFC 1952), for files of a network: 8 bytes more. A torn or mixed file
 //             passes with a probability of some 2^-32. The time and the system in a stream's first
 //             bytes are not checked, and mean nothing.

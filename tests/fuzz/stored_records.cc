@@ -41,7 +41,7 @@ void CheckStoredSpec(const std::string& bytes) {
 
 using Experiments = std::vector<std::unique_ptr<const PointExperiment>>;
 
-// One of each shape of block; both signs of the piston's velocity, and one.
+// One of each shape of block; both signs of the piston's velocity, and one; one with a tolerance.
 Experiments OneOfEach() {
   const Grid pair = {{kRho, {0.53}}, {kDelta, {0.1}}};
   Grid energy = pair, hit = pair, fast = pair;
@@ -62,6 +62,7 @@ Experiments OneOfEach() {
            {.experiment = &kConditionalMeanFreeTime, .grid = energy, .target = samples},
            {.experiment = &kFirstHit, .grid = hit, .target = samples},
            {.experiment = &kFirstHit, .grid = fast, .target = samples},
+           {.experiment = &kFirstHit, .grid = hit, .target = {.tolerance = 0.1}},
            {.experiment = &kEnergyRelaxation, .grid = pair, .target = samples},
            {.experiment = &kMarkovProperty, .grid = pair, .target = collisions},
            {.experiment = &kGasEquilibrium, .grid = periodic, .target = samples},
@@ -71,7 +72,7 @@ Experiments OneOfEach() {
   return experiments;
 }
 
-const Experiments& Known() {
+const Experiments& KnownExperiments() {
   static const auto* const experiments = new Experiments(OneOfEach());
   return *experiments;
 }
@@ -101,7 +102,7 @@ void CheckStoredFold(const std::string& bytes) {
   const absl::StatusOr<FoldState> state = server::FoldStateFromBytes(bytes);
   if (!state.ok()) return Require(absl::IsDataLoss(state.status()), "damage is DATA_LOSS");
   if (IsOneIn(4, bytes)) RequireStored(*state);
-  for (const auto& experiment : Known()) {
+  for (const auto& experiment : KnownExperiments()) {
     const absl::Status fits = server::CheckFoldState(*experiment, *state);
     Require(fits.ok() || absl::IsDataLoss(fits), "damage is DATA_LOSS");
     if (fits.ok()) RequireResumed(*experiment, *state);
@@ -110,7 +111,7 @@ void CheckStoredFold(const std::string& bytes) {
 
 std::vector<std::string> FoldsOfEach() {
   std::vector<std::string> folds;
-  for (const auto& experiment : Known()) {
+  for (const auto& experiment : KnownExperiments()) {
     folds.push_back(server::FoldRecordBytes({.blocks = 1, .partial = experiment->EmptyResult()}));
   }
   return folds;
@@ -189,27 +190,6 @@ void CheckStoredJob(const std::string& bytes) {
 
 std::vector<std::string> Rows() {
   return {std::string(65, '\1'), std::string(80, '\0'), std::string(200, '\x08')};
-}
-
-using Experiments = std::vector<std::unique_ptr<const PointExperiment>>;
-
-// One with moments and histograms, one with batch means, and one with a tolerance.
-const Experiments& KnownExperiments() {
-  const Grid pair = {{kRho, {0.53}}, {kDelta, {0.1}}};
-  Grid hit = pair;
-  hit[kEpsilon] = {0.125};
-  hit[kExponent] = {1};
-  static const auto* const known = [&] {
-    auto* experiments = new Experiments;
-    for (const EnsembleSpec& spec : std::vector<EnsembleSpec>{
-             {.experiment = &kMarkovProperty, .grid = pair, .target = {.collisions = 1000}},
-             {.experiment = &kEquilibrium, .grid = pair, .target = {.collisions = 1000}},
-             {.experiment = &kFirstHit, .grid = hit, .target = {.tolerance = 0.1}}}) {
-      experiments->push_back(PointExperiment::Create(spec, 0));
-    }
-    return experiments;
-  }();
-  return *known;
 }
 
 // Merges the chunks that the experiment can have computed, as the scheduler does.

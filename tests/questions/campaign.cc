@@ -40,7 +40,7 @@ class Campaign {
       const uint64_t number = size_.first + i;
       const Question question = Draw(size_.seed, number, size_.most_seconds);
       const Report report = ask_(question);
-      Count(question, report);
+      ++counts_[ExperimentOf(question.spec)][report.outcome];
       failures_ += !report.findings.empty();
       std::set<std::string> checks;
       for (const Finding& finding : report.findings) {
@@ -52,11 +52,6 @@ class Campaign {
   }
 
  private:
-  void Count(const Question& question, const Report& report) {
-    ++counts_[ExperimentOf(question.spec)][report.outcome];
-    for (const auto& [check, seconds] : report.seconds) seconds_[check] += seconds;
-  }
-
   void Note(uint64_t number, const Question& question, const Finding& finding) {
     ++broken_[finding.check];
     const int earlier = kinds_[absl::StrCat(finding.check, " ", ExperimentOf(question.spec), " ",
@@ -76,9 +71,6 @@ class Campaign {
       for (const auto& [outcome, count] : of_experiment) outcomes.insert(outcome);
     }
     PrintCounts(outcomes);
-    for (const auto& [check, seconds] : seconds_) {
-      std::cout << absl::StrFormat("%-28s %8.2f s\n", check, seconds);
-    }
     for (const auto& [check, count] : broken_) {
       std::cout << absl::StrFormat("broken: %-20s %8d\n", check, count);
     }
@@ -102,7 +94,6 @@ class Campaign {
   const Size size_;
   const Asker& ask_;
   std::map<std::string, std::map<std::string, int>> counts_;  // by experiment and outcome
-  std::map<std::string, double> seconds_;                     // by check
   std::map<std::string, int> broken_, kinds_;
   int failures_ = 0;  // questions that break a check
 };

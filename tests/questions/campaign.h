@@ -23,9 +23,8 @@ Size SizeFromEnvironment();
 
 using Asker = std::function<Report(const Question&)>;
 
-// Prints the counts by experiment and outcome, and the seconds of each check. Prints each kind of
-// failure when it is found: the broken check, and the command that shows it. Returns the number of
-// questions that break a check.
+// Prints the counts by experiment and outcome. Prints each kind of failure when it is found: the
+// broken check, and the command that shows it. Returns the number of questions that break a check.
 int AskAll(const std::string& name, const Size& size, const Asker& ask);
 
 }  // namespace ballpiston::questions

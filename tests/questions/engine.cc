@@ -1,8 +1,6 @@
 #include "tests/questions/engine.h"
 
-#include <ctime>
 #include <iterator>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -24,38 +22,23 @@ namespace {
 // A grid has at most this many points that are planned and computed.
 constexpr size_t kMostPoints = 27;
 
-double ProcessorSeconds() {
-  timespec time = {};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 class Asking {
  public:
   Asking(const Question& question, double most_seconds)
       : question_(question), most_seconds_(most_seconds) {}
 
   Report Ask() {
-    if (Timed("refusal", [&] { return IsRefused(); })) return std::move(report_);
-    const double work = Timed("plan", [&] { return Plan(); });
-    if (work <= most_seconds_) {
-      Timed("answer", [&] { return Answer(); });
+    if (IsRefused()) return std::move(report_);
+    if (Plan() <= most_seconds_) {
+      Answer();
     } else {
-      Timed("stop", [&] { return Stop(); });
+      Stop();
     }
-    Timed("agreement", [&] { return Compare(); });
+    Add(CheckAgreement(spec_, SomeMachine(), most_seconds_));
     return std::move(report_);
   }
 
  private:
-  template <typename Step>
-  std::invoke_result_t<Step> Timed(const char* check, Step step) {
-    const double start = ProcessorSeconds();
-    const auto result = step();
-    report_.seconds[check] += ProcessorSeconds() - start;
-    return result;
-  }
-
   void Add(Findings findings) {
     report_.findings.insert(report_.findings.end(), std::make_move_iterator(findings.begin()),
                             std::make_move_iterator(findings.end()));
@@ -105,7 +88,7 @@ class Asking {
     return MemoryOf(OnePointSpec(spec_, point, ladders_[i].answer.model), point, 1);
   }
 
-  bool Answer() {
+  void Answer() {
     report_.outcome = "answered";
     for (size_t i = 0; i < ladders_.size(); ++i) {
       const PeakMemory peak;
@@ -114,20 +97,13 @@ class Asking {
       Add(std::move(computed.findings));
       Add(CheckAnswer(question_.spec, computed.result));
     }
-    return true;
   }
 
-  bool Stop() {
+  void Stop() {
     report_.outcome = "stopped";
     const PeakMemory peak;
     StartAndStop(SpecOfPoint(0), 0, ladders_[0].answer);
     Add(CheckMemory(PlannedMemory(0), peak.Bytes()));
-    return true;
-  }
-
-  bool Compare() {
-    Add(CheckAgreement(spec_, SomeMachine(), most_seconds_));
-    return true;
   }
 
   const Question& question_;

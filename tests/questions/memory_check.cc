@@ -4,6 +4,7 @@
 #include <string>
 
 #include "absl/strings/str_format.h"
+#include "tests/support/process.h"
 
 namespace ballpiston::questions {
 namespace {
@@ -14,15 +15,7 @@ constexpr bool kIsSanitized = true;
 constexpr bool kIsSanitized = false;
 #endif
 
-// VmRSS or VmHWM, its largest value.
-double BytesOf(const std::string& name) {
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;) {
-    double kib = 0;
-    if (word == name && status >> kib) return 1024 * kib;
-  }
-  return 0;
-}
+double BytesOf(const std::string& line) { return 1024 * 1024 * MiBOf("self", line); }
 
 }  // namespace
 

@@ -17,8 +17,7 @@ struct Question {
 // The double next to the budget.
 double BudgetSeconds(const v1::Target& target);
 
-// `ballpiston run ...`, for a shell. It asks exactly this specification. The specification is given
-// in JSON if the flags cannot express it.
+// `ballpiston run --spec - ...`, for a shell: it asks exactly this specification.
 std::string Command(const v1::EnsembleSpec& spec);
 
 }  // namespace ballpiston::questions

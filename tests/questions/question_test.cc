@@ -2,37 +2,21 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <string>
 
 #include "client/command/spec_file.h"
 #include "gmock/gmock.h"
+#include "tests/support/message_text.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::questions {
 namespace {
 
-v1::EnsembleSpec QuestionOfAGas() {
-  v1::EnsembleSpec spec;
-  spec.set_experiment(v1::EnsembleSpec::GAS_CONDUCTION);
-  spec.mutable_grid()->add_rho(0.53);
-  spec.mutable_grid()->add_delta(1e-13);
-  spec.mutable_grid()->add_cells("2x3");
-  spec.mutable_grid()->add_hot(2);
-  spec.mutable_grid()->add_cold(1);
-  spec.mutable_target()->set_collisions(1000);
-  spec.set_model(v1::EnsembleSpec::BILLIARD_REFERENCE);
-  return spec;
-}
-
-TEST(Question, PrintsItselfAsACommand) {
-  EXPECT_EQ(Command(QuestionOfAGas()),
-            "ballpiston run gas-conduction --rho=0.53 --delta=1e-13 --cells=2x3 --hot=2 --cold=1 "
-            "--collisions=1000 --model=billiard-reference");
-}
-
-TEST(Question, IsPrintedInJsonIfTheFlagsCannotExpressIt) {
-  v1::EnsembleSpec spec = QuestionOfAGas();
-  spec.mutable_grid()->set_rho(0, std::numeric_limits<double>::infinity());
+TEST(Question, PrintsItselfAsACommandThatReadsItBack) {
+  const auto spec = FromText<v1::EnsembleSpec>(
+      "experiment: GAS_CONDUCTION"
+      " grid { rho: inf delta: 1e-13 cells: '2x3' hot: 2 cold: 1 }"
+      " target { collisions: 1000 } model: BILLIARD_REFERENCE");
   const std::string command = Command(spec), before = "ballpiston run --spec - <<<'";
   ASSERT_THAT(command, testing::StartsWith(before));
   const std::string json = command.substr(before.size(), command.size() - before.size() - 1);

@@ -5,14 +5,12 @@
 #include <iterator>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "absl/time/clock.h"
 #include "client/library/channel.h"
 #include "server/convert/spec.h"
 #include "tests/questions/answer_check.h"
@@ -39,7 +37,7 @@ class Conversation {
       : question_(question), server_(server), client_(client) {}
 
   Report Have(double most_seconds) {
-    const auto plan = Timed("server: plan", [&] { return client_.Plan(question_.spec); });
+    const auto plan = client_.Plan(question_.spec);
     if (!plan.ok()) return Refused(plan.status());
     for (const v1::PointPlan& point : plan->points()) Add(CheckPlan(point));
     Add(CheckFinite(*plan));
@@ -47,13 +45,11 @@ class Conversation {
       report_.outcome = "bad plan";
       return std::move(report_);
     }
-    const auto job =
-        Timed("server: create", [&] { return client_.Create(question_.spec, {.fresh = true}); });
+    const auto job = client_.Create(question_.spec, {.fresh = true});
     if (!job.ok()) return Failed(job.status());
     // A pilot takes seconds, and a plan knows it.
     const bool is_long = !(plan->work() <= most_seconds);
-    const auto end = is_long ? Timed("server: cancel", [&] { return Cancel(job->name()); })
-                             : Timed("server: answer", [&] { return AwaitEnd(job->name()); });
+    const auto end = is_long ? Cancel(job->name()) : AwaitEnd(job->name());
     if (!end.ok()) return Failed(end.status());
     Judge(*end);
     static_cast<void>(client_.Delete(job->name()));
@@ -61,14 +57,6 @@ class Conversation {
   }
 
  private:
-  template <typename Step>
-  std::invoke_result_t<Step> Timed(const char* check, Step step) {
-    const absl::Time start = absl::Now();
-    auto result = step();
-    report_.seconds[check] += absl::ToDoubleSeconds(absl::Now() - start);
-    return result;
-  }
-
   void Add(Findings findings) {
     report_.findings.insert(report_.findings.end(), std::make_move_iterator(findings.begin()),
                             std::make_move_iterator(findings.end()));
@@ -157,7 +145,7 @@ class Conversation {
   }
 
   void JudgeResults(const v1::EnsembleJob& job) {
-    const auto points = Timed("server: results", [&] { return client_.Results(job.name()); });
+    const auto points = client_.Results(job.name());
     if (!points.ok()) {
       Failed(points.status());
       return;

@@ -1,17 +1,11 @@
 #include "tests/questions/report.h"
 
 #include "absl/strings/escaping.h"
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 
 namespace ballpiston::questions {
 namespace {
-
-double Number(const std::string& text) {
-  double number = 0;
-  return absl::SimpleAtod(text, &number) ? number : 0;
-}
 
 std::string Unescaped(const std::string& text) {
   std::string plain;
@@ -26,9 +20,6 @@ std::string Text(const Report& report) {
   for (const Finding& finding : report.findings) {
     absl::StrAppend(&text, "finding\t", finding.check, "\t", absl::CEscape(finding.what), "\n");
   }
-  for (const auto& [check, seconds] : report.seconds) {
-    absl::StrAppend(&text, "seconds\t", check, "\t", seconds, "\n");
-  }
   return text;
 }
 
@@ -37,9 +28,9 @@ Report ReportFromText(const std::string& text) {
   for (const auto& line : absl::StrSplit(text, '\n')) {
     const std::vector<std::string> words = absl::StrSplit(line, '\t');
     if (words[0] == "outcome" && words.size() == 2) report.outcome = words[1];
-    if (words.size() != 3) continue;
-    if (words[0] == "finding") report.findings.push_back({words[1], Unescaped(words[2])});
-    if (words[0] == "seconds") report.seconds[words[1]] = Number(words[2]);
+    if (words[0] == "finding" && words.size() == 3) {
+      report.findings.push_back({words[1], Unescaped(words[2])});
+    }
   }
   return report;
 }

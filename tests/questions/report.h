@@ -1,7 +1,6 @@
 // What became of a question.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -17,7 +16,6 @@ using Findings = std::vector<Finding>;
 struct Report {
   std::string outcome;  // answered, refused, stopped, ...
   Findings findings = {};
-  std::map<std::string, double> seconds = {};  // by check
 
   bool Breaks(const std::string& check) const {
     for (const Finding& finding : findings) {

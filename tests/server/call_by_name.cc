@@ -2,48 +2,71 @@
 
 #include <chrono>
 
-#include "grpcpp/completion_queue.h"
-#include "grpcpp/generic/generic_stub.h"
 #include "tests/support/await.h"
 
 namespace ballpiston::server {
-namespace {
 
-grpc::ByteBuffer Buffer(const std::string& bytes) {
-  const grpc::Slice slice(bytes);
-  return grpc::ByteBuffer(&slice, 1);
+NamedCall::NamedCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
+                     const std::vector<std::string>& authorization)
+    : stub_(channel) {
+  context_.set_deadline(std::chrono::system_clock::now() + kPatience);
+  for (const std::string& value : authorization) context_.AddMetadata("authorization", value);
+  call_ = stub_.PrepareCall(&context_, method, &queue_);
+  call_->StartCall(nullptr);
+  started_ = Next();
 }
 
-}  // namespace
+NamedCall::~NamedCall() {
+  context_.TryCancel();
+  Finish();
+}
+
+void NamedCall::Send(const std::string& bytes) {
+  if (!started_) return;
+  const grpc::Slice slice(bytes);
+  call_->WriteLast(grpc::ByteBuffer(&slice, 1), {}, nullptr);
+  Next();
+}
+
+void NamedCall::AwaitAnswer() {
+  call_->ReadInitialMetadata(nullptr);
+  Next();
+}
+
+std::optional<std::string> NamedCall::Read() {
+  grpc::ByteBuffer answer;
+  call_->Read(&answer, nullptr);
+  grpc::Slice slice;
+  if (!Next() || !answer.DumpToSingleSlice(&slice).ok()) return std::nullopt;
+  return std::string(slice.begin(), slice.end());
+}
+
+grpc::Status NamedCall::Finish() {
+  if (!status_) {
+    call_->Finish(&status_.emplace(), nullptr);
+    Next();
+  }
+  return *status_;
+}
+
+bool NamedCall::Next() {
+  void* tag = nullptr;
+  bool ok = false;
+  return queue_.Next(&tag, &ok) && ok;
+}
 
 grpc::Status CallByName(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
-                        const std::string& bytes, const std::vector<std::string>& authorization) {
-  grpc::ClientContext context;
-  context.set_deadline(std::chrono::system_clock::now() + kPatience);
-  for (const std::string& value : authorization) context.AddMetadata("authorization", value);
-  grpc::CompletionQueue queue;
-  grpc::GenericStub stub(channel);
-  const auto call = stub.PrepareCall(&context, method, &queue);
-  const auto done = [&queue] {
-    void* tag = nullptr;
-    bool ok = false;
-    return queue.Next(&tag, &ok) && ok;
-  };
-  call->StartCall(nullptr);
-  grpc::ByteBuffer response;
-  if (done()) {
-    call->WriteLast(Buffer(bytes), {}, nullptr);
-    done();
-  }
+                        const std::string& bytes, const std::vector<std::string>& authorization,
+                        std::string* answer) {
+  NamedCall call(channel, method, authorization);
+  call.Send(bytes);
   // Also after a failure. If the server closes the connection before it has begun the call,
   // gRPC 1.51 reports a failed write, and then sends the whole call again on another connection.
   // Finish does not return before the answer to that has been read.
-  do call->Read(&response, nullptr);
-  while (done());
-  grpc::Status status;
-  call->Finish(&status, nullptr);
-  done();
-  return status;
+  while (const auto message = call.Read()) {
+    if (answer != nullptr) *answer = *message;
+  }
+  return call.Finish();
 }
 
 std::vector<std::string> Bearer(const std::string& token) {

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "grpcpp/channel.h"
-#include "grpcpp/support/status.h"
+#include "grpcpp/generic/generic_stub.h"
+#include "grpcpp/grpcpp.h"
 
 namespace ballpiston::server {
 
@@ -24,11 +26,37 @@ inline const std::string kWholeServer("\x0a\0", 2);
 // A request of reflection, encoded by hand: field 7 asks for the list of services.
 inline constexpr char kListServices[] = "\x3a\x01*";
 
-// Sends one request with the serialized message `bytes` and with these headers `authorization`, and
-// reads to the end. Ends after 15 minutes with DEADLINE_EXCEEDED.
+// A call in steps. It ends after kPatience with DEADLINE_EXCEEDED.
+class NamedCall {
+ public:
+  // Begins the call with these headers `authorization`.
+  NamedCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
+            const std::vector<std::string>& authorization = {});
+  ~NamedCall();  // cancels it, if it has not ended
+  NamedCall(const NamedCall&) = delete;
+  NamedCall& operator=(const NamedCall&) = delete;
+
+  void Send(const std::string& bytes);  // the only request, serialized
+  void AwaitAnswer();                   // waits until the server sends the first answer
+  std::optional<std::string> Read();    // the next answer; empty at the end of the call
+  grpc::Status Finish();                // waits until the server has ended the call
+
+ private:
+  bool Next();  // waits for the operation that was begun last; false if it failed
+
+  grpc::ClientContext context_;
+  grpc::CompletionQueue queue_;
+  grpc::GenericStub stub_;
+  std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;
+  bool started_ = false;
+  std::optional<grpc::Status> status_;
+};
+
+// Sends one request and reads to the end; `answer` gets the last message.
 grpc::Status CallByName(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
                         const std::string& bytes = "",
-                        const std::vector<std::string>& authorization = {});
+                        const std::vector<std::string>& authorization = {},
+                        std::string* answer = nullptr);
 
 // One header, or none for an empty token.
 std::vector<std::string> Bearer(const std::string& token);

@@ -1,5 +1,7 @@
 #include "tests/server/requests.h"
 
+#include "tests/support/message_text.h"
+
 namespace ballpiston::server {
 
 v1::EnsembleSpec Equilibrium(int points, int64_t blocks, uint64_t seed) {
@@ -15,15 +17,10 @@ v1::EnsembleSpec Equilibrium(int points, int64_t blocks, uint64_t seed) {
 v1::EnsembleSpec LargeEquilibrium() { return Equilibrium(90'000, 1); }
 
 v1::EnsembleSpec SmallFirstHit() {
-  v1::EnsembleSpec spec;
-  spec.set_experiment(v1::EnsembleSpec::FIRST_HIT);
-  spec.mutable_grid()->add_rho(0.53);
-  for (const double delta : {0.3, 0.25, 0.2}) spec.mutable_grid()->add_delta(delta);
-  for (const double epsilon : {0.1, 0.4}) spec.mutable_grid()->add_epsilon(epsilon);
-  spec.mutable_grid()->add_exponent(1);
-  spec.mutable_target()->set_samples(4096);
-  spec.set_seed(42);
-  return spec;
+  return FromText<v1::EnsembleSpec>(
+      "experiment: FIRST_HIT"
+      " grid { rho: 0.53 delta: [0.3, 0.25, 0.2] epsilon: [0.1, 0.4] exponent: 1 }"
+      " target { samples: 4096 } seed: 42");
 }
 
 v1::CreateEnsembleJobRequest CreateRequest(const v1::EnsembleSpec& spec,

@@ -8,14 +8,11 @@
 #include <filesystem>
 #include <future>
 #include <string>
-#include <utility>
 
-#include "grpcpp/generic/generic_stub.h"
+#include "tests/fault/store/fault_disk.h"
 #include "tests/server/call_by_name.h"
-#include "tests/server/hanging_disk.h"
 #include "tests/server/http_get.h"
 #include "tests/server/secure_server.h"
-#include "tests/server/unread_call.h"
 #include "tests/support/files.h"
 
 namespace ballpiston::server {
@@ -110,11 +107,11 @@ TEST(StartStop, HungClientsDoNotDelayAStop) {
   half_a_handshake.Send("\x16\x03\x01");
   const SilentTlsConnection silent(server.address());
   EXPECT_EQ(silent.served_common_name(), "server-1");
-  UnreadCall watch(server.channel(), kWatchJob);
+  NamedCall watch(server.channel(), kWatchJob);
   watch.Send(request.SerializeAsString());
-  UnreadCall health(server.channel(), kWatchHealth);
+  NamedCall health(server.channel(), kWatchHealth);
   health.Send(kWholeServer);
-  const UnreadCall without_message(server.channel(), kGetJob);
+  const NamedCall without_message(server.channel(), kGetJob);
   server.Shutdown(std::chrono::milliseconds(300));
   EXPECT_THAT(CallByName(server.channel(), kCheckHealth), StatusIs(grpc::StatusCode::UNAVAILABLE));
 }
@@ -135,17 +132,9 @@ TEST(StartStop, AServerWithoutCallsAndJobsIsIdle) {
 std::string HealthOf(RunningServer& server, const std::string& service) {
   const std::string name =
       service.empty() ? "" : std::string{'\x0a', static_cast<char>(service.size())} + service;
-  grpc::GenericStub stub(server.channel());
-  const grpc::Slice asked(name);
-  grpc::ByteBuffer request(&asked, 1), response;
-  grpc::ClientContext context;
-  std::promise<grpc::Status> done;
-  stub.UnaryCall(&context, kCheckHealth, {}, &request, &response,
-                 [&](grpc::Status status) { done.set_value(std::move(status)); });
-  EXPECT_OK(done.get_future().get());
-  grpc::Slice slice;
-  EXPECT_OK(response.TrySingleSlice(&slice));
-  return std::string(slice.begin(), slice.end());
+  std::string answer;
+  EXPECT_OK(CallByName(server.channel(), kCheckHealth, name, {}, &answer));
+  return answer;
 }
 
 constexpr char kServing[] = "\x08\x01";
@@ -160,12 +149,14 @@ TEST(StartStop, HealthIsServedForTheWholeAndForEachService) {
 
 // One thread runs the calls, so a call that waited for the disk would block all later ones.
 TEST(StartStop, WhileTheDiskHangsCallsThatWriteAreRefusedAndReadsAnswered) {
-  HangingDisk disk;
+  FaultDisk disk;
+  std::atomic<bool> hangs = false;
+  disk.SetBeforeOperation([&hangs] { hangs.wait(true); });
   RunningServer server({.store = {.stall = std::chrono::milliseconds(1)}});
   const auto is_serving = [&] {
     return HealthOf(server, "ballpiston.v1.EnsembleService") == kServing;
   };
-  disk.Hang();
+  hangs = true;
   const auto waiting = std::async([&] { server.Create(CreateRequest(Equilibrium(1, 1))); });
   AwaitThat([&] { return !is_serving(); });
   EXPECT_EQ(HealthOf(server, ""), kServing);
@@ -176,7 +167,8 @@ TEST(StartStop, WhileTheDiskHangsCallsThatWriteAreRefusedAndReadsAnswered) {
                 IsError(grpc::StatusCode::UNAVAILABLE, "STORE_FAILED"));
     EXPECT_EQ(server.List().jobs_size(), 0);
   }
-  disk.Resume();
+  hangs = false;
+  hangs.notify_all();
   AwaitThat(is_serving);
 }
 

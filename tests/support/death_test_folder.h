@@ -1,5 +1,5 @@
 // A folder that a death test shares with the process that it starts. This process begins anew
-// (run_tests.cc), so a TemporaryFolder of the test would be another folder there.
+// (test_main.cc), so a TemporaryFolder of the test would be another folder there.
 #pragma once
 
 #include <unistd.h>

@@ -10,6 +10,8 @@
 
 #include <cerrno>
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
 #include <stdexcept>
 
 namespace ballpiston {
@@ -97,7 +99,10 @@ Process::Process(const ProcessOptions& options) {
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   for (const int end : {in.read, out.write, err.write}) close(end);
-  if (error != 0) throw std::runtime_error("cannot start " + command[0]);
+  if (error != 0) {
+    throw std::runtime_error("cannot start " + options.command.at(0) +
+                             " with setpriv: " + std::strerror(error));
+  }
   writer_ = std::thread([input = options.input, end = in.write] { WriteAll(end, input); });
   out_.descriptor = out.read;
   err_.descriptor = err.read;
@@ -141,16 +146,6 @@ bool Process::WaitFor(const Stream& stream, const std::string& text) {
   return found();
 }
 
-bool Process::WaitUntilStopped() const {
-  siginfo_t state = {};
-  if (waited_) return false;
-  AwaitThat([&] {
-    waitid(P_PID, static_cast<id_t>(pid_), &state, WSTOPPED | WEXITED | WNOWAIT | WNOHANG);
-    return state.si_pid != 0;
-  });
-  return state.si_code == CLD_STOPPED;
-}
-
 bool Process::EndsWithin(std::chrono::milliseconds time) const {
   if (waited_) return true;
   pollfd end{static_cast<int>(syscall(SYS_pidfd_open, pid_, 0)), POLLIN, 0};
@@ -188,5 +183,14 @@ ProcessResult Process::Wait() {
 }
 
 ProcessResult RunProgram(const ProcessOptions& options) { return Process(options).Wait(); }
+
+double MiBOf(const std::string& process, const std::string& line) {
+  std::ifstream status("/proc/" + process + "/status");
+  for (std::string word; status >> word;) {
+    double kib = 0;
+    if (word == line && status >> kib) return kib / 1024;
+  }
+  return 0;
+}
 
 }  // namespace ballpiston

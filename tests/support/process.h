@@ -61,8 +61,6 @@ class Process {
   // program ended without one.
   template <typename Wanted>
   std::string WaitForErrLine(Wanted wanted);
-  // Waits until SIGSTOP has stopped the program. False if it ended instead.
-  bool WaitUntilStopped() const;
   // Waits until the program ends, but no longer than this. False if it still runs.
   bool EndsWithin(std::chrono::milliseconds time) const;
   ProcessResult Wait();  // until the program ends; later calls return the same
@@ -106,5 +104,8 @@ std::string Process::WaitForErrLine(Wanted wanted) {
 }
 
 ProcessResult RunProgram(const ProcessOptions& options);
+
+// A line of /proc/PROCESS/status, such as "VmRSS:", in MiB. `process`: a number, or "self".
+double MiBOf(const std::string& process, const std::string& line);
 
 }  // namespace ballpiston

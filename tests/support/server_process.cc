@@ -86,18 +86,11 @@ std::string ServerProcess::log() const {
   return process_ == nullptr ? "" : ended_log_ + process_->Output();
 }
 
-double ServerProcess::ResidentMiB() const { return MiBOf("VmRSS:"); }
-
-double ServerProcess::PeakMiB() const { return MiBOf("VmHWM:"); }
-
-double ServerProcess::MiBOf(const std::string& line) const {
-  std::ifstream status("/proc/" + std::to_string(process_->pid()) + "/status");
-  for (std::string word; status >> word;) {
-    double kib = 0;
-    if (word == line && status >> kib) return kib / 1024;
-  }
-  return 0;
+double ServerProcess::ResidentMiB() const {
+  return MiBOf(std::to_string(process_->pid()), "VmRSS:");
 }
+
+double ServerProcess::PeakMiB() const { return MiBOf(std::to_string(process_->pid()), "VmHWM:"); }
 
 double ServerProcess::ProcessorSeconds() const {
   double nanoseconds = 0;

@@ -66,8 +66,6 @@ class ServerProcess {
   virtual void OnReady() {}
 
  private:
-  double MiBOf(const std::string& line) const;
-
   const ServerSetUp set_up_;
   const TemporaryFolder folder_;
   std::string address_;

@@ -31,8 +31,8 @@ sigset_t Signals() {
 }
 
 // If one thread does not block a signal, the signal ends the program. The mask is set before main,
-// so that all threads inherit it, also the threads of the watchdog and of gRPC. The client
-// constructs Interrupts before it starts a thread.
+// so that all threads inherit it, also the threads of gRPC. The client constructs Interrupts before
+// it starts a thread.
 [[maybe_unused]] const bool kSignalsAreBlocked = [] {
   // In the background of a shell or under nohup they are ignored.
   for (const int ignored : {SIGINT, SIGTERM, SIGHUP}) signal(ignored, SIG_DFL);

@@ -3,9 +3,8 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
-#include <condition_variable>
-#include <mutex>
 #include <string>
 #include <thread>
 
@@ -29,37 +28,6 @@ constexpr absl::Duration kMostBackoff = absl::Milliseconds(500);
 // The longest time from a ready server to the watch's first message, without that pause.
 constexpr double kMostSecondsToHear = 1;
 
-// Counts the watch's reports of the job: one at first, and one after each restart.
-class Told {
- public:
-  void Add() {
-    const std::lock_guard lock(mutex_);
-    ++count_;
-    news_.notify_all();
-  }
-  void End() {
-    const std::lock_guard lock(mutex_);
-    ended_ = true;
-    news_.notify_all();
-  }
-  // False if the watch has ended.
-  bool Await(int count) {
-    std::unique_lock lock(mutex_);
-    AwaitNotified(news_, lock, [&] { return ended_ || count_ >= count; });
-    return count_ >= count;
-  }
-  int Count() {
-    const std::lock_guard lock(mutex_);
-    return count_;
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable news_;
-  int count_ = 0;
-  bool ended_ = false;
-};
-
 TEST(ClientLibrary, WatchesAgainSoonAfterARestart) {
   Findings findings("client's pause");
   ConnectedServer server;
@@ -68,26 +36,32 @@ TEST(ClientLibrary, WatchesAgainSoonAfterARestart) {
   ASSERT_OK_AND_ASSIGN(const auto channel, client::OpenChannel(server.address()));
   const client::Client client(channel, absl::FromChrono(kPatience));
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, client.Create(Endless()));
-  Told told;
+  std::atomic<int> reports = 0;  // of the job: one at first, and one after each restart
+  std::atomic<bool> has_ended = false;
+  // False if the watch has ended.
+  const auto await_reports = [&](int count) {
+    AwaitThat([&] { return has_ended || reports >= count; });
+    return reports >= count;
+  };
   client::WatchCallbacks callbacks;
-  callbacks.on_job = [&](const v1::EnsembleJob&) { told.Add(); };
+  callbacks.on_job = [&](const v1::EnsembleJob&) { ++reports; };
   client::WatchOptions options;
   options.max_backoff = kMostBackoff;
   options.give_up_after = absl::FromChrono(kPatience);
   absl::StatusOr<v1::EnsembleJob> ended;
   std::thread watch([&] {
     ended = client.Watch(job.name(), callbacks, options);
-    told.End();
+    has_ended = true;
   });
-  told.Await(1);
+  await_reports(1);
   double longest = 0;
   for (int i = 0; i < Size(2, 20); ++i) {
-    const int before = told.Count();
+    const int before = reports;
     server.Signal(i % 2 == 0 ? SIGKILL : SIGTERM);
     server.AwaitEnd();
     server.Start();
     const auto ready = Clock::now();
-    EXPECT_TRUE(told.Await(before + 1)) << "the watch has ended";
+    EXPECT_TRUE(await_reports(before + 1)) << "the watch has ended";
     if (testing::Test::HasFailure()) break;
     longest = std::max(longest, std::chrono::duration<double>(Clock::now() - ready).count());
     findings.Count("restarts");

@@ -9,19 +9,6 @@ namespace {
 
 constexpr size_t kReported = 20;
 
-struct Row {
-  std::string section, what, value;
-};
-
-std::vector<Row>& Rows() {
-  static auto* const rows = new std::vector<Row>;
-  return *rows;
-}
-
-void AddRow(const std::string& section, const std::string& what, const std::string& value) {
-  Rows().push_back({section, what, value});
-}
-
 void PrintRow(const std::string& section, const std::string& what, const std::string& value) {
   std::printf("| %-21s | %-52s | %19s |\n", section.c_str(), what.c_str(), value.c_str());
 }
@@ -29,9 +16,8 @@ void PrintRow(const std::string& section, const std::string& what, const std::st
 }  // namespace
 
 Findings::~Findings() {
-  for (const auto& [what, count] : counts_) AddRow(section_, what, absl::StrCat(count));
-  for (const auto& [what, value] : notes_) AddRow(section_, what, value);
-  if (judged_) AddRow(section_, "promises broken", absl::StrCat(wrong_.size()));
+  for (const auto& [what, count] : counts_) PrintRow(section_, what, absl::StrCat(count));
+  for (const auto& [what, value] : notes_) PrintRow(section_, what, value);
 }
 
 void Findings::Count(const std::string& what, int64_t by) {
@@ -55,26 +41,14 @@ int64_t Findings::count(const std::string& what) const {
   return found == counts_.end() ? 0 : found->second;
 }
 
-std::string Findings::Report() const {
+std::string Findings::Report() {
   const std::lock_guard lock(mutex_);
-  judged_ = true;
+  counts_["promises broken"] = static_cast<int64_t>(wrong_.size());
   std::string text;
   for (size_t i = 0; i < wrong_.size() && i < kReported; ++i)
     absl::StrAppend(&text, wrong_[i], "\n");
   if (wrong_.size() > kReported) absl::StrAppend(&text, "and ", wrong_.size() - kReported, " more");
   return text;
-}
-
-void PrintTable() {
-  if (Rows().empty()) return;
-  std::printf("\n");
-  PrintRow("test", "what", "counted or measured");
-  PrintRow(std::string(21, '-'), std::string(52, '-'), std::string(19, '-'));
-  std::string section;  // named in its first row
-  for (const Row& row : Rows()) {
-    PrintRow(row.section == section ? "" : row.section, row.what, row.value);
-    section = row.section;
-  }
 }
 
 }  // namespace ballpiston::torture

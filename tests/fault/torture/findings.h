@@ -1,4 +1,4 @@
-// A test's counts and errors. The program prints them as a table when it ends.
+// A test's counts and errors, which it prints when it ends.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@ namespace ballpiston::torture {
 class Findings {
  public:
   explicit Findings(std::string section) : section_(std::move(section)) {}
-  ~Findings();  // adds the counts to the table
+  ~Findings();  // prints the rows
 
   void Count(const std::string& what, int64_t by = 1);
   void Note(const std::string& what, const std::string& value);  // a measured number, as text
   void Wrong(const std::string& what);                           // a broken promise
 
   int64_t count(const std::string& what) const;
-  // The first errors, one a line; empty if there are none.
-  std::string Report() const;
+  // The first errors, one a line; empty if there are none. Counts them as "promises broken".
+  std::string Report();
 
  private:
   const std::string section_;
@@ -29,10 +29,6 @@ class Findings {
   std::map<std::string, int64_t> counts_;
   std::map<std::string, std::string> notes_;
   std::vector<std::string> wrong_;
-  mutable bool judged_ = false;  // Report was called
 };
-
-// Prints the table of all tests that have ended.
-void PrintTable();
 
 }  // namespace ballpiston::torture

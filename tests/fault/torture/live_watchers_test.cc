@@ -1,5 +1,5 @@
 // The server stays healthy with a thousand watchers of one job, and stops in time.
-#include <grpcpp/generic/generic_stub.h>
+#include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,9 +17,10 @@
 #include "client/library/job_watch.h"
 #include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
-#include "tests/fault/torture/hung_readers.h"
 #include "tests/fault/torture/questions.h"
 #include "tests/fault/torture/sizes.h"
+#include "tests/fault/torture/stalled_watches.h"
+#include "tests/server/call_by_name.h"
 #include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
@@ -64,25 +65,17 @@ class LiveWatcher : public grpc::ClientReadReactor<v1::WatchEnsembleJobResponse>
 };
 
 // One health check of the whole server, in seconds.
-double HealthCheckSeconds(grpc::GenericStub& stub) {
-  const grpc::Slice nothing;
-  grpc::ByteBuffer request(&nothing, 1), response;
-  grpc::ClientContext context;
-  context.set_deadline(std::chrono::system_clock::now() + kPatience);
-  std::promise<grpc::Status> done;
+double HealthCheckSeconds(const std::shared_ptr<grpc::Channel>& channel) {
   const auto start = Clock::now();
-  stub.UnaryCall(&context, "/grpc.health.v1.Health/Check", {}, &request, &response,
-                 [&](grpc::Status status) { done.set_value(std::move(status)); });
-  const grpc::Status status = done.get_future().get();
-  EXPECT_OK(status);
+  EXPECT_OK(server::CallByName(channel, server::kCheckHealth));
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 // The 99th percentile of many checks, one every few milliseconds.
-double HealthP99(grpc::GenericStub& stub, int checks) {
+double HealthP99(const std::shared_ptr<grpc::Channel>& channel, int checks) {
   std::vector<double> seconds;
   for (int i = 0; i < checks; ++i) {
-    seconds.push_back(HealthCheckSeconds(stub));
+    seconds.push_back(HealthCheckSeconds(channel));
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   std::sort(seconds.begin(), seconds.end());
@@ -156,8 +149,7 @@ class LiveWatchers : public testing::Test {
   }
 
   double Health(const std::string& when) {
-    grpc::GenericStub stub(server_.Connect());
-    const double p99 = HealthP99(stub, Size(10, 2000));
+    const double p99 = HealthP99(server_.Connect(), Size(10, 2000));
     findings_.Note("health p99, ms, " + when, absl::StrFormat("%.1f", 1e3 * p99));
     return p99;
   }
@@ -206,7 +198,7 @@ TEST_F(LiveWatchers, DoNotDelayTheStop) {
 TEST_F(LiveWatchers, DelayTheStopByTheDrainAtMostIfTheyStall) {
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job,
                        server_.NewClient().Create(ManyPoints(20'000, 1'000)));
-  const HungReaders stalled(20, server_.address(), job.name());
+  const StalledWatches stalled(20, server_.address(), job.name());
   const double seconds = SecondsToStop("stalled watchers");
   if (HoldsToTimes()) {
     EXPECT_LT(seconds, kDrainSeconds + 1);

@@ -1,60 +1,28 @@
 #include "tests/fault/torture/questions.h"
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/substitute.h"
 #include "client/library/client.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/geometry/paper.h"
 #include "server/convert/spec.h"
 #include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/sizes.h"
+#include "tests/support/message_text.h"
 
 namespace ballpiston::torture {
 namespace {
 
 using v1::EnsembleSpec;
 
-EnsembleSpec Question(EnsembleSpec::Experiment experiment, EnsembleSpec::Model model,
-                      const std::vector<double>& deltas, const std::vector<double>& energies = {}) {
-  EnsembleSpec spec;
-  spec.set_experiment(experiment);
-  spec.set_model(model);
-  spec.set_seed(7);
+const std::string kReturns = "experiment: CONDITIONAL_MEAN_FREE_TIME model: BILLIARD ";
+const std::string kFirstHit = "experiment: FIRST_HIT model: BILLIARD ";
+
+// The message of this text, in which the values replace $0, $1 and so on, at the paper's radius.
+template <typename... Values>
+EnsembleSpec Question(const std::string& text, const Values&... values) {
+  auto spec = FromText<EnsembleSpec>(absl::Substitute(text + " seed: 7", values...));
   spec.mutable_grid()->add_rho(kPaperRho);
-  for (const double delta : deltas) spec.mutable_grid()->add_delta(delta);
-  for (const double energy : energies) spec.mutable_grid()->add_epsilon(energy);
-  return spec;
-}
-
-EnsembleSpec Gas(EnsembleSpec::Experiment experiment, EnsembleSpec::Model model) {
-  EnsembleSpec spec = Question(experiment, model, {0.2});
-  spec.mutable_grid()->add_cells("4");
-  if (experiment == EnsembleSpec::GAS_EQUILIBRIUM) {
-    spec.mutable_grid()->add_temperature(1);
-  } else {
-    spec.mutable_grid()->add_hot(1.5);
-    spec.mutable_grid()->add_cold(0.5);
-  }
-  return spec;
-}
-
-EnsembleSpec WithSamples(EnsembleSpec spec, int64_t samples) {
-  spec.mutable_target()->set_samples(samples);
-  return spec;
-}
-
-EnsembleSpec WithCollisions(EnsembleSpec spec, int64_t collisions) {
-  spec.mutable_target()->set_collisions(collisions);
-  return spec;
-}
-
-EnsembleSpec WithTolerance(EnsembleSpec spec, double tolerance) {
-  spec.mutable_target()->set_tolerance(tolerance);
-  return spec;
-}
-
-EnsembleSpec FirstHit(const std::vector<double>& energies) {
-  EnsembleSpec spec = Question(EnsembleSpec::FIRST_HIT, EnsembleSpec::BILLIARD, {0.2}, energies);
-  spec.mutable_grid()->add_exponent(1);
   return spec;
 }
 
@@ -80,47 +48,59 @@ void CheckCounts(const EnsembleSpec& message, const std::vector<v1::PointResult>
 }  // namespace
 
 std::vector<EnsembleSpec> Questions() {
-  const auto billiard = EnsembleSpec::BILLIARD;
-  const auto markov = EnsembleSpec::MARKOV;
-  const auto returns = EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME;
-  const auto relaxation = EnsembleSpec::ENERGY_RELAXATION;
+  const std::string relaxation = "experiment: ENERGY_RELAXATION ";
+  const std::string markov_relaxation = relaxation + "model: MARKOV grid { delta: 0.1 } ";
   return {
-      WithCollisions(Question(EnsembleSpec::EQUILIBRIUM, billiard, {0.2, 0.1}), Samples(100'000)),
-      Question(EnsembleSpec::EQUILIBRIUM, EnsembleSpec::CLOSED_FORM, {0.2, 0.1, 0.05}),
-      WithSamples(Question(returns, billiard, {0.2}, {0.1, 0.4}), Samples(100'000)),
-      WithSamples(Question(returns, billiard, {0.2, 0.15, 0.1}, {0.1, 0.2, 0.3, 0.4}),
-                  Samples(10'000)),
-      WithTolerance(Question(returns, billiard, {0.2}, {0.25}), Tolerance(0.005)),
-      WithSamples(Question(returns, billiard, {0.2}, {0.3}),
-                  Size(3'000'000, 10'000'000)),  // for checkpoints
-      WithSamples(FirstHit({0.1, 0.4}), Samples(50'000)),
-      WithTolerance(FirstHit({0.2}), Tolerance(0.01)),
-      WithSamples(Question(relaxation, markov, {0.1}), Samples(1'000)),
-      WithTolerance(Question(relaxation, markov, {0.1}), Tolerance(0.1)),
-      WithSamples(Question(relaxation, billiard, {0.2}), Samples(500)),
-      WithCollisions(Question(EnsembleSpec::MARKOV_PROPERTY, markov, {0.2}), Samples(20'000)),
-      WithSamples(Gas(EnsembleSpec::GAS_EQUILIBRIUM, billiard), Size(1'000, 20'000)),
-      WithSamples(Gas(EnsembleSpec::GAS_CONDUCTION, billiard), Size(100, 5'000))};
+      Question("experiment: EQUILIBRIUM model: BILLIARD grid { delta: [0.2, 0.1] }"
+               "target { collisions: $0 }",
+               Samples(100'000)),
+      Question("experiment: EQUILIBRIUM model: CLOSED_FORM grid { delta: [0.2, 0.1, 0.05] }"),
+      Question(kReturns + "grid { delta: 0.2 epsilon: [0.1, 0.4] } target { samples: $0 }",
+               Samples(100'000)),
+      Question(kReturns + "grid { delta: [0.2, 0.15, 0.1] epsilon: [0.1, 0.2, 0.3, 0.4] }"
+                          "target { samples: $0 }",
+               Samples(10'000)),
+      Question(kReturns + "grid { delta: 0.2 epsilon: 0.25 } target { tolerance: $0 }",
+               Tolerance(0.005)),
+      Question(kReturns + "grid { delta: 0.2 epsilon: 0.3 } target { samples: $0 }",
+               Size(3'000'000, 10'000'000)),  // for checkpoints
+      Question(kFirstHit + "grid { delta: 0.2 epsilon: [0.1, 0.4] exponent: 1 }"
+                           "target { samples: $0 }",
+               Samples(50'000)),
+      Question(kFirstHit + "grid { delta: 0.2 epsilon: 0.2 exponent: 1 } target { tolerance: $0 }",
+               Tolerance(0.01)),
+      Question(markov_relaxation + "target { samples: $0 }", Samples(1'000)),
+      Question(markov_relaxation + "target { tolerance: $0 }", Tolerance(0.1)),
+      Question(relaxation + "model: BILLIARD grid { delta: 0.2 } target { samples: $0 }",
+               Samples(500)),
+      Question("experiment: MARKOV_PROPERTY model: MARKOV grid { delta: 0.2 }"
+               "target { collisions: $0 }",
+               Samples(20'000)),
+      Question("experiment: GAS_EQUILIBRIUM model: BILLIARD"
+               " grid { delta: 0.2 cells: '4' temperature: 1 } target { samples: $0 }",
+               Size(1'000, 20'000)),
+      Question("experiment: GAS_CONDUCTION model: BILLIARD"
+               " grid { delta: 0.2 cells: '4' hot: 1.5 cold: 0.5 } target { samples: $0 }",
+               Size(100, 5'000))};
 }
 
 std::vector<EnsembleSpec> LargeQuestions() {
-  const auto returns = EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME;
-  return {WithSamples(FirstHit({0.1, 0.2, 0.3, 0.4}), 300'000),
-          WithSamples(Question(returns, EnsembleSpec::BILLIARD, {0.2, 0.1}, {0.1, 0.2, 0.3, 0.4}),
-                      300'000)};
+  return {Question(kFirstHit + "grid { delta: 0.2 epsilon: [0.1, 0.2, 0.3, 0.4] exponent: 1 }"
+                               "target { samples: 300000 }"),
+          Question(kReturns + "grid { delta: [0.2, 0.1] epsilon: [0.1, 0.2, 0.3, 0.4] }"
+                              "target { samples: 300000 }")};
 }
 
 EnsembleSpec ManyPoints(int points, int64_t samples) {
-  EnsembleSpec spec =
-      Question(EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME, EnsembleSpec::BILLIARD, {0.2});
+  EnsembleSpec spec = Question(kReturns + "grid { delta: 0.2 } target { samples: $0 }", samples);
   for (int i = 0; i < points; ++i) spec.mutable_grid()->add_epsilon(0.25 + 0.01 * i / points);
-  return WithSamples(std::move(spec), samples);
+  return spec;
 }
 
 EnsembleSpec Endless() {
-  return WithSamples(
-      Question(EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME, EnsembleSpec::BILLIARD, {0.2}, {0.25}),
-      1'000'000'000'000);
+  return Question(kReturns +
+                  "grid { delta: 0.2 epsilon: 0.25 }"
+                  "target { samples: 1000000000000 }");
 }
 
 Answer AnswerOf(const std::vector<v1::PointResult>& points) {

@@ -12,9 +12,9 @@
 #include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/costs.h"
 #include "tests/fault/torture/findings.h"
-#include "tests/fault/torture/hung_readers.h"
 #include "tests/fault/torture/questions.h"
 #include "tests/fault/torture/sizes.h"
+#include "tests/fault/torture/stalled_watches.h"
 #include "tests/support/await.h"
 
 namespace ballpiston::torture {
@@ -60,7 +60,7 @@ class StalledReaders : public testing::Test {
     int finished = 0;  // points, meanwhile
   };
   Stalled LookWithReaders() {
-    HungReaders hung(readers_, server_.address(), name_);
+    StalledWatches stalled(readers_, server_.address(), name_);
     std::this_thread::sleep_for(to_stall_);
     const int first = Finished();
     const double cost = Cost();
@@ -68,7 +68,7 @@ class StalledReaders : public testing::Test {
     AwaitFinished(first + kFinishedMeanwhile);  // otherwise silence would prove nothing
     const int last = Finished();
     // A message made at either of the two moments may have either number.
-    return {cost, hung.WakeAndCountSilent(first, last), last - first};
+    return {cost, stalled.CountSilent(first, last), last - first};
   }
 
   // Measures with stalled readers, and checks that they have stalled. If the server was too busy to

@@ -4,32 +4,25 @@
 #include <string>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "server/book/acceptance.h"
 #include "tests/server/running_server.h"
+#include "tests/support/message_text.h"
 
 namespace ballpiston::server {
 namespace {
 
-v1::EnsembleSpec FirstHits() {
-  v1::EnsembleSpec spec;
-  spec.set_experiment(v1::EnsembleSpec::FIRST_HIT);
-  spec.mutable_grid()->add_rho(0.53);
-  spec.mutable_grid()->add_delta(0.2);
-  spec.mutable_grid()->add_epsilon(0.125);
-  spec.mutable_grid()->add_exponent(1);
-  return spec;
+v1::EnsembleSpec FirstHits(const std::string& more = "") {
+  return FromText<v1::EnsembleSpec>(
+      "experiment: FIRST_HIT grid { rho: 0.53 delta: 0.2 epsilon: 0.125 exponent: 1 } " + more);
 }
 
 v1::EnsembleSpec WithSamples(int64_t samples) {
-  v1::EnsembleSpec spec = FirstHits();
-  spec.mutable_target()->set_samples(samples);
-  return spec;
+  return FirstHits(absl::StrCat("target { samples: ", samples, " }"));
 }
 
 v1::EnsembleSpec WithTolerance(double tolerance) {
-  v1::EnsembleSpec spec = FirstHits();
-  spec.mutable_target()->set_tolerance(tolerance);
-  return spec;
+  return FirstHits(absl::StrCat("target { tolerance: ", tolerance, " }"));
 }
 
 TEST(Family, IsTheQuestionWithoutItsTargetButWithItsEstimate) {
@@ -38,14 +31,10 @@ TEST(Family, IsTheQuestionWithoutItsTargetButWithItsEstimate) {
   EXPECT_EQ(FamilyOf(WithTolerance(0.5), "1"), family);
   EXPECT_NE(FamilyOf(FirstHits(), "2"), family);
   EXPECT_NE(QuestionOf(FirstHits(), "1"), family);
-  v1::EnsembleSpec other = FirstHits();
-  other.set_seed(1);
-  EXPECT_NE(FamilyOf(other, "1"), family);
-  other = FirstHits();
-  other.mutable_target()->set_estimate("mean_sigma");
-  EXPECT_NE(FamilyOf(other, "1"), family);
-  other.mutable_target()->mutable_budget()->set_seconds(1);
-  EXPECT_EQ(FamilyOf(other, "1"), "");
+  EXPECT_NE(FamilyOf(FirstHits("seed: 1"), "1"), family);
+  const std::string estimate = "estimate: 'mean_sigma'";
+  EXPECT_NE(FamilyOf(FirstHits("target { " + estimate + " }"), "1"), family);
+  EXPECT_EQ(FamilyOf(FirstHits("target { " + estimate + " budget { seconds: 1 } }"), "1"), "");
 }
 
 class ContinuationTest : public testing::Test {

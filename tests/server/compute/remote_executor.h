@@ -66,7 +66,6 @@ class RemoteExecutor : public Executor {
   void Shutdown() override { is_shut_down_ = true; }
 
   size_t number() const { return capacity_.executor; }
-  bool is_shut_down() const { return is_shut_down_; }
 
   // These call the scheduler unless this is shut down.
   std::optional<Lease> Take() { return is_shut_down_ ? std::nullopt : scheduler_.Next(capacity_); }

@@ -16,10 +16,8 @@ namespace ballpiston::server {
 
 class SteppedExecutor : public Executor {
  public:
-  explicit SteppedExecutor(Scheduler& scheduler,
-                           double seconds = std::numeric_limits<double>::infinity())
-      : scheduler_(scheduler),
-        capacity_{.executor = scheduler.AddExecutor(*this), .seconds = seconds} {}
+  explicit SteppedExecutor(Scheduler& scheduler)
+      : scheduler_(scheduler), capacity_{.executor = scheduler.AddExecutor(*this)} {}
 
   ~SteppedExecutor() override { scheduler_.RemoveExecutor(capacity_.executor); }
 

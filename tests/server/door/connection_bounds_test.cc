@@ -10,7 +10,6 @@
 #include "tests/server/call_by_name.h"
 #include "tests/server/http_get.h"
 #include "tests/server/running_server.h"
-#include "tests/server/unread_call.h"
 
 namespace ballpiston::server {
 namespace {
@@ -137,9 +136,9 @@ TEST(ConnectionBounds, ReflectionUsesLimitedThreadsAndOtherCallsGoOn) {
   RunningServer server;
   ASSERT_OK(CallByName(server.channel(), kReflection, kListServices));
   const size_t before = ThreadsOfThisProcess();
-  std::vector<std::unique_ptr<UnreadCall>> streams;
+  std::vector<std::unique_ptr<NamedCall>> streams;
   for (int i = 0; i < 60; ++i) {
-    streams.push_back(std::make_unique<UnreadCall>(server.channel(), kReflection));
+    streams.push_back(std::make_unique<NamedCall>(server.channel(), kReflection));
   }
   // The server rejects the last stream. Without the limit it would stay open.
   EXPECT_THAT(streams.back()->Finish(), StatusIs(grpc::StatusCode::RESOURCE_EXHAUSTED));

@@ -12,7 +12,6 @@
 
 #include "tests/server/call_by_name.h"
 #include "tests/server/running_server.h"
-#include "tests/server/unread_call.h"
 
 namespace ballpiston::server {
 namespace {
@@ -104,10 +103,10 @@ class UnreadAnswers : public testing::Test {
     return server_->analytic().EvaluatePairs(&context, {}, &response);
   }
 
-  std::unique_ptr<UnreadCall> Unread() {
+  std::unique_ptr<NamedCall> Unread() {
     v1::GetEnsembleJobRequest request;
     request.set_name(name_);
-    auto call = std::make_unique<UnreadCall>(server_->channel(), kGetJob);
+    auto call = std::make_unique<NamedCall>(server_->channel(), kGetJob);
     call->Send(request.SerializeAsString());
     call->AwaitAnswer();
     return call;
@@ -119,7 +118,7 @@ class UnreadAnswers : public testing::Test {
   }
 
   void ExpectRefusedUntilLetGo(const std::string& flag) {
-    std::unique_ptr<UnreadCall> unread;
+    std::unique_ptr<NamedCall> unread;
     grpc::Status refused;
     AwaitThat([&] {  // the server knows that the answers before it were read
       unread = Unread();

@@ -9,7 +9,6 @@
 #include "tests/server/call_by_name.h"
 #include "tests/server/http_get.h"
 #include "tests/server/rpc/watch_stream.h"
-#include "tests/server/unread_call.h"
 
 namespace ballpiston::server {
 namespace {
@@ -73,7 +72,7 @@ TEST_F(MetricsTest, AHealthWatchEndedByItsClientIsNotLogged) {
   testing::internal::CaptureStderr();
   RunningServer& server = Start();
   {
-    UnreadCall watch(server.channel(), kWatchHealth);
+    NamedCall watch(server.channel(), kWatchHealth);
     watch.Send(kWholeServer);
     watch.AwaitAnswer();
   }

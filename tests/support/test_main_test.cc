@@ -1,0 +1,19 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+namespace ballpiston {
+namespace {
+
+TEST(TestMain, NamesATestThatTakes15Minutes) {
+  EXPECT_GT(alarm(0), 0u);  // the seconds until the alarm
+  testing::internal::CaptureStderr();
+  raise(SIGALRM);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "[  HANGS?  ] the last test that began, 15 minutes ago: "
+            "TestMain.NamesATestThatTakes15Minutes\n");
+}
+
+}  // namespace
+}  // namespace ballpiston
