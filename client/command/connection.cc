@@ -44,7 +44,7 @@ absl::StatusOr<Connection> ConnectTo(const std::string& address, const Options& 
                     .security = security};
 }
 
-// A private server stops when it is idle. Of several threads one starts it again.
+// A private server stops when it is idle. If several threads find it stopped, only one starts it.
 Revival RevivalOf(const LocalServer& server, const std::shared_ptr<grpc::Channel>& channel) {
   return [server, channel, mutex = std::make_shared<std::mutex>()] {
     const std::lock_guard lock(*mutex);

@@ -25,8 +25,8 @@ absl::Status CheckPythonFor(const std::string& out);
 
 // Runs a program of the package: python3 -m MODULE ARGUMENT... The flags of the options that choose
 // the server and the progress are in its environment, and the user's config file has no effect on
-// it. An interruption ends the program and all that it has started; its jobs continue. Check before
-// whether the interpreter has what the program needs.
+// it. An interruption ends the program and all that it has started; its jobs continue. Call
+// CheckPython first for the modules that the program needs.
 VerbResult RunPythonProgram(const std::string& module, const std::vector<std::string>& arguments,
                             const Options& options, Terminal& terminal);
 

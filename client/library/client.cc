@@ -38,8 +38,8 @@ void AwaitConnection(grpc::ChannelInterface& channel, const std::stop_token& sto
 
 }  // namespace
 
-// Whether to repeat a call that ended with `status`: the server was unavailable, and has been
-// started again. `status` becomes the error of a failed start.
+// Starts an unavailable server again. True if the call that ended with `status` should be repeated.
+// `status` becomes the error of a failed start.
 bool Client::IsBack(absl::Status& status) const {
   if (!revival_ || !absl::IsUnavailable(status)) return false;
   absl::SleepFor(RetryDelay(status));
@@ -60,8 +60,8 @@ absl::StatusOr<Response> Client::Ask(Stub& stub,
   return response;
 }
 
-// Until the stream ends or `on_message` returns false; then the call is cancelled, and the status
-// is OK.
+// Reads until the stream ends or `on_message` returns false. In the second case the call is
+// cancelled, and the status is OK.
 template <typename Message, typename Open>
 absl::Status Client::Read(const Open& open,
                           const std::function<bool(const Message&)>& on_message) const {

@@ -46,15 +46,15 @@ struct CreateOptions {
 
 inline constexpr absl::Duration kCallTimeout = absl::Seconds(60);
 
-// Starts a server again that has stopped. OK also if it runs.
+// Starts a stopped server again. OK also if the server is running.
 using Revival = std::function<absl::Status()>;
 
 class Client {
  public:
-  // `timeout` limits each single call, but not a watch or a stream. `revival`: if the server is
-  // unavailable, a call that is safe to repeat starts the server again and is repeated once, with
-  // the same request id; a stream is repeated only before its first message. Several threads may
-  // call it at once.
+  // `timeout` limits each single call, but not a watch or a stream. `revival` is used if the server
+  // is unavailable. A call that is safe to repeat then starts the server and is repeated once, with
+  // the same request id. A stream is repeated only before its first message. `revival` must be
+  // thread-safe.
   explicit Client(const std::shared_ptr<grpc::ChannelInterface>& channel,
                   absl::Duration timeout = kCallTimeout, Revival revival = {});
 
@@ -71,8 +71,7 @@ class Client {
   static constexpr int64_t kAllJobs = std::numeric_limits<int64_t>::max();
   absl::StatusOr<std::vector<v1::EnsembleJob>> List(v1::ListEnsembleJobsRequest request = {},
                                                     int64_t most = kAllJobs) const;
-  // Sends an idempotency key, so that a retry of the channel succeeds, although the job has ended
-  // by then.
+  // Sends an idempotency key, so that a retry of the channel succeeds even if the job has ended.
   absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& name) const;
   // The results of a pinned job do not expire. With `pinned` false they may expire again.
   //   FAILED_PRECONDITION  RESULTS_EXPIRED
@@ -80,8 +79,7 @@ class Client {
   // Replaces the job's labels.
   absl::StatusOr<v1::EnsembleJob> SetLabels(const std::string& name,
                                             const std::map<std::string, std::string>& labels) const;
-  // Never repeated: if the first attempt deleted the job, the second reports that it does not
-  // exist.
+  // Not repeated: after a successful first attempt the second would report NOT_FOUND.
   absl::Status Delete(const std::string& name) const;
 
   // The finished points in grid order, page by page, so that a large result need not fit into

@@ -31,8 +31,8 @@ class BlockQueue {
   // The next block to compute; empty if there is none now.
   virtual std::optional<Block> Next() = 0;
   virtual void Done(const Block& block, BlockResult result) = 0;
-  // True if the run should return. The run asks at least every 0.05 s, but not while it starts a
-  // gas or measures it: for each cell this takes about 2 us, so 2 s for the largest gas.
+  // True if the run should return. The run asks at least every 0.05 s, except while it starts or
+  // measures a gas. This takes about 2 us per cell, so 2 s for the largest gas.
   virtual bool Pause() = 0;
   // The device that may compute the orbits of a pair (billiard/orbits.h); null: none. The results
   // do not depend on it.

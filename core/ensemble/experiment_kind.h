@@ -151,8 +151,8 @@ const ExperimentKind* FindExperiment(uint64_t number);
 // Upper bound of the bytes of a point while up to `threads` threads compute it: the state of the
 // engines, the blocks in progress, and the results that wait to be merged. It is known before the
 // computation starts: the scheduler keeps the sum over the running points below a limit, and a
-// question beyond the machine's memory is rejected. A device's buffers are not counted, nor the
-// results that wait beyond ChunkFold::kWindow because its window is larger (WindowFor). Uses
+// question beyond the machine's memory is rejected. Two things are not counted: a device's buffers,
+// and the results that wait beyond ChunkFold::kWindow in a device's larger window (WindowFor). Uses
 // spec.model; for AUTO the billiard, unless a closed form answers. The spec must have no
 // violations.
 double MemoryOf(const EnsembleSpec& spec, const PointParameters& point, int threads);

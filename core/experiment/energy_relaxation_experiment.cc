@@ -333,8 +333,8 @@ double CollisionsOfASample(Model, const PointParameters& point) {
 
 constexpr absl::string_view kMultiplesOfTheTime[] = {"decay_integral"};
 
-// At energies that have no relaxation time, for which a tolerance is not permitted, the first
-// estimate is the decay integral.
+// Some energies have no relaxation time. A tolerance is not permitted there, and the first estimate
+// is the decay integral.
 constexpr AimedEstimate kAimsOfRelaxation[] = {{.name = "relaxation_time",
                                                 .models = kModelsOfRelaxation,
                                                 .error = ErrorOfAnOrbit,

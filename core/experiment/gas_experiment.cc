@@ -75,8 +75,8 @@ class GasBlocks : public EngineRun {
     return TogetherInLanes(experiment_.geometry().balls(), experiment_.plan(), block.chunk);
   }
 
-  // Starts replicas until there are enough, if the queue has any now. The first replica determines
-  // the number of replicas in the run.
+  // Starts replicas until the run is full or the queue has no more now. The first replica
+  // determines the number of replicas in the run.
   void Begin() {
     std::vector<GasStart> starts;
     for (size_t most = 1; starts.size() < most;) {
@@ -124,7 +124,7 @@ class GasBlocks : public EngineRun {
   BlockQueue& queue_;
   OpenBlocks<ReplicasOfBlock> blocks_;
   std::vector<Replica> running_;
-  std::unique_ptr<GasRun> run_;  // of them; null if there are none
+  std::unique_ptr<GasRun> run_;  // of the replicas in running_; null if there are none
 };
 
 // Hits of the outermost pistons at their thermal walls per unit of time at temperature 1: every

@@ -80,8 +80,8 @@ class GroupRun : public EngineRun {
     }
   }
 
-  // The warm-up is judged before the jump process sets its outermost pistons' energies: these may
-  // differ from the energies of the state by rounding.
+  // The warm-up is judged before the jump process sets its outermost pistons' energies: the new
+  // energies may differ from the energies of the state by rounding.
   void Start() {
     std::vector<GasStart> starts;
     meters_.clear();

@@ -47,7 +47,7 @@ class TemperatureProfile {
   double ratio_;  // (cold/hot)^(3/2)
 };
 
-// Draws a gas. One of 10^6 cells takes a second.
+// Draws a gas. Drawing a gas of 10^6 cells takes a second.
 GasState DrawGas(const GasGeometry& geometry, const TemperatureProfile& temperature,
                  CounterRandom& random);
 

@@ -89,9 +89,9 @@ class Job {
   // points are no longer in memory.
   std::optional<std::vector<FinishedPoint>> FinishedAfter(int64_t after, size_t limit) const;
 
-  // The snapshot that all watches of the job share, because it needs the scheduler's lock. Returns
-  // the last one if nothing has changed since it was made, or if it is younger than `max_age`.
-  // Otherwise calls `make`, in one thread at a time.
+  // All watches of the job share this snapshot, because making one takes the scheduler's lock.
+  // Returns the last one if nothing has changed since it was made, or if it is younger than
+  // `max_age`. Otherwise calls `make`, in one thread at a time.
   std::shared_ptr<const JobSnapshot> Snapshot(std::chrono::milliseconds max_age,
                                               absl::FunctionRef<JobSnapshot()> make);
 

@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 constexpr size_t kMostOutput = size_t{64} << 20;
 constexpr std::chrono::milliseconds kLook(5);  // between two looks at the program
 
-// A file in memory: the standard output of the program, or its errors.
+// A file in memory: the standard output of the program, or its standard error.
 class MemoryFile {
  public:
   MemoryFile() : number_(memfd_create("", MFD_CLOEXEC)) {}
@@ -33,7 +33,7 @@ class MemoryFile {
   MemoryFile& operator=(const MemoryFile&) = delete;
   ~MemoryFile() { close(number_); }
 
-  int number() const { return number_; }  // less than 0: there is no memory
+  int number() const { return number_; }  // negative: it could not be created
 
   std::string Contents() const {
     struct stat status {};
@@ -108,7 +108,7 @@ absl::StatusOr<int> AwaitExitCode(pid_t pid, const Command& command, const std::
 absl::StatusOr<CommandOutput> RunCommand(const Command& command, const std::stop_token& stop) {
   const MemoryFile out, err;
   if (out.number() < 0 || err.number() < 0) {
-    return absl::UnavailableError("no memory to run a program");
+    return absl::UnavailableError("cannot create a file in memory for the program's output");
   }
   const absl::StatusOr<pid_t> pid = Start(command, out, err);
   if (!pid.ok()) return pid.status();

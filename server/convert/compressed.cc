@@ -11,7 +11,7 @@
 namespace ballpiston::server {
 namespace {
 
-// For the window, zlib takes the logarithm of its size and one of these numbers.
+// zlib's windowBits is the logarithm of the window size, plus one of these numbers or 0.
 constexpr int kAsGzip = 16, kOfEitherFormat = 32;
 constexpr int kDefaultMemory = 8;
 

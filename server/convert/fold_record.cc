@@ -173,7 +173,7 @@ std::string EndBytes(const FoldState& state) { return Compressed(FoldRecordBytes
 absl::StatusOr<FoldState> EndFromBytes(const std::string& bytes) {
   const std::optional<std::string> plain = Uncompressed(bytes);
   if (plain) return FoldStateFromBytes(*plain);
-  return absl::DataLossError("the stored end of a point cannot be read");
+  return absl::DataLossError("the stored final state of a point cannot be read");
 }
 
 std::string ChunkRecordBytes(const ChunkResult& chunk) {

@@ -25,7 +25,7 @@ ChunkResult ChunkOf(const storage::Chunk& record);
 std::string FoldRecordBytes(const FoldState& state);
 absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes);  // DATA_LOSS
 
-// Compressed: where a finished point ended, from which another job can continue it.
+// The final state of a finished point, compressed. Another job can continue from it.
 std::string EndBytes(const FoldState& state);
 absl::StatusOr<FoldState> EndFromBytes(const std::string& bytes);  // DATA_LOSS
 

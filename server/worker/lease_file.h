@@ -44,8 +44,8 @@ std::string BytesOf(const storage::Lease& lease);
 // The complete chunks, and the seconds.
 std::string BytesOf(const LeaseReport& report);
 
-// These take one message off `bytes`. Errors of TakeCompressed and LeaseOfRecord; DATA_LOSS if the
-// message cannot be read.
+// Each of these reads one message and removes it from `bytes`. Errors of TakeCompressed and
+// LeaseOfRecord; DATA_LOSS if the message cannot be read.
 absl::StatusOr<LeaseFile> TakeLease(absl::string_view& bytes);
 using LeaseReader = std::function<absl::StatusOr<LeaseFile>(absl::string_view& bytes)>;
 absl::StatusOr<LeaseReport> TakeReport(absl::string_view& bytes);

@@ -176,7 +176,7 @@ void AddFlags(CLI::App& app, CommandLine& line) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--give-up-seconds", line.worker.give_up_seconds,
-                 "for these attempts with one lease")
+                 "stop retrying one operation on a lease after this time")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.set_version_flag("--version", std::string(kEngineVersion), "print the engine version");

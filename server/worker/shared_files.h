@@ -21,7 +21,7 @@
 
 namespace ballpiston::server {
 
-inline constexpr size_t kMaxSharedFile = size_t{64} << 20;  // bytes of a file that can be read
+inline constexpr size_t kMaxSharedFile = size_t{64} << 20;  // bytes; a larger file is not read
 
 // A changed file has another stamp.
 struct FileStamp {

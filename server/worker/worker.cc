@@ -23,7 +23,7 @@ using Clock = std::chrono::steady_clock;
 // start at the same time.
 constexpr double kFirstLook = 1, kLongestLook = 20;
 
-// A server that lives has written a lease after this time.
+// A running server finishes writing a lease within this time.
 constexpr double kLongestWrite = 20;
 
 Clock::duration InTicks(double seconds) {
@@ -80,8 +80,8 @@ class LeaseWork : private ChunkReceiver {
     return left;
   }
 
-  // Again while the folder is full or cannot be used, but not for ever. A wait may end early, so
-  // the clock counts, and not the number of attempts.
+  // Retries while the folder is full or cannot be used, for at most give_up_seconds. A wait may end
+  // early, so the time is limited, not the number of attempts.
   absl::Status Retried(const std::function<absl::Status()>& attempt) const {
     const Clock::time_point last = host_.now() + InTicks(options_.give_up_seconds);
     while (true) {
@@ -179,8 +179,8 @@ class Worker {
     return true;
   }
 
-  // The server still writes the file, or it was killed while it did. Then the next server, which
-  // does not know the lease, removes it from done/.
+  // The server is still writing the file, or was killed while writing it. After a kill the next
+  // server, which does not know the lease, removes it from done/.
   absl::StatusOr<bool> LeaveIncomplete(const LeaseFileName& name, const absl::Status& why) {
     const Clock::time_point first_look = incomplete_.emplace(name.lease, host_.now()).first->second;
     const bool is_left = host_.now() - first_look >= InTicks(kLongestWrite);

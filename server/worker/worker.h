@@ -40,10 +40,11 @@ struct WorkerHost {
 };
 
 struct WorkerOptions {
-  std::string name = {};         // unique among all workers; letters, digits, '-' and '_'
-  double idle_seconds = 60;      // without a lease: the worker ends
-  double retry_seconds = 5;      // between two attempts to use a folder that is full or not there
-  double give_up_seconds = 120;  // for these attempts with one lease; less if the end is kNow
+  std::string name = {};     // unique among all workers; letters, digits, '-' and '_'
+  double idle_seconds = 60;  // without a lease: the worker ends
+  double retry_seconds = 5;  // between two attempts to use a folder that is full or not there
+  // The longest time of these attempts for one operation on a lease; they end at once at kNow.
+  double give_up_seconds = 120;
   // Bytes. A lease that needs more is given back: it would end the worker (MemoryOf).
   double memory = std::numeric_limits<double>::infinity();
 };

@@ -1,5 +1,5 @@
 // The engines side by side, in one run: what a wall hit costs, and how many times as many samples a
-// second the lanes give as the reference does. First the closed form, which needs no engine.
+// second the lanes give as the reference does. The closed form comes first; it needs no engine.
 //
 //   engine_benchmark [--threads N]
 //

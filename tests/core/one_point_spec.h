@@ -29,7 +29,7 @@ inline PointParameters PaperGas(const ExperimentKind* experiment, double delta,
   return point;
 }
 
-// By which gas-equilibrium and gas-conduction can be asked.
+// The models that sample gas-equilibrium and gas-conduction.
 inline constexpr Model kModelsThatSampleGases[] = {Model::kMarkov, Model::kBilliard,
                                                    Model::kBilliardReference};
 

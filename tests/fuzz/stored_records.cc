@@ -41,7 +41,8 @@ void CheckStoredSpec(const std::string& bytes) {
 
 using Experiments = std::vector<std::unique_ptr<const PointExperiment>>;
 
-// One of each shape of block; both signs of the piston's velocity, and one; one with a tolerance.
+// At least one experiment for each shape of block. First hits: with both signs of the piston's
+// velocity, with one sign, and with a tolerance.
 Experiments OneOfEach() {
   const Grid pair = {{kRho, {0.53}}, {kDelta, {0.1}}};
   Grid energy = pair, hit = pair, fast = pair;
@@ -219,7 +220,7 @@ void CheckReport(const std::string& compressed) {
 void CheckChunkFile(const std::string& input) {
   CheckReport(input);
   const std::string compressed = server::Compressed(input, server::Checksum::kCrc32);
-  Require(server::Uncompressed(compressed) == input, "compressed bytes come back");
+  Require(server::Uncompressed(compressed) == input, "decompression returns the compressed input");
   CheckReport(compressed);
 }
 

@@ -60,9 +60,9 @@ grpc::Status CallByName(const std::shared_ptr<grpc::Channel>& channel, const std
                         std::string* answer) {
   NamedCall call(channel, method, authorization);
   call.Send(bytes);
-  // Also after a failure. If the server closes the connection before it has begun the call,
-  // gRPC 1.51 reports a failed write, and then sends the whole call again on another connection.
-  // Finish does not return before the answer to that has been read.
+  // Reads also after a failed write. If the server closes the connection before it has begun the
+  // call, gRPC 1.51 reports a failed write, and then sends the whole call again on another
+  // connection. Finish does not return before the answer to that has been read.
   while (const auto message = call.Read()) {
     if (answer != nullptr) *answer = *message;
   }

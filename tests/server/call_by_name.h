@@ -29,7 +29,7 @@ inline constexpr char kListServices[] = "\x3a\x01*";
 // A call in steps. It ends after kPatience with DEADLINE_EXCEEDED.
 class NamedCall {
  public:
-  // Begins the call with these headers `authorization`.
+  // Begins the call with these values of the header `authorization`.
   NamedCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
             const std::vector<std::string>& authorization = {});
   ~NamedCall();  // cancels it, if it has not ended

@@ -17,9 +17,9 @@ constexpr uint64_t kGasSeed = 21;
 class GasInEquilibriumOf : public testing::TestWithParam<std::tuple<Model, const char*>> {};
 
 // Means over the canonical ensemble, from many replicas, and the laws of the speeds at their ends.
-// Each of three means differs by four standard errors in 6e-5 of all cases; that of the rate is
-// 0.3 % to 0.6 %. A divergence exceeds its noise by four standard errors as rarely or more rarely.
-// Together 3e-4 false alarms each.
+// Each of the three means is off by four standard errors in 6e-5 of all cases; the standard error
+// of the rate is 0.3 % to 0.6 %. A divergence exceeds its noise by four standard errors as rarely
+// or more rarely. False alarms of one case: 3e-4.
 TEST_P(GasInEquilibriumOf, HasItsExactRateAndItsGammaLaws) {
   const auto& [model, shape] = GetParam();
   const PointParameters gas = PaperGas(&kGasEquilibrium, 0.2, ShapeNamed(shape));
@@ -54,8 +54,8 @@ MeteredGases StartedGases(GasEngine engine, const GasGeometry& gas, uint64_t rep
   return {engine, gas, std::move(starts)};
 }
 
-// After a hundred exchanges of each contact, of two large gases: Gamma(1) of balls, Gamma(1/2) of
-// pistons. False alarms: 1e-4.
+// After a hundred exchanges per contact the energies in two large gases have the laws Gamma(1)
+// (balls) and Gamma(1/2) (pistons). False alarms: 1e-4.
 TEST(JumpGas, KeepsTheGammaLaws) {
   constexpr double kTime = 1000;
   constexpr uint64_t kReplicas = 2;

@@ -1,5 +1,5 @@
-// A folder that a death test shares with the process that it starts. This process begins anew
-// (test_main.cc), so a TemporaryFolder of the test would be another folder there.
+// A folder that a death test shares with the process that it starts. The started process runs main
+// from the beginning (test_main.cc), so a TemporaryFolder would be another folder there.
 #pragma once
 
 #include <unistd.h>

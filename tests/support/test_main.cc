@@ -38,7 +38,7 @@ double ProcessorSeconds(int who) {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-// Of this process and of the programs that it started and that have ended.
+// The processor time of this process and of its children that have ended.
 double ProcessorSeconds() {
   return ProcessorSeconds(RUSAGE_SELF) + ProcessorSeconds(RUSAGE_CHILDREN);
 }
@@ -48,8 +48,8 @@ class TestTimes : public testing::EmptyTestEventListener {
   void OnTestStart(const testing::TestInfo& test) override {
     alarm(0);
     std::snprintf(last_test, sizeof(last_test),
-                  "[  HANGS?  ] the last test that began, %u minutes ago: %s.%s\n", kMinutes,
-                  test.test_suite_name(), test.name());
+                  "[  HANGS?  ] %u minutes without another test since the start of %s.%s\n",
+                  kMinutes, test.test_suite_name(), test.name());
     alarm(60 * kMinutes);
     start_ = ProcessorSeconds();
   }

@@ -11,7 +11,7 @@ TEST(TestMain, NamesATestThatTakes15Minutes) {
   testing::internal::CaptureStderr();
   raise(SIGALRM);
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
-            "[  HANGS?  ] the last test that began, 15 minutes ago: "
+            "[  HANGS?  ] 15 minutes without another test since the start of "
             "TestMain.NamesATestThatTakes15Minutes\n");
 }
 

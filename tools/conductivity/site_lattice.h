@@ -1,8 +1,8 @@
 // The infinite chains and the lattice on which the jump process moves energy, as a graph of sites.
 //
 // Sites have whole coordinates, and neighbours have distance 1. A ball has even coordinates; a
-// piston has one odd coordinate. Unlike in the core, a cell here has length 2. In a chain
-// of equal sites a cell has length 1.
+// piston has one odd coordinate. Unlike in the core, a cell here has length 2. In a chain of equal
+// sites a cell has length 1.
 #pragma once
 
 #include <cstdint>

@@ -26,7 +26,7 @@ Event FixedStepFlow::Step() {
   return event;
 }
 
-// Makes steps until a repair is needed, but not many; returns their number.
+// Makes steps until a repair is needed, but at most 1024 steps; returns their number.
 uint64_t FixedStepFlow::Advance() {
   const uint64_t steps = MoveFreely();
   if (steps > 1) ball_.MovedFreely();
@@ -42,7 +42,7 @@ uint64_t FixedStepFlow::Advance() {
 // The disc in the ball's quadrant is the nearest disc. This loop is the whole cost of the flow:
 // everything is in registers.
 uint64_t FixedStepFlow::MoveFreely() {
-  constexpr uint64_t kMost = 1024;  // then Advance finds a ball that has left the cell
+  constexpr uint64_t kMost = 1024;  // so that Advance soon finds a ball that has left the cell
   double x = ball_.position.x(), y = ball_.position.y(), piston = piston_;
   const double dx = ball_.velocity.x() * time_step_, dy = ball_.velocity.y() * time_step_;
   const double dp = piston_velocity_ * time_step_;

@@ -8,9 +8,10 @@
 //   - a ball that has passed the piston collides with it, up to a step too late.
 // On average a hit is half a step late. Therefore times have a bias of first order in the step,
 // larger than the step divided by the mean flight. Contacts shorter than a step are missed.
-// Properties, each with a test of its name: 1. EnergyStaysExact, to rounding.
-// 2. TimeIsBiasedToFirstOrderInTheStep.
-// 3. OnlyReflectionsAndCollisionsAreEvents: pushing a ball out, or letting it pass, is none.
+// Properties, each with a test of its name:
+//   1. EnergyStaysExact, to rounding.  2. TimeIsBiasedToFirstOrderInTheStep.
+//   3. OnlyReflectionsAndCollisionsAreEvents: pushing out a ball that already leaves the disc is no
+//      event; nor is a ball beyond the piston that already comes back.
 //
 // One object is one orbit; not for sharing between threads.
 #pragma once
@@ -31,9 +32,8 @@ class FixedStepFlow {
   // time_step > 0.
   FixedStepFlow(const PairGeometry& geometry, const PairState& state, double time_step = 1e-3);
 
-  // Makes steps until there is an event. All events of one step but the first take no time.
-  // kEscape: the ball left the unit cell, is wedged between two discs, or has no event for 1e9
-  // steps.
+  // Makes steps until there is an event. Only the first event of a step has a duration above 0.
+  // kEscape: the ball left the unit cell, is wedged between discs, or has no event in 1e9 steps.
   Event Step();
   void ExchangeComponents();
 

@@ -28,13 +28,13 @@ class FixedStepGas {
   FixedStepGas(const GasGeometry& geometry, const GasState& start, ThermalWalls walls,
                double time_step = 1e-3);
 
-  // Makes steps until there is an event, and returns the time of the end of its step; infinity if
-  // nothing happens for a time of 1000.
+  // Makes steps until there is an event, and returns the end time of this step. Infinity if no
+  // event comes within 1000 units of time.
   double NextTime();
   // The next event. NextTime() must be finite.
   GasEvent Step();
 
-  // At the end of the last step, whatever the time.
+  // At the end of the last step; `time` is ignored.
   GasBall BallAt(int64_t ball, double time) const;
   GasPiston PistonAt(int64_t piston, double /*time*/) const {
     return pistons_[static_cast<size_t>(piston)];
@@ -59,7 +59,7 @@ class FixedStepGas {
   std::vector<Ball> balls_;
   std::vector<GasPiston> pistons_;
   std::vector<GasEvent> events_;  // of the last step
-  size_t told_ = 0;               // of these events
+  size_t told_ = 0;               // the number of these events that Step has returned
 };
 
 }  // namespace ballpiston

@@ -1,7 +1,7 @@
 // The paper's formulas as printed, one expression each, in any arithmetic. In double they are the
 // naive evaluation, which core/closed_form improves. In quadruple precision they are the reference
-// values, as long as 34 digits are enough despite the cancellation. Only tests and
-// the stability tables use them.
+// values, as long as 34 digits are enough despite the cancellation. Only tests and the stability
+// tables use them.
 //
 // Rates, moments and the kernel are in units of |dG_bp|/|G|, as in the library.
 #pragma once

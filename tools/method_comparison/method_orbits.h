@@ -22,8 +22,7 @@ class FlowOrbit {
             TimeStep... time_step)
       : flow_(geometry, start, time_step...) {}
 
-  // Makes one event, and adds it to the way to the next collision. True if this is reached, or if
-  // the orbit is lost.
+  // Makes one event, and adds it to `collision`. True if the orbit reached a collision or is lost.
   bool Advance(Collision& collision) {
     const auto event = flow_.Step();
     collision.Add({event.kind, static_cast<double>(event.duration)});

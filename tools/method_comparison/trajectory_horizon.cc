@@ -36,7 +36,7 @@ void FlyOrbit(FlowOrbit<Flow> orbit, uint64_t hits, std::vector<BallAt>& places)
   }
 }
 
-// One orbit after the other.
+// Flies the orbits one after the other.
 template <typename Flow, typename... TimeStep>
 Itineraries FlyEach(const PairGeometry& geometry, const TwinOrbits& twins, uint64_t hits,
                     TimeStep... time_step) {

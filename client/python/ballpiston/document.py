@@ -93,10 +93,10 @@ def write_atomically(path: Path, data: bytes) -> None:
 
 @functools.cache
 def _fields_of(message: Any) -> Callable[[dict[str, Any]], dict[str, Any]]:
-    """From the JSON of a message to the arguments of its constructor, without unknown fields.
+    """Returns a function that converts a message's JSON to the arguments of its constructor.
 
-    Results have no maps, bytes or messages of other packages. json_format reads those too, but
-    takes five times as long, 10 s for 100,000 points.
+    The function drops unknown fields. Results have no maps, bytes or messages of other packages.
+    json_format reads those too, but takes five times as long, 10 s for 100,000 points.
     """
     readers = {field.name: _reader_of(field) for field in message.fields}
 

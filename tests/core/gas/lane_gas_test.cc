@@ -92,8 +92,8 @@ TEST(LaneGas, AGasContinuesFromItsState) {
   }
 }
 
-// Balls rest in the middle of their cells, where no piston comes. So a piston goes to and fro
-// between its walls, while the origin of times moves on some twenty times.
+// Balls rest in the middle of their cells, where no piston comes. So each piston moves back and
+// forth between its walls. Meanwhile the time origin moves about twenty times.
 TEST(LaneGas, PistonsKeepTheirMotionWhenTheOriginMoves) {
   constexpr double kTime = 5000;
   const GasGeometry gas = GasOf(kPaperRho, 0.15, "2x2");

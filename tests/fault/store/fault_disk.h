@@ -1,11 +1,14 @@
 // A disk in memory for SQLite. It logs all operations, and rejects those that the test selects.
 //
-// While it lives, it is SQLite's file system for every connection that is opened; of several disks
-// it is the newest one. It behaves as SQLite's own for Unix does: the name of a log or journal is
-// flushed with its first sync, bytes outside those written are never changed, an empty file counts
-// as not existing, locks and the log's index are shared by all connections of the process. Every
-// write, truncation, sync, creation and deletion is one operation, numbered from 0; power_cut.h
-// says what a cut at any of them would leave. Thread-safe.
+// While it lives, it is SQLite's file system for every connection that is opened. If there are
+// several disks, SQLite uses the newest one. It behaves like SQLite's own file system for Unix:
+//   - The name of a log or journal is flushed with its first sync.
+//   - Bytes outside those written are never changed.
+//   - An empty file counts as not existing.
+//   - All connections of the process share the locks and the log's index.
+//
+// Every write, truncation, sync, creation and deletion is one operation, numbered from 0;
+// power_cut.h says what a cut at any of them would leave. Thread-safe.
 #pragma once
 
 #include <array>

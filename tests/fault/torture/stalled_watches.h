@@ -13,8 +13,8 @@ namespace ballpiston::torture {
 
 class StalledWatches {
  public:
-  // Opens the watches; from then on they read nothing. Every other watch has not read its first
-  // message either, which is as large as the job.
+  // Opens the watches; from then on they read nothing. Half of the watches do not even read their
+  // first message, which is as large as the job.
   StalledWatches(int count, const std::string& address, const std::string& job) {
     for (int i = 0; i < count; ++i) {
       server::WatchStream& watch = readers_.emplace_back(address, job).watch;

@@ -244,8 +244,9 @@ TEST_F(FolderExecutorTest, AFullFolderIsTriedAgainAfterAPause) {
 
 // ---- many workers ----
 
-// Of the server and its worker, as PaceOf assumes. A look lists taken/ and done/ for all leases.
-TEST_F(FolderExecutorTest, ALeaseTakesNineOperations) {
+// PaceOf assumes this number for the server and the worker together. Listings of taken/ and done/
+// serve all leases, so they are not counted.
+TEST_F(FolderExecutorTest, ALeaseTakesAtMostNineOperations) {
   double leases = 0, looks = 0;
   files_.before = [&](const std::string& operation, const std::string& path) {
     leases += operation == "create";

@@ -18,12 +18,12 @@ std::string SomeBytes() {
   return bytes;
 }
 
-// Of one stream.
+// Decompresses a single stream.
 absl::StatusOr<std::string> ContentsOf(absl::string_view stream) {
   return TakeCompressed(stream, kMost);
 }
 
-TEST(Compressed, BothFormatsComeBack) {
+TEST(Compressed, BothFormatsRoundTrip) {
   for (const Checksum checksum : {Checksum::kAdler32, Checksum::kCrc32}) {
     for (const std::string& plain : {std::string(), SomeBytes(), std::string(100'000, 'a')}) {
       EXPECT_EQ(Uncompressed(Compressed(plain, checksum)), plain);
@@ -31,8 +31,8 @@ TEST(Compressed, BothFormatsComeBack) {
   }
 }
 
-// All other values of every byte: of the header, the contents and the checksum.
-TEST(Compressed, AChangedByteGivesNoOtherBytes) {
+// Tries every other value of each byte of header, contents and checksum.
+TEST(Compressed, AChangedByteIsDetectedOrHarmless) {
   for (const Checksum checksum : {Checksum::kAdler32, Checksum::kCrc32}) {
     const std::string good = Compressed(SomeBytes(), checksum);
     for (size_t at = 0; at < good.size(); ++at) {
@@ -57,7 +57,7 @@ TEST(Compressed, AShorterStreamIsTruncated) {
   }
 }
 
-TEST(Compressed, TheBytesAfterAStreamAreLeft) {
+TEST(Compressed, BytesAfterAStreamRemain) {
   const std::string bytes = Compressed(SomeBytes(), Checksum::kCrc32) + Compressed("second") + "x";
   EXPECT_EQ(Uncompressed(bytes), std::nullopt);
   absl::string_view rest = bytes;
@@ -67,7 +67,7 @@ TEST(Compressed, TheBytesAfterAStreamAreLeft) {
   EXPECT_EQ(rest, "x");
 }
 
-TEST(Compressed, AnotherFileIsDataLoss) {
+TEST(Compressed, AFileOfAnotherFormatIsDataLoss) {
   EXPECT_THAT(ContentsOf("#!/bin/bash\necho this is a script of some length\n"),
               StatusIs(absl::StatusCode::kDataLoss, HasSubstr("not a file of ballpiston")));
 }

@@ -166,7 +166,7 @@ TEST_F(WorkerProgramTest, GivesUpOnAFullFolder) {
   EXPECT_THAT(Done(), IsEmpty());
 }
 
-// Without waits it would fail 240 times.
+// Without waits the worker would try again and again in its last second, with a line each time.
 TEST_F(WorkerProgramTest, WaitsBetweenItsLastAttempts) {
   Lay("a", LeaseOf(SpecOf(kFirstHit, Model::kBilliard)));
   ProcessOptions command = Command({"--retry-seconds=0.5", "--for=4"});

@@ -124,7 +124,7 @@ TEST_F(WorkerTest, AFullFolderIsUsedAgainWhenItHasRoom) {
   EXPECT_THAT(lines_, testing::Contains("no space left; retry in 5 s"));
 }
 
-// Also if waits end early.
+// The two minutes hold even if waits end early.
 TEST_F(WorkerTest, AWorkerThatMustEndAfterItsChunkWaitsTwoMinutesForRoom) {
   Lay("a", lease_);
   Clock::time_point first = {};
@@ -140,7 +140,7 @@ TEST_F(WorkerTest, AWorkerThatMustEndAfterItsChunkWaitsTwoMinutesForRoom) {
   EXPECT_LE(now_ - first, std::chrono::minutes(3));
 }
 
-TEST_F(WorkerTest, AWorkerThatMustEndNowDoesNotWaitForRoom) {
+TEST_F(WorkerTest, AWorkerThatMustEndNowStopsWaitingForRoom) {
   Lay("a", lease_);
   int attempts = 0;
   files_.before = [&](const char* operation, const std::string&) {
@@ -166,8 +166,8 @@ TEST_F(WorkerTest, ALeaseThatIsStillBeingWrittenIsTakenLater) {
   EXPECT_TRUE(AreEqual(ChunksIn("done/a.me.finished"), chunks_));
 }
 
-// The server was killed while it wrote them, or still writes them.
-TEST_F(WorkerTest, IncompleteFilesDelayNoOtherLeaseAndAreGivenBackAtLast) {
+// The server was killed while it wrote the files, or is still writing them.
+TEST_F(WorkerTest, OtherLeasesGoBeforeIncompleteFilesWhichAreGivenBack) {
   Lay("z", lease_);
   const std::string& whole = files_.files["todo/z"].bytes;
   for (const std::string name : {"a", "b", "c", "d", "e", "f"}) {
