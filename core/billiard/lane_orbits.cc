@@ -40,8 +40,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Fewer vectors would hardly take less time, so all vectors fly even if few lanes have orbits.
 
 // The most bursts between two calls of Pause, and the most calls of the source. 512 bursts take
-// about 0.2 ms. The source takes up to 5 us for a start or a collision, so 4096 of them take at most
-// 0.02 s.
+// about 0.2 ms. The source takes up to 5 us for a start or a collision, so 4096 of them take at
+// most 0.02 s.
 constexpr int kBurstsBetweenLooks = 512;
 constexpr int64_t kCallsBetweenLooks = 4096;
 

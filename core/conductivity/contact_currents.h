@@ -12,8 +12,9 @@
 // Its variables are the root of the total energy and sqrt(|e_b - e_p|/(e_b + e_p)), in which both
 // parts are smooth. Between the nodes cubic polynomials interpolate.
 //
-// Units: masses and temperature 1; rates are those at a contact's density of 1. Domain: energies of at least 0, not both 0. Error of the table:
-// kContactCurrentsError. Properties, each with the test that bears its name:
+// Units: masses and temperature 1; rates are those at a contact's density of 1. Domain: energies of
+// at least 0, not both 0. Error of the table: kContactCurrentsError. Properties, each with the test
+// that bears its name:
 //   1. AgreeWithTheirDefinition.  2. TableErrorIsWithinItsBound.  3. TableTakesEveryEnergy.
 //
 // The table's lookups run in vector lanes: their bits are the same on every target with fused
