@@ -24,7 +24,9 @@ TEST(FixedStepFlow, ABallBeyondATipIsLost) {
       cusps,
       {.position = {0, 0}, .direction = {-1, 0}, .ball_speed = 1, .piston = cusps.piston_right()},
       0.51);
-  EXPECT_EQ(flow.Step().kind, EventKind::kEscape);
+  const Event event = flow.Step();
+  EXPECT_EQ(event.kind, EventKind::kEscape);
+  EXPECT_EQ(event.duration, 0.51);  // the first step
 }
 
 // A ball inside a disc that it leaves, and a ball beyond a piston from which it flies away: both
