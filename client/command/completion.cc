@@ -149,6 +149,19 @@ Strings FlagOffers(const Verb& verb) {
   return offers;
 }
 
+// bash also splits words at colons: the address of a server becomes three words.
+void JoinAtColons(Strings& words) {
+  for (size_t i = 1; i < words.size();) {
+    const bool is_joined = words[i] == ":" || absl::EndsWith(words[i - 1], ":");
+    if (is_joined) {
+      words[i - 1] += words[i];
+      words.erase(words.begin() + static_cast<ptrdiff_t>(i));
+    } else {
+      ++i;
+    }
+  }
+}
+
 // Splits --flag=value into two words. bash passes it as three words, zsh and fish as one word. zsh
 // and fish need offers that begin with --flag= too: returns this prefix for them, else "".
 std::string SplitValue(Strings& words) {
@@ -174,6 +187,7 @@ std::string ServerIn(const Strings& words) {
 
 Strings Offers(Strings words, Options options, const Terminal& terminal) {
   if (words.empty()) words = {""};
+  JoinAtColons(words);
   const std::string prefix = SplitValue(words);
   if (const std::string server = ServerIn(words); !server.empty()) options.server = server;
   size_t length = 0;

@@ -120,6 +120,8 @@ class JobBook {
 
   // ---- for watches ----
 
+  // The job's row, read anew, and the job itself, null if it has ended. NOT_FOUND also if the
+  // caller may not see it.
   absl::StatusOr<FoundJob> Find(const Principal& caller, const std::string& id, Grid grid);
 
   // The newest `limit` unfinished points of the job. The snapshot is at most `max_age` old.

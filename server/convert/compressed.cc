@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <array>
+#include <new>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
@@ -27,7 +28,10 @@ z_stream StreamFrom(absl::string_view bytes) {
 std::string Compressed(absl::string_view plain, Checksum checksum) {
   z_stream stream = StreamFrom(plain);
   const int window = MAX_WBITS + (checksum == Checksum::kCrc32 ? kAsGzip : 0);
-  deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, window, kDefaultMemory, Z_DEFAULT_STRATEGY);
+  if (deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, window, kDefaultMemory, Z_DEFAULT_STRATEGY) !=
+      Z_OK) {
+    throw std::bad_alloc();
+  }
   std::string bytes(deflateBound(&stream, plain.size()), '\0');
   stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
   stream.avail_out = static_cast<uInt>(bytes.size());

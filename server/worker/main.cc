@@ -68,15 +68,17 @@ class Ending {
   EndOfWork Get() {
     AwaitSignal(0);
     const double seconds = SecondsSinceStart();
-    if (seconds >= last_) return EndOfWork::kNow;
-    return seconds >= after_chunk_ ? EndOfWork::kAfterChunk : EndOfWork::kNotYet;
+    told_ = seconds >= last_          ? EndOfWork::kNow
+            : seconds >= after_chunk_ ? EndOfWork::kAfterChunk
+                                      : EndOfWork::kNotYet;
+    return told_;
   }
 
-  // Returns early when the worker has to end after its chunk, and again when it has to end now. A
-  // signal may move both times.
+  // Returns early when Get would return something else than at its last call. A signal may move
+  // both times.
   void Sleep(std::chrono::duration<double> time) {
-    const double begin = SecondsSinceStart(), end = begin + time.count();
-    const auto next_end = [&] { return begin < after_chunk_ ? after_chunk_ : last_; };
+    const double end = SecondsSinceStart() + time.count();
+    const auto next_end = [&] { return told_ == EndOfWork::kNotYet ? after_chunk_ : last_; };
     const auto left = [&] { return std::min(end, next_end()) - SecondsSinceStart(); };
     while (left() > 0) AwaitSignal(left());
   }
@@ -96,7 +98,8 @@ class Ending {
   }
 
   const Clock::time_point start_ = Clock::now();
-  double last_, after_chunk_;  // seconds since the start
+  double last_, after_chunk_;            // seconds since the start
+  EndOfWork told_ = EndOfWork::kNotYet;  // what Get returned last
   sigset_t signals_;
 };
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import FIRST_HITS, LIMIT, Home
+from google.protobuf import json_format
 
 import ballpiston
 
@@ -145,7 +147,36 @@ def test_a_later_version_may_add_fields(first_hits: ballpiston.Result, tmp_path:
     assert ballpiston.load(tmp_path / "later.json") == first_hits
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{}", '{"job": {}, "points": [1]}', '{"job": 1}'])
+def test_a_document_of_another_program_can_be_loaded(
+    first_hits: ballpiston.Result, tmp_path: Path
+) -> None:
+    """With names in lowerCamelCase, integers of 64 bits as strings, and a value without a number."""
+    first_hits.save(tmp_path / "saved.json")
+    document = json.loads((tmp_path / "saved.json").read_text())
+    document["points"] = [json_format.MessageToDict(message) for message in first_hits.messages]
+    estimate = document["points"][0]["estimates"][0]
+    assert isinstance(document["points"][0]["samples"], str)
+    assert "standardError" in estimate
+    value, estimate["value"] = estimate["value"], "NaN"
+    (tmp_path / "other.json").write_text(json.dumps(document))
+    loaded = ballpiston.load(tmp_path / "other.json")
+    assert math.isnan(loaded.messages[0].estimates[0].value)
+    loaded.messages[0].estimates[0].value = value
+    assert loaded == first_hits
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "[]",
+        "{}",
+        '{"job": 1}',
+        '{"job": {}, "points": [1]}',
+        '{"job": {}, "points": [{"samples": 1.5}]}',
+        '{"job": {}, "points": [{"estimates": 1}]}',
+    ],
+)
 def test_other_files_are_not_results(text: str, tmp_path: Path) -> None:
     (tmp_path / "other.json").write_text(text)
     with pytest.raises(ValueError, match="is not a saved result"):

@@ -10,6 +10,7 @@ namespace {
 constexpr SiteDimensions kAllDimensions[] = {{2, 1}, {1, 2}, {2, 2}, {3, 3}, {1, 1}};
 
 constexpr int kDegree = 6;
+
 struct Point {
   double x;
   double weight;

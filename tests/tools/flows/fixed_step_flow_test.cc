@@ -29,8 +29,8 @@ TEST(FixedStepFlow, ABallBeyondATipIsLost) {
   EXPECT_EQ(event.duration, 0.51);  // the first step
 }
 
-// A ball inside a disc that it leaves, and a ball beyond a piston from which it flies away: both
-// fly straight to a wall.
+// A ball inside a disc that it leaves, and a ball beyond a piston from which it already comes back:
+// both fly straight to a wall.
 TEST(FixedStepFlow, OnlyReflectionsAndCollisionsAreEvents) {
   const double rho = kPaperPair.rho();
   const Eigen::Vector2d centre(0.5, 0.5), inward = centre / centre.norm();
