@@ -43,8 +43,8 @@ class ThreadExecutor::SharedLease {
   }
 
  private:
-  // Computes blocks of the lease in turns of about 50 ms (block_run.h). Between turns it keeps its orbits where
-  // they are, and any thread may take the next turn.
+  // Computes blocks of the lease in turns of about 50 ms (block_run.h). Between turns it keeps its
+  // orbits where they are, and any thread may take the next turn.
   class Session : private BlockQueue {
    public:
     explicit Session(SharedLease& lease) : lease_(lease) {}

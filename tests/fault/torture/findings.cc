@@ -10,7 +10,7 @@ namespace {
 constexpr size_t kReported = 20;
 
 void PrintRow(const std::string& section, const std::string& what, const std::string& value) {
-  std::printf("| %-21s | %-52s | %19s |\n", section.c_str(), what.c_str(), value.c_str());
+  std::printf("| %-32s | %-52s | %19s |\n", section.c_str(), what.c_str(), value.c_str());
 }
 
 }  // namespace

@@ -255,7 +255,7 @@ TEST_F(FolderExecutorTest, ALeaseTakesAtMostNineOperations) {
   };
   ComputeAll(*Begin());
   const double operations = files_.operations - 2 * looks;
-  EXPECT_GE(leases, 6);
+  EXPECT_GE(leases, 4);
   EXPECT_GT(operations, 8 * leases);
   EXPECT_LE(operations, 9 * leases);
 }
