@@ -111,7 +111,7 @@ def _fields_of(message: Any) -> Callable[[dict[str, Any]], dict[str, Any]]:
 
 
 def _reader_of(field: Any) -> Callable[[Any], Any]:
-    numbers = {
+    numbers: dict[int, Callable[[Any], Any]] = {
         FieldDescriptor.CPPTYPE_INT64: _integer,
         FieldDescriptor.CPPTYPE_UINT64: _integer,
         FieldDescriptor.CPPTYPE_DOUBLE: float,  # for instance "NaN"

@@ -155,7 +155,7 @@ def test_a_document_of_another_program_can_be_loaded(
     document = json.loads((tmp_path / "saved.json").read_text())
     document["points"] = [json_format.MessageToDict(message) for message in first_hits.messages]
     estimate = document["points"][0]["estimates"][0]
-    assert isinstance(document["points"][0]["samples"], str)
+    assert isinstance(document["points"][0]["chunkDigests"][0], str)
     assert "standardError" in estimate
     value, estimate["value"] = estimate["value"], "NaN"
     (tmp_path / "other.json").write_text(json.dumps(document))
@@ -173,7 +173,8 @@ def test_a_document_of_another_program_can_be_loaded(
         "{}",
         '{"job": 1}',
         '{"job": {}, "points": [1]}',
-        '{"job": {}, "points": [{"samples": 1.5}]}',
+        '{"job": {}, "points": [{"chunk_digests": [1.5]}]}',
+        '{"job": {}, "points": [{"samples": "many"}]}',
         '{"job": {}, "points": [{"estimates": 1}]}',
     ],
 )
