@@ -9,6 +9,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
+#include "absl/strings/string_view.h"
+#include "absl/strings/strip.h"
 #include "absl/time/time.h"
 #include "client/command/connection.h"
 #include "client/command/verb_table.h"
@@ -151,15 +153,16 @@ Strings FlagOffers(const Verb& verb) {
 
 // bash also splits words at colons: the address of a server becomes three words.
 void JoinAtColons(Strings& words) {
-  for (size_t i = 1; i < words.size();) {
-    const bool is_joined = words[i] == ":" || absl::EndsWith(words[i - 1], ":");
-    if (is_joined) {
-      words[i - 1] += words[i];
-      words.erase(words.begin() + static_cast<ptrdiff_t>(i));
+  Strings joined;
+  for (std::string& word : words) {
+    const bool follows = !joined.empty() && (word == ":" || absl::EndsWith(joined.back(), ":"));
+    if (follows) {
+      joined.back() += word;
     } else {
-      ++i;
+      joined.push_back(std::move(word));
     }
   }
+  words = std::move(joined);
 }
 
 // Splits --flag=value into two words. bash passes it as three words, zsh and fish as one word. zsh
@@ -177,10 +180,10 @@ std::string SplitValue(Strings& words) {
 
 // The server that the words name; empty if none.
 std::string ServerIn(const Strings& words) {
-  const std::string flag = LongName(ServerFlags().flags.front());
   for (size_t i = 0; i + 1 < words.size(); ++i) {
-    if (words[i] == flag && i + 2 < words.size()) return words[i + 1];
-    if (absl::StartsWith(words[i], flag + "=")) return words[i].substr(flag.size() + 1);
+    absl::string_view word = words[i];
+    if (word == "--server" && i + 2 < words.size()) return words[i + 1];
+    if (absl::ConsumePrefix(&word, "--server=")) return std::string(word);
   }
   return "";
 }

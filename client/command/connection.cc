@@ -39,7 +39,6 @@ absl::StatusOr<Connection> ConnectTo(const std::string& address, const Options& 
   return Connection{.address = address,
                     .channel = *channel,
                     .client = Client(*channel),
-                    .revival = {},
                     .flags = options.connection,
                     .security = security};
 }
@@ -60,11 +59,10 @@ absl::StatusOr<Connection> ConnectPrivately(bool may_start) {
   if (!server.ok()) return server.status();
   const auto channel = may_start ? ConnectToLocalServer(*server) : ConnectIfRunning(*server);
   if (!channel.ok()) return channel.status();
-  const Revival revival = may_start ? RevivalOf(*server, *channel) : Revival();
   return Connection{.address = server->Address(),
                     .channel = *channel,
-                    .client = Client(*channel, kCallTimeout, revival),
-                    .revival = revival,
+                    .client = Client(*channel, kCallTimeout,
+                                     may_start ? RevivalOf(*server, *channel) : Revival()),
                     .flags = "",
                     .security = {}};
 }

@@ -21,8 +21,7 @@ namespace ballpiston::client {
 struct Connection {
   std::string address;
   std::shared_ptr<grpc::Channel> channel;
-  Client client;             // over the channel
-  Revival revival;           // of a private server that a verb may start; else empty
+  Client client;             // over the channel; starts a private server again
   std::string flags;         // for hints: " --server ADDRESS ..." if given
   ChannelSecurity security;  // of the channel
 };

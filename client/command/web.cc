@@ -21,10 +21,7 @@ absl::Status CallThrough(const Connection& connection, const JsonCall& once,
     });
   };
   absl::Status status = attempt();
-  if (absl::IsUnavailable(status) && !has_begun && connection.revival) {
-    status = connection.revival();
-    if (status.ok()) status = attempt();
-  }
+  if (!has_begun && connection.client.IsBack(status)) status = attempt();
   return NameServer(status, connection);
 }
 

@@ -38,8 +38,6 @@ void AwaitConnection(grpc::ChannelInterface& channel, const std::stop_token& sto
 
 }  // namespace
 
-// Starts an unavailable server again. True if the call that ended with `status` should be repeated.
-// `status` becomes the error of a failed start.
 bool Client::IsBack(absl::Status& status) const {
   if (!revival_ || !absl::IsUnavailable(status)) return false;
   absl::SleepFor(RetryDelay(status));

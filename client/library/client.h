@@ -51,8 +51,8 @@ using Revival = std::function<absl::Status()>;
 
 class Client {
  public:
-  // `timeout` limits each single call, but not a watch or a stream. `revival` is used if the server
-  // is unavailable. A call that is safe to repeat then starts the server and is repeated once, with
+  // `timeout` limits each single call, but not a stream. `revival` is used if the server is
+  // unavailable. A call that is safe to repeat then starts the server and is repeated once, with
   // the same request id. A stream is repeated only before its first message. `revival` must be
   // thread-safe.
   explicit Client(const std::shared_ptr<grpc::ChannelInterface>& channel,
@@ -118,6 +118,10 @@ class Client {
                                         const WatchOptions& options = {},
                                         std::stop_token stop = {}) const;
 
+  // For calls that this class does not make: starts an unavailable server again. True if the call
+  // that ended with `status` should be repeated. `status` becomes the error of a failed start.
+  bool IsBack(absl::Status& status) const;
+
  private:
   template <typename Stub, typename Request, typename Response>
   absl::StatusOr<Response> Ask(Stub& stub,
@@ -127,7 +131,6 @@ class Client {
   // `open` starts the stream with the context that it gets.
   template <typename Message, typename Open>
   absl::Status Read(const Open& open, const std::function<bool(const Message&)>& on_message) const;
-  bool IsBack(absl::Status& status) const;
 
   std::shared_ptr<grpc::ChannelInterface> channel_;
   std::shared_ptr<v1::EnsembleService::StubInterface> ensembles_;

@@ -43,7 +43,6 @@ class PrintResultTest : public ::testing::Test {
   Connection connection_{.address = server_.Address(),
                          .channel = channel_,
                          .client = Client(channel_),
-                         .revival = {},
                          .flags = "",
                          .security = {}};
   std::ostringstream out_, err_;
