@@ -9,16 +9,7 @@
 
 #include <sys/types.h>
 
-#include <chrono>
-#include <condition_variable>
-#include <map>
-#include <mutex>
-#include <string>
-#include <thread>
-#include <vector>
-
-#include "gmock/gmock.h"
-#include "tests/support/await.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston {
 

@@ -1,11 +1,6 @@
 #include "tests/support/process.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <signal.h>
-
-#include <memory>
-#include <thread>
+#include "tests/support/preamble.h"
 
 namespace ballpiston {
 namespace {

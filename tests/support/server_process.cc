@@ -1,14 +1,8 @@
 #include "tests/support/server_process.h"
 
-#include <signal.h>
-
-#include <filesystem>
-#include <fstream>
-#include <stdexcept>
 #include <system_error>
-#include <utility>
 
-#include "tests/support/paths.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston {
 namespace {

@@ -1,15 +1,8 @@
 // The real server, ballpistond, as a process: started, killed and started again on one data folder.
 #pragma once
 
-#include <chrono>
-#include <map>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
+#include "tests/support/preamble.h"
 #include "tests/support/process.h"
-#include "tests/support/temporary_folder.h"
 
 namespace ballpiston {
 

@@ -1,12 +1,6 @@
 #include "tests/support/stand_in_slurm.h"
 
-#include <sys/stat.h>
-
-#include <algorithm>
-#include <cstdlib>
-#include <filesystem>
-
-#include "tests/support/files.h"
+#include "tests/support/preamble.h"
 #include "tests/support/process.h"
 
 namespace ballpiston {

@@ -2,16 +2,11 @@
 
 #include <poll.h>
 #include <pty.h>
-#include <signal.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
-#include <stdexcept>
-#include <vector>
 
-#include "tests/support/await.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston {
 namespace {
