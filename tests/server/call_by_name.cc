@@ -1,9 +1,5 @@
 #include "tests/server/call_by_name.h"
 
-#include <chrono>
-
-#include "tests/support/await.h"
-
 namespace ballpiston::server {
 
 NamedCall::NamedCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,

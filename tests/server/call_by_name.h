@@ -1,14 +1,10 @@
 // A call of any method, unary or streaming, by its name.
 #pragma once
 
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "grpcpp/channel.h"
 #include "grpcpp/generic/generic_stub.h"
 #include "grpcpp/grpcpp.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

@@ -3,14 +3,8 @@
 //   EXPECT_THAT(server.Delete(name), IsError(grpc::StatusCode::NOT_FOUND, "JOB_NOT_FOUND"));
 #pragma once
 
-#include <map>
-#include <string>
-#include <vector>
-
-#include "absl/status/status.h"
-#include "gmock/gmock.h"
 #include "grpcpp/support/status.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

@@ -1,12 +1,6 @@
 #include "tests/server/fake_experiments.h"
 
-#include <memory>
-#include <utility>
-
-#include "core/ensemble/point_fold.h"
-#include "core/experiment/all_experiments.h"
-#include "tests/server/factory_opener.h"
-#include "tests/support/await.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {

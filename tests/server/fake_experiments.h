@@ -1,15 +1,9 @@
 // Experiments that a test can stop, make fail and count.
 #pragma once
 
-#include <condition_variable>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <mutex>
-#include <stop_token>
-
 #include "core/ensemble/point_fold.h"
 #include "tests/server/factory_opener.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

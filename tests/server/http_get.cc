@@ -4,15 +4,10 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/time.h>
-#include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
-#include <cstdint>
-#include <stdexcept>
 
-#include "gtest/gtest.h"
-#include "tests/support/await.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

@@ -1,11 +1,6 @@
 #include "server/machine_memory.h"
 
-#include <filesystem>
-#include <string>
-
-#include "gtest/gtest.h"
-#include "tests/support/files.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {

@@ -2,16 +2,12 @@
 // also a connection to a server that has ended.
 #pragma once
 
-#include <chrono>
-#include <memory>
-#include <string>
-
 #include "grpc/grpc.h"
 #include "grpcpp/channel.h"
 #include "grpcpp/create_channel.h"
 #include "grpcpp/security/credentials.h"
 #include "grpcpp/support/channel_arguments.h"
-#include "tests/support/await.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

@@ -1,10 +1,8 @@
 // Specifications and requests of the tests.
 #pragma once
 
-#include <cstdint>
-#include <string>
-
 #include "ballpiston/v1/ensemble.pb.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

@@ -1,17 +1,9 @@
-#include <atomic>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "tests/server/running_server.h"
-#include "tests/server/spec_message.h"
-#include "tests/server/store_access.h"
+#include "tests/server/preamble.h"
 #include "tests/server/worker/sample_leases.h"
 
 namespace ballpiston::server {
 namespace {
-
-using v1::EnsembleJob;
 
 // Options of a server on a folder that later servers use too.
 TestServerOptions InFolder(const TemporaryFolder& folder, int workers = 2,

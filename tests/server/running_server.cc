@@ -1,13 +1,7 @@
 #include "tests/server/running_server.h"
 
-#include <stdexcept>
-#include <utility>
-
 #include "grpc/grpc.h"
-#include "gtest/gtest.h"
-#include "tests/server/factory_opener.h"
-#include "tests/server/own_channel.h"
-#include "tests/support/status_matchers.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {

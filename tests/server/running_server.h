@@ -1,5 +1,5 @@
-// A whole server in the test's process, and clients of it. What most tests of a server use comes
-// with this header: fake experiments, requests, matchers of errors, waits, temporary folders.
+// A whole server in the test's process, and clients of it. Fake experiments, requests and matchers
+// of errors come with it.
 //
 //   RunningServer server;  // fake experiments, a Unix socket in a temporary folder
 //   const std::string name = server.Submit(Equilibrium(2, 50));
@@ -8,12 +8,6 @@
 //   RunningServer small({.workers = 1, .limits = {.max_active_jobs = 1}});
 #pragma once
 
-#include <chrono>
-#include <memory>
-#include <string>
-#include <vector>
-
-#include "absl/status/status.h"
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "ballpiston/v1/server.grpc.pb.h"
@@ -25,9 +19,7 @@
 #include "tests/server/factory_opener.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

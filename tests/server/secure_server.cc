@@ -1,10 +1,7 @@
 #include "tests/server/secure_server.h"
 
-#include <sys/stat.h>
-
 #include "server/door/access_list.h"
 #include "server/sha256.h"
-#include "tests/support/files.h"
 
 namespace ballpiston::server {
 

@@ -9,15 +9,10 @@
 #include <openssl/bio.h>
 #include <openssl/ssl.h>
 
-#include <memory>
-#include <string>
-
-#include "absl/time/time.h"
 #include "grpcpp/security/credentials.h"
 #include "server/door/principal.h"
 #include "tests/credentials/test_authority.h"
-#include "tests/server/running_server.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 

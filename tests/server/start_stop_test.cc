@@ -1,26 +1,13 @@
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <sys/un.h>
-#include <unistd.h>
-
-#include <atomic>
-#include <chrono>
-#include <filesystem>
-#include <future>
-#include <string>
 
 #include "tests/fault/store/fault_disk.h"
-#include "tests/server/call_by_name.h"
 #include "tests/server/http_get.h"
+#include "tests/server/preamble.h"
 #include "tests/server/secure_server.h"
-#include "tests/support/files.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 // Expects that a server with these options does not start, and that the error is one line.
 void ExpectStartRefused(const TestServerOptions& options, const std::string& why) {

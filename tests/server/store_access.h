@@ -1,12 +1,11 @@
 // Reads and changes a store without a server.
 #pragma once
 
-#include <string>
 #include <type_traits>
 
 #include "server/store/sqlite.h"
 #include "server/store/store.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

@@ -1,16 +1,11 @@
 // A scheduler with threads that compute, as a server has them.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <utility>
-#include <vector>
-
 #include "server/compute/point_opener.h"
 #include "server/compute/scheduler.h"
 #include "server/compute/thread_executor.h"
 #include "tests/server/factory_opener.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

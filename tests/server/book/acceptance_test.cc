@@ -1,22 +1,11 @@
 // The outcome of one Create: a new job, an earlier one, or an error.
 #include "server/book/acceptance.h"
 
-#include <functional>
-#include <map>
-#include <string>
-#include <vector>
-
-#include "server/store/job_table.h"
 #include "tests/server/book/book_test.h"
-#include "tests/server/running_server.h"
-#include "tests/server/store_access.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using v1::EnsembleJob;
 
 v1::EnsembleSpec Question(uint64_t seed = 1) { return Equilibrium(2, 5, seed); }
 

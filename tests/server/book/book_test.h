@@ -1,24 +1,9 @@
 // A book of jobs with its store and its threads: a server without gRPC, which a test can restart.
 #pragma once
 
-#include <chrono>
-#include <limits>
-#include <memory>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "gmock/gmock.h"
 #include "server/book/job_book.h"
 #include "server/book/job_name.h"
-#include "server/convert/spec.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/server/requests.h"
-#include "tests/server/thread_pool.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 

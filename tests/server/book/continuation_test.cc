@@ -1,13 +1,6 @@
 // Which job a new one continues, and its result.
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
-#include "absl/strings/str_cat.h"
 #include "server/book/acceptance.h"
-#include "tests/server/running_server.h"
-#include "tests/support/message_text.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {

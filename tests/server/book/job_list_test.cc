@@ -1,18 +1,9 @@
 // The pages of a filtered list, over a store that is filled without a server.
-#include <limits>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "server/store/job_table.h"
 #include "tests/server/book/book_test.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
-using v1::EnsembleJob;
 
 struct StoredJob {
   std::string id;

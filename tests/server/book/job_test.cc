@@ -1,33 +1,14 @@
 #include "server/book/job.h"
 
-#include <algorithm>
-#include <chrono>
-#include <memory>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "gmock/gmock.h"
 #include "server/book/job_book.h"
 #include "server/book/job_journal.h"
 #include "server/book/job_message.h"
 #include "server/book/job_name.h"
 #include "server/convert/point_result.h"
-#include "server/convert/spec.h"
-#include "server/store/job_table.h"
-#include "server/store/point_tables.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/server/store_access.h"
-#include "tests/server/thread_pool.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using v1::EnsembleJob;
 
 JobRecord JobWithPoints(int64_t points) {
   JobRecord record;

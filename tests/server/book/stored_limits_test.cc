@@ -1,18 +1,11 @@
 // How long results are kept. The test sets the time.
-#include <map>
-#include <string>
-#include <vector>
-
-#include "absl/time/clock.h"
 #include "server/store/check_store.h"
 #include "server/store/sweeper.h"
 #include "tests/server/book/book_test.h"
-#include "tests/server/store_access.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using v1::EnsembleJob;
 
 constexpr absl::Duration kDay = absl::Hours(24);
 

@@ -1,20 +1,10 @@
 #include "server/cluster/cluster_folder.h"
 
-#include <sys/stat.h>
-
-#include <string>
-
-#include "gmock/gmock.h"
-#include "tests/support/files.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::UnorderedElementsAre;
 using Code = absl::StatusCode;
 
 class ClusterFolderTest : public testing::Test {

@@ -1,33 +1,20 @@
 // The executor of a shared folder, step by step: the test looks, and does the workers' part.
 #include "server/cluster/folder_executor.h"
 
-#include <chrono>
-#include <memory>
-#include <string>
-#include <vector>
-
-#include "absl/strings/str_cat.h"
-#include "core/ensemble/point_fold.h"
-#include "core/experiment/all_experiments.h"
-#include "gmock/gmock.h"
 #include "server/compute/crash_record.h"
 #include "server/convert/compressed.h"
 #include "server/worker/worker.h"
-#include "tests/server/compute/recording_journal.h"
 #include "tests/server/compute/remote_executor.h"
 #include "tests/server/compute/run_requests.h"
 #include "tests/server/compute/stepped_executor.h"
-#include "tests/server/factory_opener.h"
+#include "tests/server/preamble.h"
 #include "tests/server/worker/fake_files.h"
 #include "tests/server/worker/sample_leases.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
 
 using std::chrono::milliseconds;
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 // One point of six chunks and more. A lease has one.
 EnsembleSpec SomeSpec() { return SpecOf(kFirstHit, Model::kBilliard, 100'000); }

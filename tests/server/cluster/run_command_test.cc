@@ -1,23 +1,9 @@
 #include "server/cluster/run_command.h"
 
-#include <signal.h>
-
-#include <chrono>
-#include <stop_token>
-#include <string>
-#include <thread>
-
-#include "absl/strings/str_cat.h"
-#include "gmock/gmock.h"
-#include "tests/support/await.h"
-#include "tests/support/files.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr std::chrono::milliseconds kShort(50);
 // Longer than any test: a program that sleeps so long is killed.

@@ -1,19 +1,11 @@
 #include "server/cluster/slurm_workers.h"
 
-#include <chrono>
-#include <memory>
-#include <vector>
-
-#include "gmock/gmock.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {
 
 using std::chrono::milliseconds;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 // Slurm's tools: their answers, and the calls that they got.
 struct FakeSlurm {

@@ -1,21 +1,8 @@
 #include "server/compute/crash_record.h"
 
-#include <signal.h>
-#include <sys/resource.h>
-
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <memory>
-#include <set>
-#include <string>
-#include <thread>
-#include <vector>
-
-#include "gtest/gtest.h"
 #include "server/fatal_signals.h"
 #include "tests/support/death_test_folder.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {

@@ -2,22 +2,11 @@
 // tests/core/ensemble/point_fold_test.cc and tests/simulation test that any order of reports gives
 // the same bytes. The local executor takes its turns when the test says so, so every schedule can
 // be repeated.
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <utility>
-#include <vector>
-
-#include "gmock/gmock.h"
 #include "server/compute/scheduler.h"
-#include "tests/server/compute/recording_journal.h"
 #include "tests/server/compute/remote_executor.h"
 #include "tests/server/compute/run_requests.h"
 #include "tests/server/compute/stepped_executor.h"
-#include "tests/server/factory_opener.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/support/status_matchers.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {

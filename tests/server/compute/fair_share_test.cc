@@ -1,10 +1,6 @@
 #include "server/compute/fair_share.h"
 
-#include <map>
-#include <set>
-#include <vector>
-
-#include "gtest/gtest.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {

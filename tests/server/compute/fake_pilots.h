@@ -1,17 +1,8 @@
 // Points that need a pilot before their model is known. Points and pilots are fake experiments.
 #pragma once
 
-#include <cstddef>
-#include <functional>
-#include <map>
-#include <memory>
-#include <mutex>
-#include <optional>
-#include <utility>
-#include <vector>
-
 #include "server/compute/point_opener.h"
-#include "tests/server/fake_experiments.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 

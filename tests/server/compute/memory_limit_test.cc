@@ -1,22 +1,9 @@
 // The points that are computed at a time take no more memory than the limit.
-#include <algorithm>
-#include <limits>
-#include <map>
-#include <memory>
-#include <optional>
-#include <set>
-#include <utility>
-#include <vector>
-
-#include "gtest/gtest.h"
 #include "server/compute/scheduler.h"
-#include "tests/server/compute/recording_journal.h"
 #include "tests/server/compute/remote_executor.h"
 #include "tests/server/compute/run_requests.h"
 #include "tests/server/compute/stepped_executor.h"
-#include "tests/server/factory_opener.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/support/status_matchers.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {

@@ -1,23 +1,9 @@
 #include "server/compute/model_ladder.h"
 
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "core/engine_version.h"
-#include "core/experiment/all_experiments.h"
-#include "gmock/gmock.h"
-#include "server/store/point_tables.h"
-#include "tests/server/store_access.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::HasSubstr;
 
 // Small enough a delta, and large enough a tolerance, that a pilot decides.
 EnsembleSpec Relaxation(std::vector<double> deltas = {0.005}) {

@@ -1,19 +1,8 @@
 #include "server/compute/open_point.h"
 
-#include <memory>
-#include <optional>
-#include <tuple>
-#include <utility>
-#include <vector>
-
-#include "core/ensemble/point_fold.h"
-#include "core/experiment/all_experiments.h"
-#include "core/gas/gas_shape.h"
-#include "gmock/gmock.h"
 #include "tests/server/compute/remote_executor.h"
 #include "tests/server/compute/run_requests.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/support/status_matchers.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {

@@ -1,20 +1,12 @@
 // Pilots in the scheduler: which run computes a pilot, which runs wait for it, and which run is
 // charged.
-#include <memory>
-#include <optional>
-#include <stdexcept>
-
-#include "core/ensemble/point_fold.h"
-#include "gmock/gmock.h"
 #include "server/compute/scheduler.h"
 #include "server/compute/thread_executor.h"
 #include "tests/server/compute/fake_pilots.h"
-#include "tests/server/compute/recording_journal.h"
 #include "tests/server/compute/remote_executor.h"
 #include "tests/server/compute/run_requests.h"
 #include "tests/server/compute/stepped_executor.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/support/status_matchers.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {

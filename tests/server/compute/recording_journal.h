@@ -1,14 +1,8 @@
 // A journal that remembers everything, for tests of the scheduler.
 #pragma once
 
-#include <condition_variable>
-#include <map>
-#include <mutex>
-#include <optional>
-#include <vector>
-
 #include "server/compute/run_journal.h"
-#include "tests/support/await.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

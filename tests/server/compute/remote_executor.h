@@ -4,17 +4,8 @@
 // and whether the lease is returned. Only Wake may be called from another thread.
 #pragma once
 
-#include <atomic>
-#include <cstdint>
-#include <limits>
-#include <optional>
-#include <utility>
-#include <vector>
-
-#include "absl/status/status.h"
-#include "core/ensemble/chunk_fold.h"
-#include "core/ensemble/point_fold.h"
 #include "server/compute/scheduler.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 

@@ -1,15 +1,9 @@
 // Requests and checks of runs with fake experiments.
 #pragma once
 
-#include <cstdint>
-#include <limits>
-#include <memory>
-
-#include "core/ensemble/point_fold.h"
-#include "gtest/gtest.h"
 #include "server/compute/run.h"
 #include "tests/server/compute/recording_journal.h"
-#include "tests/server/fake_experiments.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 

@@ -1,31 +1,14 @@
 #include "server/compute/scheduler.h"
 
-#include <atomic>
 #include <ctime>
-#include <memory>
-#include <mutex>
 #include <new>
-#include <set>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "absl/strings/str_format.h"
-#include "core/ensemble/point_fold.h"
-#include "gmock/gmock.h"
-#include "tests/server/compute/recording_journal.h"
 #include "tests/server/compute/run_requests.h"
 #include "tests/server/compute/stepped_executor.h"
-#include "tests/server/factory_opener.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/server/thread_pool.h"
-#include "tests/support/status_matchers.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::HasSubstr;
 
 JournalPointer AddRun(ThreadPool& pool, int64_t key, const EnsembleSpec& spec,
                       const std::string& principal = "", int32_t priority = 0) {

@@ -1,16 +1,9 @@
 // A local executor without threads: the test takes its turns, so a schedule can be repeated.
 #pragma once
 
-#include <cstdint>
-#include <limits>
-#include <map>
-#include <optional>
-#include <utility>
-
-#include "core/ensemble/chunk_fold.h"
-#include "core/ensemble/point_fold.h"
 #include "server/compute/guarded.h"
 #include "server/compute/scheduler.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 

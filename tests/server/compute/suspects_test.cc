@@ -1,26 +1,13 @@
 // Runs that were being computed when the process died are computed alone.
-#include <memory>
-#include <set>
-#include <utility>
-#include <vector>
-
-#include "gmock/gmock.h"
 #include "server/compute/scheduler.h"
 #include "tests/server/compute/fake_pilots.h"
-#include "tests/server/compute/recording_journal.h"
 #include "tests/server/compute/remote_executor.h"
 #include "tests/server/compute/run_requests.h"
 #include "tests/server/compute/stepped_executor.h"
-#include "tests/server/factory_opener.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/support/status_matchers.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::Pair;
-using ::testing::UnorderedElementsAre;
 
 class SuspectsTest : public testing::Test {
  protected:

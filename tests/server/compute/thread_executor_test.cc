@@ -1,22 +1,11 @@
 #include "server/compute/thread_executor.h"
 
-#include <filesystem>
-#include <functional>
-#include <limits>
-#include <memory>
-#include <utility>
-
 #include "core/gpu/device_orbits.h"
-#include "gtest/gtest.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/gpu/host_flights.h"
 #include "tests/core/one_point_spec.h"
-#include "tests/server/compute/recording_journal.h"
 #include "tests/server/compute/run_requests.h"
-#include "tests/server/factory_opener.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {

@@ -1,14 +1,9 @@
 #include "server/convert/compressed.h"
 
-#include <string>
-
-#include "gmock/gmock.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr size_t kMost = 1000;
 

@@ -1,18 +1,10 @@
 #include "server/convert/errors.h"
 
-#include <string>
-#include <vector>
-
-#include "gmock/gmock.h"
 #include "google/rpc/error_details.pb.h"
-#include "tests/server/error_details.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/support/status_matchers.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::HasSubstr;
 
 TEST(Errors, CarryReasonDomainAndMetadata) {
   const grpc::Status status = GrpcStatus(JobNotFound("ensembleJobs/x"));

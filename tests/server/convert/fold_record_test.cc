@@ -1,13 +1,6 @@
 #include "server/convert/fold_record.h"
 
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <vector>
-
-#include "core/experiment/all_experiments.h"
-#include "gmock/gmock.h"
-#include "tests/support/status_matchers.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {

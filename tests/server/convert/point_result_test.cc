@@ -1,16 +1,7 @@
 #include "server/convert/point_result.h"
 
-#include <limits>
-#include <optional>
-#include <string>
-
-#include "core/experiment/all_experiments.h"
-#include "core/gas/gas_shape.h"
-#include "gmock/gmock.h"
 #include "server/convert/deterministic_bytes.h"
-#include "server/convert/spec.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/support/status_matchers.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {

@@ -1,21 +1,10 @@
 #include "server/convert/spec.h"
 
-#include <algorithm>
-#include <set>
-#include <string>
-#include <vector>
-
 #include "absl/strings/ascii.h"
-#include "core/experiment/all_experiments.h"
-#include "core/gas/gas_shape.h"
-#include "gmock/gmock.h"
-#include "tests/server/spec_message.h"
-#include "tests/support/message_text.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::HasSubstr;
 
 v1::EnsembleSpec SpecOfText(const std::string& text) { return FromText<v1::EnsembleSpec>(text); }
 

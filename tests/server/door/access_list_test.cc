@@ -1,24 +1,11 @@
 #include "server/door/access_list.h"
 
-#include <sys/stat.h>
-
-#include <string>
-#include <utility>
-
 #include "absl/strings/escaping.h"
-#include "gmock/gmock.h"
 #include "server/sha256.h"
-#include "tests/server/error_details.h"
-#include "tests/support/files.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 const NamedFile kFile{"access-file", "list"};
 const absl::Time kNoon = absl::FromCivil(absl::CivilSecond(2030, 6, 1, 12), absl::UTCTimeZone());

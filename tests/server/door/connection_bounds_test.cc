@@ -1,20 +1,9 @@
 // Limits for clients that are not authenticated yet: streams, memory, threads, time.
-#include <chrono>
-#include <cstdint>
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "tests/server/call_by_name.h"
 #include "tests/server/http_get.h"
-#include "tests/server/running_server.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::HasSubstr;
 
 // A client, HTTP/2 by hand, whose requests never end: each announces more than it sends.
 class EndlessRequests {

@@ -1,25 +1,10 @@
 #include "server/door/door.h"
 
-#include <unistd.h>
-
-#include <chrono>
-#include <filesystem>
-#include <map>
-#include <memory>
-#include <set>
-#include <string>
-
-#include "absl/time/clock.h"
-#include "absl/time/time.h"
-#include "tests/server/call_by_name.h"
+#include "tests/server/preamble.h"
 #include "tests/server/secure_server.h"
-#include "tests/support/files.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 // The given flags, as letters: a(ccess file), c(ertificate), k(ey).
 DoorOptions Flags(const std::string& letters) {

@@ -1,14 +1,9 @@
 #include "server/door/listen_address.h"
 
-#include <string>
-
-#include "gmock/gmock.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::HasSubstr;
 
 TEST(ListenAddress, AddressesNamesAndUnixSocketsAreParsed) {
   for (const char* text :

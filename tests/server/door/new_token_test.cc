@@ -1,23 +1,10 @@
 #include "server/door/new_token.h"
 
-#include <signal.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
-
-#include <filesystem>
-#include <string>
-
-#include "gmock/gmock.h"
 #include "server/door/access_list.h"
-#include "tests/support/files.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 const absl::Time kIssueTime =
     absl::FromCivil(absl::CivilSecond(2030, 6, 1, 12), absl::UTCTimeZone());

@@ -1,21 +1,11 @@
 // The files of the server's certificate and key are checked.
 #include "server/door/server_tls.h"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <chrono>
-#include <string>
-
 #include "tests/server/secure_server.h"
-#include "tests/support/files.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 class ServerTlsTest : public ::testing::Test {
  protected:

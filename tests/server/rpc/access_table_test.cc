@@ -1,17 +1,10 @@
 // Every method of every service, called with every kind of credential: a table.
-#include <filesystem>
-#include <map>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "ballpiston/v1/server.pb.h"
 #include "google/protobuf/descriptor.h"
 #include "google/protobuf/dynamic_message.h"
-#include "tests/server/call_by_name.h"
+#include "tests/server/preamble.h"
 #include "tests/server/rpc/watch_stream.h"
 #include "tests/server/secure_server.h"
-#include "tests/support/paths.h"
 
 namespace ballpiston::server {
 namespace {

@@ -1,7 +1,4 @@
-#include <cmath>
-
-#include "core/geometry/paper.h"
-#include "tests/server/running_server.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {

@@ -1,15 +1,10 @@
 // Bad requests of all methods: the error names the fields and says what is permitted. All ranges of
 // a specification are in tests/core/ensemble/ensemble_spec_test.cc, its texts in
 // convert/spec_test.cc.
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "google/protobuf/descriptor.h"
 #include "google/protobuf/dynamic_message.h"
 #include "google/protobuf/text_format.h"
-#include "tests/server/call_by_name.h"
-#include "tests/server/running_server.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {

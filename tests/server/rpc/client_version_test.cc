@@ -1,15 +1,11 @@
 #include "server/rpc/client_version.h"
 
-#include <string>
-
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "server/version.h"
-#include "tests/server/running_server.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::HasSubstr;
 
 // The same major version is served; before version 1, the same minor version. Other programs are
 // served.

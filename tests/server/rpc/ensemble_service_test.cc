@@ -1,15 +1,7 @@
-#include <string>
-#include <vector>
-
-#include "absl/strings/str_cat.h"
-#include "tests/server/running_server.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using v1::EnsembleJob;
 
 grpc::Status ListError(RunningServer& server, const v1::ListEnsembleJobsRequest& request) {
   grpc::ClientContext context;

@@ -1,15 +1,9 @@
-#include <vector>
 
-#include "core/experiment/all_experiments.h"
-#include "tests/server/running_server.h"
-#include "tests/server/spec_message.h"
+#include "tests/server/preamble.h"
 #include "tests/server/worker/sample_leases.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 // One server for all: measuring its rates takes some 0.3 s.
 class PlanServiceTest : public testing::Test {

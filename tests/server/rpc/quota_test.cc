@@ -3,22 +3,11 @@
 #include "server/rpc/quota.h"
 
 #include <latch>
-#include <memory>
-#include <optional>
-#include <string>
-#include <thread>
-#include <utility>
-#include <vector>
 
-#include "tests/server/call_by_name.h"
-#include "tests/server/running_server.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Pair;
 
 Quota::Rule Calls(Quota::Limit all, Quota::Limit of_one) {
   return {.what = "calls", .reason = "TOO_MANY_CALLS", .all = all, .of_one = of_one};

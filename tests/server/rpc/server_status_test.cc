@@ -1,24 +1,13 @@
 #include "server/rpc/server_status.h"
 
-#include <atomic>
-#include <memory>
-#include <optional>
-#include <stdexcept>
-#include <stop_token>
-#include <string>
-
-#include "absl/strings/str_cat.h"
 #include "grpcpp/create_channel.h"
 #include "grpcpp/server.h"
 #include "grpcpp/server_builder.h"
 #include "prometheus/text_serializer.h"
-#include "server/convert/spec.h"
 #include "server/rpc/call.h"
 #include "server/rpc/methods.h"
 #include "server/rpc/services.h"
-#include "tests/server/own_channel.h"
-#include "tests/server/running_server.h"
-#include "tests/server/thread_pool.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {

@@ -1,20 +1,10 @@
-#include <chrono>
-#include <cmath>
-#include <map>
-#include <memory>
-#include <optional>
-#include <string>
-#include <thread>
-#include <vector>
 
-#include "core/geometry/paper.h"
 #include "server/convert/trace.h"
+#include "tests/server/preamble.h"
 #include "tests/server/secure_server.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::Not;
 
 v1::TraceOrbitRequest TraceRequest(int64_t events, const std::string& cells = "") {
   v1::TraceOrbitRequest request;

@@ -1,15 +1,10 @@
 // A watch ends when the credentials of its call become invalid.
-#include <chrono>
-#include <string>
-
-#include "tests/server/own_channel.h"
+#include "tests/server/preamble.h"
 #include "tests/server/rpc/watch_stream.h"
 #include "tests/server/secure_server.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::Not;
 
 class WatchCredentialsTest : public testing::Test {
  protected:

@@ -1,14 +1,8 @@
 // One watch of a job, message by message.
 #pragma once
 
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "ballpiston/v1/ensemble.grpc.pb.h"
-#include "gtest/gtest.h"
-#include "tests/server/running_server.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 

@@ -1,19 +1,10 @@
-#include <chrono>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <string>
-#include <thread>
-#include <vector>
 
 #include "absl/strings/escaping.h"
+#include "tests/server/preamble.h"
 #include "tests/server/rpc/watch_stream.h"
-#include "tests/server/store_access.h"
 
 namespace ballpiston::server {
 namespace {
-
-using v1::EnsembleJob;
 
 bool HasPoints(const WatchMessage& message) { return message.snapshot().points_size() > 0; }
 

@@ -1,19 +1,13 @@
 // Every metric in the alert rules is one that the server serves. `make test-alerts` tests the
 // rules.
 #include <regex>
-#include <set>
-#include <string>
 
-#include "gmock/gmock.h"
-#include "tests/support/files.h"
-#include "tests/support/paths.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {
 
-using ::testing::Contains;
 using ::testing::IsSupersetOf;
-using ::testing::Not;
 
 std::set<std::string> MetricsNamedIn(const std::string& rules) {
   static const std::regex name("\\b(ballpiston|grpc_server)_\\w+");

@@ -1,21 +1,10 @@
 // The log lines of calls and jobs.
-#include <string>
-#include <vector>
-
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_split.h"
 #include "prometheus/text_serializer.h"
 #include "server/status/call_observer.h"
-#include "tests/server/running_server.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::Each;
-using ::testing::HasSubstr;
-using ::testing::UnorderedElementsAre;
 
 // The lines that are logged while `act` runs.
 template <typename Act>

@@ -1,25 +1,14 @@
 // The metrics over HTTP.
-#include <cstdlib>
-#include <map>
-#include <optional>
-#include <sstream>
-#include <string>
-
 #include "grpcpp/generic/generic_stub.h"
-#include "tests/server/call_by_name.h"
 #include "tests/server/http_get.h"
+#include "tests/server/preamble.h"
 #include "tests/server/rpc/watch_stream.h"
 
 namespace ballpiston::server {
 namespace {
 
-using ::testing::Contains;
-using ::testing::HasSubstr;
 using ::testing::Key;
 using ::testing::MatchesRegex;
-using ::testing::Not;
-using ::testing::Pair;
-using ::testing::StartsWith;
 
 constexpr char kCreated[] =
     "grpc_server_handled_total{grpc_code=\"OK\",grpc_method=\"CreateEnsembleJob\","

@@ -1,25 +1,12 @@
 // Checking and copying stores, also while a server writes to them.
 #include "server/store/backup.h"
 
-#include <atomic>
-#include <filesystem>
-#include <string>
-#include <thread>
-#include <vector>
-
 #include "server/store/check_store.h"
 #include "server/store/schema.h"
-#include "tests/server/running_server.h"
-#include "tests/server/store_access.h"
-#include "tests/support/files.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::Contains;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using v1::EnsembleJob;
 
 class BackupTest : public testing::Test {
  protected:

@@ -1,19 +1,9 @@
 #include "server/store/data_directory.h"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <filesystem>
-
-#include "gmock/gmock.h"
-#include "tests/support/files.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::HasSubstr;
 
 class DataFolder : public ::testing::Test {
  protected:

@@ -1,26 +1,12 @@
 #include "server/store/store.h"
 
-#include <filesystem>
-#include <functional>
 #include <new>
-#include <optional>
-#include <vector>
 
-#include "absl/time/clock.h"
-#include "gmock/gmock.h"
 #include "server/store/data_directory.h"
-#include "server/store/job_table.h"
-#include "server/store/point_tables.h"
-#include "tests/server/store_access.h"
-#include "tests/support/await.h"
-#include "tests/support/files.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::HasSubstr;
 
 JobRecord Record(const std::string& id) {
   JobRecord record;

@@ -1,17 +1,8 @@
 #include "server/store/sweeper.h"
 
-#include <filesystem>
-#include <string>
-
-#include "gmock/gmock.h"
 #include "server/store/backup.h"
-#include "server/store/job_table.h"
 #include "server/store/schema.h"
-#include "server/store/store.h"
-#include "tests/server/store_access.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {

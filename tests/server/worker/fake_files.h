@@ -2,14 +2,8 @@
 // same folder. Not thread-safe.
 #pragma once
 
-#include <cstddef>
-#include <functional>
-#include <map>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "server/worker/shared_files.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

@@ -1,13 +1,9 @@
 #include "server/worker/lease_file.h"
 
-#include <limits>
-#include <string>
-
 #include "core/experiment/all_experiments.h"
-#include "gmock/gmock.h"
 #include "server/convert/compressed.h"
 #include "tests/server/worker/sample_leases.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {

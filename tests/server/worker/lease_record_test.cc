@@ -1,26 +1,16 @@
 #include "server/worker/lease_record.h"
 
-#include <algorithm>
-#include <functional>
-#include <limits>
-#include <string>
-#include <vector>
-
 #include "core/engine_version.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_fold.h"
 #include "core/ensemble/random_stream.h"
 #include "core/experiment/all_experiments.h"
-#include "gmock/gmock.h"
 #include "server/convert/fold_record.h"
 #include "tests/server/worker/sample_leases.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 // Through the bytes of the record.
 absl::StatusOr<LeaseFile> ReadBack(const Lease& lease) {

@@ -1,18 +1,12 @@
 #include "server/worker/lease_runner.h"
 
-#include <stop_token>
-#include <utility>
-#include <vector>
-
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
-#include "gmock/gmock.h"
 #include "tests/server/worker/sample_leases.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::ElementsAre;
 
 // Keeps the chunks; requests a stop after a number of them.
 class Recorder : public ChunkReceiver {

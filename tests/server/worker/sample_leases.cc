@@ -1,9 +1,5 @@
 #include "tests/server/worker/sample_leases.h"
 
-#include <algorithm>
-#include <utility>
-
-#include "absl/strings/str_cat.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"

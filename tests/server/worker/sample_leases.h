@@ -1,15 +1,11 @@
 // Leases for tests of the worker: of every experiment, by every model that samples.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "core/ensemble/chunk_fold.h"
 #include "core/ensemble/ensemble_spec.h"
 #include "core/ensemble/point_experiment.h"
 #include "server/worker/lease_record.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

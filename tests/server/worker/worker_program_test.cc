@@ -1,34 +1,15 @@
 // The program ballpiston-worker.
-#include <signal.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <string>
-#include <vector>
-
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_split.h"
 #include "core/engine_version.h"
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
-#include "gmock/gmock.h"
 #include "server/worker/lease_file.h"
 #include "server/worker/shared_files.h"
 #include "tests/server/worker/sample_leases.h"
-#include "tests/support/await.h"
-#include "tests/support/files.h"
-#include "tests/support/paths.h"
+#include "tests/support/preamble.h"
 #include "tests/support/process.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 std::string WorkerProgram() { return BuildPath("bin/ballpiston-worker"); }
 

@@ -1,27 +1,15 @@
 #include "server/worker/worker.h"
 
-#include <algorithm>
-#include <chrono>
-#include <limits>
-#include <set>
-#include <string>
-#include <vector>
-
 #include "core/experiment/all_experiments.h"
-#include "gmock/gmock.h"
 #include "server/worker/lease_file.h"
 #include "tests/server/worker/fake_files.h"
 #include "tests/server/worker/sample_leases.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {
 
 using std::chrono::duration;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::UnorderedElementsAre;
 using Clock = std::chrono::steady_clock;
 
 // A worker whose time passes while it sleeps, and by `seconds_of_a_look` at each look at its clock.
