@@ -1,10 +1,5 @@
 #include "tests/simulation/client.h"
 
-#include <chrono>
-#include <limits>
-#include <utility>
-
-#include "absl/strings/str_cat.h"
 #include "server/book/job_name.h"
 #include "server/convert/spec.h"
 #include "server/rpc/watch.h"

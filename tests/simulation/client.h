@@ -1,16 +1,10 @@
 // A client that calls the server at random and compares each answer with the expectations.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <memory>
-#include <string>
-#include <vector>
-
-#include "absl/status/status.h"
 #include "tests/simulation/expectations.h"
 #include "tests/simulation/life.h"
 #include "tests/simulation/machine.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

@@ -1,11 +1,5 @@
 #include "tests/simulation/cluster.h"
 
-#include <chrono>
-#include <memory>
-#include <string>
-#include <utility>
-
-#include "absl/strings/str_cat.h"
 #include "server/convert/compressed.h"
 #include "server/convert/fold_record.h"
 #include "server/worker/worker.h"

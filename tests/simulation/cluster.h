@@ -3,10 +3,6 @@
 // late or end early; operations of the folder fail, its clock jumps, and it is emptied.
 #pragma once
 
-#include <functional>
-#include <vector>
-
-#include "absl/status/status.h"
 #include "server/cluster/folder_executor.h"
 #include "server/compute/scheduler.h"
 #include "server/host.h"
@@ -14,6 +10,7 @@
 #include "tests/server/factory_opener.h"
 #include "tests/server/worker/fake_files.h"
 #include "tests/simulation/machine.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

@@ -1,8 +1,5 @@
 #include "tests/simulation/expectations.h"
 
-#include <algorithm>
-
-#include "absl/strings/str_cat.h"
 #include "core/ensemble/point_fold.h"
 #include "server/book/job_name.h"
 #include "server/convert/deterministic_bytes.h"

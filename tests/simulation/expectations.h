@@ -4,16 +4,8 @@
 // without an answer may or may not have taken effect. A wrong answer throws Violation.
 #pragma once
 
-#include <cstdint>
-#include <map>
-#include <optional>
-#include <set>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
-#include "absl/status/status.h"
 #include "ballpiston/v1/ensemble.pb.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

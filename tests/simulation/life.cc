@@ -1,9 +1,5 @@
 #include "tests/simulation/life.h"
 
-#include <chrono>
-#include <utility>
-
-#include "absl/strings/str_cat.h"
 #include "server/host.h"
 #include "tests/fault/store/fault_disk.h"
 #include "tests/server/factory_opener.h"

@@ -2,10 +2,6 @@
 // with toy experiments, on a disk that can fail, and a cluster whose workers fail.
 #pragma once
 
-#include <memory>
-#include <string>
-
-#include "absl/status/status.h"
 #include "server/book/job_book.h"
 #include "server/compute/scheduler.h"
 #include "server/compute/thread_executor.h"
@@ -14,6 +10,7 @@
 #include "tests/server/factory_opener.h"
 #include "tests/simulation/cluster.h"
 #include "tests/simulation/machine.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

@@ -3,11 +3,6 @@
 #include <cxxabi.h>
 #include <sys/mman.h>
 
-#include <algorithm>
-#include <stdexcept>
-#include <utility>
-
-#include "absl/time/time.h"
 #include "server/host.h"
 #include "server/mutex.h"
 

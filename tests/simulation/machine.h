@@ -8,14 +8,7 @@
 
 #include <ucontext.h>
 
-#include <chrono>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <random>
-#include <vector>
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

@@ -1,14 +1,7 @@
 #include "tests/simulation/simulation.h"
 
-#include <algorithm>
-#include <chrono>
 #include <deque>
-#include <functional>
-#include <memory>
-#include <utility>
 
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "server/store/job_record.h"
 #include "server/store/sweeper.h"

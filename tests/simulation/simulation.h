@@ -1,12 +1,8 @@
 // A simulated world from one seed: a server with its clients, cluster, disk failures and crashes.
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "tests/simulation/client.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

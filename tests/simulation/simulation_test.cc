@@ -3,14 +3,7 @@
 //   BALLPISTON_SIMULATION_SEED     the first seed; the next ones follow it
 #include "tests/simulation/simulation.h"
 
-#include <chrono>
-#include <cstdlib>
-#include <iostream>
-#include <optional>
-#include <random>
-#include <string>
-
-#include "gtest/gtest.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {

@@ -1,14 +1,9 @@
 // The store alone on the simulated machine.
 #include "server/store/store.h"
 
-#include <chrono>
-#include <memory>
-#include <optional>
-
-#include "gtest/gtest.h"
 #include "tests/fault/store/fault_disk.h"
 #include "tests/simulation/machine.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {

@@ -1,25 +1,14 @@
 // The store on a disk that rejects writes or is full. The simulation (tests/simulation) fails the
 // disk at random; these tests show what it cannot: which write goes first when not all fit.
 
-#include <atomic>
-#include <chrono>
-#include <future>
-#include <memory>
-#include <string>
-#include <thread>
-
-#include "gmock/gmock.h"
 #include "server/store/job_table.h"
 #include "server/store/store.h"
 #include "tests/fault/store/fault_disk.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
 using Refusal = FaultDisk::Refusal;
 
 constexpr int64_t kJob = 99;

@@ -11,18 +11,7 @@
 // power_cut.h says what a cut at any of them would leave. Thread-safe.
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <limits>
-#include <map>
-#include <memory>
-#include <mutex>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
+#include "tests/support/preamble.h"
 
 struct sqlite3_vfs;
 

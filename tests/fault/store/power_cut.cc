@@ -1,10 +1,5 @@
 #include "tests/fault/store/power_cut.h"
 
-#include <algorithm>
-#include <map>
-#include <random>
-#include <string>
-
 namespace ballpiston::server {
 namespace {
 

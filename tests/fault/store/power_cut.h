@@ -6,11 +6,8 @@
 // succeeds, unless they were written again.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 #include "tests/fault/store/fault_disk.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 

@@ -3,20 +3,13 @@
 
 #include "tests/fault/store/power_cut.h"
 
-#include <string>
-#include <vector>
-
-#include "gmock/gmock.h"
 #include "server/store/schema.h"
 #include "server/store/sqlite.h"
 #include "tests/fault/store/fault_disk.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::IsEmpty;
-using ::testing::Not;
 
 TEST(PowerCut, AnInterruptedCreationIsCompletedAtTheNextStart) {
   FaultDisk disk;
