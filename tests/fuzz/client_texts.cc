@@ -1,12 +1,4 @@
 // What the client reads: its user's input, a server's answers, a browser's calls.
-#include <algorithm>
-#include <cmath>
-#include <iterator>
-#include <sstream>
-#include <string>
-#include <vector>
-
-#include "absl/strings/match.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "client/command/number_list.h"
 #include "client/command/shape_list.h"

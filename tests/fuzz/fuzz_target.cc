@@ -1,14 +1,5 @@
 #include "tests/fuzz/fuzz_target.h"
 
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <memory>
-#include <sstream>
-#include <stdexcept>
-#include <utility>
-
 #include "google/protobuf/text_format.h"
 #include "tests/fuzz/mutation.h"
 

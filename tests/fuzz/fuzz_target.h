@@ -9,11 +9,8 @@
 // computes a block.
 #pragma once
 
-#include <cstddef>
-#include <string>
-#include <vector>
-
 #include "google/protobuf/message.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::fuzz {
 

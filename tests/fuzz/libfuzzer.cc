@@ -2,13 +2,7 @@
 //
 //   NAME_fuzz --write_seeds=FOLDER_OF_SEEDS CORPUS   writes the seeds into CORPUS, and ends
 //   NAME_fuzz [LIBFUZZER_FLAG...] CORPUS             libFuzzer's own command line
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <string>
 
 #include "google/protobuf/stubs/logging.h"
 #include "tests/fuzz/fuzz_target.h"

@@ -1,11 +1,8 @@
 // Random changes of inputs: of bytes, and of messages field by field, which get past the parser.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <string>
-
 #include "google/protobuf/message.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::fuzz {
 

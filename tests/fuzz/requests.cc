@@ -1,9 +1,6 @@
 // The requests of all calls; of GetServerStatus there is nothing to read. tests/questions checks
 // that accepted questions can be planned.
-#include <cmath>
-
 #include "absl/strings/ascii.h"
-#include "absl/time/time.h"
 #include "ballpiston/storage/tokens.pb.h"
 #include "ballpiston/v1/analytic.pb.h"
 #include "ballpiston/v1/ensemble.pb.h"

@@ -1,10 +1,5 @@
 #include "tests/fuzz/rules.h"
 
-#include <algorithm>
-#include <cstddef>
-#include <utility>
-
-#include "absl/strings/match.h"
 #include "client/library/error_text.h"
 #include "core/geometry/pair_geometry.h"
 #include "google/rpc/status.pb.h"

@@ -2,11 +2,6 @@
 // one input in sixteen.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
-#include "absl/status/status.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "ballpiston/v1/spec.pb.h"
 #include "core/ensemble/ensemble_spec.h"

@@ -1,11 +1,7 @@
 // Runs every target over its seeds and some thousands of changed seeds, with any compiler.
 // libFuzzer searches for more (make fuzz).
-#include <gtest/gtest.h>
-
 #include <exception>
 #include <ostream>
-#include <string>
-#include <vector>
 
 #include "absl/strings/escaping.h"
 #include "ballpiston/v1/ensemble.pb.h"
@@ -13,7 +9,6 @@
 #include "server/convert/spec.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/mutation.h"
-#include "tests/support/paths.h"
 
 namespace ballpiston::fuzz {
 

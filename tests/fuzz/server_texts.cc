@@ -1,10 +1,4 @@
 // Texts that the server reads or writes.
-#include <algorithm>
-#include <vector>
-
-#include "absl/strings/match.h"
-#include "absl/strings/str_split.h"
-#include "absl/time/time.h"
 #include "server/door/access_list.h"
 #include "server/door/authenticator.h"
 #include "server/door/new_token.h"

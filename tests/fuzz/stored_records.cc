@@ -1,14 +1,6 @@
 // The records of the store, and the file of a lease: damage is DATA_LOSS.
-#include <bit>
-#include <cstdint>
 #include <cstring>
-#include <memory>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
-#include "absl/time/time.h"
 #include "ballpiston/storage/records.pb.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
