@@ -1,16 +1,6 @@
-#include "tests/questions/agreement_check.h"
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-#include <set>
-#include <string>
-
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "core/ensemble/experiment_kind.h"
-#include "tests/questions/answer_check.h"
-#include "tests/questions/computed_point.h"
+#include "tests/questions/checks.h"
+#include "tests/questions/engine.h"
 
 namespace ballpiston::questions {
 namespace {

@@ -1,13 +1,4 @@
-#include "tests/questions/answer_check.h"
-
-#include <cmath>
-#include <limits>
-#include <numeric>
-#include <string>
-
-#include "absl/strings/match.h"
-#include "absl/strings/str_cat.h"
-#include "tests/questions/finite_check.h"
+#include "tests/questions/checks.h"
 
 namespace ballpiston::questions {
 namespace {

@@ -1,17 +1,7 @@
 #include "tests/questions/campaign.h"
 
-#include <cstdlib>
-#include <iostream>
-#include <map>
-#include <random>
-#include <set>
-#include <utility>
-
 #include "absl/strings/numbers.h"
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "client/output/spelling.h"
-#include "tests/questions/draw.h"
 
 namespace ballpiston::questions {
 namespace {

@@ -1,12 +1,8 @@
 // Asks many questions, and prints what became of them.
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <string>
-
+#include "tests/questions/checks.h"
 #include "tests/questions/question.h"
-#include "tests/questions/report.h"
 
 namespace ballpiston::questions {
 

@@ -1,25 +1,10 @@
 // Each check finds a planted failure, and nothing in a good answer.
-#include <gtest/gtest.h>
+#include "tests/questions/checks.h"
 
-#include <limits>
-#include <string>
-#include <vector>
-
-#include "gmock/gmock.h"
-#include "tests/questions/agreement_check.h"
-#include "tests/questions/answer_check.h"
-#include "tests/questions/finite_check.h"
-#include "tests/questions/memory_check.h"
-#include "tests/questions/plan_check.h"
-#include "tests/questions/refusal_check.h"
 #include "tests/support/message_text.h"
 
 namespace ballpiston::questions {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::Field;
-using ::testing::IsEmpty;
 
 auto Breaks(const char* check) { return ElementsAre(Field(&Finding::check, check)); }
 

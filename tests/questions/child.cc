@@ -1,21 +1,41 @@
-#include "tests/questions/child.h"
-
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cerrno>
-#include <csignal>
-#include <cstdlib>
 #include <cstring>
-#include <stdexcept>
-#include <string>
 
-#include "absl/strings/str_cat.h"
+#include "absl/strings/escaping.h"
+#include "tests/questions/engine.h"
 
 namespace ballpiston::questions {
 namespace {
+
+std::string Unescaped(const std::string& text) {
+  std::string plain;
+  absl::CUnescape(text, &plain);
+  return plain;
+}
+
+// One line for each item, and back.
+std::string Text(const Report& report) {
+  std::string text = absl::StrCat("outcome\t", report.outcome, "\n");
+  for (const Finding& finding : report.findings) {
+    absl::StrAppend(&text, "finding\t", finding.check, "\t", absl::CEscape(finding.what), "\n");
+  }
+  return text;
+}
+
+Report ReportFromText(const std::string& text) {
+  Report report;
+  for (const auto& line : absl::StrSplit(text, '\n')) {
+    const std::vector<std::string> words = absl::StrSplit(line, '\t');
+    if (words[0] == "outcome" && words.size() == 2) report.outcome = words[1];
+    if (words[0] == "finding" && words.size() == 3) {
+      report.findings.push_back({words[1], Unescaped(words[2])});
+    }
+  }
+  return report;
+}
 
 [[noreturn]] void SendReport(const std::function<Report()>& ask, int pipe) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);

@@ -1,8 +1,4 @@
-#include "tests/questions/child.h"
-
-#include <gtest/gtest.h>
-
-#include <csignal>
+#include "tests/questions/engine.h"
 
 namespace ballpiston::questions {
 namespace {

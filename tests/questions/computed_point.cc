@@ -1,18 +1,9 @@
-#include "tests/questions/computed_point.h"
-
-#include <algorithm>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <string>
-#include <utility>
-
 #include "core/ensemble/block_run.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_fold.h"
 #include "core/model_choice/sampling_cost.h"
 #include "server/convert/point_result.h"
-#include "tests/questions/finite_check.h"
+#include "tests/questions/engine.h"
 
 namespace ballpiston::questions {
 namespace {

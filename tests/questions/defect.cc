@@ -1,11 +1,3 @@
-#include "tests/questions/defect.h"
-
-#include <cmath>
-#include <limits>
-#include <string>
-
-#include "absl/strings/str_cat.h"
-#include "core/ensemble/ensemble_spec.h"
 #include "tests/questions/values.h"
 
 namespace ballpiston::questions {

@@ -1,16 +1,8 @@
-#include "tests/questions/draw.h"
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-
 #include "core/experiment/all_experiments.h"
 #include "core/geometry/pair_geometry.h"
 #include "server/convert/spec.h"
 #include "tests/core/model_choice/questions.h"
-#include "tests/questions/computed_point.h"
-#include "tests/questions/defect.h"
-#include "tests/questions/dice.h"
+#include "tests/questions/engine.h"
 #include "tests/questions/values.h"
 
 namespace ballpiston::questions {

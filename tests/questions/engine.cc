@@ -1,20 +1,9 @@
 #include "tests/questions/engine.h"
 
-#include <iterator>
-#include <utility>
-#include <vector>
-
 #include "core/ensemble/experiment_kind.h"
-#include "core/model_choice/ladder.h"
 #include "server/convert/plan.h"
 #include "server/convert/spec.h"
 #include "tests/core/model_choice/questions.h"
-#include "tests/questions/agreement_check.h"
-#include "tests/questions/answer_check.h"
-#include "tests/questions/computed_point.h"
-#include "tests/questions/memory_check.h"
-#include "tests/questions/plan_check.h"
-#include "tests/questions/refusal_check.h"
 
 namespace ballpiston::questions {
 namespace {
@@ -34,22 +23,17 @@ class Asking {
     } else {
       Stop();
     }
-    Add(CheckAgreement(spec_, SomeMachine(), most_seconds_));
+    report_.Add(CheckAgreement(spec_, SomeMachine(), most_seconds_));
     return std::move(report_);
   }
 
  private:
-  void Add(Findings findings) {
-    report_.findings.insert(report_.findings.end(), std::make_move_iterator(findings.begin()),
-                            std::make_move_iterator(findings.end()));
-  }
-
   bool IsRefused() {
     const server::CheckedSpec checked = server::CheckSpec(question_.spec);
     spec_ = checked.spec;
-    Add(CheckRefusal(question_.spec, checked.violations));
+    report_.Add(CheckRefusal(question_.spec, checked.violations));
     if (checked.violations.empty() && !question_.defect.empty()) {
-      Add({{kRefusalCheck, "is not refused, although " + question_.defect}});
+      report_.Add({{kRefusalCheck, "is not refused, although " + question_.defect}});
     }
     if (!checked.violations.empty()) {
       report_.outcome = "refused";
@@ -58,7 +42,7 @@ class Asking {
     std::vector<FieldViolation> here = MachineViolations(spec_, SomeMachine());
     if (here.empty()) return false;
     for (FieldViolation& violation : here) violation.field.insert(0, "spec.");
-    Add(CheckRefusal(question_.spec, here));
+    report_.Add(CheckRefusal(question_.spec, here));
     report_.outcome = "refused here";
     return true;
   }
@@ -70,7 +54,7 @@ class Asking {
       const PointParameters point = PointAt(spec_, i);
       ladders_.push_back(LadderFor(spec_, point, SomeMachine(), NoPilot));
       const v1::PointPlan plan = server::PointPlanMessage(point, ladders_.back());
-      Add(CheckPlan(plan));
+      report_.Add(CheckPlan(plan));
       const v1::ModelPlan* const chosen = Chosen(plan);
       work += chosen == nullptr ? 0 : chosen->work();
     }
@@ -93,9 +77,9 @@ class Asking {
     for (size_t i = 0; i < ladders_.size(); ++i) {
       const PeakMemory peak;
       ComputedPoint computed = ComputePoint(SpecOfPoint(i), i, ladders_[i].answer);
-      Add(CheckMemory(PlannedMemory(i), peak.Bytes()));
-      Add(std::move(computed.findings));
-      Add(CheckAnswer(question_.spec, computed.result));
+      report_.Add(CheckMemory(PlannedMemory(i), peak.Bytes()));
+      report_.Add(std::move(computed.findings));
+      report_.Add(CheckAnswer(question_.spec, computed.result));
     }
   }
 
@@ -103,7 +87,7 @@ class Asking {
     report_.outcome = "stopped";
     const PeakMemory peak;
     StartAndStop(SpecOfPoint(0), 0, ladders_[0].answer);
-    Add(CheckMemory(PlannedMemory(0), peak.Bytes()));
+    report_.Add(CheckMemory(PlannedMemory(0), peak.Bytes()));
   }
 
   const Question& question_;

@@ -1,13 +1,42 @@
-// Asks the engine in this process.
+// Asks the engine in this process, or in a process of its own, which may die or not end.
 #pragma once
 
+#include "core/ensemble/point_experiment.h"
+#include "tests/questions/checks.h"
 #include "tests/questions/question.h"
-#include "tests/questions/report.h"
 
 namespace ballpiston::questions {
 
 // Checks the question, plans it, and computes its answer, or stops the computation at once if the
 // planned cost is above `most_seconds` of a processor of the day. Then compares the models.
 Report AskEngine(const Question& question, double most_seconds);
+
+// The report of `ask`, which runs in a forked process and must not start threads. If the process
+// dies, the finding is "crash"; if it takes more than kMostProcessorSeconds, "end".
+Report InChild(const std::function<Report()>& ask);
+
+// ---- one point, as the server computes it ----
+
+// The source of a ladder that knows no pilot.
+inline std::optional<Pilot> NoPilot(const PilotPlace&) { return std::nullopt; }
+
+struct ComputedPoint {
+  v1::PointResult result;
+  Findings findings;  // numbers that are not finite, which the message leaves out
+};
+
+// The spec has no violations and no budget.
+ComputedPoint ComputePoint(const EnsembleSpec& spec, size_t index, const Answer& answer);
+
+// Starts the computation and stops it where the engine first asks whether to stop.
+void StartAndStop(const EnsembleSpec& spec, size_t index, const Answer& answer);
+
+// The number of samples that `model` is planned to compute in `seconds` at the point `index`. For a
+// model without samples: a number above any other.
+double SamplesIn(double seconds, const EnsembleSpec& spec, size_t index, Model model,
+                 const Machine& machine);
+
+// The same question with a number of samples, or of collisions, in the place of its target.
+EnsembleSpec WithSamples(EnsembleSpec spec, double samples);
 
 }  // namespace ballpiston::questions

@@ -1,14 +1,7 @@
-#include "tests/questions/finite_check.h"
-
 #include <google/protobuf/descriptor.h>
 
-#include <cmath>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "absl/strings/str_cat.h"
 #include "core/statistics/stated_error.h"
+#include "tests/questions/checks.h"
 
 namespace ballpiston::questions {
 namespace {

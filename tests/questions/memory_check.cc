@@ -1,9 +1,4 @@
-#include "tests/questions/memory_check.h"
-
-#include <fstream>
-#include <string>
-
-#include "absl/strings/str_format.h"
+#include "tests/questions/checks.h"
 #include "tests/support/process.h"
 
 namespace ballpiston::questions {

@@ -1,7 +1,4 @@
-#include "tests/questions/plan_check.h"
-
-#include "absl/strings/str_cat.h"
-#include "tests/questions/finite_check.h"
+#include "tests/questions/checks.h"
 
 namespace ballpiston::questions {
 namespace {

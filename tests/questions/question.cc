@@ -1,6 +1,5 @@
 #include "tests/questions/question.h"
 
-#include "absl/strings/str_cat.h"
 #include "client/output/json.h"
 
 namespace ballpiston::questions {

@@ -1,9 +1,8 @@
-// A question to the service, and the command line that asks it.
+// A question to the service, the command line that asks it, and the generator.
 #pragma once
 
-#include <string>
-
 #include "ballpiston/v1/spec.pb.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::questions {
 
@@ -19,5 +18,10 @@ double BudgetSeconds(const v1::Target& target);
 
 // `ballpiston run --spec - ...`, for a shell: it asks exactly this specification.
 std::string Command(const v1::EnsembleSpec& spec);
+
+// Question `number` of a seed. Half of its parameters are extreme (values.h). Most targets are such
+// that the answer costs less than `most_seconds` of a processor of the day; the others are anything
+// that is permitted. One question in seven has one defect, for which the service has to refuse it.
+Question Draw(uint64_t seed, uint64_t number, double most_seconds);
 
 }  // namespace ballpiston::questions

@@ -1,10 +1,5 @@
 // Random questions, to the engine and to a real server. README.md says what is checked.
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "tests/questions/campaign.h"
-#include "tests/questions/child.h"
 #include "tests/questions/engine.h"
 #include "tests/questions/real_server.h"
 

@@ -1,24 +1,7 @@
 #include "tests/questions/real_server.h"
 
-#include <algorithm>
-#include <chrono>
-#include <iterator>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "absl/status/statusor.h"
-#include "absl/strings/match.h"
-#include "absl/strings/str_cat.h"
 #include "client/library/channel.h"
 #include "server/convert/spec.h"
-#include "tests/questions/answer_check.h"
-#include "tests/questions/child.h"
-#include "tests/questions/finite_check.h"
-#include "tests/questions/plan_check.h"
-#include "tests/questions/refusal_check.h"
-#include "tests/support/await.h"
 
 namespace ballpiston::questions {
 namespace {
@@ -39,8 +22,8 @@ class Conversation {
   Report Have(double most_seconds) {
     const auto plan = client_.Plan(question_.spec);
     if (!plan.ok()) return Refused(plan.status());
-    for (const v1::PointPlan& point : plan->points()) Add(CheckPlan(point));
-    Add(CheckFinite(*plan));
+    for (const v1::PointPlan& point : plan->points()) report_.Add(CheckPlan(point));
+    report_.Add(CheckFinite(*plan));
     if (!report_.findings.empty()) {
       report_.outcome = "bad plan";
       return std::move(report_);
@@ -57,11 +40,6 @@ class Conversation {
   }
 
  private:
-  void Add(Findings findings) {
-    report_.findings.insert(report_.findings.end(), std::make_move_iterator(findings.begin()),
-                            std::make_move_iterator(findings.end()));
-  }
-
   // The server refuses what the engine refuses, with the same words.
   Report Refused(const absl::Status& status) {
     if (!absl::IsInvalidArgument(status)) return Failed(status);
@@ -71,13 +49,14 @@ class Conversation {
       // What this machine cannot do. The engine knows no machine.
       report_.outcome = "refused here";
       if (!absl::StrContains(status.message(), "permitted")) {
-        Add({{kRefusalCheck, absl::StrCat("does not say what is permitted: ", status.message())}});
+        report_.Add(
+            {{kRefusalCheck, absl::StrCat("does not say what is permitted: ", status.message())}});
       }
     } else if (!absl::StrContains(status.message(), violations.front().description)) {
-      Add({{kRefusalCheck, absl::StrCat("not the engine's words: ", status.message())}});
+      report_.Add({{kRefusalCheck, absl::StrCat("not the engine's words: ", status.message())}});
     }
     if (const auto job = client_.Create(question_.spec); job.ok()) {
-      Add({{kRefusalCheck, "planning is refused, and running is not"}});
+      report_.Add({{kRefusalCheck, "planning is refused, and running is not"}});
       static_cast<void>(client_.Cancel(job->name()));
     }
     return std::move(report_);
@@ -85,7 +64,7 @@ class Conversation {
 
   Report Failed(const absl::Status& status) {
     report_.outcome = "failed";
-    Add({{kCallCheck, status.ToString()}});
+    report_.Add({{kCallCheck, status.ToString()}});
     return std::move(report_);
   }
 
@@ -103,7 +82,8 @@ class Conversation {
       return !job.ok() || wanted(job->state()) || SpentTooMuch(start);
     });
     if (job.ok() && !wanted(job->state())) {
-      Add({{kEndCheck, absl::StrCat("the job is ", v1::EnsembleJob::State_Name(job->state()),
+      report_.Add(
+          {{kEndCheck, absl::StrCat("the job is ", v1::EnsembleJob::State_Name(job->state()),
                                     " after ", kMostProcessorSeconds, " s of processor time")}});
     }
     return job;
@@ -125,7 +105,7 @@ class Conversation {
   }
 
   void Judge(const v1::EnsembleJob& job) {
-    Add(CheckFinite(job));
+    report_.Add(CheckFinite(job));
     switch (job.state()) {
       case v1::EnsembleJob::SUCCEEDED:
         report_.outcome = "answered";
@@ -136,7 +116,7 @@ class Conversation {
       case v1::EnsembleJob::FAILED:
         report_.outcome = "failed";
         if (!MayMissItsTolerance(question_.spec.target())) {
-          Add({{kJobCheck, absl::StrCat("the job failed: ", job.error().message())}});
+          report_.Add({{kJobCheck, absl::StrCat("the job failed: ", job.error().message())}});
         }
         return;
       default:
@@ -151,10 +131,10 @@ class Conversation {
       return;
     }
     if (static_cast<int>(points->size()) != job.progress().points()) {
-      Add({{kJobCheck,
-            absl::StrCat(points->size(), " results of ", job.progress().points(), " points")}});
+      report_.Add({{kJobCheck, absl::StrCat(points->size(), " results of ", job.progress().points(),
+                                            " points")}});
     }
-    for (const v1::PointResult& point : *points) Add(CheckAnswer(question_.spec, point));
+    for (const v1::PointResult& point : *points) report_.Add(CheckAnswer(question_.spec, point));
   }
 
   const Question& question_;

@@ -1,11 +1,9 @@
 // Asks ballpistond, a process on a Unix socket in a temporary folder.
 #pragma once
 
-#include <memory>
-
 #include "client/library/client.h"
+#include "tests/questions/checks.h"
 #include "tests/questions/question.h"
-#include "tests/questions/report.h"
 #include "tests/support/server_process.h"
 
 namespace ballpiston::questions {

@@ -1,20 +1,12 @@
-#include "tests/questions/refusal_check.h"
-
 #include <google/protobuf/descriptor.h>
-#include <google/protobuf/message.h>
-
-#include <algorithm>
-#include <string>
 
 #include "absl/strings/escaping.h"
-#include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "core/arithmetic/number_text.h"
 #include "core/ensemble/experiment_kind.h"
 #include "server/convert/spec.h"
+#include "tests/questions/checks.h"
 #include "tests/questions/question.h"
 
 namespace ballpiston::questions {

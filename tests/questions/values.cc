@@ -1,10 +1,5 @@
 #include "tests/questions/values.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "absl/strings/str_cat.h"
 #include "core/ensemble/parameter.h"
 #include "core/gas/gas_shape.h"
 #include "core/geometry/pair_geometry.h"

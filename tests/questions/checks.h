@@ -1,0 +1,137 @@
+// What became of a question, and the rules that hold for its answer. README.md lists them.
+#pragma once
+
+#include "ballpiston/v1/ensemble.pb.h"
+#include "core/ensemble/ensemble_spec.h"
+#include "core/ensemble/point_summary.h"
+#include "core/model_choice/ladder.h"
+#include "tests/support/preamble.h"
+
+namespace ballpiston::questions {
+
+struct Finding {
+  std::string check;  // the name of the rule that is broken
+  std::string what;
+};
+
+using Findings = std::vector<Finding>;
+
+struct Report {
+  std::string outcome;  // answered, refused, stopped, ...
+  Findings findings = {};
+
+  bool Breaks(const std::string& check) const {
+    for (const Finding& finding : findings) {
+      if (finding.check == check) return true;
+    }
+    return false;
+  }
+  void Add(Findings more) {
+    findings.insert(findings.end(), std::make_move_iterator(more.begin()),
+                    std::make_move_iterator(more.end()));
+  }
+};
+
+// ---- crash, end: no process dies, and every question ends ----
+
+inline constexpr char kCrashCheck[] = "crash";
+inline constexpr char kEndCheck[] = "end";
+
+// A question planned at 0.1 s or less that takes so much processor time never ends.
+#ifdef BALLPISTON_SANITIZED
+inline constexpr int kMostProcessorSeconds = 200;
+#else
+inline constexpr int kMostProcessorSeconds = 30;
+#endif
+
+// ---- refusal: names the field, the value as it was given, and the permitted values ----
+
+inline constexpr char kRefusalCheck[] = "refusal";
+
+// `violations`: those of `spec`, with paths that begin with "spec.".
+Findings CheckRefusal(const v1::EnsembleSpec& spec, const std::vector<FieldViolation>& violations);
+
+// ---- plan: has samples and an end ----
+
+inline constexpr char kPlanCheck[] = "plan";
+
+// Thirty thousand years of a processor. A question that takes longer has to be refused.
+inline constexpr double kMostPlannedSeconds = 1e12;
+
+// The plan of a point, by all models. The model that would answer has a number of samples and a
+// finite time; no number of any model is negative, NaN or infinite.
+Findings CheckPlan(const v1::PointPlan& plan);
+
+// The row of the model that would answer; null if there is none.
+const v1::ModelPlan* Chosen(const v1::PointPlan& plan);
+
+// ---- memory: a computation takes at most what was planned (core/ensemble/experiment_kind.h) ----
+
+inline constexpr char kMemoryCheck[] = "memory";
+
+// Code that runs for the first time, caches of closed forms, and the answer itself, in bytes.
+inline constexpr double kMemoryOfAnyAnswer = 3e7;
+
+// The largest memory of this process since the object was made, above that of the beginning, in
+// bytes. At most one object at a time.
+class PeakMemory {
+ public:
+  PeakMemory();
+  double Bytes() const;
+
+ private:
+  double at_first_;
+};
+
+// Under a sanitizer, which takes memory of its own, every measured value passes.
+Findings CheckMemory(double planned, double measured);
+
+// ---- finite: no number is NaN or infinite ----
+
+inline constexpr char kFiniteCheck[] = "finite";
+
+Findings CheckFinite(const google::protobuf::Message& message);
+
+// Before the server leaves out what is not finite.
+Findings CheckFinite(const PointSummary& summary);
+
+// ---- the answer at each point ----
+
+inline constexpr char kFalseZeroCheck[] = "false zero";
+inline constexpr char kMeasuredCheck[] = "measured";
+inline constexpr char kHealthCheck[] = "health";
+inline constexpr char kLawCheck[] = "law";
+
+// With so many samples a result needs an error, or a remark that says why there is none.
+inline constexpr double kEnoughSamples = 1000;
+
+// finite       no number is NaN or infinite
+// false zero   an error of 0 is stated for exact values alone, and no error is below the rounding
+//              of its value
+// measured     something was measured, or a remark says why not
+// health       no orbit left its cell, and the energy is conserved
+// law          the expected probabilities of a law sum to 1
+Findings CheckAnswer(const v1::EnsembleSpec& spec, const v1::PointResult& result);
+
+// ---- agreement: all models that answer a question agree within their stated errors ----
+//
+// Two models agree in an estimate if the difference is at most 5 times the statistical errors,
+// added in quadrature, plus both model errors. An estimate also agrees with the exact value beside
+// it. Of a distance between laws, the part above its noise floor is compared, which does not depend
+// on the number of samples. A model takes part if it computes at least 1,000 samples in the
+// permitted time, and if its model error is known. Each model has random numbers of its own.
+//
+// A difference counts only if it is seen again with other random numbers and four times the
+// samples. False alarms: a normal deviate exceeds 5 sigma with probability 5.7e-7, twice with
+// 3e-13. Estimates from 1,000 samples are skewed; with a probability as large as 1e-4 of such a
+// deviation, 20,000 questions with 20 comparisons each give a false alarm in 250 runs.
+
+inline constexpr char kAgreementCheck[] = "agreement";
+
+// At the first point of the question. `most_seconds`: for each model, on `machine`.
+Findings CheckAgreement(const EnsembleSpec& spec, const Machine& machine, double most_seconds);
+
+// The comparisons alone, of one answer by each model.
+Findings Disagreements(const std::vector<v1::PointResult>& answers);
+
+}  // namespace ballpiston::questions
