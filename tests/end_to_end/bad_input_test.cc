@@ -1,16 +1,10 @@
 // Wrong commands of every kind give a clear message and the right exit code; the server goes on.
 
-#include <string>
-#include <vector>
-
 #include "absl/strings/str_replace.h"
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 struct BadInput {
   std::string command;  // words separated by blanks; FOLDER stands for the test's folder

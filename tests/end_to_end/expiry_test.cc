@@ -1,18 +1,10 @@
 // A server whose store is bounded: the oldest results expire, those of a pinned job stay, and an
 // expired question can be asked again.
 
-#include <string>
-
-#include "absl/strings/str_cat.h"
 #include "tests/end_to_end/programs.h"
-#include "tests/support/await.h"
 
 namespace ballpiston {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 // The server enforces its limits once a second. Until it has made room, it refuses new jobs.
 ProcessResult RunWhenThereIsRoom(const TestServer& server, const Words& question) {

@@ -1,20 +1,10 @@
 // Figures, each from one command, and resumed after an interruption. What the figures compute is
 // tested in tests/client/python/test_figures.py.
-#include <signal.h>
-
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include "absl/strings/str_replace.h"
-#include "absl/strings/str_split.h"
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {
 namespace {
-
-namespace fs = std::filesystem;
-using ::testing::HasSubstr;
 
 class FigureTest : public ::testing::Test {
  protected:

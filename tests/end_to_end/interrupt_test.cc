@@ -1,11 +1,5 @@
 // Ctrl-C, SIGTERM and SIGHUP while the client watches a job: the client ends at once, the job goes
 // on.
-#include <signal.h>
-
-#include <memory>
-#include <string>
-
-#include "absl/strings/str_split.h"
 #include "tests/end_to_end/programs.h"
 #include "tests/support/terminal_process.h"
 
@@ -13,8 +7,6 @@ namespace ballpiston {
 namespace {
 
 using ::testing::AnyOf;
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
 
 class InterruptTest : public ::testing::Test {
  protected:

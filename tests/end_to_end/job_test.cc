@@ -1,16 +1,9 @@
 // What users do with jobs: run, submit, watch, result, list, cancel, delete.
 
-#include <algorithm>
-#include <string>
-
 #include "tests/end_to_end/programs.h"
-#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 TEST(Run, PrintsATableWithExactValues) {
   const TestServer server;

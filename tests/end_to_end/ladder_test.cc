@@ -1,10 +1,7 @@
 // Questions that leave the choice of the model to the service. It chooses the cheapest model that
 // can answer, and gives its reason.
 
-#include <cstdint>
 #include <cstdio>
-#include <string>
-#include <utility>
 
 #include "tests/end_to_end/programs.h"
 
@@ -12,7 +9,6 @@ namespace ballpiston {
 namespace {
 
 using google::protobuf::Value;
-using ::testing::HasSubstr;
 
 class LadderTest : public ::testing::Test {
  protected:

@@ -1,18 +1,9 @@
 // The client is thin: its binary holds nothing of core or server.
 
-#include <sstream>
-#include <string>
-#include <vector>
-
-#include "absl/strings/match.h"
 #include "tests/end_to_end/programs.h"
-#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 std::string Output(Words command) {
   const ProcessResult result = RunProgram({.command = std::move(command)});

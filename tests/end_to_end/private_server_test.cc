@@ -1,24 +1,13 @@
 // The private server, which the client starts itself.
 #include <fcntl.h>
-#include <signal.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {
 namespace {
-
-namespace fs = std::filesystem;
-using ::testing::HasSubstr;
 
 const Words kRun = Split("run equilibrium --rho 0.53 --delta 0.2 --collisions 1000 --format json");
 const Words kList = Split("list --format json");

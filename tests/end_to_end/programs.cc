@@ -1,12 +1,6 @@
 #include "tests/end_to_end/programs.h"
 
 #include <google/protobuf/util/json_util.h>
-#include <gtest/gtest.h>
-
-#include <utility>
-
-#include "absl/strings/str_split.h"
-#include "tests/support/paths.h"
 
 namespace ballpiston {
 

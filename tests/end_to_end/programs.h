@@ -1,20 +1,18 @@
-// Runs the programs with the tests' arguments and reads their output.
+// Runs the programs with the tests' arguments and reads their output. Also the preamble of the
+// tests in this folder.
 #pragma once
 
 #include <google/protobuf/struct.pb.h>
 
 #include <initializer_list>
-#include <memory>
-#include <string>
-#include <vector>
 
-#include "gmock/gmock.h"
-#include "tests/support/files.h"
+#include "tests/support/preamble.h"
 #include "tests/support/process.h"
 #include "tests/support/server_process.h"
-#include "tests/support/temporary_folder.h"
 
 namespace ballpiston {
+
+namespace fs = std::filesystem;
 
 using Words = std::vector<std::string>;
 

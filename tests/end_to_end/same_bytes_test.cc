@@ -1,9 +1,5 @@
 // The same question gives the same bytes through kill -9. tests/server/restart_test.cc tests
 // that the number of workers changes nothing.
-#include <signal.h>
-
-#include <string>
-
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {

@@ -1,16 +1,10 @@
 // Results in files: saved in each format, and computed again.
 #include <google/protobuf/util/json_util.h>
 
-#include <string>
-#include <vector>
-
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 class Save : public ::testing::Test {
  protected:

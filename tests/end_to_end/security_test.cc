@@ -1,24 +1,10 @@
 // The programs with TLS and tokens, as an operator and a user use them.
-#include <signal.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <map>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "tests/credentials/test_authority.h"
 #include "tests/end_to_end/programs.h"
 #include "tests/server/http_get.h"
 
 namespace ballpiston {
 namespace {
-
-using ::testing::HasSubstr;
 
 class Security : public ::testing::Test {
  protected:

@@ -1,21 +1,9 @@
 // The flags of ballpistond: their spelling, their permitted values, and the file of --config.
 
-#include <algorithm>
-#include <cstdlib>
-#include <filesystem>
-#include <set>
-#include <sstream>
-#include <string>
-#include <vector>
-
 #include "tests/end_to_end/programs.h"
-#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 ProcessResult Server(const Words& flags) {
   const TemporaryFolder home;

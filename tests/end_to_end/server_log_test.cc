@@ -1,17 +1,10 @@
 // The log of a server.
 #include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <string>
 
 #include "tests/end_to_end/programs.h"
-#include "tests/support/await.h"
 
 namespace ballpiston {
 namespace {
-
-using ::testing::HasSubstr;
 
 TEST(ServerLog, NamesTheAddressOfTheMetrics) {
   TestServer server({.flags = {"--metrics-listen", "127.0.0.1:0"}});

@@ -1,17 +1,8 @@
 // `ballpiston server`: starts, finds, checks and stops servers of this machine.
-#include <signal.h>
-
-#include <filesystem>
-#include <string>
-
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {
 namespace {
-
-namespace fs = std::filesystem;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 class ServerVerbTest : public ::testing::Test {
  protected:

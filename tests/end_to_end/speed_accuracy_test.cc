@@ -1,17 +1,8 @@
 // The figure that the program `method_comparison` measures, without a server.
-#include <signal.h>
-
-#include <filesystem>
-#include <string>
-
 #include "tests/end_to_end/programs.h"
-#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
-
-namespace fs = std::filesystem;
-using ::testing::HasSubstr;
 
 class SpeedAccuracy : public testing::Test {
  protected:

@@ -1,15 +1,10 @@
 // The figure of the failures that the program `stability` counts, without a server. The figure
 // fails if a method fails where it promises not to.
 
-#include <string>
-
-#include "absl/strings/str_split.h"
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {
 namespace {
-
-using ::testing::HasSubstr;
 
 TEST(StabilityFigure, HasAllSituationsAndMethods) {
   const TemporaryFolder home;

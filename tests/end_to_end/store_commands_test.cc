@@ -1,14 +1,9 @@
 // Commands for a store, and limits of a server, as an operator uses them.
 
-#include <filesystem>
-#include <string>
-
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {
 namespace {
-
-using ::testing::HasSubstr;
 
 // Beside the server, with its data folder.
 ProcessResult RunBeside(const TestServer& server, const Words& flags) {

@@ -1,10 +1,5 @@
 // Traces, from the command line to the lines that a pipeline reads.
-#include <signal.h>
-
-#include <string>
-
 #include "tests/end_to_end/programs.h"
-#include "tests/support/await.h"
 
 namespace ballpiston {
 namespace {

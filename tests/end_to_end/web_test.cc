@@ -1,25 +1,11 @@
 // `ballpiston web` and `ballpiston report`: calls as curl and a browser make them, against a real
 // server.
 #include <httplib.h>
-#include <signal.h>
 
-#include <filesystem>
-#include <optional>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_split.h"
 #include "tests/end_to_end/programs.h"
-#include "tests/support/await.h"
 
 namespace ballpiston {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 constexpr char kUnary[] = "application/json";
 constexpr char kStream[] = "application/connect+json";

@@ -1,17 +1,7 @@
 #include "tests/slurm/cluster.h"
 
-#include <algorithm>
 #include <cctype>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <stdexcept>
 #include <system_error>
-
-#include "absl/strings/match.h"
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_split.h"
-#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {

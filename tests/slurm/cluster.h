@@ -5,12 +5,9 @@
 #include <sys/types.h>
 
 #include <cstdio>
-#include <memory>
-#include <string>
-#include <vector>
 
+#include "tests/support/preamble.h"
 #include "tests/support/process.h"
-#include "tests/support/temporary_folder.h"
 
 namespace ballpiston {
 

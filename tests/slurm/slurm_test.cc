@@ -2,26 +2,11 @@
 // that threads alone give, and each sample counts once.
 //
 // The clusters have no accounting (slurmdbd): nothing here needs it.
-#include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/stat.h>
-
-#include <algorithm>
-#include <chrono>
-#include <functional>
 #include <ostream>
-#include <random>
-#include <string>
-#include <thread>
-#include <vector>
 
-#include "absl/strings/match.h"
-#include "absl/strings/str_cat.h"
 #include "tests/slurm/cluster.h"
 #include "tests/slurm/sweep.h"
-#include "tests/support/await.h"
-#include "tests/support/files.h"
-#include "tests/support/paths.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston {
 namespace {

@@ -1,15 +1,5 @@
 #include "tests/slurm/sweep.h"
 
-#include <gtest/gtest.h>
-#include <sys/stat.h>
-
-#include <iostream>
-#include <map>
-#include <utility>
-
-#include "absl/strings/str_cat.h"
-#include "tests/support/await.h"
-
 namespace ballpiston {
 namespace {
 

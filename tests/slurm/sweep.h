@@ -1,11 +1,9 @@
 // A real server with a Slurm cluster, and one job that is large enough for the cluster.
 #pragma once
 
-#include <memory>
-#include <string>
-
 #include "tests/end_to_end/programs.h"
 #include "tests/slurm/cluster.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston {
 
