@@ -3,11 +3,9 @@
 
 #include <grpcpp/grpcpp.h>
 
-#include <chrono>
-
-#include "absl/status/statusor.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "client/library/error_text.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::torture {
 

@@ -1,22 +1,6 @@
 // For the client library a restart of the server is a short pause of a watch.
-#include <gtest/gtest.h>
-#include <signal.h>
-
-#include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <string>
-#include <thread>
-
-#include "absl/strings/str_format.h"
 #include "client/library/channel.h"
-#include "client/library/client.h"
-#include "tests/fault/torture/connected_server.h"
-#include "tests/fault/torture/findings.h"
-#include "tests/fault/torture/questions.h"
-#include "tests/fault/torture/sizes.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
+#include "tests/fault/torture/preamble.h"
 
 namespace ballpiston::torture {
 namespace {

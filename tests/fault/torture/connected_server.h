@@ -3,14 +3,8 @@
 
 #include <grpcpp/grpcpp.h>
 
-#include <chrono>
-#include <memory>
-#include <mutex>
-#include <vector>
-
-#include "absl/time/time.h"
 #include "client/library/client.h"
-#include "tests/support/await.h"
+#include "tests/support/preamble.h"
 #include "tests/support/server_process.h"
 
 namespace ballpiston::torture {

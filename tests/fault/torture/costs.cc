@@ -1,18 +1,10 @@
 #include "tests/fault/torture/costs.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <numeric>
-#include <stdexcept>
-
-#include "absl/strings/str_format.h"
 #include "client/library/job_watch.h"
 #include "core/ensemble/point_fold.h"
 #include "server/convert/spec.h"
 #include "server/processor_time.h"
-#include "tests/fault/torture/questions.h"
-#include "tests/support/await.h"
+#include "tests/fault/torture/preamble.h"
 
 namespace ballpiston::torture {
 namespace {

@@ -2,10 +2,8 @@
 // affects both, so their ratio does not depend on it if they are measured in turn.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "client/library/client.h"
+#include "tests/support/preamble.h"
 #include "tests/support/server_process.h"
 
 namespace ballpiston::torture {

@@ -1,27 +1,10 @@
 // The engine kills the server again and again, always for one job: the job fails, others do not.
-#include <gtest/gtest.h>
-#include <signal.h>
-
-#include <map>
-#include <string>
-#include <vector>
-
-#include "absl/strings/str_cat.h"
-#include "client/library/client.h"
-#include "gmock/gmock.h"
 #include "google/rpc/error_details.pb.h"
 #include "server/status/failpoint.h"
-#include "tests/fault/torture/connected_server.h"
-#include "tests/fault/torture/findings.h"
-#include "tests/fault/torture/questions.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
+#include "tests/fault/torture/preamble.h"
 
 namespace ballpiston::torture {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 constexpr int kJobs = 10;
 constexpr int kDeaths = 3;

@@ -2,8 +2,6 @@
 
 #include <cstdio>
 
-#include "absl/strings/str_cat.h"
-
 namespace ballpiston::torture {
 namespace {
 

@@ -1,11 +1,7 @@
 // A test's counts and errors, which it prints when it ends.
 #pragma once
 
-#include <cstdint>
-#include <map>
-#include <mutex>
-#include <string>
-#include <vector>
+#include "tests/support/preamble.h"
 
 namespace ballpiston::torture {
 

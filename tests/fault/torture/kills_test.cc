@@ -1,33 +1,10 @@
 // The server is killed again and again, at random times and at every failpoint, while clients call
 // all its methods.
-#include <gtest/gtest.h>
-#include <signal.h>
-
-#include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <map>
-#include <random>
-#include <set>
-#include <string>
-#include <string_view>
-#include <thread>
-#include <utility>
-#include <vector>
-
 #include "absl/cleanup/cleanup.h"
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
-#include "client/library/client.h"
 #include "server/status/failpoint.h"
-#include "tests/fault/torture/connected_server.h"
-#include "tests/fault/torture/findings.h"
-#include "tests/fault/torture/questions.h"
-#include "tests/fault/torture/sizes.h"
+#include "tests/fault/torture/preamble.h"
 #include "tests/fault/torture/visitor.h"
-#include "tests/support/await.h"
 #include "tests/support/stand_in_slurm.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston::torture {
 namespace {

@@ -1,29 +1,11 @@
 // A server with much in its store starts quickly, and lists it in little memory.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <chrono>
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <thread>
-#include <vector>
-
-#include "absl/strings/str_format.h"
-#include "absl/time/clock.h"
-#include "client/library/client.h"
 #include "core/geometry/paper.h"
 #include "server/book/job_name.h"
 #include "server/convert/spec.h"
 #include "server/store/job_table.h"
 #include "server/store/store.h"
 #include "tests/fault/torture/calls.h"
-#include "tests/fault/torture/connected_server.h"
-#include "tests/fault/torture/findings.h"
-#include "tests/fault/torture/questions.h"
-#include "tests/fault/torture/sizes.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
+#include "tests/fault/torture/preamble.h"
 
 namespace ballpiston::torture {
 namespace {

@@ -1,28 +1,12 @@
 // The server stays healthy with a thousand watchers of one job, and stops in time.
 #include <grpcpp/grpcpp.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <future>
 #include <list>
-#include <memory>
-#include <string>
-#include <thread>
-#include <vector>
 
-#include "absl/strings/str_format.h"
-#include "client/library/client.h"
 #include "client/library/job_watch.h"
-#include "tests/fault/torture/connected_server.h"
-#include "tests/fault/torture/findings.h"
-#include "tests/fault/torture/questions.h"
-#include "tests/fault/torture/sizes.h"
+#include "tests/fault/torture/preamble.h"
 #include "tests/fault/torture/stalled_watches.h"
 #include "tests/server/call_by_name.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston::torture {
 namespace {

@@ -1,15 +1,8 @@
 // The cost of the service compared with the engine alone.
-#include <gtest/gtest.h>
 #include <sched.h>
 
-#include <string>
-
-#include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/costs.h"
-#include "tests/fault/torture/findings.h"
-#include "tests/fault/torture/questions.h"
-#include "tests/fault/torture/sizes.h"
-#include "tests/support/status_matchers.h"
+#include "tests/fault/torture/preamble.h"
 
 namespace ballpiston::torture {
 namespace {

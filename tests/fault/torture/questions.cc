@@ -1,13 +1,10 @@
 #include "tests/fault/torture/questions.h"
 
-#include "absl/strings/str_cat.h"
 #include "absl/strings/substitute.h"
-#include "client/library/client.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/geometry/paper.h"
 #include "server/convert/spec.h"
-#include "tests/fault/torture/connected_server.h"
-#include "tests/fault/torture/sizes.h"
+#include "tests/fault/torture/preamble.h"
 #include "tests/support/message_text.h"
 
 namespace ballpiston::torture {

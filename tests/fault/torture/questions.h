@@ -1,15 +1,8 @@
 // The specifications of the torture tests, and their answers by a server that is not killed.
 #pragma once
 
-#include <map>
-#include <memory>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "absl/status/statusor.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::torture {
 

@@ -1,7 +1,6 @@
 #include "tests/fault/torture/sizes.h"
 
-#include <algorithm>
-#include <cstdlib>
+#include "tests/support/preamble.h"
 
 namespace ballpiston::torture {
 

@@ -1,21 +1,7 @@
 // Stalled readers use bounded memory in the server, and no time of the engine.
-#include <gtest/gtest.h>
-#include <signal.h>
-
-#include <algorithm>
-#include <chrono>
-#include <optional>
-#include <string>
-#include <thread>
-
-#include "absl/strings/str_format.h"
-#include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/costs.h"
-#include "tests/fault/torture/findings.h"
-#include "tests/fault/torture/questions.h"
-#include "tests/fault/torture/sizes.h"
+#include "tests/fault/torture/preamble.h"
 #include "tests/fault/torture/stalled_watches.h"
-#include "tests/support/await.h"
 
 namespace ballpiston::torture {
 namespace {

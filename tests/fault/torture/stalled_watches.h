@@ -3,11 +3,10 @@
 #pragma once
 
 #include <list>
-#include <stdexcept>
-#include <string>
 
 #include "tests/server/own_channel.h"
 #include "tests/server/rpc/watch_stream.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::torture {
 

@@ -1,19 +1,10 @@
 #include "tests/fault/torture/visitor.h"
 
-#include <chrono>
-#include <thread>
-#include <utility>
-
-#include "absl/strings/str_cat.h"
-#include "absl/time/clock.h"
 #include "client/library/error_text.h"
 #include "client/library/job_watch.h"
 #include "client/library/request_id.h"
 #include "tests/fault/torture/calls.h"
-#include "tests/fault/torture/connected_server.h"
-#include "tests/fault/torture/sizes.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
+#include "tests/fault/torture/preamble.h"
 
 namespace ballpiston::torture {
 namespace {

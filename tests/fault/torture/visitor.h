@@ -10,18 +10,10 @@
 
 #include <grpcpp/grpcpp.h>
 
-#include <atomic>
-#include <cstdint>
-#include <memory>
-#include <random>
-#include <set>
-#include <string>
-#include <vector>
-
-#include "absl/status/statusor.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::torture {
 

@@ -1,0 +1,9 @@
+// What most torture tests use: a server process with clients of it, questions, and findings.
+#pragma once
+
+#include "client/library/client.h"
+#include "tests/fault/torture/connected_server.h"
+#include "tests/fault/torture/findings.h"
+#include "tests/fault/torture/questions.h"
+#include "tests/fault/torture/sizes.h"
+#include "tests/support/preamble.h"
