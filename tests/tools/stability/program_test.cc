@@ -1,18 +1,10 @@
 // Arguments, output and exit status of the program, with a fake report instead of computed tables.
 #include "tools/stability/program.h"
 
-#include <gmock/gmock.h>
-
-#include <sstream>
-#include <stdexcept>
-#include <string>
-#include <vector>
+#include "tests/support/preamble.h"
 
 namespace ballpiston::stability {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 class Program : public ::testing::Test {
  protected:
