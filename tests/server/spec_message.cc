@@ -1,14 +1,11 @@
 #include "tests/server/spec_message.h"
 
-#include <cmath>
-#include <cstdint>
-#include <string>
-
 #include "core/ensemble/experiment_kind.h"
 #include "core/gas/gas_shape.h"
 #include "google/protobuf/descriptor.h"
 #include "google/protobuf/message.h"
 #include "server/convert/spec.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {
