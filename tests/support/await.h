@@ -6,7 +6,6 @@
 
 #include <chrono>
 #include <iostream>
-#include <source_location>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
@@ -19,22 +18,23 @@ inline constexpr std::chrono::minutes kPatience(15);
 // A time limit under test that must not be reached.
 inline constexpr std::chrono::hours kNever(100);
 
-[[noreturn]] inline void ThrowLongWait(const std::source_location& caller) {
+[[noreturn]] inline void ThrowLongWait(const char* file, int line) {
   std::ostringstream text;
-  text << caller.file_name() << ":" << caller.line() << ": the condition is still false after "
-       << kPatience.count() << " minutes";
+  text << file << ":" << line << ": the condition is still false after " << kPatience.count()
+       << " minutes";
   std::cerr << text.str() << std::endl;  // the exception may end the program without a message
   throw std::runtime_error(text.str());
 }
 
 // Evaluates the condition every millisecond and returns when it is true. After kPatience it throws
-// std::runtime_error, which fails the test.
+// std::runtime_error, which fails the test. The place is the caller's; Clang 14 does not have
+// std::source_location.
 template <typename Condition>
-void AwaitThat(Condition condition,
-               const std::source_location& caller = std::source_location::current()) {
+void AwaitThat(Condition condition, const char* file = __builtin_FILE(),
+               int line = __builtin_LINE()) {
   const auto end = std::chrono::steady_clock::now() + kPatience;
   while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) ThrowLongWait(caller);
+    if (std::chrono::steady_clock::now() > end) ThrowLongWait(file, line);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }
@@ -42,8 +42,8 @@ void AwaitThat(Condition condition,
 // The same for a condition whose changes are notified. `lock` holds the mutex.
 template <typename Changed, typename Lock, typename Condition>
 void AwaitNotified(Changed& changed, Lock& lock, Condition condition,
-                   const std::source_location& caller = std::source_location::current()) {
-  if (!changed.wait_for(lock, kPatience, condition)) ThrowLongWait(caller);
+                   const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
+  if (!changed.wait_for(lock, kPatience, condition)) ThrowLongWait(file, line);
 }
 
 }  // namespace ballpiston
