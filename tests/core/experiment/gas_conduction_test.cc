@@ -152,6 +152,12 @@ TEST(GasConduction, TheWarmUpIsThatOfTheSlowestPart) {
     return ExchangesOfAWarmUp(SpecBetween(1, cold, {.columns = 1}, model));
   };
   EXPECT_NEAR(at_cold(Model::kBilliard, 1e-10) / at_cold(Model::kBilliard, 1e-8), 10, 1e-6);
+  // At T = 2e-10 of the mean, stroke/v has the mean stroke int_0^inf exp(-v^2/(2 T)) dv/T.
+  const GasGeometry gas =
+      GasGeometry::Create(kPaperRho, 0.2, {.columns = 1}, GasEnds::kReservoirs).value();
+  const double crossing = gas.pair().stroke() * std::sqrt(std::numbers::pi / 4e-10);
+  EXPECT_NEAR(at_cold(Model::kBilliard, 1e-10) / (InfiniteGasExchangeRate(gas, 1) * crossing), 1,
+              1e-9);
   EXPECT_NEAR(at_cold(Model::kBilliard, 0.012) / at_cold(Model::kBilliard, 0.01), 1, 1e-12);
   EXPECT_NEAR(at_cold(Model::kMarkov, 1e-10) / at_cold(Model::kMarkov, 0.01), 1, 1e-12);
 }
