@@ -146,6 +146,8 @@ TEST(GasConduction, TheWarmUpIsThatOfTheSlowestPart) {
   const auto of_length = [](int64_t columns) {
     return ExchangesOfAWarmUp(SpecBetween(3, 1, {.columns = columns}));
   };
+  const PointParameters short_gas = PointAt(SpecBetween(3, 1), 0);
+  EXPECT_EQ(kGasConduction.trajectories(Model::kBilliard, short_gas).warm_up, 2u);  // two halves
   EXPECT_NEAR(of_length(19) / of_length(9), 4, 1e-12);
   EXPECT_NEAR(of_length(30'000) / of_length(299), std::pow(30'001. / 300, 2), 1e-8);
   const auto at_cold = [](Model model, double cold) {
