@@ -75,6 +75,7 @@ TEST_F(Save, RunWritesNoFileIfTheJobFails) {
   EXPECT_THAT(failed, ExitsWith(4));
   EXPECT_EQ(failed.out, "");
   EXPECT_THAT(failed.err, HasSubstr("a.json is not written"));
+  EXPECT_THAT(failed.err, HasSubstr("a.json --server " + server.address()));
   EXPECT_EQ(NamesIn(folder_.path()), std::vector<std::string>());
 }
 

@@ -14,6 +14,7 @@
 namespace ballpiston::client {
 namespace {
 
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 using ::testing::UnorderedElementsAreArray;
@@ -47,6 +48,16 @@ TEST_F(ReferenceTest, AFolderThatCannotBeWrittenExitsWithTwo) {
   const Outcome outcome = Ballpiston({"help", "--format", "man", "--out", home_.File("file")});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, StartsWith("ballpiston: --out: cannot write " + home_.File("file/")));
+}
+
+TEST_F(ReferenceTest, ManPagesReferToEachOther) {
+  const std::string title = "\n.SH \"SEE ALSO\"\n";
+  for (const Verb& verb : Verbs()) {
+    EXPECT_THAT(ManPage(&verb), EndsWith(title + "ballpiston(1)\n"));
+  }
+  const std::string page = ManPage(nullptr);
+  EXPECT_THAT(page, HasSubstr(title + "ballpiston\\-analytic(1), ballpiston\\-plan(1), "));
+  EXPECT_THAT(page, EndsWith(", ballpiston\\-completion(1)\n"));
 }
 
 // roff reads a line that begins with . or ' as a command, and - as a hyphen.

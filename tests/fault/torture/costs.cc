@@ -15,6 +15,9 @@ constexpr double kDeviations = 1.4826, kMedianError = 1.2533;
 
 constexpr size_t kGroups = 10;
 
+// Between two questions to the server, which cost it time too: without a pause, a tenth of it.
+constexpr std::chrono::milliseconds kPause(50);
+
 double Sum(const std::vector<double>& values, size_t begin, size_t end) {
   const auto first = values.begin();
   return std::accumulate(first + static_cast<std::ptrdiff_t>(begin),
@@ -56,6 +59,7 @@ double ServerCost(const ServerProcess& server, const client::Client& client, con
   const double before = samples(), start = server.ProcessorSeconds();
   double more = 0;
   AwaitThat([&] {
+    std::this_thread::sleep_for(kPause);
     more = samples() - before;
     return more >= least_samples;
   });
