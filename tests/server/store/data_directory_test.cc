@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "gmock/gmock.h"
+#include "server/store/folder_sync.h"
 #include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -116,6 +117,13 @@ TEST_F(DataFolder, AnOpenFolderOfAnotherUserIsRefused) {
   const auto directory = DataDirectory::Open(path_);
   EXPECT_THAT(directory, StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("user 65534")));
   EXPECT_EQ(Mode(), 0755u);
+}
+
+TEST(FolderOf, HoldsTheNameThatAFlushMakesSafe) {
+  EXPECT_EQ(FolderOf("/var/lib/data"), "/var/lib");
+  EXPECT_EQ(FolderOf("/data"), "/");
+  EXPECT_EQ(FolderOf("of/data"), "of");
+  EXPECT_EQ(FolderOf("data"), ".");
 }
 
 }  // namespace
