@@ -292,7 +292,6 @@ void Store::Requeue(Writes again) {
 void Store::NoteHealth(const absl::Status& status) {
   MutexLock lock(mutex_);
   if (!status.ok()) {
-    ++counts_.failures;
     retry_time_ = SteadyNow() + options_.retry;
     const std::string failure(status.message());
     if (std::exchange(failure_, failure) != failure) {
