@@ -127,10 +127,10 @@ absl::Status CheckSize(const CheckedSpec& checked, const Limits& limits) {
 
 std::optional<EarlierJob> Judge(Database& database, const Limits& limits, Acceptance& acceptance) {
   std::optional<EarlierJob> earlier = FindEarlier(database, acceptance);
-  if (earlier && earlier->answered_from_store) {
+  if (earlier) {
     AddLabels(database, LabelsOf(acceptance.record.labels), earlier->record);
+    return earlier;
   }
-  if (earlier) return earlier;
   database.Fail(acceptance.fits);
   CheckQueue(database, limits, acceptance.record);
   CheckStoreSize(database, limits);

@@ -12,7 +12,7 @@
 // one long run. If that job is deleted meanwhile, the points begin anew. If another machine
 // computed a point's last chunk, the part of it that the target cut short is computed again.
 //
-// The request's labels are added to those of the earlier job that answers its question.
+// The request's labels are added to those of the earlier job, also by a retry.
 #pragma once
 
 #include <optional>
