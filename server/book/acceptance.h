@@ -42,10 +42,8 @@ struct EarlierJob {
   bool answered_from_store = false;  // it answers the question; else the request is its own again
 };
 
-// Empty: a new job is to be made, and its record says which job it continues. INVALID_ARGUMENT or
-// RESOURCE_EXHAUSTED: the request is refused.
-std::optional<EarlierJob> Judge(Database& database, const Limits& limits, Acceptance& acceptance);
-// The same; then stores the new job and its request.
+// Empty: the new job and its request are stored, and the job's record says which job it continues.
+// INVALID_ARGUMENT or RESOURCE_EXHAUSTED: the request is refused.
 std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance);
 
 // RESOURCE_EXHAUSTED  TOO_MANY_POINTS, TOO_MANY_SAMPLES

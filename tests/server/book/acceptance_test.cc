@@ -231,12 +231,9 @@ TEST(Payload, EveryFieldExceptTheIdAndTheLabelsIsPartOfTheHash) {
   const google::protobuf::Descriptor& type = *v1::CreateEnsembleJobRequest::descriptor();
   for (int i = 0; i < type.field_count(); ++i) {
     const FieldDescriptor& field = *type.field(i);
-    // validate_only stores no request, so its payload does not matter. A retry may have other
-    // labels: they are added to the job.
-    if (field.name() == "spec" || field.name() == "request_id" || field.name() == "labels" ||
-        field.name() == "validate_only") {
+    // A retry may have other labels: they are added to the job.
+    if (field.name() == "spec" || field.name() == "request_id" || field.name() == "labels")
       continue;
-    }
     v1::CreateEnsembleJobRequest changed = request;
     SetOther(changed, field);
     expect_new(field, changed);
@@ -349,32 +346,6 @@ TEST_F(AcceptanceTest, ZeroMeansUnlimited) {
          .max_points_per_job = 0,
          .max_samples_per_job = 0});
   for (int i = 0; i < 5; ++i) EXPECT_OK(Create(kAnn, FreshRequest(Equilibrium(50, 1000))));
-}
-
-// ---- validate_only ----
-
-TEST(AcceptanceRpc, ValidateOnlyChecksLimitsReturnsStoredAnswersAndCreatesNoJob) {
-  RunningServer server({.limits = {.max_points_per_job = 3, .max_samples_per_job = 100}});
-  const std::string answered = server.Succeeded(Question());
-  const struct {
-    v1::EnsembleSpec spec;
-    const char* reason;
-    std::string name;
-  } rows[] = {{Equilibrium(4, 1), "TOO_MANY_POINTS", ""},
-              {Equilibrium(3, 40), "TOO_MANY_SAMPLES", ""},
-              {Equilibrium(3, 30), "", ""},
-              {Question(), "", answered}};
-  for (const auto& [spec, reason, name] : rows) {
-    v1::CreateEnsembleJobRequest request = CreateRequest(spec, kUuid);
-    request.set_validate_only(true);
-    EnsembleJob job;
-    EXPECT_EQ(ReasonOf(server.Create(request, &job)), reason);
-    EXPECT_EQ(job.name(), name);
-    EXPECT_EQ(job.answered_from_store(), !name.empty());
-  }
-  EXPECT_EQ(server.List().jobs_size(), 1);
-  // The id was not stored, so another question can use it.
-  EXPECT_NE(server.Created(CreateRequest(Question(2), kUuid)).name(), answered);
 }
 
 }  // namespace
