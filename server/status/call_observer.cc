@@ -187,7 +187,6 @@ void CallObserver::Failed(const FailedCall& call, absl::Time now) {
   Log(failed ? Severity::kError : Severity::kWarning, absl::StrCat(what, call.message),
       {{"method", call.method},
        {"principal", call.principal},
-       {"request_id", call.request_id},
        {"code", absl::StatusCodeToString(call.code)},
        {"reason", call.reason},
        {"seconds", call.seconds}});

@@ -30,7 +30,6 @@ namespace ballpiston::server {
 struct FailedCall {
   std::string method;     // WatchEnsembleJob
   std::string principal;  // empty: not authenticated
-  std::string request_id;
   absl::StatusCode code = absl::StatusCode::kUnknown;
   std::string reason;  // of its ErrorInfo, if there is one
   std::string message;
