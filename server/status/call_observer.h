@@ -52,9 +52,6 @@ class CallObserver {
   // For ServerBuilder::experimental().SetInterceptorCreators. This must outlive the server.
   std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface> InterceptorFactory();
 
-  // Adds the methods of a service of the generated protos, with zeros, before their first call.
-  void Expect(const std::string& service);
-
   // Keeps an object until gRPC has sent the answer, which it does after the method has returned.
   void Keep(const grpc::ServerContextBase& call, std::shared_ptr<void> object);
 
