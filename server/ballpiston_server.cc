@@ -256,7 +256,6 @@ absl::Status BallpistonServer::StartMetrics() {
   if (options_.metrics_listen.empty()) return absl::OkStatus();
   const absl::StatusOr<ListenAddress> address = ParseMetricsAddress(options_.metrics_listen);
   if (!address.ok()) return address.status();
-  for (const std::string& service : ServiceNames()) calls_.Expect(service);
   auto endpoint = MetricsEndpoint::Start(address->Text(), [this] {
     auto metrics = ServerMetrics(context_, door_->CertificateExpiry());
     for (auto& family : calls_.metrics().Collect()) metrics.push_back(std::move(family));
@@ -275,7 +274,6 @@ std::chrono::steady_clock::duration BallpistonServer::IdleFor() {
 void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   if (std::exchange(shut_down_, true)) return;
   const auto deadline = std::chrono::system_clock::now() + drain;
-  looking_.reset();
   if (grpc_ != nullptr) grpc_->GetHealthCheckService()->Shutdown();
   draining_ = true;
   limits_.reset();

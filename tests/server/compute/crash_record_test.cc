@@ -98,6 +98,30 @@ TEST_F(CrashRecordTest, ADeathInAnExaminationCountsForItsRunAlone) {
   EXPECT_EQ(record->Deaths(kSecond), 1);
 }
 
+TEST_F(CrashRecordTest, AThreadWithoutRoomInTheRecordWaits) {
+  {
+    CrashRecord record(folder_.path(), {});
+    std::vector<std::unique_ptr<CrashRecord::Computing>> all;
+    for (size_t point = 0; point < 2048; ++point) {
+      all.push_back(std::make_unique<CrashRecord::Computing>(record, kFirst, point));
+    }
+    std::atomic<bool> begins = false, has_room = false;
+    std::thread examines([&] {
+      begins = true;
+      const CrashRecord::Examining examining(record, kSecond);
+      EXPECT_TRUE(has_room);
+      Die(SIGSEGV);
+    });
+    AwaitThat([&] { return begins.load(); });
+    has_room = true;
+    all.pop_back();
+    examines.join();
+    while (!all.empty()) all.pop_back();
+  }
+  EXPECT_EQ(Next()->Deaths(kFirst), 0);
+  EXPECT_EQ(Next()->Deaths(kSecond), 1);
+}
+
 TEST_F(CrashRecordTest, AStoredChunkClearsTheRun) {
   LiveAndDie({{kFirst, {0}}, {kSecond, {0}}}, SIGSEGV);
   Next()->Clear(kFirst);

@@ -90,6 +90,22 @@ TEST_F(OwnTokenOfADoor, WithoutItTheServerWarnsAndServes) {
   EXPECT_OK(door->authenticator().Authenticate({std::string("Bearer ") + kAlice}, absl::Now()));
 }
 
+TEST(DoorDescription, NamesAllCredentials) {
+  const LaboratoryFiles files;
+  const std::string tokens = "5 tokens in --access-file=" + files.options().access_file;
+  const auto description = [](const DoorOptions& options, const std::string& listen) {
+    const auto door = Door::Create(options, *ParseListenAddress(listen));
+    EXPECT_OK(door);
+    return door.ok() ? (*door)->Description() : "";
+  };
+  EXPECT_EQ(description({}, "unix:/tmp/x"), "a Unix socket for this server's user, without tokens");
+  EXPECT_EQ(description({.access_file = files.options().access_file}, "127.0.0.1:1"),
+            "a token for this server's user, " + tokens);
+  EXPECT_THAT(
+      description(files.options(), "0.0.0.0:1"),
+      testing::MatchesRegex("TLS, certificate valid until [-0-9]+ [0-9]+:[0-9]+ UTC, " + tokens));
+}
+
 class SecureServer : public ::testing::Test {
  protected:
   grpc::Status List(const std::shared_ptr<grpc::Channel>& channel, const std::string& token) {
@@ -122,7 +138,10 @@ TEST_F(SecureServer, AnInvalidAccessFileKeepsThePreviousOne) {
   const auto channel = Channel();
   files_.WriteAccessFile("nonsense " + std::string(kBob) + "\n");
   const absl::Status status = Reload();
-  EXPECT_THAT(std::string(status.message()), HasSubstr("line 1"));
+  EXPECT_THAT(
+      std::string(status.message()),
+      AllOf(StartsWith("the access file is not reloaded, its previous content stays in use: "),
+            HasSubstr("line 1"), EndsWith("; the certificate is reloaded")));
   EXPECT_THAT(std::string(status.message()), Not(HasSubstr(kBob)));
   EXPECT_OK(List(channel, kAlice));
   unlink(files_.options().access_file.c_str());
@@ -137,7 +156,14 @@ TEST_F(SecureServer, AKeyMayBeRenewedBeforeItsCertificate) {
   ASSERT_OK(List(channel, kAlice));
   const KeyAndCertificate renewed = files_.authority().Issue("server-2");
   files_.Write("server.key", renewed.key);
-  EXPECT_THAT(std::string(Reload().message()), HasSubstr("--tls-key="));
+  files_.WriteAccessFile("");
+  const absl::Status status = Reload();
+  EXPECT_THAT(std::string(status.message()),
+              AllOf(StartsWith("the access file is reloaded; the certificate is not reloaded, "),
+                    HasSubstr("--tls-key=")));
+  EXPECT_EQ(ReasonOf(List(Channel(), kAlice)), "CREDENTIALS_INVALID");  // revoked at once
+  files_.WriteAccessFile(LaboratoryTokens());
+  EXPECT_FALSE(Reload().ok());
   EXPECT_OK(List(Channel(), kAlice));
   EXPECT_EQ(ServedCommonName(), "server-1");
   files_.Write("server.pem", renewed.certificate);
