@@ -18,8 +18,9 @@ struct BadInput {
   std::vector<std::string> parts;  // of the message
 };
 
-// One row for each field of a question and each kind of mistake. All ranges are tested in
-// tests/core/ensemble/ensemble_spec_test.cc, all flags in tests/client/command.
+// One row for each field of a question and each kind of mistake that only a server finds. All
+// ranges are tested in tests/core/ensemble/ensemble_spec_test.cc; the mistakes that the client
+// finds are in tests/client/transcripts/wrong_usage.txt.
 std::vector<BadInput> Table(const std::string& cancelled) {
   const std::string relaxation = "run energy-relaxation --delta 0.1 --rho 0.53 ";
   const std::string first_hit = "run first-hit --delta 0.1 --epsilon 0.1 --exponent 1 --rho 0.53 ";
@@ -57,7 +58,6 @@ std::vector<BadInput> Table(const std::string& cancelled) {
       {"run equilibrium --rho 0.53 --delta 0.1 --collisions 0", 2, {"--collisions: "}},
       {first_hit + "--tolerance 0", 2, {"--tolerance: ", "is 0", "permitted: 0 < tolerance < 1"}},
       {first_hit + "--budget 0", 2, {"--budget: ", "is 0 s", "permitted: 0 < budget <= "}},
-      {first_hit + "--budget 1 --samples 10", 2, {"--samples and --budget exclude each other"}},
       {first_hit + "--tolerance 1e-6 --budget 0.05",
        4,
        {"point 0", "tolerance 1e-06", "budget of 0.05 s", "reached 0."}},
@@ -77,29 +77,16 @@ std::vector<BadInput> Table(const std::string& cancelled) {
       {"plan energy-relaxation --rho 0.4 --delta 0.1 --tolerance 0",
        2,
        {"--rho: ", "--tolerance: "}},
-      // words and numbers that the client rejects
-      {first_hit + "--samples 1.5", 2, {"--samples: '1.5' is not a whole number"}},
-      {first_hit + "--cells 8,4y4", 2, {"--cells: '4y4' is not a shape: write N, a chain of N"}},
-      {"analytic --rho 0.53 --delta 0.1 --beta 1:2:60000,1:2:60000",
-       2,
-       {"--beta: ", "has more than 100000 numbers"}},
-      {"run first-hot --rho 0.53", 2, {"'first-hot' is not one of", "did you mean first-hit?"}},
-      {first_hit + "--speed 3", 2, {"run has no flag '--speed'; did you mean --seed?"}},
-      {"dance", 2, {"'dance' is not a verb; verbs are "}},
-      {"figure portrait --out FOLDER/figure", 2, {"figure 'portrait'"}},
-      {"figure mean-free-time --out FOLDER/broken.json", 2, {"--out: "}},
+      // files and figures
+      {"figure mean-free-time --out FOLDER/nan.json", 2, {"--out: "}},
       {"figure mean-free-time --seconds 3 --out FOLDER/figure",
        2,
        {"--seconds: the figure mean-free-time"}},
-      // files
-      {"run --spec FOLDER/broken.json", 2, {"--spec FOLDER/broken.json: "}},
-      {"run --spec FOLDER/absent.json", 2, {"No such file"}},
       {"run --spec FOLDER/million.json", 4, {"too large to be sent: 80000", "at most 4194304"}},
       // jobs and servers
       {"result ensembleJobs/none", 5, {"JOB_NOT_FOUND"}},
       {"cancel " + cancelled, 4, {"JOB_ALREADY_ENDED"}},
       {"watch ensembleJobs/\xff", 2, {"'ensembleJobs/\\xff' is not a job's name"}},
-      {"list --server nowhere", 2, {"'nowhere' is not a server's address"}},
       {"list --server 127.0.0.1:1", 3, {"no answer from the server at 127.0.0.1:1"}},
       {"list --server unix:FOLDER/no.socket", 3, {"no answer from the server at unix:"}}};
 }
@@ -107,7 +94,6 @@ std::vector<BadInput> Table(const std::string& cancelled) {
 class BadInputTest : public ::testing::Test {
  protected:
   BadInputTest() {
-    Write("broken.json", R"({"experiment": "FIRST_HIT",)");
     Write("nan.json", R"({"experiment": "EQUILIBRIUM",
                          "grid": {"rho": ["NaN"], "delta": ["Infinity"]}})");
     std::string million = R"({"experiment": "EQUILIBRIUM", "grid": {"delta": [0.1], "rho": [0.53)";

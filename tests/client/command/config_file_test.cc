@@ -1,25 +1,10 @@
 // The sources of a flag's value: the command line, the environment, the config file.
 #include "client/command/config_file.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "absl/strings/ascii.h"
-#include "absl/strings/str_replace.h"
-#include "tests/client/program.h"
-#include "tests/support/scoped_variable.h"
-#include "tests/support/status_matchers.h"
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 class ConfigFileTest : public ::testing::Test {
  protected:
@@ -29,11 +14,6 @@ class ConfigFileTest : public ::testing::Test {
     const auto line = ParseCommandLine(words);
     EXPECT_OK(line);
     return line.ok() ? line->options.server : "";
-  }
-  void ExpectError(const std::string& config, const std::string& text) const {
-    home_.WriteConfig(config);
-    EXPECT_THAT(ParseCommandLine({"list"}),
-                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(text)));
   }
 
   const EmptyHome home_;
@@ -108,23 +88,6 @@ TEST_F(ConfigFileTest, WhatIsOffOrReplacedReplacesNothing) {
   EXPECT_EQ(line.options.progress, ProgressStyle::kJson);
 }
 
-TEST_F(ConfigFileTest, AWrongValueForAllVerbsIsAnError) {
-  home_.WriteConfig("samples = \"many\"\nseed = 1\n");
-  EXPECT_THAT(ParseCommandLine({"plan", "first-hit"}),
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("samples of the config file: 'many'")));
-}
-
-TEST_F(ConfigFileTest, AValueForOtherVerbsIsSkipped) {
-  home_.WriteConfig("format = \"csv-curves\"\n");
-  ASSERT_OK_AND_ASSIGN(CommandLine line, ParseCommandLine({"result", "abc"}));
-  EXPECT_EQ(line.options.format, Format::kCsvCurves);
-  ASSERT_OK_AND_ASSIGN(line, ParseCommandLine({"server", "status"}));
-  EXPECT_EQ(line.options.format, Format::kTable);
-  ExpectError("[list]\nformat = \"csv-curves\"\n",
-              "format of the config file: 'csv-curves' is not one of table, json, jsonl, csv");
-}
-
 TEST_F(ConfigFileTest, EveryVariableReachesItsOption) {
   const std::pair<const char*, const char*> variables[] = {
       {"BALLPISTON_SERVER", "h:1"},   {"BALLPISTON_CA", "ca"},
@@ -144,17 +107,6 @@ TEST_F(ConfigFileTest, EveryVariableReachesItsOption) {
   EXPECT_TRUE(options.verbose);
   EXPECT_TRUE(options.given.empty());
   EXPECT_EQ(options.connection, "");
-}
-
-TEST_F(ConfigFileTest, AWrongVariableIsNamed) {
-  const std::pair<std::string, std::string> wrong[] = {{"BALLPISTON_TLS", "perhaps"},
-                                                       {"BALLPISTON_PROGRESS", "loud"}};
-  for (const auto& [variable, value] : wrong) {
-    const ScopedVariable set(variable, value);
-    EXPECT_THAT(ParseCommandLine({"watch", "abc"}),
-                StatusIs(absl::StatusCode::kInvalidArgument,
-                         HasSubstr(variable + ": '" + value + "' is n")));
-  }
 }
 
 TEST_F(ConfigFileTest, HoldsValuesOfEveryKind) {
@@ -188,20 +140,6 @@ TEST_F(ConfigFileTest, ATargetOnTheCommandLineKeepsTheEstimate) {
                        ParseCommandLine({"run", "gas-equilibrium", "--tolerance", "0.1"}));
   EXPECT_EQ(line.options.spec.target().kind_case(), v1::Target::kTolerance);
   EXPECT_EQ(line.options.spec.target().estimate(), "conductivity");
-}
-
-TEST_F(ConfigFileTest, FlagsOfOtherVerbsAreIgnored) {
-  home_.WriteConfig("progress = \"bar\"\n[run]\nformat = \"csv\"\n");
-  ASSERT_OK_AND_ASSIGN(const CommandLine line, ParseCommandLine({"list"}));
-  EXPECT_EQ(line.options.format, Format::kTable);
-}
-
-TEST_F(ConfigFileTest, ErrorsNameTheFile) {
-  const std::string file = home_.File("ballpiston/config.toml");
-  ExpectError("foramt = \"csv\"\n", file + ": 'foramt' is not a flag; did you mean format?");
-  ExpectError("[run]\nlimit = 3\n", file + ": 'limit' is not a flag of run");
-  ExpectError("[dance]\nformat = \"csv\"\n", file + ": [dance] is not a verb");
-  ExpectError("format = \"xml\"\n", "format of the config file: 'xml' is not one of table, ");
 }
 
 TEST_F(ConfigFileTest, AnotherFileMayBeChosen) {

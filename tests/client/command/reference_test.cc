@@ -1,21 +1,11 @@
 #include "client/command/reference.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
-
-#include "absl/strings/str_split.h"
-#include "tests/client/program.h"
+#include "tests/client/preamble.h"
 #include "tests/support/paths.h"
 
 namespace ballpiston::client {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 using ::testing::UnorderedElementsAreArray;
 
 class ReferenceTest : public ::testing::Test {
@@ -40,13 +30,6 @@ TEST_F(ReferenceTest, EachVerbHasAManPage) {
     EXPECT_EQ(Contents(folder + "/" + pages.back()), ManPage(&verb));
   }
   EXPECT_THAT(NamesIn(folder), UnorderedElementsAreArray(pages));
-}
-
-TEST_F(ReferenceTest, AFolderThatCannotBeWrittenExitsWithTwo) {
-  WriteFile(home_.File("file"), "");
-  const Outcome outcome = Ballpiston({"help", "--format", "man", "--out", home_.File("file")});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.err, StartsWith("ballpiston: --out: cannot write " + home_.File("file/")));
 }
 
 // roff reads a line that begins with . or ' as a command, and - as a hyphen.

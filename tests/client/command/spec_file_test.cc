@@ -1,18 +1,9 @@
 #include "client/command/spec_file.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-
-#include "absl/strings/str_cat.h"
-#include "tests/support/status_matchers.h"
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
-
-using ::testing::HasSubstr;
 
 TEST(SpecFile, ReadsProtoJsonWithEitherFieldNames) {
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec spec,
