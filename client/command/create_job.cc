@@ -34,11 +34,11 @@ absl::Status HintIfLimit(const absl::Status& status) {
 absl::StatusOr<v1::EnsembleJob> CreateOnce(const Connection& connection,
                                            const v1::EnsembleSpec& spec,
                                            const CreateOptions& options, const Terminal& terminal) {
-  terminal.Detail(absl::StrCat("request id ", options.request_id));
   const Interrupts::Scope scope(terminal.interrupts, [&] {
     terminal.err << "The server may have accepted the job. With --request-id " << options.request_id
                  << " the same command returns this job.\n";
   });
+  terminal.Detail(absl::StrCat("request id ", options.request_id));
   auto job = connection.client.Create(spec, options);
   if (!job.ok()) return HintIfLimit(job.status());
   terminal.Detail(absl::StrCat("job ", job->name()));

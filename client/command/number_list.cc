@@ -43,10 +43,9 @@ std::optional<int64_t> ToCount(absl::string_view text) {
 }
 
 struct Range {
-  double from = 0;
-  double to = 0;
-  int64_t count = 1;
-  bool logarithmic = false;
+  double from, to;
+  int64_t count;
+  bool logarithmic;
 
   // Rounds to 15 digits, so that 0.01:0.49:49 gives the doubles nearest to its decimal fractions.
   double At(int64_t i) const {

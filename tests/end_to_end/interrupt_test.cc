@@ -1,5 +1,5 @@
-// Ctrl-C, SIGTERM and SIGHUP while the client watches a job: the client ends at once, the job goes
-// on.
+// Ctrl-C, SIGTERM and SIGHUP while the client submits or watches a job: the client ends at once,
+// the job goes on.
 #include <signal.h>
 
 #include <memory>
@@ -64,6 +64,22 @@ TEST_F(InterruptTest, OnATerminalTheMessageReplacesTheBar) {
     EXPECT_THAT(outcome.output, EndsWith("--server " + server_.address() + "\r\n"));
     EXPECT_THAT(State(), AnyOf("QUEUED", "RUNNING"));
   }
+}
+
+// The server is stopped: it receives the job, but does not answer.
+TEST_F(InterruptTest, DuringASubmissionTheMessageHasTheRequestId) {
+  const std::string id = "123e4567-e89b-12d3-a456-426614174000";
+  server_.Signal(SIGSTOP);
+  const auto submit =
+      server_.StartClient(Joined({{"submit", "--verbose", "--request-id", id}, kQuickQuestion}));
+  ASSERT_TRUE(submit->WaitForErr("request id " + id + "\n"));
+  submit->Signal(SIGINT);
+  const ProcessResult result = submit->Wait();
+  server_.Signal(SIGCONT);
+  EXPECT_THAT(result, ExitsWith(130));
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, EndsWith("\nThe server may have accepted the job. With --request-id " +
+                                   id + " the same command returns this job.\n"));
 }
 
 TEST_F(InterruptTest, AClosedTerminalEndsTheClientAndTheJobGoesOn) {

@@ -74,11 +74,13 @@ TEST_F(CompletionTest, OffersTheJobsOfTheServerThatTheWordsName) {
               ElementsAre("ensembleJobs/abc"));
 }
 
-TEST_F(CompletionTest, RequestsJobsWithoutGrids) {
+TEST_F(CompletionTest, RequestsTheNewest50JobsWithoutGrids) {
   home_.UseAsPrivateServer(server_.Address());
   server_.Start();
   Offers({"watch", ""});
-  EXPECT_EQ(server_.ensemble.Asked().list.at(0).view(), v1::ListEnsembleJobsRequest::BASIC);
+  const v1::ListEnsembleJobsRequest list = server_.ensemble.Asked().list.at(0);
+  EXPECT_EQ(list.page_size(), 50);
+  EXPECT_EQ(list.view(), v1::ListEnsembleJobsRequest::BASIC);
 }
 
 TEST_F(CompletionTest, StartsNoServer) {

@@ -32,6 +32,16 @@ TEST_F(ReferenceTest, EachVerbHasAManPage) {
   EXPECT_THAT(NamesIn(folder), UnorderedElementsAreArray(pages));
 }
 
+TEST_F(ReferenceTest, ManPagesReferToEachOther) {
+  const std::string title = "\n.SH \"SEE ALSO\"\n";
+  for (const Verb& verb : Verbs()) {
+    EXPECT_THAT(ManPage(&verb), EndsWith(title + "ballpiston(1)\n"));
+  }
+  const std::string page = ManPage(nullptr);
+  EXPECT_THAT(page, HasSubstr(title + "ballpiston\\-analytic(1), ballpiston\\-plan(1), "));
+  EXPECT_THAT(page, EndsWith(", ballpiston\\-completion(1)\n"));
+}
+
 // roff reads a line that begins with . or ' as a command, and - as a hyphen.
 TEST_F(ReferenceTest, ManPagesHaveOnlyKnownCommands) {
   for (const Verb& verb : Verbs()) {

@@ -28,10 +28,11 @@ TEST_F(ChildProcessTest, ReturnsTheExitStatus) {
   EXPECT_EQ(RunShell("kill -9 $$"), 128 + 9);
 }
 
-TEST_F(ChildProcessTest, RunsInItsFolderAndAppendsItsOutput) {
+TEST_F(ChildProcessTest, RunsInItsFolderAndAppendsItsOutputToAPrivateFile) {
   RunShell("pwd; echo error >&2");
   RunShell("echo again");
   EXPECT_EQ(Output(), std::filesystem::canonical(folder_.path()).string() + "\nerror\nagain\n");
+  EXPECT_EQ(ModeOf(folder_.File("output")), 0600u);
 }
 
 TEST_F(ChildProcessTest, StartsWithNoSignalBlocked) {
