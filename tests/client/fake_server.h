@@ -107,7 +107,11 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
     const size_t from = request->page_token().empty() ? 0 : std::stoul(request->page_token());
     const auto size = static_cast<size_t>(std::min(page_size, request->page_size()));
     const size_t to = std::min(from + size, jobs.size());
-    for (size_t i = from; i < to; ++i) *page->add_jobs() = jobs[i];
+    for (size_t i = from; i < to; ++i) {
+      *page->add_jobs() = jobs[i];
+      if (request->view() != v1::ListEnsembleJobsRequest::BASIC) continue;
+      page->mutable_jobs()->rbegin()->mutable_spec()->clear_grid();
+    }
     if (to < jobs.size()) page->set_next_page_token(std::to_string(to));
     return grpc::Status::OK;
   }
@@ -177,7 +181,12 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
     }
     const size_t from = request->page_token().empty() ? 0 : std::stoul(request->page_token());
     const size_t to = std::min(from + static_cast<size_t>(page_size), points.size());
-    for (size_t i = from; i < to; ++i) *page->add_results() = points[i];
+    for (size_t i = from; i < to; ++i) {
+      *page->add_results() = points[i];
+      if (request->view() != v1::ListResultsRequest::BASIC) continue;
+      page->mutable_results()->rbegin()->clear_histograms();
+      page->mutable_results()->rbegin()->clear_curves();
+    }
     if (to < points.size()) page->set_next_page_token(std::to_string(to));
     return grpc::Status::OK;
   }

@@ -2,6 +2,7 @@
 // errors and notes.
 #include "client/command/command_line.h"
 
+#include "client/command/reference.h"
 #include "tests/client/preamble.h"
 
 namespace ballpiston::client {
@@ -21,15 +22,15 @@ TEST_F(CommandLineTest, TheProgramsPageIsItsHelp) {
   }
 }
 
-TEST_F(CommandLineTest, HelpOfAVerbIsItsPage) {
+TEST_F(CommandLineTest, HelpOfAVerbIsItsShortPageAndWithAllItsWholePage) {
   for (const Verb& verb : Verbs()) {
     Words help = absl::StrSplit(verb.name, ' '), flag = help;
     help.insert(help.begin(), "help");
     flag.push_back("--help");
-    const Outcome page = Ballpiston(help);
-    EXPECT_EQ(page.code, 0) << page.err;
-    EXPECT_THAT(page.out, StartsWith("ballpiston " + verb.name + ": "));
-    EXPECT_EQ(page.out, Ballpiston(flag).out);
+    EXPECT_EQ(Ballpiston(help), (Outcome{0, ShortPage(&verb), ""}));
+    EXPECT_EQ(Ballpiston(flag), (Outcome{0, ShortPage(&verb), ""}));
+    help.push_back("--all");
+    EXPECT_EQ(Ballpiston(help), (Outcome{0, TextPage(&verb), ""}));
   }
 }
 

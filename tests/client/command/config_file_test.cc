@@ -88,27 +88,6 @@ TEST_F(ConfigFileTest, WhatIsOffOrReplacedReplacesNothing) {
   EXPECT_EQ(line.options.progress, ProgressStyle::kJson);
 }
 
-TEST_F(ConfigFileTest, EveryVariableReachesItsOption) {
-  const std::pair<const char*, const char*> variables[] = {
-      {"BALLPISTON_SERVER", "h:1"},   {"BALLPISTON_CA", "ca"},
-      {"BALLPISTON_TLS", "true"},     {"BALLPISTON_TOKEN_FILE", "file"},
-      {"BALLPISTON_TOKEN", "secret"}, {"BALLPISTON_PROGRESS", "json"},
-      {"BALLPISTON_QUIET", "1"},      {"BALLPISTON_VERBOSE", "yes"}};
-  for (const auto& [name, value] : variables) setenv(name, value, 1);  // EmptyHome restores them
-  ASSERT_OK_AND_ASSIGN(const CommandLine line, ParseCommandLine({"watch", "abc"}));
-  const Options& options = line.options;
-  EXPECT_EQ(options.server, "h:1");
-  EXPECT_EQ(options.security.ca, "ca");
-  EXPECT_TRUE(options.security.tls);
-  EXPECT_EQ(options.security.token_file, "file");
-  EXPECT_EQ(options.security.token, "secret");
-  EXPECT_EQ(options.progress, ProgressStyle::kJson);
-  EXPECT_TRUE(options.quiet);
-  EXPECT_TRUE(options.verbose);
-  EXPECT_TRUE(options.given.empty());
-  EXPECT_EQ(options.connection, "");
-}
-
 TEST_F(ConfigFileTest, HoldsValuesOfEveryKind) {
   home_.WriteConfig(
       "# a comment\n"

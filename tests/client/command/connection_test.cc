@@ -18,15 +18,6 @@ class ConnectionTest : public ProgramTest {
   }
 };
 
-TEST_F(ConnectionTest, WithoutAServerExitsWithThreeAndNamesIt) {
-  for (const char* verb : {"list", "status"}) {
-    const Outcome outcome = Ballpiston({verb, "--server", server_.Address()});
-    EXPECT_EQ(outcome.code, 3);
-    EXPECT_THAT(outcome.err,
-                StartsWith("ballpiston: no answer from the server at " + server_.Address() + ": "));
-  }
-}
-
 TEST_F(ConnectionTest, ARetryToAPrivateServerHasTheSameRequestId) {
   StartPrivateServer(kChannelAttempts);
   const Outcome outcome = Ballpiston({"submit", "first-hit", "--rho", "0.53"});
@@ -67,20 +58,6 @@ TEST_F(ConnectionTest, ANamedServerGetsOneAttempt) {
   server_.Start();
   EXPECT_EQ(WithServer({"submit", "first-hit"}).code, 3);
   EXPECT_EQ(std::ssize(server_.ensemble.Asked().create), kChannelAttempts);
-}
-
-TEST_F(ConnectionTest, StatusConnectsToTheRunningPrivateServer) {
-  StartPrivateServer();
-  EXPECT_EQ(Ballpiston({"status"}).code, 0);
-}
-
-// The server program is /bin/false. If it were started, the message would quote its failure.
-TEST_F(ConnectionTest, StatusStartsNoServer) {
-  home_.UseAsPrivateServer(server_.Address());
-  const Outcome outcome = Ballpiston({"status"});
-  EXPECT_EQ(outcome.code, 3);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_THAT(outcome.err, StartsWith("ballpiston: no private server is running ("));
 }
 
 }  // namespace

@@ -51,15 +51,5 @@ TEST_F(QuestionTest, EachFlagReachesItsField) {
   }
 }
 
-TEST_F(QuestionTest, ExperimentsAreReadInBothSpellings) {
-  for (const auto& [word, experiment] :
-       {std::pair{"conditional_mean_free_time", v1::EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME},
-        {"energy-relaxation", v1::EnsembleSpec::ENERGY_RELAXATION},
-        {"equilibrium", v1::EnsembleSpec::EQUILIBRIUM}}) {
-    ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec spec, Spec(word));
-    EXPECT_EQ(spec.experiment(), experiment);
-  }
-}
-
 }  // namespace
 }  // namespace ballpiston::client

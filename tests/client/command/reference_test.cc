@@ -75,14 +75,6 @@ TEST_F(ReferenceTest, TheShortPageFitsAScreenAndNamesEveryFlag) {
   }
 }
 
-TEST_F(ReferenceTest, HelpIsShortAndAllIsWhole) {
-  const Verb& run = *std::find_if(Verbs().begin(), Verbs().end(),
-                                  [](const Verb& verb) { return verb.name == "run"; });
-  EXPECT_EQ(Ballpiston({"help", "run"}).out, ShortPage(&run));
-  EXPECT_EQ(Ballpiston({"run", "--help"}).out, ShortPage(&run));
-  EXPECT_EQ(Ballpiston({"help", "--all", "run"}).out, TextPage(&run));
-}
-
 TEST_F(ReferenceTest, AWholePageShowsEveryFlagAndArgument) {
   for (const Verb& verb : Verbs()) {
     const std::string page = TextPage(&verb);
