@@ -16,7 +16,6 @@ std::string Farewell(const Connection& connection, const std::string& name) {
 WatchCallbacks Report(ProgressReporter& reporter) {
   return {.on_job = [&](const v1::EnsembleJob& job) { reporter.OnJob(job); },
           .on_snapshot = [&](const auto& snapshot) { reporter.OnSnapshot(snapshot); },
-          .on_heartbeat = {},
           .on_disconnect = [&](const absl::Status& why,
                                absl::Duration pause) { reporter.OnDisconnect(why, pause); }};
 }

@@ -28,6 +28,10 @@ absl::StatusOr<Points> PointsOf(const Connection& connection, const std::string&
     const auto page = connection.client.ResultsPage(name, view, token);
     if (!page.ok()) return HintIfExpired(page.status(), connection, name);
     for (v1::PointResult point : page->results()) {
+      if (points.json.size() == kMostPoints) {
+        points.is_complete = false;
+        return points;
+      }
       if (points.json.size() >= kMostPictured) {
         point.clear_histograms();
         point.clear_curves();
@@ -35,8 +39,7 @@ absl::StatusOr<Points> PointsOf(const Connection& connection, const std::string&
       points.json.push_back(Json(point));
     }
     token = page->next_page_token();
-  } while (!token.empty() && points.json.size() < kMostPoints);
-  points.is_complete = token.empty();
+  } while (!token.empty());
   return points;
 }
 

@@ -9,7 +9,7 @@ namespace {
 constexpr int64_t kMostPort = 65535;
 
 // A private server stops when it is idle. Then restarts the server and retries the call, unless a
-// part of the answer has already arrived.
+// part of the answer has already arrived. Client::Delete says why a deletion is not retried.
 absl::Status CallThrough(const Connection& connection, const JsonCall& once,
                          const JsonReceiver& receive) {
   const JsonCall call = WithRequestId(once);
@@ -21,7 +21,8 @@ absl::Status CallThrough(const Connection& connection, const JsonCall& once,
     });
   };
   absl::Status status = attempt();
-  if (!has_begun && connection.client.IsBack(status)) status = attempt();
+  const bool may_repeat = !has_begun && call.method->name() != "DeleteEnsembleJob";
+  if (may_repeat && connection.client.IsBack(status)) status = attempt();
   return NameServer(status, connection);
 }
 

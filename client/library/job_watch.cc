@@ -73,7 +73,6 @@ class Watch {
     if (message.has_job()) HandleJob(message.job());
     if (message.has_snapshot() && callbacks_.on_snapshot)
       callbacks_.on_snapshot(message.snapshot());
-    if (message.has_heartbeat() && callbacks_.on_heartbeat) callbacks_.on_heartbeat();
   }
 
   void HandleJob(const v1::EnsembleJob& job) {

@@ -27,7 +27,6 @@ struct WatchCallbacks {
   std::function<void(const v1::EnsembleJob&)> on_job =
       {};  // at the start and on each change of state
   std::function<void(const v1::StatisticsSnapshot&)> on_snapshot = {};
-  std::function<void()> on_heartbeat = {};
   // The stream broke; the next attempt follows after `pause`.
   std::function<void(const absl::Status& why, absl::Duration pause)> on_disconnect = {};
 };

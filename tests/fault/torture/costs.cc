@@ -1,10 +1,12 @@
 #include "tests/fault/torture/costs.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <stdexcept>
+#include <thread>
 
 #include "absl/strings/str_format.h"
 #include "client/library/job_watch.h"
@@ -22,6 +24,9 @@ namespace {
 constexpr double kDeviations = 1.4826, kMedianError = 1.2533;
 
 constexpr size_t kGroups = 10;
+
+// Between two questions to the server, which cost it time too: without a pause, a tenth of it.
+constexpr std::chrono::milliseconds kPause(50);
 
 double Sum(const std::vector<double>& values, size_t begin, size_t end) {
   const auto first = values.begin();
@@ -64,6 +69,7 @@ double ServerCost(const ServerProcess& server, const client::Client& client, con
   const double before = samples(), start = server.ProcessorSeconds();
   double more = 0;
   AwaitThat([&] {
+    std::this_thread::sleep_for(kPause);
     more = samples() - before;
     return more >= least_samples;
   });
