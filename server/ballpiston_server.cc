@@ -275,7 +275,6 @@ std::chrono::steady_clock::duration BallpistonServer::IdleFor() {
 void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   if (std::exchange(shut_down_, true)) return;
   const auto deadline = std::chrono::system_clock::now() + drain;
-  looking_.reset();
   if (grpc_ != nullptr) grpc_->GetHealthCheckService()->Shutdown();
   draining_ = true;
   limits_.reset();

@@ -43,23 +43,10 @@ class ABSL_SCOPED_LOCKABLE MutexLock {
   }
   MutexLock(const MutexLock&) = delete;
   MutexLock& operator=(const MutexLock&) = delete;
-  ~MutexLock() ABSL_UNLOCK_FUNCTION() {
-    if (held_) mutex_.Unlock();
-  }
-
-  // Releases the mutex within the scope, and takes it again.
-  void Unlock() ABSL_UNLOCK_FUNCTION() {
-    held_ = false;
-    mutex_.Unlock();
-  }
-  void Lock() ABSL_EXCLUSIVE_LOCK_FUNCTION() {
-    mutex_.Lock();
-    held_ = true;
-  }
+  ~MutexLock() ABSL_UNLOCK_FUNCTION() { mutex_.Unlock(); }
 
  private:
   Mutex& mutex_;
-  bool held_ = true;
 };
 
 // A wait may end without a notification, so it belongs in a loop. There are no predicates, because

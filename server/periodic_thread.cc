@@ -17,14 +17,13 @@ PeriodicThread::~PeriodicThread() {
 }
 
 void PeriodicThread::CallUntilStopped() {
+  for (auto next = SteadyNow(); Await(next); next = SteadyNow() + interval_) call_();
+}
+
+bool PeriodicThread::Await(std::chrono::steady_clock::time_point next) {
   MutexLock lock(mutex_);
-  while (!stopping_) {
-    lock.Unlock();
-    call_();
-    lock.Lock();
-    const auto next = SteadyNow() + interval_;
-    while (!stopping_ && stop_.WaitUntil(mutex_, next)) continue;
-  }
+  while (!stopping_ && stop_.WaitUntil(mutex_, next)) continue;
+  return !stopping_;
 }
 
 }  // namespace ballpiston::server

@@ -17,6 +17,7 @@ class PeriodicThread {
 
  private:
   void CallUntilStopped();
+  bool Await(std::chrono::steady_clock::time_point next);  // false: the thread ends
 
   const std::chrono::milliseconds interval_;
   const std::function<void()> call_;

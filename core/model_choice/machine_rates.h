@@ -15,13 +15,9 @@ struct EngineRate {
 };
 
 struct MachineRates {
-  double first_point = 0;  // extra time of a job's first point, because caches are cold
   double closed_form = 0;  // a point by a closed form
   double spectrum = 0;     // a point by the spectrum
-  // Time to store the result of such a point, on one thread beside the computing threads.
-  double stored_closed_form = 0;
-  double stored_spectrum = 0;
-  double jump = 0;  // a jump of the jump process, with its measurements
+  double jump = 0;         // a jump of the jump process, with its measurements
   EngineRate lanes;
   EngineRate lanes_single;
   EngineRate reference;

@@ -9,9 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <system_error>
-#include <utility>
 
-#include "absl/cleanup/cleanup.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -58,22 +56,6 @@ absl::StatusOr<std::string> BytesOf(const std::string& path) {
   return bytes;
 }
 
-// If the copy fails, its part is removed: the disk may be full.
-absl::Status WriteProgram(const std::string& path, const std::string& bytes) {
-  const std::string temporary = absl::StrCat(path, ".new");
-  absl::Cleanup remove = [&] { unlink(temporary.c_str()); };
-  {
-    std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    file.flush();
-    if (!file) return Unusable(temporary, errno);
-  }
-  if (chmod(temporary.c_str(), 0700) != 0) return Unusable(temporary, errno);
-  if (rename(temporary.c_str(), path.c_str()) != 0) return Unusable(path, errno);
-  std::move(remove).Cancel();
-  return absl::OkStatus();
-}
-
 // Beside this program, as in a build folder, or in libexec, as installed.
 std::string InstalledWorker() {
   std::error_code error;
@@ -112,11 +94,17 @@ absl::Status PrepareFolder(const std::string& folder, const std::string& identit
 }
 
 absl::Status CopyWorker(const std::string& folder, const std::string& worker) {
+  const std::string name = "ballpiston-worker", part = name + ".new";
+  FolderFiles files(folder);
   const absl::StatusOr<std::string> bytes = BytesOf(worker.empty() ? InstalledWorker() : worker);
+  const absl::StatusOr<std::string> copy = BytesOf(files.PathOf(name));
   if (!bytes.ok()) return bytes.status();
-  const std::string path = absl::StrCat(folder, "/ballpiston-worker");
-  const absl::StatusOr<std::string> copy = BytesOf(path);
-  return copy.ok() && *copy == *bytes ? absl::OkStatus() : WriteProgram(path, *bytes);
+  if (copy.ok() && *copy == *bytes) return absl::OkStatus();
+  files.Remove(part).IgnoreError();  // of a server that was killed
+  const absl::Status made = files.Create(part, *bytes).status();
+  if (!made.ok()) return made;
+  if (chmod(files.PathOf(part).c_str(), 0700) != 0) return Unusable(files.PathOf(part), errno);
+  return files.Move(part, name);
 }
 
 }  // namespace ballpiston::server

@@ -68,8 +68,8 @@ absl::StatusOr<pid_t> Start(const Command& command, const MemoryFile& out, const
   posix_spawn_file_actions_adddup2(&files, out.number(), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&files, err.number(), STDERR_FILENO);
   posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  sigset_t none, all;
-  sigemptyset(&none);
+  const sigset_t none = {};
+  sigset_t all;
   sigfillset(&all);
   posix_spawnattr_setsigmask(&attributes, &none);
   posix_spawnattr_setsigdefault(&attributes, &all);

@@ -186,11 +186,6 @@ void SlurmWorkers::Start() {
   looking_ = std::make_unique<PeriodicThread>(kBetweenLooks, [this] { Look(); });
 }
 
-void SlurmWorkers::Shutdown() {
-  stop_.request_stop();
-  looking_.reset();
-}
-
 void SlurmWorkers::Look() {
   const FolderStatus work = work_();
   const bool has_work = work.waiting_leases + work.taken_leases > 0;

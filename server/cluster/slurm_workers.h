@@ -86,10 +86,9 @@ class SlurmWorkers {
   // `work`: what is in the folder now. `ready`: makes the folder ready for a worker.
   SlurmWorkers(const SlurmOptions& options, std::unique_ptr<SlurmTools> tools,
                std::function<FolderStatus()> work, std::function<absl::Status()> ready);
-  ~SlurmWorkers() { Shutdown(); }
+  ~SlurmWorkers() { stop_.request_stop(); }  // the workers go on
 
   void Start();
-  void Shutdown();  // the workers go on
 
   // What Start calls from its thread every second. Tests call it themselves.
   void Look();
@@ -119,7 +118,7 @@ class SlurmWorkers {
 
   mutable Mutex mutex_;
   SlurmStatus status_ ABSL_GUARDED_BY(mutex_);
-  std::unique_ptr<PeriodicThread> looking_;
+  std::unique_ptr<PeriodicThread> looking_;  // last: its thread uses all members above
 };
 
 }  // namespace ballpiston::server

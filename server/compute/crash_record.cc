@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <new>
 #include <optional>
+#include <thread>
 #include <vector>
 
 #include "absl/cleanup/cleanup.h"
@@ -21,9 +22,10 @@
 namespace ballpiston::server {
 namespace {
 
-constexpr std::array<char, 8> kFormat = {'b', 'p', 'c', 'r', 'a', 's', 'h', '2'};
-constexpr size_t kSlots = 1024;         // as many as there can be workers
-constexpr size_t kDeaths = 2 * kSlots;  // further ones are not counted
+constexpr std::array<char, 8> kFormat = {'b', 'p', 'c', 'r', 'a', 's', 'h', '3'};
+// For up to 1,024 workers, and for calls that examine runs.
+constexpr size_t kSlots = 2048;
+constexpr size_t kDeaths = 2048;  // further ones are not counted
 
 // Of a slot whose contents are being written.
 constexpr int64_t kTaken = -1;
@@ -172,24 +174,28 @@ int64_t CrashRecord::counted_deaths() const { return page_->counted_deaths; }
 
 constinit thread_local CrashRecord::Slot* CrashRecord::slot_of_this_thread = nullptr;
 
+// Null if all slots are taken.
+CrashRecord::Slot* CrashRecord::TakeSlot(Page& page) {
+  for (Slot& slot : page.slots) {
+    int64_t free = 0;
+    if (slot.run == 0 && slot.run.compare_exchange_strong(free, kTaken)) return &slot;
+  }
+  return nullptr;
+}
+
 CrashRecord::Entry::Entry(CrashRecord& record, const RunName& run, int64_t point)
     : before_(slot_of_this_thread) {
   static thread_local const SignalStack stack;
-  for (Slot& slot : record.page_->slots) {
-    int64_t free = 0;
-    if (slot.run != 0 || !slot.run.compare_exchange_strong(free, kTaken)) continue;
-    slot.generation = run.generation;
-    slot.point = point;
-    slot.run = run.run;  // last, because the process may be killed at any moment
-    slot_ = &slot;
-    break;
-  }
+  while ((slot_ = TakeSlot(*record.page_)) == nullptr) std::this_thread::yield();
+  slot_->generation = run.generation;
+  slot_->point = point;
+  slot_->run = run.run;  // last, because the process may be killed at any moment
   slot_of_this_thread = slot_;
 }
 
 CrashRecord::Entry::~Entry() {
   slot_of_this_thread = before_;
-  if (slot_ != nullptr) slot_->run = 0;
+  slot_->run = 0;
 }
 
 void CrashRecord::NoteDeath(int signal) {

@@ -11,6 +11,7 @@
 //   3. AStoredChunkClearsTheRun.
 //   4. AnOutOfMemoryKillCounts.
 //   5. ADeathInAnExaminationCountsForItsRunAlone.
+//   6. AThreadWithoutRoomInTheRecordWaits. So no death is blamed on the wrong run.
 // A run that dies twice is computed alone (Scheduler), so at its third death nothing else can be
 // the cause. Thread-safe.
 #pragma once
@@ -47,7 +48,8 @@ class CrashRecord {
   static constexpr int64_t kNoPoint = -1;
 
   // As long as it lives, the record says what this thread does, and the thread can note its death
-  // even if its own stack is used up. May nest; then the innermost says it.
+  // even if its own stack is used up. May nest; then the innermost says it. While as many threads
+  // as the record has room for (2,048) do something, further ones wait.
   class Entry {
    public:
     Entry(const Entry&) = delete;
@@ -106,6 +108,7 @@ class CrashRecord {
   // Null when a thread starts, so the handler of a signal can read it.
   static constinit thread_local Slot* slot_of_this_thread;
   struct Page;
+  static Slot* TakeSlot(Page& page);
   // Of the previous process.
   struct End {
     int signal = 0;                                   // 0: it was killed, or it stopped

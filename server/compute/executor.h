@@ -21,9 +21,9 @@ class Executor {
   // wait and must not call the scheduler.
   virtual void Wake() = 0;
 
-  // Whether a further turn at a lease that this executor has would find work. Called with the
-  // scheduler's lock held.
-  virtual bool HasTurn(int64_t lease) const = 0;
+  // Whether a further turn at a lease that this executor has would find work. Asked of local
+  // executors, with the scheduler's lock held.
+  virtual bool HasTurn(int64_t /*lease*/) const { return false; }
 
   // Ends all calls of the scheduler. May be called more than once.
   virtual void Shutdown() = 0;

@@ -1,6 +1,7 @@
 #include "server/compute/machine_rates.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <span>
 
@@ -50,6 +51,7 @@ double LanesOf(Engine engine, const PairGeometry& geometry) {
 
 // Seconds per sample: the smallest of three measurements, because other programs only add time.
 double SecondsOfASample(const EnsembleSpec& spec, uint64_t samples) {
+  assert(Violations(spec).empty());
   const auto experiment = PointExperiment::Create(spec, 0);
   double least = 0;
   for (int turn = 0; turn < 3; ++turn) {

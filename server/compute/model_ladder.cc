@@ -1,15 +1,9 @@
 #include "server/compute/model_ladder.h"
 
-#include <unistd.h>
-
-#include <algorithm>
-#include <array>
-#include <chrono>
-#include <cstddef>
+#include <string>
 #include <utility>
-#include <vector>
+#include <variant>
 
-#include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/all_experiments.h"
@@ -27,45 +21,6 @@ namespace {
 
 // An arbitrary pair.
 constexpr double kAnyRho = 0.53, kAnyDelta = 0.1;
-
-// The time of `run` with cold processor caches: the median of a few runs.
-template <typename Run>
-double SecondsOfAFirst(const Run& run) {
-  constexpr size_t kTurns = 5;
-  std::vector<char> memory(size_t{16} << 20);
-  std::array<double, kTurns> seconds;
-  for (double& turn : seconds) {
-    std::fill(memory.begin(), memory.end(), static_cast<char>(memory[0] + 1));
-    const double begin = ThreadSeconds();
-    run();
-    turn = ThreadSeconds() - begin;
-  }
-  std::sort(seconds.begin(), seconds.end());
-  return seconds[kTurns / 2];
-}
-
-void RemoveStore(const std::string& path) {
-  for (const char* suffix : {"", "-wal", "-shm"}) unlink((path + suffix).c_str());
-}
-
-// The wall-clock time to store one of many results like this one, including commits and the disk's
-// time. 0 if the store cannot be made.
-double SecondsToStore(const std::string& path, PointRow row) {
-  using Clock = std::chrono::steady_clock;
-  constexpr int64_t kResults = 3000;
-  RemoveStore(path);
-  const absl::Cleanup remove = [&] { RemoveStore(path); };
-  auto store =
-      Store::Open(path, {.delay = std::chrono::milliseconds(0), .readers = 1, .reserve_bytes = 0});
-  if (!store.ok()) return 0;
-  const Clock::time_point begin = Clock::now();
-  for (row.point = 0; row.point < kResults; ++row.point) {
-    (*store)->RecordResult(1, row, [](int64_t) {});
-  }
-  if (!(*store)->Flush().ok()) return 0;
-  store->reset();  // copies the log into the database
-  return std::chrono::duration<double>(Clock::now() - begin).count() / kResults;
-}
 
 }  // namespace
 
@@ -87,10 +42,6 @@ void ModelLadder::Measure() {
   spectrum.model = Model::kSpectrum;
   rates.closed_form = SecondsOf([&] { Serve(closed); });
   rates.spectrum = SecondsOf([&] { Serve(spectrum); });
-  rates.first_point = std::max(SecondsOfAFirst([&] { Serve(closed); }) - rates.closed_form, 0.0);
-  const std::string scratch = store_.path() + ".rates";
-  rates.stored_closed_form = SecondsToStore(scratch, Serve(closed));
-  rates.stored_spectrum = SecondsToStore(scratch, Serve(spectrum));
   machine_ = Unmeasured();
   machine_.rates = rates;
 }
@@ -101,17 +52,15 @@ std::vector<FieldViolation> ModelLadder::ViolationsHere(const EnsembleSpec& spec
   return MachineViolations(spec, spec.target.budget_seconds ? machine() : Unmeasured());
 }
 
-PointRow ModelLadder::Serve(const EnsembleSpec& spec) {
+void ModelLadder::Serve(const EnsembleSpec& spec) {
   ThreadSeconds();  // a worker reads the clock twice
   const OpenedPoint opened = Open(spec, 0);
   const auto& experiment = *std::get<std::unique_ptr<const PointExperiment>>(opened);
   const PointSummary summary = experiment.Summarize(BlockResult());
-  PointRow row = {.result = DeterministicBytes(ResultOf(0, experiment, summary)),
-                  .details = DetailsBytes(DetailsOf(summary)),
-                  .has_checkpoint = false};
+  const PointRow row = {.result = DeterministicBytes(ResultOf(0, experiment, summary)),
+                        .details = DetailsBytes(DetailsOf(summary))};
   const auto told = std::make_shared<const std::string>(row.result);
   ThreadSeconds();
-  return row;
 }
 
 OpenedPoint ModelLadder::Open(const EnsembleSpec& spec, size_t index) {

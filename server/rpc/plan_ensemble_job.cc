@@ -28,8 +28,9 @@ struct PlannedWork {
   }
 };
 
-double SecondsToStore(const Ladder& ladder, const MachineRates& rates) {
-  return ladder.answer.model == Model::kSpectrum ? rates.stored_spectrum : rates.stored_closed_form;
+double SecondsToStore(const Ladder& ladder) {
+  return ladder.answer.model == Model::kSpectrum ? kSecondsToStoreSpectrum
+                                                 : kSecondsToStoreClosedForm;
 }
 
 }  // namespace
@@ -52,7 +53,7 @@ absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
     work.pilots += ladder.work_of_pilot;
     work.points += ladder.Chosen().work.value_or(0) - ladder.work_of_pilot;
     work.longest = std::max(work.longest, ladder.Chosen().time);
-    work.stored += SecondsToStore(ladder, service.ladder.machine().rates);
+    work.stored += SecondsToStore(ladder);
     response.set_memory(std::max(response.memory(), ladder.Chosen().memory));
     *response.add_points() = PointPlanMessage(point, ladder);
   }
@@ -60,7 +61,7 @@ absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
   const double share = static_cast<double>(points) / static_cast<double>(planned);
   work.points *= share;
   work.stored *= share;
-  work.points += machine.rates.first_point;
+  work.points += kSecondsOfAFirstPoint;
   response.set_point_count(static_cast<int32_t>(points));
   response.set_work(work.Computed());
   response.set_time(work.Time(machine.workers));

@@ -102,10 +102,10 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
   }
 
   ~Interceptor() override {
-    Ended(absl::StatusCode::kCancelled);  // if no status was sent
+    Ended(absl::StatusCode::kCancelled);        // if no status was sent
+    decltype(observer_.kept_)::node_type kept;  // is released after the mutex
     MutexLock lock(observer_.mutex_);
-    const auto kept = observer_.kept_.extract(&call_);
-    lock.Unlock();  // before the object is released
+    kept = observer_.kept_.extract(&call_);
   }
 
   // If the client has left, the status that gRPC's own services return looks like a fault.

@@ -139,7 +139,8 @@ void InsertJob(Database& database, JobRecord& record) {
   const std::string marks = EachColumn([](absl::string_view name, absl::string_view) {
     return std::string(name == "sequence" ? "NULL" : "?");
   });
-  Query query = database.Select(absl::StrCat("INSERT INTO jobs VALUES (", marks, ")"));
+  Query query = database.Select(
+      absl::StrCat("INSERT INTO jobs (", ColumnNames(Grid::kIncluded), ") VALUES (", marks, ")"));
   VisitColumns(record, [&](absl::string_view name, absl::string_view type, const auto& field) {
     if (name != "sequence") BindColumn(query, type, field);
   });

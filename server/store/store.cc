@@ -34,13 +34,12 @@ absl::StatusOr<std::unique_ptr<Store>> Store::Open(const std::string& path, Opti
   return store;
 }
 
-Store::Store(std::unique_ptr<Database> writer, Options options, std::string path,
+Store::Store(std::unique_ptr<Database> writer, Options options, const std::string& path,
              std::string identity)
     : options_(options),
-      path_(std::move(path)),
       identity_(std::move(identity)),
       writer_(std::move(writer)),
-      reserve_(path_, options_.reserve_bytes) {}
+      reserve_(path, options_.reserve_bytes) {}
 
 void Store::Start() {
   reserve_.Take();

@@ -132,15 +132,12 @@ class Store {
   // Writes what is pending, without a retry, and ends the thread. Later writes fail.
   void Close();
 
-  const std::string& path() const { return path_; }
-
   // The random name that the store got when it was made.
   const std::string& identity() const { return identity_; }
 
   struct Counts {
     int64_t commits = 0;
     int64_t checkpoints_written = 0;
-    int64_t failures = 0;        // of writes, because of the disk
     int64_t pending_writes = 0;  // now
   };
   Counts counts() const;
@@ -191,7 +188,8 @@ class Store {
     });
   }
 
-  Store(std::unique_ptr<Database> writer, Options options, std::string path, std::string identity);
+  Store(std::unique_ptr<Database> writer, Options options, const std::string& path,
+        std::string identity);
   void Start();
 
   void Post(Write write, bool soon = false) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -231,7 +229,6 @@ class Store {
   void NoteHealth(const absl::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
 
   const Options options_;
-  const std::string path_;
   const std::string identity_;
   // Only the store's thread uses these two.
   std::unique_ptr<Database> writer_;

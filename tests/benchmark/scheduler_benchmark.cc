@@ -94,14 +94,13 @@ class Meter {
 
 // ---- the server ----
 
-// Takes part only as far as its caller has it take part.
+// Takes part only as far as its caller has it take part. A lease is one turn.
 class SimulatedExecutor : public Executor {
  public:
   SimulatedExecutor(Scheduler& scheduler, bool local, double seconds)
       : capacity_{.executor = scheduler.AddExecutor(*this), .local = local, .seconds = seconds} {}
 
   void Wake() override { is_woken_ = true; }
-  bool HasTurn(int64_t) const override { return false; }  // a lease is one turn
   void Shutdown() override {}
 
   const Capacity& capacity() const { return capacity_; }

@@ -136,7 +136,7 @@ TEST(ServerFlags, ARefusalNamesFlagValueAndPermittedValues) {
   for (const auto& row : table) {
     Words flags = row.flags;
     flags.insert(flags.begin(), "--check");  // no server, even if a value is accepted by mistake
-    EXPECT_THAT(Refusal(flags), HasSubstr(row.message));
+    EXPECT_THAT(Refusal(flags), HasSubstr(" " + row.message));  // from the beginning of a word
   }
 }
 
@@ -248,7 +248,11 @@ TEST_F(ConfigFile, EachLineOfAFlagThatMayBeRepeatedCounts) {
                      .launcher = {"env", "PATH=" + home_.File("") + ":" + std::getenv("PATH")}});
   server.Submit(kEndlessQuestion);
   EXPECT_TRUE(server.AwaitLog("--exclusive"));
-  EXPECT_THAT(server.log(), HasSubstr(" --mem-per-cpu=500M --exclusive"));
+  const std::string folder = home_.File("shared");
+  EXPECT_THAT(
+      server.log(),
+      HasSubstr(" --chdir=" + folder + " --output=" + folder + "/log/%a.log --wrap=exec '" +
+                folder + "/ballpiston-worker' '" + folder + "' --mem-per-cpu=500M --exclusive"));
 }
 
 TEST_F(ConfigFile, ARefusalNamesFlagAndPermittedValues) {

@@ -190,7 +190,9 @@ void CheckStoredJob(const std::string& bytes) {
 }
 
 std::vector<std::string> Rows() {
-  return {std::string(65, '\1'), std::string(80, '\0'), std::string(200, '\x08')};
+  const std::string error_of_invalid_utf8 = "\x12\x01\xff";
+  return {std::string(65, '\1'), std::string(80, '\0'), std::string(200, '\x08'),
+          std::string(65, '\0') + error_of_invalid_utf8};
 }
 
 // Merges the chunks that the experiment can have computed, as the scheduler does.

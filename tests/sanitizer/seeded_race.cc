@@ -1,6 +1,6 @@
-// A race on purpose: a reaction on gRPC's thread and a worker change the same variable. gRPC is not
-// instrumented. The code that prevents false reports about gRPC (grpc_handover.cc) must not hide
-// this race.
+// A race on purpose: a method of a service, on gRPC's thread, and a worker change the same
+// variable. gRPC is not instrumented. The code that prevents false reports about gRPC
+// (grpc_handover.cc) must not hide this race.
 //
 //   seeded_race             the sanitizer must report the race
 //   seeded_race --mended    the same with a lock: the sanitizer must report nothing
@@ -10,14 +10,11 @@
 #include <mutex>
 #include <string_view>
 #include <thread>
-#include <utility>
-#include <vector>
 
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "grpcpp/client_context.h"
 #include "grpcpp/server.h"
 #include "grpcpp/server_builder.h"
-#include "grpcpp/support/server_interceptor.h"
 
 namespace ballpiston {
 namespace {
@@ -43,41 +40,23 @@ class Counter {
   long count_ = 0;
 };
 
-class CountingService : public v1::AnalyticService::CallbackService {
+class CountingService : public v1::AnalyticService::Service {
  public:
   explicit CountingService(Counter& counter) : counter_(counter) {}
 
-  grpc::ServerUnaryReactor* EvaluatePairs(grpc::CallbackServerContext* context,
-                                          const v1::EvaluatePairsRequest*,
-                                          v1::EvaluatePairsResponse*) override {
+  grpc::Status EvaluatePairs(grpc::ServerContext*, const v1::EvaluatePairsRequest*,
+                             v1::EvaluatePairsResponse*) override {
     counter_.CountOne();
-    grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-    reactor->Finish(grpc::Status::OK);
-    return reactor;
+    return grpc::Status::OK;
   }
 
  private:
   Counter& counter_;
 };
 
-// An interceptor like the server's, through which gRPC starts every reaction.
-class Passing : public grpc::experimental::Interceptor {
-  void Intercept(grpc::experimental::InterceptorBatchMethods* batch) override { batch->Proceed(); }
-};
-
-class PassingFactory : public grpc::experimental::ServerInterceptorFactoryInterface {
-  grpc::experimental::Interceptor* CreateServerInterceptor(
-      grpc::experimental::ServerRpcInfo*) override {
-    return new Passing;
-  }
-};
-
 std::unique_ptr<grpc::Server> Serve(CountingService& service) {
-  std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
-  interceptors.push_back(std::make_unique<PassingFactory>());
   grpc::ServerBuilder builder;
   builder.RegisterService(&service);
-  builder.experimental().SetInterceptorCreators(std::move(interceptors));
   return builder.BuildAndStart();
 }
 

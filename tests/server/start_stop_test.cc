@@ -156,7 +156,6 @@ TEST(StartStop, WhileTheDiskHangsCallsThatWriteAreRefusedAndReadsAnswered) {
   const auto is_serving = [&] {
     return HealthOf(server, "ballpiston.v1.EnsembleService") == kServing;
   };
-  server.Status();  // the first one measures the machine's speed, which writes to the disk
   hangs = true;
   const auto waiting = std::async([&] { server.Create(CreateRequest(Equilibrium(1, 1))); });
   AwaitThat([&] { return !is_serving(); });

@@ -10,30 +10,13 @@ import {EVIL, answerInstead, fakeJob, listInstead, streamInstead} from './fake_g
 import {Programs} from './programs.mjs';
 
 const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
-const ARGUMENTS = [
-  '--headless',
-  '--no-sandbox',
-  '--disable-gpu',
-  '--disable-quic',
-  '--no-first-run',
-  '--disable-background-networking',
-  '--disable-component-update',
-  '--disable-sync',
-];
+const ARGUMENTS =
+  '--headless --no-sandbox --disable-gpu --disable-quic --no-first-run ' +
+  '--disable-background-networking --disable-component-update --disable-sync';
 const PHONE = {width: 390, height: 800};
 const PATIENCE = 15 * 60000; // ms, the longest wait for a condition
 
-const PAIR = ['--rho', '0.5296', '--delta', '0.1'];
-const NEVER_ENDS = [
-  'conditional-mean-free-time',
-  ...PAIR,
-  '--epsilon',
-  '0.1,0.2',
-  '--model',
-  'billiard',
-  '--tolerance',
-  '2e-6',
-];
+const PAIR = '--rho 0.5296 --delta 0.1';
 
 let programs, web, browser, context, page, mistakes;
 let firstHit, gas; // names of finished jobs
@@ -42,31 +25,14 @@ before(async () => {
   programs = new Programs();
   web = await programs.web();
   firstHit = programs.run(
-    'submit',
-    'first-hit',
-    ...PAIR,
-    '--epsilon',
-    '0.125,0.3',
-    '--exponent',
-    '0,1',
-    '--samples',
-    '2e4',
+    `submit first-hit ${PAIR} --epsilon 0.125,0.3 --exponent 0,1 --samples 2e4`,
   );
   gas = programs.run(
-    'submit',
-    'gas-equilibrium',
-    ...PAIR,
-    '--cells',
-    '8',
-    '--temperature',
-    '1',
-    '--verify',
-    '--samples',
-    '200',
+    `submit gas-equilibrium ${PAIR} --cells 8 --temperature 1 --verify --samples 200`,
   );
-  programs.run('watch', firstHit, '--progress', 'none');
-  programs.run('watch', gas, '--progress', 'none');
-  browser = await chromium.launch({executablePath: CHROMIUM, args: ARGUMENTS});
+  programs.run(`watch ${firstHit} --progress none`);
+  programs.run(`watch ${gas} --progress none`);
+  browser = await chromium.launch({executablePath: CHROMIUM, args: ARGUMENTS.split(' ')});
 });
 
 after(async () => {
@@ -112,7 +78,11 @@ const banner = () => page.locator('#connection');
 const jobLink = (job) => page.locator(`a[href="#${job}"]`);
 const charts = () => page.locator('.chart canvas:not(.key)');
 const pixelsOf = (locator) => locator.evaluate((canvas) => canvas.toDataURL());
-const cancel = (job) => programs.run('cancel', job);
+const submitEndless = () =>
+  programs.run(
+    `submit conditional-mean-free-time ${PAIR} --epsilon 0.1,0.2 --model billiard --tolerance 2e-6`,
+  );
+const cancel = (job) => programs.run(`cancel ${job}`);
 
 async function waitUntilChanged(read, before) {
   await assertSoon(async () => assert.notEqual(await read(), before));
@@ -249,7 +219,7 @@ describe('Jobs', () => {
     await page.evaluate(() => {
       window.isTheSame = true;
     });
-    const job = programs.run('submit', ...NEVER_ENDS);
+    const job = submitEndless();
     try {
       await jobLink(job).click();
       await page.getByText('Convergence of mean free time conditional').waitFor();
@@ -278,15 +248,7 @@ describe('Jobs', () => {
 
   it('show growing histograms while they run', async () => {
     const job = programs.run(
-      'submit',
-      'energy-relaxation',
-      ...PAIR,
-      '--epsilon',
-      '0.3',
-      '--model',
-      'billiard',
-      '--samples',
-      '1e12',
+      `submit energy-relaxation ${PAIR} --epsilon 0.3 --model billiard --samples 1e12`,
     );
     try {
       await open(job);
@@ -301,24 +263,15 @@ describe('Jobs', () => {
 
   it('show the reason of a failure', async () => {
     const job = programs.run(
-      'submit',
-      'conditional-mean-free-time',
-      ...PAIR,
-      '--epsilon',
-      '0.1',
-      '--model',
-      'billiard',
-      '--tolerance',
-      '1e-5',
-      '--budget',
-      '0.1',
+      `submit conditional-mean-free-time ${PAIR} --epsilon 0.1 --model billiard ` +
+        '--tolerance 1e-5 --budget 0.1',
     );
     await open(job);
     await page.getByText(/The job failed: .*budget/).waitFor();
   });
 
   it('show the reason of a wait', async () => {
-    const first = programs.run('submit', ...NEVER_ENDS);
+    const first = submitEndless();
     await answerInstead(page, 'EnsembleService/GetEnsembleJob', fakeJob(1, {state: 'QUEUED'}));
     await page.route(/WatchEnsembleJob/, () => {});
     try {
@@ -330,7 +283,7 @@ describe('Jobs', () => {
   });
 
   it('are listed by their state', async () => {
-    const job = programs.run('submit', ...NEVER_ENDS);
+    const job = submitEndless();
     await open();
     await jobLink(firstHit).waitFor();
     await page.getByLabel('State').selectOption('active');
@@ -355,7 +308,7 @@ describe('Jobs', () => {
   });
 
   it('can be submitted again if they were cancelled', async () => {
-    const job = programs.run('submit', ...NEVER_ENDS);
+    const job = submitEndless();
     cancel(job);
     await open(job);
     await page.getByRole('button', {name: 'Submit again'}).click();
@@ -378,7 +331,7 @@ describe('Jobs', () => {
 
 describe('When the server stops', () => {
   it('the data stay on the page, and the watch resumes after a restart', async () => {
-    const job = programs.run('submit', ...NEVER_ENDS);
+    const job = submitEndless();
     await open(job);
     await page.getByText('Convergence of').waitFor();
     programs.stopServer();
@@ -611,15 +564,8 @@ describe('Many', () => {
   });
 
   it('10,000 points stay smooth', async (test) => {
-    const job = programs.run(
-      'submit',
-      'equilibrium',
-      '--rho',
-      '0.51:0.7:100',
-      '--delta',
-      '0.001:0.01:100',
-    );
-    programs.run('watch', job, '--progress', 'none');
+    const job = programs.run('submit equilibrium --rho 0.51:0.7:100 --delta 0.001:0.01:100');
+    programs.run(`watch ${job} --progress none`);
     await open();
     await observeTasks();
     const begin = Date.now();
@@ -646,7 +592,7 @@ describe('A report', () => {
   let file;
   before(() => {
     file = join(programs.folder, 'report.html');
-    programs.run('report', firstHit, gas, '--out', file);
+    programs.run(`report ${firstHit} ${gas} --out`, file);
   });
 
   it('shows its jobs without a network', async () => {

@@ -26,35 +26,23 @@ export class Programs {
 
   startServer() {
     const {BALLPISTON_SERVER: address} = this.environment;
-    this.runAt([
-      'server',
-      'start',
-      '--data-dir',
-      this.dataFolder,
-      '--listen',
-      address,
-      '--workers',
-      '1',
-    ]);
+    this.run('server start --workers 1 --listen', address, '--data-dir', this.dataFolder);
   }
 
   stopServer() {
-    this.runAt(['server', 'stop', '--data-dir', this.dataFolder]);
+    this.run('server stop --data-dir', this.dataFolder);
   }
 
-  // The standard output of `ballpiston ARGUMENTS`, without the last line end.
-  run(...words) {
-    return this.runAt(words);
-  }
-
-  runAt(words) {
+  // The standard output of `ballpiston COMMAND WORDS`, without the last line end. The words of the
+  // command are separated by blanks; the further words, such as paths, may have blanks in them.
+  run(command, ...words) {
     const options = {
       env: this.environment,
       encoding: 'utf8',
       stdio: ['ignore', 'pipe', 'pipe'],
       maxBuffer: 1 << 28,
     };
-    return execFileSync(program, words, options).trimEnd();
+    return execFileSync(program, [...command.split(' '), ...words], options).trimEnd();
   }
 
   // Starts `ballpiston web`. Returns {address, stop()}; the address contains the token. `port` 0

@@ -18,6 +18,15 @@ class ConnectionTest : public ProgramTest {
   }
 };
 
+TEST_F(ConnectionTest, WithoutAServerExitsWithThreeAndNamesIt) {
+  for (const char* verb : {"list", "status"}) {
+    const Outcome outcome = Ballpiston({verb, "--server", server_.Address()});
+    EXPECT_EQ(outcome.code, 3);
+    EXPECT_THAT(outcome.err,
+                StartsWith("ballpiston: no answer from the server at " + server_.Address() + ": "));
+  }
+}
+
 TEST_F(ConnectionTest, ARetryToAPrivateServerHasTheSameRequestId) {
   StartPrivateServer(kChannelAttempts);
   const Outcome outcome = Ballpiston({"submit", "first-hit", "--rho", "0.53"});

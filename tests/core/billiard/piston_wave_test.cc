@@ -116,5 +116,11 @@ TEST(PistonWave, CollisionsInSpecialCases) {
   }
 }
 
+TEST(PistonWave, HitsAreCountedUpToTheLargestCount) {
+  const PistonWave wave(PaperGeometry(0.1));
+  EXPECT_EQ(wave.Hits(0.5 * wave.stroke(), 2.75 * wave.stroke()), 3u);
+  EXPECT_EQ(wave.Hits(0, 1e30), uint64_t{1} << 63);
+}
+
 }  // namespace
 }  // namespace ballpiston

@@ -104,6 +104,8 @@ TEST(EnsembleSpec, HugeGridsAreRejectedWithoutExpansion) {
 TEST(EnsembleSpec, TargetsAreChecked) {
   ExpectViolations({
       {"first-hit collisions=10", {"target.collisions: use target.samples"}},
+      {"first-hit samples=1"},
+      {"first-hit samples=1e12"},
       {"first-hit samples=1e13", {"target.samples: permitted: 1 to 1000000000000"}},
       {"markov-property collisions=100"},
       {"markov-property budget=3"},

@@ -146,12 +146,20 @@ TEST(GasConduction, TheWarmUpIsThatOfTheSlowestPart) {
   const auto of_length = [](int64_t columns) {
     return ExchangesOfAWarmUp(SpecBetween(3, 1, {.columns = columns}));
   };
+  const PointParameters short_gas = PointAt(SpecBetween(3, 1), 0);
+  EXPECT_EQ(kGasConduction.trajectories(Model::kBilliard, short_gas).warm_up, 2u);  // two halves
   EXPECT_NEAR(of_length(19) / of_length(9), 4, 1e-12);
   EXPECT_NEAR(of_length(30'000) / of_length(299), std::pow(30'001. / 300, 2), 1e-8);
   const auto at_cold = [](Model model, double cold) {
     return ExchangesOfAWarmUp(SpecBetween(1, cold, {.columns = 1}, model));
   };
   EXPECT_NEAR(at_cold(Model::kBilliard, 1e-10) / at_cold(Model::kBilliard, 1e-8), 10, 1e-6);
+  // At T = 2e-10 of the mean, stroke/v has the mean stroke int_0^inf exp(-v^2/(2 T)) dv/T.
+  const GasGeometry gas =
+      GasGeometry::Create(kPaperRho, 0.2, {.columns = 1}, GasEnds::kReservoirs).value();
+  const double crossing = gas.pair().stroke() * std::sqrt(std::numbers::pi / 4e-10);
+  EXPECT_NEAR(at_cold(Model::kBilliard, 1e-10) / (InfiniteGasExchangeRate(gas, 1) * crossing), 1,
+              1e-9);
   EXPECT_NEAR(at_cold(Model::kBilliard, 0.012) / at_cold(Model::kBilliard, 0.01), 1, 1e-12);
   EXPECT_NEAR(at_cold(Model::kMarkov, 1e-10) / at_cold(Model::kMarkov, 0.01), 1, 1e-12);
 }

@@ -84,5 +84,21 @@ TEST(SteadyGas, ADamagedStateCannotContinue) {
   EXPECT_FALSE(point->CanContinue(GroupState(std::move(more))));
 }
 
+// The variance of 4,000 energies has a standard error of 3 %, so the window of 5 has false alarms
+// of 6e-7 each.
+TEST(SteadyGas, VarianceOfEnergyIsThatOfItsStarts) {
+  for (const GasShape& shape : {GasShape{3}, GasShape{3, 2, true}}) {
+    const auto point = PointExperiment::Create(
+        SpecOf(&kGasConduction, PaperGas(&kGasConduction, 0.2, shape), {}, Model::kBilliard), 0);
+    const auto& gas = dynamic_cast<const SteadyGas&>(*point);
+    Moments energies;
+    for (uint64_t start = 0; start < 4000; ++start) {
+      CounterRandom random(1, 2, start);
+      energies.Add(EnergyOf(DrawGas(gas.geometry(), gas.TemperaturesAtStart(), random)));
+    }
+    EXPECT_NEAR(*energies.Variance() / gas.variance_of_energy(), 1, 0.15);
+  }
+}
+
 }  // namespace
 }  // namespace ballpiston

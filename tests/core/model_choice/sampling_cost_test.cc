@@ -133,6 +133,9 @@ TEST(SamplingCost, CostIsTheSumOverEvents) {
   EXPECT_DOUBLE_EQ(Cost(returns, OnlyOf(&EngineRate::wall_hit)),
                    HitsPerReturn(geometry, 0.125).ball_wall);
   EXPECT_DOUBLE_EQ(Cost(returns, OnlyOf(&EngineRate::sample)), 1);
+  const EnsembleSpec gas = Asked("gas-conduction model=billiard");
+  EXPECT_DOUBLE_EQ(Cost(gas, OnlyOf(&EngineRate::collision)),
+                   kGasConduction.collisions(gas.model, PointAt(gas, 0)));
   MachineRates jumps;
   jumps.jump = 1;
   for (const char* delta : {"0.3", "1e-3"}) {
@@ -198,6 +201,14 @@ TEST(SamplingCost, AFewSamplesCostAsMuchAsTheLongestInAllLanes) {
   const EnsembleSpec quick = Asked(gas + "0.2"), slow = Asked(gas + "1e-6");
   EXPECT_EQ(CostOfSampling(quick, PointAt(quick, 0), {}).lanes, 16);
   EXPECT_EQ(CostOfSampling(slow, PointAt(slow, 0), {}).lanes, 1);
+}
+
+TEST(SamplingCost, TheWarmUpOfAllTrajectoriesTakesItsTime) {
+  const EnsembleSpec steady = Asked("gas-conduction cells=3 delta=0.2 model=billiard");
+  const Trajectories trajectories = kGasConduction.trajectories(steady.model, PointAt(steady, 0));
+  const auto warm_up = static_cast<double>(trajectories.count() * trajectories.warm_up);
+  const SamplingCost cost = InLanes(steady);
+  EXPECT_DOUBLE_EQ(cost.Of(1000, 1), (warm_up + 1000) * cost.sample);
 }
 
 TEST(SamplingCost, SamplesInATimeTakeThisTime) {

@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include <filesystem>
 #include <string>
 
 #include "gmock/gmock.h"
@@ -66,6 +67,7 @@ TEST_F(ClusterFolderTest, OtherFoldersAreRefused) {
 TEST_F(ClusterFolderTest, TheWorkerIsCopiedIfItHasChanged) {
   const std::string program = folder_.File("program"), copy = shared_ + "/ballpiston-worker";
   WriteFile(program, "one");
+  WriteFile(copy + ".new", "of a server that was killed");
   EXPECT_OK(CopyWorker(shared_, program));
   EXPECT_EQ(Contents(copy), "one");
   EXPECT_EQ(ModeOf(copy), 0700u);
@@ -77,6 +79,7 @@ TEST_F(ClusterFolderTest, TheWorkerIsCopiedIfItHasChanged) {
   WriteFile(program, "two");
   EXPECT_OK(CopyWorker(shared_, program));
   EXPECT_EQ(Contents(copy), "two");
+  EXPECT_FALSE(std::filesystem::exists(copy + ".new"));
   EXPECT_THAT(CopyWorker(shared_, folder_.File("missing")), StatusIs(Code::kNotFound));
 }
 

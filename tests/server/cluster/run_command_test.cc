@@ -24,7 +24,7 @@ constexpr std::chrono::milliseconds kShort(50);
 constexpr char kForever[] = "sleep 1000";
 
 Command Shell(const std::string& script) {
-  return {.words = {"sh", "-c", script}, .environment = {"PATH=/usr/bin:/bin"}};
+  return {.words = {"sh", "-c", script}, .environment = {"PATH=/usr/bin:/bin"}, .limit = kNever};
 }
 
 absl::StatusOr<CommandOutput> RunShell(const std::string& script) {
@@ -51,11 +51,11 @@ TEST(RunCommand, GivesOutputErrorsAndExitCode) {
 }
 
 TEST(RunCommand, AProgramThatCannotBeRunIsAnError) {
-  EXPECT_THAT(RunCommand({.words = {"no-such-program-4711"}}, {}),
+  EXPECT_THAT(RunCommand({.words = {"no-such-program-4711"}, .limit = kNever}, {}),
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("no-such-program-4711")));
   const TemporaryFolder folder;
   WriteFile(folder.File("text"), "text");
-  EXPECT_THAT(RunCommand({.words = {folder.File("text")}}, {}),
+  EXPECT_THAT(RunCommand({.words = {folder.File("text")}, .limit = kNever}, {}),
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr(folder.File("text"))));
 }
 
@@ -92,7 +92,6 @@ TEST(RunCommand, TheProgramIsKilledWhenStopIsRequested) {
   const TemporaryFolder folder;
   const std::string pid_file = folder.File("pid");
   Command command = Shell(absl::StrCat("echo $$ >", pid_file, "; exec ", kForever));
-  command.limit = kNever;
   std::stop_source stop;
   std::thread stopper([&] {
     AwaitThat([&] { return !Contents(pid_file).empty(); });

@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "gmock/gmock.h"
@@ -14,6 +16,7 @@ using std::chrono::milliseconds;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Pair;
 
 // Slurm's tools: their answers, and the calls that they got.
 struct FakeSlurm {
@@ -161,9 +164,42 @@ TEST(SlurmQueue, StatesAreCounted) {
   EXPECT_EQ(queue.waiting, 2u);
   EXPECT_EQ(queue.running, 2u);
   EXPECT_EQ(queue.never, "");
-  EXPECT_EQ(ParseQueue("PENDING|PartitionTimeLimit").never, "PartitionTimeLimit");
-  EXPECT_EQ(ParseQueue("PENDING|QOSMaxWallDurationPerJobLimit").never,
-            "QOSMaxWallDurationPerJobLimit");
+}
+
+// The states in the manual of squeue.
+TEST(SlurmQueue, AWorkerIsWaitingOrRunningOrHasEnded) {
+  const auto counts = [](const std::string& state) {
+    const SlurmQueue queue = ParseQueue(state + "|None");
+    return std::pair(queue.waiting, queue.running);
+  };
+  for (const char* state :
+       {"PENDING", "REQUEUED", "REQUEUE_HOLD", "REQUEUE_FED", "SPECIAL_EXIT", "RESV_DEL_HOLD"}) {
+    EXPECT_THAT(counts(state), Pair(1, 0)) << state;
+  }
+  for (const char* state : {"RUNNING", "COMPLETING", "CONFIGURING", "SUSPENDED", "STOPPED",
+                            "SIGNALING", "RESIZING", "STAGE_OUT"}) {
+    EXPECT_THAT(counts(state), Pair(0, 1)) << state;
+  }
+  for (const char* state : {"BOOT_FAIL", "CANCELLED", "COMPLETED", "DEADLINE", "FAILED",
+                            "NODE_FAIL", "OUT_OF_MEMORY", "PREEMPTED", "REVOKED", "TIMEOUT"}) {
+    EXPECT_THAT(counts(state), Pair(0, 0)) << state;
+  }
+}
+
+TEST(SlurmQueue, AWorkerThatAnOperatorMustHelpWaitsForEver) {
+  for (const std::string reason :
+       {"AccountNotAllowed", "BadConstraints", "InvalidAccount", "InvalidQOS", "JobHeldAdmin",
+        "JobHeldUser", "JobLaunchFailure", "PartitionConfig", "PartitionDown", "PartitionInactive",
+        "PartitionNodeLimit", "PartitionTimeLimit", "QOSMinCpuNotSatisfied", "QOSNotAllowed",
+        "QOSTimeLimit", "QOSMaxWallDurationPerJobLimit", "QOSMaxCpuPerJobLimit",
+        "launch failed requeued held", "launch_failed_requeued_held"}) {
+    EXPECT_EQ(ParseQueue("PENDING|" + reason).never, reason);
+    EXPECT_EQ(ParseQueue("RUNNING|" + reason).never, "");
+  }
+  for (const std::string passing : {"None", "Priority", "Resources", "Dependency", "BeginTime",
+                                    "QOSMaxJobsPerUserLimit", "AssocGrpCpuLimit"}) {
+    EXPECT_EQ(ParseQueue("PENDING|" + passing).never, "") << passing;
+  }
 }
 
 TEST(LongestChunk, IsHalfOfTheTimeLimitLessTheEnd) {

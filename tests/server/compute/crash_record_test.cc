@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -14,6 +15,7 @@
 
 #include "gtest/gtest.h"
 #include "server/fatal_signals.h"
+#include "tests/support/await.h"
 #include "tests/support/death_test_folder.h"
 #include "tests/support/temporary_folder.h"
 
@@ -109,6 +111,30 @@ TEST_F(CrashRecordTest, ADeathInAnExaminationCountsForItsRunAlone) {
   const auto record = Next();
   EXPECT_EQ(record->Deaths(kFirst), 0);
   EXPECT_EQ(record->Deaths(kSecond), 1);
+}
+
+TEST_F(CrashRecordTest, AThreadWithoutRoomInTheRecordWaits) {
+  {
+    CrashRecord record(folder_.path(), {});
+    std::vector<std::unique_ptr<CrashRecord::Computing>> all;
+    for (size_t point = 0; point < 2048; ++point) {
+      all.push_back(std::make_unique<CrashRecord::Computing>(record, kFirst, point));
+    }
+    std::atomic<bool> begins = false, has_room = false;
+    std::thread examines([&] {
+      begins = true;
+      const CrashRecord::Examining examining(record, kSecond);
+      EXPECT_TRUE(has_room);
+      Die(SIGSEGV);
+    });
+    AwaitThat([&] { return begins.load(); });
+    has_room = true;
+    all.pop_back();
+    examines.join();
+    while (!all.empty()) all.pop_back();
+  }
+  EXPECT_EQ(Next()->Deaths(kFirst), 0);
+  EXPECT_EQ(Next()->Deaths(kSecond), 1);
 }
 
 TEST_F(CrashRecordTest, AStoredChunkClearsTheRun) {

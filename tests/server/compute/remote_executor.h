@@ -62,7 +62,6 @@ class RemoteExecutor : public Executor {
   ~RemoteExecutor() override { scheduler_.RemoveExecutor(capacity_.executor); }
 
   void Wake() override {}
-  bool HasTurn(int64_t) const override { return false; }
   void Shutdown() override { is_shut_down_ = true; }
 
   size_t number() const { return capacity_.executor; }

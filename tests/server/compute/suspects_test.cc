@@ -110,7 +110,7 @@ TEST_F(SuspectsTest, PointsThatAreFinishedNeedNoChunk) {
   auto journal = std::make_shared<RecordingJournal>();
   RunRequest request = RunOf(2, SixChunks(2), journal);
   request.finished[0] = true;
-  request.suspicion = Suspected(2, {0, 7});
+  request.suspicion = Suspected(2, {0, 2, 7});
   scheduler_.Add(std::move(request));
   ASSERT_THAT(Turns(2, 32), ElementsAre(2, 2));
   EXPECT_THAT(cleared_, ElementsAre(2));

@@ -105,6 +105,22 @@ TEST_F(OwnTokenOfADoor, WithoutItTheServerWarnsAndServes) {
   EXPECT_OK(door->authenticator().Authenticate({std::string("Bearer ") + kAlice}, absl::Now()));
 }
 
+TEST(DoorDescription, NamesAllCredentials) {
+  const LaboratoryFiles files;
+  const std::string tokens = "5 tokens in --access-file=" + files.options().access_file;
+  const auto description = [](const DoorOptions& options, const std::string& listen) {
+    const auto door = Door::Create(options, *ParseListenAddress(listen));
+    EXPECT_OK(door);
+    return door.ok() ? (*door)->Description() : "";
+  };
+  EXPECT_EQ(description({}, "unix:/tmp/x"), "a Unix socket for this server's user, without tokens");
+  EXPECT_EQ(description({.access_file = files.options().access_file}, "127.0.0.1:1"),
+            "a token for this server's user, " + tokens);
+  EXPECT_THAT(
+      description(files.options(), "0.0.0.0:1"),
+      testing::MatchesRegex("TLS, certificate valid until [-0-9]+ [0-9]+:[0-9]+ UTC, " + tokens));
+}
+
 class SecureServer : public ::testing::Test {
  protected:
   grpc::Status List(const std::shared_ptr<grpc::Channel>& channel, const std::string& token) {

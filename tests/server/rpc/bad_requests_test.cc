@@ -38,6 +38,7 @@ std::vector<BadRequest> BadRequests() {
   const std::string list = kJobs + "ListEnsembleJobs", results = kJobs + "ListResults";
   const std::string pairs = "ballpiston.v1.AnalyticService.EvaluatePairs";
   const std::string trace = "ballpiston.v1.TraceService.TraceOrbit";
+  const std::string sample = "ballpiston.v1.TraceService.SampleCollisions";
   const std::string hit =
       "spec { experiment: FIRST_HIT target { samples: 64 } "
       "grid { rho: 0.53 delta: [0.3, 0.25, 0.2] epsilon: [0.1, 0.4] exponent: 1 } } ";
@@ -126,7 +127,22 @@ std::vector<BadRequest> BadRequests() {
        "1001 has 1001 cells; permitted in a trace: 1 to 1000"},
       {trace, orbit + R"(cells: "x\n")", {"cells"}, "x\\n"},
       {trace, orbit + "cells: '4' delta: 0.3", {"delta"}, "no two pistons may overlap"},
-      {trace, orbit + "temperature: 1", {"temperature"}}};  // a pair has none
+      {trace, orbit + "temperature: 1", {"temperature"}},  // a pair has none
+      {sample, hit, {"spec.grid"}, "has 6 points; permitted: one"},
+      {sample, with("experiment: 0"), {"spec.experiment"}},
+      {sample,
+       "spec { experiment: ENERGY_RELAXATION grid { rho: 0.53 delta: 0.1 } model: MARKOV "
+       "target { tolerance: 0.1 } }",
+       {"spec.model", "spec.target"},
+       "is markov; permitted: auto, billiard, billiard_reference"},
+      {sample,
+       "spec { experiment: LYAPUNOV grid { rho: 0.53 delta: 0.2 } }",
+       {"spec.experiment"},
+       "is lyapunov; permitted: an experiment with a pair, except lyapunov"},
+      {sample,
+       "spec { experiment: GAS_EQUILIBRIUM grid { rho: 0.53 delta: 0.1 cells: '4' } }",
+       {"spec.experiment"},
+       "is gas-equilibrium"}};
 }
 
 grpc::Status Send(const RunningServer& server, const BadRequest& bad) {

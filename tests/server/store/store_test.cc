@@ -269,6 +269,17 @@ TEST_F(StoreTest, WritesAreCommittedInGroups) {
   EXPECT_EQ(store->counts().checkpoints_written, 1000);
 }
 
+// The store's thread finds the checkpoint when it frees the space of the deletion.
+TEST_F(StoreTest, ARecordWaitsForItsDelayWhileSpaceIsFreed) {
+  const auto store = Open({.delay = kNever});
+  const auto nothing = [](Database&) {};
+  store->Record(nothing,
+                [&](const absl::Status&) { store->RecordCheckpoint(1, 0, 0, [] { return "r"; }); });
+  ASSERT_OK(store->CommitDeletion(nothing));
+  store->AwaitSwept();
+  EXPECT_EQ(store->counts().checkpoints_written, 0);
+}
+
 TEST_F(StoreTest, OnlyTheLastCheckpointOfAGroupIsWritten) {
   const auto store = Open({.delay = kNever});
   for (int i = 0; i < 10; ++i) {

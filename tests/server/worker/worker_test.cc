@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/experiment/all_experiments.h"
@@ -110,6 +111,21 @@ TEST_F(WorkerTest, AWorkerThatMustEndGivesItsLeaseBack) {
   const size_t computed = ChunksIn("done/a.me.returned").size();
   EXPECT_GE(computed, 1u);
   EXPECT_LT(computed, chunks_.size());
+  EXPECT_THAT(lines_, IsEmpty());
+}
+
+TEST_F(WorkerTest, AFolderThatIsAwayForAMomentIsReportedAndTheWorkGoesOn) {
+  Lay("a", lease_, 1e-9);
+  seconds_of_a_look_ = 1e-6;
+  bool is_away = true;
+  files_.before = [&](const std::string& operation, const std::string&) {
+    const bool touches = operation == "touch" || operation == "append";
+    return touches && std::exchange(is_away, false) ? absl::UnavailableError("gone")
+                                                    : absl::OkStatus();
+  };
+  EXPECT_OK(Run());
+  EXPECT_TRUE(AreEqual(ChunksIn("done/a.me.finished"), chunks_));
+  EXPECT_THAT(lines_, ElementsAre("gone"));
 }
 
 TEST_F(WorkerTest, AFullFolderIsUsedAgainWhenItHasRoom) {

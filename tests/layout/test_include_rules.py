@@ -1,0 +1,175 @@
+"""Files include only what the rules of their folder permit (include_rules.txt)."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+import pytest
+from sources import FOLDERS, PROJECT, SOURCES, text_of
+
+
+class Rule(NamedTuple):
+    folder: str
+    may_include: tuple[str, ...]  # prefixes
+    operating_system: bool
+
+
+def read_rules(text: str) -> list[Rule]:
+    """A row begins with a folder and a colon; the words after it, on this line and the next ones,
+    are what it may include."""
+    rows = re.split(r"^(\S+):", re.sub(r"^#.*\n", "", text, flags=re.MULTILINE), flags=re.MULTILINE)
+    return [
+        Rule(folder, (folder, *(set(words.split()) - {"system"})), "system" in words.split())
+        for folder, words in zip(rows[1::2], rows[2::2])
+    ]
+
+
+RULES = read_rules(text_of("tests/layout/include_rules.txt"))
+THREADS_AND_CLOCKS = ("thread", "future", "mutex", "condition_variable", "chrono", "ctime",
+                      "absl/synchronization/", "absl/time/")  # fmt: skip
+
+
+def is_allowed(rule: Rule, include: str) -> bool:
+    if include.startswith(THREADS_AND_CLOCKS) and not rule.operating_system:
+        return False
+    is_standard = not re.search("[/.]", include)  # <vector>, <cmath>, ...
+    is_of_system = include.startswith(("sys/", "arpa/", "netinet/")) or "/" not in include
+    return (
+        is_standard
+        or include.startswith(rule.may_include)
+        or (rule.operating_system and is_of_system and include != "sqlite3.h")
+    )
+
+
+def includes_of(text: str) -> list[str]:
+    """The included files, in order, without quotes or angle brackets."""
+    return re.findall(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"\n]*)[>"]', text, re.MULTILINE)
+
+
+def wrong_includes(path: str, text: str) -> list[str]:
+    """One sentence for each include that is not permitted."""
+    rule = next((rule for rule in RULES if path.startswith(rule.folder)), None)
+    if not rule:
+        return [f"{path} lies in a folder without a rule"]
+    includes = includes_of(text)
+    wrong = [f"{path} may not include {name}" for name in includes if not is_allowed(rule, name)]
+    # The core's physics and the API's messages meet in server/convert only.
+    both = [any(name.startswith(part) for name in includes) for part in ("core/", "ballpiston/v1/")]
+    if all(both) and re.match(r"server/(?!convert/)", path):
+        wrong.append(f"{path} includes core/ and ballpiston/v1/; only server/convert/ may")
+    return wrong
+
+
+def test_every_include_is_allowed() -> None:
+    wrong = [sentence for file in SOURCES.items() for sentence in wrong_includes(*file)]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_sources_of_all_folders_are_read() -> None:
+    read = {"core/geometry/pair_geometry.h", "tests/support/paths.cc", "tools/stability/main.cc"}
+    assert read <= SOURCES.keys()
+    text = SOURCES["core/geometry/pair_geometry.cc"]
+    assert "core/geometry/pair_geometry.h" in includes_of(text)
+
+
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_every_top_folder_has_a_readme(folder: str) -> None:
+    assert (PROJECT / folder / "README.md").exists()
+
+
+# ---- The rules can fail ----
+
+
+def test_includes_are_found_in_order() -> None:
+    text = '#include <vector>\n\n  #  include "core/a.h"\n// #include <thread>\n'
+    assert includes_of(text) == ["vector", "core/a.h"]
+
+
+PERMITTED = [
+    ("core/billiard/x.cc", "cmath core/sampling/direction.h core/geometry/pair_geometry.h "
+     "Eigen/Core"),
+    ("server/book/x.cc", "thread sys/stat.h server/store/store.h core/ensemble/chunk_plan.h"),
+    ("server/command_line/x.cc", "CLI/CLI.hpp"),
+    ("server/worker/x.cc", "fcntl.h core/ensemble/chunk_fold.h server/worker/lease_record.h "
+     "ballpiston/storage/records.pb.h"),
+    ("tools/flows/x.h", "boost/multiprecision/eigen.hpp"),
+    ("tools/stability/x.cc", "thread unistd.h hwy/highway.h core/billiard/orbits.h "
+     "tools/stability/report.h"),
+    ("tests/tools/stability/x.cc", "tools/stability/report.h"),
+    ("tests/support/process.cc", "unistd.h absl/status/status.h gtest/gtest.h"),
+    ("tests/core/x.cc", "tests/support/paths.h"),
+    ("tests/statistical/x.cc", "tests/support/paths.h"),
+    ("tests/oracle/x.cc", "tests/support/paths.h"),
+    ("tests/client/x.cc", "tests/support/paths.h"),
+    ("tests/server/x.cc", "tests/support/paths.h tests/server/running_server.h"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("path, includes", PERMITTED, ids=[path for path, _ in PERMITTED])
+def test_lower_layers_are_permitted(path: str, includes: str) -> None:
+    assert not wrong_includes(path, including(includes))
+
+
+SERVICE_THREADS_AND_CLOCKS = (
+    "ballpiston/v1/result.pb.h google/protobuf/message.h grpcpp/grpcpp.h sqlite3.h "
+    "server/store/store.h client/library/client.h thread mutex chrono ctime time.h "
+    "absl/time/clock.h unistd.h CLI/CLI.hpp"
+)
+FORBIDDEN = [
+    ("core/experiment/x.cc", SERVICE_THREADS_AND_CLOCKS),
+    ("core/geometry/x.cc", SERVICE_THREADS_AND_CLOCKS),
+    ("core/geometry/x.h", "core/closed_form/kernel.h core/sampling/direction.h"),
+    ("core/closed_form/x.cc", "core/sampling/direction.h"),
+    ("core/sampling/x.cc", "core/closed_form/kernel.h"),
+    ("core/billiard/x.h", "core/ensemble/chunk_plan.h core/statistics/moments.h "
+     "boost/multiprecision/eigen.hpp tools/stability/report.h"),
+    ("core/statistics/x.h", "core/geometry/pair_geometry.h core/closed_form/kernel.h"),
+    ("server/convert/x.h", "server/door/principal.h server/compute/lease.h"),
+    ("server/compute/x.cc", "server/cluster/folder_executor.h"),
+    ("server/store/x.cc", "server/book/job.h"),
+    ("server/book/x.cc", "tools/stability/report.h"),
+    ("server/door/x.cc", "server/rpc/call.h"),
+    ("server/rpc/x.cc", "client/library/client.h tests/support/paths.h CLI/CLI.hpp"),
+    ("server/main.cc", "CLI/CLI.hpp"),
+    ("server/command_line/x.cc", "core/ensemble/chunk_plan.h"),
+    ("server/worker/x.cc", "ballpiston/v1/spec.pb.h server/convert/spec.h server/store/store.h "
+     "server/compute/scheduler.h grpcpp/grpcpp.h sqlite3.h openssl/sha.h"),
+    ("client/command/x.cc", "core/geometry/pair_geometry.h server/convert/spec.h sqlite3.h "
+     "Eigen/Core Random123/philox.h tests/support/paths.h tools/stability/report.h"),
+    ("tools/method_comparison/x.h", "boost/multiprecision/eigen.hpp tools/stability/report.h"),
+    ("tools/stability/x.cc", "server/store/store.h client/library/client.h "
+     "ballpiston/v1/result.pb.h tests/oracle/exact_flight.h gtest/gtest.h grpcpp/grpcpp.h "
+     "sqlite3.h"),
+    ("tests/tools/stability/x.cc", "server/store/store.h"),
+    ("tests/core/geometry/x.cc", "server/store/store.h ballpiston/v1/spec.pb.h "
+     "tests/server/running_server.h tools/stability/report.h"),
+    ("tests/statistical/x.cc", "server/store/store.h tests/server/running_server.h"),
+    ("tests/oracle/x.h", "tests/server/running_server.h"),
+    ("tests/benchmark/x.cc", "tests/server/running_server.h"),
+    ("tests/client/x.cc", "core/geometry/pair_geometry.h tests/server/running_server.h"),
+    ("tests/end_to_end/x.cc", "tools/stability/report.h"),
+    ("tests/support/process.cc", "core/geometry/pair_geometry.h server/ballpiston_server.h "
+     "client/library/client.h ballpiston/v1/spec.pb.h grpcpp/channel.h tests/core/geometries.h "
+     "tests/server/running_server.h"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("path, includes", FORBIDDEN, ids=[path for path, _ in FORBIDDEN])
+def test_other_layers_are_forbidden(path: str, includes: str) -> None:
+    files = includes.split()
+    assert not [file for file in files if len(wrong_includes(path, including(file))) != 1]
+
+
+def including(files: str) -> str:
+    return "".join(f"#include <{file}>\n" for file in files.split())
+
+
+def test_physics_and_messages_meet_in_convert_only() -> None:
+    both = including("core/ensemble/ensemble_spec.h ballpiston/v1/spec.pb.h")
+    assert len(wrong_includes("server/book/x.cc", both)) == 1
+    assert wrong_includes("server/convert/x.cc", both) == []
+
+
+def test_a_folder_without_a_rule_is_an_error() -> None:
+    assert len(wrong_includes("core/thermostat/x.cc", "")) == 1

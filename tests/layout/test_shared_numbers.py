@@ -1,0 +1,52 @@
+"""A number that several pages state is equal on all of them, and in docs/numbers.md. A page marks
+such a number with its name: 21<!--gain-rare-avx2-->."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from sources import FOLDERS, files, text_of
+
+NUMBERS = "docs/numbers.md"
+
+
+def numbers_in(page: str) -> dict[str, str]:
+    """Number by name, from the rows | `name` | number | ... | of the page."""
+    return dict(re.findall(r"^\| `([a-z0-9-]+)` \| ([^|\n]+) \|", page, re.MULTILINE))
+
+
+def marked_numbers(page: str) -> Iterator[tuple[str, str]]:
+    """The name of each mark, and the text of the line before it."""
+    for mark in re.finditer(r"<!--([a-z0-9-]+)-->", page):
+        yield mark[1], page[: mark.start()].rpartition("\n")[2]
+
+
+def ends_with(line: str, number: str) -> bool:
+    """Whether the number is the end of the line, and a whole word."""
+    return re.search(rf"(?:^|\s){re.escape(number)}$", line) is not None
+
+
+def test_shared_numbers_are_the_same_on_all_pages() -> None:
+    numbers, used = numbers_in(text_of(NUMBERS)), set()
+    pages = {"README.md": text_of("README.md")} | files([*FOLDERS, "docs"], ".md")
+    for path, page in pages.items():
+        for name, line in marked_numbers(page) if path != NUMBERS else []:
+            assert name in numbers, f"{path}: {name} is not in {NUMBERS}"
+            number = numbers[name]
+            assert ends_with(line, number), f"{path}: {name} is {number}, but the page says: {line}"
+            used.add(name)
+    assert numbers.keys() - used == set(), "on no page"
+
+
+# Tests of the tests.
+def test_numbers_are_read_from_the_table() -> None:
+    page = "x\n| name | number |\n|---|---|\n| `a-1` | 0.1 µs | time | `make` |\n"
+    assert numbers_in(page) == {"a-1": "0.1 µs"}
+
+
+def test_numbers_are_whole_words() -> None:
+    (name, first), (_, second) = marked_numbers("it takes 12<!--a--> s, or\n112<!--a--> s")
+    assert name == "a"
+    assert ends_with(first, "12") and not ends_with(first, "13")
+    assert not ends_with(second, "12")
