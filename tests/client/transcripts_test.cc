@@ -138,7 +138,9 @@ class Replay : public ProgramTest {
   void Give(const std::string& name, const std::string& text) {
     FakeEnsembleService& ensemble = server_.ensemble;
     if (absl::string_view file = name; absl::ConsumePrefix(&file, "file ")) {
-      WriteFile(std::string(file), text);
+      const fs::path path = fs::absolute(std::string(file));
+      fs::create_directories(path.parent_path());
+      WriteFile(path, text);
     } else if (name == "jobs") {
       const auto page = FromText<v1::ListEnsembleJobsResponse>(text);
       ensemble.jobs.assign(page.jobs().begin(), page.jobs().end());

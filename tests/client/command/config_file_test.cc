@@ -1,4 +1,5 @@
 // The sources of a flag's value: the command line, the environment, the config file.
+// transcripts/settings.txt shows what a file may hold, and its mistakes.
 #include "client/command/config_file.h"
 
 #include "tests/client/preamble.h"
@@ -8,14 +9,6 @@ namespace {
 
 class ConfigFileTest : public ::testing::Test {
  protected:
-  static std::string Server(const std::vector<std::string>& more = {}) {
-    std::vector<std::string> words = {"server", "status"};
-    words.insert(words.end(), more.begin(), more.end());
-    const auto line = ParseCommandLine(words);
-    EXPECT_OK(line);
-    return line.ok() ? line->options.server : "";
-  }
-
   const EmptyHome home_;
 };
 
@@ -86,61 +79,6 @@ TEST_F(ConfigFileTest, WhatIsOffOrReplacedReplacesNothing) {
   const ScopedVariable quiet("BALLPISTON_QUIET", "1");
   ASSERT_OK_AND_ASSIGN(line, ParseCommandLine({"watch", "abc", "--verbose"}));
   EXPECT_EQ(line.options.progress, ProgressStyle::kJson);
-}
-
-TEST_F(ConfigFileTest, HoldsValuesOfEveryKind) {
-  home_.WriteConfig(
-      "# a comment\n"
-      "quiet = true\n"
-      "[run]\n"
-      "format = \"csv\"\n"
-      "rho = [0.53, 0.6]\n"
-      "delta = \"0.1,0.2\"\n"
-      "cells = [\"12\", \"4x3\", 8]\n"
-      "hot = 2\n"
-      "samples = 1e6\n"
-      "estimate = \"conductivity\"\n"
-      "verify = false\n");
-  ASSERT_OK_AND_ASSIGN(const CommandLine line, ParseCommandLine({"run", "first-hit"}));
-  EXPECT_TRUE(line.options.quiet);
-  EXPECT_EQ(line.options.format, Format::kCsv);
-  EXPECT_THAT(line.options.spec.grid().rho(), ElementsAre(0.53, 0.6));
-  EXPECT_THAT(line.options.spec.grid().delta(), ElementsAre(0.1, 0.2));
-  EXPECT_THAT(line.options.spec.grid().cells(), ElementsAre("12", "4x3", "8"));
-  EXPECT_THAT(line.options.spec.grid().hot(), ElementsAre(2));
-  EXPECT_EQ(line.options.spec.target().samples(), 1'000'000);
-  EXPECT_EQ(line.options.spec.target().estimate(), "conductivity");
-  EXPECT_FALSE(line.options.spec.verify());
-}
-
-TEST_F(ConfigFileTest, ATargetOnTheCommandLineKeepsTheEstimate) {
-  home_.WriteConfig("[run]\nsamples = 100\nestimate = \"conductivity\"\n");
-  ASSERT_OK_AND_ASSIGN(const CommandLine line,
-                       ParseCommandLine({"run", "gas-equilibrium", "--tolerance", "0.1"}));
-  EXPECT_EQ(line.options.spec.target().kind_case(), v1::Target::kTolerance);
-  EXPECT_EQ(line.options.spec.target().estimate(), "conductivity");
-}
-
-TEST_F(ConfigFileTest, AnotherFileMayBeChosen) {
-  home_.WriteConfig("server = \"usual:1\"\n");
-  const std::string other = home_.File("other.toml"), missing = home_.File("missing.toml");
-  WriteFile(other, "server = \"other:1\"\n");
-  EXPECT_EQ(Server({"--config", other}), "other:1");
-  const ScopedVariable variable("BALLPISTON_CONFIG", other);
-  EXPECT_EQ(Server(), "other:1");
-  EXPECT_THAT(ParseCommandLine({"list", "--config", missing}),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(missing)));
-}
-
-TEST_F(ConfigFileTest, IsInTheHomeFolderWithoutXdgConfigHome) {
-  home_.WriteConfig("server = \"xdg:1\"\n");
-  std::filesystem::create_directories(home_.File(".config/ballpiston"));
-  WriteFile(home_.File(".config/ballpiston/config.toml"), "server = \"home:1\"\n");
-  EXPECT_EQ(Server(), "xdg:1");
-  const ScopedVariable config_home("XDG_CONFIG_HOME", "relative");
-  EXPECT_EQ(Server(), "home:1");
-  config_home.Set({});
-  EXPECT_EQ(Server(), "home:1");
 }
 
 }  // namespace
