@@ -71,12 +71,5 @@ TEST(SpecFile, ErrorShortensALongValue) {
   EXPECT_THAT(message, HasSubstr("XTAIL"));
 }
 
-TEST(SpecFile, ErrorNamesAFileThatCannotBeRead) {
-  EXPECT_THAT(
-      ReadSpecFile("/no/such/file.json"),
-      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("/no/such/file.json: No such")));
-  EXPECT_THAT(ReadSpecFile("/"), StatusIs(absl::StatusCode::kInvalidArgument));
-}
-
 }  // namespace
 }  // namespace ballpiston::client
