@@ -256,7 +256,6 @@ absl::Status BallpistonServer::StartMetrics() {
   if (options_.metrics_listen.empty()) return absl::OkStatus();
   const absl::StatusOr<ListenAddress> address = ParseMetricsAddress(options_.metrics_listen);
   if (!address.ok()) return address.status();
-  for (const std::string& service : ServiceNames()) calls_.Expect(service);
   auto endpoint = MetricsEndpoint::Start(address->Text(), [this] {
     auto metrics = ServerMetrics(context_, door_->CertificateExpiry());
     for (auto& family : calls_.metrics().Collect()) metrics.push_back(std::move(family));

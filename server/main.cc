@@ -69,7 +69,7 @@ void LogEndOfListening(gpr_log_func_args* message) {
 void Reload(BallpistonServer& server) {
   const absl::Status status = server.Reload();
   if (status.ok()) return LogInfo(absl::StrCat("reloaded: ", server.door().Description()));
-  LogError(absl::StrCat("not reloaded, the previous contents stay in use: ", status.message()));
+  LogError(status.message());
 }
 
 void AwaitEnd(const sigset_t& signals, const CommandLine& line, BallpistonServer& server) {

@@ -65,7 +65,7 @@ std::optional<EarlierJob> FindEarlier(Database& database, const Acceptance& acce
   return answer ? std::optional(EarlierJob{*std::move(answer), true}) : std::nullopt;
 }
 
-// Adds the labels to the record. Refuses more than a job may have.
+// Adds the labels to the job. Refuses more than a job may have.
 void AddLabels(Database& database, const Labels& more, JobRecord& record) {
   Labels labels = LabelsOf(record.labels);
   for (const auto& [key, value] : more) labels.insert_or_assign(key, value);
@@ -75,6 +75,7 @@ void AddLabels(Database& database, const Labels& more, JobRecord& record) {
                                  "; permitted: at most ", kMostLabels)}}));
   }
   record.labels = LabelsText(labels);
+  UpdateJob(database, record);
 }
 
 // The number of samples or collisions; none with a tolerance.
@@ -125,25 +126,17 @@ absl::Status CheckSize(const CheckedSpec& checked, const Limits& limits) {
                        "max-samples-per-job", limits.max_samples_per_job);
 }
 
-std::optional<EarlierJob> Judge(Database& database, const Limits& limits, Acceptance& acceptance) {
-  std::optional<EarlierJob> earlier = FindEarlier(database, acceptance);
-  if (earlier && earlier->answered_from_store) {
-    AddLabels(database, LabelsOf(acceptance.record.labels), earlier->record);
-  }
-  if (earlier) return earlier;
-  database.Fail(acceptance.fits);
-  CheckQueue(database, limits, acceptance.record);
-  CheckStoreSize(database, limits);
-  if (!acceptance.fresh) Continue(database, acceptance.record);
-  return std::nullopt;
-}
-
 // An answer from the store stores no request: a retry finds the same answer.
 std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
-  std::optional<EarlierJob> earlier = Judge(database, limits, acceptance);
-  if (earlier && !acceptance.record.labels.empty()) UpdateJob(database, earlier->record);
-  if (earlier) return earlier;
   JobRecord& record = acceptance.record;
+  if (auto earlier = FindEarlier(database, acceptance)) {
+    if (!record.labels.empty()) AddLabels(database, LabelsOf(record.labels), earlier->record);
+    return earlier;
+  }
+  database.Fail(acceptance.fits);
+  CheckQueue(database, limits, record);
+  CheckStoreSize(database, limits);
+  if (!acceptance.fresh) Continue(database, record);
   InsertJob(database, record);
   if (!acceptance.request_id.empty()) {
     InsertRequest(database, record.principal, acceptance.request_id,

@@ -12,7 +12,7 @@
 // one long run. If that job is deleted meanwhile, the points begin anew. If another machine
 // computed a point's last chunk, the part of it that the target cut short is computed again.
 //
-// The request's labels are added to those of the earlier job that answers its question.
+// The request's labels are added to those of the earlier job, also by a retry.
 #pragma once
 
 #include <optional>
@@ -42,10 +42,8 @@ struct EarlierJob {
   bool answered_from_store = false;  // it answers the question; else the request is its own again
 };
 
-// Empty: a new job is to be made, and its record says which job it continues. INVALID_ARGUMENT or
-// RESOURCE_EXHAUSTED: the request is refused.
-std::optional<EarlierJob> Judge(Database& database, const Limits& limits, Acceptance& acceptance);
-// The same; then stores the new job and its request.
+// Empty: the new job and its request are stored, and the job's record says which job it continues.
+// INVALID_ARGUMENT or RESOURCE_EXHAUSTED: the request is refused.
 std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance);
 
 // RESOURCE_EXHAUSTED  TOO_MANY_POINTS, TOO_MANY_SAMPLES

@@ -46,6 +46,7 @@ Acceptance JobBook::NewAcceptance(const Principal& caller,
                                   const CheckedSpec& checked) const {
   Acceptance acceptance;
   JobRecord& record = acceptance.record;
+  record.id = RandomId();
   record.principal = caller.name;
   record.priority = request.priority();
   record.labels = LabelsText({request.labels().begin(), request.labels().end()});
@@ -63,22 +64,10 @@ Acceptance JobBook::NewAcceptance(const Principal& caller,
   return acceptance;
 }
 
-absl::StatusOr<v1::EnsembleJob> JobBook::Preview(const Principal& caller,
-                                                 const v1::CreateEnsembleJobRequest& request,
-                                                 const CheckedSpec& checked) {
-  Acceptance acceptance = NewAcceptance(caller, request, checked);
-  const auto earlier =
-      store_.Read([&](Database& database) { return Judge(database, limits_, acceptance); });
-  if (!earlier.ok()) return StoreFailure(earlier.status());
-  if (!*earlier) return Message(acceptance.record, nullptr);
-  return Answer(caller, (*earlier)->record, (*earlier)->answered_from_store);
-}
-
 absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
                                                 const v1::CreateEnsembleJobRequest& request,
                                                 const CheckedSpec& checked) {
   Acceptance acceptance = NewAcceptance(caller, request, checked);
-  acceptance.record.id = RandomId();
   std::shared_ptr<Job> job;  // the new job, if there is one
   const auto earlier = store_.Commit([&](Database& database) {
     auto found = Accept(database, limits_, acceptance);

@@ -82,11 +82,6 @@ class JobBook {
   // as they are.
   void Shutdown();
 
-  // The answer that Create would give now.
-  absl::StatusOr<v1::EnsembleJob> Preview(const Principal& caller,
-                                          const v1::CreateEnsembleJobRequest& request,
-                                          const CheckedSpec& checked);
-
   // `checked` is the specification of the request, without violations; the request's id is in lower
   // case. Returns an earlier job if this is a retry, or if an earlier job has the same question.
   absl::StatusOr<v1::EnsembleJob> Create(const Principal& caller,

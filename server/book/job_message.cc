@@ -47,7 +47,7 @@ v1::JobProgress ProgressOf(int64_t points, bool open_ended, const JobNumbers& nu
 
 v1::EnsembleJob JobMessage(const JobRecord& record, const JobNumbers& numbers, double retain_days) {
   v1::EnsembleJob job;
-  if (!record.id.empty()) job.set_name(JobName(record.id));
+  job.set_name(JobName(record.id));
   *job.mutable_spec() = SpecFromBytes(record.spec).value_or(v1::EnsembleSpec());
   job.set_state(record.state);
   SetTimes(record, retain_days, job);

@@ -111,33 +111,46 @@ void AddWord(CLI::App& app, const std::string& flag, std::string& word,
 
 // ---- the file of --config ----
 
-// Reads lines FLAG = VALUE; a line that begins with # is a comment. (CLI11's own reader takes
-// [::1]:50051 for the beginning of a list, and any # for a comment.)
+// Reads lines FLAG = VALUE and sets the flags that the command line does not have; a line that
+// begins with # is a comment. CLI11's own reader would start a server with other flags than the
+// file has: it ignores what follows [SECTION], and the second of two lines of a flag unless they
+// are adjacent.
 class FlagFile : public CLI::Config {
  public:
+  explicit FlagFile(CLI::App& app) : app_(app) {}
+
+  // Sets the flags at once, while the line is known, and leaves none to CLI11.
   std::vector<CLI::ConfigItem> from_config(std::istream& file) const override {
-    std::vector<CLI::ConfigItem> items;
+    int number = 0;
     for (std::string line; std::getline(file, line);) {
+      ++number;
       absl::StripAsciiWhitespace(&line);
       if (line.empty() || line.front() == '#') continue;
-      const std::vector<std::string> parts = absl::StrSplit(line, absl::MaxSplits('=', 1));
-      const std::string value = parts.size() == 1 ? "" : parts[1];
-      Add(std::string(absl::StripAsciiWhitespace(parts[0])),
-          std::string(absl::StripAsciiWhitespace(value)), items);
+      try {
+        Set(line);
+      } catch (const CLI::ParseError& error) {
+        const auto path = app_.get_config_ptr()->as<std::string>();
+        throw CLI::ConfigError(absl::StrCat(path, ":", number, ": ", error.what()));
+      }
     }
-    return items;
+    return {};
   }
 
   std::string to_config(const CLI::App*, bool, bool, std::string) const override { return ""; }
 
  private:
-  // CLI11 ignores a flag's second item, so all values of a flag are in one.
-  static void Add(const std::string& flag, std::string value, std::vector<CLI::ConfigItem>& items) {
-    const auto same = [&](const CLI::ConfigItem& item) { return item.name == flag; };
-    auto item = std::find_if(items.begin(), items.end(), same);
-    if (item == items.end()) item = items.insert(item, {.parents = {}, .name = flag, .inputs = {}});
-    item->inputs.push_back(std::move(value));
+  void Set(const std::string& line) const {
+    const std::pair<std::string, std::string> parts = absl::StrSplit(line, absl::MaxSplits('=', 1));
+    const std::string flag(absl::StripAsciiWhitespace(parts.first));
+    CLI::Option* const option = app_.get_option_no_throw("--" + flag);
+    if (option == nullptr) throw CLI::ExtrasError(std::vector<std::string>{flag});
+    if (!option->get_configurable()) throw CLI::ConfigError::NotConfigurable(flag);
+    const bool is_on_command_line = option->count() > 0 && !option->get_callback_run();
+    if (is_on_command_line) return;  // CLI11 sets such flags after this file
+    option->add_result(std::string(absl::StripAsciiWhitespace(parts.second)))->run_callback();
   }
+
+  CLI::App& app_;
 };
 
 // ---- the flags, by their groups in --help ----
@@ -163,9 +176,7 @@ void AddServerFlags(CLI::App& app, CommandLine& line) {
              "stop after this time without active jobs and calls (0: never)");
   AddSeconds(app, "--drain-seconds", line.drain, 0, 3600,
              "time for calls in progress to end after SIGTERM or SIGINT");
-  app.config_formatter(std::make_shared<FlagFile>());
-  // Unknown ones are then refused like those of the command line.
-  app.allow_config_extras(CLI::config_extras_mode::capture);
+  app.config_formatter(std::make_shared<FlagFile>(app));
   app.set_config("--config", "",
                  "file of flags, one a line: FLAG = VALUE, without the dashes. A line that begins\n"
                  "with # is a comment. A flag of the command line takes precedence")

@@ -23,6 +23,12 @@ std::string MinuteText(absl::Time time) {
   return absl::FormatTime("%Y-%m-%d %H:%M UTC", time, absl::UTCTimeZone());
 }
 
+std::string Outcome(const char* part, const absl::Status& reloaded) {
+  if (reloaded.ok()) return absl::StrCat(part, " is reloaded");
+  return absl::StrCat(part,
+                      " is not reloaded, its previous content stays in use: ", reloaded.message());
+}
+
 absl::StatusOr<std::unique_ptr<ServerTls>> ReadTls(const DoorOptions& options) {
   if (!HasTls(options)) return nullptr;
   return ServerTls::Create(
@@ -93,14 +99,14 @@ void Door::AcceptTokens() {
 }
 
 absl::Status Door::Reload() {
-  std::vector<std::string> errors;
+  const absl::Status access = ReadAccessFile();
   const absl::Status certificate = tls_ == nullptr ? absl::OkStatus() : tls_->Reload();
-  for (const absl::Status& status : {ReadAccessFile(), certificate}) {
-    if (!status.ok()) errors.emplace_back(status.message());
-  }
   AcceptTokens();
   WarnOfExpiry();
-  return errors.empty() ? absl::OkStatus() : Refused(absl::StrJoin(errors, "; "));
+  if (access.ok() && certificate.ok()) return absl::OkStatus();
+  std::string outcome = Outcome("the access file", access);
+  if (tls_ != nullptr) absl::StrAppend(&outcome, "; ", Outcome("the certificate", certificate));
+  return Refused(outcome);
 }
 
 std::optional<absl::Time> Door::CertificateExpiry() const {

@@ -61,8 +61,9 @@ class Door {
   void Close() { own_token_.reset(); }
 
   // Reads the files again, and logs the same warnings as Create. If a file is invalid, its previous
-  // content stays in use, and the error names the file. The new access file applies from the next
-  // call on. New connections use the new certificate a second later. One thread at a time.
+  // content stays in use, and the error says which files are reloaded and which are not. The new
+  // access file applies from the next call on. New connections use the new certificate a second
+  // later. One thread at a time.
   absl::Status Reload();
 
   // The present settings, for the log.

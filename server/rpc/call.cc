@@ -1,14 +1,11 @@
 #include "server/rpc/call.h"
 
-#include <algorithm>
 #include <exception>
 #include <utility>
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
-#include "server/book/job_name.h"
 #include "server/convert/errors.h"
 #include "server/rpc/client_version.h"
 #include "server/status/log.h"
@@ -17,29 +14,11 @@
 namespace ballpiston::server {
 namespace {
 
-// The metadata key of a call's request id, in the request and in the answer.
-constexpr char kRequestId[] = "x-request-id";
-constexpr size_t kMaxRequestId = 64;
-
-// The id is logged, so it may contain only characters that cannot be mistaken for other parts of a
-// line.
-bool IsRequestId(const std::string& id) {
-  const auto permitted = [](unsigned char c) {
-    return absl::ascii_isalnum(c) || c == '-' || c == '_' || c == '.';
-  };
-  return !id.empty() && id.size() <= kMaxRequestId && std::all_of(id.begin(), id.end(), permitted);
-}
-
 // Empty if there is none.
-std::string MetadataOf(const grpc::ServerContext& context, const char* key) {
-  const auto found = context.client_metadata().find(key);
+std::string UserAgentOf(const grpc::ServerContext& context) {
+  const auto found = context.client_metadata().find("user-agent");
   if (found == context.client_metadata().end()) return "";
   return {found->second.data(), found->second.size()};
-}
-
-std::string RequestIdOf(const grpc::ServerContext& context) {
-  const std::string id = MetadataOf(context, kRequestId);
-  return IsRequestId(id) ? id : RandomId();
 }
 
 absl::Status RoleTooLow(const Principal& caller, Role least) {
@@ -52,7 +31,7 @@ absl::Status RoleTooLow(const Principal& caller, Role least) {
 // Sets the caller.
 absl::Status Admit(const ServiceContext& service, const grpc::ServerContext& context,
                    const CallRule& rule, Call& call) {
-  absl::Status served = CheckClientVersion(MetadataOf(context, "user-agent"), kVersion);
+  absl::Status served = CheckClientVersion(UserAgentOf(context), kVersion);
   if (!served.ok()) return served;
   absl::StatusOr<Principal> caller = service.authenticator.Authenticate(context);
   if (!caller.ok()) return caller.status();
@@ -73,19 +52,14 @@ void TellRetryDelay(grpc::ServerContext& context, const google::rpc::Status& err
 void LogDone(const Call& call, const char* what, const std::string& job,
              const std::string& points) {
   Log(Severity::kInfo, what,
-      {{"method", call.method},
-       {"job", job},
-       {"principal", call.caller.name},
-       {"request_id", call.request_id},
-       {"points", points}});
+      {{"method", call.method}, {"job", job}, {"principal", call.caller.name}, {"points", points}});
 }
 
 grpc::Status ServeCall(ServiceContext& service, grpc::ServerContext& context, const CallRule& rule,
                        absl::FunctionRef<absl::Status(const Call&)> method) {
   const auto active = service.activity.Begin();
   const absl::Time begin = absl::Now();
-  Call call = {.method = rule.method, .request_id = RequestIdOf(context), .caller = {}};
-  context.AddTrailingMetadata(kRequestId, call.request_id);
+  Call call = {.method = rule.method, .caller = {}};
   absl::Status status;
   try {
     status = Admit(service, context, rule, call);
@@ -98,7 +72,6 @@ grpc::Status ServeCall(ServiceContext& service, grpc::ServerContext& context, co
   TellRetryDelay(context, error);
   service.calls.Failed({.method = call.method,
                         .principal = call.caller.name,
-                        .request_id = call.request_id,
                         .code = status.code(),
                         .reason = ReasonOf(error),
                         .message = std::string(status.message()),

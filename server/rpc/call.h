@@ -1,5 +1,4 @@
-// One call: its caller, its request id, which is also in the log, and the frames around its method.
-// gRPC gives each call a thread of its own.
+// One call: its caller, and the frames around its method. gRPC gives each call a thread of its own.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +17,7 @@
 namespace ballpiston::server {
 
 struct Call {
-  std::string method;      // CreateEnsembleJob
-  std::string request_id;  // the client's `x-request-id`, or a generated one
+  std::string method;  // CreateEnsembleJob
   Principal caller;
 };
 
@@ -35,8 +33,7 @@ struct CallRule {
 };
 
 // The frame of every call: authenticates and authorises it, runs its method, and reports a failure
-// to the log. Always sends the request id back in the trailing metadata. An exception (out of
-// memory) ends the call, not the server.
+// to the log. An exception (out of memory) ends the call, not the server.
 //   FAILED_PRECONDITION  CLIENT_VERSION_NOT_SERVED
 //   UNAUTHENTICATED      CREDENTIALS_MISSING, CREDENTIALS_INVALID, CREDENTIALS_EXPIRED
 //   PERMISSION_DENIED    ROLE_TOO_LOW

@@ -33,7 +33,6 @@ absl::StatusOr<v1::EnsembleJob> CreateEnsembleJob(ServiceContext& service, const
   if (spec.violations.empty()) AddViolations(service.ladder.ViolationsHere(spec.spec), spec);
   const absl::Status checked = Check(spec, check);
   if (!checked.ok()) return checked;
-  if (request.validate_only()) return service.book.Preview(call.caller, accepted, spec);
   absl::StatusOr<v1::EnsembleJob> job = service.book.Create(call.caller, accepted, spec);
   if (job.ok()) LogAcceptance(call, *job);
   return job;

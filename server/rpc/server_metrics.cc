@@ -41,7 +41,6 @@ void AddServer(const ServiceContext& service, const v1::ServerStatus& status, Pa
              {{"version", status.version()}, {"engine_version", status.engine_version()}});
   page.Gauge("ballpiston_start_time_seconds", "Start time of the server, in seconds since 1970.",
              SinceEpoch(service.start_time));
-  page.Gauge("ballpiston_draining", "1 while the server is stopping.", service.draining.load());
   page.Counter("ballpiston_engine_crashes_total",
                "Deaths of server processes on this data folder while they computed: crashes of the "
                "engine, and kills for want of memory.",
@@ -54,8 +53,6 @@ void AddServer(const ServiceContext& service, const v1::ServerStatus& status, Pa
   page.Gauge("ballpiston_streams", "Open watches and traces.", status.streams());
   page.Gauge("ballpiston_workers", "Threads that compute.", status.workers());
   page.Gauge("ballpiston_busy_workers", "Threads that compute now.", status.busy_workers());
-  page.Counter("ballpiston_blocks_computed_total", "Computed blocks of samples.",
-               status.blocks_computed());
   page.Counter("ballpiston_samples_computed_total", "Computed samples.", status.samples_computed());
   page.Counter("ballpiston_processor_seconds_total", "Processor time of threads and cluster.",
                status.processor_seconds());
@@ -65,8 +62,6 @@ void AddJobs(const JobBook& book, const v1::ServerStatus& status, Page& page) {
   const std::string help = "Jobs that have not ended, by state. running: or being cancelled.";
   page.Gauge("ballpiston_jobs", help, status.queued_jobs(), {{"state", "queued"}});
   page.Gauge("ballpiston_jobs", help, status.running_jobs(), {{"state", "running"}});
-  page.Gauge("ballpiston_queue_length", "Jobs that wait for their first turn.",
-             status.queued_jobs());
   const EndedJobs ended = book.ended_jobs();
   const std::string total = "ballpiston_jobs_ended_total";
   const std::string ended_help = "Jobs that ended, by their last state.";
@@ -81,7 +76,6 @@ void AddStore(const Store& store, const v1::ServerStatus& status, Page& page) {
   const Store::Counts counts = store.counts();
   page.Gauge("ballpiston_store_bytes", "The store on disk, its log included.",
              status.store_bytes());
-  page.Counter("ballpiston_store_commits_total", "Committed groups of writes.", counts.commits);
   page.Counter("ballpiston_store_checkpoints_written_total",
                "Checkpoints of unfinished points that were written.", counts.checkpoints_written);
   page.Gauge("ballpiston_store_pending_writes", "Writes that wait.", counts.pending_writes);

@@ -7,7 +7,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
-#include "google/protobuf/descriptor.h"
 #include "server/status/log.h"
 
 namespace ballpiston::server {
@@ -18,7 +17,6 @@ using grpc::experimental::ServerRpcInfo;
 using prometheus::Labels;
 
 constexpr char kReflection[] = "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
-constexpr int kLastCode = 16;  // UNAUTHENTICATED
 constexpr int kLinesPerSecond = 10;
 
 // Upper bounds, in seconds; prometheus-cpp adds an unbounded bucket.
@@ -33,11 +31,6 @@ Labels LabelsOf(const std::string& path, size_t type) {
       absl::StrSplit(absl::StripPrefix(path, "/"), absl::MaxSplits('/', 1));
   return {
       {"grpc_service", names.first}, {"grpc_method", names.second}, {"grpc_type", kTypes[type]}};
-}
-
-Labels WithCode(Labels method, absl::StatusCode code) {
-  method["grpc_code"] = absl::StatusCodeToString(code);
-  return method;
 }
 
 prometheus::Family<prometheus::Counter>& Counter(const char* name, const char* help,
@@ -122,7 +115,9 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
   void Ended(absl::StatusCode code) {
     if (std::exchange(ended_, true)) return;
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin_;
-    observer_.ended_.Add(WithCode(method_, code)).Increment();
+    Labels with_code = method_;
+    with_code["grpc_code"] = absl::StatusCodeToString(code);
+    observer_.ended_.Add(with_code).Increment();
     observer_.seconds_.Add(method_, kBuckets).Observe(time.count());
   }
 
@@ -152,21 +147,6 @@ CallObserver::InterceptorFactory() {
   return std::make_unique<Factory>(*this);
 }
 
-void CallObserver::Expect(const std::string& service) {
-  const auto* described =
-      google::protobuf::DescriptorPool::generated_pool()->FindServiceByName(service);
-  for (int i = 0; described != nullptr && i < described->method_count(); ++i) {
-    const google::protobuf::MethodDescriptor& method = *described->method(i);
-    const size_t type = (method.client_streaming() ? 1 : 0) + (method.server_streaming() ? 2 : 0);
-    const Labels labels = LabelsOf(absl::StrCat("/", service, "/", method.name()), type);
-    began_.Add(labels);
-    seconds_.Add(labels, kBuckets);
-    for (int code = 0; code <= kLastCode; ++code) {
-      ended_.Add(WithCode(labels, static_cast<absl::StatusCode>(code)));
-    }
-  }
-}
-
 void CallObserver::Keep(const grpc::ServerContextBase& call, std::shared_ptr<void> object) {
   MutexLock lock(mutex_);
   kept_[&call] = std::move(object);
@@ -187,7 +167,6 @@ void CallObserver::Failed(const FailedCall& call, absl::Time now) {
   Log(failed ? Severity::kError : Severity::kWarning, absl::StrCat(what, call.message),
       {{"method", call.method},
        {"principal", call.principal},
-       {"request_id", call.request_id},
        {"code", absl::StatusCodeToString(call.code)},
        {"reason", call.reason},
        {"seconds", call.seconds}});

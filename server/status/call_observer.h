@@ -30,7 +30,6 @@ namespace ballpiston::server {
 struct FailedCall {
   std::string method;     // WatchEnsembleJob
   std::string principal;  // empty: not authenticated
-  std::string request_id;
   absl::StatusCode code = absl::StatusCode::kUnknown;
   std::string reason;  // of its ErrorInfo, if there is one
   std::string message;
@@ -52,9 +51,6 @@ class CallObserver {
 
   // For ServerBuilder::experimental().SetInterceptorCreators. This must outlive the server.
   std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface> InterceptorFactory();
-
-  // Adds the methods of a service of the generated protos, with zeros, before their first call.
-  void Expect(const std::string& service);
 
   // Keeps an object until gRPC has sent the answer, which it does after the method has returned.
   void Keep(const grpc::ServerContextBase& call, std::shared_ptr<void> object);

@@ -255,21 +255,25 @@ TEST_F(ConfigFile, EachLineOfAFlagThatMayBeRepeatedCounts) {
                 folder + "/ballpiston-worker' '" + folder + "' --mem-per-cpu=500M --exclusive"));
 }
 
-TEST_F(ConfigFile, ARefusalNamesFlagAndPermittedValues) {
+TEST_F(ConfigFile, ARefusalNamesFileLineFlagAndPermittedValues) {
   const struct {
     std::string text;
+    int line;
     std::string message;
   } table[] = {
-      {"listn = unix:x\n", "not expected: listn"},
-      {"max_streams = 3\n", "not expected: max_streams"},
-      {"[server]\nworkers = 1\n", "not expected: [server]"},
-      {"data-dir\n", "--data-dir: needs a value"},
-      {"workers =\n", "--workers:  is refused; permitted: whole"},
-      {"listen = x\nworkers = 0\n", "--workers: 0 is refused; permitted: whole"},
-      {"workers = 1\n\nlog-level = info\nworkers = 1\n", "--workers: At Most 1"},
+      {"listn = unix:x\n", 1, "not expected: listn"},
+      {"\nmax_streams = 3\n", 2, "not expected: max_streams"},
+      {"[server]\nworkers = 1\n", 1, "not expected: [server]"},
+      {"data-dir\n", 1, "--data-dir: needs a value"},
+      {"#\nworkers =\n", 2, "--workers:  is refused; permitted: whole"},
+      {"listen = x\nworkers = 0\n", 2, "--workers: 0 is refused; permitted: whole"},
+      {"workers = 1\n\nlog-level = info\nworkers = 1\n", 4, "--workers: At Most 1"},
+      {"data-dir = a\nworkers = 1\ndata_dir = b\n", 3, "--data-dir: At Most 1"},
   };
   for (const auto& row : table) {
-    EXPECT_THAT(RefusalOf(row.text, {"--check"}), HasSubstr(row.message));
+    EXPECT_THAT(
+        RefusalOf(row.text, {"--check"}),
+        AllOf(HasSubstr(Path() + ":" + std::to_string(row.line) + ": "), HasSubstr(row.message)));
   }
 }
 

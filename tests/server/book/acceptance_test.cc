@@ -16,6 +16,8 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Pair;
+using ::testing::UnorderedElementsAre;
 using v1::EnsembleJob;
 
 v1::EnsembleSpec Question(uint64_t seed = 1) { return Equilibrium(2, 5, seed); }
@@ -229,12 +231,9 @@ TEST(Payload, EveryFieldExceptTheIdAndTheLabelsIsPartOfTheHash) {
   const google::protobuf::Descriptor& type = *v1::CreateEnsembleJobRequest::descriptor();
   for (int i = 0; i < type.field_count(); ++i) {
     const FieldDescriptor& field = *type.field(i);
-    // validate_only stores no request, so its payload does not matter. Labels are added to the job
-    // that answers, so a retry may change them.
-    if (field.name() == "spec" || field.name() == "request_id" || field.name() == "labels" ||
-        field.name() == "validate_only") {
+    // A retry may have other labels: they are added to the job.
+    if (field.name() == "spec" || field.name() == "request_id" || field.name() == "labels")
       continue;
-    }
     v1::CreateEnsembleJobRequest changed = request;
     SetOther(changed, field);
     expect_new(field, changed);
@@ -263,6 +262,28 @@ TEST_F(AcceptanceTest, ARequestIdOfAnotherRequestIsRefused) {
     Start();
   }
   EXPECT_EQ(List().jobs.size(), 1u);
+}
+
+TEST_F(AcceptanceTest, LabelsAreAddedToTheEarlierJobOfARetryAndOfAnAnswer) {
+  const auto labelled = [](v1::CreateEnsembleJobRequest request, const std::string& key,
+                           const std::string& value) {
+    (*request.mutable_labels())[key] = value;
+    return request;
+  };
+  const auto request = CreateRequest(Question(), kUuid);
+  const std::string id = Answered(kAnn, labelled(request, "figure", "3"));
+  EXPECT_EQ(Id(kAnn, labelled(request, "figure", "4")), id);  // a retry
+  EXPECT_EQ(Id(kAnn, labelled(request, "paper", "yes")), id);
+  EXPECT_EQ(Id(kAnn, labelled(CreateRequest(Question()), "talk", "no")), id);  // an answer
+  EXPECT_THAT(Get(id).labels(),
+              UnorderedElementsAre(Pair("figure", "4"), Pair("paper", "yes"), Pair("talk", "no")));
+  v1::CreateEnsembleJobRequest too_many = request;
+  for (size_t i = 0; i < kMostLabels; ++i) {
+    too_many = labelled(too_many, std::to_string(i), "x");
+  }
+  EXPECT_THAT(Create(kAnn, too_many), StatusIs(absl::StatusCode::kInvalidArgument,
+                                               HasSubstr(" 35; permitted: at most 32")));
+  EXPECT_EQ(Get(id).labels_size(), 3);
 }
 
 TEST_F(AcceptanceTest, EachPrincipalHasItsOwnRequestIds) {
@@ -325,32 +346,6 @@ TEST_F(AcceptanceTest, ZeroMeansUnlimited) {
          .max_points_per_job = 0,
          .max_samples_per_job = 0});
   for (int i = 0; i < 5; ++i) EXPECT_OK(Create(kAnn, FreshRequest(Equilibrium(50, 1000))));
-}
-
-// ---- validate_only ----
-
-TEST(AcceptanceRpc, ValidateOnlyChecksLimitsReturnsStoredAnswersAndCreatesNoJob) {
-  RunningServer server({.limits = {.max_points_per_job = 3, .max_samples_per_job = 100}});
-  const std::string answered = server.Succeeded(Question());
-  const struct {
-    v1::EnsembleSpec spec;
-    const char* reason;
-    std::string name;
-  } rows[] = {{Equilibrium(4, 1), "TOO_MANY_POINTS", ""},
-              {Equilibrium(3, 40), "TOO_MANY_SAMPLES", ""},
-              {Equilibrium(3, 30), "", ""},
-              {Question(), "", answered}};
-  for (const auto& [spec, reason, name] : rows) {
-    v1::CreateEnsembleJobRequest request = CreateRequest(spec, kUuid);
-    request.set_validate_only(true);
-    EnsembleJob job;
-    EXPECT_EQ(ReasonOf(server.Create(request, &job)), reason);
-    EXPECT_EQ(job.name(), name);
-    EXPECT_EQ(job.answered_from_store(), !name.empty());
-  }
-  EXPECT_EQ(server.List().jobs_size(), 1);
-  // The id was not stored, so another question can use it.
-  EXPECT_NE(server.Created(CreateRequest(Question(2), kUuid)).name(), answered);
 }
 
 }  // namespace

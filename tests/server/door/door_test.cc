@@ -18,8 +18,11 @@
 namespace ballpiston::server {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 // The given flags, as letters: a(ccess file), c(ertificate), k(ey).
 DoorOptions Flags(const std::string& letters) {
@@ -153,7 +156,10 @@ TEST_F(SecureServer, AnInvalidAccessFileKeepsThePreviousOne) {
   const auto channel = Channel();
   files_.WriteAccessFile("nonsense " + std::string(kBob) + "\n");
   const absl::Status status = Reload();
-  EXPECT_THAT(std::string(status.message()), HasSubstr("line 1"));
+  EXPECT_THAT(
+      std::string(status.message()),
+      AllOf(StartsWith("the access file is not reloaded, its previous content stays in use: "),
+            HasSubstr("line 1"), EndsWith("; the certificate is reloaded")));
   EXPECT_THAT(std::string(status.message()), Not(HasSubstr(kBob)));
   EXPECT_OK(List(channel, kAlice));
   unlink(files_.options().access_file.c_str());
@@ -168,7 +174,14 @@ TEST_F(SecureServer, AKeyMayBeRenewedBeforeItsCertificate) {
   ASSERT_OK(List(channel, kAlice));
   const KeyAndCertificate renewed = files_.authority().Issue("server-2");
   files_.Write("server.key", renewed.key);
-  EXPECT_THAT(std::string(Reload().message()), HasSubstr("--tls-key="));
+  files_.WriteAccessFile("");
+  const absl::Status status = Reload();
+  EXPECT_THAT(std::string(status.message()),
+              AllOf(StartsWith("the access file is reloaded; the certificate is not reloaded, "),
+                    HasSubstr("--tls-key=")));
+  EXPECT_EQ(ReasonOf(List(Channel(), kAlice)), "CREDENTIALS_INVALID");  // revoked at once
+  files_.WriteAccessFile(LaboratoryTokens());
+  EXPECT_FALSE(Reload().ok());
   EXPECT_OK(List(Channel(), kAlice));
   EXPECT_EQ(ServedCommonName(), "server-1");
   files_.Write("server.pem", renewed.certificate);

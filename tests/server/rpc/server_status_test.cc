@@ -34,7 +34,7 @@ class ServerStatusTest : public testing::Test {
   }
 
   v1::ServerStatus AskedBy(const std::string& principal, Role role) {
-    const Call call{.method = "GetServerStatus", .request_id = "", .caller = {principal, role}};
+    const Call call{.method = "GetServerStatus", .caller = {principal, role}};
     const auto status = GetServerStatus(context_, call, v1::GetServerStatusRequest());
     EXPECT_OK(status);
     return *status;
