@@ -51,11 +51,6 @@ grpc::Status InvalidSpec(const std::string& field, const std::string& descriptio
                       details.SerializeAsString());
 }
 
-grpc::Status LimitExceeded(const std::string& reason, const std::string& message) {
-  return grpc::Status(grpc::StatusCode::RESOURCE_EXHAUSTED, message,
-                      DetailsWithReason(reason).SerializeAsString());
-}
-
 grpc::Status JobNotFound(const std::string& name) {
   return grpc::Status(grpc::StatusCode::NOT_FOUND, "no such job: " + name,
                       DetailsWithReason("JOB_NOT_FOUND").SerializeAsString());

@@ -21,9 +21,6 @@ namespace ballpiston::client {
 // INVALID_ARGUMENT with the details that a server attaches: one violation.
 grpc::Status InvalidSpec(const std::string& field, const std::string& description);
 
-// RESOURCE_EXHAUSTED with the details that a server attaches.
-grpc::Status LimitExceeded(const std::string& reason, const std::string& message);
-
 // NOT_FOUND with the details a server attaches.
 grpc::Status JobNotFound(const std::string& name);
 
@@ -62,7 +59,6 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
   std::string pushback;  // milliseconds that failed attempts of update ask to wait; empty: none
   grpc::Status create_end;
   std::vector<v1::EnsembleJob::State> created_states;  // of the jobs that Create makes, in order
-  bool answers_from_store = false;  // Create answers with this value of answered_from_store
   int page_size = 2;                // the largest page, whatever size the client requests
   int unavailable_later_pages = 0;  // failing attempts to list a page after the first page
 
@@ -93,7 +89,6 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
     if (asked_.create.size() <= created_states.size()) {
       job->set_state(created_states[asked_.create.size() - 1]);
     }
-    job->set_answered_from_store(answers_from_store);
     return grpc::Status::OK;
   }
 
@@ -112,7 +107,11 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
     const size_t from = request->page_token().empty() ? 0 : std::stoul(request->page_token());
     const auto size = static_cast<size_t>(std::min(page_size, request->page_size()));
     const size_t to = std::min(from + size, jobs.size());
-    for (size_t i = from; i < to; ++i) *page->add_jobs() = jobs[i];
+    for (size_t i = from; i < to; ++i) {
+      *page->add_jobs() = jobs[i];
+      if (request->view() != v1::ListEnsembleJobsRequest::BASIC) continue;
+      page->mutable_jobs()->rbegin()->mutable_spec()->clear_grid();
+    }
     if (to < jobs.size()) page->set_next_page_token(std::to_string(to));
     return grpc::Status::OK;
   }
@@ -157,6 +156,7 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
 
   grpc::Status WatchEnsembleJob(Context*, const v1::WatchEnsembleJobRequest* request,
                                 grpc::ServerWriter<v1::WatchEnsembleJobResponse>* writer) override {
+    if (!jobs.empty() && Find(request->name()) == nullptr) return JobNotFound(request->name());
     const WatchScript script = NextScript(*request);
     for (const v1::WatchEnsembleJobResponse& message : script.messages) writer->Write(message);
     if (script.hangs) released_.wait();
@@ -181,7 +181,12 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
     }
     const size_t from = request->page_token().empty() ? 0 : std::stoul(request->page_token());
     const size_t to = std::min(from + static_cast<size_t>(page_size), points.size());
-    for (size_t i = from; i < to; ++i) *page->add_results() = points[i];
+    for (size_t i = from; i < to; ++i) {
+      *page->add_results() = points[i];
+      if (request->view() != v1::ListResultsRequest::BASIC) continue;
+      page->mutable_results()->rbegin()->clear_histograms();
+      page->mutable_results()->rbegin()->clear_curves();
+    }
     if (to < points.size()) page->set_next_page_token(std::to_string(to));
     return grpc::Status::OK;
   }

@@ -12,9 +12,10 @@ struct BadInput {
   std::vector<std::string> parts;  // of the message
 };
 
-// One row for each kind of mistake. All ranges are tested in
+// One row for each kind of mistake that a real server or figure finds. All ranges are tested in
 // tests/core/ensemble/ensemble_spec_test.cc, all fields of a request in
-// tests/server/rpc/bad_requests_test.cc, all flags in tests/client/command.
+// tests/server/rpc/bad_requests_test.cc; the mistakes that the client finds are in
+// tests/client/transcripts/wrong_usage.txt.
 std::vector<BadInput> Table() {
   const std::string first_hit = "run first-hit --delta 0.1 --epsilon 0.1 --exponent 1 --rho 0.53 ";
   return {
@@ -40,17 +41,13 @@ std::vector<BadInput> Table() {
       {"plan energy-relaxation --rho 0.4 --delta 0.1 --tolerance 0",
        2,
        {"--rho: ", "--tolerance: "}},
-      // words and numbers that the client rejects
-      {first_hit + "--samples 1.5", 2, {"--samples: '1.5' is not a whole number"}},
-      {"run first-hot --rho 0.53", 2, {"'first-hot' is not one of", "did you mean first-hit?"}},
-      {first_hit + "--speed 3", 2, {"run has no flag '--speed'; did you mean --seed?"}},
-      {"figure mean-free-time --out FOLDER/broken.json", 2, {"--out: "}},
+      // figures
+      {"figure mean-free-time --out FOLDER/nan.json", 2, {"--out: "}},
       {"figure mean-free-time --seconds 3 --out FOLDER/figure",
        2,
        {"--seconds: the figure mean-free-time"}},
       // files
       {"run --spec FOLDER/nan.json", 2, {"grid.rho[0]", "grid.delta[0]"}},
-      {"run --spec FOLDER/broken.json", 2, {"--spec FOLDER/broken.json: "}},
       {"run --spec FOLDER/million.json", 4, {"too large to be sent: 80000", "at most 4194304"}},
       // jobs and servers
       {"result ensembleJobs/none", 5, {"JOB_NOT_FOUND"}},
@@ -60,7 +57,6 @@ std::vector<BadInput> Table() {
 class BadInputTest : public ::testing::Test {
  protected:
   BadInputTest() {
-    Write("broken.json", R"({"experiment": "FIRST_HIT",)");
     Write("nan.json", R"({"experiment": "EQUILIBRIUM",
                          "grid": {"rho": ["NaN"], "delta": ["Infinity"]}})");
     std::string million = R"({"experiment": "EQUILIBRIUM", "grid": {"delta": [0.1], "rho": [0.53)";

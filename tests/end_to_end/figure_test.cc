@@ -102,11 +102,5 @@ TEST_F(FigureTest, AnInterruptionCancelsNothingAndTheSameCommandGoesOn) {
   EXPECT_EQ(job_count(), 2);
 }
 
-TEST_F(FigureTest, QuickAndFullExcludeEachOther) {
-  const ProcessResult result = server_.Client(Split("figure cell --quick --full --out " + folder_));
-  EXPECT_THAT(result, ExitsWith(2));
-  EXPECT_THAT(result.err, HasSubstr("--quick and --full exclude each other"));
-}
-
 }  // namespace
 }  // namespace ballpiston

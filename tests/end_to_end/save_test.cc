@@ -44,16 +44,6 @@ TEST_F(Save, AFilesQuestionGivesTheSamePointsOnAnotherServer) {
   EXPECT_EQ(PointsOf(Contents(File("b.json"))), PointsOf(Contents(File("a.json"))));
 }
 
-TEST_F(Save, AnUnusableFileIsRejectedBeforeAJobIsMade) {
-  const TestServer server;
-  for (const std::string& path : {File("a.txt"), File("none/a.json"), folder_.path()}) {
-    const ProcessResult run = server.Client(Joined({{"run"}, kQuickQuestion, {"--save", path}}));
-    EXPECT_THAT(run, ExitsWith(2));
-    EXPECT_THAT(run.err, HasSubstr("--save: "));
-  }
-  EXPECT_EQ(Length(At(server.Json({"list"}), "jobs")), 0);
-}
-
 TEST_F(Save, ArraysNeedThePythonPackage) {
   const TestServer server;
   ProcessOptions run = server.Command(Joined({{"run"}, kQuickQuestion, {"--save", File("a.npz")}}));
@@ -62,20 +52,6 @@ TEST_F(Save, ArraysNeedThePythonPackage) {
   EXPECT_THAT(refused, ExitsWith(4));
   EXPECT_THAT(refused.err, HasSubstr("install python3-ballpiston and python3-numpy"));
   EXPECT_EQ(Length(At(server.Json({"list"}), "jobs")), 0);
-  EXPECT_EQ(NamesIn(folder_.path()), std::vector<std::string>());
-}
-
-// A pipeline takes a file that exists for a complete one.
-TEST_F(Save, RunWritesNoFileIfTheJobFails) {
-  const TestServer server;
-  const ProcessResult failed = server.Client(
-      Joined({Split("run first-hit --rho 0.53 --delta 0.1 --epsilon 0.1 --exponent 1 --tolerance "
-                    "1e-6 --budget 0.1 --save"),
-              {File("a.json")}}));
-  EXPECT_THAT(failed, ExitsWith(4));
-  EXPECT_EQ(failed.out, "");
-  EXPECT_THAT(failed.err, HasSubstr("a.json is not written"));
-  EXPECT_THAT(failed.err, HasSubstr("a.json --server " + server.address()));
   EXPECT_EQ(NamesIn(folder_.path()), std::vector<std::string>());
 }
 

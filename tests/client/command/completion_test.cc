@@ -1,26 +1,10 @@
 // Shell completion: the words that the program prints, and the scripts of the three shells.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
-
-#include "absl/strings/str_split.h"
-#include "tests/client/program.h"
+#include "tests/client/preamble.h"
 #include "tests/support/process.h"
-#include "tests/support/scoped_variable.h"
 
 namespace ballpiston::client {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
-using ::testing::IsSupersetOf;
-using ::testing::Not;
-using ::testing::StartsWith;
 using Lines = std::vector<std::string>;
 
 Lines LinesOf(const std::string& text) { return absl::StrSplit(text, '\n', absl::SkipEmpty()); }
@@ -57,21 +41,6 @@ TEST_F(CompletionTest, OffersFlagsWithTheirTexts) {
   EXPECT_THAT(Offers({"server", "stop", "-"}), Contains(StartsWith("--data-dir\t")));
 }
 
-TEST_F(CompletionTest, OffersTheChoicesOfAValue) {
-  const auto formats = ElementsAre("table", "json", "jsonl", "csv", "csv-histograms", "csv-curves");
-  EXPECT_THAT(Offers({"run", "first-hit", "--format", ""}), formats);
-  EXPECT_THAT(Offers({"run", "first-hit", "--format", "="}), formats);  // bash's three words
-  EXPECT_THAT(Offers({"run", "first-hit", "--format", "=", "c"}), formats);
-  EXPECT_THAT(Offers({"run", "first-hit", "--format=c"}),  // the one word of zsh and fish
-              ElementsAre("--format=table", "--format=json", "--format=jsonl", "--format=csv",
-                          "--format=csv-histograms", "--format=csv-curves"));
-  EXPECT_THAT(Offers({"list", "--state", ""}), Contains("running"));
-  EXPECT_THAT(Offers({"plan", "gas-equilibrium", "--estimate", ""}),
-              IsSupersetOf({"exchange_rate", "conductivity", "lyapunov_1", "entropy"}));
-  EXPECT_THAT(Offers({"run", "--rho", ""}), IsEmpty());
-  EXPECT_THAT(Offers({"run", "--dance=x"}), IsEmpty());
-}
-
 TEST_F(CompletionTest, OffersAnArgumentAtItsPlace) {
   EXPECT_THAT(Offers({"run", ""}), Contains("first-hit"));
   EXPECT_EQ(Offers({"run", "--rho", "0.53", "--verify", ""}), Offers({"run", ""}));
@@ -81,12 +50,6 @@ TEST_F(CompletionTest, OffersAnArgumentAtItsPlace) {
     EXPECT_THAT(Offers({"run", "first-hit", ""}), Contains(StartsWith(flag)));
   }
   EXPECT_THAT(Offers({"completion", ""}), Contains("bash"));
-}
-
-TEST_F(CompletionTest, OffersFiles) {
-  EXPECT_THAT(Offers({"run", "--spec", ""}), ElementsAre("FILES"));
-  EXPECT_THAT(Offers({"run", "--spec", "=", "x"}), ElementsAre("FILES"));
-  EXPECT_THAT(Offers({"server", "backup", "--data-dir", "x", ""}), ElementsAre("FILES"));
 }
 
 TEST_F(CompletionTest, OffersTheJobsOfARunningServer) {

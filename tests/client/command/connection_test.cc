@@ -1,20 +1,10 @@
 // The server that a verb uses, and the errors if it does not answer.
 #include "client/command/connection.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
-#include "tests/client/program.h"
-#include "tests/support/scoped_variable.h"
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 // The channel makes up to this number of attempts for a call, but only one for a delete.
 constexpr int kChannelAttempts = 4;
@@ -28,47 +18,12 @@ class ConnectionTest : public ProgramTest {
   }
 };
 
-TEST_F(ConnectionTest, TheServerMayComeFromTheEnvironmentOrTheConfigFile) {
-  server_.Start();
-  EXPECT_EQ(Ballpiston({"list"}).code, 3);
-  home_.WriteConfig("server = \"" + server_.Address() + "\"\n");
-  EXPECT_EQ(Ballpiston({"list"}).code, 0);
-  home_.WriteConfig("");
-  const ScopedVariable address("BALLPISTON_SERVER", server_.Address());
-  EXPECT_EQ(Ballpiston({"list"}).code, 0);
-}
-
 TEST_F(ConnectionTest, WithoutAServerExitsWithThreeAndNamesIt) {
   for (const char* verb : {"list", "status"}) {
     const Outcome outcome = Ballpiston({verb, "--server", server_.Address()});
     EXPECT_EQ(outcome.code, 3);
     EXPECT_THAT(outcome.err,
                 StartsWith("ballpiston: no answer from the server at " + server_.Address() + ": "));
-  }
-}
-
-TEST_F(ConnectionTest, VariablesOfTlsHaveNoEffectOverAUnixSocket) {
-  StartPrivateServer();
-  const ScopedVariable tls("BALLPISTON_TLS", "true"), token("BALLPISTON_TOKEN", "secret");
-  home_.WriteConfig("ca = \"/no/such/file\"\n");
-  EXPECT_EQ(WithServer({"list"}).code, 0);
-  EXPECT_EQ(Ballpiston({"list"}).code, 0);
-  const ScopedVariable other("BALLPISTON_SERVER", "localhost:1");
-  EXPECT_THAT(Ballpiston({"list"}).err, HasSubstr("/no/such/file"));
-}
-
-TEST_F(ConnectionTest, FlagsOfTlsAreRejectedOverAUnixSocket) {
-  StartPrivateServer();
-  for (const std::vector<std::string>& flags :
-       {std::vector<std::string>{"--tls"}, {"--ca", "file"}, {"--token-file", "file"}}) {
-    std::vector<std::string> words = {"list"};
-    words.insert(words.end(), flags.begin(), flags.end());
-    const Outcome of_private = Ballpiston(words);
-    EXPECT_EQ(of_private.code, 2);
-    EXPECT_THAT(of_private.err, HasSubstr("the private server uses neither TLS nor a token"));
-    const Outcome named = WithServer(words);
-    EXPECT_EQ(named.code, 2);
-    EXPECT_THAT(named.err, StartsWith("ballpiston: --server: "));
   }
 }
 
@@ -112,20 +67,6 @@ TEST_F(ConnectionTest, ANamedServerGetsOneAttempt) {
   server_.Start();
   EXPECT_EQ(WithServer({"submit", "first-hit"}).code, 3);
   EXPECT_EQ(std::ssize(server_.ensemble.Asked().create), kChannelAttempts);
-}
-
-TEST_F(ConnectionTest, StatusConnectsToTheRunningPrivateServer) {
-  StartPrivateServer();
-  EXPECT_EQ(Ballpiston({"status"}).code, 0);
-}
-
-// The server program is /bin/false. If it were started, the message would quote its failure.
-TEST_F(ConnectionTest, StatusStartsNoServer) {
-  home_.UseAsPrivateServer(server_.Address());
-  const Outcome outcome = Ballpiston({"status"});
-  EXPECT_EQ(outcome.code, 3);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_THAT(outcome.err, StartsWith("ballpiston: no private server is running ("));
 }
 
 }  // namespace

@@ -1,11 +1,6 @@
 #include "client/command/exit_code.h"
 
-#include <gtest/gtest.h>
-
-#include <string>
-
-#include "client/library/error_text.h"
-#include "tests/client/fake_server.h"
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
@@ -27,18 +22,6 @@ TEST(ExitCode, FollowsFromTheStatus) {
   for (const auto& [code, expected] : table) {
     EXPECT_EQ(static_cast<int>(ExitCodeOf(absl::Status(code, "text"))), expected)
         << absl::StatusCodeToString(code);
-  }
-}
-
-absl::Status LimitOf(const std::string& reason) { return FromGrpc(LimitExceeded(reason, "text")); }
-
-TEST(ExitCode, DistinguishesATooLargeJobFromABusyServer) {
-  for (const char* reason : {"TOO_MANY_POINTS", "TOO_MANY_SAMPLES"}) {
-    EXPECT_EQ(ExitCodeOf(LimitOf(reason)), ExitCode::kUsage) << reason;
-  }
-  for (const char* reason : {"QUEUE_FULL", "TOO_MANY_JOBS", "TOO_MANY_ACTIVE_POINTS",
-                             "TOO_MANY_STREAMS", "TOO_MANY_CALLS", "TOO_MANY_STORED_BYTES"}) {
-    EXPECT_EQ(ExitCodeOf(LimitOf(reason)), ExitCode::kUnreachable) << reason;
   }
 }
 

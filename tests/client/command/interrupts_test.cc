@@ -1,27 +1,20 @@
 #include "client/command/interrupts.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
 
-#include <chrono>
-#include <filesystem>
 #include <iostream>
 #include <latch>
-#include <string>
 #include <thread>
 
 #include "client/output/new_file.h"
+#include "tests/client/preamble.h"
 #include "tests/support/death_test_folder.h"
 
 namespace ballpiston::client {
 namespace {
 
-using ::testing::AllOf;
 using ::testing::ExitedWithCode;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 sigset_t Signals() {
   sigset_t signals;

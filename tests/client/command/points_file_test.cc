@@ -1,17 +1,9 @@
 #include "client/command/points_file.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-
-#include "tests/support/status_matchers.h"
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 TEST(PointsFile, FillsTheListsThatItsHeaderNames) {
   v1::Grid grid;

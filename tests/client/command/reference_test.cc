@@ -1,22 +1,11 @@
 #include "client/command/reference.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
-
-#include "absl/strings/str_split.h"
-#include "tests/client/program.h"
+#include "tests/client/preamble.h"
 #include "tests/support/paths.h"
 
 namespace ballpiston::client {
 namespace {
 
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 using ::testing::UnorderedElementsAreArray;
 
 class ReferenceTest : public ::testing::Test {
@@ -41,13 +30,6 @@ TEST_F(ReferenceTest, EachVerbHasAManPage) {
     EXPECT_EQ(Contents(folder + "/" + pages.back()), ManPage(&verb));
   }
   EXPECT_THAT(NamesIn(folder), UnorderedElementsAreArray(pages));
-}
-
-TEST_F(ReferenceTest, AFolderThatCannotBeWrittenExitsWithTwo) {
-  WriteFile(home_.File("file"), "");
-  const Outcome outcome = Ballpiston({"help", "--format", "man", "--out", home_.File("file")});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.err, StartsWith("ballpiston: --out: cannot write " + home_.File("file/")));
 }
 
 TEST_F(ReferenceTest, ManPagesReferToEachOther) {
@@ -91,14 +73,6 @@ TEST_F(ReferenceTest, TheShortPageFitsAScreenAndNamesEveryFlag) {
     EXPECT_LE(std::count(page.begin(), page.end(), '\n'), kScreen) << page;
     for (const Flag* flag : FlagsOf(verb)) EXPECT_THAT(page, HasSubstr(LongName(*flag)));
   }
-}
-
-TEST_F(ReferenceTest, HelpIsShortAndAllIsWhole) {
-  const Verb& run = *std::find_if(Verbs().begin(), Verbs().end(),
-                                  [](const Verb& verb) { return verb.name == "run"; });
-  EXPECT_EQ(Ballpiston({"help", "run"}).out, ShortPage(&run));
-  EXPECT_EQ(Ballpiston({"run", "--help"}).out, ShortPage(&run));
-  EXPECT_EQ(Ballpiston({"help", "--all", "run"}).out, TextPage(&run));
 }
 
 TEST_F(ReferenceTest, AWholePageShowsEveryFlagAndArgument) {

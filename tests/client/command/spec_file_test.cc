@@ -1,18 +1,9 @@
 #include "client/command/spec_file.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-
-#include "absl/strings/str_cat.h"
-#include "tests/support/status_matchers.h"
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
-
-using ::testing::HasSubstr;
 
 TEST(SpecFile, ReadsProtoJsonWithEitherFieldNames) {
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec spec,
@@ -78,13 +69,6 @@ TEST(SpecFile, ErrorShortensALongValue) {
   EXPECT_LT(message.size(), 1'100u);
   EXPECT_THAT(message, HasSubstr("HEAD"));
   EXPECT_THAT(message, HasSubstr("XTAIL"));
-}
-
-TEST(SpecFile, ErrorNamesAFileThatCannotBeRead) {
-  EXPECT_THAT(
-      ReadSpecFile("/no/such/file.json"),
-      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("/no/such/file.json: No such")));
-  EXPECT_THAT(ReadSpecFile("/"), StatusIs(absl::StatusCode::kInvalidArgument));
 }
 
 }  // namespace

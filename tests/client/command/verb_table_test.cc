@@ -1,24 +1,9 @@
 #include "client/command/verb_table.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <set>
-#include <string>
-#include <vector>
-
-#include "absl/strings/ascii.h"
-#include "absl/strings/str_split.h"
-#include "tests/client/program.h"
-#include "tests/support/status_matchers.h"
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
-
-using ::testing::EndsWith;
-using ::testing::Ge;
-using ::testing::Not;
-using ::testing::SizeIs;
 
 // The example's words without the shell's redirections and pipes. ID is replaced by an id, because
 // an id has no capitals.

@@ -1,14 +1,8 @@
 #include "client/library/child_process.h"
 
-#include <gtest/gtest.h>
 #include <signal.h>
 
-#include <filesystem>
-#include <string>
-
-#include "tests/support/files.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {

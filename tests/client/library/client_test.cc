@@ -1,21 +1,9 @@
 #include "client/library/client.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-
-#include "client/library/error_text.h"
-#include "tests/client/fake_server.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 class ClientTest : public ::testing::Test {
  protected:
@@ -119,6 +107,13 @@ TEST_F(ClientTest, ARetryWaitsAsLongAsTheServerAsks) {
   const absl::Time begin = absl::Now();
   EXPECT_OK(client.Pin(kJobName, true));
   EXPECT_GE(absl::Now() - begin, absl::Milliseconds(800));
+}
+
+TEST_F(ClientTest, ACallbackEndsATrace) {
+  server_.trace.messages.resize(100'000);
+  int messages = 0;
+  EXPECT_OK(StartServer().Trace({}, [&](const v1::TraceOrbitResponse&) { return ++messages < 3; }));
+  EXPECT_EQ(messages, 3);
 }
 
 }  // namespace

@@ -1,29 +1,11 @@
 #include "client/library/job_watch.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <functional>
 #include <stop_token>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "client/library/client.h"
-#include "tests/client/fake_server.h"
-#include "tests/support/await.h"
-#include "tests/support/status_matchers.h"
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::Each;
-using ::testing::ElementsAre;
-using ::testing::Ge;
-using ::testing::HasSubstr;
-using ::testing::Le;
-using ::testing::SizeIs;
 
 using Job = v1::EnsembleJob;
 

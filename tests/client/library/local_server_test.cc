@@ -1,36 +1,21 @@
 #include "client/library/local_server.h"
 
 #include <fcntl.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/file.h>
 #include <sys/inotify.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cstdlib>
-#include <filesystem>
 #include <stop_token>
-#include <string>
 #include <thread>
 
-#include "absl/time/clock.h"
-#include "absl/time/time.h"
 #include "client/library/server_address.h"
-#include "tests/client/fake_server.h"
-#include "tests/support/await.h"
-#include "tests/support/files.h"
-#include "tests/support/scoped_variable.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 // Runs with an empty HOME, and without the variables that choose the server.
 class LocalServerTest : public ::testing::Test {

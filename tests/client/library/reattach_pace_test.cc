@@ -1,9 +1,6 @@
 #include "client/library/reattach_pace.h"
 
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <optional>
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {

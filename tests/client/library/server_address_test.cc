@@ -1,16 +1,9 @@
 #include "client/library/server_address.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-
-#include "tests/support/status_matchers.h"
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
-
-using ::testing::HasSubstr;
 
 TEST(ServerAddress, IsHostAndPortOrASocket) {
   EXPECT_THAT(GrpcTarget("localhost:50051"), IsOkAndHolds("dns:///localhost:50051"));

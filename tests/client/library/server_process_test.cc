@@ -1,25 +1,11 @@
 #include "client/library/server_process.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 
-#include <filesystem>
-#include <optional>
-#include <string>
-
-#include "absl/strings/str_cat.h"
-#include "absl/time/time.h"
-#include "tests/support/await.h"
-#include "tests/support/files.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
-
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
 
 // A fake server as a shell script; $2 is its data folder. The server takes the lock, writes its
 // process id into the lock file and writes its address. It ends at SIGTERM, or when the test's

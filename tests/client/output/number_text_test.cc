@@ -1,10 +1,6 @@
 #include "client/output/number_text.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdlib>
-#include <limits>
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {

@@ -1,30 +1,16 @@
-#include <gmock/gmock.h>
 #include <google/protobuf/util/json_util.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <chrono>
 #include <future>
-#include <optional>
-#include <sstream>
-#include <string>
 #include <thread>
-#include <vector>
 
-#include "absl/strings/str_split.h"
 #include "ballpiston/file/v1/progress.pb.h"
 #include "client/output/progress_line.h"
 #include "client/output/progress_meter.h"
 #include "client/output/progress_reporter.h"
-#include "tests/support/message_text.h"
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 const absl::Time kFirstReading = absl::FromUnixSeconds(1'000'000);
 

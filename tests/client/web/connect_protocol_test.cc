@@ -1,18 +1,12 @@
 #include "client/web/connect_protocol.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "absl/strings/cord.h"
-#include "client/library/error_text.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 TEST(ConnectProtocol, EnvelopesHaveFlagsAndABigEndianLength) {
   EXPECT_EQ(Envelope("{}"), std::string("\0\0\0\0\2{}", 7));

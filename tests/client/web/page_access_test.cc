@@ -1,12 +1,9 @@
 #include "client/web/page_access.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
-
-using ::testing::HasSubstr;
 
 const PageAccess& Access() {
   static const PageAccess access(8080, "secret");

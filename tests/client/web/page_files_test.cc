@@ -1,12 +1,9 @@
 #include "client/web/page_files.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
-
-using ::testing::HasSubstr;
 
 std::map<std::string, PageFile> Files() {
   return {{"page.html",

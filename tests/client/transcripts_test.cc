@@ -1,0 +1,233 @@
+// The contract of the command line, as pages of commands with their output: transcripts/*.txt. Each
+// page is a test. transcripts/README.md describes a page, and says how to write the output again.
+#include <google/protobuf/text_format.h>
+
+#include <list>
+#include <regex>
+
+#include "absl/strings/numbers.h"
+#include "google/rpc/status.pb.h"
+#include "tests/client/preamble.h"
+#include "tests/support/paths.h"
+
+namespace ballpiston::client {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool IsIndented(const std::string& line) { return line.starts_with("  "); }
+bool IsCommand(const std::string& line) { return line.starts_with("  $ "); }
+
+// Whether the line belongs to the output of the command above it. An empty line does if more output
+// follows.
+bool IsOutput(const std::vector<std::string>& lines, size_t i) {
+  while (i < lines.size() && lines[i].empty()) ++i;
+  return i < lines.size() && IsIndented(lines[i]) && !IsCommand(lines[i]);
+}
+
+// The lines of a text with this before each; an empty line stays empty.
+std::string Indented(const std::string& text, const std::string& before) {
+  std::string indented;
+  for (const absl::string_view line : absl::StrSplit(absl::StripSuffix(text, "\n"), '\n')) {
+    absl::StrAppend(&indented, line.empty() ? "" : before, line, "\n");
+  }
+  if (!text.ends_with('\n')) absl::StrAppend(&indented, before, "[no end of line]\n");
+  return text.empty() ? "" : indented;
+}
+
+// As a shell reads them. A word may be quoted: 'a b', ''.
+std::vector<std::string> ShellWords(const std::string& command) {
+  std::vector<std::string> words;
+  bool is_quoted = false, is_in_word = false;
+  for (const char c : command) {
+    if (c == '\'') is_quoted = !is_quoted;
+    const bool was_in_word = std::exchange(is_in_word, is_quoted || c != ' ');
+    if (is_in_word && !was_in_word) words.emplace_back();
+    if (is_in_word && c != '\'') words.back() += c;
+  }
+  return words;
+}
+
+// Runs the commands of a page in an empty home folder, which is the current folder. The variable
+// BALLPISTON_SERVER names a fake server, which is also the private server.
+class Replay : public ProgramTest {
+ protected:
+  Replay() {
+    server_.Start();
+    home_.UseAsPrivateServer(server_.Address());
+    fs::current_path(folder_);
+  }
+  ~Replay() override { fs::current_path(old_folder_); }
+
+  // The page with the output that its commands have here.
+  std::string Replayed(const std::string& page) {
+    std::string replayed;
+    const std::vector<std::string> lines = absl::StrSplit(absl::StripSuffix(page, "\n"), '\n');
+    for (size_t i = 0; i < lines.size(); ++i) {
+      const std::string& line = lines[i];
+      absl::StrAppend(&replayed, line, "\n");
+      if (IsCommand(line)) {
+        replayed += OutputOf(WithMeanings(line.substr(4)));
+        while (IsOutput(lines, i + 1)) ++i;
+      } else if (absl::string_view given = line; absl::ConsumePrefix(&given, "Given ")) {
+        std::string text;
+        for (; i + 1 < lines.size() && IsIndented(lines[i + 1]); ++i) {
+          absl::StrAppend(&replayed, lines[i + 1], "\n");
+          absl::StrAppend(&text, lines[i + 1].substr(2), "\n");
+        }
+        Give(std::string(absl::StripSuffix(given, ":")), WithMeanings(text));
+      } else if (absl::string_view usual = line;
+                 absl::ConsumePrefix(&usual, "Each command below exits with ")) {
+        EXPECT_TRUE(absl::SimpleAtoi(absl::StripSuffix(usual, "."), &usual_code_)) << line;
+      }
+    }
+    return replayed;
+  }
+
+ private:
+  std::string OutputOf(const std::string& command) {
+    const Outcome outcome = Run(ShellWords(command));
+    return WithMasks(absl::StrCat(
+        Indented(outcome.out, "  "), Indented(outcome.err, "  ! "),
+        outcome.code == usual_code_ ? "" : absl::StrCat("  [exit ", outcome.code, "]\n")));
+  }
+
+  Outcome Run(std::vector<std::string> words) {
+    std::list<ScopedVariable> variables;
+    while (!words.empty() && absl::StrContains(words.front(), '=')) {
+      const std::pair<std::string, std::string> setting =
+          absl::StrSplit(words.front(), absl::MaxSplits('=', 1));
+      variables.emplace_back(setting.first, setting.second);
+      words.erase(words.begin());
+    }
+    const std::string program = words.at(0);
+    words.erase(words.begin());
+    if (program == "ballpiston") return Ballpiston(words);
+    if (program == "cat" && fs::exists(words.at(0))) return {usual_code_, Contents(words[0]), ""};
+    if (program == "last-request") return {usual_code_, LastRequest(words.at(0)), ""};
+    return {usual_code_, "", absl::StrCat(program, ": not found\n")};
+  }
+
+  std::string LastRequest(const std::string& call) {
+    const FakeEnsembleService::Requests asked = server_.ensemble.Asked();
+    if (call == "create") return Last(asked.create);
+    if (call == "list") return Last(asked.list);
+    if (call == "plan") return Last(asked.plan);
+    if (call == "result") return Last(asked.result);
+    if (call == "results") return Last(asked.results);
+    if (call == "update") return Last(asked.update);
+    if (call == "analytic") return TextOf(server_.analytic.asked);
+    if (call == "trace") return TextOf(server_.trace.asked);
+    return "no such call: " + call + "\n";
+  }
+
+  template <typename Request>
+  static std::string Last(const std::vector<Request>& requests) {
+    return requests.empty() ? "none\n" : TextOf(requests.back());
+  }
+
+  static std::string TextOf(const google::protobuf::Message& message) {
+    google::protobuf::TextFormat::Printer printer;
+    printer.SetSingleLineMode(true);
+    std::string text;
+    printer.PrintToString(message, &text);
+    return absl::StrCat(absl::StripTrailingAsciiWhitespace(text), "\n");
+  }
+
+  // Prepares an answer of the server, in the text format of its message, or writes a file.
+  void Give(const std::string& name, const std::string& text) {
+    FakeEnsembleService& ensemble = server_.ensemble;
+    if (absl::string_view file = name; absl::ConsumePrefix(&file, "file ")) {
+      const fs::path path = fs::absolute(std::string(file));
+      fs::create_directories(path.parent_path());
+      WriteFile(path, text);
+    } else if (name == "jobs") {
+      const auto page = FromText<v1::ListEnsembleJobsResponse>(text);
+      ensemble.jobs.assign(page.jobs().begin(), page.jobs().end());
+      if (!ensemble.jobs.empty()) ensemble.watches[0].messages = {JobMessage(job(), "t")};
+    } else if (name == "results") {
+      const auto page = FromText<v1::ListResultsResponse>(text);
+      ensemble.points.assign(page.results().begin(), page.results().end());
+    } else if (name == "plan") {
+      ensemble.plan = FromText<v1::PlanEnsembleJobResponse>(text);
+    } else if (name == "closed forms") {
+      server_.analytic.response = FromText<v1::EvaluatePairsResponse>(text);
+    } else if (name == "status") {
+      server_.server.status = FromText<v1::ServerStatus>(text);
+    } else if (name == "orbit") {
+      server_.trace.messages = {FromText<v1::TraceOrbitResponse>(text)};
+    } else if (name == "error") {  // of all calls that submit, plan or trace
+      const auto error = FromText<google::rpc::Status>(text);
+      ensemble.create_end = ensemble.plan_end = server_.trace.end =
+          grpc::Status(static_cast<grpc::StatusCode>(error.code()), error.message(),
+                       error.details().empty() ? "" : error.SerializeAsString());
+    } else {
+      ADD_FAILURE() << "nothing can be given as: " << name;
+    }
+  }
+
+  // $FOLDER, $SERVER, $VERSION, and times in whole hours from now: $NOW+84h, $NOW-240h.
+  std::string WithMeanings(const std::string& text) {
+    std::string meant = absl::StrReplaceAll(text, masks_);
+    for (size_t at; (at = meant.find("$NOW")) != std::string::npos;) {
+      const size_t end = meant.find('h', at) + 1;
+      const std::string mask = meant.substr(at, end - at);
+      absl::Duration from_now;
+      EXPECT_TRUE(absl::ParseDuration(mask.substr(4), &from_now)) << mask;
+      const absl::Time time = now_ + from_now;
+      times_[absl::FormatTime("%Y-%m-%dT%H:%M:%SZ", time, absl::UTCTimeZone())] = mask;
+      meant.replace(at, mask.size(), absl::StrCat(absl::ToUnixSeconds(time)));
+    }
+    return meant;
+  }
+
+  std::string WithMasks(std::string text) const {
+    for (const auto& [mask, meaning] : masks_) absl::StrReplaceAll({{meaning, mask}}, &text);
+    absl::StrReplaceAll(times_, &text);
+    static const std::regex kRandomUuid(
+        "[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[0-9a-f]{4}-[0-9a-f]{12}");
+    return std::regex_replace(text, kRandomUuid, "$$UUID");
+  }
+
+  const fs::path old_folder_ = fs::current_path(),
+                 folder_ = fs::path(home_.File(".")).parent_path();
+  const ScopedVariable address_{"BALLPISTON_SERVER", server_.Address()};
+  const absl::Time now_ = absl::Now();
+  const std::map<std::string, std::string> masks_ = {
+      {"$FOLDER", folder_}, {"$SERVER", server_.Address()}, {"$VERSION", BALLPISTON_VERSION}};
+  std::map<std::string, std::string> times_;
+  int usual_code_ = 0;
+};
+
+class Transcripts : public Replay, public testing::WithParamInterface<std::string> {};
+
+TEST_P(Transcripts, EachCommandHasItsOutput) {
+  const std::string path = SourcePath("tests/client/transcripts/" + GetParam() + ".txt");
+  const std::string page = Contents(path), replayed = Replayed(page);
+  if (std::getenv("BALLPISTON_REWRITE") != nullptr) return WriteFile(path, replayed);
+  EXPECT_EQ(replayed, page);
+}
+
+std::vector<std::string> PageNames() {
+  std::vector<std::string> names;
+  for (const std::string& name : NamesIn(SourcePath("tests/client/transcripts"))) {
+    if (name.ends_with(".txt")) names.push_back(name.substr(0, name.find('.')));
+  }
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Client, Transcripts, testing::ValuesIn(PageNames()),
+                         [](const auto& page) { return page.param; });
+
+// The test above can fail.
+TEST_F(Replay, WritesTheTrueOutputInThePlaceOfAnother) {
+  const std::string submit = "About jobs.\n\n  $ ballpiston submit equilibrium\n";
+  const std::string result = "\n  $ ballpiston result none\n", end = "\nThe end.\n";
+  EXPECT_EQ(Replayed(submit + "  ensembleJobs/other\n\n  of two lines\n" + result + end),
+            submit + "  ensembleJobs/abc\n" + result +
+                "  ! ballpiston: no such job: ensembleJobs/none (JOB_NOT_FOUND)\n  [exit 5]\n" +
+                end);
+}
+
+}  // namespace
+}  // namespace ballpiston::client
