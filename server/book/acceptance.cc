@@ -65,7 +65,7 @@ std::optional<EarlierJob> FindEarlier(Database& database, const Acceptance& acce
   return answer ? std::optional(EarlierJob{*std::move(answer), true}) : std::nullopt;
 }
 
-// Adds the labels to the job. Refuses more than a job may have.
+// Adds the labels to the job. Refuses them if the job would have more labels than are permitted.
 void AddLabels(Database& database, const Labels& more, JobRecord& record) {
   Labels labels = LabelsOf(record.labels);
   for (const auto& [key, value] : more) labels.insert_or_assign(key, value);

@@ -12,7 +12,7 @@
 // one long run. If that job is deleted meanwhile, the points begin anew. If another machine
 // computed a point's last chunk, the part of it that the target cut short is computed again.
 //
-// The request's labels are added to those of the earlier job, also by a retry.
+// If an earlier job is returned, also for a retry, the request's labels are added to its labels.
 #pragma once
 
 #include <optional>
@@ -43,7 +43,7 @@ struct EarlierJob {
 };
 
 // Empty: the new job and its request are stored, and the job's record says which job it continues.
-// INVALID_ARGUMENT or RESOURCE_EXHAUSTED: the request is refused.
+// If the request is refused, the transaction fails: INVALID_ARGUMENT or RESOURCE_EXHAUSTED.
 std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance);
 
 // RESOURCE_EXHAUSTED  TOO_MANY_POINTS, TOO_MANY_SAMPLES

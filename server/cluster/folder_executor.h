@@ -89,7 +89,7 @@ class FolderExecutor : public Executor {
 
   // Begins to take leases. Call it once, after the runs of an earlier process were added.
   void Start();
-  void Wake() override {}    // it looks every second
+  void Wake() override {}    // the executor looks every second
   void Shutdown() override;  // workers go on
 
   // What Start calls from its thread every second. Tests call it themselves.

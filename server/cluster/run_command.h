@@ -13,7 +13,7 @@ namespace ballpiston::server {
 struct Command {
   std::vector<std::string> words;             // the program, looked up in PATH, and its arguments
   std::vector<std::string> environment = {};  // NAME=VALUE
-  std::chrono::milliseconds limit;            // then the program is killed
+  std::chrono::milliseconds limit;            // after this time the program is killed
 };
 
 struct CommandOutput {

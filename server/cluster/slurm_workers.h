@@ -86,7 +86,7 @@ class SlurmWorkers {
   // `work`: what is in the folder now. `ready`: makes the folder ready for a worker.
   SlurmWorkers(const SlurmOptions& options, std::unique_ptr<SlurmTools> tools,
                std::function<FolderStatus()> work, std::function<absl::Status()> ready);
-  ~SlurmWorkers() { stop_.request_stop(); }  // the workers go on
+  ~SlurmWorkers() { stop_.request_stop(); }  // the workers continue
 
   void Start();
 

@@ -112,14 +112,14 @@ void AddWord(CLI::App& app, const std::string& flag, std::string& word,
 // ---- the file of --config ----
 
 // Reads lines FLAG = VALUE and sets the flags that the command line does not have; a line that
-// begins with # is a comment. CLI11's own reader would start a server with other flags than the
-// file has: it ignores what follows [SECTION], and the second of two lines of a flag unless they
-// are adjacent.
+// begins with # is a comment. With CLI11's own reader, the server would start without some of the
+// flags in the file: the reader ignores what follows [SECTION], and it ignores the second of two
+// lines of a flag unless they are adjacent.
 class FlagFile : public CLI::Config {
  public:
   explicit FlagFile(CLI::App& app) : app_(app) {}
 
-  // Sets the flags at once, while the line is known, and leaves none to CLI11.
+  // Sets each flag while the number of its line is known, and returns none to CLI11.
   std::vector<CLI::ConfigItem> from_config(std::istream& file) const override {
     int number = 0;
     for (std::string line; std::getline(file, line);) {

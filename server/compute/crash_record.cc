@@ -23,9 +23,9 @@ namespace ballpiston::server {
 namespace {
 
 constexpr std::array<char, 8> kFormat = {'b', 'p', 'c', 'r', 'a', 's', 'h', '3'};
-// For up to 1,024 workers, and for calls that examine runs.
+// Enough for 1,024 workers and for calls that examine runs.
 constexpr size_t kSlots = 2048;
-constexpr size_t kDeaths = 2048;  // further ones are not counted
+constexpr size_t kDeaths = 2048;  // further deaths are not counted
 
 // Of a slot whose contents are being written.
 constexpr int64_t kTaken = -1;

@@ -21,8 +21,8 @@ class Executor {
   // wait and must not call the scheduler.
   virtual void Wake() = 0;
 
-  // Whether a further turn at a lease that this executor has would find work. Asked of local
-  // executors, with the scheduler's lock held.
+  // Whether another turn at this lease, which the executor has, would find work. Only local
+  // executors are asked, with the scheduler's lock held.
   virtual bool HasTurn(int64_t /*lease*/) const { return false; }
 
   // Ends all calls of the scheduler. May be called more than once.

@@ -22,9 +22,9 @@
 
 namespace ballpiston::server {
 
-// Seconds to store the result of a point without samples, one of many, on the store's thread,
-// beside the computing threads. Measured as the mean over 30,000 results that are recorded and
-// flushed, on a Xeon with a virtual disk: 7 and 11 us of processor time; the rest is the disk's.
+// Seconds of the store's thread to store one of many results of points without samples, while other
+// threads compute. Measured as the mean over 30,000 results that are recorded and flushed, on a
+// Xeon with a virtual disk: 7 and 11 us of processor time. The rest is the time of the disk.
 inline constexpr double kSecondsToStoreClosedForm = 1e-5;
 inline constexpr double kSecondsToStoreSpectrum = 1.5e-5;  // its result has curves
 // Additional seconds of a job's first point, because caches are cold. Measured on the same machine

@@ -25,7 +25,7 @@ bool IsOutput(const std::vector<std::string>& lines, size_t i) {
   return i < lines.size() && IsIndented(lines[i]) && !IsCommand(lines[i]);
 }
 
-// The lines of a text with this before each; an empty line stays empty.
+// The text with `before` in front of each line; an empty line stays empty.
 std::string Indented(const std::string& text, const std::string& before) {
   std::string indented;
   for (const absl::string_view line : absl::StrSplit(absl::StripSuffix(text, "\n"), '\n')) {
@@ -35,7 +35,7 @@ std::string Indented(const std::string& text, const std::string& before) {
   return text.empty() ? "" : indented;
 }
 
-// As a shell reads them. A word may be quoted: 'a b', ''.
+// The words of a command, as a shell reads them. A word may be quoted: 'a b', ''.
 std::vector<std::string> ShellWords(const std::string& command) {
   std::vector<std::string> words;
   bool is_quoted = false, is_in_word = false;
@@ -59,7 +59,7 @@ class Replay : public ProgramTest {
   }
   ~Replay() override { fs::current_path(old_folder_); }
 
-  // The page with the output that its commands have here.
+  // The page with the true output of its commands.
   std::string Replayed(const std::string& page) {
     std::string replayed;
     const std::vector<std::string> lines = absl::StrSplit(absl::StripSuffix(page, "\n"), '\n');
@@ -220,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(Client, Transcripts, testing::ValuesIn(PageNames()),
                          [](const auto& page) { return page.param; });
 
 // The test above can fail.
-TEST_F(Replay, WritesTheTrueOutputInThePlaceOfAnother) {
+TEST_F(Replay, ReplacesWrongOutput) {
   const std::string submit = "About jobs.\n\n  $ ballpiston submit equilibrium\n";
   const std::string result = "\n  $ ballpiston result none\n", end = "\nThe end.\n";
   EXPECT_EQ(Replayed(submit + "  ensembleJobs/other\n\n  of two lines\n" + result + end),

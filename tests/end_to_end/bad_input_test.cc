@@ -1,4 +1,5 @@
-// Wrong commands of every kind give a clear message and the right exit code; the server goes on.
+// Bad input that a real server or figure finds gives a clear message and the right exit code. The
+// server continues.
 
 #include "absl/strings/str_replace.h"
 #include "tests/end_to_end/programs.h"

@@ -1,5 +1,5 @@
 // Ctrl-C, SIGTERM and SIGHUP while the client submits or watches a job: the client ends at once,
-// the job goes on.
+// and the job continues.
 #include "tests/end_to_end/programs.h"
 #include "tests/support/terminal_process.h"
 

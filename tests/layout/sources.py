@@ -13,8 +13,8 @@ def text_of(path: str) -> str:
 
 
 def files(folders: list[str], *endings: str) -> dict[str, str]:
-    """Text by path of the files in these folders whose names end so. The paths are those in the
-    project."""
+    """The text of each file in these folders whose name has one of these endings, by its path in
+    the project."""
     found = (path for folder in folders for path in (PROJECT / folder).rglob("*"))
     paths = (str(path.relative_to(PROJECT)) for path in found if path.suffix in endings)
     return {path: text_of(path) for path in sorted(paths)}

@@ -1,4 +1,4 @@
-// What became of a question, and the rules that hold for its answer. README.md lists them.
+// The outcome of a question, and the rules that hold for its answer. README.md lists them.
 #pragma once
 
 #include "ballpiston/v1/ensemble.pb.h"
@@ -37,7 +37,8 @@ struct Report {
 inline constexpr char kCrashCheck[] = "crash";
 inline constexpr char kEndCheck[] = "end";
 
-// A question planned at 0.1 s or less that takes so much processor time never ends.
+// A question that was planned at 0.1 s or less, and takes more processor time than this, is
+// reported as one that never ends.
 #ifdef BALLPISTON_SANITIZED
 inline constexpr int kMostProcessorSeconds = 200;
 #else
@@ -92,7 +93,7 @@ inline constexpr char kFiniteCheck[] = "finite";
 
 Findings CheckFinite(const google::protobuf::Message& message);
 
-// Before the server leaves out what is not finite.
+// The same for a summary, which still has the numbers that the server leaves out of a message.
 Findings CheckFinite(const PointSummary& summary);
 
 // ---- the answer at each point ----
@@ -102,7 +103,7 @@ inline constexpr char kMeasuredCheck[] = "measured";
 inline constexpr char kHealthCheck[] = "health";
 inline constexpr char kLawCheck[] = "law";
 
-// With so many samples a result needs an error, or a remark that says why there is none.
+// With at least so many samples a result needs an error, or a remark that says why there is none.
 inline constexpr double kEnoughSamples = 1000;
 
 // finite       no number is NaN or infinite

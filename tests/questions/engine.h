@@ -1,4 +1,4 @@
-// Asks the engine in this process, or in a process of its own, which may die or not end.
+// Asks the engine in this process, or in a process of its own, which may crash or never end.
 #pragma once
 
 #include "core/ensemble/point_experiment.h"

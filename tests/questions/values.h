@@ -1,4 +1,4 @@
-// Random choices, the same on every machine; with them values of the parameters and defects.
+// Random choices, the same on every machine, and random values of the parameters and defects.
 //
 // Values lie in the permitted domain, or slightly or far outside of it. `extreme` values lie
 // log-uniformly close to an end of the domain, or are the end itself or its neighbour among the
@@ -47,7 +47,7 @@ double ExponentOutside(Dice& dice);
 std::string CellsOutside(Dice& dice);
 double TemperatureOutside(Dice& dice);
 
-// A permitted question becomes one that the service has to refuse. `bound`: of delta.
+// Changes a permitted question into one that the service has to refuse. `bound`: that of delta.
 void AddDefect(Dice& dice, const ExperimentKind& experiment, double bound, Question& question);
 
 }  // namespace ballpiston::questions

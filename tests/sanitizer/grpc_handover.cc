@@ -2,13 +2,13 @@
 //
 // The libraries of gRPC and Abseil are not instrumented, so the sanitizer does not see their locks,
 // by which a call passes from thread to thread. This library comes before them in the order of
-// symbol look-up, and replaces the functions of absl::Mutex and absl::CondVar: what a thread did
-// before it released a lock comes before what the next owner does.
+// symbol look-up, and replaces the functions of absl::Mutex and absl::CondVar: these report that
+// what a thread did before it released a lock comes before what the next owner does.
 //
-// If a method of a service and a thread of the server use the same variable, they still race
-// (seeded_race.cc). Two threads that both call gRPC may be ordered by its locks by chance, as by
-// any lock: a race between them is reported in some runs only. Not replaced, because nothing here
-// uses them: readers' locks, conditions of absl::Mutex, gRPC's callback API.
+// If a method of a service and a thread of the server use the same variable without a lock, the
+// race is still reported (seeded_race.cc). Two threads that both call gRPC may be ordered by its
+// locks by chance, as by any lock: a race between them is reported in some runs only. Not replaced,
+// because nothing here uses them: readers' locks, conditions of absl::Mutex, gRPC's callback API.
 //
 // The names are those of Debian's Abseil 20220623.
 #include <dlfcn.h>

@@ -1,5 +1,5 @@
 // What most tests of the server use: the core's experiments, the store, a server in the test's
-// process, and calls of it. A test includes it after the header that it tests.
+// process, and calls to it. A test includes it after the header that it tests.
 #pragma once
 
 #include "core/engine_version.h"

@@ -27,8 +27,8 @@ inline constexpr std::chrono::hours kNever(100);
 }
 
 // Evaluates the condition every millisecond and returns when it is true. After kPatience it throws
-// std::runtime_error, which fails the test. The place is the caller's; Clang 14 does not have
-// std::source_location.
+// std::runtime_error, which fails the test. The message names the place of the call; Clang 14
+// does not have std::source_location.
 template <typename Condition>
 void AwaitThat(Condition condition, const char* file = __builtin_FILE(),
                int line = __builtin_LINE()) {

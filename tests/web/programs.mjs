@@ -34,7 +34,7 @@ export class Programs {
   }
 
   // The standard output of `ballpiston COMMAND WORDS`, without the last line end. The words of the
-  // command are separated by blanks; the further words, such as paths, may have blanks in them.
+  // command are separated by blanks; the further words, such as paths, may contain blanks.
   run(command, ...words) {
     const options = {
       env: this.environment,

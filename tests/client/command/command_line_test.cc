@@ -22,7 +22,7 @@ TEST_F(CommandLineTest, TheProgramsPageIsItsHelp) {
   }
 }
 
-TEST_F(CommandLineTest, HelpOfAVerbIsItsShortPageAndWithAllItsWholePage) {
+TEST_F(CommandLineTest, HelpOfAVerbIsItsShortPageOrWithAllItsWholePage) {
   for (const Verb& verb : Verbs()) {
     Words help = absl::StrSplit(verb.name, ' '), flag = help;
     help.insert(help.begin(), "help");

@@ -1,5 +1,5 @@
 // The sources of a flag's value: the command line, the environment, the config file.
-// transcripts/settings.txt shows what a file may hold, and its mistakes.
+// transcripts/settings.txt shows what a file may hold, and the messages about mistakes.
 #include "client/command/config_file.h"
 
 #include "tests/client/preamble.h"

@@ -38,7 +38,7 @@ TEST_F(NewFileTest, AFullDiskIsAnError) {
   EXPECT_THAT(file.Keep(), StatusIs(kInvalid, HasSubstr("--save: cannot write /dev/full")));
 }
 
-TEST_F(NewFileTest, AMissingFolderIsFoundBeforeTheWork) {
+TEST_F(NewFileTest, AMissingFolderIsReportedBeforeTheWork) {
   const std::string path = folder_.path() + "/none/result.csv";
   EXPECT_THAT(CheckNewFile("--save", path), StatusIs(kInvalid, HasSubstr(path)));
   EXPECT_THAT(CheckNewFile("--save", folder_.path()), StatusIs(kInvalid, HasSubstr("folder")));

@@ -14,7 +14,7 @@ std::string PrintedPlan(int points) {
   return out.str();
 }
 
-TEST(PlanTable, OfMorePointsThanTheLimitHasNoLadders) {
+TEST(PlanTable, HasNoLaddersAboveTheLimitOfPoints) {
   EXPECT_THAT(PrintedPlan(kMostLadders), HasSubstr("answers"));
   EXPECT_THAT(PrintedPlan(kMostLadders + 1), Not(HasSubstr("answers")));
   EXPECT_EQ(kMostLadders, 8);

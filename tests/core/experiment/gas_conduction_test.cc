@@ -154,7 +154,8 @@ TEST(GasConduction, TheWarmUpIsThatOfTheSlowestPart) {
     return ExchangesOfAWarmUp(SpecBetween(1, cold, {.columns = 1}, model));
   };
   EXPECT_NEAR(at_cold(Model::kBilliard, 1e-10) / at_cold(Model::kBilliard, 1e-8), 10, 1e-6);
-  // At T = 2e-10 of the mean, stroke/v has the mean stroke int_0^inf exp(-v^2/(2 T)) dv/T.
+  // At T = 2e-10 of the mean temperature, the mean of stroke/v is
+  // stroke int_0^inf exp(-v^2/(2 T)) dv/T.
   const GasGeometry gas =
       GasGeometry::Create(kPaperRho, 0.2, {.columns = 1}, GasEnds::kReservoirs).value();
   const double crossing = gas.pair().stroke() * std::sqrt(std::numbers::pi / 4e-10);

@@ -84,8 +84,8 @@ TEST(SteadyGas, ADamagedStateCannotContinue) {
   EXPECT_FALSE(point->CanContinue(GroupState(std::move(more))));
 }
 
-// The variance of 4,000 energies has a standard error of 3 %, so the window of 5 has false alarms
-// of 6e-7 each.
+// The variance of 4,000 energies has a standard error of 3 %. The tolerance is 5 standard errors,
+// so a false alarm has the probability 6e-7 for each shape.
 TEST(SteadyGas, VarianceOfEnergyIsThatOfItsStarts) {
   for (const GasShape& shape : {GasShape{3}, GasShape{3, 2, true}}) {
     const auto point = PointExperiment::Create(

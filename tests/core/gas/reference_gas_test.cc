@@ -121,7 +121,7 @@ TEST(ReferenceGas, OneBallAndOnePistonMoveLikeThePair) {
 
 // Slacks: an ulp of a place in a cell, some more where two discs are nearly tangent, as in
 // reference_flow_test.cc. A place is that of the last event moved on, which rounds again. The runs
-// are so long that the origin of time moves, after every 1024 events for each body.
+// are long enough for the origin of time to move: it moves after every 1024 events for each body.
 TEST(ReferenceGas, BallsStayInTheirCellsAndBeforeTheirPistons) {
   constexpr double kSlack = 1e-13;
   for (const double rho : {0.5 + 1e-9, 0.501, kPaperRho, 0.6, 0.7}) {

@@ -203,7 +203,7 @@ TEST(SamplingCost, AFewSamplesCostAsMuchAsTheLongestInAllLanes) {
   EXPECT_EQ(CostOfSampling(slow, PointAt(slow, 0), {}).lanes, 1);
 }
 
-TEST(SamplingCost, TheWarmUpOfAllTrajectoriesTakesItsTime) {
+TEST(SamplingCost, IncludesTheWarmUpOfAllTrajectories) {
   const EnsembleSpec steady = Asked("gas-conduction cells=3 delta=0.2 model=billiard");
   const Trajectories trajectories = kGasConduction.trajectories(steady.model, PointAt(steady, 0));
   const auto warm_up = static_cast<double>(trajectories.count() * trajectories.warm_up);

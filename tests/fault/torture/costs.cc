@@ -15,7 +15,8 @@ constexpr double kDeviations = 1.4826, kMedianError = 1.2533;
 
 constexpr size_t kGroups = 10;
 
-// Between two questions to the server, which cost it time too: without a pause, a tenth of it.
+// Between two requests for the job's progress. Without a pause the requests take a tenth of the
+// server's processor time.
 constexpr std::chrono::milliseconds kPause(50);
 
 double Sum(const std::vector<double>& values, size_t begin, size_t end) {

@@ -1,4 +1,4 @@
-// What most torture tests use: a server process with clients of it, questions, and findings.
+// What most torture tests use: a server process with its clients, questions, and findings.
 #pragma once
 
 #include "client/library/client.h"

@@ -251,7 +251,7 @@ TEST_F(AcceptanceTest, ARequestIdOfAnotherRequestIsRefused) {
   EXPECT_EQ(List().jobs.size(), 1u);
 }
 
-TEST_F(AcceptanceTest, LabelsAreAddedToTheEarlierJobOfARetryAndOfAnAnswer) {
+TEST_F(AcceptanceTest, ARetryAndAnAnswerFromTheStoreAddLabelsToTheEarlierJob) {
   const auto labelled = [](v1::CreateEnsembleJobRequest request, const std::string& key,
                            const std::string& value) {
     (*request.mutable_labels())[key] = value;

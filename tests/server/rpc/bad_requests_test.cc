@@ -122,7 +122,7 @@ std::vector<BadRequest> BadRequests() {
        "1001 has 1001 cells; permitted in a trace: 1 to 1000"},
       {trace, orbit + R"(cells: "x\n")", {"cells"}, "x\\n"},
       {trace, orbit + "cells: '4' delta: 0.3", {"delta"}, "no two pistons may overlap"},
-      {trace, orbit + "temperature: 1", {"temperature"}},  // a pair has none
+      {trace, orbit + "temperature: 1", {"temperature"}},  // a pair has no temperature
       {sample, hit, {"spec.grid"}, "has 6 points; permitted: one"},
       {sample, with("experiment: 0"), {"spec.experiment"}},
       {sample,

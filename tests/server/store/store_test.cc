@@ -256,7 +256,7 @@ TEST_F(StoreTest, WritesAreCommittedInGroups) {
 }
 
 // The store's thread finds the checkpoint when it frees the space of the deletion.
-TEST_F(StoreTest, ARecordWaitsForItsDelayWhileSpaceIsFreed) {
+TEST_F(StoreTest, ACheckpointWaitsForItsDelayWhileSpaceIsFreed) {
   const auto store = Open({.delay = kNever});
   const auto nothing = [](Database&) {};
   store->Record(nothing,
