@@ -20,6 +20,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/status/log.h"
 #include "server/store/folder_sync.h"
 
 namespace ballpiston::server {
@@ -27,7 +28,7 @@ namespace {
 
 constexpr char kLockFile[] = "lock";  // clients read both files (client/library/server_process.cc)
 constexpr char kAddressFile[] = "server.address";
-constexpr char kClientsLog[] = "server.log";
+constexpr char kClientsLog[] = "server.log";  // log of a server that a client starts
 
 // Whether the file contains nothing or a process id. If not, another program wrote it.
 bool IsAServersLock(int file) {
@@ -94,27 +95,53 @@ absl::Status MakeDirectories(const std::string& path) {
   return NotWritable(path, errno);
 }
 
-// Whether nothing is in the folder but the log of a client that starts this server.
-bool IsNew(const std::string& path) {
+// Whether the folder is empty or was a server's before. Otherwise other users may need its files. A
+// lock that is not a regular file belongs to another program (/var/lock is a link).
+bool IsAServers(const std::string& path) {
+  bool has_others = false;
   std::error_code error;
   std::filesystem::directory_iterator entry(path, error);
-  const std::filesystem::directory_iterator end;
-  while (!error && entry != end && entry->path().filename() == kClientsLog) entry.increment(error);
-  return !error && entry == end;
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    const std::string name = entry->path().filename();
+    const bool is_file = entry->symlink_status(error).type() == std::filesystem::file_type::regular;
+    if (is_file && (name == kLockFile || name == kStoreFile)) return true;
+    has_others |= !is_file || name != kClientsLog;
+  }
+  return !has_others && !error;
 }
 
-// Other users must not reach jobs, results and the socket. But they may need the files of a folder
-// that is not new.
+absl::Status OpenToOthers(const std::string& path, mode_t mode, const std::string& why) {
+  return absl::PermissionDeniedError(absl::StrFormat(
+      "data folder %s is open to other users (mode %04o%s", path, mode & 07777, why));
+}
+
+// Other users must not reach jobs, results and the socket.
 absl::Status CloseToOthers(const std::string& path) {
   struct stat found {};
   if (stat(path.c_str(), &found) != 0) return NotWritable(path, errno);
-  if ((found.st_mode & (S_IRWXG | S_IRWXO)) == 0) return absl::OkStatus();
+  constexpr mode_t kForOthers = S_IRWXG | S_IRWXO;
+  if ((found.st_mode & kForOthers) == 0) return absl::OkStatus();
   const bool is_ours = found.st_uid == geteuid() && (found.st_mode & S_ISVTX) == 0;
-  if (is_ours && IsNew(path) && chmod(path.c_str(), 0700) == 0) return absl::OkStatus();
-  return absl::PermissionDeniedError(absl::StrFormat(
-      "data folder %s is open to other users (owner %d, mode %04o): choose another one with "
-      "--data-dir, such as %s/ballpiston; or, if no other user needs its files, run chmod 700 %s",
-      path, found.st_uid, found.st_mode & 07777, path, path));
+  if (!is_ours) {
+    return OpenToOthers(
+        path, found.st_mode,
+        absl::StrFormat(", user %d) and is not this server's own; choose another one with "
+                        "--data-dir",
+                        found.st_uid));
+  }
+  if (!IsAServers(path)) {
+    return OpenToOthers(
+        path, found.st_mode,
+        absl::StrCat(") and has files that are not a server's; choose a folder for the server "
+                     "with --data-dir, such as ",
+                     path,
+                     "/ballpiston, or run chmod 700 on this one if no other user needs its files"));
+  }
+  if (chmod(path.c_str(), 0700) != 0) return NotWritable(path, errno);
+  LogInfo(
+      absl::StrFormat("data folder %s was open to other users (mode %04o): its mode is 0700 now",
+                      path, found.st_mode & 07777));
+  return absl::OkStatus();
 }
 
 }  // namespace
