@@ -37,7 +37,7 @@ VerbResult Run(const Options& options, Terminal& terminal) {
         // A pipeline takes a file that exists for a complete one.
         if (!options.save.empty() && end->state() != v1::EnsembleJob::SUCCEEDED) {
           terminal.Note(absl::StrCat(
-              options.save, " is not written; to save the finished points: ", "ballpiston result ",
+              options.save, " is not written; to save the finished points: ballpiston result ",
               made->name(), " --save ", options.save, connection.flags));
           return ReportEnd(*end, terminal);
         }

@@ -21,7 +21,8 @@ absl::Status CallThrough(const Connection& connection, const JsonCall& once,
     });
   };
   absl::Status status = attempt();
-  const bool may_repeat = !has_begun && call.method->name() != "DeleteEnsembleJob";
+  const bool may_repeat =
+      !has_begun && call.method->input_type() != v1::DeleteEnsembleJobRequest::descriptor();
   if (may_repeat && connection.client.IsBack(status)) status = attempt();
   return NameServer(status, connection);
 }

@@ -74,7 +74,9 @@ void AddLabels(Database& database, const Labels& more, JobRecord& record) {
         {{"labels", absl::StrCat("would give ", JobName(record.id), " ", labels.size(),
                                  "; permitted: at most ", kMostLabels)}}));
   }
-  record.labels = LabelsText(labels);
+  const std::string text = LabelsText(labels);
+  if (text == record.labels) return;
+  record.labels = text;
   UpdateJob(database, record);
 }
 

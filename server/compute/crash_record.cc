@@ -9,6 +9,7 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <new>
 #include <optional>
 #include <thread>
@@ -186,7 +187,9 @@ CrashRecord::Slot* CrashRecord::TakeSlot(Page& page) {
 CrashRecord::Entry::Entry(CrashRecord& record, const RunName& run, int64_t point)
     : before_(slot_of_this_thread) {
   static thread_local const SignalStack stack;
-  while ((slot_ = TakeSlot(*record.page_)) == nullptr) std::this_thread::yield();
+  while ((slot_ = TakeSlot(*record.page_)) == nullptr) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   slot_->generation = run.generation;
   slot_->point = point;
   slot_->run = run.run;  // last, because the process may be killed at any moment

@@ -8,7 +8,8 @@
 // If a method of a service and a thread of the server use the same variable without a lock, the
 // race is still reported (seeded_race.cc). Two threads that both call gRPC may be ordered by its
 // locks by chance, as by any lock: a race between them is reported in some runs only. Not replaced,
-// because nothing here uses them: readers' locks, conditions of absl::Mutex, gRPC's callback API.
+// because no thread of ours waits for another one in them: readers' locks, conditions of
+// absl::Mutex, and gRPC's callback API, in which only its own health service is written.
 //
 // The names are those of Debian's Abseil 20220623.
 #include <dlfcn.h>
