@@ -11,10 +11,10 @@
 //
 // Progress is one line on standard error, which is redrawn and cleared at the end.
 //
-// Exit status: 0 success; 1 standard output cannot be written, or the mean free time, the ingoing law
-// or the trajectory has no measurement of kFewestDrawn samples: then its panel of the chart is empty,
-// but all rows are printed; 2 a wrong flag or value: standard error names each value that is not
-// permitted.
+// Exit status: 0 success; 1 standard output cannot be written, or the mean free time, the ingoing
+// law or the trajectory has no measurement of kFewestDrawn samples: then its panel of the chart is
+// empty, but all rows are printed; 2 a wrong flag or value: standard error names each value that is
+// not permitted.
 #pragma once
 
 #include <cstdint>
