@@ -9,9 +9,8 @@ namespace {
 
 // A fake server as a shell script; $2 is its data folder. The server takes the lock, writes its
 // process id into the lock file and writes its address. It ends at SIGTERM, or when the test's
-// folder is removed.
-constexpr char kLock[] =
-    "exec 9>>$2/lock; flock -n 9 || { echo another server holds it; exit 1; }; echo $$ >$2/lock\n";
+// folder is removed. FindServer holds a free lock for a moment, so the script waits for the lock.
+constexpr char kLock[] = "exec 9>>$2/lock; flock -w 1 9 || exit 1; echo $$ >$2/lock\n";
 constexpr char kListen[] = "echo unix:$2/socket >$2/server.address\n";
 constexpr char kWait[] = "while [ -d $2 ]; do sleep 0.01 9>&-; done\n";
 constexpr char kEnd[] = "trap 'rm $2/server.address; exit 0' TERM\n";
