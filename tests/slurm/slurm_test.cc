@@ -79,6 +79,7 @@ void LoseMunge(Sweep& sweep) {
 
 void SignalWorkers(Sweep& sweep, int signal) {
   SubmitAndAwaitTasks(sweep);
+  sweep.AwaitTakenLease();
   for (const pid_t worker : sweep.Workers()) kill(worker, signal);
 }
 
@@ -126,11 +127,14 @@ std::vector<Story> Stories() {
           Verbs("ANodeDiesWithItsTasks", {{"kill-node", "n1"}}),
           Verbs("ANodeIsBackAtOnce", {{"kill-node", "n1"}, {"start-node", "n1"}}),
           Verbs("SlurmdDiesWithoutItsTasks", {{"kill-slurmd", "n1"}}),
-          {"WorkersAreKilled", {}, [](Sweep& sweep) { SignalWorkers(sweep, SIGKILL); }, true},
+          {"WorkersAreKilled",
+           {.samples = 2'000'000},
+           [](Sweep& sweep) { SignalWorkers(sweep, SIGKILL); },
+           true},
           // SIGUSR1 comes before the time limit, but the workers are stopped, as on a machine that
           // hangs.
           {"TasksReachTheirTimeLimit",
-           {.flags = Split("--slurm-time-limit-minutes 1")},
+           {.flags = Split("--slurm-time-limit-minutes 1"), .samples = 2'000'000},
            [](Sweep& sweep) { SignalWorkers(sweep, SIGSTOP); },
            true},
           {"TasksArePreempted", {.flags = Split("--slurm-partition spare")}, PreemptTasks},
@@ -180,17 +184,19 @@ TEST(Slurm, LostStateGivesTheSameBytes) {
   EXPECT_EQ(sweep.cluster().Queue().size(), 1u) << "the job of others is cancelled";
 }
 
-// The first worker takes a lease and ignores every signal but SIGKILL.
+// The first worker that finds a lease takes it and ignores every signal but SIGKILL.
 TEST(Slurm, ATaskThatHangsIsComputedAgainAfterItsTimeLimit) {
   const TemporaryFolder folder;
   const std::string worker = folder.File("worker");
   WriteFile(worker, absl::StrCat("#!/bin/sh\nif mkdir ", folder.File("hung"),
-                                 " 2>/dev/null; then lease=$(ls \"$1/todo\" | head -n 1); "
-                                 "mv \"$1/todo/$lease\" \"$1/taken/$lease.hung\"; "
-                                 "trap '' USR1 TERM; while :; do sleep 1; done; fi\n",
-                                 "exec ", BuildPath("bin/ballpiston-worker"), " \"$@\"\n"));
-  Sweep sweep(
-      {.flags = Joined({Split("--slurm-time-limit-minutes 1 --cluster-worker"), {worker}})});
+                                 " 2>/dev/null; then lease=$(ls \"$1/todo\" | head -n 1)\n"
+                                 "if [ \"$lease\" ] && mv \"$1/todo/$lease\" "
+                                 "\"$1/taken/$lease.hung\"; then trap '' USR1 TERM; "
+                                 "while :; do sleep 1; done; fi\nrmdir ",
+                                 folder.File("hung"), "; fi\nexec ",
+                                 BuildPath("bin/ballpiston-worker"), " \"$@\"\n"));
+  Sweep sweep({.flags = Joined({Split("--slurm-time-limit-minutes 1 --cluster-worker"), {worker}}),
+               .samples = 2'000'000});
   sweep.Submit();
   sweep.ExpectTheSameBytes();
   EXPECT_GT(sweep.Counts().lost, 0);

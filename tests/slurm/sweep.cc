@@ -80,6 +80,10 @@ void Sweep::AwaitRunningTasks() const {
   AwaitThat([this] { return !Workers().empty(); });
 }
 
+void Sweep::AwaitTakenLease() const {
+  AwaitThat([this] { return !NamesIn(shared_folder() + "/taken").empty(); });
+}
+
 void Sweep::AwaitProblem(const std::string& text) const {
   AwaitThat([&] { return Counts().problem.find(text) != std::string::npos; });
 }

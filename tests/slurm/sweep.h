@@ -40,6 +40,7 @@ class Sweep {
   ClusterCounts Counts() const;
   void AwaitTasks() const;         // until the cluster has tasks of this server
   void AwaitRunningTasks() const;  // until workers run
+  void AwaitTakenLease() const;    // until a worker has a lease
   void AwaitProblem(const std::string& text) const;
   std::vector<pid_t> Workers() const;  // that compute
   void KillServer();                   // kill -9, and starts it again on the same data folder
