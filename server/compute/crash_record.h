@@ -47,9 +47,9 @@ class CrashRecord {
   struct Slot;
   static constexpr int64_t kNoPoint = -1;
 
-  // As long as an entry lives, the record says what this thread does, and the thread can note its
-  // death even if its own stack is used up. Entries may nest; then the innermost one counts. The
-  // record has room for 2,048 entries. If it is full, a thread waits until another entry ends.
+  // While an entry exists, the record contains what this thread computes. The thread can then note
+  // its death, even if its stack is full. If one thread has several entries, the newest counts. If
+  // the record has no free place, the constructor waits until another entry ends.
   class Entry {
    public:
     Entry(const Entry&) = delete;

@@ -22,15 +22,6 @@
 
 namespace ballpiston::server {
 
-// Seconds of the store's thread to store one of many results of points without samples, while other
-// threads compute. Measured as the mean over 30,000 results that are recorded and flushed, on a
-// Xeon with a virtual disk: 7 and 11 us of processor time. The rest is the time of the disk.
-inline constexpr double kSecondsToStoreClosedForm = 1e-5;
-inline constexpr double kSecondsToStoreSpectrum = 1.5e-5;  // its result has curves
-// Additional seconds of a job's first point, because caches are cold. Measured on the same machine
-// as the time to serve a closed form after the caches were overwritten: 60 to 120 us.
-inline constexpr double kSecondsOfAFirstPoint = 8e-5;
-
 class ModelLadder : public PointOpener {
  public:
   // The store must outlive the ladder. A question that needs more bytes than `memory` is a

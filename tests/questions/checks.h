@@ -45,8 +45,9 @@ inline constexpr int kMostProcessorSeconds = 200;
 inline constexpr int kMostProcessorSeconds = 30;
 #endif
 
-// ---- refusal: names the field, the value as it was given, and the permitted values ----
+// ---- refusals ----
 
+// A refusal must name the field, the value that the question had, and the permitted values.
 inline constexpr char kRefusalCheck[] = "refusal";
 
 // `violations`: those of `spec`, with paths that begin with "spec.".

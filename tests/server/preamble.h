@@ -1,5 +1,6 @@
-// What most tests of the server use: the core's experiments, the store, a server in the test's
-// process, and calls to it. A test includes it after the header that it tests.
+// The headers that most tests of the server need: experiments of the core, the store, a server that
+// runs in the process of the test, and calls to this server. A test includes this file after the
+// header that it tests.
 #pragma once
 
 #include "core/engine_version.h"

@@ -1,6 +1,6 @@
-// What most tests of every layer use: GoogleTest, the standard library, waits, files, and
-// assertions about a status. A test includes it, or its folder's own preamble, after the header
-// that it tests.
+// The headers that most tests need, in every folder: GoogleTest, the standard library, waits,
+// files, and matchers of a status. The preamble of a folder includes this file and adds the headers
+// of that folder. A test includes one preamble, after the header that it tests.
 #pragma once
 
 #include <gmock/gmock.h>

@@ -1,4 +1,5 @@
-// What most torture tests use: a server process with its clients, questions, and findings.
+// The headers that most torture tests need: a server process, its clients, questions to it, and the
+// findings that a test counts.
 #pragma once
 
 #include "client/library/client.h"
