@@ -75,7 +75,7 @@ TEST(StartStop, StoppingDoesNotWaitForAnEndlessBlock) {
                      })});
   server.Submit(Equilibrium(5, 100));
   gate.AwaitWaiting(3);
-  server.Shutdown(kNever);
+  server.Shutdown(kUnreachedLimit);
   EXPECT_EQ(begun, 3);
   EXPECT_EQ(gate.waiting(), 0);
 }

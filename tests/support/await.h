@@ -16,7 +16,7 @@ namespace ballpiston {
 inline constexpr std::chrono::minutes kPatience(15);
 
 // A time limit under test that must not be reached.
-inline constexpr std::chrono::hours kNever(100);
+inline constexpr std::chrono::hours kUnreachedLimit(100);
 
 [[noreturn]] inline void ThrowLongWait(const char* file, int line) {
   std::ostringstream text;

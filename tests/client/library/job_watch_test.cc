@@ -162,7 +162,7 @@ TEST_F(JobWatch, AStopEndsTheWatchAtOnce) {
 
 TEST_F(JobWatch, AStopEndsThePauseBetweenAttempts) {
   Start({Unavailable()});
-  options_.initial_backoff = absl::FromChrono(kNever);
+  options_.initial_backoff = absl::FromChrono(kUnreachedLimit);
   options_.give_up_after = absl::InfiniteDuration();
   after_disconnect_ = [this] { stop_.request_stop(); };
   EXPECT_THAT(Watch(), StatusIs(absl::StatusCode::kCancelled));

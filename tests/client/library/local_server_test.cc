@@ -184,7 +184,7 @@ TEST_F(LocalServerTest, DoesNotWaitForAServerThatListensElsewhere) {
   const LocalServer server{.folder = home_.string(),
                            .socket = home_ / "socket",
                            .program = Program("echo why; exit 2"),
-                           .start_time = absl::FromChrono(kNever)};
+                           .start_time = absl::FromChrono(kUnreachedLimit)};
   const FolderInUse in_use(home_);
   WriteFile(home_ / "server.address", "127.0.0.1:50051\n");
   EXPECT_THAT(

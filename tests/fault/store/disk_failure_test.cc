@@ -16,7 +16,7 @@ constexpr int64_t kJob = 99;
 class DiskFailure : public testing::Test {
  protected:
   std::unique_ptr<Store> Open(Store::Options options = {}) const {
-    options.stall = kNever;
+    options.stall = kUnreachedLimit;
     options.retry = std::chrono::milliseconds(1);
     auto store = Store::Open(kStorePath, options);
     EXPECT_OK(store);
@@ -65,7 +65,7 @@ TEST_F(DiskFailure, ADiskErrorAtTheStartIsNotReportedAsDamage) {
 // The request is refused because of a result in its group. The result does not fit on the disk, so
 // the request runs again without it.
 TEST_F(DiskFailure, ARefusalIsNotToldIfItsGroupFails) {
-  const auto store = Open({.delay = kNever, .reserve_bytes = 0});
+  const auto store = Open({.delay = kUnreachedLimit, .reserve_bytes = 0});
   LeaveRoomFor(100'000);
   RecordResult(*store, 0, 400'000);
   const auto refuse_if_there = [](Database& database) {
@@ -92,7 +92,7 @@ TEST_F(DiskFailure, OnAFullDiskTheReserveLetsALargeJobBeDeleted) {
 
 // Results that do not fit wait, and do not delay requests, which may free space.
 TEST_F(DiskFailure, OnAFullDiskRequestsGoBeforeRecordsThatDoNotFit) {
-  const auto store = Open({.delay = kNever, .reserve_bytes = 0});
+  const auto store = Open({.delay = kUnreachedLimit, .reserve_bytes = 0});
   LeaveRoomFor(100'000);
   RecordResult(*store, 0, 400'000);
   EXPECT_FALSE(store->Flush().ok());
@@ -106,7 +106,7 @@ TEST_F(DiskFailure, OnAFullDiskRequestsGoBeforeRecordsThatDoNotFit) {
 
 // Some of many records fit. The store writes them in smaller groups.
 TEST_F(DiskFailure, OnAFullDiskRecordsThatFitAreWritten) {
-  const auto store = Open({.delay = kNever, .reserve_bytes = 0});
+  const auto store = Open({.delay = kUnreachedLimit, .reserve_bytes = 0});
   LeaveRoomFor(300'000);
   for (int64_t point = 0; point < 1000; ++point) RecordResult(*store, point, 1000);
   EXPECT_FALSE(store->Flush().ok());
@@ -132,7 +132,7 @@ TEST_F(DiskFailure, WorkersWaitWhenTheirResultsTakeTooMuchMemory) {
 
 // The delay collects small batches. It does not delay threads that wait for room.
 TEST_F(DiskFailure, ManyWritesAreNotDelayed) {
-  const auto store = Open({.delay = kNever, .max_pending = 10});
+  const auto store = Open({.delay = kUnreachedLimit, .max_pending = 10});
   std::promise<void> stored;
   for (int64_t point = 0; point < 6; ++point) {
     store->RecordResult(kJob, {.point = point, .samples = 1, .result = "x"}, [&](int64_t number) {

@@ -51,7 +51,7 @@ void InsertEnded(Database& database, int count, const v1::EnsembleSpec& spec,
 }
 
 void Fill(const std::string& path, int jobs, const v1::EnsembleSpec& spec) {
-  ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(path, {.stall = kNever}));
+  ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(path, {.stall = kUnreachedLimit}));
   const std::string result = SomeResult();
   for (int i = 0; i < jobs; i += kGroup) {
     ASSERT_OK(store->Commit([&](Database& database) {

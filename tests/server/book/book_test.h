@@ -24,7 +24,7 @@ class BookTest : public testing::Test {
     Stop();
     limits_ = limits;
     ASSERT_OK_AND_ASSIGN(store_, Store::Open(path_, {.delay = std::chrono::milliseconds(1),
-                                                     .stall = kNever,
+                                                     .stall = kUnreachedLimit,
                                                      .reserve_bytes = 0}));
     pool_ = std::make_unique<ThreadPool>(
         2, FakeExperimentsBySeed([this](uint64_t seed, size_t, uint64_t, std::stop_token stop) {

@@ -70,8 +70,8 @@ class JobJournalTest : public testing::Test {
  protected:
   // Nothing is committed before it is flushed.
   void SetUp() override {
-    ASSERT_OK_AND_ASSIGN(store_,
-                         Store::Open(folder_.File("store"), {.delay = kNever, .stall = kNever}));
+    ASSERT_OK_AND_ASSIGN(store_, Store::Open(folder_.File("store"),
+                                             {.delay = kUnreachedLimit, .stall = kUnreachedLimit}));
     record_ = JobWithPoints(3);
     ASSERT_OK(store_->Commit([this](Database& database) { InsertJob(database, record_); }));
     job_ = std::make_shared<Job>(record_);

@@ -10,7 +10,9 @@ constexpr std::chrono::milliseconds kShort(50);
 constexpr char kForever[] = "sleep 1000";
 
 Command Shell(const std::string& script) {
-  return {.words = {"sh", "-c", script}, .environment = {"PATH=/usr/bin:/bin"}, .limit = kNever};
+  return {.words = {"sh", "-c", script},
+          .environment = {"PATH=/usr/bin:/bin"},
+          .limit = kUnreachedLimit};
 }
 
 absl::StatusOr<CommandOutput> RunShell(const std::string& script) {
@@ -37,11 +39,11 @@ TEST(RunCommand, GivesOutputErrorsAndExitCode) {
 }
 
 TEST(RunCommand, AProgramThatCannotBeRunIsAnError) {
-  EXPECT_THAT(RunCommand({.words = {"no-such-program-4711"}, .limit = kNever}, {}),
+  EXPECT_THAT(RunCommand({.words = {"no-such-program-4711"}, .limit = kUnreachedLimit}, {}),
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("no-such-program-4711")));
   const TemporaryFolder folder;
   WriteFile(folder.File("text"), "text");
-  EXPECT_THAT(RunCommand({.words = {folder.File("text")}, .limit = kNever}, {}),
+  EXPECT_THAT(RunCommand({.words = {folder.File("text")}, .limit = kUnreachedLimit}, {}),
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr(folder.File("text"))));
 }
 

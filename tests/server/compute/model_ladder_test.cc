@@ -16,7 +16,8 @@ PilotPlace PlaceOf(const EnsembleSpec& spec) { return PilotPlaceFor(PointAt(spec
 
 class ModelLadderTest : public testing::Test {
  protected:
-  ModelLadderTest() : store_(*Store::Open(folder_.File("store.sqlite3"), {.stall = kNever})) {}
+  ModelLadderTest()
+      : store_(*Store::Open(folder_.File("store.sqlite3"), {.stall = kUnreachedLimit})) {}
 
   // The experiment; runs a pilot, which costs nothing, if the ladder asks for one.
   std::unique_ptr<const PointExperiment> Create(ModelLadder& ladder, const EnsembleSpec& spec) {

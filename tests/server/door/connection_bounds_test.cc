@@ -150,13 +150,13 @@ TestServerOptions OnPort(const ConnectionTiming& timing) {
 
 TEST(SilentConnection, AConnectionWithoutAHandshakeIsClosed) {
   RunningServer server(
-      OnPort({.handshake = std::chrono::milliseconds(200), .ping_interval = kNever}));
+      OnPort({.handshake = std::chrono::milliseconds(200), .ping_interval = kUnreachedLimit}));
   Connection connection(server.address());
   EXPECT_THAT(connection.ReadToTheEnd(), HasSubstr(kGoAway));
 }
 
 TEST(SilentConnection, AConnectionThatAnswersNoPingIsClosed) {
-  RunningServer server(OnPort({.handshake = kNever,
+  RunningServer server(OnPort({.handshake = kUnreachedLimit,
                                .ping_interval = std::chrono::milliseconds(100),
                                .ping_timeout = std::chrono::milliseconds(100)}));
   Connection connection(server.address());

@@ -43,7 +43,8 @@ class ServerStatusTest : public testing::Test {
                           .max_samples_per_job = 0,
                           .max_streams_per_principal = 73};
   Authenticator authenticator_{/*needs_tokens=*/false};
-  std::unique_ptr<Store> store_ = *Store::Open(folder_.File("store.sqlite3"), {.stall = kNever});
+  std::unique_ptr<Store> store_ =
+      *Store::Open(folder_.File("store.sqlite3"), {.stall = kUnreachedLimit});
   ModelLadder ladder_{*store_, 2};
   ThreadPool pool_{
       2, FakeExperiments([this](size_t, uint64_t, std::stop_token stop) { gate_.Pass(stop); })};

@@ -175,7 +175,7 @@ TEST_F(TraceServiceTest, ATraceCountsAsAStreamWithItsMemoryUntilItsReaderGoes) {
 TEST_F(TraceServiceTest, AStopEndsTracesThatAreRead) {
   TraceStream stream(server(), kLong);
   ASSERT_TRUE(stream.Next());
-  std::thread stop([this] { server().Shutdown(kNever); });
+  std::thread stop([this] { server().Shutdown(kUnreachedLimit); });
   EXPECT_THAT(stream.End(), IsError(grpc::StatusCode::UNAVAILABLE, "SHUTTING_DOWN"));
   stop.join();
 }

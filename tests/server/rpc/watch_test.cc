@@ -146,7 +146,7 @@ TEST_F(WatchTest, AStoppingServerEndsWatchesWithUnavailable) {
   const std::string name = server.Submit(Equilibrium(1, 50));
   WatchStream stream(server, name);
   ASSERT_TRUE(stream.Next());
-  std::thread stop([&] { server.Shutdown(kNever); });
+  std::thread stop([&] { server.Shutdown(kUnreachedLimit); });
   const grpc::Status status = stream.End();
   stop.join();
   EXPECT_THAT(status, IsError(grpc::StatusCode::UNAVAILABLE, "SHUTTING_DOWN"));

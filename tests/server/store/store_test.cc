@@ -24,7 +24,7 @@ JobRecord Record(const std::string& id) {
 class StoreTest : public testing::Test {
  protected:
   std::unique_ptr<Store> Open(Store::Options options = {}) {
-    options.stall = kNever;
+    options.stall = kUnreachedLimit;
     auto store = Store::Open(File(), options);
     EXPECT_OK(store);
     return store.ok() ? *std::move(store) : nullptr;
@@ -190,7 +190,7 @@ TEST_F(StoreTest, EveryKindOfWrongFileIsRefusedAndUntouched) {
 }
 
 TEST_F(StoreTest, AnImpossibleWriteIsRejectedAlone) {
-  const auto store = Open({.delay = kNever});
+  const auto store = Open({.delay = kUnreachedLimit});
   const auto broken = [](Database& database) {
     database.Execute(
         "INSERT INTO results (job, point, samples, result, finish) VALUES (1, 1, NULL, x'00', 1)");
@@ -209,7 +209,7 @@ TEST_F(StoreTest, AnImpossibleWriteIsRejectedAlone) {
 }
 
 TEST_F(StoreTest, ARejectedChangeIsRolledBackAndTheOthersStay) {
-  const auto store = Open({.delay = kNever});
+  const auto store = Open({.delay = kUnreachedLimit});
   store->RecordCheckpoint(1, 0, 0, [] { return "kept"; });
   absl::Status full = absl::ResourceExhaustedError("too many jobs");
   full.SetPayload("reason", absl::Cord("TOO_MANY_JOBS"));
@@ -246,7 +246,7 @@ TEST_F(StoreTest, TheFirstWriterOfAResultWins) {
 }
 
 TEST_F(StoreTest, WritesAreCommittedInGroups) {
-  const auto store = Open({.delay = kNever});
+  const auto store = Open({.delay = kUnreachedLimit});
   for (int point = 0; point < 1000; ++point) {
     store->RecordCheckpoint(1, point, 0, [] { return "r"; });
   }
@@ -257,7 +257,7 @@ TEST_F(StoreTest, WritesAreCommittedInGroups) {
 
 // The store's thread finds the checkpoint when it frees the space of the deletion.
 TEST_F(StoreTest, ACheckpointWaitsForItsDelayWhileSpaceIsFreed) {
-  const auto store = Open({.delay = kNever});
+  const auto store = Open({.delay = kUnreachedLimit});
   const auto nothing = [](Database&) {};
   store->Record(nothing,
                 [&](const absl::Status&) { store->RecordCheckpoint(1, 0, 0, [] { return "r"; }); });
@@ -267,7 +267,7 @@ TEST_F(StoreTest, ACheckpointWaitsForItsDelayWhileSpaceIsFreed) {
 }
 
 TEST_F(StoreTest, OnlyTheLastCheckpointOfAGroupIsWritten) {
-  const auto store = Open({.delay = kNever});
+  const auto store = Open({.delay = kUnreachedLimit});
   for (int i = 0; i < 10; ++i) {
     store->RecordCheckpoint(1, 0, 0, [i] { return std::to_string(i); });
   }
@@ -277,7 +277,7 @@ TEST_F(StoreTest, OnlyTheLastCheckpointOfAGroupIsWritten) {
 }
 
 TEST_F(StoreTest, CheckpointsOfAFinishedPointAreNeitherWrittenNorKept) {
-  const auto store = Open({.delay = kNever});
+  const auto store = Open({.delay = kUnreachedLimit});
   store->RecordCheckpoint(1, 0, 0, [] { return "r"; });
   ASSERT_OK(store->Flush());
   EXPECT_EQ(store->counts().checkpoints_written, 1);
@@ -318,7 +318,7 @@ TEST_F(StoreTest, AReadThatThrowsEndsItsTransaction) {
 
 // A batch of two groups: each result has more bytes than half a group.
 TEST_F(StoreTest, AWriteIsToldWhenItsOwnGroupIsCommitted) {
-  const auto store = Open({.delay = kNever});
+  const auto store = Open({.delay = kUnreachedLimit});
   const int64_t job = Insert(*store, Record("a"));
   std::vector<int64_t> stored;
   for (int64_t point = 0; point < 2; ++point) {

@@ -12,7 +12,7 @@ constexpr int64_t kMiB = 1 << 20;
 class SweeperTest : public testing::Test {
  protected:
   std::unique_ptr<Store> Open() {
-    return *Store::Open(path_, {.stall = kNever, .readers = 1, .reserve_bytes = 0});
+    return *Store::Open(path_, {.stall = kUnreachedLimit, .readers = 1, .reserve_bytes = 0});
   }
   int64_t FileBytes() const { return static_cast<int64_t>(std::filesystem::file_size(path_)); }
 
