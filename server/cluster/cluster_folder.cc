@@ -100,7 +100,7 @@ absl::Status CopyWorker(const std::string& folder, const std::string& worker) {
   const absl::StatusOr<std::string> copy = BytesOf(files.PathOf(name));
   if (!bytes.ok()) return bytes.status();
   if (copy.ok() && *copy == *bytes) return absl::OkStatus();
-  files.Remove(part).IgnoreError();  // of a server that was killed
+  files.Remove(part).IgnoreError();  // of an attempt that failed
   const absl::Status made = files.Create(part, *bytes).status();
   if (!made.ok()) return made;
   if (chmod(files.PathOf(part).c_str(), 0700) != 0) return Unusable(files.PathOf(part), errno);

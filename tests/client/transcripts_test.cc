@@ -25,6 +25,15 @@ bool IsOutput(const std::vector<std::string>& lines, size_t i) {
   return i < lines.size() && IsIndented(lines[i]) && !IsCommand(lines[i]);
 }
 
+// The indented lines from the line `begin` on, without their indentation.
+std::string Block(const std::vector<std::string>& lines, size_t begin) {
+  std::string block;
+  for (size_t i = begin; i < lines.size() && IsIndented(lines[i]); ++i) {
+    absl::StrAppend(&block, lines[i].substr(2), "\n");
+  }
+  return block;
+}
+
 // The text with `before` in front of each line; an empty line stays empty.
 std::string Indented(const std::string& text, const std::string& before) {
   std::string indented;
@@ -70,12 +79,7 @@ class Replay : public ProgramTest {
         replayed += OutputOf(WithMeanings(line.substr(4)));
         while (IsOutput(lines, i + 1)) ++i;
       } else if (absl::string_view given = line; absl::ConsumePrefix(&given, "Given ")) {
-        std::string text;
-        for (; i + 1 < lines.size() && IsIndented(lines[i + 1]); ++i) {
-          absl::StrAppend(&replayed, lines[i + 1], "\n");
-          absl::StrAppend(&text, lines[i + 1].substr(2), "\n");
-        }
-        Give(std::string(absl::StripSuffix(given, ":")), WithMeanings(text));
+        Give(std::string(absl::StripSuffix(given, ":")), WithMeanings(Block(lines, i + 1)));
       } else if (absl::string_view usual = line;
                  absl::ConsumePrefix(&usual, "Each command below exits with ")) {
         EXPECT_TRUE(absl::SimpleAtoi(absl::StripSuffix(usual, "."), &usual_code_)) << line;
