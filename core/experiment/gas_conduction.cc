@@ -213,14 +213,14 @@ class GasConduction : public SteadyGas {
 
  protected:
   void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
-    const std::vector<SteadyGroup> groups = GroupsOf(merged);
-    summary.curves.push_back(Profile(groups));
-    for (const Order& order : kOrders) {
-      if (Curve curve = CumulantsByWindow(order, groups); !curve.points.empty()) {
+    summary.curves.push_back(Profile(merged));
+    for (const Order& order : StatedOrders()) {
+      if (Curve curve = CumulantsByWindow(order, merged); !curve.points.empty()) {
         summary.curves.push_back(std::move(curve));
       }
     }
-    for (std::string remark : {RemarkOnWarmUp(merged), RemarkOnErrors(groups)}) {
+    for (std::string remark :
+         {RemarkOnWarmUp(merged), RemarkOnErrors(GroupsOf(merged)), RemarkOnOrders()}) {
       if (!remark.empty()) summary.remarks.push_back(std::move(remark));
     }
   }
@@ -268,7 +268,7 @@ class GasConduction : public SteadyGas {
         {"exchange_rate", TimeAverageAt(kExchanges, contacts), std::sqrt(temperature())});
     table.push_back({"temperature_ball", TimeAverageAt(kBalls, balls), temperature()});
     table.push_back({"temperature_piston", TimeAverageAt(kPistons, pistons / 2), temperature()});
-    for (const Order& order : kOrders) {
+    for (const Order& order : StatedOrders()) {
       const auto reading = [this, order](const BlockResult& merged) {
         return CumulantRate(order, GroupsOf(merged));
       };
@@ -290,13 +290,11 @@ class GasConduction : public SteadyGas {
     return Columns() * std::sqrt(temperature()) / fall;
   }
 
-  Curve Profile(const std::vector<SteadyGroup>& groups) const {
+  Curve Profile(const BlockResult& merged) const {
     Curve curve = {.name = "temperature_profile", .axis = CurveAxis::kPosition};
     for (size_t i = 0; i < places_.size(); ++i) {
-      Estimate there = TimeAverage(kPlaces + i, 1, groups);
-      there.value *= temperature();
-      if (there.standard_error) *there.standard_error *= temperature();
-      curve.points.push_back(CurvePointOf(places_.Position(i), there));
+      const Measurement there = {"", TimeAverageAt(kPlaces + i, 1), temperature()};
+      curve.points.push_back(CurvePointOf(places_.Position(i), *there.Of(merged)));
     }
     return curve;
   }
@@ -310,6 +308,24 @@ class GasConduction : public SteadyGas {
   double ScaleOf(const Order& order) const {
     return std::pow(temperature(), order.number + 0.5) / Rows();
   }
+  // The orders whose unit is within the range of double precision, with room for the values. At a
+  // temperature of 1e-120 or 1e120 that is the second alone.
+  std::span<const Order> StatedOrders() const {
+    constexpr double kLargest = 1e301;
+    const auto first = std::ranges::find_if(kOrders, [this](const Order& order) {
+      return std::fabs(std::log(ScaleOf(order))) > std::log(kLargest);
+    });
+    return {std::begin(kOrders), first};
+  }
+  std::string RemarkOnOrders() const {
+    const size_t stated = StatedOrders().size();
+    if (stated == std::size(kOrders)) return "";
+    return absl::StrFormat(
+        "%s and above are not stated: in units of this temperature, %.3g, they "
+        "are outside the range of double precision",
+        NameOf(kOrders[stated]), temperature());
+  }
+
   double WindowTime(size_t length) const {
     return stretch() * static_cast<double>(uint64_t{1} << length);
   }
@@ -364,14 +380,18 @@ class GasConduction : public SteadyGas {
   }
 
   // c_n(t)/t by t.
-  Curve CumulantsByWindow(const Order& order, const std::vector<SteadyGroup>& groups) const {
+  Curve CumulantsByWindow(const Order& order, const BlockResult& merged) const {
+    const std::vector<SteadyGroup> groups = GroupsOf(merged);
     Curve curve = {.name = NameOf(order) + "_by_window"};
     for (size_t length = 0; HasWindows(length, order.windows, groups); ++length) {
-      const double time = WindowTime(length), scale = ScaleOf(order) / time;
-      Estimate there = FromWindows(groups, [&](const auto& windows) {
-        return scale * Cumulant(windows[length], order.number);
-      });
-      curve.points.push_back(CurvePointOf(time / std::sqrt(temperature()), there));
+      const double time = WindowTime(length);
+      const auto reading = [&](const BlockResult&) {
+        return FromWindows(groups, [&](const auto& windows) {
+          return Cumulant(windows[length], order.number) / time;
+        });
+      };
+      const Measurement there = {"", reading, ScaleOf(order)};
+      curve.points.push_back(CurvePointOf(time / std::sqrt(temperature()), *there.Of(merged)));
     }
     return curve;
   }

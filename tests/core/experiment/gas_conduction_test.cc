@@ -2,6 +2,7 @@
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/gas_exchange_rate.h"
+#include "core/geometry/temperature.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
@@ -60,6 +61,36 @@ TEST(GasConduction, AllScalesWithTheTemperatures) {
   for (size_t i = 0; i < low.curves[0].points.size(); ++i) {
     expect_scaled(high.curves[0].points[i], low.curves[0].points[i], 4);
     EXPECT_EQ(high.curves[0].points[i].at, low.curves[0].points[i].at);
+  }
+}
+
+// The same trajectories seen at other temperatures. The units of the cumulants are T^(n + 1/2).
+TEST(GasConduction, AtEveryTemperatureTheCumulantsAreNumbersOrNotStated) {
+  const auto at = [](double temperature) {
+    EnsembleSpec spec = SpecBetween(temperature, temperature, {.columns = 1}, Model::kMarkov);
+    spec.target.samples = 264'000;
+    return spec;
+  };
+  const BlockResult merged = *FoldPoint(*PointExperiment::Create(at(1), 0));
+  const auto expect_stated = [&](double temperature, size_t orders) {
+    SCOPED_TRACE(temperature);
+    const PointSummary summary = Summarized(at(temperature), merged);
+    ASSERT_EQ(summary.curves.size(), 1 + orders);  // the profile first
+    for (const Curve& curve : summary.curves) {
+      for (const CurvePoint& there : curve.points) {
+        EXPECT_TRUE(std::isnormal(there.value)) << curve.name << " " << there.value;
+        EXPECT_TRUE(std::isnormal(*there.standard_error)) << curve.name;
+      }
+    }
+    EXPECT_EQ(summary.estimates.size(), 5 + orders);
+    EXPECT_THAT(summary.remarks, testing::Conditional(orders < 3, Contains(HasSubstr("not stated")),
+                                                      Not(Contains(HasSubstr("not stated")))));
+  };
+  expect_stated(1, 3);
+  expect_stated(1e-60, 3);
+  for (const double temperature : {1e70, 1e-70}) expect_stated(temperature, 2);
+  for (const double temperature : {kMaxTemperature, kMinTemperature}) {
+    expect_stated(temperature, 1);
   }
 }
 
