@@ -12,24 +12,25 @@ namespace {
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-void Scale(std::optional<double>& value, double scale) {
-  if (value) *value *= scale;
-}
-
 double EventsIn(const BlockResult& merged, double events_per_sample) {
   return events_per_sample * static_cast<double>(merged.samples);
 }
 
 }  // namespace
 
+Estimate Scaled(Estimate estimate, double scale) {
+  estimate.value *= scale;
+  if (estimate.standard_error) *estimate.standard_error *= std::fabs(scale);
+  if (estimate.exact) *estimate.exact *= scale;
+  if (estimate.limit) *estimate.limit *= scale;
+  return estimate;
+}
+
 std::optional<Estimate> Measurement::Of(const BlockResult& merged) const {
   std::optional<Estimate> estimate = reading(merged);
   if (!estimate) return std::nullopt;
+  estimate = Scaled(*std::move(estimate), scale);
   estimate->name = name;
-  estimate->value *= scale;
-  Scale(estimate->standard_error, std::fabs(scale));
-  Scale(estimate->exact, scale);
-  Scale(estimate->limit, scale);
   if (exact) estimate->exact = exact;
   if (limit) estimate->limit = limit;
   return estimate;

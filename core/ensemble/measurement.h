@@ -38,6 +38,9 @@ std::vector<Estimate> EstimatesOf(const std::vector<Measurement>& table, const B
 // The table with the row of this name, which it must have, in the first place.
 std::vector<Measurement> WithFirst(std::vector<Measurement> table, absl::string_view name);
 
+// The estimate in other units.
+Estimate Scaled(Estimate estimate, double scale);
+
 Estimate MeanOf(const Moments& sample, double events);
 Estimate RatioOf(const BatchMeans& sample, double events);
 

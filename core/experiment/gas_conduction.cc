@@ -213,14 +213,14 @@ class GasConduction : public SteadyGas {
 
  protected:
   void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
-    summary.curves.push_back(Profile(merged));
+    const std::vector<SteadyGroup> groups = GroupsOf(merged);
+    summary.curves.push_back(Profile(groups));
     for (const Order& order : StatedOrders()) {
-      if (Curve curve = CumulantsByWindow(order, merged); !curve.points.empty()) {
+      if (Curve curve = CumulantsByWindow(order, groups); !curve.points.empty()) {
         summary.curves.push_back(std::move(curve));
       }
     }
-    for (std::string remark :
-         {RemarkOnWarmUp(merged), RemarkOnErrors(GroupsOf(merged)), RemarkOnOrders()}) {
+    for (std::string remark : {RemarkOnWarmUp(merged), RemarkOnErrors(groups), RemarkOnOrders()}) {
       if (!remark.empty()) summary.remarks.push_back(std::move(remark));
     }
   }
@@ -290,11 +290,11 @@ class GasConduction : public SteadyGas {
     return Columns() * std::sqrt(temperature()) / fall;
   }
 
-  Curve Profile(const BlockResult& merged) const {
+  Curve Profile(const std::vector<SteadyGroup>& groups) const {
     Curve curve = {.name = "temperature_profile", .axis = CurveAxis::kPosition};
     for (size_t i = 0; i < places_.size(); ++i) {
-      const Measurement there = {"", TimeAverageAt(kPlaces + i, 1), temperature()};
-      curve.points.push_back(CurvePointOf(places_.Position(i), *there.Of(merged)));
+      const Estimate there = Scaled(TimeAverage(kPlaces + i, 1, groups), temperature());
+      curve.points.push_back(CurvePointOf(places_.Position(i), there));
     }
     return curve;
   }
@@ -380,18 +380,15 @@ class GasConduction : public SteadyGas {
   }
 
   // c_n(t)/t by t.
-  Curve CumulantsByWindow(const Order& order, const BlockResult& merged) const {
-    const std::vector<SteadyGroup> groups = GroupsOf(merged);
+  Curve CumulantsByWindow(const Order& order, const std::vector<SteadyGroup>& groups) const {
     Curve curve = {.name = NameOf(order) + "_by_window"};
     for (size_t length = 0; HasWindows(length, order.windows, groups); ++length) {
       const double time = WindowTime(length);
-      const auto reading = [&](const BlockResult&) {
-        return FromWindows(groups, [&](const auto& windows) {
-          return Cumulant(windows[length], order.number) / time;
-        });
-      };
-      const Measurement there = {"", reading, ScaleOf(order)};
-      curve.points.push_back(CurvePointOf(time / std::sqrt(temperature()), *there.Of(merged)));
+      const Estimate rate = FromWindows(groups, [&](const auto& windows) {
+        return Cumulant(windows[length], order.number) / time;
+      });
+      curve.points.push_back(
+          CurvePointOf(time / std::sqrt(temperature()), Scaled(rate, ScaleOf(order))));
     }
     return curve;
   }

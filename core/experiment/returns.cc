@@ -78,7 +78,9 @@ Curve SurvivalCurve(const Histogram& return_times) {
     const double share = later / samples;
     const double limit = std::exp(-kReturnTimeMeans / kReturnTimeBins * static_cast<double>(bin));
     const double events = samples * limit * (1 - limit);
-    const double error = std::sqrt(share * (1 - share) / samples);
+    // Half a count more: a share of 0 or 1 among few long returns is not exact.
+    const double expected = (later + 0.5) / (samples + 1);
+    const double error = std::sqrt(expected * (1 - expected) / samples);
     curve.points.push_back({.at = return_times.Edge(bin),
                             .value = share,
                             .standard_error = bin == 0 ? 0 : StatedError(events, share, error),

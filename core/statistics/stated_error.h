@@ -1,5 +1,6 @@
-// The rule that decides whether an estimate gets a standard error. It is the same for all
-// estimates.
+// The rule that decides whether an estimate gets a standard error. It holds for all estimates but
+// two kinds, which always have one: divergences, whose noise is known for every sample, and the
+// time averages of gas-conduction, whose trajectories have many events each.
 //
 // The scatter of a sample is the error of its mean only if the sample contains the events that
 // determine the mean. An error is given if there are at least kEventsForAnError independent events

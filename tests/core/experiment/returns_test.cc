@@ -34,11 +34,21 @@ TEST(ReturnOrbits, AnEscapedOrbitCountsAsAnEscapeOnly) {
   EXPECT_NEAR(result.health.max_energy_error, 1.5e-10, 1e-11);
 }
 
+// No return of 1,000 is later than a tenth of the mean, but some of the next 1,000 may be.
+TEST(ReturnTimes, AShareOfZeroHasAnError) {
+  Histogram times = EmptyReturnTimes(1);
+  for (int i = 0; i < 1000; ++i) times.Add(0.05);
+  const CurvePoint& later = SurvivalCurve(times).points[kReturnTimeBins / 8];
+  EXPECT_EQ(later.value, 0);
+  EXPECT_NEAR(*later.standard_error, std::sqrt(0.5) / 1000, 1e-6);
+}
+
 TEST(ReturnTimes, SurvivalIsTheShareOfLaterHits) {
   Histogram times = EmptyReturnTimes(1);
   for (int i = 0; i < 300; ++i) times.Add(0.05);
   for (int i = 0; i < 100; ++i) times.Add(100);
   const Curve curve = SurvivalCurve(times);
+  constexpr double kShare = 100.5 / 401;  // for the error
   ASSERT_EQ(curve.points.size(), kReturnTimeBins);
   EXPECT_EQ(curve.points[0].value, 1);
   EXPECT_EQ(curve.points[0].standard_error, 0);
@@ -50,7 +60,7 @@ TEST(ReturnTimes, SurvivalIsTheShareOfLaterHits) {
     const double limit = *curve.points[i].limit;
     ASSERT_EQ(curve.points[i].standard_error.has_value(), 400 * limit * (1 - limit) >= 50) << i;
     if (!curve.points[i].standard_error) continue;
-    EXPECT_NEAR(*curve.points[i].standard_error, std::sqrt(0.25 * 0.75 / 400), 1e-15);
+    EXPECT_NEAR(*curve.points[i].standard_error, std::sqrt(kShare * (1 - kShare) / 400), 1e-15);
   }
 }
 
