@@ -54,30 +54,19 @@ class Campaign {
               << std::endl;
   }
 
+  // A line for each experiment, such as "first-hit: 12 answered, 3 refused".
   void Print(uint64_t asked) const {
     std::cout << "\n" << name_ << ": " << asked << " questions of seed " << size_.seed << "\n";
-    std::set<std::string> outcomes;
-    for (const auto& [experiment, of_experiment] : counts_) {
-      for (const auto& [outcome, count] : of_experiment) outcomes.insert(outcome);
-    }
-    PrintCounts(outcomes);
-    for (const auto& [check, count] : broken_) {
-      std::cout << absl::StrFormat("broken: %-20s %8d\n", check, count);
-    }
-  }
-
-  void PrintCounts(const std::set<std::string>& outcomes) const {
-    std::cout << absl::StrFormat("%-28s", "experiment");
-    for (const std::string& outcome : outcomes) std::cout << absl::StrFormat(" %9s", outcome);
-    std::cout << "\n";
-    for (const auto& [experiment, of_experiment] : counts_) {
-      std::cout << absl::StrFormat("%-28s", experiment);
-      for (const std::string& outcome : outcomes) {
-        const auto found = of_experiment.find(outcome);
-        std::cout << absl::StrFormat(" %9d", found == of_experiment.end() ? 0 : found->second);
+    for (const auto& [experiment, outcomes] : counts_) {
+      const char* before = ": ";
+      std::cout << experiment;
+      for (const auto& [outcome, count] : outcomes) {
+        std::cout << std::exchange(before, ", ") << count << " " << outcome;
       }
       std::cout << "\n";
     }
+    for (const auto& [check, count] : broken_)
+      std::cout << "broken: " << count << " " << check << "\n";
   }
 
   const std::string name_;
