@@ -17,22 +17,6 @@ class ClientTest : public ::testing::Test {
   FakeServer server_;
 };
 
-TEST_F(ClientTest, EachCreateHasANewRequestId) {
-  const Client client = StartServer();
-  ASSERT_OK(client.Create(v1::EnsembleSpec()));
-  ASSERT_OK(client.Create(v1::EnsembleSpec()));
-  EXPECT_NE(server_.ensemble.Asked().create[0].request_id(),
-            server_.ensemble.Asked().create[1].request_id());
-}
-
-TEST_F(ClientTest, ListGathersAllPages) {
-  for (int i = 1; i < 5; ++i) server_.ensemble.jobs.push_back(JobIn(v1::EnsembleJob::QUEUED));
-  for (size_t i = 0; i < 5; ++i) server_.ensemble.jobs[i].set_name(std::to_string(i));
-  ASSERT_OK_AND_ASSIGN(const auto jobs, StartServer().List());
-  ASSERT_EQ(jobs.size(), 5u);
-  for (size_t i = 0; i < 5; ++i) EXPECT_EQ(jobs[i].name(), std::to_string(i));
-}
-
 TEST_F(ClientTest, ResultsGathersAllPagesInTheRequestedView) {
   for (int i = 0; i < 5; ++i) server_.ensemble.points.emplace_back().set_index(i);
   ASSERT_OK_AND_ASSIGN(const auto points,
@@ -45,29 +29,6 @@ TEST_F(ClientTest, ResultsGathersAllPagesInTheRequestedView) {
     EXPECT_EQ(request.parent(), "ensembleJobs/a");
     EXPECT_EQ(request.view(), v1::ListResultsRequest::BASIC);
   }
-}
-
-TEST_F(ClientTest, ErrorsKeepCodeAndReason) {
-  const auto job = StartServer().Get("ensembleJobs/none");
-  EXPECT_THAT(
-      job, StatusIs(absl::StatusCode::kNotFound, "no such job: ensembleJobs/none (JOB_NOT_FOUND)"));
-  EXPECT_EQ(ErrorReason(job.status()), "JOB_NOT_FOUND");
-}
-
-TEST_F(ClientTest, WithoutAServerIsUnavailable) {
-  const Client client(server_.Channel());  // the server is not started
-  EXPECT_THAT(client.List(), StatusIs(absl::StatusCode::kUnavailable));
-  EXPECT_THAT(client.Delete("ensembleJobs/a"), StatusIs(absl::StatusCode::kUnavailable));
-}
-
-// By default a gRPC server accepts messages of up to 4 MiB; the client sends larger ones.
-TEST_F(ClientTest, ErrorOfATooLargeSpecificationHasPlainWords) {
-  v1::EnsembleSpec spec;
-  spec.mutable_grid()->mutable_rho()->Resize(1'000'000, 0.53);
-  EXPECT_THAT(StartServer().Create(spec),
-              StatusIs(absl::StatusCode::kResourceExhausted,
-                       AllOf(StartsWith("the request or its answer is too large to be sent: 80000"),
-                             HasSubstr(" bytes; at most 4194304 are permitted"))));
 }
 
 TEST_F(ClientTest, LargeAnswersAreReceived) {

@@ -7,6 +7,7 @@
 namespace ballpiston::client {
 namespace {
 
+// transcripts/refusals.txt shows the texts of details.
 TEST(ErrorText, OkStaysOk) { EXPECT_OK(FromGrpc(grpc::Status::OK)); }
 
 TEST(ErrorText, WithoutDetailsTheTextIsTheMessage) {
@@ -14,13 +15,6 @@ TEST(ErrorText, WithoutDetailsTheTextIsTheMessage) {
       FromGrpc(grpc::Status(grpc::StatusCode::UNAVAILABLE, "connection refused"));
   EXPECT_EQ(status, absl::UnavailableError("connection refused"));
   EXPECT_EQ(ErrorReason(status), "");
-}
-
-TEST(ErrorText, OneViolationTakesOneLine) {
-  const absl::Status status = FromGrpc(InvalidSpec("spec.grid.rho[0]", "is 0.9"));
-  EXPECT_THAT(status, StatusIs(absl::StatusCode::kInvalidArgument,
-                               "spec.grid.rho[0]: is 0.9 (INVALID_SPEC)"));
-  EXPECT_EQ(ErrorReason(status), "INVALID_SPEC");
 }
 
 TEST(ErrorText, MalformedDetailsDoNotHideTheMessage) {

@@ -56,15 +56,10 @@ TEST_F(LocalServerTest, ALongPathHasItsSocketInAPrivateFolderElsewhere) {
   ASSERT_OK_AND_ASSIGN(const LocalServer server, FindLocalServer());
   EXPECT_THAT(server.socket, StartsWith(home_.string() + "/ballpiston-"));
   EXPECT_LE(server.socket.size(), kMaxSocketPath);
-  EXPECT_EQ(ModeOf(fs::path(server.socket).parent_path()), 0700u);
   EXPECT_EQ(FindLocalServer()->socket, server.socket);
-}
-
-TEST_F(LocalServerTest, RejectsASocketFolderThatOthersCanEnter) {
-  home_variable_.Set((home_ / std::string(100, 'x')).string());
-  temporary_.Set(home_.string());
-  const fs::path folder = fs::path(FindLocalServer()->socket).parent_path();
-  fs::permissions(folder, fs::perms::all);
+  const fs::path folder = fs::path(server.socket).parent_path();
+  EXPECT_EQ(ModeOf(folder), 0700u);
+  fs::permissions(folder, fs::perms::all);  // others can enter it
   EXPECT_THAT(FindLocalServer(), StatusIs(absl::StatusCode::kPermissionDenied));
 }
 
@@ -90,20 +85,6 @@ TEST_F(LocalServerTest, UsesAServerThatAnswers) {
       .folder = home_.string(), .socket = running.SocketPath(), .program = Program("exit 1")};
   EXPECT_OK(ConnectToLocalServer(server));
   EXPECT_FALSE(fs::exists(home_ / "server.log"));  // no program was started
-}
-
-TEST_F(LocalServerTest, ErrorQuotesAProgramThatExits) {
-  server_program_.Set(Program("echo first; echo the disk is full; exit 9"));
-  EXPECT_THAT(ConnectToLocalServer(*FindLocalServer()),
-              StatusIs(absl::StatusCode::kUnavailable,
-                       HasSubstr("ended at once with exit status 9: the disk is full\n  log: " +
-                                 home_.string())));
-}
-
-TEST_F(LocalServerTest, ErrorNamesAMissingProgram) {
-  server_program_.Set("no-such-server");
-  EXPECT_THAT(ConnectToLocalServer(*FindLocalServer()),
-              StatusIs(absl::StatusCode::kUnavailable, HasSubstr("cannot start no-such-server")));
 }
 
 // Holds the lock of the folder, as a server of another client does.
