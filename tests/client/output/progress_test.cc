@@ -1,8 +1,5 @@
 #include <google/protobuf/util/json_util.h>
 
-#include <future>
-#include <thread>
-
 #include "ballpiston/file/v1/progress.pb.h"
 #include "client/output/progress_line.h"
 #include "client/output/progress_meter.h"

@@ -1,9 +1,13 @@
+// Lists of numbers and of shapes, and tables of points: what is read, and the errors.
 #include "client/command/number_list.h"
-
+#include "client/command/points_file.h"
+#include "client/command/shape_list.h"
 #include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
+
+// ---- number_list.h ----
 
 using ::testing::DoubleEq;
 
@@ -115,6 +119,117 @@ TEST(Seed, HoldsAll64Bits) {
   for (const char* text : {"", "-1", "1e3", "18446744073709551616", "0x1", " 1", "+1"}) {
     EXPECT_THAT(ParseSeed(text), StatusIs(absl::StatusCode::kInvalidArgument)) << text;
   }
+}
+
+// ---- shape_list.h ----
+
+std::vector<std::string> Shapes(const std::string& text) {
+  const auto list = ParseShapeList(text);
+  EXPECT_OK(list);
+  return list.value_or(std::vector<std::string>());
+}
+
+TEST(ShapeList, ReadsChainsAndLattices) {
+  EXPECT_THAT(Shapes("12"), ElementsAre("12"));
+  EXPECT_THAT(Shapes("1,4x3,1000000x1"), ElementsAre("1", "4x3", "1000000x1"));
+}
+
+TEST(ShapeList, EachShapeHasOneCanonicalForm) {
+  EXPECT_THAT(Shapes("1e3,007,1e2x04"), ElementsAre("1000", "7", "100x4"));
+}
+
+TEST(ShapeList, ARangeGivesChains) {
+  EXPECT_THAT(Shapes("2:10:5,4x4"), ElementsAre("2", "4", "6", "8", "10", "4x4"));
+  EXPECT_THAT(Shapes("8:1024:8:log"),
+              ElementsAre("8", "16", "32", "64", "128", "256", "512", "1024"));
+}
+
+// The server checks which numbers are permitted.
+TEST(ShapeList, AnyNumberIsRead) {
+  EXPECT_THAT(Shapes("-3,0,0x5,1e15"), ElementsAre("-3", "0", "0x5", "1000000000000000"));
+}
+
+TEST(ShapeList, RejectsOtherTextsWithAReason) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"", "'' is not a shape: write N, a chain of N cells, or NxM, a lattice"},
+      {"4,", "'' is not a shape"},
+      {"4y4", "'4y4' is not a shape"},
+      {"x", "'x' is not a shape"},
+      {"4x", "'4x' is not a shape"},
+      {"x4", "'x4' is not a shape"},
+      {"4x4x4", "'4x4x4' is not a shape"},
+      {"4X4", "'4X4' is not a shape"},
+      {"4 x4", "'4 x4' is not a shape"},
+      {"2.5", "'2.5' is not a shape"},
+      {"3,nan", "'nan' is not a shape"},
+      {"1e30", "'1e30' is not a shape"},
+      {"1:2:4", "'1:2:4' has numbers that are not whole"},
+      {"1:10:4:log", "'1:10:4:log' has numbers that are not whole"},
+      {"1:1e17:2", "'1:1e17:2' has numbers that are not whole"},
+      {"1:1e100:2", "has numbers that are not whole"},
+      {"4x4:8x8:2", "'4x4:8x8:2' has an end that is not a decimal number"},
+      {"1:5", "'1:5' is not a range"},
+      {"1:100000:100000,5", "has more than 100000 shapes"}};
+  for (const auto& [text, reason] : cases) {
+    EXPECT_THAT(ParseShapeList(text),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(reason)))
+        << text;
+  }
+}
+
+// ---- points_file.h ----
+
+TEST(PointsFile, FillsTheListsThatItsHeaderNames) {
+  v1::Grid grid;
+  grid.add_exponent(1);
+  ASSERT_OK(ParsePoints("p.csv",
+                        "\xEF\xBB\xBF"
+                        "delta,rho, cells\r\n0.1,0.53,4x3\r\n1e-3,0.6,12\r\n\n",
+                        grid));
+  EXPECT_THAT(grid.table(), ElementsAre("delta", "rho", "cells"));
+  EXPECT_THAT(grid.delta(), ElementsAre(0.1, 1e-3));
+  EXPECT_THAT(grid.rho(), ElementsAre(0.53, 0.6));
+  EXPECT_THAT(grid.cells(), ElementsAre("4x3", "12"));
+  EXPECT_THAT(grid.exponent(), ElementsAre(1));
+}
+
+TEST(PointsFile, AnErrorNamesTheLineAndTheColumn) {
+  struct Wrong {
+    const char* csv;
+    const char* message;
+  };
+  const Wrong kWrong[] = {
+      {"", "p.csv: is empty"},
+      {"\n \n", "p.csv: is empty"},
+      {"rho,delta\n", "p.csv: has no row below its header"},
+      {"rho,detla\n0.5,0.1\n", "line 1: the column 'detla' is not one of rho, delta, "},
+      {"rho,detla\n0.5,0.1\n", "did you mean delta?"},
+      {"rho,table\n0.5,0.1\n", "line 1: the column 'table' is not one of"},
+      {"rho,rho\n0.5,0.1\n", "line 1: the column rho is there twice"},
+      {"rho,epsilon\n0.5,0.1\n", "has the column epsilon, and --epsilon is given"},
+      {"rho,delta\n0.5,0.1\n0.5\n", "line 3 has 1 value; the header names 2 columns"},
+      {"rho,delta\n0.5,0.1\n0.5,x\n", "line 3, column delta: 'x' is not a decimal number"},
+      {"rho,delta\n0.5,\n", "line 2, column delta: '' is not a decimal number"},
+      {"rho,delta\n\n0.5,0.1\n", "line 2 has 1 value;"},
+      {"cells\n2x\n", "line 2, column cells: '2x' is not a shape"}};
+  for (const Wrong& wrong : kWrong) {
+    v1::Grid grid;
+    grid.add_epsilon(0.1);
+    EXPECT_THAT(ParsePoints("p.csv", wrong.csv, grid),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(wrong.message)))
+        << wrong.csv;
+  }
+}
+
+TEST(PointsFile, HasAtMost100000Rows) {
+  std::string csv = "rho\n";
+  for (int i = 0; i < 100'000; ++i) csv += "0.53\n";
+  v1::Grid grid;
+  ASSERT_OK(ParsePoints("p.csv", csv, grid));
+  EXPECT_EQ(grid.rho_size(), 100'000);
+  v1::Grid other;
+  EXPECT_THAT(ParsePoints("p.csv", csv + "0.53\n", other),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("has 100001 rows")));
 }
 
 }  // namespace

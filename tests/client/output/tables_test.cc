@@ -1,9 +1,13 @@
+// The texts of numbers, and tables of jobs and plans. transcripts/ shows the rest.
+#include "client/output/job_list.h"
 #include "client/output/number_text.h"
-
+#include "client/output/plan_output.h"
 #include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
+
+// ---- number_text.h ----
 
 TEST(ExactText, ReadsBackAsTheSameDouble) {
   for (const double x : {0.1, 1.0 / 3, 0.529561127988977, 1e-300, 5e-324, 1.7976931348623157e308,
@@ -81,6 +85,60 @@ TEST(Counted, OneIsSingular) {
   EXPECT_EQ(Counted(1, "day"), "1 day");
   EXPECT_EQ(Counted(0, "job"), "0 jobs");
   EXPECT_EQ(Counted(2.5, "day"), "2.5 days");
+}
+
+// ---- job_list.h ----
+
+const absl::Time kNow = absl::FromUnixSeconds(1700000000);
+
+// The text in the column `results`, in a table of this job and a job whose results stay.
+std::string ResultsColumn(const std::string& job) {
+  std::ostringstream out;
+  PrintJobs({FromText<v1::EnsembleJob>("name: 'ensembleJobs/a' state: SUCCEEDED " + job),
+             FromText<v1::EnsembleJob>("name: 'ensembleJobs/b' state: SUCCEEDED")},
+            kNow, Format::kTable, out);
+  const std::vector<std::string> lines = absl::StrSplit(out.str(), '\n');
+  const size_t column = lines.at(0).find("results");
+  return column == std::string::npos ? "no column" : lines.at(1).substr(column);
+}
+
+// A job whose results expire this long after now.
+std::string Expiring(absl::Duration left) {
+  const int64_t seconds = absl::ToUnixSeconds(kNow + left);
+  return absl::StrCat("expire_time { seconds: ", seconds, " }");
+}
+
+TEST(JobList, TheTableShowsTheExpiryOfResults) {
+  EXPECT_EQ(ResultsColumn("pinned: true"), "pinned");
+  EXPECT_EQ(ResultsColumn("results_expired: true " + Expiring(absl::Hours(-1))), "expired");
+  EXPECT_EQ(ResultsColumn("pinned: true " + Expiring(absl::Hours(1))), "pinned");
+  const std::pair<absl::Duration, std::string> table[] = {
+      {absl::Hours(24 * 7), "expires in 7 days"},    {absl::Hours(24 * 4 - 1), "expires in 3 days"},
+      {absl::Hours(47), "expires in 1 day"},         {absl::Hours(24), "expires in 1 day"},
+      {absl::Hours(23), "expires in 23 hours"},      {absl::Minutes(119), "expires in 1 hour"},
+      {absl::Minutes(59), "expires within an hour"}, {absl::Hours(-9), "expires within an hour"}};
+  for (const auto& [left, text] : table) EXPECT_EQ(ResultsColumn(Expiring(left)), text);
+}
+
+TEST(JobList, TheTableOmitsTheColumnIfAllResultsStay) {
+  EXPECT_EQ(ResultsColumn(""), "no column");
+  EXPECT_EQ(ResultsColumn(Expiring(absl::Hours(24 * 7) + absl::Seconds(1))), "no column");
+}
+
+// ---- plan_output.h ----
+
+std::string PrintedPlan(int points) {
+  v1::PlanEnsembleJobResponse plan;
+  for (int i = 0; i < points; ++i) plan.add_points();
+  std::ostringstream out;
+  PrintPlan(v1::EnsembleSpec(), plan, Format::kTable, out);
+  return out.str();
+}
+
+TEST(PlanTable, HasNoLaddersAboveTheLimitOfPoints) {
+  EXPECT_THAT(PrintedPlan(kMostLadders), HasSubstr("answers"));
+  EXPECT_THAT(PrintedPlan(kMostLadders + 1), Not(HasSubstr("answers")));
+  EXPECT_EQ(kMostLadders, 8);
 }
 
 }  // namespace
