@@ -1,5 +1,6 @@
 #include "tests/questions/draw.h"
 
+#include "client/output/json.h"
 #include "core/ensemble/parameter.h"
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
@@ -245,6 +246,15 @@ class Drawing {
 };
 
 }  // namespace
+
+double BudgetSeconds(const v1::Target& target) {
+  constexpr int64_t kNanos = 1'000'000'000;
+  return static_cast<double>(target.budget().seconds() * kNanos + target.budget().nanos()) / kNanos;
+}
+
+std::string Command(const v1::EnsembleSpec& spec) {
+  return absl::StrCat("ballpiston run --spec - <<<'", client::Json(spec), "'");
+}
 
 Question Draw(uint64_t seed, uint64_t number, double most_seconds) {
   return Drawing(seed, number, most_seconds).Draw();

@@ -83,19 +83,12 @@ void Visitor::Get(OwnJob& job) {
   Learn(job, *seen, "Get");
 }
 
-// Reads some messages, until the end of the job or of the connection.
+// Until the end of the job or of the connection.
 void Visitor::Watch(OwnJob& job) {
   findings_.Count("watches");
   std::stop_source stop;
-  const auto stop_by_chance = [&] {
-    if (Chance(0.5)) stop.request_stop();
-  };
   client::WatchCallbacks callbacks;
-  callbacks.on_job = [&](const v1::EnsembleJob& seen) {
-    Learn(job, seen, "Watch");
-    stop_by_chance();
-  };
-  callbacks.on_snapshot = [&](const auto&) { stop_by_chance(); };
+  callbacks.on_job = [&](const v1::EnsembleJob& seen) { Learn(job, seen, "Watch"); };
   callbacks.on_disconnect = [&](const absl::Status&, absl::Duration) { stop.request_stop(); };
   const auto end = client_.Watch(job.name, callbacks, {}, stop.get_token());
   if (end.ok() && !HasEnded(job.end)) Wrong(job, "a watch was OK before the end");
