@@ -58,44 +58,22 @@ TEST_F(QuestionTest, EachFlagReachesItsField) {
 
 // ---- spec_file.h ----
 
-TEST(SpecFile, ReadsProtoJsonWithEitherFieldNames) {
+// A zero has no sign, in any notation.
+TEST(SpecFile, IsProtoJson) {
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec spec,
-                       ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "grid": {"rho": [0.53]},
-                              "target": {"samples": "100", "estimate": "conductivity"},
-                              "seed": 7})"));
-  EXPECT_EQ(spec.target().samples(), 100);
-  EXPECT_EQ(spec.target().estimate(), "conductivity");
-  EXPECT_EQ(spec.seed(), 7u);
-}
-
-TEST(SpecFile, ZeroHasNoSignInAnyNotation) {
-  for (const char* zero : {"-0", "-0.0", "-.0", "-0e5", "0"}) {
-    ASSERT_OK_AND_ASSIGN(
-        const v1::EnsembleSpec spec,
-        ParseSpec("s.json", absl::StrCat(R"({"grid": {"epsilon": [0.1, )", zero,
-                                         R"(]}, "target": {"tolerance": )", zero, "}}")));
-    EXPECT_EQ(spec.grid().epsilon(0), 0.1);
-    for (const double number : {spec.grid().epsilon(1), spec.target().tolerance()}) {
-      EXPECT_EQ(number, 0);
-      EXPECT_FALSE(std::signbit(number)) << zero;
-    }
-  }
-  EXPECT_FALSE(ParseSpec("s.json", "{}")->has_grid());
-}
-
-TEST(SpecFile, ReadsTheParametersOfAGas) {
-  ASSERT_OK_AND_ASSIGN(
-      const v1::EnsembleSpec spec,
-      ParseSpec("s.json", R"({"grid": {"cells": ["12", "4x3"], "temperature": [-0.0, 0.5],
-                                       "hot": [-0.0, 2], "cold": [-0.0, 1]}})"));
-  EXPECT_THAT(spec.grid().cells(), testing::ElementsAre("12", "4x3"));
-  EXPECT_EQ(spec.grid().temperature(1), 0.5);
-  EXPECT_EQ(spec.grid().hot(1), 2);
-  EXPECT_EQ(spec.grid().cold(1), 1);
-  for (const double number :
-       {spec.grid().temperature(0), spec.grid().hot(0), spec.grid().cold(0)}) {
-    EXPECT_FALSE(std::signbit(number));
-  }
+                       ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "seed": 7,
+          "grid": {"rho": [0.53], "epsilon": [0.1, -0, -0.0, -.0, -0e5, 0], "cells": ["12", "4x3"],
+                   "temperature": [-0.0, 0.5], "hot": [-0.0, 2], "cold": [-0.0, 1]},
+          "target": {"samples": "100", "estimate": "conductivity"}})"));
+  const auto expected = FromText<v1::EnsembleSpec>(
+      "experiment: FIRST_HIT seed: 7 target { samples: 100 estimate: 'conductivity' }"
+      "grid { rho: 0.53 epsilon: [0.1, 0, 0, 0, 0, 0] cells: ['12', '4x3']"
+      "       temperature: [0, 0.5] hot: [0, 2] cold: [0, 1] }");
+  EXPECT_EQ(spec.SerializeAsString(), expected.SerializeAsString()) << spec.DebugString();
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec other,
+                       ParseSpec("s.json", R"({"target": {"tolerance": -0.0}})"));
+  EXPECT_FALSE(std::signbit(other.target().tolerance()));
+  EXPECT_FALSE(other.has_grid());
 }
 
 TEST(SpecFile, RejectsOtherTexts) {
@@ -159,9 +137,7 @@ TEST_F(CreateJobTest, ResumeAfterAFailedOrCancelledJobCreatesANewJob) {
   EXPECT_EQ(WithServer({"submit", "--resume", "first-hit"}).code, 0);
   const auto asked = server_.ensemble.Asked().create;
   ASSERT_EQ(asked.size(), 4u);
-  EXPECT_NE(asked[0].request_id(), asked[1].request_id());
-  EXPECT_NE(asked[1].request_id(), asked[2].request_id());
-  EXPECT_NE(asked[2].request_id(), asked[3].request_id());
+  for (size_t i = 1; i < 4; ++i) EXPECT_NE(asked[i].request_id(), asked[i - 1].request_id());
 }
 
 TEST_F(CreateJobTest, WithoutResumeEachJobHasANewRequestId) {

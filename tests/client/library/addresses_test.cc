@@ -83,12 +83,6 @@ TEST(ChannelSecurity, TheOwnTokenIsThatOfTheAddressOnThisMachine) {
   EXPECT_EQ(OwnToken("127.0.0.1:2"), "");
 }
 
-TEST(ChannelSecurity, SettingsAreRejectedForASocket) {
-  EXPECT_OK(CheckSecurity({}, "unix:x"));
-  EXPECT_THAT(CheckSecurity({.tls = true}, "unix:x"), StatusIs(kInvalid));
-  EXPECT_THAT(CheckSecurity({.token_file = "f"}, "unix:x"), StatusIs(kInvalid));
-}
-
 class SecurityFiles : public ::testing::Test {
  protected:
   std::string Write(const std::string& name, const std::string& text, mode_t mode = 0600) {
