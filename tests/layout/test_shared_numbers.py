@@ -1,6 +1,6 @@
 """A number that several pages state is equal on all of them, and in docs/numbers.md. A page marks
-such a number with its name: 21<!--gain-rare-avx2-->. The files that name the version of the project,
-its date or the engine's version agree."""
+such a number with its name: 21<!--gain-rare-avx2-->. The files that name the version of the
+project, its date or the engine's version agree, too."""
 
 from __future__ import annotations
 
