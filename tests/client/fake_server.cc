@@ -27,43 +27,18 @@ void FakeServer::Start() {
 
 std::shared_ptr<grpc::Channel> FakeServer::Channel() const { return *OpenChannel(Address()); }
 
-namespace {
-
-google::rpc::Status DetailsWithReason(const std::string& reason) {
+grpc::Status WithReason(grpc::StatusCode code, const std::string& message,
+                        const std::string& reason) {
   google::rpc::ErrorInfo info;
   info.set_reason(reason);
   info.set_domain("ballpiston");
   google::rpc::Status details;
   details.add_details()->PackFrom(info);
-  return details;
-}
-
-}  // namespace
-
-grpc::Status InvalidSpec(const std::string& field, const std::string& description) {
-  google::rpc::BadRequest request;
-  auto* violation = request.add_field_violations();
-  violation->set_field(field);
-  violation->set_description(description);
-  google::rpc::Status details = DetailsWithReason("INVALID_SPEC");
-  details.add_details()->PackFrom(request);
-  return grpc::Status(grpc::StatusCode::INVALID_ARGUMENT, "the specification is not valid",
-                      details.SerializeAsString());
+  return grpc::Status(code, message, details.SerializeAsString());
 }
 
 grpc::Status JobNotFound(const std::string& name) {
-  return grpc::Status(grpc::StatusCode::NOT_FOUND, "no such job: " + name,
-                      DetailsWithReason("JOB_NOT_FOUND").SerializeAsString());
-}
-
-grpc::Status ResultNotFound(const std::string& name) {
-  return grpc::Status(grpc::StatusCode::NOT_FOUND, "no such result: " + name,
-                      DetailsWithReason("RESULT_NOT_FOUND").SerializeAsString());
-}
-
-grpc::Status ResultsExpired(const std::string& name) {
-  return grpc::Status(grpc::StatusCode::FAILED_PRECONDITION, name + ": its results have expired",
-                      DetailsWithReason("RESULTS_EXPIRED").SerializeAsString());
+  return WithReason(grpc::StatusCode::NOT_FOUND, "no such job: " + name, "JOB_NOT_FOUND");
 }
 
 v1::WatchEnsembleJobResponse JobMessage(const v1::EnsembleJob& job, const std::string& token) {

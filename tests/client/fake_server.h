@@ -18,18 +18,10 @@
 
 namespace ballpiston::client {
 
-// INVALID_ARGUMENT with the details that a server attaches: one violation.
-grpc::Status InvalidSpec(const std::string& field, const std::string& description);
-
-// NOT_FOUND with the details a server attaches.
+// An error with the details that a server attaches.
+grpc::Status WithReason(grpc::StatusCode code, const std::string& message,
+                        const std::string& reason);
 grpc::Status JobNotFound(const std::string& name);
-
-// NOT_FOUND with the details a server attaches.
-grpc::Status ResultNotFound(const std::string& name);
-
-// FAILED_PRECONDITION with the details that a server attaches. The fake server answers with it if a
-// test sets results_expired of the job.
-grpc::Status ResultsExpired(const std::string& name);
 
 inline constexpr char kJobName[] = "ensembleJobs/abc";  // the name that JobIn gives
 
@@ -83,7 +75,7 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
                                  v1::EnsembleJob* job) override {
     const std::lock_guard lock(mutex_);
     asked_.create.push_back(*request);
-    if (unavailable_attempts-- > 0) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
+    if (unavailable_attempts-- > 0) return kNotYet;
     if (!create_end.ok()) return create_end;
     *job = jobs.at(0);
     if (asked_.create.size() <= created_states.size()) {
@@ -94,25 +86,20 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
 
   grpc::Status GetEnsembleJob(Context*, const v1::GetEnsembleJobRequest* request,
                               v1::EnsembleJob* job) override {
-    const v1::EnsembleJob* found = Find(request->name());
-    if (found == nullptr) return JobNotFound(request->name());
-    *job = *found;
-    return grpc::Status::OK;
+    const v1::EnsembleJob* const found = Find(request->name());
+    if (found != nullptr) *job = *found;
+    return found != nullptr ? grpc::Status::OK : JobNotFound(request->name());
   }
 
   grpc::Status ListEnsembleJobs(Context*, const v1::ListEnsembleJobsRequest* request,
                                 v1::ListEnsembleJobsResponse* page) override {
     const std::lock_guard lock(mutex_);
     asked_.list.push_back(*request);
-    const size_t from = request->page_token().empty() ? 0 : std::stoul(request->page_token());
-    const auto size = static_cast<size_t>(std::min(page_size, request->page_size()));
-    const size_t to = std::min(from + size, jobs.size());
-    for (size_t i = from; i < to; ++i) {
-      *page->add_jobs() = jobs[i];
-      if (request->view() != v1::ListEnsembleJobsRequest::BASIC) continue;
-      page->mutable_jobs()->rbegin()->mutable_spec()->clear_grid();
+    FillPage(jobs, *request, std::min(page_size, request->page_size()), *page,
+             *page->mutable_jobs());
+    for (v1::EnsembleJob& job : *page->mutable_jobs()) {
+      if (request->view() == v1::ListEnsembleJobsRequest::BASIC) job.mutable_spec()->clear_grid();
     }
-    if (to < jobs.size()) page->set_next_page_token(std::to_string(to));
     return grpc::Status::OK;
   }
 
@@ -120,7 +107,7 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
                                  v1::EnsembleJob* job) override {
     const std::lock_guard lock(mutex_);
     asked_.cancel.push_back(*request);
-    if (unavailable_attempts-- > 0) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
+    if (unavailable_attempts-- > 0) return kNotYet;
     *job = JobIn(v1::EnsembleJob::CANCELLED);
     job->set_name(request->name());
     const auto first = std::find_if(
@@ -136,12 +123,11 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
     asked_.update.push_back(*request);
     if (unavailable_attempts-- > 0) {
       if (!pushback.empty()) context->AddTrailingMetadata("grpc-retry-pushback-ms", pushback);
-      return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
+      return kNotYet;
     }
-    const std::string& name = request->job().name();
-    if (Find(name) == nullptr) return JobNotFound(name);
-    if (HasExpired(name)) return ResultsExpired(name);
-    *job = *Find(name);
+    const grpc::Status found = HasResults(request->job().name());
+    if (!found.ok()) return found;
+    *job = *Find(request->job().name());
     job->set_pinned(request->job().pinned());
     return grpc::Status::OK;
   }
@@ -150,7 +136,7 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
                                  google::protobuf::Empty*) override {
     const std::lock_guard lock(mutex_);
     asked_.remove.push_back(*request);
-    if (unavailable_attempts-- > 0) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
+    if (unavailable_attempts-- > 0) return kNotYet;
     return Find(request->name()) == nullptr ? JobNotFound(request->name()) : grpc::Status::OK;
   }
 
@@ -175,19 +161,16 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
                            v1::ListResultsResponse* page) override {
     const std::lock_guard lock(mutex_);
     asked_.results.push_back(*request);
-    if (HasExpired(request->parent())) return ResultsExpired(request->parent());
-    if (!request->page_token().empty() && unavailable_later_pages-- > 0) {
-      return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
+    if (Find(request->parent()) != nullptr && !HasResults(request->parent()).ok()) {
+      return HasResults(request->parent());
     }
-    const size_t from = request->page_token().empty() ? 0 : std::stoul(request->page_token());
-    const size_t to = std::min(from + static_cast<size_t>(page_size), points.size());
-    for (size_t i = from; i < to; ++i) {
-      *page->add_results() = points[i];
+    if (!request->page_token().empty() && unavailable_later_pages-- > 0) return kNotYet;
+    FillPage(points, *request, page_size, *page, *page->mutable_results());
+    for (v1::PointResult& point : *page->mutable_results()) {
       if (request->view() != v1::ListResultsRequest::BASIC) continue;
-      page->mutable_results()->rbegin()->clear_histograms();
-      page->mutable_results()->rbegin()->clear_curves();
+      point.clear_histograms();
+      point.clear_curves();
     }
-    if (to < points.size()) page->set_next_page_token(std::to_string(to));
     return grpc::Status::OK;
   }
 
@@ -196,19 +179,21 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
     const std::lock_guard lock(mutex_);
     asked_.result.push_back(*request);
     const std::string job = request->name().substr(0, request->name().find("/results/"));
-    if (Find(job) == nullptr) return JobNotFound(job);
-    if (HasExpired(job)) return ResultsExpired(job);
+    if (const grpc::Status found = HasResults(job); !found.ok()) return found;
     for (const v1::PointResult& each : points) {
       if (request->name() != job + "/results/" + std::to_string(each.index())) continue;
       *point = each;
       return grpc::Status::OK;
     }
-    return ResultNotFound(request->name());
+    return WithReason(grpc::StatusCode::NOT_FOUND, "no such result: " + request->name(),
+                      "RESULT_NOT_FOUND");
   }
 
   void Release() { released_.count_down(); }  // ends watches that hang
 
  private:
+  static inline const grpc::Status kNotYet{grpc::StatusCode::UNAVAILABLE, "not yet"};
+
   WatchScript NextScript(const v1::WatchEnsembleJobRequest& request) {
     const std::lock_guard lock(mutex_);
     asked_.watch.push_back(request);
@@ -221,9 +206,24 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
     return found == jobs.end() ? nullptr : &*found;
   }
 
-  bool HasExpired(const std::string& name) const {
+  // OK if the job exists and its results have not expired.
+  grpc::Status HasResults(const std::string& name) const {
     const v1::EnsembleJob* const job = Find(name);
-    return job != nullptr && job->results_expired();
+    if (job == nullptr) return JobNotFound(name);
+    if (!job->results_expired()) return grpc::Status::OK;
+    return WithReason(grpc::StatusCode::FAILED_PRECONDITION, name + ": its results have expired",
+                      "RESULTS_EXPIRED");
+  }
+
+  // Copies `size` items into the page, from the place that its token names. The token of the next
+  // page is the index of its first item.
+  template <typename Item, typename Request, typename Page, typename List>
+  static void FillPage(const std::vector<Item>& items, const Request& request, int size, Page& page,
+                       List& list) {
+    const size_t from = request.page_token().empty() ? 0 : std::stoul(request.page_token());
+    const size_t to = std::min(from + static_cast<size_t>(size), items.size());
+    for (size_t i = from; i < to; ++i) *list.Add() = items[i];
+    if (to < items.size()) page.set_next_page_token(std::to_string(to));
   }
 
   mutable std::mutex mutex_;

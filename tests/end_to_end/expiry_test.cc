@@ -1,6 +1,5 @@
-// A server whose store is bounded: the oldest results expire, those of a pinned job stay, and an
-// expired question can be asked again.
-
+// A server whose store is bounded: the oldest results expire, and can be computed again.
+// tests/server/book/stored_limits_test.cc tests which results stay.
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {
@@ -13,54 +12,31 @@ ProcessResult RunWhenThereIsRoom(const TestServer& server, const Words& question
     run = server.Client(Joined({{"run", "--format", "json"}, question}));
     return run.err.find("TOO_MANY_STORED_BYTES") == std::string::npos;
   });
+  EXPECT_THAT(run, ExitsWith(0));
   return run;
 }
 
 // 40 points whose results take 800 kB.
 ProcessResult RunSweep(const TestServer& server, int seed) {
-  return RunWhenThereIsRoom(
-      server,
-      Joined({Split("--resume first-hit --rho 0.53 --delta 0.1:0.2:40 --epsilon 0.1 --exponent 1"),
-              {"--samples", "500", "--seed", absl::StrCat(seed)}}));
+  const std::string sweep =
+      "--resume first-hit --rho 0.53 --delta 0.1:0.2:40 --epsilon 0.1 --exponent 1 --samples 500";
+  return RunWhenThereIsRoom(server, Split(absl::StrCat(sweep, " --seed ", seed)));
 }
 
-std::string NameOf(const ProcessResult& run) {
-  return At(ParseJson(run.out), "job", "name").string_value();
-}
-
-bool HasExpired(const TestServer& server, const std::string& name) {
-  const google::protobuf::Struct list = server.Json({"list"});
-  for (const auto& job : At(list, "jobs").list_value().values()) {
-    if (At(job, "name").string_value() == name) return At(job, "results_expired").bool_value();
-  }
-  return false;
-}
-
-TEST(Expiry, OldResultsExpireUnlessPinnedAndCanBeComputedAgain) {
+TEST(Expiry, OldResultsExpireAndCanBeComputedAgain) {
   const TestServer server({.flags = {"--max-store-bytes=4000000"}});
-  const ProcessResult kept = RunSweep(server, 1), old = RunSweep(server, 2);
-  ASSERT_THAT(kept, ExitsWith(0));
-  ASSERT_THAT(old, ExitsWith(0));
-  const std::string pinned = NameOf(kept), expired = NameOf(old);
-  EXPECT_THAT(server.Client({"pin", pinned}).out, HasSubstr(pinned + " pinned"));
-  int seed = 3;
+  const ProcessResult old = RunSweep(server, 0);
+  const std::string name = At(ParseJson(old.out), "job", "name").string_value();
+  int seed = 1;
   AwaitThat([&] {
-    if (HasExpired(server, expired)) return true;
-    EXPECT_THAT(RunSweep(server, seed++), ExitsWith(0));
-    return testing::Test::HasFailure();
+    const ProcessResult result = server.Client({"result", name});
+    if (result.err.find("expired") == std::string::npos) RunSweep(server, seed++);
+    return result.exit_code != 0 || testing::Test::HasFailure();
   });
-
-  EXPECT_EQ(PointsOf(server.Client({"result", pinned, "--format", "json"}).out),
-            PointsOf(kept.out));
-  for (const std::string verb : {"result", "pin"}) {
-    const ProcessResult refused = server.Client({verb, expired});
-    EXPECT_THAT(refused, Not(ExitsWith(0)));
-    EXPECT_THAT(refused.err, AllOf(HasSubstr("expired"), HasSubstr("submit --again " + expired)));
-  }
+  // The same command computes expired results again, as does the question of the job.
   for (const ProcessResult& again :
-       {RunWhenThereIsRoom(server, {"--again", expired}), RunSweep(server, 2)}) {
-    EXPECT_THAT(again, ExitsWith(0));
-    EXPECT_NE(NameOf(again), expired);
+       {RunWhenThereIsRoom(server, {"--again", name}), RunSweep(server, 0)}) {
+    EXPECT_NE(At(ParseJson(again.out), "job", "name").string_value(), name);
     EXPECT_EQ(PointsOf(again.out), PointsOf(old.out));
   }
 }

@@ -48,31 +48,22 @@ TEST_F(FigureTest, AnEditedModuleIsUsedAndKept) {
   EXPECT_EQ(Contents(File("cell.py")), edited);
 }
 
-TEST_F(FigureTest, AMissingPythonIsNamed) {
-  ProcessOptions options = Cell();
-  options.environment["BALLPISTON_PYTHON"] = "/no/python3";
-  const ProcessResult result = RunProgram(options);
-  EXPECT_THAT(result, ExitsWith(4));
-  EXPECT_THAT(result.err, HasSubstr("install python3-ballpiston and python3-matplotlib"));
-}
-
-TEST_F(FigureTest, WithoutMatplotlibItsPackageIsNamed) {
+TEST_F(FigureTest, MissingProgramsAndPackagesAreNamed) {
   const std::string modules = server_.folder().File("modules");
   fs::create_directory(modules);
   WriteFile(modules + "/matplotlib.py", "raise ModuleNotFoundError(name='matplotlib')\n");
-  ProcessOptions options = Cell();
-  options.environment["PYTHONPATH"] = modules;
-  const ProcessResult result = RunProgram(options);
-  EXPECT_THAT(result, ExitsWith(4));
-  EXPECT_THAT(result.err, HasSubstr("cannot import ballpiston, matplotlib; install"));
-}
-
-TEST_F(FigureTest, AWrongValueLeavesNoData) {
-  const ProcessResult result =
-      server_.Client(Split("figure rates --quick --seed none --out " + folder_));
-  EXPECT_THAT(result, ExitsWith(2));
-  EXPECT_THAT(result.err, HasSubstr("--seed: 'none' is not a decimal number"));
-  EXPECT_FALSE(fs::exists(File("rates.csv")));
+  const struct {
+    std::string variable, value, message;
+  } cases[] = {
+      {"BALLPISTON_PYTHON", "/no/python3", "install python3-ballpiston and python3-matplotlib"},
+      {"PYTHONPATH", modules, "cannot import ballpiston, matplotlib; install"}};
+  for (const auto& [variable, value, message] : cases) {
+    ProcessOptions options = Cell();
+    options.environment[variable] = value;
+    const ProcessResult result = RunProgram(options);
+    EXPECT_THAT(result, ExitsWith(4));
+    EXPECT_THAT(result.err, HasSubstr(message));
+  }
 }
 
 TEST_F(FigureTest, APictureThatCannotBeWrittenIsAnError) {

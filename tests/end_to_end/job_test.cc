@@ -1,113 +1,111 @@
-// What users do with jobs: run, submit, watch, result, list, cancel, delete.
+// What users do with jobs: submit, watch, result, list, and files of questions and results. Also
+// the ends of a pipe: a reader that leaves, a full disk.
+#include <google/protobuf/util/json_util.h>
 
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {
 namespace {
 
-TEST(Run, PrintsATableWithExactValues) {
-  const TestServer server;
-  const ProcessResult result =
-      server.Client(Split("run equilibrium --rho 0.529561127988977 --delta 0.2 --collisions 5000 "
-                          "--verify"));
-  EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_THAT(result.out, StartsWith("equilibrium, model billiard, seed 0, "));
-  EXPECT_THAT(result.out, HasSubstr("mean_free_time_ball_piston"));
-  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 6);
-  EXPECT_EQ(result.err, "");  // not a terminal: no progress
-}
+class JobTest : public ::testing::Test {
+ protected:
+  std::string File(const std::string& name) const { return server_.folder().File(name); }
 
-TEST(Run, TakesASpecificationFromAFileOrStandardInput) {
-  const TestServer server;
-  const std::string spec = R"({"experiment": "EQUILIBRIUM", "grid": {"rho": [0.53],
-                              "delta": [0.2]}, "target": {"collisions": 1000}, "seed": 5})";
-  WriteFile(server.folder().File("spec.json"), spec);
-  const ProcessResult file =
-      server.Client({"run", "--spec", server.folder().File("spec.json"), "--format", "json"});
-  const ProcessResult stdin_ = server.Client({"run", "--spec", "-", "--format", "json"}, spec);
-  const ProcessResult flags =
-      server.Client(Split("run equilibrium --rho 0.53 --delta 0.2 --collisions 1000 --seed 5 "
-                          "--format json"));
-  EXPECT_THAT(file, ExitsWith(0));
-  EXPECT_EQ(PointsOf(file.out), PointsOf(stdin_.out));
-  EXPECT_EQ(PointsOf(file.out), PointsOf(flags.out));
-}
-
-TEST(Run, ARepeatedQuestionIsAnsweredFromTheStoreUnlessItIsFresh) {
-  const TestServer server;
-  const auto run = [&](const Words& flags) {
-    const ProcessResult result =
-        server.Client(Joined({{"run", "--format", "json"}, kQuickQuestion, flags}));
-    EXPECT_THAT(result, ExitsWith(0));
-    return result;
-  };
-  const auto name = [](const ProcessResult& result) {
-    return At(ParseJson(result.out), "job", "name").string_value();
-  };
-  const ProcessResult first = run({}), again = run({}), fresh = run({"--fresh"});
-  EXPECT_THAT(again.err, StartsWith("answered from the store: " + name(first) + ", computed 2"));
-  EXPECT_EQ(name(again), name(first));
-  EXPECT_EQ(fresh.err, "");
-  EXPECT_NE(name(fresh), name(first));
-  for (const ProcessResult& later : {again, fresh}) {
-    EXPECT_EQ(PointsOf(later.out), PointsOf(first.out));
+  // The client as a command of bash, in which $client stands for `ballpiston` with the server.
+  ProcessResult Bash(const std::string& command) const {
+    ProcessOptions options = {.command = {"bash", "-c", command},
+                              .environment = CleanEnvironment(server_.folder())};
+    options.environment["BALLPISTON_SERVER"] = server_.address();
+    options.environment["client"] = ClientProgram();
+    return RunProgram(options);
   }
-}
+  double Streams() const { return At(server_.Json({"status"}), "streams").number_value(); }
 
-TEST(Submit, PrintsTheNameThatWatchAndResultTake) {
-  const TestServer server;
-  const ProcessResult submitted = server.Client(Joined({{"submit"}, kQuickQuestion}));
+  const TestServer server_;
+};
+
+TEST_F(JobTest, SubmitPrintsTheNameThatWatchAndResultTake) {
+  const ProcessResult submitted = server_.Client(Joined({{"submit"}, kQuickQuestion}));
   ASSERT_THAT(submitted, ExitsWith(0));
   EXPECT_THAT(submitted.out, ::testing::MatchesRegex("ensembleJobs/[-_A-Za-z0-9]+\n"));
   EXPECT_EQ(submitted.err, "");
   const std::string name = submitted.out.substr(0, submitted.out.size() - 1);
   const std::string id = name.substr(name.find('/') + 1);
-  EXPECT_THAT(server.Client({"watch", name}), ExitsWith(0));
-  const ProcessResult by_name = server.Client({"result", name});
+  EXPECT_THAT(server_.Client({"watch", name}), ExitsWith(0));
+  const ProcessResult by_name = server_.Client({"result", name});
   EXPECT_THAT(by_name, ExitsWith(0));
-  EXPECT_EQ(by_name.out, server.Client({"result", id}).out);
-  const ProcessResult list = server.Client({"list", "--format", "csv"});
+  EXPECT_EQ(by_name.out, server_.Client({"result", id}).out);
+  EXPECT_EQ(by_name.err, "");  // not a terminal: no progress
+  const ProcessResult list = server_.Client({"list", "--format", "csv"});
   EXPECT_THAT(list.out, HasSubstr(name + ",first-hit,succeeded,2,2,4000,"));
 }
 
-TEST(Cancel, StopsAJobOnce) {
-  const TestServer server;
-  const std::string job = server.Submit(kEndlessQuestion);
-  EXPECT_THAT(server.Client({"delete", job}), ExitsWith(4));  // still active
-  const ProcessResult cancelled = server.Client({"cancel", job});
-  EXPECT_THAT(cancelled, ExitsWith(0));
-  EXPECT_THAT(server.Client({"watch", job}), ExitsWith(4));
-  const ProcessResult again = server.Client({"cancel", job});
-  EXPECT_THAT(again, ExitsWith(4));
-  EXPECT_THAT(again.err, HasSubstr("JOB_ALREADY_ENDED"));
-  const ProcessResult result = server.Client({"result", job});
-  EXPECT_THAT(result, ExitsWith(4));
-  EXPECT_THAT(result.err, HasSubstr(job + " cancelled"));
+TEST_F(JobTest, ASpecificationMayComeFromStandardInput) {
+  const std::string spec = R"({"experiment": "EQUILIBRIUM", "grid": {"rho": [0.53],
+                              "delta": [0.2]}, "target": {"collisions": 1000}, "seed": 5})";
+  const ProcessResult input = server_.Client({"run", "--spec", "-", "--format", "json"}, spec);
+  EXPECT_THAT(input, ExitsWith(0));
+  const ProcessResult flags =
+      server_.Client(Split("run equilibrium --rho 0.53 --delta 0.2 --collisions 1000 --seed 5 "
+                           "--fresh --format json"));
+  EXPECT_EQ(PointsOf(input.out), PointsOf(flags.out));
 }
 
-// The reader takes one line and ends: `ballpiston result JOB | head -n 1`.
-TEST(Result, ClosedPipeExitsWithZero) {
-  const TestServer server;
+// The commands with which docs/answers.md verifies a file.
+TEST_F(JobTest, TheQuestionOfASavedFileGivesTheSamePointsOnAnotherServer) {
+  server_.Client(Joined({{"run"}, kQuickQuestion, {"--save", File("a.json")}}));
+  std::string spec;
+  google::protobuf::util::MessageToJsonString(
+      At(ParseJson(Contents(File("a.json"))), "job", "spec"), &spec);
+  WriteFile(File("spec.json"), spec);
+  const TestServer other;
+  ASSERT_THAT(
+      other.Client({"run", "--fresh", "--spec", File("spec.json"), "--save", File("b.json")}),
+      ExitsWith(0));
+  EXPECT_EQ(PointsOf(Contents(File("b.json"))), PointsOf(Contents(File("a.json"))));
+}
+
+TEST_F(JobTest, ArraysNeedThePythonPackage) {
+  ProcessOptions run =
+      server_.Command(Joined({{"run"}, kQuickQuestion, {"--save", File("a.npz")}}));
+  run.environment["BALLPISTON_PYTHON"] = "false";
+  const ProcessResult refused = RunProgram(run);
+  EXPECT_THAT(refused, ExitsWith(4));
+  EXPECT_THAT(refused.err, HasSubstr("install python3-ballpiston and python3-numpy"));
+  EXPECT_EQ(Length(At(server_.Json({"list"}), "jobs")), 0);
+  EXPECT_FALSE(fs::exists(File("a.npz")));
+}
+
+// The reader takes one line and ends.
+TEST_F(JobTest, AClosedPipeExitsWithZero) {
   const std::string job =
-      server.Submit(Split("equilibrium --rho 0.53 --delta 0.01:0.2:2000 --collisions 1"));
-  ASSERT_THAT(server.Client({"watch", job}), ExitsWith(0));
-  const std::string command = ClientProgram() + " result " + job + " --server " + server.address() +
-                              " --format csv; echo \"exit $?\" >&2";
-  const ProcessResult piped =
-      RunProgram({.command = {"bash", "-c", "{ " + command + "; } | head -n 1"},
-                  .environment = CleanEnvironment(server.folder())});
-  EXPECT_EQ(piped.err, "exit 0\n");
-  EXPECT_EQ(std::count(piped.out.begin(), piped.out.end(), '\n'), 1);
+      server_.Submit(Split("equilibrium --rho 0.53 --delta 0.01:0.2:2000 --collisions 1"));
+  ASSERT_THAT(server_.Client({"watch", job}), ExitsWith(0));
+  for (const std::string& words : {"result " + job + " --format csv",
+                                   std::string("trace --rho 0.53 --delta 0.2 --events 1e6")}) {
+    const ProcessResult piped = Bash("{ $client " + words + "; echo exit $? >&2; } | head -n 1");
+    EXPECT_EQ(piped.err, "exit 0\n");
+    EXPECT_EQ(std::count(piped.out.begin(), piped.out.end(), '\n'), 1);
+  }
+  AwaitThat([this] { return Streams() == 0; });
 }
 
-TEST(Result, AFullDiskIsAnError) {
-  const TestServer server;
-  const ProcessResult full = RunProgram(
-      {.command = {"bash", "-c",
-                   ClientProgram() + " list --server " + server.address() + " > /dev/full"},
-       .environment = CleanEnvironment(server.folder())});
+TEST_F(JobTest, AFullDiskIsAnError) {
+  const ProcessResult full = Bash("$client list >/dev/full");
   EXPECT_THAT(full, ExitsWith(4));
   EXPECT_THAT(full.err, HasSubstr("cannot write standard output: No space left"));
+}
+
+TEST_F(JobTest, AnInterruptionEndsATraceInTheServerToo) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    ProcessOptions options = server_.Command(Split("trace --rho 0.53 --delta 0.2 --events 1e6"));
+    options.command.insert(options.command.begin(), {"sh", "-c", "exec \"$@\" >/dev/null", "sh"});
+    Process trace(options);
+    AwaitThat([this] { return Streams() == 1; });
+    trace.Signal(signal);
+    EXPECT_THAT(trace.Wait(), ExitsWith(130));
+    AwaitThat([this] { return Streams() == 0; });
+  }
 }
 
 }  // namespace

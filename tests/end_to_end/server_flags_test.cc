@@ -171,6 +171,14 @@ TEST(ServerFlags, AServerThatCannotStartSaysWhyAndExits) {
   EXPECT_THAT(first.Client({"list"}), ExitsWith(0));  // the first server still answers
 }
 
+TEST(ServerFlags, AStoreOfAnotherFormatIsRefused) {
+  const TemporaryFolder data;
+  WriteFile(data.File("store.sqlite3"), "no store at all");
+  for (const std::string flag : {"--check", "--backup=copy"}) {
+    EXPECT_THAT(Refusal({flag, "--data-dir", data.path()}), HasSubstr("store.sqlite3"));
+  }
+}
+
 // ---- the file of --config ----
 
 class ConfigFile : public testing::Test {
@@ -192,15 +200,17 @@ TEST_F(ConfigFile, GivesTheFlagsOfAServer) {
   const std::string address = "unix:" + home_.File("socket");
   Write("# of the laboratory\n\n  listen = " + address +
         "\n#the store\n\tdata-dir=" + home_.File("data") +
-        "\r\nworkers = 1\nlog-level=info\nmax-points-per-job = 2\n"
-        "max-active-points-per-principal = 3e7");
+        "\r\nworkers = 1\nlog-level=info\nmax-points-per-job = 2\nmax-message-bytes = 2048\n"
+        "metrics-listen = 127.0.0.1:0\nmax-active-points-per-principal = 3e7");
   Process server(ServerCommand(home_, {"--config=" + Path()}));
   ASSERT_TRUE(server.WaitForErr("listening on " + address));
+  EXPECT_TRUE(server.WaitForErr("metrics at http://127.0.0.1:"));
   EXPECT_TRUE(std::filesystem::exists(home_.File("data/store.sqlite3")));
   const ProcessResult status =
       RunProgram(ClientCommand(home_, {"status", "--format", "json", "--server", address}));
   EXPECT_EQ(At(ParseJson(status.out), "workers").number_value(), 1) << status.out << status.err;
   EXPECT_EQ(At(ParseJson(status.out), "limits", "max_points_per_job").number_value(), 2);
+  EXPECT_EQ(At(ParseJson(status.out), "limits", "max_message_bytes").number_value(), 2048);
   EXPECT_EQ(At(ParseJson(status.out), "limits", "max_active_points_per_principal").number_value(),
             3e7);
 }

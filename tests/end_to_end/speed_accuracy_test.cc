@@ -68,16 +68,14 @@ TEST_F(SpeedAccuracy, WrongValuesAreNamed) {
   }
 }
 
-TEST_F(SpeedAccuracy, AMissingProgramIsNamed) {
-  const ProcessResult result = RunWithProgram("");
-  EXPECT_THAT(result, ExitsWith(4));
-  EXPECT_THAT(result.err, HasSubstr("method_comparison: not found beside"));
-}
-
-TEST_F(SpeedAccuracy, AProgramThatFailsIsAnError) {
-  const ProcessResult failed = RunWithProgram("echo no room >&2; exit 1");
-  EXPECT_THAT(failed, ExitsWith(4));
-  EXPECT_THAT(failed.err, HasSubstr("no room"));
+TEST_F(SpeedAccuracy, AProgramThatIsMissingOrFailsIsAnError) {
+  const std::pair<std::string, std::string> cases[] = {{"", "method_comparison: not found beside"},
+                                                       {"echo no room >&2; exit 1", "no room"}};
+  for (const auto& [script, message] : cases) {
+    const ProcessResult result = RunWithProgram(script);
+    EXPECT_THAT(result, ExitsWith(4));
+    EXPECT_THAT(result.err, HasSubstr(message));
+  }
 }
 
 }  // namespace

@@ -67,79 +67,65 @@ std::string Text(Dice& dice, std::string now) {
 
 // ---- one field ----
 
-void SetSingle(Dice& dice, const FieldDescriptor& field, Message& message) {
-  const Reflection& reflection = *message.GetReflection();
+// Sets the field, or with `adds` adds an element to the list.
+void SetOrAdd(Dice& dice, const FieldDescriptor& field, bool adds, Message& message) {
+  const Reflection& r = *message.GetReflection();
+  Message* const m = &message;
   switch (field.cpp_type()) {
     case FieldDescriptor::CPPTYPE_DOUBLE:
-      return reflection.SetDouble(&message, &field,
-                                  Number(dice, reflection.GetDouble(message, &field)));
+      return adds ? r.AddDouble(m, &field, Number(dice, 0.55))
+                  : r.SetDouble(m, &field, Number(dice, r.GetDouble(message, &field)));
     case FieldDescriptor::CPPTYPE_INT64:
-      return reflection.SetInt64(&message, &field,
-                                 Integer(dice, reflection.GetInt64(message, &field)));
-    case FieldDescriptor::CPPTYPE_UINT64:
-      return reflection.SetUInt64(&message, &field, static_cast<uint64_t>(Integer(dice, 0)));
-    case FieldDescriptor::CPPTYPE_INT32:
-      return reflection.SetInt32(
-          &message, &field,
-          static_cast<int32_t>(Integer(dice, reflection.GetInt32(message, &field))));
-    case FieldDescriptor::CPPTYPE_ENUM:
-      return reflection.SetEnumValue(&message, &field, static_cast<int>(dice.Below(9)) - 1);
+      return adds ? r.AddInt64(m, &field, Integer(dice, 0))
+                  : r.SetInt64(m, &field, Integer(dice, r.GetInt64(message, &field)));
+    case FieldDescriptor::CPPTYPE_UINT64: {
+      const auto number = static_cast<uint64_t>(Integer(dice, 0));
+      return adds ? r.AddUInt64(m, &field, number) : r.SetUInt64(m, &field, number);
+    }
+    case FieldDescriptor::CPPTYPE_INT32: {
+      const auto number =
+          static_cast<int32_t>(Integer(dice, adds ? 0 : r.GetInt32(message, &field)));
+      return adds ? r.AddInt32(m, &field, number) : r.SetInt32(m, &field, number);
+    }
+    case FieldDescriptor::CPPTYPE_ENUM: {
+      const int number = static_cast<int>(dice.Below(9)) - 1;
+      return adds ? r.AddEnumValue(m, &field, number) : r.SetEnumValue(m, &field, number);
+    }
     case FieldDescriptor::CPPTYPE_BOOL:
-      return reflection.SetBool(&message, &field, dice.OneIn(2));
+      return adds ? r.AddBool(m, &field, dice.OneIn(2)) : r.SetBool(m, &field, dice.OneIn(2));
     case FieldDescriptor::CPPTYPE_STRING:
-      return reflection.SetString(&message, &field,
-                                  Text(dice, reflection.GetString(message, &field)));
+      return adds ? r.AddString(m, &field, Text(dice, ""))
+                  : r.SetString(m, &field, Text(dice, r.GetString(message, &field)));
     case FieldDescriptor::CPPTYPE_MESSAGE:
-      return MutateMessage(dice, *reflection.MutableMessage(&message, &field));
+      return MutateMessage(dice, adds ? *r.AddMessage(m, &field) : *r.MutableMessage(m, &field));
     default:
       return;  // field types that the project does not use
   }
 }
 
-void AddElement(Dice& dice, const FieldDescriptor& field, Message& message) {
-  const Reflection& reflection = *message.GetReflection();
-  switch (field.cpp_type()) {
-    case FieldDescriptor::CPPTYPE_DOUBLE:
-      return reflection.AddDouble(&message, &field, Number(dice, 0.55));
-    case FieldDescriptor::CPPTYPE_UINT64:
-      return reflection.AddUInt64(&message, &field, static_cast<uint64_t>(Integer(dice, 0)));
-    case FieldDescriptor::CPPTYPE_INT32:
-      return reflection.AddInt32(&message, &field, static_cast<int32_t>(Integer(dice, 0)));
-    case FieldDescriptor::CPPTYPE_STRING:
-      return reflection.AddString(&message, &field, Text(dice, ""));
-    case FieldDescriptor::CPPTYPE_MESSAGE:
-      return MutateMessage(dice, *reflection.AddMessage(&message, &field));
-    default:
-      return;
-  }
-}
-
-void SetElement(Dice& dice, const FieldDescriptor& field, int index, Message& message) {
-  const Reflection& reflection = *message.GetReflection();
-  switch (field.cpp_type()) {
-    case FieldDescriptor::CPPTYPE_DOUBLE:
-      return reflection.SetRepeatedDouble(
-          &message, &field, index,
-          Number(dice, reflection.GetRepeatedDouble(message, &field, index)));
-    case FieldDescriptor::CPPTYPE_UINT64:
-      return reflection.SetRepeatedUInt64(&message, &field, index,
-                                          static_cast<uint64_t>(Integer(dice, 0)));
-    case FieldDescriptor::CPPTYPE_MESSAGE:
-      return MutateMessage(dice, *reflection.MutableRepeatedMessage(&message, &field, index));
-    default:
-      return;
-  }
-}
-
+// Adds, removes, exchanges or changes an element.
 void MutateList(Dice& dice, const FieldDescriptor& field, Message& message) {
   const Reflection& reflection = *message.GetReflection();
   const int size = reflection.FieldSize(message, &field);
   const size_t what = dice.Below(8);
-  if (size == 0 || (what < 2 && size < kLongestList)) return AddElement(dice, field, message);
-  if (what == 2) return reflection.RemoveLast(&message, &field);
+  if (size == 0 || (what < 2 && size < kLongestList)) {
+    return SetOrAdd(dice, field, /*adds=*/true, message);
+  }
   const int index = static_cast<int>(dice.Below(static_cast<size_t>(size)));
   if (what == 3) return reflection.SwapElements(&message, &field, index, size - 1);
-  SetElement(dice, field, index, message);
+  if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE && what != 2) {
+    return MutateMessage(dice, *reflection.MutableRepeatedMessage(&message, &field, index));
+  }
+  if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE && what != 2) {
+    const double now = reflection.GetRepeatedDouble(message, &field, index);
+    return reflection.SetRepeatedDouble(&message, &field, index, Number(dice, now));
+  }
+  // Another element of another type comes in the place of the chosen one.
+  reflection.SwapElements(&message, &field, index, size - 1);
+  reflection.RemoveLast(&message, &field);
+  if (what == 2) return;
+  SetOrAdd(dice, field, /*adds=*/true, message);
+  reflection.SwapElements(&message, &field, index, size - 1);
 }
 
 }  // namespace
@@ -183,13 +169,13 @@ void MutateMessage(Dice& dice, Message& message) {
       *message.GetDescriptor()->field(static_cast<int>(dice.Below(static_cast<size_t>(fields))));
   if (field.is_map()) {
     if (message.GetReflection()->FieldSize(message, &field) < kLongestList) {
-      AddElement(dice, field, message);
+      SetOrAdd(dice, field, /*adds=*/true, message);
     }
     return;
   }
   if (dice.OneIn(16)) return message.GetReflection()->ClearField(&message, &field);
   if (field.is_repeated()) return MutateList(dice, field, message);
-  SetSingle(dice, field, message);
+  SetOrAdd(dice, field, /*adds=*/false, message);
 }
 
 bool MutateFields(Dice& dice, const Message& kind, std::string& bytes) {

@@ -1,4 +1,5 @@
-"""What counts as a failure of a test program. Shell scripts stand for the programs."""
+"""What counts as a failure of a test program, for which shell scripts stand; and the file of
+results."""
 
 from __future__ import annotations
 
@@ -8,6 +9,7 @@ from pathlib import Path
 from unittest import mock
 
 import running_tests
+import table
 
 PARTS = running_tests._PARTS
 RUN = 'echo "[ RUN      ] Suite.Test$GTEST_SHARD_INDEX"\n'
@@ -56,6 +58,15 @@ class FirstFailureTest(unittest.TestCase):
     def test_an_endless_loop_ends_by_its_processor_time(self) -> None:
         loop = f'[ "$GTEST_SHARD_INDEX" = 1 ] || exit 0\n{RUN}while :; do :; done'
         self.assertEqual(self.first_failure(loop), "Suite.Test1 (exit status -24)")
+
+
+class ResultsTest(unittest.TestCase):
+    def test_a_run_goes_on_after_the_last_whole_line(self) -> None:
+        with tempfile.NamedTemporaryFile("w") as file:
+            file.write('{"seed": 1}\n{"file": "core')
+            file.flush()
+            table.Results(Path(file.name), {"seed": 1}).add({"line": 2})
+            self.assertEqual(table.read(Path(file.name)), [{"seed": 1}, {"line": 2}])
 
 
 if __name__ == "__main__":

@@ -4,35 +4,26 @@
 #include <cerrno>
 #include <cstring>
 
-#include "absl/strings/escaping.h"
+#include "absl/strings/str_join.h"
 #include "tests/questions/engine.h"
 
 namespace ballpiston::questions {
 namespace {
 
-std::string Unescaped(const std::string& text) {
-  std::string plain;
-  absl::CUnescape(text, &plain);
-  return plain;
-}
-
-// One line for each item, and back.
+// The outcome, then check and text of each finding, and back.
 std::string Text(const Report& report) {
-  std::string text = absl::StrCat("outcome\t", report.outcome, "\n");
+  std::vector<std::string> words = {report.outcome};
   for (const Finding& finding : report.findings) {
-    absl::StrAppend(&text, "finding\t", finding.check, "\t", absl::CEscape(finding.what), "\n");
+    words.insert(words.end(), {finding.check, finding.what});
   }
-  return text;
+  return absl::StrJoin(words, absl::string_view("\0", 1));
 }
 
 Report ReportFromText(const std::string& text) {
-  Report report;
-  for (const auto& line : absl::StrSplit(text, '\n')) {
-    const std::vector<std::string> words = absl::StrSplit(line, '\t');
-    if (words[0] == "outcome" && words.size() == 2) report.outcome = words[1];
-    if (words[0] == "finding" && words.size() == 3) {
-      report.findings.push_back({words[1], Unescaped(words[2])});
-    }
+  const std::vector<std::string> words = absl::StrSplit(text, '\0');
+  Report report = {.outcome = words[0]};
+  for (size_t i = 1; i + 1 < words.size(); i += 2) {
+    report.findings.push_back({words[i], words[i + 1]});
   }
   return report;
 }

@@ -19,9 +19,9 @@ double BudgetSeconds(const v1::Target& target);
 // `ballpiston run --spec - ...`, for a shell: it asks exactly this specification.
 std::string Command(const v1::EnsembleSpec& spec);
 
-// Question `number` of a seed. Half of its parameters are extreme (values.h). With most targets the
-// answer costs less than `most_seconds` of a present-day processor; the other targets are any that
-// are permitted. One question in seven has one defect, for which the service has to refuse it.
+// Question `number` of a seed. A third of its parameters are extreme (draw.cc). With most targets
+// the answer costs less than `most_seconds` of a present-day processor; the other targets are any
+// that are permitted. One question in seven has one defect, for which the service has to refuse it.
 Question Draw(uint64_t seed, uint64_t number, double most_seconds);
 
 }  // namespace ballpiston::questions

@@ -1,14 +1,26 @@
 // A folder that exists as long as the object. Its path is short enough for a Unix socket in it.
 #pragma once
 
+#include <stdlib.h>
+
+#include <filesystem>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 
 namespace ballpiston {
 
 class TemporaryFolder {
  public:
-  TemporaryFolder();   // throws std::runtime_error if no folder can be made
-  ~TemporaryFolder();  // removes the folder and its contents
+  // Throws std::runtime_error if no folder can be made.
+  TemporaryFolder() : path_(std::filesystem::temp_directory_path() / "ballpiston-XXXXXX") {
+    if (mkdtemp(path_.data()) == nullptr) throw std::runtime_error("no folder at " + path_);
+  }
+  // Removes the folder and its contents.
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 

@@ -496,55 +496,18 @@ describe('Accessibility rules', () => {
 
 // ---- Many jobs, many points
 
-// The longest task of the page's thread since observeTasks, in ms.
-const observeTasks = () =>
-  page.evaluate(() => {
-    window.longestTask = 0;
-    new PerformanceObserver((list) => {
-      for (const entry of list.getEntries())
-        window.longestTask = Math.max(window.longestTask, entry.duration);
-    }).observe({type: 'longtask'});
-  });
-const longestTask = () => page.evaluate(() => window.longestTask);
-
-// The longest time between frames while the page scrolls from top to bottom, in ms.
-const longestFrame = () =>
-  page.evaluate(async () => {
-    const FRAMES = 120;
-    const frame = () => new Promise(requestAnimationFrame);
-    let last = await frame(),
-      longest = 0;
-    for (let i = 0; i <= FRAMES; ++i) {
-      scrollTo(0, ((document.body.scrollHeight - innerHeight) * i) / FRAMES);
-      const now = await frame();
-      longest = Math.max(longest, now - last);
-      last = now;
-    }
-    return longest;
-  });
-
-const heapMegabytes = async () => {
-  const session = await context.newCDPSession(page);
-  await session.send('HeapProfiler.collectGarbage');
-  return (await session.send('Runtime.getHeapUsage')).usedSize / 1e6;
-};
-
-// Times are printed, not asserted; README.md has measured times. The tests check that the page lays
-// out only the rows that the reader requested.
+// The page lays out only the rows that the reader requested.
 describe('Many', () => {
-  it('10,000 jobs stay smooth', async (test) => {
+  it('jobs: 10,000 are shown in hundreds', async () => {
     const COUNT = 10000;
     await listInstead(
       page,
       Array.from({length: COUNT}, (_, i) => fakeJob(COUNT - i)),
     );
-    const begin = Date.now();
     await open();
     const rows = page.locator('.jobs tbody tr');
     await rows.first().waitFor();
-    const first = Date.now() - begin;
     assert.equal(await rows.count(), 100);
-    await observeTasks();
     const more = page.getByRole('button', {name: 'More jobs'});
     for (let shown = 200; shown <= COUNT; shown += 100) {
       await more.press('Enter');
@@ -555,31 +518,14 @@ describe('Many', () => {
     }
     await more.waitFor({state: 'hidden'});
     assert.equal(await rows.count(), COUNT);
-    const task = await longestTask();
-    const frame = await longestFrame();
-    test.diagnostic(
-      `first jobs after ${first} ms; of all ${COUNT}: longest task ${task} ms, longest ` +
-        `frame while scrolling ${frame.toFixed(0)} ms, heap ${(await heapMegabytes()).toFixed(0)} MB`,
-    );
   });
 
-  it('10,000 points stay smooth', async (test) => {
+  it('points: 10,000 are shown in two hundreds', async () => {
     const job = programs.run('submit equilibrium --rho 0.51:0.7:100 --delta 0.001:0.01:100');
     programs.run(`watch ${job} --progress none`);
-    await open();
-    await observeTasks();
-    const begin = Date.now();
-    await page.evaluate((name) => {
-      location.hash = name;
-    }, job);
+    await open(job);
     await page.getByText('10,000 are shown').waitFor();
     await page.getByText('6 of 100 lines, evenly selected').waitFor();
-    const shown = Date.now() - begin;
-    const frame = await longestFrame();
-    test.diagnostic(
-      `all points after ${shown} ms, longest task ${await longestTask()} ms, longest frame ` +
-        `while scrolling ${frame.toFixed(0)} ms, heap ${(await heapMegabytes()).toFixed(0)} MB`,
-    );
     assert.equal(await page.locator('.points tbody tr').count(), 200);
     await page.getByRole('button', {name: 'More points'}).click();
     await page.getByText('(400 of 10,000 are shown)').waitFor();

@@ -87,5 +87,54 @@ TEST_F(CommandLineTest, NoLibraryLogsToStandardError) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
+// The package gets the flags as they were written, and the server in the environment.
+TEST_F(CommandLineTest, AFigureStartsPythonAndReturnsItsExitCode) {
+  EXPECT_THAT(Ballpiston({"figure", "--list"}).out, HasSubstr("mean-free-time: "));
+  const std::string python = home_.File("python");
+  WriteFile(python,
+            "#!/bin/sh\n[ \"$1\" = -c ] && exit 0  # the check of its modules\n"
+            "echo \"$*\" $BALLPISTON_SERVER >" +
+                home_.File("said") + "; exit 3\n");
+  std::filesystem::permissions(python, std::filesystem::perms::owner_all);
+  const ScopedVariable program("BALLPISTON_PYTHON", python);
+  const ScopedVariable server("BALLPISTON_SERVER");  // the figure sets it
+  const Outcome outcome =
+      Ballpiston({"figure", "mean-free-time", "--out", "figures", "--quick", "--samples", "7",
+                  "--relaxation-delta", "0.1,0.2", "--server", "h:1"});
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_EQ(Contents(home_.File("said")),
+            "-m ballpiston.figures mean-free-time --out figures --quick --relaxation-delta 0.1,0.2 "
+            "--samples 7 h:1\n");
+}
+
+// ---- exit codes ----
+
+TEST(ExitCode, FollowsFromTheStatus) {
+  const std::pair<absl::StatusCode, int> table[] = {{absl::StatusCode::kOk, 0},
+                                                    {absl::StatusCode::kInvalidArgument, 2},
+                                                    {absl::StatusCode::kOutOfRange, 2},
+                                                    {absl::StatusCode::kUnimplemented, 2},
+                                                    {absl::StatusCode::kUnavailable, 3},
+                                                    {absl::StatusCode::kDeadlineExceeded, 3},
+                                                    {absl::StatusCode::kFailedPrecondition, 4},
+                                                    {absl::StatusCode::kInternal, 4},
+                                                    {absl::StatusCode::kCancelled, 4},
+                                                    {absl::StatusCode::kResourceExhausted, 4},
+                                                    {absl::StatusCode::kNotFound, 5},
+                                                    {absl::StatusCode::kPermissionDenied, 6},
+                                                    {absl::StatusCode::kUnauthenticated, 6}};
+  for (const auto& [code, expected] : table) {
+    EXPECT_EQ(static_cast<int>(ExitCodeOf(absl::Status(code, "text"))), expected)
+        << absl::StatusCodeToString(code);
+  }
+}
+
+TEST(ExitCode, OfAChildProgramIsItsStatusOrFour) {
+  for (const int status : {0, 2, 3, 4, 5, 6, 130}) {
+    EXPECT_EQ(static_cast<int>(ExitCodeOf(status)), status);
+  }
+  for (const int status : {1, 7, 127, 143}) EXPECT_EQ(ExitCodeOf(status), ExitCode::kFailed);
+}
+
 }  // namespace
 }  // namespace ballpiston::client

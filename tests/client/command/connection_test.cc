@@ -69,5 +69,21 @@ TEST_F(ConnectionTest, ANamedServerGetsOneAttempt) {
   EXPECT_EQ(std::ssize(server_.ensemble.Asked().create), kChannelAttempts);
 }
 
+// Five points on three pages; the first attempts to list the second page fail.
+TEST_F(ConnectionTest, APageOfResultsIsRepeatedByAPrivateServerOnly) {
+  for (int i = 1; i < 5; ++i) server_.ensemble.points.emplace_back().set_index(i);
+  server_.ensemble.unavailable_later_pages = 2 * kChannelAttempts;
+  StartPrivateServer();
+  const std::vector<std::string> words = {"result", "abc", "--format", "jsonl"};
+  EXPECT_EQ(WithServer(words).code, 3);
+  const Outcome outcome = Ballpiston(words);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  std::vector<std::string> points = absl::StrSplit(outcome.out, '\n', absl::SkipEmpty());
+  ASSERT_EQ(points.size(), 5u) << outcome.out;  // each point once
+  for (size_t i = 0; i < points.size(); ++i) {
+    EXPECT_THAT(points[i], HasSubstr("\"index\":" + std::to_string(i)));
+  }
+}
+
 }  // namespace
 }  // namespace ballpiston::client

@@ -1,11 +1,6 @@
 #include "client/command/interrupts.h"
 
-#include <signal.h>
-#include <unistd.h>
-
-#include <iostream>
 #include <latch>
-#include <thread>
 
 #include "client/output/new_file.h"
 #include "tests/client/preamble.h"
@@ -13,8 +8,6 @@
 
 namespace ballpiston::client {
 namespace {
-
-using ::testing::ExitedWithCode;
 
 sigset_t Signals() {
   sigset_t signals;
@@ -35,23 +28,30 @@ sigset_t Signals() {
 
 void Send(int signal) { kill(getpid(), signal); }
 
-// The statements end the process; without a signal they would never end.
+void SleepForEver() {
+  while (true) pause();
+}
+
+// Expects that a signal ends the process while it does this. `output`: of standard error.
+void ExpectInterrupted(const std::function<void()>& act,
+                       const testing::Matcher<const std::string&>& output = testing::_) {
+  EXPECT_EXIT(act(), testing::ExitedWithCode(130), output);
+}
+
 TEST(InterruptsDeathTest, EachSignalEndsTheProgram) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    EXPECT_EXIT(
-        {
-          Interrupts interrupts;
-          Send(signal);
-          while (true) pause();
-        },
-        ExitedWithCode(130), "")
-        << signal;
+    SCOPED_TRACE(signal);
+    ExpectInterrupted([signal] {
+      const Interrupts interrupts;
+      Send(signal);
+      SleepForEver();
+    });
   }
 }
 
 TEST(InterruptsDeathTest, TheInnermostFarewellRuns) {
-  EXPECT_EXIT(
-      {
+  ExpectInterrupted(
+      [] {
         Interrupts interrupts;
         const Interrupts::Scope outer(&interrupts, [] { std::cerr << "outer"; });
         const Interrupts::Scope inner(&interrupts, [] { std::cerr << "inner"; });
@@ -59,56 +59,47 @@ TEST(InterruptsDeathTest, TheInnermostFarewellRuns) {
           const Interrupts::Scope ended(&interrupts, [] { std::cerr << "ended"; });
         }
         Send(SIGINT);
-        while (true) pause();
+        SleepForEver();
       },
-      ExitedWithCode(130),
       AllOf(HasSubstr("inner"), Not(HasSubstr("outer")), Not(HasSubstr("ended"))));
 }
 
 TEST(InterruptsDeathTest, TheProgramEndsDuringAHangingFarewell) {
-  EXPECT_EXIT(
-      {
-        Interrupts interrupts;
-        const Interrupts::Scope scope(&interrupts, [] {
-          while (true) pause();
-        });
-        Send(SIGTERM);
-        while (true) pause();
-      },
-      ExitedWithCode(130), "");
+  ExpectInterrupted([] {
+    Interrupts interrupts;
+    const Interrupts::Scope scope(&interrupts, [] { SleepForEver(); });
+    Send(SIGTERM);
+    SleepForEver();
+  });
 }
 
 TEST(InterruptsDeathTest, NoPartOfAFileIsLeft) {
   const DeathTestFolder folder;
-  EXPECT_EXIT(
-      {
-        Interrupts interrupts;
-        NewFile file("--save", folder.path() + "/result.csv");
-        file.out() << "half";
-        Send(SIGINT);
-        while (true) pause();
-      },
-      ExitedWithCode(130), "");
+  ExpectInterrupted([&] {
+    Interrupts interrupts;
+    NewFile file("--save", folder.path() + "/result.csv");
+    file.out() << "half";
+    Send(SIGINT);
+    SleepForEver();
+  });
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 // After the scope its owner destroys objects that the farewell uses.
 TEST(InterruptsDeathTest, TheEndOfAScopeWaitsForItsFarewell) {
-  EXPECT_EXIT(
-      {
-        Interrupts interrupts;
-        std::latch begun(1);
-        {
-          const Interrupts::Scope scope(&interrupts, [&] {
-            begun.count_down();
-            std::this_thread::sleep_for(std::chrono::milliseconds(20));
-          });
-          Send(SIGINT);
-          begun.wait();
-        }
-        _exit(0);
-      },
-      ExitedWithCode(130), "");
+  ExpectInterrupted([] {
+    Interrupts interrupts;
+    std::latch begun(1);
+    {
+      const Interrupts::Scope scope(&interrupts, [&] {
+        begun.count_down();
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      });
+      Send(SIGINT);
+      begun.wait();
+    }
+    _exit(0);
+  });
 }
 
 bool IsBlocked(int signal) {

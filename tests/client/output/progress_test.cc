@@ -1,8 +1,5 @@
 #include <google/protobuf/util/json_util.h>
 
-#include <future>
-#include <thread>
-
 #include "ballpiston/file/v1/progress.pb.h"
 #include "client/output/progress_line.h"
 #include "client/output/progress_meter.h"
@@ -24,14 +21,9 @@ v1::JobProgress Progress(int done, double samples, std::optional<double> fractio
 }
 
 v1::PointResult ConditionalPoint() {
-  v1::PointResult point;
-  point.mutable_parameters()->set_delta(0.1);
-  point.mutable_parameters()->set_epsilon(0.25);
-  v1::Estimate* estimate = point.add_estimates();
-  estimate->set_name("mean_free_time_conditional");
-  estimate->set_value(21.63214);
-  estimate->set_standard_error(0.1234);
-  return point;
+  return FromText<v1::PointResult>(
+      "parameters { delta: 0.1 epsilon: 0.25 }"
+      "estimates { name: 'mean_free_time_conditional' value: 21.63214 standard_error: 0.1234 }");
 }
 
 TEST(ProgressMeter, HasNoRateAfterOneReading) {
@@ -42,20 +34,17 @@ TEST(ProgressMeter, HasNoRateAfterOneReading) {
   EXPECT_EQ(meter.Fraction(), 0.5);
 }
 
-// If half of a job was done when the watch began, its rate is the rate of the second half.
+// If half of a job was done when the watch began, its rate is the rate of the second half. Without
+// a fraction the finished points count.
 TEST(ProgressMeter, MeasuresFromTheStartOfTheWatch) {
-  ProgressMeter meter;
+  ProgressMeter meter, by_points;
   meter.Update(Progress(50, 1e6, 0.5), kFirstReading);
   meter.Update(Progress(60, 1.2e6, 0.6), kFirstReading + absl::Seconds(10));
   EXPECT_DOUBLE_EQ(*meter.SamplesPerSecond(), 2e4);
   EXPECT_NEAR(absl::ToDoubleSeconds(*meter.TimeLeft()), 40, 1e-6);
-}
-
-TEST(ProgressMeter, FallsBackOnFinishedPoints) {
-  ProgressMeter meter;
-  meter.Update(Progress(0, 0, std::nullopt), kFirstReading);
-  meter.Update(Progress(25, 10, std::nullopt), kFirstReading + absl::Seconds(10));
-  EXPECT_NEAR(absl::ToDoubleSeconds(*meter.TimeLeft()), 30, 1e-6);
+  by_points.Update(Progress(0, 0, std::nullopt), kFirstReading);
+  by_points.Update(Progress(25, 10, std::nullopt), kFirstReading + absl::Seconds(10));
+  EXPECT_NEAR(absl::ToDoubleSeconds(*by_points.TimeLeft()), 30, 1e-6);
 }
 
 TEST(ProgressMeter, StartsAgainWhenSamplesWereLost) {
@@ -67,51 +56,38 @@ TEST(ProgressMeter, StartsAgainWhenSamplesWereLost) {
   EXPECT_DOUBLE_EQ(*meter.SamplesPerSecond(), 1e4);
 }
 
-ProgressMeter Halfway() {
-  ProgressMeter meter;
-  meter.Update(Progress(0, 0, 0), kFirstReading);
-  meter.Update(Progress(50, 1234567, 0.5), kFirstReading + absl::Seconds(10));
-  return meter;
-}
-
-TEST(ProgressLine, ShowsPointsRateTimeAndTheRunningEstimate) {
-  EXPECT_EQ(ProgressLine(Halfway(), ConditionalPoint(), 200),
-            "[##############--------------] 50/100 points  1.2e5 samples/s  0:10 left  "
-            "tau_conditional 21.63 +- 0.12  (delta 0.1 epsilon 0.25)");
-}
-
-TEST(ProgressLine, ShowsTheParametersOfAGas) {
-  v1::PointResult point = ConditionalPoint();
-  *point.mutable_parameters() =
+TEST(ProgressLine, ShowsWhatFitsIntoTheWidth) {
+  ProgressMeter halfway;
+  halfway.Update(Progress(0, 0, 0), kFirstReading);
+  halfway.Update(Progress(50, 1234567, 0.5), kFirstReading + absl::Seconds(10));
+  const std::pair<size_t, const char*> cases[] = {
+      {200,
+       "[##############--------------] 50/100 points  1.2e5 samples/s  0:10 left  "
+       "tau_conditional 21.63 +- 0.12  (delta 0.1 epsilon 0.25)"},
+      {79, "[##--] 50/100 points  1.2e5 samples/s  0:10 left  tau_conditional 21.63 +- 0.12"},
+      {60, "[########--------] 50/100 points  1.2e5 samples/s  0:10 left"}};
+  for (const auto& [width, line] : cases) {
+    EXPECT_EQ(ProgressLine(halfway, ConditionalPoint(), width), line);
+  }
+  for (size_t width = 1; width < 150; ++width) {
+    EXPECT_LE(ProgressLine(halfway, ConditionalPoint(), width).size(), width);
+  }
+  v1::PointResult gas = ConditionalPoint();
+  *gas.mutable_parameters() =
       FromText<v1::PointParameters>("delta: 0.1 cells: '4x3' temperature: 0.5 hot: 2 cold: 1");
-  EXPECT_THAT(ProgressLine(Halfway(), point, 200),
+  EXPECT_THAT(ProgressLine(halfway, gas, 200),
               EndsWith("  (delta 0.1 cells 4x3 T 0.5 hot 2 cold 1)"));
 }
 
-TEST(ProgressLine, AnOrdinaryTerminalShowsTheEstimate) {
-  EXPECT_EQ(ProgressLine(Halfway(), ConditionalPoint(), 79),
-            "[##--] 50/100 points  1.2e5 samples/s  0:10 left  tau_conditional 21.63 +- 0.12");
-}
-
-TEST(ProgressLine, NeverExceedsTheWidth) {
-  for (size_t width = 1; width < 150; ++width) {
-    EXPECT_LE(ProgressLine(Halfway(), ConditionalPoint(), width).size(), width);
-  }
-  EXPECT_EQ(ProgressLine(Halfway(), ConditionalPoint(), 60),
-            "[########--------] 50/100 points  1.2e5 samples/s  0:10 left");
-}
-
-v1::EnsembleJob RunningJob() {
-  v1::EnsembleJob job;
-  job.set_name("ensembleJobs/abc");
-  job.set_state(v1::EnsembleJob::RUNNING);
-  *job.mutable_progress() = Progress(0, 0, 0);
+v1::EnsembleJob JobWith(v1::EnsembleJob::State state, const v1::JobProgress& progress) {
+  v1::EnsembleJob job = JobIn(state);
+  *job.mutable_progress() = progress;
   return job;
 }
 
 // A reporter with the text that it wrote.
 struct Reported {
-  explicit Reported(ProgressStyle style) : reporter(style, err, "ensembleJobs/abc") {}
+  explicit Reported(ProgressStyle style) : reporter(style, err, kJobName) {}
   std::string Text() const { return err.str(); }
 
   std::ostringstream err;
@@ -128,12 +104,9 @@ v1::StatisticsSnapshot Snapshot() {
 // A whole job, from its start to its end.
 std::string ReportOf(ProgressStyle style) {
   Reported report(style);
-  report.reporter.OnJob(RunningJob());
+  report.reporter.OnJob(JobWith(v1::EnsembleJob::RUNNING, Progress(0, 0, 0)));
   report.reporter.OnSnapshot(Snapshot());
-  v1::EnsembleJob job = RunningJob();
-  job.set_state(v1::EnsembleJob::SUCCEEDED);
-  *job.mutable_progress() = Progress(100, 2000, 1);
-  report.reporter.OnJob(job);
+  report.reporter.OnJob(JobWith(v1::EnsembleJob::SUCCEEDED, Progress(100, 2000, 1)));
   report.reporter.OnEnd();
   return report.Text();
 }
@@ -170,22 +143,11 @@ TEST(ProgressBar, NamesTheJobOnceRedrawsOneLineAndEndsWithTheState) {
 // The user can compare the work with the plan.
 TEST(ProgressBar, EndsWithTheWorkIfTheServerSendsIt) {
   Reported report(ProgressStyle::kBar);
-  v1::EnsembleJob job = RunningJob();
+  v1::EnsembleJob job = JobWith(v1::EnsembleJob::RUNNING, Progress(0, 0, 0));
   job.set_work(192);
   report.reporter.OnJob(job);
   report.reporter.OnEnd();
   EXPECT_THAT(report.Text(), HasSubstr("0 samples, 3.2 min of one core\n"));
-}
-
-// The server sends the point that changed last first.
-TEST(ProgressBar, HasThePointThatChangedLast) {
-  Reported report(ProgressStyle::kBar);
-  v1::StatisticsSnapshot snapshot = Snapshot();
-  *snapshot.add_points() = ConditionalPoint();
-  snapshot.mutable_points(1)->mutable_estimates(0)->set_value(99.5);
-  report.reporter.OnSnapshot(snapshot);
-  EXPECT_THAT(report.Text(), HasSubstr("tau_conditional 21.63"));
-  EXPECT_THAT(report.Text(), Not(HasSubstr("99.5")));
 }
 
 v1::StatisticsSnapshot WithFinishedPoints(int unfinished) {
@@ -200,11 +162,17 @@ v1::StatisticsSnapshot WithFinishedPoints(int unfinished) {
   return snapshot;
 }
 
-// At the end of a job with one worker no point is running.
-TEST(ProgressBar, HasThePointThatFinishedLast) {
-  Reported report(ProgressStyle::kBar);
-  report.reporter.OnSnapshot(WithFinishedPoints(0));
-  EXPECT_THAT(report.Text(), HasSubstr("tau_conditional 66.5"));
+// The server sends the unfinished point that changed last first, and the point that finished last
+// last. At the end of a job with one worker no point is running.
+TEST(ProgressBar, HasThePointThatChangedLast) {
+  Reported running(ProgressStyle::kBar), finished(ProgressStyle::kBar);
+  v1::StatisticsSnapshot snapshot = WithFinishedPoints(2);
+  snapshot.mutable_points(1)->mutable_estimates(0)->set_value(99.5);
+  running.reporter.OnSnapshot(snapshot);
+  EXPECT_THAT(running.Text(), HasSubstr("tau_conditional 21.63"));
+  EXPECT_THAT(running.Text(), Not(HasSubstr("99.5")));
+  finished.reporter.OnSnapshot(WithFinishedPoints(0));
+  EXPECT_THAT(finished.Text(), HasSubstr("tau_conditional 66.5"));
 }
 
 // The first line of the note is shorter than the bar; no part of the bar may remain.

@@ -225,14 +225,6 @@ def serving(home: Home, folder: Path, flags: str) -> Iterator[str]:
         server.wait()
 
 
-@pytest.fixture
-def secure_address(home: Home, tmp_path: Path) -> Iterator[str]:
-    """A server with TLS."""
-    make_certificate(tmp_path)
-    with serving(home, tmp_path, "--tls-certificate server.pem --tls-key server.key") as address:
-        yield address
-
-
 def test_on_the_loopback_only_the_servers_user_needs_no_token(
     home: Home, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -249,17 +241,17 @@ def test_on_the_loopback_only_the_servers_user_needs_no_token(
             assert client.status().principal == "ada"
 
 
-def test_tls_and_a_token_reach_a_server_that_wants_them(
-    secure_address: str, tmp_path: Path
-) -> None:
+def test_tls_and_a_token_reach_a_server_that_wants_them(home: Home, tmp_path: Path) -> None:
+    make_certificate(tmp_path)
     ca, token_file = str(tmp_path / "server.pem"), str(tmp_path / "ada.token")
-    with ballpiston.connect(secure_address, ca=ca, token_file=token_file, timeout=LIMIT) as client:
-        status = client.status()
-        assert (status.principal, status.role) == ("ada", "submit")
-    with ballpiston.connect(secure_address, ca=ca, timeout=LIMIT) as client:
-        with pytest.raises(ballpiston.Unauthenticated) as caught:
-            client.status()
-        assert caught.value.reason == "CREDENTIALS_MISSING"
-    with ballpiston.connect(secure_address, tls=True, timeout=LIMIT) as client:
-        with pytest.raises(ballpiston.Unavailable, match="ca=FILE"):
-            client.status()
+    with serving(home, tmp_path, "--tls-certificate server.pem --tls-key server.key") as address:
+        with ballpiston.connect(address, ca=ca, token_file=token_file, timeout=LIMIT) as client:
+            status = client.status()
+            assert (status.principal, status.role) == ("ada", "submit")
+        with ballpiston.connect(address, ca=ca, timeout=LIMIT) as client:
+            with pytest.raises(ballpiston.Unauthenticated) as caught:
+                client.status()
+            assert caught.value.reason == "CREDENTIALS_MISSING"
+        with ballpiston.connect(address, tls=True, timeout=LIMIT) as client:
+            with pytest.raises(ballpiston.Unavailable, match="ca=FILE"):
+                client.status()

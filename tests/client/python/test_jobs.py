@@ -21,11 +21,6 @@ def test_a_submitted_job_succeeds_when_it_is_watched(client: ballpiston.Client) 
     assert job.created <= job.started <= job.ended
 
 
-def test_run_gives_the_result_at_once(client: ballpiston.Client) -> None:
-    result = client.run(**FIRST_HITS, progress=False)
-    assert result["mean_hit_time"].shape == (4,)
-
-
 def test_the_same_question_is_answered_from_the_store(client: ballpiston.Client) -> None:
     first = client.run("equilibrium", rho=0.53, delta=0.1, collisions=100, model="billiard")
     job = client.submit("equilibrium", rho=0.53, delta=0.1, collisions=100, model="billiard")

@@ -1,4 +1,5 @@
-"""The package as a whole: the order of its modules, its types, and its installation by pip."""
+"""The package as a whole: the order of its modules, its types, its installation by pip, and its
+generated modules beside those of other packages."""
 
 from __future__ import annotations
 
@@ -9,11 +10,14 @@ import sys
 from graphlib import TopologicalSorter
 from pathlib import Path
 
+import pytest
 from conftest import PROJECT
 
 import ballpiston
 
 SOURCES = PROJECT / "client" / "python"
+PROTOS = PROJECT / "proto"
+needs_protoc = pytest.mark.skipif(shutil.which("protoc") is None, reason="protoc is not installed")
 
 
 def imports_of(module: Path) -> set[str]:
@@ -59,3 +63,74 @@ def test_the_types_are_complete() -> None:
     mypy = [sys.executable, "-m", "mypy", "--config-file", config, "--cache-dir=/dev/null"]
     run = subprocess.run([*mypy, package], stdout=subprocess.PIPE, text=True)
     assert run.returncode == 0, run.stdout
+
+
+# Generated modules
+
+
+def output_of(program: str, *folders: Path) -> str:
+    """What a fresh interpreter prints, with these folders in front of the package."""
+    package = Path(ballpiston.__file__).parents[1]
+    path = ":".join(str(folder) for folder in [*folders, package])
+    done = subprocess.run(
+        [sys.executable, "-c", program], env={"PYTHONPATH": path}, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+def generate(proto_folder: Path, out: Path, *protos: str) -> None:
+    out.mkdir()
+    subprocess.run(["protoc", f"-I{proto_folder}", f"--python_out={out}", *protos], check=True)
+
+
+def test_a_module_of_the_protocol_can_be_imported_first() -> None:
+    assert output_of("import ballpiston.v1.spec_pb2 as m; print(m.EnsembleSpec.FIRST_HIT)") == "3"
+
+
+def test_the_package_has_its_own_copy_of_google_rpc() -> None:
+    """Without googleapis-common-protos nothing is put into the package google."""
+    program = (
+        "import sys\n"
+        "sys.modules['google.rpc'] = None\n"
+        "import ballpiston\n"
+        "from ballpiston._google_rpc import status_pb2\n"
+        "print(status_pb2.__name__, 'google.rpc.status_pb2' in sys.modules)"
+    )
+    assert output_of(program) == "ballpiston._google_rpc.status_pb2 False"
+
+
+@needs_protoc
+@pytest.mark.parametrize("first", ["ballpiston", "google.rpc.status_pb2"])
+def test_installed_modules_of_google_rpc_are_used(first: str, tmp_path: Path) -> None:
+    """googleapis-common-protos has the same files with other options: the pool of descriptors
+    rejects them beside ours."""
+    for name in ("status", "error_details"):
+        text = (PROTOS / "google" / "rpc" / f"{name}.proto").read_text()
+        text = text.replace("package google.rpc;", 'package google.rpc;\noption go_package = "x";')
+        (tmp_path / "google" / "rpc").mkdir(parents=True, exist_ok=True)
+        (tmp_path / "google" / "rpc" / f"{name}.proto").write_text(text)
+    out = tmp_path / "out"
+    generate(tmp_path, out, "google/rpc/status.proto", "google/rpc/error_details.proto")
+    program = (
+        f"import {first}, ballpiston, google.rpc.status_pb2\n"
+        "from ballpiston._google_rpc import status_pb2\n"
+        "print(status_pb2.__name__, status_pb2.DESCRIPTOR.GetOptions().go_package)\n"
+        "print(ballpiston.v1.ensemble_pb2.EnsembleJob(error={'message': 'm'}).error.message)"
+    )
+    assert output_of(program, out) == "google.rpc.status_pb2 x\nm"
+
+
+@needs_protoc
+@pytest.mark.parametrize("order", ["google.rpc.status_pb2, ballpiston", "ballpiston"])
+def test_a_client_that_was_generated_by_hand_goes_on_working(order: str, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    protos = [str(p.relative_to(PROTOS)) for p in PROTOS.glob("ballpiston/v1/*.proto")]
+    generate(PROTOS, out, *protos, "google/rpc/status.proto", "google/rpc/error_details.proto")
+    program = (
+        f"import {order}\n"
+        "from ballpiston.v1 import ensemble_pb2, trace_pb2\n"
+        "from google.rpc import error_details_pb2, status_pb2\n"
+        "print(ensemble_pb2.EnsembleJob(error=status_pb2.Status(message='m')).error.message)"
+    )
+    assert output_of(program, out) == "m"

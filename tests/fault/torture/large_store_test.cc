@@ -4,7 +4,6 @@
 #include "server/convert/spec.h"
 #include "server/store/job_table.h"
 #include "server/store/store.h"
-#include "tests/fault/torture/calls.h"
 #include "tests/fault/torture/preamble.h"
 
 namespace ballpiston::torture {
@@ -109,14 +108,12 @@ TEST(Lists, InBasicViewOfLargeJobsTakeLittleMemory) {
   const double before = server.PeakMiB();
   std::vector<std::jthread> clients;
   for (int i = 0; i < 8; ++i) {
-    clients.emplace_back([&, channel = server.Connect()] {
-      const auto stub = v1::EnsembleService::NewStub(channel);
+    clients.emplace_back([&, client = server.NewClient()] {
       v1::ListEnsembleJobsRequest request;
       request.set_view(v1::ListEnsembleJobsRequest::BASIC);
-      request.set_page_size(1000);
-      const auto page = Ask(*stub, &Stub::ListEnsembleJobs, request);
-      ASSERT_OK(page);
-      findings.Count("jobs listed", page->jobs_size());
+      const auto jobs = client.List(request);
+      ASSERT_OK(jobs);
+      findings.Count("jobs listed", std::ssize(*jobs));
     });
   }
   clients.clear();  // waits for them

@@ -3,15 +3,23 @@
 // (`make torture`) selects the full size, 0.1 a tenth.
 #pragma once
 
+#include <algorithm>
+#include <cstdlib>
+
 namespace ballpiston::torture {
 
 // The share of the full size; 0 in the short form.
-double ShareOfFullSize();
+inline double ShareOfFullSize() {
+  const char* const share = std::getenv("BALLPISTON_TORTURE");
+  return share == nullptr ? 0 : std::clamp(std::atof(share), 0.0, 1.0);
+}
 
 // `brief` in the short form; otherwise the share of `full`, at least `brief`.
-int Size(int brief, int full);
+inline int Size(int brief, int full) {
+  return std::max(brief, static_cast<int>(ShareOfFullSize() * full));
+}
 
 // Whether to check times. A busy machine may miss them without an error of the server.
-bool HoldsToTimes();
+inline bool HoldsToTimes() { return ShareOfFullSize() > 0; }
 
 }  // namespace ballpiston::torture

@@ -10,7 +10,7 @@
 
 #include <grpcpp/grpcpp.h>
 
-#include "ballpiston/v1/ensemble.grpc.pb.h"
+#include "client/library/client.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"
 #include "tests/support/preamble.h"
@@ -26,9 +26,12 @@ struct Exam {
 class Visitor {
  public:
   Visitor(std::shared_ptr<grpc::Channel> channel, const Exam& exam, uint64_t seed,
-          Findings& findings);
+          Findings& findings)
+      : channel_(std::move(channel)), exam_(exam), findings_(findings), random_(seed) {}
 
-  void VisitUntil(const std::atomic<bool>& enough);
+  void VisitUntil(const std::atomic<bool>& enough) {
+    while (!enough) DoSomething();
+  }
 
   // For a server that is not killed any more: waits for the end of every job and checks it.
   void CheckAll();
@@ -44,10 +47,12 @@ class Visitor {
     const char* end_from = "";  // the call that returned it
   };
 
+  // Calls as soon as the server is connected, and repeats the call until the server answers.
+  // `repeated`: whether it was necessary.
   template <typename Call>
-  auto UntilAnswered(Call call, bool& repeated);
-  template <typename Call>
-  auto UntilAnswered(Call call);
+  auto UntilAnswered(Call call, bool* repeated = nullptr);
+  // The job of this request id, new or made before.
+  absl::StatusOr<v1::EnsembleJob> Ask(const OwnJob& job);
 
   void DoSomething();
   void Create();
@@ -61,13 +66,15 @@ class Visitor {
 
   // `from`: the call that was answered.
   void Learn(OwnJob& job, const v1::EnsembleJob& seen, const char* from);
-  void CheckSamples(const OwnJob& job, const v1::EnsembleJob& seen);
-  bool Chance(double probability);
-  size_t Pick(size_t count);
-  size_t CountActive() const;
-  void Wrong(const OwnJob& job, const std::string& what);
+  bool Chance(double probability) { return std::bernoulli_distribution(probability)(random_); }
+  size_t Pick(size_t count) { return std::uniform_int_distribution<size_t>(0, count - 1)(random_); }
+  void Wrong(const OwnJob& job, const std::string& what) {
+    findings_.Wrong(absl::StrCat(job.name.empty() ? job.request_id : job.name, " (question ",
+                                 job.question, "): ", what));
+  }
 
-  std::unique_ptr<v1::EnsembleService::Stub> stub_;
+  const std::shared_ptr<grpc::Channel> channel_;
+  const client::Client client_{channel_, absl::Seconds(20)};
   const Exam& exam_;
   Findings& findings_;
   std::mt19937_64 random_;

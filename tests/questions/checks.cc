@@ -1,14 +1,23 @@
 #include "tests/questions/checks.h"
 
+#include "tests/support/process.h"
+
 namespace ballpiston::questions {
 namespace {
+
+#ifdef BALLPISTON_SANITIZED
+constexpr bool kIsSanitized = true;
+#else
+constexpr bool kIsSanitized = false;
+#endif
+
+double BytesOf(const std::string& line) { return 1024 * 1024 * MiBOf("self", line); }
 
 // The spectrum's probabilities have errors of some 1e-8 of their own.
 constexpr double kLawTolerance = 1e-7;
 
-bool HasSamples(const v1::PointResult& result) {
-  return result.model() != v1::EnsembleSpec::CLOSED_FORM &&
-         result.model() != v1::EnsembleSpec::SPECTRUM;
+bool TakesSamples(v1::EnsembleSpec::Model model) {
+  return model != v1::EnsembleSpec::CLOSED_FORM && model != v1::EnsembleSpec::SPECTRUM;
 }
 
 // In a gas of one column.
@@ -49,7 +58,7 @@ void CheckMeasured(const v1::PointResult& result, Findings& findings) {
     findings.push_back({kMeasuredCheck, "no estimate"});
     return;
   }
-  if (!HasSamples(result) || !result.remarks().empty()) return;
+  if (!TakesSamples(result.model()) || !result.remarks().empty()) return;
   if (result.samples() < 1) {
     findings.push_back({kMeasuredCheck, "0 samples, and no remark"});
   } else if (result.samples() >= kEnoughSamples && !result.estimates(0).has_standard_error()) {
@@ -95,6 +104,50 @@ Findings CheckAnswer(const v1::EnsembleSpec& spec, const v1::PointResult& result
   CheckHealth(spec, result, findings);
   CheckLaws(result, findings);
   return findings;
+}
+
+const v1::ModelPlan* Chosen(const v1::PointPlan& plan) {
+  for (const v1::ModelPlan& model : plan.models()) {
+    if (model.model() == plan.model() && model.answers()) return &model;
+  }
+  return nullptr;
+}
+
+Findings CheckPlan(const v1::PointPlan& plan) {
+  Findings findings = CheckFinite(plan);
+  const auto add = [&](const auto&... what) {
+    findings.push_back({kPlanCheck, absl::StrCat(what...)});
+  };
+  for (const v1::ModelPlan& model : plan.models()) {
+    if (model.samples() < 0 || model.work() < 0 || model.relative_statistical_error() < 0 ||
+        model.relative_model_error() < 0) {
+      add("a number is negative: ", model.ShortDebugString());
+    }
+  }
+  const v1::ModelPlan* const chosen = Chosen(plan);
+  if (chosen == nullptr) {
+    add("no model answers");
+    return findings;
+  }
+  if (!chosen->has_samples() || (TakesSamples(chosen->model()) && chosen->samples() < 1)) {
+    add("no samples are planned: ", chosen->ShortDebugString());
+  }
+  if (!chosen->has_work() || chosen->work() > kMostPlannedSeconds) {
+    add("no machine can compute what is planned: ", chosen->ShortDebugString());
+  }
+  return findings;
+}
+
+PeakMemory::PeakMemory() : at_first_(BytesOf("VmRSS:")) {
+  std::ofstream("/proc/self/clear_refs") << "5";  // forgets the largest value
+}
+
+double PeakMemory::Bytes() const { return BytesOf("VmHWM:") - at_first_; }
+
+Findings CheckMemory(double planned, double measured) {
+  if (kIsSanitized || measured <= planned + kMemoryOfAnyAnswer) return {};
+  return {{kMemoryCheck,
+           absl::StrFormat("planned %.0f MB, took %.0f MB", 1e-6 * planned, 1e-6 * measured)}};
 }
 
 }  // namespace ballpiston::questions

@@ -1,6 +1,5 @@
+// Programs that tests start, and the main function of test programs.
 #include "tests/support/process.h"
-
-#include "tests/support/preamble.h"
 
 namespace ballpiston {
 namespace {
@@ -32,6 +31,15 @@ TEST(Process, EndsWithinTellsWhetherItRuns) {
   process.Signal(SIGTERM);
   EXPECT_TRUE(process.EndsWithin(std::chrono::minutes(10)));
   EXPECT_THAT(process.Wait(), ExitsWith(128 + SIGTERM));
+}
+
+TEST(TestMain, NamesATestThatTakes15Minutes) {
+  EXPECT_GT(alarm(0), 0u);  // the seconds until the alarm
+  testing::internal::CaptureStderr();
+  raise(SIGALRM);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "[  HANGS?  ] 15 minutes without another test since the start of "
+            "TestMain.NamesATestThatTakes15Minutes\n");
 }
 
 }  // namespace

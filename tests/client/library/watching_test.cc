@@ -1,11 +1,74 @@
+// Watches of jobs, and the pauses between their attempts.
 #include "client/library/job_watch.h"
-
-#include <stop_token>
-
+#include "client/library/reattach_pace.h"
 #include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
+
+// ---- reattach_pace.h ----
+
+using std::chrono::hours;
+using std::chrono::minutes;
+using std::chrono::seconds;
+
+const ReattachPace::Time kStart = ReattachPace::Time() + hours(1);
+
+WatchOptions ThreeMinutes() {
+  WatchOptions options;
+  options.initial_backoff = absl::Seconds(1);
+  options.max_backoff = absl::Seconds(4);
+  options.give_up_after = absl::Minutes(3);
+  return options;
+}
+
+TEST(ReattachPace, PausesDoubleUpToTheirMaximumAndStartAgainAfterAMessage) {
+  const WatchOptions options = ThreeMinutes();
+  ReattachPace pace(options, kStart);
+  for (int round = 0; round < 2; ++round) {
+    for (const double expected : {1, 2, 4, 4, 4, 4}) {
+      const std::optional<absl::Duration> pause = pace.NextPause(kStart);
+      ASSERT_TRUE(pause);
+      EXPECT_GE(absl::ToDoubleSeconds(*pause), 0.999 * expected);
+      EXPECT_LE(absl::ToDoubleSeconds(*pause), 1.251 * expected);
+    }
+    pace.Heard(kStart);
+  }
+}
+
+TEST(ReattachPace, APauseIsAsLongAsTheServerAsks) {
+  const WatchOptions options = ThreeMinutes();
+  ReattachPace pace(options, kStart);
+  for (const double expected : {10, 10, 10}) {
+    const std::optional<absl::Duration> pause = pace.NextPause(kStart, absl::Seconds(10));
+    ASSERT_TRUE(pause);
+    EXPECT_GE(absl::ToDoubleSeconds(*pause), expected);
+    EXPECT_LE(absl::ToDoubleSeconds(*pause), 1.251 * expected);
+  }
+  EXPECT_FALSE(pace.NextPause(kStart, absl::Minutes(4)));
+}
+
+// A pause of 1 s to 1.25 s that begins after 178 s ends within 3 min. A pause that begins after 180
+// s ends too late.
+TEST(ReattachPace, GivesUpWhenTheNextAttemptWouldComeTooLate) {
+  const WatchOptions options = ThreeMinutes();
+  EXPECT_TRUE(ReattachPace(options, kStart).NextPause(kStart + seconds(178)));
+  EXPECT_FALSE(ReattachPace(options, kStart).NextPause(kStart + seconds(180)));
+}
+
+TEST(ReattachPace, TheTimeToGiveUpStartsAgainWithEveryMessage) {
+  const WatchOptions options = ThreeMinutes();
+  ReattachPace pace(options, kStart);
+  ReattachPace::Time now = kStart;
+  for (int i = 0; i < 100; ++i) {
+    now += minutes(2);
+    ASSERT_TRUE(pace.NextPause(now)) << i;
+    pace.Heard(now);
+  }
+  EXPECT_FALSE(pace.NextPause(now + minutes(3)));
+}
+
+// ---- job_watch.h ----
 
 using Job = v1::EnsembleJob;
 
@@ -134,7 +197,7 @@ TEST_F(JobWatch, GivesUpAfterTheConfiguredTime) {
 }
 
 // Each attempt receives a message before it fails: the server is alive. The message restarts both
-// the pauses and the time to give up (reattach_pace_test.cc).
+// the pauses and the time to give up.
 TEST_F(JobWatch, ThePaceStartsAgainWithEveryMessage) {
   std::vector<WatchScript> watches(100, Unavailable({SnapshotMessage(1, "t")}));
   watches.push_back(Succeeded());

@@ -1,8 +1,4 @@
-// Random choices, the same on every machine, and random values of the parameters and defects.
-//
-// Values lie in the permitted domain, or slightly or far outside of it. `extreme` values lie
-// log-uniformly close to an end of the domain, or are the end itself or its neighbour among the
-// doubles. The others are those of an ordinary question.
+// For the generator of questions: random choices, the same on every machine, and defects.
 #pragma once
 
 #include "core/ensemble/experiment_kind.h"
@@ -32,20 +28,11 @@ class Dice {
   CounterRandom random_;
 };
 
-double Rho(Dice& dice, bool extreme);
-double Delta(Dice& dice, double bound, bool extreme);
-double Epsilon(Dice& dice, bool extreme);
-double Exponent(Dice& dice, bool extreme);
-std::string Cells(Dice& dice, bool extreme);
-double Temperature(Dice& dice, bool extreme);
-double Cold(Dice& dice, double hot, bool extreme);
-
-double RhoOutside(Dice& dice);
-double DeltaOutside(Dice& dice, double bound);
-double EpsilonOutside(Dice& dice);
-double ExponentOutside(Dice& dice);
-std::string CellsOutside(Dice& dice);
-double TemperatureOutside(Dice& dice);
+// The neighbours of x among the doubles.
+inline double Above(double x) { return std::nextafter(x, std::numeric_limits<double>::infinity()); }
+inline double Below(double x) {
+  return std::nextafter(x, -std::numeric_limits<double>::infinity());
+}
 
 // Changes a permitted question into one that the service has to refuse. `bound`: that of delta.
 void AddDefect(Dice& dice, const ExperimentKind& experiment, double bound, Question& question);

@@ -1,10 +1,16 @@
-// Each check finds a planted failure, and nothing in a good answer.
+// The checks find planted failures and nothing in good answers; the generator; the child process.
+#include "client/command/spec_file.h"
+#include "core/experiment/all_experiments.h"
+#include "server/convert/spec.h"
 #include "tests/questions/checks.h"
-
+#include "tests/questions/engine.h"
+#include "tests/questions/question.h"
 #include "tests/support/message_text.h"
 
 namespace ballpiston::questions {
 namespace {
+
+// ---- checks.h ----
 
 auto Breaks(const char* check) { return ElementsAre(Field(&Finding::check, check)); }
 
@@ -107,6 +113,79 @@ TEST(Checks, ADifferenceBeyondTheErrorsIsFound) {
   v1::PointResult unknown = with("value: 20 standard_error: 0.1");
   unknown.mutable_estimates(0)->clear_model_error();
   EXPECT_THAT(Disagreements({ten, unknown}), IsEmpty());
+}
+
+// ---- question.h ----
+
+TEST(Question, PrintsItselfAsACommandThatReadsItBack) {
+  const auto spec = FromText<v1::EnsembleSpec>(
+      "experiment: GAS_CONDUCTION"
+      " grid { rho: inf delta: 1e-13 cells: '2x3' hot: 2 cold: 1 }"
+      " target { collisions: 1000 } model: BILLIARD_REFERENCE");
+  const std::string command = Command(spec), before = "ballpiston run --spec - <<<'";
+  ASSERT_THAT(command, StartsWith(before));
+  const std::string json = command.substr(before.size(), command.size() - before.size() - 1);
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec read, client::ParseSpec("FILE", json));
+  EXPECT_EQ(read.ShortDebugString(), spec.ShortDebugString());
+}
+
+constexpr double kMostSeconds = 0.01;
+
+TEST(Draw, GivesTheSameQuestionAgain) {
+  for (uint64_t number = 0; number < 20; ++number) {
+    EXPECT_EQ(Draw(3, number, kMostSeconds).spec.SerializeAsString(),
+              Draw(3, number, kMostSeconds).spec.SerializeAsString());
+  }
+  EXPECT_NE(Draw(3, 0, kMostSeconds).spec.SerializeAsString(),
+            Draw(4, 0, kMostSeconds).spec.SerializeAsString());
+}
+
+// 12 of 300 questions are fewer than half of the expected number of each experiment.
+TEST(Draw, AsksEveryExperimentByEveryModelWithEveryTarget) {
+  std::map<int, int> experiments, models, targets, precisions;
+  int permitted = 0;
+  for (uint64_t number = 0; number < 300; ++number) {
+    const Question question = Draw(1, number, kMostSeconds);
+    if (!question.defect.empty()) continue;
+    ++experiments[question.spec.experiment()];
+    ++models[question.spec.model()];
+    ++targets[question.spec.target().kind_case()];
+    ++precisions[question.spec.precision()];
+    permitted += server::CheckSpec(question.spec).violations.empty();
+  }
+  EXPECT_EQ(experiments.size(), std::size(kAllExperiments));
+  EXPECT_EQ(models.size(), 6);
+  EXPECT_EQ(targets.size(), 4);
+  EXPECT_EQ(precisions.size(), 2);
+  for (const auto& [experiment, count] : experiments) EXPECT_GT(count, 12) << experiment;
+  EXPECT_GT(permitted, 150);
+}
+
+// ---- child processes of engine.h ----
+
+TEST(Child, ReturnsTheReport) {
+  const Report report = InChild([] {
+    return Report{.outcome = "answered", .findings = {{"finite", "a value\tis\nnan"}}};
+  });
+  EXPECT_EQ(report.outcome, "answered");
+  ASSERT_EQ(report.findings.size(), 1);
+  EXPECT_EQ(report.findings[0].check, "finite");
+  EXPECT_EQ(report.findings[0].what, "a value\tis\nnan");
+}
+
+TEST(Child, ReportsADeath) {
+  const Report killed = InChild([]() -> Report {
+    raise(SIGKILL);
+    return {};
+  });
+  EXPECT_EQ(killed.outcome, "died");
+  EXPECT_TRUE(killed.Breaks(kCrashCheck));
+  EXPECT_FALSE(killed.Breaks(kEndCheck));
+  const Report late = InChild([]() -> Report {
+    raise(SIGXCPU);  // as the kernel does when the time is used up
+    return {};
+  });
+  EXPECT_TRUE(late.Breaks(kEndCheck));
 }
 
 }  // namespace

@@ -1,12 +1,16 @@
-#include "client/web/connect_protocol.h"
-
+// The parts of `ballpiston web` and of the report. tests/end_to_end/web_test.cc tests the whole.
 #include "absl/strings/cord.h"
+#include "client/web/connect_protocol.h"
+#include "client/web/page_access.h"
+#include "client/web/page_files.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
+
+// ---- connect_protocol.h ----
 
 TEST(ConnectProtocol, EnvelopesHaveFlagsAndABigEndianLength) {
   EXPECT_EQ(Envelope("{}"), std::string("\0\0\0\0\2{}", 7));
@@ -70,6 +74,84 @@ TEST(ConnectProtocol, ErrorDetailsAreGivenInBase64AndAsJson) {
   EXPECT_THAT(ErrorJson(status), AllOf(HasSubstr(R"("type":"google.rpc.ErrorInfo")"),
                                        HasSubstr(R"("value":"CgpRVUVVRV9GVUxM")"),
                                        HasSubstr(R"("reason":"QUEUE_FULL")")));
+}
+
+// ---- page_access.h ----
+
+const PageAccess& Access() {
+  static const PageAccess access(8080, "secret");
+  return access;
+}
+
+TEST(PageAccess, AcceptsItsOwnAddressAndProgramsWithoutAnOrigin) {
+  EXPECT_TRUE(Access().CheckOrigin("127.0.0.1:8080", "").ok());
+  EXPECT_TRUE(Access().CheckOrigin("localhost:8080", "http://localhost:8080").ok());
+  EXPECT_TRUE(Access().CheckOrigin("127.0.0.1:8080", "http://127.0.0.1:8080").ok());
+}
+
+TEST(PageAccess, RejectsOtherHosts) {
+  for (const char* host : {"", "evil.example", "evil.example:8080", "127.0.0.1", "127.0.0.1:80",
+                           "127.0.0.1:8080.evil.example", "127.0.0.1:80800"}) {
+    const absl::Status status = Access().CheckOrigin(host, "");
+    EXPECT_EQ(status.code(), absl::StatusCode::kPermissionDenied) << host;
+    EXPECT_THAT(status.message(), HasSubstr("permitted: 127.0.0.1:8080, localhost:8080"));
+  }
+}
+
+TEST(PageAccess, RejectsOtherOrigins) {
+  for (const char* origin : {"http://evil.example", "null", "https://127.0.0.1:8080",
+                             "http://127.0.0.1:8081", "http://127.0.0.1:8080.evil.example"}) {
+    const absl::Status status = Access().CheckOrigin("127.0.0.1:8080", origin);
+    EXPECT_EQ(status.code(), absl::StatusCode::kPermissionDenied) << origin;
+    EXPECT_THAT(status.message(), HasSubstr(origin));
+  }
+}
+
+TEST(PageAccess, RequiresItsToken) {
+  EXPECT_TRUE(Access().CheckToken("Bearer secret").ok());
+  for (const char* header : {"", "secret", "Bearer secreT", "Bearer secret ", "bearer secret",
+                             "Bearer ", "Bearer secre"}) {
+    const absl::Status status = Access().CheckToken(header);
+    EXPECT_EQ(status.code(), absl::StatusCode::kUnauthenticated) << header;
+    EXPECT_THAT(status.message(), ::testing::Not(HasSubstr("secret")));
+  }
+}
+
+TEST(PageAccess, TheTokenIsInTheFragmentOfTheAddress) {
+  EXPECT_EQ(Access().Url(), "http://127.0.0.1:8080/#token=secret");
+}
+
+// ---- page_files.h ----
+
+std::map<std::string, PageFile> Files() {
+  return {{"page.html",
+           {"text/html",
+            "<head><link rel=\"stylesheet\" href=\"a.css\">\n"
+            "<link rel=\"stylesheet\" href=\"b.css\"></head>"
+            "<body><!-- data --><script src=\"c.js\" defer></script></body>"}},
+          {"a.css", {"text/css", "a{}\n"}},
+          {"b.css", {"text/css", "b{}\n"}},
+          {"c.js", {"text/javascript", "c();\n"}}};
+}
+
+TEST(OneFilePage, HasItsFilesInTheirPlaces) {
+  EXPECT_EQ(*OneFilePage(Files(), "page.html", "{}"),
+            "<head><style>\na{}\n</style>\n<style>\nb{}\n</style></head>"
+            "<body><script type=\"application/json\" id=\"data\">{}</script>"
+            "<script>\nc();\n</script></body>");
+}
+
+TEST(OneFilePage, DataStaysInsideItsScript) {
+  const std::string page = *OneFilePage(Files(), "page.html", R"({"x":"</script><!--<b>"})");
+  EXPECT_THAT(page, HasSubstr(R"({"x":"\u003c/script>\u003c!--\u003cb>"})"));
+}
+
+TEST(OneFilePage, NamesAMissingFile) {
+  auto files = Files();
+  files.erase("b.css");
+  EXPECT_THAT(OneFilePage(files, "page.html", "{}").status().message(), HasSubstr("b.css"));
+  EXPECT_EQ(OneFilePage(files, "no.html", "{}").status().code(),
+            absl::StatusCode::kFailedPrecondition);
 }
 
 }  // namespace

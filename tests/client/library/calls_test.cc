@@ -1,9 +1,15 @@
+// Single calls, their request ids and their errors.
 #include "client/library/client.h"
-
+#include "client/library/error_text.h"
+#include "client/library/request_id.h"
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
 #include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
+
+// ---- client.h ----
 
 class ClientTest : public ::testing::Test {
  protected:
@@ -19,18 +25,9 @@ class ClientTest : public ::testing::Test {
 
 TEST_F(ClientTest, EachCreateHasANewRequestId) {
   const Client client = StartServer();
-  ASSERT_OK(client.Create(v1::EnsembleSpec()));
-  ASSERT_OK(client.Create(v1::EnsembleSpec()));
-  EXPECT_NE(server_.ensemble.Asked().create[0].request_id(),
-            server_.ensemble.Asked().create[1].request_id());
-}
-
-TEST_F(ClientTest, ListGathersAllPages) {
-  for (int i = 1; i < 5; ++i) server_.ensemble.jobs.push_back(JobIn(v1::EnsembleJob::QUEUED));
-  for (size_t i = 0; i < 5; ++i) server_.ensemble.jobs[i].set_name(std::to_string(i));
-  ASSERT_OK_AND_ASSIGN(const auto jobs, StartServer().List());
-  ASSERT_EQ(jobs.size(), 5u);
-  for (size_t i = 0; i < 5; ++i) EXPECT_EQ(jobs[i].name(), std::to_string(i));
+  for (int i = 0; i < 2; ++i) ASSERT_OK(client.Create(v1::EnsembleSpec()));
+  const auto asked = server_.ensemble.Asked().create;
+  EXPECT_NE(asked[0].request_id(), asked[1].request_id());
 }
 
 TEST_F(ClientTest, ResultsGathersAllPagesInTheRequestedView) {
@@ -45,29 +42,6 @@ TEST_F(ClientTest, ResultsGathersAllPagesInTheRequestedView) {
     EXPECT_EQ(request.parent(), "ensembleJobs/a");
     EXPECT_EQ(request.view(), v1::ListResultsRequest::BASIC);
   }
-}
-
-TEST_F(ClientTest, ErrorsKeepCodeAndReason) {
-  const auto job = StartServer().Get("ensembleJobs/none");
-  EXPECT_THAT(
-      job, StatusIs(absl::StatusCode::kNotFound, "no such job: ensembleJobs/none (JOB_NOT_FOUND)"));
-  EXPECT_EQ(ErrorReason(job.status()), "JOB_NOT_FOUND");
-}
-
-TEST_F(ClientTest, WithoutAServerIsUnavailable) {
-  const Client client(server_.Channel());  // the server is not started
-  EXPECT_THAT(client.List(), StatusIs(absl::StatusCode::kUnavailable));
-  EXPECT_THAT(client.Delete("ensembleJobs/a"), StatusIs(absl::StatusCode::kUnavailable));
-}
-
-// By default a gRPC server accepts messages of up to 4 MiB; the client sends larger ones.
-TEST_F(ClientTest, ErrorOfATooLargeSpecificationHasPlainWords) {
-  v1::EnsembleSpec spec;
-  spec.mutable_grid()->mutable_rho()->Resize(1'000'000, 0.53);
-  EXPECT_THAT(StartServer().Create(spec),
-              StatusIs(absl::StatusCode::kResourceExhausted,
-                       AllOf(StartsWith("the request or its answer is too large to be sent: 80000"),
-                             HasSubstr(" bytes; at most 4194304 are permitted"))));
 }
 
 TEST_F(ClientTest, LargeAnswersAreReceived) {
@@ -114,6 +88,50 @@ TEST_F(ClientTest, ACallbackEndsATrace) {
   int messages = 0;
   EXPECT_OK(StartServer().Trace({}, [&](const v1::TraceOrbitResponse&) { return ++messages < 3; }));
   EXPECT_EQ(messages, 3);
+}
+
+// ---- request_id.h ----
+
+TEST(RequestId, IsAUuidThatIsRandomOrThatOfAText) {
+  constexpr char kUuid[] = "[0-9a-f]{8}-[0-9a-f]{4}-[48][0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}";
+  std::set<std::string> ids;
+  for (int i = 0; i < 1000; ++i) {
+    ids.insert({NewRequestId(), RequestIdFor("question " + std::to_string(i))});
+  }
+  EXPECT_THAT(ids, AllOf(SizeIs(2000), Each(MatchesRegex(kUuid))));
+}
+
+// A later version of the program must make the same ids.
+TEST(RequestId, OfATextIsStable) {
+  EXPECT_EQ(RequestIdFor(""), "cbf29ce4-8422-8325-9e37-79b97f4a7c15");
+  EXPECT_EQ(RequestIdFor("question 0"), "f158c797-54ff-80dd-b8d7-5edcd5c77fad");
+}
+
+TEST(RequestId, HasTheFormOfAUuid) {
+  const std::string id = "123e4567-e89b-12d3-a456-426614174000";
+  EXPECT_TRUE(IsRequestId(id));
+  EXPECT_TRUE(IsRequestId("123E4567-E89B-12D3-A456-426614174000"));
+  for (const std::string& text : {std::string(), id + "0", id.substr(1), "x" + id.substr(1),
+                                  "-" + id.substr(1), std::string(36, '0')}) {
+    EXPECT_FALSE(IsRequestId(text)) << text;
+  }
+}
+
+// ---- error_text.h ----
+
+// transcripts/refusals.txt shows the texts of details.
+TEST(ErrorText, OkStaysOk) { EXPECT_OK(FromGrpc(grpc::Status::OK)); }
+
+TEST(ErrorText, WithoutDetailsTheTextIsTheMessage) {
+  const absl::Status status =
+      FromGrpc(grpc::Status(grpc::StatusCode::UNAVAILABLE, "connection refused"));
+  EXPECT_EQ(status, absl::UnavailableError("connection refused"));
+  EXPECT_EQ(ErrorReason(status), "");
+}
+
+TEST(ErrorText, MalformedDetailsDoNotHideTheMessage) {
+  EXPECT_EQ(FromGrpc(grpc::Status(grpc::StatusCode::INTERNAL, "went wrong", "\xff\xff\xff")),
+            absl::InternalError("went wrong"));
 }
 
 }  // namespace

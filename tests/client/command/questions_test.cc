@@ -1,0 +1,162 @@
+// From flags or a file to the request of a job. transcripts/submit.txt shows the rest.
+#include <google/protobuf/util/message_differencer.h>
+
+#include "client/command/create_job.h"
+#include "client/command/question.h"
+#include "client/command/spec_file.h"
+#include "client/library/request_id.h"
+#include "tests/client/preamble.h"
+
+namespace ballpiston::client {
+namespace {
+
+// ---- question.h ----
+
+class QuestionTest : public ::testing::Test {
+ protected:
+  // The specification of `run WORDS`.
+  static absl::StatusOr<v1::EnsembleSpec> Spec(const std::string& words) {
+    const auto line = ParseCommandLine(absl::StrSplit("run " + words, ' ', absl::SkipEmpty()));
+    return line.ok() ? SpecOf(line->options) : line.status();
+  }
+
+  const EmptyHome home_;
+};
+
+TEST_F(QuestionTest, EachFlagReachesItsField) {
+  const std::pair<std::string, std::string> table[] = {
+      {"", ""},
+      {"--rho 0.53 --delta=0.1,0.2", "grid { rho: 0.53 delta: [0.1, 0.2] }"},
+      {"--epsilon 0.25 --exponent 0:2:3", "grid { epsilon: 0.25 exponent: [0, 1, 2] }"},
+      {"--cells 12,4x3,2:6:3", "grid { cells: ['12', '4x3', '2', '4', '6'] }"},
+      {"--temperature 0.5:1.5:3", "grid { temperature: [0.5, 1, 1.5] }"},
+      {"--hot 2,3 --cold 1", "grid { hot: [2, 3] cold: 1 }"},
+      {"--samples 1e6", "target { samples: 1000000 }"},
+      {"--collisions 5", "target { collisions: 5 }"},
+      {"--tolerance -1e-3", "target { tolerance: -1e-3 }"},
+      {"--budget 90.5", "target { budget { seconds: 90 nanos: 500000000 } }"},
+      {"--budget 0.3", "target { budget { nanos: 300000000 } }"},
+      {"--budget 1.9999999999", "target { budget { seconds: 2 } }"},
+      {"--budget -0.25", "target { budget { nanos: -250000000 } }"},
+      {"--budget 1e300", "target { budget { seconds: 315576000000 } }"},
+      {"--budget 10 --tolerance 1e-3", "target { tolerance: 1e-3 budget { seconds: 10 } }"},
+      {"--estimate conductivity", "target { estimate: 'conductivity' }"},
+      {"--tolerance 0.05 --estimate=anything", "target { tolerance: 0.05 estimate: 'anything' }"},
+      {"--samples 5 --estimate exchange_rate", "target { samples: 5 estimate: 'exchange_rate' }"},
+      {"--seed 18446744073709551615", "seed: 18446744073709551615"},
+      {"--model billiard_reference", "model: BILLIARD_REFERENCE"},
+      {"--model closed-form", "model: CLOSED_FORM"},
+      {"--precision single --verify", "precision: SINGLE verify: true"}};
+  for (const auto& [words, text] : table) {
+    ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec spec, Spec("first-hit " + words));
+    EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(
+        spec, FromText<v1::EnsembleSpec>("experiment: FIRST_HIT " + text)))
+        << words << "\n"
+        << spec.DebugString();
+  }
+}
+
+// ---- spec_file.h ----
+
+// A zero has no sign, in any notation.
+TEST(SpecFile, IsProtoJson) {
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec spec,
+                       ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "seed": 7,
+          "grid": {"rho": [0.53], "epsilon": [0.1, -0, -0.0, -.0, -0e5, 0], "cells": ["12", "4x3"],
+                   "temperature": [-0.0, 0.5], "hot": [-0.0, 2], "cold": [-0.0, 1]},
+          "target": {"samples": "100", "estimate": "conductivity"}})"));
+  const auto expected = FromText<v1::EnsembleSpec>(
+      "experiment: FIRST_HIT seed: 7 target { samples: 100 estimate: 'conductivity' }"
+      "grid { rho: 0.53 epsilon: [0.1, 0, 0, 0, 0, 0] cells: ['12', '4x3']"
+      "       temperature: [0, 0.5] hot: [0, 2] cold: [0, 1] }");
+  EXPECT_EQ(spec.SerializeAsString(), expected.SerializeAsString()) << spec.DebugString();
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec other,
+                       ParseSpec("s.json", R"({"target": {"tolerance": -0.0}})"));
+  EXPECT_FALSE(std::signbit(other.target().tolerance()));
+  EXPECT_FALSE(other.has_grid());
+}
+
+TEST(SpecFile, RejectsOtherTexts) {
+  for (const char* text :
+       {"", "   ", "null", "\"FIRST_HIT\"", "[]", "7", "{", "{]", "not json", "{\"sed\": 1}",
+        "{\"grid\": {\"rho\": [\"x\"]}}", "{\"experiment\": \"NO_SUCH\"}",
+        "{\"target\": {\"samples\": 1, \"tolerance\": 0.1}}", "{\"seed\": -1}", "{} {}"}) {
+    EXPECT_THAT(ParseSpec("s.json", text),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("--spec s.json: ")))
+        << text;
+  }
+}
+
+TEST(SpecFile, NamesTheUnknownField) {
+  EXPECT_THAT(ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "sed": 1})"),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("sed")));
+}
+
+// The message of the JSON parser repeats the whole value.
+TEST(SpecFile, ErrorShortensALongValue) {
+  const std::string name = "HEAD" + std::string(300'000, 'X') + "TAIL";
+  const auto spec = ParseSpec("s.json", R"({"experiment": ")" + name + "\"}");
+  const std::string message(spec.status().message());
+  EXPECT_LT(message.size(), 1'100u);
+  EXPECT_THAT(message, HasSubstr("HEAD"));
+  EXPECT_THAT(message, HasSubstr("XTAIL"));
+}
+
+// ---- create_job.h ----
+
+class CreateJobTest : public ProgramTest {
+ protected:
+  // The request id of `submit --resume WORDS`.
+  std::string IdOfResumed(std::vector<std::string> words) {
+    words.insert(words.begin(), {"submit", "--resume"});
+    const Outcome outcome = WithServer(words);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return server_.ensemble.Asked().create.back().request_id();
+  }
+};
+
+TEST_F(CreateJobTest, ResumedJobsOfOneSpecificationHaveOneRequestId) {
+  server_.server.status.set_engine_version("7");
+  const std::string id = IdOfResumed({"first-hit", "--rho", "0.53"});
+  EXPECT_TRUE(IsRequestId(id));
+  EXPECT_EQ(IdOfResumed({"first-hit", "--rho=0.53"}), id);
+  for (const std::vector<std::string>& other :
+       {std::vector<std::string>{"first-hit", "--rho", "0.54"},
+        {"first-hit", "--rho", "0.53", "--seed", "1"},
+        {"first-hit", "--rho", "0.53", "--fresh"},
+        {"first-hit", "--rho", "0.53", "--priority", "1"}}) {
+    EXPECT_NE(IdOfResumed(other), id);
+  }
+  server_.server.status.set_engine_version("8");
+  EXPECT_NE(IdOfResumed({"first-hit", "--rho", "0.53"}), id);
+}
+
+TEST_F(CreateJobTest, ResumeAfterAFailedOrCancelledJobCreatesANewJob) {
+  server_.ensemble.created_states = {v1::EnsembleJob::FAILED, v1::EnsembleJob::CANCELLED,
+                                     v1::EnsembleJob::CANCELLING, v1::EnsembleJob::QUEUED};
+  EXPECT_EQ(WithServer({"submit", "--resume", "first-hit"}).code, 0);
+  const auto asked = server_.ensemble.Asked().create;
+  ASSERT_EQ(asked.size(), 4u);
+  for (size_t i = 1; i < 4; ++i) EXPECT_NE(asked[i].request_id(), asked[i - 1].request_id());
+}
+
+TEST_F(CreateJobTest, WithoutResumeEachJobHasANewRequestId) {
+  server_.ensemble.created_states = {v1::EnsembleJob::FAILED};
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(WithServer({"submit", "first-hit"}).code, 0);
+  const auto asked = server_.ensemble.Asked().create;
+  ASSERT_EQ(asked.size(), 2u);
+  EXPECT_NE(asked[0].request_id(), asked[1].request_id());
+}
+
+// Such a request is larger than gRPC's default limit of 4 MiB; the server has a different limit.
+TEST_F(CreateJobTest, LargeRequestsAreSent) {
+  server_.largest_request = -1;
+  const std::string list = "0:1:100000";
+  const Outcome outcome = WithServer({"submit", "first-hit", "--rho", list, "--delta", list,
+                                      "--epsilon", list, "--exponent", list});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(server_.ensemble.Asked().create.at(0).spec().grid().exponent_size(), 100'000);
+}
+
+}  // namespace
+}  // namespace ballpiston::client

@@ -1,0 +1,145 @@
+// The texts of numbers, and tables of jobs and plans. transcripts/ shows the rest.
+#include "client/output/job_list.h"
+#include "client/output/number_text.h"
+#include "client/output/plan_output.h"
+#include "tests/client/preamble.h"
+
+namespace ballpiston::client {
+namespace {
+
+// ---- number_text.h ----
+
+TEST(ExactText, ReadsBackAsTheSameDouble) {
+  for (const double x : {0.1, 1.0 / 3, 0.529561127988977, 1e-300, 5e-324, 1.7976931348623157e308,
+                         -2.5e-7, 123456789.125, std::nextafter(1.0, 2.0)}) {
+    EXPECT_EQ(std::strtod(ExactText(x).c_str(), nullptr), x) << ExactText(x);
+  }
+}
+
+TEST(ExactText, WholeNumbersHaveNoExponent) {
+  EXPECT_EQ(ExactText(0), "0");
+  EXPECT_EQ(ExactText(1'000'000), "1000000");
+  EXPECT_EQ(ExactText(-42), "-42");
+  EXPECT_EQ(ExactText(1e12), "1000000000000");
+}
+
+TEST(Measured, HasTheDigitsThatTheErrorSupports) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const struct {
+    double value;
+    std::optional<double> error, exact;
+    std::string value_text, error_text, exact_text;
+  } cases[] = {{21.63214, 0.1234, 21.62257, "21.63", "0.12", "21.62"},
+               {21.63214, 0.01234, {}, "21.632", "0.012", ""},
+               {0.0012345678, 0.0000045, {}, "0.0012346", "0.0000045", ""},
+               {1234.5678, 12.3, {}, "1235", "12", ""},
+               {1234.5678, 456, {}, "1235", "456", ""},
+               {-0.5, 0.25, kInfinity, "-0.50", "0.25", "inf"},
+               {0, 0.25, {}, "0.00", "0.25", ""},
+               // Very large and very small numbers have exponents. The limit of a small value may
+               // be infinite.
+               {1.23456e-8, 4.5e-11, kInfinity, "1.2346e-08", "4.5e-11", "inf"},
+               {1.23456e-8, 4.5e-11, -kInfinity, "1.2346e-08", "4.5e-11", "-inf"},
+               {1.23456e-8, 4.5e-11, NAN, "1.2346e-08", "4.5e-11", "nan"},
+               {6.54321e9, 1.2e6, {}, "6.5432e+09", "1.2e+06", ""},
+               // An exact value has twelve digits and no error; without an error there are six.
+               {0.3102289521723, 1.6e-15, 0.3102289521723, "0.310228952172", "", "0.310228952172"},
+               {52.65625940298963, 2.6e-13, {}, "52.656259403", "", ""},
+               {1234.5678901234, 1e-10, {}, "1234.56789012", "", ""},
+               {1.0 / 3, 0, {}, "0.333333333333", "", ""},
+               {0, 0, {}, "0", "0", ""},
+               {1.0 / 3, {}, {}, "0.333333", "", ""}};
+  for (const auto& [value, error, exact, value_text, error_text, exact_text] : cases) {
+    const MeasuredText text = Measured(value, error, exact);
+    EXPECT_EQ(text.value, value_text);
+    EXPECT_EQ(text.error, error_text) << value_text;
+    EXPECT_EQ(text.exact, exact_text) << value_text;
+  }
+}
+
+TEST(TwoDigits, RoundsAsTheErrorOfAMeasuredValue) {
+  EXPECT_EQ(TwoDigits(0.1234), "0.12");
+  EXPECT_EQ(TwoDigits(123.4), "123");
+  EXPECT_EQ(TwoDigits(1.234e-5), "1.2e-05");
+  EXPECT_EQ(TwoDigits(0), "0");
+}
+
+// Never 1000 µs, and as many digits as neighbouring durations.
+TEST(DurationText, HasASuitableUnit) {
+  const std::pair<double, const char*> cases[] = {
+      {0, "0 s"},           {1e-10, "0.1 ns"},    {4.84e-9, "4.8 ns"}, {12.3e-6, "12 µs"},
+      {999.4e-6, "999 µs"}, {999.6e-6, "1.0 ms"}, {0.123, "123 ms"},   {1.5, "1.5 s"},
+      {9.94, "9.9 s"},      {9.96, "10 s"},       {192, "3.2 min"},    {9000, "2.5 h"},
+      {1e6, "12 d"},        {1e9, "32 y"}};
+  for (const auto& [seconds, text] : cases) EXPECT_EQ(DurationText(seconds), text);
+}
+
+TEST(ClockText, CountsMinutesThenHours) {
+  EXPECT_EQ(ClockText(absl::ZeroDuration()), "0:00");
+  EXPECT_EQ(ClockText(absl::Milliseconds(34200)), "0:35");
+  EXPECT_EQ(ClockText(absl::Seconds(724)), "12:04");
+  EXPECT_EQ(ClockText(absl::Seconds(12310)), "3:25:10");
+}
+
+TEST(Counted, OneIsSingular) {
+  EXPECT_EQ(Counted(1, "day"), "1 day");
+  EXPECT_EQ(Counted(0, "job"), "0 jobs");
+  EXPECT_EQ(Counted(2.5, "day"), "2.5 days");
+}
+
+// ---- job_list.h ----
+
+const absl::Time kNow = absl::FromUnixSeconds(1700000000);
+
+// The text in the column `results`, in a table of this job and a job whose results stay.
+std::string ResultsColumn(const std::string& job) {
+  std::ostringstream out;
+  PrintJobs({FromText<v1::EnsembleJob>("name: 'ensembleJobs/a' state: SUCCEEDED " + job),
+             FromText<v1::EnsembleJob>("name: 'ensembleJobs/b' state: SUCCEEDED")},
+            kNow, Format::kTable, out);
+  const std::vector<std::string> lines = absl::StrSplit(out.str(), '\n');
+  const size_t column = lines.at(0).find("results");
+  return column == std::string::npos ? "no column" : lines.at(1).substr(column);
+}
+
+// A job whose results expire this long after now.
+std::string Expiring(absl::Duration left) {
+  const int64_t seconds = absl::ToUnixSeconds(kNow + left);
+  return absl::StrCat("expire_time { seconds: ", seconds, " }");
+}
+
+TEST(JobList, TheTableShowsTheExpiryOfResults) {
+  EXPECT_EQ(ResultsColumn("pinned: true"), "pinned");
+  EXPECT_EQ(ResultsColumn("results_expired: true " + Expiring(absl::Hours(-1))), "expired");
+  EXPECT_EQ(ResultsColumn("pinned: true " + Expiring(absl::Hours(1))), "pinned");
+  const std::pair<absl::Duration, std::string> table[] = {
+      {absl::Hours(24 * 7), "expires in 7 days"},    {absl::Hours(24 * 4 - 1), "expires in 3 days"},
+      {absl::Hours(47), "expires in 1 day"},         {absl::Hours(24), "expires in 1 day"},
+      {absl::Hours(23), "expires in 23 hours"},      {absl::Minutes(119), "expires in 1 hour"},
+      {absl::Minutes(59), "expires within an hour"}, {absl::Hours(-9), "expires within an hour"}};
+  for (const auto& [left, text] : table) EXPECT_EQ(ResultsColumn(Expiring(left)), text);
+}
+
+TEST(JobList, TheTableOmitsTheColumnIfAllResultsStay) {
+  EXPECT_EQ(ResultsColumn(""), "no column");
+  EXPECT_EQ(ResultsColumn(Expiring(absl::Hours(24 * 7) + absl::Seconds(1))), "no column");
+}
+
+// ---- plan_output.h ----
+
+std::string PrintedPlan(int points) {
+  v1::PlanEnsembleJobResponse plan;
+  for (int i = 0; i < points; ++i) plan.add_points();
+  std::ostringstream out;
+  PrintPlan(v1::EnsembleSpec(), plan, Format::kTable, out);
+  return out.str();
+}
+
+TEST(PlanTable, HasNoLaddersAboveTheLimitOfPoints) {
+  EXPECT_THAT(PrintedPlan(kMostLadders), HasSubstr("answers"));
+  EXPECT_THAT(PrintedPlan(kMostLadders + 1), Not(HasSubstr("answers")));
+  EXPECT_EQ(kMostLadders, 8);
+}
+
+}  // namespace
+}  // namespace ballpiston::client
