@@ -5,6 +5,43 @@
 namespace ballpiston {
 namespace {
 
+constexpr size_t kRows = 3, kCells = 30;
+
+// Each orbit repeats each of its samples. One row is three times as frequent as the others.
+std::vector<Histogram> Groups(uint64_t seed, int orbits, int samples, uint64_t repeats) {
+  std::vector<Histogram> groups(kGroups, Histogram::OfBins(0, 1, kCells));
+  CounterRandom random(seed, 1, 0);
+  for (int orbit = 0; orbit < orbits; ++orbit) {
+    for (int i = 0; i < samples; ++i) {
+      const double row = std::fmax(std::floor(5 * random.Uniform()) - 2, 0);
+      const auto cell = static_cast<size_t>(kCells / kRows * (row + random.Uniform()));
+      groups[static_cast<size_t>(orbit) % kGroups].counts[cell] += repeats;
+    }
+  }
+  return groups;
+}
+
+// The means over 300 samples, with the windows of 5 standard errors: false alarms 6e-7 each.
+void ExpectScatter(int samples, uint64_t repeats, double chi_squared, double variance) {
+  Moments first, second;
+  for (uint64_t seed = 1; seed <= 300; ++seed) {
+    const GroupScatter scatter = ScatterOfGroups(Groups(seed, 100, samples, repeats), kRows);
+    first.Add(scatter.chi_squared);
+    second.Add(scatter.chi_squared_variance);
+  }
+  EXPECT_NEAR(first.mean, chi_squared, 5 * *first.StandardError());
+  EXPECT_NEAR(second.mean, variance, 5 * *second.StandardError());
+}
+
+// With 107 and with 3 samples a cell.
+TEST(GroupScatter, IndependentSamplesScatterAsExpected) {
+  ExpectScatter(32, 1, 1, 1);
+  ExpectScatter(1, 1, 1, 1);
+}
+
+// The counts' variances are three times as large, and so is a chi-squared.
+TEST(GroupScatter, RepeatedSamplesCountOnce) { ExpectScatter(10, 3, 3, 9); }
+
 TEST(GroupScatter, VarianceOfASumIsThatOfItsGroups) {
   std::vector<Histogram> groups(kGroups, Histogram::OfBins(0, 1, 2));
   for (size_t g = 0; g < kGroups; ++g) groups[g].counts = {g % 2 == 0 ? 3u : 1u, 0};
