@@ -19,7 +19,7 @@
 // underflow.
 //
 // Properties, each with the test that bears its name:
-//   1. AccurateAtRandomGeometries: relative error below kExchangeRateRelativeError.
+//   1. AccurateForEveryGeometry: relative error below kExchangeRateRelativeError.
 //   2. StaticConductivityIsHalfTheExchangeRate: the energy that the kernel carries between a ball
 //      and a piston of slightly different temperatures, half a cell apart, gives the static
 //      conductivity.

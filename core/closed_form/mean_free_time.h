@@ -9,7 +9,7 @@
 // Units: cells over unit speed. Domain: every PairGeometry with delta > 1e-140 (pair_measures.h).
 //
 // Properties, each with the test that bears its name:
-//   1. AccurateAtRandomGeometries: relative error below kMeanFreeTimeRelativeError.
+//   1. AccurateForEveryGeometry: relative error below kMeanFreeTimeRelativeError.
 //   2. RareLimitRateIsTheLimitOfTheRate 1/(tau_bp delta^2).
 //   3. DeltaFirstThenRhoGivesTheWedge, RhoFirstThenDeltaGivesTheCusp: the limits delta -> 0 and
 //      rho -> 1/2 of delta^2 |G|/|dG_bp| differ by a factor of three (eq. limitsrhodelta). The

@@ -15,7 +15,7 @@
 // Units are those of the billiard: a contact at given energies has the rate `density` <(v1 - v3)+>;
 // its mean at temperature T is density sqrt(T/pi).
 // Properties, each with the test that bears its name:
-//   1. PairsFollowTheJumpProcess.  2. KeepsTheGammaLaws.
+//   1. PairsFollowTheJumpProcess.  2. HasItsExactRateAndItsGammaLaws.
 //   3. TheJumpProcessBetweenReservoirsIsThatOfAPlainProgram.
 #pragma once
 

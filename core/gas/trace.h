@@ -11,9 +11,9 @@
 // gas it is 1/exchange rate (gas_exchange_rate.h).
 //
 // Properties, each with a test of its name:
-//   1. PairTraceMatchesTheReferenceFlow.  2. GasTraceMatchesTheReferenceGas.
-//   3. EventsConserveEnergyAndEndStraightFlights. Free times count from the last event of the same
-//      kind and bodies.
+//   1. PairTraceMatchesTheReferenceFlow.
+//   2. EventsAreThoseOfTheReferenceAndEndStraightFlights. They conserve energy. Free times count
+//      from the last event of the same kind and bodies.
 //
 // Units: lengths are cells, masses 1. One object is one orbit. Not thread-safe.
 #pragma once

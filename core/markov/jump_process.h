@@ -22,8 +22,7 @@
 // Properties, each with the test that bears its name:
 //   1. InvertsTheDistributionOfW: u' is the exact quantile within a relative kJumpError.
 //   2. WaitsWithTheRateOfCollisions, within a relative kJumpError.
-//   3. LanesMatchTheScalarDefinition (tests/oracle/scalar_jump.h), within a relative kJumpError.
-//   4. TakeTheirWordsFromTheirSamples: walkers are independent of each other.
+//   3. TakeTheirWordsFromTheirSamples: walkers are independent of each other.
 // The stationary law is uniform in u. The bits are the same on every processor with fused
 // multiply-add (tests/core/billiard/golden_test.cc).
 #pragma once

@@ -6,7 +6,7 @@
 // bias if batches are independent, or long compared with the correlation time. Batches of unequal
 // length have the correct weights. Properties, each with a test of its name:
 //   1. MergeEqualsSinglePassAndHasAnIdentity: to rounding, and the identity bit for bit.
-//   2. LongBatchesGiveValidErrorsOfACorrelatedSeries.
+//   2. BatchesOfUnequalLengthGiveTheRatioOfTotals.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 // The engines side by side, in one run: what a wall hit costs, and how many times as many samples a
-// second the lanes give as the reference does. The closed form comes first; it needs no engine.
+// second the lanes give as the reference does. The closed form and the jump process come first;
+// they need no engine.
 //
 //   engine_benchmark [--threads N]
 //
@@ -28,6 +29,7 @@
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "core/geometry/paper.h"
+#include "core/markov/jump_process.h"
 #include "core/sampling/direction.h"
 #include "tests/benchmark/turns.h"
 #include "tests/benchmark/vector_targets.h"
@@ -216,8 +218,44 @@ void ShowClosedForm() {
   ShowRates({{"closed form: three mean free times", turn_of}}, 12, "");
 }
 
+// The definition of core/markov/jump_process.h, with the C library.
+double ScalarJumps(uint64_t turn) {
+  constexpr int kJumps = 10'000;
+  double u = 0.5;
+  CounterRandom random(1, 2, turn);
+  for (int n = 0; n < kJumps; ++n) {
+    const double q = std::sqrt(std::max(1 - 2 * u * u, 0.0)), low = u * std::atan2(u, q);
+    Keep(-std::log(random.Uniform()) * M_SQRT2 * M_PI / (q + low));  // the waiting time
+    const double g = (q + low) * random.Uniform(), w = g - low;
+    u = w < 0 ? std::sqrt((1 - u) * (1 + u)) * std::sin(g / u)
+              : std::min(std::sqrt(w * (2 * q - w) + u * u), 1.0);
+  }
+  return kJumps;
+}
+
+double JumpsInLanes(int64_t target) {
+  constexpr size_t kWalkers = 1024;
+  constexpr int kJumps = 200;
+  Use(target);
+  JumpWalkers walkers(1, 2, 3, std::vector<double>(kWalkers, 0.5));
+  for (int n = 0; n < kJumps; ++n) walkers.Jump();
+  Keep(walkers.u()[0]);
+  return double{kWalkers * kJumps};
+}
+
+// The pair's jump process: its scalar definition, and the lanes.
+void ShowJumps() {
+  std::vector<Contender> contenders = {{"jumps, scalar", ScalarJumps}};
+  for (const int64_t target : VectorTargets()) {
+    contenders.push_back({absl::StrCat("jumps, lanes ", hwy::TargetName(target)),
+                          [target](uint64_t) { return JumpsInLanes(target); }});
+  }
+  ShowRates(contenders, 30, " times");
+}
+
 void ShowAll() {
   ShowClosedForm();
+  ShowJumps();
   for (const int64_t target : VectorTargets()) ShowFlight(target);
   for (const int64_t target : VectorTargets()) {
     ShowEngines("first-hit", &kFirstHit, 0.0125, target);

@@ -29,7 +29,7 @@ struct ExactFlight {
     Real cosine;  // of the angle to the normal there
   };
 
-  // The ball flies away from disc `from`, a direction of any length.
+  // The ball flies away from disc `from`, or from none if that is -1; a direction of any length.
   ExactFlight(const PairGeometry& geometry, const Eigen::Vector2d& position,
               const Eigen::Vector2d& direction, int from) {
     using std::sqrt;

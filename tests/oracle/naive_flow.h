@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "core/billiard/reference_flow.h"
-#include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
+#include "tests/oracle/exact_flight.h"
 
 namespace ballpiston::oracle {
 
@@ -22,45 +22,31 @@ struct NaiveEvent {
   NaiveState after;  // reflected by walls; at a ball-piston collision before the exchange
 };
 
-inline NaiveState FromPair(const PairState& s) {
-  const long double speed = s.ball_speed;
-  return {s.position.x(),          s.position.y(),          s.piston,
-          speed * s.direction.x(), speed * s.direction.y(), s.piston_velocity};
-}
-
-// First root of |q + v t - centre| = rho with the ball approaching; infinity if there is none.
-inline long double TimeToDisc(const NaiveState& s, long double cx, long double cy,
-                              long double rho) {
-  const long double dx = s.x - cx, dy = s.y - cy;
-  const long double a = s.v1 * s.v1 + s.v2 * s.v2, b = dx * s.v1 + dy * s.v2;
-  const long double c = dx * dx + dy * dy - rho * rho;
-  const long double discriminant = b * b - a * c;
-  if (b >= 0 || discriminant <= 0) return std::numeric_limits<long double>::infinity();
-  // c/(-b + sqrt) is the smaller root without cancellation; rounding may have left c below 0.
-  return std::fmax(c / (-b + std::sqrt(discriminant)), 0.0L);
-}
-
-inline NaiveEvent NextEvent(const PairGeometry& geometry, const NaiveState& s) {
-  const long double rho = geometry.rho(), never = std::numeric_limits<long double>::infinity();
-  long double wall = never, cx = 0, cy = 0;
-  for (const long double sx : {-0.5L, 0.5L}) {
-    for (const long double sy : {-0.5L, 0.5L}) {
-      const long double t = TimeToDisc(s, sx, sy, rho);
-      if (t < wall) wall = t, cx = sx, cy = sy;
-    }
-  }
-  const long double end = s.v3 > 0 ? geometry.piston_right() : geometry.piston_left();
-  const long double piston = s.v3 == 0 ? never : (end - s.z) / s.v3;
-  const long double meet = s.v1 > s.v3 ? std::fmax(s.z - s.x, 0.0L) / (s.v1 - s.v3) : never;
+// The ball moves.
+inline NaiveEvent NextEvent(const PairGeometry& geometry, const PairState& s) {
+  constexpr int kNoDisc = -1;
+  const long double never = std::numeric_limits<long double>::infinity(), speed = s.ball_speed;
+  const long double v1 = speed * s.direction.x(), v2 = speed * s.direction.y(),
+                    v3 = s.piston_velocity;
+  const ExactFlight<long double> flight(geometry, s.position, s.direction, kNoDisc);
+  // Rounding may have left the ball inside of the disc.
+  const long double wall = std::fmax(flight.First().length, 0.0L) / speed;
+  const long double end = v3 > 0 ? geometry.piston_right() : geometry.piston_left();
+  const long double piston = v3 == 0 ? never : (end - s.piston) / v3;
+  const long double ahead = std::fmax(s.piston - static_cast<long double>(s.position.x()), 0.0L);
+  const long double meet = v1 > v3 ? ahead / (v1 - v3) : never;
   const long double t = std::fmin(wall, std::fmin(piston, meet));
-  NaiveState after = {s.x + s.v1 * t, s.y + s.v2 * t, s.z + s.v3 * t, s.v1, s.v2, s.v3};
+  NaiveState after = {
+      s.position.x() + v1 * t, s.position.y() + v2 * t, s.piston + v3 * t, v1, v2, v3};
   if (meet < wall && meet < piston) return {EventKind::kBallPiston, t, after};
   if (piston < wall) {
-    after.v3 = -s.v3;
+    after.v3 = -v3;
     return {EventKind::kPistonWall, t, after};
   }
-  const long double nx = (after.x - cx) / rho, ny = (after.y - cy) / rho;
-  const long double normal = s.v1 * nx + s.v2 * ny;
+  const Eigen::Vector2d centre = DiscCentre(flight.first);
+  const long double nx = (after.x - centre.x()) / geometry.rho(),
+                    ny = (after.y - centre.y()) / geometry.rho();
+  const long double normal = v1 * nx + v2 * ny;
   after.v1 -= 2 * normal * nx;
   after.v2 -= 2 * normal * ny;
   return {EventKind::kBallWall, t, after};

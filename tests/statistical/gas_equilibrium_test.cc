@@ -5,7 +5,6 @@
 #include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
-#include "tests/oracle/one_sample.h"
 #include "tests/support/nightly.h"
 #include "tools/flows/metered_gases.h"
 
@@ -44,39 +43,6 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Combine(testing::Values(Model::kBilliardReference, Model::kMarkov, Model::kBilliard),
                      testing::Values("1", "2", "5", "1x1", "2x1", "1x3", "4x4")));
 
-// Replicas of a gas at temperature 1.
-MeteredGases StartedGases(GasEngine engine, const GasGeometry& gas, uint64_t replicas) {
-  std::vector<GasStart> starts;
-  for (uint64_t i = 0; i < replicas; ++i) {
-    starts.push_back({GasInEquilibrium(gas, 1, kGasSeed, i), ThermalWalls(),
-                      GasRandom(kGasSeed, 0, i), nullptr});
-  }
-  return {engine, gas, std::move(starts)};
-}
-
-// After a hundred exchanges per contact the energies in two large gases have the laws Gamma(1)
-// (balls) and Gamma(1/2) (pistons). False alarms: 1e-4.
-TEST(JumpGas, KeepsTheGammaLaws) {
-  constexpr double kTime = 1000;
-  constexpr uint64_t kReplicas = 2;
-  const GasGeometry gas = GasOf(kPaperRho, 0.2, "100x40");
-  MeteredGases run = StartedGases(GasEngine::kJumps, gas, kReplicas);
-  run.AdvanceTo(kTime);
-  double exchanges = 0;
-  std::vector<double> balls, pistons;
-  for (const GasMeter& meter : run.meters()) {
-    exchanges += static_cast<double>(meter.exchanges());
-    for (size_t body = 0; body < meter.bodies(); ++body) {
-      (body < meter.balls() ? balls : pistons).push_back(meter.Energy(body));
-    }
-  }
-  const double rate = exchanges / (kReplicas * kTime * static_cast<double>(gas.contacts()));
-  EXPECT_LT(std::fabs(rate / GasExchangeRate(gas, 1) - 1), 0.02);
-  EXPECT_LT(oracle::KolmogorovSmirnov(balls, [](double e) { return -std::expm1(-e); }), 2.3);
-  EXPECT_LT(oracle::KolmogorovSmirnov(pistons, [](double e) { return std::erf(std::sqrt(e)); }),
-            2.3);
-}
-
 // A gas runs for 2e7 (nightly 1e8) wall hits of its balls, in ten stretches. Each exchange rounds
 // two of 3072 energies, at random: together some 1e-16 of the whole; their sum here is rounded to
 // some 1e-15. A loss of 1e-15 in each stretch would come to 1e-14.
@@ -85,7 +51,9 @@ TEST(LaneGas, KeepsItsEnergyOverMillionsOfHits) {
   const double all_hits = IsNightly() ? 1e8 : 2e7;
   const GasGeometry gas = GasOf(kPaperRho, 0.1, "32x32");
   const double hits_of_time = HitRatesOf(gas.pair()).of_a_ball * static_cast<double>(gas.balls());
-  MeteredGases run = StartedGases(GasEngine::kLanes, gas, 1);
+  MeteredGases run(GasEngine::kLanes, gas,
+                   {{GasInEquilibrium(gas, 1, kGasSeed, 0), ThermalWalls(),
+                     GasRandom(kGasSeed, 0, 0), nullptr}});
   const GasMeter& meter = run.meters().front();
   const double energy = meter.TotalEnergy();
   for (int i = 1; i <= kStretches; ++i) {

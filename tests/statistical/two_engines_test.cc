@@ -146,5 +146,29 @@ std::vector<Point> Corners() {
 
 INSTANTIATE_TEST_SUITE_P(Corners, TwoEngines, testing::ValuesIn(Corners()));
 
+// Lifetimes of mean 1 + shift.
+std::vector<double> Lifetimes(uint64_t stream, double shift) {
+  CounterRandom random(11, stream, 0);
+  std::vector<double> sample(100'000);
+  for (double& x : sample) x = -(1 + shift) * std::log(random.Uniform());
+  return sample;
+}
+
+std::vector<uint64_t> Histogrammed(const std::vector<double>& sample) {
+  std::vector<uint64_t> counts(200);  // the last ones hold few, if any
+  for (const double x : sample) ++counts[static_cast<size_t>(std::min(x * 20, 199.0))];
+  return counts;
+}
+
+// The comparisons find a difference of 5 % between two laws, and none in one law.
+TEST(TwoSamples, DifferentLawsAreDetected) {
+  const std::vector<double> first = Lifetimes(0, 0);
+  for (const double shift : {0.0, 0.05}) {
+    const std::vector<double> second = Lifetimes(1, shift);
+    EXPECT_EQ(oracle::ChiSquareScore(Histogrammed(first), Histogrammed(second)) > 4, shift > 0);
+    EXPECT_EQ(oracle::KolmogorovSmirnov(first, second) > 2.3, shift > 0);
+  }
+}
+
 }  // namespace
 }  // namespace ballpiston

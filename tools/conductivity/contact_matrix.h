@@ -13,8 +13,7 @@
 // Units: masses and temperature 1; rates are those at a contact's density of 1, so the exchange
 // rate is kContactRate. Domain: 1 <= d_a, d_b <= 100, 1 <= degree <= 40.
 // Error: kContactMatrixError. Properties, each with the test that bears its name:
-//   1. AgreesWithAnIndependentQuadrature.  2. ConservesTheEnergyOfThePair.
-//   3. HighDegreesAreExactToRounding.
+//   1. AgreesWithAnIndependentQuadrature.  2. HighDegreesAreExactToRounding.
 //
 // Immutable; safe to share between threads.
 #pragma once

@@ -93,7 +93,7 @@ TEST(ReferenceFlow, OneEventAgreesWithNaiveFlow) {
       const PairState before = flow.state();
       ReferenceFlow fresh(geometry, before);
       const Event event = fresh.Step();
-      const oracle::NaiveEvent expected = oracle::NextEvent(geometry, oracle::FromPair(before));
+      const oracle::NaiveEvent expected = oracle::NextEvent(geometry, before);
       const double speed = event.kind == EventKind::kPistonWall ? std::fabs(before.piston_velocity)
                                                                 : before.ball_speed;
       const double error =

@@ -1,31 +1,12 @@
 #include "core/closed_form/mean_free_time.h"
 
 #include "tests/core/preamble.h"
-#include "tests/oracle/measures_by_quadrature.h"
 
 namespace ballpiston {
 namespace {
 
 using std::numbers::pi;
 using std::numbers::sqrt2;
-
-TEST(MeanFreeTime, AccurateAtRandomGeometries) {
-  std::mt19937_64 random(20240603);
-  std::uniform_real_distribution<double> rho_exponent(-10, -0.01);
-  std::uniform_real_distribution<double> delta_exponent(-12, 0);
-  for (int i = 0; i < 100; ++i) {
-    const double rho = 0.5 + (kMaxRho - 0.5) * std::pow(10, rho_exponent(random));
-    const double delta = PairDeltaBound(rho) * std::pow(10, delta_exponent(random));
-    const MeanFreeTimes tau = MeanFreeTimesOf(GeometryOf(rho, delta));
-    const auto exact = oracle::MeasuresByQuadrature(rho, delta);
-    EXPECT_LE(RelativeError(tau.ball_piston, 4 * exact.volume / exact.area_ball_piston),
-              kMeanFreeTimeRelativeError);
-    EXPECT_LE(RelativeError(tau.ball_wall, 4 * exact.volume / exact.area_ball_wall),
-              kMeanFreeTimeRelativeError);
-    EXPECT_LE(RelativeError(tau.piston_wall, 4 * exact.volume / exact.area_piston_wall),
-              kMeanFreeTimeRelativeError);
-  }
-}
 
 TEST(MeanFreeTime, RareLimitRateIsTheLimitOfTheRate) {
   for (double rho : {0.501, kPaperRho, 0.6, 0.65, 0.7}) {

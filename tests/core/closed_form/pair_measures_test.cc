@@ -1,5 +1,8 @@
+// The measures of the pair, and the mean free times and exchange rates that follow from them.
 #include "core/closed_form/pair_measures.h"
 
+#include "core/closed_form/exchange_rate.h"
+#include "core/closed_form/mean_free_time.h"
 #include "tests/core/preamble.h"
 #include "tests/oracle/measures_by_quadrature.h"
 #include "tools/flows/printed_formulas.h"
@@ -16,6 +19,25 @@ double WorstError(const PairMeasures& m, const PrintedMeasures<Quad>& exact) {
                    RelativeError(m.area_ball_piston, exact.area_ball_piston),
                    RelativeError(m.area_ball_wall, exact.area_ball_wall),
                    RelativeError(m.area_piston_wall, exact.area_piston_wall)});
+}
+
+void ExpectAccurate(const PairGeometry& geometry, double temperature) {
+  const auto exact = oracle::MeasuresByQuadrature(geometry.rho(), geometry.delta());
+  const PairMeasures measures = Measures(geometry);
+  EXPECT_LE(WorstError(measures, exact), kPairMeasuresRelativeError);
+  const MeanFreeTimes tau = MeanFreeTimesOf(geometry);
+  for (const auto& [time, area] : {std::pair(tau.ball_piston, exact.area_ball_piston),
+                                   {tau.ball_wall, exact.area_ball_wall},
+                                   {tau.piston_wall, exact.area_piston_wall}}) {
+    EXPECT_LE(RelativeError(time, 4 * exact.volume / area), kMeanFreeTimeRelativeError);
+  }
+  const Quad t = temperature;
+  EXPECT_LE(RelativeError(ExchangeRate(measures, temperature),
+                          Sqrt(t / (2 * QuadPi())) * exact.area_ball_piston / exact.volume),
+            kExchangeRateRelativeError);
+  EXPECT_LE(RelativeError(RareLimitExchangeRate(geometry.rho(), temperature),
+                          Sqrt(t / QuadPi()) / exact.cell_area),
+            kExchangeRateRelativeError);
 }
 
 // A check of the oracle: it agrees with the printed formulas where these keep their digits, to 34
@@ -40,7 +62,8 @@ TEST(PairMeasures, QuadratureAgreesWithThePrintedFormulas) {
 TEST(PairMeasures, AccurateForEveryGeometry) {
   std::mt19937_64 random(20240601);
   std::uniform_real_distribution<double> rho_exponent(-10, -0.01), near_half(-15.5, -0.01);
-  std::uniform_real_distribution<double> delta_exponent(-12, -0.001);
+  std::uniform_real_distribution<double> delta_exponent(-12, -0.001),
+      temperature_exponent(-120, 120);
   const auto above_half = [](double exponent) {
     return 0.5 + (kMaxRho - 0.5) * std::pow(10, exponent);
   };
@@ -57,11 +80,8 @@ TEST(PairMeasures, AccurateForEveryGeometry) {
   }
   for (const auto& [rho, share] : geometries) {
     if (rho == 0.5) continue;
-    const double delta = share * PairDeltaBound(rho);
-    EXPECT_LE(
-        WorstError(Measures(GeometryOf(rho, delta)), oracle::MeasuresByQuadrature(rho, delta)),
-        kPairMeasuresRelativeError)
-        << rho << " " << share;
+    SCOPED_TRACE(absl::StrCat("rho ", rho, " share ", share));
+    ExpectAccurate(GeometryAtShare(rho, share), std::pow(10, temperature_exponent(random)));
   }
 }
 

@@ -1,48 +1,43 @@
 // A finished point can be continued with a larger target, to the bits of one long run.
 #include "core/ensemble/point_fold.h"
-#include "tests/core/one_point_spec.h"
+#include "tests/core/asked.h"
 #include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {
 
-struct SampledQuestion {
-  const ExperimentKind* experiment;
-  Model model;
-  PointParameters point;
-  std::vector<int64_t> counts;  // of the unit of the experiment's target
+// A question by one model, and growing numbers of its samples or collisions.
+struct Growing {
+  EnsembleSpec spec;
+  std::vector<int64_t> counts;
 };
 
 // Counts that end within a block, within a chunk, at the end of a chunk, and in the first chunk.
-std::vector<SampledQuestion> EveryExperimentThatSamples() {
-  const PointParameters pair = PaperPoint(0.2), from = PaperPoint(0.2, 0.125),
-                        law = PaperPoint(0.2, 0.125, 1);
-  const std::vector<int64_t> counts = {700, 5'000, 65'000};
-  std::vector<SampledQuestion> asked;
-  for (const Model model : {Model::kBilliard, Model::kBilliardReference}) {
-    asked.push_back({&kEquilibrium, model, pair, {5'000, 40'000}});
-    asked.push_back({&kConditionalMeanFreeTime, model, from, counts});
-    asked.push_back({&kFirstHit, model, law, counts});
-    asked.push_back({&kEnergyRelaxation, model, pair, {100, 700}});
-    asked.push_back({&kMarkovProperty, model, pair, {3'000, 20'000}});
-    asked.push_back({&kLyapunov, model, pair, {3'000, 20'000}});
-    asked.push_back({&kGasLyapunov, model, PaperGas(&kGasLyapunov, 0.2), {70, 300}});
+std::vector<Growing> EveryExperimentThatSamples() {
+  const std::vector<int64_t> of_returns = {700, 5'000, 65'000}, of_orbits = {3'000, 20'000};
+  std::vector<Growing> asked;
+  for (const auto& [question, counts] : std::vector<std::pair<const char*, std::vector<int64_t>>>{
+           {"equilibrium delta=0.2", {5'000, 40'000}},
+           {"conditional-mean-free-time delta=0.2", of_returns},
+           {"first-hit delta=0.2", of_returns},
+           {"energy-relaxation delta=0.2", {100, 700}},
+           {"markov-property delta=0.2", of_orbits},
+           {"lyapunov delta=0.2", of_orbits},
+           {"gas-equilibrium delta=0.2", {70, 300}},
+           {"gas-conduction delta=0.2", {300, 1'000}},
+           {"gas-lyapunov delta=0.2", {70, 300}}}) {
+    EnsembleSpec spec = Asked(absl::StrCat(question, " seed=7"));
+    for (const Model model : kModelsThatSampleGases) {
+      spec.model = model;
+      if (spec.experiment->IsAnsweredBy(model)) asked.push_back({spec, counts});
+    }
   }
-  for (const Model model : kModelsThatSampleGases) {
-    asked.push_back({&kGasEquilibrium, model, PaperGas(&kGasEquilibrium, 0.2), {70, 300}});
-    asked.push_back({&kGasConduction, model, PaperGas(&kGasConduction, 0.2), {300, 1'000}});
-  }
-  asked.push_back({&kEnergyRelaxation, Model::kMarkov, pair, {100, 700}});
   return asked;
 }
 
-std::unique_ptr<const PointExperiment> PointOf(const SampledQuestion& asked, const Target& target) {
-  return PointExperiment::Create(SpecOf(asked.experiment, asked.point, target, asked.model, 7), 0);
-}
-
-Target TargetOf(const SampledQuestion& asked, int64_t count) {
-  const bool counts_samples = asked.experiment->unit == TargetUnit::kSamples;
-  return counts_samples ? Target{.samples = count} : Target{.collisions = count};
+std::unique_ptr<const PointExperiment> PointOf(EnsembleSpec spec, const Target& target) {
+  spec.target = target;
+  return PointExperiment::Create(spec, 0);
 }
 
 // Computes the rest of the point; `samples` counts the samples that were not in the state.
@@ -67,18 +62,20 @@ PointFold Continued(const PointExperiment& point, const std::optional<FoldState>
   return fold;
 }
 
-class Continuation : public testing::TestWithParam<SampledQuestion> {};
+class Continuation : public testing::TestWithParam<Growing> {};
 
 TEST_P(Continuation, AContinuedPointHasTheBitsOfOneLongRun) {
-  const SampledQuestion& asked = GetParam();
+  const auto& [spec, counts] = GetParam();
+  const bool counts_samples = spec.experiment->unit == TargetUnit::kSamples;
   std::optional<FoldState> state;
   uint64_t computed = 0;
-  for (const int64_t count : asked.counts) {
-    const auto point = PointOf(asked, TargetOf(asked, count));
+  for (const int64_t count : counts) {
+    const auto point =
+        PointOf(spec, counts_samples ? Target{.samples = count} : Target{.collisions = count});
     const PointFold continued = Continued(*point, state, computed);
     uint64_t all = 0;
     const PointFold at_once = Continued(*point, std::nullopt, all);
-    EXPECT_EQ(continued.Merged(), at_once.Merged()) << asked.experiment->name << " " << count;
+    EXPECT_EQ(continued.Merged(), at_once.Merged()) << spec.experiment->name << " " << count;
     EXPECT_EQ(continued.state().chunk_digests, at_once.state().chunk_digests);
     state = continued.Continuation();
     ASSERT_TRUE(state);
@@ -90,19 +87,18 @@ INSTANTIATE_TEST_SUITE_P(OfEveryExperiment, Continuation,
 
 // Of returns, whose blocks are small.
 TEST(ContinuationOfSamples, ComputesNoWholeBlockAgain) {
-  const SampledQuestion asked = {&kFirstHit, Model::kBilliard, PaperPoint(0.2, 0.125, 1), {}};
+  const EnsembleSpec asked = Asked("first-hit delta=0.2 seed=7 model=billiard");
   uint64_t first = 0, second = 0;
-  const auto shorter = PointOf(asked, TargetOf(asked, 100'000));
+  const auto shorter = PointOf(asked, {.samples = 100'000});
   const std::optional<FoldState> state = Continued(*shorter, std::nullopt, first).Continuation();
-  const auto longer = PointOf(asked, TargetOf(asked, 300'000));
+  const auto longer = PointOf(asked, {.samples = 300'000});
   Continued(*longer, state, second);
   EXPECT_LE(first + second, 300'000 + shorter->plan().MostInABlock());
 }
 
 // A tolerance that an earlier chunk has reached would have ended the run there.
 TEST(ContinuationOfSamples, TheStateKnowsTheLeastErrorBeforeItsLastChunk) {
-  const SampledQuestion asked = {
-      &kConditionalMeanFreeTime, Model::kBilliard, PaperPoint(0.2, 0.125), {}};
+  const EnsembleSpec asked = Asked("conditional-mean-free-time delta=0.2 seed=7 model=billiard");
   uint64_t computed = 0;
   const auto tolerant = PointOf(asked, {.tolerance = 0.01});
   const PointFold fold = Continued(*tolerant, std::nullopt, computed);

@@ -7,7 +7,7 @@
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_geometry.h"
 #include "core/markov/relaxation_spectrum.h"
-#include "tests/core/one_point_spec.h"
+#include "tests/core/asked.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 #include "tests/core/stopped.h"
@@ -18,26 +18,22 @@ namespace {
 // One specification of each experiment by the billiard in lanes (AUTO chooses it here), then by the
 // reference and by the jump process. Each has two values of delta.
 std::vector<EnsembleSpec> OneOfEach() {
-  const PointParameters pair = PaperPoint(0.2);
-  const Target samples = {.samples = 1000}, collisions = {.collisions = 2000};
-  const Target gases = {.samples = 70};
   std::vector<EnsembleSpec> specs;
   for (const Model model : {Model::kAuto, Model::kBilliardReference, Model::kMarkov}) {
-    for (const auto& [experiment, point, target] :
-         {std::tuple<const ExperimentKind*, PointParameters, Target>(&kEquilibrium, pair,
-                                                                     collisions),
-          {&kConditionalMeanFreeTime, PaperPoint(0.2, 0.125), samples},
-          {&kFirstHit, PaperPoint(0.2, 0.125, 5), samples},
-          {&kEnergyRelaxation, pair, samples},
-          {&kEnergyRelaxation, PaperPoint(0.2, 0.01), samples},
-          {&kMarkovProperty, pair, collisions},
-          {&kLyapunov, pair, {.collisions = 3200}},
-          {&kGasEquilibrium, PaperGas(&kGasEquilibrium, 0.2), gases},
-          {&kGasConduction, PaperGas(&kGasConduction, 0.2), gases},
-          {&kGasLyapunov, PaperGas(&kGasLyapunov, 0.2), gases}}) {
-      if (!experiment->IsAnsweredBy(model)) continue;
-      specs.push_back(SpecOf(experiment, point, target, model, 42));
-      specs.back().grid[kDelta] = {0.2, IsOfAGas(experiment) ? 0.15 : 0.3};
+    for (const char* question :
+         {"equilibrium delta=0.2,0.3 collisions=2000",
+          "conditional-mean-free-time delta=0.2,0.3 samples=1000",
+          "first-hit delta=0.2,0.3 exponent=5 samples=1000",
+          "energy-relaxation delta=0.2,0.3 samples=1000",
+          "energy-relaxation delta=0.2,0.3 epsilon=0.01 samples=1000",
+          "markov-property delta=0.2,0.3 collisions=2000", "lyapunov delta=0.2,0.3 collisions=3200",
+          "gas-equilibrium delta=0.2,0.15 samples=70", "gas-conduction delta=0.2,0.15 samples=70",
+          "gas-lyapunov delta=0.2,0.15 samples=70"}) {
+      EnsembleSpec spec = Asked(question);
+      if (!spec.experiment->IsAnsweredBy(model)) continue;
+      spec.model = model;
+      spec.seed = 42;
+      specs.push_back(spec);
     }
   }
   return specs;
@@ -227,7 +223,7 @@ TEST_P(EachExperiment, ClosedFormsAnswerWithoutABlock) {
 // Closed form, sampling and their names belong together: a z-score of 5 for 1000 samples.
 TEST_P(EachExperiment, ClosedFormsAreNamedAsTheEstimatesTheyStandFor) {
   if (!AimOf(spec_).HasClosedForm()) return;
-  const PointSummary measured = point_->Summarize(*FoldPoint(*point_));
+  const PointSummary measured = RunPoint(spec_);
   spec_.model = Model::kClosedForm;
   const PointSummary exact = PointExperiment::Create(spec_, 0)->Summarize({});
   for (size_t i = 0; i < exact.estimates.size(); ++i) {

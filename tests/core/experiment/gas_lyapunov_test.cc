@@ -65,17 +65,6 @@ TEST(GasLyapunov, TheEntropyIsThatOfTheCellsWhereExchangesAreRare) {
   EXPECT_NEAR(entropy.value, expected, 0.1 * slow + 4 * scatter);
 }
 
-// Apart from the order in which blocks are merged.
-TEST(GasLyapunov, BothModelsGiveTheSameNumbers) {
-  const GasShape shape = {2, 1, false};
-  const auto of = [&](Model model) { return RunPoint(GasAskedAt(shape, 0.5, 1, 60, model)); };
-  const PointSummary lanes = of(Model::kBilliard), reference = of(Model::kBilliardReference);
-  for (size_t i = 0; i < lanes.estimates.size(); ++i) {
-    EXPECT_NEAR(lanes.estimates[i].value, reference.estimates[i].value,
-                1e-14 * reference.estimates[i].value);
-  }
-}
-
 TEST(GasLyapunov, TheExponentsThatRoundingChangesHaveNoErrors) {
   const PointSummary three = RunPoint(GasAskedAt({3, 1, false}, 0.95, 1, 60));
   for (int k = 1; k <= 8; ++k) {

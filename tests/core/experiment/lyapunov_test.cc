@@ -73,26 +73,5 @@ TEST(TangentFrame, ExponentsComeInPairs) {
   }
 }
 
-// z-scores of 200 seeds with the fewest collisions that have an error. The true values are from 2e7
-// collisions in lanes, with errors 100 times smaller. The variance has the standard error 0.1, the
-// mean 0.07; windows of 4 of these: false alarms 6e-5 each.
-TEST(Lyapunov, ErrorsAreValidOverManySeeds) {
-  Moments first, second;
-  EnsembleSpec spec = AskedAt(0.53, 0.2, 3200, Model::kBilliard);
-  for (spec.seed = 1; spec.seed <= 200; ++spec.seed) {
-    const PointSummary summary = RunPoint(spec);
-    const auto z = [&](const char* name, double value) {
-      const Estimate& estimate = Named(name, summary.estimates);
-      return (estimate.value - value) / *estimate.standard_error;
-    };
-    first.Add(z("lyapunov_1", 3.1924));
-    second.Add(z("lyapunov_2", 0.20205));
-  }
-  for (const Moments& moments : {first, second}) {
-    EXPECT_NEAR(moments.mean, 0, 4 * 0.07);
-    EXPECT_NEAR(*moments.Variance(), 1.05, 4 * 0.1);
-  }
-}
-
 }  // namespace
 }  // namespace ballpiston

@@ -75,22 +75,6 @@ TEST(MarkovPropertyStatistics, JumpProcessHasNoMemory) {
   }
 }
 
-// 100 repetitions: the mean is known to a tenth of one's error, the scatter to 7 percent. Windows 4
-// of these: false alarms 6e-5 each.
-TEST(MarkovPropertyDivergence, NoiseFloorsHoldForTheJumpProcess) {
-  for (const char* const name : {"transition_divergence", "memory_divergence"}) {
-    Moments excess, errors;
-    for (uint64_t seed = 0; seed < 100; ++seed) {
-      const auto estimates = EstimatesOf(CountsOfJumpProcess(100 + seed, 400), true);
-      const Estimate& divergence = Named(name, estimates);
-      excess.Add(divergence.value - *divergence.noise_floor);
-      errors.Add(*divergence.standard_error);
-    }
-    EXPECT_NEAR(excess.mean, 0, 4 * *excess.StandardError()) << name;
-    EXPECT_NEAR(std::sqrt(*excess.Variance()) / errors.mean, 1, 4 * std::sqrt(1 / 200.0)) << name;
-  }
-}
-
 // Each kind of deviation shows in a different estimate.
 TEST(MarkovPropertyStatistics, DetectsDeviationsFromMarkov) {
   const auto uniform = [](CounterRandom& random, double, double) { return Uniform(random); };

@@ -169,15 +169,6 @@ TEST(CanonicalGas, SpeedsOfThermalWallsHaveTheFluxLaw) {
   EXPECT_LT(oracle::KolmogorovSmirnov(thermal, GammaHalf), 2.3);
 }
 
-TEST(CanonicalGas, OtherRandomNumbersDrawAnotherState) {
-  const GasGeometry gas = CrowdedGas("3x3", GasEnds::kReservoirs);
-  const TemperatureProfile profile(2, 1, 3);
-  CounterRandom random(70, 0, 0), same(70, 0, 0), other(70, 0, 1);
-  const std::vector<double> drawn = ComponentsOf(DrawGas(gas, profile, random));
-  EXPECT_EQ(ComponentsOf(DrawGas(gas, profile, same)), drawn);
-  EXPECT_NE(ComponentsOf(DrawGas(gas, profile, other)), drawn);
-}
-
 // Down to the smallest ratio of the permitted temperatures. Long double has 11 bits more.
 TEST(TemperatureProfile, PowerThreeHalvesIsLinearForEveryRatioOfTemperatures) {
   for (const double hot : {1e120, 1.0, 1e-120}) {

@@ -2,57 +2,15 @@
 // device fails. tests/benchmark/gpu_benchmark.cc compares a GPU.
 #include "core/gpu/device_orbits.h"
 
-#include "core/billiard/lane_constants.h"
 #include "core/ensemble/point_fold.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/billiard/recorded_collisions.h"
 #include "tests/core/gpu/host_flights.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
-#include "tools/flows/lane_balls.h"
 
 namespace ballpiston {
 namespace {
-
-// ---- a flight ----
-
-std::vector<LaneFrame> SomeBalls(const PairGeometry& geometry, uint64_t count) {
-  std::vector<LaneFrame> balls;
-  for (uint64_t i = 0; i < count; ++i) {
-    CounterRandom random(3, 4, i);
-    const PairState state = DrawFromFlowMeasure(geometry, random);
-    balls.push_back(FrameOfBall(state.position, state.direction));
-  }
-  return balls;
-}
-
-TEST(Flight, HasTheBitsOfALane) {
-  constexpr uint64_t kBalls = 100, kHits = 200;
-  for (const PairGeometry& geometry : GeometriesOfFlows()) {
-    const double scale = FlightConstants<double>(geometry).scale;
-    const std::vector<LaneFrame> starts = SomeBalls(geometry, kBalls);
-    ForEachFusedTarget([&] {
-      std::vector<LaneHit> hits(kBalls * kHits);
-      FlyLaneBalls(geometry, starts, kHits, hits);
-      for (uint64_t i = 0; i < kBalls; ++i) {
-        FlightBall ball = BallOf(Scaled(starts[i], scale));
-        for (uint64_t hit = 0; hit < kHits; ++hit) {
-          ball.path = 0;
-          Fly(ProgramOf(geometry), ball);
-          const LaneHit& lane = hits[i * kHits + hit];
-          ASSERT_EQ(ball.h * (1 / scale), lane.frame.h);
-          ASSERT_EQ(ball.e * (1 / scale), lane.frame.e);
-          ASSERT_EQ(ball.c * (1 / scale), lane.frame.c);
-          ASSERT_EQ(ball.s * (1 / scale), lane.frame.s);
-          ASSERT_EQ(ball.path / scale, lane.length);
-          ASSERT_EQ(IsSet(ball.a), lane.frame.a < 0);
-          ASSERT_EQ(IsSet(ball.a ^ ball.ab), lane.frame.b < 0);
-          ASSERT_EQ(IsSet(ball.m), lane.frame.m < 0);
-        }
-      }
-    });
-  }
-}
 
 // ---- orbits ----
 
@@ -66,72 +24,55 @@ class OrbitsOf : public RecordedCollisions {
   OrbitDevice* device_;
 };
 
-// What the orbits of a device reported, and its failures.
-struct Outcome {
-  std::vector<std::vector<Collision>> collisions;
-  std::vector<std::string> failures;
+struct DeviceRun {
+  PairGeometry geometry = kPaperPair;
+  uint64_t orbits = 300;
+  size_t lanes = 64;
+  HostFaults faults = {};
+  std::vector<std::string> failures = {};  // that are reported
 };
 
-Outcome OnDevice(const PairGeometry& geometry, uint64_t orbits, size_t collisions, size_t lanes,
-                 HostFaults faults = {}) {
-  Outcome outcome;
+void ExpectBitsOfTheLanes(const DeviceRun& run) {
+  constexpr size_t kCollisions = 4;
+  std::vector<std::string> failures;
   OrbitsOnDevice device(
-      std::make_unique<HostDevice>(lanes, faults), 1,
-      [&](const absl::Status& status) { outcome.failures.emplace_back(status.message()); });
-  OrbitsOf source(geometry, orbits, collisions, &device);
-  EXPECT_TRUE(RunOrbits(Engine::kLanes, geometry, orbits, source));
-  outcome.collisions = source.by_orbit();
-  return outcome;
-}
-
-void ExpectBitsOfTheLanes(const PairGeometry& geometry, uint64_t orbits, size_t collisions,
-                          const Outcome& outcome) {
+      std::make_unique<HostDevice>(run.lanes, run.faults), 1,
+      [&](const absl::Status& status) { failures.emplace_back(status.message()); });
+  OrbitsOf found(run.geometry, run.orbits, kCollisions, &device);
+  EXPECT_TRUE(RunOrbits(Engine::kLanes, run.geometry, run.orbits, found));
+  EXPECT_EQ(failures, run.failures);
   ForEachFusedTarget([&] {
-    const RecordedCollisions lanes = Recorded(Engine::kLanes, geometry, orbits, collisions);
-    ASSERT_EQ(lanes.by_orbit().size(), outcome.collisions.size());
-    for (uint64_t orbit = 0; orbit < orbits; ++orbit) {
-      ASSERT_EQ(lanes.by_orbit()[orbit].size(), outcome.collisions[orbit].size());
+    const RecordedCollisions lanes =
+        Recorded(Engine::kLanes, run.geometry, run.orbits, kCollisions);
+    for (uint64_t orbit = 0; orbit < run.orbits; ++orbit) {
+      ASSERT_EQ(found.by_orbit()[orbit].size(), lanes.by_orbit()[orbit].size());
       for (size_t i = 0; i < lanes.by_orbit()[orbit].size(); ++i) {
-        ExpectSameBits(lanes.by_orbit()[orbit][i], outcome.collisions[orbit][i]);
+        ExpectSameBits(lanes.by_orbit()[orbit][i], found.by_orbit()[orbit][i]);
       }
     }
   });
 }
 
 TEST(OrbitsOnDevice, HaveTheBitsOfTheLanes) {
-  constexpr uint64_t kOrbits = 50, kCollisions = 3;
-  for (const double rho : {0.501, kPaperRho, 0.7}) {
+  for (const double rho : {0.5 + 1e-9, 0.5 + 1e-4, 0.501, kPaperRho, 0.6, 0.7, 0.7071}) {
     for (const double share : {1.0, 0.5, 0.25}) {
-      const PairGeometry geometry = GeometryAtShare(rho, share);
-      const Outcome outcome = OnDevice(geometry, kOrbits, kCollisions, 64);
-      EXPECT_TRUE(outcome.failures.empty());
-      ExpectBitsOfTheLanes(geometry, kOrbits, kCollisions, outcome);
+      ExpectBitsOfTheLanes({.geometry = GeometryAtShare(rho, share), .orbits = 50});
     }
   }
-}
-
-TEST(OrbitsOnDevice, DoNotDependOnTheNumberOfLanes) {
-  for (const size_t lanes : {1u, 7u, 500u}) {
-    ExpectBitsOfTheLanes(kPaperPair, 200, 4, OnDevice(kPaperPair, 200, 4, lanes));
-  }
+  for (const size_t lanes : {1u, 7u, 500u}) ExpectBitsOfTheLanes({.lanes = lanes});
 }
 
 TEST(OrbitsOnDevice, GoOnAfterAFalseAlarm) {
   for (const double delta : {0.05, 0.2}) {
-    const PairGeometry geometry = PaperGeometry(delta);
-    const Outcome outcome = OnDevice(geometry, 300, 3, 64, {.false_alarm = 1});
-    ExpectBitsOfTheLanes(geometry, 300, 3, outcome);
+    ExpectBitsOfTheLanes({.geometry = PaperGeometry(delta), .faults = {.false_alarm = 1}});
   }
 }
 
 TEST(OrbitsOnDevice, GoOnInTheLanesWhenTheDeviceFails) {
-  const HostFaults faults[] = {{.make = 0}, {.launch = 0}, {.launch = 5}, {.land = 0}, {.land = 5}};
-  const char* const messages[] = {"memory full", "no launch", "no launch", "device lost",
-                                  "device lost"};
-  for (size_t i = 0; i < std::size(faults); ++i) {
-    const Outcome outcome = OnDevice(kPaperPair, 300, 4, 64, faults[i]);
-    EXPECT_EQ(outcome.failures, std::vector<std::string>{messages[i]});
-    ExpectBitsOfTheLanes(kPaperPair, 300, 4, outcome);
+  ExpectBitsOfTheLanes({.faults = {.make = 0}, .failures = {"memory full"}});
+  for (const int call : {0, 5}) {
+    ExpectBitsOfTheLanes({.faults = {.launch = call}, .failures = {"no launch"}});
+    ExpectBitsOfTheLanes({.faults = {.land = call}, .failures = {"device lost"}});
   }
 }
 
@@ -178,8 +119,7 @@ BlockResult BlockOnDevice(const PointExperiment& experiment, const Block& block)
   OrbitsOnDevice device(std::make_unique<HostDevice>(64), 1, [](const absl::Status&) {});
   OneBlock queue(block, device);
   const std::unique_ptr<EngineRun> run = experiment.StartRun(queue);
-  while (!run->Advance()) {
-  }
+  while (!run->Advance()) continue;
   return queue.result();
 }
 

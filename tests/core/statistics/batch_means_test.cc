@@ -39,30 +39,5 @@ TEST(BatchMeans, BatchesOfUnequalLengthGiveTheRatioOfTotals) {
   EXPECT_FALSE(empty.Ratio());
 }
 
-// For a series with correlation time 10, single terms as batches understate the error by a factor
-// of about four; batches of 500 terms do not. With 300 z-scores their variance has the standard
-// error 0.08; the window of 4 of these has a false-alarm rate of 1e-4.
-TEST(BatchMeans, LongBatchesGiveValidErrorsOfACorrelatedSeries) {
-  CounterRandom random(9, 0, 0);
-  Moments z_of_batches, z_of_terms;
-  for (int repetition = 0; repetition < 300; ++repetition) {
-    BatchMeans batches, terms;
-    double x = 0;
-    for (int batch = 0; batch < 100; ++batch) {
-      double sum = 0;
-      for (int i = 0; i < 500; ++i) {
-        x = 0.9 * x + random.Uniform() - 0.5;
-        sum += x;
-        terms.Add(x, 1);
-      }
-      batches.Add(sum, 500);
-    }
-    z_of_batches.Add(*batches.Ratio() / *batches.StandardError());
-    z_of_terms.Add(*terms.Ratio() / *terms.StandardError());
-  }
-  EXPECT_NEAR(*z_of_batches.Variance(), 1, 4 * 0.08);
-  EXPECT_GT(*z_of_terms.Variance(), 10);  // (1 + 0.9)/(1 - 0.9) = 19
-}
-
 }  // namespace
 }  // namespace ballpiston

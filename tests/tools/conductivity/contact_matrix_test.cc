@@ -7,8 +7,6 @@
 namespace ballpiston {
 namespace {
 
-constexpr SiteDimensions kAllDimensions[] = {{2, 1}, {1, 2}, {2, 2}, {3, 3}, {1, 1}};
-
 constexpr int kDegree = 6;
 
 struct Point {
@@ -100,33 +98,6 @@ TEST(ContactMatrix, AgreesWithAnIndependentQuadrature) {
     for (size_t n = 0; n < compared.size(); ++n) {
       EXPECT_NEAR(At(matrix, compared[n]), exact[n], is_costly ? 1e-9 : 1e-12)
           << d.a << " " << d.b << ": " << n;
-    }
-  }
-}
-
-// A function of e_a + e_b does not change: its coefficients by Gauss's quadrature.
-TEST(ContactMatrix, ConservesTheEnergyOfThePair) {
-  for (const SiteDimensions d : kAllDimensions) {
-    const ContactMatrix matrix(d, kDegree);
-    const GammaQuadrature a = GammaNodes(d.a / 2.0, kDegree + 1);
-    const GammaQuadrature b = GammaNodes(d.b / 2.0, kDegree + 1);
-    for (int power = 0; power <= kDegree; ++power) {
-      Eigen::VectorXd function = Eigen::VectorXd::Zero(ContactMatrix::Rows(kDegree));
-      for (int i = 0; i <= kDegree; ++i) {
-        for (int j = 0; j <= kDegree; ++j) {
-          const Eigen::VectorXd p = GammaPolynomials(d.a / 2.0, kDegree, a.nodes[i]);
-          const Eigen::VectorXd q = GammaPolynomials(d.b / 2.0, kDegree, b.nodes[j]);
-          const double value =
-              std::pow(a.nodes[i] + b.nodes[j], power) * a.weights[i] * b.weights[j];
-          for (int k = 0; k <= kDegree; ++k) {
-            for (int l = 0; k + l <= kDegree; ++l) {
-              function[ContactMatrix::Row(k, l)] += value * p[k] * q[l];
-            }
-          }
-        }
-      }
-      function.normalize();
-      EXPECT_LE((matrix.elements() * function).cwiseAbs().maxCoeff(), 1e-12) << d.a << d.b << power;
     }
   }
 }
