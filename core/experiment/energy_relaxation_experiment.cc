@@ -28,30 +28,6 @@ namespace {
 // A group of walkers runs until its slowest walker has finished.
 constexpr uint64_t kWalkersInStep = 256;
 
-// Measurements of a block's orbits, by orbit.
-class OrbitMeasurements {
- public:
-  OrbitMeasurements(const EnergyRelaxation& relaxation, uint64_t orbits)
-      : relaxation_(relaxation), values_(orbits) {}
-
-  void Set(uint64_t orbit, const StepFunction& energy) {
-    values_[orbit] = relaxation_.Measure(energy);
-  }
-
-  // The result of all orbits with measurements.
-  BlockResult Result() const {
-    BlockResult result = relaxation_.Empty();
-    for (const std::vector<double>& values : values_) {
-      if (!values.empty()) relaxation_.Record(values, result);
-    }
-    return result;
-  }
-
- private:
-  const EnergyRelaxation& relaxation_;
-  std::vector<std::vector<double>> values_;
-};
-
 class RelaxingOrbits {
  public:
   RelaxingOrbits(const PairExperiment& experiment, const EnergyRelaxation& relaxation,
@@ -60,7 +36,7 @@ class RelaxingOrbits {
         relaxation_(relaxation),
         first_(block.first),
         energies_(block.samples),
-        measurements_(relaxation, block.samples) {}
+        values_(block.samples) {}
 
   uint64_t count() const { return energies_.size(); }
 
@@ -82,19 +58,25 @@ class RelaxingOrbits {
       energy->Add(collision.time, v * v / 2);
       if (energy->last_jump() < relaxation_.orbit_time()) return AfterCollision::kGoOn;
     }
-    measurements_.Set(orbit, *energy);
+    values_[orbit] = relaxation_.Measure(*energy);
     energy.reset();
     return AfterCollision::kEnd;
   }
 
-  BlockResult Result() const { return measurements_.Result(); }
+  BlockResult Result() const {
+    BlockResult result = relaxation_.Empty();
+    for (const std::vector<double>& values : values_) {
+      if (!values.empty()) relaxation_.Record(values, result);
+    }
+    return result;
+  }
 
  private:
   const PairExperiment& experiment_;
   const EnergyRelaxation& relaxation_;
   uint64_t first_;
   std::vector<std::optional<StepFunction>> energies_;  // of the orbits that run
-  OrbitMeasurements measurements_;
+  std::vector<std::vector<double>> values_;            // measured, by orbit; empty for an escape
 };
 
 std::vector<double> StartsOfWalkers(const std::optional<double>& epsilon,
@@ -131,16 +113,16 @@ std::vector<StepFunction> WalkTogether(const EnergyRelaxation& relaxation,
 // A block of the jump process. Empty only if `stop` was requested.
 std::optional<BlockResult> WalkBlock(const EnergyRelaxation& relaxation, const RandomStream& random,
                                      const Block& block, const std::stop_token& stop) {
-  OrbitMeasurements measurements(relaxation, block.samples);
+  BlockResult result = relaxation.Empty();
   for (uint64_t done = 0; done < block.samples; done += kWalkersInStep) {
     const uint64_t together = std::min(kWalkersInStep, block.samples - done);
     const auto energies = WalkTogether(relaxation, random, block.first + done, together, stop);
     for (uint64_t i = 0; i < together; ++i) {
       if (stop.stop_requested()) return std::nullopt;
-      measurements.Set(done + i, energies[i]);
+      relaxation.Record(relaxation.Measure(energies[i]), result);
     }
   }
-  return measurements.Result();
+  return result;
 }
 
 Estimate SpectralGap() {
