@@ -1,6 +1,6 @@
 // The specification of a job: an experiment, a grid of parameter points, and a target.
 //
-// The struct holds unchecked input. `Violations` lists all errors, field by field. All other
+// The struct holds unchecked input. `Violations` lists its errors, field by field. All other
 // functions of this folder require a spec without violations.
 #pragma once
 
@@ -58,7 +58,8 @@ struct FieldViolation {
   std::string description;
 };
 
-// All errors of the spec; empty if the spec can be run.
+// The errors of the spec itself. Combinations of the grid's values are checked if each value is
+// permitted. What the answering model cannot do is found by model_choice/ladder.h.
 std::vector<FieldViolation> Violations(const EnsembleSpec& spec);
 
 size_t PointCount(const EnsembleSpec& spec);

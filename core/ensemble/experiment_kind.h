@@ -104,8 +104,9 @@ struct ExperimentKind {
   std::unique_ptr<PointExperiment> (*create)(const EnsembleSpec& spec,
                                              const PointParameters& point);
   PointSummary (*compute)(const EnsembleSpec& spec, const PointParameters& point) = nullptr;
-  // Finds combinations of values, or of values and precision, that are not permitted although each
-  // value alone is.
+  // Finds combinations of values, or of values, model and precision, that are not permitted
+  // although each value alone is. Requires that each is, and that the lists the experiment needs
+  // have values.
   void (*check_grid)(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
   // Finds why sampling cannot reach a tolerance; null if it always can.
   void (*check_tolerance)(const EnsembleSpec& spec, std::vector<FieldViolation>& found) = nullptr;

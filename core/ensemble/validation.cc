@@ -99,7 +99,13 @@ void CheckValues(const EnsembleSpec& spec, Found& found) {
   for (const Parameter* parameter : kParameters) {
     CheckEachValue(*parameter, spec.grid[*parameter], found);
   }
-  if (spec.experiment != nullptr) spec.experiment->check_grid(spec, found);
+}
+
+// Combinations of values are checked if each list and each value is permitted.
+void CheckGrid(const EnsembleSpec& spec, Found& found) {
+  if (spec.experiment != nullptr) CheckLists(spec, found);
+  CheckValues(spec, found);
+  if (spec.experiment != nullptr && found.empty()) spec.experiment->check_grid(spec, found);
 }
 
 void CheckCount(absl::string_view field, const std::optional<int64_t>& count, Found& found) {
@@ -235,14 +241,13 @@ std::string ExperimentNames() {
 
 std::vector<FieldViolation> Violations(const EnsembleSpec& spec) {
   Found found;
+  CheckGrid(spec, found);
   if (spec.experiment == nullptr) {
     found.push_back({"experiment", absl::StrCat("is missing; permitted: ", ExperimentNames())});
-  } else {
-    CheckLists(spec, found);
-    CheckTarget(spec, found);
-    CheckModel(spec, found);
+    return found;
   }
-  CheckValues(spec, found);
+  CheckTarget(spec, found);
+  CheckModel(spec, found);
   if (found.empty() && spec.target.collisions && !NeedsNoSamples(spec)) {
     CheckSamplesOfCollisions(spec, found);
   }

@@ -428,19 +428,12 @@ class GasConduction : public SteadyGas {
   ProfilePlaces places_;
 };
 
-// Ignores NaN.
-double LargestOf(std::span<const double> values) {
-  double largest = 0;
-  for (const double value : values) largest = std::fmax(largest, value);
-  return largest;
-}
-
 void CheckConductionGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
   CheckGasGrid(spec, found);
   const std::vector<double>& hot = spec.grid[kHot];
   for (size_t i = 0; i < hot.size(); ++i) {
-    const double largest_cold = LargestOf(spec.grid.Beside(kHot, i, kCold));
-    if (!(hot[i] < largest_cold)) continue;
+    const double largest_cold = std::ranges::max(spec.grid.Beside(kHot, i, kCold));
+    if (hot[i] >= largest_cold) continue;
     found.push_back({absl::StrFormat("grid.hot[%d]", i),
                      absl::StrFormat("hot is %s, below cold = %s; permitted: hot >= cold",
                                      NumberText(hot[i]), NumberText(largest_cold))});

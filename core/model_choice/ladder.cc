@@ -245,18 +245,25 @@ Answer ByBudget(const Question& question) {
   return {question.ModelOfLimit(), compared, bound};
 }
 
-// Outside of the billiard's domain the limit answers by its expected error, without a pilot. The
-// spec has no violations, so this error is known, and within a tolerance.
+// Outside of the billiard's domain the limit answers by its expected error, without a pilot, if a
+// tolerance permits it, or with a budget. Requires a known error.
+bool MayAnswerWithoutBilliard(const Question& question) {
+  const Target& target = question.target();
+  if (question.IsSoundForBilliard()) return false;
+  if (!target.tolerance) return target.budget_seconds.has_value();
+  return question.aim().limit_error->IsWithin(*target.tolerance, question.point());
+}
+
 Answer WithoutBilliard(const Question& question) {
   return {question.ModelOfLimit(), "the billiard is not sound at this rho and delta",
           question.ExpectedLimitError()};
 }
 
 std::optional<Answer> AnswerNearTheLimit(const Question& question, const PilotSource& pilots) {
-  if (!question.IsSoundForBilliard()) return WithoutBilliard(question);
   if (!question.HasLimitError()) {
     return Billiard(question, "the limit's error is not known at this point");
   }
+  if (MayAnswerWithoutBilliard(question)) return WithoutBilliard(question);
   if (!question.HasRelativeError()) {
     return Billiard(question,
                     "the first estimate has no relative error at this point, so the limit's error "
@@ -579,6 +586,19 @@ std::vector<FieldViolation> MachineViolations(const EnsembleSpec& spec, const Ma
   std::vector<FieldViolation> found;
   CheckMemory(spec, machine, found);
   CheckBudget(spec, machine, found);
+  return found;
+}
+
+std::vector<FieldViolation> DomainViolations(const EnsembleSpec& spec) {
+  std::vector<FieldViolation> found;
+  if (spec.model != Model::kAuto) return found;
+  for (size_t i = 0; i < PointCount(spec) && found.empty(); ++i) {
+    const PointParameters point = PointAt(spec, i);
+    if (IsSoundForBilliard(spec, point) || !IsABilliard(ExpectedModel(spec, point))) continue;
+    EnsembleSpec by_billiard = spec;
+    by_billiard.model = Model::kBilliard;
+    CheckBilliardDomain(by_billiard, found);
+  }
   return found;
 }
 

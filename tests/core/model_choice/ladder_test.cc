@@ -301,7 +301,7 @@ TEST(Ladder, ABudgetDoesNotLetTheLimitMissATolerance) {
   for (const std::optional<double> tolerance : {std::optional<double>(), {0.9}, {0.01}}) {
     EnsembleSpec spec = Relaxation(1.2e-10, {.tolerance = tolerance, .budget_seconds = 1});
     spec.grid[kRho] = {kMaxRho - 1e-10};
-    EXPECT_EQ(Violations(spec).empty(), tolerance != 0.01);
+    EXPECT_EQ(DomainViolations(spec).empty(), tolerance != 0.01);
   }
 }
 
@@ -482,6 +482,27 @@ TEST(Ladder, AToleranceBelowTheModelsErrorIsRejected) {
               ElementsAre(Field(
                   &FieldViolation::description,
                   AllOf(HasSubstr("is 0.5"), HasSubstr("delta = 1e-08"), HasSubstr("permitted")))));
+}
+
+// AUTO answers by another model where one answers, and is rejected elsewhere.
+TEST(Ladder, AutoNeedsAnotherModelOutsideTheBilliardsDomain) {
+  for (const char* question :
+       {"equilibrium delta=1e-12", "energy-relaxation delta=1e-12 tolerance=0.01",
+        "energy-relaxation delta=1e-12 budget=1", "energy-relaxation delta=0.01"}) {
+    EXPECT_THAT(DomainViolations(Asked(question)), IsEmpty()) << question;
+  }
+  for (const char* question : {"equilibrium delta=1e-12 verify=yes", "markov-property delta=1e-12",
+                               "energy-relaxation delta=1e-12",  // no tolerance: an exact model
+                               "energy-relaxation delta=1e-12,0.01",
+                               // There is no relaxation time, and the limit's error is not known.
+                               "energy-relaxation delta=1e-12 epsilon=0.1,0.1667 budget=1"}) {
+    EXPECT_THAT(
+        DomainViolations(Asked(question)),
+        ElementsAre(AllOf(Field(&FieldViolation::field, "grid.delta[0]"),
+                          Field(&FieldViolation::description,
+                                AllOf(HasSubstr("delta is 1e-12"), HasSubstr("delta >= 1e-10"))))))
+        << question;
+  }
 }
 
 // A question that needs years is planned. One that needs longer than any machine lasts is rejected.
