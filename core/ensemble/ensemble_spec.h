@@ -24,10 +24,10 @@ inline constexpr int64_t kMaxPoints = 100'000;
 inline constexpr double kMaxBudgetSeconds = 1e6;
 
 // At most one of the numbers is set, except that a budget and a tolerance may be set together. If
-// none is set, the target is kDefaultSamples samples or collisions.
+// none is set, the target is kDefaultSamples samples.
 struct Target {
-  std::optional<int64_t> samples = {};     // first hits, or orbits, a point
-  std::optional<int64_t> collisions = {};  // ball-piston collisions a point
+  std::optional<int64_t> samples = {};     // a point
+  std::optional<int64_t> collisions = {};  // a point: the samples that have this many on average
   std::optional<double> tolerance = {};    // relative standard error of the first estimate
   std::optional<double> budget_seconds = {};
   // The name of the estimate that the tolerance and the choice of the model refer to. It is the

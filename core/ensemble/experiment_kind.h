@@ -55,9 +55,6 @@ struct ParameterUse {
   std::optional<double> default_value = {};  // of every point if the list is empty
 };
 
-// The unit of a number in the target.
-enum class TargetUnit { kSamples, kCollisions, kEither };
-
 // How far the limit delta -> 0 is from the billiard, in one estimate.
 struct LimitError {
   Model model;  // the cheapest one that answers in the limit
@@ -95,7 +92,6 @@ struct ExperimentKind {
   absl::string_view name;  // as users write it: "first-hit"
   uint64_t number;         // as in the API; decides the random streams
   std::span<const ParameterUse> parameters;
-  TargetUnit unit = TargetUnit::kSamples;
   std::span<const Model> models;        // that can answer one of the aims; cheapest first
   std::span<const AimedEstimate> aims;  // the first one is the default
 

@@ -114,18 +114,6 @@ void CheckCount(absl::string_view field, const std::optional<int64_t>& count, Fo
                    absl::StrFormat("is %d; permitted: 1 to %d", *count, kMaxSamples)});
 }
 
-void CheckUnit(const EnsembleSpec& spec, Found& found) {
-  const ExperimentKind& experiment = *spec.experiment;
-  if (experiment.unit == TargetUnit::kCollisions && spec.target.samples) {
-    found.push_back({"target.samples",
-                     absl::StrCat(experiment.name, " counts collisions; use target.collisions")});
-  }
-  if (experiment.unit == TargetUnit::kSamples && spec.target.collisions) {
-    found.push_back({"target.collisions",
-                     absl::StrCat(experiment.name, " counts samples; use target.samples")});
-  }
-}
-
 void CheckTolerance(const EnsembleSpec& spec, Found& found) {
   if (!spec.target.tolerance) return;
   if (!(*spec.target.tolerance > 0 && *spec.target.tolerance < 1)) {
@@ -206,7 +194,6 @@ void CheckTarget(const EnsembleSpec& spec, Found& found) {
   const int kinds =
       target.samples.has_value() + target.collisions.has_value() + target.tolerance.has_value();
   if (kinds > 1) found.push_back({"target", "more than one kind is set; permitted: one"});
-  CheckUnit(spec, found);
   CheckCount("samples", target.samples, found);
   CheckCount("collisions", target.collisions, found);
   CheckEstimate(spec, found);

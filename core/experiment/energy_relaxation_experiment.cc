@@ -329,7 +329,6 @@ constinit const ExperimentKind kEnergyRelaxation = {
     .name = "energy-relaxation",
     .number = 4,
     .parameters = kParametersOfRelaxation,
-    .unit = TargetUnit::kEither,
     .models = kModelsOfRelaxation,
     .aims = kAimsOfRelaxation,
     .create = CreateAs<EnergyRelaxationExperiment>,

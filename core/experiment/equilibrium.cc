@@ -130,7 +130,6 @@ constexpr AimedEstimate kAimsOfEquilibrium[] = {{.name = kNamesOfTimes[kBallPist
 constinit const ExperimentKind kEquilibrium = {.name = "equilibrium",
                                                .number = 1,
                                                .parameters = kPairAlone,
-                                               .unit = TargetUnit::kCollisions,
                                                .models = kModelsOfEquilibrium,
                                                .aims = kAimsOfEquilibrium,
                                                .create = CreateAs<EquilibriumExperiment>,

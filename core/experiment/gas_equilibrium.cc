@@ -400,7 +400,6 @@ constexpr AimedEstimate kAimsOfGasEquilibrium[] = {
 constinit const ExperimentKind kGasEquilibrium = {.name = "gas-equilibrium",
                                                   .number = 6,
                                                   .parameters = kParametersOfAPeriodicGas,
-                                                  .unit = TargetUnit::kEither,
                                                   .models = kModelsOfGasEquilibrium,
                                                   .aims = kAimsOfGasEquilibrium,
                                                   .create = CreateAs<GasEquilibrium>,

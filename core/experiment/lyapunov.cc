@@ -204,7 +204,6 @@ constexpr AimedEstimate kAimsOfLyapunov[] = {
 constinit const ExperimentKind kLyapunov = {.name = "lyapunov",
                                             .number = 8,
                                             .parameters = kPairAlone,
-                                            .unit = TargetUnit::kCollisions,
                                             .models = kBilliards,
                                             .aims = kAimsOfLyapunov,
                                             .create = CreateAs<LyapunovExperiment>,

@@ -201,7 +201,6 @@ constinit const ExperimentKind kMarkovProperty = {
     .name = "markov-property",
     .number = 5,
     .parameters = kPairAlone,
-    .unit = TargetUnit::kCollisions,
     .models = kModelsOfMarkovProperty,
     .aims = kAimsOfMarkovProperty,
     .create = CreateAs<MarkovPropertyExperiment>,

@@ -510,10 +510,9 @@ std::vector<FieldViolation> PointsWithRareEvents(const EnsembleSpec& spec) {
 
 FieldViolation TooLong(const EnsembleSpec& spec, const PointParameters& point, double seconds) {
   const Target& target = spec.target;
-  const bool counts_collisions = spec.experiment->unit == TargetUnit::kCollisions;
-  std::string field = counts_collisions ? "target.collisions" : "target.samples";
+  std::string field = "target.samples";
   std::string given = absl::StrCat("is ", kDefaultSamples, " by default");
-  if (target.samples) field = "target.samples", given = absl::StrCat("is ", *target.samples);
+  if (target.samples) given = absl::StrCat("is ", *target.samples);
   if (target.collisions) {
     field = "target.collisions", given = absl::StrCat("is ", *target.collisions);
   }

@@ -49,13 +49,12 @@ std::string ListThatIsMissing(Dice& dice, v1::Grid& grid) {
   return "a list is missing";
 }
 
-std::string CountOutside(Dice& dice, const ExperimentKind& experiment, v1::Target& target) {
+std::string CountOutside(Dice& dice, v1::Target& target) {
   target.Clear();
   const auto count =
       dice.Pick<int64_t>({0, -1, kMaxSamples + 1, std::numeric_limits<int64_t>::min(),
                           std::numeric_limits<int64_t>::max()});
-  experiment.unit == TargetUnit::kCollisions ? target.set_collisions(count)
-                                             : target.set_samples(count);
+  dice.Chance(0.5) ? target.set_collisions(count) : target.set_samples(count);
   return "the count is outside";
 }
 
@@ -73,8 +72,8 @@ std::string BudgetOutside(Dice& dice, v1::Target& target) {
   return "the budget is outside";
 }
 
-std::string CountWithABudget(const ExperimentKind& experiment, v1::Target& target) {
-  experiment.unit == TargetUnit::kCollisions ? target.set_collisions(64) : target.set_samples(64);
+std::string CountWithABudget(Dice& dice, v1::Target& target) {
+  dice.Chance(0.5) ? target.set_collisions(64) : target.set_samples(64);
   target.mutable_budget()->set_seconds(1);
   return "a count and a budget";
 }
@@ -120,13 +119,13 @@ std::string SomeDefect(Dice& dice, const ExperimentKind& experiment, double boun
     case 1:
       return ListThatIsMissing(dice, grid);
     case 2:
-      return CountOutside(dice, experiment, target);
+      return CountOutside(dice, target);
     case 3:
       return ToleranceOutside(dice, target);
     case 4:
       return BudgetOutside(dice, target);
     case 5:
-      return CountWithABudget(experiment, target);
+      return CountWithABudget(dice, target);
     case 6:
       return VerifyWithAModel(experiment, spec);
     case 7:

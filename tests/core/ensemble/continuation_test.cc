@@ -41,8 +41,8 @@ std::unique_ptr<const PointExperiment> PointOf(const SampledQuestion& asked, con
 }
 
 Target TargetOf(const SampledQuestion& asked, int64_t count) {
-  const bool counts_samples = asked.experiment->unit == TargetUnit::kSamples;
-  return counts_samples ? Target{.samples = count} : Target{.collisions = count};
+  const bool has_replicas = asked.experiment == &kGasLyapunov;
+  return has_replicas ? Target{.samples = count} : Target{.collisions = count};
 }
 
 // Computes the rest of the point; `samples` counts the samples that were not in the state.
