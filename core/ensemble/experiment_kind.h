@@ -104,8 +104,6 @@ struct ExperimentKind {
   // although each value alone is. Requires that each is, and that the lists the experiment needs
   // have values.
   void (*check_grid)(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
-  // Finds why sampling cannot reach a tolerance; null if it always can.
-  void (*check_tolerance)(const EnsembleSpec& spec, std::vector<FieldViolation>& found) = nullptr;
 
   // These two describe one sample by `model`: its work, and its mean number of ball-piston
   // collisions.

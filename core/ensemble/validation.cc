@@ -116,14 +116,9 @@ void CheckCount(absl::string_view field, const std::optional<int64_t>& count, Fo
 
 void CheckTolerance(const EnsembleSpec& spec, Found& found) {
   if (!spec.target.tolerance) return;
-  if (!(*spec.target.tolerance > 0 && *spec.target.tolerance < 1)) {
-    found.push_back({"target.tolerance", absl::StrCat("is ", NumberText(*spec.target.tolerance),
-                                                      "; permitted: 0 < tolerance < 1")});
-  }
-  const bool is_known = spec.experiment->FindAim(spec.target.estimate) != nullptr;
-  const bool can_be_missed =
-      is_known && spec.experiment->check_tolerance != nullptr && !IsAnsweredByClosedForm(spec);
-  if (can_be_missed && HasPoints(spec.grid)) spec.experiment->check_tolerance(spec, found);
+  if (*spec.target.tolerance > 0 && *spec.target.tolerance < 1) return;
+  found.push_back({"target.tolerance", absl::StrCat("is ", NumberText(*spec.target.tolerance),
+                                                    "; permitted: 0 < tolerance < 1")});
 }
 
 std::string NamesOfAims(const ExperimentKind& experiment, Model model) {

@@ -9,7 +9,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "core/arithmetic/number_text.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/chunk_plan.h"
 #include "core/experiment/all_experiments.h"
@@ -277,20 +276,6 @@ double EventsOfAnOrbit(Model model, const PointParameters& point) {
   return EventsOf(model, EnergyRelaxation(GeometryOf(point), point));
 }
 
-// Finds a tolerance at energies where the estimate passes through 0, because a relative error has
-// no meaning there.
-void CheckToleranceOfDecay(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
-  const std::vector<double>& energies = spec.grid[kEpsilon];
-  for (size_t i = 0; i < energies.size(); ++i) {
-    if (HasRelaxationTime(energies[i])) continue;
-    found.push_back({absl::StrFormat("grid.epsilon[%d]", i),
-                     absl::StrCat("is ", NumberText(energies[i]),
-                                  ", where there is no relaxation time; permitted with a "
-                                  "tolerance: [0, ",
-                                  kNoDecayFrom, "] or [", kNoDecayTo, ", 0.5]")});
-  }
-}
-
 constexpr ParameterUse kParametersOfRelaxation[] = {
     {&kRho}, {&kDelta}, {.parameter = &kEpsilon, .needed = false}};
 constexpr Model kModelsOfRelaxation[] = {Model::kSpectrum, Model::kMarkov, Model::kBilliard,
@@ -334,7 +319,6 @@ constinit const ExperimentKind kEnergyRelaxation = {
     .create = CreateAs<EnergyRelaxationExperiment>,
     .compute = RelaxationBySpectrum,
     .check_grid = CheckPairGrid,
-    .check_tolerance = CheckToleranceOfDecay,
     .work = WorkOfAnOrbit,
     .collisions = CollisionsOfASample,
     .memory = MemoryOfOrbits,

@@ -84,15 +84,6 @@ double EventsOfAReturn(Model, const PointParameters& point) {
   return std::min(LongReturnsPerSample(GeometryOf(point), point[kEpsilon]), 1.0);
 }
 
-// Finds a tolerance at epsilon = 0, where the return time has no variance.
-void CheckToleranceOfReturns(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
-  const std::vector<double>& energies = spec.grid[kEpsilon];
-  if (std::find(energies.begin(), energies.end(), 0.0) == energies.end()) return;
-  found.push_back({"target.tolerance",
-                   "cannot be reached at epsilon = 0, where the return time has no variance; "
-                   "permitted: samples"});
-}
-
 // ---- both experiments ----
 
 class ReturnExperiment : public PairExperiment {
@@ -323,7 +314,6 @@ constinit const ExperimentKind kConditionalMeanFreeTime = {
     .create = CreateAs<ConditionalMeanFreeTimeExperiment>,
     .compute = ExactConditionalTime,
     .check_grid = CheckPairGrid,
-    .check_tolerance = CheckToleranceOfReturns,
     .work = WorkOfAReturn,
     .collisions = OneCollision,
     .memory = MemoryOfPairs};
@@ -336,7 +326,6 @@ constinit const ExperimentKind kFirstHit = {.name = "first-hit",
                                             .aims = kAimsOfFirstHit,
                                             .create = CreateAs<FirstHitExperiment>,
                                             .check_grid = CheckPairGrid,
-                                            .check_tolerance = CheckToleranceOfReturns,
                                             .work = WorkOfAReturn,
                                             .collisions = OneCollision,
                                             .summary = kWorkOfNoise,

@@ -440,19 +440,6 @@ void CheckConductionGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& 
   }
 }
 
-void CheckConductionTolerance(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
-  for (size_t i = 0; i < spec.grid[kHot].size(); ++i) {
-    const double hot = spec.grid[kHot][i];
-    const std::span<const double> cold = spec.grid.Beside(kHot, i, kCold);
-    if (std::ranges::find(cold, hot) == cold.end()) continue;
-    found.push_back({"target.tolerance",
-                     absl::StrFormat("is relative, but the heat current is 0 if hot = cold = %s; "
-                                     "permitted in this case: samples, collisions or a budget",
-                                     NumberText(hot))});
-    return;
-  }
-}
-
 SampleWork WorkOfGasConduction(Model model, const PointParameters& point) {
   const SteadyTimes times = TimesAt(model, point);
   SampleWork work = WorkOfReplica(model, OpenGasOf(point), times.stretch);
@@ -527,7 +514,6 @@ constinit const ExperimentKind kGasConduction = {.name = "gas-conduction",
                                                  .aims = kAimsOfGasConduction,
                                                  .create = CreateAs<GasConduction>,
                                                  .check_grid = CheckConductionGrid,
-                                                 .check_tolerance = CheckConductionTolerance,
                                                  .work = WorkOfGasConduction,
                                                  .collisions = ExchangesOfAConductionSample,
                                                  .memory = MemoryOfConduction,

@@ -19,10 +19,8 @@
 #include <stop_token>
 #include <vector>
 
-#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "core/arithmetic/elementary_functions.h"
-#include "core/arithmetic/number_text.h"
 #include "core/billiard/orbits.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/all_experiments.h"
@@ -181,13 +179,6 @@ double ErrorOfWhatTendsToZero(Model, const PointParameters&) {
   return std::numeric_limits<double>::infinity();
 }
 
-void CheckToleranceOfWhatTendsToZero(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
-  found.push_back({"target.tolerance",
-                   absl::StrCat("is ", NumberText(*spec.target.tolerance),
-                                " and relative, but the first estimate of ", spec.experiment->name,
-                                " tends to 0; permitted: collisions, budget")});
-}
-
 constexpr Model kModelsOfMarkovProperty[] = {Model::kMarkov, Model::kBilliard,
                                              Model::kBilliardReference};
 
@@ -197,19 +188,17 @@ constexpr AimedEstimate kAimsOfMarkovProperty[] = {{.name = "memory_correlation"
 
 }  // namespace
 
-constinit const ExperimentKind kMarkovProperty = {
-    .name = "markov-property",
-    .number = 5,
-    .parameters = kPairAlone,
-    .models = kModelsOfMarkovProperty,
-    .aims = kAimsOfMarkovProperty,
-    .create = CreateAs<MarkovPropertyExperiment>,
-    .check_grid = CheckPairGrid,
-    .check_tolerance = CheckToleranceOfWhatTendsToZero,
-    .work = WorkOfAnExchange,
-    .collisions = OneCollision,
-    .memory = MemoryOfPairs,
-    .memory_of_a_result = 120e3,
-    .samples_together = kExchangesPerOrbit};
+constinit const ExperimentKind kMarkovProperty = {.name = "markov-property",
+                                                  .number = 5,
+                                                  .parameters = kPairAlone,
+                                                  .models = kModelsOfMarkovProperty,
+                                                  .aims = kAimsOfMarkovProperty,
+                                                  .create = CreateAs<MarkovPropertyExperiment>,
+                                                  .check_grid = CheckPairGrid,
+                                                  .work = WorkOfAnExchange,
+                                                  .collisions = OneCollision,
+                                                  .memory = MemoryOfPairs,
+                                                  .memory_of_a_result = 120e3,
+                                                  .samples_together = kExchangesPerOrbit};
 
 }  // namespace ballpiston

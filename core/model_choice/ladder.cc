@@ -490,20 +490,27 @@ std::string ParametersText(const PointParameters& point) {
   return text;
 }
 
-// A point at which the largest permitted number of samples has no error: the first one.
-std::vector<FieldViolation> PointsWithRareEvents(const EnsembleSpec& spec) {
+// A point where a relative error is out of reach: of an estimate that has none, or because the
+// largest permitted number of samples has no error. The first one.
+std::vector<FieldViolation> PointsWithoutAnError(const EnsembleSpec& spec) {
+  const AimedEstimate& aim = AimOf(spec);
   for (size_t i = 0; i < PointCount(spec); ++i) {
     const PointParameters point = PointAt(spec, i);
     const Model model = ExpectedModel(spec, point);
-    if (!TakesSamples(model)) continue;
-    const double needed = AimOf(spec).SamplesForAnError(model, point);
-    if (needed <= static_cast<double>(kMaxSamples)) continue;
+    if (model == Model::kClosedForm) continue;
+    const double needed = TakesSamples(model) ? aim.SamplesForAnError(model, point) : 0;
+    const bool has_error = std::isfinite(aim.error(model, point)) && std::isfinite(needed);
+    if (has_error && needed <= static_cast<double>(kMaxSamples)) continue;
+    const std::string reason =
+        has_error ? absl::StrFormat(
+                        "an error needs %.2g samples, because the events that determine "
+                        "the mean are rare; permitted in this case: samples, up to %d",
+                        needed, kMaxSamples)
+                  : absl::StrCat("no number of samples gives ", aim.name,
+                                 " a relative error; permitted in this case: samples or a budget");
     return {{"target.tolerance",
-             absl::StrFormat(
-                 "is %s, but at %s an error needs %.2g samples, because the events that "
-                 "determine the mean are rare; permitted in this case: samples, up to "
-                 "%d",
-                 NumberText(*spec.target.tolerance), ParametersText(point), needed, kMaxSamples)}};
+             absl::StrFormat("is %s, but at %s %s", NumberText(*spec.target.tolerance),
+                             ParametersText(point), reason)}};
   }
   return {};
 }
@@ -603,7 +610,7 @@ std::vector<FieldViolation> DomainViolations(const EnsembleSpec& spec) {
 
 std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec) {
   if (!spec.target.tolerance) return {};
-  if (std::vector<FieldViolation> found = PointsWithRareEvents(spec); !found.empty()) return found;
+  if (std::vector<FieldViolation> found = PointsWithoutAnError(spec); !found.empty()) return found;
   const double tolerance = *spec.target.tolerance, least = LeastTolerance(spec);
   if (!(tolerance < least)) return {};
   absl::string_view other;

@@ -484,6 +484,34 @@ TEST(Ladder, AToleranceBelowTheModelsErrorIsRejected) {
                   AllOf(HasSubstr("is 0.5"), HasSubstr("delta = 1e-08"), HasSubstr("permitted")))));
 }
 
+// Distances between laws and a current without a fall of temperature tend to 0. Around 1/6 the
+// integral of the decay has a zero, and the relaxation time a pole. At rest the variance of return
+// times is infinite; the closed form needs none, and a relaxation from rest ends with its window.
+TEST(Ladder, AToleranceIsRejectedWhereAnEstimateHasNoRelativeError) {
+  for (const auto& [question, at] : std::vector<std::pair<std::string, const char*>>{
+           {"markov-property", "delta = 0.1 "},
+           {"markov-property model=markov", "delta = 0.1 "},
+           {"gas-conduction hot=2,1 cold=1", "hot = 1, cold = 1"},
+           {"energy-relaxation epsilon=0.12,0.121,0.2", "epsilon = 0.121"},
+           {"energy-relaxation epsilon=0.199", "epsilon = 0.199"},
+           {"energy-relaxation epsilon=0.1667 model=spectrum", "epsilon = 0.1667"},
+           {"first-hit epsilon=0", "epsilon = 0,"},
+           {"conditional-mean-free-time epsilon=0.1,0 model=billiard", "epsilon = 0 "},
+           {"conditional-mean-free-time epsilon=0 verify=yes", "epsilon = 0 "}}) {
+    EXPECT_THAT(ToleranceViolations(Asked(question + " tolerance=0.1")),
+                ElementsAre(AllOf(Field(&FieldViolation::field, "target.tolerance"),
+                                  Field(&FieldViolation::description,
+                                        AllOf(HasSubstr("is 0.1, but at "), HasSubstr(at),
+                                              HasSubstr("permitted in this case: samples"))))))
+        << question;
+  }
+  for (const std::string question :
+       {"energy-relaxation epsilon=0,0.12,0.2", "conditional-mean-free-time epsilon=0,0.1",
+        "conditional-mean-free-time epsilon=0,0.1 model=closed_form"}) {
+    EXPECT_THAT(ToleranceViolations(Asked(question + " tolerance=0.1")), IsEmpty()) << question;
+  }
+}
+
 // AUTO answers by another model where one answers, and is rejected elsewhere.
 TEST(Ladder, AutoNeedsAnotherModelOutsideTheBilliardsDomain) {
   for (const char* question :
