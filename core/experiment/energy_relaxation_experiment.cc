@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/chunk_plan.h"
 #include "core/experiment/all_experiments.h"
@@ -18,7 +17,6 @@
 #include "core/experiment/pair_experiment.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
-#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
@@ -185,32 +183,9 @@ class EnergyRelaxationExperiment : public PairExperiment {
     summary.remarks = RemarksOnDecay(relaxation_.epsilon());
     summary.curves.push_back(relaxation_.MeasuredCurve(merged, events_per_orbit_));
     summary.histograms = relaxation_.MeasuredLaws(merged);
-    if (LacksEvents(merged)) summary.remarks.push_back(ReasonOfNoErrors(merged));
   }
 
  private:
-  double EventsIn(const BlockResult& merged) const {
-    return static_cast<double>(merged.samples) * events_per_orbit_;
-  }
-
-  // Whether there are no errors, although the sample is not small.
-  bool LacksEvents(const BlockResult& merged) const {
-    return HasStatedError(static_cast<double>(merged.samples)) && !HasStatedError(EventsIn(merged));
-  }
-
-  std::string ReasonOfNoErrors(const BlockResult& merged) const {
-    if (!relaxation_.epsilon()) {
-      return absl::StrFormat(
-          "there are no standard errors: few orbits, those with a slow piston, skew the law of %d "
-          "orbits; errors need %.0f orbits",
-          merged.samples, kEventsForAnError / events_per_orbit_);
-    }
-    return absl::StrFormat(
-        "there are no standard errors: ball and piston meet in about %.2g of these %d orbits; "
-        "errors need %.0f",
-        EventsIn(merged), merged.samples, kEventsForAnError);
-  }
-
   EnergyRelaxation relaxation_;
   double events_per_orbit_;  // for the standard errors
 };

@@ -19,7 +19,6 @@
 #include <stop_token>
 #include <vector>
 
-#include "absl/strings/str_format.h"
 #include "core/arithmetic/elementary_functions.h"
 #include "core/billiard/orbits.h"
 #include "core/closed_form/mean_free_time.h"
@@ -28,7 +27,6 @@
 #include "core/experiment/pair_experiment.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
-#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
@@ -161,14 +159,6 @@ class MarkovPropertyExperiment : public PairExperiment {
     }
     return RunOrbits(queue, [this](const Block& block) { return ExchangeOrbits(*this, block); });
   }
-
- protected:
-  void AddDetails(const BlockResult&, PointSummary& summary) const override {
-    if (summary.estimates.front().standard_error) return;
-    summary.remarks.push_back(
-        absl::StrFormat("there are no standard errors: these need %.0f orbits of %d collisions",
-                        kEventsForAnError, kExchangesPerOrbit));
-  }
 };
 
 SampleWork WorkOfAnExchange(Model model, const PointParameters& point) {
@@ -179,12 +169,15 @@ double ErrorOfWhatTendsToZero(Model, const PointParameters&) {
   return std::numeric_limits<double>::infinity();
 }
 
+double OrbitsOfAnExchange(Model, const PointParameters&) { return 1.0 / kExchangesPerOrbit; }
+
 constexpr Model kModelsOfMarkovProperty[] = {Model::kMarkov, Model::kBilliard,
                                              Model::kBilliardReference};
 
 constexpr AimedEstimate kAimsOfMarkovProperty[] = {{.name = "memory_correlation",
                                                     .models = kModelsOfMarkovProperty,
-                                                    .error = ErrorOfWhatTendsToZero}};
+                                                    .error = ErrorOfWhatTendsToZero,
+                                                    .events = OrbitsOfAnExchange}};
 
 }  // namespace
 
