@@ -47,7 +47,7 @@ std::string NameOf(const std::string& field, const Verb& verb, const Options& op
   return is_flag ? name : std::string(absl::StripPrefix(field, kSpec));
 }
 
-// The description of a field may name another one: use target.collisions.
+// The description of a field may name another one: permitted: target.samples.
 std::string WithTargetFlags(const std::string& description) {
   std::vector<std::pair<std::string, std::string>> names;
   for (const Flag& flag : TargetFlags().flags) {

@@ -20,7 +20,7 @@ namespace ballpiston {
 // Orbits may take any time; an engine gives up an orbit that cannot end (billiard/longest_wait.h).
 inline constexpr double kNoTimeLimit = std::numeric_limits<double>::infinity();
 
-// The orbits of one block, with their health. `Orbits` has these functions:
+// The orbits of one block. `Orbits` has these functions:
 //   uint64_t count() const;                                     at least 1
 //   PairState Start(uint64_t orbit);                            called once for each orbit
 //   AfterCollision Collide(uint64_t orbit, const Collision& collision);  not called for an escape
@@ -34,38 +34,30 @@ concept Follows = requires(Orbits orbits, uint64_t orbit, const Followed&... fol
   orbits.Follow(orbit, followed...);
 };
 
+// The orbits with their health, which counts escapes and measures the energy at collisions.
 template <typename Orbits>
-class WatchedOrbits {
- public:
-  explicit WatchedOrbits(Orbits orbits) : orbits_(std::move(orbits)) {}
+struct WatchedOrbits {
+  Orbits orbits;
+  Health health = {};
 
-  uint64_t count() const { return orbits_.count(); }
-  PairState Start(uint64_t orbit) { return orbits_.Start(orbit); }
+  uint64_t count() const { return orbits.count(); }
 
   AfterCollision Collide(uint64_t orbit, const Collision& collision) {
     if (collision.escaped) {
-      ++health_.escapes;
+      ++health.escapes;
       return AfterCollision::kEnd;
     }
-    const AfterCollision after = orbits_.Collide(orbit, collision);
+    const AfterCollision after = orbits.Collide(orbit, collision);
     if (collision.expired) return AfterCollision::kEnd;
-    health_.max_energy_error = std::max(health_.max_energy_error, EnergyError(collision.state));
+    health.max_energy_error = std::max(health.max_energy_error, EnergyError(collision.state));
     return after;
   }
 
-  template <typename... Followed>
-  requires Follows<Orbits, Followed...>
-  void Follow(uint64_t orbit, const Followed&... followed) { orbits_.Follow(orbit, followed...); }
-
   BlockResult Result() const {
-    BlockResult result = orbits_.Result();
-    result.health = health_;
+    BlockResult result = orbits.Result();
+    result.health = health;
     return result;
   }
-
- private:
-  Orbits orbits_;
-  Health health_;
 };
 
 template <typename Orbits>
@@ -77,7 +69,7 @@ class BlockOrbits : public EngineRun, private OrbitSource {
       : time_limit_(time_limit),
         queue_(queue),
         observer_(queue.observer()),
-        blocks_(queue, [make](const Block& block) { return WatchedOrbits(make(block)); }),
+        blocks_(queue, [make](const Block& block) { return WatchedOrbits<Orbits>{make(block)}; }),
         run_(StartOrbits(engine, geometry, *this)) {}
 
   bool Advance() override { return run_->Advance(); }
@@ -87,7 +79,7 @@ class BlockOrbits : public EngineRun, private OrbitSource {
     for (size_t n = 0; n < starts.size(); ++n) {
       const std::optional<uint64_t> orbit = blocks_.Next();
       if (!orbit) return n;
-      starts[n] = {*orbit, blocks_.WorkOf(*orbit).Start(blocks_.IndexOf(*orbit))};
+      starts[n] = {*orbit, blocks_.WorkOf(*orbit).orbits.Start(blocks_.IndexOf(*orbit))};
     }
     return starts.size();
   }
@@ -113,7 +105,7 @@ class BlockOrbits : public EngineRun, private OrbitSource {
   }
   template <typename... Followed>
   void FollowWith(uint64_t orbit, const Followed&... followed) {
-    blocks_.WorkOf(orbit).Follow(blocks_.IndexOf(orbit), followed...);
+    blocks_.WorkOf(orbit).orbits.Follow(blocks_.IndexOf(orbit), followed...);
   }
 
   double TimeLimit() const override { return time_limit_; }

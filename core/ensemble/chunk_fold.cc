@@ -39,17 +39,17 @@ std::optional<Block> ChunkFold::NextBlock() {
 std::vector<ChunkResult> ChunkFold::Add(const Block& block, BlockResult result) {
   std::vector<ChunkResult> complete;
   const Place place = {block.chunk, block.index};
-  if (place < NextPlace() || early_.Has(place)) return complete;
+  if (place < NextPlace() || early_.contains(place)) return complete;
   if (!result.groups.empty()) {
     const uint64_t group = block.chunk % plan_.groups();
     groups_[group] = result.groups[group];
   }
-  early_.Add(place, std::move(result));
-  while (const std::optional<BlockResult> next = early_.Take(NextPlace())) {
+  early_.emplace(place, std::move(result));
+  while (const auto next = early_.extract(NextPlace())) {
     const bool is_last = partial_.blocks + 1 == plan_.BlocksIn(partial_.chunk);
     PartialChunk whole_blocks;
     if (is_last && partial_.chunk >= plan_.FirstCutChunk()) whole_blocks = partial_;
-    partial_.merged.Merge(*next);
+    partial_.merged.Merge(next.mapped());
     ++partial_.blocks;
     --handed_out_;
     if (!is_last) continue;

@@ -11,13 +11,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/ensemble/block_result.h"
 #include "core/ensemble/chunk_plan.h"
-#include "core/ensemble/in_order.h"
 
 namespace ballpiston {
 
@@ -74,10 +74,10 @@ class ChunkFold {
   uint64_t end_;
   uint64_t window_;
   PartialChunk partial_;
-  Place next_;               // of the next block to hand out
-  uint64_t handed_out_ = 0;  // blocks that are handed out but not merged
-  InOrder<Place, BlockResult> early_;
-  std::vector<GroupState> groups_;  // by group, empty while a block of the group is computed
+  Place next_;                          // of the next block to hand out
+  uint64_t handed_out_ = 0;             // blocks that are handed out but not merged
+  std::map<Place, BlockResult> early_;  // blocks that wait for earlier ones
+  std::vector<GroupState> groups_;      // by group, empty while a block of the group is computed
 };
 
 }  // namespace ballpiston

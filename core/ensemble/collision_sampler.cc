@@ -9,14 +9,9 @@ namespace ballpiston {
 namespace {
 
 // Collisions in progress or waiting: enough to keep the lanes full, and a bound of the memory.
-constexpr uint64_t kMostOpen = 1 << 16;
+constexpr double kMostOpen = 1 << 16;
 
 constexpr double kSpeed = 1;  // sqrt(2 E) of a pair
-
-// So many samples have some `most` collisions.
-uint64_t SamplesWith(double most, double collisions_of_a_sample) {
-  return static_cast<uint64_t>(std::max(most / std::max(collisions_of_a_sample, 1.0), 1.0));
-}
 
 }  // namespace
 
@@ -25,9 +20,8 @@ uint64_t SamplesWith(double most, double collisions_of_a_sample) {
 CollisionSampler::CollisionSampler(const PointExperiment& experiment, const ExperimentKind& kind,
                                    std::function<bool()> pause)
     : experiment_(experiment),
-      counts_orbits_(kind.unit == TargetUnit::kSamples),
-      most_in_a_part_(SamplesWith(
-          kMostOpen / 4.0, kind.collisions(experiment.answer().model, experiment.parameters()))),
+      collisions_(kind.collisions(experiment.answer().model, experiment.parameters())),
+      most_in_a_part_(static_cast<uint64_t>(kMostOpen / 4 / collisions_)),
       pause_(std::move(pause)),
       run_(experiment.StartRun(*this)) {}
 
@@ -48,7 +42,7 @@ std::vector<CollisionRecord> CollisionSampler::InOrder(OpenBlock open) const {
   for (const auto& [orbit, found] : open.records) {
     const bool goes_on = !records.empty() && orbit == open.records[records.size() - 1].orbit;
     CollisionRecord record = found;
-    record.sample = open.block.first + (counts_orbits_ ? orbit : records.size());
+    record.sample = open.block.first + (CountsOrbits() ? orbit : records.size());
     record.time = record.free_time + (goes_on ? records.back().time : 0);
     records.push_back(record);
   }
@@ -65,7 +59,7 @@ std::optional<Block> CollisionSampler::Next() {
   Block part = plan.BlockAt(chunk_, index_);
   part.first += in_block_;
   part.samples -= in_block_;
-  if (counts_orbits_) part.samples = std::min(part.samples, most_in_a_part_);
+  if (CountsOrbits()) part.samples = std::min(part.samples, most_in_a_part_);
   if (open_samples_ + part.samples > 4 * most_in_a_part_ && !open_.empty()) return std::nullopt;
   in_block_ += part.samples;
   if (in_block_ == plan.BlockAt(chunk_, index_).samples) {

@@ -18,8 +18,8 @@
 namespace ballpiston {
 
 struct CollisionRecord {
-  // The number of the collision, or of the orbit if the experiment counts orbits: those of
-  // energy-relaxation have many collisions.
+  // The number of the collision, or of the orbit if a sample is an orbit of many collisions, as in
+  // energy-relaxation.
   uint64_t sample = 0;
   double time = 0;       // since the orbit's start
   double free_time = 0;  // since the orbit's start or its previous collision
@@ -53,6 +53,7 @@ class CollisionSampler : private BlockQueue, private CollisionObserver {
   OpenBlock& Find(const Block& block);
   std::vector<CollisionRecord> InOrder(OpenBlock open) const;
 
+  bool CountsOrbits() const { return collisions_ > 1; }
   bool HasEnded() const { return open_.empty() && chunk_ == experiment_.plan().chunks(); }
   bool IsReady() const { return !open_.empty() && open_.front().is_done; }
 
@@ -64,7 +65,7 @@ class CollisionSampler : private BlockQueue, private CollisionObserver {
   void Observe(const Block& block, uint64_t orbit, const Collision& collision) override;
 
   const PointExperiment& experiment_;
-  const bool counts_orbits_;  // a sample is an orbit
+  const double collisions_;  // of a sample, at least 1
   const uint64_t most_in_a_part_;
   const std::function<bool()> pause_;
   std::deque<OpenBlock> open_;  // in order

@@ -1,6 +1,6 @@
 // The specification of a job: an experiment, a grid of parameter points, and a target.
 //
-// The struct holds unchecked input. `Violations` lists all errors, field by field. All other
+// The struct holds unchecked input. `Violations` lists its errors, field by field. All other
 // functions of this folder require a spec without violations.
 #pragma once
 
@@ -24,10 +24,10 @@ inline constexpr int64_t kMaxPoints = 100'000;
 inline constexpr double kMaxBudgetSeconds = 1e6;
 
 // At most one of the numbers is set, except that a budget and a tolerance may be set together. If
-// none is set, the target is kDefaultSamples samples or collisions.
+// none is set, the target is kDefaultSamples samples.
 struct Target {
-  std::optional<int64_t> samples = {};     // first hits, or orbits, a point
-  std::optional<int64_t> collisions = {};  // ball-piston collisions a point
+  std::optional<int64_t> samples = {};     // a point
+  std::optional<int64_t> collisions = {};  // a point: the samples that have this many on average
   std::optional<double> tolerance = {};    // relative standard error of the first estimate
   std::optional<double> budget_seconds = {};
   // The name of the estimate that the tolerance and the choice of the model refer to. It is the
@@ -58,7 +58,8 @@ struct FieldViolation {
   std::string description;
 };
 
-// All errors of the spec; empty if the spec can be run.
+// The errors of the spec itself. Combinations of the grid's values are checked if each value is
+// permitted. What the answering model cannot do is found by model_choice/ladder.h.
 std::vector<FieldViolation> Violations(const EnsembleSpec& spec);
 
 size_t PointCount(const EnsembleSpec& spec);

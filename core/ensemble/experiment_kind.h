@@ -55,9 +55,6 @@ struct ParameterUse {
   std::optional<double> default_value = {};  // of every point if the list is empty
 };
 
-// The unit of a number in the target.
-enum class TargetUnit { kSamples, kCollisions, kEither };
-
 // How far the limit delta -> 0 is from the billiard, in one estimate.
 struct LimitError {
   Model model;  // the cheapest one that answers in the limit
@@ -95,7 +92,6 @@ struct ExperimentKind {
   absl::string_view name;  // as users write it: "first-hit"
   uint64_t number;         // as in the API; decides the random streams
   std::span<const ParameterUse> parameters;
-  TargetUnit unit = TargetUnit::kSamples;
   std::span<const Model> models;        // that can answer one of the aims; cheapest first
   std::span<const AimedEstimate> aims;  // the first one is the default
 
@@ -104,11 +100,10 @@ struct ExperimentKind {
   std::unique_ptr<PointExperiment> (*create)(const EnsembleSpec& spec,
                                              const PointParameters& point);
   PointSummary (*compute)(const EnsembleSpec& spec, const PointParameters& point) = nullptr;
-  // Finds combinations of values, or of values and precision, that are not permitted although each
-  // value alone is.
+  // Finds combinations of values, or of values, model and precision, that are not permitted
+  // although each value alone is. Requires that each is, and that the lists the experiment needs
+  // have values.
   void (*check_grid)(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
-  // Finds why sampling cannot reach a tolerance; null if it always can.
-  void (*check_tolerance)(const EnsembleSpec& spec, std::vector<FieldViolation>& found) = nullptr;
 
   // These two describe one sample by `model`: its work, and its mean number of ball-piston
   // collisions.

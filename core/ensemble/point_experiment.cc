@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "core/ensemble/experiment_kind.h"
 
 namespace ballpiston {
@@ -25,6 +27,21 @@ uint64_t ExpectedChunks(const EnsembleSpec& spec, const PointParameters& point,
                         const ChunkPlan& plan) {
   if (!spec.target.tolerance || plan.samples() == 0) return plan.chunks();
   return plan.ChunksFor(SamplesFor(*spec.target.tolerance, spec, point));
+}
+
+// Why the estimate has no standard error, if that is because of the number of samples.
+std::optional<std::string> RemarkOnSamples(const std::string& estimate, double samples,
+                                           double needed) {
+  if (samples >= needed) return std::nullopt;
+  if (!std::isfinite(needed)) {
+    return absl::StrCat(estimate, " has no standard error: no number of samples has enough of the ",
+                        "events that determine it");
+  }
+  return absl::StrFormat(
+      "%s has no standard error: an error needs about %.6g samples, which have enough of the "
+      "events "
+      "that determine it",
+      estimate, std::ceil(needed));
 }
 
 }  // namespace
@@ -68,6 +85,7 @@ PointExperiment::PointExperiment(const EnsembleSpec& spec, const PointParameters
       engine_(EngineFor(spec)),
       plan_(plan),
       expected_chunks_(ExpectedChunks(spec, parameters, plan)),
+      aim_(&AimOf(spec)),
       tolerance_(spec.target.tolerance),
       random_{spec.seed, PointStream(spec, parameters)} {}
 
@@ -115,6 +133,11 @@ PointSummary PointExperiment::Summarize(const BlockResult& merged) const {
   PointSummary summary = {
       .samples = merged.samples, .estimates = EstimatesOf(table_, merged), .health = merged.health};
   AddDetails(merged, summary);
+  const Estimate& first = summary.estimates.front();
+  if (first.standard_error) return summary;
+  const auto remark = RemarkOnSamples(first.name, static_cast<double>(merged.samples),
+                                      aim_->SamplesForAnError(answer_.model, parameters_));
+  if (remark) summary.remarks.push_back(*remark);
   return summary;
 }
 

@@ -28,6 +28,8 @@
 
 namespace ballpiston {
 
+struct AimedEstimate;
+
 // The model that answers, and its error.
 struct Answer {
   Model model = Model::kBilliard;  // not kAuto
@@ -86,9 +88,10 @@ class PointExperiment {
 
   // The estimate that a tolerance refers to. This and Summarize require at least one merged block
   // if the plan has blocks.
-  virtual Estimate FirstEstimate(const BlockResult& merged) const;
+  Estimate FirstEstimate(const BlockResult& merged) const;
 
-  // All that was measured. The first estimate is FirstEstimate.
+  // All that was measured. The first estimate is FirstEstimate. If it has no standard error, a
+  // remark says how many samples an error needs.
   virtual PointSummary Summarize(const BlockResult& merged) const;
 
   // Whether `merged`, the complete chunks, reaches the tolerance; false if there is no tolerance.
@@ -119,6 +122,7 @@ class PointExperiment {
   Engine engine_;
   ChunkPlan plan_;
   uint64_t expected_chunks_;
+  const AimedEstimate* aim_;
   std::optional<double> tolerance_;
   RandomStream random_;
   BlockResult empty_;

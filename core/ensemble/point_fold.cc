@@ -10,7 +10,7 @@ PointFold::PointFold(const PointExperiment& experiment)
     : experiment_(experiment), chunks_(experiment.plan().chunks()), finished_(chunks_ == 0) {}
 
 bool PointFold::Needs(uint64_t chunk) const {
-  return !finished_ && chunk >= state_.chunk && chunk < chunks_ && !early_.Has(chunk);
+  return !finished_ && chunk >= state_.chunk && chunk < chunks_ && !early_.contains(chunk);
 }
 
 GroupState PointFold::StartOf(uint64_t chunk) const {
@@ -18,8 +18,8 @@ GroupState PointFold::StartOf(uint64_t chunk) const {
   if (groups == 0 || chunk < groups) return {};
   const uint64_t group = chunk % groups, previous = chunk - groups;
   if (previous < state_.chunk) return state_.complete.groups[group];
-  const BlockResult* const early = early_.Find(previous);
-  return early == nullptr ? GroupState() : early->groups[group];
+  const auto early = early_.find(previous);
+  return early == early_.end() ? GroupState() : early->second.groups[group];
 }
 
 bool PointFold::CanStart(uint64_t chunk) const {
@@ -29,11 +29,11 @@ bool PointFold::CanStart(uint64_t chunk) const {
 
 uint64_t PointFold::Add(ChunkResult chunk) {
   if (!Needs(chunk.chunk)) return 0;
-  early_.Add(chunk.chunk, std::move(chunk.result));
+  early_.emplace(chunk.chunk, std::move(chunk.result));
   if (chunk.whole_blocks.blocks > 0) whole_blocks_ = std::move(chunk.whole_blocks);
   uint64_t samples = 0;
-  while (const std::optional<BlockResult> next = early_.Take(state_.chunk)) {
-    samples += MergeNext(*next);
+  while (const auto next = early_.extract(state_.chunk)) {
+    samples += MergeNext(next.mapped());
   }
   return samples;
 }
@@ -77,7 +77,7 @@ uint64_t PointFold::AddPartial(const PartialChunk& partial) {
 
 void PointFold::Finish() {
   finished_ = true;
-  early_.Clear();
+  early_.clear();
 }
 
 void PointFold::Resume(FoldState state) {

@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <stop_token>
 #include <utility>
@@ -90,8 +91,8 @@ class PointFold {
   const uint64_t chunks_;
   FoldState state_;
   bool finished_;
-  InOrder<uint64_t, BlockResult> early_;  // by chunk
-  PartialChunk whole_blocks_;             // of the chunk that is cut
+  std::map<uint64_t, BlockResult> early_;  // by chunk: those that wait for earlier ones
+  PartialChunk whole_blocks_;              // of the chunk that is cut
   std::optional<FoldState> before_the_cut_;
 };
 

@@ -99,7 +99,13 @@ void CheckValues(const EnsembleSpec& spec, Found& found) {
   for (const Parameter* parameter : kParameters) {
     CheckEachValue(*parameter, spec.grid[*parameter], found);
   }
-  if (spec.experiment != nullptr) spec.experiment->check_grid(spec, found);
+}
+
+// Combinations of values are checked if each list and each value is permitted.
+void CheckGrid(const EnsembleSpec& spec, Found& found) {
+  if (spec.experiment != nullptr) CheckLists(spec, found);
+  CheckValues(spec, found);
+  if (spec.experiment != nullptr && found.empty()) spec.experiment->check_grid(spec, found);
 }
 
 void CheckCount(absl::string_view field, const std::optional<int64_t>& count, Found& found) {
@@ -108,28 +114,11 @@ void CheckCount(absl::string_view field, const std::optional<int64_t>& count, Fo
                    absl::StrFormat("is %d; permitted: 1 to %d", *count, kMaxSamples)});
 }
 
-void CheckUnit(const EnsembleSpec& spec, Found& found) {
-  const ExperimentKind& experiment = *spec.experiment;
-  if (experiment.unit == TargetUnit::kCollisions && spec.target.samples) {
-    found.push_back({"target.samples",
-                     absl::StrCat(experiment.name, " counts collisions; use target.collisions")});
-  }
-  if (experiment.unit == TargetUnit::kSamples && spec.target.collisions) {
-    found.push_back({"target.collisions",
-                     absl::StrCat(experiment.name, " counts samples; use target.samples")});
-  }
-}
-
 void CheckTolerance(const EnsembleSpec& spec, Found& found) {
   if (!spec.target.tolerance) return;
-  if (!(*spec.target.tolerance > 0 && *spec.target.tolerance < 1)) {
-    found.push_back({"target.tolerance", absl::StrCat("is ", NumberText(*spec.target.tolerance),
-                                                      "; permitted: 0 < tolerance < 1")});
-  }
-  const bool is_known = spec.experiment->FindAim(spec.target.estimate) != nullptr;
-  const bool can_be_missed =
-      is_known && spec.experiment->check_tolerance != nullptr && !IsAnsweredByClosedForm(spec);
-  if (can_be_missed && HasPoints(spec.grid)) spec.experiment->check_tolerance(spec, found);
+  if (*spec.target.tolerance > 0 && *spec.target.tolerance < 1) return;
+  found.push_back({"target.tolerance", absl::StrCat("is ", NumberText(*spec.target.tolerance),
+                                                    "; permitted: 0 < tolerance < 1")});
 }
 
 std::string NamesOfAims(const ExperimentKind& experiment, Model model) {
@@ -200,7 +189,6 @@ void CheckTarget(const EnsembleSpec& spec, Found& found) {
   const int kinds =
       target.samples.has_value() + target.collisions.has_value() + target.tolerance.has_value();
   if (kinds > 1) found.push_back({"target", "more than one kind is set; permitted: one"});
-  CheckUnit(spec, found);
   CheckCount("samples", target.samples, found);
   CheckCount("collisions", target.collisions, found);
   CheckEstimate(spec, found);
@@ -235,14 +223,13 @@ std::string ExperimentNames() {
 
 std::vector<FieldViolation> Violations(const EnsembleSpec& spec) {
   Found found;
+  CheckGrid(spec, found);
   if (spec.experiment == nullptr) {
     found.push_back({"experiment", absl::StrCat("is missing; permitted: ", ExperimentNames())});
-  } else {
-    CheckLists(spec, found);
-    CheckTarget(spec, found);
-    CheckModel(spec, found);
+    return found;
   }
-  CheckValues(spec, found);
+  CheckTarget(spec, found);
+  CheckModel(spec, found);
   if (found.empty() && spec.target.collisions && !NeedsNoSamples(spec)) {
     CheckSamplesOfCollisions(spec, found);
   }

@@ -5,12 +5,9 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
-#include "core/arithmetic/number_text.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/chunk_plan.h"
 #include "core/experiment/all_experiments.h"
@@ -20,37 +17,12 @@
 #include "core/experiment/pair_experiment.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
-#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
 
 // A group of walkers runs until its slowest walker has finished.
 constexpr uint64_t kWalkersInStep = 256;
-
-// Measurements of a block's orbits, by orbit.
-class OrbitMeasurements {
- public:
-  OrbitMeasurements(const EnergyRelaxation& relaxation, uint64_t orbits)
-      : relaxation_(relaxation), values_(orbits) {}
-
-  void Set(uint64_t orbit, const StepFunction& energy) {
-    values_[orbit] = relaxation_.Measure(energy);
-  }
-
-  // The result of all orbits with measurements.
-  BlockResult Result() const {
-    BlockResult result = relaxation_.Empty();
-    for (const std::vector<double>& values : values_) {
-      if (!values.empty()) relaxation_.Record(values, result);
-    }
-    return result;
-  }
-
- private:
-  const EnergyRelaxation& relaxation_;
-  std::vector<std::vector<double>> values_;
-};
 
 class RelaxingOrbits {
  public:
@@ -60,7 +32,7 @@ class RelaxingOrbits {
         relaxation_(relaxation),
         first_(block.first),
         energies_(block.samples),
-        measurements_(relaxation, block.samples) {}
+        values_(block.samples) {}
 
   uint64_t count() const { return energies_.size(); }
 
@@ -82,19 +54,25 @@ class RelaxingOrbits {
       energy->Add(collision.time, v * v / 2);
       if (energy->last_jump() < relaxation_.orbit_time()) return AfterCollision::kGoOn;
     }
-    measurements_.Set(orbit, *energy);
+    values_[orbit] = relaxation_.Measure(*energy);
     energy.reset();
     return AfterCollision::kEnd;
   }
 
-  BlockResult Result() const { return measurements_.Result(); }
+  BlockResult Result() const {
+    BlockResult result = relaxation_.Empty();
+    for (const std::vector<double>& values : values_) {
+      if (!values.empty()) relaxation_.Record(values, result);
+    }
+    return result;
+  }
 
  private:
   const PairExperiment& experiment_;
   const EnergyRelaxation& relaxation_;
   uint64_t first_;
   std::vector<std::optional<StepFunction>> energies_;  // of the orbits that run
-  OrbitMeasurements measurements_;
+  std::vector<std::vector<double>> values_;            // measured, by orbit; empty for an escape
 };
 
 std::vector<double> StartsOfWalkers(const std::optional<double>& epsilon,
@@ -131,16 +109,16 @@ std::vector<StepFunction> WalkTogether(const EnergyRelaxation& relaxation,
 // A block of the jump process. Empty only if `stop` was requested.
 std::optional<BlockResult> WalkBlock(const EnergyRelaxation& relaxation, const RandomStream& random,
                                      const Block& block, const std::stop_token& stop) {
-  OrbitMeasurements measurements(relaxation, block.samples);
+  BlockResult result = relaxation.Empty();
   for (uint64_t done = 0; done < block.samples; done += kWalkersInStep) {
     const uint64_t together = std::min(kWalkersInStep, block.samples - done);
     const auto energies = WalkTogether(relaxation, random, block.first + done, together, stop);
     for (uint64_t i = 0; i < together; ++i) {
       if (stop.stop_requested()) return std::nullopt;
-      measurements.Set(done + i, energies[i]);
+      relaxation.Record(relaxation.Measure(energies[i]), result);
     }
   }
-  return measurements.Result();
+  return result;
 }
 
 Estimate SpectralGap() {
@@ -205,32 +183,9 @@ class EnergyRelaxationExperiment : public PairExperiment {
     summary.remarks = RemarksOnDecay(relaxation_.epsilon());
     summary.curves.push_back(relaxation_.MeasuredCurve(merged, events_per_orbit_));
     summary.histograms = relaxation_.MeasuredLaws(merged);
-    if (LacksEvents(merged)) summary.remarks.push_back(ReasonOfNoErrors(merged));
   }
 
  private:
-  double EventsIn(const BlockResult& merged) const {
-    return static_cast<double>(merged.samples) * events_per_orbit_;
-  }
-
-  // Whether there are no errors, although the sample is not small.
-  bool LacksEvents(const BlockResult& merged) const {
-    return HasStatedError(static_cast<double>(merged.samples)) && !HasStatedError(EventsIn(merged));
-  }
-
-  std::string ReasonOfNoErrors(const BlockResult& merged) const {
-    if (!relaxation_.epsilon()) {
-      return absl::StrFormat(
-          "there are no standard errors: few orbits, those with a slow piston, skew the law of %d "
-          "orbits; errors need %.0f orbits",
-          merged.samples, kEventsForAnError / events_per_orbit_);
-    }
-    return absl::StrFormat(
-        "there are no standard errors: ball and piston meet in about %.2g of these %d orbits; "
-        "errors need %.0f",
-        EventsIn(merged), merged.samples, kEventsForAnError);
-  }
-
   EnergyRelaxation relaxation_;
   double events_per_orbit_;  // for the standard errors
 };
@@ -296,20 +251,6 @@ double EventsOfAnOrbit(Model model, const PointParameters& point) {
   return EventsOf(model, EnergyRelaxation(GeometryOf(point), point));
 }
 
-// Finds a tolerance at energies where the estimate passes through 0, because a relative error has
-// no meaning there.
-void CheckToleranceOfDecay(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
-  const std::vector<double>& energies = spec.grid[kEpsilon];
-  for (size_t i = 0; i < energies.size(); ++i) {
-    if (HasRelaxationTime(energies[i])) continue;
-    found.push_back({absl::StrFormat("grid.epsilon[%d]", i),
-                     absl::StrCat("is ", NumberText(energies[i]),
-                                  ", where there is no relaxation time; permitted with a "
-                                  "tolerance: [0, ",
-                                  kNoDecayFrom, "] or [", kNoDecayTo, ", 0.5]")});
-  }
-}
-
 constexpr ParameterUse kParametersOfRelaxation[] = {
     {&kRho}, {&kDelta}, {.parameter = &kEpsilon, .needed = false}};
 constexpr Model kModelsOfRelaxation[] = {Model::kSpectrum, Model::kMarkov, Model::kBilliard,
@@ -348,13 +289,11 @@ constinit const ExperimentKind kEnergyRelaxation = {
     .name = "energy-relaxation",
     .number = 4,
     .parameters = kParametersOfRelaxation,
-    .unit = TargetUnit::kEither,
     .models = kModelsOfRelaxation,
     .aims = kAimsOfRelaxation,
     .create = CreateAs<EnergyRelaxationExperiment>,
     .compute = RelaxationBySpectrum,
     .check_grid = CheckPairGrid,
-    .check_tolerance = CheckToleranceOfDecay,
     .work = WorkOfAnOrbit,
     .collisions = CollisionsOfASample,
     .memory = MemoryOfOrbits,

@@ -10,12 +10,10 @@
 #include <memory>
 #include <vector>
 
-#include "absl/strings/str_format.h"
 #include "core/billiard/orbits.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/pair_experiment.h"
-#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
@@ -91,14 +89,6 @@ class EquilibriumExperiment : public PairExperiment {
   std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
     return RunOrbits(queue, [this](const Block& block) { return TimedOrbits(*this, block); });
   }
-
- protected:
-  void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
-    if (HasStatedError(kEventsPerCollision * static_cast<double>(merged.samples))) return;
-    summary.remarks.push_back(
-        absl::StrFormat("there are no standard errors: these need %.0f collisions",
-                        kEventsForAnError / kEventsPerCollision));
-  }
 };
 
 PointSummary ExactMeanFreeTimes(const EnsembleSpec&, const PointParameters& point) {
@@ -130,7 +120,6 @@ constexpr AimedEstimate kAimsOfEquilibrium[] = {{.name = kNamesOfTimes[kBallPist
 constinit const ExperimentKind kEquilibrium = {.name = "equilibrium",
                                                .number = 1,
                                                .parameters = kPairAlone,
-                                               .unit = TargetUnit::kCollisions,
                                                .models = kModelsOfEquilibrium,
                                                .aims = kAimsOfEquilibrium,
                                                .create = CreateAs<EquilibriumExperiment>,

@@ -21,8 +21,6 @@
 #include <utility>
 #include <vector>
 
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "core/closed_form/conditional_rate.h"
 #include "core/closed_form/ingoing_law.h"
 #include "core/closed_form/mean_free_time.h"
@@ -84,15 +82,6 @@ double EventsOfAReturn(Model, const PointParameters& point) {
   return std::min(LongReturnsPerSample(GeometryOf(point), point[kEpsilon]), 1.0);
 }
 
-// Finds a tolerance at epsilon = 0, where the return time has no variance.
-void CheckToleranceOfReturns(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
-  const std::vector<double>& energies = spec.grid[kEpsilon];
-  if (std::find(energies.begin(), energies.end(), 0.0) == energies.end()) return;
-  found.push_back({"target.tolerance",
-                   "cannot be reached at epsilon = 0, where the return time has no variance; "
-                   "permitted: samples"});
-}
-
 // ---- both experiments ----
 
 class ReturnExperiment : public PairExperiment {
@@ -128,14 +117,6 @@ class ReturnExperiment : public PairExperiment {
             [this](const BlockResult& merged) { return Variation(merged.moments[kTime]); }};
   }
 
-  void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
-    const Moments& times = merged.moments[kTime];
-    const bool is_large = HasStatedError(static_cast<double>(times.count));
-    if (!is_large || HasStatedError(EventsIn(times))) return;
-    summary.remarks.push_back(
-        absl::StrCat("the mean return time has no standard error: ", ReasonOfNoError(times)));
-  }
-
  private:
   double EventsIn(const Moments& times) const { return static_cast<double>(times.count) * events_; }
 
@@ -151,16 +132,6 @@ class ReturnExperiment : public PairExperiment {
                     .standard_error = StatedError(kEventsOfScatter * EventsIn(times), *value,
                                                   times.CoefficientOfVariationError()),
                     .batches = times.EffectiveCount()};
-  }
-
-  std::string ReasonOfNoError(const Moments& times) const {
-    if (law_.epsilon == 0) {
-      return "at epsilon = 0, where the piston rests, the variance of return times is infinite";
-    }
-    return absl::StrFormat(
-        "a few long returns dominate it, of which %.2g are expected in %d samples; an error needs "
-        "%.0f",
-        EventsIn(times), times.count, kEventsForAnError);
   }
 
   ReturnLaw law_;
@@ -253,7 +224,6 @@ class FirstHitExperiment : public ReturnExperiment {
 
  protected:
   void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
-    ReturnExperiment::AddDetails(merged, summary);
     for (const Histogram& histogram : IngoingOf(merged.histograms)) {
       const int sigma = kIngoingSigmas[summary.histograms.size()];
       summary.histograms.push_back({"alpha", sigma, histogram});
@@ -318,13 +288,11 @@ constinit const ExperimentKind kConditionalMeanFreeTime = {
     .name = "conditional-mean-free-time",
     .number = 2,
     .parameters = kParametersOfConditional,
-    .unit = TargetUnit::kSamples,
     .models = kModelsOfConditional,
     .aims = kAimsOfConditional,
     .create = CreateAs<ConditionalMeanFreeTimeExperiment>,
     .compute = ExactConditionalTime,
     .check_grid = CheckPairGrid,
-    .check_tolerance = CheckToleranceOfReturns,
     .work = WorkOfAReturn,
     .collisions = OneCollision,
     .memory = MemoryOfPairs};
@@ -333,12 +301,10 @@ constinit const ExperimentKind kConditionalMeanFreeTime = {
 constinit const ExperimentKind kFirstHit = {.name = "first-hit",
                                             .number = 3,
                                             .parameters = kParametersOfFirstHit,
-                                            .unit = TargetUnit::kSamples,
                                             .models = kBilliards,
                                             .aims = kAimsOfFirstHit,
                                             .create = CreateAs<FirstHitExperiment>,
                                             .check_grid = CheckPairGrid,
-                                            .check_tolerance = CheckToleranceOfReturns,
                                             .work = WorkOfAReturn,
                                             .collisions = OneCollision,
                                             .summary = kWorkOfNoise,

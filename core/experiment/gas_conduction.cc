@@ -428,35 +428,15 @@ class GasConduction : public SteadyGas {
   ProfilePlaces places_;
 };
 
-// Ignores NaN.
-double LargestOf(std::span<const double> values) {
-  double largest = 0;
-  for (const double value : values) largest = std::fmax(largest, value);
-  return largest;
-}
-
 void CheckConductionGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
   CheckGasGrid(spec, found);
   const std::vector<double>& hot = spec.grid[kHot];
   for (size_t i = 0; i < hot.size(); ++i) {
-    const double largest_cold = LargestOf(spec.grid.Beside(kHot, i, kCold));
-    if (!(hot[i] < largest_cold)) continue;
+    const double largest_cold = std::ranges::max(spec.grid.Beside(kHot, i, kCold));
+    if (hot[i] >= largest_cold) continue;
     found.push_back({absl::StrFormat("grid.hot[%d]", i),
                      absl::StrFormat("hot is %s, below cold = %s; permitted: hot >= cold",
                                      NumberText(hot[i]), NumberText(largest_cold))});
-  }
-}
-
-void CheckConductionTolerance(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
-  for (size_t i = 0; i < spec.grid[kHot].size(); ++i) {
-    const double hot = spec.grid[kHot][i];
-    const std::span<const double> cold = spec.grid.Beside(kHot, i, kCold);
-    if (std::ranges::find(cold, hot) == cold.end()) continue;
-    found.push_back({"target.tolerance",
-                     absl::StrFormat("is relative, but the heat current is 0 if hot = cold = %s; "
-                                     "permitted in this case: samples, collisions or a budget",
-                                     NumberText(hot))});
-    return;
   }
 }
 
@@ -530,12 +510,10 @@ constexpr AimedEstimate kAimsOfGasConduction[] = {{.name = "heat_current",
 constinit const ExperimentKind kGasConduction = {.name = "gas-conduction",
                                                  .number = 7,
                                                  .parameters = kParametersOfGasConduction,
-                                                 .unit = TargetUnit::kEither,
                                                  .models = kModelsOfGasConduction,
                                                  .aims = kAimsOfGasConduction,
                                                  .create = CreateAs<GasConduction>,
                                                  .check_grid = CheckConductionGrid,
-                                                 .check_tolerance = CheckConductionTolerance,
                                                  .work = WorkOfGasConduction,
                                                  .collisions = ExchangesOfAConductionSample,
                                                  .memory = MemoryOfConduction,

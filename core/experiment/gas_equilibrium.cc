@@ -175,7 +175,7 @@ class GasEquilibrium : public GasReplicas {
     summary.curves = {
         CurveOf("conductivity_ratio_by_window", kFirstWindow, 0, 1 / StaticConductivity(), merged),
         CurveOf("current_autocorrelation", kFirstLag, 1, AutocorrelationScale(), merged)};
-    AddRemarks(merged, summary.remarks);
+    AddRemarks(merged, summary);
   }
 
  private:
@@ -246,13 +246,14 @@ class GasEquilibrium : public GasReplicas {
     return curve;
   }
 
-  void AddRemarks(const BlockResult& merged, std::vector<std::string>& remarks) const {
-    remarks.push_back(absl::StrFormat(
+  void AddRemarks(const BlockResult& merged, PointSummary& summary) const {
+    summary.remarks.push_back(absl::StrFormat(
         "the conductivity includes the current's correlations up to a time of %.3g, %.2g mean "
         "times between exchanges of a ball and a piston",
         kWindow * Step(), ExchangesOf(answer().model, geometry()) * kWindow / kCurrentSteps));
-    if (HasStatedError(events_ * static_cast<double>(merged.samples))) return;
-    remarks.push_back(
+    const bool is_first = summary.estimates.front().name == kConductivity;  // it has a remark
+    if (is_first || HasStatedError(events_ * static_cast<double>(merged.samples))) return;
+    summary.remarks.push_back(
         absl::StrFormat("the conductivity has no standard error: this needs %.0f replicas",
                         kEventsForAnError / events_));
   }
@@ -400,7 +401,6 @@ constexpr AimedEstimate kAimsOfGasEquilibrium[] = {
 constinit const ExperimentKind kGasEquilibrium = {.name = "gas-equilibrium",
                                                   .number = 6,
                                                   .parameters = kParametersOfAPeriodicGas,
-                                                  .unit = TargetUnit::kEither,
                                                   .models = kModelsOfGasEquilibrium,
                                                   .aims = kAimsOfGasEquilibrium,
                                                   .create = CreateAs<GasEquilibrium>,

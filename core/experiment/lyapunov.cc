@@ -19,14 +19,12 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "core/billiard/orbits.h"
 #include "core/billiard/tangent_frame.h"
 #include "core/billiard/tangent_plane.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/pair_experiment.h"
-#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
@@ -159,14 +157,6 @@ class LyapunovExperiment : public PairExperiment {
     return RunFollowed<TangentPlane>(queue);
   }
 
- protected:
-  void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
-    if (HasStatedError(kOrbitsPerCollision * static_cast<double>(merged.samples))) return;
-    summary.remarks.push_back(
-        absl::StrFormat("there are no standard errors: these need %.0f collisions",
-                        kEventsForAnError / kOrbitsPerCollision));
-  }
-
  private:
   template <typename Tangents>
   std::unique_ptr<EngineRun> RunFollowed(BlockQueue& queue) const {
@@ -204,7 +194,6 @@ constexpr AimedEstimate kAimsOfLyapunov[] = {
 constinit const ExperimentKind kLyapunov = {.name = "lyapunov",
                                             .number = 8,
                                             .parameters = kPairAlone,
-                                            .unit = TargetUnit::kCollisions,
                                             .models = kBilliards,
                                             .aims = kAimsOfLyapunov,
                                             .create = CreateAs<LyapunovExperiment>,

@@ -19,10 +19,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "core/arithmetic/elementary_functions.h"
-#include "core/arithmetic/number_text.h"
 #include "core/billiard/orbits.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/all_experiments.h"
@@ -30,7 +27,6 @@
 #include "core/experiment/pair_experiment.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
-#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
@@ -163,14 +159,6 @@ class MarkovPropertyExperiment : public PairExperiment {
     }
     return RunOrbits(queue, [this](const Block& block) { return ExchangeOrbits(*this, block); });
   }
-
- protected:
-  void AddDetails(const BlockResult&, PointSummary& summary) const override {
-    if (summary.estimates.front().standard_error) return;
-    summary.remarks.push_back(
-        absl::StrFormat("there are no standard errors: these need %.0f orbits of %d collisions",
-                        kEventsForAnError, kExchangesPerOrbit));
-  }
 };
 
 SampleWork WorkOfAnExchange(Model model, const PointParameters& point) {
@@ -181,36 +169,29 @@ double ErrorOfWhatTendsToZero(Model, const PointParameters&) {
   return std::numeric_limits<double>::infinity();
 }
 
-void CheckToleranceOfWhatTendsToZero(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
-  found.push_back({"target.tolerance",
-                   absl::StrCat("is ", NumberText(*spec.target.tolerance),
-                                " and relative, but the first estimate of ", spec.experiment->name,
-                                " tends to 0; permitted: collisions, budget")});
-}
+double OrbitsOfAnExchange(Model, const PointParameters&) { return 1.0 / kExchangesPerOrbit; }
 
 constexpr Model kModelsOfMarkovProperty[] = {Model::kMarkov, Model::kBilliard,
                                              Model::kBilliardReference};
 
 constexpr AimedEstimate kAimsOfMarkovProperty[] = {{.name = "memory_correlation",
                                                     .models = kModelsOfMarkovProperty,
-                                                    .error = ErrorOfWhatTendsToZero}};
+                                                    .error = ErrorOfWhatTendsToZero,
+                                                    .events = OrbitsOfAnExchange}};
 
 }  // namespace
 
-constinit const ExperimentKind kMarkovProperty = {
-    .name = "markov-property",
-    .number = 5,
-    .parameters = kPairAlone,
-    .unit = TargetUnit::kCollisions,
-    .models = kModelsOfMarkovProperty,
-    .aims = kAimsOfMarkovProperty,
-    .create = CreateAs<MarkovPropertyExperiment>,
-    .check_grid = CheckPairGrid,
-    .check_tolerance = CheckToleranceOfWhatTendsToZero,
-    .work = WorkOfAnExchange,
-    .collisions = OneCollision,
-    .memory = MemoryOfPairs,
-    .memory_of_a_result = 120e3,
-    .samples_together = kExchangesPerOrbit};
+constinit const ExperimentKind kMarkovProperty = {.name = "markov-property",
+                                                  .number = 5,
+                                                  .parameters = kPairAlone,
+                                                  .models = kModelsOfMarkovProperty,
+                                                  .aims = kAimsOfMarkovProperty,
+                                                  .create = CreateAs<MarkovPropertyExperiment>,
+                                                  .check_grid = CheckPairGrid,
+                                                  .work = WorkOfAnExchange,
+                                                  .collisions = OneCollision,
+                                                  .memory = MemoryOfPairs,
+                                                  .memory_of_a_result = 120e3,
+                                                  .samples_together = kExchangesPerOrbit};
 
 }  // namespace ballpiston

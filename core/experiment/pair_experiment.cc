@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <span>
 #include <string>
 
 #include "absl/strings/str_cat.h"
@@ -45,50 +44,8 @@ std::optional<std::string> WrongDelta(double smallest, double largest, double de
       NumberText(delta), NumberText(smallest), SmallestDelta(smallest));
 }
 
-// The smallest and the largest valid rho.
-struct RangeOfRho {
-  double smallest = kMaxRho;
-  double largest = kMinRho;
-  bool IsEmpty() const { return largest == kMinRho; }
-};
-
-RangeOfRho RangeOf(std::span<const double> radii) {
-  RangeOfRho range;
-  for (const double rho : radii) {
-    if (!ValidateRho(rho).ok()) continue;
-    range.largest = std::fmax(range.largest, rho);
-    range.smallest = std::fmin(range.smallest, rho);
-  }
-  return range;
-}
-
 const BilliardDomain& DomainOf(const EnsembleSpec& spec) {
   return spec.precision == Precision::kSingle ? kSingleDomain : kDoubleDomain;
-}
-
-// The values at which a billiard has to answer.
-struct BilliardValues {
-  std::vector<double> rho;
-  std::vector<double> delta;
-};
-
-// With model AUTO those of the points outside of the billiard's domain that no other model answers.
-BilliardValues ValuesForBilliard(const EnsembleSpec& spec) {
-  if (spec.precision == Precision::kSingle || spec.model != Model::kAuto) {
-    return {spec.grid[kRho], spec.grid[kDelta]};
-  }
-  BilliardValues values;
-  for (size_t i = 0; i < PointCount(spec); ++i) {
-    const PointParameters point = PointAt(spec, i);
-    if (IsSoundForBilliard(spec, point) || IsAnsweredWithoutBilliard(spec, point)) continue;
-    values.rho.push_back(point[kRho]);
-    values.delta.push_back(point[kDelta]);
-  }
-  return values;
-}
-
-bool Contains(const std::vector<double>& values, double x) {
-  return std::find(values.begin(), values.end(), x) != values.end();
 }
 
 // The name of what has the domain, and the models that have none.
@@ -122,23 +79,10 @@ bool IsSoundForBilliard(const EnsembleSpec& spec, const PointParameters& point) 
   return DomainOf(spec).Has(point[kRho], point[kDelta]);
 }
 
-bool IsAnsweredWithoutBilliard(const EnsembleSpec& spec, const PointParameters& point) {
-  const AimedEstimate& aim = AimOf(spec);
-  if (aim.HasClosedForm()) return !spec.verify;
-  if (aim.limit_error == nullptr || !aim.limit_error->is_known(point)) return false;
-  if (!spec.target.tolerance) return spec.target.budget_seconds.has_value();
-  return aim.limit_error->IsWithin(*spec.target.tolerance, point);
-}
-
-// Model AUTO chooses by points, so it is checked only if each value is valid.
 void CheckBilliardDomain(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
-  const bool is_asked = spec.model == Model::kAuto || IsABilliard(spec.model);
-  if (!is_asked ||
-      (spec.model == Model::kAuto && spec.precision == Precision::kDouble && !found.empty())) {
-    return;
-  }
+  const bool is_single = spec.model == Model::kAuto && spec.precision == Precision::kSingle;
+  if (!is_single && !IsABilliard(spec.model)) return;
   const BilliardDomain& domain = DomainOf(spec);
-  const BilliardValues values = ValuesForBilliard(spec);
   const auto refuse = [&](absl::string_view name, size_t i, double value, std::string permitted) {
     found.push_back({absl::StrFormat("grid.%s[%d]", name, i),
                      absl::StrCat(name, " is ", NumberText(value), "; ", PermittedWith(spec),
@@ -146,24 +90,21 @@ void CheckBilliardDomain(const EnsembleSpec& spec, std::vector<FieldViolation>& 
   };
   const std::vector<double>&radii = spec.grid[kRho], &deltas = spec.grid[kDelta];
   for (size_t i = 0; i < radii.size(); ++i) {
-    if (!ValidateRho(radii[i]).ok() || domain.HasRho(radii[i])) continue;
-    if (Contains(values.rho, radii[i])) refuse("rho", i, radii[i], RangeOfRhoIn(domain));
+    if (!domain.HasRho(radii[i])) refuse("rho", i, radii[i], RangeOfRhoIn(domain));
   }
   for (size_t i = 0; i < deltas.size(); ++i) {
-    if (!ValidateSomeDelta(deltas[i]).ok() || domain.HasDelta(deltas[i])) continue;
-    if (!Contains(values.delta, deltas[i])) continue;
+    if (domain.HasDelta(deltas[i])) continue;
     refuse("delta", i, deltas[i], absl::StrCat("delta >= ", NumberText(domain.min_delta)));
   }
 }
 
-// The largest valid rho has the smallest bound, and the smallest rho has the longest times, so it
+// The largest rho has the smallest bound, and the smallest rho has the longest times, so it
 // is enough to check each delta with these two.
 void CheckDeltas(const Grid& grid, DeltaValidation validate, std::vector<FieldViolation>& found) {
   const std::vector<double>& deltas = grid[kDelta];
   for (size_t i = 0; i < deltas.size(); ++i) {
-    const RangeOfRho range = RangeOf(grid.Beside(kDelta, i, kRho));
-    if (range.IsEmpty() || !ValidateSomeDelta(deltas[i]).ok()) continue;  // already reported
-    if (const auto wrong = WrongDelta(range.smallest, range.largest, deltas[i], validate)) {
+    const auto [smallest, largest] = std::ranges::minmax(grid.Beside(kDelta, i, kRho));
+    if (const auto wrong = WrongDelta(smallest, largest, deltas[i], validate)) {
       found.push_back({absl::StrFormat("grid.delta[%d]", i), *wrong});
     }
   }
@@ -171,7 +112,7 @@ void CheckDeltas(const Grid& grid, DeltaValidation validate, std::vector<FieldVi
 
 void CheckPairGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
   CheckDeltas(spec.grid, ValidatePairDelta, found);
-  if (!RangeOf(spec.grid[kRho]).IsEmpty()) CheckBilliardDomain(spec, found);
+  CheckBilliardDomain(spec, found);
 }
 
 SampleWork WorkOfACollision(const PairGeometry& geometry) {

@@ -31,13 +31,9 @@ void CheckDeltas(const Grid& grid, DeltaValidation validate, std::vector<FieldVi
 // (billiard/billiard_domain.h).
 bool IsSoundForBilliard(const EnsembleSpec& spec, const PointParameters& point);
 
-// Whether model AUTO has another model than the billiard for the question at this point: a closed
-// form, or the limit with an error that is known and within the target's tolerance. Without a
-// tolerance or a budget the limit does not answer. Requires a spec without violations.
-bool IsAnsweredWithoutBilliard(const EnsembleSpec& spec, const PointParameters& point);
-
-// Finds rho and delta outside of the billiard's domain, in the spec's precision, if a billiard has
-// to answer there. For pairs and for gases.
+// Finds rho and delta outside of the billiard's domain, in the spec's precision, if the spec names
+// a billiard or single precision. Where AUTO chooses, DomainViolations (model_choice/ladder.h)
+// finds them. For pairs and for gases.
 void CheckBilliardDomain(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
 
 // CheckDeltas with the bound of a pair, and CheckBilliardDomain.

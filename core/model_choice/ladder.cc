@@ -245,18 +245,25 @@ Answer ByBudget(const Question& question) {
   return {question.ModelOfLimit(), compared, bound};
 }
 
-// Outside of the billiard's domain the limit answers by its expected error, without a pilot. The
-// spec has no violations, so this error is known, and within a tolerance.
+// Outside of the billiard's domain the limit answers by its expected error, without a pilot, if a
+// tolerance permits it, or with a budget. Requires a known error.
+bool MayAnswerWithoutBilliard(const Question& question) {
+  const Target& target = question.target();
+  if (question.IsSoundForBilliard()) return false;
+  if (!target.tolerance) return target.budget_seconds.has_value();
+  return question.aim().limit_error->IsWithin(*target.tolerance, question.point());
+}
+
 Answer WithoutBilliard(const Question& question) {
   return {question.ModelOfLimit(), "the billiard is not sound at this rho and delta",
           question.ExpectedLimitError()};
 }
 
 std::optional<Answer> AnswerNearTheLimit(const Question& question, const PilotSource& pilots) {
-  if (!question.IsSoundForBilliard()) return WithoutBilliard(question);
   if (!question.HasLimitError()) {
     return Billiard(question, "the limit's error is not known at this point");
   }
+  if (MayAnswerWithoutBilliard(question)) return WithoutBilliard(question);
   if (!question.HasRelativeError()) {
     return Billiard(question,
                     "the first estimate has no relative error at this point, so the limit's error "
@@ -483,30 +490,36 @@ std::string ParametersText(const PointParameters& point) {
   return text;
 }
 
-// A point at which the largest permitted number of samples has no error: the first one.
-std::vector<FieldViolation> PointsWithRareEvents(const EnsembleSpec& spec) {
+// A point where a relative error is out of reach: of an estimate that has none, or because the
+// largest permitted number of samples has no error. The first one.
+std::vector<FieldViolation> PointsWithoutAnError(const EnsembleSpec& spec) {
+  const AimedEstimate& aim = AimOf(spec);
   for (size_t i = 0; i < PointCount(spec); ++i) {
     const PointParameters point = PointAt(spec, i);
     const Model model = ExpectedModel(spec, point);
-    if (!TakesSamples(model)) continue;
-    const double needed = AimOf(spec).SamplesForAnError(model, point);
-    if (needed <= static_cast<double>(kMaxSamples)) continue;
+    if (model == Model::kClosedForm) continue;
+    const double needed = TakesSamples(model) ? aim.SamplesForAnError(model, point) : 0;
+    const bool has_error = std::isfinite(aim.error(model, point)) && std::isfinite(needed);
+    if (has_error && needed <= static_cast<double>(kMaxSamples)) continue;
+    const std::string reason =
+        has_error ? absl::StrFormat(
+                        "an error needs %.2g samples, because the events that determine "
+                        "the mean are rare; permitted in this case: samples, up to %d",
+                        needed, kMaxSamples)
+                  : absl::StrCat("no number of samples gives ", aim.name,
+                                 " a relative error; permitted in this case: samples or a budget");
     return {{"target.tolerance",
-             absl::StrFormat(
-                 "is %s, but at %s an error needs %.2g samples, because the events that "
-                 "determine the mean are rare; permitted in this case: samples, up to "
-                 "%d",
-                 NumberText(*spec.target.tolerance), ParametersText(point), needed, kMaxSamples)}};
+             absl::StrFormat("is %s, but at %s %s", NumberText(*spec.target.tolerance),
+                             ParametersText(point), reason)}};
   }
   return {};
 }
 
 FieldViolation TooLong(const EnsembleSpec& spec, const PointParameters& point, double seconds) {
   const Target& target = spec.target;
-  const bool counts_collisions = spec.experiment->unit == TargetUnit::kCollisions;
-  std::string field = counts_collisions ? "target.collisions" : "target.samples";
+  std::string field = "target.samples";
   std::string given = absl::StrCat("is ", kDefaultSamples, " by default");
-  if (target.samples) field = "target.samples", given = absl::StrCat("is ", *target.samples);
+  if (target.samples) given = absl::StrCat("is ", *target.samples);
   if (target.collisions) {
     field = "target.collisions", given = absl::StrCat("is ", *target.collisions);
   }
@@ -582,9 +595,22 @@ std::vector<FieldViolation> MachineViolations(const EnsembleSpec& spec, const Ma
   return found;
 }
 
+std::vector<FieldViolation> DomainViolations(const EnsembleSpec& spec) {
+  std::vector<FieldViolation> found;
+  if (spec.model != Model::kAuto) return found;
+  for (size_t i = 0; i < PointCount(spec) && found.empty(); ++i) {
+    const PointParameters point = PointAt(spec, i);
+    if (IsSoundForBilliard(spec, point) || !IsABilliard(ExpectedModel(spec, point))) continue;
+    EnsembleSpec by_billiard = spec;
+    by_billiard.model = Model::kBilliard;
+    CheckBilliardDomain(by_billiard, found);
+  }
+  return found;
+}
+
 std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec) {
   if (!spec.target.tolerance) return {};
-  if (std::vector<FieldViolation> found = PointsWithRareEvents(spec); !found.empty()) return found;
+  if (std::vector<FieldViolation> found = PointsWithoutAnError(spec); !found.empty()) return found;
   const double tolerance = *spec.target.tolerance, least = LeastTolerance(spec);
   if (!(tolerance < least)) return {};
   absl::string_view other;

@@ -65,10 +65,14 @@ struct Ladder {
 Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine,
                  const PilotSource& pilots);
 
+// Finds rho and delta outside of the billiard's domain (billiard/billiard_domain.h), if AUTO has to
+// choose the billiard at a point outside of it. The spec must have no violations.
+std::vector<FieldViolation> DomainViolations(const EnsembleSpec& spec);
+
 // Finds a tolerance that the answering model cannot reach: a tolerance below the model's own error,
-// or below the statistical error of the largest permitted number of samples, or where samples have
-// no errors. The limit's error counts for the spectrum, and for `markov` where pilots can check it;
-// elsewhere the tolerance of `markov` is that of its samples.
+// or below the statistical error of the largest permitted number of samples, or where the estimate
+// has no relative error. The limit's error counts for the spectrum, and for `markov` where pilots
+// can check it; elsewhere the tolerance of `markov` is that of its samples.
 std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec);
 
 // No machine computes longer for a point than this, in seconds at nominal speed.

@@ -46,12 +46,11 @@ Target TargetOf(const storage::Question& record) {
 }
 
 // AUTO may choose the jump process for a spec in single precision, which a user may not. So the
-// rest of the spec is checked with model AUTO, and with `verify`, because the answer is sampled.
+// precision is not checked for it.
 bool IsPossible(EnsembleSpec spec) {
-  const Model model = std::exchange(spec.model, Model::kAuto);
-  spec.verify = true;
-  return model != Model::kAuto && TakesSamples(model) && Violations(spec).empty() &&
-         AimOf(spec).IsAnsweredBy(model);
+  if (spec.model == Model::kAuto || !TakesSamples(spec.model)) return false;
+  if (!IsABilliard(spec.model)) spec.precision = Precision::kDouble;
+  return Violations(spec).empty();
 }
 
 // Empty if the question has violations.

@@ -50,9 +50,8 @@ void SetValueOutside(Dice& dice, const Parameter& parameter, double bound, v1::G
   }
 }
 
-void SetCount(const ExperimentKind& experiment, int64_t count, v1::Target& target) {
-  experiment.unit == TargetUnit::kCollisions ? target.set_collisions(count)
-                                             : target.set_samples(count);
+void SetCount(Dice& dice, int64_t count, v1::Target& target) {
+  dice.Chance(0.5) ? target.set_collisions(count) : target.set_samples(count);
 }
 
 // Adds a defect and returns what it is.
@@ -75,7 +74,7 @@ std::string SomeDefect(Dice& dice, const ExperimentKind& experiment, double boun
       return "a list is missing";
     case 2:
       target.Clear();
-      SetCount(experiment,
+      SetCount(dice,
                dice.Pick<int64_t>({0, -1, kMaxSamples + 1, std::numeric_limits<int64_t>::min(),
                                    std::numeric_limits<int64_t>::max()}),
                target);
@@ -90,7 +89,7 @@ std::string SomeDefect(Dice& dice, const ExperimentKind& experiment, double boun
       target.mutable_budget()->set_nanos(target.budget().seconds() > 0 ? 1 : 0);
       return "the budget is outside";
     case 5:
-      SetCount(experiment, 64, target);
+      SetCount(dice, 64, target);
       target.mutable_budget()->set_seconds(1);
       return "a count and a budget";
     case 6:

@@ -205,10 +205,9 @@ class Drawing {
         std::max(static_cast<int32_t>((seconds - std::floor(seconds)) * 1e9), int32_t{1}));
   }
 
-  // Samples, or collisions where the experiment counts them.
+  // Samples or collisions.
   void SetCount(double samples, v1::Target& target) {
-    const bool counts_collisions = experiment_.unit == TargetUnit::kCollisions ||
-                                   (experiment_.unit == TargetUnit::kEither && dice_.Chance(0.3));
+    const bool counts_collisions = dice_.Chance(0.4);
     const double each = counts_collisions && IsPermitted() ? CollisionsOfASample() : 1;
     const double most = static_cast<double>(kMaxSamples);
     const double wanted = samples * each;

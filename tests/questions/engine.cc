@@ -150,9 +150,7 @@ EnsembleSpec WithSamples(EnsembleSpec spec, double samples) {
   const auto count =
       static_cast<int64_t>(std::clamp(samples, 1.0, static_cast<double>(kMaxSamples)));
   const std::string estimate = spec.target.estimate;
-  spec.target = spec.experiment->unit == TargetUnit::kCollisions ? Target{.collisions = count}
-                                                                 : Target{.samples = count};
-  spec.target.estimate = estimate;
+  spec.target = {.samples = count, .estimate = estimate};
   return spec;
 }
 

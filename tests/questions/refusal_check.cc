@@ -55,8 +55,8 @@ Texts TextsOfGridField(const v1::Grid& grid, absl::string_view path) {
 
 Texts TextsOfTarget(const v1::Target& target, absl::string_view name) {
   constexpr char kDefault[] = "by default";
-  if (name == "samples") return {absl::StrCat(target.samples()), "counts collisions", kDefault};
-  if (name == "collisions") return {absl::StrCat(target.collisions()), "counts samples", kDefault};
+  if (name == "samples") return {absl::StrCat(target.samples()), kDefault};
+  if (name == "collisions") return {absl::StrCat(target.collisions())};
   if (name == "tolerance") return {NumberText(target.tolerance())};
   if (name == "estimate") return {absl::CEscape(target.estimate())};
   if (name != "budget") return {};

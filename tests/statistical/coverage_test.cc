@@ -93,8 +93,7 @@ bool IsSkewed(std::string_view estimate) {
 // more.
 void ExpectCoverage(const std::string& question, int64_t samples, uint64_t runs) {
   EnsembleSpec spec = Asked(question);
-  const bool by_collisions = spec.experiment->unit == TargetUnit::kCollisions;
-  spec.target = by_collisions ? Target{.collisions = samples} : Target{.samples = samples};
+  spec.target = {.samples = samples};
   for (const auto& [name, of] : RunMany(spec, runs)) {
     SCOPED_TRACE(absl::StrCat(question, ", ", name, ", ", samples, " samples"));
     const auto shown = static_cast<double>(of.with_error.size());

@@ -62,6 +62,29 @@ TEST(CollisionSampler, CollisionsInEquilibriumAreInTheOrderOfTheirOrbits) {
   EXPECT_NEAR(times.mean / estimate.value, 1, 1e-12);
 }
 
+// An orbit's collisions have its number, and are in the order of their times. Few orbits have no
+// collision. A block has more collisions than are kept at once.
+TEST(CollisionSampler, CollisionsOfARelaxationHaveTheNumberOfTheirOrbit) {
+  const auto point = PointExperiment::Create(
+      SpecOf(&kEnergyRelaxation, PaperPoint(0.3), {.samples = 20'000}, Model::kBilliard), 0);
+  CollisionSampler sampler(*point, kEnergyRelaxation, [] { return false; });
+  std::vector<CollisionRecord> all;
+  while (const auto records = sampler.NextRecords()) {
+    EXPECT_LT(records->size(), 65'536u);
+    all.insert(all.end(), records->begin(), records->end());
+  }
+  uint64_t orbits = 1;
+  for (size_t i = 1; i < all.size(); ++i) {
+    const CollisionRecord &record = all[i], &previous = all[i - 1];
+    const bool begins = record.time == record.free_time;
+    ASSERT_TRUE(begins || record.time == previous.time + record.free_time);
+    ASSERT_TRUE(begins ? record.sample > previous.sample : record.sample == previous.sample);
+    orbits += begins;
+  }
+  EXPECT_LT(all.back().sample, 20'000u);
+  EXPECT_GT(orbits, 19'900u);
+}
+
 // Nearly all orbits have no collision, so whole blocks have no record. A pause changes nothing.
 TEST(CollisionSampler, BlocksWithoutCollisionsDoNotEndTheRecords) {
   const auto point = PointExperiment::Create(
@@ -69,6 +92,8 @@ TEST(CollisionSampler, BlocksWithoutCollisionsDoNotEndTheRecords) {
   const std::vector<CollisionRecord> records = AllRecords(*point, kEnergyRelaxation);
   ASSERT_FALSE(records.empty());
   EXPECT_GT(records.back().sample, 1'000u);
+  EXPECT_LT(records.back().sample, 2'000u);
+  EXPECT_TRUE(std::ranges::is_sorted(records, {}, &CollisionRecord::sample));
   int calls = 0;
   const std::vector<CollisionRecord> paused =
       AllRecords(*point, kEnergyRelaxation, [&calls] { return ++calls % 3 == 0; });

@@ -66,19 +66,18 @@ TEST(EnsembleSpec, ListsAreChecked) {
       {"gas-conduction hot=2,0.5,1,0.99999999999999989 cold=1",
        {"grid.hot[1]: hot is 0.5, below cold = 1; permitted: hot >= cold",
         "grid.hot[3]: below cold = 1"}},
-      {"gas-conduction hot=2 cold=nan,3,1",
-       {"grid.cold[0]: nan", "grid.hot[0]: hot is 2, below cold = 3"}},
+      {"gas-conduction hot=2 cold=nan,3,1", {"grid.cold[0]: nan"}},  // combinations come later
       {"gas-conduction cold=0", {"grid.cold[0]: permitted: "}},
   });
   EXPECT_THAT(Violations(At(&kEquilibrium, kPaperRho, PairDeltaBound(kPaperRho))), IsEmpty());
 }
 
+// Except those of combinations with a value that is not permitted.
 TEST(EnsembleSpec, EveryViolationIsReportedAtOnce) {
   ExpectViolations(
       {{"first-hit rho=0.6,0.5,nan delta=0.3,-1 epsilon=0.6,-inf exponent=-1,1001 cells=4 "
         "temperature=1,2,-1 hot=1 cold=1,0 samples=0 tolerance=0 model=markov precision=single",
-        {"grid.rho[1]: rho is 0.5", "grid.rho[2]: rho is nan",
-         "grid.delta[0]: bound of a ball-piston pair", "grid.delta[1]: -1",
+        {"grid.rho[1]: rho is 0.5", "grid.rho[2]: rho is nan", "grid.delta[1]: -1",
          "grid.epsilon[0]: [0, 0.5]", "grid.epsilon[1]: -inf", "grid.exponent[0]: [0, 1000]",
          "grid.exponent[1]: 1001", "grid.cells: does not use this list",
          "grid.temperature: has 3 values; first-hit does not use this list",
@@ -103,18 +102,15 @@ TEST(EnsembleSpec, HugeGridsAreRejectedWithoutExpansion) {
 
 TEST(EnsembleSpec, TargetsAreChecked) {
   ExpectViolations({
-      {"first-hit collisions=10", {"target.collisions: use target.samples"}},
+      {"first-hit collisions=10"},
       {"first-hit samples=1"},
       {"first-hit samples=1e12"},
       {"first-hit samples=1e13", {"target.samples: permitted: 1 to 1000000000000"}},
       {"markov-property collisions=100"},
       {"markov-property budget=3"},
-      {"markov-property samples=100", {"target.samples: use target.collisions"}},
-      {"markov-property tolerance=0.1", {"target.tolerance: tends to 0"}},
+      {"markov-property samples=100"},
       {"gas-conduction delta=1e-10 collisions=1e6 model=billiard",
        {"target.collisions: is 1000000, but a sample has"}},
-      {"gas-conduction hot=2,1 cold=1 tolerance=0.1",
-       {"target.tolerance: the heat current is 0 if hot = cold = 1"}},
       {"gas-conduction hot=2,1 cold=1 budget=1"},
       {"energy-relaxation samples=10"},
       {"energy-relaxation collisions=10"},
@@ -133,22 +129,8 @@ TEST(EnsembleSpec, TargetsAreChecked) {
       {"first-hit tolerance=1", {"target.tolerance: 0 < tolerance < 1"}},
       {"first-hit tolerance=inf", {"target.tolerance: 0 < tolerance < 1"}},
       {"first-hit tolerance=nan", {"target.tolerance: 0 < tolerance < 1"}},
-      // Around 1/6 the integral of the decay has a zero, and the relaxation time a pole.
-      {"energy-relaxation epsilon=0.12,0.121,0.1667,0.199,0.2 tolerance=0.1",
-       {"grid.epsilon[1]: [0, 0.12] or [0.2, 0.5]", "grid.epsilon[2]: no relaxation time",
-        "grid.epsilon[3]: 0.199"}},
       {"energy-relaxation epsilon=0.12,0.1667,0.2 samples=100"},
       {"first-hit epsilon=0.1667"},
-      // At rest the variance is infinite. The closed form needs none, and a relaxation from rest
-      // ends with its window.
-      {"first-hit epsilon=0 tolerance=0.1", {"target.tolerance: epsilon = 0"}},
-      {"energy-relaxation epsilon=0 tolerance=0.1"},
-      {"conditional-mean-free-time epsilon=0,0.1 tolerance=0.1"},
-      {"conditional-mean-free-time epsilon=0,0.1 tolerance=0.1 model=closed_form"},
-      {"conditional-mean-free-time epsilon=0,0.1 tolerance=0.1 model=billiard",
-       {"target.tolerance: epsilon = 0"}},
-      {"conditional-mean-free-time epsilon=0,0.1 tolerance=0.1 verify=yes",
-       {"target.tolerance: epsilon = 0"}},
   });
   EnsembleSpec longest = OnePointOf(&kEnergyRelaxation);
   longest.target = {.budget_seconds = kMaxBudgetSeconds};
@@ -243,23 +225,8 @@ TEST(EnsembleSpec, BilliardIsRejectedOutsideItsDomain) {
   }
   ExpectViolations(
       {{"markov-property delta=1e-12 model=billiard", {"grid.delta[0]: markov-property: markov"}},
-       {"first-hit delta=1e-12", {"grid.delta[0]: no other model answers first-hit"}}});
-}
-
-// AUTO answers by another model where one answers, and is rejected elsewhere.
-TEST(EnsembleSpec, AutoNeedsAnotherModelOutsideTheBilliardsDomain) {
-  const std::string rejected = "grid.delta[0]: delta >= 1e-10";
-  ExpectViolations({
-      {"equilibrium delta=1e-12"},
-      {"equilibrium delta=1e-12 verify=yes", {rejected}},
-      {"markov-property delta=1e-12", {rejected}},
-      {"energy-relaxation delta=1e-12", {rejected}},  // no tolerance: an exact model
-      {"energy-relaxation delta=1e-12,0.01", {rejected}},
-      {"energy-relaxation delta=1e-12 tolerance=0.01"},
-      {"energy-relaxation delta=1e-12 budget=1"},
-      // There is no relaxation time, and the limit's error is not known.
-      {"energy-relaxation delta=1e-12 epsilon=0.1,0.1667 budget=1", {rejected}},
-  });
+       {"first-hit delta=1e-12 model=billiard",
+        {"grid.delta[0]: no other model answers first-hit"}}});
 }
 
 // Outside of this domain the errors of single precision are unknown (billiard/single_precision.h).
@@ -293,6 +260,13 @@ TEST(EnsembleSpec, GasesHaveTheirOwnBounds) {
         {gas + " cells=", {"grid.cells: needs at least one"}},
     });
   }
+}
+
+// A number that is the code of no shape has no cells to be counted.
+TEST(EnsembleSpec, CellsThatAreNoShapeAreNotCompared) {
+  const std::vector<std::string> rejected = {"grid.cells[0]: 1 to 1000000"};
+  ExpectViolations({{"gas-lyapunov cells=1e15", rejected},
+                    {"gas-equilibrium estimate=conductivity cells=1e15", rejected}});
 }
 
 TEST(EnsembleSpec, ANaNIsRejectedInEveryList) {

@@ -1,6 +1,7 @@
 // A grid whose points stand in a table.
 #include "core/ensemble/ensemble_spec.h"
 #include "core/experiment/all_experiments.h"
+#include "core/model_choice/ladder.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 
@@ -56,7 +57,7 @@ TEST(TableOfPoints, HotIsComparedWithTheColdOfItsRow) {
   EXPECT_THAT(Violations(spec), IsEmpty());
   spec.grid[kHot] = {1, 2};
   spec.target = {.tolerance = 0.1};
-  EXPECT_THAT(Violations(spec), ElementsAre(OfField("target.tolerance")));
+  EXPECT_THAT(ToleranceViolations(spec), ElementsAre(OfField("target.tolerance")));
 }
 
 TEST(TableOfPoints, ColumnsAreEquallyLong) {

@@ -19,10 +19,10 @@ class EndedReturns : public ReturnOrbits {
 };
 
 TEST(ReturnOrbits, AnEscapedOrbitCountsAsAnEscapeOnly) {
-  WatchedOrbits orbits(
-      EndedReturns(kPaperPair, {0.125, 1}, {.seed = 1, .stream = 2}, {.samples = 2}));
+  WatchedOrbits<EndedReturns> orbits = {
+      EndedReturns(kPaperPair, {0.125, 1}, {.seed = 1, .stream = 2}, {.samples = 2})};
   Collision collision;
-  collision.state = orbits.Start(0);
+  collision.state = orbits.orbits.Start(0);
   collision.state.ball_speed *= 1 + 1e-10;
   orbits.Collide(0, collision);
   collision.escaped = true;

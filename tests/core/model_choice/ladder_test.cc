@@ -301,7 +301,7 @@ TEST(Ladder, ABudgetDoesNotLetTheLimitMissATolerance) {
   for (const std::optional<double> tolerance : {std::optional<double>(), {0.9}, {0.01}}) {
     EnsembleSpec spec = Relaxation(1.2e-10, {.tolerance = tolerance, .budget_seconds = 1});
     spec.grid[kRho] = {kMaxRho - 1e-10};
-    EXPECT_EQ(Violations(spec).empty(), tolerance != 0.01);
+    EXPECT_EQ(DomainViolations(spec).empty(), tolerance != 0.01);
   }
 }
 
@@ -482,6 +482,55 @@ TEST(Ladder, AToleranceBelowTheModelsErrorIsRejected) {
               ElementsAre(Field(
                   &FieldViolation::description,
                   AllOf(HasSubstr("is 0.5"), HasSubstr("delta = 1e-08"), HasSubstr("permitted")))));
+}
+
+// Distances between laws and a current without a fall of temperature tend to 0. Around 1/6 the
+// integral of the decay has a zero, and the relaxation time a pole. At rest the variance of return
+// times is infinite; the closed form needs none, and a relaxation from rest ends with its window.
+TEST(Ladder, AToleranceIsRejectedWhereAnEstimateHasNoRelativeError) {
+  for (const auto& [question, at] : std::vector<std::pair<std::string, const char*>>{
+           {"markov-property", "delta = 0.1 "},
+           {"markov-property model=markov", "delta = 0.1 "},
+           {"gas-conduction hot=2,1 cold=1", "hot = 1, cold = 1"},
+           {"energy-relaxation epsilon=0.12,0.121,0.2", "epsilon = 0.121"},
+           {"energy-relaxation epsilon=0.199", "epsilon = 0.199"},
+           {"energy-relaxation epsilon=0.1667 model=spectrum", "epsilon = 0.1667"},
+           {"first-hit epsilon=0", "epsilon = 0,"},
+           {"conditional-mean-free-time epsilon=0.1,0 model=billiard", "epsilon = 0 "},
+           {"conditional-mean-free-time epsilon=0 verify=yes", "epsilon = 0 "}}) {
+    EXPECT_THAT(ToleranceViolations(Asked(question + " tolerance=0.1")),
+                ElementsAre(AllOf(Field(&FieldViolation::field, "target.tolerance"),
+                                  Field(&FieldViolation::description,
+                                        AllOf(HasSubstr("is 0.1, but at "), HasSubstr(at),
+                                              HasSubstr("permitted in this case: samples"))))))
+        << question;
+  }
+  for (const std::string question :
+       {"energy-relaxation epsilon=0,0.12,0.2", "conditional-mean-free-time epsilon=0,0.1",
+        "conditional-mean-free-time epsilon=0,0.1 model=closed_form"}) {
+    EXPECT_THAT(ToleranceViolations(Asked(question + " tolerance=0.1")), IsEmpty()) << question;
+  }
+}
+
+// AUTO answers by another model where one answers, and is rejected elsewhere.
+TEST(Ladder, AutoNeedsAnotherModelOutsideTheBilliardsDomain) {
+  for (const char* question :
+       {"equilibrium delta=1e-12", "energy-relaxation delta=1e-12 tolerance=0.01",
+        "energy-relaxation delta=1e-12 budget=1", "energy-relaxation delta=0.01"}) {
+    EXPECT_THAT(DomainViolations(Asked(question)), IsEmpty()) << question;
+  }
+  for (const char* question : {"equilibrium delta=1e-12 verify=yes", "markov-property delta=1e-12",
+                               "energy-relaxation delta=1e-12",  // no tolerance: an exact model
+                               "energy-relaxation delta=1e-12,0.01",
+                               // There is no relaxation time, and the limit's error is not known.
+                               "energy-relaxation delta=1e-12 epsilon=0.1,0.1667 budget=1"}) {
+    EXPECT_THAT(
+        DomainViolations(Asked(question)),
+        ElementsAre(AllOf(Field(&FieldViolation::field, "grid.delta[0]"),
+                          Field(&FieldViolation::description,
+                                AllOf(HasSubstr("delta is 1e-12"), HasSubstr("delta >= 1e-10"))))))
+        << question;
+  }
 }
 
 // A question that needs years is planned. One that needs longer than any machine lasts is rejected.

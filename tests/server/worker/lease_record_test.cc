@@ -85,6 +85,9 @@ TEST(LeaseRecord, EveryQuestionKeepsItsPlanAndItsBits) {
   EnsembleSpec single = SpecOf(kEquilibrium, Model::kBilliard);
   single.precision = Precision::kSingle;
   ExpectComesBack(LeaseOf(single));
+  EnsembleSpec outside = SpecOf(kEnergyRelaxation, Model::kMarkov);  // of the billiard's domain
+  outside.grid[kDelta] = {1e-12};
+  ExpectComesBack(LeaseOf(outside));
   EnsembleSpec named = SpecOf(kGasEquilibrium, Model::kBilliard, 150);
   named.target.estimate = "conductivity";  // by which the worker judges a tolerance
   ExpectComesBack(LeaseOf(named));

@@ -40,7 +40,7 @@ EnsembleSpec SpecOf(const ExperimentKind& kind, Model model, int64_t samples) {
   }
   // Exchanges are more frequent, so a replica is less work.
   if (IsGas(kind)) spec.grid[kDelta] = {0.19};
-  (kind.unit == TargetUnit::kCollisions ? spec.target.collisions : spec.target.samples) = samples;
+  spec.target.samples = samples;
   return spec;
 }
 
