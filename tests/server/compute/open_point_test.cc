@@ -1,7 +1,6 @@
 #include "server/compute/open_point.h"
 
-#include "tests/server/compute/remote_executor.h"
-#include "tests/server/compute/run_requests.h"
+#include "tests/server/compute/stepped_scheduler.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {

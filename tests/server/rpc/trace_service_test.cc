@@ -1,7 +1,6 @@
 
 #include "server/convert/trace.h"
 #include "tests/server/preamble.h"
-#include "tests/server/secure_server.h"
 
 namespace ballpiston::server {
 namespace {
@@ -178,19 +177,6 @@ TEST_F(TraceServiceTest, AStopEndsTracesThatAreRead) {
   std::thread stop([this] { server().Shutdown(kUnreachedLimit); });
   EXPECT_THAT(stream.End(), IsError(grpc::StatusCode::UNAVAILABLE, "SHUTTING_DOWN"));
   stop.join();
-}
-
-TEST(TraceCredentials, AStalledTraceEndsWhenItsTokenIsRevoked) {
-  LaboratoryFiles files;
-  RunningServer server(Secure(files, {.watch = {.heartbeat = std::chrono::milliseconds(20)}}));
-  TestClient alice(server.NewChannel(files.Credentials(kAlice)));
-  TestClient ops(server.NewChannel(files.Credentials(kOps)));
-  TraceStream stalled(alice, kLong);
-  ASSERT_TRUE(stalled.Next());
-  files.WriteAccessFile(TokenLine(kOps, {"ops", Role::kAdmin}));
-  ASSERT_OK(server.server().Reload());
-  AwaitThat([&] { return ops.Status().streams() == 0; });
-  EXPECT_THAT(stalled.End(), Not(IsOk()));
 }
 
 }  // namespace
