@@ -10,6 +10,10 @@ std::string UniqueName() {
   return "fault-disk-" + std::to_string(++made);
 }
 
+void MakeFolderOf(const std::filesystem::path& file) {
+  std::filesystem::create_directories(file.parent_path());
+}
+
 // SQLite's file system for Unix.
 sqlite3_vfs* System() { return sqlite3_vfs_find("unix"); }
 
@@ -98,6 +102,7 @@ struct Methods {
       if (is_new) disk.numbers_[name] = disk.next_file_++;
       open.number = disk.numbers_.at(name);
       if (is_new) {
+        MakeFolderOf(disk.RealPath(name));
         disk.Perform({.kind = Kind::kCreate, .path = name, .file = open.number},
                      [] { return SQLITE_OK; });
       }
@@ -177,6 +182,7 @@ struct Methods {
 FaultDisk::FaultDisk(DiskFiles files) : name_(UniqueName()), initial_(std::move(files)) {
   for (const auto& [path, contents] : initial_) {
     numbers_[path] = next_file_++;
+    MakeFolderOf(RealPath(path));
     WriteFile(RealPath(path), contents);
   }
   registered_ = std::make_unique<sqlite3_vfs>(*System());

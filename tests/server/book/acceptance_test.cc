@@ -1,6 +1,7 @@
 // The outcome of one Create: a new job, an earlier one, or an error.
 #include "server/book/acceptance.h"
 
+#include "google/protobuf/text_format.h"
 #include "tests/server/book/book_test.h"
 #include "tests/server/preamble.h"
 
@@ -120,29 +121,17 @@ TEST_F(AcceptanceTest, AnswersAreOnlyForTheirEngine) {
 
 using google::protobuf::FieldDescriptor;
 
+// Gives the field another value, or adds one to a repeated field.
 void SetOther(google::protobuf::Message& message, const FieldDescriptor& field) {
-  const google::protobuf::Reflection& reflect = *message.GetReflection();
-  switch (field.cpp_type()) {
-    case FieldDescriptor::CPPTYPE_DOUBLE:
-      return field.is_repeated() ? reflect.AddDouble(&message, &field, 0.0625)
-                                 : reflect.SetDouble(&message, &field, 0.0625);
-    case FieldDescriptor::CPPTYPE_INT32:
-      return field.is_repeated() ? reflect.AddInt32(&message, &field, 77)
-                                 : reflect.SetInt32(&message, &field, 77);
-    case FieldDescriptor::CPPTYPE_INT64:
-      return reflect.SetInt64(&message, &field, 77);
-    case FieldDescriptor::CPPTYPE_UINT64:
-      return reflect.SetUInt64(&message, &field, 77);
-    case FieldDescriptor::CPPTYPE_BOOL:
-      return reflect.SetBool(&message, &field, !reflect.GetBool(message, &field));
-    case FieldDescriptor::CPPTYPE_STRING:
-      return field.is_repeated() ? reflect.AddString(&message, &field, "77")
-                                 : reflect.SetString(&message, &field, "77");
-    case FieldDescriptor::CPPTYPE_ENUM:
-      return reflect.SetEnumValue(&message, &field, field.enum_type()->value_count() - 1);
-    default:
-      ADD_FAILURE() << field.full_name() << " is of a kind that this test does not know";
+  std::string value = "77";
+  if (field.cpp_type() == FieldDescriptor::CPPTYPE_STRING) value = "'77'";
+  if (field.cpp_type() == FieldDescriptor::CPPTYPE_BOOL) {
+    value = message.GetReflection()->GetBool(message, &field) ? "false" : "true";
   }
+  if (const auto* values = field.enum_type())
+    value = values->value(values->value_count() - 1)->name();
+  EXPECT_TRUE(google::protobuf::TextFormat::MergeFromString(field.name() + ": " + value, &message))
+      << field.full_name();
 }
 
 // Calls `visit` with one field of the message changed, for each field of it and of its messages.

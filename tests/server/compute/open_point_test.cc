@@ -45,18 +45,6 @@ TEST(OpenPoint, AFiniteCapacityTakesTheFewestChunksThatFillIt) {
   EXPECT_EQ(Next(point, 0), std::nullopt);
 }
 
-TEST(OpenPoint, ALeaseContinuesTheBlocksOfAResumedPoint) {
-  OpenPoint point = PointOf(SixChunks());
-  const FoldState state = FakeState(SixChunks(), 0, 100);  // chunk 0 is complete, chunk 1 is not
-  ASSERT_OK(point.Resume({.state = state}));
-  const auto lease = point.NextChunks({.seconds = 0});
-  ASSERT_TRUE(lease);
-  EXPECT_EQ(lease->start.chunk, state.chunk);
-  EXPECT_EQ(lease->start.blocks, state.blocks);
-  EXPECT_TRUE(lease->start.merged == state.partial);
-  EXPECT_EQ(Next(point, 0), Chunks(state.chunk + 1, state.chunk + 2));
-}
-
 TEST(OpenPoint, ChunksThatArrivedEarlyAreSkipped) {
   for (const double seconds : {0., 1000., kInfinity}) {
     OpenPoint point = PointOf(SixChunks());

@@ -31,6 +31,17 @@ TEST_F(SuspectsTest, SuspectsAreComputedAloneOneAfterTheOther) {
   EXPECT_THAT(cleared_, ElementsAre(2, 3));
 }
 
+// So their deaths are not its own.
+TEST_F(SuspectsTest, ASuspectWaitsForTheEndOfTheOthersTurns) {
+  Add(1, SixChunks(2));
+  const auto turn = local_.Begin();
+  ASSERT_TRUE(turn);
+  Add(2, SixChunks(2), Suspected(2));
+  EXPECT_FALSE(local_.Begin());
+  local_.End(*turn, 1);
+  EXPECT_THAT(Turns(1, 1), ElementsAre(2));
+}
+
 // Another point's chunk proves nothing, so other points wait.
 TEST_F(SuspectsTest, TheChunksAreOfThePointsThatWereBeingComputed) {
   Add(1, SixChunks(5));

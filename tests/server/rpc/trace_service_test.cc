@@ -37,7 +37,6 @@ const v1::TraceOrbitRequest kLong = TraceRequest(kMaxTracedEvents);
 
 class TraceServiceTest : public testing::Test {
  protected:
-  RunningServer& StartWith(const TestServerOptions& options) { return server_.emplace(options); }
   RunningServer& server() { return server_ ? *server_ : server_.emplace(); }
 
   std::vector<v1::TraceOrbitResponse> Trace(const v1::TraceOrbitRequest& request) {
@@ -46,10 +45,6 @@ class TraceServiceTest : public testing::Test {
     while (auto message = stream.Next()) messages.push_back(*message);
     EXPECT_OK(stream.reader->Finish());
     return messages;
-  }
-
-  grpc::Status Refusal(const v1::TraceOrbitRequest& request) {
-    return TraceStream(server(), request).End();
   }
 
   std::optional<RunningServer> server_;
@@ -160,10 +155,11 @@ TEST_F(TraceServiceTest, ATraceCountsAsAStreamWithItsMemoryUntilItsReaderGoes) {
       {{.max_streams_per_principal = 1}, "TOO_MANY_STREAMS"},
       {{.max_call_bytes_per_principal = 1'000'000}, "TOO_MANY_CALLS"}};
   for (const auto& [limits, reason] : rows) {
-    RunningServer& server = StartWith({.limits = limits});
+    RunningServer& server = server_.emplace(TestServerOptions{.limits = limits});
     auto first = std::make_unique<TraceStream>(server, TraceRequest(kMaxTracedEvents, "1000"));
     ASSERT_TRUE(first->Next());
-    EXPECT_THAT(Refusal(TraceRequest(1)), IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, reason));
+    EXPECT_THAT(TraceStream(server, TraceRequest(1)).End(),
+                IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, reason));
     first->context.TryCancel();
     first.reset();
     // Then the server knows that the trace has ended.
