@@ -29,6 +29,17 @@ ServerOptions OptionsIn(const std::string& data_dir, const TestServerOptions& op
   return all;
 }
 
+// Expects OK.
+template <typename Stub, typename Request, typename Response>
+Response AnswerOf(Stub& stub,
+                  grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
+                  const Request& request) {
+  grpc::ClientContext context;
+  Response response;
+  EXPECT_OK((stub.*method)(&context, request, &response));
+  return response;
+}
+
 template <typename Response, typename Request, typename Fetch>
 std::vector<Response> AllPages(Request request, Fetch fetch) {
   std::vector<Response> pages;
@@ -57,17 +68,11 @@ grpc::Status TestClient::Create(const v1::CreateEnsembleJobRequest& request, v1:
 }
 
 v1::EnsembleJob TestClient::Created(const v1::CreateEnsembleJobRequest& request) {
-  v1::EnsembleJob job;
-  const grpc::Status status = Create(request, &job);
-  EXPECT_OK(status) << status.error_message();
-  return job;
+  return AnswerOf(*ensemble_, &v1::EnsembleService::Stub::CreateEnsembleJob, request);
 }
 
 std::string TestClient::Submit(const v1::EnsembleSpec& spec) {
-  v1::CreateEnsembleJobRequest request;
-  *request.mutable_spec() = spec;
-  request.set_fresh(true);
-  return Created(request).name();
+  return Created(FreshRequest(spec)).name();
 }
 
 std::string TestClient::Succeeded(const v1::EnsembleSpec& spec) {
@@ -77,12 +82,9 @@ std::string TestClient::Succeeded(const v1::EnsembleSpec& spec) {
 }
 
 v1::EnsembleJob TestClient::Get(const std::string& name) {
-  grpc::ClientContext context;
   v1::GetEnsembleJobRequest request;
   request.set_name(name);
-  v1::EnsembleJob job;
-  EXPECT_OK(ensemble_->GetEnsembleJob(&context, request, &job));
-  return job;
+  return AnswerOf(*ensemble_, &v1::EnsembleService::Stub::GetEnsembleJob, request);
 }
 
 grpc::Status TestClient::Cancel(const std::string& name, const std::string& request_id) {
@@ -117,24 +119,15 @@ v1::EnsembleJob TestClient::AwaitEnd(const std::string& name) {
 }
 
 v1::ServerStatus TestClient::Status() {
-  grpc::ClientContext context;
-  v1::ServerStatus status;
-  EXPECT_OK(server_->GetServerStatus(&context, {}, &status));
-  return status;
+  return AnswerOf(*server_, &v1::ServerService::Stub::GetServerStatus, {});
 }
 
 v1::ListEnsembleJobsResponse TestClient::List(const v1::ListEnsembleJobsRequest& request) {
-  grpc::ClientContext context;
-  v1::ListEnsembleJobsResponse response;
-  EXPECT_OK(ensemble_->ListEnsembleJobs(&context, request, &response));
-  return response;
+  return AnswerOf(*ensemble_, &v1::EnsembleService::Stub::ListEnsembleJobs, request);
 }
 
 v1::ListResultsResponse TestClient::Results(const v1::ListResultsRequest& request) {
-  grpc::ClientContext context;
-  v1::ListResultsResponse response;
-  EXPECT_OK(ensemble_->ListResults(&context, request, &response));
-  return response;
+  return AnswerOf(*ensemble_, &v1::EnsembleService::Stub::ListResults, request);
 }
 
 std::vector<v1::ListEnsembleJobsResponse> TestClient::Pages(v1::ListEnsembleJobsRequest request) {

@@ -16,26 +16,17 @@ void ExpectStartRefused(const TestServerOptions& options, const std::string& why
                               AllOf(HasSubstr(why), Not(HasSubstr("\n")))));
 }
 
-TEST(StartStop, TheAddressHasTheChosenPort) {
-  RunningServer server({.listen = "127.0.0.1:0"});
-  EXPECT_THAT(server.address(), Not(HasSubstr(":0")));
-  EXPECT_OK(CallByName(server.channel(), kCheckHealth));
-}
-
-TEST(StartStop, APortInUseIsRefused) {
-  RunningServer server({.listen = "127.0.0.1:0"});
-  ExpectStartRefused({.listen = server.address()}, server.address());
-  ExpectStartRefused({.listen = server.address()}, "in use");
-}
-
-TEST(StartStop, ADataFolderInUseIsRefused) {
-  TemporaryFolder folder;
+TEST(StartStop, APortOrADataFolderInUseIsRefused) {
+  const TemporaryFolder folder;
   {
-    RunningServer server({.data_dir = folder.path()});
+    RunningServer server({.data_dir = folder.path(), .listen = "127.0.0.1:0"});
+    EXPECT_THAT(server.address(), Not(EndsWith(":0")));  // it has the chosen port
+    EXPECT_OK(CallByName(server.channel(), kCheckHealth));
+    ExpectStartRefused({.listen = server.address()}, server.address());
+    ExpectStartRefused({.listen = server.address()}, "in use");
     ExpectStartRefused({.data_dir = folder.path(), .listen = "127.0.0.1:0"},
                        "in use by another ballpistond, which listens on " + server.address() + ";");
-    EXPECT_TRUE(
-        std::filesystem::exists(folder.File("server.address")));  // still the first server's
+    EXPECT_TRUE(std::filesystem::exists(folder.File("server.address")));  // of the first server
   }
   EXPECT_FALSE(std::filesystem::exists(folder.File("server.address")));
 }

@@ -1,16 +1,15 @@
-// A disk in memory for SQLite. It logs all operations, and rejects those that the test selects.
+// A disk for SQLite. It logs all operations, and rejects those that the test selects.
 //
 // While it lives, it is SQLite's file system for every connection that is opened. If there are
-// several disks, SQLite uses the newest one. It behaves like SQLite's own file system for Unix:
-//   - The name of a log or journal is flushed with its first sync.
-//   - Bytes outside those written are never changed.
-//   - An empty file counts as not existing.
-//   - All connections of the process share the locks and the log's index.
+// several disks, SQLite uses the newest one. The files are in a temporary folder. SQLite's own file
+// system for Unix reads and writes them, and has the locks and the log's index. Nothing is flushed:
+// a sync is only logged. The name of a log or journal is flushed with its first sync.
 //
 // Every write, truncation, sync, creation and deletion is one operation, numbered from 0;
 // power_cut.h says what a cut at any of them would leave. Thread-safe.
 #pragma once
 
+#include "absl/functional/function_ref.h"
 #include "tests/support/preamble.h"
 
 struct sqlite3_vfs;
@@ -18,7 +17,7 @@ struct sqlite3_vfs;
 namespace ballpiston::server {
 
 // Where tests keep a store on such a disk.
-inline constexpr char kStorePath[] = "/data/store.sqlite3";
+inline constexpr char kStorePath[] = "/store.sqlite3";
 
 // Contents by path.
 using DiskFiles = std::map<std::string, std::string>;
@@ -60,50 +59,30 @@ class FaultDisk {
   int64_t bytes_used() const;
   DiskFiles initial() const { return initial_; }
 
-  // What SQLite calls (fault_disk.cc); codes are SQLite's.
-  struct OpenFile;
-  int Open(const char* path, int flags, OpenFile& file);
-  int Delete(const std::string& path, bool sync_folder);
-  bool Exists(const std::string& path);
+  friend struct Methods;  // what SQLite calls
 
  private:
-  friend struct OpenFile;
+  std::string RealPath(const std::string& path) const { return folder_.path() + path; }
 
-  static constexpr int kShmLocks = 8;
+  // Logs the operation. Calls `perform` unless the operation is refused. The result and that of
+  // `perform` are codes of SQLite.
+  int Perform(DiskOperation operation, absl::FunctionRef<int()> perform);
 
-  struct Shm {
-    std::vector<std::unique_ptr<std::vector<char>>> regions;
-    std::array<int, kShmLocks> readers{};
-    std::array<bool, kShmLocks> writer{};
-    int users = 0;
-  };
-
-  struct File {
-    int number = 0;
-    std::string path;
-    std::string contents;
-    bool temporary = false;  // SQLite's own; not part of the log
-    int shared = 0;          // locks
-    const void* reserved = nullptr;
-    const void* pending = nullptr;
-    const void* exclusive = nullptr;
-    Shm shm;
-  };
-
-  // The lock is held.
-  int Perform(DiskOperation operation);
+  // The lock is held by the callers of these.
   bool Refuses(const DiskOperation& operation) const;
   int CodeOf(const DiskOperation& operation) const;
   bool OutgrowsCapacity(const DiskOperation& operation) const;
+  int64_t BytesOf(const std::string& path) const;
   int64_t BytesUsed() const;
 
-  const std::string name_;
+  const TemporaryFolder folder_;
+  const std::string name_;  // of the file system
   const DiskFiles initial_;
   std::unique_ptr<sqlite3_vfs> registered_;
   std::function<void()> before_operation_;
 
-  mutable std::mutex mutex_;
-  std::map<std::string, std::shared_ptr<File>> files_;
+  mutable std::recursive_mutex mutex_;
+  std::map<std::string, int> numbers_;  // of the files, by path
   int next_file_ = 0;
   std::vector<DiskOperation> operations_;
   std::optional<Refusal> refusal_;
@@ -112,8 +91,6 @@ class FaultDisk {
   int64_t capacity_ = std::numeric_limits<int64_t>::max();
   int64_t refusals_ = 0;
   uint64_t random_ = 1;
-
-  friend struct Methods;
 };
 
 }  // namespace ballpiston::server

@@ -1,7 +1,6 @@
 #include "server/compute/open_point.h"
 
-#include "tests/server/compute/remote_executor.h"
-#include "tests/server/compute/run_requests.h"
+#include "tests/server/compute/stepped_scheduler.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {
@@ -44,18 +43,6 @@ TEST(OpenPoint, AFiniteCapacityTakesTheFewestChunksThatFillIt) {
   EXPECT_EQ(Next(point, 5), Chunks(1, 3));
   EXPECT_EQ(Next(point, 1000), Chunks(3, 6));
   EXPECT_EQ(Next(point, 0), std::nullopt);
-}
-
-TEST(OpenPoint, ALeaseContinuesTheBlocksOfAResumedPoint) {
-  OpenPoint point = PointOf(SixChunks());
-  const FoldState state = FakeState(SixChunks(), 0, 100);  // chunk 0 is complete, chunk 1 is not
-  ASSERT_OK(point.Resume({.state = state}));
-  const auto lease = point.NextChunks({.seconds = 0});
-  ASSERT_TRUE(lease);
-  EXPECT_EQ(lease->start.chunk, state.chunk);
-  EXPECT_EQ(lease->start.blocks, state.blocks);
-  EXPECT_TRUE(lease->start.merged == state.partial);
-  EXPECT_EQ(Next(point, 0), Chunks(state.chunk + 1, state.chunk + 2));
 }
 
 TEST(OpenPoint, ChunksThatArrivedEarlyAreSkipped) {

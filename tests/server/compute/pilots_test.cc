@@ -1,11 +1,7 @@
 // Pilots in the scheduler: which run computes a pilot, which runs wait for it, and which run is
 // charged.
-#include "server/compute/scheduler.h"
-#include "server/compute/thread_executor.h"
-#include "tests/server/compute/fake_pilots.h"
-#include "tests/server/compute/remote_executor.h"
-#include "tests/server/compute/run_requests.h"
-#include "tests/server/compute/stepped_executor.h"
+#include "server/compute/point_opener.h"
+#include "tests/server/compute/stepped_scheduler.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {
@@ -13,101 +9,113 @@ namespace {
 
 const PilotPlace kPlace = {.rho = 0.53, .delta = 0.1};
 
-// Runs with a seed below this need the pilot at kPlace, the others none.
-constexpr uint64_t kFirstSeedWithoutPilot = 100;
-
-std::optional<PilotPlace> OnePlace(const EnsembleSpec& spec, size_t) {
-  return spec.seed < kFirstSeedWithoutPilot ? std::optional(kPlace) : std::nullopt;
-}
-
 // A pilot takes 200 blocks; a turn here computes 64.
 constexpr uint64_t kBlocksOfATurn = 64;
 
-class PilotsTest : public testing::Test {
+EnsembleSpec PilotSpec() { return FakeSpec(1, 200, 99); }
+
+// A fake experiment whose first estimate has a limit, as that of a pilot.
+class FakePilot : public PointExperiment {
+ public:
+  explicit FakePilot(BeforeBlock before_block = nullptr)
+      : FakePilot(FakeExperiments(std::move(before_block))(PilotSpec(), 0)) {}
+
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
+    return fake_->StartRun(queue);
+  }
+  uint64_t CountsOfASample() const override { return fake_->CountsOfASample(); }
+
+ private:
+  explicit FakePilot(std::unique_ptr<const PointExperiment> fake)
+      : PointExperiment(PilotSpec(), PointAt(PilotSpec(), 0), fake->plan()),
+        fake_(std::move(fake)) {
+    SetMeasurements(fake_->EmptyResult(),
+                    {{.name = "mean",
+                      .reading = [this](const BlockResult& m) { return fake_->FirstEstimate(m); },
+                      .limit = 0.4}});
+  }
+
+  const std::unique_ptr<const PointExperiment> fake_;
+};
+
+// Every point needs the pilot at kPlace. The tests look at the members.
+struct PilotOpener : PointOpener {
+  OpenedPoint Open(const EnsembleSpec& spec, size_t index) override {
+    if (kept.empty()) return kPlace;
+    return FakeExperiments()(spec, index);
+  }
+  std::unique_ptr<const PointExperiment> OpenPilot(const PilotPlace&) override {
+    ++opened;
+    return std::make_unique<const FakePilot>(before_block);
+  }
+  void KeepPilot(const PilotPlace& place, const Pilot& pilot) override {
+    EXPECT_EQ(place, kPlace);
+    kept.push_back(pilot);
+  }
+
+  BeforeBlock before_block;  // of a pilot
+  int opened = 0;            // pilots that began
+  std::vector<Pilot> kept;
+};
+
+class PilotsTest : public SchedulerTest {
  protected:
-  PilotsTest() : opener_(OnePlace), scheduler_(opener_, 1), local_(scheduler_) {}
-  ~PilotsTest() override { scheduler_.Shutdown(); }
+  PilotsTest() : SchedulerTest(std::make_unique<PilotOpener>()) {}
 
-  // One point of 10 blocks. Runs of one principal take turns.
-  JournalPointer Add(int64_t key, uint64_t seed) {
-    auto journal = std::make_shared<RecordingJournal>();
-    scheduler_.Add(RunOf(key, SpecOf(seed), journal));
-    return journal;
-  }
-  static EnsembleSpec SpecOf(uint64_t seed) { return FakeSpec(2, 10, seed); }
+  PilotOpener& opener() { return static_cast<PilotOpener&>(*opener_); }
 
-  // Takes turns of some blocks until the pilot has begun, and returns the run that computes it.
-  int64_t BeginPilot() {
-    while (const std::optional<Lease> lease = local_.Begin()) {
-      local_.End(*lease, 1);
-      if (lease->pilot) return lease->run;
-    }
-    return 0;
-  }
-
-  void ExpectRight(const RecordingJournal& journal, uint64_t seed) {
-    ASSERT_EQ(journal.ends, 1);
-    EXPECT_OK(*journal.outcome);
-    ExpectAllPointsRight(SpecOf(seed), journal);
-  }
-
-  FakePilotOpener opener_;
-  Scheduler scheduler_;
-  SteppedExecutor local_;
+  // Two points of 10 blocks. Runs of one principal take turns.
+  static EnsembleSpec SpecOf(int64_t key) { return FakeSpec(2, 10, static_cast<uint64_t>(key)); }
+  JournalPointer AddRun(int64_t key) { return Add(key, SpecOf(key)); }
 };
 
 TEST_F(PilotsTest, APilotIsComputedOnceForAllRuns) {
-  const auto first = Add(1, 1), second = Add(2, 2), third = Add(3, 3);
-  while (local_.TakeTurn(kBlocksOfATurn)) {
+  const std::vector<JournalPointer> journals = {AddRun(1), AddRun(2), AddRun(3)};
+  local_.TakeAllTurns(kBlocksOfATurn);
+  for (int64_t key = 1; key <= 3; ++key) {
+    ExpectComplete(SpecOf(key), *journals[static_cast<size_t>(key) - 1]);
   }
-  ExpectRight(*first, 1);
-  ExpectRight(*second, 2);
-  ExpectRight(*third, 3);
-  EXPECT_EQ(opener_.opened(), 1);
-  const auto kept = opener_.kept();
-  ASSERT_EQ(kept.size(), 1u);
-  ASSERT_EQ(kept.at(kPlace).size(), 1u);
+  EXPECT_EQ(opener().opened, 1);
+  ASSERT_EQ(opener().kept.size(), 1u);
   const FakePilot pilot;
-  EXPECT_EQ(kept.at(kPlace)[0].difference, PilotOf(pilot, *FoldPoint(pilot)).difference);
+  EXPECT_EQ(opener().kept[0].difference, PilotOf(pilot, *FoldPoint(pilot)).difference);
 }
 
 TEST_F(PilotsTest, AnotherRunComputesThePilotIfItsRunIsCancelled) {
-  const auto first = Add(1, 1);
-  ASSERT_EQ(BeginPilot(), 1);
-  const auto second = Add(2, 2), third = Add(3, 3);
-  for (int turn = 0; turn < 4; ++turn) local_.TakeTurn(1);  // the new runs open their points
-  EXPECT_EQ(opener_.opened(), 1);
+  const auto first = AddRun(1);
+  for (std::optional<Lease> lease = local_.Begin();; lease = local_.Begin()) {
+    ASSERT_TRUE(lease);
+    local_.End(*lease, 1);
+    if (lease->pilot) break;
+  }
+  const auto second = AddRun(2), third = AddRun(3);
+  Turns(4, 1);  // the new runs open their points
+  EXPECT_EQ(opener().opened, 1);
   scheduler_.Cancel(1);
   EXPECT_EQ(first->ends, 1);
   local_.TakeAllTurns();
-  ExpectRight(*second, 2);
-  ExpectRight(*third, 3);
-  EXPECT_EQ(opener_.opened(), 2);
-  EXPECT_EQ(opener_.kept().at(kPlace).size(), 1u);
+  ExpectComplete(SpecOf(2), *second);
+  ExpectComplete(SpecOf(3), *third);
+  EXPECT_EQ(opener().opened, 2);
+  EXPECT_EQ(opener().kept.size(), 1u);
 }
 
 TEST_F(PilotsTest, APilotThatFailsEndsItsRunOnly) {
   int blocks = 0;
-  FakePilotOpener opener(OnePlace, [&](size_t, uint64_t, std::stop_token) {
+  opener().before_block = [&](size_t, uint64_t, std::stop_token) {
     if (++blocks == 5) throw std::runtime_error("the pilot failed");
-  });
-  Scheduler scheduler(opener, 1);
-  SteppedExecutor local(scheduler);
-  const auto first = std::make_shared<RecordingJournal>();
-  const auto second = std::make_shared<RecordingJournal>();
-  scheduler.Add(RunOf(1, SpecOf(1), first));
-  scheduler.Add(RunOf(2, SpecOf(2), second));
-  local.TakeAllTurns();
-  scheduler.Shutdown();
-  const bool is_first = first->outcome && !first->outcome->ok();
+  };
+  const auto first = AddRun(1), second = AddRun(2);
+  local_.TakeAllTurns();
+  const bool is_first = !first->outcome->ok();
   EXPECT_THAT(*(is_first ? first : second)->outcome,
-              StatusIs(absl::StatusCode::kInternal, testing::HasSubstr("the pilot failed")));
-  ExpectRight(is_first ? *second : *first, is_first ? 2 : 1);
-  EXPECT_EQ(opener.opened(), 2);
+              StatusIs(absl::StatusCode::kInternal, HasSubstr("the pilot failed")));
+  ExpectComplete(SpecOf(is_first ? 2 : 1), *(is_first ? second : first));
+  EXPECT_EQ(opener().opened, 2);
 }
 
 TEST_F(PilotsTest, ThePilotsWorkIsChargedToTheRunThatComputesIt) {
-  const auto first = Add(1, 1), second = Add(2, 2);
+  const auto first = AddRun(1), second = AddRun(2);
   double pilots_work = 0;
   int64_t owner = 0;
   while (const std::optional<Lease> lease = local_.Begin()) {

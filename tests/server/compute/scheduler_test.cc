@@ -1,107 +1,90 @@
+// Which leases executors get, which of their reports count, and how a run ends.
+// tests/core/ensemble/point_fold_test.cc and tests/simulation test that any order of reports gives
+// the same bytes.
 #include "server/compute/scheduler.h"
 
 #include <ctime>
 #include <new>
 
-#include "tests/server/compute/run_requests.h"
-#include "tests/server/compute/stepped_executor.h"
+#include "tests/server/compute/stepped_scheduler.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
 
-JournalPointer AddRun(ThreadPool& pool, int64_t key, const EnsembleSpec& spec,
-                      const std::string& principal = "", int32_t priority = 0) {
-  auto journal = std::make_shared<RecordingJournal>();
-  RunRequest request = RunOf(key, spec, journal);
-  request.principal = principal;
-  request.priority = priority;
-  pool.Add(std::move(request));
-  return journal;
-}
+// ---- checkpoints ----
 
-TEST(Scheduler, APointIsResumedFromItsCheckpoint) {
+TEST_F(SchedulerTest, AShutdownWritesACheckpointFromWhichALaterProcessGoesOn) {
   const EnsembleSpec spec = FakeSpec(2, 80);
-  auto journal = std::make_shared<RecordingJournal>();
-  journal->stored[1] = FakeState(spec, 1, 45);
-  std::mutex mutex;
-  std::set<uint64_t> computed;
-  ThreadPool pool(3, FakeExperiments([&](size_t point, uint64_t block, std::stop_token) {
-                    std::lock_guard lock(mutex);
-                    if (point == 1) computed.insert(block);
-                  }));
-  pool.Add(RunOf(1, spec, journal));
-  ASSERT_OK(journal->AwaitEnd());
-  ExpectAllPointsRight(spec, *journal);
+  const auto journal = Add(1, spec);
+  local_.TakeTurn();  // opens the first point
+  local_.TakeTurn(45);
+  scheduler_.Shutdown();
+  ASSERT_EQ(journal->checkpoints.size(), 1u);
+
+  std::multiset<uint64_t> computed;  // blocks of the first point
+  FactoryOpener opener(FakeExperiments([&](size_t point, uint64_t block, std::stop_token) {
+    if (point == 0) computed.insert(block);
+  }));
+  Scheduler next(opener, 1);
+  SteppedExecutor local(next);
+  const auto later = std::make_shared<RecordingJournal>();
+  later->stored = journal->checkpoints;
+  next.Add(RunOf(1, spec, later));
+  local.TakeAllTurns();
+  next.Shutdown();
+  ExpectComplete(spec, *later);
+  EXPECT_EQ(later->restored[0], 45 * kFakeSamplesPerBlock);
   EXPECT_EQ(computed.size(), 35u);
   EXPECT_EQ(*computed.begin(), 45u);
-  EXPECT_EQ(journal->restored[1], 45 * kFakeSamplesPerBlock);
 }
 
-TEST(Scheduler, ACheckpointOfAnotherShapeEndsTheRun) {
+TEST_F(SchedulerTest, ACheckpointOfAnotherShapeEndsTheRun) {
   const EnsembleSpec spec = FakeSpec(1, 3);
-  auto journal = std::make_shared<RecordingJournal>();
+  const auto journal = std::make_shared<RecordingJournal>();
   journal->stored[0] = FakeState(spec, 0, 2);
   journal->stored[0].partial.moments.resize(1000);
-  ThreadPool pool(2, FakeExperiments());
-  pool.Add(RunOf(1, spec, journal));
-  EXPECT_THAT(journal->AwaitEnd(), StatusIs(absl::StatusCode::kDataLoss));
+  scheduler_.Add(RunOf(1, spec, journal));
+  local_.TakeAllTurns();
+  ASSERT_TRUE(journal->outcome);
+  EXPECT_THAT(*journal->outcome, StatusIs(absl::StatusCode::kDataLoss));
   EXPECT_TRUE(journal->finished.empty());
 }
 
-// A later pool continues from the state at the shutdown of the first one.
-TEST(Scheduler, AShutdownWritesACheckpoint) {
-  const EnsembleSpec spec = FakeSpec(1, 80);
-  Gate gate;
-  ThreadPool pool(1, GatedExperiments(gate, 50));
-  const auto journal = AddRun(pool, 1, spec);
-  gate.AwaitWaiting(1);
-  pool.Shutdown();
-  const auto later = std::make_shared<RecordingJournal>();
-  later->stored = journal->checkpoints;
-  ThreadPool next(2, FakeExperiments());
-  next.Add(RunOf(1, spec, later));
-  ASSERT_OK(later->AwaitEnd());
-  ExpectAllPointsRight(spec, *later);
-  EXPECT_EQ(later->restored[0], 50 * kFakeSamplesPerBlock);
-}
-
-// ---- budgets ----
+// ---- budgets and tolerances ----
 
 // This budget is spent when the first block is merged, on every machine.
 constexpr double kSpentAtOnce = 1e-12;
 
-EnsembleSpec FakeBudget(int points) {
+EnsembleSpec WithTarget(int points, const Target& target) {
   EnsembleSpec spec = FakeSpec(points, 0);
-  spec.target = {.budget_seconds = kSpentAtOnce};
+  spec.target = target;
   return spec;
 }
 
+// Blocks that were out of order when the first came are merged with it.
 TEST(Scheduler, ASpentBudgetEndsAPointAtABlocksEnd) {
-  const EnsembleSpec spec = FakeBudget(5);
-  for (const int workers : {1, 4}) {
-    ThreadPool pool(workers, FakeExperiments());
-    const auto journal = AddRun(pool, 1, spec);
-    EXPECT_OK(journal->AwaitEnd());
-    ASSERT_EQ(journal->finished.size(), 5u);
-    for (const auto& [point, merged] : journal->finished) {
-      const uint64_t blocks = journal->merged[point] / kFakeSamplesPerBlock;
-      // Blocks that were out of order when the first came are merged with it.
-      EXPECT_GE(blocks, 1u);
-      EXPECT_LT(blocks, 1000u);
-      EXPECT_TRUE(merged == FakeMerged(spec, point, blocks)) << "point " << point;
-    }
+  const EnsembleSpec spec = WithTarget(5, {.budget_seconds = kSpentAtOnce});
+  ThreadPool pool(4, FakeExperiments());
+  const auto journal = std::make_shared<RecordingJournal>();
+  pool.Add(RunOf(1, spec, journal));
+  EXPECT_OK(journal->AwaitEnd());
+  ASSERT_EQ(journal->finished.size(), 5u);
+  for (const auto& [point, merged] : journal->finished) {
+    const uint64_t blocks = journal->merged[point] / kFakeSamplesPerBlock;
+    EXPECT_GE(blocks, 1u);
+    EXPECT_LT(blocks, 1000u);
+    EXPECT_TRUE(merged == FakeMerged(spec, point, blocks)) << "point " << point;
   }
 }
 
-// With one worker one block is merged at a time, so nothing but the first.
+// With one thread one block is merged at a time, so nothing but the first.
 TEST(Scheduler, AMissedToleranceIsReportedAfterAllPointsAreFinished) {
-  EnsembleSpec spec = FakeBudget(5);
-  spec.target.tolerance = 0.001;
+  const auto journal = std::make_shared<RecordingJournal>();
+  const EnsembleSpec spec = WithTarget(5, {.tolerance = 0.001, .budget_seconds = kSpentAtOnce});
   ThreadPool pool(1, FakeExperiments());
-  const auto journal = AddRun(pool, 1, spec);
+  pool.Add(RunOf(1, spec, journal));
   const absl::Status outcome = journal->AwaitEnd();
-  EXPECT_THAT(outcome, StatusIs(absl::StatusCode::kDeadlineExceeded));
   EXPECT_EQ(journal->finished.size(), 5u);
   for (const auto& [point, merged] : journal->finished) {
     EXPECT_TRUE(merged == FakeMerged(spec, point, 1)) << "point " << point;
@@ -109,21 +92,21 @@ TEST(Scheduler, AMissedToleranceIsReportedAfterAllPointsAreFinished) {
   // That of the point that came first.
   const BlockResult merged = FakeMerged(spec, 0, 1);
   const double reached = *merged.moments[0].StandardError() / merged.moments[0].mean;
-  EXPECT_EQ(std::string(outcome.message()),
-            absl::StrFormat("point 0: tolerance 0.001 was not reached within the budget of 1e-12 "
-                            "s: reached %.2g",
-                            reached));
+  EXPECT_THAT(outcome,
+              StatusIs(absl::StatusCode::kDeadlineExceeded,
+                       absl::StrFormat("point 0: tolerance 0.001 was not reached within the "
+                                       "budget of 1e-12 s: reached %.2g",
+                                       reached)));
 }
 
-TEST(Scheduler, AReachedToleranceEndsBeforeTheBudget) {
-  EnsembleSpec spec = FakeSpec(3, 0);
-  spec.target = {.tolerance = 0.05};
-  EnsembleSpec with_budget = spec;
-  with_budget.target.budget_seconds = 1e6;
-  for (const EnsembleSpec& asked : {spec, with_budget}) {
-    ThreadPool pool(1, FakeExperiments());
-    const auto journal = AddRun(pool, 1, asked);
-    EXPECT_OK(journal->AwaitEnd());
+TEST_F(SchedulerTest, AReachedToleranceEndsBeforeTheBudget) {
+  for (const Target& target :
+       {Target{.tolerance = 0.05}, Target{.tolerance = 0.05, .budget_seconds = 1e6}}) {
+    const EnsembleSpec spec = WithTarget(3, target);
+    const auto journal = Add(1, spec);
+    local_.TakeAllTurns();
+    ASSERT_TRUE(journal->outcome);
+    EXPECT_OK(*journal->outcome);
     ASSERT_EQ(journal->finished.size(), 3u);
     for (const auto& [point, merged] : journal->finished) {
       EXPECT_GT(merged.samples, 64u);  // more than one chunk
@@ -148,57 +131,218 @@ TEST(Scheduler, ProcessorTimeIsReportedOfPilotsAndBlocksAlike) {
       if (seed == 2) compute();
     })(spec, index);
   });
-  const auto idle = AddRun(pool, 1, FakeSpec(1, 4, 1));
-  ASSERT_OK(idle->AwaitEnd());
-  const auto busy = AddRun(pool, 2, FakeSpec(1, 4, 2));
-  ASSERT_OK(busy->AwaitEnd());
-  EXPECT_GT(idle->work, 0);
+  const auto work_of = [&](uint64_t seed) {
+    const auto journal = std::make_shared<RecordingJournal>();
+    pool.Add(RunOf(static_cast<int64_t>(seed), FakeSpec(1, 4, seed), journal));
+    EXPECT_OK(journal->AwaitEnd());
+    return journal->work;
+  };
+  EXPECT_GT(work_of(1), 0);
   // At least one of five in each second of the clock: a turn of the second cuts one short.
-  EXPECT_GE(busy->work, 4 * 0.002);
+  EXPECT_GE(work_of(2), 4 * 0.002);
 }
+
+// ---- several runs ----
 
 TEST(Scheduler, AnExceptionFailsItsRunOnly) {
-  ThreadPool pool(2,
-                  FakeExperimentsBySeed([](uint64_t seed, size_t, uint64_t block, std::stop_token) {
-                    if (seed == 13 && block == 5)
-                      throw std::runtime_error("the ball left the cell");
-                    if (seed == 14 && block == 5) throw std::bad_alloc();
-                  }));
-  const auto bad = AddRun(pool, 1, FakeSpec(3, 20, 13));
-  const auto hungry = AddRun(pool, 2, FakeSpec(3, 20, 14));
-  const auto good = AddRun(pool, 3, FakeSpec(3, 20, 15));
-  EXPECT_OK(good->AwaitEnd());
-  EXPECT_THAT(std::string(bad->AwaitEnd().message()), HasSubstr("the ball left the cell"));
-  EXPECT_THAT(std::string(hungry->AwaitEnd().message()), HasSubstr("out of memory"));
-  ExpectAllPointsRight(FakeSpec(3, 20, 15), *good);
+  FactoryOpener opener(
+      FakeExperimentsBySeed([](uint64_t seed, size_t, uint64_t block, std::stop_token) {
+        if (seed == 13 && block == 5) throw std::runtime_error("the ball left the cell");
+        if (seed == 14 && block == 5) throw std::bad_alloc();
+      }));
+  Scheduler scheduler(opener, 1);
+  SteppedExecutor local(scheduler);
+  std::map<uint64_t, JournalPointer> journals;
+  for (const uint64_t seed : {13u, 14u, 15u}) {
+    journals[seed] = std::make_shared<RecordingJournal>();
+    scheduler.Add(RunOf(static_cast<int64_t>(seed), FakeSpec(3, 20, seed), journals[seed]));
+  }
+  local.TakeAllTurns();
+  scheduler.Shutdown();
+  EXPECT_THAT(std::string(journals[13]->outcome->message()), HasSubstr("the ball left the cell"));
+  EXPECT_THAT(std::string(journals[14]->outcome->message()), HasSubstr("out of memory"));
+  ExpectComplete(FakeSpec(3, 20, 15), *journals[15]);
 }
 
-// The runs are added while a first run blocks the only worker, so that all are present when it goes
-// on.
-TEST(Scheduler, AHigherPriorityIsServedFirst) {
-  Gate gate;
-  std::vector<uint64_t> begun;  // the seed of the run, for each block
-  ThreadPool pool(1,
-                  FakeExperimentsBySeed([&](uint64_t seed, size_t, uint64_t, std::stop_token stop) {
-                    begun.push_back(seed);
-                    if (seed == 1) gate.Pass(stop);
-                  }));
-  std::vector<JournalPointer> journals;
-  const auto add = [&](int64_t key, int32_t priority, uint64_t seed, int64_t blocks) {
-    journals.push_back(AddRun(pool, key, FakeSpec(2, blocks, seed), "a", priority));
-  };
-  add(1, 0, 1, 1);
-  gate.AwaitWaiting(1);
-  add(2, -7, 2, 10);
-  add(3, 0, 3, 10);
-  add(4, 7, 4, 10);
-  gate.Open();
-  for (const auto& journal : journals) EXPECT_OK(journal->AwaitEnd());
-  // The first run's second point comes when its priority's turn has come.
-  std::erase(begun, 1u);
-  std::vector<uint64_t> expected;
-  for (const uint64_t seed : {4u, 3u, 2u}) expected.insert(expected.end(), 20, seed);
-  EXPECT_EQ(begun, expected);
+TEST_F(SchedulerTest, AHigherPriorityIsServedFirst) {
+  for (const int32_t priority : {-7, 0, 7}) {
+    RunRequest request =
+        RunOf(10 + priority, FakeSpec(2, 10), std::make_shared<RecordingJournal>());
+    request.priority = priority;
+    scheduler_.Add(std::move(request));
+  }
+  std::vector<int64_t> runs = Turns(1000, 3);
+  runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
+  EXPECT_THAT(runs, ElementsAre(17, 10, 3));
+}
+
+// ---- executors elsewhere ----
+
+// A capacity for one chunk, and for all chunks of a point.
+constexpr double kOneChunk = 0;
+constexpr double kWholePoint = 1000;
+
+class ElsewhereTest : public SchedulerTest {
+ protected:
+  // Adds a run and opens its first point.
+  JournalPointer Begin(const EnsembleSpec& spec, int64_t key = 1) {
+    JournalPointer journal = Add(key, spec);
+    EXPECT_TRUE(local_.TakeTurn());
+    return journal;
+  }
+
+  RemoteExecutor remote_{scheduler_, kOneChunk};
+};
+
+TEST_F(ElsewhereTest, AChunkCountsOnceHoweverOftenItIsReported) {
+  const auto journal = Begin(SixChunks(2));
+  const std::vector<Lease> leases = remote_.TakeAll();
+  ASSERT_EQ(leases.size(), kChunks);
+  for (auto lease = leases.rbegin(); lease != leases.rend(); ++lease) {
+    for (int report = 0; report < 3; ++report) {
+      EXPECT_OK(remote_.ReportAll(*lease));
+      if (report > 0) remote_.Return(*lease);
+    }
+  }
+  EXPECT_EQ(journal->finished.size(), 1u);
+  local_.TakeAllTurns();
+  ExpectComplete(SixChunks(2), *journal);
+}
+
+TEST_F(ElsewhereTest, AnEarlyChunkIsStoredAndAMergedOneIsInTheCheckpoint) {
+  const auto journal = Begin(SixChunks());
+  const std::vector<Lease> leases = remote_.TakeAll();
+  ASSERT_EQ(leases.size(), kChunks);
+  EXPECT_OK(remote_.ReportAll(leases[2]));
+  ASSERT_EQ(journal->early[0].size(), 1u);
+  EXPECT_EQ(journal->early[0][0].chunk, 2u);
+  EXPECT_TRUE(journal->checkpoints.empty());
+  EXPECT_OK(remote_.ReportAll(leases[0]));
+  EXPECT_EQ(journal->checkpoints[0].chunk, 1u);
+  EXPECT_OK(remote_.ReportAll(leases[1]));
+  EXPECT_EQ(journal->checkpoints[0].chunk, 3u);
+  EXPECT_EQ(journal->early[0].size(), 1u);
+}
+
+TEST_F(ElsewhereTest, ADamagedChunkIsRejectedAndTheOthersAreMerged) {
+  constexpr uint64_t kMost = std::numeric_limits<uint64_t>::max();
+  const std::vector<std::function<void(ChunkResult&)>> damages = {
+      [](ChunkResult& chunk) {
+        chunk.result.histograms.push_back({.lower = 0, .upper = 1, .counts = {0, 0}});
+      },
+      [](ChunkResult& chunk) { chunk.result.samples = kMost; },
+      [](ChunkResult& chunk) { chunk.chunk = kChunks; },
+      [](ChunkResult& chunk) { chunk.chunk = kMost; },
+      [](ChunkResult& chunk) { chunk.result = {}; }};
+  RemoteExecutor remote(scheduler_, kWholePoint);
+  int64_t key = 0;
+  for (const auto& damage : damages) {
+    const auto journal = Begin(SixChunks(), ++key);
+    const auto lease = remote.Take();
+    ASSERT_TRUE(lease);
+    std::vector<ChunkResult> chunks = ComputedChunks(*lease);
+    const ChunkResult right = chunks[1];
+    damage(chunks[1]);
+    EXPECT_THAT(remote.Report(*lease, chunks), StatusIs(absl::StatusCode::kDataLoss));
+    EXPECT_EQ(journal->merged[0], 64u);
+    EXPECT_OK(remote.Report(*lease, {right}));
+    ExpectComplete(SixChunks(), *journal);
+  }
+}
+
+// A chunk with fewer samples than its merged blocks have.
+TEST_F(ElsewhereTest, AChunkThatContradictsItsMergedBlocksIsRefused) {
+  const auto journal = Begin(SixChunks());
+  const auto lost = remote_.Take();
+  remote_.Return(*lost);
+  ASSERT_TRUE(local_.TakeTurn(10));
+  ChunkResult damaged = ComputedChunks(*lost)[0];
+  damaged.result.samples = 3;
+  EXPECT_THAT(remote_.Report(*lost, {damaged}), StatusIs(absl::StatusCode::kDataLoss));
+  EXPECT_EQ(journal->merged[0], 10 * kFakeSamplesPerBlock);
+  local_.TakeAllTurns();
+  ExpectComplete(SixChunks(), *journal);
+}
+
+TEST_F(ElsewhereTest, AnUntriedLeaseCountsNoAttempt) {
+  Begin(SixChunks());
+  for (int i = 0; i < 20; ++i) {
+    const auto lease = remote_.Take();
+    ASSERT_TRUE(lease);
+    EXPECT_EQ(lease->start.chunk, 0u);
+    EXPECT_EQ(lease->attempt, 1);
+    remote_.Return(*lease, false);
+  }
+}
+
+TEST_F(ElsewhereTest, ASmallRunAndARunWithABudgetStayLocal) {
+  const EnsembleSpec small = FakeSpec(1, 1400);  // 59 s
+  const auto journal = Begin(small);
+  EXPECT_FALSE(remote_.Take());
+  local_.TakeAllTurns();
+  ExpectComplete(small, *journal);
+  Begin(WithTarget(10, {.budget_seconds = 1e6}), 2);
+  EXPECT_FALSE(remote_.Take());
+  scheduler_.Cancel(2);
+  Begin(FakeSpec(1, 1440), 3);  // 60.4 s
+  EXPECT_TRUE(remote_.Take());
+}
+
+TEST_F(ElsewhereTest, APointIsComputedBeforeTheNextOneIsOpened) {
+  Begin(SixChunks(100));
+  const auto next = local_.Begin();
+  ASSERT_TRUE(next);
+  EXPECT_FALSE(next->OpensPoints());
+  local_.End(*next, 1);
+}
+
+TEST_F(ElsewhereTest, PointsAreOpenedAheadForAHungryExecutorElsewhere) {
+  RemoteExecutor remote(scheduler_, kWholePoint);
+  Begin(SixChunks(100));
+  EXPECT_EQ(remote.TakeAll().size(), 1u);
+  ASSERT_TRUE(local_.TakeTurn());
+  EXPECT_EQ(remote.TakeAll().size(), 32u);
+}
+
+TEST_F(ElsewhereTest, WorkElsewhereIsChargedToItsRun) {
+  const auto journal = Begin(SixChunks());
+  const auto lease = remote_.Take();
+  ASSERT_TRUE(lease);
+  EXPECT_OK(remote_.Report(*lease, {}, 3));
+  EXPECT_OK(remote_.Report(*lease, ComputedChunks(*lease), 4));
+  remote_.Return(*lease);
+  EXPECT_EQ(journal->work, 7);
+  EXPECT_EQ(scheduler_.Counts().processor_seconds, 7);
+}
+
+TEST_F(ElsewhereTest, AStoppedRunEndsWhenItsTurnsHaveEnded) {
+  const auto journal = Begin(SixChunks(2));
+  const auto elsewhere = remote_.Take();
+  const auto here = local_.Begin();
+  ASSERT_TRUE(elsewhere && here);
+  scheduler_.Cancel(1);
+  EXPECT_TRUE(elsewhere->stop.stop_requested());
+  EXPECT_TRUE(here->stop.stop_requested());
+  EXPECT_FALSE(scheduler_.Needs(*elsewhere));
+  EXPECT_EQ(journal->ends, 0);
+  EXPECT_FALSE(remote_.Take());
+  EXPECT_FALSE(local_.Begin());
+  local_.End(*here, 1);
+  EXPECT_EQ(journal->ends, 1);
+  EXPECT_THAT(*journal->outcome, StatusIs(absl::StatusCode::kCancelled));
+  EXPECT_OK(remote_.ReportAll(*elsewhere));
+  remote_.Return(*elsewhere);
+  EXPECT_EQ(journal->ends, 1);
+}
+
+// An earlier process gave the lease, and another job has the key now.
+TEST_F(ElsewhereTest, ReportsOfAnotherJobWithTheSameKeyAreDropped) {
+  const auto journal = Begin(SixChunks());
+  std::optional<Lease> other = remote_.Take();
+  ASSERT_TRUE(other);
+  other->generation = 7;
+  EXPECT_OK(remote_.ReportAll(*other));
+  EXPECT_TRUE(journal->merged.empty());
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/gpu/host_flights.h"
 #include "tests/core/one_point_spec.h"
-#include "tests/server/compute/run_requests.h"
+#include "tests/server/compute/stepped_scheduler.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {

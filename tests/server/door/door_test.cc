@@ -47,44 +47,33 @@ TEST(DoorCombination, AnErrorNamesTheNeededFlags) {
 
 // ---- the loopback without TLS ----
 
-std::string OwnTokenOf(const TemporaryFolder& data, const RunningServer& server) {
-  const std::string text = Contents(data.path() + "/tokens/" + server.address());
-  return text.substr(0, text.find('\n'));
-}
-
 TEST(Loopback, TheOwnTokenIsThatOfTheServersUserAndEndsWithTheServer) {
   const TemporaryFolder data;
+  const TestServerOptions options = {.data_dir = data.path(), .listen = "127.0.0.1:0"};
   std::string first;
   {
-    RunningServer server({.data_dir = data.path(), .listen = "127.0.0.1:0"});
+    RunningServer server(options);
     const std::string file = data.path() + "/tokens/" + server.address();
     EXPECT_EQ(ModeOf(file), 0600u);
     EXPECT_EQ(ModeOf(data.path() + "/tokens"), 0700u);
-    first = OwnTokenOf(data, server);
+    std::getline(std::ifstream(file), first);
     EXPECT_OK(CallByName(server.channel(), kListJobs, "", Bearer(first)));
   }
   EXPECT_TRUE(std::filesystem::is_empty(data.path() + "/tokens"));
-  RunningServer server({.data_dir = data.path(), .listen = "127.0.0.1:0"});
+  RunningServer server(options);
   EXPECT_EQ(ReasonOf(CallByName(server.channel(), kListJobs, "", Bearer(first))),
             "CREDENTIALS_INVALID");
 }
 
-class OwnTokenOfADoor : public ::testing::Test {
- protected:
-  std::string TokenFile() const { return folder_.File("127.0.0.1:1"); }
-
-  const TemporaryFolder folder_;
-  const ListenAddress address_ = *ParseListenAddress("127.0.0.1:1");
-};
-
-TEST_F(OwnTokenOfADoor, WithoutItTheServerWarnsAndServes) {
+TEST(Loopback, WithoutAnOwnTokenTheServerWarnsAndServes) {
   const LaboratoryFiles files;
+  const ListenAddress address = *ParseListenAddress("127.0.0.1:1");
   ASSERT_OK_AND_ASSIGN(const auto door,
                        Door::Create({.access_file = files.options().access_file,
                                      .own_tokens = files.Write("file", "") + "/tokens"},
-                                    address_));
+                                    address));
   ::testing::internal::CaptureStderr();
-  door->PublishOwnToken(address_);
+  door->PublishOwnToken(address);
   EXPECT_THAT(::testing::internal::GetCapturedStderr(),
               HasSubstr("this server's user needs a token of --access-file"));
   EXPECT_OK(door->authenticator().Authenticate({std::string("Bearer ") + kAlice}, absl::Now()));

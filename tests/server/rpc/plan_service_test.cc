@@ -5,38 +5,6 @@
 namespace ballpiston::server {
 namespace {
 
-// One server for all: measuring its rates takes some 0.3 s.
-class PlanServiceTest : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    folder_ = new TemporaryFolder;
-    // The core's experiments.
-    server_ = new RunningServer({.data_dir = folder_->path(), .factory = nullptr});
-  }
-  static void TearDownTestSuite() {
-    delete server_;
-    delete folder_;
-  }
-
-  static grpc::Status Plan(const v1::EnsembleSpec& spec, v1::PlanEnsembleJobResponse* plan) {
-    grpc::ClientContext context;
-    v1::PlanEnsembleJobRequest request;
-    *request.mutable_spec() = spec;
-    return server_->ensemble().PlanEnsembleJob(&context, request, plan);
-  }
-
-  static v1::PlanEnsembleJobResponse PlanOf(const v1::EnsembleSpec& spec) {
-    v1::PlanEnsembleJobResponse plan;
-    EXPECT_OK(Plan(spec, &plan));
-    return plan;
-  }
-
-  static double FirstPoint();
-
-  static inline TemporaryFolder* folder_ = nullptr;
-  static inline RunningServer* server_ = nullptr;
-};
-
 v1::EnsembleSpec QuestionOf(const ExperimentKind& kind, Model model = Model::kAuto) {
   EnsembleSpec spec = SpecOf(kind, model);
   spec.target = {};
@@ -52,6 +20,35 @@ double WorkOfPoints(const v1::PlanEnsembleJobResponse& plan) {
   }
   return work;
 }
+
+// One server for all: measuring its rates takes some 0.3 s.
+class PlanServiceTest : public testing::Test {
+ protected:
+  // The core's experiments.
+  static void SetUpTestSuite() { server_ = new RunningServer({.factory = nullptr}); }
+  static void TearDownTestSuite() { delete server_; }
+
+  static grpc::Status Plan(const v1::EnsembleSpec& spec, v1::PlanEnsembleJobResponse* plan) {
+    grpc::ClientContext context;
+    v1::PlanEnsembleJobRequest request;
+    *request.mutable_spec() = spec;
+    return server_->ensemble().PlanEnsembleJob(&context, request, plan);
+  }
+
+  static v1::PlanEnsembleJobResponse PlanOf(const v1::EnsembleSpec& spec) {
+    v1::PlanEnsembleJobResponse plan;
+    EXPECT_OK(Plan(spec, &plan));
+    return plan;
+  }
+
+  // The extra time of a job's first point, because caches are cold.
+  static double FirstPoint() {
+    const v1::PlanEnsembleJobResponse plan = PlanOf(QuestionOf(kEquilibrium));
+    return plan.work() - WorkOfPoints(plan);
+  }
+
+  static inline RunningServer* server_ = nullptr;
+};
 
 TEST_F(PlanServiceTest, EveryExperimentHasItsLadderCheapestFirst) {
   for (const ExperimentKind* kind : AllExperiments()) {
@@ -75,12 +72,6 @@ TEST_F(PlanServiceTest, EveryExperimentHasItsLadderCheapestFirst) {
                                    v1::EnsembleSpec::MARKOV, v1::EnsembleSpec::BILLIARD,
                                    v1::EnsembleSpec::BILLIARD_REFERENCE));
   }
-}
-
-// The extra time of a job's first point, because caches are cold.
-double PlanServiceTest::FirstPoint() {
-  const v1::PlanEnsembleJobResponse plan = PlanOf(QuestionOf(kEquilibrium));
-  return plan.work() - WorkOfPoints(plan);
 }
 
 TEST_F(PlanServiceTest, TheWorkIsThatOfTheChosenOneOverAllPoints) {

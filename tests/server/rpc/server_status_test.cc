@@ -29,13 +29,6 @@ class ServerStatusTest : public testing::Test {
     return *status;
   }
 
-  static std::unique_ptr<grpc::Server> Serve(grpc::Service& service, const std::string& address) {
-    return grpc::ServerBuilder()
-        .RegisterService(&service)
-        .AddListeningPort(address, grpc::InsecureServerCredentials())
-        .BuildAndStart();
-  }
-
   TemporaryFolder folder_;
   Gate gate_;
   const Limits limits_ = {.max_active_jobs_per_principal = 7,
@@ -88,7 +81,10 @@ class ThrowingService : public ServiceOf<v1::AnalyticService::Service> {
 TEST_F(ServerStatusTest, AnExceptionEndsTheCallOnly) {
   ThrowingService service(context_);
   const std::string address = "unix:" + folder_.File("socket");
-  const auto server = Serve(service, address);
+  const auto server = grpc::ServerBuilder()
+                          .RegisterService(&service)
+                          .AddListeningPort(address, grpc::InsecureServerCredentials())
+                          .BuildAndStart();
   TestClient client(OwnChannel(address));
   for (int i = 0; i < 2; ++i) {
     grpc::ClientContext context;

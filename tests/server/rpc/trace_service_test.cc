@@ -1,7 +1,6 @@
 
 #include "server/convert/trace.h"
 #include "tests/server/preamble.h"
-#include "tests/server/secure_server.h"
 
 namespace ballpiston::server {
 namespace {
@@ -38,7 +37,6 @@ const v1::TraceOrbitRequest kLong = TraceRequest(kMaxTracedEvents);
 
 class TraceServiceTest : public testing::Test {
  protected:
-  RunningServer& StartWith(const TestServerOptions& options) { return server_.emplace(options); }
   RunningServer& server() { return server_ ? *server_ : server_.emplace(); }
 
   std::vector<v1::TraceOrbitResponse> Trace(const v1::TraceOrbitRequest& request) {
@@ -47,10 +45,6 @@ class TraceServiceTest : public testing::Test {
     while (auto message = stream.Next()) messages.push_back(*message);
     EXPECT_OK(stream.reader->Finish());
     return messages;
-  }
-
-  grpc::Status Refusal(const v1::TraceOrbitRequest& request) {
-    return TraceStream(server(), request).End();
   }
 
   std::optional<RunningServer> server_;
@@ -161,10 +155,11 @@ TEST_F(TraceServiceTest, ATraceCountsAsAStreamWithItsMemoryUntilItsReaderGoes) {
       {{.max_streams_per_principal = 1}, "TOO_MANY_STREAMS"},
       {{.max_call_bytes_per_principal = 1'000'000}, "TOO_MANY_CALLS"}};
   for (const auto& [limits, reason] : rows) {
-    RunningServer& server = StartWith({.limits = limits});
+    RunningServer& server = server_.emplace(TestServerOptions{.limits = limits});
     auto first = std::make_unique<TraceStream>(server, TraceRequest(kMaxTracedEvents, "1000"));
     ASSERT_TRUE(first->Next());
-    EXPECT_THAT(Refusal(TraceRequest(1)), IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, reason));
+    EXPECT_THAT(TraceStream(server, TraceRequest(1)).End(),
+                IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, reason));
     first->context.TryCancel();
     first.reset();
     // Then the server knows that the trace has ended.
@@ -178,19 +173,6 @@ TEST_F(TraceServiceTest, AStopEndsTracesThatAreRead) {
   std::thread stop([this] { server().Shutdown(kUnreachedLimit); });
   EXPECT_THAT(stream.End(), IsError(grpc::StatusCode::UNAVAILABLE, "SHUTTING_DOWN"));
   stop.join();
-}
-
-TEST(TraceCredentials, AStalledTraceEndsWhenItsTokenIsRevoked) {
-  LaboratoryFiles files;
-  RunningServer server(Secure(files, {.watch = {.heartbeat = std::chrono::milliseconds(20)}}));
-  TestClient alice(server.NewChannel(files.Credentials(kAlice)));
-  TestClient ops(server.NewChannel(files.Credentials(kOps)));
-  TraceStream stalled(alice, kLong);
-  ASSERT_TRUE(stalled.Next());
-  files.WriteAccessFile(TokenLine(kOps, {"ops", Role::kAdmin}));
-  ASSERT_OK(server.server().Reload());
-  AwaitThat([&] { return ops.Status().streams() == 0; });
-  EXPECT_THAT(stalled.End(), Not(IsOk()));
 }
 
 }  // namespace

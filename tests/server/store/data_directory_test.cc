@@ -1,10 +1,5 @@
 #include "server/store/data_directory.h"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <filesystem>
-
 #include "server/store/folder_sync.h"
 #include "tests/support/preamble.h"
 
@@ -25,25 +20,17 @@ class DataFolder : public ::testing::Test {
 };
 
 TEST_F(DataFolder, TheLockHasTheServersProcessIdWhileItIsHeld) {
+  Make(0700);
+  WriteFile(path_ + "/lock", "123456789012345\n");  // of a server that was killed
   {
     ASSERT_OK_AND_ASSIGN(const auto directory, DataDirectory::Open(path_));
-    EXPECT_EQ(Contents(directory.FilePath("lock")), OwnId());
+    EXPECT_EQ(directory.FilePath("lock"), path_ + "/lock");
+    EXPECT_EQ(Contents(path_ + "/lock"), OwnId());
+    WriteFile(path_ + "/lock", "12345\n");  // a second server does not change it
+    EXPECT_THAT(DataDirectory::Open(path_), StatusIs(absl::StatusCode::kFailedPrecondition));
+    EXPECT_EQ(Contents(path_ + "/lock"), "12345\n");
   }
   EXPECT_EQ(Contents(path_ + "/lock"), "");
-}
-
-TEST_F(DataFolder, TheProcessIdOfAKilledServerIsReplaced) {
-  Make(0700);
-  WriteFile(path_ + "/lock", "123456789012345\n");
-  ASSERT_OK_AND_ASSIGN(const auto directory, DataDirectory::Open(path_));
-  EXPECT_EQ(Contents(path_ + "/lock"), OwnId());
-}
-
-TEST_F(DataFolder, ASecondServerDoesNotChangeTheProcessId) {
-  ASSERT_OK_AND_ASSIGN(const auto directory, DataDirectory::Open(path_));
-  WriteFile(path_ + "/lock", "12345\n");
-  EXPECT_THAT(DataDirectory::Open(path_), StatusIs(absl::StatusCode::kFailedPrecondition));
-  EXPECT_EQ(Contents(path_ + "/lock"), "12345\n");
 }
 
 TEST_F(DataFolder, AFileOfAnotherProgramNamedLockIsUnchanged) {
@@ -91,7 +78,7 @@ TEST_F(DataFolder, AFolderIsClosedIfNothingButAServersFilesIsInIt) {
       EXPECT_OK(directory);
     } else {
       EXPECT_THAT(directory, StatusIs(absl::StatusCode::kPermissionDenied,
-                                      testing::AllOf(HasSubstr(row.refusal), HasSubstr(path_))));
+                                      AllOf(HasSubstr(row.refusal), HasSubstr(path_))));
       EXPECT_FALSE(std::filesystem::exists(path_ + "/lock"));
     }
     std::filesystem::remove_all(path_);

@@ -2,7 +2,6 @@
 
 #include <new>
 
-#include "server/store/data_directory.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {
@@ -46,41 +45,6 @@ class StoreTest : public testing::Test {
                     [&](Database& database) { return ReadCheckpoint(database, job, point); });
   }
 
-  static std::vector<std::string> Results(Store& store, int64_t job) {
-    std::vector<std::string> results;
-    EXPECT_OK(store.Read([&](Database& database) {
-      ReadResults(database, job, 0, Details::kLeftOut, [&](const PointRow& row) {
-        results.push_back(std::to_string(row.point) + row.result);
-        return true;
-      });
-    }));
-    return results;
-  }
-
-  static void KeepPilot(Store& store, const std::string& engine, const PilotPlace& place,
-                        const Pilot& pilot) {
-    EXPECT_OK(
-        store.Commit([&](Database& database) { InsertPilot(database, engine, place, pilot); }));
-  }
-
-  static std::optional<Pilot> StoredPilot(Store& store, const std::string& engine,
-                                          const PilotPlace& place) {
-    return ReadFrom(store, [&](Database& database) { return FindPilot(database, engine, place); });
-  }
-
-  // Whether the cancellation had an effect.
-  static bool Cancel(Store& store, int64_t job) {
-    return *store.Commit([&](Database& database) { return BeginCancellation(database, job, ""); });
-  }
-
-  static JobState End(Store& store, int64_t job, JobState wish) {
-    const auto ended = store.Commit([&](Database& database) {
-      return EndJob(database, job, {wish, absl::Now(), "why", {2, 7.5, 0.25}});
-    });
-    EXPECT_OK(ended);
-    return ended.ok() && *ended ? (*ended)->state : v1::EnsembleJob::STATE_UNSPECIFIED;
-  }
-
   TemporaryFolder folder_;
 };
 
@@ -107,85 +71,68 @@ TEST_F(StoreTest, APilotIsFoundByItsEngineAndItsPlaceAlone) {
   const PilotPlace in_equilibrium = {.rho = 0.53, .delta = 0.1};
   const PilotPlace at_zero = {.rho = 0.53, .delta = 0.1, .epsilon = 0.0};
   const PilotPlace from_energy = {.rho = 0.53, .delta = 0.1, .epsilon = 0.25};
-  const auto pilot = [](double difference) {
-    return Pilot{.difference = difference, .standard_error = difference / 3};
+  const std::tuple<std::string, PilotPlace, double> pilots[] = {{"2", in_equilibrium, 0.1},
+                                                                {"2", at_zero, -0.2},
+                                                                {"2", from_energy, 0.3},
+                                                                {"3", in_equilibrium, 0.4}};
+  const auto keep = [&](const std::string& engine, const PilotPlace& place, double difference) {
+    EXPECT_OK(Open()->Commit([&](Database& database) {
+      InsertPilot(database, engine, place,
+                  {.difference = difference, .standard_error = difference / 3});
+    }));
   };
-  {
-    const auto store = Open();
-    KeepPilot(*store, "2", in_equilibrium, pilot(0.1));
-    KeepPilot(*store, "2", at_zero, pilot(-0.2));
-    KeepPilot(*store, "2", from_energy, pilot(0.3));
-    KeepPilot(*store, "3", in_equilibrium, pilot(0.4));
-    KeepPilot(*store, "2", in_equilibrium, pilot(0.5));  // the first one stays
-  }
+  for (const auto& [engine, place, difference] : pilots) keep(engine, place, difference);
+  keep("2", in_equilibrium, 0.5);  // the first one stays
   const auto store = Open();
-  const auto expect = [&](const std::string& engine, const PilotPlace& place, double difference) {
-    const auto found = StoredPilot(*store, engine, place);
+  const auto stored = [&](const std::string& engine, const PilotPlace& place) {
+    return ReadFrom(*store, [&](Database& database) { return FindPilot(database, engine, place); });
+  };
+  for (const auto& [engine, place, difference] : pilots) {
+    const auto found = stored(engine, place);
     ASSERT_TRUE(found);
     EXPECT_EQ(found->difference, difference);
     EXPECT_EQ(found->standard_error, difference / 3);
     EXPECT_FALSE(found->predicted);
-  };
-  expect("2", in_equilibrium, 0.1);
-  expect("2", at_zero, -0.2);
-  expect("2", from_energy, 0.3);
-  expect("3", in_equilibrium, 0.4);
-  EXPECT_FALSE(StoredPilot(*store, "3", from_energy));
-  EXPECT_FALSE(StoredPilot(*store, "2", {.rho = 0.53, .delta = 0.2}));
-  EXPECT_FALSE(StoredPilot(*store, "2", {.rho = 0.54, .delta = 0.1}));
+  }
+  EXPECT_FALSE(stored("3", from_energy));
+  EXPECT_FALSE(stored("2", {.rho = 0.53, .delta = 0.2}));
+  EXPECT_FALSE(stored("2", {.rho = 0.54, .delta = 0.1}));
 }
 
 // SQLite may make an empty log and an index beside the file.
-void ExpectRefusedAndUntouched(const std::string& path, const std::string& why) {
-  const std::string file = Contents(path), log = Contents(path + "-wal");
-  const auto store = Store::Open(path, {});
-  EXPECT_THAT(store, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr(why)));
-  EXPECT_EQ(Contents(path), file);
-  EXPECT_EQ(Contents(path + "-wal"), log);
-}
-
-void WriteAt(const std::string& path, int64_t offset, const std::string& bytes) {
-  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
-  file.seekp(offset);
-  file << bytes;
-}
-
-// A store of some pages, closed.
-void MakeStore(const std::string& path, int jobs) {
-  const auto store = Store::Open(path, {});
-  ASSERT_OK(store);
-  ASSERT_OK((*store)->Commit([&](Database& database) {
-    for (int i = 0; i < jobs; ++i) {
+TEST_F(StoreTest, EveryKindOfWrongFileIsRefusedAndUntouched) {
+  ASSERT_OK(Open()->Commit([&](Database& database) {
+    for (int i = 0; i < 200; ++i) {
       JobRecord record = Record("job-" + std::to_string(i));
       record.spec.rest = std::string(300, 's');
       InsertJob(database, record);
     }
   }));
-}
-
-TEST_F(StoreTest, EveryKindOfWrongFileIsRefusedAndUntouched) {
-  struct Damage {
+  const std::string sound = Contents(File());
+  ASSERT_GT(sound.size(), 50000u);
+  const struct {
     const char* why;
-    std::function<void(const std::string&)> done;
-  };
-  const Damage damages[] = {
-      {"damaged", [](const std::string& path) { WriteAt(path, 0, "not a database"); }},
-      {"damaged", [](const std::string& path) { WriteAt(path, 100, std::string(8, '\x7f')); }},
-      {"damaged", [](const std::string& path) { WriteAt(path, 40960, std::string(4096, 'x')); }},
-      {"damaged", [](const std::string& path) { std::filesystem::resize_file(path, 20000); }},
-      {"damaged", [](const std::string& path) { std::filesystem::resize_file(path, 4096); }},
-      {"damaged", [](const std::string& path) { std::filesystem::resize_file(path, 10); }},
-      {"version -1", [](const std::string& path) { WriteAt(path, 60, "\xff\xff\xff\xff"); }},
-      {"version 0", [](const std::string& path) { WriteAt(path, 60, std::string(4, '\0')); }},
-      {"newer", [](const std::string& path) { WriteAt(path, 60, std::string("\0\0\1\0", 4)); }},
-      {"not a ballpiston store", [](const std::string& path) { WriteAt(path, 68, "cake"); }},
-  };
-  for (const Damage& damage : damages) {
-    TemporaryFolder folder;
-    MakeStore(folder.File("store.sqlite3"), 200);
-    ASSERT_GT(std::filesystem::file_size(folder.File("store.sqlite3")), 50000u);
-    damage.done(folder.File("store.sqlite3"));
-    ExpectRefusedAndUntouched(folder.File("store.sqlite3"), damage.why);
+    size_t at;
+    std::string bytes;  // are written there; without bytes, the file ends there
+  } damages[] = {{"damaged", 0, "not a database"},
+                 {"damaged", 100, std::string(8, '\x7f')},
+                 {"damaged", 40960, std::string(4096, 'x')},
+                 {"damaged", 20000, ""},
+                 {"damaged", 4096, ""},
+                 {"damaged", 10, ""},
+                 {"version -1", 60, "\xff\xff\xff\xff"},
+                 {"version 0", 60, std::string(4, '\0')},
+                 {"newer", 60, std::string("\0\0\1\0", 4)},
+                 {"not a ballpiston store", 68, "cake"}};
+  for (const auto& [why, at, bytes] : damages) {
+    std::string file = sound.substr(0, bytes.empty() ? at : sound.size());
+    file.replace(at, bytes.size(), bytes);
+    WriteFile(File(), file);
+    for (const char* beside : {"-wal", "-shm"}) std::filesystem::remove(File() + beside);
+    EXPECT_THAT(Store::Open(File(), {}),
+                StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr(why)));
+    EXPECT_EQ(Contents(File()), file);
+    EXPECT_EQ(Contents(File() + "-wal"), "");
   }
 }
 
@@ -238,11 +185,18 @@ TEST_F(StoreTest, AChangeThatRunsOutOfMemoryIsRetried) {
 
 TEST_F(StoreTest, TheFirstWriterOfAResultWins) {
   const auto store = Open();
-  store->RecordResult(1, {2, 10, "first"});
-  ASSERT_OK(store->Flush());
-  store->RecordResult(1, {2, 10, "second"});
-  ASSERT_OK(store->Flush());
-  EXPECT_THAT(Results(*store, 1), testing::ElementsAre("2first"));
+  for (const char* result : {"first", "second"}) {
+    store->RecordResult(1, {2, 10, result});
+    ASSERT_OK(store->Flush());
+  }
+  std::vector<std::string> results;
+  EXPECT_OK(store->Read([&](Database& database) {
+    ReadResults(database, 1, 0, Details::kLeftOut, [&](const PointRow& row) {
+      results.push_back(std::to_string(row.point) + row.result);
+      return true;
+    });
+  }));
+  EXPECT_THAT(results, ElementsAre("2first"));
 }
 
 TEST_F(StoreTest, WritesAreCommittedInGroups) {
@@ -301,7 +255,7 @@ TEST_F(StoreTest, DoneIsCalledInOrderAfterTheCommit) {
                   });
   }
   ASSERT_OK(store->Flush());
-  EXPECT_THAT(order, testing::ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_THAT(order, ElementsAre(0, 1, 2, 3, 4));
 }
 
 // Else the next reader would get a connection whose transaction is open.
@@ -329,14 +283,20 @@ TEST_F(StoreTest, AWriteIsToldWhenItsOwnGroupIsCommitted) {
     });
   }
   ASSERT_OK(store->Flush());
-  EXPECT_THAT(stored, testing::ElementsAre(1, 2));
+  EXPECT_THAT(stored, ElementsAre(1, 2));
 }
 
 TEST_F(StoreTest, AnEarlierCancellationWinsOverTheEnd) {
   const auto store = Open();
   const int64_t job = Insert(*store, Record("a"));
-  EXPECT_TRUE(Cancel(*store, job));
-  EXPECT_EQ(End(*store, job, v1::EnsembleJob::SUCCEEDED), v1::EnsembleJob::CANCELLED);
+  EXPECT_THAT(
+      store->Commit([&](Database& database) { return BeginCancellation(database, job, ""); }),
+      IsOkAndHolds(true));
+  ASSERT_OK_AND_ASSIGN(const auto ended, store->Commit([&](Database& database) {
+    return EndJob(database, job, {v1::EnsembleJob::SUCCEEDED, absl::Now(), "why", {2, 7.5, 0.25}});
+  }));
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->state, v1::EnsembleJob::CANCELLED);
   EXPECT_EQ(Find(*store, "a")->error, "");
 }
 

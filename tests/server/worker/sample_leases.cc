@@ -5,6 +5,7 @@
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
 #include "server/convert/fold_record.h"
+#include "server/worker/lease_file.h"
 
 namespace ballpiston::server {
 namespace {
@@ -79,6 +80,18 @@ std::vector<ChunkResult> AllChunks(const PointExperiment& experiment) {
     for (ChunkResult& chunk : fold.Add(*block, RunBlock(experiment, *block).value())) {
       chunks.push_back(std::move(chunk));
     }
+  }
+  return chunks;
+}
+
+std::vector<ChunkResult> ChunksIn(absl::string_view file) {
+  EXPECT_OK(TakeLease(file));
+  std::vector<ChunkResult> chunks;
+  while (!file.empty()) {
+    const absl::StatusOr<LeaseReport> report = TakeReport(file);
+    EXPECT_OK(report);
+    if (!report.ok()) break;
+    chunks.insert(chunks.end(), report->chunks.begin(), report->chunks.end());
   }
   return chunks;
 }

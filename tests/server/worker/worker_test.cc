@@ -1,7 +1,6 @@
 #include "server/worker/worker.h"
 
 #include "core/experiment/all_experiments.h"
-#include "server/worker/lease_file.h"
 #include "tests/server/worker/fake_files.h"
 #include "tests/server/worker/sample_leases.h"
 #include "tests/support/preamble.h"
@@ -11,6 +10,8 @@ namespace {
 
 using std::chrono::duration;
 using Clock = std::chrono::steady_clock;
+
+const absl::Status kFull = absl::ResourceExhaustedError("no space left");
 
 // A worker whose time passes while it sleeps, and by `seconds_of_a_look` at each look at its clock.
 class WorkerTest : public testing::Test {
@@ -47,20 +48,15 @@ class WorkerTest : public testing::Test {
     return names;
   }
 
-  // The chunks of all messages in the file.
-  std::vector<ChunkResult> ChunksIn(const std::string& path) const {
-    absl::string_view bytes = files_.files.at(path).bytes;
-    EXPECT_OK(TakeLease(bytes).status());
-    std::vector<ChunkResult> all;
-    while (!bytes.empty()) {
-      const absl::StatusOr<LeaseReport> some = TakeReport(bytes);
-      if (!some.ok()) {
-        ADD_FAILURE() << some.status();
-        break;
-      }
-      all.insert(all.end(), some->chunks.begin(), some->chunks.end());
-    }
-    return all;
+  std::vector<ChunkResult> Computed(const std::string& path) const {
+    return ChunksIn(files_.files.at(path).bytes);
+  }
+
+  // Calls `call` before each operation of this name. If the result is not OK, the operation fails.
+  void Before(const std::string& operation, const std::function<absl::Status()>& call) {
+    files_.before = [operation, call](const std::string& begun, const std::string&) {
+      return begun == operation ? call() : absl::OkStatus();
+    };
   }
 
   const Lease lease_ = LeaseOf(SpecOf(kFirstHit, Model::kBilliard, 100'000));
@@ -80,8 +76,8 @@ TEST_F(WorkerTest, ComputesAllLeasesAndEndsWhenThereAreNoMore) {
   Lay("b", LeaseOf(*lease_.spec, 1, 3));
   EXPECT_OK(Run());
   EXPECT_THAT(Names(), UnorderedElementsAre("done/a.me.finished", "done/b.me.finished"));
-  EXPECT_TRUE(AreEqual(ChunksIn("done/a.me.finished"), chunks_));
-  EXPECT_TRUE(AreEqual(ChunksIn("done/b.me.finished"), {chunks_[1], chunks_[2]}));
+  EXPECT_TRUE(AreEqual(Computed("done/a.me.finished"), chunks_));
+  EXPECT_TRUE(AreEqual(Computed("done/b.me.finished"), {chunks_[1], chunks_[2]}));
   EXPECT_GE(now_, Clock::time_point() + std::chrono::seconds(60));
   EXPECT_LE(now_, Clock::time_point() + std::chrono::seconds(90));
 }
@@ -89,13 +85,13 @@ TEST_F(WorkerTest, ComputesAllLeasesAndEndsWhenThereAreNoMore) {
 TEST_F(WorkerTest, AWorkerThatMustEndGivesItsLeaseBack) {
   Lay("a", lease_, 1e-9);
   seconds_of_a_look_ = 1e-6;
-  files_.before = [this](const char* operation, const std::string&) {
-    if (std::string(operation) == "append") end_ = EndOfWork::kAfterChunk;
+  Before("append", [this] {
+    end_ = EndOfWork::kAfterChunk;
     return absl::OkStatus();
-  };
+  });
   EXPECT_OK(Run());
   ASSERT_THAT(Names(), ElementsAre("done/a.me.returned"));
-  const size_t computed = ChunksIn("done/a.me.returned").size();
+  const size_t computed = Computed("done/a.me.returned").size();
   EXPECT_GE(computed, 1u);
   EXPECT_LT(computed, chunks_.size());
   EXPECT_THAT(lines_, IsEmpty());
@@ -111,19 +107,16 @@ TEST_F(WorkerTest, AFolderThatIsAwayForAMomentIsReportedAndTheWorkGoesOn) {
                                                     : absl::OkStatus();
   };
   EXPECT_OK(Run());
-  EXPECT_TRUE(AreEqual(ChunksIn("done/a.me.finished"), chunks_));
+  EXPECT_TRUE(AreEqual(Computed("done/a.me.finished"), chunks_));
   EXPECT_THAT(lines_, ElementsAre("gone"));
 }
 
 TEST_F(WorkerTest, AFullFolderIsUsedAgainWhenItHasRoom) {
   Lay("a", lease_);
   int refusals = 3;
-  files_.before = [&](const char* operation, const std::string&) {
-    const bool refuses = std::string(operation) == "append" && refusals-- > 0;
-    return refuses ? absl::ResourceExhaustedError("no space left") : absl::OkStatus();
-  };
+  Before("append", [&] { return refusals-- > 0 ? kFull : absl::OkStatus(); });
   EXPECT_OK(Run());
-  EXPECT_TRUE(AreEqual(ChunksIn("done/a.me.finished"), chunks_));
+  EXPECT_TRUE(AreEqual(Computed("done/a.me.finished"), chunks_));
   EXPECT_THAT(lines_, testing::Contains("no space left; retry in 5 s"));
 }
 
@@ -131,12 +124,11 @@ TEST_F(WorkerTest, AFullFolderIsUsedAgainWhenItHasRoom) {
 TEST_F(WorkerTest, AWorkerThatMustEndAfterItsChunkWaitsTwoMinutesForRoom) {
   Lay("a", lease_);
   Clock::time_point first = {};
-  files_.before = [&](const char* operation, const std::string&) {
-    if (std::string(operation) != "append") return absl::OkStatus();
+  Before("append", [&] {
     if (end_ == EndOfWork::kNotYet) first = now_;
     end_ = EndOfWork::kAfterChunk;
-    return absl::ResourceExhaustedError("no space left");
-  };
+    return kFull;
+  });
   longest_sleep_ = 0.1;
   EXPECT_THAT(Run(), StatusIs(absl::StatusCode::kResourceExhausted));
   EXPECT_GE(now_ - first, std::chrono::minutes(2));
@@ -146,11 +138,10 @@ TEST_F(WorkerTest, AWorkerThatMustEndAfterItsChunkWaitsTwoMinutesForRoom) {
 TEST_F(WorkerTest, AWorkerThatMustEndNowStopsWaitingForRoom) {
   Lay("a", lease_);
   int attempts = 0;
-  files_.before = [&](const char* operation, const std::string&) {
-    if (std::string(operation) != "append") return absl::OkStatus();
+  Before("append", [&] {
     if (++attempts == 3) end_ = EndOfWork::kNow;
-    return absl::ResourceExhaustedError("no space left");
-  };
+    return kFull;
+  });
   EXPECT_OK(Run());
   EXPECT_EQ(attempts, 3);
   EXPECT_THAT(Names(), ElementsAre("taken/a.me"));
@@ -161,28 +152,27 @@ TEST_F(WorkerTest, ALeaseThatIsStillBeingWrittenIsTakenLater) {
   const std::string whole = files_.files["todo/a"].bytes;
   files_.files["todo/a"].bytes.resize(whole.size() / 2);
   int reads = 0;
-  files_.before = [&](const char* operation, const std::string& path) {
-    if (std::string(operation) == "read" && ++reads == 2) files_.files[path].bytes = whole;
+  Before("read", [&] {
+    if (++reads == 2) files_.files.begin()->second.bytes = whole;
     return absl::OkStatus();
-  };
+  });
   EXPECT_OK(Run());
-  EXPECT_TRUE(AreEqual(ChunksIn("done/a.me.finished"), chunks_));
+  EXPECT_TRUE(AreEqual(Computed("done/a.me.finished"), chunks_));
 }
 
 // The server was killed while it wrote the files, or is still writing them.
 TEST_F(WorkerTest, OtherLeasesGoBeforeIncompleteFilesWhichAreGivenBack) {
   Lay("z", lease_);
   const std::string& whole = files_.files["todo/z"].bytes;
+  std::set<std::string> names = {"done/z.me.finished"};
   for (const std::string name : {"a", "b", "c", "d", "e", "f"}) {
     files_.files["todo/" + name].bytes = whole.substr(0, whole.size() / 2);
+    names.insert("done/" + name + ".me.returned");
   }
   EXPECT_OK(Run());
   EXPECT_THAT(begun_, ElementsAre("taken/z.me"));
   EXPECT_THAT(begun_at_, ElementsAre(Clock::time_point()));
-  EXPECT_THAT(Names(),
-              UnorderedElementsAre("done/a.me.returned", "done/b.me.returned", "done/c.me.returned",
-                                   "done/d.me.returned", "done/e.me.returned", "done/f.me.returned",
-                                   "done/z.me.finished"));
+  EXPECT_EQ(Names(), names);
 }
 
 TEST_F(WorkerTest, ALeaseOfAnotherEngineStaysForOtherWorkers) {

@@ -1,0 +1,268 @@
+// A scheduler that a test drives step by step, so that every schedule can be repeated: a journal
+// that remembers everything, executors without threads, and runs of fake experiments.
+#pragma once
+
+#include "server/compute/guarded.h"
+#include "server/compute/run_journal.h"
+#include "server/compute/scheduler.h"
+#include "tests/server/preamble.h"
+
+namespace ballpiston::server {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// ---- runs ----
+
+class RecordingJournal : public RunJournal {
+ public:
+  void Began() override {}
+
+  absl::StatusOr<StoredPoint> ReadPoint(size_t point) override {
+    const auto state = stored.find(point);
+    return state == stored.end() ? StoredPoint() : StoredPoint{.state = state->second};
+  }
+
+  uint64_t Merged(const MergedSamples& news) override {
+    std::lock_guard lock(mutex);
+    (news.restored ? restored : merged)[news.point] += news.samples;
+    return ++changes;
+  }
+
+  void Checkpoint(size_t point, const FoldState& state) override {
+    std::lock_guard lock(mutex);
+    checkpoints[point] = state;
+  }
+
+  void ChunkIsEarly(size_t point, const ChunkResult& chunk) override {
+    std::lock_guard lock(mutex);
+    early[point].push_back(chunk);
+  }
+
+  void Worked(double seconds) override {
+    std::lock_guard lock(mutex);
+    work += seconds;
+  }
+
+  void PointFinished(size_t point, const PointExperiment&, const PointFold& fold) override {
+    std::lock_guard lock(mutex);
+    finished.emplace(point, fold.Merged());
+  }
+
+  void Ended(const absl::Status& status) override {
+    std::lock_guard lock(mutex);
+    outcome = status;
+    ++ends;
+    changed.notify_all();
+  }
+
+  void AwaitRoom() override {}
+
+  absl::Status AwaitEnd() {  // if threads compute the run
+    std::unique_lock lock(mutex);
+    AwaitNotified(changed, lock, [this] { return outcome.has_value(); });
+    return *outcome;
+  }
+
+  std::map<size_t, FoldState> stored;  // set before the run: what an earlier process stored
+  std::mutex mutex;
+  std::condition_variable changed;
+  int ends = 0;
+  double work = 0;
+  uint64_t changes = 0;
+  std::map<size_t, uint64_t> merged;    // samples
+  std::map<size_t, uint64_t> restored;  // likewise
+  std::map<size_t, FoldState> checkpoints;
+  std::map<size_t, std::vector<ChunkResult>> early;
+  std::map<size_t, BlockResult> finished;
+  std::optional<absl::Status> outcome;
+};
+
+using JournalPointer = std::shared_ptr<RecordingJournal>;
+
+// Points of chunks 0 ... 5: 64, 128, 256, 512, 1024 and 1016 samples. One core takes 1.3 s, 2.7 s,
+// 5.4 s, 10.7 s, 21.5 s and 21.3 s for them, so one point is just enough for an executor elsewhere.
+inline constexpr uint64_t kChunks = 6;
+inline EnsembleSpec SixChunks(int points = 1) {
+  EnsembleSpec spec = FakeSpec(points, 1500);
+  spec.model = Model::kBilliard;  // with a closed form a lease would open 128 points
+  return spec;
+}
+
+inline RunRequest RunOf(int64_t key, const EnsembleSpec& spec, const JournalPointer& journal) {
+  RunRequest request;
+  request.key = key;
+  request.spec = spec;
+  request.finished.assign(PointCount(spec), false);
+  request.has_checkpoints = !journal->stored.empty();
+  request.journal = journal;
+  return request;
+}
+
+// Every point has the bytes that it has if it is computed in one place, and its samples were
+// counted once.
+inline void ExpectComplete(const EnsembleSpec& spec, RecordingJournal& journal) {
+  ASSERT_EQ(journal.ends, 1);
+  EXPECT_OK(*journal.outcome);
+  ASSERT_EQ(journal.finished.size(), PointCount(spec));
+  for (const auto& [point, merged] : journal.finished) {
+    SCOPED_TRACE(point);
+    EXPECT_TRUE(merged ==
+                FakeMerged(spec, point, static_cast<uint64_t>(spec.target.samples.value_or(0))));
+    EXPECT_EQ(journal.merged[point] + journal.restored[point], merged.samples);
+  }
+}
+
+// ---- executors ----
+
+// A local executor: the test takes its turns.
+class SteppedExecutor : public Executor {
+ public:
+  explicit SteppedExecutor(Scheduler& scheduler)
+      : scheduler_(scheduler), capacity_{.executor = scheduler.AddExecutor(*this)} {}
+
+  ~SteppedExecutor() override { scheduler_.RemoveExecutor(capacity_.executor); }
+
+  void Wake() override {}
+  bool HasTurn(int64_t lease) const override {
+    const auto found = folds_.find(lease);
+    return found != folds_.end() && found->second.HasNextBlock();
+  }
+  void Shutdown() override { is_shut_down_ = true; }
+
+  // Begins a turn; empty if there is no lease now.
+  std::optional<Lease> Begin() { return is_shut_down_ ? std::nullopt : scheduler_.Next(capacity_); }
+
+  // Opens the points of the lease, or computes at most `blocks` blocks of it. Ends the turn, which
+  // took `seconds`.
+  void End(const Lease& lease, uint64_t blocks, double seconds = 0) {
+    for (const size_t point : lease.opens) scheduler_.Open(lease, point);
+    if (!lease.OpensPoints()) Compute(lease, blocks);
+    if (!scheduler_.EndTurn(lease, seconds)) folds_.erase(lease.number);
+  }
+
+  // A turn; false if there is no lease now.
+  bool TakeTurn(uint64_t blocks = std::numeric_limits<uint64_t>::max(), double seconds = 0) {
+    const std::optional<Lease> lease = Begin();
+    if (lease) End(*lease, blocks, seconds);
+    return lease.has_value();
+  }
+
+  void TakeAllTurns(uint64_t blocks = std::numeric_limits<uint64_t>::max()) {
+    while (TakeTurn(blocks)) {
+    }
+  }
+
+ private:
+  void Compute(const Lease& lease, uint64_t blocks) {
+    const PointExperiment& experiment = *lease.experiment;
+    ChunkFold& fold =
+        folds_.try_emplace(lease.number, experiment.plan(), lease.start, lease.end).first->second;
+    const absl::Status computed = Guarded(lease.point, [&] {
+      while (blocks-- > 0 && !lease.stop.stop_requested()) {
+        const std::optional<Block> block = fold.NextBlock();
+        if (!block) break;
+        LeaseReport report = {.chunks = fold.Add(*block, *RunBlock(experiment, *block)),
+                              .partial = fold.partial(),
+                              .seconds = kSecondsOfABlock};
+        const absl::Status taken = scheduler_.Report(lease, std::move(report));
+        if (!taken.ok()) return taken;
+      }
+      return absl::OkStatus();
+    });
+    if (!computed.ok()) scheduler_.Stop(lease.run, computed);
+  }
+
+  // Without work there is nothing to write at a shutdown.
+  static constexpr double kSecondsOfABlock = 1e-3;
+
+  Scheduler& scheduler_;
+  const Capacity capacity_;
+  bool is_shut_down_ = false;
+  std::map<int64_t, ChunkFold> folds_;  // by lease
+};
+
+// The chunks of a lease in order, with what the lease has of its first chunk.
+inline std::vector<ChunkResult> ComputedChunks(const Lease& lease,
+                                               const PointExperiment& experiment) {
+  ChunkFold fold(experiment.plan(), lease.start, lease.end);
+  std::vector<ChunkResult> chunks;
+  while (const std::optional<Block> block = fold.NextBlock()) {
+    for (ChunkResult& chunk : fold.Add(*block, *RunBlock(experiment, *block))) {
+      chunks.push_back(std::move(chunk));
+    }
+  }
+  return chunks;
+}
+
+inline std::vector<ChunkResult> ComputedChunks(const Lease& lease) {
+  return ComputedChunks(lease, *lease.experiment);
+}
+
+// An executor elsewhere: the test decides when a lease is taken, which chunks are reported, how
+// often and in which order, and whether the lease is returned.
+class RemoteExecutor : public Executor {
+ public:
+  // A lease has the fewest chunks that take `seconds`; a fake sample takes 0.02 s.
+  RemoteExecutor(Scheduler& scheduler, double seconds)
+      : scheduler_(scheduler),
+        capacity_{.executor = scheduler.AddExecutor(*this), .local = false, .seconds = seconds} {}
+
+  ~RemoteExecutor() override { scheduler_.RemoveExecutor(capacity_.executor); }
+
+  void Wake() override {}
+  void Shutdown() override {}
+
+  std::optional<Lease> Take() { return scheduler_.Next(capacity_); }
+  std::vector<Lease> TakeAll() {
+    std::vector<Lease> leases;
+    while (std::optional<Lease> lease = Take()) leases.push_back(*std::move(lease));
+    return leases;
+  }
+  absl::Status Report(const Lease& lease, std::vector<ChunkResult> chunks, double seconds = 0) {
+    return scheduler_.Report(lease, {.chunks = std::move(chunks), .seconds = seconds});
+  }
+  absl::Status ReportAll(const Lease& lease) { return Report(lease, ComputedChunks(lease)); }
+  void Return(const Lease& lease, bool tried = true) { scheduler_.Return(lease, tried); }
+
+ private:
+  Scheduler& scheduler_;
+  const Capacity capacity_;
+};
+
+// ---- the scheduler ----
+
+class SchedulerTest : public testing::Test {
+ protected:
+  explicit SchedulerTest(
+      std::unique_ptr<PointOpener> opener = std::make_unique<FactoryOpener>(FakeExperiments()),
+      const SchedulerOptions& options = {})
+      : opener_(std::move(opener)), scheduler_(*opener_, 1, options), local_(scheduler_) {}
+  ~SchedulerTest() override { scheduler_.Shutdown(); }
+
+  JournalPointer Add(int64_t key, const EnsembleSpec& spec,
+                     std::optional<Suspicion> suspicion = {}) {
+    auto journal = std::make_shared<RecordingJournal>();
+    RunRequest request = RunOf(key, spec, journal);
+    request.suspicion = std::move(suspicion);
+    scheduler_.Add(std::move(request));
+    return journal;
+  }
+
+  // The runs of the next turns, in order; each turn computes at most so many blocks.
+  std::vector<int64_t> Turns(int turns, uint64_t blocks) {
+    std::vector<int64_t> runs;
+    for (int turn = 0; turn < turns; ++turn) {
+      const auto lease = local_.Begin();
+      if (!lease) break;
+      runs.push_back(lease->run);
+      local_.End(*lease, blocks);
+    }
+    return runs;
+  }
+
+  const std::unique_ptr<PointOpener> opener_;
+  Scheduler scheduler_;
+  SteppedExecutor local_;
+};
+
+}  // namespace ballpiston::server

@@ -1,0 +1,296 @@
+// A lease on its way to a worker and back: its file, its record, and the chunks that the worker
+// computes.
+#include "core/engine_version.h"
+#include "core/ensemble/experiment_kind.h"
+#include "core/ensemble/point_fold.h"
+#include "core/experiment/all_experiments.h"
+#include "server/convert/compressed.h"
+#include "server/convert/fold_record.h"
+#include "server/worker/lease_file.h"
+#include "server/worker/lease_record.h"
+#include "server/worker/lease_runner.h"
+#include "tests/server/worker/sample_leases.h"
+#include "tests/support/preamble.h"
+
+namespace ballpiston::server {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+auto IsDataLoss() { return StatusIs(absl::StatusCode::kDataLoss); }
+
+// ---- the file ----
+
+TEST(LeaseFile, NamesSayWhoseTheFileIs) {
+  const LeaseFileName name = {"0123-7", "node1-42-abcd"};
+  EXPECT_EQ(name.Todo(), "todo/0123-7");
+  EXPECT_EQ(name.Taken(), "taken/0123-7.node1-42-abcd");
+  EXPECT_EQ(name.Done(Outcome::kNoMemory), "done/0123-7.node1-42-abcd.no-memory");
+  const auto taken = ParseTaken("0123-7.node1-42-abcd");
+  ASSERT_TRUE(taken);
+  EXPECT_EQ(taken->Taken(), name.Taken());
+  const auto done = ParseDone("0123-7.node1-42-abcd.crashed");
+  ASSERT_TRUE(done);
+  EXPECT_EQ(done->worker, name.worker);
+  EXPECT_EQ(done->outcome, Outcome::kCrashed);
+  for (const char* other : {"", "a", ".a", "a.", "a.b.", "a.b.c", "a.b.c.finished", ".nfs0001"}) {
+    EXPECT_FALSE(ParseDone(other)) << other;
+  }
+  for (const char* other : {"", "a", ".a", "a.", "a.b.finished"}) {
+    EXPECT_FALSE(ParseTaken(other)) << other;
+  }
+}
+
+TEST(LeaseFile, TheChunksFollowTheLease) {
+  const Lease lease = LeaseOf(SpecOf(kMarkovProperty, Model::kBilliard));
+  const LeaseReport report = {.chunks = AllChunks(*lease.experiment), .seconds = 0.1};
+  const std::string file = BytesOf(RecordOf(lease)) + BytesOf(report);
+  absl::string_view rest = file;
+  EXPECT_OK(TakeLease(rest));
+  ASSERT_OK_AND_ASSIGN(const LeaseReport back, TakeReport(rest));
+  EXPECT_EQ(back.seconds, 0.1);
+  EXPECT_TRUE(AreEqual(back.chunks, report.chunks));
+  EXPECT_TRUE(rest.empty());
+}
+
+TEST(LeaseFile, DamageIsDataLoss) {
+  const Lease lease = LeaseOf(SpecOf(kFirstHit, Model::kBilliard));
+  std::vector<std::string> leases = {Compressed("\xff\xff")}, reports = leases;
+  for (const double seconds : {-1.0, std::numeric_limits<double>::infinity(), kNan}) {
+    leases.push_back(BytesOf(RecordOf(lease, seconds)));
+    reports.push_back(BytesOf(LeaseReport{.seconds = seconds}));
+  }
+  for (absl::string_view damaged : leases) EXPECT_THAT(TakeLease(damaged), IsDataLoss());
+  for (absl::string_view damaged : reports) EXPECT_THAT(TakeReport(damaged), IsDataLoss());
+}
+
+// ---- the record ----
+
+// The bits of the first samples. A whole block of an open-ended target would take much longer.
+std::string FirstSamples(const PointExperiment& experiment) {
+  Block block = experiment.plan().BlockAt(0, 0);
+  block.samples = std::min<uint64_t>(block.samples, 64);
+  return ChunkRecordBytes({0, RunBlock(experiment, block).value()});
+}
+
+// Chunks double until they have their largest size.
+std::vector<uint64_t> SizesOf(const ChunkPlan& plan) {
+  const uint64_t last = plan.chunks() - 1;
+  std::vector<uint64_t> sizes = {plan.samples(), last};
+  for (const uint64_t chunk : {uint64_t{0}, std::min<uint64_t>(last, 1), last}) {
+    sizes.push_back(plan.SamplesIn(chunk));
+    sizes.push_back(plan.BlocksIn(chunk));
+  }
+  return sizes;
+}
+
+void ExpectComesBack(const Lease& lease) {
+  const std::string bytes = BytesOf(LeaseRecord(lease, "a server", 2.5));
+  absl::string_view rest = bytes;
+  ASSERT_OK_AND_ASSIGN(const LeaseFile file, TakeLease(rest));
+  EXPECT_EQ(file.server, "a server");
+  EXPECT_EQ(file.touch_seconds, 2.5);
+  const Lease& back = file.lease;
+  const auto numbers = [](const Lease& of) {
+    return std::tuple(of.run, of.generation, of.point, of.start.chunk, of.start.blocks, of.end);
+  };
+  EXPECT_EQ(numbers(back), numbers(lease));
+  EXPECT_EQ(back.start.merged, lease.start.merged);
+  EXPECT_EQ(back.spec->seed, lease.spec->seed);
+  EXPECT_EQ(back.spec->target.estimate, lease.spec->target.estimate);
+  const PointExperiment &then = *lease.experiment, &now = *back.experiment;
+  EXPECT_EQ(now.parameters(), then.parameters());
+  EXPECT_EQ(now.answer().model, then.answer().model);
+  EXPECT_EQ(now.expected_chunks(), then.expected_chunks());
+  EXPECT_EQ(now.plan().events_per_sample(), then.plan().events_per_sample());
+  EXPECT_EQ(SizesOf(now.plan()), SizesOf(then.plan()));
+  EXPECT_EQ(FirstSamples(now), FirstSamples(then));
+}
+
+TEST(LeaseRecord, EveryQuestionKeepsItsPlanAndItsBits) {
+  for (EnsembleSpec spec : EverySampledSpec()) {
+    SCOPED_TRACE(NameOf(spec));
+    ExpectComesBack(LeaseOf(spec));
+    spec.target = {};
+    ExpectComesBack(LeaseOf(spec));
+    spec.target.tolerance = 0.1;
+    if (Violations(spec).empty()) ExpectComesBack(LeaseOf(spec));
+  }
+  EnsembleSpec single = SpecOf(kEquilibrium, Model::kBilliard);
+  single.precision = Precision::kSingle;
+  ExpectComesBack(LeaseOf(single));
+  EnsembleSpec outside = SpecOf(kEnergyRelaxation, Model::kMarkov);  // of the billiard's domain
+  outside.grid[kDelta] = {1e-12};
+  ExpectComesBack(LeaseOf(outside));
+  EnsembleSpec named = SpecOf(kGasEquilibrium, Model::kBilliard, 150);
+  named.target.estimate = "conductivity";  // by which the worker judges a tolerance
+  ExpectComesBack(LeaseOf(named));
+}
+
+TEST(LeaseRecord, APartOfAPointOfAGridComesBack) {
+  EnsembleSpec spec = SpecOf(kMarkovProperty, Model::kBilliard, 1'000'000);
+  spec.grid[kDelta] = {0.1, 0.07, 1.0 / 30};
+  Lease lease = LeaseOf(spec, 1);
+  lease.point = 2;
+  lease.experiment = PointExperiment::Create(spec, 2);
+  const PointExperiment& experiment = *lease.experiment;
+  lease.end = experiment.plan().chunks();
+  lease.start.blocks = 2;
+  for (uint64_t i = 0; i < 2; ++i) {
+    lease.start.merged.Merge(RunBlock(experiment, experiment.plan().BlockAt(1, i)).value());
+  }
+  ExpectComesBack(lease);
+}
+
+// Of a spec in single precision AUTO may choose the jump process. The plan depends on the
+// precision.
+TEST(LeaseRecord, TheJumpProcessInSinglePrecisionComesBack) {
+  EnsembleSpec spec = SpecOf(kEnergyRelaxation, Model::kAuto);
+  spec.precision = Precision::kSingle;
+  spec.verify = true;
+  Lease lease = LeaseOf(spec);
+  lease.experiment = PointExperiment::Create(spec, 0, {.model = Model::kMarkov});
+  lease.end = lease.experiment->plan().chunks();
+  ExpectComesBack(lease);
+}
+
+storage::Lease GoodRecord() { return RecordOf(LeaseOf(SpecOf(kFirstHit, Model::kBilliard))); }
+
+TEST(LeaseRecord, AnImpossibleLeaseIsDataLoss) {
+  using Record = storage::Lease;
+  constexpr uint64_t kMost = ~uint64_t{0};
+  const auto with_model = [](Model model) {
+    return [model](Record& r) { r.mutable_question()->set_model(static_cast<uint32_t>(model)); };
+  };
+  const auto with = [](const Parameter& parameter, double value) {
+    return [number = static_cast<uint32_t>(parameter.index), value](Record& r) {
+      (*r.mutable_question()->mutable_values())[number] = value;
+    };
+  };
+  const std::vector<std::function<void(Record&)>> harms = {
+      // the question
+      [](Record& r) { r.clear_question(); },
+      [](Record& r) { r.mutable_question()->set_experiment(999); },
+      [](Record& r) { r.mutable_question()->set_model(77); },
+      with_model(Model::kAuto),
+      with_model(Model::kClosedForm),
+      with_model(Model::kMarkov),
+      [](Record& r) { (*r.mutable_question()->mutable_values())[kParameters.size()] = 1; },
+      with(kRho, kNan),
+      with(kDelta, -1),
+      with(kDelta, 0.49),
+      with(kEpsilon, 0.6),
+      with(kCells, 0),
+      [](Record& r) { r.mutable_question()->clear_values(); },
+      [](Record& r) { r.mutable_question()->set_samples(0); },
+      [](Record& r) { r.mutable_question()->set_samples(-7); },
+      [](Record& r) { r.mutable_question()->set_collisions(9); },
+      [](Record& r) { r.mutable_question()->set_estimate("conductivity"); },
+      [](Record& r) { r.mutable_question()->set_tolerance(kNan); },
+      // the chunks
+      [](Record& r) { r.set_first_chunk(kMost); },
+      [](Record& r) { r.set_first_chunk(r.end_chunk()); },
+      [](Record& r) { r.set_end_chunk(0); },
+      [](Record& r) { r.set_end_chunk(r.end_chunk() + 1); },
+      [](Record& r) { r.set_blocks(kMost); },
+      [](Record& r) { r.set_blocks(1); },
+      [](Record& r) { r.mutable_partial()->set_samples(1); },
+      [](Record& r) {
+        r.set_blocks(1);
+        r.mutable_partial()->set_samples(kMost);
+      },
+      [](Record& r) { r.add_groups()->add_numbers(1); },
+  };
+  EXPECT_OK(LeaseOfRecord(GoodRecord()));
+  for (size_t i = 0; i < harms.size(); ++i) {
+    Record record = GoodRecord();
+    harms[i](record);
+    EXPECT_THAT(LeaseOfRecord(record), IsDataLoss()) << i;
+  }
+}
+
+TEST(LeaseRecord, AnotherEngineVersionIsRefusedWithBothVersions) {
+  storage::Lease record = GoodRecord();
+  record.set_engine_version("0.0.1");
+  record.clear_question();  // the other engine may have other questions
+  EXPECT_THAT(LeaseOfRecord(record),
+              StatusIs(absl::StatusCode::kUnimplemented,
+                       AllOf(HasSubstr("0.0.1"), HasSubstr(kEngineVersion))));
+}
+
+// ---- the chunks ----
+
+// Keeps the chunks and adds up the seconds.
+struct Recorder : ChunkReceiver {
+  void ChunkDone(ChunkResult chunk) override { chunks.push_back(std::move(chunk)); }
+  void Worked(double time) override { seconds += time; }
+
+  std::vector<ChunkResult> chunks;
+  double seconds = 0;
+};
+
+Recorder RunToTheEnd(const Lease& lease) {
+  Recorder recorder;
+  EXPECT_TRUE(RunLease(lease, std::stop_token(), recorder));
+  return recorder;
+}
+
+TEST(LeaseRunner, ChunksHaveTheBitsOfAWholePoint) {
+  for (const EnsembleSpec& spec : EverySampledSpec()) {
+    SCOPED_TRACE(NameOf(spec));
+    const Lease lease = LeaseOf(spec);
+    const Recorder computed = RunToTheEnd(lease);
+    EXPECT_TRUE(AreEqual(computed.chunks, AllChunks(*lease.experiment)));
+    EXPECT_GT(computed.seconds, 0);
+  }
+}
+
+// The merged block has a mark, which a computation of all blocks would not give.
+TEST(LeaseRunner, ComputesOnlyTheRestOfAChunkThatHasBlocks) {
+  constexpr uint64_t kMark = 1000;
+  Lease lease = LeaseOf(SpecOf(kFirstHit, Model::kBilliard, 100'000), 1, 2);
+  ChunkResult expected = AllChunks(*lease.experiment)[1];
+  expected.result.health.escapes += kMark;
+  lease.start.blocks = 1;
+  lease.start.merged = RunBlock(*lease.experiment, lease.experiment->plan().BlockAt(1, 0)).value();
+  lease.start.merged.health.escapes += kMark;
+  EXPECT_TRUE(AreEqual(RunToTheEnd(lease).chunks, {expected}));
+}
+
+TEST(LeaseRunner, StopsAtTheTolerance) {
+  EnsembleSpec spec = SpecOf(kFirstHit, Model::kBilliard);
+  spec.target = {.tolerance = 0.003};
+  const Lease lease = LeaseOf(spec);
+  const Recorder computed = RunToTheEnd(lease);
+  EXPECT_GT(computed.chunks.size(), 1u);
+  PointFold fold(*lease.experiment);
+  for (const ChunkResult& chunk : computed.chunks) {
+    EXPECT_FALSE(fold.finished());
+    fold.Add(chunk);
+  }
+  EXPECT_TRUE(fold.finished());
+  EXPECT_EQ(fold.Merged(), FoldPoint(*lease.experiment));
+}
+
+// Each lease has a chunk of one group, and travels as a message. The next chunk of the group starts
+// with what the lease has reported.
+TEST(LeaseRunner, LeasesContinueTheTrajectoriesOfASteadyState) {
+  for (const Model model : kGasConduction.models) {
+    const EnsembleSpec spec = SpecOf(kGasConduction, model, 600);
+    const auto experiment = PointExperiment::Create(spec, 0);
+    const uint64_t groups = experiment->plan().groups();
+    PointFold fold(*experiment);
+    for (uint64_t chunk = 0; chunk < experiment->plan().chunks(); ++chunk) {
+      Lease lease = LeaseOf(spec, chunk, chunk + 1);
+      lease.groups.resize(groups);
+      lease.groups[chunk % groups] = fold.StartOf(chunk);
+      ASSERT_OK_AND_ASSIGN(const LeaseFile received, LeaseOfRecord(RecordOf(lease)));
+      fold.Add(RunToTheEnd(received.lease).chunks.at(0));
+    }
+    EXPECT_TRUE(fold.finished());
+    EXPECT_EQ(fold.Merged(), FoldPoint(*experiment)) << Name(model);
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::server
