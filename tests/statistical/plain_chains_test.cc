@@ -133,12 +133,7 @@ PointSummary ByTheProduct(const PointParameters& point, Model model, int64_t sam
 }
 
 // By the number of cells, N. Chains that take minutes run nightly.
-class PlainChains : public testing::TestWithParam<int64_t> {
- protected:
-  void SkipUnlessNightlyAbove(int64_t cells) const {
-    if (GetParam() > cells && !IsNightly()) GTEST_SKIP() << "a nightly test";
-  }
-};
+class PlainChains : public testing::TestWithParam<int64_t> {};
 
 INSTANTIATE_TEST_SUITE_P(Cells, PlainChains, testing::Values(1, 2, 4, 8, 16),
                          testing::PrintToStringParamName());
@@ -148,7 +143,7 @@ INSTANTIATE_TEST_SUITE_P(Cells, PlainChains, testing::Values(1, 2, 4, 8, 16),
 // above 3.5 for one seed in 500, and that of more for fewer. Neighbouring temperatures are not
 // independent, so a longer chain gets no smaller bound.
 TEST_P(PlainChains, TheJumpProcessBetweenReservoirsIsThatOfAPlainProgram) {
-  SkipUnlessNightlyAbove(4);
+  if (GetParam() > 4 && !IsNightly()) GTEST_SKIP() << "a nightly test";
   const auto cells = static_cast<size_t>(GetParam());
   const PointParameters point = PaperGas(&kGasConduction, 0.2, GasShape{GetParam()});
   const double density = DensityOf(point);
@@ -163,7 +158,7 @@ TEST_P(PlainChains, TheJumpProcessBetweenReservoirsIsThatOfAPlainProgram) {
 }
 
 TEST_P(PlainChains, TheBilliardBetweenReservoirsIsThatOfAPlainProgram) {
-  SkipUnlessNightlyAbove(1);
+  if (GetParam() > 1 && !IsNightly()) GTEST_SKIP() << "a nightly test";
   constexpr double kDelta = 0.15;
   const auto cells = static_cast<size_t>(GetParam());
   const PointParameters point = PaperGas(&kGasConduction, kDelta, GasShape{GetParam()});
