@@ -32,10 +32,4 @@ LaneFrame FrameOfBallOnWall(const Eigen::Vector2d& position, const Eigen::Vector
   return SeenIn(MirrorsOfDisc(position, direction), position, direction);
 }
 
-double Abscissa(const LaneFrame& f) {
-  // (q_x + q_y - 1)/2 and (q_x - q_y)/2, for x = (q - (1, 1)/2) . r.
-  const double along = f.s * f.h - 0.5 - f.c * f.e, across = f.s * f.e + f.c * f.h;
-  return f.a * along + f.b * across;
-}
-
 }  // namespace ballpiston

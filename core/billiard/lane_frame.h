@@ -56,10 +56,6 @@ inline LaneFrame Scaled(const LaneFrame& frame, double factor) {
           frame.a,          frame.b,          frame.m};
 }
 
-// The ball's x in the cell. It has less rounding than PositionInCell, which computes the components
-// in the frame first.
-double Abscissa(const LaneFrame& frame);
-
 // Converts components in the frame to components in the cell: x along r, y along r turned by a
 // right angle (in the opposite sense if the frame is a mirror image).
 inline Eigen::Vector2d InCell(const LaneFrame& frame, double x, double y) {

@@ -50,9 +50,6 @@ constexpr size_t kChargeWindow = 8;
 // each has to warm up.
 constexpr uint64_t kMostTrajectories = 128;
 
-constexpr int64_t kMostColumnsApart =
-    128;  // of the profile; in a longer gas, columns share a place
-
 double MeanTemperature(const PointParameters& point) { return (point[kHot] + point[kCold]) / 2; }
 
 // A piston from a reservoir crosses its stroke in this time, the mean over its speed v, whose
@@ -106,76 +103,52 @@ SteadyTimes TimesOfConduction(Model model, const GasGeometry& geometry, double c
   return times;
 }
 
-// The places of the temperature profile: a place has the bodies of about the same x. Balls are at
-// the middles of cells, pistons between cells. In a long gas several columns share a place, and of
-// the pistons only the outermost ones have a place. Places are numbered from the hot end.
+// The places of the temperature profile, from the hot end. In a row the bodies alternate: body k,
+// at x = k/2, is the piston at an edge if k is even, else the ball in the column after that edge.
+// In a long gas several neighbours share a place.
 class ProfilePlaces {
  public:
   explicit ProfilePlaces(const GasGeometry& geometry)
-      : columns_(geometry.shape().columns),
-        rows_(geometry.shape().rows),
-        each_((columns_ + kMostColumnsApart - 1) / kMostColumnsApart) {
-    for (int64_t edge = 0; edge <= columns_; ++edge) {
-      if (!HasPlace(edge)) continue;
-      At(OfEdge(edge)) = {.position = static_cast<double>(edge), .first = edge, .end = edge + 1};
-    }
-    for (int64_t first = 0; first < columns_; first += each_) {
-      const int64_t end = std::min(first + each_, columns_);
-      At(OfColumn(first)) = {.position = static_cast<double>(first + end) / 2,
-                             .has_balls = true,
-                             .first = first,
-                             .end = end};
-    }
+      : rows_(geometry.shape().rows), bodies_(2 * geometry.shape().columns + 1) {}
+
+  size_t size() const { return static_cast<size_t>(std::min(bodies_, kMostPlaces)); }
+  double Position(size_t place) const {
+    return static_cast<double>(First(place) + First(place + 1) - 1) / 4;
   }
 
-  size_t size() const { return places_.size(); }
-  double Position(size_t place) const { return places_[place].position; }
-
-  // The mean temperature at a place.
-  double Temperature(size_t place, const GasMeter& meter) const {
-    const auto& [position, has_balls, first, end] = places_[place];
-    const int64_t in_a_row = has_balls ? columns_ : columns_ + 1;
-    const int64_t first_body = has_balls ? 0 : rows_ * columns_;
-    double sum = 0;
+  // The mean temperature at each place.
+  std::vector<double> Temperatures(const GasMeter& meter) const {
+    std::vector<double> temperatures(size());
     for (int64_t row = 0; row < rows_; ++row) {
-      for (int64_t i = first; i < end; ++i) {
-        const double energy =
-            meter.MeanEnergy(static_cast<size_t>(first_body + row * in_a_row + i));
-        sum += has_balls ? energy : 2 * energy;
+      for (size_t place = 0; place < size(); ++place) {
+        for (int64_t k = First(place); k < First(place + 1); ++k) {
+          temperatures[place] += TemperatureOf(row, k, meter);
+        }
       }
     }
-    return sum / static_cast<double>(rows_ * (end - first));
+    for (size_t place = 0; place < size(); ++place) {
+      temperatures[place] /= static_cast<double>(rows_ * (First(place + 1) - First(place)));
+    }
+    return temperatures;
   }
 
  private:
-  // Of the balls in the columns from `first` to before `end`, or of the pistons at such edges.
-  struct Place {
-    double position = 0;
-    bool has_balls = false;
-    int64_t first = 0;
-    int64_t end = 0;
-  };
+  static constexpr int64_t kMostPlaces = 257;  // enough for the bodies of 128 columns
 
-  bool HasPlace(int64_t edge) const { return each_ == 1 || edge == 0 || edge == columns_; }
-  // Places alternate between edges and columns, or have the columns between the two outermost
-  // edges.
-  size_t OfEdge(int64_t edge) const {
-    if (each_ == 1) return static_cast<size_t>(2 * edge);
-    return edge == 0 ? 0 : OfColumn(columns_ - 1) + 1;
-  }
-  size_t OfColumn(int64_t column) const {
-    return static_cast<size_t>(each_ == 1 ? 2 * column + 1 : column / each_ + 1);
+  // The first body of a row at this place.
+  int64_t First(size_t place) const {
+    return static_cast<int64_t>(place) * bodies_ / static_cast<int64_t>(size());
   }
 
-  Place& At(size_t place) {
-    if (place >= places_.size()) places_.resize(place + 1);
-    return places_[place];
+  double TemperatureOf(int64_t row, int64_t k, const GasMeter& meter) const {
+    const int64_t columns = bodies_ / 2;
+    if (k % 2 == 1) return meter.MeanEnergy(static_cast<size_t>(row * columns + k / 2));
+    const int64_t piston = row * (columns + 1) + k / 2;
+    return 2 * meter.MeanEnergy(meter.balls() + static_cast<size_t>(piston));
   }
 
-  int64_t columns_;
   int64_t rows_;
-  int64_t each_;  // columns of a place
-  std::vector<Place> places_;
+  int64_t bodies_;  // of a row
 };
 
 GasGeometry OpenGasOf(const PointParameters& point) {
@@ -205,8 +178,9 @@ class GasConduction : public SteadyGas {
       const bool is_ball = i < meter.balls();
       integrals[is_ball ? kBalls : kPistons] += meter.MeanEnergy(i) * meter.duration();
     }
-    for (size_t i = 0; i < places_.size(); ++i) {
-      integrals[kPlaces + i] = places_.Temperature(i, meter) * meter.duration();
+    const std::vector<double> temperatures = places_.Temperatures(meter);
+    for (size_t i = 0; i < temperatures.size(); ++i) {
+      integrals[kPlaces + i] = temperatures[i] * meter.duration();
     }
     return integrals;
   }

@@ -188,12 +188,12 @@ SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time) 
   return work;
 }
 
-// Measured with gases of 10^6 cells, chains and lattices: by the lanes 313 bytes for a ball and 64
+// Measured with gases of 10^6 cells, chains and lattices: by the lanes 349 bytes for a ball and 64
 // for a piston, by the reference 250 and 104, by the jump process 77 and 54. Lists that grow may be
 // half empty, so the bound is twice that. The rest is for the blocks in progress.
 double MemoryOfReplicas(Model model, const PointParameters& point) {
   constexpr double kBlocksInProgress = 10e6;
-  constexpr double kLanes[] = {626, 128}, kReference[] = {500, 208}, kJumps[] = {154, 108};
+  constexpr double kLanes[] = {698, 128}, kReference[] = {500, 208}, kJumps[] = {154, 108};
   const bool in_lanes = model != Model::kMarkov && model != Model::kBilliardReference;
   const double* const bytes = in_lanes ? kLanes : model == Model::kMarkov ? kJumps : kReference;
   const GasShape shape = ShapeOf(point[kCells]);

@@ -54,13 +54,8 @@ LaneGas::LaneGas(const GasGeometry& geometry, double exchange_rate, std::vector<
       exchange_rate_(exchange_rate),
       mean_flight_(MeanFlight(geometry.pair())),
       period_(PeriodOf(mean_flight_)) {
-  const size_t balls = replicas.size() * balls_each_;
-  gas_.balls.reserve(balls);
+  gas_.balls.reserve(replicas.size() * balls_each_);
   gas_.pistons.reserve(replicas.size() * pistons_each_);
-  from_.reserve(balls);
-  to_.reserve(balls);
-  collisions_.reserve(balls);
-  visits_.reserve(balls);
   replicas_.reserve(replicas.size());
   for (GasStart& start : replicas) Add(std::move(start));
   ChooseWindow();
@@ -80,12 +75,10 @@ void LaneGas::Add(GasStart start) {
 }
 
 void LaneGas::Place(const GasBall& ball) {
-  to_.push_back(PlacedBall(gas_, ball.position, ball.direction));
-  from_.push_back(to_.back());
-  collisions_.emplace_back();
-  visits_.push_back(0);
   const double speed = std::max(ball.speed, kAtRest);
-  gas_.balls.push_back({.speed = speed, .slowness = 1 / speed});
+  gas_.balls.push_back({.speed = speed,
+                        .slowness = 1 / speed,
+                        .to = PlacedBall(gas_, ball.position, ball.direction)});
   FindPistons(static_cast<uint32_t>(gas_.balls.size()) - 1);
 }
 
@@ -175,15 +168,15 @@ void LaneGas::BeginBodies(Replica& replica) {
     }
     const uint32_t ball = replica.first_ball + body - pistons_each_;
     if (is_new_period) MoveOriginOfBall(ball);
-    from_[ball] = to_[ball];
+    gas_.balls[ball].from = gas_.balls[ball].to;
     Order(replica, ball);
   }
 }
 
 void LaneGas::MoveOriginOfBall(uint32_t number) {
   BallInTime& ball = gas_.balls[number];
-  ball.since += to_[number].path * gas_.unit * ball.slowness - period_;
-  to_[number].path = 0;
+  ball.since += ball.to.path * gas_.unit * ball.slowness - period_;
+  ball.to.path = 0;
 }
 
 // An outermost piston gets a new phase at its thermal wall. Its arrival there must not be lost by
@@ -216,9 +209,8 @@ GasState LaneGas::StateOf(size_t number) const {
 
 GasBall LaneGas::BallNow(const Replica& replica, uint32_t number) const {
   const BallInTime& ball = gas_.balls[number];
-  const FlyingBall& before = to_[number];  // the flight that it is in
-  const double way = (replica.now - ball.since) * ball.speed - before.path * gas_.unit;
-  const auto [position, direction] = PlaceOf(gas_, before);
+  const double way = (replica.now - ball.since) * ball.speed - ball.to.path * gas_.unit;
+  const auto [position, direction] = PlaceOf(gas_, ball.to.frame);
   return {.position = position + direction * std::max(way, 0.0),
           .direction = direction,
           .speed = ball.speed > kAtRest ? ball.speed : 0};
@@ -237,24 +229,27 @@ GasPiston LaneGas::PistonNow(const Replica& replica, uint32_t number) const {
 
 // ---- flights ----
 
-// The ball is to fly, from its state in from_ to the window's end.
-void LaneGas::Order(const Replica& replica, uint32_t ball) {
-  collisions_[ball].time = kNever;
-  orders_.push_back({.ball = ball, .from_time = replica.now, .until_time = replica.end});
-  orders_are_new_ = true;
+// The ball is to fly, from its state `to` to the window's end.
+void LaneGas::Order(const Replica& replica, uint32_t number) {
+  BallInTime& ball = gas_.balls[number];
+  ball.collision.time = kNever;
+  ball.visits = 0;
+  orders_.push_back({.ball = number, .from_time = replica.now, .until_time = replica.end});
 }
 
 // The piston in this direction has changed. If the ball does not come there, its next collision is
 // the same.
-void LaneGas::OrderVisitor(const Replica& replica, uint32_t ball, Direction direction) {
-  if (Has(visits_[ball], direction)) Order(replica, ball);
+void LaneGas::OrderVisitor(const Replica& replica, uint32_t number, Direction direction) {
+  BallInTime& ball = gas_.balls[number];
+  if (!Has(ball.visits, direction)) return;
+  ball.to = ball.from;
+  Order(replica, number);
 }
 
 // Flies until all balls have arrived.
 bool LaneGas::FlyOrders(Pauses& pauses) {
   while (!orders_.empty()) {
-    lanes_->Fly(orders_, orders_are_new_ ? from_ : to_, to_, collisions_);
-    orders_are_new_ = false;
+    lanes_->Fly(orders_);
     const double work = kToFlyABall * static_cast<double>(orders_.size() + 8);
     std::erase_if(orders_, [this](const FlightOrder& order) {
       if (order.has_arrived) Arrive(order);
@@ -267,9 +262,8 @@ bool LaneGas::FlyOrders(Pauses& pauses) {
 
 void LaneGas::Arrive(const FlightOrder& order) {
   Replica& replica = ReplicaOf(order.ball);
-  visits_[order.ball] = order.visits;
   if (order.has_escaped) Stop(replica, order);
-  replica.queue.Set(order.ball - replica.first_ball, collisions_[order.ball].time);
+  replica.queue.Set(order.ball - replica.first_ball, gas_.balls[order.ball].collision.time);
 }
 
 // A ball that has escaped rests in the middle of its cell, where no piston comes.
@@ -279,7 +273,7 @@ void LaneGas::Stop(const Replica& replica, const FlightOrder& order) {
   ball.speed = kAtRest;
   ball.slowness = 1 / kAtRest;
   ball.since = order.from_time;
-  from_[order.ball] = to_[order.ball] = PlacedBall(gas_, {0, 0}, {1, 0});
+  ball.from = ball.to = PlacedBall(gas_, {0, 0}, {1, 0});
 }
 
 // ---- events ----
@@ -321,7 +315,7 @@ void LaneGas::LeaveThermalWall(Replica& replica, uint32_t number) {
 // The pair's exchange, in the cell turned until the piston is on the right.
 void LaneGas::Exchange(Replica& replica, uint32_t number) {
   BallInTime& ball = gas_.balls[number];
-  const BallCollision& collision = collisions_[number];
+  const BallCollision& collision = ball.collision;
   const Direction direction = collision.direction;
   const uint32_t piston_number = ball.pistons[static_cast<size_t>(direction)];
   PistonInTime& piston = gas_.pistons[piston_number];
@@ -339,7 +333,7 @@ void LaneGas::Exchange(Replica& replica, uint32_t number) {
   ball.speed = std::max(after.ball_speed, kAtRest);
   ball.slowness = 1 / ball.speed;
   ball.since = replica.now;
-  from_[number] =
+  ball.from = ball.to =
       PlacedBall(gas_, SeenFrom(direction, after.position), SeenFrom(direction, after.direction));
   const int64_t local = piston_number - replica.first_piston;
   replica.meter->Exchange({.time = replica.origin + replica.now,

@@ -71,8 +71,8 @@ class LaneGas : public GasRun {
   void MoveOriginOfBall(uint32_t ball);
   void MoveOriginOfPiston(Replica& replica, uint32_t piston);
 
-  void Order(const Replica& replica, uint32_t ball);
-  void OrderVisitor(const Replica& replica, uint32_t ball, Direction direction);
+  void Order(const Replica& replica, uint32_t number);
+  void OrderVisitor(const Replica& replica, uint32_t number, Direction direction);
   bool FlyOrders(Pauses& pauses);
   void Arrive(const FlightOrder& order);
   void Stop(const Replica& replica, const FlightOrder& order);
@@ -94,15 +94,9 @@ class LaneGas : public GasRun {
   double period_;      // of the origin's moves
   double window_ = 0;  // of time
   std::vector<Replica> replicas_;
-  // By ball. `from_` is the ball before the flight in which the window begins, or in which its last
-  // exchange in the window is. `to_` is the ball before the flight in which the window ends.
-  std::vector<FlyingBall> from_, to_;
-  std::vector<BallCollision> collisions_;  // by ball, its next one in the window
-  std::vector<Visits> visits_;             // by ball, in the window until its collision
-  double time_ = 0;                        // to which all replicas go
-  std::vector<uint32_t> active_;           // replicas that have not come there
-  std::vector<FlightOrder> orders_;        // of balls that fly now
-  bool orders_are_new_ = false;            // their balls are still in from_
+  double time_ = 0;                  // to which all replicas go
+  std::vector<uint32_t> active_;     // replicas that have not come there
+  std::vector<FlightOrder> orders_;  // of balls that fly now
 };
 
 }  // namespace ballpiston

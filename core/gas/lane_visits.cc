@@ -23,20 +23,18 @@ static_assert(kReachSlack == kSlack<double>);
 
 class LanesAhead : public FlightsAhead {
  public:
-  explicit LanesAhead(const GasInTime& gas)
+  explicit LanesAhead(GasInTime& gas)
       : gas_(gas),
         directions_(gas.geometry.directions()),
         mean_flight_(MeanFlight(gas.geometry.pair()) / gas.unit),
         flight_constants_(gas.geometry.pair()),
         reach_constants_(gas.geometry.pair(), flight_constants_.scale) {}
 
-  void Fly(std::span<FlightOrder> orders, std::span<const FlyingBall> from,
-           std::span<FlyingBall> to, std::span<BallCollision> collisions) override {
-    collisions_ = collisions;
+  void Fly(std::span<FlightOrder> orders) override {
     const size_t count = kVectors * Width();
     for (size_t first = 0; first < orders.size(); first += count) {
       orders_ = orders.subspan(first, std::min(count, orders.size() - first));
-      FlyTogether(from, to);
+      FlyTogether();
     }
   }
 
@@ -51,14 +49,14 @@ class LanesAhead : public FlightsAhead {
 
   static size_t Width() { return hn::Lanes(D()); }
 
-  void FlyTogether(std::span<const FlyingBall> from, std::span<FlyingBall> to) {
+  void FlyTogether() {
     vectors_ = (orders_.size() + Width() - 1) / Width();
     if (vectors_ > kMostOfFew) vectors_ = kVectors;
     for (size_t i = 0; i < vectors_ * Width(); ++i) {
       const FlightOrder& order = orders_[std::min(i, orders_.size() - 1)];
       const BallInTime& ball = gas_.balls[order.ball];
       until_[i] = (order.until_time - ball.since) * ball.speed / gas_.unit;
-      Load(i, from[order.ball]);
+      Load(i, ball.to);
       LoadPistons(i, ball);
     }
     flights_ = FlightsOfMost();
@@ -67,7 +65,7 @@ class LanesAhead : public FlightsAhead {
     if (HWY_UNLIKELY(burst_.left_cell())) FindLostBalls();
     std::fill_n(visitors_, vectors_, 0);
     FindCollisions();
-    for (size_t i = 0; i < orders_.size(); ++i) Finish(i, to[orders_[i].ball]);
+    for (size_t i = 0; i < orders_.size(); ++i) Finish(i);
   }
 
   // The flights that most of the balls need; the others fly on later.
@@ -84,15 +82,9 @@ class LanesAhead : public FlightsAhead {
     const size_t slot = i / Width(), lane = i % Width();
     Balls<double>& vector = burst_.slot(slot);
     uint16_t& in_reach = burst_.in_reach(slot);
-    if (lane == 0) vector.a = vector.ab = vector.m = in_reach = 0;
-    vector.h[lane] = ball.h;
-    vector.e[lane] = ball.e;
-    vector.c[lane] = ball.c;
-    vector.s[lane] = ball.s;
+    if (lane == 0) in_reach = 0;
+    vector.Set(lane, ball.frame);
     vector.path[lane] = ball.path;
-    vector.a |= uint32_t{ball.a} << lane;
-    vector.ab |= uint32_t{ball.ab} << lane;
-    vector.m |= uint32_t{ball.m} << lane;
     in_reach = static_cast<uint16_t>(in_reach | uint32_t{ball.is_in_reach} << lane);
   }
 
@@ -202,7 +194,7 @@ class LanesAhead : public FlightsAhead {
     const Balls<double>& from = burst_.slot(t);
     const size_t lane = i % Width();
     if (from.path[lane] > until_[i]) return;
-    const BallInTime& ball = gas_.balls[order.ball];
+    BallInTime& ball = gas_.balls[order.ball];
     const double path = from.path[lane] * gas_.unit;
     const double length = burst_.slot(t + kVectors).path[lane] * gas_.unit - path;
     const double start = ball.since + path * ball.slowness;
@@ -212,52 +204,31 @@ class LanesAhead : public FlightsAhead {
     const double begin = std::max(start, piston.since), gone = (begin - start) * ball.speed;
     const double phase = piston.PhaseAt(begin, direction, wave);
     const double ratio = piston.speed * ball.slowness;
-    const auto [place, velocity] = SeenToward(direction, Scaled(from.Frame(lane), gas_.unit));
+    const LaneFrame frame = Scaled(from.Frame(lane), gas_.unit);
+    const double velocity = SeenToward(direction, DirectionInCell(frame)).x();
+    const double place = SeenToward(direction, PositionInCell(frame)).x();
     const double x = place + velocity * gone - wave.left();
     const auto collision = wave.FirstCollision(phase, ratio, x, velocity, length - gone);
     if (!collision) return;
     const double time = begin + collision->way * ball.slowness;
-    BallCollision& first = collisions_[order.ball];
-    if (time > order.until_time || first.time <= time) return;
+    if (time > order.until_time || ball.collision.time <= time) return;
     end_[i] = t / kVectors + 1;
-    first = CollisionAt(lane, from, gone + collision->way, direction);
-    first.time = time;
-    first.piston_goes_right = collision->piston_goes_right;
-  }
-
-  // The ball's place and velocity, of length 1, toward a direction in the cell. This is one of the
-  // frame's axes. The cell's right is x of the frame, by a quarter turn on if a and b differ, and
-  // opposite if a is negative.
-  struct Seen {
-    double place, velocity;
-  };
-  static Seen SeenToward(Direction direction, const LaneFrame& frame) {
-    const int right = (frame.a != frame.b ? 1 : 0) + (frame.a < 0 ? 2 : 0);
-    const int turns = static_cast<int>(direction);
-    const int axis = (right + (frame.m < 0 ? 4 - turns : turns)) % 4;
-    const double ux = frame.h + frame.e, uy = frame.h - frame.e;
-    const Seen seen = axis % 2 == 0 ? Seen{frame.s * ux + frame.c * uy - 0.5, ux}
-                                    : Seen{frame.s * uy - frame.c * ux - 0.5, uy};
-    return axis < 2 ? seen : Seen{-seen.place, -seen.velocity};
-  }
-
-  BallCollision CollisionAt(size_t lane, const Balls<double>& from, double way,
-                            Direction direction) const {
-    const LaneFrame frame = Scaled(from.Frame(lane), gas_.unit);
-    Eigen::Vector2d velocity = DirectionInCell(frame);
-    velocity *= OneOverLength(velocity);
-    return {.position = PositionInCell(frame) + velocity * way,
-            .velocity = velocity,
-            .direction = direction};
+    const BallPlace before = PlaceOf(gas_, from.Frame(lane));
+    ball.collision = {.position = before.position + before.direction * (gone + collision->way),
+                      .velocity = before.direction,
+                      .time = time,
+                      .direction = direction,
+                      .piston_goes_right = collision->piston_goes_right};
   }
 
   // The ball's state before the flight in which it arrives. A ball that meets a piston does not fly
   // on: the exchange changes its way.
-  void Finish(size_t i, FlyingBall& ball) const {
+  void Finish(size_t i) const {
     const size_t lane = i % Width();
     FlightOrder& order = orders_[i];
-    order.visits |= visitors_[i / Width()] >> lane & kEveryDirection;
-    order.has_arrived = collisions_[order.ball].time < kNever;
+    BallInTime& ball = gas_.balls[order.ball];
+    ball.visits |= visitors_[i / Width()] >> lane & kEveryDirection;
+    order.has_arrived = ball.collision.time < kNever;
     if (order.has_arrived) return;
     const auto is_beyond = [&](size_t flight) {
       return burst_.slot(SlotOf(i, flight)).path[lane] > until_[i];
@@ -266,27 +237,19 @@ class LanesAhead : public FlightsAhead {
     order.has_escaped = flight < flights_ && !is_beyond(flight);
     order.has_arrived = order.has_escaped || is_beyond(flight);
     while (flight > 0 && is_beyond(flight)) --flight;
-    const Balls<double>& vector = burst_.slot(SlotOf(i, flight));
-    const auto bit = [lane](uint32_t bits) { return (bits >> lane & 1) != 0; };
-    ball = {.h = vector.h[lane],
-            .e = vector.e[lane],
-            .c = vector.c[lane],
-            .s = vector.s[lane],
-            .path = vector.path[lane],
-            .a = bit(vector.a),
-            .ab = bit(vector.ab),
-            .m = bit(vector.m),
-            .is_in_reach = bit(burst_.in_reach(SlotOf(i, flight)))};
+    const size_t slot = SlotOf(i, flight);
+    ball.to = {.frame = burst_.slot(slot).Frame(lane),
+               .path = burst_.slot(slot).path[lane],
+               .is_in_reach = (burst_.in_reach(slot) >> lane & 1) != 0};
   }
 
-  const GasInTime& gas_;
+  GasInTime& gas_;
   int directions_;
   double mean_flight_;  // in the lanes' unit
   FlightConstants<double> flight_constants_;
   ReachConstants<double> reach_constants_;
   size_t flights_ = 0;
   std::span<FlightOrder> orders_;
-  std::span<BallCollision> collisions_;
   size_t vectors_ = 0;
   LaneBurst<double> burst_;
   PistonWaves<double> pistons_[kVectors][4];  // by direction
@@ -297,9 +260,7 @@ class LanesAhead : public FlightsAhead {
   size_t end_[kVectors * kMostLanes<double>];
 };
 
-std::unique_ptr<FlightsAhead> NewLanes(const GasInTime& gas) {
-  return std::make_unique<LanesAhead>(gas);
-}
+std::unique_ptr<FlightsAhead> NewLanes(GasInTime& gas) { return std::make_unique<LanesAhead>(gas); }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace ballpiston
@@ -340,35 +301,20 @@ FlyingBall PlacedBall(const GasInTime& gas, Eigen::Vector2d position, Eigen::Vec
   const double left = gas.wave.left() - kReachSlack;
   const bool is_on_wall = ReflectOnWalls(gas.walls, position, direction);
   const auto frame_of = is_on_wall ? FrameOfBallOnWall : FrameOfBall;
-  const LaneFrame frame = Scaled(frame_of(position, direction), 1 / gas.unit);
-  return {.h = frame.h,
-          .e = frame.e,
-          .c = frame.c,
-          .s = frame.s,
+  return {.frame = Scaled(frame_of(position, direction), 1 / gas.unit),
           .path = 0,
-          .a = frame.a < 0,
-          .ab = frame.a != frame.b,
-          .m = frame.m < 0,
           .is_in_reach = std::fabs(position.x()) >= left ||
                          (gas.geometry.shape().is_lattice && std::fabs(position.y()) >= left)};
 }
 
-BallPlace PlaceOf(const GasInTime& gas, const FlyingBall& ball) {
-  const double a = ball.a ? -1 : 1;
-  const LaneFrame frame = Scaled({.h = ball.h,
-                                  .e = ball.e,
-                                  .c = ball.c,
-                                  .s = ball.s,
-                                  .a = a,
-                                  .b = ball.ab ? -a : a,
-                                  .m = ball.m ? -1.0 : 1.0},
-                                 gas.unit);
-  Eigen::Vector2d direction = DirectionInCell(frame);
+BallPlace PlaceOf(const GasInTime& gas, const LaneFrame& frame) {
+  const LaneFrame in_cells = Scaled(frame, gas.unit);
+  Eigen::Vector2d direction = DirectionInCell(in_cells);
   direction *= OneOverLength(direction);
-  return {PositionInCell(frame), direction};
+  return {PositionInCell(in_cells), direction};
 }
 
-std::unique_ptr<FlightsAhead> LanesOf(const GasInTime& gas) {
+std::unique_ptr<FlightsAhead> LanesOf(GasInTime& gas) {
   return HWY_DYNAMIC_DISPATCH(NewLanes)(gas);
 }
 

@@ -11,21 +11,38 @@
 #include <vector>
 
 #include "core/billiard/cell_walls.h"
+#include "core/billiard/lane_frame.h"
 #include "core/billiard/piston_wave.h"
 #include "core/gas/event_queue.h"
 #include "core/gas/gas_geometry.h"
 
 namespace ballpiston {
 
-// A ball between two flights, in the lanes' units: its frame (billiard/lane_frame.h), and its path
-// length since it was placed.
+// A ball between two flights, in the lanes' units.
 struct FlyingBall {
-  double h, e, c, s;
-  double path;
-  // Signs of the frame's compass: a and m are true for -1; ab is true if a and b differ.
-  bool a, ab, m;
+  LaneFrame frame;
+  double path;       // since the ball was placed
   bool is_in_reach;  // of a piston
 };
+
+// A ball meets the piston that it sees in `direction`.
+struct BallCollision {
+  Eigen::Vector2d position = {0, 0};
+  Eigen::Vector2d velocity = {0, 0};  // of the ball, of length 1
+  double time = kNever;
+  Direction direction = Direction::kRight;
+  bool piston_goes_right = false;  // as the ball sees it
+};
+
+// The directions in which a ball came within reach of the piston. Each direction has eight bits, of
+// which the lowest is used: a vector's mask, which has a bit for each lane, gives a ball's visits
+// when it is shifted right by the lane.
+using Visits = uint32_t;
+inline constexpr size_t kBitsOfADirection = 8;
+
+inline bool Has(Visits visits, Direction direction) {
+  return (visits >> kBitsOfADirection * static_cast<size_t>(direction) & 1) != 0;
+}
 
 // A ball since its last exchange, its start, or the last move of the origin of time. `since` is the
 // time at which its path had the length 0.
@@ -34,6 +51,12 @@ struct BallInTime {
   double speed = 0;
   double slowness = 0;                   // 1/speed
   std::array<uint32_t, 4> pistons = {};  // by direction
+  Visits visits = 0;                     // in the window, until its collision or shortly after
+  // Before the flight in which the window begins, or in which its last exchange in the window is.
+  FlyingBall from = {};
+  // Before the flight to which it came, at last before the one in which the window ends.
+  FlyingBall to = {};
+  BallCollision collision = {};  // its next one in the window
 };
 
 // A piston since its last change of velocity, or the last move of the origin of time. `phase` is
@@ -61,25 +84,6 @@ struct GasInTime {
   std::vector<PistonInTime> pistons;
 };
 
-// A ball meets the piston that it sees in `direction`.
-struct BallCollision {
-  double time = kNever;
-  Eigen::Vector2d position = {0, 0};
-  Eigen::Vector2d velocity = {0, 0};  // of the ball, of length 1
-  Direction direction = Direction::kRight;
-  bool piston_goes_right = false;  // as the ball sees it
-};
-
-// The directions in which a ball came within reach of the piston. Each direction has eight bits, of
-// which the lowest is used: a vector's mask, which has a
-// bit for each lane, gives a ball's visits when it is shifted right by the lane.
-using Visits = uint32_t;
-inline constexpr size_t kBitsOfADirection = 8;
-
-inline bool Has(Visits visits, Direction direction) {
-  return (visits >> kBitsOfADirection * static_cast<size_t>(direction) & 1) != 0;
-}
-
 // A ball that is to fly ahead and to look for its first collision between two times.
 struct FlightOrder {
   uint32_t ball = 0;
@@ -87,7 +91,6 @@ struct FlightOrder {
   double until_time = 0;
   bool has_arrived = false;  // at a collision, or in the flight in which `until_time` is
   bool has_escaped = false;  // before it met a piston; its state is the last one in its cell
-  Visits visits = 0;         // until it arrived, or shortly after
 };
 
 // Positions up to this distance outside a piston's reach, in cells, count as inside: rounding must
@@ -97,26 +100,25 @@ inline constexpr double kReachSlack = 1e-11;
 // A ball anywhere in the cell; it may be on a wall, or beyond one by rounding.
 FlyingBall PlacedBall(const GasInTime& gas, Eigen::Vector2d position, Eigen::Vector2d direction);
 
-// The position in its cell of a ball before a flight, and its direction.
+// A ball's position in its cell, and its direction.
 struct BallPlace {
   Eigen::Vector2d position;
   Eigen::Vector2d direction;
 };
-BallPlace PlaceOf(const GasInTime& gas, const FlyingBall& ball);
+BallPlace PlaceOf(const GasInTime& gas, const LaneFrame& frame);
 
 // The lanes in which balls fly ahead. They do not depend on the balls that flew before.
 class FlightsAhead {
  public:
   virtual ~FlightsAhead() = default;
-  // Flies some flights of each ball, from its state in `from`. If a ball meets a piston, its
-  // collision is in `collisions`. Otherwise its state in `to` is that before the flight in which it
-  // arrives, or to which it came. All spans but `orders` are by ball; `to` may be `from`. A ball's
-  // numbers do not depend on other balls, or on how flights are divided between calls.
-  virtual void Fly(std::span<FlightOrder> orders, std::span<const FlyingBall> from,
-                   std::span<FlyingBall> to, std::span<BallCollision> collisions) = 0;
+  // Flies some flights of each ball, from its state `to`. If the ball meets a piston, it has a
+  // collision then. Otherwise `to` becomes its state before the flight in which it arrives, or to
+  // which it came. Visits are added. A ball's numbers do not depend on other balls, or on how
+  // flights are divided between calls.
+  virtual void Fly(std::span<FlightOrder> orders) = 0;
 };
 
-// The gas must outlive the lanes.
-std::unique_ptr<FlightsAhead> LanesOf(const GasInTime& gas);
+// The gas, in which the balls fly, must outlive the lanes.
+std::unique_ptr<FlightsAhead> LanesOf(GasInTime& gas);
 
 }  // namespace ballpiston

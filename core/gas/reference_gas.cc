@@ -71,18 +71,22 @@ void ReferenceGas::MoveOrigin() {
 
 GasEvent ReferenceGas::HitWall(int64_t number) {
   Ball& ball = balls_[Index(number)];
-  if (ball.encounter.disc == kNoDisc) {
-    ball.wall_time = kNever;
-    ball.collision_times.fill(kNever);
-    Schedule(number);
-    return {.kind = EventKind::kEscape, .ball = number};
-  }
+  if (ball.encounter.disc == kNoDisc) return Stop(number);
   cell_walls_.Reflect(ball.encounter, ball.state.position, ball.state.direction);
   ball.last_disc = ball.encounter.disc;
   ball.time = now_;
   Aim(ball);
   LookAround(number);
   return {.kind = EventKind::kBallWall, .ball = number};
+}
+
+// A ball that has escaped rests in the middle of its cell, where no piston comes.
+GasEvent ReferenceGas::Stop(int64_t number) {
+  Ball& ball = balls_[Index(number)];
+  ball = {.state = {}, .time = now_};
+  Aim(ball);
+  LookAround(number);
+  return {.kind = EventKind::kEscape, .ball = number};
 }
 
 GasEvent ReferenceGas::TurnPiston(int64_t number) {

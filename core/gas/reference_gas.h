@@ -40,7 +40,8 @@ class ReferenceGas {
 
   // The time of the next event; infinite if there is none.
   double NextTime() const { return origin_ + queue_.First().time; }
-  // Moves to the next event and resolves it. An escaped ball has no more events.
+  // Moves to the next event and resolves it. A ball that escapes, which is a defect,
+  // stops in the middle of its cell, and has no more events.
   GasEvent Step();
 
   // At a time between the last event and the next one. Exact at the time of the last event.
@@ -89,6 +90,7 @@ class ReferenceGas {
   void Schedule(int64_t ball);
   void SchedulePiston(int64_t piston);
   GasEvent HitWall(int64_t ball);
+  GasEvent Stop(int64_t ball);
   GasEvent Exchange(int64_t ball);
   GasEvent TurnPiston(int64_t piston);
 

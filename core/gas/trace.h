@@ -62,7 +62,8 @@ class Trace {
   virtual std::vector<TracedBody> Pistons() const = 0;
 
   // The next event; empty if all bodies are at rest. A ball that escapes, which is a defect, has no
-  // later event; for the pair the escape is the last event.
+  // later event: in the gas it stops in the middle of its cell, and for the pair the escape is the
+  // last event.
   virtual std::optional<TraceEvent> Next() = 0;
 };
 

@@ -11,10 +11,19 @@
 #include <cstddef>
 
 #include "core/billiard/lane_flight-inl.h"
+#include "core/billiard/lane_frame.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ballpiston {
 namespace HWY_NAMESPACE {
+
+// The ball's x in the cell. It has less rounding than PositionInCell, which computes the components
+// in the frame first.
+inline double Abscissa(const LaneFrame& f) {
+  // (q_x + q_y - 1)/2 and (q_x - q_y)/2, for x = (q - (1, 1)/2) . r.
+  const double along = f.s * f.h - 0.5 - f.c * f.e, across = f.s * f.e + f.c * f.h;
+  return f.a * along + f.b * across;
+}
 
 // Several vectors, each in a stage of a flight: while a vector is in Aim, the vector kLag before it
 // is in FindRoot, and the vector 2 kLag before it is in Turn.

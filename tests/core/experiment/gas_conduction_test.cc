@@ -117,8 +117,8 @@ TEST(GasConduction, TheProfileHasBallsInCellsAndPistonsBetweenThem) {
   }
 }
 
-// Up to 128 columns have separate places. In a longer gas several columns share a place, the last
-// place has fewer columns, and inner pistons have no place.
+// Up to 128 columns the bodies of a row have separate places. In a longer gas neighbours share a
+// place, at their mean position.
 TEST(GasConduction, TheProfileOfALongGasHasSharedPlaces) {
   const auto places = [](const GasShape& shape) {
     const auto point = PointExperiment::Create(SpecBetween(3, 1, shape), 0);
@@ -130,14 +130,14 @@ TEST(GasConduction, TheProfileOfALongGasHasSharedPlaces) {
   };
   EXPECT_EQ(places({.columns = 128}).size(), 2u * 128 + 1);
   const std::vector<double> shared = places({.columns = 129});
-  ASSERT_EQ(shared.size(), 65u + 2);
+  ASSERT_EQ(shared.size(), 257u);
   EXPECT_EQ(shared[0], 0);
-  EXPECT_EQ(shared[1], 1);
-  EXPECT_EQ(shared[64], 127);
-  EXPECT_EQ(shared[65], 128.5);
-  EXPECT_EQ(shared[66], 129);
-  EXPECT_EQ(places({1000, 1000, true}).size(), 125u + 2);
-  EXPECT_EQ(places({.columns = 1'000'000}).size(), 128u + 2);
+  EXPECT_EQ(shared[127], 63.5);
+  EXPECT_EQ(shared[128], 64.25);  // of a piston and a ball
+  EXPECT_EQ(shared[129], 65);
+  EXPECT_EQ(shared[256], 128.75);
+  EXPECT_EQ(places({1000, 1000, true}).size(), 257u);
+  EXPECT_EQ(places({.columns = 1'000'000}).size(), 257u);
 }
 
 TEST(GasConduction, EqualTemperaturesCarryNoCurrent) {

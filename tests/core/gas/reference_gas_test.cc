@@ -168,6 +168,21 @@ TEST(ReferenceGas, LongRunsKeepTheDigitsOfTheirTimes) {
   EXPECT_EQ(std::fabs(moving.PistonAt(0, time).offset), gas.reach());
 }
 
+// A ball beyond a tip, where no disc is ahead of it. The piston there goes away from the ball at
+// first, and would meet it again and again after it has turned.
+TEST(ReferenceGas, AnEscapedBallStopsAndCountsOnce) {
+  const GasGeometry gas = GasOf(kPaperRho, 0.2, "3");
+  GasState state = AtRest(gas);
+  state.balls[1] = {.position = {0.6, 0}, .direction = {1, 0}, .speed = 1};
+  state.pistons[static_cast<size_t>(gas.PistonOf(1, Direction::kRight))].velocity = 2;
+  ReferenceGas moving = GasFrom(gas, state);
+  EXPECT_EQ(moving.Step().kind, EventKind::kEscape);
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(moving.Step().kind, EventKind::kPistonWall) << i;
+  const GasBall ball = moving.BallAt(1, moving.NextTime());
+  EXPECT_EQ(ball.speed, 0);
+  EXPECT_TRUE(InsideCell(gas.pair(), ball.position, 0));
+}
+
 TEST(ReferenceGas, AGasAtRestHasAnInfiniteNextTime) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "2x2");
   EXPECT_EQ(GasFrom(gas, AtRest(gas)).NextTime(), std::numeric_limits<double>::infinity());
