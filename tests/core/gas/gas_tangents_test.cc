@@ -112,7 +112,7 @@ std::vector<Vector> WholeBasis(const GasGeometry& geometry) {
 
 // The maps preserve volumes, so the sum is 0 but for rounding, which costs the smallest vector the
 // most digits. The exponents of a finite orbit are pairs up to the growth while vectors of nearly
-// equal exponents turn, which is 70 at most here.
+// equal exponents turn. In 16 orbits it was 122 at most.
 TEST(GasTangents, ExponentsOfAGasComeInPairs) {
   for (const char* const shape : {"1", "2", "2x2"}) {
     const GasGeometry geometry = GasAtShare(0.53, 0.95, shape);
@@ -122,7 +122,7 @@ TEST(GasTangents, ExponentsOfAGasComeInPairs) {
     const size_t f = DegreesOfFreedom(geometry);
     EXPECT_NEAR(std::accumulate(growth.begin(), growth.end(), 0.0) / time, 0, 1e-7);
     for (size_t k = 0; k < f; ++k) {
-      EXPECT_NEAR((growth[k] + growth[2 * f - 1 - k]) / time, 0, 0.02) << shape << " " << k;
+      EXPECT_NEAR((growth[k] + growth[2 * f - 1 - k]) / time, 0, 0.04) << shape << " " << k;
     }
     EXPECT_NEAR(growth[f - 1] / time, 0, 0.02) << shape;
     EXPECT_GT(growth[f - 2] / time, 0.03) << shape;
