@@ -34,7 +34,7 @@ inline const std::map<std::string_view, uint64_t> kGoldenBits = {
     {"reference, energy-relaxation", 0x9fbcbd3b01d8a91c},
     {"reference, energy-relaxation from 0.01", 0x4a1ef1a02690dc9e},
     {"reference, markov-property", 0xcad29ba652cc930b},
-    {"reference, lyapunov", 0x035fbfd40c44a406},
+    {"reference, lyapunov", 0x548ec97a018281cb},
     {"lanes, energy-relaxation", 0x5c7dffed1c302d39},
     {"lanes, energy-relaxation from 0.01", 0x5cf1cc696e684c4f},
     {"lanes, markov-property", 0xe823cfcbd0ce17ce},
