@@ -22,8 +22,8 @@
 // Two orbits that differ along the flow, (dr, dw) = (w, 0), or in energy, (0, w), stay at a
 // distance that does not grow exponentially. The Lyapunov exponents of these two directions are 0.
 // All maps preserve dw.w, and dr.w if dw.w = 0. They also preserve the areas dr1.dw2 - dr2.dw1, so
-// the exponents are lambda_1, lambda_2, 0, 0, -lambda_2, -lambda_1. tangent_frame.h follows all
-// six, tangent_plane.h the first two.
+// the exponents are lambda_1, lambda_2, 0, 0, -lambda_2, -lambda_1. gas/pair_tangents.h follows
+// all six, tangent_plane.h the first two.
 //
 // Between two exchanges the ball's difference across its path is independent of all others. Let a
 // be this difference of positions, and theta that of directions. A flight of the length L adds

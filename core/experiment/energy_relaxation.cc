@@ -172,7 +172,7 @@ std::vector<NamedHistogram> EnergyRelaxation::LawsOfLimit() const {
 
 std::vector<std::vector<double>> EnergyRelaxation::ProbabilitiesOfLimit() const {
   static const auto* const law =
-      new EnergyLaw({.degree = 10, .levels = 5}, static_cast<int>(kEnergyBins));
+      new EnergyLaw(kEnergyLawDiscretisation, static_cast<int>(kEnergyBins));
   std::vector<std::vector<double>> probabilities;
   if (!epsilon_) return probabilities;
   const EnergyLaw::Start start = law->From(*epsilon_);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "core/billiard/lane_constants.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/chunk_plan.h"
 #include "core/experiment/all_experiments.h"
@@ -203,13 +204,13 @@ double ShareThatMeetsEarly(const PointParameters& point) {
 
 // Of orbits without a collision, in wall hits. A slow ball hits no wall of the `hits` of other
 // orbits. An orbit with a slow piston waits in its lane until the lanes look at the time limit,
-// which they do after 512 bursts of up to 12 flights.
+// which they do after 512 bursts.
 double DelayOfOrbitsThatNeverMeet(Model model, const PointParameters& point, double hits) {
   const double share = 1 - ShareThatMeetsEarly(point);
   if (point[kEpsilon] > 0.25) return -share * hits;
   if (model == Model::kBilliardReference) return 0;
   constexpr double kBursts = 512;
-  return share * kBursts * std::clamp(1.7 / point[kDelta], 4.0, 12.0);
+  return share * kBursts * static_cast<double>(FlightsInABurst(GeometryOf(point)));
 }
 
 // The measurements of a step of the energy take most of a jump's time.

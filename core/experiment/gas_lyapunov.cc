@@ -85,7 +85,7 @@ class FollowedGas {
  public:
   FollowedGas(const GasGeometry& geometry, const GasState& start)
       : gas_(geometry, start, ThermalWalls()),
-        tangents_(geometry, start, VelocitiesAcross(geometry, start)),
+        tangents_(geometry.pair().rho(), start, VelocitiesAcross(start)),
         energy_at_start_(EnergyOf(start)) {}
 
   // Returns false at a pause; then it must be called again. An event takes about so many

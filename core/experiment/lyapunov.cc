@@ -14,17 +14,18 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "core/billiard/orbits.h"
-#include "core/billiard/tangent_frame.h"
 #include "core/billiard/tangent_plane.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/pair_experiment.h"
+#include "core/gas/pair_tangents.h"
 
 namespace ballpiston {
 namespace {
@@ -49,7 +50,7 @@ enum Ratio : size_t {
 };
 constexpr size_t kFurtherRatios = 5;
 
-// `Tangents` is TangentPlane or TangentFrame.
+// `Tangents` is TangentPlane or PairTangents.
 template <typename Tangents>
 class FollowedOrbits : public OrbitsInEquilibrium {
  public:
@@ -58,7 +59,7 @@ class FollowedOrbits : public OrbitsInEquilibrium {
 
   PairState Start(uint64_t orbit) {
     const PairState state = Draw(orbit);
-    orbits_[orbit].tangents = Tangents(experiment_.geometry(), state);
+    orbits_[orbit].tangents.emplace(experiment_.geometry(), state);
     return state;
   }
 
@@ -67,12 +68,12 @@ class FollowedOrbits : public OrbitsInEquilibrium {
   void Follow(uint64_t orbit, const Followed&... followed) requires requires(Tangents tangents) {
     tangents.Follow(followed...);
   }
-  { orbits_[orbit].tangents.Follow(followed...); }
+  { orbits_[orbit].tangents->Follow(followed...); }
 
   AfterCollision Collide(uint64_t index, const Collision& collision) {
     Orbit& orbit = orbits_[index];
-    orbit.tangents.Collide(collision);
-    const auto growth = orbit.tangents.TakeGrowth();
+    orbit.tangents->Collide(collision);
+    const auto growth = orbit.tangents->TakeGrowth();
     if (orbit.collisions_before < kWarmUpCollisions) {
       ++orbit.collisions_before;
       return AfterCollision::kGoOn;
@@ -94,7 +95,7 @@ class FollowedOrbits : public OrbitsInEquilibrium {
 
  private:
   struct Orbit {
-    Tangents tangents = {};
+    std::optional<Tangents> tangents;
     uint64_t collisions_before = 0;  // in the warm-up
     uint64_t collisions = 0;
     double time = 0;
@@ -153,7 +154,7 @@ class LyapunovExperiment : public PairExperiment {
   }
 
   std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
-    if (IsByReference(answer().model)) return RunFollowed<TangentFrame>(queue);
+    if (IsByReference(answer().model)) return RunFollowed<PairTangents>(queue);
     return RunFollowed<TangentPlane>(queue);
   }
 
@@ -167,7 +168,7 @@ class LyapunovExperiment : public PairExperiment {
 
 // The times of events with tangent vectors, relative to those without, as measured.
 SampleWork WorkOfLyapunov(Model model, const PointParameters& point) {
-  const double with_tangents = IsByReference(model) ? 4 : 1.5;
+  const double with_tangents = IsByReference(model) ? 5.3 : 1.5;
   constexpr double kWithWarmUp = static_cast<double>(kWarmUpCollisions + kOrbit) / kOrbit;
   return WorkOfACollision(GeometryOf(point)).Times(with_tangents * kWithWarmUp);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -44,18 +45,17 @@ std::vector<std::pair<size_t, double>> VelocitiesOf(const GasState& state) {
 
 }  // namespace
 
-GasTangents::GasTangents(const GasGeometry& geometry, const GasState& start,
-                         const std::vector<Vector>& vectors)
-    : rho_(geometry.pair().rho()),
-      freedoms_(DegreesOfFreedom(geometry), Freedom(vectors.size())),
+GasTangents::GasTangents(double rho, const GasState& start, const std::vector<Vector>& vectors)
+    : rho_(rho),
+      freedoms_(2 * start.balls.size() + start.pistons.size(), Freedom(vectors.size())),
       growth_(vectors.size()),
       products_(vectors.size()),
       powers_(vectors.size()) {
   for (const GasBall& ball : start.balls) directions_.push_back(ball.direction);
   for (size_t k = 0; k < vectors.size(); ++k) {
     const double* from = vectors[k].data();
-    for (int64_t ball = 0; ball < geometry.balls(); ++ball, from += 4) {
-      const Eigen::Vector2d& u = start.balls[static_cast<size_t>(ball)].direction;
+    for (int64_t ball = 0; ball < std::ssize(directions_); ++ball, from += 4) {
+      const Eigen::Vector2d& u = directions_[static_cast<size_t>(ball)];
       const Eigen::Vector2d position(from[0], from[1]), velocity(from[2], from[3]);
       const Eigen::Vector2d across(-u.y(), u.x());
       Across(ball).position[k] = across.dot(position);
@@ -63,25 +63,25 @@ GasTangents::GasTangents(const GasGeometry& geometry, const GasState& start,
       Along(ball).position[k] = u.dot(position);
       Along(ball).velocity[k] = u.dot(velocity);
     }
-    for (int64_t piston = 0; piston < geometry.pistons(); ++piston, from += 2) {
+    for (int64_t piston = 0; piston < std::ssize(start.pistons); ++piston, from += 2) {
       OfPiston(piston).position[k] = from[0];
       OfPiston(piston).velocity[k] = from[1];
     }
   }
 }
 
-void GasTangents::Follow(const GasEvent& event, const ReferenceGas& gas) {
+void GasTangents::Follow(const GasEvent& event, const GasBall& after) {
   Move(event);
   switch (event.kind) {
     case EventKind::kBallWall:
-      ReflectBall(event.ball, gas.BallAt(event.ball, event.time));
+      ReflectBall(event.ball, after);
       if (++hits_ >= kHitsOfABallTogether * directions_.size()) Orthonormalise(event.time);
       break;
     case EventKind::kPistonWall:
       OfPiston(event.piston).ChangeSigns();
       break;
     case EventKind::kBallPiston:
-      Exchange(event, gas.BallAt(event.ball, event.time));
+      Exchange(event, after);
       break;
     case EventKind::kEscape:
       break;
@@ -234,15 +234,14 @@ void GasTangents::Normalise(size_t k) {
 
 // Every ball's velocity has components along and across its path, at random. If a component were 0,
 // rounding would decide when the vector turns to that ball.
-std::vector<GasTangents::Vector> VelocitiesAcross(const GasGeometry& geometry,
-                                                  const GasState& state) {
+std::vector<GasTangents::Vector> VelocitiesAcross(const GasState& state) {
   const auto w = VelocitiesOf(state);
   double squared = 0;
   for (const auto& [component, velocity] : w) squared += velocity * velocity;
   std::vector<GasTangents::Vector> vectors;
   for (size_t k = 0; k + 1 < w.size(); ++k) {
     CounterRandom random(0, 0, k);
-    GasTangents::Vector vector(2 * DegreesOfFreedom(geometry));
+    GasTangents::Vector vector(2 * w.size());
     double product = 0;
     for (const auto& [component, velocity] : w) {
       vector[component] = random.Uniform() - 0.5;

@@ -1,5 +1,6 @@
-// Tangent vectors of a periodic gas, followed through every event of the reference: how the
-// difference of two neighbouring orbits grows (billiard/tangent_map.h derives the maps).
+// Tangent vectors of a gas without reservoirs, or of a pair, followed through every event of the
+// reference: how the difference of two neighbouring orbits grows (billiard/tangent_map.h derives
+// the maps).
 //
 // All masses are 1, so a gas of f degrees of freedom is one point with f coordinates: f = 3 cells
 // in a chain, and 4 cells in a lattice. A vector has a position and a velocity for each degree of
@@ -51,11 +52,14 @@ class GasTangents {
   using Vector = std::vector<double>;
 
   // `vectors` at the gas's start: at least one, linearly independent.
-  GasTangents(const GasGeometry& geometry, const GasState& start,
-              const std::vector<Vector>& vectors);
+  GasTangents(double rho, const GasState& start, const std::vector<Vector>& vectors);
 
-  // The event of the gas, after it.
-  void Follow(const GasEvent& event, const ReferenceGas& gas);
+  // The gas's event, and its ball after it.
+  void Follow(const GasEvent& event, const GasBall& after);
+  // The gas's last event.
+  void Follow(const GasEvent& event, const ReferenceGas& gas) {
+    Follow(event, event.ball >= 0 ? gas.BallAt(event.ball, event.time) : GasBall());
+  }
 
   // The logarithms of the factors by which the vectors have grown from the last call to `time`, at
   // or after the last event.
@@ -97,7 +101,6 @@ class GasTangents {
 };
 
 // f - 1 velocities across the gas's velocity; a ball or a piston must move.
-std::vector<GasTangents::Vector> VelocitiesAcross(const GasGeometry& geometry,
-                                                  const GasState& state);
+std::vector<GasTangents::Vector> VelocitiesAcross(const GasState& state);
 
 }  // namespace ballpiston

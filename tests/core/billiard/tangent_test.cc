@@ -3,8 +3,8 @@
 #include <type_traits>
 
 #include "core/billiard/orbits.h"
-#include "core/billiard/tangent_frame.h"
 #include "core/billiard/tangent_plane.h"
+#include "core/gas/pair_tangents.h"
 #include "core/sampling/invariant_measure.h"
 #include "tests/core/preamble.h"
 
@@ -38,15 +38,15 @@ class RecordedGrowths : public OrbitSource {
     for (; n < starts.size() && started_ < orbits_.size(); ++n, ++started_) {
       CounterRandom random(1, 2, started_);
       starts[n] = {started_, DrawFromCollisionMeasure(geometry_, random)};
-      tangents_[started_] = Tangents(geometry_, starts[n].state);
+      tangents_[started_].emplace(geometry_, starts[n].state);
     }
     return n;
   }
 
   void Collide(std::span<OrbitCollision> collisions) override {
     for (auto& [index, collision, after] : collisions) {
-      tangents_[index].Collide(collision);
-      const auto growth = tangents_[index].TakeGrowth();
+      tangents_[index]->Collide(collision);
+      const auto growth = tangents_[index]->TakeGrowth();
       Followed& orbit = orbits_[index];
       orbit.growths[orbit.collisions++] = {growth[0], growth[1]};
       orbit.hits += collision.ball_wall_hits;
@@ -56,16 +56,16 @@ class RecordedGrowths : public OrbitSource {
 
   bool FollowsTangents() const override { return true; }
   void FollowEvent(uint64_t orbit, const Event& event, const PairState& after) override {
-    if constexpr (std::is_same_v<Tangents, TangentFrame>) tangents_[orbit].Follow(event, after);
+    if constexpr (std::is_same_v<Tangents, PairTangents>) tangents_[orbit]->Follow(event, after);
   }
   void FollowWait(uint64_t orbit, const BallMap& flights) override {
-    if constexpr (std::is_same_v<Tangents, TangentPlane>) tangents_[orbit].Follow(flights);
+    if constexpr (std::is_same_v<Tangents, TangentPlane>) tangents_[orbit]->Follow(flights);
   }
   bool Pause() override { return false; }
 
   PairGeometry geometry_;
   std::vector<Followed> orbits_;
-  std::vector<Tangents> tangents_;
+  std::vector<std::optional<Tangents>> tangents_;
   size_t started_ = 0;
 };
 
@@ -74,7 +74,7 @@ class RecordedGrowths : public OrbitSource {
 TEST(TangentPlane, TheReflectionOfAnExchangeIsThatOfSixComponents) {
   constexpr uint64_t kMostHits = 16;
   const PairGeometry geometry = GeometryOf(0.53, 0.3);
-  const RecordedGrowths<TangentFrame> reference(Engine::kReference, geometry, 5000);
+  const RecordedGrowths<PairTangents> reference(Engine::kReference, geometry, 5000);
   const RecordedGrowths<TangentPlane> lanes(Engine::kLanes, geometry, 5000);
   size_t compared = 0;
   for (size_t i = 0; i < reference.orbits().size(); ++i) {

@@ -56,7 +56,7 @@ TEST(Lyapunov, ExponentsOfACollisionAreThoseOfItsTime) {
 }
 
 // lambda_k = -lambda_(7-k). Rounding costs the smallest vector the most digits.
-TEST(TangentFrame, ExponentsComeInPairs) {
+TEST(PairTangents, ExponentsComeInPairs) {
   for (const double rho : {0.501, 0.53, 0.7}) {
     const double delta = 0.9 * PairDeltaBound(rho);
     const PointSummary summary = RunPoint(AskedAt(rho, delta, 3200, Model::kBilliardReference));

@@ -55,7 +55,7 @@ OrbitEnd OrbitTo(double time, const GasGeometry& geometry, const GasState& start
 Vector GrowthTo(double time, const GasGeometry& geometry, const GasState& start,
                 const std::vector<Vector>& vectors) {
   ReferenceGas gas(geometry, start, ThermalWalls());
-  GasTangents tangents(geometry, start, vectors);
+  GasTangents tangents(geometry.pair().rho(), start, vectors);
   while (gas.NextTime() <= time) {
     const GasEvent event = gas.Step();
     tangents.Follow(event, gas);
@@ -86,7 +86,7 @@ TEST(GasTangents, NearbyGasesDivergeAsPredicted) {
     const GasGeometry geometry = GasAtShare(0.53, 0.95, shape);
     for (uint64_t sample = 0; sample < 40; ++sample) {
       const GasState start = GasInEquilibrium(geometry, 1, 31, sample);
-      const std::vector<Vector> across = VelocitiesAcross(geometry, start);
+      const std::vector<Vector> across = VelocitiesAcross(start);
       const double time = 1.2;
       const Vector growth = GrowthTo(time, geometry, start, {across[0], across[1]});
       const Vector a = DifferenceAlong(across[0], time, geometry, start);
@@ -112,7 +112,7 @@ std::vector<Vector> WholeBasis(const GasGeometry& geometry) {
 
 // The maps preserve volumes, so the sum is 0 but for rounding, which costs the smallest vector the
 // most digits. The exponents of a finite orbit are pairs up to the growth while vectors of nearly
-// equal exponents turn, which is 70 at most here.
+// equal exponents turn. In 16 orbits it was 122 at most.
 TEST(GasTangents, ExponentsOfAGasComeInPairs) {
   for (const char* const shape : {"1", "2", "2x2"}) {
     const GasGeometry geometry = GasAtShare(0.53, 0.95, shape);
@@ -122,7 +122,7 @@ TEST(GasTangents, ExponentsOfAGasComeInPairs) {
     const size_t f = DegreesOfFreedom(geometry);
     EXPECT_NEAR(std::accumulate(growth.begin(), growth.end(), 0.0) / time, 0, 1e-7);
     for (size_t k = 0; k < f; ++k) {
-      EXPECT_NEAR((growth[k] + growth[2 * f - 1 - k]) / time, 0, 0.02) << shape << " " << k;
+      EXPECT_NEAR((growth[k] + growth[2 * f - 1 - k]) / time, 0, 0.04) << shape << " " << k;
     }
     EXPECT_NEAR(growth[f - 1] / time, 0, 0.02) << shape;
     EXPECT_GT(growth[f - 2] / time, 0.03) << shape;
@@ -141,7 +141,7 @@ TEST(GasTangents, SmallComponentsAreKept) {
       Vector vector(2 * DegreesOfFreedom(geometry));
       vector[4 * ball + 2] = 1;
       ReferenceGas gas(geometry, start, ThermalWalls());
-      GasTangents tangents(geometry, start, {vector});
+      GasTangents tangents(geometry.pair().rho(), start, {vector});
       for (const double time : {10'000.0, 20'000.0}) {
         while (gas.NextTime() <= time) {
           const GasEvent event = gas.Step();
@@ -157,7 +157,7 @@ TEST(GasTangents, SmallComponentsAreKept) {
 TEST(GasTangents, VelocitiesAcrossKeepTheEnergy) {
   const GasGeometry geometry = GasAtShare(0.53, 0.5, "2x2");
   const GasState start = GasInEquilibrium(geometry, 1, 33, 0);
-  const std::vector<Vector> across = VelocitiesAcross(geometry, start);
+  const std::vector<Vector> across = VelocitiesAcross(start);
   ASSERT_EQ(across.size(), DegreesOfFreedom(geometry) - 1);
   const double energy = EnergyOf(start);
   for (const Vector& vector : across) {

@@ -15,7 +15,7 @@ constexpr double kTimes[] = {0, 0.01, 0.5, 2, 8, 30};
 double Edge(int bin) { return bin / (2.0 * kBins); }
 
 const EnergyLaw& Fine() {
-  static const EnergyLaw law({.degree = 10, .levels = 5}, kBins);
+  static const EnergyLaw law(kEnergyLawDiscretisation, kBins);
   return law;
 }
 
@@ -65,8 +65,9 @@ TEST(EnergyLaw, FollowsTheKernelAtShortTimes) {
   }
 }
 
-TEST(EnergyLaw, SumsToOneAndDiffersBetweenDiscretisationsByLessThanItsBound) {
-  const EnergyLaw finer({.degree = 12, .levels = 6}, kBins);
+// Bins of a third of the width, because a part of the error is that of rates within a bin.
+TEST(EnergyLaw, SumsToOneAndDiffersFromAFinerLawByLessThanItsBound) {
+  const EnergyLaw finer({.degree = 20, .levels = 5}, 3 * kBins);
   for (const double epsilon : kEpsilons) {
     for (const double time : kTimes) {
       const std::vector<double> a = Fine().Probabilities(Fine().From(epsilon), time);
@@ -74,7 +75,8 @@ TEST(EnergyLaw, SumsToOneAndDiffersBetweenDiscretisationsByLessThanItsBound) {
       EXPECT_NEAR(std::accumulate(a.begin(), a.end(), 0.0), 1, 1e-14) << epsilon << " " << time;
       for (size_t bin = 0; bin < a.size(); ++bin) {
         EXPECT_GE(a[bin], 0) << epsilon << " " << time;
-        EXPECT_NEAR(a[bin], b[bin], kEnergyLawError) << epsilon << " " << time;
+        const double exact = b[3 * bin] + b[3 * bin + 1] + b[3 * bin + 2];
+        EXPECT_NEAR(a[bin], exact, kEnergyLawError) << epsilon << " " << time;
       }
     }
   }
