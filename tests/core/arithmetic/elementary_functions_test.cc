@@ -120,7 +120,10 @@ TEST(ElementaryFunctions, AnglesOnAxesAndDiagonals) {
 
 TEST(ElementaryFunctions, PowersOfOne) {
   for (const double n : {0.0, 1e-300, 0.5, 1.0, 1000.0}) EXPECT_EQ(Power(1, n), 1);
-  for (const double base : {1e-290, 0.1, 0.75, 1 - 0x1p-53}) EXPECT_EQ(Power(base, 0), 1);
+  for (const double base : {1e-290, 0.1, 0.75, 1 - 0x1p-53}) {
+    EXPECT_EQ(Power(base, 0), 1);
+    EXPECT_EQ(Power(base, 1), base);
+  }
   EXPECT_EQ(Power(0.25, 0.5), 0.5);
   EXPECT_EQ(Power(1e-16, 1000), 0);
 }

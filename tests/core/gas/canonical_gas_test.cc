@@ -182,7 +182,7 @@ TEST(TemperatureProfile, PowerThreeHalvesIsLinearForEveryRatioOfTemperatures) {
           const long double cold_part = x * std::pow(static_cast<long double>(ratio), 1.5L);
           const long double cube = (columns - x + cold_part) / columns;
           const auto exact = static_cast<double>(hot * std::pow(cube, 2.0L / 3));
-          EXPECT_NEAR(profile.At(x) / exact, 1, 2e-15) << cold / hot << " at " << x / columns;
+          EXPECT_NEAR(profile.At(x) / exact, 1, 1e-15) << cold / hot << " at " << x / columns;
           EXPECT_GE(profile.At(x), cold);
         }
       }
