@@ -61,8 +61,8 @@ struct LimitError {
   bool (*is_known)(const PointParameters& point);
   double (*expected)(const PointParameters& point);  // upper bound of the relative error
 
-  // Whether the limit may answer a question with this tolerance. If its model samples, half of the
-  // tolerance is for the scatter. Requires is_known.
+  // Whether the limit may answer a question with this tolerance. If its model samples, its error
+  // must be within half of it, so that the scatter is the larger part. Requires is_known.
   bool IsWithin(double tolerance, const PointParameters& point) const;
 };
 

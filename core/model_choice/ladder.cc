@@ -193,7 +193,8 @@ std::string FoundBy(const Pilot& pilot, const PilotPlace& place) {
       Rounded(place.delta));
 }
 
-// If the limit's model samples, half of the tolerance is for its scatter.
+// If the limit's model samples, its error must be within half of the tolerance, so that the scatter
+// is the larger part.
 Answer ByItsBound(const Question& question) {
   const bool samples = TakesSamples(question.ModelOfLimit());
   const double error = question.ExpectedLimitError();
@@ -336,23 +337,21 @@ void PredictSamples(const Question& question, Rung& rung) {
   if (std::isfinite(error)) rung.statistical_error = error;
 }
 
-// The limit's error: from a pilot if one was run, else the expected error.
-void SetLimitError(const Question& question, const PilotSource& pilots, Rung& rung) {
+// The limit's error: from the pilot that the choice has used, else the expected error.
+void SetLimitError(const Question& question, const std::optional<Pilot>& pilot, Rung& rung) {
   rung.reason = "the limit delta -> 0";
   if (!question.HasLimitError()) return;
   rung.model_error = question.ExpectedLimitError();
   rung.reason = "the limit delta -> 0; the model error is an expected upper bound";
-  if (!question.HasPilots() || !question.IsSoundForBilliard()) return;
+  if (!pilot) return;
   const PilotPlace place = PilotPlaceFor(question.point());
-  if (const std::optional<Pilot> pilot = pilots(place)) {
-    rung.model_error = LimitErrorBound(*pilot, place, question.point());
-    rung.reason = absl::StrCat("the limit delta -> 0; the model error is an upper bound, ",
-                               FoundBy(*pilot, place));
-  }
+  rung.model_error = LimitErrorBound(*pilot, place, question.point());
+  rung.reason = absl::StrCat("the limit delta -> 0; the model error is an upper bound, ",
+                             FoundBy(*pilot, place));
 }
 
 Rung RungFor(Model model, const Question& question, const Machine& machine,
-             const PilotSource& pilots) {
+             const std::optional<Pilot>& pilot) {
   Rung rung;
   rung.model = model;
   rung.answers = question.aim().IsAnsweredBy(model);
@@ -372,7 +371,7 @@ Rung RungFor(Model model, const Question& question, const Machine& machine,
     PredictWithoutSamples(machine, rung);
   }
   const bool has_samples = !TakesSamples(model) || rung.samples.value_or(0) > 0;
-  if (IsOfTheLimit(model) && has_samples) SetLimitError(question, pilots, rung);
+  if (IsOfTheLimit(model) && has_samples) SetLimitError(question, pilot, rung);
   return rung;
 }
 
@@ -438,14 +437,18 @@ Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const M
                  const PilotSource& pilots) {
   const Question question(spec, point, machine);
   Ladder ladder;
-  for (const Model model : kLadder) {
-    ladder.rungs.push_back(RungFor(model, question, machine, pilots));
-  }
+  std::optional<Pilot> used;
   ladder.answer = *ChooseAnswer(spec, point, machine, [&](const PilotPlace& place) {
-    if (const std::optional<Pilot> known = pilots(place)) return known;
-    ladder.pilot = place;
-    return std::optional(PredictedPilot(place));
+    used = pilots(place);
+    if (!used) {
+      ladder.pilot = place;
+      used = PredictedPilot(place);
+    }
+    return used;
   });
+  for (const Model model : kLadder) {
+    ladder.rungs.push_back(RungFor(model, question, machine, used));
+  }
   if (ladder.pilot) AddPilot(machine.rates, ladder);
   return ladder;
 }

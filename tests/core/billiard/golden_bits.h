@@ -34,7 +34,7 @@ inline const std::map<std::string_view, uint64_t> kGoldenBits = {
     {"reference, energy-relaxation", 0x9fbcbd3b01d8a91c},
     {"reference, energy-relaxation from 0.01", 0x4a1ef1a02690dc9e},
     {"reference, markov-property", 0xb482a913f75d0dd5},
-    {"reference, lyapunov", 0xbb472a159e5ae2ce},
+    {"reference, lyapunov", 0xd9aab76817f05239},
     {"lanes, energy-relaxation", 0x5c7dffed1c302d39},
     {"lanes, energy-relaxation from 0.01", 0x5cf1cc696e684c4f},
     {"lanes, markov-property", 0x2d11509d51e21446},

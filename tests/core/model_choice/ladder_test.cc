@@ -187,18 +187,26 @@ TEST(Ladder, AnUnknownPilotIsPartOfTheWork) {
   }
 }
 
-TEST(Ladder, ModelErrorIsFromAPilotIfOneIsKnown) {
-  const EnsembleSpec spec = Relaxation(0.01);
-  const PointParameters point = PointAt(spec, 0);
+// Else a plan's table would say another error than the answer.
+TEST(Ladder, TheLimitsRowsHaveTheErrorThatTheChoiceHasUsed) {
   const Pilot pilot = {.difference = 0.02, .standard_error = 0.005};
-  const Ladder without = Planned(spec);
-  const Ladder with = Planned(spec, SomeMachine(), MadeUpPilots(pilot).source());
-  for (const size_t i : {1u, 2u}) {
-    EXPECT_EQ(without.rungs[i].model_error, ExpectedLimitError(point));
-    EXPECT_THAT(without.rungs[i].reason, HasSubstr("expected"));
-    EXPECT_EQ(with.rungs[i].model_error, LimitErrorBound(pilot, PilotPlaceFor(point), point));
-    EXPECT_THAT(with.rungs[i].reason, HasSubstr("of a pilot at delta"));
-  }
+  const auto expect_error = [](const Ladder& ladder, double error, const char* source) {
+    for (const size_t i : {1u, 2u}) {
+      EXPECT_EQ(ladder.rungs[i].model_error, error);
+      EXPECT_THAT(ladder.rungs[i].reason, HasSubstr(source));
+    }
+  };
+  const EnsembleSpec asks = Relaxation(0.01, {.tolerance = 0.01});
+  const PointParameters point = PointAt(asks, 0);
+  const PilotPlace place = PilotPlaceFor(point);
+  const auto by = [&](const Pilot& result) { return LimitErrorBound(result, place, point); };
+  expect_error(Planned(asks), by(PredictedPilot(place)), "expected of a pilot at delta");
+  expect_error(Planned(asks, SomeMachine(), MadeUpPilots(pilot).source()), by(pilot),
+               "two sigma of a pilot at delta");
+  EnsembleSpec given = Relaxation(0.01);
+  given.model = Model::kMarkov;
+  expect_error(Planned(given, SomeMachine(), MadeUpPilots(pilot).source()),
+               ExpectedLimitError(point), "an expected upper bound");
 }
 
 // ---- bounds that decide ----
