@@ -1,6 +1,6 @@
 // The billiard flow of a ball-piston pair. It computes every event, one at a time, in numbers of
-// any precision. In double it is ReferenceFlow (reference_flow.h), with which every faster engine
-// is compared. Other precisions need event_flow-inl.h; tools/flows/precise_flow.h has some.
+// any precision. Precisions other than double need event_flow-inl.h; tools/flows/precise_flow.h has
+// some.
 //
 // The ball flies straight between the four arcs, the piston between its two walls. When ball and
 // piston meet, they exchange horizontal velocity components. The method is stable because:
@@ -81,5 +81,9 @@ class EventFlow {
   Real time_to_wall_ = 0;         // the ball's
   Real time_to_piston_wall_ = 0;  // the piston's
 };
+
+// In double precision. Every faster engine is compared with it, and traces use it.
+using ReferenceFlow = EventFlow<double>;
+extern template class EventFlow<double>;
 
 }  // namespace ballpiston

@@ -1,6 +1,6 @@
 // An orbit while its ball flies in a lane: its entry into the lane, and its collision. The lanes of
-// a processor (lane_orbits.h) and of a device (core/gpu) share these functions, so that both report
-// the same bits.
+// a processor (lane_orbits.cc) and of a device (core/gpu) share these functions, so that both
+// report the same bits.
 //
 // Lengths are in cells, except where a member says that it is in the units of the lanes
 // (FlightConstants::scale). A phase is in periods of the piston.

@@ -1,4 +1,4 @@
-#include "core/billiard/lane_orbits.h"
+#include "core/billiard/orbits.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/billiard/lane_orbits.cc"

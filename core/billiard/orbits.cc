@@ -4,9 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/billiard/lane_orbits.h"
 #include "core/billiard/longest_wait.h"
-#include "core/billiard/reference_flow.h"
 
 namespace ballpiston {
 namespace {

@@ -21,13 +21,22 @@
 #include <memory>
 #include <span>
 
-#include "core/billiard/engine_run.h"
-#include "core/billiard/reference_flow.h"
+#include "core/billiard/event_flow.h"
 #include "core/billiard/tangent_map.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
 
 namespace ballpiston {
+
+// A run of an engine: the orbits of pairs, or the blocks of a point (ensemble/block_run.h), from a
+// source that supplies the work.
+class EngineRun {
+ public:
+  virtual ~EngineRun() = default;
+  // Returns true when no work is in progress and the source has no more now. Returns false when the
+  // source's Pause is true. May be called again in both cases, from any thread.
+  virtual bool Advance() = 0;
+};
 
 enum class Engine { kReference, kLanes, kLanesSingle };
 
@@ -111,5 +120,11 @@ class OrbitDevice {
 // outlive the run.
 std::unique_ptr<EngineRun> StartOrbits(Engine engine, const PairGeometry& geometry,
                                        OrbitSource& source);
+
+// kLanes on the processor, without the source's device.
+std::unique_ptr<EngineRun> StartLaneOrbits(const PairGeometry& geometry, OrbitSource& source);
+// kLanesSingle: flights in single precision, which are faster, with the errors that
+// single_precision.h states.
+std::unique_ptr<EngineRun> StartLaneOrbitsSingle(const PairGeometry& geometry, OrbitSource& source);
 
 }  // namespace ballpiston

@@ -1,4 +1,4 @@
-// A run of a point's blocks (billiard/engine_run.h). BlockQueue supplies the blocks and receives
+// A run of a point's blocks (billiard/orbits.h). BlockQueue supplies the blocks and receives
 // their results. A run computes several blocks at a time where this keeps the lanes of an engine
 // full. A block's result depends only on the block, not on other blocks in progress and not on
 // pauses.
@@ -9,7 +9,6 @@
 #include <stop_token>
 #include <utility>
 
-#include "core/billiard/engine_run.h"
 #include "core/billiard/orbits.h"
 #include "core/ensemble/block_result.h"
 #include "core/ensemble/chunk_plan.h"

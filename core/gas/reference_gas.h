@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "core/billiard/cell_walls.h"
-#include "core/billiard/reference_flow.h"
+#include "core/billiard/event_flow.h"
 #include "core/gas/event_queue.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_state.h"

@@ -25,7 +25,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/billiard/reference_flow.h"
+#include "core/billiard/event_flow.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_state.h"
 #include "core/geometry/pair_state.h"

@@ -9,7 +9,6 @@
 
 #include "core/billiard/lane_constants.h"
 #include "core/billiard/lane_orbit.h"
-#include "core/billiard/lane_orbits.h"
 
 namespace ballpiston {
 namespace {

@@ -1,7 +1,7 @@
 // Orbits whose flights a device computes (flight_device.h). A processor draws the starts, computes
 // the collisions and calls the source; so random numbers and elementary functions are the same as
-// without a device, and so are the bits, which are those of the lanes (billiard/lane_orbits.h) on a
-// processor with fused multiply-add.
+// without a device, and so are the bits, which are those of the lanes (billiard/lane_orbits.cc) on
+// a processor with fused multiply-add.
 //
 // If the device fails, the orbits that are in progress start again from their last collisions in
 // the lanes of the processor, to the same bits, and so do all later runs.

@@ -32,11 +32,23 @@
 #include <span>
 #include <vector>
 
-#include "core/markov/jump_process_lanes.h"
-
 namespace ballpiston {
 
 inline constexpr double kJumpError = 2e-15;  // 1e-15 measured
+
+// The size of a group of walkers: a whole number of vectors on every processor.
+inline constexpr size_t kJumpGroup = 32;
+
+// Words 4 block, ..., 4 block + 3 of the sequences of CounterRandom for samples first, first + 1,
+// ...: by word, then by sample.
+struct JumpWords {
+  uint64_t words[4][kJumpGroup];
+};
+
+// Replaces the u of a group by the u after a jump, and writes the waiting times. The uniform
+// numbers are those that CounterRandom computes from the words.
+void JumpInLanes(const uint64_t* waiting_words, const uint64_t* target_words, double* u,
+                 double* waiting_times);
 
 // Many independent walkers, in step, in vector lanes: 100 million jumps a second on one core.
 //

@@ -28,12 +28,12 @@
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
-#include "core/geometry/paper.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/direction.h"
 #include "tests/benchmark/turns.h"
 #include "tests/benchmark/vector_targets.h"
 #include "tools/flows/lane_balls.h"
+#include "tools/flows/paper.h"
 
 namespace ballpiston {
 namespace {

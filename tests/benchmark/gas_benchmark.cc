@@ -26,9 +26,9 @@
 #include "core/gas/gas_meter.h"
 #include "core/gas/gas_run.h"
 #include "core/gas/hit_rates.h"
-#include "core/geometry/paper.h"
 #include "tests/benchmark/turns.h"
 #include "tests/benchmark/vector_targets.h"
+#include "tools/flows/paper.h"
 
 namespace ballpiston {
 namespace {

@@ -24,10 +24,10 @@
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/expected_returns.h"
-#include "core/geometry/paper.h"
 #include "core/gpu/device_orbits.h"
 #include "core/sampling/invariant_measure.h"
 #include "tests/benchmark/break_device.h"
+#include "tools/flows/paper.h"
 
 namespace ballpiston {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/geometry/pair_geometry.h"
-#include "core/geometry/paper.h"
+#include "tools/flows/paper.h"
 
 namespace ballpiston {
 

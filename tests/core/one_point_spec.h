@@ -8,7 +8,7 @@
 #include "core/ensemble/ensemble_spec.h"
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
-#include "core/geometry/paper.h"
+#include "tools/flows/paper.h"
 
 namespace ballpiston {
 

@@ -4,8 +4,8 @@
 
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
-#include "core/geometry/paper.h"
 #include "core/sampling/counter_random.h"
 #include "core/statistics/moments.h"
 #include "tests/core/geometries.h"
 #include "tests/support/preamble.h"
+#include "tools/flows/paper.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/billiard/reference_flow.h"
+#include "core/billiard/event_flow.h"
 #include "core/geometry/pair_state.h"
 #include "tests/oracle/exact_flight.h"
 

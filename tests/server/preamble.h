@@ -9,7 +9,6 @@
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
-#include "core/geometry/paper.h"
 #include "server/convert/spec.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
@@ -26,6 +25,7 @@
 #include "tests/server/thread_pool.h"
 #include "tests/support/message_text.h"
 #include "tests/support/preamble.h"
+#include "tools/flows/paper.h"
 
 namespace ballpiston::server {
 

@@ -72,7 +72,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/paper.h"
+#include "tools/flows/paper.h"
 #include "tools/method_comparison/method.h"
 
 namespace ballpiston::method_comparison {

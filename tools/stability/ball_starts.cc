@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/billiard/reference_flow.h"
+#include "core/billiard/event_flow.h"
 #include "tools/stability/pair_starts.h"
 
 namespace ballpiston::stability {

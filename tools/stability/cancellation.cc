@@ -5,7 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/closed_form/pair_measures.h"
 #include "core/geometry/pair_geometry.h"
-#include "core/geometry/paper.h"
+#include "tools/flows/paper.h"
 #include "tools/flows/printed_formulas.h"
 #include "tools/flows/quad_precision.h"
 #include "tools/stability/markdown_table.h"

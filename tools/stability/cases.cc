@@ -1,7 +1,7 @@
 #include "tools/stability/cases.h"
 
-#include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
+#include "tools/flows/paper.h"
 #include "tools/stability/gas_starts.h"
 #include "tools/stability/pair_starts.h"
 #include "tools/stability/tip_sequence.h"

@@ -2,12 +2,12 @@
 #include <cmath>
 #include <limits>
 
-#include "core/billiard/reference_flow.h"
-#include "core/geometry/paper.h"
+#include "core/billiard/event_flow.h"
 #include "core/sampling/invariant_measure.h"
 #include "tools/flows/fixed_step_flow.h"
 #include "tools/flows/lane_balls.h"
 #include "tools/flows/numbered_orbits.h"
+#include "tools/flows/paper.h"
 #include "tools/flows/precise_flow.h"
 #include "tools/stability/energy.h"
 #include "tools/stability/failures.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/billiard/event_flow.h"
 #include "core/billiard/piston_wave.h"
-#include "core/billiard/reference_flow.h"
 
 namespace ballpiston::stability {
 namespace {

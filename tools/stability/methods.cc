@@ -1,4 +1,4 @@
-#include "core/billiard/reference_flow.h"
+#include "core/billiard/event_flow.h"
 #include "core/gas/reference_gas.h"
 #include "tools/flows/fixed_step_flow.h"
 #include "tools/flows/fixed_step_gas.h"

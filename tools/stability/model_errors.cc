@@ -20,8 +20,8 @@
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
 #include "core/geometry/pair_geometry.h"
-#include "core/geometry/paper.h"
 #include "core/model_choice/ladder.h"
+#include "tools/flows/paper.h"
 #include "tools/stability/markdown_table.h"
 
 namespace ballpiston::stability {

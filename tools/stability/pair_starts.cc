@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/billiard/reference_flow.h"
+#include "core/billiard/event_flow.h"
 #include "core/geometry/cell_profile.h"
 #include "core/sampling/collision_surface.h"
 #include "core/sampling/direction.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/billiard/reference_flow.h"
+#include "core/billiard/event_flow.h"
 #include "tools/stability/ghost_flight.h"
 #include "tools/stability/tip_sequence.h"
 

@@ -22,7 +22,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/billiard/reference_flow.h"
+#include "core/billiard/event_flow.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
 

@@ -6,7 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/geometry/pair_geometry.h"
-#include "core/geometry/paper.h"
+#include "tools/flows/paper.h"
 #include "tools/stability/pair_starts.h"
 #include "tools/stability/textbook_flow.h"
 

@@ -1,5 +1,4 @@
-#include "core/billiard/reference_flow.h"
-
+#include "core/billiard/event_flow.h"
 #include "core/sampling/collision_surface.h"
 #include "core/sampling/invariant_measure.h"
 #include "tests/core/preamble.h"

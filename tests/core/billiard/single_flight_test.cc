@@ -11,8 +11,8 @@
 // An engine may choose another arc than the exact ray only in two cases:
 //   tie    the exact ray reaches both arcs, at times that differ by at most the two bounds;
 //   touch  the exact ray touches one of the two arcs within B u, as a hit or as a miss.
+#include "core/billiard/event_flow.h"
 #include "core/billiard/lane_frame.h"
-#include "core/billiard/reference_flow.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/preamble.h"
 #include "tests/oracle/exact_flight.h"

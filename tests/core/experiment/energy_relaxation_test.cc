@@ -1,6 +1,6 @@
 #include "core/experiment/energy_relaxation.h"
 
-#include "core/billiard/reference_flow.h"
+#include "core/billiard/event_flow.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/point_fold.h"
 #include "core/ensemble/random_stream.h"

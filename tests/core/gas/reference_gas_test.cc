@@ -1,6 +1,6 @@
 #include "core/gas/reference_gas.h"
 
-#include "core/billiard/reference_flow.h"
+#include "core/billiard/event_flow.h"
 #include "core/sampling/invariant_measure.h"
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"

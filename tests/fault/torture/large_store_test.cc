@@ -1,10 +1,10 @@
 // A server with much in its store starts quickly, and lists it in little memory.
-#include "core/geometry/paper.h"
 #include "server/book/job_name.h"
 #include "server/convert/spec.h"
 #include "server/store/job_table.h"
 #include "server/store/store.h"
 #include "tests/fault/torture/preamble.h"
+#include "tools/flows/paper.h"
 
 namespace ballpiston::torture {
 namespace {

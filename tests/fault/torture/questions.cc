@@ -2,10 +2,10 @@
 
 #include "absl/strings/substitute.h"
 #include "core/ensemble/point_experiment.h"
-#include "core/geometry/paper.h"
 #include "server/convert/spec.h"
 #include "tests/fault/torture/preamble.h"
 #include "tests/support/message_text.h"
+#include "tools/flows/paper.h"
 
 namespace ballpiston::torture {
 namespace {

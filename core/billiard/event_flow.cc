@@ -1,5 +1,3 @@
-#include "core/billiard/reference_flow.h"
-
 #include "core/billiard/event_flow-inl.h"
 
 namespace ballpiston {
