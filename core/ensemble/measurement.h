@@ -1,5 +1,5 @@
-// The table of an experiment: one row for each estimate, in the order of the answer. A tolerance
-// refers to the first row.
+// The table of an experiment: one row for each estimate, in the order of the answer, except for
+// those that AddDetails adds (point_experiment.h). A tolerance refers to the first row.
 //
 // A standard error is stated if the sample contains enough of the events that determine the
 // estimate (statistics/stated_error.h). Without samples the value is NaN, and there is no error.

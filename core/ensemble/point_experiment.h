@@ -92,7 +92,7 @@ class PointExperiment {
 
   // All that was measured. The first estimate is FirstEstimate. If it has no standard error, a
   // remark says how many samples an error needs.
-  virtual PointSummary Summarize(const BlockResult& merged) const;
+  PointSummary Summarize(const BlockResult& merged) const;
 
   // Whether `merged`, the complete chunks, reaches the tolerance; false if there is no tolerance.
   bool ReachesTolerance(const BlockResult& merged) const;
@@ -113,7 +113,8 @@ class PointExperiment {
   // have an estimate for every sample.
   void SetMeasurements(BlockResult empty, std::vector<Measurement> table);
 
-  // Adds histograms, curves and remarks. The summary already has the table's estimates.
+  // Adds histograms, curves and remarks, and estimates that are not in the table. The summary
+  // already has the table's estimates.
   virtual void AddDetails(const BlockResult& /*merged*/, PointSummary& /*summary*/) const {}
 
  private:

@@ -50,8 +50,6 @@ constexpr size_t kChargeWindow = 8;
 // each has to warm up.
 constexpr uint64_t kMostTrajectories = 128;
 
-double MeanTemperature(const PointParameters& point) { return (point[kHot] + point[kCold]) / 2; }
-
 // A piston from a reservoir crosses its stroke in this time, the mean over its speed v, whose
 // density is v exp(-v^2/(2 T))/T. The jump process has no strokes.
 double CrossingTime(Model model, const GasGeometry& geometry, double temperature) {
@@ -151,10 +149,6 @@ class ProfilePlaces {
   int64_t bodies_;  // of a row
 };
 
-GasGeometry OpenGasOf(const PointParameters& point) {
-  return GasGeometryOf(point, GasEnds::kReservoirs);
-}
-
 SteadyTimes TimesAt(Model model, const PointParameters& point) {
   return TimesOfConduction(model, OpenGasOf(point), point[kCold] / MeanTemperature(point));
 }
@@ -162,12 +156,11 @@ SteadyTimes TimesAt(Model model, const PointParameters& point) {
 class GasConduction : public SteadyGas {
  public:
   GasConduction(const EnsembleSpec& spec, const PointParameters& point)
-      : GasConduction(spec, point, OpenGasOf(point)) {}
-
-  TemperatureProfile TemperaturesAtStart() const override { return {hot_, cold_, Columns()}; }
-
-  ThermalWalls WallsOf(const GasRandom& random) const override {
-    return {geometry(), hot_, cold_, random};
+      : SteadyGas(spec, point, TimesAt(spec.model, point).stretch,
+                  kPlaces + ProfilePlaces(OpenGasOf(point)).size()),
+        of_half_(static_cast<size_t>(std::countr_zero(TimesAt(spec.model, point).stretches))),
+        places_(geometry()) {
+    SetMeasurements({.groups = std::vector<GroupState>(trajectories().groups)}, {HeatCurrent()});
   }
 
   std::vector<double> IntegralsOf(const GasMeter& meter) const override {
@@ -188,13 +181,15 @@ class GasConduction : public SteadyGas {
  protected:
   void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
     const std::vector<SteadyGroup> groups = GroupsOf(merged);
+    summary.samples = StretchesOf(groups);
+    AddEstimates(groups, summary.estimates);
     summary.curves.push_back(Profile(groups));
     for (const Order& order : StatedOrders()) {
       if (Curve curve = CumulantsByWindow(order, groups); !curve.points.empty()) {
         summary.curves.push_back(std::move(curve));
       }
     }
-    for (std::string remark : {RemarkOnWarmUp(merged), RemarkOnErrors(groups), RemarkOnOrders()}) {
+    for (std::string remark : {RemarkOnWarmUp(groups), RemarkOnErrors(groups), RemarkOnOrders()}) {
       if (!remark.empty()) summary.remarks.push_back(std::move(remark));
     }
   }
@@ -212,55 +207,51 @@ class GasConduction : public SteadyGas {
   };
   static constexpr Order kOrders[] = {{2, 64}, {3, 256}, {4, 1024}};
 
-  GasConduction(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry)
-      : SteadyGas(spec, point, geometry, TimesAt(spec.model, point).stretch, MeanTemperature(point),
-                  kPlaces + ProfilePlaces(geometry).size()),
-        hot_(point[kHot] / temperature()),
-        cold_(point[kCold] / temperature()),
-        of_half_(static_cast<size_t>(std::countr_zero(TimesAt(spec.model, point).stretches))),
-        places_(geometry) {
-    SetMeasurements(TemperaturesAtStart(), Table());
+  Measurement HeatCurrent() const {
+    return {.name = "heat_current",
+            .reading = [this](const BlockResult& merged) { return Current(GroupsOf(merged)); },
+            .scale = temperature() * std::sqrt(temperature()),
+            .exact = HasFall() ? std::nullopt : std::optional(0.0)};
   }
 
-  std::vector<Measurement> Table() const {
-    const bool has_fall = hot_ > cold_;
-    // Each ball has one contact on its left and one on its right.
-    const Reading current = TimeAverageAt(kCarried, 2 * static_cast<double>(geometry().balls()));
-    std::vector<Measurement> table = {{.name = "heat_current",
-                                       .reading = current,
-                                       .scale = temperature() * std::sqrt(temperature()),
-                                       .exact = has_fall ? std::nullopt : std::optional(0.0)}};
-    if (has_fall) {
+  // The estimates after the heat current. They are not rows of the table, where each would read all
+  // groups again.
+  void AddEstimates(const std::vector<SteadyGroup>& groups,
+                    std::vector<Estimate>& estimates) const {
+    const auto add = [&](std::string name, const std::optional<Estimate>& estimate, double scale) {
+      if (!estimate) return;
+      estimates.push_back(Scaled(*estimate, scale));
+      estimates.back().name = std::move(name);
+    };
+    if (HasFall()) {
       const double of_static = InfiniteGasExchangeRate(geometry(), temperature()) / 2;
-      table.push_back({"conductivity", current, Conductance()});
-      table.push_back({"conductivity_ratio", current, Conductance() / of_static});
+      add("conductivity", Current(groups), Conductance());
+      add("conductivity_ratio", Current(groups), Conductance() / of_static);
     }
     const auto balls = static_cast<double>(geometry().balls());
     const auto pistons = static_cast<double>(geometry().pistons());
     const auto contacts = static_cast<double>(geometry().contacts());
-    table.push_back(
-        {"exchange_rate", TimeAverageAt(kExchanges, contacts), std::sqrt(temperature())});
-    table.push_back({"temperature_ball", TimeAverageAt(kBalls, balls), temperature()});
-    table.push_back({"temperature_piston", TimeAverageAt(kPistons, pistons / 2), temperature()});
+    add("exchange_rate", TimeAverage(kExchanges, contacts, groups), std::sqrt(temperature()));
+    add("temperature_ball", TimeAverage(kBalls, balls, groups), temperature());
+    add("temperature_piston", TimeAverage(kPistons, pistons / 2, groups), temperature());
     for (const Order& order : StatedOrders()) {
-      const auto reading = [this, order](const BlockResult& merged) {
-        return CumulantRate(order, GroupsOf(merged));
-      };
-      table.push_back({NameOf(order), reading, ScaleOf(order)});
+      add(NameOf(order), CumulantRate(order, groups), ScaleOf(order));
     }
-    table.push_back(
-        {"autocorrelation_time",
-         [this](const BlockResult& merged) { return AutocorrelationTime(GroupsOf(merged)); },
-         1 / std::sqrt(temperature())});
-    return table;
+    add("autocorrelation_time", AutocorrelationTime(groups), 1 / std::sqrt(temperature()));
   }
 
+  // Each ball has one contact on its left and one on its right.
+  Estimate Current(const std::vector<SteadyGroup>& groups) const {
+    return TimeAverage(kCarried, 2 * static_cast<double>(geometry().balls()), groups);
+  }
+
+  bool HasFall() const { return hot() > cold(); }
   double Columns() const { return static_cast<double>(geometry().shape().columns); }
   double Rows() const { return static_cast<double>(geometry().shape().rows); }
 
   // The conductivity over the current at mean temperature 1.
   double Conductance() const {
-    const double fall = 2.0 / 3 * (hot_ * std::sqrt(hot_) - cold_ * std::sqrt(cold_));
+    const double fall = 2.0 / 3 * (hot() * std::sqrt(hot()) - cold() * std::sqrt(cold()));
     return Columns() * std::sqrt(temperature()) / fall;
   }
 
@@ -385,9 +376,7 @@ class GasConduction : public SteadyGas {
     for (const SteadyGroup& group : groups) batches.Merge(group.windows[length]);
     const double within =
         Cumulant(batches, 2) / (WindowTime(length) * all * stretch() * Rows() * Rows());
-    const Estimate current =
-        TimeAverage(kCarried, 2 * static_cast<double>(geometry().balls()), groups);
-    const double ratio = std::pow(*current.standard_error, 2) / within;
+    const double ratio = std::pow(*Current(groups).standard_error, 2) / within;
     const double freedom = static_cast<double>(trajectories().count() - 1);
     if (ratio <= 1 + kDeviations * std::sqrt(2 / freedom)) return "";
     return absl::StrFormat(
@@ -396,8 +385,6 @@ class GasConduction : public SteadyGas {
         std::sqrt(ratio), WindowTime(length) / std::sqrt(temperature()));
   }
 
-  double hot_;  // this and cold_ in units of the mean temperature
-  double cold_;
   size_t of_half_;  // the length of windows of half a relaxation time
   ProfilePlaces places_;
 };

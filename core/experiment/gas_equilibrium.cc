@@ -15,6 +15,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -22,13 +23,17 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "core/arithmetic/elementary_functions.h"
 #include "core/conductivity/conductivity.h"
+#include "core/ensemble/open_blocks.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/expected_limit_error.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/canonical_gas.h"
 #include "core/gas/current_meter.h"
 #include "core/gas/gas_exchange_rate.h"
+#include "core/gas/gas_meter.h"
+#include "core/gas/gas_run.h"
 #include "core/gas/jump_current.h"
 #include "core/statistics/kl_divergence.h"
 #include "core/statistics/stated_error.h"
@@ -125,11 +130,11 @@ std::vector<Row> WithConductivity(std::vector<Row> rows, const std::vector<Row>&
   return rows;
 }
 
-class GasEquilibrium : public GasReplicas {
+class GasEquilibrium : public GasExperiment {
  public:
   GasEquilibrium(const EnsembleSpec& spec, const PointParameters& point)
-      : GasReplicas(spec, point, PeriodicGasOf(point),
-                    TimeInEquilibrium(spec.model, PeriodicGasOf(point)), point[kTemperature]),
+      : GasExperiment(spec, point, PeriodicGasOf(point), point[kTemperature]),
+        duration_(WithoutLastBits(TimeInEquilibrium(spec.model, geometry()))),
         events_(EventsOfCurrents(answer().model, geometry().shape())) {
     SetMeasurements({.moments = std::vector<Moments>(kMomentsOfCurrents),
                      .batch_means = std::vector<BatchMeans>(kMeansOfAReplica),
@@ -137,9 +142,12 @@ class GasEquilibrium : public GasReplicas {
                     WithConductivity(Table(), ConductivityTable(), AimsAtConductivity(spec)));
   }
 
-  TemperatureProfile TemperaturesAtStart() const override { return TemperatureProfile(1); }
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override;
 
-  std::unique_ptr<CurrentMeter> CurrentOf(const GasState& start) const override {
+  double duration() const { return duration_; }  // of a replica, at temperature 1
+
+  // A meter of the current of a replica with this start; null if the current is not measured.
+  std::unique_ptr<CurrentMeter> CurrentOf(const GasState& start) const {
     if (!MeasuresConductivity(geometry())) return nullptr;
     if (gas_engine() == GasEngine::kJumps) {
       return std::make_unique<JumpCurrent>(geometry(), exchange_rate(), start, duration());
@@ -147,7 +155,8 @@ class GasEquilibrium : public GasReplicas {
     return std::make_unique<CarriedCurrent>(start.balls.size(), exchange_rate(), duration());
   }
 
-  void Measure(const GasMeter& meter, BlockResult& result) const override {
+  // Adds a replica's numbers.
+  void Measure(const GasMeter& meter, BlockResult& result) const {
     AddMeans(meter, result.batch_means);
     if (meter.current() != nullptr) AddCurrent(meter.current()->Result(), result.moments);
     for (size_t i = 0; i < meter.bodies(); ++i) {
@@ -264,8 +273,106 @@ class GasEquilibrium : public GasReplicas {
     return speeds;
   }
 
-  double events_;  // of a replica, for the errors of its current's correlations
+  double duration_;  // rounded, because its last bits depend on the C library
+  double events_;    // of a replica, for the errors of its current's correlations
 };
+
+// The replicas of a block, which are measured in their order.
+struct ReplicasOfBlock {
+  uint64_t replicas;
+  BlockResult result;
+
+  uint64_t count() const { return replicas; }
+  BlockResult Result() { return std::move(result); }
+};
+
+// A replica that runs.
+struct Replica {
+  uint64_t number;  // of OpenBlocks
+  std::unique_ptr<GasMeter> meter;
+  double energy_at_start;
+};
+
+// Computes several replicas at a time, of several blocks if these are small, to fill the lanes.
+class GasBlocks : public EngineRun {
+ public:
+  GasBlocks(const GasEquilibrium& experiment, BlockQueue& queue)
+      : experiment_(experiment), queue_(queue), blocks_(queue, [&experiment](const Block& block) {
+          return ReplicasOfBlock{block.samples, experiment.EmptyResult()};
+        }) {}
+
+  bool Advance() override {
+    Pauses pauses([this] { return queue_.Pause(); });
+    do {
+      if (run_ == nullptr) Begin();
+      if (run_ == nullptr) return true;
+      if (!run_->AdvanceTo(experiment_.duration(), pauses)) return false;
+      run_.reset();
+      for (const Replica& replica : running_) Measure(replica);
+      running_.clear();
+    } while (!queue_.Pause());
+    return false;
+  }
+
+ private:
+  // The other engines run one replica at a time, because more would not make them faster.
+  size_t MostTogether(const Block& block) const {
+    if (experiment_.gas_engine() != GasEngine::kLanes) return 1;
+    return TogetherInLanes(experiment_.geometry().balls(), experiment_.plan(), block.chunk);
+  }
+
+  // Starts replicas until the run is full or the queue has no more now. The first replica
+  // determines the number of replicas in the run.
+  void Begin() {
+    std::vector<GasStart> starts;
+    for (size_t most = 1; starts.size() < most;) {
+      const std::optional<uint64_t> number = blocks_.Next();
+      if (!number) break;
+      if (starts.empty()) most = MostTogether(blocks_.BlockOf(*number));
+      starts.push_back(Draw(*number));
+    }
+    if (starts.empty()) return;
+    run_ = StartGases(experiment_.gas_engine(), experiment_.geometry(), experiment_.exchange_rate(),
+                      std::move(starts));
+  }
+
+  GasStart Draw(uint64_t number) {
+    const GasRandom random =
+        experiment_.RandomOf(blocks_.BlockOf(number).first + blocks_.IndexOf(number));
+    CounterRandom of_start = random.OfStart();
+    GasState state = DrawGas(experiment_.geometry(), TemperatureProfile(1), of_start);
+    auto meter = std::make_unique<GasMeter>(experiment_.geometry(), state);
+    meter->MeasureCurrent(experiment_.CurrentOf(state));
+    const double energy = meter->TotalEnergy();
+    running_.push_back({number, std::move(meter), energy});
+    return {std::move(state), ThermalWalls(), random, running_.back().meter.get()};
+  }
+
+  void Measure(const Replica& replica) {
+    replica.meter->End(experiment_.duration());
+    BlockResult& result = blocks_.WorkOf(replica.number).result;
+    experiment_.Measure(*replica.meter, result);
+    result.health.Merge(HealthOf(replica));
+    ++result.samples;
+    blocks_.End(replica.number);
+  }
+
+  static Health HealthOf(const Replica& replica) {
+    return {
+        .escapes = replica.meter->escapes(),
+        .max_energy_error = std::fabs(replica.meter->TotalEnergy() / replica.energy_at_start - 1)};
+  }
+
+  const GasEquilibrium& experiment_;
+  BlockQueue& queue_;
+  OpenBlocks<ReplicasOfBlock> blocks_;
+  std::vector<Replica> running_;
+  std::unique_ptr<GasRun> run_;  // of the replicas in running_; null if there are none
+};
+
+std::unique_ptr<EngineRun> GasEquilibrium::StartRun(BlockQueue& queue) const {
+  return std::make_unique<GasBlocks>(*this, queue);
+}
 
 std::vector<Estimate> ClosedForms(const GasGeometry& geometry, double temperature) {
   return {ExactEstimate("exchange_rate", GasExchangeRate(geometry, temperature),

@@ -2,14 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
-#include <optional>
-#include <utility>
 
 #include "core/arithmetic/elementary_functions.h"
-#include "core/ensemble/chunk_plan.h"
-#include "core/ensemble/open_blocks.h"
 #include "core/experiment/pair_experiment.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_shape.h"
@@ -24,108 +19,6 @@ constexpr int64_t kBallsInLanes = 192;
 uint64_t ReplicasThatFillLanes(int64_t balls) {
   return static_cast<uint64_t>((kBallsInLanes + balls - 1) / balls);
 }
-
-// Replicas that a thread computes at the same time: at most a quarter of those of the chunk, so
-// that several threads share even a small chunk.
-uint64_t TogetherInLanes(int64_t balls, const ChunkPlan& plan, uint64_t chunk) {
-  return std::clamp<uint64_t>(plan.SamplesIn(chunk) / 4, 1, ReplicasThatFillLanes(balls));
-}
-
-// The replicas of a block, which are measured in their order.
-struct ReplicasOfBlock {
-  uint64_t replicas;
-  BlockResult result;
-
-  uint64_t count() const { return replicas; }
-  BlockResult Result() { return std::move(result); }
-};
-
-// A replica that runs.
-struct Replica {
-  uint64_t number;  // of OpenBlocks
-  std::unique_ptr<GasMeter> meter;
-  double energy_at_start;
-};
-
-// Computes several replicas at a time, of several blocks if these are small, to fill the lanes.
-class GasBlocks : public EngineRun {
- public:
-  GasBlocks(const GasReplicas& experiment, BlockQueue& queue)
-      : experiment_(experiment), queue_(queue), blocks_(queue, [&experiment](const Block& block) {
-          return ReplicasOfBlock{block.samples, experiment.EmptyResult()};
-        }) {}
-
-  bool Advance() override {
-    Pauses pauses([this] { return queue_.Pause(); });
-    do {
-      if (run_ == nullptr) Begin();
-      if (run_ == nullptr) return true;
-      if (!run_->AdvanceTo(experiment_.duration(), pauses)) return false;
-      run_.reset();
-      for (const Replica& replica : running_) Measure(replica);
-      running_.clear();
-    } while (!queue_.Pause());
-    return false;
-  }
-
- private:
-  // The other engines run one replica at a time, because more would not make them faster.
-  size_t MostTogether(const Block& block) const {
-    if (experiment_.gas_engine() != GasEngine::kLanes) return 1;
-    return TogetherInLanes(experiment_.geometry().balls(), experiment_.plan(), block.chunk);
-  }
-
-  // Starts replicas until the run is full or the queue has no more now. The first replica
-  // determines the number of replicas in the run.
-  void Begin() {
-    std::vector<GasStart> starts;
-    for (size_t most = 1; starts.size() < most;) {
-      const std::optional<uint64_t> number = blocks_.Next();
-      if (!number) break;
-      if (starts.empty()) most = MostTogether(blocks_.BlockOf(*number));
-      starts.push_back(Draw(*number));
-    }
-    if (starts.empty()) return;
-    run_ = StartGases(experiment_.gas_engine(), experiment_.geometry(), experiment_.exchange_rate(),
-                      std::move(starts));
-  }
-
-  GasStart Draw(uint64_t number) {
-    const GasRandom random =
-        experiment_.RandomOf(blocks_.BlockOf(number).first + blocks_.IndexOf(number));
-    CounterRandom of_start = random.OfStart();
-    GasState state = DrawGas(experiment_.geometry(), experiment_.TemperaturesAtStart(), of_start);
-    auto meter = std::make_unique<GasMeter>(experiment_.geometry(), state);
-    meter->MeasureCurrent(experiment_.CurrentOf(state));
-    const double energy = meter->TotalEnergy();
-    running_.push_back({number, std::move(meter), energy});
-    return {std::move(state), experiment_.WallsOf(random), random, running_.back().meter.get()};
-  }
-
-  void Measure(const Replica& replica) {
-    replica.meter->End(experiment_.duration());
-    BlockResult& result = blocks_.WorkOf(replica.number).result;
-    experiment_.Measure(*replica.meter, result);
-    AddHealth(replica, result.health);
-    ++result.samples;
-    blocks_.End(replica.number);
-  }
-
-  void AddHealth(const Replica& replica, Health& health) const {
-    Health of_replica = {.escapes = replica.meter->escapes()};
-    if (experiment_.geometry().ends() == GasEnds::kPeriodic) {
-      of_replica.max_energy_error =
-          std::fabs(replica.meter->TotalEnergy() / replica.energy_at_start - 1);
-    }
-    health.Merge(of_replica);
-  }
-
-  const GasReplicas& experiment_;
-  BlockQueue& queue_;
-  OpenBlocks<ReplicasOfBlock> blocks_;
-  std::vector<Replica> running_;
-  std::unique_ptr<GasRun> run_;  // of the replicas in running_; null if there are none
-};
 
 // Hits of the outermost pistons at their thermal walls per unit of time at temperature 1: every
 // second of their wall hits.
@@ -147,6 +40,10 @@ void CheckGasGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) 
   } else {
     CheckBilliardDomain(spec, found);
   }
+}
+
+uint64_t TogetherInLanes(int64_t balls, const ChunkPlan& plan, uint64_t chunk) {
+  return std::clamp<uint64_t>(plan.SamplesIn(chunk) / 4, 1, ReplicasThatFillLanes(balls));
 }
 
 // Factors measured with chains of 1 to 10^4 cells and lattices to 1000x1000, at deltas from 0.0125
@@ -220,14 +117,6 @@ GasEngine GasExperiment::gas_engine() const {
     default:
       return GasEngine::kLanes;
   }
-}
-
-GasReplicas::GasReplicas(const EnsembleSpec& spec, const PointParameters& point,
-                         const GasGeometry& geometry, double duration, double temperature)
-    : GasExperiment(spec, point, geometry, temperature), duration_(WithoutLastBits(duration)) {}
-
-std::unique_ptr<EngineRun> GasReplicas::StartRun(BlockQueue& queue) const {
-  return std::make_unique<GasBlocks>(*this, queue);
 }
 
 }  // namespace ballpiston

@@ -1,17 +1,14 @@
-// The base of the experiments with a gas, and of those whose sample is a replica of the gas, which
-// starts from a random state of its own. All gases run at temperature 1; results are scaled.
+// The base of the experiments with a gas. A replica is a gas that starts from a random state of its
+// own. All gases run at temperature 1; results are scaled.
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
+#include "core/ensemble/chunk_plan.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
-#include "core/gas/canonical_gas.h"
-#include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_geometry.h"
-#include "core/gas/gas_meter.h"
 #include "core/gas/gas_run.h"
 
 namespace ballpiston {
@@ -21,6 +18,9 @@ GasGeometry GasGeometryOf(const PointParameters& point, GasEnds ends);
 inline GasGeometry PeriodicGasOf(const PointParameters& point) {
   return GasGeometryOf(point, GasEnds::kPeriodic);
 }
+inline GasGeometry OpenGasOf(const PointParameters& point) {
+  return GasGeometryOf(point, GasEnds::kReservoirs);
+}
 
 // The parameters of an experiment with a periodic gas.
 inline constexpr ParameterUse kParametersOfAPeriodicGas[] = {
@@ -29,6 +29,10 @@ inline constexpr ParameterUse kParametersOfAPeriodicGas[] = {
 // Finds deltas beyond the gas's bound at the largest rho, and single precision, which gases do not
 // have.
 void CheckGasGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
+
+// Replicas that a thread computes at the same time in lanes: as many as fill the lanes, but at most
+// a quarter of those of the chunk, so that several threads share even a small chunk.
+uint64_t TogetherInLanes(int64_t balls, const ChunkPlan& plan, uint64_t chunk);
 
 // The work of a replica at temperature 1 for this duration, in the billiard's units.
 SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time);
@@ -44,8 +48,6 @@ class GasExperiment : public PointExperiment {
   // At temperature 1.
   double exchange_rate() const { return exchange_rate_; }
   GasRandom RandomOf(uint64_t sample) const { return {random().seed, random().stream, sample}; }
-  virtual TemperatureProfile TemperaturesAtStart() const = 0;
-  virtual ThermalWalls WallsOf(const GasRandom&) const { return {}; }
 
  protected:
   // `temperature` is that of the results.
@@ -58,25 +60,6 @@ class GasExperiment : public PointExperiment {
   GasGeometry geometry_;
   double exchange_rate_;
   double temperature_;
-};
-
-class GasReplicas : public GasExperiment {
- public:
-  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override;
-
-  double duration() const { return duration_; }  // of a replica, at temperature 1
-  // A meter of the current of a replica with this start; null if the current is not measured.
-  virtual std::unique_ptr<CurrentMeter> CurrentOf(const GasState&) const { return nullptr; }
-  // Adds a replica's numbers.
-  virtual void Measure(const GasMeter& meter, BlockResult& result) const = 0;
-
- protected:
-  // Rounds the duration (WithoutLastBits), because its last bits depend on the C library.
-  GasReplicas(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
-              double duration, double temperature);
-
- private:
-  double duration_;
 };
 
 }  // namespace ballpiston

@@ -29,6 +29,9 @@
 #include "core/arithmetic/elementary_functions.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/gas_experiment.h"
+#include "core/experiment/pair_experiment.h"
+#include "core/gas/canonical_gas.h"
+#include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_tangents.h"
 #include "core/gas/hit_rates.h"
 
@@ -157,7 +160,6 @@ class GasLyapunov : public GasExperiment {
                     Table(geometry(), temperature(), AimOf(spec).name));
   }
 
-  TemperatureProfile TemperaturesAtStart() const override { return TemperatureProfile(1); }
   std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override;
 
   FollowedGas Start(uint64_t sample) const {

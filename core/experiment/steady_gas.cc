@@ -7,7 +7,6 @@
 
 #include "absl/strings/str_format.h"
 #include "core/experiment/pair_experiment.h"
-#include "core/gas/canonical_gas.h"
 #include "core/gas/gas_run.h"
 #include "core/statistics/batch_means.h"
 #include "core/statistics/moments.h"
@@ -199,23 +198,22 @@ bool IsCount(double number) {
 
 }  // namespace
 
-SteadyGas::SteadyGas(const EnsembleSpec& spec, const PointParameters& point,
-                     const GasGeometry& geometry, double stretch, double temperature,
+SteadyGas::SteadyGas(const EnsembleSpec& spec, const PointParameters& point, double stretch,
                      size_t quantities)
-    : GasExperiment(spec, point, geometry, temperature),
+    : GasExperiment(spec, point, OpenGasOf(point), MeanTemperature(point)),
+      hot_(point[kHot] / temperature()),
+      cold_(point[kCold] / temperature()),
       stretch_(WithoutLastBits(stretch)),
-      trajectories_(spec.experiment->trajectories(answer().model, point)) {
-  shape_ = {.trajectories = trajectories_.each,
-            .quantities = quantities,
-            .balls = static_cast<size_t>(geometry.balls()),
-            .pistons = static_cast<size_t>(geometry.pistons()),
-            .has_positions = answer().model != Model::kMarkov};
-}
+      trajectories_(spec.experiment->trajectories(answer().model, point)),
+      shape_({.trajectories = trajectories_.each,
+              .quantities = quantities,
+              .balls = static_cast<size_t>(geometry().balls()),
+              .pistons = static_cast<size_t>(geometry().pistons()),
+              .has_positions = answer().model != Model::kMarkov}),
+      variance_of_energy_(VarianceOfEnergy(geometry(), TemperaturesAtStart())) {}
 
-void SteadyGas::SetMeasurements(const TemperatureProfile& start, std::vector<Measurement> table) {
-  variance_of_energy_ = VarianceOfEnergy(geometry(), start);
-  PointExperiment::SetMeasurements({.groups = std::vector<GroupState>(trajectories_.groups)},
-                                   std::move(table));
+TemperatureProfile SteadyGas::TemperaturesAtStart() const {
+  return {hot_, cold_, static_cast<double>(geometry().shape().columns)};
 }
 
 std::unique_ptr<EngineRun> SteadyGas::StartRun(BlockQueue& queue) const {
@@ -245,13 +243,12 @@ std::vector<SteadyGroup> SteadyGas::GroupsOf(const BlockResult& merged) const {
   return groups;
 }
 
-PointSummary SteadyGas::Summarize(const BlockResult& merged) const {
-  PointSummary summary = PointExperiment::Summarize(merged);
-  summary.samples = 0;
-  for (const SteadyGroup& group : GroupsOf(merged)) {
-    summary.samples += trajectories_.each * static_cast<uint64_t>(group.measured);
+uint64_t SteadyGas::StretchesOf(const std::vector<SteadyGroup>& groups) const {
+  uint64_t stretches = 0;
+  for (const SteadyGroup& group : groups) {
+    stretches += trajectories_.each * static_cast<uint64_t>(group.measured);
   }
-  return summary;
+  return stretches;
 }
 
 // Trajectories are independent, and each has many events.
@@ -266,15 +263,8 @@ Estimate SteadyGas::TimeAverage(size_t quantity, double share,
   return RatioOf(means, kEventsForAnError);
 }
 
-Reading SteadyGas::TimeAverageAt(size_t quantity, double share) const {
-  return [this, quantity, share](const BlockResult& merged) {
-    return TimeAverage(quantity, share, GroupsOf(merged));
-  };
-}
-
-std::string SteadyGas::RemarkOnWarmUp(const BlockResult& merged) const {
+std::string SteadyGas::RemarkOnWarmUp(const std::vector<SteadyGroup>& groups) {
   constexpr double kDeviations = 4;
-  const std::vector<SteadyGroup> groups = GroupsOf(merged);
   Moments changes;
   double energy = 0;
   for (const SteadyGroup& group : groups) {

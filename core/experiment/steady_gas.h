@@ -21,49 +21,61 @@
 
 #include "core/experiment/gas_experiment.h"
 #include "core/experiment/steady_group.h"
+#include "core/gas/canonical_gas.h"
+#include "core/gas/gas_meter.h"
+#include "core/gas/thermal_walls.h"
 
 namespace ballpiston {
 
 inline constexpr double kLongestWarmUp = 16;
 
+// Of the reservoirs.
+inline double MeanTemperature(const PointParameters& point) {
+  return (point[kHot] + point[kCold]) / 2;
+}
+
 class SteadyGas : public GasExperiment {
  public:
   std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override;
   bool CanContinue(const GroupState& state) const override;
-  // Without the warm-up.
-  PointSummary Summarize(const BlockResult& merged) const override;
 
   // A run of groups calls these functions, from any thread.
   const SteadyShape& shape() const { return shape_; }
   double stretch() const { return stretch_; }  // a time at temperature 1
   const Trajectories& trajectories() const { return trajectories_; }
   double variance_of_energy() const { return variance_of_energy_; }  // in local equilibrium
+  TemperatureProfile TemperaturesAtStart() const;
+  ThermalWalls WallsOf(const GasRandom& random) const { return {geometry(), hot_, cold_, random}; }
   // The integral over the meter's window, of each quantity.
   virtual std::vector<double> IntegralsOf(const GasMeter& meter) const = 0;
 
  protected:
   // Rounds the stretch (WithoutLastBits), because its last bits depend on the C library.
-  SteadyGas(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
-            double stretch, double temperature, size_t quantities);
+  SteadyGas(const EnsembleSpec& spec, const PointParameters& point, double stretch,
+            size_t quantities);
 
-  // To be called in the constructor of the experiment.
-  void SetMeasurements(const TemperatureProfile& start, std::vector<Measurement> table);
+  // The reservoirs' temperatures in units of their mean.
+  double hot() const { return hot_; }
+  double cold() const { return cold_; }
 
   // The groups that have been measured.
   std::vector<SteadyGroup> GroupsOf(const BlockResult& merged) const;
   // A quantity over time and over `share`; the error is that between the trajectories.
   Estimate TimeAverage(size_t quantity, double share, const std::vector<SteadyGroup>& groups) const;
-  Reading TimeAverageAt(size_t quantity, double share) const;
+  // Of all trajectories, without the warm-up.
+  uint64_t StretchesOf(const std::vector<SteadyGroup>& groups) const;
 
   // A sentence if the gas's energy has changed during the measurement by more than its trajectories
   // scatter, or if its warm-up has not ended; else empty.
-  std::string RemarkOnWarmUp(const BlockResult& merged) const;
+  static std::string RemarkOnWarmUp(const std::vector<SteadyGroup>& groups);
 
  private:
-  SteadyShape shape_;
+  double hot_;
+  double cold_;
   double stretch_;
   Trajectories trajectories_;
-  double variance_of_energy_ = 0;
+  SteadyShape shape_;
+  double variance_of_energy_;
 };
 
 }  // namespace ballpiston
