@@ -187,7 +187,7 @@ const std::vector<std::string> kTargets = {"samples", "collisions", "tolerance",
 const FlagGroup kTarget = {
     "Target (at most one; --tolerance and --budget can be combined)",
     {{"--samples", Count([](Options& o, int64_t n) { o.spec.mutable_target()->set_samples(n); }),
-      "first hits, or orbits, per point", "", kTargets},
+      "samples per point", "", kTargets},
      {"--collisions",
       Count([](Options& o, int64_t n) { o.spec.mutable_target()->set_collisions(n); }),
       "ball-piston collisions per point", "", kTargets},

@@ -27,7 +27,7 @@ inline constexpr double kMaxBudgetSeconds = 1e6;
 // none is set, the target is kDefaultSamples samples.
 struct Target {
   std::optional<int64_t> samples = {};     // a point
-  std::optional<int64_t> collisions = {};  // a point: the samples that have this many on average
+  std::optional<int64_t> collisions = {};  // a point: the samples expected to have so many
   std::optional<double> tolerance = {};    // relative standard error of the first estimate
   std::optional<double> budget_seconds = {};
   // The name of the estimate that the tolerance and the choice of the model refer to. It is the
@@ -59,7 +59,8 @@ struct FieldViolation {
 };
 
 // The errors of the spec itself. Combinations of the grid's values are checked if each value is
-// permitted. What the answering model cannot do is found by model_choice/ladder.h.
+// permitted. What the answering model cannot do is found by model_choice/ladder.h: a program that
+// asks with AUTO needs its DomainViolations too.
 std::vector<FieldViolation> Violations(const EnsembleSpec& spec);
 
 size_t PointCount(const EnsembleSpec& spec);

@@ -78,6 +78,8 @@ struct AimedEstimate {
   // (statistics/stated_error.h). Null: 1.
   double (*events)(Model model, const PointParameters& point) = nullptr;
   const LimitError* limit_error = nullptr;  // null: no bound is known
+  // Why no number of samples gives a relative error at some points, and what is permitted there.
+  absl::string_view no_error = {};
   // Names of estimates that are this one in other units, so that they have its relative errors.
   std::span<const absl::string_view> multiples = {};
 
@@ -101,8 +103,8 @@ struct ExperimentKind {
                                              const PointParameters& point);
   PointSummary (*compute)(const EnsembleSpec& spec, const PointParameters& point) = nullptr;
   // Finds combinations of values, or of values, model and precision, that are not permitted
-  // although each value alone is. Requires that each is, and that the lists the experiment needs
-  // have values.
+  // although each value alone is. Requires that every value is permitted and that no needed list is
+  // empty.
   void (*check_grid)(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
 
   // These two describe one sample by `model`: its work, and its mean number of ball-piston

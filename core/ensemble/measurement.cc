@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "core/statistics/stated_error.h"
 
 namespace ballpiston {
@@ -63,6 +65,17 @@ Estimate RatioOf(const BatchMeans& sample, double events) {
   return {.value = value,
           .standard_error = StatedError(events, value, sample.StandardError()),
           .batches = sample.batches};
+}
+
+std::string RemarkOnSamples(absl::string_view estimate, double needed) {
+  if (!std::isfinite(needed)) {
+    return absl::StrCat(estimate, " has no standard error: no number of samples has enough of the ",
+                        "events that determine the mean");
+  }
+  return absl::StrFormat(
+      "%s has no standard error: an error needs about %.6g samples; fewer have too few of the "
+      "events that determine the mean",
+      estimate, std::ceil(needed));
 }
 
 Reading MeanAt(size_t index, double events_per_sample) {

@@ -44,6 +44,10 @@ Estimate Scaled(Estimate estimate, double scale);
 Estimate MeanOf(const Moments& sample, double events);
 Estimate RatioOf(const BatchMeans& sample, double events);
 
+// A remark for an estimate without a standard error, which needs this number of samples; infinite
+// if no number is enough.
+std::string RemarkOnSamples(absl::string_view estimate, double needed);
+
 // Readings of the accumulator with this index.
 Reading MeanAt(size_t index, double events_per_sample = 1);
 Reading RatioAt(size_t index, double events_per_sample = 1);

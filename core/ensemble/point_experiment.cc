@@ -29,21 +29,6 @@ uint64_t ExpectedChunks(const EnsembleSpec& spec, const PointParameters& point,
   return plan.ChunksFor(SamplesFor(*spec.target.tolerance, spec, point));
 }
 
-// Why the estimate has no standard error, if that is because of the number of samples.
-std::optional<std::string> RemarkOnSamples(const std::string& estimate, double samples,
-                                           double needed) {
-  if (samples >= needed) return std::nullopt;
-  if (!std::isfinite(needed)) {
-    return absl::StrCat(estimate, " has no standard error: no number of samples has enough of the ",
-                        "events that determine it");
-  }
-  return absl::StrFormat(
-      "%s has no standard error: an error needs about %.6g samples, which have enough of the "
-      "events "
-      "that determine it",
-      estimate, std::ceil(needed));
-}
-
 }  // namespace
 
 double NominalSeconds(const EnsembleSpec& spec, const PointParameters& point) {
@@ -134,11 +119,12 @@ PointSummary PointExperiment::Summarize(const BlockResult& merged) const {
       .samples = merged.samples, .estimates = EstimatesOf(table_, merged), .health = merged.health};
   AddDetails(merged, summary);
   const Estimate& first = summary.estimates.front();
-  if (first.standard_error) return summary;
-  const auto remark = RemarkOnSamples(first.name, static_cast<double>(merged.samples),
-                                      aim_->SamplesForAnError(answer_.model, parameters_));
-  if (remark) summary.remarks.push_back(*remark);
+  if (!first.standard_error) summary.remarks.push_back(ReasonOfNoError(first.name));
   return summary;
+}
+
+std::string PointExperiment::ReasonOfNoError(absl::string_view estimate) const {
+  return RemarkOnSamples(estimate, aim_->SamplesForAnError(answer_.model, parameters_));
 }
 
 double RelativeError(const Estimate& estimate) {

@@ -61,7 +61,7 @@ class PointExperiment {
   PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters, PointSummary answer);
 
   // The spec must have no violations; index < PointCount(spec). Uses the spec's own model; for AUTO
-  // the billiard, which answers every experiment.
+  // the billiard, which answers every experiment, in its domain (billiard/billiard_domain.h).
   static std::unique_ptr<const PointExperiment> Create(const EnsembleSpec& spec, size_t index);
   // Uses the model of `answer`, which must be able to answer the experiment.
   static std::unique_ptr<const PointExperiment> Create(const EnsembleSpec& spec, size_t index,
@@ -116,6 +116,8 @@ class PointExperiment {
   // Adds histograms, curves and remarks, and estimates that are not in the table. The summary
   // already has the table's estimates.
   virtual void AddDetails(const BlockResult& /*merged*/, PointSummary& /*summary*/) const {}
+  // A remark, if the first estimate has no standard error.
+  virtual std::string ReasonOfNoError(absl::string_view estimate) const;
 
  private:
   PointParameters parameters_;

@@ -1,4 +1,4 @@
-// Finds all errors of a specification, field by field.
+// Finds the errors of a specification itself, field by field.
 #include <algorithm>
 #include <cmath>
 #include <limits>

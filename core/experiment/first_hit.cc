@@ -184,10 +184,15 @@ PointSummary ExactConditionalTime(const EnsembleSpec&, const PointParameters& po
 constexpr ParameterUse kParametersOfConditional[] = {{&kRho}, {&kDelta}, {&kEpsilon}};
 constexpr Model kModelsOfConditional[] = {Model::kClosedForm, Model::kBilliard,
                                           Model::kBilliardReference};
+constexpr absl::string_view kNoVariance =
+    "the return time has no variance at epsilon = 0; permitted: epsilon > 0, or samples or "
+    "collisions";
+
 constexpr AimedEstimate kAimsOfConditional[] = {{.name = kConditionalTime,
                                                  .models = kModelsOfConditional,
                                                  .error = ErrorOfAReturn,
-                                                 .events = EventsOfAReturn}};
+                                                 .events = EventsOfAReturn,
+                                                 .no_error = kNoVariance}};
 
 // ---- first-hit ----
 
@@ -275,8 +280,11 @@ std::vector<std::vector<double>> ExpectedProbabilities(const PointParameters& po
 }
 
 constexpr ParameterUse kParametersOfFirstHit[] = {{&kRho}, {&kDelta}, {&kEpsilon}, {&kExponent}};
-constexpr AimedEstimate kAimsOfFirstHit[] = {
-    {.name = kHitTime, .models = kBilliards, .error = ErrorOfAReturn, .events = EventsOfAReturn}};
+constexpr AimedEstimate kAimsOfFirstHit[] = {{.name = kHitTime,
+                                              .models = kBilliards,
+                                              .error = ErrorOfAReturn,
+                                              .events = EventsOfAReturn,
+                                              .no_error = kNoVariance}};
 
 // The noise of the relative entropy is a sum over the counts of 1,000 or 2,000 cells. Measured: 2
 // to 4 ms, where a jump takes 50 ns.

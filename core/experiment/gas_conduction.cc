@@ -278,7 +278,7 @@ class GasConduction : public SteadyGas {
   std::span<const Order> StatedOrders() const {
     constexpr double kLargest = 1e301;
     const auto first = std::ranges::find_if(kOrders, [this](const Order& order) {
-      return std::fabs(std::log(ScaleOf(order))) > std::log(kLargest);
+      return std::fabs((order.number + 0.5) * std::log(temperature())) > std::log(kLargest);
     });
     return {std::begin(kOrders), first};
   }
@@ -460,10 +460,15 @@ constexpr ParameterUse kParametersOfGasConduction[] = {
 // At given temperatures they are the current in other units.
 constexpr absl::string_view kMultiplesOfTheCurrent[] = {"conductivity", "conductivity_ratio"};
 
+constexpr absl::string_view kNoCurrent =
+    "the heat current is 0 if hot = cold; permitted: hot > cold, or samples, collisions or a "
+    "budget";
+
 constexpr AimedEstimate kAimsOfGasConduction[] = {{.name = "heat_current",
                                                    .models = kModelsOfGasConduction,
                                                    .error = ErrorOfGasConduction,
                                                    .limit_error = &kLimitErrorOfConduction,
+                                                   .no_error = kNoCurrent,
                                                    .multiples = kMultiplesOfTheCurrent}};
 
 }  // namespace

@@ -260,11 +260,10 @@ class GasEquilibrium : public GasExperiment {
         "the conductivity includes the current's correlations up to a time of %.3g, %.2g mean "
         "times between exchanges of a ball and a piston",
         kWindow * Step(), ExchangesOf(answer().model, geometry()) * kWindow / kCurrentSteps));
-    const bool is_first = summary.estimates.front().name == kConductivity;  // it has a remark
+    const bool is_first =
+        summary.estimates.front().name == kConductivity;  // Summarize adds its remark
     if (is_first || HasStatedError(events_ * static_cast<double>(merged.samples))) return;
-    summary.remarks.push_back(
-        absl::StrFormat("the conductivity has no standard error: this needs %.0f replicas",
-                        kEventsForAnError / events_));
+    summary.remarks.push_back(RemarkOnSamples(kConductivity, kEventsForAnError / events_));
   }
 
   // Speeds scale with sqrt T.

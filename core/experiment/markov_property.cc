@@ -174,10 +174,14 @@ double OrbitsOfAnExchange(Model, const PointParameters&) { return 1.0 / kExchang
 constexpr Model kModelsOfMarkovProperty[] = {Model::kMarkov, Model::kBilliard,
                                              Model::kBilliardReference};
 
+constexpr absl::string_view kTendsToZero =
+    "it tends to 0; permitted: samples, collisions or a budget";
+
 constexpr AimedEstimate kAimsOfMarkovProperty[] = {{.name = "memory_correlation",
                                                     .models = kModelsOfMarkovProperty,
                                                     .error = ErrorOfWhatTendsToZero,
-                                                    .events = OrbitsOfAnExchange}};
+                                                    .events = OrbitsOfAnExchange,
+                                                    .no_error = kTendsToZero}};
 
 }  // namespace
 

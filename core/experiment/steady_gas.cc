@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "core/experiment/pair_experiment.h"
 #include "core/gas/gas_run.h"
@@ -261,6 +262,12 @@ Estimate SteadyGas::TimeAverage(size_t quantity, double share,
     }
   }
   return RatioOf(means, kEventsForAnError);
+}
+
+std::string SteadyGas::ReasonOfNoError(absl::string_view estimate) const {
+  return absl::StrCat(estimate,
+                      " has no standard error: an error needs two trajectories that have "
+                      "warmed up and been measured");
 }
 
 std::string SteadyGas::RemarkOnWarmUp(const std::vector<SteadyGroup>& groups) {

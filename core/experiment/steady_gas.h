@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/strings/string_view.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/experiment/steady_group.h"
 #include "core/gas/canonical_gas.h"
@@ -50,6 +51,8 @@ class SteadyGas : public GasExperiment {
   virtual std::vector<double> IntegralsOf(const GasMeter& meter) const = 0;
 
  protected:
+  std::string ReasonOfNoError(absl::string_view estimate) const override;
+
   // Rounds the stretch (WithoutLastBits), because its last bits depend on the C library.
   SteadyGas(const EnsembleSpec& spec, const PointParameters& point, double stretch,
             size_t quantities);

@@ -54,7 +54,7 @@ class GasTangents {
   // `vectors` at the gas's start: at least one, linearly independent.
   GasTangents(double rho, const GasState& start, const std::vector<Vector>& vectors);
 
-  // The gas's event, and its ball after it.
+  // An event, and the state after it of the ball that takes part.
   void Follow(const GasEvent& event, const GasBall& after);
   // The gas's last event.
   void Follow(const GasEvent& event, const ReferenceGas& gas) {

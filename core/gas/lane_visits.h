@@ -52,9 +52,11 @@ struct BallInTime {
   double slowness = 0;                   // 1/speed
   std::array<uint32_t, 4> pistons = {};  // by direction
   Visits visits = 0;                     // in the window, until its collision or shortly after
-  // Before the flight in which the window begins, or in which its last exchange in the window is.
+  // Where the flight starts again if a piston changes: before the flight in which the window
+  // begins, or in which the ball's last exchange in the window is.
   FlyingBall from = {};
-  // Before the flight to which it came, at last before the one in which the window ends.
+  // The state reached so far, before a flight; at last before the one in which the window ends. It
+  // stays where it was if the ball has a collision.
   FlyingBall to = {};
   BallCollision collision = {};  // its next one in the window
 };
@@ -111,10 +113,9 @@ BallPlace PlaceOf(const GasInTime& gas, const LaneFrame& frame);
 class FlightsAhead {
  public:
   virtual ~FlightsAhead() = default;
-  // Flies some flights of each ball, from its state `to`. If the ball meets a piston, it has a
-  // collision then. Otherwise `to` becomes its state before the flight in which it arrives, or to
-  // which it came. Visits are added. A ball's numbers do not depend on other balls, or on how
-  // flights are divided between calls.
+  // Flies some flights of each ball, from its state `to`. If the ball meets a piston, its collision
+  // is set. Otherwise `to` becomes the state reached. Visits are added. A ball's
+  // numbers do not depend on other balls, or on how flights are divided between calls.
   virtual void Fly(std::span<FlightOrder> orders) = 0;
 };
 

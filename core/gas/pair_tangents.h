@@ -3,10 +3,10 @@
 //
 // The vectors start as an orthonormal basis of
 //   two velocities across w, the flow (w, 0), the energy (0, w), two positions across w,
-// in this order; w is the velocity of both. In a long orbit their growth is the exponents times the
-// time, in descending order. The third, the fourth and the sum of all six are 0 in exact arithmetic
-// for any orbit, because the flow and the energy are the third and the fourth vector: they show
-// errors of the maps and of rounding.
+// in this order; w: the velocities of ball and piston as one vector. In a long orbit their growth
+// is the exponents times the time, in descending order. The third, the fourth and the sum of all
+// six are 0 in exact arithmetic for any orbit, because the flow and the energy are the third and
+// the fourth vector: they show errors of the maps and of rounding.
 //
 // Properties, each with a test of its name: 1. EveryEngineHasTheExponentsOfAnotherProgram.
 // 2. ExponentsComeInPairs.

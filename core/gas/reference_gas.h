@@ -40,8 +40,8 @@ class ReferenceGas {
 
   // The time of the next event; infinite if there is none.
   double NextTime() const { return origin_ + queue_.First().time; }
-  // Moves to the next event and resolves it. A ball that escapes, which is a defect,
-  // stops in the middle of its cell, and has no more events.
+  // Moves to the next event and resolves it. A ball that escapes, which is a defect, stops in the
+  // middle of its cell, and has no more events.
   GasEvent Step();
 
   // At a time between the last event and the next one. Exact at the time of the last event.

@@ -510,7 +510,7 @@ std::vector<FieldViolation> PointsWithoutAnError(const EnsembleSpec& spec) {
                         "the mean are rare; permitted in this case: samples, up to %d",
                         needed, kMaxSamples)
                   : absl::StrCat("no number of samples gives ", aim.name,
-                                 " a relative error; permitted in this case: samples or a budget");
+                                 " a relative error: ", aim.no_error);
     return {{"target.tolerance",
              absl::StrFormat("is %s, but at %s %s", NumberText(*spec.target.tolerance),
                              ParametersText(point), reason)}};

@@ -1,6 +1,7 @@
-// The rule that decides whether an estimate gets a standard error. It holds for all estimates but
-// two kinds, which always have one: divergences, whose noise is known for every sample, and the
-// time averages of gas-conduction, whose trajectories have many events each.
+// The rule that decides whether the mean over a sample gets a standard error. Other estimates have
+// rules of their own: closed forms, the spectrum and divergences always have an error; time
+// averages of gas-conduction have one from two trajectories on, because each has many events; and
+// cumulants from enough windows on (experiment/gas_conduction.cc).
 //
 // The scatter of a sample is the error of its mean only if the sample contains the events that
 // determine the mean. An error is given if there are at least kEventsForAnError independent events

@@ -71,7 +71,8 @@ def specification(
         points: a table of points in place of lists: a pandas.DataFrame, a dict of columns, or a
             list of dicts. The lists of other parameters multiply the table, whose rows vary
             slowest.
-        samples: first hits, orbits or replicas of a gas, for each point; 1 to 10^12.
+        samples: collisions, first hits, orbits or replicas of a gas, by the experiment, for each
+            point; 1 to 10^12.
         collisions: ball-piston collisions for each point; 1 to 10^12.
         tolerance: relative standard error of the first estimate; between 0 and 1.
         budget: seconds of computing with all workers, for the whole grid; with a tolerance the job

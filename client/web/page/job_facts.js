@@ -36,7 +36,7 @@
     if (target?.budget)
       parts.push(`at most ${durationText(parseFloat(target.budget))} of computing time`);
     if (target?.estimate) parts.push(`of ${words(target.estimate)}`);
-    return parts.join(', ') || '10,000 samples or collisions per point';
+    return parts.join(', ') || '10,000 samples per point';
   }
 
   const chosen = (name) => (/UNSPECIFIED$/.test(name ?? '') ? null : words(name));

@@ -94,6 +94,17 @@ TEST(GasConduction, AtEveryTemperatureTheCumulantsAreNumbersOrNotStated) {
   }
 }
 
+TEST(GasConduction, ARemarkSaysThatAnErrorNeedsTwoMeasuredTrajectories) {
+  const auto experiment = PointExperiment::Create(SpecBetween(3, 1), 0);
+  const Block warm_up = experiment->plan().BlockAt(0, 0);
+  const PointSummary summary = experiment->Summarize(*RunBlock(*experiment, warm_up));
+  EXPECT_EQ(summary.samples, 0u);
+  EXPECT_FALSE(summary.estimates.front().standard_error);
+  EXPECT_THAT(summary.remarks,
+              ElementsAre("heat_current has no standard error: an error needs two trajectories "
+                          "that have warmed up and been measured"));
+}
+
 TEST(GasConduction, TheProfileHasBallsInCellsAndPistonsBetweenThem) {
   for (const GasShape& shape : {GasShape{3}, GasShape{3, 2, true}}) {
     const PointSummary summary = RunPoint(SpecBetween(3, 1, shape));

@@ -510,7 +510,7 @@ TEST(Ladder, AToleranceIsRejectedWhereAnEstimateHasNoRelativeError) {
                 ElementsAre(AllOf(Field(&FieldViolation::field, "target.tolerance"),
                                   Field(&FieldViolation::description,
                                         AllOf(HasSubstr("is 0.1, but at "), HasSubstr(at),
-                                              HasSubstr("permitted in this case: samples"))))))
+                                              HasSubstr("; permitted: "))))))
         << question;
   }
   for (const std::string question :
