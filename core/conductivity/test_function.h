@@ -16,7 +16,7 @@
 // do not work: their large values at rare energies would dominate the scatter.
 //
 // Units: those of galerkin_form.h; temperature 1, neighbouring sites at distance 1. Test:
-// TestFunction.HasItsBound.
+// TestFunctionTest.HasItsBound.
 #pragma once
 
 #include <array>

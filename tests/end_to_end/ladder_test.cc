@@ -5,7 +5,7 @@
 namespace ballpiston {
 namespace {
 
-// The text or the number of a field of the first point.
+// A field of the first point that is a text.
 std::string TextOf(const google::protobuf::Struct& document, const char* field) {
   return At(document, "points", 0, field).string_value();
 }

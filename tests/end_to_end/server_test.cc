@@ -93,10 +93,12 @@ TEST_F(ServerTest, AWatchingClientStartsAKilledPrivateServerAgain) {
 }
 
 TEST_F(ServerTest, ThePrivateServerIsStartedFoundAndStopped) {
-  for (const Words& words : {Words{"server", "stop"}, Words{"status"}}) {
-    const ProcessResult none = Client(words);
+  const std::pair<const char*, const char*> without_server[] = {
+      {"server stop", "no server runs in "}, {"status", "no private server is running"}};
+  for (const auto& [words, message] : without_server) {
+    const ProcessResult none = Client(Split(words));
     EXPECT_THAT(none, ExitsWith(3));
-    EXPECT_THAT(none.err, HasSubstr(words[0] == "status" ? "no private server is running" : ""));
+    EXPECT_THAT(none.err, HasSubstr(message));
     EXPECT_FALSE(fs::exists(State("server.log")));  // none was started
   }
   const ProcessResult started = Server("start", {"--", "--idle-exit-seconds", "1000"});

@@ -108,22 +108,23 @@ void MutateList(Dice& dice, const FieldDescriptor& field, Message& message) {
   const Reflection& reflection = *message.GetReflection();
   const int size = reflection.FieldSize(message, &field);
   const size_t what = dice.Below(8);
-  if (size == 0 || (what < 2 && size < kLongestList)) {
+  const bool adds = what < 2, removes = what == 2, exchanges = what == 3;  // else: changes
+  if (size == 0 || (adds && size < kLongestList)) {
     return SetOrAdd(dice, field, /*adds=*/true, message);
   }
   const int index = static_cast<int>(dice.Below(static_cast<size_t>(size)));
-  if (what == 3) return reflection.SwapElements(&message, &field, index, size - 1);
-  if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE && what != 2) {
+  if (exchanges) return reflection.SwapElements(&message, &field, index, size - 1);
+  if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE && !removes) {
     return MutateMessage(dice, *reflection.MutableRepeatedMessage(&message, &field, index));
   }
-  if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE && what != 2) {
+  if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE && !removes) {
     const double now = reflection.GetRepeatedDouble(message, &field, index);
     return reflection.SetRepeatedDouble(&message, &field, index, Number(dice, now));
   }
-  // Another element of another type comes in the place of the chosen one.
+  // An element of any other type is replaced by a new one.
   reflection.SwapElements(&message, &field, index, size - 1);
   reflection.RemoveLast(&message, &field);
-  if (what == 2) return;
+  if (removes) return;
   SetOrAdd(dice, field, /*adds=*/true, message);
   reflection.SwapElements(&message, &field, index, size - 1);
 }

@@ -94,6 +94,8 @@ def including(files: str) -> str:
 FORBIDDEN = [
     ("core/geometry/x.h", "core/sampling/direction.h Random123/philox.h"),  # another layer
     ("core/experiment/x.cc", "thread mutex chrono ctime time.h absl/time/clock.h unistd.h"),
+    ("server/compute/x.cc", "server/cluster/folder_executor.h server/book/job.h ballpiston/v1/a.h"),
+    ("server/worker/x.cc", "server/convert/spec.h server/compute/scheduler.h grpcpp/grpcpp.h"),
     ("server/book/x.cc", "sqlite3.h client/library/client.h tests/support/paths.h"),
     ("server/command_line/x.cc", "core/ensemble/chunk_plan.h"),  # the row of the inner folder
     ("client/command/x.cc", "sqlite3.h core/geometry/pair_geometry.h server/convert/spec.h"),

@@ -520,7 +520,7 @@ describe('Many', () => {
     assert.equal(await rows.count(), COUNT);
   });
 
-  it('points: 10,000 are shown in two hundreds', async () => {
+  it('points: 10,000 points are shown 200 at a time', async () => {
     const job = programs.run('submit equilibrium --rho 0.51:0.7:100 --delta 0.001:0.01:100');
     programs.run(`watch ${job} --progress none`);
     await open(job);

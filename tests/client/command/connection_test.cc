@@ -70,7 +70,7 @@ TEST_F(ConnectionTest, ANamedServerGetsOneAttempt) {
 }
 
 // Five points on three pages; the first attempts to list the second page fail.
-TEST_F(ConnectionTest, APageOfResultsIsRepeatedByAPrivateServerOnly) {
+TEST_F(ConnectionTest, OnlyAPrivateServerIsAskedForAPageAgain) {
   for (int i = 1; i < 5; ++i) server_.ensemble.points.emplace_back().set_index(i);
   server_.ensemble.unavailable_later_pages = 2 * kChannelAttempts;
   StartPrivateServer();

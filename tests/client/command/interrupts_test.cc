@@ -32,7 +32,7 @@ void SleepForEver() {
   while (true) pause();
 }
 
-// Expects that a signal ends the process while it does this. `output`: of standard error.
+// Expects that a signal ends the process while `act` runs. `output`: of standard error.
 void ExpectInterrupted(const std::function<void()>& act,
                        const testing::Matcher<const std::string&>& output = testing::_) {
   EXPECT_EXIT(act(), testing::ExitedWithCode(130), output);

@@ -50,14 +50,6 @@ def test_the_command_line_saves_the_same_arrays(home: Home, tmp_path: Path) -> N
             np.testing.assert_array_equal(saved[name], arrays[name], name)
 
 
-def test_a_document_of_the_command_line_can_be_loaded(
-    first_hits: ballpiston.Result, home: Home, tmp_path: Path
-) -> None:
-    text = home.command("result", first_hits.job_name, "--format", "json")
-    (tmp_path / "printed.json").write_text(text)
-    assert ballpiston.load(tmp_path / "printed.json") == first_hits
-
-
 def test_an_archive_has_the_arrays_of_the_result(
     first_hits: ballpiston.Result, tmp_path: Path
 ) -> None:

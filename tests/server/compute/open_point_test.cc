@@ -45,6 +45,18 @@ TEST(OpenPoint, AFiniteCapacityTakesTheFewestChunksThatFillIt) {
   EXPECT_EQ(Next(point, 0), std::nullopt);
 }
 
+TEST(OpenPoint, ALeaseElsewhereContinuesTheBlocksOfAResumedPoint) {
+  OpenPoint point = PointOf(SixChunks());
+  const FoldState state = FakeState(SixChunks(), 0, 100);
+  ASSERT_GT(state.blocks, 0u);  // of a chunk that is not complete
+  ASSERT_OK(point.Resume({.state = state}));
+  const auto lease = point.NextChunks({.local = kElsewhere, .seconds = 0});
+  ASSERT_TRUE(lease);
+  EXPECT_EQ(lease->start.chunk, state.chunk);
+  EXPECT_EQ(lease->start.blocks, state.blocks);
+  EXPECT_EQ(lease->start.merged, state.partial);
+}
+
 TEST(OpenPoint, ChunksThatArrivedEarlyAreSkipped) {
   for (const double seconds : {0., 1000., kInfinity}) {
     OpenPoint point = PointOf(SixChunks());

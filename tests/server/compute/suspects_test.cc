@@ -31,7 +31,7 @@ TEST_F(SuspectsTest, SuspectsAreComputedAloneOneAfterTheOther) {
   EXPECT_THAT(cleared_, ElementsAre(2, 3));
 }
 
-// So their deaths are not its own.
+// Otherwise a crash that another run causes would count against the suspect.
 TEST_F(SuspectsTest, ASuspectWaitsForTheEndOfTheOthersTurns) {
   Add(1, SixChunks(2));
   const auto turn = local_.Begin();

@@ -84,6 +84,7 @@ TEST_F(PlanServiceTest, TheWorkIsThatOfTheChosenOneOverAllPoints) {
   // The store's thread may share the workers' cores.
   EXPECT_GE(plan.time(), plan.work() / 2);
   EXPECT_LE(plan.time(), plan.work() + 0.1);
+  EXPECT_EQ(server_->List().jobs_size(), 0);  // a plan creates no job
 }
 
 // At delta = 1e-6 the lanes of a worker need many minutes until their first orbits end.

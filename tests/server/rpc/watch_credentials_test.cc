@@ -1,4 +1,4 @@
-// A watch ends when the credentials of its call become invalid.
+// A watch or a trace ends when the credentials of its call become invalid.
 #include "tests/server/preamble.h"
 #include "tests/server/rpc/watch_stream.h"
 #include "tests/server/secure_server.h"
@@ -49,6 +49,18 @@ TEST_F(WatchCredentialsTest, AWatchEndsWhenItsTokenIsNoLongerValid) {
     ReplaceAccess(access_file);
     EXPECT_EQ(ReasonOf(watch.End()), reason) << access_file;
   }
+}
+
+// The trace has far more events than gRPC keeps of a stream whose reader stalls.
+TEST_F(WatchCredentialsTest, ATraceEndsWhenItsTokenIsRevoked) {
+  const auto request = FromText<v1::TraceOrbitRequest>("rho: 0.53 delta: 0.15 events: 1000000");
+  grpc::ClientContext context;
+  const auto trace = alice_.trace().TraceOrbit(&context, request);
+  v1::TraceOrbitResponse message;
+  ASSERT_TRUE(trace->Read(&message));
+  ReplaceAccess(TokenLine(kOps, {"ops", Role::kAdmin}));
+  while (trace->Read(&message)) continue;
+  EXPECT_THAT(trace->Finish(), Not(IsOk()));  // CANCELLED if the reader was slow
 }
 
 TEST_F(WatchCredentialsTest, AWatchWithAValidTokenGoesOn) {

@@ -4,6 +4,7 @@
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
+#include "core/model_choice/ladder.h"
 #include "server/convert/compressed.h"
 #include "server/convert/fold_record.h"
 #include "server/worker/lease_file.h"
@@ -114,7 +115,7 @@ TEST(LeaseRecord, EveryQuestionKeepsItsPlanAndItsBits) {
     spec.target = {};
     ExpectComesBack(LeaseOf(spec));
     spec.target.tolerance = 0.1;
-    if (Violations(spec).empty()) ExpectComesBack(LeaseOf(spec));
+    if (ToleranceViolations(spec).empty()) ExpectComesBack(LeaseOf(spec));
   }
   EnsembleSpec single = SpecOf(kEquilibrium, Model::kBilliard);
   single.precision = Precision::kSingle;
