@@ -70,7 +70,7 @@ TEST(RelaxationSpectrum, IsolatedRatesAscendBelowTheContinuum) {
 // the rate at which it is left. The result is the three least rates above 0, the two largest, and
 // the correlation time.
 Eigen::VectorXd ByEqualCells(Eigen::Index n) {
-  const auto area = [](double x, double c) {  // int_0^x sqrt(c^2 - t^2) dt, x <= c
+  const auto area = [](double x, double c) {  // int_0^min(x, c) sqrt(c^2 - t^2) dt
     x = std::min(x, c);
     const double height = std::sqrt((c - x) * (c + x));
     return (x * height + c * c * std::atan2(x, height)) / 2;
