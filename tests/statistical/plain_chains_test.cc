@@ -142,10 +142,10 @@ class PlainChains : public testing::TestWithParam<int64_t> {};
 INSTANTIATE_TEST_SUITE_P(Cells, PlainChains, testing::Values(1, 2, 4, 8, 16),
                          testing::PrintToStringParamName());
 
-// 4 + 2 N comparisons, or 2 + 2 N, of errors from 64 runs and 128 trajectories. One of the 80 of a
-// test is above 4.5 standard errors for one seed in 500, if all are independent; the mean square of
-// 6 is above 3.5 for one seed in 500, and that of more for fewer. Neighbouring temperatures are not
-// independent, so a longer chain gets no smaller bound.
+// 4 + 2 N comparisons, or 2 + 2 N, of errors from 64 runs and 128 trajectories. The five chains of
+// one model make 80 comparisons. One of these is above 4.5 standard errors for one seed in 500, if
+// all are independent; the mean square of 6 is above 3.5 for one seed in 500, and that of more for
+// fewer. Neighbouring temperatures are not independent, so a longer chain gets no smaller bound.
 TEST_P(PlainChains, TheJumpProcessBetweenReservoirsIsThatOfAPlainProgram) {
   if (GetParam() > 4 && !IsNightly()) GTEST_SKIP() << "a nightly test";
   const auto cells = static_cast<size_t>(GetParam());

@@ -72,7 +72,7 @@ TEST(EnsembleSpec, ListsAreChecked) {
   EXPECT_THAT(Violations(At(&kEquilibrium, kPaperRho, PairDeltaBound(kPaperRho))), IsEmpty());
 }
 
-// Except those of combinations with a value that is not permitted.
+// Combinations of values are left out: they are checked when each value by itself is permitted.
 TEST(EnsembleSpec, EveryViolationIsReportedAtOnce) {
   ExpectViolations(
       {{"first-hit rho=0.6,0.5,nan delta=0.3,-1 epsilon=0.6,-inf exponent=-1,1001 cells=4 "
@@ -262,8 +262,9 @@ TEST(EnsembleSpec, GasesHaveTheirOwnBounds) {
   }
 }
 
-// A number that is the code of no shape has no cells to be counted.
-TEST(EnsembleSpec, CellsThatAreNoShapeAreNotCompared) {
+// An experiment that limits the number of cells does not count those of an invalid shape, so there
+// is no second violation.
+TEST(EnsembleSpec, AnInvalidShapeIsReportedOnce) {
   const std::vector<std::string> rejected = {"grid.cells[0]: 1 to 1000000"};
   ExpectViolations({{"gas-lyapunov cells=1e15", rejected},
                     {"gas-equilibrium estimate=conductivity cells=1e15", rejected}});

@@ -112,7 +112,9 @@ std::vector<Vector> WholeBasis(const GasGeometry& geometry) {
 
 // The maps preserve volumes, so the sum is 0 but for rounding, which costs the smallest vector the
 // most digits. The exponents of a finite orbit are pairs up to the growth while vectors of nearly
-// equal exponents turn. In 16 orbits it was 122 at most.
+// equal exponents turn, over the time. In 60 orbits of each gas it was 0.052 at most, and 3 of
+// these 180 were above 0.04: above 0.06 are about 1 orbit in 1000. The f-th exponent was 0.015 at
+// most, and the one before it 0.075 at least.
 TEST(GasTangents, ExponentsOfAGasComeInPairs) {
   for (const char* const shape : {"1", "2", "2x2"}) {
     const GasGeometry geometry = GasAtShare(0.53, 0.95, shape);
@@ -122,7 +124,7 @@ TEST(GasTangents, ExponentsOfAGasComeInPairs) {
     const size_t f = DegreesOfFreedom(geometry);
     EXPECT_NEAR(std::accumulate(growth.begin(), growth.end(), 0.0) / time, 0, 1e-7);
     for (size_t k = 0; k < f; ++k) {
-      EXPECT_NEAR((growth[k] + growth[2 * f - 1 - k]) / time, 0, 0.04) << shape << " " << k;
+      EXPECT_NEAR((growth[k] + growth[2 * f - 1 - k]) / time, 0, 0.06) << shape << " " << k;
     }
     EXPECT_NEAR(growth[f - 1] / time, 0, 0.02) << shape;
     EXPECT_GT(growth[f - 2] / time, 0.03) << shape;

@@ -65,7 +65,8 @@ TEST(EnergyLaw, FollowsTheKernelAtShortTimes) {
   }
 }
 
-// Bins of a third of the width, because a part of the error is that of rates within a bin.
+// The finer law has one more level and bins of a third of the width, because a part of the error is
+// that of rates within a bin. Both laws have the largest permitted degree, 20.
 TEST(EnergyLaw, SumsToOneAndDiffersFromAFinerLawByLessThanItsBound) {
   const EnergyLaw finer({.degree = 20, .levels = 5}, 3 * kBins);
   for (const double epsilon : kEpsilons) {

@@ -55,8 +55,8 @@ TEST(Generator, ConservesProbability) {
   }
 }
 
-// All rates but a few lie in the continuum of the rates at which energies are left. The rates below
-// it are compared with another method in tests/tools/conductivity/chain_gap_test.cc.
+// All rates but a few lie in the continuum of the rates at which energies are left. Another method
+// gives the same three rates below it and two rates above it in relaxation_spectrum_test.cc.
 TEST(Generator, SomeRatesAreOutsideOfTheContinuum) {
   const Eigen::VectorXd& rates = InUse().rates();
   EXPECT_DOUBLE_EQ(kContinuumBottom, PairCollisionRate(0));

@@ -1,5 +1,7 @@
 #include "core/markov/relaxation_spectrum.h"
 
+#include <Eigen/Eigenvalues>
+
 #include "core/closed_form/kernel_moments.h"
 #include "tests/core/preamble.h"
 #include "tests/oracle/gauss_legendre.h"
@@ -61,6 +63,52 @@ TEST(RelaxationSpectrum, IsolatedRatesAscendBelowTheContinuum) {
     EXPECT_LE(rates[k].error, 1e-8);
     EXPECT_NEAR(rates[k].value, k < std::size(kKnown) ? kKnown[k] : rates[k].value, 1e-8);
   }
+}
+
+// The generator on n equal cells of u: a slow, independent discretisation. The rate density u -> u'
+// is integrated over rectangles [0, a] x [0, b] by areas under a circle, and a cell's rows sum to
+// the rate at which it is left. The result is the three least rates above 0, the two largest, and
+// the correlation time.
+Eigen::VectorXd ByEqualCells(Eigen::Index n) {
+  const auto area = [](double x, double c) {  // int_0^min(x, c) sqrt(c^2 - t^2) dt
+    x = std::min(x, c);
+    const double height = std::sqrt((c - x) * (c + x));
+    return (x * height + c * c * std::atan2(x, height)) / 2;
+  };
+  const double cells = static_cast<double>(n);
+  const Eigen::VectorXd u = Eigen::VectorXd::LinSpaced(n + 1, 0, 1);
+  const auto rate = [&](Eigen::Index i, Eigen::Index k) {
+    const double m = std::min(u[i], u[k]);
+    return (2 * area(m, M_SQRT1_2) - M_SQRT1_2 * (area(m, std::sqrt(1 - u[i] * u[i])) +
+                                                  area(m, std::sqrt(1 - u[k] * u[k])))) /
+           M_PI;
+  };
+  const Eigen::MatrixXd up_to = Eigen::MatrixXd::NullaryExpr(n + 1, n + 1, rate);
+  Eigen::MatrixXd minus_l = cells * (up_to.topRightCorner(n, n) + up_to.bottomLeftCorner(n, n) -
+                                     up_to.topLeftCorner(n, n) - up_to.bottomRightCorner(n, n));
+  minus_l.diagonal() -= minus_l.rowwise().sum();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(minus_l);
+  const Eigen::VectorXd& rates = solver.eigenvalues();
+  const Eigen::VectorXd cubes = u.array().cube() / 6;  // int_0^u of the energy
+  const Eigen::VectorXd energy =
+      solver.eigenvectors().transpose() * (cubes.tail(n) - cubes.head(n));
+  Eigen::VectorXd found(6);
+  found << rates.segment(1, 3), rates.tail(2),
+      45 * cells * energy.tail(n - 1).cwiseAbs2().cwiseQuotient(rates.tail(n - 1)).sum();
+  return found;
+}
+
+// Extrapolated from 100, 200 and 400 cells, with errors 1/n^2 and 1/n^3.
+TEST(RelaxationSpectrum, RatesAndCorrelationTimeAreThoseOfEqualCells) {
+  const Eigen::VectorXd coarse = ByEqualCells(100), middle = ByEqualCells(200),
+                        fine = ByEqualCells(400);
+  const Eigen::VectorXd first = middle + (middle - coarse) / 3, second = fine + (fine - middle) / 3;
+  const Eigen::VectorXd limit = second + (second - first) / 7;
+  const Eigen::VectorXd rates = Generator({}).rates();
+  Eigen::VectorXd exact(6);
+  exact << rates.segment(1, 3), rates.tail(2), Spectrum().CorrelationTime(kForEver).value;
+  constexpr double kErrors[] = {1e-8, 3e-7, 3e-6, 1e-6, 1e-6, 3e-8};
+  for (Eigen::Index k = 0; k < 6; ++k) EXPECT_NEAR(limit[k], exact[k], kErrors[k]) << k;
 }
 
 // <h> over the stationary law, uniform in u. At u = 1/sqrt(2) h has powers of a square root.

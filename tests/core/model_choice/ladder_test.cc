@@ -187,7 +187,7 @@ TEST(Ladder, AnUnknownPilotIsPartOfTheWork) {
   }
 }
 
-// Else a plan's table would say another error than the answer.
+// The error in a plan's table is that of the answer.
 TEST(Ladder, TheLimitsRowsHaveTheErrorThatTheChoiceHasUsed) {
   const Pilot pilot = {.difference = 0.02, .standard_error = 0.005};
   const auto expect_error = [](const Ladder& ladder, double error, const char* source) {

@@ -18,6 +18,17 @@ TEST(FixedStepFlow, EnergyStaysExact) {
   }
 }
 
+TEST(FixedStepFlow, ABallBeyondATipIsLost) {
+  const PairGeometry cusps = GeometryOf(0.5001, 0.2);
+  FixedStepFlow flow(
+      cusps,
+      {.position = {0, 0}, .direction = {-1, 0}, .ball_speed = 1, .piston = cusps.piston_right()},
+      0.51);
+  const Event event = flow.Step();
+  EXPECT_EQ(event.kind, EventKind::kEscape);
+  EXPECT_EQ(event.duration, 0.51);  // the first step
+}
+
 // A ball inside a disc that it leaves, and a ball beyond a piston from which it already comes back:
 // both fly straight to a wall.
 TEST(FixedStepFlow, OnlyReflectionsAndCollisionsAreEvents) {
