@@ -38,7 +38,7 @@ TEST(ReturnOrbits, AnEscapedOrbitCountsAsAnEscapeOnly) {
 TEST(ReturnTimes, AShareOfZeroHasAnError) {
   Histogram times = EmptyReturnTimes(1);
   for (int i = 0; i < 1000; ++i) times.Add(0.05);
-  const CurvePoint& later = SurvivalCurve(times).points[kReturnTimeBins / 8];
+  const CurvePoint later = SurvivalCurve(times).points[kReturnTimeBins / 8];
   EXPECT_EQ(later.value, 0);
   EXPECT_NEAR(*later.standard_error, std::sqrt(0.5) / 1000, 1e-6);
 }
