@@ -275,13 +275,13 @@ double CollisionsOfASample(Model, const PointParameters& point) {
 
 constexpr absl::string_view kMultiplesOfTheTime[] = {"decay_integral"};
 
-// Some energies have no relaxation time. A tolerance is not permitted there, and the first estimate
-// is the decay integral.
 constexpr absl::string_view kNoTime =
     "there is no relaxation time; permitted: epsilon in [0, 0.12] or [0.2, 0.5], or samples, "
     "collisions or a budget";
 static_assert(kNoDecayFrom == 0.12 && kNoDecayTo == 0.2);
 
+// Some energies have no relaxation time. A tolerance is not permitted there, and the first estimate
+// is the decay integral.
 constexpr AimedEstimate kAimsOfRelaxation[] = {{.name = "relaxation_time",
                                                 .models = kModelsOfRelaxation,
                                                 .error = ErrorOfAnOrbit,

@@ -30,7 +30,7 @@ namespace ballpiston {
 
 inline constexpr double kLongestWarmUp = 16;
 
-// Of the reservoirs.
+// The mean temperature of the two reservoirs.
 inline double MeanTemperature(const PointParameters& point) {
   return (point[kHot] + point[kCold]) / 2;
 }
@@ -65,7 +65,7 @@ class SteadyGas : public GasExperiment {
   std::vector<SteadyGroup> GroupsOf(const BlockResult& merged) const;
   // A quantity over time and over `share`; the error is that between the trajectories.
   Estimate TimeAverage(size_t quantity, double share, const std::vector<SteadyGroup>& groups) const;
-  // Of all trajectories, without the warm-up.
+  // The number of stretches that all trajectories have measured. Those of the warm-up do not count.
   uint64_t StretchesOf(const std::vector<SteadyGroup>& groups) const;
 
   // A sentence if the gas's energy has changed during the measurement by more than its trajectories

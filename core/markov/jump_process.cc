@@ -98,8 +98,9 @@ void JumpWalkers::Jump() {
   for (size_t group = 0; group < words_.size(); ++group) {
     const size_t begin = group * kJumpGroup;
     auto& [words] = words_[group];
-    if (used == 0)
+    if (used == 0) {
       HWY_DYNAMIC_DISPATCH(DrawGroup)(seed_, stream_, first_ + begin, block, words_[group]);
+    }
     JumpInLanes(words[used], words[used + 1], u_.data() + begin, times_.data() + begin);
   }
   ++jumps_;

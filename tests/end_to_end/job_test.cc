@@ -1,5 +1,5 @@
-// What users do with jobs: submit, watch, result, list, and files of questions and results. Also
-// the ends of a pipe: a reader that leaves, a full disk.
+// Jobs by the command line: submit, watch, result, list, and files of questions and results. Two
+// tests end the output early: the reader of a pipe leaves, and the disk is full.
 #include <google/protobuf/util/json_util.h>
 
 #include "tests/end_to_end/programs.h"

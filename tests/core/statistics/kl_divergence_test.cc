@@ -103,7 +103,7 @@ std::vector<double> UniformLaw(size_t cells) {
   return std::vector<double>(cells, 1 / static_cast<double>(cells));
 }
 
-// Of equal laws, with many samples a cell and with few; and of unequal laws. A scatter of n
+// The cases are equal laws, with many samples a cell and with few, and unequal laws. A scatter of n
 // repetitions has a relative error of 1/sqrt(2 n) if it is that of a Gaussian, and one up to 15 %
 // larger here. A window of 5 errors gives up to 2e-5 false alarms. A window of 7 errors, with less
 // than 1e-8, is for 16 samples and for unequal laws, whose stated errors are less exact. With 8000

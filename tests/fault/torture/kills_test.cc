@@ -179,7 +179,7 @@ void KillUnderVisitors(const Scene& scene, Findings& findings) {
   EXPECT_EQ(NamesOn(server), expected);  // no job is lost, doubled, or back after its deletion
 }
 
-// So a comparison of answers byte by byte can fail.
+// The other tests compare answers byte by byte. This test shows that such a comparison can fail.
 TEST(UndisturbedAnswers, DifferForTwoSeeds) {
   std::vector<v1::EnsembleSpec> questions(2, ManyPoints(1, 1000));
   questions[1].set_seed(questions[0].seed() + 1);

@@ -143,8 +143,8 @@ TEST(LeaseRecord, APartOfAPointOfAGridComesBack) {
   ExpectComesBack(lease);
 }
 
-// Of a spec in single precision AUTO may choose the jump process. The plan depends on the
-// precision.
+// AUTO may choose the jump process for a spec in single precision. The chunk plan depends on the
+// precision, so the lease keeps it.
 TEST(LeaseRecord, TheJumpProcessInSinglePrecisionComesBack) {
   EnsembleSpec spec = SpecOf(kEnergyRelaxation, Model::kAuto);
   spec.precision = Precision::kSingle;
