@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/expected_limit_error.h"
 #include "core/geometry/pair_geometry.h"
@@ -69,6 +71,12 @@ Pilot PredictedPilot(const PilotPlace& place) {
 double LimitErrorBound(const Pilot& pilot, const PilotPlace& place, const PointParameters& point) {
   const double there = std::fabs(pilot.difference) + 2 * pilot.standard_error;
   return std::max(there * point[kDelta] / place.delta, ExpectedLimitError(point));
+}
+
+std::string FoundBy(const Pilot& pilot, const PilotPlace& place) {
+  return absl::StrCat(
+      pilot.predicted ? "expected of a pilot at delta = " : "two sigma of a pilot at delta = ",
+      absl::StrFormat("%.2g", place.delta));
 }
 
 }  // namespace ballpiston

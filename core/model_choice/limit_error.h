@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "core/ensemble/ensemble_spec.h"
 #include "core/ensemble/point_experiment.h"
@@ -57,5 +58,8 @@ Pilot PredictedPilot(const PilotPlace& place);
 // Upper bound of the limit's relative error at the point, by a pilot at its place: the pilot's
 // difference plus two of its standard errors, in proportion to delta; at least ExpectedLimitError.
 double LimitErrorBound(const Pilot& pilot, const PilotPlace& place, const PointParameters& point);
+
+// In words: by which pilot a bound was found.
+std::string FoundBy(const Pilot& pilot, const PilotPlace& place);
 
 }  // namespace ballpiston
