@@ -3,7 +3,7 @@
 
     tests/mutation/mutation.py [--count N] [--seed N] [--commit REVISION]
     tests/mutation/mutation.py --replay FILE    exits with 1 if a mutant is not caught any more
-    tests/mutation/mutation.py --table          the results so far
+    tests/mutation/mutation.py --count 0        the results so far
 
 README.md describes the output.
 """
@@ -12,131 +12,291 @@ from __future__ import annotations
 
 import argparse
 import fcntl
+import json
 import os
-import signal
+import random
+import re
+import shutil
 import subprocess
-import sys
+import tempfile
 import time
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from functools import cache
 from pathlib import Path
+from typing import Any
 
-import table
-from mutants import Mutant, draw, mutated
-from running_tests import first_failure
-from tree import TESTS, Tree
+import operators
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "build/mutation"
+TREE = FOLDER / "tree"  # a clone in which mutants are built
+# The fast test programs of each folder, and the program that has its main function.
+TESTS = {
+    "core": ["core_test"],
+    "server": ["server_test", "worker_test", "store_fault_test", "simulation_test"],
+    "client": ["client_test", "interrupts_test"],
+}
+PROGRAMS = {"core": [], "server": ["ballpistond"], "client": ["ballpiston"]}
 SHORTEST_HANG = 600.0  # seconds
+CAUGHT, MISSED, GONE, INVALID = "caught", "missed", "gone", "does not compile"
+MUTANT = ("file", "line", "text", "column", "operator", "before", "after")
+
+Record = dict[str, Any]  # a mutant, and what became of it
+
+
+# ---- mutants ----
+
+
+def mutants(file: str, text: str) -> dict[int, dict[str, list[Record]]]:
+    """By line and operator. `text` is the first changed line, without its indentation."""
+    found: dict[int, dict[str, list[Record]]] = {}
+    for operator, start, end, after in operators.changes(text):
+        number, begin = text.count("\n", 0, start) + 1, text.rfind("\n", 0, start) + 1
+        line = text[begin:].split("\n", 1)[0]
+        column = start - begin - (len(line) - len(line.lstrip()))
+        values = (file, number, line.strip(), column, operator, text[start:end], after)
+        found.setdefault(number, {}).setdefault(operator, []).append(dict(zip(MUTANT, values)))
+    return found
+
+
+def draw(root: Path, seed: int) -> Iterator[Record]:
+    """Draws a line of C++ that can be changed, an operator, and a change. Examples are left out,
+    because the tests do not compile them."""
+    lines = [
+        (str(file.relative_to(root)), number)
+        for folder in TESTS
+        for file in sorted((root / folder).rglob("*.*"))
+        if file.suffix in (".cc", ".h") and "examples" not in file.parts
+        for number in range(1, file.read_text().count("\n") + 1)
+    ]
+    of_file = cache(lambda file: mutants(file, (root / file).read_text()))
+    chance = random.Random(seed)
+    while True:
+        file, number = chance.choice(lines)
+        if by_operator := of_file(file).get(number):
+            yield chance.choice(chance.choice(list(by_operator.values())))
+
+
+def mutated(mutant: Record, text: str) -> str | None:
+    """The text with the change, at the nearest line that reads the same; None if there is none."""
+    places, start = [], 0
+    for number, line in enumerate(text.split("\n"), start=1):
+        place = start + len(line) - len(line.lstrip()) + mutant["column"]
+        if line.strip() == mutant["text"] and text.startswith(mutant["before"], place):
+            places.append((abs(number - mutant["line"]), place))
+        start += len(line) + 1
+    if not places:
+        return None
+    place = min(places)[1]
+    return f"{text[:place]}{mutant['after']}{text[place + len(mutant['before']) :]}"
+
+
+# ---- builds and tests ----
+
+
+def prepare_tree(commit: str) -> None:
+    if not TREE.exists():
+        subprocess.run(["git", "clone", "-qsn", ROOT, TREE], check=True)
+    subprocess.run(["git", "-C", TREE, "checkout", "-qf", "--detach", commit], check=True)
+    configure = ["cmake", "--preset", "release", "-DBALLPISTON_TESTS=ON"]
+    subprocess.run(configure, cwd=TREE, check=True, stdout=subprocess.DEVNULL)
+
+
+def builds(folder: str) -> bool:
+    command = ["cmake", "--build", str(TREE / "build/release"), "--target"]
+    with (FOLDER / "build.log").open("w") as log:
+        return not subprocess.call(
+            [*command, *TESTS[folder], *PROGRAMS[folder]], stdout=log, stderr=log
+        )
+
+
+def first_failure(build: Path, folder: str, jobs: int, seconds: float) -> str | None:
+    """The first test that fails, or the part of a program that crashes or runs for so long. A part
+    that fails runs once more, and only the second time counts, because a busy machine can make a
+    test fail too."""
+    names = "|".join(TESTS[folder])
+    command = ["ctest", "--test-dir", str(build), "-R", rf"^({names})\.", "-j", str(jobs)]
+    command += ["--timeout", f"{seconds:.0f}", "--stop-on-failure", "--repeat", "until-pass:2"]
+    temporary = tempfile.mkdtemp(prefix="mutation-")  # a test that crashes leaves its files there
+    os.chmod(temporary, 0o1777)  # like /tmp: a test is a server of several users
+    environment = {**os.environ, "GTEST_FAIL_FAST": "1", "TMPDIR": temporary}
+    run = subprocess.run(
+        [*command, "--output-on-failure"], env=environment, capture_output=True, text=True
+    )
+    shutil.rmtree(temporary, ignore_errors=True)
+    if run.returncode == 0:
+        return None
+    (FOLDER / "failure.log").write_text(run.stdout + run.stderr)
+    return failure_in(run.stdout)
+
+
+def failure_in(output: str) -> str:
+    """The test that failed twice, by the output of ctest."""
+    tests = re.findall(r"^\[  FAILED  \] ([\w/]+\.[\w/]+)", output, re.MULTILINE)
+    parts = re.findall(r"Test +#\d+: (\S+) \.*\*\*\*(\S.*?) +[\d.]+ sec", output)
+    if not parts:
+        return output.strip().split("\n")[-1]
+    part, reason = parts[-1]
+    return str(tests[-1]) if tests and reason == "Failed" else f"{part}: {reason}"
+
+
+def try_mutant(mutant: Record, jobs: int, limit: float) -> Record:
+    begin = time.monotonic()
+    file = TREE / mutant["file"]
+    original = file.read_text() if file.exists() else ""
+    text = mutated(mutant, original)
+    if text is None:
+        return {**mutant, "result": GONE, "seconds": 0.0}
+    folder = folder_of(mutant)
+    result, by = INVALID, None
+    file.write_text(text)
+    try:
+        if builds(folder):
+            by = first_failure(TREE / "build/release", folder, jobs, limit)
+            result = CAUGHT if by else MISSED
+    finally:
+        file.write_text(original)
+    seconds = round(time.monotonic() - begin, 1)
+    return {**mutant, "result": result, "by": by, "seconds": seconds}
+
+
+def unmutated_seconds(folder: str, jobs: int) -> float:
+    """How long the tests take. Without a mutant all must pass; otherwise the run ends here."""
+    print(f"the tests of {folder}, without a mutant", flush=True)
+    if not builds(folder):
+        raise SystemExit(f"{folder} does not build: see {FOLDER}/build.log")
+    begin = time.monotonic()
+    if by := first_failure(TREE / "build/release", folder, jobs, 10 * SHORTEST_HANG):
+        raise SystemExit(f"{by} fails without a mutant: see {FOLDER}/failure.log")
+    return time.monotonic() - begin
+
+
+# ---- results: a file with one JSON object a line, and tables ----
+
+
+def read(path: Path) -> list[Record]:
+    """A killed run leaves a part of a line, which is cut off."""
+    if not path.exists():
+        return []
+    whole = path.read_bytes().rpartition(b"\n")[0]
+    os.truncate(path, len(whole) + 1 if whole else 0)
+    return [json.loads(line) for line in whole.split(b"\n") if line]
+
+
+def folder_of(record: Record) -> str:
+    return str(record["file"]).split("/")[0]
+
+
+def key(record: Record) -> tuple[Any, ...]:
+    return tuple(record[field] for field in MUTANT)
+
+
+def compiled(records: Iterable[Record]) -> list[Record]:
+    return [record for record in records if record.get("result") in (CAUGHT, MISSED)]
+
+
+def row(number: int, record: Record) -> str:
+    text, start, before = record["text"], record["column"], record["before"]
+    # A short change is shown with its neighbours in the line.
+    left, right = ("", "") if len(before) > 11 else (text[max(0, start - 12) : start],
+                                                     text[start + len(before) :][:12])  # fmt: skip
+    shown = (" ".join((left + part + right).split())[:40].replace("|", "\\|")
+             for part in (before, record["after"]))  # fmt: skip
+    verdict = record["by"] if record["result"] == CAUGHT else f"**{record['result']}**"
+    change = "` -> `".join(shown)
+    place = f"{record['file']}:{record['line']}"
+    return f"| {number} | {place} | {record['operator']} | `{change}` | {verdict} |"
+
+
+def table(records: list[Record]) -> str:
+    """In Markdown: each mutant, then the counts of each folder."""
+    lines = ["| | place | operator | change | caught by |", "|---|---|---|---|---|"]
+    tried = [record for record in records if record.get("result") in (CAUGHT, MISSED, GONE)]
+    lines += [row(number, record) for number, record in enumerate(tried, start=1)]
+    lines += ["", "| folder | caught | missed | share caught |", "|---|---|---|---|"]
+    counts: Counter[tuple[str, str]] = Counter()
+    for record in compiled(records):
+        for folder in (folder_of(record), "all"):
+            counts[folder, record["result"]] += 1
+    for folder in (*TESTS, "all"):
+        caught, missed = counts[folder, CAUGHT], counts[folder, MISSED]
+        lines.append(f"| {folder} | {caught} | {missed} | {caught / max(caught + missed, 1):.0%} |")
+    return "\n".join(lines)
+
+
+def comparison(earlier: list[Record], now: list[Record]) -> tuple[str, int]:
+    """The mutants whose result changed, and how many of them are not caught any more."""
+    was = {key(record): record["result"] for record in compiled(earlier)}
+    lines = [f"{len(was)} mutants, {len(compiled(now))} tried again"]
+    for title, result in (("gained", CAUGHT), ("lost", MISSED)):
+        changed = [record for record in compiled(now)
+                   if record["result"] == result != was[key(record)]]  # fmt: skip
+        lines.append(f"{title}: {len(changed)}")
+        lines += [row(number, record) for number, record in enumerate(changed, start=1)]
+    return "\n".join(lines), len(changed)
+
+
+# ---- the program ----
 
 
 def main() -> int:
-    options = _options()
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    path, run = _run_of(options)
-    if options.table:
-        return _print_tables(table.read(path), options.replay)
-    lock = (FOLDER / "lock").open("w")
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        raise SystemExit(f"another run uses {FOLDER}") from None
-    results = table.Results(path, run)
-    tree = Tree(ROOT, FOLDER, run["commit"], options.jobs)
-    if options.replay:
-        old = [table.mutant_of(r) for r in table.tried(table.read(options.replay))]
-        _try_all(tree, results, old, len(old))
-    else:
-        _try_all(tree, results, draw(tree.path, list(TESTS), options.seed), options.count)
-    return _print_tables(results.records, options.replay)
-
-
-def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description="Measures what the tests protect.")
     parser.add_argument("--count", type=int, default=60, help="mutants that compile (60)")
     parser.add_argument("--seed", type=int, default=1, help="of the drawing (1)")
     parser.add_argument("--commit", default="HEAD", help="whose sources and tests are used (HEAD)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="parallel processes")
     parser.add_argument("--replay", type=Path, metavar="FILE", help="try its mutants again")
-    parser.add_argument("--table", action="store_true", help="only print the results so far")
-    return parser.parse_args()
-
-
-def _run_of(options: argparse.Namespace) -> tuple[Path, table.Record]:
-    """The file of the results, and its first line."""
-    command = ["git", "-C", str(ROOT), "rev-parse", "--verify", f"{options.commit}^{{commit}}"]
-    commit = subprocess.check_output(command, text=True).strip()
-    if options.replay:
-        name = f"replay-{commit[:12]}-of-{options.replay.stem}.jsonl"
-        return FOLDER / name, {"commit": commit, "replay": table.read(options.replay)[0]}
-    name = f"results-{commit[:12]}-{options.seed}.jsonl"
-    return FOLDER / name, {"commit": commit, "seed": options.seed}
-
-
-def _try_all(tree: Tree, results: table.Results, mutants: Iterable[Mutant], count: int) -> None:
-    """Until so many compiled. Mutants of an earlier, interrupted run are not tried again."""
-    seen: set[Mutant] = set()
-    number = 0
-    for mutant in mutants:
-        if number == count:
-            return
-        if mutant in seen:
-            continue
-        seen.add(mutant)
-        record = results.of(mutant) or results.add(_try(tree, results, mutant))
-        number += record["result"] in (table.CAUGHT, table.MISSED)
-        print(f"{table.row(number, record)} {record['seconds']:.0f} s", flush=True)
-
-
-def _try(tree: Tree, results: table.Results, mutant: Mutant) -> table.Record:
-    folder = mutant.file.split("/")[0]
-    limit = max(SHORTEST_HANG, 10 * _unmutated_seconds(tree, results, folder))
-    begin = time.monotonic()
-    file = tree.path / mutant.file
-    original = file.read_text() if file.exists() else ""
-    text = mutated(mutant, original)
-    if text is None:
-        return {**mutant._asdict(), "result": table.GONE, "seconds": 0.0}
-    file.write_text(text)
+    options = parser.parse_args()
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    lock = (FOLDER / "lock").open("w")
     try:
-        by = None
-        result = table.INVALID
-        if tree.builds(folder):
-            by = _failure(tree, folder, limit)
-            result = table.CAUGHT if by else table.MISSED
-    finally:
-        file.write_text(original)
-    seconds = round(time.monotonic() - begin, 1)
-    return {**mutant._asdict(), "result": result, "by": by, "seconds": seconds}
-
-
-def _unmutated_seconds(tree: Tree, results: table.Results, folder: str) -> float:
-    """Without a mutant all tests must pass; otherwise the run ends here."""
-    if seconds := results.seconds(folder):
-        return seconds
-    print(f"the tests of {folder}, without a mutant", flush=True)
-    if not tree.builds(folder):
-        raise SystemExit(f"{folder} does not build: see {FOLDER}/build.log")
-    begin = time.monotonic()
-    if by := _failure(tree, folder, float("inf")):
-        raise SystemExit(f"{by} fails without a mutant: see {FOLDER}/failure.log")
-    return results.add({"unmutated": folder, "seconds": time.monotonic() - begin})["seconds"]
-
-
-def _failure(tree: Tree, folder: str, seconds: float) -> str | None:
-    programs = [tree.build / "bin" / name for name in TESTS[folder]]
-    return first_failure(programs, tree.jobs, seconds, FOLDER / "failure.log")
-
-
-def _print_tables(records: list[table.Record], replay: Path | None) -> int:
-    print(table.table(records))
-    if not replay:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise SystemExit(f"another run uses {FOLDER}") from None
+    revision = ["git", "-C", str(ROOT), "rev-parse", "--verify", f"{options.commit}^{{commit}}"]
+    commit = subprocess.check_output(revision, text=True).strip()
+    earlier = read(options.replay) if options.replay else []
+    of = f"-of-{options.replay.stem}" if options.replay else f"-{options.seed}"
+    path = FOLDER / f"results-{commit[:12]}{of}.jsonl"
+    count = len(compiled(earlier)) if options.replay else options.count
+    records = read(path)
+    if count > 0:
+        prepare_tree(commit)
+        drawn = compiled(earlier) if options.replay else draw(TREE, options.seed)
+        try_all(drawn, count, options.jobs, path, records)
+    print(table(records))
+    if not options.replay:
         return 0
-    text, lost = table.comparison(table.read(replay), records)
+    text, lost = comparison(earlier, records)
     print(f"\n{text}")
     return int(lost > 0)
 
 
+def try_all(
+    drawn: Iterable[Record], count: int, jobs: int, path: Path, records: list[Record]
+) -> None:
+    """Until so many compiled. Mutants of an earlier, interrupted run are not tried again."""
+    known = {key(record): record for record in records}
+    limit_of = cache(lambda folder: max(SHORTEST_HANG, 10 * unmutated_seconds(folder, jobs)))
+    seen: set[tuple[Any, ...]] = set()
+    number = 0
+    for mutant in drawn:
+        if number == count:
+            return
+        if key(mutant) in seen:
+            continue
+        seen.add(key(mutant))
+        record = known.get(key(mutant))
+        if not record:
+            mutant = {field: mutant[field] for field in MUTANT}
+            record = try_mutant(mutant, jobs, limit_of(folder_of(mutant)))
+            records.append(record)
+            with path.open("a") as file:
+                file.write(json.dumps(record) + "\n")
+        number += record["result"] in (CAUGHT, MISSED)
+        print(f"{row(number, record)} {record['seconds']:.0f} s", flush=True)
+
+
 if __name__ == "__main__":
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # ends the test programs too
-    sys.exit(main())
+    raise SystemExit(main())

@@ -1,155 +1,128 @@
-"""The operators: each finds its small wrong changes in a text."""
+"""Small wrong changes of C++ text, found by regular expressions.
+
+The text must be formatted by clang-format: a statement begins its line, the sign of an operation on
+two operands has blanks on both sides, and the bracket of a template has not. A change that does not
+compile is drawn again.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from itertools import pairwise
 from typing import NamedTuple
-
-from cpp_text import CppText, Statement
 
 
 class Change(NamedTuple):
-    """Replaces the tokens from `first` to `last`."""
-
-    first: int
-    last: int
+    operator: str
+    start: int
+    end: int
     after: str
 
 
-Changes = Iterator[Change]
+_NOT_CODE = re.compile(
+    r'//[^\n]*|/\*.*?\*/|^[ \t]*#(?:\\\n|[^\n])*|R"([^(\s]*)\(.*?\)\1"'
+    r'|"(?:\\.|[^"\\\n])*"' + r"|'(?:\\.|[^'\\\n])'",
+    re.MULTILINE | re.DOTALL,
+)
+_SIGN = re.compile(r"(?<= )(?:[-+<>=!]=|[-+<>]|&&|\|\|)(?=\s)")
+_OTHER_SIGNS = {
+    "flip sign": {"+": "-", "-": "+", "+=": "-=", "-=": "+="},
+    "move bound": {"<": "<=", "<=": "<", ">": ">=", ">=": ">"},
+    "shift bound": {sign: f"{sign} 1 +" for sign in ("<", "<=", ">", ">=")},
+    "invert equality": {"==": "!=", "!=": "=="},
+    "swap logic": {"&&": "||", "||": "&&"},
+}
+_NEGATIVE = re.compile(r"(?<=[ (\[{])-(?=[\w(])")
+_NUMBER = re.compile(r"(?<![\w.'])\d(?:[eEpP][-+]|'(?=\w)|[\w.])*")
+# An increment, or an operand such as *a.b->F(x)[1] that is called, assigned or put out. A
+# declaration has a type and a blank before its name.
+_STATEMENT = re.compile(
+    r"(?:(?:^ +|(?<=[;{}] ))|(?P<body>(?<=\) )|(?<=else )))"
+    r"(?P<text>(?!(?:[A-Z_]+|assert|static_assert|return)\b)"
+    r"(?:(?:\+\+|--)[^;{}=\s]+|[\w*(][\w:.()>\[\]*-]*"
+    r"(?:\([^;]*\)|\+\+|--| (?:[-+*/%&|^]|<<)?=(?! default| delete) [^;]*| << [^;]*));)",
+    re.MULTILINE,
+)
+_RETURN = re.compile(r"\breturn ([\w:]+);")
+_STRING = re.compile(r'"_*"(?=(?:(,\s*)("_*"))?)')
 
 
-def flip_sign(cpp: CppText) -> Changes:
-    flipped = {"+": "-", "-": "+", "+=": "-=", "-=": "+="}
-    yield from _exchange(cpp, flipped)
-    for i in range(len(cpp.tokens) - 1):
-        if cpp.word(i) == "-" and cpp.tokens[i].end == cpp.tokens[i + 1].start:  # of one operand
-            yield Change(i, i + 1, cpp.word(i + 1))
+def changes(text: str) -> Iterator[Change]:
+    """All changes of this text."""
+    code = _NOT_CODE.sub(_masked, text)
+    for sign in _SIGN.finditer(code):
+        for operator, others in _OTHER_SIGNS.items():
+            if sign[0] in others:
+                yield Change(operator, *sign.span(), others[sign[0]])
+    for sign in _NEGATIVE.finditer(code):
+        yield Change("flip sign", *sign.span(), "")
+    for number in _NUMBER.finditer(code):
+        yield from _other_number(number[0], number.start())
+    for condition in re.finditer(r"\bif (?:constexpr )?\(", code):
+        start, end = _last_part(code, condition.end())
+        yield Change("negate condition", start, end, f"!({text[start:end]})")
+    yield from _of_statements(code, text)
+    yield from _of_returned_values(code)
+    for string in _STRING.finditer(code):
+        yield Change("change label", string.start() + 1, string.start() + 1, "x")
+        if string[2]:  # two of a list are exchanged
+            swapped = text[slice(*string.span(2))] + string[1] + text[slice(*string.span())]
+            yield Change("change label", string.start(), string.end(2), swapped)
 
 
-def move_bound(cpp: CppText) -> Changes:
-    moved = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}
-    yield from _exchange(cpp, moved)
-    for i, token in enumerate(cpp.tokens):
-        if token.text in moved and cpp.is_spaced(i):
-            yield Change(i, i, f"{token.text} 1 +")
+def _masked(found: re.Match[str]) -> str:
+    """Blanks for what is no code; a literal is replaced by one of the same length."""
+    if found[0][0] in "\"'":
+        return found[0][0] + "_" * (len(found[0]) - 2) + found[0][0]
+    return re.sub(r"[^\n]", " ", found[0])
 
 
-def invert_equality(cpp: CppText) -> Changes:
-    return _exchange(cpp, {"==": "!=", "!=": "=="})
-
-
-def swap_logic(cpp: CppText) -> Changes:
-    return _exchange(cpp, {"&&": "||", "||": "&&"})
-
-
-def change_number(cpp: CppText) -> Changes:
+def _other_number(number: str, start: int) -> Iterator[Change]:
     """An integer grows by one; the first digit of another number that is not 0 changes."""
-    for i, token in enumerate(cpp.tokens):
-        if token.kind != "number":
-            continue
-        if integer := re.fullmatch(r"(\d+)([uUlL]*)", token.text):
-            yield Change(i, i, f"{int(integer[1]) + 1}{integer[2]}")
-        elif digit := re.search(r"[1-9]", token.text[2 * token.text.startswith("0x") :]):
-            at = token.text.index(digit[0])
-            other = str(int(digit[0]) % 9 + 1)
-            yield Change(i, i, token.text[:at] + other + token.text[at + 1 :])
-        elif token.text.startswith("0."):
-            yield Change(i, i, "1" + token.text[1:])
+    if integer := re.fullmatch(r"(\d+)[uUlL]*", number):
+        yield Change("change number", start, start + integer.end(1), str(int(integer[1]) + 1))
+    elif digit := re.search(r"[1-9]", number):
+        other = str(int(digit[0]) % 9 + 1)
+        yield Change("change number", start + digit.start(), start + digit.end(), other)
+    elif number.startswith("0."):
+        yield Change("change number", start, start + 1, "1")
 
 
-def drop_term(cpp: CppText) -> Changes:
-    for statement in cpp.statements():
-        if _is_term(statement):
-            yield Change(statement.first, statement.last, ";")
+def _last_part(code: str, start: int) -> tuple[int, int]:
+    """From here to the closing bracket, without a part that ends with a semicolon."""
+    depth, end = 1, start
+    while depth and end < len(code):
+        depth += {"(": 1, ")": -1}.get(code[end], 0)
+        if code[end] == ";":
+            start = end + 2
+        end += 1
+    return start, end - 1
 
 
-def skip_statement(cpp: CppText) -> Changes:
-    for statement in cpp.statements():
-        if not _is_term(statement):
-            yield Change(statement.first, statement.last, ";")
+def _of_statements(code: str, text: str) -> Iterator[Change]:
+    """A statement is left out, or exchanged with the next one: a callback before its commit."""
+    statements = [  # without the later lines of expressions
+        found
+        for found in _STATEMENT.finditer(code)
+        if found["body"] is not None or code[: found.start("text")].rstrip()[-1:] in ";{}:)"
+    ]
+    for statement in statements:
+        yield Change("skip statement", *statement.span("text"), ";")
+    for first, second in pairwise(statements):
+        (start, end), (next_start, next_end) = first.span("text"), second.span("text")
+        if first["body"] is None and not code[end:next_start].strip():
+            swapped = text[next_start:next_end] + text[end:next_start] + text[start:end]
+            yield Change("swap statements", start, next_end, swapped)
 
 
-def swap_statements(cpp: CppText) -> Changes:
-    """For example a callback before its commit."""
-    by_first = {statement.first: statement for statement in cpp.statements()}
-    for first in by_first.values():
-        second = by_first.get(first.last + 1)
-        if second and not first.is_body:
-            yield _swap(cpp, first.first, first.last, second.first, second.last)
-
-
-def negate_condition(cpp: CppText) -> Changes:
-    for i in range(1, len(cpp.tokens)):
-        if cpp.word(i) == "(" and cpp.word(i - 1) in ("if", "constexpr") and i in cpp.closing:
-            last = cpp.closing[i] - 1
-            first = max(j for j in range(i, last) if j == i or cpp.word(j) == ";") + 1
-            yield Change(first, last, f"!({cpp.between(first, last)})")
-
-
-def return_wrong(cpp: CppText) -> Changes:
+def _of_returned_values(code: str) -> Iterator[Change]:
     """Another of the constants that this file returns, the other truth value, the next number."""
-    constants = {end: cpp.between(i + 1, end) for i, end in _returned(cpp)}
-    others = sorted(set(constants.values()))
-    truth = {"true": "false", "false": "true"}
-    for i, end in _returned(cpp):
-        value = constants[end]
-        if value in truth:
-            yield Change(i + 1, end, truth[value])
-        elif value.isdigit():
-            yield Change(i + 1, end, str(int(value) + 1))
-        elif re.search(r"\bk[A-Z]\w*$", value):
-            names = [other for other in others if re.search(r"\bk[A-Z]\w*$", other)]
-            if len(names) > 1:
-                yield Change(i + 1, end, names[(names.index(value) + 1) % len(names)])
-
-
-def change_label(cpp: CppText) -> Changes:
-    """Changes a string literal, or exchanges two of a list."""
-    for i, token in enumerate(cpp.tokens):
-        if token.kind != "string":
-            continue
-        yield Change(i, i, '"x' + token.text[1:])
-        if cpp.word(i + 1) == "," and cpp.kind(i + 2) == "string":
-            yield _swap(cpp, i, i, i + 2, i + 2)
-
-
-OPERATORS: list[Callable[[CppText], Changes]] = [
-    flip_sign,
-    move_bound,
-    invert_equality,
-    swap_logic,
-    change_number,
-    drop_term,
-    skip_statement,
-    swap_statements,
-    negate_condition,
-    return_wrong,
-    change_label,
-]
-
-
-def _exchange(cpp: CppText, partners: dict[str, str]) -> Changes:
-    for i, token in enumerate(cpp.tokens):
-        if token.kind == "sign" and token.text in partners and cpp.is_spaced(i):
-            yield Change(i, i, partners[token.text])
-
-
-def _swap(cpp: CppText, first: int, last: int, second: int, end: int) -> Change:
-    between = cpp.text[cpp.tokens[last].end : cpp.tokens[second].start]
-    return Change(first, end, cpp.between(second, end) + between + cpp.between(first, last))
-
-
-def _is_term(statement: Statement) -> bool:
-    return statement.name == "+=" or statement.name.startswith(("Add", "Merge"))
-
-
-def _returned(cpp: CppText) -> Iterator[tuple[int, int]]:
-    """Of each returned name or number: the index of `return`, and the last token."""
-    for i in range(len(cpp.tokens)):
-        end = i + 1
-        while cpp.word(end + 1) == "::":
-            end += 2
-        if cpp.word(i) == "return" and cpp.word(end + 1) == ";":
-            yield i, end
+    found = list(_RETURN.finditer(code))
+    constants = sorted({value[1] for value in found if re.search(r"\bk[A-Z]\w*$", value[1])})
+    others = dict(zip(constants, constants[1:] + constants[:1]))
+    others |= {"true": "false", "false": "true"}
+    for value in found:
+        other = str(int(value[1]) + 1) if value[1].isdigit() else others.get(value[1], value[1])
+        if other != value[1]:
+            yield Change("return wrong", *value.span(1), other)
