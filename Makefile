@@ -9,7 +9,7 @@ MUTANTS ?= 60
 QUESTIONS ?= 20000
 SIMULATION_SECONDS ?= 3600
 
-TEST_PACKAGES := libgtest-dev libgmock-dev python3-grpcio python3-numpy python3-pandas python3-pytest python3-tqdm python3-matplotlib \
+TEST_PACKAGES := libgtest-dev libgmock-dev libbenchmark-dev python3-grpcio python3-numpy python3-pandas python3-pytest python3-tqdm python3-matplotlib \
   python3-setuptools python3-wheel python3-venv mypy
 AARCH64_PACKAGES := g++-aarch64-linux-gnu qemu-user libabsl-dev:arm64 libhwy-dev:arm64 libgtest-dev:arm64 libgmock-dev:arm64
 SLURM_PACKAGES := munge slurmctld slurmd slurm-client procps

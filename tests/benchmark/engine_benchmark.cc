@@ -1,23 +1,22 @@
-// The engines side by side, in one run: what a wall hit costs, and how many times as many samples a
-// second the lanes give as the reference does. The closed form and the jump process come first;
-// they need no engine.
+// What the engines cost, a row each: the rate of wall hits, events, exchanges or samples in a
+// second of processor time, and the time of one (`each`). The rows of one kind are there to be
+// compared: the reference, the lanes with each kind of vector instructions, and scalar code as
+// others have it.
 //
-//   engine_benchmark [--threads N]
+//   engine_benchmark [FLAG_OF_GOOGLE_BENCHMARK...]
 //
-// The yardsticks run in the same run: the reference, and a plain scalar ball as billiard codes have
-// it. Contenders take turns of some 50 ms of processor time; a row shows each one's best turn, and
-// says if a neighbour disturbed it (turns.h). With --threads, how many times as much N threads do
-// as one, and how many times as much of the independent operations of the probe.
+// `make bench` repeats the rows in random order, and prints the median and the scatter of each.
+#include <benchmark/benchmark.h>
+#include <hwy/highway.h>
+#include <hwy/targets.h>
+
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <memory>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -28,17 +27,90 @@
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
+#include "core/gas/canonical_gas.h"
+#include "core/gas/gas_exchange_rate.h"
+#include "core/gas/gas_geometry.h"
+#include "core/gas/gas_meter.h"
+#include "core/gas/gas_run.h"
+#include "core/gas/hit_rates.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/direction.h"
-#include "tests/benchmark/turns.h"
-#include "tests/benchmark/vector_targets.h"
 #include "tools/flows/lane_balls.h"
 #include "tools/flows/paper.h"
 
 namespace ballpiston {
 namespace {
 
-constexpr uint64_t kHits = 100'000, kBalls = 128;  // as many balls as the widest lanes have
+// ---- rows ----
+
+using Work = std::function<double(uint64_t turn)>;  // returns how much it has done
+
+benchmark::internal::Benchmark* AddRow(const std::string& name, const Work& work) {
+  return benchmark::RegisterBenchmark(name.c_str(), [work](benchmark::State& state) {
+    uint64_t turn = 0;
+    work(turn++);  // makes tables and gases
+    double done = 0;
+    for (auto _ : state) done += work(turn++);
+    using benchmark::Counter;
+    state.counters["rate"] = Counter(done, Counter::kIsRate);
+    state.counters["each"] = Counter(done, Counter::kIsRate | Counter::kInvert);
+  });
+}
+
+// The kinds of vector instructions of this machine, from SSE4 on, the widest last.
+std::vector<int64_t> VectorTargets() {
+  std::vector<int64_t> targets = hwy::SupportedAndGeneratedTargets();
+  std::erase_if(targets, [](int64_t target) { return target > HWY_SSE4; });
+  std::reverse(targets.begin(), targets.end());
+  return targets;
+}
+
+// A row for each of them. The lanes that begin in `work` use these instructions.
+void AddRowsOfLanes(const std::string& name, const Work& work) {
+  for (const int64_t target : VectorTargets()) {
+    AddRow(absl::StrCat(name, "/", hwy::TargetName(target)), [target, work](uint64_t turn) {
+      hwy::SetSupportedTargetsForTest(target);
+      hwy::GetChosenTarget().DeInit();
+      return work(turn);
+    });
+  }
+}
+
+// ---- closed form, jump process ----
+
+double MeanFreeTimesOfAGeometry(uint64_t turn) {
+  const double delta = 0.1 + 1e-9 * static_cast<double>(turn);
+  benchmark::DoNotOptimize(MeanFreeTimesOf(*PairGeometry::Create(kPaperRho, delta)).ball_piston);
+  return 1;
+}
+
+// The definition of core/markov/jump_process.h, with the C library.
+double ScalarJumps(uint64_t turn) {
+  constexpr int kJumps = 10'000;
+  double u = 0.5;
+  CounterRandom random(1, 2, turn);
+  for (int n = 0; n < kJumps; ++n) {
+    const double q = std::sqrt(std::max(1 - 2 * u * u, 0.0)), low = u * std::atan2(u, q);
+    benchmark::DoNotOptimize(-std::log(random.Uniform()) * M_SQRT2 * M_PI / (q + low));  // the wait
+    const double g = (q + low) * random.Uniform(), w = g - low;
+    u = w < 0 ? std::sqrt((1 - u) * (1 + u)) * std::sin(g / u)
+              : std::min(std::sqrt(w * (2 * q - w) + u * u), 1.0);
+  }
+  return kJumps;
+}
+
+double JumpsInLanes(uint64_t) {
+  constexpr size_t kWalkers = 1024;
+  constexpr int kJumps = 200;
+  JumpWalkers walkers(1, 2, 3, std::vector<double>(kWalkers, 0.5));
+  for (int n = 0; n < kJumps; ++n) walkers.Jump();
+  benchmark::DoNotOptimize(walkers.u()[0]);
+  return double{kWalkers * kJumps};
+}
+
+// ---- flights of the ball alone ----
+
+constexpr uint64_t kBalls = 128;  // as many as the widest lanes have
 
 std::vector<LaneFrame> BallsFromTheMiddleOfAnArc(uint64_t seed) {
   CounterRandom random(seed, 0, 0);
@@ -54,13 +126,12 @@ std::vector<LaneFrame> BallsFromTheMiddleOfAnArc(uint64_t seed) {
   return balls;
 }
 
-// Returns the number of hits.
-double HitsInLanes(int64_t target, bool single, uint64_t turn) {
-  Use(target);
-  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.05);
-  (single ? FlyLaneBallsSingle : FlyLaneBalls)(geometry, BallsFromTheMiddleOfAnArc(turn), kHits,
-                                               {});
-  return kHits * kBalls;
+Work HitsInLanes(FlyLanes* fly) {
+  return [fly](uint64_t turn) {
+    constexpr uint64_t kHits = 100'000;
+    fly(*PairGeometry::Create(kPaperRho, 0.05), BallsFromTheMiddleOfAnArc(turn), kHits, {});
+    return double{kHits * kBalls};
+  };
 }
 
 Eigen::Vector2d Centre(int disc) {
@@ -91,26 +162,20 @@ void Fly(Eigen::Vector2d& position, Eigen::Vector2d& direction, int& left) {
 }
 
 double ScalarHits(uint64_t turn) {
-  constexpr uint64_t kScalarHits = 500'000;
+  constexpr uint64_t kHits = 500'000;
   const LaneFrame start = BallsFromTheMiddleOfAnArc(turn)[0];
   Eigen::Vector2d position = PositionInCell(start), direction = DirectionInCell(start);
   int left = -1;  // the disc
-  for (uint64_t hit = 0; hit < kScalarHits; ++hit) Fly(position, direction, left);
-  Keep(position.x());
-  return kScalarHits;
+  for (uint64_t hit = 0; hit < kHits; ++hit) Fly(position, direction, left);
+  benchmark::DoNotOptimize(position.x());
+  return kHits;
 }
 
-void ShowFlight(int64_t target) {
-  const auto lanes = [target](const char* precision, bool single) -> Contender {
-    return {absl::StrCat("wall hits, ", hwy::TargetName(target), " ", precision),
-            [=](uint64_t turn) { return HitsInLanes(target, single, turn); }};
-  };
-  ShowRates({{"wall hits, scalar", ScalarHits}, lanes("double", false), lanes("single", true)}, 15,
-            " times");
-}
+// ---- experiments with a pair ----
 
-EnsembleSpec Question(const ExperimentKind* experiment, double delta, Model model,
-                      Precision precision) {
+using Point = std::shared_ptr<const PointExperiment>;
+
+Point PairPoint(const ExperimentKind* experiment, double delta, Model model, Precision precision) {
   EnsembleSpec spec = {.experiment = experiment,
                        .grid = {{kRho, {kPaperRho}}, {kDelta, {delta}}},
                        .seed = 5,
@@ -123,155 +188,161 @@ EnsembleSpec Question(const ExperimentKind* experiment, double delta, Model mode
     spec.target.samples = 10'000'000;
   }
   if (experiment == &kFirstHit) spec.grid[kExponent] = {1};
-  return spec;
+  return PointExperiment::Create(spec, 0);
 }
 
-// A block takes about 50 ms: it has fewer samples for the reference than for the lanes.
-Block BlockOfATurn(const PointExperiment& point, uint64_t turn) {
-  const double events = point.answer().model == Model::kBilliardReference ? 0x1p20 : 0x1p24;
+// Samples in blocks of some 50 ms: a block of the reference has fewer. They are counted by their
+// flight time, in which blocks of the same size differ.
+Work PairSamples(const Point& point) {
+  const double events = point->answer().model == Model::kBilliardReference ? 0x1p20 : 0x1p24;
   const uint64_t samples =
-      std::max(static_cast<uint64_t>(events / point.plan().events_per_sample()), uint64_t{1});
-  return {.first = turn * samples, .samples = samples};
-}
-
-// The samples of a turn, counted by their flight time, in which blocks of the same size differ.
-double SamplesOfATurn(const PointExperiment& point, double exact_time, uint64_t turn) {
-  const BlockResult result = *RunBlock(point, BlockOfATurn(point, turn));
-  const double mean =
-      result.moments.empty() ? *result.batch_means[0].Ratio() : result.moments[0].mean;
-  return mean * static_cast<double>(result.samples) / exact_time;
-}
-
-double ExactTime(const PointExperiment& point) {
-  return *point.FirstEstimate(*RunBlock(point, {.samples = 1})).exact;
-}
-
-void ShowEngines(const char* name, const ExperimentKind* experiment, double delta, int64_t target) {
-  std::vector<Contender> contenders;
-  double events = 0;  // of a sample by the reference
-  for (const auto& [model, precision] : {std::pair(Model::kBilliardReference, Precision::kDouble),
-                                         {Model::kBilliard, Precision::kDouble},
-                                         {Model::kBilliard, Precision::kSingle}}) {
-    const std::shared_ptr<const PointExperiment> point =
-        PointExperiment::Create(Question(experiment, delta, model, precision), 0);
-    if (contenders.empty()) events = point->plan().events_per_sample();
-    contenders.push_back({"", [point, target, time = ExactTime(*point)](uint64_t turn) {
-                            Use(target);
-                            return SamplesOfATurn(*point, time, turn);
-                          }});
-  }
-  const Turns turns(contenders, 12);
-  std::printf(
-      "%-6s %-12s delta %-7g reference %9.0f samples/s (%5.1f million events/s)   "
-      "billiard %9.0f: %5.1f times   single: %5.1f times",
-      hwy::TargetName(target), name, delta, turns.Best(0), turns.Best(0) * events * 1e-6,
-      turns.Best(1), turns.Best(1) / turns.Best(0), turns.Best(2) / turns.Best(0));
-  ShowDisturbance(turns);
-  std::printf("\n");
-}
-
-// Of `threads` threads that share eight pieces of work, work(0) ... work(7), in elapsed time.
-double PiecesPerSecond(unsigned threads, const std::function<void(uint64_t)>& work) {
-  constexpr uint64_t kPieces = 8;
-  const auto begin = std::chrono::steady_clock::now();
-  std::vector<std::thread> running;
-  for (unsigned i = 0; i < threads; ++i) {
-    running.emplace_back([&work, i, threads] {
-      for (uint64_t k = i; k < kPieces; k += threads) work(k);
-    });
-  }
-  for (std::thread& thread : running) thread.join();
-  return kPieces / std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-// How many times as much so many threads do as one.
-double Scaling(unsigned threads, const std::function<void(uint64_t)>& work) {
-  double one = 0, all = 0;
-  for (int turn = 0; turn < 6; ++turn) {
-    one = std::max(one, PiecesPerSecond(1, work));
-    all = std::max(all, PiecesPerSecond(threads, work));
-  }
-  return all / one;
-}
-
-void ShowThreads(unsigned threads) {
-  const auto point = PointExperiment::Create(
-      Question(&kFirstHit, 0.0125, Model::kBilliard, Precision::kDouble), 0);
-  const double orbits =
-      Scaling(threads, [&point](uint64_t k) { RunBlock(*point, BlockOfATurn(*point, k)); });
-  const double probe = Scaling(threads, [](uint64_t) { SecondsOfChains<6>(1'000'000); });
-  std::printf(
-      "first-hit, delta 0.0125: %u threads do %.2f times as much as one\n"
-      "independent operations:  %.2f times (less than %u where threads share a core)\n",
-      threads, orbits, probe, threads);
-}
-
-void ShowClosedForm() {
-  constexpr uint64_t kGeometries = 500'000;
-  const auto turn_of = [](uint64_t turn) {
-    for (uint64_t i = 0; i < kGeometries; ++i) {
-      const double delta = 0.1 + 1e-9 * static_cast<double>(turn * kGeometries + i);
-      Keep(MeanFreeTimesOf(*PairGeometry::Create(kPaperRho, delta)).ball_piston);
-    }
-    return double{kGeometries};
+      std::max(static_cast<uint64_t>(events / point->plan().events_per_sample()), uint64_t{1});
+  const double exact = *point->FirstEstimate(*RunBlock(*point, {.samples = 1})).exact;
+  return [=](uint64_t turn) {
+    const BlockResult result = *RunBlock(*point, {.first = turn * samples, .samples = samples});
+    const double mean =
+        result.moments.empty() ? *result.batch_means[0].Ratio() : result.moments[0].mean;
+    return mean * static_cast<double>(result.samples) / exact;
   };
-  ShowRates({{"closed form: three mean free times", turn_of}}, 12, "");
 }
 
-// The definition of core/markov/jump_process.h, with the C library.
-double ScalarJumps(uint64_t turn) {
-  constexpr int kJumps = 10'000;
-  double u = 0.5;
-  CounterRandom random(1, 2, turn);
-  for (int n = 0; n < kJumps; ++n) {
-    const double q = std::sqrt(std::max(1 - 2 * u * u, 0.0)), low = u * std::atan2(u, q);
-    Keep(-std::log(random.Uniform()) * M_SQRT2 * M_PI / (q + low));  // the waiting time
-    const double g = (q + low) * random.Uniform(), w = g - low;
-    u = w < 0 ? std::sqrt((1 - u) * (1 + u)) * std::sin(g / u)
-              : std::min(std::sqrt(w * (2 * q - w) + u * u), 1.0);
+void AddPair(const ExperimentKind* experiment, double delta) {
+  const auto work = [&](Model model, Precision precision) {
+    return PairSamples(PairPoint(experiment, delta, model, precision));
+  };
+  const std::string name = absl::StrCat(experiment->name, "/delta:", delta);
+  AddRow(name + "/reference", work(Model::kBilliardReference, Precision::kDouble));
+  AddRowsOfLanes(name + "/lanes", work(Model::kBilliard, Precision::kDouble));
+  AddRowsOfLanes(name + "/lanes_single", work(Model::kBilliard, Precision::kSingle));
+}
+
+// The samples of several threads that share the processor, by the clock on the wall.
+void AddThreads() {
+  const Work work =
+      PairSamples(PairPoint(&kFirstHit, 0.0125, Model::kBilliard, Precision::kDouble));
+  const int cores = std::max(static_cast<int>(std::thread::hardware_concurrency()), 1);
+  AddRow("first-hit/delta:0.0125/lanes", work)->ThreadRange(1, cores)->UseRealTime();
+}
+
+// ---- experiments with a chain ----
+
+void AddGas(const ExperimentKind* experiment, int64_t cells, double delta) {
+  constexpr int64_t kBallsTogether = 192;  // as many as the lanes fly together
+  EnsembleSpec spec = {
+      .experiment = experiment,
+      .grid = {{kRho, {kPaperRho}}, {kDelta, {delta}}, {kCells, {CodeOf({cells})}}},
+      .seed = 5};
+  spec.target.samples = 1'000'000;
+  if (experiment == &kGasEquilibrium) spec.grid[kTemperature] = {1};
+  if (experiment == &kGasConduction) spec.grid[kHot] = {1.5}, spec.grid[kCold] = {0.5};
+  // A group's first stretches; or replicas, as many as fill the lanes of the plan's last chunk.
+  const auto work = [&](Model model, int64_t balls) -> Work {
+    spec.model = model;
+    const Point point = PointExperiment::Create(spec, 0);
+    return [point, replicas = static_cast<uint64_t>(balls / cells)](uint64_t turn) {
+      const ChunkPlan& plan = point->plan();
+      const Block block =
+          plan.groups() > 0
+              ? plan.BlockAt(turn % plan.groups(), 0)
+              : Block{.chunk = plan.chunks() - 1, .first = turn * replicas, .samples = replicas};
+      RunBlock(*point, block);
+      return static_cast<double>(block.samples);
+    };
+  };
+  const std::string name = absl::StrCat(experiment->name, "/cells:", cells, "/delta:", delta);
+  AddRow(name + "/reference", work(Model::kBilliardReference, kBallsTogether / 8));
+  AddRow(name + "/jumps", work(Model::kMarkov, kBallsTogether / 8));
+  AddRowsOfLanes(name + "/lanes", work(Model::kBilliard, kBallsTogether));
+}
+
+// ---- a lattice of 100 x 100 cells in equilibrium ----
+
+class Lattice {
+ public:
+  Lattice(GasEngine engine, double delta)
+      : geometry_(
+            GasGeometry::Create(kPaperRho, delta, {100, 100, true}, GasEnds::kPeriodic).value()) {
+    const GasRandom random(1, 2, 3);
+    CounterRandom of_start = random.OfStart();
+    GasState state = DrawGas(geometry_, TemperatureProfile(1), of_start);
+    meter_ = std::make_unique<GasMeter>(geometry_, state);
+    std::vector<GasStart> starts;
+    starts.push_back({std::move(state), ThermalWalls(), random, meter_.get()});
+    run_ = StartGases(engine, geometry_, GasExchangeRate(geometry_, 1), std::move(starts));
   }
-  return kJumps;
-}
 
-double JumpsInLanes(int64_t target) {
-  constexpr size_t kWalkers = 1024;
-  constexpr int kJumps = 200;
-  Use(target);
-  JumpWalkers walkers(1, 2, 3, std::vector<double>(kWalkers, 0.5));
-  for (int n = 0; n < kJumps; ++n) walkers.Jump();
-  Keep(walkers.u()[0]);
-  return double{kWalkers * kJumps};
-}
-
-// The pair's jump process: its scalar definition, and the lanes.
-void ShowJumps() {
-  std::vector<Contender> contenders = {{"jumps, scalar", ScalarJumps}};
-  for (const int64_t target : VectorTargets()) {
-    contenders.push_back({absl::StrCat("jumps, lanes ", hwy::TargetName(target)),
-                          [target](uint64_t) { return JumpsInLanes(target); }});
+  // Returns the number of exchanges.
+  double Advance(double duration) {
+    const uint64_t before = meter_->exchanges();
+    run_->AdvanceTo(time_ += duration);
+    return static_cast<double>(meter_->exchanges() - before);
   }
-  ShowRates(contenders, 30, " times");
+
+  // By their exact mean rates.
+  double BallHits(double duration) const {
+    return duration * static_cast<double>(geometry_.balls()) *
+           HitRatesOf(geometry_.pair()).of_a_ball;
+  }
+  double PistonHits(double duration) const {
+    return duration * static_cast<double>(geometry_.pistons()) *
+           HitRatesOf(geometry_.pair()).of_a_piston;
+  }
+
+ private:
+  GasGeometry geometry_;
+  std::unique_ptr<GasMeter> meter_;
+  std::unique_ptr<GasRun> run_;
+  double time_ = 0;
+};
+
+void AddLattice(double delta) {
+  const auto add = [delta](const char* name, GasEngine engine, const auto& advance) {
+    AddRow(absl::StrCat("lattice/delta:", delta, "/", name),
+           [=, lattice = std::shared_ptr<Lattice>()](uint64_t) mutable {
+             if (lattice == nullptr) lattice = std::make_shared<Lattice>(engine, delta);
+             return advance(*lattice);
+           });
+  };
+  add("lanes_wall_hits", GasEngine::kLanes, [](Lattice& lattice) {
+    constexpr double kDuration = 5;
+    lattice.Advance(kDuration);
+    return lattice.BallHits(kDuration);
+  });
+  add("reference_events", GasEngine::kReference, [](Lattice& lattice) {
+    constexpr double kDuration = 0.5;
+    return lattice.Advance(kDuration) + lattice.BallHits(kDuration) + lattice.PistonHits(kDuration);
+  });
+  add("jumps_exchanges", GasEngine::kJumps,
+      [delta](Lattice& lattice) { return lattice.Advance(0.1 / (delta * delta)); });
 }
 
-void ShowAll() {
-  ShowClosedForm();
-  ShowJumps();
-  for (const int64_t target : VectorTargets()) ShowFlight(target);
-  for (const int64_t target : VectorTargets()) {
-    ShowEngines("first-hit", &kFirstHit, 0.0125, target);
-    ShowEngines("first-hit", &kFirstHit, 0.05, target);
-    ShowEngines("equilibrium", &kEquilibrium, 0.05, target);
-    ShowEngines("equilibrium", &kEquilibrium, 0.2, target);
+void AddAll() {
+  AddRow("closed_form/three_mean_free_times", MeanFreeTimesOfAGeometry);
+  AddRow("jumps/scalar", ScalarJumps);
+  AddRowsOfLanes("jumps/lanes", JumpsInLanes);
+  AddRow("wall_hits/scalar", ScalarHits);
+  AddRowsOfLanes("wall_hits/lanes", HitsInLanes(FlyLaneBalls));
+  AddRowsOfLanes("wall_hits/lanes_single", HitsInLanes(FlyLaneBallsSingle));
+  AddPair(&kFirstHit, 0.0125);
+  AddPair(&kFirstHit, 0.05);
+  AddPair(&kEquilibrium, 0.05);
+  AddPair(&kEquilibrium, 0.2);
+  for (const double delta : {0.2, 0.1, 0.05}) {
+    AddGas(&kGasEquilibrium, 8, delta);
+    for (const int64_t cells : {1, 2, 8}) {
+      if (cells < 8 || delta > 0.05) AddGas(&kGasConduction, cells, delta);
+    }
   }
+  for (const double delta : {0.025, 0.05, 0.1, 0.2}) AddLattice(delta);
+  AddThreads();
 }
 
 }  // namespace
 }  // namespace ballpiston
 
 int main(int argc, char** argv) {
-  if (argc == 3 && std::strcmp(argv[1], "--threads") == 0) {
-    ballpiston::ShowThreads(static_cast<unsigned>(std::max(std::atoi(argv[2]), 1)));
-  } else {
-    ballpiston::ShowAll();
-  }
+  ballpiston::AddAll();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
 }

@@ -1,24 +1,21 @@
 // What a simulated cluster costs the server. The cluster is simulated in virtual time; scheduler,
-// book of jobs, journal and store are real, and the store is a file in the temporary folder.
+// book of jobs, journal and store are real, and the store is a file in the temporary folder. No
+// orbit is computed: every chunk is one valid result with the number of samples that the chunk has.
+// The tables of docs/cluster.md are from here.
 //
-//   scheduler_benchmark [chunks] [points]
+//   scheduler_benchmark [FLAG_OF_GOOGLE_BENCHMARK...]
 //
-// The first table: chunks from one executor elsewhere, as fast as the server accepts them. The
-// second: a sweep of first-hit jobs on clusters of two sizes. No orbit is computed: every chunk is
-// one valid result with the number of samples that the chunk has. Each row runs in a process of its
-// own, so that its peak memory is its own. The tables of docs/cluster.md are from here.
-
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
+// The column CPU is the server's processor time, of all its threads. A row computes once.
+#include <benchmark/benchmark.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <functional>
+#include <iostream>
 #include <memory>
 #include <optional>
 #include <queue>
@@ -27,70 +24,28 @@
 #include <utility>
 #include <vector>
 
-#include "absl/strings/str_format.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "server/book/job_book.h"
 #include "server/compute/scheduler.h"
 #include "server/convert/spec.h"
-#include "server/processor_time.h"
 #include "server/store/store.h"
 #include "tests/server/factory_opener.h"
+#include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
 namespace {
 
+constexpr int kLocalCores = 2;
+constexpr double kLocalLeaseSeconds = 5;
 constexpr double kLeaseSeconds = 60;  // of an executor elsewhere: about a minute a task
 
 void ExitUnless(const absl::Status& ok) {
   if (ok.ok()) return;
-  std::fprintf(stderr, "%s\n", ok.ToString().c_str());
+  std::cerr << ok << std::endl;
   std::_Exit(1);
 }
-
-// ---- what a row costs ----
-
-double ProcessSeconds(const rusage& used) {
-  const auto seconds = [](const timeval& time) {
-    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-  };
-  return seconds(used.ru_utime) + seconds(used.ru_stime);
-}
-
-rusage UsedByProcess() {
-  rusage used = {};
-  getrusage(RUSAGE_SELF, &used);
-  return used;
-}
-
-double PeakMegabytes() { return static_cast<double>(UsedByProcess().ru_maxrss) / 1024; }
-
-// The server's processor time: that of its calls in this thread, and of all other threads.
-class Meter {
- public:
-  template <typename Call>
-  auto Measure(const Call& call) {
-    const double begin = ThreadSeconds();
-    auto result = call();
-    calls_ += ThreadSeconds() - begin;
-    return result;
-  }
-
-  double ServerSeconds() const {
-    return calls_ + ProcessSeconds(UsedByProcess()) - process_begin_ -
-           (ThreadSeconds() - thread_begin_);
-  }
-  double WallSeconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  }
-
- private:
-  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  const double process_begin_ = ProcessSeconds(UsedByProcess());
-  const double thread_begin_ = ThreadSeconds();
-  double calls_ = 0;
-};
 
 // ---- the server ----
 
@@ -98,161 +53,123 @@ class Meter {
 class SimulatedExecutor : public Executor {
  public:
   SimulatedExecutor(Scheduler& scheduler, bool local, double seconds)
-      : capacity_{.executor = scheduler.AddExecutor(*this), .local = local, .seconds = seconds} {}
+      : scheduler_(scheduler),
+        capacity_{.executor = scheduler.AddExecutor(*this), .local = local, .seconds = seconds} {}
 
   void Wake() override { is_woken_ = true; }
   void Shutdown() override {}
 
-  const Capacity& capacity() const { return capacity_; }
-  bool is_woken() const { return is_woken_; }
-  void set_woken(bool woken) { is_woken_ = woken; }
+  // Empty, and without a call, if there was nothing and the executor was not woken since.
+  std::optional<Lease> Next() {
+    if (!is_woken_) return std::nullopt;
+    std::optional<Lease> lease = scheduler_.Next(capacity_);
+    if (!lease) is_woken_ = false;
+    return lease;
+  }
 
  private:
+  Scheduler& scheduler_;
   const Capacity capacity_;
   std::atomic<bool> is_woken_ = true;
 };
 
-class Server {
- public:
+struct Server {
   explicit Server(double lease_seconds)
-      : store_(*Store::Open(folder_.File("store"), {})),
-        scheduler_(opener_, kLocalCores),
-        local_(scheduler_, true, kLocalLeaseSeconds),
-        remote_(scheduler_, false, lease_seconds),
-        book_(*store_, Limits{.max_samples_per_job = 0}, scheduler_) {}
+      : local(scheduler, true, kLocalLeaseSeconds), remote(scheduler, false, lease_seconds) {}
 
-  static constexpr int kLocalCores = 2;
-  static constexpr double kLocalLeaseSeconds = 5;
-
-  void Create(const v1::EnsembleSpec& spec) {
+  // Of one energy, so that all points have histograms of the same bins.
+  void Create(const ExperimentKind& kind, double delta, int64_t samples, int points) {
     v1::CreateEnsembleJobRequest request;
-    *request.mutable_spec() = spec;
-    const CheckedSpec checked = CheckSpec(request.spec());
-    ExitUnless(book_.Create({"ann", Role::kSubmit}, request, checked).status());
-  }
-
-  Store& store() { return *store_; }
-  Scheduler& scheduler() { return scheduler_; }
-  SimulatedExecutor& local() { return local_; }
-  SimulatedExecutor& remote() { return remote_; }
-  size_t active_jobs() const { return book_.active_jobs(); }
-
- private:
-  TemporaryFolder folder_;
-  std::unique_ptr<Store> store_;
-  FactoryOpener opener_{
-      [](const EnsembleSpec& spec, size_t index) { return PointExperiment::Create(spec, index); }};
-  Scheduler scheduler_;
-  SimulatedExecutor local_;
-  SimulatedExecutor remote_;
-  JobBook book_;
-};
-
-// Chunks of one result, which differ in the number of samples.
-class FakeChunks {
- public:
-  std::vector<ChunkResult> Of(const Lease& lease) {
-    const ChunkPlan& plan = lease.experiment->plan();
-    if (!block_) block_ = RunBlock(*lease.experiment, {.samples = 1});
-    std::vector<ChunkResult> chunks;
-    for (uint64_t chunk = lease.start.chunk; chunk < lease.end; ++chunk) {
-      BlockResult result = *block_;
-      result.samples = plan.SamplesIn(chunk);
-      for (Moments& moments : result.moments) moments.count = result.samples;
-      for (Histogram& histogram : result.histograms) Fill(histogram, result.samples);
-      chunks.push_back({chunk, std::move(result)});
+    v1::EnsembleSpec& spec = *request.mutable_spec();
+    spec.set_experiment(static_cast<v1::EnsembleSpec::Experiment>(kind.number));
+    spec.mutable_grid()->add_rho(0.53);
+    spec.mutable_grid()->add_delta(delta);
+    spec.set_model(v1::EnsembleSpec::BILLIARD);
+    if (&kind == &kEquilibrium) {
+      spec.mutable_target()->set_collisions(samples);
+    } else {
+      spec.mutable_target()->set_samples(samples);
+      spec.mutable_grid()->add_epsilon(0.1);
+      for (int i = 0; i < points; ++i) spec.mutable_grid()->add_exponent(2 + 1.0 * i / points);
     }
-    return chunks;
+    ExitUnless(book.Create({"ann", Role::kSubmit}, request, CheckSpec(spec)).status());
   }
 
- private:
-  // Counts of a large chunk take more bytes in a record than counts of a small one.
-  static void Fill(Histogram& histogram, uint64_t samples) {
-    const uint64_t each = samples / (2 * histogram.counts.size());
-    std::fill(histogram.counts.begin(), histogram.counts.end(), each);
+  void Open(const Lease& lease) {
+    for (const size_t point : lease.opens) scheduler.Open(lease, point);
+    scheduler.EndTurn(lease, 0);
   }
 
-  std::optional<BlockResult> block_;
+  TemporaryFolder folder;
+  std::unique_ptr<Store> store = *Store::Open(folder.File("store"), {});
+  FactoryOpener opener{
+      [](const EnsembleSpec& spec, size_t index) { return PointExperiment::Create(spec, index); }};
+  Scheduler scheduler{opener, kLocalCores};
+  SimulatedExecutor local, remote;
+  JobBook book{*store, Limits{.max_samples_per_job = 0}, scheduler};
 };
 
-v1::EnsembleSpec SpecOf(const ExperimentKind& kind, double delta, int64_t samples, int points) {
-  v1::EnsembleSpec spec;
-  spec.set_experiment(static_cast<v1::EnsembleSpec::Experiment>(kind.number));
-  spec.mutable_grid()->add_rho(0.53);
-  spec.mutable_grid()->add_delta(delta);
-  spec.set_model(v1::EnsembleSpec::BILLIARD);
-  if (&kind == &kEquilibrium) {
-    spec.mutable_target()->set_collisions(samples);
-  } else {
-    spec.mutable_target()->set_samples(samples);
-    // One energy, so that all points have histograms of the same bins.
-    spec.mutable_grid()->add_epsilon(0.1);
-    for (int i = 0; i < points; ++i) spec.mutable_grid()->add_exponent(2 + 1.0 * i / points);
+// Chunks of one result, which differ in the number of samples. Counts of a large chunk take more
+// bytes in a record than counts of a small one.
+std::vector<ChunkResult> ChunksOf(const Lease& lease, std::optional<BlockResult>& block) {
+  if (!block) block = RunBlock(*lease.experiment, {.samples = 1});
+  std::vector<ChunkResult> chunks;
+  for (uint64_t chunk = lease.start.chunk; chunk < lease.end; ++chunk) {
+    BlockResult result = *block;
+    result.samples = lease.experiment->plan().SamplesIn(chunk);
+    for (Moments& moments : result.moments) moments.count = result.samples;
+    for (Histogram& histogram : result.histograms) {
+      const uint64_t each = result.samples / (2 * histogram.counts.size());
+      std::fill(histogram.counts.begin(), histogram.counts.end(), each);
+    }
+    chunks.push_back({chunk, std::move(result)});
   }
-  return spec;
+  return chunks;
 }
 
-// ---- chunks as fast as possible ----
+// ---- chunks from one executor elsewhere, as fast as the server accepts them ----
 
-void OpenOnePoint(Server& server) {
-  const auto lease = server.scheduler().Next(server.local().capacity());
-  for (const size_t point : lease->opens) server.scheduler().Open(*lease, point);
-  server.scheduler().EndTurn(*lease, 0);
-}
-
-void AcceptChunks(const ExperimentKind& kind, bool in_order, size_t chunks) {
+void AcceptChunks(benchmark::State& state, const ExperimentKind& kind, bool in_order) {
+  constexpr size_t kChunks = 5000;
   Server server(0);  // a lease is one chunk
-  server.Create(SpecOf(kind, 0.0125, kMaxSamples, 1));
-  OpenOnePoint(server);
+  server.Create(kind, 0.0125, kMaxSamples, 1);
+  server.Open(*server.local.Next());
   std::vector<Lease> leases;
-  while (leases.size() < chunks) {
-    std::optional<Lease> lease = server.scheduler().Next(server.remote().capacity());
-    if (!lease) break;
-    leases.push_back(*std::move(lease));
-  }
+  while (leases.size() < kChunks) leases.push_back(server.remote.Next().value());
   std::mt19937_64 random(1);
   if (!in_order) std::shuffle(leases.begin(), leases.end(), random);
-  FakeChunks computed;
-  Meter meter;
-  for (const Lease& lease : leases) {
-    std::vector<ChunkResult> results = computed.Of(lease);
-    meter.Measure([&] {
-      ExitUnless(server.scheduler().Report(lease, {.chunks = std::move(results)}));
-      server.scheduler().Return(lease);
-      return 0;
-    });
+  std::optional<BlockResult> block;
+  std::vector<std::vector<ChunkResult>> results;
+  for (const Lease& lease : leases) results.push_back(ChunksOf(lease, block));
+  for (auto _ : state) {
+    for (size_t i = 0; i < leases.size(); ++i) {
+      ExitUnless(server.scheduler.Report(leases[i], {.chunks = std::move(results[i])}));
+      server.scheduler.Return(leases[i]);
+    }
+    server.store->Flush().IgnoreError();
   }
-  server.store().Flush().IgnoreError();
-  const auto n = static_cast<double>(leases.size());
-  absl::PrintF("| %s | %s | %.0f | %.0f | %.0f |\n", std::string(kind.name),
-               in_order ? "in order" : "random", n / meter.WallSeconds(),
-               1e6 * meter.ServerSeconds() / n, PeakMegabytes());
-  std::fflush(stdout);
-  std::_Exit(0);  // the job is not finished
+  state.counters["chunks"] = benchmark::Counter(kChunks, benchmark::Counter::kIsRate);
 }
 
-// ---- a sweep ----
+// ---- a sweep on a cluster ----
 
 class Sweep {
  public:
-  Sweep(Server& server, size_t cores) : server_(server), idle_{cores, Server::kLocalCores} {}
+  Sweep(benchmark::State& state, Server& server, size_t cores)
+      : state_(state), server_(server), cores_(cores), idle_elsewhere_(cores) {}
 
   void Run() {
-    while (server_.active_jobs() > 0) {
+    while (server_.book.active_jobs() > 0) {
       const bool began = BeginLeases();
-      if (events_.empty()) {
-        if (!began) server_.store().Flush().IgnoreError();  // the job's end is on its way
-        continue;
+      if (!events_.empty()) {
+        EndNext();
+      } else if (!began) {
+        server_.store->Flush().IgnoreError();  // the job's end is on its way
       }
-      EndNext();
     }
-  }
-
-  void Print(double delta, int points) const {
-    absl::PrintF("| %g | %d | %d | %.0f | %.0f | %.0f %% | %.1f | %.0f |\n", delta, points, cores_,
-                 work_, now_, 100 * work_elsewhere_ / (now_ * double(cores_)),
-                 meter_.ServerSeconds(), PeakMegabytes());
-    std::fflush(stdout);
+    state_.counters["virtual_s"] = now_;
+    state_.counters["work_s"] = work_;  // of all cores
+    state_.counters["busy"] = work_elsewhere_ / (now_ * static_cast<double>(cores_));
   }
 
  private:
@@ -267,48 +184,34 @@ class Sweep {
 
   bool BeginLeases() {
     bool began = false;
-    while (idle_[1] > 0 && BeginLocal()) began = true;
-    while (idle_[0] > 0 && BeginElsewhere()) began = true;
-    return began;
-  }
-
-  // Empty, and without a call, if the executor has found nothing and was not woken since.
-  std::optional<Lease> Next(SimulatedExecutor& executor) {
-    if (!executor.is_woken()) return std::nullopt;
-    auto lease = meter_.Measure([&] { return server_.scheduler().Next(executor.capacity()); });
-    if (!lease) executor.set_woken(false);
-    return lease;
-  }
-
-  bool BeginLocal() {
-    std::optional<Lease> lease = Next(server_.local());
-    if (!lease) return false;
-    if (lease->OpensPoints()) {
-      meter_.Measure([&] {
-        for (const size_t point : lease->opens) server_.scheduler().Open(*lease, point);
-        return server_.scheduler().EndTurn(*lease, 0);
-      });
-      return true;
+    while (idle_here_ > 0) {
+      std::optional<Lease> lease = server_.local.Next();
+      if (!lease) break;
+      began = true;
+      if (lease->OpensPoints()) {
+        server_.Open(*lease);
+        continue;
+      }
+      --idle_here_;
+      Begin({.local = true, .lease = *std::move(lease)});
     }
-    --idle_[1];
-    Begin({.local = true, .lease = *std::move(lease)});
-    return true;
-  }
-
-  bool BeginElsewhere() {
-    std::optional<Lease> lease = Next(server_.remote());
-    if (!lease) return false;
-    --idle_[0];
-    const bool lost = random_() % 100 == 0;
-    Begin({.lost = lost, .lease = *std::move(lease)});
-    return true;
+    while (idle_elsewhere_ > 0) {
+      std::optional<Lease> lease = server_.remote.Next();
+      if (!lease) break;
+      began = true;
+      --idle_elsewhere_;
+      const bool lost = random_() % 100 == 0;
+      Begin({.lost = lost, .lease = *std::move(lease)});
+    }
+    return began;
   }
 
   void Begin(Event event) {
     const double jitter = 0.8 + 0.4 * static_cast<double>(random_() >> 11) * 0x1p-53;
-    event.time = now_ + event.lease.seconds * jitter;
-    work_ += event.lease.seconds * jitter;
-    if (!event.local) work_elsewhere_ += event.lease.seconds * jitter;
+    const double work = event.lease.seconds * jitter;
+    event.time = now_ + work;
+    work_ += work;
+    if (!event.local) work_elsewhere_ += work;
     events_.push(std::move(event));
   }
 
@@ -316,72 +219,64 @@ class Sweep {
     const Event event = events_.top();
     events_.pop();
     now_ = event.time;
-    ++idle_[event.local ? 1 : 0];
+    ++(event.local ? idle_here_ : idle_elsewhere_);
     const Lease& lease = event.lease;
-    std::vector<ChunkResult> chunks;
-    if (!event.lost) chunks = computed_.Of(lease);
-    meter_.Measure([&] {
-      Scheduler& scheduler = server_.scheduler();
-      if (!chunks.empty()) {
-        ExitUnless(
-            scheduler.Report(lease, {.chunks = std::move(chunks), .seconds = lease.seconds}));
-      }
-      if (event.local) {
-        scheduler.EndTurn(lease, lease.seconds);
-      } else {
-        scheduler.Return(lease);
-      }
-      return 0;
-    });
+    if (!event.lost) {
+      state_.PauseTiming();
+      LeaseReport report = {.chunks = ChunksOf(lease, block_), .seconds = lease.seconds};
+      state_.ResumeTiming();
+      ExitUnless(server_.scheduler.Report(lease, std::move(report)));
+    }
+    if (event.local) {
+      server_.scheduler.EndTurn(lease, lease.seconds);
+    } else {
+      server_.scheduler.Return(lease);
+    }
   }
 
+  benchmark::State& state_;
   Server& server_;
-  Meter meter_;
-  FakeChunks computed_;
+  const size_t cores_;
+  size_t idle_elsewhere_, idle_here_ = kLocalCores;
+  std::optional<BlockResult> block_;
   std::mt19937_64 random_{1};
-  size_t idle_[2];  // cores elsewhere and here
-  const size_t cores_ = idle_[0];
   std::priority_queue<Event> events_;
   double now_ = 0;  // virtual
   double work_ = 0, work_elsewhere_ = 0;
 };
 
-void SweepOrbits(double delta, int points, size_t cores) {
-  Server server(kLeaseSeconds);
-  server.Create(SpecOf(kFirstHit, delta, 1'000'000'000, points));
-  Sweep sweep(server, cores);
-  sweep.Run();
-  sweep.Print(delta, points);
-}
-
-// ---- processes ----
-
-void InOwnProcess(const std::function<void()>& row) {
-  std::fflush(stdout);
-  const pid_t child = fork();
-  if (child == 0) {
-    row();
-    std::_Exit(0);
+void SweepOrbits(benchmark::State& state, double delta, int points, size_t cores) {
+  malloc_trim(0);
+  std::ofstream("/proc/self/clear_refs") << "5";  // forgets the largest memory so far
+  for (auto _ : state) {
+    Server server(kLeaseSeconds);
+    server.Create(kFirstHit, delta, 1'000'000'000, points);
+    Sweep(state, server, cores).Run();
   }
-  waitpid(child, nullptr, 0);
+  state.counters["peak_MB"] = MiBOf("self", "VmHWM:");
 }
 
-void PrintTables(size_t chunks, int points) {
-  std::puts(
-      "| experiment | order | chunks/s | server us/chunk | peak MB |\n"
-      "|---|---|---|---|---|");
+void AddRow(const std::string& name, const std::function<void(benchmark::State&)>& row) {
+  benchmark::RegisterBenchmark(name.c_str(), row)
+      ->MeasureProcessCPUTime()
+      ->UseRealTime()
+      ->Unit(benchmark::kSecond)
+      ->Iterations(1)
+      ->Repetitions(1);
+}
+
+void AddRows() {
   for (const ExperimentKind* kind : {&kEquilibrium, &kFirstHit}) {
     for (const bool in_order : {true, false}) {
-      InOwnProcess([&] { AcceptChunks(*kind, in_order, chunks); });
+      AddRow(absl::StrCat("accept/", kind->name, in_order ? "/in_order" : "/random"),
+             [=](benchmark::State& state) { AcceptChunks(state, *kind, in_order); });
     }
   }
-  std::puts(
-      "\n| delta | points of 1e9 orbits | cores | work, core s | virtual s | cores busy | "
-      "server's processor s | peak MB |\n|---|---|---|---|---|---|---|---|");
   for (const double delta : {0.1, 0.0125}) {
-    for (const int size : {1, points}) {
+    for (const int points : {1, 1000}) {
       for (const size_t cores : {size_t{1'000}, size_t{100'000}}) {
-        InOwnProcess([&] { SweepOrbits(delta, size, cores); });
+        AddRow(absl::StrCat("sweep/delta:", delta, "/points_of_1e9:", points, "/cores:", cores),
+               [=](benchmark::State& state) { SweepOrbits(state, delta, points, cores); });
       }
     }
   }
@@ -391,7 +286,8 @@ void PrintTables(size_t chunks, int points) {
 }  // namespace ballpiston::server
 
 int main(int argc, char** argv) {
-  const size_t chunks = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 5000;
-  const int points = argc > 2 ? std::atoi(argv[2]) : 1000;
-  ballpiston::server::PrintTables(chunks, points);
+  ballpiston::server::AddRows();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
 }
