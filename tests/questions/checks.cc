@@ -5,6 +5,9 @@
 namespace ballpiston::questions {
 namespace {
 
+// Thirty thousand years of a processor.
+constexpr double kMostPlannedSeconds = 1e12;
+
 #ifdef BALLPISTON_SANITIZED
 constexpr bool kIsSanitized = true;
 #else

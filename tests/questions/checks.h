@@ -1,4 +1,4 @@
-// The outcome of a question, and the rules that hold for its answer. README.md lists them.
+// The outcome of a question, and the rules that hold for its answer. README.md lists the rules.
 #pragma once
 
 #include "ballpiston/v1/ensemble.pb.h"
@@ -9,8 +9,15 @@
 
 namespace ballpiston::questions {
 
+// The names of the rules.
+inline constexpr char kCrashCheck[] = "crash", kEndCheck[] = "end", kRefusalCheck[] = "refusal",
+                      kPlanCheck[] = "plan", kMemoryCheck[] = "memory", kFiniteCheck[] = "finite",
+                      kFalseZeroCheck[] = "false zero", kMeasuredCheck[] = "measured",
+                      kHealthCheck[] = "health", kLawCheck[] = "law",
+                      kAgreementCheck[] = "agreement", kCallCheck[] = "call", kJobCheck[] = "job";
+
 struct Finding {
-  std::string check;  // the name of the rule that is broken
+  std::string check;  // the rule that is broken
   std::string what;
 };
 
@@ -21,21 +28,11 @@ struct Report {
   Findings findings = {};
 
   bool Breaks(const std::string& check) const {
-    for (const Finding& finding : findings) {
-      if (finding.check == check) return true;
-    }
-    return false;
+    return std::any_of(findings.begin(), findings.end(),
+                       [&](const Finding& finding) { return finding.check == check; });
   }
-  void Add(Findings more) {
-    findings.insert(findings.end(), std::make_move_iterator(more.begin()),
-                    std::make_move_iterator(more.end()));
-  }
+  void Add(const Findings& more) { findings.insert(findings.end(), more.begin(), more.end()); }
 };
-
-// ---- crash, end: no process dies, and every question ends ----
-
-inline constexpr char kCrashCheck[] = "crash";
-inline constexpr char kEndCheck[] = "end";
 
 // A question that was planned at 0.1 s or less, and takes more processor time than this, is
 // reported as one that never ends.
@@ -45,31 +42,19 @@ inline constexpr int kMostProcessorSeconds = 200;
 inline constexpr int kMostProcessorSeconds = 30;
 #endif
 
-// ---- refusals ----
-
 // A refusal must name the field, the value that the question had, and the permitted values.
-inline constexpr char kRefusalCheck[] = "refusal";
-
 // `violations`: those of `spec`, with paths that begin with "spec.".
 Findings CheckRefusal(const v1::EnsembleSpec& spec, const std::vector<FieldViolation>& violations);
 
-// ---- plan: has samples and an end ----
-
-inline constexpr char kPlanCheck[] = "plan";
-
-// Thirty thousand years of a processor. A question that takes longer has to be refused.
-inline constexpr double kMostPlannedSeconds = 1e12;
-
 // The plan of a point, by all models. The model that would answer has a number of samples and a
-// finite time; no number of any model is negative, NaN or infinite.
+// time of thirty thousand years of a processor at most: a question that takes longer has to be
+// refused. No number of any model is negative, NaN or infinite.
 Findings CheckPlan(const v1::PointPlan& plan);
 
 // The row of the model that would answer; null if there is none.
 const v1::ModelPlan* Chosen(const v1::PointPlan& plan);
 
 // ---- memory: a computation takes at most what was planned (core/ensemble/experiment_kind.h) ----
-
-inline constexpr char kMemoryCheck[] = "memory";
 
 // Code that runs for the first time, caches of closed forms, and the answer itself, in bytes.
 inline constexpr double kMemoryOfAnyAnswer = 3e7;
@@ -88,31 +73,17 @@ class PeakMemory {
 // Under a sanitizer, which takes memory of its own, every measured value passes.
 Findings CheckMemory(double planned, double measured);
 
-// ---- finite: no number is NaN or infinite ----
-
-inline constexpr char kFiniteCheck[] = "finite";
+// ---- the answer at each point ----
 
 Findings CheckFinite(const google::protobuf::Message& message);
 
 // The same for a summary, which still has the numbers that the server leaves out of a message.
 Findings CheckFinite(const PointSummary& summary);
 
-// ---- the answer at each point ----
-
-inline constexpr char kFalseZeroCheck[] = "false zero";
-inline constexpr char kMeasuredCheck[] = "measured";
-inline constexpr char kHealthCheck[] = "health";
-inline constexpr char kLawCheck[] = "law";
-
 // With at least so many samples a result needs an error, or a remark that says why there is none.
 inline constexpr double kEnoughSamples = 1000;
 
-// finite       no number is NaN or infinite
-// false zero   an error of 0 is stated for exact values alone, and no error is below the rounding
-//              of its value
-// measured     something was measured, or a remark says why not
-// health       no orbit left its cell, and the energy is conserved
-// law          the expected probabilities of a law sum to 1
+// finite, false zero, measured, health and law.
 Findings CheckAnswer(const v1::EnsembleSpec& spec, const v1::PointResult& result);
 
 // ---- agreement: all models that answer a question agree within their stated errors ----
@@ -127,8 +98,6 @@ Findings CheckAnswer(const v1::EnsembleSpec& spec, const v1::PointResult& result
 // samples. False alarms: a normal deviate exceeds 5 sigma with probability 5.7e-7, twice with
 // 3e-13. Estimates from 1,000 samples are skewed; with a probability as large as 1e-4 of such a
 // deviation, 20,000 questions with 20 comparisons each give a false alarm in 250 runs.
-
-inline constexpr char kAgreementCheck[] = "agreement";
 
 // At the first point of the question. `most_seconds`: for each model, on `machine`.
 Findings CheckAgreement(const EnsembleSpec& spec, const Machine& machine, double most_seconds);

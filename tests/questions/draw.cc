@@ -1,17 +1,48 @@
-#include "tests/questions/draw.h"
+#include <google/protobuf/descriptor.h>
 
 #include "client/output/json.h"
+#include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/parameter.h"
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/temperature.h"
+#include "core/sampling/counter_random.h"
 #include "server/convert/spec.h"
 #include "tests/core/model_choice/questions.h"
 #include "tests/questions/engine.h"
+#include "tests/questions/question.h"
 
 namespace ballpiston::questions {
 namespace {
+
+// The same choices on every machine.
+class Dice {
+ public:
+  Dice(uint64_t seed, uint64_t number) : random_(seed, 0, number) {}
+
+  uint64_t Bits() { return random_.Bits(); }
+  double Uniform() { return random_.Uniform(); }
+  bool Chance(double probability) { return Uniform() < probability; }
+  size_t Below(size_t n) { return static_cast<size_t>(Uniform() * static_cast<double>(n)); }
+  double Between(double lower, double upper) { return lower + (upper - lower) * Uniform(); }
+  double LogBetween(double lower, double upper) {
+    return std::exp(Between(std::log(lower), std::log(upper)));
+  }
+  template <typename T>
+  T Pick(const std::vector<T>& list) {
+    return list[Below(list.size())];
+  }
+
+ private:
+  CounterRandom random_;
+};
+
+// The neighbours of x among the doubles.
+inline double Above(double x) { return std::nextafter(x, std::numeric_limits<double>::infinity()); }
+inline double Below(double x) {
+  return std::nextafter(x, -std::numeric_limits<double>::infinity());
+}
 
 // ---- values of parameters ----
 //
@@ -46,21 +77,11 @@ double Rho(Dice& dice, bool extreme) {
 
 double Delta(Dice& dice, double bound, bool extreme) {
   if (!extreme) return bound * dice.LogBetween(0.05, 1);
-  switch (dice.Below(8)) {
-    case 0:
-      return std::max(bound * std::pow(10, -dice.Between(0, 324)),
-                      std::numeric_limits<double>::denorm_min());
-    case 1:
-      return std::min(bound * (1 + kDeltaSlack / 2), Below(0.5));
-    case 2:
-      return bound;
-    case 3:
-      return Below(bound);
-    case 4:
-      return bound * (1 - std::pow(10, -dice.Between(0.5, 16)));
-    default:
-      return bound * std::pow(10, -dice.Between(0, 17));
-  }
+  constexpr double kLeast = std::numeric_limits<double>::denorm_min();
+  if (dice.Chance(0.15)) return std::max(bound * std::pow(10, -dice.Between(0, 324)), kLeast);
+  if (dice.Chance(0.15)) return std::min(bound * (1 + kDeltaSlack / 2), Below(0.5));
+  if (dice.Chance(0.5)) return bound * std::pow(10, -dice.Between(0, 17));
+  return NearAnEnd(dice, kLeast, bound);
 }
 
 double Epsilon(Dice& dice, bool extreme) {
@@ -103,6 +124,125 @@ double Cold(Dice& dice, double hot, bool extreme) {
   return std::max(hot * std::pow(10, -dice.Between(0, most)), kMinTemperature);
 }
 
+// ---- defects ----
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kTiny = std::numeric_limits<double>::denorm_min();
+
+// Numbers slightly or far outside of the domain of a parameter.
+std::vector<double> NumbersOutside(const Parameter& parameter, double bound_of_delta) {
+  if (&parameter == &kRho) {
+    return {kMinRho, Below(kMinRho), kMaxRho,     Above(kMaxRho), 0, -0.53,
+            1,       1e300,          kNotANumber, kInfinity};
+  }
+  if (&parameter == &kDelta) {
+    const double bound = bound_of_delta;
+    return {
+        0,   -kTiny,      -0.1,     bound * (1 + 3 * kDeltaSlack), bound * (1 + 1e-9), 2 * bound,
+        0.5, kNotANumber, kInfinity};
+  }
+  if (&parameter == &kEpsilon) return {-kTiny, -0.1, Above(0.5), 1, 1e300, kNotANumber, -kInfinity};
+  if (&parameter == &kExponent) {
+    return {-kTiny, -1, Above(kMaxExponent), 1e300, kNotANumber, kInfinity};
+  }
+  return {Below(kMinTemperature), Above(kMaxTemperature), 0, -1, kTiny, kNotANumber, kInfinity};
+}
+
+// Makes the first value of the parameter one that is not permitted.
+void SetValueOutside(Dice& dice, const Parameter& parameter, double bound, v1::Grid& grid) {
+  const auto* const list = grid.GetDescriptor()->FindFieldByName(std::string(parameter.name));
+  const google::protobuf::Reflection& reflection = *grid.GetReflection();
+  if (&parameter == &kCells) {
+    return grid.set_cells(
+        0, dice.Pick<std::string>({"0", "0x4", "4x0", "1000001", "1001x1000", "-1", "2.5", "x", "",
+                                   "99999999999999999999", "3x3x3", "4294967296x4294967296"}));
+  }
+  if (reflection.FieldSize(grid, list) == 0) reflection.AddDouble(&grid, list, 0);
+  const bool is_below_cold = &parameter == &kHot && dice.Chance(0.5);
+  reflection.SetRepeatedDouble(&grid, list, 0,
+                               is_below_cold ? std::nextafter(grid.cold(0), 0)
+                                             : dice.Pick(NumbersOutside(parameter, bound)));
+}
+
+void SetSamplesOrCollisions(Dice& dice, int64_t count, v1::Target& target) {
+  dice.Chance(0.5) ? target.set_collisions(count) : target.set_samples(count);
+}
+
+bool Uses(const ExperimentKind& experiment, const Parameter& parameter) {
+  return std::any_of(experiment.parameters.begin(), experiment.parameters.end(),
+                     [&](const ParameterUse& use) { return use.parameter == &parameter; });
+}
+
+// Adds a defect and returns what it is.
+std::string SomeDefect(Dice& dice, const ExperimentKind& experiment, double bound,
+                       v1::EnsembleSpec& spec) {
+  constexpr int kUnknown = 99;  // in no enumeration
+  constexpr int kEach = 317;    // its square is above kMaxPoints
+  v1::Grid& grid = *spec.mutable_grid();
+  v1::Target& target = *spec.mutable_target();
+  switch (dice.Below(28)) {
+    case 0:
+      if (!Uses(experiment, kEpsilon)) {
+        grid.add_epsilon(0.1);
+      } else if (!Uses(experiment, kHot)) {
+        grid.add_hot(1);
+      }
+      return "a list is not used";
+    case 1:
+      dice.Chance(0.5) ? grid.clear_rho() : grid.clear_delta();
+      return "a list is missing";
+    case 2:
+      target.Clear();
+      SetSamplesOrCollisions(
+          dice,
+          dice.Pick<int64_t>({0, -1, kMaxSamples + 1, std::numeric_limits<int64_t>::min(),
+                              std::numeric_limits<int64_t>::max()}),
+          target);
+      return "the count is outside";
+    case 3:
+      target.set_tolerance(dice.Pick<double>({0, -0.01, 1, 1.5, kNotANumber}));
+      return "the tolerance is outside";
+    case 4:
+      target.clear_kind();
+      target.mutable_budget()->set_seconds(
+          dice.Pick<int64_t>({0, -1, static_cast<int64_t>(kMaxBudgetSeconds)}));
+      target.mutable_budget()->set_nanos(target.budget().seconds() > 0 ? 1 : 0);
+      return "the budget is outside";
+    case 5:
+      SetSamplesOrCollisions(dice, 64, target);
+      target.mutable_budget()->set_seconds(1);
+      return "a count and a budget";
+    case 6:
+      spec.set_model(v1::EnsembleSpec::BILLIARD);
+      spec.set_verify(true);
+      return "verify is set with a model";
+    case 7:
+      spec.set_experiment(static_cast<v1::EnsembleSpec::Experiment>(kUnknown));
+      return "the experiment is not known";
+    case 8:
+      spec.set_model(static_cast<v1::EnsembleSpec::Model>(kUnknown));
+      return "the model is not known";
+    case 9:
+      spec.set_precision(static_cast<v1::EnsembleSpec::Precision>(kUnknown));
+      return "the precision is not known";
+    case 10:
+      for (int i = 1; i < kEach; ++i) {
+        grid.add_rho(grid.rho(0));
+        grid.add_delta(grid.delta(0));
+      }
+      return "the grid has too many points";
+    case 11:
+      target.set_estimate("heat");
+      return "the estimate is not known";
+    default: {
+      const ParameterUse& use = experiment.parameters[dice.Below(experiment.parameters.size())];
+      SetValueOutside(dice, *use.parameter, bound, grid);
+      return absl::StrCat("a value of ", use.parameter->name, " is outside");
+    }
+  }
+}
+
 // ---- questions ----
 
 constexpr double kDefects = 1.0 / 7;
@@ -123,7 +263,9 @@ class Drawing {
     SetMethod();
     SetTarget();
     Question question = {spec_};
-    if (dice_.Chance(kDefects)) AddDefect(dice_, experiment_, bound_, question);
+    if (dice_.Chance(kDefects)) {
+      question.defect = SomeDefect(dice_, experiment_, bound_, question.spec);
+    }
     return question;
   }
 

@@ -1,4 +1,4 @@
-// A question to the service, the command line that asks it, and the generator.
+// A question to the service, the command line that asks it, and the generator (draw.cc).
 #pragma once
 
 #include "ballpiston/v1/spec.pb.h"

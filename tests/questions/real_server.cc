@@ -6,9 +6,6 @@
 namespace ballpiston::questions {
 namespace {
 
-constexpr char kCallCheck[] = "call";
-constexpr char kJobCheck[] = "job";
-
 bool MayMissItsTolerance(const v1::Target& target) {
   return target.has_tolerance() && target.has_budget();
 }

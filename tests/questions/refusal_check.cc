@@ -13,11 +13,10 @@ namespace ballpiston::questions {
 namespace {
 
 using google::protobuf::FieldDescriptor;
-using google::protobuf::Message;
 using Texts = std::vector<std::string>;
 
 // The texts of a list's values.
-Texts TextsOfList(const Message& grid, const FieldDescriptor& list) {
+Texts TextsOfList(const v1::Grid& grid, const FieldDescriptor& list) {
   const google::protobuf::Reflection& reflection = *grid.GetReflection();
   Texts texts;
   for (int i = 0; i < reflection.FieldSize(grid, &list); ++i) {
@@ -28,53 +27,37 @@ Texts TextsOfList(const Message& grid, const FieldDescriptor& list) {
   return texts;
 }
 
-Texts TextsOfGrid(const v1::Grid& grid) {
-  Texts texts;
-  for (int i = 0; i < grid.GetDescriptor()->field_count(); ++i) {
-    for (std::string& text : TextsOfList(grid, *grid.GetDescriptor()->field(i))) {
-      texts.push_back(std::move(text));
-    }
-  }
-  return texts;
-}
-
-// NAME[INDEX] or NAME.
+// `path`: NAME[INDEX] or NAME.
 Texts TextsOfGridField(const v1::Grid& grid, absl::string_view path) {
   const std::vector<std::string> parts = absl::StrSplit(path, absl::ByAnyChar("[]"));
   const FieldDescriptor* const list = grid.GetDescriptor()->FindFieldByName(parts[0]);
   if (list == nullptr) return {};
   const Texts texts = TextsOfList(grid, *list);
   size_t index = 0;
-  if (parts.size() < 2 || !absl::SimpleAtoi(parts[1], &index)) {
-    return {texts.empty()
-                ? "is empty"
-                : absl::StrCat("has ", texts.size(), texts.size() == 1 ? " value" : " values")};
+  if (parts.size() > 1 && absl::SimpleAtoi(parts[1], &index)) {
+    return index < texts.size() ? Texts{texts[index]} : Texts();
   }
-  return index < texts.size() ? Texts{texts[index]} : Texts();
-}
-
-Texts TextsOfTarget(const v1::Target& target, absl::string_view name) {
-  constexpr char kDefault[] = "by default";
-  if (name == "samples") return {absl::StrCat(target.samples()), kDefault};
-  if (name == "collisions") return {absl::StrCat(target.collisions())};
-  if (name == "tolerance") return {NumberText(target.tolerance())};
-  if (name == "estimate") return {absl::CEscape(target.estimate())};
-  if (name != "budget") return {};
-  return {NumberText(BudgetSeconds(target)), "is set together"};
+  return {texts.empty() ? "is empty" : absl::StrCat("has ", texts.size(), " value")};
 }
 
 // How a description may show the value of the field; empty if there is no such field.
 Texts TextsOf(const v1::EnsembleSpec& spec, absl::string_view field) {
   if (absl::ConsumePrefix(&field, "grid.")) return TextsOfGridField(spec.grid(), field);
-  if (absl::ConsumePrefix(&field, "target.")) return TextsOfTarget(spec.target(), field);
-  if (field == "grid") return {"points"};
-  if (field == "experiment") return {absl::StrCat(int{spec.experiment()}), "is missing"};
-  if (field == "model") {
-    return {absl::StrCat(int{spec.model()}), std::string(Name(server::CheckSpec(spec).spec.model))};
-  }
-  if (field == "precision") return {absl::StrCat(int{spec.precision()}), "single"};
-  if (field == "verify") return {"is set"};
-  return {};
+  const v1::Target& target = spec.target();
+  const std::map<absl::string_view, Texts> others = {
+      {"grid", {"points"}},
+      {"experiment", {absl::StrCat(int{spec.experiment()}), "is missing"}},
+      {"model",
+       {absl::StrCat(int{spec.model()}), std::string(Name(server::CheckSpec(spec).spec.model))}},
+      {"precision", {absl::StrCat(int{spec.precision()}), "single"}},
+      {"verify", {"is set"}},
+      {"target.samples", {absl::StrCat(target.samples()), "by default"}},
+      {"target.collisions", {absl::StrCat(target.collisions())}},
+      {"target.tolerance", {NumberText(target.tolerance())}},
+      {"target.estimate", {absl::CEscape(target.estimate())}},
+      {"target.budget", {NumberText(BudgetSeconds(target)), "is set together"}}};
+  const auto found = others.find(field);
+  return found == others.end() ? Texts() : found->second;
 }
 
 bool HasOneOf(absl::string_view description, const Texts& texts) {
@@ -84,9 +67,12 @@ bool HasOneOf(absl::string_view description, const Texts& texts) {
 
 // A tolerance may be impossible because of a value of the grid. The description then names that.
 bool NamesAValueOfTheGrid(const v1::Grid& grid, absl::string_view description) {
-  Texts texts;
-  for (const std::string& text : TextsOfGrid(grid)) texts.push_back(absl::StrCat("= ", text));
-  return HasOneOf(description, texts);
+  for (int i = 0; i < grid.GetDescriptor()->field_count(); ++i) {
+    for (const std::string& text : TextsOfList(grid, *grid.GetDescriptor()->field(i))) {
+      if (absl::StrContains(description, absl::StrCat("= ", text))) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -94,22 +80,20 @@ bool NamesAValueOfTheGrid(const v1::Grid& grid, absl::string_view description) {
 Findings CheckRefusal(const v1::EnsembleSpec& spec, const std::vector<FieldViolation>& violations) {
   Findings findings;
   for (const auto& [path, description] : violations) {
-    const auto add = [&](const char* what) {
+    absl::string_view field = path;
+    const Texts texts = absl::ConsumePrefix(&field, "spec.") ? TextsOf(spec, field) : Texts();
+    const auto add_unless = [&](bool is_so, const char* what) {
+      if (is_so) return;
       findings.push_back({kRefusalCheck, absl::StrCat(what, ": ", path, " ", description)});
     };
-    absl::string_view field = path;
-    const bool is_of_spec = absl::ConsumePrefix(&field, "spec.");
-    const Texts texts = TextsOf(spec, field);
-    if (!is_of_spec || texts.empty()) {
-      add("names no field");
+    if (texts.empty()) {
+      add_unless(false, "names no field");
       continue;
     }
-    if (!HasOneOf(description, texts) && !NamesAValueOfTheGrid(spec.grid(), description)) {
-      add("does not show the value");
-    }
-    if (!HasOneOf(description, {"permitted", "needs", "does not use", "use ", "is it older"})) {
-      add("does not say what is permitted");
-    }
+    add_unless(HasOneOf(description, texts) || NamesAValueOfTheGrid(spec.grid(), description),
+               "does not show the value");
+    add_unless(HasOneOf(description, {"permitted", "needs", "does not use", "use ", "is it older"}),
+               "does not say what is permitted");
   }
   return findings;
 }
