@@ -1,7 +1,6 @@
 // Ctrl-C, SIGTERM and SIGHUP while the client submits or watches a job: the client ends at once,
 // and the job continues.
 #include "tests/end_to_end/programs.h"
-#include "tests/support/terminal_process.h"
 
 namespace ballpiston {
 namespace {
@@ -17,6 +16,11 @@ class InterruptTest : public ::testing::Test {
   // A run that takes years.
   static Words EndlessRun(const std::string& flags) {
     return Joined({{"run"}, kEndlessQuestion, Split(flags)});
+  }
+  ProcessOptions EndlessRunOnATerminal() const {
+    ProcessOptions options = server_.Command(EndlessRun(""));
+    options.on_terminal = true;
+    return options;
   }
 
   const TestServer server_;
@@ -45,15 +49,15 @@ TEST_F(InterruptTest, EachSignalEndsTheClientAndTheJobGoesOn) {
 // The message replaces the bar. It is the last output, however often Ctrl-C was pressed.
 TEST_F(InterruptTest, OnATerminalTheMessageReplacesTheBar) {
   for (const std::string presses : {"\x03", "\x03\x03"}) {
-    TerminalProcess run(server_.Command(EndlessRun("")));
-    ASSERT_TRUE(run.WaitFor("0/1 points"));
+    Process run(EndlessRunOnATerminal());
+    ASSERT_TRUE(run.WaitForOut("0/1 points"));
     run.Type(presses);
-    const TerminalProcess::Outcome outcome = run.Wait();
-    EXPECT_EQ(outcome.exit_code, 130);
-    const size_t message = outcome.output.find("\r\x1b[KThe job continues.\r\n");
-    ASSERT_NE(message, std::string::npos) << outcome.output;
-    EXPECT_EQ(outcome.output.find("points", message), std::string::npos) << outcome.output;
-    EXPECT_THAT(outcome.output, EndsWith("--server " + server_.address() + "\r\n"));
+    const ProcessResult result = run.Wait();
+    EXPECT_THAT(result, ExitsWith(130));
+    const size_t message = result.out.find("\r\x1b[KThe job continues.\r\n");
+    ASSERT_NE(message, std::string::npos) << result.out;
+    EXPECT_EQ(result.out.find("points", message), std::string::npos) << result.out;
+    EXPECT_THAT(result.out, EndsWith("--server " + server_.address() + "\r\n"));
     EXPECT_THAT(State(), AnyOf("QUEUED", "RUNNING"));
   }
 }
@@ -75,10 +79,10 @@ TEST_F(InterruptTest, DuringASubmissionTheMessageHasTheRequestId) {
 }
 
 TEST_F(InterruptTest, AClosedTerminalEndsTheClientAndTheJobGoesOn) {
-  TerminalProcess run(server_.Command(EndlessRun("")));
-  ASSERT_TRUE(run.WaitFor("0/1 points"));
+  Process run(EndlessRunOnATerminal());
+  ASSERT_TRUE(run.WaitForOut("0/1 points"));
   run.CloseTerminal();
-  EXPECT_EQ(run.Wait().exit_code, 130);
+  EXPECT_THAT(run.Wait(), ExitsWith(130));
   EXPECT_THAT(State(), AnyOf("QUEUED", "RUNNING"));
 }
 

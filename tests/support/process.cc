@@ -2,7 +2,8 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
+#include <pty.h>
+#include <sys/eventfd.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 
@@ -76,35 +77,60 @@ auto Uninterrupted(Call call) {
 
 }  // namespace
 
-Process::Process(const ProcessOptions& options) {
-  const Pipe in, out, err;
+Process::Process(const ProcessOptions& options) : closed_(eventfd(0, EFD_CLOEXEC)) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, in.read, STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, out.write, STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, err.write, STDERR_FILENO);
+  std::vector<int> ends;  // of the program
+  if (options.on_terminal) {
+    char name[100];
+    int end = -1;
+    if (openpty(&out_.descriptor, &end, name, nullptr, nullptr) != 0) {
+      throw std::runtime_error("no pseudo-terminal");
+    }
+    ends = {end};
+    fcntl(out_.descriptor, F_SETFD, FD_CLOEXEC);
+    // The first terminal that the leader of a session opens becomes the session's.
+    posix_spawn_file_actions_addclose(&actions, end);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, name, O_RDWR, 0);
+    posix_spawn_file_actions_adddup2(&actions, STDIN_FILENO, STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, STDIN_FILENO, STDERR_FILENO);
+  } else {
+    const Pipe in, out, err;
+    ends = {in.read, out.write, err.write};
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+      posix_spawn_file_actions_adddup2(&actions, ends[static_cast<size_t>(stream)], stream);
+    }
+    out_.descriptor = out.read;
+    err_.descriptor = err.read;
+    writer_ = std::thread([input = options.input, end = in.write] { WriteAll(end, input); });
+  }
+  Start(options, actions);
+  for (const int end : ends) close(end);
+  for (Stream* stream : {&out_, &err_}) {
+    stream->ended = stream->descriptor < 0;
+    if (!stream->ended) stream->reader = std::thread([this, stream] { Read(*stream); });
+  }
+}
+
+void Process::Start(const ProcessOptions& options, posix_spawn_file_actions_t& actions) {
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+  const int session = options.on_terminal ? POSIX_SPAWN_SETSID : 0;
+  posix_spawnattr_setflags(&attributes, static_cast<short>(POSIX_SPAWN_SETSIGDEF | session));
   const sigset_t signals = SignalsThatEndPrograms();
   posix_spawnattr_setsigdefault(&attributes, &signals);
-  const std::vector<std::string> environment = Environment(options.environment);
+  std::map<std::string, std::string> changes = options.environment;
+  if (options.on_terminal) changes["TERM"] = "xterm";
+  const std::vector<std::string> environment = Environment(changes);
   std::vector<std::string> command = {"setpriv", "--pdeathsig", "KILL"};
   command.insert(command.end(), options.command.begin(), options.command.end());
   const int error = posix_spawnp(&pid_, command[0].c_str(), &actions, &attributes,
                                  Pointers(command).data(), Pointers(environment).data());
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
-  for (const int end : {in.read, out.write, err.write}) close(end);
   if (error != 0) {
     throw std::runtime_error("cannot start " + options.command.at(0) +
                              " with setpriv: " + std::strerror(error));
-  }
-  writer_ = std::thread([input = options.input, end = in.write] { WriteAll(end, input); });
-  out_.descriptor = out.read;
-  err_.descriptor = err.read;
-  for (Stream* stream : {&out_, &err_}) {
-    stream->reader = std::thread([this, stream] { Read(*stream); });
   }
 }
 
@@ -113,18 +139,41 @@ Process::~Process() {
     kill(pid_, SIGKILL);
     Wait();
   }
+  close(closed_);
 }
 
 void Process::Read(Stream& stream) {
   char buffer[1 << 14];
   while (true) {
-    const ssize_t size = read(stream.descriptor, buffer, sizeof(buffer));
+    pollfd events[] = {{stream.descriptor, POLLIN, 0}, {closed_, POLLIN, 0}};
+    Uninterrupted([&] { return poll(events, std::size(events), -1); });
+    // At the end of a terminal there is the error EIO.
+    const ssize_t size = events[1].revents != 0 ? 0 : Uninterrupted([&] {
+      return read(stream.descriptor, buffer, sizeof(buffer));
+    });
     const std::lock_guard lock(mutex_);
     if (size > 0) stream.text.append(buffer, static_cast<size_t>(size));
     if (size <= 0) stream.ended = true;
     news_.notify_all();
     if (size <= 0) return;
   }
+}
+
+void Process::Close(Stream& stream) {
+  if (!stream.reader.joinable()) return;
+  stream.reader.join();
+  close(stream.descriptor);
+}
+
+void Process::Type(const std::string& keys) const {
+  if (write(out_.descriptor, keys.data(), keys.size()) != static_cast<ssize_t>(keys.size())) {
+    throw std::runtime_error("cannot type");
+  }
+}
+
+void Process::CloseTerminal() {
+  eventfd_write(closed_, 1);
+  Close(out_);
 }
 
 void Process::Signal(int signal) const {
@@ -164,15 +213,14 @@ ProcessResult Process::Wait() {
     }
     exit_code_ = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
     waited_ = true;
-    writer_.join();
+    if (writer_.joinable()) writer_.join();
     for (Stream* stream : {&out_, &err_}) {
       {
         // A program that this one started may keep the stream open.
         std::unique_lock lock(mutex_);
         AwaitNotified(news_, lock, [&] { return stream->ended; });
       }
-      stream->reader.join();
-      close(stream->descriptor);
+      Close(*stream);
     }
   }
   const std::lock_guard lock(mutex_);

@@ -7,6 +7,7 @@
 // one of them because they run in the background of a shell or under nohup.
 #pragma once
 
+#include <spawn.h>
 #include <sys/types.h>
 
 #include "tests/support/preamble.h"
@@ -17,11 +18,12 @@ struct ProcessOptions {
   std::vector<std::string> command;                     // path, arguments
   std::map<std::string, std::string> environment = {};  // added to the test's; empty: removed
   std::string input = {};                               // on standard input
+  bool on_terminal = false;  // of its own, as a user's: its input, output and standard error
 };
 
 struct ProcessResult {
   int exit_code = -1;  // 128 + signal if a signal killed it
-  std::string out;
+  std::string out;     // on a terminal: with standard error
   std::string err;
 };
 
@@ -43,6 +45,10 @@ class Process {
   pid_t pid() const { return pid_; }
   std::string Output() const;  // standard output, then standard error, so far
 
+  // On a terminal.
+  void Type(const std::string& keys) const;  // "\x03" is Ctrl-C
+  void CloseTerminal();                      // as when its window is closed: SIGHUP
+
   // Every wait ends after 15 minutes with std::runtime_error.
 
   // Waits until standard error holds the text. False if the program ended without it.
@@ -63,7 +69,9 @@ class Process {
     bool ended = false;
     std::thread reader;
   };
+  void Start(const ProcessOptions& options, posix_spawn_file_actions_t& actions);
   void Read(Stream& stream);
+  void Close(Stream& stream);
   bool WaitFor(const Stream& stream, const std::string& text);
 
   pid_t pid_ = 0;
@@ -71,7 +79,8 @@ class Process {
   bool waited_ = false;
   mutable std::mutex mutex_;
   std::condition_variable news_;
-  Stream out_, err_;
+  Stream out_, err_;    // a terminal has one
+  int closed_ = -1;     // an eventfd, which ends the reading of the terminal
   std::thread writer_;  // of standard input
 };
 
