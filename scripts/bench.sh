@@ -9,14 +9,19 @@
 set -euo pipefail
 folder=$1
 
+# engine_rows FILTER COMMAND...: the medians and the scatter of the rows, sorted by name.
+engine_rows() {
+  "${@:2}" "$folder/engine_benchmark" --benchmark_filter="$1" --benchmark_repetitions=9 \
+    --benchmark_enable_random_interleaving=true --benchmark_min_time=0.05 \
+    --benchmark_report_aggregates_only=true | grep -E '^Benchmark|_median|_cv' | LC_ALL=C sort
+}
+
 core=$(taskset -pc $$ | sed 's/.*: //; s/[,-].*//')
-repeated=(--benchmark_repetitions=9 --benchmark_enable_random_interleaving=true
-  --benchmark_min_time=0.05 --benchmark_report_aggregates_only=true)
 echo "== engine_benchmark on core $core"
-taskset -c "$core" "$folder/engine_benchmark" "${repeated[@]}" --benchmark_filter=-threads:
+engine_rows -threads: taskset -c "$core"
 echo "== scheduler_benchmark on core $core"
 taskset -c "$core" "$folder/scheduler_benchmark"
 if (($(nproc) > 1)); then
   echo "== engine_benchmark on all cores"
-  "$folder/engine_benchmark" "${repeated[@]}" --benchmark_filter=threads:
+  engine_rows threads:
 fi
