@@ -3,7 +3,6 @@
 
     tests/mutation/mutation.py [--count N] [--seed N] [--commit REVISION]
     tests/mutation/mutation.py --replay FILE    exits with 1 if a mutant is not caught any more
-    tests/mutation/mutation.py --count 0        the results so far
 
 README.md describes the output.
 """
@@ -20,7 +19,6 @@ import shutil
 import subprocess
 import tempfile
 import time
-from collections import Counter
 from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
@@ -142,23 +140,19 @@ def failure_in(output: str) -> str:
 
 
 def try_mutant(mutant: Record, jobs: int, limit: float) -> Record:
-    begin = time.monotonic()
     file = TREE / mutant["file"]
     original = file.read_text() if file.exists() else ""
     text = mutated(mutant, original)
     if text is None:
-        return {**mutant, "result": GONE, "seconds": 0.0}
-    folder = folder_of(mutant)
-    result, by = INVALID, None
+        return {**mutant, "result": GONE}
     file.write_text(text)
     try:
-        if builds(folder):
-            by = first_failure(TREE / "build/release", folder, jobs, limit)
-            result = CAUGHT if by else MISSED
+        if not builds(folder_of(mutant)):
+            return {**mutant, "result": INVALID}
+        by = first_failure(TREE / "build/release", folder_of(mutant), jobs, limit)
+        return {**mutant, "result": CAUGHT if by else MISSED, "by": by}
     finally:
         file.write_text(original)
-    seconds = round(time.monotonic() - begin, 1)
-    return {**mutant, "result": result, "by": by, "seconds": seconds}
 
 
 def unmutated_seconds(folder: str, jobs: int) -> float:
@@ -196,45 +190,30 @@ def compiled(records: Iterable[Record]) -> list[Record]:
     return [record for record in records if record.get("result") in (CAUGHT, MISSED)]
 
 
-def row(number: int, record: Record) -> str:
-    text, start, before = record["text"], record["column"], record["before"]
-    # A short change is shown with its neighbours in the line.
-    left, right = ("", "") if len(before) > 11 else (text[max(0, start - 12) : start],
-                                                     text[start + len(before) :][:12])  # fmt: skip
-    shown = (" ".join((left + part + right).split())[:40].replace("|", "\\|")
-             for part in (before, record["after"]))  # fmt: skip
+def row(record: Record) -> str:
+    """For a table in Markdown."""
+    change = [record[part].replace("|", "\\|")[:40] for part in ("text", "before", "after")]
     verdict = record["by"] if record["result"] == CAUGHT else f"**{record['result']}**"
-    change = "` -> `".join(shown)
     place = f"{record['file']}:{record['line']}"
-    return f"| {number} | {place} | {record['operator']} | `{change}` | {verdict} |"
+    shown = "`{}`: `{}` -> `{}`".format(*change).replace("\n", " ")
+    return f"| {place} | {record['operator']} | {shown} | {verdict} |"
 
 
 def table(records: list[Record]) -> str:
-    """In Markdown: each mutant, then the counts of each folder."""
-    lines = ["| | place | operator | change | caught by |", "|---|---|---|---|---|"]
-    tried = [record for record in records if record.get("result") in (CAUGHT, MISSED, GONE)]
-    lines += [row(number, record) for number, record in enumerate(tried, start=1)]
-    lines += ["", "| folder | caught | missed | share caught |", "|---|---|---|---|"]
-    counts: Counter[tuple[str, str]] = Counter()
-    for record in compiled(records):
-        for folder in (folder_of(record), "all"):
-            counts[folder, record["result"]] += 1
+    """How many mutants of each folder are caught."""
+    lines = ["", "| folder | caught | missed | share caught |", "|---|---|---|---|"]
     for folder in (*TESTS, "all"):
-        caught, missed = counts[folder, CAUGHT], counts[folder, MISSED]
-        lines.append(f"| {folder} | {caught} | {missed} | {caught / max(caught + missed, 1):.0%} |")
+        of_folder = [r for r in compiled(records) if folder in (folder_of(r), "all")]
+        caught = sum(record["result"] == CAUGHT for record in of_folder)
+        missed = len(of_folder) - caught
+        lines.append(f"| {folder} | {caught} | {missed} | {caught / max(len(of_folder), 1):.0%} |")
     return "\n".join(lines)
 
 
-def comparison(earlier: list[Record], now: list[Record]) -> tuple[str, int]:
-    """The mutants whose result changed, and how many of them are not caught any more."""
-    was = {key(record): record["result"] for record in compiled(earlier)}
-    lines = [f"{len(was)} mutants, {len(compiled(now))} tried again"]
-    for title, result in (("gained", CAUGHT), ("lost", MISSED)):
-        changed = [record for record in compiled(now)
-                   if record["result"] == result != was[key(record)]]  # fmt: skip
-        lines.append(f"{title}: {len(changed)}")
-        lines += [row(number, record) for number, record in enumerate(changed, start=1)]
-    return "\n".join(lines), len(changed)
+def lost(earlier: list[Record], now: list[Record]) -> list[Record]:
+    """The mutants that are not caught any more."""
+    caught = [key(record) for record in earlier if record.get("result") == CAUGHT]
+    return [record for record in now if record["result"] == MISSED and key(record) in caught]
 
 
 # ---- the program ----
@@ -257,45 +236,38 @@ def main() -> int:
     revision = ["git", "-C", str(ROOT), "rev-parse", "--verify", f"{options.commit}^{{commit}}"]
     commit = subprocess.check_output(revision, text=True).strip()
     earlier = read(options.replay) if options.replay else []
-    of = f"-of-{options.replay.stem}" if options.replay else f"-{options.seed}"
-    path = FOLDER / f"results-{commit[:12]}{of}.jsonl"
-    count = len(compiled(earlier)) if options.replay else options.count
-    records = read(path)
-    if count > 0:
-        prepare_tree(commit)
-        drawn = compiled(earlier) if options.replay else draw(TREE, options.seed)
-        try_all(drawn, count, options.jobs, path, records)
+    of = f"of-{options.replay.stem}" if options.replay else str(options.seed)
+    path = FOLDER / f"results-{commit[:12]}-{of}.jsonl"
+    prepare_tree(commit)
+    drawn = iter(compiled(earlier)) if options.replay else draw(TREE, options.seed)
+    records = try_all(drawn, len(earlier) or options.count, options.jobs, path)
     print(table(records))
-    if not options.replay:
-        return 0
-    text, lost = comparison(earlier, records)
-    print(f"\n{text}")
-    return int(lost > 0)
+    not_caught = lost(earlier, records)
+    if options.replay:
+        print(f"\nlost: {len(not_caught)}", *map(row, not_caught), sep="\n")
+    return int(len(not_caught) > 0)
 
 
-def try_all(
-    drawn: Iterable[Record], count: int, jobs: int, path: Path, records: list[Record]
-) -> None:
+def try_all(drawn: Iterator[Record], count: int, jobs: int, path: Path) -> list[Record]:
     """Until so many compiled. Mutants of an earlier, interrupted run are not tried again."""
-    known = {key(record): record for record in records}
+    known = {key(record): record for record in read(path)}
     limit_of = cache(lambda folder: max(SHORTEST_HANG, 10 * unmutated_seconds(folder, jobs)))
-    seen: set[tuple[Any, ...]] = set()
-    number = 0
-    for mutant in drawn:
-        if number == count:
-            return
-        if key(mutant) in seen:
+    tried: dict[tuple[Any, ...], Record] = {}
+    while len(compiled(tried.values())) < count:
+        mutant = next(drawn, None)
+        if mutant is None:
+            break
+        if key(mutant) in tried:
             continue
-        seen.add(key(mutant))
         record = known.get(key(mutant))
         if not record:
             mutant = {field: mutant[field] for field in MUTANT}
             record = try_mutant(mutant, jobs, limit_of(folder_of(mutant)))
-            records.append(record)
             with path.open("a") as file:
                 file.write(json.dumps(record) + "\n")
-        number += record["result"] in (CAUGHT, MISSED)
-        print(f"{row(number, record)} {record['seconds']:.0f} s", flush=True)
+        tried[key(mutant)] = record
+        print(row(record), flush=True)
+    return list(tried.values())
 
 
 if __name__ == "__main__":

@@ -123,12 +123,12 @@ class RunsTest(unittest.TestCase):
         self.assertEqual(mutation.read(path), [{"line": 1}])
         self.assertEqual(path.read_text(), '{"line": 1}\n')
 
-    def test_a_lost_catch_is_counted(self) -> None:
-        mutant: mutation.Record = {**dict.fromkeys(mutation.MUTANT, ""), "column": 0}
-        caught = {**mutant, "result": mutation.CAUGHT, "by": "Suite.Test"}
-        missed = {**mutant, "result": mutation.MISSED}
-        self.assertEqual(mutation.comparison([caught], [missed])[1], 1)
-        self.assertEqual(mutation.comparison([missed], [caught])[1], 0)
+    def test_a_mutant_that_was_caught_and_is_missed_is_lost(self) -> None:
+        mutant: mutation.Record = {**dict.fromkeys(mutation.MUTANT, ""), "by": None}
+        caught = [{**mutant, "result": mutation.CAUGHT}]
+        missed = [{**mutant, "result": mutation.MISSED}]
+        self.assertEqual(mutation.lost(caught, missed), missed)
+        self.assertEqual(mutation.lost(missed, caught) + mutation.lost(missed, missed), [])
 
 
 if __name__ == "__main__":
