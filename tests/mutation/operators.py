@@ -65,7 +65,7 @@ def changes(text: str) -> Iterator[Change]:
     yield from _of_statements(code, text)
     yield from _of_returned_values(code)
     for string in _STRING.finditer(code):
-        yield Change("change label", string.start() + 1, string.start() + 1, "x")
+        yield Change("change label", string.start(), string.start() + 1, '"x')
         if string[2]:  # two of a list are exchanged
             swapped = text[slice(*string.span(2))] + string[1] + text[slice(*string.span())]
             yield Change("change label", string.start(), string.end(2), swapped)
