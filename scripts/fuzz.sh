@@ -1,14 +1,14 @@
 #!/bin/bash
 # Runs fuzz targets one after the other, each with its seeds, and prints a table.
 #
-#   scripts/fuzz.sh FOLDER_OF_PROGRAMS [TARGET...]
+#   scripts/fuzz.sh FOLDER_OF_THE_PROGRAM [TARGET...]
 #
 # FUZZ_RUNS (100000) is the number of executions per target; with FUZZ_SECONDS each target runs for
 # that time instead. With the same FUZZ_SEED (1), a number of executions is repeatable. Inputs that
 # caused a failure are kept in build/fuzz/found, the other new inputs in build/fuzz/corpus. Exits
 # with 1 if any target failed.
 set -euo pipefail
-folder=$1
+program=$1/fuzzer
 shift
 readonly SEED=${FUZZ_SEED:-1}
 limit=(-runs="${FUZZ_RUNS:-100000}")
@@ -24,13 +24,15 @@ export UBSAN_OPTIONS=print_stacktrace=1
 
 targets=("$@")
 if ((${#targets[@]} == 0)); then
-  mapfile -t targets < <(cd "$folder" && ls -- *_fuzz | sed 's/_fuzz$//')
+  list=$("$program" --list)
+  mapfile -t targets <<<"$list"
 fi
 mkdir -p "$FOUND"
 failed=0
 printf '%-20s %12s %8s %7s %7s  %s\n' target executions exec/s cov inputs result
 for target in "${targets[@]}"; do
-  program=$folder/${target}_fuzz log=$FOUND/$target.log
+  export FUZZ_TARGET=$target
+  log=$FOUND/$target.log
   mkdir -p "$CORPUS/$target"
   "$program" --write_seeds="$SEEDS" "$CORPUS/$target"
   result=ok

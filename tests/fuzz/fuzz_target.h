@@ -1,9 +1,9 @@
 // A fuzz target: a kind of input from outside, the code that reads it, and the properties that must
 // hold for the result.
 //
-// Each of the files below ends in a table of its targets. A target makes a program, NAME_fuzz, with
-// libFuzzer (libfuzzer.cc), and a part of fuzz_test (seeds_test.cc), which runs the seeds and some
-// thousands of changed ones with any compiler.
+// Each of the files below ends in a table of its targets. The program fuzzer (libfuzzer.cc) runs
+// one with libFuzzer. fuzz_test (seeds_test.cc) runs the seeds of all, and some thousands of
+// changed ones, with any compiler.
 //
 // A check is a function of its input alone, quick (below 50 us for nearly every input), and never
 // computes a block.

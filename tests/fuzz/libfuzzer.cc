@@ -1,9 +1,8 @@
-// The program of one target under libFuzzer: of the target BALLPISTON_FUZZ_TARGET.
+// All targets under libFuzzer. The environment variable FUZZ_TARGET names one.
 //
-//   NAME_fuzz --write_seeds=FOLDER_OF_SEEDS CORPUS   writes the seeds into CORPUS, and ends
-//   NAME_fuzz [LIBFUZZER_FLAG...] CORPUS             libFuzzer's own command line
-#include <cstring>
-
+//   fuzzer --list                                prints the targets' names
+//   fuzzer --write_seeds=FOLDER_OF_SEEDS CORPUS  writes the target's seeds into CORPUS, and ends
+//   fuzzer [LIBFUZZER_FLAG...] CORPUS            libFuzzer's own command line
 #include "google/protobuf/stubs/logging.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/mutation.h"
@@ -13,19 +12,19 @@ extern "C" size_t LLVMFuzzerMutate(uint8_t* data, size_t size, size_t max_size);
 namespace ballpiston::fuzz {
 namespace {
 
-constexpr char kWriteSeeds[] = "--write_seeds=";
+constexpr std::string_view kWriteSeeds = "--write_seeds=";
 
 const FuzzTarget& Target() {
-  static const FuzzTarget& target = TargetOf(BALLPISTON_FUZZ_TARGET);
+  static const FuzzTarget& target = TargetOf(std::getenv("FUZZ_TARGET"));
   return target;
 }
 
 // Protobuf must not log an error for each of a million inputs.
 const google::protobuf::LogSilencer silence;
 
-void WriteSeeds(const std::string& folder, const std::string& corpus) {
+void WriteSeeds(std::string_view folder, const std::string& corpus) {
   int number = 0;
-  for (const std::string& seed : SeedsOf(Target(), folder)) {
+  for (const std::string& seed : SeedsOf(Target(), std::string(folder))) {
     std::ofstream(corpus + "/seed" + std::to_string(number++), std::ios::binary) << seed;
   }
 }
@@ -46,9 +45,15 @@ size_t MutateInput(uint8_t* data, size_t size, size_t max_size, unsigned seed) {
 }  // namespace ballpiston::fuzz
 
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
-  const size_t length = std::strlen(ballpiston::fuzz::kWriteSeeds);
-  if (*argc != 3 || std::strncmp((*argv)[1], ballpiston::fuzz::kWriteSeeds, length) != 0) return 0;
-  ballpiston::fuzz::WriteSeeds((*argv)[1] + length, (*argv)[2]);
+  const std::string_view first = *argc > 1 ? (*argv)[1] : "";
+  if (first == "--list") {
+    for (const auto& target : ballpiston::fuzz::Targets()) std::cout << target.name << "\n";
+  } else if (*argc == 3 && first.starts_with(ballpiston::fuzz::kWriteSeeds)) {
+    ballpiston::fuzz::WriteSeeds(first.substr(first.find('=') + 1), (*argv)[2]);
+  } else {
+    return 0;
+  }
+  std::cout.flush();
   std::exit(0);
 }
 

@@ -126,120 +126,60 @@ double Cold(Dice& dice, double hot, bool extreme) {
 
 // ---- defects ----
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
-constexpr double kTiny = std::numeric_limits<double>::denorm_min();
-
-// Numbers slightly or far outside of the domain of a parameter.
-std::vector<double> NumbersOutside(const Parameter& parameter, double bound_of_delta) {
-  if (&parameter == &kRho) {
-    return {kMinRho, Below(kMinRho), kMaxRho,     Above(kMaxRho), 0, -0.53,
-            1,       1e300,          kNotANumber, kInfinity};
-  }
-  if (&parameter == &kDelta) {
-    const double bound = bound_of_delta;
-    return {
-        0,   -kTiny,      -0.1,     bound * (1 + 3 * kDeltaSlack), bound * (1 + 1e-9), 2 * bound,
-        0.5, kNotANumber, kInfinity};
-  }
-  if (&parameter == &kEpsilon) return {-kTiny, -0.1, Above(0.5), 1, 1e300, kNotANumber, -kInfinity};
-  if (&parameter == &kExponent) {
-    return {-kTiny, -1, Above(kMaxExponent), 1e300, kNotANumber, kInfinity};
-  }
-  return {Below(kMinTemperature), Above(kMaxTemperature), 0, -1, kTiny, kNotANumber, kInfinity};
-}
-
-// Makes the first value of the parameter one that is not permitted.
-void SetValueOutside(Dice& dice, const Parameter& parameter, double bound, v1::Grid& grid) {
-  const auto* const list = grid.GetDescriptor()->FindFieldByName(std::string(parameter.name));
-  const google::protobuf::Reflection& reflection = *grid.GetReflection();
-  if (&parameter == &kCells) {
-    return grid.set_cells(
-        0, dice.Pick<std::string>({"0", "0x4", "4x0", "1000001", "1001x1000", "-1", "2.5", "x", "",
-                                   "99999999999999999999", "3x3x3", "4294967296x4294967296"}));
-  }
-  if (reflection.FieldSize(grid, list) == 0) reflection.AddDouble(&grid, list, 0);
-  const bool is_below_cold = &parameter == &kHot && dice.Chance(0.5);
-  reflection.SetRepeatedDouble(&grid, list, 0,
-                               is_below_cold ? std::nextafter(grid.cold(0), 0)
-                                             : dice.Pick(NumbersOutside(parameter, bound)));
-}
-
-void SetSamplesOrCollisions(Dice& dice, int64_t count, v1::Target& target) {
-  dice.Chance(0.5) ? target.set_collisions(count) : target.set_samples(count);
-}
-
-bool Uses(const ExperimentKind& experiment, const Parameter& parameter) {
-  return std::any_of(experiment.parameters.begin(), experiment.parameters.end(),
-                     [&](const ParameterUse& use) { return use.parameter == &parameter; });
-}
-
-// Adds a defect and returns what it is.
-std::string SomeDefect(Dice& dice, const ExperimentKind& experiment, double bound,
-                       v1::EnsembleSpec& spec) {
+// Changes the question into one that the service has to refuse, and returns why. The ends of each
+// domain, to the last bit, are in tests/core/ensemble/parameter_test.cc and
+// tests/core/geometry/pair_geometry_test.cc.
+std::string AddDefect(Dice& dice, const Parameter& parameter, double bound_of_delta,
+                      v1::EnsembleSpec& spec) {
   constexpr int kUnknown = 99;  // in no enumeration
   constexpr int kEach = 317;    // its square is above kMaxPoints
+  constexpr double kInfinity = std::numeric_limits<double>::infinity(), kNan = NAN;
   v1::Grid& grid = *spec.mutable_grid();
   v1::Target& target = *spec.mutable_target();
-  switch (dice.Below(28)) {
+  switch (dice.Below(16)) {
     case 0:
-      if (!Uses(experiment, kEpsilon)) {
-        grid.add_epsilon(0.1);
-      } else if (!Uses(experiment, kHot)) {
-        grid.add_hot(1);
-      }
-      return "a list is not used";
-    case 1:
-      dice.Chance(0.5) ? grid.clear_rho() : grid.clear_delta();
+      grid.clear_rho();
       return "a list is missing";
+    case 1:
+      target.set_samples(dice.Pick<int64_t>({0, -1, kMaxSamples + 1}));
+      return "the number of samples is outside";
     case 2:
-      target.Clear();
-      SetSamplesOrCollisions(
-          dice,
-          dice.Pick<int64_t>({0, -1, kMaxSamples + 1, std::numeric_limits<int64_t>::min(),
-                              std::numeric_limits<int64_t>::max()}),
-          target);
-      return "the count is outside";
-    case 3:
-      target.set_tolerance(dice.Pick<double>({0, -0.01, 1, 1.5, kNotANumber}));
+      target.set_tolerance(dice.Pick<double>({0, -0.01, 1, 1.5, kNan}));
       return "the tolerance is outside";
-    case 4:
-      target.clear_kind();
-      target.mutable_budget()->set_seconds(
-          dice.Pick<int64_t>({0, -1, static_cast<int64_t>(kMaxBudgetSeconds)}));
-      target.mutable_budget()->set_nanos(target.budget().seconds() > 0 ? 1 : 0);
-      return "the budget is outside";
-    case 5:
-      SetSamplesOrCollisions(dice, 64, target);
+    case 3:
+      target.set_samples(64);
       target.mutable_budget()->set_seconds(1);
       return "a count and a budget";
-    case 6:
+    case 4:
       spec.set_model(v1::EnsembleSpec::BILLIARD);
       spec.set_verify(true);
       return "verify is set with a model";
-    case 7:
+    case 5:
       spec.set_experiment(static_cast<v1::EnsembleSpec::Experiment>(kUnknown));
       return "the experiment is not known";
-    case 8:
-      spec.set_model(static_cast<v1::EnsembleSpec::Model>(kUnknown));
-      return "the model is not known";
-    case 9:
-      spec.set_precision(static_cast<v1::EnsembleSpec::Precision>(kUnknown));
-      return "the precision is not known";
-    case 10:
+    case 6:
       for (int i = 1; i < kEach; ++i) {
         grid.add_rho(grid.rho(0));
         grid.add_delta(grid.delta(0));
       }
       return "the grid has too many points";
-    case 11:
+    case 7:
       target.set_estimate("heat");
       return "the estimate is not known";
-    default: {
-      const ParameterUse& use = experiment.parameters[dice.Below(experiment.parameters.size())];
-      SetValueOutside(dice, *use.parameter, bound, grid);
-      return absl::StrCat("a value of ", use.parameter->name, " is outside");
-    }
+    default:
+      if (&parameter == &kCells) {
+        grid.set_cells(0, dice.Pick<std::string>({"0", "0x4", "1000001", "1001x1000", "2.5", ""}));
+      } else {
+        const auto* list = grid.GetDescriptor()->FindFieldByName(std::string(parameter.name));
+        const google::protobuf::Reflection& reflection = *grid.GetReflection();
+        if (reflection.FieldSize(grid, list) == 0) reflection.AddDouble(&grid, list, 0);
+        const bool is_just_outside = &parameter == &kDelta && dice.Chance(0.3);
+        const double outside = is_just_outside
+                                   ? bound_of_delta * (1 + 3 * kDeltaSlack)
+                                   : dice.Pick<double>({-1, -kInfinity, kInfinity, 1e300, kNan});
+        reflection.SetRepeatedDouble(&grid, list, 0, outside);
+      }
+      return absl::StrCat("a value of ", parameter.name, " is outside");
   }
 }
 
@@ -264,7 +204,9 @@ class Drawing {
     SetTarget();
     Question question = {spec_};
     if (dice_.Chance(kDefects)) {
-      question.defect = SomeDefect(dice_, experiment_, bound_, question.spec);
+      const auto& uses = experiment_.parameters;
+      const Parameter& parameter = *uses[dice_.Below(uses.size())].parameter;
+      question.defect = AddDefect(dice_, parameter, bound_, question.spec);
     }
     return question;
   }
