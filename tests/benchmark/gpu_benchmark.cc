@@ -1,7 +1,6 @@
 // The flights of a GPU (core/gpu) beside those of all threads of this machine. Needs a build with
 // BALLPISTON_CUDA.
 //
-//   gpu_benchmark kernel DELTA        the kernel alone: wall hits a second
 //   gpu_benchmark bits                many questions: the bits of both
 //   gpu_benchmark speed DELTA HITS    first-hit with about so many wall hits: time and bits of both
 //   gpu_benchmark full                the memory of the device is full: the bits are the same
@@ -18,14 +17,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/billiard/lane_constants.h"
-#include "core/billiard/lane_orbit.h"
 #include "core/ensemble/block_orbits.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/expected_returns.h"
 #include "core/gpu/device_orbits.h"
-#include "core/sampling/invariant_measure.h"
 #include "tests/benchmark/break_device.h"
 #include "tools/flows/paper.h"
 
@@ -127,51 +123,6 @@ EnsembleSpec Question(const ExperimentKind* experiment, double rho, double delta
   return spec;
 }
 
-// ---- the kernel alone ----
-
-std::vector<FlightLane> SomeLanes(const PairGeometry& geometry, size_t count) {
-  const double scale = FlightConstants<double>(geometry).scale;
-  const OrbitInLane in_lane(geometry, scale, kNoTimeLimit);
-  std::vector<FlightLane> lanes;
-  for (size_t i = 0; i < count; ++i) {
-    CounterRandom random(1, 2, i);
-    const PairState state = DrawFromFlowMeasure(geometry, random);
-    const LaneOrbit orbit = in_lane.Orbit({i, state});
-    const LaneEntry entry = in_lane.Enter(orbit, state, kSlack<double>);
-    lanes.push_back({.ball = BallOf(entry.ball),
-                     .phase = entry.phase,
-                     .ratio = entry.ratio,
-                     .path_before = 0,
-                     .longest_path = 1e300,
-                     .bursts = 0,
-                     .in_reach = entry.in_reach ? kSign : 0,
-                     .orbit = static_cast<uint32_t>(i)});
-  }
-  return lanes;
-}
-
-// Lanes whose orbits have ended take the same starts again.
-void ShowKernel(double delta) {
-  const std::unique_ptr<FlightDevice> device = std::move(OpenCuda()).value();
-  const PairGeometry geometry = PairGeometry::Create(kPaperRho, delta).value();
-  const FlightProgram program = ProgramOf(geometry);
-  const size_t count = device->lanes();
-  const auto batch = std::move(device->MakeBatch(program, count)).value();
-  const std::vector<FlightLane> starts = SomeLanes(geometry, 2 * count);
-  const auto bursts = static_cast<uint32_t>(6000 / program.flights);
-  double least = 1e300;
-  size_t reports = 0;
-  for (int launch = 0; launch < 8; ++launch) {
-    const double begin = Now();
-    batch->Launch(starts, bursts).IgnoreError();
-    reports = batch->Land().value().reports.size();
-    least = std::min(least, Now() - begin);
-  }
-  const double hits = static_cast<double>(count) * bursts * program.flights;
-  std::printf("%s, %zu lanes, delta %g: %.3g wall hits/s (%.3g hits in %.4g s, %zu orbits ended)\n",
-              device->name().c_str(), count, delta, hits / least, hits, least, reports);
-}
-
 // ---- questions ----
 
 bool Compare(const char* name, const PointExperiment& experiment, const Computed& processor,
@@ -255,7 +206,6 @@ bool ShowFault(const char* name, const std::function<void()>& fault, double seco
 bool Run(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
   const double delta = argc > 2 ? std::atof(argv[2]) : 0.0125;
-  if (what == "kernel") ShowKernel(delta);
   if (what == "bits") return ShowBits();
   if (what == "speed") return ShowSpeed(delta, argc > 3 ? std::atof(argv[3]) : 1e11);
   if (what == "full") return ShowFault("the memory of the device is full:", FillDevice, 0);

@@ -4,7 +4,6 @@
 // The clusters have no accounting (slurmdbd): nothing here needs it.
 #include <ostream>
 
-#include "tests/slurm/cluster.h"
 #include "tests/slurm/sweep.h"
 #include "tests/support/preamble.h"
 

@@ -1,9 +1,27 @@
 #include "tests/slurm/sweep.h"
 
+#include <cctype>
+#include <system_error>
+
 namespace ballpiston {
 namespace {
 
 using google::protobuf::Struct;
+
+std::string Script() { return SourcePath("scripts/test-cluster.sh"); }
+
+void Run(std::vector<std::string> words) {
+  const ProcessResult result = RunProgram({.command = words});
+  if (result.exit_code == 0) return;
+  throw std::runtime_error(absl::StrCat(words[1], " failed: ", result.err));
+}
+
+// Empty if the process ends meanwhile.
+std::string CommandLineOf(const std::filesystem::path& process) {
+  std::ostringstream text;
+  text << std::ifstream(process / "cmdline", std::ios::binary).rdbuf();
+  return text.str();
+}
 
 // A job of a few seconds is large enough, a lease takes some seconds, and Slurm is asked often.
 Words FlagsOf(const std::string& shared_folder, const SweepSetUp& set_up) {
@@ -38,9 +56,44 @@ void ExpectSamples(const std::string& points, int samples) {
   for (int i = 0; i < kPoints; ++i) EXPECT_EQ(At(list, i, "samples").number_value(), samples);
 }
 
-std::string Launcher(const Cluster& cluster) { return "SLURM_CONF=" + cluster.conf(); }
-
 }  // namespace
+
+Cluster::Cluster(const std::vector<std::string>& parameters) {
+  const std::string folder = folder_.File("cluster");
+  const std::string stop =
+      absl::StrCat("cat >/dev/null; exec '", Script(), "' stop '", folder, "'");
+  keeper_.reset(popen(stop.c_str(), "we"));
+  if (keeper_ == nullptr) throw std::runtime_error("no shell");
+  std::vector<std::string> words = {Script(), "start", folder};
+  words.insert(words.end(), parameters.begin(), parameters.end());
+  Run(words);
+}
+
+void Cluster::Do(const std::string& verb, const std::string& node) const {
+  std::vector<std::string> words = {Script(), verb, folder_.File("cluster")};
+  if (!node.empty()) words.push_back(node);
+  Run(words);
+}
+
+ProcessResult Cluster::Tool(std::vector<std::string> words) const {
+  return RunProgram({.command = std::move(words), .environment = {{"SLURM_CONF", conf()}}});
+}
+
+std::vector<std::string> Cluster::Queue() const {
+  return absl::StrSplit(Tool({"squeue", "--noheader", "-r", "--format=%F|%K|%j|%T|%r"}).out, '\n',
+                        absl::SkipEmpty());
+}
+
+std::vector<pid_t> ProcessesWith(const std::string& text) {
+  std::vector<pid_t> found;
+  std::error_code gone;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", gone)) {
+    const std::string name = entry.path().filename();
+    if (!std::all_of(name.begin(), name.end(), [](char c) { return std::isdigit(c); })) continue;
+    if (absl::StrContains(CommandLineOf(entry.path()), text)) found.push_back(std::stoi(name));
+  }
+  return found;
+}
 
 Words SweepOf(int samples, int seed) {
   return Joined({Split("first-hit --rho 0.529561127988977 --delta 0.1,0.08,0.06,0.05 "
@@ -50,9 +103,10 @@ Words SweepOf(int samples, int seed) {
 
 Sweep::Sweep(SweepSetUp set_up) : set_up_(std::move(set_up)), cluster_(set_up_.cluster) {
   mkdir(shared_folder().c_str(), 0700);
-  server_ = std::make_unique<TestServer>(ServerSetUp{.workers = set_up_.workers,
-                                                     .flags = FlagsOf(shared_folder(), set_up_),
-                                                     .launcher = {"env", Launcher(cluster_)}});
+  server_ = std::make_unique<TestServer>(
+      ServerSetUp{.workers = set_up_.workers,
+                  .flags = FlagsOf(shared_folder(), set_up_),
+                  .launcher = {"env", "SLURM_CONF=" + cluster_.conf()}});
 }
 
 Sweep::~Sweep() {
