@@ -1,4 +1,5 @@
-// Asks the engine in this process, or in a process of its own, which may crash or never end.
+// Asks the engine in this process, or in a process of its own, which may crash or never end; or
+// asks a real server.
 #pragma once
 
 #include "core/ensemble/point_experiment.h"
@@ -14,6 +15,11 @@ Report AskEngine(const Question& question, double most_seconds);
 // The report of `ask`, which runs in a forked process and must not start threads. If the process
 // dies, the finding is "crash"; if it takes more than kMostProcessorSeconds, "end".
 Report InChild(const std::function<Report()>& ask);
+
+// Asks ballpistond, a process on a Unix socket in a temporary folder. Plans a question, and runs it
+// to its end, or starts and cancels it if the planned processor time is above `most_seconds`. If
+// the server dies or never ends, the next question gets a new one.
+std::function<Report(const Question&)> AskerOfAServer(double most_seconds);
 
 // ---- one point, as the server computes it ----
 

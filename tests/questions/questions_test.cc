@@ -4,7 +4,6 @@
 #include "tests/questions/checks.h"
 #include "tests/questions/engine.h"
 #include "tests/questions/question.h"
-#include "tests/questions/real_server.h"
 
 namespace ballpiston::questions {
 namespace {
@@ -125,8 +124,7 @@ TEST(Questions, TheEngineKeepsItsPromises) {
 }
 
 TEST(Questions, TheServerKeepsItsPromises) {
-  RealServer server(SizeFromEnvironment().most_seconds);
-  ExpectNoFailures("server", [&](const Question& question) { return server.Ask(question); });
+  ExpectNoFailures("server", AskerOfAServer(SizeFromEnvironment().most_seconds));
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
-#include "tests/questions/real_server.h"
-
 #include "client/library/channel.h"
+#include "client/library/client.h"
 #include "server/convert/spec.h"
+#include "tests/questions/engine.h"
+#include "tests/support/server_process.h"
 
 namespace ballpiston::questions {
 namespace {
@@ -145,36 +146,38 @@ std::string LastLines(const std::string& log) {
   return log.substr(log.size() - std::min(log.size(), kMost));
 }
 
-}  // namespace
+struct RunningServer {
+  RunningServer() { process.Start(); }
+  ServerProcess process;
+  const client::Client client{*client::OpenChannel(process.address()), absl::FromChrono(kPatience)};
+};
 
-Report RealServer::Ask(const Question& question) {
-  EnsureRunning();
+Report Ask(const Question& question, double most_seconds, std::unique_ptr<RunningServer>& server) {
+  if (server == nullptr) server = std::make_unique<RunningServer>();
   Report report;
   try {
-    report = Conversation(question, *server_, *client_).Have(most_seconds_);
+    report = Conversation(question, server->process, server->client).Have(most_seconds);
   } catch (const std::runtime_error& late) {  // tests/support/await.h
     report = {.outcome = "no end", .findings = {{kEndCheck, late.what()}}};
   }
   // A call may fail a little before the process has ended.
   const std::chrono::milliseconds patience(report.Breaks(kCallCheck) ? 5000 : 0);
-  if (const auto code = server_->AwaitEnd(patience)) {
+  if (const auto code = server->process.AwaitEnd(patience)) {
     report.outcome = "died";
     report.findings = {{kCrashCheck, absl::StrCat("the server ended with exit code ", *code, ": ",
-                                                  LastLines(server_->log()))}};
-    server_.reset();
+                                                  LastLines(server->process.log()))}};
+    server.reset();
   } else if (report.Breaks(kEndCheck)) {
-    server_->KillHard();
-    server_.reset();
+    server.reset();
   }
   return report;
 }
 
-void RealServer::EnsureRunning() {
-  if (server_ != nullptr) return;
-  server_ = std::make_unique<ServerProcess>();
-  server_->Start();
-  client_ = std::make_unique<client::Client>(*client::OpenChannel(server_->address()),
-                                             absl::FromChrono(kPatience));
+}  // namespace
+
+std::function<Report(const Question&)> AskerOfAServer(double most_seconds) {
+  const auto server = std::make_shared<std::unique_ptr<RunningServer>>();
+  return [=](const Question& question) { return Ask(question, most_seconds, *server); };
 }
 
 }  // namespace ballpiston::questions
