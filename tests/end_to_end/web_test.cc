@@ -47,11 +47,12 @@ class WebTest : public ::testing::Test {
     token_ = address[1];
   }
 
+  // `method`: of the jobs' service, or a whole path.
   httplib::Result Post(const std::string& method, const std::string& body,
                        const httplib::Headers& headers = {}, const char* type = kUnary) {
     httplib::Headers all = headers;
     if (!all.contains("Authorization")) all.emplace("Authorization", "Bearer " + token_);
-    return http_->Post(method, all, body, type);
+    return http_->Post(method[0] == '/' ? method : kJobs + method, all, body, type);
   }
 
   TestServer server_;
@@ -74,7 +75,7 @@ TEST_F(WebTest, ServesThePageWithSecurityHeaders) {
 
 // A whole job: what the gateway answers is what `--format json` prints.
 TEST_F(WebTest, AJobIsSubmittedWatchedAndReadAsByTheClient) {
-  const httplib::Result created = Post(std::string(kJobs) + "CreateEnsembleJob", R"({"spec": {
+  const httplib::Result created = Post("CreateEnsembleJob", R"({"spec": {
       "experiment": "FIRST_HIT", "seed": "7", "target": {"samples": "2000"},
       "grid": {"rho": [0.53], "delta": [0.2, 0.1], "epsilon": [0.1], "exponent": [1]}}})");
   ASSERT_EQ(created->status, 200) << created->body;
@@ -82,8 +83,7 @@ TEST_F(WebTest, AJobIsSubmittedWatchedAndReadAsByTheClient) {
   const std::string name = At(ParseJson(created->body), "name").string_value();
 
   const httplib::Result watched =
-      Post(std::string(kJobs) + "WatchEnsembleJob",
-           Envelope(absl::StrCat("{\"name\": \"", name, "\"}")), {}, kStream);
+      Post("WatchEnsembleJob", Envelope(absl::StrCat("{\"name\": \"", name, "\"}")), {}, kStream);
   ASSERT_EQ(watched->status, 200);
   EXPECT_EQ(watched->get_header_value("Content-Type"), kStream);
   const std::vector<Message> messages = Opened(watched->body);
@@ -93,8 +93,7 @@ TEST_F(WebTest, AJobIsSubmittedWatchedAndReadAsByTheClient) {
   const auto last = ParseJson(messages[messages.size() - 2].json);
   EXPECT_EQ(At(last, "job", "state").string_value(), "SUCCEEDED");
 
-  const httplib::Result results =
-      Post(std::string(kJobs) + "ListResults", absl::StrCat("{\"parent\": \"", name, "\"}"));
+  const httplib::Result results = Post("ListResults", absl::StrCat("{\"parent\": \"", name, "\"}"));
   const ProcessResult lines = server_.Client({"result", name, "--format", "jsonl"});
   const std::vector<std::string> points = absl::StrSplit(lines.out, '\n', absl::SkipEmpty());
   ASSERT_EQ(points.size(), 2u);
@@ -107,34 +106,31 @@ TEST_F(WebTest, AJobIsSubmittedWatchedAndReadAsByTheClient) {
 }
 
 TEST_F(WebTest, ErrorsHaveTheServersCodesReasonsAndViolations) {
-  const httplib::Result missing =
-      Post(std::string(kJobs) + "GetEnsembleJob", R"({"name": "ensembleJobs/none"})");
+  const httplib::Result missing = Post("GetEnsembleJob", R"({"name": "ensembleJobs/none"})");
   EXPECT_EQ(missing->status, 404);
   EXPECT_THAT(missing->body, AllOf(HasSubstr(R"("code":"not_found")"), HasSubstr("JOB_NOT_FOUND")));
   const httplib::Result invalid =
-      Post(std::string(kJobs) + "CreateEnsembleJob", R"({"spec": {"experiment": "EQUILIBRIUM"}})");
+      Post("CreateEnsembleJob", R"({"spec": {"experiment": "EQUILIBRIUM"}})");
   EXPECT_EQ(invalid->status, 400);
   EXPECT_THAT(invalid->body, HasSubstr(R"("field":"spec.grid.rho")"));
   for (const char* body : {"null", "[]", "{\"nme\": 1}", "{", "\xff"}) {
-    const httplib::Result bad = Post(std::string(kJobs) + "GetEnsembleJob", body);
+    const httplib::Result bad = Post("GetEnsembleJob", body);
     EXPECT_EQ(bad->status, 400) << body;
     EXPECT_THAT(bad->body, HasSubstr("not JSON of ballpiston.v1.GetEnsembleJobRequest"));
   }
-  const httplib::Result stream = Post(std::string(kJobs) + "WatchEnsembleJob", "{}", {}, kStream);
+  const httplib::Result stream = Post("WatchEnsembleJob", "{}", {}, kStream);
   EXPECT_EQ(stream->status, 200);
   EXPECT_THAT(Opened(stream->body).back().json, HasSubstr("in an envelope"));
-  EXPECT_EQ(Post(std::string(kJobs) + "WatchEnsembleJob", "{}")->status, 415);
-  EXPECT_EQ(Post(std::string(kJobs) + "GetEnsembleJob", "{}", {}, "text/plain")->status, 415);
+  EXPECT_EQ(Post("WatchEnsembleJob", "{}")->status, 415);
+  EXPECT_EQ(Post("GetEnsembleJob", "{}", {}, "text/plain")->status, 415);
   EXPECT_EQ(Post("/ballpiston.v1.EnsembleService/Nothing", "{}")->status, 404);
   EXPECT_EQ(Post("/ballpiston.v1.EnsembleJob/spec", "{}")->status, 404);
-  EXPECT_EQ(
-      Post(std::string(kJobs) + "GetEnsembleJob", "{}", {{"Connect-Timeout-Ms", "-1"}})->status,
-      400);
-  EXPECT_EQ(Post(std::string(kJobs) + "GetEnsembleJob", std::string(5 << 20, ' '))->status, 413);
+  EXPECT_EQ(Post("GetEnsembleJob", "{}", {{"Connect-Timeout-Ms", "-1"}})->status, 400);
+  EXPECT_EQ(Post("GetEnsembleJob", std::string(5 << 20, ' '))->status, 413);
 }
 
 TEST_F(WebTest, CallsNeedTheTokenAndThisPagesOriginAndHost) {
-  const std::string method = std::string(kJobs) + "ListEnsembleJobs";
+  const std::string method = "ListEnsembleJobs";
   EXPECT_EQ(Post(method, "{}")->status, 200);
   EXPECT_EQ(Post(method, "{}", {{"Origin", host_}})->status, 200);
   EXPECT_EQ(Post(method, "{}", {{"Authorization", "Bearer wrong"}})->status, 401);
@@ -145,7 +141,7 @@ TEST_F(WebTest, CallsNeedTheTokenAndThisPagesOriginAndHost) {
 }
 
 TEST_F(WebTest, ReconnectsToAServerThatWasRestarted) {
-  const std::string method = std::string(kJobs) + "ListEnsembleJobs";
+  const std::string method = "ListEnsembleJobs";
   ASSERT_EQ(Post(method, "{}")->status, 200);
   server_.KillHard();
   const httplib::Result gone = Post(method, "{}");
