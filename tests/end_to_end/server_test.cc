@@ -22,20 +22,17 @@ class ServerTest : public ::testing::Test {
     return home_.File(".local/state/ballpiston/" + name);
   }
 
-  // Processes whose command line names this test's home.
-  std::vector<int> Servers() const {
-    std::vector<int> pids;
-    for (const auto& entry : fs::directory_iterator("/proc")) {
-      const std::string line = Contents(entry.path() / "cmdline");
-      const bool is_server = line.find("ballpistond") != std::string::npos;
-      if (is_server && line.find(home_.path()) != std::string::npos) {
-        pids.push_back(std::atoi(entry.path().filename().c_str()));
-      }
-    }
-    return pids;
+  // Those whose command line names this test's home.
+  std::vector<pid_t> Servers() const {
+    std::vector<pid_t> servers = ProcessesWith(home_.path());
+    std::erase_if(servers, [](pid_t process) {
+      const std::string words = Contents(absl::StrCat("/proc/", process, "/cmdline"));
+      return !absl::StrContains(words, "ballpistond");
+    });
+    return servers;
   }
   void KillServers() const {
-    for (const int pid : Servers()) kill(pid, SIGKILL);
+    for (const pid_t server : Servers()) kill(server, SIGKILL);
   }
 
   const TemporaryFolder home_;

@@ -1,8 +1,5 @@
 #include "tests/slurm/sweep.h"
 
-#include <cctype>
-#include <system_error>
-
 namespace ballpiston {
 namespace {
 
@@ -14,13 +11,6 @@ void Run(std::vector<std::string> words) {
   const ProcessResult result = RunProgram({.command = words});
   if (result.exit_code == 0) return;
   throw std::runtime_error(absl::StrCat(words[1], " failed: ", result.err));
-}
-
-// Empty if the process ends meanwhile.
-std::string CommandLineOf(const std::filesystem::path& process) {
-  std::ostringstream text;
-  text << std::ifstream(process / "cmdline", std::ios::binary).rdbuf();
-  return text.str();
 }
 
 // A job of a few seconds is large enough, a lease takes some seconds, and Slurm is asked often.
@@ -82,17 +72,6 @@ ProcessResult Cluster::Tool(std::vector<std::string> words) const {
 std::vector<std::string> Cluster::Queue() const {
   return absl::StrSplit(Tool({"squeue", "--noheader", "-r", "--format=%F|%K|%j|%T|%r"}).out, '\n',
                         absl::SkipEmpty());
-}
-
-std::vector<pid_t> ProcessesWith(const std::string& text) {
-  std::vector<pid_t> found;
-  std::error_code gone;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc", gone)) {
-    const std::string name = entry.path().filename();
-    if (!std::all_of(name.begin(), name.end(), [](char c) { return std::isdigit(c); })) continue;
-    if (absl::StrContains(CommandLineOf(entry.path()), text)) found.push_back(std::stoi(name));
-  }
-  return found;
 }
 
 Words SweepOf(int samples, int seed) {

@@ -41,9 +41,6 @@ class Cluster {
   std::unique_ptr<std::FILE, Stop> keeper_;
 };
 
-// The processes whose command line contains the text.
-std::vector<pid_t> ProcessesWith(const std::string& text);
-
 // Sixteen points; a million samples of each take 20 s of one core.
 inline constexpr int kPoints = 16;
 Words SweepOf(int samples, int seed = 11);

@@ -9,6 +9,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <system_error>
 
 #include "tests/support/preamble.h"
 
@@ -228,6 +229,17 @@ ProcessResult Process::Wait() {
 }
 
 ProcessResult RunProgram(const ProcessOptions& options) { return Process(options).Wait(); }
+
+std::vector<pid_t> ProcessesWith(const std::string& text) {
+  std::vector<pid_t> found;
+  std::error_code gone;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", gone)) {
+    const pid_t process = std::atoi(entry.path().filename().c_str());  // 0: no process
+    if (process == 0) continue;
+    if (absl::StrContains(Contents(entry.path() / "cmdline"), text)) found.push_back(process);
+  }
+  return found;
+}
 
 double MiBOf(const std::string& process, const std::string& line) {
   std::ifstream status("/proc/" + process + "/status");

@@ -105,6 +105,9 @@ std::string Process::WaitForErrLine(Wanted wanted) {
 
 ProcessResult RunProgram(const ProcessOptions& options);
 
+// The processes whose command line contains the text; its words end with '\0'.
+std::vector<pid_t> ProcessesWith(const std::string& text);
+
 // A line of /proc/PROCESS/status, such as "VmRSS:", in MiB. `process`: a number, or "self".
 double MiBOf(const std::string& process, const std::string& line);
 
