@@ -5,8 +5,6 @@
 //   seeded_race             the sanitizer must report the race
 //   seeded_race --mended    the same with a lock: the sanitizer must report nothing
 #include <atomic>
-#include <cstdio>
-#include <memory>
 #include <mutex>
 #include <string_view>
 #include <thread>
@@ -54,48 +52,30 @@ class CountingService : public v1::AnalyticService::Service {
   Counter& counter_;
 };
 
-std::unique_ptr<grpc::Server> Serve(CountingService& service) {
+bool CallWhileCounting(Counter& counter) {
+  CountingService service(counter);
   grpc::ServerBuilder builder;
   builder.RegisterService(&service);
-  return builder.BuildAndStart();
-}
-
-// Uses no lock, because a lock would order the worker's counts before the calls.
-class Worker {
- public:
-  explicit Worker(Counter& counter) : counter_(counter), thread_([this] { Work(); }) {
-    while (!began_.load(std::memory_order_relaxed)) std::this_thread::yield();
-  }
-  ~Worker() {
-    done_.store(true, std::memory_order_relaxed);
-    thread_.join();
-  }
-
- private:
-  void Work() {
-    while (!done_.load(std::memory_order_relaxed)) {
-      counter_.CountOne();
-      began_.store(true, std::memory_order_relaxed);
-    }
-  }
-
-  Counter& counter_;
-  std::atomic<bool> began_ = false, done_ = false;
-  std::thread thread_;
-};
-
-int CallWhileCounting(Counter& counter) {
-  CountingService service(counter);
-  const auto server = Serve(service);
+  const auto server = builder.BuildAndStart();
   const auto stub = v1::AnalyticService::NewStub(server->InProcessChannel({}));
-  const Worker worker(counter);
+  // The worker uses no lock, because a lock would order its counts before the calls.
+  std::atomic<bool> began = false, done = false;
+  std::thread worker([&] {
+    while (!done.load(std::memory_order_relaxed)) {
+      counter.CountOne();
+      began.store(true, std::memory_order_relaxed);
+    }
+  });
+  while (!began.load(std::memory_order_relaxed)) std::this_thread::yield();
+  bool all_ok = true;
   for (int i = 0; i < kCalls; ++i) {
     grpc::ClientContext context;
     v1::EvaluatePairsResponse response;
-    if (!stub->EvaluatePairs(&context, {}, &response).ok()) return 1;
+    all_ok &= stub->EvaluatePairs(&context, {}, &response).ok();
   }
-  std::printf("%d calls answered\n", kCalls);
-  return 0;
+  done.store(true, std::memory_order_relaxed);
+  worker.join();
+  return all_ok;
 }
 
 }  // namespace
@@ -103,5 +83,5 @@ int CallWhileCounting(Counter& counter) {
 
 int main(int argc, char** argv) {
   ballpiston::Counter counter(argc > 1 && std::string_view(argv[1]) == "--mended");
-  return ballpiston::CallWhileCounting(counter);
+  return ballpiston::CallWhileCounting(counter) ? 0 : 1;
 }
