@@ -79,12 +79,14 @@ bool NamesAValueOfTheGrid(const v1::Grid& grid, absl::string_view description) {
 
 Findings CheckRefusal(const v1::EnsembleSpec& spec, const std::vector<FieldViolation>& violations) {
   Findings findings;
-  for (const auto& [path, description] : violations) {
-    absl::string_view field = path;
+  for (const FieldViolation& violation : violations) {
+    const std::string& description = violation.description;
+    absl::string_view field = violation.field;
     const Texts texts = absl::ConsumePrefix(&field, "spec.") ? TextsOf(spec, field) : Texts();
     const auto add_unless = [&](bool is_so, const char* what) {
       if (is_so) return;
-      findings.push_back({kRefusalCheck, absl::StrCat(what, ": ", path, " ", description)});
+      findings.push_back(
+          {kRefusalCheck, absl::StrCat(what, ": ", violation.field, " ", description)});
     };
     if (texts.empty()) {
       add_unless(false, "names no field");
