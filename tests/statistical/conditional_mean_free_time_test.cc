@@ -1,5 +1,5 @@
 // Return times at fixed energies: their errors.
-#include "core/billiard/single_precision.h"
+#include "core/billiard/billiard_domain.h"
 #include "tests/core/asked.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"

@@ -37,7 +37,9 @@ class FixedStepFlow {
   Event Step();
   void ExchangeComponents();
 
-  PairState state() const;
+  PairState state() const {
+    return WithVelocities(ball_.position, ball_.velocity, piston_, piston_velocity_);
+  }
 
  private:
   uint64_t Advance();
