@@ -210,6 +210,12 @@ std::vector<EnergyRun> EnergyRuns(double effort) {
   pair("nearest root", false, 1e8, PairByEvents<TextbookFlow<kPositiveRoot>>);
   pair("approaching disc", false, 1e8, PairByEvents<TextbookFlow<kApproaching>>);
   pair("fixed steps of 1e-3", false, 1e6, PairByEvents<FixedStepFlow>);
+  const auto gases = [&](const char* method, GasEngine engine, double exchanges) {
+    runs.push_back(OfEngine(method, engine, std::max(exchanges * effort, 100.0)));
+  };
+  gases("lanes", GasEngine::kLanes, 5e4);
+  gases("reference", GasEngine::kReference, 5e4);
+  gases("jump process", GasEngine::kJumps, 5e5);
   return runs;
 }
 
@@ -222,15 +228,6 @@ void GasEnergyRecord::Add(uint64_t exchanges, double error) {
 double GasEnergyRecord::LongestWalk() const {
   const double each = static_cast<double>(exchanges_) / static_cast<double>(errors_.count);
   return 4 * std::numeric_limits<double>::epsilon() * (1 + std::sqrt(each));
-}
-
-std::vector<EnergyRun> GasEnergyRuns(double effort) {
-  const auto exchanges = [effort](double full) { return std::max(full * effort, 100.0); };
-  return {
-      OfEngine("lanes", GasEngine::kLanes, exchanges(5e4)),
-      OfEngine("reference", GasEngine::kReference, exchanges(5e4)),
-      OfEngine("jump process", GasEngine::kJumps, exchanges(5e5)),
-  };
 }
 
 std::string EnergyTable(const std::vector<EnergyRun>& runs) {

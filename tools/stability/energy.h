@@ -82,7 +82,6 @@ struct EnergyRun {
 };
 
 std::vector<EnergyRun> EnergyRuns(double effort);
-std::vector<EnergyRun> GasEnergyRuns(double effort);
 
 std::string EnergyTable(const std::vector<EnergyRun>& runs);
 

@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "core/closed_form/pair_measures.h"
 #include "core/geometry/pair_geometry.h"
@@ -106,10 +107,13 @@ std::string UnitSpeedSentence() {
 
 // ---- all tables ----
 
+struct System {
+  const char* title;
+  std::vector<CaseResult> cases;
+};
+
 struct Results {
-  std::vector<CaseResult> ball;
-  std::vector<CaseResult> pair;
-  std::vector<CaseResult> gas;
+  std::vector<System> systems;
   std::vector<EnergyRun> energy;
   std::vector<ModelError> model_errors;
 };
@@ -117,12 +121,11 @@ struct Results {
 // `effort` is the fraction of the starts; 1 takes minutes. Prints progress on standard error.
 Results RunAll(double effort) {
   Results results;
-  results.ball = RunCases(BallCases(), BallMethods(), effort);
-  results.pair = RunCases(PairCases(), PairMethods(), effort);
-  results.gas = RunCases(GasCases(), GasMethods(), effort);
+  results.systems = {{"The ball alone", RunCases(BallCases(), BallMethods(), effort)},
+                     {"Ball and piston", RunCases(PairCases(), PairMethods(), effort)},
+                     {"The gas", RunCases(GasCases(), GasMethods(), effort)}};
   std::cerr << "stability: energy" << std::endl;
   results.energy = EnergyRuns(effort);
-  std::ranges::move(GasEnergyRuns(effort), std::back_inserter(results.energy));
   if (effort == 1) results.model_errors = ModelErrors();  // fewer samples show nothing
   return results;
 }
@@ -130,8 +133,8 @@ Results RunAll(double effort) {
 // Calls `visit` with each case and each of its methods.
 template <typename Visit>
 void ForEachMethod(const Results& results, const Visit& visit) {
-  for (const auto* cases : {&results.ball, &results.pair, &results.gas}) {
-    for (const CaseResult& result : *cases) {
+  for (const System& system : results.systems) {
+    for (const CaseResult& result : system.cases) {
       for (const MethodResult& method : result.methods) visit(result, method);
     }
   }
@@ -167,23 +170,22 @@ std::vector<std::string> BlindLooks(const Results& results) {
 }
 
 std::string Text(const Results& results) {
+  std::string summaries, counts;
+  for (const auto& [title, cases] : results.systems) {
+    absl::StrAppend(&summaries, "**", title, "**\n\n", SummaryTable(cases), "\n");
+    absl::StrAppend(&counts, "\n<details><summary>All counts: ", absl::AsciiStrToLower(title),
+                    "</summary>\n\n", CountTable(cases), "\n</details>\n");
+  }
   return absl::StrCat(
       "Made by the program `stability`; what is counted, and how: `tools/stability/README.md`. "
       "e escapes, n negative times, l loops, i still heading inward, m missed piston hits, "
-      "p phantom ones, b pistons beyond their walls; - not run.\n\n**The ball alone**\n\n",
-      SummaryTable(results.ball), "\n**Ball and piston**\n\n", SummaryTable(results.pair),
-      "\n**The gas**\n\n", SummaryTable(results.gas), "\n", UnitSpeedSentence(),
-      "\n\n**Energy**\n\n", EnergyTable(results.energy),
+      "p phantom ones, b pistons beyond their walls; - not run.\n\n",
+      summaries, UnitSpeedSentence(), "\n\n**Energy**\n\n", EnergyTable(results.energy),
       "\n**Model errors**: billiard over model - 1, and the error that is stated; ratio: (the "
       "difference - 2 standard errors)/stated, - where the standard error is above half of the "
       "stated error\n\n",
       ModelErrorTable(results.model_errors),
-      "\n**Closed forms where they cancel**: relative errors\n\n", CancellationTable(),
-      "\n<details><summary>All counts: the ball alone</summary>\n\n", CountTable(results.ball),
-      "\n</details>\n\n<details><summary>All counts: ball and piston</summary>\n\n",
-      CountTable(results.pair),
-      "\n</details>\n\n<details><summary>All counts: the gas</summary>\n\n",
-      CountTable(results.gas), "\n</details>\n");
+      "\n**Closed forms where they cancel**: relative errors\n\n", CancellationTable(), counts);
 }
 
 // ---- the program ----
