@@ -26,9 +26,7 @@
 #include <complex>
 #include <cstddef>
 #include <functional>
-#include <mutex>
 #include <numbers>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -170,17 +168,24 @@ class Interpolated {
 
 // The transfer matrix takes milliseconds, and a plan has thousands of values of z. So each lattice
 // is interpolated, from its first use on. kWidest columns stand for infinitely many.
+template <size_t kIndex>
+double FactorOfLatticeAt(double z) {
+  constexpr int kShorter = kIndex / kWidest + 1, kLonger = kIndex % kWidest + 1;
+  static const Interpolated factor([](double at) {
+    return kLonger == kWidest ? FactorOfTube(kShorter, at) : FactorOfTorus(kLonger, kShorter, at);
+  });
+  return factor.At(z);
+}
+
+template <size_t... kIndex>
+constexpr auto FactorsOfLattices(std::index_sequence<kIndex...>) {
+  return std::array{&FactorOfLatticeAt<kIndex>...};
+}
+
 // 1 <= shorter, longer <= kWidest
 double FactorOfLattice(int shorter, int longer, double z) {
-  static std::array<std::once_flag, kWidest * kWidest> computed;
-  static std::array<std::optional<Interpolated>, kWidest * kWidest> factors;
-  const auto place = static_cast<size_t>((shorter - 1) * kWidest + longer - 1);
-  std::call_once(computed[place], [&] {
-    factors[place].emplace([&](double at) {
-      return longer == kWidest ? FactorOfTube(shorter, at) : FactorOfTorus(longer, shorter, at);
-    });
-  });
-  return factors[place]->At(z);
+  constexpr auto kFactors = FactorsOfLattices(std::make_index_sequence<kWidest * kWidest>());
+  return kFactors[static_cast<size_t>((shorter - 1) * kWidest + longer - 1)](z);
 }
 
 struct Crowding {
