@@ -4,13 +4,11 @@
 #include <numbers>
 
 #include "core/closed_form/pair_measures.h"
-#include "core/geometry/cell_profile.h"
 
 namespace ballpiston {
 
 LongestWait::LongestWait(const PairGeometry& geometry)
-    : lambda_(geometry.lambda()),
-      tip_(geometry.tip()),
+    : geometry_(geometry),
       memory_(1 / std::sqrt(geometry.tip())),
       round_trip_(2 * geometry.stroke()) {
   const PairMeasures measures = Measures(geometry);
@@ -22,7 +20,7 @@ LongestWait::LongestWait(const PairGeometry& geometry)
 double LongestWait::From(const PairState& state) const {
   const double v = state.ball_speed, u = std::fabs(state.piston_velocity);
   if (v == 0) return kLongestWait * round_trip_ / u;
-  const double half = (tip_ - state.piston) / 2;
+  const double half = (geometry_.tip() - state.piston) / 2;
   if (half <= 0 && u == 0) return 0;
   if (half > 0) {
     const double wait = kLongestWait * memory_ * TimeToDepth(half, v);
@@ -32,7 +30,7 @@ double LongestWait::From(const PairState& state) const {
 }
 
 double LongestWait::TimeToDepth(double depth, double ball_speed) const {
-  return std::numbers::pi * cell_area_ / (2 * HalfHeight(lambda_, depth) * ball_speed);
+  return std::numbers::pi * cell_area_ / (2 * geometry_.HalfHeight(depth) * ball_speed);
 }
 
 }  // namespace ballpiston

@@ -37,8 +37,7 @@ class LongestWait {
  private:
   double TimeToDepth(double depth, double ball_speed) const;
 
-  double lambda_;
-  double tip_;
+  PairGeometry geometry_;
   double cell_area_;
   double memory_;       // 1/sqrt(tip)
   double ball_path_;    // pi A/eta

@@ -124,7 +124,7 @@ std::unique_ptr<EngineRun> StartOrbits(Engine engine, const PairGeometry& geomet
 // kLanes on the processor, without the source's device.
 std::unique_ptr<EngineRun> StartLaneOrbits(const PairGeometry& geometry, OrbitSource& source);
 // kLanesSingle: flights in single precision, which are faster, with the errors that
-// single_precision.h states.
+// billiard_domain.h states.
 std::unique_ptr<EngineRun> StartLaneOrbitsSingle(const PairGeometry& geometry, OrbitSource& source);
 
 }  // namespace ballpiston

@@ -14,9 +14,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/closed_form/canonical_measure.h"
-
 namespace ballpiston {
+
+CanonicalAverages AveragesAt(double beta) {
+  const double mean_f = 1 / std::sqrt(2 * std::numbers::pi * beta);
+  const double second = 2 * mean_f / beta / beta;
+  return {.mean_f = mean_f, .mean_energy_current = second, .mean_h = second};
+}
 
 double ExchangeRate(const PairMeasures& measures, double temperature) {
   return AveragesAt(1 / temperature).mean_f * (measures.area_ball_piston / measures.volume);

@@ -26,7 +26,7 @@
 
 #include "core/arithmetic/elementary_functions.h"
 #include "core/closed_form/circular_segment.h"
-#include "core/closed_form/kernel_moments.h"
+#include "core/closed_form/kernel.h"
 
 namespace ballpiston {
 

@@ -1,32 +1,69 @@
-// The stochastic kernel: rate density of collisions after which the piston has the energy ep_out.
+// The stochastic kernel of a pair with the total energy 1/2, and its moments: the rate density of
+// collisions after which the piston has the energy ep_out, the rate of all collisions, the moments
+// of the energy zeta = ep_out - ep that goes from the ball to the piston, and the fraction of the
+// collisions after which the piston has less than a given energy.
 //
-//   W(eb, ep -> ep_out) = max(sqrt ep_out, sqrt ep)/(2 pi sqrt(ep_out (eb - ep_out)))   eq. kernel
+//   W(ep -> ep_out) = max(sqrt ep_out, sqrt ep)/(2 pi sqrt(ep_out (eb - ep_out)))   eq. kernel
+//   f(ep) = int W dzeta           rate of collisions                                eq.
+//   intkernelnuf j(ep) = int zeta W dzeta      energy current eq. intkerneleta h(ep) = int zeta^2 W
+//   dzeta    second moment of transfer                         eq. intkerneleta2
 //
-// for ep_out < eb, else 0: the piston's new energy is the energy of the ball's normal velocity
-// component.
+// W is 0 for ep_out >= eb: the piston's new energy is the energy of the ball's normal velocity
+// component. At ep_out = 0 < ep it is infinite (and integrable). If W is the law of a collision,
+// F(ep_out) is uniform on [0, 1] for all energies before it.
 //
-// Symbols: eb and ep are the energies of ball and piston before the collision. Units: |dG_bp|/|G|
-// over energy^(1/2), per unit of ep_out. Domain: eb, ep, ep_out >= 0, finite. At ep_out = 0 < ep
-// the density is infinite (and integrable). PairKernel is the kernel at total energy 1/2,
-// eb = 1/2 - ep, with ep and ep_out in [0, 1/2].
+// Symbols: eb = 1/2 - ep and ep are the energies of ball and piston before the collision. For
+// another total energy E the paper's functions of (eb, ep) follow from those of ep/(2 E): W, f, j
+// and h times the powers -1/2, 1/2, 3/2 and 5/2 of 2 E. Units: |dG_bp|/|G| times these powers of
+// energy. Domain: ep and ep_out in [0, 1/2].
 //
 // Properties, each with the test that bears its name:
-//   1. AccurateAtRandomEnergies: relative error below kKernelRelativeError; and for PairKernel
-//      AccurateWhereTheBallKeepsLittleEnergy, ep + ep_out -> 1/2.
-//   2. AreIntegralsOfTheKernel: with weights 1, zeta, zeta^2, zeta = ep_out - ep, it integrates to
-//      the f, j, h of kernel_moments.h.
-// Detailed balance: W(eb, ep -> ep_out)/sqrt(ep) is symmetric in ep and ep_out at fixed total
-// energy, 1/sqrt(ep) being the microcanonical density.
+//   1. AccurateAtRandomEnergies, AccurateWhereTheBallKeepsLittleEnergy (ep + ep_out -> 1/2):
+//      relative error of W below kKernelRelativeError.
+//   2. MomentsAreAccurateForEveryEnergy: relative error below kKernelMomentsRelativeError; and
+//      CurrentIsAccurateThroughItsZero.
+//   3. CurrentFlowsToTheSlowPiston: j > 0 exactly when ep/eb < 0.5404...
+//   4. MomentsAreIntegralsOfTheKernel.
+//   5. DistributionIsAccurateAtRandomEnergies: relative error of F, and of f computed with it,
+//   below
+//      kKernelDistributionRelativeError, also where the ball keeps little energy.
+//   6. DistributionRisesFromZeroToOne: F reaches 1 at ep_out = eb, and falls nowhere except by
+//      rounding.
+//   7. SlopeIsTheKernelOverItsRate.
+// Detailed balance: W(ep -> ep_out)/sqrt(ep) is symmetric in ep and ep_out, 1/sqrt(ep) being the
+// microcanonical density.
 //
-// Pure functions: safe from any thread.
+// The distribution uses only +, -, *, /, sqrt and Atan2, so its bits are the same on every
+// processor. Pure functions and an immutable object: safe from any thread.
 #pragma once
 
 namespace ballpiston {
 
 inline constexpr double kKernelRelativeError = 1e-15;
+inline constexpr double kKernelMomentsRelativeError = 1e-14;
+inline constexpr double kKernelDistributionRelativeError = 2e-15;
 
-double Kernel(double eb, double ep, double ep_out);
+double PairKernel(double ep, double ep_out);  // W
+double PairCollisionRate(double ep);          // f
+double PairEnergyCurrent(double ep);          // j
+double PairSquaredEnergyTransfer(double ep);  // h
 
-double PairKernel(double ep, double ep_out);
+class KernelDistribution {
+ public:
+  explicit KernelDistribution(double ep);
+
+  // f
+  double CollisionRate() const;
+  // F
+  double Below(double ep_out) const;
+
+ private:
+  double eb_;      // the ball's energy,
+  double eb_low_;  // and the remainder that its rounding dropped
+  double ep_;
+  double piston_speed_;  // sqrt(ep)
+  double p_;
+  double q_;
+};
 
 }  // namespace ballpiston

@@ -1,12 +1,18 @@
-// Mean free times of the pair in equilibrium at total energy 1/2, exact for every delta.
+// Mean free times of the pair at total energy 1/2, exact for every delta: in equilibrium,
 //
 //   tau_x = 4 |G|/|dG_x|,  x = bp, bw, pw                       eqs. taubpmft, tauwall
 //
-// and their limit of rare interactions:
+// and from a return to the next at a given energy ep of the piston, 0 < ep < 1/2,
+//
+//   phi(ep) = tau_bp nu_bp(ep)                                  eq. numft, the same for every
+//   geometry tau_bp(ep) = 1/nu_bp(ep) = tau_bp/phi                       eqs. taubpmftep, cnuep
+//
+// and the limit of rare interactions:
 //
 //   lim delta -> 0 of 1/(tau_bp delta^2) = 1/(2 sqrt(2) cell)    eq. taubpmftdelta
 //
-// Units: cells over unit speed. Domain: every PairGeometry with delta > 1e-140 (pair_measures.h).
+// Units: cells over unit speed; phi has no dimension. Domain: every PairGeometry with delta >
+// 1e-140 (pair_measures.h), ep in [0, 1/2].
 //
 // Properties, each with the test that bears its name:
 //   1. AccurateForEveryGeometry: relative error below kMeanFreeTimeRelativeError.
@@ -15,11 +21,12 @@
 //      rho -> 1/2 of delta^2 |G|/|dG_bp| differ by a factor of three (eq. limitsrhodelta). The
 //      ratio delta/lambda decides: the piston moves in a wedge if delta << lambda, in a cusp if
 //      delta >> lambda.
+//   4. PhiIsAccurateForEveryEnergy: relative error below kConditionalRateRelativeError. Phi
+//      increases from sqrt(8)/pi through phi(1/4) = 1 to sqrt(2).
+//   5. PhiAveragesToOne: int phi dep/sqrt(2 ep) = 1, eq. intcnuep.
 //
 // Pure functions: safe from any thread.
 #pragma once
-
-#include <numbers>
 
 #include "core/closed_form/pair_measures.h"
 #include "core/geometry/pair_geometry.h"
@@ -27,6 +34,7 @@
 namespace ballpiston {
 
 inline constexpr double kMeanFreeTimeRelativeError = 5e-15;
+inline constexpr double kConditionalRateRelativeError = 1e-15;
 
 struct MeanFreeTimes {
   double ball_piston;
@@ -37,17 +45,15 @@ struct MeanFreeTimes {
 MeanFreeTimes MeanFreeTimesFrom(const PairMeasures& measures);
 MeanFreeTimes MeanFreeTimesOf(const PairGeometry& geometry);
 
+double Phi(double ep);
+
+// The mean time to return to the collision surface at fixed energies. At exactly ep = 0 and
+// ep = 1/2 the piston or the ball rests, and only the visited part of phase space counts
+// (VolumesAtRest). There the value is the mean along an orbit, and differs from the limit of
+// tau_bp/phi.
+double ConditionalMeanFreeTime(const PairGeometry& geometry, double ep);
+
 // lim delta -> 0 of 1/(tau_bp delta^2). Domain: kMinRho < rho < kMaxRho.
 double RareLimitRate(double rho);
-
-// delta^2 |G|/|dG_bp|. Its double limit depends on the order of the limits.
-double ScaledVolumeRatio(const PairGeometry& geometry);
-
-// lim rho -> 1/2 of lim delta -> 0 of ScaledVolumeRatio: (4 - pi)/(4 sqrt 2).
-inline constexpr double kDeltaFirstScaledVolumeRatio =
-    (4 - std::numbers::pi) / (4 * std::numbers::sqrt2);
-
-// lim delta -> 0 of lim rho -> 1/2 of ScaledVolumeRatio: 3 (4 - pi)/(4 sqrt 2).
-inline constexpr double kRhoFirstScaledVolumeRatio = 3 * kDeltaFirstScaledVolumeRatio;
 
 }  // namespace ballpiston

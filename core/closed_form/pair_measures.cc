@@ -38,7 +38,6 @@
 #include <numbers>
 
 #include "core/closed_form/circular_segment.h"
-#include "core/geometry/cell_profile.h"
 
 namespace ballpiston {
 namespace {
@@ -53,8 +52,8 @@ struct TipArc {
 
 TipArc ArcTo(double rho, double depth, double height) {
   const double chord = std::hypot(depth, height);
-  const double angle = ChordAngle(rho, chord);
-  return {height, chord, angle, SegmentArea(rho, angle)};
+  const double angle = 2 * std::asin(chord / (2 * rho));
+  return {height, chord, angle, rho * rho / 2 * AngleMinusSine(angle)};
 }
 
 // P: area of the cell right of the given depth.
@@ -63,7 +62,7 @@ double AreaBehind(const TipArc& arc, double depth) { return depth * arc.height -
 TipArc QuarterArc(double rho, double bound) { return ArcTo(rho, bound, bound); }
 
 TipArc ReachableArc(const PairGeometry& g) {
-  return ArcTo(g.rho(), g.delta(), HalfHeight(g.lambda(), g.delta()));
+  return ArcTo(g.rho(), g.delta(), g.HalfHeight(g.delta()));
 }
 
 // Q: integral of AreaBehind from 0 to delta.

@@ -76,14 +76,12 @@ class Changes {
 
   void AddTo(ContactCurrents& sum, double v, double weight) const {
     const double piston_energy = v * v / 2;
-    const Values ball = f_.OfBall(total_ - piston_energy), piston = f_.OfPiston(piston_energy);
+    const Values of_ball = f_.OfBall(total_ - piston_energy) - ball_;
+    const Values of_piston = f_.OfPiston(piston_energy) - piston_;
     sum.energy += weight * (piston_energy - piston_energy_);
-    for (size_t r = 0; r < ball.size(); ++r) {
-      const double of_ball = ball[r] - ball_[r], of_piston = piston[r] - piston_[r];
-      sum.ball[r] += weight * of_ball;
-      sum.piston[r] += weight * of_piston;
-      sum.products += weight * of_ball * of_piston;
-    }
+    sum.ball += weight * of_ball;
+    sum.piston += weight * of_piston;
+    for (int r = 0; r < of_ball.size(); ++r) sum.products += weight * of_ball[r] * of_piston[r];
   }
 
  private:

@@ -34,10 +34,12 @@ inline constexpr double kContactCurrentsError = 3e-4;
 
 // Means per unit of time.
 struct ContactCurrents {
-  double energy = 0;                 // the piston's gain of energy
-  double products = 0;               // sum_r of (change of u_r) (change of w_r)
-  TestFunction::Values ball = {};    // the change of u_r
-  TestFunction::Values piston = {};  // the change of w_r
+  using Values = TestFunction::Values;
+
+  double energy = 0;               // the piston's gain of energy
+  double products = 0;             // sum_r of (change of u_r) (change of w_r)
+  Values ball = Values::Zero();    // the change of u_r
+  Values piston = Values::Zero();  // the change of w_r
 };
 
 // By quadrature: to 1e-12 for energies up to 10, to 2e-8 up to 36.

@@ -19,6 +19,7 @@
 // TestFunctionTest.HasItsBound.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 
@@ -27,8 +28,8 @@
 namespace ballpiston {
 
 struct TestFunction {
-  static constexpr size_t kTerms = 2;
-  using Values = std::array<double, kTerms>;  // one for each term
+  static constexpr int kTerms = 2;
+  using Values = Eigen::Array<double, kTerms, 1>;  // one for each term
   // The coefficients of the three exponentials, for each term.
   using Coefficients = std::array<std::array<double, 3>, kTerms>;
 
@@ -43,8 +44,8 @@ struct TestFunction {
   static Values Sums(const Coefficients& coefficients, double energy) {
     const double slow = Exp(-energy / 2), middle = slow * slow, fast = middle * middle;
     Values sums;
-    for (size_t r = 0; r < kTerms; ++r) {
-      const auto& c = coefficients[r];
+    for (int r = 0; r < kTerms; ++r) {
+      const auto& c = coefficients[static_cast<size_t>(r)];
       sums[r] = c[0] * slow + c[1] * middle + c[2] * fast;
     }
     return sums;

@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "core/closed_form/conditional_rate.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/closed_form/pair_measures.h"
 

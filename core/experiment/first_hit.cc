@@ -21,7 +21,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/closed_form/conditional_rate.h"
 #include "core/closed_form/ingoing_law.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/all_experiments.h"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/arithmetic/elementary_functions.h"
-#include "core/closed_form/kernel_distribution.h"
+#include "core/closed_form/kernel.h"
 #include "core/statistics/group_scatter.h"
 #include "core/statistics/kl_divergence.h"
 #include "core/statistics/kolmogorov_smirnov.h"
@@ -101,7 +101,7 @@ void CountOrbit(uint64_t number, double energy, std::span<const Exchange> exchan
   ProductSum sums[kCorrelations];
   double energy_before = 0, waiting_before = 0;
   for (size_t k = 0; k < exchanges.size(); ++k) {
-    const auto law = KernelDistribution::OfPair(energy);
+    const KernelDistribution law(energy);
     // T is counted in bins of 2^-10, so its relative accuracy near 0 does not matter.
     const double waiting = 1 - Exp(-law.CollisionRate() * exchanges[k].waiting_time);
     const double outcome = law.Below(exchanges[k].energy);

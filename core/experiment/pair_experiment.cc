@@ -11,7 +11,6 @@
 #include "absl/strings/str_join.h"
 #include "core/arithmetic/number_text.h"
 #include "core/billiard/billiard_domain.h"
-#include "core/billiard/single_precision.h"
 #include "core/closed_form/pair_measures.h"
 #include "core/experiment/expected_returns.h"
 

@@ -7,25 +7,6 @@
 namespace ballpiston {
 namespace {
 
-using Values = TestFunction::Values;
-
-double Product(const Values& one, const Values& other) {
-  double sum = 0;
-  for (size_t r = 0; r < one.size(); ++r) sum += one[r] * other[r];
-  return sum;
-}
-
-Values Difference(const Values& one, const Values& other) {
-  Values difference;
-  for (size_t r = 0; r < one.size(); ++r) difference[r] = one[r] - other[r];
-  return difference;
-}
-
-// Adds `now` - `before`.
-void Replace(const Values& before, const Values& now, Values& sum) {
-  for (size_t r = 0; r < sum.size(); ++r) sum[r] += now[r] - before[r];
-}
-
 const ContactCurrentsTable& TableOf(const GasGeometry& geometry) {
   return geometry.shape().is_lattice ? ContactCurrentsTable::OfLattice()
                                      : ContactCurrentsTable::OfChain();
@@ -74,8 +55,8 @@ void JumpCurrent::FindContact(Contact& contact) {
   Body &ball = balls_[contact.ball], &piston = pistons_[contact.piston];
   const ContactCurrents before = contact.now;
   contact.now = table_.At(ball.energy, piston.energy);
-  Replace(before.ball, contact.now.ball, ball.change);
-  Replace(before.piston, contact.now.piston, piston.change);
+  ball.change += contact.now.ball - before.ball;
+  piston.change += contact.now.piston - before.piston;
   const double more = contact.sign * (contact.now.energy - before.energy);
   current_ += more;
   current_left_ += more + contact.sign * (contact.now.products - before.products);
@@ -90,16 +71,16 @@ void JumpCurrent::SetTerm(double term, Body& body) {
 void JumpCurrent::FindBallTerm(size_t ball) {
   const Contact& right = contacts_[ball * directions_];
   const Contact& left = contacts_[ball * directions_ + directions_ / 2];
-  const Values neighbours = Difference(pistons_[right.piston].values, pistons_[left.piston].values);
-  SetTerm(Product(neighbours, balls_[ball].change), balls_[ball]);
+  const Values neighbours = pistons_[right.piston].values - pistons_[left.piston].values;
+  SetTerm((neighbours * balls_[ball].change).sum(), balls_[ball]);
 }
 
 void JumpCurrent::FindPistonTerm(size_t piston) {
   const auto& [before, after] = sides_[piston];
   if (contacts_[before].sign == 0) return;
   const Values neighbours =
-      Difference(balls_[contacts_[before].ball].values, balls_[contacts_[after].ball].values);
-  SetTerm(Product(neighbours, pistons_[piston].change), pistons_[piston]);
+      balls_[contacts_[before].ball].values - balls_[contacts_[after].ball].values;
+  SetTerm((neighbours * pistons_[piston].change).sum(), pistons_[piston]);
 }
 
 void JumpCurrent::Exchange(const GasExchange& exchange, double) {

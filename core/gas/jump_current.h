@@ -55,9 +55,9 @@ class JumpCurrent : public CurrentMeter {
 
   struct Body {
     double energy = 0;
-    Values values = {};  // u_r of a ball, w_r of a piston
-    Values change = {};  // L u_r, L w_r
-    double term = 0;     // of 2 J'
+    Values values = Values::Zero();  // u_r of a ball, w_r of a piston
+    Values change = Values::Zero();  // L u_r, L w_r
+    double term = 0;                 // of 2 J'
   };
   struct Contact {
     size_t ball = 0;

@@ -3,7 +3,6 @@
 // If both temperatures are equal, the gas is in equilibrium at this temperature.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -38,10 +37,11 @@ class ThermalWalls {
   ThermalWalls() = default;  // no walls, for a periodic gas
   // The left one is hot, the right one cold: hot >= cold > 0.
   ThermalWalls(const GasGeometry& geometry, double hot, double cold, const GasRandom& random)
-      : edges_(geometry.shape().columns + 1), hot_(hot), cold_(cold), random_(random) {
+      : edges_(geometry.shape().columns + 1), hot_(hot), cold_(cold) {
     if (geometry.ends() == GasEnds::kPeriodic) return;
     pistons_ = edges_ * geometry.shape().rows;
-    groups_.resize((Count() + kGroup - 1) / kGroup);
+    sequences_.reserve(Count());
+    for (size_t wall = 0; wall < Count(); ++wall) sequences_.push_back(random.OfWall(wall));
   }
 
   // Whether the piston has a thermal wall. Such a piston meets only one ball.
@@ -60,32 +60,15 @@ class ThermalWalls {
   bool IsHot(int64_t piston) const { return piston % edges_ == 0; }
   double TemperatureAt(int64_t piston) const { return IsHot(piston) ? hot_ : cold_; }
   double DrawSpeed(int64_t piston) {
-    return DrawFluxSpeed(TemperatureAt(piston), SequenceOf(WallOf(piston)));
+    return DrawFluxSpeed(TemperatureAt(piston), sequences_[WallOf(piston)]);
   }
 
  private:
-  // Walls whose sequences begin together. A gas may have two million walls, whose sequences would
-  // take a fifth of a second.
-  static constexpr size_t kGroup = 256;
-
-  CounterRandom& SequenceOf(size_t wall) {
-    std::vector<CounterRandom>& group = groups_[wall / kGroup];
-    if (group.empty()) BeginSequences(wall / kGroup * kGroup, group);
-    return group[wall % kGroup];
-  }
-
-  void BeginSequences(size_t first, std::vector<CounterRandom>& group) const {
-    const size_t end = std::min(first + kGroup, Count());
-    group.reserve(end - first);
-    for (size_t wall = first; wall < end; ++wall) group.push_back(random_.OfWall(wall));
-  }
-
   int64_t edges_ = 1;    // of a row
   int64_t pistons_ = 0;  // along x
   double hot_ = 0;
   double cold_ = 0;
-  GasRandom random_ = {0, 0, 0};
-  std::vector<std::vector<CounterRandom>> groups_;  // of the walls by row, hot and cold
+  std::vector<CounterRandom> sequences_;  // of each wall
 };
 
 }  // namespace ballpiston

@@ -1,5 +1,6 @@
 #include "core/geometry/pair_geometry.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "absl/status/status.h"
@@ -71,5 +72,16 @@ PairGeometry::PairGeometry(double rho, double delta)
       tip_(PairDeltaBound(rho)),
       piston_left_(tip_ - delta_),
       piston_right_(0.5 + lambda_ / 2 + delta_) {}
+
+double PairGeometry::CentreToArc(double depth) const {
+  // 4 s^2 = 1 - 4 t (t + lambda). The factor 1 - 2 t is exact for t > 1/4. This matters for
+  // t -> 1/2 and lambda -> 0, where s tends to lambda/2.
+  const double square = (1 - 2 * depth) * (1 + 2 * depth) - 4 * depth * lambda_;
+  return std::sqrt(std::max(square, 0.0)) / 2;
+}
+
+double PairGeometry::HalfHeight(double depth) const {
+  return depth * (depth + lambda_) / (0.5 + CentreToArc(depth));
+}
 
 }  // namespace ballpiston

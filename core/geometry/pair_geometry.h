@@ -9,6 +9,10 @@
 // piston reaches the cell's middle. In a gas pistons must not overlap; this gives the paper's bound
 // rho/sqrt(2) - lambda/2 (eq. x1x2x3 and the footnote before it).
 //
+// Near the right tip the outline of the cell is a function of the depth t = tip - x. With
+// rho^2 = (1 + lambda^2)/4 the arcs above and below are at |y| = t (t + lambda)/(1/2 + s), where
+// s = sqrt(rho^2 - (lambda/2 + t)^2) is the height of the discs' centres above their arcs.
+//
 // Lengths are in cells. All members are accurate to a few ulps over the whole domain.
 // Immutable, so safe to share between threads.
 #pragma once
@@ -48,6 +52,11 @@ class PairGeometry {
   double piston_left() const { return piston_left_; }     // leftmost position of the piston
   double piston_right() const { return piston_right_; }   // rightmost position of the piston
   double stroke() const { return lambda_ + 2 * delta_; }  // piston_right - piston_left
+
+  // At a depth of 0 to (1 - lambda)/2: s, which is 0 if rounding makes the depth larger, and half
+  // the height of the cell. At the depth delta this is half the piston's height, eta/2.
+  double CentreToArc(double depth) const;
+  double HalfHeight(double depth) const;
 
  private:
   PairGeometry(double rho, double delta);

@@ -25,6 +25,9 @@ struct PairStateOf {
 
 using PairState = PairStateOf<double>;
 
+PairState WithVelocities(const Eigen::Vector2d& position, const Eigen::Vector2d& velocity,
+                         double piston, double piston_velocity);
+
 // The energy of ball and piston together, from their speeds.
 inline double EnergyOf(const PairState& state) {
   return (state.ball_speed * state.ball_speed + state.piston_velocity * state.piston_velocity) / 2;

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/arithmetic/gauss_nodes.h"
-#include "core/closed_form/kernel_moments.h"
+#include "core/closed_form/kernel.h"
 
 namespace ballpiston {
 namespace {

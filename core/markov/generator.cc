@@ -7,7 +7,7 @@
 #include <cstddef>
 
 #include "core/arithmetic/gauss_nodes.h"
-#include "core/closed_form/kernel_moments.h"
+#include "core/closed_form/kernel.h"
 
 namespace ballpiston {
 namespace {
@@ -37,16 +37,6 @@ Eigen::VectorXd Legendre(int degree, double x) {
   return p;
 }
 
-template <typename F>
-void ForEachNode(double lower, double upper, F f) {
-  ForEachGaussNode<kNodes>(lower, upper, f);
-}
-
-template <typename F>
-void ForEachNodeWithRoot(double lower, double upper, F f) {
-  ForEachGaussNodeWithRoot<kNodes>(lower, upper, f);
-}
-
 }  // namespace
 
 double JumpRate(double u) { return PairCollisionRate(u * u / 2); }
@@ -65,9 +55,6 @@ Generator::Generator(const Discretisation& discretisation, bool has_gains)
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
   rates_ = solver.eigenvalues();
   functions_ = solver.eigenvectors();
-  asymmetry_ = (computed - computed.transpose()).cwiseAbs().maxCoeff();
-  const Eigen::VectorXd one = functions_ * Coefficients([](double) { return 1.0; });
-  conservation_error_ = (computed * one).norm();
 }
 
 // Both differences are exact, also in the shortest elements at the far end.
@@ -78,7 +65,7 @@ double Generator::Within(size_t e, double theta) const {
 void Generator::OrthonormaliseBases() {
   for (size_t e = 0; e + 1 < edges_.size(); ++e) {
     Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(degree_ + 1, degree_ + 1);
-    ForEachNodeWithRoot(edges_[e], edges_[e + 1], [&](double theta, double weight) {
+    ForEachGaussNodeWithRoot<kNodes>(edges_[e], edges_[e + 1], [&](double theta, double weight) {
       const Eigen::VectorXd p = Legendre(degree_, Within(e, theta));
       mass += weight * std::cos(theta) * p * p.transpose();
     });
@@ -106,8 +93,8 @@ Eigen::VectorXd Generator::KernelRow(double theta, size_t elements) const {
           weight * kJumpKernelPrefactor * std::max(u, v) * Basis(e, std::asin(v));
     };
     const double kink = std::clamp(u, a, b);
-    ForEachNode(angle(a), angle(kink), add);
-    ForEachNode(angle(kink), angle(b), add);
+    ForEachGaussNode<kNodes>(angle(a), angle(kink), add);
+    ForEachGaussNode<kNodes>(angle(kink), angle(b), add);
   }
   return row;
 }
@@ -119,7 +106,7 @@ Eigen::MatrixXd Generator::MinusL(bool has_gains) const {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
   for (size_t e = 0; e + 1 < edges_.size(); ++e) {
     const Eigen::Index first = First(e), count = degree_ + 1;
-    ForEachNodeWithRoot(edges_[e], edges_[e + 1], [&](double theta, double weight) {
+    ForEachGaussNodeWithRoot<kNodes>(edges_[e], edges_[e + 1], [&](double theta, double weight) {
       const Eigen::VectorXd basis = weight * std::cos(theta) * Basis(e, theta);
       if (has_gains) {
         matrix.block(first, 0, count, slow) -= basis * KernelRow(theta, slow_elements).transpose();
@@ -135,7 +122,7 @@ Eigen::MatrixXd Generator::MinusL(bool has_gains) const {
 Eigen::VectorXd Generator::Coefficients(const std::function<double(double)>& function) const {
   Eigen::VectorXd projected = Eigen::VectorXd::Zero(functions_.rows());
   for (size_t e = 0; e + 1 < edges_.size(); ++e) {
-    ForEachNodeWithRoot(edges_[e], edges_[e + 1], [&](double theta, double weight) {
+    ForEachGaussNodeWithRoot<kNodes>(edges_[e], edges_[e + 1], [&](double theta, double weight) {
       projected.segment(First(e), degree_ + 1) +=
           weight * std::cos(theta) * function(std::sin(theta)) * Basis(e, theta);
     });

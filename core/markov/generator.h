@@ -18,7 +18,7 @@
 // the square of the error of their functions.
 //
 // Units: rates |dG_bp|/|G|, times |G|/|dG_bp|. Properties, each with the test that bears its name:
-//   1. ConservesProbability: L 1 = 0, and L is symmetric, to kGeneratorRoundingError.
+//   1. ConservesProbability: L 1 = 0, to kGeneratorRoundingError.
 //   2. EvolutionObeysTheMasterEquation. Rates converge from above as degree and levels grow.
 //
 // Immutable; safe to share between threads.
@@ -70,11 +70,6 @@ class Generator {
   // int K(u, u') function_k(u') du' for each eigenfunction k.
   Eigen::VectorXd Gains(double u) const;
 
-  // The errors of quadrature and rounding: |L 1|, and the largest difference of the matrix from its
-  // transpose.
-  double conservation_error() const { return conservation_error_; }
-  double asymmetry() const { return asymmetry_; }
-
  private:
   Generator(const Discretisation& discretisation, bool has_gains);
 
@@ -95,8 +90,6 @@ class Generator {
   std::vector<Eigen::MatrixXd> orthonormal_;  // by element: from Legendre's to the basis
   Eigen::VectorXd rates_;
   Eigen::MatrixXd functions_;  // eigenfunctions by column, in the bases
-  double conservation_error_ = 0;
-  double asymmetry_ = 0;
 };
 
 }  // namespace ballpiston

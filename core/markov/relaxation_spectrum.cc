@@ -10,12 +10,6 @@ constexpr double kTold = 1e-8;
 
 double SquareRootOfTwice(double epsilon) { return std::sqrt(2 * epsilon); }
 
-// int_0^window exp(-rate t) dt, for rates above 0.
-Eigen::ArrayXd Integrals(const Eigen::ArrayXd& rates, double window) {
-  if (std::isinf(window)) return 1 / rates;
-  return -(-rates * window).unaryExpr([](double x) { return std::expm1(x); }) / rates;
-}
-
 // Without the stationary law, whose rate is 0.
 auto Decaying(const Eigen::VectorXd& values) { return values.tail(values.size() - 1).array(); }
 
@@ -29,24 +23,22 @@ RelaxationSpectrum::Level::Level(const Discretisation& discretisation)
     : generator(discretisation),
       energy(generator.Coefficients([](double u) { return u * u / 2 - kMeanPistonEnergy; })) {}
 
-double RelaxationSpectrum::Level::Correlation(double t) const {
-  const Eigen::ArrayXd decay = (-Decaying(generator.rates()) * t).exp();
-  return (Decaying(energy).square() * decay).sum() / kVarianceOfPistonEnergy;
+double RelaxationSpectrum::Level::Correlation(const Eigen::ArrayXd& factors) const {
+  return (Decaying(energy).square() * factors).sum() / kVarianceOfPistonEnergy;
 }
 
-double RelaxationSpectrum::Level::CorrelationIntegral(double window) const {
-  const Eigen::ArrayXd integrals = Integrals(Decaying(generator.rates()), window);
-  return (Decaying(energy).square() * integrals).sum() / kVarianceOfPistonEnergy;
+double RelaxationSpectrum::Level::Energy(double u, const Eigen::ArrayXd& factors) const {
+  return (Decaying(energy) * Decaying(generator.At(u)) * factors).sum();
 }
 
-double RelaxationSpectrum::Level::Energy(double u, double t) const {
-  const Eigen::ArrayXd decay = (-Decaying(generator.rates()) * t).exp();
-  return kMeanPistonEnergy + (Decaying(energy) * Decaying(generator.At(u)) * decay).sum();
+Eigen::ArrayXd RelaxationSpectrum::Level::At(double t) const {
+  return (-Decaying(generator.rates()) * t).exp();
 }
 
-double RelaxationSpectrum::Level::EnergyIntegral(double u, double window) const {
-  const Eigen::ArrayXd integrals = Integrals(Decaying(generator.rates()), window);
-  return (Decaying(energy) * Decaying(generator.At(u)) * integrals).sum();
+Eigen::ArrayXd RelaxationSpectrum::Level::Until(double window) const {
+  const Eigen::ArrayXd rates = Decaying(generator.rates());
+  if (std::isinf(window)) return 1 / rates;
+  return -(-rates * window).unaryExpr([](double x) { return std::expm1(x); }) / rates;
 }
 
 RelaxationSpectrum::RelaxationSpectrum(const Discretisation& discretisation)
@@ -79,21 +71,22 @@ std::vector<SpectralValue> RelaxationSpectrum::IsolatedRates() const {
 }
 
 SpectralValue RelaxationSpectrum::Autocorrelation(double t) const {
-  return Compared([t](const Level& level) { return level.Correlation(t); });
+  return Compared([t](const Level& level) { return level.Correlation(level.At(t)); });
 }
 
 SpectralValue RelaxationSpectrum::CorrelationTime(double window) const {
-  return Compared([window](const Level& level) { return level.CorrelationIntegral(window); });
+  return Compared([window](const Level& level) { return level.Correlation(level.Until(window)); });
 }
 
 SpectralValue RelaxationSpectrum::MeanEnergy(double epsilon, double t) const {
   const double u = SquareRootOfTwice(epsilon);
-  return Compared([u, t](const Level& level) { return level.Energy(u, t); });
+  return Compared(
+      [u, t](const Level& level) { return kMeanPistonEnergy + level.Energy(u, level.At(t)); });
 }
 
 SpectralValue RelaxationSpectrum::DecayIntegral(double epsilon, double window) const {
   const double u = SquareRootOfTwice(epsilon);
-  return Compared([u, window](const Level& level) { return level.EnergyIntegral(u, window); });
+  return Compared([u, window](const Level& level) { return level.Energy(u, level.Until(window)); });
 }
 
 }  // namespace ballpiston

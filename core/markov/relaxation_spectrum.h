@@ -58,10 +58,12 @@ class RelaxationSpectrum {
  private:
   struct Level {
     explicit Level(const Discretisation& discretisation);
-    double Correlation(double t) const;
-    double CorrelationIntegral(double window) const;
-    double Energy(double u, double t) const;
-    double EnergyIntegral(double u, double window) const;
+    // C/C(0), and E[ep | u at 0] - 1/6: sums over the eigenfunctions, each with a factor.
+    double Correlation(const Eigen::ArrayXd& factors) const;
+    double Energy(double u, const Eigen::ArrayXd& factors) const;
+    // The factors exp(-rate t), and their integrals from 0 to `window`.
+    Eigen::ArrayXd At(double t) const;
+    Eigen::ArrayXd Until(double window) const;
 
     Generator generator;
     Eigen::VectorXd energy;  // coefficients of ep - 1/6

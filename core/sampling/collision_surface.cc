@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "core/geometry/cell_profile.h"
-
 namespace ballpiston {
 namespace {
 
@@ -22,11 +20,11 @@ double ProposeDepth(const PairGeometry& geometry, CounterRandom& random) {
 Eigen::Vector2d UniformOnCollisionSurface(const PairGeometry& geometry, CounterRandom& random) {
   // 1/(1/2 + s) grows with t, so its value at delta is a bound. At least half of the proposals are
   // accepted.
-  const double smallest = 0.5 + CentreToArc(geometry.lambda(), geometry.delta());
+  const double smallest = 0.5 + geometry.CentreToArc(geometry.delta());
   for (;;) {
     const double t = ProposeDepth(geometry, random);
-    if (random.Uniform() * (0.5 + CentreToArc(geometry.lambda(), t)) > smallest) continue;
-    return {geometry.tip() - t, (2 * random.Uniform() - 1) * HalfHeight(geometry.lambda(), t)};
+    if (random.Uniform() * (0.5 + geometry.CentreToArc(t)) > smallest) continue;
+    return {geometry.tip() - t, (2 * random.Uniform() - 1) * geometry.HalfHeight(t)};
   }
 }
 

@@ -8,15 +8,6 @@
 namespace ballpiston {
 namespace {
 
-PairState WithVelocity(const Eigen::Vector2d& position, double piston, double v1, double v2,
-                       double v3) {
-  const double speed = std::sqrt(v1 * v1 + v2 * v2);
-  PairState state = {
-      .position = position, .ball_speed = speed, .piston = piston, .piston_velocity = v3};
-  if (speed > 0) state.direction = {v1 / speed, v2 / speed};
-  return state;
-}
-
 struct Positions {
   Eigen::Vector2d ball;
   double piston;
@@ -67,7 +58,7 @@ PairState DrawFromCollisionMeasure(const PairGeometry& geometry, CounterRandom& 
   const double normal = std::sqrt(square);
   const double v1 = (tangential.y() - normal) * M_SQRT1_2;
   const double v3 = (tangential.y() + normal) * M_SQRT1_2;
-  return WithVelocity(ball, ball.x(), v1, tangential.x(), v3);
+  return WithVelocities(ball, {v1, tangential.x()}, ball.x(), v3);
 }
 
 }  // namespace ballpiston

@@ -72,7 +72,7 @@ def test_references_are_files_with_names() -> None:
 
 
 def test_missing_files_and_names_are_errors() -> None:
-    right = [Row("K", "`kernel.h: Kernel`"), Row("n", "No function: a constant")]
+    right = [Row("K", "`kernel.h: PairKernel`"), Row("n", "No function: a constant")]
     assert wrong_rows(right) == []
     wrong = [Row("K", "`kernel.h: Kern`"), Row("dGc", "`none.h: A`"), Row("n", "a constant")]
     assert wrong_rows(wrong) == [

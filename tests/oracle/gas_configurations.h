@@ -31,7 +31,7 @@ class ChainByQuadrature {
   using Matrix = Eigen::Matrix<double, kNodes, kNodes>;
 
   ChainByQuadrature(double rho, double delta)
-      : rho_(rho), delta_(delta), lambda_(Sqrt(4 * rho_ * rho_ - 1)) {
+      : rho_(rho), delta_(delta), lambda_(sqrt(4 * rho_ * rho_ - 1)) {
     cell_area_ = MeasuresByQuadrature(rho, delta).cell_area;
     const Quad reach = lambda_ / 2 + delta_;
     const std::array<Quad, kParts + 1> ends = {-reach, -lambda_ / 2, lambda_ / 2, reach};
@@ -62,7 +62,7 @@ class ChainByQuadrature {
   // The area between the tip and a depth, and the height of the cell there.
   Quad HeightAt(Quad depth) const {
     const Quad along = lambda_ / 2 + depth;
-    return 1 - 2 * Sqrt(rho_ * rho_ - along * along);
+    return 1 - 2 * sqrt(rho_ * rho_ - along * along);
   }
   Quad AreaTo(Quad depth) const {
     return Integrate([&](Quad t) { return HeightAt(t); }, 0, depth);

@@ -58,7 +58,7 @@ Quad Integrate(Integrand integrand, Quad a, Quad b) {
 // x = b - v^2.
 template <typename Integrand>
 Quad IntegrateToRoot(Integrand integrand, Quad a, Quad b) {
-  return Integrate([&](Quad v) { return 2 * v * integrand(b - v * v); }, 0, Sqrt(b - a));
+  return Integrate([&](Quad v) { return 2 * v * integrand(b - v * v); }, 0, sqrt(b - a));
 }
 
 }  // namespace ballpiston::oracle

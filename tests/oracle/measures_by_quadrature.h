@@ -18,14 +18,14 @@ inline PrintedMeasures<Quad> MeasuresByQuadrature(double rho_in, double delta_in
   const Quad rho = rho_in;
   const Quad delta = delta_in;
   const Quad half = Quad{1} / 2;
-  const Quad lambda = Sqrt(4 * rho * rho - 1);
-  const auto angle_at = [&](Quad depth) { return Asin((lambda / 2 + depth) / rho); };
+  const Quad lambda = sqrt(4 * rho * rho - 1);
+  const auto angle_at = [&](Quad depth) { return asin((lambda / 2 + depth) / rho); };
   const Quad tip = angle_at(0);
   const Quad piston = angle_at(delta);
   const Quad middle = angle_at((1 - lambda) / 2);
-  const auto depth = [&](Quad t) { return rho * Sin(t) - lambda / 2; };
-  const auto height = [&](Quad t) { return half - rho * Cos(t); };
-  const auto width = [&](Quad t) { return rho * Cos(t); };  // d depth/dt
+  const auto depth = [&](Quad t) { return rho * sin(t) - lambda / 2; };
+  const auto height = [&](Quad t) { return half - rho * cos(t); };
+  const auto width = [&](Quad t) { return rho * cos(t); };  // d depth/dt
 
   PrintedMeasures<Quad> m;
   m.lambda = lambda;
@@ -36,7 +36,7 @@ inline PrintedMeasures<Quad> MeasuresByQuadrature(double rho_in, double delta_in
   const Quad hidden =
       2 * Integrate([&](Quad t) { return height(t) * (delta - depth(t)) * width(t); }, tip, piston);
   m.volume = (lambda + 2 * delta) * m.cell_area - hidden;
-  m.area_ball_piston = Sqrt(Quad{2}) * behind;
+  m.area_ball_piston = sqrt(Quad{2}) * behind;
   m.area_piston_wall = 2 * m.cell_area - behind;
   // Four arcs all the time, less two pieces of arc behind the piston.
   const Quad hidden_arcs =

@@ -1,7 +1,7 @@
 // Compares both engines with all closed forms that exist, and the lanes with first hits of an
 // independent program. The reference has a tenth of the samples, because it takes some ten times as
 // long.
-#include "core/billiard/single_precision.h"
+#include "core/billiard/billiard_domain.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"

@@ -73,14 +73,4 @@ bool FixedStepFlow::RepairPiston() {
   return true;
 }
 
-PairState FixedStepFlow::state() const {
-  const double speed = ball_.velocity.norm();
-  PairState state = {.position = ball_.position,
-                     .ball_speed = speed,
-                     .piston = piston_,
-                     .piston_velocity = piston_velocity_};
-  if (speed > 0) state.direction = ball_.velocity / speed;
-  return state;
-}
-
 }  // namespace ballpiston

@@ -17,7 +17,7 @@
 #include "core/gas/gas_state.h"
 #include "core/gas/reference_gas.h"
 #include "core/gas/thermal_walls.h"
-#include "tools/flows/fixed_step_ball.h"
+#include "tools/flows/fixed_step_flow.h"
 
 namespace ballpiston {
 

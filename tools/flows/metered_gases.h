@@ -16,14 +16,11 @@ namespace ballpiston {
 
 class MeteredGases {
  public:
-  // The meters of the starts may be null. `exchange_rate` as for StartGases.
-  MeteredGases(GasEngine engine, const GasGeometry& geometry, double exchange_rate,
-               std::vector<GasStart> starts) {
+  // The meters of the starts may be null.
+  MeteredGases(GasEngine engine, const GasGeometry& geometry, std::vector<GasStart> starts) {
     for (GasStart& start : starts) start.meter = &meters_.emplace_back(geometry, start.state);
-    run_ = StartGases(engine, geometry, exchange_rate, std::move(starts));
+    run_ = StartGases(engine, geometry, GasExchangeRate(geometry, 1), std::move(starts));
   }
-  MeteredGases(GasEngine engine, const GasGeometry& geometry, std::vector<GasStart> starts)
-      : MeteredGases(engine, geometry, GasExchangeRate(geometry, 1), std::move(starts)) {}
 
   // Returns false at a pause.
   bool AdvanceTo(double time, Pauses& pauses = NoPauses()) { return run_->AdvanceTo(time, pauses); }

@@ -3,7 +3,7 @@
 //
 //   float         24 bits
 //   long double   64 bits on x86, in hardware
-//   Quadruple    113 bits, about 20 ns per operation
+//   Quad         113 bits (quad_precision.h)
 //   TwinNumber   256 bits, about 150 ns per operation; for twins of orbits in other precisions
 //
 // Include it only to compare precisions: it includes Boost's numbers.
@@ -12,21 +12,10 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#include <boost/multiprecision/float128.hpp>
-#endif
-
 #include "core/billiard/event_flow.h"
+#include "tools/flows/quad_precision.h"
 
 namespace ballpiston {
-
-// GCC's own 113 bits on x86. As measured, its products are four times and its roots nine times as
-// fast as Boost's.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-using Quadruple = boost::multiprecision::float128;
-#else
-using Quadruple = boost::multiprecision::cpp_bin_float_quad;
-#endif
 
 using TwinNumber = boost::multiprecision::number<
     boost::multiprecision::cpp_bin_float<256, boost::multiprecision::digit_base_2>,
@@ -34,7 +23,7 @@ using TwinNumber = boost::multiprecision::number<
 
 extern template class EventFlow<float>;
 extern template class EventFlow<long double>;
-extern template class EventFlow<Quadruple>;
+extern template class EventFlow<Quad>;
 extern template class EventFlow<TwinNumber>;
 
 }  // namespace ballpiston

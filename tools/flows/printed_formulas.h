@@ -7,8 +7,7 @@
 #pragma once
 
 #include <algorithm>
-
-#include "tools/flows/quad_precision.h"
+#include <cmath>
 
 namespace ballpiston {
 
@@ -25,14 +24,15 @@ struct PrintedMeasures {
 
 template <typename Real>
 PrintedMeasures<Real> MeasuresAsPrinted(Real rho, Real delta, Real pi) {
-  const Real sqrt2 = Sqrt(Real{2});
+  using std::asin, std::atan, std::sqrt;
+  const Real sqrt2 = sqrt(Real{2});
   PrintedMeasures<Real> m;
-  const Real l = m.lambda = Sqrt(4 * rho * rho - 1);
+  const Real l = m.lambda = sqrt(4 * rho * rho - 1);
   const Real stroke = l + 2 * delta;
-  const Real root = Sqrt(1 - 4 * delta * (l + delta));
-  const Real angles = Atan(l) - Atan(stroke / root);
-  m.eta = 1 - 2 * Sqrt(rho * rho - (l / 2 + delta) * (l / 2 + delta));
-  m.cell_area = 1 - l - rho * rho * (pi - 4 * Atan(l));
+  const Real root = sqrt(1 - 4 * delta * (l + delta));
+  const Real angles = atan(l) - atan(stroke / root);
+  m.eta = 1 - 2 * sqrt(rho * rho - (l / 2 + delta) * (l / 2 + delta));
+  m.cell_area = 1 - l - rho * rho * (pi - 4 * atan(l));
   m.volume =
       stroke * m.cell_area -
       (2 * delta * (l + 4 * delta) + (1 - root) * (2 + 4 * delta * (l + delta) + 3 * l * l)) / 24 -
@@ -40,7 +40,7 @@ PrintedMeasures<Real> MeasuresAsPrinted(Real rho, Real delta, Real pi) {
   m.area_ball_piston = (stroke * (2 - root) - l) / (2 * sqrt2) + sqrt2 * rho * rho * angles;
   m.area_ball_wall =
       rho * stroke *
-          (8 * Asin((1 - l) / (2 * sqrt2 * rho)) - Asin(stroke / (2 * rho)) + Asin(l / (2 * rho))) +
+          (8 * asin((1 - l) / (2 * sqrt2 * rho)) - asin(stroke / (2 * rho)) + asin(l / (2 * rho))) +
       rho * (1 - root);
   m.area_piston_wall = 2 * m.cell_area - m.area_ball_piston / sqrt2;
   return m;
@@ -49,34 +49,38 @@ PrintedMeasures<Real> MeasuresAsPrinted(Real rho, Real delta, Real pi) {
 // Eq. intkernelnuf.
 template <typename Real>
 Real CollisionRateAsPrinted(Real eb, Real ep, Real pi) {
-  if (eb <= ep) return Sqrt(ep) / 2;
-  return (Sqrt(eb - ep) + Sqrt(ep) * Asin(Sqrt(ep / eb))) / pi;
+  using std::asin, std::sqrt;
+  if (eb <= ep) return sqrt(ep) / 2;
+  return (sqrt(eb - ep) + sqrt(ep) * asin(sqrt(ep / eb))) / pi;
 }
 
 // Eq. intkerneleta.
 template <typename Real>
 Real EnergyCurrentAsPrinted(Real eb, Real ep, Real pi) {
-  if (eb <= ep) return (eb - 2 * ep) * Sqrt(ep) / 4;
-  return ((4 * eb - 7 * ep) * Sqrt(eb - ep) + 3 * (eb - 2 * ep) * Sqrt(ep) * Asin(Sqrt(ep / eb))) /
+  using std::asin, std::sqrt;
+  if (eb <= ep) return (eb - 2 * ep) * sqrt(ep) / 4;
+  return ((4 * eb - 7 * ep) * sqrt(eb - ep) + 3 * (eb - 2 * ep) * sqrt(ep) * asin(sqrt(ep / eb))) /
          (6 * pi);
 }
 
 // Eq. intkerneleta2.
 template <typename Real>
 Real SquaredTransferAsPrinted(Real eb, Real ep, Real pi) {
+  using std::asin, std::sqrt;
   const Real quadratic = 3 * eb * eb / 8 - eb * ep + ep * ep;
-  if (eb <= ep) return Sqrt(ep) * quadratic / 2;
+  if (eb <= ep) return sqrt(ep) * quadratic / 2;
   const Real d = eb - ep;
-  return (8 * d * d * Sqrt(d) + 15 * (-3 * ep * (eb - 2 * ep) * Sqrt(d) / 8 +
-                                      Sqrt(ep) * quadratic * Asin(Sqrt(ep / eb)))) /
+  return (8 * d * d * sqrt(d) + 15 * (-3 * ep * (eb - 2 * ep) * sqrt(d) / 8 +
+                                      sqrt(ep) * quadratic * asin(sqrt(ep / eb)))) /
          (15 * pi);
 }
 
 // Eq. kernel.
 template <typename Real>
 Real KernelAsPrinted(Real eb, Real ep, Real ep_out, Real pi) {
+  using std::sqrt;
   if (ep_out >= eb) return 0;
-  return std::max(Sqrt(ep_out), Sqrt(ep)) / (2 * pi * Sqrt(ep_out * (eb - ep_out)));
+  return std::max(sqrt(ep_out), sqrt(ep)) / (2 * pi * sqrt(ep_out * (eb - ep_out)));
 }
 
 }  // namespace ballpiston

@@ -13,7 +13,6 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "core/arithmetic/number_text.h"
-#include "core/closed_form/conditional_rate.h"
 #include "core/closed_form/ingoing_law.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/expected_returns.h"
@@ -21,7 +20,6 @@
 #include "core/statistics/kl_divergence.h"
 #include "core/statistics/stated_error.h"
 #include "server/processor_time.h"
-#include "tools/method_comparison/limit_floor.h"
 #include "tools/method_comparison/point_runs.h"
 #include "tools/method_comparison/returns.h"
 #include "tools/method_comparison/trajectory_horizon.h"
@@ -307,6 +305,21 @@ absl::Status ValidateDelta(double rho, double delta) {
 }
 
 }  // namespace
+
+MethodMeasurement LimitFloorOf(const MethodMeasurement& spectrum,
+                               const MethodMeasurement& billiard) {
+  MethodMeasurement floor = spectrum;
+  floor.quantity = Quantity::kLimitFloor;
+  floor.own_error = floor.statistical_error;
+  floor.bias_resolved = spectrum.value >= kFloorResolved * spectrum.statistical_error;
+  if (!*floor.bias_resolved) floor.value += kFloorResolved * spectrum.statistical_error;
+  floor.work = std::nullopt;
+  if (billiard.samples >= kFewestFloorOrbits) {
+    const double ratio = billiard.own_error / floor.value;
+    floor.work = *billiard.work * ratio * ratio;
+  }
+  return floor;
+}
 
 std::vector<std::string> Violations(const MethodComparisonSpec& spec) {
   std::vector<std::string> violations;

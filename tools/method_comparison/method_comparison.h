@@ -25,7 +25,7 @@
 //                  are defined as for kRelaxationTime.
 // A sixth quantity follows from the relaxation times:
 //   kLimitFloor    the limit's bias at one delta, or an upper bound of it. work = the work at which
-//                  the billiard has the same error (limit_floor.h). By kSpectrum, without samples.
+//                  the billiard has the same error (LimitFloorOf). By kSpectrum, without samples.
 // statistical_error is one standard error of `value` (before its absolute value is taken). A value
 // within kResolved standard errors shows no bias, only an upper bound of the bias.
 //   kMeanFreeTime  from the scatter of the sample. If the sample has too few of the long returns
@@ -109,6 +109,34 @@ struct MethodMeasurement {
   double own_error = 0;                    // without the error of the truth
   std::optional<bool> bias_resolved = {};  // empty for kTrajectory: its value is not a deviation
 };
+
+// ---- the floor of the limit ----
+//
+// The limit of rare collisions as a substitute for the billiard: its bias at one delta, and the
+// work after which the billiard has the same error.
+//
+// The methods of the limit, kMarkov and kSpectrum, have the same bias, which more work does not
+// reduce: their floor. The spectrum shows it without scatter. A bias below kFloorResolved
+// statistical errors of the truth may be chance. Then only an upper bound is known: bias +
+// kFloorResolved * error.
+//
+// The billiard has no bias, and its own error falls as 1/sqrt(work). At the crossing work this
+// error equals the floor. For a larger tolerance the limit is as good and costs less. For a smaller
+// tolerance the limit cannot be used. If the floor is an upper bound, the crossing work is a lower
+// bound.
+
+inline constexpr double kFloorResolved = 2;
+
+// Slow pistons cause much of the scatter, and they are rare. Therefore the estimated error of a run
+// of fewer orbits is too uncertain.
+inline constexpr uint64_t kFewestFloorOrbits = 256;
+
+// Returns a measurement of kLimitFloor. `spectrum` is the relaxation time at a delta by kSpectrum,
+// `billiard` the longest run of kLanes at the same delta, whose scatter is known best.
+MethodMeasurement LimitFloorOf(const MethodMeasurement& spectrum,
+                               const MethodMeasurement& billiard);
+
+// ---- the comparison ----
 
 // One sentence for each value that is not permitted. It begins with the program's flag.
 std::vector<std::string> Violations(const MethodComparisonSpec& spec);

@@ -1,7 +1,6 @@
 #include "tools/method_comparison/method_orbits.h"
 
-#include "tools/flows/fixed_step_flow.h"
-#include "tools/flows/precise_flow.h"
+#include <optional>
 
 namespace ballpiston::method_comparison {
 namespace {
@@ -26,33 +25,24 @@ void RunFlows(const PairGeometry& geometry, uint64_t orbits, NumberedOrbits& sou
   }
 }
 
+std::optional<Engine> EngineOf(Method method) {
+  if (method == Method::kReference) return Engine::kReference;
+  if (method == Method::kLanes) return Engine::kLanes;
+  if (method == Method::kLanesSingle) return Engine::kLanesSingle;
+  return std::nullopt;
+}
+
 }  // namespace
 
 void RunMethodOrbits(const MethodVariant& variant, const PairGeometry& geometry, uint64_t orbits,
                      NumberedOrbits& source) {
-  switch (variant.method) {
-    case Method::kFixedStep:
-      return RunFlows<FixedStepFlow>(geometry, orbits, source, variant.time_step);
-    case Method::kReferenceSingle:
-      return RunFlows<EventFlow<float>>(geometry, orbits, source);
-    case Method::kReferenceLongDouble:
-      return RunFlows<EventFlow<long double>>(geometry, orbits, source);
-    case Method::kReferenceQuadruple:
-      return RunFlows<EventFlow<Quadruple>>(geometry, orbits, source);
-    case Method::kReference:
-      RunOrbits(Engine::kReference, geometry, orbits, source);
-      return;
-    case Method::kLanes:
-      RunOrbits(Engine::kLanes, geometry, orbits, source);
-      return;
-    case Method::kLanesSingle:
-      RunOrbits(Engine::kLanesSingle, geometry, orbits, source);
-      return;
-    case Method::kClosedForm:
-    case Method::kMarkov:
-    case Method::kSpectrum:
-      break;
+  if (const std::optional<Engine> engine = EngineOf(variant.method)) {
+    RunOrbits(*engine, geometry, orbits, source);
+    return;
   }
+  WithFlowOf(variant, [&]<typename Flow>(std::type_identity<Flow>, auto... time_step) {
+    RunFlows<Flow>(geometry, orbits, source, time_step...);
+  });
 }
 
 }  // namespace ballpiston::method_comparison

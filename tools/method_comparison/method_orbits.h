@@ -3,11 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 
 #include "core/billiard/event_flow.h"
 #include "core/billiard/orbits.h"
 #include "core/geometry/pair_geometry.h"
+#include "tools/flows/fixed_step_flow.h"
 #include "tools/flows/numbered_orbits.h"
+#include "tools/flows/precise_flow.h"
 #include "tools/flows/rounded_to.h"
 #include "tools/method_comparison/method.h"
 
@@ -39,6 +42,24 @@ class FlowOrbit {
   Flow flow_;
   int standing_ = 0;
 };
+
+// Calls use(std::type_identity<Flow>(), time step, if any) with the flow of a method of single
+// orbits: fixed steps, or the reference in any precision.
+template <typename Use>
+auto WithFlowOf(const MethodVariant& variant, const Use& use) {
+  switch (variant.method) {
+    case Method::kFixedStep:
+      return use(std::type_identity<FixedStepFlow>(), variant.time_step);
+    case Method::kReferenceSingle:
+      return use(std::type_identity<EventFlow<float>>());
+    case Method::kReferenceLongDouble:
+      return use(std::type_identity<EventFlow<long double>>());
+    case Method::kReferenceQuadruple:
+      return use(std::type_identity<EventFlow<Quad>>());
+    default:
+      return use(std::type_identity<ReferenceFlow>());
+  }
+}
 
 // Not for kClosedForm, kMarkov and kSpectrum, which have no such orbits. Starts and collisions are
 // doubles; between them all numbers have the method's precision.

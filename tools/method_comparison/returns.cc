@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "core/closed_form/conditional_rate.h"
+#include "core/closed_form/mean_free_time.h"
 #include "core/experiment/expected_returns.h"
 #include "server/processor_time.h"
 #include "tools/method_comparison/method_orbits.h"

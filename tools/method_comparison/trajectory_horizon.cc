@@ -1,17 +1,30 @@
 #include "tools/method_comparison/trajectory_horizon.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
 
+#include "core/sampling/invariant_measure.h"
 #include "server/processor_time.h"
-#include "tools/flows/fixed_step_flow.h"
 #include "tools/flows/lane_balls.h"
 #include "tools/flows/rounded_to.h"
 #include "tools/method_comparison/method_orbits.h"
 
 namespace ballpiston::method_comparison {
 namespace {
+
+TwinOrbits::State StartOnWall(const PairGeometry& geometry, CounterRandom random) {
+  PairState drawn = DrawFromFlowMeasure(geometry, random);
+  drawn.ball_speed = 1;
+  drawn.piston = geometry.piston_right();
+  drawn.piston_velocity = 0;
+  TwinOrbits::State state = RoundedTo<TwinNumber>(drawn);
+  state.direction /= TwinNumber(sqrt(TwinNumber(state.direction.squaredNorm())));
+  EventFlow<TwinNumber> flow(geometry, state);
+  flow.Step();
+  return flow.state();
+}
 
 // The positions of every orbit after each of its hits; a lost orbit has fewer.
 struct Itineraries {
@@ -75,27 +88,13 @@ Itineraries FlyInLanes(FlyLanes& fly, const PairGeometry& geometry, const TwinOr
 
 Itineraries Fly(const MethodVariant& variant, const PairGeometry& geometry, const TwinOrbits& twins,
                 uint64_t hits) {
-  switch (variant.method) {
-    case Method::kFixedStep:
-      return FlyEach<FixedStepFlow>(geometry, twins, hits, variant.time_step);
-    case Method::kReferenceSingle:
-      return FlyEach<EventFlow<float>>(geometry, twins, hits);
-    case Method::kReference:
-      return FlyEach<EventFlow<double>>(geometry, twins, hits);
-    case Method::kReferenceLongDouble:
-      return FlyEach<EventFlow<long double>>(geometry, twins, hits);
-    case Method::kReferenceQuadruple:
-      return FlyEach<EventFlow<Quadruple>>(geometry, twins, hits);
-    case Method::kLanes:
-      return FlyInLanes(FlyLaneBalls, geometry, twins, hits);
-    case Method::kLanesSingle:
-      return FlyInLanes(FlyLaneBallsSingle, geometry, twins, hits);
-    case Method::kClosedForm:
-    case Method::kMarkov:
-    case Method::kSpectrum:
-      break;
+  if (variant.method == Method::kLanes) return FlyInLanes(FlyLaneBalls, geometry, twins, hits);
+  if (variant.method == Method::kLanesSingle) {
+    return FlyInLanes(FlyLaneBallsSingle, geometry, twins, hits);
   }
-  return {};
+  return WithFlowOf(variant, [&]<typename Flow>(std::type_identity<Flow>, auto... time_step) {
+    return FlyEach<Flow>(geometry, twins, hits, time_step...);
+  });
 }
 
 // The number of hits before the parting; empty if orbit and twin are still together after `hits`.
@@ -129,6 +128,38 @@ uint64_t HitsIn(const Itineraries& itineraries) {
 }
 
 }  // namespace
+
+TwinOrbits::TwinOrbits(const PairGeometry& geometry, const RandomStream& random, size_t count) {
+  orbits_.reserve(count);
+  for (size_t i = 0; i < count; ++i) {
+    const State start = StartOnWall(geometry, random.Sample(i));
+    orbits_.push_back({start, {geometry, start}, {{0, RoundedTo<double>(start).position}}});
+  }
+}
+
+void TwinOrbits::Step(Orbit* orbit) {
+  const double duration = static_cast<double>(orbit->flow.Step().duration);
+  orbit->places.push_back(
+      {orbit->places.back().time + duration, RoundedTo<double>(orbit->flow.state()).position});
+}
+
+void TwinOrbits::FlyAhead(size_t hits) {
+  for (Orbit& orbit : orbits_) {
+    while (orbit.places.size() <= hits) Step(&orbit);
+  }
+}
+
+std::optional<Eigen::Vector2d> TwinOrbits::PositionAt(size_t orbit, double time) {
+  std::vector<BallAt>& places = orbits_[orbit].places;
+  while (places.back().time < time && places.size() <= kMostTwinHits) Step(&orbits_[orbit]);
+  if (places.back().time < time) return std::nullopt;
+  const auto end = std::lower_bound(places.begin(), places.end(), time,
+                                    [](const BallAt& at, double t) { return at.time < t; });
+  if (end == places.begin()) return end->position;
+  const BallAt& from = *(end - 1);
+  const double share = (time - from.time) / (end->time - from.time);
+  return from.position + share * (end->position - from.position);
+}
 
 TrajectoryHorizon HorizonOf(const MethodVariant& variant, const PairGeometry& geometry,
                             TwinOrbits& twins) {

@@ -9,7 +9,7 @@
 
 #include "core/arithmetic/gauss_nodes.h"
 #include "core/billiard/orbits.h"
-#include "core/closed_form/kernel_moments.h"
+#include "core/closed_form/kernel.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/markov/relaxation_spectrum.h"
 #include "core/sampling/invariant_measure.h"

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "tools/stability/tip_sequence.h"
-
 namespace ballpiston::stability {
 namespace {
 
@@ -39,12 +37,10 @@ bool BallWatch::Hit(const Eigen::Vector2d& position, const Eigen::Vector2d& dire
                     double length, Failures& failures) {
   ++failures.hits;
   failures.negative_times += length < 0;
-  const double depth = Depth(position);
-  if (!InsideSquare(position) || IsEscape(depth, position, direction)) {
+  if (!InsideSquare(position) || IsEscape(Depth(position), position, direction)) {
     ++failures.escapes;
     return false;
   }
-  failures.deepest = std::max(failures.deepest, depth);
   failures.inward += HeadsInward(position, direction);
   return !standstill_.See(length, failures);
 }
@@ -52,13 +48,9 @@ bool BallWatch::Hit(const Eigen::Vector2d& position, const Eigen::Vector2d& dire
 bool BallWatch::IsInCell(const Eigen::Vector2d& position, Failures& failures) const {
   // Away from walls the cosine that magnified the rounding error is unknown; therefore this is the
   // depth for the worst case, a grazing ball.
-  const double slack = kPositionUlps * std::sqrt(epsilon_), depth = Depth(position);
-  if (!(depth <= slack)) {
-    ++failures.escapes;
-    return false;
-  }
-  failures.deepest = std::max(failures.deepest, depth);
-  return true;
+  const bool is_inside = Depth(position) <= kPositionUlps * std::sqrt(epsilon_);
+  failures.escapes += !is_inside;
+  return is_inside;
 }
 
 double BallWatch::Depth(const Eigen::Vector2d& position) const {

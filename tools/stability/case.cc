@@ -17,12 +17,6 @@ std::string Letters(const Failures& failures) {
   return text.empty() ? "0" : text;
 }
 
-std::string NumberIn(const CountColumn& column, const Failures& failures) {
-  const auto* const count = std::get_if<uint64_t Failures::*>(&column.number);
-  return count != nullptr ? CountText(failures.**count)
-                          : ErrorText(failures.*std::get<double Failures::*>(column.number));
-}
-
 }  // namespace
 
 std::string SummaryTable(const std::vector<CaseResult>& cases) {
@@ -37,44 +31,17 @@ std::string SummaryTable(const std::vector<CaseResult>& cases) {
   return table.Text(1);
 }
 
-CountColumns ColumnsOfBall() {
-  return {{"starts", &Failures::orbits},
-          {"wall hits", &Failures::hits},
-          {"escapes", &Failures::escapes},
-          {"negative times", &Failures::negative_times},
-          {"loops", &Failures::loops},
-          {"still inward", &Failures::inward},
-          {"deepest in a disc", &Failures::deepest},
-          {"worst dE/E", &Failures::energy}};
-}
-
-CountColumns ColumnsOfPair() {
-  return {{"starts", &Failures::orbits},
-          {"piston hits", &Failures::hits},
-          {"escapes", &Failures::escapes},
-          {"negative times", &Failures::negative_times},
-          {"loops", &Failures::loops},
-          {"still inward", &Failures::inward},
-          {"looked back", &Failures::looked_back},
-          {"missed", &Failures::missed},
-          {"phantoms", &Failures::phantoms},
-          {"worst dE/E", &Failures::energy}};
-}
-
-CountColumns ColumnsOfGas() {
-  CountColumns columns = ColumnsOfPair();
-  columns.insert(columns.end() - 1, {"pistons beyond", &Failures::beyond_walls});
-  return columns;
-}
-
-std::string CountTable(const std::vector<CaseResult>& cases, const CountColumns& columns) {
-  std::vector<std::string> head = {"case", "method"};
-  for (const CountColumn& column : columns) head.push_back(column.head);
+std::string CountTable(const std::vector<CaseResult>& cases) {
+  std::vector<std::string> head = {"case", "method", "starts", "hits", "looked back"};
+  for (const FailureKind& kind : kFailureKinds) head.push_back(kind.name);
+  head.push_back("worst dE/E");
   MarkdownTable table(head);
   for (const CaseResult& result : cases) {
-    for (const MethodResult& method : result.methods) {
-      std::vector<std::string> row = {result.name, method.method};
-      for (const CountColumn& column : columns) row.push_back(NumberIn(column, method.failures));
+    for (const auto& [method, promised, failures] : result.methods) {
+      std::vector<std::string> row = {result.name, method, CountText(failures.orbits),
+                                      CountText(failures.hits), CountText(failures.looked_back)};
+      for (const FailureKind& kind : kFailureKinds) row.push_back(CountText(failures.*kind.count));
+      row.push_back(ErrorText(failures.energy));
       table.Add(row);
     }
   }

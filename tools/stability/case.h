@@ -9,9 +9,12 @@
 #include <iostream>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "core/gas/gas_geometry.h"
+#include "core/gas/gas_run.h"
+#include "core/geometry/pair_geometry.h"
+#include "core/geometry/pair_state.h"
 #include "tools/stability/failures.h"
 
 namespace ballpiston::stability {
@@ -42,6 +45,25 @@ struct Method {
   // Whether the checks are exact enough at this geometry; null: always.
   bool (*can_be_checked)(const Geometry& geometry) = nullptr;
 };
+
+using PairCase = Case<PairGeometry, PairState>;
+using GasCase = Case<GasGeometry, GasStart>;
+
+using PairMethod = Method<PairGeometry, PairState>;
+using GasMethod = Method<GasGeometry, GasStart>;
+
+// All situations of each system in which methods fail, and all methods: the engines in every
+// precision, and the naive methods.
+// Cases of the same system have the same random numbers.
+std::vector<PairCase> BallCases();
+std::vector<PairCase> PairCases();
+std::vector<GasCase> GasCases();
+
+std::vector<PairMethod> BallMethods();
+std::vector<PairMethod> PairMethods();
+std::vector<GasMethod> GasMethods();
+
+// ---- the failures ----
 
 struct MethodResult {
   std::string method;
@@ -108,17 +130,7 @@ std::vector<CaseResult> RunCases(const std::vector<Case<Geometry, Start>>& cases
 // A row for each case, a column for each method, failures by letter.
 std::string SummaryTable(const std::vector<CaseResult>& cases);
 
-struct CountColumn {
-  std::string head;
-  std::variant<uint64_t Failures::*, double Failures::*> number;
-};
-using CountColumns = std::vector<CountColumn>;
-
-CountColumns ColumnsOfBall();
-CountColumns ColumnsOfPair();
-CountColumns ColumnsOfGas();
-
-// A row for each case and method.
-std::string CountTable(const std::vector<CaseResult>& cases, const CountColumns& columns);
+// A row for each case and method, with all numbers of Failures.
+std::string CountTable(const std::vector<CaseResult>& cases);
 
 }  // namespace ballpiston::stability

@@ -1,10 +1,8 @@
-#include "tools/stability/cases.h"
-
 #include "core/sampling/invariant_measure.h"
 #include "tools/flows/paper.h"
-#include "tools/stability/gas_starts.h"
-#include "tools/stability/pair_starts.h"
-#include "tools/stability/tip_sequence.h"
+#include "tools/stability/ball_watch.h"
+#include "tools/stability/case.h"
+#include "tools/stability/starts.h"
 
 namespace ballpiston::stability {
 namespace {

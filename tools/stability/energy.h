@@ -82,9 +82,7 @@ struct EnergyRun {
 };
 
 std::vector<EnergyRun> EnergyRuns(double effort);
-std::vector<EnergyRun> GasEnergyRuns(double effort);
 
 std::string EnergyTable(const std::vector<EnergyRun>& runs);
-std::string GasEnergyTable(const std::vector<EnergyRun>& runs);
 
 }  // namespace ballpiston::stability

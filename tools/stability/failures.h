@@ -20,13 +20,12 @@ struct Failures {
 
   uint64_t escapes = 0;         // orbits that left the cell or became NaN
   uint64_t negative_times = 0;  // events before their predecessors
-  uint64_t loops = 0;           // orbits that stand still, see tip_sequence.h
+  uint64_t loops = 0;           // orbits that stand still, see ball_watch.h
   uint64_t inward = 0;          // hits after which the ball still flies into the obstacle
   uint64_t looked_back = 0;     // piston hits that were checked for a missed hit
   uint64_t missed = 0;          // the ball beyond the piston
   uint64_t phantoms = 0;        // contacts with the piston elsewhere
   uint64_t beyond_walls = 0;    // pistons of a gas at a turn or a contact beyond a wall
-  double deepest = 0;           // inside a disc, of orbits that did not escape
   double energy = kNoEnergy;    // worst |dE/E|, if it was measured; infinite if NaN
 
   static constexpr double kNoEnergy = std::numeric_limits<double>::quiet_NaN();
@@ -40,17 +39,16 @@ struct Failures {
 struct FailureKind {
   uint64_t Failures::*count;
   const char* letter;
-  const char* name;
+  const char* name;  // the plural, in tables
 };
 
-inline constexpr FailureKind kFailureKinds[] = {
-    {&Failures::escapes, "e", "escape"},
-    {&Failures::negative_times, "n", "negative time"},
-    {&Failures::loops, "l", "loop"},
-    {&Failures::inward, "i", "hit that leaves the ball heading inward"},
-    {&Failures::missed, "m", "missed piston"},
-    {&Failures::phantoms, "p", "phantom hit"},
-    {&Failures::beyond_walls, "b", "piston beyond its wall"}};
+inline constexpr FailureKind kFailureKinds[] = {{&Failures::escapes, "e", "escapes"},
+                                                {&Failures::negative_times, "n", "negative times"},
+                                                {&Failures::loops, "l", "loops"},
+                                                {&Failures::inward, "i", "still inward"},
+                                                {&Failures::missed, "m", "missed"},
+                                                {&Failures::phantoms, "p", "phantoms"},
+                                                {&Failures::beyond_walls, "b", "pistons beyond"}};
 
 inline uint64_t Failures::Total() const {
   uint64_t total = 0;
@@ -63,7 +61,6 @@ inline void Failures::Merge(const Failures& other) {
   orbits += other.orbits;
   hits += other.hits;
   looked_back += other.looked_back;
-  deepest = std::max(deepest, other.deepest);
   energy = std::fmax(energy, other.energy);
 }
 

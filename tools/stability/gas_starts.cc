@@ -1,5 +1,3 @@
-#include "tools/stability/gas_starts.h"
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -13,7 +11,7 @@
 #include "core/gas/reference_gas.h"
 #include "core/gas/thermal_walls.h"
 #include "core/sampling/direction.h"
-#include "tools/stability/pair_starts.h"
+#include "tools/stability/starts.h"
 
 namespace ballpiston::stability {
 namespace {

@@ -9,7 +9,6 @@
 #include <span>
 
 #include "tools/flows/metered_gases.h"
-#include "tools/stability/tip_sequence.h"
 
 namespace ballpiston::stability {
 namespace {

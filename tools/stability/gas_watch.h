@@ -2,16 +2,21 @@
 // the exchanges of a short run, and by the energies at the end of any run.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_meter.h"
 #include "core/gas/gas_run.h"
 #include "core/gas/gas_state.h"
+#include "core/gas/hit_rates.h"
 #include "core/gas/reference_gas.h"
 #include "core/gas/thermal_walls.h"
+#include "tools/flows/metered_gases.h"
 #include "tools/stability/ball_watch.h"
 #include "tools/stability/failures.h"
 
@@ -88,5 +93,56 @@ Failures LookBack(const GasGeometry& geometry, const GasStart& replica, double t
 // Checks a replica that started with the energy `start`. Counts escapes, also if an energy is not a
 // number, and, without thermal walls, the error of the energy.
 Failures LookAtEnergies(const GasGeometry& geometry, const GasMeter& meter, double start);
+
+// ---- checked runs, for the time of so many flights of a ball of speed 1 ----
+
+template <GasEngine engine>
+Failures RunGasesByMeters(const GasGeometry& geometry, std::span<const GasStart> replicas,
+                          uint64_t flights) {
+  constexpr uint64_t kFewFlights = 10;
+  const double flight = MeanFlight(geometry.pair());
+  MeteredGases gases(engine, geometry, {replicas.begin(), replicas.end()});
+  Failures failures;
+  if (engine == GasEngine::kLanes) {
+    const double soon = static_cast<double>(std::min(kFewFlights, flights)) * flight;
+    gases.AdvanceTo(soon);
+    for (size_t i = 0; i < replicas.size(); ++i) {
+      failures.Merge(LookBack(geometry, replicas[i], soon, ReadingOf(gases.meters()[i])));
+    }
+  }
+  gases.AdvanceTo(static_cast<double>(flights) * flight);
+  for (size_t i = 0; i < replicas.size(); ++i) {
+    const double start = GasMeter(geometry, replicas[i].state).TotalEnergy();
+    failures.Merge(LookAtEnergies(geometry, gases.meters()[i], start));
+  }
+  return failures;
+}
+
+template <typename Gas>
+void RunGas(const GasGeometry& geometry, const GasStart& replica, double end, Failures& failures) {
+  // A gas without a loop has far fewer events.
+  constexpr uint64_t kMostEvents = 10'000'000;
+  Gas gas(geometry, replica.state, replica.walls);
+  GasWatch watch(geometry, replica.state, replica.walls, std::numeric_limits<double>::epsilon());
+  ++failures.orbits;
+  uint64_t events = 0;
+  bool goes_on = true;
+  for (; goes_on && events < kMostEvents && gas.NextTime() <= end; ++events) {
+    const GasEvent event = gas.Step();
+    goes_on = watch.See(event, gas.BallAt(std::max<int64_t>(event.ball, 0), event.time),
+                        gas.PistonAt(std::max<int64_t>(event.piston, 0), event.time), failures);
+  }
+  failures.loops += events == kMostEvents;
+  failures.SeeEnergy(watch.EnergyError());
+}
+
+template <typename Gas>
+Failures RunGasesByEvents(const GasGeometry& geometry, std::span<const GasStart> replicas,
+                          uint64_t flights) {
+  Failures failures;
+  const double end = static_cast<double>(flights) * MeanFlight(geometry.pair());
+  for (const GasStart& replica : replicas) RunGas<Gas>(geometry, replica, end, failures);
+  return failures;
+}
 
 }  // namespace ballpiston::stability

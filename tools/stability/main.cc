@@ -1,14 +1,241 @@
 // Computes the stability tables: the failures of every engine in every precision, and of the naive
-// methods, in each situation. program.h describes the arguments and the exit status.
+// methods, in each situation.
+//
+//   stability [--quick]
+//
+// Exit status: 0 success; 1 if there are complaints (after the tables), or if standard output
+// cannot be written; 2 for wrong arguments. Complaints are a sentence for each broken promise of an
+// engine (no failures, no loss of energy), and for each kind of failure that no method shows: the
+// zeros of this kind prove nothing.
+#include <algorithm>
+#include <cstdint>
 #include <iostream>
+#include <iterator>
+#include <numbers>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "tools/stability/program.h"
-#include "tools/stability/report.h"
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "core/closed_form/pair_measures.h"
+#include "core/geometry/pair_geometry.h"
+#include "tools/flows/paper.h"
+#include "tools/flows/printed_formulas.h"
+#include "tools/flows/quad_precision.h"
+#include "tools/stability/case.h"
+#include "tools/stability/energy.h"
+#include "tools/stability/markdown_table.h"
+#include "tools/stability/model_errors.h"
+#include "tools/stability/starts.h"
+#include "tools/stability/textbook_flow.h"
 
-int main(int argc, char** argv) {
-  const std::vector<std::string> arguments(argv + 1, argv + argc);
-  return ballpiston::stability::RunProgram(arguments, ballpiston::stability::MakeReport, std::cout,
-                                           std::cerr);
+namespace ballpiston::stability {
+namespace {
+
+// ---- closed forms at parameters where terms of the printed formulas cancel ----
+
+// One geometry computed in three ways: naively, by the library, and with 113 bits, which leave
+// enough bits after the cancellation.
+struct ThreeWays {
+  explicit ThreeWays(const PairGeometry& geometry)
+      : printed(MeasuresAsPrinted(geometry.rho(), geometry.delta(), std::numbers::pi)),
+        library(Measures(geometry)),
+        exact(MeasuresAsPrinted<Quad>(geometry.rho(), geometry.delta(), QuadPi())) {}
+
+  // `measure` takes one of the measures.
+  template <typename Measure>
+  void AddTo(MarkdownTable& table, const char* name, const std::string& where,
+             const Measure& measure) const {
+    table.Add({name, where, ErrorText(RelativeError(measure(printed), measure(exact))),
+               ErrorText(RelativeError(measure(library), measure(exact)))});
+  }
+
+  PrintedMeasures<double> printed;
+  PairMeasures library;
+  PrintedMeasures<Quad> exact;
+};
+
+// Relative errors of the printed formulas, evaluated in double, and of core/closed_form.
+std::string CancellationTable() {
+  MarkdownTable table({"quantity", "where", "as printed", "core/closed_form"});
+  const auto eta = [](const auto& measures) { return measures.eta; };
+  for (const double delta : {1e-2, 1e-4, 1e-6, 1e-8}) {
+    const ThreeWays m(*PairGeometry::Create(kPaperRho, delta));
+    const std::string where = absl::StrCat("rho = 0.5296, delta = ", delta);
+    m.AddTo(table, "dG_bp", where, [](const auto& measures) { return measures.area_ball_piston; });
+    m.AddTo(table, "eta", where, eta);
+  }
+  for (const double distance : {1e-2, 1e-4, 1e-6, 1e-8}) {
+    const double rho = kMaxRho - distance;
+    const ThreeWays m(*PairGeometry::Create(rho, 0.5 * PairDeltaBound(rho)));
+    const std::string where =
+        absl::StrCat("1/sqrt 2 - rho = ", distance, ", delta = half its bound");
+    m.AddTo(table, "cell", where, [](const auto& measures) { return measures.cell_area; });
+    m.AddTo(table, "dG_bw", where, [](const auto& measures) { return measures.area_ball_wall; });
+    m.AddTo(table, "eta", where, eta);
+  }
+  return table.Text(2);
 }
+
+// ---- the lifetime of an orbit whose hit times assume |v| = 1 while its reflections do not ----
+
+uint64_t HitsBeforeEscape(const PairGeometry& geometry, const PairState& start) {
+  constexpr double kGone = 1e-3;  // depth inside a disc, in cells; far above rounding errors
+  TextbookFlow<TextbookRule::kUnitSpeed> flow(geometry, start);
+  for (uint64_t hits = 0;; ++hits) {
+    if (flow.Step().kind == EventKind::kEscape) return hits;
+    if (!InsideCell(geometry, flow.state().position, kGone)) return hits;
+  }
+}
+
+// The numbers of wall hits before the escape, for 40 orbits at the paper's radius.
+std::string UnitSpeedSentence() {
+  constexpr uint64_t kUnitSpeedSeed = 24, kOrbits = 40;
+  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.1);
+  std::vector<uint64_t> hits;
+  for (uint64_t i = 0; i < kOrbits; ++i) {
+    CounterRandom random(kUnitSpeedSeed, 0, i);
+    hits.push_back(HitsBeforeEscape(geometry, AnywhereOnWall(geometry, random)));
+  }
+  std::sort(hits.begin(), hits.end());
+  return absl::StrCat("Orbits whose hit times assume unit speed leave the cell after ",
+                      hits[kOrbits / 2], " hits (median of ", kOrbits,
+                      " starts at the paper's radius; ", hits.front(), " at the earliest, ",
+                      hits.back(), " at the latest).");
+}
+
+// ---- all tables ----
+
+struct System {
+  const char* title;
+  std::vector<CaseResult> cases;
+};
+
+struct Results {
+  std::vector<System> systems;
+  std::vector<EnergyRun> energy;
+  std::vector<ModelError> model_errors;
+};
+
+// `effort` is the fraction of the starts; 1 takes minutes. Prints progress on standard error.
+Results RunAll(double effort) {
+  Results results;
+  results.systems = {{"The ball alone", RunCases(BallCases(), BallMethods(), effort)},
+                     {"Ball and piston", RunCases(PairCases(), PairMethods(), effort)},
+                     {"The gas", RunCases(GasCases(), GasMethods(), effort)}};
+  std::cerr << "stability: energy" << std::endl;
+  results.energy = EnergyRuns(effort);
+  if (effort == 1) results.model_errors = ModelErrors();  // fewer samples show nothing
+  return results;
+}
+
+// Calls `visit` with each case and each of its methods.
+template <typename Visit>
+void ForEachMethod(const Results& results, const Visit& visit) {
+  for (const System& system : results.systems) {
+    for (const CaseResult& result : system.cases) {
+      for (const MethodResult& method : result.methods) visit(result, method);
+    }
+  }
+}
+
+// One sentence for each broken promise.
+std::vector<std::string> BrokenPromises(const Results& results) {
+  std::vector<std::string> broken;
+  ForEachMethod(results, [&](const CaseResult& result, const MethodResult& method) {
+    if (!method.promised || method.failures.Total() == 0) return;
+    broken.push_back(absl::StrCat(method.method, " fails: ", result.name));
+  });
+  for (const EnergyRun& run : results.energy) {
+    if (!run.promised || !run.LosesEnergy()) continue;
+    broken.push_back(absl::StrCat(run.method, " loses energy: ", run.what));
+  }
+  for (const std::string& claim : BrokenClaims(results.model_errors)) broken.push_back(claim);
+  return broken;
+}
+
+// A zero proves something only if the same check has found failures of other methods. No method has
+// phantom hits.
+std::vector<std::string> BlindLooks(const Results& results) {
+  Failures all;
+  ForEachMethod(results,
+                [&](const CaseResult&, const MethodResult& method) { all.Merge(method.failures); });
+  std::vector<std::string> blind;
+  for (const FailureKind& kind : kFailureKinds) {
+    if (kind.count == &Failures::phantoms || all.*kind.count > 0) continue;
+    blind.push_back(absl::StrCat("no method showed any ", kind.name));
+  }
+  return blind;
+}
+
+std::string Text(const Results& results) {
+  std::string summaries, counts;
+  for (const auto& [title, cases] : results.systems) {
+    absl::StrAppend(&summaries, "**", title, "**\n\n", SummaryTable(cases), "\n");
+    absl::StrAppend(&counts, "\n<details><summary>All counts: ", absl::AsciiStrToLower(title),
+                    "</summary>\n\n", CountTable(cases), "\n</details>\n");
+  }
+  return absl::StrCat(
+      "Made by the program `stability`; what is counted, and how: `tools/stability/README.md`. "
+      "e escapes, n negative times, l loops, i still heading inward, m missed piston hits, "
+      "p phantom ones, b pistons beyond their walls; - not run.\n\n",
+      summaries, UnitSpeedSentence(), "\n\n**Energy**\n\n", EnergyTable(results.energy),
+      "\n**Model errors**: billiard over model - 1, and the error that is stated; ratio: (the "
+      "difference - 2 standard errors)/stated, - where the standard error is above half of the "
+      "stated error\n\n",
+      ModelErrorTable(results.model_errors),
+      "\n**Closed forms where they cancel**: relative errors\n\n", CancellationTable(), counts);
+}
+
+// ---- the program ----
+
+constexpr char kHelp[] =
+    R"(usage: stability [--quick]
+
+Runs every engine in every precision, and naive methods, in situations in which methods fail.
+Counts the failures, measures the errors that models state, and prints tables in Markdown. This
+takes about twelve minutes on one core. The starts are fixed: the same program gives the same
+tables. Progress and errors go to standard error.
+
+  --quick      run a thousandth of the starts (of slow methods sometimes none), and no model
+               errors: seconds instead of minutes
+  --help       print this text
+
+Exit status: 0 success; 1 an engine failed although it promises zeros, or a stated model error does
+not hold, or no method showed one kind of failure, or the tables cannot be printed; 2 wrong arguments.
+tools/stability/README.md explains the counted failures.
+)";
+
+// Whether standard output took the text.
+bool Print(const std::string& text) {
+  std::cout << text << std::flush;
+  if (!std::cout) std::cerr << "stability: cannot write to standard output\n";
+  return !std::cout.fail();
+}
+
+int Run(int argc, char** argv) {
+  double effort = 1;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (argument == "--help" || argument == "-h") return Print(kHelp) ? 0 : 1;
+    if (argument != "--quick") {
+      std::cerr << "stability: unknown argument '" << argument << "'; see stability --help\n";
+      return 2;
+    }
+    effort = 1e-3;
+  }
+  const Results results = RunAll(effort);
+  const bool printed = Print(Text(results));
+  std::vector<std::string> complaints = BrokenPromises(results);
+  std::ranges::move(BlindLooks(results), std::back_inserter(complaints));
+  for (const std::string& complaint : complaints) {
+    std::cerr << "stability: " << complaint << "\n";
+  }
+  return printed && complaints.empty() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace ballpiston::stability
+
+int main(int argc, char** argv) { return ballpiston::stability::Run(argc, argv); }

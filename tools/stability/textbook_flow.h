@@ -67,15 +67,7 @@ class TextbookFlow {
     last_disc_ = kNone;
   }
 
-  PairState state() const {
-    const double speed = v_.norm();
-    PairState state = {.position = q_,
-                       .ball_speed = speed,
-                       .piston = piston_,
-                       .piston_velocity = piston_velocity_};
-    if (speed > 0) state.direction = v_ / speed;
-    return state;
-  }
+  PairState state() const { return WithVelocities(q_, v_, piston_, piston_velocity_); }
 
  private:
   static constexpr int kNone = -1;

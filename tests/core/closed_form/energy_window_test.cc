@@ -6,7 +6,6 @@
 //   share = int_a^b phi(e)/sqrt(2 e) de,
 //
 // exactly, for every delta and every width.
-#include "core/closed_form/conditional_rate.h"
 #include "core/closed_form/mean_free_time.h"
 #include "tests/core/preamble.h"
 #include "tests/oracle/gauss_legendre.h"

@@ -1,6 +1,6 @@
 #include "core/closed_form/ingoing_law.h"
 
-#include "core/closed_form/kernel_moments.h"
+#include "core/closed_form/kernel.h"
 #include "tests/core/preamble.h"
 #include "tests/oracle/gauss_legendre.h"
 
@@ -13,14 +13,14 @@ constexpr double kEnergies[] = {0.0,          1e-300, 1e-16, 1e-8,         1.0 /
 
 // eq. falpha with n = 1, not normalised.
 Quad Weight(double ep, int sigma, Quad alpha) {
-  const Quad value = Sqrt(Quad{1} / 2 - Quad{ep}) * Cos(alpha) - sigma * Sqrt(Quad{ep});
+  const Quad value = sqrt(Quad{1} / 2 - Quad{ep}) * cos(alpha) - sigma * sqrt(Quad{ep});
   return value > 0 ? value : Quad{0};
 }
 
 Quad Edge(double ep, int sigma) {
   if (ep >= 0.25) return sigma > 0 ? Quad{0} : QuadPi();
-  const Quad ratio = Sqrt(Quad{ep} / (Quad{1} / 2 - Quad{ep}));
-  return QuadPi() / 2 - sigma * Asin(ratio);
+  const Quad ratio = sqrt(Quad{ep} / (Quad{1} / 2 - Quad{ep}));
+  return QuadPi() / 2 - sigma * asin(ratio);
 }
 
 // Integral of g(alpha, sigma) times the weight over both signs.
@@ -113,7 +113,7 @@ TEST(IngoingLaw, IntervalsAndMeansAreThoseOfTheDensity) {
           kIngoingLawRelativeError)
           << ep << " " << sigma;
     }
-    const Quad cosine = OverTheCircle(ep, [](Quad a, int) { return Cos(a); }) / norm;
+    const Quad cosine = OverTheCircle(ep, [](Quad a, int) { return cos(a); }) / norm;
     const Quad sign = OverTheCircle(ep, [](Quad, int sigma) { return sigma; }) / norm;
     // An absolute error, because both integrals cancel where they are small. The closed forms do
     // not.

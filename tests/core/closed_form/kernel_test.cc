@@ -1,8 +1,8 @@
 #include "core/closed_form/kernel.h"
 
 #include "tests/core/preamble.h"
+#include "tests/oracle/gauss_legendre.h"
 #include "tools/flows/printed_formulas.h"
-#include "tools/flows/quad_precision.h"
 
 namespace ballpiston {
 namespace {
@@ -14,9 +14,9 @@ Quad KernelOverSigns(Quad eb, Quad ep, Quad ep_out) {
   if (ep_out >= eb) return 0;
   Quad sum = 0;
   for (int before : {1, -1}) {
-    for (int after : {1, -1}) sum += Positive(after * Sqrt(ep_out) - before * Sqrt(ep));
+    for (int after : {1, -1}) sum += Positive(after * sqrt(ep_out) - before * sqrt(ep));
   }
-  return sum / (4 * QuadPi() * Sqrt(ep_out) * Sqrt(eb - ep_out));
+  return sum / (4 * QuadPi() * sqrt(ep_out) * sqrt(eb - ep_out));
 }
 
 TEST(Kernel, AccurateAtRandomEnergies) {
@@ -28,8 +28,6 @@ TEST(Kernel, AccurateAtRandomEnergies) {
     const double ep = i % 2 == 0 ? small : 0.5 - small;
     const double out = 0.5 * unit(random);
     EXPECT_LE(RelativeError(PairKernel(ep, out), KernelOverSigns(Quad{1} / 2 - Quad{ep}, ep, out)),
-              kKernelRelativeError);
-    EXPECT_LE(RelativeError(Kernel(small, ep, out), KernelOverSigns(small, ep, out)),
               kKernelRelativeError);
   }
 }
@@ -58,15 +56,200 @@ TEST(Kernel, AccurateWhereTheBallKeepsLittleEnergy) {
 
 TEST(Kernel, ValuesAtTheEdgesOfItsDomain) {
   // Beyond the ball's energy.
-  for (const double value : {Kernel(0.2, 0.3, 0.2), Kernel(0.2, 0.3, 0.21), PairKernel(0.1, 0.4),
-                             PairKernel(0.1, 0.45), PairKernel(0.5, 1e-12)}) {
+  for (const double value : {PairKernel(0.1, 0.4), PairKernel(0.1, 0.45), PairKernel(0.5, 1e-12)}) {
     EXPECT_EQ(value, 0);
   }
   // Where the piston ends at rest.
-  EXPECT_EQ(Kernel(0.3, 0.1, 0), HUGE_VAL);
-  EXPECT_DOUBLE_EQ(Kernel(0.25, 0, 0), 1 / M_PI);
-  EXPECT_DOUBLE_EQ(Kernel(0.25, 0, 1e-320), 1 / M_PI);
+  EXPECT_EQ(PairKernel(0.1, 0), HUGE_VAL);
+  EXPECT_DOUBLE_EQ(PairKernel(0, 0), 1 / (M_PI * M_SQRT2));
+  EXPECT_DOUBLE_EQ(PairKernel(0, 1e-320), 1 / (M_PI * M_SQRT2));
   EXPECT_DOUBLE_EQ(PairKernel(0.25, 1e-310), 1 / (2 * M_PI * std::sqrt(1e-310)));
+}
+
+// ---- moments ----
+
+double ErrorOfMoments(double ep) {
+  const Quad eb = Quad{1} / 2 - Quad{ep};
+  return std::max(
+      {RelativeError(PairCollisionRate(ep), CollisionRateAsPrinted(eb, Quad{ep}, QuadPi())),
+       RelativeError(PairEnergyCurrent(ep), EnergyCurrentAsPrinted(eb, Quad{ep}, QuadPi())),
+       RelativeError(PairSquaredEnergyTransfer(ep),
+                     SquaredTransferAsPrinted(eb, Quad{ep}, QuadPi()))});
+}
+
+// The moment of order n of the energy transfer as an integral over the kernel, W with
+// ep_out = eb sin^2 t, cut where the maximum in W changes sides.
+Quad MomentByQuadrature(int n, Quad ep) {
+  const Quad eb = Quad{1} / 2 - ep;
+  const auto integrand = [&](Quad t) {
+    const Quad out = eb * sin(t) * sin(t);
+    Quad power = 1;
+    for (int k = 0; k < n; ++k) power *= out - ep;
+    return power * std::max(sqrt(out), sqrt(ep)) / QuadPi();
+  };
+  const Quad cut = ep < eb ? asin(sqrt(ep / eb)) : QuadPi() / 2;
+  return oracle::Integrate(integrand, 0, cut) + oracle::Integrate(integrand, cut, QuadPi() / 2);
+}
+
+// The zero of j in ep/(eb + ep), by bisection of the printed formula.
+Quad CurrentZero() {
+  Quad low = Quad{3} / 10;
+  Quad high = Quad{4} / 10;
+  for (int i = 0; i < 110; ++i) {
+    const Quad middle = (low + high) / 2;
+    (EnergyCurrentAsPrinted(1 - middle, middle, QuadPi()) > 0 ? low : high) = middle;
+  }
+  return low;
+}
+
+// Anywhere, next to the ends and the middle, and where the printed arcsine is steep.
+TEST(Kernel, MomentsAreAccurateForEveryEnergy) {
+  std::mt19937_64 random(20240605);
+  std::uniform_real_distribution<double> exponent(-14, 0);
+  std::vector<double> energies = {0.0, 1e-300, 0.25, 0.5};
+  for (int i = 1; i < 4000; ++i) energies.push_back(i / 8000.0);
+  for (int i = 0; i < 2000; ++i) {
+    const double small = 0.5 * std::pow(10, exponent(random));
+    for (double ep : {small, 0.5 - small, 0.25 + small / 2, 0.25 - small / 2}) {
+      energies.push_back(ep);
+    }
+  }
+  double worst = 0, worst_printed = 0;
+  for (double gap = 1e-16; gap < 1e-2; gap *= 3) {
+    const double ep = 0.25 - gap;
+    energies.push_back(ep);
+    const Quad exact = CollisionRateAsPrinted(Quad{1} / 2 - Quad{ep}, Quad{ep}, QuadPi());
+    worst_printed =
+        std::max(worst_printed, RelativeError(CollisionRateAsPrinted(0.5 - ep, ep, M_PI), exact));
+  }
+  for (double ep : energies) worst = std::max(worst, ErrorOfMoments(ep));
+  EXPECT_LE(worst, kKernelMomentsRelativeError);
+  EXPECT_GT(worst_printed, 1e-12);
+}
+
+TEST(Kernel, CurrentIsAccurateThroughItsZero) {
+  std::mt19937_64 random(20240606);
+  std::uniform_real_distribution<double> exponent(-15, -1);
+  const Quad zero = CurrentZero();
+  double worst = 0;
+  double worst_printed = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double offset = std::pow(10, exponent(random)) * (i % 2 == 0 ? 1 : -1);
+    const double ep = static_cast<double>(zero * (1 + Quad{offset}) / 2);
+    worst = std::max(worst, ErrorOfMoments(ep));
+    worst_printed =
+        std::max(worst_printed,
+                 RelativeError(EnergyCurrentAsPrinted(0.5 - ep, ep, M_PI),
+                               EnergyCurrentAsPrinted(Quad{1} / 2 - Quad{ep}, Quad{ep}, QuadPi())));
+  }
+  const double nearest = static_cast<double>(zero / 2);
+  for (double ep : {std::nextafter(nearest, 0.0), nearest, std::nextafter(nearest, 1.0)}) {
+    worst = std::max(worst, ErrorOfMoments(ep));
+  }
+  EXPECT_LE(worst, kKernelMomentsRelativeError);
+  EXPECT_GT(worst_printed, 1e-3);  // the printed formula fails at these points
+}
+
+TEST(Kernel, CurrentFlowsToTheSlowPiston) {
+  const double zero = static_cast<double>(CurrentZero() / 2);
+  EXPECT_NEAR(zero / (0.5 - zero), 0.5404, 1e-4);
+  for (double ep = 0; ep <= 0.5; ep += 0.0005) {
+    EXPECT_EQ(PairEnergyCurrent(ep) > 0, ep < zero) << ep;
+    EXPECT_GT(PairCollisionRate(ep), 0);
+    EXPECT_GT(PairSquaredEnergyTransfer(ep), 0);
+  }
+}
+
+TEST(Kernel, MomentsAreIntegralsOfTheKernel) {
+  for (double ep : {0.0, 1e-6, 0.05, 0.2, 0.3, 0.49}) {
+    EXPECT_LE(RelativeError(PairCollisionRate(ep), MomentByQuadrature(0, ep)),
+              kKernelMomentsRelativeError);
+    EXPECT_LE(RelativeError(PairEnergyCurrent(ep), MomentByQuadrature(1, ep)),
+              kKernelMomentsRelativeError);
+    EXPECT_LE(RelativeError(PairSquaredEnergyTransfer(ep), MomentByQuadrature(2, ep)),
+              kKernelMomentsRelativeError);
+  }
+}
+
+// ---- distribution ----
+
+// pi times the integral of W from 0 to ep_out, calculated by hand: the arcsine part up to ep, the
+// root's part beyond.
+Quad IntegratedKernel(Quad eb, Quad ep, Quad ep_out) {
+  const Quad arc_end = std::min({eb, ep, ep_out});
+  Quad sum = eb > 0 ? sqrt(ep) * asin(sqrt(arc_end / eb)) : Quad{0};
+  if (eb > ep && ep_out > ep) sum += sqrt(eb - ep) - sqrt(eb - std::min(eb, ep_out));
+  return sum;
+}
+
+Quad ExactBelow(Quad eb, Quad ep, Quad ep_out) {
+  return IntegratedKernel(eb, ep, ep_out) / IntegratedKernel(eb, ep, eb);
+}
+
+Quad PairBall(double ep) { return Quad{1} / 2 - Quad{ep}; }
+
+double ErrorOf(double ep, double ep_out) {
+  return RelativeError(KernelDistribution(ep).Below(ep_out), ExactBelow(PairBall(ep), ep, ep_out));
+}
+
+// Anywhere, next to the ends and the middle; and where the ball keeps little energy. There F is 1
+// minus a root, so an error of an ulp of 1/2 in the ball's remaining energy would change F by 1e-8.
+TEST(Kernel, DistributionIsAccurateAtRandomEnergies) {
+  std::mt19937_64 random(20240701);
+  std::uniform_real_distribution<double> exponent(-14, 0), smaller(-17, -1), unit(0, 0.5);
+  double worst = 0, worst_rate = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double small = 0.5 * std::pow(10, exponent(random));
+    const double share = std::pow(10, exponent(random));
+    for (const double ep : {small, 0.25 - small / 2, 0.25 + small / 2, 0.5 - small}) {
+      const double eb = 0.5 - ep;
+      for (const double out : {eb * share, eb * (1 - share), ep * (1 + share), ep * (1 - share)}) {
+        worst = std::max(worst, ErrorOf(ep, out));
+      }
+      worst_rate = std::max(
+          worst_rate, RelativeError(KernelDistribution(ep).CollisionRate(),
+                                    CollisionRateAsPrinted(PairBall(ep), Quad{ep}, QuadPi())));
+    }
+    for (const double ep : {0.25 - 0.25 * std::pow(10, smaller(random)), unit(random)}) {
+      worst = std::max(worst, ErrorOf(ep, (0.5 - ep) * (1 - std::pow(10, smaller(random)))));
+    }
+  }
+  EXPECT_LE(worst, kKernelDistributionRelativeError);
+  EXPECT_LE(worst_rate, kKernelDistributionRelativeError);
+  EXPECT_GT(worst, 1e-16);  // the comparison sees rounding
+}
+
+TEST(Kernel, DistributionRisesFromZeroToOne) {
+  for (const double ep :
+       {0.0, 1e-300, 1e-12, 0.03, 0.2499999999, 0.25, 0.26, 0.49, 0.5 - 0x1p-54}) {
+    const KernelDistribution law(ep);
+    const double eb = 0.5 - ep;
+    EXPECT_EQ(law.Below(0), 0) << ep;
+    EXPECT_EQ(law.Below(std::nextafter(eb, 1.0)), 1) << ep;
+    EXPECT_EQ(law.Below(0.5), 1) << ep;
+    EXPECT_NEAR(law.Below(eb), 1, 1e-8) << ep;  // 1/2 - ep is rounded: the root of an ulp
+    double before = 0;
+    for (int i = 1; i <= 10'000; ++i) {
+      const double now = law.Below(eb * i / 10'000);
+      // On either side of ep the two forms may differ by an ulp.
+      EXPECT_GE(now, before - 0x1p-52) << ep << " " << i;
+      before = now;
+    }
+  }
+  EXPECT_EQ(KernelDistribution(0.5).Below(0), 1);  // a ball at rest gives the piston no energy
+}
+
+TEST(Kernel, SlopeIsTheKernelOverItsRate) {
+  for (const double ep : {0.0, 1e-6, 0.05, 0.2, 0.3, 0.49}) {
+    const KernelDistribution law(ep);
+    for (const double share : {0.01, 0.2, 0.6, 0.95}) {
+      const double out = share * (0.5 - ep), step = 1e-5 * out * (1 - share);
+      if (std::fabs(out - ep) <= step) continue;
+      const double slope = (law.Below(out + step) - law.Below(out - step)) / (2 * step);
+      // The third derivative times step^2, and rounding over step.
+      EXPECT_NEAR(slope * law.CollisionRate() / PairKernel(ep, out), 1, 1e-6) << ep << " " << out;
+    }
+  }
 }
 
 }  // namespace

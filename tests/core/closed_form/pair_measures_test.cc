@@ -33,10 +33,10 @@ void ExpectAccurate(const PairGeometry& geometry, double temperature) {
   }
   const Quad t = temperature;
   EXPECT_LE(RelativeError(ExchangeRate(measures, temperature),
-                          Sqrt(t / (2 * QuadPi())) * exact.area_ball_piston / exact.volume),
+                          sqrt(t / (2 * QuadPi())) * exact.area_ball_piston / exact.volume),
             kExchangeRateRelativeError);
   EXPECT_LE(RelativeError(RareLimitExchangeRate(geometry.rho(), temperature),
-                          Sqrt(t / QuadPi()) / exact.cell_area),
+                          sqrt(t / QuadPi()) / exact.cell_area),
             kExchangeRateRelativeError);
 }
 

@@ -229,7 +229,7 @@ TEST(EnsembleSpec, BilliardIsRejectedOutsideItsDomain) {
         {"grid.delta[0]: no other model answers first-hit"}}});
 }
 
-// Outside of this domain the errors of single precision are unknown (billiard/single_precision.h).
+// Outside of this domain the errors of single precision are unknown (billiard/billiard_domain.h).
 TEST(EnsembleSpec, SinglePrecisionIsRejectedOutsideItsMeasuredDomain) {
   for (const ExperimentKind* experiment : kAllExperiments) {
     if (IsOfAGas(experiment)) continue;  // it has no single precision

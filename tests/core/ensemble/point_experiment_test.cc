@@ -1,7 +1,6 @@
 // What holds for every experiment by every model that samples, and for the answers without samples.
 #include "core/ensemble/point_experiment.h"
 
-#include "core/closed_form/conditional_rate.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/gas/gas_exchange_rate.h"

@@ -1,5 +1,5 @@
 #include "core/arithmetic/elementary_functions.h"
-#include "core/closed_form/kernel_moments.h"
+#include "core/closed_form/kernel.h"
 #include "core/experiment/markov_property_statistics.h"
 #include "core/statistics/group_scatter.h"
 #include "tests/core/one_point_spec.h"

@@ -29,7 +29,7 @@ double ValueOf(const TestFunction& f, const GasGeometry& gas, const Energies& e)
     for (const Direction direction : {Direction::kRight, Direction::kLeft}) {
       const auto piston = static_cast<size_t>(gas.PistonOf(ball, direction));
       const auto w = f.OfPiston(e.pistons[piston]);
-      for (size_t r = 0; r < u.size(); ++r) sum += SignOf(direction) * u[r] * w[r];
+      sum += SignOf(direction) * (u * w).sum();
     }
   }
   return sum;

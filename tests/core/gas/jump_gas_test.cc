@@ -1,7 +1,6 @@
 #include "core/gas/jump_gas.h"
 
-#include "core/closed_form/kernel_distribution.h"
-#include "core/closed_form/kernel_moments.h"
+#include "core/closed_form/kernel.h"
 #include "core/gas/gas_meter.h"
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
@@ -21,9 +20,11 @@ GasState WithEnergies(const std::vector<double>& balls, const std::vector<double
   return state;
 }
 
-// In the kernel's units a contact has the relative velocity v.n, n = (1, 0, -1)/sqrt(2).
+// In the kernel's units a contact has the relative velocity v.n, n = (1, 0, -1)/sqrt(2). The kernel
+// is that of the total energy 1/2.
 double ContactRate(double eb, double ep) {
-  return kDensity * std::numbers::sqrt2 * CollisionRate(eb, ep);
+  const double doubled = 2 * (eb + ep);
+  return kDensity * std::sqrt(2 * doubled) * PairCollisionRate(ep / doubled);
 }
 
 struct FirstExchange {
@@ -99,7 +100,8 @@ TEST(JumpGas, PairsFollowTheJumpProcess) {
       times.push_back(first.time * sum);
       ++counts[2 * first.ball + first.piston];
       const double eb = e.balls[first.ball], ep = e.pistons[first.piston];
-      places.push_back(KernelDistribution(eb, ep).Below(first.piston_energy));
+      const double doubled = 2 * (eb + ep);
+      places.push_back(KernelDistribution(ep / doubled).Below(first.piston_energy / doubled));
       ASSERT_NEAR(first.ball_energy + first.piston_energy, eb + ep, 1e-15 * (eb + ep));
     }
     EXPECT_LT(oracle::KolmogorovSmirnov(times, Exponential), 2.3);

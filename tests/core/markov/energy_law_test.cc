@@ -1,7 +1,6 @@
 #include "core/markov/energy_law.h"
 
-#include "core/closed_form/kernel_distribution.h"
-#include "core/closed_form/kernel_moments.h"
+#include "core/closed_form/kernel.h"
 #include "core/markov/relaxation_spectrum.h"
 #include "tests/core/preamble.h"
 
@@ -50,7 +49,7 @@ TEST(EnergyLaw, MeanAgreesWithTheSpectrum) {
 TEST(EnergyLaw, FollowsTheKernelAtShortTimes) {
   constexpr double kTime = 1e-4;
   for (const double epsilon : {0.03125, 0.125, 0.3, 0.4, 0.49}) {
-    const KernelDistribution kernel = KernelDistribution::OfPair(epsilon);
+    const KernelDistribution kernel(epsilon);
     const double rate = PairCollisionRate(epsilon);
     const std::vector<double> p = Fine().Probabilities(Fine().From(epsilon), kTime);
     const auto below = [&](double x) { return x < 0.5 - epsilon ? kernel.Below(x) : 1; };

@@ -1,6 +1,6 @@
 #include "core/markov/jump_process.h"
 
-#include "core/closed_form/kernel_moments.h"
+#include "core/closed_form/kernel.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/preamble.h"
 #include "tests/oracle/gauss_legendre.h"
@@ -37,16 +37,16 @@ std::vector<double> UniformNumbers() {
 // The distribution function of u' after a jump from u, as in the header, with 113 bits.
 class ExactLaw {
  public:
-  explicit ExactLaw(double u) : u_(u), s2_(1 - u_ * u_), s_(Sqrt(s2_)) {
+  explicit ExactLaw(double u) : u_(u), s2_(1 - u_ * u_), s_(sqrt(s2_)) {
     const Quad q2 = 1 - 2 * u_ * u_;
-    c_ = q2 > 0 ? Sqrt(q2) + u_ * Asin(u_ / s_) : u_ * QuadPi() / 2;
+    c_ = q2 > 0 ? sqrt(q2) + u_ * asin(u_ / s_) : u_ * QuadPi() / 2;
   }
   Quad Below(Quad next) const {
     if (next >= s_) return 1;
-    if (next <= u_) return u_ * Asin(next / s_) / c_;
-    return 1 - Sqrt(s2_ - next * next) / c_;
+    if (next <= u_) return u_ * asin(next / s_) / c_;
+    return 1 - sqrt(s2_ - next * next) / c_;
   }
-  Quad rate() const { return c_ / (Sqrt(Quad{2}) * QuadPi()); }
+  Quad rate() const { return c_ / (sqrt(Quad{2}) * QuadPi()); }
 
  private:
   Quad u_, s2_, s_, c_;

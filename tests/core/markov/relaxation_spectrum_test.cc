@@ -2,7 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "core/closed_form/kernel_moments.h"
+#include "core/closed_form/kernel.h"
 #include "tests/core/preamble.h"
 #include "tests/oracle/gauss_legendre.h"
 

@@ -1,6 +1,6 @@
 #include "core/model_choice/ladder.h"
 
-#include "core/billiard/single_precision.h"
+#include "core/billiard/billiard_domain.h"
 #include "core/experiment/expected_limit_error.h"
 #include "tests/core/model_choice/questions.h"
 #include "tests/core/preamble.h"

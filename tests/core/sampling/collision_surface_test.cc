@@ -1,7 +1,6 @@
 #include "core/sampling/collision_surface.h"
 
 #include "core/closed_form/pair_measures.h"
-#include "core/geometry/cell_profile.h"
 #include "tests/core/preamble.h"
 
 namespace ballpiston {
@@ -36,7 +35,7 @@ TEST_P(CollisionSurface, DepthHasTheDensityOfTheHalfHeight) {
   double area = 0, first = 0, second = 0;
   for (int i = 0; i <= kCells; ++i) {
     const double t = i * step, weight = (i == 0 || i == kCells ? 1 : 2 + 2 * (i % 2)) * step / 3;
-    const double g = HalfHeight(geometry_.lambda(), t);
+    const double g = geometry_.HalfHeight(t);
     area += weight * g;
     first += weight * g * t;
     second += weight * g * t * t;
@@ -51,7 +50,7 @@ TEST_P(CollisionSurface, DepthHasTheDensityOfTheHalfHeight) {
     const double t = geometry_.tip() - point.x();
     depth.Add(t);
     square.Add(t * t);
-    height.Add(point.y() / HalfHeight(geometry_.lambda(), t));
+    height.Add(point.y() / geometry_.HalfHeight(t));
   }
   EXPECT_NEAR(depth.mean, first / area, 5 * *depth.StandardError());
   EXPECT_NEAR(square.mean, second / area, 5 * *square.StandardError());

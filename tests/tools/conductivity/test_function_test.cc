@@ -10,9 +10,8 @@
 namespace ballpiston {
 namespace {
 
-constexpr size_t kTerms = TestFunction::kTerms;
 using TermValues = TestFunction::Values;
-using Squares = std::array<TermValues, kTerms>;
+using Squares = Eigen::Matrix<double, TestFunction::kTerms, TestFunction::kTerms>;
 
 struct Case {
   const char* name;
@@ -30,26 +29,18 @@ struct Law {
     const GammaQuadrature rule = GammaNodes(shape, 60);
     for (Eigen::Index i = 0; i < rule.nodes.size(); ++i) {
       const TermValues at = values(rule.nodes[i]);
-      for (size_t r = 0; r < kTerms; ++r) {
-        mean[r] += rule.weights[i] * at[r];
-        for (size_t q = 0; q < kTerms; ++q) covariance[r][q] += rule.weights[i] * at[r] * at[q];
-      }
+      mean += rule.weights[i] * at;
+      covariance += rule.weights[i] * at.matrix() * at.matrix().transpose();
     }
-    for (size_t r = 0; r < kTerms; ++r) {
-      for (size_t q = 0; q < kTerms; ++q) covariance[r][q] -= mean[r] * mean[q];
-    }
+    covariance -= mean.matrix() * mean.matrix().transpose();
   }
 
-  TermValues mean = {};
-  Squares covariance = {};
+  TermValues mean = TermValues::Zero();
+  Squares covariance = Squares::Zero();
 };
 
 double Contracted(const Squares& matrix, const TermValues& v) {
-  double sum = 0;
-  for (size_t r = 0; r < kTerms; ++r) {
-    for (size_t q = 0; q < kTerms; ++q) sum += matrix[r][q] * v[r] * v[q];
-  }
-  return sum;
+  return v.matrix().dot(matrix * v.matrix());
 }
 
 // Varadhan's formula for f. An exchange changes X + f by the pair's own part, and by products with
@@ -71,14 +62,9 @@ double BoundOf(const Case& c) {
         const double weight = t.weights[i] * y.weights[j] * g.weights[k] / (r * r);
         const TermValues u = c.f.OfBall(middle + r + g.nodes[k]), w = c.f.OfPiston(middle - r);
         const TermValues u1 = c.f.OfBall(middle - r + g.nodes[k]), w1 = c.f.OfPiston(middle + r);
-        double own = 2 * r;
-        TermValues of_ball, of_piston;
-        for (size_t term = 0; term < kTerms; ++term) {
-          own += (u1[term] - ball.mean[term]) * (w1[term] - piston.mean[term]) -
-                 (u[term] - ball.mean[term]) * (w[term] - piston.mean[term]);
-          of_ball[term] = u1[term] - u[term];
-          of_piston[term] = w1[term] - w[term];
-        }
+        const double own = 2 * r + ((u1 - ball.mean) * (w1 - piston.mean)).sum() -
+                           ((u - ball.mean) * (w - piston.mean)).sum();
+        const TermValues of_ball = u1 - u, of_piston = w1 - w;
         with_f += weight * (own * own + Contracted(ball.covariance, of_piston) +
                             (c.is_lattice ? 3 : 1) * Contracted(piston.covariance, of_ball));
         alone += weight * 4 * r * r;

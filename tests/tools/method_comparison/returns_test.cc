@@ -1,6 +1,6 @@
 #include "tools/method_comparison/returns.h"
 
-#include "core/closed_form/conditional_rate.h"
+#include "core/closed_form/mean_free_time.h"
 #include "core/statistics/kl_divergence.h"
 #include "tests/core/preamble.h"
 

@@ -1,65 +1,31 @@
-// Arguments, output and exit status of the program, with a fake report instead of computed tables.
-#include "tools/stability/program.h"
-
+// Arguments and exit status of the program.
+#include "tests/support/paths.h"
 #include "tests/support/preamble.h"
+#include "tests/support/process.h"
 
 namespace ballpiston::stability {
 namespace {
 
-class Program : public ::testing::Test {
- protected:
-  int Run(const std::vector<std::string>& arguments) {
-    const auto make_report = [this](double effort) {
-      efforts_.push_back(effort);
-      if (fails_) throw std::runtime_error("no memory");
-      return Report{.text = "| tables |\n", .complaints = complaints_};
-    };
-    return RunProgram(arguments, make_report, out_, error_);
-  }
-
-  bool fails_ = false;
-  std::vector<std::string> complaints_;
-  std::vector<double> efforts_;  // one for each report that was made
-  std::ostringstream out_;
-  std::ostringstream error_;
-};
-
-TEST_F(Program, PrintsTheTablesOfAllStartsOrOfAThousandth) {
-  EXPECT_EQ(Run({}), 0);
-  EXPECT_EQ(Run({"--quick"}), 0);
-  EXPECT_EQ(out_.str(), "| tables |\n| tables |\n");
-  EXPECT_EQ(error_.str(), "");
-  EXPECT_THAT(efforts_, ElementsAre(1, 1e-3));
+ProcessResult RunStability(const std::string& arguments) {
+  return RunProgram({.command = {"sh", "-c", BuildPath("bin/stability") + " " + arguments}});
 }
 
-TEST_F(Program, HelpExitsWithZeroAndAWrongArgumentWithTwo) {
-  EXPECT_EQ(Run({"--help"}), 0);
-  EXPECT_THAT(out_.str(), HasSubstr("--quick"));
+TEST(Program, HelpExitsWithZeroAndAWrongArgumentWithTwo) {
+  const ProcessResult help = RunStability("--help");
+  EXPECT_THAT(help, ExitsWith(0));
+  EXPECT_THAT(help.out, HasSubstr("--quick"));
   for (const char* argument : {"--fast", "stability.md", ""}) {
-    EXPECT_EQ(Run({"--quick", argument}), 2);
-    EXPECT_THAT(error_.str(), HasSubstr("'" + std::string(argument) + "'"));
+    const ProcessResult result = RunStability(absl::StrCat("--quick '", argument, "'"));
+    EXPECT_THAT(result, ExitsWith(2));
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(result.err, HasSubstr(absl::StrCat("'", argument, "'")));
   }
-  EXPECT_TRUE(efforts_.empty());
 }
 
-TEST_F(Program, ComplaintsExitWithOneAfterTheTables) {
-  complaints_ = {"lanes fails: grazing"};
-  EXPECT_EQ(Run({}), 1);
-  EXPECT_EQ(out_.str(), "| tables |\n");
-  EXPECT_EQ(error_.str(), "stability: lanes fails: grazing\n");
-}
-
-TEST_F(Program, AReportThatCannotBeMadeExitsWithOne) {
-  fails_ = true;
-  EXPECT_EQ(Run({}), 1);
-  EXPECT_EQ(out_.str(), "");
-  EXPECT_EQ(error_.str(), "stability: cannot compute the tables: no memory\n");
-}
-
-TEST_F(Program, ClosedStandardOutputExitsWithOne) {
-  out_.setstate(std::ios::badbit);
-  EXPECT_EQ(Run({}), 1);
-  EXPECT_THAT(error_.str(), HasSubstr("cannot write to standard output"));
+TEST(Program, OutputThatCannotBeWrittenExitsWithOne) {
+  const ProcessResult result = RunStability("--help >/dev/full");
+  EXPECT_THAT(result, ExitsWith(1));
+  EXPECT_THAT(result.err, HasSubstr("cannot write to standard output"));
 }
 
 }  // namespace

@@ -1,19 +1,25 @@
+#include "tools/stability/energy.h"
+
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "core/billiard/event_flow.h"
+#include "core/gas/canonical_gas.h"
+#include "core/gas/gas_exchange_rate.h"
+#include "core/gas/gas_run.h"
 #include "core/sampling/invariant_measure.h"
 #include "tools/flows/fixed_step_flow.h"
 #include "tools/flows/lane_balls.h"
+#include "tools/flows/metered_gases.h"
 #include "tools/flows/numbered_orbits.h"
 #include "tools/flows/paper.h"
 #include "tools/flows/precise_flow.h"
-#include "tools/stability/energy.h"
+#include "tools/flows/rounded_to.h"
 #include "tools/stability/failures.h"
-#include "tools/stability/flow_precision.h"
 #include "tools/stability/markdown_table.h"
-#include "tools/stability/pair_starts.h"
+#include "tools/stability/starts.h"
 #include "tools/stability/textbook_flow.h"
 
 namespace ballpiston::stability {
@@ -100,6 +106,52 @@ EnergyRecord PairByEvents(uint64_t hits) {
   return record;
 }
 
+// ---- gases ----
+
+constexpr uint64_t kGasEnergySeed = 25;
+constexpr uint64_t kGases = 48;
+
+GasGeometry EnergyGas() {
+  return *GasGeometry::Create(kPaperRho, 0.2, *ParseGasShape("4x3"), GasEnds::kPeriodic);
+}
+
+std::vector<GasStart> EnergyStarts() {
+  std::vector<GasStart> starts;
+  for (uint64_t i = 0; i < kGases; ++i) {
+    const GasRandom random(kGasEnergySeed, 0, i);
+    CounterRandom of_start = random.OfStart();
+    starts.push_back({DrawGas(EnergyGas(), TemperatureProfile(1), of_start), {}, random, nullptr});
+  }
+  return starts;
+}
+
+// The time in which each gas has about this number of exchanges.
+double TimeOf(double exchanges) {
+  const GasGeometry gas = EnergyGas();
+  return exchanges / (static_cast<double>(gas.contacts()) * GasExchangeRate(gas, 1));
+}
+
+double TotalEnergy(const GasState& state) { return GasMeter(EnergyGas(), state).TotalEnergy(); }
+
+EnergyRun OfEngine(const char* method, GasEngine engine, double exchanges) {
+  GasEnergyRecord record;
+  const std::vector<GasStart> starts = EnergyStarts();
+  MeteredGases gases(engine, EnergyGas(), starts);
+  gases.AdvanceTo(TimeOf(exchanges));
+  for (size_t i = 0; i < starts.size(); ++i) {
+    const GasMeter& meter = gases.meters()[i];
+    record.Add(meter.exchanges(), meter.TotalEnergy() / TotalEnergy(starts[i].state) - 1);
+  }
+  return {.method = method,
+          .what = "gases of 4x3 cells",
+          .orbits = kGases,
+          .hits = record.exchanges(),
+          .promised = true,
+          .worst = record.Worst(),
+          .permitted = record.LongestWalk(),
+          .change = record.Mean()};
+}
+
 }  // namespace
 
 bool EnergyChange::IsTrend() const {
@@ -154,16 +206,33 @@ std::vector<EnergyRun> EnergyRuns(double effort) {
   pair("reference", true, 1e9, PairByEvents<ReferenceFlow>);
   pair("reference, single", false, 1e8, PairByEvents<EventFlow<float>>);
   pair("reference, 64 bits", true, 1e7, PairByEvents<EventFlow<long double>>);
-  pair("reference, 113 bits", true, 1e6, PairByEvents<EventFlow<Quadruple>>);
+  pair("reference, 113 bits", true, 1e6, PairByEvents<EventFlow<Quad>>);
   pair("nearest root", false, 1e8, PairByEvents<TextbookFlow<kPositiveRoot>>);
   pair("approaching disc", false, 1e8, PairByEvents<TextbookFlow<kApproaching>>);
   pair("fixed steps of 1e-3", false, 1e6, PairByEvents<FixedStepFlow>);
+  const auto gases = [&](const char* method, GasEngine engine, double exchanges) {
+    runs.push_back(OfEngine(method, engine, std::max(exchanges * effort, 100.0)));
+  };
+  gases("lanes", GasEngine::kLanes, 5e4);
+  gases("reference", GasEngine::kReference, 5e4);
+  gases("jump process", GasEngine::kJumps, 5e5);
   return runs;
 }
 
+void GasEnergyRecord::Add(uint64_t exchanges, double error) {
+  exchanges_ += exchanges;
+  errors_.Add(error);
+  worst_ = std::max(worst_, ErrorSize(error));
+}
+
+double GasEnergyRecord::LongestWalk() const {
+  const double each = static_cast<double>(exchanges_) / static_cast<double>(errors_.count);
+  return 4 * std::numeric_limits<double>::epsilon() * (1 + std::sqrt(each));
+}
+
 std::string EnergyTable(const std::vector<EnergyRun>& runs) {
-  MarkdownTable table({"method", "what", "orbits", "wall hits", "worst dE/E", "drift over the run",
-                       "its standard error", "a trend"});
+  MarkdownTable table({"method", "what", "orbits", "hits", "worst dE/E",
+                       "drift, or mean at the end", "its standard error", "a trend"});
   for (const EnergyRun& run : runs) {
     table.Add({run.method, run.what, CountText(run.orbits), CountText(run.hits),
                ErrorText(run.worst), SignedText(run.change.value), ErrorText(run.change.error),

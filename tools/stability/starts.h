@@ -1,9 +1,11 @@
-// Starts of balls alone and of ball-piston pairs: anywhere, or just before situations in which
-// methods fail.
+// Starts of balls alone, of ball-piston pairs and of gases: anywhere, or just before situations in
+// which methods fail.
 //
 // The offset from the target is +-10^-k, k = 3 ... 17, or exactly 0: one of 16 values at random.
 #pragma once
 
+#include "core/gas/gas_geometry.h"
+#include "core/gas/gas_state.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
 #include "core/sampling/counter_random.h"
@@ -52,5 +54,35 @@ PairState InTheWedge(const PairGeometry& geometry, CounterRandom& random);
 // Just after a collision. The energy of the ball (or piston) is an offset, or exactly 0.
 PairState SlowBall(const PairGeometry& geometry, CounterRandom& random);
 PairState SlowPiston(const PairGeometry& geometry, CounterRandom& random);
+
+// ---- a gas ----
+//
+// The fastest body has about speed 1.
+
+using DrawGasStart = GasState(const GasGeometry& geometry, CounterRandom& random);
+
+// A gas from the canonical ensemble.
+GasState AnyGas(const GasGeometry& geometry, CounterRandom& random);
+
+// One ball moves; the energies of all other bodies are offsets, or exactly 0.
+GasState OneHotBall(const GasGeometry& geometry, CounterRandom& random);
+// The same for one piston.
+GasState OneHotPiston(const GasGeometry& geometry, CounterRandom& random);
+
+// Energies from 1 to 1e-17, uniform in the logarithm.
+GasState AnyEnergies(const GasGeometry& geometry, CounterRandom& random);
+
+// A ball hits a wall at the point where the ends of two crossing pistons are: at the bound of
+// delta, all four meet at this point. For lattices.
+GasState AimedAtTwoPistons(const GasGeometry& geometry, CounterRandom& random);
+
+// A ball and one of its pistons start as the pair that `draw` draws. All other bodies are at rest:
+// balls at the centres of their cells, pistons on their edges, out of the reach of the balls.
+GasState WithPair(DrawStart& draw, const GasGeometry& geometry, CounterRandom& random);
+
+template <DrawStart* draw>
+GasState WithPair(const GasGeometry& geometry, CounterRandom& random) {
+  return WithPair(*draw, geometry, random);
+}
 
 }  // namespace ballpiston::stability

@@ -1,9 +1,16 @@
+#include "tools/method_comparison/point_runs.h"
+
 #include <algorithm>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "core/ensemble/block_result.h"
+#include "core/ensemble/point_experiment.h"
+#include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
+#include "core/experiment/energy_relaxation.h"
+#include "core/experiment/expected_returns.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/experiment/steady_gas.h"
 #include "core/gas/canonical_gas.h"
@@ -13,16 +20,9 @@
 #include "server/processor_time.h"
 #include "tools/flows/fixed_step_gas.h"
 #include "tools/flows/metered_gases.h"
-#include "tools/method_comparison/point_runs.h"
 
 namespace ballpiston::method_comparison {
 namespace {
-
-// A ball between two pistons. At the same work the error grows as the number of cells. With more
-// cells the error would hide the bias of the limit.
-constexpr GasShape kComparedChain = {.columns = 1};
-constexpr double kComparedHot = 1.5;
-constexpr double kComparedCold = 0.5;
 
 Model ModelOf(Method method) {
   switch (method) {
@@ -34,6 +34,57 @@ Model ModelOf(Method method) {
       return Model::kBilliard;
   }
 }
+
+// ---- relaxation times ----
+
+EnsembleSpec SpecOf(const PairGeometry& geometry, uint64_t seed, Method method) {
+  return {.experiment = &kEnergyRelaxation,
+          .grid = {{kRho, {geometry.rho()}}, {kDelta, {geometry.delta()}}},
+          .seed = seed,
+          .model = ModelOf(method)};
+}
+
+PointParameters PointOf(const PairGeometry& geometry) {
+  return {{kRho, geometry.rho()}, {kDelta, geometry.delta()}};
+}
+
+}  // namespace
+
+double EnergyRelaxationRuns::PredictedSecondsPerOrbit() const {
+  constexpr double kPerEvent = 2e-9, kPerCollision = 4e-7;
+  return CollisionsPerOrbit(PointOf(geometry)) *
+         (kPerCollision + kPerEvent * HitsPerCollision(geometry).Events());
+}
+
+PointEstimate EnergyRelaxationRuns::Run(Method method, const SampleRange& samples) const {
+  const auto experiment = PointExperiment::Create(SpecOf(geometry, seed, method), 0);
+  const double begin = server::ThreadSeconds();
+  const BlockResult merged =
+      *RunBlock(*experiment, {.first = samples.first, .samples = samples.count});
+  const Estimate estimate = experiment->FirstEstimate(merged);
+  return {.value = estimate.value,
+          .error = estimate.standard_error.value_or(0),
+          .samples = merged.samples,
+          .seconds = server::ThreadSeconds() - begin};
+}
+
+PointEstimate EnergyRelaxationRuns::BySpectrum() const {
+  RelaxationSpectrum::Get();
+  Estimate time;
+  const double seconds = server::SecondsOf(
+      [&] { time = EnergyRelaxation(geometry, PointOf(geometry)).EstimatesOfLimit().front(); });
+  return {.value = time.value, .error = time.standard_error.value_or(0), .seconds = seconds};
+}
+
+// ---- heat currents ----
+
+namespace {
+
+// A ball between two pistons. At the same work the error grows as the number of cells. With more
+// cells the error would hide the bias of the limit.
+constexpr GasShape kComparedChain = {.columns = 1};
+constexpr double kComparedHot = 1.5;
+constexpr double kComparedCold = 0.5;
 
 // The gas of the experiment gas-conduction.
 std::unique_ptr<const PointExperiment> ExperimentOf(const HeatCurrentRuns& runs, Method method) {
@@ -110,7 +161,7 @@ void MeasureTogether(const SteadyGas& gas, const SampleRange& samples, BatchMean
     const GasRandom random = gas.RandomOf(i);
     starts.push_back({StartOf(gas, random), gas.WallsOf(random), random, nullptr});
   }
-  MeteredGases gases(gas.gas_engine(), gas.geometry(), gas.exchange_rate(), std::move(starts));
+  MeteredGases gases(gas.gas_engine(), gas.geometry(), std::move(starts));
   gases.AdvanceTo(TimeToRelax(gas));
   for (GasMeter& meter : gases.meters()) meter.Begin(TimeToRelax(gas));
   gases.AdvanceTo(TimeToTheEnd(gas));
