@@ -15,7 +15,7 @@ import sys
 from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, NoReturn
 
 import ballpiston
 from ballpiston.document import write_atomically
@@ -45,6 +45,11 @@ _VARIABLES = {
 }
 
 
+class _Parser(ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        raise ValueError(message)
+
+
 def main(arguments: list[str]) -> int:
     """Returns the exit code."""
     if arguments == ["--list"]:
@@ -63,7 +68,7 @@ def _parsed(arguments: list[str]) -> tuple[Namespace, ModuleType]:
         fault = f"{wrong!r} is not a figure" if wrong else "name a figure"
         hint = did_you_mean(wrong, names())
         raise ValueError(f"{fault} ({', '.join(names())}), or give --list{hint}")
-    common = ArgumentParser(add_help=False, allow_abbrev=False)
+    common = _Parser(add_help=False, allow_abbrev=False)
     common.add_argument("--out", type=Path, help="folder for data and pictures; required")
     common.add_argument("--edit", action="store_true", help="copy the module to it; draw nothing")
     effort = common.add_mutually_exclusive_group()
@@ -71,7 +76,7 @@ def _parsed(arguments: list[str]) -> tuple[Namespace, ModuleType]:
         effort.add_argument(f"--{level}", dest="effort", action="store_const", const=level, help=text)
     options, _ = common.parse_known_args(arguments)
     module = _module(name, None if options.edit else options.out)
-    parser = ArgumentParser(
+    parser = _Parser(
         prog="ballpiston figure",
         allow_abbrev=False,
         description=module.__doc__,
@@ -83,7 +88,11 @@ def _parsed(arguments: list[str]) -> tuple[Namespace, ModuleType]:
         text = f"{_VARIABLES[keyword]}; " if keyword in _VARIABLES else ""
         help_text = f"{text}by default {parameter.default}"
         parser.add_argument(_flag(keyword), metavar="VALUE", help=help_text)
-    options = parser.parse_args(arguments)
+    options, unknown = parser.parse_known_args(arguments)
+    if unknown:
+        flags = [_flag(keyword) for keyword in _variables(module)]
+        hint = did_you_mean(unknown[0], flags)
+        raise ValueError(f"{unknown[0]}: the figure {name} has no such variable{hint}")
     if options.out is None:
         raise ValueError("--out is missing: name a folder for data and pictures")
     return options, module
