@@ -6,7 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/command/connection.h"
 #include "client/command/selection.h"
-#include "client/output/job_list.h"
+#include "client/output/answers.h"
 #include "client/output/number_text.h"
 #include "client/output/spelling.h"
 

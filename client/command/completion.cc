@@ -1,14 +1,12 @@
 // ballpiston completion: scripts for three shells. A script runs `completion words -- WORD...` to
 // get the possible words, which come from the table of verbs.
 #include <algorithm>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
 #include "absl/time/time.h"
@@ -62,17 +60,6 @@ end
 complete -c ballpiston -f -a '(__ballpiston_offers)'
 )fish";
 
-// The verb at the start of the words, and the number of words in its name.
-const Verb* FindVerb(const Strings& words, size_t& length) {
-  for (const Verb& verb : Verbs()) {
-    const Strings names = absl::StrSplit(verb.name, ' ');
-    if (words.size() <= names.size()) continue;
-    length = names.size();
-    if (std::equal(names.begin(), names.end(), words.begin())) return &verb;
-  }
-  return nullptr;
-}
-
 // The flag that `word` names, if that flag takes a value; else null.
 const Flag* FlagWithValue(const Verb& verb, const std::string& word) {
   for (const Flag* flag : FlagsOf(verb)) {
@@ -82,9 +69,9 @@ const Flag* FlagWithValue(const Verb& verb, const std::string& word) {
 }
 
 // The argument at the position of the last word; null if the verb has no further argument.
-const Argument* ArgumentAt(const Verb& verb, const Strings& words, size_t begin) {
+const Argument* ArgumentAt(const Verb& verb, const Strings& words) {
   size_t before = 0;
-  for (size_t i = begin; i + 1 < words.size(); ++i) {
+  for (size_t i = static_cast<size_t>(WordsIn(verb.name)); i + 1 < words.size(); ++i) {
     const bool is_flag = absl::StartsWith(words[i], "-");
     if (!is_flag) ++before;
     if (is_flag && FlagWithValue(verb, words[i]) != nullptr) ++i;
@@ -95,19 +82,19 @@ const Argument* ArgumentAt(const Verb& verb, const Strings& words, size_t begin)
   return last.IsMany() ? &last : nullptr;
 }
 
-// The possible next words of the verbs that begin with the words so far.
+// The possible next words of the verbs that begin with the words so far; a whole name has its
+// summary.
 Strings VerbOffers(Strings so_far) {
-  so_far.pop_back();
-  std::set<std::string> offers;
-  for (const Verb& verb : Verbs()) {
-    const Strings names = absl::StrSplit(verb.name, ' ');
-    if (names.size() <= so_far.size()) continue;
-    if (!std::equal(so_far.begin(), so_far.end(), names.begin())) continue;
-    const std::string& next = names[so_far.size()];
-    const bool is_whole = names.size() == so_far.size() + 1;
-    offers.insert(is_whole ? absl::StrCat(next, "\t", verb.summary) : next);
+  so_far.back() = "";
+  const std::string begin = absl::StrJoin(so_far, " ");
+  Strings offers = NextWords(begin);
+  std::sort(offers.begin(), offers.end());
+  for (std::string& offer : offers) {
+    const auto is_whole = [&](const Verb& verb) { return verb.name == begin + offer; };
+    const auto verb = std::find_if(Verbs().begin(), Verbs().end(), is_whole);
+    if (verb != Verbs().end()) absl::StrAppend(&offer, "\t", verb->summary);
   }
-  return {offers.begin(), offers.end()};
+  return offers;
 }
 
 // The names of the newest jobs. Empty if no server runs: completion starts no server.
@@ -117,13 +104,13 @@ Strings JobNames(const Options& options, const Terminal& terminal) {
   v1::ListEnsembleJobsRequest request;
   request.set_view(v1::ListEnsembleJobsRequest::BASIC);
   Strings names;
-  const VerbResult ignored =
-      WithRunningServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-        const auto jobs = Client(connection.channel, kTimeout).List(request, kMost);
-        if (!jobs.ok()) return jobs.status();
-        for (const v1::EnsembleJob& job : *jobs) names.push_back(job.name());
-        return ExitCode::kDone;
-      });
+  const auto list = [&](const Connection& connection) -> VerbResult {
+    const auto jobs = Client(connection.channel, kTimeout).List(request, kMost);
+    if (!jobs.ok()) return jobs.status();
+    for (const v1::EnsembleJob& job : *jobs) names.push_back(job.name());
+    return ExitCode::kDone;
+  };
+  const VerbResult ignored = WithServer(options, terminal, list, /*may_start=*/false);
   return names;
 }
 
@@ -193,8 +180,7 @@ Strings Offers(Strings words, Options options, const Terminal& terminal) {
   JoinAtColons(words);
   const std::string prefix = SplitValue(words);
   if (const std::string server = ServerIn(words); !server.empty()) options.server = server;
-  size_t length = 0;
-  const Verb* const verb = FindVerb(words, length);
+  const Verb* const verb = VerbAt({words.begin(), words.end() - 1});
   if (verb == nullptr) return VerbOffers(words);
   if (const Flag* const flag = FlagWithValue(*verb, words[words.size() - 2])) {
     Strings offers = ValueOffers(flag->value, options, terminal);
@@ -203,7 +189,7 @@ Strings Offers(Strings words, Options options, const Terminal& terminal) {
     return offers;
   }
   if (!prefix.empty()) return {};
-  const Argument* const argument = ArgumentAt(*verb, words, length);
+  const Argument* const argument = ArgumentAt(*verb, words);
   if (absl::StartsWith(words.back(), "-") || argument == nullptr) return FlagOffers(*verb);
   if (verb->act == &Help) {
     words.erase(words.begin());

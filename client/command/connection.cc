@@ -10,7 +10,6 @@
 #include "absl/time/time.h"
 #include "client/command/verb_table.h"
 #include "client/library/channel.h"
-#include "client/library/connection_hint.h"
 #include "client/library/error_text.h"
 #include "client/library/local_server.h"
 
@@ -26,6 +25,39 @@ bool HasSecurityFlags(const Options& options) {
     const std::string name = LongName(flag);
     return name != "--server" && options.given.contains(name);
   });
+}
+
+std::string HintWithTls(const ChannelSecurity& security, absl::string_view message) {
+  if (absl::StrContains(message, "certificate verify failed")) {
+    return absl::StrCat(
+        "the server's certificate is not valid now, or was not signed by an authority ",
+        security.ca.empty() ? "that this system knows" : "in " + security.ca,
+        ": name the right authority with --ca FILE");
+  }
+  if (absl::StrContains(message, "is not in peer certificate")) {
+    return "the server's certificate is for another host: write the host as in the certificate";
+  }
+  if (absl::StrContains(message, "wrong version number") ||
+      absl::StrContains(message, "packet length too long")) {
+    return "the server does not use TLS: leave out --ca and --tls";
+  }
+  return "";
+}
+
+bool WasClosed(absl::string_view message) {
+  return absl::StrContains(message, "Socket closed") ||
+         absl::StrContains(message, "Connection reset");
+}
+
+std::string HintWithoutTls(absl::string_view message) {
+  if (!WasClosed(message)) return "";
+  return "if the server uses TLS: --ca FILE, or --tls if this system knows its authority";
+}
+
+std::string HintOfSocket(absl::string_view message) {
+  if (!WasClosed(message) && !absl::StrContains(message, "Permission denied")) return "";
+  return "perhaps it is another user's server: only its own user can open a Unix socket; the users "
+         "of a machine share a server at a loopback address, each with a token";
 }
 
 absl::StatusOr<Connection> ConnectTo(const std::string& address, const Options& options) {
@@ -74,15 +106,15 @@ absl::StatusOr<Connection> Connect(const Options& options, bool may_start) {
       "the private server uses neither TLS nor a token; name another server with --server");
 }
 
-VerbResult RunOver(const absl::StatusOr<Connection>& connection, const Terminal& terminal,
-                   const VerbOfServer& verb) {
-  if (!connection.ok()) return connection.status();
-  terminal.Detail(absl::StrCat("server ", connection->address));
-  VerbResult result = verb(*connection);
-  return result.ok() ? result : NameServer(result.status(), *connection);
-}
-
 }  // namespace
+
+std::string ConnectionHint(const std::string& address, const ChannelSecurity& security,
+                           absl::string_view message) {
+  const std::string hint = IsSocket(address)   ? HintOfSocket(message)
+                           : security.HasTls() ? HintWithTls(security, message)
+                                               : HintWithoutTls(message);
+  return hint.empty() ? "" : absl::StrCat("\n  ", hint);
+}
 
 // An error without a reason is an error of the connection; the server's errors have a reason.
 absl::Status NameServer(const absl::Status& status, const Connection& connection) {
@@ -92,32 +124,28 @@ absl::Status NameServer(const absl::Status& status, const Connection& connection
   return absl::Status(
       status.code(),
       absl::StrCat("no answer from the server at ", connection.address, ": ", message,
-                   IsSocket(connection.address) ? SocketHint(message)
-                                                : ConnectionHint(connection.security, message)));
+                   ConnectionHint(connection.address, connection.security, message)));
 }
 
-absl::Status WithHint(const absl::Status& status, absl::string_view hint) {
-  absl::Status with_hint(status.code(), absl::StrCat(status.message(), "\n", hint));
+absl::Status HintIfExpired(const absl::Status& status, const Connection& connection,
+                           const std::string& job) {
+  if (ErrorReason(status) != "RESULTS_EXPIRED") return status;
+  absl::Status with_hint(status.code(),
+                         absl::StrCat(status.message(), "\nTo compute them again: ",
+                                      "ballpiston submit --again ", job, connection.flags));
   status.ForEachPayload([&](absl::string_view type, const absl::Cord& payload) {
     with_hint.SetPayload(type, payload);
   });
   return with_hint;
 }
 
-absl::Status HintIfExpired(const absl::Status& status, const Connection& connection,
-                           const std::string& job) {
-  if (ErrorReason(status) != "RESULTS_EXPIRED") return status;
-  return WithHint(status, absl::StrCat("To compute them again: ballpiston submit --again ", job,
-                                       connection.flags));
-}
-
-VerbResult WithServer(const Options& options, const Terminal& terminal, const VerbOfServer& verb) {
-  return RunOver(Connect(options, true), terminal, verb);
-}
-
-VerbResult WithRunningServer(const Options& options, const Terminal& terminal,
-                             const VerbOfServer& verb) {
-  return RunOver(Connect(options, false), terminal, verb);
+VerbResult WithServer(const Options& options, const Terminal& terminal, const VerbOfServer& verb,
+                      bool may_start) {
+  const absl::StatusOr<Connection> connection = Connect(options, may_start);
+  if (!connection.ok()) return connection.status();
+  terminal.Detail(absl::StrCat("server ", connection->address));
+  VerbResult result = verb(*connection);
+  return result.ok() ? result : NameServer(result.status(), *connection);
 }
 
 }  // namespace ballpiston::client

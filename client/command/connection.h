@@ -29,21 +29,21 @@ struct Connection {
 // Adds the server's address to an error of the connection. Does not change the server's own errors.
 absl::Status NameServer(const absl::Status& status, const Connection& connection);
 
-// The same error with the same details, and the hint for the user on a separate line.
-absl::Status WithHint(const absl::Status& status, absl::string_view hint);
+// Advice for a failed connection, on a line of its own: the messages of gRPC 1.51 and OpenSSL 3
+// describe the failure, but do not say what the user can do. Empty if the text is unknown.
+std::string ConnectionHint(const std::string& address, const ChannelSecurity& security,
+                           absl::string_view message);
 
-// If the results of the job have expired, adds the command that computes them again. Returns any
-// other status unchanged.
+// If the results of the job have expired, adds a line with the command that computes them again.
+// Returns any other status unchanged.
 absl::Status HintIfExpired(const absl::Status& status, const Connection& connection,
                            const std::string& job);
 
 using VerbOfServer = std::function<VerbResult(const Connection&)>;
 
-// Connects and runs `verb`. If the server does not answer, the error names the server.
-VerbResult WithServer(const Options& options, const Terminal& terminal, const VerbOfServer& verb);
-
-// The same, but does not start a private server, for a verb that only shows the state of a server.
-VerbResult WithRunningServer(const Options& options, const Terminal& terminal,
-                             const VerbOfServer& verb);
+// Connects and runs `verb`. If the server does not answer, the error names the server. Without
+// `may_start`, for a verb that only shows the state of a server, no private server is started.
+VerbResult WithServer(const Options& options, const Terminal& terminal, const VerbOfServer& verb,
+                      bool may_start = true);
 
 }  // namespace ballpiston::client

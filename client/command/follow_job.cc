@@ -23,7 +23,8 @@ WatchCallbacks Report(ProgressReporter& reporter) {
 }  // namespace
 
 ProgressStyle StyleOf(const Options& options) {
-  const bool is_silent = options.quiet && options.progress == ProgressStyle::kAuto;
+  const bool is_silent =
+      options.verbosity == Verbosity::kQuiet && !options.given.contains("--progress");
   return is_silent ? ProgressStyle::kNone : options.progress;
 }
 

@@ -15,7 +15,7 @@
 
 namespace ballpiston::client {
 
-// The style of --progress. With --quiet and without --progress: none.
+// The style of --progress. With --quiet none, unless the command line has --progress.
 ProgressStyle StyleOf(const Options& options);
 
 // Returns the ended job. UNAVAILABLE if the server did not answer for too long.

@@ -31,8 +31,9 @@ std::optional<double> ToNumber(absl::string_view text) {
   return value;
 }
 
+constexpr double kExactBelow = 9007199254740992;  // 2^53
+
 std::optional<int64_t> ToCount(absl::string_view text) {
-  constexpr double kExactBelow = 9007199254740992;  // 2^53
   int64_t count = 0;
   if (text.find_first_of(" +") == absl::string_view::npos && absl::SimpleAtoi(text, &count)) {
     return count;
@@ -84,6 +85,15 @@ absl::StatusOr<Range> ParseRange(absl::string_view text) {
   return Range{*from, *to, *count, logarithmic};
 }
 
+// The inner numbers of a logarithmic range have rounding errors.
+std::string ChainText(double number) {
+  constexpr double kRelativeRounding = 1e-12;
+  const double whole = std::round(number);
+  const bool is_whole = std::abs(number - whole) <= kRelativeRounding * std::abs(number);
+  return is_whole && std::abs(whole) < kExactBelow ? absl::StrCat(static_cast<int64_t>(whole))
+                                                   : absl::StrFormat("%.17g", number);
+}
+
 // A single number is a range with COUNT 1.
 absl::StatusOr<Range> ParseItem(absl::string_view item) {
   if (item.find(':') != absl::string_view::npos) return ParseRange(item);
@@ -120,6 +130,24 @@ absl::StatusOr<std::vector<double>> ParseNumberList(absl::string_view text) {
       return Bad(text, absl::StrCat("has more than ", kMaxListLength, " numbers"));
     }
     for (int64_t i = 0; i < range->count; ++i) list.push_back(range->At(i));
+  }
+  return list;
+}
+
+absl::StatusOr<std::vector<std::string>> ParseShapeList(absl::string_view text) {
+  std::vector<std::string> list;
+  for (const absl::string_view item : absl::StrSplit(text, ',')) {
+    if (item.find(':') == absl::string_view::npos) {
+      const auto count = ToCount(item);
+      list.push_back(count ? absl::StrCat(*count) : std::string(item));
+    } else {
+      const auto range = ParseRange(item);
+      if (!range.ok()) return range.status();
+      for (int64_t i = 0; i < range->count; ++i) list.push_back(ChainText(range->At(i)));
+    }
+    if (std::ssize(list) > kMaxListLength) {
+      return Bad(text, absl::StrCat("has more than ", kMaxListLength, " shapes"));
+    }
   }
   return list;
 }

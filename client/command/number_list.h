@@ -3,6 +3,8 @@
 //   NUMBER  plain decimal or scientific: 0.1, -2, 1e-5. No nan, inf, hexadecimal or blanks.
 //   COUNT   a whole number; 1e6 is permitted
 //   LIST    items separated by commas, each a NUMBER or a range; at most 100,000 numbers
+//           LISTs of shapes of a gas have shapes in place of NUMBERs: N, a chain of N cells, or
+//           NxM, a lattice. The numbers of their ranges are chains. The server checks the shapes.
 //   range   FROM:TO:COUNT, evenly spaced, both ends included; with :log evenly in the logarithm
 //           (both ends above 0). A range with COUNT 1 is FROM alone.
 //
@@ -10,6 +12,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -23,5 +26,7 @@ absl::StatusOr<double> ParseNumber(absl::string_view text);
 absl::StatusOr<int64_t> ParseCount(absl::string_view text);
 absl::StatusOr<uint64_t> ParseSeed(absl::string_view text);
 absl::StatusOr<std::vector<double>> ParseNumberList(absl::string_view text);
+// Counts are written out: 1e3,4x3 is 1000 and 4x3.
+absl::StatusOr<std::vector<std::string>> ParseShapeList(absl::string_view text);
 
 }  // namespace ballpiston::client

@@ -1,13 +1,11 @@
-// ballpiston analytic, plan, list, server address and server status: each makes one call of the
-// server and prints the answer.
+// ballpiston analytic, plan, list, trace, server address and server status: each makes one call of
+// the server and prints the answer.
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "client/command/connection.h"
 #include "client/command/question.h"
-#include "client/output/analytic_output.h"
-#include "client/output/job_list.h"
-#include "client/output/plan_output.h"
-#include "client/output/status_output.h"
+#include "client/output/answers.h"
+#include "client/output/json.h"
 
 namespace ballpiston::client {
 
@@ -47,6 +45,22 @@ VerbResult ListJobs(const Options& options, Terminal& terminal) {
   });
 }
 
+// The events of an orbit as JSON lines, as they come. Ends if the output cannot be written, e.g.
+// because its reader has closed the pipe.
+VerbResult Trace(const Options& options, Terminal& terminal) {
+  const auto print = [&out = terminal.out](const v1::TraceOrbitResponse& message) {
+    if (message.has_start()) out << Json(message.start()) << '\n';
+    PrintJsonLines(message.events(), out);
+    out.flush();
+    return out.good();
+  };
+  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
+    const absl::Status status = connection.client.Trace(options.trace, print);
+    if (!status.ok()) return status;
+    return ExitCode::kDone;
+  });
+}
+
 VerbResult ServerAddress(const Options& options, Terminal& terminal) {
   return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
     terminal.out << connection.address << '\n';
@@ -55,12 +69,13 @@ VerbResult ServerAddress(const Options& options, Terminal& terminal) {
 }
 
 VerbResult ServerStatus(const Options& options, Terminal& terminal) {
-  return WithRunningServer(options, terminal, [&](const Connection& connection) -> VerbResult {
+  const auto print = [&](const Connection& connection) -> VerbResult {
     const auto status = connection.client.Status();
     if (!status.ok()) return status.status();
     PrintStatus(*status, absl::Now(), options.format, terminal.out);
     return ExitCode::kDone;
-  });
+  };
+  return WithServer(options, terminal, print, /*may_start=*/false);
 }
 
 }  // namespace ballpiston::client

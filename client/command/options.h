@@ -12,10 +12,11 @@
 #include "ballpiston/v1/analytic.pb.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "ballpiston/v1/trace.pb.h"
+#include "client/command/terminal.h"
 #include "client/library/channel_security.h"
 #include "client/library/client.h"
-#include "client/output/format.h"
 #include "client/output/progress_reporter.h"
+#include "client/output/result_writer.h"
 
 namespace ballpiston::client {
 
@@ -49,25 +50,19 @@ struct Options {
   std::string data_dir, access_file, credential, file;
   std::vector<std::string> server_flags;  // for ballpistond
 
-  std::string figure, out;
-  std::string effort = "default";  // of a figure: quick, default or full
-  bool list = false, edit = false;
-  std::map<std::string, std::string> variables;  // of a figure
-
+  std::string out;
   int64_t port = 0;  // of the page; 0: any
 
   Format format = Format::kTable;
   ProgressStyle progress = ProgressStyle::kAuto;
-  bool quiet = false, verbose = false;
-  std::vector<std::string> words;  // of help and completion
+  Verbosity verbosity = Verbosity::kNormal;
+  std::vector<std::string> words;  // of help, completion and figure
   PageFormat page = PageFormat::kText;
   bool all = false;  // of help: every flag
   Completion completion = Completion::kBash;
 
   std::set<std::string> given;  // names of the flags on the command line: --rho
   std::string connection;       // flags that choose the server: " --server ..."
-  std::map<std::string, std::string>
-      inherited;  // environment of a figure: variable, value of its flag
 };
 
 }  // namespace ballpiston::client

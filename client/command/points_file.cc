@@ -12,9 +12,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "client/command/number_list.h"
-#include "client/command/shape_list.h"
 #include "client/command/suggestion.h"
-#include "client/command/text_file.h"
 #include "client/library/quoted.h"
 #include "client/output/number_text.h"
 
@@ -105,9 +103,8 @@ class PointsReader {
   absl::Status Add(const FieldDescriptor& column, absl::string_view text) {
     const google::protobuf::Reflection& reflection = *grid_.GetReflection();
     if (column.cpp_type() == FieldDescriptor::CPPTYPE_STRING) {
-      absl::StatusOr<std::string> shape = ParseShape(text);
-      if (shape.ok()) reflection.AddString(&grid_, &column, *std::move(shape));
-      return shape.status();
+      reflection.AddString(&grid_, &column, std::string(text));
+      return absl::OkStatus();
     }
     const absl::StatusOr<double> number = ParseNumber(text);
     if (number.ok()) reflection.AddDouble(&grid_, &column, *number);
@@ -120,12 +117,6 @@ class PointsReader {
 };
 
 }  // namespace
-
-absl::Status ReadPoints(const std::string& path, v1::Grid& grid) {
-  const absl::StatusOr<TextFile> file = ReadTextFile("--points", path);
-  if (!file.ok()) return file.status();
-  return ParsePoints(file->name, file->text, grid);
-}
 
 absl::Status ParsePoints(const std::string& name, absl::string_view csv, v1::Grid& grid) {
   return PointsReader(name, grid).Read(csv);

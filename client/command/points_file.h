@@ -14,11 +14,8 @@ namespace ballpiston::client {
 // Row k of the table, from 0, is this line of the file.
 constexpr size_t LineOfRow(size_t row) { return row + 2; }
 
-// Reads the file, or standard input if the path is `-`, into the lists of the grid, and names them
-// in its table. INVALID_ARGUMENT names the line and the column of an error.
-absl::Status ReadPoints(const std::string& path, v1::Grid& grid);
-
-// `name` stands for the file in errors.
+// Reads the table into the lists of the grid, and names them in its table. INVALID_ARGUMENT names
+// the file, the line and the column of an error.
 absl::Status ParsePoints(const std::string& name, absl::string_view csv, v1::Grid& grid);
 
 }  // namespace ballpiston::client

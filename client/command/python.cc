@@ -1,3 +1,5 @@
+// ballpiston figure and export: each starts a program of the Python package and returns its exit
+// code.
 #include "client/command/python.h"
 
 #include <signal.h>
@@ -5,15 +7,18 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
 #include "client/command/config_file.h"
 #include "client/command/follow_job.h"
 #include "client/command/interrupts.h"
 #include "client/library/child_process.h"
 #include "client/library/server_process.h"
+#include "client/output/new_file.h"
 
 namespace ballpiston::client {
 namespace {
@@ -23,6 +28,13 @@ namespace fs = std::filesystem;
 std::string Interpreter() {
   const std::string chosen = FromEnvironment("BALLPISTON_PYTHON");
   return chosen.empty() ? "python3" : chosen;
+}
+
+// Its folder in the build or in the installation of this program. It may be missing.
+fs::path PythonPackage() {
+  const fs::path prefix = fs::path(ProgramBeside("")).parent_path().parent_path();
+  const fs::path built = prefix / "python", installed = prefix / BALLPISTON_PYTHON_DIR;
+  return (fs::exists(built) ? built : installed) / "ballpiston";
 }
 
 // This package comes before others, which may be of another version.
@@ -38,18 +50,17 @@ void SetEnvironment(const Options& options) {
   };
   set("BALLPISTON_PROGRAM", ProgramBeside("ballpiston"));
   set("BALLPISTON_SERVER_PROGRAM", UsualServerProgram());
-  for (const auto& [name, value] : options.inherited) set(name, value);
+  set("BALLPISTON_SERVER", options.server);
+  set("BALLPISTON_CA", options.security.ca);
+  set("BALLPISTON_TLS", options.security.tls ? "true" : "");
+  set("BALLPISTON_TOKEN_FILE", options.security.token_file);
+  set("BALLPISTON_TOKEN", options.security.token);
   set("BALLPISTON_CONFIG", "/dev/null");
-  if (StyleOf(options) == ProgressStyle::kNone) set("BALLPISTON_PROGRESS", "none");
+  constexpr const char* kStyles[] = {"auto", "bar", "json", "none"};  // as in ProgressStyle
+  set("BALLPISTON_PROGRESS", kStyles[static_cast<int>(StyleOf(options))]);
 }
 
 }  // namespace
-
-fs::path PythonPackage() {
-  const fs::path prefix = fs::path(ProgramBeside("")).parent_path().parent_path();
-  const fs::path built = prefix / "python", installed = prefix / BALLPISTON_PYTHON_DIR;
-  return (fs::exists(built) ? built : installed) / "ballpiston";
-}
 
 std::vector<std::string> PythonCommand(const std::vector<std::string>& arguments) {
   static const int kOnce [[maybe_unused]] = setenv("PYTHONPATH", PythonPath().c_str(), 1);
@@ -98,6 +109,48 @@ absl::Status CheckPythonFor(const std::string& out) {
   return CheckPython(
       "--out " + out, {"ballpiston", "pandas", "pyarrow"},
       "python3-ballpiston and python3-pandas, and pyarrow from the Python Package Index");
+}
+
+absl::Status CheckTableFile(const std::string& out) {
+  for (const char* ending : {".csv", ".npz", ".parquet"}) {
+    if (absl::EndsWith(out, ending)) return CheckNewFile("--out", out);
+  }
+  return absl::InvalidArgumentError("--out: name a file .csv, .npz or .parquet");
+}
+
+// The modules NAME.py in the folder of figures; names with _ are its own.
+std::vector<std::string> FigureNames() {
+  std::set<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(PythonPackage() / "figures", error)) {
+    const std::string stem = entry.path().stem();
+    if (entry.path().extension() == ".py" && stem.front() != '_') {
+      names.insert(absl::StrReplaceAll(stem, {{"_", "-"}}));
+    }
+  }
+  return {names.begin(), names.end()};
+}
+
+VerbResult Figure(const Options& options, Terminal& terminal) {
+  absl::Status bad = CheckPython("figure", {"ballpiston", "matplotlib"},
+                                 "python3-ballpiston and python3-matplotlib");
+  if (!bad.ok()) return bad;
+  return RunPythonProgram("ballpiston.figures", options.words, options, terminal);
+}
+
+VerbResult Export(const Options& options, Terminal& terminal) {
+  if (!options.jobs.empty() && !options.labels.empty()) {
+    return absl::InvalidArgumentError(
+        "--label and names of jobs exclude each other: give one of them, or neither");
+  }
+  if (absl::Status bad = CheckTableFile(options.out); !bad.ok()) return bad;
+  if (absl::Status bad = CheckPythonFor(options.out); !bad.ok()) return bad;
+  std::vector<std::string> arguments = {"--out", options.out};
+  for (const auto& [key, value] : options.labels) {
+    arguments.insert(arguments.end(), {"--label", absl::StrCat(key, "=", value)});
+  }
+  arguments.insert(arguments.end(), options.jobs.begin(), options.jobs.end());
+  return RunPythonProgram("ballpiston.export", arguments, options, terminal);
 }
 
 }  // namespace ballpiston::client

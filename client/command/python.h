@@ -3,7 +3,6 @@
 // The interpreter is BALLPISTON_PYTHON, by default python3 in PATH.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -12,16 +11,16 @@
 
 namespace ballpiston::client {
 
-// Its folder in the build or in the installation of this program. It may be missing.
-std::filesystem::path PythonPackage();
-
 // FAILED_PRECONDITION if the interpreter cannot import one of the modules. `purpose` begins the
 // message; `packages` are Debian's names.
 absl::Status CheckPython(const std::string& purpose, const std::vector<std::string>& modules,
                          const std::string& packages);
 
-// The same for the file that --out names: .parquet needs more modules.
+// The same for the table that --out names: .parquet needs more modules.
 absl::Status CheckPythonFor(const std::string& out);
+
+// Whether --out names a file .csv, .npz or .parquet that can be created.
+absl::Status CheckTableFile(const std::string& out);
 
 // Runs a program of the package: python3 -m MODULE ARGUMENT... The flags of the options that choose
 // the server and the progress are in its environment, and the user's config file has no effect on

@@ -1,5 +1,11 @@
 #include "client/command/question.h"
 
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -13,6 +19,29 @@
 
 namespace ballpiston::client {
 namespace {
+
+struct TextFile {
+  std::string name;  // for messages: the path, or standard input
+  std::string text;
+};
+
+// Throws no exception if a read fails; stream iterators could.
+std::string ReadAll(std::istream& in) {
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+// The file that a flag names; `-` is standard input.
+absl::StatusOr<TextFile> ReadTextFile(const std::string& flag, const std::string& path) {
+  if (path == "-") return TextFile{"standard input", ReadAll(std::cin)};
+  std::ifstream in(path);
+  std::error_code ignored;
+  const bool is_folder = std::filesystem::is_directory(path, ignored);
+  if (in && !is_folder) return TextFile{path, ReadAll(in)};
+  return absl::InvalidArgumentError(
+      absl::StrCat(flag, " ", path, ": ", is_folder ? "is a folder" : std::strerror(errno)));
+}
 
 absl::Status CheckOneTarget(const std::set<std::string>& flags) {
   std::vector<std::string> given;
@@ -58,7 +87,8 @@ absl::StatusOr<v1::EnsembleSpec> SpecOf(const Options& options) {
   }
   if (!options.spec_file.empty()) {
     if (absl::Status bad = CheckAlone("--spec", "--again", options); !bad.ok()) return bad;
-    return ReadSpecFile(options.spec_file);
+    const absl::StatusOr<TextFile> file = ReadTextFile("--spec", options.spec_file);
+    return file.ok() ? ParseSpec(file->name, file->text) : file.status();
   }
   if (options.spec.experiment() == v1::EnsembleSpec::EXPERIMENT_UNSPECIFIED) {
     const auto name = [](std::string* out, const auto& choice) { out->append(choice.first); };
@@ -70,9 +100,10 @@ absl::StatusOr<v1::EnsembleSpec> SpecOf(const Options& options) {
   if (absl::Status bad = CheckOneTarget(options.given); !bad.ok()) return bad;
   v1::EnsembleSpec spec = options.spec;
   if (options.points_file.empty()) return spec;
-  if (absl::Status bad = ReadPoints(options.points_file, *spec.mutable_grid()); !bad.ok()) {
-    return bad;
-  }
+  const absl::StatusOr<TextFile> file = ReadTextFile("--points", options.points_file);
+  if (!file.ok()) return file.status();
+  absl::Status bad = ParsePoints(file->name, file->text, *spec.mutable_grid());
+  if (!bad.ok()) return bad;
   return spec;
 }
 

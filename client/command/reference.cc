@@ -1,5 +1,10 @@
+// ballpiston help: prints the pages of verbs, or writes them to files.
 #include "client/command/reference.h"
 
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <set>
 #include <vector>
 
@@ -9,6 +14,7 @@
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
+#include "client/command/suggestion.h"
 
 namespace ballpiston::client {
 namespace {
@@ -159,7 +165,7 @@ std::string TextEntry(const Remark& entry) {
   return absl::StrCat(line, Wrapped(entry.text, kColumn, kColumn), "\n");
 }
 
-std::string Text(const Page& page) {
+std::string PageText(const Page& page) {
   std::string out = absl::StrCat(page.name, ": ", page.summary, "\n\n  ", page.synopsis, "\n");
   if (!page.description.empty()) {
     absl::StrAppend(&out, "\n", Wrapped(page.description, 0, 0), "\n");
@@ -192,10 +198,10 @@ std::string RoffSection(const Section& section) {
 
 }  // namespace
 
-std::string TextPage(const Verb* verb) { return Text(PageOf(verb)); }
+std::string TextPage(const Verb* verb) { return PageText(PageOf(verb)); }
 
 std::string ShortPage(const Verb* verb) {
-  return verb == nullptr ? TextPage(nullptr) : Text(ShortPageOf(*verb));
+  return verb == nullptr ? TextPage(nullptr) : PageText(ShortPageOf(*verb));
 }
 
 std::string GroupPage(const std::string& word) {
@@ -209,7 +215,7 @@ std::string GroupPage(const std::string& word) {
                 [&start](const Remark& verb) { return !absl::StartsWith(verb.name, start); });
   if (page.sections[0].entries.empty()) return "";
   page.examples = {absl::StrCat(kProgram, " help ", page.sections[0].entries[0].name)};
-  return Text(page);
+  return PageText(page);
 }
 
 std::string ManPage(const Verb* verb) {
@@ -246,7 +252,7 @@ std::string MarkdownReference() {
       const bool is_shared = section.title == "Server" || section.title == "General flags";
       return is_shared && !shown.insert(section.title).second;
     });
-    absl::StrAppend(&out, "\n## ", page.name, "\n\n```\n", Text(page), "```\n");
+    absl::StrAppend(&out, "\n## ", page.name, "\n\n```\n", PageText(page), "```\n");
   };
   add(nullptr);
   for (const Verb& verb : Verbs()) add(&verb);
@@ -256,6 +262,61 @@ std::string MarkdownReference() {
 std::string PageName(const Verb* verb) {
   if (verb == nullptr) return kProgram;
   return absl::StrCat(kProgram, "-", absl::StrReplaceAll(verb->name, {{" ", "-"}}));
+}
+
+// ---- the verb ----
+
+namespace {
+
+// The verb that the words name; null, for the program's page, if there are no words.
+absl::StatusOr<const Verb*> VerbNamed(const std::vector<std::string>& words) {
+  const std::string name = absl::StrJoin(words, " ");
+  if (name.empty()) return nullptr;
+  std::vector<std::string> names;
+  for (const Verb& verb : Verbs()) {
+    if (verb.name == name) return &verb;
+    names.push_back(verb.name);
+  }
+  return absl::InvalidArgumentError(NotOneOf(name, names));
+}
+
+absl::Status WriteManPage(const std::string& folder, const Verb* verb) {
+  const fs::path path = fs::path(folder) / (PageName(verb) + ".1");
+  std::ofstream file(path);
+  file << ManPage(verb);
+  file.close();
+  if (file) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("--out: cannot write ", path.string(), ": ", std::strerror(errno)));
+}
+
+absl::Status WriteManPages(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  absl::Status status = WriteManPage(folder, nullptr);
+  for (const Verb& verb : Verbs()) status.Update(WriteManPage(folder, &verb));
+  return status;
+}
+
+}  // namespace
+
+VerbResult Help(const Options& options, Terminal& terminal) {
+  const absl::StatusOr<const Verb*> verb = VerbNamed(options.words);
+  if (!verb.ok()) {
+    const std::string page = options.words.size() == 1 ? GroupPage(options.words[0]) : "";
+    if (page.empty()) return verb.status();
+    terminal.out << page;
+    return ExitCode::kDone;
+  }
+  if (!options.out.empty()) {
+    if (absl::Status written = WriteManPages(options.out); !written.ok()) return written;
+  } else if (options.page == PageFormat::kMarkdown) {
+    terminal.out << MarkdownReference();
+  } else {
+    const bool is_man = options.page == PageFormat::kMan;
+    terminal.out << (is_man ? ManPage(*verb) : options.all ? TextPage(*verb) : ShortPage(*verb));
+  }
+  return ExitCode::kDone;
 }
 
 }  // namespace ballpiston::client

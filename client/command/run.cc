@@ -1,12 +1,243 @@
-// ballpiston submit and run: submit a job; run also watches it and prints its result.
+// ballpiston submit, run and result: submit a job; run also watches it and prints its result.
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "absl/status/status.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/time/time.h"
 #include "client/command/connection.h"
-#include "client/command/create_job.h"
 #include "client/command/follow_job.h"
-#include "client/command/print_result.h"
+#include "client/command/interrupts.h"
+#include "client/command/python.h"
 #include "client/command/question.h"
+#include "client/command/selection.h"
+#include "client/library/child_process.h"
+#include "client/library/quoted.h"
+#include "client/library/request_id.h"
+#include "client/output/new_file.h"
+#include "client/output/number_text.h"
+#include "client/output/result_writer.h"
+#include "client/output/spelling.h"
 
 namespace ballpiston::client {
+namespace {
+
+// ---- submit ----
+
+// If the user interrupts the call, a message shows the request id.
+absl::StatusOr<v1::EnsembleJob> CreateOnce(const Connection& connection,
+                                           const v1::EnsembleSpec& spec,
+                                           const CreateOptions& options, const Terminal& terminal) {
+  const Interrupts::Scope scope(terminal.interrupts, [&] {
+    terminal.err << "The server may have accepted the job. With --request-id " << options.request_id
+                 << " the same command returns this job.\n";
+  });
+  terminal.Detail(absl::StrCat("request id ", options.request_id));
+  auto job = connection.client.Create(spec, options);
+  if (!job.ok()) return job;
+  terminal.Detail(absl::StrCat("job ", job->name()));
+  return job;
+}
+
+// Tries ids in order. If the job of an id failed or was cancelled, or its results have expired, the
+// next id creates a new job.
+absl::StatusOr<v1::EnsembleJob> Resume(const Connection& connection, const v1::EnsembleSpec& spec,
+                                       CreateOptions options, const Terminal& terminal) {
+  const auto status = connection.client.Status();
+  if (!status.ok()) return status.status();
+  const std::string question = absl::StrCat(status->engine_version(), " ", options.fresh, " ",
+                                            options.priority, " ", spec.SerializeAsString(), " ");
+  for (int attempt = 0;; ++attempt) {
+    options.request_id = RequestIdFor(absl::StrCat(question, attempt));
+    auto job = CreateOnce(connection, spec, options, terminal);
+    const bool is_lost =
+        job.ok() &&
+        (job->state() == v1::EnsembleJob::FAILED || job->state() == v1::EnsembleJob::CANCELLED ||
+         job->state() == v1::EnsembleJob::CANCELLING || job->results_expired());
+    if (!is_lost) return job;
+  }
+}
+
+// A retry (library/client.h) uses the same request id: if a private server stored the job and
+// stopped before it answered, the retry returns that job. With --resume the id is derived from the
+// specification and the engine's version.
+absl::StatusOr<v1::EnsembleJob> CreateJob(const Connection& connection,
+                                          const v1::EnsembleSpec& spec, const Options& options,
+                                          const Terminal& terminal) {
+  CreateOptions create = options.create;
+  create.labels = options.labels;
+  if (options.resume && create.request_id.empty()) {
+    return Resume(connection, spec, create, terminal);
+  }
+  if (create.request_id.empty()) create.request_id = NewRequestId();
+  return CreateOnce(connection, spec, create, terminal);
+}
+
+// The note for a job that uses what is stored, else empty.
+std::string ReusedText(const v1::EnsembleJob& job) {
+  if (job.answered_from_store()) {
+    const absl::Time end = absl::FromUnixSeconds(job.end_time().seconds());
+    return absl::StrCat("answered from the store: ", job.name(), ", computed ",
+                        absl::FormatTime("%Y-%m-%d %H:%M UTC", end, absl::UTCTimeZone()),
+                        " (--fresh computes it again)");
+  }
+  if (job.continues().empty()) return "";
+  return absl::StrCat("continues ", job.continues(), ": ", ExactText(job.continued_samples()),
+                      " samples are in the store (--fresh computes them again)");
+}
+
+// ---- result ----
+
+void NoteUnfinished(const v1::EnsembleJob& job, const Terminal& terminal) {
+  terminal.Note(absl::StrCat("ballpiston: ", job.name(), " is still ", Spelling(job.state()), ": ",
+                             job.progress().points_done(), " of ", job.progress().points(),
+                             " points are finished"));
+}
+
+// An orbit that left its cell is a defect of the engine, and the warning must not be missed.
+void AddPoint(const v1::PointResult& point, ResultWriter& writer, std::ostream& err) {
+  writer.Add(point);
+  if (point.health().escapes() == 0) return;
+  err << "ballpiston: warning: point " << point.index() << ": "
+      << ExactText(point.health().escapes())
+      << " orbits left the cell; this is a defect: do not use the point\n";
+}
+
+// Replaces the content of the unfinished file, a result in JSON, by NumPy arrays.
+absl::Status ToArrays(NewFile& file, const std::string& path) {
+  if (absl::Status written = file.Flush(); !written.ok()) return written;
+  const std::string part = file.part().string();
+  if (part.empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--save: ", path, " is not a regular file, as .npz needs it"));
+  }
+  const auto status = RunChild({.command = PythonCommand({"-m", "ballpiston.to_arrays", part})});
+  if (!status.ok()) return status.status();
+  if (*status == 0) return absl::OkStatus();
+  return absl::InternalError(
+      absl::StrCat("--save: ", path, " is not written: Python ended with exit status ", *status));
+}
+
+bool IsNpz(const Options& options) { return absl::EndsWith(options.save, ".npz"); }
+
+// The Python package makes .npz of .json.
+Format FormatOf(const Options& options) {
+  if (options.save.empty()) return options.format;
+  return absl::EndsWith(options.save, ".csv") ? Format::kCsv : Format::kJson;
+}
+
+// Where a result goes: standard output, or the file of --save.
+class Destination {
+ public:
+  // `options` must have passed CheckSave.
+  Destination(const Options& options, Terminal& terminal) : options_(options), terminal_(terminal) {
+    if (!options.save.empty()) file_.emplace("--save", options.save);
+    writer_ = NewResultWriter(FormatOf(options), file_ ? file_->out() : terminal.out,
+                              /*is_file=*/file_.has_value());
+  }
+
+  v1::ListResultsRequest::View view() const { return ViewFor(FormatOf(options_)); }
+  ResultWriter& writer() { return *writer_; }
+
+  // Prints the path of the file, once the file is complete.
+  absl::Status Finish() {
+    writer_->End();
+    if (file_) {
+      const absl::Status converted =
+          IsNpz(options_) ? ToArrays(*file_, options_.save) : absl::OkStatus();
+      if (!converted.ok()) return converted;
+      if (absl::Status kept = file_->Keep(); !kept.ok()) return kept;
+      terminal_.out << options_.save << '\n';
+    }
+    terminal_.out.flush();
+    return absl::OkStatus();
+  }
+
+ private:
+  const Options& options_;
+  Terminal& terminal_;
+  std::optional<NewFile> file_;
+  std::unique_ptr<ResultWriter> writer_;
+};
+
+// If the server restarts, requests only the current page again: the earlier pages have been
+// printed. Calls Begin of the writer when the first page has arrived.
+absl::Status PrintPoints(const Connection& connection, const v1::EnsembleJob& job,
+                         Destination& destination, std::ostream& err) {
+  std::string token;
+  do {
+    const auto page = connection.client.ResultsPage(job.name(), destination.view(), token);
+    if (!page.ok()) return HintIfExpired(page.status(), connection, job.name());
+    if (token.empty()) destination.writer().Begin(job);
+    for (const v1::PointResult& point : page->results()) {
+      AddPoint(point, destination.writer(), err);
+    }
+    token = page->next_page_token();
+  } while (!token.empty());
+  return absl::OkStatus();
+}
+
+VerbResult End(const v1::EnsembleJob& job, Destination& destination, Terminal& terminal) {
+  if (absl::Status finished = destination.Finish(); !finished.ok()) return finished;
+  if (HasEnded(job.state())) return ReportEnd(job, terminal);
+  NoteUnfinished(job, terminal);
+  return ExitCode::kDone;
+}
+
+VerbResult PrintPoint(const Connection& connection, const std::string& name, int64_t index,
+                      const Options& options, Terminal& terminal) {
+  const auto point = connection.client.Point(name, index);
+  if (!point.ok()) return HintIfExpired(point.status(), connection, name);
+  const auto job = connection.client.Get(name);
+  if (!job.ok()) return job.status();
+  Destination destination(options, terminal);
+  destination.writer().Begin(*job);
+  AddPoint(*point, destination.writer(), terminal.err);
+  return End(*job, destination, terminal);
+}
+
+absl::Status TooMany(size_t jobs) {
+  return absl::InvalidArgumentError(
+      absl::StrCat("--save and CSV are for the result of one job, not of ", jobs,
+                   "; ballpiston export writes the estimates of many"));
+}
+
+// Checks --save before a job runs: the file's ending and folder.
+absl::Status CheckSave(const Options& options) {
+  if (options.save.empty()) return absl::OkStatus();
+  const bool is_csv = absl::EndsWith(options.save, ".csv");
+  if (!is_csv && !IsNpz(options) && !absl::EndsWith(options.save, ".json")) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--save: ", Quoted(options.save), " does not end in .json, .csv or .npz"));
+  }
+  const bool is_usual = options.format == Format::kTable;
+  if (!is_usual && (IsNpz(options) || options.format != FormatOf(options))) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--save: the ending of ", options.save, " does not go with this --format"));
+  }
+  if (absl::Status bad = CheckNewFile("--save", options.save); !bad.ok()) return bad;
+  if (!IsNpz(options)) return absl::OkStatus();
+  return CheckPython("--save " + options.save, {"ballpiston", "numpy"},
+                     "python3-ballpiston and python3-numpy");
+}
+
+// Prints the finished points, also of a job that failed or was cancelled. `answered_from_store` is
+// the value that Create returned: the server does not store it.
+VerbResult PrintResult(const Connection& connection, const std::string& name,
+                       const Options& options, Terminal& terminal,
+                       bool answered_from_store = false) {
+  auto job = connection.client.Get(name);
+  if (!job.ok()) return job.status();
+  job->set_answered_from_store(answered_from_store);
+  Destination destination(options, terminal);
+  const absl::Status status = PrintPoints(connection, *job, destination, terminal.err);
+  if (!status.ok()) return status;
+  return End(*job, destination, terminal);
+}
+
+}  // namespace
 
 VerbResult Submit(const Options& options, Terminal& terminal) {
   return WithQuestion(
@@ -27,7 +258,8 @@ VerbResult Run(const Options& options, Terminal& terminal) {
       [&](const Connection& connection, const v1::EnsembleSpec& spec) -> VerbResult {
         const auto made = CreateJob(connection, spec, options, terminal);
         if (!made.ok()) return made.status();
-        const bool is_silent = options.quiet || options.progress == ProgressStyle::kNone;
+        const bool is_silent =
+            options.verbosity == Verbosity::kQuiet || options.progress == ProgressStyle::kNone;
         const std::string reused = ReusedText(*made);
         if (!reused.empty() && !is_silent) {
           ProgressReporter(StyleOf(options), terminal.err, made->name()).Note(reused);
@@ -43,6 +275,28 @@ VerbResult Run(const Options& options, Terminal& terminal) {
         }
         return PrintResult(connection, made->name(), options, terminal,
                            made->answered_from_store());
+      });
+}
+
+VerbResult Result(const Options& options, Terminal& terminal) {
+  if (options.point.value_or(0) < 0) {
+    return absl::InvalidArgumentError(absl::StrCat("--point: ", *options.point, " is below 0"));
+  }
+  if (absl::Status bad = CheckSave(options); !bad.ok()) return bad;
+  return WithJobs(
+      options, terminal, {}, [&](const auto& connection, const auto& names) -> VerbResult {
+        if (names.size() > 1 && (!options.save.empty() || options.format == Format::kCsv)) {
+          return TooMany(names.size());
+        }
+        ExitCode worst = ExitCode::kDone;
+        for (const std::string& name : names) {
+          const VerbResult result =
+              options.point ? PrintPoint(connection, name, *options.point, options, terminal)
+                            : PrintResult(connection, name, options, terminal);
+          if (!result.ok()) return result;
+          worst = std::max(worst, *result);
+        }
+        return worst;
       });
 }
 

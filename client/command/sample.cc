@@ -6,7 +6,6 @@
 #include "absl/strings/str_cat.h"
 #include "client/command/python.h"
 #include "client/command/question.h"
-#include "client/output/csv_row.h"
 #include "client/output/field_text.h"
 #include "client/output/json.h"
 #include "client/output/new_file.h"
@@ -46,26 +45,17 @@ VerbResult WriteCsv(const Connection& connection, const v1::EnsembleSpec& spec,
   return ExitCode::kDone;
 }
 
-absl::Status CheckOut(const std::string& path) {
-  const bool is_known = absl::EndsWith(path, ".csv") || absl::EndsWith(path, ".npz") ||
-                        absl::EndsWith(path, ".parquet");
-  if (is_known) {
-    const absl::Status bad = CheckNewFile("--out", path);
-    return bad.ok() && !absl::EndsWith(path, ".csv") ? CheckPythonFor(path) : bad;
-  }
-  return absl::InvalidArgumentError("--out: name a file .csv, .npz or .parquet");
-}
-
 }  // namespace
 
 VerbResult Sample(const Options& options, Terminal& terminal) {
-  if (absl::Status bad = CheckOut(options.out); !bad.ok()) return bad;
+  const bool is_csv = absl::EndsWith(options.out, ".csv");
+  absl::Status bad = CheckTableFile(options.out);
+  if (bad.ok() && !is_csv) bad = CheckPythonFor(options.out);
+  if (!bad.ok()) return bad;
   return WithQuestion(
       options, terminal,
       [&](const Connection& connection, const v1::EnsembleSpec& spec) -> VerbResult {
-        if (absl::EndsWith(options.out, ".csv")) {
-          return WriteCsv(connection, spec, options.out, terminal);
-        }
+        if (is_csv) return WriteCsv(connection, spec, options.out, terminal);
         return RunPythonProgram("ballpiston.sample", {Json(spec), "--out", options.out}, options,
                                 terminal);
       });

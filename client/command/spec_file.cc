@@ -7,7 +7,6 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
-#include "client/command/text_file.h"
 #include "client/library/quoted.h"
 
 namespace ballpiston::client {
@@ -33,12 +32,6 @@ void DropSignsOfZeros(v1::EnsembleSpec& spec) {
 }
 
 }  // namespace
-
-absl::StatusOr<v1::EnsembleSpec> ReadSpecFile(const std::string& path) {
-  const absl::StatusOr<TextFile> file = ReadTextFile("--spec", path);
-  if (!file.ok()) return file.status();
-  return ParseSpec(file->name, file->text);
-}
 
 absl::StatusOr<v1::EnsembleSpec> ParseSpec(absl::string_view name, const std::string& json) {
   // The parser would accept `null` or a bare string as an empty message.

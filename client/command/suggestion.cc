@@ -7,7 +7,10 @@
 #include "client/library/quoted.h"
 
 namespace ballpiston::client {
+namespace {
 
+// The smallest number of insertions, deletions, replacements and swaps of neighbouring letters that
+// turns `a` into `b`.
 size_t EditDistance(absl::string_view a, absl::string_view b) {
   std::vector<std::vector<size_t>> distance(a.size() + 1, std::vector<size_t>(b.size() + 1));
   for (size_t i = 0; i <= a.size(); ++i) {
@@ -22,6 +25,8 @@ size_t EditDistance(absl::string_view a, absl::string_view b) {
   }
   return distance[a.size()][b.size()];
 }
+
+}  // namespace
 
 std::string DidYouMean(absl::string_view text, const std::vector<std::string>& names) {
   constexpr size_t kLongest = 64;  // every name is shorter; the time grows as the length squared

@@ -8,10 +8,6 @@
 
 namespace ballpiston::client {
 
-// The smallest number of insertions, deletions, replacements and swaps of neighbouring letters that
-// turns `a` into `b`.
-size_t EditDistance(absl::string_view a, absl::string_view b);
-
 // "; did you mean NAME?" with the nearest of `names`, or "" if none of them is near enough.
 std::string DidYouMean(absl::string_view text, const std::vector<std::string>& names);
 

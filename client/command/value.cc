@@ -8,7 +8,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/strip.h"
 #include "client/command/number_list.h"
-#include "client/command/shape_list.h"
 #include "client/library/quoted.h"
 #include "client/library/request_id.h"
 
@@ -108,8 +107,6 @@ Value Shapes(Store<std::vector<std::string>> store) {
   return Parsed("LIST", ParseShapeList, std::move(store));
 }
 
-Value Shape(Store<std::string> store) { return Parsed("SHAPE", ParseShape, std::move(store)); }
-
 Value Words(std::string name, Store<std::string> store) {
   const auto any = [](const std::string& text) -> absl::StatusOr<std::string> { return text; };
   return Parsed(std::move(name), any, std::move(store));
@@ -138,13 +135,6 @@ Value Labels(std::string name) {
   Value value = Parsed(std::move(name), ParseLabels, store);
   value.is_repeatable = true;
   return value;
-}
-
-Value Variable(std::string name, std::string variable) {
-  return Text(std::move(name),
-              [variable = std::move(variable)](Options& options, std::string text) {
-                options.variables[variable] = std::move(text);
-              });
 }
 
 Value Passed(std::string name, std::string flag) {

@@ -48,15 +48,13 @@ Value Number(std::string name, Store<double> store);
 Value Count(Store<int64_t> store);  // N
 Value Seed(Store<uint64_t> store);
 Value List(Store<std::vector<double>> store);             // LIST (number_list.h)
-Value Shapes(Store<std::vector<std::string>> store);      // LIST (shape_list.h)
-Value Shape(Store<std::string> store);                    // one SHAPE
+Value Shapes(Store<std::vector<std::string>> store);      // LIST of shapes
 Value Words(std::string name, Store<std::string> store);  // each word
 Value Date(Store<absl::Time> store);
-Value Job(Store<std::string> store);                     // ensembleJobs/ID
-Value RequestId();                                       // a UUID
-Value Labels(std::string name);                          // KEY=VALUE, separated by commas
-Value Variable(std::string name, std::string variable);  // of a figure
-Value Passed(std::string name, std::string flag);        // to ballpistond, with its flag
+Value Job(Store<std::string> store);               // ensembleJobs/ID
+Value RequestId();                                 // a UUID
+Value Labels(std::string name);                    // KEY=VALUE, separated by commas
+Value Passed(std::string name, std::string flag);  // to ballpistond, with its flag
 
 template <typename T>
 using Choices = std::vector<std::pair<std::string, T>>;

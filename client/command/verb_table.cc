@@ -8,6 +8,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
+#include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "client/command/number_list.h"
 
@@ -20,9 +21,12 @@ constexpr char kListForm[] = "LIST: a,b,c or from:to:count or from:to:count:log,
 
 // ---- where values go ----
 
-Store<std::string> Security(std::string ChannelSecurity::*member) {
-  return
-      [member](Options& options, std::string text) { options.security.*member = std::move(text); };
+// A token and a token file replace each other.
+Store<std::string> Identity(std::string ChannelSecurity::*member) {
+  return [member](Options& options, std::string text) {
+    options.security.token = options.security.token_file = "";
+    options.security.*member = std::move(text);
+  };
 }
 
 // Appends numbers to a list in a message of the options, as in Grid(&v1::Grid::mutable_rho).
@@ -46,47 +50,24 @@ Value Asked(Numbers* (v1::EvaluatePairsRequest::*list)()) {
   });
 }
 
+// A target for all but the time. It replaces a budget from a weaker source.
+v1::Target& NewTarget(Options& options) {
+  options.spec.mutable_target()->clear_budget();
+  return *options.spec.mutable_target();
+}
+
 // The seconds and the nanoseconds of a duration have the sign of the number. A duration can hold
 // 10,000 years; the server's limit is smaller.
 void SetBudget(Options& options, double seconds) {
   constexpr double kMost = 315576000000;
   seconds = std::clamp(seconds, -kMost, kMost);
-  google::protobuf::Duration& budget = *options.spec.mutable_target()->mutable_budget();
+  v1::Target& target = *options.spec.mutable_target();
+  if (!target.has_tolerance()) target.clear_kind();
+  google::protobuf::Duration& budget = *target.mutable_budget();
   constexpr int32_t kNanos = 1'000'000'000;
   const auto nanos = static_cast<int32_t>(std::lround((seconds - std::trunc(seconds)) * kNanos));
   budget.set_seconds(static_cast<int64_t>(seconds) + nanos / kNanos);
   budget.set_nanos(nanos % kNanos);
-}
-
-// A message cannot hold less than a nanosecond.
-Value Budget() {
-  Value value = Number("SECONDS", &SetBudget);
-  value.read = [read = value.read](const std::string& text, Options& options) {
-    const absl::Status status = read(text, options);
-    const google::protobuf::Duration& budget = options.spec.target().budget();
-    const bool is_zero = budget.seconds() == 0 && budget.nanos() == 0;
-    if (!status.ok() || !is_zero || *ParseNumber(text) == 0) return status;
-    return absl::InvalidArgumentError(
-        absl::StrCat(text, " is below the least budget; permitted: 1e-9 to 1e6 s"));
-  };
-  return value;
-}
-
-// Shell completion offers the names of all experiments with a choice. The server checks the name.
-Value NameOfEstimate() {
-  Value value = Text(
-      "NAME",
-      [](Options& o, std::string name) { o.spec.mutable_target()->set_estimate(std::move(name)); },
-      Offer::kChoices);
-  value.choices = {"exchange_rate",
-                   "conductivity",
-                   "lyapunov_1",
-                   "lyapunov_2",
-                   "entropy",
-                   "lyapunov_1_per_collision",
-                   "lyapunov_2_per_collision",
-                   "entropy_per_ball"};
-  return value;
 }
 
 Choices<Format> Formats() {
@@ -96,22 +77,9 @@ Choices<Format> Formats() {
           {"csv", Format::kCsv}};
 }
 
-// The status of a server is not a table of rows.
-Choices<Format> StatusFormats() {
-  return {{"table", Format::kTable}, {"json", Format::kJson}, {"jsonl", Format::kJsonl}};
-}
-
-// The formats of results. Only results have histograms and curves.
-Choices<Format> ResultFormats() {
-  Choices<Format> formats = Formats();
-  formats.push_back({"csv-histograms", Format::kCsvHistograms});
-  formats.push_back({"csv-curves", Format::kCsvCurves});
-  return formats;
-}
-
-Value Effort(std::string effort) {
-  return Switch([effort](Options& options, bool on) {
-    if (on) options.effort = effort;
+Value VerbositySwitch(Verbosity verbosity) {
+  return Switch([verbosity](Options& options, bool on) {
+    if (on) options.verbosity = verbosity;
   });
 }
 
@@ -125,16 +93,10 @@ int32_t Clamped(int64_t priority) {
 
 const FlagGroup kCommon = {
     "General flags",
-    {{"-q,--quiet",
-      Switch(To(&Options::quiet)),
-      "print no progress and no notes, only errors",
-      "BALLPISTON_QUIET",
-      {"verbose", "progress"}},
-     {"-v,--verbose",
-      Switch(To(&Options::verbose)),
-      "print which server, request ids and programs are used",
-      "BALLPISTON_VERBOSE",
-      {"quiet"}},
+    {{"-q,--quiet", VerbositySwitch(Verbosity::kQuiet),
+      "print no progress and no notes, only errors", "BALLPISTON_QUIET"},
+     {"-v,--verbose", VerbositySwitch(Verbosity::kVerbose),
+      "print which server, request ids and programs are used", "BALLPISTON_VERBOSE"},
      {"--config", File([](Options&, const std::string&) {}),
       "config file to read instead of ~/.config/ballpiston/config.toml", "BALLPISTON_CONFIG"}},
     /*is_everyday=*/false};
@@ -144,21 +106,17 @@ const FlagGroup kServer = {
     {{"--server", Text("ADDRESS", To(&Options::server)),
       "host:port or unix:PATH; by default the private server, which the client starts when needed",
       "BALLPISTON_SERVER"},
-     {"--ca", File(Security(&ChannelSecurity::ca)),
+     {"--ca", File([](Options& o, std::string ca) { o.security.ca = std::move(ca); }),
       "TLS: PEM file of the authority that signed the server's certificate", "BALLPISTON_CA"},
      {"--tls", Switch([](Options& options, bool tls) { options.security.tls = tls; }),
       "TLS: trust the certificate authorities of this system", "BALLPISTON_TLS"},
-     {"--token-file",
-      File(Security(&ChannelSecurity::token_file)),
+     {"", Text("TOKEN", Identity(&ChannelSecurity::token)),
+      "your token; there is no flag for it, because all users of a machine can see command lines",
+      "BALLPISTON_TOKEN"},
+     {"--token-file", File(Identity(&ChannelSecurity::token_file)),
       "file with your token, for TLS or a loopback address; other users must not be able to read "
       "it",
-      "BALLPISTON_TOKEN_FILE",
-      {"token"}},
-     {"",
-      Text("TOKEN", Security(&ChannelSecurity::token)),
-      "your token; there is no flag for it, because all users of a machine can see command lines",
-      "BALLPISTON_TOKEN",
-      {"token-file"}}},
+      "BALLPISTON_TOKEN_FILE"}},
     /*is_everyday=*/false};
 
 const FlagGroup kGrid = {
@@ -182,24 +140,18 @@ const FlagGroup kGrid = {
       "CSV file with a table of points; its header names the parameters, in any order; the flags "
       "of other parameters multiply the table; - is standard input"}}};
 
-const std::vector<std::string> kTargets = {"samples", "collisions", "tolerance", "budget"};
-
 const FlagGroup kTarget = {
     "Target (at most one; --tolerance and --budget can be combined)",
-    {{"--samples", Count([](Options& o, int64_t n) { o.spec.mutable_target()->set_samples(n); }),
-      "samples per point", "", kTargets},
-     {"--collisions",
-      Count([](Options& o, int64_t n) { o.spec.mutable_target()->set_collisions(n); }),
-      "ball-piston collisions per point", "", kTargets},
-     {"--tolerance",
-      Number("REL", [](Options& o, double x) { o.spec.mutable_target()->set_tolerance(x); }),
+    {{"--samples", Count([](Options& o, int64_t n) { NewTarget(o).set_samples(n); }),
+      "samples per point"},
+     {"--collisions", Count([](Options& o, int64_t n) { NewTarget(o).set_collisions(n); }),
+      "ball-piston collisions per point"},
+     {"--tolerance", Number("REL", [](Options& o, double x) { NewTarget(o).set_tolerance(x); }),
       "relative standard error of the first estimate; a point is finished when it reaches this "
-      "error",
-      "", kTargets},
-     {"--budget", Budget(),
+      "error"},
+     {"--budget", Number("SECONDS", &SetBudget),
       "time of all workers, divided evenly between the points; with --tolerance, the job fails if "
-      "this time is too short",
-      "", kTargets}}};
+      "this time is too short"}}};
 
 const FlagGroup kMethod = {
     "Method",
@@ -209,9 +161,11 @@ const FlagGroup kMethod = {
       OneOf<Spec::Model>("MODEL", EnumChoices<Spec::Model>(),
                          [](Options& o, Spec::Model model) { o.spec.set_model(model); }),
       "by default auto, the cheapest model that gives the estimate"},
-     {"--estimate", NameOfEstimate(),
+     {"--estimate",
+      Text("NAME",
+           [](Options& o, std::string x) { o.spec.mutable_target()->set_estimate(std::move(x)); }),
       "the estimate of --tolerance and --model auto; the result prints it first; gas-equilibrium, "
-      "lyapunov and gas-lyapunov have a choice"},
+      "lyapunov and gas-lyapunov have a choice; the error of a wrong name lists it"},
      {"--precision",
       OneOf<Spec::Precision>(
           "PRECISION", EnumChoices<Spec::Precision>(),
@@ -247,23 +201,12 @@ const FlagGroup kFormat = {"Output",
                            {{"--format", OneOf("FORMAT", Formats(), To(&Options::format)),
                              "format on standard output; by default table"}}};
 
-const FlagGroup kStatusFormat = {
-    "Output",
-    {{"--format", OneOf("FORMAT", StatusFormats(), To(&Options::format)),
-      "format of the status on standard output, by default table"}}};
-
-const FlagGroup kResultFormat = {
-    "Output",
-    {{"--format", OneOf("FORMAT", ResultFormats(), To(&Options::format)),
-      "format on standard output; by default table; csv has the estimates, csv-histograms the bins "
-      "of all histograms, csv-curves the points of all curves"}}};
-
 const FlagGroup kSave = {
     "File",
     {{"--save", File(To(&Options::save)),
       "write the result to this file: .json, .csv or .npz; it has the specification, the seed and "
       "the versions; prints the file's path. .json has everything, .npz NumPy arrays (this needs "
-      "the Python package), .csv the estimates, or what --format selects"}}};
+      "the Python package), .csv the estimates"}}};
 
 const FlagGroup kProgress = {"Progress",
                              {{"--progress",
@@ -299,7 +242,8 @@ const FlagGroup kTrace = {
      {"--delta", Number("X", [](Options& o, double x) { o.trace.set_delta(x); }),
       "the pistons' penetration, above 0, up to (1 - lambda)/2 for a pair and rho/sqrt(2) - "
       "lambda/2 for a gas; required"},
-     {"--cells", Shape([](Options& o, std::string cells) { o.trace.set_cells(std::move(cells)); }),
+     {"--cells",
+      Text("SHAPE", [](Options& o, std::string cells) { o.trace.set_cells(std::move(cells)); }),
       "a periodic gas of this shape instead of a pair: N, a chain of N cells, or NxM, a lattice of "
       "N columns and M rows; at most 1,000 cells"},
      {"--temperature", Number("X", [](Options& o, double x) { o.trace.set_temperature(x); }),
@@ -353,54 +297,10 @@ const FlagGroup kWatch = {"Watch",
 const FlagGroup kPin = {
     "Pin", {{"--undo", Switch(To(&Options::undo)), "unpin: the results may expire again"}}};
 
-const FlagGroup kFigure = {
-    "Figure",
-    {{"--out", File(To(&Options::out)), "folder for data and pictures"},
-     {"--list", Switch(To(&Options::list)), "print the figures' names; draw nothing"},
-     {"--quick",
-      Effort("quick"),
-      "few samples: the figure takes seconds instead of minutes",
-      "",
-      {"full"}},
-     {"--full",
-      Effort("full"),
-      "the paper's number of samples or more: minutes to hours",
-      "",
-      {"quick"}},
-     {"--edit", Switch(To(&Options::edit)),
-      "copy the figure's Python module to the --out folder, so that you can edit it; draw "
-      "nothing"}}};
-
-const FlagGroup kVariables = {
-    "Variables of a figure",
-    {{"--rho", Variable("X", "rho"), "disc radius"},
-     {"--delta", Variable("LIST", "delta"), "the piston's penetrations"},
-     {"--relaxation-delta", Variable("LIST", "relaxation_delta"),
-      "penetrations at which relaxation times are compared, at most 8"},
-     {"--epsilon", Variable("LIST", "epsilon"), "the piston's energies"},
-     {"--exponent", Variable("LIST", "exponent"), "n of the outgoing law h^(n)"},
-     {"--cells", Variable("LIST", "cells"), "shape of the gas, or lengths of the chains"},
-     {"--billiard-cells", Variable("LIST", "billiard_cells"), "lengths of the billiard's rings"},
-     {"--temperature", Variable("X", "temperature"), "temperature of the gas"},
-     {"--hot", Variable("X", "hot"), "temperature of the hot reservoir"},
-     {"--cold", Variable("X", "cold"), "temperature of the cold reservoir"},
-     {"--samples", Variable("N", "samples"),
-      "first hits, or replicas or stretches of a gas, per point"},
-     {"--billiard-samples", Variable("N", "billiard_samples"),
-      "replicas or stretches of a gas per point, by the billiard"},
-     {"--collisions", Variable("N", "collisions"), "ball-piston collisions per point"},
-     {"--seconds", Variable("SECONDS", "seconds"),
-      "computing time of the longest run of each method"},
-     {"--seed", Variable("SEED", "seed"), "seed of the random numbers"}}};
-
 const FlagGroup kReport = {
     "Report", {{"--out", File(To(&Options::out)), "the HTML file to write; required"}}};
 
-const FlagGroup kExport = {
-    "Export",
-    {{"--out", File(To(&Options::out)), "the file to write, .csv, .npz or .parquet; required"}}};
-
-const FlagGroup kSampleFile = {
+const FlagGroup kTableFile = {
     "File",
     {{"--out", File(To(&Options::out)), "the file to write, .csv, .npz or .parquet; required"}}};
 
@@ -474,7 +374,7 @@ Verb StatusVerb(const std::string& name, const std::string& summary) {
           summary,
           "Starts no server.",
           {},
-          With({&kStatusFormat, &kServer}),
+          With({&kFormat, &kServer}),
           {"server status",
            "server status --server lab.example.org:50051 --ca authority.pem --token-file ada.token "
            "--format json"},
@@ -505,7 +405,7 @@ std::vector<Verb> AllVerbs() {
        "Ctrl-C ends the client, but not the job; the message says how to watch the job again. If "
        "the server has stored results for the same specification, it returns them.",
        {kExperiment},
-       With(kQuestion, {&kJob, &kResultFormat, &kSave, &kProgress, &kServer}),
+       With(kQuestion, {&kJob, &kFormat, &kSave, &kProgress, &kServer}),
        {"run conditional-mean-free-time --rho 0.5296 --delta 0.1,0.2 --epsilon 0.1:0.4:4 --verify",
         "run first-hit --rho 0.5296 --delta 0.1 --epsilon 0.125 --exponent 1,2 --samples 1e5 "
         "--format csv"},
@@ -532,7 +432,7 @@ std::vector<Verb> AllVerbs() {
        "print a job's result: the points that it has finished so far",
        "",
        {kJobsOrLabels},
-       With({&kSelection, &kPoint, &kResultFormat, &kSave, &kServer}),
+       With({&kSelection, &kPoint, &kFormat, &kSave, &kServer}),
        {"result ensembleJobs/ID", "result ID --save result.json",
         "result ID --point 17 --format json >point.json"},
        &Result},
@@ -597,28 +497,36 @@ std::vector<Verb> AllVerbs() {
        "an experiment with a pair. .npz and .parquet need Python with the package ballpiston. "
        "Prints the path of the file. proto/ballpiston/v1/trace.proto describes the columns.",
        {kExperiment},
-       With(kQuestion, {&kSampleFile, &kServer}),
+       With(kQuestion, {&kTableFile, &kServer}),
        {"sample first-hit --rho 0.5296 --delta 0.2 --epsilon 0.125 --exponent 1 --samples 1e5 "
         "--out hits.npz",
         "sample equilibrium --rho 0.5296 --delta 0.2 --collisions 1e4 --out collisions.csv"},
        &Sample},
       {"figure",
        "draw a figure: data, SVG and PNG",
-       "After an interruption, the same command resumes the jobs of the figure. If the --out "
-       "folder already contains the figure's module, the command uses it unchanged. Figures need "
-       "Python with the package ballpiston and matplotlib: python3-ballpiston, python3-matplotlib.",
-       {{Text("NAME", To(&Options::figure), Offer::kFigure), "one of the names that --list prints",
-         Argument::kOptional}},
-       With({&kFigure, &kVariables, &kProgress, &kServer}),
-       {"figure mean-free-time --out figures", "figure mean-free-time --edit --out figures"},
-       &Figure},
+       "Writes to the folder --out DIR, which is required. --list prints the names of the figures, "
+       "and figure NAME --help the figure's variables, such as --rho and --samples. --quick takes "
+       "seconds; --full has at least the paper's number of samples. --edit only copies the "
+       "figure's "
+       "Python module to DIR, so that you can edit it; a module that is already there is used "
+       "unchanged. After an interruption, the same command resumes the jobs of the figure. Figures "
+       "need Python with the package ballpiston and matplotlib: python3-ballpiston, "
+       "python3-matplotlib.",
+       {{Text(
+             "NAME", [](Options&, const std::string&) {}, Offer::kFigure),
+         "one of the names that --list prints", Argument::kOptional}},
+       With({&kProgress, &kServer}),
+       {"figure mean-free-time --out figures", "figure relaxation --quick --delta 0.2,0.1 --out x",
+        "figure --list"},
+       &Figure,
+       /*passes_words_on=*/true},
       {"export",
        "write the estimates of many jobs to one file",
        "A row for each estimate of each point, with the job, its labels, seed, engine version and "
        "parameters. Without JOB and --label: of all your jobs. Needs Python with the package "
        "ballpiston, and for .parquet pandas and pyarrow. Prints the path of the file.",
        {{Job(kJobs), "ensembleJobs/ID, or the ID alone", Argument::kAny}},
-       With({&kExport, &kSelection, &kServer}),
+       With({&kTableFile, &kSelection, &kServer}),
        {"export --label run=7 --out run7.csv", "export ID1 ID2 --out two.parquet"},
        &Export},
       {"report",
@@ -724,6 +632,30 @@ const std::vector<Verb>& Verbs() {
   return *verbs;
 }
 
+int WordsIn(const std::string& verb_name) {
+  return 1 + static_cast<int>(std::count(verb_name.begin(), verb_name.end(), ' '));
+}
+
+const Verb* VerbAt(const std::vector<std::string>& words) {
+  for (const Verb& verb : Verbs()) {
+    const std::vector<std::string> names = absl::StrSplit(verb.name, ' ');
+    const bool is_long_enough = words.size() >= names.size();
+    if (is_long_enough && std::equal(names.begin(), names.end(), words.begin())) return &verb;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> NextWords(const std::string& begin) {
+  std::vector<std::string> words;
+  for (const Verb& verb : Verbs()) {
+    absl::string_view rest = verb.name;
+    if (!absl::ConsumePrefix(&rest, begin)) continue;
+    const std::string word(rest.substr(0, rest.find(' ')));
+    if (words.empty() || words.back() != word) words.push_back(word);
+  }
+  return words;
+}
+
 const FlagGroup& ServerFlags() { return kServer; }
 const FlagGroup& TargetFlags() { return kTarget; }
 const std::vector<const FlagGroup*>& QuestionFlags() { return kQuestion; }
@@ -769,11 +701,6 @@ std::string KeyOf(const Flag& flag) {
   if (!flag.name.empty()) return LongName(flag).substr(2);
   const absl::string_view variable = absl::StripPrefix(flag.variable, "BALLPISTON_");
   return absl::StrReplaceAll(absl::AsciiStrToLower(variable), {{"_", "-"}});
-}
-
-bool Replaces(const Flag& flag, const Flag& other) {
-  const auto& keys = flag.replaces;
-  return std::find(keys.begin(), keys.end(), KeyOf(other)) != keys.end();
 }
 
 }  // namespace ballpiston::client

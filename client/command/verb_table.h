@@ -19,9 +19,6 @@ struct Flag {
   Value value;
   std::string text;
   std::string variable = "";  // environment variable, used if the flag is not given
-  // Keys of other flags, which this flag overrides if they come from a weaker source:
-  // --token-file overrides BALLPISTON_TOKEN.
-  std::vector<std::string> replaces = {};
 };
 
 struct FlagGroup {
@@ -47,10 +44,19 @@ struct Verb {
   std::vector<const FlagGroup*> groups;
   std::vector<std::string> examples;  // without the program's name
   VerbFunction* act;
+  // Options::words gets all words but the verb's flags, also unknown flags, in their order. Then
+  // the arguments are only described.
+  bool passes_words_on = false;
 };
 
 // In the order in which help shows them.
 const std::vector<Verb>& Verbs();
+
+// The verb whose name is the first of these words, such as server start; null if there is none.
+const Verb* VerbAt(const std::vector<std::string>& words);
+int WordsIn(const std::string& verb_name);
+// The words that can follow `begin` in the name of a verb: start, stop, ... for "server ".
+std::vector<std::string> NextWords(const std::string& begin);
 
 // The flags that choose the server, and the flags of the target.
 const FlagGroup& ServerFlags();
@@ -73,8 +79,5 @@ std::string LongName(const Flag& flag);
 
 // Its key in the config file: token-file for --token-file and for BALLPISTON_TOKEN_FILE.
 std::string KeyOf(const Flag& flag);
-
-// Whether it replaces the other flag where that one stands in a weaker source.
-bool Replaces(const Flag& flag, const Flag& other);
 
 }  // namespace ballpiston::client

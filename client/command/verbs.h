@@ -1,8 +1,9 @@
 // The functions of the verbs. The parser has already checked the command line.
 //
-//   one_answer.cc    analytic, plan, list, server address, server status: one call, one answer
-//   run.cc           run, submit
-//   print_result.cc  result
+//   one_answer.cc    analytic, plan, list, trace, server address, server status: one call each
+//   run.cc           run, submit, result
+//   reference.cc     help
+//   python.cc        figure, export
 //   change_jobs.cc   cancel, delete, pin, label
 //   server.cc        the other verbs of `server`
 //

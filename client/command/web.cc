@@ -34,22 +34,22 @@ VerbResult Web(const Options& options, Terminal& terminal) {
     return absl::InvalidArgumentError(
         absl::StrCat("--port: ", options.port, " is not from 0 to ", kMostPort));
   }
-  auto files = ReadPageFiles();
+  const auto files = ReadPageFiles();
   if (!files.ok()) return files.status();
   return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-    WebServer server(*std::move(files), [&](const JsonCall& call, const JsonReceiver& receive) {
-      return CallThrough(connection, call, receive);
-    });
-    if (absl::Status bound = server.Bind(static_cast<int>(options.port)); !bound.ok()) {
-      return absl::FailedPreconditionError(
-          absl::StrCat("--port ", options.port, ": ", bound.message()));
-    }
-    terminal.out << server.Url() << std::endl;
-    terminal.Note(
-        "Ctrl-C stops the page, but not the jobs. Keep the address secret: anyone who has it can "
-        "use the server in your name.");
-    server.Serve();
-    return ExitCode::kDone;
+    const auto call = [&](const JsonCall& once, const JsonReceiver& receive) {
+      return CallThrough(connection, once, receive);
+    };
+    const auto announce = [&](const std::string& url) {
+      terminal.out << url << std::endl;
+      terminal.Note(
+          "Ctrl-C stops the page, but not the jobs. Keep the address secret: anyone who has it can "
+          "use the server in your name.");
+    };
+    const absl::Status served = ServePage(*files, call, static_cast<int>(options.port), announce);
+    if (served.ok()) return ExitCode::kDone;
+    return absl::FailedPreconditionError(
+        absl::StrCat("--port ", options.port, ": ", served.message()));
   });
 }
 

@@ -70,6 +70,9 @@ std::string PlainText(absl::StatusCode code, absl::string_view text) {
   if (code == absl::StatusCode::kUnimplemented && text.empty()) {
     return "the server has an earlier version, which does not offer this call";
   }
+  if (text.empty()) {  // for instance because a text is not UTF-8
+    return absl::StrCat("the call failed without a message: ", absl::StatusCodeToString(code));
+  }
   const size_t begin = text.find("message larger than max (");
   if (code != absl::StatusCode::kResourceExhausted || begin == absl::string_view::npos) {
     return std::string(text);

@@ -11,8 +11,8 @@
 //
 // The google.rpc.Status itself becomes the payload of the absl::Status.
 //
-// Two errors of gRPC get a plain text: a message that is too large for the transport (with both
-// sizes), and a method that the server lacks.
+// Three errors of gRPC get a plain text: one without a message, a message that is too large for the
+// transport (with both sizes), and a method that the server lacks.
 #pragma once
 
 #include <grpcpp/support/status.h>

@@ -1,19 +1,18 @@
 #include "client/library/job_watch.h"
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <optional>
 #include <utility>
 
+#include "absl/random/random.h"
 #include "absl/strings/str_cat.h"
 #include "client/library/error_text.h"
-#include "client/library/reattach_pace.h"
 
 namespace ballpiston::client {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // Sleeps for `length`. Returns false if `stop` ended the pause early.
 bool Pause(absl::Duration length, const std::stop_token& stop) {
@@ -29,6 +28,38 @@ bool Pause(absl::Duration length, const std::stop_token& stop) {
 bool IsBrokenStream(const absl::Status& end) {
   return absl::IsUnavailable(end) || (absl::IsCancelled(end) && ErrorReason(end).empty());
 }
+
+// When a watch that lost its server retries, and when it gives up. Each pause is up to a quarter
+// longer at random, so that the watchers of a restarted server do not all reconnect at the same
+// moment.
+class ReattachPace {
+ public:
+  explicit ReattachPace(const WatchOptions& options) : options_(options) { Heard(); }
+
+  // The watch received a message: the pauses and the time until it gives up start again.
+  void Heard() {
+    heard_ = Clock::now();
+    backoff_ = options_.initial_backoff;
+  }
+
+  // The pause before the next attempt, at least `least`; empty if it would end after the time to
+  // give up.
+  std::optional<absl::Duration> NextPause(absl::Duration least) {
+    const absl::Duration pause = std::max(backoff_, least) * absl::Uniform(random_, 1.0, 1.25);
+    backoff_ = std::min(2 * backoff_, options_.max_backoff);
+    const absl::Duration silence = absl::FromChrono(Clock::now() - heard_);
+    if (silence + pause > options_.give_up_after) return std::nullopt;
+    return pause;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  const WatchOptions& options_;
+  Clock::time_point heard_;
+  absl::Duration backoff_;
+  absl::InsecureBitGen random_;
+};
 
 class Watch {
  public:
@@ -68,7 +99,7 @@ class Watch {
 
   void Handle(const v1::WatchEnsembleJobResponse& message) {
     if (ended_) return;  // nothing after the terminal state is shown
-    pace_.Heard(Clock::now());
+    pace_.Heard();
     if (!message.resume_token().empty()) request_.set_resume_token(message.resume_token());
     if (message.has_job()) HandleJob(message.job());
     if (message.has_snapshot() && callbacks_.on_snapshot)
@@ -81,7 +112,7 @@ class Watch {
   }
 
   absl::Status WaitToReattach(const absl::Status& why) {
-    const std::optional<absl::Duration> pause = pace_.NextPause(Clock::now(), RetryDelay(why));
+    const std::optional<absl::Duration> pause = pace_.NextPause(RetryDelay(why));
     if (!pause) {
       return absl::UnavailableError(absl::StrCat("gave up watching after ",
                                                  absl::FormatDuration(options_.give_up_after),
@@ -100,7 +131,7 @@ class Watch {
   const std::function<void()>& before_reattach_;
   v1::WatchEnsembleJobRequest request_;
   std::optional<v1::EnsembleJob> ended_;
-  ReattachPace pace_{options_, Clock::now()};
+  ReattachPace pace_{options_};
 };
 
 }  // namespace

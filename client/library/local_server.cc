@@ -10,12 +10,11 @@
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "absl/strings/string_view.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
 #include "client/library/channel.h"
-#include "client/library/fnv1a.h"
+#include "client/library/request_id.h"
 #include "client/library/server_address.h"
 #include "client/library/server_process.h"
 
@@ -26,14 +25,9 @@ namespace fs = std::filesystem;
 
 constexpr char kIdleSeconds[] = "60";
 constexpr absl::Duration kAnswerTimeout = absl::Seconds(10);
-constexpr absl::Duration kPoll = absl::Milliseconds(20);
-
-// How often to check a server that another client started and that does not answer yet. A check
-// holds the folder's lock for a moment if the lock is free, and must therefore be rare.
-constexpr absl::Duration kOthersPoll = absl::Milliseconds(200);
-
-// The started server exits if another server holds the folder. The other server may be stopping
-// because it was idle: it no longer answers, and soon releases the folder. Then a retry succeeds.
+// How often to check a server that does not answer yet. A check holds the folder's lock for a
+// moment if the lock is free, and must therefore be rare.
+constexpr absl::Duration kPoll = absl::Milliseconds(200);
 constexpr int kAttempts = 3;
 
 // The environment variable's value if it is an absolute path, else empty.
@@ -78,7 +72,7 @@ absl::StatusOr<std::string> SocketIn(const std::string& folder) {
   const std::string usual = folder + "/server.socket";
   if (usual.size() <= kMaxSocketPath) return usual;
   std::string root = PathVariable("TMPDIR");
-  const std::string name = absl::StrFormat("/ballpiston-%d-%016x", getuid(), Fnv1a(folder));
+  const std::string name = absl::StrCat("/ballpiston-", getuid(), "-", RequestIdFor(folder));
   constexpr char kSocket[] = "/server.socket";
   if (root.empty() || root.size() + name.size() + sizeof(kSocket) > kMaxSocketPath) root = "/tmp";
   if (absl::Status made = MakeFolder(root + name); !made.ok()) return made;
@@ -97,57 +91,37 @@ bool Answers(grpc::Channel& channel) {
   }
 }
 
-bool AnswersWithin(grpc::Channel& channel, absl::Duration time) {
-  return channel.WaitForConnected(absl::ToChronoTime(absl::Now() + time));
+// Waits for a server in the folder of this address, as long as a server holds the folder. That one
+// may be of another client, and stop because it was idle: it no longer answers, and soon releases
+// the folder.
+bool AnswersWhileItRuns(const LocalServer& server, grpc::Channel& channel, absl::Time deadline) {
+  while (absl::Now() < deadline && FindServer(server.folder)) {
+    if (channel.WaitForConnected(absl::ToChronoTime(absl::Now() + kPoll))) return true;
+  }
+  return false;
 }
 
-class Starter {
- public:
-  Starter(const LocalServer& server, grpc::Channel& channel) : server_(server), channel_(channel) {}
-
-  absl::Status Start() {
-    const ServerProgram program = {
-        .program = server_.program,
-        .folder = server_.folder,
-        .flags = {"--listen", server_.Address(), "--idle-exit-seconds", kIdleSeconds}};
-    absl::Status failure;
-    for (int attempt = 0; attempt < kAttempts; ++attempt) {
-      absl::StatusOr<StartedServer> started = StartedServer::Start(program);
-      if (!started.ok()) return started.status();
-      if (AnswersWhileAlive(*started)) return absl::OkStatus();
-      if (!started->HasEnded()) return started->Failure();
-      if (OtherAnswersWhileAlive()) return absl::OkStatus();
-      failure = absl::UnavailableError(started->Failure().message());
+absl::Status Start(const LocalServer& server, grpc::Channel& channel) {
+  const ServerProgram program = {
+      .program = server.program,
+      .folder = server.folder,
+      .flags = {"--listen", server.Address(), "--idle-exit-seconds", kIdleSeconds}};
+  const absl::Time deadline = absl::Now() + server.start_time;
+  absl::Status failure;
+  for (int attempt = 0; attempt < kAttempts && absl::Now() < deadline; ++attempt) {
+    const absl::StatusOr<std::string> address = StartServer(program, deadline - absl::Now());
+    if (address.ok() && *address != server.Address()) {
+      return absl::UnavailableError(absl::StrCat("the server in ", server.folder, " listens at ",
+                                                 *address, ", not at ", server.Address()));
     }
-    return failure;
+    if (address.ok() && AnswersWhileItRuns(server, channel, deadline)) return absl::OkStatus();
+    failure =
+        address.ok()
+            ? absl::UnavailableError(absl::StrCat("the server at ", *address, " does not answer"))
+            : absl::UnavailableError(address.status().message());
   }
-
- private:
-  // Waits until the server answers (true), or has ended, or the time is over (false).
-  bool AnswersWhileAlive(StartedServer& started) {
-    const absl::Time deadline = absl::Now() + server_.start_time;
-    while (absl::Now() < deadline && !started.HasEnded()) {
-      if (AnswersWithin(channel_, kPoll)) return true;
-    }
-    return false;
-  }
-
-  // Waits for a server that another client has started, as long as that server holds the folder.
-  // False if that server has another address: then it is not the private server.
-  bool OtherAnswersWhileAlive() {
-    while (absl::Now() < others_deadline_) {
-      const auto other = FindServer(server_.folder);
-      if (!other) return false;
-      if (!other->address.empty() && other->address != server_.Address()) return false;
-      if (AnswersWithin(channel_, kOthersPoll)) return true;
-    }
-    return false;
-  }
-
-  const LocalServer& server_;
-  grpc::Channel& channel_;
-  const absl::Time others_deadline_ = absl::Now() + server_.start_time;  // for all attempts
-};
+  return failure;
+}
 
 }  // namespace
 
@@ -170,7 +144,7 @@ absl::StatusOr<LocalServer> FindLocalServer() {
 absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectToLocalServer(const LocalServer& server) {
   absl::StatusOr<std::shared_ptr<grpc::Channel>> channel = OpenChannel(server.Address());
   if (!channel.ok() || Answers(**channel)) return channel;
-  if (absl::Status started = Starter(server, **channel).Start(); !started.ok()) return started;
+  if (absl::Status started = Start(server, **channel); !started.ok()) return started;
   return channel;
 }
 

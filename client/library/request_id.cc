@@ -5,7 +5,6 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_format.h"
-#include "client/library/fnv1a.h"
 
 namespace ballpiston::client {
 namespace {
@@ -13,6 +12,12 @@ namespace {
 uint64_t Random64() {
   std::random_device device;
   return (uint64_t{device()} << 32) | device();
+}
+
+// The hash FNV-1a, 64 bits. Another basis gives another hash.
+uint64_t Fnv1a(absl::string_view text, uint64_t basis) {
+  for (const char c : text) basis = (basis ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return basis;
 }
 
 std::string Uuid(uint64_t high, uint64_t low, uint64_t version) {
@@ -27,8 +32,8 @@ std::string Uuid(uint64_t high, uint64_t low, uint64_t version) {
 std::string NewRequestId() { return Uuid(Random64(), Random64(), 4); }
 
 std::string RequestIdFor(absl::string_view text) {
-  constexpr uint64_t kOtherBasis = 0x9e3779b97f4a7c15;
-  return Uuid(Fnv1a(text), Fnv1a(text, kOtherBasis), 8);
+  constexpr uint64_t kUsualBasis = 0xcbf29ce484222325, kOtherBasis = 0x9e3779b97f4a7c15;
+  return Uuid(Fnv1a(text, kUsualBasis), Fnv1a(text, kOtherBasis), 8);
 }
 
 bool IsRequestId(absl::string_view text) {

@@ -66,6 +66,46 @@ bool Await(absl::Duration timeout, Condition condition) {
   return true;
 }
 
+// Renames a long log. Returns the place in the log where the next server begins to write.
+uintmax_t EndOfLog(const ServerProgram& program) {
+  std::error_code error;
+  if (fs::file_size(program.Log(), error) > kMaxLogBytes && !error) {
+    fs::rename(program.Log(), program.Log() + ".old", error);
+  }
+  const uintmax_t size = fs::file_size(program.Log(), error);
+  return error ? 0 : size;
+}
+
+absl::StatusOr<pid_t> StartProgram(const ServerProgram& program) {
+  std::vector<std::string> command = {program.program, "--data-dir", program.folder};
+  command.insert(command.end(), program.flags.begin(), program.flags.end());
+  unsetenv("BALLPISTON_TOKEN");  // the server does not need the user's secret
+  return StartChild({.command = std::move(command),
+                     .folder = program.run_in,
+                     .output = program.Log(),
+                     .detached = true});
+}
+
+// `exit_status`: of the program, if it has ended.
+absl::Status Failure(const ServerProgram& program, uintmax_t log_start,
+                     std::optional<int> exit_status) {
+  std::ifstream log(program.Log());
+  log.seekg(static_cast<std::streamoff>(log_start));
+  std::string last = "(it wrote nothing)";
+  for (std::string line; std::getline(log, line);) {
+    if (!line.empty()) last = line;
+  }
+  constexpr int kWrongFlags = 2, kNotPermitted = 6;
+  const auto code = exit_status == kWrongFlags     ? absl::StatusCode::kInvalidArgument
+                    : exit_status == kNotPermitted ? absl::StatusCode::kPermissionDenied
+                                                   : absl::StatusCode::kUnavailable;
+  const std::string what = exit_status
+                               ? absl::StrCat("ended at once with exit status ", *exit_status)
+                               : "does not answer";
+  return absl::Status(code, absl::StrCat("the server ", program.program, " ", what, ": ", last,
+                                         "\n  log: ", program.Log()));
+}
+
 }  // namespace
 
 std::string UsualServerProgram() {
@@ -80,46 +120,6 @@ std::string UsualServerProgram() {
   return access(beside.c_str(), X_OK) == 0 ? beside : kProgramName;
 }
 
-absl::StatusOr<StartedServer> StartedServer::Start(const ServerProgram& program) {
-  std::error_code error;
-  if (fs::file_size(program.Log(), error) > kMaxLogBytes && !error) {
-    fs::rename(program.Log(), program.Log() + ".old", error);
-  }
-  const uintmax_t log_size = fs::file_size(program.Log(), error);
-  std::vector<std::string> command = {program.program, "--data-dir", program.folder};
-  command.insert(command.end(), program.flags.begin(), program.flags.end());
-  unsetenv("BALLPISTON_TOKEN");  // the server does not need the user's secret
-  const absl::StatusOr<pid_t> pid = StartChild({.command = std::move(command),
-                                                .folder = program.run_in,
-                                                .output = program.Log(),
-                                                .detached = true});
-  if (!pid.ok()) return absl::UnavailableError(pid.status().message());
-  return StartedServer(program, error ? 0 : log_size, *pid);
-}
-
-bool StartedServer::HasEnded() {
-  if (!exit_status_) exit_status_ = ExitStatus(pid_);
-  return exit_status_.has_value();
-}
-
-absl::Status StartedServer::Failure() const {
-  std::ifstream log(program_.Log());
-  log.seekg(static_cast<std::streamoff>(log_start_));
-  std::string last = "(it wrote nothing)";
-  for (std::string line; std::getline(log, line);) {
-    if (!line.empty()) last = line;
-  }
-  constexpr int kWrongFlags = 2, kNotPermitted = 6;
-  const int status = exit_status_.value_or(0);
-  const auto code = status == kWrongFlags     ? absl::StatusCode::kInvalidArgument
-                    : status == kNotPermitted ? absl::StatusCode::kPermissionDenied
-                                              : absl::StatusCode::kUnavailable;
-  const std::string what =
-      exit_status_ ? absl::StrCat("ended at once with exit status ", status) : "does not answer";
-  return absl::Status(code, absl::StrCat("the server ", program_.program, " ", what, ": ", last,
-                                         "\n  log: ", program_.Log()));
-}
-
 std::optional<RunningServer> FindServer(const std::string& folder) {
   if (!IsLocked(folder + kLockFile)) return std::nullopt;
   RunningServer server;
@@ -131,16 +131,19 @@ std::optional<RunningServer> FindServer(const std::string& folder) {
 }
 
 absl::StatusOr<std::string> StartServer(const ServerProgram& program, absl::Duration timeout) {
-  absl::StatusOr<StartedServer> started = StartedServer::Start(program);
-  if (!started.ok()) return started.status();
+  const uintmax_t log_start = EndOfLog(program);
+  const absl::StatusOr<pid_t> pid = StartProgram(program);
+  if (!pid.ok()) return absl::UnavailableError(pid.status().message());
   std::string address;
+  std::optional<int> exit_status;
   Await(timeout, [&] {
     const auto server = FindServer(program.folder);
     if (server) address = server->address;  // perhaps another one, started at the same time
-    return !address.empty() || (started->HasEnded() && !server);
+    if (!exit_status) exit_status = ExitStatus(*pid);
+    return !address.empty() || (exit_status && !server);
   });
   if (!address.empty()) return address;
-  return started->Failure();
+  return Failure(program, log_start, exit_status);
 }
 
 absl::Status StopServer(const std::string& folder, absl::Duration timeout) {

@@ -4,7 +4,6 @@
 
 #include <sys/types.h>
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,29 +26,6 @@ struct ServerProgram {
 // BALLPISTON_SERVER_PROGRAM, else the `ballpistond` beside this program, else the one in PATH.
 std::string UsualServerProgram();
 
-// A program that was started, detached, with its output in the log.
-class StartedServer {
- public:
-  // UNAVAILABLE if there is no such program.
-  static absl::StatusOr<StartedServer> Start(const ServerProgram& program);
-
-  pid_t pid() const { return pid_; }
-  bool HasEnded();  // it ends at once if another server holds its folder
-  // An error that names the program, says whether it has ended or does not answer, and shows the
-  // last line that it wrote and the log's path. INVALID_ARGUMENT for wrong flags, PERMISSION_DENIED
-  // for a folder that the server is not permitted to use, else UNAVAILABLE.
-  absl::Status Failure() const;
-
- private:
-  StartedServer(const ServerProgram& program, uintmax_t log_start, pid_t pid)
-      : program_(program), log_start_(log_start), pid_(pid) {}
-
-  ServerProgram program_;
-  uintmax_t log_start_;
-  pid_t pid_;
-  std::optional<int> exit_status_;
-};
-
 // The server that holds the folder, even if it does not answer.
 struct RunningServer {
   pid_t pid = 0;        // 0: not known yet, or on another machine
@@ -57,8 +33,11 @@ struct RunningServer {
 };
 std::optional<RunningServer> FindServer(const std::string& folder);
 
-// Starts the server, waits until it listens, and returns its address. If another server was started
-// in the folder at the same time, returns the address of that one.
+// Starts the server, detached, with its output in the log. Waits until it listens, and returns its
+// address. If another server was started in the folder at the same time, returns the address of
+// that one. An error names the program, says whether it has ended or does not answer, and shows the
+// last line that it wrote and the log's path. INVALID_ARGUMENT for wrong flags, PERMISSION_DENIED
+// for a folder that the server is not permitted to use, else UNAVAILABLE.
 absl::StatusOr<std::string> StartServer(const ServerProgram& program,
                                         absl::Duration timeout = absl::Minutes(1));
 

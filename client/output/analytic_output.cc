@@ -1,12 +1,8 @@
-#include "client/output/analytic_output.h"
-
-#include <google/protobuf/descriptor.h>
-
 #include <string>
 #include <utility>
 
 #include "absl/strings/str_format.h"
-#include "client/output/csv_row.h"
+#include "client/output/answers.h"
 #include "client/output/field_text.h"
 #include "client/output/json.h"
 #include "client/output/text_table.h"
@@ -14,20 +10,10 @@
 namespace ballpiston::client {
 namespace {
 
-// The fields that are columns: all but the lists, which have tables of their own.
-template <typename Type>
-Cells Columns() {
-  const google::protobuf::Descriptor& type = *Type::descriptor();
-  Cells names = FieldNames(type);
-  std::erase_if(names, [&type](const std::string& name) {
-    return type.FindFieldByName(name)->is_repeated();
-  });
-  return names;
-}
-
 void PrintCsv(const v1::EvaluatePairsResponse& response, std::ostream& out) {
-  const Cells pairs = Columns<v1::PairAnalytics>(), energies = Columns<v1::EnergyAnalytics>(),
-              averages = Columns<v1::CanonicalAnalytics>();
+  const Cells pairs = PlainFields(*v1::PairAnalytics::descriptor()),
+              energies = PlainFields(*v1::EnergyAnalytics::descriptor()),
+              averages = PlainFields(*v1::CanonicalAnalytics::descriptor());
   const Cells no_energy(energies.size()), no_averages(averages.size());
   out << CsvRow(Joined(Joined(pairs, energies), averages));
   for (const v1::PairAnalytics& pair : response.points()) {
@@ -48,7 +34,7 @@ std::string TableCell(double x) { return Measured(x, 0).value; }
 
 void PrintQuantities(const v1::PairAnalytics& pair, std::ostream& out) {
   TextTable table({"quantity", "value"}, {"quantity", "value"});
-  for (const std::string& name : Columns<v1::PairAnalytics>()) {
+  for (const std::string& name : PlainFields(*v1::PairAnalytics::descriptor())) {
     table.AddRow({name, FieldText(pair, name, &TableCell)});
   }
   table.Print(out);
@@ -56,7 +42,7 @@ void PrintQuantities(const v1::PairAnalytics& pair, std::ostream& out) {
 
 void PrintEnergies(const v1::PairAnalytics& pair, const std::vector<double>& outgoing,
                    std::ostream& out) {
-  const Cells columns = Columns<v1::EnergyAnalytics>();
+  const Cells columns = PlainFields(*v1::EnergyAnalytics::descriptor());
   Cells titles = columns;
   for (const double energy : outgoing) titles.push_back(absl::StrFormat("W(%g)", energy));
   TextTable table(titles);
@@ -70,7 +56,7 @@ void PrintEnergies(const v1::PairAnalytics& pair, const std::vector<double>& out
 }
 
 void PrintCanonical(const v1::PairAnalytics& pair, std::ostream& out) {
-  const Cells columns = Columns<v1::CanonicalAnalytics>();
+  const Cells columns = PlainFields(*v1::CanonicalAnalytics::descriptor());
   TextTable table(columns);
   for (const auto& row : pair.canonical()) table.AddRow(FieldTexts(row, columns, &TableCell));
   out << '\n';

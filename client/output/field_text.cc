@@ -4,6 +4,9 @@
 #include <google/protobuf/timestamp.pb.h>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
 #include "absl/time/time.h"
 #include "client/output/spelling.h"
 
@@ -37,6 +40,11 @@ std::string TextOf(const Message& message, const FieldDescriptor* field, NumberF
   }
 }
 
+std::string CsvCell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  return absl::StrCat("\"", absl::StrReplaceAll(text, {{"\"", "\"\""}}), "\"");
+}
+
 }  // namespace
 
 std::string FieldText(const Message& message, const std::string& path, NumberForm form) {
@@ -68,9 +76,55 @@ Cells FieldNames(const google::protobuf::Descriptor& type) {
   return names;
 }
 
+Cells PlainFields(const google::protobuf::Descriptor& type) {
+  Cells names = FieldNames(type);
+  std::erase_if(names, [&type](const std::string& name) {
+    const FieldDescriptor* const field = type.FindFieldByName(name);
+    return field->is_repeated() || field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
+  });
+  return names;
+}
+
 Cells Joined(Cells cells, const Cells& more) {
   cells.insert(cells.end(), more.begin(), more.end());
   return cells;
+}
+
+std::string CsvRow(const Cells& cells) {
+  return absl::StrCat(
+      absl::StrJoin(cells, ",",
+                    [](std::string* row, const std::string& cell) { row->append(CsvCell(cell)); }),
+      "\n");
+}
+
+std::string TenDigits(double x) { return absl::StrFormat("%.10g", x); }
+
+std::string ParameterText(const v1::PointParameters& parameters) {
+  Cells texts;
+  for (const std::string& name : FieldNames(*v1::PointParameters::descriptor())) {
+    const std::string value = FieldText(parameters, name, &TenDigits);
+    if (!value.empty()) texts.push_back(absl::StrCat(name, " ", value));
+  }
+  return absl::StrJoin(texts, ", ");
+}
+
+Cells ParametersInCsv(const v1::Grid& grid) {
+  Cells names = {"rho", "delta", "epsilon", "exponent"};
+  for (const std::string name : {"cells", "temperature", "hot", "cold"}) {
+    const auto* const list = v1::Grid::descriptor()->FindFieldByName(name);
+    if (grid.GetReflection()->FieldSize(grid, list) > 0) names.push_back(name);
+  }
+  return names;
+}
+
+Cells ParametersInTable() { return FieldNames(*v1::PointParameters::descriptor()); }
+
+std::set<std::string> OptionalParameters() {
+  const Cells names = ParametersInTable();
+  std::set<std::string> optional(names.begin(), names.end());
+  optional.erase("rho");
+  optional.erase("delta");
+  return optional;
 }
 
 }  // namespace ballpiston::client

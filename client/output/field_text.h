@@ -4,9 +4,11 @@
 #include <google/protobuf/message.h>
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "ballpiston/v1/spec.pb.h"
 #include "client/output/number_text.h"
 
 namespace ballpiston::client {
@@ -29,6 +31,28 @@ std::optional<double> NumberIn(const google::protobuf::Message& message, const s
 // The names of all fields in the proto's order.
 Cells FieldNames(const google::protobuf::Descriptor& type);
 
+// Those that are neither messages nor lists, as the columns of a table.
+Cells PlainFields(const google::protobuf::Descriptor& type);
+
 Cells Joined(Cells cells, const Cells& more);
+
+// A row of CSV (RFC 4180) with its end of line. A cell is quoted if it contains a comma, a quote or
+// a line's end.
+std::string CsvRow(const Cells& cells);
+
+// ---- a point's parameters; those that the experiment does not use are absent ----
+
+std::string TenDigits(double x);
+
+// "rho 0.53, delta 0.2, epsilon 0.25, exponent 1", with ten digits each.
+std::string ParameterText(const v1::PointParameters& parameters);
+
+// The names of the parameters in CSV: rho, delta, epsilon and exponent in every file; cells,
+// temperature, hot and cold if the specification's grid has them.
+Cells ParametersInCsv(const v1::Grid& grid);
+
+// The parameters of a table: all of them; those but rho and delta are its optional columns.
+Cells ParametersInTable();
+std::set<std::string> OptionalParameters();
 
 }  // namespace ballpiston::client

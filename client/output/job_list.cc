@@ -1,8 +1,5 @@
-#include "client/output/job_list.h"
-
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -10,7 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/time/time.h"
-#include "client/output/csv_row.h"
+#include "client/output/answers.h"
 #include "client/output/field_text.h"
 #include "client/output/json.h"
 #include "client/output/text_table.h"
@@ -57,40 +54,22 @@ void PrintCsv(const std::vector<v1::EnsembleJob>& jobs, std::ostream& out) {
   }
 }
 
-// A column that the table has only if the cell of some job is not the usual one.
-struct OptionalColumn {
-  std::string title, usual;
-  std::function<std::string(const v1::EnsembleJob&)> text;
-};
-
-std::vector<OptionalColumn> OptionalColumns(const std::vector<v1::EnsembleJob>& jobs,
-                                            absl::Time now) {
-  const auto field = [](const std::string& name) {
-    return [name](const v1::EnsembleJob& job) { return FieldText(job, name); };
-  };
-  std::vector<OptionalColumn> columns = {
-      {"principal", jobs.empty() ? "" : jobs.front().principal(), field("principal")},
-      {"priority", "0", field("priority")},
-      {"results", "", [now](const v1::EnsembleJob& job) { return ResultsText(job, now); }},
-      {"labels", "", &LabelsText}};
-  std::erase_if(columns, [&jobs](const OptionalColumn& column) {
-    return std::all_of(jobs.begin(), jobs.end(), [&column](const v1::EnsembleJob& job) {
-      return column.text(job) == column.usual;
-    });
-  });
-  return columns;
-}
-
 void PrintTable(const std::vector<v1::EnsembleJob>& jobs, absl::Time now, std::ostream& out) {
-  const std::vector<OptionalColumn> optional = OptionalColumns(jobs, now);
-  Cells titles = {"name", "experiment", "state", "done", "points", "samples", "created", "ended"};
-  for (const OptionalColumn& column : optional) titles.push_back(column.title);
-  TextTable table(titles, {"name", "experiment", "state", "created", "ended", "principal",
-                           "results", "labels"});
+  const bool has_principals = std::any_of(jobs.begin(), jobs.end(), [&](const auto& job) {
+    return job.principal() != jobs.front().principal();
+  });
+  const bool has_priorities =
+      std::any_of(jobs.begin(), jobs.end(), [](const auto& job) { return job.priority() != 0; });
+  TextTable table(
+      {"name", "experiment", "state", "done", "points", "samples", "created", "ended", "principal",
+       "priority", "results", "labels"},
+      {"name", "experiment", "state", "created", "ended", "principal", "results", "labels"},
+      {"principal", "priority", "results", "labels"});
   for (const v1::EnsembleJob& job : jobs) {
-    Cells cells = FieldTexts(job, kFields);
-    for (const OptionalColumn& column : optional) cells.push_back(column.text(job));
-    table.AddRow(std::move(cells));
+    table.AddRow(Joined(
+        FieldTexts(job, kFields),
+        {has_principals ? job.principal() : "", has_priorities ? absl::StrCat(job.priority()) : "",
+         ResultsText(job, now), LabelsText(job)}));
   }
   table.Print(out);
 }

@@ -1,7 +1,7 @@
 #include "client/output/model_reasons.h"
 
 #include "absl/strings/str_cat.h"
-#include "client/output/parameter_text.h"
+#include "client/output/field_text.h"
 #include "client/output/spelling.h"
 
 namespace ballpiston::client {

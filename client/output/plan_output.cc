@@ -1,5 +1,3 @@
-#include "client/output/plan_output.h"
-
 #include <cmath>
 #include <string>
 #include <utility>
@@ -8,12 +6,11 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "client/output/csv_row.h"
+#include "client/output/answers.h"
 #include "client/output/field_text.h"
 #include "client/output/json.h"
 #include "client/output/model_reasons.h"
 #include "client/output/number_text.h"
-#include "client/output/parameter_text.h"
 #include "client/output/spelling.h"
 #include "client/output/text_table.h"
 
@@ -116,8 +113,9 @@ const v1::ModelPlan& ChosenModel(const v1::PointPlan& point) {
 }
 
 void PrintChoices(const v1::PlanEnsembleJobResponse& plan, std::ostream& out) {
-  const Cells parameters = ParametersOf(plan.points());
-  TextTable table(Joined(Joined(parameters, {"model"}), kCostTitles), {"model"});
+  const Cells parameters = ParametersInTable();
+  TextTable table(Joined(Joined(parameters, {"model"}), kCostTitles), {"model"},
+                  OptionalParameters());
   ModelReasons reasons;
   for (const v1::PointPlan& point : plan.points()) {
     const Cells cells = FieldTexts(point.parameters(), parameters, &TenDigits);

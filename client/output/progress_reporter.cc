@@ -11,7 +11,6 @@
 #include "absl/time/clock.h"
 #include "client/output/json.h"
 #include "client/output/number_text.h"
-#include "client/output/progress_line.h"
 #include "client/output/spelling.h"
 
 namespace ballpiston::client {

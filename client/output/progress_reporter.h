@@ -19,7 +19,7 @@
 #include "absl/time/time.h"
 #include "ballpiston/file/v1/progress.pb.h"
 #include "ballpiston/v1/ensemble.pb.h"
-#include "client/output/progress_meter.h"
+#include "client/output/progress_line.h"
 
 namespace ballpiston::client {
 

@@ -1,6 +1,5 @@
 #include "client/output/result_writer.h"
 
-#include <algorithm>
 #include <optional>
 #include <set>
 #include <string>
@@ -10,11 +9,9 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "client/output/csv_writer.h"
 #include "client/output/field_text.h"
 #include "client/output/json.h"
 #include "client/output/model_reasons.h"
-#include "client/output/parameter_text.h"
 #include "client/output/spelling.h"
 #include "client/output/text_table.h"
 
@@ -57,6 +54,38 @@ class JsonWriter : public ResultWriter {
   bool first_ = true;
 };
 
+// A row for each estimate.
+class CsvWriter : public ResultWriter {
+ public:
+  CsvWriter(std::ostream& out, bool is_file) : out_(out), is_file_(is_file) {}
+
+  void Begin(const v1::EnsembleJob& job) override {
+    if (is_file_) {
+      out_ << "# " << job.name() << ", engine " << job.engine_version() << ", client "
+           << BALLPISTON_VERSION << "\n# " << Json(job.spec()) << '\n';
+    }
+    parameters_ = ParametersInCsv(job.spec().grid());
+    out_ << CsvRow(Joined(Joined(parameters_, kPointFields), kEstimateFields));
+  }
+  void Add(const v1::PointResult& point) override {
+    const Cells first =
+        Joined(FieldTexts(point.parameters(), parameters_), FieldTexts(point, kPointFields));
+    for (const v1::Estimate& estimate : point.estimates()) {
+      out_ << CsvRow(Joined(first, FieldTexts(estimate, kEstimateFields)));
+    }
+  }
+  void End() override {}
+
+ private:
+  inline static const Cells kPointFields = {"model", "samples"};
+  inline static const Cells kEstimateFields = {"name",    "value",       "standard_error", "exact",
+                                               "z_score", "model_error", "noise_floor",    "limit"};
+
+  std::ostream& out_;
+  const bool is_file_;
+  Cells parameters_;
+};
+
 // Columns that a table has only if at least one estimate has the value.
 const Cells kExtraColumns = {"model_error", "noise_floor", "limit"};
 
@@ -82,25 +111,17 @@ class TableWriter : public ResultWriter {
   }
 
   void End() override {
-    std::erase_if(extra_columns_, [this](const std::string& column) { return IsEmpty(column); });
-    point_columns_ = ParametersOf(points_);
     out_ << Heading() << '\n';
-    TextTable table(Titles(), {"model", "estimate"});
+    std::set<std::string> optional = OptionalParameters();
+    optional.insert(kExtraColumns.begin(), kExtraColumns.end());
+    optional.insert("model");
+    TextTable table(Titles(), {"model", "estimate"}, optional);
     for (const v1::PointResult& point : points_) AddRows(point, table);
     if (!points_.empty()) table.Print(out_);
     reasons_.Print(out_);
   }
 
  private:
-  bool HasSeveralModels() const { return models_.size() > 1; }
-
-  bool IsEmpty(const std::string& column) const {
-    return std::all_of(points_.begin(), points_.end(), [&](const v1::PointResult& point) {
-      return std::none_of(point.estimates().begin(), point.estimates().end(),
-                          [&](const v1::Estimate& row) { return NumberIn(row, column); });
-    });
-  }
-
   std::string Heading() const {
     return absl::StrCat(Spelling(job_.spec().experiment()), ", ",
                         models_.empty() ? "no finished points"
@@ -111,18 +132,15 @@ class TableWriter : public ResultWriter {
                         " points)");
   }
 
-  Cells Titles() const {
-    Cells titles = point_columns_;
-    if (HasSeveralModels()) titles.push_back("model");
-    titles.insert(titles.end(), {"samples", "estimate", "value", "error", "exact", "z"});
-    return Joined(std::move(titles), extra_columns_);
+  static Cells Titles() {
+    return Joined(Joined(ParametersInTable(),
+                         {"model", "samples", "estimate", "value", "error", "exact", "z"}),
+                  kExtraColumns);
   }
 
   Cells PointCells(const v1::PointResult& point) const {
-    Cells cells = FieldTexts(point.parameters(), point_columns_, &TenDigits);
-    if (HasSeveralModels()) cells.push_back(Spelling(point.model()));
-    cells.push_back(ExactText(point.samples()));
-    return cells;
+    return Joined(FieldTexts(point.parameters(), ParametersInTable(), &TenDigits),
+                  {models_.size() > 1 ? Spelling(point.model()) : "", ExactText(point.samples())});
   }
 
   void AddRows(const v1::PointResult& point, TextTable& table) const {
@@ -132,7 +150,7 @@ class TableWriter : public ResultWriter {
           Measured(row.value(), NumberIn(row, "standard_error"), NumberIn(row, "exact"));
       const std::string z = row.has_z_score() ? absl::StrFormat("%+.2f", row.z_score()) : "";
       Cells cells = Joined(point_cells, {row.name(), text.value, text.error, text.exact, z});
-      for (const std::string& column : extra_columns_) cells.push_back(ExtraCell(column, row));
+      for (const std::string& column : kExtraColumns) cells.push_back(ExtraCell(column, row));
       table.AddRow(std::move(cells));
     }
     for (const std::string& remark : point.remarks()) table.AddLine("remark: " + remark);
@@ -143,12 +161,11 @@ class TableWriter : public ResultWriter {
   std::vector<v1::PointResult> points_;
   std::set<std::string> models_;
   ModelReasons reasons_;
-  Cells point_columns_, extra_columns_ = kExtraColumns;
 };
 
 }  // namespace
 
-std::unique_ptr<ResultWriter> NewResultWriter(Format format, std::ostream& out) {
+std::unique_ptr<ResultWriter> NewResultWriter(Format format, std::ostream& out, bool is_file) {
   switch (format) {
     case Format::kJson:
       return std::make_unique<JsonWriter>(out);
@@ -157,7 +174,7 @@ std::unique_ptr<ResultWriter> NewResultWriter(Format format, std::ostream& out) 
     case Format::kTable:
       return std::make_unique<TableWriter>(out);
     default:
-      return NewCsvWriter(format, out);
+      return std::make_unique<CsvWriter>(out, is_file);
   }
 }
 

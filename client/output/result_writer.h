@@ -6,16 +6,12 @@
 //   jsonl   one point per line
 //   csv     rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score,
 //           model_error,noise_floor,limit; after exponent the other parameters of the grid
-//           (parameter_text.h)
-//   csv-histograms  the same first columns up to samples, then name,sigma,time,lower,upper,count,
-//           density,exact_density; one row for each bin
-//   csv-curves  the same first columns up to samples, then name,time,position,value,
-//           standard_error,limit; one row for each point of a curve
+//           (field_text.h)
 //
 // Absent values are empty. A table has the column model only if the points have different models,
 // and model_error, noise_floor and limit only if an estimate has the value. Each remark is a line
 // below the estimates of its point, and the reasons for the models are below the table
-// (model_reasons.h). CSV has no remarks. Tables and csv have neither histograms nor curves. The
+// (model_reasons.h). CSV has no remarks. Tables and CSV have neither histograms nor curves. The
 // same points give the same bytes: the names of the points, which have the job's id, are left out.
 #pragma once
 
@@ -24,9 +20,16 @@
 
 #include "ballpiston/v1/ensemble.pb.h"
 #include "ballpiston/v1/result.pb.h"
-#include "client/output/format.h"
 
 namespace ballpiston::client {
+
+// The formats of all output.
+enum class Format {
+  kTable,  // aligned text, with as many digits as the standard error supports
+  kJson,   // one document of proto JSON with the proto's field names
+  kJsonl,  // one JSON object per line and point
+  kCsv     // a header, then one row for each point and estimate
+};
 
 class ResultWriter {
  public:
@@ -37,8 +40,10 @@ class ResultWriter {
   virtual void End() = 0;  // once, after all points
 };
 
-// `out` must outlive the writer.
-std::unique_ptr<ResultWriter> NewResultWriter(Format format, std::ostream& out);
+// `out` must outlive the writer. A file carries the job's name, its specification with the seed,
+// and the versions of engine and client: as CSV it has them in two more lines, which begin with #.
+std::unique_ptr<ResultWriter> NewResultWriter(Format format, std::ostream& out,
+                                              bool is_file = false);
 
 // The view to request: it includes histograms and curves if the format shows them.
 v1::ListResultsRequest::View ViewFor(Format format);

@@ -1,10 +1,9 @@
-#include "client/output/status_output.h"
-
 #include <algorithm>
 #include <string>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/output/answers.h"
 #include "client/output/field_text.h"
 #include "client/output/json.h"
 #include "client/output/spelling.h"
@@ -25,11 +24,11 @@ std::string CountText(double count) {
   return count < 1e7 ? ExactText(count) : absl::StrFormat("%.3g", count);
 }
 
-std::string LimitText(double limit) { return limit == 0 ? "no limit" : CountText(limit); }
+std::string DaysText(double days) { return Counted(days, "day"); }
 
-std::string DayLimitText(double days) { return days == 0 ? "no limit" : Counted(days, "day"); }
-
-std::string ByteLimitText(double limit) { return limit == 0 ? "no limit" : BytesText(limit); }
+std::string LimitText(double limit, std::string (*text)(double) = &CountText) {
+  return limit == 0 ? "no limit" : text(limit);
+}
 
 // A time per operation as a rate per second: 490 million.
 std::string SpeedText(double seconds) {
@@ -97,8 +96,8 @@ void PrintLimits(const v1::ServerLimits& limits, std::ostream& out) {
   table.AddRow(
       {"active points of a principal", LimitText(limits.max_active_points_per_principal())});
   table.AddRow({"streams of a principal", LimitText(limits.max_streams_per_principal())});
-  table.AddRow({"message", ByteLimitText(limits.max_message_bytes())});
-  table.AddRow({"results kept", DayLimitText(limits.retain_days())});
+  table.AddRow({"message", LimitText(limits.max_message_bytes(), &BytesText)});
+  table.AddRow({"results kept", LimitText(limits.retain_days(), &DaysText)});
   out << '\n';
   table.Print(out);
 }
@@ -116,9 +115,15 @@ void PrintPrincipals(const v1::ServerStatus& status, std::ostream& out) {
   table.Print(out);
 }
 
+void PrintCsv(const v1::ServerStatus& status, std::ostream& out) {
+  const Cells names = PlainFields(*v1::ServerStatus::descriptor());
+  out << CsvRow(names) << CsvRow(FieldTexts(status, names));
+}
+
 }  // namespace
 
 void PrintStatus(const v1::ServerStatus& status, absl::Time now, Format format, std::ostream& out) {
+  if (format == Format::kCsv) return PrintCsv(status, out);
   if (format != Format::kTable) {
     out << Json(status) << '\n';
     return;

@@ -18,14 +18,19 @@ size_t Width(const std::string& text) {
 
 }  // namespace
 
-TextTable::TextTable(std::vector<std::string> titles, std::set<std::string> left)
-    : left_(std::move(left)), widths_(titles.size(), 0) {
-  AddRow(std::move(titles));
+TextTable::TextTable(std::vector<std::string> titles, std::set<std::string> left,
+                     const std::set<std::string>& optional)
+    : left_(std::move(left)), widths_(titles.size(), 0), is_shown_(titles.size()) {
+  AddRow(titles);
+  for (size_t i = 0; i < titles.size(); ++i) is_shown_[i] = !optional.contains(titles[i]);
 }
 
 void TextTable::AddRow(std::vector<std::string> row) {
   row.resize(widths_.size());
-  for (size_t i = 0; i < row.size(); ++i) widths_[i] = std::max(widths_[i], Width(row[i]));
+  for (size_t i = 0; i < row.size(); ++i) {
+    widths_[i] = std::max(widths_[i], Width(row[i]));
+    if (!row[i].empty()) is_shown_[i] = true;
+  }
   rows_.push_back({.cells = std::move(row), .line = ""});
 }
 
@@ -35,11 +40,14 @@ void TextTable::AddLine(std::string text) {
 
 std::string TextTable::Line(const Row& row, size_t indent) const {
   std::string line = std::string(indent, ' ') + row.line;
+  const char* separator = "";
   for (size_t i = 0; i < row.cells.size(); ++i) {
+    if (!is_shown_[i]) continue;
     const std::string& cell = row.cells[i];
     const std::string padding(widths_[i] - Width(cell), ' ');
     const bool left = left_.contains(rows_[0].cells[i]);
-    absl::StrAppend(&line, i == 0 ? "" : "  ", left ? "" : padding, cell, left ? padding : "");
+    absl::StrAppend(&line, separator, left ? "" : padding, cell, left ? padding : "");
+    separator = "  ";
   }
   absl::StripTrailingAsciiWhitespace(&line);
   return line;

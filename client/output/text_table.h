@@ -10,8 +10,10 @@ namespace ballpiston::client {
 
 class TextTable {
  public:
-  // `left`: the titles of the columns that are aligned left.
-  explicit TextTable(std::vector<std::string> titles, std::set<std::string> left = {});
+  // `left`: the titles of the columns that are aligned left. `optional`: those of the columns that
+  // are left out if all their cells are empty.
+  explicit TextTable(std::vector<std::string> titles, std::set<std::string> left = {},
+                     const std::set<std::string>& optional = {});
 
   // One text for each column.
   void AddRow(std::vector<std::string> row);
@@ -30,6 +32,7 @@ class TextTable {
 
   const std::set<std::string> left_;
   std::vector<size_t> widths_;
+  std::vector<bool> is_shown_;
   std::vector<Row> rows_;
 };
 

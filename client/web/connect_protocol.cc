@@ -56,7 +56,7 @@ Struct ErrorOf(const absl::Status& status) {
   return error;
 }
 
-std::string Envelope(char flags, absl::string_view message) {
+std::string FlaggedEnvelope(char flags, absl::string_view message) {
   std::string envelope(1, flags);
   const auto length = static_cast<uint32_t>(message.size());
   for (int shift = 24; shift >= 0; shift -= 8) {
@@ -102,16 +102,16 @@ int HttpStatus(absl::StatusCode code) {
 
 std::string ErrorJson(const absl::Status& status) { return Json(ErrorOf(status)); }
 
-std::string Envelope(absl::string_view message) { return Envelope(0, message); }
+std::string Envelope(absl::string_view message) { return FlaggedEnvelope(0, message); }
 
 std::string EndOfStream(const absl::Status& status) {
   Struct end;
   if (!status.ok()) *(*end.mutable_fields())["error"].mutable_struct_value() = ErrorOf(status);
-  return Envelope(kEndFlag, Json(end));
+  return FlaggedEnvelope(kEndFlag, Json(end));
 }
 
 absl::StatusOr<std::string> OpenEnvelope(absl::string_view body) {
-  if (body.size() >= kPrefix && Envelope(0, body.substr(kPrefix)) == body) {
+  if (body.size() >= kPrefix && FlaggedEnvelope(0, body.substr(kPrefix)) == body) {
     return std::string(body.substr(kPrefix));
   }
   return absl::InvalidArgumentError(

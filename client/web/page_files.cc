@@ -1,16 +1,25 @@
 #include "client/web/page_files.h"
 
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
-#include "client/library/installed_files.h"
+#include "client/library/child_process.h"
 
 namespace ballpiston::client {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Empty if the file cannot be read.
+std::string Contents(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
 
 // Empty if the file does not belong to the page.
 std::string TypeOf(const fs::path& file) {
@@ -58,7 +67,8 @@ absl::StatusOr<std::string> WithFilesInside(const PageFiles& files, absl::string
 }  // namespace
 
 absl::StatusOr<PageFiles> ReadPageFiles() {
-  const fs::path folder = InstalledFolder("web");
+  const fs::path program_folder = fs::path(ProgramBeside("")).parent_path();
+  const fs::path folder = program_folder.parent_path() / "share/ballpiston/web";
   PageFiles files;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {

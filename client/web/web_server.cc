@@ -77,11 +77,9 @@ absl::StatusOr<std::optional<absl::Duration>> TimeoutOf(const Request& request) 
       "Connect-Timeout-Ms: ", Quoted(text), " is not a whole number of 1 to 10 digits above 0"));
 }
 
-}  // namespace
-
-class WebServer::Implementation {
+class WebServer {
  public:
-  Implementation(PageFiles files, Call call) : files_(std::move(files)), call_(std::move(call)) {
+  WebServer(const PageFiles& files, const GatewayCall& call) : files_(files), call_(call) {
     server_.new_task_queue = [] { return new httplib::ThreadPool(kMostConnections); };
     server_.set_payload_max_length(kMostRequestBytes);
     server_.set_write_timeout(kPatience);
@@ -188,19 +186,21 @@ class WebServer::Implementation {
         });
   }
 
-  const PageFiles files_;
-  const Call call_;
+  const PageFiles& files_;
+  const GatewayCall& call_;
   std::optional<PageAccess> access_;
   httplib::Server server_;
 };
 
-WebServer::WebServer(PageFiles files, Call call)
-    : implementation_(std::make_unique<Implementation>(std::move(files), std::move(call))) {}
+}  // namespace
 
-WebServer::~WebServer() = default;
-
-absl::Status WebServer::Bind(int port) { return implementation_->Bind(port); }
-std::string WebServer::Url() const { return implementation_->Url(); }
-void WebServer::Serve() { implementation_->Serve(); }
+absl::Status ServePage(const PageFiles& files, const GatewayCall& call, int port,
+                       const std::function<void(const std::string& url)>& ready) {
+  WebServer server(files, call);
+  if (absl::Status bound = server.Bind(port); !bound.ok()) return bound;
+  ready(server.Url());
+  server.Serve();
+  return absl::OkStatus();
+}
 
 }  // namespace ballpiston::client

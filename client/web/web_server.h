@@ -9,8 +9,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
-#include <memory>
 #include <string>
 
 #include "absl/status/status.h"
@@ -22,23 +20,12 @@ namespace ballpiston::client {
 inline constexpr int kMostConnections = 32;
 inline constexpr size_t kMostRequestBytes = 4 << 20;  // the same as gRPC's default limit
 
-class WebServer {
- public:
-  using Call = std::function<absl::Status(const JsonCall&, const JsonReceiver&)>;
+using GatewayCall = std::function<absl::Status(const JsonCall&, const JsonReceiver&)>;
 
-  // Several threads may use `call` at the same time.
-  WebServer(PageFiles files, Call call);
-  ~WebServer();
-
-  // `port` 0 chooses a free port. UNAVAILABLE if the port is not free.
-  absl::Status Bind(int port);
-  // The page's address with its token. Call it after Bind.
-  std::string Url() const;
-  void Serve();  // returns only when the program ends
-
- private:
-  class Implementation;
-  std::unique_ptr<Implementation> implementation_;
-};
+// Serves until the program ends. Calls `ready` with the page's address and its token once the port
+// is open; `port` 0 chooses a free one. UNAVAILABLE if the port is not free. Several threads may
+// use `call` at the same time.
+absl::Status ServePage(const PageFiles& files, const GatewayCall& call, int port,
+                       const std::function<void(const std::string& url)>& ready);
 
 }  // namespace ballpiston::client

@@ -12,6 +12,8 @@
 namespace ballpiston::server {
 namespace {
 
+constexpr char kWait[] = "wait until some of them have ended, or cancel some";
+
 bool Exceeds(double value, double limit) { return limit > 0 && value > limit; }
 
 // Refuses one more job of the principal if it would exceed a limit.
@@ -24,16 +26,17 @@ void CheckQueue(Database& database, const Limits& limits, const JobRecord& job) 
     database.Fail(LimitExceeded(reason, what, flag, static_cast<double>(most)));
   };
   check(load.jobs + 1, limits.max_active_jobs, "QUEUE_FULL", "max-active-jobs",
-        absl::StrCat(load.jobs, " jobs are active"));
+        absl::StrCat(load.jobs, " jobs are active: retry when some of them have ended"));
   check(load.own_jobs + 1, limits.max_active_jobs_per_principal, "TOO_MANY_JOBS",
         "max-active-jobs-per-principal",
-        absl::StrCat(principal, " has ", load.own_jobs, " active jobs already"));
+        absl::StrCat(principal, " has ", load.own_jobs, " active jobs already: ", kWait));
   const int64_t points = load.points + job.points, own_points = load.own_points + job.points;
   check(points, limits.max_active_points, "TOO_MANY_ACTIVE_POINTS", "max-active-points",
-        absl::StrCat("active jobs would have ", points, " points with this one"));
+        absl::StrCat("active jobs would have ", points, " points with this one: ", kWait));
   check(own_points, limits.max_active_points_per_principal, "TOO_MANY_ACTIVE_POINTS",
         "max-active-points-per-principal",
-        absl::StrCat(principal, "'s active jobs would have ", own_points, " points with this one"));
+        absl::StrCat(principal, "'s active jobs would have ", own_points,
+                     " points with this one: ", kWait));
 }
 
 // Results expire before the store is full, but those of pinned and active jobs do not.
@@ -115,8 +118,10 @@ void Continue(Database& database, JobRecord& record) {
 absl::Status CheckSize(const CheckedSpec& checked, const Limits& limits) {
   const double points = static_cast<double>(PointCount(checked.spec));
   if (Exceeds(points, static_cast<double>(limits.max_points_per_job))) {
-    return LimitExceeded("TOO_MANY_POINTS", absl::StrCat("the grid has ", points, " points"),
-                         "max-points-per-job", static_cast<double>(limits.max_points_per_job));
+    return LimitExceeded(
+        "TOO_MANY_POINTS",
+        absl::StrCat("the grid has ", points, " points: split it between several jobs"),
+        "max-points-per-job", static_cast<double>(limits.max_points_per_job));
   }
   const Target& target = checked.spec.target;
   const bool open_ended = target.tolerance || target.budget_seconds;
@@ -124,7 +129,9 @@ absl::Status CheckSize(const CheckedSpec& checked, const Limits& limits) {
       target.samples.value_or(target.collisions.value_or(open_ended ? 0 : kDefaultSamples));
   const double samples = points * static_cast<double>(of_a_point);
   if (!Exceeds(samples, limits.max_samples_per_job)) return absl::OkStatus();
-  return LimitExceeded("TOO_MANY_SAMPLES", absl::StrCat("the job takes ", samples, " samples"),
+  return LimitExceeded("TOO_MANY_SAMPLES",
+                       absl::StrCat("the job takes ", samples,
+                                    " samples: ask for fewer samples per point, or split the grid"),
                        "max-samples-per-job", limits.max_samples_per_job);
 }
 

@@ -42,7 +42,7 @@ g++ -fsyntax-only "$work/all.cc" \
 expect result.csv ballpiston run conditional-mean-free-time --rho 0.5296 \
   --delta 0.1 --epsilon 0.1 --save "$work/result.csv"
 expect "# ensembleJobs/" head -1 "$work/result.csv"
+export BALLPISTON_PYTHON=/usr/bin/python3
 expect mean-free-time: ballpiston figure --list
-expect figures/cell.svg env BALLPISTON_PYTHON=/usr/bin/python3 \
-  ballpiston figure cell --out "$work/figures"
+expect figures/cell.svg ballpiston figure cell --out "$work/figures"
 echo "the installed tree works"

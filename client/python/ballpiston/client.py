@@ -13,7 +13,6 @@ import numpy.typing as npt
 from ballpiston.closed_forms import ClosedForms
 from ballpiston.collisions import Collisions
 from ballpiston.connection import Connection
-from ballpiston.errors import ResourceExhausted
 from ballpiston.job import Job
 from ballpiston.parameter_lists import Numbers, Shapes, number_list, real_number, shape_list
 from ballpiston.parameter_lists import whole_number
@@ -29,17 +28,6 @@ from ballpiston.v1 import analytic_pb2, ensemble_pb2, server_pb2, spec_pb2, trac
 
 _COLLECTION = "ensembleJobs/"
 _PAGE = 1000
-
-# For each limit of the server, named by the reason of its error, advice for the user.
-_HINTS = {
-    "TOO_MANY_POINTS": "Split the grid between several jobs.",
-    "TOO_MANY_SAMPLES": "Ask for fewer at each point, or split the grid.",
-    "QUEUE_FULL": "Try again when some jobs have ended.",
-    "TOO_MANY_JOBS": "Wait until some have ended, or cancel some: client.jobs(), job.cancel()",
-    "TOO_MANY_ACTIVE_POINTS": "Wait until some jobs have ended, or cancel some: job.cancel()",
-    "TOO_MANY_STORED_BYTES": "Delete jobs that are no longer needed: client.jobs(), job.delete()",
-    "STORE_FULL": "Delete jobs that are no longer needed: client.jobs(), job.delete()",
-}
 
 
 def connect(
@@ -380,10 +368,6 @@ class Client:
         could answer does not get a second one."""
         try:
             return self._connection.call(self._connection.ensembles.CreateEnsembleJob, request)
-        except ResourceExhausted as error:
-            if hint := _HINTS.get(error.reason):
-                error.args = (f"{error}\n{hint}",)
-            raise
         except KeyboardInterrupt:
             print(
                 "The server may have accepted the job. With "

@@ -87,9 +87,8 @@ TEST_F(CommandLineTest, NoLibraryLogsToStandardError) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-// The package gets the flags as they were written, and the server in the environment.
+// The package gets the words as they were written, and the server in the environment.
 TEST_F(CommandLineTest, AFigureStartsPythonAndReturnsItsExitCode) {
-  EXPECT_THAT(Ballpiston({"figure", "--list"}).out, HasSubstr("mean-free-time: "));
   const std::string python = home_.File("python");
   WriteFile(python,
             "#!/bin/sh\n[ \"$1\" = -c ] && exit 0  # the check of its modules\n"
@@ -103,8 +102,8 @@ TEST_F(CommandLineTest, AFigureStartsPythonAndReturnsItsExitCode) {
                   "--relaxation-delta", "0.1,0.2", "--server", "h:1"});
   EXPECT_EQ(outcome.code, 3) << outcome.err;
   EXPECT_EQ(Contents(home_.File("said")),
-            "-m ballpiston.figures mean-free-time --out figures --quick --relaxation-delta 0.1,0.2 "
-            "--samples 7 h:1\n");
+            "-m ballpiston.figures mean-free-time --out figures --quick --samples 7 "
+            "--relaxation-delta 0.1,0.2 h:1\n");
 }
 
 // ---- exit codes ----

@@ -2,6 +2,7 @@
 // transcripts/settings.txt shows what a file may hold, and the messages about mistakes.
 #include "client/command/config_file.h"
 
+#include "client/command/follow_job.h"
 #include "tests/client/preamble.h"
 
 namespace ballpiston::client {
@@ -33,9 +34,11 @@ const Ranked kRanked[] = {
      [](const Options& o) -> std::string { return o.security.tls ? "true" : "false"; }},
     {"quiet",
      {"true", "false", "true", "false"},
-     [](const Options& o) -> std::string { return o.quiet ? "true" : "false"; }},
+     [](const Options& o) -> std::string {
+       return o.verbosity == Verbosity::kQuiet ? "true" : "false";
+     }},
     {"verbose", {"true", "false", "true", "false"}, [](const Options& o) -> std::string {
-       return o.verbose ? "true" : "false";
+       return o.verbosity == Verbosity::kVerbose ? "true" : "false";
      }}};
 
 std::string VariableOf(const std::string& key) {
@@ -63,22 +66,36 @@ TEST_F(ConfigFileTest, AFlagReplacesWeakerSourcesOfItsRivals) {
   ASSERT_OK_AND_ASSIGN(CommandLine line, ParseCommandLine({"watch", "abc", "--verbose"}));
   EXPECT_EQ(line.options.security.token, "secret");
   EXPECT_EQ(line.options.security.token_file, "");
-  EXPECT_TRUE(line.options.verbose);
-  EXPECT_FALSE(line.options.quiet);
-  EXPECT_EQ(line.options.progress, ProgressStyle::kBar);
+  EXPECT_EQ(line.options.verbosity, Verbosity::kVerbose);
+  EXPECT_EQ(StyleOf(line.options), ProgressStyle::kBar);
   ASSERT_OK_AND_ASSIGN(line, ParseCommandLine({"watch", "abc", "--quiet", "--token-file", "own"}));
   EXPECT_EQ(line.options.security.token, "");
   EXPECT_EQ(line.options.security.token_file, "own");
-  EXPECT_EQ(line.options.progress, ProgressStyle::kAuto);
+  EXPECT_EQ(StyleOf(line.options), ProgressStyle::kNone);
+}
+
+// The tolerance and a budget go together; every other target replaces a weaker one.
+TEST_F(ConfigFileTest, ATargetReplacesThatOfAWeakerSource) {
+  home_.WriteConfig("[run]\nsamples = 5\n");
+  ASSERT_OK_AND_ASSIGN(CommandLine line, ParseCommandLine({"run", "first-hit", "--budget", "3"}));
+  EXPECT_EQ(line.options.spec.target().kind_case(), v1::Target::KIND_NOT_SET);
+  EXPECT_EQ(line.options.spec.target().budget().seconds(), 3);
+  home_.WriteConfig("[run]\ntolerance = 0.1\nbudget = 3\n");
+  ASSERT_OK_AND_ASSIGN(line, ParseCommandLine({"run", "first-hit"}));
+  EXPECT_EQ(line.options.spec.target().tolerance(), 0.1);
+  EXPECT_EQ(line.options.spec.target().budget().seconds(), 3);
+  ASSERT_OK_AND_ASSIGN(line, ParseCommandLine({"run", "first-hit", "--samples", "7"}));
+  EXPECT_EQ(line.options.spec.target().samples(), 7);
+  EXPECT_FALSE(line.options.spec.target().has_budget());
 }
 
 TEST_F(ConfigFileTest, WhatIsOffOrReplacedReplacesNothing) {
   home_.WriteConfig("verbose = true\nprogress = \"json\"\n");
   ASSERT_OK_AND_ASSIGN(CommandLine line, ParseCommandLine({"watch", "abc", "--quiet=false"}));
-  EXPECT_TRUE(line.options.verbose);
+  EXPECT_EQ(line.options.verbosity, Verbosity::kVerbose);
   const ScopedVariable quiet("BALLPISTON_QUIET", "1");
   ASSERT_OK_AND_ASSIGN(line, ParseCommandLine({"watch", "abc", "--verbose"}));
-  EXPECT_EQ(line.options.progress, ProgressStyle::kJson);
+  EXPECT_EQ(StyleOf(line.options), ProgressStyle::kJson);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // From flags or a file to the request of a job. transcripts/submit.txt shows the rest.
 #include <google/protobuf/util/message_differencer.h>
 
-#include "client/command/create_job.h"
 #include "client/command/question.h"
 #include "client/command/spec_file.h"
 #include "client/library/request_id.h"
@@ -102,7 +101,7 @@ TEST(SpecFile, ErrorShortensALongValue) {
   EXPECT_THAT(message, HasSubstr("XTAIL"));
 }
 
-// ---- create_job.h ----
+// ---- run.cc ----
 
 class CreateJobTest : public ProgramTest {
  protected:

@@ -2,7 +2,6 @@
 #include <climits>
 
 #include "client/library/channel_security.h"
-#include "client/library/connection_hint.h"
 #include "client/library/server_address.h"
 #include "tests/client/preamble.h"
 
@@ -42,7 +41,7 @@ TEST(ServerAddress, TheLoopbackHasManySpellings) {
   }
 }
 
-// ---- channel_security.h and connection_hint.h ----
+// ---- channel_security.h ----
 
 constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
 constexpr auto kDenied = absl::StatusCode::kPermissionDenied;
@@ -124,34 +123,6 @@ TEST_F(SecurityFiles, ErrorsNameTheFileAndTheFault) {
   EXPECT_THAT(Check({.ca = folder_.File("none")}).message(), HasSubstr("none cannot be opened"));
   EXPECT_THAT(Check({.ca = folder_.path()}).message(), HasSubstr("cannot be read"));
   EXPECT_THAT(Check({.ca = Write("ca", kSecret)}).message(), HasSubstr("a PEM file is needed"));
-}
-
-TEST(ConnectionHint, OfAUnixSocketNamesItsOnlyUser) {
-  for (const char* message : {"last error: UNAVAILABLE: unix:/run/s: Socket closed",
-                              "last error: UNKNOWN: unix:/run/s: Permission denied"}) {
-    EXPECT_THAT(SocketHint(message), HasSubstr("only its own user"));
-  }
-  EXPECT_EQ(SocketHint("last error: UNKNOWN: unix:/run/s: No such file or directory"), "");
-}
-
-TEST(ConnectionHint, AdvisesTheUser) {
-  const ChannelSecurity plain, with_ca{.ca = "ca.pem"}, with_tls{.tls = true};
-  const struct {
-    const ChannelSecurity& security;
-    const char* message;
-    const char* hint;
-  } cases[] = {
-      {plain, "last error: UNAVAILABLE: ipv4:127.0.0.1:1: Socket closed", "--ca FILE, or --tls"},
-      {plain, "recvmsg:Connection reset by peer", "--ca FILE, or --tls"},
-      {with_ca, "SSL routines::certificate verify failed", "in ca.pem"},
-      {with_tls, "SSL routines::certificate verify failed", "that this system knows"},
-      {with_ca, "Peer name x is not in peer certificate", "another host"},
-      {with_ca, "SSL routines::wrong version number", "does not use TLS"}};
-  for (const auto& [security, message, hint] : cases) {
-    EXPECT_THAT(ConnectionHint(security, message), HasSubstr(hint)) << message;
-  }
-  EXPECT_EQ(ConnectionHint(plain, "Connection refused"), "");
-  EXPECT_EQ(ConnectionHint(with_tls, "Connection refused"), "");
 }
 
 }  // namespace

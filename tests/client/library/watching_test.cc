@@ -1,74 +1,11 @@
 // Watches of jobs, and the pauses between their attempts.
 #include "client/library/job_watch.h"
-#include "client/library/reattach_pace.h"
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
 #include "tests/client/preamble.h"
 
 namespace ballpiston::client {
 namespace {
-
-// ---- reattach_pace.h ----
-
-using std::chrono::hours;
-using std::chrono::minutes;
-using std::chrono::seconds;
-
-const ReattachPace::Time kStart = ReattachPace::Time() + hours(1);
-
-WatchOptions ThreeMinutes() {
-  WatchOptions options;
-  options.initial_backoff = absl::Seconds(1);
-  options.max_backoff = absl::Seconds(4);
-  options.give_up_after = absl::Minutes(3);
-  return options;
-}
-
-TEST(ReattachPace, PausesDoubleUpToTheirMaximumAndStartAgainAfterAMessage) {
-  const WatchOptions options = ThreeMinutes();
-  ReattachPace pace(options, kStart);
-  for (int round = 0; round < 2; ++round) {
-    for (const double expected : {1, 2, 4, 4, 4, 4}) {
-      const std::optional<absl::Duration> pause = pace.NextPause(kStart);
-      ASSERT_TRUE(pause);
-      EXPECT_GE(absl::ToDoubleSeconds(*pause), 0.999 * expected);
-      EXPECT_LE(absl::ToDoubleSeconds(*pause), 1.251 * expected);
-    }
-    pace.Heard(kStart);
-  }
-}
-
-TEST(ReattachPace, APauseIsAsLongAsTheServerAsks) {
-  const WatchOptions options = ThreeMinutes();
-  ReattachPace pace(options, kStart);
-  for (const double expected : {10, 10, 10}) {
-    const std::optional<absl::Duration> pause = pace.NextPause(kStart, absl::Seconds(10));
-    ASSERT_TRUE(pause);
-    EXPECT_GE(absl::ToDoubleSeconds(*pause), expected);
-    EXPECT_LE(absl::ToDoubleSeconds(*pause), 1.251 * expected);
-  }
-  EXPECT_FALSE(pace.NextPause(kStart, absl::Minutes(4)));
-}
-
-// A pause of 1 s to 1.25 s that begins after 178 s ends within 3 min. A pause that begins after 180
-// s ends too late.
-TEST(ReattachPace, GivesUpWhenTheNextAttemptWouldComeTooLate) {
-  const WatchOptions options = ThreeMinutes();
-  EXPECT_TRUE(ReattachPace(options, kStart).NextPause(kStart + seconds(178)));
-  EXPECT_FALSE(ReattachPace(options, kStart).NextPause(kStart + seconds(180)));
-}
-
-TEST(ReattachPace, TheTimeToGiveUpStartsAgainWithEveryMessage) {
-  const WatchOptions options = ThreeMinutes();
-  ReattachPace pace(options, kStart);
-  ReattachPace::Time now = kStart;
-  for (int i = 0; i < 100; ++i) {
-    now += minutes(2);
-    ASSERT_TRUE(pace.NextPause(now)) << i;
-    pace.Heard(now);
-  }
-  EXPECT_FALSE(pace.NextPause(now + minutes(3)));
-}
-
-// ---- job_watch.h ----
 
 using Job = v1::EnsembleJob;
 
@@ -175,6 +112,30 @@ INSTANTIATE_TEST_SUITE_P(JobWatch, ErrorOfWatch,
                          ::testing::Values(grpc::StatusCode::NOT_FOUND,
                                            grpc::StatusCode::UNAUTHENTICATED,
                                            grpc::StatusCode::RESOURCE_EXHAUSTED));
+
+// Each pause is up to a quarter longer at random. A message restarts the pauses.
+TEST_F(JobWatch, PausesDoubleUpToTheirMaximum) {
+  Start({Unavailable(), Unavailable(), Unavailable(), Unavailable(),
+         Unavailable({SnapshotMessage(1, "t")}), Unavailable(), Succeeded()});
+  EXPECT_OK(Watch());
+  const std::vector<double> least = {1, 2, 4, 4, 1, 2};
+  ASSERT_EQ(pauses_.size(), least.size());
+  for (size_t i = 0; i < least.size(); ++i) {
+    EXPECT_GE(pauses_[i], 0.999 * least[i]);
+    EXPECT_LE(pauses_[i], 1.251 * least[i]);
+  }
+}
+
+TEST_F(JobWatch, APauseIsAsLongAsTheServerAsks) {
+  google::rpc::RetryInfo retry;
+  retry.mutable_retry_delay()->set_nanos(20'000'000);
+  google::rpc::Status details;
+  details.add_details()->PackFrom(retry);
+  const grpc::Status busy(grpc::StatusCode::UNAVAILABLE, "busy", details.SerializeAsString());
+  Start({{{}, busy}, Succeeded()});
+  EXPECT_OK(Watch());
+  EXPECT_THAT(pauses_, ElementsAre(AllOf(Ge(20), Le(25.1))));
+}
 
 // No server listens at the address for a while, as during a restart.
 TEST_F(JobWatch, WaitsForAnAbsentServer) {

@@ -2,7 +2,6 @@
 
 #include "ballpiston/file/v1/progress.pb.h"
 #include "client/output/progress_line.h"
-#include "client/output/progress_meter.h"
 #include "client/output/progress_reporter.h"
 #include "tests/client/preamble.h"
 

@@ -1,7 +1,6 @@
 // The texts of numbers, and tables of jobs and plans. transcripts/ shows the rest.
-#include "client/output/job_list.h"
+#include "client/output/answers.h"
 #include "client/output/number_text.h"
-#include "client/output/plan_output.h"
 #include "tests/client/preamble.h"
 
 namespace ballpiston::client {
@@ -87,7 +86,7 @@ TEST(Counted, OneIsSingular) {
   EXPECT_EQ(Counted(2.5, "day"), "2.5 days");
 }
 
-// ---- job_list.h ----
+// ---- answers.h: jobs ----
 
 const absl::Time kNow = absl::FromUnixSeconds(1700000000);
 
@@ -125,7 +124,7 @@ TEST(JobList, TheTableOmitsTheColumnIfAllResultsStay) {
   EXPECT_EQ(ResultsColumn(Expiring(absl::Hours(24 * 7) + absl::Seconds(1))), "no column");
 }
 
-// ---- plan_output.h ----
+// ---- answers.h: plans ----
 
 std::string PrintedPlan(int points) {
   v1::PlanEnsembleJobResponse plan;

@@ -319,6 +319,8 @@ def test_every_figure_has_its_parts() -> None:
     "flags,text",
     [
         (["--samples", "3"], "--samples: the figure cell has no such variable"),
+        (["--sead", "3"], "did you mean '--seed'?"),
+        (["--quick", "--full"], "--full: not allowed with argument --quick"),
         (["--seed", "1.5"], "--seed has to be a whole number"),
         (["--delta", "0.1,0.2"], "--delta: '0.1,0.2' is not one number"),
         (["--delta", "0.9"], "delta is 0.9; permitted"),
@@ -329,6 +331,31 @@ def test_wrong_values_are_named(
 ) -> None:
     assert command.main(["cell", "--out", str(tmp_path), *flags]) == 2
     assert text in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "words,text",
+    [
+        (["--out", "x"], "name a figure (cell, cell-3d, "),
+        (["mean-free-tim", "--out", "x"], "did you mean 'mean-free-time'?"),
+        (["cell"], "--out is missing: name a folder"),
+    ],
+)
+def test_a_figure_without_its_name_or_folder_is_an_error(
+    words: list[str], text: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert command.main(words) == 2
+    assert text in capsys.readouterr().err
+
+
+def test_help_lists_the_variables_of_a_figure(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        command.main(["--delta", "0.1", "relaxation", "--help"])
+    text = capsys.readouterr().out
+    assert "Relaxation of the piston's energy" in text
+    assert "--samples VALUE" in text and "by default 200000" in text
+    assert command.main(["--list"]) == 0
+    assert "relaxation: Relaxation of the piston's energy" in capsys.readouterr().out
 
 
 def test_a_folder_that_cannot_be_made_is_named(

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import functools
+import importlib
+import inspect
 import re
 import subprocess
 from pathlib import Path
@@ -11,6 +13,8 @@ import pages
 import pytest
 from conftest import LIMIT, PROJECT, Home
 from pages import Command
+
+from ballpiston import figures
 
 PAGES = pages.pages()
 # The reference is made from the table of verbs and flags, and other tests check it.
@@ -84,7 +88,17 @@ def unknown_word(home: Home, words: list[str]) -> str | None:
         return words[0]
     own = words[: words.index("--")] if "--" in words else words  # the rest is for ballpistond
     given = [word.partition("=")[0] for word in own if re.match(r"--?[a-z]", word)]
-    return next((flag for flag in given if flag not in table[verb]), None)
+    known = set(table[verb]) | (flags_of_figure(words[1]) if verb == "figure" else set())
+    return next((flag for flag in given if flag not in known), None)
+
+
+def flags_of_figure(name: str) -> set[str]:
+    """The variables of a figure, which the package knows; help has the other flags."""
+    if name not in figures.names():
+        return set()
+    module = importlib.import_module(f"ballpiston.figures.{name.replace('-', '_')}")
+    keywords = inspect.signature(module.measure).parameters
+    return {f"--{keyword.replace('_', '-')}" for keyword in keywords}
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=str)
@@ -154,3 +168,5 @@ def test_planted_errors_are_found(home: Home) -> None:
     assert unknown_word(home, ["run", "first-hit", "--rho", "0.53"]) is None
     assert unknown_word(home, ["run", "first-hit", "--radius", "0.53"]) == "--radius"
     assert unknown_word(home, ["ran", "first-hit"]) == "ran"
+    assert unknown_word(home, ["figure", "cell", "--delta", "0.1"]) is None
+    assert unknown_word(home, ["figure", "cell", "--epsilon", "0.1"]) == "--epsilon"

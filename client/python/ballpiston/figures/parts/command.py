@@ -1,4 +1,5 @@
 """ballpiston figure NAME --out DIR [--quick | --full] [--edit] [--KEYWORD VALUE ...]
+ballpiston figure --list
 
 Writes the figure's tables, NAME.svg and NAME.png to DIR and prints the paths of the files. With
 --edit only copies the figure's module to DIR. A module that lies there is used unchanged.
@@ -11,10 +12,10 @@ import importlib.util
 import inspect
 import json
 import sys
-from argparse import ArgumentParser, Namespace
+from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, NoReturn
 
 import ballpiston
 from ballpiston.document import write_atomically
@@ -22,38 +23,99 @@ from ballpiston.figures import names
 from ballpiston.figures.parts import style, tables
 from ballpiston.parameter_lists import number_list, whole_number
 from ballpiston.program import run_program
+from ballpiston.suggestion import did_you_mean
+
+# What --help says about the keywords of `measure`.
+_VARIABLES = {
+    "rho": "disc radius",
+    "delta": "the piston's penetrations",
+    "relaxation_delta": "penetrations at which relaxation times are compared, at most 8",
+    "epsilon": "the piston's energies",
+    "exponent": "n of the outgoing law h^(n)",
+    "cells": "shape of the gas, or lengths of the chains",
+    "billiard_cells": "lengths of the billiard's rings",
+    "temperature": "temperature of the gas",
+    "hot": "temperature of the hot reservoir",
+    "cold": "temperature of the cold reservoir",
+    "samples": "first hits, or replicas or stretches of a gas, per point",
+    "billiard_samples": "replicas or stretches of a gas per point, by the billiard",
+    "collisions": "ball-piston collisions per point",
+    "seconds": "computing time of the longest run of each method",
+    "seed": "seed of the random numbers",
+}
+
+
+class _Parser(ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        raise ValueError(message)
+
 
 def main(arguments: list[str]) -> int:
     """Returns the exit code."""
-    return run_program(lambda words: _run(_parsed(words)), arguments)
+    if arguments == ["--list"]:
+        print("\n".join(f"{name}: {_title(name)}" for name in names()))
+        return 0
+    return run_program(lambda words: _run(*_parsed(words)), arguments)
 
 
-def _parsed(arguments: list[str]) -> tuple[Namespace, dict[str, str]]:
-    """The options, and the keywords of `measure` as they were written."""
-    parser = ArgumentParser(prog="ballpiston figure", allow_abbrev=False)
-    parser.add_argument("name", choices=names())
-    parser.add_argument("--out", required=True, type=Path)
-    parser.add_argument("--quick", dest="effort", action="store_const", const="quick")
-    parser.add_argument("--full", dest="effort", action="store_const", const="full")
-    parser.add_argument("--edit", action="store_true")
-    options, rest = parser.parse_known_args(arguments)
-    if len(rest) % 2 or not all(flag.startswith("--") for flag in rest[::2]):
-        parser.error(f"these are not pairs of a flag and a value: {' '.join(rest)}")
-    flags = [flag.removeprefix("--").replace("-", "_") for flag in rest[::2]]
-    return options, dict(zip(flags, rest[1::2]))
+def _parsed(arguments: list[str]) -> tuple[Namespace, ModuleType]:
+    """The options and the figure's module. The options have the keywords of `measure` as they were
+    written, or None."""
+    pairs = zip(["", *arguments], arguments)
+    name = next((word for before, word in pairs if word in names() and before != "--out"), None)
+    if name is None:
+        wrong = arguments[0] if arguments and not arguments[0].startswith("-") else ""
+        fault = f"{wrong!r} is not a figure" if wrong else "name a figure"
+        hint = did_you_mean(wrong, names())
+        raise ValueError(f"{fault} ({', '.join(names())}), or give --list{hint}")
+    common = _Parser(add_help=False, allow_abbrev=False)
+    common.add_argument("--out", type=Path, help="folder for data and pictures; required")
+    common.add_argument("--edit", action="store_true", help="copy the module to it; draw nothing")
+    effort = common.add_mutually_exclusive_group()
+    for level, text in [("quick", "few samples"), ("full", "the paper's number of samples or more")]:
+        effort.add_argument(f"--{level}", dest="effort", action="store_const", const=level, help=text)
+    options, _ = common.parse_known_args(arguments)
+    module = _module(name, None if options.edit else options.out)
+    parser = _Parser(
+        prog="ballpiston figure",
+        allow_abbrev=False,
+        description=module.__doc__,
+        formatter_class=RawDescriptionHelpFormatter,
+        parents=[common],
+    )
+    parser.add_argument("name", metavar=name, help="the figure")
+    for keyword, parameter in _variables(module).items():
+        text = f"{_VARIABLES[keyword]}; " if keyword in _VARIABLES else ""
+        help_text = f"{text}by default {parameter.default}"
+        parser.add_argument(_flag(keyword), metavar="VALUE", help=help_text)
+    options, unknown = parser.parse_known_args(arguments)
+    if unknown:
+        flags = [_flag(keyword) for keyword in _variables(module)]
+        hint = did_you_mean(unknown[0], flags)
+        raise ValueError(f"{unknown[0]}: the figure {name} has no such variable{hint}")
+    if options.out is None:
+        raise ValueError("--out is missing: name a folder for data and pictures")
+    return options, module
 
 
-def _run(parsed: tuple[Namespace, dict[str, str]]) -> list[Path]:
-    options, texts = parsed
+def _variables(module: ModuleType) -> dict[str, inspect.Parameter]:
+    parameters = dict(inspect.signature(module.measure).parameters)
+    parameters.pop("client", None)
+    return parameters
+
+
+def _flag(keyword: str) -> str:
+    return f"--{keyword.replace('_', '-')}"
+
+
+def _run(options: Namespace, module: ModuleType) -> list[Path]:
     try:
         options.out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise ValueError(f"--out: cannot write {options.out}: {error.strerror}") from error
-    own = options.out / f"{options.name.replace('-', '_')}.py"
     if options.edit:
-        return [_copied(options.name, own)]
-    module = _module(options.name, own)
-    keywords = _keywords(module, options.name, options.effort, texts)
+        return [_copied(options.name, options.out)]
+    keywords = _keywords(module, options)
     if "client" in inspect.signature(module.measure).parameters:
         with ballpiston.connect() as client:
             data = module.measure(client, **keywords)
@@ -62,18 +124,30 @@ def _run(parsed: tuple[Namespace, dict[str, str]]) -> list[Path]:
     return _written(options, data, module.draw(data), keywords)
 
 
-def _copied(name: str, to: Path) -> Path:
+def _copied(name: str, folder: Path) -> Path:
+    to = folder / _file(name)
     if not to.exists():
         write_atomically(to, Path(_installed(name)).read_bytes())
     return to
 
 
+def _file(name: str) -> str:
+    return f"{name.replace('-', '_')}.py"
+
+
 def _installed(name: str) -> str:
-    return str(Path(__file__).parents[1] / f"{name.replace('-', '_')}.py")
+    return str(Path(__file__).parents[1] / _file(name))
 
 
-def _module(name: str, own: Path) -> ModuleType:
-    if not own.exists():
+def _title(name: str) -> str:
+    """The first line of the module."""
+    return Path(_installed(name)).read_text(encoding="utf-8").partition("\n")[0].strip('"')
+
+
+def _module(name: str, folder: Path | None) -> ModuleType:
+    """The one in the folder, if it is there."""
+    own = (folder or Path()) / _file(name)
+    if folder is None or not own.exists():
         return importlib.import_module(f"ballpiston.figures.{own.stem}")
     if own.read_bytes() != Path(_installed(name)).read_bytes():
         print(
@@ -88,17 +162,13 @@ def _module(name: str, own: Path) -> ModuleType:
     return module
 
 
-def _keywords(
-    module: ModuleType, name: str, effort: str | None, texts: dict[str, str]
-) -> dict[str, Any]:
+def _keywords(module: ModuleType, options: Namespace) -> dict[str, Any]:
     """Those of `measure` that differ from its defaults."""
-    keywords: dict[str, Any] = dict(module.EFFORT.get(effort, {})) if effort else {}
-    parameters = inspect.signature(module.measure).parameters
-    for keyword, text in texts.items():
-        flag = f"--{keyword.replace('_', '-')}"
-        if keyword not in parameters:
-            raise ValueError(f"{flag}: the figure {name} has no such variable")
-        keywords[keyword] = _value(flag, text, str(parameters[keyword].annotation))
+    keywords: dict[str, Any] = dict(module.EFFORT.get(options.effort, {}))
+    for keyword, parameter in _variables(module).items():
+        text = getattr(options, keyword, None)
+        if text is not None:
+            keywords[keyword] = _value(_flag(keyword), text, str(parameter.annotation))
     return keywords
 
 
