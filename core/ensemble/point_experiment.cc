@@ -103,12 +103,6 @@ void PointExperiment::SetMeasurements(BlockResult empty, std::vector<Measurement
   table_ = std::move(table);
 }
 
-// This run is for an answer that needs no samples. Experiments that sample override this function.
-std::unique_ptr<EngineRun> PointExperiment::StartRun(BlockQueue& queue) const {
-  return RunOneByOne(
-      queue, [](const Block&, const std::stop_token&) { return std::optional(BlockResult()); });
-}
-
 Estimate PointExperiment::FirstEstimate(const BlockResult& merged) const {
   return table_.empty() ? computed_.estimates.front() : table_.front().Of(merged).value();
 }

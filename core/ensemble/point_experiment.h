@@ -74,8 +74,9 @@ class PointExperiment {
   const PointParameters& parameters() const { return parameters_; }
   const Answer& answer() const { return answer_; }
 
-  // The queue must outlive the run. The queue's Next must return blocks of plan().
-  virtual std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const;
+  // The queue must outlive the run. The queue's Next must return blocks of plan(). Null without
+  // blocks.
+  virtual std::unique_ptr<EngineRun> StartRun(BlockQueue& /*queue*/) const { return nullptr; }
 
   // The result before any block. It has the accumulators that every block has; merging needs them.
   const BlockResult& EmptyResult() const { return empty_; }

@@ -83,14 +83,12 @@ class FollowedOrbits : public OrbitsInEquilibrium {
     return After(index, ++orbit.collisions);
   }
 
-  BlockResult Result() const {
-    BlockResult result = experiment_.EmptyResult();
+  void AddTo(BlockResult& result) const {
     for (const Orbit& orbit : orbits_) {
       if (orbit.collisions == 0) continue;  // it has escaped
       result.samples += orbit.collisions;
       AddTo(result.batch_means, orbit);
     }
-    return result;
   }
 
  private:

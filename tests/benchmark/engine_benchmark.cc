@@ -136,14 +136,14 @@ Block BlockOfATurn(const PointExperiment& point, uint64_t turn) {
 
 // The samples of a turn, counted by their flight time, in which blocks of the same size differ.
 double SamplesOfATurn(const PointExperiment& point, double exact_time, uint64_t turn) {
-  const BlockResult result = *RunBlock(point, BlockOfATurn(point, turn));
+  const BlockResult result = RunBlock(point, BlockOfATurn(point, turn));
   const double mean =
       result.moments.empty() ? *result.batch_means[0].Ratio() : result.moments[0].mean;
   return mean * static_cast<double>(result.samples) / exact_time;
 }
 
 double ExactTime(const PointExperiment& point) {
-  return *point.FirstEstimate(*RunBlock(point, {.samples = 1})).exact;
+  return *point.FirstEstimate(RunBlock(point, {.samples = 1})).exact;
 }
 
 void ShowEngines(const char* name, const ExperimentKind* experiment, double delta, int64_t target) {

@@ -52,7 +52,7 @@ TEST(EnergyRelaxation, OrbitsMatchTheReferenceFlow) {
   for (const double epsilon : {0.01, 0.3, 0.5}) {
     const PointParameters point = PaperPoint(0.2, epsilon);
     const EnsembleSpec spec = SpecOfOrbits(point, Model::kBilliardReference, 1);
-    const BlockResult block = *FoldPoint(*PointExperiment::Create(spec, 0));
+    const BlockResult block = FoldPoint(*PointExperiment::Create(spec, 0));
     CounterRandom random(spec.seed, PointStream(spec, point), 0);
     ReferenceFlow flow(kPaperPair, DrawFromFlowMeasureAt(kPaperPair, epsilon, random));
     const double lag = 4 * EnergyRelaxation(kPaperPair, point).unit() * kWindowTimes / (kLags - 1);
