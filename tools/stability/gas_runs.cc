@@ -2,7 +2,6 @@
 
 #include <cstddef>
 
-#include "core/gas/pauses.h"
 #include "server/processor_time.h"
 #include "tools/flows/metered_gases.h"
 #include "tools/stability/gas_watch.h"
@@ -28,8 +27,10 @@ Failures AtEnd(const GasGeometry& geometry, std::span<const GasStart> replicas,
 // Returns false if this takes more processor time than `patience`.
 bool AdvanceTo(double time, MeteredGases& gases, double patience) {
   const double end = server::ThreadSeconds() + patience;
-  Pauses pauses([end] { return server::ThreadSeconds() > end; });
-  return gases.AdvanceTo(time, pauses);
+  while (!gases.AdvanceToward(time)) {
+    if (server::ThreadSeconds() > end) return false;
+  }
+  return true;
 }
 
 }  // namespace
