@@ -122,19 +122,12 @@ PointSummary RelaxationBySpectrum(const EnsembleSpec&, const PointParameters& po
   return summary;
 }
 
-// The events of an orbit for its error. Each walk of the jump process counts.
-double EventsOf(Model model, const EnergyRelaxation& relaxation) {
-  return model == Model::kMarkov ? 1 : relaxation.events_per_orbit();
-}
-
 // By billiard, billiard_reference or markov.
 class EnergyRelaxationExperiment : public PairExperiment {
  public:
   EnergyRelaxationExperiment(const EnsembleSpec& spec, const PointParameters& point)
-      : PairExperiment(spec, point),
-        relaxation_(geometry(), point),
-        events_per_orbit_(EventsOf(answer().model, relaxation_)) {
-    std::vector<Measurement> table = relaxation_.Table(events_per_orbit_, IsLimit());
+      : PairExperiment(spec, point), relaxation_(geometry(), point, answer().model) {
+    std::vector<Measurement> table = relaxation_.Table();
     if (IsLimit()) {
       table.push_back({"spectral_gap", [](const BlockResult&) { return SpectralGap(); }});
     }
@@ -150,13 +143,12 @@ class EnergyRelaxationExperiment : public PairExperiment {
  protected:
   void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
     summary.remarks = RemarksOnDecay(relaxation_.epsilon());
-    summary.curves.push_back(relaxation_.MeasuredCurve(merged, events_per_orbit_));
+    summary.curves.push_back(relaxation_.MeasuredCurve(merged));
     summary.histograms = relaxation_.MeasuredLaws(merged);
   }
 
  private:
   EnergyRelaxation relaxation_;
-  double events_per_orbit_;  // for the standard errors
 };
 
 std::vector<std::vector<double>> ProbabilitiesOfTheLimit(const PointParameters& point) {
@@ -217,7 +209,7 @@ double ErrorOfAnOrbit(Model model, const PointParameters& point) {
 }
 
 double EventsOfAnOrbit(Model model, const PointParameters& point) {
-  return EventsOf(model, EnergyRelaxation(GeometryOf(point), point));
+  return EnergyRelaxation(GeometryOf(point), point, model).events_per_orbit();
 }
 
 constexpr ParameterUse kParametersOfRelaxation[] = {

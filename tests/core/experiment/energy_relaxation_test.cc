@@ -123,7 +123,7 @@ TEST(EnergyRelaxation, WindowContainsNearlyAllOfTheLimitsIntegral) {
       nothing_but_the_remainder.samples = 2;
       nothing_but_the_remainder.moments.resize(1 + kLags);
       nothing_but_the_remainder.moments[0].Add(0);
-      const Estimate remainder = *relaxation.Table(1, false).front().Of(nothing_but_the_remainder);
+      const Estimate remainder = *relaxation.Table().front().Of(nothing_but_the_remainder);
       EXPECT_NE(remainder.value, 0);
       EXPECT_LT(std::fabs(remainder.value / *remainder.limit), 0.01);
     }
