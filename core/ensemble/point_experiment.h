@@ -110,8 +110,9 @@ class PointExperiment {
   PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters,
                   const ChunkPlan& plan);
 
-  // To be called in the constructor of an experiment that samples. The first row of the table must
-  // have an estimate for every sample.
+  // To be called in the constructor of an experiment that samples. If the table has the estimate
+  // that the target names, it becomes the first one. The first row must have an estimate for every
+  // sample.
   void SetMeasurements(BlockResult empty, std::vector<Measurement> table);
 
   // Adds histograms, curves and remarks, and estimates that are not in the table. The summary

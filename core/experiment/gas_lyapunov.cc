@@ -127,8 +127,7 @@ bool IsRounded(size_t k, const GasGeometry& geometry) {
   return balls > 2 && k > 0 && k < balls;
 }
 
-std::vector<Measurement> Table(const GasGeometry& geometry, double temperature,
-                               absl::string_view aim) {
+std::vector<Measurement> Table(const GasGeometry& geometry, double temperature) {
   const double scale = std::sqrt(temperature);
   const auto exponent = [&](size_t k) {
     const double events = IsRounded(k, geometry) ? 0 : 1;
@@ -141,7 +140,7 @@ std::vector<Measurement> Table(const GasGeometry& geometry, double temperature,
       {"exchange_rate", RatioAt(kExchanges), scale}};
   table[2].exact = GasExchangeRate(geometry, temperature);
   for (size_t k = 1; k + 1 < DegreesOfFreedom(geometry); ++k) table.push_back(exponent(k));
-  return WithFirst(std::move(table), aim);
+  return table;
 }
 
 // The time that an event takes with its tangent vectors, measured with 1 to 32 cells.
@@ -157,7 +156,7 @@ class GasLyapunov : public GasExperiment {
         energy_(MeanEnergy(geometry())) {
     const size_t exponents = DegreesOfFreedom(geometry()) - 1;
     SetMeasurements({.batch_means = std::vector<BatchMeans>(kFirstExponent + exponents)},
-                    Table(geometry(), temperature(), AimOf(spec).name));
+                    Table(geometry(), temperature()));
   }
 
   std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override;
