@@ -24,7 +24,7 @@ inline constexpr double kNoTimeLimit = std::numeric_limits<double>::infinity();
 //   uint64_t count() const;                                     at least 1
 //   PairState Start(uint64_t orbit);                            called once for each orbit
 //   AfterCollision Collide(uint64_t orbit, const Collision& collision);  not called for an escape
-//   BlockResult Result() const;                                 called after all orbits have ended
+//   void AddTo(BlockResult& result) const;    in their order; called after all orbits have ended
 // An experiment with tangent vectors has one function more, which follows the events of the
 // reference or the waits of the lanes (OrbitSource::FollowsTangents):
 //   void Follow(uint64_t orbit, const Event& event, const PairState& after);
@@ -38,6 +38,7 @@ concept Follows = requires(Orbits orbits, uint64_t orbit, const Followed&... fol
 template <typename Orbits>
 struct WatchedOrbits {
   Orbits orbits;
+  const BlockResult& empty;
   Health health = {};
 
   uint64_t count() const { return orbits.count(); }
@@ -54,7 +55,8 @@ struct WatchedOrbits {
   }
 
   BlockResult Result() const {
-    BlockResult result = orbits.Result();
+    BlockResult result = empty;
+    orbits.AddTo(result);
     result.health = health;
     return result;
   }
@@ -64,12 +66,15 @@ template <typename Orbits>
 class BlockOrbits : public EngineRun, private OrbitSource {
  public:
   template <typename Make>
-  BlockOrbits(Engine engine, const PairGeometry& geometry, double time_limit, Make make,
-              BlockQueue& queue)
+  BlockOrbits(Engine engine, const PairGeometry& geometry, double time_limit,
+              const BlockResult& empty, Make make, BlockQueue& queue)
       : time_limit_(time_limit),
         queue_(queue),
         observer_(queue.observer()),
-        blocks_(queue, [make](const Block& block) { return WatchedOrbits<Orbits>{make(block)}; }),
+        blocks_(queue,
+                [make, &empty](const Block& block) {
+                  return WatchedOrbits<Orbits>{make(block), empty};
+                }),
         run_(StartOrbits(engine, geometry, *this)) {}
 
   bool Advance() override { return run_->Advance(); }

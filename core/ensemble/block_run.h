@@ -37,7 +37,7 @@ class BlockQueue {
   // do not depend on it.
   virtual OrbitDevice* device() const { return nullptr; }
   // Stop is requested when the run's results are no longer needed.
-  virtual std::stop_token stop() const = 0;
+  virtual std::stop_token stop() const { return {}; }
   // Null: nobody wants to see the collisions. The run asks once.
   virtual CollisionObserver* observer() { return nullptr; }
 };

@@ -60,7 +60,6 @@ class CollisionSampler : private BlockQueue, private CollisionObserver {
   std::optional<Block> Next() override;
   void Done(const Block& block, BlockResult result) override;
   bool Pause() override { return IsReady() || pause_(); }
-  std::stop_token stop() const override { return {}; }
   CollisionObserver* observer() override { return this; }
   void Observe(const Block& block, uint64_t orbit, const Collision& collision) override;
 

@@ -46,10 +46,6 @@ const ExperimentKind* FindExperiment(uint64_t number) {
   return nullptr;
 }
 
-double MemoryOfAThread(const EnsembleSpec& spec, const PointParameters& point) {
-  return spec.experiment->memory(Sampled(spec.model), point);
-}
-
 double MemoryOf(const EnsembleSpec& spec, const PointParameters& point, int threads) {
   constexpr double kOfAnAnswer = 1e6;  // of a point without its samples
   if (NeedsNoSamples(spec)) return kOfAnAnswer;
@@ -57,7 +53,7 @@ double MemoryOf(const EnsembleSpec& spec, const PointParameters& point, int thre
       std::min(static_cast<double>(threads), static_cast<double>(SamplesAskedFor(spec, point)));
   constexpr auto kWaitingResults = static_cast<double>(ChunkFold::kWindow);
   return kOfAnAnswer + kWaitingResults * spec.experiment->memory_of_a_result +
-         used * MemoryOfAThread(spec, point);
+         used * spec.experiment->memory(Sampled(spec.model), point);
 }
 
 }  // namespace ballpiston

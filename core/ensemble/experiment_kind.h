@@ -154,7 +154,4 @@ const ExperimentKind* FindExperiment(uint64_t number);
 // violations.
 double MemoryOf(const EnsembleSpec& spec, const PointParameters& point, int threads);
 
-// The same for a thread alone: the state of one engine and its blocks.
-double MemoryOfAThread(const EnsembleSpec& spec, const PointParameters& point);
-
 }  // namespace ballpiston

@@ -1,6 +1,5 @@
 #include "core/ensemble/measurement.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -45,12 +44,6 @@ std::vector<Estimate> EstimatesOf(const std::vector<Measurement>& table,
     if (auto estimate = row.Of(merged)) estimates.push_back(*std::move(estimate));
   }
   return estimates;
-}
-
-std::vector<Measurement> WithFirst(std::vector<Measurement> table, absl::string_view name) {
-  const auto row = std::ranges::find(table, name, &Measurement::name);
-  std::rotate(table.begin(), row, row + 1);
-  return table;
 }
 
 Estimate MeanOf(const Moments& sample, double events) {

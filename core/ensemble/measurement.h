@@ -35,9 +35,6 @@ struct Measurement {
 // All estimates of a table that the sample is large enough for.
 std::vector<Estimate> EstimatesOf(const std::vector<Measurement>& table, const BlockResult& merged);
 
-// The table with the row of this name, which it must have, in the first place.
-std::vector<Measurement> WithFirst(std::vector<Measurement> table, absl::string_view name);
-
 // The estimate in other units.
 Estimate Scaled(Estimate estimate, double scale);
 

@@ -101,12 +101,8 @@ std::unique_ptr<const PointExperiment> PointExperiment::Create(const EnsembleSpe
 void PointExperiment::SetMeasurements(BlockResult empty, std::vector<Measurement> table) {
   empty_ = std::move(empty);
   table_ = std::move(table);
-}
-
-// This run is for an answer that needs no samples. Experiments that sample override this function.
-std::unique_ptr<EngineRun> PointExperiment::StartRun(BlockQueue& queue) const {
-  return RunOneByOne(
-      queue, [](const Block&, const std::stop_token&) { return std::optional(BlockResult()); });
+  const auto first = std::ranges::find(table_, aim_->name, &Measurement::name);
+  if (first != table_.end()) std::rotate(table_.begin(), first, first + 1);
 }
 
 Estimate PointExperiment::FirstEstimate(const BlockResult& merged) const {
@@ -136,8 +132,7 @@ double RelativeError(const Estimate& estimate) {
 }
 
 bool MeetsTolerance(const Estimate& estimate, double tolerance) {
-  return estimate.standard_error &&
-         *estimate.standard_error <= tolerance * std::fabs(estimate.value);
+  return RelativeError(estimate) <= tolerance;
 }
 
 bool PointExperiment::ReachesTolerance(const BlockResult& merged) const {

@@ -74,8 +74,9 @@ class PointExperiment {
   const PointParameters& parameters() const { return parameters_; }
   const Answer& answer() const { return answer_; }
 
-  // The queue must outlive the run. The queue's Next must return blocks of plan().
-  virtual std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const;
+  // The queue must outlive the run. The queue's Next must return blocks of plan(). Null without
+  // blocks.
+  virtual std::unique_ptr<EngineRun> StartRun(BlockQueue& /*queue*/) const { return nullptr; }
 
   // The result before any block. It has the accumulators that every block has; merging needs them.
   const BlockResult& EmptyResult() const { return empty_; }
@@ -109,8 +110,9 @@ class PointExperiment {
   PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters,
                   const ChunkPlan& plan);
 
-  // To be called in the constructor of an experiment that samples. The first row of the table must
-  // have an estimate for every sample.
+  // To be called in the constructor of an experiment that samples. If the table has the estimate
+  // that the target names, it becomes the first one. The first row must have an estimate for every
+  // sample.
   void SetMeasurements(BlockResult empty, std::vector<Measurement> table);
 
   // Adds histograms, curves and remarks, and estimates that are not in the table. The summary

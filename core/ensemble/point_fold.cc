@@ -130,39 +130,33 @@ namespace {
 
 class QueueOfOne : public BlockQueue {
  public:
-  QueueOfOne(const Block& block, const std::stop_token& stop) : block_(block), stop_(stop) {}
+  explicit QueueOfOne(const Block& block) : block_(block) {}
 
   std::optional<Block> Next() override { return std::exchange(block_, std::nullopt); }
   void Done(const Block&, BlockResult result) override { result_ = std::move(result); }
-  bool Pause() override { return stop_.stop_requested(); }
-  std::stop_token stop() const override { return stop_; }
-  std::optional<BlockResult>& result() { return result_; }
+  bool Pause() override { return false; }
+  BlockResult& result() { return result_; }
 
  private:
   std::optional<Block> block_;
-  const std::stop_token& stop_;
-  std::optional<BlockResult> result_;
+  BlockResult result_;
 };
 
 }  // namespace
 
-bool LocalPoint::Run(const std::stop_token& stop) {
-  stop_ = stop;
+void LocalPoint::Run() {
   const std::unique_ptr<EngineRun> run = experiment_.StartRun(*this);
-  while (!finished() && !stop.stop_requested()) run->Advance();
-  return finished();
+  while (!finished()) run->Advance();
 }
 
-std::optional<BlockResult> FoldPoint(const PointExperiment& experiment,
-                                     const std::stop_token& stop) {
+BlockResult FoldPoint(const PointExperiment& experiment) {
   LocalPoint point(experiment);
-  if (!point.Run(stop)) return std::nullopt;
+  point.Run();
   return point.Merged();
 }
 
-std::optional<BlockResult> RunBlock(const PointExperiment& experiment, const Block& block,
-                                    const std::stop_token& stop) {
-  QueueOfOne queue(block, stop);
+BlockResult RunBlock(const PointExperiment& experiment, const Block& block) {
+  QueueOfOne queue(block);
   experiment.StartRun(queue)->Advance();
   return std::move(queue.result());
 }

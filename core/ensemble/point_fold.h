@@ -18,7 +18,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <stop_token>
 #include <utility>
 #include <vector>
 
@@ -107,9 +106,8 @@ class LocalPoint : private BlockQueue {
   std::optional<Block> NextBlock();
   void Add(const Block& block, BlockResult result);
 
-  // Computes all blocks that are left on the calling thread. False if `stop` was requested before
-  // the end.
-  bool Run(const std::stop_token& stop = {});
+  // Computes all blocks that are left on the calling thread.
+  void Run();
 
   bool finished() const { return fold_.finished(); }
   // With the merged blocks of the first chunk that is not complete.
@@ -119,8 +117,7 @@ class LocalPoint : private BlockQueue {
  private:
   std::optional<Block> Next() override { return NextBlock(); }
   void Done(const Block& block, BlockResult result) override { Add(block, std::move(result)); }
-  bool Pause() override { return finished() || stop_.stop_requested(); }
-  std::stop_token stop() const override { return stop_; }
+  bool Pause() override { return finished(); }
 
   // The fold, with the merged blocks of the first chunk that is not complete.
   PointFold Now() const;
@@ -128,15 +125,12 @@ class LocalPoint : private BlockQueue {
   const PointExperiment& experiment_;
   PointFold fold_;
   ChunkFold chunks_;
-  std::stop_token stop_;  // of Run
 };
 
-// Computes a whole point on the calling thread. Empty if `stop` was requested before the end.
-std::optional<BlockResult> FoldPoint(const PointExperiment& experiment,
-                                     const std::stop_token& stop = {});
+// Computes a whole point on the calling thread.
+BlockResult FoldPoint(const PointExperiment& experiment);
 
-// Computes one block on the calling thread. Empty if `stop` was requested before the end.
-std::optional<BlockResult> RunBlock(const PointExperiment& experiment, const Block& block,
-                                    const std::stop_token& stop = {});
+// Computes one block on the calling thread.
+BlockResult RunBlock(const PointExperiment& experiment, const Block& block);
 
 }  // namespace ballpiston

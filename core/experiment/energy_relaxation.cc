@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "core/arithmetic/elementary_functions.h"
@@ -42,13 +41,16 @@ double CollisionsPerOrbit(const PointParameters& point) {
   return point.Find(kEpsilon) ? kWindowTimes : kOriginTimes + kWindowTimes;
 }
 
-EnergyRelaxation::EnergyRelaxation(const PairGeometry& geometry, const PointParameters& point)
-    : epsilon_(point.Find(kEpsilon)),
+EnergyRelaxation::EnergyRelaxation(const PairGeometry& geometry, const PointParameters& point,
+                                   Model model)
+    : is_limit_(model == Model::kMarkov),
+      epsilon_(point.Find(kEpsilon)),
       unit_of_limit_(MeanFreeTimesOf(geometry).ball_piston / 4),
       unit_(WithoutLastBits(unit_of_limit_)),
       mean_free_time_(4 * unit_),
-      events_per_orbit_(epsilon_ ? ShareThatMeets(geometry, *epsilon_, window())
-                                 : kEventsOfACorrelation) {}
+      events_per_orbit_(is_limit_  ? 1
+                        : epsilon_ ? ShareThatMeets(geometry, *epsilon_, window())
+                                   : kEventsOfACorrelation) {}
 
 double EnergyRelaxation::orbit_time() const {
   return epsilon_ ? window() : kOriginTimes * mean_free_time_ + window();
@@ -115,13 +117,13 @@ std::vector<Measurement> EnergyRelaxation::TableOf(const Reading& integral) cons
   return table;
 }
 
-std::vector<Measurement> EnergyRelaxation::Table(double events_per_orbit, bool is_limit) const {
-  return TableOf([this, is_limit, within = MeanAt(0, events_per_orbit)](const BlockResult& merged) {
-    std::optional<Estimate> integral = within(merged);
+std::vector<Measurement> EnergyRelaxation::Table() const {
+  return TableOf([this](const BlockResult& merged) {
+    std::optional<Estimate> integral = MeanAt(0, events_per_orbit_)(merged);
     const double limit = IntegralOfLimit(kForEver).value;
     integral->value += WithoutLastBits(limit - IntegralOfLimit(window()).value);
     integral->limit = limit;
-    if (is_limit) integral->exact = limit;
+    if (is_limit_) integral->exact = limit;
     return integral;
   });
 }
@@ -133,34 +135,23 @@ std::vector<Estimate> EnergyRelaxation::EstimatesOfLimit() const {
   return EstimatesOf(TableOf([=](const BlockResult&) { return estimate; }), {});
 }
 
-std::string EnergyRelaxation::CurveName() const {
-  return epsilon_ ? "mean_energy" : "energy_autocorrelation";
-}
-
-SpectralValue EnergyRelaxation::CurveOfLimitAt(double time) const {
-  const RelaxationSpectrum& spectrum = RelaxationSpectrum::Get();
-  return epsilon_ ? spectrum.MeanEnergy(*epsilon_, time / unit_of_limit_)
-                  : spectrum.Autocorrelation(time / unit_of_limit_);
-}
-
-Curve EnergyRelaxation::MeasuredCurve(const BlockResult& merged, double events_per_orbit) const {
-  Curve curve = {.name = CurveName()};
-  if (merged.samples == 0) return curve;
-  for (size_t i = 0; i < kLags; ++i) {
-    Estimate there = *MeanAt(1 + i, events_per_orbit)(merged);
-    there.limit = CurveOfLimitAt(Lag(i)).value;
-    curve.points.push_back(CurvePointOf(Lag(i), there));
+Curve EnergyRelaxation::MeasuredCurve(const BlockResult& merged) const {
+  Curve curve = CurveOfLimit();
+  if (merged.samples == 0) curve.points.clear();
+  for (size_t i = 0; i < curve.points.size(); ++i) {
+    const Estimate there = *MeanAt(1 + i, events_per_orbit_)(merged);
+    curve.points[i].value = there.value;
+    curve.points[i].standard_error = there.standard_error;
   }
   return curve;
 }
 
-NamedHistogram EnergyRelaxation::Law(size_t i, Histogram histogram) const {
-  return {.name = "piston_energy", .histogram = std::move(histogram), .time = Lag(kLawLags[i])};
-}
-
 std::vector<NamedHistogram> EnergyRelaxation::MeasuredLaws(const BlockResult& merged) const {
   std::vector<NamedHistogram> laws;
-  for (const Histogram& histogram : merged.histograms) laws.push_back(Law(laws.size(), histogram));
+  for (const Histogram& histogram : merged.histograms) {
+    const double time = Lag(kLawLags[laws.size()]);
+    laws.push_back({.name = "piston_energy", .histogram = histogram, .time = time});
+  }
   return laws;
 }
 
@@ -183,11 +174,13 @@ std::vector<std::vector<double>> EnergyRelaxation::ProbabilitiesOfLimit() const 
 }
 
 Curve EnergyRelaxation::CurveOfLimit() const {
-  Curve curve = {.name = CurveName()};
+  const RelaxationSpectrum& spectrum = RelaxationSpectrum::Get();
+  Curve curve = {.name = epsilon_ ? "mean_energy" : "energy_autocorrelation"};
   for (size_t i = 0; i < kLags; ++i) {
-    const SpectralValue limit = CurveOfLimitAt(Lag(i));
-    curve.points.push_back(
-        {.at = Lag(i), .value = limit.value, .standard_error = limit.error, .limit = limit.value});
+    const double time = Lag(i) / unit_of_limit_;
+    const auto [limit, error] =
+        epsilon_ ? spectrum.MeanEnergy(*epsilon_, time) : spectrum.Autocorrelation(time);
+    curve.points.push_back({.at = Lag(i), .value = limit, .standard_error = error, .limit = limit});
   }
   return curve;
 }

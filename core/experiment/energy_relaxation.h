@@ -32,6 +32,7 @@
 #include <vector>
 
 #include "core/ensemble/measurement.h"
+#include "core/ensemble/model.h"
 #include "core/ensemble/parameter.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/markov/relaxation_spectrum.h"
@@ -57,7 +58,8 @@ inline constexpr size_t kEnergyBins = 61;
 
 class EnergyRelaxation {
  public:
-  EnergyRelaxation(const PairGeometry& geometry, const PointParameters& point);
+  EnergyRelaxation(const PairGeometry& geometry, const PointParameters& point,
+                   Model model = Model::kBilliard);
 
   const std::optional<double>& epsilon() const { return epsilon_; }
   double unit() const { return unit_; }
@@ -71,15 +73,16 @@ class EnergyRelaxation {
   // Adds the numbers of one orbit.
   void Record(const std::vector<double>& values, BlockResult& result) const;
 
-  // The events of an orbit of the billiard for the standard errors (statistics/stated_error.h).
-  // From an epsilon: about the share of orbits in which ball and piston meet. The piston's energy
-  // is constant in the others, so the scatter is that of the orbits that meet.
+  // The events of an orbit for the standard errors (statistics/stated_error.h). Each walk of the
+  // jump process counts. In the billiard, from an epsilon: about the share of orbits in which ball
+  // and piston meet. The piston's energy is constant in the others, so the scatter is that of the
+  // orbits that meet.
   double events_per_orbit() const { return events_per_orbit_; }
 
   // relaxation_time, if it exists; with epsilon also decay_integral. The jump process is the limit,
   // whose value is exact for it. The table must not outlive this object.
-  std::vector<Measurement> Table(double events_per_orbit, bool is_limit) const;
-  Curve MeasuredCurve(const BlockResult& merged, double events_per_orbit) const;
+  std::vector<Measurement> Table() const;
+  Curve MeasuredCurve(const BlockResult& merged) const;
   std::vector<NamedHistogram> MeasuredLaws(const BlockResult& merged) const;
 
   // These four are for the limit. Their standard errors are those of the computation.
@@ -92,15 +95,13 @@ class EnergyRelaxation {
   using ByLag = Eigen::Array<double, kLags, 1>;
 
   ByLag Autocorrelation(const StepFunction& energy) const;
-  std::string CurveName() const;
-  NamedHistogram Law(size_t i, Histogram histogram) const;
   double window() const { return kWindowTimes * mean_free_time_; }
   double Lag(size_t i) const { return window() / (kLags - 1) * static_cast<double>(i); }
-  SpectralValue CurveOfLimitAt(double time) const;
   // int_0^window of the limit's curve: autocorrelation, or mean energy less 1/6.
   SpectralValue IntegralOfLimit(double window) const;
   std::vector<Measurement> TableOf(const Reading& integral) const;
 
+  bool is_limit_;  // the jump process answers
   std::optional<double> epsilon_;
   double unit_of_limit_;  // |G|/|dG_bp|: the spectrum's unit of time
   double unit_;           // unit_of_limit_ without its last bits; measurements use it

@@ -16,17 +16,15 @@
 #include "core/experiment/expected_limit_error.h"
 #include "core/experiment/expected_returns.h"
 #include "core/experiment/pair_experiment.h"
-#include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
 
 namespace ballpiston {
 namespace {
 
-// A group of walkers runs until its slowest walker has finished.
-constexpr uint64_t kWalkersInStep = 256;
-
 class RelaxingOrbits {
  public:
+  static constexpr uint64_t kWalkedTogether = 256;
+
   RelaxingOrbits(const PairExperiment& experiment, const EnergyRelaxation& relaxation,
                  const Block& block)
       : experiment_(experiment),
@@ -53,74 +51,49 @@ class RelaxingOrbits {
       // After the collision the piston has the ball's normal velocity component.
       const double v = collision.state.ball_speed * collision.state.direction.x();
       energy->Add(collision.time, v * v / 2);
-      if (energy->last_jump() < relaxation_.orbit_time()) return AfterCollision::kGoOn;
+      if (!IsComplete(*energy)) return AfterCollision::kGoOn;
     }
     values_[orbit] = relaxation_.Measure(*energy);
     energy.reset();
     return AfterCollision::kEnd;
   }
 
-  BlockResult Result() const {
-    BlockResult result = relaxation_.Empty();
-    for (const std::vector<double>& values : values_) {
-      if (!values.empty()) relaxation_.Record(values, result);
+  double StartOfWalk(uint64_t orbit) {
+    const std::optional<double>& epsilon = relaxation_.epsilon();
+    const double u =
+        epsilon ? std::sqrt(2 * *epsilon) : experiment_.random().Sample(first_ + orbit).Uniform();
+    energies_[orbit].emplace(u * u / 2);
+    return u;
+  }
+
+  AfterCollision Jump(uint64_t orbit, double waiting_time, double u) {
+    StepFunction& energy = *energies_[orbit];
+    energy.Add(relaxation_.unit() * waiting_time, u * u / 2);
+    return IsComplete(energy) ? AfterCollision::kEnd : AfterCollision::kGoOn;
+  }
+
+  // Walks are measured here: measurements between their jumps took 10 % more time.
+  void AddTo(BlockResult& result) const {
+    for (size_t i = 0; i < values_.size(); ++i) {
+      if (!values_[i].empty()) {
+        relaxation_.Record(values_[i], result);
+      } else if (energies_[i] && IsComplete(*energies_[i])) {
+        relaxation_.Record(relaxation_.Measure(*energies_[i]), result);
+      }
     }
-    return result;
   }
 
  private:
+  bool IsComplete(const StepFunction& energy) const {
+    return energy.last_jump() >= relaxation_.orbit_time();
+  }
+
   const PairExperiment& experiment_;
   const EnergyRelaxation& relaxation_;
   uint64_t first_;
-  std::vector<std::optional<StepFunction>> energies_;  // of the orbits that run
-  std::vector<std::vector<double>> values_;            // measured, by orbit; empty for an escape
+  std::vector<std::optional<StepFunction>> energies_;  // of the orbits that run, and of walks
+  std::vector<std::vector<double>> values_;            // by orbit; empty for an escape
 };
-
-std::vector<double> StartsOfWalkers(const std::optional<double>& epsilon,
-                                    const RandomStream& random, uint64_t first, uint64_t count) {
-  std::vector<double> u(count);
-  for (uint64_t i = 0; i < count; ++i) {
-    u[i] = epsilon ? std::sqrt(2 * *epsilon) : random.Sample(first + i).Uniform();
-  }
-  return u;
-}
-
-// Energies of `count` walkers up to orbit_time, in units of the geometry. Incomplete if `stop` was
-// requested.
-std::vector<StepFunction> WalkTogether(const EnergyRelaxation& relaxation,
-                                       const RandomStream& random, uint64_t first, uint64_t count,
-                                       const std::stop_token& stop) {
-  const std::vector<double> starts = StartsOfWalkers(relaxation.epsilon(), random, first, count);
-  JumpWalkers walkers(random.seed, random.stream, first, starts);
-  std::vector<StepFunction> energies;
-  for (const double u : starts) energies.emplace_back(u * u / 2);
-  for (bool walking = true; walking && !stop.stop_requested();) {
-    walkers.Jump();
-    walking = false;
-    for (uint64_t i = 0; i < count; ++i) {
-      if (energies[i].last_jump() >= relaxation.orbit_time()) continue;
-      const double u = walkers.u()[i];
-      energies[i].Add(relaxation.unit() * walkers.waiting_times()[i], u * u / 2);
-      walking = true;
-    }
-  }
-  return energies;
-}
-
-// A block of the jump process. Empty only if `stop` was requested.
-std::optional<BlockResult> WalkBlock(const EnergyRelaxation& relaxation, const RandomStream& random,
-                                     const Block& block, const std::stop_token& stop) {
-  BlockResult result = relaxation.Empty();
-  for (uint64_t done = 0; done < block.samples; done += kWalkersInStep) {
-    const uint64_t together = std::min(kWalkersInStep, block.samples - done);
-    const auto energies = WalkTogether(relaxation, random, block.first + done, together, stop);
-    for (uint64_t i = 0; i < together; ++i) {
-      if (stop.stop_requested()) return std::nullopt;
-      relaxation.Record(relaxation.Measure(energies[i]), result);
-    }
-  }
-  return result;
-}
 
 Estimate SpectralGap() {
   const SpectralValue gap = RelaxationSpectrum::Get().Gap();
@@ -149,19 +122,12 @@ PointSummary RelaxationBySpectrum(const EnsembleSpec&, const PointParameters& po
   return summary;
 }
 
-// The events of an orbit for its error. Each walk of the jump process counts.
-double EventsOf(Model model, const EnergyRelaxation& relaxation) {
-  return model == Model::kMarkov ? 1 : relaxation.events_per_orbit();
-}
-
 // By billiard, billiard_reference or markov.
 class EnergyRelaxationExperiment : public PairExperiment {
  public:
   EnergyRelaxationExperiment(const EnsembleSpec& spec, const PointParameters& point)
-      : PairExperiment(spec, point),
-        relaxation_(geometry(), point),
-        events_per_orbit_(EventsOf(answer().model, relaxation_)) {
-    std::vector<Measurement> table = relaxation_.Table(events_per_orbit_, IsLimit());
+      : PairExperiment(spec, point), relaxation_(geometry(), point, answer().model) {
+    std::vector<Measurement> table = relaxation_.Table();
     if (IsLimit()) {
       table.push_back({"spectral_gap", [](const BlockResult&) { return SpectralGap(); }});
     }
@@ -169,11 +135,6 @@ class EnergyRelaxationExperiment : public PairExperiment {
   }
 
   std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
-    if (IsLimit()) {
-      return RunOneByOne(queue, [this](const Block& block, const std::stop_token& stop) {
-        return WalkBlock(relaxation_, random(), block, stop);
-      });
-    }
     return RunOrbits(
         queue, [this](const Block& block) { return RelaxingOrbits(*this, relaxation_, block); },
         relaxation_.orbit_time());
@@ -182,13 +143,12 @@ class EnergyRelaxationExperiment : public PairExperiment {
  protected:
   void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
     summary.remarks = RemarksOnDecay(relaxation_.epsilon());
-    summary.curves.push_back(relaxation_.MeasuredCurve(merged, events_per_orbit_));
+    summary.curves.push_back(relaxation_.MeasuredCurve(merged));
     summary.histograms = relaxation_.MeasuredLaws(merged);
   }
 
  private:
   EnergyRelaxation relaxation_;
-  double events_per_orbit_;  // for the standard errors
 };
 
 std::vector<std::vector<double>> ProbabilitiesOfTheLimit(const PointParameters& point) {
@@ -249,7 +209,7 @@ double ErrorOfAnOrbit(Model model, const PointParameters& point) {
 }
 
 double EventsOfAnOrbit(Model model, const PointParameters& point) {
-  return EventsOf(model, EnergyRelaxation(GeometryOf(point), point));
+  return EnergyRelaxation(GeometryOf(point), point, model).events_per_orbit();
 }
 
 constexpr ParameterUse kParametersOfRelaxation[] = {

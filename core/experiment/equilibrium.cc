@@ -53,15 +53,13 @@ class TimedOrbits : public OrbitsInEquilibrium {
     return After(orbit, sums.collisions[kBallPiston]);
   }
 
-  BlockResult Result() const {
-    BlockResult result = experiment_.EmptyResult();
+  void AddTo(BlockResult& result) const {
     for (const auto& [time, collisions] : orbits_) {
       result.samples += collisions[kBallPiston];
       for (size_t hit = 0; hit < kHits; ++hit) {
         result.batch_means[hit].Add(time, static_cast<double>(collisions[hit]));
       }
     }
-    return result;
   }
 
  private:

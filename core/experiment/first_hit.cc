@@ -144,14 +144,12 @@ class RecordedReturns : public ReturnOrbits {
       : ReturnOrbits(experiment.geometry(), law, experiment.random(), block),
         experiment_(experiment) {}
 
-  BlockResult Result() const {
-    BlockResult result = experiment_.EmptyResult();
+  void AddTo(BlockResult& result) const {
     for (const std::optional<Return>& hit : returns()) {
       if (!hit) continue;
       ++result.samples;
       experiment_.Record(*hit, result);
     }
-    return result;
   }
 
  private:

@@ -301,11 +301,10 @@ class GasBlocks : public EngineRun {
         }) {}
 
   bool Advance() override {
-    Pauses pauses([this] { return queue_.Pause(); });
     do {
       if (run_ == nullptr) Begin();
       if (run_ == nullptr) return true;
-      if (!run_->AdvanceTo(experiment_.duration(), pauses)) return false;
+      if (!run_->AdvanceToward(experiment_.duration())) continue;
       run_.reset();
       for (const Replica& replica : running_) Measure(replica);
       running_.clear();

@@ -91,17 +91,17 @@ class FollowedGas {
         tangents_(geometry.pair().rho(), start, VelocitiesAcross(start)),
         energy_at_start_(EnergyOf(start)) {}
 
-  // Returns false at a pause; then it must be called again. An event takes about so many
-  // nanoseconds.
-  bool AdvanceTo(double time, double nanoseconds, Pauses& pauses) {
-    while (gas_.NextTime() <= time) {
+  // Returns false after some events, 8 ms with the most cells; then it must be called again.
+  bool AdvanceToward(double time) {
+    constexpr int kEventsOfACall = 256;
+    for (int i = 0; i < kEventsOfACall; ++i) {
+      if (gas_.NextTime() > time) return true;
       const GasEvent event = gas_.Step();
       tangents_.Follow(event, gas_);
       if (event.kind == EventKind::kBallPiston) ++exchanges_;
       if (event.kind == EventKind::kEscape) ++escapes_;
-      if (pauses.After(nanoseconds)) return false;
     }
-    return true;
+    return false;
   }
 
   // Since the last call.
@@ -127,8 +127,7 @@ bool IsRounded(size_t k, const GasGeometry& geometry) {
   return balls > 2 && k > 0 && k < balls;
 }
 
-std::vector<Measurement> Table(const GasGeometry& geometry, double temperature,
-                               absl::string_view aim) {
+std::vector<Measurement> Table(const GasGeometry& geometry, double temperature) {
   const double scale = std::sqrt(temperature);
   const auto exponent = [&](size_t k) {
     const double events = IsRounded(k, geometry) ? 0 : 1;
@@ -141,7 +140,7 @@ std::vector<Measurement> Table(const GasGeometry& geometry, double temperature,
       {"exchange_rate", RatioAt(kExchanges), scale}};
   table[2].exact = GasExchangeRate(geometry, temperature);
   for (size_t k = 1; k + 1 < DegreesOfFreedom(geometry); ++k) table.push_back(exponent(k));
-  return WithFirst(std::move(table), aim);
+  return table;
 }
 
 // The time that an event takes with its tangent vectors, measured with 1 to 32 cells.
@@ -157,7 +156,7 @@ class GasLyapunov : public GasExperiment {
         energy_(MeanEnergy(geometry())) {
     const size_t exponents = DegreesOfFreedom(geometry()) - 1;
     SetMeasurements({.batch_means = std::vector<BatchMeans>(kFirstExponent + exponents)},
-                    Table(geometry(), temperature(), AimOf(spec).name));
+                    Table(geometry(), temperature()));
   }
 
   std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override;
@@ -193,44 +192,46 @@ class GasLyapunov : public GasExperiment {
 class FollowedGases : public EngineRun {
  public:
   FollowedGases(const GasLyapunov& experiment, BlockQueue& queue)
-      : experiment_(experiment),
-        queue_(queue),
-        nanoseconds_(NanosecondsOfAnEvent(experiment.geometry())),
-        times_(experiment.geometry()) {}
+      : experiment_(experiment), queue_(queue), times_(experiment.geometry()) {}
 
   bool Advance() override {
-    Pauses pauses([this] { return queue_.Pause(); });
-    while (block_ || (block_ = queue_.Next())) {
-      if (!AdvanceReplica(pauses)) return false;
-      if (result_.samples < block_->samples) continue;
-      queue_.Done(*std::exchange(block_, std::nullopt), std::exchange(result_, {}));
-    }
-    return true;
+    do {
+      if (!block_ && !Begin()) return true;
+      if (!gas_->AdvanceToward(is_warm_ ? times_.end : times_.start)) continue;
+      is_warm_ ? EndReplica() : EndWarmUp();
+    } while (!queue_.Pause());
+    return false;
   }
 
  private:
-  bool AdvanceReplica(Pauses& pauses) {
-    if (result_.samples == 0 && !gas_) result_ = experiment_.EmptyResult();
-    if (!gas_) gas_.emplace(experiment_.Start(block_->first + result_.samples));
-    if (!is_warm_) {
-      if (!gas_->AdvanceTo(times_.start, nanoseconds_, pauses)) return false;
-      gas_->TakeGrowth(times_.start);
-      gas_->TakeExchanges();
-      is_warm_ = true;
-    }
-    if (!gas_->AdvanceTo(times_.end, nanoseconds_, pauses)) return false;
+  bool Begin() {
+    block_ = queue_.Next();
+    if (!block_) return false;
+    result_ = experiment_.EmptyResult();
+    gas_.emplace(experiment_.Start(block_->first));
+    return true;
+  }
+
+  void EndWarmUp() {
+    gas_->TakeGrowth(times_.start);
+    gas_->TakeExchanges();
+    is_warm_ = true;
+  }
+
+  void EndReplica() {
     experiment_.Measure(gas_->TakeGrowth(times_.end), gas_->TakeExchanges(),
                         times_.end - times_.start, result_);
     result_.health.Merge(gas_->HealthAt(times_.end));
-    ++result_.samples;
-    gas_.reset();
     is_warm_ = false;
-    return true;
+    if (++result_.samples < block_->samples) {
+      gas_.emplace(experiment_.Start(block_->first + result_.samples));
+    } else {
+      queue_.Done(*std::exchange(block_, std::nullopt), std::move(result_));
+    }
   }
 
   const GasLyapunov& experiment_;
   BlockQueue& queue_;
-  double nanoseconds_;
   Times times_;
   std::optional<Block> block_;
   BlockResult result_;  // of the block's replicas so far

@@ -83,14 +83,12 @@ class FollowedOrbits : public OrbitsInEquilibrium {
     return After(index, ++orbit.collisions);
   }
 
-  BlockResult Result() const {
-    BlockResult result = experiment_.EmptyResult();
+  void AddTo(BlockResult& result) const {
     for (const Orbit& orbit : orbits_) {
       if (orbit.collisions == 0) continue;  // it has escaped
       result.samples += orbit.collisions;
       AddTo(result.batch_means, orbit);
     }
-    return result;
   }
 
  private:
@@ -124,7 +122,7 @@ class FollowedOrbits : public OrbitsInEquilibrium {
 
 bool IsByReference(Model model) { return model == Model::kBilliardReference; }
 
-std::vector<Measurement> Table(const PairGeometry& geometry, Model model, absl::string_view aim) {
+std::vector<Measurement> Table(const PairGeometry& geometry, Model model) {
   const auto ratio = [](std::string name, size_t index) {
     return Measurement{.name = std::move(name), .reading = RatioAt(index, kOrbitsPerCollision)};
   };
@@ -141,7 +139,7 @@ std::vector<Measurement> Table(const PairGeometry& geometry, Model model, absl::
     }
     table.push_back(ratio("lyapunov_sum", kRatios + kFurtherRatios - 1));
   }
-  return WithFirst(std::move(table), aim);
+  return table;
 }
 
 class LyapunovExperiment : public PairExperiment {
@@ -150,7 +148,7 @@ class LyapunovExperiment : public PairExperiment {
       : PairExperiment(spec, point) {
     const size_t ratios = kRatios + (IsByReference(answer().model) ? kFurtherRatios : 0);
     SetMeasurements({.batch_means = std::vector<BatchMeans>(ratios)},
-                    Table(geometry(), answer().model, AimOf(spec).name));
+                    Table(geometry(), answer().model));
   }
 
   std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {

@@ -16,7 +16,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <vector>
 
 #include "core/arithmetic/elementary_functions.h"
@@ -25,8 +24,6 @@
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/markov_property_statistics.h"
 #include "core/experiment/pair_experiment.h"
-#include "core/markov/jump_process.h"
-#include "core/sampling/invariant_measure.h"
 
 namespace ballpiston {
 namespace {
@@ -41,6 +38,8 @@ double PistonEnergy(double velocity) { return std::min(velocity * velocity / 2, 
 
 class ExchangeOrbits : public OrbitsInEquilibrium {
  public:
+  static constexpr uint64_t kWalkedTogether = 64 * kExchangesPerOrbit;
+
   ExchangeOrbits(const PairExperiment& experiment, const Block& block)
       : OrbitsInEquilibrium(experiment, block, kExchangesPerOrbit),
         rate_unit_(RateUnit(experiment.geometry())),
@@ -53,24 +52,35 @@ class ExchangeOrbits : public OrbitsInEquilibrium {
     return state;
   }
 
-  AfterCollision Collide(uint64_t index, const Collision& collision) {
-    Orbit& orbit = orbits_[index];
-    const PairState& state = collision.state;
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) {
     // After the collision the piston has the ball's normal velocity component.
-    exchanges_[index * kExchangesPerOrbit + orbit.exchanges++] = {
-        .waiting_time = collision.time * rate_unit_,
-        .energy = PistonEnergy(state.ball_speed * state.direction.x())};
+    const PairState& state = collision.state;
+    return Jump(orbit, collision.time * rate_unit_, state.ball_speed * state.direction.x());
+  }
+
+  // Starts have their own stream, because the walkers use the stream of the samples.
+  double StartOfWalk(uint64_t orbit) {
+    constexpr uint64_t kStartsStream = 0x9e3779b97f4a7c15;
+    RandomStream starts = experiment_.random();
+    starts.stream ^= kStartsStream;
+    const double u = std::min(std::fabs(Draw(orbit, starts).piston_velocity), 1.0);
+    orbits_[orbit].first_energy = PistonEnergy(u);
+    return u;
+  }
+
+  AfterCollision Jump(uint64_t index, double waiting_time, double piston_velocity) {
+    Orbit& orbit = orbits_[index];
+    exchanges_[index * kExchangesPerOrbit + orbit.exchanges++] = {waiting_time,
+                                                                  PistonEnergy(piston_velocity)};
     return After(index, orbit.exchanges);
   }
 
-  BlockResult Result() const {
-    BlockResult result = experiment_.EmptyResult();
+  void AddTo(BlockResult& result) const {
     for (size_t i = 0; i < orbits_.size(); ++i) {
       const std::span all(exchanges_);
       CountOrbit(block_.first / kExchangesPerOrbit + i, orbits_[i].first_energy,
                  all.subspan(i * kExchangesPerOrbit, orbits_[i].exchanges), result);
     }
-    return result;
   }
 
  private:
@@ -84,64 +94,6 @@ class ExchangeOrbits : public OrbitsInEquilibrium {
   std::vector<Orbit> orbits_;
 };
 
-// Energies just after a collision, of orbits first, first + length, ... They have their own stream,
-// because the walkers use the stream of the samples.
-std::vector<double> StartsAfterCollisions(const PairGeometry& geometry, const RandomStream& random,
-                                          uint64_t first, uint64_t orbits) {
-  constexpr uint64_t kStartsStream = 0x9e3779b97f4a7c15;
-  const RandomStream starts = {random.seed, random.stream ^ kStartsStream};
-  std::vector<double> u(orbits);
-  for (uint64_t i = 0; i < orbits; ++i) {
-    CounterRandom draws = starts.Sample(first + i * kExchangesPerOrbit);
-    u[i] = std::min(std::fabs(DrawFromCollisionMeasure(geometry, draws).piston_velocity), 1.0);
-  }
-  return u;
-}
-
-// The walkers' exchanges, by orbit. The last orbit may have fewer exchanges.
-std::vector<Exchange> Walk(JumpWalkers& walkers, uint64_t exchanges) {
-  std::vector<Exchange> all(walkers.u().size() * kExchangesPerOrbit);
-  for (uint64_t n = 0; n < std::min(exchanges, kExchangesPerOrbit); ++n) {
-    walkers.Jump();
-    for (size_t i = 0; i < walkers.u().size(); ++i) {
-      all[i * kExchangesPerOrbit + n] = {walkers.waiting_times()[i], PistonEnergy(walkers.u()[i])};
-    }
-  }
-  all.resize(exchanges);
-  return all;
-}
-
-// Some orbits of a block whose first sample is block_first: orbits from number `first_orbit` on,
-// which have `exchanges` exchanges together.
-void WalkOrbits(const PairGeometry& geometry, const RandomStream& random, uint64_t block_first,
-                uint64_t first_orbit, uint64_t exchanges, BlockResult& result) {
-  const uint64_t orbits = (exchanges + kExchangesPerOrbit - 1) / kExchangesPerOrbit;
-  const std::vector<double> starts = StartsAfterCollisions(
-      geometry, random, block_first + first_orbit * kExchangesPerOrbit, orbits);
-  JumpWalkers walkers(random.seed, random.stream, block_first + first_orbit, starts);
-  const std::vector<Exchange> all = Walk(walkers, exchanges);
-  for (uint64_t i = 0; i < orbits; ++i) {
-    const uint64_t begin = i * kExchangesPerOrbit;
-    const uint64_t length = std::min(kExchangesPerOrbit, exchanges - begin);
-    CountOrbit(block_first / kExchangesPerOrbit + first_orbit + i, PistonEnergy(starts[i]),
-               std::span(all).subspan(begin, length), result);
-  }
-}
-
-// A block of the jump process itself. Empty only if `stop` was requested.
-std::optional<BlockResult> WalkExchanges(const PairGeometry& geometry, const RandomStream& random,
-                                         const Block& block, const std::stop_token& stop) {
-  constexpr uint64_t kOrbitsTogether = 64;  // about 1 ms
-  constexpr uint64_t kTogether = kOrbitsTogether * kExchangesPerOrbit;
-  BlockResult result = EmptyMarkovPropertyCounts();
-  for (uint64_t done = 0; done < block.samples; done += kTogether) {
-    if (stop.stop_requested()) return std::nullopt;
-    WalkOrbits(geometry, random, block.first, done / kExchangesPerOrbit,
-               std::min(kTogether, block.samples - done), result);
-  }
-  return result;
-}
-
 // By billiard, billiard_reference, or markov, which is a control: the jump process has no memory;
 // for the billiard the memory is unknown.
 class MarkovPropertyExperiment : public PairExperiment {
@@ -152,11 +104,6 @@ class MarkovPropertyExperiment : public PairExperiment {
   }
 
   std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
-    if (IsLimit()) {
-      return RunOneByOne(queue, [this](const Block& block, const std::stop_token& stop) {
-        return WalkExchanges(geometry(), random(), block, stop);
-      });
-    }
     return RunOrbits(queue, [this](const Block& block) { return ExchangeOrbits(*this, block); });
   }
 };

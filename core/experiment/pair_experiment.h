@@ -1,7 +1,13 @@
 // The base of all experiments with a ball-piston pair, and functions that their rows share.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <stop_token>
 #include <utility>
 #include <vector>
 
@@ -10,6 +16,7 @@
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/geometry/pair_geometry.h"
+#include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
 
 namespace ballpiston {
@@ -47,6 +54,32 @@ inline double MemoryOfPairs(Model, const PointParameters&) { return 12e6; }
 // The work of a sample that is one collision of an orbit in equilibrium.
 SampleWork WorkOfACollision(const PairGeometry& geometry);
 
+// The orbits of a block that the jump process can compute too. They have these functions more:
+//   double StartOfWalk(uint64_t orbit);             returns u = sqrt(2 ep), once for each orbit
+//   AfterCollision Jump(uint64_t orbit, double waiting_time, double u);  u is that after the jump
+// The waiting time is in |G|/|dG_bp|. kWalkedTogether samples run until the slowest has ended.
+template <typename Orbits>
+concept CanWalk = requires {
+  Orbits::kWalkedTogether;
+};
+
+// A walk of all orbits, of which the first one is sample `first` of its random numbers.
+template <typename Orbits>
+void Walk(const RandomStream& random, uint64_t first, Orbits& orbits) {
+  std::vector<double> starts(orbits.count());
+  for (size_t i = 0; i < starts.size(); ++i) starts[i] = orbits.StartOfWalk(i);
+  JumpWalkers walkers(random.seed, random.stream, first, std::move(starts));
+  const std::span<const double> u = walkers.u(), waiting_times = walkers.waiting_times();
+  std::vector<uint64_t> running(orbits.count());
+  std::iota(running.begin(), running.end(), 0);
+  while (!running.empty()) {
+    walkers.Jump();
+    std::erase_if(running, [&](uint64_t i) {
+      return orbits.Jump(i, waiting_times[i], u[i]) == AfterCollision::kEnd;
+    });
+  }
+}
+
 class PairExperiment : public PointExperiment {
  public:
   const PairGeometry& geometry() const { return geometry_; }
@@ -58,16 +91,42 @@ class PairExperiment : public PointExperiment {
   // Whether the jump process answers, and not the billiard.
   bool IsLimit() const { return answer().model == Model::kMarkov; }
 
-  // `make` makes the orbits of a block (ensemble/block_orbits.h): Orbits make(const Block&).
+  // `make` makes the orbits of a block, Orbits make(const Block&): those of the billiard
+  // (ensemble/block_orbits.h), or those of the jump process (Walked) if it answers.
   template <typename Make>
   std::unique_ptr<EngineRun> RunOrbits(BlockQueue& queue, Make make,
                                        double time_limit = kNoTimeLimit) const {
     using Orbits = decltype(make(Block()));
-    return std::make_unique<BlockOrbits<Orbits>>(engine(), geometry_, time_limit, std::move(make),
-                                                 queue);
+    if constexpr (CanWalk<Orbits>) {
+      if (IsLimit()) {
+        return RunOneByOne(queue, [=, this](const Block& block, const std::stop_token& stop) {
+          return Walked(block, make, stop);
+        });
+      }
+    }
+    return std::make_unique<BlockOrbits<Orbits>>(engine(), geometry_, time_limit, EmptyResult(),
+                                                 std::move(make), queue);
   }
 
  private:
+  // A block of the jump process. Empty only if `stop` was requested.
+  template <typename Make>
+  std::optional<BlockResult> Walked(const Block& block, Make make,
+                                    const std::stop_token& stop) const {
+    constexpr uint64_t kTogether = decltype(make(block))::kWalkedTogether;
+    BlockResult result = EmptyResult();
+    uint64_t walkers = 0;
+    for (uint64_t done = 0; done < block.samples; done += kTogether) {
+      if (stop.stop_requested()) return std::nullopt;
+      auto orbits = make(
+          Block{.first = block.first + done, .samples = std::min(kTogether, block.samples - done)});
+      Walk(random(), block.first + walkers, orbits);
+      walkers += orbits.count();
+      orbits.AddTo(result);
+    }
+    return result;
+  }
+
   PairGeometry geometry_;
 };
 
@@ -81,8 +140,9 @@ class OrbitsInEquilibrium {
   uint64_t count() const { return (block_.samples + length_ - 1) / length_; }
 
  protected:
-  PairState Draw(uint64_t orbit) const {
-    CounterRandom random = experiment_.random().Sample(block_.first + orbit * length_);
+  PairState Draw(uint64_t orbit) const { return Draw(orbit, experiment_.random()); }
+  PairState Draw(uint64_t orbit, const RandomStream& stream) const {
+    CounterRandom random = stream.Sample(block_.first + orbit * length_);
     return DrawFromCollisionMeasure(experiment_.geometry(), random);
   }
   // `collisions`: those of the orbit so far.

@@ -38,16 +38,20 @@ class GroupRun : public EngineRun {
       : experiment_(experiment), queue_(queue) {}
 
   bool Advance() override {
-    Pauses pauses([this] { return queue_.Pause(); });
     do {
       if (!block_) {
         block_ = queue_.Next();
         if (!block_) return true;
         Begin();
       }
-      if (!RunToTheEnd(pauses)) return false;
-      BlockResult result = Result();
-      queue_.Done(*std::exchange(block_, std::nullopt), std::move(result));
+      if (!run_->AdvanceToward((stretches_ + 1) * experiment_.stretch())) continue;
+      EndStretch();
+      if (stretches_ < StretchesOfBlock()) {
+        BeginStretch();
+      } else {
+        BlockResult result = Result();
+        queue_.Done(*std::exchange(block_, std::nullopt), std::move(result));
+      }
     } while (!queue_.Pause());
     return false;
   }
@@ -55,6 +59,9 @@ class GroupRun : public EngineRun {
  private:
   std::vector<SteadyTrajectory>& trajectories() { return group_.trajectories; }
   double Now() const { return stretches_ * experiment_.stretch(); }
+  double StretchesOfBlock() const {
+    return static_cast<double>(block_->samples / experiment_.shape().trajectories);
+  }
   // The random numbers of a trajectory in this chunk.
   GasRandom RandomOf(size_t trajectory) const {
     return experiment_.RandomOf(block_->chunk * experiment_.shape().trajectories + trajectory);
@@ -96,18 +103,6 @@ class GroupRun : public EngineRun {
     BeginStretch();
     run_ = StartGases(experiment_.gas_engine(), experiment_.geometry(), experiment_.exchange_rate(),
                       std::move(starts));
-  }
-
-  // Returns false at a pause.
-  bool RunToTheEnd(Pauses& pauses) {
-    const double end = static_cast<double>(block_->samples) /
-                       static_cast<double>(experiment_.shape().trajectories);
-    while (stretches_ < end) {
-      if (!run_->AdvanceTo((stretches_ + 1) * experiment_.stretch(), pauses)) return false;
-      EndStretch();
-      if (stretches_ < end) BeginStretch();
-    }
-    return true;
   }
 
   // Judges the warm-up when it may end, and begins the measurement of the chunk.

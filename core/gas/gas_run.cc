@@ -11,7 +11,7 @@
 namespace ballpiston {
 namespace {
 
-constexpr double kNanosecondsOfAnEvent = 300;
+constexpr int kEventsOfACall = 6000;  // of 300 ns
 
 void Record(ReferenceGas& gas, GasMeter& meter) {
   const GasEvent event = gas.Step();
@@ -25,19 +25,19 @@ void Record(ReferenceGas& gas, GasMeter& meter) {
   }
 }
 
-bool Advance(ReferenceGas& gas, double time, GasMeter& meter, Pauses& pauses) {
-  while (gas.NextTime() <= time) {
+bool AdvanceToward(double time, ReferenceGas& gas, GasMeter& meter) {
+  for (int i = 0; i < kEventsOfACall; ++i) {
+    if (gas.NextTime() > time) return true;
     Record(gas, meter);
-    if (pauses.After(kNanosecondsOfAnEvent)) return false;
   }
-  return true;
+  return false;
 }
 
 GasState StateOf(const ReferenceGas& gas, double time) { return gas.StateAt(time); }
 GasState StateOf(const JumpGas& gas, double) { return gas.State(); }
 
-bool Advance(JumpGas& gas, double time, GasMeter& meter, Pauses& pauses) {
-  return gas.AdvanceTo(time, meter, pauses);
+bool AdvanceToward(double time, JumpGas& gas, GasMeter& meter) {
+  return gas.AdvanceToward(time, meter);
 }
 
 // Gases that run one after the other.
@@ -51,9 +51,9 @@ class SeparateGases : public GasRun {
     for (GasStart& start : replicas) gases_.push_back({make(start), *start.meter});
   }
 
-  bool AdvanceTo(double time, Pauses& pauses) override {
+  bool AdvanceToward(double time) override {
     for (auto& [gas, meter] : gases_) {
-      if (!Advance(gas, time, meter, pauses)) return false;
+      if (!ballpiston::AdvanceToward(time, gas, meter)) return false;
     }
     time_ = time;
     return true;

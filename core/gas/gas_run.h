@@ -4,8 +4,8 @@
 //   kLanes      the same gas, with the flights of many balls in vector lanes (lane_gas.h).
 //   kJumps      the limit of rare collisions: a jump process of the energies (jump_gas.h).
 //
-// A replica's numbers depend only on its start, not on the times of the calls, on pauses or on
-// other replicas.
+// A replica's numbers depend only on its start, not on the times of the calls or on other
+// replicas.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,6 @@
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_meter.h"
 #include "core/gas/gas_state.h"
-#include "core/gas/pauses.h"
 #include "core/gas/thermal_walls.h"
 
 namespace ballpiston {
@@ -34,10 +33,13 @@ struct GasStart {
 class GasRun {
  public:
   virtual ~GasRun() = default;
-  // Moves all replicas to `time`, which must not be less than in the previous call. Returns false
-  // at a pause; then it must be called again with the same time.
-  virtual bool AdvanceTo(double time, Pauses& pauses) = 0;
-  void AdvanceTo(double time) { AdvanceTo(time, NoPauses()); }
+  // Moves all replicas toward `time`, which must not be less than in the previous call. Returns
+  // true when all are there, false after some 2 ms; then it must be called again with the same
+  // time.
+  virtual bool AdvanceToward(double time) = 0;
+  void AdvanceTo(double time) {
+    while (!AdvanceToward(time)) continue;
+  }
   // The positions and velocities of a replica at the time to which AdvanceTo has moved it, from
   // which another run can continue. The jump process has speeds alone.
   virtual GasState StateOf(size_t replica) const = 0;

@@ -27,7 +27,6 @@
 #include "core/gas/gas_meter.h"
 #include "core/gas/gas_state.h"
 #include "core/gas/jump_draws.h"
-#include "core/gas/pauses.h"
 #include "core/gas/thermal_walls.h"
 #include "core/sampling/counter_random.h"
 
@@ -40,8 +39,9 @@ class JumpGas {
           const CounterRandom& random);
 
   // Exchanges until `time`, and reports the exchanges to the meter. There an outermost piston has
-  // its mean energy. Returns false at a pause; then it must be called again with the same time.
-  bool AdvanceTo(double time, GasMeter& meter, Pauses& pauses = NoPauses());
+  // its mean energy. Returns false after some 2 ms; then it must be called again with the same
+  // time.
+  bool AdvanceToward(double time, GasMeter& meter);
 
   // The speeds, from which another object can begin: the process has no memory. An outermost piston
   // has its mean energy.

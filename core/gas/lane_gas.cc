@@ -31,6 +31,7 @@ constexpr double kFlightsOfAPeriod = 1024;
 // Nanoseconds.
 constexpr double kOfAStep = 300;     // of a replica, without the flights
 constexpr double kToFlyABall = 120;  // one of many
+constexpr double kOfACall = 2e6;
 
 // Hits of thermal walls for each ball and unit of time at temperature 1. An outermost piston hits
 // its thermal wall at every second of its wall hits.
@@ -111,15 +112,21 @@ void LaneGas::ChooseWindow() {
   window_ = std::min(best, kMostFlightsInAWindow) / std::max(flights, kAtRest);
 }
 
-bool LaneGas::AdvanceTo(double time, Pauses& pauses) {
+bool LaneGas::AdvanceToward(double time) {
   if (time > time_) {
     time_ = time;
     for (uint32_t i = 0; i < replicas_.size(); ++i) active_.push_back(i);
   }
-  while (FlyOrders(pauses)) {
-    if (active_.empty()) return true;
-    Step();
-    if (pauses.After(kOfAStep * static_cast<double>(active_.size()))) return false;
+  for (double work = 0; work < kOfACall;) {
+    if (!orders_.empty()) {
+      work += kToFlyABall * static_cast<double>(orders_.size() + 8);
+      FlyOrders();
+    } else if (!active_.empty()) {
+      work += kOfAStep * static_cast<double>(active_.size());
+      Step();
+    } else {
+      return true;
+    }
   }
   return false;
 }
@@ -246,18 +253,13 @@ void LaneGas::OrderVisitor(const Replica& replica, uint32_t number, Direction di
   Order(replica, number);
 }
 
-// Flies until all balls have arrived.
-bool LaneGas::FlyOrders(Pauses& pauses) {
-  while (!orders_.empty()) {
-    lanes_->Fly(orders_);
-    const double work = kToFlyABall * static_cast<double>(orders_.size() + 8);
-    std::erase_if(orders_, [this](const FlightOrder& order) {
-      if (order.has_arrived) Arrive(order);
-      return order.has_arrived;
-    });
-    if (pauses.After(work)) return false;
-  }
-  return true;
+// Balls that do not arrive fly on in the next call.
+void LaneGas::FlyOrders() {
+  lanes_->Fly(orders_);
+  std::erase_if(orders_, [this](const FlightOrder& order) {
+    if (order.has_arrived) Arrive(order);
+    return order.has_arrived;
+  });
 }
 
 void LaneGas::Arrive(const FlightOrder& order) {

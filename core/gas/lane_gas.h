@@ -39,7 +39,7 @@ class LaneGas : public GasRun {
  public:
   LaneGas(const GasGeometry& geometry, double exchange_rate, std::vector<GasStart> replicas);
 
-  bool AdvanceTo(double time, Pauses& pauses) override;
+  bool AdvanceToward(double time) override;
   GasState StateOf(size_t replica) const override;
 
  private:
@@ -73,7 +73,7 @@ class LaneGas : public GasRun {
 
   void Order(const Replica& replica, uint32_t number);
   void OrderVisitor(const Replica& replica, uint32_t number, Direction direction);
-  bool FlyOrders(Pauses& pauses);
+  void FlyOrders();
   void Arrive(const FlightOrder& order);
   void Stop(const Replica& replica, const FlightOrder& order);
 

@@ -197,9 +197,9 @@ Work PairSamples(const Point& point) {
   const double events = point->answer().model == Model::kBilliardReference ? 0x1p20 : 0x1p24;
   const uint64_t samples =
       std::max(static_cast<uint64_t>(events / point->plan().events_per_sample()), uint64_t{1});
-  const double exact = *point->FirstEstimate(*RunBlock(*point, {.samples = 1})).exact;
+  const double exact = *point->FirstEstimate(RunBlock(*point, {.samples = 1})).exact;
   return [=](uint64_t turn) {
-    const BlockResult result = *RunBlock(*point, {.first = turn * samples, .samples = samples});
+    const BlockResult result = RunBlock(*point, {.first = turn * samples, .samples = samples});
     const double mean =
         result.moments.empty() ? *result.batch_means[0].Ratio() : result.moments[0].mean;
     return mean * static_cast<double>(result.samples) / exact;

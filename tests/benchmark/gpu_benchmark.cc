@@ -61,7 +61,6 @@ class Queue : public BlockQueue {
   }
   bool Pause() override { return IsFinished(); }
   OrbitDevice* device() const override { return device_; }
-  std::stop_token stop() const override { return {}; }
   bool IsFinished() const {
     const std::lock_guard lock(shared_.mutex);
     return shared_.point.finished();

@@ -13,7 +13,7 @@ namespace ballpiston {
 
 inline PointSummary RunPoint(const EnsembleSpec& spec, size_t index = 0) {
   const auto point = PointExperiment::Create(spec, index);
-  return point->Summarize(*FoldPoint(*point));
+  return point->Summarize(FoldPoint(*point));
 }
 
 // The summary of measured samples by the spec's experiment.

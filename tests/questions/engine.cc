@@ -175,7 +175,7 @@ Finding Death(int status) {
 
 ComputedPoint ComputePoint(const EnsembleSpec& spec, size_t index, const Answer& answer) {
   const auto point = PointExperiment::Create(spec, index, answer);
-  const PointSummary summary = point->Summarize(*FoldPoint(*point));
+  const PointSummary summary = point->Summarize(FoldPoint(*point));
   return {server::WithDetails(server::ResultOf(index, *point, summary), server::DetailsOf(summary),
                               *spec.experiment),
           CheckFinite(summary)};

@@ -65,7 +65,7 @@ LocalPoint AfterBlocks(const PointExperiment& experiment, uint64_t blocks) {
   LocalPoint point(experiment);
   for (uint64_t i = 0; i < blocks; ++i) {
     const std::optional<Block> block = point.NextBlock();
-    point.Add(*block, *RunBlock(experiment, *block));
+    point.Add(*block, RunBlock(experiment, *block));
   }
   return point;
 }

@@ -25,7 +25,7 @@ v1::PointResult ResultOfAnUndisturbedRun(const Question& question, int point) {
   const auto experiment = FakeExperiments()(spec, index);
   LocalPoint computed(*experiment);
   while (const std::optional<Block> block = computed.NextBlock()) {
-    computed.Add(*block, *RunBlock(*experiment, *block));
+    computed.Add(*block, RunBlock(*experiment, *block));
   }
   return ResultOf(index, *experiment, experiment->Summarize(computed.Merged()));
 }

@@ -70,7 +70,7 @@ RunsByName RunMany(EnsembleSpec spec, uint64_t runs) {
   BlockResult all;
   for (spec.seed = 1; spec.seed <= runs; ++spec.seed) {
     const auto point = PointExperiment::Create(spec, 0);
-    const BlockResult merged = *FoldPoint(*point);
+    const BlockResult merged = FoldPoint(*point);
     AddRun(point->Summarize(merged), by_name);
     all.Merge(merged);
   }

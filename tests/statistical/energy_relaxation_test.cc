@@ -44,7 +44,7 @@ Blocks RunInBlocks(uint64_t blocks, uint64_t orbits, size_t first_lag,
   BlockResult merged;
   Blocks result;
   for (uint64_t i = 0; i < blocks; ++i) {
-    const BlockResult block = *RunBlock(*point, {.first = i * orbits, .samples = orbits});
+    const BlockResult block = RunBlock(*point, {.first = i * orbits, .samples = orbits});
     merged.Merge(block);
     result.curves.push_back(
         Thinned(first_lag, [&](size_t lag) { return block.moments[1 + lag].mean; }));

@@ -94,7 +94,7 @@ TEST(GasExperiments, ConductivityOfTheJumpProcessMatchesTheSpectrum) {
   for (const auto& [shape, replicas] : {std::pair(GasShape{16}, 10'000), {{8, 8, true}, 2000}}) {
     const EnsembleSpec spec = Equilibrium(0.1, shape, Model::kMarkov, replicas / fewer);
     const auto experiment = PointExperiment::Create(spec, 0);
-    const BlockResult merged = *FoldPoint(*experiment);
+    const BlockResult merged = FoldPoint(*experiment);
     const Estimate ratio = experiment->Summarize(merged).estimates.back();
     const double of_static = GasExchangeRate(GeometryAt(spec), 1) / 2;
     const double plain = merged.moments[0].mean / of_static;

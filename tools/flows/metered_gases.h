@@ -10,7 +10,6 @@
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_meter.h"
 #include "core/gas/gas_run.h"
-#include "core/gas/pauses.h"
 
 namespace ballpiston {
 
@@ -22,8 +21,8 @@ class MeteredGases {
     run_ = StartGases(engine, geometry, GasExchangeRate(geometry, 1), std::move(starts));
   }
 
-  // Returns false at a pause.
-  bool AdvanceTo(double time, Pauses& pauses = NoPauses()) { return run_->AdvanceTo(time, pauses); }
+  void AdvanceTo(double time) { run_->AdvanceTo(time); }
+  bool AdvanceToward(double time) { return run_->AdvanceToward(time); }
 
   // In the order of the starts.
   std::deque<GasMeter>& meters() { return meters_; }

@@ -60,7 +60,7 @@ PointEstimate EnergyRelaxationRuns::Run(Method method, const SampleRange& sample
   const auto experiment = PointExperiment::Create(SpecOf(geometry, seed, method), 0);
   const double begin = server::ThreadSeconds();
   const BlockResult merged =
-      *RunBlock(*experiment, {.first = samples.first, .samples = samples.count});
+      RunBlock(*experiment, {.first = samples.first, .samples = samples.count});
   const Estimate estimate = experiment->FirstEstimate(merged);
   return {.value = estimate.value,
           .error = estimate.standard_error.value_or(0),

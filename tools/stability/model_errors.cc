@@ -179,7 +179,7 @@ void AddSinglePrecision(Places& places) {
 Estimate FirstEstimate(EnsembleSpec spec, uint64_t seed) {
   spec.seed = seed;
   const auto experiment = PointExperiment::Create(spec, 0);
-  return experiment->Summarize(*FoldPoint(*experiment)).estimates.front();
+  return experiment->Summarize(FoldPoint(*experiment)).estimates.front();
 }
 
 // The value from which the model's error counts, and its standard error.

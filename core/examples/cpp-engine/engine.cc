@@ -22,8 +22,7 @@ int main() {
   }
   for (size_t i = 0; i < PointCount(spec); ++i) {
     const auto experiment = PointExperiment::Create(spec, i);
-    const std::optional<BlockResult> merged = FoldPoint(*experiment);
-    const Estimate first = experiment->Summarize(*merged).estimates.front();
+    const Estimate first = experiment->Summarize(FoldPoint(*experiment)).estimates.front();
     std::cout << "delta " << experiment->parameters()[kDelta] << ": " << first.name << " "
               << first.value << " +- " << first.standard_error.value_or(0) << ", exactly "
               << first.exact.value_or(0) << '\n';

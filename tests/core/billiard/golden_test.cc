@@ -170,7 +170,6 @@ class SharedQueue : public BlockQueue {
   }
   // At every opportunity.
   bool Pause() override { return true; }
-  std::stop_token stop() const override { return {}; }
 
  private:
   LocalPoint& point_;

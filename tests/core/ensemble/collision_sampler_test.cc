@@ -41,7 +41,7 @@ TEST(CollisionSampler, ReturnsAreThoseThatTheJobFolds) {
     const std::vector<CollisionRecord> records = AllRecords(*point, kFirstHit);
     ASSERT_EQ(records.size(), 20'000u);
     for (size_t i = 0; i < records.size(); ++i) ASSERT_EQ(records[i].sample, i);
-    EXPECT_EQ(Folded(point->plan(), records), FoldPoint(*point)->moments.front());
+    EXPECT_EQ(Folded(point->plan(), records), FoldPoint(*point).moments.front());
   }
 }
 
@@ -58,7 +58,7 @@ TEST(CollisionSampler, CollisionsInEquilibriumAreInTheOrderOfTheirOrbits) {
     ASSERT_TRUE(begins || record.time == records[i - 1].time + record.free_time);
     times.Add(record.free_time);
   }
-  const Estimate estimate = point->FirstEstimate(*FoldPoint(*point));
+  const Estimate estimate = point->FirstEstimate(FoldPoint(*point));
   EXPECT_NEAR(times.mean / estimate.value, 1, 1e-12);
 }
 

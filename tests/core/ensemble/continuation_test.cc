@@ -55,7 +55,7 @@ PointFold Continued(const PointExperiment& point, const std::optional<FoldState>
   while (!fold.finished()) {
     const Block block = *chunks.NextBlock();
     samples += block.samples;
-    for (ChunkResult& chunk : chunks.Add(block, *RunBlock(point, block))) {
+    for (ChunkResult& chunk : chunks.Add(block, RunBlock(point, block))) {
       fold.Add(std::move(chunk));
     }
   }

@@ -52,7 +52,7 @@ TEST(EnergyRelaxation, OrbitsMatchTheReferenceFlow) {
   for (const double epsilon : {0.01, 0.3, 0.5}) {
     const PointParameters point = PaperPoint(0.2, epsilon);
     const EnsembleSpec spec = SpecOfOrbits(point, Model::kBilliardReference, 1);
-    const BlockResult block = *FoldPoint(*PointExperiment::Create(spec, 0));
+    const BlockResult block = FoldPoint(*PointExperiment::Create(spec, 0));
     CounterRandom random(spec.seed, PointStream(spec, point), 0);
     ReferenceFlow flow(kPaperPair, DrawFromFlowMeasureAt(kPaperPair, epsilon, random));
     const double lag = 4 * EnergyRelaxation(kPaperPair, point).unit() * kWindowTimes / (kLags - 1);
@@ -123,7 +123,7 @@ TEST(EnergyRelaxation, WindowContainsNearlyAllOfTheLimitsIntegral) {
       nothing_but_the_remainder.samples = 2;
       nothing_but_the_remainder.moments.resize(1 + kLags);
       nothing_but_the_remainder.moments[0].Add(0);
-      const Estimate remainder = *relaxation.Table(1, false).front().Of(nothing_but_the_remainder);
+      const Estimate remainder = *relaxation.Table().front().Of(nothing_but_the_remainder);
       EXPECT_NE(remainder.value, 0);
       EXPECT_LT(std::fabs(remainder.value / *remainder.limit), 0.01);
     }

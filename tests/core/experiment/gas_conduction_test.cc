@@ -47,7 +47,7 @@ TEST(GasConduction, EstimatesFollowFromTheCurrent) {
 
 // The same replicas seen at other temperatures, to rounding: they are 4 times as high.
 TEST(GasConduction, AllScalesWithTheTemperatures) {
-  const BlockResult merged = *FoldPoint(*PointExperiment::Create(SpecBetween(3, 1), 0));
+  const BlockResult merged = FoldPoint(*PointExperiment::Create(SpecBetween(3, 1), 0));
   const PointSummary low = Summarized(SpecBetween(3, 1), merged),
                      high = Summarized(SpecBetween(12, 4), merged);
   const double factors[] = {8, 2, 1, 2, 4, 4};
@@ -71,7 +71,7 @@ TEST(GasConduction, AtEveryTemperatureTheCumulantsAreNumbersOrNotStated) {
     spec.target.samples = 264'000;
     return spec;
   };
-  const BlockResult merged = *FoldPoint(*PointExperiment::Create(at(1), 0));
+  const BlockResult merged = FoldPoint(*PointExperiment::Create(at(1), 0));
   const auto expect_stated = [&](double temperature, size_t orders) {
     SCOPED_TRACE(temperature);
     const PointSummary summary = Summarized(at(temperature), merged);
@@ -99,7 +99,7 @@ TEST(GasConduction, ARemarkSaysThatAnErrorNeedsTwoMeasuredTrajectories) {
   const auto experiment =
       PointExperiment::Create(SpecBetween(3, 1, {.columns = 65}, Model::kMarkov), 0);
   const Block first = experiment->plan().BlockAt(0, 0);
-  const PointSummary summary = experiment->Summarize(*RunBlock(*experiment, first));
+  const PointSummary summary = experiment->Summarize(RunBlock(*experiment, first));
   EXPECT_FALSE(summary.estimates.front().standard_error);
   EXPECT_THAT(summary.remarks,
               ElementsAre("heat_current has no standard error: an error needs two trajectories "

@@ -130,7 +130,7 @@ TEST(GasEquilibrium, TheSpectrumGivesTheConductivity) {
 
 // The same replicas seen as a gas at another temperature, to rounding: T is a power of 4.
 TEST(GasEquilibrium, AllScalesWithTheTemperature) {
-  const BlockResult merged = *FoldPoint(*PointExperiment::Create(SpecAt(1), 0));
+  const BlockResult merged = FoldPoint(*PointExperiment::Create(SpecAt(1), 0));
   const PointSummary unit = Summarized(SpecAt(1), merged), hot = Summarized(SpecAt(4), merged);
   const double factors[] = {2, 4, 4, 1, 1, 2, 1};
   for (size_t i = 0; i < unit.estimates.size(); ++i) {
@@ -180,7 +180,7 @@ TEST(GasEquilibrium, ExpectedProbabilitiesMatchTheThermalLaws) {
 
 // If the balls have another temperature than the stated one, the law of their speeds shows it.
 TEST(GasEquilibrium, AnotherLawGivesADivergenceAboveTheNoise) {
-  BlockResult merged = *FoldPoint(*PointExperiment::Create(SpecAt(1), 0));
+  BlockResult merged = FoldPoint(*PointExperiment::Create(SpecAt(1), 0));
   const PointSummary before = Summarized(SpecAt(1), merged);
   for (const size_t i : {3, 4}) {
     const Estimate& divergence = before.estimates[i];

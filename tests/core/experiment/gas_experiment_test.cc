@@ -20,7 +20,6 @@ class SingleReplicas : public BlockQueue {
   }
   void Done(const Block&, BlockResult) override { has_result = true; }
   bool Pause() override { return true; }
-  std::stop_token stop() const override { return {}; }
 
   bool has_result = false;
   size_t taken_before_first_result = 0;

@@ -5,7 +5,6 @@
 #include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
-#include "tests/core/stopped.h"
 
 namespace ballpiston {
 namespace {
@@ -161,19 +160,12 @@ TEST(MarkovPropertyStatistics, EnergiesAtBothEndsAreCounted) {
   }
 }
 
-// A walk looks at its stop after every 64 orbits.
-TEST(MarkovProperty, AStoppedWalkHasNoResult) {
-  const auto point = PointExperiment::Create(
-      SpecOf(&kMarkovProperty, PaperPoint(0.2), {.collisions = 64}, Model::kMarkov), 0);
-  EXPECT_FALSE(RunBlock(*point, {.samples = 64}, Stopped()));
-}
-
 TEST(MarkovProperty, CountsEveryCollisionOnce) {
   for (const Model model : {Model::kBilliard, Model::kBilliardReference, Model::kMarkov}) {
     for (const int64_t collisions : {1, 33, 1000, 40'000}) {
       const auto point = PointExperiment::Create(
           SpecOf(&kMarkovProperty, PaperPoint(0.2), {.collisions = collisions}, model), 0);
-      const BlockResult merged = *FoldPoint(*point);
+      const BlockResult merged = FoldPoint(*point);
       const PointSummary summary = point->Summarize(merged);
       EXPECT_EQ(summary.samples, static_cast<uint64_t>(collisions));
       EXPECT_EQ(merged.histograms[0].Total(), summary.samples);

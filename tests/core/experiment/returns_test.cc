@@ -11,16 +11,15 @@ namespace {
 class EndedReturns : public ReturnOrbits {
  public:
   using ReturnOrbits::ReturnOrbits;
-  BlockResult Result() const {
-    BlockResult result;
+  void AddTo(BlockResult& result) const {
     for (const auto& hit : returns()) result.samples += hit.has_value();
-    return result;
   }
 };
 
 TEST(ReturnOrbits, AnEscapedOrbitCountsAsAnEscapeOnly) {
+  const BlockResult empty;
   WatchedOrbits<EndedReturns> orbits = {
-      EndedReturns(kPaperPair, {0.125, 1}, {.seed = 1, .stream = 2}, {.samples = 2})};
+      EndedReturns(kPaperPair, {0.125, 1}, {.seed = 1, .stream = 2}, {.samples = 2}), empty};
   Collision collision;
   collision.state = orbits.orbits.Start(0);
   collision.state.ball_speed *= 1 + 1e-10;

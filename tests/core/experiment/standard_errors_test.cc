@@ -105,7 +105,7 @@ TEST(StandardErrors, OfARelaxationNeedOrbitsThatMeet) {
     EXPECT_TRUE(HasRemark(summary, " has no standard error: an error needs about "));
     const auto point =
         PointExperiment::Create(Asked(question + " tolerance=0.03 model=billiard"), 0);
-    EXPECT_FALSE(point->ReachesTolerance(*RunBlock(*point, point->plan().BlockAt(0, 0))));
+    EXPECT_FALSE(point->ReachesTolerance(RunBlock(*point, point->plan().BlockAt(0, 0))));
     EXPECT_TRUE(HasError("decay_integral", question + " samples=64 model=markov"));
   }
 }

@@ -28,7 +28,7 @@ FoldState ByRandomChunks(const PointExperiment& point, unsigned seed) {
     ChunkFold one(point.plan(), {chunk}, chunk + 1, starts);
     const Block block = *one.NextBlock();
     EXPECT_FALSE(one.NextBlock());
-    for (ChunkResult& done : one.Add(block, *RunBlock(point, block))) fold.Add(std::move(done));
+    for (ChunkResult& done : one.Add(block, RunBlock(point, block))) fold.Add(std::move(done));
   }
   return fold.state();
 }
@@ -54,7 +54,7 @@ TEST(SteadyGas, ABlockStartsWhereThePreviousOneOfItsGroupEnded) {
   std::vector<Block> first;
   while (const auto block = fold.NextBlock()) first.push_back(*block);
   ASSERT_EQ(first.size(), groups);
-  const BlockResult result = *RunBlock(*point, first[0]);
+  const BlockResult result = RunBlock(*point, first[0]);
   fold.Add(first[0], result);
   const auto next = fold.NextBlock();
   ASSERT_TRUE(next);
@@ -66,7 +66,7 @@ TEST(SteadyGas, ABlockStartsWhereThePreviousOneOfItsGroupEnded) {
 
 TEST(SteadyGas, ADamagedStateCannotContinue) {
   const auto point = PointOf(Model::kBilliard, 1);
-  const GroupState state = FoldPoint(*point)->groups[3];
+  const GroupState state = FoldPoint(*point).groups[3];
   EXPECT_TRUE(point->CanContinue(state));
   EXPECT_FALSE(point->CanContinue({}));
   const auto with = [&](size_t place, double number) {

@@ -54,7 +54,7 @@ FirstExchange Find(JumpGas gas, const GasGeometry& geometry, const GasState& sta
   for (double begin = 0;;) {
     JumpGas next = gas;
     GasMeter meter(geometry, start);
-    next.AdvanceTo(begin + step, meter);
+    while (!next.AdvanceToward(begin + step, meter)) continue;
     if (meter.exchanges() == 1) return AfterOne(meter, start, begin + step);
     if (meter.exchanges() == 0) {
       gas = next;

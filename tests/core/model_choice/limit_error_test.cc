@@ -53,7 +53,7 @@ TEST(LimitError, PilotIsAFunctionOfItsPlace) {
   const PilotPlace place = {.rho = kPaperRho, .delta = PairDeltaBound(kPaperRho), .epsilon = 0.01};
   const auto run = [&] {
     const auto experiment = PilotExperiment(place);
-    return PilotOf(*experiment, *FoldPoint(*experiment));
+    return PilotOf(*experiment, FoldPoint(*experiment));
   };
   const Pilot first = run(), second = run();
   EXPECT_EQ(first.difference, second.difference);

@@ -16,7 +16,7 @@ namespace ballpiston::torture {
 inline double EngineCost(const v1::EnsembleSpec& question) {
   const auto experiment = PointExperiment::Create(server::CheckSpec(question).spec, 0);
   const double start = server::ThreadSeconds();
-  const auto samples = static_cast<double>(FoldPoint(*experiment)->samples);
+  const auto samples = static_cast<double>(FoldPoint(*experiment).samples);
   return (server::ThreadSeconds() - start) / samples;
 }
 

@@ -195,7 +195,7 @@ std::shared_ptr<const PointExperiment> SteadyExperiment() {
 ChunkResult Computed(const Lease& lease) {
   ChunkFold fold(lease.experiment->plan(), lease.start, lease.end, lease.groups);
   const Block block = *fold.NextBlock();
-  return fold.Add(block, *RunBlock(*lease.experiment, block)).front();
+  return fold.Add(block, RunBlock(*lease.experiment, block)).front();
 }
 
 TEST(OpenPoint, GroupsOfTrajectoriesAreLeasesOfTheirOwn) {

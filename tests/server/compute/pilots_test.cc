@@ -78,7 +78,7 @@ TEST_F(PilotsTest, APilotIsComputedOnceForAllRuns) {
   EXPECT_EQ(opener().opened, 1);
   ASSERT_EQ(opener().kept.size(), 1u);
   const FakePilot pilot;
-  EXPECT_EQ(opener().kept[0].difference, PilotOf(pilot, *FoldPoint(pilot)).difference);
+  EXPECT_EQ(opener().kept[0].difference, PilotOf(pilot, FoldPoint(pilot)).difference);
 }
 
 TEST_F(PilotsTest, AnotherRunComputesThePilotIfItsRunIsCancelled) {

@@ -161,7 +161,7 @@ class SteppedExecutor : public Executor {
       while (blocks-- > 0 && !lease.stop.stop_requested()) {
         const std::optional<Block> block = fold.NextBlock();
         if (!block) break;
-        LeaseReport report = {.chunks = fold.Add(*block, *RunBlock(experiment, *block)),
+        LeaseReport report = {.chunks = fold.Add(*block, RunBlock(experiment, *block)),
                               .partial = fold.partial(),
                               .seconds = kSecondsOfABlock};
         const absl::Status taken = scheduler_.Report(lease, std::move(report));
@@ -187,7 +187,7 @@ inline std::vector<ChunkResult> ComputedChunks(const Lease& lease,
   ChunkFold fold(experiment.plan(), lease.start, lease.end);
   std::vector<ChunkResult> chunks;
   while (const std::optional<Block> block = fold.NextBlock()) {
-    for (ChunkResult& chunk : fold.Add(*block, *RunBlock(experiment, *block))) {
+    for (ChunkResult& chunk : fold.Add(*block, RunBlock(experiment, *block))) {
       chunks.push_back(std::move(chunk));
     }
   }

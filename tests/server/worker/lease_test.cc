@@ -71,7 +71,7 @@ TEST(LeaseFile, DamageIsDataLoss) {
 std::string FirstSamples(const PointExperiment& experiment) {
   Block block = experiment.plan().BlockAt(0, 0);
   block.samples = std::min<uint64_t>(block.samples, 64);
-  return ChunkRecordBytes({0, RunBlock(experiment, block).value()});
+  return ChunkRecordBytes({0, RunBlock(experiment, block)});
 }
 
 // Chunks double until they have their largest size.
@@ -138,7 +138,7 @@ TEST(LeaseRecord, APartOfAPointOfAGridComesBack) {
   lease.end = experiment.plan().chunks();
   lease.start.blocks = 2;
   for (uint64_t i = 0; i < 2; ++i) {
-    lease.start.merged.Merge(RunBlock(experiment, experiment.plan().BlockAt(1, i)).value());
+    lease.start.merged.Merge(RunBlock(experiment, experiment.plan().BlockAt(1, i)));
   }
   ExpectComesBack(lease);
 }
@@ -253,7 +253,7 @@ TEST(LeaseRunner, ComputesOnlyTheRestOfAChunkThatHasBlocks) {
   ChunkResult expected = AllChunks(*lease.experiment)[1];
   expected.result.health.escapes += kMark;
   lease.start.blocks = 1;
-  lease.start.merged = RunBlock(*lease.experiment, lease.experiment->plan().BlockAt(1, 0)).value();
+  lease.start.merged = RunBlock(*lease.experiment, lease.experiment->plan().BlockAt(1, 0));
   lease.start.merged.health.escapes += kMark;
   EXPECT_TRUE(AreEqual(RunToTheEnd(lease).chunks, {expected}));
 }

@@ -77,7 +77,7 @@ std::vector<ChunkResult> AllChunks(const PointExperiment& experiment) {
   ChunkFold fold(experiment.plan(), {}, experiment.plan().chunks());
   std::vector<ChunkResult> chunks;
   while (const auto block = fold.NextBlock()) {
-    for (ChunkResult& chunk : fold.Add(*block, RunBlock(experiment, *block).value())) {
+    for (ChunkResult& chunk : fold.Add(*block, RunBlock(experiment, *block))) {
       chunks.push_back(std::move(chunk));
     }
   }
