@@ -176,10 +176,10 @@ TEST_F(FolderExecutorTest, DamagedFilesAreRefusedAndComputedAgain) {
   Compute(beyond, true);
   End(beyond);
   files_.files["done/unknown.w.finished"].bytes = "a foreign file of some length, of no server";
-  files_.files["done/.nfs0001"] = {};  // is left alone
+  files_.files["done/foreign"] = {};  // is left alone
   executor_->Look();
   EXPECT_EQ(executor_->Status().refused_files, 4);
-  EXPECT_THAT(In("done"), ElementsAre(".nfs0001"));
+  EXPECT_THAT(In("done"), ElementsAre("foreign"));
   ComputeAll(*journal);
 }
 
