@@ -50,20 +50,13 @@ void CheckStoreSize(Database& database, const Limits& limits) {
                     "max-store-bytes", static_cast<double>(limits.max_store_bytes)));
 }
 
-std::optional<EarlierJob> FindOriginal(Database& database, const Acceptance& acceptance) {
-  const auto request = FindRequest(database, acceptance.record.principal, acceptance.request_id);
-  if (!request) return std::nullopt;
-  if (request->payload != acceptance.payload) {
-    database.Fail(RequestIdReused(acceptance.request_id));
-  }
-  auto job = FindJobBySequence(database, request->job);
-  return job ? std::optional(EarlierJob{*std::move(job)}) : std::nullopt;
-}
-
 std::optional<EarlierJob> FindEarlier(Database& database, const Acceptance& acceptance) {
-  if (auto original = FindOriginal(database, acceptance)) return original;
-  if (acceptance.fresh) return std::nullopt;
   const JobRecord& record = acceptance.record;
+  if (auto original = FindJobOfRequest(database, record.principal, record.request_id)) {
+    if (original->payload != record.payload) database.Fail(RequestIdReused(record.request_id));
+    return EarlierJob{*std::move(original)};
+  }
+  if (acceptance.fresh) return std::nullopt;
   auto answer = FindAnswer(database, record.principal, record.question);
   return answer ? std::optional(EarlierJob{*std::move(answer), true}) : std::nullopt;
 }
@@ -147,10 +140,6 @@ std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Accep
   CheckStoreSize(database, limits);
   if (!acceptance.fresh) Continue(database, record);
   InsertJob(database, record);
-  if (!acceptance.request_id.empty()) {
-    InsertRequest(database, record.principal, acceptance.request_id,
-                  {.payload = acceptance.payload, .job = record.sequence});
-  }
   return std::nullopt;
 }
 

@@ -29,11 +29,9 @@
 namespace ballpiston::server {
 
 struct Acceptance {
-  JobRecord record;        // the new job, if there is one
-  std::string request_id;  // unique for the principal; may be empty
-  std::string payload;     // a hash of the request without its id and its labels
-  bool fresh = false;      // do not return an earlier job
-  absl::Status fits;       // of CheckSize; used for new jobs only
+  JobRecord record;    // the new job, if there is one, and what the request identifies
+  bool fresh = false;  // do not return an earlier job
+  absl::Status fits;   // of CheckSize; used for new jobs only
 };
 
 // A job that answers the request.
@@ -42,7 +40,7 @@ struct EarlierJob {
   bool answered_from_store = false;  // it answers the question; else the request is its own again
 };
 
-// Empty: the new job and its request are stored, and the job's record says which job it continues.
+// Empty: the new job is stored, and its record says which job it continues.
 // If the request is refused, the transaction fails: INVALID_ARGUMENT or RESOURCE_EXHAUSTED.
 std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance);
 

@@ -49,9 +49,7 @@ std::shared_ptr<JobJournal> ActiveJobs::JournalOf(const std::shared_ptr<Job>& jo
 
 void ActiveJobs::OnEnded(const JobRecord& ended) {
   MutexLock lock(mutex_);
-  ++(ended.state == v1::EnsembleJob::SUCCEEDED ? ended_.succeeded
-     : ended.state == v1::EnsembleJob::FAILED  ? ended_.failed
-                                               : ended_.cancelled);
+  ++ended_[ended.state];
   jobs_.erase(ended.id);
 }
 

@@ -32,12 +32,8 @@ namespace ballpiston::server {
 // the store was restored from a backup), and from the same job under an older engine.
 RunName RunOf(const JobRecord& record);
 
-// Jobs that ended in this process, by state.
-struct EndedJobs {
-  uint64_t succeeded = 0;
-  uint64_t failed = 0;
-  uint64_t cancelled = 0;
-};
+// The number of jobs that ended in this process, by their last state.
+using EndedJobs = std::map<JobState, int64_t>;
 
 class ActiveJobs {
  public:
@@ -81,7 +77,9 @@ class ActiveJobs {
   CrashRecord& crashes_;
   mutable Mutex mutex_;
   std::map<std::string, std::shared_ptr<Job>> jobs_ ABSL_GUARDED_BY(mutex_);  // by id
-  EndedJobs ended_ ABSL_GUARDED_BY(mutex_);
+  EndedJobs ended_ ABSL_GUARDED_BY(mutex_) = {{v1::EnsembleJob::SUCCEEDED, 0},
+                                              {v1::EnsembleJob::FAILED, 0},
+                                              {v1::EnsembleJob::CANCELLED, 0}};
 };
 
 }  // namespace ballpiston::server

@@ -1,15 +1,10 @@
 #include "server/book/job.h"
 
-#include <algorithm>
 #include <utility>
 
-#include "absl/container/flat_hash_set.h"
-#include "server/book/job_message.h"
-#include "server/convert/spec.h"
 #include "server/host.h"
 
 namespace ballpiston::server {
-
 namespace {
 
 JobRecord WithoutSpec(JobRecord row) {
@@ -19,28 +14,12 @@ JobRecord WithoutSpec(JobRecord row) {
 
 }  // namespace
 
-void LeaveOutFinished(v1::StatisticsSnapshot& message) {
-  absl::flat_hash_set<int32_t> finished;
-  for (const v1::PointResult& point : message.finished_points()) finished.insert(point.index());
-  auto& points = *message.mutable_points();
-  const auto is_finished = [&](const v1::PointResult& point) {
-    return finished.contains(point.index());
-  };
-  points.erase(std::remove_if(points.begin(), points.end(), is_finished), points.end());
-}
-
-Job::Job(JobRecord row)
-    : open_ended_(
-          IsOpenEnded(SpecFromBytes({row.spec.rest}).value_or(v1::EnsembleSpec()).target())),
-      row_(WithoutSpec(std::move(row))),
-      numbers_(row_.numbers) {}
+Job::Job(JobRecord row) : row_(WithoutSpec(std::move(row))), numbers_(row_.numbers) {}
 
 JobNumbers Job::Numbers() const {
   MutexLock lock(mutex_);
   return numbers_;
 }
-
-v1::JobProgress Job::Progress() const { return ProgressOf(row_.points, open_ended_, Numbers()); }
 
 void Job::NoteStateChange() {
   MutexLock lock(mutex_);
@@ -66,15 +45,10 @@ uint64_t Job::Add(const JobNumbers& more) {
   return ++last_change_;
 }
 
-void Job::AddFinishedPoint(FinishedPoint point) {
+void Job::AddFinishedPoint(int64_t number) {
   MutexLock lock(mutex_);
   ++numbers_.points_done;
-  last_finished_ = point.number;
-  recent_.push_back(std::move(point));
-  if (recent_.size() > kRecentPoints) {
-    last_forgotten_ = recent_.front().number;
-    recent_.pop_front();
-  }
+  last_finished_ = number;
   ++last_change_;
 }
 
@@ -84,17 +58,8 @@ void Job::AddRestoredPoints(const std::vector<PointSize>& points) {
     numbers_.Add(
         {.points_done = 1, .samples = point.samples, .bytes = point.bytes, .points_computed = 1});
   }
-  last_finished_ = last_forgotten_ = numbers_.points_done;
+  last_finished_ = numbers_.points_done;
   ++last_change_;
-}
-
-std::optional<std::vector<FinishedPoint>> Job::FinishedAfter(int64_t after, size_t limit) const {
-  MutexLock lock(mutex_);
-  if (after < last_forgotten_) return std::nullopt;
-  const auto is_older = [](int64_t number, const FinishedPoint& p) { return number < p.number; };
-  const auto first = std::upper_bound(recent_.begin(), recent_.end(), after, is_older);
-  const auto left = static_cast<size_t>(recent_.end() - first);
-  return std::vector<FinishedPoint>(first, first + static_cast<ptrdiff_t>(std::min(left, limit)));
 }
 
 std::shared_ptr<const JobSnapshot> Job::Snapshot(std::chrono::milliseconds max_age,

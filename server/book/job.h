@@ -9,35 +9,23 @@
 //
 // Finished points have numbers of their own. The store assigns them, and they stay valid after a
 // restart of the server (point_tables.h). A point counts as done, and can be sent, when it is
-// stored. The job keeps the newest kRecentPoints in memory, because reads of the store by a
-// thousand watches would delay other calls; the store has all of them. Thread-safe.
+// stored. Thread-safe.
 #pragma once
 
 #include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <memory>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "absl/functional/function_ref.h"
-#include "ballpiston/v1/ensemble.pb.h"
 #include "ballpiston/v1/result.pb.h"
 #include "server/mutex.h"
 #include "server/store/job_record.h"
 #include "server/store/point_tables.h"
 
 namespace ballpiston::server {
-
-inline constexpr size_t kRecentPoints = 100;
-
-struct FinishedPoint {
-  int64_t number = 0;
-  std::shared_ptr<const std::string> result;  // serialized v1::PointResult
-};
 
 // The job's unfinished points at one moment.
 struct JobSnapshot {
@@ -52,10 +40,6 @@ struct JobSnapshot {
   std::vector<Point> points;  // newest first
 };
 
-// Removes those points from the unfinished ones of a message that are also among its finished ones:
-// they were finished after the snapshot was made.
-void LeaveOutFinished(v1::StatisticsSnapshot& message);
-
 class Job {
  public:
   explicit Job(JobRecord row);
@@ -64,7 +48,6 @@ class Job {
   const JobRecord& row() const { return row_; }
 
   JobNumbers Numbers() const;
-  v1::JobProgress Progress() const;
 
   // These three take no lock, because a thousand watches call them several times a second.
   uint64_t last_change() const { return last_change_; }
@@ -80,14 +63,10 @@ class Job {
 
   // Adds what was computed, or restored from a checkpoint. Returns the number of the change.
   uint64_t Add(const JobNumbers& more);
-  // Adds a point that is stored now. Call in the order of the points' numbers.
-  void AddFinishedPoint(FinishedPoint point);
+  // Adds a point that is stored now, with this number. Call in the order of the numbers.
+  void AddFinishedPoint(int64_t number);
   // Adds the points that an earlier process stored. Call before AddFinishedPoint.
   void AddRestoredPoints(const std::vector<PointSize>& points);
-
-  // The finished points after number `after`, oldest first, at most `limit`. Empty if some of these
-  // points are no longer in memory.
-  std::optional<std::vector<FinishedPoint>> FinishedAfter(int64_t after, size_t limit) const;
 
   // All watches of the job share this snapshot, because making one takes the scheduler's lock.
   // Returns the last one if nothing has changed since it was made, or if it is younger than
@@ -96,7 +75,6 @@ class Job {
                                               absl::FunctionRef<JobSnapshot()> make);
 
  private:
-  const bool open_ended_;  // the number of samples is not known in advance
   const JobRecord row_;
 
   mutable Mutex mutex_;
@@ -106,9 +84,6 @@ class Job {
   std::atomic<uint64_t> last_change_ = 1;
   std::atomic<uint64_t> last_state_change_ = 1;
   std::atomic<int64_t> last_finished_ = 0;
-  std::deque<FinishedPoint> recent_ ABSL_GUARDED_BY(mutex_);  // oldest first
-  // The number of the last point before those in recent_.
-  int64_t last_forgotten_ ABSL_GUARDED_BY(mutex_) = 0;
 
   Mutex snapshot_mutex_;
   std::shared_ptr<const JobSnapshot> snapshot_ ABSL_GUARDED_BY(snapshot_mutex_);

@@ -5,11 +5,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/book/job_name.h"
-#include "server/book/retention.h"
 #include "server/convert/errors.h"
 #include "server/host.h"
 #include "server/status/failpoint.h"
-#include "server/status/log.h"
 
 namespace ballpiston::server {
 
@@ -48,6 +46,8 @@ Acceptance JobBook::NewAcceptance(const Principal& caller,
   JobRecord& record = acceptance.record;
   record.id = RandomId();
   record.principal = caller.name;
+  record.request_id = request.request_id();
+  record.payload = PayloadOf(request);
   record.priority = request.priority();
   record.labels = LabelsText({request.labels().begin(), request.labels().end()});
   record.spec = SpecBytes(request.spec());
@@ -57,8 +57,6 @@ Acceptance JobBook::NewAcceptance(const Principal& caller,
   record.numbers.bytes = static_cast<int64_t>(record.spec.size());
   record.create_time = WallNow();
   record.points = static_cast<int64_t>(PointCount(checked.spec));
-  acceptance.request_id = request.request_id();
-  acceptance.payload = PayloadOf(request);
   acceptance.fresh = request.fresh();
   acceptance.fits = CheckSize(checked, limits_);
   return acceptance;
@@ -164,25 +162,8 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Update(const Principal& caller, const s
   return Get(caller, id);
 }
 
-// ---- limits ----
-
-void JobBook::KeepLimits(absl::Time now) {
-  const absl::Status kept = EnforceRetention(store_, limits_, now);
-  const bool is_new = std::exchange(limits_failure_, kept) != kept;
-  if (is_new && !kept.ok() && !store_.failing()) {
-    LogError(absl::StrCat("the limits on stored results cannot be enforced: ", kept.message()));
-  }
-}
-
-int64_t JobBook::CountExpiring(absl::Time now) {
-  if (limits_.retain_days == 0) return 0;
-  const absl::Time ended = now + kSoonToExpire - absl::Hours(24) * limits_.retain_days;
-  return store_.Read([&](Database& database) { return CountExpirable(database, ended); })
-      .value_or(0);
-}
-
-std::map<std::string, PrincipalJobs> JobBook::JobsByPrincipal() {
-  return store_.Read(&CountJobsByPrincipal).value_or(std::map<std::string, PrincipalJobs>());
+std::vector<v1::PrincipalStatus> JobBook::JobsByPrincipal() {
+  return store_.Read(&CountJobsByPrincipal).value_or(std::vector<v1::PrincipalStatus>());
 }
 
 }  // namespace ballpiston::server

@@ -10,7 +10,6 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,8 +33,6 @@
 
 namespace ballpiston::server {
 
-inline constexpr absl::Duration kSoonToExpire = absl::Hours(7 * 24);
-
 using JobsPage = PageOfJobs<v1::EnsembleJob>;
 
 // A job's row, and its numbers in memory.
@@ -47,6 +44,12 @@ struct FoundJob {
   int64_t last_finished() const {
     return active != nullptr ? active->last_finished() : record.numbers.points_done;
   }
+};
+
+// A point whose result is stored, and its number in the order of storing (point_tables.h).
+struct FinishedPoint {
+  int64_t number = 0;
+  v1::PointResult result;  // without histograms and curves
 };
 
 struct ResultsQuery {
@@ -124,18 +127,20 @@ class JobBook {
                                               size_t limit) const;
 
   // The finished points after number `after`, in order, at most `limit`; fewer if they are large.
-  // `active` is null if the job has ended. No points: there are no more. May read the store.
-  absl::StatusOr<std::vector<FinishedPoint>> FinishedAfter(int64_t sequence, const Job* active,
-                                                           int64_t after, size_t limit);
+  // `active` is null if the job has ended. No points: there are no more.
+  absl::StatusOr<std::vector<FinishedPoint>> FinishedAfter(const JobRecord& record,
+                                                           const Job* active, int64_t after,
+                                                           size_t limit);
 
-  // ---- the limits, and what the server's status shows ----
+  // ---- how long results are kept (retention.cc), and what the server's status shows ----
 
-  // Lets results expire at the time `now`. Call about once a second, from one thread at a time.
+  // Lets results expire and deletes expired jobs, as the limits require at the time `now`. One call
+  // handles at most a few hundred jobs. Call about once a second, from one thread at a time.
   void KeepLimits(absl::Time now);
 
-  // Jobs whose results expire within kSoonToExpire. 0 if the store cannot be read.
+  // Jobs whose results expire within a week. 0 if the store cannot be read.
   int64_t CountExpiring(absl::Time now);
-  std::map<std::string, PrincipalJobs> JobsByPrincipal();  // empty if the store cannot be read
+  std::vector<v1::PrincipalStatus> JobsByPrincipal();  // empty if the store cannot be read
   size_t active_jobs() const { return active_.size(); }
   EndedJobs ended_jobs() const { return active_.ended(); }
   int64_t engine_crashes() const { return crashes_->counted_deaths(); }
@@ -150,6 +155,7 @@ class JobBook {
   absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id, Grid grid);
   // Adds the numbers in memory. If the job has ended since its row was read, reads the row again.
   absl::StatusOr<FoundJob> WithNumbers(const Principal& caller, JobRecord record, Grid grid);
+  absl::Status EnforceRetention(absl::Time now);
 
   Store& store_;
   const Limits limits_;

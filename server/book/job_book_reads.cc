@@ -1,5 +1,5 @@
 // The methods of the book that only read.
-#include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "server/book/job_book.h"
@@ -21,6 +21,12 @@ const ExperimentKind* ExperimentOf(const JobRecord& record) {
   return FindExperiment(static_cast<uint64_t>(spec.experiment()));
 }
 
+// With its name, which the store does not keep.
+v1::PointResult Named(v1::PointResult result, const JobRecord& job) {
+  result.set_name(ResultName(job.id, result.index()));
+  return result;
+}
+
 ResultsPage ReadResultsPage(Database& database, const JobRecord& record,
                             const ResultsQuery& query) {
   const ExperimentKind* const experiment = ExperimentOf(record);
@@ -36,7 +42,7 @@ ResultsPage ReadResultsPage(Database& database, const JobRecord& record,
     const bool full = page.points.size() == static_cast<size_t>(query.max_points);
     const bool ends = full || (!page.points.empty() && bytes > query.max_bytes);
     if (ends) page.next_point = row.point;
-    if (!ends) page.points.push_back(std::move(result));
+    if (!ends) page.points.push_back(Named(std::move(result), record));
     return !ends;
   };
   const Details details = query.histograms ? Details::kIncluded : Details::kLeftOut;
@@ -130,8 +136,9 @@ absl::StatusOr<std::optional<v1::PointResult>> JobBook::UnfinishedResult(const P
   if (!live) return std::nullopt;
   const CrashRecord::Examining examining(*crashes_, RunOf(record));
   const PointSummary summary = live->experiment->Summarize(live->merged);
-  return WithDetails(ResultOf(live->index, *live->experiment, summary), DetailsOf(summary),
-                     *experiment);
+  return Named(WithDetails(ResultOf(live->index, *live->experiment, summary), DetailsOf(summary),
+                           *experiment),
+               record);
 }
 
 // ---- for watches ----
@@ -144,34 +151,32 @@ std::shared_ptr<const JobSnapshot> JobBook::Snapshot(Job& job, std::chrono::mill
     snapshot.change = job.last_change();  // read before the points, which may be newer
     snapshot.finished = job.last_finished();
     for (const LivePoint& point : scheduler_.NewestPoints(job.row().sequence, limit)) {
+      const PointSummary summary = point.experiment->Summarize(point.merged);
       snapshot.points.push_back(
-          {point.version,
-           ResultOf(point.index, *point.experiment, point.experiment->Summarize(point.merged))});
+          {point.version, Named(ResultOf(point.index, *point.experiment, summary), job.row())});
     }
     return snapshot;
   });
 }
 
-absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(int64_t sequence,
+absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(const JobRecord& record,
                                                                   const Job* active, int64_t after,
                                                                   size_t limit) {
-  if (active != nullptr) {
-    if (auto recent = active->FinishedAfter(after, limit)) return *std::move(recent);
-  }
+  // A point that the job does not have yet would give a token that the job does not know.
+  const int64_t last = active ? active->last_finished() : std::numeric_limits<int64_t>::max();
   std::vector<FinishedPoint> points;
+  if (last <= after) return points;
   size_t bytes = 0;
-  const auto take = [&](int64_t number, std::string result) {
-    // A point that the job does not have yet would give a token that the job does not know.
-    if (active != nullptr && number > active->last_finished()) return false;
-    bytes += result.size();
-    points.push_back({number, std::make_shared<const std::string>(std::move(result))});
-    return points.size() < limit && bytes < kMaxBytesOfPoints;
-  };
-  const auto read = store_.Read([&](Database& database) {
-    ReadResultsStoredAfter(database, sequence, after, take);
-    return points.size();
+  const absl::Status read = store_.Read([&](Database& database) {
+    const auto take = [&](int64_t number, const std::string& result) {
+      if (number > last) return false;
+      bytes += result.size();
+      points.push_back({number, Named(database.ValueOf(ResultFromBytes(result)), record)});
+      return points.size() < limit && bytes < kMaxBytesOfPoints;
+    };
+    ReadResultsStoredAfter(database, record.sequence, after, take);
   });
-  if (!read.ok()) return StoreFailure(read.status());
+  if (!read.ok()) return StoreFailure(read);
   return points;
 }
 

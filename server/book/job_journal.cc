@@ -203,16 +203,12 @@ void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
                   DetailsBytes(DetailsOf(summary, fold.state().chunk_digests))};
   row.end = PointEndOf(job_->row(), experiment, fold);
   row.has_checkpoint = resumed_ || experiment.plan().samples() > 0;
-  auto told = std::make_shared<const std::string>(row.result);
   // A result does not count the samples of a warm-up.
   job_->Add({.samples = row.samples - static_cast<double>(merged.samples),
-             .bytes = static_cast<int64_t>(row.result.size() + row.details.size() +
-                                           row.end.state.size())});
+             .bytes = static_cast<int64_t>(row.bytes())});
   Failpoint("point.before_record");
   store_.RecordResult(job_->row().sequence, std::move(row),
-                      [job = job_, told = std::move(told)](int64_t number) {
-                        job->AddFinishedPoint({number, told});
-                      });
+                      [job = job_](int64_t number) { job->AddFinishedPoint(number); });
   Failpoint("point.recorded");
 }
 

@@ -22,6 +22,19 @@ void SetTimes(const JobRecord& record, double retain_days, v1::EnsembleJob& job)
   SetTime(std::min(expires, kLastTime), job.mutable_expire_time());
 }
 
+// Without a fraction if a tolerance or a budget ends the points, not a number of samples.
+v1::JobProgress ProgressOf(int64_t points, const v1::Target& target, const JobNumbers& numbers) {
+  v1::JobProgress progress;
+  progress.set_points(static_cast<int32_t>(points));
+  progress.set_points_done(static_cast<int32_t>(numbers.points_done));
+  progress.set_samples(numbers.samples);
+  if (target.has_tolerance() || target.has_budget() || points == 0) return progress;
+  const bool done = numbers.points_done == points;
+  progress.set_fraction(
+      done ? 1.0 : std::min(1.0, numbers.points_computed / static_cast<double>(points)));
+  return progress;
+}
+
 }  // namespace
 
 void SetTime(absl::Time time, google::protobuf::Timestamp* timestamp) {
@@ -29,20 +42,6 @@ void SetTime(absl::Time time, google::protobuf::Timestamp* timestamp) {
   timestamp->set_seconds(seconds);
   timestamp->set_nanos(
       static_cast<int32_t>(absl::ToInt64Nanoseconds(time - absl::FromUnixSeconds(seconds))));
-}
-
-bool IsOpenEnded(const v1::Target& target) { return target.has_tolerance() || target.has_budget(); }
-
-v1::JobProgress ProgressOf(int64_t points, bool open_ended, const JobNumbers& numbers) {
-  v1::JobProgress progress;
-  progress.set_points(static_cast<int32_t>(points));
-  progress.set_points_done(static_cast<int32_t>(numbers.points_done));
-  progress.set_samples(numbers.samples);
-  if (open_ended || points == 0) return progress;
-  const bool done = numbers.points_done == points;
-  progress.set_fraction(
-      done ? 1.0 : std::min(1.0, numbers.points_computed / static_cast<double>(points)));
-  return progress;
 }
 
 v1::EnsembleJob JobMessage(const JobRecord& record, const JobNumbers& numbers, double retain_days) {
@@ -54,7 +53,7 @@ v1::EnsembleJob JobMessage(const JobRecord& record, const JobNumbers& numbers, d
   if (!record.error.empty() && !job.mutable_error()->ParseFromString(record.error)) {
     job.clear_error();
   }
-  *job.mutable_progress() = ProgressOf(record.points, IsOpenEnded(job.spec().target()), numbers);
+  *job.mutable_progress() = ProgressOf(record.points, job.spec().target(), numbers);
   job.set_engine_version(record.engine_version);
   job.set_work(numbers.work);
   job.set_principal(record.principal);

@@ -1,8 +1,6 @@
 // A job as the API shows it, made from its row and from what memory knows about it. Pure functions.
 #pragma once
 
-#include <cstdint>
-
 #include "absl/time/time.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "google/protobuf/timestamp.pb.h"
@@ -14,13 +12,7 @@ namespace ballpiston::server {
 // 0: never. A specification that cannot be read is left out.
 v1::EnsembleJob JobMessage(const JobRecord& record, const JobNumbers& numbers, double retain_days);
 
-// `open_ended`: there is no fraction.
-v1::JobProgress ProgressOf(int64_t points, bool open_ended, const JobNumbers& numbers);
-
 // A time in the API's format, to the nanosecond.
 void SetTime(absl::Time time, google::protobuf::Timestamp* timestamp);
-
-// Whether a tolerance or a budget ends the job's points, not a number of samples.
-bool IsOpenEnded(const v1::Target& target);
 
 }  // namespace ballpiston::server

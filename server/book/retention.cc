@@ -1,10 +1,16 @@
-#include "server/book/retention.h"
-
+// How long results are kept: Limits::retain_days and Limits::max_store_bytes.
+//
+// The results of a job that is not pinned expire `retain_days` after its end. If the store takes
+// more than kFullShare of its bound, results expire earlier, beginning with the job that ended
+// first. If no results are left that can expire, the expired jobs are deleted in the same order.
+// The data of active and pinned jobs are never removed here, so the store may grow beyond the
+// bound; then no new job is accepted (acceptance.h).
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "server/book/job_book.h"
 #include "server/status/log.h"
 #include "server/store/job_table.h"
 #include "server/store/sweeper.h"
@@ -13,6 +19,10 @@ namespace ballpiston::server {
 namespace {
 
 constexpr int kMostAtOnce = 256;
+constexpr absl::Duration kSoonToExpire = absl::Hours(7 * 24);
+
+// Space is freed before the bound is reached, so that new jobs need not be refused meanwhile.
+constexpr double kFullShare = 0.95;
 
 struct Removal {
   std::vector<JobSize> jobs = {};
@@ -63,13 +73,28 @@ absl::Status Remove(Store& store, const Removal& removal, absl::Time now) {
 
 }  // namespace
 
-absl::Status EnforceRetention(Store& store, const Limits& limits, absl::Time now) {
-  const auto old = store.Read([&](Database& database) { return TooOld(database, limits, now); });
+absl::Status JobBook::EnforceRetention(absl::Time now) {
+  const auto old = store_.Read([&](Database& database) { return TooOld(database, limits_, now); });
   if (!old.ok()) return old.status();
-  const absl::Status aged = Remove(store, *old, now);
+  const absl::Status aged = Remove(store_, *old, now);
   if (!aged.ok()) return aged;
-  const auto much = store.Read([&](Database& database) { return TooMuch(database, limits); });
-  return much.ok() ? Remove(store, *much, now) : much.status();
+  const auto much = store_.Read([&](Database& database) { return TooMuch(database, limits_); });
+  return much.ok() ? Remove(store_, *much, now) : much.status();
+}
+
+void JobBook::KeepLimits(absl::Time now) {
+  const absl::Status kept = EnforceRetention(now);
+  const bool is_new = std::exchange(limits_failure_, kept) != kept;
+  if (is_new && !kept.ok() && !store_.failing()) {
+    LogError(absl::StrCat("the limits on stored results cannot be enforced: ", kept.message()));
+  }
+}
+
+int64_t JobBook::CountExpiring(absl::Time now) {
+  if (limits_.retain_days == 0) return 0;
+  const absl::Time ended = now + kSoonToExpire - absl::Hours(24) * limits_.retain_days;
+  return store_.Read([&](Database& database) { return CountExpirable(database, ended); })
+      .value_or(0);
 }
 
 }  // namespace ballpiston::server

@@ -14,7 +14,7 @@ namespace ballpiston::server {
 namespace {
 
 constexpr size_t kMostLeasesOfTheOptions = 600;
-constexpr double kOperationsOfALease = 9;
+constexpr double kOperationsOfALease = 10;
 constexpr double kOperationsASecond = 100;
 constexpr std::chrono::seconds kBetweenPreparations(30);
 constexpr std::chrono::seconds kLongestBackoff(60);
@@ -324,10 +324,11 @@ absl::Status FolderExecutor::LayOne(Lease lease) {
   const std::string bytes = BytesOf(LeaseRecord(lease, server_.identity, pace.touch));
   // The folder may have changed while there was no work.
   const absl::Status ready = leases_.empty() ? server_.prepare() : absl::OkStatus();
-  const absl::StatusOr<FileStamp> stamp = ready.ok() ? files_->Create(file.Todo(), bytes) : ready;
-  if (!stamp.ok()) {
+  const absl::StatusOr<FileStamp> stamp = ready.ok() ? files_->Create(file.Part(), bytes) : ready;
+  const absl::Status laid = stamp.ok() ? files_->Move(file.Part(), file.Todo()) : stamp.status();
+  if (!laid.ok()) {
     scheduler_.Return(lease, false);
-    return stamp.status();
+    return laid;
   }
   Failpoint("cluster.laid");
   const Clock::time_point now = SteadyNow();

@@ -54,9 +54,9 @@ struct Pace {
   double lease, touch, timeout;  // seconds
 };
 
-// For so many leases at a time: a lease takes 9 metadata operations, and a touch and the look at it
-// take 2. Up to 600 leases all the options hold. With more, leases are so long that all operations
-// together are at most 100 a second, and a worker is late before it touches its file.
+// For so many leases at a time: a lease takes 10 metadata operations, and a touch and the look at
+// it take 2. Up to 600 leases all the options hold. With more, leases are so long that all
+// operations together are at most 100 a second, and a worker is late before it touches its file.
 Pace PaceOf(const ClusterOptions& options, size_t leases);
 
 // The work that is in the folder, at one moment.

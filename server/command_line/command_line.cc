@@ -9,7 +9,6 @@
 #include <thread>
 #include <type_traits>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -235,49 +234,37 @@ void AddClusterFlags(CLI::App& app, Words& words) {
              "time between two queries of Slurm's queue");
 }
 
-struct LimitFlag {
-  const char* flag;
-  std::variant<int64_t Limits::*, double Limits::*> limit;
-  const char* description;
-};
-
-const LimitFlag kLimitFlags[] = {
-    {"--max-active-jobs", &Limits::max_active_jobs, "jobs that have not ended, of all principals"},
-    {"--max-active-jobs-per-principal", &Limits::max_active_jobs_per_principal,
-     "jobs that have not ended, of one principal"},
-    {"--max-active-points", &Limits::max_active_points,
-     "grid points of jobs that have not ended, of all principals"},
-    {"--max-active-points-per-principal", &Limits::max_active_points_per_principal,
-     "grid points of jobs that have not ended, of one principal"},
-    {"--max-points-per-job", &Limits::max_points_per_job,
-     "grid points of one job; the engine permits 100,000 at most"},
-    {"--max-samples-per-job", &Limits::max_samples_per_job,
-     "samples or collisions of one job, over all its points"},
-    {"--max-streams", &Limits::max_streams,
-     "open watches and traces of all principals; at most 32768, also with 0"},
-    {"--max-streams-per-principal", &Limits::max_streams_per_principal,
-     "open watches and traces of one principal"},
-    {"--max-calls-per-principal", &Limits::max_calls_per_principal,
-     "calls in progress of one principal, without watches"},
-    {"--max-call-bytes-per-principal", &Limits::max_call_bytes_per_principal,
-     "bytes of the requests of these calls and of their unread answers"},
-    {"--max-memory-mib", &Limits::max_memory_mib,
-     "MiB of memory of all points that this server computes at a time, by an upper bound.\n"
-     "By default 80 % of the memory of this machine or of the server's control group"},
-    {"--retain-days", &Limits::retain_days,
-     "days from the end of a job until its results expire, unless it is pinned"},
-    {"--max-store-bytes", &Limits::max_store_bytes,
-     "bytes of the store; shortly before it is full, results expire, the oldest first"},
-};
-
 void AddLimitFlags(CLI::App& app, Limits& limits) {
   BeginGroup(app, "Limits; 0 means no limit");
-  for (const LimitFlag& row : kLimitFlags) {
-    const auto add = [&](auto limit) {
-      AddNumber(app, row.flag, limits.*limit, 0, kMostLimit, row.description);
-    };
-    std::visit(add, row.limit);
-  }
+  const auto add = [&app](const char* flag, auto& limit, const char* description) {
+    AddNumber(app, flag, limit, 0, kMostLimit, description);
+  };
+  add("--max-active-jobs", limits.max_active_jobs, "jobs that have not ended, of all principals");
+  add("--max-active-jobs-per-principal", limits.max_active_jobs_per_principal,
+      "jobs that have not ended, of one principal");
+  add("--max-active-points", limits.max_active_points,
+      "grid points of jobs that have not ended, of all principals");
+  add("--max-active-points-per-principal", limits.max_active_points_per_principal,
+      "grid points of jobs that have not ended, of one principal");
+  add("--max-points-per-job", limits.max_points_per_job,
+      "grid points of one job; the engine permits 100,000 at most");
+  add("--max-samples-per-job", limits.max_samples_per_job,
+      "samples or collisions of one job, over all its points");
+  add("--max-streams", limits.max_streams,
+      "open watches and traces of all principals; at most 32768, also with 0");
+  add("--max-streams-per-principal", limits.max_streams_per_principal,
+      "open watches and traces of one principal");
+  add("--max-calls-per-principal", limits.max_calls_per_principal,
+      "calls in progress of one principal, without watches");
+  add("--max-call-bytes-per-principal", limits.max_call_bytes_per_principal,
+      "bytes of the requests of these calls and of their unread answers");
+  add("--max-memory-mib", limits.max_memory_mib,
+      "MiB of memory of all points that this server computes at a time, by an upper bound.\n"
+      "By default 80 % of the memory of this machine or of the server's control group");
+  add("--retain-days", limits.retain_days,
+      "days from the end of a job until its results expire, unless it is pinned");
+  add("--max-store-bytes", limits.max_store_bytes,
+      "bytes of the store; shortly before it is full, results expire, the oldest first");
   AddNumber(app, "--max-message-bytes", limits.max_message_bytes, kLeastMessage, kMostMessage,
             "bytes of one request");
   AddNumber(app, "--max-transfer-mib", limits.max_transfer_mib, 0, kMostTransferMib,

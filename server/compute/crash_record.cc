@@ -30,6 +30,7 @@ constexpr size_t kDeaths = 2048;  // further deaths are not counted
 
 // Of a slot whose contents are being written.
 constexpr int64_t kTaken = -1;
+constexpr int64_t kNoPoint = -1;
 
 }  // namespace
 
@@ -184,19 +185,20 @@ CrashRecord::Slot* CrashRecord::TakeSlot(Page& page) {
   return nullptr;
 }
 
-CrashRecord::Entry::Entry(CrashRecord& record, const RunName& run, int64_t point)
+CrashRecord::Computing::Computing(CrashRecord& record, const RunName& run,
+                                  std::optional<size_t> point)
     : before_(slot_of_this_thread) {
   static thread_local const SignalStack stack;
   while ((slot_ = TakeSlot(*record.page_)) == nullptr) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   slot_->generation = run.generation;
-  slot_->point = point;
+  slot_->point = point ? static_cast<int64_t>(*point) : kNoPoint;
   slot_->run = run.run;  // last, because the process may be killed at any moment
   slot_of_this_thread = slot_;
 }
 
-CrashRecord::Entry::~Entry() {
+CrashRecord::Computing::~Computing() {
   slot_of_this_thread = before_;
   slot_->run = 0;
 }

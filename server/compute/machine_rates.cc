@@ -1,5 +1,4 @@
-#include "server/compute/machine_rates.h"
-
+// Measures the sampling rates of this machine.
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
@@ -10,6 +9,7 @@
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/expected_returns.h"
+#include "server/compute/model_ladder.h"
 #include "server/processor_time.h"
 
 namespace ballpiston::server {

@@ -8,7 +8,6 @@
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/all_experiments.h"
 #include "core/markov/relaxation_spectrum.h"
-#include "server/compute/machine_rates.h"
 #include "server/convert/deterministic_bytes.h"
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"

@@ -22,6 +22,11 @@
 
 namespace ballpiston::server {
 
+// The sampling rates of this machine: measures the jump process and the engines on the calling
+// thread, in about 0.3 s. The costs of points without samples stay 0: the ladder measures them,
+// because they include the server's own work.
+MachineRates MeasureSamplingRates();  // machine_rates.cc
+
 class ModelLadder : public PointOpener {
  public:
   // The store must outlive the ladder. A question that needs more bytes than `memory` is a

@@ -439,9 +439,4 @@ std::optional<LivePoint> Scheduler::Unfinished(int64_t key, size_t index) const 
   return run == nullptr ? std::nullopt : run->Unfinished(index);
 }
 
-WorkCounts Scheduler::Counts() const {
-  return {.samples = samples_.load(std::memory_order_relaxed),
-          .processor_seconds = processor_seconds_.load(std::memory_order_relaxed)};
-}
-
 }  // namespace ballpiston::server

@@ -36,12 +36,6 @@
 
 namespace ballpiston::server {
 
-// Totals since the scheduler was made.
-struct WorkCounts {
-  double samples = 0;
-  double processor_seconds = 0;
-};
-
 class Scheduler {
  public:
   // The opener must outlive this. `workers`: the threads of local executors, for budgets and
@@ -110,7 +104,9 @@ class Scheduler {
   // A copy of an unfinished point, if some of it is computed.
   std::optional<LivePoint> Unfinished(int64_t run, size_t index) const;
 
-  WorkCounts Counts() const;  // takes no lock
+  // Totals since the scheduler was made, of what was merged and computed. They take no lock.
+  double samples() const { return samples_.load(std::memory_order_relaxed); }
+  double processor_seconds() const { return processor_seconds_.load(std::memory_order_relaxed); }
 
  private:
   struct Member {        // an executor

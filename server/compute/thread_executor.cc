@@ -170,12 +170,6 @@ void ThreadExecutor::Shutdown() {
   for (Thread& thread : threads) thread.join();
 }
 
-ThreadCounts ThreadExecutor::Counts() const {
-  return {.workers = workers_,
-          .busy = busy_.load(std::memory_order_relaxed),
-          .blocks = static_cast<double>(blocks_.load(std::memory_order_relaxed))};
-}
-
 void ThreadExecutor::Work() {
   while (const std::optional<Lease> lease = AwaitLease()) TakeTurn(*lease);
 }

@@ -21,13 +21,6 @@
 
 namespace ballpiston::server {
 
-// The first two are of now, the third since the executor was made.
-struct ThreadCounts {
-  int workers = 0;
-  int busy = 0;
-  double blocks = 0;
-};
-
 class ThreadExecutor : public Executor {
  public:
   // The scheduler must outlive this. `seconds` bounds a lease (Capacity), so that something is left
@@ -45,7 +38,10 @@ class ThreadExecutor : public Executor {
   bool HasTurn(int64_t lease) const override;
   void Shutdown() override;
 
-  ThreadCounts Counts() const;  // takes no lock
+  // These take no lock.
+  int workers() const { return workers_; }
+  int busy() const { return busy_.load(std::memory_order_relaxed); }           // that compute now
+  uint64_t blocks() const { return blocks_.load(std::memory_order_relaxed); }  // since the start
 
  private:
   class SharedLease;

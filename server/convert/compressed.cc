@@ -12,8 +12,8 @@
 namespace ballpiston::server {
 namespace {
 
-// zlib's windowBits is the logarithm of the window size, plus one of these numbers or 0.
-constexpr int kAsGzip = 16, kOfEitherFormat = 32;
+// zlib's windowBits: the logarithm of the window size, plus 16 for gzip's format.
+constexpr int kWindow = MAX_WBITS + 16;
 constexpr int kDefaultMemory = 8;
 
 z_stream StreamFrom(absl::string_view bytes) {
@@ -25,13 +25,11 @@ z_stream StreamFrom(absl::string_view bytes) {
 
 }  // namespace
 
-std::string Compressed(absl::string_view plain, Checksum checksum) {
+std::string Compressed(absl::string_view plain) {
   z_stream stream = StreamFrom(plain);
-  const int window = MAX_WBITS + (checksum == Checksum::kCrc32 ? kAsGzip : 0);
-  if (deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, window, kDefaultMemory, Z_DEFAULT_STRATEGY) !=
-      Z_OK) {
-    throw std::bad_alloc();
-  }
+  const int code =
+      deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, kWindow, kDefaultMemory, Z_DEFAULT_STRATEGY);
+  if (code != Z_OK) throw std::bad_alloc();
   std::string bytes(deflateBound(&stream, plain.size()), '\0');
   stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
   stream.avail_out = static_cast<uInt>(bytes.size());
@@ -43,7 +41,7 @@ std::string Compressed(absl::string_view plain, Checksum checksum) {
 
 absl::StatusOr<std::string> TakeCompressed(absl::string_view& bytes, size_t most) {
   z_stream stream = StreamFrom(bytes);
-  int code = inflateInit2(&stream, MAX_WBITS + kOfEitherFormat);
+  int code = inflateInit2(&stream, kWindow);
   std::string plain;
   std::array<char, 16384> part;
   while (code == Z_OK && plain.size() <= most) {

@@ -1,6 +1,7 @@
 // Converts between the API's EnsembleSpec and the core's. Pure functions.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,6 @@
 #include "ballpiston/v1/spec.pb.h"
 #include "core/ensemble/ensemble_spec.h"
 #include "core/gas/gas_shape.h"
-#include "server/convert/stored_spec.h"
 
 namespace ballpiston::server {
 
@@ -39,6 +39,17 @@ v1::EnsembleSpec::Model ModelMessage(Model model);
 
 // The same bytes for the same question: the name of the default estimate is left out.
 std::string QuestionBytes(v1::EnsembleSpec message);
+
+// A specification in the store: two serialized v1::EnsembleSpec, which are merged. The grid may be
+// large, so a list of jobs reads the rest alone.
+struct StoredSpec {
+  std::string rest;
+  std::string grid = {};
+
+  size_t size() const { return rest.size() + grid.size(); }
+  bool operator==(const StoredSpec&) const = default;
+};
+
 // The same bytes for the same specification.
 StoredSpec SpecBytes(v1::EnsembleSpec message);
 absl::StatusOr<v1::EnsembleSpec> SpecFromBytes(const StoredSpec& bytes);  // DATA_LOSS

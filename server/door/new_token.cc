@@ -62,7 +62,7 @@ absl::Status Append(const NamedFile& file, const std::string& line) {
   const std::string added = absl::StrCat(unended ? "\n" : "", line, "\n");
   const absl::Status written = WriteAllOrNothing(file, descriptor, added);
   // Flushes the folder too, so that the entry of a printed token survives a power cut.
-  return written.ok() ? SyncFolder(FolderOf(file.path)) : written;
+  return written.ok() ? SyncNameOf(file.path) : written;
 }
 
 }  // namespace

@@ -1,26 +1,19 @@
-#include <sys/stat.h>
-
-#include <algorithm>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "absl/time/clock.h"
 #include "server/book/job_message.h"
 #include "server/convert/spec.h"
 #include "server/rpc/methods.h"
 #include "server/rpc/server_status.h"
+#include "server/store/check_store.h"
 #include "server/version.h"
 
 namespace ballpiston::server {
 namespace {
 
 bool StoreFails(const Store& store) { return store.failing() || store.stalled(); }
-
-// 0 if there is no such file.
-double FileBytes(const std::string& path) {
-  struct stat found {};
-  return stat(path.c_str(), &found) == 0 ? static_cast<double>(found.st_size) : 0;
-}
 
 v1::ClusterStatus ClusterMessage(const Cluster::State& cluster) {
   v1::ClusterStatus message;
@@ -37,31 +30,25 @@ v1::ClusterStatus ClusterMessage(const Cluster::State& cluster) {
 }
 
 void AddWork(const ServiceContext& service, v1::ServerStatus& status) {
-  const ThreadCounts threads = service.threads.Counts();
-  const WorkCounts work = service.scheduler.Counts();
-  status.set_workers(threads.workers);
-  status.set_busy_workers(threads.busy);
-  status.set_blocks_computed(threads.blocks);
-  status.set_samples_computed(work.samples);
-  status.set_processor_seconds(work.processor_seconds);
+  status.set_workers(service.threads.workers());
+  status.set_busy_workers(service.threads.busy());
+  status.set_blocks_computed(static_cast<double>(service.threads.blocks()));
+  status.set_samples_computed(service.scheduler.samples());
+  status.set_processor_seconds(service.scheduler.processor_seconds());
   if (service.cluster == nullptr) return;
   *status.mutable_cluster() = ClusterMessage(service.cluster->Status());
 }
 
-// Sets the numbers of each principal, and the totals of all principals.
-void AddPrincipals(const ServiceContext& service, v1::ServerStatus& status) {
+// Sets the numbers of each principal that the viewer may see, and the totals of all principals.
+void AddPrincipals(const ServiceContext& service, const Principal& viewer,
+                   v1::ServerStatus& status) {
   std::map<std::string, int64_t> streams = service.quotas.streams.ByPrincipal();
-  for (const auto& [name, jobs] : service.book.JobsByPrincipal()) {
-    v1::PrincipalStatus& principal = *status.add_principals();
-    principal.set_principal(name);
-    principal.set_queued_jobs(static_cast<double>(jobs.queued));
-    principal.set_running_jobs(static_cast<double>(jobs.running + jobs.cancelling));
-    principal.set_streams(static_cast<double>(streams[name]));
-    principal.set_stored_jobs(static_cast<double>(jobs.stored));
-    principal.set_stored_bytes(static_cast<double>(jobs.bytes));
+  for (v1::PrincipalStatus& principal : service.book.JobsByPrincipal()) {
+    principal.set_streams(static_cast<double>(streams[principal.principal()]));
     status.set_queued_jobs(status.queued_jobs() + principal.queued_jobs());
     status.set_running_jobs(status.running_jobs() + principal.running_jobs());
     status.set_stored_jobs(status.stored_jobs() + principal.stored_jobs());
+    if (viewer.MaySee(principal.principal())) *status.add_principals() = std::move(principal);
   }
 }
 
@@ -79,17 +66,9 @@ v1::ServerLimits LimitsMessage(const Limits& limits) {
   return message;
 }
 
-void RemoveHidden(const Principal& caller, v1::ServerStatus& status) {
-  auto& principals = *status.mutable_principals();
-  const auto hidden = std::remove_if(
-      principals.begin(), principals.end(),
-      [&](const v1::PrincipalStatus& one) { return !caller.MaySee(one.principal()); });
-  principals.erase(hidden, principals.end());
-}
-
 }  // namespace
 
-v1::ServerStatus StatusOf(const ServiceContext& service) {
+v1::ServerStatus StatusOf(const ServiceContext& service, const Principal& viewer) {
   v1::ServerStatus status;
   status.set_state(service.draining            ? v1::ServerStatus::DRAINING
                    : StoreFails(service.store) ? v1::ServerStatus::STORE_FAILING
@@ -98,17 +77,16 @@ v1::ServerStatus StatusOf(const ServiceContext& service) {
   status.set_engine_version(EngineVersion());
   SetTime(service.start_time, status.mutable_start_time());
   status.set_streams(static_cast<double>(service.quotas.streams.taken()));
-  status.set_store_bytes(FileBytes(service.store_path) + FileBytes(service.store_path + "-wal"));
+  status.set_store_bytes(static_cast<double>(StoreBytes(service.store_path)));
   status.set_expiring_jobs(static_cast<double>(service.book.CountExpiring(absl::Now())));
   AddWork(service, status);
-  AddPrincipals(service, status);
+  AddPrincipals(service, viewer, status);
   return status;
 }
 
 absl::StatusOr<v1::ServerStatus> GetServerStatus(ServiceContext& service, const Call& call,
                                                  const v1::GetServerStatusRequest&) {
-  v1::ServerStatus status = StatusOf(service);
-  RemoveHidden(call.caller, status);
+  v1::ServerStatus status = StatusOf(service, call.caller);
   const MachineRates& rates = service.ladder.machine().rates;
   status.mutable_rates()->set_jump(rates.jump);
   status.mutable_rates()->set_wall_hit(rates.lanes.wall_hit);

@@ -1,6 +1,6 @@
-// The methods of the API, one row each. A row declares the function that executes the method in a
-// file of its own, and the method of its service. To add a method: its proto, a row, a file. The
-// protos have the contracts and errors.
+// The methods of the API, one row each. A row declares the function that executes the method, and
+// the method of its service. To add a method: its proto, a row, a function. The protos have the
+// contracts and errors.
 #pragma once
 
 #include "absl/status/status.h"

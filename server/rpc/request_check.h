@@ -7,11 +7,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "ballpiston/storage/tokens.pb.h"
 #include "ballpiston/v1/ensemble.pb.h"
@@ -19,10 +21,27 @@
 #include "server/book/job_list.h"
 #include "server/convert/deterministic_bytes.h"
 #include "server/convert/errors.h"
-#include "server/rpc/tokens.h"
 #include "server/sha256.h"
 
 namespace ballpiston::server {
+
+// The text of the API's tokens: page tokens, and the resume tokens of watches
+// (proto/ballpiston/storage/tokens.proto).
+template <typename Token>
+std::string TokenText(const Token& token) {
+  return absl::WebSafeBase64Escape(token.SerializeAsString());
+}
+
+// Empty if the text is not a token. A text that no server made may still be one.
+template <typename Token>
+std::optional<Token> ParseToken(const std::string& text) {
+  std::string bytes;
+  Token token;
+  if (!absl::WebSafeBase64Unescape(text, &bytes) || !token.ParseFromString(bytes)) {
+    return std::nullopt;
+  }
+  return token;
+}
 
 // A page of a list ends before it has this many bytes (if it has an entry already).
 inline constexpr size_t kMaxPageBytes = size_t{2} << 20;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <string>
 
+#include "absl/strings/ascii.h"
 #include "prometheus/counter.h"
 #include "prometheus/gauge.h"
 #include "prometheus/registry.h"
@@ -62,12 +63,10 @@ void AddJobs(const JobBook& book, const v1::ServerStatus& status, Page& page) {
   const std::string help = "Jobs that have not ended, by state. running: or being cancelled.";
   page.Gauge("ballpiston_jobs", help, status.queued_jobs(), {{"state", "queued"}});
   page.Gauge("ballpiston_jobs", help, status.running_jobs(), {{"state", "running"}});
-  const EndedJobs ended = book.ended_jobs();
-  const std::string total = "ballpiston_jobs_ended_total";
-  const std::string ended_help = "Jobs that ended, by their last state.";
-  page.Counter(total, ended_help, ended.succeeded, {{"state", "succeeded"}});
-  page.Counter(total, ended_help, ended.failed, {{"state", "failed"}});
-  page.Counter(total, ended_help, ended.cancelled, {{"state", "cancelled"}});
+  for (const auto& [state, jobs] : book.ended_jobs()) {
+    page.Counter("ballpiston_jobs_ended_total", "Jobs that ended, by their last state.", jobs,
+                 {{"state", absl::AsciiStrToLower(v1::EnsembleJob::State_Name(state))}});
+  }
   page.Gauge("ballpiston_expiring_jobs", "Jobs whose results expire within a week.",
              status.expiring_jobs());
 }
@@ -118,7 +117,7 @@ void AddCluster(const v1::ClusterStatus& cluster, Page& page) {
 
 std::vector<prometheus::MetricFamily> ServerMetrics(const ServiceContext& service,
                                                     std::optional<absl::Time> certificate_expiry) {
-  const v1::ServerStatus status = StatusOf(service);
+  const v1::ServerStatus status = StatusOf(service, LocalPrincipal());
   Page page;
   AddServer(service, status, page);
   AddJobs(service.book, status, page);

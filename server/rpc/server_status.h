@@ -25,9 +25,9 @@ inline constexpr size_t kMostPrincipals = 1000;  // as labels
 
 // Both read the store, but do not wait for writes. They hold no lock that a worker needs.
 
-// The totals and the numbers of every principal. Without the fields that only GetServerStatus adds:
-// rates, limits and the caller.
-v1::ServerStatus StatusOf(const ServiceContext& service);
+// The totals, and the numbers of each principal that the viewer may see. Without the fields that
+// only GetServerStatus adds: rates, limits and the caller.
+v1::ServerStatus StatusOf(const ServiceContext& service, const Principal& viewer);
 
 // `certificate_expiry`: empty without TLS.
 std::vector<prometheus::MetricFamily> ServerMetrics(const ServiceContext& service,

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
 #include "ballpiston/storage/tokens.pb.h"
 #include "server/convert/errors.h"
-#include "server/convert/point_result.h"
 #include "server/host.h"
 #include "server/rpc/request_check.h"
-#include "server/rpc/result_name.h"
-#include "server/rpc/tokens.h"
 
 namespace ballpiston::server {
 namespace {
@@ -25,6 +23,18 @@ constexpr int64_t kSnapshotsPerSecond = 1000;
 
 // The longest time until a watch sees that its client has gone.
 constexpr std::chrono::seconds kLongestWait(1);
+
+// Removes those points from the unfinished ones of a message that are also among its finished ones:
+// they were finished after the snapshot was made.
+void LeaveOutFinished(v1::StatisticsSnapshot& message) {
+  std::set<int32_t> finished;
+  for (const v1::PointResult& point : message.finished_points()) finished.insert(point.index());
+  auto& points = *message.mutable_points();
+  const auto is_finished = [&](const v1::PointResult& point) {
+    return finished.contains(point.index());
+  };
+  points.erase(std::remove_if(points.begin(), points.end(), is_finished), points.end());
+}
 
 // One watch. Its functions Tell... send one message, or return false if there is nothing to send.
 class Watch {
@@ -127,8 +137,7 @@ class Watch {
   // The points come from the store, which has all of them. The job in memory gets its last points
   // after the commit that shows its end to readers.
   absl::StatusOr<bool> TellEnd(const JobRecord& ended) {
-    const absl::StatusOr<bool> told =
-        TellFinishedPoints(book_.Message(ended, nullptr).progress(), nullptr);
+    const absl::StatusOr<bool> told = TellFinishedPoints(ended, nullptr);
     if (!told.ok() || *told) return told;
     absl::StatusOr<v1::EnsembleJob> job = book_.Get(reader_.caller(), id_, Grid::kLeftOut);
     if (!job.ok()) return job.status();
@@ -143,11 +152,11 @@ class Watch {
     const Clock::time_point now = SteadyNow();
     if (!IsSnapshotDue(now)) {
       if (!IsBehind()) return false;
-      return TellFinishedPoints(job_.active->Progress(), job_.active.get());
+      return TellFinishedPoints(job_.record, job_.active.get());
     }
     next_snapshot_ = now + SnapshotInterval();
     v1::StatisticsSnapshot& snapshot = *message_.mutable_snapshot();
-    *snapshot.mutable_progress() = job_.active->Progress();
+    *snapshot.mutable_progress() = book_.Message(job_.record, job_.active.get()).progress();
     AddUnfinishedPoints(snapshot);
     const absl::StatusOr<bool> finished = AddFinishedPoints(job_.active.get());
     if (!finished.ok()) return finished;
@@ -163,13 +172,13 @@ class Watch {
     const auto shared = book_.Snapshot(*job_.active, timing_.snapshot, kMaxPoints);
     if (shared->finished < told_finished_) return;
     for (const JobSnapshot::Point& point : shared->points) {
-      if (point.change > told_) *snapshot.add_points() = Named(point.result, id_);
+      if (point.change > told_) *snapshot.add_points() = point.result;
     }
     told_ = std::max(told_, shared->change);
   }
 
-  absl::StatusOr<bool> TellFinishedPoints(const v1::JobProgress& progress, const Job* active) {
-    *message_.mutable_snapshot()->mutable_progress() = progress;
+  absl::StatusOr<bool> TellFinishedPoints(const JobRecord& record, const Job* active) {
+    *message_.mutable_snapshot()->mutable_progress() = book_.Message(record, active).progress();
     const absl::StatusOr<bool> added = AddFinishedPoints(active);
     return added.ok() && *added ? Write() : added;
   }
@@ -177,17 +186,13 @@ class Watch {
   // Adds the next finished points to the message: those of `active`, or those of the store if
   // `active` is null. False: there are none.
   absl::StatusOr<bool> AddFinishedPoints(const Job* active) {
-    const auto points =
-        book_.FinishedAfter(job_.record.sequence, active, told_finished_, kMaxPoints);
+    auto points = book_.FinishedAfter(job_.record, active, told_finished_, kMaxPoints);
     if (!points.ok()) return points.status();
-    if (points->empty()) return false;
-    for (const FinishedPoint& point : *points) {
-      absl::StatusOr<v1::PointResult> result = ResultFromBytes(*point.result);
-      if (!result.ok()) return StoreFailure(result.status());
-      *message_.mutable_snapshot()->add_finished_points() = Named(*std::move(result), id_);
+    for (FinishedPoint& point : *points) {
+      *message_.mutable_snapshot()->add_finished_points() = std::move(point.result);
+      told_finished_ = point.number;
     }
-    told_finished_ = points->back().number;
-    return true;
+    return !points->empty();
   }
 
   absl::StatusOr<bool> TellHeartbeat() {

@@ -2,7 +2,7 @@
 //
 // The watch makes a message when its reader has taken the previous one. It reads the state from the
 // job's row after a change of state was committed. Of an unfinished point it sends the newest
-// state. It reads finished points from the job's memory or from the store when it sends them. A
+// state. It reads finished points from the store when it sends them. A
 // snapshot needs the scheduler's lock; the watches of one job share their snapshots. With many
 // watches each gets snapshots less often, so that all of them together take at most
 // kSnapshotsPerSecond.

@@ -55,7 +55,7 @@ absl::StatusOr<StoreSummary> BackupStore(const std::string& store, const std::st
   }
   const bool is_placed = fsync(file) == 0 && rename(copy.c_str(), target.c_str()) == 0;
   if (!is_placed) return CannotWrite(target, errno);
-  const absl::Status synced = SyncFolder(FolderOf(target));
+  const absl::Status synced = SyncNameOf(target);
   if (!synced.ok()) return synced;
   return summary;
 }

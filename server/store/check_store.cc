@@ -41,25 +41,12 @@ constexpr const char* kContradictions[] = {
     "SELECT 'a result without a point: job ' || job || ', point ' || point FROM results"
     " LEFT JOIN jobs ON sequence = job WHERE ((sequence IS NULL OR expired_time IS NOT NULL)"
     " AND job NOT IN (SELECT job FROM dropped)) OR point < 0 OR point >= points",
-    "SELECT 'details without a result: job ' || job || ', point ' || point FROM details"
-    " LEFT JOIN results USING (job, point) WHERE finish IS NULL"
-    " AND job NOT IN (SELECT job FROM dropped)",
-    "SELECT 'an end without a result: job ' || job || ', point ' || point FROM ends"
-    " LEFT JOIN results USING (job, point) WHERE finish IS NULL"
-    " AND job NOT IN (SELECT job FROM dropped)",
     "SELECT 'a checkpoint without a point of an active job: job ' || job || ', point ' || point"
     " FROM checkpoints LEFT JOIN jobs ON sequence = job"
     " WHERE sequence IS NULL OR point < 0 OR point >= points OR state >= 4",
     "SELECT 'a checkpoint of a finished point: job ' || job || ', point ' || point"
     " FROM checkpoints JOIN results USING (job, point)",
-    "SELECT 'request ' || request_id || ' has no job: ' || job FROM requests"
-    " LEFT JOIN jobs ON sequence = job WHERE sequence IS NULL",
 };
-
-int64_t FileBytes(const std::string& path) {
-  struct stat found {};
-  return stat(path.c_str(), &found) == 0 ? int64_t{found.st_size} : 0;
-}
 
 // Runs the checks one after the other, and collects what they find.
 class StoreCheck {
@@ -70,8 +57,7 @@ class StoreCheck {
     database_.Execute("BEGIN");
     for (const auto part :
          {&StoreCheck::CheckPages, &StoreCheck::Count, &StoreCheck::FindContradictions,
-          &StoreCheck::CheckJobs, &StoreCheck::CheckResults, &StoreCheck::CheckEnds,
-          &StoreCheck::CheckCheckpoints}) {
+          &StoreCheck::CheckJobs, &StoreCheck::CheckResults, &StoreCheck::CheckCheckpoints}) {
       (this->*part)();
       const absl::Status status = database_.TakeStatus();
       if (absl::IsUnavailable(status)) return status;
@@ -130,24 +116,17 @@ class StoreCheck {
   }
 
   void CheckResults() {
-    Query row = database_.Select(
-        "SELECT job, point, result, record FROM results LEFT JOIN details USING (job, point)");
+    Query row = database_.Select("SELECT job, point, result, details, continuation FROM results");
     while (row.Next()) {
       const auto result = ResultFromBytes(row.Get<std::string>(2));
       absl::Status status = result.status();
       status.Update(DetailsFromBytes(row.Get<std::string>(3)).status());
+      const auto end = row.Get<std::string>(4);
+      if (!end.empty()) status.Update(EndFromBytes(end).status());
       if (status.ok() && result->index() != row.Get<int64_t>(1)) {
         status = absl::DataLossError(absl::StrCat("is of point ", result->index()));
       }
       FoundIn(absl::StrCat("the result of ", PointOf(row)), status);
-    }
-  }
-
-  void CheckEnds() {
-    Query row = database_.Select("SELECT job, point, state FROM ends");
-    while (row.Next()) {
-      FoundIn(absl::StrCat("the end of ", PointOf(row)),
-              EndFromBytes(row.Get<std::string>(2)).status());
     }
   }
 
@@ -174,8 +153,17 @@ absl::StatusOr<StoreSummary> CheckStore(const std::string& path) {
   const auto database = OpenStoreToRead(path);
   if (!database.ok()) return database.status();
   absl::StatusOr<StoreSummary> summary = StoreCheck(**database).Run();
-  if (summary.ok()) summary->bytes = FileBytes(path) + FileBytes(path + "-wal");
+  if (summary.ok()) summary->bytes = StoreBytes(path);
   return summary;
+}
+
+int64_t StoreBytes(const std::string& path) {
+  int64_t bytes = 0;
+  for (const char* file : {"", "-wal"}) {
+    struct stat found {};
+    if (stat(absl::StrCat(path, file).c_str(), &found) == 0) bytes += found.st_size;
+  }
+  return bytes;
 }
 
 std::string SummaryText(const StoreSummary& summary) {

@@ -77,8 +77,8 @@ absl::Status InUse(const std::string& path) {
 }
 
 bool IsDirectory(const std::string& path) {
-  struct stat found {};
-  return stat(path.c_str(), &found) == 0 && S_ISDIR(found.st_mode);
+  std::error_code ignored;
+  return std::filesystem::is_directory(path, ignored);
 }
 
 // Makes the folder and those above it; each is for its owner only.
@@ -90,7 +90,7 @@ absl::Status MakeDirectories(const std::string& path) {
     if (!above.ok()) return above;
   }
   // Without this flush a power cut could remove the folder with all acknowledged data in it.
-  if (mkdir(path.c_str(), 0700) == 0) return SyncFolder(FolderOf(path));
+  if (mkdir(path.c_str(), 0700) == 0) return SyncNameOf(path);
   if (IsDirectory(path)) return absl::OkStatus();
   return NotWritable(path, errno);
 }

@@ -5,12 +5,15 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 
 #include "absl/strings/str_cat.h"
 
 namespace ballpiston::server {
 
-absl::Status SyncFolder(const std::string& folder) {
+absl::Status SyncNameOf(const std::string& path) {
+  const std::filesystem::path above = std::filesystem::path(path).parent_path();
+  const std::string folder = above.empty() ? std::string(".") : above.string();
   const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   const bool synced = file >= 0 && fsync(file) == 0;
   const int error = errno;
@@ -18,12 +21,6 @@ absl::Status SyncFolder(const std::string& folder) {
   if (synced || error == EINVAL) return absl::OkStatus();  // EINVAL: this file system has no need
   return absl::UnavailableError(
       absl::StrCat("folder ", folder, " cannot be flushed: ", std::strerror(error)));
-}
-
-std::string FolderOf(const std::string& path) {
-  const size_t slash = path.find_last_of('/');
-  if (slash == std::string::npos) return ".";
-  return slash == 0 ? "/" : path.substr(0, slash);
 }
 
 }  // namespace ballpiston::server

@@ -1,4 +1,4 @@
-// Flushes a folder, that is the names of its files. The flush of a file does not include its name.
+// Flushes the name of a file. The flush of a file does not include its name.
 #pragma once
 
 #include <string>
@@ -7,11 +7,8 @@
 
 namespace ballpiston::server {
 
-// After this, files that were created in, renamed into or removed from `folder` stay so after a
-// power cut. UNAVAILABLE if the folder cannot be opened or flushed.
-absl::Status SyncFolder(const std::string& folder);
-
-// The folder of a path; "." for a bare name.
-std::string FolderOf(const std::string& path);
+// After this, a file or folder that was created, renamed to or removed from `path` stays so after a
+// power cut. UNAVAILABLE if the folder that has this name cannot be opened or flushed.
+absl::Status SyncNameOf(const std::string& path);
 
 }  // namespace ballpiston::server

@@ -8,7 +8,7 @@
 
 #include "absl/time/time.h"
 #include "ballpiston/v1/ensemble.pb.h"
-#include "server/convert/stored_spec.h"
+#include "server/convert/spec.h"
 
 namespace ballpiston::server {
 
@@ -39,14 +39,16 @@ struct JobNumbers {
 struct JobRecord {
   int64_t sequence = 0;  // assigned by the store; greater for a newer job, never reused
   std::string id;
-  std::string principal;  // the job's owner
-  int32_t priority = 0;   // among the principal's; higher first
-  bool pinned = false;    // its results do not expire
-  std::string labels;     // as text (labels.h)
-  StoredSpec spec;        // its grid is empty if it was not read
-  std::string question;   // hash of the question (book/acceptance.h); empty: always compute
-  std::string family;     // hash of the question without its target; empty: cannot be continued
-  std::string continues;  // the id of the job whose points this one continues, or empty
+  std::string principal;   // the job's owner
+  std::string request_id;  // of the request that made the job, unique for the principal; or empty
+  std::string payload;     // hash of that request (book/acceptance.h)
+  int32_t priority = 0;    // among the principal's; higher first
+  bool pinned = false;     // its results do not expire
+  std::string labels;      // as text (labels.h)
+  StoredSpec spec;         // its grid is empty if it was not read
+  std::string question;    // hash of the question (book/acceptance.h); empty: always compute
+  std::string family;      // hash of the question without its target; empty: cannot be continued
+  std::string continues;   // the id of the job whose points this one continues, or empty
   double continued_samples = 0;  // of that job
   JobState state = v1::EnsembleJob::QUEUED;
   absl::Time create_time;

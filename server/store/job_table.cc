@@ -27,6 +27,8 @@ void VisitColumns(Record& job, Visit visit) {
   visit("sequence", "INTEGER PRIMARY KEY AUTOINCREMENT", job.sequence);
   visit("id", "TEXT NOT NULL UNIQUE", job.id);
   visit("principal", "TEXT NOT NULL", job.principal);
+  visit("request_id", "TEXT NOT NULL", job.request_id);
+  visit("payload", "BLOB NOT NULL", job.payload);
   visit("priority", "INTEGER NOT NULL", job.priority);
   visit("pinned", "INTEGER NOT NULL", job.pinned);
   visit("labels", "TEXT NOT NULL", job.labels);
@@ -156,6 +158,12 @@ std::optional<JobRecord> FindJobBySequence(Database& database, int64_t sequence)
   return FirstJob(database, Grid::kIncluded, "sequence = ?", sequence);
 }
 
+std::optional<JobRecord> FindJobOfRequest(Database& database, const std::string& principal,
+                                          const std::string& request_id) {
+  return FirstJob(database, Grid::kIncluded,
+                  "principal = ? AND request_id = ? AND request_id <> ''", principal, request_id);
+}
+
 std::optional<JobRecord> FindAnswer(Database& database, const std::string& principal,
                                     const std::string& question) {
   if (question.empty()) return std::nullopt;
@@ -178,23 +186,6 @@ std::vector<JobRecord> FindFamily(Database& database, const std::string& princip
   return records;
 }
 
-void InsertRequest(Database& database, const std::string& principal, const std::string& request_id,
-                   const RequestRecord& record) {
-  database.Run("INSERT INTO requests (principal, request_id, payload, job) VALUES (?, ?, ?, ?)",
-               principal, request_id, Blob{record.payload}, record.job);
-}
-
-std::optional<RequestRecord> FindRequest(Database& database, const std::string& principal,
-                                         const std::string& request_id) {
-  Query query =
-      database.Select("SELECT payload, job FROM requests WHERE principal = ? AND request_id = ?",
-                      principal, request_id);
-  RequestRecord found;
-  if (!query.Next()) return std::nullopt;
-  query.ReadInto(found.payload, found.job);
-  return found;
-}
-
 Load ActiveLoad(Database& database, const std::string& principal) {
   Load load;
   Query query =
@@ -206,18 +197,20 @@ Load ActiveLoad(Database& database, const std::string& principal) {
   return load;
 }
 
-std::map<std::string, PrincipalJobs> CountJobsByPrincipal(Database& database) {
-  std::map<std::string, PrincipalJobs> by_principal;
+std::vector<v1::PrincipalStatus> CountJobsByPrincipal(Database& database) {
+  std::vector<v1::PrincipalStatus> principals;
   Query query = database.Select(
-      "SELECT principal, count(*), sum(bytes), sum(state = 1), sum(state = 2), sum(state = 3)"
-      " FROM jobs GROUP BY principal");
+      "SELECT principal, count(*), sum(bytes), sum(state = 1), sum(state IN (2, 3))"
+      " FROM jobs GROUP BY principal ORDER BY principal");
   while (query.Next()) {
-    std::string name;
-    PrincipalJobs jobs;
-    query.ReadInto(name, jobs.stored, jobs.bytes, jobs.queued, jobs.running, jobs.cancelling);
-    by_principal.emplace(std::move(name), jobs);
+    v1::PrincipalStatus& principal = principals.emplace_back();
+    principal.set_principal(query.Get<std::string>(0));
+    principal.set_stored_jobs(query.Get<double>(1));
+    principal.set_stored_bytes(query.Get<double>(2));
+    principal.set_queued_jobs(query.Get<double>(3));
+    principal.set_running_jobs(query.Get<double>(4));
   }
-  return by_principal;
+  return principals;
 }
 
 void ReadJobs(Database& database, const std::optional<std::string>& principal, int64_t before,
@@ -269,8 +262,6 @@ void RestartJob(Database& database, const JobRecord& record) {
   const int64_t sequence = record.sequence;
   DropCheckpoints(database, sequence);
   database.Run("DELETE FROM results WHERE job = ?", sequence);
-  database.Run("DELETE FROM details WHERE job = ?", sequence);
-  database.Run("DELETE FROM ends WHERE job = ?", sequence);
   database.Run(
       "UPDATE jobs SET engine_version = ?, question = ?, family = ?, continues = '',"
       " continued_samples = 0, restarts = restarts + 1 WHERE sequence = ?",
@@ -308,7 +299,6 @@ void ExpireJob(Database& database, int64_t sequence, absl::Time now) {
 void DeleteJob(Database& database, int64_t sequence) {
   DropCheckpoints(database, sequence);
   DropResults(database, sequence);
-  database.Run("DELETE FROM requests WHERE job = ?", sequence);
   database.Run("DELETE FROM jobs WHERE sequence = ?", sequence);
 }
 

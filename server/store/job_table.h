@@ -1,4 +1,4 @@
-// The SQL about jobs and requests. Each function runs inside the transaction of its caller, which
+// The SQL about jobs. Each function runs inside the transaction of its caller, which
 // handles errors (sqlite.h).
 //
 // Only these functions change a job's state. The transitions:
@@ -13,13 +13,13 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/functional/function_ref.h"
 #include "absl/time/time.h"
+#include "ballpiston/v1/server.pb.h"
 #include "server/store/job_record.h"
 #include "server/store/sqlite.h"
 
@@ -37,6 +37,10 @@ void InsertJob(Database& database, JobRecord& record);
 std::optional<JobRecord> FindJob(Database& database, const std::string& id, Grid grid);
 std::optional<JobRecord> FindJobBySequence(Database& database, int64_t sequence);
 
+// The job that the principal's request with this id made. Empty also without an id.
+std::optional<JobRecord> FindJobOfRequest(Database& database, const std::string& principal,
+                                          const std::string& request_id);
+
 // The principal's oldest job that SUCCEEDED in answering the question (JobRecord::question).
 std::optional<JobRecord> FindAnswer(Database& database, const std::string& principal,
                                     const std::string& question);
@@ -47,16 +51,6 @@ inline constexpr int kMostOfAFamily = 20;
 std::vector<JobRecord> FindFamily(Database& database, const std::string& principal,
                                   const std::string& family);
 
-// For each principal and request id, the job that the request made.
-struct RequestRecord {
-  std::string payload;  // a hash of the request without its id
-  int64_t job = 0;      // its sequence
-};
-void InsertRequest(Database& database, const std::string& principal, const std::string& request_id,
-                   const RequestRecord& record);
-std::optional<RequestRecord> FindRequest(Database& database, const std::string& principal,
-                                         const std::string& request_id);
-
 // The number of active jobs (neither SUCCEEDED nor FAILED nor CANCELLED) and of their points: of
 // all principals, and of one.
 struct Load {
@@ -65,15 +59,8 @@ struct Load {
 };
 Load ActiveLoad(Database& database, const std::string& principal);
 
-// The jobs of one principal.
-struct PrincipalJobs {
-  int64_t stored = 0;  // all of them
-  int64_t bytes = 0;   // JobNumbers::bytes of these
-  int64_t queued = 0;
-  int64_t running = 0;
-  int64_t cancelling = 0;
-};
-std::map<std::string, PrincipalJobs> CountJobsByPrincipal(Database& database);
+// The jobs of each principal.
+std::vector<v1::PrincipalStatus> CountJobsByPrincipal(Database& database);
 
 // Reads the jobs of one principal or of all, with a smaller sequence than `before`, newest first.
 // Ends when `on_job` returns false.
@@ -120,10 +107,9 @@ int64_t CountExpirable(Database& database, absl::Time ended_before);
 std::vector<JobSize> ListExpired(Database& database, int most);
 
 // After these two, the sweeper removes the results (sweeper.h); nobody can find them meanwhile.
-// ExpireJob has no effect on a pinned job. It keeps the specification and the requests, which are
-// still answered with the job.
+// ExpireJob has no effect on a pinned job. It keeps the row, so retries of its request are still
+// answered with the job.
 void ExpireJob(Database& database, int64_t sequence, absl::Time now);
-// Also deletes its requests.
 void DeleteJob(Database& database, int64_t sequence);
 
 }  // namespace ballpiston::server

@@ -4,6 +4,8 @@
 #include <map>
 #include <string>
 
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 
 namespace ballpiston::server {
@@ -12,9 +14,13 @@ using Labels = std::map<std::string, std::string>;  // key, value
 
 inline constexpr size_t kMostLabels = 32;  // of a job
 
-// As text in the job's row: a line KEY=VALUE for each. Neither part has a newline or an equals
-// sign (rpc/request_check.h).
-std::string LabelsText(const Labels& labels);
-Labels LabelsOf(absl::string_view text);
+// As text in the job's row: KEY=VALUE for each, with newlines between them. Neither part is empty
+// or has a newline or an equals sign (rpc/request_check.h).
+inline std::string LabelsText(const Labels& labels) {
+  return absl::StrJoin(labels, "\n", absl::PairFormatter("="));
+}
+inline Labels LabelsOf(absl::string_view text) {
+  return absl::StrSplit(text, absl::ByAnyChar("=\n"), absl::SkipEmpty());
+}
 
 }  // namespace ballpiston::server

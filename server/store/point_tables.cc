@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "absl/strings/str_cat.h"
+
 namespace ballpiston::server {
 namespace {
 
@@ -36,18 +38,11 @@ std::vector<std::string> ReadChunks(Database& database, int64_t job, int64_t poi
 
 int64_t InsertResult(Database& database, int64_t job, const PointRow& row) {
   const int64_t number = database.Integer(
-      "INSERT INTO results (job, point, samples, result, finish)"
-      " SELECT ?1, ?2, ?3, ?4, coalesce(max(finish), 0) + 1 FROM results WHERE job = ?1"
-      " ON CONFLICT DO NOTHING RETURNING finish",
-      job, row.point, row.samples, Blob{row.result});
-  if (number > 0 && !row.details.empty()) {
-    database.Run("INSERT INTO details (job, point, record) VALUES (?, ?, ?)", job, row.point,
-                 Blob{row.details});
-  }
-  if (number > 0 && !row.end.state.empty()) {
-    database.Run("INSERT INTO ends (job, point, model, state) VALUES (?, ?, ?, ?)", job, row.point,
-                 row.end.model, Blob{row.end.state});
-  }
+      "INSERT INTO results (job, point, samples, finish, model, result, details, continuation)"
+      " SELECT ?1, ?2, ?3, coalesce(max(finish), 0) + 1, ?4, ?5, ?6, ?7 FROM results"
+      " WHERE job = ?1 ON CONFLICT DO NOTHING RETURNING finish",
+      job, row.point, row.samples, row.end.model, Blob{row.result}, Blob{row.details},
+      Blob{row.end.state});
   if (row.has_checkpoint) {
     database.Run("DELETE FROM checkpoints WHERE job = ? AND point = ?", job, row.point);
     database.Run("DELETE FROM chunks WHERE job = ? AND point = ?", job, row.point);
@@ -56,8 +51,10 @@ int64_t InsertResult(Database& database, int64_t job, const PointRow& row) {
 }
 
 std::optional<PointEnd> ReadEnd(Database& database, int64_t job, int64_t point) {
-  Query query =
-      database.Select("SELECT model, state FROM ends WHERE job = ? AND point = ?", job, point);
+  Query query = database.Select(
+      "SELECT model, continuation FROM results WHERE job = ? AND point = ?"
+      " AND continuation <> x''",
+      job, point);
   if (!query.Next()) return std::nullopt;
   PointEnd end;
   query.ReadInto(end.model, end.state);
@@ -74,13 +71,11 @@ void ReadResultsStoredAfter(Database& database, int64_t job, int64_t after,
 
 void ReadResults(Database& database, int64_t job, int64_t first, Details details,
                  absl::FunctionRef<bool(PointRow row)> on_row) {
-  const bool with_details = details == Details::kIncluded;
-  Query query = database.Select(with_details ? "SELECT point, samples, result, record FROM results"
-                                               " LEFT JOIN details USING (job, point)"
-                                               " WHERE job = ? AND point >= ? ORDER BY point"
-                                             : "SELECT point, samples, result, x'' FROM results"
-                                               " WHERE job = ? AND point >= ? ORDER BY point",
-                                job, first);
+  const char* const column = details == Details::kIncluded ? "details" : "x''";
+  Query query =
+      database.Select(absl::StrCat("SELECT point, samples, result, ", column,
+                                   " FROM results WHERE job = ? AND point >= ? ORDER BY point"),
+                      job, first);
   PointRow row;
   while (query.Next()) {
     query.ReadInto(row.point, row.samples, row.result, row.details);
@@ -95,9 +90,7 @@ int64_t CountResults(Database& database, int64_t job) {
 std::vector<PointSize> ListFinishedPoints(Database& database, int64_t job) {
   std::vector<PointSize> points;
   Query query = database.Select(
-      "SELECT point, samples,"
-      " length(result) + ifnull(length(record), 0) + ifnull(length(state), 0) FROM results"
-      " LEFT JOIN details USING (job, point) LEFT JOIN ends USING (job, point)"
+      "SELECT point, samples, length(result) + length(details) + length(continuation) FROM results"
       " WHERE job = ? ORDER BY point",
       job);
   while (query.Next()) {

@@ -3,6 +3,7 @@
 // errors (sqlite.h).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -43,6 +44,8 @@ struct PointRow {
   std::string details = {};
   bool has_checkpoint = true;  // may have a checkpoint or chunks
   PointEnd end = {};           // not read with the results
+
+  size_t bytes() const { return result.size() + details.size() + end.state.size(); }
 };
 
 // Stores a point's result and drops its checkpoint and chunks. The first writer wins. Returns the
@@ -70,7 +73,7 @@ int64_t CountResults(Database& database, int64_t job);
 struct PointSize {
   int64_t point = 0;
   double samples = 0;
-  int64_t bytes = 0;  // of its result, its details and its end
+  int64_t bytes = 0;  // PointRow::bytes
 };
 
 // All finished points, in grid order.

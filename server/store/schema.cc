@@ -22,14 +22,7 @@ CREATE INDEX jobs_that_may_expire ON jobs (end_time, bytes)
 CREATE INDEX jobs_that_expired ON jobs (end_time, bytes) WHERE expired_time IS NOT NULL;
 CREATE INDEX jobs_by_question ON jobs (principal, question) WHERE question <> x'';
 CREATE INDEX jobs_by_family ON jobs (principal, family) WHERE family <> x'';
-CREATE TABLE requests (
-  principal TEXT NOT NULL,
-  request_id TEXT NOT NULL,
-  payload BLOB NOT NULL,
-  job INTEGER NOT NULL,
-  PRIMARY KEY (principal, request_id)
-) STRICT, WITHOUT ROWID;
-CREATE INDEX requests_by_job ON requests (job);
+CREATE UNIQUE INDEX jobs_by_request ON jobs (principal, request_id) WHERE request_id <> '';
 CREATE TABLE checkpoints (
   job INTEGER NOT NULL,
   point INTEGER NOT NULL,
@@ -47,21 +40,11 @@ CREATE TABLE results (
   job INTEGER NOT NULL,
   point INTEGER NOT NULL,
   samples REAL NOT NULL,
-  result BLOB NOT NULL,
   finish INTEGER NOT NULL,
-  PRIMARY KEY (job, point)
-) STRICT;
-CREATE TABLE details (
-  job INTEGER NOT NULL,
-  point INTEGER NOT NULL,
-  record BLOB NOT NULL,
-  PRIMARY KEY (job, point)
-) STRICT;
-CREATE TABLE ends (
-  job INTEGER NOT NULL,
-  point INTEGER NOT NULL,
   model INTEGER NOT NULL,
-  state BLOB NOT NULL,
+  result BLOB NOT NULL,
+  details BLOB NOT NULL,
+  continuation BLOB NOT NULL,
   PRIMARY KEY (job, point)
 ) STRICT;
 CREATE TABLE dropped (

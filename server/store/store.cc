@@ -38,11 +38,11 @@ Store::Store(std::unique_ptr<Database> writer, Options options, const std::strin
              std::string identity)
     : options_(options),
       identity_(std::move(identity)),
-      writer_(std::move(writer)),
-      reserve_(path, options_.reserve_bytes) {}
+      reserve_path_(path + "-reserve"),
+      writer_(std::move(writer)) {}
 
 void Store::Start() {
-  reserve_.Take();
+  TakeReserve();
   {
     MutexLock lock(mutex_);
     if (IsSweeping(*writer_)) next_sweep_ = SteadyNow();  // goes on where the last process stopped
@@ -109,10 +109,7 @@ void Store::RecordChunk(int64_t job, int64_t point, uint64_t chunk, std::string 
 
 void Store::RecordResult(int64_t job, PointRow row, std::function<void(int64_t number)> stored) {
   const auto number = std::make_shared<int64_t>(0);
-  Write write = {.bytes = row.result.size() + row.details.size() + row.end.state.size(),
-                 .job = job,
-                 .point = row.point,
-                 .is_result = true};
+  Write write = {.bytes = row.bytes(), .job = job, .point = row.point, .is_result = true};
   write.change = [job, row = std::move(row), number](Database& database) {
     *number = InsertResult(database, job, row);
   };

@@ -21,7 +21,8 @@
 //     the disk. The bounds of AwaitRoom limit the memory of waiting records.
 //   - If the disk is full, the store writes the log back into the file, so that the log's space can
 //     be used again, and tries each request alone, because it may free space. A deletion that still
-//     has no room gets that of a reserve (reserve.h). Records wait until the space is free.
+//     has no room gets that of the reserve, a file of zeros beside the store. Records wait until
+//     the space is free.
 // If the disk hangs (`stalled`), the store refuses new requests until the disk answers; earlier
 // requests wait.
 // A write that can never succeed (a violated constraint, too big) is refused alone, and the other
@@ -46,7 +47,6 @@
 #include "server/mutex.h"
 #include "server/store/point_tables.h"
 #include "server/store/reader_pool.h"
-#include "server/store/reserve.h"
 #include "server/store/sqlite.h"
 
 namespace ballpiston::server {
@@ -219,6 +219,9 @@ class Store {
   // Sets the outcome of a request whose group failed. On a full disk it is tried alone.
   void TryAgain(Writes& batch, size_t request, const absl::Status& failure);
   void WriteLogBack();
+  // Errors are not reported: without the reserve a deletion on a full disk may fail.
+  void TakeReserve();  // writes the file, if there is room
+  void ReleaseReserve();
   void NoteSweep(const absl::Status& status, bool has_advanced) ABSL_LOCKS_EXCLUDED(mutex_);
 
   // Tells writes [first, last) their outcome.
@@ -230,9 +233,10 @@ class Store {
 
   const Options options_;
   const std::string identity_;
+  const std::string reserve_path_;
   // Only the store's thread uses these two.
   std::unique_ptr<Database> writer_;
-  Reserve reserve_;
+  bool holds_reserve_ = false;
   std::atomic<Clock::rep> busy_since_ = 0;  // the start of its present group; 0: it waits
 
   ReaderPool readers_;

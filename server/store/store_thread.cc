@@ -208,8 +208,8 @@ void Store::TryAgain(Writes& batch, size_t request, const absl::Status& failure)
   Write& write = batch[request];
   absl::Status status = failure;
   if (absl::IsResourceExhausted(status)) status = CommitGroup(batch, request, request + 1);
-  if (absl::IsResourceExhausted(status) && write.frees_space && reserve_.held()) {
-    reserve_.Release();
+  if (absl::IsResourceExhausted(status) && write.frees_space && holds_reserve_) {
+    ReleaseReserve();
     WriteLogBack();  // then the log starts from its beginning
     status = CommitGroup(batch, request, request + 1);
   }
@@ -222,6 +222,26 @@ void Store::WriteLogBack() {
   writer_->TakeStatus().IgnoreError();
 }
 
+// The file is a database with one large value, so it is written like the store.
+void Store::TakeReserve() {
+  if (options_.reserve_bytes == 0) return;
+  const auto file = Database::Open(reserve_path_, Database::Mode::kReadWrite);
+  if (file.ok()) {
+    (*file)->Execute(
+        absl::StrCat("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;"
+                     "CREATE TABLE IF NOT EXISTS reserve AS SELECT zeroblob(",
+                     options_.reserve_bytes, ") AS zeros"));
+  }
+  // A file that is not complete, left by a crash, is an error here.
+  holds_reserve_ = file.ok() && (*file)->status().ok();
+  if (!holds_reserve_) ReleaseReserve();
+}
+
+void Store::ReleaseReserve() {
+  holds_reserve_ = false;
+  Database::RemoveFile(reserve_path_);
+}
+
 // ---- outcomes ----
 
 // A step that fails is tried again later, unless the store is damaged: each step would find that.
@@ -229,10 +249,10 @@ void Store::NoteSweep(const absl::Status& status, bool has_advanced) {
   const bool advances = status.ok() && has_advanced;
   const bool is_failing = failing();
   // Waiting records may need the room of the reserve and that of the deleted job.
-  if (is_failing && advances && reserve_.held()) reserve_.Release();
+  if (is_failing && advances && holds_reserve_) ReleaseReserve();
   // The file gets shorter when the log is written back. A full disk has no room for a longer log.
   if (is_failing || !advances) WriteLogBack();
-  if (!is_failing && !advances && !reserve_.held()) reserve_.Take();
+  if (!is_failing && !advances && !holds_reserve_) TakeReserve();
   if (absl::IsDataLoss(status)) {
     LogError(absl::StrCat("the space of deleted jobs cannot be freed: ", status.message()));
   }

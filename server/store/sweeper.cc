@@ -9,15 +9,11 @@ namespace ballpiston::server {
 namespace {
 
 void DropSome(Database& database, int64_t job) {
-  int64_t dropped = 0;
-  for (const char* table : {"ends", "details", "results"}) {
-    database.Run(absl::StrCat("DELETE FROM ", table, " WHERE rowid IN (SELECT rowid FROM ", table,
-                              " WHERE job = ? LIMIT ?)"),
-                 job, kSweptRows - dropped);
-    dropped += database.RowsChanged();
-  }
+  database.Run(
+      "DELETE FROM results WHERE rowid IN (SELECT rowid FROM results WHERE job = ? LIMIT ?)", job,
+      kSweptRows);
   Failpoint("sweep.in_transaction");
-  if (dropped == 0) database.Run("DELETE FROM dropped WHERE job = ?", job);
+  if (database.RowsChanged() == 0) database.Run("DELETE FROM dropped WHERE job = ?", job);
 }
 
 bool ShortenFile(Database& database) {

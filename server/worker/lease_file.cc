@@ -38,7 +38,7 @@ absl::StatusOr<Message> TakeMessage(absl::string_view& bytes) {
 
 template <typename Message>
 std::string BytesOfMessage(const Message& message) {
-  return Compressed(DeterministicBytes(message), Checksum::kCrc32);
+  return Compressed(DeterministicBytes(message));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // The files of a folder that machines share. The server and its workers use no others.
 //
+//   todo/.LEASE                 the server writes a lease; no worker sees this name
 //   todo/LEASE                  a lease that no worker has
 //   taken/LEASE.WORKER          a worker has moved it here: it computes the lease
 //   done/LEASE.WORKER.OUTCOME   the worker has ended with it (lease_file.h)
@@ -35,7 +36,7 @@ class SharedFiles {
  public:
   virtual ~SharedFiles() = default;
 
-  // The names in a subfolder, in any order.
+  // The names in a subfolder, in any order, without those that begin with a dot.
   virtual absl::StatusOr<std::vector<std::string>> List(const std::string& subfolder) = 0;
 
   // A new file. Another machine may see a part of it before this returns. After an error there is

@@ -1,7 +1,6 @@
 #include "server/worker/worker.h"
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -22,9 +21,6 @@ using Clock = std::chrono::steady_clock;
 // Between two looks for a lease, without one. The first look is random, because many workers may
 // start at the same time.
 constexpr double kFirstLook = 1, kLongestLook = 20;
-
-// A running server finishes writing a lease within this time.
-constexpr double kLongestWrite = 20;
 
 Clock::duration InTicks(double seconds) {
   return std::chrono::duration_cast<Clock::duration>(Seconds(seconds));
@@ -145,21 +141,18 @@ class Worker {
       names->pop_back();
       const absl::Status taken = files_.Move(name.Todo(), name.Taken());
       if (absl::IsNotFound(taken)) continue;  // another worker has it
-      if (!taken.ok()) return taken;
-      const absl::StatusOr<bool> computed = Compute(name);
-      if (!computed.ok() || *computed) return computed;
+      const absl::Status computed = taken.ok() ? Compute(name) : taken;
+      return computed.ok() ? absl::StatusOr<bool>(true) : computed;
     }
     return false;
   }
 
-  // False if the file is not complete yet: another lease can be taken.
-  absl::StatusOr<bool> Compute(const LeaseFileName& name) {
+  absl::Status Compute(const LeaseFileName& name) {
     const absl::StatusOr<std::string> bytes = files_.Read(name.Taken(), 0);
-    if (absl::IsNotFound(bytes.status())) return true;  // the server needs it no more
+    if (absl::IsNotFound(bytes.status())) return absl::OkStatus();  // the server needs it no more
     if (!bytes.ok()) return Ended(name, Outcome::kReturned, bytes.status());
     absl::string_view rest = *bytes;
     const absl::StatusOr<LeaseFile> file = host_.read_lease(rest);
-    if (absl::IsOutOfRange(file.status())) return LeaveIncomplete(name, file.status());
     if (absl::IsUnimplemented(file.status())) {
       files_.Move(name.Taken(), name.Todo()).IgnoreError();
       return file.status();
@@ -174,31 +167,18 @@ class Worker {
                                                       options_.memory)));
     }
     host_.lease_begins(name.Taken(), name.Done(Outcome::kCrashed));
-    const absl::Status done = LeaseWork(files_, options_, host_, name, *file).Run();
-    if (!done.ok()) return done;
-    return true;
+    return LeaseWork(files_, options_, host_, name, *file).Run();
   }
 
-  // The server is still writing the file, or was killed while writing it. After a kill the next
-  // server, which does not know the lease, removes it from done/.
-  absl::StatusOr<bool> LeaveIncomplete(const LeaseFileName& name, const absl::Status& why) {
-    const Clock::time_point first_look = incomplete_.emplace(name.lease, host_.now()).first->second;
-    const bool is_left = host_.now() - first_look >= InTicks(kLongestWrite);
-    if (is_left) return Ended(name, Outcome::kReturned, why);
-    const absl::Status back = files_.Move(name.Taken(), name.Todo());
-    return absl::IsNotFound(back) || back.ok() ? absl::StatusOr<bool>(false) : back;
-  }
-
-  absl::StatusOr<bool> Ended(const LeaseFileName& name, Outcome outcome, const absl::Status& why) {
+  absl::Status Ended(const LeaseFileName& name, Outcome outcome, const absl::Status& why) {
     host_.report(absl::StrCat(name.lease, ": ", why.message()));
     const absl::Status moved = files_.Move(name.Taken(), name.Done(outcome));
-    return moved.ok() || absl::IsNotFound(moved) ? absl::StatusOr<bool>(true) : moved;
+    return absl::IsNotFound(moved) ? absl::OkStatus() : moved;
   }
 
   SharedFiles& files_;
   const WorkerOptions& options_;
   const WorkerHost& host_;
-  std::map<std::string, Clock::time_point> incomplete_;  // by lease: the first look at its file
 };
 
 }  // namespace

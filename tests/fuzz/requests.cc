@@ -12,7 +12,6 @@
 #include "server/convert/spec.h"
 #include "server/convert/trace.h"
 #include "server/rpc/request_check.h"
-#include "server/rpc/tokens.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"
 

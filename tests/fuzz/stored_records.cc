@@ -213,7 +213,7 @@ void CheckReport(const std::string& compressed) {
 // their contents with a correct checksum. Chunks that fit an experiment are merged.
 void CheckChunkFile(const std::string& input) {
   CheckReport(input);
-  const std::string compressed = server::Compressed(input, server::Checksum::kCrc32);
+  const std::string compressed = server::Compressed(input);
   Require(server::Uncompressed(compressed) == input, "decompression returns the compressed input");
   CheckReport(compressed);
 }

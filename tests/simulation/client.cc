@@ -193,7 +193,6 @@ class Client::Reader : public WatchReader {
     for (const v1::PointResult& point : message.snapshot().finished_points()) {
       world_.tell(absl::StrCat("watch ", id_, ": point ", point.index()));
       chain_.points.push_back(point);
-      chain_.points.back().clear_name();  // results of the book have none
     }
     if (message.has_job()) {
       Progressed(message.job().progress());

@@ -193,7 +193,9 @@ void Expectations::Read(const std::string& id, const KnownJob& before,
 
 void Expectations::CheckResult(const std::string& id, const Question& question,
                                const v1::PointResult& result) {
-  if (BytesOf(result) != BytesOf(Undisturbed(question, result.index()))) {
+  v1::PointResult expected = Undisturbed(question, result.index());
+  expected.set_name(ResultName(id, result.index()));
+  if (BytesOf(result) != BytesOf(expected)) {
     throw Violation(
         "bytes", id,
         absl::StrCat("point ", result.index(), " has other bytes: ", result.ShortDebugString()));

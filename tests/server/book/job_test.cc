@@ -18,33 +18,12 @@ JobRecord JobWithPoints(int64_t points) {
   return record;
 }
 
-FinishedPoint FinishedPointOf(int number) {
-  return {number, std::make_shared<const std::string>(std::to_string(number))};
-}
-
-std::vector<int64_t> Numbers(const std::vector<FinishedPoint>& points) {
-  std::vector<int64_t> numbers;
-  for (const FinishedPoint& point : points) numbers.push_back(point.number);
-  return numbers;
-}
-
 TEST(Job, AToleranceGivesNoFraction) {
   v1::EnsembleSpec spec;
   spec.mutable_target()->set_tolerance(0.1);
   JobRecord record = JobWithPoints(4);
   record.spec = SpecBytes(spec);
-  EXPECT_FALSE(Job(record).Progress().has_fraction());
-}
-
-TEST(Job, FinishedPointsComeInTheirOrderAndTheNewestAreKept) {
-  Job job(JobWithPoints(1000));
-  for (int number = 1; number <= 300; ++number) job.AddFinishedPoint(FinishedPointOf(number));
-  const auto last = static_cast<int64_t>(300 - kRecentPoints);
-  EXPECT_EQ(job.FinishedAfter(last - 1, 10), std::nullopt);
-  EXPECT_EQ(job.FinishedAfter(last, 1000)->size(), kRecentPoints);
-  EXPECT_THAT(Numbers(*job.FinishedAfter(250, 3)), testing::ElementsAre(251, 252, 253));
-  EXPECT_THAT(Numbers(*job.FinishedAfter(298, 10)), testing::ElementsAre(299, 300));
-  EXPECT_TRUE(job.FinishedAfter(300, 10)->empty());
+  EXPECT_FALSE(JobMessage(record, record.numbers, 0).progress().has_fraction());
 }
 
 TEST(Job, AnOldSnapshotIsReplacedIfTheJobHasChanged) {

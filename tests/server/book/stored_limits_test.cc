@@ -119,16 +119,15 @@ TEST_F(StoredLimitsTest, JobsAndBytesOfEachPrincipalAreCounted) {
   Start();
   const std::string first = Done(kAnn, 1), second = Done(kAnn, 2);
   Done(kBen, 3);
-  const std::map<std::string, PrincipalJobs> before = book_->JobsByPrincipal();
-  EXPECT_EQ(before.at("ann").stored, 2);
-  EXPECT_EQ(static_cast<double>(before.at("ann").bytes),
-            Get(first).stored_bytes() + Get(second).stored_bytes());
-  EXPECT_EQ(before.at("ben").stored, 1);
+  const auto before = book_->JobsByPrincipal();
+  EXPECT_EQ(before.at(0).principal(), "ann");
+  EXPECT_EQ(before.at(0).stored_jobs(), 2);
+  EXPECT_EQ(before.at(0).stored_bytes(), Get(first).stored_bytes() + Get(second).stored_bytes());
+  EXPECT_EQ(before.at(1).stored_jobs(), 1);
   EXPECT_EQ(ReasonOf(book_->Result(kAnn, second, 3).status()), "RESULT_NOT_FOUND");
   ASSERT_OK(book_->Delete(kAnn, first));
-  EXPECT_EQ(book_->JobsByPrincipal().at("ann").stored, 1);
-  EXPECT_EQ(static_cast<double>(book_->JobsByPrincipal().at("ann").bytes),
-            Get(second).stored_bytes());
+  EXPECT_EQ(book_->JobsByPrincipal().at(0).stored_jobs(), 1);
+  EXPECT_EQ(book_->JobsByPrincipal().at(0).stored_bytes(), Get(second).stored_bytes());
 }
 
 }  // namespace

@@ -312,7 +312,7 @@ TEST_F(ElsewhereTest, WorkElsewhereIsChargedToItsRun) {
   EXPECT_OK(remote_.Report(*lease, ComputedChunks(*lease), 4));
   remote_.Return(*lease);
   EXPECT_EQ(journal->work, 7);
-  EXPECT_EQ(scheduler_.Counts().processor_seconds, 7);
+  EXPECT_EQ(scheduler_.processor_seconds(), 7);
 }
 
 TEST_F(ElsewhereTest, AStoppedRunEndsWhenItsTurnsHaveEnded) {

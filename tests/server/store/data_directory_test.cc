@@ -101,11 +101,10 @@ TEST_F(DataFolder, AnOpenFolderOfAnotherUserIsRefused) {
   EXPECT_EQ(Mode(), 0755u);
 }
 
-TEST(FolderOf, HoldsTheNameThatAFlushMakesSafe) {
-  EXPECT_EQ(FolderOf("/var/lib/data"), "/var/lib");
-  EXPECT_EQ(FolderOf("/data"), "/");
-  EXPECT_EQ(FolderOf("of/data"), "of");
-  EXPECT_EQ(FolderOf("data"), ".");
+TEST(SyncNameOf, FlushesTheFolderThatHasTheName) {
+  EXPECT_OK(SyncNameOf("data"));
+  EXPECT_OK(SyncNameOf("/data"));
+  EXPECT_THAT(SyncNameOf("/no such folder/data"), StatusIs(absl::StatusCode::kUnavailable));
 }
 
 }  // namespace

@@ -139,8 +139,7 @@ TEST_F(StoreTest, EveryKindOfWrongFileIsRefusedAndUntouched) {
 TEST_F(StoreTest, AnImpossibleWriteIsRejectedAlone) {
   const auto store = Open({.delay = kUnreachedLimit});
   const auto broken = [](Database& database) {
-    database.Execute(
-        "INSERT INTO results (job, point, samples, result, finish) VALUES (1, 1, NULL, x'00', 1)");
+    database.Execute("INSERT INTO results (job, point, samples) VALUES (1, 1, NULL)");
   };
   absl::Status told;
   store->RecordCheckpoint(1, 0, 0, [] { return "before"; });

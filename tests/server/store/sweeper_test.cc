@@ -55,7 +55,7 @@ TEST_F(SweeperTest, TheFileShrinksWhenAJobIsDeleted) {
   AddLargeJob(*store, "b");
   Delete(*store, first);
   AwaitThat([this] { return FileBytes() <= 23 * kMiB; });  // 5 pages a point, and 256 free ones
-  EXPECT_EQ(Count(*store, "details"), 1000);
+  EXPECT_EQ(Count(*store, "results"), 1000);
   EXPECT_GT(FileBytes(), 20 * kMiB);  // those of "b"
 }
 
@@ -64,16 +64,14 @@ TEST_F(SweeperTest, ARestartGoesOnWithTheRest) {
     const auto database = *OpenStoreFile(path_);
     database->Execute(
         "INSERT INTO dropped (job) VALUES (7);"
-        "INSERT INTO details (job, point, record) VALUES (7, 3, x'00');"
-        "INSERT INTO results (job, point, samples, result, finish) VALUES (7, 3, 1, x'00', 1);"
-        "INSERT INTO details (job, point, record) VALUES (8, 3, x'00')");
+        "INSERT INTO results VALUES (7, 3, 1, 1, 0, x'00', x'', x''),"
+        " (8, 3, 1, 1, 0, x'00', x'', x'')");
     ASSERT_OK(database->status());
   }
   const auto store = Open();
   ASSERT_OK(store->Flush());
   AwaitThat([&] { return Count(*store, "dropped") == 0; });
-  EXPECT_EQ(Count(*store, "details"), 1);
-  EXPECT_EQ(Count(*store, "results"), 0);
+  EXPECT_EQ(Count(*store, "results"), 1);
 }
 
 // Another write need not wait for many rows.
@@ -81,9 +79,9 @@ TEST_F(SweeperTest, AStepRemovesFewRows) {
   const auto database = *OpenStoreFile(path_);
   database->Execute(
       "WITH RECURSIVE n(i) AS (SELECT 0 UNION ALL SELECT i + 1 FROM n"
-      " WHERE i < 9999) INSERT INTO details (job, point, record)"
-      " SELECT 7, i, zeroblob(300) FROM n; INSERT INTO dropped (job) VALUES (7)");
-  const auto rows = [&] { return database->Integer("SELECT count(*) FROM details"); };
+      " WHERE i < 9999) INSERT INTO results SELECT 7, i, 1, i, 0, x'', zeroblob(300), x'' FROM n;"
+      "INSERT INTO dropped (job) VALUES (7)");
+  const auto rows = [&] { return database->Integer("SELECT count(*) FROM results"); };
   ASSERT_TRUE(SweepStep(*database));
   EXPECT_EQ(rows(), 10'000 - kSweptRows);
   while (SweepStep(*database)) continue;

@@ -39,7 +39,8 @@ class FakeFiles : public SharedFiles {
     const std::string prefix = subfolder + "/";
     for (auto file = files.lower_bound(prefix); file != files.end(); ++file) {
       if (!file->first.starts_with(prefix)) break;
-      names.push_back(file->first.substr(prefix.size()));
+      const std::string name = file->first.substr(prefix.size());
+      if (!name.starts_with('.')) names.push_back(name);
     }
     operations += static_cast<double>(names.size()) / kNamesOfAnAnswer;
     return names;
