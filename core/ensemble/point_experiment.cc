@@ -114,6 +114,7 @@ PointSummary PointExperiment::Summarize(const BlockResult& merged) const {
   PointSummary summary = {
       .samples = merged.samples, .estimates = EstimatesOf(table_, merged), .health = merged.health};
   AddDetails(merged, summary);
+  if (summary.estimates.empty()) return summary;
   const Estimate& first = summary.estimates.front();
   if (!first.standard_error) summary.remarks.push_back(ReasonOfNoError(first.name));
   return summary;

@@ -92,7 +92,7 @@ class PointExperiment {
   Estimate FirstEstimate(const BlockResult& merged) const;
 
   // All that was measured. The first estimate is FirstEstimate. If it has no standard error, a
-  // remark says how many samples an error needs.
+  // remark says how many samples an error needs. Without estimates a remark says why.
   PointSummary Summarize(const BlockResult& merged) const;
 
   // Whether `merged`, the complete chunks, reaches the tolerance; false if there is no tolerance.

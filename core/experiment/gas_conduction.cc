@@ -182,6 +182,11 @@ class GasConduction : public SteadyGas {
   void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
     const std::vector<SteadyGroup> groups = GroupsOf(merged);
     summary.samples = StretchesOf(groups);
+    if (groups.empty()) {
+      summary.estimates.clear();
+      summary.remarks.push_back(RemarkOnNothingMeasured());
+      return;
+    }
     AddEstimates(groups, summary.estimates);
     summary.curves.push_back(Profile(groups));
     for (const Order& order : StatedOrders()) {

@@ -16,20 +16,6 @@
 namespace ballpiston {
 namespace {
 
-// A ball has two degrees of freedom at its temperature T, a piston one: the variance of a kinetic
-// energy is T^2/2 for each.
-double VarianceOfEnergy(const GasGeometry& geometry, const TemperatureProfile& temperature) {
-  double sum = 0;
-  for (int64_t ball = 0; ball < geometry.balls(); ++ball) {
-    const int64_t column = ball % geometry.shape().columns;
-    sum += std::pow(temperature.At(static_cast<double>(column) + 0.5), 2);
-  }
-  for (int64_t piston = 0; piston < geometry.pistons(); ++piston) {
-    sum += std::pow(temperature.At(geometry.PositionOfPiston(piston)), 2) / 2;
-  }
-  return sum;
-}
-
 // Computes chunks, each of which is a block: some stretches of all trajectories of a group, which
 // run together.
 class GroupRun : public EngineRun {
@@ -125,8 +111,7 @@ class GroupRun : public EngineRun {
     }
     const auto count = static_cast<double>(meters_.size());
     constexpr double kDeviations = 3;
-    return std::fabs(change) <=
-           kDeviations * std::sqrt(2 * experiment_.variance_of_energy() * count);
+    return std::fabs(change) <= kDeviations * std::sqrt(2 * experiment_.VarianceOfEnergy() * count);
   }
 
   void EndStretch() {
@@ -205,11 +190,25 @@ SteadyGas::SteadyGas(const EnsembleSpec& spec, const PointParameters& point, dou
               .quantities = quantities,
               .balls = static_cast<size_t>(geometry().balls()),
               .pistons = static_cast<size_t>(geometry().pistons()),
-              .has_positions = answer().model != Model::kMarkov}),
-      variance_of_energy_(VarianceOfEnergy(geometry(), TemperaturesAtStart())) {}
+              .has_positions = answer().model != Model::kMarkov}) {}
 
 TemperatureProfile SteadyGas::TemperaturesAtStart() const {
   return {hot_, cold_, static_cast<double>(geometry().shape().columns)};
+}
+
+// A ball has two degrees of freedom at its temperature T, a piston one: the variance of a kinetic
+// energy is T^2/2 for each. The pistons between rows are in the columns of the balls.
+double SteadyGas::VarianceOfEnergy() const {
+  const TemperatureProfile temperature = TemperaturesAtStart();
+  const GasShape& shape = geometry().shape();
+  const double in_a_column = shape.is_lattice ? 1.5 : 1;
+  double of_a_row = 0;
+  for (int64_t column = 0; column <= shape.columns; ++column) {
+    const auto x = static_cast<double>(column);
+    of_a_row += std::pow(temperature.At(x), 2) / 2;
+    if (column < shape.columns) of_a_row += in_a_column * std::pow(temperature.At(x + 0.5), 2);
+  }
+  return static_cast<double>(shape.rows) * of_a_row;
 }
 
 std::unique_ptr<EngineRun> SteadyGas::StartRun(BlockQueue& queue) const {
@@ -263,6 +262,15 @@ std::string SteadyGas::ReasonOfNoError(absl::string_view estimate) const {
   return absl::StrCat(estimate,
                       " has no standard error: an error needs two trajectories that have "
                       "warmed up and been measured");
+}
+
+// A chunk begins where the longest warm-up ends; the chunk has samples if one more is asked for.
+std::string SteadyGas::RemarkOnNothingMeasured() const {
+  const double most = kLongestWarmUp * static_cast<double>(plan().warm_up());
+  return absl::StrFormat(
+      "all trajectories are still warming up, so nothing has been measured yet; ask for more "
+      "samples (with %.0f they are measured in any case)",
+      most + 1);
 }
 
 std::string SteadyGas::RemarkOnWarmUp(const std::vector<SteadyGroup>& groups) {

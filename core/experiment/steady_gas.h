@@ -44,8 +44,9 @@ class SteadyGas : public GasExperiment {
   const SteadyShape& shape() const { return shape_; }
   double stretch() const { return stretch_; }  // a time at temperature 1
   const Trajectories& trajectories() const { return trajectories_; }
-  double variance_of_energy() const { return variance_of_energy_; }  // in local equilibrium
   TemperatureProfile TemperaturesAtStart() const;
+  double VarianceOfEnergy()
+      const;  // in local equilibrium; takes a time in proportion to the columns
   ThermalWalls WallsOf(const GasRandom& random) const { return {geometry(), hot_, cold_, random}; }
   // The integral over the meter's window, of each quantity.
   virtual std::vector<double> IntegralsOf(const GasMeter& meter) const = 0;
@@ -68,6 +69,7 @@ class SteadyGas : public GasExperiment {
   // The number of stretches that all trajectories have measured. Those of the warm-up do not count.
   uint64_t StretchesOf(const std::vector<SteadyGroup>& groups) const;
 
+  std::string RemarkOnNothingMeasured() const;
   // A sentence if the gas's energy has changed during the measurement by more than its trajectories
   // scatter, or if its warm-up has not ended; else empty.
   static std::string RemarkOnWarmUp(const std::vector<SteadyGroup>& groups);
@@ -78,7 +80,6 @@ class SteadyGas : public GasExperiment {
   double stretch_;
   Trajectories trajectories_;
   SteadyShape shape_;
-  double variance_of_energy_;
 };
 
 }  // namespace ballpiston

@@ -1,6 +1,7 @@
 // The experiment `gas-conduction`: estimates, profile, fluctuations, times.
+#include "absl/strings/str_cat.h"
 #include "core/ensemble/experiment_kind.h"
-#include "core/experiment/gas_experiment.h"
+#include "core/experiment/steady_gas.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/geometry/temperature.h"
 #include "tests/core/one_point_spec.h"
@@ -106,6 +107,24 @@ TEST(GasConduction, ARemarkSaysThatAnErrorNeedsTwoMeasuredTrajectories) {
                           "that have warmed up and been measured"));
 }
 
+TEST(GasConduction, WhileAllTrajectoriesWarmUpOnlyARemarkIsStated) {
+  for (const Model model : kModelsThatSampleGases) {
+    for (const GasShape& shape : {GasShape{1}, GasShape{1, 2000, true}, GasShape{1'000'000}}) {
+      EnsembleSpec spec = SpecBetween(1, 0.03, shape, model);
+      const auto point = PointExperiment::Create(spec, 0);
+      const PointSummary summary = point->Summarize(point->EmptyResult());
+      EXPECT_TRUE(summary.estimates.empty());
+      EXPECT_TRUE(summary.curves.empty());
+      const uint64_t longest = static_cast<uint64_t>(kLongestWarmUp) * point->plan().warm_up();
+      EXPECT_THAT(summary.remarks, ElementsAre(HasSubstr(absl::StrCat("with ", longest + 1))));
+      // As the remark says: with so many samples a chunk begins where every warm-up has ended.
+      spec.target.samples = static_cast<int64_t>(longest + 1);
+      const auto longer = PointExperiment::Create(spec, 0);
+      EXPECT_GE(longer->plan().FirstSample(longer->plan().chunks() - 1), longest);
+    }
+  }
+}
+
 TEST(GasConduction, TheProfileHasBallsInCellsAndPistonsBetweenThem) {
   for (const GasShape& shape : {GasShape{3}, GasShape{3, 2, true}}) {
     const PointSummary summary = RunPoint(SpecBetween(3, 1, shape));
@@ -134,7 +153,12 @@ TEST(GasConduction, TheProfileHasBallsInCellsAndPistonsBetweenThem) {
 TEST(GasConduction, TheProfileOfALongGasHasSharedPlaces) {
   const auto places = [](const GasShape& shape) {
     const auto point = PointExperiment::Create(SpecBetween(3, 1, shape), 0);
-    const PointSummary summary = point->Summarize(point->EmptyResult());
+    const SteadyShape& group = dynamic_cast<const SteadyGas&>(*point).shape();
+    SteadyGroup measured = group.NewGroup();
+    measured.measured = 1;
+    BlockResult merged = point->EmptyResult();
+    merged.groups[0] = group.Written(std::move(measured));
+    const PointSummary summary = point->Summarize(merged);
     std::vector<double> positions;
     for (const CurvePoint& place : summary.curves[0].points) positions.push_back(place.at);
     EXPECT_TRUE(std::is_sorted(positions.begin(), positions.end()));
@@ -215,6 +239,13 @@ TEST(GasConduction, TheRarestExchangesHaveAPlan) {
   const PointParameters point = PointAt(spec, 0);
   EXPECT_GT(kGasConduction.work(Model::kBilliard, point).Events(), 1e30);
   EXPECT_EQ(kGasConduction.trajectories(Model::kBilliard, point).warm_up, uint64_t{1} << 41);
+}
+
+// With costs in proportion to the cells 1,000 points would take a quarter of an hour.
+TEST(GasConduction, APointOfTheLargestGasesIsMadeAtOnce) {
+  for (const GasShape& shape : {GasShape{1000, 1000, true}, GasShape{1, 1'000'000, true}}) {
+    for (int i = 0; i < 1000; ++i) PointExperiment::Create(SpecBetween(3, 1, shape), 0);
+  }
 }
 
 // ---- fluctuations ----

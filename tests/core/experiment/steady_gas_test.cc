@@ -96,7 +96,7 @@ TEST(SteadyGas, VarianceOfEnergyIsThatOfItsStarts) {
       CounterRandom random(1, 2, start);
       energies.Add(EnergyOf(DrawGas(gas.geometry(), gas.TemperaturesAtStart(), random)));
     }
-    EXPECT_NEAR(*energies.Variance() / gas.variance_of_energy(), 1, 0.15);
+    EXPECT_NEAR(*energies.Variance() / gas.VarianceOfEnergy(), 1, 0.15);
   }
 }
 
