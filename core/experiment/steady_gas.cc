@@ -265,12 +265,20 @@ std::string SteadyGas::ReasonOfNoError(absl::string_view estimate) const {
 }
 
 // A chunk begins where the longest warm-up ends; the chunk has samples if one more is asked for.
-std::string SteadyGas::RemarkOnNothingMeasured() const {
-  const double most = kLongestWarmUp * static_cast<double>(plan().warm_up());
+// The groups that have been measured are those whose energy has changed little.
+std::string SteadyGas::RemarkOnUnmeasured(const std::vector<SteadyGroup>& groups) const {
+  const double enough = kLongestWarmUp * static_cast<double>(plan().warm_up()) + 1;
+  const uint64_t unmeasured = trajectories_.groups - groups.size();
+  if (unmeasured == 0) return "";
+  const std::string advice =
+      absl::StrFormat("ask for more samples (with %.0f all are measured in any case)", enough);
+  if (groups.empty()) {
+    return "all trajectories are still warming up, so nothing has been measured yet; " + advice;
+  }
   return absl::StrFormat(
-      "all trajectories are still warming up, so nothing has been measured yet; ask for more "
-      "samples (with %.0f they are measured in any case)",
-      most + 1);
+      "%d of %d groups of trajectories are still warming up; the others may not be typical, so "
+      "errors may be too small; %s",
+      unmeasured, trajectories_.groups, advice);
 }
 
 std::string SteadyGas::RemarkOnWarmUp(const std::vector<SteadyGroup>& groups) {

@@ -69,7 +69,8 @@ class SteadyGas : public GasExperiment {
   // The number of stretches that all trajectories have measured. Those of the warm-up do not count.
   uint64_t StretchesOf(const std::vector<SteadyGroup>& groups) const;
 
-  std::string RemarkOnNothingMeasured() const;
+  // A sentence if groups are still warming up; else empty.
+  std::string RemarkOnUnmeasured(const std::vector<SteadyGroup>& groups) const;
   // A sentence if the gas's energy has changed during the measurement by more than its trajectories
   // scatter, or if its warm-up has not ended; else empty.
   static std::string RemarkOnWarmUp(const std::vector<SteadyGroup>& groups);

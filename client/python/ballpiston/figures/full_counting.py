@@ -2,7 +2,7 @@
 
 N c_n/(kappa_0 t): the cumulants of the energy that passes through a chain of N cells in a long time
 t, over the conductivity kappa_0 at temperature 1, each divided by its limit of the additivity
-principle. Lines are polynomials in 1/N. Time on one core: quick 10 s, default 3 min, full 10 min.
+principle. Lines are polynomials in 1/N. Time on one core: quick 30 s, default 3 min, full 10 min.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ballpiston.parameter_lists import Shapes
 from ballpiston.point import Point
 
 EFFORT = {
-    "quick": {"cells": "4,6,8,12", "collisions": 2e7},
+    "quick": {"cells": "4,6,8,12", "collisions": 7e7},
     "full": {"cells": "4,6,8,12,16,24,32,64", "collisions": 3e8},
 }
 
