@@ -21,7 +21,7 @@ from ballpiston.parameter_lists import Shapes
 from ballpiston.point import Point
 
 EFFORT = {
-    "quick": {"cells": "4,6,8,12", "collisions": 7e7},
+    "quick": {"cells": "4,6,8,12", "collisions": 8e7},
     "full": {"cells": "4,6,8,12,16,24,32,64", "collisions": 3e8},
 }
 
