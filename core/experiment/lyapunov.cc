@@ -26,6 +26,7 @@
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/pair_experiment.h"
 #include "core/gas/pair_tangents.h"
+#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
@@ -49,6 +50,16 @@ enum Ratio : size_t {
   kRatios
 };
 constexpr size_t kFurtherRatios = 5;
+
+// Two of these exponents and the sum are 0. Their rounding is that of the largest exponent.
+Reading FurtherRatioAt(size_t index) {
+  return [=](const BlockResult& merged) {
+    Estimate estimate = *RatioAt(index, kOrbitsPerCollision)(merged);
+    const double largest = merged.batch_means[kFirst].Ratio().value_or(0);
+    estimate.standard_error = StatedError(kEventsForAnError, largest, estimate.standard_error);
+    return estimate;
+  };
+}
 
 // `Tangents` is TangentPlane or PairTangents.
 template <typename Tangents>
@@ -135,9 +146,9 @@ std::vector<Measurement> Table(const PairGeometry& geometry, Model model) {
   table.back().exact = MeanFreeTimesOf(geometry).ball_piston;
   if (IsByReference(model)) {
     for (size_t k = 0; k < kFurtherRatios - 1; ++k) {
-      table.push_back(ratio(absl::StrCat("lyapunov_", k + 3), kRatios + k));
+      table.push_back({absl::StrCat("lyapunov_", k + 3), FurtherRatioAt(kRatios + k)});
     }
-    table.push_back(ratio("lyapunov_sum", kRatios + kFurtherRatios - 1));
+    table.push_back({"lyapunov_sum", FurtherRatioAt(kRatios + kFurtherRatios - 1)});
   }
   return table;
 }

@@ -27,21 +27,19 @@ namespace {
 // Summed over cells.
 struct CellNoise {
   double mean = 0;        // of n log(n/mu), for binomial counts; exact to 1e-4 of itself
-  double squared = 0;     // mean of n log^2(n/mu)
   double variance = 0;    // of h, for Poisson counts, like the rest
   double covariance = 0;  // of h and n
   double curvature = 0;   // N d/dN (covariance/N)
 
   void Add(const CellNoise& other) {
     mean += other.mean;
-    squared += other.squared;
     variance += other.variance;
     covariance += other.covariance;
     curvature += other.curvature;
   }
 
   CellNoise Times(double cells) const {
-    return {mean * cells, squared * cells, variance * cells, covariance * cells, curvature * cells};
+    return {mean * cells, variance * cells, covariance * cells, curvature * cells};
   }
 
   // Given T = samples.
@@ -94,22 +92,19 @@ double MeanOfManyCounts(double samples, double q) {
 }
 
 struct Scatter {
-  double squared = 1;
   double variance = 0;
   double covariance = 0;
 };
 
 // Of Poisson counts.
 Scatter ScatterOfCounts(double mu) {
-  if (mu >= kManyCounts) return {1, 0.5 + 1 / (6 * mu), -1 / (12 * mu)};
+  if (mu >= kManyCounts) return {0.5 + 1 / (6 * mu), -1 / (12 * mu)};
   double mean = 0, square = 0;
   Scatter scatter = {};
-  scatter.squared = 0;
   ForEachCount(
       Exp(-mu), LargestCount(mu), [mu](double n) { return mu / (n + 1); },
       [&](double n, double p) {
-        const double information = Information(n, mu), h = information - (n - mu);
-        if (n > 0) scatter.squared += p * information * information / n;
+        const double h = Information(n, mu) - (n - mu);
         mean += p * h;
         square += p * h * h;
         scatter.covariance += p * h * (n - mu);
@@ -128,7 +123,6 @@ CellNoise NoiseOfCell(double samples, double probability) {
   const double fewer = ScatterOfCounts(mu * (1 - kShift)).covariance / (1 - kShift);
   return {.mean = mu < kManyCounts ? MeanOfFewCounts(samples, probability)
                                    : MeanOfManyCounts(samples, probability),
-          .squared = scatter.squared,
           .variance = scatter.variance,
           .covariance = scatter.covariance,
           .curvature = (more - fewer) / (2 * kShift * samples)};
@@ -158,19 +152,35 @@ double BeyondNoise(const KlDivergence& measured) {
 }
 
 // Sums over the cells of one law.
+//
+// The variance of H = sum of f(n), f(n) = n log(n/mu), has a part of each order k in the cells'
+// k-th differences of f. The jackknife, N times the variance over samples of f(n) - f(n - 1),
+// counts the part of order k k times; pairs of samples count it k(k - 1)/2 times. So the jackknife
+// minus the pairs has the first two parts right, for any law. The first dominates for unequal laws,
+// the second for equal ones.
 struct Sums {
   double samples = 0;
-  double information = 0;          // n log(n/mu), mu = N q
-  double squared_information = 0;  // n log^2(n/mu)
-  CellNoise noise;                 // of these under the exact law
+  double information = 0;      // f
+  double removed = 0;          // n (f(n) - f(n - 1))
+  double squared_removed = 0;  // n (f(n) - f(n - 1))^2
+  double pairs = 0;            // n (n - 1)/2 (f(n) - 2 f(n - 1) + f(n - 2))^2
+  CellNoise noise;             // under the exact law
   int cells = 0;
 
   void Add(uint64_t count, double mean) {
     if (count == 0) return;
+    if (mean <= 0) {
+      information = std::numeric_limits<double>::infinity();
+      return;
+    }
     const double n = static_cast<double>(count);
-    const double log_ratio = mean > 0 ? Log(n / mean) : std::numeric_limits<double>::infinity();
-    information += n * log_ratio;
-    squared_information += n * Square(log_ratio);
+    const double last = Information(n, mean) - Information(n - 1, mean);
+    information += Information(n, mean);
+    removed += n * last;
+    squared_removed += n * Square(last);
+    if (count == 1) return;
+    const double before = Information(n - 1, mean) - Information(n - 2, mean);
+    pairs += n < kManyCounts ? n * (n - 1) / 2 * Square(last - before) : 0.5;  // without rounding
   }
 
   KlDivergence Divergence() const {
@@ -179,10 +189,10 @@ struct Sums {
                        .noise_floor = noise.mean / samples,
                        .noise_error = std::sqrt(noise.VarianceOfSum(samples)) / samples,
                        .cells = cells};
-    // The variance of log(p/q) over the samples, minus the part that is noise.
-    const double scatter = (squared_information - noise.squared) / samples - Square(kl.value);
-    kl.standard_error =
-        std::sqrt(Square(kl.noise_error) + BeyondNoise(kl) * std::max(scatter, 0.0) / samples);
+    const double jackknife = squared_removed - Square(removed) / samples;
+    const double variance = (jackknife - pairs) / Square(samples);
+    const double of_noise = Square(kl.noise_error);
+    kl.standard_error = std::sqrt(of_noise + BeyondNoise(kl) * std::max(variance - of_noise, 0.0));
     return kl;
   }
 };

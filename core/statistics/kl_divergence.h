@@ -7,7 +7,11 @@
 // logarithms. Properties, each with a test of its name:
 //   1. NoiseFloorIsTheMeanUnderTheExactLaw, to 1e-3 of itself at every N.
 //   2. ErrorsAreTheScatterOfRepetitions, for equal and for unequal laws.
-//   3. ErrorsHoldForCorrelatedSamples, of DivergenceWithinRows.
+//   3. ErrorsHoldForPeakedLaws, of RelativeEntropy.
+//   4. ErrorsHoldForCorrelatedSamples, of DivergenceWithinRows.
+//
+// Errors are those of the mean of D at this N. This mean is above the divergence of N = infinity;
+// by the noise floor only if the laws are nearly equal.
 #pragma once
 
 #include <cstddef>

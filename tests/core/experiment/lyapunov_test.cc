@@ -55,7 +55,8 @@ TEST(Lyapunov, ExponentsOfACollisionAreThoseOfItsTime) {
   }
 }
 
-// lambda_k = -lambda_(7-k). Rounding costs the smallest vector the most digits.
+// lambda_k = -lambda_(7-k). Rounding costs the smallest vector the most digits. Where the true
+// value is 0, rounding is a bias that a scatter does not show, and the stated error is larger.
 TEST(PairTangents, ExponentsComeInPairs) {
   for (const double rho : {0.501, 0.53, 0.7}) {
     const double delta = 0.9 * PairDeltaBound(rho);
@@ -67,9 +68,11 @@ TEST(PairTangents, ExponentsComeInPairs) {
     EXPECT_GT(exponent(2), 0.1);
     EXPECT_NEAR(exponent(6), -exponent(1), 1e-4);
     EXPECT_NEAR(exponent(5), -exponent(2), 1e-4);
-    EXPECT_NEAR(exponent(3), 0, 1e-10);
-    EXPECT_NEAR(exponent(4), 0, 1e-10);
-    EXPECT_NEAR(Named("lyapunov_sum", summary.estimates).value, 0, 1e-10);
+    for (const char* zero : {"lyapunov_3", "lyapunov_4", "lyapunov_sum"}) {
+      const Estimate& estimate = Named(zero, summary.estimates);
+      EXPECT_LT(std::fabs(estimate.value), *estimate.standard_error) << zero << " at rho " << rho;
+      EXPECT_LT(*estimate.standard_error, 1e-10);
+    }
   }
 }
 
