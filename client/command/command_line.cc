@@ -252,7 +252,7 @@ std::string FlagNamed(absl::string_view field) {
   return absl::StrCat("--", absl::StrReplaceAll(last.substr(0, last.find('[')), {{"_", "-"}}));
 }
 
-// "points.csv, line 4" for grid.delta[2], unless the command line has the flag of that list.
+// "points.csv, row 3" for grid.delta[2], unless the command line has the flag of that list.
 std::optional<std::string> LineOfPoint(absl::string_view field, const Options& options) {
   const bool has_flag = options.given.contains(FlagNamed(field));
   size_t row = 0;
@@ -262,7 +262,7 @@ std::optional<std::string> LineOfPoint(absl::string_view field, const Options& o
     return std::nullopt;
   }
   const std::string& path = options.points_file;
-  return absl::StrCat(path == "-" ? "standard input" : path, ", line ", LineOfRow(row));
+  return absl::StrCat(path == "-" ? "standard input" : path, ", row ", row + 1);
 }
 
 std::string NameOfField(const std::string& field, const Verb& verb, const Options& options) {
@@ -275,9 +275,10 @@ std::string NameOfField(const std::string& field, const Verb& verb, const Option
   return is_flag ? name : std::string(absl::StripPrefix(field, kSpec));
 }
 
-// The description of a field may name another one: permitted: target.samples.
+// The description of a field may name another one, or a model: permitted: target.samples.
 std::string WithTargetFlags(const std::string& description) {
-  std::vector<std::pair<std::string, std::string>> names;
+  std::vector<std::pair<std::string, std::string>> names = {
+      {"closed_form", "closed-form"}, {"billiard_reference", "billiard-reference"}};
   for (const Flag& flag : TargetFlags().flags) {
     names.emplace_back("target." + KeyOf(flag), flag.name);
   }

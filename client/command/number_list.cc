@@ -32,6 +32,9 @@ std::optional<double> ToNumber(absl::string_view text) {
 }
 
 constexpr double kExactBelow = 9007199254740992;  // 2^53
+constexpr double kCountBelow = 0x1p63;
+
+bool IsWhole(const std::optional<double>& value) { return value && *value == std::floor(*value); }
 
 std::optional<int64_t> ToCount(absl::string_view text) {
   int64_t count = 0;
@@ -39,7 +42,7 @@ std::optional<int64_t> ToCount(absl::string_view text) {
     return count;
   }
   const std::optional<double> value = ToNumber(text);
-  if (!value || *value != std::floor(*value) || std::abs(*value) > kExactBelow) return std::nullopt;
+  if (!IsWhole(value) || std::abs(*value) >= kCountBelow) return std::nullopt;
   return static_cast<int64_t>(*value);
 }
 
@@ -111,6 +114,9 @@ absl::StatusOr<double> ParseNumber(absl::string_view text) {
 
 absl::StatusOr<int64_t> ParseCount(absl::string_view text) {
   if (const auto count = ToCount(text)) return *count;
+  if (IsWhole(ToNumber(text))) {
+    return Bad(text, "is too large; permitted: at most 9223372036854775807, and often less");
+  }
   return Bad(text, "is not a whole number such as 10000 or 1e6");
 }
 

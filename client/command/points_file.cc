@@ -29,18 +29,18 @@ class PointsReader {
 
   absl::Status Read(absl::string_view csv) {
     absl::ConsumePrefix(&csv, "\xEF\xBB\xBF");  // a mark that some programs write first
-    Texts lines = absl::StrSplit(csv, '\n');
-    while (!lines.empty() && absl::StripAsciiWhitespace(lines.back()).empty()) lines.pop_back();
-    if (lines.empty()) return Bad("is empty; its first line names the parameters");
-    if (lines.size() == 1) return Bad("has no row below its header");
-    if (absl::Status bad = ReadHeader(Cells(lines.front())); !bad.ok()) return bad;
-    if (lines.size() - 1 > kMaxListLength) {
-      return Bad(absl::StrCat("has ", lines.size() - 1, " rows; permitted: 1 to ", kMaxListLength));
+    size_t rows = 0, number = 0;
+    for (const absl::string_view line : absl::StrSplit(csv, '\n')) {
+      line_ = absl::StrCat("line ", ++number);
+      if (absl::StripAsciiWhitespace(line).empty()) continue;
+      const absl::Status read = columns_.empty() ? ReadHeader(Cells(line)) : ReadRow(Cells(line));
+      if (!read.ok()) return read;
+      if (rows++ > kMaxListLength) {
+        return Bad(absl::StrCat("has too many rows; permitted: 1 to ", kMaxListLength));
+      }
     }
-    for (size_t row = 0; row + 1 < lines.size(); ++row) {
-      if (absl::Status bad = ReadRow(row, Cells(lines[row + 1])); !bad.ok()) return bad;
-    }
-    return absl::OkStatus();
+    if (rows == 0) return Bad("is empty; its first line names the parameters");
+    return rows == 1 ? Bad("has no row below its header") : absl::OkStatus();
   }
 
  private:
@@ -50,7 +50,12 @@ class PointsReader {
 
   static Texts Cells(absl::string_view line) {
     Texts cells = absl::StrSplit(line, ',');
-    for (absl::string_view& cell : cells) cell = absl::StripAsciiWhitespace(cell);
+    for (absl::string_view& cell : cells) {
+      cell = absl::StripAsciiWhitespace(cell);
+      if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') {
+        cell = cell.substr(1, cell.size() - 2);
+      }
+    }
     return cells;
   }
 
@@ -69,11 +74,11 @@ class PointsReader {
     for (const absl::string_view name : names) {
       const auto found = std::find(parameters.begin(), parameters.end(), name);
       if (found == parameters.end()) {
-        return Bad(absl::StrCat("line 1: the column ", NotOneOf(name, parameters)));
+        return Bad(absl::StrCat(line_, ": the column ", NotOneOf(name, parameters)));
       }
       const FieldDescriptor* field = v1::Grid::descriptor()->FindFieldByName(*found);
       if (std::find(columns_.begin(), columns_.end(), field) != columns_.end()) {
-        return Bad(absl::StrCat("line 1: the column ", name, " is there twice"));
+        return Bad(absl::StrCat(line_, ": the column ", name, " is there twice"));
       }
       if (grid_.GetReflection()->FieldSize(grid_, field) > 0) {
         return Bad(absl::StrCat("has the column ", name, ", and --", name,
@@ -85,17 +90,16 @@ class PointsReader {
     return absl::OkStatus();
   }
 
-  absl::Status ReadRow(size_t row, const Texts& cells) {
-    const std::string line = absl::StrCat("line ", LineOfRow(row));
+  absl::Status ReadRow(const Texts& cells) {
     if (cells.size() != columns_.size()) {
-      return Bad(absl::StrCat(line, " has ", Counted(static_cast<double>(cells.size()), "value"),
+      return Bad(absl::StrCat(line_, " has ", Counted(static_cast<double>(cells.size()), "value"),
                               "; the header names ",
                               Counted(static_cast<double>(columns_.size()), "column")));
     }
     for (size_t i = 0; i < cells.size(); ++i) {
       const absl::Status added = Add(*columns_[i], cells[i]);
       if (added.ok()) continue;
-      return Bad(absl::StrCat(line, ", column ", columns_[i]->name(), ": ", added.message()));
+      return Bad(absl::StrCat(line_, ", column ", columns_[i]->name(), ": ", added.message()));
     }
     return absl::OkStatus();
   }
@@ -114,6 +118,7 @@ class PointsReader {
   const std::string& name_;
   v1::Grid& grid_;
   Columns columns_;
+  std::string line_;  // the current one
 };
 
 }  // namespace

@@ -1,8 +1,7 @@
 // A table of points from a CSV file: a header with the names of parameters, in any order, then a
-// row for each point. --points reads it.
+// row for each point. Cells may have quotes; empty lines do not count. --points reads it.
 #pragma once
 
-#include <cstddef>
 #include <string>
 
 #include "absl/status/status.h"
@@ -10,9 +9,6 @@
 #include "ballpiston/v1/spec.pb.h"
 
 namespace ballpiston::client {
-
-// Row k of the table, from 0, is this line of the file.
-constexpr size_t LineOfRow(size_t row) { return row + 2; }
 
 // Reads the table into the lists of the grid, and names them in its table. INVALID_ARGUMENT names
 // the file, the line and the column of an error.

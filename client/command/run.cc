@@ -47,8 +47,9 @@ absl::StatusOr<v1::EnsembleJob> Resume(const Connection& connection, const v1::E
                                        CreateOptions options, const Terminal& terminal) {
   const auto status = connection.client.Status();
   if (!status.ok()) return status.status();
-  const std::string question = absl::StrCat(status->engine_version(), " ", options.fresh, " ",
-                                            options.priority, " ", spec.SerializeAsString(), " ");
+  std::string question = absl::StrCat(status->engine_version(), " ", options.fresh, " ",
+                                      options.priority, " ", spec.SerializeAsString(), " ");
+  for (const auto& [key, value] : options.labels) absl::StrAppend(&question, key, "=", value, " ");
   for (int attempt = 0;; ++attempt) {
     options.request_id = RequestIdFor(absl::StrCat(question, attempt));
     auto job = CreateOnce(connection, spec, options, terminal);

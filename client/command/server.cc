@@ -45,9 +45,10 @@ absl::Status CheckStart(const Options& options) {
 VerbResult ReportRunning(const std::string& folder, const RunningServer& running,
                          const Options& options, const Terminal& terminal) {
   if (!options.server_flags.empty()) {
-    return absl::FailedPreconditionError(absl::StrCat(
-        "a server already runs in ", folder,
-        ": these flags have no effect; stop that server first (ballpiston server stop)"));
+    return absl::FailedPreconditionError(
+        absl::StrCat("a server already runs in ", folder,
+                     ": these flags have no effect; stop that server first (ballpiston server stop",
+                     options.data_dir.empty() ? "" : absl::StrCat(" --data-dir ", folder), ")"));
   }
   terminal.Note(
       "a server already runs there; if a client started that server, it stops when it is idle");

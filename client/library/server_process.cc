@@ -86,15 +86,25 @@ absl::StatusOr<pid_t> StartProgram(const ServerProgram& program) {
                      .detached = true});
 }
 
+// Why a log is empty: perhaps it cannot be written.
+std::string WhyEmpty(const std::string& log) {
+  const int file = open(log.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  const bool is_written = file >= 0 && write(file, "\n", 1) == 1;
+  const std::string reason = std::generic_category().message(errno);
+  if (file >= 0) close(file);
+  return is_written ? "(it wrote nothing)" : "its log cannot be written: " + reason;
+}
+
 // `exit_status`: of the program, if it has ended.
 absl::Status Failure(const ServerProgram& program, uintmax_t log_start,
                      std::optional<int> exit_status) {
   std::ifstream log(program.Log());
   log.seekg(static_cast<std::streamoff>(log_start));
-  std::string last = "(it wrote nothing)";
+  std::string last;
   for (std::string line; std::getline(log, line);) {
     if (!line.empty()) last = line;
   }
+  if (last.empty()) last = WhyEmpty(program.Log());
   constexpr int kWrongFlags = 2, kNotPermitted = 6;
   const auto code = exit_status == kWrongFlags     ? absl::StatusCode::kInvalidArgument
                     : exit_status == kNotPermitted ? absl::StatusCode::kPermissionDenied

@@ -32,11 +32,22 @@ void PrintCsv(const v1::EvaluatePairsResponse& response, std::ostream& out) {
 
 std::string TableCell(double x) { return Measured(x, 0).value; }
 
+std::string ParameterCell(double x) { return Digits(x, 12); }
+
+Cells TableCells(const google::protobuf::Message& row, const Cells& columns) {
+  Cells cells;
+  for (const std::string& name : columns) {
+    const bool is_parameter = v1::PointParameters::descriptor()->FindFieldByName(name) != nullptr;
+    cells.push_back(FieldText(row, name, is_parameter ? &ParameterCell : &TableCell));
+  }
+  return cells;
+}
+
 void PrintQuantities(const v1::PairAnalytics& pair, std::ostream& out) {
   TextTable table({"quantity", "value"}, {"quantity", "value"});
-  for (const std::string& name : PlainFields(*v1::PairAnalytics::descriptor())) {
-    table.AddRow({name, FieldText(pair, name, &TableCell)});
-  }
+  const Cells names = PlainFields(*v1::PairAnalytics::descriptor()),
+              values = TableCells(pair, names);
+  for (size_t i = 0; i < names.size(); ++i) table.AddRow({names[i], values[i]});
   table.Print(out);
 }
 
@@ -47,7 +58,7 @@ void PrintEnergies(const v1::PairAnalytics& pair, const std::vector<double>& out
   for (const double energy : outgoing) titles.push_back(absl::StrFormat("W(%g)", energy));
   TextTable table(titles);
   for (const v1::EnergyAnalytics& energy : pair.energies()) {
-    Cells cells = FieldTexts(energy, columns, &TableCell);
+    Cells cells = TableCells(energy, columns);
     for (const double w : energy.kernel()) cells.push_back(TableCell(w));
     table.AddRow(std::move(cells));
   }
@@ -58,7 +69,7 @@ void PrintEnergies(const v1::PairAnalytics& pair, const std::vector<double>& out
 void PrintCanonical(const v1::PairAnalytics& pair, std::ostream& out) {
   const Cells columns = PlainFields(*v1::CanonicalAnalytics::descriptor());
   TextTable table(columns);
-  for (const auto& row : pair.canonical()) table.AddRow(FieldTexts(row, columns, &TableCell));
+  for (const auto& row : pair.canonical()) table.AddRow(TableCells(row, columns));
   out << '\n';
   table.Print(out, 2);
 }

@@ -3,6 +3,9 @@
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/timestamp.pb.h>
 
+#include <cmath>
+
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
@@ -97,7 +100,15 @@ std::string CsvRow(const Cells& cells) {
       "\n");
 }
 
-std::string TenDigits(double x) { return absl::StrFormat("%.10g", x); }
+std::string TenDigits(double x) { return Digits(x, 10); }
+
+std::string Digits(double x, int digits) {
+  std::string text = absl::StrFormat("%.*g", digits, x);
+  double read = x;
+  const bool seems_exact =
+      absl::SimpleAtod(text, &read) && std::abs(read - x) < 1e-12 * std::abs(x);
+  return seems_exact && read != x ? ExactText(x) : text;
+}
 
 std::string ParameterText(const v1::PointParameters& parameters) {
   Cells texts;

@@ -42,9 +42,12 @@ std::string CsvRow(const Cells& cells);
 
 // ---- a point's parameters; those that the experiment does not use are absent ----
 
+// So many significant digits; or all, if the text would seem to be the value and is its neighbour:
+// 0.4999999999999999.
+std::string Digits(double x, int digits);
 std::string TenDigits(double x);
 
-// "rho 0.53, delta 0.2, epsilon 0.25, exponent 1", with ten digits each.
+// "rho 0.53, delta 0.2, epsilon 0.25, exponent 1", each as TenDigits.
 std::string ParameterText(const v1::PointParameters& parameters);
 
 // The names of the parameters in CSV: rho, delta, epsilon and exponent in every file; cells,

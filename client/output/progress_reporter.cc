@@ -54,6 +54,12 @@ void ProgressReporter::OnJob(const v1::EnsembleJob& job) {
 void ProgressReporter::OnSnapshot(const v1::StatisticsSnapshot& snapshot) {
   const std::lock_guard lock(mutex_);
   meter_.Update(snapshot.progress(), absl::Now());
+  // The points of an ended job come before the message that has its state, and a snapshot may come
+  // before the message that the job has begun.
+  const bool has_begun = snapshot.progress().points_done() > 0 || snapshot.progress().samples() > 0;
+  if (has_begun && job_.state() <= v1::EnsembleJob::QUEUED) {
+    job_.set_state(v1::EnsembleJob::RUNNING);
+  }
   if (!snapshot.finished_points().empty()) point_ = *snapshot.finished_points().rbegin();
   if (!snapshot.points().empty()) point_ = snapshot.points(0);
   Show(snapshot);
@@ -102,7 +108,7 @@ void ProgressReporter::Show(const v1::StatisticsSnapshot& changes) {
 void ProgressReporter::WriteJson(const v1::StatisticsSnapshot& changes, absl::string_view note) {
   file::v1::WatchProgress line;
   line.set_job(job_.name());
-  line.set_state(job_.state());
+  if (job_.state() != v1::EnsembleJob::STATE_UNSPECIFIED) line.set_state(job_.state());
   *line.mutable_progress() = meter_.progress();
   if (const auto rate = meter_.SamplesPerSecond()) line.set_samples_per_second(*rate);
   if (const auto left = meter_.TimeLeft()) line.set_seconds_left(absl::ToDoubleSeconds(*left));

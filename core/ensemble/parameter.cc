@@ -82,15 +82,16 @@ double Grid::PointCount() const {
   return points;
 }
 
+// + 0.0 makes 0 of -0: they are one value, and give the same bytes.
 PointParameters Grid::PointAt(size_t index) const {
   PointParameters point;
   for (size_t i = kParameters.size(); i-- > 0;) {
     if (is_column_[i] || lists_[i].empty()) continue;
-    point.Set(*kParameters[i], lists_[i][index % lists_[i].size()]);
+    point.Set(*kParameters[i], lists_[i][index % lists_[i].size()] + 0.0);
     index /= lists_[i].size();
   }
   for (const Parameter* parameter : kParameters) {
-    if (IsColumn(*parameter)) point.Set(*parameter, (*this)[*parameter][index]);
+    if (IsColumn(*parameter)) point.Set(*parameter, (*this)[*parameter][index] + 0.0);
   }
   return point;
 }

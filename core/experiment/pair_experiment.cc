@@ -54,6 +54,7 @@ std::string PermittedWith(const EnsembleSpec& spec) {
 }
 
 std::string OtherModels(const EnsembleSpec& spec) {
+  if (spec.experiment == nullptr) return "";  // an orbit
   std::vector<absl::string_view> names;
   for (const Model model : spec.experiment->models) {
     if (!IsABilliard(model)) names.push_back(Name(model));

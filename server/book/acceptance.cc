@@ -50,6 +50,14 @@ void CheckStoreSize(Database& database, const Limits& limits) {
                     "max-store-bytes", static_cast<double>(limits.max_store_bytes)));
 }
 
+// Whether a job with the one labels can have the others too, and none of its labels changes.
+bool Fit(const Labels& labels, Labels more) {
+  for (const auto& [key, value] : labels) {
+    if (more.emplace(key, value).first->second != value) return false;
+  }
+  return more.size() <= kMostLabels;
+}
+
 std::optional<EarlierJob> FindEarlier(Database& database, const Acceptance& acceptance) {
   const JobRecord& record = acceptance.record;
   if (auto original = FindJobOfRequest(database, record.principal, record.request_id)) {
@@ -57,11 +65,14 @@ std::optional<EarlierJob> FindEarlier(Database& database, const Acceptance& acce
     return EarlierJob{*std::move(original)};
   }
   if (acceptance.fresh) return std::nullopt;
-  auto answer = FindAnswer(database, record.principal, record.question);
+  const Labels labels = LabelsOf(record.labels);
+  auto answer = FindAnswer(database, record.principal, record.question,
+                           [&](const std::string& text) { return Fit(LabelsOf(text), labels); });
   return answer ? std::optional(EarlierJob{*std::move(answer), true}) : std::nullopt;
 }
 
-// Adds the labels to the job. Refuses them if the job would have more labels than are permitted.
+// Adds the labels to the job. Those of a retry may be other ones than the job's: they replace them,
+// and are refused if the job would have more labels than are permitted.
 void AddLabels(Database& database, const Labels& more, JobRecord& record) {
   Labels labels = LabelsOf(record.labels);
   for (const auto& [key, value] : more) labels.insert_or_assign(key, value);

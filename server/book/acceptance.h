@@ -2,9 +2,11 @@
 //
 // A retry (the same request id with the same request) returns the original job. If the principal
 // asks the question of an earlier job that succeeded, the server returns that job unless `fresh` is
-// set. Any other request must keep the limits: on a job's size, on active jobs and their points,
-// and on the size of the store. All this is decided inside one transaction of the store. The store
-// runs its transactions one after the other, so many equal requests at the same time make one job.
+// set or its labels do not fit the request's: a label has another value in both, or together they
+// are too many. Any other request must keep the limits: on a job's size, on active jobs and their
+// points, and on the size of the store. All this is decided inside one transaction of the store.
+// The store runs its transactions one after the other, so many equal requests at the same time make
+// one job.
 //
 // A new job continues an earlier one that SUCCEEDED in answering the same question with a smaller
 // number of samples or a larger tolerance: each point begins where that job's point ended, if the

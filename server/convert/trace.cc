@@ -4,9 +4,11 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "core/closed_form/pair_measures.h"
 #include "core/ensemble/parameter.h"
+#include "core/experiment/pair_experiment.h"
 #include "core/gas/canonical_gas.h"
 #include "core/sampling/counter_random.h"
 #include "core/sampling/invariant_measure.h"
@@ -44,6 +46,18 @@ void CheckDelta(const v1::TraceOrbitRequest& request, bool has_rho, Violations& 
   Add("delta",
       request.cells().empty() ? ValidatePairDelta(rho, delta) : ValidateGasDelta(rho, delta),
       violations);
+}
+
+// An orbit has the domain of a question by the billiard.
+void CheckDomain(const v1::TraceOrbitRequest& request, Violations& violations) {
+  const EnsembleSpec orbit = {.grid = {{kRho, {request.rho()}}, {kDelta, {request.delta()}}},
+                              .model = Model::kBilliardReference};
+  Violations found;
+  CheckBilliardDomain(orbit, found);
+  for (const FieldViolation& violation : found) {
+    const bool is_of_rho = absl::StrContains(violation.field, "rho");
+    violations.push_back({is_of_rho ? "rho" : "delta", violation.description});
+  }
 }
 
 void CheckTemperature(const v1::TraceOrbitRequest& request, Violations& violations) {
@@ -156,6 +170,7 @@ absl::StatusOr<TraceMessages> TraceMessages::Create(const v1::TraceOrbitRequest&
   const std::optional<GasShape> shape = ShapeOf(request, violations);
   CheckTemperature(request, violations);
   CheckEvents(request.events(), violations);
+  if (violations.empty()) CheckDomain(request, violations);
   if (!violations.empty()) return InvalidRequest(violations);
   if (!shape) {
     const absl::StatusOr<PairGeometry> pair = PairGeometry::Create(request.rho(), request.delta());

@@ -59,7 +59,9 @@ grpc::Status ServeCall(ServiceContext& service, grpc::ServerContext& context, co
                        absl::FunctionRef<absl::Status(const Call&)> method) {
   const auto active = service.activity.Begin();
   const absl::Time begin = absl::Now();
-  Call call = {.method = rule.method, .caller = {}};
+  Call call = {.method = rule.method, .caller = {}, .is_abandoned = [&context] {
+                 return context.IsCancelled();
+               }};
   absl::Status status;
   try {
     status = Admit(service, context, rule, call);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +20,8 @@ namespace ballpiston::server {
 struct Call {
   std::string method;  // CreateEnsembleJob
   Principal caller;
+  // Whether the client has left or its deadline has passed. A method that computes asks.
+  std::function<bool()> is_abandoned = [] { return false; };
 };
 
 // Logs what the call has done to a job. `points`: of its grid, if they are to be logged.
@@ -44,7 +47,7 @@ grpc::Status ServeCall(ServiceContext& service, grpc::ServerContext& context, co
 // The frame of a unary call, within that of every call. The call counts until gRPC has sent its
 // answer (CallObserver::Keep). A call that waits for the disk takes no turn.
 //   RESOURCE_EXHAUSTED  TOO_MANY_CALLS
-//   CANCELLED           the client left before the method began
+//   CANCELLED           the client left before the method began, or while it computed
 template <typename Request, typename Response>
 grpc::Status ServeUnary(ServiceContext& service, grpc::ServerContext& context, const CallRule& rule,
                         const Request& request, Response& response,
@@ -63,7 +66,7 @@ grpc::Status ServeUnary(ServiceContext& service, grpc::ServerContext& context, c
     const auto kept = std::make_shared<std::vector<Quota::Part>>(std::vector{*open, *bytes});
     service.calls.Keep(context, kept);
     const Quota::Part turn = rule.writes ? nullptr : quotas.turns.Await(call.caller.name);
-    if (context.IsCancelled()) return absl::CancelledError("the client is gone");
+    if (call.is_abandoned()) return absl::CancelledError("the client is gone");
     absl::StatusOr<Response> answer = method(service, call, request);
     if (!answer.ok()) return answer.status();
     response = *std::move(answer);

@@ -45,7 +45,7 @@ double SecondsToStore(const Ladder& ladder) {
 }  // namespace
 
 absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
-    ServiceContext& service, const Call&, const v1::PlanEnsembleJobRequest& request) {
+    ServiceContext& service, const Call& call, const v1::PlanEnsembleJobRequest& request) {
   CheckedSpec checked = CheckSpec(request.spec());
   if (checked.violations.empty()) {
     AddViolations(service.ladder.ViolationsHere(checked.spec), checked);
@@ -56,6 +56,7 @@ absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
   PlannedWork work;
   std::set<PilotPlace> pilots;
   for (size_t i = 0; i < planned; ++i) {
+    if (call.is_abandoned()) return absl::CancelledError("the client is gone");
     const PointParameters point = PointAt(checked.spec, i * points / planned);
     Ladder ladder = service.ladder.LadderOf(checked.spec, point);
     if (ladder.pilot && !pilots.insert(*ladder.pilot).second) ladder.DropPilot();

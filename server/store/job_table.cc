@@ -165,12 +165,18 @@ std::optional<JobRecord> FindJobOfRequest(Database& database, const std::string&
 }
 
 std::optional<JobRecord> FindAnswer(Database& database, const std::string& principal,
-                                    const std::string& question) {
+                                    const std::string& question,
+                                    absl::FunctionRef<bool(const std::string& labels)> accepts) {
   if (question.empty()) return std::nullopt;
-  return FirstJob(database, Grid::kIncluded,
-                  "principal = ? AND question = ? AND question <> x'' AND state = ?"
-                  " AND expired_time IS NULL ORDER BY sequence LIMIT 1",
-                  principal, Blob{question}, v1::EnsembleJob::SUCCEEDED);
+  Query query = database.Select(
+      "SELECT sequence, labels FROM jobs WHERE principal = ? AND question = ? AND question <> x''"
+      " AND state = ? AND expired_time IS NULL ORDER BY sequence",
+      principal, Blob{question}, v1::EnsembleJob::SUCCEEDED);
+  while (query.Next()) {
+    if (!accepts(query.Get<std::string>(1))) continue;
+    return FindJobBySequence(database, query.Get<int64_t>(0));
+  }
+  return std::nullopt;
 }
 
 std::vector<JobRecord> FindFamily(Database& database, const std::string& principal,

@@ -41,9 +41,11 @@ std::optional<JobRecord> FindJobBySequence(Database& database, int64_t sequence)
 std::optional<JobRecord> FindJobOfRequest(Database& database, const std::string& principal,
                                           const std::string& request_id);
 
-// The principal's oldest job that SUCCEEDED in answering the question (JobRecord::question).
+// The principal's oldest job that SUCCEEDED in answering the question (JobRecord::question) and
+// whose labels (as text) are accepted.
 std::optional<JobRecord> FindAnswer(Database& database, const std::string& principal,
-                                    const std::string& question);
+                                    const std::string& question,
+                                    absl::FunctionRef<bool(const std::string& labels)> accepts);
 
 // The principal's jobs that SUCCEEDED, with this JobRecord::family and their results, without their
 // grids: at most kMostOfAFamily, those with the most samples first.

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from ballpiston.closed_forms import ClosedForms
 from ballpiston.collisions import Collisions
 from ballpiston.connection import Connection
-from ballpiston.job import Job
+from ballpiston.job import Job, check_labels
 from ballpiston.parameter_lists import Numbers, Shapes, number_list, real_number, shape_list
 from ballpiston.parameter_lists import whole_number
 from ballpiston.plan import Plan
@@ -139,7 +139,7 @@ class Client:
             priority: -100 to 100; of your own jobs those with a higher one run first.
             request_id: a UUID, the idempotency key: a retry with it returns the original job.
             labels: short texts by which `client.jobs(labels=...)` finds the job; they are added to
-                those of a job that answers from the store.
+                those of a job that answers from the store, if none has another value there.
 
         Raises:
             TypeError: a keyword that does not exist; the message suggests the nearest one.
@@ -156,7 +156,7 @@ class Client:
             request_id=request_id or str(uuid.uuid4()),
             fresh=fresh,
             priority=priority,
-            labels=labels,
+            labels=check_labels(labels),
         )
         return Job(self._connection, self._create(request))
 
@@ -237,7 +237,7 @@ class Client:
         request = ensemble_pb2.ListEnsembleJobsRequest(
             states=_numbers_of(ensemble_pb2.EnsembleJob.State, "state", state),
             experiments=_numbers_of(spec_pb2.EnsembleSpec.Experiment, "experiment", experiment),
-            labels=labels,
+            labels=check_labels(labels),
         )
         jobs: list[Job] = []
         while limit is None or len(jobs) < limit:

@@ -14,6 +14,9 @@ import numpy.typing as npt
 from ballpiston.errors import NotFound, ResultsExpired
 from ballpiston.job import Job
 from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS
+from ballpiston.spelling import spelling
+from ballpiston.v1 import ensemble_pb2
+from ballpiston.watch import has_ended
 
 Table = dict[str, npt.NDArray[Any]]
 
@@ -24,22 +27,39 @@ _COLUMNS = (*_OF_JOB, "index", *PARAMETERS, "model", "samples", "name", "value",
 
 def estimates_table(jobs: Iterable[Job]) -> Table:
     """Columns of equal length, NaN or "" where a value is absent: of each job the points that are
-    finished. Jobs whose results have expired and jobs that were deleted meanwhile are left out, with
-    a note on standard error."""
-    rows = [row for job in jobs for row in _rows(job)]
+    finished. A note on standard error names each job that has not ended, and each that is left out
+    because its results have expired or it was deleted meanwhile.
+
+    Raises:
+        ResultsExpired, NotFound: every job would be left out.
+    """
+    rows: list[dict[str, Any]] = []
+    left_out: list[ResultsExpired | NotFound] = []
+    count = 0
+    for count, job in enumerate(jobs, 1):
+        try:
+            rows += _rows(job)
+        except (ResultsExpired, NotFound) as error:
+            left_out.append(error)
+            _note(f"{job.name} is left out: {str(error).splitlines()[0]}")
+    if left_out and len(left_out) == count:
+        raise left_out[-1]
     return {
         name: np.array([row.get(name, "" if name in _TEXTS else np.nan) for row in rows])
         for name in _COLUMNS
     }
 
 
+def _note(text: str) -> None:
+    print(f"ballpiston: {text}", file=sys.stderr)
+
+
 def _rows(job: Job) -> Iterator[dict[str, Any]]:
-    try:
-        result = job.result()
-    except (ResultsExpired, NotFound) as error:
-        why = str(error).splitlines()[0]
-        print(f"ballpiston: {job.name} is left out: {why}", file=sys.stderr)
-        return
+    result = job.result()
+    if not has_ended(job.message.state):
+        state = spelling(ensemble_pb2.EnsembleJob.State, job.message.state)
+        points = job.message.progress.points
+        _note(f"{job.name} is still {state}: {len(result)} of {points} points are finished")
     of_job = {
         "job": job.name,
         "labels": " ".join(f"{key}={value}" for key, value in sorted(job.labels.items())),

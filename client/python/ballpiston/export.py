@@ -12,6 +12,7 @@ from pathlib import Path
 
 from ballpiston.client import connect
 from ballpiston.estimates_table import estimates_table, write_table
+from ballpiston.errors import NotFound
 from ballpiston.program import run_program
 
 _ENDINGS = (".csv", ".npz", ".parquet")
@@ -35,7 +36,10 @@ def _main(arguments: list[str]) -> list[Path]:
     labels = dict(label.split("=", 1) for label in options.label)
     with connect() as client:
         named = [client.job(name) for name in options.jobs]
-        write_table(options.out, estimates_table(named or client.jobs(labels=labels, limit=None)))
+        jobs = named or client.jobs(labels=labels, limit=None)
+        if labels and not jobs:
+            raise NotFound("no job has these labels")
+        write_table(options.out, estimates_table(jobs))
     return [options.out]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import sys
 import uuid
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Mapping
 from datetime import datetime, timezone
 from html import escape
 from typing import Any
@@ -23,6 +23,14 @@ from ballpiston.watch import has_ended, watch_job
 
 _PAGE = 1000
 _GLANCE_SECONDS = 2.0  # for a notebook that shows a job
+
+
+def check_labels(labels: Mapping[str, str] | None) -> Mapping[str, str] | None:
+    """The same labels. TypeError unless they are texts."""
+    for key, value in (labels or {}).items():
+        if not (isinstance(key, str) and isinstance(value, str)):
+            raise TypeError(f'labels: {key!r}: {value!r} is not a pair of texts like "run": "7"')
+    return labels
 
 
 class JobNotSucceeded(Error):
@@ -279,6 +287,7 @@ class Job:
             >>> job.label(run="7", who=None)
         """
         kept = {k: v for k, v in (self.refresh().labels | labels).items() if v is not None}
+        check_labels(kept)
         request = ensemble_pb2.UpdateEnsembleJobRequest(
             job=ensemble_pb2.EnsembleJob(name=self.name, labels=kept),
             update_mask={"paths": ["labels"]},

@@ -75,6 +75,8 @@ TEST(Count, IsAWholeNumberInAnyNotation) {
   for (const char* text : {"", "1.5", "1e-3", "1e30", "nan", "10k", " 1", "9223372036854775808"}) {
     EXPECT_THAT(ParseCount(text), StatusIs(absl::StatusCode::kInvalidArgument)) << text;
   }
+  EXPECT_THAT(ParseCount("1e18"), IsOkAndHolds(1'000'000'000'000'000'000));
+  EXPECT_THAT(ParseCount("1e30").status().message(), HasSubstr("at most 9223372036854775807"));
 }
 
 TEST(Seed, HoldsAll64Bits) {
@@ -131,6 +133,15 @@ TEST(PointsFile, FillsTheListsThatItsHeaderNames) {
   EXPECT_THAT(grid.exponent(), ElementsAre(1));
 }
 
+// R's write.csv writes the header so.
+TEST(PointsFile, MayHaveQuotesAndEmptyLines) {
+  v1::Grid grid;
+  ASSERT_OK(ParsePoints("p.csv", "\n\"rho\",\"cells\"\r\n0.53,\"4x3\"\r\n \r\n\"0.6\",12\n", grid));
+  EXPECT_THAT(grid.table(), ElementsAre("rho", "cells"));
+  EXPECT_THAT(grid.rho(), ElementsAre(0.53, 0.6));
+  EXPECT_THAT(grid.cells(), ElementsAre("4x3", "12"));
+}
+
 TEST(PointsFile, AnErrorNamesTheLineAndTheColumn) {
   struct Wrong {
     const char* csv;
@@ -148,7 +159,7 @@ TEST(PointsFile, AnErrorNamesTheLineAndTheColumn) {
       {"rho,delta\n0.5,0.1\n0.5\n", "line 3 has 1 value; the header names 2 columns"},
       {"rho,delta\n0.5,0.1\n0.5,x\n", "line 3, column delta: 'x' is not a decimal number"},
       {"rho,delta\n0.5,\n", "line 2, column delta: '' is not a decimal number"},
-      {"rho,delta\n\n0.5,0.1\n", "line 2 has 1 value;"}};
+      {"rho,delta\n\n0.5\n", "line 3 has 1 value;"}};
   for (const Wrong& wrong : kWrong) {
     v1::Grid grid;
     grid.add_epsilon(0.1);
@@ -166,7 +177,8 @@ TEST(PointsFile, HasAtMost100000Rows) {
   EXPECT_EQ(grid.rho_size(), 100'000);
   v1::Grid other;
   EXPECT_THAT(ParsePoints("p.csv", csv + "0.53\n", other),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("has 100001 rows")));
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("has too many rows; permitted: 1 to 100000")));
 }
 
 }  // namespace

@@ -123,6 +123,7 @@ TEST_F(CreateJobTest, ResumedJobsOfOneSpecificationHaveOneRequestId) {
        {std::vector<std::string>{"first-hit", "--rho", "0.54"},
         {"first-hit", "--rho", "0.53", "--seed", "1"},
         {"first-hit", "--rho", "0.53", "--fresh"},
+        {"first-hit", "--rho", "0.53", "--label", "run=1"},
         {"first-hit", "--rho", "0.53", "--priority", "1"}}) {
     EXPECT_NE(IdOfResumed(other), id);
   }

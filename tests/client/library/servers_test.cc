@@ -112,6 +112,14 @@ TEST_F(ServerProcessTest, ErrorQuotesTheLastLineOfAProgramThatEnds) {
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("(it wrote nothing)")));
 }
 
+TEST_F(ServerProcessTest, ErrorSaysThatTheLogCannotBeWritten) {
+  const ServerProgram program = Program("echo hidden; exit 1");
+  std::filesystem::create_symlink("/dev/full", program.Log());
+  EXPECT_THAT(StartServer(program),
+              StatusIs(absl::StatusCode::kUnavailable,
+                       HasSubstr("its log cannot be written: No space left on device\n  log: ")));
+}
+
 TEST_F(ServerProcessTest, ErrorNamesAMissingProgram) {
   EXPECT_THAT(StartServer({.program = "/no/such/server", .folder = data_, .flags = {}}),
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("cannot start /no/such/server")));

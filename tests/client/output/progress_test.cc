@@ -246,6 +246,22 @@ TEST(ProgressJson, HasUnfinishedAndFinishedPointsNewestFirst) {
   for (const v1::PointResult& point : lines[0].points()) EXPECT_FALSE(point.has_name());
 }
 
+TEST(ProgressJson, AStateIsAbsentUntilItIsKnownAndNotOlderThanTheProgress) {
+  Reported report(ProgressStyle::kJson);
+  report.reporter.Note("waiting");
+  v1::StatisticsSnapshot snapshot;
+  *snapshot.mutable_progress() = Progress(1, 100, 1);
+  report.reporter.OnSnapshot(snapshot);  // of a job that has ended
+  report.reporter.OnJob(JobWith(v1::EnsembleJob::QUEUED, Progress(0, 0, 0)));
+  report.reporter.OnSnapshot(snapshot);
+  const auto lines = JsonLines(report.Text());
+  ASSERT_EQ(lines.size(), 4u);
+  EXPECT_FALSE(lines[0].has_state());
+  EXPECT_EQ(lines[1].state(), v1::EnsembleJob::RUNNING);
+  EXPECT_EQ(lines[2].state(), v1::EnsembleJob::QUEUED);
+  EXPECT_EQ(lines[3].state(), v1::EnsembleJob::RUNNING);
+}
+
 TEST(ProgressJson, NotesAreMessages) {
   Reported report(ProgressStyle::kJson);
   report.reporter.Note("a \"hint\"\nof two lines");

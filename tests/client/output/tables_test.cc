@@ -22,6 +22,13 @@ TEST(ExactText, WholeNumbersHaveNoExponent) {
   EXPECT_EQ(ExactText(1e12), "1000000000000");
 }
 
+TEST(TenDigits, AreAllIfTheyWouldSeemToBeTheNeighbour) {
+  EXPECT_EQ(TenDigits(0.4999999999999999), "0.4999999999999999");
+  EXPECT_EQ(TenDigits(0.5000000000000001), "0.5000000000000001");
+  EXPECT_EQ(TenDigits(0.1), "0.1");
+  EXPECT_EQ(TenDigits(1.0 / 3), "0.3333333333");
+}
+
 TEST(Measured, HasTheDigitsThatTheErrorSupports) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const struct {

@@ -146,6 +146,45 @@ def test_the_estimates_of_many_jobs_are_one_table(home: Home, tmp_path: Path) ->
     assert [float(row["value"]) for row in rows] == table["value"].tolist()
 
 
+def test_an_export_without_a_job_or_without_results_fails(
+    home: Home, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "none.csv"
+    words = [home.programs / "ballpiston", "export", "--label", "zz=1", "--out", out]
+    ended = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert ended.returncode == 5 and "no job has these labels" in ended.stderr
+    assert not out.exists()
+
+    class Expired:
+        name = "ensembleJobs/old"
+
+        def result(self) -> None:
+            raise ballpiston.ResultsExpired("the results have expired")
+
+    with pytest.raises(ballpiston.ResultsExpired):
+        ballpiston.estimates_table([Expired()])
+    assert "ensembleJobs/old is left out" in capsys.readouterr().err
+
+
+def test_the_estimates_of_a_running_job_have_a_note(
+    client: ballpiston.Client, capsys: pytest.CaptureFixture[str]
+) -> None:
+    job = client.submit(**ENDLESS)
+    ballpiston.estimates_table([job])
+    assert re.search(r"is still (queued|running): 0 of 1 points", capsys.readouterr().err)
+    job.cancel()
+
+
+@pytest.mark.parametrize("labels", [{"a": 5}, {5: "a"}])
+def test_a_label_that_is_no_text_is_a_clear_error(
+    client: ballpiston.Client, labels: dict[str, Any]
+) -> None:
+    with pytest.raises(TypeError, match="labels: .* is not a pair of texts"):
+        client.submit(**FIRST_HITS, labels=labels)
+    with pytest.raises(TypeError, match="labels: .* is not a pair of texts"):
+        client.jobs(labels=labels)
+
+
 def test_an_event_loop_watches_many_jobs(client: ballpiston.Client) -> None:
     jobs = [client.submit(**hits(seed)) for seed in (108, 109, 110)]
 

@@ -53,6 +53,11 @@ TEST(Parameter, TemperaturesHaveTheRangeOfTheClosedForms) {
   }
 }
 
+TEST(Grid, APointHasZeroForMinusZero) {
+  const Grid grid = {{kEpsilon, {-0.0, 0.0}}};
+  EXPECT_FALSE(std::signbit(grid.PointAt(0)[kEpsilon]));
+}
+
 TEST(Grid, LoopsOverColdTemperaturesInnermost) {
   const Grid grid = {{kRho, {0.55}}, {kCells, {3, 4}}, {kHot, {2}}, {kCold, {0.5, 1}}};
   ASSERT_EQ(grid.PointCount(), 4);

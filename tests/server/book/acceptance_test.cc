@@ -222,26 +222,46 @@ TEST_F(AcceptanceTest, ARequestIdOfAnotherRequestIsRefused) {
   EXPECT_EQ(List().jobs.size(), 1u);
 }
 
+v1::CreateEnsembleJobRequest Labelled(v1::CreateEnsembleJobRequest request, const std::string& key,
+                                      const std::string& value) {
+  (*request.mutable_labels())[key] = value;
+  return request;
+}
+
 TEST_F(AcceptanceTest, ARetryAndAnAnswerFromTheStoreAddLabelsToTheEarlierJob) {
-  const auto labelled = [](v1::CreateEnsembleJobRequest request, const std::string& key,
-                           const std::string& value) {
-    (*request.mutable_labels())[key] = value;
-    return request;
-  };
   const auto request = CreateRequest(Question(), kUuid);
-  const std::string id = Answered(kAnn, labelled(request, "figure", "3"));
-  EXPECT_EQ(Id(kAnn, labelled(request, "figure", "4")), id);  // a retry
-  EXPECT_EQ(Id(kAnn, labelled(request, "paper", "yes")), id);
-  EXPECT_EQ(Id(kAnn, labelled(CreateRequest(Question()), "talk", "no")), id);  // an answer
+  const std::string id = Answered(kAnn, Labelled(request, "figure", "3"));
+  EXPECT_EQ(Id(kAnn, Labelled(request, "figure", "4")), id);  // a retry
+  EXPECT_EQ(Id(kAnn, Labelled(request, "paper", "yes")), id);
+  EXPECT_EQ(Id(kAnn, Labelled(CreateRequest(Question()), "talk", "no")), id);  // an answer
   EXPECT_THAT(Get(id).labels(),
               UnorderedElementsAre(Pair("figure", "4"), Pair("paper", "yes"), Pair("talk", "no")));
   v1::CreateEnsembleJobRequest too_many = request;
   for (size_t i = 0; i < kMostLabels; ++i) {
-    too_many = labelled(too_many, std::to_string(i), "x");
+    too_many = Labelled(too_many, std::to_string(i), "x");
   }
   EXPECT_THAT(Create(kAnn, too_many), StatusIs(absl::StatusCode::kInvalidArgument,
                                                HasSubstr(" 35; permitted: at most 32")));
   EXPECT_EQ(Get(id).labels_size(), 3);
+}
+
+TEST_F(AcceptanceTest, AStoredAnswerKeepsItsLabelsAndIsUsedOnlyIfTheyFit) {
+  const auto run = [](const char* number) {
+    return Labelled(CreateRequest(Question()), "run", number);
+  };
+  const std::string first = Answered(kAnn, run("1"));
+  const std::string second = Answered(kAnn, run("2"));
+  EXPECT_NE(second, first);
+  EXPECT_THAT(Get(first).labels(), ElementsAre(Pair("run", "1")));
+  EXPECT_EQ(Id(kAnn, run("1")), first);
+  EXPECT_EQ(Id(kAnn, run("2")), second);
+  EXPECT_EQ(Id(kAnn, CreateRequest(Question())), first);
+  // Every question is permitted, whatever labels were given to the jobs before.
+  v1::CreateEnsembleJobRequest many = CreateRequest(Question());
+  for (size_t i = 0; i < kMostLabels; ++i) many = Labelled(many, std::to_string(i), "x");
+  const std::string third = Answered(kAnn, many);
+  EXPECT_TRUE(third != first && third != second);
+  EXPECT_EQ(Id(kAnn, many), third);
 }
 
 TEST_F(AcceptanceTest, EachPrincipalHasItsOwnRequestIds) {

@@ -114,6 +114,12 @@ std::vector<BadRequest> BadRequests() {
       {pairs, pair + "delta: 1e-300", {"delta[1]"}},  // beyond the range of double
       {pairs, "rho: 0.53 delta: 1e-130 temperature: 1e-120", {"delta[0]"}},  // the rate underflows
       {trace, "cells: '2x' temperature: 0", {"rho", "delta", "cells", "temperature", "events"}},
+      {trace,
+       "rho: 0.7071067811865475 delta: 1e-17 events: 1",
+       {"rho", "delta"},
+       "permitted with the models billiard and billiard_reference: 0.5 < rho <= "
+       "0.7071067801865476"},
+      {trace, orbit + "cells: '2' delta: 9e-11", {"delta"}, "delta >= 1e-10"},
       {trace, orbit + "events: 0", {"events"}, "is 0; permitted: 1 to 1000000"},
       {trace, orbit + "events: 1000001", {"events"}, "is 1000001"},
       {trace,

@@ -153,5 +153,17 @@ TEST_F(ServerStatusTest, TheExpiryOfACertificateIsAMetricIfThereIsOne) {
               testing::HasSubstr(absl::StrCat("\n", kExpiry, " 2000000000\n")));
 }
 
+// An abandoned plan would keep one of the few turns of calls that compute.
+TEST_F(ServerStatusTest, APlanEndsWhenItsClientHasLeft) {
+  v1::PlanEnsembleJobRequest request;
+  *request.mutable_spec() = Equilibrium(10, 100);
+  int asked = 0;
+  const Call call{.method = "PlanEnsembleJob", .caller = {"ann", Role::kRead}, .is_abandoned = [&] {
+                    return ++asked == 3;
+                  }};
+  EXPECT_THAT(PlanEnsembleJob(context_, call, request), StatusIs(absl::StatusCode::kCancelled));
+  EXPECT_EQ(asked, 3);
+}
+
 }  // namespace
 }  // namespace ballpiston::server
