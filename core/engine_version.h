@@ -3,6 +3,6 @@
 
 namespace ballpiston {
 
-inline constexpr char kEngineVersion[] = "0.15.0";
+inline constexpr char kEngineVersion[] = "0.16.0";
 
 }  // namespace ballpiston
