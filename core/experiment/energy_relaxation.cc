@@ -50,7 +50,8 @@ EnergyRelaxation::EnergyRelaxation(const PairGeometry& geometry, const PointPara
       mean_free_time_(4 * unit_),
       events_per_orbit_(is_limit_  ? 1
                         : epsilon_ ? ShareThatMeets(geometry, *epsilon_, window())
-                                   : kEventsOfACorrelation) {}
+                                   : kEventsOfACorrelation),
+      return_time_(epsilon_ ? ConditionalMeanFreeTime(geometry, *epsilon_) : 0) {}
 
 double EnergyRelaxation::orbit_time() const {
   return epsilon_ ? window() : kOriginTimes * mean_free_time_ + window();
@@ -138,10 +139,21 @@ std::vector<Estimate> EnergyRelaxation::EstimatesOfLimit() const {
 Curve EnergyRelaxation::MeasuredCurve(const BlockResult& merged) const {
   Curve curve = CurveOfLimit();
   if (merged.samples == 0) curve.points.clear();
+  // One orbit more that has relaxed: if a second collision at once undoes the first one, few of the
+  // orbits that meet have another energy, and a small sample may contain none of them.
+  const double from_mean = epsilon_.value_or(0) - kMeanPistonEnergy;
+  const double one_more = std::hypot(from_mean, std::sqrt(kVarianceOfPistonEnergy)) /
+                          static_cast<double>(merged.samples);
   for (size_t i = 0; i < curve.points.size(); ++i) {
-    const Estimate there = *MeanAt(1 + i, events_per_orbit_)(merged);
+    const bool is_later = epsilon_ && i > 0;
+    const double events =
+        is_later ? std::min(events_per_orbit_, Lag(i) / return_time_) : events_per_orbit_;
+    const Estimate there = *MeanAt(1 + i, events)(merged);
     curve.points[i].value = there.value;
     curve.points[i].standard_error = there.standard_error;
+    if (is_later && there.standard_error) {
+      curve.points[i].standard_error = std::hypot(*there.standard_error, one_more);
+    }
   }
   return curve;
 }

@@ -107,6 +107,9 @@ class EnergyRelaxation {
   double unit_;           // unit_of_limit_ without its last bits; measurements use it
   double mean_free_time_;
   double events_per_orbit_;
+  // From an epsilon: the mean time between collisions at this energy. By a time t at most the share
+  // t/return_time_ of the orbits has met.
+  double return_time_;
 };
 
 // Whether relaxation_time exists: in equilibrium, and from energies far enough from 1/6.

@@ -11,8 +11,10 @@
 //   mean return time                the expected number of long returns, where these are rare
 //   mean sigma                      the expected samples of the rarer sign
 //   mean free times in equilibrium  a tenth of the collisions (experiment/equilibrium.cc)
-//   relaxation of an energy         the expected number of orbits that meet; without an epsilon an
-//                                   eighth of the orbits (experiment/energy_relaxation.cc)
+//   relaxation of an energy         the expected number of orbits that meet, for a point of its
+//   curve
+//                                   until then; without an epsilon an eighth of the orbits
+//                                   (experiment/energy_relaxation.cc)
 //   a gas's current, by exchanges   a tenth of the replicas, or less (gas_equilibrium.cc)
 //   Markov property                 the orbits
 //   Lyapunov exponents              the orbits
