@@ -14,7 +14,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -38,7 +37,7 @@ double PistonEnergy(double velocity) { return std::min(velocity * velocity / 2, 
 
 class ExchangeOrbits : public OrbitsInEquilibrium {
  public:
-  static constexpr uint64_t kWalkedTogether = 64 * kExchangesPerOrbit;
+  static constexpr uint64_t kWalkedTogether = 64 * kExchangesPerOrbit;  // about 1 ms
 
   ExchangeOrbits(const PairExperiment& experiment, const Block& block)
       : OrbitsInEquilibrium(experiment, block, kExchangesPerOrbit),

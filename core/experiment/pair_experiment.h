@@ -57,7 +57,8 @@ SampleWork WorkOfACollision(const PairGeometry& geometry);
 // The orbits of a block that the jump process can compute too. They have these functions more:
 //   double StartOfWalk(uint64_t orbit);             returns u = sqrt(2 ep), once for each orbit
 //   AfterCollision Jump(uint64_t orbit, double waiting_time, double u);  u is that after the jump
-// The waiting time is in |G|/|dG_bp|. kWalkedTogether samples run until the slowest has ended.
+// The waiting time is in |G|/|dG_bp|. kWalkedTogether samples run until the slowest has ended;
+// a stop is noticed only between such groups.
 template <typename Orbits>
 concept CanWalk = requires {
   Orbits::kWalkedTogether;

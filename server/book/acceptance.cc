@@ -12,7 +12,7 @@
 namespace ballpiston::server {
 namespace {
 
-constexpr char kWait[] = "wait until some of them have ended, or cancel some";
+constexpr char kWait[] = "wait until some jobs have ended, or cancel some of yours";
 
 bool Exceeds(double value, double limit) { return limit > 0 && value > limit; }
 

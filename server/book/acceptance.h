@@ -31,7 +31,7 @@
 namespace ballpiston::server {
 
 struct Acceptance {
-  JobRecord record;    // the new job, if there is one, and what the request identifies
+  JobRecord record;    // the new job, with the id and the hash of its request
   bool fresh = false;  // do not return an earlier job
   absl::Status fits;   // of CheckSize; used for new jobs only
 };

@@ -166,17 +166,24 @@ absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(const JobRecor
   const int64_t last = active ? active->last_finished() : std::numeric_limits<int64_t>::max();
   std::vector<FinishedPoint> points;
   if (last <= after) return points;
+  // They are parsed after the read, because all watches share a few connections that read.
+  std::vector<std::pair<int64_t, std::string>> stored;
   size_t bytes = 0;
   const absl::Status read = store_.Read([&](Database& database) {
-    const auto take = [&](int64_t number, const std::string& result) {
+    const auto take = [&](int64_t number, std::string result) {
       if (number > last) return false;
       bytes += result.size();
-      points.push_back({number, Named(database.ValueOf(ResultFromBytes(result)), record)});
-      return points.size() < limit && bytes < kMaxBytesOfPoints;
+      stored.emplace_back(number, std::move(result));
+      return stored.size() < limit && bytes < kMaxBytesOfPoints;
     };
     ReadResultsStoredAfter(database, record.sequence, after, take);
   });
   if (!read.ok()) return StoreFailure(read);
+  for (const auto& [number, text] : stored) {
+    absl::StatusOr<v1::PointResult> result = ResultFromBytes(text);
+    if (!result.ok()) return StoreFailure(result.status());
+    points.push_back({number, Named(*std::move(result), record)});
+  }
   return points;
 }
 

@@ -22,7 +22,15 @@ void SetTimes(const JobRecord& record, double retain_days, v1::EnsembleJob& job)
   SetTime(std::min(expires, kLastTime), job.mutable_expire_time());
 }
 
-// Without a fraction if a tolerance or a budget ends the points, not a number of samples.
+}  // namespace
+
+void SetTime(absl::Time time, google::protobuf::Timestamp* timestamp) {
+  const int64_t seconds = absl::ToUnixSeconds(time);
+  timestamp->set_seconds(seconds);
+  timestamp->set_nanos(
+      static_cast<int32_t>(absl::ToInt64Nanoseconds(time - absl::FromUnixSeconds(seconds))));
+}
+
 v1::JobProgress ProgressOf(int64_t points, const v1::Target& target, const JobNumbers& numbers) {
   v1::JobProgress progress;
   progress.set_points(static_cast<int32_t>(points));
@@ -33,15 +41,6 @@ v1::JobProgress ProgressOf(int64_t points, const v1::Target& target, const JobNu
   progress.set_fraction(
       done ? 1.0 : std::min(1.0, numbers.points_computed / static_cast<double>(points)));
   return progress;
-}
-
-}  // namespace
-
-void SetTime(absl::Time time, google::protobuf::Timestamp* timestamp) {
-  const int64_t seconds = absl::ToUnixSeconds(time);
-  timestamp->set_seconds(seconds);
-  timestamp->set_nanos(
-      static_cast<int32_t>(absl::ToInt64Nanoseconds(time - absl::FromUnixSeconds(seconds))));
 }
 
 v1::EnsembleJob JobMessage(const JobRecord& record, const JobNumbers& numbers, double retain_days) {

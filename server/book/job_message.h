@@ -12,6 +12,9 @@ namespace ballpiston::server {
 // 0: never. A specification that cannot be read is left out.
 v1::EnsembleJob JobMessage(const JobRecord& record, const JobNumbers& numbers, double retain_days);
 
+// Without a fraction if a tolerance or a budget ends the points, not a number of samples.
+v1::JobProgress ProgressOf(int64_t points, const v1::Target& target, const JobNumbers& numbers);
+
 // A time in the API's format, to the nanosecond.
 void SetTime(absl::Time time, google::protobuf::Timestamp* timestamp);
 

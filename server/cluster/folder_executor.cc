@@ -35,6 +35,18 @@ double SecondsBetween(std::chrono::steady_clock::time_point begin,
   return std::chrono::duration<double>(end - begin).count();
 }
 
+// After an error there is no file, as far as the disk permits.
+absl::StatusOr<FileStamp> WriteLease(SharedFiles& files, const LeaseFileName& file,
+                                     const std::string& bytes) {
+  const absl::StatusOr<FileStamp> stamp = files.Create(file.BeingWritten(), bytes);
+  if (!stamp.ok()) return stamp;
+  Failpoint("cluster.written");
+  const absl::Status moved = files.Move(file.BeingWritten(), file.Todo());
+  if (moved.ok()) return stamp;
+  files.Remove(file.BeingWritten()).IgnoreError();
+  return moved;
+}
+
 }  // namespace
 
 Pace PaceOf(const ClusterOptions& options, size_t leases) {
@@ -324,11 +336,10 @@ absl::Status FolderExecutor::LayOne(Lease lease) {
   const std::string bytes = BytesOf(LeaseRecord(lease, server_.identity, pace.touch));
   // The folder may have changed while there was no work.
   const absl::Status ready = leases_.empty() ? server_.prepare() : absl::OkStatus();
-  const absl::StatusOr<FileStamp> stamp = ready.ok() ? files_->Create(file.Part(), bytes) : ready;
-  const absl::Status laid = stamp.ok() ? files_->Move(file.Part(), file.Todo()) : stamp.status();
-  if (!laid.ok()) {
+  const absl::StatusOr<FileStamp> stamp = ready.ok() ? WriteLease(*files_, file, bytes) : ready;
+  if (!stamp.ok()) {
     scheduler_.Return(lease, false);
-    return laid;
+    return stamp.status();
   }
   Failpoint("cluster.laid");
   const Clock::time_point now = SteadyNow();

@@ -185,8 +185,7 @@ CrashRecord::Slot* CrashRecord::TakeSlot(Page& page) {
   return nullptr;
 }
 
-CrashRecord::Computing::Computing(CrashRecord& record, const RunName& run,
-                                  std::optional<size_t> point)
+CrashRecord::Entry::Entry(CrashRecord& record, const RunName& run, std::optional<size_t> point)
     : before_(slot_of_this_thread) {
   static thread_local const SignalStack stack;
   while ((slot_ = TakeSlot(*record.page_)) == nullptr) {
@@ -198,7 +197,7 @@ CrashRecord::Computing::Computing(CrashRecord& record, const RunName& run,
   slot_of_this_thread = slot_;
 }
 
-CrashRecord::Computing::~Computing() {
+CrashRecord::Entry::~Entry() {
   slot_of_this_thread = before_;
   slot_->run = 0;
 }

@@ -47,6 +47,23 @@ inline constexpr char kOutOfMemoryFile[] = "out-of-memory";
 class CrashRecord {
   struct Slot;
 
+  // While it lives, the thread can note its death, even if its stack is full. If one thread has
+  // several entries, the newest counts. If the record has no free place, the constructor waits
+  // until another one ends.
+  class Entry {
+   public:
+    Entry(const Entry&) = delete;
+    Entry& operator=(const Entry&) = delete;
+
+   protected:
+    Entry(CrashRecord& record, const RunName& run, std::optional<size_t> point);
+    ~Entry();
+
+   private:
+    Slot* slot_ = nullptr;
+    Slot* const before_;
+  };
+
  public:
   CrashRecord();  // in memory, of no use to a later process
   // Reads the record of the previous process in this folder, counts its death, and begins a record
@@ -69,25 +86,19 @@ class CrashRecord {
 
   int64_t counted_deaths() const;  // of all processes with this record
 
-  // As long as it lives, this thread computes the point. Without a point, it examines what is known
-  // of the run, which may be paused: a death in this thread then counts for this run alone, and a
-  // death in another thread does not count for it.
-  //
-  // While it lives, the thread can note its death, even if its stack is full. If one thread has
-  // several of them, the newest counts. If the record has no free place, the constructor waits
-  // until another one ends.
-  class Computing {
+  // As long as it lives, this thread computes the point.
+  class Computing : public Entry {
    public:
-    Computing(CrashRecord& record, const RunName& run, std::optional<size_t> point = std::nullopt);
-    Computing(const Computing&) = delete;
-    Computing& operator=(const Computing&) = delete;
-    ~Computing();
-
-   private:
-    Slot* slot_ = nullptr;
-    Slot* const before_;
+    Computing(CrashRecord& record, const RunName& run, size_t point) : Entry(record, run, point) {}
   };
-  using Examining = Computing;
+
+  // As long as it lives, this thread examines what is known of the run, which may be paused: a
+  // death in this thread then counts for this run alone, and a death in another thread does not
+  // count for it.
+  class Examining : public Entry {
+   public:
+    Examining(CrashRecord& record, const RunName& run) : Entry(record, run, std::nullopt) {}
+  };
 
   // This thread has received a fatal signal. Async-signal-safe.
   static void NoteDeath(int signal);

@@ -104,7 +104,8 @@ class Scheduler {
   // A copy of an unfinished point, if some of it is computed.
   std::optional<LivePoint> Unfinished(int64_t run, size_t index) const;
 
-  // Totals since the scheduler was made, of what was merged and computed. They take no lock.
+  // Totals since the scheduler was made: the samples that were merged, and the processor time of
+  // what was computed. They take no lock.
   double samples() const { return samples_.load(std::memory_order_relaxed); }
   double processor_seconds() const { return processor_seconds_.load(std::memory_order_relaxed); }
 

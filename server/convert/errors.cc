@@ -212,8 +212,14 @@ absl::Status StoreFailure(const absl::Status& status) {
   const std::string type = absl::StrCat(kTypePrefix, google::rpc::ErrorInfo().GetTypeName());
   if (status.ok() || status.GetPayload(type)) return status;
   if (absl::IsDataLoss(status)) return WithReason(status, "STORE_DAMAGED");
-  return WithReason(absl::UnavailableError(status.message()),
-                    absl::IsResourceExhausted(status) ? "STORE_FULL" : "STORE_FAILED");
+  if (!absl::IsResourceExhausted(status)) {
+    return WithReason(absl::UnavailableError(status.message()), "STORE_FAILED");
+  }
+  return WithReason(
+      absl::UnavailableError(absl::StrCat(
+          status.message(),
+          "; delete jobs that are no longer needed, or make room on the server's disk")),
+      "STORE_FULL");
 }
 
 absl::Status WithReason(absl::Status status, const std::string& reason) {

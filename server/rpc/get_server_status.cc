@@ -7,7 +7,7 @@
 #include "server/convert/spec.h"
 #include "server/rpc/methods.h"
 #include "server/rpc/server_status.h"
-#include "server/store/check_store.h"
+#include "server/store/data_directory.h"
 #include "server/version.h"
 
 namespace ballpiston::server {

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "ballpiston/storage/tokens.pb.h"
+#include "server/book/job_message.h"
 #include "server/convert/errors.h"
+#include "server/convert/spec.h"
 #include "server/host.h"
 #include "server/rpc/request_check.h"
 
@@ -65,6 +67,7 @@ class Watch {
     absl::StatusOr<FoundJob> job = book_.Find(reader_.caller(), id_, Grid::kLeftOut);
     if (!job.ok()) return job.status();
     job_ = *std::move(job);
+    target_ = SpecFromBytes(job_.record.spec).value_or(v1::EnsembleSpec()).target();
     ReadToken();
     return absl::OkStatus();
   }
@@ -156,7 +159,7 @@ class Watch {
     }
     next_snapshot_ = now + SnapshotInterval();
     v1::StatisticsSnapshot& snapshot = *message_.mutable_snapshot();
-    *snapshot.mutable_progress() = book_.Message(job_.record, job_.active.get()).progress();
+    *snapshot.mutable_progress() = Progress(job_.active->Numbers());
     AddUnfinishedPoints(snapshot);
     const absl::StatusOr<bool> finished = AddFinishedPoints(job_.active.get());
     if (!finished.ok()) return finished;
@@ -165,6 +168,10 @@ class Watch {
     const bool same_progress = std::exchange(told_progress_, progress) == progress;
     if (snapshot.points().empty() && !*finished && same_progress) return false;
     return Write();
+  }
+
+  v1::JobProgress Progress(const JobNumbers& numbers) const {
+    return ProgressOf(job_.record.points, target_, numbers);
   }
 
   // An older snapshot may have a point as unfinished that was already sent as finished.
@@ -178,7 +185,8 @@ class Watch {
   }
 
   absl::StatusOr<bool> TellFinishedPoints(const JobRecord& record, const Job* active) {
-    *message_.mutable_snapshot()->mutable_progress() = book_.Message(record, active).progress();
+    *message_.mutable_snapshot()->mutable_progress() =
+        Progress(active != nullptr ? active->Numbers() : record.numbers);
     const absl::StatusOr<bool> added = AddFinishedPoints(active);
     return added.ok() && *added ? Write() : added;
   }
@@ -242,6 +250,7 @@ class Watch {
 
   std::string id_;
   FoundJob job_;
+  v1::Target target_;  // of the job
   std::string told_progress_;
   JobState told_as_ = v1::EnsembleJob::STATE_UNSPECIFIED;  // the last state that was sent
   bool has_told_end_ = false;

@@ -2,10 +2,9 @@
 //
 // The watch makes a message when its reader has taken the previous one. It reads the state from the
 // job's row after a change of state was committed. Of an unfinished point it sends the newest
-// state. It reads finished points from the store when it sends them. A
-// snapshot needs the scheduler's lock; the watches of one job share their snapshots. With many
-// watches each gets snapshots less often, so that all of them together take at most
-// kSnapshotsPerSecond.
+// state. It reads finished points from the store when it sends them. A snapshot needs the
+// scheduler's lock; the watches of one job share their snapshots. With many watches each gets
+// snapshots less often, so that all of them together take at most kSnapshotsPerSecond.
 //
 // Properties of a watch and of the watches that resume it (checked in tests/simulation):
 //   1. Each finished point is sent once, in order: also over restarts, and before the terminal

@@ -19,7 +19,7 @@
 namespace ballpiston::server {
 
 // All failpoints, in the order of a job's life. Tests visit each of them.
-inline constexpr std::array<std::string_view, 24> kFailpoints = {
+inline constexpr std::array<std::string_view, 25> kFailpoints = {
     "create.in_transaction",    // the job's row is written, not committed
     "create.committed",         // the job's row is on disk; the run is not begun
     "create.before_answer",     // the run is begun; the client knows nothing
@@ -27,6 +27,7 @@ inline constexpr std::array<std::string_view, 24> kFailpoints = {
     "store.after_commit",       // the group is on disk; no client has an answer
     "block.merged",             // a block is merged into its point, not recorded
     "checkpoint.before_write",  // the transaction has begun
+    "cluster.written",          // a lease is in the folder, under a name that no worker sees
     "cluster.laid",             // a lease is in the folder; the server does not count it yet
     "cluster.submitted",        // Slurm has workers; the server knows nothing of them
     "cluster.file_reported",    // the scheduler has a file's chunks; few are on disk

@@ -1,7 +1,5 @@
 #include "server/store/check_store.h"
 
-#include <sys/stat.h>
-
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "ballpiston/v1/ensemble.pb.h"
@@ -9,6 +7,7 @@
 #include "server/convert/fold_record.h"
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
+#include "server/store/data_directory.h"
 #include "server/store/schema.h"
 #include "server/store/sqlite.h"
 
@@ -155,15 +154,6 @@ absl::StatusOr<StoreSummary> CheckStore(const std::string& path) {
   absl::StatusOr<StoreSummary> summary = StoreCheck(**database).Run();
   if (summary.ok()) summary->bytes = StoreBytes(path);
   return summary;
-}
-
-int64_t StoreBytes(const std::string& path) {
-  int64_t bytes = 0;
-  for (const char* file : {"", "-wal"}) {
-    struct stat found {};
-    if (stat(absl::StrCat(path, file).c_str(), &found) == 0) bytes += found.st_size;
-  }
-  return bytes;
 }
 
 std::string SummaryText(const StoreSummary& summary) {

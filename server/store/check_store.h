@@ -36,9 +36,6 @@ struct StoreSummary {
 //   FAILED_PRECONDITION  not a ballpiston store, newer, or too damaged to be opened
 absl::StatusOr<StoreSummary> CheckStore(const std::string& path);
 
-// The bytes of the store's file and of its log.
-int64_t StoreBytes(const std::string& path);
-
 // Some lines of text for people, without a newline after the last.
 std::string SummaryText(const StoreSummary& summary);
 

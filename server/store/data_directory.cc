@@ -189,4 +189,13 @@ void DataDirectory::TellAddress(const std::string& address) const {
   std::ofstream(AddressFile(path_)) << address << "\n";
 }
 
+int64_t StoreBytes(const std::string& path) {
+  int64_t bytes = 0;
+  for (const char* file : {"", "-wal"}) {
+    struct stat found {};
+    if (stat(absl::StrCat(path, file).c_str(), &found) == 0) bytes += found.st_size;
+  }
+  return bytes;
+}
+
 }  // namespace ballpiston::server

@@ -21,6 +21,7 @@
 // contains something else, which another program must have written.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -29,6 +30,8 @@ namespace ballpiston::server {
 
 // The store's file in the folder.
 inline constexpr char kStoreFile[] = "store.sqlite3";
+// The bytes of the store's file with this path, and of its log.
+int64_t StoreBytes(const std::string& path);
 
 class DataDirectory {
  public:

@@ -41,7 +41,7 @@ struct JobRecord {
   std::string id;
   std::string principal;   // the job's owner
   std::string request_id;  // of the request that made the job, unique for the principal; or empty
-  std::string payload;     // hash of that request (book/acceptance.h)
+  std::string payload;     // hash of that request without its id and its labels (book/acceptance.h)
   int32_t priority = 0;    // among the principal's; higher first
   bool pinned = false;     // its results do not expire
   std::string labels;      // as text (labels.h)

@@ -1,5 +1,5 @@
-// The SQL about jobs. Each function runs inside the transaction of its caller, which
-// handles errors (sqlite.h).
+// The SQL about jobs. Each function runs inside the transaction of its caller, which handles errors
+// (sqlite.h).
 //
 // Only these functions change a job's state. The transitions:
 //

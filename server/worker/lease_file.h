@@ -31,7 +31,7 @@ struct LeaseFileName {
   std::string worker = {};
   std::optional<Outcome> outcome = {};
 
-  std::string Part() const { return "todo/." + lease; }  // while the server writes it
+  std::string BeingWritten() const { return "todo/." + lease; }
   std::string Todo() const { return "todo/" + lease; }
   std::string Taken() const { return "taken/" + lease + "." + worker; }
   std::string Done(Outcome how) const;

@@ -123,6 +123,7 @@ TEST_F(StoredLimitsTest, JobsAndBytesOfEachPrincipalAreCounted) {
   EXPECT_EQ(before.at(0).principal(), "ann");
   EXPECT_EQ(before.at(0).stored_jobs(), 2);
   EXPECT_EQ(before.at(0).stored_bytes(), Get(first).stored_bytes() + Get(second).stored_bytes());
+  EXPECT_EQ(before.at(1).principal(), "ben");
   EXPECT_EQ(before.at(1).stored_jobs(), 1);
   EXPECT_EQ(ReasonOf(book_->Result(kAnn, second, 3).status()), "RESULT_NOT_FOUND");
   ASSERT_OK(book_->Delete(kAnn, first));

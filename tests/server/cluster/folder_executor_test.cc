@@ -227,6 +227,15 @@ TEST_F(FolderExecutorTest, AFullFolderIsTriedAgainAfterAPause) {
   EXPECT_EQ(executor_->Status().problem, "full");
 }
 
+TEST_F(FolderExecutorTest, ALeaseThatCannotBeMovedLeavesNoFile) {
+  files_.before = [](const std::string& operation, const std::string&) {
+    return operation == "move" ? absl::ResourceExhaustedError("full") : absl::OkStatus();
+  };
+  Begin();
+  EXPECT_EQ(executor_->Status().problem, "full");
+  EXPECT_THAT(files_.files, IsEmpty());
+}
+
 // ---- many workers ----
 
 // PaceOf assumes this number for the server and the worker together. Listings of taken/ and done/

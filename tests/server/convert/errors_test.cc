@@ -40,6 +40,14 @@ TEST(Errors, SayHowLongToWaitWhereWaitingHelps) {
   }
 }
 
+TEST(Errors, AFullStoreSaysHowToMakeRoom) {
+  const absl::Status full = StoreFailure(absl::ResourceExhaustedError("store: disk is full"));
+  EXPECT_THAT(full, StatusIs(absl::StatusCode::kUnavailable,
+                             "store: disk is full; delete jobs that are no longer needed, or make "
+                             "room on the server's disk"));
+  EXPECT_EQ(ReasonOf(full), "STORE_FULL");
+}
+
 TEST(Errors, AToleranceThatWasNotReachedNamesPointToleranceBudgetAndError) {
   EnsembleSpec spec = FakeSpec(1, 0);
   spec.target = {.tolerance = 1e-6, .budget_seconds = 0.25};

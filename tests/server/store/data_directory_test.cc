@@ -1,5 +1,6 @@
 #include "server/store/data_directory.h"
 
+#include "absl/cleanup/cleanup.h"
 #include "server/store/folder_sync.h"
 #include "tests/support/preamble.h"
 
@@ -104,7 +105,18 @@ TEST_F(DataFolder, AnOpenFolderOfAnotherUserIsRefused) {
 TEST(SyncNameOf, FlushesTheFolderThatHasTheName) {
   EXPECT_OK(SyncNameOf("data"));
   EXPECT_OK(SyncNameOf("/data"));
-  EXPECT_THAT(SyncNameOf("/no such folder/data"), StatusIs(absl::StatusCode::kUnavailable));
+  // When no file can be opened, the error names the folder.
+  rlimit limit;
+  getrlimit(RLIMIT_NOFILE, &limit);
+  const absl::Cleanup restored = [limit] { setrlimit(RLIMIT_NOFILE, &limit); };
+  const rlimit none = {.rlim_cur = 0, .rlim_max = limit.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  const std::pair<const char*, const char*> rows[] = {
+      {"data", "."}, {"/data", "/"}, {"folder/data", "folder"}, {"/a/b/data", "/a/b"}};
+  for (const auto& [path, folder] : rows) {
+    EXPECT_THAT(SyncNameOf(path), StatusIs(absl::StatusCode::kUnavailable,
+                                           HasSubstr(absl::StrCat("folder ", folder, " cannot"))));
+  }
 }
 
 }  // namespace
