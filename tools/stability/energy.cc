@@ -10,6 +10,7 @@
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_run.h"
 #include "core/sampling/invariant_measure.h"
+#include "tools/flows/energy_error.h"
 #include "tools/flows/fixed_step_flow.h"
 #include "tools/flows/lane_balls.h"
 #include "tools/flows/metered_gases.h"
