@@ -1,6 +1,8 @@
 // The rho and delta at which a billiard engine is sound. Elsewhere the billiard models are refused;
 // closed forms and the limit delta -> 0 have no such bounds.
 //
+// ---- double precision ----
+//
 // A ball's position is rounded to about 1e-16. So its error in a tip is of order 1e-16/delta. At a
 // grazing hit, where the ball leaves a disc at the angle s to its tangent, the error along the path
 // is 1e-16/s. In a cell of the size g = 1/sqrt 2 - rho a share of order (1e-16/g)^2 of all hits
@@ -36,6 +38,8 @@
 // At the other end, rho -> 1/2, there is no bound: at rho = 1/2 + 1.1e-16, 1e-14 and 1e-12 mean
 // free times in equilibrium (2e-3) and at epsilon = 0.05 and 0.45 (1e-3) agree with the closed
 // forms, and no orbit was lost.
+//
+// ---- single precision ----
 //
 // The domain in which the lanes may fly in single precision, and the errors of the measured values.
 // Flights are in single precision; collisions with the piston are computed in double. So the error
@@ -93,9 +97,10 @@ inline constexpr BilliardDomain kDoubleDomain = {
 inline constexpr BilliardDomain kSingleDomain = {
     .min_rho = kMinRho + 1e-9, .max_rho = kMaxRho - 1e-3, .min_delta = 1e-3};
 
-// Upper bound of the relative error of times in these ranges. No row of the table above that lies
-// inside is beyond it by two standard errors, and none of tests/data/model_errors.csv. Deeper in
-// the tips it rests on the scaling: positions are rounded by 6e-8, below 1e-4 of the least delta.
+// Upper bound of the relative error of times in these ranges. No row of the table of single
+// precision that lies inside is beyond it by two standard errors, and none of
+// tests/data/model_errors.csv. Deeper in the tips it rests on the scaling: positions are rounded by
+// 6e-8, below 1e-4 of the least delta.
 inline constexpr double kSinglePrecisionError = 5e-4;
 
 }  // namespace ballpiston

@@ -1,7 +1,8 @@
 // The averages of the kernel's moments over the canonical distribution of a pair's energies at
-// temperature T = 1/beta (eq. canmeasure); the rate at which a ball and a piston of the gas
+// temperature T = 1/beta; the rate at which a ball and a piston of the gas
 // exchange energy; and the static conductivity, which follows from this rate.
 //
+//   P(eb, ep) = beta^(3/2)/sqrt(pi ep) exp(-beta (eb + ep))               eq. canmeasure
 //   <f> = beta^2/2 <(eb - ep) j> = beta^2/2 <h> = 1/sqrt(2 pi beta)       eq. nucanavg
 //   exchange rate = <f> |dG_bp|/|G| = sqrt(T/(2 pi)) |dG_bp|/|G|          eq. nucanavg
 //   lim delta -> 0 of exchange rate/delta^2 = sqrt(T/pi)/cell             eq. nucanavgrare

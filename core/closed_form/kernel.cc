@@ -62,7 +62,8 @@ double Rest(double ep, double ep_out) {
 // eb - ep, without the rounding of eb.
 double Excess(double ep) { return 0.5 - 2 * ep; }
 
-// arcsin sqrt(ep/eb), for eb > ep.
+// arcsin sqrt(ep/eb), for eb > ep. By std::atan2, because no count depends on the moments' last
+// bit; F, which sorts energies into bins, uses Atan2.
 double SpeedAngle(double ep) { return std::atan2(std::sqrt(ep), std::sqrt(Excess(ep))); }
 
 double CurrentNearZero(double from_zero) {

@@ -4,9 +4,14 @@
 // collisions after which the piston has less than a given energy.
 //
 //   W(ep -> ep_out) = max(sqrt ep_out, sqrt ep)/(2 pi sqrt(ep_out (eb - ep_out)))   eq. kernel
-//   f(ep) = int W dzeta           rate of collisions                                eq.
-//   intkernelnuf j(ep) = int zeta W dzeta      energy current eq. intkerneleta h(ep) = int zeta^2 W
-//   dzeta    second moment of transfer                         eq. intkerneleta2
+//   f(ep) = int W dzeta           rate of collisions           eq. intkernelnuf
+//   j(ep) = int zeta W dzeta      energy current               eq. intkerneleta
+//   h(ep) = int zeta^2 W dzeta    second moment of transfer    eq. intkerneleta2
+//
+//   F(ep_out) = int_0^ep_out W dx/f
+//       = sqrt(ep) a/(p + q)                for ep_out <= ep,  a = arcsin sqrt(ep_out/eb)
+//       = 1 - sqrt(eb - ep_out)/(p + q)     above,
+//   p = sqrt(ep) arcsin sqrt(min(ep/eb, 1)),  q = sqrt(max(eb - ep, 0)),  f = (p + q)/pi
 //
 // W is 0 for ep_out >= eb: the piston's new energy is the energy of the ball's normal velocity
 // component. At ep_out = 0 < ep it is infinite (and integrable). If W is the law of a collision,
@@ -25,8 +30,7 @@
 //   3. CurrentFlowsToTheSlowPiston: j > 0 exactly when ep/eb < 0.5404...
 //   4. MomentsAreIntegralsOfTheKernel.
 //   5. DistributionIsAccurateAtRandomEnergies: relative error of F, and of f computed with it,
-//   below
-//      kKernelDistributionRelativeError, also where the ball keeps little energy.
+//      below kKernelDistributionRelativeError, also where the ball keeps little energy.
 //   6. DistributionRisesFromZeroToOne: F reaches 1 at ep_out = eb, and falls nowhere except by
 //      rounding.
 //   7. SlopeIsTheKernelOverItsRate.

@@ -4,8 +4,8 @@
 //
 // and from a return to the next at a given energy ep of the piston, 0 < ep < 1/2,
 //
-//   phi(ep) = tau_bp nu_bp(ep)                                  eq. numft, the same for every
-//   geometry tau_bp(ep) = 1/nu_bp(ep) = tau_bp/phi                       eqs. taubpmftep, cnuep
+//   phi(ep) = tau_bp nu_bp(ep)                 eq. numft, the same for every geometry
+//   tau_bp(ep) = 1/nu_bp(ep) = tau_bp/phi      eqs. taubpmftep, cnuep
 //
 // and the limit of rare interactions:
 //
@@ -18,9 +18,9 @@
 //   1. AccurateForEveryGeometry: relative error below kMeanFreeTimeRelativeError.
 //   2. RareLimitRateIsTheLimitOfTheRate 1/(tau_bp delta^2).
 //   3. DeltaFirstThenRhoGivesTheWedge, RhoFirstThenDeltaGivesTheCusp: the limits delta -> 0 and
-//      rho -> 1/2 of delta^2 |G|/|dG_bp| differ by a factor of three (eq. limitsrhodelta). The
-//      ratio delta/lambda decides: the piston moves in a wedge if delta << lambda, in a cusp if
-//      delta >> lambda.
+//      rho -> 1/2 of delta^2 |G|/|dG_bp| are (4 - pi)/(4 sqrt(2)) in the first order and three
+//      times as large in the second (eq. limitsrhodelta). The ratio delta/lambda decides: the
+//      piston moves in a wedge if delta << lambda, in a cusp if delta >> lambda.
 //   4. PhiIsAccurateForEveryEnergy: relative error below kConditionalRateRelativeError. Phi
 //      increases from sqrt(8)/pi through phi(1/4) = 1 to sqrt(2).
 //   5. PhiAveragesToOne: int phi dep/sqrt(2 ep) = 1, eq. intcnuep.

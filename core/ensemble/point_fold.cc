@@ -1,6 +1,7 @@
 #include "core/ensemble/point_fold.h"
 
 #include <algorithm>
+#include <cassert>
 #include <memory>
 #include <utility>
 
@@ -156,6 +157,7 @@ BlockResult FoldPoint(const PointExperiment& experiment) {
 }
 
 BlockResult RunBlock(const PointExperiment& experiment, const Block& block) {
+  assert(experiment.plan().chunks() > 0);  // else there is no run
   QueueOfOne queue(block);
   experiment.StartRun(queue)->Advance();
   return std::move(queue.result());

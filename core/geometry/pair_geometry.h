@@ -53,9 +53,10 @@ class PairGeometry {
   double piston_right() const { return piston_right_; }   // rightmost position of the piston
   double stroke() const { return lambda_ + 2 * delta_; }  // piston_right - piston_left
 
-  // At a depth of 0 to (1 - lambda)/2: s, which is 0 if rounding makes the depth larger, and half
-  // the height of the cell. At the depth delta this is half the piston's height, eta/2.
+  // s at a depth of 0 to (1 - lambda)/2; 0 if rounding makes the depth larger.
   double CentreToArc(double depth) const;
+  // Half the height of the cell, |y|, at the same depths. At the depth delta it is half the
+  // piston's height, eta/2.
   double HalfHeight(double depth) const;
 
  private:

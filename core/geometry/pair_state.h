@@ -25,6 +25,7 @@ struct PairStateOf {
 
 using PairState = PairStateOf<double>;
 
+// The state with these velocities. The direction of a ball at rest is (1, 0).
 PairState WithVelocities(const Eigen::Vector2d& position, const Eigen::Vector2d& velocity,
                          double piston, double piston_velocity);
 

@@ -1,6 +1,6 @@
-// Numbers with 113 bits (from Boost), about 20 ns per operation: the reference for results in
-// double. A formula that loses eighteen digits here still has as many correct digits as a double.
-// Only tests and tools use them; the engines do not.
+// Numbers with 113 bits (from Boost): the reference for results in double. A formula that loses
+// eighteen digits here still has as many correct digits as a double. Only tests and tools use them;
+// the engines do not.
 #pragma once
 
 #include <limits>
@@ -13,8 +13,8 @@
 
 namespace ballpiston {
 
-// GCC's own 113 bits on x86. As measured, its products are four times and its roots nine times as
-// fast as Boost's.
+// GCC's own 113 bits on x86, about 20 ns per operation. As measured, its products are four times
+// and its roots nine times as fast as Boost's.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 using Quad = boost::multiprecision::float128;
 #else

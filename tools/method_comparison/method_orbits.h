@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
 #include <type_traits>
 
 #include "core/billiard/event_flow.h"
@@ -44,7 +45,7 @@ class FlowOrbit {
 };
 
 // Calls use(std::type_identity<Flow>(), time step, if any) with the flow of a method of single
-// orbits: fixed steps, or the reference in any precision.
+// orbits: fixed steps, or the reference in any precision. Aborts for all other methods.
 template <typename Use>
 auto WithFlowOf(const MethodVariant& variant, const Use& use) {
   switch (variant.method) {
@@ -56,9 +57,16 @@ auto WithFlowOf(const MethodVariant& variant, const Use& use) {
       return use(std::type_identity<EventFlow<long double>>());
     case Method::kReferenceQuadruple:
       return use(std::type_identity<EventFlow<Quad>>());
-    default:
+    case Method::kReference:
       return use(std::type_identity<ReferenceFlow>());
+    case Method::kLanes:
+    case Method::kLanesSingle:
+    case Method::kClosedForm:
+    case Method::kMarkov:
+    case Method::kSpectrum:
+      break;
   }
+  std::abort();
 }
 
 // Not for kClosedForm, kMarkov and kSpectrum, which have no such orbits. Starts and collisions are

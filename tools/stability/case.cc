@@ -31,7 +31,12 @@ std::string SummaryTable(const std::vector<CaseResult>& cases) {
   return table.Text(1);
 }
 
-std::string CountTable(const std::vector<CaseResult>& cases) {
+std::string CountTable(const std::vector<CaseResult>& cases,
+                       std::span<uint64_t Failures::*const> not_looked_for) {
+  const auto text = [&](const Failures& failures, uint64_t Failures::*count) -> std::string {
+    if (std::ranges::find(not_looked_for, count) != not_looked_for.end()) return "-";
+    return CountText(failures.*count);
+  };
   std::vector<std::string> head = {"case", "method", "starts", "hits", "looked back"};
   for (const FailureKind& kind : kFailureKinds) head.push_back(kind.name);
   head.push_back("worst dE/E");
@@ -39,8 +44,9 @@ std::string CountTable(const std::vector<CaseResult>& cases) {
   for (const CaseResult& result : cases) {
     for (const auto& [method, promised, failures] : result.methods) {
       std::vector<std::string> row = {result.name, method, CountText(failures.orbits),
-                                      CountText(failures.hits), CountText(failures.looked_back)};
-      for (const FailureKind& kind : kFailureKinds) row.push_back(CountText(failures.*kind.count));
+                                      CountText(failures.hits),
+                                      text(failures, &Failures::looked_back)};
+      for (const FailureKind& kind : kFailureKinds) row.push_back(text(failures, kind.count));
       row.push_back(ErrorText(failures.energy));
       table.Add(row);
     }

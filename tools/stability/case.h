@@ -130,7 +130,9 @@ std::vector<CaseResult> RunCases(const std::vector<Case<Geometry, Start>>& cases
 // A row for each case, a column for each method, failures by letter.
 std::string SummaryTable(const std::vector<CaseResult>& cases);
 
-// A row for each case and method, with all numbers of Failures.
-std::string CountTable(const std::vector<CaseResult>& cases);
+// A row for each case and method, with all numbers of Failures; - for those that no method of these
+// cases looks for.
+std::string CountTable(const std::vector<CaseResult>& cases,
+                       std::span<uint64_t Failures::*const> not_looked_for);
 
 }  // namespace ballpiston::stability

@@ -10,6 +10,7 @@
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_run.h"
 #include "core/sampling/invariant_measure.h"
+#include "tools/flows/energy_error.h"
 #include "tools/flows/fixed_step_flow.h"
 #include "tools/flows/lane_balls.h"
 #include "tools/flows/metered_gases.h"
@@ -231,8 +232,9 @@ double GasEnergyRecord::LongestWalk() const {
 }
 
 std::string EnergyTable(const std::vector<EnergyRun>& runs) {
-  MarkdownTable table({"method", "what", "orbits", "hits", "worst dE/E",
-                       "drift, or mean at the end", "its standard error", "a trend"});
+  MarkdownTable table({"method", "what", "orbits", "hits on walls, of gases on pistons",
+                       "worst dE/E", "drift, of gases mean dE/E at the end", "its standard error",
+                       "a trend"});
   for (const EnergyRun& run : runs) {
     table.Add({run.method, run.what, CountText(run.orbits), CountText(run.hits),
                ErrorText(run.worst), SignedText(run.change.value), ErrorText(run.change.error),

@@ -3,12 +3,13 @@
 //
 //   stability [--quick]
 //
-// Exit status: 0 success; 1 if there are complaints (after the tables), or if standard output
-// cannot be written; 2 for wrong arguments. Complaints are a sentence for each broken promise of an
-// engine (no failures, no loss of energy), and for each kind of failure that no method shows: the
-// zeros of this kind prove nothing.
+// Exit status: 0 success; 1 if there are complaints (after the tables), if the tables cannot be
+// computed, or if standard output cannot be written; 2 for wrong arguments. Complaints are a
+// sentence for each broken promise of an engine (no failures, no loss of energy), and for each kind
+// of failure that no method shows: the zeros of this kind prove nothing.
 #include <algorithm>
 #include <cstdint>
+#include <exception>
 #include <iostream>
 #include <iterator>
 #include <numbers>
@@ -27,6 +28,7 @@
 #include "tools/stability/energy.h"
 #include "tools/stability/markdown_table.h"
 #include "tools/stability/model_errors.h"
+#include "tools/stability/results.h"
 #include "tools/stability/starts.h"
 #include "tools/stability/textbook_flow.h"
 
@@ -107,79 +109,32 @@ std::string UnitSpeedSentence() {
 
 // ---- all tables ----
 
-struct System {
-  const char* title;
-  std::vector<CaseResult> cases;
-};
-
-struct Results {
-  std::vector<System> systems;
-  std::vector<EnergyRun> energy;
-  std::vector<ModelError> model_errors;
-};
-
 // `effort` is the fraction of the starts; 1 takes minutes. Prints progress on standard error.
 Results RunAll(double effort) {
   Results results;
-  results.systems = {{"The ball alone", RunCases(BallCases(), BallMethods(), effort)},
-                     {"Ball and piston", RunCases(PairCases(), PairMethods(), effort)},
-                     {"The gas", RunCases(GasCases(), GasMethods(), effort)}};
+  results.systems = {
+      {"The ball alone",
+       RunCases(BallCases(), BallMethods(), effort),
+       {&Failures::looked_back, &Failures::missed, &Failures::phantoms, &Failures::beyond_walls}},
+      {"Ball and piston", RunCases(PairCases(), PairMethods(), effort), {&Failures::beyond_walls}},
+      {"The gas", RunCases(GasCases(), GasMethods(), effort), {}}};
   std::cerr << "stability: energy" << std::endl;
   results.energy = EnergyRuns(effort);
   if (effort == 1) results.model_errors = ModelErrors();  // fewer samples show nothing
   return results;
 }
 
-// Calls `visit` with each case and each of its methods.
-template <typename Visit>
-void ForEachMethod(const Results& results, const Visit& visit) {
-  for (const System& system : results.systems) {
-    for (const CaseResult& result : system.cases) {
-      for (const MethodResult& method : result.methods) visit(result, method);
-    }
-  }
-}
-
-// One sentence for each broken promise.
-std::vector<std::string> BrokenPromises(const Results& results) {
-  std::vector<std::string> broken;
-  ForEachMethod(results, [&](const CaseResult& result, const MethodResult& method) {
-    if (!method.promised || method.failures.Total() == 0) return;
-    broken.push_back(absl::StrCat(method.method, " fails: ", result.name));
-  });
-  for (const EnergyRun& run : results.energy) {
-    if (!run.promised || !run.LosesEnergy()) continue;
-    broken.push_back(absl::StrCat(run.method, " loses energy: ", run.what));
-  }
-  for (const std::string& claim : BrokenClaims(results.model_errors)) broken.push_back(claim);
-  return broken;
-}
-
-// A zero proves something only if the same check has found failures of other methods. No method has
-// phantom hits.
-std::vector<std::string> BlindLooks(const Results& results) {
-  Failures all;
-  ForEachMethod(results,
-                [&](const CaseResult&, const MethodResult& method) { all.Merge(method.failures); });
-  std::vector<std::string> blind;
-  for (const FailureKind& kind : kFailureKinds) {
-    if (kind.count == &Failures::phantoms || all.*kind.count > 0) continue;
-    blind.push_back(absl::StrCat("no method showed any ", kind.name));
-  }
-  return blind;
-}
-
 std::string Text(const Results& results) {
   std::string summaries, counts;
-  for (const auto& [title, cases] : results.systems) {
+  for (const auto& [title, cases, not_looked_for] : results.systems) {
     absl::StrAppend(&summaries, "**", title, "**\n\n", SummaryTable(cases), "\n");
     absl::StrAppend(&counts, "\n<details><summary>All counts: ", absl::AsciiStrToLower(title),
-                    "</summary>\n\n", CountTable(cases), "\n</details>\n");
+                    "</summary>\n\n", CountTable(cases, not_looked_for), "\n</details>\n");
   }
   return absl::StrCat(
       "Made by the program `stability`; what is counted, and how: `tools/stability/README.md`. "
       "e escapes, n negative times, l loops, i still heading inward, m missed piston hits, "
-      "p phantom ones, b pistons beyond their walls; - not run.\n\n",
+      "p phantom ones, b pistons beyond their walls; - not run or not looked for.\n\n",
       summaries, UnitSpeedSentence(), "\n\n**Energy**\n\n", EnergyTable(results.energy),
       "\n**Model errors**: billiard over model - 1, and the error that is stated; ratio: (the "
       "difference - 2 standard errors)/stated, - where the standard error is above half of the "
@@ -203,7 +158,8 @@ tables. Progress and errors go to standard error.
   --help       print this text
 
 Exit status: 0 success; 1 an engine failed although it promises zeros, or a stated model error does
-not hold, or no method showed one kind of failure, or the tables cannot be printed; 2 wrong arguments.
+not hold, or no method showed one kind of failure, or the tables cannot be computed or printed;
+2 wrong arguments.
 tools/stability/README.md explains the counted failures.
 )";
 
@@ -238,4 +194,11 @@ int Run(int argc, char** argv) {
 }  // namespace
 }  // namespace ballpiston::stability
 
-int main(int argc, char** argv) { return ballpiston::stability::Run(argc, argv); }
+int main(int argc, char** argv) {
+  try {
+    return ballpiston::stability::Run(argc, argv);
+  } catch (const std::exception& failure) {
+    std::cerr << "stability: cannot compute the tables: " << failure.what() << "\n";
+    return 1;
+  }
+}

@@ -1,12 +1,14 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "core/billiard/event_flow.h"
 #include "core/gas/reference_gas.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
+#include "tools/flows/energy_error.h"
 #include "tools/flows/fixed_step_flow.h"
 #include "tools/flows/fixed_step_gas.h"
 #include "tools/flows/lane_balls.h"
@@ -22,6 +24,12 @@
 
 namespace ballpiston::stability {
 namespace {
+
+// At least the epsilon of a double: the checks themselves are computed in double.
+template <typename Flow>
+inline constexpr double kEpsilonOf = std::is_same_v<RealOf<Flow>, float>
+                                         ? std::numeric_limits<float>::epsilon()
+                                         : std::numeric_limits<double>::epsilon();
 
 // ---- checked runs of balls alone and of ball-piston pairs ----
 //

@@ -249,5 +249,12 @@ TEST(GasDetectors, LaneGasesShowNoFailure) {
   EXPECT_EQ(failures.Total(), 0u);
 }
 
+TEST(GasDetectors, LaneGasesThatTakeTooManyCallsAreALoop) {
+  const std::vector<GasStart> starts(50, AReplica(Ring()));
+  const Failures endless = RunGasesByMeters<GasEngine::kLanes, 0>(Ring(), starts, 1'000'000);
+  EXPECT_EQ(endless.orbits, 50u);
+  EXPECT_EQ(endless.loops, 1u);
+}
+
 }  // namespace
 }  // namespace ballpiston::stability

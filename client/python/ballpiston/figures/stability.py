@@ -85,7 +85,9 @@ def counts(report: str) -> Table:
                     "case": case,
                     "method": cells[1],
                     "starts": int(named["starts"]),
-                    "failures": sum(int(named[kind]) for kind in _KINDS & named.keys()),
+                    "failures": sum(
+                        int(named[kind]) for kind in _KINDS & named.keys() if named[kind] != "-"
+                    ),
                 }
             )
     return table(found)

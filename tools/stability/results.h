@@ -1,0 +1,34 @@
+// All that the program counts and measures, and the complaints about it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/stability/case.h"
+#include "tools/stability/energy.h"
+#include "tools/stability/failures.h"
+#include "tools/stability/model_errors.h"
+
+namespace ballpiston::stability {
+
+struct System {
+  const char* title;
+  std::vector<CaseResult> cases;
+  std::vector<uint64_t Failures::*> not_looked_for;  // in these cases
+};
+
+struct Results {
+  std::vector<System> systems;
+  std::vector<EnergyRun> energy;
+  std::vector<ModelError> model_errors;
+};
+
+// One sentence for each broken promise.
+std::vector<std::string> BrokenPromises(const Results& results);
+
+// One sentence for each kind of failure that no method shows. A zero proves something only if the
+// same check has found failures of other methods. No method has phantom hits.
+std::vector<std::string> BlindLooks(const Results& results);
+
+}  // namespace ballpiston::stability
