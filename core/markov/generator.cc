@@ -55,6 +55,7 @@ Generator::Generator(const Discretisation& discretisation, bool has_gains)
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
   rates_ = solver.eigenvalues();
   functions_ = solver.eigenvectors();
+  asymmetry_ = (computed - computed.transpose()).cwiseAbs().maxCoeff();
 }
 
 // Both differences are exact, also in the shortest elements at the far end.

@@ -18,7 +18,7 @@
 // the square of the error of their functions.
 //
 // Units: rates |dG_bp|/|G|, times |G|/|dG_bp|. Properties, each with the test that bears its name:
-//   1. ConservesProbability: L 1 = 0, to kGeneratorRoundingError.
+//   1. ConservesProbability: L 1 = 0, and L is symmetric, to kGeneratorRoundingError.
 //   2. EvolutionObeysTheMasterEquation. Rates converge from above as degree and levels grow.
 //
 // Immutable; safe to share between threads.
@@ -70,6 +70,9 @@ class Generator {
   // int K(u, u') function_k(u') du' for each eigenfunction k.
   Eigen::VectorXd Gains(double u) const;
 
+  // The largest difference of the computed matrix from its transpose.
+  double asymmetry() const { return asymmetry_; }
+
  private:
   Generator(const Discretisation& discretisation, bool has_gains);
 
@@ -90,6 +93,7 @@ class Generator {
   std::vector<Eigen::MatrixXd> orthonormal_;  // by element: from Legendre's to the basis
   Eigen::VectorXd rates_;
   Eigen::MatrixXd functions_;  // eigenfunctions by column, in the bases
+  double asymmetry_ = 0;
 };
 
 }  // namespace ballpiston

@@ -1,7 +1,7 @@
 // What the engines cost, a row each: the rate of wall hits, events, exchanges or samples in a
 // second of processor time, and the time of one (`each`). The rows of one kind are there to be
-// compared: the reference, the lanes with each kind of vector instructions, and scalar code as
-// others have it.
+// compared: the reference, the lanes with each kind of vector instructions, and the method of most
+// billiard codes. A row that names no vector instructions has the widest of the machine.
 //
 //   engine_benchmark [FLAG_OF_GOOGLE_BENCHMARK...]
 //
@@ -45,8 +45,20 @@ namespace {
 
 using Work = std::function<double(uint64_t turn)>;  // returns how much it has done
 
-benchmark::internal::Benchmark* AddRow(const std::string& name, const Work& work) {
-  return benchmark::RegisterBenchmark(name.c_str(), [work](benchmark::State& state) {
+// The kinds of vector instructions of this machine, from SSE4 on, the widest last.
+std::vector<int64_t> VectorTargets() {
+  std::vector<int64_t> targets = hwy::SupportedAndGeneratedTargets();
+  std::erase_if(targets, [](int64_t target) { return target > HWY_SSE4; });
+  std::reverse(targets.begin(), targets.end());
+  return targets;
+}
+
+// The lanes that begin in `work` use the instructions `target`.
+benchmark::internal::Benchmark* AddRow(const std::string& name, const Work& work,
+                                       int64_t target = VectorTargets().back()) {
+  return benchmark::RegisterBenchmark(name.c_str(), [work, target](benchmark::State& state) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().DeInit();
     uint64_t turn = 0;
     work(turn++);  // makes tables and gases
     double done = 0;
@@ -57,22 +69,10 @@ benchmark::internal::Benchmark* AddRow(const std::string& name, const Work& work
   });
 }
 
-// The kinds of vector instructions of this machine, from SSE4 on, the widest last.
-std::vector<int64_t> VectorTargets() {
-  std::vector<int64_t> targets = hwy::SupportedAndGeneratedTargets();
-  std::erase_if(targets, [](int64_t target) { return target > HWY_SSE4; });
-  std::reverse(targets.begin(), targets.end());
-  return targets;
-}
-
-// A row for each of them. The lanes that begin in `work` use these instructions.
+// A row for each kind of vector instructions.
 void AddRowsOfLanes(const std::string& name, const Work& work) {
   for (const int64_t target : VectorTargets()) {
-    AddRow(absl::StrCat(name, "/", hwy::TargetName(target)), [target, work](uint64_t turn) {
-      hwy::SetSupportedTargetsForTest(target);
-      hwy::GetChosenTarget().DeInit();
-      return work(turn);
-    });
+    AddRow(absl::StrCat(name, "/", hwy::TargetName(target)), work, target);
   }
 }
 

@@ -48,6 +48,9 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
   const std::string_view first = *argc > 1 ? (*argv)[1] : "";
   if (first == "--list") {
     for (const auto& target : ballpiston::fuzz::Targets()) std::cout << target.name << "\n";
+  } else if (std::getenv("FUZZ_TARGET") == nullptr) {
+    std::cerr << "set FUZZ_TARGET; see --list\n";
+    std::exit(1);
   } else if (*argc == 3 && first.starts_with(ballpiston::fuzz::kWriteSeeds)) {
     ballpiston::fuzz::WriteSeeds(first.substr(first.find('=') + 1), (*argv)[2]);
   } else {

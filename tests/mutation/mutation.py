@@ -16,7 +16,9 @@ import os
 import random
 import re
 import shutil
+import signal
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Iterable, Iterator
@@ -98,6 +100,8 @@ def prepare_tree(commit: str) -> None:
         subprocess.run(["git", "clone", "-qsn", ROOT, TREE], check=True)
     subprocess.run(["git", "-C", TREE, "checkout", "-qf", "--detach", commit], check=True)
     configure = ["cmake", "--preset", "release", "-DBALLPISTON_TESTS=ON"]
+    # The kernel kills each test when ctest ends.
+    configure += ["-DCMAKE_CROSSCOMPILING_EMULATOR=setpriv;--pdeathsig;KILL"]
     subprocess.run(configure, cwd=TREE, check=True, stdout=subprocess.DEVNULL)
 
 
@@ -114,7 +118,7 @@ def first_failure(build: Path, folder: str, jobs: int, seconds: float) -> str | 
     that fails runs once more, and only the second time counts, because a busy machine can make a
     test fail too."""
     names = "|".join(TESTS[folder])
-    command = ["ctest", "--test-dir", str(build), "-R", rf"^({names})\.", "-j", str(jobs)]
+    command = ["setpriv", "--pdeathsig", "TERM", "ctest", "--test-dir", str(build), "-R", rf"^({names})\.", "-j", str(jobs)]
     command += ["--timeout", f"{seconds:.0f}", "--stop-on-failure", "--repeat", "until-pass:2"]
     temporary = tempfile.mkdtemp(prefix="mutation-")  # a test that crashes leaves its files there
     os.chmod(temporary, 0o1777)  # like /tmp: a test is a server of several users
@@ -271,4 +275,5 @@ def try_all(drawn: Iterator[Record], count: int, jobs: int, path: Path) -> list[
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # ends ctest too
     raise SystemExit(main())

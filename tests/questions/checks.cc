@@ -134,6 +134,31 @@ void CheckNumbers(const Message& message, const std::string& path, Findings& fin
   }
 }
 
+void CheckEstimate(const Estimate& estimate, Findings& findings) {
+  Check(estimate.name, estimate.value, findings);
+  Check(estimate.name + ", standard error", estimate.standard_error, findings);
+  Check(estimate.name + ", exact", estimate.exact, findings);
+  Check(estimate.name + ", limit", estimate.limit, findings);
+  Check(estimate.name + ", noise floor", estimate.noise_floor, findings);
+}
+
+void CheckCurve(const Curve& curve, Findings& findings) {
+  for (const CurvePoint& point : curve.points) {
+    const std::string name = absl::StrCat(curve.name, " at ", point.at);
+    Check(name + ", place", point.at, findings);
+    Check(name, point.value, findings);
+    Check(name + ", error", point.standard_error, findings);
+    Check(name + ", limit", point.limit, findings);
+  }
+}
+
+void CheckDivergence(const KlDivergence& divergence, Findings& findings) {
+  Check("relative entropy", divergence.value, findings);
+  Check("relative entropy, noise floor", divergence.noise_floor, findings);
+  Check("relative entropy, noise error", divergence.noise_error, findings);
+  Check("relative entropy, error", divergence.standard_error, findings);
+}
+
 }  // namespace
 
 Findings CheckAnswer(const v1::EnsembleSpec& spec, const v1::PointResult& result) {
@@ -197,39 +222,19 @@ Findings CheckFinite(const Message& message) {
 
 Findings CheckFinite(const PointSummary& summary) {
   Findings findings;
-  const auto check = [&](const std::string& name,
-                         const std::vector<std::pair<const char*, std::optional<double>>>& parts) {
-    for (const auto& [part, value] : parts) Check(absl::StrCat(name, part), value, findings);
-  };
   // A small sample may contain nothing that determines a value.
   const bool is_small = !HasStatedError(static_cast<double>(summary.samples));
-  for (const Estimate& of : summary.estimates) {
-    if (is_small && std::isnan(of.value)) continue;
-    check(of.name, {{"", of.value},
-                    {", standard error", of.standard_error},
-                    {", exact", of.exact},
-                    {", limit", of.limit},
-                    {", noise floor", of.noise_floor}});
+  for (const Estimate& estimate : summary.estimates) {
+    if (!is_small || !std::isnan(estimate.value)) CheckEstimate(estimate, findings);
   }
-  for (const Curve& curve : summary.curves) {
-    for (const CurvePoint& of : curve.points) {
-      check(absl::StrCat(curve.name, " at ", of.at), {{", place", of.at},
-                                                      {"", of.value},
-                                                      {", error", of.standard_error},
-                                                      {", limit", of.limit}});
-    }
+  for (const Curve& curve : summary.curves) CheckCurve(curve, findings);
+  if (summary.kl_divergence) CheckDivergence(*summary.kl_divergence, findings);
+  for (const NamedHistogram& named : summary.histograms) {
+    Check(named.name + ", lower", named.histogram.lower, findings);
+    Check(named.name + ", upper", named.histogram.upper, findings);
+    Check(named.name + ", time", named.time, findings);
   }
-  if (const auto& of = summary.kl_divergence) {
-    check("relative entropy", {{"", of->value},
-                               {", noise floor", of->noise_floor},
-                               {", noise error", of->noise_error},
-                               {", error", of->standard_error}});
-  }
-  for (const NamedHistogram& of : summary.histograms) {
-    check(of.name,
-          {{", lower", of.histogram.lower}, {", upper", of.histogram.upper}, {", time", of.time}});
-  }
-  check("energy error", {{"", summary.health.max_energy_error}});
+  Check("energy error", summary.health.max_energy_error, findings);
   return findings;
 }
 

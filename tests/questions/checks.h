@@ -10,11 +10,19 @@
 namespace ballpiston::questions {
 
 // The names of the rules.
-inline constexpr char kCrashCheck[] = "crash", kEndCheck[] = "end", kRefusalCheck[] = "refusal",
-                      kPlanCheck[] = "plan", kMemoryCheck[] = "memory", kFiniteCheck[] = "finite",
-                      kFalseZeroCheck[] = "false zero", kMeasuredCheck[] = "measured",
-                      kHealthCheck[] = "health", kLawCheck[] = "law",
-                      kAgreementCheck[] = "agreement", kCallCheck[] = "call", kJobCheck[] = "job";
+inline constexpr char kCrashCheck[] = "crash";
+inline constexpr char kEndCheck[] = "end";
+inline constexpr char kRefusalCheck[] = "refusal";
+inline constexpr char kPlanCheck[] = "plan";
+inline constexpr char kMemoryCheck[] = "memory";
+inline constexpr char kFiniteCheck[] = "finite";
+inline constexpr char kFalseZeroCheck[] = "false zero";
+inline constexpr char kMeasuredCheck[] = "measured";
+inline constexpr char kHealthCheck[] = "health";
+inline constexpr char kLawCheck[] = "law";
+inline constexpr char kAgreementCheck[] = "agreement";
+inline constexpr char kCallCheck[] = "call";
+inline constexpr char kJobCheck[] = "job";
 
 struct Finding {
   std::string check;  // the rule that is broken

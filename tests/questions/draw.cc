@@ -126,14 +126,31 @@ double Cold(Dice& dice, double hot, bool extreme) {
 
 // ---- defects ----
 
-// Changes the question into one that the service has to refuse, and returns why. The ends of each
+// Makes the first value of the parameter one that lies outside of its domain. The ends of each
 // domain, to the last bit, are in tests/core/ensemble/parameter_test.cc and
 // tests/core/geometry/pair_geometry_test.cc.
+void SetValueOutside(Dice& dice, const Parameter& parameter, double bound_of_delta,
+                     v1::Grid& grid) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (&parameter == &kCells) {
+    grid.set_cells(0, dice.Pick<std::string>({"0", "0x4", "1000001", "1001x1000", "2.5", ""}));
+    return;
+  }
+  const auto* list = grid.GetDescriptor()->FindFieldByName(std::string(parameter.name));
+  const google::protobuf::Reflection& reflection = *grid.GetReflection();
+  if (reflection.FieldSize(grid, list) == 0) reflection.AddDouble(&grid, list, 0);
+  const bool is_just_outside = &parameter == &kDelta && dice.Chance(0.3);
+  const double outside = is_just_outside
+                             ? bound_of_delta * (1 + 3 * kDeltaSlack)
+                             : dice.Pick<double>({-1, -kInfinity, kInfinity, 1e300, NAN});
+  reflection.SetRepeatedDouble(&grid, list, 0, outside);
+}
+
+// Changes the question into one that the service has to refuse, and returns why.
 std::string AddDefect(Dice& dice, const Parameter& parameter, double bound_of_delta,
                       v1::EnsembleSpec& spec) {
   constexpr int kUnknown = 99;  // in no enumeration
   constexpr int kEach = 317;    // its square is above kMaxPoints
-  constexpr double kInfinity = std::numeric_limits<double>::infinity(), kNan = NAN;
   v1::Grid& grid = *spec.mutable_grid();
   v1::Target& target = *spec.mutable_target();
   switch (dice.Below(16)) {
@@ -144,7 +161,7 @@ std::string AddDefect(Dice& dice, const Parameter& parameter, double bound_of_de
       target.set_samples(dice.Pick<int64_t>({0, -1, kMaxSamples + 1}));
       return "the number of samples is outside";
     case 2:
-      target.set_tolerance(dice.Pick<double>({0, -0.01, 1, 1.5, kNan}));
+      target.set_tolerance(dice.Pick<double>({0, -0.01, 1, 1.5, NAN}));
       return "the tolerance is outside";
     case 3:
       target.set_samples(64);
@@ -167,18 +184,7 @@ std::string AddDefect(Dice& dice, const Parameter& parameter, double bound_of_de
       target.set_estimate("heat");
       return "the estimate is not known";
     default:
-      if (&parameter == &kCells) {
-        grid.set_cells(0, dice.Pick<std::string>({"0", "0x4", "1000001", "1001x1000", "2.5", ""}));
-      } else {
-        const auto* list = grid.GetDescriptor()->FindFieldByName(std::string(parameter.name));
-        const google::protobuf::Reflection& reflection = *grid.GetReflection();
-        if (reflection.FieldSize(grid, list) == 0) reflection.AddDouble(&grid, list, 0);
-        const bool is_just_outside = &parameter == &kDelta && dice.Chance(0.3);
-        const double outside = is_just_outside
-                                   ? bound_of_delta * (1 + 3 * kDeltaSlack)
-                                   : dice.Pick<double>({-1, -kInfinity, kInfinity, 1e300, kNan});
-        reflection.SetRepeatedDouble(&grid, list, 0, outside);
-      }
+      SetValueOutside(dice, parameter, bound_of_delta, grid);
       return absl::StrCat("a value of ", parameter.name, " is outside");
   }
 }

@@ -16,10 +16,11 @@ Report AskEngine(const Question& question, double most_seconds);
 // dies, the finding is "crash"; if it takes more than kMostProcessorSeconds, "end".
 Report InChild(const std::function<Report()>& ask);
 
-// Asks ballpistond, a process on a Unix socket in a temporary folder. Plans a question, and runs it
-// to its end, or starts and cancels it if the planned processor time is above `most_seconds`. If
-// the server dies or never ends, the next question gets a new one.
-std::function<Report(const Question&)> AskerOfAServer(double most_seconds);
+// Returns a function that asks ballpistond, a process on a Unix socket in a temporary folder. The
+// function plans a question, and runs it to its end, or starts and cancels it if the planned
+// processor time is above `most_seconds`. If the server dies or never ends, the function starts a
+// new one for the next question.
+std::function<Report(const Question&)> ServerAsker(double most_seconds);
 
 // ---- one point, as the server computes it ----
 

@@ -57,44 +57,51 @@ TEST(Checks, FindEachDefectAndNothingElse) {
   const char *const kNothing = "", *const kRange = "rho is 0.4; permitted: (1/2, 1/sqrt(2))";
   const std::string error = "standard_error: 0.1";
   const struct {
+    const char* name;
     Findings findings;
     const char* broken;
   } rows[] = {
-      {OfAnswer(error), kNothing},
-      {OfAnswer(error + " exact: nan"), kFiniteCheck},
-      {OfAnswer("standard_error: 0"), kFalseZeroCheck},
-      {OfAnswer("standard_error: 1e-17"), kFalseZeroCheck},
-      {OfAnswer(""), kMeasuredCheck},
-      {OfAnswer("", "remarks: 'too few returns'"), kNothing},
-      {OfAnswer(error, "samples: 0"), kMeasuredCheck},
-      {OfAnswer(error, "health { escapes: 1 }"), kHealthCheck},
-      {OfAnswer(error, "histograms { expected_probabilities: 0.99999 }"), kLawCheck},
-      {OfSummary(std::numeric_limits<double>::quiet_NaN()), kFiniteCheck},
-      {OfSummary(1), kNothing},
-      {OfPlan("samples: 64 work: 0.1"), kNothing},
-      {OfPlan("samples: 0 work: 0.1"), kPlanCheck},
-      {OfPlan("samples: 64"), kPlanCheck},
-      {OfPlan("samples: 64 work: 1e115"), kPlanCheck},
-      {OfPlan("samples: 64 work: 0.1", "model: MARKOV"), kPlanCheck},
-      {OfRefusal("spec.grid.rho[0]", kRange), kNothing},
-      {OfRefusal("spec.grid.rho[1]", kRange), kRefusalCheck},
-      {OfRefusal("spec.grid.radius[0]", kRange), kRefusalCheck},
-      {OfRefusal("spec.grid.rho[0]", "rho is wrong; permitted: (1/2, 1/sqrt(2))"), kRefusalCheck},
-      {OfRefusal("spec.grid.rho[0]", "rho is 0.4"), kRefusalCheck},
-      {OfModels("value: 10.7 standard_error: 0.1"), kNothing},
-      {OfModels("value: 10.8 standard_error: 0.1"), kAgreementCheck},
-      {OfModels("value: 10.8 standard_error: 0.1 model_error: 0.2"), kNothing},
-      {OfAModelWithoutKnownError(), kNothing},
-      {Disagreements({ResultWith(error + " exact: 10.6")}), kAgreementCheck},
-      {CheckMemory(1e8, 1e8 + kMemoryOfAnyAnswer), kNothing},
+      {"a good answer", OfAnswer(error), kNothing},
+      {"an exact value is NaN", OfAnswer(error + " exact: nan"), kFiniteCheck},
+      {"an error of 0", OfAnswer("standard_error: 0"), kFalseZeroCheck},
+      {"an error below the rounding", OfAnswer("standard_error: 1e-17"), kFalseZeroCheck},
+      {"no error", OfAnswer(""), kMeasuredCheck},
+      {"no error, and a remark", OfAnswer("", "remarks: 'too few returns'"), kNothing},
+      {"no samples", OfAnswer(error, "samples: 0"), kMeasuredCheck},
+      {"an escape", OfAnswer(error, "health { escapes: 1 }"), kHealthCheck},
+      {"a law that does not sum to 1",
+       OfAnswer(error, "histograms { expected_probabilities: 0.99999 }"), kLawCheck},
+      {"a summary with NaN", OfSummary(std::numeric_limits<double>::quiet_NaN()), kFiniteCheck},
+      {"a good summary", OfSummary(1), kNothing},
+      {"a good plan", OfPlan("samples: 64 work: 0.1"), kNothing},
+      {"a plan without samples", OfPlan("samples: 0 work: 0.1"), kPlanCheck},
+      {"a plan without work", OfPlan("samples: 64"), kPlanCheck},
+      {"a plan that takes too long", OfPlan("samples: 64 work: 1e115"), kPlanCheck},
+      {"a plan by a model that does not answer", OfPlan("samples: 64 work: 0.1", "model: MARKOV"),
+       kPlanCheck},
+      {"a good refusal", OfRefusal("spec.grid.rho[0]", kRange), kNothing},
+      {"a refusal of a value that is not there", OfRefusal("spec.grid.rho[1]", kRange),
+       kRefusalCheck},
+      {"a refusal of an unknown field", OfRefusal("spec.grid.radius[0]", kRange), kRefusalCheck},
+      {"a refusal without the value",
+       OfRefusal("spec.grid.rho[0]", "rho is wrong; permitted: (1/2, 1/sqrt(2))"), kRefusalCheck},
+      {"a refusal without the range", OfRefusal("spec.grid.rho[0]", "rho is 0.4"), kRefusalCheck},
+      {"two models that agree", OfModels("value: 10.7 standard_error: 0.1"), kNothing},
+      {"two models that differ", OfModels("value: 10.8 standard_error: 0.1"), kAgreementCheck},
+      {"two models that differ by a model error",
+       OfModels("value: 10.8 standard_error: 0.1 model_error: 0.2"), kNothing},
+      {"a model without known error", OfAModelWithoutKnownError(), kNothing},
+      {"a model that differs from the exact value",
+       Disagreements({ResultWith(error + " exact: 10.6")}), kAgreementCheck},
+      {"as much memory as planned", CheckMemory(1e8, 1e8 + kMemoryOfAnyAnswer), kNothing},
 #ifndef BALLPISTON_SANITIZED
-      {CheckMemory(1e6, 1e8), kMemoryCheck},
+      {"too much memory", CheckMemory(1e6, 1e8), kMemoryCheck},
 #endif
   };
-  for (size_t i = 0; i < std::size(rows); ++i) {
+  for (const auto& [name, findings, expected] : rows) {
     std::vector<std::string> broken;
-    for (const Finding& finding : rows[i].findings) broken.push_back(finding.check);
-    EXPECT_EQ(absl::StrJoin(broken, ", "), rows[i].broken) << "row " << i;
+    for (const Finding& finding : findings) broken.push_back(finding.check);
+    EXPECT_EQ(absl::StrJoin(broken, ", "), expected) << name;
   }
 }
 

@@ -124,7 +124,7 @@ TEST(Questions, TheEngineKeepsItsPromises) {
 }
 
 TEST(Questions, TheServerKeepsItsPromises) {
-  ExpectNoFailures("server", AskerOfAServer(SizeFromEnvironment().most_seconds));
+  ExpectNoFailures("server", ServerAsker(SizeFromEnvironment().most_seconds));
 }
 
 }  // namespace

@@ -175,7 +175,7 @@ Report Ask(const Question& question, double most_seconds, std::unique_ptr<Runnin
 
 }  // namespace
 
-std::function<Report(const Question&)> AskerOfAServer(double most_seconds) {
+std::function<Report(const Question&)> ServerAsker(double most_seconds) {
   const auto server = std::make_shared<std::unique_ptr<RunningServer>>();
   return [=](const Question& question) { return Ask(question, most_seconds, *server); };
 }

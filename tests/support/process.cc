@@ -81,36 +81,42 @@ auto Uninterrupted(Call call) {
 Process::Process(const ProcessOptions& options) : closed_(eventfd(0, EFD_CLOEXEC)) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  std::vector<int> ends;  // of the program
-  if (options.on_terminal) {
-    char name[100];
-    int end = -1;
-    if (openpty(&out_.descriptor, &end, name, nullptr, nullptr) != 0) {
-      throw std::runtime_error("no pseudo-terminal");
-    }
-    ends = {end};
-    fcntl(out_.descriptor, F_SETFD, FD_CLOEXEC);
-    // The first terminal that the leader of a session opens becomes the session's.
-    posix_spawn_file_actions_addclose(&actions, end);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, name, O_RDWR, 0);
-    posix_spawn_file_actions_adddup2(&actions, STDIN_FILENO, STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, STDIN_FILENO, STDERR_FILENO);
-  } else {
-    const Pipe in, out, err;
-    ends = {in.read, out.write, err.write};
-    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-      posix_spawn_file_actions_adddup2(&actions, ends[static_cast<size_t>(stream)], stream);
-    }
-    out_.descriptor = out.read;
-    err_.descriptor = err.read;
-    writer_ = std::thread([input = options.input, end = in.write] { WriteAll(end, input); });
-  }
+  const Ends ends = options.on_terminal ? OpenTerminal(actions) : OpenPipes(actions);
   Start(options, actions);
   for (const int end : ends) close(end);
+  if (input_ >= 0) {
+    writer_ = std::thread([this, input = options.input] { WriteAll(input_, input); });
+  }
   for (Stream* stream : {&out_, &err_}) {
     stream->ended = stream->descriptor < 0;
     if (!stream->ended) stream->reader = std::thread([this, stream] { Read(*stream); });
   }
+}
+
+Process::Ends Process::OpenTerminal(posix_spawn_file_actions_t& actions) {
+  char name[100];
+  int end = -1;
+  if (openpty(&out_.descriptor, &end, name, nullptr, nullptr) != 0) {
+    throw std::runtime_error("no pseudo-terminal");
+  }
+  fcntl(out_.descriptor, F_SETFD, FD_CLOEXEC);
+  // The first terminal that the leader of a session opens becomes the session's.
+  posix_spawn_file_actions_addclose(&actions, end);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, name, O_RDWR, 0);
+  posix_spawn_file_actions_adddup2(&actions, STDIN_FILENO, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, STDIN_FILENO, STDERR_FILENO);
+  return {end};
+}
+
+Process::Ends Process::OpenPipes(posix_spawn_file_actions_t& actions) {
+  const Pipe in, out, err;
+  posix_spawn_file_actions_adddup2(&actions, in.read, STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, out.write, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, err.write, STDERR_FILENO);
+  input_ = in.write;
+  out_.descriptor = out.read;
+  err_.descriptor = err.read;
+  return {in.read, out.write, err.write};
 }
 
 void Process::Start(const ProcessOptions& options, posix_spawn_file_actions_t& actions) {

@@ -18,7 +18,7 @@ struct ProcessOptions {
   std::vector<std::string> command;                     // path, arguments
   std::map<std::string, std::string> environment = {};  // added to the test's; empty: removed
   std::string input = {};                               // on standard input
-  bool on_terminal = false;  // of its own, as a user's: its input, output and standard error
+  bool on_terminal = false;                             // runs on its own terminal
 };
 
 struct ProcessResult {
@@ -69,6 +69,9 @@ class Process {
     bool ended = false;
     std::thread reader;
   };
+  using Ends = std::vector<int>;  // the program's ends of pipes, or of the terminal
+  Ends OpenTerminal(posix_spawn_file_actions_t& actions);
+  Ends OpenPipes(posix_spawn_file_actions_t& actions);
   void Start(const ProcessOptions& options, posix_spawn_file_actions_t& actions);
   void Read(Stream& stream);
   void Close(Stream& stream);
@@ -80,6 +83,7 @@ class Process {
   mutable std::mutex mutex_;
   std::condition_variable news_;
   Stream out_, err_;    // a terminal has one
+  int input_ = -1;      // a pipe to standard input
   int closed_ = -1;     // an eventfd, which ends the reading of the terminal
   std::thread writer_;  // of standard input
 };

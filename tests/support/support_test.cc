@@ -1,5 +1,6 @@
 // Programs that tests start, and the main function of test programs.
 #include "tests/support/process.h"
+#include "tests/support/scoped_variable.h"
 
 namespace ballpiston {
 namespace {
@@ -23,6 +24,12 @@ TEST(Process, LongInputAndOutputDoNotWaitForEachOther) {
 
 TEST(Process, AProgramMayEndWithoutReadingItsInput) {
   EXPECT_THAT(RunProgram({.command = {"true"}, .input = kLongInput}), ExitsWith(0));
+}
+
+TEST(Process, AFailedStartIsAnError) {
+  const ScopedVariable path("PATH", "/no/such/folder");  // of setpriv
+  EXPECT_THAT([] { RunProgram({.command = {"true"}, .input = kLongInput}); },
+              testing::ThrowsMessage<std::runtime_error>(HasSubstr("cannot start true")));
 }
 
 TEST(Process, EndsWithinTellsWhetherItRuns) {

@@ -61,10 +61,11 @@ TEST_F(ChildProcessTest, AMissingProgramIsNotFound) {
 
 // A fake server as a shell script; $2 is its data folder. The server takes the lock, writes its
 // process id into the lock file and writes its address. It ends at SIGTERM, or when the test's
-// folder is removed. FindServer holds a free lock for a moment, so the script waits for the lock.
+// folder is removed, or with the test. FindServer holds a free lock for a moment, so the script
+// waits for the lock.
 constexpr char kLock[] = "exec 9>>$2/lock; flock -w 1 9 || exit 1; echo $$ >$2/lock\n";
 constexpr char kListen[] = "echo unix:$2/socket >$2/server.address\n";
-constexpr char kWait[] = "while [ -d $2 ]; do sleep 0.01 9>&-; done\n";
+constexpr char kWait[] = "while [ -d $2 ] && kill -0 $PPID; do sleep 0.01 9>&-; done\n";
 constexpr char kEnd[] = "trap 'rm $2/server.address; exit 0' TERM\n";
 
 class ServerProcessTest : public ::testing::Test {
@@ -332,17 +333,20 @@ TEST_F(LocalServerTest, DoesNotWaitForAServerThatListensElsewhere) {
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("listens at 127.0.0.1:50051")));
 }
 
-// The other server ends: the program is started again, and runs until the test's folder is removed.
+// The other server ends: the program is started again, and runs until the test's folder is removed
+// or the test ends.
 TEST_F(LocalServerTest, StartsAServerWhenAnotherLeavesTheFolder) {
   FakeServer second;
   FolderInUse in_use(home_);
-  const LocalServer server{.folder = home_.string(),
-                           .socket = second.SocketPath(),
-                           .program = Program("cd " + home_.string() +
-                                              "; if [ -e once ]; then touch twice;"
-                                              " while [ -e once ]; do sleep 0.01; done; exit 1; fi;"
-                                              " touch once; exit 1"),
-                           .start_time = absl::FromChrono(kPatience)};
+  const LocalServer server{
+      .folder = home_.string(),
+      .socket = second.SocketPath(),
+      .program = Program(absl::StrCat(
+          "cd ", home_.string(), "; if [ -e once ]; then exec 9>>lock; flock -w 1 9 || exit 1; ",
+          "echo unix:", second.SocketPath(), " >server.address; touch twice; ",
+          "while [ -e once ] && kill -0 $PPID; do sleep 0.01 9>&-; done; exit 1; fi; ",
+          "touch once; exit 1")),
+      .start_time = absl::FromChrono(kPatience)};
   std::jthread starter([&](const std::stop_token& stop) {
     AwaitFile(home_ / "once", stop);
     in_use.Leave();

@@ -37,19 +37,24 @@ TEST(Parameter, CodesOfShapesAreTheValuesOfCells) {
   EXPECT_THAT(kCells.validate(0.5).message(), HasSubstr("cells is the code 0.5; "));
 }
 
-TEST(Parameter, TemperaturesHaveTheRangeOfTheClosedForms) {
-  for (const Parameter* parameter : {&kTemperature, &kHot, &kCold}) {
-    for (const double value : {kMinTemperature, 0.25, 1.0, kMaxTemperature}) {
+TEST(Parameter, RangesAreClosedToTheLastBit) {
+  const std::tuple<const Parameter*, double, double, const char*> kRanges[] = {
+      {&kEpsilon, 0, 0.5, "[0, 0.5]"},
+      {&kExponent, 0, kMaxExponent, "[0, 1000]"},
+      {&kTemperature, kMinTemperature, kMaxTemperature, "[1e-120, 1e+120]"},
+      {&kHot, kMinTemperature, kMaxTemperature, "[1e-120, 1e+120]"},
+      {&kCold, kMinTemperature, kMaxTemperature, "[1e-120, 1e+120]"}};
+  for (const auto& [parameter, lower, upper, permitted] : kRanges) {
+    for (const double value : {lower, 0.25, upper}) {
       EXPECT_OK(parameter->validate(value)) << parameter->name;
     }
-    for (const double value :
-         {0.0, -1.0, std::nextafter(kMinTemperature, 0), std::nextafter(kMaxTemperature, HUGE_VAL),
-          HUGE_VAL, -HUGE_VAL, std::nan("")}) {
+    for (const double value : {std::nextafter(lower, -HUGE_VAL), std::nextafter(upper, HUGE_VAL),
+                               HUGE_VAL, -HUGE_VAL, std::nan("")}) {
       EXPECT_THAT(parameter->validate(value), StatusIs(absl::StatusCode::kInvalidArgument))
           << parameter->name << " " << value;
     }
     EXPECT_EQ(parameter->validate(-1).message(),
-              absl::StrCat(parameter->name, " is -1; permitted: [1e-120, 1e+120]"));
+              absl::StrCat(parameter->name, " is -1; permitted: ", permitted));
   }
 }
 

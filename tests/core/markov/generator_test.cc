@@ -50,6 +50,7 @@ TEST(Generator, ConservesProbability) {
       const Eigen::VectorXd one = generator.Coefficients([](double) { return 1.0; });
       EXPECT_LE(generator.rates().cwiseProduct(one).norm(), kGeneratorRoundingError)
           << degree << " " << levels;
+      EXPECT_LE(generator.asymmetry(), kGeneratorRoundingError) << degree << " " << levels;
       EXPECT_NEAR(generator.rates()[0], 0, kGeneratorRoundingError);
       EXPECT_GT(generator.rates()[1], 0.15);
     }

@@ -62,6 +62,7 @@ std::vector<BadRequest> BadRequests() {
       {create, with("target { samples: 0 }"), {"spec.target.samples"}, "0"},
       {create, with("target { budget { seconds: 5 } }"), {"spec.target.budget"}},
       {create, with("model: 99"), {"spec.model"}, "99"},
+      {create, with("precision: 99"), {"spec.precision"}, "99"},
       {create, hit + "request_id: 'not a uuid'", {"request_id"}},
       {create, hit + "priority: 101", {"priority"}, "-100 to 100"},
       {create, hit + "priority: -101", {"priority"}, "-100 to 100"},
