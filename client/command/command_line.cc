@@ -58,12 +58,14 @@ absl::Status AddConfig(const Verb& verb, Settings& settings) {
                     });
 }
 
+bool IsOf(const FlagGroup& group, const Flag& flag) {
+  return std::any_of(group.flags.begin(), group.flags.end(),
+                     [&flag](const Flag& other) { return &other == &flag; });
+}
+
 // Whether another command needs this flag to reach the same server.
 bool IsOfConnection(const Flag& flag) {
-  const auto& flags = ServerFlags().flags;
-  return LongName(flag) == "--config" ||
-         std::any_of(flags.begin(), flags.end(),
-                     [&flag](const Flag& other) { return &other == &flag; });
+  return LongName(flag) == "--config" || IsOf(ServerFlags(), flag);
 }
 
 std::string NameOf(const Flag& flag, Source source) {
@@ -92,13 +94,20 @@ absl::Status ReadFlag(const Flag& flag, const Setting& setting, Options& options
 }
 
 // Reads the weakest source first, so that a flag from a stronger source also replaces flags that
-// exclude it: --token-file replaces BALLPISTON_TOKEN. Of one source in the order of the table.
+// exclude it: --token-file replaces BALLPISTON_TOKEN, and --budget the tolerance of the config
+// file. Of one source in the order of the table.
 absl::Status ReadFlags(const Verb& verb, const Settings& settings, Options& options) {
   for (const Source source :
        {Source::kFile, Source::kSection, Source::kVariable, Source::kCommandLine}) {
+    bool has_target = false;
     for (const Flag* flag : FlagsOf(verb)) {
       const auto setting = settings.find(flag);
       if (setting == settings.end() || setting->second.source != source) continue;
+      if (IsOf(TargetFlags(), *flag) && !has_target) {
+        has_target = true;
+        options.spec.mutable_target()->clear_kind();
+        options.spec.mutable_target()->clear_budget();
+      }
       if (absl::Status bad = ReadFlag(*flag, setting->second, options); !bad.ok()) return bad;
     }
   }
@@ -156,6 +165,7 @@ class WordParser {
 
   // NOT_FOUND if the words ask for help instead.
   absl::Status Parse(const std::vector<std::string>& words) {
+    if (absl::Status bad = CheckValuesAreThere(words); !bad.ok()) return bad;
     if (verb_.passes_words_on && words.size() > 1) app_.set_help_flag();  // passed on too
     try {
       app_.parse(std::vector<std::string>(words.rbegin(), words.rend()));
@@ -189,6 +199,29 @@ class WordParser {
   }
 
  private:
+  // If the value is missing, CLI11 would take the next word as the value, even if it is a flag.
+  absl::Status CheckValuesAreThere(const std::vector<std::string>& words) const {
+    std::map<std::string, bool> takes_value = {{"--help", false}, {"-h", false}};
+    for (const auto& [flag, option] : flags_) {
+      for (const absl::string_view name : absl::StrSplit(flag->name, ',')) {
+        takes_value[std::string(name)] = !flag->value.IsSwitch();
+      }
+    }
+    const auto is_flag = [&](const std::string& word) {
+      return takes_value.contains(word.substr(0, word.find('=')));
+    };
+    for (auto word = words.begin(); word != words.end() && *word != "--"; ++word) {
+      const std::string name = word->substr(0, word->find('='));
+      if (!is_flag(name) || !takes_value.at(name)) continue;
+      const auto next = word + 1;
+      const bool is_alone = *word == name && (next == words.end() || is_flag(*next));
+      if (*word == name + "=" || is_alone) {
+        return WrongUsage(absl::StrCat(name, " needs a value"), &verb_);
+      }
+    }
+    return absl::OkStatus();
+  }
+
   void AddArgument(const Argument& argument) {
     CLI::Option* const option = app_.add_option(argument.value.name);
     if (argument.IsMany()) option->expected(CLI::detail::expected_max_vector_size);
@@ -204,10 +237,6 @@ class WordParser {
   }
 
   std::string Explanation(const CLI::ParseError& error) const {
-    for (const auto& [flag, option] : flags_) {  // the next flag was taken for the value
-      const bool is_flag = option->count() == 1 && absl::StartsWith(option->results()[0], "--");
-      if (is_flag) return absl::StrCat(LongName(*flag), " needs a value");
-    }
     std::vector<std::string> left = app_.remaining();
     std::erase(left, "--");
     if (!left.empty()) {

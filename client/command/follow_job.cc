@@ -23,8 +23,8 @@ WatchCallbacks Report(ProgressReporter& reporter) {
 }  // namespace
 
 ProgressStyle StyleOf(const Options& options) {
-  const bool is_silent =
-      options.verbosity == Verbosity::kQuiet && !options.given.contains("--progress");
+  const bool is_silent = options.verbosity == Verbosity::kQuiet && !options.progress_beats_quiet &&
+                         !options.given.contains("--progress");
   return is_silent ? ProgressStyle::kNone : options.progress;
 }
 

@@ -140,12 +140,16 @@ absl::StatusOr<std::vector<double>> ParseNumberList(absl::string_view text) {
   return list;
 }
 
+std::string ShapeText(absl::string_view text) {
+  const auto count = ToCount(text);
+  return count ? absl::StrCat(*count) : std::string(text);
+}
+
 absl::StatusOr<std::vector<std::string>> ParseShapeList(absl::string_view text) {
   std::vector<std::string> list;
   for (const absl::string_view item : absl::StrSplit(text, ',')) {
     if (item.find(':') == absl::string_view::npos) {
-      const auto count = ToCount(item);
-      list.push_back(count ? absl::StrCat(*count) : std::string(item));
+      list.push_back(ShapeText(item));
     } else {
       const auto range = ParseRange(item);
       if (!range.ok()) return range.status();

@@ -26,7 +26,9 @@ absl::StatusOr<double> ParseNumber(absl::string_view text);
 absl::StatusOr<int64_t> ParseCount(absl::string_view text);
 absl::StatusOr<uint64_t> ParseSeed(absl::string_view text);
 absl::StatusOr<std::vector<double>> ParseNumberList(absl::string_view text);
-// Counts are written out: 1e3,4x3 is 1000 and 4x3.
+// Writes a count out: 1e3 is 1000. Another shape stays as it is, such as 4x3.
+std::string ShapeText(absl::string_view text);
+// The list's ranges are written out, and its shapes as by ShapeText.
 absl::StatusOr<std::vector<std::string>> ParseShapeList(absl::string_view text);
 
 }  // namespace ballpiston::client

@@ -56,7 +56,9 @@ struct Options {
   Format format = Format::kTable;
   ProgressStyle progress = ProgressStyle::kAuto;
   Verbosity verbosity = Verbosity::kNormal;
-  std::vector<std::string> words;  // of help, completion and figure
+  bool progress_beats_quiet = false;  // --progress is from a stronger source than --quiet
+  std::vector<std::string> words;     // of help, completion and figure
+  bool list = false;                  // of figure: print the names
   PageFormat page = PageFormat::kText;
   bool all = false;  // of help: every flag
   Completion completion = Completion::kBash;

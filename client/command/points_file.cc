@@ -107,7 +107,7 @@ class PointsReader {
   absl::Status Add(const FieldDescriptor& column, absl::string_view text) {
     const google::protobuf::Reflection& reflection = *grid_.GetReflection();
     if (column.cpp_type() == FieldDescriptor::CPPTYPE_STRING) {
-      reflection.AddString(&grid_, &column, std::string(text));
+      reflection.AddString(&grid_, &column, ShapeText(text));
       return absl::OkStatus();
     }
     const absl::StatusOr<double> number = ParseNumber(text);

@@ -5,8 +5,10 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "absl/strings/match.h"
@@ -16,7 +18,10 @@
 #include "client/command/config_file.h"
 #include "client/command/follow_job.h"
 #include "client/command/interrupts.h"
+#include "client/command/suggestion.h"
+#include "client/command/verb_table.h"
 #include "client/library/child_process.h"
+#include "client/library/quoted.h"
 #include "client/library/server_process.h"
 #include "client/output/new_file.h"
 
@@ -56,8 +61,7 @@ void SetEnvironment(const Options& options) {
   set("BALLPISTON_TOKEN_FILE", options.security.token_file);
   set("BALLPISTON_TOKEN", options.security.token);
   set("BALLPISTON_CONFIG", "/dev/null");
-  constexpr const char* kStyles[] = {"auto", "bar", "json", "none"};  // as in ProgressStyle
-  set("BALLPISTON_PROGRESS", kStyles[static_cast<int>(StyleOf(options))]);
+  set("BALLPISTON_PROGRESS", WordOf(StyleOf(options), ProgressStyles()));
 }
 
 }  // namespace
@@ -115,7 +119,10 @@ absl::Status CheckTableFile(const std::string& out) {
   for (const char* ending : {".csv", ".npz", ".parquet"}) {
     if (absl::EndsWith(out, ending)) return CheckNewFile("--out", out);
   }
-  return absl::InvalidArgumentError("--out: name a file .csv, .npz or .parquet");
+  return absl::InvalidArgumentError(
+      out.empty()
+          ? "--out is missing: name a file .csv, .npz or .parquet"
+          : absl::StrCat("--out: ", Quoted(out), " does not end in .csv, .npz or .parquet"));
 }
 
 // The modules NAME.py in the folder of figures; names with _ are its own.
@@ -131,11 +138,49 @@ std::vector<std::string> FigureNames() {
   return {names.begin(), names.end()};
 }
 
+namespace {
+
+// NAME: the first line of its module, without the quotes.
+void ListFigures(std::ostream& out) {
+  for (const std::string& name : FigureNames()) {
+    const std::string file = absl::StrReplaceAll(name, {{"-", "_"}}) + ".py";
+    std::ifstream in(PythonPackage() / "figures" / file);
+    std::string title;
+    std::getline(in, title);
+    std::erase(title, '"');
+    out << name << ": " << title << '\n';
+  }
+}
+
+// The words with the figure's name first.
+absl::StatusOr<std::vector<std::string>> FigureWords(std::vector<std::string> words) {
+  const std::vector<std::string> names = FigureNames();
+  if (names.empty()) return words;  // CheckPython names the missing package
+  const auto name = std::find_first_of(words.begin(), words.end(), names.begin(), names.end());
+  if (name != words.end()) {
+    std::rotate(words.begin(), name, name + 1);
+    return words;
+  }
+  if (words.empty() || absl::StartsWith(words[0], "-")) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("name a figure (", absl::StrJoin(names, ", "), "), or give --list"));
+  }
+  return absl::InvalidArgumentError(absl::StrCat("NAME: ", NotOneOf(words[0], names)));
+}
+
+}  // namespace
+
 VerbResult Figure(const Options& options, Terminal& terminal) {
+  if (options.list) {
+    ListFigures(terminal.out);
+    return ExitCode::kDone;
+  }
+  const auto words = FigureWords(options.words);
+  if (!words.ok()) return words.status();
   absl::Status bad = CheckPython("figure", {"ballpiston", "matplotlib"},
                                  "python3-ballpiston and python3-matplotlib");
   if (!bad.ok()) return bad;
-  return RunPythonProgram("ballpiston.figures", options.words, options, terminal);
+  return RunPythonProgram("ballpiston.figures", *words, options, terminal);
 }
 
 VerbResult Export(const Options& options, Terminal& terminal) {

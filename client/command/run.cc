@@ -13,6 +13,7 @@
 #include "client/command/python.h"
 #include "client/command/question.h"
 #include "client/command/selection.h"
+#include "client/command/verb_table.h"
 #include "client/library/child_process.h"
 #include "client/library/quoted.h"
 #include "client/library/request_id.h"
@@ -215,8 +216,10 @@ absl::Status CheckSave(const Options& options) {
   }
   const bool is_usual = options.format == Format::kTable;
   if (!is_usual && (IsNpz(options) || options.format != FormatOf(options))) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("--save: the ending of ", options.save, " does not go with this --format"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "--save: ", options.save, " does not go with --format ", WordOf(options.format, Formats()),
+        "; permitted: no --format",
+        IsNpz(options) ? "" : ", or --format " + WordOf(FormatOf(options), Formats())));
   }
   if (absl::Status bad = CheckNewFile("--save", options.save); !bad.ok()) return bad;
   if (!IsNpz(options)) return absl::OkStatus();

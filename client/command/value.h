@@ -5,6 +5,7 @@
 // physical.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <utility>
@@ -58,6 +59,14 @@ Value Passed(std::string name, std::string flag);  // to ballpistond, with its f
 
 template <typename T>
 using Choices = std::vector<std::pair<std::string, T>>;
+
+// The word of the value, which must be one of the choices.
+template <typename T>
+std::string WordOf(T value, const Choices<T>& choices) {
+  return std::find_if(choices.begin(), choices.end(),
+                      [value](const auto& choice) { return choice.second == value; })
+      ->first;
+}
 
 // Also accepts capitals and underscores, as in JSON.
 template <typename T>

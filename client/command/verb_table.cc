@@ -50,36 +50,52 @@ Value Asked(Numbers* (v1::EvaluatePairsRequest::*list)()) {
   });
 }
 
-// A target for all but the time. It replaces a budget from a weaker source.
-v1::Target& NewTarget(Options& options) {
-  options.spec.mutable_target()->clear_budget();
-  return *options.spec.mutable_target();
-}
+v1::Target& Target(Options& options) { return *options.spec.mutable_target(); }
 
 // The seconds and the nanoseconds of a duration have the sign of the number. A duration can hold
 // 10,000 years; the server's limit is smaller.
 void SetBudget(Options& options, double seconds) {
   constexpr double kMost = 315576000000;
   seconds = std::clamp(seconds, -kMost, kMost);
-  v1::Target& target = *options.spec.mutable_target();
-  if (!target.has_tolerance()) target.clear_kind();
-  google::protobuf::Duration& budget = *target.mutable_budget();
+  google::protobuf::Duration& budget = *Target(options).mutable_budget();
   constexpr int32_t kNanos = 1'000'000'000;
   const auto nanos = static_cast<int32_t>(std::lround((seconds - std::trunc(seconds)) * kNanos));
   budget.set_seconds(static_cast<int64_t>(seconds) + nanos / kNanos);
   budget.set_nanos(nanos % kNanos);
 }
 
-Choices<Format> Formats() {
-  return {{"table", Format::kTable},
-          {"json", Format::kJson},
-          {"jsonl", Format::kJsonl},
-          {"csv", Format::kCsv}};
+// A message cannot hold less than a nanosecond.
+Value Budget() {
+  Value value = Number("SECONDS", &SetBudget);
+  value.read = [read = value.read](const std::string& text, Options& options) {
+    const absl::Status status = read(text, options);
+    const google::protobuf::Duration& budget = options.spec.target().budget();
+    const bool is_zero = budget.seconds() == 0 && budget.nanos() == 0;
+    if (!status.ok() || !is_zero || *ParseNumber(text) == 0) return status;
+    return absl::InvalidArgumentError(
+        absl::StrCat(text, " is below the least budget; permitted: 1e-9 to 1e6 s"));
+  };
+  return value;
+}
+
+// The table has --progress before --quiet. If --quiet is already set, its source is a weaker one.
+void SetProgress(Options& options, ProgressStyle style) {
+  options.progress = style;
+  options.progress_beats_quiet = options.verbosity == Verbosity::kQuiet;
 }
 
 Value VerbositySwitch(Verbosity verbosity) {
   return Switch([verbosity](Options& options, bool on) {
-    if (on) options.verbosity = verbosity;
+    if (!on) return;
+    options.verbosity = verbosity;
+    options.progress_beats_quiet = false;
+  });
+}
+
+// A switch that the verb passes on.
+Value Forwarded(const std::string& flag) {
+  return Switch([flag](Options& options, bool on) {
+    if (on) options.words.push_back(flag);
   });
 }
 
@@ -142,14 +158,14 @@ const FlagGroup kGrid = {
 
 const FlagGroup kTarget = {
     "Target (at most one; --tolerance and --budget can be combined)",
-    {{"--samples", Count([](Options& o, int64_t n) { NewTarget(o).set_samples(n); }),
+    {{"--samples", Count([](Options& o, int64_t n) { Target(o).set_samples(n); }),
       "samples per point"},
-     {"--collisions", Count([](Options& o, int64_t n) { NewTarget(o).set_collisions(n); }),
+     {"--collisions", Count([](Options& o, int64_t n) { Target(o).set_collisions(n); }),
       "ball-piston collisions per point"},
-     {"--tolerance", Number("REL", [](Options& o, double x) { NewTarget(o).set_tolerance(x); }),
+     {"--tolerance", Number("REL", [](Options& o, double x) { Target(o).set_tolerance(x); }),
       "relative standard error of the first estimate; a point is finished when it reaches this "
       "error"},
-     {"--budget", Number("SECONDS", &SetBudget),
+     {"--budget", Budget(),
       "time of all workers, divided evenly between the points; with --tolerance, the job fails if "
       "this time is too short"}}};
 
@@ -162,10 +178,10 @@ const FlagGroup kMethod = {
                          [](Options& o, Spec::Model model) { o.spec.set_model(model); }),
       "by default auto, the cheapest model that gives the estimate"},
      {"--estimate",
-      Text("NAME",
-           [](Options& o, std::string x) { o.spec.mutable_target()->set_estimate(std::move(x)); }),
+      Text("NAME", [](Options& o, std::string name) { Target(o).set_estimate(std::move(name)); }),
       "the estimate of --tolerance and --model auto; the result prints it first; gas-equilibrium, "
-      "lyapunov and gas-lyapunov have a choice; the error of a wrong name lists it"},
+      "lyapunov and gas-lyapunov have a choice; one of the names in docs/answers.md, and the error "
+      "of a wrong name lists them"},
      {"--precision",
       OneOf<Spec::Precision>(
           "PRECISION", EnumChoices<Spec::Precision>(),
@@ -208,18 +224,13 @@ const FlagGroup kSave = {
       "the versions; prints the file's path. .json has everything, .npz NumPy arrays (this needs "
       "the Python package), .csv the estimates"}}};
 
-const FlagGroup kProgress = {"Progress",
-                             {{"--progress",
-                               OneOf("STYLE",
-                                     Choices<ProgressStyle>{{"auto", ProgressStyle::kAuto},
-                                                            {"bar", ProgressStyle::kBar},
-                                                            {"json", ProgressStyle::kJson},
-                                                            {"none", ProgressStyle::kNone}},
-                                     To(&Options::progress)),
-                               "progress on standard error; by default auto, which shows a bar if "
-                               "standard error is a terminal, else nothing",
-                               "BALLPISTON_PROGRESS"}},
-                             /*is_everyday=*/false};
+const FlagGroup kProgress = {
+    "Progress",
+    {{"--progress", OneOf<ProgressStyle>("STYLE", ProgressStyles(), &SetProgress),
+      "progress on standard error; by default auto, which shows a bar if standard error is a "
+      "terminal, else nothing",
+      "BALLPISTON_PROGRESS"}},
+    /*is_everyday=*/false};
 
 const FlagGroup kClosedForms = {
     kListForm,
@@ -243,7 +254,8 @@ const FlagGroup kTrace = {
       "the pistons' penetration, above 0, up to (1 - lambda)/2 for a pair and rho/sqrt(2) - "
       "lambda/2 for a gas; required"},
      {"--cells",
-      Text("SHAPE", [](Options& o, std::string cells) { o.trace.set_cells(std::move(cells)); }),
+      Text("SHAPE",
+           [](Options& o, const std::string& cells) { o.trace.set_cells(ShapeText(cells)); }),
       "a periodic gas of this shape instead of a pair: N, a chain of N cells, or NxM, a lattice of "
       "N columns and M rows; at most 1,000 cells"},
      {"--temperature", Number("X", [](Options& o, double x) { o.trace.set_temperature(x); }),
@@ -296,6 +308,20 @@ const FlagGroup kWatch = {"Watch",
 
 const FlagGroup kPin = {
     "Pin", {{"--undo", Switch(To(&Options::undo)), "unpin: the results may expire again"}}};
+
+const FlagGroup kFigure = {
+    "Figure",
+    {{"--out",
+      Text(
+          "DIR", [](Options& o, const std::string& dir) { o.words.push_back("--out=" + dir); },
+          Offer::kFile),
+      "folder for data and pictures; required"},
+     {"--list", Switch(To(&Options::list)), "print the names of the figures; draw nothing"},
+     {"--quick", Forwarded("--quick"), "few samples: the figure takes seconds"},
+     {"--full", Forwarded("--full"), "at least the paper's number of samples: minutes to hours"},
+     {"--edit", Forwarded("--edit"),
+      "only copy the figure's Python module to DIR, so that you can edit it; a module that is "
+      "already there is used unchanged"}}};
 
 const FlagGroup kReport = {
     "Report", {{"--out", File(To(&Options::out)), "the HTML file to write; required"}}};
@@ -504,18 +530,14 @@ std::vector<Verb> AllVerbs() {
        &Sample},
       {"figure",
        "draw a figure: data, SVG and PNG",
-       "Writes to the folder --out DIR, which is required. --list prints the names of the figures, "
-       "and figure NAME --help the figure's variables, such as --rho and --samples. --quick takes "
-       "seconds; --full has at least the paper's number of samples. --edit only copies the "
-       "figure's "
-       "Python module to DIR, so that you can edit it; a module that is already there is used "
-       "unchanged. After an interruption, the same command resumes the jobs of the figure. Figures "
-       "need Python with the package ballpiston and matplotlib: python3-ballpiston, "
-       "python3-matplotlib.",
+       "A figure also has its own flags, such as --rho and --samples: figure NAME --help shows "
+       "them. The config file cannot set them. After an interruption, the same command resumes the "
+       "jobs of the figure. Figures need Python with the package ballpiston and matplotlib: "
+       "python3-ballpiston, python3-matplotlib.",
        {{Text(
              "NAME", [](Options&, const std::string&) {}, Offer::kFigure),
          "one of the names that --list prints", Argument::kOptional}},
-       With({&kProgress, &kServer}),
+       With({&kFigure, &kProgress, &kServer}),
        {"figure mean-free-time --out figures", "figure relaxation --quick --delta 0.2,0.1 --out x",
         "figure --list"},
        &Figure,
@@ -654,6 +676,22 @@ std::vector<std::string> NextWords(const std::string& begin) {
     if (words.empty() || words.back() != word) words.push_back(word);
   }
   return words;
+}
+
+const Choices<Format>& Formats() {
+  static const auto* const formats = new Choices<Format>{{"table", Format::kTable},
+                                                         {"json", Format::kJson},
+                                                         {"jsonl", Format::kJsonl},
+                                                         {"csv", Format::kCsv}};
+  return *formats;
+}
+
+const Choices<ProgressStyle>& ProgressStyles() {
+  static const auto* const styles = new Choices<ProgressStyle>{{"auto", ProgressStyle::kAuto},
+                                                               {"bar", ProgressStyle::kBar},
+                                                               {"json", ProgressStyle::kJson},
+                                                               {"none", ProgressStyle::kNone}};
+  return *styles;
 }
 
 const FlagGroup& ServerFlags() { return kServer; }

@@ -44,8 +44,8 @@ struct Verb {
   std::vector<const FlagGroup*> groups;
   std::vector<std::string> examples;  // without the program's name
   VerbFunction* act;
-  // Options::words gets all words but the verb's flags, also unknown flags, in their order. Then
-  // the arguments are only described.
+  // Options::words gets all words but the verb's flags, also unknown flags, in their order; a flag
+  // may append to them (Forwarded). Then the arguments are only described.
   bool passes_words_on = false;
 };
 
@@ -63,6 +63,10 @@ const FlagGroup& ServerFlags();
 const FlagGroup& TargetFlags();
 // The groups that make a specification.
 const std::vector<const FlagGroup*>& QuestionFlags();
+
+// The words of --format and of --progress.
+const Choices<Format>& Formats();
+const Choices<ProgressStyle>& ProgressStyles();
 
 // The exit codes, and the files and variables that the program reads: (name, text).
 struct Remark {

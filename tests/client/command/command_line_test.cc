@@ -87,7 +87,18 @@ TEST_F(CommandLineTest, NoLibraryLogsToStandardError) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-// The package gets the words as they were written, and the server in the environment.
+TEST_F(CommandLineTest, AFigureWithoutItsNameIsAnErrorWithoutPython) {
+  const ScopedVariable program("BALLPISTON_PYTHON", "/bin/false");
+  EXPECT_THAT(Ballpiston({"figure", "--list"}).out,
+              HasSubstr("\nrelaxation: Relaxation of the piston's energy"));
+  EXPECT_EQ(Ballpiston({"figure", "--quick"}).code, 2);
+  const Outcome wrong = Ballpiston({"figure", "mean-free-tim", "--out", "x"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("did you mean mean-free-time?"));
+}
+
+// The package gets the name, the figure's own words as they were written and the common flags. The
+// server is in the environment.
 TEST_F(CommandLineTest, AFigureStartsPythonAndReturnsItsExitCode) {
   const std::string python = home_.File("python");
   WriteFile(python,
@@ -102,8 +113,8 @@ TEST_F(CommandLineTest, AFigureStartsPythonAndReturnsItsExitCode) {
                   "--relaxation-delta", "0.1,0.2", "--server", "h:1"});
   EXPECT_EQ(outcome.code, 3) << outcome.err;
   EXPECT_EQ(Contents(home_.File("said")),
-            "-m ballpiston.figures mean-free-time --out figures --quick --samples 7 "
-            "--relaxation-delta 0.1,0.2 h:1\n");
+            "-m ballpiston.figures mean-free-time --samples 7 --relaxation-delta 0.1,0.2 "
+            "--out=figures --quick h:1\n");
 }
 
 // ---- exit codes ----

@@ -64,6 +64,13 @@ TEST_F(CompletionTest, OffersTheJobsOfARunningServer) {
   EXPECT_THAT(Offers({"label", "abc", ""}), Contains(StartsWith("--server\t")));
 }
 
+TEST_F(CompletionTest, OffersFiguresAndTheirCommonFlags) {
+  EXPECT_THAT(Offers({"figure", ""}), Contains("mean-free-time"));
+  EXPECT_THAT(Offers({"figure", "--quick", "--out", "x", ""}), Contains("mean-free-time"));
+  EXPECT_THAT(Offers({"figure", "--out", ""}), ElementsAre("FILES"));
+  EXPECT_THAT(Offers({"figure", "cell", ""}), Contains(StartsWith("--full\t")));
+}
+
 TEST_F(CompletionTest, OffersTheJobsOfTheServerThatTheWordsName) {
   server_.Start();
   const std::string& address = server_.Address();

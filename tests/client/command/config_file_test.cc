@@ -74,7 +74,7 @@ TEST_F(ConfigFileTest, AFlagReplacesWeakerSourcesOfItsRivals) {
   EXPECT_EQ(StyleOf(line.options), ProgressStyle::kNone);
 }
 
-// The tolerance and a budget go together; every other target replaces a weaker one.
+// Only of one source do a tolerance and a budget go together.
 TEST_F(ConfigFileTest, ATargetReplacesThatOfAWeakerSource) {
   home_.WriteConfig("[run]\nsamples = 5\n");
   ASSERT_OK_AND_ASSIGN(CommandLine line, ParseCommandLine({"run", "first-hit", "--budget", "3"}));
@@ -87,6 +87,17 @@ TEST_F(ConfigFileTest, ATargetReplacesThatOfAWeakerSource) {
   ASSERT_OK_AND_ASSIGN(line, ParseCommandLine({"run", "first-hit", "--samples", "7"}));
   EXPECT_EQ(line.options.spec.target().samples(), 7);
   EXPECT_FALSE(line.options.spec.target().has_budget());
+  ASSERT_OK_AND_ASSIGN(line, ParseCommandLine({"run", "first-hit", "--budget", "60"}));
+  EXPECT_FALSE(line.options.spec.target().has_tolerance());
+  EXPECT_EQ(line.options.spec.target().budget().seconds(), 60);
+}
+
+// The server names the conflict.
+TEST_F(ConfigFileTest, TargetsOfOneSourceThatExcludeEachOtherAreBothAsked) {
+  home_.WriteConfig("[run]\nsamples = 5\nbudget = 3\n");
+  ASSERT_OK_AND_ASSIGN(const CommandLine line, ParseCommandLine({"run", "first-hit"}));
+  EXPECT_EQ(line.options.spec.target().samples(), 5);
+  EXPECT_EQ(line.options.spec.target().budget().seconds(), 3);
 }
 
 TEST_F(ConfigFileTest, WhatIsOffOrReplacedReplacesNothing) {
@@ -96,6 +107,15 @@ TEST_F(ConfigFileTest, WhatIsOffOrReplacedReplacesNothing) {
   const ScopedVariable quiet("BALLPISTON_QUIET", "1");
   ASSERT_OK_AND_ASSIGN(line, ParseCommandLine({"watch", "abc", "--verbose"}));
   EXPECT_EQ(StyleOf(line.options), ProgressStyle::kJson);
+}
+
+TEST_F(ConfigFileTest, ProgressOfAStrongerSourceIsShownInSpiteOfQuiet) {
+  home_.WriteConfig("quiet = true\n");
+  const ScopedVariable progress("BALLPISTON_PROGRESS", "json");
+  ASSERT_OK_AND_ASSIGN(CommandLine line, ParseCommandLine({"watch", "abc"}));
+  EXPECT_EQ(StyleOf(line.options), ProgressStyle::kJson);
+  ASSERT_OK_AND_ASSIGN(line, ParseCommandLine({"watch", "abc", "--quiet"}));
+  EXPECT_EQ(StyleOf(line.options), ProgressStyle::kNone);
 }
 
 }  // namespace

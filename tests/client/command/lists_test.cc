@@ -124,12 +124,12 @@ TEST(PointsFile, FillsTheListsThatItsHeaderNames) {
   grid.add_exponent(1);
   ASSERT_OK(ParsePoints("p.csv",
                         "\xEF\xBB\xBF"
-                        "delta,rho, cells\r\n0.1,0.53,4x3\r\n1e-3,0.6,12\r\n\n",
+                        "delta,rho, cells\r\n0.1,0.53,4x3\r\n1e-3,0.6,1e3\r\n\n",
                         grid));
   EXPECT_THAT(grid.table(), ElementsAre("delta", "rho", "cells"));
   EXPECT_THAT(grid.delta(), ElementsAre(0.1, 1e-3));
   EXPECT_THAT(grid.rho(), ElementsAre(0.53, 0.6));
-  EXPECT_THAT(grid.cells(), ElementsAre("4x3", "12"));
+  EXPECT_THAT(grid.cells(), ElementsAre("4x3", "1000"));
   EXPECT_THAT(grid.exponent(), ElementsAre(1));
 }
 

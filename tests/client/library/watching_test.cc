@@ -126,13 +126,16 @@ TEST_F(JobWatch, PausesDoubleUpToTheirMaximum) {
   }
 }
 
-TEST_F(JobWatch, APauseIsAsLongAsTheServerAsks) {
+grpc::Status BusyFor(std::chrono::milliseconds pause) {
   google::rpc::RetryInfo retry;
-  retry.mutable_retry_delay()->set_nanos(20'000'000);
+  retry.mutable_retry_delay()->set_nanos(static_cast<int32_t>(pause / std::chrono::nanoseconds(1)));
   google::rpc::Status details;
   details.add_details()->PackFrom(retry);
-  const grpc::Status busy(grpc::StatusCode::UNAVAILABLE, "busy", details.SerializeAsString());
-  Start({{{}, busy}, Succeeded()});
+  return {grpc::StatusCode::UNAVAILABLE, "busy", details.SerializeAsString()};
+}
+
+TEST_F(JobWatch, APauseIsAsLongAsTheServerAsks) {
+  Start({{{}, BusyFor(std::chrono::milliseconds(20))}, Succeeded()});
   EXPECT_OK(Watch());
   EXPECT_THAT(pauses_, ElementsAre(AllOf(Ge(20), Le(25.1))));
 }
@@ -165,6 +168,14 @@ TEST_F(JobWatch, ThePaceStartsAgainWithEveryMessage) {
   Start(watches);
   EXPECT_OK(Watch());
   EXPECT_THAT(pauses_, AllOf(SizeIs(100), Each(Le(1.25))));
+}
+
+// Each silence takes 0.8 s to 1 s, both together more than the time to give up.
+TEST_F(JobWatch, TheTimeToGiveUpStartsAgainWithEveryMessage) {
+  const grpc::Status busy = BusyFor(std::chrono::milliseconds(800));
+  Start({{{}, busy}, {{SnapshotMessage(1, "t")}, busy}, Succeeded()});
+  options_.give_up_after = absl::Milliseconds(1500);
+  EXPECT_OK(Watch());
 }
 
 TEST_F(JobWatch, StartsTheServerAgainBeforeEachNewAttempt) {

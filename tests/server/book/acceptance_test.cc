@@ -23,7 +23,7 @@ class AcceptanceTest : public BookTest {
   // With three jobs of ann that wait at the gate, of one point each, the caller's request is
   // refused because of the limit of 3.
   void ExpectLimit(const Limits& limits, const std::string& reason, const std::string& flag,
-                   const Principal& caller = kAnn,
+                   const std::string& advice, const Principal& caller = kAnn,
                    const v1::EnsembleSpec& refused_spec = Equilibrium(1, 1)) {
     SCOPED_TRACE(flag);
     const std::string request_id =
@@ -35,7 +35,8 @@ class AcceptanceTest : public BookTest {
     for (int repeated = 0; repeated < 2; ++repeated) {  // a refused job does not count
       const auto refused = Create(caller, FreshRequest(refused_spec, request_id));
       EXPECT_THAT(refused, IsError(absl::StatusCode::kResourceExhausted, reason));
-      EXPECT_THAT(std::string(refused.status().message()), HasSubstr("--" + flag));
+      EXPECT_THAT(std::string(refused.status().message()),
+                  AllOf(HasSubstr("--" + flag), HasSubstr(": " + advice)));
       const ErrorDetails details = DetailsOf(refused.status());
       EXPECT_EQ(details.domain, "ballpiston");
       EXPECT_EQ(details.metadata.at("flag"), flag);
@@ -291,17 +292,20 @@ TEST_F(AcceptanceTest, OnlyTheRequestThatMadeTheJobIsStored) {
 TEST_F(AcceptanceTest, EachLimitNamesItsReasonAndItsFlag) {
   v1::EnsembleSpec by_default = Equilibrium(1, 1);
   by_default.clear_target();
-  ExpectLimit({.max_active_jobs = 3}, "QUEUE_FULL", "max-active-jobs", kBen);
+  const std::string wait = "wait until some of them have ended, or cancel some";
+  ExpectLimit({.max_active_jobs = 3}, "QUEUE_FULL", "max-active-jobs",
+              "retry when some of them have ended", kBen);
   ExpectLimit({.max_active_jobs_per_principal = 3}, "TOO_MANY_JOBS",
-              "max-active-jobs-per-principal");
+              "max-active-jobs-per-principal", wait);
   ExpectLimit({.max_active_points = 3, .max_active_points_per_principal = 0},
-              "TOO_MANY_ACTIVE_POINTS", "max-active-points", kBen);
+              "TOO_MANY_ACTIVE_POINTS", "max-active-points", wait, kBen);
   ExpectLimit({.max_active_points_per_principal = 3}, "TOO_MANY_ACTIVE_POINTS",
-              "max-active-points-per-principal");
-  ExpectLimit({.max_points_per_job = 3}, "TOO_MANY_POINTS", "max-points-per-job", kAnn,
-              Equilibrium(4, 1));
+              "max-active-points-per-principal", wait);
+  ExpectLimit({.max_points_per_job = 3}, "TOO_MANY_POINTS", "max-points-per-job",
+              "split it between several jobs", kAnn, Equilibrium(4, 1));
   for (const v1::EnsembleSpec& large : {Equilibrium(2, 2), by_default}) {
-    ExpectLimit({.max_samples_per_job = 3}, "TOO_MANY_SAMPLES", "max-samples-per-job", kAnn, large);
+    ExpectLimit({.max_samples_per_job = 3}, "TOO_MANY_SAMPLES", "max-samples-per-job",
+                "ask for fewer samples per point, or split the grid", kAnn, large);
   }
 }
 

@@ -1,5 +1,4 @@
 """ballpiston figure NAME --out DIR [--quick | --full] [--edit] [--KEYWORD VALUE ...]
-ballpiston figure --list
 
 Writes the figure's tables, NAME.svg and NAME.png to DIR and prints the paths of the files. With
 --edit only copies the figure's module to DIR. A module that lies there is used unchanged.
@@ -52,30 +51,40 @@ class _Parser(ArgumentParser):
 
 def main(arguments: list[str]) -> int:
     """Returns the exit code."""
-    if arguments == ["--list"]:
-        print("\n".join(f"{name}: {_title(name)}" for name in names()))
-        return 0
     return run_program(lambda words: _run(*_parsed(words)), arguments)
 
 
 def _parsed(arguments: list[str]) -> tuple[Namespace, ModuleType]:
     """The options and the figure's module. The options have the keywords of `measure` as they were
     written, or None."""
-    pairs = zip(["", *arguments], arguments)
-    name = next((word for before, word in pairs if word in names() and before != "--out"), None)
-    if name is None:
-        wrong = arguments[0] if arguments and not arguments[0].startswith("-") else ""
-        fault = f"{wrong!r} is not a figure" if wrong else "name a figure"
-        hint = did_you_mean(wrong, names())
-        raise ValueError(f"{fault} ({', '.join(names())}), or give --list{hint}")
-    common = _Parser(add_help=False, allow_abbrev=False)
-    common.add_argument("--out", type=Path, help="folder for data and pictures; required")
-    common.add_argument("--edit", action="store_true", help="copy the module to it; draw nothing")
-    effort = common.add_mutually_exclusive_group()
-    for level, text in [("quick", "few samples"), ("full", "the paper's number of samples or more")]:
-        effort.add_argument(f"--{level}", dest="effort", action="store_const", const=level, help=text)
+    name = arguments[0]
+    if name not in names():
+        raise ValueError(f"{name!r} is not a figure ({', '.join(names())})")
+    common = _common_flags()
     options, _ = common.parse_known_args(arguments)
     module = _module(name, None if options.edit else options.out)
+    options, unknown = _flags_of(name, module, common).parse_known_args(arguments)
+    if unknown:
+        hint = did_you_mean(unknown[0], [_flag(keyword) for keyword in _variables(module)])
+        raise ValueError(f"{unknown[0]}: the figure {name} has no such variable{hint}")
+    if options.out is None:
+        raise ValueError("--out is missing: name a folder for data and pictures")
+    return options, module
+
+
+def _common_flags() -> _Parser:
+    """The flags of every figure. The verb figure in client/command/verb_table.cc has them too."""
+    parser = _Parser(add_help=False, allow_abbrev=False)
+    parser.add_argument("--out", type=Path, help="folder for data and pictures; required")
+    parser.add_argument("--edit", action="store_true", help="copy the module to it; draw nothing")
+    effort = parser.add_mutually_exclusive_group()
+    for level, text in [("quick", "few samples"), ("full", "the paper's number of samples or more")]:
+        effort.add_argument(f"--{level}", dest="effort", action="store_const", const=level, help=text)
+    return parser
+
+
+def _flags_of(name: str, module: ModuleType, common: _Parser) -> _Parser:
+    """The common flags, and the keywords of the figure's `measure`."""
     parser = _Parser(
         prog="ballpiston figure",
         allow_abbrev=False,
@@ -88,14 +97,7 @@ def _parsed(arguments: list[str]) -> tuple[Namespace, ModuleType]:
         text = f"{_VARIABLES[keyword]}; " if keyword in _VARIABLES else ""
         help_text = f"{text}by default {parameter.default}"
         parser.add_argument(_flag(keyword), metavar="VALUE", help=help_text)
-    options, unknown = parser.parse_known_args(arguments)
-    if unknown:
-        flags = [_flag(keyword) for keyword in _variables(module)]
-        hint = did_you_mean(unknown[0], flags)
-        raise ValueError(f"{unknown[0]}: the figure {name} has no such variable{hint}")
-    if options.out is None:
-        raise ValueError("--out is missing: name a folder for data and pictures")
-    return options, module
+    return parser
 
 
 def _variables(module: ModuleType) -> dict[str, inspect.Parameter]:
@@ -137,11 +139,6 @@ def _file(name: str) -> str:
 
 def _installed(name: str) -> str:
     return str(Path(__file__).parents[1] / _file(name))
-
-
-def _title(name: str) -> str:
-    """The first line of the module."""
-    return Path(_installed(name)).read_text(encoding="utf-8").partition("\n")[0].strip('"')
 
 
 def _module(name: str, folder: Path | None) -> ModuleType:
