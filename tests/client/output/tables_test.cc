@@ -1,5 +1,6 @@
 // The texts of numbers, and tables of jobs and plans. transcripts/ shows the rest.
 #include "client/output/answers.h"
+#include "client/output/field_text.h"
 #include "client/output/number_text.h"
 #include "tests/client/preamble.h"
 
