@@ -281,8 +281,9 @@ std::string FlagNamed(absl::string_view field) {
   return absl::StrCat("--", absl::StrReplaceAll(last.substr(0, last.find('[')), {{"_", "-"}}));
 }
 
-// "points.csv, row 3" for grid.delta[2], unless the command line has the flag of that list.
-std::optional<std::string> LineOfPoint(absl::string_view field, const Options& options) {
+// "points.csv, row 3 below the header" for grid.delta[2], unless the command line has the flag of
+// that list.
+std::optional<std::string> RowOfPoint(absl::string_view field, const Options& options) {
   const bool has_flag = options.given.contains(FlagNamed(field));
   size_t row = 0;
   if (options.points_file.empty() || has_flag || !absl::ConsumePrefix(&field, "spec.grid.") ||
@@ -291,12 +292,13 @@ std::optional<std::string> LineOfPoint(absl::string_view field, const Options& o
     return std::nullopt;
   }
   const std::string& path = options.points_file;
-  return absl::StrCat(path == "-" ? "standard input" : path, ", row ", row + 1);
+  return absl::StrCat(path == "-" ? "standard input" : path, ", row ", row + 1,
+                      " below the header");
 }
 
 std::string NameOfField(const std::string& field, const Verb& verb, const Options& options) {
   if (field == "spec.experiment") return "EXPERIMENT";
-  if (const auto line = LineOfPoint(field, options)) return *line;
+  if (const auto line = RowOfPoint(field, options)) return *line;
   const std::string name = FlagNamed(field);
   const std::vector<const Flag*> flags = FlagsOf(verb);
   const bool is_flag = std::any_of(flags.begin(), flags.end(),

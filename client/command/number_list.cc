@@ -115,7 +115,7 @@ absl::StatusOr<double> ParseNumber(absl::string_view text) {
 absl::StatusOr<int64_t> ParseCount(absl::string_view text) {
   if (const auto count = ToCount(text)) return *count;
   if (IsWhole(ToNumber(text))) {
-    return Bad(text, "is too large; permitted: at most 9223372036854775807, and often less");
+    return Bad(text, "is out of range; permitted: at most 9223372036854775807 in size");
   }
   return Bad(text, "is not a whole number such as 10000 or 1e6");
 }

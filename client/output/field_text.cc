@@ -106,7 +106,7 @@ std::string Digits(double x, int digits) {
   std::string text = absl::StrFormat("%.*g", digits, x);
   double read = x;
   const bool seems_exact =
-      absl::SimpleAtod(text, &read) && std::abs(read - x) < 1e-12 * std::abs(x);
+      absl::SimpleAtod(text, &read) && std::abs(read - x) < 1e-14 * std::abs(x);
   return seems_exact && read != x ? ExactText(x) : text;
 }
 

@@ -42,7 +42,7 @@ std::string CsvRow(const Cells& cells);
 
 // ---- a point's parameters; those that the experiment does not use are absent ----
 
-// So many significant digits; or all, if the text would seem to be the value and is its neighbour:
+// This many significant digits. If x differs from that text by rounding alone, all digits, as in
 // 0.4999999999999999.
 std::string Digits(double x, int digits);
 std::string TenDigits(double x);

@@ -85,7 +85,7 @@ class EnergyRelaxation {
   Curve MeasuredCurve(const BlockResult& merged) const;
   std::vector<NamedHistogram> MeasuredLaws(const BlockResult& merged) const;
 
-  // These four are for the limit. Their standard errors are those of the computation.
+  // These four are for the limit. Their standard errors are bounds of the numerical error.
   std::vector<Estimate> EstimatesOfLimit() const;
   Curve CurveOfLimit() const;
   std::vector<NamedHistogram> LawsOfLimit() const;  // their bins, without counts

@@ -110,7 +110,7 @@ void AddFurtherRates(std::vector<Estimate>& estimates) {
   }
 }
 
-// No samples: standard errors are those of the discretisation.
+// No samples: standard errors are bounds of the numerical error.
 PointSummary RelaxationBySpectrum(const EnsembleSpec&, const PointParameters& point) {
   const EnergyRelaxation relaxation(GeometryOf(point), point);
   PointSummary summary = {.estimates = relaxation.EstimatesOfLimit(),

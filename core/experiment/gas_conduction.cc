@@ -79,7 +79,7 @@ double RelaxationTime(Model model, const GasGeometry& geometry, double cold) {
   return std::max(of_the_gas, CrossingTime(model, geometry, cold));
 }
 
-// The warm-up beside a cold reservoir, in those beside a warm one; a power of two.
+// The warm-up beside a cold reservoir over that beside a warm one; a power of two.
 uint64_t WarmUpFactor(Model model, double cold) {
   constexpr double kWarm = 0.5, kMost = 8;
   if (model == Model::kMarkov) return 1;

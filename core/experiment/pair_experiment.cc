@@ -47,14 +47,14 @@ const BilliardDomain& DomainOf(const EnsembleSpec& spec) {
   return spec.precision == Precision::kSingle ? kSingleDomain : kDoubleDomain;
 }
 
-// The name of what has the domain, and the models that have none.
+// The beginning of the sentence that gives the domain.
 std::string PermittedWith(const EnsembleSpec& spec) {
   if (spec.precision == Precision::kSingle) return "permitted with precision single: ";
   return "permitted with the models billiard and billiard_reference: ";
 }
 
 std::string OtherModels(const EnsembleSpec& spec) {
-  if (spec.experiment == nullptr) return "";  // an orbit
+  if (spec.experiment == nullptr) return "";  // a trace belongs to no experiment
   std::vector<absl::string_view> names;
   for (const Model model : spec.experiment->models) {
     if (!IsABilliard(model)) names.push_back(Name(model));

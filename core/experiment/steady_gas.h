@@ -45,8 +45,8 @@ class SteadyGas : public GasExperiment {
   double stretch() const { return stretch_; }  // a time at temperature 1
   const Trajectories& trajectories() const { return trajectories_; }
   TemperatureProfile TemperaturesAtStart() const;
-  double VarianceOfEnergy()
-      const;  // in local equilibrium; takes a time in proportion to the columns
+  // Of local equilibrium. Takes a time in proportion to the columns.
+  double VarianceOfEnergy() const;
   ThermalWalls WallsOf(const GasRandom& random) const { return {geometry(), hot_, cold_, random}; }
   // The integral over the meter's window, of each quantity.
   virtual std::vector<double> IntegralsOf(const GasMeter& meter) const = 0;

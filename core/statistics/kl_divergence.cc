@@ -140,9 +140,9 @@ CellNoise NoiseOfCells(double samples, std::span<const double> probabilities) {
   return noise;
 }
 
-// The weight of the scatter of log(p/q). A value within kNoise standard deviations of the noise
-// floor is noise, and so is its scatter: it would make the errors of equal laws 5 to 10 % too
-// large.
+// The weight of the variance beyond that of noise. A value within kNoise standard deviations of the
+// noise floor is noise, and so is its variance beyond: it would make the errors of equal laws 5 to
+// 10 % too large.
 double BeyondNoise(const KlDivergence& measured) {
   constexpr double kNoise = 2;
   const double beyond = measured.value - measured.noise_floor;

@@ -10,8 +10,8 @@
 //   3. ErrorsHoldForPeakedLaws, of RelativeEntropy.
 //   4. ErrorsHoldForCorrelatedSamples, of DivergenceWithinRows.
 //
-// Errors are those of the mean of D at this N. This mean is above the divergence of N = infinity;
-// by the noise floor only if the laws are nearly equal.
+// An error is the scatter of D at this N. The mean of D at this N is above its limit of many
+// samples; the difference is the noise floor only if the laws are nearly equal.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,7 @@
 // The rule that decides whether the mean over a sample gets a standard error. Other estimates have
 // rules of their own: closed forms, the spectrum and divergences always have an error; time
-// averages of gas-conduction have one from two trajectories on, because each has many events; and
+// averages of gas-conduction have one from two trajectories on, because each has many events, and a
+// remark names groups that still warm up; and
 // cumulants from enough windows on (experiment/gas_conduction.cc).
 //
 // The scatter of a sample is the error of its mean only if the sample contains the events that
@@ -11,10 +12,9 @@
 //   mean return time                the expected number of long returns, where these are rare
 //   mean sigma                      the expected samples of the rarer sign
 //   mean free times in equilibrium  a tenth of the collisions (experiment/equilibrium.cc)
-//   relaxation of an energy         the expected number of orbits that meet, for a point of its
-//   curve
-//                                   until then; without an epsilon an eighth of the orbits
-//                                   (experiment/energy_relaxation.cc)
+//   relaxation of an energy         the expected number of orbits that meet; without an epsilon an
+//                                   eighth of the orbits (experiment/energy_relaxation.cc)
+//   mean energy at a time           at most the orbits that can have met by then
 //   a gas's current, by exchanges   a tenth of the replicas, or less (gas_equilibrium.cc)
 //   Markov property                 the orbits
 //   Lyapunov exponents              the orbits

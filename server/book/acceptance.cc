@@ -50,7 +50,8 @@ void CheckStoreSize(Database& database, const Limits& limits) {
                     "max-store-bytes", static_cast<double>(limits.max_store_bytes)));
 }
 
-// Whether a job with the one labels can have the others too, and none of its labels changes.
+// Whether a job with these labels can get more: no label changes its value, and there are not too
+// many.
 bool Fit(const Labels& labels, Labels more) {
   for (const auto& [key, value] : labels) {
     if (more.emplace(key, value).first->second != value) return false;
@@ -71,8 +72,8 @@ std::optional<EarlierJob> FindEarlier(Database& database, const Acceptance& acce
   return answer ? std::optional(EarlierJob{*std::move(answer), true}) : std::nullopt;
 }
 
-// Adds the labels to the job. Those of a retry may be other ones than the job's: they replace them,
-// and are refused if the job would have more labels than are permitted.
+// Adds the labels to the job. The labels of a retry replace the job's values. Refused if the job
+// would have more labels than are permitted.
 void AddLabels(Database& database, const Labels& more, JobRecord& record) {
   Labels labels = LabelsOf(record.labels);
   for (const auto& [key, value] : more) labels.insert_or_assign(key, value);

@@ -20,7 +20,7 @@ namespace ballpiston::server {
 struct Call {
   std::string method;  // CreateEnsembleJob
   Principal caller;
-  // Whether the client has left or its deadline has passed. A method that computes asks.
+  // Whether the client has left or its deadline has passed. PlanEnsembleJob asks before each point.
   std::function<bool()> is_abandoned = [] { return false; };
 };
 
@@ -47,7 +47,7 @@ grpc::Status ServeCall(ServiceContext& service, grpc::ServerContext& context, co
 // The frame of a unary call, within that of every call. The call counts until gRPC has sent its
 // answer (CallObserver::Keep). A call that waits for the disk takes no turn.
 //   RESOURCE_EXHAUSTED  TOO_MANY_CALLS
-//   CANCELLED           the client left before the method began, or while it computed
+//   CANCELLED           the client left before the method began, or while it planned
 template <typename Request, typename Response>
 grpc::Status ServeUnary(ServiceContext& service, grpc::ServerContext& context, const CallRule& rule,
                         const Request& request, Response& response,

@@ -54,7 +54,7 @@ struct EnergyRelaxationRuns {
   // Runs kLanes or kMarkov. Escaped orbits are not counted.
   PointEstimate Run(Method method, const SampleRange& samples) const;
 
-  // The relaxation time of the limit, with its discretisation error. `seconds` is the time of one
+  // The relaxation time of the limit, with the bound of its error. `seconds` is the time of one
   // evaluation, without the computation of the spectrum (about 0.1 s), which is done once for all
   // geometries.
   PointEstimate BySpectrum() const;

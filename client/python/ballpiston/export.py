@@ -11,8 +11,8 @@ from importlib import import_module
 from pathlib import Path
 
 from ballpiston.client import connect
-from ballpiston.estimates_table import estimates_table, write_table
 from ballpiston.errors import NotFound
+from ballpiston.estimates_table import estimates_table, write_table
 from ballpiston.program import run_program
 
 _ENDINGS = (".csv", ".npz", ".parquet")
@@ -38,7 +38,7 @@ def _main(arguments: list[str]) -> list[Path]:
         named = [client.job(name) for name in options.jobs]
         jobs = named or client.jobs(labels=labels, limit=None)
         if labels and not jobs:
-            raise NotFound("no job has these labels")
+            raise NotFound(f"--label {' --label '.join(options.label)}: no job has these labels")
         write_table(options.out, estimates_table(jobs))
     return [options.out]
 

@@ -138,7 +138,7 @@ TEST(StandardErrors, ShareThatMeetsIsAboutTheMeasuredOne) {
 
 // In a small cell most meetings of a slow ball are two collisions at once, and the second one
 // undoes the first. Mean squares of z over 20 seeds; found: up to 5, and up to 70 before.
-TEST(StandardErrors, OfARelaxationsCurveAreHonestAtEachTime) {
+TEST(StandardErrors, OfARelaxationsCurveAreAtMostThreeTimesTooSmall) {
   for (const char* epsilon : {"0.499", "0.49999"}) {
     const std::string question =
         absl::StrCat("energy-relaxation rho=0.7 delta=0.01 model=billiard epsilon=", epsilon);
