@@ -292,7 +292,7 @@ TEST_F(AcceptanceTest, OnlyTheRequestThatMadeTheJobIsStored) {
 TEST_F(AcceptanceTest, EachLimitNamesItsReasonAndItsFlag) {
   v1::EnsembleSpec by_default = Equilibrium(1, 1);
   by_default.clear_target();
-  const std::string wait = "wait until some of them have ended, or cancel some";
+  const std::string wait = "wait until some jobs have ended, or cancel some of yours";
   ExpectLimit({.max_active_jobs = 3}, "QUEUE_FULL", "max-active-jobs",
               "retry when some of them have ended", kBen);
   ExpectLimit({.max_active_jobs_per_principal = 3}, "TOO_MANY_JOBS",
