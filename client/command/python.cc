@@ -171,7 +171,7 @@ absl::StatusOr<std::vector<std::string>> FigureWords(std::vector<std::string> wo
 }  // namespace
 
 VerbResult Figure(const Options& options, Terminal& terminal) {
-  if (options.list) {
+  if (options.list && !FigureNames().empty()) {
     ListFigures(terminal.out);
     return ExitCode::kDone;
   }
