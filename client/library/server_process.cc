@@ -86,6 +86,19 @@ absl::StatusOr<pid_t> StartProgram(const ServerProgram& program) {
                      .detached = true});
 }
 
+// The last line from this place on; empty if there is none, or if the log is a device.
+std::string LastLine(const std::string& log, uintmax_t start) {
+  std::error_code error;
+  if (!fs::is_regular_file(log, error)) return "";
+  std::ifstream in(log);
+  in.seekg(static_cast<std::streamoff>(start));
+  std::string last;
+  for (std::string line; std::getline(in, line);) {
+    if (!line.empty()) last = line;
+  }
+  return last;
+}
+
 // Why a log is empty: perhaps it cannot be written.
 std::string WhyEmpty(const std::string& log) {
   const int file = open(log.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
@@ -98,12 +111,7 @@ std::string WhyEmpty(const std::string& log) {
 // `exit_status`: of the program, if it has ended.
 absl::Status Failure(const ServerProgram& program, uintmax_t log_start,
                      std::optional<int> exit_status) {
-  std::ifstream log(program.Log());
-  log.seekg(static_cast<std::streamoff>(log_start));
-  std::string last;
-  for (std::string line; std::getline(log, line);) {
-    if (!line.empty()) last = line;
-  }
+  std::string last = LastLine(program.Log(), log_start);
   if (last.empty()) last = WhyEmpty(program.Log());
   constexpr int kWrongFlags = 2, kNotPermitted = 6;
   const auto code = exit_status == kWrongFlags     ? absl::StatusCode::kInvalidArgument
