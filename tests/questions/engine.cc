@@ -185,7 +185,8 @@ void StartAndStop(const EnsembleSpec& spec, size_t index, const Answer& answer) 
   const auto point = PointExperiment::Create(spec, index, answer);
   LocalPoint local(*point);
   ImpatientQueue queue(local);
-  point->StartRun(queue)->Advance();
+  // A point without samples has no run: its pilot alone was too long to answer.
+  if (const auto run = point->StartRun(queue)) run->Advance();
 }
 
 double SamplesIn(double seconds, const EnsembleSpec& spec, size_t index, Model model,
