@@ -45,7 +45,8 @@ class SteadyGas : public GasExperiment {
   double stretch() const { return stretch_; }  // a time at temperature 1
   const Trajectories& trajectories() const { return trajectories_; }
   TemperatureProfile TemperaturesAtStart() const;
-  // Of local equilibrium. Takes a time in proportion to the columns.
+  // The variance of the gas's energy in local equilibrium. The time to compute it grows with the
+  // number of columns.
   double VarianceOfEnergy() const;
   ThermalWalls WallsOf(const GasRandom& random) const { return {geometry(), hot_, cold_, random}; }
   // The integral over the meter's window, of each quantity.

@@ -71,7 +71,7 @@ class Question {
   double ThreadsFor(Model model, double samples) const {
     return CostBy(model).ThreadsFor(samples, machine_.workers);
   }
-  // Of processor time, until all workers have their first samples.
+  // The seconds of processor time until all workers have their first samples.
   double SecondsOfTheFirst(Model model) const {
     return TakesSamples(model) ? CostBy(model).OfTheFirst(machine_.workers) : 0;
   }

@@ -86,15 +86,15 @@ class CrashRecord {
 
   int64_t counted_deaths() const;  // of all processes with this record
 
-  // As long as it lives, this thread computes the point.
+  // While this object exists, its thread computes the point.
   class Computing : public Entry {
    public:
     Computing(CrashRecord& record, const RunName& run, size_t point) : Entry(record, run, point) {}
   };
 
-  // As long as it lives, this thread examines what is known of the run, which may be paused: a
-  // death in this thread then counts for this run alone, and a death in another thread does not
-  // count for it.
+  // While this object exists, its thread examines what is known of the run, which may be paused. A
+  // death in this thread counts for this run alone. A death in another thread does not count for
+  // this run.
   class Examining : public Entry {
    public:
     Examining(CrashRecord& record, const RunName& run) : Entry(record, run, std::nullopt) {}

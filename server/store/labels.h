@@ -14,8 +14,8 @@ using Labels = std::map<std::string, std::string>;  // key, value
 
 inline constexpr size_t kMostLabels = 32;  // of a job
 
-// As text in the job's row: KEY=VALUE for each, with newlines between them. Neither part is empty
-// or has a newline or an equals sign (rpc/request_check.h).
+// The text of the labels in the job's row: KEY=VALUE for each label, with newlines between them. No
+// key and no value is empty or contains a newline or an equals sign (rpc/request_check.h).
 inline std::string LabelsText(const Labels& labels) {
   return absl::StrJoin(labels, "\n", absl::PairFormatter("="));
 }

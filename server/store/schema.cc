@@ -13,9 +13,9 @@ namespace {
 // opening it reads is checked.
 constexpr int64_t kFullCheckBytes = int64_t{256} << 20;
 
-// Beside the table of jobs (job_table.h). SQLite reads a row up to the columns that are asked for.
-// So in `results` the columns of lists and watches come first, `result` before the large ones: the
-// details, and the state from which another job continues the point.
+// All tables except that of jobs (job_table.h). SQLite reads a row up to the last column that is
+// asked for. So the columns that lists and watches read come first in `results`. The large columns
+// come last: the details, and the state from which another job continues the point.
 constexpr char kTables[] = R"sql(
 CREATE INDEX jobs_by_state ON jobs (state, principal, points);
 CREATE INDEX jobs_by_principal ON jobs (principal, sequence, bytes, state);

@@ -1,6 +1,6 @@
-// What the engines cost, a row each: the rate of wall hits, events, exchanges or samples in a
-// second of processor time, and the time of one (`each`). The rows of one kind are there to be
-// compared: the reference, the lanes with each kind of vector instructions, and the method of most
+// The speed of the engines. A row has the rate of wall hits, events, exchanges or samples in a
+// second of processor time, and the time of one of them (`each`). Rows of one kind can be compared:
+// the reference, the lanes with each kind of vector instructions, and the method of most
 // billiard codes. A row that names no vector instructions has the widest of the machine.
 //
 //   engine_benchmark [FLAG_OF_GOOGLE_BENCHMARK...]

@@ -77,7 +77,7 @@ struct Server {
   explicit Server(double lease_seconds)
       : local(scheduler, true, kLocalLeaseSeconds), remote(scheduler, false, lease_seconds) {}
 
-  // Of one energy, so that all points have histograms of the same bins.
+  // All points have the same energy, so their histograms have the same bins.
   void Create(const ExperimentKind& kind, double delta, int64_t samples, int points) {
     v1::CreateEnsembleJobRequest request;
     v1::EnsembleSpec& spec = *request.mutable_spec();

@@ -42,7 +42,7 @@ Findings OfSummary(double value) {
   return CheckFinite(summary);
 }
 
-// Of this estimate, and of another model's 10 +- 0.1.
+// The disagreements of this estimate with another model's, which is 10 +- 0.1.
 Findings OfModels(const std::string& estimate) {
   return Disagreements({ResultWith("standard_error: 0.1"), ResultWith(estimate)});
 }

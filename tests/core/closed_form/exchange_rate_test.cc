@@ -7,7 +7,7 @@
 namespace ballpiston {
 namespace {
 
-// Of the energies of a pair: eq. canmeasure.
+// The canonical density of the energies of a pair, eq. canmeasure.
 double CanonicalDensity(double beta, double eb, double ep) {
   return beta * std::sqrt(beta / (M_PI * ep)) * std::exp(-beta * (eb + ep));
 }

@@ -118,7 +118,8 @@ TEST(GasConduction, WhileAllTrajectoriesWarmUpOnlyARemarkIsStated) {
       EXPECT_TRUE(summary.curves.empty());
       const uint64_t longest = static_cast<uint64_t>(kLongestWarmUp) * point->plan().warm_up();
       EXPECT_THAT(summary.remarks, ElementsAre(HasSubstr(absl::StrCat("with ", longest + 1))));
-      // As the remark says: with so many samples a chunk begins where every warm-up has ended.
+      // The remark is right: with this number of samples, the last chunk begins after every
+      // warm-up.
       spec.target.samples = static_cast<int64_t>(longest + 1);
       const auto longer = PointExperiment::Create(spec, 0);
       EXPECT_GE(longer->plan().FirstSample(longer->plan().chunks() - 1), longest);

@@ -66,7 +66,7 @@ TEST(RelaxationSpectrum, IsolatedRatesAscendBelowTheContinuum) {
   const std::vector<SpectralValue> rates = Spectrum().IsolatedRates();
   ASSERT_EQ(rates.size(), 5u);
   EXPECT_EQ(rates[0].value, Spectrum().Gap().value);
-  // As computed once in 64-bit mantissas at degree 20 on 8 levels, rounded.
+  // These numbers were computed with 64-bit mantissas at degree 20 on 8 levels, and rounded.
   constexpr double kKnown[] = {0.1520871266135, 0.1771867982882, 0.1892311255467, 0.1964460932037,
                                0.2012934204112};
   for (size_t k = 0; k < rates.size(); ++k) {
