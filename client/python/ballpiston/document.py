@@ -18,7 +18,8 @@ import inspect
 import json
 import os
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -78,12 +79,20 @@ def read_document(path: Path) -> tuple[Any, list[Any]]:
 
 
 def write_atomically(path: Path, data: bytes) -> None:
-    """Writes a file beside `path` and renames it, so that no half-written result remains."""
+    """The whole file or none."""
+    with whole_file(path) as temporary:
+        temporary.write_bytes(data)
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """A file beside `path` to write to. It becomes `path` at the end, and goes after an error, so
+    that no half-written result remains."""
     descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    os.close(descriptor)
     temporary = Path(name)
     try:
-        with os.fdopen(descriptor, "wb") as file:
-            file.write(data)
+        yield temporary
         temporary.chmod(0o666 & ~_current_umask())  # mkstemp's files are private
         temporary.replace(path)
     except BaseException:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ballpiston.document import whole_file
 from ballpiston.errors import NotFound, ResultsExpired
 from ballpiston.job import Job
 from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS
@@ -82,12 +83,8 @@ def write_table(path: Path, table: Table) -> None:
     Raises:
         ModuleNotFoundError: .parquet needs pandas and pyarrow.
     """
-    part = path.with_name(f".{path.name}.part")
-    try:
+    with whole_file(path) as part:
         _write(part, path.suffix, table)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def _write(path: Path, ending: str, table: Table) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from ballpiston.client import connect
+from ballpiston.document import whole_file
 from ballpiston.program import run_program
 
 
@@ -21,19 +22,14 @@ def _main(arguments: list[str]) -> list[Path]:
     parser.add_argument("specification", type=json.loads)
     parser.add_argument("--out", required=True, type=Path)
     options = parser.parse_args(arguments)
-    part = options.out.with_name(f".{options.out.name}.part")
-    try:
-        with connect() as client:
-            collisions = client.sample(options.specification)
-            if options.out.suffix == ".npz":
-                records = collisions.all()
-                with part.open("wb") as file:
-                    np.savez_compressed(file, **{n: records[n] for n in records.dtype.names or ()})
-            else:
-                collisions.to_parquet(part)
-        part.replace(options.out)
-    finally:
-        part.unlink(missing_ok=True)
+    with connect() as client, whole_file(options.out) as part:
+        collisions = client.sample(options.specification)
+        if options.out.suffix == ".npz":
+            records = collisions.all()
+            with part.open("wb") as file:
+                np.savez_compressed(file, **{n: records[n] for n in records.dtype.names or ()})
+        else:
+            collisions.to_parquet(part)
     return [options.out]
 
 

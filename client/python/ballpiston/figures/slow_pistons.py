@@ -136,11 +136,10 @@ def draw(tables: Tables) -> Figure:
 
 def _draw_windows(axes: Any, windows: Table, delta: float) -> None:
     windows = rows(windows, delta=delta)
-    cases = [("billiard", cold) for cold in (0.001, 0.01, 0.1, 1.0)] + [("markov", _COLD)]
+    measured = np.unique(rows(windows, model="billiard")["cold"])
+    cases = [("billiard", cold) for cold in measured] + [("markov", _COLD)]
     for k, (model, cold) in enumerate(cases):
         part = rows(windows, model=model, cold=cold)
-        if not len(part["time"]):
-            continue
         label = f"cold {cold:g}" + (", jump process" if model == "markov" else "")
         shown = {n: part[n][_SHOWN] for n in ("time", "value", "standard_error")}
         first = shown["value"][0]

@@ -57,7 +57,7 @@ def main(arguments: list[str]) -> int:
 def _parsed(arguments: list[str]) -> tuple[Namespace, ModuleType]:
     """The options and the figure's module. The options have the keywords of `measure` as they were
     written, or None."""
-    name = arguments[0]
+    name = arguments[0] if arguments else ""
     if name not in names():
         raise ValueError(f"{name!r} is not a figure ({', '.join(names())})")
     common = _common_flags()
