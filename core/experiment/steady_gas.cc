@@ -246,7 +246,8 @@ uint64_t SteadyGas::StretchesOf(const std::vector<SteadyGroup>& groups) const {
   return stretches;
 }
 
-// Trajectories are independent, and each has many events.
+// Trajectories are independent, and each has many events. But the measured groups are those whose
+// energy has changed little, so they scatter less than all would if many are missing.
 Estimate SteadyGas::TimeAverage(size_t quantity, double share,
                                 const std::vector<SteadyGroup>& groups) const {
   BatchMeans means;
@@ -255,17 +256,18 @@ Estimate SteadyGas::TimeAverage(size_t quantity, double share,
       means.Add(trajectory.sums[quantity], share * group.measured * stretch_);
     }
   }
-  return RatioOf(means, kEventsForAnError);
+  Estimate average = RatioOf(means, kEventsForAnError);
+  if (8 * groups.size() < 7 * trajectories_.groups) average.standard_error.reset();
+  return average;
 }
 
 std::string SteadyGas::ReasonOfNoError(absl::string_view estimate) const {
   return absl::StrCat(estimate,
-                      " has no standard error: an error needs two trajectories that have "
-                      "warmed up and been measured");
+                      " has no standard error: an error needs seven eighths of the trajectories "
+                      "to be measured, which begins when they have warmed up");
 }
 
 // A chunk begins where the longest warm-up ends; the chunk has samples if one more is asked for.
-// The groups that have been measured are those whose energy has changed little.
 std::string SteadyGas::RemarkOnUnmeasured(const std::vector<SteadyGroup>& groups) const {
   const double enough = kLongestWarmUp * static_cast<double>(plan().warm_up()) + 1;
   const uint64_t unmeasured = trajectories_.groups - groups.size();
@@ -276,8 +278,7 @@ std::string SteadyGas::RemarkOnUnmeasured(const std::vector<SteadyGroup>& groups
     return "all trajectories are still warming up, so nothing has been measured yet; " + advice;
   }
   return absl::StrFormat(
-      "%d of %d groups of trajectories are still warming up; the others may not be typical, so "
-      "errors may be too small; %s",
+      "%d of %d groups of trajectories are still warming up; the others may not be typical; %s",
       unmeasured, trajectories_.groups, advice);
 }
 

@@ -65,7 +65,8 @@ class SteadyGas : public GasExperiment {
 
   // The groups that have been measured.
   std::vector<SteadyGroup> GroupsOf(const BlockResult& merged) const;
-  // A quantity over time and over `share`; the error is that between the trajectories.
+  // A quantity over time and over `share`. The error is that between the trajectories; there is
+  // none if more than an eighth of the groups are missing.
   Estimate TimeAverage(size_t quantity, double share, const std::vector<SteadyGroup>& groups) const;
   // The number of stretches that all trajectories have measured. Those of the warm-up do not count.
   uint64_t StretchesOf(const std::vector<SteadyGroup>& groups) const;
