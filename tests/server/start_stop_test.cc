@@ -125,7 +125,7 @@ TEST(StartStop, HealthIsServedForTheWholeAndForEachService) {
   }
 }
 
-// One thread runs the calls, so a call that waited for the disk would block all later ones.
+// A call that waited for the disk would keep its thread.
 TEST(StartStop, WhileTheDiskHangsCallsThatWriteAreRefusedAndReadsAnswered) {
   FaultDisk disk;
   std::atomic<bool> hangs = false;
