@@ -22,7 +22,10 @@
 namespace ballpiston::server {
 namespace {
 
-constexpr int kMinPingIntervalMs = 15'000;
+constexpr int kHandshakeTimeoutMs = 20'000;
+constexpr int kPingIntervalMs = 60'000;       // silence before the server sends a ping
+constexpr int kPingTimeoutMs = 20'000;        // limit for the client's answer
+constexpr int kMinPingIntervalMs = 15'000;    // of a client's pings
 constexpr int kStreamsPerConnection = 2'048;  // twice what one principal may watch
 // Threads for calls that are not streams. One principal can fill a quarter of them with answers
 // that it does not read (--max-calls-per-principal).
@@ -55,14 +58,11 @@ std::vector<std::string> ServiceNames() {
           v1::TraceService::service_full_name(), v1::ServerService::service_full_name()};
 }
 
-void Set(grpc::ServerBuilder& builder, const char* argument, std::chrono::milliseconds time) {
-  builder.AddChannelArgument(argument, static_cast<int>(time.count()));
-}
-
-void SetPings(grpc::ServerBuilder& builder, const ConnectionTiming& timing) {
-  Set(builder, GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, timing.handshake);
-  Set(builder, GRPC_ARG_KEEPALIVE_TIME_MS, timing.ping_interval);
-  Set(builder, GRPC_ARG_KEEPALIVE_TIMEOUT_MS, timing.ping_timeout);
+// The server closes a connection, with its streams, if the client does not answer.
+void SetPings(grpc::ServerBuilder& builder) {
+  builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeTimeoutMs);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kPingIntervalMs);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kPingTimeoutMs);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);  // no limit
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS,
                              kMinPingIntervalMs);
@@ -219,7 +219,7 @@ absl::Status BallpistonServer::Listen() {
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
-  SetPings(builder, options_.connections);
+  SetPings(builder);
   SetBounds(builder, options_.limits);
   builder.RegisterService(&ensemble_);
   builder.RegisterService(&analytic_);

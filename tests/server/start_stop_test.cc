@@ -75,9 +75,8 @@ TEST(StartStop, StoppingDoesNotWaitForAnEndlessBlock) {
 TEST(StartStop, HungClientsDoNotDelayAStop) {
   const LaboratoryFiles files;
   Gate gate;
-  RunningServer server(Secure(files, {.factory = GatedExperiments(gate),
-                                      .connections = kOnlyClosedByAStop,
-                                      .credentials = files.Credentials(kAlice)}));
+  RunningServer server(
+      Secure(files, {.factory = GatedExperiments(gate), .credentials = files.Credentials(kAlice)}));
   v1::WatchEnsembleJobRequest request;
   request.set_name(server.Submit(Equilibrium(1000, 1)));
   const Connection no_handshake(server.address());
