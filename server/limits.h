@@ -20,9 +20,6 @@ struct Limits {
   double max_samples_per_job = 1e15;  // samples or collisions, over all points
   int64_t max_streams = 2'048;        // open watches and traces; 0: kMostStreams
   int64_t max_streams_per_principal = 1'024;
-  // Unary calls in progress, and the bytes of their requests and answers.
-  int64_t max_calls_per_principal = 1'024;
-  int64_t max_call_bytes_per_principal = int64_t{128} << 20;
   int64_t max_message_bytes = int64_t{4} << 20;  // of a request
   int64_t max_transfer_mib = 512;  // of connections and of requests that are being received
   // MiB, upper bound, of all points that the server computes at a time. The program's default is a

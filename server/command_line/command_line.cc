@@ -254,10 +254,6 @@ void AddLimitFlags(CLI::App& app, Limits& limits) {
       "open watches and traces of all principals; at most 32768, also with 0");
   add("--max-streams-per-principal", limits.max_streams_per_principal,
       "open watches and traces of one principal");
-  add("--max-calls-per-principal", limits.max_calls_per_principal,
-      "calls in progress of one principal, without watches");
-  add("--max-call-bytes-per-principal", limits.max_call_bytes_per_principal,
-      "bytes of the requests of these calls and of their unread answers");
   add("--max-memory-mib", limits.max_memory_mib,
       "MiB of memory of all points that this server computes at a time, by an upper bound.\n"
       "By default 80 % of the memory of this machine or of the server's control group");

@@ -178,11 +178,12 @@ absl::Status CredentialsExpired() {
 
 absl::Status LimitExceeded(const std::string& reason, const std::string& what,
                            const std::string& flag, double limit) {
-  absl::Status status = absl::ResourceExhaustedError(
-      absl::StrFormat("%s; this server permits %.15g (--%s)", what, limit, flag));
+  absl::Status status =
+      absl::ResourceExhaustedError(absl::StrFormat("%s; this server permits %.15g", what, limit) +
+                                   (flag.empty() ? "" : absl::StrCat(" (--", flag, ")")));
   google::rpc::ErrorInfo info = Info(reason);
   (*info.mutable_metadata())["limit"] = absl::StrFormat("%.15g", limit);
-  (*info.mutable_metadata())["flag"] = flag;
+  if (!flag.empty()) (*info.mutable_metadata())["flag"] = flag;
   SetInfo(status, info);
   return status;
 }

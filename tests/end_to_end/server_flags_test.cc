@@ -31,8 +31,7 @@ constexpr char kFlags[] =
     "slurm-option slurm-max-array-size slurm-query-seconds "
     "max-active-jobs max-active-jobs-per-principal max-active-points "
     "max-active-points-per-principal max-points-per-job max-samples-per-job max-streams "
-    "max-streams-per-principal max-calls-per-principal max-call-bytes-per-principal "
-    "max-transfer-mib max-memory-mib retain-days max-store-bytes "
+    "max-streams-per-principal max-transfer-mib max-memory-mib retain-days max-store-bytes "
     "max-message-bytes "
     "log-level metrics-listen new-token check backup help version";
 
