@@ -30,7 +30,7 @@ constexpr int kStreamsPerConnection = 2'048;  // twice what one principal may wa
 // Threads for calls that are not streams. One principal can take at most 64 of them with answers
 // that it does not read (rpc/quota.h).
 constexpr int kOtherThreads = 4'096;
-constexpr int64_t kLeastTransferBytes = 16 << 20;
+constexpr size_t kTransferBytes = size_t{512} << 20;  // connections, and requests that arrive
 constexpr std::chrono::milliseconds kLimitsInterval(1000);
 // The longest delay until health reports that the store fails, and until a revoked watch ends.
 constexpr std::chrono::milliseconds kHealthInterval(500);
@@ -69,19 +69,13 @@ void SetPings(grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
 }
 
-// With less than two messages of the greatest length, two clients that send such messages could
-// block each other for ever.
-size_t TransferBytes(const Limits& limits) {
-  return static_cast<size_t>(
-      std::max({limits.max_transfer_mib << 20, 2 * limits.max_message_bytes, kLeastTransferBytes}));
-}
-
 // Bounds what clients can use before they are authenticated: streams, memory and threads. Each call
-// has a thread. The quota has more than there can be streams, so other calls find a thread.
+// has a thread. The quota has more than there can be streams, so other calls find a thread. gRPC
+// itself refuses requests of more than 4 MiB.
 void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   using Option = grpc::ServerBuilder::SyncServerOption;
   grpc::ResourceQuota quota("ballpiston");
-  if (limits.max_transfer_mib > 0) quota.Resize(TransferBytes(limits));
+  quota.Resize(kTransferBytes);
   quota.SetMaxThreads(static_cast<int>(MostStreams(limits)) + kOtherThreads);
   builder.SetResourceQuota(quota);
   // One queue, and at most two idle threads that wait for calls. By default gRPC has a queue for
@@ -91,7 +85,6 @@ void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   builder.SetSyncServerOption(Option::MAX_POLLERS, 2);
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);  // no other server shares the port
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kStreamsPerConnection);
-  builder.SetMaxReceiveMessageSize(static_cast<int>(limits.max_message_bytes));
 }
 
 absl::StatusOr<ListenAddress> ParseMetricsAddress(const std::string& text) {

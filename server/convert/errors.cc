@@ -41,7 +41,7 @@ absl::Duration RetryDelayFor(const std::string& reason) {
   static const auto* const seconds = new std::map<std::string, int>{
       {"SHUTTING_DOWN", 1},  {"STORE_FULL", 1},       {"STORE_FAILED", 1},
       {"TOO_MANY_CALLS", 1}, {"TOO_MANY_STREAMS", 5}, {"TOO_MANY_ACTIVE_POINTS", 10},
-      {"TOO_MANY_JOBS", 10}, {"QUEUE_FULL", 10}};
+      {"TOO_MANY_JOBS", 10}};
   const auto found = seconds->find(reason);
   return absl::Seconds(found == seconds->end() ? 0 : found->second);
 }

@@ -5,7 +5,7 @@
 //   const std::string name = server.Submit(Equilibrium(2, 50));
 //   EXPECT_EQ(server.AwaitEnd(name).state(), v1::EnsembleJob::SUCCEEDED);
 //
-//   RunningServer small({.workers = 1, .limits = {.max_active_jobs = 1}});
+//   RunningServer small({.workers = 1, .limits = {.max_streams = 1}});
 #pragma once
 
 #include "ballpiston/v1/analytic.grpc.pb.h"
