@@ -92,7 +92,7 @@ absl::StatusOr<ListenAddress> ParseMetricsAddress(const std::string& text) {
   if (address.ok() && address->IsLoopback()) return address;
   return absl::InvalidArgumentError(absl::StrCat(
       "--metrics-listen=", text,
-      " is not a loopback address; permitted: HOST:PORT with a HOST in 127.0.0.0/8, [::1] or "
+      " is not a loopback address; permitted: HOST:PORT with the HOST 127.0.0.1, [::1] or "
       "localhost (metrics are not encrypted; let others reach them through a proxy or a tunnel)"));
 }
 
@@ -114,7 +114,8 @@ absl::StatusOr<std::unique_ptr<OrbitsOnDevice>> OpenDevice(const ServerOptions& 
 absl::Status CannotListen(const ListenAddress& address) {
   return absl::FailedPreconditionError(absl::StrCat(
       "--listen=", address.Text(),
-      ": the address is in use, not permitted, or not of this machine; choose another address"));
+      ": the address is in use, not permitted, or not of this machine; choose another address, "
+      "unix:PATH or HOST:PORT"));
 }
 
 }  // namespace
