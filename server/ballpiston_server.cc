@@ -22,12 +22,15 @@
 namespace ballpiston::server {
 namespace {
 
-constexpr int kMinPingIntervalMs = 15'000;
+constexpr int kHandshakeTimeoutMs = 20'000;
+constexpr int kPingIntervalMs = 60'000;       // silence before the server sends a ping
+constexpr int kPingTimeoutMs = 20'000;        // limit for the client's answer
+constexpr int kMinPingIntervalMs = 15'000;    // of a client's pings
 constexpr int kStreamsPerConnection = 2'048;  // twice what one principal may watch
-// Threads for calls that are not streams. One principal can fill a quarter of them with answers
-// that it does not read (--max-calls-per-principal).
+// Threads for calls that are not streams. One principal can take at most 64 of them with answers
+// that it does not read (rpc/quota.h).
 constexpr int kOtherThreads = 4'096;
-constexpr int64_t kLeastTransferBytes = 16 << 20;
+constexpr size_t kTransferBytes = size_t{512} << 20;  // connections, and requests that arrive
 constexpr std::chrono::milliseconds kLimitsInterval(1000);
 // The longest delay until health reports that the store fails, and until a revoked watch ends.
 constexpr std::chrono::milliseconds kHealthInterval(500);
@@ -55,33 +58,24 @@ std::vector<std::string> ServiceNames() {
           v1::TraceService::service_full_name(), v1::ServerService::service_full_name()};
 }
 
-void Set(grpc::ServerBuilder& builder, const char* argument, std::chrono::milliseconds time) {
-  builder.AddChannelArgument(argument, static_cast<int>(time.count()));
-}
-
-void SetPings(grpc::ServerBuilder& builder, const ConnectionTiming& timing) {
-  Set(builder, GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, timing.handshake);
-  Set(builder, GRPC_ARG_KEEPALIVE_TIME_MS, timing.ping_interval);
-  Set(builder, GRPC_ARG_KEEPALIVE_TIMEOUT_MS, timing.ping_timeout);
+// The server closes a connection, with its streams, if the client does not answer.
+void SetPings(grpc::ServerBuilder& builder) {
+  builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeTimeoutMs);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kPingIntervalMs);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kPingTimeoutMs);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);  // no limit
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS,
                              kMinPingIntervalMs);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
 }
 
-// With less than two messages of the greatest length, two clients that send such messages could
-// block each other for ever.
-size_t TransferBytes(const Limits& limits) {
-  return static_cast<size_t>(
-      std::max({limits.max_transfer_mib << 20, 2 * limits.max_message_bytes, kLeastTransferBytes}));
-}
-
 // Bounds what clients can use before they are authenticated: streams, memory and threads. Each call
-// has a thread. The quota has more than there can be streams, so other calls find a thread.
+// has a thread. The quota has more than there can be streams, so other calls find a thread. gRPC
+// itself refuses requests of more than 4 MiB.
 void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   using Option = grpc::ServerBuilder::SyncServerOption;
   grpc::ResourceQuota quota("ballpiston");
-  if (limits.max_transfer_mib > 0) quota.Resize(TransferBytes(limits));
+  quota.Resize(kTransferBytes);
   quota.SetMaxThreads(static_cast<int>(MostStreams(limits)) + kOtherThreads);
   builder.SetResourceQuota(quota);
   // One queue, and at most two idle threads that wait for calls. By default gRPC has a queue for
@@ -91,7 +85,6 @@ void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   builder.SetSyncServerOption(Option::MAX_POLLERS, 2);
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);  // no other server shares the port
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kStreamsPerConnection);
-  builder.SetMaxReceiveMessageSize(static_cast<int>(limits.max_message_bytes));
 }
 
 absl::StatusOr<ListenAddress> ParseMetricsAddress(const std::string& text) {
@@ -99,7 +92,7 @@ absl::StatusOr<ListenAddress> ParseMetricsAddress(const std::string& text) {
   if (address.ok() && address->IsLoopback()) return address;
   return absl::InvalidArgumentError(absl::StrCat(
       "--metrics-listen=", text,
-      " is not a loopback address; permitted: HOST:PORT with a HOST in 127.0.0.0/8, [::1] or "
+      " is not a loopback address; permitted: HOST:PORT with the HOST 127.0.0.1, [::1] or "
       "localhost (metrics are not encrypted; let others reach them through a proxy or a tunnel)"));
 }
 
@@ -121,7 +114,8 @@ absl::StatusOr<std::unique_ptr<OrbitsOnDevice>> OpenDevice(const ServerOptions& 
 absl::Status CannotListen(const ListenAddress& address) {
   return absl::FailedPreconditionError(absl::StrCat(
       "--listen=", address.Text(),
-      ": the address is in use, not permitted, or not of this machine; choose another address"));
+      ": the address is in use, not permitted, or not of this machine; choose another address, "
+      "unix:PATH or HOST:PORT"));
 }
 
 }  // namespace
@@ -219,7 +213,7 @@ absl::Status BallpistonServer::Listen() {
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
-  SetPings(builder, options_.connections);
+  SetPings(builder);
   SetBounds(builder, options_.limits);
   builder.RegisterService(&ensemble_);
   builder.RegisterService(&analytic_);

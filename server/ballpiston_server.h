@@ -30,13 +30,6 @@
 
 namespace ballpiston::server {
 
-// When the server closes a connection, with its streams: if the client does not answer.
-struct ConnectionTiming {
-  std::chrono::milliseconds handshake{20'000};      // limit of a TLS handshake
-  std::chrono::milliseconds ping_interval{60'000};  // silence before the server sends a ping
-  std::chrono::milliseconds ping_timeout{20'000};   // limit for the client's answer
-};
-
 // Values of --device.
 inline constexpr char kProcessor[] = "cpu";
 inline constexpr char kGpu[] = "gpu";
@@ -51,7 +44,6 @@ struct ServerOptions {
   std::optional<SlurmOptions> slurm = {};      // of the cluster; empty: somebody starts its workers
   std::shared_ptr<PointOpener> opener;         // null: the ladder of models opens points
   WatchTiming watch;
-  ConnectionTiming connections;
   Limits limits;
   std::string metrics_listen;  // HOST:PORT on the loopback; empty: no metrics
   Store::Options store;

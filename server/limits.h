@@ -1,6 +1,5 @@
-// Limits of a request, of a principal and of all principals together. The flag of a limit is its
-// name with dashes (--max-active-jobs). 0 means no limit; max_streams and max_message_bytes are
-// always limited.
+// Limits of a job, of a principal and of all principals together. The flag of a limit is its name
+// with dashes (--max-streams). 0 means no limit; max_streams is always limited.
 #pragma once
 
 #include <algorithm>
@@ -12,19 +11,11 @@ namespace ballpiston::server {
 inline constexpr int64_t kMostStreams = 32'768;
 
 struct Limits {
-  int64_t max_active_jobs = 10'000;  // jobs that have not ended
-  int64_t max_active_jobs_per_principal = 1'000;
-  int64_t max_active_points = 20'000'000;  // sum over the grids of active jobs
-  int64_t max_active_points_per_principal = 5'000'000;
+  int64_t max_active_jobs_per_principal = 1'000;        // jobs that have not ended
+  int64_t max_active_points_per_principal = 5'000'000;  // sum over the grids of these jobs
   int64_t max_points_per_job = 100'000;
-  double max_samples_per_job = 1e15;  // samples or collisions, over all points
-  int64_t max_streams = 2'048;        // open watches and traces; 0: kMostStreams
+  int64_t max_streams = 2'048;  // open watches and traces; 0: kMostStreams
   int64_t max_streams_per_principal = 1'024;
-  // Unary calls in progress, and the bytes of their requests and answers.
-  int64_t max_calls_per_principal = 1'024;
-  int64_t max_call_bytes_per_principal = int64_t{128} << 20;
-  int64_t max_message_bytes = int64_t{4} << 20;  // of a request
-  int64_t max_transfer_mib = 512;  // of connections and of requests that are being received
   // MiB, upper bound, of all points that the server computes at a time. The program's default is a
   // share of the machine's memory.
   int64_t max_memory_mib = 0;

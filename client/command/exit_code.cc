@@ -10,8 +10,7 @@ namespace {
 // Errors from gRPC's own limits, such as the size of a message, have no reason.
 ExitCode OfLimit(const std::string& reason) {
   if (reason.empty()) return ExitCode::kFailed;
-  const bool of_one_job = reason == "TOO_MANY_POINTS" || reason == "TOO_MANY_SAMPLES";
-  return of_one_job ? ExitCode::kUsage : ExitCode::kUnreachable;
+  return reason == "TOO_MANY_POINTS" ? ExitCode::kUsage : ExitCode::kUnreachable;
 }
 
 }  // namespace

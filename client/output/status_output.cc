@@ -91,12 +91,10 @@ void PrintServer(const v1::ServerStatus& status, absl::Time now, std::ostream& o
 void PrintLimits(const v1::ServerLimits& limits, std::ostream& out) {
   TextTable table({"limit", "most"}, {"limit"});
   table.AddRow({"points of a job", LimitText(limits.max_points_per_job())});
-  table.AddRow({"samples of a job", LimitText(limits.max_samples_per_job())});
   table.AddRow({"active jobs of a principal", LimitText(limits.max_active_jobs_per_principal())});
   table.AddRow(
       {"active points of a principal", LimitText(limits.max_active_points_per_principal())});
   table.AddRow({"streams of a principal", LimitText(limits.max_streams_per_principal())});
-  table.AddRow({"message", LimitText(limits.max_message_bytes(), &BytesText)});
   table.AddRow({"results kept", LimitText(limits.retain_days(), &DaysText)});
   out << '\n';
   table.Print(out);

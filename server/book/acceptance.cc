@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/book/job_name.h"
 #include "server/convert/errors.h"
+#include "server/convert/spec.h"
 #include "server/sha256.h"
 #include "server/store/labels.h"
 #include "server/store/sweeper.h"
@@ -14,10 +15,8 @@ namespace {
 
 constexpr char kWait[] = "wait until some jobs have ended, or cancel some of yours";
 
-bool Exceeds(double value, double limit) { return limit > 0 && value > limit; }
-
-// Refuses one more job of the principal if it would exceed a limit.
-void CheckQueue(Database& database, const Limits& limits, const JobRecord& job) {
+// Refuses the job if it, or its principal's active jobs together, would exceed a limit.
+void CheckLoad(Database& database, const Limits& limits, const JobRecord& job) {
   const Load load = ActiveLoad(database, job.principal);
   const std::string& principal = job.principal;
   const auto check = [&](int64_t with_job, int64_t most, const char* reason, const char* flag,
@@ -25,17 +24,15 @@ void CheckQueue(Database& database, const Limits& limits, const JobRecord& job) 
     if (most == 0 || with_job <= most) return;
     database.Fail(LimitExceeded(reason, what, flag, static_cast<double>(most)));
   };
-  check(load.jobs + 1, limits.max_active_jobs, "QUEUE_FULL", "max-active-jobs",
-        absl::StrCat(load.jobs, " jobs are active: retry when some of them have ended"));
-  check(load.own_jobs + 1, limits.max_active_jobs_per_principal, "TOO_MANY_JOBS",
+  check(job.points, limits.max_points_per_job, "TOO_MANY_POINTS", "max-points-per-job",
+        absl::StrCat("the grid has ", job.points, " points: split it between several jobs"));
+  check(load.jobs + 1, limits.max_active_jobs_per_principal, "TOO_MANY_JOBS",
         "max-active-jobs-per-principal",
-        absl::StrCat(principal, " has ", load.own_jobs, " active jobs already: ", kWait));
-  const int64_t points = load.points + job.points, own_points = load.own_points + job.points;
-  check(points, limits.max_active_points, "TOO_MANY_ACTIVE_POINTS", "max-active-points",
-        absl::StrCat("active jobs would have ", points, " points with this one: ", kWait));
-  check(own_points, limits.max_active_points_per_principal, "TOO_MANY_ACTIVE_POINTS",
+        absl::StrCat(principal, " has ", load.jobs, " active jobs already: ", kWait));
+  const int64_t points = load.points + job.points;
+  check(points, limits.max_active_points_per_principal, "TOO_MANY_ACTIVE_POINTS",
         "max-active-points-per-principal",
-        absl::StrCat(principal, "'s active jobs would have ", own_points,
+        absl::StrCat(principal, "'s active jobs would have ", points,
                      " points with this one: ", kWait));
 }
 
@@ -120,26 +117,6 @@ void Continue(Database& database, JobRecord& record) {
 
 }  // namespace
 
-absl::Status CheckSize(const CheckedSpec& checked, const Limits& limits) {
-  const double points = static_cast<double>(PointCount(checked.spec));
-  if (Exceeds(points, static_cast<double>(limits.max_points_per_job))) {
-    return LimitExceeded(
-        "TOO_MANY_POINTS",
-        absl::StrCat("the grid has ", points, " points: split it between several jobs"),
-        "max-points-per-job", static_cast<double>(limits.max_points_per_job));
-  }
-  const Target& target = checked.spec.target;
-  const bool open_ended = target.tolerance || target.budget_seconds;
-  const int64_t of_a_point =
-      target.samples.value_or(target.collisions.value_or(open_ended ? 0 : kDefaultSamples));
-  const double samples = points * static_cast<double>(of_a_point);
-  if (!Exceeds(samples, limits.max_samples_per_job)) return absl::OkStatus();
-  return LimitExceeded("TOO_MANY_SAMPLES",
-                       absl::StrCat("the job takes ", samples,
-                                    " samples: ask for fewer samples per point, or split the grid"),
-                       "max-samples-per-job", limits.max_samples_per_job);
-}
-
 // An answer from the store stores no request: a retry finds the same answer.
 std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
   JobRecord& record = acceptance.record;
@@ -147,8 +124,7 @@ std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Accep
     if (!record.labels.empty()) AddLabels(database, LabelsOf(record.labels), earlier->record);
     return earlier;
   }
-  database.Fail(acceptance.fits);
-  CheckQueue(database, limits, record);
+  CheckLoad(database, limits, record);
   CheckStoreSize(database, limits);
   if (!acceptance.fresh) Continue(database, record);
   InsertJob(database, record);

@@ -20,9 +20,7 @@
 #include <optional>
 #include <string>
 
-#include "absl/status/status.h"
 #include "ballpiston/v1/ensemble.pb.h"
-#include "server/convert/spec.h"
 #include "server/limits.h"
 #include "server/store/job_record.h"
 #include "server/store/job_table.h"
@@ -33,7 +31,6 @@ namespace ballpiston::server {
 struct Acceptance {
   JobRecord record;    // the new job, with the id and the hash of its request
   bool fresh = false;  // do not return an earlier job
-  absl::Status fits;   // of CheckSize; used for new jobs only
 };
 
 // A job that answers the request.
@@ -45,9 +42,6 @@ struct EarlierJob {
 // Empty: the new job is stored, and its record says which job it continues.
 // If the request is refused, the transaction fails: INVALID_ARGUMENT or RESOURCE_EXHAUSTED.
 std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance);
-
-// RESOURCE_EXHAUSTED  TOO_MANY_POINTS, TOO_MANY_SAMPLES
-absl::Status CheckSize(const CheckedSpec& checked, const Limits& limits);
 
 // A hash of everything that determines the answer: the whole specification with its seed, and the
 // engine's version. Empty if the job has a budget, because the answer then depends on the machine.

@@ -58,7 +58,6 @@ Acceptance JobBook::NewAcceptance(const Principal& caller,
   record.create_time = WallNow();
   record.points = static_cast<int64_t>(PointCount(checked.spec));
   acceptance.fresh = request.fresh();
-  acceptance.fits = CheckSize(checked, limits_);
   return acceptance;
 }
 

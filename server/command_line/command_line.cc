@@ -37,9 +37,6 @@ constexpr int kMostWorkers = 1024;
 constexpr double kMostSeconds = 1e6;
 constexpr double kDaySeconds = 86400;
 constexpr double kMostLimit = 1e15;
-constexpr int64_t kLeastMessage = 1024;
-constexpr int64_t kMostMessage = int64_t{256} << 20;
-constexpr double kMostTransferMib = 1 << 20;
 constexpr int64_t kMostSlurmMinutes = 60 * 24 * 365;
 constexpr int64_t kMostSlurmWorkers = 1'000'000;
 
@@ -239,25 +236,16 @@ void AddLimitFlags(CLI::App& app, Limits& limits) {
   const auto add = [&app](const char* flag, auto& limit, const char* description) {
     AddNumber(app, flag, limit, 0, kMostLimit, description);
   };
-  add("--max-active-jobs", limits.max_active_jobs, "jobs that have not ended, of all principals");
   add("--max-active-jobs-per-principal", limits.max_active_jobs_per_principal,
       "jobs that have not ended, of one principal");
-  add("--max-active-points", limits.max_active_points,
-      "grid points of jobs that have not ended, of all principals");
   add("--max-active-points-per-principal", limits.max_active_points_per_principal,
       "grid points of jobs that have not ended, of one principal");
   add("--max-points-per-job", limits.max_points_per_job,
       "grid points of one job; the engine permits 100,000 at most");
-  add("--max-samples-per-job", limits.max_samples_per_job,
-      "samples or collisions of one job, over all its points");
   add("--max-streams", limits.max_streams,
       "open watches and traces of all principals; at most 32768, also with 0");
   add("--max-streams-per-principal", limits.max_streams_per_principal,
       "open watches and traces of one principal");
-  add("--max-calls-per-principal", limits.max_calls_per_principal,
-      "calls in progress of one principal, without watches");
-  add("--max-call-bytes-per-principal", limits.max_call_bytes_per_principal,
-      "bytes of the requests of these calls and of their unread answers");
   add("--max-memory-mib", limits.max_memory_mib,
       "MiB of memory of all points that this server computes at a time, by an upper bound.\n"
       "By default 80 % of the memory of this machine or of the server's control group");
@@ -265,11 +253,6 @@ void AddLimitFlags(CLI::App& app, Limits& limits) {
       "days from the end of a job until its results expire, unless it is pinned");
   add("--max-store-bytes", limits.max_store_bytes,
       "bytes of the store; shortly before it is full, results expire, the oldest first");
-  AddNumber(app, "--max-message-bytes", limits.max_message_bytes, kLeastMessage, kMostMessage,
-            "bytes of one request");
-  AddNumber(app, "--max-transfer-mib", limits.max_transfer_mib, 0, kMostTransferMib,
-            "MiB for connections and for requests that are being received, of all clients; the\n"
-            "server uses at least 16 MiB and twice --max-message-bytes");
 }
 
 void AddLogFlags(CLI::App& app, CommandLine& line, Words& words) {

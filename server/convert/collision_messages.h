@@ -15,8 +15,8 @@ namespace ballpiston::server {
 
 inline constexpr size_t kCollisionsOfMessage = 1024;
 
-// Upper bound of the memory of a sampler, its records and a message.
-inline constexpr int64_t kBytesOfSampler = int64_t{48} << 20;
+// Upper bound of the memory, in MiB, of a sampler, its records and a message.
+inline constexpr int64_t kMibOfSampler = 48;
 
 // The messages of one request. Not thread-safe.
 class CollisionMessages {

@@ -41,7 +41,7 @@ absl::Duration RetryDelayFor(const std::string& reason) {
   static const auto* const seconds = new std::map<std::string, int>{
       {"SHUTTING_DOWN", 1},  {"STORE_FULL", 1},       {"STORE_FAILED", 1},
       {"TOO_MANY_CALLS", 1}, {"TOO_MANY_STREAMS", 5}, {"TOO_MANY_ACTIVE_POINTS", 10},
-      {"TOO_MANY_JOBS", 10}, {"QUEUE_FULL", 10}};
+      {"TOO_MANY_JOBS", 10}};
   const auto found = seconds->find(reason);
   return absl::Seconds(found == seconds->end() ? 0 : found->second);
 }
@@ -178,11 +178,12 @@ absl::Status CredentialsExpired() {
 
 absl::Status LimitExceeded(const std::string& reason, const std::string& what,
                            const std::string& flag, double limit) {
-  absl::Status status = absl::ResourceExhaustedError(
-      absl::StrFormat("%s; this server permits %.15g (--%s)", what, limit, flag));
+  absl::Status status =
+      absl::ResourceExhaustedError(absl::StrFormat("%s; this server permits %.15g", what, limit) +
+                                   (flag.empty() ? "" : absl::StrCat(" (--", flag, ")")));
   google::rpc::ErrorInfo info = Info(reason);
   (*info.mutable_metadata())["limit"] = absl::StrFormat("%.15g", limit);
-  (*info.mutable_metadata())["flag"] = flag;
+  if (!flag.empty()) (*info.mutable_metadata())["flag"] = flag;
   SetInfo(status, info);
   return status;
 }

@@ -42,7 +42,7 @@ absl::Status CredentialsMissing();
 absl::Status CredentialsInvalid();
 absl::Status CredentialsExpired();
 
-// RESOURCE_EXHAUSTED: `what` exceeds `limit`, which the server's flag `flag` sets.
+// RESOURCE_EXHAUSTED: `what` exceeds `limit`, which the server's flag `flag` sets; empty: no flag.
 absl::Status LimitExceeded(const std::string& reason, const std::string& what,
                            const std::string& flag, double limit);
 

@@ -21,9 +21,6 @@ inline constexpr int64_t kMaxTracedEvents = 1'000'000;
 inline constexpr int64_t kMaxTracedCells = 1'000;
 inline constexpr int kEventsOfMessage = 256;
 
-// Upper bound of the memory of a trace and of its messages.
-inline constexpr int64_t kBytesOfTrace = 128 * 1024 + 1024 * kMaxTracedCells;
-
 // The messages of one trace. Not thread-safe.
 class TraceMessages {
  public:

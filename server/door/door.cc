@@ -52,8 +52,8 @@ absl::Status CheckCombination(const DoorOptions& options, const ListenAddress& a
   if (HasTls(options) ? has_access_file : address.IsLoopback()) return absl::OkStatus();
   return Refused(listen +
                  "an address that other machines can reach needs TLS, and TLS needs an access "
-                 "file: give --tls-certificate, --tls-key and --access-file (or listen on a "
-                 "loopback address without TLS, or on a Unix socket)");
+                 "file: give --tls-certificate, --tls-key and --access-file (or listen without "
+                 "TLS on 127.0.0.1, [::1] or localhost, or on a Unix socket)");
 }
 
 absl::StatusOr<std::unique_ptr<Door>> Door::Create(const DoorOptions& options,

@@ -11,19 +11,20 @@ namespace ballpiston::server {
 
 struct ListenAddress {
   std::string socket_path;  // of a Unix socket; empty for host:port
-  std::string host;         // without brackets
+  std::string host;         // an IPv6 address has its brackets
   int port = 0;             // 0: any free port
 
   // The address as gRPC and clients write it.
   std::string Text() const;
 
-  // Whether only local connections are possible: 127.0.0.0/8 or ::1. Every name counts as an
-  // address that other machines reach, because what it resolves to may change.
+  // Whether only local connections are possible: 127.0.0.1 or [::1], so written. Every other host
+  // counts as one that other machines reach.
   bool IsLoopback() const;
 };
 
-// Parses unix:PATH or HOST:PORT. HOST is an IPv4 address, an IPv6 address in brackets, or a name;
-// localhost is 127.0.0.1. 0.0.0.0 and [::] both mean every IPv4 and IPv6 address of this machine.
+// Parses unix:PATH or HOST:PORT. HOST is an IPv4 address, an IPv6 address in brackets, or a name,
+// which gRPC reads; localhost is 127.0.0.1. 0.0.0.0 and [::] both mean every IPv4 and IPv6 address
+// of this machine.
 // INVALID_ARGUMENT names the flag --listen, the value, and the permitted values.
 absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text);
 

@@ -5,7 +5,6 @@
 #include <functional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "absl/functional/function_ref.h"
 #include "absl/status/status.h"
@@ -45,9 +44,9 @@ grpc::Status ServeCall(ServiceContext& service, grpc::ServerContext& context, co
                        absl::FunctionRef<absl::Status(const Call&)> method);
 
 // The frame of a unary call, within that of every call. The call counts until gRPC has sent its
-// answer (CallObserver::Keep). A call that waits for the disk takes no turn.
+// answer (CallObserver::Keep).
 //   RESOURCE_EXHAUSTED  TOO_MANY_CALLS
-//   CANCELLED           the client left before the method began, or while it planned
+//   CANCELLED           the client left while the method planned
 template <typename Request, typename Response>
 grpc::Status ServeUnary(ServiceContext& service, grpc::ServerContext& context, const CallRule& rule,
                         const Request& request, Response& response,
@@ -57,21 +56,12 @@ grpc::Status ServeUnary(ServiceContext& service, grpc::ServerContext& context, c
     if (rule.writes && service.store.stalled()) {
       return StoreFailure(absl::UnavailableError("store: the disk does not answer"));
     }
-    Quotas& quotas = service.quotas;
-    const auto open = quotas.calls.Take(call.caller.name);
-    if (!open.ok()) return open.status();
-    const auto bytes =
-        quotas.call_bytes.Take(call.caller.name, static_cast<int64_t>(request.ByteSizeLong()));
-    if (!bytes.ok()) return bytes.status();
-    const auto kept = std::make_shared<std::vector<Quota::Part>>(std::vector{*open, *bytes});
-    service.calls.Keep(context, kept);
-    const Quota::Part turn = rule.writes ? nullptr : quotas.turns.Await(call.caller.name);
-    if (call.is_abandoned()) return absl::CancelledError("the client is gone");
+    const auto part = service.quotas.calls.Take(call.caller.name, kMibOfCall);
+    if (!part.ok()) return part.status();
+    service.calls.Keep(context, *part);
     absl::StatusOr<Response> answer = method(service, call, request);
     if (!answer.ok()) return answer.status();
     response = *std::move(answer);
-    const auto bytes_of_answer = static_cast<int64_t>(response.ByteSizeLong());
-    kept->push_back(quotas.call_bytes.TakeAnyway(call.caller.name, bytes_of_answer));
     return absl::OkStatus();
   });
 }

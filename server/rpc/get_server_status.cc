@@ -55,13 +55,11 @@ void AddPrincipals(const ServiceContext& service, const Principal& viewer,
 v1::ServerLimits LimitsMessage(const Limits& limits) {
   v1::ServerLimits message;
   message.set_max_points_per_job(static_cast<double>(limits.max_points_per_job));
-  message.set_max_samples_per_job(limits.max_samples_per_job);
   message.set_max_active_jobs_per_principal(
       static_cast<double>(limits.max_active_jobs_per_principal));
   message.set_max_active_points_per_principal(
       static_cast<double>(limits.max_active_points_per_principal));
   message.set_max_streams_per_principal(static_cast<double>(limits.max_streams_per_principal));
-  message.set_max_message_bytes(static_cast<double>(limits.max_message_bytes));
   message.set_retain_days(limits.retain_days);
   return message;
 }

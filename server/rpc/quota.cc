@@ -6,75 +6,33 @@
 #include "server/convert/errors.h"
 
 namespace ballpiston::server {
-namespace {
 
-constexpr int64_t kTurns = 8;
-
-bool IsBeyond(const Quota::Limit& limit, int64_t amount) {
-  return limit.most > 0 && amount > limit.most;
-}
-
-}  // namespace
-
-absl::StatusOr<Quota::Part> Quota::Take(std::string principal, int64_t amount) {
+absl::StatusOr<Quota::Part> Quota::Take(const std::string& principal, int64_t amount) {
   {
     MutexLock lock(mutex_);
-    const Limit* const limit = Exceeded(principal, amount);
-    if (limit != nullptr) return TooMany(principal, amount, *limit);
+    const auto own = principals_.find(principal);
+    const int64_t taken = own == principals_.end() ? 0 : own->second;
+    absl::Status fits = Check("all clients", taken_ + amount, rule_.all);
+    if (fits.ok()) fits = Check(principal, taken + amount, rule_.of_one);
+    if (!fits.ok()) return fits;
     Count(principal, amount);
   }
-  return PartOf(std::move(principal), amount);
-}
-
-Quota::Part Quota::TakeAnyway(std::string principal, int64_t amount) {
-  {
+  // If memory runs out, shared_ptr gives the part back.
+  return Part(nullptr, [this, principal, amount](void*) {
     MutexLock lock(mutex_);
-    Count(principal, amount);
-  }
-  return PartOf(std::move(principal), amount);
+    Count(principal, -amount);
+  });
 }
 
-Quota::Part Quota::Await(std::string principal) {
-  {
-    MutexLock lock(mutex_);
-    OfPrincipal& own = principals_[principal];
-    ++own.waiting;
-    while (Exceeded(principal, 1) != nullptr) own.changed.Wait(mutex_);
-    --own.waiting;
-    Count(principal, 1);
-  }
-  return PartOf(std::move(principal), 1);
-}
-
-const Quota::Limit* Quota::Exceeded(const std::string& principal, int64_t amount) {
-  if (IsBeyond(rule_.all, taken_ + amount)) return &rule_.all;
-  const int64_t own = principals_[principal].taken;
-  return own > 0 && IsBeyond(rule_.of_one, own + amount) ? &rule_.of_one : nullptr;
-}
-
-absl::Status Quota::TooMany(const std::string& principal, int64_t amount, const Limit& limit) {
-  const bool is_of_one = &limit == &rule_.of_one;
-  const int64_t taken = is_of_one ? principals_[principal].taken : taken_;
-  return LimitExceeded(rule_.reason,
-                       absl::StrCat(is_of_one ? principal : "all clients", " would have ",
-                                    taken + amount, " ", rule_.what),
+absl::Status Quota::Check(const std::string& user, int64_t amount, const Limit& limit) const {
+  if (limit.most == 0 || amount <= limit.most) return absl::OkStatus();
+  return LimitExceeded(rule_.reason, absl::StrCat(user, " would have ", amount, " ", rule_.what),
                        limit.flag, static_cast<double>(limit.most));
 }
 
 void Quota::Count(const std::string& principal, int64_t amount) {
   taken_ += amount;
-  OfPrincipal& own = principals_[principal];
-  own.taken += amount;
-  if (own.taken == 0 && own.waiting == 0) principals_.erase(principal);
-}
-
-// If memory runs out, shared_ptr gives the part back.
-Quota::Part Quota::PartOf(std::string principal, int64_t amount) {
-  return Part(nullptr, [this, principal = std::move(principal), amount](void*) {
-    MutexLock lock(mutex_);
-    Count(principal, -amount);
-    for (auto& [name, other] : principals_) other.changed.NotifyOne();
-  });
+  if ((principals_[principal] += amount) == 0) principals_.erase(principal);
 }
 
 int64_t Quota::taken() const {
@@ -84,22 +42,16 @@ int64_t Quota::taken() const {
 
 std::map<std::string, int64_t> Quota::ByPrincipal() const {
   MutexLock lock(mutex_);
-  std::map<std::string, int64_t> taken;
-  for (const auto& [name, principal] : principals_) taken[name] = principal.taken;
-  return taken;
+  return principals_;
 }
 
 Quotas::Quotas(const Limits& limits)
-    : calls({.what = "calls in progress",
+    : calls({.what = "MiB in calls in progress and unread answers",
              .reason = "TOO_MANY_CALLS",
-             .of_one = {limits.max_calls_per_principal, "max-calls-per-principal"}}),
-      call_bytes({.what = "bytes in calls in progress and unread answers",
-                  .reason = "TOO_MANY_CALLS",
-                  .of_one = {limits.max_call_bytes_per_principal, "max-call-bytes-per-principal"}}),
+             .of_one = {kMostMibOfCalls}}),
       streams({.what = "open streams",
                .reason = "TOO_MANY_STREAMS",
                .all = {MostStreams(limits), "max-streams"},
-               .of_one = {limits.max_streams_per_principal, "max-streams-per-principal"}}),
-      turns({.all = {kTurns}, .of_one = {kTurns / 2}}) {}
+               .of_one = {limits.max_streams_per_principal, "max-streams-per-principal"}}) {}
 
 }  // namespace ballpiston::server

@@ -1,5 +1,5 @@
-// A quota limits how many calls, bytes, streams or turns the principals use at the same time. Its
-// limits keep one principal from using the whole server. Thread-safe.
+// A quota limits how much the principals use at the same time, such as streams. Its limits keep one
+// principal from using the whole server. Thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -32,51 +32,37 @@ class Quota {
 
   explicit Quota(Rule rule) : rule_(rule) {}
 
-  // RESOURCE_EXHAUSTED beyond a limit. The only part of a principal may have any amount.
-  absl::StatusOr<Part> Take(std::string principal, int64_t amount = 1);
-  // The same without limits.
-  Part TakeAnyway(std::string principal, int64_t amount);
-  // Takes one when the limits permit it.
-  Part Await(std::string principal);
+  // RESOURCE_EXHAUSTED beyond a limit.
+  absl::StatusOr<Part> Take(const std::string& principal, int64_t amount = 1);
 
   int64_t taken() const;
   std::map<std::string, int64_t> ByPrincipal() const;
 
  private:
-  struct OfPrincipal {
-    int64_t taken = 0;
-    int64_t waiting = 0;
-    Condition changed;  // one for each principal: a part that is given back wakes a call of each
-  };
-
-  // The limit that would be exceeded; null: none.
-  const Limit* Exceeded(const std::string& principal, int64_t amount)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  absl::Status TooMany(const std::string& principal, int64_t amount, const Limit& limit)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  absl::Status Check(const std::string& user, int64_t amount, const Limit& limit) const;
   void Count(const std::string& principal, int64_t amount) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  Part PartOf(std::string principal, int64_t amount);  // that is counted
 
   const Rule rule_;
   mutable Mutex mutex_;
   int64_t taken_ ABSL_GUARDED_BY(mutex_) = 0;
-  std::map<std::string, OfPrincipal> principals_ ABSL_GUARDED_BY(mutex_);
+  std::map<std::string, int64_t> principals_ ABSL_GUARDED_BY(mutex_);
 };
+
+// The memory, in MiB, of most requests with their answers, and of a trace with its messages.
+inline constexpr int64_t kMibOfCall = 4;
+// Of one principal: 64 calls, or 5 samplers (kMibOfSampler).
+inline constexpr int64_t kMostMibOfCalls = 256;
 
 // The quotas of all methods.
 struct Quotas {
   explicit Quotas(const Limits& limits);
 
-  // Unary calls in progress, and their memory: the request, and the answer until the client has
-  // received it, or what a trace computes. So a client that does not read the answers of its calls
-  // reaches the limits.
+  // MiB of the unary calls in progress, of traces and of samplers. A unary call counts until the
+  // client has received its answer: the answer needs memory and a thread so long, and a client
+  // that does not read its answers could otherwise use up both.
   Quota calls;
-  Quota call_bytes;
   // Watches and traces. Each has a thread.
   Quota streams;
-  // Calls that compute. Each call has a thread, so a principal with many calls would slow down the
-  // calls of all others, and the workers.
-  Quota turns;
 };
 
 }  // namespace ballpiston::server

@@ -8,24 +8,16 @@
 namespace ballpiston::server {
 namespace {
 
-// Takes a turn for each message, so other calls can compute between two messages.
-template <typename Messages, typename Response>
-bool FillInTurn(ServiceContext& service, const Stream& stream, Messages& messages,
-                Response& message) {
-  const Quota::Part turn = service.quotas.turns.Await(stream.caller().name);
-  return messages.FillNext(message);
-}
-
-// Sends all messages for the request. `bytes`: upper bound of the memory that they take.
+// Sends all messages for the request. `mib`: upper bound of the memory that they take.
 template <typename Messages, typename Request, typename Response>
-absl::Status SendAll(ServiceContext& service, Stream& stream, const Request& request, int64_t bytes,
+absl::Status SendAll(ServiceContext& service, Stream& stream, const Request& request, int64_t mib,
                      grpc::ServerWriter<Response>& writer) {
-  const auto memory = service.quotas.call_bytes.Take(stream.caller().name, bytes);
+  const auto memory = service.quotas.calls.Take(stream.caller().name, mib);
   if (!memory.ok()) return memory.status();
   absl::StatusOr<Messages> messages = Messages::Create(request);
   if (!messages.ok()) return messages.status();
   Response message;
-  while (FillInTurn(service, stream, *messages, message)) {
+  while (messages->FillNext(message)) {
     if (const absl::Status proceed = stream.Proceed(); !proceed.ok()) return proceed;
     const bool is_empty = message.ByteSizeLong() == 0;
     if (!is_empty && !writer.Write(message)) return absl::CancelledError("the client is gone");
@@ -39,13 +31,13 @@ absl::Status SendAll(ServiceContext& service, Stream& stream, const Request& req
 absl::Status TraceOrbit(ServiceContext& service, Stream& stream,
                         const v1::TraceOrbitRequest& request,
                         grpc::ServerWriter<v1::TraceOrbitResponse>& writer) {
-  return SendAll<TraceMessages>(service, stream, request, kBytesOfTrace, writer);
+  return SendAll<TraceMessages>(service, stream, request, kMibOfCall, writer);
 }
 
 absl::Status SampleCollisions(ServiceContext& service, Stream& stream,
                               const v1::SampleCollisionsRequest& request,
                               grpc::ServerWriter<v1::SampleCollisionsResponse>& writer) {
-  return SendAll<CollisionMessages>(service, stream, request, kBytesOfSampler, writer);
+  return SendAll<CollisionMessages>(service, stream, request, kMibOfSampler, writer);
 }
 
 }  // namespace ballpiston::server

@@ -95,24 +95,15 @@ absl::Status MakeDirectories(const std::string& path) {
   return NotWritable(path, errno);
 }
 
-// Whether the folder is empty or was a server's before. Otherwise other users may need its files. A
-// lock that is not a regular file belongs to another program (/var/lock is a link).
+// Whether the folder has a store, or nothing but a client's log. Otherwise other users may need its
+// files.
 bool IsAServers(const std::string& path) {
-  bool has_others = false;
   std::error_code error;
-  std::filesystem::directory_iterator entry(path, error);
-  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
-    const std::string name = entry->path().filename();
-    const bool is_file = entry->symlink_status(error).type() == std::filesystem::file_type::regular;
-    if (is_file && (name == kLockFile || name == kStoreFile)) return true;
-    has_others |= !is_file || name != kClientsLog;
-  }
-  return !has_others && !error;
-}
-
-absl::Status OpenToOthers(const std::string& path, mode_t mode, const std::string& why) {
-  return absl::PermissionDeniedError(absl::StrFormat(
-      "data folder %s is open to other users (mode %04o%s", path, mode & 07777, why));
+  if (std::filesystem::exists(absl::StrCat(path, "/", kStoreFile), error)) return true;
+  const std::filesystem::directory_iterator entries(path, error);
+  return !error && std::all_of(begin(entries), end(entries), [](const auto& entry) {
+    return entry.path().filename() == kClientsLog;
+  });
 }
 
 // Other users must not reach jobs, results and the socket.
@@ -121,26 +112,16 @@ absl::Status CloseToOthers(const std::string& path) {
   if (stat(path.c_str(), &found) != 0) return NotWritable(path, errno);
   constexpr mode_t kForOthers = S_IRWXG | S_IRWXO;
   if ((found.st_mode & kForOthers) == 0) return absl::OkStatus();
+  const std::string open = absl::StrFormat("data folder %s is open to other users (mode %04o)",
+                                           path, found.st_mode & 07777);
   const bool is_ours = found.st_uid == geteuid() && (found.st_mode & S_ISVTX) == 0;
-  if (!is_ours) {
-    return OpenToOthers(
-        path, found.st_mode,
-        absl::StrFormat(", user %d) and is not this server's own; choose another one with "
-                        "--data-dir",
-                        found.st_uid));
-  }
-  if (!IsAServers(path)) {
-    return OpenToOthers(
-        path, found.st_mode,
-        absl::StrCat(") and has files that are not a server's; choose a folder for the server "
-                     "with --data-dir, such as ",
-                     path,
-                     "/ballpiston, or run chmod 700 on this one if no other user needs its files"));
+  if (!is_ours || !IsAServers(path)) {
+    return absl::PermissionDeniedError(
+        absl::StrCat(open, "; choose another one with --data-dir, or run chmod 700 ", path,
+                     " if it is yours and no other user needs its files"));
   }
   if (chmod(path.c_str(), 0700) != 0) return NotWritable(path, errno);
-  LogInfo(
-      absl::StrFormat("data folder %s was open to other users (mode %04o): its mode is 0700 now",
-                      path, found.st_mode & 07777));
+  LogInfo(absl::StrCat(open, ": the server sets its mode to 0700"));
   return absl::OkStatus();
 }
 

@@ -1,8 +1,7 @@
 // The folder with the server's state. One server at a time can use it.
 //
-// The server creates the folder if it does not exist, for its owner only. If the folder belongs to
-// our user and other users can enter it, the server sets its mode to 0700 if it is empty or was a
-// server's before, and logs this.
+// The server creates the folder if it does not exist, for its owner only. If other users can enter
+// it, the server sets its mode to 0700 if it is empty or has a store, and logs this.
 //
 // Two files in it are for clients, and for further servers that find the lock:
 //   lock            The server holds an exclusive lock (flock) on it as long as this object lives.
@@ -36,9 +35,8 @@ int64_t StoreBytes(const std::string& path);
 class DataDirectory {
  public:
   //   FAILED_PRECONDITION  another server uses the folder; the message has its address
-  //   PERMISSION_DENIED    the folder cannot be created or written; or other users can enter it and
-  //                        the server must not change its mode: it belongs to another user, is
-  //                        shared by all users (/tmp), or has files that are not a server's
+  //   PERMISSION_DENIED    the folder cannot be created or written; or other users can enter it,
+  //                        and it has files but no store, is another user's, or is shared (/tmp)
   static absl::StatusOr<DataDirectory> Open(const std::string& path);
 
   // $XDG_STATE_HOME/ballpiston, or ~/.local/state/ballpiston.

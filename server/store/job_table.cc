@@ -194,12 +194,11 @@ std::vector<JobRecord> FindFamily(Database& database, const std::string& princip
 
 Load ActiveLoad(Database& database, const std::string& principal) {
   Load load;
-  Query query =
-      database.Select(absl::StrCat("SELECT count(*), sum(principal = ?1), sum(points),"
-                                   " sum(points * (principal = ?1)) FROM jobs WHERE state IN (",
-                                   kActiveStates, ")"),
-                      principal);
-  if (query.Next()) query.ReadInto(load.jobs, load.own_jobs, load.points, load.own_points);
+  Query query = database.Select(absl::StrCat("SELECT count(*), sum(points) FROM jobs"
+                                             " WHERE principal = ? AND state IN (",
+                                             kActiveStates, ")"),
+                                principal);
+  if (query.Next()) query.ReadInto(load.jobs, load.points);
   return load;
 }
 

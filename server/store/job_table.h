@@ -53,11 +53,11 @@ inline constexpr int kMostOfAFamily = 20;
 std::vector<JobRecord> FindFamily(Database& database, const std::string& principal,
                                   const std::string& family);
 
-// The number of active jobs (neither SUCCEEDED nor FAILED nor CANCELLED) and of their points: of
-// all principals, and of one.
+// The number of the principal's active jobs (neither SUCCEEDED nor FAILED nor CANCELLED), and of
+// their points.
 struct Load {
-  int64_t jobs = 0, own_jobs = 0;
-  int64_t points = 0, own_points = 0;
+  int64_t jobs = 0;
+  int64_t points = 0;
 };
 Load ActiveLoad(Database& database, const std::string& principal);
 

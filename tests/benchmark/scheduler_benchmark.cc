@@ -106,7 +106,7 @@ struct Server {
       [](const EnsembleSpec& spec, size_t index) { return PointExperiment::Create(spec, index); }};
   Scheduler scheduler{opener, kLocalCores};
   SimulatedExecutor local, remote;
-  JobBook book{*store, Limits{.max_samples_per_job = 0}, scheduler};
+  JobBook book{*store, Limits{}, scheduler};
 };
 
 // Chunks of one result, which differ in the number of samples. Counts of a large chunk take more

@@ -29,11 +29,8 @@ constexpr char kFlags[] =
     "cluster-timeout-seconds cluster-worker "
     "slurm-workers slurm-partition slurm-account slurm-cluster slurm-time-limit-minutes "
     "slurm-option slurm-max-array-size slurm-query-seconds "
-    "max-active-jobs max-active-jobs-per-principal max-active-points "
-    "max-active-points-per-principal max-points-per-job max-samples-per-job max-streams "
-    "max-streams-per-principal max-calls-per-principal max-call-bytes-per-principal "
-    "max-transfer-mib max-memory-mib retain-days max-store-bytes "
-    "max-message-bytes "
+    "max-active-jobs-per-principal max-active-points-per-principal max-points-per-job max-streams "
+    "max-streams-per-principal max-memory-mib retain-days max-store-bytes "
     "log-level metrics-listen new-token check backup help version";
 
 // What --help describes: --NAME at the beginning of a line.
@@ -62,11 +59,10 @@ TEST(ServerFlags, HelpListsEachOnceWithDashes) {
 
 TEST(ServerFlags, HelpHasDefaultsRangesAndExitCodesInShortLines) {
   const std::string page = Server({"--help"}).out;
-  for (const char* text :
-       {"\n\nLimits; 0 means no limit:\n", "--max-active-jobs N:0 to 1e+15=10000\n",
-        "--drain-seconds SECONDS:0 to 3600=10\n", "{info,warning,error}=info\n",
-        ".local/state/ballpiston\n",
-        "--workers N:1 to 1024=", "Exit codes: 0 stopped (SIGTERM, SIGINT, idle) or done; 1 "}) {
+  for (const char* text : {"\n\nLimits; 0 means no limit:\n", "--max-streams N:0 to 1e+15=2048\n",
+                           "--drain-seconds SECONDS:0 to 3600=10\n", "{info,warning,error}=info\n",
+                           ".local/state/ballpiston\n", "--workers N:1 to 1024=",
+                           "Exit codes: 0 stopped (SIGTERM, SIGINT, idle) or done; 1 "}) {
     EXPECT_THAT(page, HasSubstr(text));
   }
   std::istringstream lines(page);
@@ -85,7 +81,7 @@ TEST(ServerFlags, ARefusalNamesFlagValueAndPermittedValues) {
     std::string message;
   } table[] = {
       {{"--nonsense=1"}, "not expected: --nonsense=1"},
-      {{"--max_active_jobs=3"}, "not expected: --max_active_jobs=3"},
+      {{"--max_streams=3"}, "not expected: --max_streams=3"},
       {{"-workers=1"}, "not expected: -workers=1"},
       {{"data"}, "not expected: data"},
       {{"--", "data"}, "not expected: data"},
@@ -106,13 +102,10 @@ TEST(ServerFlags, ARefusalNamesFlagValueAndPermittedValues) {
       {{"--drain-seconds=10s"}, "--drain-seconds: 10s" + seconds},
       {{"--idle-exit-seconds=1e7"}, "permitted: 0 to 1000000"},
       {{"--watch-heartbeat-seconds=0"}, "permitted: 0.01 to 3600"},
-      {{"--max-active-jobs", "-1"}, "--max-active-jobs: -1" + limit},
-      {{"--max-active-jobs=1e30"}, "--max-active-jobs: 1e30" + limit},
-      {{"--max-samples-per-job", "-1e-9"}, "--max-samples-per-job: -1e-9" + real_limit},
-      {{"--max-samples-per-job=inf"}, "--max-samples-per-job: inf" + real_limit},
-      {{"--max-samples-per-job=nan"}, "--max-samples-per-job: nan" + real_limit},
-      {{"--max-message-bytes=1023"}, "permitted: whole numbers, 1024 to 268435456"},
-      {{"--max-transfer-mib=1048577"}, "permitted: whole numbers, 0 to 1048576"},
+      {{"--max-streams", "-1"}, "--max-streams: -1" + limit},
+      {{"--max-streams=1e30"}, "--max-streams: 1e30" + limit},
+      {{"--retain-days", "-1e-9"}, "--retain-days: -1e-9" + real_limit},
+      {{"--retain-days=inf"}, "--retain-days: inf" + real_limit},
       {{"--log-level", "-1"}, "--log-level: -1 not in {info,warning,error}"},
       {{"--device=tpu"}, "--device: tpu not in {cpu,gpu}"},
       {{"--executor=slurm"}, "--cluster-folder: \"\" is not an absolute path"},
@@ -200,7 +193,7 @@ TEST_F(ConfigFile, GivesTheFlagsOfAServer) {
   const std::string address = "unix:" + home_.File("socket");
   Write("# of the laboratory\n\n  listen = " + address +
         "\n#the store\n\tdata-dir=" + home_.File("data") +
-        "\r\nworkers = 1\nlog-level=info\nmax-points-per-job = 2\nmax-message-bytes = 2048\n"
+        "\r\nworkers = 1\nlog-level=info\nmax-points-per-job = 2\n"
         "metrics-listen = 127.0.0.1:0\nmax-active-points-per-principal = 3e7");
   Process server(ServerCommand(home_, {"--config=" + Path()}));
   ASSERT_TRUE(server.WaitForErr("listening on " + address));
@@ -210,7 +203,6 @@ TEST_F(ConfigFile, GivesTheFlagsOfAServer) {
       RunProgram(ClientCommand(home_, {"status", "--format", "json", "--server", address}));
   EXPECT_EQ(At(ParseJson(status.out), "workers").number_value(), 1) << status.out << status.err;
   EXPECT_EQ(At(ParseJson(status.out), "limits", "max_points_per_job").number_value(), 2);
-  EXPECT_EQ(At(ParseJson(status.out), "limits", "max_message_bytes").number_value(), 2048);
   EXPECT_EQ(At(ParseJson(status.out), "limits", "max_active_points_per_principal").number_value(),
             3e7);
 }

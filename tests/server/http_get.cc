@@ -30,16 +30,14 @@ void Connection::Send(const std::string& bytes) {
   EXPECT_EQ(sent, static_cast<ssize_t>(bytes.size()));
 }
 
-std::string Connection::ReadSome() {
-  char buffer[4096];
-  const ssize_t n = recv(descriptor_, buffer, sizeof(buffer), 0);
-  if (n < 0 && errno == EAGAIN) throw std::runtime_error("no byte has come for 15 minutes");
-  return n > 0 ? std::string(buffer, static_cast<size_t>(n)) : "";
-}
-
 std::string Connection::ReadToTheEnd() {
   std::string all;
-  for (std::string some = ReadSome(); !some.empty(); some = ReadSome()) all += some;
+  char buffer[4096];
+  ssize_t n = 0;
+  while ((n = recv(descriptor_, buffer, sizeof(buffer), 0)) > 0) {
+    all.append(buffer, static_cast<size_t>(n));
+  }
+  if (n < 0 && errno == EAGAIN) throw std::runtime_error("no byte has come for 15 minutes");
   return all;
 }
 

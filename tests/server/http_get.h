@@ -14,7 +14,6 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   void Send(const std::string& bytes);
-  std::string ReadSome();  // what comes next; empty: the end
   std::string ReadToTheEnd();
 
  private:

@@ -22,7 +22,6 @@ ServerOptions OptionsIn(const std::string& data_dir, const TestServerOptions& op
   all.workers = options.workers;
   if (options.factory) all.opener = std::make_shared<FactoryOpener>(options.factory);
   all.watch = options.watch;
-  all.connections = options.connections;
   all.limits = options.limits;
   all.metrics_listen = options.metrics_listen;
   all.store = options.store;

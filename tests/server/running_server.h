@@ -5,7 +5,7 @@
 //   const std::string name = server.Submit(Equilibrium(2, 50));
 //   EXPECT_EQ(server.AwaitEnd(name).state(), v1::EnsembleJob::SUCCEEDED);
 //
-//   RunningServer small({.workers = 1, .limits = {.max_active_jobs = 1}});
+//   RunningServer small({.workers = 1, .limits = {.max_streams = 1}});
 #pragma once
 
 #include "ballpiston/v1/analytic.grpc.pb.h"
@@ -31,18 +31,12 @@ struct TestServerOptions {
   int workers = 2;
   ExperimentFactory factory = FakeExperiments();  // null: the core's, by the chosen model
   WatchTiming watch = {.snapshot = std::chrono::milliseconds(2)};
-  ConnectionTiming connections = {};
   Limits limits = {};
   std::string metrics_listen = {};
   // On a busy machine a commit may take long although the disk does not hang.
   Store::Options store = {.delay = std::chrono::milliseconds(1), .stall = kUnreachedLimit};
   std::shared_ptr<grpc::ChannelCredentials> credentials = nullptr;  // the client's; null: none
 };
-
-// Silent connections stay open.
-inline constexpr ConnectionTiming kOnlyClosedByAStop = {.handshake = kUnreachedLimit,
-                                                        .ping_interval = kUnreachedLimit,
-                                                        .ping_timeout = kUnreachedLimit};
 
 // A channel, and frequent calls on it. Calls that do not return a status expect OK.
 class TestClient {

@@ -75,9 +75,8 @@ TEST(StartStop, StoppingDoesNotWaitForAnEndlessBlock) {
 TEST(StartStop, HungClientsDoNotDelayAStop) {
   const LaboratoryFiles files;
   Gate gate;
-  RunningServer server(Secure(files, {.factory = GatedExperiments(gate),
-                                      .connections = kOnlyClosedByAStop,
-                                      .credentials = files.Credentials(kAlice)}));
+  RunningServer server(
+      Secure(files, {.factory = GatedExperiments(gate), .credentials = files.Credentials(kAlice)}));
   v1::WatchEnsembleJobRequest request;
   request.set_name(server.Submit(Equilibrium(1000, 1)));
   const Connection no_handshake(server.address());
@@ -125,7 +124,7 @@ TEST(StartStop, HealthIsServedForTheWholeAndForEachService) {
   }
 }
 
-// One thread runs the calls, so a call that waited for the disk would block all later ones.
+// A call that waited for the disk would keep its thread.
 TEST(StartStop, WhileTheDiskHangsCallsThatWriteAreRefusedAndReadsAnswered) {
   FaultDisk disk;
   std::atomic<bool> hangs = false;

@@ -107,9 +107,9 @@ def test_an_error_says_how_long_to_wait() -> None:
     retry = error_details_pb2.RetryInfo()
     retry.retry_delay.FromMilliseconds(1500)
     status.details.add().Pack(retry)
-    status.details.add().Pack(error_details_pb2.ErrorInfo(reason="QUEUE_FULL"))
+    status.details.add().Pack(error_details_pb2.ErrorInfo(reason="TOO_MANY_JOBS"))
     details = details_of(status)
-    assert (details.reason, details.retry_delay) == ("QUEUE_FULL", 1.5)
+    assert (details.reason, details.retry_delay) == ("TOO_MANY_JOBS", 1.5)
     assert error_of(ballpiston.ResourceExhausted, "", details, "").retry_delay == 1.5
     assert details_of(status_pb2.Status()).retry_delay == 0
 

@@ -65,15 +65,15 @@ TEST(ConnectProtocol, CodesHaveTheProtocolsNamesAndStatuses) {
 
 TEST(ConnectProtocol, ErrorDetailsAreGivenInBase64AndAsJson) {
   google::rpc::ErrorInfo info;
-  info.set_reason("QUEUE_FULL");
+  info.set_reason("TOO_MANY_JOBS");
   google::rpc::Status attached;
   attached.add_details()->PackFrom(info);
   absl::Status status = absl::ResourceExhaustedError("full");
   status.SetPayload(kStatusPayload, absl::Cord(attached.SerializeAsString()));
-  // The bytes 0a 0a "QUEUE_FULL", without the padding "==" of base64.
+  // The bytes 0a 0d "TOO_MANY_JOBS".
   EXPECT_THAT(ErrorJson(status), AllOf(HasSubstr(R"("type":"google.rpc.ErrorInfo")"),
-                                       HasSubstr(R"("value":"CgpRVUVVRV9GVUxM")"),
-                                       HasSubstr(R"("reason":"QUEUE_FULL")")));
+                                       HasSubstr(R"("value":"Cg1UT09fTUFOWV9KT0JT")"),
+                                       HasSubstr(R"("reason":"TOO_MANY_JOBS")")));
 }
 
 // ---- page_access.h ----

@@ -20,10 +20,10 @@ class AcceptanceTest : public BookTest {
     EXPECT_FALSE(job.answered_from_store());
   }
 
-  // With three jobs of ann that wait at the gate, of one point each, the caller's request is
-  // refused because of the limit of 3.
+  // With three jobs of ann that wait at the gate, of one point each, her request is refused because
+  // of the limit of 3.
   void ExpectLimit(const Limits& limits, const std::string& reason, const std::string& flag,
-                   const std::string& advice, const Principal& caller = kAnn,
+                   const std::string& advice,
                    const v1::EnsembleSpec& refused_spec = Equilibrium(1, 1)) {
     SCOPED_TRACE(flag);
     const std::string request_id =
@@ -33,7 +33,7 @@ class AcceptanceTest : public BookTest {
     for (int i = 0; i < 3; ++i)
       held.push_back(Id(kAnn, FreshRequest(Equilibrium(1, 3, kHeldSeed))));
     for (int repeated = 0; repeated < 2; ++repeated) {  // a refused job does not count
-      const auto refused = Create(caller, FreshRequest(refused_spec, request_id));
+      const auto refused = Create(kAnn, FreshRequest(refused_spec, request_id));
       EXPECT_THAT(refused, IsError(absl::StatusCode::kResourceExhausted, reason));
       EXPECT_THAT(std::string(refused.status().message()),
                   AllOf(HasSubstr("--" + flag), HasSubstr(": " + advice)));
@@ -47,7 +47,7 @@ class AcceptanceTest : public BookTest {
       AwaitEnd(id);
     }
     // There is room now, and no job was created with the id.
-    AwaitEnd(Id(caller, FreshRequest(Equilibrium(1, 1), request_id)));
+    AwaitEnd(Id(kAnn, FreshRequest(Equilibrium(1, 1), request_id)));
   }
 
  private:
@@ -290,28 +290,18 @@ TEST_F(AcceptanceTest, OnlyTheRequestThatMadeTheJobIsStored) {
 // ---- limits ----
 
 TEST_F(AcceptanceTest, EachLimitNamesItsReasonAndItsFlag) {
-  v1::EnsembleSpec by_default = Equilibrium(1, 1);
-  by_default.clear_target();
   const std::string wait = "wait until some jobs have ended, or cancel some of yours";
-  ExpectLimit({.max_active_jobs = 3}, "QUEUE_FULL", "max-active-jobs",
-              "retry when some of them have ended", kBen);
   ExpectLimit({.max_active_jobs_per_principal = 3}, "TOO_MANY_JOBS",
               "max-active-jobs-per-principal", wait);
-  ExpectLimit({.max_active_points = 3, .max_active_points_per_principal = 0},
-              "TOO_MANY_ACTIVE_POINTS", "max-active-points", wait, kBen);
   ExpectLimit({.max_active_points_per_principal = 3}, "TOO_MANY_ACTIVE_POINTS",
               "max-active-points-per-principal", wait);
   ExpectLimit({.max_points_per_job = 3}, "TOO_MANY_POINTS", "max-points-per-job",
-              "split it between several jobs", kAnn, Equilibrium(4, 1));
-  for (const v1::EnsembleSpec& large : {Equilibrium(2, 2), by_default}) {
-    ExpectLimit({.max_samples_per_job = 3}, "TOO_MANY_SAMPLES", "max-samples-per-job",
-                "ask for fewer samples per point, or split the grid", kAnn, large);
-  }
+              "split it between several jobs", Equilibrium(4, 1));
 }
 
 TEST_F(AcceptanceTest, RetriesAndStoredAnswersIgnoreALowerLimit) {
   const std::string answered = Answered(kAnn, CreateRequest(Question(), kUuid));
-  Start({.max_active_jobs = 1, .max_points_per_job = 1});
+  Start({.max_active_jobs_per_principal = 1, .max_points_per_job = 1});
   Id(kAnn, FreshRequest(Equilibrium(1, 5, kHeldSeed)));
   EXPECT_EQ(Id(kAnn, CreateRequest(Question(), kUuid)), answered);
   EXPECT_EQ(Id(kAnn, CreateRequest(Question())), answered);
@@ -321,12 +311,9 @@ TEST_F(AcceptanceTest, RetriesAndStoredAnswersIgnoreALowerLimit) {
 }
 
 TEST_F(AcceptanceTest, ZeroMeansUnlimited) {
-  Start({.max_active_jobs = 0,
-         .max_active_jobs_per_principal = 0,
-         .max_active_points = 0,
+  Start({.max_active_jobs_per_principal = 0,
          .max_active_points_per_principal = 0,
-         .max_points_per_job = 0,
-         .max_samples_per_job = 0});
+         .max_points_per_job = 0});
   for (int i = 0; i < 5; ++i) EXPECT_OK(Create(kAnn, FreshRequest(Equilibrium(50, 1000))));
 }
 

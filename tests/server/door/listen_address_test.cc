@@ -6,10 +6,8 @@ namespace ballpiston::server {
 namespace {
 
 TEST(ListenAddress, AddressesNamesAndUnixSocketsAreParsed) {
-  for (const char* text :
-       {"127.0.0.1:0", "127.8.9.10:65535", "[::1]:50051", "0.0.0.0:50051", "[::]:50051",
-        "192.168.1.1:50051", "[2001:db8::1]:1", "node-7.lab.example.org:50051", "under_score:1",
-        "unix:/tmp/x.socket", "unix:relative"}) {
+  for (const char* text : {"127.0.0.1:0", "[::1]:65535", "0.0.0.0:50051", "[2001:db8::1]:1",
+                           "node-7.lab.example.org:50051", "unix:/tmp/x.socket", "unix:relative"}) {
     ASSERT_OK_AND_ASSIGN(const auto address, ParseListenAddress(text));
     EXPECT_EQ(address.Text(), text);
   }
@@ -17,43 +15,21 @@ TEST(ListenAddress, AddressesNamesAndUnixSocketsAreParsed) {
 }
 
 TEST(ListenAddress, OnlyLoopbackIsLoopback) {
-  for (const char* text : {"127.0.0.1:1", "127.255.0.3:1", "[::1]:1", "localhost:1"}) {
+  for (const char* text : {"127.0.0.1:1", "[::1]:1", "localhost:1"}) {
     EXPECT_TRUE(ParseListenAddress(text)->IsLoopback()) << text;
   }
-  for (const char* text : {"0.0.0.0:1", "[::]:1", "192.168.1.1:1", "128.0.0.1:1", "[2001:db8::1]:1",
-                           "[::ffff:127.0.0.1]:1", "[fe80::1%lo]:1", "example.org:1",
-                           "localhost.example.org:1", "LOCALHOST.:1"}) {
-    const auto address = ParseListenAddress(text);
-    if (address.ok()) {
-      EXPECT_FALSE(address->IsLoopback()) << text;
-    }
+  for (const char* text :
+       {"0.0.0.0:1", "[::]:1", "192.168.1.1:1", "127.1:1", "127.0.0.2:1", "[::ffff:127.0.0.1]:1",
+        "[::1%lo]:1", "localhost.example.org:1", "LOCALHOST:1", "[::1]%lo]:1"}) {
+    EXPECT_FALSE(ParseListenAddress(text)->IsLoopback()) << text;
   }
 }
 
 TEST(ListenAddress, ErrorsShowTheFlagAndTheValue) {
-  for (const char* text : {"",
-                           "50051",
-                           "127.0.0.1",
-                           "127.0.0.1:",
-                           "127.0.0.1:65536",
-                           "127.0.0.1:-1",
-                           "127.0.0.1:http",
-                           "::1:50051",
-                           "unix:",
-                           ":50051",
-                           "unix-abstract:x:y",
-                           "127.1:1",
-                           "1.2.3.4.5:1",
-                           "256.1.1.1:1",
-                           "[127.0.0.1]:1",
-                           "[]:1",
-                           "[::1:1",
-                           "a b:1",
-                           "a/b:1",
-                           "host.:1",
-                           "[::1]%lo:1",
-                           "[fe80::1%eth0]:1",
-                           "[::1%a/b]:1"}) {
+  for (const char* text :
+       {"", "50051", "127.0.0.1", "127.0.0.1:", "127.0.0.1:65536", "127.0.0.1:-1", "127.0.0.1:http",
+        "::1:50051", "unix:", ":50051", "unix-abstract:x:y", "ipv4:127.0.0.1:1",
+        "dns:///localhost:1", "[]:1", "[::1:1", "[::1]%lo:1", " localhost:1", "a/b:1"}) {
     const auto address = ParseListenAddress(text);
     EXPECT_THAT(address, StatusIs(absl::StatusCode::kInvalidArgument,
                                   HasSubstr(std::string("--listen=") + text)))

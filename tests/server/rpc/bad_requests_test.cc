@@ -4,6 +4,7 @@
 #include "google/protobuf/descriptor.h"
 #include "google/protobuf/dynamic_message.h"
 #include "google/protobuf/text_format.h"
+#include "server/rpc/request_check.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {
@@ -26,11 +27,21 @@ std::string Times(int count, const std::string& text) {
   return all;
 }
 
+// The token of a page of the list that this request begins.
+template <typename Request>
+std::string PageToken(const Request& list, int64_t start) {
+  return "page_token: '" + NextPageToken(list, start) + "'";
+}
+
 std::vector<BadRequest> BadRequests() {
   const std::string kJobs = "ballpiston.v1.EnsembleService.";
   const std::string create = kJobs + "CreateEnsembleJob", plan = kJobs + "PlanEnsembleJob";
   const std::string cancel = kJobs + "CancelEnsembleJob", update = kJobs + "UpdateEnsembleJob";
   const std::string list = kJobs + "ListEnsembleJobs", results = kJobs + "ListResults";
+  v1::ListEnsembleJobsRequest other_jobs;
+  other_jobs.add_states(v1::EnsembleJob::RUNNING);
+  v1::ListResultsRequest other_results;
+  other_results.set_parent("ensembleJobs/b");
   const std::string pairs = "ballpiston.v1.AnalyticService.EvaluatePairs";
   const std::string trace = "ballpiston.v1.TraceService.TraceOrbit";
   const std::string sample = "ballpiston.v1.TraceService.SampleCollisions";
@@ -80,8 +91,9 @@ std::vector<BadRequest> BadRequests() {
       {update, job + "update_mask { paths: 'job.pinned' }", {"update_mask"}, mask},
       {list, "page_size: -1", {"page_size"}},
       {list, "page_token: '!!!'", {"page_token"}},
-      {list, "page_token: 'am9iczotMQ=='", {"page_token"}},
-      {list, "page_token: 'cmVzdWx0czphOjE='", {"page_token"}},  // of results
+      {list, PageToken(v1::ListEnsembleJobsRequest(), -1), {"page_token"}},
+      {list, PageToken(other_jobs, 1), {"page_token"}},
+      {list, PageToken(other_results, 1), {"page_token"}},
       {list,
        "states: [RUNNING, STATE_UNSPECIFIED]",
        {"states[1]"},
@@ -95,6 +107,7 @@ std::vector<BadRequest> BadRequests() {
       {list, "since { nanos: -1 }", {"since.nanos"}},
       {results, of_job + "page_size: -5", {"page_size"}},
       {results, of_job + "page_token: 'x'", {"page_token"}},
+      {results, of_job + PageToken(other_results, 1), {"page_token"}},
       {results, of_job + "view: 9", {"view"}},
       {pairs, "", {"rho", "delta"}},
       {pairs, pair + "rho: 0.4 delta: [-1, nan]", {"rho[1]", "delta[1]", "delta[2]"}},

@@ -29,7 +29,7 @@ TEST(EnsembleService, AJobRunsToItsEnd) {
 TEST(EnsembleService, ALimitThatWaitingCuresTellsHowLong) {
   Gate gate;
   RunningServer server({.factory = GatedExperiments(gate),
-                        .limits = {.max_active_jobs = 1, .max_points_per_job = 5}});
+                        .limits = {.max_active_jobs_per_principal = 1, .max_points_per_job = 5}});
   server.Submit(Equilibrium(1, 2));
   const auto pushback = [&](int points) {
     grpc::ClientContext context;
@@ -42,7 +42,7 @@ TEST(EnsembleService, ALimitThatWaitingCuresTellsHowLong) {
     if (found == trailing.end()) return std::string();
     return std::string(found->second.data(), found->second.size());
   };
-  EXPECT_EQ(pushback(1), "10000");  // QUEUE_FULL
+  EXPECT_EQ(pushback(1), "10000");  // TOO_MANY_JOBS
   EXPECT_EQ(pushback(6), "");       // TOO_MANY_POINTS
 }
 

@@ -33,7 +33,6 @@ class ServerStatusTest : public testing::Test {
   Gate gate_;
   const Limits limits_ = {.max_active_jobs_per_principal = 7,
                           .max_active_points_per_principal = 72,
-                          .max_samples_per_job = 0,
                           .max_streams_per_principal = 73};
   Authenticator authenticator_{/*needs_tokens=*/false};
   std::unique_ptr<Store> store_ =
@@ -111,7 +110,6 @@ TEST_F(ServerStatusTest, CountsQueuedAndRunningWork) {
   EXPECT_GT(status.rates().wall_hit(), 0);
   EXPECT_GT(status.rates().jump(), 0);
   EXPECT_EQ(status.limits().max_active_jobs_per_principal(), 7);
-  EXPECT_EQ(status.limits().max_samples_per_job(), 0);
   EXPECT_EQ(status.limits().max_active_points_per_principal(), 72);
   EXPECT_EQ(status.limits().max_streams_per_principal(), 73);
   EXPECT_EQ(status.engine_version(), EngineVersion());

@@ -1,5 +1,6 @@
 
 #include "server/convert/trace.h"
+#include "server/rpc/quota.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {
@@ -150,21 +151,28 @@ TEST_F(TraceServiceTest, TheSameRequestHasTheSameBytes) {
 
 // ---- limits, and the end ----
 
-TEST_F(TraceServiceTest, ATraceCountsAsAStreamWithItsMemoryUntilItsReaderGoes) {
-  const std::pair<Limits, const char*> rows[] = {
-      {{.max_streams_per_principal = 1}, "TOO_MANY_STREAMS"},
-      {{.max_call_bytes_per_principal = 1'000'000}, "TOO_MANY_CALLS"}};
-  for (const auto& [limits, reason] : rows) {
-    RunningServer& server = server_.emplace(TestServerOptions{.limits = limits});
-    auto first = std::make_unique<TraceStream>(server, TraceRequest(kMaxTracedEvents, "1000"));
-    ASSERT_TRUE(first->Next());
-    EXPECT_THAT(TraceStream(server, TraceRequest(1)).End(),
-                IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, reason));
-    first->context.TryCancel();
-    first.reset();
-    // Then the server knows that the trace has ended.
-    AwaitThat([&] { return TraceStream(server, TraceRequest(1)).Next().has_value(); });
+TEST_F(TraceServiceTest, ATraceCountsAsAStreamUntilItsReaderGoes) {
+  RunningServer& server =
+      server_.emplace(TestServerOptions{.limits = {.max_streams_per_principal = 1}});
+  auto first = std::make_unique<TraceStream>(server, TraceRequest(kMaxTracedEvents, "1000"));
+  ASSERT_TRUE(first->Next());
+  EXPECT_THAT(TraceStream(server, TraceRequest(1)).End(),
+              IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_STREAMS"));
+  first->context.TryCancel();
+  first.reset();
+  // Then the server knows that the trace has ended.
+  AwaitThat([&] { return TraceStream(server, TraceRequest(1)).Next().has_value(); });
+}
+
+TEST_F(TraceServiceTest, TheMemoryOfTracesIsLimited) {
+  std::vector<std::unique_ptr<TraceStream>> traces;
+  for (int64_t mib = 0; mib < kMostMibOfCalls; mib += kMibOfCall) {
+    traces.push_back(
+        std::make_unique<TraceStream>(server(), TraceRequest(kMaxTracedEvents, "1000")));
+    ASSERT_TRUE(traces.back()->Next());
   }
+  EXPECT_THAT(TraceStream(server(), TraceRequest(1)).End(),
+              IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_CALLS"));
 }
 
 TEST_F(TraceServiceTest, AStopEndsTracesThatAreRead) {

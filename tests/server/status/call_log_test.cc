@@ -66,7 +66,7 @@ TEST(CallLog, OnlyEventsForTheOperatorAreLogged) {
   EXPECT_EQ(verdict(StatusCode::kInternal), Verdict::kServerFailed);
   EXPECT_EQ(verdict(StatusCode::kUnavailable, "STORE_FAILED"), Verdict::kServerFailed);
   EXPECT_EQ(verdict(StatusCode::kUnavailable, "SHUTTING_DOWN"), Verdict::kOrdinary);
-  EXPECT_EQ(verdict(StatusCode::kResourceExhausted, "QUEUE_FULL"), Verdict::kLimitReached);
+  EXPECT_EQ(verdict(StatusCode::kResourceExhausted, "TOO_MANY_JOBS"), Verdict::kLimitReached);
   EXPECT_EQ(verdict(StatusCode::kUnauthenticated, "CREDENTIALS_MISSING"), Verdict::kNotLetIn);
   EXPECT_EQ(verdict(StatusCode::kPermissionDenied, "ROLE_TOO_LOW"), Verdict::kNotLetIn);
   for (const StatusCode code : {StatusCode::kCancelled, StatusCode::kInvalidArgument,

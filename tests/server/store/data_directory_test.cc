@@ -51,7 +51,7 @@ TEST_F(DataFolder, ANewFolderHasMode0700WhateverTheMask) {
 }
 
 // Which existing folders a server takes: other users may read files of a folder that was open.
-TEST_F(DataFolder, AFolderIsClosedIfNothingButAServersFilesIsInIt) {
+TEST_F(DataFolder, AFolderIsClosedIfItIsEmptyOrHasAStore) {
   const struct {
     mode_t mode;
     std::vector<std::string> files;
@@ -59,12 +59,11 @@ TEST_F(DataFolder, AFolderIsClosedIfNothingButAServersFilesIsInIt) {
     std::string refusal;
   } rows[] = {{0755, {}, 0700, ""},
               {0711, {}, 0700, ""},
-              {0770, {}, 0700, ""},
-              {0755, {"lock", "notes.txt"}, 0700, ""},
               {0755, {"store.sqlite3", "notes.txt"}, 0700, ""},
               {0755, {"server.log"}, 0700, ""},  // of a client that starts a server
               {0700, {"thesis.tex"}, 0700, ""},
               {0755, {"thesis.tex"}, 0755, "mode 0755"},
+              {0770, {"server.log", "thesis.tex"}, 0770, "run chmod 700 " + path_},
               {01777, {}, 01777, "mode 1777"}};
   for (const auto& row : rows) {
     Make(row.mode);
@@ -74,7 +73,7 @@ TEST_F(DataFolder, AFolderIsClosedIfNothingButAServersFilesIsInIt) {
     const auto directory = DataDirectory::Open(path_);
     const std::string log = ::testing::internal::GetCapturedStderr();
     EXPECT_EQ(Mode(), row.afterwards);
-    EXPECT_EQ(log.find("is 0700 now") != log.npos, row.mode != row.afterwards);
+    EXPECT_EQ(log.find("sets its mode to 0700") != log.npos, row.mode != row.afterwards);
     if (row.refusal.empty()) {
       EXPECT_OK(directory);
     } else {
@@ -98,7 +97,8 @@ TEST_F(DataFolder, AnOpenFolderOfAnotherUserIsRefused) {
   Make(0755);
   ASSERT_EQ(chown(path_.c_str(), 65534, 65534), 0);
   const auto directory = DataDirectory::Open(path_);
-  EXPECT_THAT(directory, StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("user 65534")));
+  EXPECT_THAT(directory,
+              StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("open to other users")));
   EXPECT_EQ(Mode(), 0755u);
 }
 
