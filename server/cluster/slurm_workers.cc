@@ -1,8 +1,13 @@
 #include "server/cluster/slurm_workers.h"
 
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
 #include <span>
 #include <utility>
 
@@ -65,26 +70,14 @@ bool IsOneOf(std::span<const absl::string_view> words, absl::string_view word) {
   return std::ranges::find(words, word) != words.end();
 }
 
-// The tool's error messages, in one line.
-std::string ErrorsOf(const CommandOutput& output) {
-  std::vector<std::string> lines;
-  for (absl::string_view line : absl::StrSplit(output.errors, '\n', absl::SkipWhitespace())) {
-    for (const absl::string_view tool : {"sbatch: ", "squeue: ", "scancel: ", "error: "}) {
-      absl::ConsumePrefix(&line, tool);
-    }
-    lines.emplace_back(line);
-  }
-  return lines.empty() ? absl::StrCat("exit code ", output.exit_code) : absl::StrJoin(lines, "; ");
-}
-
 // Quotes a word for sh.
-std::string Quoted(const std::string& word) {
+std::string Quoted(absl::string_view word) {
   return absl::StrCat("'", absl::StrReplaceAll(word, {{"'", "'\\''"}}), "'");
 }
 
-// This process's environment without the variables that change what the tools do.
-std::vector<std::string> Environment() {
-  std::vector<std::string> kept;
+// `env`, which removes the variables that change what the tools do.
+std::string WithoutSlurmsVariables() {
+  std::string line = "env";
   for (char** variable = environ; *variable != nullptr; ++variable) {
     const absl::string_view text = *variable;
     const bool is_slurms =
@@ -92,9 +85,23 @@ std::vector<std::string> Environment() {
     const bool changes_tools = absl::StartsWith(text, "SBATCH_") ||
                                absl::StartsWith(text, "SQUEUE_") ||
                                absl::StartsWith(text, "SCANCEL_");
-    if (!is_slurms && !changes_tools) kept.emplace_back(text);
+    const absl::string_view name = text.substr(0, text.find('='));
+    if (is_slurms || changes_tools) absl::StrAppend(&line, " -u ", Quoted(name));
   }
-  return kept;
+  return line;
+}
+
+// The error messages in what the tool printed, in one line.
+std::string ErrorsIn(absl::string_view output, int exit_code) {
+  std::vector<std::string> lines;
+  for (absl::string_view line : absl::StrSplit(output, '\n', absl::SkipWhitespace())) {
+    for (const absl::string_view origin :
+         {"timeout: ", "sbatch: ", "squeue: ", "scancel: ", "error: "}) {
+      absl::ConsumePrefix(&line, origin);
+    }
+    lines.emplace_back(line);
+  }
+  return lines.empty() ? absl::StrCat("exit code ", exit_code) : absl::StrJoin(lines, "; ");
 }
 
 }  // namespace
@@ -123,19 +130,36 @@ double LongestChunk(const SlurmOptions& options) {
 SlurmTools::SlurmTools(const SlurmOptions& options, std::string name, std::string folder)
     : options_(options), name_(std::move(name)), folder_(std::move(folder)) {}
 
-absl::StatusOr<std::string> SlurmTools::Run(Command command, const std::stop_token& stop) const {
-  const std::string tool = command.words[0];
+// `exec` leaves no shell between this process and `timeout`, so the exit status is that of
+// `timeout`: at the limit SIGKILL ends `timeout` too.
+absl::StatusOr<std::string> SlurmTools::Run(std::vector<std::string> words,
+                                            std::chrono::seconds limit) const {
+  const std::string tool = words[0];
   if (!options_.cluster.empty()) {
-    command.words.insert(command.words.begin() + 1, absl::StrCat("--clusters=", options_.cluster));
+    words.insert(words.begin() + 1, absl::StrCat("--clusters=", options_.cluster));
   }
-  command.environment = Environment();
-  absl::StatusOr<CommandOutput> run = RunCommand(command, stop);
-  if (!run.ok()) return run.status();
-  if (run->exit_code == 0) return std::move(run->output);
-  return absl::UnavailableError(absl::StrCat(tool, ": ", ErrorsOf(*run)));
+  std::string line =
+      absl::StrCat("exec ", WithoutSlurmsVariables(), " timeout -s KILL ", limit.count());
+  for (const std::string& word : words) absl::StrAppend(&line, " ", Quoted(word));
+  FILE* const pipe = popen(absl::StrCat(line, " </dev/null 2>&1").c_str(), "re");
+  if (pipe == nullptr)
+    return absl::UnavailableError(absl::StrCat(tool, ": ", std::strerror(errno)));
+  std::string output;
+  char buffer[4096];
+  // Not fread, which keeps the stream locked: at its end the server would wait in fflush.
+  for (ssize_t size = 0; (size = read(fileno(pipe), buffer, sizeof(buffer))) > 0;) {
+    output.append(buffer, static_cast<size_t>(size));
+  }
+  const int status = pclose(pipe);
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) {
+    return absl::UnavailableError(
+        absl::StrCat(tool, " was killed; it has ", limit.count(), " s to end"));
+  }
+  if (status == 0) return output;
+  return absl::UnavailableError(absl::StrCat(tool, ": ", ErrorsIn(output, WEXITSTATUS(status))));
 }
 
-absl::Status SlurmTools::Submit(size_t workers, const std::stop_token& stop) {
+absl::Status SlurmTools::Submit(size_t workers) {
   std::vector<std::string> words = {
       "sbatch",
       "--parsable",
@@ -153,23 +177,20 @@ absl::Status SlurmTools::Submit(size_t workers, const std::stop_token& stop) {
   }
   if (!options_.account.empty()) words.push_back(absl::StrCat("--account=", options_.account));
   words.insert(words.end(), options_.sbatch_options.begin(), options_.sbatch_options.end());
-  return Run({.words = std::move(words), .limit = kSubmitLimit}, stop).status();
+  return Run(std::move(words), kSubmitLimit).status();
 }
 
-absl::StatusOr<SlurmQueue> SlurmTools::Query(const std::stop_token& stop) {
+absl::StatusOr<SlurmQueue> SlurmTools::Query() {
   const absl::StatusOr<std::string> lines =
-      Run({.words = {"squeue", "--noheader", "--me", "--array", absl::StrCat("--name=", name_),
-                     absl::StrCat("--format=", kQueueFormat)},
-           .limit = kOtherLimit},
-          stop);
+      Run({"squeue", "--noheader", "--me", "--array", absl::StrCat("--name=", name_),
+           absl::StrCat("--format=", kQueueFormat)},
+          kOtherLimit);
   if (!lines.ok()) return lines.status();
   return ParseQueue(*lines);
 }
 
-absl::Status SlurmTools::Cancel(const std::stop_token& stop) {
-  return Run({.words = {"scancel", "--me", absl::StrCat("--name=", name_)}, .limit = kOtherLimit},
-             stop)
-      .status();
+absl::Status SlurmTools::Cancel() {
+  return Run({"scancel", "--me", absl::StrCat("--name=", name_)}, kOtherLimit).status();
 }
 
 // ---- the workers ----
@@ -192,7 +213,6 @@ void SlurmWorkers::Look() {
   const Clock::time_point now = SteadyNow();
   if (now < next_query_ || (!has_work && !may_have_workers_)) return;
   const absl::Status steered = Steer(work);
-  if (absl::IsCancelled(steered)) return;  // the server stops
   backoff_ = steered.ok() ? std::chrono::milliseconds(0)
                           : std::clamp(2 * backoff_, options_.query_interval, kLongestPause);
   next_query_ = now + std::max(backoff_, options_.query_interval);
@@ -204,7 +224,7 @@ void SlurmWorkers::Look() {
 }
 
 absl::Status SlurmWorkers::Steer(const FolderStatus& work) {
-  const absl::StatusOr<SlurmQueue> queue = tools_->Query(stop_.get_token());
+  const absl::StatusOr<SlurmQueue> queue = tools_->Query();
   if (!queue.ok()) return queue.status();
   {
     MutexLock lock(mutex_);
@@ -216,7 +236,7 @@ absl::Status SlurmWorkers::Steer(const FolderStatus& work) {
   const size_t wanted = std::min(leases, options_.workers);
   may_have_workers_ = found > 0;
   if (found > 0 && (wanted == 0 || !queue->never.empty())) {
-    absl::Status cancelled = tools_->Cancel(stop_.get_token());
+    absl::Status cancelled = tools_->Cancel();
     if (!cancelled.ok() || queue->never.empty()) return cancelled;
     return absl::UnavailableError("a worker would wait for ever: " + queue->never);
   }
@@ -241,7 +261,7 @@ absl::Status SlurmWorkers::Fill(size_t missing) {
   if (!ready.ok()) return ready;
   while (missing > 0) {
     const size_t workers = std::min(missing, array_size_);
-    absl::Status submitted = tools_->Submit(workers, stop_.get_token());
+    absl::Status submitted = tools_->Submit(workers);
     const bool is_too_large = absl::StrContains(submitted.message(), "Invalid job array");
     if (is_too_large && array_size_ > 1) {
       array_size_ = std::max(workers / 2, size_t{1});

@@ -14,7 +14,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -22,7 +21,6 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "server/cluster/folder_executor.h"
-#include "server/cluster/run_command.h"
 #include "server/mutex.h"
 #include "server/periodic_thread.h"
 
@@ -65,13 +63,13 @@ class SlurmTools {
   virtual ~SlurmTools() = default;
 
   // The message of an error is Slurm's own. Slurm may have accepted the array nevertheless.
-  virtual absl::Status Submit(size_t workers, const std::stop_token& stop);
-  virtual absl::StatusOr<SlurmQueue> Query(const std::stop_token& stop);
-  virtual absl::Status Cancel(const std::stop_token& stop);  // all workers
+  virtual absl::Status Submit(size_t workers);
+  virtual absl::StatusOr<SlurmQueue> Query();
+  virtual absl::Status Cancel();  // all workers
 
  private:
-  // What the tool prints. Sets the rest of the command.
-  absl::StatusOr<std::string> Run(Command command, const std::stop_token& stop) const;
+  // What the tool prints. It is killed if it does not end within `limit`.
+  absl::StatusOr<std::string> Run(std::vector<std::string> words, std::chrono::seconds limit) const;
 
   const SlurmOptions options_;
   const std::string name_;
@@ -86,7 +84,8 @@ class SlurmWorkers {
   // `work`: what is in the folder now. `ready`: makes the folder ready for a worker.
   SlurmWorkers(const SlurmOptions& options, std::unique_ptr<SlurmTools> tools,
                std::function<FolderStatus()> work, std::function<absl::Status()> ready);
-  ~SlurmWorkers() { stop_.request_stop(); }  // the workers continue
+  // Waits for a tool that runs. The workers continue.
+  ~SlurmWorkers() = default;
 
   void Start();
 
@@ -106,7 +105,6 @@ class SlurmWorkers {
   const std::unique_ptr<SlurmTools> tools_;
   const std::function<FolderStatus()> work_;
   const std::function<absl::Status()> ready_;
-  std::stop_source stop_;
 
   // Used only by the thread that looks.
   size_t array_size_;

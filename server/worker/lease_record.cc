@@ -1,6 +1,5 @@
 #include "server/worker/lease_record.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <memory>
@@ -10,13 +9,10 @@
 #include "absl/strings/str_cat.h"
 #include "core/engine_version.h"
 #include "core/ensemble/experiment_kind.h"
-#include "core/ensemble/point_fold.h"
 #include "server/convert/fold_record.h"
 
 namespace ballpiston::server {
 namespace {
-
-// ---- the question ----
 
 // `one_point` is a OnePointSpec by a model that samples.
 void FillQuestion(const EnsembleSpec& one_point, storage::Question& record) {
@@ -68,39 +64,6 @@ std::optional<EnsembleSpec> SpecOf(const storage::Question& record) {
   return IsPossible(spec) ? std::optional(std::move(spec)) : std::nullopt;
 }
 
-// ---- the chunks ----
-
-bool HasItsChunks(const ChunkPlan& plan, const Lease& lease) {
-  return lease.start.chunk < lease.end && lease.end <= plan.chunks() &&
-         lease.start.blocks < plan.BlocksIn(lease.start.chunk);
-}
-
-// The blocks are those of a fold whose complete chunks are possible.
-bool HasItsBlocks(const PointExperiment& experiment, const PartialChunk& start) {
-  if (start.blocks == 0) return start.merged == BlockResult();
-  FoldState state = {.chunk = start.chunk, .blocks = start.blocks, .partial = start.merged};
-  if (start.chunk > 0) state.complete = experiment.EmptyResult();
-  state.chunk_digests.resize(start.chunk);
-  return CheckFoldState(experiment, state).ok();
-}
-
-// The chunks start from states that the experiment can continue, or in the first stage.
-bool HasItsGroups(const PointExperiment& experiment, const Lease& lease) {
-  const uint64_t groups = experiment.plan().groups(), first = lease.start.chunk;
-  if (!lease.groups.empty() && lease.groups.size() != groups) return false;
-  for (uint64_t chunk = first; chunk < std::min(lease.end, first + groups); ++chunk) {
-    const GroupState start = lease.groups.empty() ? GroupState() : lease.groups[chunk % groups];
-    if (chunk < groups ? !start.empty() : !experiment.CanContinue(start)) return false;
-  }
-  return true;
-}
-
-bool IsPossible(const Lease& lease) {
-  const PointExperiment& experiment = *lease.experiment;
-  return HasItsChunks(experiment.plan(), lease) && HasItsBlocks(experiment, lease.start) &&
-         HasItsGroups(experiment, lease);
-}
-
 }  // namespace
 
 storage::Lease LeaseRecord(const Lease& lease, const std::string& server, double touch_seconds) {
@@ -137,9 +100,6 @@ absl::StatusOr<LeaseFile> LeaseOfRecord(const storage::Lease& record) {
   lease.start = {record.first_chunk(), record.blocks(), ResultOfAccumulators(record.partial())};
   lease.end = record.end_chunk();
   for (const storage::Group& group : record.groups()) lease.groups.push_back(GroupOf(group));
-  if (!IsPossible(lease)) {
-    return absl::DataLossError("the chunks of a lease do not fit its question");
-  }
   return LeaseFile{record.server(), std::move(lease), record.touch_seconds()};
 }
 

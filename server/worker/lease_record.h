@@ -4,8 +4,8 @@
 // that is created from the record has the same plan, random numbers and bits as the lease's
 // experiment. Pure functions.
 //
-// A record that can be parsed may still be written by a foreign program. So reading checks
-// everything that creating the experiment and merging the blocks require.
+// The file of a lease has a checksum, and the folder belongs to the server's user. So reading
+// checks the engine version and the question, but not the chunks and their states.
 #pragma once
 
 #include <string>
@@ -30,7 +30,7 @@ struct LeaseFile {
 storage::Lease LeaseRecord(const Lease& lease, const std::string& server, double touch_seconds);
 
 // UNIMPLEMENTED with both versions if the lease is of another engine version. DATA_LOSS if this
-// engine cannot have such a lease.
+// engine cannot answer the question.
 absl::StatusOr<LeaseFile> LeaseOfRecord(const storage::Lease& record);
 
 }  // namespace ballpiston::server

@@ -1,6 +1,7 @@
 #include "server/cluster/slurm_workers.h"
 
 #include "tests/support/preamble.h"
+#include "tests/support/scoped_variable.h"
 
 namespace ballpiston::server {
 namespace {
@@ -20,7 +21,7 @@ class FakeTools : public SlurmTools {
  public:
   explicit FakeTools(FakeSlurm& slurm) : SlurmTools({}, "bp-me", "/shared"), slurm_(slurm) {}
 
-  absl::Status Submit(size_t workers, const std::stop_token&) override {
+  absl::Status Submit(size_t workers) override {
     if (!slurm_.submits.ok()) return slurm_.submits;
     if (workers > slurm_.largest_array) {
       return absl::UnavailableError("sbatch: Invalid job array specification");
@@ -28,12 +29,12 @@ class FakeTools : public SlurmTools {
     slurm_.submitted.push_back(workers);
     return absl::OkStatus();
   }
-  absl::StatusOr<SlurmQueue> Query(const std::stop_token&) override {
+  absl::StatusOr<SlurmQueue> Query() override {
     ++slurm_.asked;
     if (!slurm_.queries.ok()) return slurm_.queries;
     return slurm_.queue;
   }
-  absl::Status Cancel(const std::stop_token&) override {
+  absl::Status Cancel() override {
     ++slurm_.cancelled;
     return absl::OkStatus();
   }
@@ -144,6 +145,80 @@ TEST_F(SlurmWorkersTest, WorkersThatWouldWaitForEverAreCancelled) {
   workers.Look();
   EXPECT_EQ(slurm_.cancelled, 1);
   EXPECT_THAT(workers.Status().problem, HasSubstr("for ever: PartitionTimeLimit"));
+}
+
+// A script in the place of the tools, in a folder with a name of two words.
+class SlurmToolsTest : public testing::Test {
+ protected:
+  void Install(const std::string& tool, const std::string& script) {
+    const std::string path = folder_.File(tool);
+    WriteFile(path, "#!/bin/sh\n" + script);
+    chmod(path.c_str(), 0700);
+  }
+  SlurmTools New(const SlurmOptions& options = {}) { return {options, "bp-me", folder_.path()}; }
+
+  const TemporaryFolder folder_{};
+  const ScopedVariable path_{"PATH", folder_.path() + ":" + std::getenv("PATH")};
+};
+
+TEST_F(SlurmToolsTest, EachWordArrivesAsItIs) {
+  Install("sbatch", "printf '%s\\0' \"$@\" >\"${0%/*}/words\"");
+  const std::vector<std::string> options = {"--comment=two  words", "--a=it's \"$HOME\" `id` \\",
+                                            "--b=two\nlines\n", "--c=*;#&|<>~", ""};
+  EXPECT_OK(New({.account = "an account", .cluster = "c", .sbatch_options = options}).Submit(3));
+  std::vector<std::string> words = absl::StrSplit(Contents(folder_.File("words")), '\0');
+  words.pop_back();  // after the last zero
+  EXPECT_EQ(words.front(), "--clusters=c");
+  EXPECT_THAT(words, Contains("--array=0-2"));
+  EXPECT_THAT(words, Contains("--account=an account"));
+  ASSERT_GT(words.size(), options.size());
+  words.erase(words.begin(), words.end() - static_cast<std::ptrdiff_t>(options.size()));
+  EXPECT_EQ(words, options);
+}
+
+TEST_F(SlurmToolsTest, VariablesThatChangeTheToolsAreRemoved) {
+  Install("sbatch", "env >\"${0%/*}/variables\"");
+  const ScopedVariable conf("SLURM_CONF", "/conf"), job("SLURM_JOB_ID", "7"),
+      partition("SBATCH_PARTITION", "late"), format("SQUEUE_FORMAT", "%A"),
+      cancel("SCANCEL_USER", "me");
+  EXPECT_OK(New().Submit(1));
+  const std::vector<std::string> variables =
+      absl::StrSplit(Contents(folder_.File("variables")), '\n');
+  EXPECT_THAT(variables, Contains("SLURM_CONF=/conf"));
+  EXPECT_THAT(variables, Not(Contains(testing::ContainsRegex("^(SLURM_J|SBATCH|SQUEUE|SCANCEL)"))));
+}
+
+TEST_F(SlurmToolsTest, TheQueueIsReadAndWarningsAreNot) {
+  Install("squeue", "echo 'squeue: warning' >&2; echo 'RUNNING|None'; echo 'PENDING|Priority'");
+  ASSERT_OK_AND_ASSIGN(const SlurmQueue queue, New().Query());
+  EXPECT_EQ(queue.running, 1u);
+  EXPECT_EQ(queue.waiting, 1u);
+}
+
+// The server ends by fflush of all streams and _Exit.
+TEST_F(SlurmToolsTest, AToolThatRunsLocksNoStream) {
+  const std::string started = folder_.File("started"), go = folder_.File("go");
+  ASSERT_EQ(mkfifo(go.c_str(), 0600), 0);
+  Install("squeue", absl::StrCat("echo 1 >", started, "; cat ", go));
+  std::thread thread([&] { EXPECT_OK(New().Query().status()); });
+  AwaitThat([&] { return std::filesystem::exists(started); });
+  std::fflush(nullptr);
+  WriteFile(go, "");  // `cat` ends
+  thread.join();
+}
+
+TEST_F(SlurmToolsTest, AnErrorHasTheToolsMessage) {
+  const auto error = [&](const std::string& script) {
+    Install("scancel", script);
+    return std::string(New().Cancel().message());
+  };
+  EXPECT_EQ(error("echo 'scancel: error: no controller' >&2; echo 'scancel: later' >&2; exit 1"),
+            "scancel: no controller; later");
+  EXPECT_EQ(error("exit 3"), "scancel: exit code 3");
+  EXPECT_EQ(error("kill -KILL $$"), "scancel was killed; it has 60 s to end");
+  std::filesystem::remove(folder_.File("scancel"));
+  EXPECT_THAT(New().Cancel(),
+              StatusIs(absl::StatusCode::kUnavailable, HasSubstr("failed to run command")));
 }
 
 TEST(SlurmQueue, StatesAreCounted) {
