@@ -22,6 +22,7 @@
 #include "core/billiard/lane_constants.h"
 #include "core/billiard/lane_orbit.h"
 #include "core/billiard/lane_tangents-inl.h"
+#include "core/closed_form/pair_measures.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ballpiston {
@@ -55,6 +56,9 @@ class LaneOrbits : public EngineRun {
         reach_constants_(geometry, flight_constants_.scale),
         source_(source),
         in_lane_(geometry, flight_constants_.scale, source.TimeLimit()),
+        least_mean_flight_(std::isinf(source.TimeLimit())
+                               ? MeanFlight(geometry) * flight_constants_.scale / 10
+                               : 0),
         flights_(FlightsInABurst(geometry)),
         steps_(flights_ * kVectors),
         pistons_(kVectors),
@@ -352,10 +356,18 @@ class LaneOrbits : public EngineRun {
     for (size_t lane = 0; lane < orbit_.size(); ++lane) {
       const Pistons& piston = pistons_[VectorOf(lane)];
       if ((piston.lanes >> InVector(lane) & 1) == 0) continue;
-      const double time = in_lane_.TimeOf(orbit_[lane], piston.path[InVector(lane)]);
+      const double path = std::max(piston.path[InVector(lane)], LeastPath(lane));
+      const double time = in_lane_.TimeOf(orbit_[lane], path);
       if (time > orbit_[lane].longest_wait) Report(lane, in_lane_.Overdue(time));
     }
     Refill();
+  }
+
+  // Rounding may trap a ball in a tip, where it hits the walls without end and its path hardly
+  // grows. So that its orbit ends too, its flights count as a tenth of the mean flight at least: a
+  // longest wait has so many flights that the mean over an orbit's is never so short.
+  double LeastPath(size_t lane) const {
+    return least_mean_flight_ * static_cast<double>((bursts_ - entry_burst_[lane]) * flights_);
   }
 
   PairGeometry geometry_;
@@ -363,7 +375,8 @@ class LaneOrbits : public EngineRun {
   ReachConstants<T> reach_constants_;
   OrbitSource& source_;
   OrbitInLane in_lane_;
-  size_t flights_, steps_;  // of a lane, and of a vector, in a burst
+  double least_mean_flight_;  // 0 if orbits have a time limit, which may end after a few flights
+  size_t flights_, steps_;    // of a lane, and of a vector, in a burst
   LaneBurst<T> burst_;
   std::vector<Pistons> pistons_;
   uint64_t bursts_ = 0;

@@ -96,6 +96,11 @@ PairMeasures Measures(const PairGeometry& g) {
   };
 }
 
+double MeanFlight(const PairGeometry& g) {
+  const PairMeasures measures = Measures(g);
+  return std::numbers::pi * measures.cell_area * g.stroke() / measures.area_ball_wall;
+}
+
 RestingVolumes VolumesAtRest(const PairGeometry& g) {
   const TipArc arc = ReachableArc(g);
   const double hidden = HiddenVolume(g, arc);

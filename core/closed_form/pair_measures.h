@@ -40,6 +40,10 @@ struct PairMeasures {
 
 PairMeasures Measures(const PairGeometry& geometry);
 
+// The mean length of a ball's flight between walls: pi area/perimeter of its cell, averaged over
+// the piston's positions.
+double MeanFlight(const PairGeometry& geometry);
+
 // Area of the ball's cell, eq. areax1x2. Domain: kMinRho < rho < kMaxRho.
 double CellArea(double rho);
 

@@ -13,13 +13,6 @@ namespace ballpiston {
 // The mean speed of a ball at temperature 1.
 inline double MeanBallSpeed() { return std::sqrt(std::numbers::pi / 2); }
 
-// The mean length of a ball's flight between walls: pi area/perimeter of its cell, averaged over
-// the piston's positions.
-inline double MeanFlight(const PairGeometry& pair) {
-  const PairMeasures measures = Measures(pair);
-  return std::numbers::pi * measures.cell_area * pair.stroke() / measures.area_ball_wall;
-}
-
 struct HitRates {
   double of_a_ball;
   double of_a_piston;

@@ -13,7 +13,7 @@
 #include "core/billiard/lane_burst-inl.h"
 #include "core/billiard/lane_frame.h"
 #include "core/billiard/piston_wave.h"
-#include "core/gas/hit_rates.h"
+#include "core/closed_form/pair_measures.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ballpiston {

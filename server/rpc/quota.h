@@ -49,9 +49,9 @@ class Quota {
 };
 
 // The memory, in MiB, of most requests with their answers, and of a trace with its messages.
-inline constexpr int64_t kMibOfCall = 4;
-// Of one principal: 64 calls, or 5 samplers (kMibOfSampler).
-inline constexpr int64_t kMostMibOfCalls = 256;
+inline constexpr int64_t kMibOfCall = 2;
+// Of one principal: 256 calls, or 10 samplers (kMibOfSampler).
+inline constexpr int64_t kMostMibOfCalls = 512;
 
 // The quotas of all methods.
 struct Quotas {

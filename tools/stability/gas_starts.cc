@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core/closed_form/pair_measures.h"
 #include "core/gas/canonical_gas.h"
-#include "core/gas/hit_rates.h"
 #include "core/gas/reference_gas.h"
 #include "core/gas/thermal_walls.h"
 #include "core/sampling/direction.h"

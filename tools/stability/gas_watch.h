@@ -9,11 +9,11 @@
 #include <span>
 #include <vector>
 
+#include "core/closed_form/pair_measures.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_meter.h"
 #include "core/gas/gas_run.h"
 #include "core/gas/gas_state.h"
-#include "core/gas/hit_rates.h"
 #include "core/gas/reference_gas.h"
 #include "core/gas/thermal_walls.h"
 #include "tools/flows/metered_gases.h"

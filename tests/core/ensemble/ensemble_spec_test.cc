@@ -235,7 +235,7 @@ TEST(EnsembleSpec, SinglePrecisionIsRejectedOutsideItsMeasuredDomain) {
     if (IsOfAGas(experiment)) continue;  // it has no single precision
     EnsembleSpec spec = OnePointOf(experiment);
     spec.precision = Precision::kSingle;
-    spec.grid[kRho] = {0.5 + 0.9e-9, 0.5 + 1.1e-9, kMaxRho - 1.1e-3, kMaxRho - 0.9e-3};
+    spec.grid[kRho] = {0.5 + 0.9e-5, 0.5 + 1.1e-5, kMaxRho - 1.1e-3, kMaxRho - 0.9e-3};
     spec.grid[kDelta] = {0.9e-3, 1e-3};
     EXPECT_THAT(Violations(spec),
                 UnorderedElementsAre(Names("grid.rho[0]", "permitted with precision single: 0.5"),
