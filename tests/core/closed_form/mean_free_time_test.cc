@@ -6,9 +6,6 @@
 namespace ballpiston {
 namespace {
 
-using std::numbers::pi;
-using std::numbers::sqrt2;
-
 TEST(MeanFreeTime, RareLimitRateIsTheLimitOfTheRate) {
   for (double rho : {0.501, kPaperRho, 0.6, 0.65, 0.7}) {
     for (double fraction : {1e-3, 1e-6, 1e-9}) {
