@@ -47,11 +47,6 @@ double IngoingLaw::Unnormalised(int sigma, double alpha) const {
   return sigma > 0 ? arc : excess_ + arc;
 }
 
-double IngoingLaw::Density(int sigma, double alpha) const {
-  if (std::abs(alpha) > AlphaMax(sigma)) return 0;
-  return Unnormalised(sigma, alpha) / normalisation_;
-}
-
 double IngoingLaw::BinProbability(int sigma, double a0, double a1) const {
   const double edge = AlphaMax(sigma);
   const double low = std::max(a0, -edge);

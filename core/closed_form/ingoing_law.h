@@ -12,8 +12,7 @@
 // cos alpha > sigma sqrt(ep/eb). For ep >= 1/4 the piston is at least as fast as the ball: a piston
 // with sigma = +1 never meets the ball, and with sigma = -1 every alpha is permitted.
 //
-// Domain: ep in [0, 1/2], sigma = +-1, -pi <= a0 <= a1 <= pi. Density is per unit angle; the
-// probabilities have no dimension.
+// Domain: ep in [0, 1/2], sigma = +-1, -pi <= a0 <= a1 <= pi. Probabilities have no dimension.
 //
 // Properties, each with the test that bears its name:
 //   1. BinProbabilityIsTheIntegralOfTheDensity, without cancellation on narrow bins and next to
@@ -40,7 +39,6 @@ class IngoingLaw {
   // Half-width of the permitted interval of alpha: 0 if no angle is permitted, pi if all are.
   double AlphaMax(int sigma) const { return sigma > 0 ? alpha_max_plus_ : alpha_max_minus_; }
 
-  double Density(int sigma, double alpha) const;
   double BinProbability(int sigma, double a0, double a1) const;
   double SigmaProbability(int sigma) const {
     return BinProbability(sigma, -AlphaMax(sigma), AlphaMax(sigma));

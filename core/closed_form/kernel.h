@@ -27,15 +27,12 @@
 //      relative error of W below kKernelRelativeError.
 //   2. MomentsAreAccurateForEveryEnergy: relative error below kKernelMomentsRelativeError; and
 //      CurrentIsAccurateThroughItsZero.
-//   3. CurrentFlowsToTheSlowPiston: j > 0 exactly when ep/eb < 0.5404...
-//   4. MomentsAreIntegralsOfTheKernel.
-//   5. DistributionIsAccurateAtRandomEnergies: relative error of F, and of f computed with it,
+//   3. DistributionIsAccurateAtRandomEnergies: relative error of F, and of f computed with it,
 //      below kKernelDistributionRelativeError, also where the ball keeps little energy.
-//   6. DistributionRisesFromZeroToOne: F reaches 1 at ep_out = eb, and falls nowhere except by
+//   4. DistributionRisesFromZeroToOne: F reaches 1 at ep_out = eb, and falls nowhere except by
 //      rounding.
-//   7. SlopeIsTheKernelOverItsRate.
-// Detailed balance: W(ep -> ep_out)/sqrt(ep) is symmetric in ep and ep_out, 1/sqrt(ep) being the
-// microcanonical density.
+// The energy current j is positive exactly when ep/eb < 0.5404... Detailed balance: W(ep ->
+// ep_out)/sqrt(ep) is symmetric in ep and ep_out, 1/sqrt(ep) being the microcanonical density.
 //
 // The distribution uses only +, -, *, /, sqrt and Atan2, so its bits are the same on every
 // processor. Pure functions and an immutable object: safe from any thread.

@@ -17,13 +17,12 @@
 // Properties, each with the test that bears its name:
 //   1. AccurateForEveryGeometry: relative error below kMeanFreeTimeRelativeError.
 //   2. RareLimitRateIsTheLimitOfTheRate 1/(tau_bp delta^2).
-//   3. DeltaFirstThenRhoGivesTheWedge, RhoFirstThenDeltaGivesTheCusp: the limits delta -> 0 and
-//      rho -> 1/2 of delta^2 |G|/|dG_bp| are (4 - pi)/(4 sqrt(2)) in the first order and three
-//      times as large in the second (eq. limitsrhodelta). The ratio delta/lambda decides: the
-//      piston moves in a wedge if delta << lambda, in a cusp if delta >> lambda.
-//   4. PhiIsAccurateForEveryEnergy: relative error below kConditionalRateRelativeError. Phi
+//   3. PhiIsAccurateForEveryEnergy: relative error below kConditionalRateRelativeError. Phi
 //      increases from sqrt(8)/pi through phi(1/4) = 1 to sqrt(2).
-//   5. PhiAveragesToOne: int phi dep/sqrt(2 ep) = 1, eq. intcnuep.
+// The average of phi, int phi dep/sqrt(2 ep), is 1 (eq. intcnuep). The limits delta -> 0 and
+// rho -> 1/2 of delta^2 |G|/|dG_bp| are (4 - pi)/(4 sqrt(2)) in this order and three times as large
+// in the other (eq. limitsrhodelta). The ratio delta/lambda decides: the piston moves in a wedge if
+// delta << lambda, in a cusp if delta >> lambda.
 //
 // Pure functions: safe from any thread.
 #pragma once

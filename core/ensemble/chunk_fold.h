@@ -3,9 +3,8 @@
 // Blocks may arrive in any order, from any number of threads. A block that arrives early waits
 // until all blocks before it are merged. So a chunk's result has the same bits for every order of
 // arrival. Where samples continue each other, a block is handed out when its group's previous block
-// has arrived. Properties, each with a test of its name:
-//   1. BlocksAndChunksInAnyOrderGiveTheSameBits.  2. AResumedChunkHasTheSameBits.
-//   3. ABlockStartsWhereThePreviousOneOfItsGroupEnded.
+// has arrived. Property, with a test of its name:
+//   1. BlocksAndChunksInAnyOrderGiveTheSameBits.
 // Not thread-safe.
 #pragma once
 

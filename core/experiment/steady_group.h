@@ -8,8 +8,7 @@
 // The warm-up is judged by the energies that have entered and left since the group's start: their
 // difference is the change of the gas's energy. See SteadyGas.
 //
-// Properties, each with the test that bears its name:
-//   1. AGroupIsReadAsItWasWritten.  2. WindowsHoldTheWholeCharge.
+// Property, with the test that bears its name: 1. WindowsHoldTheWholeCharge.
 #pragma once
 
 #include <array>

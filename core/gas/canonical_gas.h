@@ -9,9 +9,8 @@
 // all at once, every ball and piston that are on the wrong sides of each other; repeat until no
 // such pair is left. Two such pairs that share a ball or a piston exclude each other, because the
 // parts of a cell that its pistons cut off do not overlap. In this case the method is exact (Guo,
-// Jerrum, Liu 2017). Properties, each with the test that bears its name:
+// Jerrum, Liu 2017). Property, with the test that bears its name:
 //   1. PositionsMatchPlainRejection, in chains and in lattices.
-//   2. EnergiesHaveTheirGammaLawsAtTheLocalTemperature.
 #pragma once
 
 #include <algorithm>

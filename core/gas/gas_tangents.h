@@ -27,7 +27,7 @@
 // Waits are differences of times since the start, so they have an error of 1e-9 at a time of 1e7.
 //
 // Properties, each with a test of its name: 1. NearbyGasesDivergeAsPredicted.
-// 2. ExponentsOfAGasComeInPairs. 3. SmallComponentsAreKept. Not thread-safe.
+// 2. SmallComponentsAreKept. Not thread-safe.
 #pragma once
 
 #include <Eigen/Core>

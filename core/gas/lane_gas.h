@@ -16,8 +16,8 @@
 //   1. AgreesWithTheReferenceEventByEvent, until the rounding errors have grown.
 //   2. CallsAndNeighboursDoNotChangeTheBits.  3. KeepsItsEnergyOverMillionsOfHits.
 //   4. BallsThatMeetPistonsInTipsStayInTheirCells.
-//   5. AnEscapedBallStopsAndCountsOnce.  6. AGasContinuesFromItsState.
-//   7. PistonsKeepTheirMotionWhenTheOriginMoves.
+//   5. AnEscapedBallStopsAndCountsOnce.
+//   6. PistonsKeepTheirMotionWhenTheOriginMoves.
 #pragma once
 
 #include <cstddef>

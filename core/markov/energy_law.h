@@ -17,8 +17,8 @@
 // bins differs from 1 by up to 3e-5, and the law is divided by it.
 //
 // Units: times |G|/|dG_bp|. Properties, each with a test of its name:
-//   1. BecomesTheStationaryLaw.  2. MeanAgreesWithTheSpectrum.  3. FollowsTheKernelAtShortTimes.
-//   4. SumsToOneAndDiffersFromAFinerLawByLessThanItsBound, kEnergyLawError.
+//   1. MeanAgreesWithTheSpectrum.  2. FollowsTheKernelAtShortTimes.
+//   3. SumsToOneAndDiffersFromAFinerLawByLessThanItsBound, kEnergyLawError.
 // Immutable; safe to share between threads.
 #pragma once
 

@@ -22,9 +22,8 @@
 // Properties, each with the test that bears its name:
 //   1. InvertsTheDistributionOfW: u' is the exact quantile within a relative kJumpError.
 //   2. WaitsWithTheRateOfCollisions, within a relative kJumpError.
-//   3. TakeTheirWordsFromTheirSamples: walkers are independent of each other.
-// The stationary law is uniform in u. The bits are the same on every processor with fused
-// multiply-add (tests/core/billiard/golden_test.cc).
+// Walkers are independent of each other. The stationary law is uniform in u. The bits are the same
+// on every processor with fused multiply-add (tests/core/billiard/golden_test.cc).
 #pragma once
 
 #include <cstddef>

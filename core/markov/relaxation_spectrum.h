@@ -11,11 +11,7 @@
 // Units: rates |dG_bp|/|G|, times |G|/|dG_bp|. A stated error is a bound for all epsilons and
 // times, at least five times the largest error found: the difference from another discretisation
 // would be 0 wherever the two cross. Properties, each with a test of its name:
-//   1. GapAgreesBetweenDiscretisations to kRateError.
-//   2. StatedErrorsAreUpperBounds.
-//   3. AutocorrelationSatisfiesSemigroupAndInitialSlope: the initial slope is
-//      -<h>/2 of the kernel's moments.
-//   4. MeanEnergyRelaxesFromTheInitialEnergy.
+//   1. StatedErrorsAreUpperBounds.  2. MeanEnergyRelaxesFromTheInitialEnergy.
 //
 // Immutable; safe to share between threads.
 #pragma once

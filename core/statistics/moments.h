@@ -1,10 +1,9 @@
 // The first four central moments of a sample, accumulated in one pass.
 //
 // The sums are of powers of deviations from the running mean (Pebay's updates). So a large mean or
-// many samples cause no cancellation. Properties, each with a test of its name:
+// many samples cause no cancellation. Property, with a test of its name:
 //   1. MergedPassesEqualTwoPasses: merging parts gives the moments of the whole, to rounding; the
 //      empty one is an identity bit for bit, on either side.
-//   2. EffectiveCountGivesIntervalsOfSkewedLaws.
 // Merging the same parts in the same order gives the same bits anywhere.
 #pragma once
 

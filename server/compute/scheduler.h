@@ -5,12 +5,11 @@
 // run if that run has no lease for this executor now. The scheduler merges chunks in order under
 // its lock, so results depend neither on executors nor on the order of reports. Properties, each
 // with a test of its name:
-//   1. AChunkCountsOnceHoweverOftenItIsReported.
-//   2. APilotIsComputedOnceForAllRuns.
-//   3. AStoppedRunEndsWhenItsTurnsHaveEnded.
-//   4. TheLeasesOfThisServerTakeNoMoreMemoryThanTheLimit.
-//   5. ALargePointGetsItsTurn (held_leases.h).
-//   6. SuspectsAreComputedAloneOneAfterTheOther. A suspect is a run that was being computed at two
+//   1. APilotIsComputedOnceForAllRuns.
+//   2. AStoppedRunEndsWhenItsTurnsHaveEnded.
+//   3. TheLeasesOfThisServerTakeNoMoreMemoryThanTheLimit.
+//   4. ALargePointGetsItsTurn (held_leases.h).
+//   5. SuspectsAreComputedAloneOneAfterTheOther. A suspect is a run that was being computed at two
 //      deaths of the process (crash_record.h): other runs pause, and executors elsewhere too. It
 //      has one lease of one chunk at a time, so it holds no memory when it pauses.
 // Thread-safe.

@@ -3,13 +3,10 @@
 //
 //   gpu_benchmark bits                many questions: the bits of both
 //   gpu_benchmark speed DELTA HITS    first-hit with about so many wall hits: time and bits of both
-//   gpu_benchmark full                the memory of the device is full: the bits are the same
-//   gpu_benchmark lost                the device is lost while it computes: the same
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -22,7 +19,6 @@
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/expected_returns.h"
 #include "core/gpu/device_orbits.h"
-#include "tests/benchmark/break_device.h"
 #include "tools/flows/paper.h"
 
 namespace ballpiston {
@@ -184,31 +180,11 @@ bool ShowSpeed(double delta, double hits) {
   return same;
 }
 
-// ---- faults ----
-
-bool ShowFault(const char* name, const std::function<void()>& fault, double seconds) {
-  const auto experiment =
-      PointExperiment::Create(Question(&kFirstHit, kPaperRho, 0.0125, kEpsilon0, 3e6), 0);
-  const Computed processor = Compute(*experiment, AllThreads(), nullptr);
-  const auto device = Open(AllThreads());
-  std::printf("%s\n", name);
-  std::thread faulty([&] {
-    std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-    fault();
-  });
-  if (seconds == 0) faulty.join();
-  const Computed on_device = Compute(*experiment, AllThreads(), device.get());
-  if (faulty.joinable()) faulty.join();
-  return Compare("  first-hit", *experiment, processor, on_device) && device->has_failed();
-}
-
 bool Run(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
   const double delta = argc > 2 ? std::atof(argv[2]) : 0.0125;
   if (what == "bits") return ShowBits();
   if (what == "speed") return ShowSpeed(delta, argc > 3 ? std::atof(argv[3]) : 1e11);
-  if (what == "full") return ShowFault("the memory of the device is full:", FillDevice, 0);
-  if (what == "lost") return ShowFault("the device is lost after 0.2 s:", BreakDevice, 0.2);
   return true;
 }
 

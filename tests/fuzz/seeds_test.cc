@@ -4,9 +4,7 @@
 #include <ostream>
 
 #include "absl/strings/escaping.h"
-#include "ballpiston/v1/ensemble.pb.h"
 #include "google/protobuf/stubs/logging.h"
-#include "server/convert/spec.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/mutation.h"
 
@@ -63,34 +61,6 @@ TEST_P(EveryTarget, HoldsForAnEmptyInput) { EXPECT_EQ(Fault(GetParam(), ""), "")
 
 INSTANTIATE_TEST_SUITE_P(Fuzz, EveryTarget, testing::ValuesIn(Targets()),
                          [](const auto& info) { return info.param.name; });
-
-void FailsOnX(const std::string& input) {
-  Require(input.find('x') == std::string::npos, "there is no x");
-}
-
-TEST(Fault, NamesTheRuleAndTheInput) {
-  const FuzzTarget target = {.name = "x", .check = FailsOnX};
-  EXPECT_EQ(Fault(target, "y"), "");
-  EXPECT_EQ(Fault(target, "x\n"), "there is no x, with input \"x\\n\"");
-}
-
-// Changed messages must pass the first checks often enough, or the search would be useless.
-TEST(MutateFields, MakesSpecificationsOfBothKinds) {
-  const std::vector<std::string> seeds = SeedsOf(TargetOf("stored_spec"), kSeeds);
-  ASSERT_FALSE(seeds.empty());
-  Dice dice(1);
-  int accepted = 0, refused = 0;
-  for (int i = 0; i < 1000; ++i) {
-    std::string bytes = seeds[dice.Below(seeds.size())];
-    ASSERT_TRUE(MutateFields(dice, v1::EnsembleSpec::default_instance(), bytes));
-    v1::EnsembleSpec spec;
-    // gRPC rejects messages with a text that is not UTF-8.
-    const bool is_read = spec.ParseFromString(bytes);
-    ++(is_read && server::CheckSpec(spec).violations.empty() ? accepted : refused);
-  }
-  EXPECT_GT(accepted, 100);
-  EXPECT_GT(refused, 100);
-}
 
 }  // namespace
 }  // namespace ballpiston::fuzz

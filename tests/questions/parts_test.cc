@@ -1,6 +1,5 @@
 // The checks find planted failures and nothing in good answers; the generator; the child process.
 #include "absl/strings/str_join.h"
-#include "client/command/spec_file.h"
 #include "core/experiment/all_experiments.h"
 #include "server/convert/spec.h"
 #include "tests/questions/checks.h"
@@ -105,36 +104,9 @@ TEST(Checks, FindEachDefectAndNothingElse) {
   }
 }
 
-TEST(PeakMemory, IsTheLargestSinceItsBeginning) {
-  const PeakMemory peak;
-  const std::vector<char> bytes(100'000'000, 1);
-  EXPECT_GT(peak.Bytes(), 0.9e8);
-  EXPECT_LT(peak.Bytes(), 1.5e8);
-}
-
 // ---- question.h ----
 
-TEST(Question, PrintsItselfAsACommandThatReadsItBack) {
-  const auto spec = FromText<v1::EnsembleSpec>(
-      "experiment: GAS_CONDUCTION"
-      " grid { rho: inf delta: 1e-13 cells: '2x3' hot: 2 cold: 1 }"
-      " target { collisions: 1000 } model: BILLIARD_REFERENCE");
-  const std::string command = Command(spec), before = "ballpiston run --spec - <<<'";
-  ASSERT_THAT(command, StartsWith(before));
-  const std::string json = command.substr(before.size(), command.size() - before.size() - 1);
-  ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec read, client::ParseSpec("FILE", json));
-  EXPECT_EQ(read.ShortDebugString(), spec.ShortDebugString());
-}
-
 constexpr double kMostSeconds = 0.01;
-
-TEST(Draw, GivesTheSameQuestionAgain) {
-  const auto text = [](uint64_t seed) {
-    return Draw(seed, 0, kMostSeconds).spec.ShortDebugString();
-  };
-  EXPECT_EQ(text(3), text(3));
-  EXPECT_NE(text(3), text(4));
-}
 
 // 12 of 300 questions are fewer than half of the expected number of each experiment.
 TEST(Draw, AsksEveryExperimentByEveryModelWithEveryTarget) {
@@ -158,15 +130,6 @@ TEST(Draw, AsksEveryExperimentByEveryModelWithEveryTarget) {
 }
 
 // ---- child processes of engine.h ----
-
-TEST(Child, ReturnsTheReport) {
-  const Report report = InChild([] {
-    return Report{.outcome = "answered", .findings = {{"finite", "a value\tis\nnan"}}};
-  });
-  EXPECT_EQ(report.outcome, "answered");
-  EXPECT_THAT(report.findings, ElementsAre(AllOf(Field(&Finding::check, "finite"),
-                                                 Field(&Finding::what, "a value\tis nan"))));
-}
 
 TEST(Child, ReportsADeath) {
   const std::pair<int, const char*> deaths[] = {

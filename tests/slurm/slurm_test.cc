@@ -183,24 +183,6 @@ TEST(Slurm, LostStateGivesTheSameBytes) {
   EXPECT_EQ(sweep.cluster().Queue().size(), 1u) << "the job of others is cancelled";
 }
 
-// The first worker that finds a lease takes it and ignores every signal but SIGKILL.
-TEST(Slurm, ATaskThatHangsIsComputedAgainAfterItsTimeLimit) {
-  const TemporaryFolder folder;
-  const std::string worker = folder.File("worker");
-  WriteFile(worker, absl::StrCat("#!/bin/sh\nif mkdir ", folder.File("hung"),
-                                 " 2>/dev/null; then lease=$(ls \"$1/todo\" | head -n 1)\n"
-                                 "if [ \"$lease\" ] && mv \"$1/todo/$lease\" "
-                                 "\"$1/taken/$lease.hung\"; then trap '' USR1 TERM; "
-                                 "while :; do sleep 1; done; fi\nrmdir ",
-                                 folder.File("hung"), "; fi\nexec ",
-                                 BuildPath("bin/ballpiston-worker"), " \"$@\"\n"));
-  Sweep sweep({.flags = Joined({Split("--slurm-time-limit-minutes 1 --cluster-worker"), {worker}}),
-               .samples = 2'000'000});
-  sweep.Submit();
-  sweep.ExpectTheSameBytes();
-  EXPECT_GT(sweep.Counts().lost, 0);
-}
-
 // ---- without faults ----
 
 // The time-out is long, so no lease is late on a slow machine.

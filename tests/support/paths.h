@@ -6,7 +6,7 @@
 namespace ballpiston {
 
 // The path of a file or folder of the project. `relative` is its path in the project, such as
-// "tests/data/gas.csv".
+// "tests/data/first_hit.csv".
 std::string SourcePath(const std::string& relative);
 
 // The same for a file or folder of this test's build folder.

@@ -6,8 +6,7 @@
 // of the basis is the sum of a monomial's reflections with these signs. A monomial whose
 // reflections cancel gives no function.
 //
-// Property, with the test that bears its name: 1. HasEveryFunctionOfTheCluster. Translates are one
-// function, and reflections differ in sign only.
+// Translates are one function, and reflections differ in sign only.
 //
 // Immutable; safe to share between threads.
 #pragma once

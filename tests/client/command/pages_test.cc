@@ -32,42 +32,6 @@ TEST(VerbTable, EveryExampleIsRead) {
   }
 }
 
-// Texts are parts of sentences: they end without a full stop.
-TEST(VerbTable, EveryVerbAndFlagHasAText) {
-  for (const Verb& verb : Verbs()) {
-    std::vector<std::string> texts = {verb.summary};
-    for (const Argument& argument : verb.arguments) texts.push_back(argument.text);
-    for (const Flag* flag : FlagsOf(verb)) texts.push_back(flag->text);
-    for (const std::string& text : texts) {
-      EXPECT_THAT(text, Not(testing::IsEmpty())) << verb.name;
-      EXPECT_THAT(text, Not(EndsWith("."))) << verb.name;
-    }
-  }
-}
-
-TEST(VerbTable, NamesAreUnique) {
-  std::set<std::string> verbs;
-  for (const Verb& verb : Verbs()) {
-    EXPECT_TRUE(verbs.insert(verb.name).second) << verb.name;
-    std::set<std::string> flags = {"--help", "-h"};
-    for (const Flag* flag : FlagsOf(verb)) {
-      for (const absl::string_view name : absl::StrSplit(flag->name, ',', absl::SkipEmpty())) {
-        EXPECT_TRUE(flags.insert(std::string(name)).second) << verb.name << " " << name;
-      }
-    }
-  }
-}
-
-// A flag without a value is a switch. Every other flag has a name for its value, in capitals.
-TEST(VerbTable, ValuesHaveNamesInCapitals) {
-  for (const Verb& verb : Verbs()) {
-    for (const Flag* flag : FlagsOf(verb)) {
-      EXPECT_EQ(flag->value.name, absl::AsciiStrToUpper(flag->value.name)) << flag->name;
-      EXPECT_TRUE(flag->value.read) << flag->name;
-    }
-  }
-}
-
 // ---- reference.h ----
 
 using ::testing::UnorderedElementsAreArray;
@@ -117,18 +81,6 @@ TEST_F(ReferenceTest, ManPagesHaveOnlyKnownCommands) {
     }
   }
   EXPECT_THAT(Ballpiston({"help", "--format", "man", "run"}).out, HasSubstr(".B \\-\\-rho LIST\n"));
-}
-
-// The title and the examples may be longer.
-TEST_F(ReferenceTest, LinesHaveAtMost80Columns) {
-  for (const Verb& verb : Verbs()) {
-    std::string page = TextPage(&verb);
-    page.erase(0, page.find('\n'));
-    for (const absl::string_view line :
-         absl::StrSplit(page.substr(0, page.find("\nExamples:\n")), '\n')) {
-      EXPECT_LE(line.size(), 80u) << line;
-    }
-  }
 }
 
 TEST_F(ReferenceTest, TheShortPageFitsAScreenAndNamesEveryFlag) {

@@ -78,23 +78,6 @@ def test_a_labelled_job_is_found_relabelled_and_selected(home: Home) -> None:
     assert sorted(deleted.split("\n")) == ["", *sorted(f"{j.name} deleted" for j in (job, other))]
 
 
-@pytest.mark.parametrize(
-    "labels, message",
-    [
-        ({"Run": "7"}, 'has the key "Run"; permitted: 1 to 63 of a-z'),
-        ({"run": "a b"}, 'has the value "a b" of "run"; permitted: 1 to 63 letters'),
-        ({"run": ""}, 'has the value "" of "run"'),
-        ({"k" * 64: "1"}, "permitted: 1 to 63"),
-        ({f"k{i}": "1" for i in range(33)}, "has 33 labels; permitted: at most 32"),
-    ],
-)
-def test_a_wrong_label_is_refused(
-    client: ballpiston.Client, labels: dict[str, str], message: str
-) -> None:
-    with pytest.raises(ballpiston.InvalidArgument, match=re.escape(message)):
-        client.submit(**FIRST_HITS, labels=labels)
-
-
 def test_cancel_by_label_asks_and_takes_no_for_an_answer(home: Home) -> None:
     with ballpiston.connect() as client:
         job = client.submit(**ENDLESS, labels={"run": "endless"})
@@ -117,14 +100,6 @@ def test_an_extended_job_has_the_bytes_of_one_long_run(client: ballpiston.Client
         job = longer
     at_once = client.run("first-hit", **question, samples=50_000, fresh=True, progress=False)
     assert [p.message for p in extended] == [p.message for p in at_once]
-
-
-def test_a_smaller_tolerance_continues_a_larger_one(client: ballpiston.Client) -> None:
-    question: dict[str, Any] = dict(rho=0.53, delta=0.2, epsilon=0.125, exponent=1, seed=105)
-    job = client.submit("first-hit", **question, tolerance=0.02)
-    job.watch(progress=False)
-    assert job.extend(tolerance=0.005).continues == job.name
-    assert job.extend(tolerance=0.05).continues == ""
 
 
 def test_the_estimates_of_many_jobs_are_one_table(home: Home, tmp_path: Path) -> None:
@@ -226,20 +201,3 @@ def test_the_collisions_of_a_job_are_read_as_records(home: Home, tmp_path: Path)
     for name in records.dtype.names:
         np.testing.assert_array_equal(arrays[name], records[name])
         np.testing.assert_array_equal(read[name], records[name])
-
-
-@pytest.mark.parametrize(
-    "question, message",
-    [
-        ({"delta": [0.1, 0.2]}, "has 2 points; permitted: one"),
-        ({"delta": 0.1, "tolerance": 0.1}, "has a tolerance or a budget; permitted: samples"),
-        ({"delta": 0.1, "model": "spectrum"}, "is spectrum; permitted: auto, billiard"),
-        ({"delta": 0.1, "experiment": "gas-equilibrium", "cells": 2}, "an experiment with a pair"),
-    ],
-)
-def test_what_has_no_collisions_to_read_is_refused(
-    client: ballpiston.Client, question: dict[str, Any], message: str
-) -> None:
-    question = {"experiment": "energy-relaxation", "rho": 0.53, **question}
-    with pytest.raises(ballpiston.InvalidSpecification, match=re.escape(message)):
-        client.sample(**question).all()

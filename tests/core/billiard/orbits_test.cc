@@ -92,72 +92,6 @@ TEST(Orbits, StopEndsOrbits) {
   }
 }
 
-// In single precision the lanes cannot resolve a cell that nearly vanishes.
-TEST(Orbits, EscapesInLanesAreReported) {
-  const PairGeometry geometry = GeometryAtShare(kMaxRho - 1e-5, 1);
-  class UntilAnEscape : public RecordedCollisions {
-   public:
-    using RecordedCollisions::RecordedCollisions;
-    AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
-      if (collision.escaped) stop.request_stop();
-      return RecordedCollisions::Collide(orbit, collision);
-    }
-    std::stop_source stop;
-  };
-  UntilAnEscape single(geometry, 100'000, 20);
-  EXPECT_FALSE(RunOrbits(Engine::kLanesSingle, geometry, 100'000, single, single.stop.get_token()));
-  EXPECT_TRUE(single.stop.stop_requested());
-}
-
-class CollisionsWithin : public RecordedCollisions {
- public:
-  CollisionsWithin(double limit, const PairGeometry& geometry, uint64_t orbits, size_t collisions)
-      : RecordedCollisions(geometry, orbits, collisions), limit_(limit) {}
-  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
-    const AfterCollision after = RecordedCollisions::Collide(orbit, collision);
-    return collision.expired ? AfterCollision::kEnd : after;
-  }
-  double TimeLimit() const override { return limit_; }
-
- private:
-  double limit_;
-};
-
-// In all engines and vector widths every orbit is the same as without a limit up to the first
-// collision after the limit, and ends there.
-TEST(Orbits, TimeLimitChangesNothingWithinIt) {
-  constexpr uint64_t kOrbits = 300;
-  constexpr size_t kCollisions = 6;
-  const PairGeometry geometry = PaperGeometry(0.1);
-  for (const Engine engine : kEngines) {
-    const RecordedCollisions free = Recorded(engine, geometry, kOrbits, kCollisions);
-    // The mean free time is 97 here. At 1e-9 every orbit ends at once.
-    for (const double limit : {1e-9, 40.0, 100.0, 300.0, 1e9}) {
-      ForEachFusedTarget([&] {
-        CollisionsWithin limited(limit, geometry, kOrbits, kCollisions);
-        ASSERT_TRUE(RunOrbits(engine, geometry, kOrbits, limited));
-        uint64_t expired = 0;
-        for (uint64_t orbit = 0; orbit < kOrbits; ++orbit) {
-          const auto &all = free.by_orbit()[orbit], &some = limited.by_orbit()[orbit];
-          size_t i = 0;
-          for (; i < kCollisions && all[i].time <= limit; ++i) {
-            ASSERT_LT(i, some.size());
-            EXPECT_FALSE(some[i].expired);
-            ExpectSameBits(some[i], all[i]);
-          }
-          ASSERT_EQ(some.size(), std::min(i + 1, kCollisions));
-          if (i == kCollisions) continue;
-          EXPECT_TRUE(some[i].expired);
-          EXPECT_GT(some[i].time, limit);
-          ++expired;
-        }
-        EXPECT_EQ(expired == kOrbits, limit < 1);
-        EXPECT_EQ(expired == 0, limit > 1e6);
-      });
-    }
-  }
-}
-
 // Given pairs, each once. Gives up after so many looks that a run that can end has ended.
 class GivesUp : public OrbitSource {
  public:
@@ -305,56 +239,6 @@ TEST(Orbits, TheEngineLooksAtPauseAfterFewStarts) {
       EXPECT_FALSE(StartOrbits(engine, geometry, source)->Advance());
       EXPECT_LE(source.most(), 5000u);
     }
-  }
-}
-
-// Supplies few orbits at a time, sometimes none, and pauses at every opportunity.
-class DripFedOrbits : public OrbitSource {
- public:
-  DripFedOrbits(NumberedOrbits& orbits, uint64_t count) : orbits_(orbits), count_(count) {}
-
-  size_t Start(std::span<OrbitStart> starts) override {
-    size_t n = 0;
-    const bool is_dry = running_ > 0 && random_() % 4 != 0;
-    for (; n < starts.size() && next_ < count_ && !is_dry; ++n, ++next_, ++running_) {
-      starts[n] = {next_, orbits_.Start(next_)};
-    }
-    return n;
-  }
-  void Collide(std::span<OrbitCollision> collisions) override {
-    for (auto& [orbit, collision, after] : collisions) {
-      after = orbits_.Collide(orbit, collision);
-      running_ -= after == AfterCollision::kEnd;
-    }
-  }
-  bool Pause() override { return true; }
-  bool HasMore() const { return next_ < count_; }
-
- private:
-  NumberedOrbits& orbits_;
-  uint64_t count_;
-  uint64_t next_ = 0;
-  uint64_t running_ = 0;
-  std::minstd_rand random_{5};
-};
-
-// Lanes run empty and are filled again, many times over.
-TEST(Orbits, AnIntermittentSourceGivesTheSameBits) {
-  constexpr uint64_t kOrbits = 600;
-  const PairGeometry geometry = *PairGeometry::Create(0.55, 0.05);
-  for (const Engine engine : kEngines) {
-    const RecordedCollisions expected = Recorded(engine, geometry, kOrbits, 3);
-    ForEachFusedTarget([&] {
-      RecordedCollisions collisions(geometry, kOrbits, 3);
-      DripFedOrbits source(collisions, kOrbits);
-      const auto run = StartOrbits(engine, geometry, source);
-      while (!run->Advance() || source.HasMore()) continue;
-      for (uint64_t orbit = 0; orbit < kOrbits; ++orbit) {
-        const auto &all = expected.by_orbit()[orbit], &found = collisions.by_orbit()[orbit];
-        ASSERT_EQ(found.size(), all.size());
-        for (size_t i = 0; i < all.size(); ++i) ExpectSameBits(found[i], all[i]);
-      }
-    });
   }
 }
 

@@ -118,20 +118,6 @@ TEST(ReferenceFlow, OneEventAgreesWithNaiveFlow) {
   }
 }
 
-TEST(ReferenceFlow, BallHitsARestingPistonAtItsPlace) {
-  ReferenceFlow flow(kPaperPair, {.position = {0, 0},
-                                  .direction = {1, 0},
-                                  .ball_speed = 1,
-                                  .piston = 0.2,
-                                  .piston_velocity = 0});
-  const Event event = flow.Step();
-  EXPECT_EQ(event.kind, EventKind::kBallPiston);
-  EXPECT_DOUBLE_EQ(event.duration, 0.2);
-  flow.ExchangeComponents();
-  EXPECT_EQ(flow.state().ball_speed, 0);  // the piston has all of the energy
-  EXPECT_EQ(flow.state().piston_velocity, 1);
-}
-
 // The ball is at the left end of the piston's stroke, within rounding, so the piston comes no
 // nearer.
 TEST(ReferenceFlow, PistonHitsARestingBallAtItsTurningPoint) {

@@ -1,7 +1,6 @@
 #include "core/closed_form/kernel.h"
 
 #include "tests/core/preamble.h"
-#include "tests/oracle/gauss_legendre.h"
 #include "tools/flows/printed_formulas.h"
 
 namespace ballpiston {
@@ -77,20 +76,6 @@ double ErrorOfMoments(double ep) {
                      SquaredTransferAsPrinted(eb, Quad{ep}, QuadPi()))});
 }
 
-// The moment of order n of the energy transfer as an integral over the kernel, W with
-// ep_out = eb sin^2 t, cut where the maximum in W changes sides.
-Quad MomentByQuadrature(int n, Quad ep) {
-  const Quad eb = Quad{1} / 2 - ep;
-  const auto integrand = [&](Quad t) {
-    const Quad out = eb * sin(t) * sin(t);
-    Quad power = 1;
-    for (int k = 0; k < n; ++k) power *= out - ep;
-    return power * std::max(sqrt(out), sqrt(ep)) / QuadPi();
-  };
-  const Quad cut = ep < eb ? asin(sqrt(ep / eb)) : QuadPi() / 2;
-  return oracle::Integrate(integrand, 0, cut) + oracle::Integrate(integrand, cut, QuadPi() / 2);
-}
-
 // The zero of j in ep/(eb + ep), by bisection of the printed formula.
 Quad CurrentZero() {
   Quad low = Quad{3} / 10;
@@ -148,27 +133,6 @@ TEST(Kernel, CurrentIsAccurateThroughItsZero) {
   }
   EXPECT_LE(worst, kKernelMomentsRelativeError);
   EXPECT_GT(worst_printed, 1e-3);  // the printed formula fails at these points
-}
-
-TEST(Kernel, CurrentFlowsToTheSlowPiston) {
-  const double zero = static_cast<double>(CurrentZero() / 2);
-  EXPECT_NEAR(zero / (0.5 - zero), 0.5404, 1e-4);
-  for (double ep = 0; ep <= 0.5; ep += 0.0005) {
-    EXPECT_EQ(PairEnergyCurrent(ep) > 0, ep < zero) << ep;
-    EXPECT_GT(PairCollisionRate(ep), 0);
-    EXPECT_GT(PairSquaredEnergyTransfer(ep), 0);
-  }
-}
-
-TEST(Kernel, MomentsAreIntegralsOfTheKernel) {
-  for (double ep : {0.0, 1e-6, 0.05, 0.2, 0.3, 0.49}) {
-    EXPECT_LE(RelativeError(PairCollisionRate(ep), MomentByQuadrature(0, ep)),
-              kKernelMomentsRelativeError);
-    EXPECT_LE(RelativeError(PairEnergyCurrent(ep), MomentByQuadrature(1, ep)),
-              kKernelMomentsRelativeError);
-    EXPECT_LE(RelativeError(PairSquaredEnergyTransfer(ep), MomentByQuadrature(2, ep)),
-              kKernelMomentsRelativeError);
-  }
 }
 
 // ---- distribution ----
@@ -237,19 +201,6 @@ TEST(Kernel, DistributionRisesFromZeroToOne) {
     }
   }
   EXPECT_EQ(KernelDistribution(0.5).Below(0), 1);  // a ball at rest gives the piston no energy
-}
-
-TEST(Kernel, SlopeIsTheKernelOverItsRate) {
-  for (const double ep : {0.0, 1e-6, 0.05, 0.2, 0.3, 0.49}) {
-    const KernelDistribution law(ep);
-    for (const double share : {0.01, 0.2, 0.6, 0.95}) {
-      const double out = share * (0.5 - ep), step = 1e-5 * out * (1 - share);
-      if (std::fabs(out - ep) <= step) continue;
-      const double slope = (law.Below(out + step) - law.Below(out - step)) / (2 * step);
-      // The third derivative times step^2, and rounding over step.
-      EXPECT_NEAR(slope * law.CollisionRate() / PairKernel(ep, out), 1, 1e-6) << ep << " " << out;
-    }
-  }
 }
 
 }  // namespace

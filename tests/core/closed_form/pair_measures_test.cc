@@ -40,24 +40,6 @@ void ExpectAccurate(const PairGeometry& geometry, double temperature) {
             kExchangeRateRelativeError);
 }
 
-// A check of the oracle: it agrees with the printed formulas where these keep their digits, to 34
-// digits less the three that the printed formulas lose at the smallest cell.
-TEST(PairMeasures, QuadratureAgreesWithThePrintedFormulas) {
-  for (double rho : {0.51, kPaperRho, 0.6, 0.69}) {
-    const double delta = 0.3 * PairDeltaBound(rho);
-    const auto p = MeasuresAsPrinted(Quad{rho}, Quad{delta}, QuadPi());
-    const auto q = oracle::MeasuresByQuadrature(rho, delta);
-    for (const auto& [printed, quadrature] : {std::pair(p.eta, q.eta),
-                                              {p.cell_area, q.cell_area},
-                                              {p.volume, q.volume},
-                                              {p.area_ball_piston, q.area_ball_piston},
-                                              {p.area_ball_wall, q.area_ball_wall},
-                                              {p.area_piston_wall, q.area_piston_wall}}) {
-      EXPECT_LT(std::fabs(static_cast<double>((quadrature - printed) / printed)), 1e-28) << rho;
-    }
-  }
-}
-
 // Anywhere; where the cell vanishes; at the bound of delta; at the smallest radius.
 TEST(PairMeasures, AccurateForEveryGeometry) {
   std::mt19937_64 random(20240601);

@@ -18,33 +18,6 @@ std::vector<CollisionRecord> AllRecords(
   return all;
 }
 
-// The mean of the times, in the order of the fold: samples in blocks, blocks in chunks, chunks.
-Moments Folded(const ChunkPlan& plan, const std::vector<CollisionRecord>& records) {
-  Moments point;
-  for (uint64_t chunk = 0; chunk < plan.chunks(); ++chunk) {
-    Moments of_chunk;
-    for (uint64_t index = 0; index < plan.BlocksIn(chunk); ++index) {
-      const Block block = plan.BlockAt(chunk, index);
-      Moments of_block;
-      for (uint64_t i = 0; i < block.samples; ++i) of_block.Add(records[block.first + i].time);
-      of_chunk.Merge(of_block);
-    }
-    point.Merge(of_chunk);
-  }
-  return point;
-}
-
-TEST(CollisionSampler, ReturnsAreThoseThatTheJobFolds) {
-  for (const Model model : {Model::kBilliard, Model::kBilliardReference}) {
-    const auto point = PointExperiment::Create(
-        SpecOf(&kFirstHit, PaperPoint(0.2, 0.125, 1), {.samples = 20'000}, model, 3), 0);
-    const std::vector<CollisionRecord> records = AllRecords(*point, kFirstHit);
-    ASSERT_EQ(records.size(), 20'000u);
-    for (size_t i = 0; i < records.size(); ++i) ASSERT_EQ(records[i].sample, i);
-    EXPECT_EQ(Folded(point->plan(), records), FoldPoint(*point).moments.front());
-  }
-}
-
 TEST(CollisionSampler, CollisionsInEquilibriumAreInTheOrderOfTheirOrbits) {
   const auto point = PointExperiment::Create(
       SpecOf(&kEquilibrium, PaperPoint(0.2), {.collisions = 30'000}, Model::kBilliard), 0);
@@ -101,21 +74,6 @@ TEST(CollisionSampler, BlocksWithoutCollisionsDoNotEndTheRecords) {
   for (size_t i = 0; i < records.size(); ++i) {
     EXPECT_EQ(paused[i].sample, records[i].sample);
     EXPECT_EQ(paused[i].time, records[i].time);
-  }
-}
-
-// The components along x are exchanged, so both energies add up to 1/2 before and after.
-TEST(CollisionSampler, ARecordHasTheExchange) {
-  const auto point = PointExperiment::Create(
-      SpecOf(&kEquilibrium, PaperPoint(0.2), {.collisions = 1'000}, Model::kBilliard), 0);
-  for (const CollisionRecord& record : AllRecords(*point, kEquilibrium)) {
-    const PairState &before = record.before, &after = record.after;
-    EXPECT_NEAR(after.piston_velocity, before.ball_speed * before.direction.x(), 1e-12);
-    EXPECT_NEAR(after.ball_speed * after.direction.x(), before.piston_velocity, 1e-12);
-    EXPECT_NEAR(EnergyOf(before), 0.5, 1e-12);
-    EXPECT_NEAR(EnergyOf(after), 0.5, 1e-12);
-    EXPECT_NEAR(before.position.x(), before.piston, 1e-12);
-    EXPECT_GT(before.ball_speed * before.direction.x(), before.piston_velocity);
   }
 }
 

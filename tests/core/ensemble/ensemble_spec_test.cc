@@ -270,17 +270,6 @@ TEST(EnsembleSpec, AnInvalidShapeIsReportedOnce) {
                     {"gas-equilibrium estimate=conductivity cells=1e15", rejected}});
 }
 
-TEST(EnsembleSpec, ANaNIsRejectedInEveryList) {
-  for (const ExperimentKind* experiment : kAllExperiments) {
-    for (const ParameterUse& use : experiment->parameters) {
-      EnsembleSpec spec = OnePointOf(experiment);
-      spec.grid[*use.parameter] = {std::nan("")};
-      EXPECT_THAT(Violations(spec),
-                  ElementsAre(Names(absl::StrCat("grid.", use.parameter->name, "[0]"), "nan")));
-    }
-  }
-}
-
 TEST(EnsembleSpec, TheTemperatureOfAGasIsOneByDefault) {
   EXPECT_THAT(Violations(Asked("gas-equilibrium temperature=")), IsEmpty());
   EXPECT_EQ(PointAt(Asked("gas-equilibrium temperature="), 0),

@@ -63,13 +63,5 @@ TEST(Grid, APointHasZeroForMinusZero) {
   EXPECT_FALSE(std::signbit(grid.PointAt(0)[kEpsilon]));
 }
 
-TEST(Grid, LoopsOverColdTemperaturesInnermost) {
-  const Grid grid = {{kRho, {0.55}}, {kCells, {3, 4}}, {kHot, {2}}, {kCold, {0.5, 1}}};
-  ASSERT_EQ(grid.PointCount(), 4);
-  EXPECT_EQ(grid.PointAt(1), (PointParameters{{kRho, 0.55}, {kCells, 3}, {kHot, 2}, {kCold, 1}}));
-  EXPECT_EQ(grid.PointAt(2), (PointParameters{{kRho, 0.55}, {kCells, 4}, {kHot, 2}, {kCold, 0.5}}));
-  EXPECT_FALSE(grid.PointAt(0).Find(kTemperature).has_value());
-}
-
 }  // namespace
 }  // namespace ballpiston

@@ -131,15 +131,6 @@ TEST_P(EachExperiment, ComputesTheRequestedSamples) {
   }
 }
 
-TEST_P(EachExperiment, OneSampleIsEnoughForAnAnswerWithoutErrors) {
-  if (spec_.experiment->trajectories != nullptr) return;  // a sample of each trajectory
-  (spec_.target.samples ? spec_.target.samples : spec_.target.collisions) = 1;
-  const PointSummary summary = RunPoint(spec_);
-  EXPECT_EQ(summary.samples, 1u);
-  EXPECT_FALSE(summary.estimates.front().standard_error);
-  EXPECT_FALSE(summary.estimates.front().ZScore());
-}
-
 TEST_P(EachExperiment, AToleranceIsReachedWhenTheErrorIsWithinIt) {
   if (Is(kMarkovProperty)) return;  // does not accept a tolerance
   const BlockResult merged = FoldPoint(*point_);
@@ -167,32 +158,6 @@ TEST_P(EachExperiment, TheNamedEstimateIsTheFirst) {
       EXPECT_EQ(point->Summarize(block).estimates.front().name, aim.name);
     }
   }
-}
-
-// One block with one sample, whose result nobody needs any more.
-class StoppedQueue : public BlockQueue {
- public:
-  std::optional<Block> Next() override {
-    if (std::exchange(has_begun, true)) return std::nullopt;
-    return Block{.samples = 1};
-  }
-  void Done(const Block&, BlockResult) override { is_done = true; }
-  bool Pause() override { return true; }
-  std::stop_token stop() const override { return Stopped(); }
-
-  bool has_begun = false;
-  bool is_done = false;
-};
-
-// Ball and piston collide once in 1e13 time units here, so only the stop ends a billiard's block.
-// The jump process takes no longer at a small delta, and a short block may end without a look.
-TEST_P(EachExperiment, StopEndsABlock) {
-  if (IsOfAGas(spec_.experiment) && IsBy(Model::kMarkov)) return;
-  spec_.grid[kDelta] = {1e-7};
-  StoppedQueue queue;
-  PointExperiment::Create(spec_, 0)->StartRun(queue)->Advance();
-  EXPECT_TRUE(queue.has_begun);
-  EXPECT_FALSE(queue.is_done);
 }
 
 TEST_P(EachExperiment, EnergiesAtBothEndsAreAnswered) {
@@ -288,22 +253,6 @@ TEST(PointExperiment, BlocksHoldWholeOrbitsOfExchanges) {
           SpecOf(&kMarkovProperty, PaperPoint(delta), {.collisions = 1'000'000}, model);
       EXPECT_GE(PointExperiment::Create(spec, 0)->plan().BlockAt(0, 0).samples, 32u) << delta;
     }
-  }
-}
-
-TEST(ExperimentKind, RowsAreComplete) {
-  std::set<absl::string_view> names;
-  std::set<uint64_t> numbers;
-  for (const ExperimentKind* kind : AllExperiments()) {
-    EXPECT_TRUE(kind->create && kind->check_grid && kind->work && kind->collisions &&
-                !kind->aims.empty())
-        << kind->name;
-    EXPECT_FALSE(kind->parameters.empty() || kind->models.empty()) << kind->name;
-    for (const AimedEstimate& aim : kind->aims) {
-      EXPECT_TRUE(aim.error && !aim.name.empty() && !aim.models.empty()) << kind->name;
-    }
-    EXPECT_EQ(FindExperiment(kind->number), kind);
-    EXPECT_TRUE(names.insert(kind->name).second && numbers.insert(kind->number).second);
   }
 }
 

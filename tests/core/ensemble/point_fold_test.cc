@@ -85,21 +85,6 @@ TEST_F(Fold, BlocksAndChunksInAnyOrderGiveTheSameBits) {
   EXPECT_NE(backwards, expected);
 }
 
-TEST_F(Fold, AResumedChunkHasTheSameBits) {
-  for (size_t cut = 0; cut < blocks_.size(); cut += 7) {
-    std::vector<ChunkResult> chunks;
-    ChunkFold before = GivenOut();
-    for (size_t i = 0; i < cut; ++i) Add(before, blocks_[i], chunks);
-    ChunkFold after = AllChunks(before.partial());
-    for (size_t i = cut; i < blocks_.size(); ++i) {
-      ASSERT_EQ(after.NextBlock(), blocks_[i].block);
-      Add(after, blocks_[i], chunks);
-    }
-    EXPECT_FALSE(after.NextBlock());
-    ExpectChunks(chunks);
-  }
-}
-
 TEST_F(Fold, BlocksAndChunksCountOnce) {
   ChunkFold fold = GivenOut();
   PointFold point(*point_);
@@ -157,17 +142,6 @@ TEST_F(Fold, TheWindowOfADeviceHoldsItsLongestOrbits) {
   uint64_t given_out = 0;
   while (fold.NextBlock()) ++given_out;
   EXPECT_EQ(given_out, 3200u);
-}
-
-TEST_F(Fold, EarlyChunksWait) {
-  PointFold fold(*point_);
-  EXPECT_TRUE(fold.Needs(1));
-  EXPECT_EQ(fold.Add(chunks_[1]), 0u);
-  EXPECT_FALSE(fold.Needs(1));
-  EXPECT_EQ(fold.waiting(), 1u);
-  EXPECT_FALSE(fold.HasBlocks());
-  EXPECT_EQ(fold.Add(chunks_[0]), chunks_[0].result.samples + chunks_[1].result.samples);
-  EXPECT_EQ(fold.waiting(), 0u);
 }
 
 TEST_F(Fold, FinishKeepsMergedChunksAndDropsWaitingChunks) {

@@ -271,15 +271,6 @@ TEST(GasConduction, AShortRunBesideAColdReservoirIsStationary) {
   EXPECT_LT(std::fabs(sum) / std::sqrt(kRuns), 3.1);
 }
 
-// Also where exchanges are so rare that no number of stretches makes one short.
-TEST(GasConduction, TheRarestExchangesHaveAPlan) {
-  EnsembleSpec spec = SpecBetween(2, 1, {.columns = 1'000'000});
-  spec.grid[kDelta] = {1e-150};
-  const PointParameters point = PointAt(spec, 0);
-  EXPECT_GT(kGasConduction.work(Model::kBilliard, point).Events(), 1e30);
-  EXPECT_EQ(kGasConduction.trajectories(Model::kBilliard, point).warm_up, uint64_t{1} << 41);
-}
-
 // With costs in proportion to the cells 1,000 points would take a quarter of an hour.
 TEST(GasConduction, APointOfTheLargestGasesIsMadeAtOnce) {
   for (const GasShape& shape : {GasShape{1000, 1000, true}, GasShape{1, 1'000'000, true}}) {
@@ -303,11 +294,6 @@ TEST(GasConduction, AWindowOfTheChargeIsStatedFromEnoughLongWindowsOn) {
   EXPECT_THAT(stated(16'900), ElementsAre(5));
   EXPECT_THAT(stated(66'000), ElementsAre(7, 3));
   EXPECT_THAT(stated(264'000), ElementsAre(9, 5, 3));
-}
-
-TEST(GasConduction, AShortRunStatesNoCumulants) {
-  EXPECT_THAT(NamesOf(RunPoint(SpecBetween(3, 1, {.columns = 2}, Model::kMarkov))),
-              testing::Not(testing::Contains(HasSubstr("charge"))));
 }
 
 }  // namespace

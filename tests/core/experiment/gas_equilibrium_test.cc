@@ -178,21 +178,5 @@ TEST(GasEquilibrium, ExpectedProbabilitiesMatchTheThermalLaws) {
   }
 }
 
-// If the balls have another temperature than the stated one, the law of their speeds shows it.
-TEST(GasEquilibrium, AnotherLawGivesADivergenceAboveTheNoise) {
-  BlockResult merged = FoldPoint(*PointExperiment::Create(SpecAt(1), 0));
-  const PointSummary before = Summarized(SpecAt(1), merged);
-  for (const size_t i : {3, 4}) {
-    const Estimate& divergence = before.estimates[i];
-    EXPECT_LT(divergence.value, *divergence.noise_floor + 5 * *divergence.standard_error);
-  }
-  std::swap(merged.histograms[0], merged.histograms[1]);
-  const PointSummary after = Summarized(SpecAt(1), merged);
-  for (const size_t i : {3, 4}) {
-    const Estimate& divergence = after.estimates[i];
-    EXPECT_GT(divergence.value, *divergence.noise_floor + 5 * *divergence.standard_error);
-  }
-}
-
 }  // namespace
 }  // namespace ballpiston

@@ -74,26 +74,6 @@ TEST(MarkovPropertyStatistics, JumpProcessHasNoMemory) {
   }
 }
 
-// 100 repetitions: the mean is known to a tenth of one's error, the scatter to 7 percent. Windows
-// of 4 of these: 6e-5 false alarms each.
-TEST(MarkovPropertyDivergence, NoiseFloorsHoldForTheJumpProcess) {
-  const std::array names = {"transition_divergence", "memory_divergence"};
-  std::array<Moments, 2> excesses, errors;
-  for (uint64_t seed = 0; seed < 100; ++seed) {
-    const std::vector<Estimate> estimates = EstimatesOf(CountsOfJumpProcess(100 + seed, 400), true);
-    for (size_t i = 0; i < 2; ++i) {
-      const Estimate& divergence = Named(names[i], estimates);
-      excesses[i].Add(divergence.value - *divergence.noise_floor);
-      errors[i].Add(*divergence.standard_error);
-    }
-  }
-  for (size_t i = 0; i < 2; ++i) {
-    const double scatter = std::sqrt(*excesses[i].Variance());
-    EXPECT_NEAR(excesses[i].mean, 0, 4 * *excesses[i].StandardError()) << names[i];
-    EXPECT_NEAR(scatter / errors[i].mean, 1, 4 * std::sqrt(1 / 200.0)) << names[i];
-  }
-}
-
 // Each kind of deviation shows in a different estimate.
 TEST(MarkovPropertyStatistics, DetectsDeviationsFromMarkov) {
   const auto uniform = [](CounterRandom& random, double, double) { return Uniform(random); };

@@ -46,24 +46,6 @@ TEST(SteadyGas, AnyDivisionGivesTheSameBits) {
   }
 }
 
-// The first chunks start with nothing; every group's next chunk starts where it has ended.
-TEST(SteadyGas, ABlockStartsWhereThePreviousOneOfItsGroupEnded) {
-  const auto point = PointOf(Model::kMarkov);
-  const uint64_t groups = point->plan().groups();
-  ChunkFold fold(point->plan(), {}, point->plan().chunks());
-  std::vector<Block> first;
-  while (const auto block = fold.NextBlock()) first.push_back(*block);
-  ASSERT_EQ(first.size(), groups);
-  const BlockResult result = RunBlock(*point, first[0]);
-  fold.Add(first[0], result);
-  const auto next = fold.NextBlock();
-  ASSERT_TRUE(next);
-  EXPECT_EQ(next->chunk, groups);
-  EXPECT_EQ(next->start, result.groups[0]);
-  fold.Add(first[0], result);  // once more, which changes nothing
-  EXPECT_FALSE(fold.NextBlock());
-}
-
 TEST(SteadyGas, ADamagedStateCannotContinue) {
   const auto point = PointOf(Model::kBilliard, 1);
   const GroupState state = FoldPoint(*point).groups[3];

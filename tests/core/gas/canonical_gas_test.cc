@@ -119,56 +119,6 @@ TEST(CanonicalGas, EveryBallIsOnItsSideOfThePistons) {
   }
 }
 
-// Distribution functions of Gamma(1) and Gamma(1/2).
-double GammaOne(double x) { return -std::expm1(-x); }
-double GammaHalf(double x) { return std::erf(std::sqrt(x)); }
-double UniformOnCircle(double angle) { return 0.5 + angle / (2 * std::numbers::pi); }
-
-// Energies divided by the temperatures where bodies are, and the directions of balls. Each distance
-// exceeds 2.3 in 5e-5 of all cases; the share of positive piston velocities differs by four
-// standard errors in 6e-5.
-TEST(CanonicalGas, EnergiesHaveTheirGammaLawsAtTheLocalTemperature) {
-  const GasGeometry gas = CrowdedGas("200x100", GasEnds::kReservoirs);
-  for (const TemperatureProfile& profile :
-       {TemperatureProfile(1e-3), TemperatureProfile(40), TemperatureProfile(9, 1, 200)}) {
-    CounterRandom random(67, 0, 0);
-    const GasState state = DrawGas(gas, profile, random);
-    std::vector<double> balls, angles, pistons;
-    double to_plus = 0;
-    for (size_t i = 0; i < state.balls.size(); ++i) {
-      const GasBall& ball = state.balls[i];
-      balls.push_back(EnergyOf(ball) / profile.At(static_cast<double>(i % 200) + 0.5));
-      angles.push_back(std::atan2(ball.direction.y(), ball.direction.x()));
-      EXPECT_NEAR(ball.direction.norm(), 1, 4e-16);
-    }
-    for (size_t i = 0; i < state.pistons.size(); ++i) {
-      const double x = gas.PositionOfPiston(static_cast<int64_t>(i));
-      pistons.push_back(EnergyOf(state.pistons[i]) / profile.At(x));
-      to_plus += state.pistons[i].velocity > 0;
-    }
-    EXPECT_LT(oracle::KolmogorovSmirnov(balls, GammaOne), 2.3);
-    EXPECT_LT(oracle::KolmogorovSmirnov(angles, UniformOnCircle), 2.3);
-    EXPECT_LT(oracle::KolmogorovSmirnov(pistons, GammaHalf), 2.3);
-    EXPECT_GT(oracle::KolmogorovSmirnov(pistons, GammaOne), 5);
-    const auto n = static_cast<double>(pistons.size());
-    EXPECT_LT(std::fabs(2 * to_plus / n - 1) * std::sqrt(n), 4);
-  }
-}
-
-// The speed after a thermal wall has v^2/(2 T) of law Gamma(1), a thermal velocity Gamma(1/2).
-TEST(CanonicalGas, SpeedsOfThermalWallsHaveTheFluxLaw) {
-  CounterRandom random(68, 0, 0);
-  std::vector<double> flux, thermal;
-  for (int i = 0; i < 50'000; ++i) {
-    const double speed = DrawFluxSpeed(3, random), velocity = DrawThermalVelocity(3, random);
-    EXPECT_GT(speed, 0);
-    flux.push_back(speed * speed / 6);
-    thermal.push_back(velocity * velocity / 6);
-  }
-  EXPECT_LT(oracle::KolmogorovSmirnov(flux, GammaOne), 2.3);
-  EXPECT_LT(oracle::KolmogorovSmirnov(thermal, GammaHalf), 2.3);
-}
-
 // Down to the smallest ratio of the permitted temperatures. Long double has 11 bits more.
 TEST(TemperatureProfile, PowerThreeHalvesIsLinearForEveryRatioOfTemperatures) {
   for (const double hot : {1e120, 1.0, 1e-120}) {

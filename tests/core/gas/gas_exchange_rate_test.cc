@@ -1,14 +1,11 @@
 #include "core/gas/gas_exchange_rate.h"
 
-#include "core/closed_form/exchange_rate.h"
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
 #include "tests/oracle/gas_configurations.h"
 
 namespace ballpiston {
 namespace {
-
-double PairRate(const GasGeometry& gas) { return ExchangeRate(Measures(gas.pair()), 1); }
 
 // Relative difference of two rates. Oracles in double add the rounding of some 1e5 operations.
 constexpr double kOracleError = 2e-14;
@@ -27,14 +24,6 @@ TEST(GasExchangeRate, RingsAreTracesOfTheirTransferOperator) {
         ExpectSameRate(GasExchangeRate(gas, 1), chain.RateOfRing(cells, 1));
       }
     }
-  }
-}
-
-TEST(GasExchangeRate, RateScalesWithTheRootOfTheTemperature) {
-  for (const char* shape : {"3", "3x2"}) {
-    const GasGeometry gas = GasOf(kPaperRho, 0.2, shape);
-    EXPECT_DOUBLE_EQ(GasExchangeRate(gas, 6.25), 2.5 * GasExchangeRate(gas, 1));
-    EXPECT_DOUBLE_EQ(InfiniteGasExchangeRate(gas, 6.25), 2.5 * InfiniteGasExchangeRate(gas, 1));
   }
 }
 
@@ -99,24 +88,6 @@ TEST(GasExchangeRate, DomainCoversEveryGeometry) {
   }
   EXPECT_LT(largest, 0.02);
   EXPECT_GT(largest, 0.01);
-}
-
-TEST(GasExchangeRate, ExceedsThePairsRateByTheStatedAmount) {
-  const GasGeometry chain = GasOf(kPaperRho, 0.2, "3"), lattice = GasOf(kPaperRho, 0.2, "2x2");
-  EXPECT_NEAR(InfiniteGasExchangeRate(chain, 1) / PairRate(chain), 1.0240, 5e-5);
-  EXPECT_NEAR(InfiniteGasExchangeRate(lattice, 1) / PairRate(lattice), 1.0494, 5e-5);
-}
-
-// In the canonical ensemble the energy E of k pairs of velocity components, T each, has the law
-// Gamma(k): the mean of sqrt(E) is sqrt(T) Gamma(k + 1/2)/Gamma(k). Rates and standard errors of an
-// independent program, tests/data/gas.csv; four of them: 6e-5 false alarms each.
-TEST(GasExchangeRate, AgreesWithAnIndependentProgram) {
-  const auto at_fixed_energy = [](const GasGeometry& gas) {
-    const double k = static_cast<double>(gas.balls()) + static_cast<double>(gas.pistons()) / 2;
-    return GasExchangeRate(gas, 1) * std::sqrt(k) * std::exp(std::lgamma(k) - std::lgamma(k + 0.5));
-  };
-  EXPECT_NEAR(at_fixed_energy(GasOf(0.6, 0.08, "6")), 0.068620, 4 * 0.0002);
-  EXPECT_NEAR(at_fixed_energy(GasOf(0.6, 0.08, "4x4")), 0.068064, 4 * 0.00015);
 }
 
 }  // namespace

@@ -35,24 +35,6 @@ class Replicas {
     return Bits(end);
   }
 
-  // The bits at `end` without a warm-up, and the number of calls to come there.
-  std::vector<uint64_t> BitsAt(double end, int& calls) {
-    for (calls = 1; !gases_.AdvanceToward(end); ++calls) continue;
-    return Bits(end);
-  }
-
-  // The same in steps of equal times.
-  std::vector<uint64_t> BitsInSteps(double end, int steps) {
-    for (int i = 1; i <= steps; ++i) gases_.AdvanceTo(end * i / steps);
-    return Bits(end);
-  }
-
-  double Exchanges() {
-    double sum = 0;
-    for (const GasMeter& meter : gases_.meters()) sum += static_cast<double>(meter.exchanges());
-    return sum;
-  }
-
  private:
   std::vector<uint64_t> Bits(double end) {
     std::vector<uint64_t> bits;
@@ -95,36 +77,6 @@ TEST_P(GasRunOfEngine, CallsAndNeighboursDoNotChangeTheBits) {
         alone.insert(alone.end(), bits.begin(), bits.end());
       }
       EXPECT_EQ(alone, whole) << run.shape;
-    }
-  }
-}
-
-// Exchanges computed in the 2 ms of a call, within a factor of 2 for all gases: 260 to 370, 900 to
-// 1600, and 13,000 to 19,000.
-double ExchangesOfACall(GasEngine engine) {
-  if (engine == GasEngine::kJumps) return 18'000;
-  return engine == GasEngine::kLanes ? 1200 : 360;
-}
-
-// Two large gases, and eight that a call could move to the end each. The steps are so short that a
-// call moves all gases by a whole step.
-TEST_P(GasRunOfEngine, CallsDivideARunAndKeepItsBits) {
-  struct Run {
-    const char* shape;
-    uint64_t replicas;
-    double end;
-  };
-  const bool jumps = GetParam() == GasEngine::kJumps;
-  for (const Run& run : {Run{"80x50", 2, jumps ? 20.0 : 1.0}, {"3x2", 8, jumps ? 5000.0 : 100.0}}) {
-    for (const GasEnds ends : {GasEnds::kPeriodic, GasEnds::kReservoirs}) {
-      const GasGeometry gas = GasOf(kPaperRho, 0.2, run.shape, ends);
-      Replicas divided(GetParam(), gas, 0, run.replicas);
-      int calls = 0;
-      const std::vector<uint64_t> bits = divided.BitsAt(run.end, calls);
-      EXPECT_EQ(Replicas(GetParam(), gas, 0, run.replicas).BitsInSteps(run.end, 8 * calls), bits);
-      const double expected = divided.Exchanges() / ExchangesOfACall(GetParam());
-      EXPECT_GT(calls, expected / 2) << run.shape;
-      EXPECT_LT(calls, expected * 2) << run.shape;
     }
   }
 }

@@ -69,29 +69,6 @@ TEST(LaneGas, AgreesWithTheReferenceEventByEvent) {
   }
 }
 
-// The positions and velocities after a few events are those of the reference, which continues from
-// the lanes' state as from its own.
-TEST(LaneGas, AGasContinuesFromItsState) {
-  constexpr double kTime = 1, kRounding = 1e-6;
-  for (const char* shape : {"1", "3", "2x2"}) {
-    const GasGeometry gas = GasAtShare(kPaperRho, 0.8, shape, GasEnds::kReservoirs);
-    for (uint64_t i = 0; i < 20; ++i) {
-      const GasState start = GasInEquilibrium(gas, 1, 42, i);
-      const auto state_of = [&](GasEngine engine) {
-        GasMeter meter(gas, start);
-        const GasRandom random(41, 0, i);
-        const auto run = StartGases(engine, gas, GasExchangeRate(gas, 1),
-                                    {{start, ThermalWalls(gas, 1, 1, random), random, &meter}});
-        run->AdvanceTo(kTime);
-        return run->StateOf(0);
-      };
-      const std::vector<double> lanes = ComponentsOf(state_of(GasEngine::kLanes)),
-                                reference = ComponentsOf(state_of(GasEngine::kReference));
-      for (size_t k = 0; k < lanes.size(); ++k) EXPECT_NEAR(lanes[k], reference[k], kRounding);
-    }
-  }
-}
-
 // Balls rest in the middle of their cells, where no piston comes. So each piston moves back and
 // forth between its walls. Meanwhile the time origin moves about twenty times.
 TEST(LaneGas, PistonsKeepTheirMotionWhenTheOriginMoves) {

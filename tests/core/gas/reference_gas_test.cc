@@ -188,40 +188,5 @@ TEST(ReferenceGas, AGasAtRestHasAnInfiniteNextTime) {
   EXPECT_EQ(GasFrom(gas, AtRest(gas)).NextTime(), std::numeric_limits<double>::infinity());
 }
 
-// A piston that leaves a thermal wall has a new speed; a piston that leaves any other wall keeps
-// its speed.
-TEST(ReferenceGas, OnlyThermalWallsChangeAPistonsSpeed) {
-  const GasGeometry gas = GasOf(kPaperRho, 0.2, "2x2", GasEnds::kReservoirs);
-  const GasRandom random(76, 0, 0);
-  const ThermalWalls walls(gas, 2, 1, random);
-  ReferenceGas moving(gas, GasInEquilibrium(gas, 1, 76, 0), walls);
-  int changed = 0, kept = 0;
-  for (int i = 0; i < 20'000; ++i) {
-    const double time = moving.NextTime();
-    std::vector<GasPiston> before;
-    for (int64_t p = 0; p < gas.pistons(); ++p) before.push_back(moving.PistonAt(p, time));
-    const GasEvent event = moving.Step();
-    if (event.kind != EventKind::kPistonWall) continue;
-    const GasPiston& was = before[static_cast<size_t>(event.piston)];
-    const GasPiston now = moving.PistonAt(event.piston, event.time);
-    ASSERT_EQ(now.offset, std::copysign(gas.reach(), was.velocity));
-    ASSERT_LT(now.velocity * was.velocity, 0);
-    // The hot wall is on the left of the leftmost pistons, the cold one on the right.
-    const bool at_left_wall =
-        walls.Has(event.piston) && walls.IsHot(event.piston) && was.velocity < 0;
-    const bool at_right_wall =
-        walls.Has(event.piston) && !walls.IsHot(event.piston) && was.velocity > 0;
-    if (at_left_wall || at_right_wall) {
-      ASSERT_NE(now.velocity, -was.velocity);
-      ++changed;
-    } else {
-      ASSERT_EQ(now.velocity, -was.velocity);
-      ++kept;
-    }
-  }
-  EXPECT_GT(changed, 100);
-  EXPECT_GT(kept, 100);
-}
-
 }  // namespace
 }  // namespace ballpiston

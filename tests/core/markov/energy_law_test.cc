@@ -18,15 +18,6 @@ const EnergyLaw& Fine() {
   return law;
 }
 
-TEST(EnergyLaw, BecomesTheStationaryLaw) {
-  // exp(-0.152 * 200) is 6e-14.
-  const std::vector<double> p = Fine().Probabilities(Fine().From(0.4), 200);
-  for (int bin = 0; bin < kBins; ++bin) {
-    const double exact = std::sqrt(2 * Edge(bin + 1)) - std::sqrt(2 * Edge(bin));
-    EXPECT_NEAR(p[static_cast<size_t>(bin)], exact, 1e-5) << bin;
-  }
-}
-
 // The probability without a jump is at a single energy in its bin; the rest is spread over the
 // bins.
 TEST(EnergyLaw, MeanAgreesWithTheSpectrum) {

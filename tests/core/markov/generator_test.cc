@@ -57,26 +57,6 @@ TEST(Generator, ConservesProbability) {
   }
 }
 
-// All rates but a few lie in the continuum of the rates at which energies are left. Another method
-// gives the same three rates below it and two rates above it in relaxation_spectrum_test.cc.
-TEST(Generator, SomeRatesAreOutsideOfTheContinuum) {
-  const Eigen::VectorXd& rates = InUse().rates();
-  EXPECT_DOUBLE_EQ(kContinuumBottom, PairCollisionRate(0));
-  EXPECT_DOUBLE_EQ(kContinuumTop, PairCollisionRate(0.5));
-  EXPECT_LT(rates[3], kContinuumBottom);
-  EXPECT_GT(rates.tail(2)[0], kContinuumTop);
-}
-
-// L ep = j, the energy current, at every u: by the expansion, and by the oracle's quadrature.
-TEST(Generator, RateOfChangeOfTheEnergyIsTheCurrent) {
-  const Eigen::VectorXd rate_of_change = -EnergyOf(InUse()).cwiseProduct(InUse().rates());
-  for (int i = 0; i <= 200; ++i) {
-    const double u = i / 200.0, current = PairEnergyCurrent(u * u / 2);
-    EXPECT_NEAR(ApplyL([](double v) { return v * v / 2; }, u), current, 1e-14) << u;
-    EXPECT_NEAR(rate_of_change.dot(InUse().At(u)), current, 1e-9) << u;
-  }
-}
-
 // The expansion's dE[ep(t)]/dt is equal to L applied to E[ep(t)] by quadrature: the backward
 // equation, from time 0 to times at which only the gap's function remains.
 TEST(Generator, EvolutionObeysTheMasterEquation) {

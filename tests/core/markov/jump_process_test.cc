@@ -121,30 +121,5 @@ TEST(JumpProcess, WaitsWithTheRateOfCollisions) {
   }
 }
 
-TEST(JumpWalkers, TakeTheirWordsFromTheirSamples) {
-  constexpr uint64_t kSeed = 7, kStream = 8, kFirst = 1000;
-  std::vector<double> starts(50);
-  for (size_t i = 0; i < starts.size(); ++i) starts[i] = static_cast<double>(i) / 64;
-  JumpWalkers walkers(kSeed, kStream, kFirst, starts);
-  std::vector<CounterRandom> randoms;
-  for (size_t i = 0; i < starts.size(); ++i) {
-    randoms.emplace_back(kSeed, kStream, kFirst + i);
-    for (int word = 0; word < 4; ++word) randoms[i].Bits();
-  }
-  for (int n = 0; n < 9; ++n) {
-    const std::vector<double> before(walkers.u().begin(), walkers.u().end());
-    walkers.Jump();
-    for (size_t i = 0; i < starts.size(); ++i) {
-      Group alone = {};
-      alone.u[0] = before[i];
-      alone.waiting_words[0] = randoms[i].Bits();
-      alone.target_words[0] = randoms[i].Bits();
-      alone.Jump();
-      ASSERT_EQ(walkers.u()[i], alone.u[0]);
-      ASSERT_EQ(walkers.waiting_times()[i], alone.waiting_times[0]);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace ballpiston

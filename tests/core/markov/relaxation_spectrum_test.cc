@@ -1,7 +1,5 @@
 #include "core/markov/relaxation_spectrum.h"
 
-#include <Eigen/Eigenvalues>
-
 #include "core/closed_form/kernel.h"
 #include "core/statistics/stated_error.h"
 #include "tests/core/preamble.h"
@@ -23,16 +21,6 @@ double IntegralOver(double end, F f) {
                              std::fmin(t + 2, end));
   }
   return static_cast<double>(sum);
-}
-
-TEST(RelaxationSpectrum, GapAgreesBetweenDiscretisations) {
-  const SpectralValue gap = Spectrum().Gap();
-  EXPECT_NEAR(gap.value, 0.1520871266135, 5e-14);  // what degree 16 on 8 levels gives, rounded
-  for (const Discretisation& other :
-       {Discretisation{8, 5}, {10, 4}, {12, 5}, {12, 6}, {14, 4}, {16, 6}}) {
-    EXPECT_NEAR(Generator(other).rates()[1], gap.value, kRateError)
-        << other.degree << " " << other.levels;
-  }
 }
 
 // Against a finer discretisation, at epsilons inside and at the ends of the elements. A bound is at
@@ -74,91 +62,6 @@ TEST(RelaxationSpectrum, IsolatedRatesAscendBelowTheContinuum) {
     EXPECT_LT(rates[k].value, kContinuumBottom);
     EXPECT_NEAR(rates[k].value, kKnown[k], 1e-13);
   }
-}
-
-// The generator on n equal cells of u: a slow, independent discretisation. The rate density u -> u'
-// is integrated over rectangles [0, a] x [0, b] by areas under a circle, and a cell's rows sum to
-// the rate at which it is left. The result is the three least rates above 0, the two largest, and
-// the correlation time.
-Eigen::VectorXd ByEqualCells(Eigen::Index n) {
-  const auto area = [](double x, double c) {  // int_0^min(x, c) sqrt(c^2 - t^2) dt
-    x = std::min(x, c);
-    const double height = std::sqrt((c - x) * (c + x));
-    return (x * height + c * c * std::atan2(x, height)) / 2;
-  };
-  const double cells = static_cast<double>(n);
-  const Eigen::VectorXd u = Eigen::VectorXd::LinSpaced(n + 1, 0, 1);
-  const auto rate = [&](Eigen::Index i, Eigen::Index k) {
-    const double m = std::min(u[i], u[k]);
-    return (2 * area(m, M_SQRT1_2) - M_SQRT1_2 * (area(m, std::sqrt(1 - u[i] * u[i])) +
-                                                  area(m, std::sqrt(1 - u[k] * u[k])))) /
-           M_PI;
-  };
-  const Eigen::MatrixXd up_to = Eigen::MatrixXd::NullaryExpr(n + 1, n + 1, rate);
-  Eigen::MatrixXd minus_l = cells * (up_to.topRightCorner(n, n) + up_to.bottomLeftCorner(n, n) -
-                                     up_to.topLeftCorner(n, n) - up_to.bottomRightCorner(n, n));
-  minus_l.diagonal() -= minus_l.rowwise().sum();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(minus_l);
-  const Eigen::VectorXd& rates = solver.eigenvalues();
-  const Eigen::VectorXd cubes = u.array().cube() / 6;  // int_0^u of the energy
-  const Eigen::VectorXd energy =
-      solver.eigenvectors().transpose() * (cubes.tail(n) - cubes.head(n));
-  Eigen::VectorXd found(6);
-  found << rates.segment(1, 3), rates.tail(2),
-      45 * cells * energy.tail(n - 1).cwiseAbs2().cwiseQuotient(rates.tail(n - 1)).sum();
-  return found;
-}
-
-// Extrapolated from 100, 200 and 400 cells, with errors 1/n^2 and 1/n^3.
-TEST(RelaxationSpectrum, RatesAndCorrelationTimeAreThoseOfEqualCells) {
-  const Eigen::VectorXd coarse = ByEqualCells(100), middle = ByEqualCells(200),
-                        fine = ByEqualCells(400);
-  const Eigen::VectorXd first = middle + (middle - coarse) / 3, second = fine + (fine - middle) / 3;
-  const Eigen::VectorXd limit = second + (second - first) / 7;
-  const Eigen::VectorXd rates = Generator({}).rates();
-  Eigen::VectorXd exact(6);
-  exact << rates.segment(1, 3), rates.tail(2), Spectrum().CorrelationTime(kForEver).value;
-  constexpr double kErrors[] = {1e-8, 3e-7, 3e-6, 1e-6, 1e-6, 3e-8};
-  for (Eigen::Index k = 0; k < 6; ++k) EXPECT_NEAR(limit[k], exact[k], kErrors[k]) << k;
-}
-
-// <h> over the stationary law, uniform in u. At u = 1/sqrt(2) h has powers of a square root.
-double MeanSquaredTransfer() {
-  const auto h = [](Quad u) {
-    return PairSquaredEnergyTransfer(std::pow(static_cast<double>(u), 2) / 2);
-  };
-  return static_cast<double>(oracle::IntegrateToRoot(h, 0, M_SQRT1_2) +
-                             oracle::Integrate(h, Quad{M_SQRT1_2}, 1));
-}
-
-// In equilibrium C(t + s) = <E[ep(t)|u at 0] E[ep(s)|u at 0]> - 1/36: reversibility and the
-// semigroup at once.
-TEST(RelaxationSpectrum, AutocorrelationSatisfiesSemigroupAndInitialSlope) {
-  for (const double t : {0.0, 1.0, 4.0, 20.0}) {
-    for (const double s : {0.5, 4.0, 15.0}) {
-      const auto product = [&](Quad x) {
-        const double ep = std::pow(static_cast<double>(x), 2) / 2;
-        return (Spectrum().MeanEnergy(ep, t).value - kMeanPistonEnergy) *
-               (Spectrum().MeanEnergy(ep, s).value - kMeanPistonEnergy);
-      };
-      const Quad cuts[] = {0, 0.05, 0.4, 0.65, M_SQRT1_2, 0.76, 0.95, 1};
-      Quad sum = 0;
-      for (size_t i = 0; i + 1 < std::size(cuts); ++i) {
-        sum += oracle::Integrate(product, cuts[i], cuts[i + 1]);
-      }
-      EXPECT_NEAR(static_cast<double>(sum) / kVarianceOfPistonEnergy,
-                  Spectrum().Autocorrelation(t + s).value, 1e-9)
-          << t << " + " << s;
-    }
-  }
-  // C'(0) = <ep L ep> = -<h>/2; the difference quotient's own error is of order t.
-  const double slope = -MeanSquaredTransfer() / 2 / kVarianceOfPistonEnergy;
-  constexpr double kStep = 1e-4;
-  const double quotient = (-3 + 4 * Spectrum().Autocorrelation(kStep).value -
-                           Spectrum().Autocorrelation(2 * kStep).value) /
-                          (2 * kStep);
-  EXPECT_NEAR(quotient, slope, 1e-8);
-  EXPECT_LT(Spectrum().Autocorrelation(35).value, 1e-3);
 }
 
 TEST(RelaxationSpectrum, IntegralsMatchTheCurves) {

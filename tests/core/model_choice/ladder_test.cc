@@ -95,26 +95,6 @@ TEST(Ladder, ANamedModelAnswersWithAnyError) {
   }
 }
 
-TEST(Ladder, ListsEveryModelCheapestFirstWithReasons) {
-  for (const ExperimentKind* experiment : kAllExperiments) {
-    const EnsembleSpec spec = OnePointOf(experiment);
-    const Ladder ladder = Planned(spec);
-    ASSERT_EQ(ladder.rungs.size(), std::size(kLadder));
-    for (size_t i = 0; i < ladder.rungs.size(); ++i) {
-      const Rung& rung = ladder.rungs[i];
-      EXPECT_EQ(rung.model, kLadder[i]);
-      EXPECT_EQ(rung.answers, experiment->IsAnsweredBy(rung.model));
-      EXPECT_FALSE(rung.reason.empty());
-      EXPECT_EQ(rung.work > 0, rung.answers);
-    }
-    EXPECT_TRUE(ladder.Chosen().answers);
-    EXPECT_EQ(ladder.Chosen().model, ladder.answer.model);
-    EXPECT_EQ(ladder.answer.model, Choice(spec)->model);
-  }
-  const Ladder beyond = Planned(Asked("energy-relaxation delta=1e-12 tolerance=0.01"));
-  for (const Rung& rung : beyond.rungs) EXPECT_EQ(rung.answers, IsOfTheLimit(rung.model));
-}
-
 // ---- pilots ----
 
 // Deltas and tolerances over five decades each: a pilot is used at most once, at the point's place,

@@ -17,12 +17,5 @@ TEST(Histogram, CountsInTheBinThatHoldsTheValue) {
   EXPECT_EQ(beyond.Total(), 11u);
 }
 
-TEST(Histogram, EdgesRunFromEndToEnd) {
-  const Histogram histogram = Histogram::OfBins(-0.3, 0.7, 1000);
-  EXPECT_EQ(histogram.Edge(0), -0.3);
-  EXPECT_EQ(histogram.Edge(1000), 0.7);
-  EXPECT_NEAR(histogram.Edge(300), 0, 1e-16);
-}
-
 }  // namespace
 }  // namespace ballpiston

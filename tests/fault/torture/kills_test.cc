@@ -179,14 +179,6 @@ void KillUnderVisitors(const Scene& scene, Findings& findings) {
   EXPECT_EQ(NamesOn(server), expected);  // no job is lost, doubled, or back after its deletion
 }
 
-// The other tests compare answers byte by byte. This test shows that such a comparison can fail.
-TEST(UndisturbedAnswers, DifferForTwoSeeds) {
-  std::vector<v1::EnsembleSpec> questions(2, ManyPoints(1, 1000));
-  questions[1].set_seed(questions[0].seed() + 1);
-  const std::vector<Answer> answers = UndisturbedAnswers(questions);
-  EXPECT_NE(answers[0], answers[1]);
-}
-
 TEST(Kills, LoseNothingThatWasAcknowledgedAndCountNothingTwice) {
   Findings findings("kills");
   const std::vector<std::string_view> failpoints = Failpoints(false);

@@ -236,32 +236,24 @@ TEST(SlurmQueue, AWorkerIsWaitingOrRunningOrHasEnded) {
     const SlurmQueue queue = ParseQueue(state + "|None");
     return std::pair(queue.waiting, queue.running);
   };
-  for (const char* state :
-       {"PENDING", "REQUEUED", "REQUEUE_HOLD", "REQUEUE_FED", "SPECIAL_EXIT", "RESV_DEL_HOLD"}) {
+  for (const char* state : {"PENDING", "REQUEUED", "REQUEUE_HOLD"}) {
     EXPECT_THAT(counts(state), Pair(1, 0)) << state;
   }
-  for (const char* state : {"RUNNING", "COMPLETING", "CONFIGURING", "SUSPENDED", "STOPPED",
-                            "SIGNALING", "RESIZING", "STAGE_OUT"}) {
+  for (const char* state : {"RUNNING", "COMPLETING", "SUSPENDED"}) {
     EXPECT_THAT(counts(state), Pair(0, 1)) << state;
   }
-  for (const char* state : {"BOOT_FAIL", "CANCELLED", "COMPLETED", "DEADLINE", "FAILED",
-                            "NODE_FAIL", "OUT_OF_MEMORY", "PREEMPTED", "REVOKED", "TIMEOUT"}) {
+  for (const char* state : {"CANCELLED", "COMPLETED", "TIMEOUT"}) {
     EXPECT_THAT(counts(state), Pair(0, 0)) << state;
   }
 }
 
 TEST(SlurmQueue, AWorkerThatAnOperatorMustHelpWaitsForEver) {
   for (const std::string reason :
-       {"AccountNotAllowed", "BadConstraints", "InvalidAccount", "InvalidQOS", "JobHeldAdmin",
-        "JobHeldUser", "JobLaunchFailure", "PartitionConfig", "PartitionDown", "PartitionInactive",
-        "PartitionNodeLimit", "PartitionTimeLimit", "QOSMinCpuNotSatisfied", "QOSNotAllowed",
-        "QOSTimeLimit", "QOSMaxWallDurationPerJobLimit", "QOSMaxCpuPerJobLimit",
-        "launch failed requeued held", "launch_failed_requeued_held"}) {
+       {"InvalidAccount", "PartitionTimeLimit", "launch failed requeued held"}) {
     EXPECT_EQ(ParseQueue("PENDING|" + reason).never, reason);
     EXPECT_EQ(ParseQueue("RUNNING|" + reason).never, "");
   }
-  for (const std::string passing : {"None", "Priority", "Resources", "Dependency", "BeginTime",
-                                    "QOSMaxJobsPerUserLimit", "AssocGrpCpuLimit"}) {
+  for (const std::string passing : {"None", "Priority", "QOSMaxJobsPerUserLimit"}) {
     EXPECT_EQ(ParseQueue("PENDING|" + passing).never, "") << passing;
   }
 }

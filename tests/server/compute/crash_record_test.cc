@@ -196,11 +196,6 @@ class FatalSignalsDeathTest : public testing::Test {
   const DeathTestFolder folder_;
 };
 
-TEST_F(FatalSignalsDeathTest, AFaultCounts) {
-  EXPECT_DEATH(DieInATurn([] { *static_cast<volatile int*>(nullptr) = 0; }), "");
-  EXPECT_EQ(Deaths(), 1);
-}
-
 TEST_F(FatalSignalsDeathTest, AStackOverflowCounts) {
   EXPECT_DEATH(DieInATurn([] { Overflow(1); }), "");
   EXPECT_EQ(Deaths(), 1);

@@ -164,18 +164,6 @@ TEST(Scheduler, AnExceptionFailsItsRunOnly) {
   ExpectComplete(FakeSpec(3, 20, 15), *journals[15]);
 }
 
-TEST_F(SchedulerTest, AHigherPriorityIsServedFirst) {
-  for (const int32_t priority : {-7, 0, 7}) {
-    RunRequest request =
-        RunOf(10 + priority, FakeSpec(2, 10), std::make_shared<RecordingJournal>());
-    request.priority = priority;
-    scheduler_.Add(std::move(request));
-  }
-  std::vector<int64_t> runs = Turns(1000, 3);
-  runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
-  EXPECT_THAT(runs, ElementsAre(17, 10, 3));
-}
-
 // ---- executors elsewhere ----
 
 // A capacity for one chunk, and for all chunks of a point.
@@ -193,21 +181,6 @@ class ElsewhereTest : public SchedulerTest {
 
   RemoteExecutor remote_{scheduler_, kOneChunk};
 };
-
-TEST_F(ElsewhereTest, AChunkCountsOnceHoweverOftenItIsReported) {
-  const auto journal = Begin(SixChunks(2));
-  const std::vector<Lease> leases = remote_.TakeAll();
-  ASSERT_EQ(leases.size(), kChunks);
-  for (auto lease = leases.rbegin(); lease != leases.rend(); ++lease) {
-    for (int report = 0; report < 3; ++report) {
-      EXPECT_OK(remote_.ReportAll(*lease));
-      if (report > 0) remote_.Return(*lease);
-    }
-  }
-  EXPECT_EQ(journal->finished.size(), 1u);
-  local_.TakeAllTurns();
-  ExpectComplete(SixChunks(2), *journal);
-}
 
 TEST_F(ElsewhereTest, AnEarlyChunkIsStoredAndAMergedOneIsInTheCheckpoint) {
   const auto journal = Begin(SixChunks());

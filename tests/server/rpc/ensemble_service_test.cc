@@ -48,20 +48,6 @@ TEST(EnsembleService, ALimitThatWaitingCuresTellsHowLong) {
 
 // ---- Cancel, Delete, Update ----
 
-TEST(EnsembleService, ACancelledJobEndsAndKeepsItsFinishedPoints) {
-  Gate gate;
-  RunningServer server(
-      {.factory = FakeExperiments([&gate](size_t point, uint64_t, std::stop_token stop) {
-         if (point >= 2) gate.Pass(stop);
-       })});
-  const std::string name = server.Submit(Equilibrium(5, 10));
-  gate.AwaitWaiting(2);
-  ASSERT_OK(server.Cancel(name));
-  EXPECT_EQ(server.AwaitEnd(name).state(), EnsembleJob::CANCELLED);
-  EXPECT_EQ(server.ResultBytes(name).size(), 2u);
-  EXPECT_EQ(server.Get(name).progress().points_done(), 2);
-}
-
 TEST(EnsembleService, OnlyARetryCancelsAnEndedJob) {
   Gate gate;
   RunningServer server({.factory = GatedExperiments(gate, 3)});

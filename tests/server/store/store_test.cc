@@ -182,22 +182,6 @@ TEST_F(StoreTest, AChangeThatRunsOutOfMemoryIsRetried) {
   EXPECT_EQ(Checkpoint(*store, 1, 0), "kept");
 }
 
-TEST_F(StoreTest, TheFirstWriterOfAResultWins) {
-  const auto store = Open();
-  for (const char* result : {"first", "second"}) {
-    store->RecordResult(1, {2, 10, result});
-    ASSERT_OK(store->Flush());
-  }
-  std::vector<std::string> results;
-  EXPECT_OK(store->Read([&](Database& database) {
-    ReadResults(database, 1, 0, Details::kLeftOut, [&](const PointRow& row) {
-      results.push_back(std::to_string(row.point) + row.result);
-      return true;
-    });
-  }));
-  EXPECT_THAT(results, ElementsAre("2first"));
-}
-
 TEST_F(StoreTest, WritesAreCommittedInGroups) {
   const auto store = Open({.delay = kUnreachedLimit});
   for (int point = 0; point < 1000; ++point) {
@@ -243,20 +227,6 @@ TEST_F(StoreTest, CheckpointsOfAFinishedPointAreNeitherWrittenNorKept) {
   EXPECT_EQ(Checkpoint(*store, 1, 5), "other");
 }
 
-TEST_F(StoreTest, DoneIsCalledInOrderAfterTheCommit) {
-  const auto store = Open();
-  std::vector<int> order;
-  for (int i = 0; i < 5; ++i) {
-    store->Record([](Database&) {},
-                  [&order, i](const absl::Status& status) {
-                    EXPECT_OK(status);
-                    order.push_back(i);
-                  });
-  }
-  ASSERT_OK(store->Flush());
-  EXPECT_THAT(order, ElementsAre(0, 1, 2, 3, 4));
-}
-
 // Else the next reader would get a connection whose transaction is open.
 TEST_F(StoreTest, AReadThatThrowsEndsItsTransaction) {
   const auto store = Open({.readers = 1});
@@ -283,20 +253,6 @@ TEST_F(StoreTest, AWriteIsToldWhenItsOwnGroupIsCommitted) {
   }
   ASSERT_OK(store->Flush());
   EXPECT_THAT(stored, ElementsAre(1, 2));
-}
-
-TEST_F(StoreTest, AnEarlierCancellationWinsOverTheEnd) {
-  const auto store = Open();
-  const int64_t job = Insert(*store, Record("a"));
-  EXPECT_THAT(
-      store->Commit([&](Database& database) { return BeginCancellation(database, job, ""); }),
-      IsOkAndHolds(true));
-  ASSERT_OK_AND_ASSIGN(const auto ended, store->Commit([&](Database& database) {
-    return EndJob(database, job, {v1::EnsembleJob::SUCCEEDED, absl::Now(), "why", {2, 7.5, 0.25}});
-  }));
-  ASSERT_TRUE(ended);
-  EXPECT_EQ(ended->state, v1::EnsembleJob::CANCELLED);
-  EXPECT_EQ(Find(*store, "a")->error, "");
 }
 
 }  // namespace

@@ -84,19 +84,5 @@ TEST(HeatCurrentRuns, ReplicasThatLoseABallAreNotCounted) {
   EXPECT_GT(run.seconds, 0);
 }
 
-TEST(PointRuns, SmallerStepsAndRarerCollisionsCostMore) {
-  EXPECT_GT(Relaxation(0.025).PredictedSecondsPerOrbit(),
-            5 * Relaxation(0.2).PredictedSecondsPerOrbit());
-  const auto predicted = [](double delta, const MethodVariant& variant) {
-    return HeatCurrent(delta).PredictedSecondsPerReplica(variant);
-  };
-  EXPECT_NEAR(predicted(0.2, {Method::kFixedStep, 1e-3}),
-              10 * predicted(0.2, {Method::kFixedStep, 1e-2}), 1e-9);
-  for (const Method method : {Method::kLanes, Method::kReference}) {
-    EXPECT_GT(predicted(0.05, {method}), 3 * predicted(0.2, {method}));
-  }
-  EXPECT_NEAR(predicted(0.05, {Method::kMarkov}) / predicted(0.2, {Method::kMarkov}), 1, 0.1);
-}
-
 }  // namespace
 }  // namespace ballpiston::method_comparison

@@ -47,35 +47,6 @@ TEST(ModelErrors, StatedErrorsCoverTheStoredDifferences) {
   EXPECT_THAT(BrokenClaims(StoredErrors()), IsEmpty());
 }
 
-TEST(ModelErrors, AnErrorThatIsStatedTooSmallIsFound) {
-  std::vector<ModelError> errors = StoredErrors();
-  errors.front().difference = 2 * errors.front().Stated();
-  errors.front().standard_error = errors.front().Stated() / 3;
-  EXPECT_THAT(BrokenClaims(errors), Contains(HasSubstr("does not cover")));
-  errors.front().standard_error = errors.front().Stated();
-  EXPECT_THAT(BrokenClaims(errors), IsEmpty());  // a place that does not count
-}
-
-TEST(ModelErrors, AnErrorThatIsStatedTooLargeIsFound) {
-  std::vector<ModelError> errors = StoredErrors();
-  for (ModelError& error : errors) error.difference /= 100;
-  EXPECT_THAT(BrokenClaims(errors), Contains(HasSubstr("more than four times")));
-}
-
-TEST(ModelErrors, AClaimWithoutAPlaceThatCountsIsFound) {
-  std::vector<ModelError> errors = StoredErrors();
-  for (ModelError& error : errors) error.standard_error = 1e9;
-  EXPECT_THAT(BrokenClaims(errors), Contains(HasSubstr("no place counts")));
-}
-
-// Of a chain of two, 64 replicas of the jump process have no error.
-TEST(ModelErrors, ASampleWithoutAnErrorDoesNotCount) {
-  for (const EnsembleSpec& question : ModelErrorQuestions()) {
-    if (PlaceOf(question).find("delta 1e-06 cells 2 ") == std::string::npos) continue;
-    EXPECT_FALSE(MeasuredModelError(question, 0).Counts());
-  }
-}
-
 // Two measurements of one difference, with other samples: more than five errors of the smaller one
 // apart in 6e-7 of all cases.
 TEST(ModelErrors, AMeasurementAgreesWithTheStoredOne) {
