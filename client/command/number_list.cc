@@ -77,6 +77,7 @@ absl::StatusOr<Range> ParseRange(absl::string_view text) {
     return Bad(text,
                absl::StrCat("has a count that is not a whole number from 1 to ", kMaxListLength));
   }
+  if (*count == 1 && *from != *to) return Bad(text, "has two ends, but a count of 1");
   const bool logarithmic = parts.size() == 4;
   if (logarithmic && (*from <= 0 || *to <= 0)) {
     return Bad(text, "is logarithmic: both ends must be above 0");

@@ -95,13 +95,17 @@ VerbResult RunPythonProgram(const std::string& module, const std::vector<std::st
 
 absl::Status CheckPython(const std::string& purpose, const std::vector<std::string>& modules,
                          const std::string& packages) {
-  const auto status = RunChild(
-      {.command = PythonCommand({"-c", absl::StrCat("import ", absl::StrJoin(modules, ", "))}),
-       .output = "/dev/null"});
-  if (status.ok() && *status == 0) return absl::OkStatus();
-  return absl::FailedPreconditionError(
+  const auto can_import = [](const std::string& names) {
+    const auto status =
+        RunChild({.command = PythonCommand({"-c", "import " + names}), .output = "/dev/null"});
+    return status.ok() && *status == 0;
+  };
+  if (can_import(absl::StrJoin(modules, ", "))) return absl::OkStatus();
+  std::vector<std::string> missing = modules;
+  std::erase_if(missing, can_import);
+  return absl::InvalidArgumentError(
       absl::StrCat(purpose, " needs the Python package: ", Interpreter(), " cannot import ",
-                   absl::StrJoin(modules, ", "), "; install ", packages,
+                   absl::StrJoin(missing, ", "), "; install ", packages,
                    ", or name an interpreter that has them with BALLPISTON_PYTHON"));
 }
 

@@ -11,8 +11,8 @@
 
 namespace ballpiston::client {
 
-// FAILED_PRECONDITION if the interpreter cannot import one of the modules. `purpose` begins the
-// message; `packages` are Debian's names.
+// INVALID_ARGUMENT if the interpreter cannot import one of the modules: the message names those
+// that are missing. `purpose` begins the message; `packages` are Debian's names.
 absl::Status CheckPython(const std::string& purpose, const std::vector<std::string>& modules,
                          const std::string& packages);
 

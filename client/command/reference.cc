@@ -60,7 +60,8 @@ Section SectionOf(const FlagGroup& group) {
 
 std::string SynopsisOf(const Argument& argument) {
   const std::string word = absl::StrCat(argument.value.name, argument.IsMany() ? "..." : "");
-  return argument.IsRequired() ? absl::StrCat(" ", word) : absl::StrCat(" [", word, "]");
+  if (argument.IsRequired()) return absl::StrCat(" ", word);
+  return absl::StrCat(argument.number == Argument::kRest ? " [-- " : " [", word, "]");
 }
 
 Page PageOf(const Verb& verb) {
@@ -71,12 +72,13 @@ Page PageOf(const Verb& verb) {
             .sections = {},
             .examples = {}};
   Section arguments{.title = "Arguments", .entries = {}};
+  std::string rest;
   for (const Argument& argument : verb.arguments) {
-    page.synopsis += SynopsisOf(argument);
+    (argument.number == Argument::kRest ? rest : page.synopsis) += SynopsisOf(argument);
     arguments.entries.push_back(
         {argument.value.name, Described(argument.text, argument.value, "")});
   }
-  page.synopsis += " [FLAG...]";
+  absl::StrAppend(&page.synopsis, " [FLAG...]", rest);
   if (!arguments.entries.empty()) page.sections.push_back(std::move(arguments));
   for (const FlagGroup* group : verb.groups) page.sections.push_back(SectionOf(*group));
   page.sections.back().entries.push_back({"-h, --help", "print this page"});
@@ -243,14 +245,15 @@ std::string ManPage(const Verb* verb) {
 std::string MarkdownReference() {
   std::string out =
       "# The command line\n\n`ballpiston help --format markdown` writes this file; a test checks "
-      "that it is up to date. Most\nverbs have the groups Server and General flags; only the first "
-      "such verb shows them.\n";
-  std::set<std::string> shown;
+      "that it is up to date. Most\nverbs have the groups Server and General flags, and run, "
+      "submit and sample have the groups\nGrid, Target and Method of plan; only the first such "
+      "verb shows them.\n";
+  std::set<std::string> shared = {"Server", "General flags"}, shown;
+  for (const FlagGroup* group : QuestionFlags()) shared.insert(group->title);
   const auto add = [&](const Verb* verb) {
     Page page = PageOf(verb);
-    std::erase_if(page.sections, [&shown](const Section& section) {
-      const bool is_shared = section.title == "Server" || section.title == "General flags";
-      return is_shared && !shown.insert(section.title).second;
+    std::erase_if(page.sections, [&](const Section& section) {
+      return shared.contains(section.title) && !shown.insert(section.title).second;
     });
     absl::StrAppend(&out, "\n## ", page.name, "\n\n```\n", PageText(page), "```\n");
   };

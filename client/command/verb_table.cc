@@ -317,7 +317,8 @@ const FlagGroup kFigure = {
           Offer::kFile),
       "folder for data and pictures; required"},
      {"--list", Switch(To(&Options::list)), "print the names of the figures; draw nothing"},
-     {"--quick", Forwarded("--quick"), "few samples: the figure takes seconds"},
+     {"--quick", Forwarded("--quick"),
+      "few samples: the figure takes seconds, at most two minutes"},
      {"--full", Forwarded("--full"), "at least the paper's number of samples: minutes to hours"},
      {"--edit", Forwarded("--edit"),
       "only copy the figure's Python module to DIR, so that you can edit it; a module that is "
@@ -575,7 +576,7 @@ std::vector<Verb> AllVerbs() {
        "are flags for ballpistond.",
        {{Words("FLAG",
                [](Options& o, std::string flag) { o.server_flags.push_back(std::move(flag)); }),
-         "flags for ballpistond, after --", Argument::kAny}},
+         "flags for ballpistond, after --", Argument::kRest}},
        With({&kDataFolder, &kStart}),
        {"server start",
         "server start --data-dir data --listen 127.0.0.1:50051 --workers 8 -- --metrics-listen "
@@ -640,7 +641,7 @@ std::vector<Verb> AllVerbs() {
                To(&Options::completion)),
          "the shell; only the scripts use 'words'"},
         {Words("WORD", kWords), "after --: the words so far; the last word is completed",
-         Argument::kAny}},
+         Argument::kRest}},
        With({&kServer}),
        {"completion bash >~/.local/share/bash-completion/completions/ballpiston",
         "completion fish >~/.config/fish/completions/ballpiston.fish"},

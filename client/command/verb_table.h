@@ -30,9 +30,10 @@ struct FlagGroup {
 struct Argument {
   Value value;
   std::string text;
-  enum { kRequired, kOptional, kSeveral, kAny } number = kRequired;  // kSeveral: at least one
+  // kSeveral: at least one; kRest: any number, after --.
+  enum { kRequired, kOptional, kSeveral, kAny, kRest } number = kRequired;
 
-  bool IsMany() const { return number == kSeveral || number == kAny; }
+  bool IsMany() const { return number >= kSeveral; }
   bool IsRequired() const { return number == kRequired || number == kSeveral; }
 };
 

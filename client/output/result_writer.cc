@@ -148,7 +148,8 @@ class TableWriter : public ResultWriter {
     for (const v1::Estimate& row : point.estimates()) {
       const MeasuredText text =
           Measured(row.value(), NumberIn(row, "standard_error"), NumberIn(row, "exact"));
-      const std::string z = row.has_z_score() ? absl::StrFormat("%+.2f", row.z_score()) : "";
+      const bool has_z = row.has_z_score() && !text.error.empty();
+      const std::string z = has_z ? absl::StrFormat("%+.2f", row.z_score()) : "";
       Cells cells = Joined(point_cells, {row.name(), text.value, text.error, text.exact, z});
       for (const std::string& column : kExtraColumns) cells.push_back(ExtraCell(column, row));
       table.AddRow(std::move(cells));

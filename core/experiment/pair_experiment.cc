@@ -69,6 +69,10 @@ std::string RangeOfRhoIn(const BilliardDomain& domain) {
                       "rho <= ", NumberText(domain.max_rho));
 }
 
+std::string RangeOfDeltaIn(const BilliardDomain& domain) {
+  return absl::StrCat("delta >= ", NumberText(domain.min_delta));
+}
+
 }  // namespace
 
 PairGeometry GeometryOf(const PointParameters& point) {
@@ -83,18 +87,21 @@ void CheckBilliardDomain(const EnsembleSpec& spec, std::vector<FieldViolation>& 
   const bool is_single = spec.model == Model::kAuto && spec.precision == Precision::kSingle;
   if (!is_single && !IsABilliard(spec.model)) return;
   const BilliardDomain& domain = DomainOf(spec);
-  const auto refuse = [&](absl::string_view name, size_t i, double value, std::string permitted) {
+  const auto refuse = [&](absl::string_view name, size_t i, double value, const auto& range_in) {
+    std::string permitted = range_in(domain);
+    if (spec.precision == Precision::kSingle) {
+      absl::StrAppend(&permitted, "; with precision double: ", range_in(kDoubleDomain));
+    }
     found.push_back({absl::StrFormat("grid.%s[%d]", name, i),
                      absl::StrCat(name, " is ", NumberText(value), "; ", PermittedWith(spec),
                                   permitted, OtherModels(spec))});
   };
   const std::vector<double>&radii = spec.grid[kRho], &deltas = spec.grid[kDelta];
   for (size_t i = 0; i < radii.size(); ++i) {
-    if (!domain.HasRho(radii[i])) refuse("rho", i, radii[i], RangeOfRhoIn(domain));
+    if (!domain.HasRho(radii[i])) refuse("rho", i, radii[i], RangeOfRhoIn);
   }
   for (size_t i = 0; i < deltas.size(); ++i) {
-    if (domain.HasDelta(deltas[i])) continue;
-    refuse("delta", i, deltas[i], absl::StrCat("delta >= ", NumberText(domain.min_delta)));
+    if (!domain.HasDelta(deltas[i])) refuse("delta", i, deltas[i], RangeOfDeltaIn);
   }
 }
 

@@ -61,6 +61,9 @@ void CheckPairs(const v1::EvaluatePairsRequest& request, Violations& violations)
 void CheckNotEmpty(const v1::EvaluatePairsRequest& request, Violations& violations) {
   if (request.rho_size() == 0) violations.push_back({"rho", "required: at least one value"});
   if (request.delta_size() == 0) violations.push_back({"delta", "required: at least one value"});
+  if (request.outgoing_epsilon_size() > 0 && request.epsilon_size() == 0) {
+    violations.push_back({"outgoing_epsilon", "needs epsilon: the kernel is W from each of those"});
+  }
 }
 
 // The name of the list that contributes most to the answer.

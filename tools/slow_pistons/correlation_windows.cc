@@ -167,6 +167,7 @@ std::array<WindowIntegrals, kWindows.size()> CorrelationWindows(const PairGeomet
         windows[i].met.Add(orbit.Met(i));
         windows[i].later_idle.Add(orbit.idle[i] - orbit.idle[0]);
         windows[i].later_met.Add(orbit.Met(i) - orbit.Met(0));
+        if (i > 0 && orbit.idle[i] != orbit.idle[i - 1]) ++windows[i].later_idles;
       }
     }
   }

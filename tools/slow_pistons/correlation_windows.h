@@ -32,6 +32,7 @@ struct WindowIntegrals {
   // The parts beyond the first window: idle(W) - idle(W_0), and so on.
   Moments later_idle = {};
   Moments later_met = {};
+  double later_idles = 0;  // orbits with a longer idle time than the window before this one
   double limit_all = 0;
   double limit_idle = 0;
 };

@@ -28,6 +28,7 @@ class IdlePiston {
     const double idle = time - since_;
     for (size_t i = 0; i < kIdleTimes.size(); ++i) {
       idle_[i] += std::max(idle - kIdleTimes[i], 0.0);
+      if (idle > kIdleTimes[i]) ++long_idles_[i];
       if (!is_with_ball && std::sqrt(2 * energy_) * kIdleTimes[i] < crossing) ++slow_arrivals_[i];
     }
     if (!is_with_ball) ++departures_;
@@ -42,6 +43,8 @@ class IdlePiston {
       const double s = kIdleTimes[i];
       shares[i].share.Add(s * idle_[i] / duration);
       shares[i].limit.Add((of_departure * departures_ + s * s * slow_arrivals_[i]) / duration);
+      shares[i].long_idles += long_idles_[i];
+      shares[i].slow_arrivals += slow_arrivals_[i];
     }
     *this = IdlePiston(energy_, since_);
   }
@@ -54,6 +57,7 @@ class IdlePiston {
   double energy_ = -1;
   double since_ = 0;
   std::array<double, kIdleTimes.size()> idle_ = {};           // sums of (idle time - s)+
+  std::array<double, kIdleTimes.size()> long_idles_ = {};     // number of them
   std::array<double, kIdleTimes.size()> slow_arrivals_ = {};  // at the wall, slower than L'/s
   double departures_ = 0;                                     // from the wall
 };

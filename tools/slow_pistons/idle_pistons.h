@@ -30,10 +30,13 @@ namespace ballpiston::slow_pistons {
 
 inline constexpr std::array<double, 9> kIdleTimes = {4, 8, 16, 32, 64, 128, 256, 512, 1024};
 
-// Of one piston at one time s. The moments are those of blocks of time.
+// Of one piston at one time s. The moments are those of blocks of time. The events are those that
+// determine the mean; without enough of them the scatter of the blocks is not its error.
 struct IdleShare {
-  Moments share = {};  // s P(s)
-  Moments limit = {};  // r L'^2/(2 T) + s^2 F(L'/s); of an outermost piston
+  Moments share = {};        // s P(s)
+  Moments limit = {};        // r L'^2/(2 T) + s^2 F(L'/s); of an outermost piston
+  double long_idles = 0;     // events of `share`: the idle times longer than s
+  double slow_arrivals = 0;  // events of `limit`: the arrivals slower than L'/s
 };
 using IdleShares = std::array<IdleShare, kIdleTimes.size()>;
 

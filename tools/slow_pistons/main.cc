@@ -11,6 +11,7 @@
 #include "absl/strings/str_format.h"
 #include "core/gas/gas_geometry.h"
 #include "core/geometry/pair_geometry.h"
+#include "core/statistics/stated_error.h"
 #include "tools/slow_pistons/correlation_windows.h"
 #include "tools/slow_pistons/idle_pistons.h"
 
@@ -35,6 +36,12 @@ std::string Row(const Moments& moments) {
   return absl::StrFormat("%.10g,%.4g", moments.mean, moments.StandardError().value_or(0));
 }
 
+// Of a mean that such events determine: without any of them it was not measured.
+std::string Row(const Moments& moments, double events) {
+  if (HasStatedError(events)) return Row(moments);
+  return events > 0 ? absl::StrFormat("%.10g,", moments.mean) : ",";
+}
+
 int PrintIdle(const Arguments& arguments) {
   const absl::StatusOr<GasGeometry> geometry = GasGeometry::Create(
       arguments.rho, arguments.delta, GasShape{.columns = arguments.cells}, GasEnds::kReservoirs);
@@ -43,8 +50,9 @@ int PrintIdle(const Arguments& arguments) {
   std::cout << "piston,time,share,share_error,limit,limit_error\n";
   for (size_t k = 0; k < pistons.size(); ++k) {
     for (size_t i = 0; i < kIdleTimes.size(); ++i) {
-      std::cout << absl::StrFormat("%d,%g,%s,%s\n", k, kIdleTimes[i], Row(pistons[k][i].share),
-                                   Row(pistons[k][i].limit));
+      const IdleShare& at = pistons[k][i];
+      std::cout << absl::StrFormat("%d,%g,%s,%s\n", k, kIdleTimes[i], Row(at.share, at.long_idles),
+                                   Row(at.limit, at.slow_arrivals));
     }
   }
   return 0;
@@ -59,8 +67,10 @@ int PrintWindows(const Arguments& arguments) {
                "later_met,later_met_error,limit_all,limit_idle\n";
   for (size_t i = 0; i < kWindows.size(); ++i) {
     const WindowIntegrals& at = windows[i];
+    const std::string later_idle =
+        i == 0 ? Row(at.later_idle) : Row(at.later_idle, at.later_idles);  // 0 at the first window
     std::cout << absl::StrFormat("%g,%s,%s,%s,%s,%s,%.10g,%.10g\n", kWindows[i], Row(at.all),
-                                 Row(at.idle), Row(at.met), Row(at.later_idle), Row(at.later_met),
+                                 Row(at.idle), Row(at.met), later_idle, Row(at.later_met),
                                  at.limit_all, at.limit_idle);
   }
   return 0;

@@ -122,6 +122,8 @@ def _parsed_range(name: str, text: str) -> list[float]:
     count = whole_number(f"{name}: the count of {text!r}", _parsed_number(name, parts[2]))
     if not 1 <= count <= _MOST:
         raise ValueError(f"{name}: the count of {text!r} has to be from 1 to {_MOST}")
+    if count == 1 and first != last:
+        raise ValueError(f"{name}: {text!r} has two ends, but a count of 1")
     if is_logarithmic and min(first, last) <= 0:
         raise ValueError(f"{name}: {text!r} is logarithmic, so both ends have to be above 0")
     return _range(first, last, count, is_logarithmic)

@@ -21,7 +21,7 @@ TEST(NumberList, HasNumbersAndRanges) {
       {"0.1,2,-3.5,1e-5,2.5E3,.5", {0.1, 2, -3.5, 1e-5, 2500, 0.5}},
       {"0:1:11", {0, .1, .2, .3, .4, .5, .6, .7, .8, .9, 1}},  // both ends, even steps
       {"0.3:0.1:3", {0.3, 0.2, 0.1}},
-      {"0.2:0.9:1", {0.2}},
+      {"0.2:0.2:1", {0.2}},
       {"0.1,0.2:0.3:3,7", {0.1, 0.2, 0.25, 0.3, 7}}};
   for (const auto& [text, numbers] : cases) EXPECT_EQ(List(text), numbers) << text;
 }
@@ -107,6 +107,7 @@ TEST(ShapeList, RejectsOtherTextsWithAReason) {
   const std::pair<const char*, std::vector<std::string>> cases[] = {
       {"'4x4:8x8:2' has an end that is not a decimal number", {"4x4:8x8:2"}},
       {"'1:5' is not a range", {"1:5"}},
+      {"'1:5:1' has two ends, but a count of 1", {"1:5:1"}},
       {"has more than 100000 shapes", {"1:100000:100000,5"}}};
   for (const auto& [reason, texts] : cases) {
     for (const std::string& text : texts) {

@@ -53,6 +53,7 @@ def test_shapes_are_numbers_or_texts() -> None:
         ([True], TypeError),
         (object(), TypeError),
         (np.zeros((2, 2)), ValueError),
+        ("0.1:0.2:1", ValueError),
     ],
 )
 def test_what_is_not_a_list_is_an_error(values: Any, error: type[Exception]) -> None:

@@ -94,6 +94,19 @@ def test_a_logarithm_of_the_window_is_found_beside_a_part_that_ends() -> None:
     assert (found["idle"][0], found["met"][0]) == pytest.approx((1, -1))
 
 
+@pytest.mark.filterwarnings("error")
+def test_growth_without_an_error_is_left_out() -> None:
+    window, ones = 8 * 2.0 ** np.arange(5), np.ones(5)
+    whole = {"delta": 0.2 * ones, "window": window, "law": 0.01 * ones}
+    whole |= {"limit_all": 0 * ones, "limit_idle": 0 * ones}
+    whole["later_idle"] = whole["later_met"] = 0.01 * np.log(window / 8)
+    whole["later_idle_error"] = np.array([0, 1, 2, 2, np.nan])
+    whole["later_met_error"] = np.array([0, 1, np.nan, np.nan, np.nan])
+    found = logarithm.logarithms_of_window(whole)
+    assert (found["idle"][0], found["idle_freedom"][0]) == (pytest.approx(1), 0)
+    assert np.isnan(found["met"][0])
+
+
 # The second Lyapunov exponent
 
 RHO = 0.53

@@ -112,20 +112,22 @@ def logarithms_of_window(whole: Table) -> Table:
         for part in PARTS[1:]:
             fit = _growth(windows, part)
             row |= {part: fit.coefficients[0], f"{part}_error": fit.errors[0]}
-            row |= {f"{part}_chi_squared": fit.chi_squared, "freedom": fit.freedom}
+            row |= {f"{part}_chi_squared": fit.chi_squared, f"{part}_freedom": fit.freedom}
         found.append(row)
     return table(found)
 
 
 def _growth(windows: Table, part: str) -> fits.Fit:
-    """The errors are those of increments that are independent of each other."""
+    """The errors are those of increments that are independent of each other. Increments without
+    enough events have none, and are left out."""
     limit = windows["limit_idle"] * (1 if part == "idle" else -1)
     limit += 0 if part == "idle" else windows["limit_all"]
     value = np.diff(windows[f"later_{part}"] - limit)
-    error = np.sqrt(np.diff(windows[f"later_{part}_error"] ** 2))
+    error = np.sqrt(np.maximum(np.diff(windows[f"later_{part}_error"] ** 2), 0))
+    measured = error > 0
     shorter = windows["window"][:-1]
     terms = np.column_stack([windows["law"][:-1] * np.log(2), 1 / (2 * shorter)])
-    return fits.linear(terms, value, error)
+    return fits.linear(terms[measured], value[measured], error[measured])
 
 
 @style.styled
