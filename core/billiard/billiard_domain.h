@@ -72,8 +72,8 @@
 // exponents at rho = 0.53, delta = 0.2 compared with double precision (lambda_1 -1.2e-4 +- 1.6e-4,
 // lambda_2 -2.9e-4 +- 4.8e-4), and at the ends of rho (0.1 to 1 %).
 //
-// At rho - 1/2 from 6e-8 to 6e-7, where the gap between two discs is a few roundings wide, one first
-// hit in 1e5 (delta = 0.02) loses its ball or traps it in a tip; at 1e-6 and 1e-5 none did.
+// At rho - 1/2 from 6e-8 to 6e-7, where the gap between two discs is a few roundings wide, one
+// first hit in 1e5 (delta = 0.02) loses its ball or traps it in a tip; at 1e-6 and 1e-5 none did.
 //
 // At 1/sqrt 2 - rho = 1e-4 and delta = 1.4e-5 a run of a few seconds did not end within four
 // minutes; at 1e-5 orbits leave the cell.

@@ -60,6 +60,8 @@ class ChunkFold {
   const PartialChunk& partial() const { return partial_; }
   bool finished() const { return partial_.chunk == end_; }
   size_t waiting() const { return early_.size(); }
+  // The number of blocks that are handed out but not merged.
+  uint64_t handed_out() const { return handed_out_; }
 
  private:
   using Place = std::pair<uint64_t, uint64_t>;  // chunk, index
@@ -73,8 +75,8 @@ class ChunkFold {
   uint64_t end_;
   uint64_t window_;
   PartialChunk partial_;
-  Place next_;                          // of the next block to hand out
-  uint64_t handed_out_ = 0;             // blocks that are handed out but not merged
+  Place next_;  // of the next block to hand out
+  uint64_t handed_out_ = 0;
   std::map<Place, BlockResult> early_;  // blocks that wait for earlier ones
   std::vector<GroupState> groups_;      // by group, empty while a block of the group is computed
 };

@@ -136,8 +136,12 @@ bool MeetsTolerance(const Estimate& estimate, double tolerance) {
   return RelativeError(estimate) <= tolerance;
 }
 
+// Not before a quarter of the expected samples: a value that is many times too large by chance,
+// such as that of a current between nearly equal temperatures, has a small relative error.
 bool PointExperiment::ReachesTolerance(const BlockResult& merged) const {
-  return tolerance_ && MeetsTolerance(FirstEstimate(merged), *tolerance_);
+  constexpr uint64_t kLeastShare = 4;
+  return tolerance_ && kLeastShare * merged.samples >= plan_.SamplesBefore(expected_chunks_) &&
+         MeetsTolerance(FirstEstimate(merged), *tolerance_);
 }
 
 }  // namespace ballpiston

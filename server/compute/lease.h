@@ -55,6 +55,8 @@ struct Lease {
 
   // Stop is requested when the chunks are no longer needed.
   std::stop_token stop = {};
+  // Stop is requested when no more blocks are to begin, but those that have begun are needed.
+  std::stop_token ending = {};
 
   bool OpensPoints() const { return !opens.empty(); }
 
@@ -72,6 +74,7 @@ struct LeaseReport {
   // Of the first chunk that is not complete; or no blocks. Dropped unless the executor is local.
   PartialChunk partial = {};
   double seconds = 0;  // of processor time since the previous report about this point
+  uint64_t begun = 0;  // blocks that have begun but are not merged
 };
 
 // The work that an executor can take now, in seconds of one core at nominal speed.

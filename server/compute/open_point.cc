@@ -122,6 +122,7 @@ std::optional<Lease> OpenPoint::NextChunks(const Capacity& capacity) {
   if (lease.local) lease.memory = memory;
   lease.experiment = experiment_;
   lease.stop = stop();
+  lease.ending = ending_.get_token();
   lease.start.chunk = first->first;
   lease.end = first->first;
   const FoldState& state = fold_.state();

@@ -51,6 +51,8 @@ class OpenPoint {
 
   std::stop_token stop() const { return stop_.get_token(); }
   void RequestStop() { stop_.request_stop(); }
+  // No more blocks begin.
+  void RequestEnd() { ending_.request_stop(); }
 
   uint64_t version = 0;  // the journal's number of the point's last change
   double work = 0;       // seconds of processor time of the point's chunks
@@ -79,6 +81,7 @@ class OpenPoint {
   uint64_t next_chunk_ = 0;               // this chunk and all after it were never leased
   std::map<uint64_t, Attempt> returned_;  // chunks before it to be leased again
   std::stop_source stop_;
+  std::stop_source ending_;
 };
 
 }  // namespace ballpiston::server

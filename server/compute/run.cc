@@ -252,22 +252,30 @@ uint64_t Run::Merge(const Lease& lease, OpenPoint& open, LeaseReport report) {
     open.version = journal_->Merged(
         {.point = lease.point, .samples = samples, .share_of_point = open.ShareOf(samples)});
   }
-  if (!fold.finished()) EndIfBudgetIsSpent(lease.point, open);
+  if (!fold.finished()) EndIfBudgetIsSpent(lease, open, report.begun);
   // The files of an executor elsewhere may go when the lease ends, so its chunks are written now.
   const bool at_once = !lease.local || (IsSuspect() && has_chunks);
   if (!fold.finished() && samples > 0) CheckpointIfDue(lease.point, open, at_once);
   return samples;
 }
 
-void Run::EndIfBudgetIsSpent(size_t index, OpenPoint& open) {
+// Blocks that have begun are awaited: without them short orbits would be preferred, because a block
+// of long ones is more likely to be in progress at the end. A lease normally has all the rest of
+// its point. Blocks of trajectories take a time that does not depend on what happens in them.
+void Run::EndIfBudgetIsSpent(const Lease& lease, OpenPoint& open, uint64_t begun) {
   const Target& target = spec_->target;
-  if (!target.budget_seconds || !open.fold().HasBlocks()) return;
-  if (open.work < BudgetOfAPoint(*spec_, workers_)) return;
+  if (!target.budget_seconds || open.work < BudgetOfAPoint(*spec_, workers_)) return;
+  const ChunkPlan& plan = open.experiment()->plan();
+  if (begun > 0 && plan.groups() == 0 && lease.end == plan.chunks()) {
+    open.RequestEnd();
+    return;
+  }
+  if (!open.fold().HasBlocks()) return;
   open.fold().Finish();
   if (!target.tolerance) return;
   const Estimate reached = open.experiment()->FirstEstimate(open.fold().Merged());
   if (MeetsTolerance(reached, *target.tolerance)) return;
-  NoteShortfall({index, ToleranceNotReached(*spec_, index, reached)});
+  NoteShortfall({lease.point, ToleranceNotReached(*spec_, lease.point, reached)});
 }
 
 void Run::CheckpointIfDue(size_t index, OpenPoint& open, bool at_once) {

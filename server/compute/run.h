@@ -159,7 +159,8 @@ class Run {
   bool NoteAwaited(const OpenPoint& point, const Capacity& capacity);
   // The lease's point may have chunks to lease again.
   void HasChunks(const Lease& lease);
-  void EndIfBudgetIsSpent(size_t index, OpenPoint& open);
+  // `begun`: blocks of the lease that have begun but are not merged.
+  void EndIfBudgetIsSpent(const Lease& lease, OpenPoint& open, uint64_t begun);
   void CheckpointIfDue(size_t index, OpenPoint& open, bool at_once);
   // The run continues, and ends with this status unless it is stopped. The shortfall of the first
   // point is kept.

@@ -31,7 +31,7 @@ class ThreadExecutor::SharedLease {
 
   bool HasTurn() const {
     MutexLock lock(mutex_);
-    return !resting_.empty() || fold_.HasNextBlock();
+    return !resting_.empty() || HasNextBlock();
   }
 
   // One turn, in the session that has rested longest, or in a new one.
@@ -94,9 +94,13 @@ class ThreadExecutor::SharedLease {
     return session;
   }
 
+  bool HasNextBlock() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
+    return !lease_.ending.stop_requested() && fold_.HasNextBlock();
+  }
+
   std::optional<Block> NextBlock() {
     MutexLock lock(mutex_);
-    return IsStopped() ? std::nullopt : fold_.NextBlock();
+    return IsStopped() || !HasNextBlock() ? std::nullopt : fold_.NextBlock();
   }
 
   void BlockDone(const Block& block, BlockResult result, double seconds) {
@@ -105,9 +109,10 @@ class ThreadExecutor::SharedLease {
     bool has_room = false;
     {
       MutexLock lock(mutex_);
-      const bool was_full = !fold_.HasNextBlock();
-      report = {fold_.Add(block, std::move(result)), fold_.partial(), seconds};
-      has_room = was_full && fold_.HasNextBlock();
+      const bool was_full = !HasNextBlock();
+      std::vector<ChunkResult> complete = fold_.Add(block, std::move(result));
+      report = {std::move(complete), fold_.partial(), seconds, fold_.handed_out()};
+      has_room = was_full && HasNextBlock();
     }
     executor_.scheduler_.Report(lease_, std::move(report)).IgnoreError();  // of chunks elsewhere
     if (has_room) executor_.Wake();
@@ -118,6 +123,7 @@ class ThreadExecutor::SharedLease {
     {
       MutexLock lock(mutex_);
       report.partial = fold_.partial();
+      report.begun = fold_.handed_out();
     }
     executor_.scheduler_.Report(lease_, std::move(report)).IgnoreError();  // of chunks elsewhere
   }

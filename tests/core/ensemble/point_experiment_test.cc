@@ -131,14 +131,18 @@ TEST_P(EachExperiment, ComputesTheRequestedSamples) {
   }
 }
 
-TEST_P(EachExperiment, AToleranceIsReachedWhenTheErrorIsWithinIt) {
+TEST_P(EachExperiment, AToleranceIsReachedWhenTheErrorIsWithinItButNotByFewSamples) {
   if (Is(kMarkovProperty)) return;  // does not accept a tolerance
   const BlockResult merged = FoldPoint(*point_);
   const Estimate estimate = point_->FirstEstimate(merged);
   const double error = *estimate.standard_error / std::fabs(estimate.value);
   for (const double share : {1.01, 0.99}) {
     spec_.target = {.tolerance = share * error};
-    EXPECT_EQ(PointExperiment::Create(spec_, 0)->ReachesTolerance(merged), share > 1);
+    const auto point = PointExperiment::Create(spec_, 0);
+    EXPECT_EQ(point->ReachesTolerance(merged), share > 1);
+    BlockResult few = merged;
+    few.samples = (point->plan().SamplesBefore(point->expected_chunks()) - 1) / 4;
+    EXPECT_FALSE(point->ReachesTolerance(few));
   }
 }
 
