@@ -56,7 +56,7 @@ class LaneOrbits : public EngineRun {
         reach_constants_(geometry, flight_constants_.scale),
         source_(source),
         in_lane_(geometry, flight_constants_.scale, source.TimeLimit()),
-        least_mean_flight_(std::isinf(source.TimeLimit())
+        least_mean_flight_(sizeof(T) == 4 && std::isinf(source.TimeLimit())
                                ? MeanFlight(geometry) * flight_constants_.scale / 10
                                : 0),
         flights_(FlightsInABurst(geometry)),
@@ -363,9 +363,10 @@ class LaneOrbits : public EngineRun {
     Refill();
   }
 
-  // Rounding may trap a ball in a tip, where it hits the walls without end and its path hardly
-  // grows. So that its orbit ends too, its flights count as a tenth of the mean flight at least: a
-  // longest wait has so many flights that the mean over an orbit's is never so short.
+  // Single precision may trap a ball in a tip, where it hits the walls without end and its path
+  // hardly grows. So that its orbit ends too, a flight counts as a tenth of the mean flight at
+  // least. The longest wait has thousands of flights, and over so many the mean flight of an orbit
+  // that is not trapped is longer than that.
   double LeastPath(size_t lane) const {
     return least_mean_flight_ * static_cast<double>((bursts_ - entry_burst_[lane]) * flights_);
   }
@@ -375,8 +376,9 @@ class LaneOrbits : public EngineRun {
   ReachConstants<T> reach_constants_;
   OrbitSource& source_;
   OrbitInLane in_lane_;
-  double least_mean_flight_;  // 0 if orbits have a time limit, which may end after a few flights
-  size_t flights_, steps_;    // of a lane, and of a vector, in a burst
+  // 0 in double precision, and if orbits have a time limit, which may end after a few flights.
+  double least_mean_flight_;
+  size_t flights_, steps_;  // of a lane, and of a vector, in a burst
   LaneBurst<T> burst_;
   std::vector<Pistons> pistons_;
   uint64_t bursts_ = 0;

@@ -29,6 +29,14 @@ uint64_t ExpectedChunks(const EnsembleSpec& spec, const PointParameters& point,
   return plan.ChunksFor(SamplesFor(*spec.target.tolerance, spec, point));
 }
 
+// A tolerance is not judged before: a value that is many times too large by chance, such as that of
+// a current between nearly equal temperatures, has a small relative error.
+double LeastSamples(const EnsembleSpec& spec, const PointParameters& point, const ChunkPlan& plan) {
+  constexpr double kShare = 0.25;
+  if (!spec.target.tolerance || plan.samples() == 0) return 0;
+  return kShare * SamplesFor(*spec.target.tolerance, spec, point);
+}
+
 }  // namespace
 
 double NominalSeconds(const EnsembleSpec& spec, const PointParameters& point) {
@@ -72,6 +80,7 @@ PointExperiment::PointExperiment(const EnsembleSpec& spec, const PointParameters
       expected_chunks_(ExpectedChunks(spec, parameters, plan)),
       aim_(&AimOf(spec)),
       tolerance_(spec.target.tolerance),
+      least_samples_(LeastSamples(spec, parameters, plan)),
       random_{spec.seed, PointStream(spec, parameters)} {}
 
 PointExperiment::PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters,
@@ -136,11 +145,8 @@ bool MeetsTolerance(const Estimate& estimate, double tolerance) {
   return RelativeError(estimate) <= tolerance;
 }
 
-// Not before a quarter of the expected samples: a value that is many times too large by chance,
-// such as that of a current between nearly equal temperatures, has a small relative error.
 bool PointExperiment::ReachesTolerance(const BlockResult& merged) const {
-  constexpr uint64_t kLeastShare = 4;
-  return tolerance_ && kLeastShare * merged.samples >= plan_.SamplesBefore(expected_chunks_) &&
+  return tolerance_ && static_cast<double>(merged.samples) >= least_samples_ &&
          MeetsTolerance(FirstEstimate(merged), *tolerance_);
 }
 

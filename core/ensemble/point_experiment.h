@@ -95,7 +95,8 @@ class PointExperiment {
   // remark says how many samples an error needs. Without estimates a remark says why.
   PointSummary Summarize(const BlockResult& merged) const;
 
-  // Whether `merged`, the complete chunks, reaches the tolerance; false if there is no tolerance.
+  // Whether `merged`, the complete chunks, reaches the tolerance; false if there is no tolerance,
+  // or if there are less than a quarter of the samples that it is expected to need.
   bool ReachesTolerance(const BlockResult& merged) const;
 
   const std::optional<double>& tolerance() const { return tolerance_; }
@@ -129,6 +130,7 @@ class PointExperiment {
   uint64_t expected_chunks_;
   const AimedEstimate* aim_;
   std::optional<double> tolerance_;
+  double least_samples_;  // that reach it
   RandomStream random_;
   BlockResult empty_;
   std::vector<Measurement> table_;

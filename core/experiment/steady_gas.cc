@@ -263,8 +263,8 @@ Estimate SteadyGas::TimeAverage(size_t quantity, double share,
 
 std::string SteadyGas::ReasonOfNoError(absl::string_view estimate) const {
   return absl::StrCat(estimate,
-                      " has no standard error: an error needs seven eighths of the trajectories "
-                      "to be measured, which begins when they have warmed up");
+                      " has no standard error: fewer than seven eighths of the trajectories have "
+                      "been measured; a trajectory is measured after its warm-up");
 }
 
 // A chunk begins where the longest warm-up ends; the chunk has samples if one more is asked for.

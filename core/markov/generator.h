@@ -33,9 +33,8 @@ namespace ballpiston {
 
 inline constexpr double kGeneratorRoundingError = 1e-13;
 
-// Ends of the continuum of -L: the least and the largest jump rate, at u = 0 and u = 1.
+// The lower end of the continuum of -L: the least jump rate, at u = 0.
 inline constexpr double kContinuumBottom = std::numbers::inv_pi / std::numbers::sqrt2;
-inline constexpr double kContinuumTop = std::numbers::sqrt2 / 4;
 
 inline constexpr double kJumpKernelPrefactor = std::numbers::inv_pi / std::numbers::sqrt2;  // of K
 

@@ -142,18 +142,25 @@ absl::StatusOr<std::string> SlurmTools::Run(std::vector<std::string> words,
       absl::StrCat("exec ", WithoutSlurmsVariables(), " timeout -s KILL ", limit.count());
   for (const std::string& word : words) absl::StrAppend(&line, " ", Quoted(word));
   FILE* const pipe = popen(absl::StrCat(line, " </dev/null 2>&1").c_str(), "re");
-  if (pipe == nullptr)
+  if (pipe == nullptr) {
     return absl::UnavailableError(absl::StrCat(tool, ": ", std::strerror(errno)));
+  }
   std::string output;
   char buffer[4096];
   // Not fread, which keeps the stream locked: at its end the server would wait in fflush.
-  for (ssize_t size = 0; (size = read(fileno(pipe), buffer, sizeof(buffer))) > 0;) {
+  while (true) {
+    const ssize_t size = read(fileno(pipe), buffer, sizeof(buffer));
+    if (size < 0 && errno == EINTR) continue;
+    if (size <= 0) break;
     output.append(buffer, static_cast<size_t>(size));
   }
   const int status = pclose(pipe);
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) {
     return absl::UnavailableError(
-        absl::StrCat(tool, " was killed; it has ", limit.count(), " s to end"));
+        absl::StrCat(tool, " was killed; its time limit is ", limit.count(), " s"));
+  }
+  if (WIFSIGNALED(status)) {
+    return absl::UnavailableError(absl::StrCat(tool, ": ended by signal ", WTERMSIG(status)));
   }
   if (status == 0) return output;
   return absl::UnavailableError(absl::StrCat(tool, ": ", ErrorsIn(output, WEXITSTATUS(status))));

@@ -261,8 +261,8 @@ void AddLogFlags(CLI::App& app, CommandLine& line, Words& words) {
           "the least severe lines that are written");
   AddText(
       app, "--metrics-listen", line.server.metrics_listen, "ADDRESS",
-      "address of Prometheus metrics, at /metrics: HOST:PORT with a loopback host (port 0: any\n"
-      "free port, which the log names). Default: no metrics");
+      "address of Prometheus metrics, at /metrics: HOST:PORT with the host 127.0.0.1, [::1] or\n"
+      "localhost (port 0: any free port, which the log names). Default: no metrics");
 }
 
 void AddCommands(CLI::App& app, CommandLine& line) {

@@ -62,7 +62,10 @@ void CheckNotEmpty(const v1::EvaluatePairsRequest& request, Violations& violatio
   if (request.rho_size() == 0) violations.push_back({"rho", "required: at least one value"});
   if (request.delta_size() == 0) violations.push_back({"delta", "required: at least one value"});
   if (request.outgoing_epsilon_size() > 0 && request.epsilon_size() == 0) {
-    violations.push_back({"outgoing_epsilon", "needs epsilon: the kernel is W from each of those"});
+    violations.push_back(
+        {"outgoing_epsilon",
+         "has values, but epsilon has none; required: at least one epsilon, the energy before the "
+         "collision"});
   }
 }
 

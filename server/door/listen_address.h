@@ -17,7 +17,7 @@ struct ListenAddress {
   // The address as gRPC and clients write it.
   std::string Text() const;
 
-  // Whether only local connections are possible: 127.0.0.1 or [::1], so written. Every other host
+  // Whether only local connections are possible: exactly 127.0.0.1 or [::1]. Every other host
   // counts as one that other machines reach.
   bool IsLoopback() const;
 };

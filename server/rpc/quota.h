@@ -58,8 +58,8 @@ struct Quotas {
   explicit Quotas(const Limits& limits);
 
   // MiB of the unary calls in progress, of traces and of samplers. A unary call counts until the
-  // client has received its answer: the answer needs memory and a thread so long, and a client
-  // that does not read its answers could otherwise use up both.
+  // client has received its answer. Until then the answer keeps memory and a thread. Without this
+  // limit a client that does not read its answers could use up both.
   Quota calls;
   // Watches and traces. Each has a thread.
   Quota streams;

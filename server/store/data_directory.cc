@@ -95,15 +95,16 @@ absl::Status MakeDirectories(const std::string& path) {
   return NotWritable(path, errno);
 }
 
-// Whether the folder has a store, or nothing but a client's log. Otherwise other users may need its
-// files.
+// Whether the folder has a store, is empty, or has only a client's log. Otherwise other users may
+// need its files.
 bool IsAServers(const std::string& path) {
   std::error_code error;
   if (std::filesystem::exists(absl::StrCat(path, "/", kStoreFile), error)) return true;
-  const std::filesystem::directory_iterator entries(path, error);
-  return !error && std::all_of(begin(entries), end(entries), [](const auto& entry) {
-    return entry.path().filename() == kClientsLog;
-  });
+  std::filesystem::directory_iterator entry(path, error);
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    if (entry->path().filename() != kClientsLog) return false;
+  }
+  return !error;
 }
 
 // Other users must not reach jobs, results and the socket.

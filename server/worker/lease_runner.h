@@ -1,8 +1,8 @@
 // Computes a lease on the calling thread.
 //
 // Properties, each with a test of its name:
-//   1. ChunksHaveTheBitsOfAWholePoint.
-//   2. LeasesContinueTheTrajectoriesOfASteadyState.
+//   1. ChunksHaveTheBitsOfAWholePoint.  2. StopsAtTheTolerance.
+//   3. LeasesContinueTheTrajectoriesOfASteadyState.
 #pragma once
 
 #include <stop_token>

@@ -71,7 +71,7 @@ TEST_F(JobTest, ArraysNeedThePythonPackage) {
       server_.Command(Joined({{"run"}, kQuickQuestion, {"--save", File("a.npz")}}));
   run.environment["BALLPISTON_PYTHON"] = "false";
   const ProcessResult refused = RunProgram(run);
-  EXPECT_THAT(refused, ExitsWith(4));
+  EXPECT_THAT(refused, ExitsWith(2));
   EXPECT_THAT(refused.err, HasSubstr("install python3-ballpiston and python3-numpy"));
   EXPECT_EQ(Length(At(server_.Json({"list"}), "jobs")), 0);
   EXPECT_FALSE(fs::exists(File("a.npz")));

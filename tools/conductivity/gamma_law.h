@@ -3,8 +3,7 @@
 // d/2 for a site with d degrees of freedom. Its orthogonal polynomials are Laguerre's, with
 // alpha = shape - 1.
 //
-// Domain: shape > 0, degree and nodes 1 to 100. The relative error of a mean is below
-// 1e-12.
+// Domain: shape > 0, degree and nodes 1 to 100. The relative error of a mean is below 1e-12.
 #pragma once
 
 #include <Eigen/Core>

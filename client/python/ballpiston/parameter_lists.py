@@ -123,7 +123,10 @@ def _parsed_range(name: str, text: str) -> list[float]:
     if not 1 <= count <= _MOST:
         raise ValueError(f"{name}: the count of {text!r} has to be from 1 to {_MOST}")
     if count == 1 and first != last:
-        raise ValueError(f"{name}: {text!r} has two ends, but a count of 1")
+        raise ValueError(
+            f"{name}: {text!r} has two different ends and a count of 1; permitted: a count of at "
+            "least 2, or equal ends"
+        )
     if is_logarithmic and min(first, last) <= 0:
         raise ValueError(f"{name}: {text!r} is logarithmic, so both ends have to be above 0")
     return _range(first, last, count, is_logarithmic)

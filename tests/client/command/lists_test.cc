@@ -107,7 +107,7 @@ TEST(ShapeList, RejectsOtherTextsWithAReason) {
   const std::pair<const char*, std::vector<std::string>> cases[] = {
       {"'4x4:8x8:2' has an end that is not a decimal number", {"4x4:8x8:2"}},
       {"'1:5' is not a range", {"1:5"}},
-      {"'1:5:1' has two ends, but a count of 1", {"1:5:1"}},
+      {"'1:5:1' has two different ends and a count of 1", {"1:5:1"}},
       {"has more than 100000 shapes", {"1:100000:100000,5"}}};
   for (const auto& [reason, texts] : cases) {
     for (const std::string& text : texts) {

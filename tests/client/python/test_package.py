@@ -1,11 +1,13 @@
-"""The package as a whole: its types, its installation by pip, and its
+"""The package as a whole: the order of its modules, its types, its installation by pip, and its
 generated modules beside those of other packages."""
 
 from __future__ import annotations
 
+import ast
 import shutil
 import subprocess
 import sys
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -16,6 +18,25 @@ import ballpiston
 SOURCES = PROJECT / "client" / "python"
 PROTOS = PROJECT / "proto"
 needs_protoc = pytest.mark.skipif(shutil.which("protoc") is None, reason="protoc is not installed")
+
+
+def imports_of(module: Path) -> set[str]:
+    """The modules of this package that a module names, also inside functions and for types only."""
+    nodes = list(ast.walk(ast.parse(module.read_text())))
+    names = {node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module}
+    names |= {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    return {name for name in names if name.startswith("ballpiston.")}
+
+
+def test_modules_import_each_other_in_one_direction() -> None:
+    package = SOURCES / "ballpiston"
+    graph = {
+        ".".join(path.relative_to(SOURCES).with_suffix("").parts): imports_of(path)
+        for path in package.rglob("*.py")
+        if path.name != "__init__.py"
+    }
+    assert "ballpiston.job" in graph
+    TopologicalSorter(graph).prepare()  # raises CycleError
 
 
 def test_pip_installs_the_package(tmp_path: Path) -> None:

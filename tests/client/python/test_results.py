@@ -194,6 +194,7 @@ def test_a_trace_repeats_itself(client: ballpiston.Client) -> None:
     times = [event["time"] for event in events]
     assert times == sorted(times)
     assert events == list(client.trace(rho=0.5296, delta=0.2, events=1000, seed=3))
+    assert events[1:] != list(client.trace(rho=0.5296, delta=0.2, events=1000, seed=4))[1:]
 
 
 def test_the_status_names_the_server(client: ballpiston.Client) -> None:

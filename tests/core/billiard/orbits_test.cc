@@ -92,6 +92,70 @@ TEST(Orbits, StopEndsOrbits) {
   }
 }
 
+// In single precision the lanes cannot resolve a cell that nearly vanishes.
+TEST(Orbits, EscapesInLanesAreReported) {
+  const PairGeometry geometry = GeometryAtShare(kMaxRho - 1e-5, 1);
+  class UntilAnEscape : public RecordedCollisions {
+   public:
+    using RecordedCollisions::RecordedCollisions;
+    AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+      if (collision.escaped) stop.request_stop();
+      return RecordedCollisions::Collide(orbit, collision);
+    }
+    std::stop_source stop;
+  };
+  UntilAnEscape single(geometry, 100'000, 20);
+  EXPECT_FALSE(RunOrbits(Engine::kLanesSingle, geometry, 100'000, single, single.stop.get_token()));
+  EXPECT_TRUE(single.stop.stop_requested());
+}
+
+class CollisionsWithin : public RecordedCollisions {
+ public:
+  CollisionsWithin(double limit, const PairGeometry& geometry, uint64_t orbits, size_t collisions)
+      : RecordedCollisions(geometry, orbits, collisions), limit_(limit) {}
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+    const AfterCollision after = RecordedCollisions::Collide(orbit, collision);
+    return collision.expired ? AfterCollision::kEnd : after;
+  }
+  double TimeLimit() const override { return limit_; }
+
+ private:
+  double limit_;
+};
+
+// In all engines and vector widths every orbit is the same as without a limit up to the first
+// collision after the limit, and ends there.
+TEST(Orbits, TimeLimitChangesNothingWithinIt) {
+  constexpr uint64_t kOrbits = 300;
+  constexpr size_t kCollisions = 6;
+  constexpr double kLimit = 100;  // the mean free time is 97
+  const PairGeometry geometry = PaperGeometry(0.1);
+  for (const Engine engine : kEngines) {
+    const RecordedCollisions free = Recorded(engine, geometry, kOrbits, kCollisions);
+    ForEachFusedTarget([&] {
+      CollisionsWithin limited(kLimit, geometry, kOrbits, kCollisions);
+      ASSERT_TRUE(RunOrbits(engine, geometry, kOrbits, limited));
+      uint64_t expired = 0;
+      for (uint64_t orbit = 0; orbit < kOrbits; ++orbit) {
+        const auto &all = free.by_orbit()[orbit], &some = limited.by_orbit()[orbit];
+        size_t i = 0;
+        for (; i < kCollisions && all[i].time <= kLimit; ++i) {
+          ASSERT_LT(i, some.size());
+          EXPECT_FALSE(some[i].expired);
+          ExpectSameBits(some[i], all[i]);
+        }
+        ASSERT_EQ(some.size(), std::min(i + 1, kCollisions));
+        if (i == kCollisions) continue;
+        EXPECT_TRUE(some[i].expired);
+        EXPECT_GT(some[i].time, kLimit);
+        ++expired;
+      }
+      EXPECT_GT(expired, 0u);
+      EXPECT_LT(expired, kOrbits);
+    });
+  }
+}
+
 // Given pairs, each once. Gives up after so many looks that a run that can end has ended.
 class GivesUp : public OrbitSource {
  public:

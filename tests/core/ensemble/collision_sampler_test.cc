@@ -18,6 +18,21 @@ std::vector<CollisionRecord> AllRecords(
   return all;
 }
 
+TEST(CollisionSampler, ReturnsAreThoseThatTheJobFolds) {
+  const auto point =
+      PointExperiment::Create(SpecOf(&kFirstHit, PaperPoint(0.2, 0.125, 1), {.samples = 20'000},
+                                     Model::kBilliardReference, 3),
+                              0);
+  Moments times;
+  for (const CollisionRecord& record : AllRecords(*point, kFirstHit)) {
+    ASSERT_EQ(record.sample, times.count);
+    times.Add(record.time);
+  }
+  const Moments folded = FoldPoint(*point).moments.front();
+  EXPECT_EQ(times.count, folded.count);
+  EXPECT_NEAR(times.mean / folded.mean, 1, 1e-12);
+}
+
 TEST(CollisionSampler, CollisionsInEquilibriumAreInTheOrderOfTheirOrbits) {
   const auto point = PointExperiment::Create(
       SpecOf(&kEquilibrium, PaperPoint(0.2), {.collisions = 30'000}, Model::kBilliard), 0);

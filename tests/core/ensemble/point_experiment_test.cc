@@ -141,7 +141,7 @@ TEST_P(EachExperiment, AToleranceIsReachedWhenTheErrorIsWithinItButNotByFewSampl
     const auto point = PointExperiment::Create(spec_, 0);
     EXPECT_EQ(point->ReachesTolerance(merged), share > 1);
     BlockResult few = merged;
-    few.samples = (point->plan().SamplesBefore(point->expected_chunks()) - 1) / 4;
+    few.samples = static_cast<uint64_t>(SamplesFor(share * error, spec_, point->parameters()) / 4);
     EXPECT_FALSE(point->ReachesTolerance(few));
   }
 }

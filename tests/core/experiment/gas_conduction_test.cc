@@ -108,10 +108,10 @@ TEST(GasConduction, AnErrorNeedsSevenEighthsOfTheGroups) {
   for (const Estimate& estimate : summary.estimates) {
     EXPECT_FALSE(estimate.standard_error) << estimate.name;
   }
-  EXPECT_THAT(summary.remarks,
-              ElementsAre(HasSubstr("3 of 16 groups of trajectories are still warming up"),
-                          HasSubstr("heat_current has no standard error: an error needs seven "
-                                    "eighths of the trajectories")));
+  EXPECT_THAT(
+      summary.remarks,
+      ElementsAre(HasSubstr("3 of 16 groups of trajectories are still warming up"),
+                  HasSubstr("heat_current has no standard error: fewer than seven eighths")));
 }
 
 TEST(GasConduction, WhileAllTrajectoriesWarmUpOnlyARemarkIsStated) {

@@ -126,6 +126,27 @@ TEST_F(FolderExecutorTest, AFileStaysUntilItsChunksAreOnDisk) {
   ComputeAll(*journal);
 }
 
+// The file in taken/ is moved away, so that its worker stops. The point is not open yet when the
+// later process looks for the first time.
+TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReported) {
+  const EnsembleSpec spec = SomeSpec();
+  Begin(spec);
+  const std::string taken = Take(In("todo")[0]);
+  Compute(taken);
+  Restart();
+  auto journal = std::make_shared<RecordingJournal>();
+  scheduler_->Add(RunOf(1, spec, journal));
+  executor_->Look();
+  executor_->Look();
+  EXPECT_THAT(In("taken"), IsEmpty());
+  EXPECT_THAT(In("done"), ElementsAre(taken + ".lost"));
+  EXPECT_TRUE(local_->TakeTurn());  // opens the point
+  executor_->Look();
+  EXPECT_THAT(In("done"), IsEmpty());
+  EXPECT_EQ(executor_->Status().chunks, 1);
+  ComputeAll(*journal);
+}
+
 TEST_F(FolderExecutorTest, ACrashOfTheEngineIsCounted) {
   const auto journal = Begin();
   for (int death = 0; death < kMostDeaths; ++death) {

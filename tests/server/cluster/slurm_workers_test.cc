@@ -215,7 +215,8 @@ TEST_F(SlurmToolsTest, AnErrorHasTheToolsMessage) {
   EXPECT_EQ(error("echo 'scancel: error: no controller' >&2; echo 'scancel: later' >&2; exit 1"),
             "scancel: no controller; later");
   EXPECT_EQ(error("exit 3"), "scancel: exit code 3");
-  EXPECT_EQ(error("kill -KILL $$"), "scancel was killed; it has 60 s to end");
+  EXPECT_EQ(error("kill -KILL $$"), "scancel was killed; its time limit is 60 s");
+  EXPECT_EQ(error("kill -SEGV $$"), "scancel: ended by signal 11");
   std::filesystem::remove(folder_.File("scancel"));
   EXPECT_THAT(New().Cancel(),
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("failed to run command")));

@@ -57,6 +57,21 @@ TEST(OpenPoint, ALeaseElsewhereContinuesTheBlocksOfAResumedPoint) {
   EXPECT_EQ(lease->start.merged, state.partial);
 }
 
+TEST(OpenPoint, ChunksThatArrivedEarlyAreSkipped) {
+  for (const double seconds : {0., 1000., kInfinity}) {
+    OpenPoint point = PointOf(SixChunks());
+    AddChunks(point, 0, 1);
+    AddChunks(point, 2, 3);
+    std::vector<uint64_t> leased;
+    while (const auto next = Next(point, seconds)) {
+      for (uint64_t chunk = std::get<0>(*next); chunk < std::get<1>(*next); ++chunk) {
+        leased.push_back(chunk);
+      }
+    }
+    EXPECT_THAT(leased, testing::ElementsAre(1, 3, 4, 5)) << seconds << " s";
+  }
+}
+
 TEST(OpenPoint, OnlyChunksThatAreNotStoredAreLeased) {
   OpenPoint point = PointOf(SixChunks());
   StoredPoint stored;
@@ -121,6 +136,45 @@ TEST(OpenPoint, ALongChunkIsForLocalExecutors) {
     while (const auto next = Next(point, seconds, kElsewhere, kLongest)) end = std::get<1>(*next);
     EXPECT_EQ(end, 4u) << seconds << " s";
     EXPECT_EQ(Next(point, 1000), Chunks(4, 6));
+  }
+}
+
+// ---- a tolerance ----
+
+EnsembleSpec WithTolerance() {
+  EnsembleSpec spec = FakeSpec(1, 0);
+  spec.target = {.tolerance = 0.05};
+  return spec;
+}
+
+TEST(OpenPoint, AFiniteCapacityEndsAtTheExpectedEnd) {
+  OpenPoint point = PointOf(WithTolerance());
+  const uint64_t expected = point.experiment()->expected_chunks();
+  ASSERT_LT(expected, point.experiment()->plan().chunks());
+  EXPECT_EQ(Next(point, 1e6), Chunks(0, expected));
+  EXPECT_EQ(Next(point, 1e6), std::nullopt);
+}
+
+// The variance of these samples is larger than expected.
+void AddScatteredChunks(OpenPoint& point, uint64_t first, uint64_t end) {
+  Lease lease;
+  lease.start.chunk = first;
+  lease.end = end;
+  for (ChunkResult& chunk : ComputedChunks(lease, *point.experiment())) {
+    chunk.result.moments[0].m2 *= 1e4;
+    point.fold().Add(std::move(chunk));
+  }
+}
+
+TEST(OpenPoint, BeyondTheExpectedEndChunksComeOneByOne) {
+  OpenPoint point = PointOf(WithTolerance());
+  const uint64_t chunk = point.experiment()->expected_chunks();
+  ASSERT_LT(chunk + 1, point.experiment()->plan().chunks());
+  EXPECT_EQ(Next(point, 1e6), Chunks(0, chunk));
+  for (uint64_t next = chunk; next < chunk + 2; ++next) {
+    AddScatteredChunks(point, next == chunk ? 0 : next - 1, next);
+    EXPECT_EQ(Next(point, 1e6), Chunks(next, next + 1));
+    EXPECT_EQ(Next(point, 1e6), std::nullopt);
   }
 }
 

@@ -164,6 +164,18 @@ TEST(Scheduler, AnExceptionFailsItsRunOnly) {
   ExpectComplete(FakeSpec(3, 20, 15), *journals[15]);
 }
 
+TEST_F(SchedulerTest, AHigherPriorityIsServedFirst) {
+  for (const int32_t priority : {-7, 0, 7}) {
+    RunRequest request =
+        RunOf(10 + priority, FakeSpec(2, 10), std::make_shared<RecordingJournal>());
+    request.priority = priority;
+    scheduler_.Add(std::move(request));
+  }
+  std::vector<int64_t> runs = Turns(1000, 3);
+  runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
+  EXPECT_THAT(runs, ElementsAre(17, 10, 3));
+}
+
 // ---- executors elsewhere ----
 
 // A capacity for one chunk, and for all chunks of a point.

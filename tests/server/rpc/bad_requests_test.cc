@@ -114,7 +114,7 @@ std::vector<BadRequest> BadRequests() {
       {pairs,
        pair + "epsilon: 0.6 outgoing_epsilon: 0.5 beta: inf",
        {"epsilon[0]", "outgoing_epsilon[0]", "beta[0]"}},
-      {pairs, pair + "outgoing_epsilon: 0.3", {"outgoing_epsilon"}, "needs epsilon"},
+      {pairs, pair + "outgoing_epsilon: 0.3", {"outgoing_epsilon"}, "epsilon has none"},
       {pairs,
        pair + "temperature: [0, -1, 1e-121, nan]",
        {"temperature[0]", "temperature[1]", "temperature[2]", "temperature[3]"},

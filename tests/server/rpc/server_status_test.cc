@@ -151,7 +151,7 @@ TEST_F(ServerStatusTest, TheExpiryOfACertificateIsAMetricIfThereIsOne) {
               testing::HasSubstr(absl::StrCat("\n", kExpiry, " 2000000000\n")));
 }
 
-// An abandoned plan would keep one of the few turns of calls that compute.
+// An abandoned plan would keep its thread and a processor.
 TEST_F(ServerStatusTest, APlanEndsWhenItsClientHasLeft) {
   v1::PlanEnsembleJobRequest request;
   *request.mutable_spec() = Equilibrium(10, 100);

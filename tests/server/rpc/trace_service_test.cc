@@ -121,6 +121,22 @@ TEST_F(TraceServiceTest, EventsHaveTheBodiesThatTakePart) {
   EXPECT_GT(exchanges, 0);
 }
 
+// The time since the pair's last event of the same kind. A pair has one ball and one piston.
+TEST_F(TraceServiceTest, FreeTimesAreBetweenEventsOfOneKind) {
+  std::map<int, double> last;  // time, by kind
+  for (const auto& message : Trace(TraceRequest(2000))) {
+    for (const v1::TraceEvent& event : message.events()) {
+      const auto before = last.find(event.event());
+      EXPECT_EQ(event.has_free_time(), before != last.end());
+      if (before != last.end()) {
+        EXPECT_NEAR(event.free_time(), event.time() - before->second, 1e-9);
+      }
+      last[event.event()] = event.time();
+    }
+  }
+  EXPECT_EQ(last.size(), 3u);
+}
+
 // ---- limits, and the end ----
 
 TEST_F(TraceServiceTest, ATraceCountsAsAStreamUntilItsReaderGoes) {

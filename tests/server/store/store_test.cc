@@ -182,6 +182,22 @@ TEST_F(StoreTest, AChangeThatRunsOutOfMemoryIsRetried) {
   EXPECT_EQ(Checkpoint(*store, 1, 0), "kept");
 }
 
+TEST_F(StoreTest, TheFirstWriterOfAResultWins) {
+  const auto store = Open();
+  for (const char* result : {"first", "second"}) {
+    store->RecordResult(1, {2, 10, result});
+    ASSERT_OK(store->Flush());
+  }
+  std::vector<std::string> results;
+  EXPECT_OK(store->Read([&](Database& database) {
+    ReadResults(database, 1, 0, Details::kLeftOut, [&](const PointRow& row) {
+      results.push_back(std::to_string(row.point) + row.result);
+      return true;
+    });
+  }));
+  EXPECT_THAT(results, ElementsAre("2first"));
+}
+
 TEST_F(StoreTest, WritesAreCommittedInGroups) {
   const auto store = Open({.delay = kUnreachedLimit});
   for (int point = 0; point < 1000; ++point) {

@@ -231,6 +231,33 @@ TEST(LeaseRunner, ChunksHaveTheBitsOfAWholePoint) {
   }
 }
 
+// The merged block has a mark, which a computation of all blocks would not give.
+TEST(LeaseRunner, ComputesOnlyTheRestOfAChunkThatHasBlocks) {
+  constexpr uint64_t kMark = 1000;
+  Lease lease = LeaseOf(SpecOf(kFirstHit, Model::kBilliard, 100'000), 1, 2);
+  ChunkResult expected = AllChunks(*lease.experiment)[1];
+  expected.result.health.escapes += kMark;
+  lease.start.blocks = 1;
+  lease.start.merged = RunBlock(*lease.experiment, lease.experiment->plan().BlockAt(1, 0));
+  lease.start.merged.health.escapes += kMark;
+  EXPECT_TRUE(AreEqual(RunToTheEnd(lease).chunks, {expected}));
+}
+
+TEST(LeaseRunner, StopsAtTheTolerance) {
+  EnsembleSpec spec = SpecOf(kFirstHit, Model::kBilliard);
+  spec.target = {.tolerance = 0.003};
+  const Lease lease = LeaseOf(spec);
+  const Recorder computed = RunToTheEnd(lease);
+  EXPECT_GT(computed.chunks.size(), 1u);
+  PointFold fold(*lease.experiment);
+  for (const ChunkResult& chunk : computed.chunks) {
+    EXPECT_FALSE(fold.finished());
+    fold.Add(chunk);
+  }
+  EXPECT_TRUE(fold.finished());
+  EXPECT_EQ(fold.Merged(), FoldPoint(*lease.experiment));
+}
+
 // Each lease has a chunk of one group, and travels as a message. The next chunk of the group starts
 // with what the lease has reported.
 TEST(LeaseRunner, LeasesContinueTheTrajectoriesOfASteadyState) {
