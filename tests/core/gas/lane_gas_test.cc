@@ -1,6 +1,6 @@
-#include "core/closed_form/pair_measures.h"
 #include "core/gas/lane_gas.h"
 
+#include "core/closed_form/pair_measures.h"
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
 #include "tools/flows/metered_gases.h"
