@@ -8,10 +8,6 @@ namespace {
 
 bool HasPoints(const WatchMessage& message) { return message.snapshot().points_size() > 0; }
 
-bool TellsFinished(const WatchMessage& message) {
-  return message.snapshot().finished_points_size() > 0;
-}
-
 // The finished points in the messages, in their order.
 std::vector<int> FinishedIn(const std::vector<WatchMessage>& messages) {
   std::vector<int> points;
