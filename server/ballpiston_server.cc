@@ -27,7 +27,7 @@ constexpr int kPingIntervalMs = 60'000;       // silence before the server sends
 constexpr int kPingTimeoutMs = 20'000;        // limit for the client's answer
 constexpr int kMinPingIntervalMs = 15'000;    // of a client's pings
 constexpr int kStreamsPerConnection = 2'048;  // twice what one principal may watch
-// Threads for calls that are not streams. One principal can take at most 256 of them with answers
+// Threads for calls that are not streams. One principal can take at most 128 of them with answers
 // that it does not read (rpc/quota.h).
 constexpr int kOtherThreads = 4'096;
 constexpr size_t kTransferBytes = size_t{512} << 20;  // connections, and requests that arrive
