@@ -266,7 +266,9 @@ void Run::EndIfBudgetIsSpent(const Lease& lease, OpenPoint& open, uint64_t begun
   const Target& target = spec_->target;
   if (!target.budget_seconds || open.work < BudgetOfAPoint(*spec_, workers_)) return;
   const ChunkPlan& plan = open.experiment()->plan();
-  if (begun > 0 && plan.groups() == 0 && lease.end == plan.chunks()) {
+  const bool has_the_rest =
+      lease.start.chunk <= open.fold().state().chunk && lease.end == plan.chunks();
+  if (begun > 0 && plan.groups() == 0 && has_the_rest) {
     open.RequestEnd();
     return;
   }

@@ -29,9 +29,11 @@ class ThreadExecutor::SharedLease {
 
   bool IsStopped() const { return lease_.stop.stop_requested(); }
 
+  // While the lease is ending and no block is in progress, one more turn reports this.
   bool HasTurn() const {
     MutexLock lock(mutex_);
-    return !resting_.empty() || HasNextBlock();
+    return !resting_.empty() || HasNextBlock() ||
+           (fold_.handed_out() == 0 && fold_.HasNextBlock());
   }
 
   // One turn, in the session that has rested longest, or in a new one.
