@@ -32,8 +32,7 @@ class ThreadExecutor::SharedLease {
   // While the lease is ending and no block is in progress, one more turn reports this.
   bool HasTurn() const {
     MutexLock lock(mutex_);
-    return !resting_.empty() || HasNextBlock() ||
-           (fold_.handed_out() == 0 && fold_.HasNextBlock());
+    return !resting_.empty() || HasNextBlock() || (fold_.handed_out() == 0 && fold_.HasNextBlock());
   }
 
   // One turn, in the session that has rested longest, or in a new one.
