@@ -77,10 +77,11 @@ absl::StatusOr<Range> ParseRange(absl::string_view text) {
     return Bad(text,
                absl::StrCat("has a count that is not a whole number from 1 to ", kMaxListLength));
   }
-  if (*count == 1 && *from != *to)
+  if (*count == 1 && *from != *to) {
     return Bad(
         text,
         "has two different ends and a count of 1; permitted: a count of at least 2, or equal ends");
+  }
   const bool logarithmic = parts.size() == 4;
   if (logarithmic && (*from <= 0 || *to <= 0)) {
     return Bad(text, "is logarithmic: both ends must be above 0");

@@ -103,7 +103,7 @@ absl::Status CheckPython(const std::string& purpose, const std::vector<std::stri
   if (can_import(absl::StrJoin(modules, ", "))) return absl::OkStatus();
   std::vector<std::string> missing = modules;
   std::erase_if(missing, can_import);
-  if (missing.empty()) missing = modules;  // each can be imported, but not all of them
+  if (missing.empty()) missing = modules;  // each can be imported alone, but not all together
   return absl::InvalidArgumentError(
       absl::StrCat(purpose, " needs the Python package: ", Interpreter(), " cannot import ",
                    absl::StrJoin(missing, ", "), "; install ", packages,

@@ -29,8 +29,8 @@ uint64_t ExpectedChunks(const EnsembleSpec& spec, const PointParameters& point,
   return plan.ChunksFor(SamplesFor(*spec.target.tolerance, spec, point));
 }
 
-// A tolerance is not judged before: a value that is many times too large by chance, such as that of
-// a current between nearly equal temperatures, has a small relative error.
+// A tolerance is judged from this number of samples on. A value that is many times too large by
+// chance, such as that of a current between nearly equal temperatures, has a small relative error.
 double LeastSamples(const EnsembleSpec& spec, const PointParameters& point, const ChunkPlan& plan) {
   constexpr double kShare = 0.25;
   if (!spec.target.tolerance || plan.samples() == 0) return 0;

@@ -96,7 +96,7 @@ class PointExperiment {
   PointSummary Summarize(const BlockResult& merged) const;
 
   // Whether `merged`, the complete chunks, reaches the tolerance; false if there is no tolerance,
-  // or if there are less than a quarter of the samples that it is expected to need.
+  // or if `merged` has fewer than a quarter of the samples that it is expected to need.
   bool ReachesTolerance(const BlockResult& merged) const;
 
   const std::optional<double>& tolerance() const { return tolerance_; }
@@ -130,7 +130,7 @@ class PointExperiment {
   uint64_t expected_chunks_;
   const AimedEstimate* aim_;
   std::optional<double> tolerance_;
-  double least_samples_;  // that reach it
+  double least_samples_;  // with fewer a tolerance is not judged
   RandomStream random_;
   BlockResult empty_;
   std::vector<Measurement> table_;

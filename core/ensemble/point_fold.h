@@ -35,7 +35,7 @@ struct FoldState {
   BlockResult partial = {};                  // the merged blocks of that chunk
   std::vector<uint64_t> chunk_digests = {};  // of the complete chunks, in order (DigestOf)
   // The smallest relative error of the first estimate at the ends of chunks before the last
-  // complete one at which a tolerance is judged. A fold with this tolerance or a larger one would
+  // complete one at which a tolerance is judged. A fold with this tolerance or a larger one may
   // have ended there.
   double least_error = std::numeric_limits<double>::infinity();
 };

@@ -68,7 +68,7 @@ class SlurmTools {
   virtual absl::Status Cancel();  // all workers
 
  private:
-  // What the tool prints. It is killed if it does not end within `limit`.
+  // Runs the tool and returns what it prints. The tool is killed if it does not end within `limit`.
   absl::StatusOr<std::string> Run(std::vector<std::string> words, std::chrono::seconds limit) const;
 
   const SlurmOptions options_;

@@ -261,7 +261,8 @@ uint64_t Run::Merge(const Lease& lease, OpenPoint& open, LeaseReport report) {
 
 // Blocks that have begun are awaited: without them short orbits would be preferred, because a block
 // of long ones is more likely to be in progress at the end. A lease normally has all the rest of
-// its point. Blocks of trajectories take a time that does not depend on what happens in them.
+// its point, but not on a server with a cluster, where such blocks are dropped. Blocks of
+// trajectories take a time that does not depend on what happens in them.
 void Run::EndIfBudgetIsSpent(const Lease& lease, OpenPoint& open, uint64_t begun) {
   const Target& target = spec_->target;
   if (!target.budget_seconds || open.work < BudgetOfAPoint(*spec_, workers_)) return;

@@ -40,7 +40,7 @@ absl::Status CheckFoldState(const PointExperiment& experiment, const FoldState& 
 absl::Status CheckChunk(const PointExperiment& experiment, const ChunkResult& chunk);
 
 // Whether the experiment can continue from the end of an earlier one, which had another target: the
-// state is possible, and no earlier chunk reached the tolerance.
+// state is possible, and the relative error was above the tolerance at all earlier chunks.
 bool CanContinueFrom(const PointExperiment& experiment, const FoldState& state);
 
 }  // namespace ballpiston::server

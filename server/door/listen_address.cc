@@ -33,8 +33,9 @@ absl::StatusOr<ListenAddress> ParseSocket(const std::string& text, const std::st
                          kMaxSocketPath, " (choose a shorter one with --listen or --data-dir)"));
 }
 
-// As the client has it (client/library/server_address.cc). Further colons would be an IPv6 address
-// without brackets, or gRPC's own syntax (ipv4:, dns:).
+// Whether the text may be a host. The client has the same rule (client/library/server_address.cc).
+// A host without brackets has no colon: a colon would make it an IPv6 address, or gRPC's own syntax
+// (ipv4:, dns:).
 bool IsHost(const std::string& host) {
   if (host.starts_with('[')) return host.size() > 2 && host.ends_with(']');
   return !host.empty() && host.find_first_of(":/[] \t") == std::string::npos;

@@ -50,7 +50,7 @@ class Quota {
 
 // The memory, in MiB, of most requests with their answers, and of a trace with its messages.
 inline constexpr int64_t kMibOfCall = 2;
-// Of one principal: 128 calls, or 5 samplers (kMibOfSampler).
+// The limit of one principal. It permits 128 calls, or 5 samplers (kMibOfSampler).
 inline constexpr int64_t kMostMibOfCalls = 256;
 
 // The quotas of all methods.

@@ -30,8 +30,9 @@ namespace ballpiston::slow_pistons {
 
 inline constexpr std::array<double, 9> kIdleTimes = {4, 8, 16, 32, 64, 128, 256, 512, 1024};
 
-// Of one piston at one time s. The moments are those of blocks of time. The events are those that
-// determine the mean; without enough of them the scatter of the blocks is not its error.
+// What was measured of one piston at one time s. The moments are taken over blocks of time. Each
+// mean is determined by the events that are counted beside it; if these are few, the scatter of the
+// blocks is not the error of the mean.
 struct IdleShare {
   Moments share = {};        // s P(s)
   Moments limit = {};        // r L'^2/(2 T) + s^2 F(L'/s); of an outermost piston

@@ -36,7 +36,8 @@ std::string Row(const Moments& moments) {
   return absl::StrFormat("%.10g,%.4g", moments.mean, moments.StandardError().value_or(0));
 }
 
-// Of a mean that such events determine: without any of them it was not measured.
+// The columns of a mean that rare events determine. Without any such event the mean was not
+// measured.
 std::string Row(const Moments& moments, double events) {
   if (HasStatedError(events)) return Row(moments);
   return events > 0 ? absl::StrFormat("%.10g,", moments.mean) : ",";
