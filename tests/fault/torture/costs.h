@@ -20,18 +20,9 @@ inline double EngineCost(const v1::EnsembleSpec& question) {
   return (server::ThreadSeconds() - start) / samples;
 }
 
-// Seconds of all the server's threads, from the creation of the job to its end.
-inline double ServerCost(const ServerProcess& server, const client::Client& client,
-                         const v1::EnsembleSpec& question) {
-  const double start = server.ProcessorSeconds();
-  const std::string name = OrThrow(client.Create(question, {.fresh = true})).name();
-  const v1::EnsembleJob end =
-      OrThrow(client.Watch(name, {}, {.give_up_after = absl::FromChrono(kPatience)}));
-  return (server.ProcessorSeconds() - start) / end.progress().samples();
-}
-
-// The same in the middle of a job that runs, for at least `least_samples`. A pause is between two
-// requests for the job's progress, because without it they take a tenth of the processor time.
+// Seconds of all the server's threads, in the middle of a job that runs, for at least
+// `least_samples`. A pause is between two requests for the job's progress, because without it they
+// take a tenth of the processor time.
 inline double ServerCost(const ServerProcess& server, const client::Client& client,
                          const std::string& job, double least_samples) {
   const auto samples = [&] {
