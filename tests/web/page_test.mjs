@@ -318,6 +318,16 @@ describe('Jobs', () => {
     await page.getByText('The job was cancelled').waitFor();
   });
 
+  it('that are too large for the gateway are not submitted again and again', async () => {
+    await open(firstHit);
+    await page.route('**/ballpiston.v1.EnsembleService/CreateEnsembleJob', (route) =>
+      route.fulfill({status: 413}),
+    );
+    await page.getByRole('button', {name: 'Submit again'}).click();
+    await banner().filter({hasText: 'The server says: HTTP status 413'}).waitFor();
+    assert.ok(await page.getByRole('button', {name: 'Submit again'}).isEnabled());
+  });
+
   it('with expired results show the command that computes them again', async () => {
     await answerInstead(
       page,

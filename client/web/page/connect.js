@@ -52,7 +52,9 @@
     }
     if (response.ok) return response;
     const error = await response.json().catch(() => null);
-    throw errorOf(error ?? {message: `HTTP status ${response.status}`}, 'unknown');
+    // Without JSON: of the gateway itself, for example if the request is too large for it.
+    const code = response.status < 500 ? 'invalid_argument' : 'unknown';
+    throw errorOf(error ?? {message: `HTTP status ${response.status}`}, code);
   }
 
   // `method` is SERVICE/METHOD, for instance EnsembleService/GetEnsembleJob.

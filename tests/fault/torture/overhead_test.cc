@@ -55,7 +55,7 @@ double ServiceCost(server::RunningServer& server, const v1::EnsembleSpec& questi
 void Compare(int workers, const std::string& name, Findings& findings) {
   const OnFirstCores pinned(workers);
   const v1::EnsembleSpec question = ManyPoints(1, Size(300'000, 10'000'000));
-  server::RunningServer server({.workers = workers, .factory = nullptr, .store = {}});
+  server::RunningServer server({.workers = workers, .factory = nullptr, .watch = {}, .store = {}});
   ServiceCost(server, question);  // both warm
   EngineCost(question);
   PairedRatio processor;
