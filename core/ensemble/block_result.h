@@ -5,7 +5,7 @@
 // them. Where the samples of a point continue each other (chunk_plan.h), a block's result also has
 // the state of its group, from which the group's next block starts. Merging keeps the newer state.
 // Properties, each with a test of its name:
-//   1. MergeKeepsEverySampleAndHasAnIdentity.  2. EveryNumberChangesTheDigestAndSomeTheShape.
+//   1. MergeKeepsEverySampleAndHasAnIdentity.  2. EqualResultsHaveEqualNumbersAndShapes.
 //   3. TheNewerStateOfAGroupReplacesTheOlder.
 #pragma once
 
@@ -64,12 +64,5 @@ struct BlockResult {
   bool HasShapeOf(const BlockResult& other) const;
   friend bool operator==(const BlockResult&, const BlockResult&) = default;
 };
-
-// A digest of a result: 64 bits that depend on every bit of every number in it.
-//
-// Two results with the same digest are the same, except with a probability of some 2^-64. A stored
-// digest of a chunk lets anybody who computes the chunk again compare the bits. The digest does not
-// protect from a person who makes up numbers with a given digest.
-uint64_t DigestOf(const BlockResult& result);
 
 }  // namespace ballpiston

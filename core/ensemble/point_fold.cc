@@ -62,7 +62,6 @@ uint64_t PointFold::MergeNext(const BlockResult& chunk) {
   if (state_.chunk == experiment_.plan().FirstCutChunk()) KeepContinuation();
   const uint64_t known = std::exchange(state_.partial, {}).samples;
   state_.complete.Merge(chunk);
-  state_.chunk_digests.push_back(DigestOf(chunk));
   state_.blocks = 0;
   ++state_.chunk;
   if (state_.chunk == chunks_ || ReachesTolerance()) Finish();

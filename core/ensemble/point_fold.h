@@ -19,7 +19,6 @@
 #include <map>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "core/ensemble/block_result.h"
 #include "core/ensemble/chunk_fold.h"
@@ -29,11 +28,10 @@ namespace ballpiston {
 
 // The merged result, from which a point can be resumed.
 struct FoldState {
-  uint64_t chunk = 0;                        // the first chunk that is not complete
-  uint64_t blocks = 0;                       // the number of merged blocks of that chunk
-  BlockResult complete = {};                 // the merged result of all complete chunks
-  BlockResult partial = {};                  // the merged blocks of that chunk
-  std::vector<uint64_t> chunk_digests = {};  // of the complete chunks, in order (DigestOf)
+  uint64_t chunk = 0;         // the first chunk that is not complete
+  uint64_t blocks = 0;        // the number of merged blocks of that chunk
+  BlockResult complete = {};  // the merged result of all complete chunks
+  BlockResult partial = {};   // the merged blocks of that chunk
   // The smallest relative error of the first estimate at the ends of chunks before the last
   // complete one at which a tolerance is judged. A fold with this tolerance or a larger one may
   // have ended there.

@@ -1,8 +1,8 @@
 // The rule that decides whether the mean over a sample gets a standard error. Other estimates have
 // rules of their own: closed forms, the spectrum and divergences always have an error; time
-// averages of gas-conduction have one from two trajectories on, because each has many events, and a
-// remark names groups that still warm up; and
-// cumulants from enough windows on (experiment/gas_conduction.cc).
+// averages of gas-conduction have one as soon as seven eighths of the groups of trajectories have
+// been measured (experiment/steady_gas.cc), because each trajectory has many events; and cumulants
+// from enough windows on (experiment/gas_conduction.cc).
 //
 // The scatter of a sample is the error of its mean only if the sample contains the events that
 // determine the mean. An error is given if there are at least kEventsForAnError independent events

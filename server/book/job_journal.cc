@@ -179,8 +179,7 @@ uint64_t JobJournal::Merged(const MergedSamples& merged) {
 void JobJournal::Checkpoint(size_t point, const FoldState& state) {
   // Shared, because the store's closures must be copyable. Serialized only if it is written.
   auto copy = std::make_shared<const FoldState>(state);
-  const size_t bytes = BytesHeld(copy->complete) + BytesHeld(copy->partial) +
-                       copy->chunk_digests.size() * sizeof(uint64_t);
+  const size_t bytes = BytesHeld(copy->complete) + BytesHeld(copy->partial);
   store_.RecordCheckpoint(
       job_->row().sequence, static_cast<int64_t>(point), state.chunk,
       [copy = std::move(copy)] { return FoldRecordBytes(*copy); }, bytes);
@@ -200,7 +199,7 @@ void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
   const PointSummary summary = experiment.Summarize(merged);
   PointRow row = {static_cast<int64_t>(point), static_cast<double>(summary.samples),
                   DeterministicBytes(ResultOf(point, experiment, summary)),
-                  DetailsBytes(DetailsOf(summary, fold.state().chunk_digests))};
+                  DetailsBytes(DetailsOf(summary))};
   row.end = PointEndOf(job_->row(), experiment, fold);
   row.has_checkpoint = resumed_ || experiment.plan().samples() > 0;
   // A result does not count the samples of a warm-up.

@@ -88,7 +88,6 @@ bool GroupsArePossible(const PointExperiment& experiment, const BlockResult& res
 bool IsPossible(const PointExperiment& experiment, const FoldState& state) {
   const ChunkPlan& plan = experiment.plan();
   const uint64_t chunks = plan.chunks();
-  if (state.chunk_digests.size() != state.chunk) return false;
   if (!(state.least_error >= 0)) return false;
   if (state.chunk == 0 && state.blocks == 0)
     return false;  // none is written before the first block
@@ -150,7 +149,6 @@ std::string FoldRecordBytes(const FoldState& state) {
   record.set_blocks(state.blocks);
   FillAccumulators(state.complete, *record.mutable_complete());
   FillAccumulators(state.partial, *record.mutable_partial());
-  record.mutable_chunk_digests()->Assign(state.chunk_digests.begin(), state.chunk_digests.end());
   record.set_least_error(state.least_error);
   return DeterministicBytes(record);
 }
@@ -164,7 +162,6 @@ absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes) {
                    .blocks = record.blocks(),
                    .complete = ResultOfAccumulators(record.complete()),
                    .partial = ResultOfAccumulators(record.partial()),
-                   .chunk_digests = {record.chunk_digests().begin(), record.chunk_digests().end()},
                    .least_error = record.least_error()};
 }
 

@@ -114,11 +114,10 @@ v1::PointResult ResultOf(size_t index, const PointExperiment& experiment,
   return result;
 }
 
-v1::PointResult DetailsOf(const PointSummary& summary, const std::vector<uint64_t>& chunk_digests) {
+v1::PointResult DetailsOf(const PointSummary& summary) {
   v1::PointResult details;
   for (const NamedHistogram& histogram : summary.histograms) AddHistogram(histogram, details);
   for (const Curve& curve : summary.curves) AddCurve(curve, details);
-  details.mutable_chunk_digests()->Assign(chunk_digests.begin(), chunk_digests.end());
   return details;
 }
 

@@ -4,9 +4,7 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <string>
-#include <vector>
 
 #include "absl/status/statusor.h"
 #include "ballpiston/v1/result.pb.h"
@@ -20,11 +18,9 @@ namespace ballpiston::server {
 v1::PointResult ResultOf(size_t index, const PointExperiment& experiment,
                          const PointSummary& summary);
 
-// The details: histograms and curves, and the digests of the chunks that they are made of. The
-// expected probabilities of the histograms are left out, because they follow from the point's
-// parameters.
-v1::PointResult DetailsOf(const PointSummary& summary,
-                          const std::vector<uint64_t>& chunk_digests = {});
+// The details: histograms and curves. The expected probabilities of the histograms are left out,
+// because they follow from the point's parameters.
+v1::PointResult DetailsOf(const PointSummary& summary);
 
 // Result and details as clients see them. `experiment`: of the result's job.
 v1::PointResult WithDetails(v1::PointResult result, const v1::PointResult& details,

@@ -112,9 +112,10 @@ def test_a_document_of_another_program_can_be_loaded(
     """With names in lowerCamelCase, integers of 64 bits as strings, and a value without a number."""
     first_hits.save(tmp_path / "saved.json")
     document = json.loads((tmp_path / "saved.json").read_text())
+    document["job"] = json_format.MessageToDict(first_hits.job)
     document["points"] = [json_format.MessageToDict(message) for message in first_hits.messages]
     estimate = document["points"][0]["estimates"][0]
-    assert isinstance(document["points"][0]["chunkDigests"][0], str)
+    assert isinstance(document["job"]["spec"]["target"]["samples"], str)
     assert "standardError" in estimate
     value, estimate["value"] = estimate["value"], "NaN"
     (tmp_path / "other.json").write_text(json.dumps(document))
@@ -132,7 +133,7 @@ def test_a_document_of_another_program_can_be_loaded(
         "{}",
         '{"job": 1}',
         '{"job": {}, "points": [1]}',
-        '{"job": {}, "points": [{"chunk_digests": [1.5]}]}',
+        '{"job": {"spec": {"seed": 1.5}}, "points": []}',
         '{"job": {}, "points": [{"samples": "many"}]}',
         '{"job": {}, "points": [{"estimates": 1}]}',
     ],

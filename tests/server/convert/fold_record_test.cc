@@ -16,14 +16,12 @@ TEST(FoldRecord, ComesBackExactly) {
   block.batch_means = {{7, 0.3, -0.0, 1e300, 2, 3}};
   block.histograms = {{-1.5, 1.5, {0, 1, kLargest}}};
   block.health = {2, 1e-15};
-  const FoldState state = {
-      .chunk = 2, .blocks = 3, .complete = block, .partial = {}, .chunk_digests = {7, kLargest}};
+  const FoldState state = {.chunk = 2, .blocks = 3, .complete = block, .partial = {}};
   ASSERT_OK_AND_ASSIGN(const auto back, FoldStateFromBytes(FoldRecordBytes(state)));
   EXPECT_EQ(back.chunk, 2u);
   EXPECT_EQ(back.blocks, 3u);
   EXPECT_TRUE(back.complete == block);
   EXPECT_TRUE(back.partial == BlockResult());
-  EXPECT_EQ(back.chunk_digests, state.chunk_digests);
   EXPECT_TRUE(std::signbit(back.complete.batch_means[0].mean_denominator));
   EXPECT_THAT(FoldStateFromBytes("\xff\xff\xff"), IsDataLoss());
 }
@@ -41,15 +39,12 @@ class StoredFold : public testing::Test {
   const BlockResult empty_ = experiment_->EmptyResult();
 };
 
-using Digests = std::vector<uint64_t>;
-
 TEST_F(StoredFold, IsAcceptedWithinItsPlanOnly) {
   const uint64_t all = plan_.chunks();
-  const FoldState good[] = {
-      {.blocks = 1, .partial = empty_},
-      {.chunk = 1, .complete = empty_, .chunk_digests = Digests(1)},
-      {.chunk = 1, .blocks = 1, .complete = empty_, .partial = empty_, .chunk_digests = Digests(1)},
-      {.chunk = all, .complete = empty_, .chunk_digests = Digests(all)}};
+  const FoldState good[] = {{.blocks = 1, .partial = empty_},
+                            {.chunk = 1, .complete = empty_},
+                            {.chunk = 1, .blocks = 1, .complete = empty_, .partial = empty_},
+                            {.chunk = all, .complete = empty_}};
   for (const FoldState& state : good) EXPECT_OK(Checked(state));
   BlockResult too_many = empty_, no_error = empty_;
   too_many.samples = plan_.BlockAt(0, 0).samples + 1;
@@ -57,17 +52,15 @@ TEST_F(StoredFold, IsAcceptedWithinItsPlanOnly) {
   FoldState beyond_the_end = good[3];
   beyond_the_end.blocks = 1;
   beyond_the_end.partial = empty_;
-  const FoldState bad[] = {
-      {},                                // nothing merged yet
-      {.chunk = 1, .complete = empty_},  // a digest is missing
-      {.blocks = 1},                     // the block is missing
-      {.complete = empty_},              // something before the first chunk
-      {.partial = empty_},               // or before the first block
-      {.blocks = 1, .partial = too_many},
-      {.blocks = 1, .partial = no_error},
-      {.blocks = plan_.BlocksIn(0), .partial = empty_},
-      {.chunk = all + 1, .complete = empty_, .chunk_digests = Digests(all + 1)},
-      beyond_the_end};
+  const FoldState bad[] = {{},                    // nothing merged yet
+                           {.blocks = 1},         // the block is missing
+                           {.complete = empty_},  // something before the first chunk
+                           {.partial = empty_},   // or before the first block
+                           {.blocks = 1, .partial = too_many},
+                           {.blocks = 1, .partial = no_error},
+                           {.blocks = plan_.BlocksIn(0), .partial = empty_},
+                           {.chunk = all + 1, .complete = empty_},
+                           beyond_the_end};
   for (const FoldState& state : bad) EXPECT_THAT(Checked(state), IsDataLoss());
 }
 
