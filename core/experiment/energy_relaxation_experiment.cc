@@ -5,6 +5,8 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -21,42 +23,15 @@
 namespace ballpiston {
 namespace {
 
-Estimate SpectralGap() {
-  const SpectralValue gap = RelaxationSpectrum::Get().Gap();
-  return {.name = "spectral_gap", .value = gap.value, .standard_error = gap.error};
-}
-
-// The isolated rates after the gap.
-void AddFurtherRates(std::vector<Estimate>& estimates) {
-  const std::vector<SpectralValue> rates = RelaxationSpectrum::Get().IsolatedRates();
-  for (size_t i = 1; i < rates.size(); ++i) {
-    estimates.push_back({.name = absl::StrCat("isolated_rate_", i + 1),
-                         .value = rates[i].value,
-                         .standard_error = rates[i].error});
-  }
-}
-
-// No samples: standard errors are bounds of the numerical error.
-PointSummary RelaxationBySpectrum(const EnsembleSpec&, const PointParameters& point) {
-  const EnergyRelaxation relaxation(GeometryOf(point), point);
-  PointSummary summary = {.estimates = relaxation.EstimatesOfLimit(),
-                          .histograms = relaxation.LawsOfLimit(),
-                          .curves = {relaxation.CurveOfLimit()},
-                          .remarks = RemarksOnDecay(relaxation.epsilon())};
-  summary.estimates.push_back(SpectralGap());
-  AddFurtherRates(summary.estimates);
-  return summary;
-}
-
-// By billiard, billiard_reference or markov.
+// By billiard, billiard_reference or markov, or by spectrum, whose errors are bounds of the
+// numerical error.
 class EnergyRelaxationExperiment : public PairExperiment {
  public:
   EnergyRelaxationExperiment(const EnsembleSpec& spec, const PointParameters& point)
       : PairExperiment(spec, point), relaxation_(geometry(), point, answer().model) {
     std::vector<Measurement> table = relaxation_.Table();
-    if (IsLimit()) {
-      table.push_back({"spectral_gap", [](const BlockResult&) { return SpectralGap(); }});
-    }
+    if (IsLimit()) table.push_back({"spectral_gap", SpectralGap});
+    if (answer().model == Model::kSpectrum) AddRates(table);
     SetMeasurements(relaxation_.Empty(), std::move(table));
   }
 
@@ -66,12 +41,27 @@ class EnergyRelaxationExperiment : public PairExperiment {
 
  protected:
   void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
+    const bool is_measured = TakesSamples(answer().model);
     summary.remarks = RemarksOnDecay(relaxation_.epsilon());
-    summary.curves.push_back(relaxation_.MeasuredCurve(merged));
-    summary.histograms = relaxation_.MeasuredLaws(merged);
+    summary.curves = {is_measured ? relaxation_.MeasuredCurve(merged) : relaxation_.CurveOfLimit()};
+    summary.histograms = is_measured ? relaxation_.MeasuredLaws(merged) : relaxation_.LawsOfLimit();
   }
 
  private:
+  static Estimate SpectralGap(const BlockResult&) {
+    const SpectralValue gap = RelaxationSpectrum::Get().Gap();
+    return {.value = gap.value, .standard_error = gap.error};
+  }
+
+  // The gap, and the further isolated rates.
+  static void AddRates(std::vector<Measurement>& table) {
+    size_t number = 0;
+    for (const auto& [value, error] : RelaxationSpectrum::Get().IsolatedRates()) {
+      std::string name = ++number == 1 ? "spectral_gap" : absl::StrCat("isolated_rate_", number);
+      table.push_back({.name = std::move(name), .known = {{value, error}}});
+    }
+  }
+
   EnergyRelaxation relaxation_;
 };
 
@@ -181,7 +171,7 @@ bool HasRelaxationTimeAt(const PointParameters& point) {
 double ErrorOfDecay(Model model, const PointParameters& point) {
   constexpr double kScatter = 0.42;
   const EnergyRelaxation relaxation(GeometryOf(point), point);
-  const double decay = relaxation.EstimatesOfLimit().back().value;
+  const double decay = relaxation.IntegralOfLimit().value;
   const double error = std::fabs(kScatter * 4 * relaxation.unit() / decay);
   if (model == Model::kMarkov) return error;
   const double meet = ShareThatMeetsEarly(point);
@@ -244,7 +234,6 @@ constinit const ExperimentKind kEnergyRelaxation = {
     .models = kModelsOfRelaxation,
     .aims = kAimsOfRelaxation,
     .create = CreateAs<EnergyRelaxationExperiment>,
-    .compute = RelaxationBySpectrum,
     .check_grid = CheckPairGrid,
     .work = WorkOfAnOrbit,
     .collisions = CollisionsOfASample,

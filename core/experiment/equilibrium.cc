@@ -64,10 +64,12 @@ class EquilibriumExperiment : public PairExperiment {
   EquilibriumExperiment(const EnsembleSpec& spec, const PointParameters& point)
       : PairExperiment(spec, point) {
     std::vector<Measurement> table;
+    const std::array<double, kHits> exact = ExactTimes(geometry());
     for (size_t hit = 0; hit < kHits; ++hit) {
       table.push_back({.name = kNamesOfTimes[hit],
                        .reading = RatioAt(hit, kEventsPerCollision),
-                       .exact = ExactTimes(geometry())[hit]});
+                       .exact = exact[hit],
+                       .known = {{exact[hit], kMeanFreeTimeRelativeError * exact[hit]}}});
     }
     SetMeasurements({.batch_means = std::vector<BatchMeans>(kHits)}, std::move(table));
   }
@@ -76,15 +78,6 @@ class EquilibriumExperiment : public PairExperiment {
     return RunOrbits<TimedOrbit>(queue, *this);
   }
 };
-
-PointSummary ExactMeanFreeTimes(const EnsembleSpec&, const PointParameters& point) {
-  PointSummary summary;
-  for (size_t hit = 0; hit < kHits; ++hit) {
-    summary.estimates.push_back(ExactEstimate(
-        kNamesOfTimes[hit], ExactTimes(GeometryOf(point))[hit], kMeanFreeTimeRelativeError));
-  }
-  return summary;
-}
 
 SampleWork WorkInEquilibrium(Model, const PointParameters& point) {
   return WorkOfACollision(GeometryOf(point));
@@ -109,7 +102,6 @@ constinit const ExperimentKind kEquilibrium = {.name = "equilibrium",
                                                .models = kModelsOfEquilibrium,
                                                .aims = kAimsOfEquilibrium,
                                                .create = CreateAs<EquilibriumExperiment>,
-                                               .compute = ExactMeanFreeTimes,
                                                .check_grid = CheckPairGrid,
                                                .work = WorkInEquilibrium,
                                                .collisions = OneCollision,

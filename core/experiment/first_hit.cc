@@ -33,6 +33,8 @@ namespace ballpiston {
 namespace {
 
 constexpr double kInvariantExponent = 1;
+constexpr double kExactMeanRelativeError =
+    kMeanFreeTimeRelativeError + kConditionalRateRelativeError;
 
 constexpr char kConditionalTime[] = "mean_free_time_conditional";
 constexpr char kHitTime[] = "mean_hit_time";
@@ -92,7 +94,7 @@ class ReturnExperiment : public PairExperiment {
                 .exponent = exponent,
                 .random = random()},
         exact_mean_(ConditionalMeanFreeTime(geometry(), starts_.epsilon)),
-        events_(EventsOfAReturn(answer().model, point)) {}
+        events_(TakesSamples(answer().model) ? EventsOfAReturn(answer().model, point) : 0) {}
 
  protected:
   const ReturnStarts& starts() const { return starts_; }
@@ -105,7 +107,8 @@ class ReturnExperiment : public PairExperiment {
   Measurement MeanTime(std::string name) const {
     return {.name = std::move(name),
             .reading = MeanAt(kTime, events_),
-            .exact = IfStationary(exact_mean_)};
+            .exact = IfStationary(exact_mean_),
+            .known = {{exact_mean_, kExactMeanRelativeError * exact_mean_}}};
   }
 
   Measurement CoefficientOfVariation() const {
@@ -149,12 +152,6 @@ class ConditionalMeanFreeTimeExperiment : public ReturnExperiment {
     return RunOrbits<ReturnOrbit>(queue, starts());
   }
 };
-
-PointSummary ExactConditionalTime(const EnsembleSpec&, const PointParameters& point) {
-  const double time = ConditionalMeanFreeTime(GeometryOf(point), point[kEpsilon]);
-  const double error = kMeanFreeTimeRelativeError + kConditionalRateRelativeError;
-  return {.estimates = {ExactEstimate(kConditionalTime, time, error)}};
-}
 
 constexpr ParameterUse kParametersOfConditional[] = {{&kRho}, {&kDelta}, {&kEpsilon}};
 constexpr Model kModelsOfConditional[] = {Model::kClosedForm, Model::kBilliard,
@@ -281,7 +278,6 @@ constinit const ExperimentKind kConditionalMeanFreeTime = {
     .models = kModelsOfConditional,
     .aims = kAimsOfConditional,
     .create = CreateAs<ConditionalMeanFreeTimeExperiment>,
-    .compute = ExactConditionalTime,
     .check_grid = CheckPairGrid,
     .work = WorkOfAReturn,
     .collisions = OneCollision,
