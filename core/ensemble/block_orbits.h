@@ -9,7 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <utility>
+#include <vector>
 
 #include "core/billiard/orbits.h"
 #include "core/ensemble/open_blocks.h"
@@ -20,60 +20,86 @@ namespace ballpiston {
 // Orbits may take any time; an engine gives up an orbit that cannot end (billiard/longest_wait.h).
 inline constexpr double kNoTimeLimit = std::numeric_limits<double>::infinity();
 
-// The orbits of one block. `Orbits` has these functions:
-//   uint64_t count() const;                                     at least 1
-//   PairState Start(uint64_t orbit);                            called once for each orbit
-//   AfterCollision Collide(uint64_t orbit, const Collision& collision);  not called for an escape
-//   void AddTo(BlockResult& result) const;    in their order; called after all orbits have ended
-// An experiment with tangent vectors has one function more, which follows the events of the
-// reference or the waits of the lanes (OrbitSource::FollowsTangents):
-//   void Follow(uint64_t orbit, const Event& event, const PairState& after);
-//   void Follow(uint64_t orbit, const BallMap& flights);
-template <typename Orbits, typename... Followed>
-concept Follows = requires(Orbits orbits, uint64_t orbit, const Followed&... followed) {
-  orbits.Follow(orbit, followed...);
+// The samples of one orbit: first ... first + count - 1 of the point.
+struct OrbitSamples {
+  uint64_t first;
+  uint64_t count;
 };
 
-// The orbits with their health, which counts escapes and measures the energy at collisions.
-template <typename Orbits>
-struct WatchedOrbits {
-  Orbits orbits;
-  const BlockResult& empty;
-  Health health = {};
+// The orbits of one block, with their health: the escapes, and the energy at collisions.
+//
+// `Orbit` is one of them, and adds its measurements to the block's result. `Context` is what all
+// orbits share, such as the experiment. An orbit has these functions:
+//   static uint64_t LengthIn(const Block& block);    samples of an orbit; the last may have fewer
+//   PairState Start(const Context&, const OrbitSamples&);                     called once
+//   AfterCollision Collide(const Context&, const Collision&);                 not for an escape
+//   void AddTo(const Context&, BlockResult&) const;    in their order, after all orbits have ended
+// An orbit with tangent vectors has them in a std::optional `tangents`. They have one of these
+// functions, for the events of the reference or the waits of the lanes (OrbitSource):
+//   void Follow(const Event& event, const PairState& after);
+//   void Follow(const BallMap& flights);
+template <typename Orbit, typename Context>
+class BlockOrbits {
+ public:
+  // The context and the empty result must outlive the orbits.
+  BlockOrbits(const Context& context, const Block& block, const BlockResult& empty)
+      : context_(context),
+        empty_(empty),
+        block_(block),
+        length_(Orbit::LengthIn(block)),
+        orbits_((block.samples + length_ - 1) / length_) {}
 
-  uint64_t count() const { return orbits.count(); }
+  uint64_t count() const { return orbits_.size(); }
+  Orbit& operator[](uint64_t i) { return orbits_[i]; }
+  OrbitSamples SamplesOf(uint64_t i) const {
+    return {block_.first + i * length_, std::min(length_, block_.samples - i * length_)};
+  }
 
-  AfterCollision Collide(uint64_t orbit, const Collision& collision) {
+  PairState Start(uint64_t i) { return orbits_[i].Start(context_, SamplesOf(i)); }
+
+  AfterCollision Collide(uint64_t i, const Collision& collision) {
     if (collision.escaped) {
-      ++health.escapes;
+      ++health_.escapes;
       return AfterCollision::kEnd;
     }
-    const AfterCollision after = orbits.Collide(orbit, collision);
+    const AfterCollision after = orbits_[i].Collide(context_, collision);
     if (collision.expired) return AfterCollision::kEnd;
-    health.max_energy_error = std::max(health.max_energy_error, EnergyError(collision.state));
+    health_.max_energy_error = std::max(health_.max_energy_error, EnergyError(collision.state));
     return after;
   }
 
+  void AddTo(BlockResult& result) const {
+    for (const Orbit& orbit : orbits_) orbit.AddTo(context_, result);
+    result.health.Merge(health_);
+  }
+
   BlockResult Result() const {
-    BlockResult result = empty;
-    orbits.AddTo(result);
-    result.health = health;
+    BlockResult result = empty_;
+    AddTo(result);
     return result;
   }
+
+ private:
+  const Context& context_;
+  const BlockResult& empty_;
+  Block block_;
+  uint64_t length_;
+  std::vector<Orbit> orbits_;
+  Health health_;
 };
 
-template <typename Orbits>
-class BlockOrbits : public EngineRun, private OrbitSource {
+// The orbits of several blocks in one engine. The context and the empty result must outlive it.
+template <typename Orbit, typename Context>
+class OrbitRun : public EngineRun, private OrbitSource {
  public:
-  template <typename Make>
-  BlockOrbits(Engine engine, const PairGeometry& geometry, double time_limit,
-              const BlockResult& empty, Make make, BlockQueue& queue)
+  OrbitRun(Engine engine, const PairGeometry& geometry, double time_limit, const Context& context,
+           const BlockResult& empty, BlockQueue& queue)
       : time_limit_(time_limit),
         queue_(queue),
         observer_(queue.observer()),
         blocks_(queue,
-                [make, &empty](const Block& block) {
-                  return WatchedOrbits<Orbits>{make(block), empty};
+                [&context, &empty](const Block& block) {
+                  return BlockOrbits<Orbit, Context>(context, block, empty);
                 }),
         run_(StartOrbits(engine, geometry, *this)) {}
 
@@ -84,7 +110,7 @@ class BlockOrbits : public EngineRun, private OrbitSource {
     for (size_t n = 0; n < starts.size(); ++n) {
       const std::optional<uint64_t> orbit = blocks_.Next();
       if (!orbit) return n;
-      starts[n] = {*orbit, blocks_.WorkOf(*orbit).orbits.Start(blocks_.IndexOf(*orbit))};
+      starts[n] = {*orbit, blocks_.WorkOf(*orbit).Start(blocks_.IndexOf(*orbit))};
     }
     return starts.size();
   }
@@ -99,18 +125,19 @@ class BlockOrbits : public EngineRun, private OrbitSource {
     }
   }
 
-  static constexpr bool kFollowsEvents = Follows<Orbits, Event, PairState>;
-  static constexpr bool kFollowsWaits = Follows<Orbits, BallMap>;
-  bool FollowsTangents() const override { return kFollowsEvents || kFollowsWaits; }
+  bool FollowsTangents() const override {
+    return requires(Orbit orbit) { orbit.tangents; };
+  }
   void FollowEvent(uint64_t orbit, const Event& event, const PairState& after) override {
-    if constexpr (kFollowsEvents) FollowWith(orbit, event, after);
+    Follow(orbit, event, after);
   }
-  void FollowWait(uint64_t orbit, const BallMap& flights) override {
-    if constexpr (kFollowsWaits) FollowWith(orbit, flights);
-  }
+  void FollowWait(uint64_t orbit, const BallMap& flights) override { Follow(orbit, flights); }
   template <typename... Followed>
-  void FollowWith(uint64_t orbit, const Followed&... followed) {
-    blocks_.WorkOf(orbit).orbits.Follow(blocks_.IndexOf(orbit), followed...);
+  void Follow(uint64_t number, const Followed&... followed) {
+    Orbit& orbit = blocks_.WorkOf(number)[blocks_.IndexOf(number)];
+    if constexpr (requires { orbit.tangents->Follow(followed...); }) {
+      orbit.tangents->Follow(followed...);
+    }
   }
 
   double TimeLimit() const override { return time_limit_; }
@@ -120,7 +147,7 @@ class BlockOrbits : public EngineRun, private OrbitSource {
   double time_limit_;
   BlockQueue& queue_;
   CollisionObserver* const observer_;
-  OpenBlocks<WatchedOrbits<Orbits>> blocks_;
+  OpenBlocks<BlockOrbits<Orbit, Context>> blocks_;
   std::unique_ptr<EngineRun> run_;
 };
 

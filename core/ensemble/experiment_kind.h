@@ -17,7 +17,6 @@
 namespace ballpiston {
 
 class PointExperiment;
-struct PointSummary;
 
 // The work of a sample in mean numbers of events, for chunk plans and for predictions of its cost
 // on a machine.
@@ -97,11 +96,9 @@ struct ExperimentKind {
   std::span<const Model> models;        // that can answer one of the aims; cheapest first
   std::span<const AimedEstimate> aims;  // the first one is the default
 
-  // `create` answers by samples, `compute` without samples. `spec` has one point, which is `point`,
-  // and a model of `models`. `compute` is null if every model takes samples.
+  // `spec` has one point, which is `point`, and a model of `models`.
   std::unique_ptr<PointExperiment> (*create)(const EnsembleSpec& spec,
                                              const PointParameters& point);
-  PointSummary (*compute)(const EnsembleSpec& spec, const PointParameters& point) = nullptr;
   // Finds combinations of values, or of values, model and precision, that are not permitted
   // although each value alone is. Requires that every value is permitted and that no needed list is
   // empty.

@@ -28,9 +28,14 @@ Estimate Scaled(Estimate estimate, double scale) {
 }
 
 std::optional<Estimate> Measurement::Of(const BlockResult& merged) const {
-  std::optional<Estimate> estimate = reading(merged);
+  std::optional<Estimate> estimate;
+  if (reading != nullptr) {
+    estimate = reading(merged);
+    if (estimate) estimate = Scaled(*std::move(estimate), scale);
+  } else if (known) {
+    estimate = {.value = known->value, .standard_error = known->error};
+  }
   if (!estimate) return std::nullopt;
-  estimate = Scaled(*std::move(estimate), scale);
   estimate->name = name;
   if (exact) estimate->exact = exact;
   if (limit) estimate->limit = limit;
@@ -81,13 +86,6 @@ Reading RatioAt(size_t index, double events_per_sample) {
   return [=](const BlockResult& merged) {
     return RatioOf(merged.batch_means[index], EventsIn(merged, events_per_sample));
   };
-}
-
-Estimate ExactEstimate(std::string name, double value, double relative_error) {
-  return {.name = std::move(name),
-          .value = value,
-          .standard_error = relative_error * value,
-          .exact = value};
 }
 
 }  // namespace ballpiston

@@ -21,18 +21,25 @@ namespace ballpiston {
 // for this estimate.
 using Reading = std::function<std::optional<Estimate>(const BlockResult& merged)>;
 
+// A computed value, with a bound of its error.
+struct Bounded {
+  double value;
+  double error;
+};
+
 struct Measurement {
   std::string name;
-  Reading reading;
-  double scale = 1;  // from the units of the reading to those of the estimate
-  // These two, in the units of the estimate, replace those of the reading.
+  Reading reading = nullptr;  // null by a model without samples: it answers with `known`
+  double scale = 1;           // from the units of the reading to those of the estimate
+  // These three are in the units of the estimate. The first two replace those of the reading.
   std::optional<double> exact = {};
   std::optional<double> limit = {};
+  std::optional<Bounded> known = {};  // empty if a model without samples has no such estimate
 
   std::optional<Estimate> Of(const BlockResult& merged) const;
 };
 
-// All estimates of a table that the sample is large enough for.
+// All estimates of a table that are known, or that the sample is large enough for.
 std::vector<Estimate> EstimatesOf(const std::vector<Measurement>& table, const BlockResult& merged);
 
 // The estimate in other units.
@@ -48,9 +55,6 @@ std::string RemarkOnSamples(absl::string_view estimate, double needed);
 // Readings of the accumulator with this index.
 Reading MeanAt(size_t index, double events_per_sample = 1);
 Reading RatioAt(size_t index, double events_per_sample = 1);
-
-// An estimate that is a closed form. Its standard error is the bound of the formula's rounding.
-Estimate ExactEstimate(std::string name, double value, double relative_error);
 
 inline CurvePoint CurvePointOf(double at, const Estimate& estimate) {
   return {at, estimate.value, estimate.standard_error, estimate.limit};

@@ -15,6 +15,7 @@ namespace {
 ChunkPlan PlanFor(const EnsembleSpec& spec, const PointParameters& point) {
   const ExperimentKind& kind = *spec.experiment;
   const Model model = Sampled(spec.model);
+  if (!TakesSamples(model)) return ChunkPlan();
   const uint64_t samples = SamplesAskedFor(spec, point);
   const double events = kind.work(model, point).Events();
   if (kind.trajectories == nullptr) {
@@ -83,12 +84,6 @@ PointExperiment::PointExperiment(const EnsembleSpec& spec, const PointParameters
       least_samples_(LeastSamples(spec, parameters, plan)),
       random_{spec.seed, PointStream(spec, parameters)} {}
 
-PointExperiment::PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters,
-                                 PointSummary answer)
-    : PointExperiment(spec, parameters, ChunkPlan()) {
-  computed_ = std::move(answer);
-}
-
 std::unique_ptr<const PointExperiment> PointExperiment::Create(const EnsembleSpec& spec,
                                                                size_t index) {
   return Create(spec, index, {.model = Sampled(spec.model)});
@@ -98,11 +93,7 @@ std::unique_ptr<const PointExperiment> PointExperiment::Create(const EnsembleSpe
                                                                size_t index, Answer answer) {
   const PointParameters point = PointAt(spec, index);
   const EnsembleSpec one = OnePointSpec(spec, point, answer.model);
-  const ExperimentKind& kind = *spec.experiment;
-  std::unique_ptr<PointExperiment> experiment =
-      TakesSamples(answer.model)
-          ? kind.create(one, point)
-          : std::make_unique<PointExperiment>(one, point, kind.compute(one, point));
+  std::unique_ptr<PointExperiment> experiment = spec.experiment->create(one, point);
   experiment->answer_ = std::move(answer);
   return experiment;
 }
@@ -110,16 +101,18 @@ std::unique_ptr<const PointExperiment> PointExperiment::Create(const EnsembleSpe
 void PointExperiment::SetMeasurements(BlockResult empty, std::vector<Measurement> table) {
   empty_ = std::move(empty);
   table_ = std::move(table);
-  const auto first = std::ranges::find(table_, aim_->name, &Measurement::name);
-  if (first != table_.end()) std::rotate(table_.begin(), first, first + 1);
+  std::ranges::stable_partition(table_, [this](const Measurement& row) {
+    return row.name == aim_->name || std::ranges::count(aim_->multiples, row.name) > 0;
+  });
+  if (TakesSamples(answer_.model)) return;
+  for (Measurement& row : table_) row.reading = nullptr;
 }
 
 Estimate PointExperiment::FirstEstimate(const BlockResult& merged) const {
-  return table_.empty() ? computed_.estimates.front() : table_.front().Of(merged).value();
+  return table_.front().Of(merged).value();
 }
 
 PointSummary PointExperiment::Summarize(const BlockResult& merged) const {
-  if (table_.empty()) return computed_;
   PointSummary summary = {
       .samples = merged.samples, .estimates = EstimatesOf(table_, merged), .health = merged.health};
   AddDetails(merged, summary);

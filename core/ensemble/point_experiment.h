@@ -57,9 +57,6 @@ class PointExperiment {
   PointExperiment(const PointExperiment&) = delete;
   PointExperiment& operator=(const PointExperiment&) = delete;
 
-  // A point without blocks, whose answer, with an estimate or more, needs no samples.
-  PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters, PointSummary answer);
-
   // The spec must have no violations; index < PointCount(spec). Uses the spec's own model; for AUTO
   // the billiard, which answers every experiment, in its domain (billiard/billiard_domain.h).
   static std::unique_ptr<const PointExperiment> Create(const EnsembleSpec& spec, size_t index);
@@ -106,14 +103,14 @@ class PointExperiment {
   const RandomStream& random() const { return random_; }
 
  protected:
-  // For an answer by sampling. The second one has a plan of its own, as tests want it.
+  // The second one has a plan of its own, as tests want it.
   PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters);
   PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters,
                   const ChunkPlan& plan);
 
-  // To be called in the constructor of an experiment that samples. If the table has the estimate
-  // that the target names, it becomes the first one. The first row must have an estimate for every
-  // sample.
+  // To be called in the constructor of an experiment. If the table has the estimate that the target
+  // names, it becomes the first one, before its multiples. The first row must have an estimate for
+  // every sample, or be known if the model takes none.
   void SetMeasurements(BlockResult empty, std::vector<Measurement> table);
 
   // Adds histograms, curves and remarks, and estimates that are not in the table. The summary
@@ -134,10 +131,9 @@ class PointExperiment {
   RandomStream random_;
   BlockResult empty_;
   std::vector<Measurement> table_;
-  PointSummary computed_;  // the answer, if it needs no samples
 };
 
-// Makes an experiment that samples; for its row.
+// Makes an experiment; for its row.
 template <typename Experiment>
 std::unique_ptr<PointExperiment> CreateAs(const EnsembleSpec& spec, const PointParameters& point) {
   return std::make_unique<Experiment>(spec, point);

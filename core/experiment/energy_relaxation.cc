@@ -43,14 +43,14 @@ double CollisionsPerOrbit(const PointParameters& point) {
 
 EnergyRelaxation::EnergyRelaxation(const PairGeometry& geometry, const PointParameters& point,
                                    Model model)
-    : is_limit_(model == Model::kMarkov),
+    : model_(model),
       epsilon_(point.Find(kEpsilon)),
       unit_of_limit_(MeanFreeTimesOf(geometry).ball_piston / 4),
       unit_(WithoutLastBits(unit_of_limit_)),
       mean_free_time_(4 * unit_),
-      events_per_orbit_(is_limit_  ? 1
-                        : epsilon_ ? ShareThatMeets(geometry, *epsilon_, window())
-                                   : kEventsOfACorrelation),
+      events_per_orbit_(model == Model::kMarkov ? 1
+                        : epsilon_              ? ShareThatMeets(geometry, *epsilon_, window())
+                                                : kEventsOfACorrelation),
       return_time_(epsilon_ ? ConditionalMeanFreeTime(geometry, *epsilon_) : 0) {}
 
 double EnergyRelaxation::orbit_time() const {
@@ -108,32 +108,30 @@ SpectralValue EnergyRelaxation::IntegralOfLimit(double window) const {
   return {unit_of_limit_ * integral.value, unit_of_limit_ * integral.error};
 }
 
-std::vector<Measurement> EnergyRelaxation::TableOf(const Reading& integral) const {
-  if (!epsilon_) return {{"relaxation_time", integral}};
-  std::vector<Measurement> table;
-  if (HasRelaxationTime(epsilon_)) {
-    table.push_back({"relaxation_time", integral, 1 / (*epsilon_ - kMeanPistonEnergy)});
-  }
-  table.push_back({"decay_integral", integral});
-  return table;
+SpectralValue EnergyRelaxation::IntegralOfLimit() const { return IntegralOfLimit(kForEver); }
+
+std::optional<Estimate> EnergyRelaxation::MeasuredIntegral(const BlockResult& merged) const {
+  std::optional<Estimate> integral = MeanAt(0, events_per_orbit_)(merged);
+  const double limit = IntegralOfLimit().value;
+  integral->value += WithoutLastBits(limit - IntegralOfLimit(window()).value);
+  integral->limit = limit;
+  if (model_ == Model::kMarkov) integral->exact = limit;
+  return integral;
 }
 
 std::vector<Measurement> EnergyRelaxation::Table() const {
-  return TableOf([this](const BlockResult& merged) {
-    std::optional<Estimate> integral = MeanAt(0, events_per_orbit_)(merged);
-    const double limit = IntegralOfLimit(kForEver).value;
-    integral->value += WithoutLastBits(limit - IntegralOfLimit(window()).value);
-    integral->limit = limit;
-    if (is_limit_) integral->exact = limit;
-    return integral;
-  });
-}
-
-std::vector<Estimate> EnergyRelaxation::EstimatesOfLimit() const {
-  const SpectralValue integral = IntegralOfLimit(kForEver);
-  const Estimate estimate = {
-      .value = integral.value, .standard_error = integral.error, .limit = integral.value};
-  return EstimatesOf(TableOf([=](const BlockResult&) { return estimate; }), {});
+  const auto reading = [this](const BlockResult& merged) { return MeasuredIntegral(merged); };
+  const double in_time = epsilon_ ? 1 / (*epsilon_ - kMeanPistonEnergy) : 1;
+  std::vector<Measurement> table;
+  if (HasRelaxationTime(epsilon_)) table.push_back({"relaxation_time", reading, in_time});
+  if (epsilon_) table.push_back({"decay_integral", reading});
+  if (model_ != Model::kSpectrum) return table;
+  const SpectralValue limit = IntegralOfLimit();
+  for (Measurement& row : table) {
+    row.known = {row.scale * limit.value, std::fabs(row.scale) * limit.error};
+    row.limit = row.known->value;
+  }
+  return table;
 }
 
 Curve EnergyRelaxation::MeasuredCurve(const BlockResult& merged) const {

@@ -80,13 +80,14 @@ class EnergyRelaxation {
   double events_per_orbit() const { return events_per_orbit_; }
 
   // relaxation_time, if it exists; with epsilon also decay_integral. The jump process is the limit,
-  // whose value is exact for it. The table must not outlive this object.
+  // whose value is exact for it; the spectrum knows both. The table must not outlive this object.
   std::vector<Measurement> Table() const;
   Curve MeasuredCurve(const BlockResult& merged) const;
   std::vector<NamedHistogram> MeasuredLaws(const BlockResult& merged) const;
 
-  // These four are for the limit. Their standard errors are bounds of the numerical error.
-  std::vector<Estimate> EstimatesOfLimit() const;
+  // These four are for the limit. Their errors are bounds of the numerical error. The integral is
+  // that of the autocorrelation, or of the mean energy less 1/6.
+  SpectralValue IntegralOfLimit() const;
   Curve CurveOfLimit() const;
   std::vector<NamedHistogram> LawsOfLimit() const;  // their bins, without counts
   std::vector<std::vector<double>> ProbabilitiesOfLimit() const;
@@ -97,11 +98,10 @@ class EnergyRelaxation {
   ByLag Autocorrelation(const StepFunction& energy) const;
   double window() const { return kWindowTimes * mean_free_time_; }
   double Lag(size_t i) const { return window() / (kLags - 1) * static_cast<double>(i); }
-  // int_0^window of the limit's curve: autocorrelation, or mean energy less 1/6.
-  SpectralValue IntegralOfLimit(double window) const;
-  std::vector<Measurement> TableOf(const Reading& integral) const;
+  SpectralValue IntegralOfLimit(double window) const;  // up to `window`
+  std::optional<Estimate> MeasuredIntegral(const BlockResult& merged) const;
 
-  bool is_limit_;  // the jump process answers
+  Model model_;
   std::optional<double> epsilon_;
   double unit_of_limit_;  // |G|/|dG_bp|: the spectrum's unit of time
   double unit_;           // unit_of_limit_ without its last bits; measurements use it

@@ -5,6 +5,8 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -21,135 +23,108 @@
 namespace ballpiston {
 namespace {
 
-class RelaxingOrbits {
- public:
-  static constexpr uint64_t kWalkedTogether = 256;
-
-  RelaxingOrbits(const PairExperiment& experiment, const EnergyRelaxation& relaxation,
-                 const Block& block)
-      : experiment_(experiment),
-        relaxation_(relaxation),
-        first_(block.first),
-        energies_(block.samples),
-        values_(block.samples) {}
-
-  uint64_t count() const { return energies_.size(); }
-
-  PairState Start(uint64_t orbit) {
-    CounterRandom random = experiment_.random().Sample(first_ + orbit);
-    const PairGeometry& geometry = experiment_.geometry();
-    const PairState state = relaxation_.epsilon()
-                                ? DrawFromFlowMeasureAt(geometry, *relaxation_.epsilon(), random)
-                                : DrawFromFlowMeasure(geometry, random);
-    energies_[orbit].emplace(state.piston_velocity * state.piston_velocity / 2);
-    return state;
-  }
-
-  AfterCollision Collide(uint64_t orbit, const Collision& collision) {
-    std::optional<StepFunction>& energy = energies_[orbit];
-    if (!collision.expired) {
-      // After the collision the piston has the ball's normal velocity component.
-      const double v = collision.state.ball_speed * collision.state.direction.x();
-      energy->Add(collision.time, v * v / 2);
-      if (!IsComplete(*energy)) return AfterCollision::kGoOn;
-    }
-    values_[orbit] = relaxation_.Measure(*energy);
-    energy.reset();
-    return AfterCollision::kEnd;
-  }
-
-  double StartOfWalk(uint64_t orbit) {
-    const std::optional<double>& epsilon = relaxation_.epsilon();
-    const double u =
-        epsilon ? std::sqrt(2 * *epsilon) : experiment_.random().Sample(first_ + orbit).Uniform();
-    energies_[orbit].emplace(u * u / 2);
-    return u;
-  }
-
-  AfterCollision Jump(uint64_t orbit, double waiting_time, double u) {
-    StepFunction& energy = *energies_[orbit];
-    energy.Add(relaxation_.unit() * waiting_time, u * u / 2);
-    return IsComplete(energy) ? AfterCollision::kEnd : AfterCollision::kGoOn;
-  }
-
-  // Walks are measured here: measurements between their jumps took 10 % more time.
-  void AddTo(BlockResult& result) const {
-    for (size_t i = 0; i < values_.size(); ++i) {
-      if (!values_[i].empty()) {
-        relaxation_.Record(values_[i], result);
-      } else if (energies_[i] && IsComplete(*energies_[i])) {
-        relaxation_.Record(relaxation_.Measure(*energies_[i]), result);
-      }
-    }
-  }
-
- private:
-  bool IsComplete(const StepFunction& energy) const {
-    return energy.last_jump() >= relaxation_.orbit_time();
-  }
-
-  const PairExperiment& experiment_;
-  const EnergyRelaxation& relaxation_;
-  uint64_t first_;
-  std::vector<std::optional<StepFunction>> energies_;  // of the orbits that run, and of walks
-  std::vector<std::vector<double>> values_;            // by orbit; empty for an escape
-};
-
-Estimate SpectralGap() {
-  const SpectralValue gap = RelaxationSpectrum::Get().Gap();
-  return {.name = "spectral_gap", .value = gap.value, .standard_error = gap.error};
-}
-
-// The isolated rates after the gap.
-void AddFurtherRates(std::vector<Estimate>& estimates) {
-  const std::vector<SpectralValue> rates = RelaxationSpectrum::Get().IsolatedRates();
-  for (size_t i = 1; i < rates.size(); ++i) {
-    estimates.push_back({.name = absl::StrCat("isolated_rate_", i + 1),
-                         .value = rates[i].value,
-                         .standard_error = rates[i].error});
-  }
-}
-
-// No samples: standard errors are bounds of the numerical error.
-PointSummary RelaxationBySpectrum(const EnsembleSpec&, const PointParameters& point) {
-  const EnergyRelaxation relaxation(GeometryOf(point), point);
-  PointSummary summary = {.estimates = relaxation.EstimatesOfLimit(),
-                          .histograms = relaxation.LawsOfLimit(),
-                          .curves = {relaxation.CurveOfLimit()},
-                          .remarks = RemarksOnDecay(relaxation.epsilon())};
-  summary.estimates.push_back(SpectralGap());
-  AddFurtherRates(summary.estimates);
-  return summary;
-}
-
-// By billiard, billiard_reference or markov.
+// By billiard, billiard_reference or markov, or by spectrum, whose errors are bounds of the
+// numerical error.
 class EnergyRelaxationExperiment : public PairExperiment {
  public:
   EnergyRelaxationExperiment(const EnsembleSpec& spec, const PointParameters& point)
       : PairExperiment(spec, point), relaxation_(geometry(), point, answer().model) {
     std::vector<Measurement> table = relaxation_.Table();
-    if (IsLimit()) {
-      table.push_back({"spectral_gap", [](const BlockResult&) { return SpectralGap(); }});
-    }
+    if (IsLimit()) table.push_back({"spectral_gap", SpectralGap});
+    if (answer().model == Model::kSpectrum) AddRates(table);
     SetMeasurements(relaxation_.Empty(), std::move(table));
   }
 
-  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
-    return RunOrbits(
-        queue, [this](const Block& block) { return RelaxingOrbits(*this, relaxation_, block); },
-        relaxation_.orbit_time());
-  }
+  const EnergyRelaxation& relaxation() const { return relaxation_; }
+
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override;
 
  protected:
   void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
+    const bool is_measured = TakesSamples(answer().model);
     summary.remarks = RemarksOnDecay(relaxation_.epsilon());
-    summary.curves.push_back(relaxation_.MeasuredCurve(merged));
-    summary.histograms = relaxation_.MeasuredLaws(merged);
+    summary.curves = {is_measured ? relaxation_.MeasuredCurve(merged) : relaxation_.CurveOfLimit()};
+    summary.histograms = is_measured ? relaxation_.MeasuredLaws(merged) : relaxation_.LawsOfLimit();
   }
 
  private:
+  static Estimate SpectralGap(const BlockResult&) {
+    const SpectralValue gap = RelaxationSpectrum::Get().Gap();
+    return {.value = gap.value, .standard_error = gap.error};
+  }
+
+  // The gap, and the further isolated rates.
+  static void AddRates(std::vector<Measurement>& table) {
+    size_t number = 0;
+    for (const auto& [value, error] : RelaxationSpectrum::Get().IsolatedRates()) {
+      std::string name = ++number == 1 ? "spectral_gap" : absl::StrCat("isolated_rate_", number);
+      table.push_back({.name = std::move(name), .known = {{value, error}}});
+    }
+  }
+
   EnergyRelaxation relaxation_;
 };
+
+struct RelaxingOrbit {
+  std::optional<StepFunction> energy;  // of an orbit that runs, and of a walk
+  std::vector<double> values;          // empty for an escape
+
+  static constexpr uint64_t kWalkedTogether = 256;
+  static uint64_t LengthIn(const Block&) { return 1; }
+
+  PairState Start(const EnergyRelaxationExperiment& experiment, const OrbitSamples& samples) {
+    CounterRandom random = experiment.random().Sample(samples.first);
+    const PairGeometry& geometry = experiment.geometry();
+    const std::optional<double>& epsilon = experiment.relaxation().epsilon();
+    const PairState state = epsilon ? DrawFromFlowMeasureAt(geometry, *epsilon, random)
+                                    : DrawFromFlowMeasure(geometry, random);
+    energy.emplace(state.piston_velocity * state.piston_velocity / 2);
+    return state;
+  }
+
+  AfterCollision Collide(const EnergyRelaxationExperiment& experiment, const Collision& collision) {
+    if (!collision.expired) {
+      // After the collision the piston has the ball's normal velocity component.
+      const double v = collision.state.ball_speed * collision.state.direction.x();
+      energy->Add(collision.time, v * v / 2);
+      if (!IsComplete(experiment)) return AfterCollision::kGoOn;
+    }
+    values = experiment.relaxation().Measure(*energy);
+    energy.reset();
+    return AfterCollision::kEnd;
+  }
+
+  double StartOfWalk(const EnergyRelaxationExperiment& experiment, const OrbitSamples& samples) {
+    const std::optional<double>& epsilon = experiment.relaxation().epsilon();
+    const double u =
+        epsilon ? std::sqrt(2 * *epsilon) : experiment.random().Sample(samples.first).Uniform();
+    energy.emplace(u * u / 2);
+    return u;
+  }
+
+  AfterCollision Jump(const EnergyRelaxationExperiment& experiment, double waiting_time, double u) {
+    energy->Add(experiment.relaxation().unit() * waiting_time, u * u / 2);
+    return IsComplete(experiment) ? AfterCollision::kEnd : AfterCollision::kGoOn;
+  }
+
+  // Walks are measured here: measurements between their jumps took 10 % more time.
+  void AddTo(const EnergyRelaxationExperiment& experiment, BlockResult& result) const {
+    const EnergyRelaxation& relaxation = experiment.relaxation();
+    if (!values.empty()) {
+      relaxation.Record(values, result);
+    } else if (energy && IsComplete(experiment)) {
+      relaxation.Record(relaxation.Measure(*energy), result);
+    }
+  }
+
+  bool IsComplete(const EnergyRelaxationExperiment& experiment) const {
+    return energy->last_jump() >= experiment.relaxation().orbit_time();
+  }
+};
+
+std::unique_ptr<EngineRun> EnergyRelaxationExperiment::StartRun(BlockQueue& queue) const {
+  return RunOrbits<RelaxingOrbit>(queue, *this, relaxation_.orbit_time());
+}
 
 std::vector<std::vector<double>> ProbabilitiesOfTheLimit(const PointParameters& point) {
   return EnergyRelaxation(GeometryOf(point), point).ProbabilitiesOfLimit();
@@ -196,7 +171,7 @@ bool HasRelaxationTimeAt(const PointParameters& point) {
 double ErrorOfDecay(Model model, const PointParameters& point) {
   constexpr double kScatter = 0.42;
   const EnergyRelaxation relaxation(GeometryOf(point), point);
-  const double decay = relaxation.EstimatesOfLimit().back().value;
+  const double decay = relaxation.IntegralOfLimit().value;
   const double error = std::fabs(kScatter * 4 * relaxation.unit() / decay);
   if (model == Model::kMarkov) return error;
   const double meet = ShareThatMeetsEarly(point);
@@ -259,7 +234,6 @@ constinit const ExperimentKind kEnergyRelaxation = {
     .models = kModelsOfRelaxation,
     .aims = kAimsOfRelaxation,
     .create = CreateAs<EnergyRelaxationExperiment>,
-    .compute = RelaxationBySpectrum,
     .check_grid = CheckPairGrid,
     .work = WorkOfAnOrbit,
     .collisions = CollisionsOfASample,

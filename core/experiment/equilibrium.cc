@@ -35,40 +35,28 @@ std::array<double, kHits> ExactTimes(const PairGeometry& geometry) {
   return {tau.ball_piston, tau.ball_wall, tau.piston_wall};
 }
 
-class TimedOrbits : public OrbitsInEquilibrium {
- public:
-  TimedOrbits(const PairExperiment& experiment, const Block& block)
-      : OrbitsInEquilibrium(experiment, block,
-                            std::max<uint64_t>(block.samples / kOrbitsPerBlock, 1)),
-        orbits_(count()) {}
+struct TimedOrbit : OrbitInEquilibrium {
+  double time = 0;
+  std::array<uint64_t, kHits> hits = {};
 
-  PairState Start(uint64_t orbit) const { return Draw(orbit); }
-
-  AfterCollision Collide(uint64_t orbit, const Collision& collision) {
-    Orbit& sums = orbits_[orbit];
-    sums.time += collision.time;
-    sums.collisions[kBallPiston] += 1;
-    sums.collisions[kBallWall] += collision.ball_wall_hits;
-    sums.collisions[kPistonWall] += collision.piston_wall_hits;
-    return After(orbit, sums.collisions[kBallPiston]);
+  static uint64_t LengthIn(const Block& block) {
+    return std::max<uint64_t>(block.samples / kOrbitsPerBlock, 1);
   }
 
-  void AddTo(BlockResult& result) const {
-    for (const auto& [time, collisions] : orbits_) {
-      result.samples += collisions[kBallPiston];
-      for (size_t hit = 0; hit < kHits; ++hit) {
-        result.batch_means[hit].Add(time, static_cast<double>(collisions[hit]));
-      }
+  AfterCollision Collide(const PairExperiment&, const Collision& collision) {
+    time += collision.time;
+    hits[kBallPiston] += 1;
+    hits[kBallWall] += collision.ball_wall_hits;
+    hits[kPistonWall] += collision.piston_wall_hits;
+    return Count();
+  }
+
+  void AddTo(const PairExperiment&, BlockResult& result) const {
+    result.samples += collisions;
+    for (size_t hit = 0; hit < kHits; ++hit) {
+      result.batch_means[hit].Add(time, static_cast<double>(hits[hit]));
     }
   }
-
- private:
-  struct Orbit {
-    double time = 0;
-    std::array<uint64_t, kHits> collisions = {};
-  };
-
-  std::vector<Orbit> orbits_;
 };
 
 class EquilibriumExperiment : public PairExperiment {
@@ -76,27 +64,20 @@ class EquilibriumExperiment : public PairExperiment {
   EquilibriumExperiment(const EnsembleSpec& spec, const PointParameters& point)
       : PairExperiment(spec, point) {
     std::vector<Measurement> table;
+    const std::array<double, kHits> exact = ExactTimes(geometry());
     for (size_t hit = 0; hit < kHits; ++hit) {
       table.push_back({.name = kNamesOfTimes[hit],
                        .reading = RatioAt(hit, kEventsPerCollision),
-                       .exact = ExactTimes(geometry())[hit]});
+                       .exact = exact[hit],
+                       .known = {{exact[hit], kMeanFreeTimeRelativeError * exact[hit]}}});
     }
     SetMeasurements({.batch_means = std::vector<BatchMeans>(kHits)}, std::move(table));
   }
 
   std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
-    return RunOrbits(queue, [this](const Block& block) { return TimedOrbits(*this, block); });
+    return RunOrbits<TimedOrbit>(queue, *this);
   }
 };
-
-PointSummary ExactMeanFreeTimes(const EnsembleSpec&, const PointParameters& point) {
-  PointSummary summary;
-  for (size_t hit = 0; hit < kHits; ++hit) {
-    summary.estimates.push_back(ExactEstimate(
-        kNamesOfTimes[hit], ExactTimes(GeometryOf(point))[hit], kMeanFreeTimeRelativeError));
-  }
-  return summary;
-}
 
 SampleWork WorkInEquilibrium(Model, const PointParameters& point) {
   return WorkOfACollision(GeometryOf(point));
@@ -121,7 +102,6 @@ constinit const ExperimentKind kEquilibrium = {.name = "equilibrium",
                                                .models = kModelsOfEquilibrium,
                                                .aims = kAimsOfEquilibrium,
                                                .create = CreateAs<EquilibriumExperiment>,
-                                               .compute = ExactMeanFreeTimes,
                                                .check_grid = CheckPairGrid,
                                                .work = WorkInEquilibrium,
                                                .collisions = OneCollision,

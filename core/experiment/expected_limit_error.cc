@@ -73,7 +73,7 @@ double DecayError(const Scales& scales, double epsilon) {
 
 double LimitOfDecay(const Scales& scales, const PointParameters& point) {
   const EnergyRelaxation relaxation(scales.geometry, point);
-  return relaxation.EstimatesOfLimit().back().value / scales.tau;
+  return relaxation.IntegralOfLimit().value / scales.tau;
 }
 
 // The delay of an exchange by the slow pistons of the cold wall, over the time that the exchanges

@@ -33,6 +33,8 @@ namespace ballpiston {
 namespace {
 
 constexpr double kInvariantExponent = 1;
+constexpr double kExactMeanRelativeError =
+    kMeanFreeTimeRelativeError + kConditionalRateRelativeError;
 
 constexpr char kConditionalTime[] = "mean_free_time_conditional";
 constexpr char kHitTime[] = "mean_hit_time";
@@ -87,28 +89,26 @@ class ReturnExperiment : public PairExperiment {
  public:
   ReturnExperiment(const EnsembleSpec& spec, const PointParameters& point, double exponent)
       : PairExperiment(spec, point),
-        law_{point[kEpsilon], exponent},
-        exact_mean_(ConditionalMeanFreeTime(geometry(), law_.epsilon)),
-        events_(EventsOfAReturn(answer().model, point)) {}
-
-  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override;
-
-  virtual void Record(const Return& hit, BlockResult& result) const {
-    result.moments[kTime].Add(hit.time);
-  }
+        starts_{.geometry = geometry(),
+                .epsilon = point[kEpsilon],
+                .exponent = exponent,
+                .random = random()},
+        exact_mean_(ConditionalMeanFreeTime(geometry(), starts_.epsilon)),
+        events_(TakesSamples(answer().model) ? EventsOfAReturn(answer().model, point) : 0) {}
 
  protected:
-  bool IsStationary() const { return law_.exponent == kInvariantExponent; }
+  const ReturnStarts& starts() const { return starts_; }
   // Under the invariant law, at every delta.
   double exact_mean() const { return exact_mean_; }
   std::optional<double> IfStationary(double exact) const {
-    return IsStationary() ? std::optional(exact) : std::nullopt;
+    return starts_.exponent == kInvariantExponent ? std::optional(exact) : std::nullopt;
   }
 
   Measurement MeanTime(std::string name) const {
     return {.name = std::move(name),
             .reading = MeanAt(kTime, events_),
-            .exact = IfStationary(exact_mean_)};
+            .exact = IfStationary(exact_mean_),
+            .known = {{exact_mean_, kExactMeanRelativeError * exact_mean_}}};
   }
 
   Measurement CoefficientOfVariation() const {
@@ -133,33 +133,10 @@ class ReturnExperiment : public PairExperiment {
                     .batches = times.EffectiveCount()};
   }
 
-  ReturnLaw law_;
+  ReturnStarts starts_;
   double exact_mean_;
   double events_;  // of a sample, for the error of the mean
 };
-
-class RecordedReturns : public ReturnOrbits {
- public:
-  RecordedReturns(const ReturnExperiment& experiment, const ReturnLaw& law, const Block& block)
-      : ReturnOrbits(experiment.geometry(), law, experiment.random(), block),
-        experiment_(experiment) {}
-
-  void AddTo(BlockResult& result) const {
-    for (const std::optional<Return>& hit : returns()) {
-      if (!hit) continue;
-      ++result.samples;
-      experiment_.Record(*hit, result);
-    }
-  }
-
- private:
-  const ReturnExperiment& experiment_;
-};
-
-std::unique_ptr<EngineRun> ReturnExperiment::StartRun(BlockQueue& queue) const {
-  return RunOrbits(queue,
-                   [this](const Block& block) { return RecordedReturns(*this, law_, block); });
-}
 
 // ---- conditional-mean-free-time ----
 
@@ -170,13 +147,11 @@ class ConditionalMeanFreeTimeExperiment : public ReturnExperiment {
     SetMeasurements({.moments = std::vector<Moments>(1)},
                     {MeanTime(kConditionalTime), CoefficientOfVariation()});
   }
-};
 
-PointSummary ExactConditionalTime(const EnsembleSpec&, const PointParameters& point) {
-  const double time = ConditionalMeanFreeTime(GeometryOf(point), point[kEpsilon]);
-  const double error = kMeanFreeTimeRelativeError + kConditionalRateRelativeError;
-  return {.estimates = {ExactEstimate(kConditionalTime, time, error)}};
-}
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
+    return RunOrbits<ReturnOrbit>(queue, starts());
+  }
+};
 
 constexpr ParameterUse kParametersOfConditional[] = {{&kRho}, {&kDelta}, {&kEpsilon}};
 constexpr Model kModelsOfConditional[] = {Model::kClosedForm, Model::kBilliard,
@@ -199,6 +174,17 @@ auto IngoingOf(Histograms& histograms) {
   return std::span(histograms).first(histograms.size() - 1);
 }
 
+struct FirstHitOrbit : ReturnOrbit {
+  void AddTo(const ReturnStarts& starts, BlockResult& result) const {
+    if (!hit) return;
+    ReturnOrbit::AddTo(starts, result);
+    result.moments[kCosAlpha].Add(hit->direction.x());
+    result.moments[kSigma].Add(hit->sigma);
+    CountIngoing(*hit, IngoingOf(result.histograms));
+    result.histograms.back().Add(hit->time);
+  }
+};
+
 class FirstHitExperiment : public ReturnExperiment {
  public:
   FirstHitExperiment(const EnsembleSpec& spec, const PointParameters& point)
@@ -216,12 +202,8 @@ class FirstHitExperiment : public ReturnExperiment {
                                        CoefficientOfVariation()});
   }
 
-  void Record(const Return& hit, BlockResult& result) const override {
-    ReturnExperiment::Record(hit, result);
-    result.moments[kCosAlpha].Add(hit.direction.x());
-    result.moments[kSigma].Add(hit.sigma);
-    CountIngoing(hit, IngoingOf(result.histograms));
-    result.histograms.back().Add(hit.time);
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
+    return RunOrbits<FirstHitOrbit>(queue, starts());
   }
 
  protected:
@@ -296,7 +278,6 @@ constinit const ExperimentKind kConditionalMeanFreeTime = {
     .models = kModelsOfConditional,
     .aims = kAimsOfConditional,
     .create = CreateAs<ConditionalMeanFreeTimeExperiment>,
-    .compute = ExactConditionalTime,
     .check_grid = CheckPairGrid,
     .work = WorkOfAReturn,
     .collisions = OneCollision,

@@ -120,26 +120,18 @@ constexpr size_t kMomentsOfCurrents = kFirstLag + kWindow;
 
 constexpr char kConductivity[] = "conductivity";
 
-bool AimsAtConductivity(const EnsembleSpec& spec) { return AimOf(spec).name == kConductivity; }
-
-// The conductivity is first if the target names it, else last.
-template <typename Row>
-std::vector<Row> WithConductivity(std::vector<Row> rows, const std::vector<Row>& conductivity,
-                                  bool is_first) {
-  rows.insert(is_first ? rows.begin() : rows.end(), conductivity.begin(), conductivity.end());
-  return rows;
-}
-
 class GasEquilibrium : public GasExperiment {
  public:
   GasEquilibrium(const EnsembleSpec& spec, const PointParameters& point)
       : GasExperiment(spec, point, PeriodicGasOf(point), point[kTemperature]),
         duration_(WithoutLastBits(TimeInEquilibrium(spec.model, geometry()))),
         events_(EventsOfCurrents(answer().model, geometry().shape())) {
+    std::vector<Measurement> table = Table();
+    if (HasConductivity()) AddConductivity(table);
     SetMeasurements({.moments = std::vector<Moments>(kMomentsOfCurrents),
                      .batch_means = std::vector<BatchMeans>(kMeansOfAReplica),
                      .histograms = EmptySpeeds()},
-                    WithConductivity(Table(), ConductivityTable(), AimsAtConductivity(spec)));
+                    std::move(table));
   }
 
   std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override;
@@ -170,11 +162,17 @@ class GasEquilibrium : public GasExperiment {
 
  protected:
   void AddDetails(const BlockResult& merged, PointSummary& summary) const override {
+    if (answer().model == Model::kSpectrum) {
+      const char* const gas = geometry().shape().is_lattice ? "lattice" : "chain";
+      summary.remarks = {absl::StrCat("the conductivity is that of the infinite ", gas,
+                                      " in the limit of rare exchanges")};
+    }
+    if (!TakesSamples(answer().model)) return;
     for (size_t i = 0; i < kBodies.size(); ++i) {
       summary.histograms.push_back({.name = absl::StrCat(kBodies[i].name, "_speed"),
                                     .histogram = AtTemperature(merged.histograms[i])});
     }
-    if (!MeasuresConductivity(geometry())) {
+    if (!HasConductivity()) {
       summary.remarks.push_back(
           absl::StrFormat("the conductivity is not measured in gases of more than %d contacts; "
                           "a smaller gas has nearly the same conductivity",
@@ -219,8 +217,12 @@ class GasEquilibrium : public GasExperiment {
     std::vector<Measurement> table = {{"exchange_rate", RatioAt(kRate), std::sqrt(temperature())},
                                       {"temperature_ball", RatioAt(kOfBalls), temperature()},
                                       {"temperature_piston", RatioAt(kOfPistons), temperature()}};
-    table[0].exact = GasExchangeRate(geometry(), temperature());
+    const double rate = GasExchangeRate(geometry(), temperature());
+    table[0].exact = rate;
+    table[0].known = {rate, kGasExchangeRateRelativeError * rate};
     table[1].exact = table[2].exact = temperature();
+    table[1].known = table[2].known = {temperature(), 0};
+    if (!TakesSamples(answer().model)) return table;  // without speeds
     for (size_t i = 0; i < kBodies.size(); ++i) {
       table.push_back(
           {absl::StrCat(kBodies[i].name, "_speed_divergence"), [i](const BlockResult& merged) {
@@ -230,18 +232,24 @@ class GasEquilibrium : public GasExperiment {
     return table;
   }
 
-  // The limit beside the estimates is that of the infinite gas.
-  std::vector<Measurement> ConductivityTable() const {
-    if (!MeasuresConductivity(geometry())) return {};
-    const auto in_units_of = [&](double scale, const char* name) {
-      return Measurement{
-          .name = name,
-          .reading = MeanAt(kFirstWindow + kWindow, events_),
-          .scale = scale,
-          .limit = scale * StaticConductivity() * (1 + LimitCorrection(geometry()).value)};
+  // The spectrum knows the conductivity of every gas.
+  bool HasConductivity() const {
+    if (answer().model == Model::kSpectrum) return true;
+    return TakesSamples(answer().model) && MeasuresConductivity(geometry());
+  }
+
+  // The limit, which is beside measured estimates, is that of the infinite gas.
+  void AddConductivity(std::vector<Measurement>& table) const {
+    const auto [correction, error] = LimitCorrection(geometry());
+    // `of_static`: the static conductivity. Its last bit may differ from that of the scaled one.
+    const auto add = [&](const char* name, double scale, double of_static) {
+      Measurement row = {name, MeanAt(kFirstWindow + kWindow, events_), scale};
+      if (TakesSamples(answer().model)) row.limit = scale * StaticConductivity() * (1 + correction);
+      row.known = {of_static * (1 + correction), of_static * error};
+      table.push_back(std::move(row));
     };
-    return {in_units_of(ConductivityScale(), kConductivity),
-            in_units_of(1 / StaticConductivity(), "conductivity_ratio")};
+    add(kConductivity, ConductivityScale(), InfiniteGasExchangeRate(geometry(), temperature()) / 2);
+    add("conductivity_ratio", 1 / StaticConductivity(), 1);
   }
 
   // The moments from index `first` on are those at times from `first_step` to the window's end.
@@ -372,39 +380,6 @@ std::unique_ptr<EngineRun> GasEquilibrium::StartRun(BlockQueue& queue) const {
   return std::make_unique<GasBlocks>(*this, queue);
 }
 
-std::vector<Estimate> ClosedForms(const GasGeometry& geometry, double temperature) {
-  return {ExactEstimate("exchange_rate", GasExchangeRate(geometry, temperature),
-                        kGasExchangeRateRelativeError),
-          ExactEstimate("temperature_ball", temperature, 0),
-          ExactEstimate("temperature_piston", temperature, 0)};
-}
-
-// The conductivity of the infinite gas in the limit of rare exchanges, and its ratio to the static
-// one.
-std::vector<Estimate> ConductivityOfLimit(const GasGeometry& geometry, double temperature) {
-  const ExtrapolatedValue correction = LimitCorrection(geometry);
-  const double of_static = InfiniteGasExchangeRate(geometry, temperature) / 2;
-  const auto in = [&](const char* name, double unit) {
-    return Estimate{.name = name,
-                    .value = unit * (1 + correction.value),
-                    .standard_error = unit * correction.error};
-  };
-  return {in(kConductivity, of_static), in("conductivity_ratio", 1)};
-}
-
-PointSummary ComputedEquilibrium(const EnsembleSpec& spec, const PointParameters& point) {
-  const GasGeometry geometry = PeriodicGasOf(point);
-  const double temperature = point[kTemperature];
-  std::vector<Estimate> closed_forms = ClosedForms(geometry, temperature);
-  if (spec.model == Model::kClosedForm) return {.estimates = std::move(closed_forms)};
-  const char* const gas = geometry.shape().is_lattice ? "lattice" : "chain";
-  return {.estimates =
-              WithConductivity(std::move(closed_forms), ConductivityOfLimit(geometry, temperature),
-                               AimsAtConductivity(spec)),
-          .remarks = {absl::StrCat("the conductivity is that of the infinite ", gas,
-                                   " in the limit of rare exchanges")}};
-}
-
 // The current of the jump process costs twice as much as its exchanges; the billiard's current
 // costs almost nothing.
 SampleWork WorkOfGasEquilibrium(Model model, const PointParameters& point) {
@@ -509,7 +484,6 @@ constinit const ExperimentKind kGasEquilibrium = {.name = "gas-equilibrium",
                                                   .models = kModelsOfGasEquilibrium,
                                                   .aims = kAimsOfGasEquilibrium,
                                                   .create = CreateAs<GasEquilibrium>,
-                                                  .compute = ComputedEquilibrium,
                                                   .check_grid = CheckEquilibriumGrid,
                                                   .work = WorkOfGasEquilibrium,
                                                   .collisions = ExchangesOfASample,

@@ -63,72 +63,51 @@ Reading FurtherRatioAt(size_t index) {
 
 // `Tangents` is TangentPlane or PairTangents.
 template <typename Tangents>
-class FollowedOrbits : public OrbitsInEquilibrium {
- public:
-  FollowedOrbits(const PairExperiment& experiment, const Block& block)
-      : OrbitsInEquilibrium(experiment, block, kOrbit), orbits_(count()) {}
+struct FollowedOrbit : OrbitInEquilibrium {
+  std::optional<Tangents> tangents;
+  uint64_t collisions_before = 0;  // in the warm-up
+  double time = 0;
+  std::array<double, Tangents::kExponents> growth = {};
 
-  PairState Start(uint64_t orbit) {
-    const PairState state = Draw(orbit);
-    orbits_[orbit].tangents.emplace(experiment_.geometry(), state);
+  static uint64_t LengthIn(const Block&) { return kOrbit; }
+
+  PairState Start(const PairExperiment& experiment, const OrbitSamples& own) {
+    const PairState state = OrbitInEquilibrium::Start(experiment, own);
+    tangents.emplace(experiment.geometry(), state);
     return state;
   }
 
-  // The reference's events, or the lanes' waits.
-  template <typename... Followed>
-  void Follow(uint64_t orbit, const Followed&... followed) requires requires(Tangents tangents) {
-    tangents.Follow(followed...);
-  }
-  { orbits_[orbit].tangents->Follow(followed...); }
-
-  AfterCollision Collide(uint64_t index, const Collision& collision) {
-    Orbit& orbit = orbits_[index];
-    orbit.tangents->Collide(collision);
-    const auto growth = orbit.tangents->TakeGrowth();
-    if (orbit.collisions_before < kWarmUpCollisions) {
-      ++orbit.collisions_before;
+  AfterCollision Collide(const PairExperiment&, const Collision& collision) {
+    tangents->Collide(collision);
+    const auto growths = tangents->TakeGrowth();
+    if (collisions_before < kWarmUpCollisions) {
+      ++collisions_before;
       return AfterCollision::kGoOn;
     }
-    for (size_t k = 0; k < growth.size(); ++k) orbit.growth[k] += growth[k];
-    orbit.time += collision.time;
-    return After(index, ++orbit.collisions);
+    for (size_t k = 0; k < growth.size(); ++k) growth[k] += growths[k];
+    time += collision.time;
+    return Count();
   }
 
-  void AddTo(BlockResult& result) const {
-    for (const Orbit& orbit : orbits_) {
-      if (orbit.collisions == 0) continue;  // it has escaped
-      result.samples += orbit.collisions;
-      AddTo(result.batch_means, orbit);
-    }
-  }
-
- private:
-  struct Orbit {
-    std::optional<Tangents> tangents;
-    uint64_t collisions_before = 0;  // in the warm-up
-    uint64_t collisions = 0;
-    double time = 0;
-    std::array<double, Tangents::kExponents> growth = {};
-  };
-
-  static void AddTo(std::vector<BatchMeans>& ratios, const Orbit& orbit) {
-    const auto collisions = static_cast<double>(orbit.collisions);
-    const double first = orbit.growth[0], second = orbit.growth[1];
-    ratios[kFirst].Add(first, orbit.time);
-    ratios[kSecond].Add(second, orbit.time);
-    ratios[kEntropy].Add(first + second, orbit.time);
-    ratios[kFirstPerCollision].Add(first, collisions);
-    ratios[kSecondPerCollision].Add(second, collisions);
-    ratios[kFreeTime].Add(orbit.time, collisions);
+  void AddTo(const PairExperiment&, BlockResult& result) const {
+    if (collisions == 0) return;  // it has escaped
+    result.samples += collisions;
+    std::vector<BatchMeans>& ratios = result.batch_means;
+    const auto count = static_cast<double>(collisions);
+    const double first = growth[0], second = growth[1];
+    ratios[kFirst].Add(first, time);
+    ratios[kSecond].Add(second, time);
+    ratios[kEntropy].Add(first + second, time);
+    ratios[kFirstPerCollision].Add(first, count);
+    ratios[kSecondPerCollision].Add(second, count);
+    ratios[kFreeTime].Add(time, count);
     double sum = first + second;
-    for (size_t k = 2; k < orbit.growth.size(); ++k) {
-      ratios[kRatios + k - 2].Add(orbit.growth[k], orbit.time);
-      sum += orbit.growth[k];
+    for (size_t k = 2; k < growth.size(); ++k) {
+      ratios[kRatios + k - 2].Add(growth[k], time);
+      sum += growth[k];
     }
-    if (ratios.size() > kRatios) ratios.back().Add(sum, orbit.time);
+    if (ratios.size() > kRatios) ratios.back().Add(sum, time);
   }
-
-  std::vector<Orbit> orbits_;
 };
 
 bool IsByReference(Model model) { return model == Model::kBilliardReference; }
@@ -163,15 +142,10 @@ class LyapunovExperiment : public PairExperiment {
   }
 
   std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
-    if (IsByReference(answer().model)) return RunFollowed<PairTangents>(queue);
-    return RunFollowed<TangentPlane>(queue);
-  }
-
- private:
-  template <typename Tangents>
-  std::unique_ptr<EngineRun> RunFollowed(BlockQueue& queue) const {
-    return RunOrbits(queue,
-                     [this](const Block& block) { return FollowedOrbits<Tangents>(*this, block); });
+    if (IsByReference(answer().model)) {
+      return RunOrbits<FollowedOrbit<PairTangents>>(queue, *this);
+    }
+    return RunOrbits<FollowedOrbit<TangentPlane>>(queue, *this);
   }
 };
 

@@ -11,11 +11,11 @@
 // adds the same amount to the Kolmogorov-Smirnov distance, down to u of order delta^2, where the
 // return law is not exponential at all. In measurements the distance falls as delta^2 log(1/delta).
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "core/arithmetic/elementary_functions.h"
 #include "core/billiard/orbits.h"
@@ -35,77 +35,69 @@ double RateUnit(const PairGeometry& geometry) {
 // Rounding may give more than the pair's energy of 1/2.
 double PistonEnergy(double velocity) { return std::min(velocity * velocity / 2, 0.5); }
 
-class ExchangeOrbits : public OrbitsInEquilibrium {
- public:
-  static constexpr uint64_t kWalkedTogether = 64 * kExchangesPerOrbit;  // about 1 ms
-
-  ExchangeOrbits(const PairExperiment& experiment, const Block& block)
-      : OrbitsInEquilibrium(experiment, block, kExchangesPerOrbit),
-        rate_unit_(RateUnit(experiment.geometry())),
-        exchanges_(block.samples),
-        orbits_(count()) {}
-
-  PairState Start(uint64_t orbit) {
-    const PairState state = Draw(orbit);
-    orbits_[orbit].first_energy = PistonEnergy(state.piston_velocity);
-    return state;
-  }
-
-  AfterCollision Collide(uint64_t orbit, const Collision& collision) {
-    // After the collision the piston has the ball's normal velocity component.
-    const PairState& state = collision.state;
-    return Jump(orbit, collision.time * rate_unit_, state.ball_speed * state.direction.x());
-  }
-
-  // Starts have their own stream, because the walkers use the stream of the samples.
-  double StartOfWalk(uint64_t orbit) {
-    constexpr uint64_t kStartsStream = 0x9e3779b97f4a7c15;
-    RandomStream starts = experiment_.random();
-    starts.stream ^= kStartsStream;
-    const double u = std::min(std::fabs(Draw(orbit, starts).piston_velocity), 1.0);
-    orbits_[orbit].first_energy = PistonEnergy(u);
-    return u;
-  }
-
-  AfterCollision Jump(uint64_t index, double waiting_time, double piston_velocity) {
-    Orbit& orbit = orbits_[index];
-    exchanges_[index * kExchangesPerOrbit + orbit.exchanges++] = {waiting_time,
-                                                                  PistonEnergy(piston_velocity)};
-    return After(index, orbit.exchanges);
-  }
-
-  void AddTo(BlockResult& result) const {
-    for (size_t i = 0; i < orbits_.size(); ++i) {
-      const std::span all(exchanges_);
-      CountOrbit(block_.first / kExchangesPerOrbit + i, orbits_[i].first_energy,
-                 all.subspan(i * kExchangesPerOrbit, orbits_[i].exchanges), result);
-    }
-  }
-
- private:
-  struct Orbit {
-    double first_energy = 0;
-    uint64_t exchanges = 0;
-  };
-
-  double rate_unit_;
-  std::vector<Exchange> exchanges_;  // of all orbits, one orbit after the other
-  std::vector<Orbit> orbits_;
-};
-
 // By billiard, billiard_reference, or markov, which is a control: the jump process has no memory;
 // for the billiard the memory is unknown.
 class MarkovPropertyExperiment : public PairExperiment {
  public:
   MarkovPropertyExperiment(const EnsembleSpec& spec, const PointParameters& point)
-      : PairExperiment(spec, point) {
+      : PairExperiment(spec, point), rate_unit_(RateUnit(geometry())) {
     SetMeasurements(EmptyMarkovPropertyCounts(), MarkovPropertyTable(IsLimit()));
   }
 
-  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override {
-    return RunOrbits(queue, [this](const Block& block) { return ExchangeOrbits(*this, block); });
+  double rate_unit() const { return rate_unit_; }
+
+  std::unique_ptr<EngineRun> StartRun(BlockQueue& queue) const override;
+
+ private:
+  double rate_unit_;
+};
+
+struct ExchangeOrbit : OrbitInEquilibrium {
+  double first_energy = 0;
+  std::array<Exchange, kExchangesPerOrbit> exchanges;
+
+  static constexpr uint64_t kWalkedTogether = 64 * kExchangesPerOrbit;  // about 1 ms
+  static uint64_t LengthIn(const Block&) { return kExchangesPerOrbit; }
+
+  PairState Start(const MarkovPropertyExperiment& experiment, const OrbitSamples& own) {
+    const PairState state = OrbitInEquilibrium::Start(experiment, own);
+    first_energy = PistonEnergy(state.piston_velocity);
+    return state;
+  }
+
+  AfterCollision Collide(const MarkovPropertyExperiment& experiment, const Collision& collision) {
+    // After the collision the piston has the ball's normal velocity component.
+    const PairState& state = collision.state;
+    return Jump(experiment, collision.time * experiment.rate_unit(),
+                state.ball_speed * state.direction.x());
+  }
+
+  // Starts have their own stream, because the walkers use the stream of the samples.
+  double StartOfWalk(const MarkovPropertyExperiment& experiment, const OrbitSamples& own) {
+    constexpr uint64_t kStartsStream = 0x9e3779b97f4a7c15;
+    RandomStream starts = experiment.random();
+    starts.stream ^= kStartsStream;
+    const double velocity = Draw(experiment, own, starts).piston_velocity;
+    const double u = std::min(std::fabs(velocity), 1.0);
+    first_energy = PistonEnergy(u);
+    return u;
+  }
+
+  AfterCollision Jump(const MarkovPropertyExperiment&, double waiting_time,
+                      double piston_velocity) {
+    exchanges[collisions] = {waiting_time, PistonEnergy(piston_velocity)};
+    return Count();
+  }
+
+  void AddTo(const MarkovPropertyExperiment&, BlockResult& result) const {
+    CountOrbit(samples.first / kExchangesPerOrbit, first_energy,
+               std::span(exchanges).first(collisions), result);
   }
 };
+
+std::unique_ptr<EngineRun> MarkovPropertyExperiment::StartRun(BlockQueue& queue) const {
+  return RunOrbits<ExchangeOrbit>(queue, *this);
+}
 
 SampleWork WorkOfAnExchange(Model model, const PointParameters& point) {
   return model == Model::kMarkov ? SampleWork{.jumps = 1} : WorkOfACollision(GeometryOf(point));

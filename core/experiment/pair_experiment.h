@@ -54,21 +54,21 @@ inline double MemoryOfPairs(Model, const PointParameters&) { return 12e6; }
 // The work of a sample that is one collision of an orbit in equilibrium.
 SampleWork WorkOfACollision(const PairGeometry& geometry);
 
-// The orbits of a block that the jump process can compute too. They have these functions more:
-//   double StartOfWalk(uint64_t orbit);             returns u = sqrt(2 ep), once for each orbit
-//   AfterCollision Jump(uint64_t orbit, double waiting_time, double u);  u is that after the jump
+// An orbit that the jump process can compute too. It has these functions more:
+//   double StartOfWalk(const Context&, const OrbitSamples&);   returns u = sqrt(2 ep); called once
+//   AfterCollision Jump(const Context&, double waiting_time, double u);  u is that after the jump
 // The waiting time is in |G|/|dG_bp|. kWalkedTogether samples run until the slowest has ended;
 // a stop is noticed only between such groups.
-template <typename Orbits>
-concept CanWalk = requires {
-  Orbits::kWalkedTogether;
-};
-
-// A walk of all orbits, of which the first one is sample `first` of its random numbers.
-template <typename Orbits>
-void Walk(const RandomStream& random, uint64_t first, Orbits& orbits) {
+//
+// This walks all orbits of a group. The first one is sample `first` of the experiment's random
+// numbers.
+template <typename Orbit, typename Experiment>
+void Walk(const Experiment& experiment, uint64_t first, BlockOrbits<Orbit, Experiment>& orbits) {
   std::vector<double> starts(orbits.count());
-  for (size_t i = 0; i < starts.size(); ++i) starts[i] = orbits.StartOfWalk(i);
+  for (size_t i = 0; i < starts.size(); ++i) {
+    starts[i] = orbits[i].StartOfWalk(experiment, orbits.SamplesOf(i));
+  }
+  const RandomStream& random = experiment.random();
   JumpWalkers walkers(random.seed, random.stream, first, std::move(starts));
   const std::span<const double> u = walkers.u(), waiting_times = walkers.waiting_times();
   std::vector<uint64_t> running(orbits.count());
@@ -76,7 +76,7 @@ void Walk(const RandomStream& random, uint64_t first, Orbits& orbits) {
   while (!running.empty()) {
     walkers.Jump();
     std::erase_if(running, [&](uint64_t i) {
-      return orbits.Jump(i, waiting_times[i], u[i]) == AfterCollision::kEnd;
+      return orbits[i].Jump(experiment, waiting_times[i], u[i]) == AfterCollision::kEnd;
     });
   }
 }
@@ -92,36 +92,35 @@ class PairExperiment : public PointExperiment {
   // Whether the jump process answers, and not the billiard.
   bool IsLimit() const { return answer().model == Model::kMarkov; }
 
-  // `make` makes the orbits of a block, Orbits make(const Block&): those of the billiard
-  // (ensemble/block_orbits.h), or those of the jump process (Walked) if it answers.
-  template <typename Make>
-  std::unique_ptr<EngineRun> RunOrbits(BlockQueue& queue, Make make,
+  // The orbits of the billiard (ensemble/block_orbits.h), or those of the jump process (Walked) if
+  // it answers. The context must live as long as the experiment.
+  template <typename Orbit, typename Context>
+  std::unique_ptr<EngineRun> RunOrbits(BlockQueue& queue, const Context& context,
                                        double time_limit = kNoTimeLimit) const {
-    using Orbits = decltype(make(Block()));
-    if constexpr (CanWalk<Orbits>) {
+    if constexpr (requires { Orbit::kWalkedTogether; }) {
       if (IsLimit()) {
-        return RunOneByOne(queue, [=, this](const Block& block, const std::stop_token& stop) {
-          return Walked(block, make, stop);
+        return RunOneByOne(queue, [&context](const Block& block, const std::stop_token& stop) {
+          return Walked<Orbit>(context, block, stop);
         });
       }
     }
-    return std::make_unique<BlockOrbits<Orbits>>(engine(), geometry_, time_limit, EmptyResult(),
-                                                 std::move(make), queue);
+    return std::make_unique<OrbitRun<Orbit, Context>>(engine(), geometry_, time_limit, context,
+                                                      EmptyResult(), queue);
   }
 
  private:
   // A block of the jump process. Empty only if `stop` was requested.
-  template <typename Make>
-  std::optional<BlockResult> Walked(const Block& block, Make make,
-                                    const std::stop_token& stop) const {
-    constexpr uint64_t kTogether = decltype(make(block))::kWalkedTogether;
-    BlockResult result = EmptyResult();
+  template <typename Orbit, typename Experiment>
+  static std::optional<BlockResult> Walked(const Experiment& experiment, const Block& block,
+                                           const std::stop_token& stop) {
+    BlockResult result = experiment.EmptyResult();
     uint64_t walkers = 0;
-    for (uint64_t done = 0; done < block.samples; done += kTogether) {
+    for (uint64_t done = 0; done < block.samples; done += Orbit::kWalkedTogether) {
       if (stop.stop_requested()) return std::nullopt;
-      auto orbits = make(
-          Block{.first = block.first + done, .samples = std::min(kTogether, block.samples - done)});
-      Walk(random(), block.first + walkers, orbits);
+      const Block together = {.first = block.first + done,
+                              .samples = std::min(Orbit::kWalkedTogether, block.samples - done)};
+      BlockOrbits<Orbit, Experiment> orbits(experiment, together, experiment.EmptyResult());
+      Walk(experiment, block.first + walkers, orbits);
       walkers += orbits.count();
       orbits.AddTo(result);
     }
@@ -131,30 +130,24 @@ class PairExperiment : public PointExperiment {
   PairGeometry geometry_;
 };
 
-// A block's collisions in equilibrium, as orbits of at most `length` collisions each. Each orbit
-// starts from the return map's invariant measure, with the random numbers of its first collision.
-class OrbitsInEquilibrium {
- public:
-  OrbitsInEquilibrium(const PairExperiment& experiment, const Block& block, uint64_t length)
-      : experiment_(experiment), block_(block), length_(length) {}
+// An orbit in equilibrium, of as many collisions as it has samples. It starts from the return map's
+// invariant measure, with the random numbers of its first sample.
+struct OrbitInEquilibrium {
+  OrbitSamples samples = {};
+  uint64_t collisions = 0;  // that were counted
 
-  uint64_t count() const { return (block_.samples + length_ - 1) / length_; }
-
- protected:
-  PairState Draw(uint64_t orbit) const { return Draw(orbit, experiment_.random()); }
-  PairState Draw(uint64_t orbit, const RandomStream& stream) const {
-    CounterRandom random = stream.Sample(block_.first + orbit * length_);
-    return DrawFromCollisionMeasure(experiment_.geometry(), random);
+  PairState Start(const PairExperiment& experiment, const OrbitSamples& own) {
+    return Draw(experiment, own, experiment.random());
   }
-  // `collisions`: those of the orbit so far.
-  AfterCollision After(uint64_t orbit, uint64_t collisions) const {
-    const uint64_t last = std::min(length_, block_.samples - orbit * length_);
-    return collisions < last ? AfterCollision::kGoOn : AfterCollision::kEnd;
+  PairState Draw(const PairExperiment& experiment, const OrbitSamples& own,
+                 const RandomStream& stream) {
+    samples = own;
+    CounterRandom random = stream.Sample(own.first);
+    return DrawFromCollisionMeasure(experiment.geometry(), random);
   }
-
-  const PairExperiment& experiment_;
-  Block block_;
-  uint64_t length_;
+  AfterCollision Count() {
+    return ++collisions < samples.count ? AfterCollision::kGoOn : AfterCollision::kEnd;
+  }
 };
 
 }  // namespace ballpiston

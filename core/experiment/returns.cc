@@ -8,32 +8,28 @@
 
 namespace ballpiston {
 
-ReturnOrbits::ReturnOrbits(const PairGeometry& geometry, const ReturnLaw& law,
-                           const RandomStream& random, const Block& block)
-    : geometry_(geometry),
-      law_(law.epsilon, law.exponent),
-      ball_speed_(std::sqrt(1 - 2 * law.epsilon)),
-      piston_speed_(std::sqrt(2 * law.epsilon)),
-      random_(random),
-      first_(block.first),
-      returns_(block.samples) {}
-
-PairState ReturnOrbits::Start(uint64_t orbit) {
-  CounterRandom random = random_.Sample(first_ + orbit);
-  const Eigen::Vector2d ball = UniformOnCollisionSurface(geometry_, random);
-  const SignedDirection outgoing = law_.Draw(random);
+PairState ReturnStarts::Draw(uint64_t sample) const {
+  CounterRandom of_sample = random.Sample(sample);
+  const Eigen::Vector2d ball = UniformOnCollisionSurface(geometry, of_sample);
+  const SignedDirection outgoing = law.Draw(of_sample);
   return {.position = ball,
           .direction = outgoing.ball,
-          .ball_speed = ball_speed_,
+          .ball_speed = ball_speed,
           .piston = ball.x(),
-          .piston_velocity = outgoing.sigma * piston_speed_};
+          .piston_velocity = outgoing.sigma * piston_speed};
 }
 
-AfterCollision ReturnOrbits::Collide(uint64_t orbit, const Collision& collision) {
-  returns_[orbit] = {.time = collision.time,
-                     .direction = collision.state.direction,
-                     .sigma = std::signbit(collision.state.piston_velocity) ? -1 : 1};
+AfterCollision ReturnOrbit::Collide(const ReturnStarts&, const Collision& collision) {
+  hit = {.time = collision.time,
+         .direction = collision.state.direction,
+         .sigma = std::signbit(collision.state.piston_velocity) ? -1 : 1};
   return AfterCollision::kEnd;
+}
+
+void ReturnOrbit::AddTo(const ReturnStarts&, BlockResult& result) const {
+  if (!hit) return;
+  ++result.samples;
+  result.moments[0].Add(hit->time);
 }
 
 std::vector<Histogram> EmptyIngoingHistograms(const IngoingLaw& law) {

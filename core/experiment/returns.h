@@ -14,15 +14,15 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "core/billiard/orbits.h"
 #include "core/closed_form/ingoing_law.h"
-#include "core/ensemble/chunk_plan.h"
+#include "core/ensemble/block_orbits.h"
 #include "core/ensemble/point_summary.h"
 #include "core/ensemble/random_stream.h"
 #include "core/geometry/pair_geometry.h"
@@ -37,32 +37,30 @@ struct Return {
   int sigma = 0;                       // sign of the piston's velocity, ingoing
 };
 
-struct ReturnLaw {
+// Draws the starts of a point's returns.
+struct ReturnStarts {
+  PairGeometry geometry;
   double epsilon;
   double exponent;
+  RandomStream random;
+  OutgoingLaw law = {epsilon, exponent};
+  double ball_speed = std::sqrt(1 - 2 * epsilon);
+  double piston_speed = std::sqrt(2 * epsilon);
+
+  PairState Draw(uint64_t sample) const;
 };
 
-// The returns of one block.
-class ReturnOrbits {
- public:
-  ReturnOrbits(const PairGeometry& geometry, const ReturnLaw& law, const RandomStream& random,
-               const Block& block);
+// An orbit of a block's returns.
+struct ReturnOrbit {
+  std::optional<Return> hit;  // empty if the orbit has not ended, or has escaped
 
-  uint64_t count() const { return returns_.size(); }
-  PairState Start(uint64_t orbit);
-  AfterCollision Collide(uint64_t orbit, const Collision& collision);  // not for an escape
-
-  // In the order of samples; empty for an orbit that has not ended, or has escaped.
-  const std::vector<std::optional<Return>>& returns() const { return returns_; }
-
- private:
-  PairGeometry geometry_;
-  OutgoingLaw law_;
-  double ball_speed_;
-  double piston_speed_;
-  RandomStream random_;
-  uint64_t first_;
-  std::vector<std::optional<Return>> returns_;
+  static uint64_t LengthIn(const Block&) { return 1; }
+  PairState Start(const ReturnStarts& starts, const OrbitSamples& samples) const {
+    return starts.Draw(samples.first);
+  }
+  AfterCollision Collide(const ReturnStarts&, const Collision& collision);
+  // Adds the sample and its time, which is the first of the moments.
+  void AddTo(const ReturnStarts&, BlockResult& result) const;
 };
 
 inline constexpr size_t kIngoingBins = 1000;                   // of each sigma

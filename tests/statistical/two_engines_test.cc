@@ -78,13 +78,20 @@ FirstHits Sample(Engine engine, const Point& point) {
   const PairGeometry geometry = GeometryAtShare(point.rho, point.share);
   FirstHits hits(point.epsilon);
   const uint64_t samples = SamplesAt(point, geometry);
+  const ReturnStarts starts = {geometry,
+                               point.epsilon,
+                               point.exponent,
+                               {.seed = static_cast<uint64_t>(engine), .stream = 77}};
+  const BlockResult empty;
   for (uint64_t first = 0; first < samples; first += kSamplesOfARun) {
     const uint64_t count = std::min(kSamplesOfARun, samples - first);
-    ReturnOrbits orbits(geometry, {point.epsilon, point.exponent},
-                        {.seed = static_cast<uint64_t>(engine), .stream = 77},
-                        {.first = first, .samples = count});
+    BlockOrbits<ReturnOrbit, ReturnStarts> orbits(starts, {.first = first, .samples = count},
+                                                  empty);
     EXPECT_TRUE(RunAll(engine, geometry, orbits));
-    for (const auto& hit : orbits.returns()) hit ? hits.Add(*hit) : hits.CountEscape();
+    for (uint64_t i = 0; i < count; ++i) {
+      const std::optional<Return>& hit = orbits[i].hit;
+      hit ? hits.Add(*hit) : hits.CountEscape();
+    }
   }
   return hits;
 }

@@ -70,10 +70,10 @@ PointEstimate EnergyRelaxationRuns::Run(Method method, const SampleRange& sample
 
 PointEstimate EnergyRelaxationRuns::BySpectrum() const {
   RelaxationSpectrum::Get();
-  Estimate time;
+  SpectralValue time;
   const double seconds = server::SecondsOf(
-      [&] { time = EnergyRelaxation(geometry, PointOf(geometry)).EstimatesOfLimit().front(); });
-  return {.value = time.value, .error = time.standard_error.value_or(0), .seconds = seconds};
+      [&] { time = EnergyRelaxation(geometry, PointOf(geometry)).IntegralOfLimit(); });
+  return {.value = time.value, .error = time.error, .seconds = seconds};
 }
 
 // ---- heat currents ----

@@ -21,23 +21,25 @@ uint64_t BatchSize(Method method) {
 
 class CountedReturns : public NumberedOrbits {
  public:
-  explicit CountedReturns(ReturnOrbits returns) : returns_(std::move(returns)) {}
+  CountedReturns(const ReturnStarts& starts, const Block& block)
+      : returns_(starts, block, empty_) {}
 
   PairState Start(uint64_t orbit) override { return returns_.Start(orbit); }
   AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
     wall_hits_ += collision.ball_wall_hits;
-    return collision.escaped ? AfterCollision::kEnd : returns_.Collide(orbit, collision);
+    return returns_.Collide(orbit, collision);
   }
 
-  void AddTo(ReturnStatistics& statistics) const {
+  void AddTo(ReturnStatistics& statistics) {
     statistics.wall_hits += wall_hits_;
-    for (const std::optional<Return>& hit : returns_.returns()) {
-      if (hit) statistics.Add(*hit);
+    for (uint64_t i = 0; i < returns_.count(); ++i) {
+      if (returns_[i].hit) statistics.Add(*returns_[i].hit);
     }
   }
 
  private:
-  ReturnOrbits returns_;
+  BlockResult empty_;
+  BlockOrbits<ReturnOrbit, ReturnStarts> returns_;
   uint64_t wall_hits_ = 0;
 };
 
@@ -67,12 +69,12 @@ std::vector<uint64_t> ReturnStatistics::IngoingCounts() const {
 ReturnStatistics RunReturns(const MethodVariant& variant, const PairGeometry& geometry,
                             double epsilon, const RandomStream& random, uint64_t samples) {
   ReturnStatistics statistics = {.ingoing = EmptyIngoingHistograms(IngoingLaw(epsilon))};
+  const ReturnStarts starts = {geometry, epsilon, kInvariantExponent, random};
   const double begin = server::ThreadSeconds();
   const uint64_t batch = BatchSize(variant.method);
   for (uint64_t first = 0; first < samples; first += batch) {
     const uint64_t count = std::min(batch, samples - first);
-    CountedReturns orbits(ReturnOrbits(geometry, {epsilon, kInvariantExponent}, random,
-                                       {.first = first, .samples = count}));
+    CountedReturns orbits(starts, {.first = first, .samples = count});
     RunMethodOrbits(variant, geometry, count, orbits);
     orbits.AddTo(statistics);
   }

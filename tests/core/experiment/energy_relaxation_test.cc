@@ -77,25 +77,28 @@ TEST(EnergyRelaxation, OrbitsMatchTheReferenceFlow) {
 
 // Around 1/6 the ratio to epsilon - 1/6 has no meaning, but the integral does.
 TEST(EnergyRelaxation, RelaxationTimeExistsAwayFromTheMeanEnergy) {
+  const auto by_spectrum = [](const std::optional<double>& epsilon) {
+    return RunPoint(SpecOf(&kEnergyRelaxation, PaperPoint(0.1, epsilon), {}, Model::kSpectrum))
+        .estimates;
+  };
   for (const std::optional<double> epsilon :
        {std::optional<double>(), std::optional(0.0), std::optional(0.12), std::optional(0.2)}) {
-    const EnergyRelaxation relaxation = RelaxationAt(0.1, epsilon);
     EXPECT_TRUE(HasRelaxationTime(epsilon));
-    const std::vector<Estimate> limit = relaxation.EstimatesOfLimit();
+    const std::vector<Estimate> limit = by_spectrum(epsilon);
     EXPECT_EQ(limit[0].name, "relaxation_time");
     EXPECT_GT(limit[0].value, 0);
-    ASSERT_EQ(limit.size(), epsilon ? 2u : 1u);
+    EXPECT_EQ(limit[0].limit, limit[0].value);
+    EXPECT_EQ(limit[1].name, epsilon ? "decay_integral" : "spectral_gap");
     if (!epsilon) continue;
-    EXPECT_EQ(limit[1].name, "decay_integral");
     EXPECT_NEAR(limit[1].value, limit[0].value * (*epsilon - kMeanPistonEnergy), 1e-9);
+    EXPECT_EQ(limit[2].name, "spectral_gap");
   }
   for (const double epsilon : {0.121, 1.0 / 6, 0.199}) {
-    const EnergyRelaxation relaxation = RelaxationAt(0.1, epsilon);
     EXPECT_FALSE(HasRelaxationTime(epsilon));
-    const std::vector<Estimate> limit = relaxation.EstimatesOfLimit();
-    ASSERT_EQ(limit.size(), 1u);
+    const std::vector<Estimate> limit = by_spectrum(epsilon);
     EXPECT_EQ(limit[0].name, "decay_integral");
     EXPECT_TRUE(std::isfinite(limit[0].value));
+    EXPECT_EQ(limit[1].name, "spectral_gap");
   }
 }
 

@@ -1,6 +1,5 @@
 #include "core/experiment/returns.h"
 
-#include "core/ensemble/block_orbits.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
@@ -8,20 +7,12 @@
 namespace ballpiston {
 namespace {
 
-class EndedReturns : public ReturnOrbits {
- public:
-  using ReturnOrbits::ReturnOrbits;
-  void AddTo(BlockResult& result) const {
-    for (const auto& hit : returns()) result.samples += hit.has_value();
-  }
-};
-
-TEST(ReturnOrbits, AnEscapedOrbitCountsAsAnEscapeOnly) {
-  const BlockResult empty;
-  WatchedOrbits<EndedReturns> orbits = {
-      EndedReturns(kPaperPair, {0.125, 1}, {.seed = 1, .stream = 2}, {.samples = 2}), empty};
+TEST(ReturnOrbit, AnEscapedOrbitCountsAsAnEscapeOnly) {
+  const ReturnStarts starts = {kPaperPair, 0.125, 1, {.seed = 1, .stream = 2}};
+  const BlockResult empty = {.moments = std::vector<Moments>(1)};
+  BlockOrbits<ReturnOrbit, ReturnStarts> orbits(starts, {.samples = 2}, empty);
   Collision collision;
-  collision.state = orbits.orbits.Start(0);
+  collision.state = orbits.Start(0);
   collision.state.ball_speed *= 1 + 1e-10;
   orbits.Collide(0, collision);
   collision.escaped = true;
@@ -29,6 +20,7 @@ TEST(ReturnOrbits, AnEscapedOrbitCountsAsAnEscapeOnly) {
   EXPECT_EQ(orbits.Collide(1, collision), AfterCollision::kEnd);
   const BlockResult result = orbits.Result();
   EXPECT_EQ(result.samples, 1u);
+  EXPECT_EQ(result.moments[0].count, 1u);
   EXPECT_EQ(result.health.escapes, 1u);
   EXPECT_NEAR(result.health.max_energy_error, 1.5e-10, 1e-11);
 }

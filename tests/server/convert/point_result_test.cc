@@ -34,6 +34,18 @@ TEST(PointResult, ValuesThatDoNotExistAreLeftOut) {
   EXPECT_EQ(PointResultOf(3, *experiment, merged).estimates_size(), 0);
 }
 
+class Answered : public PointExperiment {
+ public:
+  Answered(const EnsembleSpec& spec, PointSummary answer)
+      : PointExperiment(spec, PointAt(spec, 0)), answer_(std::move(answer)) {}
+
+ protected:
+  void AddDetails(const BlockResult&, PointSummary& summary) const override { summary = answer_; }
+
+ private:
+  PointSummary answer_;
+};
+
 // An answer with everything that a result can hold.
 TEST(PointResult, LimitsNoiseFloorsCurvesAndRemarksAreKept) {
   PointSummary summary;
@@ -45,8 +57,7 @@ TEST(PointResult, LimitsNoiseFloorsCurvesAndRemarksAreKept) {
                     {"profile", {{0, 2}, {1.5, 1}}, CurveAxis::kPosition}};
   summary.remarks = {"the run was too short", "another sentence"};
   const EnsembleSpec spec = FakeSpec(1, 1);
-  v1::PointResult result =
-      PointResultOf(0, PointExperiment(spec, PointAt(spec, 0), summary), BlockResult());
+  v1::PointResult result = PointResultOf(0, Answered(spec, summary), BlockResult());
   result.clear_parameters();
   EXPECT_EQ(result.ShortDebugString(),
             R"(model: BILLIARD )"
