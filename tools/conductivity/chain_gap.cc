@@ -153,13 +153,13 @@ Eigen::VectorXd ChainRates(const std::vector<int>& dimensions, int degree) {
 
 // For a pair, the bound of degree n is above the gap by an amount proportional to (n + 1)^-6,
 // within 1 % from degree 10 on.
-ExtrapolatedValue ChainGap(const std::vector<int>& dimensions, const std::vector<int>& degrees) {
-  std::vector<double> at, gaps;
+ComputedGap ChainGap(const std::vector<int>& dimensions, const std::vector<int>& degrees) {
+  std::vector<double> at, bounds;
   for (const int degree : degrees) {
     at.push_back(degree + 1);
-    gaps.push_back(ChainRates(dimensions, degree)[0]);
+    bounds.push_back(ChainRates(dimensions, degree)[0]);
   }
-  return TailLimit(at, gaps, 6);
+  return {TailLimit(at, bounds, 6), bounds};
 }
 
 }  // namespace ballpiston

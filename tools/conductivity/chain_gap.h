@@ -34,7 +34,12 @@ namespace ballpiston {
 // bound of the gap. `dimensions` are those of the sites' velocities: 2 for a ball, 1 for a piston.
 Eigen::VectorXd ChainRates(const std::vector<int>& dimensions, int degree);
 
+struct ComputedGap {
+  ExtrapolatedValue gap;
+  std::vector<double> bounds;  // by degree
+};
+
 // The gap, extrapolated from two or more ascending degrees.
-ExtrapolatedValue ChainGap(const std::vector<int>& dimensions, const std::vector<int>& degrees);
+ComputedGap ChainGap(const std::vector<int>& dimensions, const std::vector<int>& degrees);
 
 }  // namespace ballpiston

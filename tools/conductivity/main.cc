@@ -4,6 +4,7 @@
 #include <absl/strings/str_format.h>
 #include <absl/strings/str_join.h>
 
+#include <cstddef>
 #include <iostream>
 #include <string_view>
 #include <vector>
@@ -28,12 +29,11 @@ void PrintCorrection(std::string_view name, const SiteLattice& lattice, bool is_
 
 void PrintGap(const std::vector<int>& dimensions, std::vector<int> degrees, bool is_quick) {
   if (is_quick) degrees.resize(2);
-  const ExtrapolatedValue gap = ChainGap(dimensions, degrees);
+  const auto [gap, bounds] = ChainGap(dimensions, degrees);
   std::cout << absl::StrFormat("%s: %.13f +- %.1e\n", absl::StrJoin(dimensions, ""), gap.value,
                                gap.error);
-  for (const int degree : degrees) {
-    std::cout << absl::StrFormat("  degree %2d: %.13f\n", degree,
-                                 ChainRates(dimensions, degree)[0]);
+  for (size_t i = 0; i < degrees.size(); ++i) {
+    std::cout << absl::StrFormat("  degree %2d: %.13f\n", degrees[i], bounds[i]);
   }
   std::cout << std::endl;
 }

@@ -44,8 +44,8 @@ std::string Row(const MethodComparisonSpec& spec, const MethodMeasurement& m) {
   return absl::StrFormat("%s,%s,%s,%s,%s,%s,%d,%d,%s,%s,%s,%s,%s", NumberText(spec.rho),
                          NumberText(m.delta), NumberText(spec.epsilon), Name(m.method),
                          NumberText(m.time_step), Name(m.quantity), m.samples, m.wall_hits,
-                         m.work ? NumberText(*m.work) : "", NumberText(m.value),
-                         NumberText(m.statistical_error), NumberText(m.own_error),
+                         NumberText(m.work), NumberText(m.value), NumberText(m.statistical_error),
+                         NumberText(m.own_error),
                          m.bias_resolved ? absl::StrCat(*m.bias_resolved) : "");
 }
 
@@ -53,7 +53,7 @@ std::string Row(const MethodComparisonSpec& spec, const MethodMeasurement& m) {
 std::string ProgressText(const MethodMeasurement& m) {
   return absl::StrFormat("%s, %s%s: %d samples in %.3g s", Name(m.quantity), Name(m.method),
                          m.time_step > 0 ? absl::StrFormat(" %.4g", m.time_step) : "", m.samples,
-                         m.work.value_or(0));
+                         m.work);
 }
 
 void AddFlags(CLI::App& app, MethodComparisonSpec& spec, std::string& progress) {

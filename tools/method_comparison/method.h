@@ -16,14 +16,7 @@ enum class Method {
   kSpectrum,  // the same limit from the eigenvalues of its generator, without samples
 };
 
-enum class Quantity {
-  kMeanFreeTime,
-  kIngoingLaw,
-  kTrajectory,
-  kRelaxationTime,
-  kHeatCurrent,
-  kLimitFloor
-};
+enum class Quantity { kMeanFreeTime, kIngoingLaw, kTrajectory, kRelaxationTime, kHeatCurrent };
 
 struct MethodProperties {
   const char* name;  // in the output
@@ -47,8 +40,8 @@ inline const MethodProperties& PropertiesOf(Method method) {
 }
 inline const char* Name(Method method) { return PropertiesOf(method).name; }
 inline const char* Name(Quantity quantity) {
-  constexpr const char* kNames[] = {"mean-free-time",  "ingoing-law",  "trajectory",
-                                    "relaxation-time", "heat-current", "limit-floor"};
+  constexpr const char* kNames[] = {"mean-free-time", "ingoing-law", "trajectory",
+                                    "relaxation-time", "heat-current"};
   return kNames[static_cast<int>(quantity)];
 }
 

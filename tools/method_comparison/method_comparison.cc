@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <initializer_list>
-#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -34,6 +33,8 @@ constexpr uint64_t kFewestReturns = 16;
 constexpr size_t kFewestOrbits = 64;
 // Fewer orbits give no error of a relaxation time (experiment/energy_relaxation.cc).
 constexpr uint64_t kFewestRelaxations = 512;
+// A stretch of each trajectory (experiment/gas_conduction.cc). Fewer are rounded up to this number.
+constexpr uint64_t kFewestStretches = 128;
 
 // A rung is run if its expected work is at most this many times seconds_per_curve. Then the largest
 // rung takes between 0.5 and 2 times seconds_per_curve.
@@ -88,7 +89,6 @@ class Comparison {
       CompareRelaxationTimesOf({PairGeometry::Create(spec_.rho, delta).value(), spec_.seed});
     }
     CompareHeatCurrents({spec_.rho, GasDelta(spec_.rho), spec_.seed});
-    for (const auto& [delta, floor] : floors_) tell_(floor);
   }
 
  private:
@@ -106,21 +106,17 @@ class Comparison {
     tell_(measurement);
   }
 
-  // Makes and tells runs of increasing numbers of samples, beginning with `samples`; returns the
-  // longest one. `expected`: the seconds of the first run. A run without a sample is not told.
+  // Makes and tells runs of increasing numbers of samples, beginning with `samples`. `expected`:
+  // the seconds of the first run. A run without a sample is not told.
   template <typename Run>
-  MethodMeasurement Climb(uint64_t samples, double expected, const Run& run,
-                          size_t most_rungs = SIZE_MAX) const {
-    MethodMeasurement longest;
+  void Climb(uint64_t samples, double expected, const Run& run,
+             size_t most_rungs = SIZE_MAX) const {
     for (size_t rung = 0; rung < most_rungs && expected <= Limit();
          ++rung, samples *= kRungFactor) {
       const MethodMeasurement measurement = run(rung, samples);
-      expected = *measurement.work * kRungFactor;
-      if (measurement.samples == 0) continue;
-      longest = measurement;
-      Tell(longest);
+      expected = measurement.work * kRungFactor;
+      if (measurement.samples > 0) Tell(measurement);
     }
-    return longest;
   }
 
   void CompareReturns(Quantity quantity) {
@@ -232,32 +228,31 @@ class Comparison {
     const uint64_t orbits = SamplesOfTruth(runs.PredictedSecondsPerOrbit());
     if (orbits < kFewestTruthOrbits) return;
     const PointEstimate limit = runs.BySpectrum();  // first, so that no run computes the spectrum
-    const Subject subject = {Quantity::kRelaxationTime, runs.geometry.delta(),
-                             runs.Run(Method::kLanes, TruthOf(orbits))};
+    const Subject subject = {Quantity::kRelaxationTime, runs.geometry.delta(), runs.Truth(orbits)};
     const auto climb = [&](Method method) {
-      return Climb(kFewestRelaxations, 0, [&](size_t, uint64_t samples) {
-        return Compared(subject, {method}, runs.Run(method, RunOf(samples)));
+      Climb(kFewestRelaxations, 0, [&](size_t, uint64_t samples) {
+        return Compared(subject, {method}, runs.Run(method, samples));
       });
     };
-    const MethodMeasurement billiard = climb(Method::kLanes);
+    climb(Method::kLanes);
     climb(Method::kMarkov);
-    const MethodMeasurement spectrum = Compared(subject, {Method::kSpectrum}, limit);
-    Tell(spectrum);
-    floors_.try_emplace(subject.delta, LimitFloorOf(spectrum, billiard));
+    Tell(Compared(subject, {Method::kSpectrum}, limit));
   }
 
   void CompareHeatCurrents(const HeatCurrentRuns& runs) {
-    const uint64_t replicas = SamplesOfTruth(runs.PredictedSecondsPerReplica({Method::kLanes}));
-    if (replicas < kFewestTruthReplicas) return;
-    const Subject subject = {Quantity::kHeatCurrent, runs.delta,
-                             runs.Run({Method::kLanes}, TruthOf(replicas))};
+    const uint64_t stretches = SamplesOfTruth(runs.PredictedSecondsPerSample({Method::kLanes}));
+    if (stretches < kFewestTruthStretches) return;
+    const Subject subject = {Quantity::kHeatCurrent, runs.delta, runs.Truth(stretches)};
     for (const MethodVariant& variant : GasVariants()) {
-      const double expected = runs.PredictedSecondsPerReplica(variant) * kFewestOrbits;
-      // The truth's time is long enough for the smallest number of replicas of any engine.
-      Climb(kFewestOrbits, variant.method == Method::kFixedStep ? expected : 0,
-            [&](size_t, uint64_t samples) {
-              return Compared(subject, variant, runs.Run(variant, RunOf(samples)));
-            });
+      const auto run = [&](size_t, uint64_t samples) {
+        return Compared(subject, variant, runs.Run(variant, samples));
+      };
+      if (variant.method == Method::kFixedStep) {
+        Climb(kFewestOrbits, runs.PredictedSecondsPerSample(variant) * kFewestOrbits, run);
+      } else {
+        // The truth's time is long enough for the smallest number of stretches of any engine.
+        Climb(kFewestStretches, 0, run);
+      }
     }
   }
 
@@ -296,7 +291,6 @@ class Comparison {
   const double exact_;
   const std::vector<double> probabilities_;
   std::optional<double> variance_of_times_;
-  std::map<double, MethodMeasurement, std::greater<>> floors_;  // by delta
 };
 
 // If rho is not permitted, checks only what does not depend on rho.
@@ -305,21 +299,6 @@ absl::Status ValidateDelta(double rho, double delta) {
 }
 
 }  // namespace
-
-MethodMeasurement LimitFloorOf(const MethodMeasurement& spectrum,
-                               const MethodMeasurement& billiard) {
-  MethodMeasurement floor = spectrum;
-  floor.quantity = Quantity::kLimitFloor;
-  floor.own_error = floor.statistical_error;
-  floor.bias_resolved = spectrum.value >= kFloorResolved * spectrum.statistical_error;
-  if (!*floor.bias_resolved) floor.value += kFloorResolved * spectrum.statistical_error;
-  floor.work = std::nullopt;
-  if (billiard.samples >= kFewestFloorOrbits) {
-    const double ratio = billiard.own_error / floor.value;
-    floor.work = *billiard.work * ratio * ratio;
-  }
-  return floor;
-}
 
 std::vector<std::string> Violations(const MethodComparisonSpec& spec) {
   std::vector<std::string> violations;

@@ -21,11 +21,9 @@
 //                  orbits by kLanes: the curves of the limit tend to the limit's bias.
 //   kHeatCurrent   the heat current of one cell between reservoirs at 1.5 and 0.5
 //                  (point_runs.h): by kFixedStep, kReference and kLanes, and by kMarkov,
-//                  which has the bias of the limit. A sample is a replica. The value and the truth
-//                  are defined as for kRelaxationTime.
-// A sixth quantity follows from the relaxation times:
-//   kLimitFloor    the limit's bias at one delta, or an upper bound of it. work = the work at which
-//                  the billiard has the same error (LimitFloorOf). By kSpectrum, without samples.
+//                  which has the bias of the limit. A sample is a stretch of a trajectory; by
+//                  kFixedStep it is a replica. The value and the truth are defined as for
+//                  kRelaxationTime.
 // statistical_error is one standard error of `value` (before its absolute value is taken). A value
 // within kResolved standard errors shows no bias, only an upper bound of the bias.
 //   kMeanFreeTime  from the scatter of the sample. If the sample has too few of the long returns
@@ -39,7 +37,7 @@
 //                  is in effect the error of the truth, which is the same for all methods at one
 //                  delta. own_error is the run's own part, error/truth, which falls with more
 //                  orbits.
-//   kHeatCurrent   the same, from the scatter of the replicas.
+//   kHeatCurrent   the same, from the scatter of the trajectories.
 // Orbits that a method loses (fixed steps through a tip) are not among its samples; their hits and
 // their work are counted.
 // The closed form has no samples and no statistical error. Its value is the bound of its rounding
@@ -54,12 +52,12 @@
 // within a factor of two of seconds_per_curve. A method is left out if, by a rough prediction, even
 // 16 samples take longer. The truth of a relaxation time takes about 8 times seconds_per_curve. A
 // delta is left out if the truth would not reach kFewestTruthOrbits in this time. The truth of
-// kHeatCurrent takes about as long, and the quantity is left out below kFewestTruthReplicas.
+// kHeatCurrent takes about as long, and the quantity is left out below kFewestTruthStretches.
 // Therefore, for any valid spec, the program takes about 50 times seconds_per_curve, 20 times more
 // for the heat current, and 10 times more for each delta of a relaxation time.
 //
-// The orbits of kRelaxationTime and the replicas of kHeatCurrent are samples of the point's own
-// stream (random_stream.h) under the seed. Each rung and the truth have different samples.
+// For kRelaxationTime and kHeatCurrent each rung and the truth have a seed of their own, and
+// therefore different samples.
 //
 // Work is processor time: other programs do not count, but they affect caches and shared cores.
 // Values are functions of the spec; the number of rungs also depends on the work.
@@ -82,7 +80,7 @@ inline constexpr double kMaxSecondsPerCurve = 60;
 
 inline constexpr size_t kMaxRelaxationDeltas = 8;
 inline constexpr uint64_t kFewestTruthOrbits = 256;
-inline constexpr uint64_t kFewestTruthReplicas = 64;
+inline constexpr uint64_t kFewestTruthStretches = 2048;
 
 // A deviation of more statistical errors than this is a bias: by chance it happens once in 400.
 inline constexpr double kResolved = 3;
@@ -103,40 +101,12 @@ struct MethodMeasurement {
   double delta = 0;      // of the pair, or of the gas; one of relaxation_deltas for kRelaxationTime
   uint64_t samples = 0;  // 0 for the closed form and the spectrum
   uint64_t wall_hits = 0;  // of the ball, in all samples; 0 from kRelaxationTime on (not counted)
-  std::optional<double> work = 0;  // seconds; empty for a kLimitFloor that no run determines
+  double work = 0;         // seconds
   double value = 0;
   double statistical_error = 0;
   double own_error = 0;                    // without the error of the truth
   std::optional<bool> bias_resolved = {};  // empty for kTrajectory: its value is not a deviation
 };
-
-// ---- the floor of the limit ----
-//
-// The limit of rare collisions as a substitute for the billiard: its bias at one delta, and the
-// work after which the billiard has the same error.
-//
-// The methods of the limit, kMarkov and kSpectrum, have the same bias, which more work does not
-// reduce: their floor. The spectrum shows it without scatter. A bias below kFloorResolved
-// statistical errors of the truth may be chance. Then only an upper bound is known: bias +
-// kFloorResolved * error.
-//
-// The billiard has no bias, and its own error falls as 1/sqrt(work). At the crossing work this
-// error equals the floor. For a larger tolerance the limit is as good and costs less. For a smaller
-// tolerance the limit cannot be used. If the floor is an upper bound, the crossing work is a lower
-// bound.
-
-inline constexpr double kFloorResolved = 2;
-
-// Slow pistons cause much of the scatter, and they are rare. Therefore the estimated error of a run
-// of fewer orbits is too uncertain.
-inline constexpr uint64_t kFewestFloorOrbits = 256;
-
-// Returns a measurement of kLimitFloor. `spectrum` is the relaxation time at a delta by kSpectrum,
-// `billiard` the longest run of kLanes at the same delta, whose scatter is known best.
-MethodMeasurement LimitFloorOf(const MethodMeasurement& spectrum,
-                               const MethodMeasurement& billiard);
-
-// ---- the comparison ----
 
 // One sentence for each value that is not permitted. It begins with the program's flag.
 std::vector<std::string> Violations(const MethodComparisonSpec& spec);
@@ -149,8 +119,7 @@ double GasDelta(double rho);
 
 // Calls `tell` with each measurement as soon as it is made. The order is by quantity, then delta
 // (in the order of the list), then method, then time step (descending), then samples (ascending).
-// The last measurements are one kLimitFloor for each delta with relaxation times, by descending
-// delta. The spec must have no violations.
+// The spec must have no violations.
 void CompareMethods(const MethodComparisonSpec& spec,
                     const std::function<void(const MethodMeasurement&)>& tell);
 

@@ -1,9 +1,6 @@
 #include "tools/method_comparison/point_runs.h"
 
-#include <algorithm>
 #include <memory>
-#include <utility>
-#include <vector>
 
 #include "core/ensemble/block_result.h"
 #include "core/ensemble/point_experiment.h"
@@ -19,7 +16,6 @@
 #include "core/statistics/batch_means.h"
 #include "server/processor_time.h"
 #include "tools/flows/fixed_step_gas.h"
-#include "tools/flows/metered_gases.h"
 
 namespace ballpiston::method_comparison {
 namespace {
@@ -33,6 +29,23 @@ Model ModelOf(Method method) {
     default:
       return Model::kBilliard;
   }
+}
+
+// What the service answers, and the time that it needs.
+PointEstimate Answered(EnsembleSpec spec, uint64_t samples, bool is_truth) {
+  spec.target.samples = static_cast<int64_t>(samples);
+  spec.seed += 2 * samples + (is_truth ? 1 : 0);
+  const auto experiment = PointExperiment::Create(spec, 0);
+  const double begin = server::ThreadSeconds();
+  const BlockResult merged = FoldPoint(*experiment);
+  const double seconds = server::ThreadSeconds() - begin;
+  const PointSummary summary = experiment->Summarize(merged);
+  if (summary.estimates.empty()) return {.seconds = seconds};
+  const Estimate& estimate = summary.estimates.front();
+  return {.value = estimate.value,
+          .error = estimate.standard_error.value_or(0),
+          .samples = summary.samples,
+          .seconds = seconds};
 }
 
 // ---- relaxation times ----
@@ -56,16 +69,12 @@ double EnergyRelaxationRuns::PredictedSecondsPerOrbit() const {
          (kPerCollision + kPerEvent * HitsPerCollision(geometry).Events());
 }
 
-PointEstimate EnergyRelaxationRuns::Run(Method method, const SampleRange& samples) const {
-  const auto experiment = PointExperiment::Create(SpecOf(geometry, seed, method), 0);
-  const double begin = server::ThreadSeconds();
-  const BlockResult merged =
-      RunBlock(*experiment, {.first = samples.first, .samples = samples.count});
-  const Estimate estimate = experiment->FirstEstimate(merged);
-  return {.value = estimate.value,
-          .error = estimate.standard_error.value_or(0),
-          .samples = merged.samples,
-          .seconds = server::ThreadSeconds() - begin};
+PointEstimate EnergyRelaxationRuns::Run(Method method, uint64_t samples) const {
+  return Answered(SpecOf(geometry, seed, method), samples, false);
+}
+
+PointEstimate EnergyRelaxationRuns::Truth(uint64_t samples) const {
+  return Answered(SpecOf(geometry, seed, Method::kLanes), samples, true);
 }
 
 PointEstimate EnergyRelaxationRuns::BySpectrum() const {
@@ -87,23 +96,22 @@ constexpr double kComparedHot = 1.5;
 constexpr double kComparedCold = 0.5;
 
 // The gas of the experiment gas-conduction.
-std::unique_ptr<const PointExperiment> ExperimentOf(const HeatCurrentRuns& runs, Method method) {
-  const EnsembleSpec spec = {.experiment = &kGasConduction,
-                             .grid = {{kRho, {runs.rho}},
-                                      {kDelta, {runs.delta}},
-                                      {kCells, {CodeOf(kComparedChain)}},
-                                      {kHot, {kComparedHot}},
-                                      {kCold, {kComparedCold}}},
-                             .seed = runs.seed,
-                             .model = ModelOf(method)};
-  return PointExperiment::Create(spec, 0);
+EnsembleSpec SpecOf(const HeatCurrentRuns& runs, Method method) {
+  return {.experiment = &kGasConduction,
+          .grid = {{kRho, {runs.rho}},
+                   {kDelta, {runs.delta}},
+                   {kCells, {CodeOf(kComparedChain)}},
+                   {kHot, {kComparedHot}},
+                   {kCold, {kComparedCold}}},
+          .seed = runs.seed,
+          .model = ModelOf(method)};
 }
 
 const SteadyGas& AsGas(const PointExperiment& experiment) {
   return static_cast<const SteadyGas&>(experiment);
 }
 
-// A stretch of one cell is half of its relaxation time.
+// Of fixed time steps. A stretch of one cell is half of its relaxation time.
 double TimeToRelax(const SteadyGas& gas) { return 8 * gas.stretch(); }
 double TimeToTheEnd(const SteadyGas& gas) { return 32 * gas.stretch(); }
 
@@ -141,8 +149,7 @@ void AdvanceTo(double time, FixedStepGas& gas, GasMeter& meter) {
   while (meter.escapes() == 0 && gas.NextTime() <= time) Tell(gas, gas.Step(), meter);
 }
 
-void MeasureByFixedSteps(const SteadyGas& gas, double time_step, uint64_t sample,
-                         BatchMeans& means) {
+void MeasureReplica(const SteadyGas& gas, double time_step, uint64_t sample, BatchMeans& means) {
   const GasRandom random = gas.RandomOf(sample);
   const GasState start = StartOf(gas, random);
   GasMeter meter(gas.geometry(), start);
@@ -154,57 +161,41 @@ void MeasureByFixedSteps(const SteadyGas& gas, double time_step, uint64_t sample
   if (meter.escapes() == 0) Add(gas, meter, means);
 }
 
-// Replicas that run together, to fill the lanes.
-void MeasureTogether(const SteadyGas& gas, const SampleRange& samples, BatchMeans& means) {
-  std::vector<GasStart> starts;
-  for (uint64_t i = samples.first; i < samples.first + samples.count; ++i) {
-    const GasRandom random = gas.RandomOf(i);
-    starts.push_back({StartOf(gas, random), gas.WallsOf(random), random, nullptr});
-  }
-  MeteredGases gases(gas.gas_engine(), gas.geometry(), std::move(starts));
-  gases.AdvanceTo(TimeToRelax(gas));
-  for (GasMeter& meter : gases.meters()) meter.Begin(TimeToRelax(gas));
-  gases.AdvanceTo(TimeToTheEnd(gas));
-  for (GasMeter& meter : gases.meters()) {
-    meter.End(TimeToTheEnd(gas));
-    Add(gas, meter, means);
-  }
-}
-
-}  // namespace
-
-double HeatCurrentRuns::PredictedSecondsPerReplica(const MethodVariant& variant) const {
-  constexpr double kPerStep = 4e-8, kPerHit = 1e-9, kPerEvent = 5e-8, kPerExchange = 4e-7,
-                   kPerJump = 4e-8;
-  const auto experiment = ExperimentOf(*this, variant.method);
-  const SteadyGas& gas = AsGas(*experiment);
-  const double time = TimeToTheEnd(gas);
-  if (variant.method == Method::kFixedStep) return kPerStep * time / variant.time_step;
-  const SampleWork work = WorkOfReplica(ModelOf(variant.method), gas.geometry(), time);
-  if (variant.method == Method::kReference) return kPerEvent * work.Events();
-  return kPerHit * work.ball_wall + kPerExchange * work.collisions + kPerJump * work.jumps;
-}
-
-PointEstimate HeatCurrentRuns::Run(const MethodVariant& variant, const SampleRange& samples) const {
-  constexpr uint64_t kTogether = 64;
-  const auto experiment = ExperimentOf(*this, variant.method);
-  const SteadyGas& gas = AsGas(*experiment);
+PointEstimate ByFixedSteps(const SteadyGas& gas, double time_step, uint64_t replicas) {
   const double begin = server::ThreadSeconds();
-  const uint64_t end = samples.first + samples.count;
   BatchMeans means;
-  for (uint64_t i = samples.first; i < end;) {
-    if (variant.method == Method::kFixedStep) {
-      MeasureByFixedSteps(gas, variant.time_step, i++, means);
-      continue;
-    }
-    const SampleRange part = {i, std::min(kTogether, end - i)};
-    MeasureTogether(gas, part, means);
-    i += part.count;
-  }
+  for (uint64_t i = 0; i < replicas; ++i) MeasureReplica(gas, time_step, i, means);
   return {.value = means.Ratio().value_or(0),
           .error = means.StandardError().value_or(0),
           .samples = means.batches,
           .seconds = server::ThreadSeconds() - begin};
+}
+
+}  // namespace
+
+double HeatCurrentRuns::PredictedSecondsPerSample(const MethodVariant& variant) const {
+  constexpr double kPerStep = 4e-8, kPerHit = 1e-9, kPerEvent = 5e-8, kPerExchange = 4e-7,
+                   kPerJump = 4e-8;
+  const auto experiment = PointExperiment::Create(SpecOf(*this, variant.method), 0);
+  const SteadyGas& gas = AsGas(*experiment);
+  if (variant.method == Method::kFixedStep) {
+    return kPerStep * TimeToTheEnd(gas) / variant.time_step;
+  }
+  const SampleWork work = WorkOfReplica(ModelOf(variant.method), gas.geometry(), gas.stretch());
+  if (variant.method == Method::kReference) return kPerEvent * work.Events();
+  return kPerHit * work.ball_wall + kPerExchange * work.collisions + kPerJump * work.jumps;
+}
+
+PointEstimate HeatCurrentRuns::Run(const MethodVariant& variant, uint64_t samples) const {
+  EnsembleSpec spec = SpecOf(*this, variant.method);
+  if (variant.method != Method::kFixedStep) return Answered(spec, samples, false);
+  spec.seed += samples;
+  const auto experiment = PointExperiment::Create(spec, 0);
+  return ByFixedSteps(AsGas(*experiment), variant.time_step, samples);
+}
+
+PointEstimate HeatCurrentRuns::Truth(uint64_t samples) const {
+  return Answered(SpecOf(*this, Method::kLanes), samples, true);
 }
 
 }  // namespace ballpiston::method_comparison

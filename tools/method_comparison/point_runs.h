@@ -1,11 +1,9 @@
 // Runs of samples of two experiments: relaxation times of the pair, and heat currents of a gas.
 //
-// A run of n samples has the samples n ... 2 n - 1 of the point's stream. Therefore runs of 64,
-// 256, 1024, ... samples have no sample in common. The samples of the truth are in the gaps between
-// the runs. Property, with a test of its name: 1. RunsHaveNoSampleInCommon, truth included.
+// A run is a point that is answered as the service would answer it. Runs of different lengths, and
+// the truth, have different seeds. Therefore they have no sample in common.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 
 #include "core/geometry/pair_geometry.h"
@@ -21,28 +19,11 @@ struct PointEstimate {
   double seconds = 0;    // of processor time
 };
 
-// Samples first ... first + count - 1 of a point's stream.
-struct SampleRange {
-  uint64_t first;
-  uint64_t count;  // a power of two, like first
-
-  friend bool operator==(const SampleRange&, const SampleRange&) = default;
-};
-
-// The samples of a run; `samples` is 64, 256, 1024, ...
-inline SampleRange RunOf(uint64_t samples) { return {samples, samples}; }
-// The samples of the truth; `samples` is any power of two.
-inline SampleRange TruthOf(uint64_t samples) {
-  // The runs are [4^k, 2 4^k). The gap that starts at 2 4^k has the same length.
-  const bool is_start_of_run = std::countr_zero(samples) % 2 == 0;
-  return {is_start_of_run ? 2 * samples : samples, samples};
-}
-
 // Measures the relaxation time of the piston's energy in equilibrium, and its cost, by the billiard
 // and by the limit of rare collisions (experiment/energy_relaxation.h).
 //
-// A sample is an orbit. A run computes its samples as the service would, as one block. Property,
-// with a test of its name: 1. TheJumpProcessAgreesWithTheSpectrum within its error.
+// A sample is an orbit. Property, with a test of its name: 1. TheJumpProcessAgreesWithTheSpectrum
+// within its error.
 struct EnergyRelaxationRuns {
   PairGeometry geometry;
   uint64_t seed;
@@ -52,7 +33,10 @@ struct EnergyRelaxationRuns {
   double PredictedSecondsPerOrbit() const;
 
   // Runs kLanes or kMarkov. Escaped orbits are not counted.
-  PointEstimate Run(Method method, const SampleRange& samples) const;
+  PointEstimate Run(Method method, uint64_t samples) const;
+
+  // By kLanes; with other samples than a run.
+  PointEstimate Truth(uint64_t samples) const;
 
   // The relaxation time of the limit, with the bound of its error. `seconds` is the time of one
   // evaluation, without the computation of the spectrum (about 0.1 s), which is done once for all
@@ -61,11 +45,12 @@ struct EnergyRelaxationRuns {
 };
 
 // Measures the heat current of one cell between two reservoirs, and its cost, by the methods that
-// can run a gas. A sample is a replica of the gas of experiment/gas_conduction.cc. It starts near
-// local equilibrium, relaxes for four relaxation times, and is measured for twelve.
+// can run a gas. The gas is that of experiment/gas_conduction.cc, where a sample is a measured
+// stretch of half a relaxation time, and all trajectories warm up before their first stretch.
 //
-// All methods run the same replicas for the same times. A replica of the fixed time steps that
-// loses a ball is not counted. The jump process has the current of the limit, not of the billiard.
+// The service has no fixed time steps. Their sample is a replica, which starts near local
+// equilibrium, relaxes for four relaxation times, and is measured for twelve. A replica that loses
+// a ball is not counted. The jump process has the current of the limit, not of the billiard.
 // Property, with a test of its name: 1. AllMethodsAgree, within their errors and biases.
 struct HeatCurrentRuns {
   double rho;
@@ -74,10 +59,13 @@ struct HeatCurrentRuns {
 
   // For kFixedStep, kReference, kLanes and kMarkov, on a processor of about 3 GHz, within a factor
   // of three.
-  double PredictedSecondsPerReplica(const MethodVariant& variant) const;
+  double PredictedSecondsPerSample(const MethodVariant& variant) const;
 
-  // Runs one of these methods.
-  PointEstimate Run(const MethodVariant& variant, const SampleRange& samples) const;
+  // Runs one of these methods. Stretches are rounded up to a multiple of 128.
+  PointEstimate Run(const MethodVariant& variant, uint64_t samples) const;
+
+  // By kLanes; with other samples than a run.
+  PointEstimate Truth(uint64_t samples) const;
 };
 
 }  // namespace ballpiston::method_comparison

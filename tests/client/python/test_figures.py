@@ -255,6 +255,22 @@ def test_a_resolved_bias_is_part_of_the_expected_error() -> None:
     assert lanes.error_of_error == pytest.approx([0.05 / np.sqrt(800)])
 
 
+RELAXATIONS = """0.53,0.1,0.125,spectrum,0,relaxation-time,0,0,0.1,0.4375,0.25,0.01,0
+0.53,0.2,0.125,spectrum,0,relaxation-time,0,0,0.1,0.5,0.25,0.01,0
+0.53,0.2,0.125,spectrum,0,relaxation-time,0,0,0.1,0.5,0.25,0.01,0
+0.53,0.2,0.125,markov,0,relaxation-time,512,0,0.1,0.6,0.25,0.1,0
+"""
+
+
+def test_the_floor_of_the_limit_is_its_bias_from_two_errors_on_else_a_bound() -> None:
+    data = speed_accuracy.measurements(MEASUREMENTS + RELAXATIONS)
+    runs = tables.rows(data, quantity="relaxation-time")
+    floors = speed_accuracy.floors_of_limit(runs)
+    assert floors["delta"].tolist() == [0.2, 0.1]
+    assert floors["value"].tolist() == [0.5, 0.4375 + 2 * 0.25]
+    assert floors["is_bias"].tolist() == [True, False]
+
+
 def test_measurements_without_a_gas_and_a_limit_are_drawn() -> None:
     data = speed_accuracy.measurements(MEASUREMENTS)
     figure = speed_accuracy.draw({"speed-accuracy": data})

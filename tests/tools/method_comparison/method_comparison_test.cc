@@ -54,15 +54,14 @@ TEST(MethodComparison, EveryMethodComputesItsQuantities) {
   std::set<CurveKey> curves;
   for (const MethodMeasurement& m : Measurements()) curves.insert(KeyOf(m));
   // For each of three quantities four time steps and six engines; for two quantities the closed
-  // form; at each of two delta the billiard, the two methods of the limit and its floor; three
-  // engines of the gas.
-  EXPECT_EQ(curves.size(), 3 * 10 + 2 + 2 * 4 + 3);
+  // form; at each of two delta the billiard and the two methods of the limit; three engines of the
+  // gas.
+  EXPECT_EQ(curves.size(), 3 * 10 + 2 + 2 * 3 + 3);
   EXPECT_FALSE(curves.contains({Quantity::kTrajectory, 0.2, Method::kClosedForm, -0.0}));
   for (const double delta : kSmallestComparison.relaxation_deltas) {
     for (const Method method : {Method::kLanes, Method::kMarkov, Method::kSpectrum}) {
       EXPECT_TRUE(curves.contains({Quantity::kRelaxationTime, delta, method, -0.0})) << delta;
     }
-    EXPECT_TRUE(curves.contains({Quantity::kLimitFloor, delta, Method::kSpectrum, -0.0})) << delta;
   }
   for (const Method method : {Method::kReference, Method::kLanes, Method::kMarkov}) {
     EXPECT_TRUE(curves.contains({Quantity::kHeatCurrent, 0.2, method, -0.0}));
@@ -71,7 +70,7 @@ TEST(MethodComparison, EveryMethodComputesItsQuantities) {
 
 TEST(MethodComparison, CurvesAreInOrderWithIncreasingSamples) {
   const std::vector<MethodMeasurement>& all = Measurements();
-  for (size_t i = 1; i < all.size() && all[i].quantity != Quantity::kLimitFloor; ++i) {
+  for (size_t i = 1; i < all.size(); ++i) {
     const auto before = KeyOf(all[i - 1]), now = KeyOf(all[i]);
     ASSERT_LE(before, now) << i;
     if (before == now) {
@@ -82,8 +81,7 @@ TEST(MethodComparison, CurvesAreInOrderWithIncreasingSamples) {
 
 TEST(MethodComparison, WorkIsMeasuredAndErrorsAreReported) {
   for (const MethodMeasurement& m : Measurements()) {
-    EXPECT_TRUE(m.work || m.quantity == Quantity::kLimitFloor);
-    EXPECT_GT(m.work.value_or(1), 0);
+    EXPECT_GT(m.work, 0);
     EXPECT_EQ(m.samples == 0, IsComputed(m.method));
     EXPECT_EQ(m.wall_hits == 0, m.quantity >= Quantity::kRelaxationTime || IsComputed(m.method));
     EXPECT_EQ(m.statistical_error == 0, m.method == Method::kClosedForm);
@@ -98,20 +96,9 @@ TEST(MethodComparison, ABiasIsMoreThanThreeStatisticalErrors) {
   for (const MethodMeasurement& m : Measurements()) {
     if (m.quantity == Quantity::kTrajectory) {
       EXPECT_EQ(m.bias_resolved, std::nullopt);
-    } else if (m.quantity != Quantity::kLimitFloor) {
+    } else {
       EXPECT_EQ(m.bias_resolved, m.value > 3 * m.statistical_error);
     }
-  }
-}
-
-TEST(MethodComparison, FloorsComeLastByDescendingDelta) {
-  const std::vector<MethodMeasurement>& all = Measurements();
-  ASSERT_GT(all.size(), 2u);
-  for (const double delta : {0.2, 0.3}) {
-    const MethodMeasurement& floor = all[all.size() - (delta == 0.2 ? 1 : 2)];
-    EXPECT_EQ(floor.quantity, Quantity::kLimitFloor);
-    EXPECT_EQ(floor.delta, delta);
-    EXPECT_GE(floor.value, Spectra()[delta].value);
   }
 }
 
@@ -223,48 +210,6 @@ TEST(MethodComparison, RareCollisionsLeaveOutSlowMethods) {
   }
   EXPECT_EQ(of_mean_free_time, std::set<Method>{Method::kClosedForm});
   EXPECT_EQ(relaxation_deltas, std::set<double>{0.2});
-}
-
-// ---- the floor of the limit ----
-
-MethodMeasurement Spectrum(double value, double error) {
-  return {.method = Method::kSpectrum,
-          .quantity = Quantity::kRelaxationTime,
-          .delta = 0.2,
-          .work = 1e-6,
-          .value = value,
-          .statistical_error = error};
-}
-
-MethodMeasurement Billiard(uint64_t samples, double work, double own_error) {
-  return {.method = Method::kLanes,
-          .quantity = Quantity::kRelaxationTime,
-          .delta = 0.2,
-          .samples = samples,
-          .work = work,
-          .own_error = own_error};
-}
-
-TEST(LimitFloor, ABiasIsResolvedFromTwoStandardErrorsOn) {
-  const MethodMeasurement resolved = LimitFloorOf(Spectrum(0.5, 0.25), {});
-  EXPECT_EQ(resolved.quantity, Quantity::kLimitFloor);
-  EXPECT_EQ(resolved.delta, 0.2);
-  EXPECT_EQ(resolved.bias_resolved, true);
-  EXPECT_EQ(resolved.value, 0.5);
-  EXPECT_EQ(resolved.statistical_error, 0.25);
-  const MethodMeasurement bound = LimitFloorOf(Spectrum(0.4375, 0.25), {});
-  EXPECT_EQ(bound.bias_resolved, false);
-  EXPECT_EQ(bound.value, 0.4375 + 2 * 0.25);
-}
-
-// The billiard's own error is three times the floor: it needs nine times the work.
-TEST(LimitFloor, TheBilliardsErrorFallsWithTheRootOfWork) {
-  EXPECT_EQ(LimitFloorOf(Spectrum(0.125, 0), Billiard(1024, 2, 0.375)).work, 18);
-}
-
-TEST(LimitFloor, TooFewOrbitsDetermineNoCrossing) {
-  const MethodMeasurement billiard = Billiard(kFewestFloorOrbits - 1, 1, 0.5);
-  EXPECT_EQ(LimitFloorOf(Spectrum(0.5, 0.25), billiard).work, std::nullopt);
 }
 
 }  // namespace

@@ -31,8 +31,8 @@ TEST(Program, PrintsRowsAndClearsTheProgressLine) {
   for (const char* curve :
        {"0.2,0.125,fixed-step,0.01,mean-free-time,16,", "0.2,0.125,closed-form,0,ingoing-law,0,",
         "0.2,0.125,billiard-reference-quadruple,0,trajectory,",
-        "0.3,0.125,markov,0,relaxation-time,512,", "0.3,0.125,spectrum,0,limit-floor,0,0,",
-        "0.2,0.125,markov,0,heat-current,64,"}) {
+        "0.3,0.125,markov,0,relaxation-time,512,", "0.3,0.125,spectrum,0,relaxation-time,0,0,",
+        "0.2,0.125,markov,0,heat-current,512,"}) {
     EXPECT_THAT(result.out, HasSubstr(rho + curve));
   }
   EXPECT_THAT(result.err, StartsWith("\r  1 measurements  mean-free-time, fixed-step 0.1: "));
@@ -47,7 +47,7 @@ TEST(Program, AnEmptyListOfRelaxationDeltasIsTheDefault) {
   EXPECT_EQ(result.err, "");  // no progress: standard error is not a terminal
   for (const char* delta : {"0.2", "0.1", "0.05", "0.025"}) {
     EXPECT_THAT(result.out, HasSubstr(std::string("\n0.529561127988977,") + delta +
-                                      ",0.125,spectrum,0,limit-floor,"));
+                                      ",0.125,spectrum,0,relaxation-time,"));
   }
 }
 

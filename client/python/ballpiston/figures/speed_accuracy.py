@@ -50,6 +50,7 @@ _OF_ERRORS = list(_METHODS)[:5]
 _DELTA_COLOURS = ("#440154", "#2a788e")
 _FEWEST_SAMPLES = 64  # errors from fewer samples are too uncertain and are not drawn
 _FEWEST_ORBITS = 256  # the same for e
+_RESOLVED = 2.0  # a bias of the limit is at least this number of statistical errors
 _LABEL_AT = 1.5  # a label is right of the end of its line, by this factor
 _ROOM = 150.0  # space for the labels, right of the longest run, as a factor
 _LINE_OF_TEXT = 0.062  # height of a line of text, as a share of an axis
@@ -148,7 +149,7 @@ def draw(tables: Tables) -> Figure:
     """The panels that have data, and a line with the parameters."""
     data = tables["speed-accuracy"]
     has_gas = "heat-current" in data["quantity"]
-    has_limit = "limit-floor" in data["quantity"]
+    has_limit = "relaxation-time" in data["quantity"]
     lines = 3 if has_gas or has_limit else 2
     figure = style.picture(960, 400 * lines + 60)
     figure.get_layout_engine().set(rect=(0, 0.04, 1, 0.96))
@@ -268,11 +269,23 @@ def _draw_orbits(axes: Any, curves: list[Curve]) -> None:
     style.title(axes, "d", "single orbits")
 
 
+def floors_of_limit(runs: Table) -> Table:
+    """The error of the relaxation time that more work by the limit cannot reduce, at each delta,
+    the largest delta first. It is the limit's bias, or an upper bound of it: the spectrum's
+    deviation, which may be chance, plus _RESOLVED statistical errors."""
+    spectra = rows(runs, method="spectrum")
+    first = np.unique(-spectra["delta"], return_index=True)[1]
+    spectra = {name: column[first] for name, column in spectra.items()}
+    chance = _RESOLVED * spectra["statistical_error"]
+    is_bias = spectra["value"] >= chance
+    value = spectra["value"] + np.where(is_bias, 0.0, chance)
+    return {"delta": spectra["delta"], "value": value, "is_bias": is_bias}
+
+
 def _draw_relaxation(axes: Any, data: Table) -> None:
-    """The rows limit-floor contain the bias of the limit, or an upper bound, at each delta."""
-    floors = rows(data, quantity="limit-floor")
     runs = rows(data, quantity="relaxation-time")
-    is_bias = floors["bias_resolved"] == 1
+    floors = floors_of_limit(runs)
+    is_bias = floors["is_bias"]
     chosen = floors["delta"][is_bias][: len(_DELTA_COLOURS)]
     if not len(chosen):
         chosen = floors["delta"][:1]
