@@ -254,13 +254,16 @@ v1::EnsembleSpec::Model ModelMessage(Model model) {
 }
 
 std::string QuestionBytes(v1::EnsembleSpec message) {
+  if (message.model() == v1::EnsembleSpec::AUTO) message.clear_model();
+  if (message.precision() == v1::EnsembleSpec::DOUBLE) message.clear_precision();
+  v1::Target& target = *message.mutable_target();
   const ExperimentKind* const experiment =
       FindExperiment(static_cast<uint64_t>(message.experiment()));
-  const std::string& estimate = message.target().estimate();
-  if (experiment != nullptr && experiment->aims.front().name == estimate) {
-    message.mutable_target()->clear_estimate();
-    if (message.target().ByteSizeLong() == 0) message.clear_target();
+  if (experiment != nullptr && experiment->aims.front().name == target.estimate()) {
+    target.clear_estimate();
   }
+  if (target.has_samples() && target.samples() == kDefaultSamples) target.clear_samples();
+  if (target.ByteSizeLong() == 0) message.clear_target();
   return DeterministicBytes(message);
 }
 

@@ -37,7 +37,7 @@ v1::PointParameters ParametersMessage(const PointParameters& parameters);
 PointParameters ParametersOf(const v1::PointParameters& message);
 v1::EnsembleSpec::Model ModelMessage(Model model);
 
-// The same bytes for the same question: the name of the default estimate is left out.
+// The same bytes for the same question: default values are left out.
 std::string QuestionBytes(v1::EnsembleSpec message);
 
 // A specification in the store: two serialized v1::EnsembleSpec, which are merged. The grid may be

@@ -188,6 +188,20 @@ TEST(Question, TheDefaultEstimateMayBeNamedOrLeftOut) {
   EXPECT_NE(question_of("exchange_rate"), question_of(""));
 }
 
+TEST(Question, DefaultValuesMayBeNamedOrLeftOut) {
+  v1::EnsembleSpec named = Question();
+  named.set_model(v1::EnsembleSpec::AUTO);
+  named.set_precision(v1::EnsembleSpec::DOUBLE);
+  named.mutable_target()->set_samples(kDefaultSamples);
+  v1::EnsembleSpec left_out = named;
+  left_out.clear_model();
+  left_out.clear_precision();
+  left_out.clear_target();
+  EXPECT_EQ(QuestionOf(named, "1"), QuestionOf(left_out, "1"));
+  EXPECT_EQ(FamilyOf(named, "1"), FamilyOf(left_out, "1"));
+  EXPECT_EQ(PayloadOf(CreateRequest(named, kUuid)), PayloadOf(CreateRequest(left_out, kUuid)));
+}
+
 // A retry may have other labels: they are added to the job.
 TEST(Payload, EveryFieldExceptTheIdAndTheLabelsIsPartOfTheHash) {
   v1::CreateEnsembleJobRequest request = CreateRequest(Question(), kUuid);
