@@ -97,6 +97,19 @@ TEST_F(JobTest, AFullDiskIsAnError) {
   EXPECT_THAT(full.err, HasSubstr("cannot write standard output: No space left"));
 }
 
+// gRPC refuses the request; the client recognises gRPC's words.
+TEST_F(JobTest, AQuestionThatIsTooLargeToBeSentIsAnError) {
+  std::string numbers = "0.53";
+  for (int i = 1; i < 1'000'000; ++i) numbers += ",0.53";
+  WriteFile(File("million.json"),
+            R"({"experiment": "EQUILIBRIUM", "grid": {"delta": [0.1], "rho": [)" + numbers + "]}}");
+  const ProcessResult refused = server_.Client({"run", "--spec", File("million.json")});
+  EXPECT_THAT(refused, ExitsWith(4));
+  EXPECT_EQ(refused.out, "");
+  EXPECT_THAT(refused.err, HasSubstr("too large to be sent: 80000"));
+  EXPECT_THAT(refused.err, HasSubstr("at most 4194304"));
+}
+
 TEST_F(JobTest, AnInterruptionEndsATraceInTheServerToo) {
   for (const int signal : {SIGINT, SIGTERM}) {
     ProcessOptions options = server_.Command(Split("trace --rho 0.53 --delta 0.2 --events 1e6"));

@@ -42,7 +42,7 @@ TEST(Spec, EveryBadFieldIsAViolation) {
   };
   const std::string range = "; permitted: N or NxM, 1 to 1000000 cells in all";
   const std::string long_text(1'000'000, 'y');
-  std::vector<Row> rows = {
+  const std::vector<Row> rows = {
       // Strange text is escaped and shortened.
       {kGas + R"(grid { cells: "\033[2J" })",
        {"spec.grid.cells[0]"},
@@ -61,14 +61,7 @@ TEST(Spec, EveryBadFieldIsAViolation) {
       {kHit + "model: 78", {"spec.model"}},
       {kHit + "experiment: 77", {"spec.experiment"}},
       // A tolerance below the model's own error.
-      {kRelaxation + "target { tolerance: 1e-4 } model: MARKOV", {"spec.target.tolerance"}},
-      {kRelaxation + "target { tolerance: 1e-4 } model: SPECTRUM", {"spec.target.tolerance"}},
-      {kRelaxation + "target { tolerance: 1e-4 } model: AUTO", {}},
-      {kRelaxation + "target { tolerance: 1e-4 } model: BILLIARD", {}}};
-  for (const std::string wrong : {"nan", "inf", "-inf"}) {
-    rows.push_back({kHit + "grid { rho: " + wrong + " }", {"spec.grid.rho[1]"}});
-    rows.push_back({kHit + "target { tolerance: " + wrong + " }", {"spec.target.tolerance"}});
-  }
+      {kRelaxation + "target { tolerance: 1e-4 } model: MARKOV", {"spec.target.tolerance"}}};
   for (const Row& row : rows) {
     SCOPED_TRACE(row.spec.substr(0, 200));
     const CheckedSpec checked = CheckSpec(SpecOfText(row.spec));
