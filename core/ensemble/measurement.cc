@@ -62,7 +62,7 @@ Estimate RatioOf(const BatchMeans& sample, double events) {
   const double value = sample.Ratio().value_or(kNotMeasured);
   return {.value = value,
           .standard_error = StatedError(events, value, sample.StandardError()),
-          .batches = sample.batches};
+          .batches = sample.EffectiveCount()};
 }
 
 std::string RemarkOnSamples(absl::string_view estimate, double needed) {

@@ -49,14 +49,14 @@ void AddToRow(size_t row, size_t bins, double x, Histogram& cells) {
 Reading CorrelationAt(Correlation correlation) {
   return [=](const BlockResult& merged) {
     const BatchMeans& measured = merged.batch_means[correlation];
-    return RatioOf(measured, static_cast<double>(measured.batches));
+    return RatioOf(measured, static_cast<double>(measured.batches()));
   };
 }
 
 // A distance between laws, whose error is that of orbits.
 template <typename Distance>
 Estimate DistanceOf(double value, const Distance& measured, const BlockResult& merged) {
-  const auto orbits = static_cast<double>(merged.batch_means[kWaitingOutcome].batches);
+  const auto orbits = static_cast<double>(merged.batch_means[kWaitingOutcome].batches());
   return {.value = value,
           .standard_error = StatedError(orbits, value, measured.standard_error),
           .batches = measured.batches,
@@ -73,7 +73,7 @@ std::optional<Estimate> HittingTimeDistance(const BlockResult& merged) {
 // `has_counts`: the correlation whose terms are also counted in the rows.
 Reading DivergenceAt(Kind kind, size_t rows, Correlation has_counts) {
   return [=](const BlockResult& merged) -> std::optional<Estimate> {
-    if (merged.batch_means[has_counts].batches == 0) return std::nullopt;
+    if (merged.batch_means[has_counts].batches() == 0) return std::nullopt;
     const KlDivergence measured = DivergenceWithinRows(GroupsOf(kind, merged), rows);
     return DistanceOf(measured.value, measured, merged);
   };

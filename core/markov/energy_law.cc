@@ -7,6 +7,7 @@
 
 #include "core/arithmetic/gauss_nodes.h"
 #include "core/closed_form/kernel.h"
+#include "core/statistics/histogram.h"
 
 namespace ballpiston {
 namespace {
@@ -100,9 +101,11 @@ double EnergyLaw::Edge(size_t bin) const {
 }
 
 EnergyLaw::Start EnergyLaw::From(double epsilon) const {
-  const double u = std::min(std::sqrt(2 * epsilon), kFastest);
-  const auto bin = static_cast<size_t>(2 * epsilon * static_cast<double>(bins_));
-  return {u, std::min(bin, bins_ - 1), all_.generator.Gains(u), losses_.generator.Gains(u)};
+  // Rounded as the energies in samples, so that an energy on an edge is in the same bin.
+  const double start = std::sqrt(2 * epsilon);
+  const size_t bin = Histogram::OfBins(0, 0.5, bins_).BinOf(start * start / 2);
+  const double u = std::min(start, kFastest);
+  return {u, bin, all_.generator.Gains(u), losses_.generator.Gains(u)};
 }
 
 std::vector<double> EnergyLaw::Probabilities(const Start& start, double t) const {

@@ -12,23 +12,29 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/statistics/moments.h"
+
 namespace ballpiston {
 
 struct BatchMeans {
-  uint64_t batches = 0;
-  double mean_numerator = 0;
+  Moments numerator = {};  // over the batches
   double mean_denominator = 0;
-  double c_nn = 0;  // sums of products of deviations from the means
-  double c_nd = 0;
+  double c_nd = 0;  // sums of products of deviations from the means
   double c_dd = 0;
 
   void Add(double numerator, double denominator);  // one batch
   void Merge(const BatchMeans& other);
 
+  uint64_t batches() const { return numerator.count; }
+
   // Requires a batch and a denominator other than 0.
   std::optional<double> Ratio() const;
   // Requires at least two batches and a denominator other than 0.
   std::optional<double> StandardError() const;
+  // How many batches of a normal law would give an error that is as uncertain, as in
+  // Moments::EffectiveCount. Rare large numerators make errors uncertain; denominators are assumed
+  // to have no larger excess.
+  uint64_t EffectiveCount() const { return numerator.EffectiveCount(); }
 
   friend bool operator==(const BatchMeans&, const BatchMeans&) = default;
 };

@@ -9,10 +9,10 @@ Histogram Histogram::OfBins(double lower, double upper, size_t bins) {
   return {.lower = lower, .upper = upper, .counts = std::vector<uint64_t>(bins)};
 }
 
-void Histogram::Add(double x) {
+size_t Histogram::BinOf(double x) const {
   const double last = static_cast<double>(counts.size() - 1);
   const double position = (x - lower) / (upper - lower) * static_cast<double>(counts.size());
-  ++counts[static_cast<size_t>(std::clamp(position, 0.0, last))];
+  return static_cast<size_t>(std::clamp(position, 0.0, last));
 }
 
 void Histogram::Merge(const Histogram& other) {

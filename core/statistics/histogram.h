@@ -18,7 +18,8 @@ struct Histogram {
 
   static Histogram OfBins(double lower, double upper, size_t bins);
 
-  void Add(double x);
+  size_t BinOf(double x) const;
+  void Add(double x) { ++counts[BinOf(x)]; }
   // Requires the same bins on both sides.
   void Merge(const Histogram& other);
 

@@ -20,10 +20,8 @@ void Fill(const Moments& moments, storage::Moments& record) {
 }
 
 void Fill(const BatchMeans& means, storage::BatchMeans& record) {
-  record.set_batches(means.batches);
-  record.set_mean_numerator(means.mean_numerator);
+  Fill(means.numerator, *record.mutable_numerator());
   record.set_mean_denominator(means.mean_denominator);
-  record.set_c_nn(means.c_nn);
   record.set_c_nd(means.c_nd);
   record.set_c_dd(means.c_dd);
 }
@@ -39,8 +37,7 @@ Moments MomentsOf(const storage::Moments& record) {
 }
 
 BatchMeans BatchMeansOf(const storage::BatchMeans& record) {
-  return {record.batches(), record.mean_numerator(), record.mean_denominator(),
-          record.c_nn(),    record.c_nd(),           record.c_dd()};
+  return {MomentsOf(record.numerator()), record.mean_denominator(), record.c_nd(), record.c_dd()};
 }
 
 Histogram HistogramOf(const storage::Counts& record) {

@@ -167,7 +167,7 @@ PointEstimate ByFixedSteps(const SteadyGas& gas, double time_step, uint64_t repl
   for (uint64_t i = 0; i < replicas; ++i) MeasureReplica(gas, time_step, i, means);
   return {.value = means.Ratio().value_or(0),
           .error = means.StandardError().value_or(0),
-          .samples = means.batches,
+          .samples = means.batches(),
           .seconds = server::ThreadSeconds() - begin};
 }
 

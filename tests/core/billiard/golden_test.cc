@@ -32,6 +32,10 @@ class Fingerprint {
  public:
   void Add(uint64_t word) { hash_ = (hash_ ^ word) * 0x100000001b3; }
   void Add(double x) { Add(std::bit_cast<uint64_t>(x)); }
+  void Add(const Moments& m) {
+    Add(m.count);
+    for (const double x : {m.mean, m.m2, m.m3, m.m4}) Add(x);
+  }
 
   void Add(const Collision& collision) {
     const PairState& state = collision.state;
@@ -46,13 +50,10 @@ class Fingerprint {
 
   void Add(const BlockResult& result) {
     Add(result.samples);
-    for (const Moments& m : result.moments) {
-      Add(m.count);
-      for (const double x : {m.mean, m.m2, m.m3, m.m4}) Add(x);
-    }
+    for (const Moments& m : result.moments) Add(m);
     for (const BatchMeans& b : result.batch_means) {
-      Add(b.batches);
-      for (const double x : {b.mean_numerator, b.mean_denominator, b.c_nn, b.c_nd, b.c_dd}) Add(x);
+      Add(b.numerator);
+      for (const double x : {b.mean_denominator, b.c_nd, b.c_dd}) Add(x);
     }
     for (const Histogram& h : result.histograms) {
       Add(h.lower);

@@ -31,7 +31,7 @@ TEST(BlockResult, MergeKeepsEverySampleAndHasAnIdentity) {
   EXPECT_EQ(merged.samples, 4u);
   EXPECT_EQ(merged.moments[0].count, 4u);
   EXPECT_DOUBLE_EQ(merged.moments[0].mean, (1 + 2 + 2 + 4) / 4.0);
-  EXPECT_EQ(merged.batch_means[0].batches, 2u);
+  EXPECT_EQ(merged.batch_means[0].batches(), 2u);
   EXPECT_EQ(merged.histograms[0].counts, (std::vector<uint64_t>{0, 1, 2, 0, 1, 0, 0, 0, 0, 0}));
   EXPECT_EQ(merged.health.escapes, 2u);
   EXPECT_EQ(merged.health.max_energy_error, 2);
@@ -58,7 +58,7 @@ const Change kChanges[] = {
     {"a count", [](BlockResult& r) { r.moments[0].count ^= uint64_t{1} << 63; }},
     {"a sign", [](BlockResult& r) { r.moments[0].mean = -r.moments[0].mean; }},
     {"a last digit", [](BlockResult& r) { r.moments[0].m2 *= 1 + 1e-15; }},
-    {"batches", [](BlockResult& r) { r.batch_means[0].batches += 1; }},
+    {"batches", [](BlockResult& r) { r.batch_means[0].numerator.count += 1; }},
     {"a batch's last number", [](BlockResult& r) { r.batch_means[0].c_dd += 1; }},
     {"a bin", [](BlockResult& r) { r.histograms[0].counts[2] += 1; }},
     {"the order of bins",

@@ -94,8 +94,8 @@ TEST_P(EachExperiment, ASampleDependsOnlyOnItsNumber) {
     EXPECT_NEAR(parts.moments[i].mean, all.mean, 1e-12 * size) << i;
   }
   for (size_t i = 0; i < together.batch_means.size(); ++i) {
-    const double all = together.batch_means[i].mean_numerator;
-    EXPECT_NEAR(parts.batch_means[i].mean_numerator, all, 1e-12 * std::fabs(all)) << i;
+    const double all = together.batch_means[i].numerator.mean;
+    EXPECT_NEAR(parts.batch_means[i].numerator.mean, all, 1e-12 * std::fabs(all)) << i;
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/closed_form/kernel.h"
 #include "core/markov/relaxation_spectrum.h"
+#include "core/statistics/histogram.h"
 #include "tests/core/preamble.h"
 
 namespace ballpiston {
@@ -25,7 +26,8 @@ TEST(EnergyLaw, MeanAgreesWithTheSpectrum) {
   for (const double epsilon : kEpsilons) {
     for (const double time : {0.5, 2.0, 8.0}) {
       const std::vector<double> p = narrow.Probabilities(narrow.From(epsilon), time);
-      const double start = std::min(std::floor(2 * epsilon * 256), 255.0) + 0.5;
+      const double velocity = std::sqrt(2 * epsilon);
+      const double start = std::min(std::floor(velocity * velocity * 256), 255.0) + 0.5;
       double mean = std::exp(-PairCollisionRate(epsilon) * time) * (epsilon - start / 512);
       for (size_t bin = 0; bin < p.size(); ++bin) {
         mean += p[bin] * (static_cast<double>(bin) + 0.5) / (2.0 * static_cast<double>(p.size()));
@@ -57,6 +59,19 @@ TEST(EnergyLaw, FollowsTheKernelAtShortTimes) {
 
 // The finer law has one more level and bins of a third of the width, because a part of the error is
 // that of rates within a bin. Both laws have the largest permitted degree, 20.
+// Samples have the energy of a velocity, which is rounded.
+TEST(EnergyLaw, AnEnergyOnAnEdgeIsInTheBinOfItsSamples) {
+  for (int bin = 0; bin <= kBins; ++bin) {
+    const double epsilon = 0.5 * bin / kBins, velocity = std::sqrt(2 * epsilon);
+    Histogram samples = Histogram::OfBins(0, 0.5, kBins);
+    samples.Add(velocity * velocity / 2);
+    const std::vector<double> law = Fine().Probabilities(Fine().From(epsilon), 0);
+    for (size_t i = 0; i < law.size(); ++i) {
+      EXPECT_NEAR(law[i], static_cast<double>(samples.counts[i]), kEnergyLawError) << epsilon;
+    }
+  }
+}
+
 TEST(EnergyLaw, SumsToOneAndDiffersFromAFinerLawByLessThanItsBound) {
   const EnergyLaw finer({.degree = 20, .levels = 5}, 3 * kBins);
   for (const double epsilon : kEpsilons) {

@@ -15,7 +15,7 @@ TEST(BatchMeans, MergeEqualsSinglePassAndHasAnIdentity) {
     (i < 300 ? first : second).Add(numerator, denominator);
   }
   first.Merge(second);
-  EXPECT_EQ(first.batches, whole.batches);
+  EXPECT_EQ(first.batches(), whole.batches());
   // Rounding of sums of 1000 terms in another order.
   EXPECT_NEAR(*first.Ratio(), *whole.Ratio(), 1e-13 * *whole.Ratio());
   EXPECT_NEAR(*first.StandardError(), *whole.StandardError(), 1e-9 * *whole.StandardError());
@@ -37,6 +37,16 @@ TEST(BatchMeans, BatchesOfUnequalLengthGiveTheRatioOfTotals) {
   BatchMeans empty;
   empty.Add(1, 0);
   EXPECT_FALSE(empty.Ratio());
+}
+
+TEST(BatchMeans, RareLargeNumeratorsMakeTheErrorUncertain) {
+  BatchMeans even, rare;
+  for (int i = 0; i < 1000; ++i) {
+    even.Add(i % 2, 1);
+    rare.Add(i % 100 == 0 ? 100 : 1, 1);
+  }
+  EXPECT_EQ(even.EffectiveCount(), 1000u);
+  EXPECT_LT(rare.EffectiveCount(), 30u);  // the excess is about 95: 2 1000/95
 }
 
 }  // namespace
