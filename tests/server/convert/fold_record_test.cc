@@ -13,7 +13,7 @@ TEST(FoldRecord, ComesBackExactly) {
   BlockResult block;
   block.samples = 12345678901234;
   block.moments = {{3, 0.1, 1e-300, -2.5, 5e-324}, {}};
-  block.batch_means = {{7, 0.3, -0.0, 1e300, 2, 3}};
+  block.batch_means = {{{7, 0.3, 2, -1, 5}, -0.0, 1e300, 3}};
   block.histograms = {{-1.5, 1.5, {0, 1, kLargest}}};
   block.health = {2, 1e-15};
   const FoldState state = {.chunk = 2, .blocks = 3, .complete = block, .partial = {}};
