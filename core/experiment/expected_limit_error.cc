@@ -77,14 +77,16 @@ double LimitOfDecay(const Scales& scales, const PointParameters& point) {
 }
 
 // The delay of an exchange by the slow pistons of the cold wall, over the time that the exchanges
-// of a row take. The mean temperature is the unit.
+// of a row take. The mean temperature is the unit. Where the delay is short, its factor grows as a
+// logarithm.
 double DelayAtTheColdWall(const PointParameters& point) {
-  constexpr double kSlowPiston = 1.3;
   const GasGeometry gas = GasGeometryOf(point, GasEnds::kReservoirs);
   const double x = gas.pair().stroke() * InfiniteGasExchangeRate(gas, 1);
   const double slowness = std::sqrt((1 + point[kHot] / point[kCold]) / 2) - 1;
   const auto columns = static_cast<double>(gas.shape().columns);
-  return kSlowPiston * x * slowness * 2 / (1 + columns);
+  const double delay = x * slowness * 2 / (1 + columns);
+  if (delay == 0) return 0;
+  return delay * std::fmax(1.3, 0.8 + std::log1p(0.3 / delay));
 }
 
 }  // namespace

@@ -34,10 +34,11 @@
 // the ball; the jump process has no such time. In units of the gas's mean temperature T this time
 // delays the exchanges at the wall by d, relative to the time of the exchanges of a row of N cells:
 //
-//   d = 1.3 nu stroke (sqrt(T/T_c) - 1) 2/(N + 1),   error = E + (1 - E) d/(1 + d)
+//   y = nu stroke (sqrt(T/T_c) - 1) 2/(N + 1),   d = y max(1.3, 0.8 + ln(1 + 0.3/y)),
+//   error = E + (1 - E) d/(1 + d)
 //
 // with the exchange rate nu at T = 1, and E for T_c = T. As T_c falls to 0, the current falls as
-// sqrt(T_c), and the error tends to 1. The factor 1.3 covers all measured places; d itself is
+// sqrt(T_c), and the error tends to 1. The factor covers all measured places; d itself is
 // between 0.1 and 1.2 of this bound.
 //
 // Coverage: at each place of tests/data/model_errors.csv the difference less two of its standard
