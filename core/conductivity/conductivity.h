@@ -8,19 +8,17 @@
 // variational formula. docs/research/conductivity.md has the tables.
 #pragma once
 
+#include "core/arithmetic/bounded_value.h"
+
 namespace ballpiston {
 
 // The exchange rate <(v_a - v_b)+> = 1/sqrt(pi), at a contact's density 1, mass 1, temperature 1.
 inline constexpr double kContactRate = 0.5641895835477563;
 
-struct ExtrapolatedValue {
-  double value;
-  double error;  // the change of the value by its last term
-};
-
-// kappa/kappa_0 - 1 of the infinite gases. Tests: Conductivity.QuickPlanAgreesWithTheConstants, and
+// kappa/kappa_0 - 1 of the infinite gases. The error is the change of the extrapolated value by its
+// last term. Tests: Conductivity.QuickPlanAgreesWithTheConstants, and
 // by night Conductivity.FinePlanGivesTheConstants.
-inline constexpr ExtrapolatedValue kChainCorrection = {-0.0018073, 4e-7};
-inline constexpr ExtrapolatedValue kLatticeCorrection = {-0.0011937, 2e-7};
+inline constexpr BoundedValue kChainCorrection = {-0.0018073, 4e-7};
+inline constexpr BoundedValue kLatticeCorrection = {-0.0011937, 2e-7};
 
 }  // namespace ballpiston

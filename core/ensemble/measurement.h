@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "absl/strings/string_view.h"
+#include "core/arithmetic/bounded_value.h"
 #include "core/ensemble/block_result.h"
 #include "core/ensemble/point_summary.h"
 
@@ -21,12 +22,6 @@ namespace ballpiston {
 // for this estimate.
 using Reading = std::function<std::optional<Estimate>(const BlockResult& merged)>;
 
-// A computed value, with a bound of its error.
-struct Bounded {
-  double value;
-  double error;
-};
-
 struct Measurement {
   std::string name;
   Reading reading = nullptr;  // null by a model without samples: it answers with `known`
@@ -34,7 +29,7 @@ struct Measurement {
   // These three are in the units of the estimate. The first two replace those of the reading.
   std::optional<double> exact = {};
   std::optional<double> limit = {};
-  std::optional<Bounded> known = {};  // empty if a model without samples has no such estimate
+  std::optional<BoundedValue> known = {};  // empty if a model without samples has no such estimate
 
   std::optional<Estimate> Of(const BlockResult& merged) const;
 };

@@ -100,15 +100,15 @@ EnergyRelaxation::ByLag EnergyRelaxation::Autocorrelation(const StepFunction& en
   return sum / (kSteps / kLagsBetweenOrigins);
 }
 
-SpectralValue EnergyRelaxation::IntegralOfLimit(double window) const {
+BoundedValue EnergyRelaxation::IntegralOfLimit(double window) const {
   const RelaxationSpectrum& spectrum = RelaxationSpectrum::Get();
   const double end = window / unit_of_limit_;
-  const SpectralValue integral =
+  const BoundedValue integral =
       epsilon_ ? spectrum.DecayIntegral(*epsilon_, end) : spectrum.CorrelationTime(end);
   return {unit_of_limit_ * integral.value, unit_of_limit_ * integral.error};
 }
 
-SpectralValue EnergyRelaxation::IntegralOfLimit() const { return IntegralOfLimit(kForEver); }
+BoundedValue EnergyRelaxation::IntegralOfLimit() const { return IntegralOfLimit(kForEver); }
 
 std::optional<Estimate> EnergyRelaxation::MeasuredIntegral(const BlockResult& merged) const {
   std::optional<Estimate> integral = MeanAt(0, events_per_orbit_)(merged);
@@ -126,7 +126,7 @@ std::vector<Measurement> EnergyRelaxation::Table() const {
   if (HasRelaxationTime(epsilon_)) table.push_back({"relaxation_time", reading, in_time});
   if (epsilon_) table.push_back({"decay_integral", reading});
   if (model_ != Model::kSpectrum) return table;
-  const SpectralValue limit = IntegralOfLimit();
+  const BoundedValue limit = IntegralOfLimit();
   for (Measurement& row : table) {
     row.known = {row.scale * limit.value, std::fabs(row.scale) * limit.error};
     row.limit = row.known->value;

@@ -87,7 +87,7 @@ class EnergyRelaxation {
 
   // These four are for the limit. Their errors are bounds of the numerical error. The integral is
   // that of the autocorrelation, or of the mean energy less 1/6.
-  SpectralValue IntegralOfLimit() const;
+  BoundedValue IntegralOfLimit() const;
   Curve CurveOfLimit() const;
   std::vector<NamedHistogram> LawsOfLimit() const;  // their bins, without counts
   std::vector<std::vector<double>> ProbabilitiesOfLimit() const;
@@ -98,7 +98,7 @@ class EnergyRelaxation {
   ByLag Autocorrelation(const StepFunction& energy) const;
   double window() const { return kWindowTimes * mean_free_time_; }
   double Lag(size_t i) const { return window() / (kLags - 1) * static_cast<double>(i); }
-  SpectralValue IntegralOfLimit(double window) const;  // up to `window`
+  BoundedValue IntegralOfLimit(double window) const;  // up to `window`
   std::optional<Estimate> MeasuredIntegral(const BlockResult& merged) const;
 
   Model model_;

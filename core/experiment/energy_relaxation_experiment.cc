@@ -49,7 +49,7 @@ class EnergyRelaxationExperiment : public PairExperiment {
 
  private:
   static Estimate SpectralGap(const BlockResult&) {
-    const SpectralValue gap = RelaxationSpectrum::Get().Gap();
+    const BoundedValue gap = RelaxationSpectrum::Get().Gap();
     return {.value = gap.value, .standard_error = gap.error};
   }
 

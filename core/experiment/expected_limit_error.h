@@ -38,8 +38,8 @@
 //   error = E + (1 - E) d/(1 + d)
 //
 // with the exchange rate nu at T = 1, and E for T_c = T. As T_c falls to 0, the current falls as
-// sqrt(T_c), and the error tends to 1. The factor covers all measured places; d itself is
-// between 0.1 and 1.2 of this bound.
+// sqrt(T_c), and the error tends to 1. The factor covers all measured places, less
+// two of their standard errors; where d is short the slow pistons make it grow as a logarithm.
 //
 // Coverage: at each place of tests/data/model_errors.csv the difference less two of its standard
 // errors is within the bound; these places include the ends of rho, delta, epsilon and cold/hot

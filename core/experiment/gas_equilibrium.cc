@@ -61,7 +61,7 @@ double ExchangesOf(Model model, const GasGeometry& geometry) {
   return most * std::clamp(share, 1.0 / 16, 1.0);
 }
 
-ExtrapolatedValue LimitCorrection(const GasGeometry& geometry) {
+BoundedValue LimitCorrection(const GasGeometry& geometry) {
   return geometry.shape().is_lattice ? kLatticeCorrection : kChainCorrection;
 }
 
@@ -241,11 +241,11 @@ class GasEquilibrium : public GasExperiment {
   // The limit, which is beside measured estimates, is that of the infinite gas.
   void AddConductivity(std::vector<Measurement>& table) const {
     const auto [correction, error] = LimitCorrection(geometry());
-    // `of_static`: the static conductivity. Its last bit may differ from that of the scaled one.
+    // `of_static`: the static conductivity, in the units of the estimate.
     const auto add = [&](const char* name, double scale, double of_static) {
       Measurement row = {name, MeanAt(kFirstWindow + kWindow, events_), scale};
-      if (TakesSamples(answer().model)) row.limit = scale * StaticConductivity() * (1 + correction);
       row.known = {of_static * (1 + correction), of_static * error};
+      if (TakesSamples(answer().model)) row.limit = row.known->value;
       table.push_back(std::move(row));
     };
     add(kConductivity, ConductivityScale(), InfiniteGasExchangeRate(geometry(), temperature()) / 2);

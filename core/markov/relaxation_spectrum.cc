@@ -40,29 +40,29 @@ Eigen::ArrayXd RelaxationSpectrum::Until(double window) const {
   return -(-rates * window).unaryExpr([](double x) { return std::expm1(x); }) / rates;
 }
 
-SpectralValue RelaxationSpectrum::Gap() const { return IsolatedRates().front(); }
+BoundedValue RelaxationSpectrum::Gap() const { return IsolatedRates().front(); }
 
-std::vector<SpectralValue> RelaxationSpectrum::IsolatedRates() const {
-  std::vector<SpectralValue> rates;
+std::vector<BoundedValue> RelaxationSpectrum::IsolatedRates() const {
+  std::vector<BoundedValue> rates;
   for (Eigen::Index k = 1; k <= kIsolatedRates; ++k) {
     rates.push_back({generator_.rates()[k], kRateError});
   }
   return rates;
 }
 
-SpectralValue RelaxationSpectrum::Autocorrelation(double t) const {
+BoundedValue RelaxationSpectrum::Autocorrelation(double t) const {
   return {Correlation(At(t)), kAutocorrelationError};
 }
 
-SpectralValue RelaxationSpectrum::CorrelationTime(double window) const {
+BoundedValue RelaxationSpectrum::CorrelationTime(double window) const {
   return {Correlation(Until(window)), kCorrelationTimeError};
 }
 
-SpectralValue RelaxationSpectrum::MeanEnergy(double epsilon, double t) const {
+BoundedValue RelaxationSpectrum::MeanEnergy(double epsilon, double t) const {
   return {kMeanPistonEnergy + Energy(epsilon, At(t)), kMeanEnergyError};
 }
 
-SpectralValue RelaxationSpectrum::DecayIntegral(double epsilon, double window) const {
+BoundedValue RelaxationSpectrum::DecayIntegral(double epsilon, double window) const {
   return {Energy(epsilon, Until(window)), kDecayIntegralError};
 }
 

@@ -18,6 +18,7 @@
 
 #include <vector>
 
+#include "core/arithmetic/bounded_value.h"
 #include "core/markov/generator.h"
 
 namespace ballpiston {
@@ -34,11 +35,6 @@ inline constexpr double kCorrelationTimeError = 1e-13;  // 1.6e-15
 inline constexpr double kMeanEnergyError = 1e-10;       // 1.9e-11, by rounding, at epsilon = 1/2
 inline constexpr double kDecayIntegralError = 1e-9;     // 1.2e-10, at epsilon = 0.22
 
-struct SpectralValue {
-  double value;
-  double error;  // bound
-};
-
 class RelaxationSpectrum {
  public:
   explicit RelaxationSpectrum(const Discretisation& discretisation);
@@ -46,19 +42,19 @@ class RelaxationSpectrum {
   // The instance in use, whose errors are bounded. The first call computes it, in about 0.1 s.
   static const RelaxationSpectrum& Get();
 
-  SpectralValue Gap() const;
+  BoundedValue Gap() const;
   // The first five isolated rates below the continuum, ascending; the gap is the first. There are
   // more isolated rates; they accumulate at the bottom of the continuum.
-  std::vector<SpectralValue> IsolatedRates() const;
+  std::vector<BoundedValue> IsolatedRates() const;
 
   // C(t)/C(0), t >= 0.
-  SpectralValue Autocorrelation(double t) const;
+  BoundedValue Autocorrelation(double t) const;
   // int_0^window C dt/C(0); window may be infinite.
-  SpectralValue CorrelationTime(double window) const;
+  BoundedValue CorrelationTime(double window) const;
   // E[ep(t)] from `epsilon` in [0, 1/2].
-  SpectralValue MeanEnergy(double epsilon, double t) const;
+  BoundedValue MeanEnergy(double epsilon, double t) const;
   // int_0^window (E[ep(t)] - 1/6) dt; window may be infinite.
-  SpectralValue DecayIntegral(double epsilon, double window) const;
+  BoundedValue DecayIntegral(double epsilon, double window) const;
 
  private:
   // C/C(0), and E[ep] - 1/6 from epsilon: sums over the eigenfunctions, each with a factor.

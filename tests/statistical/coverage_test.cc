@@ -132,6 +132,7 @@ constexpr const char* kQuestionsOfCoverage[] = {
     "first-hit delta=0.2 model=billiard",
     "first-hit delta=0.2 epsilon=0.3 exponent=2 model=billiard",
     "equilibrium delta=0.2 model=billiard",
+    "equilibrium delta=0.3 model=billiard",
     "markov-property delta=0.2 model=markov",
     "lyapunov delta=0.2 model=billiard",
     "energy-relaxation delta=0.2 model=markov",
@@ -157,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(Estimates, CoverageOfAll, testing::ValuesIn(kQuestionsO
 
 TEST_P(CoverageOfAll, IsThatOfTheStatedProbability) {
   if (!IsNightly()) GTEST_SKIP() << "only with BALLPISTON_NIGHTLY=1";
-  for (const int64_t samples : {64, 256, 4096}) ExpectCoverage(GetParam(), samples, 4000);
+  for (const int64_t samples : {64, 256, 1000, 4096}) ExpectCoverage(GetParam(), samples, 4000);
 }
 
 // z-scores of 200 seeds: the standard error of their variance is 0.1 times the variance, that of

@@ -35,7 +35,7 @@ namespace ballpiston {
 Eigen::VectorXd ChainRates(const std::vector<int>& dimensions, int degree);
 
 struct ComputedGap {
-  ExtrapolatedValue gap;
+  BoundedValue gap;
   std::vector<double> bounds;  // by degree
 };
 

@@ -49,7 +49,7 @@ class Refinement {
   explicit Refinement(const SiteLattice& lattice) : lattice_(lattice) {}
 
   // The amount by which a step changes the correction.
-  ExtrapolatedValue Added(const RefinementStep& step) {
+  BoundedValue Added(const RefinementStep& step) {
     std::vector<double> degrees, differences;
     for (const int degree : step.degrees) {
       degrees.push_back(degree);
@@ -90,7 +90,7 @@ ConductivityRatio RefineConductivity(const SiteLattice& lattice, const Refinemen
   ConductivityRatio ratio = {};
   double last = 0;
   for (const RefinementStep& step : plan.steps) {
-    const ExtrapolatedValue added = refinement.Added(step);
+    const BoundedValue added = refinement.Added(step);
     ratio.correction += added.value;
     ratio.error += added.error;
     last = added.value;

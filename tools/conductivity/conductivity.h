@@ -77,7 +77,7 @@ RefinementPlan QuickPlan(const SiteLattice& lattice);  // 0.2 to 0.5 s
 RefinementPlan FinePlan(const SiteLattice& lattice);   // 15 to 30 s
 
 // The corrections of chains of equal sites, discs and spheres, by FinePlan.
-inline constexpr ExtrapolatedValue kDiscChainCorrection = {-0.00089895, 6e-8};
-inline constexpr ExtrapolatedValue kSphereChainCorrection = {-0.000372458, 8e-9};
+inline constexpr BoundedValue kDiscChainCorrection = {-0.00089895, 6e-8};
+inline constexpr BoundedValue kSphereChainCorrection = {-0.000372458, 8e-9};
 
 }  // namespace ballpiston

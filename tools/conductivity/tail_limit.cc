@@ -23,8 +23,7 @@ double FittedLimit(absl::Span<const double> at, absl::Span<const double> values,
 
 }  // namespace
 
-ExtrapolatedValue TailLimit(absl::Span<const double> at, absl::Span<const double> values,
-                            double power) {
+BoundedValue TailLimit(absl::Span<const double> at, absl::Span<const double> values, double power) {
   const double limit = FittedLimit(at, values, power);
   return {limit, std::abs(limit - FittedLimit(at.subspan(1), values.subspan(1), power))};
 }

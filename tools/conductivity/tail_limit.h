@@ -14,7 +14,6 @@
 namespace ballpiston {
 
 // `at` is ascending and positive. `at` and `values` have the same size, two or more.
-ExtrapolatedValue TailLimit(absl::Span<const double> at, absl::Span<const double> values,
-                            double power);
+BoundedValue TailLimit(absl::Span<const double> at, absl::Span<const double> values, double power);
 
 }  // namespace ballpiston

@@ -31,7 +31,7 @@ Model ModelOf(Method method) {
   }
 }
 
-// What the service answers, and the time that it needs.
+// The first estimate of the service's answer, and the processor time of the samples.
 PointEstimate Answered(EnsembleSpec spec, uint64_t samples, bool is_truth) {
   spec.target.samples = static_cast<int64_t>(samples);
   spec.seed += 2 * samples + (is_truth ? 1 : 0);
@@ -79,7 +79,7 @@ PointEstimate EnergyRelaxationRuns::Truth(uint64_t samples) const {
 
 PointEstimate EnergyRelaxationRuns::BySpectrum() const {
   RelaxationSpectrum::Get();
-  SpectralValue time;
+  BoundedValue time;
   const double seconds = server::SecondsOf(
       [&] { time = EnergyRelaxation(geometry, PointOf(geometry)).IntegralOfLimit(); });
   return {.value = time.value, .error = time.error, .seconds = seconds};
@@ -111,7 +111,8 @@ const SteadyGas& AsGas(const PointExperiment& experiment) {
   return static_cast<const SteadyGas&>(experiment);
 }
 
-// Of fixed time steps. A stretch of one cell is half of its relaxation time.
+// The times at which a replica by fixed time steps has relaxed, and at which it ends. A stretch of
+// a gas of one cell takes half of the relaxation time.
 double TimeToRelax(const SteadyGas& gas) { return 8 * gas.stretch(); }
 double TimeToTheEnd(const SteadyGas& gas) { return 32 * gas.stretch(); }
 

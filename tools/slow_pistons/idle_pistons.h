@@ -30,7 +30,7 @@ namespace ballpiston::slow_pistons {
 
 inline constexpr std::array<double, 9> kIdleTimes = {4, 8, 16, 32, 64, 128, 256, 512, 1024};
 
-// What was measured of one piston at one time s. The moments are taken over blocks of time. Each
+// The measurements of one piston at one time s. A sample of the moments is a block of time. Each
 // mean is determined by the events that are counted beside it; if these are few, the scatter of the
 // blocks is not the error of the mean.
 struct IdleShare {

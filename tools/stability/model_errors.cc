@@ -138,6 +138,9 @@ void AddConduction(Places& places) {
   places.Conduction({kPaperRho, 0.2}, "1", 1024, {0.5, 0.1, 0.01, 1e-4, 1e-6});
   places.Conduction({kPaperRho, 0.1}, "1", 1024, {0.1, 0.01, 1e-3, 1e-4, 1e-6});
   places.Conduction({kPaperRho, 0.05}, "1", 512, {0.01, 1e-4});
+  // At small delta the error is larger than in proportion to the delay.
+  places.Conduction({0.515, 0.02}, "1", 2048, {1e-4});
+  places.Conduction({kPaperRho, 0.02}, "2", 2048, {1e-4});
   places.Conduction({kPaperRho, 0.03}, "1", 512, {1e-4});
   places.Conduction({kPaperRho, 0.2}, "3", 256, {0.5, 0.01, 1e-4, 1e-6});
   places.Conduction({kPaperRho, 0.1}, "3", 256, {0.01, 1e-4});

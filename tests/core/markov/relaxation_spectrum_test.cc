@@ -27,11 +27,11 @@ double IntegralOver(double end, F f) {
 // least the least error of a mean.
 TEST(RelaxationSpectrum, StatedErrorsAreUpperBounds) {
   const RelaxationSpectrum finer({.degree = 18, .levels = 5});
-  const auto expect_bound = [](const SpectralValue& value, const SpectralValue& truth) {
+  const auto expect_bound = [](const BoundedValue& value, const BoundedValue& truth) {
     EXPECT_LE(std::fabs(value.value - truth.value), value.error);
     EXPECT_GE(value.error, (1 - 1e-12) * kRoundingOfAMean * std::fabs(value.value));
   };
-  const std::vector<SpectralValue> rates = Spectrum().IsolatedRates();
+  const std::vector<BoundedValue> rates = Spectrum().IsolatedRates();
   for (size_t k = 0; k < rates.size(); ++k) expect_bound(rates[k], finer.IsolatedRates()[k]);
   std::vector<double> epsilons = {1e-12, 0.0005, 0.09875, 0.19, 0.2205, 0.255, 0.4266, 0.49999};
   for (int i = 0; i <= 200; ++i) epsilons.push_back(0.0025 * i);
@@ -41,7 +41,7 @@ TEST(RelaxationSpectrum, StatedErrorsAreUpperBounds) {
       SCOPED_TRACE(epsilon);
       expect_bound(Spectrum().DecayIntegral(epsilon, t), finer.DecayIntegral(epsilon, t));
       if (t == kForEver) continue;
-      const SpectralValue exact = t == 0 ? SpectralValue{epsilon, 0} : finer.MeanEnergy(epsilon, t);
+      const BoundedValue exact = t == 0 ? BoundedValue{epsilon, 0} : finer.MeanEnergy(epsilon, t);
       expect_bound(Spectrum().MeanEnergy(epsilon, t), exact);
     }
   }
@@ -51,7 +51,7 @@ TEST(RelaxationSpectrum, StatedErrorsAreUpperBounds) {
 }
 
 TEST(RelaxationSpectrum, IsolatedRatesAscendBelowTheContinuum) {
-  const std::vector<SpectralValue> rates = Spectrum().IsolatedRates();
+  const std::vector<BoundedValue> rates = Spectrum().IsolatedRates();
   ASSERT_EQ(rates.size(), 5u);
   EXPECT_EQ(rates[0].value, Spectrum().Gap().value);
   // These numbers were computed with 64-bit mantissas at degree 20 on 8 levels, and rounded.

@@ -32,9 +32,9 @@ TEST(ChainGap, SpectrumDoesNotDependOnTheDirectionOfTheChain) {
 }
 
 void HasTheDocumentedGap(const std::vector<int>& chain, std::vector<int> degrees,
-                         ExtrapolatedValue documented) {
+                         BoundedValue documented) {
   if (!IsNightly()) degrees.pop_back();
-  const ExtrapolatedValue gap = ChainGap(chain, degrees).gap;
+  const BoundedValue gap = ChainGap(chain, degrees).gap;
   EXPECT_NEAR(gap.value, documented.value, (IsNightly() ? 2 : 10) * gap.error + documented.error);
   EXPECT_LT(gap.error, (IsNightly() ? 2e-6 : 5e-5) * gap.value);
 }

@@ -61,8 +61,8 @@ TEST(Conductivity, RefinementSumsTheLimitsOfItsSteps) {
   const auto bound = [&](int extent, int degree) {
     return ConductivityBound(chain, {extent, 9}, degree);
   };
-  const ExtrapolatedValue first = TailLimit({4, 6, 8}, {bound(2, 4), bound(2, 6), bound(2, 8)}, 3);
-  const ExtrapolatedValue second =
+  const BoundedValue first = TailLimit({4, 6, 8}, {bound(2, 4), bound(2, 6), bound(2, 8)}, 3);
+  const BoundedValue second =
       TailLimit({4, 6}, {bound(3, 4) - bound(2, 4), bound(3, 6) - bound(2, 6)}, 3);
   const ConductivityRatio ratio = RefineConductivity(
       chain, {.steps = {{{0, 0}, {2, 9}, {4, 6, 8}}, {{2, 9}, {3, 9}, {4, 6}}}, .beyond = 0.5});
@@ -72,7 +72,7 @@ TEST(Conductivity, RefinementSumsTheLimitsOfItsSteps) {
   EXPECT_EQ(ratio.table.size(), 5);
 }
 
-void AgreesWithTheConstant(const SiteLattice& lattice, ExtrapolatedValue constant) {
+void AgreesWithTheConstant(const SiteLattice& lattice, BoundedValue constant) {
   const ConductivityRatio quick = RefineConductivity(lattice, QuickPlan(lattice));
   EXPECT_NEAR(quick.correction, constant.value, quick.error);
   EXPECT_LE(quick.error, 3e-6);
@@ -87,7 +87,7 @@ TEST(Conductivity, QuickPlanAgreesWithTheConstants) {
   AgreesWithTheConstant(EqualSitesChain(2), kDiscChainCorrection);
 }
 
-void FinePlanGivesTheConstant(const SiteLattice& lattice, ExtrapolatedValue constant) {
+void FinePlanGivesTheConstant(const SiteLattice& lattice, BoundedValue constant) {
   const ConductivityRatio fine = RefineConductivity(lattice, FinePlan(lattice));
   EXPECT_LE(fine.error, constant.error);
   EXPECT_NEAR(fine.correction, constant.value, constant.error / 4);

@@ -17,7 +17,7 @@ struct Case {
   const char* name;
   bool is_lattice;
   TestFunction f;
-  ExtrapolatedValue correction;
+  BoundedValue correction;
 
   friend void PrintTo(const Case& c, std::ostream* os) { *os << c.name; }
 };
