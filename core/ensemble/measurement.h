@@ -52,7 +52,7 @@ Reading MeanAt(size_t index, double events_per_sample = 1);
 Reading RatioAt(size_t index, double events_per_sample = 1);
 
 inline CurvePoint CurvePointOf(double at, const Estimate& estimate) {
-  return {at, estimate.value, estimate.standard_error, estimate.limit};
+  return {at, estimate.value, estimate.standard_error, estimate.batches, estimate.limit};
 }
 
 }  // namespace ballpiston

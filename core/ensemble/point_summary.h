@@ -50,6 +50,7 @@ struct CurvePoint {
   double at = 0;  // along the curve's axis
   double value = 0;
   std::optional<double> standard_error = {};
+  uint64_t batches = 0;              // as in Estimate
   std::optional<double> limit = {};  // the value in the limit delta -> 0
 };
 

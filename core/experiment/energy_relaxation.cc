@@ -146,12 +146,12 @@ Curve EnergyRelaxation::MeasuredCurve(const BlockResult& merged) const {
     const bool is_later = epsilon_ && i > 0;
     const double events =
         is_later ? std::min(events_per_orbit_, Lag(i) / return_time_) : events_per_orbit_;
-    const Estimate there = *MeanAt(1 + i, events)(merged);
-    curve.points[i].value = there.value;
-    curve.points[i].standard_error = there.standard_error;
+    Estimate there = *MeanAt(1 + i, events)(merged);
+    there.limit = curve.points[i].limit;
     if (is_later && there.standard_error) {
-      curve.points[i].standard_error = std::hypot(*there.standard_error, one_more);
+      there.standard_error = std::hypot(*there.standard_error, one_more);
     }
+    curve.points[i] = CurvePointOf(Lag(i), there);
   }
   return curve;
 }

@@ -15,16 +15,21 @@ namespace {
 
 bool Exists(const std::optional<double>& value) { return value && std::isfinite(*value); }
 
+// Of a v1::Estimate or of a point of a curve.
+template <typename Message>
+void SetError(const std::optional<double>& error, uint64_t batches, Message& message) {
+  if (!Exists(error)) return;
+  message.set_standard_error(*error);
+  if (batches > 0) message.set_batches(static_cast<double>(batches));
+}
+
 void AddEstimate(const Estimate& estimate, const Answer& answer, bool first,
                  v1::PointResult& result) {
   if (!std::isfinite(estimate.value)) return;
   v1::Estimate& message = *result.add_estimates();
   message.set_name(estimate.name);
   message.set_value(estimate.value);
-  if (Exists(estimate.standard_error)) {
-    message.set_standard_error(*estimate.standard_error);
-    if (estimate.batches > 0) message.set_batches(static_cast<double>(estimate.batches));
-  }
+  SetError(estimate.standard_error, estimate.batches, message);
   if (Exists(estimate.exact)) message.set_exact(*estimate.exact);
   if (const auto z = estimate.ZScore(); Exists(z)) message.set_z_score(*z);
   if (Exists(estimate.noise_floor)) message.set_noise_floor(*estimate.noise_floor);
@@ -65,7 +70,7 @@ void AddCurve(const Curve& curve, v1::PointResult& details) {
       added.set_time(point.at);
     }
     added.set_value(point.value);
-    if (Exists(point.standard_error)) added.set_standard_error(*point.standard_error);
+    SetError(point.standard_error, point.batches, added);
     if (Exists(point.limit)) added.set_limit(*point.limit);
   }
 }

@@ -1,5 +1,6 @@
 // Whether the stated errors are those of many seeds: the interval value +- t(batches - 1) x
-// standard error covers the true value in 95 % of the runs, for every sampled estimate; and the
+// standard error covers the true value in 95 % of the runs, for every sampled estimate and some
+// points of each curve; and the
 // z-scores of estimates with an exact value have the mean 0 and the variance 1.
 //
 // The true value is the exact one, or that of all runs together. A distance between laws has a mean
@@ -43,8 +44,24 @@ struct Runs {
 
 using RunsByName = std::map<std::string, Runs>;
 
+// The estimates, and four points of each curve: its last one, and those at 1/4, 1/16 and 1/32 of
+// it.
+std::vector<Estimate> EstimatesAndCurves(const PointSummary& summary) {
+  std::vector<Estimate> all = summary.estimates;
+  for (const Curve& curve : summary.curves) {
+    for (const size_t part : {1, 4, 16, 32}) {
+      const CurvePoint& there = curve.points[(curve.points.size() - 1) / part];
+      all.push_back({.name = absl::StrCat(curve.name, "_", part),
+                     .value = there.value,
+                     .standard_error = there.standard_error,
+                     .batches = there.batches});
+    }
+  }
+  return all;
+}
+
 void AddRun(const PointSummary& summary, RunsByName& runs) {
-  for (const Estimate& estimate : summary.estimates) {
+  for (const Estimate& estimate : EstimatesAndCurves(summary)) {
     if (std::isnan(estimate.value)) continue;
     Runs& of = runs[estimate.name];
     of.sum += estimate.value;
@@ -58,7 +75,7 @@ void AddRun(const PointSummary& summary, RunsByName& runs) {
 }
 
 void AddExpectations(const PointSummary& of_all, RunsByName& runs) {
-  for (const Estimate& estimate : of_all.estimates) {
+  for (const Estimate& estimate : EstimatesAndCurves(of_all)) {
     Runs& of = runs[estimate.name];
     of.expected =
         estimate.noise_floor ? of.sum / of.count : estimate.exact.value_or(estimate.value);

@@ -12,7 +12,7 @@
                                     (points, bins), or (points, times, bins) with times
     histogram_NAME_lower, _upper    (points,)
     histogram_NAME_time             (points, times), with times
-    curve_NAME_time or _position, _value, _standard_error, _limit
+    curve_NAME_time or _position, _value, _standard_error, _batches, _limit
                                     (points, length)
     provenance                      ()  JSON: job, engine_version, client_version, spec
 
@@ -159,7 +159,7 @@ def _curve_arrays(points: Sequence[Any]) -> Arrays:
     arrays: Arrays = {}
     for name in dict.fromkeys(name for curves in by_name for name in curves):
         column = [list(c[name].points) if name in c else [] for c in by_name]
-        for field in ("time", "position", "value", "standard_error", "limit"):
+        for field in ("time", "position", "value", "standard_error", "batches", "limit"):
             rows = [[_curve_value(point, field) for point in curve] for curve in column]
             _add_unless_empty(arrays, f"curve_{name}_{field}", _padded(rows, 2))
     return arrays

@@ -23,6 +23,7 @@ class Curve:
         position: in cells from the left reservoir; None of a function of time.
         value: of the function.
         standard_error: one sigma; NaN where there is none.
+        batches: how certain the standard error is, as of an estimate; NaN where not stated.
         limit: what the limit delta -> 0 gives here; NaN where it gives nothing.
 
     Example:
@@ -35,6 +36,7 @@ class Curve:
     position: FloatArray | None
     value: FloatArray
     standard_error: FloatArray
+    batches: FloatArray
     limit: FloatArray
 
     @property
@@ -55,6 +57,7 @@ def curve_of(message: Any) -> Curve:
         position=_optional(points, "position") if is_of_position else None,
         value=np.array([point.value for point in points], dtype=np.float64),
         standard_error=_optional(points, "standard_error"),
+        batches=_optional(points, "batches"),
         limit=_optional(points, "limit"),
     )
 
