@@ -93,23 +93,34 @@ absl::Status ReadFlag(const Flag& flag, const Setting& setting, Options& options
   return Named(NameOf(flag, setting.source), flag.value.read(setting.text, options));
 }
 
+absl::Status CheckOneTarget(const std::vector<std::string>& flags, const std::string& where) {
+  const bool is_pair = flags == std::vector<std::string>{"--tolerance", "--budget"};
+  if (flags.size() <= 1 || is_pair) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat(absl::StrJoin(flags, " and "), where,
+                   " exclude each other: give at most one of --samples, --collisions, --tolerance, "
+                   "--budget; only --tolerance and --budget can be combined"));
+}
+
 // Reads the weakest source first, so that a flag from a stronger source also replaces flags that
 // exclude it: --token-file replaces BALLPISTON_TOKEN, and --budget the tolerance of the config
 // file. Of one source in the order of the table.
 absl::Status ReadFlags(const Verb& verb, const Settings& settings, Options& options) {
   for (const Source source :
        {Source::kFile, Source::kSection, Source::kVariable, Source::kCommandLine}) {
-    bool has_target = false;
+    std::vector<std::string> targets;
     for (const Flag* flag : FlagsOf(verb)) {
       const auto setting = settings.find(flag);
       if (setting == settings.end() || setting->second.source != source) continue;
-      if (IsOf(TargetFlags(), *flag) && !has_target) {
-        has_target = true;
-        options.spec.mutable_target()->clear_kind();
-        options.spec.mutable_target()->clear_budget();
+      if (IsOf(TargetFlags(), *flag)) {
+        if (targets.empty()) options.spec.mutable_target()->clear_kind();
+        if (targets.empty()) options.spec.mutable_target()->clear_budget();
+        targets.push_back(flag->name);
       }
       if (absl::Status bad = ReadFlag(*flag, setting->second, options); !bad.ok()) return bad;
     }
+    const char* const where = source == Source::kCommandLine ? "" : " in the config file";
+    if (absl::Status bad = CheckOneTarget(targets, where); !bad.ok()) return bad;
   }
   return absl::OkStatus();
 }

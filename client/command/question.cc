@@ -43,19 +43,6 @@ absl::StatusOr<TextFile> ReadTextFile(const std::string& flag, const std::string
       absl::StrCat(flag, " ", path, ": ", is_folder ? "is a folder" : std::strerror(errno)));
 }
 
-absl::Status CheckOneTarget(const std::set<std::string>& flags) {
-  std::vector<std::string> given;
-  for (const Flag& flag : TargetFlags().flags) {
-    if (flags.contains(flag.name)) given.push_back(flag.name);
-  }
-  const bool is_pair = given == std::vector<std::string>{"--tolerance", "--budget"};
-  if (given.size() <= 1 || is_pair) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrCat(absl::StrJoin(given, " and "),
-                   " exclude each other: give at most one of --samples, --collisions, --tolerance, "
-                   "--budget; only --tolerance and --budget can be combined"));
-}
-
 // Checks only the flags on the command line: with --spec or --again, the flags of the config file
 // are ignored.
 bool HasQuestionFlagsBut(const std::string& whole, const Options& options) {
@@ -97,7 +84,6 @@ absl::StatusOr<v1::EnsembleSpec> SpecOf(const Options& options) {
                      absl::StrJoin(EnumChoices<v1::EnsembleSpec::Experiment>(), ", ", name),
                      "), or give --spec FILE or --again JOB"));
   }
-  if (absl::Status bad = CheckOneTarget(options.given); !bad.ok()) return bad;
   v1::EnsembleSpec spec = options.spec;
   if (options.points_file.empty()) return spec;
   const absl::StatusOr<TextFile> file = ReadTextFile("--points", options.points_file);

@@ -46,7 +46,7 @@ VerbResult ReportRunning(const std::string& folder, const RunningServer& running
                          const Options& options, const Terminal& terminal) {
   if (!options.server_flags.empty()) {
     return absl::FailedPreconditionError(
-        absl::StrCat("a server already runs in ", folder,
+        absl::StrCat("a server already runs in ", folder, ", at ", running.address,
                      ": these flags have no effect; stop that server first (ballpiston server stop",
                      options.data_dir.empty() ? "" : absl::StrCat(" --data-dir ", folder), ")"));
   }

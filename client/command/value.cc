@@ -67,7 +67,8 @@ absl::StatusOr<std::map<std::string, std::string>> ParseLabels(const std::string
   for (const absl::string_view label : absl::StrSplit(text, ',')) {
     const size_t equals = label.find('=');
     if (equals == label.npos) return NotPermitted(label, "is not a label: write KEY=VALUE");
-    labels[std::string(label.substr(0, equals))] = std::string(label.substr(equals + 1));
+    const bool is_new = labels.emplace(label.substr(0, equals), label.substr(equals + 1)).second;
+    if (!is_new) return NotPermitted(label, "gives its key a second value");
   }
   return labels;
 }

@@ -299,12 +299,14 @@ const FlagGroup kPoint = {
     {{"--point", Count([](Options& o, int64_t index) { o.point = index; }),
       "only the point with this position in the grid, from 0; by default all finished points"}}};
 
-const FlagGroup kWatch = {"Watch",
-                          {{"--exec", Text("COMMAND", To(&Options::command)),
-                            "run this command of the shell when a job ends; its environment has "
-                            "BALLPISTON_JOB and BALLPISTON_JOB_STATE"},
-                           {"--any", Switch(To(&Options::any)),
-                            "return when one of the jobs has ended; the others go on"}}};
+const FlagGroup kWatch = {
+    "Watch",
+    {{"--exec", Text("COMMAND", To(&Options::command)),
+      "run this command of the shell when a job ends; its environment has "
+      "BALLPISTON_JOB and BALLPISTON_JOB_STATE"},
+     {"--any", Switch(To(&Options::any)),
+      "return when one of the jobs has ended; the others go on. With --label: one of the jobs "
+      "that are active now"}}};
 
 const FlagGroup kPin = {
     "Pin", {{"--undo", Switch(To(&Options::undo)), "unpin: the results may expire again"}}};
@@ -716,7 +718,8 @@ const std::vector<Remark>& Files() {
       {"~/.config/ballpiston/config.toml",
        "values for flags that are not given. A line such as format = \"csv\" applies to every verb "
        "that has the flag; below [run] it applies only to run. Environment variables override the "
-       "file, and flags override both. XDG_CONFIG_HOME replaces ~/.config"},
+       "file, and flags override both; an empty variable counts as not set. XDG_CONFIG_HOME "
+       "replaces ~/.config"},
       {"~/.local/state/ballpiston",
        "jobs, log and socket of the private server. XDG_STATE_HOME replaces ~/.local/state. "
        "BALLPISTON_SERVER_PROGRAM is the ballpistond to start"},

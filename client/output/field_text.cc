@@ -4,6 +4,7 @@
 #include <google/protobuf/timestamp.pb.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
@@ -100,7 +101,13 @@ std::string CsvRow(const Cells& cells) {
       "\n");
 }
 
-std::string TenDigits(double x) { return Digits(x, 10); }
+std::string TenDigits(double x) {
+  constexpr double kRounding = 1e-10;
+  for (const double limit_of_rho : {0.5, std::numbers::sqrt2 / 2}) {
+    if (std::abs(x - limit_of_rho) < kRounding) return ExactText(x);
+  }
+  return Digits(x, 10);
+}
 
 std::string Digits(double x, int digits) {
   std::string text = absl::StrFormat("%.*g", digits, x);

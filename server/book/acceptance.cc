@@ -36,15 +36,17 @@ void CheckLoad(Database& database, const Limits& limits, const JobRecord& job) {
                      " points with this one: ", kWait));
 }
 
-// Results expire before the store is full, but those of pinned and active jobs do not.
+// Refuses the job if pinned and active jobs alone exceed the limit. All other jobs are removed when
+// the store is full (retention.cc).
 void CheckStoreSize(Database& database, const Limits& limits) {
-  if (limits.max_store_bytes == 0) return;
   const int64_t used = UsedBytes(database);
-  if (used <= limits.max_store_bytes) return;
-  database.Fail(
-      LimitExceeded("TOO_MANY_STORED_BYTES",
-                    absl::StrCat("the store holds ", used, " bytes: unpin or delete some jobs"),
-                    "max-store-bytes", static_cast<double>(limits.max_store_bytes)));
+  if (limits.max_store_bytes == 0 || used <= limits.max_store_bytes) return;
+  const int64_t kept = used - RemovableBytes(database);
+  if (kept <= limits.max_store_bytes || IsSweeping(database)) return;
+  database.Fail(LimitExceeded("TOO_MANY_STORED_BYTES",
+                              absl::StrCat("pinned and active jobs take ", kept,
+                                           " bytes: wait until some have ended, or unpin some"),
+                              "max-store-bytes", static_cast<double>(limits.max_store_bytes)));
 }
 
 // Whether a job with these labels can get more: no label changes its value, and there are not too
@@ -85,30 +87,22 @@ void AddLabels(Database& database, const Labels& more, JobRecord& record) {
   UpdateJob(database, record);
 }
 
-// The number of samples or collisions; none with a tolerance.
-std::optional<int64_t> CountOf(const v1::Target& target) {
-  if (target.has_tolerance()) return std::nullopt;
-  if (target.has_samples()) return target.samples();
-  return target.has_collisions() ? target.collisions() : kDefaultSamples;
-}
-
-// Whether a job with this target may continue the earlier one. A tolerance may have been reached
-// before the end of a number of samples; then the points begin anew.
-bool AsksForMore(const v1::Target& target, const JobRecord& earlier, const v1::Target& before) {
-  if (earlier.numbers.samples == 0) return false;
-  const std::optional<int64_t> count = CountOf(target);
-  const auto points = static_cast<double>(earlier.points);
-  if (count) return static_cast<double>(*count) * points > earlier.numbers.samples;
-  return CountOf(before) || target.tolerance() < before.tolerance();
-}
-
-// Sets which job the new one continues, if there is one.
-void Continue(Database& database, JobRecord& record) {
+// Sets which job the new one continues, if there is one. A tolerance may have been reached before
+// the end of a number of samples; then the points begin anew.
+void Continue(Database& database, Acceptance& acceptance) {
+  JobRecord& record = acceptance.record;
   const auto target_of = [&database](const JobRecord& job) {
     return database.ValueOf(SpecFromBytes({job.spec.rest})).target();
   };
+  const v1::Target target = target_of(record);
+  const auto asks_for_more = [&](const JobRecord& earlier) {
+    if (earlier.numbers.samples == 0) return false;
+    if (!target.has_tolerance()) return acceptance.samples > earlier.numbers.samples;
+    const v1::Target before = target_of(earlier);
+    return !before.has_tolerance() || target.tolerance() < before.tolerance();
+  };
   for (const JobRecord& earlier : FindFamily(database, record.principal, record.family)) {
-    if (!AsksForMore(target_of(record), earlier, target_of(earlier))) continue;
+    if (!asks_for_more(earlier)) continue;
     record.continues = earlier.id;
     record.continued_samples = earlier.numbers.samples;
     return;
@@ -126,7 +120,7 @@ std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Accep
   }
   CheckLoad(database, limits, record);
   CheckStoreSize(database, limits);
-  if (!acceptance.fresh) Continue(database, record);
+  if (!acceptance.fresh) Continue(database, acceptance);
   InsertJob(database, record);
   return std::nullopt;
 }

@@ -31,6 +31,7 @@ namespace ballpiston::server {
 struct Acceptance {
   JobRecord record;    // the new job, with the id and the hash of its request
   bool fresh = false;  // do not return an earlier job
+  double samples = 0;  // that the target asks for, of all points; not with a tolerance
 };
 
 // A job that answers the request.

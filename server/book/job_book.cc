@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "core/ensemble/point_experiment.h"
 #include "server/book/job_name.h"
 #include "server/convert/errors.h"
 #include "server/host.h"
@@ -58,6 +59,11 @@ Acceptance JobBook::NewAcceptance(const Principal& caller,
   record.create_time = WallNow();
   record.points = static_cast<int64_t>(PointCount(checked.spec));
   acceptance.fresh = request.fresh();
+  const EnsembleSpec& spec = checked.spec;
+  const size_t points = spec.target.IsOpenEnded() ? 0 : PointCount(spec);
+  for (size_t i = 0; i < points; ++i) {
+    acceptance.samples += static_cast<double>(SamplesAskedFor(spec, PointAt(spec, i)));
+  }
   return acceptance;
 }
 

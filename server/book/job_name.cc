@@ -44,7 +44,7 @@ std::optional<ResultId> ResultIdOf(const std::string& name) {
   if (end == std::string::npos) return std::nullopt;
   const std::optional<std::string> job = JobIdOf(name.substr(0, end));
   const std::string index = name.substr(end + std::strlen(kResults));
-  int32_t point = 0;
+  int64_t point = 0;
   const bool is_number = absl::SimpleAtoi(index, &point) && absl::StrCat(point) == index;
   if (!job || !is_number || point < 0) return std::nullopt;
   return ResultId{*job, point};

@@ -4,7 +4,7 @@
 // more than kFullShare of its bound, results expire earlier, beginning with the job that ended
 // first. If no results are left that can expire, the expired jobs are deleted in the same order.
 // The data of active and pinned jobs are never removed here, so the store may grow beyond the
-// bound; then no new job is accepted (acceptance.h).
+// bound; if they alone exceed it, no new job is accepted (acceptance.h).
 #include <cstdint>
 #include <utility>
 #include <vector>

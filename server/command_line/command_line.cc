@@ -242,8 +242,8 @@ void AddLimitFlags(CLI::App& app, Limits& limits) {
       "grid points of jobs that have not ended, of one principal");
   add("--max-points-per-job", limits.max_points_per_job,
       "grid points of one job; the engine permits 100,000 at most");
-  add("--max-streams", limits.max_streams,
-      "open watches and traces of all principals; at most 32768, also with 0");
+  AddNumber(app, "--max-streams", limits.max_streams, 0, kMostStreams,
+            "open watches and traces of all principals; 0 counts as 32768");
   add("--max-streams-per-principal", limits.max_streams_per_principal,
       "open watches and traces of one principal");
   add("--max-memory-mib", limits.max_memory_mib,

@@ -75,7 +75,10 @@ absl::StatusOr<CollisionMessages> CollisionMessages::Create(
   v1::EnsembleSpec message = request.spec();
   const bool is_auto = message.model() == v1::EnsembleSpec::AUTO ||
                        message.model() == v1::EnsembleSpec::MODEL_UNSPECIFIED;
-  if (is_auto) message.set_model(v1::EnsembleSpec::BILLIARD);
+  if (is_auto) {  // the samples are simulated with or without `verify`
+    message.set_model(v1::EnsembleSpec::BILLIARD);
+    message.clear_verify();
+  }
   CheckedSpec checked = CheckSpec(message);
   CheckForCollisions(checked);
   if (!checked.violations.empty()) return InvalidSpec(checked.violations);

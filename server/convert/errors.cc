@@ -36,12 +36,13 @@ void SetDetail(absl::Status& status, const Detail& detail) {
 }
 
 // The least seconds before a retry, for the errors that waiting cures. The store retries its writes
-// every second. A limit on active jobs is reached until jobs end.
+// every second. The limits on jobs are reached until jobs end.
 absl::Duration RetryDelayFor(const std::string& reason) {
-  static const auto* const seconds = new std::map<std::string, int>{
-      {"SHUTTING_DOWN", 1},  {"STORE_FULL", 1},       {"STORE_FAILED", 1},
-      {"TOO_MANY_CALLS", 1}, {"TOO_MANY_STREAMS", 5}, {"TOO_MANY_ACTIVE_POINTS", 10},
-      {"TOO_MANY_JOBS", 10}};
+  static const auto* const seconds =
+      new std::map<std::string, int>{{"SHUTTING_DOWN", 1},    {"STORE_FULL", 1},
+                                     {"STORE_FAILED", 1},     {"TOO_MANY_CALLS", 1},
+                                     {"TOO_MANY_STREAMS", 5}, {"TOO_MANY_ACTIVE_POINTS", 10},
+                                     {"TOO_MANY_JOBS", 10},   {"TOO_MANY_STORED_BYTES", 10}};
   const auto found = seconds->find(reason);
   return absl::Seconds(found == seconds->end() ? 0 : found->second);
 }

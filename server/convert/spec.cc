@@ -156,6 +156,15 @@ Target TargetOf(const v1::Target& message) {
   return target;
 }
 
+// Of a negative duration both parts are negative; the core refuses its value.
+void CheckNanos(const google::protobuf::Duration& budget, Violations& violations) {
+  constexpr int32_t kMost = 999'999'999;
+  const int32_t nanos = budget.nanos();
+  if (nanos <= kMost && (nanos >= 0 || budget.seconds() <= 0)) return;
+  violations.push_back(
+      {"spec.target.budget.nanos", absl::StrCat("is ", nanos, "; permitted: 0 to ", kMost)});
+}
+
 void AddUnknownFields(const char* path, const google::protobuf::Message& message,
                       Violations& violations) {
   const auto& unknown = message.GetReflection()->GetUnknownFields(message);
@@ -183,6 +192,7 @@ CheckedSpec CheckSpec(const v1::EnsembleSpec& message) {
   AddUnknownFields("spec.target", message.target(), checked.violations);
   checked.spec.experiment = ExperimentOf(message.experiment(), checked.violations);
   checked.spec.grid = GridOf(message.grid(), checked.violations);
+  CheckNanos(message.target().budget(), checked.violations);
   checked.spec.target = TargetOf(message.target());
   checked.spec.seed = message.seed();
   checked.spec.model = ModelOf(message.model(), checked.violations);

@@ -16,8 +16,9 @@ constexpr char kActiveStates[] = "1, 2, 3";
 static_assert(v1::EnsembleJob::QUEUED == 1 && v1::EnsembleJob::RUNNING == 2 &&
               v1::EnsembleJob::CANCELLING == 3);
 
-// Jobs whose results may expire. An index has this condition.
+// Jobs whose results may expire, and those whose results have expired. Each has an index.
 constexpr char kExpirable[] = "end_time IS NOT NULL AND expired_time IS NULL AND pinned = 0";
+constexpr char kExpired[] = "expired_time IS NOT NULL";
 
 // The columns of the table, one a line: name, type, and field of the row. All statements that make
 // the table or handle whole rows are made of this list. The grid is the last column, because SQLite
@@ -283,7 +284,13 @@ std::vector<JobSize> ListExpirable(Database& database, absl::Time ended_before, 
 }
 
 std::vector<JobSize> ListExpired(Database& database, int most) {
-  return Sizes(database, "expired_time IS NOT NULL", absl::InfiniteFuture(), most);
+  return Sizes(database, kExpired, absl::InfiniteFuture(), most);
+}
+
+int64_t RemovableBytes(Database& database) {
+  constexpr char kSum[] = "SELECT sum(bytes) FROM jobs WHERE ";
+  return database.Integer(absl::StrCat(kSum, kExpirable)) +
+         database.Integer(absl::StrCat(kSum, kExpired));
 }
 
 int64_t CountExpirable(Database& database, absl::Time ended_before) {

@@ -107,6 +107,8 @@ std::vector<JobSize> ListExpirable(Database& database, absl::Time ended_before, 
 int64_t CountExpirable(Database& database, absl::Time ended_before);
 // The same for jobs whose results have expired.
 std::vector<JobSize> ListExpired(Database& database, int most);
+// The bytes of all these jobs.
+int64_t RemovableBytes(Database& database);
 
 // After these two, the sweeper removes the results (sweeper.h); nobody can find them meanwhile.
 // ExpireJob has no effect on a pinned job. It keeps the row, so retries of its request are still

@@ -59,7 +59,7 @@ TEST(ServerFlags, HelpListsEachOnceWithDashes) {
 
 TEST(ServerFlags, HelpHasDefaultsRangesAndExitCodesInShortLines) {
   const std::string page = Server({"--help"}).out;
-  for (const char* text : {"\n\nLimits; 0 means no limit:\n", "--max-streams N:0 to 1e+15=2048\n",
+  for (const char* text : {"\n\nLimits; 0 means no limit:\n", "--max-streams N:0 to 32768=2048\n",
                            "--drain-seconds SECONDS:0 to 3600=10\n", "{info,warning,error}=info\n",
                            ".local/state/ballpiston\n", "--workers N:1 to 1024=",
                            "Exit codes: 0 stopped (SIGTERM, SIGINT, idle) or done; 1 "}) {
@@ -102,8 +102,10 @@ TEST(ServerFlags, ARefusalNamesFlagValueAndPermittedValues) {
       {{"--drain-seconds=10s"}, "--drain-seconds: 10s" + seconds},
       {{"--idle-exit-seconds=1e7"}, "permitted: 0 to 1000000"},
       {{"--watch-heartbeat-seconds=0"}, "permitted: 0.01 to 3600"},
-      {{"--max-streams", "-1"}, "--max-streams: -1" + limit},
-      {{"--max-streams=1e30"}, "--max-streams: 1e30" + limit},
+      {{"--max-streams", "40000"},
+       "--max-streams: 40000 is refused; permitted: whole numbers, 0 to 32768"},
+      {{"--max-points-per-job", "-1"}, "--max-points-per-job: -1" + limit},
+      {{"--max-points-per-job=1e30"}, "--max-points-per-job: 1e30" + limit},
       {{"--retain-days", "-1e-9"}, "--retain-days: -1e-9" + real_limit},
       {{"--retain-days=inf"}, "--retain-days: inf" + real_limit},
       {{"--log-level", "-1"}, "--log-level: -1 not in {info,warning,error}"},

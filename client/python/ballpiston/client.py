@@ -15,7 +15,7 @@ from ballpiston.collisions import Collisions
 from ballpiston.connection import Connection
 from ballpiston.job import Job, check_labels
 from ballpiston.parameter_lists import Numbers, Shapes, number_list, real_number, shape_list
-from ballpiston.parameter_lists import whole_number
+from ballpiston.parameter_lists import truth_value, whole_number
 from ballpiston.plan import Plan
 from ballpiston.private_server import find_private_server
 from ballpiston.result import Result
@@ -122,7 +122,7 @@ class Client:
         *,
         fresh: bool = False,
         priority: int = 0,
-        request_id: str | None = None,
+        request_id: str | uuid.UUID | None = None,
         labels: Mapping[str, str] | None = None,
         **question: Any,
     ) -> Job:
@@ -153,9 +153,9 @@ class Client:
         """
         request = ensemble_pb2.CreateEnsembleJobRequest(
             spec=question_of(experiment, question),
-            request_id=request_id or str(uuid.uuid4()),
-            fresh=fresh,
-            priority=priority,
+            request_id=str(request_id or uuid.uuid4()),
+            fresh=truth_value("fresh", fresh),
+            priority=whole_number("priority", priority),
             labels=check_labels(labels),
         )
         return Job(self._connection, self._create(request))
@@ -167,7 +167,7 @@ class Client:
         *,
         fresh: bool = False,
         priority: int = 0,
-        request_id: str | None = None,
+        request_id: str | uuid.UUID | None = None,
         labels: Mapping[str, str] | None = None,
         progress: bool | str = True,
         **question: Any,

@@ -72,9 +72,10 @@ def choose_histogram(
     named = [h for h in histograms if h.name == name]
     if not named:
         raise KeyError(_no_such("histogram", name, [h.name for h in histograms]))
-    found = [h for h in named if sigma is None or h.sigma == np.sign(sigma)]
+    found = [h for h in named if sigma is None or h.sigma == sigma]
     if not found:
-        raise KeyError(f"histogram {name!r} has no sigma={sigma:+d}")
+        signs = ", ".join(f"{sign:+d}" for sign in sorted({h.sigma for h in named}))
+        raise KeyError(f"histogram {name!r} has no sigma={sigma!r}; it has {signs}")
     if sigma is None and len({h.sigma for h in found}) > 1:
         raise KeyError(f"histogram {name!r} has two signs: choose sigma=+1 or sigma=-1")
     if len(found) > 1 and time is None:

@@ -27,6 +27,8 @@ _GLANCE_SECONDS = 2.0  # for a notebook that shows a job
 
 def check_labels(labels: Mapping[str, str] | None) -> Mapping[str, str] | None:
     """The same labels. TypeError unless they are texts."""
+    if not isinstance(labels or {}, Mapping):
+        raise TypeError(f'labels have to be a dict of texts like {{"run": "7"}}, not {labels!r}')
     for key, value in (labels or {}).items():
         if not (isinstance(key, str) and isinstance(value, str)):
             raise TypeError(f'labels: {key!r}: {value!r} is not a pair of texts like "run": "7"')

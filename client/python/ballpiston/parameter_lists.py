@@ -72,6 +72,13 @@ def real_number(name: str, value: object) -> float:
     return _number(name, value)
 
 
+def truth_value(name: str, value: object) -> bool:
+    """True or False, or the TypeError that names the argument: bool("no") would be true."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise TypeError(f"{name} has to be True or False, not {value!r}")
+    return bool(value)
+
+
 def _is_number(value: object) -> bool:
     is_scalar_array = isinstance(value, np.ndarray) and value.ndim == 0
     return isinstance(value, numbers.Real) or is_scalar_array

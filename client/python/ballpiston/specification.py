@@ -18,6 +18,7 @@ from ballpiston.parameter_lists import (
     number_list,
     real_number,
     shape_list,
+    truth_value,
     whole_number,
 )
 from ballpiston.points_table import Points, add_points
@@ -97,7 +98,7 @@ def specification(
         >>> list(question.grid.delta)
         [0.1, 0.2, 0.3]
     """
-    spec = spec_pb2.EnsembleSpec(verify=bool(verify))
+    spec = spec_pb2.EnsembleSpec(verify=truth_value("verify", verify))
     spec.experiment = from_spelling(spec_pb2.EnsembleSpec.Experiment, "experiment", experiment)
     grid = {"rho": rho, "delta": delta, "epsilon": epsilon, "exponent": exponent}
     grid |= {"temperature": temperature, "hot": hot, "cold": cold}

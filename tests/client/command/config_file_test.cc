@@ -92,12 +92,11 @@ TEST_F(ConfigFileTest, ATargetReplacesThatOfAWeakerSource) {
   EXPECT_EQ(line.options.spec.target().budget().seconds(), 60);
 }
 
-// The server names the conflict.
-TEST_F(ConfigFileTest, TargetsOfOneSourceThatExcludeEachOtherAreBothAsked) {
-  home_.WriteConfig("[run]\nsamples = 5\nbudget = 3\n");
-  ASSERT_OK_AND_ASSIGN(const CommandLine line, ParseCommandLine({"run", "first-hit"}));
-  EXPECT_EQ(line.options.spec.target().samples(), 5);
-  EXPECT_EQ(line.options.spec.target().budget().seconds(), 3);
+TEST_F(ConfigFileTest, TargetsOfOneSourceThatExcludeEachOtherAreRefused) {
+  home_.WriteConfig("[run]\nsamples = 5\ncollisions = 3\n");
+  EXPECT_THAT(ParseCommandLine({"run", "first-hit"}).status(),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("--samples and --collisions in the config file exclude")));
 }
 
 TEST_F(ConfigFileTest, WhatIsOffOrReplacedReplacesNothing) {

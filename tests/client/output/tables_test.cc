@@ -26,6 +26,9 @@ TEST(ExactText, WholeNumbersHaveNoExponent) {
 TEST(TenDigits, AreAllIfTheyWouldSeemToBeTheNeighbour) {
   EXPECT_EQ(TenDigits(0.4999999999999999), "0.4999999999999999");
   EXPECT_EQ(TenDigits(0.5000000000000001), "0.5000000000000001");
+  EXPECT_EQ(TenDigits(0.50000000001), "0.50000000001");
+  EXPECT_EQ(TenDigits(0.70710678118), "0.70710678118");
+  EXPECT_EQ(TenDigits(0.5), "0.5");
   EXPECT_EQ(TenDigits(0.1), "0.1");
   EXPECT_EQ(TenDigits(1.0 / 3), "0.3333333333");
 }

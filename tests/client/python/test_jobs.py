@@ -35,9 +35,9 @@ def test_the_same_question_is_answered_from_the_store(client: ballpiston.Client)
 
 
 def test_a_request_id_returns_the_original_job(client: ballpiston.Client) -> None:
-    identifier = str(uuid.uuid4())
+    identifier = uuid.uuid4()
     first = client.submit(**FIRST_HITS, fresh=True, request_id=identifier)
-    assert client.submit(**FIRST_HITS, fresh=True, request_id=identifier).name == first.name
+    assert client.submit(**FIRST_HITS, fresh=True, request_id=str(identifier)).name == first.name
 
 
 def test_a_specification_can_be_asked_again(client: ballpiston.Client) -> None:

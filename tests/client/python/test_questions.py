@@ -67,6 +67,14 @@ def test_whole_numbers_may_be_floats() -> None:
         ballpiston.specification("first-hit", samples=1.5)
 
 
+def test_a_switch_is_true_or_false(client: ballpiston.Client) -> None:
+    assert ballpiston.specification("first-hit", verify=np.bool_(True)).verify
+    with pytest.raises(TypeError, match="verify has to be True or False, not 'no'"):
+        client.run("first-hit", verify="no")
+    with pytest.raises(TypeError, match="fresh has to be True or False, not 'no'"):
+        client.run("first-hit", fresh="no")
+
+
 def test_a_seed_has_64_bits() -> None:
     assert ballpiston.specification("first-hit", seed=2**64 - 1).seed == 2**64 - 1
     with pytest.raises(ValueError, match="seed"):

@@ -73,6 +73,8 @@ def test_the_density_of_both_signs_of_an_angle_integrates_to_one(
 def test_a_histogram_without_a_choice_lists_the_choices(first_hits: ballpiston.Result) -> None:
     with pytest.raises(KeyError, match="sigma=.1 or sigma=-1"):
         first_hits.histogram("alpha")
+    with pytest.raises(KeyError, match="has no sigma=3; it has -1, .1"):
+        first_hits.histogram("alpha", sigma=3)
     with pytest.raises(KeyError, match="this point has alpha"):
         first_hits.histogram("beta")
 

@@ -74,6 +74,18 @@ TEST_F(ContinuationTest, ALargerToleranceDoesNotContinueASmallerOne) {
   EXPECT_EQ(Ask(WithTolerance(0.2)).continues(), "");
 }
 
+// A sample is an orbit of 40 mean free times, so the second job has fewer samples.
+TEST_F(ContinuationTest, CollisionsAreComparedBySamples) {
+  const auto ask = [this](const std::string& target) {
+    return Ask(FromText<v1::EnsembleSpec>(
+        "experiment: ENERGY_RELAXATION grid { rho: 0.53 delta: 0.2 } model: BILLIARD target { " +
+        target + " }"));
+  };
+  const std::string first = ask("samples: 500").name();
+  EXPECT_EQ(ask("collisions: 10000").continues(), "");
+  EXPECT_EQ(ask("collisions: 100000").continues(), first);
+}
+
 TEST_F(ContinuationTest, ADeletedJobIsNotContinued) {
   const std::string first = Ask(WithSamples(1'000)).name();
   EXPECT_TRUE(server_->Delete(first).ok());

@@ -27,13 +27,13 @@ TEST(Errors, SayHowLongToWaitWhereWaitingHelps) {
   for (const absl::Status& cured :
        {ShuttingDown(), StoreFailure(absl::ResourceExhaustedError("full")),
         StoreFailure(absl::UnavailableError("fails")), limit("TOO_MANY_CALLS"),
-        limit("TOO_MANY_STREAMS"), limit("TOO_MANY_JOBS"), limit("TOO_MANY_ACTIVE_POINTS")}) {
+        limit("TOO_MANY_STREAMS"), limit("TOO_MANY_JOBS"), limit("TOO_MANY_ACTIVE_POINTS"),
+        limit("TOO_MANY_STORED_BYTES")}) {
     EXPECT_GT(RetryDetail(cured), absl::ZeroDuration()) << cured;
     EXPECT_EQ(RetryDelayOf(RpcStatus(cured)), RetryDetail(cured));
   }
   for (const absl::Status& lasting :
-       {limit("TOO_MANY_POINTS"), limit("TOO_MANY_STORED_BYTES"),
-        StoreFailure(absl::DataLossError("damaged")), JobNotFound("x")}) {
+       {limit("TOO_MANY_POINTS"), StoreFailure(absl::DataLossError("damaged")), JobNotFound("x")}) {
     EXPECT_EQ(RetryDetail(lasting), absl::ZeroDuration()) << lasting;
     EXPECT_EQ(RetryDelayOf(RpcStatus(lasting)), absl::ZeroDuration());
   }
