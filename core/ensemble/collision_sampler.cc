@@ -20,7 +20,7 @@ constexpr double kSpeed = 1;  // sqrt(2 E) of a pair
 CollisionSampler::CollisionSampler(const PointExperiment& experiment, const ExperimentKind& kind,
                                    std::function<bool()> pause)
     : experiment_(experiment),
-      collisions_(kind.collisions(experiment.answer().model, experiment.parameters())),
+      collisions_(kind.forecast(experiment.answer().model, experiment.parameters()).collisions),
       most_in_a_part_(static_cast<uint64_t>(kMostOpen / 4 / collisions_)),
       pause_(std::move(pause)),
       run_(experiment.StartRun(*this)) {}

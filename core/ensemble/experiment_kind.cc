@@ -1,6 +1,8 @@
 #include "core/ensemble/experiment_kind.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "core/ensemble/chunk_fold.h"
 #include "core/ensemble/point_experiment.h"
@@ -15,12 +17,16 @@ bool IsOneOf(std::span<const Model> models, Model model) {
 
 }  // namespace
 
-bool LimitError::IsWithin(double tolerance, const PointParameters& point) const {
-  return expected(point) <= tolerance / (TakesSamples(model) ? 2 : 1);
+double Scatter::ErrorOf(double samples) const {
+  if (samples < SamplesForAnError()) return std::numeric_limits<double>::infinity();
+  return error / std::sqrt(samples);
 }
 
-double AimedEstimate::SamplesForAnError(Model model, const PointParameters& point) const {
-  return kEventsForAnError / (events == nullptr ? 1 : events(model, point));
+double Scatter::SamplesForAnError() const { return kEventsForAnError / events; }
+
+double Scatter::SamplesFor(double tolerance) const {
+  const double ratio = error / tolerance;
+  return std::max(ratio * ratio, SamplesForAnError());
 }
 
 bool AimedEstimate::IsAnsweredBy(Model model) const { return IsOneOf(models, model); }
@@ -39,6 +45,14 @@ const AimedEstimate& AimOf(const EnsembleSpec& spec) {
   return *spec.experiment->FindAim(spec.target.estimate);
 }
 
+Forecast ForecastOf(const EnsembleSpec& spec, const PointParameters& point) {
+  return spec.experiment->forecast(Sampled(spec.model), point);
+}
+
+Scatter ScatterOf(const EnsembleSpec& spec, const PointParameters& point) {
+  return AimOf(spec).scatter(Sampled(spec.model), point);
+}
+
 const ExperimentKind* FindExperiment(uint64_t number) {
   for (const ExperimentKind* kind : AllExperiments()) {
     if (kind->number == number) return kind;
@@ -49,11 +63,12 @@ const ExperimentKind* FindExperiment(uint64_t number) {
 double MemoryOf(const EnsembleSpec& spec, const PointParameters& point, int threads) {
   constexpr double kOfAnAnswer = 1e6;  // of a point without its samples
   if (NeedsNoSamples(spec)) return kOfAnAnswer;
-  const double used =
-      std::min(static_cast<double>(threads), static_cast<double>(SamplesAskedFor(spec, point)));
+  const Forecast forecast = ForecastOf(spec, point);
+  const double used = std::min(static_cast<double>(threads),
+                               static_cast<double>(SamplesAskedFor(spec.target, forecast)));
   constexpr auto kWaitingResults = static_cast<double>(ChunkFold::kWindow);
   return kOfAnAnswer + kWaitingResults * spec.experiment->memory_of_a_result +
-         used * spec.experiment->memory(Sampled(spec.model), point);
+         used * forecast.memory;
 }
 
 }  // namespace ballpiston

@@ -48,21 +48,37 @@ struct SampleWork {
   }
 };
 
+// What is predicted of one sample by a model that takes samples.
+struct Forecast {
+  SampleWork work = {};
+  double collisions = 1;  // of ball and piston; a mean number
+  // Upper bound of the bytes of one thread that takes samples (MemoryOf).
+  double memory = 0;
+  // If the samples continue each other: the trajectories of the point.
+  std::optional<Trajectories> trajectories = {};
+};
+
+// How much the samples of one estimate scatter.
+struct Scatter {
+  // The relative standard error of one sample. It is infinite if no number of samples is enough.
+  double error = 0;
+  // The expected number of a sample's events, of which an error needs kEventsForAnError
+  // (statistics/stated_error.h).
+  double events = 1;
+
+  // The relative standard error of n samples: 1/sqrt(n) times that of one; infinite if so many
+  // samples have no error.
+  double ErrorOf(double samples) const;
+  // The fewest samples that have an error; infinite if no number of samples is enough.
+  double SamplesForAnError() const;
+  // The expected number of samples that reach the relative standard error `tolerance`.
+  double SamplesFor(double tolerance) const;
+};
+
 struct ParameterUse {
   const Parameter* parameter;
   bool needed = true;                        // or optional
   std::optional<double> default_value = {};  // of every point if the list is empty
-};
-
-// How far the limit delta -> 0 is from the billiard, in one estimate.
-struct LimitError {
-  Model model;  // the cheapest one that answers in the limit
-  bool (*is_known)(const PointParameters& point);
-  double (*expected)(const PointParameters& point);  // upper bound of the relative error
-
-  // Whether the limit may answer a question with this tolerance. If its model samples, its error
-  // must be within half of it, so that the scatter is the larger part. Requires is_known.
-  bool IsWithin(double tolerance, const PointParameters& point) const;
 };
 
 // An estimate that a target can name. The tolerance, the predicted error and the choice of the
@@ -70,13 +86,10 @@ struct LimitError {
 struct AimedEstimate {
   absl::string_view name;
   std::span<const Model> models;  // that can answer it; cheapest first
-  // The relative standard error of one sample by a model that takes samples. The error of n samples
-  // is 1/sqrt(n) times that of one; it is infinite if no number of samples is enough.
-  double (*error)(Model model, const PointParameters& point);
-  // The expected number of a sample's events, of which an error needs kEventsForAnError
-  // (statistics/stated_error.h). Null: 1.
-  double (*events)(Model model, const PointParameters& point) = nullptr;
-  const LimitError* limit_error = nullptr;  // null: no bound is known
+  Scatter (*scatter)(Model model, const PointParameters& point);  // by a model that takes samples
+  // Upper bound of the relative difference between the limit delta -> 0 and the billiard; empty
+  // where none is known. Null: none is known at any point.
+  std::optional<double> (*limit_error)(const PointParameters& point) = nullptr;
   // Why no number of samples gives a relative error at some points, and what is permitted there.
   absl::string_view no_error = {};
   // Names of estimates that are this one in other units, so that they have its relative errors.
@@ -85,8 +98,10 @@ struct AimedEstimate {
   // Besides AUTO, which answers everything.
   bool IsAnsweredBy(Model model) const;
   bool HasClosedForm() const { return IsAnsweredBy(Model::kClosedForm); }
-  // The fewest samples that have an error; infinite if no number of samples is enough.
-  double SamplesForAnError(Model model, const PointParameters& point) const;
+  // The limit's error at the point, where it is known.
+  std::optional<double> LimitErrorAt(const PointParameters& point) const {
+    return limit_error == nullptr ? std::nullopt : limit_error(point);
+  }
 };
 
 struct ExperimentKind {
@@ -104,19 +119,9 @@ struct ExperimentKind {
   // empty.
   void (*check_grid)(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
 
-  // These two describe one sample by `model`: its work, and its mean number of ball-piston
-  // collisions.
-  SampleWork (*work)(Model model, const PointParameters& point);
-  double (*collisions)(Model model, const PointParameters& point);
-  double summary = 0;  // the work of a point's summary, in jumps
-
-  // Upper bounds of the bytes of one thread that takes samples, and of a block's result
-  // (MemoryOf).
-  double (*memory)(Model model, const PointParameters& point);
-  double memory_of_a_result = 20e3;
-
-  // If the samples continue each other: the trajectories of a point. Null: they do not.
-  Trajectories (*trajectories)(Model model, const PointParameters& point) = nullptr;
+  Forecast (*forecast)(Model model, const PointParameters& point);
+  double summary = 0;                // the work of a point's summary, in jumps
+  double memory_of_a_result = 20e3;  // upper bound of the bytes of a block's result (MemoryOf)
 
   // Samples of one orbit, which are measured together; a power of two up to 64.
   uint64_t samples_together = 1;
@@ -134,8 +139,11 @@ struct ExperimentKind {
   const AimedEstimate* FindAim(absl::string_view aim) const;
 };
 
-// The aim that the spec's target names. The spec must have no violations.
+// The aim that the spec's target names. For this and the next two the spec must have no violations.
 const AimedEstimate& AimOf(const EnsembleSpec& spec);
+// These two are by spec.model; for AUTO by the billiard.
+Forecast ForecastOf(const EnsembleSpec& spec, const PointParameters& point);
+Scatter ScatterOf(const EnsembleSpec& spec, const PointParameters& point);
 
 // In the order of their numbers; experiment/all_experiments.cc.
 std::span<const ExperimentKind* const> AllExperiments();

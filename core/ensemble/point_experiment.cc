@@ -13,21 +13,20 @@ namespace ballpiston {
 namespace {
 
 ChunkPlan PlanFor(const EnsembleSpec& spec, const PointParameters& point) {
-  const ExperimentKind& kind = *spec.experiment;
-  const Model model = Sampled(spec.model);
-  if (!TakesSamples(model)) return ChunkPlan();
-  const uint64_t samples = SamplesAskedFor(spec, point);
-  const double events = kind.work(model, point).Events();
-  if (kind.trajectories == nullptr) {
-    return ChunkPlan(samples, EngineFor(spec), events, kind.samples_together);
+  if (!TakesSamples(Sampled(spec.model))) return ChunkPlan();
+  const Forecast forecast = ForecastOf(spec, point);
+  const uint64_t samples = SamplesAskedFor(spec.target, forecast);
+  const double events = forecast.work.Events();
+  if (forecast.trajectories) {
+    return ChunkPlan(samples, EngineFor(spec), events, *forecast.trajectories);
   }
-  return ChunkPlan(samples, EngineFor(spec), events, kind.trajectories(model, point));
+  return ChunkPlan(samples, EngineFor(spec), events, spec.experiment->samples_together);
 }
 
 uint64_t ExpectedChunks(const EnsembleSpec& spec, const PointParameters& point,
                         const ChunkPlan& plan) {
   if (!spec.target.tolerance || plan.samples() == 0) return plan.chunks();
-  return plan.ChunksFor(SamplesFor(*spec.target.tolerance, spec, point));
+  return plan.ChunksFor(ScatterOf(spec, point).SamplesFor(*spec.target.tolerance));
 }
 
 // A tolerance is judged from this number of samples on. A value that is many times too large by
@@ -35,7 +34,7 @@ uint64_t ExpectedChunks(const EnsembleSpec& spec, const PointParameters& point,
 double LeastSamples(const EnsembleSpec& spec, const PointParameters& point, const ChunkPlan& plan) {
   constexpr double kShare = 0.25;
   if (!spec.target.tolerance || plan.samples() == 0) return 0;
-  return kShare * SamplesFor(*spec.target.tolerance, spec, point);
+  return kShare * ScatterOf(spec, point).SamplesFor(*spec.target.tolerance);
 }
 
 }  // namespace
@@ -52,19 +51,10 @@ std::optional<double> Answer::ModelErrorOf(std::string_view name, bool is_first)
   return found == further_errors.end() ? std::nullopt : std::optional(found->second);
 }
 
-double SamplesFor(double tolerance, const EnsembleSpec& spec, const PointParameters& point) {
-  const AimedEstimate& aim = AimOf(spec);
-  const Model model = Sampled(spec.model);
-  const double ratio = aim.error(model, point) / tolerance;
-  return std::max(ratio * ratio, aim.SamplesForAnError(model, point));
-}
-
-uint64_t SamplesAskedFor(const EnsembleSpec& spec, const PointParameters& point) {
-  const Target& target = spec.target;
+uint64_t SamplesAskedFor(const Target& target, const Forecast& forecast) {
   if (target.IsOpenEnded()) return kMaxSamples;
   if (!target.collisions) return static_cast<uint64_t>(target.samples.value_or(kDefaultSamples));
-  const double samples = std::ceil(static_cast<double>(*target.collisions) /
-                                   spec.experiment->collisions(Sampled(spec.model), point));
+  const double samples = std::ceil(static_cast<double>(*target.collisions) / forecast.collisions);
   // More is a violation (validation.cc). The cast of a larger number would be undefined.
   return static_cast<uint64_t>(std::min(samples, static_cast<double>(kMaxSamples)));
 }
@@ -123,7 +113,7 @@ PointSummary PointExperiment::Summarize(const BlockResult& merged) const {
 }
 
 std::string PointExperiment::ReasonOfNoError(absl::string_view estimate) const {
-  return RemarkOnSamples(estimate, aim_->SamplesForAnError(answer_.model, parameters_));
+  return RemarkOnSamples(estimate, aim_->scatter(answer_.model, parameters_).SamplesForAnError());
 }
 
 double RelativeError(const Estimate& estimate) {

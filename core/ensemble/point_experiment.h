@@ -29,6 +29,7 @@
 namespace ballpiston {
 
 struct AimedEstimate;
+struct Forecast;
 
 // The model that answers, and its error.
 struct Answer {
@@ -140,12 +141,9 @@ std::unique_ptr<PointExperiment> CreateAs(const EnsembleSpec& spec, const PointP
 }
 
 // The largest number of samples that the target requests at a point; 1 to kMaxSamples.
-uint64_t SamplesAskedFor(const EnsembleSpec& spec, const PointParameters& point);
+uint64_t SamplesAskedFor(const Target& target, const Forecast& forecast);
 
 // The time of the point on one core at nominal speed, by spec.model. Requires a model that samples.
 double NominalSeconds(const EnsembleSpec& spec, const PointParameters& point);
-
-// The expected number of samples that reach the relative standard error `tolerance`.
-double SamplesFor(double tolerance, const EnsembleSpec& spec, const PointParameters& point);
 
 }  // namespace ballpiston

@@ -172,7 +172,7 @@ void CheckBudget(const Target& target, Found& found) {
 void CheckSamplesOfCollisions(const EnsembleSpec& spec, Found& found) {
   double least = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < PointCount(spec); ++i) {
-    least = std::min(least, spec.experiment->collisions(Sampled(spec.model), PointAt(spec, i)));
+    least = std::min(least, ForecastOf(spec, PointAt(spec, i)).collisions);
   }
   const double most = std::floor(least * static_cast<double>(kMaxSamples));
   if (static_cast<double>(*spec.target.collisions) <= most) return;

@@ -150,64 +150,56 @@ double DelayOfOrbitsThatNeverMeet(Model model, const PointParameters& point, dou
 
 // The measurements of a step of the energy take most of a jump's time.
 SampleWork WorkOfAnOrbit(Model model, const PointParameters& point) {
-  SampleWork step = {.jumps = 1};
-  if (model != Model::kMarkov) {
-    step = WorkOfACollision(GeometryOf(point));
-    step.jumps = 1;
-  }
+  if (model == Model::kMarkov) return SampleWork{.jumps = 1}.Times(CollisionsPerOrbit(point));
+  SampleWork step = WorkOfACollision(GeometryOf(point));
+  step.jumps = 1;
   SampleWork orbit = step.Times(CollisionsPerOrbit(point));
-  if (model != Model::kMarkov && point.Find(kEpsilon)) {
+  if (point.Find(kEpsilon)) {
     orbit.delays = DelayOfOrbitsThatNeverMeet(model, point, orbit.ball_wall);
   }
   return orbit;
 }
 
-bool HasRelaxationTimeAt(const PointParameters& point) {
-  return HasRelaxationTime(point.Find(kEpsilon));
+// An orbit that has ended keeps its numbers until its block is complete. Two blocks are in progress
+// at a time, unless they are small.
+Forecast ForecastOfAnOrbit(Model model, const PointParameters& point) {
+  constexpr double kBlocks = 2, kOfAnOrbit = 320;  // 34 numbers, and their and the energy's lists
+  const SampleWork work = WorkOfAnOrbit(model, point);
+  const Engine engine = model == Model::kBilliardReference ? Engine::kReference : Engine::kLanes;
+  const ChunkPlan plan(kMaxSamples, engine, work.Events());
+  const double orbits = kBlocks * static_cast<double>(plan.MostInABlock());
+  return {.work = work,
+          .collisions = CollisionsPerOrbit(point),
+          .memory = kMemoryOfPairs + orbits * kOfAnOrbit};
 }
 
-// The relative standard error that one orbit from epsilon gives for int (ep - 1/6) dt. If few
-// orbits of the billiard meet, the integral has two values, and their shares determine its scatter.
-double ErrorOfDecay(Model model, const PointParameters& point) {
+// From an epsilon the error is that of int (ep - 1/6) dt. If few orbits of the billiard meet, the
+// integral has two values, and their shares determine its scatter.
+Scatter ScatterOfAnOrbit(Model model, const PointParameters& point) {
   constexpr double kScatter = 0.42;
-  const EnergyRelaxation relaxation(GeometryOf(point), point);
-  const double decay = relaxation.IntegralOfLimit().value;
-  const double error = std::fabs(kScatter * 4 * relaxation.unit() / decay);
-  if (model == Model::kMarkov) return error;
-  const double meet = ShareThatMeetsEarly(point);
-  return std::min(error, std::sqrt(meet / (1 - meet)));
+  const EnergyRelaxation relaxation(GeometryOf(point), point, model);
+  Scatter scatter = {1.25, relaxation.events_per_orbit()};
+  if (!HasRelaxationTime(relaxation.epsilon())) {
+    scatter.error = std::numeric_limits<double>::infinity();
+  } else if (relaxation.epsilon()) {
+    const double decay = relaxation.IntegralOfLimit().value;
+    scatter.error = std::fabs(kScatter * 4 * relaxation.unit() / decay);
+    if (model == Model::kMarkov) return scatter;
+    const double meet = ShareThatMeetsEarly(point);
+    scatter.error = std::min(scatter.error, std::sqrt(meet / (1 - meet)));
+  }
+  return scatter;
 }
 
-double ErrorOfAnOrbit(Model model, const PointParameters& point) {
-  if (!HasRelaxationTimeAt(point)) return std::numeric_limits<double>::infinity();
-  return point.Find(kEpsilon) ? ErrorOfDecay(model, point) : 1.25;
-}
-
-double EventsOfAnOrbit(Model model, const PointParameters& point) {
-  return EnergyRelaxation(GeometryOf(point), point, model).events_per_orbit();
+std::optional<double> LimitErrorOfRelaxation(const PointParameters& point) {
+  if (!HasRelaxationTime(point.Find(kEpsilon))) return std::nullopt;
+  return ExpectedLimitError(point);
 }
 
 constexpr ParameterUse kParametersOfRelaxation[] = {
     {&kRho}, {&kDelta}, {.parameter = &kEpsilon, .needed = false}};
 constexpr Model kModelsOfRelaxation[] = {Model::kSpectrum, Model::kMarkov, Model::kBilliard,
                                          Model::kBilliardReference};
-constexpr LimitError kLimitErrorOfRelaxation = {
-    .model = Model::kSpectrum, .is_known = HasRelaxationTimeAt, .expected = ExpectedLimitError};
-
-// An orbit that has ended keeps its numbers until its block is complete. Two blocks are in progress
-// at a time, unless they are small.
-double MemoryOfOrbits(Model model, const PointParameters& point) {
-  constexpr double kBlocks = 2, kOfAnOrbit = 320;  // 34 numbers, and their and the energy's lists
-  const Engine engine = model == Model::kBilliardReference ? Engine::kReference : Engine::kLanes;
-  const ChunkPlan plan(kMaxSamples, engine, WorkOfAnOrbit(model, point).Events());
-  return MemoryOfPairs(model, point) +
-         kBlocks * kOfAnOrbit * static_cast<double>(plan.MostInABlock());
-}
-
-double CollisionsOfASample(Model, const PointParameters& point) {
-  return CollisionsPerOrbit(point);
-}
-
 constexpr absl::string_view kMultiplesOfTheTime[] = {"decay_integral"};
 
 constexpr absl::string_view kNoTime =
@@ -219,9 +211,8 @@ static_assert(kNoDecayFrom == 0.12 && kNoDecayTo == 0.2);
 // is the decay integral.
 constexpr AimedEstimate kAimsOfRelaxation[] = {{.name = "relaxation_time",
                                                 .models = kModelsOfRelaxation,
-                                                .error = ErrorOfAnOrbit,
-                                                .events = EventsOfAnOrbit,
-                                                .limit_error = &kLimitErrorOfRelaxation,
+                                                .scatter = ScatterOfAnOrbit,
+                                                .limit_error = LimitErrorOfRelaxation,
                                                 .no_error = kNoTime,
                                                 .multiples = kMultiplesOfTheTime}};
 
@@ -235,9 +226,7 @@ constinit const ExperimentKind kEnergyRelaxation = {
     .aims = kAimsOfRelaxation,
     .create = CreateAs<EnergyRelaxationExperiment>,
     .check_grid = CheckPairGrid,
-    .work = WorkOfAnOrbit,
-    .collisions = CollisionsOfASample,
-    .memory = MemoryOfOrbits,
+    .forecast = ForecastOfAnOrbit,
     .expected_probabilities = ProbabilitiesOfTheLimit};
 
 }  // namespace ballpiston

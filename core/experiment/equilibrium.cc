@@ -79,20 +79,18 @@ class EquilibriumExperiment : public PairExperiment {
   }
 };
 
-SampleWork WorkInEquilibrium(Model, const PointParameters& point) {
-  return WorkOfACollision(GeometryOf(point));
+Forecast ForecastOfEquilibrium(Model, const PointParameters& point) {
+  return {.work = WorkOfACollision(GeometryOf(point)), .memory = kMemoryOfPairs};
 }
 
-double ErrorInEquilibrium(Model, const PointParameters&) { return 1.05; }
-double EventsInEquilibrium(Model, const PointParameters&) { return kEventsPerCollision; }
+Scatter ScatterOfTimes(Model, const PointParameters&) { return {1.05, kEventsPerCollision}; }
 
 constexpr Model kModelsOfEquilibrium[] = {Model::kClosedForm, Model::kBilliard,
                                           Model::kBilliardReference};
 
 constexpr AimedEstimate kAimsOfEquilibrium[] = {{.name = kNamesOfTimes[kBallPiston],
                                                  .models = kModelsOfEquilibrium,
-                                                 .error = ErrorInEquilibrium,
-                                                 .events = EventsInEquilibrium}};
+                                                 .scatter = ScatterOfTimes}};
 
 }  // namespace
 
@@ -103,8 +101,6 @@ constinit const ExperimentKind kEquilibrium = {.name = "equilibrium",
                                                .aims = kAimsOfEquilibrium,
                                                .create = CreateAs<EquilibriumExperiment>,
                                                .check_grid = CheckPairGrid,
-                                               .work = WorkInEquilibrium,
-                                               .collisions = OneCollision,
-                                               .memory = MemoryOfPairs};
+                                               .forecast = ForecastOfEquilibrium};
 
 }  // namespace ballpiston

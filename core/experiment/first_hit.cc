@@ -12,7 +12,6 @@
 // delta, and the result has the exact values.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -49,15 +48,16 @@ double StartsOf(const PointParameters& point) {
   return 1 + kByRootOfExponent * std::sqrt(point.Find(kExponent).value_or(0));
 }
 
-SampleWork WorkOfAReturn(Model, const PointParameters& point) {
+Forecast ForecastOfAReturn(Model, const PointParameters& point) {
   // At epsilon = 0 there are no long returns, but some returns are long.
   constexpr double kLeastShareOfLongReturns = 0.01;
   const PredictedHits hits = HitsPerReturn(GeometryOf(point), point[kEpsilon]);
   const double long_returns = LongReturnsPerSample(GeometryOf(point), point[kEpsilon]);
-  return {.ball_wall = hits.ball_wall,
-          .piston_wall = hits.piston_wall,
-          .starts = StartsOf(point),
-          .parts = std::clamp(long_returns, kLeastShareOfLongReturns, 1.0)};
+  return {.work = {.ball_wall = hits.ball_wall,
+                   .piston_wall = hits.piston_wall,
+                   .starts = StartsOf(point),
+                   .parts = std::clamp(long_returns, kLeastShareOfLongReturns, 1.0)},
+          .memory = kMemoryOfPairs};
 }
 
 // The ball rests at a distance d from the left end of the piston's way, with a density that falls
@@ -68,19 +68,13 @@ double ErrorAtRest(const PairGeometry& geometry) {
   return delta * std::numbers::sqrt2 / 6 / (geometry.stroke() - delta / 3);
 }
 
-// The relative error of the mean return time for one sample. Rare long returns dominate the mean,
-// so the scatter of their number is its error.
-double ErrorOfAReturn(Model, const PointParameters& point) {
+// Of the return time. Rare long returns dominate its mean, so the scatter of their number is its
+// error, and where they are rare they are its events.
+Scatter ScatterOfAReturn(Model, const PointParameters& point) {
   const PairGeometry geometry = GeometryOf(point);
-  if (point[kEpsilon] == 0.5) return ErrorAtRest(geometry);
+  if (point[kEpsilon] == 0.5) return {ErrorAtRest(geometry)};
   const double long_returns = LongReturnsPerSample(geometry, point[kEpsilon]);
-  if (long_returns == 0) return std::numeric_limits<double>::infinity();
-  return std::sqrt(0.9 * (1 + 1 / long_returns));
-}
-
-// The events of a return for its error: the expected number of long returns, where these are rare.
-double EventsOfAReturn(Model, const PointParameters& point) {
-  return std::min(LongReturnsPerSample(GeometryOf(point), point[kEpsilon]), 1.0);
+  return {std::sqrt(0.9 * (1 + 1 / long_returns)), std::min(long_returns, 1.0)};
 }
 
 // ---- both experiments ----
@@ -94,7 +88,7 @@ class ReturnExperiment : public PairExperiment {
                 .exponent = exponent,
                 .random = random()},
         exact_mean_(ConditionalMeanFreeTime(geometry(), starts_.epsilon)),
-        events_(TakesSamples(answer().model) ? EventsOfAReturn(answer().model, point) : 0) {}
+        events_(TakesSamples(answer().model) ? ScatterOf(spec, point).events : 0) {}
 
  protected:
   const ReturnStarts& starts() const { return starts_; }
@@ -164,8 +158,7 @@ constexpr absl::string_view kNoVariance =
 
 constexpr AimedEstimate kAimsOfConditional[] = {{.name = kConditionalTime,
                                                  .models = kModelsOfConditional,
-                                                 .error = ErrorOfAReturn,
-                                                 .events = EventsOfAReturn,
+                                                 .scatter = ScatterOfAReturn,
                                                  .no_error = kNoVariance}};
 
 // ---- first-hit ----
@@ -261,11 +254,8 @@ std::vector<std::vector<double>> ExpectedProbabilities(const PointParameters& po
 }
 
 constexpr ParameterUse kParametersOfFirstHit[] = {{&kRho}, {&kDelta}, {&kEpsilon}, {&kExponent}};
-constexpr AimedEstimate kAimsOfFirstHit[] = {{.name = kHitTime,
-                                              .models = kBilliards,
-                                              .error = ErrorOfAReturn,
-                                              .events = EventsOfAReturn,
-                                              .no_error = kNoVariance}};
+constexpr AimedEstimate kAimsOfFirstHit[] = {
+    {.name = kHitTime, .models = kBilliards, .scatter = ScatterOfAReturn, .no_error = kNoVariance}};
 
 // The noise of the relative entropy is a sum over the counts of 1,000 or 2,000 cells. Measured: 2
 // to 4 ms, where a jump takes 50 ns.
@@ -281,9 +271,7 @@ constinit const ExperimentKind kConditionalMeanFreeTime = {
     .aims = kAimsOfConditional,
     .create = CreateAs<ConditionalMeanFreeTimeExperiment>,
     .check_grid = CheckPairGrid,
-    .work = WorkOfAReturn,
-    .collisions = OneCollision,
-    .memory = MemoryOfPairs};
+    .forecast = ForecastOfAReturn};
 
 // No closed form answers this experiment, not even at exponent 1, because it measures a law.
 constinit const ExperimentKind kFirstHit = {.name = "first-hit",
@@ -293,10 +281,8 @@ constinit const ExperimentKind kFirstHit = {.name = "first-hit",
                                             .aims = kAimsOfFirstHit,
                                             .create = CreateAs<FirstHitExperiment>,
                                             .check_grid = CheckPairGrid,
-                                            .work = WorkOfAReturn,
-                                            .collisions = OneCollision,
+                                            .forecast = ForecastOfAReturn,
                                             .summary = kWorkOfNoise,
-                                            .memory = MemoryOfPairs,
                                             .expected_probabilities = ExpectedProbabilities};
 
 }  // namespace ballpiston

@@ -423,42 +423,33 @@ void CheckConductionGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& 
   }
 }
 
-SampleWork WorkOfGasConduction(Model model, const PointParameters& point) {
-  const SteadyTimes times = TimesAt(model, point);
-  SampleWork work = WorkOfReplica(model, OpenGasOf(point), times.stretch);
-  work.together = static_cast<double>(times.trajectories.each);
-  return work;
-}
-
-double ExchangesOfAConductionSample(Model model, const PointParameters& point) {
-  const GasGeometry geometry = OpenGasOf(point);
-  return static_cast<double>(geometry.contacts()) * InfiniteGasExchangeRate(geometry, 1) *
-         TimesAt(model, point).stretch;
-}
-
-Trajectories TrajectoriesOfConduction(Model model, const PointParameters& point) {
-  return TimesAt(model, point).trajectories;
-}
-
-// With the states of all groups: those that are merged, those that arrive, and those that are
-// written.
-double MemoryOfConduction(Model model, const PointParameters& point) {
+// The memory is with the states of all groups: those that are merged, those that arrive, and those
+// that are written.
+Forecast ForecastOfGasConduction(Model model, const PointParameters& point) {
   constexpr double kCopies = 3, kBytesOfACell = 60;
-  const auto trajectories = static_cast<double>(TimesAt(model, point).trajectories.count());
-  const auto cells = static_cast<double>(ShapeOf(point[kCells]).cells());
-  return MemoryOfReplicas(model, point) + kCopies * kBytesOfACell * trajectories * cells;
+  const GasGeometry geometry = OpenGasOf(point);
+  const SteadyTimes times = TimesAt(model, point);
+  SampleWork work = WorkOfReplica(model, geometry, times.stretch);
+  work.together = static_cast<double>(times.trajectories.each);
+  const auto contacts = static_cast<double>(geometry.contacts());
+  const auto trajectories = static_cast<double>(times.trajectories.count());
+  const auto cells = static_cast<double>(geometry.shape().cells());
+  return {.work = work,
+          .collisions = contacts * InfiniteGasExchangeRate(geometry, 1) * times.stretch,
+          .memory = MemoryOfReplicas(model, point) + kCopies * kBytesOfACell * trajectories * cells,
+          .trajectories = times.trajectories};
 }
 
 // The root of the current's variance in local equilibrium, 2 kappa T^2/(N t), over the current.
 // kappa T^2 grows as T^(5/2); Simpson's rule gives its mean over the gas. The last pistons pass the
 // current in portions, one for each crossing: their number scatters, and their energy as much. Slow
 // pistons determine the error. Measured errors are up to 30 % larger.
-double ErrorOfGasConduction(Model model, const PointParameters& point) {
+Scatter ScatterOfTheCurrent(Model model, const PointParameters& point) {
   const GasGeometry geometry = OpenGasOf(point);
   const double temperature = MeanTemperature(point);
   const double hot = point[kHot] / temperature, cold = point[kCold] / temperature;
   const double fall = hot - cold;
-  if (fall == 0) return std::numeric_limits<double>::infinity();
+  if (fall == 0) return {std::numeric_limits<double>::infinity()};
   const double mean_power = (std::pow(hot, 2.5) + 4 + std::pow(cold, 2.5)) / 6;
   const double time = TimesAt(model, point).stretch;
   const double conductivity = InfiniteGasExchangeRate(geometry, 1) / 2;
@@ -466,13 +457,12 @@ double ErrorOfGasConduction(Model model, const PointParameters& point) {
   const auto rows = static_cast<double>(geometry.shape().rows);
   const double of_the_gas = 2 * mean_power * columns / (conductivity * time * rows * fall * fall);
   const double of_the_portions = 2 * CrossingTime(model, geometry, cold) / (time * rows);
-  return std::sqrt(of_the_gas + of_the_portions);
+  return {std::sqrt(of_the_gas + of_the_portions)};
 }
 
-constexpr LimitError kLimitErrorOfConduction = {
-    .model = Model::kMarkov,
-    .is_known = [](const PointParameters&) { return true; },
-    .expected = ExpectedLimitErrorOfConduction};
+std::optional<double> LimitErrorOfConduction(const PointParameters& point) {
+  return ExpectedLimitErrorOfConduction(point);
+}
 
 constexpr Model kModelsOfGasConduction[] = {Model::kMarkov, Model::kBilliard,
                                             Model::kBilliardReference};
@@ -488,8 +478,8 @@ constexpr absl::string_view kNoCurrent =
 
 constexpr AimedEstimate kAimsOfGasConduction[] = {{.name = "heat_current",
                                                    .models = kModelsOfGasConduction,
-                                                   .error = ErrorOfGasConduction,
-                                                   .limit_error = &kLimitErrorOfConduction,
+                                                   .scatter = ScatterOfTheCurrent,
+                                                   .limit_error = LimitErrorOfConduction,
                                                    .no_error = kNoCurrent,
                                                    .multiples = kMultiplesOfTheCurrent}};
 
@@ -502,9 +492,6 @@ constinit const ExperimentKind kGasConduction = {.name = "gas-conduction",
                                                  .aims = kAimsOfGasConduction,
                                                  .create = CreateAs<GasConduction>,
                                                  .check_grid = CheckConductionGrid,
-                                                 .work = WorkOfGasConduction,
-                                                 .collisions = ExchangesOfAConductionSample,
-                                                 .memory = MemoryOfConduction,
-                                                 .trajectories = TrajectoriesOfConduction};
+                                                 .forecast = ForecastOfGasConduction};
 
 }  // namespace ballpiston

@@ -382,39 +382,37 @@ std::unique_ptr<EngineRun> GasEquilibrium::StartRun(BlockQueue& queue) const {
 
 // The current of the jump process costs twice as much as its exchanges; the billiard's current
 // costs almost nothing.
-SampleWork WorkOfGasEquilibrium(Model model, const PointParameters& point) {
+Forecast ForecastOfGasEquilibrium(Model model, const PointParameters& point) {
   const GasGeometry geometry = PeriodicGasOf(point);
   SampleWork work = WorkOfReplica(model, geometry, TimeInEquilibrium(model, geometry));
   if (MeasuresConductivity(geometry)) work.jumps *= 3;
-  return work;
-}
-
-double ExchangesOfASample(Model model, const PointParameters& point) {
-  const GasGeometry geometry = PeriodicGasOf(point);
-  return static_cast<double>(geometry.contacts()) * ExchangesOf(model, geometry);
+  return {.work = work,
+          .collisions = static_cast<double>(geometry.contacts()) * ExchangesOf(model, geometry),
+          .memory = MemoryOfReplicas(model, point)};
 }
 
 // The error has two parts: the random number of exchanges, and the energy of the replica, whose
 // root determines the rate.
-double ErrorOfGasEquilibrium(Model model, const PointParameters& point) {
+Scatter ScatterOfTheRate(Model model, const PointParameters& point) {
   const GasGeometry geometry = PeriodicGasOf(point);
   const auto freedom = static_cast<double>(2 * geometry.balls() + geometry.pistons());
-  return std::sqrt(1.3 / ExchangesOfASample(model, point) + 0.5 / freedom);
-}
-
-double EventsOfConductivity(Model model, const PointParameters& point) {
-  return EventsOfCurrents(model, ShapeOf(point[kCells]));
+  const auto contacts = static_cast<double>(geometry.contacts());
+  return {std::sqrt(1.3 / (contacts * ExchangesOf(model, geometry)) + 0.5 / freedom)};
 }
 
 // Measured errors. From four cells on they hardly depend on the number of cells, because the error
 // of a correlation is proportional to its scale for any number of cells. The jump process measures
 // only the correction, which is 0 but for rounding in one column.
-double ErrorOfConductivity(Model model, const PointParameters& point) {
-  const GasShape shape = ShapeOf(point[kCells]);
+double ErrorOfConductivity(Model model, const GasShape& shape) {
   if (model != Model::kMarkov) return shape.is_lattice ? 2 : 2.5;
   if (shape.columns == 1) return std::numeric_limits<double>::epsilon();
   if (shape.columns == 2) return shape.is_lattice && shape.rows == 1 ? 0.0007 : 0.0003;
   return shape.rows > 1 ? 0.0005 : 0.001;
+}
+
+Scatter ScatterOfConductivity(Model model, const PointParameters& point) {
+  const GasShape shape = ShapeOf(point[kCells]);
+  return {ErrorOfConductivity(model, shape), EventsOfCurrents(model, shape)};
 }
 
 // The relative difference between the infinite gas, whose conductivity the spectrum gives, and a
@@ -434,7 +432,7 @@ double ErrorOfSize(const GasGeometry& geometry) {
   return in(kOfColumns, shape.columns) + rows + std::fabs(rate - 1);
 }
 
-double ErrorOfTheLimit(const PointParameters& point) {
+std::optional<double> ErrorOfTheLimit(const PointParameters& point) {
   const GasGeometry geometry = PeriodicGasOf(point);
   return ExpectedLimitErrorInAGas(point) + ErrorOfSize(geometry) + LimitCorrection(geometry).error;
 }
@@ -462,18 +460,13 @@ constexpr Model kModelsOfGasEquilibrium[] = {Model::kClosedForm, Model::kSpectru
                                              Model::kBilliard, Model::kBilliardReference};
 constexpr Model kModelsOfConductivity[] = {Model::kSpectrum, Model::kMarkov, Model::kBilliard,
                                            Model::kBilliardReference};
-constexpr LimitError kLimitErrorOfConductivity = {
-    .model = Model::kSpectrum,
-    .is_known = [](const PointParameters&) { return true; },
-    .expected = ErrorOfTheLimit};
 constexpr absl::string_view kMultiplesOfTheConductivity[] = {"conductivity_ratio"};
 constexpr AimedEstimate kAimsOfGasEquilibrium[] = {
-    {.name = "exchange_rate", .models = kModelsOfGasEquilibrium, .error = ErrorOfGasEquilibrium},
+    {.name = "exchange_rate", .models = kModelsOfGasEquilibrium, .scatter = ScatterOfTheRate},
     {.name = kConductivity,
      .models = kModelsOfConductivity,
-     .error = ErrorOfConductivity,
-     .events = EventsOfConductivity,
-     .limit_error = &kLimitErrorOfConductivity,
+     .scatter = ScatterOfConductivity,
+     .limit_error = ErrorOfTheLimit,
      .multiples = kMultiplesOfTheConductivity}};
 
 }  // namespace
@@ -485,9 +478,7 @@ constinit const ExperimentKind kGasEquilibrium = {.name = "gas-equilibrium",
                                                   .aims = kAimsOfGasEquilibrium,
                                                   .create = CreateAs<GasEquilibrium>,
                                                   .check_grid = CheckEquilibriumGrid,
-                                                  .work = WorkOfGasEquilibrium,
-                                                  .collisions = ExchangesOfASample,
-                                                  .memory = MemoryOfReplicas,
+                                                  .forecast = ForecastOfGasEquilibrium,
                                                   .expected_probabilities = SpeedProbabilitiesAt};
 
 }  // namespace ballpiston

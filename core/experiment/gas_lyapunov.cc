@@ -257,38 +257,32 @@ void CheckCells(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
 
 // Both models are the reference with its tangent vectors. `wall_hit`: the nanoseconds of a wall hit
 // in the engine that the model has in other experiments.
-SampleWork WorkOfGasLyapunov(Model model, const PointParameters& point) {
+Forecast ForecastOfGasLyapunov(Model model, const PointParameters& point) {
   const GasGeometry geometry = PeriodicGasOf(point);
+  const auto f = static_cast<double>(DegreesOfFreedom(geometry));
   const double wall_hit = model == Model::kBilliardReference ? 60 : 2.7;
   const double time = Times(geometry).end;
   const HitRates rates = HitRatesOf(geometry.pair());
   const double events = time * (rates.of_a_ball * static_cast<double>(geometry.balls()) +
                                 rates.of_a_piston * static_cast<double>(geometry.pistons())) +
                         Times::Exchanges(geometry);
-  return {.ball_wall = events * NanosecondsOfAnEvent(geometry) / wall_hit,
-          .starts = static_cast<double>(geometry.balls()),
-          .together = 1};
-}
-
-double CollisionsOfAReplica(Model, const PointParameters& point) {
-  return Times::Exchanges(PeriodicGasOf(point));
-}
-
-// A replica, with its tangent vectors, and the blocks in progress.
-double MemoryOfGasLyapunov(Model, const PointParameters& point) {
-  const auto f = static_cast<double>(DegreesOfFreedom(PeriodicGasOf(point)));
-  return MemoryOfReplicas(Model::kBilliardReference, point) + 40 * f * (f + 2);
+  const double of_tangents = 40 * f * (f + 2);  // bytes
+  return {.work = {.ball_wall = events * NanosecondsOfAnEvent(geometry) / wall_hit,
+                   .starts = static_cast<double>(geometry.balls()),
+                   .together = 1},
+          .collisions = Times::Exchanges(geometry),
+          .memory = MemoryOfReplicas(Model::kBilliardReference, point) + of_tangents};
 }
 
 // Measured with chains of 1 to 16 cells at deltas of 0.05 to 0.2.
-double ErrorOfTheFirst(Model, const PointParameters&) { return 0.055; }
-double ErrorOfTheEntropy(Model, const PointParameters& point) {
-  return 0.053 * std::pow(static_cast<double>(ShapeOf(point[kCells]).cells()), -0.45);
+Scatter ScatterOfTheFirst(Model, const PointParameters&) { return {0.055}; }
+Scatter ScatterOfTheEntropy(Model, const PointParameters& point) {
+  return {0.053 * std::pow(static_cast<double>(ShapeOf(point[kCells]).cells()), -0.45)};
 }
 
 constexpr AimedEstimate kAimsOfGasLyapunov[] = {
-    {.name = "lyapunov_1", .models = kBilliards, .error = ErrorOfTheFirst},
-    {.name = "entropy_per_ball", .models = kBilliards, .error = ErrorOfTheEntropy}};
+    {.name = "lyapunov_1", .models = kBilliards, .scatter = ScatterOfTheFirst},
+    {.name = "entropy_per_ball", .models = kBilliards, .scatter = ScatterOfTheEntropy}};
 
 }  // namespace
 
@@ -299,8 +293,6 @@ constinit const ExperimentKind kGasLyapunov = {.name = "gas-lyapunov",
                                                .aims = kAimsOfGasLyapunov,
                                                .create = CreateAs<GasLyapunov>,
                                                .check_grid = CheckCells,
-                                               .work = WorkOfGasLyapunov,
-                                               .collisions = CollisionsOfAReplica,
-                                               .memory = MemoryOfGasLyapunov};
+                                               .forecast = ForecastOfGasLyapunov};
 
 }  // namespace ballpiston

@@ -150,28 +150,28 @@ class LyapunovExperiment : public PairExperiment {
 };
 
 // The times of events with tangent vectors, relative to those without, as measured.
-SampleWork WorkOfLyapunov(Model model, const PointParameters& point) {
+Forecast ForecastOfLyapunov(Model model, const PointParameters& point) {
   const double with_tangents = IsByReference(model) ? 5.3 : 1.5;
   constexpr double kWithWarmUp = static_cast<double>(kWarmUpCollisions + kOrbit) / kOrbit;
-  return WorkOfACollision(GeometryOf(point)).Times(with_tangents * kWithWarmUp);
+  return {.work = WorkOfACollision(GeometryOf(point)).Times(with_tangents * kWithWarmUp),
+          .memory = kMemoryOfPairs};
 }
 
 // The relative errors are those measured for rho = 0.501 to 0.7 and delta = 0.005 to its bound,
 // where they differ by a factor of 1.5.
+constexpr Scatter OfOrbits(double error) { return {error, kOrbitsPerCollision}; }
+
 consteval AimedEstimate Aim(absl::string_view name,
-                            double (*error)(Model, const PointParameters&)) {
-  return {.name = name,
-          .models = kBilliards,
-          .error = error,
-          .events = [](Model, const PointParameters&) { return kOrbitsPerCollision; }};
+                            Scatter (*scatter)(Model, const PointParameters&)) {
+  return {.name = name, .models = kBilliards, .scatter = scatter};
 }
 
 constexpr AimedEstimate kAimsOfLyapunov[] = {
-    Aim("lyapunov_1", [](Model, const PointParameters&) { return 0.36; }),
-    Aim("lyapunov_2", [](Model, const PointParameters&) { return 1.0; }),
-    Aim("entropy", [](Model, const PointParameters&) { return 0.34; }),
-    Aim("lyapunov_1_per_collision", [](Model, const PointParameters&) { return 1.2; }),
-    Aim("lyapunov_2_per_collision", [](Model, const PointParameters&) { return 0.7; })};
+    Aim("lyapunov_1", [](Model, const PointParameters&) { return OfOrbits(0.36); }),
+    Aim("lyapunov_2", [](Model, const PointParameters&) { return OfOrbits(1.0); }),
+    Aim("entropy", [](Model, const PointParameters&) { return OfOrbits(0.34); }),
+    Aim("lyapunov_1_per_collision", [](Model, const PointParameters&) { return OfOrbits(1.2); }),
+    Aim("lyapunov_2_per_collision", [](Model, const PointParameters&) { return OfOrbits(0.7); })};
 
 }  // namespace
 
@@ -182,9 +182,7 @@ constinit const ExperimentKind kLyapunov = {.name = "lyapunov",
                                             .aims = kAimsOfLyapunov,
                                             .create = CreateAs<LyapunovExperiment>,
                                             .check_grid = CheckPairGrid,
-                                            .work = WorkOfLyapunov,
-                                            .collisions = OneCollision,
-                                            .memory = MemoryOfPairs,
+                                            .forecast = ForecastOfLyapunov,
                                             .samples_together = kOrbit};
 
 }  // namespace ballpiston

@@ -99,15 +99,16 @@ std::unique_ptr<EngineRun> MarkovPropertyExperiment::StartRun(BlockQueue& queue)
   return RunOrbits<ExchangeOrbit>(queue, *this);
 }
 
-SampleWork WorkOfAnExchange(Model model, const PointParameters& point) {
-  return model == Model::kMarkov ? SampleWork{.jumps = 1} : WorkOfACollision(GeometryOf(point));
+Forecast ForecastOfAnExchange(Model model, const PointParameters& point) {
+  const SampleWork jump = {.jumps = 1};
+  return {.work = model == Model::kMarkov ? jump : WorkOfACollision(GeometryOf(point)),
+          .memory = kMemoryOfPairs};
 }
 
-double ErrorOfWhatTendsToZero(Model, const PointParameters&) {
-  return std::numeric_limits<double>::infinity();
+// No number of samples gives a relative error of what tends to 0.
+Scatter ScatterOfMemory(Model, const PointParameters&) {
+  return {std::numeric_limits<double>::infinity(), 1.0 / kExchangesPerOrbit};
 }
-
-double OrbitsOfAnExchange(Model, const PointParameters&) { return 1.0 / kExchangesPerOrbit; }
 
 constexpr Model kModelsOfMarkovProperty[] = {Model::kMarkov, Model::kBilliard,
                                              Model::kBilliardReference};
@@ -117,8 +118,7 @@ constexpr absl::string_view kTendsToZero =
 
 constexpr AimedEstimate kAimsOfMarkovProperty[] = {{.name = "memory_correlation",
                                                     .models = kModelsOfMarkovProperty,
-                                                    .error = ErrorOfWhatTendsToZero,
-                                                    .events = OrbitsOfAnExchange,
+                                                    .scatter = ScatterOfMemory,
                                                     .no_error = kTendsToZero}};
 
 }  // namespace
@@ -130,9 +130,7 @@ constinit const ExperimentKind kMarkovProperty = {.name = "markov-property",
                                                   .aims = kAimsOfMarkovProperty,
                                                   .create = CreateAs<MarkovPropertyExperiment>,
                                                   .check_grid = CheckPairGrid,
-                                                  .work = WorkOfAnExchange,
-                                                  .collisions = OneCollision,
-                                                  .memory = MemoryOfPairs,
+                                                  .forecast = ForecastOfAnExchange,
                                                   .memory_of_a_result = 120e3,
                                                   .samples_together = kExchangesPerOrbit};
 

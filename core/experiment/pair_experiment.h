@@ -46,10 +46,8 @@ void CheckBilliardDomain(const EnsembleSpec& spec, std::vector<FieldViolation>& 
 // CheckDeltas with the bound of a pair, and CheckBilliardDomain.
 void CheckPairGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
 
-inline double OneCollision(Model, const PointParameters&) { return 1; }
-
 // An engine and its blocks. Measured: up to 8.4 MB, by return experiments with blocks of 65,536.
-inline double MemoryOfPairs(Model, const PointParameters&) { return 12e6; }
+inline constexpr double kMemoryOfPairs = 12e6;
 
 // The work of a sample that is one collision of an orbit in equilibrium.
 SampleWork WorkOfACollision(const PairGeometry& geometry);

@@ -185,7 +185,7 @@ SteadyGas::SteadyGas(const EnsembleSpec& spec, const PointParameters& point, dou
       hot_(point[kHot] / temperature()),
       cold_(point[kCold] / temperature()),
       stretch_(WithoutLastBits(stretch)),
-      trajectories_(spec.experiment->trajectories(answer().model, point)),
+      trajectories_(ForecastOf(spec, point).trajectories.value()),
       shape_({.trajectories = trajectories_.each,
               .quantities = quantities,
               .balls = static_cast<size_t>(geometry().balls()),

@@ -17,7 +17,7 @@ constexpr absl::string_view kInSinglePrecision = "in single precision; ";
 // every machine makes the same choice.
 double HitsOf(const PointParameters& point, double orbits) {
   constexpr double kHitsThatACollisionCosts = 100;
-  const SampleWork work = kEnergyRelaxation.work(Model::kBilliard, point);
+  const SampleWork work = kEnergyRelaxation.forecast(Model::kBilliard, point).work;
   return orbits * (work.ball_wall + kHitsThatACollisionCosts * work.collisions);
 }
 
@@ -36,10 +36,9 @@ Answer Billiard(const Question& question, absl::string_view why) {
 }
 
 // The reason why no pilot is needed; empty if a pilot is needed.
-std::string WithoutAPilot(const Question& question) {
+std::string WithoutAPilot(const Question& question, double expected) {
   const double tolerance = *question.target().tolerance;
   const PilotPlace place = PilotPlaceFor(question.point());
-  const double expected = question.ExpectedLimitError();
   if (expected > tolerance) {
     return absl::StrCat("the limit's error, up to ", Rounded(expected),
                         ", is beyond the tolerance");
@@ -49,18 +48,16 @@ std::string WithoutAPilot(const Question& question) {
   if (LimitErrorBound(at_best, place, question.point()) > tolerance) {
     return "a pilot could not establish the limit's error to this tolerance";
   }
-  if (HitsOf(question.point(), question.SamplesFor(tolerance)) < HitsOfPilot(place)) {
+  const double samples = question.ScatterBy(Model::kBilliard).SamplesFor(tolerance);
+  if (HitsOf(question.point(), samples) < HitsOfPilot(place)) {
     return "the billiard reaches the tolerance before a pilot would establish the limit's error";
   }
   return "";
 }
 
-// If the limit's model samples, its error must be within half of the tolerance, so that the scatter
-// is the larger part.
-Answer ByItsBound(const Question& question) {
+Answer ByItsBound(const Question& question, double error) {
   const bool samples = TakesSamples(question.ModelOfLimit());
-  const double error = question.ExpectedLimitError();
-  const bool is_within = question.MayBeAnsweredByLimit();
+  const bool is_within = question.IsWithinTolerance(error);
   const std::string why = absl::StrCat("the limit's error, up to ", Rounded(error), ", is ",
                                        is_within ? "within " : "beyond ",
                                        samples ? "half of the tolerance" : "the tolerance");
@@ -68,13 +65,14 @@ Answer ByItsBound(const Question& question) {
   return {question.ModelOfLimit(), why, error};
 }
 
-std::optional<Answer> ByTolerance(const Question& question, const PilotSource& pilots) {
-  if (!question.HasPilots()) return ByItsBound(question);
-  if (const std::string why = WithoutAPilot(question); !why.empty()) {
+std::optional<Answer> ByTolerance(const Question& question, double expected,
+                                  const PilotSource& pilots) {
+  if (!question.HasPilots()) return ByItsBound(question, expected);
+  if (const std::string why = WithoutAPilot(question, expected); !why.empty()) {
     return Billiard(question, why);
   }
   const PilotPlace place = PilotPlaceFor(question.point());
-  if (HitsOfPilot(place) > kMostHitsOfAPilot) return ByItsBound(question);
+  if (HitsOfPilot(place) > kMostHitsOfAPilot) return ByItsBound(question, expected);
   const std::optional<Pilot> pilot = pilots(place);
   if (!pilot) return std::nullopt;
   const double error = LimitErrorBound(*pilot, place, question.point());
@@ -88,9 +86,8 @@ std::optional<Answer> ByTolerance(const Question& question, const PilotSource& p
 
 // The model that has the smaller error within the budget; the limit if none has an error. Runs no
 // pilot, because a pilot would use part of the budget.
-Answer ByBudget(const Question& question) {
-  if (!question.MayBeAnsweredByLimit()) return ByItsBound(question);
-  const double bound = question.ExpectedLimitError();
+Answer ByBudget(const Question& question, double bound) {
+  if (!question.IsWithinTolerance(bound)) return ByItsBound(question, bound);
   const double limit = question.ErrorInBudget(question.ModelOfLimit()) + bound;
   const double billiard = question.ErrorInBudget(Model::kBilliard) +
                           question.ErrorOfPrecision(Model::kBilliard).value_or(0);
@@ -109,31 +106,22 @@ Answer ByBudget(const Question& question) {
 }
 
 // Outside of the billiard's domain the limit answers by its expected error, without a pilot, if a
-// tolerance permits it, or with a budget. Requires a known error.
-bool MayAnswerWithoutBilliard(const Question& question) {
-  const Target& target = question.target();
-  if (question.IsSoundForBilliard()) return false;
-  if (!target.tolerance) return target.budget_seconds.has_value();
-  return question.aim().limit_error->IsWithin(*target.tolerance, question.point());
-}
-
-Answer WithoutBilliard(const Question& question) {
-  return {question.ModelOfLimit(), "the billiard is not sound at this rho and delta",
-          question.ExpectedLimitError()};
-}
-
+// tolerance permits it, or with a budget.
 std::optional<Answer> AnswerNearTheLimit(const Question& question, const PilotSource& pilots) {
-  if (!question.HasLimitError()) {
-    return Billiard(question, "the limit's error is not known at this point");
+  const std::optional<double> error = question.LimitError();
+  if (!error) return Billiard(question, "the limit's error is not known at this point");
+  if (!question.IsSoundForBilliard() && question.target().IsOpenEnded() &&
+      question.IsWithinTolerance(*error)) {
+    return Answer{question.ModelOfLimit(), "the billiard is not sound at this rho and delta",
+                  *error};
   }
-  if (MayAnswerWithoutBilliard(question)) return WithoutBilliard(question);
   if (!question.HasRelativeError()) {
     return Billiard(question,
                     "the first estimate has no relative error at this point, so the limit's error "
                     "cannot be judged");
   }
-  if (question.target().budget_seconds) return ByBudget(question);
-  if (question.target().tolerance) return ByTolerance(question, pilots);
+  if (question.target().budget_seconds) return ByBudget(question, *error);
+  if (question.target().tolerance) return ByTolerance(question, *error, pilots);
   return Billiard(question, "without a tolerance the limit's error cannot be judged");
 }
 
@@ -156,21 +144,20 @@ std::optional<Answer> AutoAnswer(const Question& question, const PilotSource& pi
 
 Answer ExplicitAnswer(const Question& question) {
   const Model model = question.spec().model;
-  if (!IsOfTheLimit(model)) return {model, "", question.ErrorOfPrecision(model)};
-  if (!question.HasLimitError()) return {model, "", std::nullopt};
-  return {model, "", question.ExpectedLimitError()};
+  return {model, "",
+          IsOfTheLimit(model) ? question.LimitError() : question.ErrorOfPrecision(model)};
 }
 
 // The limit's errors in other estimates of the answer.
 void AddFurtherErrors(const Question& question, Answer& answer) {
   if (!IsOfTheLimit(answer.model)) return;
   for (const AimedEstimate& aim : question.spec().experiment->aims) {
-    if (aim.limit_error == nullptr || !aim.limit_error->is_known(question.point())) continue;
     const bool is_first = &aim == &question.aim();
-    const double error =
-        is_first ? answer.model_error.value_or(0) : aim.limit_error->expected(question.point());
-    if (!is_first) answer.further_errors.emplace(aim.name, error);
-    for (const absl::string_view name : aim.multiples) answer.further_errors.emplace(name, error);
+    const std::optional<double> error =
+        is_first ? answer.model_error : aim.LimitErrorAt(question.point());
+    if (!error) continue;
+    if (!is_first) answer.further_errors.emplace(aim.name, *error);
+    for (const absl::string_view name : aim.multiples) answer.further_errors.emplace(name, *error);
   }
 }
 

@@ -44,15 +44,15 @@ void PredictSamples(const Question& question, Rung& rung) {
     rung.work = work;
     rung.time = work / question.ThreadsFor(rung.model, *rung.samples);
   }
-  const double error = question.ErrorOf(rung.model, *rung.samples);
+  const double error = question.ScatterBy(rung.model).ErrorOf(*rung.samples);
   if (std::isfinite(error)) rung.statistical_error = error;
 }
 
 // The limit's error: from the pilot that the choice has used, else the expected error.
 void SetLimitError(const Question& question, const std::optional<Pilot>& pilot, Rung& rung) {
   rung.reason = "the limit delta -> 0";
-  if (!question.HasLimitError()) return;
-  rung.model_error = question.ExpectedLimitError();
+  rung.model_error = question.LimitError();
+  if (!rung.model_error) return;
   rung.reason = "the limit delta -> 0; the model error is an expected upper bound";
   if (!pilot) return;
   const PilotPlace place = PilotPlaceFor(question.point());

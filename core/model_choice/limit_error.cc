@@ -62,9 +62,9 @@ double SecondsOfPilot(const PilotPlace& place, const MachineRates& rates) {
 
 Pilot PredictedPilot(const PilotPlace& place) {
   const PointParameters point = PointOf(place);
-  const double error = kEnergyRelaxation.aims.front().error(Model::kBilliard, point);
+  const Scatter scatter = ScatterOf(PilotSpec(place), point);
   return {.difference = ExpectedLimitError(point),
-          .standard_error = error / std::sqrt(static_cast<double>(kPilotOrbits)),
+          .standard_error = scatter.error / std::sqrt(static_cast<double>(kPilotOrbits)),
           .predicted = true};
 }
 

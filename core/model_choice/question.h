@@ -33,18 +33,19 @@ class Question {
   const Target& target() const { return spec_.target; }
   const AimedEstimate& aim() const { return AimOf(spec_); }
   bool HasLimit() const { return aim().limit_error != nullptr; }
-  // Whether a bound of the limit's error is known.
-  bool HasLimitError() const { return HasLimit() && aim().limit_error->is_known(point_); }
+  // The expected bound of the limit's error, if it is known.
+  std::optional<double> LimitError() const { return aim().LimitErrorAt(point_); }
   // Whether pilots can check the bound. They are runs of energy-relaxation. In a gas a pilot would
   // take as long as the billiard's answer.
-  bool HasPilots() const { return HasLimitError() && spec_.experiment == &kEnergyRelaxation; }
-  double ExpectedLimitError() const { return aim().limit_error->expected(point_); }
+  bool HasPilots() const { return spec_.experiment == &kEnergyRelaxation; }
   bool IsSoundForBilliard() const { return ballpiston::IsSoundForBilliard(spec_, point_); }
-  Model ModelOfLimit() const { return aim().limit_error->model; }
-  // Whether the limit's error can be judged, and is not beyond the tolerance.
-  bool MayBeAnsweredByLimit() const {
-    return HasLimitError() && HasRelativeError() &&
-           (!target().tolerance || aim().limit_error->IsWithin(*target().tolerance, point_));
+  // The cheapest model that answers in the limit. Requires HasLimit.
+  Model ModelOfLimit() const { return *std::ranges::find_if(aim().models, IsOfTheLimit); }
+  // Whether this error of the limit is not beyond the tolerance. If the limit's model samples, its
+  // error must be within half of the tolerance, so that the scatter is the larger part.
+  bool IsWithinTolerance(double limit_error) const {
+    const double share = TakesSamples(ModelOfLimit()) ? 2 : 1;
+    return !target().tolerance || limit_error <= *target().tolerance / share;
   }
 
   // The experiment, or the estimate if it is not the experiment's default.
@@ -80,8 +81,10 @@ class Question {
     if (spec_.model != Model::kAuto) return SecondsOfTheFirst(spec_.model);
     if (!IsSoundForBilliard()) return SecondsOfTheFirst(ModelOfLimit());
     const double by_billiard = SecondsOfTheFirst(Model::kBilliard);
-    return MayBeAnsweredByLimit() ? std::min(by_billiard, SecondsOfTheFirst(ModelOfLimit()))
-                                  : by_billiard;
+    if (!HasLimit() || !HasRelativeError()) return by_billiard;
+    const bool is_within =
+        !target().tolerance || IsWithinTolerance(LimitError().value_or(HUGE_VAL));
+    return is_within ? std::min(by_billiard, SecondsOfTheFirst(ModelOfLimit())) : by_billiard;
   }
   double MemoryBy(Model model) const { return MemoryOf(By(model), point_, machine_.workers); }
 
@@ -107,22 +110,12 @@ class Question {
     return !TakesSamples(ModelOfLimit()) || SamplesInBudget(ModelOfLimit()) > 0;
   }
 
-  double SamplesFor(double tolerance) const {
-    return ballpiston::SamplesFor(tolerance, spec_, point_);
-  }
-
-  // Infinite if so many samples have no error.
-  double ErrorOf(Model model, double samples) const {
-    if (samples < aim().SamplesForAnError(model, point_)) {
-      return std::numeric_limits<double>::infinity();
-    }
-    return aim().error(model, point_) / std::sqrt(samples);
-  }
-  bool HasRelativeError() const { return std::isfinite(aim().error(Model::kBilliard, point_)); }
+  Scatter ScatterBy(Model model) const { return aim().scatter(model, point_); }
+  bool HasRelativeError() const { return std::isfinite(ScatterBy(Model::kBilliard).error); }
 
   // The statistical error when the budget is used up; 0 for the spectrum, which has no samples.
   double ErrorInBudget(Model model) const {
-    return model == Model::kSpectrum ? 0 : ErrorOf(model, SamplesInBudget(model));
+    return model == Model::kSpectrum ? 0 : ScatterBy(model).ErrorOf(SamplesInBudget(model));
   }
 
  private:

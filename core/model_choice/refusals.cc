@@ -29,12 +29,12 @@ double LeastTolerance(const EnsembleSpec& spec) {
     const PointParameters point = PointAt(spec, i);
     const Question question(spec, point, Machine());
     const bool is_checked = question.HasPilots() || spec.model == Model::kSpectrum;
-    if (IsOfTheLimit(spec.model) && question.HasLimitError() && is_checked) {
-      least = std::max(least, question.ExpectedLimitError());
+    if (IsOfTheLimit(spec.model) && is_checked) {
+      least = std::max(least, question.LimitError().value_or(0));
     }
     if (spec.model == Model::kSpectrum) continue;
     least = std::max(least, question.ErrorOfPrecision(spec.model).value_or(0));
-    const double sampled = question.ErrorOf(Sampled(spec.model), static_cast<double>(kMaxSamples));
+    const double sampled = ScatterOf(spec, point).ErrorOf(static_cast<double>(kMaxSamples));
     if (std::isfinite(sampled)) least = std::max(least, sampled);
   }
   return least;
@@ -66,8 +66,9 @@ std::vector<FieldViolation> PointsWithoutAnError(const EnsembleSpec& spec) {
     const PointParameters point = PointAt(spec, i);
     const Model model = ExpectedModel(spec, point);
     if (model == Model::kClosedForm) continue;
-    const double needed = TakesSamples(model) ? aim.SamplesForAnError(model, point) : 0;
-    const bool has_error = std::isfinite(aim.error(model, point)) && std::isfinite(needed);
+    const Scatter scatter = aim.scatter(model, point);
+    const double needed = TakesSamples(model) ? scatter.SamplesForAnError() : 0;
+    const bool has_error = std::isfinite(scatter.error) && std::isfinite(needed);
     if (has_error && needed <= static_cast<double>(kMaxSamples)) continue;
     const std::string reason =
         has_error ? absl::StrFormat(

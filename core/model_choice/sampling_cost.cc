@@ -67,22 +67,21 @@ double SamplingCost::SamplesIn(double seconds, int threads) const {
 
 SamplingCost CostOfSampling(const EnsembleSpec& spec, const PointParameters& point,
                             const MachineRates& rates) {
-  const Model model = Sampled(spec.model);
-  const SampleWork work = spec.experiment->work(model, point);
+  const Forecast forecast = ForecastOf(spec, point);
+  const SampleWork& work = forecast.work;
   const Engine engine = EngineFor(spec);
   const EngineRate& rate = rates.Of(engine);
   const double flight = WallHits(engine, work) * rate.wall_hit;
   SamplingCost cost = {.sample = flight + work.collisions * rate.collision +
                                  work.starts * rate.sample + work.jumps * rates.jump};
-  if (spec.experiment->trajectories != nullptr) {
-    const Trajectories trajectories = spec.experiment->trajectories(model, point);
-    cost.stage = static_cast<double>(trajectories.count());
-    cost.warm_up = cost.stage * static_cast<double>(trajectories.warm_up) * cost.sample;
+  if (const auto& trajectories = forecast.trajectories) {
+    cost.stage = static_cast<double>(trajectories->count());
+    cost.warm_up = cost.stage * static_cast<double>(trajectories->warm_up) * cost.sample;
   }
   if (work.together > 0) {
     cost.lanes = work.together;
     cost.first = work.together * cost.sample;
-  } else if (model == Model::kMarkov) {
+  } else if (spec.model == Model::kMarkov) {
     cost.first = kSamplesOfABlock * cost.sample;
   } else {
     cost.flight = flight;

@@ -99,8 +99,7 @@ EngineRate RateOf(Engine engine, uint64_t scale) {
 MachineRates MeasureSamplingRates() {
   MachineRates rates;
   const EnsembleSpec walk = SpecOf(kEnergyRelaxation, Model::kMarkov, kLargeDelta);
-  rates.jump =
-      SecondsOfASample(walk, 2048) / kEnergyRelaxation.collisions(Model::kMarkov, PointAt(walk, 0));
+  rates.jump = SecondsOfASample(walk, 2048) / ForecastOf(walk, PointAt(walk, 0)).collisions;
   rates.lanes = RateOf(Engine::kLanes, 256);
   rates.lanes_single = RateOf(Engine::kLanesSingle, 256);
   rates.reference = RateOf(Engine::kReference, 16);

@@ -307,7 +307,7 @@ class Drawing {
   }
 
   void SetTolerance(double samples, v1::Target& target) {
-    double error = IsPermitted() ? AimOf(Spec()).error(Sampled(Spec().model), Point()) : 1;
+    double error = IsPermitted() ? ScatterOf(Spec(), Point()).error : 1;
     if (!std::isfinite(error)) error = 1;
     target.set_tolerance(std::clamp(error / std::sqrt(samples), 1e-12, 0.9));
   }
@@ -320,7 +320,7 @@ class Drawing {
     return samples >= 1 ? std::min(samples, 1e6) : 1;  // NaN becomes 1
   }
 
-  double CollisionsOfASample() { return experiment_.collisions(Sampled(Spec().model), Point()); }
+  double CollisionsOfASample() { return ForecastOf(Spec(), Point()).collisions; }
 
   EnsembleSpec Spec() const { return server::CheckSpec(spec_).spec; }
   PointParameters Point() const { return PointAt(Spec(), 0); }

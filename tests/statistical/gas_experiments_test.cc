@@ -28,8 +28,8 @@ GasGeometry GeometryAt(const EnsembleSpec& spec) {
 double StatedOverMeasured(const EnsembleSpec& spec) {
   const PointSummary summary = RunPoint(spec);
   const Estimate& first = summary.estimates.front();
-  const double stated = AimOf(spec).error(spec.model, PointAt(spec, 0)) /
-                        std::sqrt(static_cast<double>(summary.samples));
+  const double stated =
+      ScatterOf(spec, PointAt(spec, 0)).error / std::sqrt(static_cast<double>(summary.samples));
   return stated * std::fabs(first.value) / *first.standard_error;
 }
 

@@ -322,12 +322,15 @@ TEST(EnsembleSpec, ThePermittedCollisionsAreThoseOfTheLargestNumberOfSamples) {
   ASSERT_NE(permitted, std::string::npos) << found[0].description;
   spec.target.collisions = std::stoll(found[0].description.substr(permitted + 16));
   EXPECT_THAT(Violations(spec), IsEmpty());
-  EXPECT_LE(SamplesAskedFor(spec, PointAt(spec, 1)), static_cast<uint64_t>(kMaxSamples));
+  const auto asked = [&](size_t index) {
+    return SamplesAskedFor(spec.target, ForecastOf(spec, PointAt(spec, index)));
+  };
+  EXPECT_LE(asked(1), static_cast<uint64_t>(kMaxSamples));
   ++*spec.target.collisions;
   EXPECT_EQ(Violations(spec).size(), 1u);
   spec.grid[kDelta] = {1e-10};
   spec.target = {.collisions = kMaxSamples};
-  EXPECT_EQ(SamplesAskedFor(spec, PointAt(spec, 0)), static_cast<uint64_t>(kMaxSamples));
+  EXPECT_EQ(asked(0), static_cast<uint64_t>(kMaxSamples));
 }
 
 }  // namespace

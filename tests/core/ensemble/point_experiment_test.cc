@@ -117,7 +117,7 @@ TEST_P(EachExperiment, ResultDoesNotDependOnTheRestOfTheGrid) {
 TEST_P(EachExperiment, ComputesTheRequestedSamples) {
   const PointSummary summary = point_->Summarize(FoldPoint(*point_));
   // Where samples continue each other, the same number of each trajectory.
-  const uint64_t asked = SamplesAskedFor(spec_, point_->parameters());
+  const uint64_t asked = SamplesAskedFor(spec_.target, ForecastOf(spec_, point_->parameters()));
   EXPECT_GE(summary.samples, asked);
   EXPECT_TRUE(summary.samples == asked || point_->plan().groups() > 0);
   EXPECT_EQ(summary.health.escapes, 0u);
@@ -141,7 +141,8 @@ TEST_P(EachExperiment, AToleranceIsReachedWhenTheErrorIsWithinItButNotByFewSampl
     const auto point = PointExperiment::Create(spec_, 0);
     EXPECT_EQ(point->ReachesTolerance(merged), share > 1);
     BlockResult few = merged;
-    few.samples = static_cast<uint64_t>(SamplesFor(share * error, spec_, point->parameters()) / 4);
+    const Scatter scatter = ScatterOf(spec_, point->parameters());
+    few.samples = static_cast<uint64_t>(scatter.SamplesFor(share * error) / 4);
     EXPECT_FALSE(point->ReachesTolerance(few));
   }
 }
@@ -268,8 +269,8 @@ TEST(PointExperiment, CollisionsAreSharedByTheOrbitsThatTakeThem) {
                                         {{.samples = 1000}, 1000},
                                         {{}, kDefaultSamples},
                                         {{.tolerance = 0.01}, kMaxSamples}}) {
-    EXPECT_EQ(SamplesAskedFor(SpecOf(&kEnergyRelaxation, point, target), point),
-              static_cast<uint64_t>(samples));
+    const EnsembleSpec spec = SpecOf(&kEnergyRelaxation, point, target);
+    EXPECT_EQ(SamplesAskedFor(target, ForecastOf(spec, point)), static_cast<uint64_t>(samples));
   }
 }
 

@@ -210,8 +210,9 @@ TEST(GasConduction, EqualTemperaturesCarryNoCurrent) {
 double ExchangesOfAWarmUp(const EnsembleSpec& spec) {
   const PointParameters point = PointAt(spec, 0);
   const GasShape shape = ShapeOf(point[kCells]);
-  return kGasConduction.collisions(spec.model, point) / static_cast<double>(shape.contacts()) *
-         static_cast<double>(kGasConduction.trajectories(spec.model, point).warm_up);
+  const Forecast forecast = ForecastOf(spec, point);
+  return forecast.collisions / static_cast<double>(shape.contacts()) *
+         static_cast<double>(forecast.trajectories->warm_up);
 }
 
 // The warm-up grows with the square of the length, and with the time of a slow piston: the current
@@ -222,7 +223,7 @@ TEST(GasConduction, TheWarmUpIsThatOfTheSlowestPart) {
     return ExchangesOfAWarmUp(SpecBetween(3, 1, {.columns = columns}));
   };
   const PointParameters short_gas = PointAt(SpecBetween(3, 1), 0);
-  EXPECT_EQ(kGasConduction.trajectories(Model::kBilliard, short_gas).warm_up, 2u);  // two halves
+  EXPECT_EQ(kGasConduction.forecast(Model::kBilliard, short_gas).trajectories->warm_up, 2u);
   EXPECT_NEAR(of_length(19) / of_length(9), 4, 1e-12);
   EXPECT_NEAR(of_length(30'000) / of_length(299), std::pow(30'001. / 300, 2), 1e-8);
   const auto at_cold = [](Model model, double cold) {
@@ -243,7 +244,7 @@ TEST(GasConduction, TheWarmUpIsThatOfTheSlowestPart) {
 
 TEST(GasConduction, BesideAColdReservoirABilliardWarmsUpLonger) {
   const auto halves = [](Model model, double cold) {
-    return kGasConduction.trajectories(model, PointAt(SpecBetween(1, cold), 0)).warm_up;
+    return kGasConduction.forecast(model, PointAt(SpecBetween(1, cold), 0)).trajectories->warm_up;
   };
   for (const Model model : kModelsThatSampleGases) {
     const bool is_billiard = model != Model::kMarkov;

@@ -86,10 +86,7 @@ TEST(Ladder, ANamedModelAnswersWithAnyError) {
       const Answer answer = *Choice(spec);
       EXPECT_EQ(answer.model, model);
       std::optional<double> error = 0;
-      if (IsOfTheLimit(model)) {
-        const auto* of_limit = AimOf(spec).limit_error;
-        error = of_limit ? std::optional(of_limit->expected(PointAt(spec, 0))) : std::nullopt;
-      }
+      if (IsOfTheLimit(model)) error = AimOf(spec).LimitErrorAt(PointAt(spec, 0));
       EXPECT_EQ(answer.model_error, error);
     }
   }
@@ -192,7 +189,7 @@ TEST(Ladder, TheLimitsRowsHaveTheErrorThatTheChoiceHasUsed) {
 // ---- bounds that decide ----
 
 double BoundOf(const EnsembleSpec& spec) {
-  return AimOf(spec).limit_error->expected(PointAt(spec, 0));
+  return AimOf(spec).LimitErrorAt(PointAt(spec, 0)).value();
 }
 
 // No pilot checks the bound for a gas, so the bound alone decides: the spectrum's is that of the
@@ -233,7 +230,7 @@ TEST(Ladder, ThePlanRefersToTheNamedEstimate) {
   EXPECT_EQ(ladder.rungs[1].statistical_error, 0);
   const Rung& billiard = ladder.rungs[3];
   EXPECT_EQ(billiard.statistical_error,
-            AimOf(spec).error(spec.model, PointAt(spec, 0)) / std::sqrt(*billiard.samples));
+            ScatterOf(spec, PointAt(spec, 0)).error / std::sqrt(*billiard.samples));
   const Ladder of_rate =
       Planned(Asked("gas-equilibrium delta=0.01 tolerance=0.05 estimate=exchange_rate"));
   EXPECT_EQ(of_rate.answer.model, Model::kClosedForm);
@@ -384,9 +381,10 @@ TEST(Ladder, SamplesBelowThoseOfAnErrorHaveNoPlannedError) {
   // From epsilon = 1/2 only the orbits meet whose ball starts within the piston's reach.
   const EnsembleSpec spec =
       Asked("energy-relaxation delta=0.05 epsilon=0.5 tolerance=0.5 model=billiard");
-  const double needed = AimOf(spec).SamplesForAnError(spec.model, PointAt(spec, 0));
+  const Scatter scatter = ScatterOf(spec, PointAt(spec, 0));
+  const double needed = scatter.SamplesForAnError();
   EXPECT_GT(needed, 1000);
-  EXPECT_GE(SamplesFor(0.5, spec, PointAt(spec, 0)), needed);
+  EXPECT_GE(scatter.SamplesFor(0.5), needed);
   EXPECT_THAT(ToleranceViolations(spec), IsEmpty());
 }
 

@@ -18,8 +18,8 @@ double PredictedOverMeasured(const EnsembleSpec& spec) {
   const PointSummary summary = RunPoint(spec);
   const Estimate& estimate = summary.estimates.front();
   const double measured = estimate.standard_error.value() / std::fabs(estimate.value);
-  return AimOf(spec).error(spec.model, PointAt(spec, 0)) /
-         std::sqrt(static_cast<double>(summary.samples)) / measured;
+  return ScatterOf(spec, PointAt(spec, 0)).error / std::sqrt(static_cast<double>(summary.samples)) /
+         measured;
 }
 
 struct Case {
@@ -101,7 +101,7 @@ TEST(SamplingCost, PredictedErrorsAreThoseMeasured) {
     EXPECT_GT(ratio, 1 / row.factor) << row.question;
   }
   const EnsembleSpec infinite = Asked("conditional-mean-free-time epsilon=0");
-  EXPECT_TRUE(std::isinf(AimOf(infinite).error(infinite.model, PointAt(infinite, 0))));
+  EXPECT_TRUE(std::isinf(ScatterOf(infinite, PointAt(infinite, 0)).error));
 }
 
 // ---- costs, which follow from counts and a machine's rates ----
@@ -135,7 +135,7 @@ TEST(SamplingCost, CostIsTheSumOverEvents) {
   EXPECT_DOUBLE_EQ(Cost(returns, OnlyOf(&EngineRate::sample)), 1);
   const EnsembleSpec gas = Asked("gas-conduction model=billiard");
   EXPECT_DOUBLE_EQ(Cost(gas, OnlyOf(&EngineRate::collision)),
-                   kGasConduction.collisions(gas.model, PointAt(gas, 0)));
+                   ForecastOf(gas, PointAt(gas, 0)).collisions);
   MachineRates jumps;
   jumps.jump = 1;
   for (const char* delta : {"0.3", "1e-3"}) {
@@ -205,7 +205,7 @@ TEST(SamplingCost, AFewSamplesCostAsMuchAsTheLongestInAllLanes) {
 
 TEST(SamplingCost, IncludesTheWarmUpOfAllTrajectories) {
   const EnsembleSpec steady = Asked("gas-conduction cells=3 delta=0.2 model=billiard");
-  const Trajectories trajectories = kGasConduction.trajectories(steady.model, PointAt(steady, 0));
+  const Trajectories trajectories = *ForecastOf(steady, PointAt(steady, 0)).trajectories;
   const auto warm_up = static_cast<double>(trajectories.count() * trajectories.warm_up);
   const SamplingCost cost = InLanes(steady);
   EXPECT_DOUBLE_EQ(cost.Of(1000, 1), (warm_up + 1000) * cost.sample);
