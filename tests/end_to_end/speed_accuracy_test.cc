@@ -10,24 +10,6 @@ class SpeedAccuracy : public testing::Test {
     return ClientCommand(home_, Joined({{"figure", "speed-accuracy", "--out", figure_}, flags}));
   }
 
-  // Runs a copy of the client, with the shell script as its `method_comparison`; empty: without
-  // one.
-  ProcessResult RunWithProgram(const std::string& script) const {
-    const fs::path bin = home_.File("bin");
-    fs::create_directories(bin);
-    const fs::path built = fs::path(ClientProgram()).parent_path().parent_path();
-    fs::copy(ClientProgram(), bin, fs::copy_options::skip_existing);
-    fs::copy(built / "python", home_.File("python"),
-             fs::copy_options::recursive | fs::copy_options::skip_existing);
-    if (!script.empty()) {
-      WriteFile(bin / "method_comparison", "#!/bin/sh\n" + script + "\n");
-      fs::permissions(bin / "method_comparison", fs::perms::owner_all);
-    }
-    ProcessOptions options = Command({});
-    options.command[0] = bin / "ballpiston";
-    return RunProgram(options);
-  }
-
   const TemporaryFolder home_;
   const std::string figure_ = home_.File("figure");
 };
@@ -65,16 +47,6 @@ TEST_F(SpeedAccuracy, WrongValuesAreNamed) {
   EXPECT_THAT(result, ExitsWith(2));
   for (const char* text : {"--delta: ", "--epsilon: ", "--seconds: "}) {
     EXPECT_THAT(result.err, HasSubstr(text));
-  }
-}
-
-TEST_F(SpeedAccuracy, AProgramThatIsMissingOrFailsIsAnError) {
-  const std::pair<std::string, std::string> cases[] = {{"", "method_comparison: not found beside"},
-                                                       {"echo no room >&2; exit 1", "no room"}};
-  for (const auto& [script, message] : cases) {
-    const ProcessResult result = RunWithProgram(script);
-    EXPECT_THAT(result, ExitsWith(4));
-    EXPECT_THAT(result.err, HasSubstr(message));
   }
 }
 

@@ -130,14 +130,35 @@ TEST_F(WebTest, ErrorsHaveTheServersCodesReasonsAndViolations) {
 }
 
 TEST_F(WebTest, CallsNeedTheTokenAndThisPagesOriginAndHost) {
-  const std::string method = "ListEnsembleJobs";
-  EXPECT_EQ(Post(method, "{}")->status, 200);
-  EXPECT_EQ(Post(method, "{}", {{"Origin", host_}})->status, 200);
-  EXPECT_EQ(Post(method, "{}", {{"Authorization", "Bearer wrong"}})->status, 401);
-  EXPECT_EQ(Post(method, "{}", {{"Authorization", ""}})->status, 401);
-  EXPECT_EQ(Post(method, "{}", {{"Origin", "http://evil.example"}})->status, 403);
-  EXPECT_EQ(Post(method, "{}", {{"Host", "evil.example"}})->status, 403);
-  EXPECT_EQ(http_->Get("/", {{"Host", "evil.example"}})->status, 403);
+  const auto call = [this](const httplib::Headers& headers) {
+    return Post("ListEnsembleJobs", "{}", headers);
+  };
+  const std::string address = host_.substr(host_.rfind('/') + 1);
+  const std::string localhost = "localhost" + address.substr(address.find(':'));
+  EXPECT_EQ(call({})->status, 200);  // a program that sends no origin
+  for (const std::string& host : {address, localhost}) {
+    EXPECT_EQ(call({{"Host", host}, {"Origin", "http://" + host}})->status, 200);
+  }
+  for (const std::string& authorization :
+       {std::string(), token_, "bearer " + token_, "Bearer " + token_.substr(1),
+        "Bearer " + token_ + "x", "Bearer " + token_.substr(0, token_.size() - 1) + "!"}) {
+    const httplib::Result refused = call({{"Authorization", authorization}});
+    EXPECT_EQ(refused->status, 401) << authorization;
+    EXPECT_THAT(refused->body, Not(HasSubstr(token_)));
+  }
+  for (const std::string& origin : {std::string("http://evil.example"), std::string("null"),
+                                    "https://" + address, host_ + ".evil.example"}) {
+    const httplib::Result refused = call({{"Origin", origin}});
+    EXPECT_EQ(refused->status, 403) << origin;
+    EXPECT_THAT(refused->body, HasSubstr(origin));
+  }
+  for (const std::string& host : {std::string("evil.example"), std::string("127.0.0.1"),
+                                  std::string("127.0.0.1:80"), address + ".evil.example"}) {
+    const httplib::Result refused = call({{"Host", host}});
+    EXPECT_EQ(refused->status, 403) << host;
+    EXPECT_THAT(refused->body, HasSubstr("permitted: " + address + ", " + localhost));
+    EXPECT_EQ(http_->Get("/", {{"Host", host}})->status, 403);
+  }
 }
 
 TEST_F(WebTest, ReconnectsToAServerThatWasRestarted) {

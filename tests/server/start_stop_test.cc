@@ -46,15 +46,6 @@ TEST(StartStop, OtherFilesAtASocketsPathStay) {
   close(descriptor);
 }
 
-TEST(StartStop, AStaleSocketIsReplaced) {
-  TemporaryFolder folder;
-  const std::string stale = folder.File("server.socket");
-  { RunningServer server({.data_dir = folder.path()}); }
-  ASSERT_EQ(mknod(stale.c_str(), S_IFSOCK | 0777, 0), 0);
-  RunningServer server({.data_dir = folder.path()});
-  server.Submit(Equilibrium(1, 2));
-}
-
 // The server drops three blocks that never end, and begins no other one.
 TEST(StartStop, StoppingDoesNotWaitForAnEndlessBlock) {
   Gate gate;

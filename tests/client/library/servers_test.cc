@@ -1,7 +1,6 @@
 // Programs that the client starts, servers of this machine, and the private server.
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/inotify.h>
 
 #include "client/library/child_process.h"
 #include "client/library/local_server.h"
@@ -66,7 +65,6 @@ TEST_F(ChildProcessTest, AMissingProgramIsNotFound) {
 constexpr char kLock[] = "exec 9>>$2/lock; flock -w 1 9 || exit 1; echo $$ >$2/lock\n";
 constexpr char kListen[] = "echo unix:$2/socket >$2/server.address\n";
 constexpr char kWait[] = "while [ -d $2 ] && kill -0 $PPID; do sleep 0.01 9>&-; done\n";
-constexpr char kEnd[] = "trap 'rm $2/server.address; exit 0' TERM\n";
 
 class ServerProcessTest : public ::testing::Test {
  protected:
@@ -77,23 +75,10 @@ class ServerProcessTest : public ::testing::Test {
     std::filesystem::permissions(folder_.File("program"), std::filesystem::perms::owner_all);
     return {.program = folder_.File("program"), .folder = data_, .flags = {"--flag", "a b"}};
   }
-  ServerProgram Server() const { return Program(absl::StrCat(kLock, kEnd, kListen, kWait)); }
 
   const TemporaryFolder folder_;
   const std::string data_ = folder_.File("data");
 };
-
-TEST_F(ServerProcessTest, IsStartedFoundAndStopped) {
-  EXPECT_EQ(FindServer(data_), std::nullopt);
-  EXPECT_THAT(StartServer(Server()), IsOkAndHolds("unix:" + data_ + "/socket"));
-  const auto server = FindServer(data_);
-  ASSERT_TRUE(server.has_value());
-  EXPECT_EQ(absl::StrCat(server->pid, "\n"), Contents(data_ + "/lock"));
-  EXPECT_EQ(server->address, "unix:" + data_ + "/socket");
-  EXPECT_OK(StopServer(data_));
-  EXPECT_EQ(FindServer(data_), std::nullopt);
-  EXPECT_FALSE(std::filesystem::exists(data_ + "/server.address"));
-}
 
 TEST_F(ServerProcessTest, GetsItsFlagsInItsFolder) {
   ServerProgram program = Program("pwd; printf '<%s>' \"$@\"; exit 1");
@@ -124,13 +109,6 @@ TEST_F(ServerProcessTest, ErrorSaysThatTheLogCannotBeWritten) {
 TEST_F(ServerProcessTest, ErrorNamesAMissingProgram) {
   EXPECT_THAT(StartServer({.program = "/no/such/server", .folder = data_, .flags = {}}),
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("cannot start /no/such/server")));
-}
-
-// Two clients may start a server at the same time.
-TEST_F(ServerProcessTest, StartReturnsTheAddressOfAnEarlierServer) {
-  ASSERT_OK_AND_ASSIGN(const std::string first, StartServer(Server()));
-  EXPECT_THAT(StartServer(Server()), IsOkAndHolds(first));
-  EXPECT_OK(StopServer(data_));
 }
 
 TEST_F(ServerProcessTest, AServerThatDoesNotListenIsFoundAndReported) {
@@ -270,56 +248,6 @@ class FolderInUse {
 // Waits until the file exists or a stop is requested.
 void AwaitFile(const fs::path& file, const std::stop_token& stop) {
   AwaitThat([&] { return fs::exists(file) || stop.stop_requested(); });
-}
-
-// Counts how often a file is opened.
-class Openings {
- public:
-  explicit Openings(const fs::path& file) : descriptor_(inotify_init1(IN_CLOEXEC | IN_NONBLOCK)) {
-    EXPECT_GE(inotify_add_watch(descriptor_, file.c_str(), IN_OPEN), 0);
-  }
-  ~Openings() { close(descriptor_); }
-  Openings(const Openings&) = delete;
-  Openings& operator=(const Openings&) = delete;
-
-  // Waits until the file has been opened so often from now on, or a stop is requested.
-  void Await(int count, const std::stop_token& stop) {
-    while (Read() > 0) continue;  // earlier ones
-    int seen = 0;
-    AwaitThat([&] { return (seen += Read()) >= count || stop.stop_requested(); });
-  }
-
- private:
-  // Openings since the last call. The kernel may report equal ones as one.
-  int Read() {
-    inotify_event event;
-    return read(descriptor_, &event, sizeof(event)) == sizeof(event) ? 1 : 0;
-  }
-
-  const int descriptor_;
-};
-
-// The started program exits, because another server holds the folder. The client starts no second
-// program, but waits until that server listens. It looks at the lock again and again meanwhile.
-TEST_F(LocalServerTest, WaitsForAnotherClientsServer) {
-  FakeServer other;
-  const FolderInUse in_use(home_);
-  const LocalServer server{.folder = home_.string(),
-                           .socket = other.SocketPath(),
-                           .program = Program("cd " + home_.string() +
-                                              "; [ -e once ] && touch twice; touch once; exit 1"),
-                           .start_time = absl::FromChrono(kPatience)};
-  Openings looks(home_ / "lock");
-  std::jthread starter([&](const std::stop_token& stop) {
-    AwaitFile(home_ / "once", stop);
-    looks.Await(6, stop);
-    WriteFile(home_ / "server.address", "unix:" + other.SocketPath() + "\n");
-    other.Start();
-  });
-  EXPECT_OK(ConnectToLocalServer(server));
-  starter.request_stop();
-  EXPECT_FALSE(fs::exists(home_ / "twice"));
-  starter.join();
 }
 
 TEST_F(LocalServerTest, DoesNotWaitForAServerThatListensElsewhere) {

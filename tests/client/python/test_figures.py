@@ -21,7 +21,6 @@ from ballpiston.figures import (
     ingoing_law,
     lyapunov,
     markov_test,
-    rates,
     section,
     speed_accuracy,
     stability,
@@ -166,28 +165,6 @@ def test_an_oscillation_in_log_delta_is_found_with_its_period_and_amplitude() ->
     assert found["period"][0] == pytest.approx(0.5, abs=0.02)
     assert found["false_alarm"][0] == 0
     assert found["transform"][0] == 0
-
-
-def test_rates_of_windows_and_their_errors_count_every_batch() -> None:
-    batches = [np.array([1.0, 3.0]), np.array([2.0, 2.0])]
-    rate, error = rates.rate_of_windows(batches, np.array([1.0, 2.5]))
-    # P(t) = sum of min(gap, t)/sum of gaps: 4/8 and 7.5/8.
-    assert rate.tolist() == [4 / 8 / 1.0, 7.5 / 8 / 2.5]
-    # Both batches hit 2 of 4 at t = 1; at t = 2.5 they differ from 3.75 by -0.25 and +0.25.
-    assert error == pytest.approx([0.0, np.sqrt(2 * 0.25**2 * 2) / 8 / 2.5])
-
-
-def test_gaps_belong_to_the_batch_and_to_the_energy_of_their_end() -> None:
-    met, wall = "ball_piston", "ball_wall"
-    orbit = {
-        "time": np.arange(1.0, 17.0),
-        "event": np.array([met, wall] * 8),
-        "piston_energy_before": np.where(np.arange(16) % 4 == 0, 0.1, 0.3),
-    }
-    gaps = rates.batches_of_gaps(orbit, rates.Kind("ball_piston", np.nan, 0, 0.5, 1))
-    assert [batch.tolist() for batch in gaps] == [[1.0]] + [[2.0]] * 7
-    near = rates.batches_of_gaps(orbit, rates.Kind("conditional", 0.3, 0.2, 0.4, 1))
-    assert [batch.tolist() for batch in near] == [[], [2.0]] * 4
 
 
 def test_merged_bins_keep_the_probability() -> None:
@@ -378,6 +355,27 @@ def test_a_folder_that_cannot_be_made_is_named(
     file.touch()
     assert command.main(["cell", "--out", str(file)]) == 2
     assert f"--out: cannot write {file}: File exists" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "script,text",
+    [("", "method_comparison: not found beside"), ("echo no room >&2; exit 1", "no room")],
+)
+def test_a_program_that_is_missing_or_fails_is_an_error(
+    script: str,
+    text: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setenv("BALLPISTON_PROGRAM", str(tmp_path / "ballpiston"))
+    monkeypatch.setenv("PATH", "/no/such/folder")
+    if script:
+        program = tmp_path / "method_comparison"
+        program.write_text(f"#!/bin/sh\n{script}\n")
+        program.chmod(0o700)
+    assert command.main(["speed-accuracy", "--out", str(tmp_path)]) == 4
+    assert text in capfd.readouterr().err
 
 
 # The client's functions that figures use

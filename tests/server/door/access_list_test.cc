@@ -69,17 +69,6 @@ TEST(AccessList, AnEntryIsRefusedFromItsTimeOfExpiryOn) {
   EXPECT_THAT(list.OfToken("date", kNoon + absl::Hours(12)), IsRefusedAs("CREDENTIALS_EXPIRED"));
 }
 
-TEST(AccessList, AFormattedEntryIsReadBack) {
-  for (const absl::Time expires : {kNoon, absl::InfiniteFuture()}) {
-    const AccessEntry entry = {Sha256("one"), {"alice", Role::kSubmit}, expires};
-    ASSERT_OK_AND_ASSIGN(const auto read, ParseAccessEntry(FormatAccessEntry(entry)));
-    EXPECT_EQ(read->hash, entry.hash);
-    EXPECT_EQ(read->principal.name, entry.principal.name);
-    EXPECT_EQ(read->principal.role, entry.principal.role);
-    EXPECT_EQ(read->expires, entry.expires);
-  }
-}
-
 // A token at every place of a line.
 TEST(AccessList, ErrorsNameTheLineAndDoNotQuoteIt) {
   const std::string secret = "hunter2hunter2";

@@ -110,19 +110,6 @@ class SecureServer : public ::testing::Test {
   RunningServer server_{Secure(files_)};
 };
 
-TEST_F(SecureServer, AnAccessFileIsReadAgainWhileAConnectionLives) {
-  const auto channel = Channel();
-  ASSERT_OK(List(channel, kAlice));
-  files_.WriteAccessFile("");
-  EXPECT_OK(List(channel, kAlice));  // the server has not read the file again yet
-  ASSERT_OK(Reload());
-  EXPECT_EQ(ReasonOf(List(channel, kAlice)), "CREDENTIALS_INVALID");
-  files_.WriteAccessFile(LaboratoryTokens());
-  ASSERT_OK(Reload());
-  EXPECT_OK(List(channel, kAlice));
-  EXPECT_EQ(channel->GetState(false), GRPC_CHANNEL_READY);
-}
-
 TEST_F(SecureServer, AnInvalidAccessFileKeepsThePreviousOne) {
   const auto channel = Channel();
   files_.WriteAccessFile("nonsense " + std::string(kBob) + "\n");

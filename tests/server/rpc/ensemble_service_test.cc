@@ -93,21 +93,6 @@ std::vector<std::string> NamesOf(const v1::ListEnsembleJobsResponse& page) {
   return names;
 }
 
-TEST(EnsembleService, JobsAreListedNewestFirstInPages) {
-  RunningServer server;
-  std::vector<std::string> names, listed;
-  for (int i = 0; i < 5; ++i) names.insert(names.begin(), server.Submit(Equilibrium(1, 2)));
-  std::vector<int> sizes;
-  v1::ListEnsembleJobsRequest request;
-  request.set_page_size(2);
-  for (const auto& page : server.Pages(request)) {
-    for (const std::string& name : NamesOf(page)) listed.push_back(name);
-    sizes.push_back(page.jobs_size());
-  }
-  EXPECT_EQ(listed, names);
-  EXPECT_THAT(sizes, ElementsAre(2, 2, 1));
-}
-
 TEST(EnsembleService, PagesOfLargeJobsStayBelowTwoMebibytes) {
   Gate gate;
   RunningServer server({.factory = GatedExperiments(gate)});
@@ -157,25 +142,6 @@ TEST(EnsembleService, APageTokenIsValidOnlyWithItsFilters) {
 }
 
 // ---- Results ----
-
-TEST(EnsembleService, ResultsComeInGridOrderInPages) {
-  RunningServer server;
-  const std::string name = server.Succeeded(Equilibrium(25, 3));
-  v1::ListResultsRequest request;
-  request.set_parent(name);
-  request.set_page_size(10);
-  std::vector<int> sizes;
-  int next = 0;
-  for (const auto& page : server.Pages(request)) {
-    for (const auto& point : page.results()) {
-      EXPECT_EQ(point.index(), next++);
-      EXPECT_EQ(point.name(), absl::StrCat(name, "/results/", point.index()));
-      EXPECT_EQ(point.parameters().delta(), 0.1 + 1e-6 * point.index());
-    }
-    sizes.push_back(page.results_size());
-  }
-  EXPECT_THAT(sizes, ElementsAre(10, 10, 5));
-}
 
 TEST(EnsembleService, AnUnfinishedPointIsReadOnRequestOnly) {
   Gate gate;

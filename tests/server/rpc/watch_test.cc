@@ -143,18 +143,5 @@ TEST_F(WatchTest, ASlowReaderSkipsStatesOfUnfinishedPoints) {
   EXPECT_LT(messages, 10'000);
 }
 
-// ---- ends ----
-
-TEST_F(WatchTest, AStoppingServerEndsWatchesWithUnavailable) {
-  RunningServer& server = Start(5);
-  const std::string name = server.Submit(Equilibrium(1, 50));
-  WatchStream stream(server, name);
-  ASSERT_TRUE(stream.Next());
-  std::thread stop([&] { server.Shutdown(kUnreachedLimit); });
-  const grpc::Status status = stream.End();
-  stop.join();
-  EXPECT_THAT(status, IsError(grpc::StatusCode::UNAVAILABLE, "SHUTTING_DOWN"));
-}
-
 }  // namespace
 }  // namespace ballpiston::server
