@@ -1,6 +1,7 @@
 #include "server/worker/worker.h"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -8,9 +9,11 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "core/ensemble/block_run.h"
 #include "core/ensemble/experiment_kind.h"
+#include "core/ensemble/point_fold.h"
+#include "server/processor_time.h"
 #include "server/status/failpoint.h"
-#include "server/worker/lease_runner.h"
 
 namespace ballpiston::server {
 namespace {
@@ -26,8 +29,9 @@ Clock::duration InTicks(double seconds) {
   return std::chrono::duration_cast<Clock::duration>(Seconds(seconds));
 }
 
-// Computes one lease that the worker has taken.
-class LeaseWork : private ChunkReceiver {
+// Computes one lease that the worker has taken, and leaves its chunks in the lease's file. A lease
+// that begins with chunk 0 ends when its complete chunks reach the tolerance of its experiment.
+class LeaseWork : private BlockQueue {
  public:
   LeaseWork(SharedFiles& files, const WorkerOptions& options, const WorkerHost& host,
             LeaseFileName name, const LeaseFile& file)
@@ -37,27 +41,49 @@ class LeaseWork : private ChunkReceiver {
         name_(std::move(name)),
         lease_(file.lease),
         between_touches_(InTicks(file.touch_seconds)),
-        last_touch_(host.now()) {}
+        last_touch_(host.now()),
+        chunks_(lease_.experiment->plan(), lease_.start, lease_.end, lease_.groups) {
+    if (lease_.start.chunk == 0) judge_.emplace(*lease_.experiment);
+  }
 
   absl::Status Run() {
     CrashForSeed(lease_.spec->seed);
-    const bool is_finished = RunLease(lease_, stop_.get_token(), *this);
+    const std::unique_ptr<EngineRun> run = lease_.experiment->StartRun(*this);
+    while (!IsFinished() && !stop_.stop_requested()) run->Advance();
     if (is_lost_) return absl::OkStatus();
-    const Outcome outcome = is_finished ? Outcome::kFinished : Outcome::kReturned;
+    const Outcome outcome = IsFinished() ? Outcome::kFinished : Outcome::kReturned;
     absl::Status left = Retried([this] { return LeaveChunks(); });
     if (left.ok()) left = Retried([&] { return files_.Move(name_.Taken(), name_.Done(outcome)); });
     return absl::IsNotFound(left) ? absl::OkStatus() : left;
   }
 
  private:
-  void ChunkDone(ChunkResult chunk) override {
-    report_.chunks.push_back(std::move(chunk));
-    if (host_.end() != EndOfWork::kNotYet) stop_.request_stop();
+  std::optional<Block> Next() override {
+    return HasReachedItsTolerance() ? std::nullopt : chunks_.NextBlock();
   }
 
-  void Worked(double seconds) override {
-    report_.seconds += seconds;
+  void Done(const Block& block, BlockResult result) override {
+    for (ChunkResult& chunk : chunks_.Add(block, std::move(result))) {
+      if (HasReachedItsTolerance()) return;
+      if (judge_) judge_->Add(chunk);
+      report_.chunks.push_back(std::move(chunk));
+      if (host_.end() != EndOfWork::kNotYet) stop_.request_stop();
+      TouchIfDue();
+    }
+  }
+
+  bool Pause() override {
     if (host_.end() == EndOfWork::kNow) stop_.request_stop();
+    TouchIfDue();
+    return HasReachedItsTolerance() || stop_.stop_requested();
+  }
+
+  std::stop_token stop() const override { return stop_.get_token(); }
+
+  bool HasReachedItsTolerance() const { return judge_ && judge_->finished(); }
+  bool IsFinished() const { return chunks_.finished() || HasReachedItsTolerance(); }
+
+  void TouchIfDue() {
     if (is_lost_ || host_.now() - last_touch_ < between_touches_) return;
     last_touch_ = host_.now();
     const absl::Status touched = LeaveChunks(true);
@@ -71,8 +97,11 @@ class LeaseWork : private ChunkReceiver {
     if (report_.chunks.empty()) {
       return touches ? files_.Touch(name_.Taken()) : absl::OkStatus();
     }
+    report_.seconds = ThreadSeconds() - reported_seconds_;
     absl::Status left = files_.Append(name_.Taken(), BytesOf(report_));
-    if (left.ok()) report_ = {};
+    if (!left.ok()) return left;
+    reported_seconds_ += report_.seconds;
+    report_.chunks.clear();
     return left;
   }
 
@@ -98,7 +127,10 @@ class LeaseWork : private ChunkReceiver {
   const Clock::duration between_touches_;
   Clock::time_point last_touch_;
   std::stop_source stop_;
-  LeaseReport report_;  // not in the file yet
+  ChunkFold chunks_;
+  std::optional<PointFold> judge_;             // of a lease that begins with chunk 0
+  LeaseReport report_;                         // not in the file yet
+  double reported_seconds_ = ThreadSeconds();  // the thread's processor time that is in the file
   bool is_lost_ = false;
 };
 

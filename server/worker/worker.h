@@ -3,7 +3,9 @@
 //
 // A worker knows that a lease is still its own because its file is there. If the server has taken
 // the file away, the worker drops the lease at the next touch. A worker that has to end gives its
-// lease back.
+// lease back. Properties, each with a test of its name:
+//   1. ChunksHaveTheBitsOfAWholePoint.  2. StopsAtTheTolerance.
+//   3. LeasesContinueTheTrajectoriesOfASteadyState.
 #pragma once
 
 #include <chrono>

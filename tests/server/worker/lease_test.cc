@@ -1,5 +1,4 @@
-// A lease on its way to a worker and back: its file, its record, and the chunks that the worker
-// computes.
+// A lease on its way to a worker and back: its file and its record.
 #include "core/engine_version.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_fold.h"
@@ -9,7 +8,6 @@
 #include "server/convert/fold_record.h"
 #include "server/worker/lease_file.h"
 #include "server/worker/lease_record.h"
-#include "server/worker/lease_runner.h"
 #include "tests/server/worker/sample_leases.h"
 #include "tests/support/preamble.h"
 
@@ -202,80 +200,6 @@ TEST(LeaseRecord, AnotherEngineVersionIsRefusedWithBothVersions) {
   EXPECT_THAT(LeaseOfRecord(record),
               StatusIs(absl::StatusCode::kUnimplemented,
                        AllOf(HasSubstr("0.0.1"), HasSubstr(kEngineVersion))));
-}
-
-// ---- the chunks ----
-
-// Keeps the chunks and adds up the seconds.
-struct Recorder : ChunkReceiver {
-  void ChunkDone(ChunkResult chunk) override { chunks.push_back(std::move(chunk)); }
-  void Worked(double time) override { seconds += time; }
-
-  std::vector<ChunkResult> chunks;
-  double seconds = 0;
-};
-
-Recorder RunToTheEnd(const Lease& lease) {
-  Recorder recorder;
-  EXPECT_TRUE(RunLease(lease, std::stop_token(), recorder));
-  return recorder;
-}
-
-TEST(LeaseRunner, ChunksHaveTheBitsOfAWholePoint) {
-  for (const EnsembleSpec& spec : EverySampledSpec()) {
-    SCOPED_TRACE(NameOf(spec));
-    const Lease lease = LeaseOf(spec);
-    const Recorder computed = RunToTheEnd(lease);
-    EXPECT_TRUE(AreEqual(computed.chunks, AllChunks(*lease.experiment)));
-    EXPECT_GT(computed.seconds, 0);
-  }
-}
-
-// The merged block has a mark, which a computation of all blocks would not give.
-TEST(LeaseRunner, ComputesOnlyTheRestOfAChunkThatHasBlocks) {
-  constexpr uint64_t kMark = 1000;
-  Lease lease = LeaseOf(SpecOf(kFirstHit, Model::kBilliard, 100'000), 1, 2);
-  ChunkResult expected = AllChunks(*lease.experiment)[1];
-  expected.result.health.escapes += kMark;
-  lease.start.blocks = 1;
-  lease.start.merged = RunBlock(*lease.experiment, lease.experiment->plan().BlockAt(1, 0));
-  lease.start.merged.health.escapes += kMark;
-  EXPECT_TRUE(AreEqual(RunToTheEnd(lease).chunks, {expected}));
-}
-
-TEST(LeaseRunner, StopsAtTheTolerance) {
-  EnsembleSpec spec = SpecOf(kFirstHit, Model::kBilliard);
-  spec.target = {.tolerance = 0.003};
-  const Lease lease = LeaseOf(spec);
-  const Recorder computed = RunToTheEnd(lease);
-  EXPECT_GT(computed.chunks.size(), 1u);
-  PointFold fold(*lease.experiment);
-  for (const ChunkResult& chunk : computed.chunks) {
-    EXPECT_FALSE(fold.finished());
-    fold.Add(chunk);
-  }
-  EXPECT_TRUE(fold.finished());
-  EXPECT_EQ(fold.Merged(), FoldPoint(*lease.experiment));
-}
-
-// Each lease has a chunk of one group, and travels as a message. The next chunk of the group starts
-// with what the lease has reported.
-TEST(LeaseRunner, LeasesContinueTheTrajectoriesOfASteadyState) {
-  for (const Model model : kGasConduction.models) {
-    const EnsembleSpec spec = SpecOf(kGasConduction, model, 600);
-    const auto experiment = PointExperiment::Create(spec, 0);
-    const uint64_t groups = experiment->plan().groups();
-    PointFold fold(*experiment);
-    for (uint64_t chunk = 0; chunk < experiment->plan().chunks(); ++chunk) {
-      Lease lease = LeaseOf(spec, chunk, chunk + 1);
-      lease.groups.resize(groups);
-      lease.groups[chunk % groups] = fold.StartOf(chunk);
-      ASSERT_OK_AND_ASSIGN(const LeaseFile received, LeaseOfRecord(RecordOf(lease)));
-      fold.Add(RunToTheEnd(received.lease).chunks.at(0));
-    }
-    EXPECT_TRUE(fold.finished());
-    EXPECT_EQ(fold.Merged(), FoldPoint(*experiment)) << Name(model);
-  }
 }
 
 }  // namespace

@@ -84,16 +84,17 @@ std::vector<ChunkResult> AllChunks(const PointExperiment& experiment) {
   return chunks;
 }
 
-std::vector<ChunkResult> ChunksIn(absl::string_view file) {
+LeaseReport ReportsIn(absl::string_view file) {
   EXPECT_OK(TakeLease(file));
-  std::vector<ChunkResult> chunks;
+  LeaseReport all;
   while (!file.empty()) {
     const absl::StatusOr<LeaseReport> report = TakeReport(file);
     EXPECT_OK(report);
     if (!report.ok()) break;
-    chunks.insert(chunks.end(), report->chunks.begin(), report->chunks.end());
+    all.chunks.insert(all.chunks.end(), report->chunks.begin(), report->chunks.end());
+    all.seconds += report->seconds;
   }
-  return chunks;
+  return all;
 }
 
 // As records, because -0 == 0.

@@ -28,8 +28,8 @@ storage::Lease RecordOf(const Lease& lease, double touch_seconds = 20);
 // All chunks of the plan, computed block by block.
 std::vector<ChunkResult> AllChunks(const PointExperiment& experiment);
 
-// The chunks in the file of a lease, after the lease.
-std::vector<ChunkResult> ChunksIn(absl::string_view file);
+// The reports in the file of a lease, together.
+LeaseReport ReportsIn(absl::string_view file);
 
 // Whether these are the same chunks, bit for bit.
 bool AreEqual(const std::vector<ChunkResult>& a, const std::vector<ChunkResult>& b);

@@ -99,7 +99,7 @@ TEST_F(WorkerProgramTest, ASignalledWorkerGivesItsLeaseBackWithItsChunks) {
       worker.Signal(signal);
       ASSERT_THAT(worker.Wait(), ExitsWith(0));
       const std::string file = shared_ + "/done/" + NamesIn(shared_ + "/done").at(0);
-      const std::vector<ChunkResult> chunks = ChunksIn(Contents(file));
+      const std::vector<ChunkResult> chunks = ReportsIn(Contents(file)).chunks;
       const bool is_finished = Done() == std::vector<std::string>{"a.finished"};
       std::filesystem::remove(file);
       if (is_finished) continue;

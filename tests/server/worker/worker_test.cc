@@ -1,5 +1,6 @@
 #include "server/worker/worker.h"
 
+#include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "tests/server/worker/fake_files.h"
 #include "tests/server/worker/sample_leases.h"
@@ -35,6 +36,13 @@ class WorkerTest : public testing::Test {
                                         const std::string&) { begun_.push_back(from); }});
   }
 
+  // The chunks that a worker leaves of the lease.
+  std::vector<ChunkResult> Compute(const Lease& lease) {
+    Lay("a", lease);
+    EXPECT_OK(Run());
+    return Computed("done/a.me.finished");
+  }
+
   static Clock::duration InTicks(double seconds) {
     return std::chrono::duration_cast<Clock::duration>(duration<double>(seconds));
   }
@@ -46,7 +54,9 @@ class WorkerTest : public testing::Test {
   }
 
   std::vector<ChunkResult> Computed(const std::string& path) const {
-    return ChunksIn(files_.files.at(path).bytes);
+    const LeaseReport report = ReportsIn(files_.files.at(path).bytes);
+    EXPECT_GT(report.seconds, 0);
+    return report.chunks;
   }
 
   // Calls `call` before each operation of this name. If the result is not OK, the operation fails.
@@ -166,6 +176,62 @@ TEST_F(WorkerTest, DamagedAndForeignFilesAreGivenBack) {
 TEST_F(WorkerTest, AFolderThatCannotBeReadIsReportedWhenTheWorkerEnds) {
   files_.before = [](const char*, const std::string&) { return absl::UnavailableError("gone"); };
   EXPECT_THAT(Run(), StatusIs(absl::StatusCode::kUnavailable, HasSubstr("gone")));
+}
+
+// ---- the chunks of a lease ----
+
+TEST_F(WorkerTest, ChunksHaveTheBitsOfAWholePoint) {
+  for (const EnsembleSpec& spec : EverySampledSpec()) {
+    SCOPED_TRACE(NameOf(spec));
+    const Lease lease = LeaseOf(spec);
+    EXPECT_TRUE(AreEqual(Compute(lease), AllChunks(*lease.experiment)));
+  }
+}
+
+// The merged block has a mark, which a computation of all blocks would not give.
+TEST_F(WorkerTest, ComputesOnlyTheRestOfAChunkThatHasBlocks) {
+  constexpr uint64_t kMark = 1000;
+  Lease lease = LeaseOf(*lease_.spec, 1, 2);
+  ChunkResult expected = chunks_[1];
+  expected.result.health.escapes += kMark;
+  lease.start.blocks = 1;
+  lease.start.merged = RunBlock(*lease.experiment, lease.experiment->plan().BlockAt(1, 0));
+  lease.start.merged.health.escapes += kMark;
+  EXPECT_TRUE(AreEqual(Compute(lease), {expected}));
+}
+
+TEST_F(WorkerTest, StopsAtTheTolerance) {
+  EnsembleSpec spec = SpecOf(kFirstHit, Model::kBilliard);
+  spec.target = {.tolerance = 0.003};
+  const Lease lease = LeaseOf(spec);
+  const std::vector<ChunkResult> chunks = Compute(lease);
+  EXPECT_GT(chunks.size(), 1u);
+  PointFold fold(*lease.experiment);
+  for (const ChunkResult& chunk : chunks) {
+    EXPECT_FALSE(fold.finished());
+    fold.Add(chunk);
+  }
+  EXPECT_TRUE(fold.finished());
+  EXPECT_EQ(fold.Merged(), FoldPoint(*lease.experiment));
+}
+
+// Each lease has a chunk of one group. The next chunk of the group starts with what the worker has
+// left.
+TEST_F(WorkerTest, LeasesContinueTheTrajectoriesOfASteadyState) {
+  for (const Model model : kGasConduction.models) {
+    const EnsembleSpec spec = SpecOf(kGasConduction, model, 600);
+    const auto experiment = PointExperiment::Create(spec, 0);
+    const uint64_t groups = experiment->plan().groups();
+    PointFold fold(*experiment);
+    for (uint64_t chunk = 0; chunk < experiment->plan().chunks(); ++chunk) {
+      Lease lease = LeaseOf(spec, chunk, chunk + 1);
+      lease.groups.resize(groups);
+      lease.groups[chunk % groups] = fold.StartOf(chunk);
+      fold.Add(Compute(lease).at(0));
+    }
+    EXPECT_TRUE(fold.finished());
+    EXPECT_EQ(fold.Merged(), FoldPoint(*experiment)) << Name(model);
+  }
 }
 
 }  // namespace
