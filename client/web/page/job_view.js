@@ -18,6 +18,7 @@
     POINT_COLUMNS,
     pointCells,
     GridChart,
+    seriesLines,
     isNumber,
     countText,
     words,
@@ -54,30 +55,16 @@
         }))
         .filter((step) => isNumber(step.value));
       if (steps.length < 2) return null;
-      const x = steps.map((step) => step.samples);
-      const lines = [
-        {
-          label: 'value',
-          kind: 'measured',
-          colour: 0,
-          x,
-          y: steps.map((step) => step.value),
-          error: steps.map((step) => step.standard_error),
-        },
-      ];
-      for (const [field, kind, label] of [
-        ['exact', 'exact', 'exact'],
-        ['limit', 'limit', 'Markov limit'],
-      ]) {
-        if (!isNumber(steps.at(-1)[field])) continue;
-        lines.push({label, kind, colour: 1, x, y: x.map(() => steps.at(-1)[field])});
-      }
+      const {exact, limit, samples: most} = steps.at(-1);
+      const places = steps.map(({samples: x, value, standard_error: error}) => {
+        return {x, value, error, exact, limit};
+      });
       return {
         title: `Convergence of ${words(name)}`,
         xLabel: 'samples',
         yLabel: 'value',
-        lines,
-        logX: x.at(-1) > 30 * x[0],
+        lines: seriesLines(places),
+        logX: most > 30 * steps[0].samples,
       };
     }
   }

@@ -6,6 +6,7 @@
     element,
     stream,
     keepTrying,
+    until,
     OrbitMotion,
     OrbitPicture,
     Chart,
@@ -73,6 +74,7 @@
   class OrbitView {
     constructor(main, signal) {
       this.signal = signal;
+      this.played = new EventTarget(); // has the event 'advance' when events were played
       this.speed = SPEEDS.indexOf(1);
       this.isPlaying = !matchMedia('(prefers-reduced-motion: reduce)').matches;
       this.form = element(
@@ -237,10 +239,7 @@
 
     async roomFor(signal) {
       while (this.motion.events.length > MOST_AHEAD && !signal.aborted) {
-        await new Promise((resolve) => {
-          this.onRoom = resolve;
-          signal.addEventListener('abort', resolve);
-        });
+        await until(this.played, 'advance', signal);
       }
     }
 
@@ -293,7 +292,7 @@
           .map((event) => element('li', {}, eventText(event))),
       );
       while (this.list.childElementCount > MOST_LISTED) this.list.lastChild.remove();
-      this.onRoom?.();
+      this.played.dispatchEvent(new Event('advance'));
     }
 
     // Stores the mean energies after an exchange, for the chart.

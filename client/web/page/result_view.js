@@ -8,6 +8,7 @@
     table,
     facts,
     Chart,
+    seriesLines,
     isNumber,
     valueText,
     errorText,
@@ -227,31 +228,17 @@
 
   function curveChart(curve) {
     const isProfile = curve.points.some((at) => isNumber(at.position));
-    const x = curve.points.map((at) => (isProfile ? at.position : at.time) ?? 0);
-    const lines = [
-      {
-        label: 'measured',
-        kind: 'measured',
-        colour: 0,
-        x,
-        y: curve.points.map((at) => at.value),
-        error: curve.points.map((at) => at.standard_error),
-      },
-    ];
-    if (curve.points.some((at) => isNumber(at.limit))) {
-      lines.push({
-        label: 'Markov limit',
-        kind: 'limit',
-        colour: 1,
-        x,
-        y: curve.points.map((at) => at.limit),
-      });
-    }
+    const places = curve.points.map(({position, time, value, standard_error: error, limit}) => ({
+      x: (isProfile ? position : time) ?? 0,
+      value,
+      error,
+      limit,
+    }));
     return {
       title: CURVE_LABELS[curve.name] ?? words(curve.name),
       xLabel: isProfile ? 'position (cells)' : 'time (cells over unit speed)',
       yLabel: 'value',
-      lines,
+      lines: seriesLines(places),
     };
   }
 
