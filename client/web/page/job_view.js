@@ -7,7 +7,7 @@
   const {
     element,
     table,
-    tableRow,
+    LiveRows,
     call,
     stream,
     keepTrying,
@@ -216,11 +216,10 @@
     constructor(onChoose) {
       this.onChoose = onChoose;
       this.count = ROWS;
-      this.rows = new Map();
       this.table = table('Points, with their first estimate', POINT_COLUMNS, [], {
         class: 'rows points',
       });
-      this.body = this.table.querySelector('tbody');
+      this.rows = new LiveRows(this.table, POINT_COLUMNS);
       this.more = element(
         'button',
         {
@@ -239,27 +238,17 @@
     // Shows rows for the first `count` points.
     show(points, finished, shown) {
       Object.assign(this, {points, finished, shown});
-      let next = this.body.firstChild;
+      let next = this.rows.body.firstChild;
       for (const point of points.slice(0, this.count)) {
-        const row = this.row(point, finished.has(point.index), next);
-        next = row.nextSibling;
+        const isFinished = finished.has(point.index);
+        const seen = `${point.samples} ${isFinished}`;
+        const cells = () => this.cells(point, isFinished);
+        next = this.rows.put(point.index, seen, cells, next).nextSibling;
       }
       this.more.hidden = points.length <= this.count;
       const [shownCount, count] = [this.count, points.length].map(countText);
       this.more.textContent = `More points (${shownCount} of ${count} are shown)`;
       this.mark(shown);
-    }
-
-    row(point, isFinished, next) {
-      const known = this.rows.get(point.index);
-      if (known?.samples === point.samples && known.isFinished === isFinished) return known.row;
-      const row = tableRow(POINT_COLUMNS, this.cells(point, isFinished));
-      const hadFocus = known?.row.contains(document.activeElement);
-      if (known) known.row.replaceWith(row);
-      else this.body.insertBefore(row, next);
-      if (hadFocus) row.querySelector('button').focus();
-      this.rows.set(point.index, {row, samples: point.samples, isFinished});
-      return row;
     }
 
     cells(point, isFinished) {
@@ -273,7 +262,7 @@
 
     mark(shown) {
       this.marked?.removeAttribute('aria-current');
-      this.marked = this.rows.get(shown)?.row;
+      this.marked = this.rows.rows.get(shown)?.row;
       this.marked?.setAttribute('aria-current', 'true');
     }
   }
