@@ -214,13 +214,11 @@ class Job:
         Raises:
             Unavailable: the server did not answer for two minutes. The job goes on.
         """
-        specification = self.message.spec
         async for update in watch_updates(self._connection, self.name):
             if isinstance(update, Update):
                 yield update
-                continue
-            self.message = update
-            self.message.spec.CopyFrom(specification)  # a watch leaves out the grid
+            else:
+                self._end(update)
 
     async def result_async(self) -> Result:
         """`watch` for an event loop, without a bar.
@@ -355,12 +353,15 @@ class Job:
             raise
 
     def _follow(self, screen: Progress) -> None:
-        specification = self.message.spec
         try:
-            self.message = watch_job(self._connection, self.name, screen)
+            self._end(watch_job(self._connection, self.name, screen))
         finally:
             screen.close()
-        self.message.spec.CopyFrom(specification)  # a watch leaves out the grid
+
+    def _end(self, job: Any) -> None:
+        """Takes the last message of a watch, which leaves out the grid."""
+        job.spec.CopyFrom(self.message.spec)
+        self.message = job
 
     def _raise_unless_succeeded(self) -> None:
         state = self._last_state()
