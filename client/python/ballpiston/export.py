@@ -12,8 +12,9 @@ from pathlib import Path
 
 from ballpiston.client import connect
 from ballpiston.errors import NotFound
-from ballpiston.estimates_table import estimates_table, write_table
+from ballpiston.estimates_table import estimates_table
 from ballpiston.program import run_program
+from ballpiston.table_file import write_table
 
 _ENDINGS = (".csv", ".npz", ".parquet")
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union, overload
@@ -17,6 +16,7 @@ from ballpiston.histogram import Histogram
 from ballpiston.point import Point, unknown_estimate
 from ballpiston.result_table import html_table, text_table
 from ballpiston.spelling import spelling
+from ballpiston.table_file import write_table
 from ballpiston.v1 import ensemble_pb2, spec_pb2
 
 if TYPE_CHECKING:
@@ -187,9 +187,7 @@ class Result:
         if path.suffix == ".json":
             write_atomically(path, document_of(self.job, self.messages).encode())
         elif path.suffix == ".npz":
-            buffer = io.BytesIO()
-            np.savez_compressed(buffer, **self.arrays())
-            write_atomically(path, buffer.getvalue())
+            write_table(path, self.arrays())
         else:
             raise ValueError(f"{path}: the name of the file has to end with .json or .npz")
 

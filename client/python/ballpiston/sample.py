@@ -10,11 +10,9 @@ import sys
 from argparse import ArgumentParser
 from pathlib import Path
 
-import numpy as np
-
 from ballpiston.client import connect
-from ballpiston.document import whole_file
 from ballpiston.program import run_program
+from ballpiston.table_file import write_table
 
 
 def _main(arguments: list[str]) -> list[Path]:
@@ -22,14 +20,9 @@ def _main(arguments: list[str]) -> list[Path]:
     parser.add_argument("specification", type=json.loads)
     parser.add_argument("--out", required=True, type=Path)
     options = parser.parse_args(arguments)
-    with connect() as client, whole_file(options.out) as part:
-        collisions = client.sample(options.specification)
-        if options.out.suffix == ".npz":
-            records = collisions.all()
-            with part.open("wb") as file:
-                np.savez_compressed(file, **{n: records[n] for n in records.dtype.names or ()})
-        else:
-            collisions.to_parquet(part)
+    with connect() as client:
+        records = client.sample(options.specification).all()
+    write_table(options.out, {name: records[name] for name in records.dtype.names or ()})
     return [options.out]
 
 

@@ -19,10 +19,12 @@ from typing import Any, NoReturn
 import ballpiston
 from ballpiston.document import write_atomically
 from ballpiston.figures import names
-from ballpiston.figures.parts import style, tables
+from ballpiston.figures.parts import style
+from ballpiston.figures.parts.tables import Tables
 from ballpiston.parameter_lists import number_list, whole_number
 from ballpiston.program import run_program
 from ballpiston.suggestion import did_you_mean
+from ballpiston.table_file import write_table
 
 # What --help says about the keywords of `measure`.
 _VARIABLES = {
@@ -182,14 +184,14 @@ def _value(flag: str, text: str, kind: str) -> Any:
 
 
 def _written(
-    options: Namespace, data: tables.Tables, figure: Any, keywords: dict[str, Any]
+    options: Namespace, data: Tables, figure: Any, keywords: dict[str, Any]
 ) -> list[Path]:
     """The pictures last: where they are, the data are too."""
     comment = f"ballpiston {ballpiston.__version__}: figure {options.name} {json.dumps(keywords)}"
     paths = []
     for name, table in data.items():
         paths.append(options.out / f"{name}.csv")
-        tables.write(paths[-1], table, comment)
+        write_table(paths[-1], table, comment)
     for ending in ("png", "svg"):
         paths.append(options.out / f"{options.name}.{ending}")
         style.save(figure, paths[-1])

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable, Iterable, Mapping
-from pathlib import Path
 from typing import Any, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from ballpiston.closed_forms import ClosedForms
-from ballpiston.document import write_atomically
 from ballpiston.point import Point
 from ballpiston.result import Result
+from ballpiston.table_file import Table as Table
 
 FloatArray = npt.NDArray[np.float64]
-Table = dict[str, npt.NDArray[Any]]
 Tables = dict[str, Table]
 
 _ESTIMATE = ("standard_error", "exact", "noise_floor", "limit")
@@ -109,25 +105,6 @@ def closed_forms(forms: ClosedForms, *names: str) -> Table:
     columns = [forms[name] for name in names]
     shape = np.broadcast_shapes(*(_as_matrix(column).shape for column in columns))
     return {n: np.broadcast_to(_as_matrix(c), shape).ravel() for n, c in zip(names, columns)}
-
-
-def write(path: Path, whole: Table, comment: str = "") -> None:
-    """As CSV, with all digits; NaN is an empty cell. The comment is a line that begins with #."""
-    text = io.StringIO()
-    if comment:
-        text.write(f"# {comment}\n")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(whole)
-    for row in zip(*(column.tolist() for column in whole.values())):
-        writer.writerow(map(_cell, row))
-    write_atomically(path, text.getvalue().encode())
-
-
-def _cell(value: Any) -> Any:
-    """64 rather than 64.0."""
-    if not isinstance(value, float):
-        return value
-    return "" if np.isnan(value) else repr(value).removesuffix(".0")
 
 
 def _as_matrix(column: FloatArray) -> FloatArray:
