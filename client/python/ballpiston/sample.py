@@ -1,6 +1,7 @@
 """ballpiston sample EXPERIMENT ... --out FILE: python3 -m ballpiston.sample SPECIFICATION --out FILE
 
-Writes the collisions of a point's samples to FILE, .npz (one array a column) or .parquet.
+Writes the collisions of a point's samples to FILE, .npz (one array a column) or .parquet. The command
+line starts this when it has checked FILE and the modules that it needs.
 """
 
 from __future__ import annotations
@@ -27,7 +28,4 @@ def _main(arguments: list[str]) -> list[Path]:
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(run_program(_main, sys.argv[1:]))
-    except ImportError as error:
-        sys.exit(f"ballpiston: --out FILE.parquet needs pandas and pyarrow: {error}")
+    sys.exit(run_program(_main, sys.argv[1:]))
