@@ -66,7 +66,6 @@ def _rows(job: Job) -> Iterator[dict[str, Any]]:
     }
     for point in result:
         of_point = {"index": point.index, "model": point.model, "samples": point.message.samples}
-        for estimate in point.message.estimates:
-            fields = {f: getattr(estimate, f) for f in ESTIMATE_FIELDS if estimate.HasField(f)}
-            value = {"name": estimate.name, "value": estimate.value}
-            yield {**of_job, **point.parameters, **of_point, **value, **fields}
+        for estimate in point.estimates.values():
+            known = {name: value for name, value in vars(estimate).items() if value is not None}
+            yield of_job | point.parameters | of_point | known

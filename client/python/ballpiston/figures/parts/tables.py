@@ -16,7 +16,7 @@ from ballpiston.table_file import Table as Table
 FloatArray = npt.NDArray[np.float64]
 Tables = dict[str, Table]
 
-_ESTIMATE = ("standard_error", "exact", "noise_floor", "limit")
+_ESTIMATE = ("name", "value", "standard_error", "exact", "noise_floor", "limit")
 
 
 def table(rows: Iterable[Mapping[str, Any]], names: Iterable[str] = ()) -> Table:
@@ -50,13 +50,12 @@ def distinct(column: Iterable[Any]) -> list[Any]:
 def estimates(result: Result) -> Table:
     """One row for each estimate of each point, with the point's parameters."""
 
-    def of(point: Point) -> list[Table]:
-        found = point.estimates.values()
-        named = [{"name": e.name, "value": e.value} for e in found]
-        more = [{field: getattr(e, field) for field in _ESTIMATE} for e in found]
-        return [table(a | b for a, b in zip(named, more))]
-
-    return _of_points(result, of)
+    return _of_points(
+        result,
+        lambda point: [
+            table({name: getattr(e, name) for name in _ESTIMATE} for e in point.estimates.values())
+        ],
+    )
 
 
 def curves(result: Result, *names: str) -> Table:
