@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import grpc
+import grpc.aio
 
-from ballpiston.channel import open_async_channel
+from ballpiston.channel import open_channel
 from ballpiston.connection import Connection
 from ballpiston.point import Point
 from ballpiston.progress import fraction_of, progress_in
@@ -48,7 +49,7 @@ async def watch_updates(connection: Connection, name: str) -> AsyncIterator[Upda
     state = "queued"
     while True:
         why = ended_early()
-        async with open_async_channel(connection.address, connection.security) as channel:
+        async with open_channel(connection.address, connection.security, grpc.aio) as channel:
             stub = ensemble_pb2_grpc.EnsembleServiceStub(channel)
             try:
                 async for message in stub.WatchEnsembleJob(

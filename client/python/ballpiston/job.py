@@ -270,12 +270,7 @@ class Job:
 
     def pin(self, pinned: bool = True) -> Job:
         """Keeps its results from expiring; with False they may expire again."""
-        request = ensemble_pb2.UpdateEnsembleJobRequest(
-            job=ensemble_pb2.EnsembleJob(name=self.name, pinned=pinned),
-            update_mask={"paths": ["pinned"]},
-        )
-        self.message = self._call("UpdateEnsembleJob", request)
-        return self
+        return self._update(pinned=pinned)
 
     def label(self, **labels: str | None) -> Job:
         """Sets these labels and keeps the others; None removes a label. Of two changes at the same
@@ -285,13 +280,7 @@ class Job:
             >>> job.label(run="7", who=None)
         """
         kept = {k: v for k, v in (self.refresh().labels | labels).items() if v is not None}
-        check_labels(kept)
-        request = ensemble_pb2.UpdateEnsembleJobRequest(
-            job=ensemble_pb2.EnsembleJob(name=self.name, labels=kept),
-            update_mask={"paths": ["labels"]},
-        )
-        self.message = self._call("UpdateEnsembleJob", request)
-        return self
+        return self._update(labels=check_labels(kept))
 
     def delete(self) -> None:
         """Deletes the job with its results. It is not retried: if the answer was lost
@@ -351,6 +340,14 @@ class Job:
         except ResultsExpired as error:
             error.args = (f"{error}\nTo compute them again: client.run(job.specification)",)
             raise
+
+    def _update(self, **fields: Any) -> Job:
+        request = ensemble_pb2.UpdateEnsembleJobRequest(
+            job=ensemble_pb2.EnsembleJob(name=self.name, **fields),
+            update_mask={"paths": list(fields)},
+        )
+        self.message = self._call("UpdateEnsembleJob", request)
+        return self
 
     def _follow(self, screen: Progress) -> None:
         try:
