@@ -73,7 +73,7 @@ def _draw_path(figure: Figure, axes: Any, ball: Table, at: dict[str, float]) -> 
     outline = cell_outline.outline(at["rho"])
     axes.add_patch(Polygon(outline, fill=False, edgecolor=style.BLACK, linewidth=2, zorder=3))
     x = np.linspace(low, tip, 100)
-    half = cell_outline.half_height(at["rho"], x)
+    half = cell_outline.half_height(at["rho"], tip - x)
     axes.fill_between(x, -half, half, color=style.REACH)
     scale = style.energy_bar(
         figure, axes, 0.5, "ball's energy", orientation="horizontal", shrink=0.6, pad=0.01
