@@ -8,26 +8,58 @@ from __future__ import annotations
 import json
 import sys
 import warnings
-from typing import Any, Protocol
+from typing import Any
 
 from ballpiston.document import json_of
 from ballpiston.number_text import measured_text
 from ballpiston.v1 import ensemble_pb2
 
-_PLAIN_BAR_WIDTH = 20
+_BAR_WIDTH = 20
 
 
-class Bar(Protocol):
-    """One line that is drawn again and again."""
+class Bar:
+    """One line that is drawn again and again, on standard error."""
+
+    def __init__(self) -> None:
+        self._width = 0
 
     def show(self, fraction: float, text: str) -> None:
-        ...
+        marks = int(min(max(fraction, 0.0), 1.0) * _BAR_WIDTH)
+        line = f"[{'#' * marks}{'-' * (_BAR_WIDTH - marks)}] {text}"
+        sys.stderr.write("\r" + line.ljust(self._width))
+        sys.stderr.flush()
+        self._width = len(line)
 
     def note(self, text: str) -> None:
         """A line of its own, above the bar."""
+        sys.stderr.write("\r" + text.ljust(self._width) + "\n")
 
     def close(self) -> None:
-        ...
+        if self._width > 0:
+            sys.stderr.write("\n")
+
+
+class _TqdmBar(Bar):
+    def __init__(self, tqdm: Any) -> None:
+        super().__init__()
+        self._tqdm = tqdm
+        self._bar: Any = None
+
+    def show(self, fraction: float, text: str) -> None:
+        if self._bar is None:
+            shape = "{percentage:3.0f}%|{bar}| {desc} [{elapsed}<{remaining}]"
+            # `initial`: the time left follows from what was done during this watch.
+            self._bar = self._tqdm(total=1.0, initial=fraction, bar_format=shape, file=sys.stderr)
+        self._bar.n = fraction
+        self._bar.set_description_str(text, refresh=False)
+        self._bar.refresh()
+
+    def note(self, text: str) -> None:
+        self._tqdm.write(text, file=sys.stderr)
+
+    def close(self) -> None:
+        if self._bar is not None:
+            self._bar.close()
 
 
 class Progress:
@@ -137,46 +169,5 @@ def _new_bar() -> Bar:
             warnings.simplefilter("ignore")  # tqdm warns if a notebook has no widgets
             from tqdm.auto import tqdm
     except ImportError:
-        return _PlainBar()
+        return Bar()
     return _TqdmBar(tqdm)
-
-
-class _TqdmBar:
-    def __init__(self, tqdm: Any) -> None:
-        self._tqdm = tqdm
-        self._bar: Any = None
-
-    def show(self, fraction: float, text: str) -> None:
-        if self._bar is None:
-            shape = "{percentage:3.0f}%|{bar}| {desc} [{elapsed}<{remaining}]"
-            # `initial`: the time left follows from what was done during this watch.
-            self._bar = self._tqdm(total=1.0, initial=fraction, bar_format=shape, file=sys.stderr)
-        self._bar.n = fraction
-        self._bar.set_description_str(text, refresh=False)
-        self._bar.refresh()
-
-    def note(self, text: str) -> None:
-        self._tqdm.write(text, file=sys.stderr)
-
-    def close(self) -> None:
-        if self._bar is not None:
-            self._bar.close()
-
-
-class _PlainBar:
-    def __init__(self) -> None:
-        self._width = 0
-
-    def show(self, fraction: float, text: str) -> None:
-        marks = int(min(max(fraction, 0.0), 1.0) * _PLAIN_BAR_WIDTH)
-        line = f"[{'#' * marks}{'-' * (_PLAIN_BAR_WIDTH - marks)}] {text}"
-        sys.stderr.write("\r" + line.ljust(self._width))
-        sys.stderr.flush()
-        self._width = len(line)
-
-    def note(self, text: str) -> None:
-        sys.stderr.write("\r" + text.ljust(self._width) + "\n")
-
-    def close(self) -> None:
-        if self._width > 0:
-            sys.stderr.write("\n")
