@@ -396,8 +396,11 @@
   }
 
   // Called after a change of the theme.
-  ballpiston.repaintCharts = () => charts.forEach((chart) => chart.repaint());
+  const repaintCharts = () => charts.forEach((chart) => chart.repaint());
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', repaintCharts);
+
   // Called when the reader leaves a view.
-  ballpiston.removeCharts = () => charts.forEach((chart) => chart.remove());
-  Object.assign(ballpiston, {Chart, seriesLines, styleOf});
+  const removeCharts = () => charts.forEach((chart) => chart.remove());
+
+  Object.assign(ballpiston, {Chart, seriesLines, styleOf, repaintCharts, removeCharts});
 })((globalThis.ballpiston ??= {}));

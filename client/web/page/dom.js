@@ -17,6 +17,10 @@
     return made;
   }
 
+  function button(text, onclick, attributes = {}) {
+    return element('button', {type: 'button', onclick, ...attributes}, text);
+  }
+
   // Roles are explicit, because the style sheet displays rows as grids: some browsers then drop the
   // implied roles.
   // `columns`: [{label, number}]; `rows`: arrays of texts or nodes.
@@ -114,5 +118,5 @@
     return element('label', {class: 'choice'}, element('span', {}, label), select);
   }
 
-  Object.assign(ballpiston, {element, table, LiveRows, facts, choice});
+  Object.assign(ballpiston, {element, button, table, LiveRows, facts, choice});
 })((globalThis.ballpiston ??= {}));

@@ -3,8 +3,7 @@
 (function (ballpiston) {
   'use strict';
 
-  const {element, table, LiveRows, choice, call, keepTrying, pause, timeElement, countText, words} =
-    ballpiston;
+  const {element, button, table, LiveRows, call, keepTrying, pause, countText, words} = ballpiston;
 
   const PAGE = 100;
   const REFRESH = 2000; // ms
@@ -97,7 +96,7 @@
         note ? element('span', {class: 'soft'}, ` ${note}`) : null,
       ),
       progressCell(job),
-      timeElement(job.create_time) ?? '',
+      ballpiston.timeElement(job.create_time) ?? '',
       job.principal ?? '',
     ];
   }
@@ -165,18 +164,14 @@
       const list = table('Jobs, newest first', COLUMNS, [], {class: 'rows jobs'});
       this.rows = new JobRows(list, COLUMNS);
       this.empty = element('p', {hidden: true});
-      this.more = element(
-        'button',
-        {type: 'button', hidden: true, onclick: () => this.appendPage()},
-        'More jobs',
-      );
+      this.more = button('More jobs', () => this.appendPage(), {hidden: true});
       main.append(
         element('h1', {tabindex: '-1'}, 'Jobs'),
         this.status,
         element(
           'div',
           {class: 'choices'},
-          choice(
+          ballpiston.choice(
             'State',
             Object.keys(FILTERS).map((name) => ({value: name, label: name})),
             'all',

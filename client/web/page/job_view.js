@@ -6,6 +6,7 @@
 
   const {
     element,
+    button,
     table,
     LiveRows,
     call,
@@ -166,7 +167,7 @@
       this.state = element('span', {role: 'status'});
       this.why = element('p', {class: 'panel', hidden: true});
       this.notes = element('div');
-      this.ask = element('button', {type: 'button', onclick: onAsk, hidden: true}, 'Submit again');
+      this.ask = button('Submit again', onAsk, {hidden: true});
       this.facts = element('div');
       this.spec = element('div');
       this.element = element(
@@ -220,18 +221,11 @@
         class: 'rows points',
       });
       this.rows = new LiveRows(this.table, POINT_COLUMNS);
-      this.more = element(
-        'button',
-        {
-          type: 'button',
-          hidden: true,
-          onclick: () => {
-            this.count += ROWS;
-            this.show(this.points, this.finished, this.shown);
-          },
-        },
-        'More points',
-      );
+      const showMore = () => {
+        this.count += ROWS;
+        this.show(this.points, this.finished, this.shown);
+      };
+      this.more = button('More points', showMore, {hidden: true});
       this.element = element('div', {}, this.table, this.more);
     }
 
@@ -252,12 +246,9 @@
     }
 
     cells(point, isFinished) {
-      const button = element(
-        'button',
-        {type: 'button', class: 'link', onclick: () => this.onChoose(point.index)},
-        `Point ${point.index}`,
-      );
-      return pointCells(point, element('span', {}, button, isFinished ? '' : ' (running)'));
+      const choose = () => this.onChoose(point.index);
+      const name = button(`Point ${point.index}`, choose, {class: 'link'});
+      return pointCells(point, element('span', {}, name, isFinished ? '' : ' (running)'));
     }
 
     mark(shown) {
@@ -270,11 +261,7 @@
   class PointPanel {
     constructor(onFollow) {
       this.title = element('h2', {tabindex: '-1'}, 'Point');
-      this.follow = element(
-        'button',
-        {type: 'button', onclick: onFollow},
-        'Follow the running point',
-      );
+      this.follow = button('Follow the running point', onFollow);
       this.convergenceNote = element('p', {class: 'soft', hidden: true});
       this.view = new ResultView();
       this.element = element(

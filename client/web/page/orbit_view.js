@@ -4,6 +4,7 @@
 
   const {
     element,
+    button,
     stream,
     keepTrying,
     until,
@@ -118,7 +119,6 @@
     }
 
     controls() {
-      const button = (text, onclick) => element('button', {type: 'button', onclick}, text);
       this.playButton = button('', () => this.play(!this.isPlaying));
       this.stepButton = button('Next exchange', () => this.toNextExchange());
       this.speedText = element('span');

@@ -123,8 +123,5 @@
   }
 
   printLight();
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () =>
-    ballpiston.repaintCharts(),
-  );
   showReport(JSON.parse(document.getElementById('data').textContent));
 })((globalThis.ballpiston ??= {}));
