@@ -17,17 +17,20 @@
     'data_loss',
   ]);
 
-  // `code` is an error code of the protocol, such as not_found. `isFinal`: a retry gives the same
-  // error.
+  // `code` is an error code of the protocol, such as not_found; `reason` a word of the server, such
+  // as JOB_NOT_FOUND. `isFinal`: a retry gives the same error.
   class CallError extends Error {
-    constructor(code, message) {
+    constructor(code, message, reason) {
       super(message || code);
       this.code = code;
-      this.isFinal = FINAL.has(code);
+      this.isFinal = FINAL.has(code) || reason === 'TOO_MANY_POINTS';
     }
   }
 
-  const errorOf = (json, code) => new CallError(json?.code ?? code, json?.message);
+  function errorOf(json, code) {
+    const reason = json?.details?.find(({debug}) => debug?.reason)?.debug.reason;
+    return new CallError(json?.code ?? code, json?.message, reason);
+  }
 
   function noAnswer() {
     return new CallError(
