@@ -3,17 +3,7 @@
 (function (ballpiston) {
   'use strict';
 
-  const {
-    element,
-    choice,
-    Chart,
-    seriesLines,
-    isNumber,
-    words,
-    symbolOf,
-    parameterPairs,
-    parameterText,
-  } = ballpiston;
+  const {element, choice, isNumber, words, symbolOf, parameterPairs} = ballpiston;
 
   const MOST_LINES = 6; // the number of different colours and symbols
   const MOST_WITHOUT_LOG = 30; // ratio of the largest to the smallest x
@@ -59,7 +49,7 @@
     for (const point of points) {
       const label = parameterPairs(point.parameters)
         .filter(([name]) => name !== axis && varying[name])
-        .map(([name, value]) => `${symbolOf(name)} = ${parameterText(value)}`)
+        .map(([name, value]) => `${symbolOf(name)} = ${ballpiston.parameterText(value)}`)
         .join(', ');
       if (!grouped.has(label)) grouped.set(label, []);
       grouped.get(label).push(point);
@@ -112,7 +102,7 @@
   class GridChart {
     constructor() {
       this.choices = element('div', {class: 'choices'});
-      this.chart = new Chart();
+      this.chart = new ballpiston.Chart();
       this.element = element('div', {}, this.choices, this.chart.element);
       this.chosen = {estimate: null, axis: null, shown: 'value'};
     }
@@ -162,7 +152,7 @@
       const grouped = groups(this.points, axis);
       const drawn = spread(grouped);
       const lines = drawn.flatMap(([label, points], i) =>
-        seriesLines(placesOf(points, axis, estimate, shown), label, i),
+        ballpiston.seriesLines(placesOf(points, axis, estimate, shown), label, i),
       );
       const hasValues = lines.some((line) => line.y.length);
       this.chart.show({

@@ -4,27 +4,7 @@
 (function (ballpiston) {
   'use strict';
 
-  const {
-    element,
-    button,
-    table,
-    LiveRows,
-    call,
-    stream,
-    keepTrying,
-    whileVisible,
-    pause,
-    TabHidden,
-    ResultView,
-    POINT_COLUMNS,
-    pointCells,
-    GridChart,
-    seriesLines,
-    isNumber,
-    countText,
-    words,
-    shellWord,
-  } = ballpiston;
+  const {element, button, call, keepTrying, POINT_COLUMNS, words} = ballpiston;
 
   const MOST_STEPS = 300; // of a point's convergence; then every second step is dropped
   const ROWS = 200; // of points that one press of a button adds
@@ -54,7 +34,7 @@
           samples,
           ...estimates.find((estimate) => estimate.name === name),
         }))
-        .filter((step) => isNumber(step.value));
+        .filter((step) => ballpiston.isNumber(step.value));
       if (steps.length < 2) return null;
       const {exact, limit, samples: most} = steps.at(-1);
       const places = steps.map(({samples: x, value, standard_error: error}) => {
@@ -64,7 +44,7 @@
         title: `Convergence of ${words(name)}`,
         xLabel: 'samples',
         yLabel: 'value',
-        lines: seriesLines(places),
+        lines: ballpiston.seriesLines(places),
         logX: most > 30 * steps[0].samples,
       };
     }
@@ -137,7 +117,7 @@
 
   // A command that the reader can copy.
   const command = (...words) =>
-    element('pre', {tabindex: '0', class: 'command'}, words.map(shellWord).join(' '));
+    element('pre', {tabindex: '0', class: 'command'}, words.map(ballpiston.shellWord).join(' '));
 
   function notes(job) {
     const shown = [];
@@ -217,10 +197,10 @@
     constructor(onChoose) {
       this.onChoose = onChoose;
       this.count = ROWS;
-      this.table = table('Points, with their first estimate', POINT_COLUMNS, [], {
+      this.table = ballpiston.table('Points, with their first estimate', POINT_COLUMNS, [], {
         class: 'rows points',
       });
-      this.rows = new LiveRows(this.table, POINT_COLUMNS);
+      this.rows = new ballpiston.LiveRows(this.table, POINT_COLUMNS);
       const showMore = () => {
         this.count += ROWS;
         this.show(this.points, this.finished, this.shown);
@@ -240,15 +220,16 @@
         next = this.rows.put(point.index, seen, cells, next).nextSibling;
       }
       this.more.hidden = points.length <= this.count;
-      const [shownCount, count] = [this.count, points.length].map(countText);
+      const [shownCount, count] = [this.count, points.length].map(ballpiston.countText);
       this.more.textContent = `More points (${shownCount} of ${count} are shown)`;
       this.mark(shown);
     }
 
     cells(point, isFinished) {
       const choose = () => this.onChoose(point.index);
-      const name = button(`Point ${point.index}`, choose, {class: 'link'});
-      return pointCells(point, element('span', {}, name, isFinished ? '' : ' (running)'));
+      const link = button(`Point ${point.index}`, choose, {class: 'link'});
+      const name = element('span', {}, link, isFinished ? '' : ' (running)');
+      return ballpiston.pointCells(point, name);
     }
 
     mark(shown) {
@@ -263,7 +244,7 @@
       this.title = element('h2', {tabindex: '-1'}, 'Point');
       this.follow = button('Follow the running point', onFollow);
       this.convergenceNote = element('p', {class: 'soft', hidden: true});
-      this.view = new ResultView();
+      this.view = new ballpiston.ResultView();
       this.element = element(
         'section',
         {'aria-label': 'One point', hidden: true},
@@ -304,7 +285,7 @@
         withoutDetails: new Set(),
       });
       this.head = new JobHead(() => this.askAgain());
-      this.grid = new GridChart();
+      this.grid = new ballpiston.GridChart();
       this.panel = new PointPanel(() => this.choose(null));
       this.points = new PointTable((chosen) => {
         this.choose(chosen);
@@ -413,9 +394,9 @@
 
     // One watch until the job's end. Resumes where the last watch stopped.
     async watch(progress) {
-      const controller = whileVisible(this.signal);
+      const controller = ballpiston.whileVisible(this.signal);
       try {
-        const updates = stream(
+        const updates = ballpiston.stream(
           'EnsembleService/WatchEnsembleJob',
           {name: this.name, resume_token: this.token},
           controller.signal,
@@ -427,7 +408,7 @@
           this.drawSoon();
         }
       } finally {
-        controller.abort(new TabHidden());
+        controller.abort(new ballpiston.TabHidden());
       }
     }
 
@@ -463,7 +444,7 @@
           );
           this.drawSoon();
         }
-        await pause(STATUS_EVERY, this.signal);
+        await ballpiston.pause(STATUS_EVERY, this.signal);
       }
     }
 

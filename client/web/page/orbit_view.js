@@ -2,19 +2,7 @@
 (function (ballpiston) {
   'use strict';
 
-  const {
-    element,
-    button,
-    stream,
-    keepTrying,
-    until,
-    OrbitMotion,
-    OrbitPicture,
-    Chart,
-    valueText,
-    countText,
-    words,
-  } = ballpiston;
+  const {element, button, valueText} = ballpiston;
 
   const MOST_AHEAD = 3000; // events that are read before they are played
   const MOST_LISTED = 8;
@@ -63,7 +51,7 @@
   }
 
   function eventText(event) {
-    const parts = [`t = ${event.time.toFixed(4)}`, words(event.event)];
+    const parts = [`t = ${event.time.toFixed(4)}`, ballpiston.words(event.event)];
     if (event.ball !== undefined)
       parts.push(`ball ${event.ball}: energy ${valueText(event.ball_energy, 1e-3)}`);
     if (event.piston !== undefined) {
@@ -217,7 +205,7 @@
       const signal = AbortSignal.any([this.signal, tracing.signal]);
       const request = requestOf(this.form);
       try {
-        await keepTrying((progress) => this.read(request, progress, signal), signal);
+        await ballpiston.keepTrying((progress) => this.read(request, progress, signal), signal);
       } catch (error) {
         if (signal.aborted || error instanceof ballpiston.CallError) return; // the banner shows it
         throw error;
@@ -227,7 +215,8 @@
     // The same request gives the same events: a retry skips the known events.
     async read(request, progress, signal) {
       let known = this.request === request ? this.motion.count + this.motion.events.length : 0;
-      for await (const {start, events = []} of stream('TraceService/TraceOrbit', request, signal)) {
+      const messages = ballpiston.stream('TraceService/TraceOrbit', request, signal);
+      for await (const {start, events = []} of messages) {
         progress();
         if (start && this.request !== request) this.begin(request, start);
         this.motion.add(events.slice(known));
@@ -239,18 +228,18 @@
 
     async roomFor(signal) {
       while (this.motion.events.length > MOST_AHEAD && !signal.aborted) {
-        await until(this.played, 'advance', signal);
+        await ballpiston.until(this.played, 'advance', signal);
       }
     }
 
     begin(request, start) {
       this.request = request;
-      this.motion = new OrbitMotion(start);
-      this.picture = new OrbitPicture(this.canvas, start);
+      this.motion = new ballpiston.OrbitMotion(start);
+      this.picture = new ballpiston.OrbitPicture(this.canvas, start);
       this.exchanges = [];
       this.list.replaceChildren();
       this.chart?.remove();
-      this.chart = new Chart();
+      this.chart = new ballpiston.Chart();
       this.chartPlace.append(this.chart.element);
       this.scaleEnd.textContent = this.picture.isPair
         ? '1/2'
@@ -331,7 +320,7 @@
       this.picture.draw(this.motion);
       const {motion} = this;
       this.clock.textContent =
-        `t = ${motion.time.toFixed(2)}, ${countText(motion.count)} events` +
+        `t = ${motion.time.toFixed(2)}, ${ballpiston.countText(motion.count)} events` +
         (motion.hasEnded && motion.events.length === 0 ? '; the trace has ended' : '');
       this.canvas.setAttribute(
         'aria-label',
