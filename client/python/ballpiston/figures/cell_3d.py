@@ -20,8 +20,6 @@ from ballpiston.figures.parts import cell_outline, style
 from ballpiston.figures.parts.asking import RHO
 from ballpiston.figures.parts.tables import FloatArray, Tables, closed_forms
 
-EFFORT: dict[str, dict[str, Any]] = {}
-
 _WALL, _FLOOR, _EDGE = "#c3cfe6", "#f4f4f4", "#404040"
 _HIGHEST, _LOWEST = 1.1, 0.6  # heights of the drawing, in units of its width
 

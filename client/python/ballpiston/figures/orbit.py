@@ -19,8 +19,6 @@ from ballpiston.figures.parts import cell_outline, style
 from ballpiston.figures.parts.asking import RHO
 from ballpiston.figures.parts.tables import Table, Tables, rows, table
 
-EFFORT: dict[str, dict[str, Any]] = {}
-
 _SHOWN_TIME = 25.0  # of the path and the positions; longer curves would be too dense
 _MEETING = {"color": style.BLACK, "markersize": 6, "fillstyle": "none", "linestyle": ""}
 

@@ -163,7 +163,7 @@ def _module(name: str, folder: Path | None) -> ModuleType:
 
 def _keywords(module: ModuleType, options: Namespace) -> dict[str, Any]:
     """Those of `measure` that differ from its defaults."""
-    keywords: dict[str, Any] = dict(module.EFFORT.get(options.effort, {}))
+    keywords: dict[str, Any] = dict(getattr(module, "EFFORT", {}).get(options.effort, {}))
     for keyword, parameter in _variables(module).items():
         text = getattr(options, keyword, None)
         if text is not None:
