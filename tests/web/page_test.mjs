@@ -334,6 +334,7 @@ describe('Jobs', () => {
     ],
   ]) {
     it(`that are too large for ${what} are not submitted again and again`, async () => {
+      const watch = new Promise((begun) => page.route(/WatchEnsembleJob/, begun));
       await open(firstHit);
       await page.route('**/ballpiston.v1.EnsembleService/CreateEnsembleJob', (route) =>
         route.fulfill(answer),
@@ -341,6 +342,9 @@ describe('Jobs', () => {
       await page.getByRole('button', {name: 'Submit again'}).click();
       await banner().filter({hasText: `The server says: ${text}`}).waitFor();
       assert.ok(await page.getByRole('button', {name: 'Submit again'}).isEnabled());
+      await (await watch).continue(); // the answer to another request leaves the reason on the page
+      await page.getByRole('button', {name: 'Point 3'}).waitFor();
+      assert.ok(await banner().isVisible());
     });
   }
 

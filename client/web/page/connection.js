@@ -21,7 +21,10 @@
 
   const banner = () => document.getElementById('connection');
 
-  function say(text) {
+  let isFinal = false; // the banner shows an error that a later answer does not remove
+
+  function say(text, isFinalError = false) {
+    isFinal = isFinalError;
     if (banner().textContent !== text) banner().textContent = text;
     banner().hidden = text === '';
   }
@@ -34,8 +37,14 @@
     return '';
   }
 
-  const answered = () => say('');
-  const failed = (error) => say(`${adviceFor(error)}The server says: ${error.message}`);
+  // Called when the reader acts.
+  const clearBanner = () => say('');
+
+  function answered() {
+    if (!isFinal) say('');
+  }
+
+  const failed = (error) => say(`${adviceFor(error)}The server says: ${error.message}`, true);
   const failedForNow = (error) =>
     say(`No answer; retrying. The page may be out of date. Reason: ${error.message}`);
 
@@ -118,7 +127,7 @@
   Object.assign(ballpiston, {
     token,
     takeToken,
-    clearBanner: answered,
+    clearBanner,
     until,
     pause,
     keepTrying,

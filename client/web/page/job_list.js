@@ -225,6 +225,7 @@
     async appendPage() {
       if (this.loading) return;
       this.loading = true;
+      ballpiston.clearBanner();
       const filter = this.filter;
       try {
         const {jobs, token} = await keepTrying(() => this.page(this.token), this.signal);

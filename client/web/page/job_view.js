@@ -415,6 +415,7 @@
     // Submits the same specification: the server answers from its store, or computes.
     async askAgain() {
       this.head.ask.disabled = true;
+      ballpiston.clearBanner();
       try {
         await this.create();
       } catch {

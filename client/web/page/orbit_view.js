@@ -201,6 +201,7 @@
     // Begins a new trace and ends the previous one.
     async trace() {
       this.tracing?.abort();
+      ballpiston.clearBanner();
       const tracing = (this.tracing = new AbortController());
       const signal = AbortSignal.any([this.signal, tracing.signal]);
       const request = requestOf(this.form);
