@@ -118,8 +118,8 @@ def _authorities(path: str) -> bytes:
     data = _contents(path, "authority file", is_secret=False)
     if b"-----BEGIN CERTIFICATE-----" not in data:
         raise ValueError(
-            f'the authority file {path} does not contain "-----BEGIN CERTIFICATE-----": it has to be '
-            "a PEM file"
+            f'the authority file {path} does not contain "-----BEGIN CERTIFICATE-----": it has to '
+            "be a PEM file"
         )
     return data
 

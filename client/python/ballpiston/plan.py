@@ -64,7 +64,8 @@ class Plan:
 
     def __repr__(self) -> str:
         lines = [
-            f" {mark:1} {model:<18} {work:>9}  {reason}" for mark, model, work, reason in self._shown()
+            f" {mark:1} {model:<18} {work:>9}  {remark}"
+            for mark, model, work, remark in self._shown()
         ]
         return "\n".join([self._heading(), *lines])
 

@@ -152,8 +152,8 @@ Method = TypeVar("Method", bound=Callable[..., Any])
 
 
 def takes_keywords_of(other: Callable[..., Any]) -> Callable[[Method], Method]:
-    """Shows the keywords of another function in the signature of a method that passes its **question
-    on to it, for help() and for completion in notebooks."""
+    """Shows the keywords of another function in the signature of a method that passes its
+    **question on to it, for help() and for completion in notebooks."""
 
     def with_signature(method: Method) -> Method:
         own = inspect.signature(method)

@@ -183,9 +183,7 @@ def _value(flag: str, text: str, kind: str) -> Any:
     return whole_number(flag, values[0]) if kind == "int" else values[0]
 
 
-def _written(
-    options: Namespace, data: Tables, figure: Any, keywords: dict[str, Any]
-) -> list[Path]:
+def _written(options: Namespace, data: Tables, figure: Any, keywords: dict[str, Any]) -> list[Path]:
     """The pictures last: where they are, the data are too."""
     comment = f"ballpiston {ballpiston.__version__}: figure {options.name} {json.dumps(keywords)}"
     paths = []
