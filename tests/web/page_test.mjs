@@ -318,15 +318,35 @@ describe('Jobs', () => {
     await page.getByText('The job was cancelled').waitFor();
   });
 
-  it('that are too large for the gateway are not submitted again and again', async () => {
-    await open(firstHit);
-    await page.route('**/ballpiston.v1.EnsembleService/CreateEnsembleJob', (route) =>
-      route.fulfill({status: 413}),
-    );
-    await page.getByRole('button', {name: 'Submit again'}).click();
-    await banner().filter({hasText: 'The server says: HTTP status 413'}).waitFor();
-    assert.ok(await page.getByRole('button', {name: 'Submit again'}).isEnabled());
-  });
+  for (const [what, answer, text] of [
+    ['the gateway', {status: 413}, 'HTTP status 413'],
+    [
+      'the server',
+      {
+        status: 429,
+        json: {
+          code: 'resource_exhausted',
+          message: 'at most 10 points',
+          details: [{debug: {reason: 'TOO_MANY_POINTS'}}],
+        },
+      },
+      'at most 10 points',
+    ],
+  ]) {
+    it(`that are too large for ${what} are not submitted again and again`, async () => {
+      const watch = new Promise((begun) => page.route(/WatchEnsembleJob/, begun));
+      await open(firstHit);
+      await page.route('**/ballpiston.v1.EnsembleService/CreateEnsembleJob', (route) =>
+        route.fulfill(answer),
+      );
+      await page.getByRole('button', {name: 'Submit again'}).click();
+      await banner().filter({hasText: `The server says: ${text}`}).waitFor();
+      assert.ok(await page.getByRole('button', {name: 'Submit again'}).isEnabled());
+      await (await watch).continue(); // the answer to another request leaves the reason on the page
+      await page.getByRole('button', {name: 'Point 3'}).waitFor();
+      assert.ok(await banner().isVisible());
+    });
+  }
 
   it('with expired results show the command that computes them again', async () => {
     await answerInstead(

@@ -31,7 +31,7 @@ import numpy.typing as npt
 
 from ballpiston._version import __version__
 from ballpiston.document import json_of
-from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS
+from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS, parameters_of
 from ballpiston.spelling import spelling
 from ballpiston.v1 import spec_pb2
 
@@ -39,7 +39,6 @@ Array = npt.NDArray[Any]
 Arrays = dict[str, Array]
 
 _SIGNS = {1: "_plus", -1: "_minus"}
-_DIVERGENCE_FIELDS = ("noise_error", "cells")
 
 
 def arrays_of(job: Any, points: Sequence[Any]) -> Arrays:
@@ -50,8 +49,8 @@ def arrays_of(job: Any, points: Sequence[Any]) -> Arrays:
         "model": _texts(spelling(spec_pb2.EnsembleSpec.Model, point.model) for point in points),
         "samples": _floats(point.samples for point in points),
         **_estimate_arrays(points),
-        **_divergence_arrays(points),
-        **_health_arrays(points),
+        **_part_arrays(points, "kl_divergence", ("noise_error", "cells")),
+        **_part_arrays(points, "health", ("escapes", "max_energy_error")),
         **_histogram_arrays(points),
         **_curve_arrays(points),
         "provenance": np.array(json.dumps(_provenance(job))),
@@ -60,18 +59,13 @@ def arrays_of(job: Any, points: Sequence[Any]) -> Arrays:
 
 def parameter_arrays(points: Sequence[Any]) -> Arrays:
     """rho, delta and every other parameter that some point has."""
-    arrays: Arrays = {}
-    for name in PARAMETERS:
-        is_always = name in ("rho", "delta")
-        if not is_always and not any(point.parameters.HasField(name) for point in points):
-            continue
-        if name == "cells":
-            arrays[name] = _texts(point.parameters.cells for point in points)
-        elif is_always:
-            arrays[name] = _floats(getattr(point.parameters, name) for point in points)
-        else:
-            arrays[name] = optional_floats([point.parameters for point in points], name)
-    return arrays
+    rows = [parameters_of(point) for point in points]
+    used = {"rho", "delta"}.union(*rows)
+    return {
+        name: np.array([row.get(name, "" if name == "cells" else np.nan) for row in rows])
+        for name in PARAMETERS
+        if name in used
+    }
 
 
 def optional_floats(messages: Iterable[Any], field: str) -> npt.NDArray[np.float64]:
@@ -101,24 +95,13 @@ def _estimate_arrays(points: Sequence[Any]) -> Arrays:
     return arrays
 
 
-def _divergence_arrays(points: Sequence[Any]) -> Arrays:
-    column = [p.kl_divergence if p.HasField("kl_divergence") else None for p in points]
-    if not any(kl is not None for kl in column):
-        return {}
-
-    def field(name: str) -> Array:
-        return _floats(np.nan if kl is None else getattr(kl, name) for kl in column)
-
-    return {f"kl_divergence_{name}": field(name) for name in _DIVERGENCE_FIELDS}
-
-
-def _health_arrays(points: Sequence[Any]) -> Arrays:
-    def field(name: str) -> Array:
-        return _floats(getattr(p.health, name) if p.HasField("health") else np.nan for p in points)
-
+def _part_arrays(points: Sequence[Any], part: str, fields: Sequence[str]) -> Arrays:
+    """Of a message that a point may have."""
+    column = [getattr(point, part) if point.HasField(part) else None for point in points]
     arrays: Arrays = {}
-    for name in ("escapes", "max_energy_error"):
-        _add_unless_empty(arrays, f"health_{name}", field(name))
+    for field in fields:
+        values = _floats(np.nan if found is None else getattr(found, field) for found in column)
+        _add_unless_empty(arrays, f"{part}_{field}", values)
     return arrays
 
 

@@ -12,7 +12,6 @@ import json
 from typing import Any
 
 import grpc
-import grpc.aio
 
 from ballpiston._version import __version__
 from ballpiston.channel_security import ChannelSecurity, check, credentials_of
@@ -60,22 +59,14 @@ _ARGUMENTS: list[tuple[str, int | str]] = [
 ]
 
 
-def open_channel(address: str, security: ChannelSecurity) -> Any:
-    """A grpc.Channel, which does not connect yet.
+def open_channel(address: str, security: ChannelSecurity, module: Any = grpc) -> Any:
+    """A grpc.Channel, which does not connect yet. With the module grpc.aio one for an event loop,
+    which only the loop that opens it may use.
 
     Raises:
         ValueError: not an address, or security that does not fit together or cannot be read.
         PermissionDenied: a secret file is open to other users.
     """
-    return _open(grpc, address, security)
-
-
-def open_async_channel(address: str, security: ChannelSecurity) -> Any:
-    """The same for an event loop, a grpc.aio.Channel. Only the loop that opens it may use it."""
-    return _open(grpc.aio, address, security)
-
-
-def _open(module: Any, address: str, security: ChannelSecurity) -> Any:
     target = grpc_target(address)
     check(security, address)
     credentials = credentials_of(security)

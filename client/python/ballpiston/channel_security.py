@@ -47,10 +47,6 @@ class ChannelSecurity:
     def has_token(self) -> bool:
         return bool(self.token_file or self.token)
 
-    @property
-    def is_empty(self) -> bool:
-        return not (self.has_tls or self.has_token)
-
 
 def check(security: ChannelSecurity, address: str) -> None:
     """Whether these go together, and with the address. Reads no file.
@@ -58,7 +54,7 @@ def check(security: ChannelSecurity, address: str) -> None:
     Raises:
         ValueError: says what does not fit, for instance a token without TLS.
     """
-    if is_socket(address) and not security.is_empty:
+    if is_socket(address) and (security.has_tls or security.has_token):
         raise ValueError(
             "a Unix socket uses no TLS and no token: only the server's own user can open it"
         )
@@ -79,7 +75,7 @@ def credentials_of(security: ChannelSecurity) -> Any | None:
     if not security.has_tls:
         return None
     channel = grpc.ssl_channel_credentials(
-        root_certificates=_pem(security.ca, "authority file", "-----BEGIN CERTIFICATE-----")
+        root_certificates=_authorities(security.ca) if security.ca else None
     )
     if not security.has_token:
         return channel
@@ -117,13 +113,14 @@ def _own_token(address: str) -> str:
         return ""
 
 
-def _pem(path: str, what: str, kind: str) -> bytes | None:
+def _authorities(path: str) -> bytes:
     """PEM, at least by its looks: gRPC would only say that there is no connection."""
-    if not path:
-        return None
-    data = _contents(path, what, is_secret=False)
-    if kind.encode() not in data:
-        raise ValueError(f'the {what} {path} does not contain "{kind}": it has to be a PEM file')
+    data = _contents(path, "authority file", is_secret=False)
+    if b"-----BEGIN CERTIFICATE-----" not in data:
+        raise ValueError(
+            f'the authority file {path} does not contain "-----BEGIN CERTIFICATE-----": it has to '
+            "be a PEM file"
+        )
     return data
 
 

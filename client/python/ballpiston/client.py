@@ -21,7 +21,7 @@ from ballpiston.private_server import find_private_server
 from ballpiston.result import Result
 from ballpiston.settings import address_and_security
 from ballpiston.server_status import ServerStatus, server_status_of
-from ballpiston.specification import question_of, takes_question
+from ballpiston.specification import question_of, specification, takes_keywords_of
 from ballpiston.spelling import from_spelling
 from ballpiston.trace import columns_of, events_of
 from ballpiston.v1 import analytic_pb2, ensemble_pb2, server_pb2, spec_pb2, trace_pb2
@@ -115,7 +115,7 @@ class Client:
 
     # Questions
 
-    @takes_question
+    @takes_keywords_of(specification)
     def submit(
         self,
         experiment: Any,
@@ -160,38 +160,20 @@ class Client:
         )
         return Job(self._connection, self._create(request))
 
-    @takes_question
-    def run(
-        self,
-        experiment: Any,
-        *,
-        fresh: bool = False,
-        priority: int = 0,
-        request_id: str | uuid.UUID | None = None,
-        labels: Mapping[str, str] | None = None,
-        progress: bool | str = True,
-        **question: Any,
-    ) -> Result:
+    @takes_keywords_of(submit)
+    def run(self, experiment: Any, *, progress: bool | str = True, **question: Any) -> Result:
         """`submit` and `Job.watch` in one: waits for the job and returns its result.
 
         Args:
             progress: as that of `Job.watch`.
-            experiment, fresh, priority, request_id, labels: as those of `submit`.
+            experiment and all other keywords: as those of `submit`.
 
         Raises:
             JobFailed, JobCancelled: the job did not succeed; `error.job` is the job.
         """
-        job = self.submit(
-            experiment,
-            fresh=fresh,
-            priority=priority,
-            request_id=request_id,
-            labels=labels,
-            **question,
-        )
-        return job.watch(progress=progress)
+        return self.submit(experiment, **question).watch(progress=progress)
 
-    @takes_question
+    @takes_keywords_of(specification)
     def plan(self, experiment: Any, **question: Any) -> Plan:
         """What a question would cost with each model, and which model would answer. Runs nothing.
 
@@ -339,7 +321,7 @@ class Client:
         request = _orbit_request(rho, delta, events, seed, cells, temperature)
         return columns_of(self._connection, request, fields)
 
-    @takes_question
+    @takes_keywords_of(specification)
     def sample(self, experiment: Any, **question: Any) -> Collisions:
         """The collisions of a point's samples, for observables of one's own: those that `run` with
         the same arguments averages.

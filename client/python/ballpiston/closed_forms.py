@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ballpiston.suggestion import did_you_mean
+from ballpiston.suggestion import no_such
 from ballpiston.v1 import analytic_pb2
 
 if TYPE_CHECKING:
@@ -66,9 +66,7 @@ class ClosedForms:
 
     def __getitem__(self, name: str) -> FloatArray:
         if name not in self.names:
-            there = ", ".join(self.names)
-            hint = did_you_mean(name, self.names)
-            raise KeyError(f"there is no closed form {name!r}{hint}; this answer has {there}")
+            raise KeyError(no_such("closed form", name, "this answer", self.names))
         points = self.message.points
         if name in _PAIR:
             return np.array([getattr(point, name) for point in points])

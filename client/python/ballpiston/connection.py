@@ -112,12 +112,9 @@ class Connection:
         """
         if self.private is not None:
             self.private.address()
-        self.wait_for_connection(wait)
-
-    def wait_for_connection(self, seconds: float) -> None:
         ready = grpc.channel_ready_future(self.channel)
         try:
-            ready.result(timeout=seconds)
+            ready.result(timeout=wait)
         except grpc.FutureTimeoutError:
             pass
         finally:

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ballpiston.suggestion import no_such
+
 FloatArray = npt.NDArray[np.float64]
 
 
@@ -68,13 +70,10 @@ def choose_curve(messages: Iterable[Any], name: str) -> Curve:
     Raises:
         KeyError: there is none.
     """
-    names = []
-    for message in messages:
-        if message.name == name:
-            return curve_of(message)
-        names.append(message.name)
-    there = ", ".join(names) or "none"
-    raise KeyError(f"there is no curve {name!r}; this point has {there}")
+    by_name = {message.name: message for message in messages}
+    if name not in by_name:
+        raise KeyError(no_such("curve", name, "this point", by_name))
+    return curve_of(by_name[name])
 
 
 def _optional(points: list[Any], field: str) -> FloatArray:

@@ -39,7 +39,7 @@ AnyError = TypeVar("AnyError", bound=errors.Error)
 
 @dataclass(frozen=True)
 class Details:
-    """What the messages inside a google.rpc.Status say."""
+    """What the messages inside a google.rpc.Status say, as the keywords of an Error."""
 
     reason: str = ""
     metadata: dict[str, str] = field(default_factory=dict)
@@ -81,14 +81,7 @@ def details_of(status: Any) -> Details:
 
 def error_of(error_class: type[AnyError], message: str, details: Details, code: str) -> AnyError:
     """An exception of that class with everything that the details say."""
-    return error_class(
-        details.text(message),
-        reason=details.reason,
-        metadata=details.metadata,
-        violations=details.violations,
-        code=code,
-        retry_delay=details.retry_delay,
-    )
+    return error_class(details.text(message), code=code, **vars(details))
 
 
 def from_rpc_error(rpc_error: Any) -> errors.Error:

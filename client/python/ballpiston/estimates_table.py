@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-import csv
 import sys
 from collections.abc import Iterable, Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from ballpiston.document import whole_file
 from ballpiston.errors import NotFound, ResultsExpired
 from ballpiston.job import Job
 from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS
 from ballpiston.spelling import spelling
+from ballpiston.table_file import Table
 from ballpiston.v1 import ensemble_pb2
 from ballpiston.watch import has_ended
-
-Table = dict[str, npt.NDArray[Any]]
 
 _OF_JOB = ("job", "labels", "state", "experiment", "seed", "engine_version")
 _TEXTS = (*_OF_JOB, "cells", "model", "name")
@@ -71,36 +66,6 @@ def _rows(job: Job) -> Iterator[dict[str, Any]]:
     }
     for point in result:
         of_point = {"index": point.index, "model": point.model, "samples": point.message.samples}
-        for estimate in point.message.estimates:
-            fields = {f: getattr(estimate, f) for f in ESTIMATE_FIELDS if estimate.HasField(f)}
-            value = {"name": estimate.name, "value": estimate.value}
-            yield {**of_job, **point.parameters, **of_point, **value, **fields}
-
-
-def write_table(path: Path, table: Table) -> None:
-    """Writes .csv, .npz or .parquet by the ending: the whole file or none.
-
-    Raises:
-        ModuleNotFoundError: .parquet needs pandas and pyarrow.
-    """
-    with whole_file(path) as part:
-        _write(part, path.suffix, table)
-
-
-def _write(path: Path, ending: str, table: Table) -> None:
-    if ending == ".csv":
-        with path.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(table)
-            writer.writerows(map(_texts, zip(*(column.tolist() for column in table.values()))))
-    elif ending == ".npz":
-        with path.open("wb") as file:
-            np.savez_compressed(file, **table)
-    else:
-        import pandas
-
-        pandas.DataFrame(table).to_parquet(path, index=False)
-
-
-def _texts(row: Iterable[Any]) -> list[str]:
-    return ["" if value != value else str(value) for value in row]  # NaN differs from itself
+        for estimate in point.estimates.values():
+            known = {name: value for name, value in vars(estimate).items() if value is not None}
+            yield of_job | point.parameters | of_point | known

@@ -1,29 +1,20 @@
 """ballpiston export [JOB ...] [--label KEY=VALUE ...] --out FILE
 
-Writes the estimates of jobs to FILE, which ends with .csv, .npz or .parquet.
+Writes the estimates of jobs to FILE, which ends with .csv, .npz or .parquet. The command line
+starts this when it has checked FILE and the modules that it needs.
 """
 
 from __future__ import annotations
 
 import sys
 from argparse import ArgumentParser
-from importlib import import_module
 from pathlib import Path
 
 from ballpiston.client import connect
 from ballpiston.errors import NotFound
-from ballpiston.estimates_table import estimates_table, write_table
+from ballpiston.estimates_table import estimates_table
 from ballpiston.program import run_program
-
-_ENDINGS = (".csv", ".npz", ".parquet")
-
-
-def _check(path: Path) -> None:
-    if path.suffix not in _ENDINGS:
-        raise ValueError(f"--out: {path} does not end with {', '.join(_ENDINGS)}")
-    if path.suffix == ".parquet":  # before anything is asked
-        for module in ("pandas", "pyarrow"):
-            import_module(module)
+from ballpiston.table_file import write_table
 
 
 def _main(arguments: list[str]) -> list[Path]:
@@ -32,7 +23,6 @@ def _main(arguments: list[str]) -> list[Path]:
     parser.add_argument("--label", action="append", default=[])
     parser.add_argument("--out", required=True, type=Path)
     options = parser.parse_args(arguments)
-    _check(options.out)
     labels = dict(label.split("=", 1) for label in options.label)
     with connect() as client:
         named = [client.job(name) for name in options.jobs]
@@ -44,7 +34,4 @@ def _main(arguments: list[str]) -> list[Path]:
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(run_program(_main, sys.argv[1:]))
-    except ModuleNotFoundError as error:
-        sys.exit(f"ballpiston: --out FILE.parquet needs the module {error.name}: pip install pyarrow")
+    sys.exit(run_program(_main, sys.argv[1:]))

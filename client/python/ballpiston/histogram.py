@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ballpiston.suggestion import no_such
+
 FloatArray = npt.NDArray[np.float64]
 
 
@@ -71,7 +73,7 @@ def choose_histogram(
     """
     named = [h for h in histograms if h.name == name]
     if not named:
-        raise KeyError(_no_such("histogram", name, [h.name for h in histograms]))
+        raise KeyError(no_such("histogram", name, "this point", (h.name for h in histograms)))
     found = [h for h in named if sigma is None or h.sigma == sigma]
     if not found:
         signs = ", ".join(f"{sign:+d}" for sign in sorted({h.sigma for h in named}))
@@ -85,11 +87,6 @@ def choose_histogram(
         return found[0]
     distances = [abs((h.time or 0.0) - time) for h in found]
     return found[distances.index(min(distances))]
-
-
-def _no_such(what: str, name: str, names: list[str]) -> str:
-    there = ", ".join(dict.fromkeys(names))
-    return f"there is no {what} {name!r}; this point has {there or 'none'}"
 
 
 def _histogram(message: Any, total: float) -> Histogram:

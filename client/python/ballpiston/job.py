@@ -216,13 +216,11 @@ class Job:
         Raises:
             Unavailable: the server did not answer for two minutes. The job goes on.
         """
-        specification = self.message.spec
         async for update in watch_updates(self._connection, self.name):
             if isinstance(update, Update):
                 yield update
-                continue
-            self.message = update
-            self.message.spec.CopyFrom(specification)  # a watch leaves out the grid
+            else:
+                self._end(update)
 
     async def result_async(self) -> Result:
         """`watch` for an event loop, without a bar.
@@ -274,12 +272,7 @@ class Job:
 
     def pin(self, pinned: bool = True) -> Job:
         """Keeps its results from expiring; with False they may expire again."""
-        request = ensemble_pb2.UpdateEnsembleJobRequest(
-            job=ensemble_pb2.EnsembleJob(name=self.name, pinned=pinned),
-            update_mask={"paths": ["pinned"]},
-        )
-        self.message = self._call("UpdateEnsembleJob", request)
-        return self
+        return self._update(pinned=pinned)
 
     def label(self, **labels: str | None) -> Job:
         """Sets these labels and keeps the others; None removes a label. Of two changes at the same
@@ -289,13 +282,7 @@ class Job:
             >>> job.label(run="7", who=None)
         """
         kept = {k: v for k, v in (self.refresh().labels | labels).items() if v is not None}
-        check_labels(kept)
-        request = ensemble_pb2.UpdateEnsembleJobRequest(
-            job=ensemble_pb2.EnsembleJob(name=self.name, labels=kept),
-            update_mask={"paths": ["labels"]},
-        )
-        self.message = self._call("UpdateEnsembleJob", request)
-        return self
+        return self._update(labels=check_labels(kept))
 
     def delete(self) -> None:
         """Deletes the job with its results. It is not retried: if the answer was lost
@@ -356,13 +343,24 @@ class Job:
             error.args = (f"{error}\nTo compute them again: client.run(job.specification)",)
             raise
 
+    def _update(self, **fields: Any) -> Job:
+        request = ensemble_pb2.UpdateEnsembleJobRequest(
+            job=ensemble_pb2.EnsembleJob(name=self.name, **fields),
+            update_mask={"paths": list(fields)},
+        )
+        self.message = self._call("UpdateEnsembleJob", request)
+        return self
+
     def _follow(self, screen: Progress) -> None:
-        specification = self.message.spec
         try:
-            self.message = watch_job(self._connection, self.name, screen)
+            self._end(watch_job(self._connection, self.name, screen))
         finally:
             screen.close()
-        self.message.spec.CopyFrom(specification)  # a watch leaves out the grid
+
+    def _end(self, job: Any) -> None:
+        """Takes the last message of a watch, which leaves out the grid."""
+        job.spec.CopyFrom(self.message.spec)
+        self.message = job
 
     def _raise_unless_succeeded(self) -> None:
         state = self._last_state()

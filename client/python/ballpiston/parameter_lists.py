@@ -151,18 +151,10 @@ def _range(first: float, last: float, count: int, is_logarithmic: bool) -> list[
 
 
 def _parsed_shapes(name: str, text: str) -> list[str]:
-    if ":" in text:
+    """A text that has no number alone, such as a lattice, stays as it is: the server judges it."""
+    if ":" in text or set(text) <= _NUMBER_CHARACTERS:
         return [_chain(name, number) for number in _parsed_range(name, text)]
-    try:
-        return ["x".join(_count(part) for part in text.split("x", 1))]
-    except ValueError:
-        raise ValueError(
-            f"{name}: {text!r} is not a shape: write N, a chain of N cells, or NxM, a lattice"
-        ) from None
-
-
-def _count(text: str) -> str:
-    return str(whole_number("count", _parsed_number("count", text)))
+    return [text]
 
 
 def _chain(name: str, value: object) -> str:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from html import escape
 from typing import TYPE_CHECKING, Any
 
+from ballpiston.result_table import html_table
 from ballpiston.spelling import spelling
 from ballpiston.v1 import spec_pb2
 
@@ -63,30 +63,26 @@ class Plan:
         return pandas.DataFrame(self._rows())
 
     def __repr__(self) -> str:
-        lines = [self._heading()]
-        for row in self._rows()[:_MOST_ROWS]:
-            mark = ">" if row["chosen"] else " "
-            work = f"{row['work']:.2g} s" if "work" in row else ""
-            lines.append(f" {mark} {row['model']:<18} {work:>9}  {row['reason']}")
-        return "\n".join(lines)
+        lines = [
+            f" {mark:1} {model:<18} {work:>9}  {remark}"
+            for mark, model, work, remark in self._shown()
+        ]
+        return "\n".join([self._heading(), *lines])
 
     def _repr_html_(self) -> str:
-        cells = [
+        return html_table(self._heading(), ("", "model", "work", "remark"), self._shown())
+
+    def _shown(self) -> list[tuple[str, str, str, str]]:
+        """The first rows: a mark of the chosen model, the model, its work and a remark."""
+        return [
             (
+                ">" if row["chosen"] else "",
                 row["model"],
                 f"{row['work']:.2g} s" if "work" in row else "",
                 row["reason"],
-                row["chosen"],
             )
             for row in self._rows()[:_MOST_ROWS]
         ]
-        body = "".join(
-            f"<tr><td>{'&gt;' if chosen else ''}</td><td>{escape(model)}</td><td>{work}</td>"
-            f"<td>{escape(reason)}</td></tr>"
-            for model, work, reason, chosen in cells
-        )
-        head = "<tr><th></th><th>model</th><th>work</th><th>remark</th></tr>"
-        return f"<p>{escape(self._heading())}</p><table>{head}{body}</table>"
 
     def _heading(self) -> str:
         models = ", ".join(dict.fromkeys(self.models))

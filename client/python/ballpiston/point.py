@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 from ballpiston.curve import Curve, choose_curve, curve_of
@@ -47,9 +47,8 @@ class Estimate:
         return f"{self.name} {measured_text(self.value, self.standard_error)}"
 
 
-ESTIMATE_FIELDS = (
-    "standard_error", "exact", "z_score", "model_error", "noise_floor", "limit", "batches"
-)
+# Beside the name and the value.
+ESTIMATE_FIELDS = tuple(field.name for field in fields(Estimate))[2:]
 
 
 class Point:
@@ -153,5 +152,5 @@ def unknown_estimate(name: object, names: list[str]) -> str:
 
 
 def _estimate(message: Any) -> Estimate:
-    fields = {f: getattr(message, f) for f in ESTIMATE_FIELDS if message.HasField(f)}
-    return Estimate(message.name, message.value, **fields)
+    known = {f: getattr(message, f) for f in ESTIMATE_FIELDS if message.HasField(f)}
+    return Estimate(message.name, message.value, **known)

@@ -8,31 +8,62 @@ from __future__ import annotations
 import json
 import sys
 import warnings
-from typing import Any, Protocol
+from typing import Any
 
 from ballpiston.document import json_of
-from ballpiston.errors import Error
 from ballpiston.number_text import measured_text
 from ballpiston.v1 import ensemble_pb2
 
-_PLAIN_BAR_WIDTH = 20
+_BAR_WIDTH = 20
 
 
-class Bar(Protocol):
-    """One line that is drawn again and again."""
+class Bar:
+    """One line that is drawn again and again, on standard error."""
+
+    def __init__(self) -> None:
+        self._width = 0
 
     def show(self, fraction: float, text: str) -> None:
-        ...
+        marks = int(min(max(fraction, 0.0), 1.0) * _BAR_WIDTH)
+        line = f"[{'#' * marks}{'-' * (_BAR_WIDTH - marks)}] {text}"
+        sys.stderr.write("\r" + line.ljust(self._width))
+        sys.stderr.flush()
+        self._width = len(line)
 
     def note(self, text: str) -> None:
         """A line of its own, above the bar."""
+        sys.stderr.write("\r" + text.ljust(self._width) + "\n")
 
     def close(self) -> None:
-        ...
+        if self._width > 0:
+            sys.stderr.write("\n")
+
+
+class _TqdmBar(Bar):
+    def __init__(self, tqdm: Any) -> None:
+        super().__init__()
+        self._tqdm = tqdm
+        self._bar: Any = None
+
+    def show(self, fraction: float, text: str) -> None:
+        if self._bar is None:
+            shape = "{percentage:3.0f}%|{bar}| {desc} [{elapsed}<{remaining}]"
+            # `initial`: the time left follows from what was done during this watch.
+            self._bar = self._tqdm(total=1.0, initial=fraction, bar_format=shape, file=sys.stderr)
+        self._bar.n = fraction
+        self._bar.set_description_str(text, refresh=False)
+        self._bar.refresh()
+
+    def note(self, text: str) -> None:
+        self._tqdm.write(text, file=sys.stderr)
+
+    def close(self) -> None:
+        if self._bar is not None:
+            self._bar.close()
 
 
 class Progress:
-    """Shows the messages of a watch (watch.Observer) on a bar; None shows nothing."""
+    """Shows a watch on a bar; None shows nothing."""
 
     def __init__(self, bar: Bar | None) -> None:
         self._bar = bar
@@ -43,15 +74,18 @@ class Progress:
     def is_visible(self) -> bool:
         return self._bar is not None
 
-    def on_job(self, job: Any) -> None:
-        self._update(job.progress, [])
+    def show(self, message: Any) -> None:
+        """A message of a watch."""
+        progress = progress_in(message)
+        if progress is None:
+            return
+        points = list(message.snapshot.points) or list(message.snapshot.finished_points)[-1:]
+        self._fraction = fraction_of(progress)
+        self._text = f"{progress.points_done}/{progress.points} points"
+        self._show("  ".join([self._text, *(_first_estimate(point) for point in points[:1])]))
 
-    def on_snapshot(self, snapshot: Any) -> None:
-        self._update(
-            snapshot.progress, list(snapshot.points) or list(snapshot.finished_points)[-1:]
-        )
-
-    def on_disconnect(self, why: Error, pause: float) -> None:
+    def show_pause(self, pause: float) -> None:
+        """The stream broke; the next one begins after `pause` seconds."""
         self._show(f"{self._text}  no answer, retrying in {pause:.1f} s")
 
     def note(self, text: str) -> None:
@@ -61,11 +95,6 @@ class Progress:
     def close(self) -> None:
         if self._bar is not None:
             self._bar.close()
-
-    def _update(self, progress: Any, points: list[Any]) -> None:
-        self._fraction = fraction_of(progress)
-        self._text = f"{progress.points_done}/{progress.points} points"
-        self._show("  ".join([self._text, *(_first_estimate(point) for point in points[:1])]))
 
     def _show(self, text: str) -> None:
         if self._bar is not None:
@@ -79,17 +108,13 @@ class JsonLines(Progress):
         super().__init__(None)
         self._job: dict[str, Any] = {}
 
-    def on_job(self, job: Any) -> None:
-        state = ensemble_pb2.EnsembleJob.State.Name(job.state)
-        self._job = {"job": job.name, "state": state}
-        self._write(job.progress)
-
-    def on_snapshot(self, snapshot: Any) -> None:
-        self._write(snapshot.progress)
-
-    def _write(self, progress: Any) -> None:
-        line = self._job | {"progress": json_of(progress)}
-        print(json.dumps(line), file=sys.stderr, flush=True)
+    def show(self, message: Any) -> None:
+        if message.HasField("job"):
+            state = ensemble_pb2.EnsembleJob.State.Name(message.job.state)
+            self._job = {"job": message.job.name, "state": state}
+        if (progress := progress_in(message)) is not None:
+            line = self._job | {"progress": json_of(progress)}
+            print(json.dumps(line), file=sys.stderr, flush=True)
 
 
 def progress_on_screen(wanted: bool | str) -> Progress:
@@ -105,6 +130,12 @@ def progress_on_screen(wanted: bool | str) -> Progress:
         return JsonLines()
     is_seen = wanted in (True, "auto") and (_is_notebook() or _is_terminal())
     return Progress(_new_bar() if is_seen or wanted == "bar" else None)
+
+
+def progress_in(message: Any) -> Any | None:
+    """The JobProgress in a message of a watch; None in a heartbeat."""
+    update = message.WhichOneof("update")
+    return getattr(message, update).progress if update in ("job", "snapshot") else None
 
 
 def fraction_of(progress: Any) -> float:
@@ -138,46 +169,5 @@ def _new_bar() -> Bar:
             warnings.simplefilter("ignore")  # tqdm warns if a notebook has no widgets
             from tqdm.auto import tqdm
     except ImportError:
-        return _PlainBar()
+        return Bar()
     return _TqdmBar(tqdm)
-
-
-class _TqdmBar:
-    def __init__(self, tqdm: Any) -> None:
-        self._tqdm = tqdm
-        self._bar: Any = None
-
-    def show(self, fraction: float, text: str) -> None:
-        if self._bar is None:
-            shape = "{percentage:3.0f}%|{bar}| {desc} [{elapsed}<{remaining}]"
-            # `initial`: the time left follows from what was done during this watch.
-            self._bar = self._tqdm(total=1.0, initial=fraction, bar_format=shape, file=sys.stderr)
-        self._bar.n = fraction
-        self._bar.set_description_str(text, refresh=False)
-        self._bar.refresh()
-
-    def note(self, text: str) -> None:
-        self._tqdm.write(text, file=sys.stderr)
-
-    def close(self) -> None:
-        if self._bar is not None:
-            self._bar.close()
-
-
-class _PlainBar:
-    def __init__(self) -> None:
-        self._width = 0
-
-    def show(self, fraction: float, text: str) -> None:
-        marks = int(min(max(fraction, 0.0), 1.0) * _PLAIN_BAR_WIDTH)
-        line = f"[{'#' * marks}{'-' * (_PLAIN_BAR_WIDTH - marks)}] {text}"
-        sys.stderr.write("\r" + line.ljust(self._width))
-        sys.stderr.flush()
-        self._width = len(line)
-
-    def note(self, text: str) -> None:
-        sys.stderr.write("\r" + text.ljust(self._width) + "\n")
-
-    def close(self) -> None:
-        if self._width > 0:
-            sys.stderr.write("\n")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union, overload
@@ -15,8 +14,9 @@ from ballpiston.curve import Curve
 from ballpiston.document import document_of, read_document, write_atomically
 from ballpiston.histogram import Histogram
 from ballpiston.point import Point, unknown_estimate
-from ballpiston.result_table import html_table, text_table
+from ballpiston.result_table import result_html, result_text
 from ballpiston.spelling import spelling
+from ballpiston.table_file import write_table
 from ballpiston.v1 import ensemble_pb2, spec_pb2
 
 if TYPE_CHECKING:
@@ -187,9 +187,7 @@ class Result:
         if path.suffix == ".json":
             write_atomically(path, document_of(self.job, self.messages).encode())
         elif path.suffix == ".npz":
-            buffer = io.BytesIO()
-            np.savez_compressed(buffer, **self.arrays())
-            write_atomically(path, buffer.getvalue())
+            write_table(path, self.arrays())
         else:
             raise ValueError(f"{path}: the name of the file has to end with .json or .npz")
 
@@ -218,10 +216,10 @@ class Result:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        return text_table(self._heading(), self.messages)
+        return result_text(self._heading(), self.messages)
 
     def _repr_html_(self) -> str:
-        return html_table(self._heading(), self.messages)
+        return result_html(self._heading(), self.messages)
 
     def _heading(self) -> str:
         experiment = spelling(spec_pb2.EnsembleSpec.Experiment, self.job.spec.experiment)

@@ -1,8 +1,8 @@
-"""A result as a table, one row a point, for terminals and notebooks."""
+"""Tables for terminals and notebooks: a result with one row a point, and any rows as HTML."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Any
 
@@ -16,7 +16,7 @@ _MOST_ROWS = 20
 Row = dict[str, str]
 
 
-def text_table(heading: str, points: Sequence[Any]) -> str:
+def result_text(heading: str, points: Sequence[Any]) -> str:
     """The heading, then aligned columns."""
     rows = [_row(point) for point in points[:_MOST_ROWS]]
     titles = _titles(rows)
@@ -26,18 +26,25 @@ def text_table(heading: str, points: Sequence[Any]) -> str:
     return "\n".join([heading, *(text if rows else []), *_ending(points)])
 
 
-def html_table(heading: str, points: Sequence[Any]) -> str:
-    """The same as HTML. Everything that comes from the server is escaped."""
+def result_html(heading: str, points: Sequence[Any]) -> str:
+    """The same as HTML."""
     rows = [_row(point) for point in points[:_MOST_ROWS]]
     titles = _titles(rows)
-    head = "".join(f"<th>{escape(title)}</th>" for title in titles)
-    body = "".join(
-        "<tr>" + "".join(f"<td>{escape(row.get(title, ''))}</td>" for title in titles) + "</tr>"
-        for row in rows
-    )
-    table = f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>" if rows else ""
+    cells = [[row.get(title, "") for title in titles] for row in rows]
     ending = "".join(f"<p>{escape(line)}</p>" for line in _ending(points))
-    return f"<p>{escape(heading)}</p>{table}{ending}"
+    return html_table(heading, titles, cells) + ending
+
+
+def html_table(heading: str, titles: Iterable[str], rows: Sequence[Iterable[str]]) -> str:
+    """Heading and rows as HTML. Every text is escaped."""
+
+    def line(tag: str, texts: Iterable[str]) -> str:
+        return "<tr>" + "".join(f"<{tag}>{escape(text)}</{tag}>" for text in texts) + "</tr>"
+
+    body = "".join(line("td", row) for row in rows)
+    head = line("th", titles)
+    table = f"<table><thead>{head}</thead><tbody>{body}</tbody></table>" if rows else ""
+    return f"<p>{escape(heading)}</p>{table}"
 
 
 def _row(point: Any) -> Row:

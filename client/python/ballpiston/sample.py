@@ -1,6 +1,7 @@
 """ballpiston sample EXPERIMENT ... --out FILE: python3 -m ballpiston.sample SPECIFICATION --out FILE
 
-Writes the collisions of a point's samples to FILE, .npz (one array a column) or .parquet.
+Writes the collisions of a point's samples to FILE, .npz (one array a column) or .parquet. The
+command line starts this when it has checked FILE and the modules that it needs.
 """
 
 from __future__ import annotations
@@ -10,11 +11,9 @@ import sys
 from argparse import ArgumentParser
 from pathlib import Path
 
-import numpy as np
-
 from ballpiston.client import connect
-from ballpiston.document import whole_file
 from ballpiston.program import run_program
+from ballpiston.table_file import write_table
 
 
 def _main(arguments: list[str]) -> list[Path]:
@@ -22,19 +21,11 @@ def _main(arguments: list[str]) -> list[Path]:
     parser.add_argument("specification", type=json.loads)
     parser.add_argument("--out", required=True, type=Path)
     options = parser.parse_args(arguments)
-    with connect() as client, whole_file(options.out) as part:
-        collisions = client.sample(options.specification)
-        if options.out.suffix == ".npz":
-            records = collisions.all()
-            with part.open("wb") as file:
-                np.savez_compressed(file, **{n: records[n] for n in records.dtype.names or ()})
-        else:
-            collisions.to_parquet(part)
+    with connect() as client:
+        records = client.sample(options.specification).all()
+    write_table(options.out, {name: records[name] for name in records.dtype.names or ()})
     return [options.out]
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(run_program(_main, sys.argv[1:]))
-    except ImportError as error:
-        sys.exit(f"ballpiston: --out FILE.parquet needs pandas and pyarrow: {error}")
+    sys.exit(run_program(_main, sys.argv[1:]))

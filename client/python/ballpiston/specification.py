@@ -26,7 +26,6 @@ from ballpiston.spelling import from_spelling
 from ballpiston.suggestion import did_you_mean
 from ballpiston.v1 import spec_pb2
 
-_NANOSECONDS = 1_000_000_000
 _MOST_SEED = 2**64 - 1
 _MOST_COUNT = 2**63 - 1
 
@@ -153,22 +152,27 @@ def question_of(experiment: object, question: Mapping[str, Any]) -> Any:
 Method = TypeVar("Method", bound=Callable[..., Any])
 
 
-def takes_question(method: Method) -> Method:
-    """Shows the keywords of `specification` in the signature of a method that has **question, for
-    help() and for completion in notebooks."""
-    own = inspect.signature(method)
-    keywords = [p for p in _KEYWORDS.values() if p.name not in own.parameters]
-    parameters = [p for p in own.parameters.values() if p.kind is not p.VAR_KEYWORD]
-    shown = own.replace(parameters=[*parameters[:2], *keywords, *parameters[2:]])
-    setattr(method, "__signature__", shown)
-    return method
+def takes_keywords_of(other: Callable[..., Any]) -> Callable[[Method], Method]:
+    """Shows the keywords of another function in the signature of a method that passes its
+    **question on to it, for help() and for completion in notebooks."""
+
+    def with_signature(method: Method) -> Method:
+        own = inspect.signature(method)
+        parameters = [p for p in own.parameters.values() if p.kind is not p.VAR_KEYWORD]
+        keywords = _keywords_of(other).values()
+        shown = own.replace(parameters=[*parameters[:2], *keywords, *parameters[2:]])
+        setattr(method, "__signature__", shown)
+        return method
+
+    return with_signature
 
 
-_KEYWORDS = {
-    name: parameter
-    for name, parameter in inspect.signature(specification).parameters.items()
-    if parameter.kind is parameter.KEYWORD_ONLY
-}
+def _keywords_of(function: Callable[..., Any]) -> dict[str, inspect.Parameter]:
+    parameters = inspect.signature(function).parameters
+    return {name: p for name, p in parameters.items() if p.kind is p.KEYWORD_ONLY}
+
+
+_KEYWORDS = _keywords_of(specification)
 # Those of submit and run, for suggestions.
 _JOB_KEYWORDS = ("fresh", "priority", "request_id", "labels", "progress")
 
@@ -208,7 +212,7 @@ def set_target(
     if tolerance is not None:
         spec.target.tolerance = real_number("tolerance", tolerance) + 0.0
     if budget is not None:
-        _set_duration(spec.target.budget, real_number("budget", budget))
+        spec.target.budget.FromNanoseconds(_nanoseconds(real_number("budget", budget)))
 
 
 def _within(name: str, value: object, least: int, most: int) -> int:
@@ -218,12 +222,9 @@ def _within(name: str, value: object, least: int, most: int) -> int:
     return number
 
 
-def _set_duration(duration: Any, seconds: float) -> None:
-    if not abs(seconds) <= 1e9:
-        raise ValueError(f"budget has to be a number of seconds up to 10^9, not {seconds!r}")
-    nanoseconds = round(seconds * _NANOSECONDS)
-    if nanoseconds == 0 and seconds != 0:
-        raise ValueError(f"budget is {seconds!r} s; permitted: 1e-9 to 1e6 s")
-    sign = 1 if nanoseconds >= 0 else -1
-    whole, rest = divmod(abs(nanoseconds), _NANOSECONDS)
-    duration.seconds, duration.nanos = sign * whole, sign * rest
+def _nanoseconds(budget: float) -> int:
+    """A value that a Duration holds. The server judges all others."""
+    nanoseconds = round(budget * 1e9) if abs(budget) <= 1e9 else 0
+    if nanoseconds == 0 and budget != 0:
+        raise ValueError(f"budget is {budget!r} s; permitted: 1e-9 to 1e6 s")
+    return nanoseconds

@@ -18,11 +18,6 @@ def spelling(enum: Any, value: int) -> str:
     return str(value) if descriptor is None else spelling_of_name(descriptor.name)
 
 
-def spellings(enum: Any) -> list[str]:
-    """Those of every value but the unspecified one."""
-    return [spelling_of_name(value.name) for value in enum.DESCRIPTOR.values if value.number != 0]
-
-
 def from_spelling(enum: Any, what: str, text: object) -> int:
     """The number of a spelling. `what` names the argument in the error.
 
@@ -32,12 +27,12 @@ def from_spelling(enum: Any, what: str, text: object) -> int:
     """
     if not isinstance(text, str):
         raise TypeError(f"{what} has to be a str, not {type(text).__name__}")
+    # All but the unspecified one.
+    numbers = {spelling_of_name(v.name): int(v.number) for v in enum.DESCRIPTOR.values if v.number}
     wanted = spelling_of_name(text)
-    for value in enum.DESCRIPTOR.values:
-        if value.number != 0 and spelling_of_name(value.name) == wanted:
-            return int(value.number)
-    names = spellings(enum)
+    if wanted in numbers:
+        return numbers[wanted]
     raise ValueError(
-        f"{text!r} is not a value of {what}{did_you_mean(wanted, names)}; "
-        f"the values are {', '.join(names)}"
+        f"{text!r} is not a value of {what}{did_you_mean(wanted, numbers)}; "
+        f"the values are {', '.join(numbers)}"
     )

@@ -1,4 +1,4 @@
-"""The nearest name to a mistyped one."""
+"""Messages about names that do not exist."""
 
 from __future__ import annotations
 
@@ -10,3 +10,10 @@ def did_you_mean(name: str, names: Iterable[str]) -> str:
     """'; did you mean NAME?', or nothing if no name is near."""
     near = difflib.get_close_matches(name, list(names), n=1)
     return f"; did you mean {near[0]!r}?" if near else ""
+
+
+def no_such(what: str, name: str, owner: str, names: Iterable[str]) -> str:
+    """That `owner` has no `what` of this name, and which names it has."""
+    names = list(dict.fromkeys(names))
+    there = ", ".join(names) or "none"
+    return f"there is no {what} {name!r}{did_you_mean(name, names)}; {owner} has {there}"

@@ -11,15 +11,16 @@ from __future__ import annotations
 import random
 import time
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import grpc
 
 from ballpiston.connection import Connection
 from ballpiston.errors import Error, Unavailable
+from ballpiston.progress import Progress
 from ballpiston.v1 import ensemble_pb2
 
-LONGEST_CONNECTING = 1.0  # seconds
+_LONGEST_CONNECTING = 1.0  # seconds
 
 _ENDED = (
     ensemble_pb2.EnsembleJob.SUCCEEDED,
@@ -31,19 +32,6 @@ _ENDED = (
 def has_ended(state: int) -> bool:
     """SUCCEEDED, FAILED or CANCELLED."""
     return state in _ENDED
-
-
-class Observer(Protocol):
-    """What a watch calls, on the thread that watches."""
-
-    def on_job(self, job: Any) -> None:
-        """At first, and at each change of state."""
-
-    def on_snapshot(self, snapshot: Any) -> None:
-        """Progress, and points that changed."""
-
-    def on_disconnect(self, why: Error, pause: float) -> None:
-        """The stream broke; the next attempt follows after `pause` seconds."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +67,7 @@ class ReattachPace:
 
 
 def watch_job(
-    connection: Connection, name: str, observer: Observer, pauses: Pauses = Pauses()
+    connection: Connection, name: str, screen: Progress, pauses: Pauses = Pauses()
 ) -> Any:
     """Blocks until the job has ended and returns it, as an EnsembleJob.
 
@@ -87,16 +75,23 @@ def watch_job(
         Unavailable: the watch gave up.
         Error: any other error of the server.
     """
-    watch = Attachments(name, observer, pauses)
+    watch = Attachments(name, pauses)
     while True:
-        why = _read_stream(connection, watch)
+        why = _read_stream(connection, watch, screen)
         if watch.ended is not None:
             return watch.ended
-        time.sleep(watch.pause_after(why))
-        try:
-            connection.revive(LONGEST_CONNECTING)
-        except Unavailable:
-            pass  # the next attempt reports what goes wrong
+        pause = watch.pause_after(why)
+        screen.show_pause(pause)
+        time.sleep(pause)
+        connect_again(connection)
+
+
+def connect_again(connection: Connection) -> None:
+    """Waits a moment for the connection. The next stream reports what goes wrong."""
+    try:
+        connection.revive(_LONGEST_CONNECTING)
+    except Unavailable:
+        pass
 
 
 class Attachments:
@@ -107,8 +102,7 @@ class Attachments:
         ended: the job, once it has ended.
     """
 
-    def __init__(self, name: str, observer: Observer, pauses: Pauses = Pauses()) -> None:
-        self._observer = observer
+    def __init__(self, name: str, pauses: Pauses = Pauses()) -> None:
         self._pauses = pauses
         self._pace = ReattachPace(pauses, time.monotonic())
         self.request = ensemble_pb2.WatchEnsembleJobRequest(name=name)
@@ -119,12 +113,8 @@ class Attachments:
         self._pace.heard(time.monotonic())
         if message.resume_token:
             self.request.resume_token = message.resume_token
-        if message.HasField("job"):
-            if has_ended(message.job.state):
-                self.ended = message.job
-            self._observer.on_job(message.job)
-        elif message.HasField("snapshot"):
-            self._observer.on_snapshot(message.snapshot)
+        if has_ended(message.job.state):
+            self.ended = message.job
 
     def pause_after(self, why: Error) -> float:
         """Seconds until the next stream, after one that `why` ended.
@@ -141,7 +131,6 @@ class Attachments:
             raise Unavailable(
                 f"gave up watching after {silence} without the server: {why}", code="UNAVAILABLE"
             ) from why
-        self._observer.on_disconnect(why, pause)
         return pause
 
 
@@ -150,12 +139,13 @@ def ended_early() -> Error:
     return Unavailable("the server ended the watch before the end of the job", code="UNAVAILABLE")
 
 
-def _read_stream(connection: Connection, watch: Attachments) -> Error:
+def _read_stream(connection: Connection, watch: Attachments, screen: Progress) -> Error:
     """One stream to its end, and why it ended."""
     stream = connection.open_stream(connection.ensembles.WatchEnsembleJob, watch.request)
     try:
         for message in stream:
             watch.handle(message)
+            screen.show(message)
     except grpc.RpcError as error:
         return connection.error_of(error)
     finally:

@@ -371,10 +371,36 @@
     }
   }
 
+  // The kinds of lines that measured values are compared with, and their labels.
+  const COMPARED = {exact: 'exact', limit: 'Markov limit'};
+
+  // The lines of one series, from its places {x, value, error, exact, limit} in the order of x. A
+  // series without a label is the only one of its chart.
+  function seriesLines(places, label = '', colour = 0) {
+    const line = (field, more) => ({
+      x: places.map((at) => at.x),
+      y: places.map((at) => at[field] ?? null),
+      ...more,
+    });
+    const measured = {label: label || 'measured', kind: 'measured', colour};
+    const compared = Object.keys(COMPARED)
+      .filter((kind) => places.some((at) => isNumber(at[kind])))
+      .map((kind) =>
+        line(kind, {
+          label: [label, COMPARED[kind]].filter(Boolean).join(', '),
+          kind,
+          colour: label ? colour : 1,
+        }),
+      );
+    return [line('value', {...measured, error: places.map((at) => at.error)}), ...compared];
+  }
+
   // Called after a change of the theme.
-  ballpiston.repaintCharts = () => charts.forEach((chart) => chart.repaint());
+  const repaintCharts = () => charts.forEach((chart) => chart.repaint());
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', repaintCharts);
+
   // Called when the reader leaves a view.
-  ballpiston.removeCharts = () => charts.forEach((chart) => chart.remove());
-  ballpiston.Chart = Chart;
-  ballpiston.styleOf = styleOf;
+  const removeCharts = () => charts.forEach((chart) => chart.remove());
+
+  Object.assign(ballpiston, {Chart, seriesLines, styleOf, repaintCharts, removeCharts});
 })((globalThis.ballpiston ??= {}));

@@ -17,17 +17,20 @@
     'data_loss',
   ]);
 
-  // `code` is an error code of the protocol, such as not_found. `isFinal`: a retry gives the same
-  // error.
+  // `code` is an error code of the protocol, such as not_found; `reason` a word of the server, such
+  // as JOB_NOT_FOUND. `isFinal`: a retry gives the same error.
   class CallError extends Error {
-    constructor(code, message) {
+    constructor(code, message, reason) {
       super(message || code);
       this.code = code;
-      this.isFinal = FINAL.has(code);
+      this.isFinal = FINAL.has(code) || reason === 'TOO_MANY_POINTS';
     }
   }
 
-  const errorOf = (json, code) => new CallError(json?.code ?? code, json?.message);
+  function errorOf(json, code) {
+    const reason = json?.details?.find(({debug}) => debug?.reason)?.debug.reason;
+    return new CallError(json?.code ?? code, json?.message, reason);
+  }
 
   function noAnswer() {
     return new CallError(
@@ -80,32 +83,20 @@
   class ByteReader {
     constructor(reader) {
       this.reader = reader;
-      this.chunks = [];
-      this.size = 0;
+      this.known = new Uint8Array();
     }
 
     async take(count) {
-      while (this.size < count) {
+      while (this.known.length < count) {
         const {value, done} = await this.reader.read();
         if (done) throw new CallError('unavailable', 'the answer ended too early');
-        this.chunks.push(value);
-        this.size += value.length;
+        const longer = new Uint8Array(this.known.length + value.length);
+        longer.set(this.known);
+        longer.set(value, this.known.length);
+        this.known = longer;
       }
-      return this.cut(count);
-    }
-
-    cut(count) {
-      const taken = new Uint8Array(count);
-      let filled = 0;
-      while (filled < count) {
-        const chunk = this.chunks[0];
-        const part = chunk.subarray(0, count - filled);
-        taken.set(part, filled);
-        filled += part.length;
-        if (part.length === chunk.length) this.chunks.shift();
-        else this.chunks[0] = chunk.subarray(part.length);
-      }
-      this.size -= count;
+      const taken = this.known.slice(0, count);
+      this.known = this.known.subarray(count);
       return taken;
     }
   }

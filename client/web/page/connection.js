@@ -21,7 +21,10 @@
 
   const banner = () => document.getElementById('connection');
 
-  function say(text) {
+  let isFinal = false; // the banner shows an error that a later answer does not remove
+
+  function say(text, isFinalError = false) {
+    isFinal = isFinalError;
     if (banner().textContent !== text) banner().textContent = text;
     banner().hidden = text === '';
   }
@@ -34,40 +37,43 @@
     return '';
   }
 
-  const answered = () => say('');
-  const failed = (error) => say(`${adviceFor(error)}The server says: ${error.message}`);
+  // Called when the reader acts.
+  const clearBanner = () => say('');
+
+  function answered() {
+    if (!isFinal) say('');
+  }
+
+  const failed = (error) => say(`${adviceFor(error)}The server says: ${error.message}`, true);
   const failedForNow = (error) =>
     say(`No answer; retrying. The page may be out of date. Reason: ${error.message}`);
 
-  // Waits until `ms` have passed, or the browser is online again, or the signal is aborted.
-  function pause(ms, signal) {
+  // Waits for the next event of this name, or until the signal is aborted.
+  function until(target, name, signal) {
     return new Promise((resolve) => {
-      const timer = setTimeout(end, ms);
-      function end() {
-        clearTimeout(timer);
-        removeEventListener('online', end);
-        signal?.removeEventListener('abort', end);
+      const ended = new AbortController(); // removes the listeners
+      const end = () => {
+        ended.abort();
         resolve();
-      }
-      addEventListener('online', end);
-      signal?.addEventListener('abort', end);
+      };
+      target.addEventListener(name, end, {signal: ended.signal});
+      signal.addEventListener('abort', end, {signal: ended.signal});
+      if (signal.aborted) end();
     });
   }
 
-  // Resolves when this tab is visible. A hidden tab sends no requests: a browser keeps only six
+  // Waits until `ms` have passed, or the browser is online again, or the signal is aborted.
+  async function pause(ms, signal) {
+    const over = new AbortController();
+    const timer = setTimeout(() => over.abort(), ms);
+    await until(window, 'online', AbortSignal.any([signal, over.signal]));
+    clearTimeout(timer);
+  }
+
+  // Waits until this tab is visible. A hidden tab sends no requests: a browser keeps only six
   // connections to the gateway, for all tabs together.
-  function visible(signal) {
-    return new Promise((resolve) => {
-      function look() {
-        if (document.hidden && !signal?.aborted) return;
-        document.removeEventListener('visibilitychange', look);
-        signal?.removeEventListener('abort', look);
-        resolve();
-      }
-      document.addEventListener('visibilitychange', look);
-      signal?.addEventListener('abort', look);
-      look();
-    });
+  async function visible(signal) {
+    while (document.hidden && !signal.aborted) await until(document, 'visibilitychange', signal);
   }
 
   // Calls attempt(progress) until it succeeds or its error is final. The attempt calls progress()
@@ -110,14 +116,10 @@
       clearTimeout(timer);
       if (document.hidden) timer = setTimeout(() => controller.abort(new TabHidden()), ms);
     };
-    const stop = () => controller.abort(signal.reason);
-    document.addEventListener('visibilitychange', look);
-    signal.addEventListener('abort', stop);
-    controller.signal.addEventListener('abort', () => {
-      clearTimeout(timer);
-      document.removeEventListener('visibilitychange', look);
-      signal.removeEventListener('abort', stop);
-    });
+    const ended = {signal: controller.signal};
+    document.addEventListener('visibilitychange', look, ended);
+    signal.addEventListener('abort', () => controller.abort(signal.reason), ended);
+    controller.signal.addEventListener('abort', () => clearTimeout(timer));
     look();
     return controller;
   }
@@ -125,7 +127,8 @@
   Object.assign(ballpiston, {
     token,
     takeToken,
-    clearBanner: answered,
+    clearBanner,
+    until,
     pause,
     keepTrying,
     TabHidden,

@@ -17,6 +17,10 @@
     return made;
   }
 
+  function button(text, onclick, attributes = {}) {
+    return element('button', {type: 'button', onclick, ...attributes}, text);
+  }
+
   // Roles are explicit, because the style sheet displays rows as grids: some browsers then drop the
   // implied roles.
   // `columns`: [{label, number}]; `rows`: arrays of texts or nodes.
@@ -65,6 +69,33 @@
     );
   }
 
+  // The rows of a table that changes, by a key.
+  class LiveRows {
+    constructor(table, columns) {
+      Object.assign(this, {columns, body: table.querySelector('tbody'), rows: new Map()});
+    }
+
+    // Returns the row of the key. Makes it again, with the focus, if `seen`, a text, differs from
+    // that of the last time; `makeCells` returns its cells. Inserts a new row before the node
+    // `next`.
+    put(key, seen, makeCells, next) {
+      const known = this.rows.get(key);
+      if (known?.seen === seen) return known.row;
+      const row = tableRow(this.columns, makeCells());
+      const hadFocus = known?.row.contains(document.activeElement);
+      if (known) known.row.replaceWith(row);
+      else this.body.insertBefore(row, next);
+      if (hadFocus) row.querySelector('a, button').focus();
+      this.rows.set(key, {row, seen});
+      return row;
+    }
+
+    remove(key) {
+      this.rows.get(key).row.remove();
+      this.rows.delete(key);
+    }
+  }
+
   // `pairs`: [[term, text or node], ...]. A term without text is left out.
   function facts(pairs) {
     const list = element('dl', {class: 'facts'});
@@ -87,5 +118,5 @@
     return element('label', {class: 'choice'}, element('span', {}, label), select);
   }
 
-  Object.assign(ballpiston, {element, table, tableRow, facts, choice});
+  Object.assign(ballpiston, {element, button, table, LiveRows, facts, choice});
 })((globalThis.ballpiston ??= {}));

@@ -3,8 +3,7 @@
 (function (ballpiston) {
   'use strict';
 
-  const {element, choice, Chart, isNumber, words, symbolOf, parameterPairs, parameterText} =
-    ballpiston;
+  const {element, choice, isNumber, words, symbolOf, parameterPairs} = ballpiston;
 
   const MOST_LINES = 6; // the number of different colours and symbols
   const MOST_WITHOUT_LOG = 30; // ratio of the largest to the smallest x
@@ -50,7 +49,7 @@
     for (const point of points) {
       const label = parameterPairs(point.parameters)
         .filter(([name]) => name !== axis && varying[name])
-        .map(([name, value]) => `${symbolOf(name)} = ${parameterText(value)}`)
+        .map(([name, value]) => `${symbolOf(name)} = ${ballpiston.parameterText(value)}`)
         .join(', ');
       if (!grouped.has(label)) grouped.set(label, []);
       grouped.get(label).push(point);
@@ -81,8 +80,8 @@
     };
   }
 
-  function linesOf(label, points, axis, name, shown, colour) {
-    const sorted = points
+  function placesOf(points, axis, name, shown) {
+    return points
       .map((point) => ({
         x: coordinate(point.parameters[axis]),
         ...inForm(
@@ -92,30 +91,6 @@
       }))
       .filter((at) => at.value !== null)
       .sort((a, b) => a.x - b.x);
-    const x = sorted.map((at) => at.x);
-    const lines = [
-      {
-        label: label || 'measured',
-        kind: 'measured',
-        colour,
-        x,
-        y: sorted.map((at) => at.value),
-        error: sorted.map((at) => at.error),
-      },
-    ];
-    const further = (field, kind, text) => {
-      if (!sorted.some((at) => isNumber(at[field]))) return;
-      lines.push({
-        label: label ? `${label}, ${text}` : text,
-        kind,
-        colour: label ? colour : 1,
-        x,
-        y: sorted.map((at) => at[field] ?? null),
-      });
-    };
-    further('exact', 'exact', 'exact');
-    further('limit', 'limit', 'Markov limit');
-    return lines;
   }
 
   function isWide(x) {
@@ -127,7 +102,7 @@
   class GridChart {
     constructor() {
       this.choices = element('div', {class: 'choices'});
-      this.chart = new Chart();
+      this.chart = new ballpiston.Chart();
       this.element = element('div', {}, this.choices, this.chart.element);
       this.chosen = {estimate: null, axis: null, shown: 'value'};
     }
@@ -177,7 +152,7 @@
       const grouped = groups(this.points, axis);
       const drawn = spread(grouped);
       const lines = drawn.flatMap(([label, points], i) =>
-        linesOf(label, points, axis, estimate, shown, i),
+        ballpiston.seriesLines(placesOf(points, axis, estimate, shown), label, i),
       );
       const hasValues = lines.some((line) => line.y.length);
       this.chart.show({

@@ -3,8 +3,7 @@
 (function (ballpiston) {
   'use strict';
 
-  const {element, table, tableRow, choice, call, keepTrying, pause, timeElement, countText, words} =
-    ballpiston;
+  const {element, button, table, LiveRows, call, keepTrying, pause, countText, words} = ballpiston;
 
   const PAGE = 100;
   const REFRESH = 2000; // ms
@@ -97,38 +96,24 @@
         note ? element('span', {class: 'soft'}, ` ${note}`) : null,
       ),
       progressCell(job),
-      timeElement(job.create_time) ?? '',
+      ballpiston.timeElement(job.create_time) ?? '',
       job.principal ?? '',
     ];
   }
 
   // The rows of jobs, by the job's name, newest job first.
-  class Rows {
-    constructor(body) {
-      this.body = body;
-      this.rows = new Map(); // name: {row, job, seen}
-    }
-
+  class JobRows extends LiveRows {
     clear() {
       this.rows.clear();
       this.body.replaceChildren();
     }
 
-    put(job, before) {
-      const seen = JSON.stringify(job);
-      const known = this.rows.get(job.name);
-      if (known?.seen === seen) return known.row;
-      const row = tableRow(COLUMNS, cellsOf(job));
-      const hadFocus = known?.row.contains(document.activeElement);
-      if (known) known.row.replaceWith(row);
-      else this.body.insertBefore(row, before);
-      if (hadFocus) row.querySelector('a').focus();
-      this.rows.set(job.name, {row, job, seen});
-      return row;
+    putJob(job, next) {
+      return this.put(job.name, JSON.stringify(job), () => cellsOf(job), next);
     }
 
     append(jobs) {
-      for (const job of jobs) this.put(job, null);
+      for (const job of jobs) this.putJob(job, null);
     }
 
     // Updates the rows from a new answer for the first page. Adds new jobs at the top. Removes jobs
@@ -136,24 +121,22 @@
     refresh(jobs, isAll) {
       const names = new Set(jobs.map((job) => job.name));
       const oldest = jobs.at(-1)?.create_time ?? '';
-      for (const [name, {row, job}] of this.rows) {
-        if (names.has(name) || !(isAll || job.create_time > oldest)) continue;
-        row.remove();
-        this.rows.delete(name);
+      for (const [name, {row}] of this.rows) {
+        const isNewer = row.querySelector('time')?.dateTime > oldest;
+        if (!names.has(name) && (isAll || isNewer)) this.remove(name);
       }
       let next = this.body.firstChild;
       for (const job of jobs) {
-        const row = this.rows.has(job.name) ? this.put(job) : this.put(job, next);
+        const row = this.putJob(job, next);
         if (row === next || !next?.isConnected) next = row.nextSibling;
       }
     }
 
     refreshTimes() {
       const now = Date.now();
-      for (const {row, job} of this.rows.values()) {
-        const time = row.querySelector('time');
-        const text = ballpiston.ageText(new Date(job.create_time), now);
-        if (time && time.textContent !== text) time.textContent = text;
+      for (const time of this.body.querySelectorAll('time')) {
+        const text = ballpiston.ageText(new Date(time.dateTime), now);
+        if (time.textContent !== text) time.textContent = text;
       }
     }
   }
@@ -179,20 +162,16 @@
       this.filter = 'all';
       this.status = element('p', {class: 'soft'});
       const list = table('Jobs, newest first', COLUMNS, [], {class: 'rows jobs'});
-      this.rows = new Rows(list.querySelector('tbody'));
+      this.rows = new JobRows(list, COLUMNS);
       this.empty = element('p', {hidden: true});
-      this.more = element(
-        'button',
-        {type: 'button', hidden: true, onclick: () => this.appendPage()},
-        'More jobs',
-      );
+      this.more = button('More jobs', () => this.appendPage(), {hidden: true});
       main.append(
         element('h1', {tabindex: '-1'}, 'Jobs'),
         this.status,
         element(
           'div',
           {class: 'choices'},
-          choice(
+          ballpiston.choice(
             'State',
             Object.keys(FILTERS).map((name) => ({value: name, label: name})),
             'all',
@@ -246,6 +225,7 @@
     async appendPage() {
       if (this.loading) return;
       this.loading = true;
+      ballpiston.clearBanner();
       const filter = this.filter;
       try {
         const {jobs, token} = await keepTrying(() => this.page(this.token), this.signal);

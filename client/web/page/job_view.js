@@ -4,25 +4,7 @@
 (function (ballpiston) {
   'use strict';
 
-  const {
-    element,
-    table,
-    tableRow,
-    call,
-    stream,
-    keepTrying,
-    whileVisible,
-    pause,
-    TabHidden,
-    ResultView,
-    POINT_COLUMNS,
-    pointCells,
-    GridChart,
-    isNumber,
-    countText,
-    words,
-    shellWord,
-  } = ballpiston;
+  const {element, button, call, keepTrying, POINT_COLUMNS, words} = ballpiston;
 
   const MOST_STEPS = 300; // of a point's convergence; then every second step is dropped
   const ROWS = 200; // of points that one press of a button adds
@@ -52,32 +34,18 @@
           samples,
           ...estimates.find((estimate) => estimate.name === name),
         }))
-        .filter((step) => isNumber(step.value));
+        .filter((step) => ballpiston.isNumber(step.value));
       if (steps.length < 2) return null;
-      const x = steps.map((step) => step.samples);
-      const lines = [
-        {
-          label: 'value',
-          kind: 'measured',
-          colour: 0,
-          x,
-          y: steps.map((step) => step.value),
-          error: steps.map((step) => step.standard_error),
-        },
-      ];
-      for (const [field, kind, label] of [
-        ['exact', 'exact', 'exact'],
-        ['limit', 'limit', 'Markov limit'],
-      ]) {
-        if (!isNumber(steps.at(-1)[field])) continue;
-        lines.push({label, kind, colour: 1, x, y: x.map(() => steps.at(-1)[field])});
-      }
+      const {exact, limit, samples: most} = steps.at(-1);
+      const places = steps.map(({samples: x, value, standard_error: error}) => {
+        return {x, value, error, exact, limit};
+      });
       return {
         title: `Convergence of ${words(name)}`,
         xLabel: 'samples',
         yLabel: 'value',
-        lines,
-        logX: x.at(-1) > 30 * x[0],
+        lines: ballpiston.seriesLines(places),
+        logX: most > 30 * steps[0].samples,
       };
     }
   }
@@ -149,7 +117,7 @@
 
   // A command that the reader can copy.
   const command = (...words) =>
-    element('pre', {tabindex: '0', class: 'command'}, words.map(shellWord).join(' '));
+    element('pre', {tabindex: '0', class: 'command'}, words.map(ballpiston.shellWord).join(' '));
 
   function notes(job) {
     const shown = [];
@@ -179,7 +147,7 @@
       this.state = element('span', {role: 'status'});
       this.why = element('p', {class: 'panel', hidden: true});
       this.notes = element('div');
-      this.ask = element('button', {type: 'button', onclick: onAsk, hidden: true}, 'Submit again');
+      this.ask = button('Submit again', onAsk, {hidden: true});
       this.facts = element('div');
       this.spec = element('div');
       this.element = element(
@@ -229,64 +197,44 @@
     constructor(onChoose) {
       this.onChoose = onChoose;
       this.count = ROWS;
-      this.rows = new Map();
-      this.table = table('Points, with their first estimate', POINT_COLUMNS, [], {
+      this.table = ballpiston.table('Points, with their first estimate', POINT_COLUMNS, [], {
         class: 'rows points',
       });
-      this.body = this.table.querySelector('tbody');
-      this.more = element(
-        'button',
-        {
-          type: 'button',
-          hidden: true,
-          onclick: () => {
-            this.count += ROWS;
-            this.show(this.points, this.finished, this.shown);
-          },
-        },
-        'More points',
-      );
+      this.rows = new ballpiston.LiveRows(this.table, POINT_COLUMNS);
+      const showMore = () => {
+        this.count += ROWS;
+        this.show(this.points, this.finished, this.shown);
+      };
+      this.more = button('More points', showMore, {hidden: true});
       this.element = element('div', {}, this.table, this.more);
     }
 
     // Shows rows for the first `count` points.
     show(points, finished, shown) {
       Object.assign(this, {points, finished, shown});
-      let next = this.body.firstChild;
+      let next = this.rows.body.firstChild;
       for (const point of points.slice(0, this.count)) {
-        const row = this.row(point, finished.has(point.index), next);
-        next = row.nextSibling;
+        const isFinished = finished.has(point.index);
+        const seen = `${point.samples} ${isFinished}`;
+        const cells = () => this.cells(point, isFinished);
+        next = this.rows.put(point.index, seen, cells, next).nextSibling;
       }
       this.more.hidden = points.length <= this.count;
-      const [shownCount, count] = [this.count, points.length].map(countText);
+      const [shownCount, count] = [this.count, points.length].map(ballpiston.countText);
       this.more.textContent = `More points (${shownCount} of ${count} are shown)`;
       this.mark(shown);
     }
 
-    row(point, isFinished, next) {
-      const known = this.rows.get(point.index);
-      if (known?.samples === point.samples && known.isFinished === isFinished) return known.row;
-      const row = tableRow(POINT_COLUMNS, this.cells(point, isFinished));
-      const hadFocus = known?.row.contains(document.activeElement);
-      if (known) known.row.replaceWith(row);
-      else this.body.insertBefore(row, next);
-      if (hadFocus) row.querySelector('button').focus();
-      this.rows.set(point.index, {row, samples: point.samples, isFinished});
-      return row;
-    }
-
     cells(point, isFinished) {
-      const button = element(
-        'button',
-        {type: 'button', class: 'link', onclick: () => this.onChoose(point.index)},
-        `Point ${point.index}`,
-      );
-      return pointCells(point, element('span', {}, button, isFinished ? '' : ' (running)'));
+      const choose = () => this.onChoose(point.index);
+      const link = button(`Point ${point.index}`, choose, {class: 'link'});
+      const name = element('span', {}, link, isFinished ? '' : ' (running)');
+      return ballpiston.pointCells(point, name);
     }
 
     mark(shown) {
       this.marked?.removeAttribute('aria-current');
-      this.marked = this.rows.get(shown)?.row;
+      this.marked = this.rows.rows.get(shown)?.row;
       this.marked?.setAttribute('aria-current', 'true');
     }
   }
@@ -294,13 +242,9 @@
   class PointPanel {
     constructor(onFollow) {
       this.title = element('h2', {tabindex: '-1'}, 'Point');
-      this.follow = element(
-        'button',
-        {type: 'button', onclick: onFollow},
-        'Follow the running point',
-      );
+      this.follow = button('Follow the running point', onFollow);
       this.convergenceNote = element('p', {class: 'soft', hidden: true});
-      this.view = new ResultView();
+      this.view = new ballpiston.ResultView();
       this.element = element(
         'section',
         {'aria-label': 'One point', hidden: true},
@@ -341,7 +285,7 @@
         withoutDetails: new Set(),
       });
       this.head = new JobHead(() => this.askAgain());
-      this.grid = new GridChart();
+      this.grid = new ballpiston.GridChart();
       this.panel = new PointPanel(() => this.choose(null));
       this.points = new PointTable((chosen) => {
         this.choose(chosen);
@@ -450,9 +394,9 @@
 
     // One watch until the job's end. Resumes where the last watch stopped.
     async watch(progress) {
-      const controller = whileVisible(this.signal);
+      const controller = ballpiston.whileVisible(this.signal);
       try {
-        const updates = stream(
+        const updates = ballpiston.stream(
           'EnsembleService/WatchEnsembleJob',
           {name: this.name, resume_token: this.token},
           controller.signal,
@@ -464,13 +408,14 @@
           this.drawSoon();
         }
       } finally {
-        controller.abort(new TabHidden());
+        controller.abort(new ballpiston.TabHidden());
       }
     }
 
     // Submits the same specification: the server answers from its store, or computes.
     async askAgain() {
       this.head.ask.disabled = true;
+      ballpiston.clearBanner();
       try {
         await this.create();
       } catch {
@@ -500,7 +445,7 @@
           );
           this.drawSoon();
         }
-        await pause(STATUS_EVERY, this.signal);
+        await ballpiston.pause(STATUS_EVERY, this.signal);
       }
     }
 

@@ -3,6 +3,8 @@
 (function (ballpiston) {
   'use strict';
 
+  const FIELDS = ['x', 'y', 'vx', 'vy', 'energy']; // of a body, in an event
+
   const place = (body, time) => ({
     x: body.x + (time - body.time) * body.vx,
     y: body.y + (time - body.time) * body.vy,
@@ -43,37 +45,22 @@
       return this.events.find((event) => event.event === kind)?.time;
     }
 
+    // A ball, a piston or both take part.
     apply(event) {
-      if (event.ball !== undefined) {
-        this.balls[event.ball] = {
-          x: event.ball_x,
-          y: event.ball_y,
-          vx: event.ball_vx,
-          vy: event.ball_vy,
-          energy: event.ball_energy,
-          time: event.time,
-        };
-      }
-      if (event.piston !== undefined) {
-        const {vertical} = this.pistons[event.piston];
-        this.pistons[event.piston] = {
-          x: event.piston_x,
-          y: event.piston_y,
-          vx: event.piston_vx,
-          vy: event.piston_vy,
-          energy: event.piston_energy,
-          time: event.time,
-          vertical,
-        };
+      for (const [name, bodies] of [
+        ['ball', this.balls],
+        ['piston', this.pistons],
+      ]) {
+        const body = bodies[event[name]];
+        if (!body) continue;
+        for (const field of FIELDS) body[field] = event[`${name}_${field}`];
+        body.time = event.time;
       }
     }
 
-    ballsNow() {
-      return this.balls.map((ball) => ({...ball, ...place(ball, this.time)}));
-    }
-
-    pistonsNow() {
-      return this.pistons.map((piston) => ({...piston, ...place(piston, this.time)}));
+    // The balls or the pistons where they are at this time.
+    now(bodies) {
+      return bodies.map((body) => ({...body, ...place(body, this.time)}));
     }
   }
 

@@ -50,13 +50,11 @@
     get bounds() {
       const {columns, rows} = this.shape;
       const way = 0.5 - this.start.tip + this.start.delta; // of a piston, to either side of an edge
-      const right = columns - 0.5 + way;
-      if (this.isPair)
-        return {left: -0.5 - EDGE, right: right + EDGE, bottom: -0.5 - EDGE, top: 0.5 + EDGE};
+      const left = this.isPair ? 0 : way;
       const up = rows > 1 ? way : 0;
       return {
-        left: -0.5 - way - EDGE,
-        right: right + EDGE,
+        left: -0.5 - left - EDGE,
+        right: columns - 0.5 + way + EDGE,
         bottom: -0.5 - up - EDGE,
         top: rows - 0.5 + up + EDGE,
       };
@@ -99,9 +97,10 @@
     draw(motion) {
       const c = this.prepare();
       this.drawDiscs(c);
-      if (this.isPair) this.drawTrail(c, motion.ballsNow()[0]);
-      motion.pistonsNow().forEach((piston) => this.drawPiston(c, piston));
-      motion.ballsNow().forEach((ball) => this.drawBall(c, ball));
+      const balls = motion.now(motion.balls);
+      if (this.isPair) this.drawTrail(c, balls[0]);
+      motion.now(motion.pistons).forEach((piston) => this.drawPiston(c, piston));
+      balls.forEach((ball) => this.drawBall(c, ball));
     }
 
     // All discs are one shape, so that overlaps of discs have the same colour as the discs.

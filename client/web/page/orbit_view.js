@@ -2,17 +2,7 @@
 (function (ballpiston) {
   'use strict';
 
-  const {
-    element,
-    stream,
-    keepTrying,
-    OrbitMotion,
-    OrbitPicture,
-    Chart,
-    valueText,
-    countText,
-    words,
-  } = ballpiston;
+  const {element, button, valueText} = ballpiston;
 
   const MOST_AHEAD = 3000; // events that are read before they are played
   const MOST_LISTED = 8;
@@ -61,7 +51,7 @@
   }
 
   function eventText(event) {
-    const parts = [`t = ${event.time.toFixed(4)}`, words(event.event)];
+    const parts = [`t = ${event.time.toFixed(4)}`, ballpiston.words(event.event)];
     if (event.ball !== undefined)
       parts.push(`ball ${event.ball}: energy ${valueText(event.ball_energy, 1e-3)}`);
     if (event.piston !== undefined) {
@@ -73,6 +63,7 @@
   class OrbitView {
     constructor(main, signal) {
       this.signal = signal;
+      this.played = new EventTarget(); // has the event 'advance' when events were played
       this.speed = SPEEDS.indexOf(1);
       this.isPlaying = !matchMedia('(prefers-reduced-motion: reduce)').matches;
       this.form = element(
@@ -116,7 +107,6 @@
     }
 
     controls() {
-      const button = (text, onclick) => element('button', {type: 'button', onclick}, text);
       this.playButton = button('', () => this.play(!this.isPlaying));
       this.stepButton = button('Next exchange', () => this.toNextExchange());
       this.speedText = element('span');
@@ -211,11 +201,12 @@
     // Begins a new trace and ends the previous one.
     async trace() {
       this.tracing?.abort();
+      ballpiston.clearBanner();
       const tracing = (this.tracing = new AbortController());
       const signal = AbortSignal.any([this.signal, tracing.signal]);
       const request = requestOf(this.form);
       try {
-        await keepTrying((progress) => this.read(request, progress, signal), signal);
+        await ballpiston.keepTrying((progress) => this.read(request, progress, signal), signal);
       } catch (error) {
         if (signal.aborted || error instanceof ballpiston.CallError) return; // the banner shows it
         throw error;
@@ -225,7 +216,8 @@
     // The same request gives the same events: a retry skips the known events.
     async read(request, progress, signal) {
       let known = this.request === request ? this.motion.count + this.motion.events.length : 0;
-      for await (const {start, events = []} of stream('TraceService/TraceOrbit', request, signal)) {
+      const messages = ballpiston.stream('TraceService/TraceOrbit', request, signal);
+      for await (const {start, events = []} of messages) {
         progress();
         if (start && this.request !== request) this.begin(request, start);
         this.motion.add(events.slice(known));
@@ -237,21 +229,18 @@
 
     async roomFor(signal) {
       while (this.motion.events.length > MOST_AHEAD && !signal.aborted) {
-        await new Promise((resolve) => {
-          this.onRoom = resolve;
-          signal.addEventListener('abort', resolve);
-        });
+        await ballpiston.until(this.played, 'advance', signal);
       }
     }
 
     begin(request, start) {
       this.request = request;
-      this.motion = new OrbitMotion(start);
-      this.picture = new OrbitPicture(this.canvas, start);
+      this.motion = new ballpiston.OrbitMotion(start);
+      this.picture = new ballpiston.OrbitPicture(this.canvas, start);
       this.exchanges = [];
       this.list.replaceChildren();
       this.chart?.remove();
-      this.chart = new Chart();
+      this.chart = new ballpiston.Chart();
       this.chartPlace.append(this.chart.element);
       this.scaleEnd.textContent = this.picture.isPair
         ? '1/2'
@@ -293,7 +282,7 @@
           .map((event) => element('li', {}, eventText(event))),
       );
       while (this.list.childElementCount > MOST_LISTED) this.list.lastChild.remove();
-      this.onRoom?.();
+      this.played.dispatchEvent(new Event('advance'));
     }
 
     // Stores the mean energies after an exchange, for the chart.
@@ -332,7 +321,7 @@
       this.picture.draw(this.motion);
       const {motion} = this;
       this.clock.textContent =
-        `t = ${motion.time.toFixed(2)}, ${countText(motion.count)} events` +
+        `t = ${motion.time.toFixed(2)}, ${ballpiston.countText(motion.count)} events` +
         (motion.hasEnded && motion.events.length === 0 ? '; the trace has ended' : '');
       this.canvas.setAttribute(
         'aria-label',

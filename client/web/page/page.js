@@ -86,9 +86,6 @@
     );
     document.getElementById('theme').append(chooser);
     applyTheme(theme);
-    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () =>
-      ballpiston.repaintCharts(),
-    );
   }
 
   setUpTheme();

@@ -4,22 +4,7 @@
 (function (ballpiston) {
   'use strict';
 
-  const {
-    element,
-    facts,
-    table,
-    ResultView,
-    POINT_COLUMNS,
-    pointCells,
-    GridChart,
-    specFacts,
-    specJson,
-    jobFacts,
-    wholeTime,
-    countText,
-    words,
-    parametersText,
-  } = ballpiston;
+  const {element, table, countText, words} = ballpiston;
 
   const MOST_PICTURED = 12; // points of a job with separate tables and pictures
   const MOST_ROWS = 1000; // of the table of all points
@@ -59,22 +44,22 @@
       (rows.length < points.length
         ? `: the first ${countText(rows.length)} of ${countText(points.length)}`
         : '');
-    const cells = rows.map((point) => pointCells(point, String(point.index)));
-    return table(caption, POINT_COLUMNS, cells, {class: 'rows points'});
+    const cells = rows.map((point) => ballpiston.pointCells(point, String(point.index)));
+    return table(caption, ballpiston.POINT_COLUMNS, cells, {class: 'rows points'});
   }
 
   // Call it when the section is in the page: charts need their width.
   function showPoint(section, point) {
-    const view = new ResultView();
+    const view = new ballpiston.ResultView();
     section.append(
-      element('h3', {}, `Point ${point.index}: ${parametersText(point.parameters)}`),
+      element('h3', {}, `Point ${point.index}: ${ballpiston.parametersText(point.parameters)}`),
       view.element,
     );
     view.show(point);
   }
 
   function showGrid(section, points) {
-    const grid = new GridChart();
+    const grid = new ballpiston.GridChart();
     section.append(grid.element);
     if (!grid.show(points)) grid.remove();
   }
@@ -87,9 +72,9 @@
       {'aria-label': `${words(job.spec?.experiment)}, ${job.name}`},
       element('h2', {}, words(job.spec?.experiment)),
       panels({...entry, points}, MOST_PICTURED),
-      specFacts(job.spec),
-      specJson(job.spec),
-      jobFacts(job),
+      ballpiston.specFacts(job.spec),
+      ballpiston.specJson(job.spec),
+      ballpiston.jobFacts(job),
     );
     main.append(section);
     if (points.length > 1) showGrid(section, points);
@@ -101,8 +86,8 @@
     const main = document.getElementById('main');
     main.append(
       element('h1', {}, jobs.length === 1 ? 'Report of a job' : `Report of ${jobs.length} jobs`),
-      facts([
-        ['Created', wholeTime(created)],
+      ballpiston.facts([
+        ['Created', ballpiston.wholeTime(created)],
         ['Program', `ballpiston ${version}`],
       ]),
     );
@@ -123,8 +108,5 @@
   }
 
   printLight();
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () =>
-    ballpiston.repaintCharts(),
-  );
   showReport(JSON.parse(document.getElementById('data').textContent));
 })((globalThis.ballpiston ??= {}));

@@ -3,20 +3,7 @@
 (function (ballpiston) {
   'use strict';
 
-  const {
-    element,
-    table,
-    facts,
-    Chart,
-    isNumber,
-    valueText,
-    errorText,
-    withError,
-    signedText,
-    countText,
-    words,
-    parametersText,
-  } = ballpiston;
+  const {element, isNumber, valueText, countText, words, parametersText} = ballpiston;
 
   const MOST_BINS = 60; // shown; the result has more
   const FAR = 4; // standard errors
@@ -57,19 +44,19 @@
 
   function zElement(z) {
     if (!isNumber(z)) return '';
-    return element('span', {class: Math.abs(z) > FAR ? 'far' : null}, signedText(z));
+    return element('span', {class: Math.abs(z) > FAR ? 'far' : null}, ballpiston.signedText(z));
   }
 
   function estimateTable(point, caption) {
     const rows = (point.estimates ?? []).map((estimate) => [
       words(estimate.name),
       valueText(estimate.value, estimate.standard_error),
-      errorText(estimate.value, estimate.standard_error),
+      ballpiston.errorText(estimate.value, estimate.standard_error),
       yardstick(estimate),
       zElement(estimate.z_score),
       modelErrorText(estimate.model_error),
     ]);
-    return table(caption, COLUMNS, rows, {class: 'estimates'});
+    return ballpiston.table(caption, COLUMNS, rows, {class: 'estimates'});
   }
 
   function healthText(health) {
@@ -85,7 +72,7 @@
   }
 
   function pointFacts(point) {
-    return facts([
+    return ballpiston.facts([
       ['Model', words(point.model)],
       ['Why this model', point.reason],
       ['Samples', point.samples > 0 ? countText(point.samples) : null],
@@ -227,31 +214,17 @@
 
   function curveChart(curve) {
     const isProfile = curve.points.some((at) => isNumber(at.position));
-    const x = curve.points.map((at) => (isProfile ? at.position : at.time) ?? 0);
-    const lines = [
-      {
-        label: 'measured',
-        kind: 'measured',
-        colour: 0,
-        x,
-        y: curve.points.map((at) => at.value),
-        error: curve.points.map((at) => at.standard_error),
-      },
-    ];
-    if (curve.points.some((at) => isNumber(at.limit))) {
-      lines.push({
-        label: 'Markov limit',
-        kind: 'limit',
-        colour: 1,
-        x,
-        y: curve.points.map((at) => at.limit),
-      });
-    }
+    const places = curve.points.map(({position, time, value, standard_error: error, limit}) => ({
+      x: (isProfile ? position : time) ?? 0,
+      value,
+      error,
+      limit,
+    }));
     return {
       title: CURVE_LABELS[curve.name] ?? words(curve.name),
       xLabel: isProfile ? 'position (cells)' : 'time (cells over unit speed)',
       yLabel: 'value',
-      lines,
+      lines: ballpiston.seriesLines(places),
     };
   }
 
@@ -282,7 +255,7 @@
       while (this.charts.length > wanted.length) this.charts.pop().remove();
       wanted.forEach((chart, i) => {
         if (!this.charts[i]) {
-          this.charts.push(new Chart());
+          this.charts.push(new ballpiston.Chart());
           this.pictures.append(this.charts[i].element);
         }
         this.charts[i].show(chart);
@@ -313,7 +286,7 @@
       name,
       parametersText(point.parameters),
       words(point.model),
-      withError(first.value, first.standard_error),
+      ballpiston.withError(first.value, first.standard_error),
       isNumber(first.exact) ? valueText(first.exact, first.standard_error / 10) : '',
       zElement(first.z_score),
     ];

@@ -26,6 +26,7 @@ from ballpiston.figures import (
     stability,
 )
 from ballpiston.figures.parts import command, oscillation, style, tables
+from ballpiston.table_file import write_table
 
 REFERENCE = json.loads(
     Path(__file__).with_name("figures_reference.json").read_text(encoding="utf-8")
@@ -271,7 +272,7 @@ def test_durations_have_two_digits(seconds: float, text: str) -> None:
 
 def test_tables_are_written_with_all_digits(tmp_path: Path) -> None:
     table = {"x": np.array([0.1, np.nan]), "name": np.array(["a, b", "c"])}
-    tables.write(tmp_path / "table.csv", table, "made by a test")
+    write_table(tmp_path / "table.csv", table, "made by a test")
     text = (tmp_path / "table.csv").read_text()
     assert text == '# made by a test\nx,name\n0.1,"a, b"\n,c\n'
 
@@ -303,7 +304,7 @@ def test_the_same_picture_gives_the_same_file(tmp_path: Path) -> None:
 def test_every_figure_has_its_parts() -> None:
     for name in figures.names():
         module = importlib.import_module(f"ballpiston.figures.{name.replace('-', '_')}")
-        assert set(module.EFFORT) <= {"quick", "full"}
+        assert set(getattr(module, "EFFORT", {})) <= {"quick", "full"}
         assert callable(module.measure) and callable(module.draw)
         assert module.__doc__ and not module.__doc__.splitlines()[0].endswith(".")
 

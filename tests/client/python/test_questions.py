@@ -38,7 +38,7 @@ def test_texts_are_lists_of_the_command_line() -> None:
 
 def test_shapes_are_numbers_or_texts() -> None:
     assert list(grid(cells="10x10").cells) == ["10x10"]
-    assert list(grid(cells=[4, np.int64(8), "1e3x04"]).cells) == ["4", "8", "1000x4"]
+    assert list(grid(cells=[4, np.int64(8), "1e3", "8x4"]).cells) == ["4", "8", "1000", "8x4"]
     assert list(grid(cells="2:8:3,16").cells) == ["2", "5", "8", "16"]
 
 

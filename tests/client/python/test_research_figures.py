@@ -36,15 +36,16 @@ def point_with_curve(order: int, value: Any, error: Any) -> Any:
 def test_the_growth_of_a_cumulant_does_not_contain_a_constant() -> None:
     time = 2.0 ** np.arange(5)
     point = point_with_curve(3, 7 + 4 / time, np.ones(5))
-    assert charge.growth(point, 3)["value"] == pytest.approx(np.full(4, 7))
-    assert len(charge.growth(point, 4)["value"]) == 0
+    assert charge.combined(point, 3, longer=2)["value"] == pytest.approx(np.full(4, 7))
+    assert len(charge.combined(point, 4, longer=2)["value"]) == 0
 
 
 def test_the_increase_of_the_variance_has_the_error_of_the_shorter_window() -> None:
     error = 0.1 * np.sqrt(2.0) ** np.arange(5)  # independent windows
     point = point_with_curve(2, np.ones(5), error)
-    assert charge.increase(point, 2)["value"] == pytest.approx(np.zeros(4))
-    assert charge.increase(point, 2)["standard_error"] == pytest.approx(error[:-1])
+    increase = charge.combined(point, 2, longer=1)
+    assert increase["value"] == pytest.approx(np.zeros(4))
+    assert increase["standard_error"] == pytest.approx(error[:-1])
 
 
 def test_limits_of_full_counting_are_those_of_the_closed_integrals() -> None:

@@ -120,12 +120,14 @@ class WrittenBar:
 def test_a_bar_shows_points_an_estimate_and_lost_connections() -> None:
     bar = WrittenBar()
     progress = Progress(bar)
-    snapshot: Any = ensemble_pb2.StatisticsSnapshot()
+    message: Any = ensemble_pb2.WatchEnsembleJobResponse()
+    snapshot = message.snapshot
     snapshot.progress.points, snapshot.progress.points_done = 4, 1
     estimate = snapshot.points.add().estimates.add(name="mean_hit_time", value=57.663)
     estimate.standard_error = 0.123
-    progress.on_snapshot(snapshot)
-    progress.on_disconnect(Unavailable("gone"), 0.2)
+    progress.show(message)
+    progress.show(ensemble_pb2.WatchEnsembleJobResponse(heartbeat={}))
+    progress.show_pause(0.2)
     assert bar.lines == [
         (0.25, "1/4 points  mean_hit_time 57.66 ± 0.12"),
         (0.25, "1/4 points  no answer, retrying in 0.2 s"),

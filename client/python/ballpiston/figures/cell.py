@@ -19,8 +19,6 @@ from ballpiston.figures.parts import cell_outline, style
 from ballpiston.figures.parts.asking import RHO, start_of
 from ballpiston.figures.parts.tables import Tables, table
 
-EFFORT: dict[str, dict[str, Any]] = {}
-
 _ARROW = 0.2  # length for a velocity of 1, in cells
 _AWAY = 0.045  # distance of a dimension line from the measured length
 

@@ -20,8 +20,6 @@ from ballpiston.figures.parts import cell_outline, style
 from ballpiston.figures.parts.asking import RHO
 from ballpiston.figures.parts.tables import FloatArray, Tables, closed_forms
 
-EFFORT: dict[str, dict[str, Any]] = {}
-
 _WALL, _FLOOR, _EDGE = "#c3cfe6", "#f4f4f4", "#404040"
 _HIGHEST, _LOWEST = 1.1, 0.6  # heights of the drawing, in units of its width
 
@@ -90,7 +88,8 @@ def _draw_wall(axes: Any, arc: FloatArray, bottom: Any, ceiling: float, depth: i
 
 def _draw_strip(axes: Any, rho: float, x: FloatArray, bottom: Any, colour: str) -> None:
     """Of the floor or the collision surface, between the lower and the upper arcs."""
-    half, z = cell_outline.half_height(rho, x), bottom(x)
+    tip = 0.5 - cell_outline.overlap_length(rho) / 2
+    half, z = cell_outline.half_height(rho, tip - np.abs(x)), bottom(x)
     there = np.column_stack([x, half, z])
     back = np.column_stack([x, -half, z])[::-1]
     face = [np.concatenate([there, back])]

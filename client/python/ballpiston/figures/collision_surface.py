@@ -20,8 +20,6 @@ from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO
 from ballpiston.figures.parts.tables import FloatArray, Tables, closed_forms
 
-EFFORT: dict[str, dict[str, Any]] = {}
-
 
 def measure(
     client: Client, *, rho: float = RHO, delta: float = 0.1, epsilon: float = 0.125

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from ballpiston.client import Client
 from ballpiston.figures.parts import fits, style
 from ballpiston.figures.parts.asking import RHO, answer
-from ballpiston.figures.parts.charge import growth
+from ballpiston.figures.parts.charge import combined
 from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct, rows, table
 from ballpiston.parameter_lists import Shapes
 from ballpiston.point import Point
@@ -87,7 +87,7 @@ def _scaled(point: Point, temperature: float, rate: float) -> list[dict[str, flo
     assert error is not None
     found: list[tuple[Any, ...]] = [(1, np.inf, current, error)]
     for order in (2, 3, 4):
-        grown = growth(point, order)
+        grown = combined(point, order, longer=2)
         time = grown["time"] * rate * kappa / (_CAPACITY * cells**2)
         chosen = (column[:_WINDOWS] for column in (time, grown["value"], grown["standard_error"]))
         found += [(order, *numbers) for numbers in zip(*chosen)]

@@ -19,8 +19,6 @@ from ballpiston.figures.parts import cell_outline, style
 from ballpiston.figures.parts.asking import RHO, start_of
 from ballpiston.figures.parts.tables import FloatArray, Table, Tables, stacked, table
 
-EFFORT: dict[str, dict[str, Any]] = {}
-
 _ARROW = 0.13  # length for a thermal velocity, sqrt(T), in cells
 _BRIGHTEST = 4.0  # the colour is the same for all higher energies, in units of T
 _MARGIN = 0.22  # of discs around the gas, in cells

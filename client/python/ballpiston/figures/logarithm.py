@@ -60,9 +60,8 @@ def measure(
         number_list("delta", delta), forms["lambda"].tolist(), forms["tau_ball_piston"].tolist()
     ):
         count = int(samples * min(1.0, (d / _FEWER_BELOW) ** 2))
-        flags = {"rho": rho, "delta": d, "orbits": count, "seed": seed}
-        texts = [text for name, value in flags.items() for text in (f"--{name}", f"{value!r}")]
-        windows = table_of("slow_pistons", "windows", *texts)
+        pair = {"rho": rho, "delta": d, "seed": seed}
+        windows = table_of("slow_pistons", "windows", **pair, orbits=count)
         facts = {"delta": d, "x": (width + 2 * d) / tau}
         facts["law"] = _AT_REST * (width + d) ** 2 / (width + 2 * d) / tau
         ones = np.ones(len(windows["window"]))
@@ -92,11 +91,8 @@ def logarithms_of_delta(whole: Table) -> Table:
     for part in PARTS:
         both = fits.linear(np.column_stack([x, x * np.log(1 / x)]), *excess(first, part))
         plain = fits.linear(x[:, np.newaxis], *excess(first, part))
-        row = {"part": part, "a": both.coefficients[0], "a_error": both.errors[0]}
-        row |= {"b": both.coefficients[1], "b_error": both.errors[1]}
-        row |= {"chi_squared": both.chi_squared, "freedom": both.freedom}
-        row |= {"plain_a": plain.coefficients[0], "plain_a_error": plain.errors[0]}
-        found.append(row | {"plain_chi_squared": plain.chi_squared, "plain_freedom": plain.freedom})
+        alone = {f"plain_{name}": number for name, number in plain.row("a").items()}
+        found.append({"part": part} | both.row("a", "b") | alone)
     return table(found)
 
 

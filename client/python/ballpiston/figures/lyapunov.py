@@ -112,20 +112,12 @@ def laws(whole: Table) -> Table:
         "logarithm and computed terms": {"terms": line} | computed,
         "computed": {"terms": line[:, :0], "values": rest - log_tau, "errors": rest_error},
     }
+    unknown = dict.fromkeys(("A", "A_error", "B", "B_error"), np.nan)
     return table(
-        _law(name, fits.linear(**model))
+        {"law": name} | unknown | fits.linear(**model).row("A", "B")
         for name, model in models.items()
         if len(value) >= model["terms"].shape[1]
     )
-
-
-def _law(name: str, fit: fits.Fit) -> dict[str, Any]:
-    row: dict[str, Any] = {"law": name, "chi_squared": fit.chi_squared, "freedom": fit.freedom}
-    for k, letter in enumerate("AB"):
-        has = k < len(fit.coefficients)
-        row[letter] = fit.coefficients[k] if has else np.nan
-        row[f"{letter}_error"] = fit.errors[k] if has else np.nan
-    return row
 
 
 @style.styled

@@ -19,8 +19,6 @@ from ballpiston.figures.parts import cell_outline, style
 from ballpiston.figures.parts.asking import RHO
 from ballpiston.figures.parts.tables import Table, Tables, rows, table
 
-EFFORT: dict[str, dict[str, Any]] = {}
-
 _SHOWN_TIME = 25.0  # of the path and the positions; longer curves would be too dense
 _MEETING = {"color": style.BLACK, "markersize": 6, "fillstyle": "none", "linestyle": ""}
 
@@ -73,7 +71,7 @@ def _draw_path(figure: Figure, axes: Any, ball: Table, at: dict[str, float]) -> 
     outline = cell_outline.outline(at["rho"])
     axes.add_patch(Polygon(outline, fill=False, edgecolor=style.BLACK, linewidth=2, zorder=3))
     x = np.linspace(low, tip, 100)
-    half = cell_outline.half_height(at["rho"], x)
+    half = cell_outline.half_height(at["rho"], tip - x)
     axes.fill_between(x, -half, half, color=style.REACH)
     scale = style.energy_bar(
         figure, axes, 0.5, "ball's energy", orientation="horizontal", shrink=0.6, pad=0.01

@@ -21,7 +21,7 @@ from matplotlib.figure import Figure
 from ballpiston.client import Client
 from ballpiston.figures.parts import fits, style
 from ballpiston.figures.parts.asking import RHO, answer
-from ballpiston.figures.parts.charge import increase
+from ballpiston.figures.parts.charge import combined
 from ballpiston.figures.parts.programs import table_of
 from ballpiston.figures.parts.tables import Table, Tables, curves, rows, stacked, table
 from ballpiston.parameter_lists import Numbers, number_list
@@ -77,10 +77,8 @@ def measure(
 def _idle(point: Point, blocks: int, seed: int) -> Table:
     """a of each piston, at several times s."""
     at = point.parameters
-    flags = {"rho": at["rho"], "delta": at["delta"], "seed": seed}
-    flags |= {"cold": at["cold"], "block": _BLOCK, "blocks": blocks}
-    texts = [text for name, value in flags.items() for text in (f"--{name}", f"{value!r}")]
-    found = table_of("slow_pistons", "idle", *texts)
+    gas = {name: at[name] for name in ("rho", "delta", "cold")}
+    found = table_of("slow_pistons", "idle", **gas, block=_BLOCK, blocks=blocks, seed=seed)
     length = len(found["time"])
     return {name: np.full(length, at[name]) for name in ("delta", "cold")} | found
 
@@ -101,7 +99,7 @@ def _growth_and_law(point: Point, idle: Table) -> dict[str, float]:
 def _growth(point: Point) -> dict[str, float]:
     """A fit of v(2 t) - v(t) = growth ln 2 + b/t, where v is Var(Q)/t; and v at the first window of
     the fit, as `variance`."""
-    found = increase(point, 2)
+    found = combined(point, 2, longer=1)
     shortest = found["time"].min()
     is_fitted = (found["time"] > _FROM * shortest) & (found["time"] < _TO * shortest)
     time = found["time"][is_fitted]
@@ -109,10 +107,7 @@ def _growth(point: Point) -> dict[str, float]:
     fit = fits.linear(terms, found["value"][is_fitted], found["standard_error"][is_fitted])
     at = point.parameters
     row = {"delta": float(at["delta"]), "cold": float(at["cold"]), "from": time.min()}
-    row |= {"variance": found["shorter"][is_fitted][0], "growth": fit.coefficients[0]}
-    row |= {"growth_error": fit.errors[0]}
-    row |= {"b": fit.coefficients[1], "b_error": fit.errors[1]}
-    return row | {"chi_squared": fit.chi_squared, "freedom": fit.freedom}
+    return row | {"variance": found["shorter"][is_fitted][0]} | fit.row("growth", "b")
 
 
 @style.styled

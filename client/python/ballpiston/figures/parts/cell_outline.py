@@ -70,7 +70,8 @@ def overlap(rho: float) -> FloatArray:
     )
 
 
-def half_height(rho: float, x: FloatArray) -> FloatArray:
-    """Of the cell at x, measured from its middle."""
-    half: FloatArray = 0.5 - np.sqrt(rho**2 - (0.5 - np.abs(x)) ** 2)
+def half_height(rho: float, depth: FloatArray) -> FloatArray:
+    """Of the cell at a distance from its tip, to full precision also near the tip."""
+    beyond = depth * (depth + overlap_length(rho))  # (depth + lambda/2)^2 - lambda^2/4
+    half: FloatArray = beyond / (0.5 + np.sqrt(0.25 - beyond))
     return half

@@ -17,18 +17,9 @@ from ballpiston.figures.parts.tables import Table
 from ballpiston.point import Point
 
 
-def growth(point: Point, order: int) -> Table:
-    """The growth between the windows `time` and 2 `time`."""
-    return _combined(point, order, longer=2.0)
-
-
-def increase(point: Point, order: int) -> Table:
-    """v(2 t) - v(t), which is 0 at long times if c_n grows as t."""
-    return _combined(point, order, longer=1.0)
-
-
-def _combined(point: Point, order: int, longer: float) -> Table:
-    """longer v(2 t) - v(t), and v(t) as `shorter`."""
+def combined(point: Point, order: int, longer: float) -> Table:
+    """longer v(2 t) - v(t), and v(t) as `shorter`: growth(t) with longer = 2. With longer = 1 it is
+    0 at long times if c_n grows as t."""
     names = {curve.name for curve in point.curves}
     if (name := f"charge_cumulant_{order}_by_window") not in names:
         return {part: np.empty(0) for part in ("time", "shorter", "value", "standard_error")}

@@ -19,10 +19,12 @@ from typing import Any, NoReturn
 import ballpiston
 from ballpiston.document import write_atomically
 from ballpiston.figures import names
-from ballpiston.figures.parts import style, tables
+from ballpiston.figures.parts import style
+from ballpiston.figures.parts.tables import Tables
 from ballpiston.parameter_lists import number_list, whole_number
 from ballpiston.program import run_program
 from ballpiston.suggestion import did_you_mean
+from ballpiston.table_file import write_table
 
 # What --help says about the keywords of `measure`.
 _VARIABLES = {
@@ -161,7 +163,7 @@ def _module(name: str, folder: Path | None) -> ModuleType:
 
 def _keywords(module: ModuleType, options: Namespace) -> dict[str, Any]:
     """Those of `measure` that differ from its defaults."""
-    keywords: dict[str, Any] = dict(module.EFFORT.get(options.effort, {}))
+    keywords: dict[str, Any] = dict(getattr(module, "EFFORT", {}).get(options.effort, {}))
     for keyword, parameter in _variables(module).items():
         text = getattr(options, keyword, None)
         if text is not None:
@@ -181,15 +183,13 @@ def _value(flag: str, text: str, kind: str) -> Any:
     return whole_number(flag, values[0]) if kind == "int" else values[0]
 
 
-def _written(
-    options: Namespace, data: tables.Tables, figure: Any, keywords: dict[str, Any]
-) -> list[Path]:
+def _written(options: Namespace, data: Tables, figure: Any, keywords: dict[str, Any]) -> list[Path]:
     """The pictures last: where they are, the data are too."""
     comment = f"ballpiston {ballpiston.__version__}: figure {options.name} {json.dumps(keywords)}"
     paths = []
     for name, table in data.items():
         paths.append(options.out / f"{name}.csv")
-        tables.write(paths[-1], table, comment)
+        write_table(paths[-1], table, comment)
     for ending in ("png", "svg"):
         paths.append(options.out / f"{options.name}.{ending}")
         style.save(figure, paths[-1])

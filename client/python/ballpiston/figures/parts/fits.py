@@ -17,6 +17,13 @@ class Fit(NamedTuple):
     chi_squared: float
     freedom: int
 
+    def row(self, *names: str) -> dict[str, float]:
+        """The first coefficients by name, their errors, and chi-squared, for a table."""
+        row: dict[str, float] = {}
+        for name, coefficient, error in zip(names, self.coefficients, self.errors):
+            row |= {name: coefficient, f"{name}_error": error}
+        return row | {"chi_squared": self.chi_squared, "freedom": self.freedom}
+
 
 def linear(terms: FloatArray, values: FloatArray, errors: FloatArray) -> Fit:
     """values = terms @ coefficients; one row of `terms` for each value. NaN if there are fewer values

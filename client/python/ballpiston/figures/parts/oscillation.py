@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from ballpiston.figures.parts.fits import linear
 from ballpiston.figures.parts.tables import FloatArray, Table, distinct, rows, table
 
 # x = delta^-power; 0 is the logarithm.
@@ -169,11 +170,9 @@ class SeriesFit:
             _, best = basis.amplitudes(self.whitened)
             x = basis.omegas[best] * _variable(self.log_delta, basis.power)
             columns += [np.cos(x), np.sin(x)]
-        matrix = np.column_stack(columns) * self.weights[:, np.newaxis]
-        covariance = np.linalg.inv(matrix.T @ matrix)
-        beta = covariance @ matrix.T @ (self.weights * self.log_excess)
-        amplitude = float(np.hypot(*beta[2:])) if name is not None else np.nan
-        return float(beta[1]), float(np.sqrt(covariance[1, 1])), amplitude
+        fit = linear(np.column_stack(columns), self.log_excess, 1 / self.weights)
+        amplitude = np.nan if name is None else float(np.hypot(*fit.coefficients[2:]))
+        return float(fit.coefficients[1]), float(fit.errors[1]), amplitude
 
     def _noise(self, random: np.random.Generator, synthetic: int) -> FloatArray:
         """(synthetic, points): data sets of the power law, without the power law."""

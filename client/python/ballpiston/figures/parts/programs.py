@@ -44,9 +44,10 @@ def output_of(program: str, *arguments: str, quiet: bool = False) -> str:
     return ended.stdout
 
 
-def table_of(program: str, *arguments: str) -> Table:
-    """The table that the program prints as CSV; all its columns are numbers."""
-    lines = output_of(program, *arguments).splitlines()
+def table_of(program: str, command: str, **flags: Any) -> Table:
+    """The table that a command of the program prints as CSV; all its columns are numbers."""
+    texts = [text for name, value in flags.items() for text in (f"--{name}", f"{value!r}")]
+    lines = output_of(program, command, *texts).splitlines()
     columns: Any = np.genfromtxt(lines, delimiter=",", names=True, ndmin=1)
     return {name: columns[name] for name in columns.dtype.names or ()}
 

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable, Iterable, Mapping
-from pathlib import Path
 from typing import Any, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from ballpiston.closed_forms import ClosedForms
-from ballpiston.document import write_atomically
 from ballpiston.point import Point
 from ballpiston.result import Result
+from ballpiston.table_file import Table as Table
 
 FloatArray = npt.NDArray[np.float64]
-Table = dict[str, npt.NDArray[Any]]
 Tables = dict[str, Table]
 
-_ESTIMATE = ("standard_error", "exact", "noise_floor", "limit")
+_ESTIMATE = ("name", "value", "standard_error", "exact", "noise_floor", "limit")
 
 
 def table(rows: Iterable[Mapping[str, Any]], names: Iterable[str] = ()) -> Table:
@@ -54,13 +50,12 @@ def distinct(column: Iterable[Any]) -> list[Any]:
 def estimates(result: Result) -> Table:
     """One row for each estimate of each point, with the point's parameters."""
 
-    def of(point: Point) -> list[Table]:
-        found = point.estimates.values()
-        named = [{"name": e.name, "value": e.value} for e in found]
-        more = [{field: getattr(e, field) for field in _ESTIMATE} for e in found]
-        return [table(a | b for a, b in zip(named, more))]
-
-    return _of_points(result, of)
+    return _of_points(
+        result,
+        lambda point: [
+            table({name: getattr(e, name) for name in _ESTIMATE} for e in point.estimates.values())
+        ],
+    )
 
 
 def curves(result: Result, *names: str) -> Table:
@@ -109,25 +104,6 @@ def closed_forms(forms: ClosedForms, *names: str) -> Table:
     columns = [forms[name] for name in names]
     shape = np.broadcast_shapes(*(_as_matrix(column).shape for column in columns))
     return {n: np.broadcast_to(_as_matrix(c), shape).ravel() for n, c in zip(names, columns)}
-
-
-def write(path: Path, whole: Table, comment: str = "") -> None:
-    """As CSV, with all digits; NaN is an empty cell. The comment is a line that begins with #."""
-    text = io.StringIO()
-    if comment:
-        text.write(f"# {comment}\n")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(whole)
-    for row in zip(*(column.tolist() for column in whole.values())):
-        writer.writerow(map(_cell, row))
-    write_atomically(path, text.getvalue().encode())
-
-
-def _cell(value: Any) -> Any:
-    """64 rather than 64.0."""
-    if not isinstance(value, float):
-        return value
-    return "" if np.isnan(value) else repr(value).removesuffix(".0")
 
 
 def _as_matrix(column: FloatArray) -> FloatArray:

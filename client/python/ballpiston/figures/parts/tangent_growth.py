@@ -39,11 +39,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ballpiston.figures.parts.cell_outline import CENTRES, half_height, overlap_length
 from ballpiston.figures.parts.tables import FloatArray
 
 _HITS = 16  # of the ball, after which a front's curvature is known to 10 digits
 _CHUNK = 16_384  # collisions that are followed together
-_CORNERS = ((0.5, 0.5), (0.5, -0.5), (-0.5, 0.5), (-0.5, -0.5))  # centres of the discs
 _SMALLEST_COSINE = 1e-12
 _GRID = 4096  # of depths
 _NODES = 200_000  # of an integral over the piston's speed
@@ -81,12 +81,12 @@ def collision_rate(piston_speed: FloatArray) -> FloatArray:
 def draw(rng: np.random.Generator, rho: float, delta: float, count: int) -> Collisions:
     """From the invariant measure of the return map (core/sampling/collision_surface.h)."""
     depth = _depths(rng, rho, delta, count)
-    y = _half_height(rho, depth) * (2 * rng.random(count) - 1)
+    y = half_height(rho, depth) * (2 * rng.random(count) - 1)
     normal = np.sqrt(rng.random(count))  # (vx - p)/sqrt(2)
     across, angle = np.sqrt(1 - normal**2), 2 * np.pi * rng.random(count)
     along = across * np.cos(angle)  # (vx + p)/sqrt(2)
     vx, p = (along + normal) / np.sqrt(2), (along - normal) / np.sqrt(2)
-    return Collisions((1 - _width(rho)) / 2 - depth, y, vx, across * np.sin(angle), p)
+    return Collisions((1 - overlap_length(rho)) / 2 - depth, y, vx, across * np.sin(angle), p)
 
 
 def mixing(rho: float, collisions: Collisions) -> FloatArray:
@@ -174,7 +174,7 @@ def _next_hit(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """The length of the flight to the next disc, and the disc's normal there."""
     length, cx, cy = np.full_like(x, np.inf), np.zeros_like(x), np.zeros_like(x)
-    for corner_x, corner_y in _CORNERS:
+    for corner_x, corner_y in CENTRES:
         dx, dy = x - corner_x, y - corner_y
         along = dx * ux + dy * uy
         square = along**2 - (dx**2 + dy**2 - rho**2)
@@ -190,20 +190,9 @@ def _next_hit(
 def _depths(rng: np.random.Generator, rho: float, delta: float, count: int) -> FloatArray:
     """Distances from the tip, with a density proportional to the cell's height there."""
     grid = np.linspace(0, delta, _GRID + 1)
-    height = _half_height(rho, grid)
+    height = half_height(rho, grid)
     below = np.concatenate([[0.0], np.cumsum(height[1:] + height[:-1])])
     return np.interp(rng.random(count) * below[-1], below, grid)
-
-
-def _half_height(rho: float, depth: FloatArray) -> FloatArray:
-    beyond = depth * (depth + _width(rho))  # (depth + lambda/2)^2 - lambda^2/4
-    height: FloatArray = beyond / (0.5 + np.sqrt(0.25 - beyond))
-    return height
-
-
-def _width(rho: float) -> float:
-    """lambda."""
-    return float(np.sqrt(4 * rho**2 - 1))
 
 
 def _speeds() -> FloatArray:

@@ -1,0 +1,45 @@
+"""Named columns in a file: .csv, .npz or .parquet, by its ending."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ballpiston.document import whole_file
+
+Table = dict[str, npt.NDArray[Any]]
+
+
+def write_table(path: Path, table: Table, comment: str = "") -> None:
+    """Writes the whole file or none. A .csv has all digits, an empty cell in place of NaN, and the
+    comment, if there is one, in a first line that begins with #.
+
+    Raises:
+        ModuleNotFoundError: .parquet needs pandas and pyarrow.
+    """
+    with whole_file(path) as part:
+        if path.suffix == ".csv":
+            with part.open("w", newline="", encoding="utf-8") as file:
+                file.write(f"# {comment}\n" if comment else "")
+                writer = csv.writer(file, lineterminator="\n")
+                writer.writerow(table)
+                for row in zip(*(column.tolist() for column in table.values())):
+                    writer.writerow(map(_cell, row))
+        elif path.suffix == ".npz":
+            with part.open("wb") as file_of_arrays:
+                np.savez_compressed(file_of_arrays, **table)
+        else:
+            import pandas
+
+            pandas.DataFrame(table).to_parquet(part, index=False)
+
+
+def _cell(value: Any) -> Any:
+    """64 rather than 64.0."""
+    if not isinstance(value, float):
+        return value
+    return "" if np.isnan(value) else repr(value).removesuffix(".0")
