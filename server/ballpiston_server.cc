@@ -13,11 +13,11 @@
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/resource_quota.h"
 #include "grpcpp/server_builder.h"
-#include "server/book/job_name.h"
 #include "server/rpc/reflection_check.h"
 #include "server/rpc/server_status.h"
 #include "server/status/failpoint.h"
 #include "server/status/log.h"
+#include "server/store/job_name.h"
 
 namespace ballpiston::server {
 namespace {

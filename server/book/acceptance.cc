@@ -3,11 +3,10 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/book/job_name.h"
 #include "server/convert/errors.h"
 #include "server/convert/spec.h"
 #include "server/sha256.h"
-#include "server/store/labels.h"
+#include "server/store/job_name.h"
 #include "server/store/sweeper.h"
 
 namespace ballpiston::server {
@@ -16,23 +15,24 @@ namespace {
 constexpr char kWait[] = "wait until some jobs have ended, or cancel some of yours";
 
 // Refuses the job if it, or its principal's active jobs together, would exceed a limit.
-void CheckLoad(Database& database, const Limits& limits, const JobRecord& job) {
-  const Load load = ActiveLoad(database, job.principal);
-  const std::string& principal = job.principal;
+void CheckLoad(Database& database, const Limits& limits, const v1::EnsembleJob& job) {
+  const std::string& principal = job.principal();
+  const Load load = ActiveLoad(database, principal);
+  const int64_t points = job.progress().points();
   const auto check = [&](int64_t with_job, int64_t most, const char* reason, const char* flag,
                          const std::string& what) {
     if (most == 0 || with_job <= most) return;
     database.Fail(LimitExceeded(reason, what, flag, static_cast<double>(most)));
   };
-  check(job.points, limits.max_points_per_job, "TOO_MANY_POINTS", "max-points-per-job",
-        absl::StrCat("the grid has ", job.points, " points: split it between several jobs"));
+  check(points, limits.max_points_per_job, "TOO_MANY_POINTS", "max-points-per-job",
+        absl::StrCat("the grid has ", points, " points: split it between several jobs"));
   check(load.jobs + 1, limits.max_active_jobs_per_principal, "TOO_MANY_JOBS",
         "max-active-jobs-per-principal",
         absl::StrCat(principal, " has ", load.jobs, " active jobs already: ", kWait));
-  const int64_t points = load.points + job.points;
-  check(points, limits.max_active_points_per_principal, "TOO_MANY_ACTIVE_POINTS",
+  const int64_t active = load.points + points;
+  check(active, limits.max_active_points_per_principal, "TOO_MANY_ACTIVE_POINTS",
         "max-active-points-per-principal",
-        absl::StrCat(principal, "'s active jobs would have ", points,
+        absl::StrCat(principal, "'s active jobs would have ", active,
                      " points with this one: ", kWait));
 }
 
@@ -49,6 +49,8 @@ void CheckStoreSize(Database& database, const Limits& limits) {
                               "max-store-bytes", static_cast<double>(limits.max_store_bytes)));
 }
 
+Labels LabelsOf(const v1::EnsembleJob& job) { return {job.labels().begin(), job.labels().end()}; }
+
 // Whether a job with these labels can get more: no label changes its value, and there are not too
 // many.
 bool Fit(const Labels& labels, Labels more) {
@@ -60,51 +62,48 @@ bool Fit(const Labels& labels, Labels more) {
 
 std::optional<EarlierJob> FindEarlier(Database& database, const Acceptance& acceptance) {
   const JobRecord& record = acceptance.record;
-  if (auto original = FindJobOfRequest(database, record.principal, record.request_id)) {
+  if (auto original = FindJobOfRequest(database, record.job.principal(), record.request_id)) {
     if (original->payload != record.payload) database.Fail(RequestIdReused(record.request_id));
     return EarlierJob{*std::move(original)};
   }
   if (acceptance.fresh) return std::nullopt;
-  const Labels labels = LabelsOf(record.labels);
-  auto answer = FindAnswer(database, record.principal, record.question,
-                           [&](const std::string& text) { return Fit(LabelsOf(text), labels); });
+  const Labels labels = LabelsOf(record.job);
+  auto answer =
+      FindAnswer(database, record.job.principal(), record.question,
+                 [&](const v1::EnsembleJob& earlier) { return Fit(LabelsOf(earlier), labels); });
   return answer ? std::optional(EarlierJob{*std::move(answer), true}) : std::nullopt;
 }
 
 // Adds the labels to the job. The labels of a retry replace the job's values. Refused if the job
 // would have more labels than are permitted.
 void AddLabels(Database& database, const Labels& more, JobRecord& record) {
-  Labels labels = LabelsOf(record.labels);
-  for (const auto& [key, value] : more) labels.insert_or_assign(key, value);
+  const Labels before = LabelsOf(record.job);
+  auto& labels = *record.job.mutable_labels();
+  for (const auto& [key, value] : more) labels[key] = value;
   if (labels.size() > kMostLabels) {
     database.Fail(InvalidRequest(
-        {{"labels", absl::StrCat("would give ", JobName(record.id), " ", labels.size(),
+        {{"labels", absl::StrCat("would give ", record.job.name(), " ", labels.size(),
                                  "; permitted: at most ", kMostLabels)}}));
   }
-  const std::string text = LabelsText(labels);
-  if (text == record.labels) return;
-  record.labels = text;
-  UpdateJob(database, record);
+  if (LabelsOf(record.job) != before) UpdateJob(database, record);
 }
 
 // Sets which job the new one continues, if there is one. A tolerance may have been reached before
 // the end of a number of samples; then the points begin anew.
 void Continue(Database& database, Acceptance& acceptance) {
-  JobRecord& record = acceptance.record;
-  const auto target_of = [&database](const JobRecord& job) {
-    return database.ValueOf(SpecFromBytes({job.spec.rest})).target();
-  };
-  const v1::Target target = target_of(record);
-  const auto asks_for_more = [&](const JobRecord& earlier) {
-    if (earlier.numbers.samples == 0) return false;
-    if (!target.has_tolerance()) return acceptance.samples > earlier.numbers.samples;
-    const v1::Target before = target_of(earlier);
+  v1::EnsembleJob& job = acceptance.record.job;
+  const v1::Target& target = job.spec().target();
+  const auto asks_for_more = [&](const v1::EnsembleJob& earlier) {
+    const double samples = earlier.progress().samples();
+    if (samples == 0) return false;
+    if (!target.has_tolerance()) return acceptance.samples > samples;
+    const v1::Target& before = earlier.spec().target();
     return !before.has_tolerance() || target.tolerance() < before.tolerance();
   };
-  for (const JobRecord& earlier : FindFamily(database, record.principal, record.family)) {
-    if (!asks_for_more(earlier)) continue;
-    record.continues = earlier.id;
-    record.continued_samples = earlier.numbers.samples;
+  for (const JobRecord& earlier : FindFamily(database, job.principal(), acceptance.record.family)) {
+    if (!asks_for_more(earlier.job)) continue;
+    job.set_continues(earlier.job.name());
+    job.set_continued_samples(earlier.job.progress().samples());
     return;
   }
 }
@@ -115,10 +114,10 @@ void Continue(Database& database, Acceptance& acceptance) {
 std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
   JobRecord& record = acceptance.record;
   if (auto earlier = FindEarlier(database, acceptance)) {
-    if (!record.labels.empty()) AddLabels(database, LabelsOf(record.labels), earlier->record);
+    AddLabels(database, LabelsOf(record.job), earlier->record);
     return earlier;
   }
-  CheckLoad(database, limits, record);
+  CheckLoad(database, limits, record.job);
   CheckStoreSize(database, limits);
   if (!acceptance.fresh) Continue(database, acceptance);
   InsertJob(database, record);

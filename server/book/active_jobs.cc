@@ -36,8 +36,8 @@ void ActiveJobs::StartRun(const std::shared_ptr<Job>& job, RunRequest request) {
   const JobRecord& row = job->row();
   request.key = row.sequence;
   request.generation = RunOf(row).generation;
-  request.principal = row.principal;
-  request.priority = row.priority;
+  request.principal = row.job.principal();
+  request.priority = row.job.priority();
   request.journal = JournalOf(job, request.has_checkpoints);
   scheduler_.Add(std::move(request));
 }
@@ -49,7 +49,7 @@ std::shared_ptr<JobJournal> ActiveJobs::JournalOf(const std::shared_ptr<Job>& jo
 
 void ActiveJobs::OnEnded(const JobRecord& ended) {
   MutexLock lock(mutex_);
-  ++ended_[ended.state];
+  ++ended_[ended.job.state()];
   jobs_.erase(ended.id);
 }
 

@@ -8,13 +8,15 @@ namespace ballpiston::server {
 namespace {
 
 JobRecord WithoutSpec(JobRecord row) {
-  row.spec = {};
+  row.job.clear_spec();
   return row;
 }
 
 }  // namespace
 
-Job::Job(JobRecord row) : row_(WithoutSpec(std::move(row))), numbers_(row_.numbers) {}
+Job::Job(JobRecord row)
+    : row_(WithoutSpec(std::move(row))),
+      numbers_{.bytes = static_cast<int64_t>(row_.job.stored_bytes())} {}
 
 JobNumbers Job::Numbers() const {
   MutexLock lock(mutex_);

@@ -5,10 +5,11 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/ensemble/point_experiment.h"
-#include "server/book/job_name.h"
 #include "server/convert/errors.h"
+#include "server/convert/timestamp.h"
 #include "server/host.h"
 #include "server/status/failpoint.h"
+#include "server/store/job_name.h"
 
 namespace ballpiston::server {
 
@@ -33,7 +34,7 @@ void JobBook::Shutdown() {
 
 JobRecord JobOf(Database& database, const Principal& caller, const std::string& id, Grid grid) {
   std::optional<JobRecord> record = FindJob(database, id, grid);
-  if (record && caller.MaySee(record->principal)) return *std::move(record);
+  if (record && caller.MaySee(record->job.principal())) return *std::move(record);
   database.Fail(JobNotFound(JobName(id)));
   return {};
 }
@@ -46,18 +47,20 @@ Acceptance JobBook::NewAcceptance(const Principal& caller,
   Acceptance acceptance;
   JobRecord& record = acceptance.record;
   record.id = RandomId();
-  record.principal = caller.name;
   record.request_id = request.request_id();
   record.payload = PayloadOf(request);
-  record.priority = request.priority();
-  record.labels = LabelsText({request.labels().begin(), request.labels().end()});
-  record.spec = SpecBytes(request.spec());
-  record.engine_version = EngineVersion();
-  record.question = QuestionOf(request.spec(), record.engine_version);
-  record.family = FamilyOf(request.spec(), record.engine_version);
-  record.numbers.bytes = static_cast<int64_t>(record.spec.size());
-  record.create_time = WallNow();
-  record.points = static_cast<int64_t>(PointCount(checked.spec));
+  record.question = QuestionOf(request.spec(), EngineVersion());
+  record.family = FamilyOf(request.spec(), EngineVersion());
+  v1::EnsembleJob& job = record.job;
+  job.set_name(JobName(record.id));
+  *job.mutable_spec() = request.spec();
+  SetTime(WallNow(), job.mutable_create_time());
+  job.set_engine_version(EngineVersion());
+  job.set_principal(caller.name);
+  job.set_priority(request.priority());
+  *job.mutable_labels() = request.labels();
+  job.mutable_progress()->set_points(static_cast<int32_t>(PointCount(checked.spec)));
+  SetNumbers({.bytes = static_cast<int64_t>(job.spec().ByteSizeLong())}, job);
   acceptance.fresh = request.fresh();
   const EnsembleSpec& spec = checked.spec;
   const size_t points = spec.target.IsOpenEnded() ? 0 : PointCount(spec);
@@ -90,8 +93,8 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
 void JobBook::StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& checked) {
   RunRequest run;
   run.spec = checked.spec;
-  run.finished.assign(static_cast<size_t>(job->row().points), false);
-  run.has_checkpoints = !job->row().continues.empty();
+  run.finished.assign(PointCount(run.spec), false);
+  run.has_checkpoints = !job->row().job.continues().empty();
   active_.StartRun(job, std::move(run));
 }
 
@@ -110,8 +113,8 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Answer(const Principal& caller, const J
 // Passes on the two changes that a client can make to a run: it is cancelled, or its priority
 // changes.
 void JobBook::TellScheduler(const JobRecord& row) {
-  if (row.state == v1::EnsembleJob::CANCELLING) scheduler_.Cancel(row.sequence);
-  scheduler_.SetPriority(row.sequence, row.priority);
+  if (row.job.state() == v1::EnsembleJob::CANCELLING) scheduler_.Cancel(row.sequence);
+  scheduler_.SetPriority(row.sequence, row.job.priority());
 }
 
 // ---- changes of a job ----
@@ -121,13 +124,13 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
   bool begun = false;
   const auto found = store_.Commit([&](Database& database) {
     JobRecord record = JobOf(database, caller, id, Grid::kLeftOut);
-    begun = BeginCancellation(database, record.sequence, request_id);
+    begun = BeginCancellation(database, record, request_id);
     Failpoint("cancel.in_transaction");
     const bool is_replay = !request_id.empty() && record.cancel_request_id == request_id;
-    if (HasEnded(record.state) && !is_replay) {
-      database.Fail(JobAlreadyEnded(JobName(id), v1::EnsembleJob::State_Name(record.state)));
+    const JobState state = record.job.state();
+    if (HasEnded(state) && !is_replay) {
+      database.Fail(JobAlreadyEnded(JobName(id), v1::EnsembleJob::State_Name(state)));
     }
-    if (begun) record.state = v1::EnsembleJob::CANCELLING;
     return record;
   });
   if (!found.ok()) return StoreFailure(found.status());
@@ -141,8 +144,9 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
 absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
   const absl::Status deleted = store_.CommitDeletion([&](Database& database) {
     const JobRecord record = JobOf(database, caller, id, Grid::kLeftOut);
-    if (!HasEnded(record.state)) {
-      database.Fail(JobStillActive(JobName(id), v1::EnsembleJob::State_Name(record.state)));
+    const JobState state = record.job.state();
+    if (!HasEnded(state)) {
+      database.Fail(JobStillActive(JobName(id), v1::EnsembleJob::State_Name(state)));
     }
     DeleteJob(database, record.sequence);
     Failpoint("delete.in_transaction");
@@ -156,10 +160,11 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Update(const Principal& caller, const s
   JobRecord record;
   const absl::Status changed = store_.Commit([&](Database& database) {
     record = JobOf(database, caller, id, Grid::kLeftOut);
-    if (change.pinned && record.expired_time) database.Fail(ResultsExpired(JobName(id)));
-    record.pinned = change.pinned.value_or(record.pinned);
-    record.priority = change.priority.value_or(record.priority);
-    if (change.labels) record.labels = LabelsText(*change.labels);
+    v1::EnsembleJob& job = record.job;
+    if (change.pinned && job.results_expired()) database.Fail(ResultsExpired(JobName(id)));
+    job.set_pinned(change.pinned.value_or(job.pinned()));
+    job.set_priority(change.priority.value_or(job.priority()));
+    if (change.labels) *job.mutable_labels() = {change.labels->begin(), change.labels->end()};
     UpdateJob(database, record);
   });
   if (!changed.ok()) return StoreFailure(changed);

@@ -28,7 +28,6 @@
 #include "server/door/principal.h"
 #include "server/limits.h"
 #include "server/store/job_table.h"
-#include "server/store/labels.h"
 #include "server/store/store.h"
 
 namespace ballpiston::server {
@@ -42,7 +41,7 @@ struct FoundJob {
 
   // The number of the last finished point.
   int64_t last_finished() const {
-    return active != nullptr ? active->last_finished() : record.numbers.points_done;
+    return active != nullptr ? active->last_finished() : record.job.progress().points_done();
   }
 };
 

@@ -3,10 +3,9 @@
 #include <utility>
 
 #include "server/book/job_book.h"
-#include "server/book/job_message.h"
-#include "server/book/job_name.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
+#include "server/store/job_name.h"
 #include "server/store/point_tables.h"
 
 namespace ballpiston::server {
@@ -17,8 +16,7 @@ constexpr size_t kMaxBytesOfPoints = size_t{512} << 10;
 
 // Null: the specification cannot be read, or has an experiment of a test.
 const ExperimentKind* ExperimentOf(const JobRecord& record) {
-  const auto spec = SpecFromBytes({record.spec.rest}).value_or(v1::EnsembleSpec());
-  return FindExperiment(static_cast<uint64_t>(spec.experiment()));
+  return FindExperiment(static_cast<uint64_t>(record.job.spec().experiment()));
 }
 
 // With its name, which the store does not keep.
@@ -67,7 +65,7 @@ absl::StatusOr<FoundJob> JobBook::Find(const Principal& caller, const std::strin
 
 absl::StatusOr<FoundJob> JobBook::WithNumbers(const Principal& caller, JobRecord record,
                                               Grid grid) {
-  if (HasEnded(record.state)) return FoundJob{std::move(record)};
+  if (HasEnded(record.job.state())) return FoundJob{std::move(record)};
   if (auto job = active_.Find(record.id)) return FoundJob{std::move(record), std::move(job)};
   absl::StatusOr<JobRecord> ended = ReadRecord(caller, record.id, grid);
   if (!ended.ok()) return ended.status();
@@ -82,8 +80,10 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Get(const Principal& caller, const std:
 }
 
 v1::EnsembleJob JobBook::Message(const JobRecord& record, const Job* active) const {
-  return JobMessage(record, active != nullptr ? active->Numbers() : record.numbers,
-                    limits_.retain_days);
+  v1::EnsembleJob job = record.job;
+  if (active != nullptr) SetNumbers(active->Numbers(), job);
+  SetExpireTime(limits_.retain_days, job);
+  return job;
 }
 
 absl::StatusOr<JobsPage> JobBook::List(const Principal& caller, const JobsQuery& query) {
@@ -97,7 +97,7 @@ absl::StatusOr<JobsPage> JobBook::List(const Principal& caller, const JobsQuery&
     const absl::StatusOr<FoundJob> job = WithNumbers(caller, record, query.grid);
     if (absl::IsNotFound(job.status())) continue;  // it was deleted meanwhile
     if (!job.ok()) return job.status();
-    if (!query.filter.MatchesState(job->record.state)) continue;
+    if (!query.filter.MatchesState(job->record.job.state())) continue;
     page.jobs.push_back(Message(job->record, job->active.get()));
   }
   return page;
@@ -107,7 +107,7 @@ absl::StatusOr<ResultsPage> JobBook::Results(const Principal& caller, const std:
                                              const ResultsQuery& query) {
   auto page = store_.Read([&](Database& database) {
     const JobRecord record = JobOf(database, caller, id, Grid::kLeftOut);
-    if (record.expired_time) database.Fail(ResultsExpired(JobName(id)));
+    if (record.job.results_expired()) database.Fail(ResultsExpired(JobName(id)));
     return ReadResultsPage(database, record, query);
   });
   if (!page.ok()) return StoreFailure(page.status());

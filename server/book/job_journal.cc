@@ -6,16 +6,15 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
-#include "google/rpc/status.pb.h"
-#include "server/book/job_name.h"
 #include "server/convert/deterministic_bytes.h"
 #include "server/convert/errors.h"
 #include "server/convert/fold_record.h"
 #include "server/convert/point_result.h"
-#include "server/convert/spec.h"
+#include "server/convert/timestamp.h"
 #include "server/host.h"
 #include "server/status/failpoint.h"
 #include "server/status/log.h"
+#include "server/store/job_name.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
 
@@ -36,20 +35,20 @@ JobEnd EndOf(const Job& job, const absl::Status& outcome) {
   if (outcome.ok()) return end;
   end.state = absl::IsCancelled(outcome) ? v1::EnsembleJob::CANCELLED : v1::EnsembleJob::FAILED;
   if (end.state == v1::EnsembleJob::FAILED) {
-    end.error = RpcStatus(WithDefaultReason(outcome, "COMPUTATION_FAILED")).SerializeAsString();
+    end.error = RpcStatus(WithDefaultReason(outcome, "COMPUTATION_FAILED"));
   }
   return end;
 }
 
 // The job fails if the store rejected one of its results, because clients could not read it.
 JobEnd WithStoredPoints(Database& database, const Job& job, JobEnd end) {
-  const int64_t points = job.row().points;
+  const int64_t points = job.row().job.progress().points();
   end.numbers.points_done = CountResults(database, job.row().sequence);
   if (end.state != v1::EnsembleJob::SUCCEEDED || end.numbers.points_done == points) return end;
   const absl::Status lost = absl::DataLossError(
       absl::StrCat("of ", points, " computed points the store keeps ", end.numbers.points_done));
   end.state = v1::EnsembleJob::FAILED;
-  end.error = RpcStatus(StoreFailure(lost)).SerializeAsString();
+  end.error = RpcStatus(StoreFailure(lost));
   return end;
 }
 
@@ -58,37 +57,34 @@ absl::Status Rejected(const absl::Status& why) {
   return absl::InternalError(absl::StrCat("the store rejected the job's end: ", why.message()));
 }
 
-void LogCrash(const JobRecord& job) {
-  const v1::EnsembleSpec spec = SpecFromBytes(job.spec).value_or(v1::EnsembleSpec());
+void LogCrash(const v1::EnsembleJob& job) {
   Log(Severity::kError,
       "the engine crashed again and again while it computed this job, which fails",
-      {{"job", JobName(job.id)},
-       {"principal", job.principal},
-       {"question", spec.ShortDebugString()}});
+      {{"job", job.name()},
+       {"principal", job.principal()},
+       {"question", job.spec().ShortDebugString()}});
 }
 
-void LogEnd(const JobRecord& ended) {
-  const std::string state = absl::AsciiStrToLower(v1::EnsembleJob::State_Name(ended.state));
+void LogEnd(const v1::EnsembleJob& ended) {
+  const std::string state = absl::AsciiStrToLower(v1::EnsembleJob::State_Name(ended.state()));
   // A job without a start time ended before its first turn.
-  const absl::Time begin = ended.start_time.value_or(ended.create_time);
-  google::rpc::Status error;
-  error.ParseFromString(ended.error);
-  if (ReasonOf(error) == kEngineCrashed) LogCrash(ended);
-  Log(ended.error.empty() ? Severity::kInfo : Severity::kWarning, absl::StrCat("job ", state),
-      {{"job", JobName(ended.id)},
-       {"principal", ended.principal},
+  const auto& begin = ended.has_start_time() ? ended.start_time() : ended.create_time();
+  if (ReasonOf(ended.error()) == kEngineCrashed) LogCrash(ended);
+  Log(ended.has_error() ? Severity::kWarning : Severity::kInfo, absl::StrCat("job ", state),
+      {{"job", ended.name()},
+       {"principal", ended.principal()},
        {"state", state},
-       {"points", ended.numbers.points_done},
-       {"samples", static_cast<int64_t>(ended.numbers.samples)},
-       {"processor_seconds", ended.numbers.work},
-       {"seconds", absl::ToDoubleSeconds(ended.end_time.value_or(begin) - begin)},
-       {"error", error.message()}});
+       {"points", ended.progress().points_done()},
+       {"samples", static_cast<int64_t>(ended.progress().samples())},
+       {"processor_seconds", ended.work()},
+       {"seconds", absl::ToDoubleSeconds(TimeOf(ended.end_time()) - TimeOf(begin))},
+       {"error", ended.error().message()}});
 }
 
 void TellEnd(Job& job, const std::optional<JobRecord>& ended, const JobJournal::OnEnded& on_ended) {
   if (!ended) return;
   Failpoint("job.ended");
-  LogEnd(*ended);
+  LogEnd(ended->job);
   if (on_ended) on_ended(*ended);
   job.NoteStateChange();
 }
@@ -111,14 +107,15 @@ void RecordEnd(Store& store, const std::shared_ptr<Job>& job, const JobJournal::
 
 // Empty if the job that is continued is gone, or does not have the point.
 std::optional<EarlierPoint> ReadEarlier(Database& database, const std::string& job, int64_t point) {
+  const std::optional<std::string> id = JobIdOf(job);
   const std::optional<JobRecord> record =
-      job.empty() ? std::nullopt : FindJob(database, job, Grid::kLeftOut);
-  if (!record || record->expired_time) return std::nullopt;
+      id ? FindJob(database, *id, Grid::kLeftOut) : std::nullopt;
+  if (!record || record->job.results_expired()) return std::nullopt;
   const std::optional<PointEnd> end = ReadEnd(database, record->sequence, point);
   if (!end) return std::nullopt;
   absl::StatusOr<FoldState> state = EndFromBytes(end->state);
   if (state.ok()) return EarlierPoint{static_cast<Model>(end->model), *std::move(state)};
-  LogError(absl::StrCat("point ", point, " of ", JobName(job),
+  LogError(absl::StrCat("point ", point, " of ", job,
                         " cannot be continued and is computed anew: ", state.status().message()));
   return std::nullopt;
 }
@@ -146,8 +143,8 @@ void JobJournal::Began() {
   store_.Record(begin, [job = job_, begun](const absl::Status& done) {
     if (!done.ok() || !*begun) return;
     Log(Severity::kInfo, "job running",
-        {{"job", JobName(job->row().id)},
-         {"principal", job->row().principal},
+        {{"job", job->row().job.name()},
+         {"principal", job->row().job.principal()},
          {"state", "running"}});
     job->NoteStateChange();
   });
@@ -164,7 +161,7 @@ absl::StatusOr<StoredPoint> JobJournal::ReadPoint(size_t point) {
     for (const std::string& chunk : ReadChunks(database, sequence, index)) {
       stored.chunks.push_back(database.ValueOf(ChunkFromBytes(chunk)));
     }
-    if (!stored.state) stored.earlier = ReadEarlier(database, job_->row().continues, index);
+    if (!stored.state) stored.earlier = ReadEarlier(database, job_->row().job.continues(), index);
     return stored;
   });
 }

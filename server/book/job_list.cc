@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/convert/spec.h"
+#include "server/convert/timestamp.h"
 
 namespace ballpiston::server {
 namespace {
 
-// Upper bound of the encoded size of the job's message: names, times and numbers take less than
-// the constant.
-size_t MostBytesOf(const JobRecord& record) {
-  return 512 + record.principal.size() + record.engine_version.size() + record.spec.size() +
-         record.labels.size() + record.error.size();
-}
+// Upper bound of the encoded size of the job's message: the numbers in memory and the time of
+// expiry take less than the constant.
+size_t MostBytesOf(const JobRecord& record) { return 512 + record.job.ByteSizeLong(); }
 
 // Collects the jobs of one page, newest first, until one of the query's bounds is reached.
 class PageReader {
@@ -66,11 +63,14 @@ bool JobFilter::MatchesState(JobState state) const {
 }
 
 bool JobFilter::Matches(const JobRecord& record) const {
-  if (!MatchesState(record.state) || record.create_time < since) return false;
-  if (!labels.empty() && !std::ranges::includes(LabelsOf(record.labels), labels)) return false;
-  if (experiments.empty()) return true;
-  const absl::StatusOr<v1::EnsembleSpec> spec = SpecFromBytes(record.spec);
-  return spec.ok() && experiments.contains(spec->experiment());
+  const v1::EnsembleJob& job = record.job;
+  const auto has_label = [&job](const auto& label) {
+    const auto found = job.labels().find(label.first);
+    return found != job.labels().end() && found->second == label.second;
+  };
+  return MatchesState(job.state()) && TimeOf(job.create_time()) >= since &&
+         std::ranges::all_of(labels, has_label) &&
+         (experiments.empty() || experiments.contains(job.spec().experiment()));
 }
 
 PageOfJobs<JobRecord> ReadPage(Database& database, const std::optional<std::string>& principal,

@@ -12,7 +12,6 @@
 #include "ballpiston/v1/spec.pb.h"
 #include "server/store/job_record.h"
 #include "server/store/job_table.h"
-#include "server/store/labels.h"
 #include "server/store/sqlite.h"
 
 namespace ballpiston::server {

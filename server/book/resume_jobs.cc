@@ -10,12 +10,12 @@
 #include "absl/strings/str_join.h"
 #include "server/book/acceptance.h"
 #include "server/book/active_jobs.h"
-#include "server/book/job_name.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
 #include "server/status/failpoint.h"
 #include "server/status/log.h"
+#include "server/store/job_name.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
 
@@ -25,7 +25,8 @@ namespace {
 std::string Text(const std::set<size_t>& points) { return absl::StrJoin(points, " "); }
 
 bool IsOfOtherEngine(const JobRecord& record) {
-  return record.engine_version != EngineVersion() && record.state != v1::EnsembleJob::CANCELLING;
+  return record.job.engine_version() != EngineVersion() &&
+         record.job.state() != v1::EnsembleJob::CANCELLING;
 }
 
 // Sets the first finished point that missed its tolerance, if any.
@@ -47,13 +48,13 @@ std::vector<PointSize> ReadFinished(Database& database, const JobRecord& record,
                                     RunRequest& request) {
   const size_t in_grid = PointCount(request.spec);
   const auto is_of_the_grid = [&](const PointSize& point) {
-    return point.point >= 0 && point.point < record.points;
+    return point.point >= 0 && point.point < record.job.progress().points();
   };
   std::vector<PointSize> points = ListFinishedPoints(database, record.sequence);
-  const bool fits = record.points == static_cast<int64_t>(in_grid);
+  const bool fits = record.job.progress().points() == static_cast<int64_t>(in_grid);
   if (!fits || !std::ranges::all_of(points, is_of_the_grid)) {
     database.Fail(
-        absl::DataLossError(absl::StrCat("the store's rows of ", JobName(record.id),
+        absl::DataLossError(absl::StrCat("the store's rows of ", record.job.name(),
                                          " do not fit its specification of ", in_grid, " points")));
     return {};
   }
@@ -85,16 +86,16 @@ absl::Status ActiveJobs::RestartOlder(std::vector<JobRecord>& unfinished) {
   std::vector<JobRecord*> older;
   for (JobRecord& record : unfinished) {
     if (!IsOfOtherEngine(record)) continue;
-    const absl::StatusOr<v1::EnsembleSpec> message = SpecFromBytes(record.spec);
-    if (!message.ok() || !CheckSpec(*message).violations.empty()) continue;
-    record.engine_version = EngineVersion();
-    record.question = QuestionOf(*message, record.engine_version);
-    record.family = FamilyOf(*message, record.engine_version);
-    record.continues.clear();
+    v1::EnsembleJob& job = record.job;
+    if (!CheckSpec(job.spec()).violations.empty()) continue;
+    job.set_engine_version(EngineVersion());
+    job.clear_continues();
+    job.clear_continued_samples();
+    record.question = QuestionOf(job.spec(), EngineVersion());
+    record.family = FamilyOf(job.spec(), EngineVersion());
     ++record.restarts;
     older.push_back(&record);
-    LogInfo(
-        absl::StrCat(JobName(record.id), " is computed again by engine ", record.engine_version));
+    LogInfo(absl::StrCat(record.job.name(), " is computed again by engine ", EngineVersion()));
   }
   if (older.empty()) return absl::OkStatus();
   return store_.CommitDeletion([&](Database& database) {
@@ -105,14 +106,15 @@ absl::Status ActiveJobs::RestartOlder(std::vector<JobRecord>& unfinished) {
 }
 
 absl::Status ActiveJobs::ResumeJob(const JobRecord& record) {
-  if (record.state == v1::EnsembleJob::CANCELLING) {
+  if (record.job.state() == v1::EnsembleJob::CANCELLING) {
     return End(record, absl::CancelledError("cancelled"));
   }
   const CrashRecord::Examining examining(crashes_, RunOf(record));
   if (crashes_.Deaths(RunOf(record)) >= kMostDeaths) return EndCrashed(record);
-  const absl::StatusOr<v1::EnsembleSpec> message = SpecFromBytes(record.spec);
-  if (!message.ok()) return End(record, message.status());
-  CheckedSpec checked = CheckSpec(*message);
+  if (!record.job.has_spec()) {
+    return End(record, StoreFailure(absl::DataLossError("the stored job cannot be read")));
+  }
+  CheckedSpec checked = CheckSpec(record.job.spec());
   if (!checked.violations.empty()) return End(record, InvalidSpec(checked.violations));
   return ResumeRun(record, std::move(checked.spec));
 }
@@ -160,10 +162,12 @@ std::optional<Suspicion> ActiveJobs::SuspicionOf(const JobRecord& record) {
       absl::StrCat("the server died ", deaths, deaths == 1 ? " time" : " times",
                    " while it computed this job",
                    is_suspect ? "; it is computed alone until its next chunk is stored" : ""),
-      {{"job", JobName(record.id)}, {"principal", record.principal}, {"points", Text(points)}});
+      {{"job", record.job.name()},
+       {"principal", record.job.principal()},
+       {"points", Text(points)}});
   if (!is_suspect) return std::nullopt;
   const auto clear = [&store = store_, &crashes = crashes_, run = RunOf(record),
-                      name = JobName(record.id)] {
+                      name = record.job.name()] {
     if (!store.Flush().ok()) return false;
     crashes.Clear(run);
     Log(Severity::kInfo, "this job was computed alone without a crash; other jobs continue",

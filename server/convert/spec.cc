@@ -277,19 +277,6 @@ std::string QuestionBytes(v1::EnsembleSpec message) {
   return DeterministicBytes(message);
 }
 
-StoredSpec SpecBytes(v1::EnsembleSpec message) {
-  v1::EnsembleSpec grid;
-  if (message.has_grid()) grid.mutable_grid()->Swap(message.mutable_grid());
-  message.clear_grid();
-  return {.rest = DeterministicBytes(message), .grid = DeterministicBytes(grid)};
-}
-
-absl::StatusOr<v1::EnsembleSpec> SpecFromBytes(const StoredSpec& bytes) {
-  v1::EnsembleSpec message;
-  if (message.ParseFromString(bytes.rest) && message.MergeFromString(bytes.grid)) return message;
-  return absl::DataLossError("the stored specification cannot be read");
-}
-
 std::string EngineVersion() { return std::string(kEngineVersion); }
 
 }  // namespace ballpiston::server

@@ -40,20 +40,6 @@ v1::EnsembleSpec::Model ModelMessage(Model model);
 // The same bytes for the same question: default values are left out.
 std::string QuestionBytes(v1::EnsembleSpec message);
 
-// A specification in the store: two serialized v1::EnsembleSpec, which are merged. The grid may be
-// large, so a list of jobs reads the rest alone.
-struct StoredSpec {
-  std::string rest;
-  std::string grid = {};
-
-  size_t size() const { return rest.size() + grid.size(); }
-  bool operator==(const StoredSpec&) const = default;
-};
-
-// The same bytes for the same specification.
-StoredSpec SpecBytes(v1::EnsembleSpec message);
-absl::StatusOr<v1::EnsembleSpec> SpecFromBytes(const StoredSpec& bytes);  // DATA_LOSS
-
 // The version of this program's engine.
 std::string EngineVersion();
 

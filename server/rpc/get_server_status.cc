@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "absl/time/clock.h"
-#include "server/book/job_message.h"
 #include "server/convert/spec.h"
+#include "server/convert/timestamp.h"
 #include "server/rpc/methods.h"
 #include "server/rpc/server_status.h"
 #include "server/store/data_directory.h"

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/book/job_name.h"
 #include "server/convert/analytic.h"
 #include "server/convert/spec.h"
 #include "server/rpc/request_check.h"
+#include "server/store/job_name.h"
 
 namespace ballpiston::server {
 namespace {

@@ -12,7 +12,8 @@
 #include "absl/time/time.h"
 #include "google/protobuf/descriptor.h"
 #include "google/protobuf/generated_enum_reflection.h"
-#include "server/book/job_name.h"
+#include "server/convert/timestamp.h"
+#include "server/store/job_name.h"
 
 namespace ballpiston::server {
 namespace {
@@ -181,7 +182,7 @@ JobFilter RequestCheck::Filter(const v1::ListEnsembleJobsRequest& request) {
   const auto& since = request.since();
   Range("since.seconds", since.seconds(), kFirstSecond, kLastSecond);
   Range("since.nanos", since.nanos(), 0, kMaxNanos);
-  filter.since = absl::FromUnixSeconds(since.seconds()) + absl::Nanoseconds(since.nanos());
+  filter.since = TimeOf(since);
   return filter;
 }
 

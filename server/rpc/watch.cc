@@ -7,9 +7,7 @@
 #include <utility>
 
 #include "ballpiston/storage/tokens.pb.h"
-#include "server/book/job_message.h"
 #include "server/convert/errors.h"
-#include "server/convert/spec.h"
 #include "server/host.h"
 #include "server/rpc/request_check.h"
 
@@ -67,7 +65,6 @@ class Watch {
     absl::StatusOr<FoundJob> job = book_.Find(reader_.caller(), id_, Grid::kLeftOut);
     if (!job.ok()) return job.status();
     job_ = *std::move(job);
-    target_ = SpecFromBytes(job_.record.spec).value_or(v1::EnsembleSpec()).target();
     ReadToken();
     return absl::OkStatus();
   }
@@ -75,7 +72,7 @@ class Watch {
   // An administrator who lost that role sees only their own jobs.
   absl::Status Proceed() {
     const absl::Status status = reader_.Proceed();
-    const bool sees = reader_.caller().MaySee(job_.record.principal);
+    const bool sees = reader_.caller().MaySee(job_.record.job.principal());
     return status.ok() && !sees ? JobNotFound(request_.name()) : status;
   }
 
@@ -130,9 +127,10 @@ class Watch {
     const absl::StatusOr<FoundJob> found = book_.Find(reader_.caller(), id_, Grid::kLeftOut);
     if (!found.ok()) return found.status();
     const JobRecord& record = found->record;
-    if (HasEnded(record.state)) return TellEnd(record);
+    const JobState state = record.job.state();
+    if (HasEnded(state)) return TellEnd(record);
     told_state_ = change;
-    if (std::exchange(told_as_, record.state) == record.state) return false;
+    if (std::exchange(told_as_, state) == state) return false;
     *message_.mutable_job() = book_.Message(record, job_.active.get());
     return Write();
   }
@@ -145,7 +143,9 @@ class Watch {
     absl::StatusOr<v1::EnsembleJob> job = book_.Get(reader_.caller(), id_, Grid::kLeftOut);
     if (!job.ok()) return job.status();
     // If the results expired since the job was found, some points may not have been sent.
-    if (job->results_expired() && !job_.record.expired_time) return ResultsExpired(request_.name());
+    if (job->results_expired() && !job_.record.job.results_expired()) {
+      return ResultsExpired(request_.name());
+    }
     *message_.mutable_job() = *std::move(job);
     has_told_end_ = true;
     return Write();
@@ -159,7 +159,7 @@ class Watch {
     }
     next_snapshot_ = now + SnapshotInterval();
     v1::StatisticsSnapshot& snapshot = *message_.mutable_snapshot();
-    *snapshot.mutable_progress() = Progress(job_.active->Numbers());
+    *snapshot.mutable_progress() = ProgressOf(job_.record.job, job_.active->Numbers());
     AddUnfinishedPoints(snapshot);
     const absl::StatusOr<bool> finished = AddFinishedPoints(job_.active.get());
     if (!finished.ok()) return finished;
@@ -168,10 +168,6 @@ class Watch {
     const bool same_progress = std::exchange(told_progress_, progress) == progress;
     if (snapshot.points().empty() && !*finished && same_progress) return false;
     return Write();
-  }
-
-  v1::JobProgress Progress(const JobNumbers& numbers) const {
-    return ProgressOf(job_.record.points, target_, numbers);
   }
 
   // An older snapshot may have a point as unfinished that was already sent as finished.
@@ -186,7 +182,7 @@ class Watch {
 
   absl::StatusOr<bool> TellFinishedPoints(const JobRecord& record, const Job* active) {
     *message_.mutable_snapshot()->mutable_progress() =
-        Progress(active != nullptr ? active->Numbers() : record.numbers);
+        active != nullptr ? ProgressOf(record.job, active->Numbers()) : record.job.progress();
     const absl::StatusOr<bool> added = AddFinishedPoints(active);
     return added.ok() && *added ? Write() : added;
   }
@@ -250,7 +246,6 @@ class Watch {
 
   std::string id_;
   FoundJob job_;
-  v1::Target target_;  // of the job
   std::string told_progress_;
   JobState told_as_ = v1::EnsembleJob::STATE_UNSPECIFIED;  // the last state that was sent
   bool has_told_end_ = false;

@@ -1,13 +1,14 @@
 #include "server/store/check_store.h"
 
+#include <limits>
+
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "ballpiston/v1/ensemble.pb.h"
-#include "google/rpc/status.pb.h"
 #include "server/convert/fold_record.h"
 #include "server/convert/point_result.h"
-#include "server/convert/spec.h"
 #include "server/store/data_directory.h"
+#include "server/store/job_table.h"
 #include "server/store/schema.h"
 #include "server/store/sqlite.h"
 
@@ -16,15 +17,13 @@ namespace {
 
 using v1::EnsembleJob;
 
-static_assert(EnsembleJob::QUEUED == 1 && EnsembleJob::SUCCEEDED == 4 && EnsembleJob::FAILED == 5 &&
+static_assert(EnsembleJob::QUEUED == 1 && EnsembleJob::SUCCEEDED == 4 &&
               EnsembleJob::CANCELLED == 6);
 
 // Each selects a sentence for each row that contradicts others.
 constexpr const char* kContradictions[] = {
     "SELECT 'job ' || id || ' has an unknown state: ' || state FROM jobs"
     " WHERE state NOT BETWEEN 1 AND 6",
-    "SELECT 'job ' || id || iif(state = 5, ' failed without', ' did not fail, but has')"
-    " || ' an error' FROM jobs WHERE (length(error) > 0) <> (state = 5)",
     "SELECT 'job ' || id || iif(state >= 4, ' ended but has no', ' is active but has an')"
     " || ' end time' FROM jobs WHERE (end_time IS NOT NULL) <> (state >= 4)",
     "SELECT 'job ' || id || ' has ' || points || ' points' FROM jobs WHERE points < 1",
@@ -103,15 +102,16 @@ class StoreCheck {
   }
 
   void CheckJobs() {
-    Query row = database_.Select("SELECT id, spec, grid, error FROM jobs");
-    while (row.Next()) {
-      const std::string job = absl::StrCat("job ", row.Get<std::string>(0));
-      const StoredSpec spec = {row.Get<std::string>(1), row.Get<std::string>(2)};
-      FoundIn(job, SpecFromBytes(spec).status());
-      if (!google::rpc::Status().ParseFromString(row.Get<std::string>(3))) {
-        Found(absl::StrCat(job, ": its error cannot be read"));
+    constexpr int64_t kNewest = std::numeric_limits<int64_t>::max();
+    ReadJobs(database_, std::nullopt, kNewest, Grid::kIncluded, [&](const JobRecord& record) {
+      const bool has_failed = record.job.state() == EnsembleJob::FAILED;
+      if (!record.job.has_spec()) Found(absl::StrCat("job ", record.id, " cannot be read"));
+      if (record.job.has_error() != has_failed) {
+        Found(absl::StrCat("job ", record.id,
+                           has_failed ? " failed without" : " did not fail, but has", " an error"));
       }
-    }
+      return true;
+    });
   }
 
   void CheckResults() {

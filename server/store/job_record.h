@@ -2,13 +2,12 @@
 // (job_table.h).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <map>
 #include <string>
 
-#include "absl/time/time.h"
 #include "ballpiston/v1/ensemble.pb.h"
-#include "server/convert/spec.h"
 
 namespace ballpiston::server {
 
@@ -19,13 +18,16 @@ inline bool HasEnded(JobState state) {
          state == v1::EnsembleJob::CANCELLED;
 }
 
+using Labels = std::map<std::string, std::string>;  // key, value; how the owner finds the job again
+inline constexpr size_t kMostLabels = 32;           // of a job
+
 // How much of a job is computed.
 struct JobNumbers {
   int64_t points_done = 0;  // these are stored
   double samples = 0;
   double work = 0;             // seconds of processor time, in this or the last server process
   int64_t bytes = 0;           // of the specification and the results
-  double points_computed = 0;  // with the computed shares of unfinished points; not stored
+  double points_computed = 0;  // with the computed shares of unfinished points
 
   void Add(const JobNumbers& other) {
     points_done += other.points_done;
@@ -39,28 +41,25 @@ struct JobNumbers {
 struct JobRecord {
   int64_t sequence = 0;  // assigned by the store; greater for a newer job, never reused
   std::string id;
-  std::string principal;   // the job's owner
-  std::string request_id;  // of the request that made the job, unique for the principal; or empty
-  std::string payload;     // hash of that request without its id and its labels (book/acceptance.h)
-  int32_t priority = 0;    // among the principal's; higher first
-  bool pinned = false;     // its results do not expire
-  std::string labels;      // as text (labels.h)
-  StoredSpec spec;         // its grid is empty if it was not read
-  std::string question;    // hash of the question (book/acceptance.h); empty: always compute
-  std::string family;      // hash of the question without its target; empty: cannot be continued
-  std::string continues;   // the id of the job whose points this one continues, or empty
-  double continued_samples = 0;  // of that job
-  JobState state = v1::EnsembleJob::QUEUED;
-  absl::Time create_time;
-  std::optional<absl::Time> start_time;
-  std::optional<absl::Time> end_time;
-  std::optional<absl::Time> expired_time;  // its results are gone
-  std::string error;                       // serialized google.rpc.Status, empty unless FAILED
-  std::string engine_version;
-  int64_t restarts = 0;           // how often another engine restarted the job
+  // The job as clients see it, without its expire_time. The numbers of an active job are those of
+  // its acceptance, because memory has the others (book/job.h). The specification has no grid if
+  // that was not read. A damaged row gives a job without a specification.
+  v1::EnsembleJob job;
+  // Of the request that made the job, unique for the principal; or empty. Not read.
+  std::string request_id;
+  std::string payload;   // hash of that request without its id and its labels (book/acceptance.h)
+  std::string question;  // hash of the question (book/acceptance.h); empty: always compute
+  std::string family;    // hash of the question without its target; empty: cannot be continued
+  int64_t restarts = 0;  // how often another engine restarted the job
   std::string cancel_request_id;  // of the cancellation, or empty
-  int64_t points = 0;
-  JobNumbers numbers;  // of an ended job; of an active job memory has them (book/job.h)
 };
+
+// Without a fraction if a tolerance or a budget ends the points, not a number of samples.
+v1::JobProgress ProgressOf(const v1::EnsembleJob& job, const JobNumbers& numbers);
+
+void SetNumbers(const JobNumbers& numbers, v1::EnsembleJob& job);
+
+// The results of a job that has ended expire after `retain_days`; 0: never.
+void SetExpireTime(double retain_days, v1::EnsembleJob& job);
 
 }  // namespace ballpiston::server

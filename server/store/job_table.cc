@@ -1,12 +1,10 @@
 #include "server/store/job_table.h"
 
-#include <type_traits>
 #include <utility>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
-#include "absl/strings/string_view.h"
+#include "server/convert/timestamp.h"
+#include "server/store/job_name.h"
 
 namespace ballpiston::server {
 namespace {
@@ -20,80 +18,40 @@ static_assert(v1::EnsembleJob::QUEUED == 1 && v1::EnsembleJob::RUNNING == 2 &&
 constexpr char kExpirable[] = "end_time IS NOT NULL AND expired_time IS NULL AND pinned = 0";
 constexpr char kExpired[] = "expired_time IS NOT NULL";
 
-// The columns of the table, one a line: name, type, and field of the row. All statements that make
-// the table or handle whole rows are made of this list. The grid is the last column, because SQLite
-// reads a row up to the columns that are asked for.
-template <typename Record, typename Visit>
-void VisitColumns(Record& job, Visit visit) {
-  visit("sequence", "INTEGER PRIMARY KEY AUTOINCREMENT", job.sequence);
-  visit("id", "TEXT NOT NULL UNIQUE", job.id);
-  visit("principal", "TEXT NOT NULL", job.principal);
-  visit("request_id", "TEXT NOT NULL", job.request_id);
-  visit("payload", "BLOB NOT NULL", job.payload);
-  visit("priority", "INTEGER NOT NULL", job.priority);
-  visit("pinned", "INTEGER NOT NULL", job.pinned);
-  visit("labels", "TEXT NOT NULL", job.labels);
-  visit("bytes", "INTEGER NOT NULL", job.numbers.bytes);
-  visit("spec", "BLOB NOT NULL", job.spec.rest);
-  visit("question", "BLOB NOT NULL", job.question);
-  visit("family", "BLOB NOT NULL", job.family);
-  visit("continues", "TEXT NOT NULL", job.continues);
-  visit("continued_samples", "REAL NOT NULL", job.continued_samples);
-  visit("state", "INTEGER NOT NULL", job.state);
-  visit("create_time", "INTEGER NOT NULL", job.create_time);
-  visit("start_time", "INTEGER", job.start_time);
-  visit("end_time", "INTEGER", job.end_time);
-  visit("expired_time", "INTEGER", job.expired_time);
-  visit("error", "BLOB NOT NULL", job.error);
-  visit("engine_version", "TEXT NOT NULL", job.engine_version);
-  visit("restarts", "INTEGER NOT NULL", job.restarts);
-  visit("cancel_request_id", "TEXT NOT NULL", job.cancel_request_id);
-  visit("points", "INTEGER NOT NULL", job.points);
-  visit("points_done", "INTEGER NOT NULL", job.numbers.points_done);
-  visit("samples", "REAL NOT NULL", job.numbers.samples);
-  visit("work", "REAL NOT NULL", job.numbers.work);
-  visit("grid", "BLOB NOT NULL", job.spec.grid);
-}
-
-// What `text_of` makes of each column's name and type, with commas.
-template <typename TextOf>
-std::string EachColumn(TextOf text_of) {
-  std::vector<std::string> texts;
-  const JobRecord any;
-  VisitColumns(any, [&](absl::string_view name, absl::string_view type, const auto&) {
-    texts.push_back(text_of(name, type));
-  });
-  return absl::StrJoin(texts, ", ");
-}
-
-std::string ColumnNames(Grid grid) {
-  return EachColumn([grid](absl::string_view name, absl::string_view) {
-    const bool is_left_out = name == "grid" && grid == Grid::kLeftOut;
-    return std::string(is_left_out ? "x''" : name);
-  });
-}
-
+// The grid is the last column, because SQLite reads a row up to the columns that are asked for.
 std::string SelectJobs(Grid grid, const std::string& condition) {
-  return absl::StrCat("SELECT ", ColumnNames(grid), " FROM jobs WHERE ", condition);
+  return absl::StrCat(
+      "SELECT sequence, id, principal, state, payload, question, family, restarts,"
+      " cancel_request_id, message, ",
+      grid == Grid::kIncluded ? "grid" : "x''", " FROM jobs WHERE ", condition);
 }
 
 // A row of SelectJobs.
 JobRecord RecordOf(const Query& row) {
-  JobRecord job;
-  int column = 0;
-  VisitColumns(job, [&](absl::string_view, absl::string_view, auto& field) {
-    field = row.Get<std::remove_reference_t<decltype(field)>>(column++);
-  });
-  job.numbers.points_computed = static_cast<double>(job.numbers.points_done);
-  return job;
+  JobRecord record;
+  std::string principal, job, grid;
+  JobState state = {};
+  row.ReadInto(record.sequence, record.id, principal, state, record.payload, record.question,
+               record.family, record.restarts, record.cancel_request_id, job, grid);
+  const bool is_read = record.job.ParseFromString(job) &&
+                       (grid.empty() || record.job.mutable_spec()->MergeFromString(grid));
+  if (!is_read) record.job.clear_spec();
+  record.job.set_name(JobName(record.id));
+  record.job.set_principal(principal);
+  record.job.set_state(state);
+  return record;
 }
 
-template <typename Value>
-void BindColumn(Query& query, absl::string_view type, const Value& value) {
-  if constexpr (std::is_same_v<Value, std::string>) {
-    if (absl::StartsWith(type, "BLOB")) return query.Bind(Blob{value});
-  }
-  query.Bind(value);
+std::string BytesWithoutGrid(v1::EnsembleJob job) {
+  if (job.has_spec()) job.mutable_spec()->clear_grid();
+  return job.SerializeAsString();
+}
+
+// A specification that has only the grid.
+std::string BytesOfGrid(const v1::EnsembleSpec& spec) {
+  v1::EnsembleSpec grid;
+  if (spec.has_grid()) *grid.mutable_grid() = spec.grid();
+  return grid.SerializeAsString();
 }
 
 template <typename... Values>
@@ -101,13 +59,6 @@ std::optional<JobRecord> FirstJob(Database& database, Grid grid, const std::stri
                                   const Values&... values) {
   Query query = database.Select(SelectJobs(grid, condition), values...);
   return query.Next() ? std::optional(RecordOf(query)) : std::nullopt;
-}
-
-// Updates one job. False: the job does not meet the condition.
-template <typename... Values>
-bool Update(Database& database, const std::string& sql, const Values&... values) {
-  database.Run(sql, values...);
-  return database.RowsChanged() == 1;
 }
 
 void DropCheckpoints(Database& database, int64_t sequence) {
@@ -133,22 +84,29 @@ std::vector<JobSize> Sizes(Database& database, const char* condition, absl::Time
 
 }  // namespace
 
-std::string JobColumns() {
-  return EachColumn(
-      [](absl::string_view name, absl::string_view type) { return absl::StrCat(name, " ", type); });
+void InsertJob(Database& database, JobRecord& record) {
+  record.job.set_state(v1::EnsembleJob::QUEUED);
+  database.Run(
+      "INSERT INTO jobs (id, principal, request_id, payload, points, grid)"
+      " VALUES (?, ?, ?, ?, ?, ?)",
+      record.id, record.job.principal(), record.request_id, Blob{record.payload},
+      record.job.progress().points(), Blob{BytesOfGrid(record.job.spec())});
+  record.sequence = database.LastInsertedRow();
+  UpdateJob(database, record);
 }
 
-void InsertJob(Database& database, JobRecord& record) {
-  const std::string marks = EachColumn([](absl::string_view name, absl::string_view) {
-    return std::string(name == "sequence" ? "NULL" : "?");
-  });
-  Query query = database.Select(
-      absl::StrCat("INSERT INTO jobs (", ColumnNames(Grid::kIncluded), ") VALUES (", marks, ")"));
-  VisitColumns(record, [&](absl::string_view name, absl::string_view type, const auto& field) {
-    if (name != "sequence") BindColumn(query, type, field);
-  });
-  query.Next();
-  record.sequence = database.LastInsertedRow();
+void UpdateJob(Database& database, const JobRecord& record) {
+  const v1::EnsembleJob& job = record.job;
+  std::optional<absl::Time> end_time;
+  if (job.has_end_time()) end_time = TimeOf(job.end_time());
+  database.Run(
+      "UPDATE jobs SET question = ?, family = ?, restarts = ?, cancel_request_id = ?, state = ?,"
+      " end_time = ?, pinned = ?, bytes = ?, points_done = ?, samples = ?, message = ?"
+      " WHERE sequence = ?",
+      Blob{record.question}, Blob{record.family}, record.restarts, record.cancel_request_id,
+      job.state(), end_time, job.pinned(), static_cast<int64_t>(job.stored_bytes()),
+      job.progress().points_done(), job.progress().samples(), Blob{BytesWithoutGrid(job)},
+      record.sequence);
 }
 
 std::optional<JobRecord> FindJob(Database& database, const std::string& id, Grid grid) {
@@ -167,15 +125,16 @@ std::optional<JobRecord> FindJobOfRequest(Database& database, const std::string&
 
 std::optional<JobRecord> FindAnswer(Database& database, const std::string& principal,
                                     const std::string& question,
-                                    absl::FunctionRef<bool(const std::string& labels)> accepts) {
+                                    absl::FunctionRef<bool(const v1::EnsembleJob&)> accepts) {
   if (question.empty()) return std::nullopt;
-  Query query = database.Select(
-      "SELECT sequence, labels FROM jobs WHERE principal = ? AND question = ? AND question <> x''"
-      " AND state = ? AND expired_time IS NULL ORDER BY sequence",
-      principal, Blob{question}, v1::EnsembleJob::SUCCEEDED);
+  Query query =
+      database.Select(SelectJobs(Grid::kIncluded,
+                                 "principal = ? AND question = ? AND question <> x'' AND state = ?"
+                                 " AND expired_time IS NULL ORDER BY sequence"),
+                      principal, Blob{question}, v1::EnsembleJob::SUCCEEDED);
   while (query.Next()) {
-    if (!accepts(query.Get<std::string>(1))) continue;
-    return FindJobBySequence(database, query.Get<int64_t>(0));
+    JobRecord record = RecordOf(query);
+    if (accepts(record.job)) return record;
   }
   return std::nullopt;
 }
@@ -237,46 +196,43 @@ std::vector<JobRecord> ListUnfinishedJobs(Database& database) {
 }
 
 bool BeginJob(Database& database, int64_t sequence, absl::Time now) {
-  return Update(database,
-                "UPDATE jobs SET state = ?, start_time = ? WHERE sequence = ? AND state = ?",
-                v1::EnsembleJob::RUNNING, now, sequence, v1::EnsembleJob::QUEUED);
+  std::optional<JobRecord> record = FindJobBySequence(database, sequence);
+  if (!record || record->job.state() != v1::EnsembleJob::QUEUED) return false;
+  record->job.set_state(v1::EnsembleJob::RUNNING);
+  SetTime(now, record->job.mutable_start_time());
+  UpdateJob(database, *record);
+  return true;
 }
 
-bool BeginCancellation(Database& database, int64_t sequence, const std::string& request_id) {
-  return Update(database,
-                "UPDATE jobs SET state = ?, cancel_request_id = ?"
-                " WHERE sequence = ? AND state IN (?, ?)",
-                v1::EnsembleJob::CANCELLING, request_id, sequence, v1::EnsembleJob::QUEUED,
-                v1::EnsembleJob::RUNNING);
+bool BeginCancellation(Database& database, JobRecord& record, const std::string& request_id) {
+  const JobState state = record.job.state();
+  if (state != v1::EnsembleJob::QUEUED && state != v1::EnsembleJob::RUNNING) return false;
+  record.job.set_state(v1::EnsembleJob::CANCELLING);
+  record.cancel_request_id = request_id;
+  UpdateJob(database, record);
+  return true;
 }
 
 std::optional<JobRecord> EndJob(Database& database, int64_t sequence, const JobEnd& end) {
-  const bool has_ended = Update(
-      database,
-      absl::StrCat("UPDATE jobs SET state = iif(state = ?1, ?2, ?3), end_time = ?4,"
-                   " error = iif(state = ?1, x'', ?5), points_done = ?6, samples = ?7, work = ?8,"
-                   " bytes = ?9 WHERE sequence = ?10 AND state IN (",
-                   kActiveStates, ")"),
-      v1::EnsembleJob::CANCELLING, v1::EnsembleJob::CANCELLED, end.state, end.time, Blob{end.error},
-      end.numbers.points_done, end.numbers.samples, end.numbers.work, end.numbers.bytes, sequence);
-  if (!has_ended) return std::nullopt;
+  std::optional<JobRecord> record = FindJobBySequence(database, sequence);
+  if (!record || HasEnded(record->job.state())) return std::nullopt;
+  v1::EnsembleJob& job = record->job;
+  const bool is_cancelled = job.state() == v1::EnsembleJob::CANCELLING;
+  job.set_state(is_cancelled ? v1::EnsembleJob::CANCELLED : end.state);
+  SetTime(end.time, job.mutable_end_time());
+  if (job.state() == v1::EnsembleJob::FAILED) *job.mutable_error() = end.error;
+  JobNumbers stored = end.numbers;
+  stored.points_computed = static_cast<double>(stored.points_done);
+  SetNumbers(stored, job);
+  UpdateJob(database, *record);
   DropCheckpoints(database, sequence);
-  return FindJobBySequence(database, sequence);
+  return record;
 }
 
 void RestartJob(Database& database, const JobRecord& record) {
-  const int64_t sequence = record.sequence;
-  DropCheckpoints(database, sequence);
-  database.Run("DELETE FROM results WHERE job = ?", sequence);
-  database.Run(
-      "UPDATE jobs SET engine_version = ?, question = ?, family = ?, continues = '',"
-      " continued_samples = 0, restarts = restarts + 1 WHERE sequence = ?",
-      record.engine_version, Blob{record.question}, Blob{record.family}, record.sequence);
-}
-
-void UpdateJob(Database& database, const JobRecord& record) {
-  database.Run("UPDATE jobs SET pinned = ?, priority = ?, labels = ? WHERE sequence = ?",
-               record.pinned, record.priority, record.labels, record.sequence);
+  DropCheckpoints(database, record.sequence);
+  database.Run("DELETE FROM results WHERE job = ?", record.sequence);
+  UpdateJob(database, record);
 }
 
 std::vector<JobSize> ListExpirable(Database& database, absl::Time ended_before, int most) {
@@ -300,12 +256,13 @@ int64_t CountExpirable(Database& database, absl::Time ended_before) {
 }
 
 void ExpireJob(Database& database, int64_t sequence, absl::Time now) {
-  const bool has_expired =
-      Update(database,
-             "UPDATE jobs SET expired_time = ?, bytes = length(spec) + length(grid)"
-             " WHERE sequence = ? AND pinned = 0",
-             now, sequence);
-  if (has_expired) DropResults(database, sequence);
+  std::optional<JobRecord> record = FindJobBySequence(database, sequence);
+  if (!record || record->job.pinned()) return;
+  record->job.set_results_expired(true);
+  record->job.set_stored_bytes(static_cast<double>(record->job.spec().ByteSizeLong()));
+  UpdateJob(database, *record);
+  database.Run("UPDATE jobs SET expired_time = ? WHERE sequence = ?", now, sequence);
+  DropResults(database, sequence);
 }
 
 void DeleteJob(Database& database, int64_t sequence) {

@@ -7,9 +7,12 @@
 //   QUEUED, RUNNING -> CANCELLING -> CANCELLED
 //
 // QUEUED may also end at once: SUCCEEDED after a restart that found nothing left to compute, or
-// FAILED. BeginJob, BeginCancellation and EndJob have the states in which they act in their
-// conditions, and no effect in others. The store runs all writes in one order: if a cancellation
-// and the end of a job come at the same time, one of them is first, and the first end is kept.
+// FAILED. BeginJob, BeginCancellation and EndJob check the states in which they act, and have no
+// effect in others. The store runs all writes in one order: if a cancellation and the end of a job
+// come at the same time, one of them is first, and the first end is kept.
+//
+// A row keeps the job as a message (JobRecord::job), and as columns what the statements here and in
+// check_store.cc search for. InsertJob and UpdateJob write both.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +23,7 @@
 #include "absl/functional/function_ref.h"
 #include "absl/time/time.h"
 #include "ballpiston/v1/server.pb.h"
+#include "google/rpc/status.pb.h"
 #include "server/store/job_record.h"
 #include "server/store/sqlite.h"
 
@@ -28,11 +32,12 @@ namespace ballpiston::server {
 // Whether a job is read with the grid of its specification, which may be large.
 enum class Grid { kLeftOut, kIncluded };
 
-// The columns of the table `jobs` and their types, for CREATE TABLE.
-std::string JobColumns();
-
-// Sets record.sequence.
+// Sets record.sequence; the job is QUEUED.
 void InsertJob(Database& database, JobRecord& record);
+
+// Writes all of the record that can change: all but its grid, its name, its principal, its request
+// and the number of its points.
+void UpdateJob(Database& database, const JobRecord& record);
 
 std::optional<JobRecord> FindJob(Database& database, const std::string& id, Grid grid);
 std::optional<JobRecord> FindJobBySequence(Database& database, int64_t sequence);
@@ -42,10 +47,10 @@ std::optional<JobRecord> FindJobOfRequest(Database& database, const std::string&
                                           const std::string& request_id);
 
 // The principal's oldest job that SUCCEEDED in answering the question (JobRecord::question) and
-// whose labels (as text) are accepted.
+// that is accepted.
 std::optional<JobRecord> FindAnswer(Database& database, const std::string& principal,
                                     const std::string& question,
-                                    absl::FunctionRef<bool(const std::string& labels)> accepts);
+                                    absl::FunctionRef<bool(const v1::EnsembleJob&)> accepts);
 
 // The principal's jobs that SUCCEEDED, with this JobRecord::family and their results, without their
 // grids: at most kMostOfAFamily, those with the most samples first.
@@ -75,13 +80,14 @@ std::vector<JobRecord> ListUnfinishedJobs(Database& database);
 // QUEUED -> RUNNING. False in every other state.
 bool BeginJob(Database& database, int64_t sequence, absl::Time now);
 
-// QUEUED, RUNNING -> CANCELLING. False in every other state.
-bool BeginCancellation(Database& database, int64_t sequence, const std::string& request_id);
+// QUEUED, RUNNING -> CANCELLING. False in every other state. The record was read in this
+// transaction.
+bool BeginCancellation(Database& database, JobRecord& record, const std::string& request_id);
 
 struct JobEnd {
   JobState state = v1::EnsembleJob::SUCCEEDED;
   absl::Time time;
-  std::string error;
+  google::rpc::Status error;  // of a job that FAILED
   JobNumbers numbers;
 };
 
@@ -89,16 +95,12 @@ struct JobEnd {
 // state was requested. Returns the job's new row; empty if the job is not active.
 std::optional<JobRecord> EndJob(Database& database, int64_t sequence, const JobEnd& end);
 
-// Starts a job of another engine version again: drops its results and sets what depends on the
-// engine's version.
+// Starts a job of another engine version again: drops its results, and updates it.
 void RestartJob(Database& database, const JobRecord& record);
-
-// Stores what a client may change of a job: whether it is pinned, its priority and its labels.
-void UpdateJob(Database& database, const JobRecord& record);
 
 struct JobSize {
   int64_t sequence = 0;
-  int64_t bytes = 0;  // JobNumbers::bytes
+  int64_t bytes = 0;  // of the specification and the results
 };
 
 // At most `most` jobs whose results may expire: they ended before `ended_before`, and are not

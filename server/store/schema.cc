@@ -4,7 +4,6 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
-#include "server/store/job_table.h"
 
 namespace ballpiston::server {
 namespace {
@@ -13,10 +12,31 @@ namespace {
 // opening it reads is checked.
 constexpr int64_t kFullCheckBytes = int64_t{256} << 20;
 
-// All tables except that of jobs (job_table.h). SQLite reads a row up to the last column that is
-// asked for. So the columns that lists and watches read come first in `results`. The large columns
-// come last: the details, and the state from which another job continues the point.
+// SQLite reads a row up to the last column that is asked for. So the columns that lists and watches
+// read come first in `jobs` and `results`. The large columns come last: the grid, the details, and
+// the state from which another job continues the point.
 constexpr char kTables[] = R"sql(
+CREATE TABLE jobs (
+  sequence INTEGER PRIMARY KEY AUTOINCREMENT,
+  id TEXT NOT NULL UNIQUE,
+  principal TEXT NOT NULL,
+  request_id TEXT NOT NULL,
+  payload BLOB NOT NULL,
+  points INTEGER NOT NULL,
+  question BLOB NOT NULL DEFAULT x'',
+  family BLOB NOT NULL DEFAULT x'',
+  restarts INTEGER NOT NULL DEFAULT 0,
+  cancel_request_id TEXT NOT NULL DEFAULT '',
+  state INTEGER NOT NULL DEFAULT 0,
+  end_time INTEGER,
+  expired_time INTEGER,
+  pinned INTEGER NOT NULL DEFAULT 0,
+  bytes INTEGER NOT NULL DEFAULT 0,
+  points_done INTEGER NOT NULL DEFAULT 0,
+  samples REAL NOT NULL DEFAULT 0,
+  message BLOB NOT NULL DEFAULT x'',
+  grid BLOB NOT NULL
+) STRICT;
 CREATE INDEX jobs_by_state ON jobs (state, principal, points);
 CREATE INDEX jobs_by_principal ON jobs (principal, sequence, bytes, state);
 CREATE INDEX jobs_that_may_expire ON jobs (end_time, bytes)
@@ -150,8 +170,8 @@ absl::Status CheckFile(const std::string& path) {
 
 void MakeTables(Database& database) {
   if (database.Integer("PRAGMA user_version") == kSchemaVersion) return;
-  database.Execute(absl::StrCat("BEGIN IMMEDIATE; CREATE TABLE jobs (", JobColumns(), ") STRICT;",
-                                kTables, "PRAGMA application_id = ", kApplicationId,
+  database.Execute(absl::StrCat("BEGIN IMMEDIATE;", kTables,
+                                "PRAGMA application_id = ", kApplicationId,
                                 "; PRAGMA user_version = ", kSchemaVersion, "; COMMIT;"));
   database.Rollback();  // after an error
 }

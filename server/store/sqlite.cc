@@ -108,11 +108,6 @@ std::string Query::Bytes(int column) const {
                          : std::string(static_cast<const char*>(data), static_cast<size_t>(size));
 }
 
-std::optional<absl::Time> Query::Time(int column) const {
-  if (sqlite3_column_type(statement_.get(), column) == SQLITE_NULL) return std::nullopt;
-  return absl::FromUnixNanos(Integer(column));
-}
-
 absl::StatusOr<std::unique_ptr<Database>> Database::Open(const std::string& path, Mode mode) {
   const int flags =
       mode == Mode::kReadOnly ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;

@@ -67,13 +67,11 @@ class Query {
   // Goes to the first or the next row. False: there are no more rows, or an error.
   bool Next();
 
-  // The value of a column: a number, an enumeration, text or a blob, a time or an optional time.
+  // The value of a column: a number, an enumeration, text or a blob.
   template <typename Value>
   Value Get(int column) const {
     if constexpr (std::is_same_v<Value, std::string>) return Bytes(column);
     if constexpr (std::is_same_v<Value, double>) return Real(column);
-    if constexpr (std::is_same_v<Value, absl::Time>) return *Time(column);
-    if constexpr (std::is_same_v<Value, std::optional<absl::Time>>) return Time(column);
     if constexpr (std::integral<Value> || std::is_enum_v<Value>) {
       return static_cast<Value>(Integer(column));
     }
@@ -95,7 +93,6 @@ class Query {
   int64_t Integer(int column) const;
   double Real(int column) const;
   std::string Bytes(int column) const;
-  std::optional<absl::Time> Time(int column) const;  // empty: NULL
 
   Database& database_;
   std::unique_ptr<sqlite3_stmt, Reset> statement_;  // null: it could not be prepared

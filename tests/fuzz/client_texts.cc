@@ -9,7 +9,7 @@
 #include "client/web/connect_protocol.h"
 #include "client/web/json_call.h"
 #include "google/rpc/status.pb.h"
-#include "server/convert/spec.h"
+#include "server/convert/deterministic_bytes.h"
 #include "server/door/listen_address.h"
 #include "tests/fuzz/fuzz_target.h"
 
@@ -27,7 +27,8 @@ void CheckSpecFile(const std::string& json) {
   if (printed == "null") return;  // a budget beyond what JSON has
   const absl::StatusOr<v1::EnsembleSpec> again = client::ParseSpec("FILE", printed);
   Require(again.ok(), "what is printed can be read");
-  Require(server::SpecBytes(*again) == server::SpecBytes(*spec), "what is read was printed");
+  Require(server::DeterministicBytes(*again) == server::DeterministicBytes(*spec),
+          "what is read was printed");
 }
 
 void RequireTold(const absl::Status& error) {

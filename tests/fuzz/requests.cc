@@ -6,12 +6,12 @@
 #include "ballpiston/v1/ensemble.pb.h"
 #include "ballpiston/v1/trace.pb.h"
 #include "server/book/acceptance.h"
-#include "server/book/job_name.h"
 #include "server/convert/analytic.h"
 #include "server/convert/errors.h"
 #include "server/convert/spec.h"
 #include "server/convert/trace.h"
 #include "server/rpc/request_check.h"
+#include "server/store/job_name.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"
 

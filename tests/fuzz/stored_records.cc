@@ -1,12 +1,9 @@
 // The records of the store, and the file of a lease: damage is DATA_LOSS.
-#include <cstring>
-
 #include "ballpiston/storage/records.pb.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
-#include "server/book/job_message.h"
 #include "server/convert/compressed.h"
 #include "server/convert/deterministic_bytes.h"
 #include "server/convert/errors.h"
@@ -20,16 +17,6 @@
 
 namespace ballpiston::fuzz {
 namespace {
-
-// The specification in a job's row, as a restart reads it.
-void CheckStoredSpec(const std::string& bytes) {
-  const absl::StatusOr<v1::EnsembleSpec> spec = server::SpecFromBytes({bytes});
-  if (!spec.ok()) return Require(absl::IsDataLoss(spec.status()), "damage is DATA_LOSS");
-  const server::StoredSpec stored = server::SpecBytes(*spec);
-  const absl::StatusOr<v1::EnsembleSpec> again = server::SpecFromBytes(stored);
-  Require(again.ok() && server::SpecBytes(*again) == stored, "stored bytes come back");
-  RequireJudged(*spec, bytes);
-}
 
 using Experiments = std::vector<std::unique_ptr<const PointExperiment>>;
 
@@ -134,57 +121,16 @@ void CheckStoredResult(const std::string& bytes) {
   Require(told.histograms_size() == result->histograms_size(), "clients get every histogram");
 }
 
-int64_t TakeInteger(std::string_view& bytes) {
-  int64_t number = 0;
-  const size_t size = std::min(bytes.size(), sizeof(number));
-  std::memcpy(&number, bytes.data(), size);
-  bytes.remove_prefix(size);
-  return number;
-}
-
-std::string TakeText(std::string_view& bytes, size_t length) {
-  const std::string text(bytes.substr(0, length));
-  bytes.remove_prefix(text.size());
-  return text;
-}
-
-server::JobRecord RowOf(std::string_view bytes) {
-  server::JobRecord row;
-  row.id = "0123456789abcdef";
-  row.state = static_cast<server::JobState>(TakeInteger(bytes));
-  row.create_time = absl::FromUnixNanos(TakeInteger(bytes));
-  row.start_time = absl::FromUnixNanos(TakeInteger(bytes));
-  row.end_time = absl::FromUnixNanos(TakeInteger(bytes));
-  row.points = TakeInteger(bytes);
-  row.numbers.points_done = TakeInteger(bytes);
-  row.numbers.samples = std::bit_cast<double>(TakeInteger(bytes));
-  row.numbers.work = std::bit_cast<double>(TakeInteger(bytes));
-  const auto length = static_cast<unsigned char>(TakeText(bytes, 1)[0]);
-  row.spec.rest = TakeText(bytes, length);
-  row.error = std::string(bytes);
-  return row;
-}
-
-// The message that the API makes from a job's row, with all its columns.
-//
-// Eight bytes each: state, times of creation, start and end, points, points done, samples, work;
-// then one byte that says how long the specification is, the specification, the error.
-void CheckStoredJob(const std::string& bytes) {
-  const server::JobRecord row = RowOf(bytes);
-  const v1::EnsembleJob job = server::JobMessage(row, row.numbers, 400);
-  for (const auto& time : {job.create_time(), job.start_time(), job.end_time()}) {
-    Require(time.nanos() >= 0 && time.nanos() < 1'000'000'000, "a time is one");
-  }
+// The message in a job's row, as a list and a restart read it.
+void CheckStoredJob(const v1::EnsembleJob& stored, const std::string& bytes) {
+  v1::EnsembleJob job = stored;
+  server::SetNumbers({.points_done = 1}, job);
+  server::SetExpireTime(400, job);
+  const int32_t nanos = job.expire_time().nanos();
+  Require(nanos >= 0 && nanos < 1'000'000'000, "a time is one");
   v1::EnsembleJob sent;
   Require(sent.ParseFromString(job.SerializeAsString()), "a row can be sent");
-  Require(!server::HasEnded(job.state()) || !v1::EnsembleJob::State_Name(job.state()).empty(),
-          "an end has a name");
-}
-
-std::vector<std::string> Rows() {
-  const std::string error_of_invalid_utf8 = "\x12\x01\xff";
-  return {std::string(65, '\1'), std::string(80, '\0'), std::string(200, '\x08'),
-          std::string(65, '\0') + error_of_invalid_utf8};
+  RequireJudged(job.spec(), bytes);
 }
 
 // Merges the chunks that the experiment can have computed, as the scheduler does.
@@ -232,10 +178,9 @@ std::vector<std::string> FilesOfEach() {
 
 std::vector<FuzzTarget> StoredTargets() {
   return {
-      {"stored_spec", CheckStoredSpec, &v1::EnsembleSpec::default_instance()},
       {"stored_fold", CheckStoredFold, &storage::Checkpoint::default_instance(), FoldsOfEach},
       {"stored_result", CheckStoredResult, &v1::PointResult::default_instance()},
-      {"stored_job", CheckStoredJob, nullptr, Rows},
+      OfMessage<v1::EnsembleJob, CheckStoredJob>("stored_job"),
       {"chunk_file", CheckChunkFile, &storage::LeaseChunks::default_instance(), FilesOfEach},
   };
 }

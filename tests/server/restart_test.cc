@@ -52,9 +52,9 @@ std::string LeaveUnfinished(const TemporaryFolder& folder) {
 TEST(Restart, AnotherEngineComputesAllAgain) {
   TemporaryFolder folder;
   const std::string name = LeaveUnfinished(folder);
-  Change(folder,
-         "UPDATE jobs SET engine_version = '0.0.1'; UPDATE results SET result = x'00';"
-         "UPDATE checkpoints SET record = x'00'");
+  Change(folder, "UPDATE results SET result = x'00'; UPDATE checkpoints SET record = x'00'");
+  ChangeJobs(folder.File("store.sqlite3"),
+             [](EnsembleJob& job) { job.set_engine_version("0.0.1"); });
   std::atomic<int> computed = 0;
   RunningServer server(
       InFolder(folder, 2, FakeExperiments([&](size_t, uint64_t, std::stop_token) { ++computed; })));
@@ -65,21 +65,37 @@ TEST(Restart, AnotherEngineComputesAllAgain) {
   EXPECT_EQ(server.ResultBytes(name).size(), 2u);
 }
 
-// One of the rows has a number of points that does not fit into memory.
-TEST(Restart, AJobWithDamagedOrImpossibleRowsFailsAndTheServerStays) {
+void ExpectThatTheJobFailsAndTheServerStays(const TemporaryFolder& folder,
+                                            const std::string& name) {
+  RunningServer server(InFolder(folder));
+  const EnsembleJob job = server.AwaitEnd(name);
+  EXPECT_EQ(job.name(), name);
+  EXPECT_EQ(job.state(), EnsembleJob::FAILED);
+  EXPECT_NE(job.error().message(), "");
+  server.Succeeded(Equilibrium(1, 5));
+}
+
+TEST(Restart, AJobWithDamagedRowsFailsAndTheServerStays) {
   for (const char* damage :
-       {"UPDATE jobs SET spec = x'ff'", "UPDATE checkpoints SET record = x'ff'",
-        "UPDATE jobs SET points = -1", "UPDATE jobs SET points = 1 << 60",
-        "UPDATE jobs SET points = 1", "UPDATE results SET point = 7",
-        "UPDATE results SET point = -1", "UPDATE jobs SET points = -1, spec = x'ff'"}) {
+       {"UPDATE jobs SET message = x'ff'", "UPDATE jobs SET grid = x'ff'",
+        "UPDATE jobs SET message = x''", "UPDATE checkpoints SET record = x'ff'",
+        "UPDATE results SET point = 7", "UPDATE results SET point = -1"}) {
+    SCOPED_TRACE(damage);
     TemporaryFolder folder;
     const std::string name = LeaveUnfinished(folder);
     Change(folder, damage);
-    RunningServer server(InFolder(folder));
-    const EnsembleJob job = server.AwaitEnd(name);
-    EXPECT_EQ(job.state(), EnsembleJob::FAILED) << damage;
-    EXPECT_NE(job.error().message(), "") << damage;
-    server.Succeeded(Equilibrium(1, 5));
+    ExpectThatTheJobFailsAndTheServerStays(folder, name);
+  }
+}
+
+TEST(Restart, AJobWithAnImpossibleNumberOfPointsFailsAndTheServerStays) {
+  for (const int32_t points : {-1, 1, std::numeric_limits<int32_t>::max()}) {
+    SCOPED_TRACE(points);
+    TemporaryFolder folder;
+    const std::string name = LeaveUnfinished(folder);
+    ChangeJobs(folder.File("store.sqlite3"),
+               [&](EnsembleJob& job) { job.mutable_progress()->set_points(points); });
+    ExpectThatTheJobFailsAndTheServerStays(folder, name);
   }
 }
 

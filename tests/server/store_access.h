@@ -3,6 +3,7 @@
 
 #include <type_traits>
 
+#include "server/store/job_table.h"
 #include "server/store/sqlite.h"
 #include "server/store/store.h"
 #include "tests/support/preamble.h"
@@ -22,6 +23,24 @@ inline void ChangeStore(const std::string& path, const std::string& sql) {
   ASSERT_OK_AND_ASSIGN(const auto database, Database::Open(path, Database::Mode::kReadWrite));
   database->Execute(sql);
   ASSERT_OK(database->status());
+}
+
+// Changes the jobs in the file of such a store.
+inline void ChangeJobs(const std::string& path,
+                       const std::function<void(v1::EnsembleJob& job)>& change) {
+  ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(path, {.stall = kUnreachedLimit}));
+  ASSERT_OK(store->Commit([&](Database& database) {
+    std::vector<JobRecord> records;
+    ReadJobs(database, std::nullopt, std::numeric_limits<int64_t>::max(), Grid::kIncluded,
+             [&](JobRecord record) {
+               records.push_back(std::move(record));
+               return true;
+             });
+    for (JobRecord& record : records) {
+      change(record.job);
+      UpdateJob(database, record);
+    }
+  }));
 }
 
 }  // namespace ballpiston::server

@@ -1,8 +1,8 @@
 #include "tests/simulation/client.h"
 
-#include "server/book/job_name.h"
 #include "server/convert/spec.h"
 #include "server/rpc/watch.h"
+#include "server/store/job_name.h"
 #include "server/store/job_record.h"
 #include "tests/server/requests.h"
 

@@ -1,10 +1,10 @@
 #include "tests/simulation/expectations.h"
 
 #include "core/ensemble/point_fold.h"
-#include "server/book/job_name.h"
 #include "server/convert/deterministic_bytes.h"
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
+#include "server/store/job_name.h"
 #include "server/store/job_record.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"

@@ -1,6 +1,7 @@
 // A server with much in its store starts quickly, and lists it in little memory.
-#include "server/book/job_name.h"
 #include "server/convert/spec.h"
+#include "server/convert/timestamp.h"
+#include "server/store/job_name.h"
 #include "server/store/job_table.h"
 #include "server/store/store.h"
 #include "tests/fault/torture/preamble.h"
@@ -35,10 +36,10 @@ void InsertEnded(Database& database, int count, const v1::EnsembleSpec& spec,
   for (int i = 0; i < count; ++i) {
     JobRecord record;
     record.id = server::RandomId();
-    record.spec = server::SpecBytes(spec);
-    record.create_time = absl::Now();
-    record.engine_version = server::EngineVersion();
-    record.points = 1;
+    *record.job.mutable_spec() = spec;
+    server::SetTime(absl::Now(), record.job.mutable_create_time());
+    record.job.set_engine_version(server::EngineVersion());
+    record.job.mutable_progress()->set_points(1);
     server::InsertJob(database, record);
     server::JobEnd end;
     end.time = absl::Now();

@@ -103,11 +103,11 @@ TEST_F(AcceptanceTest, AnswersAreOnlyForTheirEngine) {
   for (const std::string& engine : {std::string("0.0.1"), EngineVersion()}) {
     JobRecord record;
     record.id = "of-" + std::to_string(engine == EngineVersion());
-    record.principal = kAnn.name;
-    record.spec = SpecBytes(Question());
-    record.engine_version = engine;
     record.question = QuestionOf(Question(), engine);
-    record.points = 2;
+    record.job.set_principal(kAnn.name);
+    *record.job.mutable_spec() = Question();
+    record.job.set_engine_version(engine);
+    record.job.mutable_progress()->set_points(2);
     ASSERT_OK(store_->Commit([&](Database& database) {
       InsertJob(database, record);
       EndJob(database, record.sequence, JobEnd());

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "server/book/job_book.h"
-#include "server/book/job_name.h"
+#include "server/store/job_name.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {

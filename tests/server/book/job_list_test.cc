@@ -1,4 +1,5 @@
 // The pages of a filtered list, over a store that is filled without a server.
+#include "server/convert/timestamp.h"
 #include "tests/server/book/book_test.h"
 #include "tests/server/preamble.h"
 
@@ -20,11 +21,12 @@ class JobList : public BookTest {
       for (const StoredJob& job : jobs) {
         JobRecord record;
         record.id = job.id;
-        record.principal = kAnn.name;
-        record.spec = SpecBytes(job.spec);
-        record.state = job.state;
-        record.create_time = job.create_time;
+        record.job.set_principal(kAnn.name);
+        *record.job.mutable_spec() = job.spec;
+        SetTime(job.create_time, record.job.mutable_create_time());
         InsertJob(database, record);
+        record.job.set_state(job.state);
+        UpdateJob(database, record);
       }
     }));
   }

@@ -2,28 +2,26 @@
 
 #include "server/book/job_book.h"
 #include "server/book/job_journal.h"
-#include "server/book/job_message.h"
-#include "server/book/job_name.h"
 #include "server/convert/point_result.h"
+#include "server/store/job_name.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
 
-JobRecord JobWithPoints(int64_t points) {
+JobRecord JobWithPoints(int32_t points) {
   JobRecord record;
   record.sequence = 1;
   record.id = "a";
-  record.points = points;
+  record.job.mutable_progress()->set_points(points);
   return record;
 }
 
 TEST(Job, AToleranceGivesNoFraction) {
-  v1::EnsembleSpec spec;
-  spec.mutable_target()->set_tolerance(0.1);
-  JobRecord record = JobWithPoints(4);
-  record.spec = SpecBytes(spec);
-  EXPECT_FALSE(JobMessage(record, record.numbers, 0).progress().has_fraction());
+  EnsembleJob job = JobWithPoints(4).job;
+  EXPECT_TRUE(ProgressOf(job, {}).has_fraction());
+  job.mutable_spec()->mutable_target()->set_tolerance(0.1);
+  EXPECT_FALSE(ProgressOf(job, {}).has_fraction());
 }
 
 TEST(Job, AnOldSnapshotIsReplacedIfTheJobHasChanged) {
@@ -82,9 +80,10 @@ TEST_F(JobJournalTest, AJobWithMissingResultsFails) {
   for (const size_t point : {0u, 2u}) Finish(point);
   journal_->Ended(absl::OkStatus());
   ASSERT_OK(store_->Flush());
-  const EnsembleJob job = JobMessage(Row(), {}, 0);
+  const EnsembleJob job = Row().job;
   EXPECT_EQ(job.state(), EnsembleJob::FAILED);
   EXPECT_THAT(job.error().message(), testing::HasSubstr("of 3 computed points the store keeps 2"));
+  EXPECT_EQ(job.progress().fraction(), 2.0 / 3);
 }
 
 // Otherwise the job would be active until the next start of the server.
@@ -96,16 +95,16 @@ TEST_F(JobJournalTest, AJobWhoseEndTheStoreRejectsFails) {
   }));
   std::vector<JobState> ends;
   journal_.emplace(job_, *store_, false,
-                   [&](const JobRecord& ended) { ends.push_back(ended.state); });
+                   [&](const JobRecord& ended) { ends.push_back(ended.job.state()); });
   for (const size_t point : {0u, 1u, 2u}) Finish(point);
   const uint64_t change = job_->last_state_change();
   journal_->Ended(absl::OkStatus());
   ASSERT_OK(store_->Flush());  // the rejected end
   ASSERT_OK(store_->Flush());
-  const EnsembleJob job = JobMessage(Row(), {}, 0);
+  const EnsembleJob job = Row().job;
   EXPECT_EQ(job.state(), EnsembleJob::FAILED);
   EXPECT_THAT(job.error().message(), testing::HasSubstr("not this one"));
-  EXPECT_EQ(Row().numbers.points_done, 3);
+  EXPECT_EQ(job.progress().points_done(), 3);
   EXPECT_THAT(ends, testing::ElementsAre(EnsembleJob::FAILED));
   EXPECT_GT(job_->last_state_change(), change);
 }

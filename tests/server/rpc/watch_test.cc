@@ -72,8 +72,10 @@ TEST_F(WatchTest, AfterARestartForAnotherEngineAllIsSentAgain) {
   const std::string name = Start().Succeeded(Equilibrium(3, 1));
   const std::string token = WatchStream(*server_, name).ToTheEnd().back().resume_token();
   server_.reset();
-  ChangeStore(folder_.File("store.sqlite3"),
-              "UPDATE jobs SET state = 2, engine_version = '0.0.1'");  // RUNNING
+  ChangeJobs(folder_.File("store.sqlite3"), [](EnsembleJob& job) {
+    job.set_state(EnsembleJob::RUNNING);
+    job.set_engine_version("0.0.1");
+  });
   EXPECT_EQ(FinishedIn(WatchStream(Start(), name, token).ToTheEnd()).size(), 3u);
 }
 

@@ -64,9 +64,10 @@ TEST_F(BackupTest, EachInconsistencyIsReported) {
     const char* sentence;
   } damages[] = {
       {"UPDATE jobs SET state = 9 WHERE sequence = 1", "has an unknown state: 9"},
-      {"UPDATE jobs SET spec = x'ff' WHERE sequence = 1", "job "},
+      {"UPDATE jobs SET message = x'ff' WHERE sequence = 1", "cannot be read"},
+      {"UPDATE jobs SET grid = x'ff' WHERE sequence = 1", "cannot be read"},
+      {"UPDATE jobs SET state = 5 WHERE sequence = 1", "failed without an error"},
       {"UPDATE jobs SET end_time = NULL WHERE sequence = 1", "ended but has no end time"},
-      {"UPDATE jobs SET error = x'ff' WHERE sequence = 1", "its error cannot be read"},
       {"UPDATE jobs SET points_done = 1 WHERE sequence = 1", "finished 1 points and has 2 results"},
       {"UPDATE jobs SET points = 3 WHERE sequence = 1", "succeeded with 2 results of 3"},
       {"DELETE FROM results WHERE job = 1 AND point = 1", "succeeded with 1 results of 2"},

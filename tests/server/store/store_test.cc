@@ -10,13 +10,13 @@ namespace {
 JobRecord Record(const std::string& id) {
   JobRecord record;
   record.id = id;
-  record.spec = {.rest = "spec", .grid = "grid"};
-  record.create_time = absl::FromUnixNanos(1'700'000'000'123'456'789);
-  record.engine_version = "1";
-  record.principal = "ada";
-  record.priority = -3;
   record.question = "question of " + id;
-  record.points = 3;
+  record.job.mutable_spec()->set_seed(7);
+  record.job.mutable_spec()->mutable_grid()->add_rho(0.53);
+  record.job.mutable_create_time()->set_nanos(123'456'789);
+  record.job.set_principal("ada");
+  record.job.set_priority(-3);
+  record.job.mutable_progress()->set_points(3);
   return record;
 }
 
@@ -52,14 +52,11 @@ TEST_F(StoreTest, AJobIsThereAfterReopening) {
   Insert(*Open(), Record("a"));
   const auto found = Find(*Open(), "a");
   ASSERT_TRUE(found);
-  EXPECT_EQ(found->spec, Record("a").spec);
-  EXPECT_EQ(found->state, v1::EnsembleJob::QUEUED);
-  EXPECT_EQ(found->create_time, Record("a").create_time);
-  EXPECT_FALSE(found->start_time);
-  EXPECT_EQ(found->principal, "ada");
-  EXPECT_EQ(found->priority, -3);
+  EnsembleJob expected = Record("a").job;
+  expected.set_name("ensembleJobs/a");
+  expected.set_state(EnsembleJob::QUEUED);
+  EXPECT_EQ(found->job.DebugString(), expected.DebugString());
   EXPECT_EQ(found->question, "question of a");
-  EXPECT_EQ(found->points, 3);
 }
 
 TEST_F(StoreTest, TheReaderCannotWrite) {
@@ -104,7 +101,7 @@ TEST_F(StoreTest, EveryKindOfWrongFileIsRefusedAndUntouched) {
   ASSERT_OK(Open()->Commit([&](Database& database) {
     for (int i = 0; i < 200; ++i) {
       JobRecord record = Record("job-" + std::to_string(i));
-      record.spec.rest = std::string(300, 's');
+      (*record.job.mutable_labels())["k"] = std::string(300, 's');
       InsertJob(database, record);
     }
   }));

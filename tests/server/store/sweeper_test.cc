@@ -20,16 +20,17 @@ class SweeperTest : public testing::Test {
   static int64_t AddLargeJob(Store& store, const std::string& id) {
     JobRecord record;
     record.id = id;
-    record.points = 1000;
+    constexpr int32_t kPoints = 1000;
+    record.job.mutable_progress()->set_points(kPoints);
     EXPECT_OK(store.Commit([&](Database& database) { InsertJob(database, record); }));
-    for (int64_t point = 0; point < record.points; ++point) {
+    for (int64_t point = 0; point < kPoints; ++point) {
       store.RecordResult(record.sequence,
                          {.point = point, .result = "r", .details = std::string(20'000, 'd')});
     }
     EXPECT_OK(store.Flush());
     EXPECT_OK(store.Commit([&](Database& database) {
       JobEnd end;
-      end.numbers.points_done = record.points;
+      end.numbers.points_done = kPoints;
       EndJob(database, record.sequence, end);
     }));
     return record.sequence;

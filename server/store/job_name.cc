@@ -1,4 +1,4 @@
-#include "server/book/job_name.h"
+#include "server/store/job_name.h"
 
 #include <algorithm>
 #include <cstdint>
