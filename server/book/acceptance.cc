@@ -6,7 +6,6 @@
 #include "server/convert/errors.h"
 #include "server/convert/spec.h"
 #include "server/sha256.h"
-#include "server/store/job_name.h"
 #include "server/store/sweeper.h"
 
 namespace ballpiston::server {

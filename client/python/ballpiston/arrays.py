@@ -30,6 +30,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ballpiston._version import __version__
+from ballpiston.curve import curve_of
 from ballpiston.document import json_of
 from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS, parameters_of
 from ballpiston.spelling import spelling
@@ -138,19 +139,14 @@ def _histogram_name(histogram: Any) -> str:
 
 
 def _curve_arrays(points: Sequence[Any]) -> Arrays:
-    by_name = [{curve.name: curve for curve in point.curves} for point in points]
+    by_name = [{curve.name: curve_of(curve) for curve in point.curves} for point in points]
     arrays: Arrays = {}
     for name in dict.fromkeys(name for curves in by_name for name in curves):
-        column = [list(c[name].points) if name in c else [] for c in by_name]
         for field in ("time", "position", "value", "standard_error", "batches", "limit"):
-            rows = [[_curve_value(point, field) for point in curve] for curve in column]
+            found = [getattr(curves.get(name), field, None) for curves in by_name]
+            rows = [[] if row is None else row for row in found]
             _add_unless_empty(arrays, f"curve_{name}_{field}", _padded(rows, 2))
     return arrays
-
-
-def _curve_value(point: Any, field: str) -> float:
-    is_there = field == "value" or point.HasField(field)
-    return float(getattr(point, field)) if is_there else np.nan
 
 
 def _grouped(items: Iterable[Any], key: Callable[[Any], str]) -> dict[str, list[Any]]:

@@ -7,7 +7,6 @@ import sys
 import uuid
 from collections.abc import AsyncIterator, Mapping
 from datetime import datetime, timezone
-from html import escape
 from typing import Any
 
 from ballpiston.async_watch import Update, watch_updates
@@ -16,6 +15,7 @@ from ballpiston.error_details import details_of, error_of
 from ballpiston.errors import Error, ResultsExpired, Unavailable
 from ballpiston.progress import Progress, fraction_of, progress_on_screen
 from ballpiston.result import Result
+from ballpiston.result_table import html_table
 from ballpiston.specification import set_target
 from ballpiston.spelling import spelling
 from ballpiston.v1 import ensemble_pb2, spec_pb2
@@ -309,19 +309,14 @@ class Job:
         self._glance()
         progress = self.message.progress
         facts = {
-            "job": self.name,
             "experiment": self.experiment,
             "state": self._last_state(),
             "points": f"{progress.points_done} of {progress.points}",
             "progress": f"{100 * self.progress:.0f} %",
             "error": self.error,
         }
-        rows = "".join(
-            f"<tr><th>{name}</th><td>{escape(fact)}</td></tr>"
-            for name, fact in facts.items()
-            if fact
-        )
-        return f"<table>{rows}</table>"
+        known = {name: fact for name, fact in facts.items() if fact}
+        return html_table(f"job {self.name}", known, [known.values()])
 
     def _glance(self) -> None:
         """Updates the job if the server answers at once; a private server is not started for it."""

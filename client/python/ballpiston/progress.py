@@ -11,7 +11,7 @@ import warnings
 from typing import Any
 
 from ballpiston.document import json_of
-from ballpiston.number_text import measured_text
+from ballpiston.point import Point
 from ballpiston.v1 import ensemble_pb2
 
 _BAR_WIDTH = 20
@@ -82,7 +82,8 @@ class Progress:
         points = list(message.snapshot.points) or list(message.snapshot.finished_points)[-1:]
         self._fraction = fraction_of(progress)
         self._text = f"{progress.points_done}/{progress.points} points"
-        self._show("  ".join([self._text, *(_first_estimate(point) for point in points[:1])]))
+        estimates = [str(e) for point in points[:1] for e in Point(point).estimates.values()]
+        self._show("  ".join([self._text, *estimates[:1]]))
 
     def show_pause(self, pause: float) -> None:
         """The stream broke; the next one begins after `pause` seconds."""
@@ -143,14 +144,6 @@ def fraction_of(progress: Any) -> float:
     if progress.HasField("fraction"):
         return float(progress.fraction)
     return float(progress.points_done / progress.points) if progress.points else 0.0
-
-
-def _first_estimate(point: Any) -> str:
-    if not point.estimates:
-        return ""
-    estimate = point.estimates[0]
-    error = estimate.standard_error if estimate.HasField("standard_error") else None
-    return f"{estimate.name} {measured_text(estimate.value, error)}"
 
 
 def _is_terminal() -> bool:

@@ -7,9 +7,7 @@ from html import escape
 from typing import Any
 
 from ballpiston.number_text import measured_text
-from ballpiston.point import parameters_of
-from ballpiston.spelling import spelling
-from ballpiston.v1 import spec_pb2
+from ballpiston.point import Point
 
 _MOST_ROWS = 20
 
@@ -47,17 +45,17 @@ def html_table(heading: str, titles: Iterable[str], rows: Sequence[Iterable[str]
     return f"<p>{escape(heading)}</p>{table}"
 
 
-def _row(point: Any) -> Row:
+def _row(message: Any) -> Row:
+    point = Point(message)
     row = {
         name: value if isinstance(value, str) else f"{value:.6g}"
-        for name, value in parameters_of(point).items()
+        for name, value in point.parameters.items()
     }
-    row["model"] = spelling(spec_pb2.EnsembleSpec.Model, point.model)
+    row["model"] = point.model
     row["samples"] = f"{point.samples:.15g}"
-    for estimate in point.estimates:
-        error = estimate.standard_error if estimate.HasField("standard_error") else None
-        row[estimate.name] = measured_text(estimate.value, error)
-        if estimate.HasField("z_score"):
+    for estimate in point.estimates.values():
+        row[estimate.name] = measured_text(estimate.value, estimate.standard_error)
+        if estimate.z_score is not None:
             row[estimate.name] += f" (z {estimate.z_score:+.2f})"
     return row
 

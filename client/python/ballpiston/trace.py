@@ -17,7 +17,7 @@ from ballpiston.v1 import trace_pb2
 
 def events_of(connection: Connection, request: Any) -> Iterator[dict[str, Any]]:
     """The start, then the events."""
-    for message in _messages(connection, request):
+    for message in stream_messages(connection, connection.traces.TraceOrbit, request):
         if message.HasField("start"):
             yield record_of(message.start)
         yield from map(record_of, message.events)
@@ -32,7 +32,7 @@ def columns_of(
         if name not in known:
             raise ValueError(f"an event has no field {name!r}{did_you_mean(name, list(known))}")
     values: dict[str, list[Any]] = {name: [] for name in names}
-    for message in _messages(connection, request):
+    for message in stream_messages(connection, connection.traces.TraceOrbit, request):
         for name, column in values.items():
             column.extend(_column(message.events, name, known[name].has_presence))
     arrays = {name: np.array(column) for name, column in values.items()}
@@ -48,10 +48,6 @@ def _column(events: Any, name: str, is_optional: bool) -> list[Any]:
     if is_optional:
         return [getattr(e, name) if e.HasField(name) else np.nan for e in events]
     return [getattr(e, name) for e in events]
-
-
-def _messages(connection: Connection, request: Any) -> Iterator[Any]:
-    return stream_messages(connection, connection.traces.TraceOrbit, request)
 
 
 def stream_messages(connection: Connection, method: Any, request: Any) -> Iterator[Any]:

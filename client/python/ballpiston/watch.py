@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import random
 import time
-from dataclasses import dataclass
 from typing import Any
 
 import grpc
@@ -34,40 +33,32 @@ def has_ended(state: int) -> bool:
     return state in _ENDED
 
 
-@dataclass(frozen=True)
-class Pauses:
-    """Seconds: the first pause, the longest one, and when a watch gives up."""
-
-    first: float = 0.1
-    longest: float = 5.0
-    give_up_after: float = 120.0
-
-
 class ReattachPace:
     """When a watch that lost its server attaches again, and when it gives up. Each pause is up to a
     quarter longer than needed, so that the watchers of a server that died do not return as one. The
-    times are the caller's, so that this can be tested without waiting."""
+    times, all in seconds, are the caller's, so that this can be tested without waiting."""
 
-    def __init__(self, pauses: Pauses, now: float) -> None:
-        self._pauses = pauses
-        self._heard = now
-        self._next = pauses.first
+    def __init__(
+        self, now: float, first: float = 0.1, longest: float = 5.0, give_up_after: float = 120.0
+    ) -> None:
+        self._first, self._longest, self.give_up_after = first, longest, give_up_after
+        self.heard(now)
 
     def heard(self, now: float) -> None:
         """The server said something: the pauses and the time to give up start again."""
         self._heard = now
-        self._next = self._pauses.first
+        self._next = self._first
 
     def next_pause(self, now: float, least: float = 0.0) -> float | None:
         """Seconds before the next attempt, at least `least`; None if that would come after the time
         to give up."""
         pause = max(self._next, least) * random.uniform(1.0, 1.25)
-        self._next = min(2 * self._next, self._pauses.longest)
-        return None if now - self._heard + pause > self._pauses.give_up_after else pause
+        self._next = min(2 * self._next, self._longest)
+        return None if now - self._heard + pause > self.give_up_after else pause
 
 
 def watch_job(
-    connection: Connection, name: str, screen: Progress, pauses: Pauses = Pauses()
+    connection: Connection, name: str, screen: Progress, pace: ReattachPace | None = None
 ) -> Any:
     """Blocks until the job has ended and returns it, as an EnsembleJob.
 
@@ -75,7 +66,7 @@ def watch_job(
         Unavailable: the watch gave up.
         Error: any other error of the server.
     """
-    watch = Attachments(name, pauses)
+    watch = Attachments(name, pace)
     while True:
         why = _read_stream(connection, watch, screen)
         if watch.ended is not None:
@@ -102,9 +93,8 @@ class Attachments:
         ended: the job, once it has ended.
     """
 
-    def __init__(self, name: str, pauses: Pauses = Pauses()) -> None:
-        self._pauses = pauses
-        self._pace = ReattachPace(pauses, time.monotonic())
+    def __init__(self, name: str, pace: ReattachPace | None = None) -> None:
+        self._pace = pace or ReattachPace(time.monotonic())
         self.request = ensemble_pb2.WatchEnsembleJobRequest(name=name)
         self.ended: Any = None
 
@@ -127,7 +117,7 @@ class Attachments:
             raise why
         pause = self._pace.next_pause(time.monotonic(), why.retry_delay)
         if pause is None:
-            silence = f"{self._pauses.give_up_after:g} s"
+            silence = f"{self._pace.give_up_after:g} s"
             raise Unavailable(
                 f"gave up watching after {silence} without the server: {why}", code="UNAVAILABLE"
             ) from why

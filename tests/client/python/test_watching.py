@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, cast
@@ -17,7 +18,7 @@ import ballpiston
 from ballpiston.errors import Unavailable
 from ballpiston.progress import Progress
 from ballpiston.v1 import ensemble_pb2
-from ballpiston.watch import Pauses, ReattachPace, watch_job
+from ballpiston.watch import ReattachPace, watch_job
 
 
 def streams(client: ballpiston.Client) -> float:
@@ -135,7 +136,7 @@ def test_a_bar_shows_points_an_estimate_and_lost_connections() -> None:
 
 
 def test_pauses_double_until_the_server_is_heard() -> None:
-    pace = ReattachPace(Pauses(first=1, longest=4, give_up_after=1000), now=0)
+    pace = ReattachPace(now=0, first=1, longest=4, give_up_after=1000)
     for expected in (1, 2, 4, 4):
         pause = pace.next_pause(now=0)
         assert pause is not None and expected <= pause <= 1.25 * expected
@@ -145,14 +146,14 @@ def test_pauses_double_until_the_server_is_heard() -> None:
 
 
 def test_a_pause_is_as_long_as_the_server_asks() -> None:
-    pace = ReattachPace(Pauses(first=1, longest=4, give_up_after=100), now=0)
+    pace = ReattachPace(now=0, first=1, longest=4, give_up_after=100)
     pause = pace.next_pause(now=0, least=10)
     assert pause is not None and 10 <= pause <= 12.5
     assert pace.next_pause(now=0, least=200) is None
 
 
 def test_a_watch_gives_up_after_the_configured_time() -> None:
-    pace = ReattachPace(Pauses(first=1, longest=4, give_up_after=10), now=0)
+    pace = ReattachPace(now=0, first=1, longest=4, give_up_after=10)
     assert pace.next_pause(now=5) is not None
     assert pace.next_pause(now=9.5) is None
 
@@ -185,7 +186,6 @@ def update(token: str, state: int) -> Any:
     return ensemble_pb2.WatchEnsembleJobResponse(resume_token=token, job={"state": state})
 
 
-AT_ONCE = Pauses(first=0, longest=0, give_up_after=LIMIT)
 RUNNING, SUCCEEDED = ensemble_pb2.EnsembleJob.RUNNING, ensemble_pb2.EnsembleJob.SUCCEEDED
 
 
@@ -193,7 +193,8 @@ def test_a_watch_passes_the_last_resume_token_on() -> None:
     server: Any = ScriptedServer(
         [update("a", RUNNING), update("b", RUNNING)], [], [update("c", SUCCEEDED)]
     )
-    job = watch_job(server, "ensembleJobs/1", Progress(None), AT_ONCE)
+    at_once = ReattachPace(time.monotonic(), first=0, longest=0, give_up_after=LIMIT)
+    job = watch_job(server, "ensembleJobs/1", Progress(None), at_once)
     assert job.state == SUCCEEDED
     assert server.tokens == ["", "b", "b"]
 
@@ -204,7 +205,7 @@ def test_a_watch_that_gives_up_says_why() -> None:
             cast(Any, ScriptedServer()),
             "ensembleJobs/1",
             Progress(None),
-            Pauses(first=0.001, longest=0, give_up_after=0),
+            ReattachPace(time.monotonic(), first=0.001, longest=0, give_up_after=0),
         )
 
 
