@@ -21,7 +21,7 @@ from ballpiston.client import Client
 from ballpiston.figures.parts import fits, style
 from ballpiston.figures.parts.asking import RHO, answer, mean_free_times
 from ballpiston.figures.parts.tables import FloatArray, Table, Tables, rows, table
-from ballpiston.figures.parts.tangent_growth import Growth, second_exponent
+from ballpiston.figures.parts.tangent_growth import second_exponent
 from ballpiston.parameter_lists import Numbers, number_list
 
 EFFORT: dict[str, dict[str, Any]] = {
@@ -52,7 +52,7 @@ def measure(
     for k, d in enumerate(number_list("delta", delta)):
         count = max(_FEWEST, collisions * min(1.0, d / _FEWER_BELOW))
         row = _exponents(client, rho, d, count, seed) | {"tau": tau[d]}
-        found.append(row | _computed(second_exponent(rho, d, tau[d], samples, seed + 1 + k)))
+        found.append(row | second_exponent(rho, d, tau[d], samples, seed + 1 + k)._asdict())
     whole = table(found)
     return {
         "lyapunov": whole,
@@ -74,11 +74,6 @@ def _exponents(
     return row
 
 
-def _computed(growth: Growth) -> dict[str, float]:
-    row = {"computed": growth.value, "computed_error": growth.error}
-    return row | {"long_waits": growth.long_waits}
-
-
 def _curve(client: Client, rho: float, samples: int, seed: int) -> Table:
     """With the same random numbers at every delta, so that the curve is smooth; the limit, at the
     first delta, with more of them."""
@@ -86,7 +81,7 @@ def _curve(client: Client, rho: float, samples: int, seed: int) -> Table:
     for delta, tau in mean_free_times(client, rho, _CURVE).items():
         count = samples if delta == _LIMIT else samples // 8
         growth = second_exponent(rho, delta, tau, count, seed)
-        found.append({"delta": delta, "tau": tau} | _computed(growth))
+        found.append({"delta": delta, "tau": tau} | growth._asdict())
     return table(found)
 
 

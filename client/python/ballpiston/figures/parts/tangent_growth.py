@@ -60,11 +60,11 @@ class Collisions(NamedTuple):
 
 
 class Growth(NamedTuple):
-    """lambda_2 in a collision: its mean with its standard error, and the mean without the
+    """lambda_2 in a collision, as columns: its mean with its standard error, and that without the
     terms in 1/t, for long waits."""
 
-    value: float
-    error: float
+    computed: float
+    computed_error: float
     long_waits: float
 
 
