@@ -129,9 +129,11 @@ TEST(ServerFlags, ADeviceThatIsNotThereIsRefused) {
   EXPECT_THAT(Refusal(flags), AllOf(HasSubstr("--device=gpu: "), HasSubstr("permitted here: cpu")));
 }
 
-TEST(ServerFlags, MetricsForOtherMachinesAreRefused) {
-  EXPECT_THAT(Refusal({"--metrics-listen", "0.0.0.0:9090"}),
-              HasSubstr("--metrics-listen=0.0.0.0:9090 is not a loopback address"));
+TEST(ServerFlags, MetricsAreServedAtALoopbackAddressOnly) {
+  for (const std::string address : {"0.0.0.0:9090", "unix:/tmp/metrics", "9090"}) {
+    EXPECT_THAT(Refusal({"--metrics-listen", address}),
+                HasSubstr("--metrics-listen=" + address + " is not a loopback address"));
+  }
 }
 
 // A shell passes an empty value if a variable is not set. The server then takes neither the default

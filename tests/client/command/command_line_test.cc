@@ -50,11 +50,6 @@ TEST_F(CommandLineTest, MessagesShortenLongWords) {
   }
 }
 
-TEST_F(CommandLineTest, MessagesEscapeBytesThatATerminalMayInterpret) {
-  EXPECT_THAT(Ballpiston({"result", "ensembleJobs/\xff\x1b"}).err,
-              StartsWith("ballpiston: JOB: 'ensembleJobs/\\xff\\x1b' is not a job's name"));
-}
-
 TEST_F(CommandLineTest, AfterTwoHyphensAllWordsAreArguments) {
   const auto line =
       ParseCommandLine({"server", "start", "--workers", "2", "--", "--data-dir", "x"});

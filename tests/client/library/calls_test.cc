@@ -125,20 +125,7 @@ TEST(RequestId, HasTheFormOfAUuid) {
 
 // ---- error_text.h ----
 
-// transcripts/refusals.txt shows the texts of details.
-TEST(ErrorText, OkStaysOk) { EXPECT_OK(FromGrpc(grpc::Status::OK)); }
-
-TEST(ErrorText, TheReasonIsThatOfTheDetails) {
-  EXPECT_EQ(ErrorReason(FromGrpc(JobNotFound(kJobName))), "JOB_NOT_FOUND");
-}
-
-TEST(ErrorText, WithoutDetailsTheTextIsTheMessage) {
-  const absl::Status status =
-      FromGrpc(grpc::Status(grpc::StatusCode::UNAVAILABLE, "connection refused"));
-  EXPECT_EQ(status, absl::UnavailableError("connection refused"));
-  EXPECT_EQ(ErrorReason(status), "");
-}
-
+// transcripts/refusals.txt shows messages, their reasons and their details.
 TEST(ErrorText, MalformedDetailsDoNotHideTheMessage) {
   EXPECT_EQ(FromGrpc(grpc::Status(grpc::StatusCode::INTERNAL, "went wrong", "\xff\xff\xff")),
             absl::InternalError("went wrong"));

@@ -160,16 +160,6 @@ TEST_F(JobWatch, GivesUpAfterTheConfiguredTime) {
                                  "reset")));
 }
 
-// Each attempt receives a message before it fails: the server is alive. The message restarts both
-// the pauses and the time to give up.
-TEST_F(JobWatch, ThePaceStartsAgainWithEveryMessage) {
-  std::vector<WatchScript> watches(100, Unavailable({SnapshotMessage(1, "t")}));
-  watches.push_back(Succeeded());
-  Start(watches);
-  EXPECT_OK(Watch());
-  EXPECT_THAT(pauses_, AllOf(SizeIs(100), Each(Le(1.25))));
-}
-
 // Each silence takes 0.8 s to 1 s, both together more than the time to give up.
 TEST_F(JobWatch, TheTimeToGiveUpStartsAgainWithEveryMessage) {
   const grpc::Status busy = BusyFor(std::chrono::milliseconds(800));

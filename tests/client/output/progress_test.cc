@@ -262,15 +262,6 @@ TEST(ProgressJson, AStateIsAbsentUntilItIsKnownAndNotOlderThanTheProgress) {
   EXPECT_EQ(lines[3].state(), v1::EnsembleJob::RUNNING);
 }
 
-TEST(ProgressJson, NotesAreMessages) {
-  Reported report(ProgressStyle::kJson);
-  report.reporter.Note("a \"hint\"\nof two lines");
-  const auto lines = JsonLines(report.Text());
-  ASSERT_EQ(lines.size(), 1u);
-  EXPECT_EQ(lines[0].note(), "a \"hint\"\nof two lines");
-  EXPECT_EQ(lines[0].job(), "ensembleJobs/abc");
-}
-
 TEST(ProgressNone, PrintsNotesOnly) {
   EXPECT_EQ(ReportOf(ProgressStyle::kNone), "");
   Reported report(ProgressStyle::kNone);
