@@ -96,7 +96,8 @@ Answer ByBudget(const Question& question, double bound) {
           ? absl::StrCat("the billiard's error with this budget is about ", Rounded(billiard))
           : "the billiard has no error within this budget",
       ", the limit's ",
-      std::isfinite(limit) ? absl::StrCat("error at most ", Rounded(limit))
+      std::isfinite(limit) ? absl::StrCat("about ", Rounded(limit),
+                                          ", of which its model's is at most ", Rounded(bound))
                            : absl::StrCat("model error at most ", Rounded(bound)));
   const double enough = question.target().tolerance.value_or(0);
   const bool is_by_billiard = std::isfinite(billiard)

@@ -183,9 +183,11 @@ std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec) {
   absl::string_view other;
   if (IsOfTheLimit(spec.model)) other = ", or model auto or billiard";
   if (spec.precision == Precision::kSingle) other = ", or precision double";
+  const std::string permitted = absl::StrCat("tolerance >= ", RoundedUp(least), other);
   return {{"target.tolerance",
            absl::StrCat("is ", NumberText(tolerance), ", below what model ", Name(spec.model),
-                        " can reach; permitted: tolerance >= ", RoundedUp(least), other)}};
+                        " can reach; permitted: ",
+                        least < 1 ? permitted : "samples or a budget in place of a tolerance")}};
 }
 
 }  // namespace ballpiston

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
 #include "server/convert/errors.h"
 #include "server/convert/timestamp.h"
@@ -63,9 +64,11 @@ Acceptance JobBook::NewAcceptance(const Principal& caller,
   SetNumbers({.bytes = static_cast<int64_t>(job.spec().ByteSizeLong())}, job);
   acceptance.fresh = request.fresh();
   const EnsembleSpec& spec = checked.spec;
-  const size_t points = spec.target.IsOpenEnded() ? 0 : PointCount(spec);
+  const bool has_samples = !spec.target.IsOpenEnded() && !NeedsNoSamples(spec);
+  const size_t points = has_samples ? PointCount(spec) : 0;
   for (size_t i = 0; i < points; ++i) {
-    acceptance.samples += static_cast<double>(SamplesAskedFor(spec, PointAt(spec, i)));
+    const Forecast forecast = ForecastOf(spec, PointAt(spec, i));
+    acceptance.samples += static_cast<double>(SamplesAskedFor(spec.target, forecast));
   }
   return acceptance;
 }

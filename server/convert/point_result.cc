@@ -7,6 +7,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "server/convert/compressed.h"
 #include "server/convert/spec.h"
 
@@ -81,7 +82,8 @@ void SetHealth(const Health& health, v1::PointResult& result) {
   if (std::isfinite(health.max_energy_error)) message.set_max_energy_error(health.max_energy_error);
 }
 
-// A remark stands for each estimate that has no value.
+// A remark stands for each estimate that has no value, and one for all whose model error is
+// unknown.
 void AddRemarks(const PointSummary& summary, v1::PointResult& result) {
   result.mutable_remarks()->Assign(summary.remarks.begin(), summary.remarks.end());
   for (const Estimate& estimate : summary.estimates) {
@@ -90,6 +92,14 @@ void AddRemarks(const PointSummary& summary, v1::PointResult& result) {
                                     summary.samples, " samples and ", summary.health.escapes,
                                     " orbits that left the cell"));
   }
+  std::vector<std::string> unknown;
+  for (const v1::Estimate& estimate : result.estimates()) {
+    if (!estimate.has_model_error()) unknown.push_back(estimate.name());
+  }
+  if (unknown.empty()) return;
+  result.add_remarks(
+      absl::StrCat("the difference between this model and the billiard is unknown for ",
+                   absl::StrJoin(unknown, ", ")));
 }
 
 // A damaged record may lack a parameter.

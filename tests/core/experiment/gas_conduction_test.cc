@@ -195,8 +195,8 @@ TEST(GasConduction, EqualTemperaturesCarryNoCurrent) {
     EXPECT_EQ(summary.estimates[0].exact, 0);
     EXPECT_LT(std::fabs(*summary.estimates[0].ZScore()), 4.5) << Name(model);
     for (const size_t i : {2, 3}) {
-      const Estimate& temperature = summary.estimates[i];
-      EXPECT_NEAR(temperature.value, 2, 4.5 * *temperature.standard_error) << Name(model);
+      EXPECT_EQ(summary.estimates[i].exact, 2);
+      EXPECT_LT(std::fabs(*summary.estimates[i].ZScore()), 4.5) << Name(model);
     }
     for (const CurvePoint& place : summary.curves[0].points) {
       EXPECT_NEAR(place.value, 2, 4.5 * *place.standard_error) << Name(model) << place.at;
@@ -225,7 +225,7 @@ TEST(GasConduction, TheWarmUpIsThatOfTheSlowestPart) {
   const PointParameters short_gas = PointAt(SpecBetween(3, 1), 0);
   EXPECT_EQ(kGasConduction.forecast(Model::kBilliard, short_gas).trajectories->warm_up, 2u);
   EXPECT_NEAR(of_length(19) / of_length(9), 4, 1e-12);
-  EXPECT_NEAR(of_length(30'000) / of_length(299), std::pow(30'001. / 300, 2), 1e-8);
+  EXPECT_NEAR(of_length(12'000) / of_length(299), std::pow(12'001. / 300, 2), 1e-8);
   const auto at_cold = [](Model model, double cold) {
     return ExchangesOfAWarmUp(SpecBetween(1, cold, {.columns = 1}, model));
   };
@@ -254,6 +254,19 @@ TEST(GasConduction, BesideAColdReservoirABilliardWarmsUpLonger) {
     EXPECT_EQ(halves(model, 0.01), is_billiard ? 16u : 2u);
     EXPECT_EQ(halves(model, 1e-8), is_billiard ? 16u : 2u);
   }
+}
+
+// In 30 first answers of 1x2000 cells of the jump process between 1 and 0.2, after one relaxation
+// time, the mean z-score of the pistons' temperature was 0.9 +- 0.2.
+TEST(GasConduction, ALargeGasWarmsUpLonger) {
+  const auto halves = [](int64_t rows) {
+    const EnsembleSpec spec = SpecBetween(1, 0.2, {1, rows, true}, Model::kMarkov);
+    return ForecastOf(spec, PointAt(spec, 0)).trajectories->warm_up;
+  };
+  EXPECT_EQ(halves(225), 2u);
+  EXPECT_EQ(halves(226), 4u);
+  EXPECT_EQ(halves(12'000), 4u);
+  EXPECT_EQ(halves(13'000), 8u);
 }
 
 // The rate of exchanges in long runs is 0.06340(1). After a warm-up of one relaxation time it was
