@@ -31,7 +31,7 @@ double HitsOfPilot(const PilotPlace& place) {
 
 // The billiard as the answer; `why` is the reason that no cheaper model answers.
 Answer Billiard(const Question& question, absl::string_view why) {
-  const std::optional<double> error = question.ErrorOfPrecision(Model::kBilliard);
+  const std::optional<double> error = question.ModelErrorOf(Model::kBilliard);
   return {Model::kBilliard, absl::StrCat(error == 0 ? "exact; " : kInSinglePrecision, why), error};
 }
 
@@ -90,7 +90,7 @@ Answer ByBudget(const Question& question, double bound) {
   if (!question.IsWithinTolerance(bound)) return ByItsBound(question, bound);
   const double limit = question.ErrorInBudget(question.ModelOfLimit()) + bound;
   const double billiard = question.ErrorInBudget(Model::kBilliard) +
-                          question.ErrorOfPrecision(Model::kBilliard).value_or(0);
+                          question.ModelErrorOf(Model::kBilliard).value_or(0);
   const std::string compared = absl::StrCat(
       std::isfinite(billiard)
           ? absl::StrCat("the billiard's error with this budget is about ", Rounded(billiard))
@@ -99,8 +99,9 @@ Answer ByBudget(const Question& question, double bound) {
       std::isfinite(limit) ? absl::StrCat("error at most ", Rounded(limit))
                            : absl::StrCat("model error at most ", Rounded(bound)));
   const double enough = question.target().tolerance.value_or(0);
-  const bool is_by_billiard = std::isfinite(billiard) ? billiard <= std::max(limit, enough)
-                                                      : !question.LimitHasSamplesInBudget();
+  const bool is_by_billiard = std::isfinite(billiard)
+                                  ? billiard <= std::max(limit, enough)
+                                  : question.SamplesInBudget(question.ModelOfLimit()) == 0;
   if (is_by_billiard) return Billiard(question, compared);
   return {question.ModelOfLimit(), compared, bound};
 }
@@ -142,12 +143,6 @@ std::optional<Answer> AutoAnswer(const Question& question, const PilotSource& pi
   return Billiard(question, NothingCheaper(question));
 }
 
-Answer ExplicitAnswer(const Question& question) {
-  const Model model = question.spec().model;
-  return {model, "",
-          IsOfTheLimit(model) ? question.LimitError() : question.ErrorOfPrecision(model)};
-}
-
 // The limit's errors in other estimates of the answer.
 void AddFurtherErrors(const Question& question, Answer& answer) {
   if (!IsOfTheLimit(answer.model)) return;
@@ -170,8 +165,9 @@ double BudgetOfAPoint(const EnsembleSpec& spec, int workers) {
 std::optional<Answer> ChooseAnswer(const EnsembleSpec& spec, const PointParameters& point,
                                    const Machine& machine, const PilotSource& pilots) {
   const Question question(spec, point, machine);
-  std::optional<Answer> answer =
-      spec.model == Model::kAuto ? AutoAnswer(question, pilots) : ExplicitAnswer(question);
+  std::optional<Answer> answer = spec.model == Model::kAuto
+                                     ? AutoAnswer(question, pilots)
+                                     : Answer{spec.model, "", question.ModelErrorOf(spec.model)};
   if (answer) AddFurtherErrors(question, *answer);
   return answer;
 }

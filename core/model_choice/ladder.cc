@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "core/model_choice/question.h"
@@ -10,109 +9,85 @@
 namespace ballpiston {
 namespace {
 
-constexpr absl::string_view kWithThePilot = "; with the pilot";
-
 std::string CannotAnswer(Model model, const Question& question) {
   return absl::StrCat(
       model == Model::kClosedForm ? "there is no closed form for " : "this model does not answer ",
       question.subject());
 }
 
-void PredictWithoutSamples(const Machine& machine, Rung& rung) {
-  const bool closed = rung.model == Model::kClosedForm;
-  rung.samples = 0;
-  rung.work = rung.time = closed ? machine.rates.closed_form : machine.rates.spectrum;
-  rung.statistical_error = 0;
-  if (closed) {
-    rung.model_error = 0;
-    rung.reason = "exact at every delta";
-  }
-}
-
-void PredictSamples(const Question& question, Rung& rung) {
-  if (!IsOfTheLimit(rung.model)) {
-    rung.model_error = question.ErrorOfPrecision(rung.model);
-    rung.reason = rung.model_error == 0 ? "exact" : "the billiard in single precision";
-  }
-  rung.samples = question.SamplesBy(rung.model);
-  if (*rung.samples == 0) {
+void PredictSamples(const Question& question, const Machine& machine, Rung& rung) {
+  const double samples = question.SamplesBy(rung.model);
+  rung.samples = samples;
+  if (samples == 0) {
     rung.reason = "the budget ends before the first samples";
     return;
   }
-  const double work = question.SecondsOf(rung.model, *rung.samples);
+  const SamplingCost cost = question.CostBy(rung.model);
+  const double work =
+      cost.Of(samples, machine.workers) + question.spec().experiment->summary * machine.rates.jump;
   if (std::isfinite(work)) {
     rung.work = work;
-    rung.time = work / question.ThreadsFor(rung.model, *rung.samples);
+    rung.time = work / cost.ThreadsFor(samples, machine.workers);
   }
-  const double error = question.ScatterBy(rung.model).ErrorOf(*rung.samples);
+  const double error = question.ScatterBy(rung.model).ErrorOf(samples);
   if (std::isfinite(error)) rung.statistical_error = error;
 }
 
-// The limit's error: from the pilot that the choice has used, else the expected error.
-void SetLimitError(const Question& question, const std::optional<Pilot>& pilot, Rung& rung) {
-  rung.reason = "the limit delta -> 0";
-  rung.model_error = question.LimitError();
-  if (!rung.model_error) return;
-  rung.reason = "the limit delta -> 0; the model error is an expected upper bound";
-  if (!pilot) return;
-  const PilotPlace place = PilotPlaceFor(question.point());
-  rung.model_error = LimitErrorBound(*pilot, place, question.point());
-  rung.reason = absl::StrCat("the limit delta -> 0; the model error is an upper bound, ",
-                             FoundBy(*pilot, place));
+// The limit's error is that of the pilot that the choice has used, else the expected one.
+void SetModelError(const Question& question, const std::optional<Pilot>& pilot, Rung& rung) {
+  rung.model_error = question.ModelErrorOf(rung.model);
+  if (rung.model == Model::kClosedForm) {
+    rung.reason = "exact at every delta";
+  } else if (!IsOfTheLimit(rung.model)) {
+    rung.reason = rung.model_error == 0 ? "exact" : "the billiard in single precision";
+  } else if (!rung.model_error) {
+    rung.reason = "the limit delta -> 0";
+  } else if (!pilot) {
+    rung.reason = "the limit delta -> 0; the model error is an expected upper bound";
+  } else {
+    const PilotPlace place = PilotPlaceFor(question.point());
+    rung.model_error = LimitErrorBound(*pilot, place, question.point());
+    rung.reason = absl::StrCat("the limit delta -> 0; the model error is an upper bound, ",
+                               FoundBy(*pilot, place));
+  }
 }
 
 Rung RungFor(Model model, const Question& question, const Machine& machine,
              const std::optional<Pilot>& pilot) {
   Rung rung;
   rung.model = model;
-  rung.answers = question.aim().IsAnsweredBy(model);
-  rung.memory = rung.answers ? question.MemoryBy(model) : 0;
-  if (!rung.answers) {
+  if (!question.aim().IsAnsweredBy(model)) {
     rung.reason = CannotAnswer(model, question);
     return rung;
   }
+  rung.memory = question.MemoryBy(model);
   if (IsABilliard(model) && !question.IsSoundForBilliard()) {
-    rung.answers = false;
     rung.reason = "rounding: this model is not sound at this rho and delta";
     return rung;
   }
+  rung.answers = true;
+  SetModelError(question, pilot, rung);
   if (TakesSamples(model)) {
-    PredictSamples(question, rung);
+    PredictSamples(question, machine, rung);
   } else {
-    PredictWithoutSamples(machine, rung);
+    const bool is_closed = model == Model::kClosedForm;
+    rung.samples = rung.statistical_error = 0;
+    rung.work = rung.time = is_closed ? machine.rates.closed_form : machine.rates.spectrum;
   }
-  const bool has_samples = !TakesSamples(model) || rung.samples.value_or(0) > 0;
-  if (IsOfTheLimit(model) && has_samples) SetLimitError(question, pilot, rung);
   return rung;
-}
-
-auto IsBy(Model model) {
-  return [model](const Rung& rung) { return rung.model == model; };
 }
 
 void AddPilot(const MachineRates& rates, Ladder& ladder) {
   ladder.work_of_pilot = SecondsOfPilot(*ladder.pilot, rates);
-  Rung& chosen = ladder.Chosen();
+  Rung& chosen = *std::ranges::find(ladder.rungs, ladder.answer.model, &Rung::model);
   chosen.work = chosen.work.value_or(0) + ladder.work_of_pilot;
   chosen.time += ladder.work_of_pilot;
-  chosen.reason = absl::StrCat(chosen.reason, kWithThePilot);
+  chosen.reason = absl::StrCat(chosen.reason, "; with the pilot");
 }
 
 }  // namespace
 
-const Rung& Ladder::Chosen() const {
-  return *std::find_if(rungs.begin(), rungs.end(), IsBy(answer.model));
-}
-
-Rung& Ladder::Chosen() { return *std::find_if(rungs.begin(), rungs.end(), IsBy(answer.model)); }
-
-void Ladder::DropPilot() {
-  if (!pilot) return;
-  Chosen().work = *Chosen().work - work_of_pilot;
-  Chosen().time -= std::exchange(work_of_pilot, 0);
-  Chosen().reason.resize(Chosen().reason.size() - kWithThePilot.size());
-  pilot.reset();
-}
+const Rung& Ladder::Chosen() const { return *std::ranges::find(rungs, answer.model, &Rung::model); }
 
 Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine,
                  const PilotSource& pilots) {

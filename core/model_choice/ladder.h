@@ -56,12 +56,10 @@ struct Ladder {
   double work_of_pilot = 0;
 
   const Rung& Chosen() const;
-  Rung& Chosen();
-  // Removes the pilot and its work, for a point that uses the pilot of another point.
-  void DropPilot();
 };
 
-// `pilots` returns known pilots; the result of a pilot that has not run yet is predicted.
+// `pilots` returns known pilots, and predictions of those that run for other points. If it returns
+// none, the pilot runs for this point, and its result is predicted.
 Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine,
                  const PilotSource& pilots);
 

@@ -54,23 +54,18 @@ class Question {
     return is_default ? spec_.experiment->name : aim().name;
   }
 
-  // The model error of a billiard model: its error without the statistical error. Empty if the
-  // first estimate has no relative error.
-  std::optional<double> ErrorOfPrecision(Model model) const {
-    if (EngineFor(By(model)) != Engine::kLanesSingle) return 0.0;
+  // The model's error without the statistical error: the expected one of the limit, or that of the
+  // billiard's precision. Empty if none is known, or if the first estimate has no relative error.
+  std::optional<double> ModelErrorOf(Model model) const {
+    if (IsOfTheLimit(model)) return LimitError();
+    const bool is_single = EngineFor(By(model)) == Engine::kLanesSingle;
+    if (model == Model::kClosedForm || !is_single) return 0.0;
     if (!HasRelativeError()) return std::nullopt;
     return kSinglePrecisionError;
   }
 
   SamplingCost CostBy(Model model) const {
     return CostOfSampling(By(model), point_, machine_.rates);
-  }
-  double SecondsOf(Model model, double samples) const {
-    return CostBy(model).Of(samples, machine_.workers) +
-           spec_.experiment->summary * machine_.rates.jump;
-  }
-  double ThreadsFor(Model model, double samples) const {
-    return CostBy(model).ThreadsFor(samples, machine_.workers);
   }
   // The seconds of processor time until all workers have their first samples.
   double SecondsOfTheFirst(Model model) const {
@@ -99,15 +94,11 @@ class Question {
     return samples;
   }
 
-  // 0 if the budget ends before the first samples.
+  // 0 if the budget ends before the first samples; infinite for the spectrum, which needs none.
   double SamplesInBudget(Model model) const {
+    if (!TakesSamples(model)) return std::numeric_limits<double>::infinity();
     const double seconds = BudgetOfAPoint(spec_, machine_.workers);
     return CostBy(model).SamplesIn(seconds, machine_.workers);
-  }
-
-  // Or needs none.
-  bool LimitHasSamplesInBudget() const {
-    return !TakesSamples(ModelOfLimit()) || SamplesInBudget(ModelOfLimit()) > 0;
   }
 
   Scatter ScatterBy(Model model) const { return aim().scatter(model, point_); }
@@ -115,7 +106,7 @@ class Question {
 
   // The statistical error when the budget is used up; 0 for the spectrum, which has no samples.
   double ErrorInBudget(Model model) const {
-    return model == Model::kSpectrum ? 0 : ScatterBy(model).ErrorOf(SamplesInBudget(model));
+    return TakesSamples(model) ? ScatterBy(model).ErrorOf(SamplesInBudget(model)) : 0;
   }
 
  private:

@@ -28,12 +28,10 @@ double LeastTolerance(const EnsembleSpec& spec) {
   for (size_t i = 0; i < PointCount(spec); ++i) {
     const PointParameters point = PointAt(spec, i);
     const Question question(spec, point, Machine());
-    const bool is_checked = question.HasPilots() || spec.model == Model::kSpectrum;
-    if (IsOfTheLimit(spec.model) && is_checked) {
-      least = std::max(least, question.LimitError().value_or(0));
+    if (spec.model != Model::kMarkov || question.HasPilots()) {
+      least = std::max(least, question.ModelErrorOf(spec.model).value_or(0));
     }
     if (spec.model == Model::kSpectrum) continue;
-    least = std::max(least, question.ErrorOfPrecision(spec.model).value_or(0));
     const double sampled = ScatterOf(spec, point).ErrorOf(static_cast<double>(kMaxSamples));
     if (std::isfinite(sampled)) least = std::max(least, sampled);
   }

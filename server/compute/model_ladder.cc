@@ -81,9 +81,11 @@ double ModelLadder::MemoryOf(const EnsembleSpec& spec, size_t index, int threads
   return ballpiston::MemoryOf(spec, PointAt(spec, index), threads);
 }
 
-Ladder ModelLadder::LadderOf(const EnsembleSpec& spec, const PointParameters& point) {
-  return LadderFor(spec, point, machine(),
-                   [this](const PilotPlace& place) { return Known(place); });
+Ladder ModelLadder::LadderOf(const EnsembleSpec& spec, const PointParameters& point,
+                             const std::set<PilotPlace>& planned) {
+  return LadderFor(spec, point, machine(), [&](const PilotPlace& place) {
+    return planned.contains(place) ? PredictedPilot(place) : Known(place);
+  });
 }
 
 std::optional<Pilot> ModelLadder::Known(const PilotPlace& place) {

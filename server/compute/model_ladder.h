@@ -13,6 +13,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "core/model_choice/ladder.h"
@@ -38,8 +39,10 @@ class ModelLadder : public PointOpener {
   double MemoryOf(const EnsembleSpec& spec, size_t index, int threads) override;
   void KeepPilot(const PilotPlace& place, const Pilot& pilot) override;
 
-  // Runs nothing but the measurement of the rates.
-  Ladder LadderOf(const EnsembleSpec& spec, const PointParameters& point);
+  // Runs nothing but the measurement of the rates. `planned`: the pilots of earlier ladders, which
+  // this one does not count again.
+  Ladder LadderOf(const EnsembleSpec& spec, const PointParameters& point,
+                  const std::set<PilotPlace>& planned = {});
 
   const Machine& machine();
 

@@ -58,8 +58,8 @@ absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
   for (size_t i = 0; i < planned; ++i) {
     if (call.is_abandoned()) return absl::CancelledError("the client is gone");
     const PointParameters point = PointAt(checked.spec, i * points / planned);
-    Ladder ladder = service.ladder.LadderOf(checked.spec, point);
-    if (ladder.pilot && !pilots.insert(*ladder.pilot).second) ladder.DropPilot();
+    const Ladder ladder = service.ladder.LadderOf(checked.spec, point, pilots);
+    if (ladder.pilot) pilots.insert(*ladder.pilot);
     work.pilots += ladder.work_of_pilot;
     work.points += ladder.Chosen().work.value_or(0) - ladder.work_of_pilot;
     work.longest = std::max(work.longest, ladder.Chosen().time);

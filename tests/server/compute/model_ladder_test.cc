@@ -82,6 +82,11 @@ TEST_F(ModelLadderTest, APlanRunsNoPilotAndSaysWhetherThereIsOne) {
   const Ladder before = ladder.LadderOf(spec, PointAt(spec, 0));
   EXPECT_EQ(before.answer.model, Model::kSpectrum);
   EXPECT_THAT(before.answer.reason, HasSubstr("expected of a pilot"));
+  EXPECT_EQ(before.pilot, PlaceOf(spec));
+  // The second point of a plan that uses this pilot does not run it again.
+  const Ladder second = ladder.LadderOf(spec, PointAt(spec, 0), {PlaceOf(spec)});
+  EXPECT_FALSE(second.pilot);
+  EXPECT_EQ(second.answer.reason, before.answer.reason);
   EXPECT_EQ(runs_, 0);
   EXPECT_FALSE(Stored(PlaceOf(spec)));
   Create(ladder, spec);
