@@ -59,18 +59,17 @@ bool Fit(const Labels& labels, Labels more) {
   return more.size() <= kMostLabels;
 }
 
-std::optional<EarlierJob> FindEarlier(Database& database, const Acceptance& acceptance) {
-  const JobRecord& record = acceptance.record;
-  if (auto original = FindJobOfRequest(database, record.job.principal(), record.request_id)) {
-    if (original->payload != record.payload) database.Fail(RequestIdReused(record.request_id));
-    return EarlierJob{*std::move(original)};
-  }
-  if (acceptance.fresh) return std::nullopt;
+std::optional<JobRecord> FindOriginal(Database& database, const JobRecord& record) {
+  auto original = FindJobOfRequest(database, record.job.principal(), record.request_id);
+  const bool is_other = original && original->payload != record.payload;
+  if (is_other) database.Fail(RequestIdReused(record.request_id));
+  return original;
+}
+
+std::optional<JobRecord> FindStored(Database& database, const JobRecord& record) {
   const Labels labels = LabelsOf(record.job);
-  auto answer =
-      FindAnswer(database, record.job.principal(), record.question,
-                 [&](const v1::EnsembleJob& earlier) { return Fit(LabelsOf(earlier), labels); });
-  return answer ? std::optional(EarlierJob{*std::move(answer), true}) : std::nullopt;
+  return FindAnswer(database, record.job.principal(), record.question,
+                    [&](const v1::EnsembleJob& earlier) { return Fit(LabelsOf(earlier), labels); });
 }
 
 // Adds the labels to the job. The labels of a retry replace the job's values. Refused if the job
@@ -110,10 +109,14 @@ void Continue(Database& database, Acceptance& acceptance) {
 }  // namespace
 
 // An answer from the store stores no request: a retry finds the same answer.
-std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
+std::optional<JobRecord> Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
   JobRecord& record = acceptance.record;
-  if (auto earlier = FindEarlier(database, acceptance)) {
-    AddLabels(database, LabelsOf(record.job), earlier->record);
+  std::optional<JobRecord> earlier = FindOriginal(database, record);
+  const bool is_retry = earlier.has_value();
+  if (!is_retry && !acceptance.fresh) earlier = FindStored(database, record);
+  if (earlier) {
+    AddLabels(database, LabelsOf(record.job), *earlier);
+    earlier->job.set_answered_from_store(!is_retry);
     return earlier;
   }
   CheckLoad(database, limits, record.job);

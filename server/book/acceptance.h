@@ -34,15 +34,11 @@ struct Acceptance {
   double samples = 0;  // that the target asks for, of all points; not with a tolerance
 };
 
-// A job that answers the request.
-struct EarlierJob {
-  JobRecord record;
-  bool answered_from_store = false;  // it answers the question; else the request is its own again
-};
-
-// Empty: the new job is stored, and its record says which job it continues.
+// The earlier job that answers the request: answered_from_store says that it answers the question,
+// otherwise the request is its own again. Empty: the new job is stored, and its record says which
+// job it continues.
 // If the request is refused, the transaction fails: INVALID_ARGUMENT or RESOURCE_EXHAUSTED.
-std::optional<EarlierJob> Accept(Database& database, const Limits& limits, Acceptance& acceptance);
+std::optional<JobRecord> Accept(Database& database, const Limits& limits, Acceptance& acceptance);
 
 // A hash of everything that determines the answer: the whole specification with its seed, and the
 // engine's version. Empty if the job has a budget, because the answer then depends on the machine.

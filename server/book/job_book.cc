@@ -87,10 +87,10 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
   Failpoint("create.committed");
   if (!earlier.ok() || *earlier) active_.Remove(acceptance.record.id);
   if (!earlier.ok()) return StoreFailure(earlier.status());
-  if (*earlier) return Answer(caller, (*earlier)->record, (*earlier)->answered_from_store);
+  if (*earlier) return Answer(caller, **earlier);
   StartRun(job, checked);
   Failpoint("create.before_answer");
-  return Answer(caller, acceptance.record, false);
+  return Answer(caller, acceptance.record);
 }
 
 void JobBook::StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& checked) {
@@ -102,14 +102,13 @@ void JobBook::StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& check
 }
 
 // The job's present state. If the job was deleted meanwhile, its state when it was found.
-absl::StatusOr<v1::EnsembleJob> JobBook::Answer(const Principal& caller, const JobRecord& record,
-                                                bool answered_from_store) {
+absl::StatusOr<v1::EnsembleJob> JobBook::Answer(const Principal& caller, const JobRecord& record) {
   absl::StatusOr<FoundJob> found = Find(caller, record.id, Grid::kIncluded);
   if (absl::IsNotFound(found.status())) found = FoundJob{record};
   if (!found.ok()) return found.status();
   TellScheduler(found->record);  // a change that came before the run was added did not find it
   v1::EnsembleJob job = Message(found->record, found->active.get());
-  job.set_answered_from_store(answered_from_store);
+  job.set_answered_from_store(record.job.answered_from_store());
   return job;
 }
 

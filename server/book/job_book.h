@@ -147,8 +147,7 @@ class JobBook {
  private:
   Acceptance NewAcceptance(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
                            const CheckedSpec& checked) const;
-  absl::StatusOr<v1::EnsembleJob> Answer(const Principal& caller, const JobRecord& record,
-                                         bool answered_from_store);
+  absl::StatusOr<v1::EnsembleJob> Answer(const Principal& caller, const JobRecord& record);
   void TellScheduler(const JobRecord& row);
   void StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& checked);
   absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id, Grid grid);

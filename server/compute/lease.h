@@ -1,7 +1,7 @@
 // The unit of work that an executor takes from the scheduler: chunks of one point.
 //
 // A lease says all that is needed to compute its chunks: a machine elsewhere gets it as a message
-// (worker/lease_record.h). The results depend on the specification alone, so a chunk that was
+// (worker/lease_file.h). The results depend on the specification alone, so a chunk that was
 // computed twice, or late, has the same bits.
 //
 // A lease may instead ask for points to be opened (Scheduler::Open). A point that needs no samples

@@ -3,7 +3,11 @@
 // which chunks are whose, also to a later process of the server.
 //
 // Each part of the file is a message of storage/records.proto as a stream in gzip's format, whose
-// checksum proves that it is complete (convert/compressed.h).
+// checksum proves that it is complete (convert/compressed.h). The message has the lease's point as
+// a question: one point, by a sampling model. An experiment that is created from the message has
+// the same plan, random numbers and bits as the lease's experiment. The folder belongs to the
+// server's user. So reading checks the engine version and the question, but not the chunks and
+// their states.
 #pragma once
 
 #include <functional>
@@ -12,7 +16,8 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "server/worker/lease_record.h"
+#include "ballpiston/storage/records.pb.h"
+#include "server/compute/lease.h"
 
 namespace ballpiston::server {
 
@@ -40,6 +45,23 @@ struct LeaseFileName {
 // A file's name without its folder. Empty if it is not the name of a lease's file in that folder.
 std::optional<LeaseFileName> ParseTaken(absl::string_view name);
 std::optional<LeaseFileName> ParseDone(absl::string_view name);
+
+// A lease as its file has it.
+struct LeaseFile {
+  std::string server;  // the identity of the server's data folder
+  // `run` and `generation` name the job, whose engine version is this program's. The spec is a
+  // OnePointSpec, and `point` is the point's index in the job's grid. The message does not have the
+  // rest, such as numbers and attempts.
+  Lease lease;
+  double touch_seconds = 20;  // the worker gives the file another time as often as this
+};
+
+// The lease has chunks of a point, not of a pilot, and its spec has no budget.
+storage::Lease LeaseRecord(const Lease& lease, const std::string& server, double touch_seconds);
+
+// UNIMPLEMENTED with both versions if the lease is of another engine version. DATA_LOSS if this
+// engine cannot answer the question.
+absl::StatusOr<LeaseFile> LeaseOfRecord(const storage::Lease& record);
 
 std::string BytesOf(const storage::Lease& lease);
 // The complete chunks, and the seconds.

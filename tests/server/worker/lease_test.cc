@@ -7,7 +7,6 @@
 #include "server/convert/compressed.h"
 #include "server/convert/fold_record.h"
 #include "server/worker/lease_file.h"
-#include "server/worker/lease_record.h"
 #include "tests/server/worker/sample_leases.h"
 #include "tests/support/preamble.h"
 

@@ -5,7 +5,6 @@
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
 #include "server/convert/fold_record.h"
-#include "server/worker/lease_file.h"
 
 namespace ballpiston::server {
 namespace {

@@ -4,7 +4,7 @@
 #include "core/ensemble/chunk_fold.h"
 #include "core/ensemble/ensemble_spec.h"
 #include "core/ensemble/point_experiment.h"
-#include "server/worker/lease_record.h"
+#include "server/worker/lease_file.h"
 #include "tests/support/preamble.h"
 
 namespace ballpiston::server {
