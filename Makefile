@@ -70,11 +70,11 @@ bench: build/release/.$(PRESETS_PREFIX)benchmarks ## Build, then run the benchma
 	@cmake --build build/release --target benchmarks
 	@scripts/bench.sh build/release/bin
 
-stability: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods, measure the model errors; write STABILITY_OUT, by default stability.md (12 minutes)
+stability: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods, measure the model errors; write STABILITY_OUT, by default stability.md (14 minutes)
 	@cmake --build build/release --target stability
 	@build/release/bin/stability >'$(STABILITY_OUT)'
 
-stability-table: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods; write the tables into docs/stability.md (12 minutes)
+stability-table: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods; write the tables into docs/stability.md (14 minutes)
 	@cmake --build build/release --target stability
 	@build/release/bin/stability >build/release/stability.md
 	@sed -i -e '/stability:begin/r build/release/stability.md' -e '/stability:begin/,/stability:end/{//!d}' docs/stability.md

@@ -42,8 +42,8 @@ constexpr char kHeader[] =
 
 std::string Row(const MethodComparisonSpec& spec, const MethodMeasurement& m) {
   return absl::StrFormat("%s,%s,%s,%s,%s,%s,%d,%d,%s,%s,%s,%s,%s", NumberText(spec.rho),
-                         NumberText(m.delta), NumberText(spec.epsilon), Name(m.method),
-                         NumberText(m.time_step), Name(m.quantity), m.samples, m.wall_hits,
+                         NumberText(m.delta), NumberText(spec.epsilon), m.method.name,
+                         NumberText(m.method.time_step), Name(m.quantity), m.samples, m.wall_hits,
                          NumberText(m.work), NumberText(m.value), NumberText(m.statistical_error),
                          NumberText(m.own_error),
                          m.bias_resolved ? absl::StrCat(*m.bias_resolved) : "");
@@ -51,9 +51,9 @@ std::string Row(const MethodComparisonSpec& spec, const MethodMeasurement& m) {
 
 // mean-free-time, fixed-step 0.01: 8192 samples in 0.12 s
 std::string ProgressText(const MethodMeasurement& m) {
-  return absl::StrFormat("%s, %s%s: %d samples in %.3g s", Name(m.quantity), Name(m.method),
-                         m.time_step > 0 ? absl::StrFormat(" %.4g", m.time_step) : "", m.samples,
-                         m.work);
+  return absl::StrFormat("%s, %s%s: %d samples in %.3g s", Name(m.quantity), m.method.name,
+                         m.method.time_step > 0 ? absl::StrFormat(" %.4g", m.method.time_step) : "",
+                         m.samples, m.work);
 }
 
 void AddFlags(CLI::App& app, MethodComparisonSpec& spec, std::string& progress) {

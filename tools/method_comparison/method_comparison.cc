@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <initializer_list>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -26,8 +25,6 @@
 namespace ballpiston::method_comparison {
 namespace {
 
-constexpr double kTimeSteps[] = {1e-1, 1e-2, 1e-3, 1e-4};
-
 constexpr uint64_t kRungFactor = 4;
 constexpr uint64_t kFewestReturns = 16;
 constexpr size_t kFewestOrbits = 64;
@@ -48,21 +45,16 @@ constexpr double kTruthTimes = 8;
 // 113 bits.
 constexpr size_t kTwinHits = 110;
 
-// Fixed steps, and these methods.
-std::vector<MethodVariant> FixedStepsAnd(std::initializer_list<Method> methods) {
-  std::vector<MethodVariant> variants;
-  for (const double step : kTimeSteps) variants.push_back({Method::kFixedStep, step});
-  for (const Method method : methods) variants.push_back({method});
-  return variants;
+// The methods with orbits of the pair.
+std::vector<Method> OrbitMethods() {
+  return {FixedSteps(1e-1), FixedSteps(1e-2), FixedSteps(1e-3),     FixedSteps(1e-4),
+          kReferenceSingle, kReference,       kReferenceLongDouble, kReferenceQuadruple,
+          kLanes,           kLanesSingle};
 }
 
-std::vector<MethodVariant> SampledVariants() {
-  return FixedStepsAnd({Method::kReferenceSingle, Method::kReference, Method::kReferenceLongDouble,
-                        Method::kReferenceQuadruple, Method::kLanes, Method::kLanesSingle});
-}
-
-std::vector<MethodVariant> GasVariants() {
-  return FixedStepsAnd({Method::kReference, Method::kLanes, Method::kMarkov});
+std::vector<Method> GasMethods() {
+  return {FixedSteps(1e-1), FixedSteps(1e-2), FixedSteps(1e-3), FixedSteps(1e-4),
+          kReference,       kLanes,           kMarkov};
 }
 
 // The error of the chi-squared law, plus the scatter that a real divergence adds.
@@ -120,21 +112,20 @@ class Comparison {
   }
 
   void CompareReturns(Quantity quantity) {
-    for (const MethodVariant& variant : SampledVariants()) {
-      Climb(kFewestReturns, PredictedSeconds(variant, geometry_, spec_.epsilon, kFewestReturns),
+    for (const Method& method : OrbitMethods()) {
+      Climb(kFewestReturns, PredictedSeconds(method, geometry_, spec_.epsilon, kFewestReturns),
             [&](size_t rung, uint64_t samples) {
               return Measured(
-                  quantity, variant,
-                  RunReturns(variant, geometry_, spec_.epsilon, Stream(quantity, rung), samples));
+                  quantity, method,
+                  RunReturns(method, geometry_, spec_.epsilon, Stream(quantity, rung), samples));
             });
     }
     Tell(ClosedForm(quantity));
   }
 
-  MethodMeasurement Measured(Quantity quantity, const MethodVariant& variant,
+  MethodMeasurement Measured(Quantity quantity, const Method& method,
                              const ReturnStatistics& returns) {
-    MethodMeasurement measurement = {.method = variant.method,
-                                     .time_step = variant.time_step,
+    MethodMeasurement measurement = {.method = method,
                                      .quantity = quantity,
                                      .delta = spec_.delta,
                                      .samples = returns.times.count,
@@ -165,13 +156,12 @@ class Comparison {
   double VarianceOfTimes() {
     constexpr double kFewest = 256, kMost = 65536;
     if (variance_of_times_) return *variance_of_times_;
-    const MethodVariant lanes = {Method::kLanes};
     const double affordable =
-        spec_.seconds_per_curve / PredictedSeconds(lanes, geometry_, spec_.epsilon, 1);
+        spec_.seconds_per_curve / PredictedSeconds(kLanes, geometry_, spec_.epsilon, 1);
     const double wanted = kEventsForAnError / LongReturnsPerSample(geometry_, spec_.epsilon);
     const double samples = std::clamp(wanted, kFewest, std::clamp(affordable, kFewest, kMost));
     const ReturnStatistics returns =
-        RunReturns(lanes, geometry_, spec_.epsilon, {spec_.seed, ~uint64_t{0}},
+        RunReturns(kLanes, geometry_, spec_.epsilon, {spec_.seed, ~uint64_t{0}},
                    static_cast<uint64_t>(samples));
     return variance_of_times_.emplace(returns.times.Variance().value_or(0));
   }
@@ -179,7 +169,7 @@ class Comparison {
   // If each cell of a law has a relative error e, the divergence of the law is at most e^2/2.
   MethodMeasurement ClosedForm(Quantity quantity) const {
     MethodMeasurement measurement = {
-        .method = Method::kClosedForm, .quantity = quantity, .delta = spec_.delta};
+        .method = kClosedForm, .quantity = quantity, .delta = spec_.delta};
     if (quantity == Quantity::kMeanFreeTime) {
       measurement.work =
           server::SecondsOf([&] { ConditionalMeanFreeTime(geometry_, spec_.epsilon); });
@@ -202,18 +192,17 @@ class Comparison {
       rungs.back().FlyAhead(kTwinHits);
       expected = (server::ThreadSeconds() - begin) * kRungFactor;
     }
-    for (const MethodVariant& variant : SampledVariants()) {
+    for (const Method& method : OrbitMethods()) {
       const auto run = [&](size_t rung, uint64_t) {
-        return Measured(variant, HorizonOf(variant, geometry_, rungs[rung]));
+        return Measured(method, HorizonOf(method, geometry_, rungs[rung]));
       };
       Climb(kFewestOrbits, 0, run, rungs.size());
     }
   }
 
-  MethodMeasurement Measured(const MethodVariant& variant, const TrajectoryHorizon& horizon) const {
+  MethodMeasurement Measured(const Method& method, const TrajectoryHorizon& horizon) const {
     const double error = horizon.hits.StandardError().value_or(0);
-    return {.method = variant.method,
-            .time_step = variant.time_step,
+    return {.method = method,
             .quantity = Quantity::kTrajectory,
             .delta = spec_.delta,
             .samples = horizon.hits.count,
@@ -229,26 +218,26 @@ class Comparison {
     if (orbits < kFewestTruthOrbits) return;
     const PointEstimate limit = runs.BySpectrum();  // first, so that no run computes the spectrum
     const Subject subject = {Quantity::kRelaxationTime, runs.geometry.delta(), runs.Truth(orbits)};
-    const auto climb = [&](Method method) {
+    const auto climb = [&](const Method& method) {
       Climb(kFewestRelaxations, 0, [&](size_t, uint64_t samples) {
-        return Compared(subject, {method}, runs.Run(method, samples));
+        return Compared(subject, method, runs.Run(method, samples));
       });
     };
-    climb(Method::kLanes);
-    climb(Method::kMarkov);
-    Tell(Compared(subject, {Method::kSpectrum}, limit));
+    climb(kLanes);
+    climb(kMarkov);
+    Tell(Compared(subject, kSpectrum, limit));
   }
 
   void CompareHeatCurrents(const HeatCurrentRuns& runs) {
-    const uint64_t stretches = SamplesOfTruth(runs.PredictedSecondsPerSample({Method::kLanes}));
+    const uint64_t stretches = SamplesOfTruth(runs.PredictedSecondsPerSample(kLanes));
     if (stretches < kFewestTruthStretches) return;
     const Subject subject = {Quantity::kHeatCurrent, runs.delta, runs.Truth(stretches)};
-    for (const MethodVariant& variant : GasVariants()) {
+    for (const Method& method : GasMethods()) {
       const auto run = [&](size_t, uint64_t samples) {
-        return Compared(subject, variant, runs.Run(variant, samples));
+        return Compared(subject, method, runs.Run(method, samples));
       };
-      if (variant.method == Method::kFixedStep) {
-        Climb(kFewestOrbits, runs.PredictedSecondsPerSample(variant) * kFewestOrbits, run);
+      if (method.time_step > 0) {
+        Climb(kFewestOrbits, runs.PredictedSecondsPerSample(method) * kFewestOrbits, run);
       } else {
         // The truth's time is long enough for the smallest number of stretches of any engine.
         Climb(kFewestStretches, 0, run);
@@ -270,12 +259,11 @@ class Comparison {
     PointEstimate truth;
   };
 
-  static MethodMeasurement Compared(const Subject& subject, const MethodVariant& variant,
+  static MethodMeasurement Compared(const Subject& subject, const Method& method,
                                     const PointEstimate& measured) {
     const PointEstimate& truth = subject.truth;
     const double ratio = measured.value / truth.value;
-    return {.method = variant.method,
-            .time_step = variant.time_step,
+    return {.method = method,
             .quantity = subject.quantity,
             .delta = subject.delta,
             .samples = measured.error == 0 ? 0 : measured.samples,  // nearly all were lost

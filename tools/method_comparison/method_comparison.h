@@ -20,9 +20,9 @@
 //                  one orbit. value = |measured - truth|/truth. The truth comes from many more
 //                  orbits by kLanes: the curves of the limit tend to the limit's bias.
 //   kHeatCurrent   the heat current of one cell between reservoirs at 1.5 and 0.5
-//                  (point_runs.h): by kFixedStep, kReference and kLanes, and by kMarkov,
+//                  (point_runs.h): by FixedSteps, kReference and kLanes, and by kMarkov,
 //                  which has the bias of the limit. A sample is a stretch of a trajectory; by
-//                  kFixedStep it is a replica. The value and the truth are defined as for
+//                  FixedSteps it is a replica. The value and the truth are defined as for
 //                  kRelaxationTime.
 // statistical_error is one standard error of `value` (before its absolute value is taken). A value
 // within kResolved standard errors shows no bias, only an upper bound of the bias.
@@ -95,8 +95,7 @@ struct MethodComparisonSpec {
 };
 
 struct MethodMeasurement {
-  Method method = Method::kReference;
-  double time_step = 0;  // of kFixedStep, in cells per unit speed; 0 for the other methods
+  Method method = kReference;
   Quantity quantity = Quantity::kMeanFreeTime;
   double delta = 0;      // of the pair, or of the gas; one of relaxation_deltas for kRelaxationTime
   uint64_t samples = 0;  // 0 for the closed form and the spectrum

@@ -20,17 +20,6 @@
 namespace ballpiston::method_comparison {
 namespace {
 
-Model ModelOf(Method method) {
-  switch (method) {
-    case Method::kMarkov:
-      return Model::kMarkov;
-    case Method::kReference:
-      return Model::kBilliardReference;
-    default:
-      return Model::kBilliard;
-  }
-}
-
 // The first estimate of the service's answer, and the processor time of the samples.
 PointEstimate Answered(EnsembleSpec spec, uint64_t samples, bool is_truth) {
   spec.target.samples = static_cast<int64_t>(samples);
@@ -50,11 +39,11 @@ PointEstimate Answered(EnsembleSpec spec, uint64_t samples, bool is_truth) {
 
 // ---- relaxation times ----
 
-EnsembleSpec SpecOf(const PairGeometry& geometry, uint64_t seed, Method method) {
+EnsembleSpec SpecOf(const PairGeometry& geometry, uint64_t seed, const Method& method) {
   return {.experiment = &kEnergyRelaxation,
           .grid = {{kRho, {geometry.rho()}}, {kDelta, {geometry.delta()}}},
           .seed = seed,
-          .model = ModelOf(method)};
+          .model = method.model};
 }
 
 PointParameters PointOf(const PairGeometry& geometry) {
@@ -69,12 +58,12 @@ double EnergyRelaxationRuns::PredictedSecondsPerOrbit() const {
          (kPerCollision + kPerEvent * HitsPerCollision(geometry).Events());
 }
 
-PointEstimate EnergyRelaxationRuns::Run(Method method, uint64_t samples) const {
+PointEstimate EnergyRelaxationRuns::Run(const Method& method, uint64_t samples) const {
   return Answered(SpecOf(geometry, seed, method), samples, false);
 }
 
 PointEstimate EnergyRelaxationRuns::Truth(uint64_t samples) const {
-  return Answered(SpecOf(geometry, seed, Method::kLanes), samples, true);
+  return Answered(SpecOf(geometry, seed, kLanes), samples, true);
 }
 
 PointEstimate EnergyRelaxationRuns::BySpectrum() const {
@@ -96,7 +85,7 @@ constexpr double kComparedHot = 1.5;
 constexpr double kComparedCold = 0.5;
 
 // The gas of the experiment gas-conduction.
-EnsembleSpec SpecOf(const HeatCurrentRuns& runs, Method method) {
+EnsembleSpec SpecOf(const HeatCurrentRuns& runs, const Method& method) {
   return {.experiment = &kGasConduction,
           .grid = {{kRho, {runs.rho}},
                    {kDelta, {runs.delta}},
@@ -104,7 +93,7 @@ EnsembleSpec SpecOf(const HeatCurrentRuns& runs, Method method) {
                    {kHot, {kComparedHot}},
                    {kCold, {kComparedCold}}},
           .seed = runs.seed,
-          .model = ModelOf(method)};
+          .model = method.model};
 }
 
 const SteadyGas& AsGas(const PointExperiment& experiment) {
@@ -174,29 +163,29 @@ PointEstimate ByFixedSteps(const SteadyGas& gas, double time_step, uint64_t repl
 
 }  // namespace
 
-double HeatCurrentRuns::PredictedSecondsPerSample(const MethodVariant& variant) const {
+double HeatCurrentRuns::PredictedSecondsPerSample(const Method& method) const {
   constexpr double kPerStep = 4e-8, kPerHit = 1e-9, kPerEvent = 5e-8, kPerExchange = 4e-7,
                    kPerJump = 4e-8;
-  const auto experiment = PointExperiment::Create(SpecOf(*this, variant.method), 0);
+  const auto experiment = PointExperiment::Create(SpecOf(*this, method), 0);
   const SteadyGas& gas = AsGas(*experiment);
-  if (variant.method == Method::kFixedStep) {
-    return kPerStep * TimeToTheEnd(gas) / variant.time_step;
+  if (method.time_step > 0) {
+    return kPerStep * TimeToTheEnd(gas) / method.time_step;
   }
-  const SampleWork work = WorkOfReplica(ModelOf(variant.method), gas.geometry(), gas.stretch());
-  if (variant.method == Method::kReference) return kPerEvent * work.Events();
+  const SampleWork work = WorkOfReplica(method.model, gas.geometry(), gas.stretch());
+  if (method.model == Model::kBilliardReference) return kPerEvent * work.Events();
   return kPerHit * work.ball_wall + kPerExchange * work.collisions + kPerJump * work.jumps;
 }
 
-PointEstimate HeatCurrentRuns::Run(const MethodVariant& variant, uint64_t samples) const {
-  EnsembleSpec spec = SpecOf(*this, variant.method);
-  if (variant.method != Method::kFixedStep) return Answered(spec, samples, false);
+PointEstimate HeatCurrentRuns::Run(const Method& method, uint64_t samples) const {
+  EnsembleSpec spec = SpecOf(*this, method);
+  if (method.time_step == 0) return Answered(spec, samples, false);
   spec.seed += samples;
   const auto experiment = PointExperiment::Create(spec, 0);
-  return ByFixedSteps(AsGas(*experiment), variant.time_step, samples);
+  return ByFixedSteps(AsGas(*experiment), method.time_step, samples);
 }
 
 PointEstimate HeatCurrentRuns::Truth(uint64_t samples) const {
-  return Answered(SpecOf(*this, Method::kLanes), samples, true);
+  return Answered(SpecOf(*this, kLanes), samples, true);
 }
 
 }  // namespace ballpiston::method_comparison

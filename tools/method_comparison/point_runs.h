@@ -33,7 +33,7 @@ struct EnergyRelaxationRuns {
   double PredictedSecondsPerOrbit() const;
 
   // Runs kLanes or kMarkov. Escaped orbits are not counted.
-  PointEstimate Run(Method method, uint64_t samples) const;
+  PointEstimate Run(const Method& method, uint64_t samples) const;
 
   // By kLanes; with other samples than a run.
   PointEstimate Truth(uint64_t samples) const;
@@ -57,12 +57,12 @@ struct HeatCurrentRuns {
   double delta;  // valid for a gas
   uint64_t seed;
 
-  // For kFixedStep, kReference, kLanes and kMarkov, on a processor of about 3 GHz, within a factor
+  // For FixedSteps, kReference, kLanes and kMarkov, on a processor of about 3 GHz, within a factor
   // of three.
-  double PredictedSecondsPerSample(const MethodVariant& variant) const;
+  double PredictedSecondsPerSample(const Method& method) const;
 
   // Runs one of these methods. Stretches are rounded up to a multiple of 128.
-  PointEstimate Run(const MethodVariant& variant, uint64_t samples) const;
+  PointEstimate Run(const Method& method, uint64_t samples) const;
 
   // By kLanes; with other samples than a run.
   PointEstimate Truth(uint64_t samples) const;

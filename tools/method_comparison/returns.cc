@@ -6,18 +6,11 @@
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/expected_returns.h"
 #include "server/processor_time.h"
-#include "tools/method_comparison/method_orbits.h"
 
 namespace ballpiston::method_comparison {
 namespace {
 
 constexpr double kInvariantExponent = 1;
-
-// The number of returns that run together. For lanes it is large, so that all lanes are full except
-// at the end, but small enough for the memory.
-uint64_t BatchSize(Method method) {
-  return method == Method::kLanes || method == Method::kLanesSingle ? 1 << 17 : 1 << 8;
-}
 
 class CountedReturns : public NumberedOrbits {
  public:
@@ -66,28 +59,27 @@ std::vector<uint64_t> ReturnStatistics::IngoingCounts() const {
   return counts;
 }
 
-ReturnStatistics RunReturns(const MethodVariant& variant, const PairGeometry& geometry,
-                            double epsilon, const RandomStream& random, uint64_t samples) {
+ReturnStatistics RunReturns(const Method& method, const PairGeometry& geometry, double epsilon,
+                            const RandomStream& random, uint64_t samples) {
   ReturnStatistics statistics = {.ingoing = EmptyIngoingHistograms(IngoingLaw(epsilon))};
   const ReturnStarts starts = {geometry, epsilon, kInvariantExponent, random};
   const double begin = server::ThreadSeconds();
-  const uint64_t batch = BatchSize(variant.method);
-  for (uint64_t first = 0; first < samples; first += batch) {
-    const uint64_t count = std::min(batch, samples - first);
+  for (uint64_t first = 0; first < samples; first += method.together) {
+    const uint64_t count = std::min(method.together, samples - first);
     CountedReturns orbits(starts, {.first = first, .samples = count});
-    RunMethodOrbits(variant, geometry, count, orbits);
+    method.run_orbits(geometry, count, orbits, method.time_step);
     orbits.AddTo(statistics);
   }
   statistics.seconds = server::ThreadSeconds() - begin;
   return statistics;
 }
 
-double PredictedSeconds(const MethodVariant& variant, const PairGeometry& geometry, double epsilon,
+double PredictedSeconds(const Method& method, const PairGeometry& geometry, double epsilon,
                         uint64_t samples) {
-  const double events = variant.method == Method::kFixedStep
-                            ? ConditionalMeanFreeTime(geometry, epsilon) / variant.time_step
+  const double events = method.time_step > 0
+                            ? ConditionalMeanFreeTime(geometry, epsilon) / method.time_step
                             : HitsPerReturn(geometry, epsilon).Events();
-  return static_cast<double>(samples) * events * PropertiesOf(variant.method).seconds_per_event;
+  return static_cast<double>(samples) * events * method.seconds_per_event;
 }
 
 }  // namespace ballpiston::method_comparison

@@ -29,12 +29,12 @@ struct ReturnStatistics {
   std::vector<uint64_t> IngoingCounts() const;
 };
 
-// Runs the samples 0 ... samples - 1 of the stream. Not for kClosedForm, kMarkov, kSpectrum.
-ReturnStatistics RunReturns(const MethodVariant& variant, const PairGeometry& geometry,
-                            double epsilon, const RandomStream& random, uint64_t samples);
+// Runs the samples 0 ... samples - 1 of the stream. Only for methods with orbits, as below.
+ReturnStatistics RunReturns(const Method& method, const PairGeometry& geometry, double epsilon,
+                            const RandomStream& random, uint64_t samples);
 
 // Predicted cost of `samples` returns on a processor of about 3 GHz, within a factor of three.
-double PredictedSeconds(const MethodVariant& variant, const PairGeometry& geometry, double epsilon,
+double PredictedSeconds(const Method& method, const PairGeometry& geometry, double epsilon,
                         uint64_t samples);
 
 }  // namespace ballpiston::method_comparison

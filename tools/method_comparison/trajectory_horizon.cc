@@ -6,10 +6,7 @@
 #include <vector>
 
 #include "core/sampling/invariant_measure.h"
-#include "server/processor_time.h"
-#include "tools/flows/lane_balls.h"
 #include "tools/flows/rounded_to.h"
-#include "tools/method_comparison/method_orbits.h"
 
 namespace ballpiston::method_comparison {
 namespace {
@@ -24,77 +21,6 @@ TwinOrbits::State StartOnWall(const PairGeometry& geometry, CounterRandom random
   EventFlow<TwinNumber> flow(geometry, state);
   flow.Step();
   return flow.state();
-}
-
-// The positions of every orbit after each of its hits; a lost orbit has fewer.
-struct Itineraries {
-  std::vector<std::vector<BallAt>> orbits;
-  double seconds = 0;
-};
-
-template <typename To>
-std::vector<PairStateOf<To>> Starts(const TwinOrbits& twins) {
-  std::vector<PairStateOf<To>> starts;
-  for (size_t i = 0; i < twins.Count(); ++i) starts.push_back(RoundedTo<To>(twins.Start(i)));
-  return starts;
-}
-
-template <typename Flow>
-void FlyOrbit(FlowOrbit<Flow> orbit, uint64_t hits, std::vector<BallAt>& places) {
-  for (Collision way; places.size() < hits;) {
-    orbit.Advance(way);
-    if (way.escaped) return;
-    if (way.ball_wall_hits == places.size()) continue;
-    places.push_back({way.time, orbit.state().position});
-  }
-}
-
-// Flies the orbits one after the other.
-template <typename Flow, typename... TimeStep>
-Itineraries FlyEach(const PairGeometry& geometry, const TwinOrbits& twins, uint64_t hits,
-                    TimeStep... time_step) {
-  const auto starts = Starts<RealOf<Flow>>(twins);
-  Itineraries result;
-  result.orbits.resize(starts.size());
-  for (std::vector<BallAt>& places : result.orbits) places.reserve(hits);
-  result.seconds = server::SecondsOf([&] {
-    for (size_t i = 0; i < starts.size(); ++i) {
-      result.orbits[i].clear();
-      FlyOrbit(FlowOrbit<Flow>(geometry, starts[i], time_step...), hits, result.orbits[i]);
-    }
-  });
-  return result;
-}
-
-// The measured time does not include the records of the positions: the lanes are so fast that the
-// records would dominate.
-Itineraries FlyInLanes(FlyLanes& fly, const PairGeometry& geometry, const TwinOrbits& twins,
-                       uint64_t hits) {
-  const std::vector<LaneFrame> frames = OnTheirWalls(Starts<double>(twins));
-  std::vector<LaneHit> recorded(frames.size() * hits);
-  fly(geometry, frames, hits, recorded);
-  Itineraries result;
-  for (size_t i = 0; i < frames.size(); ++i) {
-    std::vector<BallAt>& places = result.orbits.emplace_back();
-    double time = 0;
-    for (size_t k = 0; k < hits; ++k) {
-      const LaneHit& hit = recorded[i * hits + k];
-      places.push_back({time += hit.length, PositionInCell(hit.frame)});
-    }
-  }
-  result.seconds = server::SecondsOf([&] { fly(geometry, frames, hits, {}); });
-  return result;
-}
-
-Itineraries Fly(const MethodVariant& variant, const PairGeometry& geometry, const TwinOrbits& twins,
-                uint64_t hits) {
-  if (variant.method == Method::kLanes) return FlyInLanes(FlyLaneBalls, geometry, twins, hits);
-  if (variant.method == Method::kLanesSingle) {
-    return FlyInLanes(FlyLaneBallsSingle, geometry, twins, hits);
-  }
-  return WithFlowOf(variant, [&]<typename Flow>(std::type_identity<Flow>, auto... time_step) {
-    return FlyEach<Flow>(geometry, twins, hits, time_step...);
-  });
 }
 
 // The number of hits before the parting; empty if orbit and twin are still together after `hits`.
@@ -161,10 +87,9 @@ std::optional<Eigen::Vector2d> TwinOrbits::PositionAt(size_t orbit, double time)
   return from.position + share * (end->position - from.position);
 }
 
-TrajectoryHorizon HorizonOf(const MethodVariant& variant, const PairGeometry& geometry,
-                            TwinOrbits& twins) {
+TrajectoryHorizon HorizonOf(const Method& method, const PairGeometry& geometry, TwinOrbits& twins) {
   for (uint64_t hits = 16;; hits *= 2) {
-    const Itineraries itineraries = Fly(variant, geometry, twins, hits);
+    const Itineraries itineraries = method.fly(geometry, twins, hits, method.time_step);
     const std::optional<Moments> horizons = Horizons(itineraries, hits, twins);
     if (horizons) return {*horizons, HitsIn(itineraries), itineraries.seconds};
   }

@@ -64,6 +64,12 @@ class TwinOrbits {
   std::vector<Orbit> orbits_;
 };
 
+// The positions of every orbit after each of its hits; a lost orbit has fewer.
+struct Itineraries {
+  std::vector<std::vector<BallAt>> orbits;
+  double seconds = 0;
+};
+
 // The largest number of hits of an orbit. All orbits of 113 bits part earlier, while the twin is
 // still correct. If the cell is hardly larger than kParted (rho near 1/sqrt(2)), some orbits do not
 // part; then this number counts as their horizon.
@@ -75,8 +81,7 @@ struct TrajectoryHorizon {
   double seconds = 0;      // of processor time, without the time of the twins
 };
 
-// The horizon of all orbits of `twins`. Not for kClosedForm, kMarkov, kSpectrum.
-TrajectoryHorizon HorizonOf(const MethodVariant& variant, const PairGeometry& geometry,
-                            TwinOrbits& twins);
+// The horizon of all orbits of `twins`. Only for methods with orbits.
+TrajectoryHorizon HorizonOf(const Method& method, const PairGeometry& geometry, TwinOrbits& twins);
 
 }  // namespace ballpiston::method_comparison

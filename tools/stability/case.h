@@ -32,12 +32,14 @@ struct Case {
   std::vector<Place<Geometry>> places;
   // The start of this number, which does not depend on the starts before it.
   std::function<Start(const Geometry& geometry, uint64_t number)> start;
+  // Of a case of long runs: the worst |dE/E| of a method that loses no energy. 0: short runs.
+  double permitted = 0;
 };
 
 template <typename Geometry, typename Start>
 struct Method {
   std::string name;
-  double share;   // of a case's starts; less than 1 for slow methods
+  double share;   // of a case's starts, or of the length of long runs; less than 1: a slow method
   bool promised;  // the method promises zeros everywhere
   // Runs each start for this length, and checks it: wall hits of a ball alone, collisions of a
   // pair, or a gas for the time of so many flights of a ball of speed 1.
@@ -74,15 +76,16 @@ struct MethodResult {
 struct CaseResult {
   std::string name;
   std::vector<MethodResult> methods;  // the same methods in each case
+  double permitted = 0;               // see Case
 };
 
 // Starts that run together. They fill the lanes, and fit into memory.
 inline constexpr uint64_t kTogether = 4096;
 
-// The number of a method's starts. If a single start is thousands of times more than wanted, none
-// runs; methods that promise zeros run it nevertheless.
+// The number of a method's starts, or the length of its long runs. If a single start is thousands
+// of times more than wanted, none runs; methods that promise zeros run it nevertheless.
 template <typename Method>
-uint64_t StartsOf(const Method& method, uint64_t all, double effort) {
+uint64_t PartOf(const Method& method, uint64_t all, double effort) {
   constexpr double kFewestWanted = 2e-4;
   const double wanted = static_cast<double>(all) * effort * method.share;
   if (wanted < kFewestWanted && !method.promised) return 0;
@@ -92,10 +95,13 @@ uint64_t StartsOf(const Method& method, uint64_t all, double effort) {
 template <typename Geometry, typename Start>
 Failures RunCase(const Case<Geometry, Start>& one, const Method<Geometry, Start>& method,
                  double effort) {
+  const bool is_long = one.permitted > 0;
   Failures failures;
-  for (const auto& [geometry, all, length] : one.places) {
+  for (const auto& [geometry, all, full_length] : one.places) {
     if (method.can_be_checked && !method.can_be_checked(geometry)) continue;
-    const uint64_t starts = StartsOf(method, all, effort), loops = failures.loops;
+    const uint64_t starts = is_long ? all : PartOf(method, all, effort);
+    const uint64_t length = is_long ? PartOf(method, full_length, effort) : full_length;
+    const uint64_t loops = failures.loops;
     for (uint64_t first = 0; first < starts; first += kTogether) {
       // A loop breaks a promise; the other starts would only cost time.
       if (method.promised && failures.loops > loops) break;
@@ -108,8 +114,9 @@ Failures RunCase(const Case<Geometry, Start>& one, const Method<Geometry, Start>
   return failures;
 }
 
-// Runs the cases' numbers of starts, times `effort` and the method's share. All methods have the
-// same starts. Prints progress on standard error.
+// Runs the cases' numbers of starts, times `effort` and the method's share; of long runs all
+// starts, but this share of their length. All methods have the same starts. Prints progress on
+// standard error.
 template <typename Geometry, typename Start>
 std::vector<CaseResult> RunCases(const std::vector<Case<Geometry, Start>>& cases,
                                  const std::vector<Method<Geometry, Start>>& methods,
@@ -117,7 +124,7 @@ std::vector<CaseResult> RunCases(const std::vector<Case<Geometry, Start>>& cases
   std::vector<CaseResult> results;
   for (const Case<Geometry, Start>& one : cases) {
     std::cerr << "stability: " << one.name << std::endl;
-    CaseResult& result = results.emplace_back(CaseResult{.name = one.name, .methods = {}});
+    CaseResult& result = results.emplace_back(CaseResult{one.name, {}, one.permitted});
     for (const Method<Geometry, Start>& method : methods) {
       result.methods.push_back({method.name, method.promised, RunCase(one, method, effort)});
     }

@@ -10,6 +10,13 @@ namespace {
 constexpr uint64_t kBallSeed = 20;
 constexpr uint64_t kPairSeed = 21;
 constexpr uint64_t kGasSeed = 24;
+// Of each case of long runs. The standard error of a mean comes from as many runs: Student's t with
+// 47 degrees of freedom, 2e-4 false trends per method.
+constexpr uint64_t kLongRuns = 48;
+// The permitted |dE/E|: of a ball or a pair, and of a gas. Each exchange in a gas rounds the
+// energies of two bodies. Its energy makes a random walk: four ulps times the square root of its
+// 150,000 exchanges.
+constexpr double kRounding = 1e-14, kWalk = 3.5e-13;
 
 using Numbers = std::vector<double>;
 using Shapes = std::vector<const char*>;
@@ -111,6 +118,10 @@ std::vector<PairCase> BallCases() {
        CellsAt({0.501, kPaperRho, 0.6, 0.7, kMaxRho - 1e-6}, kMany, kOneTip), Ball(AimedAtTip)},
       {"grazing, rho = 0.501, 0.5296, 0.6, 0.65, 0.7",
        CellsAt({0.501, kPaperRho, 0.6, 0.65, 0.7}, kMany, kOneTip), Ball(AimedToGraze)},
+      {"long, a ball at rho = 0.5296",
+       {CellAt(kPaperRho, kLongRuns, 10'000'000)},
+       Ball(AnywhereOnWall),
+       kRounding},
   };
 }
 
@@ -135,12 +146,15 @@ std::vector<PairCase> PairCases() {
       {"slow piston: ep = 1e-3 ... 1e-17 and 0", Each(slow, kMany, 1), Pair(SlowPiston)},
       {"piston at delta = 0.1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8",
        Each(PaperPairs({0.1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8}), kMany, 1), Pair(AimedAtPiston)},
+      {"long, a pair at delta = 0.1", Each(PaperPairs({0.1}), kLongRuns, 150'000),
+       Pair(DrawFromCollisionMeasure), kRounding},
   };
 }
 
 std::vector<GasCase> GasCases() {
   constexpr double kJustUnder = 1 - 1e-9;
-  constexpr uint64_t kShort = 30, kLong = 300, kMany = 10'000;  // flights; starts
+  constexpr uint64_t kShort = 30, kLong = 300, kVeryLong = 300'000;  // flights
+  constexpr uint64_t kMany = 10'000;                                 // starts
   const Numbers rhos = {0.501, kPaperRho, 0.6, 0.7}, two_rhos = {kPaperRho, 0.6};
   const Numbers bound = {1, kJustUnder}, shares = {1, 0.3};
   const Shapes small = {"1", "3", "1x1", "2x2"};
@@ -173,6 +187,8 @@ std::vector<GasCase> GasCases() {
       {"pistons at 1e-2, 1e-4, 1e-6 of the bound",
        Each(GasesAt({kPaperRho}, {1e-2, 1e-4, 1e-6}, small), kMany, kShort),
        Gas(WithPair<AimedAtPiston>)},
+      {"long, 4x3 cells at the bound",
+       Each(GasesAt({kPaperRho}, {1}, {"4x3"}), kLongRuns, kVeryLong), Gas(AnyGas), kWalk},
   };
 }
 

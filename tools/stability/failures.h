@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "core/statistics/moments.h"
+
 namespace ballpiston::stability {
 
 // The size of an error of the energy. An error that is not a number becomes infinite. Otherwise it
@@ -27,6 +29,9 @@ struct Failures {
   uint64_t phantoms = 0;        // contacts with the piston elsewhere
   uint64_t beyond_walls = 0;    // pistons of a gas at a turn or a contact beyond a wall
   double energy = kNoEnergy;    // worst |dE/E|, if it was measured; infinite if NaN
+  // The change of dE/E in the second half of each orbit that reached its end, which has no part of
+  // the rounding of the start; of a gas the change since its start.
+  Moments gain = {};
 
   static constexpr double kNoEnergy = std::numeric_limits<double>::quiet_NaN();
 
@@ -62,6 +67,7 @@ inline void Failures::Merge(const Failures& other) {
   hits += other.hits;
   looked_back += other.looked_back;
   energy = std::fmax(energy, other.energy);
+  gain.Merge(other.gain);
 }
 
 }  // namespace ballpiston::stability

@@ -126,7 +126,7 @@ double GasWatch::EnergyError() const {
   double energy = -given_;
   for (const Ball& ball : balls_) energy += EnergyOf(ball.state);
   for (const Piston& piston : pistons_) energy += EnergyOf(piston.state);
-  return std::fabs(energy / start_energy_ - 1);
+  return energy / start_energy_ - 1;
 }
 
 // ---- by meters ----
@@ -222,7 +222,8 @@ Failures LookAtEnergies(const GasGeometry& geometry, const GasMeter& meter, doub
   found.hits = reading.exchanges;
   found.escapes = meter.escapes() + (is_valid ? 0 : 1);
   if (geometry.ends() == GasEnds::kPeriodic) {
-    found.SeeEnergy(std::fabs(reading.Total() / start - 1));
+    found.SeeEnergy(reading.Total() / start - 1);
+    found.gain.Add(reading.Total() / start - 1);
   }
   return found;
 }

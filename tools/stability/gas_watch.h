@@ -38,7 +38,7 @@ class GasWatch {
   // is ignored. Returns false if the gas has failed and must not be continued.
   bool See(const GasEvent& event, const GasBall& ball, const GasPiston& piston, Failures& failures);
 
-  // |dE/E| of the whole gas since the start, without the energy from thermal walls.
+  // dE/E of the whole gas since the start, without the energy from thermal walls.
   double EnergyError() const;
 
  private:
@@ -146,6 +146,7 @@ void RunGas(const GasGeometry& geometry, const GasStart& replica, double end, Fa
   }
   failures.loops += events == kMostEvents;
   failures.SeeEnergy(watch.EnergyError());
+  if (goes_on) failures.gain.Add(watch.EnergyError());
 }
 
 template <typename Gas>

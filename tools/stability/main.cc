@@ -25,7 +25,6 @@
 #include "tools/flows/printed_formulas.h"
 #include "tools/flows/quad_precision.h"
 #include "tools/stability/case.h"
-#include "tools/stability/energy.h"
 #include "tools/stability/markdown_table.h"
 #include "tools/stability/model_errors.h"
 #include "tools/stability/results.h"
@@ -118,8 +117,6 @@ Results RunAll(double effort) {
        {&Failures::looked_back, &Failures::missed, &Failures::phantoms, &Failures::beyond_walls}},
       {"Ball and piston", RunCases(PairCases(), PairMethods(), effort), {&Failures::beyond_walls}},
       {"The gas", RunCases(GasCases(), GasMethods(), effort), {}}};
-  std::cerr << "stability: energy" << std::endl;
-  results.energy = EnergyRuns(effort);
   if (effort == 1) results.model_errors = ModelErrors();  // fewer samples show nothing
   return results;
 }
@@ -135,7 +132,7 @@ std::string Text(const Results& results) {
       "Made by the program `stability`; what is counted, and how: `tools/stability/README.md`. "
       "e escapes, n negative times, l loops, i still heading inward, m missed piston hits, "
       "p phantom ones, b pistons beyond their walls; - not run or not looked for.\n\n",
-      summaries, UnitSpeedSentence(), "\n\n**Energy**\n\n", EnergyTable(results.energy),
+      summaries, UnitSpeedSentence(), "\n\n**Energy**\n\n", EnergyTable(results.systems),
       "\n**Model errors**: billiard over model - 1, and the error that is stated; ratio: (the "
       "difference - 2 standard errors)/stated, - where the standard error is above half of the "
       "stated error\n\n",
@@ -150,7 +147,7 @@ constexpr char kHelp[] =
 
 Runs every engine in every precision, and naive methods, in situations in which methods fail.
 Counts the failures, measures the errors that models state, and prints tables in Markdown. This
-takes about twelve minutes on one core. The starts are fixed: the same program gives the same
+takes about fourteen minutes on one core. The starts are fixed: the same program gives the same
 tables. Progress and errors go to standard error.
 
   --quick      run a thousandth of the starts (of slow methods sometimes none), and no model

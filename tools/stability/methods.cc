@@ -44,6 +44,7 @@ Failures FlyInLanes(const PairGeometry& geometry, std::span<const PairState> sta
   std::vector<BallWatch> watches(starts.size(),
                                  BallWatch(geometry, std::numeric_limits<Real>::epsilon()));
   std::vector<char> flies(starts.size(), 1);
+  std::vector<double> middle(starts.size()), last(starts.size());  // dE/E
   size_t flying = starts.size();
   Failures failures = {.orbits = starts.size()};
   for (uint64_t i = 0; i < hits && flying > 0; ++i) {
@@ -52,10 +53,15 @@ Failures FlyInLanes(const PairGeometry& geometry, std::span<const PairState> sta
       const auto& [frame, length, x] = hit[k];
       frames[k] = frame;
       if (!flies[k]) continue;
-      failures.SeeEnergy(SignedEnergyError(frame));
+      last[k] = SignedEnergyError(frame);
+      if (i <= hits / 2) middle[k] = last[k];
+      failures.SeeEnergy(last[k]);
       flies[k] = watches[k].Hit(PositionInCell(frame), DirectionInCell(frame), length, failures);
       flying -= !flies[k];
     }
+  }
+  for (size_t k = 0; k < frames.size(); ++k) {
+    if (flies[k]) failures.gain.Add(last[k] - middle[k]);
   }
   return failures;
 }
@@ -74,6 +80,7 @@ void FlyBall(const PairGeometry& geometry, const PairState& start, uint64_t hits
   Flow flow(geometry, RoundedTo<RealOf<Flow>>(start));
   BallWatch watch(geometry, kEpsilonOf<Flow>);
   ++failures.orbits;
+  double middle = 0, last = 0;  // dE/E
   for (uint64_t i = 0; i < hits; ++i) {
     const auto event = flow.Step();
     if (event.kind == EventKind::kEscape) {
@@ -83,8 +90,11 @@ void FlyBall(const PairGeometry& geometry, const PairState& start, uint64_t hits
     const PairState seen = RoundedTo<double>(flow.state());
     const auto length = static_cast<double>(event.duration);
     if (!watch.Hit(seen.position, seen.direction, length, failures)) return;
-    failures.SeeEnergy(SignedEnergyError(flow.state()));
+    last = SignedEnergyError(flow.state());
+    if (i <= hits / 2) middle = last;
+    failures.SeeEnergy(last);
   }
+  failures.gain.Add(last - middle);
 }
 
 template <typename Flow>
@@ -95,7 +105,8 @@ void RunPair(const PairGeometry& geometry, const PairState& start, uint64_t coll
   Flow flow(geometry, RoundedTo<RealOf<Flow>>(start));
   PairWatch watch(geometry, kEpsilonOf<Flow>);
   ++failures.orbits;
-  for (uint64_t events = 0; collisions > 0; ++events) {
+  double middle = 0, last = 0;  // dE/E
+  for (uint64_t events = 0, left = collisions; left > 0; ++events) {
     if (events == kMostEvents) {
       ++failures.missed;
       return;
@@ -103,12 +114,15 @@ void RunPair(const PairGeometry& geometry, const PairState& start, uint64_t coll
     const auto event = flow.Step();
     const auto duration = static_cast<double>(event.duration);
     if (!watch.See(RoundedTo<double>(flow.state()), event.kind, duration, failures)) return;
-    failures.SeeEnergy(SignedEnergyError(flow.state()));
+    last = SignedEnergyError(flow.state());
+    if (left > collisions / 2) middle = last;
+    failures.SeeEnergy(last);
     if (event.kind != EventKind::kBallPiston) continue;
-    --collisions;
+    --left;
     flow.ExchangeComponents();
     watch.SeeExchanged(RoundedTo<double>(flow.state()), failures);
   }
+  failures.gain.Add(last - middle);
 }
 
 template <typename Flow>

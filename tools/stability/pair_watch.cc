@@ -6,6 +6,7 @@
 
 #include "core/billiard/event_flow.h"
 #include "core/billiard/piston_wave.h"
+#include "tools/flows/energy_error.h"
 
 namespace ballpiston::stability {
 namespace {
@@ -134,8 +135,12 @@ AfterCollision CollisionWatch::Collide(uint64_t i, const Collision& collision) {
   ReferenceFlow flow(geometry_, state);
   flow.ExchangeComponents();
   orbit.departure = flow.state();
-  const bool stands = orbit.standstill.See(collision.time, failures_);
-  return !stands && ++orbit.collisions < collisions_ ? AfterCollision::kGoOn : End(orbit);
+  if (orbit.standstill.See(collision.time, failures_)) return End(orbit);
+  const double error = SignedEnergyError(state);
+  if (orbit.collisions <= collisions_ / 2) orbit.middle_error = error;
+  if (++orbit.collisions < collisions_) return AfterCollision::kGoOn;
+  failures_.gain.Add(error - orbit.middle_error);
+  return End(orbit);
 }
 
 void CollisionWatch::LookBack(const PairState& departure, const Collision& collision) {

@@ -55,6 +55,7 @@ class CollisionWatch : public NumberedOrbits {
     PairState departure;
     Standstill standstill;
     uint64_t collisions = 0;
+    double middle_error = 0;  // dE/E in the middle of the run
     bool ended = false;
   };
 

@@ -6,13 +6,13 @@
 namespace ballpiston::method_comparison {
 namespace {
 
-constexpr MethodVariant kSmallSteps = {Method::kFixedStep, 2e-3};
+const Method kSmallSteps = FixedSteps(2e-3);
 
 EnergyRelaxationRuns Relaxation(double delta) { return {PaperGeometry(delta), 5}; }
 HeatCurrentRuns HeatCurrent(double delta) { return {kPaperRho, delta, 7}; }
 
-template <typename Runs, typename Variant>
-void ExpectRunsHaveTheRequestedSamples(const Runs& runs, const Variant& method, uint64_t samples) {
+template <typename Runs>
+void ExpectRunsHaveTheRequestedSamples(const Runs& runs, const Method& method, uint64_t samples) {
   const PointEstimate first = runs.Run(method, samples);
   EXPECT_EQ(first.samples, samples);
   EXPECT_GT(first.seconds, 0);
@@ -20,18 +20,18 @@ void ExpectRunsHaveTheRequestedSamples(const Runs& runs, const Variant& method, 
 }
 
 TEST(PointRuns, RunsHaveTheRequestedSamplesAndTheSameValueEachTime) {
-  for (const Method method : {Method::kLanes, Method::kMarkov}) {
+  for (const Method& method : {kLanes, kMarkov}) {
     ExpectRunsHaveTheRequestedSamples(Relaxation(0.2), method, 64);
   }
-  for (const Method method : {Method::kLanes, Method::kReference, Method::kMarkov}) {
-    ExpectRunsHaveTheRequestedSamples(HeatCurrent(0.2), MethodVariant{method}, 256);
+  for (const Method& method : {kLanes, kReference, kMarkov}) {
+    ExpectRunsHaveTheRequestedSamples(HeatCurrent(0.2), method, 256);
   }
   ExpectRunsHaveTheRequestedSamples(HeatCurrent(0.2), kSmallSteps, 16);
 }
 
 TEST(PointRuns, TheTruthHasOtherSamplesThanARun) {
-  EXPECT_NE(Relaxation(0.2).Truth(512).value, Relaxation(0.2).Run(Method::kLanes, 512).value);
-  EXPECT_NE(HeatCurrent(0.2).Truth(512).value, HeatCurrent(0.2).Run({Method::kLanes}, 512).value);
+  EXPECT_NE(Relaxation(0.2).Truth(512).value, Relaxation(0.2).Run(kLanes, 512).value);
+  EXPECT_NE(HeatCurrent(0.2).Truth(512).value, HeatCurrent(0.2).Run(kLanes, 512).value);
 }
 
 // The relative error of n orbits is about 1/sqrt(n), here 1.6 %: a wrong factor of two is detected.
@@ -39,7 +39,7 @@ TEST(PointRuns, TheTruthHasOtherSamplesThanARun) {
 TEST(EnergyRelaxationRuns, TheJumpProcessAgreesWithTheSpectrum) {
   for (const double delta : {0.2, 0.0125}) {
     const PointEstimate limit = Relaxation(delta).BySpectrum();
-    const PointEstimate measured = Relaxation(delta).Run(Method::kMarkov, 4096);
+    const PointEstimate measured = Relaxation(delta).Run(kMarkov, 4096);
     EXPECT_LT(std::fabs(measured.value - limit.value), 4 * measured.error) << delta;
     EXPECT_NEAR(measured.error / measured.value, 1 / 64.0, 0.1 / 64) << delta;
   }
@@ -49,21 +49,21 @@ TEST(EnergyRelaxationRuns, TheJumpProcessAgreesWithTheSpectrum) {
 // errors are about 4 %. Small time steps have a bias of 2 %, the limit of 5 %.
 TEST(HeatCurrentRuns, AllMethodsAgree) {
   const HeatCurrentRuns runs = HeatCurrent(0.2);
-  const PointEstimate reference = runs.Run({Method::kReference}, 8192);
+  const PointEstimate reference = runs.Run(kReference, 8192);
   EXPECT_LT(reference.error, 0.06 * reference.value);
-  for (const auto& [variant, samples] : std::vector<std::pair<MethodVariant, uint64_t>>{
-           {{Method::kLanes}, 8192}, {kSmallSteps, 64}, {{Method::kMarkov}, 8192}}) {
-    const PointEstimate other = runs.Run(variant, samples);
+  for (const auto& [method, samples] : std::vector<std::pair<Method, uint64_t>>{
+           {kLanes, 8192}, {kSmallSteps, 64}, {kMarkov, 8192}}) {
+    const PointEstimate other = runs.Run(method, samples);
     EXPECT_GT(other.error, 0);
     EXPECT_LT(std::fabs(other.value - reference.value),
               4 * std::hypot(other.error, reference.error))
-        << static_cast<int>(variant.method);
+        << method.name;
   }
 }
 
 // With steps of 0.1 a ball crosses a cell in a few steps: all replicas lose their ball.
 TEST(HeatCurrentRuns, ReplicasThatLoseABallAreNotCounted) {
-  const PointEstimate run = HeatCurrent(0.2).Run({Method::kFixedStep, 0.1}, 64);
+  const PointEstimate run = HeatCurrent(0.2).Run(FixedSteps(0.1), 64);
   EXPECT_EQ(run.samples, 0u);
   EXPECT_GT(run.seconds, 0);
 }

@@ -11,13 +11,9 @@ struct MethodAndSamples {
   Method method;
   uint64_t samples;
 };
-constexpr MethodAndSamples kEnginesAndSamples[] = {
-    {Method::kReferenceSingle, 16384},
-    {Method::kReference, 16384},
-    {Method::kReferenceLongDouble, 8192},
-    {Method::kReferenceQuadruple, 512},
-    {Method::kLanes, 65536},
-    {Method::kLanesSingle, 65536},
+const MethodAndSamples kEnginesAndSamples[] = {
+    {kReferenceSingle, 16384},  {kReference, 16384}, {kReferenceLongDouble, 8192},
+    {kReferenceQuadruple, 512}, {kLanes, 65536},     {kLanesSingle, 65536},
 };
 
 constexpr double kEpsilonOfReturns = 0.125;
@@ -28,9 +24,9 @@ TEST(Returns, EnginesShowNoBias) {
   const double exact = ConditionalMeanFreeTime(kPaperPair, kEpsilonOfReturns);
   const std::vector<double> probabilities = IngoingProbabilities(kEpsilonOfReturns);
   for (const auto& engine : kEnginesAndSamples) {
-    SCOPED_TRACE(static_cast<int>(engine.method));
+    SCOPED_TRACE(engine.method.name);
     const auto returns =
-        RunReturns({engine.method}, kPaperPair, kEpsilonOfReturns, {21, 1}, engine.samples);
+        RunReturns(engine.method, kPaperPair, kEpsilonOfReturns, {21, 1}, engine.samples);
     ASSERT_EQ(returns.times.count, engine.samples) << "some orbits were lost";
     EXPECT_GT(returns.wall_hits, engine.samples);
     EXPECT_NEAR(returns.times.mean, exact, 4.5 * *returns.times.StandardError());
@@ -47,7 +43,7 @@ TEST(Returns, TimeIsBiasedToFirstOrderInTheStep) {
   const double exact = ConditionalMeanFreeTime(kPaperPair, kEpsilonOfReturns);
   const auto bias = [&](double step, uint64_t samples) {
     const auto returns =
-        RunReturns({Method::kFixedStep, step}, kPaperPair, kEpsilonOfReturns, {5, 6}, samples);
+        RunReturns(FixedSteps(step), kPaperPair, kEpsilonOfReturns, {5, 6}, samples);
     EXPECT_EQ(returns.times.count, samples);
     return std::fabs(returns.times.mean - exact) / exact;
   };
@@ -59,7 +55,7 @@ TEST(Returns, TimeIsBiasedToFirstOrderInTheStep) {
 // The wall hits are the cost of a method, so those of orbits that it loses count.
 TEST(Returns, WallHitsOfALostOrbitCount) {
   const auto run = [](uint64_t samples) {
-    return RunReturns({Method::kFixedStep, 0.3}, kPaperPair, kEpsilonOfReturns, {5, 6}, samples);
+    return RunReturns(FixedSteps(0.3), kPaperPair, kEpsilonOfReturns, {5, 6}, samples);
   };
   uint64_t samples = 1;  // until the last one is lost
   while (samples < 1000 && run(samples).times.count == samples) ++samples;
@@ -71,13 +67,13 @@ TEST(Returns, WallHitsOfALostOrbitCount) {
 // A short orbit is the same in all precisions.
 TEST(Returns, AllMethodsStartFromTheSameStates) {
   constexpr RandomStream kShort = {21, 15};
-  const auto reference = RunReturns({Method::kReference}, kPaperPair, kEpsilonOfReturns, kShort, 1);
+  const auto reference = RunReturns(kReference, kPaperPair, kEpsilonOfReturns, kShort, 1);
   ASSERT_GT(reference.wall_hits, 0) << "choose another stream";
   ASSERT_LT(reference.wall_hits, 8) << "choose another stream";
   for (const auto& engine : kEnginesAndSamples) {
-    const auto one = RunReturns({engine.method}, kPaperPair, kEpsilonOfReturns, kShort, 1);
-    EXPECT_NEAR(one.times.mean, reference.times.mean, 1e-3) << static_cast<int>(engine.method);
-    EXPECT_EQ(one.wall_hits, reference.wall_hits) << static_cast<int>(engine.method);
+    const auto one = RunReturns(engine.method, kPaperPair, kEpsilonOfReturns, kShort, 1);
+    EXPECT_NEAR(one.times.mean, reference.times.mean, 1e-3) << engine.method.name;
+    EXPECT_EQ(one.wall_hits, reference.wall_hits) << engine.method.name;
   }
 }
 

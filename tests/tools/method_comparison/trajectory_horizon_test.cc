@@ -31,9 +31,9 @@ Moments LyapunovExponents() {
   return exponents;
 }
 
-TrajectoryHorizon HorizonOfMethod(Method method, double time_step = 0) {
+TrajectoryHorizon HorizonOfMethod(const Method& method) {
   TwinOrbits twins(kPaperPair, kStreamOfTwins, kTwins);
-  return HorizonOf({method, time_step}, kPaperPair, twins);
+  return HorizonOf(method, kPaperPair, twins);
 }
 
 double CombinedError(const Moments& a, const Moments& b) {
@@ -46,11 +46,10 @@ double CombinedError(const Moments& a, const Moments& b) {
 TEST(TrajectoryHorizon, HorizonGrowsWithTheLogarithmOfThePrecision) {
   const Moments exponents = LyapunovExponents();
   const double error_of_exponent = *exponents.StandardError() / exponents.mean;
-  Moments before = HorizonOfMethod(Method::kReferenceSingle).hits;
+  Moments before = HorizonOfMethod(kReferenceSingle).hits;
   int bits_before = 24;
-  for (const auto& [method, bits] : {std::pair{Method::kReference, 53},
-                                     {Method::kReferenceLongDouble, 64},
-                                     {Method::kReferenceQuadruple, 113}}) {
+  for (const auto& [method, bits] :
+       {std::pair{kReference, 53}, {kReferenceLongDouble, 64}, {kReferenceQuadruple, 113}}) {
     const Moments now = HorizonOfMethod(method).hits;
     const double expected = (bits - bits_before) * std::numbers::ln2 / exponents.mean;
     EXPECT_NEAR(now.mean - before.mean, expected,
@@ -63,19 +62,18 @@ TEST(TrajectoryHorizon, HorizonGrowsWithTheLogarithmOfThePrecision) {
 
 // A relative error of 1e-16 gives about 32 hits.
 TEST(TrajectoryHorizon, LanesPartAfterAsManyHitsAsTheReference) {
-  const Moments reference = HorizonOfMethod(Method::kReference).hits,
-                lanes = HorizonOfMethod(Method::kLanes).hits;
+  const Moments reference = HorizonOfMethod(kReference).hits, lanes = HorizonOfMethod(kLanes).hits;
   EXPECT_NEAR(reference.mean, 32, 2);
   EXPECT_NEAR(lanes.mean, reference.mean, 1 + 4.5 * CombinedError(lanes, reference));
-  const Moments single = HorizonOfMethod(Method::kReferenceSingle).hits,
-                lanes_single = HorizonOfMethod(Method::kLanesSingle).hits;
+  const Moments single = HorizonOfMethod(kReferenceSingle).hits,
+                lanes_single = HorizonOfMethod(kLanesSingle).hits;
   EXPECT_NEAR(lanes_single.mean, single.mean, 1 + 4.5 * CombinedError(lanes_single, single));
 }
 
 TEST(TrajectoryHorizon, SmallerStepsHaveALongerHorizon) {
   double before = -1;
   for (const double step : {1e-1, 1e-2, 1e-3, 1e-4}) {
-    const double hits = HorizonOfMethod(Method::kFixedStep, step).hits.mean;
+    const double hits = HorizonOfMethod(FixedSteps(step)).hits.mean;
     EXPECT_GT(hits, before) << step;
     before = hits;
   }

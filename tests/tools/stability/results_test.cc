@@ -21,18 +21,22 @@ TEST(Results, AFailureOfAnEngineThatPromisesZerosIsABrokenPromise) {
 }
 
 TEST(Results, ALossOfEnergyIsABrokenPromise) {
-  Results results;
-  results.energy = {{.method = "lanes",
-                     .what = "pairs",
-                     .orbits = 1,
-                     .hits = 1,
-                     .promised = true,
-                     .worst = 2e-14,
-                     .permitted = 1e-14,
-                     .change = {}}};
-  EXPECT_THAT(BrokenPromises(results), ElementsAre("lanes loses energy: pairs"));
-  results.energy.front().promised = false;
-  EXPECT_THAT(BrokenPromises(results), IsEmpty());
+  constexpr double kPermitted = 1e-14;
+  const auto complaints = [](const Failures& naive, const Failures& promised, double permitted) {
+    Results results = ResultsWith(naive, promised);
+    results.systems.front().cases.front().permitted = permitted;
+    return BrokenPromises(results);
+  };
+  const Failures far_off = {.energy = 2e-14}, unknown = {.energy = 0, .gain = {.mean = NAN}},
+                 drifts = {.energy = 0, .gain = {.count = 48, .mean = -1e-15}},
+                 walks = {.energy = 0, .gain = {.count = 48, .mean = -1e-15, .m2 = 1e-27}},
+                 is_rounded = {.energy = kPermitted, .gain = {.count = 48, .mean = 2e-16}};
+  for (const Failures& lossy : {far_off, unknown, drifts}) {
+    EXPECT_THAT(complaints({}, lossy, kPermitted), ElementsAre("lanes loses energy: grazing"));
+    EXPECT_THAT(complaints({}, lossy, 0), IsEmpty()) << "a case of short runs";
+    EXPECT_THAT(complaints(lossy, walks, kPermitted), IsEmpty());
+    EXPECT_THAT(complaints(lossy, is_rounded, kPermitted), IsEmpty());
+  }
 }
 
 TEST(Results, AKindOfFailureThatNoMethodShowsIsABlindLook) {

@@ -5,7 +5,7 @@ negative times, loops, hits after which the ball still flies into the wall, miss
 of the piston, and pistons beyond their walls. One start can fail several times. A cell is empty if
 the method was not run in the situation.
 
-It needs no server: the program `stability` counts the failures. With --full it takes about twelve
+It needs no server: the program `stability` counts the failures. With --full it takes about fourteen
 minutes on one core, else some seconds, with a small part of the starts.
 """
 
