@@ -113,8 +113,10 @@ absl::Status ReadFlags(const Verb& verb, const Settings& settings, Options& opti
       const auto setting = settings.find(flag);
       if (setting == settings.end() || setting->second.source != source) continue;
       if (IsOf(TargetFlags(), *flag)) {
-        if (targets.empty()) options.spec.mutable_target()->clear_kind();
-        if (targets.empty()) options.spec.mutable_target()->clear_budget();
+        if (targets.empty()) {
+          options.spec.mutable_target()->clear_kind();
+          options.spec.mutable_target()->clear_budget();
+        }
         targets.push_back(flag->name);
       }
       if (absl::Status bad = ReadFlag(*flag, setting->second, options); !bad.ok()) return bad;

@@ -183,11 +183,11 @@ std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec) {
   absl::string_view other;
   if (IsOfTheLimit(spec.model)) other = ", or model auto or billiard";
   if (spec.precision == Precision::kSingle) other = ", or precision double";
-  const std::string permitted = absl::StrCat("tolerance >= ", RoundedUp(least), other);
+  const std::string permitted = least < 1 ? absl::StrCat("tolerance >= ", RoundedUp(least))
+                                          : "samples or a budget in place of a tolerance";
   return {{"target.tolerance",
            absl::StrCat("is ", NumberText(tolerance), ", below what model ", Name(spec.model),
-                        " can reach; permitted: ",
-                        least < 1 ? permitted : "samples or a budget in place of a tolerance")}};
+                        " can reach; permitted: ", permitted, other)}};
 }
 
 }  // namespace ballpiston

@@ -42,6 +42,27 @@ JobRecord JobOf(Database& database, const Principal& caller, const std::string& 
 
 // ---- new jobs ----
 
+namespace {
+
+// Of all points of a target in samples or collisions; else 0.
+double SamplesAskedFor(const EnsembleSpec& spec) {
+  const Target& target = spec.target;
+  if (target.IsOpenEnded() || NeedsNoSamples(spec)) return 0;
+  const size_t points = PointCount(spec);
+  if (!target.collisions) {
+    return static_cast<double>(target.samples.value_or(kDefaultSamples)) *
+           static_cast<double>(points);
+  }
+  double samples = 0;
+  for (size_t i = 0; i < points; ++i) {
+    const Forecast forecast = ForecastOf(spec, PointAt(spec, i));
+    samples += static_cast<double>(ballpiston::SamplesAskedFor(target, forecast));
+  }
+  return samples;
+}
+
+}  // namespace
+
 Acceptance JobBook::NewAcceptance(const Principal& caller,
                                   const v1::CreateEnsembleJobRequest& request,
                                   const CheckedSpec& checked) const {
@@ -63,13 +84,7 @@ Acceptance JobBook::NewAcceptance(const Principal& caller,
   job.mutable_progress()->set_points(static_cast<int32_t>(PointCount(checked.spec)));
   SetNumbers({.bytes = static_cast<int64_t>(job.spec().ByteSizeLong())}, job);
   acceptance.fresh = request.fresh();
-  const EnsembleSpec& spec = checked.spec;
-  const bool has_samples = !spec.target.IsOpenEnded() && !NeedsNoSamples(spec);
-  const size_t points = has_samples ? PointCount(spec) : 0;
-  for (size_t i = 0; i < points; ++i) {
-    const Forecast forecast = ForecastOf(spec, PointAt(spec, i));
-    acceptance.samples += static_cast<double>(SamplesAskedFor(spec.target, forecast));
-  }
+  acceptance.samples = SamplesAskedFor(checked.spec);
   return acceptance;
 }
 

@@ -21,7 +21,7 @@ namespace {
 constexpr int kMostAtOnce = 256;
 constexpr absl::Duration kSoonToExpire = absl::Hours(7 * 24);
 
-// Space is freed before the bound is reached, so that new jobs need not be refused meanwhile.
+// Space is freed before the bound is reached, so that the store seldom exceeds it.
 constexpr double kFullShare = 0.95;
 
 struct Removal {

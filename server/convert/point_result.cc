@@ -98,8 +98,7 @@ void AddRemarks(const PointSummary& summary, v1::PointResult& result) {
   }
   if (unknown.empty()) return;
   result.add_remarks(
-      absl::StrCat("the difference between this model and the billiard is unknown for ",
-                   absl::StrJoin(unknown, ", ")));
+      absl::StrCat("no bound of the model error is known for ", absl::StrJoin(unknown, ", ")));
 }
 
 // A damaged record may lack a parameter.

@@ -1,7 +1,6 @@
 // Converts between the API's EnsembleSpec and the core's. Pure functions.
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 

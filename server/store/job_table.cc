@@ -101,7 +101,8 @@ void UpdateJob(Database& database, const JobRecord& record) {
   if (job.has_end_time()) end_time = TimeOf(job.end_time());
   database.Run(
       "UPDATE jobs SET question = ?, family = ?, restarts = ?, cancel_request_id = ?, state = ?,"
-      " end_time = ?, pinned = ?, bytes = ?, points_done = ?, samples = ?, message = ?"
+      " end_time = coalesce(?, end_time), pinned = ?, bytes = ?, points_done = ?, samples = ?, "
+      "message = ?"
       " WHERE sequence = ?",
       Blob{record.question}, Blob{record.family}, record.restarts, record.cancel_request_id,
       job.state(), end_time, job.pinned(), static_cast<int64_t>(job.stored_bytes()),

@@ -14,7 +14,7 @@ TEST(StabilityFigure, HasAllSituationsAndMethods) {
   EXPECT_THAT(result, ExitsWith(0));
   const std::string data = Contents(figure + "/stability.csv");
   EXPECT_EQ(Words(absl::StrSplit(data, '\n', absl::SkipEmpty())).size(),
-            2 + 6 * 11 + 8 * 10 + 15 * 4u);
+            2 + 7 * 11 + 9 * 10 + 16 * 4u);
   EXPECT_THAT(data, HasSubstr(",\"grazing, rho = 0.501, 0.5296, 0.6, 0.65, 0.7\",lanes,"));
   EXPECT_EQ(result.err, "");
   EXPECT_THAT(Contents(figure + "/stability.svg"), HasSubstr("one hot piston"));

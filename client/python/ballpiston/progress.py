@@ -82,8 +82,8 @@ class Progress:
         points = list(message.snapshot.points) or list(message.snapshot.finished_points)[-1:]
         self._fraction = fraction_of(progress)
         self._text = f"{progress.points_done}/{progress.points} points"
-        estimates = [str(e) for point in points[:1] for e in Point(point).estimates.values()]
-        self._show("  ".join([self._text, *estimates[:1]]))
+        first = next(iter(Point(points[0]).estimates.values()), None) if points else None
+        self._show(self._text if first is None else f"{self._text}  {first}")
 
     def show_pause(self, pause: float) -> None:
         """The stream broke; the next one begins after `pause` seconds."""

@@ -45,8 +45,10 @@
   }
 
   const failed = (error) => say(`${adviceFor(error)}The server says: ${error.message}`, true);
-  const failedForNow = (error) =>
+  function failedForNow(error) {
+    if (isFinal) return;
     say(`No answer; retrying. The page may be out of date. Reason: ${error.message}`);
+  }
 
   // Waits for the next event of this name, or until the signal is aborted.
   function until(target, name, signal) {

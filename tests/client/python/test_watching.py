@@ -16,7 +16,7 @@ from conftest import ENDLESS, FIRST_HITS, LIMIT, Home, wait_until
 
 import ballpiston
 from ballpiston.errors import Unavailable
-from ballpiston.progress import Progress
+from ballpiston.progress import Bar, Progress
 from ballpiston.v1 import ensemble_pb2
 from ballpiston.watch import ReattachPace, watch_job
 
@@ -104,8 +104,9 @@ def on_a_terminal(program: str, argument: str) -> str:
     return text.decode()
 
 
-class WrittenBar:
+class WrittenBar(Bar):
     def __init__(self) -> None:
+        super().__init__()
         self.lines: list[tuple[float, str]] = []
 
     def show(self, fraction: float, text: str) -> None:

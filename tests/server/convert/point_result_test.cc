@@ -53,7 +53,7 @@ TEST(PointResult, LimitsNoiseFloorsCurvesAndRemarksAreKept) {
       {.name = "time", .value = -4, .standard_error = 0.5, .batches = 64, .limit = 3},
       {.name = "distance", .value = 0.25, .noise_floor = 0.125},
       {.name = "odd", .value = 1, .limit = kNan, .noise_floor = kInfinity}};
-  summary.curves = {{"decay", {{0, 1, 0.25, 1}, {2, 0.5, {}, {}}, {4, 0.25, kNan, kInfinity}}},
+  summary.curves = {{"decay", {{0, 1, 0.25, 64, 1}, {2, 0.5}, {4, 0.25, kNan, 64, kInfinity}}},
                     {"profile", {{0, 2}, {1.5, 1}}, CurveAxis::kPosition}};
   summary.remarks = {"the run was too short", "another sentence"};
   const EnsembleSpec spec = FakeSpec(1, 1);
@@ -66,10 +66,21 @@ TEST(PointResult, LimitsNoiseFloorsCurvesAndRemarksAreKept) {
             R"(estimates { name: "distance" value: 0.25 model_error: 0 noise_floor: 0.125 } )"
             R"(estimates { name: "odd" value: 1 model_error: 0 } health { } )"
             R"(remarks: "the run was too short" remarks: "another sentence" )"
-            R"(curves { name: "decay" points { time: 0 value: 1 standard_error: 0.25 limit: 1 } )"
-            R"(points { time: 2 value: 0.5 } points { time: 4 value: 0.25 } } )"
+            R"(curves { name: "decay" points { time: 0 value: 1 standard_error: 0.25 limit: 1 )"
+            R"(batches: 64 } points { time: 2 value: 0.5 } points { time: 4 value: 0.25 } } )"
             R"(curves { name: "profile" points { value: 2 position: 0 } )"
             R"(points { value: 1 position: 1.5 } })");
+}
+
+TEST(PointResult, ARemarkNamesTheEstimatesWhoseModelErrorIsUnknown) {
+  const EnsembleSpec spec = FakeSpec(1, 1);
+  const auto experiment = PointExperiment::Create(spec, 0, {.model_error = std::nullopt});
+  BlockResult merged = experiment->EmptyResult();
+  merged.samples = 1;
+  merged.moments[0].Add(0.25);
+  const v1::PointResult result = PointResultOf(0, *experiment, merged);
+  EXPECT_EQ(*result.remarks().rbegin(),
+            absl::StrCat("no bound of the model error is known for ", result.estimates(0).name()));
 }
 
 TEST(PointResult, EveryParameterHasAFieldAndComesBack) {
