@@ -68,7 +68,7 @@ absl::StatusOr<std::map<std::string, std::string>> ParseLabels(const std::string
     const size_t equals = label.find('=');
     if (equals == label.npos) return NotPermitted(label, "is not a label: write KEY=VALUE");
     const bool is_new = labels.emplace(label.substr(0, equals), label.substr(equals + 1)).second;
-    if (!is_new) return NotPermitted(label, "gives its key a second value");
+    if (!is_new) return NotPermitted(label, "has a key that is given twice");
   }
   return labels;
 }

@@ -305,8 +305,8 @@ const FlagGroup kWatch = {
       "run this command of the shell when a job ends; its environment has "
       "BALLPISTON_JOB and BALLPISTON_JOB_STATE"},
      {"--any", Switch(To(&Options::any)),
-      "return when one of the jobs has ended; the others go on. With --label: one of the jobs "
-      "that are active now"}}};
+      "return when one of the jobs has ended; the others go on. With --label, only jobs "
+      "that are active now count"}}};
 
 const FlagGroup kPin = {
     "Pin", {{"--undo", Switch(To(&Options::undo)), "unpin: the results may expire again"}}};

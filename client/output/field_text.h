@@ -45,7 +45,8 @@ std::string CsvRow(const Cells& cells);
 // This many significant digits. If x differs from that text by rounding alone, all digits, as in
 // 0.4999999999999999.
 std::string Digits(double x, int digits);
-// Beside the limits of rho, 1/2 and 1/sqrt(2), all digits: ten may lie beyond the limit.
+// Ten significant digits. Near 1/2 and 1/sqrt(2), the limits of rho, all digits, because the
+// rounded number may be beyond the limit.
 std::string TenDigits(double x);
 
 // "rho 0.53, delta 0.2, epsilon 0.25, exponent 1", each as TenDigits.

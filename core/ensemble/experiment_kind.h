@@ -48,13 +48,13 @@ struct SampleWork {
   }
 };
 
-// What is predicted of one sample by a model that takes samples.
+// Predictions about one sample of a model that takes samples.
 struct Forecast {
   SampleWork work = {};
-  double collisions = 1;  // of ball and piston; a mean number
+  double collisions = 1;  // mean number of ball-piston collisions
   // Upper bound of the bytes of one thread that takes samples (MemoryOf).
   double memory = 0;
-  // If the samples continue each other: the trajectories of the point.
+  // The trajectories of the point, if its samples continue each other.
   std::optional<Trajectories> trajectories = {};
 };
 
@@ -62,12 +62,12 @@ struct Forecast {
 struct Scatter {
   // The relative standard error of one sample. It is infinite if no number of samples is enough.
   double error = 0;
-  // The expected number of a sample's events, of which an error needs kEventsForAnError
+  // The expected number of events of a sample. An error needs kEventsForAnError events
   // (statistics/stated_error.h).
   double events = 1;
 
-  // The relative standard error of n samples: 1/sqrt(n) times that of one; infinite if so many
-  // samples have no error.
+  // The relative standard error of n samples: 1/sqrt(n) times that of one sample; infinite if n
+  // samples are too few for an error.
   double ErrorOf(double samples) const;
   // The fewest samples that have an error; infinite if no number of samples is enough.
   double SamplesForAnError() const;
@@ -141,7 +141,7 @@ struct ExperimentKind {
 
 // The aim that the spec's target names. For this and the next two the spec must have no violations.
 const AimedEstimate& AimOf(const EnsembleSpec& spec);
-// These two are by spec.model; for AUTO by the billiard.
+// The forecast and the scatter of a sample by spec.model; for AUTO, by the billiard.
 Forecast ForecastOf(const EnsembleSpec& spec, const PointParameters& point);
 Scatter ScatterOf(const EnsembleSpec& spec, const PointParameters& point);
 

@@ -163,7 +163,8 @@ SampleWork WorkOfAnOrbit(Model model, const PointParameters& point) {
 // An orbit that has ended keeps its numbers until its block is complete. Two blocks are in progress
 // at a time, unless they are small.
 Forecast ForecastOfAnOrbit(Model model, const PointParameters& point) {
-  constexpr double kBlocks = 2, kOfAnOrbit = 320;  // 34 numbers, and their and the energy's lists
+  // In bytes: 34 numbers, the list of the numbers and the list of the energy.
+  constexpr double kBlocks = 2, kOfAnOrbit = 320;
   const SampleWork work = WorkOfAnOrbit(model, point);
   const Engine engine = model == Model::kBilliardReference ? Engine::kReference : Engine::kLanes;
   const ChunkPlan plan(kMaxSamples, engine, work.Events());
@@ -173,8 +174,8 @@ Forecast ForecastOfAnOrbit(Model model, const PointParameters& point) {
           .memory = kMemoryOfPairs + orbits * kOfAnOrbit};
 }
 
-// From an epsilon the error is that of int (ep - 1/6) dt. If few orbits of the billiard meet, the
-// integral has two values, and their shares determine its scatter.
+// If the orbits start at an epsilon, the error is that of the integral of (ep - 1/6) dt. If few
+// orbits of the billiard meet, the integral has two values, and their shares determine its scatter.
 Scatter ScatterOfAnOrbit(Model model, const PointParameters& point) {
   constexpr double kScatter = 0.42;
   const EnergyRelaxation relaxation(GeometryOf(point), point, model);

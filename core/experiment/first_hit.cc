@@ -68,8 +68,9 @@ double ErrorAtRest(const PairGeometry& geometry) {
   return delta * std::numbers::sqrt2 / 6 / (geometry.stroke() - delta / 3);
 }
 
-// Of the return time. Rare long returns dominate its mean, so the scatter of their number is its
-// error, and where they are rare they are its events.
+// The scatter of the return time. Rare long returns dominate the mean, so the scatter of their
+// number is the error of the mean. Where long returns are rare, they are the events that determine
+// the error.
 Scatter ScatterOfAReturn(Model, const PointParameters& point) {
   const PairGeometry geometry = GeometryOf(point);
   if (point[kEpsilon] == 0.5) return {ErrorAtRest(geometry)};

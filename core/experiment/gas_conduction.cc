@@ -79,18 +79,20 @@ double RelaxationTime(Model model, const GasGeometry& geometry, double cold) {
   return std::max(of_the_gas, CrossingTime(model, geometry, cold));
 }
 
-// The warm-up beside a cold reservoir over that beside a warm one.
+// The ratio of the warm-up beside a cold reservoir to the warm-up beside a warm one.
 double WarmUpOfTheCold(Model model, double cold) {
   constexpr double kWarm = 0.5, kMost = 8;
   return model == Model::kMarkov ? 1 : std::clamp(kWarm / cold, 1.0, kMost);
 }
 
-// The warm-up over one relaxation time. The start is almost stationary: after one relaxation time
-// the mean temperatures are off by up to 0.3 %. If the trajectories have many balls, `balls` in
-// all, their errors are as small. With kFew the rest is a third of the error.
+// The number of relaxation times that a large gas warms up. The start is almost stationary: after
+// one relaxation time the mean temperatures deviate by up to 0.3 %. If all trajectories together
+// have many balls (`balls`), their statistical error is as small. With kFewBalls the deviation is a
+// third of the error. TimesOfConduction rounds the number down to a power of two, so the deviation
+// can be almost as large as the error.
 double WarmUpOfTheMany(double balls) {
-  constexpr double kFew = 3600;
-  return 1 + std::ceil(std::log(std::max(balls / kFew, 1.0)) / 2);
+  constexpr double kFewBalls = 3600;
+  return 1 + std::ceil(std::log(std::max(balls / kFewBalls, 1.0)) / 2);
 }
 
 // How the time of a point is divided.
@@ -436,8 +438,7 @@ void CheckConductionGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& 
   }
 }
 
-// The memory is with the states of all groups: those that are merged, those that arrive, and those
-// that are written.
+// The memory includes three copies of the states of all groups: merged, arriving and being written.
 Forecast ForecastOfGasConduction(Model model, const PointParameters& point) {
   constexpr double kCopies = 3, kBytesOfACell = 60;
   const GasGeometry geometry = OpenGasOf(point);

@@ -105,7 +105,7 @@ Forecast ForecastOfAnExchange(Model model, const PointParameters& point) {
           .memory = kMemoryOfPairs};
 }
 
-// No number of samples gives a relative error of what tends to 0.
+// The correlation tends to 0, so no number of samples gives a relative error.
 Scatter ScatterOfMemory(Model, const PointParameters&) {
   return {std::numeric_limits<double>::infinity(), 1.0 / kExchangesPerOrbit};
 }

@@ -97,7 +97,7 @@ Answer ByBudget(const Question& question, double bound) {
           : "the billiard has no error within this budget",
       ", the limit's ",
       std::isfinite(limit) ? absl::StrCat("about ", Rounded(limit),
-                                          ", of which its model's is at most ", Rounded(bound))
+                                          ", of which the model error is at most ", Rounded(bound))
                            : absl::StrCat("model error at most ", Rounded(bound)));
   const double enough = question.target().tolerance.value_or(0);
   const bool is_by_billiard = std::isfinite(billiard)

@@ -33,7 +33,8 @@ void PredictSamples(const Question& question, const Machine& machine, Rung& rung
   if (std::isfinite(error)) rung.statistical_error = error;
 }
 
-// The limit's error is that of the pilot that the choice has used, else the expected one.
+// The limit's error comes from the pilot that the choice has used. Without a pilot it is the
+// expected error.
 void SetModelError(const Question& question, const std::optional<Pilot>& pilot, Rung& rung) {
   rung.model_error = question.ModelErrorOf(rung.model);
   if (rung.model == Model::kClosedForm) {

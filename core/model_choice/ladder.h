@@ -58,8 +58,8 @@ struct Ladder {
   const Rung& Chosen() const;
 };
 
-// `pilots` returns known pilots, and predictions of those that run for other points. If it returns
-// none, the pilot runs for this point, and its result is predicted.
+// `pilots` returns known pilots, and predictions of pilots that run for other points. If `pilots`
+// returns none, the ladder includes a pilot for this point and predicts its result.
 Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine,
                  const PilotSource& pilots);
 

@@ -41,8 +41,8 @@ class Question {
   bool IsSoundForBilliard() const { return ballpiston::IsSoundForBilliard(spec_, point_); }
   // The cheapest model that answers in the limit. Requires HasLimit.
   Model ModelOfLimit() const { return *std::ranges::find_if(aim().models, IsOfTheLimit); }
-  // Whether this error of the limit is not beyond the tolerance. If the limit's model samples, its
-  // error must be within half of the tolerance, so that the scatter is the larger part.
+  // Whether this error of the limit is within the tolerance. If the limit's model takes samples,
+  // its error must be within half of the tolerance, so that the scatter is the larger part.
   bool IsWithinTolerance(double limit_error) const {
     const double share = TakesSamples(ModelOfLimit()) ? 2 : 1;
     return !target().tolerance || limit_error <= *target().tolerance / share;
@@ -54,8 +54,9 @@ class Question {
     return is_default ? spec_.experiment->name : aim().name;
   }
 
-  // The model's error without the statistical error: the expected one of the limit, or that of the
-  // billiard's precision. Empty if none is known, or if the first estimate has no relative error.
+  // The model's error without the statistical error: the expected error of the limit, or the error
+  // of the billiard's precision. Empty if the error is unknown, or if the first estimate has no
+  // relative error.
   std::optional<double> ModelErrorOf(Model model) const {
     if (IsOfTheLimit(model)) return LimitError();
     const bool is_single = EngineFor(By(model)) == Engine::kLanesSingle;

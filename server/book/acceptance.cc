@@ -86,8 +86,8 @@ void AddLabels(Database& database, const Labels& more, JobRecord& record) {
   if (LabelsOf(record.job) != before) UpdateJob(database, record);
 }
 
-// Sets which job the new one continues, if there is one. A tolerance may have been reached before
-// the end of a number of samples; then the points begin anew.
+// Sets the job that the new job continues, if there is one. The earlier job may have passed the new
+// job's tolerance before its last sample; then the points are computed from the start.
 void Continue(Database& database, Acceptance& acceptance) {
   v1::EnsembleJob& job = acceptance.record.job;
   const v1::Target& target = job.spec().target();

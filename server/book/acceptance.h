@@ -31,12 +31,14 @@ namespace ballpiston::server {
 struct Acceptance {
   JobRecord record;    // the new job, with the id and the hash of its request
   bool fresh = false;  // do not return an earlier job
-  double samples = 0;  // that the target asks for, of all points; not with a tolerance
+  // The samples of all points for which the target asks; 0 with a tolerance, a budget, or a model
+  // without samples.
+  double samples = 0;
 };
 
-// The earlier job that answers the request: answered_from_store says that it answers the question,
-// otherwise the request is its own again. Empty: the new job is stored, and its record says which
-// job it continues.
+// Returns the earlier job that answers the request. answered_from_store is true if the job answers
+// the same question, false if the request is a retry. Empty: the new job is stored, and its record
+// names the job that it continues.
 // If the request is refused, the transaction fails: INVALID_ARGUMENT or RESOURCE_EXHAUSTED.
 std::optional<JobRecord> Accept(Database& database, const Limits& limits, Acceptance& acceptance);
 

@@ -2,7 +2,7 @@
 //
 // The job's row owns everything that is stored, above all the state (store/job_record.h). Memory
 // owns what is not stored yet: the numbers of the points that are being computed. JobBook::Message
-// makes the job that clients see of both.
+// combines both into the job that clients see.
 //
 // Changes are numbered from 1. A watch remembers the number of the last change that it has sent and
 // asks for newer ones. So a slow watch may skip intermediate states, but always gets the newest.

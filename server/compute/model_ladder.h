@@ -39,8 +39,8 @@ class ModelLadder : public PointOpener {
   double MemoryOf(const EnsembleSpec& spec, size_t index, int threads) override;
   void KeepPilot(const PilotPlace& place, const Pilot& pilot) override;
 
-  // Runs nothing but the measurement of the rates. `planned`: the pilots of earlier ladders, which
-  // this one does not count again.
+  // Runs only the measurement of the rates. `planned` has the pilots of earlier ladders; this
+  // ladder does not count their work again.
   Ladder LadderOf(const EnsembleSpec& spec, const PointParameters& point,
                   const std::set<PilotPlace>& planned = {});
 

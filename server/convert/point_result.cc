@@ -16,7 +16,7 @@ namespace {
 
 bool Exists(const std::optional<double>& value) { return value && std::isfinite(*value); }
 
-// Of a v1::Estimate or of a point of a curve.
+// Sets the error of a v1::Estimate or of a point of a curve.
 template <typename Message>
 void SetError(const std::optional<double>& error, uint64_t batches, Message& message) {
   if (!Exists(error)) return;
@@ -82,8 +82,8 @@ void SetHealth(const Health& health, v1::PointResult& result) {
   if (std::isfinite(health.max_energy_error)) message.set_max_energy_error(health.max_energy_error);
 }
 
-// A remark stands for each estimate that has no value, and one for all whose model error is
-// unknown.
+// Adds a remark for each estimate without a value, and one remark for all estimates whose model
+// error is unknown.
 void AddRemarks(const PointSummary& summary, v1::PointResult& result) {
   result.mutable_remarks()->Assign(summary.remarks.begin(), summary.remarks.end());
   for (const Estimate& estimate : summary.estimates) {

@@ -155,7 +155,7 @@ Target TargetOf(const v1::Target& message) {
   return target;
 }
 
-// Of a negative duration both parts are negative; the core refuses its value.
+// In a negative duration both parts are negative; the core rejects a negative budget.
 void CheckNanos(const google::protobuf::Duration& budget, Violations& violations) {
   constexpr int32_t kMost = 999'999'999;
   const int32_t nanos = budget.nanos();

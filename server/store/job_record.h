@@ -41,11 +41,12 @@ struct JobNumbers {
 struct JobRecord {
   int64_t sequence = 0;  // assigned by the store; greater for a newer job, never reused
   std::string id;
-  // The job as clients see it, without its expire_time. The numbers of an active job are those of
-  // its acceptance, because memory has the others (book/job.h). The specification has no grid if
-  // that was not read. A damaged row gives a job without a specification.
+  // The job as clients see it, without its expire_time. An active job has the numbers from its
+  // acceptance; its present numbers are in memory (book/job.h). The specification has no grid if
+  // the grid was not read. A damaged row gives a job without a specification.
   v1::EnsembleJob job;
-  // Of the request that made the job, unique for the principal; or empty. Not read.
+  // The id of the request that made the job, unique for the principal; may be empty. It is written,
+  // but not read from the store.
   std::string request_id;
   std::string payload;   // hash of that request without its id and its labels (book/acceptance.h)
   std::string question;  // hash of the question (book/acceptance.h); empty: always compute

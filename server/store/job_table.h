@@ -11,8 +11,8 @@
 // effect in others. The store runs all writes in one order: if a cancellation and the end of a job
 // come at the same time, one of them is first, and the first end is kept.
 //
-// A row keeps the job as a message (JobRecord::job), and as columns what the statements here and in
-// check_store.cc search for. InsertJob and UpdateJob write both.
+// A row has the job as a message (JobRecord::job), and columns with the values that the statements
+// here and in check_store.cc search for. InsertJob and UpdateJob write both.
 #pragma once
 
 #include <cstdint>
@@ -35,8 +35,8 @@ enum class Grid { kLeftOut, kIncluded };
 // Sets record.sequence; the job is QUEUED.
 void InsertJob(Database& database, JobRecord& record);
 
-// Writes all of the record that can change: all but its grid, its name, its principal, its request
-// and the number of its points.
+// Writes the whole record except its grid, name, principal, request and number of points, which
+// never change.
 void UpdateJob(Database& database, const JobRecord& record);
 
 std::optional<JobRecord> FindJob(Database& database, const std::string& id, Grid grid);
@@ -46,8 +46,8 @@ std::optional<JobRecord> FindJobBySequence(Database& database, int64_t sequence)
 std::optional<JobRecord> FindJobOfRequest(Database& database, const std::string& principal,
                                           const std::string& request_id);
 
-// The principal's oldest job that SUCCEEDED in answering the question (JobRecord::question) and
-// that is accepted.
+// The principal's oldest job that SUCCEEDED in answering the question (JobRecord::question) and for
+// which `accepts` returns true.
 std::optional<JobRecord> FindAnswer(Database& database, const std::string& principal,
                                     const std::string& question,
                                     absl::FunctionRef<bool(const v1::EnsembleJob&)> accepts);
@@ -109,7 +109,7 @@ std::vector<JobSize> ListExpirable(Database& database, absl::Time ended_before, 
 int64_t CountExpirable(Database& database, absl::Time ended_before);
 // The same for jobs whose results have expired.
 std::vector<JobSize> ListExpired(Database& database, int most);
-// The bytes of all these jobs.
+// The bytes of all jobs whose results can expire or have expired.
 int64_t RemovableBytes(Database& database);
 
 // After these two, the sweeper removes the results (sweeper.h); nobody can find them meanwhile.

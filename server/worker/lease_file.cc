@@ -57,8 +57,8 @@ Target TargetOf(const storage::Question& record) {
   return target;
 }
 
-// AUTO may choose the jump process for a spec in single precision, which a user may not. So the
-// precision is not checked for it.
+// For a spec in single precision AUTO may choose the jump process, although a user may not. So the
+// precision of the jump process is not checked.
 bool IsPossible(EnsembleSpec spec) {
   if (spec.model == Model::kAuto || !TakesSamples(spec.model)) return false;
   if (!IsABilliard(spec.model)) spec.precision = Precision::kDouble;

@@ -3,11 +3,11 @@
 // which chunks are whose, also to a later process of the server.
 //
 // Each part of the file is a message of storage/records.proto as a stream in gzip's format, whose
-// checksum proves that it is complete (convert/compressed.h). The message has the lease's point as
-// a question: one point, by a sampling model. An experiment that is created from the message has
-// the same plan, random numbers and bits as the lease's experiment. The folder belongs to the
-// server's user. So reading checks the engine version and the question, but not the chunks and
-// their states.
+// checksum proves that it is complete (convert/compressed.h). The lease's message has its point as
+// a question: one point, by a model that takes samples. An experiment that is created from the
+// message has the same plan, random numbers and bits as the lease's experiment. The folder belongs
+// to the server's user. So reading checks the engine version and the question, but not the chunks
+// and their states.
 #pragma once
 
 #include <functional>
@@ -46,14 +46,14 @@ struct LeaseFileName {
 std::optional<LeaseFileName> ParseTaken(absl::string_view name);
 std::optional<LeaseFileName> ParseDone(absl::string_view name);
 
-// A lease as its file has it.
+// The contents of the first part of a lease's file.
 struct LeaseFile {
   std::string server;  // the identity of the server's data folder
   // `run` and `generation` name the job, whose engine version is this program's. The spec is a
-  // OnePointSpec, and `point` is the point's index in the job's grid. The message does not have the
-  // rest, such as numbers and attempts.
+  // OnePointSpec, and `point` is the point's index in the job's grid. The message leaves out the
+  // other fields of the lease, such as numbers and attempts.
   Lease lease;
-  double touch_seconds = 20;  // the worker gives the file another time as often as this
+  double touch_seconds = 20;  // the worker updates the file's time at this interval
 };
 
 // The lease has chunks of a point, not of a pilot, and its spec has no budget.

@@ -104,7 +104,8 @@ TEST_F(ServerTest, ThePrivateServerIsStartedFoundAndStopped) {
   const ProcessResult again = Server("start");
   EXPECT_EQ(again.out, started.out);
   EXPECT_THAT(again.err, HasSubstr("already runs there"));
-  const ProcessResult refused = Server("start", {"--workers", "1"});  // it would have no effect
+  // The flag would have no effect.
+  const ProcessResult refused = Server("start", {"--workers", "1"});
   EXPECT_THAT(refused, ExitsWith(4));
   EXPECT_THAT(refused.err, HasSubstr(State("server.socket")));
   EXPECT_THAT(Server("status"), ExitsWith(0));

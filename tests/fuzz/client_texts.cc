@@ -28,7 +28,7 @@ void CheckSpecFile(const std::string& json) {
   const absl::StatusOr<v1::EnsembleSpec> again = client::ParseSpec("FILE", printed);
   Require(again.ok(), "what is printed can be read");
   Require(server::DeterministicBytes(*again) == server::DeterministicBytes(*spec),
-          "what is read was printed");
+          "the parsed specification equals the printed one");
 }
 
 void RequireTold(const absl::Status& error) {

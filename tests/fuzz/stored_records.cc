@@ -127,7 +127,7 @@ void CheckStoredJob(const v1::EnsembleJob& stored, const std::string& bytes) {
   server::SetNumbers({.points_done = 1}, job);
   server::SetExpireTime(400, job);
   const int32_t nanos = job.expire_time().nanos();
-  Require(nanos >= 0 && nanos < 1'000'000'000, "a time is one");
+  Require(nanos >= 0 && nanos < 1'000'000'000, "the expiry time is a valid Timestamp");
   v1::EnsembleJob sent;
   Require(sent.ParseFromString(job.SerializeAsString()), "a row can be sent");
   RequireJudged(job.spec(), bytes);

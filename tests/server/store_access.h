@@ -25,7 +25,7 @@ inline void ChangeStore(const std::string& path, const std::string& sql) {
   ASSERT_OK(database->status());
 }
 
-// Changes the jobs in the file of such a store.
+// Changes all jobs in the file of a store that no server has open.
 inline void ChangeJobs(const std::string& path,
                        const std::function<void(v1::EnsembleJob& job)>& change) {
   ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(path, {.stall = kUnreachedLimit}));

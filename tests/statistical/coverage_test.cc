@@ -1,7 +1,7 @@
 // Whether the stated errors are those of many seeds: the interval value +- t(batches - 1) x
 // standard error covers the true value in 95 % of the runs, for every sampled estimate and some
-// points of each curve; and the
-// z-scores of estimates with an exact value have the mean 0 and the variance 1.
+// points of each curve; and the z-scores of estimates with an exact value have the mean 0 and the
+// variance 1.
 //
 // The true value is the exact one, or that of all runs together. A distance between laws has a mean
 // that depends on the number of samples, so it is compared with the mean of the runs. `make test`
@@ -44,8 +44,8 @@ struct Runs {
 
 using RunsByName = std::map<std::string, Runs>;
 
-// The estimates, and four points of each curve: its last one, and those at 1/4, 1/16 and 1/32 of
-// it.
+// The estimates, and four points of each curve: the last one, and those at 1/4, 1/16 and 1/32 of
+// the curve.
 std::vector<Estimate> EstimatesAndCurves(const PointSummary& summary) {
   std::vector<Estimate> all = summary.estimates;
   for (const Curve& curve : summary.curves) {

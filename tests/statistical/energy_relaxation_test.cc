@@ -13,7 +13,7 @@
 namespace ballpiston {
 namespace {
 
-// Of the jump process at delta = 0.1.
+// A run of the jump process at delta = 0.1.
 PointSummary Walks(int64_t count, std::optional<double> epsilon = {}) {
   return RunPoint(
       SpecOf(&kEnergyRelaxation, PaperPoint(0.1, epsilon), {.samples = count}, Model::kMarkov, 2));

@@ -333,7 +333,7 @@ describe('Jobs', () => {
       'at most 10 points',
     ],
   ]) {
-    it(`that are too large for ${what} are not submitted again and again`, async () => {
+    it(`that are too large for ${what} are submitted once`, async () => {
       const watch = new Promise((begun) => page.route(/WatchEnsembleJob/, begun));
       await open(firstHit);
       await page.route('**/ballpiston.v1.EnsembleService/CreateEnsembleJob', (route) =>

@@ -12,7 +12,7 @@ namespace ballpiston::method_comparison {
 struct Itineraries;
 class TwinOrbits;
 
-// A curve of the chart.
+// A method, which has a curve in the chart.
 struct Method {
   const char* name;  // in the output
   // Predicted time of one event, or of one time step, on a processor of about 3 GHz, within a
@@ -23,11 +23,11 @@ struct Method {
   // between them all numbers have the method's precision. Null: no orbits.
   void (*run_orbits)(const PairGeometry& geometry, uint64_t orbits, NumberedOrbits& source,
                      double time_step) = nullptr;
-  // Flies balls from the twins' starts over so many wall hits. Null: no orbits.
+  // Flies balls from the twins' starts for `hits` wall hits. Null: no orbits.
   Itineraries (*fly)(const PairGeometry& geometry, const TwinOrbits& twins, uint64_t hits,
                      double time_step) = nullptr;
-  uint64_t together = 1 << 8;      // so many orbits run together
-  Model model = Model::kBilliard;  // if the service has the method
+  uint64_t together = 1 << 8;      // the number of orbits that run together
+  Model model = Model::kBilliard;  // the service's model for the method, if the service has it
   double time_step = 0;            // in cells per unit speed; 0: no fixed steps
 
   friend bool operator==(const Method&, const Method&) = default;

@@ -29,7 +29,8 @@ struct ReturnStatistics {
   std::vector<uint64_t> IngoingCounts() const;
 };
 
-// Runs the samples 0 ... samples - 1 of the stream. Only for methods with orbits, as below.
+// Runs the samples 0 ... samples - 1 of the stream. Requires a method with orbits, as does
+// PredictedSeconds.
 ReturnStatistics RunReturns(const Method& method, const PairGeometry& geometry, double epsilon,
                             const RandomStream& random, uint64_t samples);
 

@@ -81,7 +81,7 @@ struct TrajectoryHorizon {
   double seconds = 0;      // of processor time, without the time of the twins
 };
 
-// The horizon of all orbits of `twins`. Only for methods with orbits.
+// The horizon of all orbits of `twins`. Requires a method with orbits.
 TrajectoryHorizon HorizonOf(const Method& method, const PairGeometry& geometry, TwinOrbits& twins);
 
 }  // namespace ballpiston::method_comparison

@@ -32,7 +32,8 @@ struct Case {
   std::vector<Place<Geometry>> places;
   // The start of this number, which does not depend on the starts before it.
   std::function<Start(const Geometry& geometry, uint64_t number)> start;
-  // Of a case of long runs: the worst |dE/E| of a method that loses no energy. 0: short runs.
+  // In a case of long runs, the largest |dE/E| that is permitted to methods that promise zeros; 0
+  // in a case of short runs.
   double permitted = 0;
 };
 
@@ -82,8 +83,9 @@ struct CaseResult {
 // Starts that run together. They fill the lanes, and fit into memory.
 inline constexpr uint64_t kTogether = 4096;
 
-// The number of a method's starts, or the length of its long runs. If a single start is thousands
-// of times more than wanted, none runs; methods that promise zeros run it nevertheless.
+// The number of a method's starts, or the length of its long runs. If even one start is thousands
+// of times more than wanted, the method does not run; methods that promise zeros run one start
+// nevertheless.
 template <typename Method>
 uint64_t PartOf(const Method& method, uint64_t all, double effort) {
   constexpr double kFewestWanted = 2e-4;
@@ -114,9 +116,9 @@ Failures RunCase(const Case<Geometry, Start>& one, const Method<Geometry, Start>
   return failures;
 }
 
-// Runs the cases' numbers of starts, times `effort` and the method's share; of long runs all
-// starts, but this share of their length. All methods have the same starts. Prints progress on
-// standard error.
+// Runs each case with each method. Multiplies the number of starts of each case by `effort` and the
+// method's share. In cases of long runs it runs all starts and multiplies their length instead. All
+// methods have the same starts. Prints progress on standard error.
 template <typename Geometry, typename Start>
 std::vector<CaseResult> RunCases(const std::vector<Case<Geometry, Start>>& cases,
                                  const std::vector<Method<Geometry, Start>>& methods,

@@ -10,12 +10,12 @@ namespace {
 constexpr uint64_t kBallSeed = 20;
 constexpr uint64_t kPairSeed = 21;
 constexpr uint64_t kGasSeed = 24;
-// Of each case of long runs. The standard error of a mean comes from as many runs: Student's t with
-// 47 degrees of freedom, 2e-4 false trends per method.
+// The number of runs of each case of long runs. The standard error of their mean has 47 degrees of
+// freedom; by Student's t there are 2e-4 false trends per method.
 constexpr uint64_t kLongRuns = 48;
 // The permitted |dE/E|: of a ball or a pair, and of a gas. Each exchange in a gas rounds the
-// energies of two bodies. Its energy makes a random walk: four ulps times the square root of its
-// 150,000 exchanges.
+// energies of two bodies. The energy makes a random walk, so the bound of a gas is four ulps times
+// the square root of its 150,000 exchanges.
 constexpr double kRounding = 1e-14, kWalk = 3.5e-13;
 
 using Numbers = std::vector<double>;

@@ -29,8 +29,8 @@ struct Failures {
   uint64_t phantoms = 0;        // contacts with the piston elsewhere
   uint64_t beyond_walls = 0;    // pistons of a gas at a turn or a contact beyond a wall
   double energy = kNoEnergy;    // worst |dE/E|, if it was measured; infinite if NaN
-  // The change of dE/E in the second half of each orbit that reached its end, which has no part of
-  // the rounding of the start; of a gas the change since its start.
+  // For each orbit that reached its end, the change of dE/E in its second half; for a gas, the
+  // change since its start. The rounding of the start does not contribute.
   Moments gain = {};
 
   static constexpr double kNoEnergy = std::numeric_limits<double>::quiet_NaN();

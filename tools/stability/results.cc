@@ -20,10 +20,10 @@ void ForEachMethod(const std::vector<System>& systems, const Visit& visit) {
   }
 }
 
-// Whether the mean is more than four of its standard errors and more than an ulp.
+// Whether the absolute mean exceeds four of its standard errors and an ulp.
 bool IsTrend(const Moments& gain) {
   const double size = std::fabs(gain.mean);
-  // Written as a negation, so that a number that is not a number is a trend.
+  // Written as a negation, so that NaN counts as a trend.
   return !(size <= 4 * gain.StandardError().value_or(0) ||
            size <= std::numeric_limits<double>::epsilon());
 }

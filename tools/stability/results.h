@@ -19,8 +19,8 @@ struct System {
 
 // A row for each case of long runs and each method with a run that reached its end.
 //
-// Each exchange rounds the energies of two bodies. Therefore the energy makes a random walk, and a
-// straight line through one run means nothing. Only the mean of many runs shows a drift.
+// In a gas each exchange rounds the energies of two bodies, so the energy makes a random walk. Only
+// the mean of many runs shows a drift.
 std::string EnergyTable(const std::vector<System>& systems);
 
 struct Results {

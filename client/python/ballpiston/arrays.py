@@ -97,7 +97,7 @@ def _estimate_arrays(points: Sequence[Any]) -> Arrays:
 
 
 def _part_arrays(points: Sequence[Any], part: str, fields: Sequence[str]) -> Arrays:
-    """Of a message that a point may have."""
+    """Arrays of these fields of `part`, a message that a point may have."""
     column = [getattr(point, part) if point.HasField(part) else None for point in points]
     arrays: Arrays = {}
     for field in fields:

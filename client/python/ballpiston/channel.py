@@ -60,8 +60,8 @@ _ARGUMENTS: list[tuple[str, int | str]] = [
 
 
 def open_channel(address: str, security: ChannelSecurity, module: Any = grpc) -> Any:
-    """A grpc.Channel, which does not connect yet. With the module grpc.aio one for an event loop,
-    which only the loop that opens it may use.
+    """A grpc.Channel, which does not connect yet. With `module` grpc.aio the channel is for an
+    event loop, and only the loop that opened it may use it.
 
     Raises:
         ValueError: not an address, or security that does not fit together or cannot be read.

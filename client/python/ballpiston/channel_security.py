@@ -114,7 +114,8 @@ def _own_token(address: str) -> str:
 
 
 def _authorities(path: str) -> bytes:
-    """PEM, at least by its looks: gRPC would only say that there is no connection."""
+    """The file's bytes. Checks that they look like PEM, because gRPC would report only that there
+    is no connection."""
     data = _contents(path, "authority file", is_secret=False)
     if b"-----BEGIN CERTIFICATE-----" not in data:
         raise ValueError(

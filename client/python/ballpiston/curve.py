@@ -25,7 +25,7 @@ class Curve:
         position: in cells from the left reservoir; None of a function of time.
         value: of the function.
         standard_error: one sigma; NaN where there is none.
-        batches: how certain the standard error is, as of an estimate; NaN where not stated.
+        batches: how certain the standard error is, as in an estimate; NaN where it is not stated.
         limit: what the limit delta -> 0 gives here; NaN where it gives nothing.
 
     Example:

@@ -39,7 +39,7 @@ AnyError = TypeVar("AnyError", bound=errors.Error)
 
 @dataclass(frozen=True)
 class Details:
-    """What the messages inside a google.rpc.Status say, as the keywords of an Error."""
+    """The contents of the messages inside a google.rpc.Status, as the keywords of an Error."""
 
     reason: str = ""
     metadata: dict[str, str] = field(default_factory=dict)

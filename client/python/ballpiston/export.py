@@ -1,7 +1,7 @@
 """ballpiston export [JOB ...] [--label KEY=VALUE ...] --out FILE
 
 Writes the estimates of jobs to FILE, which ends with .csv, .npz or .parquet. The command line
-starts this when it has checked FILE and the modules that it needs.
+starts this program after it has checked FILE and the Python modules that FILE needs.
 """
 
 from __future__ import annotations

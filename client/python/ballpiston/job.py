@@ -353,7 +353,8 @@ class Job:
             screen.close()
 
     def _end(self, job: Any) -> None:
-        """Takes the last message of a watch, which leaves out the grid."""
+        """Stores the job of a watch's last message. That message has no grid, so the known
+        specification is kept."""
         job.spec.CopyFrom(self.message.spec)
         self.message = job
 

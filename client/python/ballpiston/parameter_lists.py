@@ -73,7 +73,8 @@ def real_number(name: str, value: object) -> float:
 
 
 def truth_value(name: str, value: object) -> bool:
-    """True or False, or the TypeError that names the argument: bool("no") would be true."""
+    """The value as a bool. Raises a TypeError that names the argument unless the value is True or
+    False: bool("no") would be True."""
     if not isinstance(value, (bool, np.bool_)):
         raise TypeError(f"{name} has to be True or False, not {value!r}")
     return bool(value)
@@ -151,7 +152,8 @@ def _range(first: float, last: float, count: int, is_logarithmic: bool) -> list[
 
 
 def _parsed_shapes(name: str, text: str) -> list[str]:
-    """A text that has no number alone, such as a lattice, stays as it is: the server judges it."""
+    """A text that is neither a number nor a range, such as the lattice 10x10, is not changed: the
+    server checks it."""
     if ":" in text or set(text) <= _NUMBER_CHARACTERS:
         return [_chain(name, number) for number in _parsed_range(name, text)]
     return [text]

@@ -47,7 +47,7 @@ class Estimate:
         return f"{self.name} {measured_text(self.value, self.standard_error)}"
 
 
-# Beside the name and the value.
+# All fields except the name and the value.
 ESTIMATE_FIELDS = tuple(field.name for field in fields(Estimate))[2:]
 
 

@@ -18,7 +18,7 @@ _BAR_WIDTH = 20
 
 
 class Bar:
-    """One line that is drawn again and again, on standard error."""
+    """A line on standard error that every update overwrites."""
 
     def __init__(self) -> None:
         self._width = 0
@@ -48,7 +48,7 @@ class _TqdmBar(Bar):
     def show(self, fraction: float, text: str) -> None:
         if self._bar is None:
             shape = "{percentage:3.0f}%|{bar}| {desc} [{elapsed}<{remaining}]"
-            # `initial`: the time left follows from what was done during this watch.
+            # `initial`: tqdm computes the time left from the progress during this watch only.
             self._bar = self._tqdm(total=1.0, initial=fraction, bar_format=shape, file=sys.stderr)
         self._bar.n = fraction
         self._bar.set_description_str(text, refresh=False)
@@ -63,7 +63,7 @@ class _TqdmBar(Bar):
 
 
 class Progress:
-    """Shows a watch on a bar; None shows nothing."""
+    """Shows the progress of a watch on a bar. Without a bar (None) it shows nothing."""
 
     def __init__(self, bar: Bar | None) -> None:
         self._bar = bar
@@ -75,7 +75,7 @@ class Progress:
         return self._bar is not None
 
     def show(self, message: Any) -> None:
-        """A message of a watch."""
+        """Shows a message of a watch."""
         progress = progress_in(message)
         if progress is None:
             return
@@ -86,7 +86,7 @@ class Progress:
         self._show(self._text if first is None else f"{self._text}  {first}")
 
     def show_pause(self, pause: float) -> None:
-        """The stream broke; the next one begins after `pause` seconds."""
+        """Shows that the stream broke and that the next stream begins after `pause` seconds."""
         self._show(f"{self._text}  no answer, retrying in {pause:.1f} s")
 
     def note(self, text: str) -> None:

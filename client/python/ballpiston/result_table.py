@@ -1,4 +1,5 @@
-"""Tables for terminals and notebooks: a result with one row a point, and any rows as HTML."""
+"""Tables for terminals and notebooks: a result with one row for each point, and rows of any kind as
+HTML."""
 
 from __future__ import annotations
 
@@ -25,7 +26,7 @@ def result_text(heading: str, points: Sequence[Any]) -> str:
 
 
 def result_html(heading: str, points: Sequence[Any]) -> str:
-    """The same as HTML."""
+    """The heading and the columns as HTML."""
     rows = [_row(point) for point in points[:_MOST_ROWS]]
     titles = _titles(rows)
     cells = [[row.get(title, "") for title in titles] for row in rows]

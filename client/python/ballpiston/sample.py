@@ -1,7 +1,7 @@
 """ballpiston sample EXPERIMENT ... --out FILE: python3 -m ballpiston.sample SPECIFICATION --out FILE
 
 Writes the collisions of a point's samples to FILE, .npz (one array a column) or .parquet. The
-command line starts this when it has checked FILE and the modules that it needs.
+command line starts this program after it has checked FILE and the Python modules that FILE needs.
 """
 
 from __future__ import annotations

@@ -153,8 +153,8 @@ Method = TypeVar("Method", bound=Callable[..., Any])
 
 
 def takes_keywords_of(other: Callable[..., Any]) -> Callable[[Method], Method]:
-    """Shows the keywords of another function in the signature of a method that passes its
-    **question on to it, for help() and for completion in notebooks."""
+    """Decorates a method that passes **question on to `other`: the method's signature then shows
+    the keywords of `other`, for help() and for completion in notebooks."""
 
     def with_signature(method: Method) -> Method:
         own = inspect.signature(method)
@@ -223,7 +223,8 @@ def _within(name: str, value: object, least: int, most: int) -> int:
 
 
 def _nanoseconds(budget: float) -> int:
-    """A value that a Duration holds. The server judges all others."""
+    """The budget in nanoseconds. ValueError if it rounds to 0 without being 0, or exceeds 1e9 s;
+    the server checks all other values."""
     nanoseconds = round(budget * 1e9) if abs(budget) <= 1e9 else 0
     if nanoseconds == 0 and budget != 0:
         raise ValueError(f"budget is {budget!r} s; permitted: 1e-9 to 1e6 s")

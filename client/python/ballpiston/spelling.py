@@ -27,7 +27,7 @@ def from_spelling(enum: Any, what: str, text: object) -> int:
     """
     if not isinstance(text, str):
         raise TypeError(f"{what} has to be a str, not {type(text).__name__}")
-    # All but the unspecified one.
+    # All values except the unspecified one.
     numbers = {spelling_of_name(v.name): int(v.number) for v in enum.DESCRIPTOR.values if v.number}
     wanted = spelling_of_name(text)
     if wanted in numbers:

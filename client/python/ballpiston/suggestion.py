@@ -13,7 +13,7 @@ def did_you_mean(name: str, names: Iterable[str]) -> str:
 
 
 def no_such(what: str, name: str, owner: str, names: Iterable[str]) -> str:
-    """That `owner` has no `what` of this name, and which names it has."""
+    """The message that `owner` has no `what` of this name, with the names that `owner` has."""
     names = list(dict.fromkeys(names))
     there = ", ".join(names) or "none"
     return f"there is no {what} {name!r}{did_you_mean(name, names)}; {owner} has {there}"

@@ -15,8 +15,8 @@ Table = dict[str, npt.NDArray[Any]]
 
 
 def write_table(path: Path, table: Table, comment: str = "") -> None:
-    """Writes the whole file or none. A .csv has all digits, an empty cell in place of NaN, and the
-    comment, if there is one, in a first line that begins with #.
+    """Writes the whole file or none. A .csv file has all digits, and an empty cell for NaN. If
+    there is a comment, it is the first line, after a #.
 
     Raises:
         ModuleNotFoundError: .parquet needs pandas and pyarrow.
@@ -39,7 +39,7 @@ def write_table(path: Path, table: Table, comment: str = "") -> None:
 
 
 def _cell(value: Any) -> Any:
-    """64 rather than 64.0."""
+    """The content of the cell: 64 for 64.0, empty for NaN."""
     if not isinstance(value, float):
         return value
     return "" if np.isnan(value) else repr(value).removesuffix(".0")

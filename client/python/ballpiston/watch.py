@@ -36,7 +36,7 @@ def has_ended(state: int) -> bool:
 class ReattachPace:
     """When a watch that lost its server attaches again, and when it gives up. Each pause is up to a
     quarter longer than needed, so that the watchers of a server that died do not return as one. The
-    times, all in seconds, are the caller's, so that this can be tested without waiting."""
+    caller passes all times, in seconds, so that tests need not wait."""
 
     def __init__(
         self, now: float, first: float = 0.1, longest: float = 5.0, give_up_after: float = 120.0
@@ -78,7 +78,8 @@ def watch_job(
 
 
 def connect_again(connection: Connection) -> None:
-    """Waits a moment for the connection. The next stream reports what goes wrong."""
+    """Waits up to a second for the connection. If there is none, the next stream reports the
+    error."""
     try:
         connection.revive(_LONGEST_CONNECTING)
     except Unavailable:

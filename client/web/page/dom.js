@@ -69,14 +69,14 @@
     );
   }
 
-  // The rows of a table that changes, by a key.
+  // The rows of a table that changes. Each row has a key.
   class LiveRows {
     constructor(table, columns) {
       Object.assign(this, {columns, body: table.querySelector('tbody'), rows: new Map()});
     }
 
-    // Returns the row of the key. Makes it again, with the focus, if `seen`, a text, differs from
-    // that of the last time; `makeCells` returns its cells. Inserts a new row before the node
+    // Returns the row of the key. If the text `seen` has changed since the last call, replaces the
+    // row and keeps the focus; `makeCells` returns the cells. Inserts a new row before the node
     // `next`.
     put(key, seen, makeCells, next) {
       const known = this.rows.get(key);

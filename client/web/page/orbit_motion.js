@@ -3,7 +3,7 @@
 (function (ballpiston) {
   'use strict';
 
-  const FIELDS = ['x', 'y', 'vx', 'vy', 'energy']; // of a body, in an event
+  const FIELDS = ['x', 'y', 'vx', 'vy', 'energy']; // the fields of a body in an event
 
   const place = (body, time) => ({
     x: body.x + (time - body.time) * body.vx,
@@ -45,7 +45,7 @@
       return this.events.find((event) => event.event === kind)?.time;
     }
 
-    // A ball, a piston or both take part.
+    // A ball, a piston or both take part in an event.
     apply(event) {
       for (const [name, bodies] of [
         ['ball', this.balls],
@@ -58,7 +58,7 @@
       }
     }
 
-    // The balls or the pistons where they are at this time.
+    // The balls or the pistons with their present positions.
     now(bodies) {
       return bodies.map((body) => ({...body, ...place(body, this.time)}));
     }

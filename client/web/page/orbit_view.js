@@ -63,7 +63,7 @@
   class OrbitView {
     constructor(main, signal) {
       this.signal = signal;
-      this.played = new EventTarget(); // has the event 'advance' when events were played
+      this.played = new EventTarget(); // sends 'advance' after events were played
       this.speed = SPEEDS.indexOf(1);
       this.isPlaying = !matchMedia('(prefers-reduced-motion: reduce)').matches;
       this.form = element(

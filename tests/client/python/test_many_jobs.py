@@ -151,9 +151,7 @@ def test_the_estimates_of_a_running_job_have_a_note(
 
 
 @pytest.mark.parametrize("labels", [{"a": 5}, {5: "a"}, ["a"]])
-def test_a_label_that_is_no_text_is_a_clear_error(
-    client: ballpiston.Client, labels: Any
-) -> None:
+def test_labels_have_to_be_texts(client: ballpiston.Client, labels: Any) -> None:
     with pytest.raises(TypeError, match="labels.* texts"):
         client.submit(**FIRST_HITS, labels=labels)
     with pytest.raises(TypeError, match="labels.* texts"):

@@ -159,7 +159,7 @@ def test_the_second_exponent_is_that_of_the_billiard(client: ballpiston.Client) 
     measured = point.estimates["lyapunov_2_per_collision"]
     error = np.hypot(growth.computed_error, float(measured.standard_error or np.nan))
     assert error < 0.03
-    assert abs(measured.value - growth.computed) < 5 * error  # a false alarm in two million
+    assert abs(measured.value - growth.computed) < 5 * error  # one false alarm in two million runs
     assert growth.computed - growth.long_waits > 0.2  # the terms in 1/t are tested, too
 
 

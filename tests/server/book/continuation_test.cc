@@ -75,7 +75,7 @@ TEST_F(ContinuationTest, ALargerToleranceDoesNotContinueASmallerOne) {
 }
 
 // A sample is an orbit of 40 mean free times, so the second job has fewer samples.
-TEST_F(ContinuationTest, CollisionsAreComparedBySamples) {
+TEST_F(ContinuationTest, JobsWithCollisionsAreComparedByTheirSamples) {
   const auto ask = [this](const std::string& target) {
     return Ask(FromText<v1::EnsembleSpec>(
         "experiment: ENERGY_RELAXATION grid { rho: 0.53 delta: 0.2 } model: BILLIARD target { " +

@@ -111,7 +111,7 @@ TEST_F(StoredLimitsTest, AStoreFullOfPinnedJobsRejectsNewJobs) {
   EXPECT_THAT(std::string(refused.message()), testing::HasSubstr("--max-store-bytes"));
   EXPECT_EQ(PointsOf(pinned), 900u);
   ASSERT_OK(book_->Update(kAnn, pinned, {.pinned = false}));
-  EXPECT_OK(Create(kBen, Request(2)));  // its results can expire now
+  EXPECT_OK(Create(kBen, Request(2)));  // the results of the unpinned job can expire now
 }
 
 // An active job's results count when it ends.

@@ -28,7 +28,7 @@ storage::Lease RecordOf(const Lease& lease, double touch_seconds = 20);
 // All chunks of the plan, computed block by block.
 std::vector<ChunkResult> AllChunks(const PointExperiment& experiment);
 
-// The reports in the file of a lease, together.
+// All reports in the file of a lease, merged into one.
 LeaseReport ReportsIn(absl::string_view file);
 
 // Whether these are the same chunks, bit for bit.

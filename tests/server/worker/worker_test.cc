@@ -36,7 +36,7 @@ class WorkerTest : public testing::Test {
                                         const std::string&) { begun_.push_back(from); }});
   }
 
-  // The chunks that a worker leaves of the lease.
+  // The chunks that a worker computes for the lease.
   std::vector<ChunkResult> Compute(const Lease& lease) {
     Lay("a", lease);
     EXPECT_OK(Run());
@@ -188,7 +188,7 @@ TEST_F(WorkerTest, ChunksHaveTheBitsOfAWholePoint) {
   }
 }
 
-// The merged block has a mark, which a computation of all blocks would not give.
+// The merged block has a mark. If the worker computed all blocks, the mark would be missing.
 TEST_F(WorkerTest, ComputesOnlyTheRestOfAChunkThatHasBlocks) {
   constexpr uint64_t kMark = 1000;
   Lease lease = LeaseOf(*lease_.spec, 1, 2);
@@ -215,8 +215,8 @@ TEST_F(WorkerTest, StopsAtTheTolerance) {
   EXPECT_EQ(fold.Merged(), FoldPoint(*lease.experiment));
 }
 
-// Each lease has a chunk of one group. The next chunk of the group starts with what the worker has
-// left.
+// Each lease has a chunk of one group. The next chunk of the group starts from the state that the
+// worker has written.
 TEST_F(WorkerTest, LeasesContinueTheTrajectoriesOfASteadyState) {
   for (const Model model : kGasConduction.models) {
     const EnsembleSpec spec = SpecOf(kGasConduction, model, 600);

@@ -66,7 +66,7 @@ TEST(MethodComparison, EveryMethodComputesItsQuantities) {
   }
 }
 
-// Of the curve in the chart's order.
+// The place of the curve in the chart's order.
 auto PlaceOf(const MethodMeasurement& m) {
   const std::vector<Method> order = {
       FixedSteps(1e-1), FixedSteps(1e-2), FixedSteps(1e-3),     FixedSteps(1e-4),
@@ -114,7 +114,7 @@ TEST(MethodComparison, ABiasIsMoreThanThreeStatisticalErrors) {
 TEST(MethodComparison, EnginesStayWithinTheirStatisticalErrors) {
   for (const MethodMeasurement& m : Measurements()) {
     if (m.method.time_step > 0 || m.method == kClosedForm) continue;
-    if (m.method == kMarkov || m.method == kSpectrum) continue;  // of the limit
+    if (m.method == kMarkov || m.method == kSpectrum) continue;  // both have the limit's bias
     if (m.quantity == Quantity::kTrajectory) continue;
     EXPECT_LE(m.value, 4.5 * m.statistical_error)
         << static_cast<int>(m.quantity) << " by " << m.method.name << " of " << m.samples;

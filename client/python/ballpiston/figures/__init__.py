@@ -12,7 +12,7 @@ The module NAME of `ballpiston figure NAME` has:
 - a first line that `ballpiston figure --list` prints
 - measure(client, *, ...): asks the server and computes; returns the tables by name of file. The
   keywords are the flags of `ballpiston figure`, with their defaults without --quick and --full.
-- EFFORT, if it takes samples: the values of keywords that --quick and --full replace
+- EFFORT, if the figure takes samples: the values of keywords that --quick and --full replace
 - draw(tables): the picture
 
 `parts` has what they share. Needs matplotlib.

@@ -71,7 +71,8 @@ def overlap(rho: float) -> FloatArray:
 
 
 def half_height(rho: float, depth: FloatArray) -> FloatArray:
-    """Of the cell at a distance from its tip, to full precision also near the tip."""
+    """Half of the cell's height at the distance `depth` from its tip, with full precision near the
+    tip too."""
     beyond = depth * (depth + overlap_length(rho))  # (depth + lambda/2)^2 - lambda^2/4
     half: FloatArray = beyond / (0.5 + np.sqrt(0.25 - beyond))
     return half

@@ -18,8 +18,8 @@ from ballpiston.point import Point
 
 
 def combined(point: Point, order: int, longer: float) -> Table:
-    """longer v(2 t) - v(t), and v(t) as `shorter`: growth(t) with longer = 2. With longer = 1 it is
-    0 at long times if c_n grows as t."""
+    """`value` is longer v(2 t) - v(t), and `shorter` is v(t). With longer = 2 the value is
+    growth(t). With longer = 1 the value is 0 at long times if c_n grows as t."""
     names = {curve.name for curve in point.curves}
     if (name := f"charge_cumulant_{order}_by_window") not in names:
         return {part: np.empty(0) for part in ("time", "shorter", "value", "standard_error")}

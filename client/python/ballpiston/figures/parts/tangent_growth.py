@@ -60,8 +60,8 @@ class Collisions(NamedTuple):
 
 
 class Growth(NamedTuple):
-    """lambda_2 in a collision, as columns: its mean with its standard error, and that without the
-    terms in 1/t, for long waits."""
+    """lambda_2 per collision, in columns of a table: the mean, its standard error, and the mean
+    without the terms in 1/t, for long waits."""
 
     computed: float
     computed_error: float
