@@ -55,10 +55,10 @@ TEST(EnergyRelaxation, MeanEnergyOfTheJumpProcessMatchesTheSpectrum) {
     const Curve& curve = summary.curves.front();
     EXPECT_NEAR(curve.points[0].value, epsilon, 1e-12);
     EXPECT_LT(LargestScore(curve, 1), 4.5);
-    // The integral detects times that are 1 % shorter.
+    // The integral detects times that are 2 % shorter.
     const Estimate& integral = summary.estimates.front();
     EXPECT_LT(std::fabs(*integral.ZScore()), 4);
-    EXPECT_LT(*integral.standard_error, 0.002 * std::fabs(integral.value));
+    EXPECT_LT(*integral.standard_error, 0.005 * std::fabs(integral.value));
   }
 }
 
