@@ -2,18 +2,15 @@
 
 #include <google/protobuf/message.h>
 #include <google/protobuf/util/json_util.h>
-#include <grpcpp/impl/codegen/proto_utils.h>
-#include <grpcpp/support/sync_stream.h>
+
+#include <memory>
 
 #include "absl/status/statusor.h"
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
-#include "absl/time/clock.h"
-#include "client/library/error_text.h"
 #include "client/library/quoted.h"
-#include "client/library/request_id.h"
 #include "client/output/json.h"
 
 namespace ballpiston::client {
@@ -54,40 +51,12 @@ const google::protobuf::MethodDescriptor* FindMethod(absl::string_view path) {
   return is_spelled_so && absl::StartsWith(path, "ballpiston.v1.") ? method : nullptr;
 }
 
-JsonCall WithRequestId(JsonCall call) {
-  const std::unique_ptr<Message> request = New(call.method->input_type());
-  const auto* const field = call.method->input_type()->FindFieldByName("request_id");
-  const auto status = google::protobuf::util::JsonStringToMessage(call.request, request.get());
-  if (field == nullptr || !status.ok()) return call;
-  const auto* const reflection = request->GetReflection();
-  if (!reflection->GetString(*request, field).empty()) return call;
-  reflection->SetString(request.get(), field, NewRequestId());
-  call.request = Json(*request);
-  return call;
-}
-
-absl::Status CallWithJson(const std::shared_ptr<grpc::Channel>& channel, const JsonCall& call,
-                          const JsonReceiver& receive) {
+absl::Status CallWithJson(const Client& client, const JsonCall& call, const JsonReceiver& receive) {
   const absl::StatusOr<std::unique_ptr<Message>> request = RequestOf(call);
   if (!request.ok()) return request.status();
-  grpc::ClientContext context;
-  if (call.timeout < absl::InfiniteDuration()) {
-    context.set_deadline(absl::ToChronoTime(absl::Now() + call.timeout));
-  }
-  const std::string path =
-      absl::StrCat("/", call.method->service()->full_name(), "/", call.method->name());
-  // This is how the generated stubs of gRPC call a method. A method with a single answer is called
-  // as a stream of one message.
-  const grpc::internal::RpcMethod method(path.c_str(), grpc::internal::RpcMethod::SERVER_STREAMING);
-  const std::unique_ptr<grpc::ClientReader<Message>> reader(
-      grpc::internal::ClientReaderFactory<Message>::Create(channel.get(), method, &context,
-                                                           **request));
   const std::unique_ptr<Message> answer = New(call.method->output_type());
-  bool is_wanted = true;
-  while (is_wanted && reader->Read(answer.get())) is_wanted = receive(Json(*answer));
-  if (!is_wanted) context.TryCancel();
-  const absl::Status end = FromGrpc(reader->Finish());
-  return is_wanted ? end : absl::OkStatus();
+  const auto on_answer = [&] { return receive(Json(*answer)); };
+  return client.Call(**request, *answer, on_answer, call.timeout);
 }
 
 }  // namespace ballpiston::client
