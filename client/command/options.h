@@ -31,7 +31,7 @@ struct Options {
   v1::EvaluatePairsRequest closed_forms;
   v1::TraceOrbitRequest trace;
 
-  CreateOptions create;
+  v1::CreateEnsembleJobRequest create;  // without the specification and the labels
   bool resume = false;
   std::vector<std::string> jobs;  // names, ensembleJobs/ID
   // Of a new job; else those that select jobs, or the changes of a job's labels.

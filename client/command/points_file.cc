@@ -14,6 +14,7 @@
 #include "client/command/number_list.h"
 #include "client/command/suggestion.h"
 #include "client/library/quoted.h"
+#include "client/output/field_text.h"
 #include "client/output/number_text.h"
 
 namespace ballpiston::client {
@@ -61,10 +62,7 @@ class PointsReader {
 
   // The lists of a grid, except the names of the table's columns.
   static std::vector<std::string> Parameters() {
-    std::vector<std::string> names;
-    for (int i = 0; i < v1::Grid::descriptor()->field_count(); ++i) {
-      names.push_back(v1::Grid::descriptor()->field(i)->name());
-    }
+    std::vector<std::string> names = FieldNames(*v1::Grid::descriptor());
     std::erase(names, "table");
     return names;
   }

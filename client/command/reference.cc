@@ -1,10 +1,7 @@
 // ballpiston help: prints the pages of verbs, or writes them to files.
 #include "client/command/reference.h"
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <vector>
 
@@ -15,6 +12,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "client/command/suggestion.h"
+#include "client/output/new_file.h"
 
 namespace ballpiston::client {
 namespace {
@@ -285,12 +283,9 @@ absl::StatusOr<const Verb*> VerbNamed(const std::vector<std::string>& words) {
 
 absl::Status WriteManPage(const std::string& folder, const Verb* verb) {
   const fs::path path = fs::path(folder) / (PageName(verb) + ".1");
-  std::ofstream file(path);
-  file << ManPage(verb);
-  file.close();
-  if (file) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrCat("--out: cannot write ", path.string(), ": ", std::strerror(errno)));
+  NewFile file("--out", path);
+  file.out() << ManPage(verb);
+  return file.Keep();
 }
 
 absl::Status WriteManPages(const std::string& folder) {

@@ -1,5 +1,6 @@
 // ballpiston submit, run and result: submit a job; run also watches it and prints its result.
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -29,14 +30,14 @@ namespace {
 
 // If the user interrupts the call, a message shows the request id.
 absl::StatusOr<v1::EnsembleJob> CreateOnce(const Connection& connection,
-                                           const v1::EnsembleSpec& spec,
-                                           const CreateOptions& options, const Terminal& terminal) {
+                                           const v1::CreateEnsembleJobRequest& request,
+                                           const Terminal& terminal) {
   const Interrupts::Scope scope(terminal.interrupts, [&] {
-    terminal.err << "The server may have accepted the job. With --request-id " << options.request_id
-                 << " the same command returns this job.\n";
+    terminal.err << "The server may have accepted the job. With --request-id "
+                 << request.request_id() << " the same command returns this job.\n";
   });
-  terminal.Detail(absl::StrCat("request id ", options.request_id));
-  auto job = connection.client.Create(spec, options);
+  terminal.Detail(absl::StrCat("request id ", request.request_id()));
+  auto job = connection.client.Create(request);
   if (!job.ok()) return job;
   terminal.Detail(absl::StrCat("job ", job->name()));
   return job;
@@ -44,16 +45,19 @@ absl::StatusOr<v1::EnsembleJob> CreateOnce(const Connection& connection,
 
 // Tries ids in order. If the job of an id failed or was cancelled, or its results have expired, the
 // next id creates a new job.
-absl::StatusOr<v1::EnsembleJob> Resume(const Connection& connection, const v1::EnsembleSpec& spec,
-                                       CreateOptions options, const Terminal& terminal) {
+absl::StatusOr<v1::EnsembleJob> Resume(const Connection& connection,
+                                       v1::CreateEnsembleJobRequest request,
+                                       const std::map<std::string, std::string>& labels,
+                                       const Terminal& terminal) {
   const auto status = connection.client.Status();
   if (!status.ok()) return status.status();
-  std::string question = absl::StrCat(status->engine_version(), " ", options.fresh, " ",
-                                      options.priority, " ", spec.SerializeAsString(), " ");
-  for (const auto& [key, value] : options.labels) absl::StrAppend(&question, key, "=", value, " ");
+  std::string question =
+      absl::StrCat(status->engine_version(), " ", request.fresh(), " ", request.priority(), " ",
+                   request.spec().SerializeAsString(), " ");
+  for (const auto& [key, value] : labels) absl::StrAppend(&question, key, "=", value, " ");
   for (int attempt = 0;; ++attempt) {
-    options.request_id = RequestIdFor(absl::StrCat(question, attempt));
-    auto job = CreateOnce(connection, spec, options, terminal);
+    request.set_request_id(RequestIdFor(absl::StrCat(question, attempt)));
+    auto job = CreateOnce(connection, request, terminal);
     const bool is_lost =
         job.ok() &&
         (job->state() == v1::EnsembleJob::FAILED || job->state() == v1::EnsembleJob::CANCELLED ||
@@ -68,13 +72,13 @@ absl::StatusOr<v1::EnsembleJob> Resume(const Connection& connection, const v1::E
 absl::StatusOr<v1::EnsembleJob> CreateJob(const Connection& connection,
                                           const v1::EnsembleSpec& spec, const Options& options,
                                           const Terminal& terminal) {
-  CreateOptions create = options.create;
-  create.labels = options.labels;
-  if (options.resume && create.request_id.empty()) {
-    return Resume(connection, spec, create, terminal);
-  }
-  if (create.request_id.empty()) create.request_id = NewRequestId();
-  return CreateOnce(connection, spec, create, terminal);
+  v1::CreateEnsembleJobRequest request = options.create;
+  *request.mutable_spec() = spec;
+  request.mutable_labels()->insert(options.labels.begin(), options.labels.end());
+  if (!request.request_id().empty()) return CreateOnce(connection, request, terminal);
+  if (options.resume) return Resume(connection, request, options.labels, terminal);
+  request.set_request_id(NewRequestId());
+  return CreateOnce(connection, request, terminal);
 }
 
 // The note for a job that uses what is stored, else empty.

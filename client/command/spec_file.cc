@@ -1,20 +1,12 @@
 #include "client/command/spec_file.h"
 
-#include <google/protobuf/util/json_util.h>
-
 #include "absl/status/status.h"
-#include "absl/strings/ascii.h"
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
-#include "client/library/quoted.h"
+#include "client/output/json.h"
 
 namespace ballpiston::client {
 namespace {
-
-absl::Status BadFile(absl::string_view name, absl::string_view reason) {
-  return absl::InvalidArgumentError(absl::StrCat("--spec ", name, ": ", reason));
-}
 
 // The parser reads -0 as the integer 0, without a sign, but keeps the sign of -0.0. Without the
 // sign a specification stays the same when it is printed and read again.
@@ -34,18 +26,12 @@ void DropSignsOfZeros(v1::EnsembleSpec& spec) {
 }  // namespace
 
 absl::StatusOr<v1::EnsembleSpec> ParseSpec(absl::string_view name, const std::string& json) {
-  // The parser would accept `null` or a bare string as an empty message.
-  if (!absl::StartsWith(absl::StripLeadingAsciiWhitespace(json), "{")) {
-    return BadFile(name, "not a JSON object");
-  }
   v1::EnsembleSpec spec;
-  const auto status = google::protobuf::util::JsonStringToMessage(json, &spec);
-  if (status.ok()) {
-    DropSignsOfZeros(spec);
-    return spec;
+  if (absl::Status bad = ReadJson(json, spec); !bad.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat("--spec ", name, ": ", bad.message()));
   }
-  // The parser's message contains the whole wrong value, which may be long.
-  return BadFile(name, Shortened(std::string(status.message()), kLongestMessage));
+  DropSignsOfZeros(spec);
+  return spec;
 }
 
 }  // namespace ballpiston::client

@@ -121,7 +121,7 @@ Value Job(Store<std::string> store) {
 
 Value RequestId() {
   const Store<std::string> store = [](Options& options, std::string id) {
-    options.create.request_id = std::move(id);
+    options.create.set_request_id(std::move(id));
   };
   return Parsed("UUID", ParseRequestId, store);
 }

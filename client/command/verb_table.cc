@@ -199,7 +199,7 @@ const FlagGroup kMethod = {
 
 const FlagGroup kJob = {
     "Job",
-    {{"--fresh", Switch([](Options& o, bool fresh) { o.create.fresh = fresh; }),
+    {{"--fresh", Switch([](Options& o, bool fresh) { o.create.set_fresh(fresh); }),
       "compute the results even if the server has stored results for the same specification"},
      {"--resume", Switch(To(&Options::resume)),
       "derive the request id from the specification: after an interruption, the same command "
@@ -207,7 +207,7 @@ const FlagGroup kJob = {
       "expired"},
      {"--request-id", RequestId(),
       "idempotency key: a retry with the same UUID returns the original job"},
-     {"--priority", Count([](Options& o, int64_t n) { o.create.priority = Clamped(n); }),
+     {"--priority", Count([](Options& o, int64_t n) { o.create.set_priority(Clamped(n)); }),
       "-100 to 100, by default 0; the server runs your jobs with a higher priority first"},
      {"--label", Labels("KEY=VALUE"),
       "a label of the job, by which it can be found again; may be repeated"}},

@@ -8,25 +8,6 @@ namespace {
 
 constexpr int64_t kMostPort = 65535;
 
-// A private server stops when it is idle. Then restarts the server and retries the call, unless a
-// part of the answer has already arrived. Client::Delete says why a deletion is not retried.
-absl::Status CallThrough(const Connection& connection, const JsonCall& once,
-                         const JsonReceiver& receive) {
-  const JsonCall call = WithRequestId(once);
-  bool has_begun = false;
-  const auto attempt = [&] {
-    return CallWithJson(connection.channel, call, [&](const std::string& answer) {
-      has_begun = true;
-      return receive(answer);
-    });
-  };
-  absl::Status status = attempt();
-  const bool may_repeat =
-      !has_begun && call.method->input_type() != v1::DeleteEnsembleJobRequest::descriptor();
-  if (may_repeat && connection.client.IsBack(status)) status = attempt();
-  return NameServer(status, connection);
-}
-
 }  // namespace
 
 VerbResult Web(const Options& options, Terminal& terminal) {
@@ -38,7 +19,7 @@ VerbResult Web(const Options& options, Terminal& terminal) {
   if (!files.ok()) return files.status();
   return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
     const auto call = [&](const JsonCall& once, const JsonReceiver& receive) {
-      return CallThrough(connection, once, receive);
+      return NameServer(CallWithJson(connection.client, once, receive), connection);
     };
     const auto announce = [&](const std::string& url) {
       terminal.out << url << std::endl;

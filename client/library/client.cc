@@ -1,5 +1,10 @@
 #include "client/library/client.h"
 
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
+#include <grpcpp/impl/codegen/proto_utils.h>
+#include <grpcpp/support/sync_stream.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -11,108 +16,104 @@
 namespace ballpiston::client {
 namespace {
 
-using Stub = v1::EnsembleService::StubInterface;
+using google::protobuf::Message;
 
 constexpr int kPageSize = 1000;
 
-// One call with one answer and a deadline. `method` is one of the stub's.
-template <typename Stub, typename Request, typename Response>
-absl::Status CallOnce(Stub& stub,
-                      grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
-                      const Request& request, absl::Duration timeout, Response& response) {
-  grpc::ClientContext context;
-  context.set_deadline(absl::ToChronoTime(absl::Now() + timeout));
-  return FromGrpc((stub.*method)(&context, request, &response));
+// The only method that takes this message. Each .proto file has one service.
+const google::protobuf::MethodDescriptor& MethodOf(const Message& request) {
+  const google::protobuf::ServiceDescriptor& service = *request.GetDescriptor()->file()->service(0);
+  int i = 0;
+  while (service.method(i)->input_type() != request.GetDescriptor()) ++i;
+  return *service.method(i);
 }
 
-// gRPC checks only every 5 s whether a channel has reconnected, unless a caller waits for it.
-constexpr absl::Duration kLongestConnecting = absl::Seconds(1);
-constexpr absl::Duration kLookForStop = absl::Milliseconds(50);
-
-void AwaitConnection(grpc::ChannelInterface& channel, const std::stop_token& stop) {
-  const absl::Time limit = absl::Now() + kLongestConnecting;
-  while (!stop.stop_requested() && absl::Now() < limit) {
-    if (channel.WaitForConnected(absl::ToChronoTime(absl::Now() + kLookForStop))) return;
+// A copy, with an id if it has an empty field for it.
+std::unique_ptr<Message> WithRequestId(const Message& request) {
+  std::unique_ptr<Message> copy(request.New());
+  copy->CopyFrom(request);
+  const auto* const field = request.GetDescriptor()->FindFieldByName("request_id");
+  const google::protobuf::Reflection& values = *request.GetReflection();
+  if (field != nullptr && values.GetString(*copy, field).empty()) {
+    values.SetString(copy.get(), field, NewRequestId());
   }
+  return copy;
 }
 
 }  // namespace
 
-bool Client::IsBack(absl::Status& status) const {
-  if (!revival_ || !absl::IsUnavailable(status)) return false;
-  absl::SleepFor(RetryDelay(status));
-  const absl::Status revived = revival_();
-  if (!revived.ok()) status = revived;
-  return revived.ok();
-}
-
-template <typename Stub, typename Request, typename Response>
-absl::StatusOr<Response> Client::Ask(Stub& stub,
-                                     grpc::Status (Stub::*method)(grpc::ClientContext*,
-                                                                  const Request&, Response*),
-                                     const Request& request) const {
-  Response response;
-  absl::Status status = CallOnce(stub, method, request, timeout_, response);
-  if (IsBack(status)) status = CallOnce(stub, method, request, timeout_, response);
-  if (!status.ok()) return status;
-  return response;
-}
-
-// Reads until the stream ends or `on_message` returns false. In the second case the call is
-// cancelled, and the status is OK.
-template <typename Message, typename Open>
-absl::Status Client::Read(const Open& open,
-                          const std::function<bool(const Message&)>& on_message) const {
+absl::Status Client::Call(const Message& request, Message& answer,
+                          const std::function<bool()>& on_answer, absl::Duration timeout,
+                          const std::stop_token& stop) const {
+  const google::protobuf::MethodDescriptor& called = MethodOf(request);
+  const std::string path = absl::StrCat("/", called.service()->full_name(), "/", called.name());
+  // This is how the generated stubs of gRPC call a method. A method with a single answer is called
+  // as a stream of one message.
+  const grpc::internal::RpcMethod method(path.c_str(), grpc::internal::RpcMethod::SERVER_STREAMING);
+  const std::unique_ptr<Message> sent = WithRequestId(request);
   bool has_begun = false;
-  const auto read = [&] {
+  const auto attempt = [&] {
     grpc::ClientContext context;
-    const auto reader = open(&context);
-    Message message;
+    const std::stop_callback cancel(stop, [&context] { context.TryCancel(); });
+    if (timeout < absl::InfiniteDuration()) {
+      context.set_deadline(absl::ToChronoTime(absl::Now() + timeout));
+    }
+    const std::unique_ptr<grpc::ClientReader<Message>> reader(
+        grpc::internal::ClientReaderFactory<Message>::Create(channel_.get(), method, &context,
+                                                             *sent));
     bool is_wanted = true;
-    while (is_wanted && reader->Read(&message)) {
+    while (is_wanted && reader->Read(&answer)) {
       has_begun = true;
-      is_wanted = on_message(message);
+      is_wanted = on_answer();
     }
     if (!is_wanted) context.TryCancel();
     const absl::Status end = FromGrpc(reader->Finish());
-    return is_wanted ? end : absl::OkStatus();
+    if (!is_wanted) return absl::OkStatus();
+    if (!end.ok() || has_begun || called.server_streaming()) return end;
+    return absl::InternalError("the server's answer cannot be parsed");
   };
-  absl::Status status = read();
-  if (!has_begun && IsBack(status)) status = read();
-  return status;
+  absl::Status status = attempt();
+  const bool may_repeat =
+      !has_begun && request.GetDescriptor() != v1::DeleteEnsembleJobRequest::descriptor();
+  if (!may_repeat || !revival_ || !absl::IsUnavailable(status)) return status;
+  absl::SleepFor(RetryDelay(status));
+  if (absl::Status revived = revival_(); !revived.ok()) return revived;
+  return attempt();
+}
+
+template <typename Answer>
+absl::StatusOr<Answer> Client::Ask(const Message& request) const {
+  Answer answer;
+  const auto on_answer = [] { return true; };
+  const absl::Status status = Call(request, answer, on_answer, timeout_);
+  if (!status.ok()) return status;
+  return answer;
 }
 
 Client::Client(const std::shared_ptr<grpc::ChannelInterface>& channel, absl::Duration timeout,
                Revival revival)
-    : channel_(channel),
-      ensembles_(v1::EnsembleService::NewStub(channel)),
-      analytic_(v1::AnalyticService::NewStub(channel)),
-      trace_(v1::TraceService::NewStub(channel)),
-      server_(v1::ServerService::NewStub(channel)),
-      timeout_(timeout),
-      revival_(std::move(revival)) {}
+    : channel_(channel), timeout_(timeout), revival_(std::move(revival)) {}
 
-absl::StatusOr<v1::EnsembleJob> Client::Create(const v1::EnsembleSpec& spec,
-                                               const CreateOptions& options) const {
+absl::StatusOr<v1::EnsembleJob> Client::Create(const v1::CreateEnsembleJobRequest& request) const {
+  return Ask<v1::EnsembleJob>(request);
+}
+
+absl::StatusOr<v1::EnsembleJob> Client::Create(const v1::EnsembleSpec& spec) const {
   v1::CreateEnsembleJobRequest request;
   *request.mutable_spec() = spec;
-  request.set_request_id(options.request_id.empty() ? NewRequestId() : options.request_id);
-  request.set_fresh(options.fresh);
-  request.set_priority(options.priority);
-  request.mutable_labels()->insert(options.labels.begin(), options.labels.end());
-  return Ask(*ensembles_, &Stub::CreateEnsembleJob, request);
+  return Create(request);
 }
 
 absl::StatusOr<v1::PlanEnsembleJobResponse> Client::Plan(const v1::EnsembleSpec& spec) const {
   v1::PlanEnsembleJobRequest request;
   *request.mutable_spec() = spec;
-  return Ask(*ensembles_, &Stub::PlanEnsembleJob, request);
+  return Ask<v1::PlanEnsembleJobResponse>(request);
 }
 
 absl::StatusOr<v1::EnsembleJob> Client::Get(const std::string& name) const {
   v1::GetEnsembleJobRequest request;
   request.set_name(name);
-  return Ask(*ensembles_, &Stub::GetEnsembleJob, request);
+  return Ask<v1::EnsembleJob>(request);
 }
 
 absl::StatusOr<std::vector<v1::EnsembleJob>> Client::List(v1::ListEnsembleJobsRequest request,
@@ -122,7 +123,7 @@ absl::StatusOr<std::vector<v1::EnsembleJob>> Client::List(v1::ListEnsembleJobsRe
   do {
     const int64_t missing = most - std::ssize(jobs);
     request.set_page_size(static_cast<int32_t>(std::min<int64_t>(kPageSize, missing)));
-    auto page = Ask(*ensembles_, &Stub::ListEnsembleJobs, request);
+    auto page = Ask<v1::ListEnsembleJobsResponse>(request);
     if (!page.ok()) return page.status();
     for (v1::EnsembleJob& job : *page->mutable_jobs()) jobs.push_back(std::move(job));
     request.set_page_token(page->next_page_token());
@@ -133,8 +134,7 @@ absl::StatusOr<std::vector<v1::EnsembleJob>> Client::List(v1::ListEnsembleJobsRe
 absl::StatusOr<v1::EnsembleJob> Client::Cancel(const std::string& name) const {
   v1::CancelEnsembleJobRequest request;
   request.set_name(name);
-  request.set_request_id(NewRequestId());
-  return Ask(*ensembles_, &Stub::CancelEnsembleJob, request);
+  return Ask<v1::EnsembleJob>(request);
 }
 
 absl::StatusOr<v1::EnsembleJob> Client::Pin(const std::string& name, bool pinned) const {
@@ -142,7 +142,7 @@ absl::StatusOr<v1::EnsembleJob> Client::Pin(const std::string& name, bool pinned
   request.mutable_job()->set_name(name);
   request.mutable_job()->set_pinned(pinned);
   request.mutable_update_mask()->add_paths("pinned");
-  return Ask(*ensembles_, &Stub::UpdateEnsembleJob, request);
+  return Ask<v1::EnsembleJob>(request);
 }
 
 absl::StatusOr<v1::EnsembleJob> Client::SetLabels(
@@ -151,14 +151,13 @@ absl::StatusOr<v1::EnsembleJob> Client::SetLabels(
   request.mutable_job()->set_name(name);
   request.mutable_job()->mutable_labels()->insert(labels.begin(), labels.end());
   request.mutable_update_mask()->add_paths("labels");
-  return Ask(*ensembles_, &Stub::UpdateEnsembleJob, request);
+  return Ask<v1::EnsembleJob>(request);
 }
 
 absl::Status Client::Delete(const std::string& name) const {
   v1::DeleteEnsembleJobRequest request;
   request.set_name(name);
-  google::protobuf::Empty nothing;
-  return CallOnce(*ensembles_, &Stub::DeleteEnsembleJob, request, timeout_, nothing);
+  return Ask<google::protobuf::Empty>(request).status();
 }
 
 absl::StatusOr<v1::ListResultsResponse> Client::ResultsPage(const std::string& name,
@@ -169,7 +168,7 @@ absl::StatusOr<v1::ListResultsResponse> Client::ResultsPage(const std::string& n
   request.set_page_size(kPageSize);
   request.set_page_token(page_token);
   request.set_view(view);
-  return Ask(*ensembles_, &Stub::ListResults, request);
+  return Ask<v1::ListResultsResponse>(request);
 }
 
 absl::StatusOr<std::vector<v1::PointResult>> Client::Results(
@@ -188,43 +187,32 @@ absl::StatusOr<std::vector<v1::PointResult>> Client::Results(
 absl::StatusOr<v1::PointResult> Client::Point(const std::string& name, int64_t index) const {
   v1::GetResultRequest request;
   request.set_name(absl::StrCat(name, "/results/", index));
-  return Ask(*ensembles_, &Stub::GetResult, request);
+  return Ask<v1::PointResult>(request);
 }
 
 absl::StatusOr<v1::EvaluatePairsResponse> Client::EvaluatePairs(
     const v1::EvaluatePairsRequest& request) const {
-  return Ask(*analytic_, &v1::AnalyticService::StubInterface::EvaluatePairs, request);
+  return Ask<v1::EvaluatePairsResponse>(request);
 }
 
 absl::Status Client::Trace(const v1::TraceOrbitRequest& request,
                            const TraceCallback& on_message) const {
-  return Read<v1::TraceOrbitResponse>(
-      [&](grpc::ClientContext* context) { return trace_->TraceOrbit(context, request); },
-      on_message);
+  v1::TraceOrbitResponse message;
+  const auto receive = [&] { return on_message(message); };
+  return Call(request, message, receive, absl::InfiniteDuration());
 }
 
 absl::Status Client::Sample(const v1::EnsembleSpec& spec,
                             const CollisionsCallback& on_message) const {
   v1::SampleCollisionsRequest request;
   *request.mutable_spec() = spec;
-  return Read<v1::SampleCollisionsResponse>(
-      [&](grpc::ClientContext* context) { return trace_->SampleCollisions(context, request); },
-      on_message);
+  v1::SampleCollisionsResponse message;
+  const auto receive = [&] { return on_message(message); };
+  return Call(request, message, receive, absl::InfiniteDuration());
 }
 
 absl::StatusOr<v1::ServerStatus> Client::Status() const {
-  return Ask(*server_, &v1::ServerService::StubInterface::GetServerStatus,
-             v1::GetServerStatusRequest());
-}
-
-absl::StatusOr<v1::EnsembleJob> Client::Watch(const std::string& name,
-                                              const WatchCallbacks& callbacks,
-                                              const WatchOptions& options,
-                                              std::stop_token stop) const {
-  return WatchJob(*ensembles_, name, callbacks, options, stop, [&] {
-    if (revival_) revival_().IgnoreError();  // the next attempt reports that there is no server
-    AwaitConnection(*channel_, stop);
-  });
+  return Ask<v1::ServerStatus>(v1::GetServerStatusRequest());
 }
 
 }  // namespace ballpiston::client

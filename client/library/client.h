@@ -25,24 +25,13 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
-#include "ballpiston/v1/analytic.grpc.pb.h"
-#include "ballpiston/v1/ensemble.grpc.pb.h"
-#include "ballpiston/v1/server.grpc.pb.h"
-#include "ballpiston/v1/trace.grpc.pb.h"
+#include "ballpiston/v1/analytic.pb.h"
+#include "ballpiston/v1/ensemble.pb.h"
+#include "ballpiston/v1/server.pb.h"
+#include "ballpiston/v1/trace.pb.h"
 #include "client/library/job_watch.h"
 
 namespace ballpiston::client {
-
-// Options of Create besides the specification.
-struct CreateOptions {
-  // Idempotency key, a UUID (request_id.h): a retry with the same key returns the original job.
-  // Empty: each call of Create makes its own key. The channel's retries of that call carry the key,
-  // so that they never create a second job.
-  std::string request_id = {};
-  bool fresh = false;    // computes the job even if the server has the answer in its store
-  int32_t priority = 0;  // -100 to 100; of one user's jobs the job with the highest runs first
-  std::map<std::string, std::string> labels = {};  // added to those of the job
-};
 
 inline constexpr absl::Duration kCallTimeout = absl::Seconds(60);
 
@@ -60,8 +49,8 @@ class Client {
 
   // Returns the new job, or an earlier job with the same specification. In the second case
   // answered_from_store is set; no other call sets it.
-  absl::StatusOr<v1::EnsembleJob> Create(const v1::EnsembleSpec& spec,
-                                         const CreateOptions& options = {}) const;
+  absl::StatusOr<v1::EnsembleJob> Create(const v1::CreateEnsembleJobRequest& request) const;
+  absl::StatusOr<v1::EnsembleJob> Create(const v1::EnsembleSpec& spec) const;
 
   // The cost and the accuracy of each model. Runs nothing.
   absl::StatusOr<v1::PlanEnsembleJobResponse> Plan(const v1::EnsembleSpec& spec) const;
@@ -71,7 +60,6 @@ class Client {
   static constexpr int64_t kAllJobs = std::numeric_limits<int64_t>::max();
   absl::StatusOr<std::vector<v1::EnsembleJob>> List(v1::ListEnsembleJobsRequest request = {},
                                                     int64_t most = kAllJobs) const;
-  // Sends an idempotency key, so that a retry of the channel succeeds even if the job has ended.
   absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& name) const;
   // The results of a pinned job do not expire. With `pinned` false they may expire again.
   //   FAILED_PRECONDITION  RESULTS_EXPIRED
@@ -113,30 +101,27 @@ class Client {
   // The first call takes nearly a second, because the server measures its speed.
   absl::StatusOr<v1::ServerStatus> Status() const;
 
-  // See job_watch.h.
+  // Follows the job to its end (job_watch.h), and returns the ended job, without its grid.
+  // CANCELLED if `stop` was requested (the job continues), UNAVAILABLE if the watch gave up, else
+  // the server's error.
   absl::StatusOr<v1::EnsembleJob> Watch(const std::string& name, const WatchCallbacks& callbacks,
                                         const WatchOptions& options = {},
                                         std::stop_token stop = {}) const;
 
-  // For calls that this class does not make: starts an unavailable server again. True if the call
-  // that ended with `status` should be repeated. `status` becomes the error of a failed start.
-  bool IsBack(absl::Status& status) const;
+  // Any call of the API; the type of `request`, a request message, decides its method. Every call
+  // of this class uses it. If the request has an empty field for an idempotency key, adds one, so
+  // that a retry returns the original job. Reads each answer into `answer` and calls `on_answer`;
+  // if it returns false, the call ends with the status OK. CANCELLED if `stop` was requested.
+  absl::Status Call(const google::protobuf::Message& request, google::protobuf::Message& answer,
+                    const std::function<bool()>& on_answer, absl::Duration timeout,
+                    const std::stop_token& stop = {}) const;
 
  private:
-  template <typename Stub, typename Request, typename Response>
-  absl::StatusOr<Response> Ask(Stub& stub,
-                               grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&,
-                                                            Response*),
-                               const Request& request) const;
-  // `open` starts the stream with the context that it gets.
-  template <typename Message, typename Open>
-  absl::Status Read(const Open& open, const std::function<bool(const Message&)>& on_message) const;
+  // A call with one answer.
+  template <typename Answer>
+  absl::StatusOr<Answer> Ask(const google::protobuf::Message& request) const;
 
   std::shared_ptr<grpc::ChannelInterface> channel_;
-  std::shared_ptr<v1::EnsembleService::StubInterface> ensembles_;
-  std::shared_ptr<v1::AnalyticService::StubInterface> analytic_;
-  std::shared_ptr<v1::TraceService::StubInterface> trace_;
-  std::shared_ptr<v1::ServerService::StubInterface> server_;
   absl::Duration timeout_;
   Revival revival_;
 };

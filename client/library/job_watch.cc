@@ -9,6 +9,7 @@
 
 #include "absl/random/random.h"
 #include "absl/strings/str_cat.h"
+#include "client/library/client.h"
 #include "client/library/error_text.h"
 
 namespace ballpiston::client {
@@ -61,16 +62,27 @@ class ReattachPace {
   absl::InsecureBitGen random_;
 };
 
-class Watch {
+// gRPC checks only every 5 s whether a channel has reconnected, unless a caller waits for it.
+constexpr absl::Duration kLongestConnecting = absl::Seconds(1);
+constexpr absl::Duration kLookForStop = absl::Milliseconds(50);
+
+void AwaitConnection(grpc::ChannelInterface& channel, const std::stop_token& stop) {
+  const absl::Time limit = absl::Now() + kLongestConnecting;
+  while (!stop.stop_requested() && absl::Now() < limit) {
+    if (channel.WaitForConnected(absl::ToChronoTime(absl::Now() + kLookForStop))) return;
+  }
+}
+
+// Its client starts no server: the watch itself retries.
+class JobWatch {
  public:
-  Watch(v1::EnsembleService::StubInterface& stub, const WatchCallbacks& callbacks,
-        const WatchOptions& options, std::stop_token stop,
-        const std::function<void()>& before_reattach)
-      : stub_(stub),
+  JobWatch(const Client& client, const WatchCallbacks& callbacks, const WatchOptions& options,
+           std::stop_token stop, const std::function<void()>& reconnect)
+      : client_(client),
         callbacks_(callbacks),
         options_(options),
         stop_(std::move(stop)),
-        before_reattach_(before_reattach) {}
+        reconnect_(reconnect) {}
 
   absl::StatusOr<v1::EnsembleJob> Follow(const std::string& name) {
     request_.set_name(name);
@@ -87,12 +99,13 @@ class Watch {
   static absl::Status Stopped() { return absl::CancelledError("the watch was stopped"); }
 
   absl::Status ReadStream() {
-    grpc::ClientContext context;
-    std::stop_callback cancel(stop_, [&context] { context.TryCancel(); });
-    auto reader = stub_.WatchEnsembleJob(&context, request_);
     v1::WatchEnsembleJobResponse message;
-    while (reader->Read(&message)) Handle(message);
-    const absl::Status status = FromGrpc(reader->Finish());
+    const auto on_message = [&] {
+      Handle(message);
+      return true;
+    };
+    const absl::Status status =
+        client_.Call(request_, message, on_message, absl::InfiniteDuration(), stop_);
     if (!status.ok()) return status;
     return absl::UnavailableError("the server ended the watch before the job's end");
   }
@@ -120,15 +133,15 @@ class Watch {
     }
     if (callbacks_.on_disconnect) callbacks_.on_disconnect(why, *pause);
     if (!Pause(*pause, stop_)) return Stopped();
-    before_reattach_();
+    reconnect_();
     return absl::OkStatus();
   }
 
-  v1::EnsembleService::StubInterface& stub_;
+  const Client client_;
   const WatchCallbacks& callbacks_;
   const WatchOptions& options_;
   const std::stop_token stop_;
-  const std::function<void()>& before_reattach_;
+  const std::function<void()>& reconnect_;
   v1::WatchEnsembleJobRequest request_;
   std::optional<v1::EnsembleJob> ended_;
   ReattachPace pace_{options_};
@@ -141,11 +154,15 @@ bool HasEnded(v1::EnsembleJob::State state) {
          state == v1::EnsembleJob::CANCELLED;
 }
 
-absl::StatusOr<v1::EnsembleJob> WatchJob(v1::EnsembleService::StubInterface& stub,
-                                         const std::string& name, const WatchCallbacks& callbacks,
-                                         const WatchOptions& options, std::stop_token stop,
-                                         const std::function<void()>& before_reattach) {
-  return Watch(stub, callbacks, options, std::move(stop), before_reattach).Follow(name);
+absl::StatusOr<v1::EnsembleJob> Client::Watch(const std::string& name,
+                                              const WatchCallbacks& callbacks,
+                                              const WatchOptions& options,
+                                              std::stop_token stop) const {
+  const auto reconnect = [&] {
+    if (revival_) revival_().IgnoreError();  // the next attempt reports that there is no server
+    AwaitConnection(*channel_, stop);
+  };
+  return JobWatch(Client(channel_), callbacks, options, stop, reconnect).Follow(name);
 }
 
 }  // namespace ballpiston::client

@@ -1,4 +1,4 @@
-// Follows a job to its end, even if the server restarts or the connection breaks.
+// Client::Watch follows a job to its end, even if the server restarts or the connection breaks.
 //
 // A stream is broken if it ends with UNAVAILABLE, with CANCELLED and no reason (a server that stops
 // does this), or without a terminal state. The watch then pauses and reconnects with the last
@@ -12,13 +12,10 @@
 #pragma once
 
 #include <functional>
-#include <stop_token>
-#include <string>
 
 #include "absl/status/status.h"
-#include "absl/status/statusor.h"
 #include "absl/time/time.h"
-#include "ballpiston/v1/ensemble.grpc.pb.h"
+#include "ballpiston/v1/ensemble.pb.h"
 
 namespace ballpiston::client {
 
@@ -39,13 +36,5 @@ struct WatchOptions {
 
 // SUCCEEDED, FAILED or CANCELLED.
 bool HasEnded(v1::EnsembleJob::State state);
-
-// Blocks until the job has ended, and returns the ended job, without its grid. CANCELLED if `stop`
-// was requested (the job continues), UNAVAILABLE if the watch gave up, else the server's error.
-// Calls `before_reattach` after each pause.
-absl::StatusOr<v1::EnsembleJob> WatchJob(
-    v1::EnsembleService::StubInterface& stub, const std::string& name,
-    const WatchCallbacks& callbacks, const WatchOptions& options, std::stop_token stop = {},
-    const std::function<void()>& before_reattach = [] {});
 
 }  // namespace ballpiston::client

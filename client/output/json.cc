@@ -2,6 +2,10 @@
 
 #include <google/protobuf/util/json_util.h>
 
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
+#include "client/library/quoted.h"
+
 namespace ballpiston::client {
 
 std::string Json(const google::protobuf::Message& message) {
@@ -11,6 +15,17 @@ std::string Json(const google::protobuf::Message& message) {
   std::string text;
   const auto status = google::protobuf::util::MessageToJsonString(message, &text, options);
   return status.ok() ? text : "null";
+}
+
+absl::Status ReadJson(const std::string& json, google::protobuf::Message& message) {
+  // The parser accepts `null` and a bare string as an empty message.
+  if (!absl::StartsWith(absl::StripLeadingAsciiWhitespace(json), "{")) {
+    return absl::InvalidArgumentError("not a JSON object");
+  }
+  const auto status = google::protobuf::util::JsonStringToMessage(json, &message);
+  if (status.ok()) return absl::OkStatus();
+  // The parser's message contains the wrong value in full, even if it is very long.
+  return absl::InvalidArgumentError(Shortened(std::string(status.message()), kLongestMessage));
 }
 
 }  // namespace ballpiston::client

@@ -2,6 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/output/field_text.h"
+#include "client/output/number_text.h"
 #include "client/output/spelling.h"
 
 namespace ballpiston::client {
@@ -9,7 +10,7 @@ namespace {
 
 std::string AndMore(int others) {
   if (others == 0) return "";
-  return absl::StrCat(" and ", others, others == 1 ? " more point" : " more points");
+  return absl::StrCat(" and ", Counted(others, "more point"));
 }
 
 }  // namespace

@@ -43,8 +43,6 @@ void PrintCsv(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& p
   }
 }
 
-std::string Points(int count) { return absl::StrCat(count, count == 1 ? " point" : " points"); }
-
 std::string BudgetText(const google::protobuf::Duration& budget) {
   const double seconds = static_cast<double>(budget.seconds()) + 1e-9 * budget.nanos();
   return absl::StrFormat("budget %.6g s", seconds);
@@ -67,7 +65,7 @@ std::string TargetText(const v1::Target& target) {
 
 std::string Heading(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& plan) {
   Cells texts = {Spelling(spec.experiment()), TargetText(spec.target()),
-                 Points(plan.point_count())};
+                 Counted(plan.point_count(), "point")};
   if (texts[1].empty()) texts.erase(texts.begin() + 1);
   return absl::StrCat(absl::StrJoin(texts, ", "), "  (work of one core, relative errors)");
 }
@@ -131,9 +129,9 @@ void PrintTotal(const v1::PlanEnsembleJobResponse& plan, std::ostream& out) {
   const bool all = plan.points_size() == plan.point_count();
   out << '\n';
   if (!all) out << "Shown: " << plan.points_size() << " points, evenly spread over the grid.\n";
-  out << Points(plan.point_count()) << ": " << DurationText(plan.work()) << " of one core, "
-      << DurationText(plan.time()) << " with this server's " << plan.workers()
-      << (plan.workers() == 1 ? " worker" : " workers")
+  out << Counted(plan.point_count(), "point") << ": " << DurationText(plan.work())
+      << " of one core, " << DurationText(plan.time()) << " with this server's "
+      << Counted(plan.workers(), "worker")
       << absl::StrFormat(", up to %.0f MB of memory\n", std::ceil(plan.memory() / 1e6));
 }
 

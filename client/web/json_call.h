@@ -3,15 +3,14 @@
 #pragma once
 
 #include <google/protobuf/descriptor.h>
-#include <grpcpp/grpcpp.h>
 
 #include <functional>
-#include <memory>
 #include <string>
 
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
 #include "absl/time/time.h"
+#include "client/library/client.h"
 
 namespace ballpiston::client {
 
@@ -25,17 +24,12 @@ struct JsonCall {
 // API has no such method, or if its requests are a stream.
 const google::protobuf::MethodDescriptor* FindMethod(absl::string_view path);
 
-// Adds a request id to the call, so that it can be retried, if the request has an empty field for
-// it.
-JsonCall WithRequestId(JsonCall call);
-
 // Receives each answer as JSON, in the form of `--format json`. If it returns false, the call ends
 // with the status OK.
 using JsonReceiver = std::function<bool(const std::string& answer)>;
 
 // Blocks. Returns the server's error with the text of error_text.h; INVALID_ARGUMENT if the request
 // is not JSON of the method's request message. Thread-safe.
-absl::Status CallWithJson(const std::shared_ptr<grpc::Channel>& channel, const JsonCall& call,
-                          const JsonReceiver& receive);
+absl::Status CallWithJson(const Client& client, const JsonCall& call, const JsonReceiver& receive);
 
 }  // namespace ballpiston::client

@@ -24,7 +24,6 @@ constexpr char kLoopback[] = "127.0.0.1";
 constexpr size_t kMostCallsPerConnection = 1000;
 // The longest time that a reader of a stream may pause.
 constexpr std::chrono::hours kPatience{1};
-constexpr absl::Duration kUnaryTimeout = absl::Seconds(60);
 
 using httplib::Request;
 using httplib::Response;
@@ -149,7 +148,7 @@ class WebServer {
     if (method->server_streaming()) {
       PassOnStream({method, request.body, timeout->value_or(absl::InfiniteDuration())}, response);
     } else {
-      PassOnUnary({method, request.body, timeout->value_or(kUnaryTimeout)}, response);
+      PassOnUnary({method, request.body, timeout->value_or(kCallTimeout)}, response);
     }
   }
 

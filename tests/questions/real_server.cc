@@ -26,7 +26,10 @@ class Conversation {
       report_.outcome = "bad plan";
       return std::move(report_);
     }
-    const auto job = client_.Create(question_.spec, {.fresh = true});
+    v1::CreateEnsembleJobRequest request;
+    *request.mutable_spec() = question_.spec;
+    request.set_fresh(true);
+    const auto job = client_.Create(request);
     if (!job.ok()) return Failed(job.status());
     // A pilot takes seconds, and a plan knows it.
     const bool is_long = !(plan->work() <= most_seconds);

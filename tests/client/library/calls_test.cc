@@ -88,6 +88,22 @@ TEST_F(ClientTest, ACallbackEndsATrace) {
   EXPECT_EQ(messages, 3);
 }
 
+// The messages that it has read would come twice.
+TEST_F(ClientTest, AStreamIsNotRepeatedAfterItsFirstMessage) {
+  server_.trace.messages.resize(1);
+  server_.trace.end = grpc::Status(grpc::StatusCode::UNAVAILABLE, "stops");
+  server_.Start();
+  int revivals = 0, messages = 0;
+  const Client client(server_.Channel(), absl::FromChrono(kPatience), [&revivals] {
+    ++revivals;
+    return absl::OkStatus();
+  });
+  const auto read = [&messages](const v1::TraceOrbitResponse&) { return ++messages > 0; };
+  EXPECT_THAT(client.Trace({}, read), StatusIs(absl::StatusCode::kUnavailable));
+  EXPECT_EQ(messages, 1);
+  EXPECT_EQ(revivals, 0);
+}
+
 // ---- request_id.h ----
 
 auto IsUuid(int version) {

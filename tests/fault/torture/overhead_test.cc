@@ -34,14 +34,16 @@ class OnFirstCores {
 
 void Measure(int workers, const std::string& name, Findings& findings) {
   const OnFirstCores pinned(workers);
-  const v1::EnsembleSpec question = ManyPoints(1, Size(300'000, 10'000'000));
+  v1::CreateEnsembleJobRequest question;
+  *question.mutable_spec() = ManyPoints(1, Size(300'000, 10'000'000));
+  question.set_fresh(true);
   ConnectedServer server({.workers = workers});
   server.Start();
   const client::Client client = server.NewClient();
   PairedRatio processor;  // of all threads, over the workers'
   for (int i = 0; i < Size(2, 30); ++i) {
     const double start = server.ProcessorSeconds();
-    const std::string job = OrThrow(client.Create(question, {.fresh = true})).name();
+    const std::string job = OrThrow(client.Create(question)).name();
     const v1::EnsembleJob end =
         OrThrow(client.Watch(job, {}, {.give_up_after = absl::FromChrono(kPatience)}));
     processor.Add(server.ProcessorSeconds() - start, end.work());

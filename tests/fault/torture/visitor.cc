@@ -52,10 +52,11 @@ void Visitor::DoSomething() {
 
 // `fresh`: not the answer of another client's job.
 absl::StatusOr<v1::EnsembleJob> Visitor::Ask(const OwnJob& job) {
-  return UntilAnswered([&] {
-    return client_.Create(exam_.questions[job.question],
-                          {.request_id = job.request_id, .fresh = true});
-  });
+  v1::CreateEnsembleJobRequest request;
+  *request.mutable_spec() = exam_.questions[job.question];
+  request.set_request_id(job.request_id);
+  request.set_fresh(true);
+  return UntilAnswered([&] { return client_.Create(request); });
 }
 
 void Visitor::Create() {
