@@ -12,7 +12,6 @@
 #include "core/ensemble/block_run.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_fold.h"
-#include "server/processor_time.h"
 #include "server/status/failpoint.h"
 
 namespace ballpiston::server {
@@ -97,7 +96,7 @@ class LeaseWork : private BlockQueue {
     if (report_.chunks.empty()) {
       return touches ? files_.Touch(name_.Taken()) : absl::OkStatus();
     }
-    report_.seconds = ThreadSeconds() - reported_seconds_;
+    report_.seconds = host_.processor_seconds() - reported_seconds_;
     absl::Status left = files_.Append(name_.Taken(), BytesOf(report_));
     if (!left.ok()) return left;
     reported_seconds_ += report_.seconds;
@@ -128,9 +127,10 @@ class LeaseWork : private BlockQueue {
   Clock::time_point last_touch_;
   std::stop_source stop_;
   ChunkFold chunks_;
-  std::optional<PointFold> judge_;             // of a lease that begins with chunk 0
-  LeaseReport report_;                         // not in the file yet
-  double reported_seconds_ = ThreadSeconds();  // the thread's processor time that is in the file
+  std::optional<PointFold> judge_;  // of a lease that begins with chunk 0
+  LeaseReport report_;              // not in the file yet
+  // The thread's processor time that is in the file.
+  double reported_seconds_ = host_.processor_seconds();
   bool is_lost_ = false;
 };
 

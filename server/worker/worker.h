@@ -16,6 +16,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
+#include "server/processor_time.h"
 #include "server/worker/lease_file.h"
 #include "server/worker/shared_files.h"
 
@@ -34,6 +35,7 @@ struct WorkerHost {
   // May return earlier when `end` changes.
   std::function<void(std::chrono::duration<double>)> sleep;
   std::function<uint64_t()> random_bits;
+  std::function<double()> processor_seconds = ThreadSeconds;  // of the calling thread
   std::function<EndOfWork()> end;
   std::function<void(absl::string_view line)> report;  // one line for people, without its end
   // The worker begins to compute a lease: if the engine kills the worker, this file is to be moved.

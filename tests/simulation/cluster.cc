@@ -78,6 +78,7 @@ void SimulatedCluster::WorkOnce() {
             machine_.Sleep(std::chrono::duration_cast<Machine::Clock::duration>(time));
           },
       .random_bits = [this] { return machine_.Bits(); },
+      .processor_seconds = ProcessorSeconds,
       .end = [this] { return EndOfWorker(); },
       .report = [](absl::string_view) {},
       .lease_begins = [](const std::string&, const std::string&) {},
