@@ -44,19 +44,17 @@ JobRecord JobOf(Database& database, const Principal& caller, const std::string& 
 
 namespace {
 
-// Of all points of a target in samples or collisions; else 0.
-double SamplesAskedFor(const EnsembleSpec& spec) {
+// The samples of all points together that the target asks for. Returns 0 if it names no number of
+// samples or collisions, or if the model takes no samples.
+double SamplesOfAllPoints(const EnsembleSpec& spec) {
   const Target& target = spec.target;
   if (target.IsOpenEnded() || NeedsNoSamples(spec)) return 0;
   const size_t points = PointCount(spec);
-  if (!target.collisions) {
-    return static_cast<double>(target.samples.value_or(kDefaultSamples)) *
-           static_cast<double>(points);
-  }
   double samples = 0;
   for (size_t i = 0; i < points; ++i) {
-    const Forecast forecast = ForecastOf(spec, PointAt(spec, i));
-    samples += static_cast<double>(ballpiston::SamplesAskedFor(target, forecast));
+    // Only a number of collisions needs the forecast.
+    const Forecast forecast = target.collisions ? ForecastOf(spec, PointAt(spec, i)) : Forecast();
+    samples += static_cast<double>(SamplesAskedFor(target, forecast));
   }
   return samples;
 }
@@ -84,7 +82,7 @@ Acceptance JobBook::NewAcceptance(const Principal& caller,
   job.mutable_progress()->set_points(static_cast<int32_t>(PointCount(checked.spec)));
   SetNumbers({.bytes = static_cast<int64_t>(job.spec().ByteSizeLong())}, job);
   acceptance.fresh = request.fresh();
-  acceptance.samples = SamplesAskedFor(checked.spec);
+  acceptance.samples = SamplesOfAllPoints(checked.spec);
   return acceptance;
 }
 
