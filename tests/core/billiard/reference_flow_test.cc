@@ -2,7 +2,6 @@
 #include "core/sampling/collision_surface.h"
 #include "core/sampling/invariant_measure.h"
 #include "tests/core/preamble.h"
-#include "tests/oracle/naive_flow.h"
 
 namespace ballpiston {
 namespace {
@@ -77,43 +76,6 @@ TEST(ReferenceFlow, BallsAimedAtTipsStayInTheCell) {
       ASSERT_NE(StepAndExchange(flow).kind, EventKind::kEscape);
       ASSERT_TRUE(InsideCell(geometry, flow.state().position, kSlack));
       ASSERT_LE(flow.state().position.x(), flow.state().piston + 1e-15);
-    }
-  }
-}
-
-// One event at a time, from states along an orbit, so that errors cannot grow. In double a hit time
-// has an error of some ulps of a length 1, divided by the sine of the grazing angle, because
-// rho^2 - c^2 cancels. States within 1e-5 of grazing have the larger bound.
-TEST(ReferenceFlow, OneEventAgreesWithNaiveFlow) {
-  for (const PairGeometry& geometry : GeometriesOfFlows()) {
-    if (geometry.rho() < 0.5001) continue;  // cusps: two discs at one point, the order is arbitrary
-    ReferenceFlow flow(geometry, StartInEquilibrium(geometry, 5));
-    for (int i = 0; i < 20'000; ++i) {
-      const PairState before = flow.state();
-      ReferenceFlow fresh(geometry, before);
-      const Event event = fresh.Step();
-      const oracle::NaiveEvent expected = oracle::NextEvent(geometry, before);
-      const double speed = event.kind == EventKind::kPistonWall ? std::fabs(before.piston_velocity)
-                                                                : before.ball_speed;
-      const double error =
-          std::fabs(static_cast<double>(event.duration - expected.duration)) * speed;
-      if (event.kind == expected.kind) {
-        ASSERT_LE(error, 1e-8) << "event " << i;  // sqrt(1e-16): grazing
-        if (error > 1e-13) {
-          const double turn =
-              1 - static_cast<double>(fresh.state().direction.dot(before.direction));
-          ASSERT_LT(turn, 1e-5) << "an error of " << error << " without grazing, event " << i;
-        }
-        EXPECT_NEAR(fresh.state().position.x(), static_cast<double>(expected.after.x), 1e-8);
-        EXPECT_NEAR(fresh.state().position.y(), static_cast<double>(expected.after.y), 1e-8);
-        EXPECT_NEAR(fresh.state().piston, static_cast<double>(expected.after.z), 1e-8);
-        EXPECT_NEAR(fresh.state().ball_speed * fresh.state().direction.x(),
-                    static_cast<double>(expected.after.v1), 1e-7);
-        EXPECT_NEAR(fresh.state().piston_velocity, static_cast<double>(expected.after.v3), 1e-15);
-      } else {
-        ASSERT_LE(error, 1e-12) << "another event, and not at the same instant, event " << i;
-      }
-      StepAndExchange(flow);
     }
   }
 }
