@@ -21,8 +21,7 @@
 // L u_r of a ball is the sum over its contacts. An exchange changes the terms of two balls and two
 // pistons. A gas of one column has no current.
 //
-// Properties, each with the test that bears its name:
-//   1. CurrentsMatchTheirDefinition.  2. ConductivityOfTheJumpProcessMatchesTheSpectrum.
+// Property, with the test that bears its name: 1. ConductivityOfTheJumpProcessMatchesTheSpectrum.
 #pragma once
 
 #include <array>
@@ -45,10 +44,6 @@ class JumpCurrent : public CurrentMeter {
   void Exchange(const GasExchange& exchange, double carried) override;
   void End(double time) override { AddUntil(time); }
   GreenKubo Result() const override;
-
-  // 2 J and 2 J' at the present energies, in the units of conductivity/contact_currents.h.
-  double current() const { return current_; }
-  double current_left() const { return current_left_; }
 
  private:
   using Values = TestFunction::Values;
@@ -82,6 +77,7 @@ class JumpCurrent : public CurrentMeter {
   std::vector<Contact> contacts_;  // of each ball, in the order of its directions
   // The contacts of each piston: with the ball before it and with the one after it.
   std::vector<std::array<size_t, 2>> sides_;
+  // 2 J and 2 J' at the present energies, in the units of conductivity/contact_currents.h.
   double current_ = 0;
   double current_left_ = 0;
   double since_ = 0;

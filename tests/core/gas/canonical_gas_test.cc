@@ -100,25 +100,6 @@ TEST(CanonicalGas, PositionsMatchPlainRejection) {
   }
 }
 
-TEST(CanonicalGas, EveryBallIsOnItsSideOfThePistons) {
-  for (const double rho : {0.5 + 1e-6, 0.52, 0.6, 0.7}) {
-    for (const char* shape : {"1", "2", "50", "1x1", "1x7", "20x20"}) {
-      for (const GasEnds ends : {GasEnds::kPeriodic, GasEnds::kReservoirs}) {
-        const GasGeometry gas = GasAtShare(rho, 1, shape, ends);
-        for (uint64_t sample = 0; sample < 20; ++sample) {
-          const GasState state = GasInEquilibrium(gas, 1, 65, sample);
-          ASSERT_EQ(state.balls.size(), static_cast<size_t>(gas.balls()));
-          ASSERT_EQ(state.pistons.size(), static_cast<size_t>(gas.pistons()));
-          ASSERT_FALSE(HasBallBeyondPiston(gas, state)) << rho << " " << shape;
-          for (const GasBall& ball : state.balls)
-            ASSERT_TRUE(InsideCell(gas.pair(), ball.position));
-          for (const GasPiston& p : state.pistons) ASSERT_LE(std::fabs(p.offset), gas.reach());
-        }
-      }
-    }
-  }
-}
-
 // Down to the smallest ratio of the permitted temperatures. Long double has 11 bits more.
 TEST(TemperatureProfile, PowerThreeHalvesIsLinearForEveryRatioOfTemperatures) {
   for (const double hot : {1e120, 1.0, 1e-120}) {
