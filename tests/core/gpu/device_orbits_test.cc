@@ -1,26 +1,30 @@
 // The flights of a device, computed by a processor here, give the bits of the lanes, also if the
-// device fails. tests/benchmark/gpu_benchmark.cc compares a GPU.
+// device fails. tests/benchmark/gpu_benchmark.cc compares a GPU, and whole experiments.
 #include "core/gpu/device_orbits.h"
 
-#include "core/ensemble/point_fold.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/billiard/recorded_collisions.h"
 #include "tests/core/gpu/host_flights.h"
-#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {
 
-// ---- orbits ----
-
+// From equilibrium, and with a ball at rest within the piston's reach. By the lanes of the
+// processor if there is no device.
 class OrbitsOf : public RecordedCollisions {
  public:
   OrbitsOf(const PairGeometry& geometry, uint64_t orbits, size_t collisions, OrbitDevice* device)
-      : RecordedCollisions(geometry, orbits, collisions), device_(device) {}
+      : RecordedCollisions(geometry, orbits, collisions), geometry_(geometry), device_(device) {}
+  PairState Start(uint64_t orbit) override {
+    if (orbit % 8 != 0) return RecordedCollisions::Start(orbit);
+    const double x = geometry_.piston_left() + 0.3 * geometry_.delta();
+    return {.position = {x, 0}, .piston = 0.5, .piston_velocity = orbit % 16 == 0 ? 1.0 : -1.0};
+  }
   OrbitDevice* Device() const override { return device_; }
 
  private:
+  const PairGeometry geometry_;
   OrbitDevice* device_;
 };
 
@@ -42,8 +46,8 @@ void ExpectBitsOfTheLanes(const DeviceRun& run) {
   EXPECT_TRUE(RunOrbits(Engine::kLanes, run.geometry, run.orbits, found));
   EXPECT_EQ(failures, run.failures);
   ForEachFusedTarget([&] {
-    const RecordedCollisions lanes =
-        Recorded(Engine::kLanes, run.geometry, run.orbits, kCollisions);
+    OrbitsOf lanes(run.geometry, run.orbits, kCollisions, nullptr);
+    EXPECT_TRUE(RunOrbits(Engine::kLanes, run.geometry, run.orbits, lanes));
     for (uint64_t orbit = 0; orbit < run.orbits; ++orbit) {
       ASSERT_EQ(found.by_orbit()[orbit].size(), lanes.by_orbit()[orbit].size());
       for (size_t i = 0; i < lanes.by_orbit()[orbit].size(); ++i) {
@@ -93,65 +97,6 @@ TEST(OrbitsOnDevice, AllRunsHaveUpToTwiceTheLanesOfTheDevice) {
     OrbitsOnDevice device(std::make_unique<HostDevice>(64), runs, [](const absl::Status&) {});
     EXPECT_EQ(device.orbits(), runs == 1 ? 64u : 128u);
   }
-}
-
-// ---- experiments ----
-
-class OneBlock : public BlockQueue {
- public:
-  OneBlock(const Block& block, OrbitDevice& device) : block_(block), device_(device) {}
-
-  std::optional<Block> Next() override { return std::exchange(block_, std::nullopt); }
-  void Done(const Block&, BlockResult result) override { result_ = std::move(result); }
-  bool Pause() override { return (++looks_ & 1) != 0; }
-  OrbitDevice* device() const override { return &device_; }
-  const BlockResult& result() const { return result_; }
-
- private:
-  std::optional<Block> block_;
-  OrbitDevice& device_;
-  BlockResult result_;
-  int looks_ = 0;
-};
-
-BlockResult BlockOnDevice(const PointExperiment& experiment, const Block& block) {
-  OrbitsOnDevice device(std::make_unique<HostDevice>(64), 1, [](const absl::Status&) {});
-  OneBlock queue(block, device);
-  const std::unique_ptr<EngineRun> run = experiment.StartRun(queue);
-  while (!run->Advance()) continue;
-  return queue.result();
-}
-
-EnsembleSpec QuestionAt(const ExperimentKind* experiment, double delta, double epsilon) {
-  std::optional<double> at_epsilon, exponent;
-  if (experiment == &kConditionalMeanFreeTime || experiment == &kFirstHit) at_epsilon = epsilon;
-  if (experiment == &kFirstHit) exponent = 2;
-  return SpecOf(experiment, PaperPoint(delta, at_epsilon, exponent), {.samples = 1000},
-                Model::kBilliard, 5);
-}
-
-void ExpectSameBlock(const EnsembleSpec& spec, uint64_t samples) {
-  const auto experiment = PointExperiment::Create(spec, 0);
-  const Block block = {.first = 700, .samples = samples};
-  const BlockResult on_device = BlockOnDevice(*experiment, block);
-  EXPECT_GT(on_device.samples, 0u);
-  ForEachFusedTarget([&] { EXPECT_EQ(RunBlock(*experiment, block), on_device); });
-}
-
-TEST(OrbitsOnDevice, GiveTheBlocksOfTheLanes) {
-  for (const double delta : {0.1, 0.2}) {
-    ExpectSameBlock(QuestionAt(&kEquilibrium, delta, 0), 300);
-    for (const double epsilon : {0.0, 0.125, 0.4, 0.5}) {  // at rest: the piston, the ball
-      ExpectSameBlock(QuestionAt(&kConditionalMeanFreeTime, delta, epsilon), 200);
-      ExpectSameBlock(QuestionAt(&kFirstHit, delta, epsilon), 200);
-    }
-    ExpectSameBlock(QuestionAt(&kMarkovProperty, delta, 0), 300);
-  }
-}
-
-// Orbits of these expire at a time limit.
-TEST(OrbitsOnDevice, ExpireAsInTheLanes) {
-  ExpectSameBlock(QuestionAt(&kEnergyRelaxation, 0.2, 0), 100);
 }
 
 }  // namespace
