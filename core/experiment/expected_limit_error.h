@@ -44,7 +44,7 @@
 // Coverage: at each place of tests/data/model_errors.csv the difference less two of its standard
 // errors is within the bound; these places include the ends of rho, delta, epsilon and cold/hot
 // (docs/research/markov-limit.md argues by scaling for the places where the billiard is too
-// expensive). The same holds for 40 random points: LimitError.StatedErrorCoversTheBilliard.
+// expensive). The random questions of tests/questions compare the models at other points.
 #pragma once
 
 #include "core/ensemble/parameter.h"
