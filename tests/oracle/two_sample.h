@@ -21,7 +21,7 @@ inline double NormalScoreOfChiSquare(double square, double degrees) {
 // Compares two histograms over the same cells. The sum over cells of
 // (sqrt(M/N) n - sqrt(N/M) m)^2/(n + m), with totals N and M, is distributed as chi^2 with one
 // degree of freedom less than cells. The result is its normal score. Neighbouring cells are joined
-// until they hold kFewest.
+// until they hold kFewest. 0 if all are joined into one.
 inline double ChiSquareScore(std::span<const uint64_t> first, std::span<const uint64_t> second) {
   constexpr double kFewest = 20;
   double totals[2] = {0, 0};
@@ -36,7 +36,7 @@ inline double ChiSquareScore(std::span<const uint64_t> first, std::span<const ui
     square += difference * difference / (n + m);
     cells += 1, n = 0, m = 0;
   }
-  return NormalScoreOfChiSquare(square, cells - 1);
+  return cells < 2 ? 0 : NormalScoreOfChiSquare(square, cells - 1);
 }
 
 // Kolmogorov's and Smirnov's: the largest distance of the two distribution functions, times

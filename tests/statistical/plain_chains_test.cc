@@ -1,13 +1,12 @@
-// gas-conduction by the billiard and by the jump process beside plain programs, which share no
-// physics with core/ (tests/oracle/plain_billiard_chain.h, plain_jump_chain.h): the current, its
-// cumulants, the exchange rate and the temperatures.
+// gas-conduction by the jump process beside a plain program, which shares no physics with core/
+// (tests/oracle/plain_jump_chain.h): the current, its cumulants, the exchange rate and the
+// temperatures.
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
-#include "tests/oracle/plain_billiard_chain.h"
 #include "tests/oracle/plain_jump_chain.h"
 #include "tests/support/nightly.h"
 
@@ -55,8 +54,7 @@ std::array<double, 3> CumulantGrowths(const std::vector<double>& charges, double
   return growths;
 }
 
-template <typename Chain>
-void AddRun(Chain chain, double window, int windows, PlainResult& result) {
+void AddRun(PlainJumpChain chain, double window, int windows, PlainResult& result) {
   chain.Run(4 * window);
   chain.Forget();
   std::vector<double> charges;
@@ -76,14 +74,14 @@ void AddRun(Chain chain, double window, int windows, PlainResult& result) {
 }
 
 // A window is several times the longest relaxation time, which is about (N + 1)^2/3 exchange times.
-// `density`: of the exchanges (plain_jump_chain.h); `start` makes the chain of a seed.
-template <typename Start>
-PlainResult PlainRuns(size_t cells, double density, Start start) {
+// `density`: of the exchanges (plain_jump_chain.h).
+PlainResult PlainRuns(size_t cells, double density) {
   PlainResult result;
   result.temperatures.resize(2 * cells - 1);
   const auto length = static_cast<double>(cells + 1);
   for (unsigned run = 0; run < kRuns; ++run) {
-    AddRun(start(1000 * run + static_cast<unsigned>(cells)), 4 * length * length / density,
+    const unsigned seed = 1000 * run + static_cast<unsigned>(cells);
+    AddRun(PlainJumpChain(cells, density, kHotEnd, kColdEnd, seed), 4 * length * length / density,
            Windows(cells), result);
   }
   return result;
@@ -132,48 +130,24 @@ double DensityOf(const PointParameters& point) {
   return std::sqrt(std::numbers::pi) * InfiniteGasExchangeRate(gas, 1);
 }
 
-PointSummary ByTheProduct(const PointParameters& point, Model model, int64_t samples) {
-  return RunPoint(SpecOf(&kGasConduction, point, {.samples = samples}, model, 3));
-}
-
 // By the number of cells, N. Chains that take minutes run nightly.
 class PlainChains : public testing::TestWithParam<int64_t> {};
 
 INSTANTIATE_TEST_SUITE_P(Cells, PlainChains, testing::Values(1, 2, 4, 8, 16),
                          testing::PrintToStringParamName());
 
-// 2 + 2 N to 4 + 2 N comparisons of errors from 64 runs and 128 trajectories. The five chains of
-// one model make 80 comparisons. One of these is above 4.5 standard errors for one seed in 500, if
+// 2 + 2 N to 4 + 2 N comparisons of errors from 64 runs and 128 trajectories. The five chains make
+// 80 comparisons. One of these is above 4.5 standard errors for one seed in 500, if
 // all are independent; the mean square of 6 is above 3.5 for one seed in 500, and that of more for
 // fewer. Neighbouring temperatures are not independent, so a longer chain gets no smaller bound.
 TEST_P(PlainChains, TheJumpProcessBetweenReservoirsIsThatOfAPlainProgram) {
   if (GetParam() > 4 && !IsNightly()) GTEST_SKIP() << "a nightly test";
   const auto cells = static_cast<size_t>(GetParam());
   const PointParameters point = PaperGas(&kGasConduction, 0.2, GasShape{GetParam()});
-  const double density = DensityOf(point);
-  Comparison comparison;
   const int64_t samples = GetParam() == 1 ? 1'049'000 : 264'000;
-  Compare(ByTheProduct(point, Model::kMarkov, samples),
-          PlainRuns(cells, density,
-                    [&](unsigned seed) {
-                      return PlainJumpChain(cells, density, kHotEnd, kColdEnd, seed);
-                    }),
-          comparison);
-  EXPECT_LT(comparison.MeanSquare(), 3.5);
-}
-
-TEST_P(PlainChains, TheBilliardBetweenReservoirsIsThatOfAPlainProgram) {
-  if (GetParam() > 1 && !IsNightly()) GTEST_SKIP() << "a nightly test";
-  constexpr double kDelta = 0.15;
-  const auto cells = static_cast<size_t>(GetParam());
-  const PointParameters point = PaperGas(&kGasConduction, kDelta, GasShape{GetParam()});
   Comparison comparison;
-  Compare(ByTheProduct(point, Model::kBilliard, 264'000),
-          PlainRuns(cells, DensityOf(point),
-                    [&](unsigned seed) {
-                      return PlainBilliardChain(cells, kPaperRho, kDelta, kHotEnd, kColdEnd, seed);
-                    }),
-          comparison);
+  Compare(RunPoint(SpecOf(&kGasConduction, point, {.samples = samples}, Model::kMarkov, 3)),
+          PlainRuns(cells, DensityOf(point)), comparison);
   EXPECT_LT(comparison.MeanSquare(), 3.5);
 }
 

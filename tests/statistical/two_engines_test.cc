@@ -1,21 +1,15 @@
-// Compares the laws of the billiard in lanes and of the reference. Each has an independent sample
-// of first hits: 100,000 (nightly 400,000) at twenty points from cusps to vanishing cells, over
-// energies and outgoing laws, and fewer at corners of the domain.
-#include "core/arithmetic/elementary_functions.h"
-#include "core/closed_form/ingoing_law.h"
+// Compares the laws of first hits by the lanes and by the reference. Each has an independent sample
+// of 100,000 (nightly 400,000) at twenty points from cusps to vanishing cells, over energies and
+// outgoing laws, and of fewer at corners of the domain.
 #include "core/experiment/expected_returns.h"
-#include "core/experiment/returns.h"
-#include "core/statistics/histogram.h"
+#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
-#include "tests/core/run_orbits.h"
+#include "tests/core/run_point.h"
 #include "tests/oracle/two_sample.h"
 #include "tests/support/nightly.h"
 
 namespace ballpiston {
 namespace {
-
-constexpr uint64_t kSamplesOfARun = 50'000;  // as many as a block may have, about
-constexpr size_t kBins = 1000;
 
 struct Point {
   double rho;
@@ -25,75 +19,23 @@ struct Point {
   double events = HUGE_VAL;  // that each engine may take, about
 };
 
-class FirstHits {
- public:
-  explicit FirstHits(double epsilon) {
-    const IngoingLaw law(epsilon);
-    for (const int sigma : {-1, 1}) {
-      const double width = law.AlphaMax(sigma);
-      histograms_.push_back(Histogram::OfBins(-width, width, width > 0 ? kBins : 1));
-    }
-  }
-
-  void Add(const Return& hit) {
-    means_[0].Add(hit.time);
-    means_[1].Add(hit.direction.x());
-    means_[2].Add(hit.sigma);
-    times_.push_back(hit.time);
-    Histogram& histogram = histograms_[hit.sigma > 0 ? 1 : 0];
-    if (histogram.upper > 0) {
-      histogram.Add(Atan2(hit.direction.y(), hit.direction.x()));
-    } else {
-      ++histogram.counts[0];
-    }
-  }
-
-  void CountEscape() { ++escapes_; }
-  uint64_t escapes() const { return escapes_; }
-  const std::array<Moments, 3>& means() const { return means_; }  // of time, cos alpha, sigma
-  const std::vector<double>& times() const { return times_; }
-  // Over the cells of alpha and sigma.
-  std::vector<uint64_t> Counts() const {
-    std::vector<uint64_t> counts = histograms_[0].counts;
-    counts.insert(counts.end(), histograms_[1].counts.begin(), histograms_[1].counts.end());
-    return counts;
-  }
-
- private:
-  uint64_t escapes_ = 0;
-  std::array<Moments, 3> means_;
-  std::vector<double> times_;
-  std::vector<Histogram> histograms_;
-};
-
 uint64_t MostSamples() { return IsNightly() ? 400'000 : 100'000; }
 
-uint64_t SamplesAt(const Point& point, const PairGeometry& geometry) {
+int64_t SamplesAt(const Point& point, const PairGeometry& geometry) {
   const double affordable = point.events / HitsPerReturn(geometry, point.epsilon).Events();
-  return static_cast<uint64_t>(std::clamp(affordable, 1000.0, static_cast<double>(MostSamples())));
+  return static_cast<int64_t>(std::clamp(affordable, 1000.0, static_cast<double>(MostSamples())));
 }
 
-// The seed is the engine's, so that the two samples are independent.
-FirstHits Sample(Engine engine, const Point& point) {
+// The seed is the model's, so that the two samples are independent.
+BlockResult FirstHits(Model model, const Point& point) {
   const PairGeometry geometry = GeometryAtShare(point.rho, point.share);
-  FirstHits hits(point.epsilon);
-  const uint64_t samples = SamplesAt(point, geometry);
-  const ReturnStarts starts = {geometry,
-                               point.epsilon,
-                               point.exponent,
-                               {.seed = static_cast<uint64_t>(engine), .stream = 77}};
-  const BlockResult empty;
-  for (uint64_t first = 0; first < samples; first += kSamplesOfARun) {
-    const uint64_t count = std::min(kSamplesOfARun, samples - first);
-    BlockOrbits<ReturnOrbit, ReturnStarts> orbits(starts, {.first = first, .samples = count},
-                                                  empty);
-    EXPECT_TRUE(RunAll(engine, geometry, orbits));
-    for (uint64_t i = 0; i < count; ++i) {
-      const std::optional<Return>& hit = orbits[i].hit;
-      hit ? hits.Add(*hit) : hits.CountEscape();
-    }
-  }
-  return hits;
+  const PointParameters parameters = {{kRho, geometry.rho()},
+                                      {kDelta, geometry.delta()},
+                                      {kEpsilon, point.epsilon},
+                                      {kExponent, point.exponent}};
+  const EnsembleSpec spec = SpecOf(&kFirstHit, parameters, {.samples = SamplesAt(point, geometry)},
+                                   model, static_cast<uint64_t>(model));
+  return FoldPoint(*PointExperiment::Create(spec, 0));
 }
 
 double Score(const Moments& first, const Moments& second) {
@@ -102,24 +44,33 @@ double Score(const Moments& first, const Moments& second) {
                     : (second.mean - first.mean) / error;
 }
 
+// The cells of the angle for both signs of the piston's velocity.
+std::vector<uint64_t> IngoingCounts(const BlockResult& hits) {
+  std::vector<uint64_t> counts;
+  for (size_t i = 0; i + 1 < hits.histograms.size(); ++i) {
+    const std::vector<uint64_t>& more = hits.histograms[i].counts;
+    counts.insert(counts.end(), more.begin(), more.end());
+  }
+  return counts;
+}
+
 class TwoEngines : public testing::TestWithParam<Point> {};
 
-// Means agree within 4 combined standard errors, with 6e-5 false alarms each. The ingoing law is
-// compared by chi^2 (3e-5), the law of the return times by Kolmogorov and Smirnov (5e-5). Over the
-// 60 points this makes 1.5 percent of false alarms. The test detects a difference of 1 % between
-// the distribution functions of the times, and one of 1.8 % of the standard deviation between
-// means; at the nightly size half of these.
+// The means of the time, of cos(alpha) and of sigma agree within 4 combined standard errors, with
+// 6e-5 false alarms each. The laws of the angle and of the time are compared by chi^2, 3e-5 each.
+// Over the 60 points this makes 1.4 percent of false alarms. The test detects a difference of 1.8 %
+// of the standard deviation between means; at the nightly size half of it.
 TEST_P(TwoEngines, AgreeInMeansAndLaws) {
-  const FirstHits reference = Sample(Engine::kReference, GetParam());
-  const FirstHits lanes = Sample(Engine::kLanes, GetParam());
-  double scores[3];
-  for (size_t i = 0; i < 3; ++i) scores[i] = Score(reference.means()[i], lanes.means()[i]);
-  const double square = oracle::ChiSquareScore(reference.Counts(), lanes.Counts());
-  const double distance = oracle::KolmogorovSmirnov(reference.times(), lanes.times());
-  EXPECT_EQ(reference.escapes() + lanes.escapes(), 0u);
-  for (const double score : scores) EXPECT_LT(std::fabs(score), 4);
-  EXPECT_LT(square, 4);
-  EXPECT_LT(distance, 2.3);
+  const BlockResult reference = FirstHits(Model::kBilliardReference, GetParam());
+  const BlockResult lanes = FirstHits(Model::kBilliard, GetParam());
+  EXPECT_EQ(reference.health.escapes + lanes.health.escapes, 0u);
+  for (size_t i = 0; i < lanes.moments.size(); ++i) {
+    EXPECT_LT(std::fabs(Score(reference.moments[i], lanes.moments[i])), 4) << "mean " << i;
+  }
+  EXPECT_LT(oracle::ChiSquareScore(IngoingCounts(reference), IngoingCounts(lanes)), 4);
+  EXPECT_LT(
+      oracle::ChiSquareScore(reference.histograms.back().counts, lanes.histograms.back().counts),
+      4);
 }
 
 INSTANTIATE_TEST_SUITE_P(
