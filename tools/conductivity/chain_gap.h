@@ -19,7 +19,7 @@
 // that of markov/generator.h. Domain: 2 or more sites of 1 or more velocity components, degree 1 to
 // 40; the cost grows as the cube of the number of polynomials, (n + N - 1)!/(n! (N - 1)!) with
 // degree n and N sites. Properties, each with the test that bears its name:
-//   1. GapOfThePairMatchesItsGenerator.  2. SpectrumDoesNotDependOnTheDirectionOfTheChain.
+//   1. GapOfThePairMatchesItsGenerator.  2. ChainsHaveTheirDocumentedGaps.
 // The gap falls with the degree.
 #pragma once
 

@@ -22,8 +22,7 @@ struct PointEstimate {
 // Measures the relaxation time of the piston's energy in equilibrium, and its cost, by the billiard
 // and by the limit of rare collisions (experiment/energy_relaxation.h).
 //
-// A sample is an orbit. Property, with a test of its name: 1. TheJumpProcessAgreesWithTheSpectrum
-// within its error.
+// A sample is an orbit.
 struct EnergyRelaxationRuns {
   PairGeometry geometry;
   uint64_t seed;

@@ -20,17 +20,6 @@ TEST(ChainGap, GapOfThePairMatchesItsGenerator) {
   }
 }
 
-// With one ball and one piston, the first polynomial's rate is a ratio of moments: 15/32.
-TEST(ChainGap, LinearFunctionOfThePairHasARationalRate) {
-  EXPECT_NEAR(ChainRates({2, 1}, 1)[0], 15.0 / 32, 1e-14);
-}
-
-TEST(ChainGap, SpectrumDoesNotDependOnTheDirectionOfTheChain) {
-  const Eigen::VectorXd one = ChainRates({2, 1, 2, 1}, 5), other = ChainRates({1, 2, 1, 2}, 5);
-  ASSERT_EQ(one.size(), 55);  // 8!/(5! 3!) polynomials, without the constant
-  EXPECT_LE((one - other).cwiseAbs().maxCoeff(), 1e-12);
-}
-
 void HasTheDocumentedGap(const std::vector<int>& chain, std::vector<int> degrees,
                          BoundedValue documented) {
   if (!IsNightly()) degrees.pop_back();

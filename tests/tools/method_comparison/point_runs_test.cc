@@ -1,6 +1,5 @@
 #include "tools/method_comparison/point_runs.h"
 
-#include "core/markov/relaxation_spectrum.h"
 #include "tests/core/preamble.h"
 
 namespace ballpiston::method_comparison {
@@ -32,17 +31,6 @@ TEST(PointRuns, RunsHaveTheRequestedSamplesAndTheSameValueEachTime) {
 TEST(PointRuns, TheTruthHasOtherSamplesThanARun) {
   EXPECT_NE(Relaxation(0.2).Truth(512).value, Relaxation(0.2).Run(kLanes, 512).value);
   EXPECT_NE(HeatCurrent(0.2).Truth(512).value, HeatCurrent(0.2).Run(kLanes, 512).value);
-}
-
-// The relative error of n orbits is about 1/sqrt(n), here 1.6 %: a wrong factor of two is detected.
-// False alarms: one in 15,000 seeds, and the seed is fixed.
-TEST(EnergyRelaxationRuns, TheJumpProcessAgreesWithTheSpectrum) {
-  for (const double delta : {0.2, 0.0125}) {
-    const PointEstimate limit = Relaxation(delta).BySpectrum();
-    const PointEstimate measured = Relaxation(delta).Run(kMarkov, 4096);
-    EXPECT_LT(std::fabs(measured.value - limit.value), 4 * measured.error) << delta;
-    EXPECT_NEAR(measured.error / measured.value, 1 / 64.0, 0.1 / 64) << delta;
-  }
 }
 
 // A difference of four combined standard errors has 6e-5 false alarms, and the seed is fixed. The
