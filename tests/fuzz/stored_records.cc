@@ -2,8 +2,6 @@
 #include "ballpiston/storage/records.pb.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
-#include "core/experiment/all_experiments.h"
-#include "core/gas/gas_shape.h"
 #include "server/convert/compressed.h"
 #include "server/convert/deterministic_bytes.h"
 #include "server/convert/errors.h"
@@ -12,6 +10,7 @@
 #include "server/convert/spec.h"
 #include "server/store/job_record.h"
 #include "server/worker/lease_file.h"
+#include "tests/core/one_point_spec.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"
 
@@ -23,30 +22,19 @@ using Experiments = std::vector<std::unique_ptr<const PointExperiment>>;
 // At least one experiment for each shape of block. First hits: with both signs of the piston's
 // velocity, with one sign, and with a tolerance.
 Experiments OneOfEach() {
-  const Grid pair = {{kRho, {0.53}}, {kDelta, {0.1}}};
-  Grid energy = pair, hit = pair, fast = pair;
-  energy[kEpsilon] = {0.125};
-  hit[kEpsilon] = {0.125};
-  hit[kExponent] = {1};
-  fast[kEpsilon] = {0.375};
-  fast[kExponent] = {5};
-  Grid periodic = pair, conducting = pair;
-  periodic[kCells] = conducting[kCells] = {CodeOf({.columns = 4})};
-  periodic[kTemperature] = {2};
-  conducting[kHot] = {2};
-  conducting[kCold] = {1};
   const Target samples = {.samples = 1000}, collisions = {.collisions = 1000};
+  const GasShape chain = {.columns = 4};
   Experiments experiments;
-  for (const EnsembleSpec& spec : std::vector<EnsembleSpec>{
-           {.experiment = &kEquilibrium, .grid = pair, .target = collisions},
-           {.experiment = &kConditionalMeanFreeTime, .grid = energy, .target = samples},
-           {.experiment = &kFirstHit, .grid = hit, .target = samples},
-           {.experiment = &kFirstHit, .grid = fast, .target = samples},
-           {.experiment = &kFirstHit, .grid = hit, .target = {.tolerance = 0.1}},
-           {.experiment = &kEnergyRelaxation, .grid = pair, .target = samples},
-           {.experiment = &kMarkovProperty, .grid = pair, .target = collisions},
-           {.experiment = &kGasEquilibrium, .grid = periodic, .target = samples},
-           {.experiment = &kGasConduction, .grid = conducting, .target = samples}}) {
+  for (const EnsembleSpec& spec :
+       {SpecOf(&kEquilibrium, PaperPoint(0.1), collisions),
+        SpecOf(&kConditionalMeanFreeTime, PaperPoint(0.1, 0.125), samples),
+        SpecOf(&kFirstHit, PaperPoint(0.1, 0.125, 1), samples),
+        SpecOf(&kFirstHit, PaperPoint(0.1, 0.375, 5), samples),
+        SpecOf(&kFirstHit, PaperPoint(0.1, 0.125, 1), {.tolerance = 0.1}),
+        SpecOf(&kEnergyRelaxation, PaperPoint(0.1), samples),
+        SpecOf(&kMarkovProperty, PaperPoint(0.1), collisions),
+        SpecOf(&kGasEquilibrium, PaperGas(&kGasEquilibrium, 0.1, chain), samples),
+        SpecOf(&kGasConduction, PaperGas(&kGasConduction, 0.1, chain), samples)}) {
     experiments.push_back(PointExperiment::Create(spec, 0));
   }
   return experiments;
