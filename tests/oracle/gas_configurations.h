@@ -36,11 +36,8 @@ class ChainByQuadrature {
     const Quad reach = lambda_ / 2 + delta_;
     const std::array<Quad, kParts + 1> ends = {-reach, -lambda_ / 2, lambda_ / 2, reach};
     for (size_t part = 0; part < kParts; ++part) {
-      const Quad middle = (ends[part] + ends[part + 1]) / 2;
-      const Quad half_width = (ends[part + 1] - ends[part]) / 2;
-      for (const GaussNode& node : GaussNodes()) {  // from the right to the left
-        AddNode(middle - half_width * node.x, node.weight * half_width);
-      }
+      ForEachGaussNode(ends[part], ends[part + 1],
+                       [this](Quad offset, Quad weight) { AddNode(offset, weight); });
     }
   }
 
