@@ -7,7 +7,6 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cstddef>
 
 #include "core/billiard/lane_flight-inl.h"
@@ -93,17 +92,14 @@ template <typename T>
 void FlyBalls(const PairGeometry& geometry, std::span<const LaneFrame> starts, uint64_t hits,
               std::span<LaneHit> recorded) {
   LaneBalls<T> balls(geometry);
-  const size_t records = recorded.empty() ? 0 : recorded.size() / starts.size();
-  assert(recorded.empty() || (records > 0 && hits % records == 0));
-  const uint64_t between = recorded.empty() ? hits : hits / records;
+  const uint64_t at_once = recorded.empty() ? hits : 1;
   for (size_t first = 0; first < starts.size(); first += balls.Count()) {
     const size_t count = std::min(balls.Count(), starts.size() - first);
     balls.Begin(starts.subspan(first, count));
-    for (uint64_t done = 0; done < hits; done += between) {
-      balls.Fly(between);
+    for (uint64_t done = 0; done < hits; done += at_once) {
+      balls.Fly(at_once);
       if (recorded.empty()) continue;
-      const size_t record = done / between;
-      for (size_t i = 0; i < count; ++i) recorded[(first + i) * records + record] = balls.Hit(i);
+      for (size_t i = 0; i < count; ++i) recorded[(first + i) * hits + done] = balls.Hit(i);
     }
   }
 }

@@ -21,10 +21,8 @@ struct LaneHit {
 // The frames of balls that are on their walls.
 std::vector<LaneFrame> OnTheirWalls(std::span<const PairState> starts);
 
-// Flies each ball to its next `hits` hits. `recorded` has n * starts.size() elements, where n
-// divides `hits`. Every (hits/n)-th hit of a ball is recorded; the j-th record of ball i is
-// recorded[i * n + j]. With n = hits all hits are recorded, with n = 1 the last hit, with n = 0 no
-// hit.
+// Flies each ball to its next `hits` hits. `recorded` is empty, or gets all of them: the j-th hit
+// of ball i is recorded[i * hits + j].
 using FlyLanes = void(const PairGeometry& geometry, std::span<const LaneFrame> starts,
                       uint64_t hits, std::span<LaneHit> recorded);
 FlyLanes FlyLaneBalls;        // in double precision

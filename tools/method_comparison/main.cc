@@ -9,12 +9,8 @@
 // the values of the spec; method_comparison.h explains the other columns, method.h the names. A
 // number reads back as the same double. The field of an unknown value is empty.
 //
-// Progress is one line on standard error, which is redrawn and cleared at the end.
-//
-// Exit status: 0 success; 1 standard output cannot be written, or the mean free time, the ingoing
-// law or the trajectory has no measurement of kFewestDrawn samples: then its panel of the chart is
-// empty, but all rows are printed; 2 a wrong flag or value: standard error names each value that is
-// not permitted.
+// Progress is one line on standard error, which is redrawn and cleared at the end. README.md has the
+// exit status; where a panel of the chart would be empty, all rows are printed nevertheless.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>

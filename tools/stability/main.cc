@@ -1,12 +1,7 @@
 // Computes the stability tables: the failures of every engine in every precision, and of the naive
-// methods, in each situation.
-//
-//   stability [--quick]
-//
-// Exit status: 0 success; 1 if there are complaints (after the tables), if the tables cannot be
-// computed, or if standard output cannot be written; 2 for wrong arguments. Complaints are a
-// sentence for each broken promise of an engine (no failures, no loss of energy), and for each kind
-// of failure that no method shows: the zeros of this kind prove nothing.
+// methods, in each situation. kHelp has the arguments and the exit status. Complaints, which come
+// after the tables, are a sentence for each broken promise of an engine (no failures, no loss of
+// energy), and for each kind of failure that no method shows: its zeros prove nothing.
 #include <algorithm>
 #include <cstdint>
 #include <exception>
