@@ -70,16 +70,5 @@ TEST(TrajectoryHorizon, LanesPartAfterAsManyHitsAsTheReference) {
   EXPECT_NEAR(lanes_single.mean, single.mean, 1 + 4.5 * CombinedError(lanes_single, single));
 }
 
-TEST(TrajectoryHorizon, SmallerStepsHaveALongerHorizon) {
-  double before = -1;
-  for (const double step : {1e-1, 1e-2, 1e-3, 1e-4}) {
-    const double hits = HorizonOfMethod(FixedSteps(step)).hits.mean;
-    EXPECT_GT(hits, before) << step;
-    before = hits;
-  }
-  EXPECT_GT(before, 3);
-  EXPECT_LT(before, 8);  // log(1e-3/1e-4), and hits with smaller errors: far below any engine
-}
-
 }  // namespace
 }  // namespace ballpiston::method_comparison
