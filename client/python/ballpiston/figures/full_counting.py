@@ -138,6 +138,9 @@ def draw(tables: Tables) -> Figure:
 
 
 def _draw_cumulant(axes: Any, part: Table, fit: Table) -> None:
+    if not len(part["cells"]):
+        style.inside(axes, 0.5, 0.5, "not measured: too few collisions", ha="center")
+        return
     limit = fit["limit"][0]
     settled = part | {"value": part["value"] - fit["b"][0] * transient(part["time"])}
     chains = [rows(settled, cells=cells) for cells in distinct(part["cells"])]
