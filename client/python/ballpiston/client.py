@@ -182,7 +182,7 @@ class Client:
             ...             tolerance=0.01)
         """
         request = ensemble_pb2.PlanEnsembleJobRequest(spec=question_of(experiment, question))
-        return Plan(self._connection.call(self._connection.ensembles.PlanEnsembleJob, request))
+        return Plan(self._connection.call(request))
 
     # Jobs
 
@@ -194,10 +194,7 @@ class Client:
         """
         full = name if name.startswith(_COLLECTION) else _COLLECTION + name
         request = ensemble_pb2.GetEnsembleJobRequest(name=full)
-        return Job(
-            self._connection,
-            self._connection.call(self._connection.ensembles.GetEnsembleJob, request),
-        )
+        return Job(self._connection, self._connection.call(request))
 
     def jobs(
         self,
@@ -224,7 +221,7 @@ class Client:
         jobs: list[Job] = []
         while limit is None or len(jobs) < limit:
             request.page_size = _PAGE if limit is None else min(_PAGE, limit - len(jobs))
-            page = self._connection.call(self._connection.ensembles.ListEnsembleJobs, request)
+            page = self._connection.call(request)
             jobs += [Job(self._connection, message) for message in page.jobs]
             request.page_token = page.next_page_token
             if not request.page_token:
@@ -260,7 +257,7 @@ class Client:
         request = analytic_pb2.EvaluatePairsRequest(
             **{name: number_list(name, values) for name, values in lists.items()}
         )
-        return ClosedForms(self._connection.call(self._connection.analytic.EvaluatePairs, request))
+        return ClosedForms(self._connection.call(request))
 
     def trace(
         self,
@@ -341,15 +338,14 @@ class Client:
     def status(self) -> ServerStatus:
         """What the server is doing and what it permits. The first call to a server takes most of a
         second, because the server measures its speed."""
-        request = server_pb2.GetServerStatusRequest()
-        message = self._connection.call(self._connection.server.GetServerStatus, request)
+        message = self._connection.call(server_pb2.GetServerStatusRequest())
         return server_status_of(self.address, message)
 
     def _create(self, request: Any) -> Any:
         """One request id for all attempts: a server that accepted the job and stopped before it
         could answer does not get a second one."""
         try:
-            return self._connection.call(self._connection.ensembles.CreateEnsembleJob, request)
+            return self._connection.call(request)
         except KeyboardInterrupt:
             print(
                 "The server may have accepted the job. With "

@@ -31,7 +31,7 @@ class Collisions:
 
     def __init__(self, connection: Connection, spec: Any) -> None:
         request = trace_pb2.SampleCollisionsRequest(spec=spec)
-        self._messages = stream_messages(connection, connection.traces.SampleCollisions, request)
+        self._messages = stream_messages(connection, request)
 
     def __iter__(self) -> Iterator[Records]:
         return self
