@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ballpiston.fields import FloatArray
 from ballpiston.suggestion import no_such
 from ballpiston.v1 import analytic_pb2
 
 if TYPE_CHECKING:
     import pandas
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def _numbers(message: Any) -> tuple[str, ...]:

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ballpiston.fields import FloatArray, value_of
 from ballpiston.suggestion import no_such
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +100,7 @@ def _histogram(message: Any, total: float) -> Histogram:
     return Histogram(
         name=message.name,
         sigma=message.sigma,
-        time=message.time if message.HasField("time") else None,
+        time=value_of(message, "time"),
         edges=message.lower + np.arange(bins + 1) * width if bins else np.empty(0),
         counts=counts,
         density=density,

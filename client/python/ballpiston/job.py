@@ -13,11 +13,12 @@ from ballpiston.async_watch import Update, watch_updates
 from ballpiston.connection import Connection
 from ballpiston.error_details import details_of, error_of
 from ballpiston.errors import Error, ResultsExpired, Unavailable
+from ballpiston.fields import value_of
 from ballpiston.progress import Progress, fraction_of, progress_on_screen
 from ballpiston.result import Result
 from ballpiston.result_table import html_table
 from ballpiston.specification import set_target
-from ballpiston.spelling import spelling
+from ballpiston.spelling import spelled
 from ballpiston.v1 import ensemble_pb2, spec_pb2
 from ballpiston.watch import has_ended, watch_job
 
@@ -82,7 +83,7 @@ class Job:
     @property
     def experiment(self) -> str:
         """Such as "first-hit"."""
-        return spelling(spec_pb2.EnsembleSpec.Experiment, self.message.spec.experiment)
+        return spelled(self.message.spec, "experiment")
 
     @property
     def state(self) -> str:
@@ -325,7 +326,7 @@ class Job:
             pass
 
     def _last_state(self) -> str:
-        return spelling(ensemble_pb2.EnsembleJob.State, self.message.state)
+        return spelled(self.message, "state")
 
     def _call(self, request: Any) -> Any:
         try:
@@ -366,10 +367,8 @@ class Job:
         raise error
 
     def _time(self, field: str) -> datetime | None:
-        if not self.message.HasField(field):
-            return None
-        time: datetime = getattr(self.message, field).ToDatetime()
-        return time.replace(tzinfo=timezone.utc)
+        time = value_of(self.message, field)
+        return None if time is None else time.ToDatetime(timezone.utc)
 
 
 def _farewell(name: str) -> str:

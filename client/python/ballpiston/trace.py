@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ballpiston.connection import Connection
-from ballpiston.record import record_of
+from ballpiston.fields import record_of
 from ballpiston.suggestion import did_you_mean
 from ballpiston.v1 import trace_pb2
 
