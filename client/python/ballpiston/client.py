@@ -292,21 +292,13 @@ class Client:
             self._connection, _orbit_request(rho, delta, events, seed, cells, temperature)
         )
 
-    def trace_arrays(
-        self,
-        *fields: str,
-        rho: float,
-        delta: float,
-        events: float,
-        seed: int = 0,
-        cells: Shapes | None = None,
-        temperature: float | None = None,
-    ) -> dict[str, npt.NDArray[Any]]:
+    @takes_keywords_of(trace)
+    def trace_arrays(self, *fields: str, **orbit: Any) -> dict[str, npt.NDArray[Any]]:
         """The events of `trace` as arrays, without the start: faster, for long orbits.
 
         Args:
             fields: of an event, such as "time", "event", "piston_energy"; NaN where absent.
-            rho, delta, events, seed, cells, temperature: as those of `trace`.
+            orbit: all other keywords, as those of `trace`.
 
         Raises:
             ValueError: an event has no such field.
@@ -315,8 +307,7 @@ class Client:
             >>> orbit = client.trace_arrays("event", "free_time", rho=0.5296, delta=0.2, events=1e5)
             >>> np.nanmean(orbit["free_time"][orbit["event"] == "ball_piston"])
         """
-        request = _orbit_request(rho, delta, events, seed, cells, temperature)
-        return columns_of(self._connection, request, fields)
+        return columns_of(self._connection, _orbit_request(**orbit), fields)
 
     @takes_keywords_of(specification)
     def sample(self, experiment: Any, **question: Any) -> Collisions:
@@ -363,9 +354,9 @@ def _orbit_request(
     rho: float,
     delta: float,
     events: float,
-    seed: int,
-    cells: Shapes | None,
-    temperature: float | None,
+    seed: int = 0,
+    cells: Shapes | None = None,
+    temperature: float | None = None,
 ) -> Any:
     request = trace_pb2.TraceOrbitRequest(
         rho=real_number("rho", rho),
@@ -374,14 +365,7 @@ def _orbit_request(
         seed=whole_number("seed", seed),
     )
     if cells is not None:
-        request.cells = _only_shape(cells)
+        request.cells = ",".join(shape_list("cells", cells))  # the server permits one shape
     if temperature is not None:
         request.temperature = real_number("temperature", temperature)
     return request
-
-
-def _only_shape(cells: Shapes) -> str:
-    shapes = shape_list("cells", cells)
-    if len(shapes) != 1:
-        raise ValueError(f"a trace has one shape of cells, not {len(shapes)}")
-    return shapes[0]
