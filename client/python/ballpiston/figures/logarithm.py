@@ -64,8 +64,7 @@ def measure(
         windows = table_of("slow_pistons", "windows", **pair, orbits=count)
         facts = {"delta": d, "x": (width + 2 * d) / tau}
         facts["law"] = _AT_REST * (width + d) ** 2 / (width + 2 * d) / tau
-        ones = np.ones(len(windows["window"]))
-        found.append({name: fact * ones for name, fact in facts.items()} | windows)
+        found.append(facts | windows)
     whole = stacked(found)
     return {
         "logarithm": whole,

@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from ballpiston.client import Client
 from ballpiston.figures.parts import fits, style
 from ballpiston.figures.parts.asking import RHO, answer, mean_free_times
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, rows, table
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, pick, rows, table
 from ballpiston.figures.parts.tangent_growth import second_exponent
 from ballpiston.parameter_lists import Numbers, number_list
 
@@ -90,8 +90,7 @@ def laws(whole: Table) -> Table:
     sqrt(delta); of what remains of `value` without the computed terms, by A + B log(tau); and
     `computed` itself, without a coefficient. Fits to fewer points than coefficients are left
     out."""
-    is_rare = whole["delta"] <= _RARE
-    rare = {name: column[is_rare] for name, column in whole.items()}
+    rare = pick(whole, whole["delta"] <= _RARE)
     value, error, log_tau = rare["value"], rare["value_error"], np.log(rare["tau"])
     line = np.column_stack([np.ones(len(value)), log_tau])
     with_root = np.column_stack([line, np.sqrt(rare["delta"])])

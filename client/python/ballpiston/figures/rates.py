@@ -15,6 +15,7 @@ statistical error. Time on two cores: quick 3 s, default 25 s, full 4 min.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -126,19 +127,19 @@ def rate_of_windows(
     return probability / lengths, error / lengths
 
 
-def _rates(kind: Kind, batches: list[FloatArray]) -> Table:
+def _rates(kind: Kind, batches: list[FloatArray]) -> dict[str, Any]:
     """Empty if no gap has the energies of this kind."""
     lengths = _LENGTHS / kind.rate
     if not any(len(gaps) for gaps in batches):
         lengths = lengths[:0]
     rate, error = rate_of_windows(batches, lengths) if len(lengths) else (lengths, lengths)
     return {
-        "kind": np.full(len(lengths), kind.name),
-        "epsilon": np.full(len(lengths), kind.epsilon),
+        "kind": kind.name,
+        "epsilon": kind.epsilon,
         "t": lengths,
         "rate": rate,
         "standard_error": error,
-        "exact": np.full(len(lengths), kind.rate),
+        "exact": kind.rate,
     }
 
 

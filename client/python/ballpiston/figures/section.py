@@ -32,7 +32,7 @@ from ballpiston.client import Client
 from ballpiston.collisions import Records
 from ballpiston.figures.parts import cell_outline, style
 from ballpiston.figures.parts.asking import RHO
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, rows, stacked, table
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, pick, rows, stacked, table
 
 EFFORT = {
     "quick": {"collisions": 1e4, "events": 1e4, "bins": 12},
@@ -137,7 +137,7 @@ def _section(name: str, points: Any, edges: Any, scaled: Any, exact: FloatArray)
 
 
 def _chi_squared(section: Table) -> dict[str, Any]:
-    found = {name: column[section["expected"] >= _FEWEST] for name, column in section.items()}
+    found = pick(section, section["expected"] >= _FEWEST)
     terms = (found["count"] - found["expected"]) ** 2 / found["expected"]
     return {"section": section["section"][0], "chi_squared": terms.sum(), "bins": len(terms)}
 

@@ -79,8 +79,7 @@ def _idle(point: Point, blocks: int, seed: int) -> Table:
     at = point.parameters
     gas = {name: at[name] for name in ("rho", "delta", "cold")}
     found = table_of("slow_pistons", "idle", **gas, block=_BLOCK, blocks=blocks, seed=seed)
-    length = len(found["time"])
-    return {name: np.full(length, at[name]) for name in ("delta", "cold")} | found
+    return stacked([{"delta": at["delta"], "cold": at["cold"]} | found])
 
 
 def _growth_and_law(point: Point, idle: Table) -> dict[str, float]:

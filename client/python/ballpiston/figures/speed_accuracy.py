@@ -32,7 +32,7 @@ from matplotlib.figure import Figure
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO
 from ballpiston.figures.parts.programs import output_of
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct, rows, table
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct, pick, rows, table
 
 EFFORT = {"quick": {"seconds": 0.03}, "full": {"seconds": 10.0}}
 
@@ -132,7 +132,7 @@ class Curve:
 def curves_of(data: Table, quantity: str, fewest_samples: int = 1) -> list[Curve]:
     """The methods that have runs of enough samples."""
     data = rows(data, quantity=quantity)
-    data = {name: column[data["samples"] >= fewest_samples] for name, column in data.items()}
+    data = pick(data, data["samples"] >= fewest_samples)
     found = distinct(zip(data["method"], data["time_step"]))
     return [Curve(m, s, rows(data, method=m, time_step=s)) for m, s in found if m in _METHODS]
 
@@ -224,7 +224,7 @@ def _draw_orbits(axes: Any, curves: list[Curve]) -> None:
         return
     style.level(axes, 0, color=style.GREY)
     for curve in curves:
-        run = {name: column[-1] for name, column in curve.runs.items()}
+        run = pick(curve.runs, -1)
         cost = 1e9 * run["work_seconds"] / run["wall_hits"]
         style.error_points(axes, cost, run["value"], run["own_error"], curve.colour, markersize=6)
     axes.set(xscale="log", xlabel="time of a wall hit / ns")
@@ -238,7 +238,7 @@ def floors_of_limit(runs: Table) -> Table:
     deviation, which may be chance, plus _RESOLVED statistical errors."""
     spectra = rows(runs, method="spectrum")
     first = np.unique(-spectra["delta"], return_index=True)[1]
-    spectra = {name: column[first] for name, column in spectra.items()}
+    spectra = pick(spectra, first)
     chance = _RESOLVED * spectra["statistical_error"]
     is_bias = spectra["value"] >= chance
     value = spectra["value"] + np.where(is_bias, 0.0, chance)
@@ -258,7 +258,7 @@ def _draw_relaxation(axes: Any, data: Table) -> None:
         axes.plot(spectrum, np.full(len(spectrum), bias), "D", color=colour, label=label)
         for method, name, line in (("markov", "limit", (0, (8, 4))), ("billiard", "billiard", "-")):
             part = rows(runs, delta=delta, method=method)
-            part = {n: column[part["samples"] >= _FEWEST_ORBITS] for n, column in part.items()}
+            part = pick(part, part["samples"] >= _FEWEST_ORBITS)
             error = np.hypot(part["own_error"], bias if method == "markov" else 0)
             dots = {"marker": "o", "markersize": 3, "label": f"{name}, δ = {delta:g}"}
             axes.plot(part["work_seconds"], error, linestyle=line, color=colour, **dots)

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from ballpiston.client import Client
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO, answer
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, curves, distinct, rows
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, curves, distinct, pick, rows
 from ballpiston.parameter_lists import Shapes
 
 EFFORT: dict[str, dict[str, Any]] = {
@@ -91,8 +91,7 @@ def _draw_profile(
     panels: Any, part: Table, model: str, hot: float, cold: float, colour: str
 ) -> None:
     for is_piston in (False, True):  # pistons have whole positions
-        chosen = (part["position"] == np.floor(part["position"])) == is_piston
-        body = {name: column[chosen] for name, column in part.items()}
+        body = pick(part, (part["position"] == np.floor(part["position"])) == is_piston)
         share = body["position"] / body["cells"].astype(float)
         place = share + (_ASIDE if model == "billiard" else 0)
         marker = _marker(model, is_piston)

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from ballpiston.figures.parts.fits import linear
-from ballpiston.figures.parts.tables import FloatArray, Table, distinct, rows, table
+from ballpiston.figures.parts.tables import FloatArray, Table, distinct, pick, rows, table
 
 # x = delta^-power; 0 is the logarithm.
 _MODELS = {"delta": -1.0, "log(delta)": 0.0, "1/delta": 1.0}
@@ -56,7 +56,7 @@ def fits(points: Table, synthetic: int) -> Table:
         above = series["excess"] > 3 * series["standard_error"]
         if exponent == 1 or above.sum() < _FEWEST_POINTS:
             continue
-        chosen = {name: column[above] for name, column in series.items()}
+        chosen = pick(series, above)
         fit = SeriesFit.of(chosen)
         of_energy.setdefault(epsilon, []).append(fit)
         head = {"epsilon": epsilon, "exponent": exponent, "points": len(fit.log_delta)}
