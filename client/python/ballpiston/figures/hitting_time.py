@@ -61,8 +61,9 @@ def draw(tables: Tables) -> Figure:
     data = tables["hitting-time"]
     data = rows(data, exponent=data["exponent"][0])
     energies = distinct(data["epsilon"])
-    figure = style.picture(max(640, 100 + 320 * len(energies)), 760)
-    panels = figure.subplots(2, len(energies), sharex=True, sharey="row", squeeze=False)
+    shared: dict[str, Any] = {"sharex": True, "sharey": "row", "squeeze": False}
+    width = max(640, 100 + 320 * len(energies))
+    figure, panels = style.panels((width, 760), 2, len(energies), **shared)
     longest = data["t"][np.isfinite(data["t"])].max()
     t = np.linspace(0, longest, 200)
     exponential: dict[str, Any] = {"color": style.BLACK, "linewidth": 1.2, "dashes": (6, 4)}

@@ -103,8 +103,7 @@ def draw(tables: Tables) -> Figure:
     """One panel for each energy before the collision."""
     energies = style.series(tables["kernel-exact"], "epsilon", "ε")
     lines = (len(energies) + 1) // 2
-    figure = style.picture(960, 350 * lines)
-    panels = figure.subplots(lines, 2, sharex=True, squeeze=False)
+    figure, panels = style.panels((960, 350 * lines), lines, 2, sharex=True, squeeze=False)
     for axes, (exact, colour, label) in zip(panels.flat, energies):
         energy = exact["epsilon"][0]
         seen = exact["density"] > 0

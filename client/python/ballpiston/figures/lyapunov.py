@@ -117,8 +117,7 @@ def laws(whole: Table) -> Table:
 @style.styled
 def draw(tables: Tables) -> Figure:
     """Both panels."""
-    figure = style.picture(960, 480)
-    left, right = figure.subplots(1, 2)
+    figure, (left, right) = style.panels((960, 480), 1, 2, ("λ$_2$τ", "λ$_2$τ - ln τ"))
     found, curve = tables["lyapunov"], tables["lyapunov-curve"]
     (limit,) = _above_logarithm(rows(curve, delta=_LIMIT), "computed")
     _draw_growth(left, found, curve, limit)
@@ -129,7 +128,6 @@ def draw(tables: Tables) -> Figure:
     style.level(right, limit, linestyle=":")
     value = _above_logarithm(found, "value")
     style.error_points(right, np.sqrt(found["delta"]), value, found["value_error"], style.BLUE)
-    style.title(right, "b", "λ$_2$τ - ln τ")
     right.set(xlabel="√δ")
     right.legend()
     return figure
@@ -152,5 +150,4 @@ def _draw_growth(axes: Any, found: Table, curve: Table, limit: float) -> None:
     )
     axes.set_xscale("log")
     axes.set(xlabel="mean free time τ", xlim=(tau[0], tau[-1]))
-    style.title(axes, "a", "λ$_2$τ")
     axes.legend(loc="upper left")

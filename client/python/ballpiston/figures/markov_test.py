@@ -170,8 +170,9 @@ def draw(tables: Tables) -> Figure:
     exponents = distinct(data["exponent"])
     across = min(2, len(exponents))
     down = -(-len(exponents) // across)
-    figure = style.picture(max(640, 540 * across), 420 * down + 40)
-    panels = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False)
+    shared: dict[str, Any] = {"sharex": True, "sharey": True, "squeeze": False}
+    size = max(640, 540 * across), 420 * down + 40
+    figure, panels = style.panels(size, down, across, **shared)
     low, high = data["excess"] - data["standard_error"], data["excess"] + data["standard_error"]
     style.signed_log_axis(panels[0, 0], 2 * data["standard_error"].min(), (low, high))
     panels[0, 0].set_xscale("log")

@@ -147,19 +147,14 @@ def _rates(kind: Kind, batches: list[FloatArray]) -> dict[str, Any]:
 def draw(tables: Tables) -> Figure:
     """The three panels."""
     data = tables["rates"]
-    figure = style.picture(1200, 500)
-    panels = figure.subplots(1, 3, sharey=True)
+    titles = ("all events", "ball-piston events", "ball-piston events, given ε")
+    figure, panels = style.panels((1200, 500), 1, 3, titles, sharey=True)
     window = np.logspace(-4.3, 0.2, 200)
     poisson = {"color": style.GREY, "dashes": (6, 4), "label": "Poisson process"}
-    for axes in panels:
+    for axes, unit in zip(panels, ("t/τ", "t/τ$_{bp}$", "t/τ(ε)")):
         style.level(axes, 1, linewidth=1.5)
         axes.semilogx(window, -np.expm1(-window) / window, **poisson)
-        axes.set_xlim(6e-5, 1.7)
-    titles = ("all events", "ball-piston events", "ball-piston events, given ε")
-    units = ("t/τ", "t/τ$_{bp}$", "t/τ(ε)")
-    for axes, letter, text, unit in zip(panels, "abc", titles, units):
-        style.title(axes, letter, text)
-        axes.set_xlabel(unit)
+        axes.set(xlim=(6e-5, 1.7), xlabel=unit)
     several = [(0, rows(data, kind="all"), style.BLUE, "", 0.0)]
     several += [(1, rows(data, kind="ball_piston"), style.BLUE, "", 0.0)]
     conditional = style.series(rows(data, kind="conditional"), "epsilon", "ε")

@@ -152,11 +152,11 @@ _AXES = {
 @style.styled
 def draw(tables: Tables) -> Figure:
     """Collisions and wall hits left, their exact density right."""
-    figure = style.picture(960, 1180)
-    panels = figure.subplots(3, 2, sharey="row", sharex="row")
-    for line, letters, (name, labels) in zip(panels, ("ab", "cd", "ef"), _AXES.items()):
+    titles = ("collisions", "exact density") * 2 + ("wall hits", "exact density")
+    figure, panels = style.panels((960, 1180), 3, 2, titles, sharey="row", sharex="row")
+    for line, (name, labels) in zip(panels, _AXES.items()):
         part = rows(tables["section"], section=name)
-        for axes, letter, column in zip(line, letters, ("density", "exact_density")):
+        for axes, column in zip(line, ("density", "exact_density")):
             x, y = (np.unique(part[edges]) for edges in ("first", "second"))
             box = (x[0], 2 * x[-1] - x[-2], y[0], 2 * y[-1] - y[-2])
             shown: dict[str, Any] = {"origin": "lower", "aspect": "auto", "cmap": style.ENERGY}
@@ -164,7 +164,5 @@ def draw(tables: Tables) -> Figure:
             axes.imshow(part[column].reshape(len(x), -1).T, **shown)
             axes.grid(False)
             axes.set(xlabel=labels[0])
-            measured = "wall hits" if name == "s" else "collisions"
-            style.title(axes, letter, measured if column == "density" else "exact density")
         line[0].set(ylabel=labels[1])
     return figure

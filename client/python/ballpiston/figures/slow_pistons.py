@@ -112,8 +112,8 @@ def _growth(point: Point) -> dict[str, float]:
 @style.styled
 def draw(tables: Tables) -> Figure:
     """Both panels."""
-    figure = style.picture(960, 480)
-    left, right = figure.subplots(1, 2)
+    titles = ("Var(Q)/t over its first value", "growth over 2aJ²")
+    figure, (left, right) = style.panels((960, 480), 1, 2, titles)
     found = tables["slow-pistons"]
     _draw_windows(left, tables["slow-pistons-windows"], found["delta"][0])
     style.level(right, 1)
@@ -123,8 +123,6 @@ def draw(tables: Tables) -> Figure:
     right.set_xticks(x, labels)
     right.minorticks_off()
     right.set(xlabel="δ, cold temperature", xlim=(-0.5, len(x) - 0.5))
-    style.title(left, "a", "Var(Q)/t over its first value")
-    style.title(right, "b", "growth over 2aJ²")
     return figure
 
 

@@ -144,14 +144,18 @@ def draw(tables: Tables) -> Figure:
     has_gas = "heat-current" in data["quantity"]
     has_limit = "relaxation-time" in data["quantity"]
     lines = 3 if has_gas or has_limit else 2
-    figure = style.picture(960, 400 * lines + 120)
-    panels = figure.subplots(lines, 2)
+    titles = (
+        "mean free time, against time",
+        "mean free time, against wall hits",
+        "law of the ingoing angle",
+        "single orbits",
+        "relaxation time of the energy",
+        "heat current of a gas of one cell",
+    )
+    figure, panels = style.panels((960, 400 * lines + 120), lines, 2, titles)
     _draw_errors(panels[0, 0], data, "mean-free-time", "work_seconds")
     _draw_errors(panels[0, 1], data, "mean-free-time", "wall_hits")
     _draw_errors(panels[1, 0], data, "ingoing-law", "wall_hits")
-    style.title(panels[0, 0], "a", "mean free time, against time")
-    style.title(panels[0, 1], "b", "mean free time, against wall hits")
-    style.title(panels[1, 0], "c", "law of the ingoing angle")
     panels[1, 0].set_ylabel("Kullback-Leibler divergence")
     _note_closed_form(panels[0, 0], rows(data, quantity="mean-free-time", method="closed-form"))
     _draw_orbits(panels[1, 1], curves_of(data, "trajectory"))
@@ -159,7 +163,6 @@ def draw(tables: Tables) -> Figure:
         _draw_relaxation(panels[2, 0], data)
     if has_gas:
         _draw_errors(panels[2, 1], data, "heat-current", "work_seconds")
-        style.title(panels[2, 1], "f", "heat current of a gas of one cell")
         _note_lost_balls(panels[2, 1], data)
     for axes in panels.flat:
         if not axes.has_data():
@@ -229,7 +232,6 @@ def _draw_orbits(axes: Any, curves: list[Curve]) -> None:
         style.error_points(axes, cost, run["value"], run["own_error"], curve.colour, markersize=6)
     axes.set(xscale="log", xlabel="time of a wall hit / ns")
     axes.set_ylabel("wall hits until the orbit is wrong")
-    style.title(axes, "d", "single orbits")
 
 
 def floors_of_limit(runs: Table) -> Table:
@@ -265,7 +267,6 @@ def _draw_relaxation(axes: Any, data: Table) -> None:
     axes.set(xscale="log", yscale="log", xlabel="time / s", ylabel="relative error")
     axes.margins(y=0.4)
     axes.legend(loc="upper left", ncol=2, handlelength=2.5, **_SMALL)
-    style.title(axes, "e", "relaxation time of the energy")
     bounds = ", ".join(
         f"δ = {delta:g}: ≤ {100 * value:.2g} %"
         for delta, value, is_bias in zip(*floors.values())

@@ -66,8 +66,7 @@ def draw(tables: Tables) -> Figure:
     markov = tables["temperature-profile-markov"]
     hot, cold = float(markov["hot"][0]), float(markov["cold"][0])
     lengths = distinct(markov["cells"])
-    figure = style.picture(960, 840)
-    panels = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3, 2)})
+    figure, panels = style.panels((960, 840), 2, 1, sharex=True, height_ratios=(3, 2))
     x = np.linspace(0, 1, 200)
     panels[0].plot(x, linear_law(hot, cold, x), color=style.BLACK)
     style.level(panels[1], 0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import io
+import string
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -82,6 +83,17 @@ def picture(width: float, height: float) -> Figure:
     return Figure(figsize=(width / _PIXELS, height / _PIXELS))
 
 
+def panels(
+    size: tuple[float, float], down: int, across: int, titles: Iterable[str] = (), **options: Any
+) -> tuple[Figure, Any]:
+    """A figure of panels, and the panels. Their titles have the letters a, b, ..."""
+    figure = picture(*size)
+    matrix = figure.subplots(down, across, **options)
+    for axes, letter, text in zip(np.ravel(matrix), string.ascii_lowercase, titles):
+        axes.set_title(rf"$\mathbf{{{letter}}}$  {text}")
+    return figure, matrix
+
+
 def bare_axes(figure: Figure, place: Any = 111) -> Any:
     """Axes without a frame, for drawings. Lengths of x and y are equal."""
     axes = figure.add_subplot(place)
@@ -96,11 +108,6 @@ def axis_arrows(axes: Any, origin: Sequence[float], length: float, names: Sequen
         step = length * np.eye(3)[k]
         axes.quiver(*origin, *step, color=BLACK, arrow_length_ratio=0.25, zorder=9)
         axes.text(*(origin + 1.3 * step), name, ha="center", va="center")
-
-
-def title(axes: Axes, letter: str, text: str) -> None:
-    """Of one of several panels: a bold letter and a text."""
-    axes.set_title(rf"$\mathbf{{{letter}}}$  {text}")
 
 
 def error_points(
