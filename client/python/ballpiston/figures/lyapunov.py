@@ -106,12 +106,12 @@ def laws(whole: Table) -> Table:
         "logarithm and computed terms": {"terms": line} | computed,
         "computed": {"terms": line[:, :0], "values": rest - log_tau, "errors": rest_error},
     }
-    unknown = dict.fromkeys(("A", "A_error", "B", "B_error"), np.nan)
-    return table(
-        {"law": name} | unknown | fits.linear(**model).row("A", "B")
+    found = (
+        {"law": name} | fits.linear(**model).row("A", "B")
         for name, model in models.items()
         if len(value) >= model["terms"].shape[1]
     )
+    return table(found, ("law", "A", "A_error", "B", "B_error", "chi_squared", "freedom"))
 
 
 @style.styled

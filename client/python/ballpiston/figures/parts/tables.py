@@ -19,11 +19,11 @@ _ESTIMATE = ("name", "value", "standard_error", "exact", "noise_floor", "limit")
 
 
 def table(rows: Iterable[Mapping[str, Any]], names: Iterable[str] = ()) -> Table:
-    """Of rows with the same names; `names` are those of a table without rows. What is None becomes
-    NaN."""
+    """Of rows, with columns of these names, else of all names in the rows. What a row lacks or has as
+    None becomes NaN."""
     rows = list(rows)
-    names = rows[0] if rows else names
-    return {n: np.array([np.nan if r[n] is None else r[n] for r in rows]) for n in names}
+    names = names or dict.fromkeys(n for row in rows for n in row)
+    return {n: np.array([np.nan if row.get(n) is None else row[n] for row in rows]) for n in names}
 
 
 def stacked(parts: Iterable[Mapping[str, Any]]) -> Table:
