@@ -16,7 +16,7 @@ from typing import Any
 import grpc
 
 from ballpiston.channel import open_channel
-from ballpiston.channel_security import ChannelSecurity, LoopbackToken
+from ballpiston.channel_security import ChannelSecurity, Token
 from ballpiston.connection_hint import connection_hint
 from ballpiston.error_details import from_rpc_error
 from ballpiston.errors import Error, Unavailable
@@ -50,7 +50,7 @@ class Connection:
         self.private = private
         self.timeout = timeout
         self.channel = open_channel(self.address, security)
-        self._loopback_token = LoopbackToken(security, self.address)
+        self._token = Token(security, self.address)
         # Also at the interpreter's exit: gRPC's own destructor comes after its threads were killed,
         # and would wait forever for a lock that one of them held.
         self.close = weakref.finalize(self, self.channel.close)
@@ -90,8 +90,8 @@ class Connection:
                 raise
 
     def metadata(self) -> list[tuple[str, str]]:
-        """Of a call: the token for a server on the loopback, if one is to be sent."""
-        return self._loopback_token.metadata()
+        """Of a call: the token, if one is to be sent."""
+        return self._token.metadata()
 
     def error_of(self, rpc_error: grpc.RpcError) -> Error:
         """The exception for a failed call. An error without a reason is one of the connection: its

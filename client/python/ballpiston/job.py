@@ -254,9 +254,7 @@ class Job:
                 points.append(point)
             request.page_token = page.next_page_token
             if not request.page_token:
-                job = ensemble_pb2.EnsembleJob()
-                job.CopyFrom(self.message)
-                return Result(job, points)
+                return Result(self.message, points)
 
     def cancel(self) -> Job:
         """Stops the job. Its finished points stay.
