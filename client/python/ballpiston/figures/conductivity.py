@@ -69,5 +69,6 @@ def draw(tables: Tables) -> Figure:
     right.set(xlabel="1/N", ylabel="1000 (conductivity / static value - 1)")
     for axes in (left, right):
         axes.set_xlim(0, axes.dataLim.xmax * 1.06)
-        style.legend_above_data(axes)
+        axes.margins(y=0.25)
+        axes.legend(loc="upper left")
     return figure

@@ -159,8 +159,7 @@ def draw(tables: Tables) -> Figure:
     shared: dict[str, Any] = {"sharex": True, "sharey": True, "squeeze": False}
     size = max(640, 540 * across), 420 * down + 40
     figure, panels = style.panels(size, down, across, **shared)
-    low, high = data["excess"] - data["standard_error"], data["excess"] + data["standard_error"]
-    style.signed_log_axis(panels[0, 0], 2 * data["standard_error"].min(), (low, high))
+    style.signed_log_axis(panels[0, 0], 2 * data["standard_error"].min())
     panels[0, 0].set_xscale("log")
     panels[0, 0].set_xlim(0.93 * data["delta"].min(), 1.07 * data["delta"].max())
     for axes, exponent in zip(panels.flat, exponents):
