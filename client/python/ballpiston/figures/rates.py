@@ -69,7 +69,8 @@ def measure(
         orbit = client.trace_arrays(*names, rho=rho, delta=delta, seed=seed + k, events=events)
         for kind, found in batches.items():
             found += batches_of_gaps(orbit, kind)
-    return {"rates": stacked(_rates(kind, found) for kind, found in batches.items())}
+    measured = {kind: found for kind, found in batches.items() if any(map(len, found))}
+    return {"rates": stacked(_rates(kind, found) for kind, found in measured.items())}
 
 
 def _kinds(client: Client, rho: float, delta: float, epsilon: Numbers) -> list[Kind]:
@@ -128,11 +129,8 @@ def rate_of_windows(
 
 
 def _rates(kind: Kind, batches: list[FloatArray]) -> dict[str, Any]:
-    """Empty if no gap has the energies of this kind."""
     lengths = _LENGTHS / kind.rate
-    if not any(len(gaps) for gaps in batches):
-        lengths = lengths[:0]
-    rate, error = rate_of_windows(batches, lengths) if len(lengths) else (lengths, lengths)
+    rate, error = rate_of_windows(batches, lengths)
     return {
         "kind": kind.name,
         "epsilon": kind.epsilon,
