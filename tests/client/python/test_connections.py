@@ -100,6 +100,9 @@ def test_the_servers_own_token_is_read_for_each_call(
     for text in ("first", "second"):
         private(folder, "127.0.0.1:1", text + "\n")
         assert token.metadata() == [("authorization", f"Bearer {text}")]
+    private(folder, "host:1", "third\n")
+    assert Token(ChannelSecurity(), "host:1").metadata() == []
+    assert Token(ChannelSecurity(tls=True), "127.0.0.1:1").metadata() == []
 
 
 def test_an_error_says_how_long_to_wait() -> None:
