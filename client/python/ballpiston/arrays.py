@@ -23,38 +23,46 @@ curves are padded with NaN. An array that would have no value at all is left out
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ballpiston._version import __version__
-from ballpiston.curve import curve_of
 from ballpiston.document import json_of
+from ballpiston.fields import FloatArray, column, value_of
 from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS, parameters_of
-from ballpiston.spelling import spelling
-from ballpiston.v1 import spec_pb2
+from ballpiston.spelling import spelled
 
-Array = npt.NDArray[Any]
-Arrays = dict[str, Array]
+Arrays = dict[str, npt.NDArray[Any]]
 
 _SIGNS = {1: "_plus", -1: "_minus"}
 
 
 def arrays_of(job: Any, points: Sequence[Any]) -> Arrays:
     """Of an EnsembleJob and its PointResults."""
+    provenance = {
+        "job": job.name,
+        "engine_version": job.engine_version,
+        "client_version": __version__,
+        "spec": json_of(job.spec),
+    }
+    measured = {
+        **_estimates(points),
+        **_parts(points, "kl_divergence", ("noise_error", "cells")),
+        **_parts(points, "health", ("escapes", "max_energy_error")),
+        **_histograms(points),
+        **_curves(points),
+    }
     return {
         "index": np.array([point.index for point in points], dtype=np.int64),
         **parameter_arrays(points),
-        "model": _texts(spelling(spec_pb2.EnsembleSpec.Model, point.model) for point in points),
-        "samples": _floats(point.samples for point in points),
-        **_estimate_arrays(points),
-        **_part_arrays(points, "kl_divergence", ("noise_error", "cells")),
-        **_part_arrays(points, "health", ("escapes", "max_energy_error")),
-        **_histogram_arrays(points),
-        **_curve_arrays(points),
-        "provenance": np.array(json.dumps(_provenance(job))),
+        "model": np.array([spelled(point, "model") for point in points], dtype=np.str_),
+        "samples": column(points, "samples"),
+        **{name: array for name, array in measured.items() if not np.all(np.isnan(array))},
+        "provenance": np.array(json.dumps(provenance)),
     }
 
 
@@ -69,123 +77,71 @@ def parameter_arrays(points: Sequence[Any]) -> Arrays:
     }
 
 
-def optional_floats(messages: Iterable[Any], field: str) -> npt.NDArray[np.float64]:
-    """A field that may be absent, of messages that may be None; NaN where absent."""
-    return _floats(
-        getattr(m, field) if m is not None and m.HasField(field) else np.nan for m in messages
-    )
+def by_name(
+    points: Sequence[Any], part: str, name_of: Callable[[Any], str] = attrgetter("name")
+) -> dict[str, list[list[Any]]]:
+    """The messages in the field `part` of all points: for each name a list over the points, of the
+    messages that the point has of this name."""
+    found: dict[str, list[list[Any]]] = {}
+    for i, point in enumerate(points):
+        for message in getattr(point, part):
+            found.setdefault(name_of(message), [[] for _ in points])[i].append(message)
+    return found
 
 
-def _provenance(job: Any) -> dict[str, Any]:
-    return {
-        "job": job.name,
-        "engine_version": job.engine_version,
-        "client_version": __version__,
-        "spec": json_of(job.spec),
-    }
+def only(found: list[Any]) -> Any:
+    """The only message, or None."""
+    return found[0] if found else None
 
 
-def _estimate_arrays(points: Sequence[Any]) -> Arrays:
-    by_name = [{estimate.name: estimate for estimate in point.estimates} for point in points]
-    arrays: Arrays = {}
-    for name in dict.fromkeys(name for estimates in by_name for name in estimates):
-        column = [estimates.get(name) for estimates in by_name]
-        arrays[name] = _floats(np.nan if e is None else e.value for e in column)
-        for field in ESTIMATE_FIELDS:
-            _add_unless_empty(arrays, f"{name}_{field}", optional_floats(column, field))
+def _estimates(points: Sequence[Any]) -> dict[str, FloatArray]:
+    arrays = {}
+    for name, found in by_name(points, "estimates").items():
+        estimates = [only(of_point) for of_point in found]
+        arrays[name] = column(estimates, "value")
+        arrays |= {f"{name}_{field}": column(estimates, field) for field in ESTIMATE_FIELDS}
     return arrays
 
 
-def _part_arrays(points: Sequence[Any], part: str, fields: Sequence[str]) -> Arrays:
-    """Arrays of these fields of `part`, a message that a point may have."""
-    column = [getattr(point, part) if point.HasField(part) else None for point in points]
-    arrays: Arrays = {}
-    for field in fields:
-        values = _floats(np.nan if found is None else getattr(found, field) for found in column)
-        _add_unless_empty(arrays, f"{part}_{field}", values)
+def _parts(points: Sequence[Any], part: str, fields: Sequence[str]) -> dict[str, FloatArray]:
+    """These fields of `part`, a message that a point may have."""
+    messages = [value_of(point, part) for point in points]
+    return {f"{part}_{field}": column(messages, field) for field in fields}
+
+
+def _histograms(points: Sequence[Any]) -> dict[str, FloatArray]:
+    def name_of(histogram: Any) -> str:
+        return f"histogram_{histogram.name}" + _SIGNS.get(histogram.sigma, "")
+
+    arrays = {}
+    for name, found in by_name(points, "histograms", name_of).items():
+        has_times = any(h.HasField("time") for of_point in found for h in of_point)
+        for suffix, field in (("counts", "counts"), ("expected", "expected_probabilities")):
+            bins = _padded([[getattr(h, field) for h in of_point] for of_point in found], 3)
+            arrays[f"{name}_{suffix}"] = bins if has_times else bins[:, 0]
+        for bound in ("lower", "upper"):
+            arrays[f"{name}_{bound}"] = column(map(only, found), bound)
+        if has_times:
+            arrays[f"{name}_time"] = _padded([column(of_point, "time") for of_point in found], 2)
     return arrays
 
 
-def _histogram_arrays(points: Sequence[Any]) -> Arrays:
-    by_name = [_grouped(point.histograms, _histogram_name) for point in points]
-    arrays: Arrays = {}
-    for name in dict.fromkeys(name for groups in by_name for name in groups):
-        column = [groups.get(name, []) for groups in by_name]
-        arrays.update(_arrays_of_one_histogram(f"histogram_{name}", column))
-    return arrays
-
-
-def _arrays_of_one_histogram(name: str, column: list[list[Any]]) -> Arrays:
-    """`column` has the histograms of each point that have this name: one, or one for each time."""
-    has_times = any(h.HasField("time") for group in column for h in group)
-    arrays: Arrays = {}
-    for suffix, field in (("counts", "counts"), ("expected", "expected_probabilities")):
-        rows = [[list(getattr(h, field)) for h in group] for group in column]
-        values = _padded(rows, 3)
-        if not has_times and values.size:
-            values = values[:, 0, :]
-        _add_unless_empty(arrays, f"{name}_{suffix}", values)
-    for bound in ("lower", "upper"):
-        arrays[f"{name}_{bound}"] = _floats(
-            getattr(group[0], bound) if group else np.nan for group in column
-        )
-    if has_times:
-        arrays[f"{name}_time"] = _padded([[h.time for h in group] for group in column], 2)
-    return arrays
-
-
-def _histogram_name(histogram: Any) -> str:
-    return str(histogram.name) + _SIGNS.get(histogram.sigma, "")
-
-
-def _curve_arrays(points: Sequence[Any]) -> Arrays:
-    by_name = [{curve.name: curve_of(curve) for curve in point.curves} for point in points]
-    arrays: Arrays = {}
-    for name in dict.fromkeys(name for curves in by_name for name in curves):
+def _curves(points: Sequence[Any]) -> dict[str, FloatArray]:
+    arrays = {}
+    for name, found in by_name(points, "curves").items():
         for field in ("time", "position", "value", "standard_error", "batches", "limit"):
-            found = [getattr(curves.get(name), field, None) for curves in by_name]
-            rows = [[] if row is None else row for row in found]
-            _add_unless_empty(arrays, f"curve_{name}_{field}", _padded(rows, 2))
+            rows = [[value_of(at, field) for c in of_point for at in c.points] for of_point in found]
+            arrays[f"curve_{name}_{field}"] = _padded(rows, 2)
     return arrays
 
 
-def _grouped(items: Iterable[Any], key: Callable[[Any], str]) -> dict[str, list[Any]]:
-    groups: dict[str, list[Any]] = {}
-    for item in items:
-        groups.setdefault(key(item), []).append(item)
-    return groups
-
-
-def _padded(rows: list[Any], dimensions: int) -> Array:
+def _padded(rows: Sequence[Any], dimensions: int) -> FloatArray:
     """Nested lists of numbers as one array, with NaN where a list is shorter than the longest."""
-    shape = tuple(_longest(rows, depth) for depth in range(dimensions))
-    array = np.full(shape, np.nan)
-    _fill(array, rows)
-    return array
-
-
-def _longest(rows: Any, depth: int) -> int:
-    if depth == 0:
-        return len(rows)
-    return max((_longest(row, depth - 1) for row in rows), default=0)
-
-
-def _fill(array: Array, rows: Any) -> None:
-    if array.ndim == 1:
-        array[: len(rows)] = rows
-        return
-    for part, row in zip(array, rows):
-        _fill(part, row)
-
-
-def _add_unless_empty(arrays: Arrays, name: str, values: Array) -> None:
-    if values.size and not np.all(np.isnan(values)):
-        arrays[name] = values
-
-
-def _floats(values: Iterable[float]) -> npt.NDArray[np.float64]:
-    return np.array(list(values), dtype=np.float64)
-
-
-def _texts(values: Iterable[str]) -> Array:
-    return np.array(list(values), dtype=np.str_)
+    if dimensions == 1:
+        return np.array(rows, dtype=np.float64)
+    parts = [_padded(row, dimensions - 1) for row in rows]
+    shapes = [part.shape for part in parts] or [(0,) * (dimensions - 1)]
+    padded = np.full((len(parts), *np.max(shapes, axis=0)), np.nan)
+    for array, part in zip(padded, parts):
+        array[tuple(map(slice, part.shape))] = part
+    return padded

@@ -18,8 +18,8 @@ from ballpiston.channel import open_channel
 from ballpiston.connection import Connection
 from ballpiston.point import Point
 from ballpiston.progress import fraction_of, progress_in
-from ballpiston.spelling import spelling
-from ballpiston.v1 import ensemble_pb2, ensemble_pb2_grpc
+from ballpiston.spelling import spelled
+from ballpiston.v1 import ensemble_pb2_grpc
 from ballpiston.watch import Attachments, connect_again, ended_early
 
 
@@ -57,7 +57,7 @@ async def watch_updates(connection: Connection, name: str) -> AsyncIterator[Upda
                 ):
                     watch.handle(message)
                     if message.HasField("job"):
-                        state = spelling(ensemble_pb2.EnsembleJob.State, message.job.state)
+                        state = spelled(message.job, "state")
                     if (progress := progress_in(message)) is not None:
                         changed = (*message.snapshot.points, *message.snapshot.finished_points)
                         yield Update(state, fraction_of(progress), [Point(m) for m in changed])

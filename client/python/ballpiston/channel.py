@@ -65,7 +65,6 @@ def open_channel(address: str, security: ChannelSecurity, module: Any = grpc) ->
 
     Raises:
         ValueError: not an address, or security that does not fit together or cannot be read.
-        PermissionDenied: a secret file is open to other users.
     """
     target = grpc_target(address)
     check(security, address)

@@ -66,39 +66,32 @@ def check(security: ChannelSecurity, address: str) -> None:
 
 
 def credentials_of(security: ChannelSecurity) -> Any | None:
-    """gRPC's credentials, or None for a channel without encryption. Reads the files.
+    """gRPC's credentials, or None for a channel without encryption. Reads the authority file.
+
+    Raises:
+        ValueError: names a file that cannot be used.
+    """
+    if not security.has_tls:
+        return None
+    authorities = _authorities(security.ca) if security.ca else None
+    return grpc.ssl_channel_credentials(root_certificates=authorities)
+
+
+class Token:
+    """The token that calls send. A token file is read once, the own server's token for each call.
 
     Raises:
         ValueError: names a file that cannot be used.
         PermissionDenied: names a secret file that other users can read.
     """
-    if not security.has_tls:
-        return None
-    channel = grpc.ssl_channel_credentials(
-        root_certificates=_authorities(security.ca) if security.ca else None
-    )
-    if not security.has_token:
-        return channel
-    caller = grpc.access_token_call_credentials(_token_of(security))
-    return grpc.composite_channel_credentials(channel, caller)
-
-
-class LoopbackToken:
-    """The token that calls without encryption send, to a loopback address only. A token file is read
-    once, as with TLS; the own server's token is read for each call.
-
-    Raises:
-        ValueError, PermissionDenied: as credentials_of.
-    """
 
     def __init__(self, security: ChannelSecurity, address: str) -> None:
-        self._is_needed = not security.has_tls and is_loopback(address)
-        self._address = address
-        self._given = _token_of(security) if self._is_needed and security.has_token else ""
+        self._given = _token_of(security) if security.has_token else ""
+        self._own_server = "" if security.has_tls or not is_loopback(address) else address
 
     def metadata(self) -> list[tuple[str, str]]:
         """Of a call."""
-        token = self._given or (_own_token(self._address) if self._is_needed else "")
+        token = self._given or (_own_token(self._own_server) if self._own_server else "")
         return [("authorization", f"Bearer {token}")] if token else []
 
 

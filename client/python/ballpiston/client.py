@@ -182,7 +182,7 @@ class Client:
             ...             tolerance=0.01)
         """
         request = ensemble_pb2.PlanEnsembleJobRequest(spec=question_of(experiment, question))
-        return Plan(self._connection.call(self._connection.ensembles.PlanEnsembleJob, request))
+        return Plan(self._connection.call(request))
 
     # Jobs
 
@@ -194,10 +194,7 @@ class Client:
         """
         full = name if name.startswith(_COLLECTION) else _COLLECTION + name
         request = ensemble_pb2.GetEnsembleJobRequest(name=full)
-        return Job(
-            self._connection,
-            self._connection.call(self._connection.ensembles.GetEnsembleJob, request),
-        )
+        return Job(self._connection, self._connection.call(request))
 
     def jobs(
         self,
@@ -224,7 +221,7 @@ class Client:
         jobs: list[Job] = []
         while limit is None or len(jobs) < limit:
             request.page_size = _PAGE if limit is None else min(_PAGE, limit - len(jobs))
-            page = self._connection.call(self._connection.ensembles.ListEnsembleJobs, request)
+            page = self._connection.call(request)
             jobs += [Job(self._connection, message) for message in page.jobs]
             request.page_token = page.next_page_token
             if not request.page_token:
@@ -260,7 +257,7 @@ class Client:
         request = analytic_pb2.EvaluatePairsRequest(
             **{name: number_list(name, values) for name, values in lists.items()}
         )
-        return ClosedForms(self._connection.call(self._connection.analytic.EvaluatePairs, request))
+        return ClosedForms(self._connection.call(request))
 
     def trace(
         self,
@@ -295,21 +292,13 @@ class Client:
             self._connection, _orbit_request(rho, delta, events, seed, cells, temperature)
         )
 
-    def trace_arrays(
-        self,
-        *fields: str,
-        rho: float,
-        delta: float,
-        events: float,
-        seed: int = 0,
-        cells: Shapes | None = None,
-        temperature: float | None = None,
-    ) -> dict[str, npt.NDArray[Any]]:
+    @takes_keywords_of(trace)
+    def trace_arrays(self, *fields: str, **orbit: Any) -> dict[str, npt.NDArray[Any]]:
         """The events of `trace` as arrays, without the start: faster, for long orbits.
 
         Args:
             fields: of an event, such as "time", "event", "piston_energy"; NaN where absent.
-            rho, delta, events, seed, cells, temperature: as those of `trace`.
+            orbit: all other keywords, as those of `trace`.
 
         Raises:
             ValueError: an event has no such field.
@@ -318,8 +307,7 @@ class Client:
             >>> orbit = client.trace_arrays("event", "free_time", rho=0.5296, delta=0.2, events=1e5)
             >>> np.nanmean(orbit["free_time"][orbit["event"] == "ball_piston"])
         """
-        request = _orbit_request(rho, delta, events, seed, cells, temperature)
-        return columns_of(self._connection, request, fields)
+        return columns_of(self._connection, _orbit_request(**orbit), fields)
 
     @takes_keywords_of(specification)
     def sample(self, experiment: Any, **question: Any) -> Collisions:
@@ -341,15 +329,14 @@ class Client:
     def status(self) -> ServerStatus:
         """What the server is doing and what it permits. The first call to a server takes most of a
         second, because the server measures its speed."""
-        request = server_pb2.GetServerStatusRequest()
-        message = self._connection.call(self._connection.server.GetServerStatus, request)
+        message = self._connection.call(server_pb2.GetServerStatusRequest())
         return server_status_of(self.address, message)
 
     def _create(self, request: Any) -> Any:
         """One request id for all attempts: a server that accepted the job and stopped before it
         could answer does not get a second one."""
         try:
-            return self._connection.call(self._connection.ensembles.CreateEnsembleJob, request)
+            return self._connection.call(request)
         except KeyboardInterrupt:
             print(
                 "The server may have accepted the job. With "
@@ -367,9 +354,9 @@ def _orbit_request(
     rho: float,
     delta: float,
     events: float,
-    seed: int,
-    cells: Shapes | None,
-    temperature: float | None,
+    seed: int = 0,
+    cells: Shapes | None = None,
+    temperature: float | None = None,
 ) -> Any:
     request = trace_pb2.TraceOrbitRequest(
         rho=real_number("rho", rho),
@@ -378,14 +365,7 @@ def _orbit_request(
         seed=whole_number("seed", seed),
     )
     if cells is not None:
-        request.cells = _only_shape(cells)
+        request.cells = ",".join(shape_list("cells", cells))  # the server permits one shape
     if temperature is not None:
         request.temperature = real_number("temperature", temperature)
     return request
-
-
-def _only_shape(cells: Shapes) -> str:
-    shapes = shape_list("cells", cells)
-    if len(shapes) != 1:
-        raise ValueError(f"a trace has one shape of cells, not {len(shapes)}")
-    return shapes[0]

@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ballpiston.fields import FloatArray, column
 from ballpiston.suggestion import no_such
 from ballpiston.v1 import analytic_pb2
 
 if TYPE_CHECKING:
     import pandas
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def _numbers(message: Any) -> tuple[str, ...]:
@@ -50,30 +48,28 @@ class ClosedForms:
 
     def __init__(self, message: Any) -> None:
         self.message = message
+        points = message.points
+        self._arrays = {name: column(points, name) for name in _PAIR}
+        for part, fields in (("energies", _ENERGY), ("canonical", _CANONICAL)):
+            if points and getattr(points[0], part):
+                for name in fields:
+                    self._arrays[name] = np.array([column(getattr(p, part), name) for p in points])
+        if points and points[0].energies and points[0].energies[0].kernel:
+            kernel = [[list(energy.kernel) for energy in point.energies] for point in points]
+            self._arrays["kernel"] = np.array(kernel)
 
     @property
     def names(self) -> list[str]:
         """The names that this answer has."""
-        first = self.message.points[0] if self.message.points else analytic_pb2.PairAnalytics()
-        names = list(_PAIR)
-        if first.energies:
-            names += _ENERGY
-            names += ["kernel"] if first.energies[0].kernel else []
-        return names + (list(_CANONICAL) if first.canonical else [])
+        return list(self._arrays)
 
     def __len__(self) -> int:
         return len(self.message.points)
 
     def __getitem__(self, name: str) -> FloatArray:
-        if name not in self.names:
-            raise KeyError(no_such("closed form", name, "this answer", self.names))
-        points = self.message.points
-        if name in _PAIR:
-            return np.array([getattr(point, name) for point in points])
-        if name == "kernel":
-            return np.array([[list(e.kernel) for e in point.energies] for point in points])
-        part = "energies" if name in _ENERGY else "canonical"
-        return np.array([[getattr(x, name) for x in getattr(point, part)] for point in points])
+        if name not in self._arrays:
+            raise KeyError(no_such("closed form", name, "this answer", self._arrays))
+        return self._arrays[name].copy()
 
     def to_frame(self) -> pandas.DataFrame:
         """A pandas DataFrame: one row for each pair and, if there are energies or temperatures, one

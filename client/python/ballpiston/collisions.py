@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ballpiston.connection import Connection
+from ballpiston.document import whole_file
 from ballpiston.trace import stream_messages
 from ballpiston.v1 import trace_pb2
 
@@ -30,7 +31,7 @@ class Collisions:
 
     def __init__(self, connection: Connection, spec: Any) -> None:
         request = trace_pb2.SampleCollisionsRequest(spec=spec)
-        self._messages = stream_messages(connection, connection.traces.SampleCollisions, request)
+        self._messages = stream_messages(connection, request)
 
     def __iter__(self) -> Iterator[Records]:
         return self
@@ -44,14 +45,16 @@ class Collisions:
         return np.concatenate(parts) if parts else np.empty(0, _RECORD)
 
     def to_parquet(self, path: Path | str) -> None:
-        """Writes the rest as a file of columns.
+        """Writes the rest as a file of columns: the whole file or none.
 
         Raises:
-            ModuleNotFoundError: this needs pandas and pyarrow.
+            ModuleNotFoundError: this needs pandas and pyarrow. No collision was read.
         """
         import pandas
+        import pyarrow as _  # pandas would miss it after the collisions were read
 
-        pandas.DataFrame(self.all()).to_parquet(path, index=False)
+        with whole_file(Path(path)) as part:
+            pandas.DataFrame(self.all()).to_parquet(part, index=False)
 
 
 def _records_of(message: Any) -> Records:

@@ -1,4 +1,5 @@
-"""The connection of a Client: its channel, the stubs, and how a call is made.
+"""The connection of a Client: its channel, and how a call is made. The type of a request names the
+call: GetEnsembleJobRequest is that of GetEnsembleJob.
 
 A private server may stop, idle, just as a call arrives, or be killed: then it is started again and
 the call is repeated once. So every call that goes through `call` has to be safe to repeat.
@@ -15,14 +16,18 @@ from typing import Any
 import grpc
 
 from ballpiston.channel import open_channel
-from ballpiston.channel_security import ChannelSecurity, LoopbackToken
+from ballpiston.channel_security import ChannelSecurity, Token
 from ballpiston.connection_hint import connection_hint
 from ballpiston.error_details import from_rpc_error
 from ballpiston.errors import Error, Unavailable
 from ballpiston.private_server import PrivateServer
 from ballpiston.server_address import literal_address
-from ballpiston.v1 import analytic_pb2_grpc, ensemble_pb2_grpc, server_pb2_grpc, trace_pb2_grpc
+from ballpiston.v1.analytic_pb2_grpc import AnalyticServiceStub
+from ballpiston.v1.ensemble_pb2_grpc import EnsembleServiceStub
+from ballpiston.v1.server_pb2_grpc import ServerServiceStub
+from ballpiston.v1.trace_pb2_grpc import TraceServiceStub
 
+_SERVICES = (AnalyticServiceStub, EnsembleServiceStub, ServerServiceStub, TraceServiceStub)
 _REVIVE_SECONDS = 10.0
 
 
@@ -45,42 +50,39 @@ class Connection:
         self.private = private
         self.timeout = timeout
         self.channel = open_channel(self.address, security)
-        self._loopback_token = LoopbackToken(security, self.address)
+        self._token = Token(security, self.address)
         # Also at the interpreter's exit: gRPC's own destructor comes after its threads were killed,
         # and would wait forever for a lock that one of them held.
         self.close = weakref.finalize(self, self.channel.close)
-        self.ensembles = ensemble_pb2_grpc.EnsembleServiceStub(self.channel)
-        self.analytic = analytic_pb2_grpc.AnalyticServiceStub(self.channel)
-        self.traces = trace_pb2_grpc.TraceServiceStub(self.channel)
-        self.server = server_pb2_grpc.ServerServiceStub(self.channel)
+        self._methods: dict[str, Callable[..., Any]] = {}
+        for service in _SERVICES:
+            self._methods |= vars(service(self.channel))
 
-    def call(self, method: Callable[..., Any], request: Any) -> Any:
+    def call(self, request: Any) -> Any:
         """The answer to a call that may be repeated."""
         try:
-            return self.call_once(method, request)
+            return self.call_once(request)
         except Unavailable as error:
             if self.private is None or error.code != "UNAVAILABLE":
                 raise
             time.sleep(error.retry_delay)
         self.revive()
-        return self.call_once(method, request)
+        return self.call_once(request)
 
-    def call_once(
-        self, method: Callable[..., Any], request: Any, timeout: float | None = None
-    ) -> Any:
+    def call_once(self, request: Any, timeout: float | None = None) -> Any:
         """The answer to a single attempt, apart from those of the channel's retry policy."""
         try:
             seconds = self.timeout if timeout is None else timeout
-            return method(request, timeout=seconds, metadata=self.metadata())
+            return self._method_of(request)(request, timeout=seconds, metadata=self.metadata())
         except grpc.RpcError as error:
             raise self.error_of(error) from None
 
-    def open_stream(self, method: Callable[..., Any], request: Any) -> Any:
+    def open_stream(self, request: Any) -> Any:
         """The messages of a streaming call. The call begins on a thread of its own, which Ctrl-C does
         not interrupt: a call that is interrupted while it begins is never read by gRPC, and the
         interpreter would wait for it forever at its exit."""
         with ThreadPoolExecutor(max_workers=1) as thread:
-            begun = thread.submit(method, request, metadata=self.metadata())
+            begun = thread.submit(self._method_of(request), request, metadata=self.metadata())
             try:
                 return begun.result()
             except KeyboardInterrupt:
@@ -88,8 +90,8 @@ class Connection:
                 raise
 
     def metadata(self) -> list[tuple[str, str]]:
-        """Of a call: the token for a server on the loopback, if one is to be sent."""
-        return self._loopback_token.metadata()
+        """Of a call: the token, if one is to be sent."""
+        return self._token.metadata()
 
     def error_of(self, rpc_error: grpc.RpcError) -> Error:
         """The exception for a failed call. An error without a reason is one of the connection: its
@@ -119,3 +121,6 @@ class Connection:
             pass
         finally:
             ready.cancel()
+
+    def _method_of(self, request: Any) -> Callable[..., Any]:
+        return self._methods[type(request).__name__.removesuffix("Request")]

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ballpiston.fields import FloatArray, column
 from ballpiston.suggestion import no_such
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,16 +49,16 @@ class Curve:
 
 def curve_of(message: Any) -> Curve:
     """Of a message ballpiston.v1.Curve."""
-    points = list(message.points)
+    points = message.points
     is_of_position = any(point.HasField("position") for point in points)
     return Curve(
         name=message.name,
-        time=None if is_of_position else _optional(points, "time"),
-        position=_optional(points, "position") if is_of_position else None,
-        value=np.array([point.value for point in points], dtype=np.float64),
-        standard_error=_optional(points, "standard_error"),
-        batches=_optional(points, "batches"),
-        limit=_optional(points, "limit"),
+        time=None if is_of_position else column(points, "time"),
+        position=column(points, "position") if is_of_position else None,
+        value=column(points, "value"),
+        standard_error=column(points, "standard_error"),
+        batches=column(points, "batches"),
+        limit=column(points, "limit"),
     )
 
 
@@ -74,8 +72,3 @@ def choose_curve(messages: Iterable[Any], name: str) -> Curve:
     if name not in by_name:
         raise KeyError(no_such("curve", name, "this point", by_name))
     return curve_of(by_name[name])
-
-
-def _optional(points: list[Any], field: str) -> FloatArray:
-    values = [getattr(p, field) if p.HasField(field) else np.nan for p in points]
-    return np.array(values, dtype=np.float64)

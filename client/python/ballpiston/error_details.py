@@ -21,19 +21,6 @@ from ballpiston._google_rpc import error_details_pb2, status_pb2
 
 _DETAILS_KEY = "grpc-status-details-bin"
 
-_CLASSES: dict[str, type[errors.Error]] = {
-    "INVALID_ARGUMENT": errors.InvalidArgument,
-    "OUT_OF_RANGE": errors.InvalidArgument,
-    "NOT_FOUND": errors.NotFound,
-    "UNAUTHENTICATED": errors.Unauthenticated,
-    "PERMISSION_DENIED": errors.PermissionDenied,
-    "FAILED_PRECONDITION": errors.FailedPrecondition,
-    "RESOURCE_EXHAUSTED": errors.ResourceExhausted,
-    "DATA_LOSS": errors.DataLoss,
-    "UNAVAILABLE": errors.Unavailable,
-    "DEADLINE_EXCEEDED": errors.DeadlineExceeded,
-}
-
 AnyError = TypeVar("AnyError", bound=errors.Error)
 
 
@@ -95,11 +82,15 @@ def from_rpc_error(rpc_error: Any) -> errors.Error:
 
 
 def _class_of(code: str, details: Details) -> type[errors.Error]:
+    """The class NotFound is that of NOT_FOUND, and so on."""
     if code == "INVALID_ARGUMENT" and details.violations:
         return errors.InvalidSpecification
+    if code == "OUT_OF_RANGE":
+        return errors.InvalidArgument
     if details.reason == "RESULTS_EXPIRED":
         return errors.ResultsExpired
-    return _CLASSES.get(code, errors.Error)
+    found: type[errors.Error] = getattr(errors, code.title().replace("_", ""), errors.Error)
+    return found
 
 
 def _details_of_call(rpc_error: Any) -> Details:

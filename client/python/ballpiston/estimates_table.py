@@ -11,9 +11,8 @@ import numpy as np
 from ballpiston.errors import NotFound, ResultsExpired
 from ballpiston.job import Job
 from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS
-from ballpiston.spelling import spelling
+from ballpiston.spelling import spelled
 from ballpiston.table_file import Table
-from ballpiston.v1 import ensemble_pb2
 from ballpiston.watch import has_ended
 
 _OF_JOB = ("job", "labels", "state", "experiment", "seed", "engine_version")
@@ -53,8 +52,7 @@ def _note(text: str) -> None:
 def _rows(job: Job) -> Iterator[dict[str, Any]]:
     result = job.result()
     if not has_ended(job.message.state):
-        state = spelling(ensemble_pb2.EnsembleJob.State, job.message.state)
-        points = job.message.progress.points
+        state, points = spelled(job.message, "state"), job.message.progress.points
         _note(f"{job.name} is still {state}: {len(result)} of {points} points are finished")
     of_job = {
         "job": job.name,

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ballpiston.fields import FloatArray, value_of
 from ballpiston.suggestion import no_such
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,24 +67,28 @@ def choose_histogram(
     """The only one of this name and sign; of several times the nearest one.
 
     Raises:
-        KeyError: there is none, or several signs or times to choose from.
+        KeyError: there is none, or several; the message lists those to choose from.
     """
     named = [h for h in histograms if h.name == name]
     if not named:
         raise KeyError(no_such("histogram", name, "this point", (h.name for h in histograms)))
-    found = [h for h in named if sigma is None or h.sigma == sigma]
-    if not found:
-        signs = ", ".join(f"{sign:+d}" for sign in sorted({h.sigma for h in named}))
-        raise KeyError(f"histogram {name!r} has no sigma={sigma!r}; it has {signs}")
-    if sigma is None and len({h.sigma for h in found}) > 1:
-        raise KeyError(f"histogram {name!r} has two signs: choose sigma=+1 or sigma=-1")
-    if len(found) > 1 and time is None:
-        times = ", ".join(f"{h.time:.6g}" for h in found)
-        raise KeyError(f"histogram {name!r} was counted at several times: choose time= of {times}")
-    if time is None:
+    found = [h for h in named if sigma in (None, h.sigma)]
+    if time is not None and found:
+        distances = [abs((h.time or 0.0) - time) for h in found]
+        nearest = found[distances.index(min(distances))].time
+        found = [h for h in found if h.time == nearest]
+    if len(found) == 1:
         return found[0]
-    distances = [abs((h.time or 0.0) - time) for h in found]
-    return found[distances.index(min(distances))]
+    problem = "several" if found else f"none with sigma={sigma!r}"
+    choices = " or ".join(dict.fromkeys(_choice(h) for h in found or named))
+    raise KeyError(f"of the histogram {name!r} there are {problem}: choose {choices}")
+
+
+def _choice(histogram: Histogram) -> str:
+    """The arguments that choose it."""
+    sigma = f"sigma={histogram.sigma:+d}" if histogram.sigma else ""
+    time = "" if histogram.time is None else f"time={histogram.time:.6g}"
+    return ", ".join(filter(None, (sigma, time))) or "no sigma"
 
 
 def _histogram(message: Any, total: float) -> Histogram:
@@ -98,7 +100,7 @@ def _histogram(message: Any, total: float) -> Histogram:
     return Histogram(
         name=message.name,
         sigma=message.sigma,
-        time=message.time if message.HasField("time") else None,
+        time=value_of(message, "time"),
         edges=message.lower + np.arange(bins + 1) * width if bins else np.empty(0),
         counts=counts,
         density=density,

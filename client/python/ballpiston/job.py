@@ -13,11 +13,12 @@ from ballpiston.async_watch import Update, watch_updates
 from ballpiston.connection import Connection
 from ballpiston.error_details import details_of, error_of
 from ballpiston.errors import Error, ResultsExpired, Unavailable
+from ballpiston.fields import value_of
 from ballpiston.progress import Progress, fraction_of, progress_on_screen
 from ballpiston.result import Result
 from ballpiston.result_table import html_table
 from ballpiston.specification import set_target
-from ballpiston.spelling import spelling
+from ballpiston.spelling import spelled
 from ballpiston.v1 import ensemble_pb2, spec_pb2
 from ballpiston.watch import has_ended, watch_job
 
@@ -82,7 +83,7 @@ class Job:
     @property
     def experiment(self) -> str:
         """Such as "first-hit"."""
-        return spelling(spec_pb2.EnsembleSpec.Experiment, self.message.spec.experiment)
+        return spelled(self.message.spec, "experiment")
 
     @property
     def state(self) -> str:
@@ -146,8 +147,7 @@ class Job:
 
     def refresh(self) -> Job:
         """Asks the server for the job as it is now."""
-        request = ensemble_pb2.GetEnsembleJobRequest(name=self.name)
-        self.message = self._call("GetEnsembleJob", request)
+        self.message = self._call(ensemble_pb2.GetEnsembleJobRequest(name=self.name))
         return self
 
     def watch(self, progress: bool | str = True) -> Result:
@@ -204,7 +204,7 @@ class Job:
         request = ensemble_pb2.CreateEnsembleJobRequest(
             spec=spec, request_id=str(uuid.uuid4()), labels=self.labels
         )
-        return Job(self._connection, self._call("CreateEnsembleJob", request))
+        return Job(self._connection, self._call(request))
 
     async def updates(self) -> AsyncIterator[Update]:
         """What changes until the job has ended, for an event loop: the wait needs no thread.
@@ -248,15 +248,13 @@ class Job:
         request = ensemble_pb2.ListResultsRequest(parent=self.name, page_size=_PAGE)
         points: list[Any] = []
         while True:
-            page = self._call("ListResults", request)
+            page = self._call(request)
             for point in page.results:
                 point.ClearField("name")  # as in files: equal answers are equal results
                 points.append(point)
             request.page_token = page.next_page_token
             if not request.page_token:
-                job = ensemble_pb2.EnsembleJob()
-                job.CopyFrom(self.message)
-                return Result(job, points)
+                return Result(self.message, points)
 
     def cancel(self) -> Job:
         """Stops the job. Its finished points stay.
@@ -267,7 +265,7 @@ class Job:
         request = ensemble_pb2.CancelEnsembleJobRequest(
             name=self.name, request_id=str(uuid.uuid4())
         )
-        self.message = self._call("CancelEnsembleJob", request)
+        self.message = self._call(request)
         return self
 
     def pin(self, pinned: bool = True) -> Job:
@@ -293,8 +291,7 @@ class Job:
         """
         if self._connection.private is not None:
             self._connection.revive()
-        request = ensemble_pb2.DeleteEnsembleJobRequest(name=self.name)
-        self._connection.call_once(self._connection.ensembles.DeleteEnsembleJob, request)
+        self._connection.call_once(ensemble_pb2.DeleteEnsembleJobRequest(name=self.name))
 
     # How it looks
 
@@ -322,18 +319,16 @@ class Job:
         """Updates the job if the server answers at once; a private server is not started for it."""
         request = ensemble_pb2.GetEnsembleJobRequest(name=self.name)
         try:
-            self.message = self._connection.call_once(
-                self._connection.ensembles.GetEnsembleJob, request, _GLANCE_SECONDS
-            )
+            self.message = self._connection.call_once(request, _GLANCE_SECONDS)
         except Error:
             pass
 
     def _last_state(self) -> str:
-        return spelling(ensemble_pb2.EnsembleJob.State, self.message.state)
+        return spelled(self.message, "state")
 
-    def _call(self, method: str, request: Any) -> Any:
+    def _call(self, request: Any) -> Any:
         try:
-            return self._connection.call(getattr(self._connection.ensembles, method), request)
+            return self._connection.call(request)
         except ResultsExpired as error:
             error.args = (f"{error}\nTo compute them again: client.run(job.specification)",)
             raise
@@ -343,7 +338,7 @@ class Job:
             job=ensemble_pb2.EnsembleJob(name=self.name, **fields),
             update_mask={"paths": list(fields)},
         )
-        self.message = self._call("UpdateEnsembleJob", request)
+        self.message = self._call(request)
         return self
 
     def _follow(self, screen: Progress) -> None:
@@ -370,10 +365,8 @@ class Job:
         raise error
 
     def _time(self, field: str) -> datetime | None:
-        if not self.message.HasField(field):
-            return None
-        time: datetime = getattr(self.message, field).ToDatetime()
-        return time.replace(tzinfo=timezone.utc)
+        time = value_of(self.message, field)
+        return None if time is None else time.ToDatetime(timezone.utc)
 
 
 def _farewell(name: str) -> str:

@@ -39,7 +39,7 @@ def number_list(name: str, value: Numbers) -> list[float]:
     """
     if isinstance(value, str):
         return _parsed_list(name, value)
-    return [_number(name, item) + 0.0 for item in _items(name, value)]  # + 0.0: -0.0 becomes 0.0
+    return [real_number(name, item) + 0.0 for item in _items(name, value)]  # + 0.0: -0.0 becomes 0.0
 
 
 def shape_list(name: str, value: Shapes) -> list[str]:
@@ -61,7 +61,7 @@ def whole_number(name: str, value: object) -> int:
     """
     if isinstance(value, numbers.Integral) and not isinstance(value, bool):
         return int(value)
-    number = _number(name, value)
+    number = real_number(name, value)
     if not number.is_integer():
         raise ValueError(f"{name} has to be a whole number, not {value!r}")
     return int(number)
@@ -69,7 +69,9 @@ def whole_number(name: str, value: object) -> int:
 
 def real_number(name: str, value: object) -> float:
     """A float, or the TypeError that names the argument."""
-    return _number(name, value)
+    if isinstance(value, (bool, np.bool_)) or not _is_number(value):
+        raise TypeError(f"{name} has to be a number, not {value!r}")
+    return float(value)  # type: ignore[arg-type]
 
 
 def truth_value(name: str, value: object) -> bool:
@@ -83,12 +85,6 @@ def truth_value(name: str, value: object) -> bool:
 def _is_number(value: object) -> bool:
     is_scalar_array = isinstance(value, np.ndarray) and value.ndim == 0
     return isinstance(value, numbers.Real) or is_scalar_array
-
-
-def _number(name: str, value: object) -> float:
-    if isinstance(value, (bool, np.bool_)) or not _is_number(value):
-        raise TypeError(f"{name} has to be a number, not {value!r}")
-    return float(value)  # type: ignore[arg-type]
 
 
 def _items(name: str, value: object) -> list[object]:
@@ -160,7 +156,7 @@ def _parsed_shapes(name: str, text: str) -> list[str]:
 
 
 def _chain(name: str, value: object) -> str:
-    number = _number(name, value)
+    number = real_number(name, value)
     whole = round(number)
     if abs(number - whole) > 1e-12 * abs(number):  # those of a logarithmic range are rounded
         raise ValueError(f"{name} has to have whole numbers, not {value!r}")

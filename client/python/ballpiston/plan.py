@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ballpiston.result_table import html_table
-from ballpiston.spelling import spelling
-from ballpiston.v1 import spec_pb2
+from ballpiston.fields import value_of
+from ballpiston.spelling import spelled
 
 if TYPE_CHECKING:
     import pandas
@@ -48,7 +48,7 @@ class Plan:
     @property
     def models(self) -> list[str]:
         """The model that would answer, for each planned point."""
-        return [_model(point.model) for point in self.message.points]
+        return [spelled(point, "model") for point in self.message.points]
 
     @property
     def reasons(self) -> list[str]:
@@ -98,15 +98,11 @@ class Plan:
 def _row(point: Any, model: Any) -> dict[str, Any]:
     parameters = point.parameters
     row: dict[str, Any] = {field.name: value for field, value in parameters.ListFields()}
-    row["model"] = _model(model.model)
+    row["model"] = spelled(model, "model")
     row["chosen"] = model.model == point.model
     row["answers"] = model.answers
     for field in ("samples", "work", "relative_statistical_error", "relative_model_error"):
-        if model.HasField(field):
-            row[field] = getattr(model, field)
+        if (value := value_of(model, field)) is not None:
+            row[field] = value
     row["reason"] = model.reason
     return row
-
-
-def _model(number: int) -> str:
-    return spelling(spec_pb2.EnsembleSpec.Model, number)

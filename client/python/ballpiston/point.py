@@ -6,11 +6,11 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from ballpiston.curve import Curve, choose_curve, curve_of
+from ballpiston.fields import value_of
 from ballpiston.histogram import Histogram, choose_histogram, histograms_of
 from ballpiston.number_text import measured_text
-from ballpiston.spelling import spelling
+from ballpiston.spelling import spelled
 from ballpiston.suggestion import did_you_mean
-from ballpiston.v1 import spec_pb2
 
 # The parameters of a grid. The last one varies fastest.
 PARAMETERS = ("rho", "delta", "epsilon", "exponent", "cells", "temperature", "hot", "cold")
@@ -76,7 +76,7 @@ class Point:
     @property
     def model(self) -> str:
         """The model that answered, such as "billiard"."""
-        return spelling(spec_pb2.EnsembleSpec.Model, self.message.model)
+        return spelled(self.message, "model")
 
     @property
     def reason(self) -> str:
@@ -139,9 +139,8 @@ class Point:
 
 def parameters_of(message: Any) -> dict[str, float | str]:
     """Of a PointResult: rho, delta and the optional ones that it has."""
-    parameters = message.parameters
-    names = [n for n in PARAMETERS if n in ("rho", "delta") or parameters.HasField(n)]
-    return {name: getattr(parameters, name) for name in names}
+    parameters = {name: value_of(message.parameters, name) for name in PARAMETERS}
+    return {name: value for name, value in parameters.items() if value is not None}
 
 
 def unknown_estimate(name: object, names: list[str]) -> str:
@@ -152,5 +151,5 @@ def unknown_estimate(name: object, names: list[str]) -> str:
 
 
 def _estimate(message: Any) -> Estimate:
-    known = {f: getattr(message, f) for f in ESTIMATE_FIELDS if message.HasField(f)}
-    return Estimate(message.name, message.value, **known)
+    facts = {field: value_of(message, field) for field in ESTIMATE_FIELDS}
+    return Estimate(message.name, message.value, **facts)

@@ -7,24 +7,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union, overload
 
 import numpy as np
-import numpy.typing as npt
 
-from ballpiston.arrays import Arrays, arrays_of, optional_floats, parameter_arrays
+from ballpiston.arrays import Arrays, arrays_of, by_name, only, parameter_arrays
 from ballpiston.curve import Curve
 from ballpiston.document import document_of, read_document, write_atomically
+from ballpiston.fields import FloatArray, column
 from ballpiston.histogram import Histogram
 from ballpiston.point import Point, unknown_estimate
 from ballpiston.result_table import result_html, result_text
-from ballpiston.spelling import spelling
+from ballpiston.spelling import spelled
 from ballpiston.table_file import write_table
-from ballpiston.v1 import ensemble_pb2, spec_pb2
 
 if TYPE_CHECKING:
     import os
 
     import pandas
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class Result:
@@ -51,7 +48,7 @@ class Result:
     def __init__(self, job: Any, messages: Sequence[Any]) -> None:
         self.job = job
         self.messages = list(messages)
-        self._estimates: list[dict[str, Any]] | None = None
+        self._estimates: dict[str, list[list[Any]]] | None = None
 
     # Points
 
@@ -77,8 +74,7 @@ class Result:
             IndexError: there are fewer points.
         """
         if isinstance(key, str):
-            values = [np.nan if e is None else e.value for e in self._column(key)]
-            return np.array(values, dtype=np.float64)
+            return self._column(key, "value")
         return Point(self.messages[key])
 
     def __contains__(self, name: object) -> bool:
@@ -89,32 +85,32 @@ class Result:
     @property
     def names(self) -> list[str]:
         """The names of the estimates that some point has."""
-        return list(dict.fromkeys(name for estimates in self._by_name() for name in estimates))
+        return list(self._by_name())
 
     def error(self, name: str) -> FloatArray:
         """Standard errors (one sigma) of an estimate; NaN where there are too few samples."""
-        return optional_floats(self._column(name), "standard_error")
+        return self._column(name, "standard_error")
 
     def exact(self, name: str) -> FloatArray:
         """Closed forms of an estimate; NaN where there is none."""
-        return optional_floats(self._column(name), "exact")
+        return self._column(name, "exact")
 
     def z_score(self, name: str) -> FloatArray:
         """(value - exact)/standard error of an estimate."""
-        return optional_floats(self._column(name), "z_score")
+        return self._column(name, "z_score")
 
     def model_error(self, name: str) -> FloatArray:
         """Upper bounds of the difference between the model and the billiard, in the units of the
         value like its error. 0 for the billiard itself and for closed forms."""
-        return optional_floats(self._column(name), "model_error")
+        return self._column(name, "model_error")
 
     def noise_floor(self, name: str) -> FloatArray:
         """Of a distance between two laws: its mean if the laws were equal."""
-        return optional_floats(self._column(name), "noise_floor")
+        return self._column(name, "noise_floor")
 
     def limit(self, name: str) -> FloatArray:
         """What the limit delta -> 0 gives at each point."""
-        return optional_floats(self._column(name), "limit")
+        return self._column(name, "limit")
 
     @property
     def parameters(self) -> Arrays:
@@ -124,7 +120,7 @@ class Result:
     @property
     def samples(self) -> FloatArray:
         """First hits, orbits, replicas or collisions at each point."""
-        return np.array([message.samples for message in self.messages], dtype=np.float64)
+        return column(self.messages, "samples")
 
     @property
     def models(self) -> list[str]:
@@ -201,7 +197,7 @@ class Result:
     @property
     def state(self) -> str:
         """That of the job when the result was fetched, such as "succeeded"."""
-        return spelling(ensemble_pb2.EnsembleJob.State, self.job.state)
+        return spelled(self.job, "state")
 
     @property
     def specification(self) -> Any:
@@ -222,24 +218,22 @@ class Result:
         return result_html(self._heading(), self.messages)
 
     def _heading(self) -> str:
-        experiment = spelling(spec_pb2.EnsembleSpec.Experiment, self.job.spec.experiment)
         return (
-            f"{experiment}, {len(self)} of {self.job.progress.points} points, "
+            f"{spelled(self.job.spec, 'experiment')}, {len(self)} of {self.job.progress.points} points, "
             f"seed {self.job.spec.seed}, engine {self.job.engine_version} "
             f"({self.job_name}, {self.state})"
         )
 
-    def _by_name(self) -> list[dict[str, Any]]:
+    def _by_name(self) -> dict[str, list[list[Any]]]:
         if self._estimates is None:
-            self._estimates = [{e.name: e for e in m.estimates} for m in self.messages]
+            self._estimates = by_name(self.messages, "estimates")
         return self._estimates
 
-    def _column(self, name: str) -> list[Any]:
-        """The estimate of each point, None where a point lacks it."""
-        column = [estimates.get(name) for estimates in self._by_name()]
-        if all(estimate is None for estimate in column):
+    def _column(self, name: str, field: str) -> FloatArray:
+        """A field of an estimate at each point."""
+        if name not in self._by_name():
             raise KeyError(unknown_estimate(name, self.names))
-        return column
+        return column(map(only, self._by_name()[name]), field)
 
 
 def load(path: Union[str, "os.PathLike[str]"]) -> Result:

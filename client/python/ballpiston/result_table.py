@@ -12,26 +12,20 @@ from ballpiston.point import Point
 
 _MOST_ROWS = 20
 
-Row = dict[str, str]
-
 
 def result_text(heading: str, points: Sequence[Any]) -> str:
     """The heading, then aligned columns."""
-    rows = [_row(point) for point in points[:_MOST_ROWS]]
-    titles = _titles(rows)
-    lines = [titles] + [[row.get(title, "") for title in titles] for row in rows]
-    widths = [max(len(line[i]) for line in lines) for i in range(len(titles))]
-    text = ["  ".join(cell.rjust(width) for cell, width in zip(line, widths)) for line in lines]
-    return "\n".join([heading, *(text if rows else []), *_ending(points)])
+    lines = _lines(points)
+    widths = [max(map(len, column)) for column in zip(*lines)]
+    text = ["  ".join(map(str.rjust, line, widths)) for line in lines]
+    return "\n".join([heading, *text, *_ending(points)])
 
 
 def result_html(heading: str, points: Sequence[Any]) -> str:
     """The heading and the columns as HTML."""
-    rows = [_row(point) for point in points[:_MOST_ROWS]]
-    titles = _titles(rows)
-    cells = [[row.get(title, "") for title in titles] for row in rows]
+    titles, *rows = _lines(points) or [[]]
     ending = "".join(f"<p>{escape(line)}</p>" for line in _ending(points))
-    return html_table(heading, titles, cells) + ending
+    return html_table(heading, titles, rows) + ending
 
 
 def html_table(heading: str, titles: Iterable[str], rows: Sequence[Iterable[str]]) -> str:
@@ -46,7 +40,7 @@ def html_table(heading: str, titles: Iterable[str], rows: Sequence[Iterable[str]
     return f"<p>{escape(heading)}</p>{table}"
 
 
-def _row(message: Any) -> Row:
+def _row(message: Any) -> dict[str, str]:
     point = Point(message)
     row = {
         name: value if isinstance(value, str) else f"{value:.6g}"
@@ -61,8 +55,12 @@ def _row(message: Any) -> Row:
     return row
 
 
-def _titles(rows: list[Row]) -> list[str]:
-    return list(dict.fromkeys(title for row in rows for title in row))
+def _lines(points: Sequence[Any]) -> list[list[str]]:
+    """The titles, then a line for each of the first points; nothing without a point."""
+    rows = [_row(point) for point in points[:_MOST_ROWS]]
+    titles = list(dict.fromkeys(title for row in rows for title in row))
+    lines = [[row.get(title, "") for title in titles] for row in rows]
+    return [titles, *lines] if lines else []
 
 
 def _ending(points: Sequence[Any]) -> list[str]:

@@ -7,9 +7,11 @@
 from __future__ import annotations
 
 import ipaddress
+import re
 
 _LONGEST_SOCKET_PATH = 100  # bytes; sun_path holds 108 on Linux
 _SOCKET_SCHEME = "unix:"
+_HOST_AND_PORT = re.compile(r"(\[[^\[\]]+\]|[^:/\[\] \t]+):([0-9]{1,5})")
 
 
 def is_socket(address: str) -> bool:
@@ -40,33 +42,18 @@ def grpc_target(address: str) -> str:
         ValueError: this is not an address; the message shows the two forms.
     """
     if is_socket(address):
-        return _socket_target(address)
-    host, colon, port = address.rpartition(":")
-    if not colon:
-        raise _bad_address(address, "the port is missing")
-    if not _is_host(host):
-        raise _bad_address(address, "the host is not valid")
-    if not (port.isascii() and port.isdecimal() and 1 <= int(port) <= 65535):
-        raise _bad_address(address, "the port has to be a number from 1 to 65535")
-    return f"dns:///{address}"
+        length = len(address.removeprefix(_SOCKET_SCHEME).encode())
+        if length > _LONGEST_SOCKET_PATH:
+            raise _bad_address(address, f"its path has more than {_LONGEST_SOCKET_PATH} bytes; ")
+        if length > 0:
+            return address
+    elif (found := _HOST_AND_PORT.fullmatch(address)) and 1 <= int(found[2]) <= 65535:
+        return f"dns:///{address}"
+    raise _bad_address(address)
 
 
-def _socket_target(address: str) -> str:
-    path = address[len(_SOCKET_SCHEME) :]
-    if not path:
-        raise _bad_address(address, "the socket's path is missing")
-    if len(path.encode()) > _LONGEST_SOCKET_PATH:
-        raise _bad_address(address, f"the socket's path has more than {_LONGEST_SOCKET_PATH} bytes")
-    return address
-
-
-def _is_host(text: str) -> bool:
-    if text.startswith("["):
-        return len(text) > 2 and text.endswith("]")
-    return bool(text) and not any(c in ":/[] \t" for c in text)
-
-
-def _bad_address(address: str, why: str) -> ValueError:
+def _bad_address(address: str, why: str = "") -> ValueError:
     return ValueError(
-        f"{address!r} is not the address of a server: {why} (write host:port or unix:PATH)"
+        f"{address!r} is not the address of a server: {why}write host:port, with a port from 1 to "
+        "65535, or unix:PATH"
     )

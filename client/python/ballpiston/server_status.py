@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from ballpiston.record import record_of
-from ballpiston.spelling import spelling
-from ballpiston.v1 import server_pb2
+from ballpiston.fields import record_of
+from ballpiston.spelling import spelled
 
 
 @dataclass(frozen=True)
@@ -43,7 +42,7 @@ def server_status_of(address: str, message: Any) -> ServerStatus:
     """Of a message ballpiston.v1.ServerStatus."""
     return ServerStatus(
         address=address,
-        state=spelling(server_pb2.ServerStatus.State, message.state),
+        state=spelled(message, "state"),
         version=message.version,
         engine_version=message.engine_version,
         workers=message.workers,

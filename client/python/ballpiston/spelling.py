@@ -12,10 +12,11 @@ def spelling_of_name(name: str) -> str:
     return name.lower().replace("_", "-")
 
 
-def spelling(enum: Any, value: int) -> str:
-    """The spelling of a number of a generated enum. A value of a later version is its number."""
-    descriptor = enum.DESCRIPTOR.values_by_number.get(value)
-    return str(value) if descriptor is None else spelling_of_name(descriptor.name)
+def spelled(message: Any, field: str) -> str:
+    """The spelling of an enum in a message. A value of a later version is its number."""
+    value = getattr(message, field)
+    named = message.DESCRIPTOR.fields_by_name[field].enum_type.values_by_number.get(value)
+    return str(value) if named is None else spelling_of_name(named.name)
 
 
 def from_spelling(enum: Any, what: str, text: object) -> int:

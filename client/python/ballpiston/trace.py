@@ -10,14 +10,14 @@ import numpy as np
 import numpy.typing as npt
 
 from ballpiston.connection import Connection
-from ballpiston.record import record_of
+from ballpiston.fields import record_of
 from ballpiston.suggestion import did_you_mean
 from ballpiston.v1 import trace_pb2
 
 
 def events_of(connection: Connection, request: Any) -> Iterator[dict[str, Any]]:
     """The start, then the events."""
-    for message in stream_messages(connection, connection.traces.TraceOrbit, request):
+    for message in stream_messages(connection, request):
         if message.HasField("start"):
             yield record_of(message.start)
         yield from map(record_of, message.events)
@@ -32,7 +32,7 @@ def columns_of(
         if name not in known:
             raise ValueError(f"an event has no field {name!r}{did_you_mean(name, list(known))}")
     values: dict[str, list[Any]] = {name: [] for name in names}
-    for message in stream_messages(connection, connection.traces.TraceOrbit, request):
+    for message in stream_messages(connection, request):
         for name, column in values.items():
             column.extend(_column(message.events, name, known[name].has_presence))
     arrays = {name: np.array(column) for name, column in values.items()}
@@ -50,10 +50,10 @@ def _column(events: Any, name: str, is_optional: bool) -> list[Any]:
     return [getattr(e, name) for e in events]
 
 
-def stream_messages(connection: Connection, method: Any, request: Any) -> Iterator[Any]:
+def stream_messages(connection: Connection, request: Any) -> Iterator[Any]:
     """The messages of a stream. If the private server stops before the first one arrives, it is
     started again and asked once more; later a repetition would begin at the start again."""
-    call = connection.open_stream(method, request)
+    call = connection.open_stream(request)
     try:
         try:
             first = next(call, None)
@@ -61,7 +61,7 @@ def stream_messages(connection: Connection, method: Any, request: Any) -> Iterat
             if connection.private is None or error.code() != grpc.StatusCode.UNAVAILABLE:
                 raise
             connection.revive()
-            call = connection.open_stream(method, request)
+            call = connection.open_stream(request)
             first = next(call, None)
         if first is None:
             return

@@ -132,7 +132,7 @@ def ended_early() -> Error:
 
 def _read_stream(connection: Connection, watch: Attachments, screen: Progress) -> Error:
     """One stream to its end, and why it ended."""
-    stream = connection.open_stream(connection.ensembles.WatchEnsembleJob, watch.request)
+    stream = connection.open_stream(watch.request)
     try:
         for message in stream:
             watch.handle(message)

@@ -47,9 +47,9 @@
     c.closePath();
   }
 
-  function drawSymbol(c, line, x, y) {
+  function drawSymbol(c, line, x, y, radius) {
     c.beginPath();
-    SYMBOLS[line.colour % SYMBOLS.length](c, x, y, SYMBOL_RADIUS * pixels());
+    SYMBOLS[line.colour % SYMBOLS.length](c, x, y, radius);
     c.fill();
   }
 
@@ -69,7 +69,7 @@
       if (!isNumber(line.y[i]) || x < u.scales.x.min || x > u.scales.x.max) continue;
       const left = u.valToPos(x, 'x', true);
       if (line.error?.[i] > 0) drawErrorBar(u, c, left, line.y[i], line.error[i]);
-      drawSymbol(c, line, left, u.valToPos(line.y[i], 'y', true));
+      drawSymbol(c, line, left, u.valToPos(line.y[i], 'y', true), SYMBOL_RADIUS * pixels());
     }
   }
 
@@ -117,20 +117,15 @@
   }
 
   function uplotSeries(line) {
-    const stroke = () => colourOf(line);
+    const stepped = uPlot.paths.stepped({align: 1});
+    const forms = {
+      measured: {paths: () => null}, // drawAllMeasured draws them
+      steps: {width: 1, fill: () => styleOf('--fill'), paths: stepped},
+      exact: line.stepped ? {width: 2, paths: stepped} : {width: 1.5},
+      limit: {width: 1.5, dash: [6, 5]},
+    };
     const common = {label: line.label, points: {show: false}, spanGaps: true};
-    if (line.kind === 'measured') return {...common, stroke, paths: () => null};
-    if (line.kind === 'steps') {
-      return {
-        ...common,
-        stroke,
-        width: 1,
-        fill: () => styleOf('--fill'),
-        paths: uPlot.paths.stepped({align: 1}),
-      };
-    }
-    if (line.stepped) return {...common, stroke, width: 2, paths: uPlot.paths.stepped({align: 1})};
-    return {...common, stroke, width: 1.5, dash: line.kind === 'limit' ? [6, 5] : undefined};
+    return {...common, stroke: () => colourOf(line), ...forms[line.kind]};
   }
 
   function axis(label, more) {
@@ -198,9 +193,7 @@
       c.strokeRect(6, 4, 44, 20);
     } else if (line.kind === 'measured') {
       c.fillRect(26, 2, 3, 24);
-      c.beginPath();
-      SYMBOLS[line.colour % SYMBOLS.length](c, 28, 14, 7);
-      c.fill();
+      drawSymbol(c, line, 28, 14, 7);
     } else {
       if (line.kind === 'limit') c.setLineDash([10, 8]);
       c.beginPath();
@@ -212,10 +205,7 @@
   }
 
   function tableOf(chart) {
-    const columns = [
-      {label: chart.xLabel, number: true},
-      ...chart.lines.map((line) => ({label: line.label, number: true})),
-    ];
+    const columns = ballpiston.numberColumns(chart.xLabel, ...chart.lines.map(({label}) => label));
     const values = aligned(chart.lines);
     const errors = chart.lines.map((line) => new Map(line.x.map((x, i) => [x, line.error?.[i]])));
     const step = Math.max(1, Math.ceil(values[0].length / MOST_TABLE_ROWS));

@@ -21,52 +21,35 @@
     return element('button', {type: 'button', onclick, ...attributes}, text);
   }
 
+  // Columns of a table.
+  const textColumns = (...labels) => labels.map((label) => ({label, number: false}));
+  const numberColumns = (...labels) => labels.map((label) => ({label, number: true}));
+
   // Roles are explicit, because the style sheet displays rows as grids: some browsers then drop the
   // implied roles.
-  // `columns`: [{label, number}]; `rows`: arrays of texts or nodes.
+  // `columns`: of textColumns() and numberColumns(); `rows`: arrays of texts or nodes.
   function table(caption, columns, rows, attributes = {}) {
     const body = element('tbody', {role: 'rowgroup'});
     body.append(...rows.map((cells) => tableRow(columns, cells)));
+    const heads = columns.map(({label, number}) =>
+      element('th', {role: 'columnheader', scope: 'col', class: number && 'number'}, label),
+    );
     return element(
       'table',
       {role: 'table', ...attributes},
       element('caption', {}, caption),
-      element(
-        'thead',
-        {role: 'rowgroup'},
-        element(
-          'tr',
-          {role: 'row'},
-          columns.map((column) =>
-            element(
-              'th',
-              {role: 'columnheader', scope: 'col', class: column.number ? 'number' : null},
-              column.label,
-            ),
-          ),
-        ),
-      ),
+      element('thead', {role: 'rowgroup'}, element('tr', {role: 'row'}, heads)),
       body,
     );
   }
 
   // On narrow screens a row is a card, and each cell shows its column's label.
   function tableRow(columns, cells) {
-    return element(
-      'tr',
-      {role: 'row'},
-      cells.map((cell, i) =>
-        element(
-          'td',
-          {
-            role: 'cell',
-            'data-label': columns[i].label,
-            class: columns[i].number ? 'number' : null,
-          },
-          cell,
-        ),
-      ),
-    );
+    const parts = cells.map((cell, i) => {
+      const {label, number} = columns[i];
+      return element('td', {role: 'cell', 'data-label': label, class: number && 'number'}, cell);
+    });
+    return element('tr', {role: 'row'}, parts);
   }
 
   // The rows of a table that changes. Each row has a key.
@@ -118,5 +101,14 @@
     return element('label', {class: 'choice'}, element('span', {}, label), select);
   }
 
-  Object.assign(ballpiston, {element, button, table, LiveRows, facts, choice});
+  Object.assign(ballpiston, {
+    element,
+    button,
+    textColumns,
+    numberColumns,
+    table,
+    LiveRows,
+    facts,
+    choice,
+  });
 })((globalThis.ballpiston ??= {}));

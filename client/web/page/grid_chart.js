@@ -26,10 +26,8 @@
     return values;
   }
 
-  // The parameter as a number; a lattice NxM is not a number.
-  const coordinate = (value) => Number(value);
-
-  const isAxis = (values) => [...values].every((value) => isNumber(coordinate(value)));
+  // A lattice NxM is not a number.
+  const isAxis = (values) => [...values].every((value) => isNumber(Number(value)));
 
   function axesOf(points) {
     const varying = varyingParameters(points);
@@ -83,7 +81,7 @@
   function placesOf(points, axis, name, shown) {
     return points
       .map((point) => ({
-        x: coordinate(point.parameters[axis]),
+        x: Number(point.parameters[axis]),
         ...inForm(
           point.estimates.find((estimate) => estimate.name === name),
           shown,

@@ -26,13 +26,7 @@
     cancelled: ['CANCELLED'],
   };
 
-  const COLUMNS = [
-    {label: 'Job'},
-    {label: 'State'},
-    {label: 'Progress'},
-    {label: 'Created'},
-    {label: 'Principal'},
-  ];
+  const COLUMNS = ballpiston.textColumns('Job', 'State', 'Progress', 'Created', 'Principal');
 
   const stateText = (state) => STATES[state] ?? words(state);
 

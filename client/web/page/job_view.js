@@ -282,7 +282,7 @@
         chosen: index,
         record: new JobRecord(),
         token: '',
-        withoutDetails: new Set(),
+        asked: new Set(), // indices of the points whose details are not requested again now
       });
       this.head = new JobHead(() => this.askAgain());
       this.grid = new ballpiston.GridChart();
@@ -351,45 +351,32 @@
       );
     }
 
-    getResult(index, request) {
-      const name = `${this.name}/results/${index}`;
-      return call('EnsembleService/GetResult', {name, ...request}, this.signal);
-    }
-
-    // Requests the current histograms and curves of an unfinished point.
-    async askForUnfinished(point) {
-      if (this.asking || performance.now() < (this.nextDetails ?? 0)) return;
-      this.asking = true;
-      // The call fails if the point is finished or not begun. Then the next snapshot updates it.
-      const now = await this.getResult(point.index, {unfinished: true}).catch(() => null);
-      this.asking = false;
-      this.nextDetails = performance.now() + DETAILS_EVERY;
-      const known = this.record.points.get(point.index);
-      if (!now || known.detailed) return;
-      const {histograms, curves} = now;
-      this.record.points.set(point.index, {...known, histograms, curves});
-      this.drawSoon();
-    }
-
-    // Requests histograms and curves, which a watch does not send.
+    // Requests the histograms and curves of a point, which a watch does not send: those of a
+    // finished point once, those of an unfinished point every DETAILS_EVERY ms.
     async askForDetails(point) {
-      const {record} = this;
-      if (point.detailed || record.job.results_expired) return;
-      if (!record.finished.has(point.index)) {
-        if (!ENDED.has(record.job.state)) this.askForUnfinished(point);
-        return;
-      }
-      if (this.asked === point.index || this.withoutDetails.has(point.index)) return;
-      this.asked = point.index;
-      try {
-        const detailed = await keepTrying(() => this.getResult(point.index), this.signal);
-        record.points.set(point.index, {...detailed, detailed: true});
+      const {record, asked} = this;
+      const {index} = point;
+      const isFinished = record.finished.has(index);
+      const isLost = !isFinished && ENDED.has(record.job.state);
+      if (point.detailed || record.job.results_expired || isLost || asked.has(index)) return;
+      asked.add(index);
+      const request = {name: `${this.name}/results/${index}`, unfinished: !isFinished};
+      const ask = () => call('EnsembleService/GetResult', request, this.signal);
+      if (isFinished) {
+        // After an error the banner shows it, or the view has changed.
+        const detailed = await keepTrying(ask, this.signal).catch(() => null);
+        if (detailed) record.points.set(index, {...detailed, detailed: true});
+      } else {
+        // The call fails if the point is finished or not begun. Then the next snapshot updates it.
+        const now = await ask().catch(() => null);
+        const known = record.points.get(index);
+        const {histograms, curves} = now ?? known;
+        if (!known.detailed) record.points.set(index, {...known, histograms, curves});
         this.drawSoon();
-      } catch (error) {
-        this.withoutDetails.add(point.index); // the banner shows the error, or the view has changed
-      } finally {
-        if (this.asked === point.index) this.asked = null;
+        await ballpiston.pause(DETAILS_EVERY, this.signal);
+        asked.delete(index);
       }
+      this.drawSoon();
     }
 
     // One watch until the job's end. Resumes where the last watch stopped.

@@ -3,7 +3,8 @@
 (function (ballpiston) {
   'use strict';
 
-  const {element, isNumber, valueText, countText, words, parametersText} = ballpiston;
+  const {element, textColumns, numberColumns} = ballpiston;
+  const {isNumber, valueText, countText, words, parametersText} = ballpiston;
 
   const MOST_BINS = 60; // shown; the result has more
   const FAR = 4; // standard errors
@@ -18,12 +19,8 @@
   // ---- Estimates
 
   const COLUMNS = [
-    {label: 'Estimate'},
-    {label: 'Value', number: true},
-    {label: 'Error', number: true},
-    {label: 'Exact', number: true},
-    {label: 'z', number: true},
-    {label: 'Model error', number: true},
+    ...textColumns('Estimate'),
+    ...numberColumns('Value', 'Error', 'Exact', 'z', 'Model error'),
   ];
 
   // In the units of the value.
@@ -271,12 +268,8 @@
   // ---- Points as rows of a table
 
   const POINT_COLUMNS = [
-    {label: 'Point'},
-    {label: 'Parameters'},
-    {label: 'Model'},
-    {label: 'Value', number: true},
-    {label: 'Exact', number: true},
-    {label: 'z', number: true},
+    ...textColumns('Point', 'Parameters', 'Model'),
+    ...numberColumns('Value', 'Exact', 'z'),
   ];
 
   // The cells of a point's row, with its first estimate. `name` is the first cell.

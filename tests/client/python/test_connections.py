@@ -14,7 +14,7 @@ from conftest import LIMIT, Home, wait_until
 
 import ballpiston
 from ballpiston._google_rpc import error_details_pb2, status_pb2
-from ballpiston.channel_security import ChannelSecurity, LoopbackToken, check, credentials_of
+from ballpiston.channel_security import ChannelSecurity, Token, check
 from ballpiston.connection_hint import connection_hint
 from ballpiston.error_details import details_of, error_of
 from ballpiston.private_server import find_private_server
@@ -45,7 +45,7 @@ def test_an_address_is_a_host_with_a_port_or_a_socket(address: str, target: str)
     "address", ["localhost", ":1", "a b:1", "::1:50051", "host:0", "host:65536", "host:x", "unix:"]
 )
 def test_other_texts_are_not_addresses(address: str) -> None:
-    with pytest.raises(ValueError, match="write host:port or unix:PATH"):
+    with pytest.raises(ValueError, match="write host:port, .* or unix:PATH"):
         ballpiston.connect(address)
 
 
@@ -82,11 +82,11 @@ def test_a_token_file_that_others_can_read_is_rejected(tmp_path: Path) -> None:
 
 def test_a_token_file_is_read_once_for_a_connection(tmp_path: Path) -> None:
     file = private(tmp_path, "token", "secret\n")
-    token = LoopbackToken(ChannelSecurity(token_file=file), "127.0.0.1:1")
+    token = Token(ChannelSecurity(token_file=file), "127.0.0.1:1")
     os.remove(file)
     assert token.metadata() == [("authorization", "Bearer secret")]
-    assert LoopbackToken(ChannelSecurity(token="secret", tls=True), "127.0.0.1:1").metadata() == []
-    assert LoopbackToken(ChannelSecurity(), "host:1").metadata() == []
+    assert Token(ChannelSecurity(token="secret", tls=True), "h:1").metadata() == token.metadata()
+    assert Token(ChannelSecurity(), "host:1").metadata() == []
 
 
 def test_the_servers_own_token_is_read_for_each_call(
@@ -95,11 +95,14 @@ def test_the_servers_own_token_is_read_for_each_call(
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
     folder = tmp_path / "ballpiston" / "tokens" / socket.gethostname()
     folder.mkdir(parents=True)
-    token = LoopbackToken(ChannelSecurity(), "127.0.0.1:1")
+    token = Token(ChannelSecurity(), "127.0.0.1:1")
     assert token.metadata() == []
     for text in ("first", "second"):
         private(folder, "127.0.0.1:1", text + "\n")
         assert token.metadata() == [("authorization", f"Bearer {text}")]
+    private(folder, "host:1", "third\n")
+    assert Token(ChannelSecurity(), "host:1").metadata() == []
+    assert Token(ChannelSecurity(tls=True), "127.0.0.1:1").metadata() == []
 
 
 def test_an_error_says_how_long_to_wait() -> None:
@@ -118,7 +121,7 @@ def test_an_error_says_how_long_to_wait() -> None:
 def test_a_token_is_one_word(text: str, tmp_path: Path) -> None:
     file = private(tmp_path, "token", text)
     with pytest.raises(ValueError, match="one word of 1 to 256 printable characters"):
-        credentials_of(ChannelSecurity(tls=True, token_file=file))
+        Token(ChannelSecurity(tls=True, token_file=file), "host:1")
 
 
 def test_files_that_are_missing_or_not_pem_are_named(tmp_path: Path) -> None:

@@ -256,10 +256,6 @@ def test_measurements_without_a_gas_and_a_limit_are_drawn() -> None:
     assert len(figure.axes) == 4
 
 
-def test_labels_are_moved_apart_downwards() -> None:
-    assert speed_accuracy.spread([8.0, 10.0, 1.0], 2.0) == [5.0, 10.0, 1.0]
-
-
 @pytest.mark.parametrize(
     "seconds,text", [(195e-9, "195 ns"), (17.2e-3, "17 ms"), (1e-6, "1.0 µs"), (90, "90 s")]
 )

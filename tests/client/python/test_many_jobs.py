@@ -6,6 +6,7 @@ import asyncio
 import csv
 import re
 import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -199,3 +200,26 @@ def test_the_collisions_of_a_job_are_read_as_records(home: Home, tmp_path: Path)
     for name in records.dtype.names:
         np.testing.assert_array_equal(arrays[name], records[name])
         np.testing.assert_array_equal(read[name], records[name])
+
+
+def test_collisions_become_a_file_of_columns(
+    client: ballpiston.Client, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Pickled, because pyarrow is not a package of Debian."""
+    pandas = pytest.importorskip("pandas")
+    question: dict[str, Any] = dict(rho=0.53, delta=0.2, epsilon=0.125, exponent=1, samples=2_000)
+    hits = client.sample("first-hit", **question)
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(ModuleNotFoundError):
+        hits.to_parquet(tmp_path / "hits.parquet")
+    assert not list(tmp_path.iterdir())
+    monkeypatch.setitem(sys.modules, "pyarrow", pandas)
+    to_pickle = lambda frame, path, index: frame.to_pickle(path, compression=None)
+    monkeypatch.setattr(pandas.DataFrame, "to_parquet", to_pickle)
+    hits.to_parquet(tmp_path / "hits.parquet")
+    frame = pandas.read_pickle(tmp_path / "hits.parquet", compression=None)
+    records = client.sample("first-hit", **question).all()
+    assert list(frame) == list(records.dtype.names)
+    assert len(frame) == 2_000
+    for name in frame:
+        np.testing.assert_array_equal(frame[name], records[name])

@@ -58,6 +58,18 @@ def test_limits_of_full_counting_are_those_of_the_closed_integrals() -> None:
     assert expected == pytest.approx([0.98904, 2.52770, 6.92784, 34.2513], rel=5e-6)
 
 
+def test_cumulants_that_were_not_measured_are_drawn_as_such() -> None:
+    order = np.array([1.0, 1, 1, 1, 2, 2, 2])
+    cells = np.array([4.0, 6, 8, 12, 4, 4, 6])  # of the variance only two chains
+    found = {"cells": cells, "order": order, "time": np.full(7, np.inf)}
+    found |= {"value": np.ones(7), "standard_error": np.full(7, 0.01)}
+    fits_of_orders = full_counting.extrapolated(found, 1.5, 0.5)
+    assert np.isnan(fits_of_orders["a0"]).tolist() == [False, True, True, True]
+    tables = {"full-counting": found, "full-counting-limits": fits_of_orders}
+    texts = [text.get_text() for axes in full_counting.draw(tables).axes for text in axes.texts]
+    assert texts == ["not measured: too few collisions"] * 2
+
+
 def test_the_noise_near_equilibrium_is_that_of_equilibrium() -> None:
     assert full_counting.limits(1.001, 0.999)[1] == pytest.approx(2, rel=1e-5)
 

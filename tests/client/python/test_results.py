@@ -71,9 +71,9 @@ def test_the_density_of_both_signs_of_an_angle_integrates_to_one(
 
 
 def test_a_histogram_without_a_choice_lists_the_choices(first_hits: ballpiston.Result) -> None:
-    with pytest.raises(KeyError, match="sigma=.1 or sigma=-1"):
+    with pytest.raises(KeyError, match="there are several: choose sigma=-1 or sigma=.1"):
         first_hits.histogram("alpha")
-    with pytest.raises(KeyError, match="has no sigma=3; it has -1, .1"):
+    with pytest.raises(KeyError, match="none with sigma=3: choose sigma=-1 or sigma=.1"):
         first_hits.histogram("alpha", sigma=3)
     with pytest.raises(KeyError, match="this point has alpha"):
         first_hits.histogram("beta")
@@ -98,8 +98,10 @@ def test_histograms_at_several_times_have_an_axis_of_times(client: ballpiston.Cl
     nearest = result.histogram("piston_energy", time=1.01 * times[1, 2], point=1)
     assert nearest.time == times[1, 2]
     np.testing.assert_array_equal(nearest.counts, counts[1, 2])
-    with pytest.raises(KeyError, match="several times"):
+    with pytest.raises(KeyError, match="there are several: choose time=.* or time="):
         result.histogram("piston_energy")
+    with pytest.raises(KeyError, match="none with sigma=1: choose time="):
+        result.histogram("piston_energy", sigma=1)
 
 
 def test_shorter_curves_are_padded_with_nan(client: ballpiston.Client) -> None:

@@ -7,7 +7,6 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any, cast
 
@@ -165,12 +164,8 @@ class ScriptedServer:
     def __init__(self, *streams: list[Any]) -> None:
         self.streams = list(streams)
         self.tokens: list[str] = []
-        self.ensembles = self
 
-    def open_stream(self, method: Callable[[Any], Any], request: Any) -> Any:
-        return method(request)
-
-    def WatchEnsembleJob(self, request: Any) -> Any:
+    def open_stream(self, request: Any) -> Any:
         self.tokens.append(request.resume_token)
         return ScriptedStream(self.streams.pop(0) if self.streams else [])
 

@@ -17,7 +17,7 @@ from matplotlib.patches import Arc, Circle, Polygon, Rectangle
 from ballpiston.client import Client
 from ballpiston.figures.parts import cell_outline, style
 from ballpiston.figures.parts.asking import RHO, start_of
-from ballpiston.figures.parts.tables import Tables, table
+from ballpiston.figures.parts.tables import Tables, pick, table
 
 _ARROW = 0.2  # length for a velocity of 1, in cells
 _AWAY = 0.045  # distance of a dimension line from the measured length
@@ -35,7 +35,7 @@ def measure(client: Client, *, rho: float = RHO, delta: float = 0.15, seed: int 
 @style.styled
 def draw(tables: Tables) -> Figure:
     """The pair with its dimension lines."""
-    at = {name: column[0] for name, column in tables["cell"].items()}
+    at = pick(tables["cell"], 0)
     figure = style.picture(960, 670)
     axes = style.bare_axes(figure)
     axes.set(xlim=(-0.64, 1.22), ylim=(-0.66, 0.64))

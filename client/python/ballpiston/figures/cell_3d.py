@@ -18,7 +18,7 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from ballpiston.client import Client
 from ballpiston.figures.parts import cell_outline, style
 from ballpiston.figures.parts.asking import RHO
-from ballpiston.figures.parts.tables import FloatArray, Tables, closed_forms
+from ballpiston.figures.parts.tables import FloatArray, Tables, closed_forms, pick
 
 _WALL, _FLOOR, _EDGE = "#c3cfe6", "#f4f4f4", "#404040"
 _HIGHEST, _LOWEST = 1.1, 0.6  # heights of the drawing, in units of its width
@@ -33,9 +33,9 @@ def measure(client: Client, *, rho: float = RHO, delta: float = 0.15) -> Tables:
 @style.styled
 def draw(tables: Tables) -> Figure:
     """The walls, the floor and the collision surface, with labels beside them."""
-    at = {name: float(column[0]) for name, column in tables["cell-3d"].items()}
-    tip = 0.5 - at["lambda"] / 2
-    low = tip - at["delta"]
+    at = pick(tables["cell-3d"], 0)
+    tip = float(0.5 - at["lambda"] / 2)
+    low = float(tip - at["delta"])
     stretch = float(np.clip((1 - 2 * low) / (2 * tip), _LOWEST, _HIGHEST)) * 2 * tip / (1 - 2 * low)
     ceiling = low + stretch * (1 - 2 * low)
 

@@ -54,8 +54,7 @@ def draw(tables: Tables) -> Figure:
     billiard = rows(tables["conductivity-billiard"], name="conductivity_ratio")
     rings = rows(tables["conductivity-rings"], name="conductivity_ratio")
     limit = rings["limit"][0]
-    figure = style.picture(960, 500)
-    left, right = figure.subplots(1, 2)
+    figure, (left, right) = style.panels((960, 500), 1, 2)
 
     style.level(left, limit, color=style.ORANGE, label="rare exchanges")
     values = billiard["delta"], billiard["value"], billiard["standard_error"]
@@ -70,5 +69,6 @@ def draw(tables: Tables) -> Figure:
     right.set(xlabel="1/N", ylabel="1000 (conductivity / static value - 1)")
     for axes in (left, right):
         axes.set_xlim(0, axes.dataLim.xmax * 1.06)
-        style.legend_above_data(axes)
+        axes.margins(y=0.25)
+        axes.legend(loc="upper left")
     return figure

@@ -126,11 +126,9 @@ def extrapolated(found: Table, hot: float, cold: float) -> Table:
 @style.styled
 def draw(tables: Tables) -> Figure:
     """One panel for each cumulant. A point is the mean over the windows, without the transient."""
-    figure = style.picture(960, 720)
-    panels = figure.subplots(2, 2)
     names = ("mean", "variance", "third cumulant", "fourth cumulant")
-    for order, (axes, name) in enumerate(zip(panels.flat, names), 1):
-        style.title(axes, "abcd"[order - 1], name)
+    figure, panels = style.panels((960, 720), 2, 2, names)
+    for order, axes in enumerate(panels.flat, 1):
         fit = rows(tables["full-counting-limits"], order=order)
         _draw_cumulant(axes, rows(tables["full-counting"], order=order), fit)
     style.outer_labels(panels, "1/N", "over its limit")
@@ -138,6 +136,9 @@ def draw(tables: Tables) -> Figure:
 
 
 def _draw_cumulant(axes: Any, part: Table, fit: Table) -> None:
+    if not len(part["cells"]):
+        style.inside(axes, 0.5, 0.5, "not measured: too few collisions", ha="center")
+        return
     limit = fit["limit"][0]
     settled = part | {"value": part["value"] - fit["b"][0] * transient(part["time"])}
     chains = [rows(settled, cells=cells) for cells in distinct(part["cells"])]

@@ -17,7 +17,7 @@ from matplotlib.patches import Polygon, Rectangle
 from ballpiston.client import Client
 from ballpiston.figures.parts import cell_outline, style
 from ballpiston.figures.parts.asking import RHO, start_of
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, stacked, table
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, pick, stacked, table
 
 _ARROW = 0.13  # length for a thermal velocity, sqrt(T), in cells
 _BRIGHTEST = 4.0  # the colour is the same for all higher energies, in units of T
@@ -50,7 +50,7 @@ def measure(
 @style.styled
 def draw(tables: Tables) -> Figure:
     """The gas, with a scale of energies."""
-    at = {name: column[0] for name, column in tables["gas-geometry"].items()}
+    at = pick(tables["gas-geometry"], 0)
     wide, high = at["columns"] + 2 * _MARGIN, at["rows"] + 2 * _MARGIN
     figure = style.picture(960, max(260.0, 840 * high / wide))
     axes = style.bare_axes(figure)
@@ -84,8 +84,8 @@ def _with_copies(pistons: Table, at: dict[str, Any]) -> Table:
     return stacked(
         [
             pistons,
-            {name: c[is_vertical & (pistons["x"] < 0)] for name, c in right.items()},
-            {name: c[~is_vertical & (pistons["y"] < 0)] for name, c in upper.items()},
+            pick(right, is_vertical & (pistons["x"] < 0)),
+            pick(upper, ~is_vertical & (pistons["y"] < 0)),
         ]
     )
 

@@ -61,8 +61,9 @@ def draw(tables: Tables) -> Figure:
     data = tables["hitting-time"]
     data = rows(data, exponent=data["exponent"][0])
     energies = distinct(data["epsilon"])
-    figure = style.picture(max(640, 100 + 320 * len(energies)), 760)
-    panels = figure.subplots(2, len(energies), sharex=True, sharey="row", squeeze=False)
+    shared: dict[str, Any] = {"sharex": True, "sharey": "row", "squeeze": False}
+    width = max(640, 100 + 320 * len(energies))
+    figure, panels = style.panels((width, 760), 2, len(energies), **shared)
     longest = data["t"][np.isfinite(data["t"])].max()
     t = np.linspace(0, longest, 200)
     exponential: dict[str, Any] = {"color": style.BLACK, "linewidth": 1.2, "dashes": (6, 4)}
@@ -75,11 +76,8 @@ def draw(tables: Tables) -> Figure:
             style.error_points(lower, line["t"], excess, line["error"], colour, markersize=2)
         upper.semilogy(t, np.exp(-t), **exponential)
         style.level(lower, 0, **exponential)
-    excess = data["value"] - data["limit"]
-    # Linear below the largest standard error that a probability can have.
-    noise = 1 / np.sqrt(data["samples"][0])
-    for lower in panels[1]:
-        style.signed_log_axis(lower, noise, (excess - data["error"], excess + data["error"]))
+    # No standard error of a probability is larger.
+    style.signed_log_axis(panels[1, 0], 1 / np.sqrt(data["samples"][0]))
     panels[0, 0].set(ylim=(_LEAST, 1.3), ylabel="probability of no collision yet")
     panels[1, 0].set(xlim=(0, 1.01 * longest))
     style.outer_labels(panels[1:], "t/τ$_{bp}$(ε)", "minus the exponential")

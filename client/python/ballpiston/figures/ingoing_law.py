@@ -75,11 +75,9 @@ def draw(tables: Tables) -> Figure:
     data = tables["ingoing-law"]
     data = rows(data, exponent=data["exponent"][0])
     deltas, energies = distinct(data["delta"]), distinct(data["epsilon"])
-    width = 760 if len(deltas) < 3 else 300 * len(deltas) + 60
-    figure = style.picture(width, 210 * len(energies) + 120)
-    panels = figure.subplots(
-        len(energies), len(deltas), sharex=True, sharey="row", squeeze=False
-    )
+    size = 760 if len(deltas) < 3 else 300 * len(deltas) + 60, 210 * len(energies) + 120
+    shared: dict[str, Any] = {"sharex": True, "sharey": "row", "squeeze": False}
+    figure, panels = style.panels(size, len(energies), len(deltas), **shared)
     for row, epsilon in zip(panels, energies):
         for axes, delta in zip(row, deltas):
             for sigma, _, colour in _SIGNS:

@@ -8,6 +8,7 @@ the billiard, with one standard error. By default it takes half a minute of one 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -43,7 +44,7 @@ def measure(
     outgoing = np.arange(1, 500) / 1000
     exact = [
         {
-            "epsilon": np.full(len(outgoing), energy),
+            "epsilon": energy,
             "outgoing": outgoing,
             "density": kernel / rate,  # W is a density of rates
         }
@@ -77,7 +78,7 @@ def densities(energies: Iterable[float], collisions: FloatArray, bins: int) -> T
     )
 
 
-def _densities_at(energy: float, collisions: FloatArray, bins: int) -> Table:
+def _densities_at(energy: float, collisions: FloatArray, bins: int) -> dict[str, Any]:
     before, after = collisions.T
     chosen = after[np.abs(before - energy) < _WINDOW]
     end = 1 - 2 * (energy + _WINDOW)
@@ -88,12 +89,12 @@ def _densities_at(energy: float, collisions: FloatArray, bins: int) -> Table:
     counts, _ = np.histogram(np.sqrt(2 * chosen), edges)
     scale = len(chosen) * u * np.sqrt(end) / bins
     return {
-        "epsilon": np.full(bins, energy),
+        "epsilon": energy,
         "outgoing": u**2 / 2,
         "density": counts / scale,
         "standard_error": np.sqrt(counts) / scale,
         "count": counts,
-        "samples": np.full(bins, len(chosen)),
+        "samples": len(chosen),
     }
 
 
@@ -102,8 +103,7 @@ def draw(tables: Tables) -> Figure:
     """One panel for each energy before the collision."""
     energies = style.series(tables["kernel-exact"], "epsilon", "ε")
     lines = (len(energies) + 1) // 2
-    figure = style.picture(960, 350 * lines)
-    panels = figure.subplots(lines, 2, sharex=True, squeeze=False)
+    figure, panels = style.panels((960, 350 * lines), lines, 2, sharex=True, squeeze=False)
     for axes, (exact, colour, label) in zip(panels.flat, energies):
         energy = exact["epsilon"][0]
         seen = exact["density"] > 0

@@ -64,8 +64,7 @@ def measure(
         windows = table_of("slow_pistons", "windows", **pair, orbits=count)
         facts = {"delta": d, "x": (width + 2 * d) / tau}
         facts["law"] = _AT_REST * (width + d) ** 2 / (width + 2 * d) / tau
-        ones = np.ones(len(windows["window"]))
-        found.append({name: fact * ones for name, fact in facts.items()} | windows)
+        found.append(facts | windows)
     whole = stacked(found)
     return {
         "logarithm": whole,
@@ -129,9 +128,10 @@ def _growth(windows: Table, part: str) -> fits.Fit:
 @style.styled
 def draw(tables: Tables) -> Figure:
     """Both panels."""
-    figure = style.picture(960, 480)
-    left, right = figure.subplots(1, 2)
     whole = tables["logarithm"]
+    growth = f"growth beyond 8, δ = {whole['delta'][0]:g}"
+    titles = (growth, "difference up to 8, over x")
+    figure, (left, right) = style.panels((960, 480), 1, 2, titles)
     _draw_growth(left, rows(whole, delta=whole["delta"][0]))
     first = rows(whole, window=whole["window"].min())
     for k, part in enumerate(PARTS):
@@ -143,7 +143,6 @@ def draw(tables: Tables) -> Figure:
         shown = logarithm + _ASIDE * (k - 1), value / first["x"], error / first["x"]
         style.error_points(right, *shown, style.colour(k), part)
     style.level(right, 0)
-    style.title(right, "b", "difference up to 8, over x")
     right.set(xlabel="log(1/x)", ylim=_SHOWN)
     right.legend(loc="lower left")
     return figure
@@ -159,6 +158,5 @@ def _draw_growth(axes: Any, windows: Table) -> None:
     style.level(axes, 0)
     axes.set_xscale("log")
     style.plain_log_ticks(axes.xaxis, windows["window"].tolist())
-    style.title(axes, "a", f"growth beyond 8, δ = {windows['delta'][0]:g}")
     axes.set(xlabel="window, mean free times")
     axes.legend()

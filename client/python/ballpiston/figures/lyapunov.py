@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from ballpiston.client import Client
 from ballpiston.figures.parts import fits, style
 from ballpiston.figures.parts.asking import RHO, answer, mean_free_times
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, rows, table
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, pick, rows, table
 from ballpiston.figures.parts.tangent_growth import second_exponent
 from ballpiston.parameter_lists import Numbers, number_list
 
@@ -90,8 +90,7 @@ def laws(whole: Table) -> Table:
     sqrt(delta); of what remains of `value` without the computed terms, by A + B log(tau); and
     `computed` itself, without a coefficient. Fits to fewer points than coefficients are left
     out."""
-    is_rare = whole["delta"] <= _RARE
-    rare = {name: column[is_rare] for name, column in whole.items()}
+    rare = pick(whole, whole["delta"] <= _RARE)
     value, error, log_tau = rare["value"], rare["value_error"], np.log(rare["tau"])
     line = np.column_stack([np.ones(len(value)), log_tau])
     with_root = np.column_stack([line, np.sqrt(rare["delta"])])
@@ -107,19 +106,18 @@ def laws(whole: Table) -> Table:
         "logarithm and computed terms": {"terms": line} | computed,
         "computed": {"terms": line[:, :0], "values": rest - log_tau, "errors": rest_error},
     }
-    unknown = dict.fromkeys(("A", "A_error", "B", "B_error"), np.nan)
-    return table(
-        {"law": name} | unknown | fits.linear(**model).row("A", "B")
+    found = (
+        {"law": name} | fits.linear(**model).row("A", "B")
         for name, model in models.items()
         if len(value) >= model["terms"].shape[1]
     )
+    return table(found, ("law", "A", "A_error", "B", "B_error", "chi_squared", "freedom"))
 
 
 @style.styled
 def draw(tables: Tables) -> Figure:
     """Both panels."""
-    figure = style.picture(960, 480)
-    left, right = figure.subplots(1, 2)
+    figure, (left, right) = style.panels((960, 480), 1, 2, ("λ$_2$τ", "λ$_2$τ - ln τ"))
     found, curve = tables["lyapunov"], tables["lyapunov-curve"]
     (limit,) = _above_logarithm(rows(curve, delta=_LIMIT), "computed")
     _draw_growth(left, found, curve, limit)
@@ -130,7 +128,6 @@ def draw(tables: Tables) -> Figure:
     style.level(right, limit, linestyle=":")
     value = _above_logarithm(found, "value")
     style.error_points(right, np.sqrt(found["delta"]), value, found["value_error"], style.BLUE)
-    style.title(right, "b", "λ$_2$τ - ln τ")
     right.set(xlabel="√δ")
     right.legend()
     return figure
@@ -153,5 +150,4 @@ def _draw_growth(axes: Any, found: Table, curve: Table, limit: float) -> None:
     )
     axes.set_xscale("log")
     axes.set(xlabel="mean free time τ", xlim=(tau[0], tau[-1]))
-    style.title(axes, "a", "λ$_2$τ")
     axes.legend(loc="upper left")

@@ -21,15 +21,13 @@ from matplotlib.figure import Figure
 from ballpiston.client import Client
 from ballpiston.figures.parts import oscillation, style
 from ballpiston.figures.parts.asking import ENERGIES, RHO, divergences, first_hits
-from ballpiston.figures.parts.tables import Table, Tables, distinct, rows, table
+from ballpiston.figures.parts.tables import Table, Tables, distinct, pick, rows, stacked, table
 from ballpiston.parameter_lists import Numbers
 
 EFFORT: dict[str, dict[str, Any]] = {
     "quick": {"delta": "0.1:0.325:16:log", "samples": 30_000, "synthetic": 20},
     "full": {"samples": 4_000_000},
 }
-
-_SPACINGS = ("spacing_of_log_delta", "spacing_of_inverse_delta")
 
 
 def measure(
@@ -105,30 +103,18 @@ def maxima(points: Table) -> Table:
     """The maxima of the excess from the largest delta down, without a model. Their spacings in
     log(delta) or in 1/delta are constant if the oscillation is periodic in that variable. The
     equilibrium law, n = 1, is left out."""
-    found: list[dict[str, float]] = []
+    found: list[dict[str, Any]] = []
     for (epsilon, exponent), series in oscillation.series_of(points):
         if exponent == 1:
             continue
-        falling = np.argsort(-series["delta"], kind="stable")
-        x, y, error = (
-            np.log(series["delta"])[falling],
-            series["excess"][falling],
-            series["standard_error"][falling],
-        )
-        places = [_top(x, y, i) for i in _highest_points(y, error)]
-        last = np.nan
-        for place in places:
-            found.append(
-                {
-                    "epsilon": epsilon,
-                    "exponent": exponent,
-                    "delta": np.exp(place),
-                    _SPACINGS[0]: last - place,
-                    _SPACINGS[1]: np.exp(-place) - np.exp(-last),
-                }
-            )
-            last = place
-    return table(found, ("epsilon", "exponent", "delta", *_SPACINGS))
+        falling = pick(series, np.argsort(-series["delta"], kind="stable"))
+        x, y = np.log(falling["delta"]), falling["excess"]
+        tops = np.array([_top(x, y, i) for i in _highest_points(y, falling["standard_error"])])
+        part = {"epsilon": epsilon, "exponent": exponent, "delta": np.exp(tops)}
+        part["spacing_of_log_delta"] = -np.diff(tops, prepend=np.nan)
+        part["spacing_of_inverse_delta"] = np.diff(np.exp(-tops), prepend=np.nan)
+        found.append(part)
+    return stacked(found)
 
 
 def _highest_points(y: Any, error: Any) -> Iterator[int]:
@@ -170,10 +156,10 @@ def draw(tables: Tables) -> Figure:
     exponents = distinct(data["exponent"])
     across = min(2, len(exponents))
     down = -(-len(exponents) // across)
-    figure = style.picture(max(640, 540 * across), 420 * down + 40)
-    panels = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False)
-    low, high = data["excess"] - data["standard_error"], data["excess"] + data["standard_error"]
-    style.signed_log_axis(panels[0, 0], 2 * data["standard_error"].min(), (low, high))
+    shared: dict[str, Any] = {"sharex": True, "sharey": True, "squeeze": False}
+    size = max(640, 540 * across), 420 * down + 40
+    figure, panels = style.panels(size, down, across, **shared)
+    style.signed_log_axis(panels[0, 0], 2 * data["standard_error"].min())
     panels[0, 0].set_xscale("log")
     panels[0, 0].set_xlim(0.93 * data["delta"].min(), 1.07 * data["delta"].max())
     for axes, exponent in zip(panels.flat, exponents):

@@ -83,14 +83,14 @@ def draw(tables: Tables) -> Figure:
         for start in starts
         for k in range(0, len(times), _ACROSS)
     ]
-    figure = style.picture(360 * _ACROSS + 90, 350 * len(blocks) + 60)
-    panels = figure.subplots(
+    figure, panels = style.panels(
+        (360 * _ACROSS + 90, 350 * len(blocks) + 60),
         2 * len(blocks),
         _ACROSS,
         sharex=True,
         sharey="row",
         squeeze=False,
-        gridspec_kw={"height_ratios": (2, 1) * len(blocks)},
+        height_ratios=(2, 1) * len(blocks),
     )
     for k, block in enumerate(blocks):
         for upper, lower, (start, time) in zip(panels[2 * k], panels[2 * k + 1], block):

@@ -17,7 +17,7 @@ from matplotlib.patches import Polygon
 from ballpiston.client import Client
 from ballpiston.figures.parts import cell_outline, style
 from ballpiston.figures.parts.asking import RHO
-from ballpiston.figures.parts.tables import Table, Tables, rows, table
+from ballpiston.figures.parts.tables import Table, Tables, pick, rows, table
 
 _SHOWN_TIME = 25.0  # of the path and the positions; longer curves would be too dense
 _MEETING = {"color": style.BLACK, "markersize": 6, "fillstyle": "none", "linestyle": ""}
@@ -55,7 +55,7 @@ _FIELDS = ("x", "y", "energy")
 @style.styled
 def draw(tables: Tables) -> Figure:
     """Path, energies and positions."""
-    at = {name: float(column[0]) for name, column in tables["orbit-geometry"].items()}
+    at = pick(tables["orbit-geometry"], 0)
     bodies = {"ball": tables["orbit-ball"], "piston": tables["orbit-piston"]}
     end = min(body["time"][-1] for body in bodies.values())
     figure = style.picture(960, 900)
@@ -76,7 +76,7 @@ def _draw_path(figure: Figure, axes: Any, ball: Table, at: dict[str, float]) -> 
     scale = style.energy_bar(
         figure, axes, 0.5, "ball's energy", orientation="horizontal", shrink=0.6, pad=0.01
     )
-    early = {name: column[ball["time"] <= _SHOWN_TIME] for name, column in ball.items()}
+    early = pick(ball, ball["time"] <= _SHOWN_TIME)
     points = np.column_stack([early["x"], early["y"]])
     path = LineCollection(np.stack([points[:-1], points[1:]], axis=1), linewidths=1.2)
     path.set_color(scale.to_rgba(early["energy"][:-1]))

@@ -15,6 +15,7 @@ statistical error. Time on two cores: quick 3 s, default 25 s, full 4 min.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -68,7 +69,8 @@ def measure(
         orbit = client.trace_arrays(*names, rho=rho, delta=delta, seed=seed + k, events=events)
         for kind, found in batches.items():
             found += batches_of_gaps(orbit, kind)
-    return {"rates": stacked(_rates(kind, found) for kind, found in batches.items())}
+    measured = {kind: found for kind, found in batches.items() if any(map(len, found))}
+    return {"rates": stacked(_rates(kind, found) for kind, found in measured.items())}
 
 
 def _kinds(client: Client, rho: float, delta: float, epsilon: Numbers) -> list[Kind]:
@@ -126,19 +128,16 @@ def rate_of_windows(
     return probability / lengths, error / lengths
 
 
-def _rates(kind: Kind, batches: list[FloatArray]) -> Table:
-    """Empty if no gap has the energies of this kind."""
+def _rates(kind: Kind, batches: list[FloatArray]) -> dict[str, Any]:
     lengths = _LENGTHS / kind.rate
-    if not any(len(gaps) for gaps in batches):
-        lengths = lengths[:0]
-    rate, error = rate_of_windows(batches, lengths) if len(lengths) else (lengths, lengths)
+    rate, error = rate_of_windows(batches, lengths)
     return {
-        "kind": np.full(len(lengths), kind.name),
-        "epsilon": np.full(len(lengths), kind.epsilon),
+        "kind": kind.name,
+        "epsilon": kind.epsilon,
         "t": lengths,
         "rate": rate,
         "standard_error": error,
-        "exact": np.full(len(lengths), kind.rate),
+        "exact": kind.rate,
     }
 
 
@@ -146,19 +145,14 @@ def _rates(kind: Kind, batches: list[FloatArray]) -> Table:
 def draw(tables: Tables) -> Figure:
     """The three panels."""
     data = tables["rates"]
-    figure = style.picture(1200, 500)
-    panels = figure.subplots(1, 3, sharey=True)
+    titles = ("all events", "ball-piston events", "ball-piston events, given ε")
+    figure, panels = style.panels((1200, 500), 1, 3, titles, sharey=True)
     window = np.logspace(-4.3, 0.2, 200)
     poisson = {"color": style.GREY, "dashes": (6, 4), "label": "Poisson process"}
-    for axes in panels:
+    for axes, unit in zip(panels, ("t/τ", "t/τ$_{bp}$", "t/τ(ε)")):
         style.level(axes, 1, linewidth=1.5)
         axes.semilogx(window, -np.expm1(-window) / window, **poisson)
-        axes.set_xlim(6e-5, 1.7)
-    titles = ("all events", "ball-piston events", "ball-piston events, given ε")
-    units = ("t/τ", "t/τ$_{bp}$", "t/τ(ε)")
-    for axes, letter, text, unit in zip(panels, "abc", titles, units):
-        style.title(axes, letter, text)
-        axes.set_xlabel(unit)
+        axes.set(xlim=(6e-5, 1.7), xlabel=unit)
     several = [(0, rows(data, kind="all"), style.BLUE, "", 0.0)]
     several += [(1, rows(data, kind="ball_piston"), style.BLUE, "", 0.0)]
     conditional = style.series(rows(data, kind="conditional"), "epsilon", "ε")

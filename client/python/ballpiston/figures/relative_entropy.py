@@ -48,8 +48,7 @@ def draw(tables: Tables) -> Figure:
     """One panel for each exponent."""
     data = tables["relative-entropy"]
     count = len(distinct(data["epsilon"]))
-    figure = style.picture(960, 840)
-    panels = figure.subplots(2, 2, sharex=True)
+    figure, panels = style.panels((960, 840), 2, 2, sharex=True)
     for axes, exponent in zip(panels.flat, _EXPONENTS):
         axes.set_xscale("log")
         axes.set_yscale("log")

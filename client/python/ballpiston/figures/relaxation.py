@@ -59,8 +59,14 @@ def draw(tables: Tables) -> Figure:
     energy, correlation = tables["relaxation-energy"], tables["relaxation-autocorrelation"]
     deltas, starts = distinct(energy["delta"]), distinct(energy["epsilon"])
     lowest, highest = min(starts), max(starts)
-    figure = style.picture(1080, 840)
-    panels = figure.subplots(2, 2, sharex=True, gridspec_kw={"height_ratios": (5, 3)})
+    two_starts = f" (●), {highest:g} (△)" if highest > lowest else ""
+    titles = (
+        "mean energy of the piston",
+        "autocorrelation of the energy",
+        f"minus the limit: from {lowest:g}{two_starts}",
+        "minus the limit",
+    )
+    figure, panels = style.panels((1080, 840), 2, 2, titles, sharex=True, height_ratios=(5, 3))
     for k, start in enumerate(starts):
         line = rows(energy, epsilon=start, delta=deltas[0])
         label = "limit δ → 0" if k == 0 else None
@@ -81,11 +87,6 @@ def draw(tables: Tables) -> Figure:
         dots = {"color": colour, "markersize": 3}
         _draw_curve(panels[0, 1], part, **dots)
         _draw_excess(panels[1, 1], part, 0, **dots)
-    starts_text = f"from {lowest:g}" + (f" (●), {highest:g} (△)" if highest > lowest else "")
-    style.title(panels[0, 0], "a", "mean energy of the piston")
-    style.title(panels[0, 1], "b", "autocorrelation of the energy")
-    style.title(panels[1, 0], "c", f"minus the limit: {starts_text}")
-    style.title(panels[1, 1], "d", "minus the limit")
     panels[0, 0].set(ylim=(0, 0.5), ylabel="mean energy", xlim=(0, 1.02 * energy["t"].max()))
     panels[0, 1].set(ylim=(_LEAST, 1.5), ylabel="autocorrelation")
     panels[0, 0].legend()

@@ -32,7 +32,7 @@ from ballpiston.client import Client
 from ballpiston.collisions import Records
 from ballpiston.figures.parts import cell_outline, style
 from ballpiston.figures.parts.asking import RHO
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, rows, stacked, table
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, pick, rows, stacked, table
 
 EFFORT = {
     "quick": {"collisions": 1e4, "events": 1e4, "bins": 12},
@@ -137,7 +137,7 @@ def _section(name: str, points: Any, edges: Any, scaled: Any, exact: FloatArray)
 
 
 def _chi_squared(section: Table) -> dict[str, Any]:
-    found = {name: column[section["expected"] >= _FEWEST] for name, column in section.items()}
+    found = pick(section, section["expected"] >= _FEWEST)
     terms = (found["count"] - found["expected"]) ** 2 / found["expected"]
     return {"section": section["section"][0], "chi_squared": terms.sum(), "bins": len(terms)}
 
@@ -152,11 +152,11 @@ _AXES = {
 @style.styled
 def draw(tables: Tables) -> Figure:
     """Collisions and wall hits left, their exact density right."""
-    figure = style.picture(960, 1180)
-    panels = figure.subplots(3, 2, sharey="row", sharex="row")
-    for line, letters, (name, labels) in zip(panels, ("ab", "cd", "ef"), _AXES.items()):
+    titles = ("collisions", "exact density") * 2 + ("wall hits", "exact density")
+    figure, panels = style.panels((960, 1180), 3, 2, titles, sharey="row", sharex="row")
+    for line, (name, labels) in zip(panels, _AXES.items()):
         part = rows(tables["section"], section=name)
-        for axes, letter, column in zip(line, letters, ("density", "exact_density")):
+        for axes, column in zip(line, ("density", "exact_density")):
             x, y = (np.unique(part[edges]) for edges in ("first", "second"))
             box = (x[0], 2 * x[-1] - x[-2], y[0], 2 * y[-1] - y[-2])
             shown: dict[str, Any] = {"origin": "lower", "aspect": "auto", "cmap": style.ENERGY}
@@ -164,7 +164,5 @@ def draw(tables: Tables) -> Figure:
             axes.imshow(part[column].reshape(len(x), -1).T, **shown)
             axes.grid(False)
             axes.set(xlabel=labels[0])
-            measured = "wall hits" if name == "s" else "collisions"
-            style.title(axes, letter, measured if column == "density" else "exact density")
         line[0].set(ylabel=labels[1])
     return figure

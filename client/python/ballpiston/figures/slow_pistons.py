@@ -79,8 +79,7 @@ def _idle(point: Point, blocks: int, seed: int) -> Table:
     at = point.parameters
     gas = {name: at[name] for name in ("rho", "delta", "cold")}
     found = table_of("slow_pistons", "idle", **gas, block=_BLOCK, blocks=blocks, seed=seed)
-    length = len(found["time"])
-    return {name: np.full(length, at[name]) for name in ("delta", "cold")} | found
+    return stacked([{"delta": at["delta"], "cold": at["cold"]} | found])
 
 
 def _growth_and_law(point: Point, idle: Table) -> dict[str, float]:
@@ -113,8 +112,8 @@ def _growth(point: Point) -> dict[str, float]:
 @style.styled
 def draw(tables: Tables) -> Figure:
     """Both panels."""
-    figure = style.picture(960, 480)
-    left, right = figure.subplots(1, 2)
+    titles = ("Var(Q)/t over its first value", "growth over 2aJ²")
+    figure, (left, right) = style.panels((960, 480), 1, 2, titles)
     found = tables["slow-pistons"]
     _draw_windows(left, tables["slow-pistons-windows"], found["delta"][0])
     style.level(right, 1)
@@ -124,8 +123,6 @@ def draw(tables: Tables) -> Figure:
     right.set_xticks(x, labels)
     right.minorticks_off()
     right.set(xlabel="δ, cold temperature", xlim=(-0.5, len(x) - 0.5))
-    style.title(left, "a", "Var(Q)/t over its first value")
-    style.title(right, "b", "growth over 2aJ²")
     return figure
 
 

@@ -51,8 +51,7 @@ def measure(
 @style.styled
 def draw(tables: Tables) -> Figure:
     """Both panels."""
-    figure = style.picture(960, 900)
-    upper, lower = figure.subplots(2, 1, gridspec_kw={"height_ratios": (3, 4)})
+    figure, (upper, lower) = style.panels((960, 900), 2, 1, height_ratios=(3, 4))
     _draw_rates(upper, tables["spectrum"], tables["spectrum-rate"])
     _draw_correlations(lower, tables["spectrum-billiard"])
     return figure

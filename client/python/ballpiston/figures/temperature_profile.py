@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from ballpiston.client import Client
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO, answer
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, curves, distinct, rows
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, curves, distinct, pick, rows
 from ballpiston.parameter_lists import Shapes
 
 EFFORT: dict[str, dict[str, Any]] = {
@@ -66,8 +66,7 @@ def draw(tables: Tables) -> Figure:
     markov = tables["temperature-profile-markov"]
     hot, cold = float(markov["hot"][0]), float(markov["cold"][0])
     lengths = distinct(markov["cells"])
-    figure = style.picture(960, 840)
-    panels = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3, 2)})
+    figure, panels = style.panels((960, 840), 2, 1, sharex=True, height_ratios=(3, 2))
     x = np.linspace(0, 1, 200)
     panels[0].plot(x, linear_law(hot, cold, x), color=style.BLACK)
     style.level(panels[1], 0)
@@ -91,8 +90,7 @@ def _draw_profile(
     panels: Any, part: Table, model: str, hot: float, cold: float, colour: str
 ) -> None:
     for is_piston in (False, True):  # pistons have whole positions
-        chosen = (part["position"] == np.floor(part["position"])) == is_piston
-        body = {name: column[chosen] for name, column in part.items()}
+        body = pick(part, (part["position"] == np.floor(part["position"])) == is_piston)
         share = body["position"] / body["cells"].astype(float)
         place = share + (_ASIDE if model == "billiard" else 0)
         marker = _marker(model, is_piston)

@@ -26,12 +26,13 @@ class Fit(NamedTuple):
 
 
 def linear(terms: FloatArray, values: FloatArray, errors: FloatArray) -> Fit:
-    """values = terms @ coefficients; one row of `terms` for each value. NaN if there are fewer values
-    than coefficients."""
-    if len(values) < terms.shape[1]:
+    """values = terms @ coefficients; one row of `terms` for each value. NaN if the values do not
+    determine the coefficients."""
+    weighted = terms / errors[:, np.newaxis]
+    rank = np.linalg.matrix_rank(weighted) if weighted.size else 0
+    if rank < terms.shape[1]:
         unknown = np.full(terms.shape[1], np.nan)
         return Fit(unknown, unknown, np.nan, 0)
-    weighted = terms / errors[:, np.newaxis]
     covariance = np.linalg.inv(weighted.T @ weighted)
     coefficients = covariance @ weighted.T @ (values / errors)
     residuals = (values - terms @ coefficients) / errors

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from ballpiston.figures.parts.fits import linear
-from ballpiston.figures.parts.tables import FloatArray, Table, distinct, rows, table
+from ballpiston.figures.parts.tables import FloatArray, Table, distinct, pick, rows, table
 
 # x = delta^-power; 0 is the logarithm.
 _MODELS = {"delta": -1.0, "log(delta)": 0.0, "1/delta": 1.0}
@@ -28,6 +28,11 @@ _POWERS = -2 + np.arange(41) / 8
 _LARGEST_ERROR = 4.0  # of log E
 _FEWEST_POINTS = 10
 _SEED = 20260101
+_COLUMNS = (
+    *("epsilon", "exponent", "points", "smallest_delta", "model_error", "model"),
+    *("b", "b_error", "amplitude", "period", "chi_squared", "degrees_of_freedom", "gain"),
+    *("false_alarm", "p_value", "transform", "transform_low", "transform_high"),
+)
 
 
 def series_of(points: Table) -> Iterator[tuple[tuple[float, float], Table]]:
@@ -56,15 +61,15 @@ def fits(points: Table, synthetic: int) -> Table:
         above = series["excess"] > 3 * series["standard_error"]
         if exponent == 1 or above.sum() < _FEWEST_POINTS:
             continue
-        chosen = {name: column[above] for name, column in series.items()}
+        chosen = pick(series, above)
         fit = SeriesFit.of(chosen)
         of_energy.setdefault(epsilon, []).append(fit)
         head = {"epsilon": epsilon, "exponent": exponent, "points": len(fit.log_delta)}
         head |= {"smallest_delta": chosen["delta"].min(), "model_error": fit.model_error}
         found += [head | row for row in fit.rows(random, synthetic)]
     for epsilon, several in of_energy.items():
-        found += [{"epsilon": epsilon, "exponent": np.nan} | row for row in _sums(several)]
-    return table(found)
+        found += [{"epsilon": epsilon} | row for row in _sums(several)]
+    return table(found, _COLUMNS)
 
 
 @dataclass(frozen=True)
@@ -73,12 +78,12 @@ class Basis:
     to the power law, for data that were divided by their errors."""
 
     power: float
-    waves: FloatArray  # (frequencies, 2, points)
+    waves: FloatArray  # (frequencies, points, 2)
     omegas: FloatArray
 
     def amplitudes(self, whitened: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The components (..., 2) of data (..., points) at the best frequency, and its index."""
-        components: FloatArray = np.einsum("fkp,...p->...fk", self.waves, whitened)
+        components: FloatArray = np.einsum("fpk,...p->...fk", self.waves, whitened)
         best = np.argmax(np.sum(components**2, axis=-1), axis=-1)
         chosen = np.take_along_axis(components, best[..., np.newaxis, np.newaxis], axis=-2)
         return chosen[..., 0, :], best
@@ -192,7 +197,7 @@ class SeriesFit:
     def _p_value(self, name: str, random: np.random.Generator, synthetic: int) -> float:
         basis = self.bases[name]
         amplitudes, best = basis.amplitudes(self.whitened)
-        data = self._noise(random, synthetic) + amplitudes @ basis.waves[best]
+        data = self._noise(random, synthetic) + basis.waves[best] @ amplitudes
         most = np.max([other.gain(data) for other in self.bases.values()], axis=0)
         worse = max(self.gains.values()) - self.gains[name]
         return float(np.mean(most - basis.gain(data) >= worse))
@@ -209,21 +214,17 @@ def _sums(several: list[SeriesFit]) -> list[dict[str, Any]]:
     """Over the exponents of one energy."""
     points = sum(len(fit.log_delta) for fit in several)
     chi = sum(fit.chi_of_power_law for fit in several)
-    head = {"points": points, "smallest_delta": np.nan, "model_error": np.nan}
-    found = [head | _row("power law", chi, points - 2 * len(several))]
+    found = [_row("power law", chi, points - 2 * len(several), points=points)]
     transform = best_transform(np.sum([fit.chi_of_powers for fit in several], axis=0))
     for name in _MODELS:
         gain = sum(fit.gains[name] for fit in several)
         freedom = points - 5 * len(several)
-        found.append(head | _row(name, chi - gain, freedom, gain=gain, **transform))
+        found.append(_row(name, chi - gain, freedom, points=points, gain=gain, **transform))
     return found
 
 
 def _row(model: str, chi: float, freedom: int, **known: float) -> dict[str, Any]:
-    head = {"model": model, "b": np.nan, "b_error": np.nan, "amplitude": np.nan, "period": np.nan}
-    head |= {"chi_squared": chi, "degrees_of_freedom": freedom}
-    tail = ("gain", "false_alarm", "p_value", "transform", "transform_low", "transform_high")
-    return head | dict.fromkeys(tail, np.nan) | known
+    return {"model": model, "chi_squared": chi, "degrees_of_freedom": freedom} | known
 
 
 def _variable(log_delta: FloatArray, power: float) -> FloatArray:
@@ -245,17 +246,6 @@ def _basis(log_delta: FloatArray, weights: FloatArray, power: float) -> Basis:
     cycles = 1.5 + 0.15 * np.arange(1 + max(0, int(np.ceil((most - 1.5) / 0.15 - 1e-9))))
     omegas = 2 * np.pi * cycles / np.ptp(x)
     phases = np.outer(omegas, x)
-    cosine, sine = (
-        _without_power_law(weights * wave, log_delta, weights)
-        for wave in (np.cos(phases), np.sin(phases))
-    )
-    cosine = _normalised(cosine)
-    sine = sine - np.sum(cosine * sine, axis=1, keepdims=True) * cosine
-    return Basis(power, np.stack([cosine, _normalised(sine)], axis=1), omegas)
-
-
-def _normalised(vectors: FloatArray) -> FloatArray:
-    """A vector that is only rounding becomes 0."""
-    square = np.sum(vectors**2, axis=1, keepdims=True)
-    unit: FloatArray = np.where(square > 1e-20, vectors / np.sqrt(np.fmax(square, 1e-20)), 0.0)
-    return unit
+    terms = np.broadcast_arrays(1.0, log_delta, np.cos(phases), np.sin(phases))
+    orthonormal, _ = np.linalg.qr(weights[:, np.newaxis] * np.stack(terms, axis=-1))
+    return Basis(power, orthonormal[:, :, 2:], omegas)

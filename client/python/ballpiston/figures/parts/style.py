@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import io
+import string
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -82,6 +83,17 @@ def picture(width: float, height: float) -> Figure:
     return Figure(figsize=(width / _PIXELS, height / _PIXELS))
 
 
+def panels(
+    size: tuple[float, float], down: int, across: int, titles: Iterable[str] = (), **options: Any
+) -> tuple[Figure, Any]:
+    """A figure of panels, and the panels. Their titles have the letters a, b, ..."""
+    figure = picture(*size)
+    matrix = figure.subplots(down, across, **options)
+    for axes, letter, text in zip(np.ravel(matrix), string.ascii_lowercase, titles):
+        axes.set_title(rf"$\mathbf{{{letter}}}$  {text}")
+    return figure, matrix
+
+
 def bare_axes(figure: Figure, place: Any = 111) -> Any:
     """Axes without a frame, for drawings. Lengths of x and y are equal."""
     axes = figure.add_subplot(place)
@@ -96,11 +108,6 @@ def axis_arrows(axes: Any, origin: Sequence[float], length: float, names: Sequen
         step = length * np.eye(3)[k]
         axes.quiver(*origin, *step, color=BLACK, arrow_length_ratio=0.25, zorder=9)
         axes.text(*(origin + 1.3 * step), name, ha="center", va="center")
-
-
-def title(axes: Axes, letter: str, text: str) -> None:
-    """Of one of several panels: a bold letter and a text."""
-    axes.set_title(rf"$\mathbf{{{letter}}}$  {text}")
 
 
 def error_points(
@@ -137,15 +144,6 @@ def inside(axes: Axes, x: float, y: float, text: str, **style: Any) -> None:
     axes.text(x, y, text, transform=axes.transAxes, **style)
 
 
-def legend_above_data(axes: Axes, **style: Any) -> None:
-    """A legend in the panel, whose vertical axis is longer at the top so that no data are below."""
-    legend = axes.legend(loc="upper left", **style)
-    low, high = axes.get_ylim()
-    lines = len(legend.get_texts())
-    share = 0.06 + 0.26 * lines / axes.figure.get_figheight()  # a line has 0.26 inches
-    axes.set_ylim(low, low + (high - low) / (1 - share))
-
-
 def top_legend(figure: Figure, handles: Sequence[Any], columns: int = 0) -> None:
     """One legend for all panels, in a strip of its own above them."""
     columns = columns or len(handles)
@@ -172,19 +170,10 @@ def remove_empty(panels: Any, count: int) -> None:
         axes.set_xlabel(panels[-1, 0].get_xlabel())
 
 
-def signed_log_axis(axes: Axes, linear: float, values: Iterable[Any]) -> None:
-    """A vertical axis that is linear below `linear` and logarithmic above it, on both sides of 0,
-    over the finite values."""
-    numbers = np.concatenate([np.ravel(v) for v in values])
-    numbers = numbers[np.isfinite(numbers)]
-    lowest, highest = min(1.3 * numbers.min(), -linear), max(2 * numbers.max(), linear)
-    decades = range(int(np.floor(np.log10(2 * linear) + 0.5)), int(np.ceil(np.log10(highest))) + 1)
-    powers = [10.0**k for k in decades]
-    axes.set_yscale("asinh", linear_width=linear)
-    axes.set_ylim(lowest, highest)
-    axes.yaxis.set_major_locator(FixedLocator([-p for p in powers if p < -lowest] + [0.0] + powers))
-    axes.yaxis.set_minor_locator(NullLocator())
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: power_text(y)))
+def signed_log_axis(axes: Axes, noise: float) -> None:
+    """A vertical axis that is linear below the power of ten above `noise`, and logarithmic above it,
+    on both sides of 0."""
+    axes.set_yscale("symlog", linthresh=10.0 ** np.ceil(np.log10(noise)))
 
 
 def plain_log_ticks(axis: Any, at: Sequence[float]) -> None:

@@ -2,44 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from typing import Any, Union
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from ballpiston.closed_forms import ClosedForms
+from ballpiston.fields import FloatArray as FloatArray
 from ballpiston.point import Point
 from ballpiston.result import Result
 from ballpiston.table_file import Table as Table
 
-FloatArray = npt.NDArray[np.float64]
 Tables = dict[str, Table]
 
 _ESTIMATE = ("name", "value", "standard_error", "exact", "noise_floor", "limit")
 
 
 def table(rows: Iterable[Mapping[str, Any]], names: Iterable[str] = ()) -> Table:
-    """Of rows with the same names; `names` are those of a table without rows. What is None becomes
-    NaN."""
+    """Of rows, with columns of these names, else of all names in the rows. What a row lacks or has as
+    None becomes NaN."""
     rows = list(rows)
-    names = rows[0] if rows else names
-    return {n: np.array([np.nan if r[n] is None else r[n] for r in rows]) for n in names}
+    names = names or dict.fromkeys(n for row in rows for n in row)
+    return {n: np.array([np.nan if row.get(n) is None else row[n] for row in rows]) for n in names}
 
 
-def stacked(tables: Iterable[Table]) -> Table:
-    """One table below the other."""
-    tables = list(tables)
+def stacked(parts: Iterable[Mapping[str, Any]]) -> Table:
+    """One table below the other. A value in place of a column stands in all rows of its part."""
+    tables = [dict(zip(part, np.broadcast_arrays(*part.values()))) for part in parts]
     return {n: np.concatenate([t[n] for t in tables]) for n in (tables[0] if tables else ())}
+
+
+def pick(whole: Table, index: Any) -> dict[str, Any]:
+    """The rows that an index of NumPy, such as a mask, selects; with a number, a dict of values."""
+    return {name: column[index] for name, column in whole.items()}
 
 
 def rows(whole: Table, **wanted: Any) -> Table:
     """The rows in which each named column has the wanted value."""
-    length = len(next(iter(whole.values()), ()))
-    mask = np.ones(length, dtype=bool)
+    mask = np.ones(len(next(iter(whole.values()), ())), dtype=bool)
     for name, value in wanted.items():
         mask &= whole[name] == value
-    return {name: column[mask] for name, column in whole.items()}
+    return pick(whole, mask)
 
 
 def distinct(column: Iterable[Any]) -> list[Any]:
@@ -49,54 +52,48 @@ def distinct(column: Iterable[Any]) -> list[Any]:
 
 def estimates(result: Result) -> Table:
     """One row for each estimate of each point, with the point's parameters."""
-
-    return _of_points(
-        result,
-        lambda point: [
-            table({name: getattr(e, name) for name in _ESTIMATE} for e in point.estimates.values())
-        ],
+    return table(
+        _facts(point) | {name: getattr(estimate, name) for name in _ESTIMATE}
+        for point in result
+        for estimate in point.estimates.values()
     )
 
 
 def curves(result: Result, *names: str) -> Table:
     """One row for each time, or position, of each curve of each point; if there are names, of these
     curves only. Functions of time and of the position do not fit into one table."""
-
-    def of(point: Point) -> list[Table]:
-        return [
-            {
-                "name": np.full(len(c.x), c.name),
-                "position" if c.time is None else "time": c.x,
-                "value": c.value,
-                "standard_error": c.standard_error,
-                "limit": c.limit,
-            }
-            for c in point.curves
-            if not names or c.name in names
-        ]
-
-    return _of_points(result, of)
+    return stacked(
+        _facts(point)
+        | {
+            "name": curve.name,
+            "position" if curve.time is None else "time": curve.x,
+            "value": curve.value,
+            "standard_error": curve.standard_error,
+            "limit": curve.limit,
+        }
+        for point in result
+        for curve in point.curves
+        if not names or curve.name in names
+    )
 
 
 def histograms(result: Result) -> Table:
     """One row for each bin of each histogram of each point."""
-
-    def of(point: Point) -> list[Table]:
-        return [
-            {
-                "name": np.full(len(h.counts), h.name),
-                "sigma": np.full(len(h.counts), h.sigma),
-                "time": np.full(len(h.counts), np.nan if h.time is None else h.time),
-                "lower": h.edges[:-1],
-                "upper": h.edges[1:],
-                "count": h.counts,
-                "density": h.density,
-                "exact_density": h.expected_density,
-            }
-            for h in point.histograms
-        ]
-
-    return _of_points(result, of)
+    return stacked(
+        _facts(point)
+        | {
+            "name": histogram.name,
+            "sigma": histogram.sigma,
+            "time": np.nan if histogram.time is None else histogram.time,
+            "lower": histogram.edges[:-1],
+            "upper": histogram.edges[1:],
+            "count": histogram.counts,
+            "density": histogram.density,
+            "exact_density": histogram.expected_density,
+        }
+        for point in result
+        for histogram in point.histograms
+    )
 
 
 def closed_forms(forms: ClosedForms, *names: str) -> Table:
@@ -110,12 +107,5 @@ def _as_matrix(column: FloatArray) -> FloatArray:
     return column[:, np.newaxis] if column.ndim == 1 else column
 
 
-def _of_points(result: Result, of: Callable[[Point], list[Table]]) -> Table:
-    parts: list[Table] = []
-    for point in result:
-        facts: dict[str, Union[float, str]] = dict(point.parameters)
-        facts |= {"model": point.model, "samples": point.samples}
-        for part in of(point):
-            length = len(next(iter(part.values()), ()))
-            parts.append({name: np.full(length, fact) for name, fact in facts.items()} | part)
-    return stacked(parts)
+def _facts(point: Point) -> dict[str, Any]:
+    return point.parameters | {"model": point.model, "samples": point.samples}
