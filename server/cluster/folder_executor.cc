@@ -64,20 +64,11 @@ FolderExecutor::FolderExecutor(Scheduler& scheduler, const ClusterOptions& optio
       files_(std::move(files)),
       server_(std::move(server)),
       process_(absl::StrCat(absl::Hex(RandomBits(), absl::kZeroPad16))),
-      capacity_{.executor = scheduler.AddExecutor(*this),
-                .local = false,
-                .longest_chunk = options.longest_chunk} {}
-
-FolderExecutor::~FolderExecutor() {
-  Shutdown();
-  scheduler_.RemoveExecutor(capacity_.executor);
-}
+      capacity_{.local = false, .longest_chunk = options.longest_chunk} {}
 
 void FolderExecutor::Start() {
   looking_ = std::make_unique<PeriodicThread>(options_.look, [this] { Look(); });
 }
-
-void FolderExecutor::Shutdown() { looking_.reset(); }
 
 // Leases end by their time-out even if the folder cannot be used.
 void FolderExecutor::Look() {
@@ -198,7 +189,6 @@ absl::StatusOr<Lease> FolderExecutor::TakeEarlier(absl::string_view& bytes) cons
   if (!file.ok()) return file.status();
   if (file->server != server_.identity) return absl::DataLossError("it is of another server");
   Lease lease = std::move(file->lease);
-  lease.executor = capacity_.executor;
   lease.local = false;
   return lease;
 }

@@ -71,7 +71,7 @@ struct FolderStatus {
   double refused_files = 0;
 };
 
-class FolderExecutor : public Executor {
+class FolderExecutor {
  public:
   // The parts of the server that the executor uses.
   struct Server {
@@ -82,15 +82,12 @@ class FolderExecutor : public Executor {
     LeaseReader read_lease = TakeLease;
   };
 
-  // The scheduler must outlive this.
+  // The scheduler must outlive this. When this ends, workers go on.
   FolderExecutor(Scheduler& scheduler, const ClusterOptions& options,
                  std::unique_ptr<SharedFiles> files, Server server);
-  ~FolderExecutor() override;  // shuts down
 
   // Begins to take leases. Call it once, after the runs of an earlier process were added.
   void Start();
-  void Wake() override {}    // the executor looks every second
-  void Shutdown() override;  // workers go on
 
   // What Start calls from its thread every second. Tests call it themselves.
   void Look();
@@ -151,7 +148,7 @@ class FolderExecutor : public Executor {
 
   mutable Mutex mutex_;
   FolderStatus status_ ABSL_GUARDED_BY(mutex_);
-  std::unique_ptr<PeriodicThread> looking_;
+  std::unique_ptr<PeriodicThread> looking_;  // last: its thread uses all members above
 };
 
 }  // namespace ballpiston::server
