@@ -20,14 +20,13 @@ Scheduler::Scheduler(PointOpener& opener, int workers, SchedulerOptions options)
 // ---- runs ----
 
 void Scheduler::Add(RunRequest request) {
-  const bool is_suspect = request.suspicion.has_value();
-  const int32_t priority = request.priority;
   const auto run = std::make_shared<Run>(std::move(request), options_, workers_);
+  const RunRequest& asked = run->request();
   {
     MutexLock lock(mutex_);
     runs_.emplace(run->key(), run);
-    if (is_suspect) suspects_.push_back(run->key());
-    for (FairShare& shares : shares_) shares.Add(run->key(), run->principal(), priority);
+    if (asked.suspicion) suspects_.push_back(run->key());
+    for (FairShare& shares : shares_) shares.Add(run->key(), asked.principal, asked.priority);
   }
   Wake();
   Conclude(run);  // the run may have nothing left to compute
@@ -74,25 +73,20 @@ Scheduler::RunPointer Scheduler::FindRun(int64_t key) const {
 
 std::vector<Lease> Scheduler::StopRun(Run& run, absl::Status why) {
   run.Stop(std::move(why));
-  EndPilotsOf(run);
+  EndPilots(run);
   return DropStoppedLeases(run);
-}
-
-void Scheduler::EndPilotsOf(const Run& run) {
-  std::vector<PilotPlace> left;
-  for (const auto& [place, owner] : pilots_) {
-    if (owner == run.key()) left.push_back(place);
-  }
-  for (const PilotPlace& place : left) EndPilot(run, place);
 }
 
 // Runs that wait for the pilot open their points again; the first of them may start the pilot
 // again.
-void Scheduler::EndPilot(const Run& owner, const PilotPlace& place) {
-  const auto found = pilots_.find(place);
-  if (found == pilots_.end() || found->second != owner.key()) return;  // another run has it
-  pilots_.erase(found);
-  for (const auto& [key, run] : runs_) run->PilotIsKnown(place);
+void Scheduler::EndPilots(const Run& owner, std::optional<PilotPlace> only) {
+  std::erase_if(pilots_, [&](const auto& pilot) {
+    mutex_.AssertHeld();
+    const auto& [place, run] = pilot;
+    if (run != owner.key() || (only && place != *only)) return false;
+    for (const auto& [key, waiting] : runs_) waiting->PilotIsKnown(place);
+    return true;
+  });
 }
 
 // Elsewhere, a turn at a lease lasts until the lease ends.
@@ -136,8 +130,8 @@ void Scheduler::ClearIfRefuted(const RunPointer& run) {
   std::function<bool()> clear;
   {
     MutexLock lock(mutex_);
-    if (suspects_.empty() || IsPaused(*run) || run->refuted() == nullptr) return;
-    clear = run->refuted()->clear;
+    if (suspects_.empty() || IsPaused(*run) || !run->IsRefuted()) return;
+    clear = run->request().suspicion->clear;
   }
   if (!clear()) return;
   {
@@ -161,8 +155,7 @@ std::optional<Lease> Scheduler::Next(const Capacity& capacity) {
     SharesOf(*lease).TurnBegins(lease->run);
     run = runs_.at(lease->run);
     if (lease->local) run->TurnBegins();
-    begins = !run->began();
-    run->set_began();
+    begins = run->Begin();
   }
   if (begins) run->journal().Began();
   return lease;
@@ -268,7 +261,7 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
   auto open = std::make_unique<OpenPoint>(
       std::get<std::unique_ptr<const PointExperiment>>(std::move(opened)));
   open->memory = MemoryOf(run, index);
-  if (run.has_checkpoints()) {
+  if (run.request().has_checkpoints) {
     absl::Status resumed = Resume(run, index, *open);
     if (!resumed.ok()) return resumed;
   }
@@ -298,7 +291,7 @@ absl::Status Scheduler::AwaitPilot(Run& run, size_t index, const PilotPlace& pla
   }
   absl::Cleanup give_up = [&] {
     MutexLock lock(mutex_);
-    EndPilot(run, place);
+    EndPilots(run, place);
   };
   // The pilot's result may have become known before this run took the pilot over.
   if (!std::holds_alternative<PilotPlace>(opener_.Open(run.spec(), index))) return absl::OkStatus();
@@ -332,7 +325,7 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
   {
     MutexLock lock(mutex_);
     run = FindRun(lease.run);
-    if (run != nullptr && run->generation() != lease.generation) run = nullptr;
+    if (run != nullptr && run->request().generation != lease.generation) run = nullptr;
     if (run != nullptr && !lease.local) {
       const bool is_now = !shutting_down_ && !run->IsUnopened(lease.point) && !IsPaused(*run);
       if (!is_now) return absl::UnavailableError("the point is not computed now");
@@ -386,7 +379,7 @@ void Scheduler::FinishPoint(const RunPointer& run, const Lease& lease) {
   {
     MutexLock lock(mutex_);
     run->Close(lease);
-    if (lease.pilot) EndPilot(*run, *lease.pilot);
+    if (lease.pilot) EndPilots(*run, *lease.pilot);
     if (!told.ok()) dropped = StopRun(*run, std::move(told));
     run->TurnEnds();
   }

@@ -120,7 +120,9 @@ class Scheduler {
   // lock: their stop was requested, and no local turn at them is in progress.
   std::vector<Lease> DropStoppedLeases(const Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::vector<Lease> StopRun(Run& run, absl::Status why) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void EndPilot(const Run& owner, const PilotPlace& place) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Those that the run owns, or this one if it does.
+  void EndPilots(const Run& owner, std::optional<PilotPlace> only = {})
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void Charge(Run& run, const Lease& lease, double seconds) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   absl::Status OpenOne(Run& run, size_t index) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -134,7 +136,6 @@ class Scheduler {
   bool IsPaused(const Run& run) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool MayTakeTurn(const Run& run, bool is_local) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void ClearIfRefuted(const RunPointer& run) ABSL_LOCKS_EXCLUDED(mutex_);
-  void EndPilotsOf(const Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   FairShare& SharesOf(const Lease& lease) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
     return shares_[lease.local];
   }
