@@ -175,11 +175,11 @@ void ThreadExecutor::TakeTurn(const Lease& lease) {
 void ThreadExecutor::Compute(const Lease& lease) {
   const RunName run = {lease.run, lease.generation};
   for (const size_t point : lease.opens) {
-    const CrashRecord::Computing opening(*crashes_, run, point);
+    const CrashRecord::Entry opening(*crashes_, run, point);
     scheduler_.Open(lease, point);
   }
   if (lease.OpensPoints()) return;
-  const CrashRecord::Computing computing(*crashes_, run, lease.point);
+  const CrashRecord::Entry computing(*crashes_, run, lease.point);
   CrashForSeed(lease.spec->seed);
   const absl::Status advanced = Guarded(lease.point, [&] {
     static_cast<SharedLease&>(*lease.work).Advance();
