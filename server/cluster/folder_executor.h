@@ -8,7 +8,8 @@
 //   - A lease in taken/ of which the server knows nothing is moved to done/, so its worker stops.
 //   - A lease that nobody takes goes back to the scheduler after the time-out, so this server's
 //     threads can compute it. If they have other work, the lease is laid again.
-//   - A lease is lost if its file does not change for the time-out. The server compares times of
+//   - A lease is lost if its file does not change, or is not there, for the time-out. The server
+//   compares times of
 //     the folder with each other only, and measures the time-out with its own steady clock. So a
 //     clock that jumps loses no lease.
 // A late worker changes nothing, and a folder that is emptied loses no work (checked in
@@ -106,7 +107,6 @@ class FolderExecutor {
     FileStamp stamp;           // then
     size_t reported = 0;       // bytes of the file
     std::string worker = {};   // empty: nobody has taken it
-    int missing = 0;           // looks in a row in which the file was nowhere
   };
   using Leases = std::map<std::string, Laid>;  // by name
 
@@ -121,7 +121,6 @@ class FolderExecutor {
   void LookAt(Leases::iterator laid);
   void LookAtWaiting(Leases::iterator laid);
   void LookAtTaken(Leases::iterator laid);
-  void NoteMissing(Leases::iterator laid);
   void GiveBack(Leases::iterator laid, bool tried);
   absl::Status Lay();
   absl::Status LaySome();
