@@ -277,6 +277,7 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   if (grpc_ != nullptr) grpc_->Shutdown(deadline);
   door_->Close();
   if (metrics_ != nullptr) metrics_->Detach();
+  cluster_.reset();
   store_->Close();
 }
 

@@ -134,7 +134,7 @@ absl::StatusOr<std::optional<v1::PointResult>> JobBook::UnfinishedResult(const P
   if (found->active == nullptr || experiment == nullptr) return std::nullopt;
   const auto live = scheduler_.Unfinished(record.sequence, static_cast<size_t>(point));
   if (!live) return std::nullopt;
-  const CrashRecord::Examining examining(*crashes_, RunOf(record));
+  const CrashRecord::Entry examining(*crashes_, RunOf(record));
   const PointSummary summary = live->experiment->Summarize(live->merged);
   return Named(WithDetails(ResultOf(live->index, *live->experiment, summary), DetailsOf(summary),
                            *experiment),
@@ -146,7 +146,7 @@ absl::StatusOr<std::optional<v1::PointResult>> JobBook::UnfinishedResult(const P
 std::shared_ptr<const JobSnapshot> JobBook::Snapshot(Job& job, std::chrono::milliseconds max_age,
                                                      size_t limit) const {
   return job.Snapshot(max_age, [&] {
-    const CrashRecord::Examining examining(*crashes_, RunOf(job.row()));
+    const CrashRecord::Entry examining(*crashes_, RunOf(job.row()));
     JobSnapshot snapshot;
     snapshot.change = job.last_change();  // read before the points, which may be newer
     snapshot.finished = job.last_finished();

@@ -109,7 +109,7 @@ absl::Status ActiveJobs::ResumeJob(const JobRecord& record) {
   if (record.job.state() == v1::EnsembleJob::CANCELLING) {
     return End(record, absl::CancelledError("cancelled"));
   }
-  const CrashRecord::Examining examining(crashes_, RunOf(record));
+  const CrashRecord::Entry examining(crashes_, RunOf(record));
   if (crashes_.Deaths(RunOf(record)) >= kMostDeaths) return EndCrashed(record);
   if (!record.job.has_spec()) {
     return End(record, StoreFailure(absl::DataLossError("the stored job cannot be read")));

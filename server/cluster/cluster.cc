@@ -25,12 +25,8 @@ Cluster::Cluster(Scheduler& scheduler, ClusterOptions options,
               std::make_unique<FolderFiles>(options.folder),
               {.identity = identity,
                .flush = std::move(flush),
-               .prepare = [folder = options.folder, identity, is_first = true]() mutable {
-                 absl::Status prepared = PrepareFolder(folder, identity);
-                 if (prepared.ok() && std::exchange(is_first, false)) {
-                   RemoveUnfinishedLeases(folder);
-                 }
-                 return prepared;
+               .prepare = [folder = options.folder, identity] {
+                 return PrepareFolder(folder, identity);
                }}) {
   if (!slurm) return;
   auto tools = std::make_unique<SlurmTools>(*slurm, "bp-" + identity, options.folder);

@@ -93,16 +93,6 @@ absl::Status PrepareFolder(const std::string& folder, const std::string& identit
   return status;
 }
 
-void RemoveUnfinishedLeases(const std::string& folder) {
-  std::error_code error, unremoved;
-  for (std::filesystem::directory_iterator file(absl::StrCat(folder, "/todo"), error), end;
-       !error && file != end; file.increment(error)) {
-    if (file->path().filename().string().starts_with('.')) {
-      std::filesystem::remove(file->path(), unremoved);
-    }
-  }
-}
-
 absl::Status CopyWorker(const std::string& folder, const std::string& worker) {
   const std::string name = "ballpiston-worker", part = name + ".new";
   FolderFiles files(folder);

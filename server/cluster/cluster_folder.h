@@ -19,10 +19,6 @@ namespace ballpiston::server {
 // other server uses; UNAVAILABLE if it cannot be used now; RESOURCE_EXHAUSTED if the disk is full.
 absl::Status PrepareFolder(const std::string& folder, const std::string& identity);
 
-// Removes the leases that a killed server was writing. Only before this server writes any: one
-// server at a time uses the folder.
-void RemoveUnfinishedLeases(const std::string& folder);
-
 // Copies the program into the folder, unless there is a copy with the same bytes. `worker` empty:
 // the program that is installed with this server. Workers that run keep the program that they have.
 absl::Status CopyWorker(const std::string& folder, const std::string& worker);

@@ -23,8 +23,6 @@ constexpr size_t kMostLaidAtOnce = 300;
 constexpr size_t kMostWaiting = 300;
 // A look lists all leases, so looks are rarer if there are many.
 constexpr double kLeasesListedASecond = 500;
-// One look is not enough: a worker may move the file between two listings.
-constexpr int kMissingLooks = 2;
 
 double SecondsOf(std::chrono::milliseconds time) {
   return std::chrono::duration<double>(time).count();
@@ -38,12 +36,12 @@ double SecondsBetween(std::chrono::steady_clock::time_point begin,
 // After an error there is no file, as far as the disk permits.
 absl::StatusOr<FileStamp> WriteLease(SharedFiles& files, const LeaseFileName& file,
                                      const std::string& bytes) {
-  const absl::StatusOr<FileStamp> stamp = files.Create(file.BeingWritten(), bytes);
+  const absl::StatusOr<FileStamp> stamp = files.Create(kLeaseBeingWritten, bytes);
   if (!stamp.ok()) return stamp;
   Failpoint("cluster.written");
-  const absl::Status moved = files.Move(file.BeingWritten(), file.Todo());
+  const absl::Status moved = files.Move(kLeaseBeingWritten, file.Todo());
   if (moved.ok()) return stamp;
-  files.Remove(file.BeingWritten()).IgnoreError();
+  files.Remove(kLeaseBeingWritten).IgnoreError();
   return moved;
 }
 
@@ -64,20 +62,11 @@ FolderExecutor::FolderExecutor(Scheduler& scheduler, const ClusterOptions& optio
       files_(std::move(files)),
       server_(std::move(server)),
       process_(absl::StrCat(absl::Hex(RandomBits(), absl::kZeroPad16))),
-      capacity_{.executor = scheduler.AddExecutor(*this),
-                .local = false,
-                .longest_chunk = options.longest_chunk} {}
-
-FolderExecutor::~FolderExecutor() {
-  Shutdown();
-  scheduler_.RemoveExecutor(capacity_.executor);
-}
+      capacity_{.local = false, .longest_chunk = options.longest_chunk} {}
 
 void FolderExecutor::Start() {
   looking_ = std::make_unique<PeriodicThread>(options_.look, [this] { Look(); });
 }
-
-void FolderExecutor::Shutdown() { looking_.reset(); }
 
 // Leases end by their time-out even if the folder cannot be used.
 void FolderExecutor::Look() {
@@ -103,7 +92,9 @@ absl::Status FolderExecutor::Prepare() {
   const Clock::time_point now = SteadyNow();
   if (prepared_ && now - *prepared_ < kBetweenPreparations) return absl::OkStatus();
   absl::Status prepared = server_.prepare();
-  if (prepared.ok()) prepared_ = now;
+  if (!prepared.ok()) return prepared;
+  if (!prepared_) files_->Remove(kLeaseBeingWritten).IgnoreError();  // of a process that was killed
+  prepared_ = now;
   return prepared;
 }
 
@@ -154,7 +145,6 @@ void FolderExecutor::NoteTaken(const LeaseFileName& file) {
     return;
   }
   Laid& laid = found->second;
-  laid.missing = 0;
   if (laid.worker == file.worker) return;
   taken_ += laid.worker.empty();
   laid.worker = file.worker;
@@ -198,7 +188,6 @@ absl::StatusOr<Lease> FolderExecutor::TakeEarlier(absl::string_view& bytes) cons
   if (!file.ok()) return file.status();
   if (file->server != server_.identity) return absl::DataLossError("it is of another server");
   Lease lease = std::move(file->lease);
-  lease.executor = capacity_.executor;
   lease.local = false;
   return lease;
 }
@@ -263,10 +252,10 @@ void FolderExecutor::LookAt(Leases::iterator laid) {
   return file.worker.empty() ? LookAtWaiting(laid) : LookAtTaken(laid);
 }
 
+// A worker that takes the lease at this moment finds at its first touch that it has lost it.
 void FolderExecutor::LookAtWaiting(Leases::iterator laid) {
   if (SecondsBetween(laid->second.alive, SteadyNow()) < laid->second.pace.timeout) return;
-  const absl::Status removed = files_->Remove(LeaseFileName{laid->first}.Todo());
-  if (absl::IsNotFound(removed)) return NoteMissing(laid);  // perhaps a worker has just taken it
+  files_->Remove(LeaseFileName{laid->first}.Todo()).IgnoreError();
   GiveBack(laid, false);
 }
 
@@ -276,29 +265,22 @@ void FolderExecutor::LookAtTaken(Leases::iterator laid) {
   const Clock::time_point now = SteadyNow();
   const bool is_late = SecondsBetween(lease.alive, now) >= lease.pace.timeout;
   const bool is_due = SecondsBetween(lease.looked, now) >= 1.1 * lease.pace.touch;
-  if (!is_late && !is_due && lease.missing == 0) return;
+  if (!is_late && !is_due) return;
   lease.looked = now;
   const absl::StatusOr<FileStamp> stamp = files_->Stamp(file.Taken());
-  if (absl::IsNotFound(stamp.status())) return NoteMissing(laid);
-  lease.missing = 0;
   if (stamp.ok() && std::exchange(lease.stamp, *stamp) != *stamp) {
     lease.alive = now;
     if (stamp->bytes > lease.reported) Report(file);
     return;
   }
   if (!is_late) return;
-  // Its chunks are read from done/ in the next look.
-  const absl::Status moved = files_->Move(file.Taken(), file.Done(Outcome::kLost));
-  if (!moved.ok() && !absl::IsNotFound(moved)) GiveBack(laid, true);
-}
-
-void FolderExecutor::NoteMissing(Leases::iterator laid) {
-  if (++laid->second.missing <= kMissingLooks) return;
+  // Its chunks are read from done/ in the next look. Its file may be gone.
+  if (files_->Move(file.Taken(), file.Done(Outcome::kLost)).ok()) return;
   {
     MutexLock lock(mutex_);
     ++status_.lost_leases;
   }
-  GiveBack(laid, !laid->second.worker.empty());
+  GiveBack(laid, true);
 }
 
 // ---- new leases ----

@@ -8,7 +8,8 @@
 //   - A lease in taken/ of which the server knows nothing is moved to done/, so its worker stops.
 //   - A lease that nobody takes goes back to the scheduler after the time-out, so this server's
 //     threads can compute it. If they have other work, the lease is laid again.
-//   - A lease is lost if its file does not change for the time-out. The server compares times of
+//   - A lease is lost if its file does not change, or is not there, for the time-out. The server
+//   compares times of
 //     the folder with each other only, and measures the time-out with its own steady clock. So a
 //     clock that jumps loses no lease.
 // A late worker changes nothing, and a folder that is emptied loses no work (checked in
@@ -71,7 +72,7 @@ struct FolderStatus {
   double refused_files = 0;
 };
 
-class FolderExecutor : public Executor {
+class FolderExecutor {
  public:
   // The parts of the server that the executor uses.
   struct Server {
@@ -82,15 +83,12 @@ class FolderExecutor : public Executor {
     LeaseReader read_lease = TakeLease;
   };
 
-  // The scheduler must outlive this.
+  // The scheduler must outlive this. When this ends, workers go on.
   FolderExecutor(Scheduler& scheduler, const ClusterOptions& options,
                  std::unique_ptr<SharedFiles> files, Server server);
-  ~FolderExecutor() override;  // shuts down
 
   // Begins to take leases. Call it once, after the runs of an earlier process were added.
   void Start();
-  void Wake() override {}    // the executor looks every second
-  void Shutdown() override;  // workers go on
 
   // What Start calls from its thread every second. Tests call it themselves.
   void Look();
@@ -109,7 +107,6 @@ class FolderExecutor : public Executor {
     FileStamp stamp;           // then
     size_t reported = 0;       // bytes of the file
     std::string worker = {};   // empty: nobody has taken it
-    int missing = 0;           // looks in a row in which the file was nowhere
   };
   using Leases = std::map<std::string, Laid>;  // by name
 
@@ -124,7 +121,6 @@ class FolderExecutor : public Executor {
   void LookAt(Leases::iterator laid);
   void LookAtWaiting(Leases::iterator laid);
   void LookAtTaken(Leases::iterator laid);
-  void NoteMissing(Leases::iterator laid);
   void GiveBack(Leases::iterator laid, bool tried);
   absl::Status Lay();
   absl::Status LaySome();
@@ -151,7 +147,7 @@ class FolderExecutor : public Executor {
 
   mutable Mutex mutex_;
   FolderStatus status_ ABSL_GUARDED_BY(mutex_);
-  std::unique_ptr<PeriodicThread> looking_;
+  std::unique_ptr<PeriodicThread> looking_;  // last: its thread uses all members above
 };
 
 }  // namespace ballpiston::server

@@ -47,24 +47,24 @@ inline constexpr char kOutOfMemoryFile[] = "out-of-memory";
 class CrashRecord {
   struct Slot;
 
-  // While it lives, the thread can note its death, even if its stack is full. If one thread has
-  // several entries, the newest counts. If the record has no free place, the constructor waits
-  // until another one ends.
+ public:
+  // While it lives, its thread computes the point, and can note its death, even if its stack is
+  // full. Without a point the thread examines what is known of the run, which may be paused: a
+  // death in this thread counts for this run alone, and a death in another thread does not count
+  // for it. If one thread has several entries, the newest counts. If the record has no free place,
+  // the constructor waits until another one ends.
   class Entry {
    public:
+    Entry(CrashRecord& record, const RunName& run, std::optional<size_t> point = {});
+    ~Entry();
     Entry(const Entry&) = delete;
     Entry& operator=(const Entry&) = delete;
-
-   protected:
-    Entry(CrashRecord& record, const RunName& run, std::optional<size_t> point);
-    ~Entry();
 
    private:
     Slot* slot_ = nullptr;
     Slot* const before_;
   };
 
- public:
   CrashRecord();  // in memory, of no use to a later process
   // Reads the record of the previous process in this folder, counts its death, and begins a record
   // of this process. If the disk refuses, the record is in memory, and the log says so. One object
@@ -85,20 +85,6 @@ class CrashRecord {
   void ClearAllBut(const std::set<RunName>& runs);
 
   int64_t counted_deaths() const;  // of all processes with this record
-
-  // While this object exists, its thread computes the point.
-  class Computing : public Entry {
-   public:
-    Computing(CrashRecord& record, const RunName& run, size_t point) : Entry(record, run, point) {}
-  };
-
-  // While this object exists, its thread examines what is known of the run, which may be paused. A
-  // death in this thread counts for this run alone. A death in another thread does not count for
-  // this run.
-  class Examining : public Entry {
-   public:
-    Examining(CrashRecord& record, const RunName& run) : Entry(record, run, std::nullopt) {}
-  };
 
   // This thread has received a fatal signal. Async-signal-safe.
   static void NoteDeath(int signal);

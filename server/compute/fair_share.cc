@@ -1,8 +1,5 @@
 #include "server/compute/fair_share.h"
 
-#include <limits>
-#include <vector>
-
 namespace ballpiston::server {
 namespace {
 
@@ -16,141 +13,89 @@ double FairShare::Share::Charge() const {
   return used + turns_in_flight * mean;
 }
 
-std::set<FairShare::Place>::const_iterator FairShare::FirstOf(int64_t rank,
-                                                              const std::set<Place>& turns) {
-  return turns.lower_bound({.rank = rank,
-                            .charge = -std::numeric_limits<double>::infinity(),
-                            .run = std::numeric_limits<int64_t>::min()});
-}
-
-template <typename Change>
-void FairShare::ChangeRun(int64_t run, Change change) {
-  RunShare& share = runs_.find(run)->second;
-  std::set<Place>& turns = share.principal->second.turns;
-  turns.erase({share.rank, share.time.Charge(), run});
-  change(share.time);
-  turns.insert({share.rank, share.time.Charge(), run});
-}
-
-template <typename Change>
-void FairShare::ChangePrincipal(const std::string& principal, Change change) {
-  Share& time = principals_.find(principal)->second.time;
-  order_.erase({time.Charge(), principal});
-  change(time);
-  order_.insert({time.Charge(), principal});
-}
-
 // ---- principals and runs ----
 
-FairShare::Principals::iterator FairShare::Enter(const std::string& name) {
-  const auto [principal, is_new] = principals_.try_emplace(name);
-  if (!is_new) return principal;
-  const double least = LeastCharge();
+void FairShare::Enter(const std::string& principal) {
+  const double least = principals_.LeastCharge();
   std::erase_if(ahead_, [least](const auto& entry) { return entry.second <= least; });
-  const auto ahead = ahead_.extract(name);
-  principal->second.time.used = ahead.empty() ? least : ahead.mapped();
-  order_.insert({principal->second.time.Charge(), name});
-  return principal;
+  const auto ahead = ahead_.extract(principal);
+  principals_.Insert(principal, {.used = ahead.empty() ? least : ahead.mapped()});
 }
 
-void FairShare::Leave(Principals::iterator principal) {
-  const double charge = principal->second.time.Charge();
-  order_.erase({charge, principal->first});
-  if (charge > LeastCharge()) ahead_[principal->first] = charge;
-  if (order_.empty()) ahead_.clear();  // no other principal is present to compare with
-  principals_.erase(principal);
+void FairShare::Leave(const std::string& principal) {
+  const double charge = principals_.Extract(principal).Charge();
+  if (charge > principals_.LeastCharge()) ahead_[principal] = charge;
+  if (principals_.empty()) ahead_.clear();  // no other principal is present to compare with
+}
+
+void FairShare::Join(int64_t run, const Place& place, Share share) {
+  Turns<int64_t>& turns = runs_[place.principal][place.rank];
+  if (!turns.empty()) share.RaiseTo(turns.LeastCharge());
+  turns.Insert(run, share);
+  places_[run] = place;
+}
+
+FairShare::Share FairShare::Part(int64_t run, const Place& place) {
+  RunsByRank& ranks = runs_.at(place.principal);
+  const auto turns = ranks.find(place.rank);
+  const Share share = turns->second.Extract(run);
+  if (turns->second.empty()) ranks.erase(turns);
+  return share;
 }
 
 void FairShare::Add(int64_t run, const std::string& principal, int32_t priority) {
-  if (runs_.contains(run)) return;
-  RunShare added{.principal = Enter(principal), .rank = -int64_t{priority}, .time = {}};
-  Join(run, added);
-  runs_.emplace(run, added);
-}
-
-// A run is compared only with runs of its own priority.
-void FairShare::Join(int64_t run, RunShare& share) {
-  std::set<Place>& turns = share.principal->second.turns;
-  const auto least = FirstOf(share.rank, turns);
-  if (least != turns.end() && least->rank == share.rank) share.time.RaiseTo(least->charge);
-  turns.insert({share.rank, share.time.Charge(), run});
+  if (places_.contains(run)) return;
+  if (!runs_.contains(principal)) Enter(principal);
+  Join(run, {principal, -int64_t{priority}}, Share());
 }
 
 void FairShare::SetPriority(int64_t run, int32_t priority) {
-  const auto found = runs_.find(run);
-  if (found == runs_.end() || found->second.rank == -int64_t{priority}) return;
-  RunShare& share = found->second;
-  share.principal->second.turns.erase({share.rank, share.time.Charge(), run});
-  share.rank = -int64_t{priority};
-  Join(run, share);
+  const auto found = places_.find(run);
+  if (found == places_.end() || found->second.rank == -int64_t{priority}) return;
+  const Place before = found->second;
+  Join(run, {before.principal, -int64_t{priority}}, Part(run, before));
 }
 
 void FairShare::Remove(int64_t run) {
-  const auto found = runs_.find(run);
-  if (found == runs_.end()) return;
-  const RunShare removed = found->second;
-  runs_.erase(found);
-  removed.principal->second.turns.erase({removed.rank, removed.time.Charge(), run});
-  ChangePrincipal(removed.principal->first,
-                  [&](Share& time) { time.turns_in_flight -= removed.time.turns_in_flight; });
-  if (removed.principal->second.turns.empty()) Leave(removed.principal);
+  const auto found = places_.extract(run);
+  if (found.empty()) return;
+  const std::string& principal = found.mapped().principal;
+  const Share removed = Part(run, found.mapped());
+  principals_.Update(principal,
+                     [&](Share& share) { share.turns_in_flight -= removed.turns_in_flight; });
+  if (!runs_.at(principal).empty()) return;
+  runs_.erase(principal);
+  Leave(principal);
 }
 
 // ---- used time ----
 
-// First finds all, then raises one after the other, because rounding may leave a raised charge just
-// below the mark.
-void FairShare::RaisePrincipalsBelow(double charge) {
-  std::vector<std::string> passed;
-  for (auto next = order_.begin(); next->first < charge; ++next) passed.push_back(next->second);
-  for (const std::string& name : passed) {
-    ChangePrincipal(name, [charge](Share& time) { time.RaiseTo(charge); });
-  }
-}
-
-void FairShare::RaiseRunsBefore(const Place& place, const std::set<Place>& turns) {
-  std::vector<int64_t> passed;
-  for (auto next = FirstOf(place.rank, turns); next->charge < place.charge; ++next) {
-    passed.push_back(next->run);
-  }
-  for (const int64_t run : passed) {
-    ChangeRun(run, [&](Share& time) { time.RaiseTo(place.charge); });
-  }
+template <typename Change>
+void FairShare::Update(int64_t run, Change change) {
+  const auto found = places_.find(run);
+  if (found == places_.end()) return;
+  const auto& [principal, rank] = found->second;
+  runs_.at(principal).at(rank).Update(run, change);
+  principals_.Update(principal, change);
 }
 
 void FairShare::TurnBegins(int64_t run) {
-  const auto found = runs_.find(run);
-  if (found == runs_.end()) return;
-  const auto& [name, principal] = *found->second.principal;
-  RaisePrincipalsBelow(principal.time.Charge());
-  RaiseRunsBefore({found->second.rank, found->second.time.Charge(), run}, principal.turns);
-  const auto begin = [](Share& time) { time.turns_in_flight += 1; };
-  ChangeRun(run, begin);
-  ChangePrincipal(name, begin);
+  const auto& [principal, rank] = places_.at(run);
+  principals_.RaiseThoseBefore(principal);
+  runs_.at(principal).at(rank).RaiseThoseBefore(run);
+  Update(run, [](Share& share) { share.turns_in_flight += 1; });
 }
 
 void FairShare::Used(int64_t run, double seconds) {
-  const auto found = runs_.find(run);
-  if (found == runs_.end()) return;
-  const auto use = [seconds](Share& time) {
-    time.used += seconds;
-    time.spent += seconds;
-  };
-  ChangeRun(run, use);
-  ChangePrincipal(found->second.principal->first, use);
+  Update(run, [seconds](Share& share) { share.Use(seconds); });
 }
 
 void FairShare::TurnEnds(int64_t run, double seconds) {
-  const auto found = runs_.find(run);
-  if (found == runs_.end()) return;
-  const auto end = [seconds](Share& time) {
-    time.turns_in_flight -= 1;
-    time.turns_ended += 1;
-    time.used += seconds;
-    time.spent += seconds;
-  };
-  ChangeRun(run, end);
-  ChangePrincipal(found->second.principal->first, end);
+  Update(run, [seconds](Share& share) {
+    share.turns_in_flight -= 1;
+    share.turns_ended += 1;
+    share.Use(seconds);
+  });
 }
 
 }  // namespace ballpiston::server

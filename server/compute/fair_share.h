@@ -25,7 +25,6 @@
 // Not thread-safe.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -33,6 +32,7 @@
 #include <string>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 namespace ballpiston::server {
 
@@ -49,15 +49,12 @@ class FairShare {
   template <typename HasTask>
   std::optional<int64_t> First(HasTask has_task) const;
 
-  // A task of the run begins or ends; ignored if the run is not present. A task begins only for the
-  // run that First returned, so the runs before it had no task.
+  // A task of the run that First returned begins, so the runs before it had no task.
   void TurnBegins(int64_t run);
+  // A task ends. This and the next are ignored if the run is not present.
   void TurnEnds(int64_t run, double seconds);
-
   // A run has used more time in a turn that goes on.
   void Used(int64_t run, double seconds);
-
-  size_t runs() const { return runs_.size(); }
 
  private:
   struct Share {
@@ -68,59 +65,79 @@ class FairShare {
 
     double Charge() const;
     void RaiseTo(double charge) { used += charge - Charge(); }
+    void Use(double seconds) { used += seconds, spent += seconds; }
   };
 
+  // Entries that take turns, the one with the least charge first.
+  template <typename Key>
+  class Turns {
+   public:
+    const std::set<std::pair<double, Key>>& order() const { return order_; }
+    bool empty() const { return order_.empty(); }
+    double LeastCharge() const { return empty() ? 0 : order_.begin()->first; }
+
+    void Insert(const Key& key, const Share& share) {
+      shares_.emplace(key, share);
+      order_.emplace(share.Charge(), key);
+    }
+
+    Share Extract(const Key& key) {
+      const Share share = shares_.extract(key).mapped();
+      order_.erase({share.Charge(), key});
+      return share;
+    }
+
+    template <typename Change>
+    void Update(const Key& key, Change change) {
+      Share share = Extract(key);
+      change(share);
+      Insert(key, share);
+    }
+
+    // Raises the entries before this one to its charge. First finds all, then raises one after the
+    // other, because rounding may leave a raised charge just below the mark.
+    void RaiseThoseBefore(const Key& key) {
+      const double charge = shares_.at(key).Charge();
+      std::vector<Key> passed;
+      for (auto next = order_.begin(); next->first < charge; ++next) passed.push_back(next->second);
+      for (const Key& each : passed) {
+        Update(each, [charge](Share& share) { share.RaiseTo(charge); });
+      }
+    }
+
+   private:
+    std::map<Key, Share> shares_;
+    std::set<std::pair<double, Key>> order_;  // by charge
+  };
+
+  // A run is compared only with runs of its own principal and priority.
   struct Place {
+    std::string principal;
     int64_t rank = 0;  // a higher priority has a smaller rank
-    double charge = 0;
-    int64_t run = 0;
-
-    auto operator<=>(const Place&) const = default;
   };
+  using RunsByRank = std::map<int64_t, Turns<int64_t>>;
 
-  struct PrincipalShare {
-    Share time;
-    std::set<Place> turns;
-  };
-
-  using Principals = std::map<std::string, PrincipalShare>;
-
-  struct RunShare {
-    Principals::iterator principal;
-    int64_t rank = 0;
-    Share time;
-  };
-
-  Principals::iterator Enter(const std::string& principal);
-  void Leave(Principals::iterator principal);
-  double LeastCharge() const { return order_.empty() ? 0 : order_.begin()->first; }
-
-  // The least turn of that rank, or the first of the next.
-  static std::set<Place>::const_iterator FirstOf(int64_t rank, const std::set<Place>& turns);
-
-  // Adds the run to the turns of its principal, at the least charge of its rank.
-  void Join(int64_t run, RunShare& share);
-
-  // Change a share, and keep the order in step with it.
+  void Enter(const std::string& principal);
+  void Leave(const std::string& principal);
+  void Join(int64_t run, const Place& place, Share share);
+  Share Part(int64_t run, const Place& place);
+  // Changes the shares of the run and of its principal.
   template <typename Change>
-  void ChangeRun(int64_t run, Change change);
-  template <typename Change>
-  void ChangePrincipal(const std::string& principal, Change change);
+  void Update(int64_t run, Change change);
 
-  void RaisePrincipalsBelow(double charge);
-  void RaiseRunsBefore(const Place& place, const std::set<Place>& turns);
-
-  std::unordered_map<int64_t, RunShare> runs_;
-  Principals principals_;  // with runs
-  std::set<std::pair<double, std::string>> order_;
+  std::unordered_map<int64_t, Place> places_;  // of runs
+  std::map<std::string, RunsByRank> runs_;     // by principal, which has runs
+  Turns<std::string> principals_;
   std::map<std::string, double> ahead_;  // charges of principals that left with more than others
 };
 
 template <typename HasTask>
 std::optional<int64_t> FairShare::First(HasTask has_task) const {
-  for (const auto& [charge, name] : order_) {
-    for (const Place& place : principals_.find(name)->second.turns) {
-      if (has_task(place.run)) return place.run;
+  for (const auto& [principals_charge, principal] : principals_.order()) {
+    for (const auto& [rank, turns] : runs_.at(principal)) {
+      for (const auto& [charge, run] : turns.order()) {
+        if (has_task(run)) return run;
+      }
     }
   }
   return std::nullopt;

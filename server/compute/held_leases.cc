@@ -20,17 +20,17 @@ HeldLeases::Held& HeldLeases::Add(Lease lease) {
   return held_.emplace(key, Held{std::move(lease)}).first->second;
 }
 
-HeldLeases::Held* HeldLeases::FirstWithTurn(int64_t run, size_t number, const Executor& executor) {
+HeldLeases::Held* HeldLeases::FirstWithTurn(int64_t run) {
   Held* first = nullptr;
-  const auto end = held_.lower_bound({run, false, number + 1, 0});
-  for (auto next = held_.lower_bound({run, false, number, 0}); next != end; ++next) {
+  const auto end = held_.lower_bound(FirstOf(run, false));
+  for (auto next = held_.lower_bound(FirstOf(run, true)); next != end; ++next) {
     Held& held = next->second;
     const Lease& lease = held.lease;
     const bool has_memory = held.turns < held.most_turns ||
                             lease.memory.of_a_further_turn <= FreeMemory(IsLater(lease));
     if (lease.stop.stop_requested() || !has_memory) continue;
     if (first != nullptr && !lease.GoesBefore(first->lease)) continue;
-    if (executor.HasTurn(lease.number)) first = &held;
+    if (lease.work->HasTurn()) first = &held;
   }
   return first;
 }
@@ -44,28 +44,26 @@ const Lease& HeldLeases::BeginTurn(Held& held) {
   return held.lease;
 }
 
-bool HeldLeases::EndTurn(const Lease& lease, bool has_turn) {
+void HeldLeases::EndTurn(const Lease& lease) {
   const auto held = held_.find(KeyOf(lease));
-  if (held == held_.end()) return false;
-  const bool ends = --held->second.turns == 0 && !has_turn;
-  if (ends) Drop(held);
-  return !ends && !lease.stop.stop_requested();
+  const bool is_last = --held->second.turns == 0;
+  if (is_last && (lease.stop.stop_requested() || !lease.work->HasTurn())) Drop(held);
 }
 
 bool HeldLeases::HasLocal(int64_t run) const {
-  return held_.lower_bound({run, false, 0, 0}) != held_.lower_bound({run, true, 0, 0});
+  return held_.lower_bound(FirstOf(run, true)) != held_.lower_bound(FirstOf(run, false));
 }
 
-std::vector<size_t> HeldLeases::RemoveStopped(int64_t run) {
-  std::vector<size_t> executors;
-  auto next = held_.lower_bound({run, false, 0, 0});
-  for (const auto end = held_.lower_bound({run + 1, false, 0, 0}); next != end;) {
+std::vector<Lease> HeldLeases::RemoveStopped(int64_t run) {
+  std::vector<Lease> removed;
+  auto next = held_.lower_bound(FirstOf(run, true));
+  for (const auto end = held_.lower_bound(FirstOf(run + 1, true)); next != end;) {
     const auto& [lease, turns, most_turns] = next->second;
     const bool drops = lease.stop.stop_requested() && !(lease.local && turns > 0);
-    if (drops && !lease.local) executors.push_back(lease.executor);
+    if (drops) removed.push_back(lease);
     next = drops ? Drop(next) : std::next(next);
   }
-  return executors;
+  return removed;
 }
 
 HeldLeases::Leases::iterator HeldLeases::Drop(Leases::iterator held) {

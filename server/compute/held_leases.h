@@ -12,7 +12,6 @@
 #include <tuple>
 #include <vector>
 
-#include "server/compute/executor.h"
 #include "server/compute/lease.h"
 
 namespace ballpiston::server {
@@ -34,25 +33,23 @@ class HeldLeases {
   // Gives the lease, which has chunks, its number.
   Held& Add(Lease lease);
 
-  // The lease that goes before the others (Lease::GoesBefore), among the leases of the run that the
-  // local executor has, that have a turn, and for whose turn there is memory. Null if there is
-  // none.
-  Held* FirstWithTurn(int64_t run, size_t number, const Executor& executor);
+  // The lease that goes before the others (Lease::GoesBefore), among the run's local leases that
+  // have a turn, and for whose turn there is memory. Null if there is none.
+  Held* FirstWithTurn(int64_t run);
 
   // A turn at the lease begins. Returns the lease.
   const Lease& BeginTurn(Held& held);
-  // A turn ends. The lease stays if it has another turn or `has_turn`. False if the executor needs
-  // it no more.
-  bool EndTurn(const Lease& lease, bool has_turn);
+  // A turn ends. The lease stays while it has a turn, in progress or to be taken.
+  void EndTurn(const Lease& lease);
 
   bool Has(const Lease& lease) const { return held_.contains(KeyOf(lease)); }
   bool HasLocal(int64_t run) const;  // a lease of a local executor
 
   // Of an executor that is not local. False if it does not have the lease.
   bool Remove(const Lease& lease) { return held_.erase(KeyOf(lease)) > 0; }
-  // Removes the run's leases whose stop was requested and at which no local turn is in progress.
-  // Returns the executors that are not local, one for each lease that they had.
-  std::vector<size_t> RemoveStopped(int64_t run);
+  // Removes and returns the run's leases whose stop was requested and at which no local turn is in
+  // progress.
+  std::vector<Lease> RemoveStopped(int64_t run);
 
   // A local executor asked for a lease of the run, which needs so much memory that it got none; or
   // 0. The run keeps its place until it has a lease, or needs none.
@@ -62,7 +59,7 @@ class HeldLeases {
   bool EndWaiting(int64_t run);
 
  private:
-  using Key = std::tuple<int64_t, bool, size_t, int64_t>;  // run, not local, executor, number
+  using Key = std::tuple<int64_t, bool, int64_t>;  // run, not local, number
   using Leases = std::map<Key, Held>;
 
   // A run that waits for memory.
@@ -73,9 +70,8 @@ class HeldLeases {
     double later = 0;    // bytes of leases that began later
   };
 
-  static Key KeyOf(const Lease& lease) {
-    return {lease.run, !lease.local, lease.executor, lease.number};
-  }
+  static Key FirstOf(int64_t run, bool local) { return {run, !local, 0}; }
+  static Key KeyOf(const Lease& lease) { return {lease.run, !lease.local, lease.number}; }
 
   Leases::iterator Drop(Leases::iterator held);
   double FreeMemory(bool is_later) const;

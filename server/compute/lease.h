@@ -6,10 +6,17 @@
 //
 // A lease may instead ask for points to be opened (Scheduler::Open). A point that needs no samples
 // is finished when it is opened, so many cheap points are one lease.
+//
+// A local executor, the threads of this server, opens points, takes every lease, and shares a lease
+// between turns. The scheduler waits for its turns to end before a run ends. An executor elsewhere
+// gets leases of chunks alone, and only of runs that are worth it. It reports all chunks, or
+// returns the lease, or keeps it until the lease's stop is requested. It may report chunks late,
+// twice and in any order.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -30,11 +37,19 @@ struct LeaseMemory {
   double of_a_further_turn = 0;
 };
 
+// What turns at a lease of a local executor have in common.
+class SharedWork {
+ public:
+  virtual ~SharedWork() = default;
+
+  // Whether another turn would find work. Called with the scheduler's lock held.
+  virtual bool HasTurn() const = 0;
+};
+
 struct Lease {
   int64_t number = 0;  // greater than those before, in the scheduler's life
   int64_t run = 0;     // these two are RunRequest's key and generation
   int64_t generation = 0;
-  size_t executor = 0;
   bool local = true;  // as of Capacity
   int attempt = 1;    // greater than 1 if an executor returned some of the chunks
   int crashes = 0;    // earlier attempts that died of themselves (Scheduler::ReturnCrashed)
@@ -51,7 +66,8 @@ struct Lease {
   // If samples continue each other: the states from which chunks start, by group.
   std::vector<GroupState> groups = {};
   double seconds = 0;       // predicted, of one core at nominal speed; 0 if all the rest is leased
-  LeaseMemory memory = {};  // if this server's threads compute it
+  LeaseMemory memory = {};  // if it is local
+  std::shared_ptr<SharedWork> work = {};  // likewise, if it has chunks
 
   // Stop is requested when the chunks are no longer needed.
   std::stop_token stop = {};
@@ -79,8 +95,10 @@ struct LeaseReport {
 
 // The work that an executor can take now, in seconds of one core at nominal speed.
 struct Capacity {
-  size_t executor = 0;  // its number, as the scheduler gave it
-  bool local = true;    // its threads are this process's (executor.h)
+  bool local = true;  // the threads are this process's
+  // Of a local executor: the work of a new lease, which is shared from now on.
+  std::function<std::shared_ptr<SharedWork>(const Lease&)> share = {};
+  bool waits = false;  // until there is a lease
   // A lease has the fewest chunks that take as long as this.
   double seconds = std::numeric_limits<double>::infinity();
   // Bytes. A lease takes no more with one turn at a time.

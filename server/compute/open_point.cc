@@ -116,7 +116,7 @@ std::optional<Lease> OpenPoint::NextChunks(const Capacity& capacity) {
   const auto first = NextChunk(capacity);
   if (!first) return std::nullopt;
   const ChunkPlan& plan = experiment_->plan();
-  Lease lease = {.executor = capacity.executor, .local = capacity.local};
+  Lease lease = {.local = capacity.local};
   lease.attempt = first->second.number;
   lease.crashes = first->second.crashes;
   if (lease.local) lease.memory = memory;

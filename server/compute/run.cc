@@ -23,35 +23,22 @@ constexpr double kBetweenCheckpoints = 0.1;
 }  // namespace
 
 Run::Run(RunRequest request, SchedulerOptions options, int workers)
-    : key_(request.key),
-      generation_(request.generation),
-      principal_(std::move(request.principal)),
-      spec_(std::make_shared<const EnsembleSpec>(std::move(request.spec))),
-      finished_(std::move(request.finished)),
-      has_checkpoints_(request.has_checkpoints),
-      journal_(std::move(request.journal)),
+    : request_(std::move(request)),
+      spec_(std::make_shared<const EnsembleSpec>(std::move(request_.spec))),
       options_(options),
       workers_(workers),
-      shortfall_(std::move(request.shortfall)),
-      suspicion_(std::move(request.suspicion)) {
-  SkipFinishedPoints();
-  if (!suspicion_) return;
-  std::erase_if(suspicion_->points,
-                [this](size_t point) { return point >= finished_.size() || finished_[point]; });
-  for (const size_t point : suspicion_->points) OpenEarly(point);
-}
-
-// The point is the next to be opened, before those in grid order.
-void Run::OpenEarly(size_t point) {
-  if (opened_early_.insert(point).second) reopen_.insert(point);
-  SkipFinishedPoints();
-}
-
-void Run::SkipFinishedPoints() {
-  while (next_point_ < finished_.size() &&
-         (finished_[next_point_] || opened_early_.contains(next_point_))) {
-    ++next_point_;
+      taken_(std::move(request_.finished)) {
+  if (request_.suspicion) {
+    std::set<size_t>& points = request_.suspicion->points;
+    std::erase_if(points, [this](size_t point) { return point >= taken_.size() || taken_[point]; });
+    for (const size_t point : points) taken_[point] = true;
+    reopen_ = points;
   }
+  SkipTakenPoints();
+}
+
+void Run::SkipTakenPoints() {
+  while (next_point_ < taken_.size() && taken_[next_point_]) ++next_point_;
 }
 
 // ---- leases ----
@@ -59,14 +46,14 @@ void Run::SkipFinishedPoints() {
 std::optional<Lease> Run::NextLease(const Capacity& capacity) {
   if (stopped_) return std::nullopt;
   if (!capacity.local) {
-    std::optional<Lease> lease = IsLarge() ? NextChunks(capacity, finished_.size()) : std::nullopt;
+    std::optional<Lease> lease = IsLarge() ? NextChunks(capacity, taken_.size()) : std::nullopt;
     hungry_elsewhere_ = !lease.has_value();
     return lease;
   }
   if (IsWantedElsewhere()) return NextOpening();
   awaited_memory_ = 0;
   std::optional<Lease> lease = NextChunksOfPilot(capacity);
-  if (!lease) lease = NextChunks(capacity, finished_.size());
+  if (!lease) lease = NextChunks(capacity, taken_.size());
   return lease || awaited_memory_ > 0 ? std::move(lease) : NextOpening();
 }
 
@@ -117,19 +104,20 @@ bool Run::NoteAwaited(const OpenPoint& point, const Capacity& capacity) {
 }
 
 bool Run::IsHeldBack(size_t point) const {
-  return suspicion_ && !suspicion_->points.empty() && !suspicion_->points.contains(point);
+  const std::optional<Suspicion>& suspicion = request_.suspicion;
+  return suspicion && !suspicion->points.empty() && !suspicion->points.contains(point);
 }
 
 Lease Run::Completed(Lease lease) const {
-  lease.run = key_;
-  lease.generation = generation_;
+  lease.run = request_.key;
+  lease.generation = request_.generation;
   lease.spec = spec_;
   return lease;
 }
 
 bool Run::IsLarge() const {
   if (sampled_points_ == 0 || spec_->target.budget_seconds) return false;
-  const auto unopened = static_cast<double>(finished_.size() - next_point_ + reopen_.size());
+  const auto unopened = static_cast<double>(taken_.size() - next_point_ + reopen_.size());
   double seconds = unopened * sampled_seconds_ / sampled_points_;
   for (const auto& [index, point] : open_) {
     if (seconds >= options_.least_seconds_elsewhere) break;
@@ -150,9 +138,9 @@ std::optional<Lease> Run::NextOpening() {
   while (lease.opens.size() < most && !reopen_.empty()) {
     lease.opens.push_back(reopen_.extract(reopen_.begin()).value());
   }
-  while (lease.opens.size() < most && next_point_ < finished_.size() && !IsHeldBack(next_point_)) {
+  while (lease.opens.size() < most && next_point_ < taken_.size() && !IsHeldBack(next_point_)) {
     lease.opens.push_back(next_point_++);
-    SkipFinishedPoints();
+    SkipTakenPoints();
   }
   if (lease.opens.empty()) return std::nullopt;
   lease.stop = stop_opening_.get_token();
@@ -185,8 +173,8 @@ void Run::PilotIsKnown(const PilotPlace& place) {
 }
 
 bool Run::IsUnopened(size_t point) const {
-  if (stopped_ || point >= finished_.size() || finished_[point]) return false;
-  return reopen_.contains(point) || (point >= next_point_ && !opened_early_.contains(point));
+  if (stopped_ || point >= taken_.size()) return false;
+  return reopen_.contains(point) || (point >= next_point_ && !taken_[point]);
 }
 
 OpenPoint* Run::Find(const Lease& lease) const {
@@ -221,13 +209,12 @@ void Run::HasChunks(const Lease& lease) {
 
 void Run::NoteProgress(size_t point) {
   has_progressed_ = true;
-  if (suspicion_) suspicion_->points.erase(point);
+  if (request_.suspicion) request_.suspicion->points.erase(point);
 }
 
-const Suspicion* Run::refuted() const {
-  const bool is_refuted =
-      suspicion_ && has_progressed_ && suspicion_->points.empty() && waiting_.empty();
-  return is_refuted ? &*suspicion_ : nullptr;
+bool Run::IsRefuted() const {
+  const std::optional<Suspicion>& suspicion = request_.suspicion;
+  return suspicion && suspicion->points.empty() && has_progressed_ && waiting_.empty();
 }
 
 // ---- reports ----
@@ -242,19 +229,19 @@ uint64_t Run::Merge(const Lease& lease, OpenPoint& open, LeaseReport report) {
   has_progressed_ |= has_chunks && !lease.pilot;
   for (ChunkResult& chunk : report.chunks) {
     const bool is_early = fold.Needs(chunk.chunk) && chunk.chunk > fold.state().chunk;
-    if (is_early && !lease.pilot) journal_->ChunkIsEarly(lease.point, chunk);
+    if (is_early && !lease.pilot) journal().ChunkIsEarly(lease.point, chunk);
     samples += fold.Add(std::move(chunk));
   }
   samples += fold.AddPartial(report.partial);
   if (lease.pilot) return samples;
   HasChunks(lease);
   if (samples > 0) {
-    open.version = journal_->Merged(
+    open.version = journal().Merged(
         {.point = lease.point, .samples = samples, .share_of_point = open.ShareOf(samples)});
   }
   if (!fold.finished()) EndIfBudgetIsSpent(lease, open, report.begun);
   // The files of an executor elsewhere may go when the lease ends, so its chunks are written now.
-  const bool at_once = !lease.local || (IsSuspect() && has_chunks);
+  const bool at_once = !lease.local || (request_.suspicion && has_chunks);
   if (!fold.finished() && samples > 0) CheckpointIfDue(lease.point, open, at_once);
   return samples;
 }
@@ -278,14 +265,16 @@ void Run::EndIfBudgetIsSpent(const Lease& lease, OpenPoint& open, uint64_t begun
   if (!target.tolerance) return;
   const Estimate reached = open.experiment()->FirstEstimate(open.fold().Merged());
   if (MeetsTolerance(reached, *target.tolerance)) return;
-  NoteShortfall({lease.point, ToleranceNotReached(*spec_, lease.point, reached)});
+  std::optional<Shortfall>& first = request_.shortfall;
+  if (first && first->point < lease.point) return;
+  first = {lease.point, ToleranceNotReached(*spec_, lease.point, reached)};
 }
 
 void Run::CheckpointIfDue(size_t index, OpenPoint& open, bool at_once) {
   const double between = at_once ? 0 : kBetweenCheckpoints * workers_;
   if (!open.fold().HasBlocks() || open.work < open.work_at_checkpoint + between) return;
   open.work_at_checkpoint = open.work;
-  journal_->Checkpoint(index, open.fold().state());
+  journal().Checkpoint(index, open.fold().state());
 }
 
 void Run::WriteCheckpoints() {
@@ -321,15 +310,10 @@ std::vector<LivePoint> Run::NewestPoints(size_t limit) const {
 
 void Run::Stop(absl::Status reason) {
   if (std::exchange(stopped_, true)) return;
-  outcome_ = std::move(reason);
+  why_stopped_ = std::move(reason);
   stop_opening_.request_stop();
   for (const auto& [index, point] : open_) point->RequestStop();
   for (const auto& [place, pilot] : pilots_) pilot->RequestStop();
-}
-
-void Run::NoteShortfall(Shortfall shortfall) {
-  if (shortfall_ && shortfall_->point < shortfall.point) return;
-  shortfall_ = std::move(shortfall);
 }
 
 bool Run::over() const {
@@ -337,6 +321,11 @@ bool Run::over() const {
   const bool nothing_left =
       open_.empty() && pilots_.empty() && waiting_.empty() && opening_ == 0 && !HasPointsToOpen();
   return stopped_ || nothing_left;
+}
+
+absl::Status Run::outcome() const {
+  if (stopped_) return why_stopped_;
+  return request_.shortfall ? request_.shortfall->status : absl::OkStatus();
 }
 
 }  // namespace ballpiston::server

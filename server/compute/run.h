@@ -75,12 +75,10 @@ class Run {
   // `workers`: the threads of local executors, for budgets and checkpoints.
   Run(RunRequest request, SchedulerOptions options, int workers);
 
-  int64_t key() const { return key_; }
-  int64_t generation() const { return generation_; }
-  const std::string& principal() const { return principal_; }
+  int64_t key() const { return request_.key; }
+  const RunRequest& request() const { return request_; }  // without the spec
   const EnsembleSpec& spec() const { return *spec_; }
-  bool has_checkpoints() const { return has_checkpoints_; }
-  RunJournal& journal() const { return *journal_; }
+  RunJournal& journal() const { return *request_.journal; }
 
   // A new lease for an executor; empty if there is none now.
   std::optional<Lease> NextLease(const Capacity& capacity);
@@ -132,11 +130,10 @@ class Run {
 
   // The point is finished, or has a chunk more that this process has computed.
   void NoteProgress(size_t point);
-  // Null, or the suspicion that is to be cleared: the run has progressed, and has no pilot that the
-  // next suspect may need.
-  const Suspicion* refuted() const;
-  bool IsSuspect() const { return suspicion_.has_value(); }
-  void EndSuspicion() { suspicion_.reset(); }
+  // Whether the suspicion is to be cleared: the run has progressed, and has no pilot that the next
+  // suspect may need.
+  bool IsRefuted() const;
+  void EndSuspicion() { request_.suspicion.reset(); }
 
   // Ends the run: it gives no more leases and requests the stop of those in progress. The first
   // reason is kept.
@@ -146,10 +143,10 @@ class Run {
   // No turn is in progress, and no work is left.
   bool over() const;
   // Requires over().
-  absl::Status outcome() const { return stopped_ || !shortfall_ ? outcome_ : shortfall_->status; }
+  absl::Status outcome() const;
 
-  bool began() const { return began_; }
-  void set_began() { began_ = true; }
+  // True at the first call.
+  bool Begin() { return !std::exchange(began_, true); }
 
  private:
   std::optional<Lease> NextChunksOfPilot(const Capacity& capacity);
@@ -162,25 +159,17 @@ class Run {
   // `begun`: blocks of the lease that have begun but are not merged.
   void EndIfBudgetIsSpent(const Lease& lease, OpenPoint& open, uint64_t begun);
   void CheckpointIfDue(size_t index, OpenPoint& open, bool at_once);
-  // The run continues, and ends with this status unless it is stopped. The shortfall of the first
-  // point is kept.
-  void NoteShortfall(Shortfall shortfall);
   // Whether only some points are computed now, and not this one.
   bool IsHeldBack(size_t point) const;
-  bool HasPointsToOpen() const { return !reopen_.empty() || next_point_ < finished_.size(); }
+  bool HasPointsToOpen() const { return !reopen_.empty() || next_point_ < taken_.size(); }
   // What is left takes long enough for executors that are not local.
   bool IsLarge() const;
-  void OpenEarly(size_t point);
-  void SkipFinishedPoints();
+  void SkipTakenPoints();
   Lease Completed(Lease lease) const;
 
-  const int64_t key_;
-  const int64_t generation_;
-  const std::string principal_;
+  // Its shortfall is that of the first point. Its suspicion has the points that are left.
+  RunRequest request_;
   const std::shared_ptr<const EnsembleSpec> spec_;
-  const std::vector<bool> finished_;
-  const bool has_checkpoints_;
-  const std::shared_ptr<RunJournal> journal_;
   const SchedulerOptions options_;
   const int workers_;
 
@@ -188,10 +177,10 @@ class Run {
   std::map<PilotPlace, std::unique_ptr<OpenPoint>> pilots_;
   std::set<size_t> leasable_;  // open points that may have chunks to lease
   std::map<PilotPlace, std::vector<size_t>> waiting_;
-  std::set<size_t> reopen_;        // points whose pilot is known now, and those of a suspicion
-  std::set<size_t> opened_early_;  // points not to be opened in grid order
-  size_t next_point_ = 0;
-  size_t opening_ = 0;  // leases that open points
+  std::set<size_t> reopen_;  // points whose pilot is known now, and those of a suspicion
+  std::vector<bool> taken_;  // by point: finished, or not to be opened in grid order
+  size_t next_point_ = 0;    // in grid order
+  size_t opening_ = 0;       // leases that open points
   size_t turns_ = 0;
   double awaited_memory_ = 0;
   bool hungry_elsewhere_ = false;  // an executor that is not local found nothing
@@ -199,9 +188,7 @@ class Run {
   double sampled_seconds_ = 0;     // expected, of these
   bool began_ = false;
   bool stopped_ = false;
-  absl::Status outcome_;
-  std::optional<Shortfall> shortfall_;
-  std::optional<Suspicion> suspicion_;
+  absl::Status why_stopped_;
   bool has_progressed_ = false;
   std::stop_source stop_opening_;
 };

@@ -17,70 +17,53 @@ namespace ballpiston::server {
 Scheduler::Scheduler(PointOpener& opener, int workers, SchedulerOptions options)
     : opener_(opener), workers_(workers), options_(options), held_(options.memory_limit) {}
 
-size_t Scheduler::AddExecutor(Executor& executor) {
-  MutexLock lock(mutex_);
-  executors_.push_back({&executor, {}});
-  return executors_.size() - 1;
-}
-
-void Scheduler::RemoveExecutor(size_t executor) {
-  MutexLock lock(mutex_);
-  executors_[executor].executor = nullptr;
-}
-
-std::vector<Executor*> Scheduler::Executors() const {
-  MutexLock lock(mutex_);
-  std::vector<Executor*> executors;
-  for (const Member& member : executors_) {
-    if (member.executor != nullptr) executors.push_back(member.executor);
-  }
-  return executors;
-}
-
 // ---- runs ----
 
 void Scheduler::Add(RunRequest request) {
-  const bool is_suspect = request.suspicion.has_value();
-  const int32_t priority = request.priority;
   const auto run = std::make_shared<Run>(std::move(request), options_, workers_);
+  const RunRequest& asked = run->request();
   {
     MutexLock lock(mutex_);
     runs_.emplace(run->key(), run);
-    if (is_suspect) suspects_.push_back(run->key());
-    for (Member& member : executors_) {
-      member.shares.Add(run->key(), run->principal(), priority);
-    }
+    if (asked.suspicion) suspects_.push_back(run->key());
+    for (FairShare& shares : shares_) shares.Add(run->key(), asked.principal, asked.priority);
   }
-  WakeExecutors();
+  Wake();
   Conclude(run);  // the run may have nothing left to compute
 }
 
 void Scheduler::SetPriority(int64_t run, int32_t priority) {
   MutexLock lock(mutex_);
-  for (Member& member : executors_) member.shares.SetPriority(run, priority);
+  for (FairShare& shares : shares_) shares.SetPriority(run, priority);
 }
 
 void Scheduler::Stop(int64_t key, absl::Status why) {
   RunPointer run;
+  std::vector<Lease> dropped;
   {
     MutexLock lock(mutex_);
     run = FindRun(key);
     if (run == nullptr) return;
-    StopRun(*run, std::move(why));
+    dropped = StopRun(*run, std::move(why));
   }
-  WakeExecutors();
+  Wake();
   Conclude(run);
 }
 
 void Scheduler::Shutdown() {
-  {
-    MutexLock lock(mutex_);
-    if (std::exchange(shutting_down_, true)) return;
-    for (const auto& [key, run] : runs_) run->Stop(absl::CancelledError("shutting down"));
-  }
-  for (Executor* executor : Executors()) executor->Shutdown();
   MutexLock lock(mutex_);
-  for (const auto& [key, run] : runs_) run->WriteCheckpoints();
+  if (std::exchange(shutting_down_, true)) return;
+  for (const auto& [key, run] : runs_) run->Stop(absl::CancelledError("shutting down"));
+  Wake();
+  while (HasTurns()) woken_.Wait(mutex_);
+  for (const auto& [key, run] : runs_) {
+    DropStoppedLeases(*run);  // their work may refer to what ends before this
+    run->WriteCheckpoints();
+  }
+}
+
+bool Scheduler::HasTurns() const {
+  return std::ranges::any_of(runs_, [](const auto& run) { return run.second->HasTurns(); });
 }
 
 Scheduler::RunPointer Scheduler::FindRun(int64_t key) const {
@@ -88,48 +71,43 @@ Scheduler::RunPointer Scheduler::FindRun(int64_t key) const {
   return found == runs_.end() ? nullptr : found->second;
 }
 
-void Scheduler::StopRun(Run& run, absl::Status why) {
+std::vector<Lease> Scheduler::StopRun(Run& run, absl::Status why) {
   run.Stop(std::move(why));
-  DropStoppedLeases(run);
-  EndPilotsOf(run);
-}
-
-void Scheduler::EndPilotsOf(const Run& run) {
-  std::vector<PilotPlace> left;
-  for (const auto& [place, owner] : pilots_) {
-    if (owner == run.key()) left.push_back(place);
-  }
-  for (const PilotPlace& place : left) EndPilot(run, place);
+  EndPilots(run);
+  return DropStoppedLeases(run);
 }
 
 // Runs that wait for the pilot open their points again; the first of them may start the pilot
 // again.
-void Scheduler::EndPilot(const Run& owner, const PilotPlace& place) {
-  const auto found = pilots_.find(place);
-  if (found == pilots_.end() || found->second != owner.key()) return;  // another run has it
-  pilots_.erase(found);
-  for (const auto& [key, run] : runs_) run->PilotIsKnown(place);
+void Scheduler::EndPilots(const Run& owner, std::optional<PilotPlace> only) {
+  std::erase_if(pilots_, [&](const auto& pilot) {
+    mutex_.AssertHeld();
+    const auto& [place, run] = pilot;
+    if (run != owner.key() || (only && place != *only)) return false;
+    for (const auto& [key, waiting] : runs_) waiting->PilotIsKnown(place);
+    return true;
+  });
 }
 
-// For executors elsewhere, also ends the run's turn at each of its leases.
-void Scheduler::DropStoppedLeases(const Run& run) {
-  for (const size_t executor : held_.RemoveStopped(run.key())) {
-    executors_[executor].shares.TurnEnds(run.key(), 0);
+// Elsewhere, a turn at a lease lasts until the lease ends.
+std::vector<Lease> Scheduler::DropStoppedLeases(const Run& run) {
+  std::vector<Lease> dropped = held_.RemoveStopped(run.key());
+  for (const Lease& lease : dropped) {
+    if (!lease.local) SharesOf(lease).TurnEnds(run.key(), 0);
   }
+  return dropped;
 }
 
 void Scheduler::Conclude(const RunPointer& run) {
-  bool others_go_on = false;
   {
     MutexLock lock(mutex_);
     const auto found = runs_.find(run->key());
     if (shutting_down_ || found == runs_.end() || !run->over()) return;
-    for (Member& member : executors_) member.shares.Remove(run->key());
+    for (FairShare& shares : shares_) shares.Remove(run->key());
     runs_.erase(found);
     const bool was_suspect = std::erase(suspects_, run->key()) > 0;
-    others_go_on = held_.EndWaiting(run->key()) || was_suspect;
+    if (held_.EndWaiting(run->key()) || was_suspect) Wake();  // the others go on
   }
-  if (others_go_on) WakeExecutors();
   run->journal().Ended(run->outcome());
 }
 
@@ -152,8 +130,8 @@ void Scheduler::ClearIfRefuted(const RunPointer& run) {
   std::function<bool()> clear;
   {
     MutexLock lock(mutex_);
-    if (suspects_.empty() || IsPaused(*run) || run->refuted() == nullptr) return;
-    clear = run->refuted()->clear;
+    if (suspects_.empty() || IsPaused(*run) || !run->IsRefuted()) return;
+    clear = run->request().suspicion->clear;
   }
   if (!clear()) return;
   {
@@ -161,11 +139,7 @@ void Scheduler::ClearIfRefuted(const RunPointer& run) {
     std::erase(suspects_, run->key());
     run->EndSuspicion();
   }
-  WakeExecutors();
-}
-
-void Scheduler::WakeExecutors() {
-  for (Executor* executor : Executors()) executor->Wake();
+  Wake();
 }
 
 // ---- leases ----
@@ -176,15 +150,12 @@ std::optional<Lease> Scheduler::Next(const Capacity& capacity) {
   bool begins = false;
   {
     MutexLock lock(mutex_);
-    if (shutting_down_) return std::nullopt;
-    lease = Choose(capacity);
+    while (!shutting_down_ && !(lease = Choose(capacity)) && capacity.waits) woken_.Wait(mutex_);
     if (!lease) return std::nullopt;
-    Member& member = executors_[capacity.executor];
-    member.shares.TurnBegins(lease->run);
+    SharesOf(*lease).TurnBegins(lease->run);
     run = runs_.at(lease->run);
     if (lease->local) run->TurnBegins();
-    begins = !run->began();
-    run->set_began();
+    begins = run->Begin();
   }
   if (begins) run->journal().Began();
   return lease;
@@ -194,7 +165,7 @@ std::optional<Lease> Scheduler::Next(const Capacity& capacity) {
 std::optional<Lease> Scheduler::Choose(const Capacity& capacity) {
   const bool one_waited = held_.OneWaits();
   std::optional<Lease> lease;
-  executors_[capacity.executor].shares.First([&](int64_t candidate) {
+  shares_[capacity.local].First([&](int64_t candidate) {
     mutex_.AssertHeld();
     Run& run = *runs_.at(candidate);
     if (!MayTakeTurn(run, capacity.local)) return false;
@@ -214,45 +185,36 @@ Capacity Scheduler::WithBounds(const Capacity& capacity, const Run& run) const {
 
 std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
   const bool may_continue = capacity.local && !run.stopped() && !run.IsWantedElsewhere();
-  const size_t number = capacity.executor;
-  HeldLeases::Held* held =
-      may_continue ? held_.FirstWithTurn(run.key(), number, *executors_[number].executor) : nullptr;
+  HeldLeases::Held* held = may_continue ? held_.FirstWithTurn(run.key()) : nullptr;
   std::optional<Lease> lease;
   if (suspects_.empty() || !held_.HasLocal(run.key())) {
     lease = held != nullptr ? run.NextLeaseBefore(held->lease, capacity) : run.NextLease(capacity);
   }
   if (lease) {
-    lease->executor = number;
     if (lease->OpensPoints()) return lease;
     held = &held_.Add(*std::move(lease));
+    if (capacity.share) held->lease.work = capacity.share(held->lease);
+    Wake();  // other threads can take turns at it
   }
   if (held == nullptr) return std::nullopt;
   return held_.BeginTurn(*held);
 }
 
-bool Scheduler::EndTurn(const Lease& lease, double seconds) {
+void Scheduler::EndTurn(const Lease& lease, double seconds) {
   processor_seconds_.fetch_add(seconds, std::memory_order_relaxed);
   RunPointer run;
-  bool continues = false;
   {
     MutexLock lock(mutex_);
     run = FindRun(lease.run);
     run->journal().Worked(seconds);
     run->TurnEnds();
-    executors_[lease.executor].shares.TurnEnds(lease.run, seconds);
-    if (lease.OpensPoints()) {
-      run->OpeningEnded();
-    } else {
-      const bool has_turn = !lease.stop.stop_requested() &&
-                            executors_[lease.executor].executor->HasTurn(lease.number);
-      continues = held_.EndTurn(lease, has_turn);
-    }
+    SharesOf(lease).TurnEnds(lease.run, seconds);
+    lease.OpensPoints() ? run->OpeningEnded() : held_.EndTurn(lease);
   }
-  WakeExecutors();
+  Wake();
   ClearIfRefuted(run);
   Conclude(run);
   run->journal().AwaitRoom();
-  return continues;
 }
 
 void Scheduler::Return(const Lease& lease, bool tried) {
@@ -261,10 +223,10 @@ void Scheduler::Return(const Lease& lease, bool tried) {
     MutexLock lock(mutex_);
     run = FindRun(lease.run);
     if (run == nullptr || !held_.Remove(lease)) return;  // it was stopped
-    executors_[lease.executor].shares.TurnEnds(lease.run, 0);
+    SharesOf(lease).TurnEnds(lease.run, 0);
     run->Return(lease, tried ? lease.attempt + 1 : lease.attempt);
   }
-  WakeExecutors();
+  Wake();
   run->journal().AwaitRoom();
 }
 
@@ -277,7 +239,7 @@ void Scheduler::ReturnCrashed(Lease lease) {
 
 bool Scheduler::Needs(const Lease& lease) const {
   MutexLock lock(mutex_);
-  return held_.Has(lease);
+  return shutting_down_ || held_.Has(lease);
 }
 
 // ---- opening points ----
@@ -299,7 +261,7 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
   auto open = std::make_unique<OpenPoint>(
       std::get<std::unique_ptr<const PointExperiment>>(std::move(opened)));
   open->memory = MemoryOf(run, index);
-  if (run.has_checkpoints()) {
+  if (run.request().has_checkpoints) {
     absl::Status resumed = Resume(run, index, *open);
     if (!resumed.ok()) return resumed;
   }
@@ -329,7 +291,7 @@ absl::Status Scheduler::AwaitPilot(Run& run, size_t index, const PilotPlace& pla
   }
   absl::Cleanup give_up = [&] {
     MutexLock lock(mutex_);
-    EndPilot(run, place);
+    EndPilots(run, place);
   };
   // The pilot's result may have become known before this run took the pilot over.
   if (!std::holds_alternative<PilotPlace>(opener_.Open(run.spec(), index))) return absl::OkStatus();
@@ -357,19 +319,18 @@ absl::Status Scheduler::Resume(Run& run, size_t index, OpenPoint& open) {
 
 absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
   RunPointer run;
+  std::vector<Lease> dropped;
   absl::Status checked;
   bool is_finished = false;
   {
     MutexLock lock(mutex_);
     run = FindRun(lease.run);
-    if (run != nullptr && run->generation() != lease.generation) run = nullptr;
-    if (run != nullptr && !lease.local && run->IsUnopened(lease.point)) {
-      return absl::UnavailableError("the point is not open yet");
+    if (run != nullptr && run->request().generation != lease.generation) run = nullptr;
+    if (run != nullptr && !lease.local) {
+      const bool is_now = !shutting_down_ && !run->IsUnopened(lease.point) && !IsPaused(*run);
+      if (!is_now) return absl::UnavailableError("the point is not computed now");
+      Charge(*run, lease, report.seconds);
     }
-    if (run != nullptr && !lease.local && IsPaused(*run)) {
-      return absl::UnavailableError("the run is paused");
-    }
-    if (run != nullptr && !lease.local) Charge(*run, lease, report.seconds);
     OpenPoint* open = run ? run->Find(lease) : nullptr;
     if (open == nullptr || open->fold().finished()) return absl::OkStatus();
     if (!lease.local) {
@@ -381,13 +342,13 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
     is_finished = open->fold().finished();
     if (is_finished) {
       open->RequestStop();
-      DropStoppedLeases(*run);
+      dropped = DropStoppedLeases(*run);
       run->TurnBegins();  // so that the run does not end before its point
     }
   }
   if (is_finished) FinishPoint(run, lease);
   if (lease.local) return checked;  // the executor wakes the others when its turn ends
-  if (!is_finished) WakeExecutors();
+  if (!is_finished) Wake();
   ClearIfRefuted(run);
   run->journal().AwaitRoom();
   return checked;
@@ -396,11 +357,12 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
 void Scheduler::Charge(Run& run, const Lease& lease, double seconds) {
   processor_seconds_.fetch_add(seconds, std::memory_order_relaxed);
   run.journal().Worked(seconds);
-  executors_[lease.executor].shares.Used(lease.run, seconds);
+  SharesOf(lease).Used(lease.run, seconds);
 }
 
 void Scheduler::FinishPoint(const RunPointer& run, const Lease& lease) {
   const OpenPoint* open = nullptr;
+  std::vector<Lease> dropped;
   {
     MutexLock lock(mutex_);
     open = run->Find(lease);
@@ -417,11 +379,11 @@ void Scheduler::FinishPoint(const RunPointer& run, const Lease& lease) {
   {
     MutexLock lock(mutex_);
     run->Close(lease);
-    if (lease.pilot) EndPilot(*run, *lease.pilot);
-    if (!told.ok()) StopRun(*run, std::move(told));
+    if (lease.pilot) EndPilots(*run, *lease.pilot);
+    if (!told.ok()) dropped = StopRun(*run, std::move(told));
     run->TurnEnds();
   }
-  WakeExecutors();
+  Wake();
   Conclude(run);
 }
 

@@ -1,10 +1,10 @@
 // Decides which lease an executor gets next, and merges what executors report.
 //
-// The scheduler is passive: it has no threads and no clock. Executors (executor.h) call it. A lease
-// goes to the run whose turn it is (fair_share.h; each executor has its own shares), or to the next
-// run if that run has no lease for this executor now. The scheduler merges chunks in order under
-// its lock, so results depend neither on executors nor on the order of reports. Properties, each
-// with a test of its name:
+// The scheduler is passive: it has no threads and no clock. Executors (lease.h) call it. A lease
+// goes to the run whose turn it is (fair_share.h; here and elsewhere a run has its own shares), or
+// to the next run if that run has no lease for this executor now. The scheduler merges chunks in
+// order under its lock, so results depend neither on executors nor on the order of reports.
+// Properties, each with a test of its name:
 //   1. APilotIsComputedOnceForAllRuns.
 //   2. AStoppedRunEndsWhenItsTurnsHaveEnded.
 //   3. TheLeasesOfThisServerTakeNoMoreMemoryThanTheLimit.
@@ -15,6 +15,7 @@
 // Thread-safe.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -25,7 +26,6 @@
 #include <vector>
 
 #include "absl/status/status.h"
-#include "server/compute/executor.h"
 #include "server/compute/fair_share.h"
 #include "server/compute/held_leases.h"
 #include "server/compute/lease.h"
@@ -41,11 +41,6 @@ class Scheduler {
   // checkpoints.
   Scheduler(PointOpener& opener, int workers, SchedulerOptions options = {});
 
-  // Before the first lease. Returns the executor's number.
-  size_t AddExecutor(Executor& executor);
-  // The scheduler calls the executor no more. After the executor's Shutdown, in its destructor.
-  void RemoveExecutor(size_t executor);
-
   void Add(RunRequest request);
 
   // The next turn is given by the new priority. Leases that executors hold go on.
@@ -55,32 +50,35 @@ class Scheduler {
   void Stop(int64_t run, absl::Status why) ABSL_LOCKS_EXCLUDED(mutex_);
   void Cancel(int64_t run) { Stop(run, absl::CancelledError("the job was cancelled")); }
 
-  // Gives no more leases, requests the stop of all, shuts the executors down, and writes the
-  // checkpoints of unfinished points, so that a later process can resume them. May be called more
-  // than once.
-  void Shutdown();
+  // Gives no more leases, requests the stop of all, waits for the turns in progress, and writes the
+  // checkpoints of unfinished points, so that a later process can resume them. Executors elsewhere
+  // keep what they have for that process. May be called more than once.
+  void Shutdown() ABSL_LOCKS_EXCLUDED(mutex_);
 
   // ---- for executors ----
 
-  // The lease to work on now; empty if there is none. For a local executor it may be a lease that
-  // the executor has already (Executor::HasTurn). A turn at the lease begins. May wait for the
-  // disk.
+  // The lease to work on now; empty if there is none, or after Shutdown. For a local executor it
+  // may be a lease that it has already (SharedWork::HasTurn). A turn at the lease begins. May wait
+  // for the disk.
   std::optional<Lease> Next(const Capacity& capacity);
+
+  // There may be a new lease, or a turn at one. Call it after a report.
+  void Wake() { woken_.NotifyAll(); }
 
   // Opens one of the points that the lease asks to open. May take long.
   void Open(const Lease& lease, size_t point);
 
   // Chunks that nobody needs are dropped. An executor that is not local may also report chunks of
   // a lease that it does not have, or that an earlier process of this server gave; `run`,
-  // `generation`, `point` and `executor` of the lease are used. Errors, of such executors:
+  // `generation`, `point` and `local` of the lease are used. Errors, of such executors:
   //   DATA_LOSS    a chunk does not belong to its point; the others are merged
-  //   UNAVAILABLE  the point is not open yet, or the run is paused: report again later
+  //   UNAVAILABLE  the point is not computed now: report again later
   // Of such an executor, returns when the disk has room for more reports.
   absl::Status Report(const Lease& lease, LeaseReport report);
 
   // For a local executor: a turn at the lease ends, after its last report. `seconds`: processor
-  // time of the whole turn. False if the executor needs the lease no more. May wait for the disk.
-  bool EndTurn(const Lease& lease, double seconds);
+  // time of the whole turn. May wait for the disk.
+  void EndTurn(const Lease& lease, double seconds);
 
   // These are for executors that are not local.
 
@@ -109,11 +107,6 @@ class Scheduler {
   double processor_seconds() const { return processor_seconds_.load(std::memory_order_relaxed); }
 
  private:
-  struct Member {        // an executor
-    Executor* executor;  // null: removed
-    FairShare shares;
-  };
-
   using RunPointer = std::shared_ptr<Run>;
 
   RunPointer FindRun(int64_t key) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
@@ -123,11 +116,14 @@ class Scheduler {
   std::optional<Lease> Choose(const Capacity& capacity) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::optional<Lease> NextOf(Run& run, const Capacity& capacity)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void StopRun(Run& run, absl::Status why) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void EndPilot(const Run& owner, const PilotPlace& place) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // The second stops the run, too. Both return leases whose work is to be destroyed without the
+  // lock: their stop was requested, and no local turn at them is in progress.
+  std::vector<Lease> DropStoppedLeases(const Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  std::vector<Lease> StopRun(Run& run, absl::Status why) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Those that the run owns, or this one if it does.
+  void EndPilots(const Run& owner, std::optional<PilotPlace> only = {})
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void Charge(Run& run, const Lease& lease, double seconds) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // Leases whose stop was requested and at which no local turn is in progress.
-  void DropStoppedLeases(const Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   absl::Status OpenOne(Run& run, size_t index) ABSL_LOCKS_EXCLUDED(mutex_);
   LeaseMemory MemoryOf(const Run& run, size_t index);
@@ -136,12 +132,13 @@ class Scheduler {
   absl::Status Resume(Run& run, size_t index, OpenPoint& open);
   void FinishPoint(const RunPointer& run, const Lease& lease) ABSL_LOCKS_EXCLUDED(mutex_);
   void Conclude(const RunPointer& run) ABSL_LOCKS_EXCLUDED(mutex_);
+  bool HasTurns() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool IsPaused(const Run& run) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool MayTakeTurn(const Run& run, bool is_local) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void ClearIfRefuted(const RunPointer& run) ABSL_LOCKS_EXCLUDED(mutex_);
-  void EndPilotsOf(const Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  std::vector<Executor*> Executors() const ABSL_LOCKS_EXCLUDED(mutex_);
-  void WakeExecutors() ABSL_LOCKS_EXCLUDED(mutex_);
+  FairShare& SharesOf(const Lease& lease) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
+    return shares_[lease.local];
+  }
 
   PointOpener& opener_;
   const int workers_;
@@ -150,8 +147,9 @@ class Scheduler {
   std::atomic<double> processor_seconds_ = 0;
 
   mutable Mutex mutex_;
+  Condition woken_;  // there may be a lease, or a turn has ended
   bool shutting_down_ ABSL_GUARDED_BY(mutex_) = false;
-  std::vector<Member> executors_ ABSL_GUARDED_BY(mutex_);
+  std::array<FairShare, 2> shares_ ABSL_GUARDED_BY(mutex_);  // elsewhere and here
   std::map<int64_t, RunPointer> runs_ ABSL_GUARDED_BY(mutex_);
   std::deque<int64_t> suspects_ ABSL_GUARDED_BY(mutex_);  // the first is computed alone
   HeldLeases held_ ABSL_GUARDED_BY(mutex_);

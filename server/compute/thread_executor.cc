@@ -9,6 +9,7 @@
 #include "core/ensemble/block_run.h"
 #include "core/ensemble/chunk_fold.h"
 #include "server/compute/guarded.h"
+#include "server/mutex.h"
 #include "server/status/failpoint.h"
 
 namespace ballpiston::server {
@@ -19,7 +20,7 @@ constexpr std::chrono::milliseconds kTurn(50);
 }  // namespace
 
 // A lease at which several threads take turns.
-class ThreadExecutor::SharedLease {
+class ThreadExecutor::SharedLease : public SharedWork {
  public:
   SharedLease(ThreadExecutor& executor, Lease lease)
       : executor_(executor),
@@ -30,7 +31,7 @@ class ThreadExecutor::SharedLease {
   bool IsStopped() const { return lease_.stop.stop_requested(); }
 
   // While the lease is ending and no block is in progress, one more turn reports this.
-  bool HasTurn() const {
+  bool HasTurn() const override {
     MutexLock lock(mutex_);
     return !resting_.empty() || HasNextBlock() || (fold_.handed_out() == 0 && fold_.HasNextBlock());
   }
@@ -116,7 +117,7 @@ class ThreadExecutor::SharedLease {
       has_room = was_full && HasNextBlock();
     }
     executor_.scheduler_.Report(lease_, std::move(report)).IgnoreError();  // of chunks elsewhere
-    if (has_room) executor_.Wake();
+    if (has_room) executor_.scheduler_.Wake();
   }
 
   void TurnEnds(double seconds) {
@@ -131,69 +132,34 @@ class ThreadExecutor::SharedLease {
 
   ThreadExecutor& executor_;
   const Lease lease_;
-  mutable Mutex mutex_ ABSL_ACQUIRED_AFTER(executor_.mutex_);
+  mutable Mutex mutex_;
   ChunkFold fold_ ABSL_GUARDED_BY(mutex_);
   std::deque<std::unique_ptr<Session>> resting_ ABSL_GUARDED_BY(mutex_);
 };
 
 ThreadExecutor::ThreadExecutor(Scheduler& scheduler, int threads, double seconds,
                                std::shared_ptr<CrashRecord> crashes, OrbitDevice* device)
-    : scheduler_(scheduler), workers_(threads), crashes_(std::move(crashes)), device_(device) {
-  capacity_ = {.executor = scheduler.AddExecutor(*this), .seconds = seconds};
-}
+    : scheduler_(scheduler),
+      workers_(threads),
+      crashes_(std::move(crashes)),
+      device_(device),
+      capacity_{
+          .share =
+              [this](const Lease& lease) { return std::make_shared<SharedLease>(*this, lease); },
+          .waits = true,
+          .seconds = seconds} {}
 
 void ThreadExecutor::Start() {
-  MutexLock lock(mutex_);
   for (int i = 0; i < workers_; ++i) threads_.emplace_back([this] { Work(); });
 }
 
 ThreadExecutor::~ThreadExecutor() {
-  Shutdown();
-  scheduler_.RemoveExecutor(capacity_.executor);
-}
-
-void ThreadExecutor::Wake() {
-  {
-    MutexLock lock(mutex_);
-    ++wakes_;
-  }
-  woken_.NotifyAll();
-}
-
-bool ThreadExecutor::HasTurn(int64_t lease) const {
-  MutexLock lock(mutex_);
-  const auto found = leases_.find(lease);
-  return found != leases_.end() && found->second->HasTurn();
-}
-
-void ThreadExecutor::Shutdown() {
-  std::vector<Thread> threads;
-  {
-    MutexLock lock(mutex_);
-    shutting_down_ = true;
-    threads.swap(threads_);
-  }
-  woken_.NotifyAll();
-  for (Thread& thread : threads) thread.join();
+  scheduler_.Shutdown();
+  for (Thread& thread : threads_) thread.join();
 }
 
 void ThreadExecutor::Work() {
-  while (const std::optional<Lease> lease = AwaitLease()) TakeTurn(*lease);
-}
-
-std::optional<Lease> ThreadExecutor::AwaitLease() {
-  while (true) {
-    uint64_t seen = 0;
-    {
-      MutexLock lock(mutex_);
-      if (shutting_down_) return std::nullopt;
-      seen = wakes_;
-    }
-    DropStopped();
-    if (std::optional<Lease> lease = scheduler_.Next(capacity_)) return lease;
-    MutexLock lock(mutex_);
-    while (!shutting_down_ && wakes_ == seen) woken_.Wait(mutex_);
-  }
+  while (const std::optional<Lease> lease = scheduler_.Next(capacity_)) TakeTurn(*lease);
 }
 
 void ThreadExecutor::TakeTurn(const Lease& lease) {
@@ -202,49 +168,24 @@ void ThreadExecutor::TakeTurn(const Lease& lease) {
   Compute(lease);
   const double seconds = ProcessorSeconds() - start;
   busy_.fetch_sub(1, std::memory_order_relaxed);
-  if (scheduler_.EndTurn(lease, seconds)) return;
-  MutexLock lock(mutex_);
-  leases_.erase(lease.number);
+  scheduler_.EndTurn(lease, seconds);
 }
 
 // The record has the point only here, not while EndTurn waits for the disk.
 void ThreadExecutor::Compute(const Lease& lease) {
   const RunName run = {lease.run, lease.generation};
   for (const size_t point : lease.opens) {
-    const CrashRecord::Computing opening(*crashes_, run, point);
+    const CrashRecord::Entry opening(*crashes_, run, point);
     scheduler_.Open(lease, point);
   }
   if (lease.OpensPoints()) return;
-  const CrashRecord::Computing computing(*crashes_, run, lease.point);
+  const CrashRecord::Entry computing(*crashes_, run, lease.point);
   CrashForSeed(lease.spec->seed);
   const absl::Status advanced = Guarded(lease.point, [&] {
-    Find(lease)->Advance();
+    static_cast<SharedLease&>(*lease.work).Advance();
     return absl::OkStatus();
   });
   if (!advanced.ok()) scheduler_.Stop(lease.run, advanced);
-}
-
-ThreadExecutor::SharedPointer ThreadExecutor::Find(const Lease& lease) {
-  SharedPointer found;
-  {
-    MutexLock lock(mutex_);
-    SharedPointer& shared = leases_[lease.number];
-    if (shared != nullptr) return shared;
-    found = shared = std::make_shared<SharedLease>(*this, lease);
-  }
-  Wake();  // the others can take turns at it
-  return found;
-}
-
-// Destroys their sessions without the lock.
-void ThreadExecutor::DropStopped() {
-  std::vector<SharedPointer> stopped;
-  MutexLock lock(mutex_);
-  for (auto lease = leases_.begin(); lease != leases_.end();) {
-    const bool is_stopped = lease->second->IsStopped();
-    if (is_stopped) stopped.push_back(std::move(lease->second));
-    lease = is_stopped ? leases_.erase(lease) : std::next(lease);
-  }
 }
 
 }  // namespace ballpiston::server

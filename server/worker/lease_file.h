@@ -30,13 +30,15 @@ enum class Outcome {
   kNoMemory,  // the lease needs more memory than the worker may use
 };
 
+// The server writes one file at a time.
+inline constexpr char kLeaseBeingWritten[] = "todo/.new";
+
 // "LEASE", "LEASE.WORKER" or "LEASE.WORKER.OUTCOME".
 struct LeaseFileName {
   std::string lease;
   std::string worker = {};
   std::optional<Outcome> outcome = {};
 
-  std::string BeingWritten() const { return "todo/." + lease; }
   std::string Todo() const { return "todo/" + lease; }
   std::string Taken() const { return "taken/" + lease + "." + worker; }
   std::string Done(Outcome how) const;

@@ -1,6 +1,6 @@
 // The files of a folder that machines share. The server and its workers use no others.
 //
-//   todo/.LEASE                 the server writes a lease; no worker sees this name
+//   todo/.new                   the server writes a lease; no worker sees this name
 //   todo/LEASE                  a lease that no worker has
 //   taken/LEASE.WORKER          a worker has moved it here: it computes the lease
 //   done/LEASE.WORKER.OUTCOME   the worker has ended with it (lease_file.h)

@@ -39,16 +39,10 @@ bool HasAvx3() {
          CPU_FEATURE_ACTIVE(AVX512BW);
 }
 
-bool HasAvx3Dl() {
-  return HasAvx3() && CPU_FEATURE_ACTIVE(AVX512_VNNI) && CPU_FEATURE_ACTIVE(VPCLMULQDQ) &&
-         CPU_FEATURE_ACTIVE(VAES) && CPU_FEATURE_ACTIVE(AVX512_VBMI) &&
-         CPU_FEATURE_ACTIVE(AVX512_VBMI2) && CPU_FEATURE_ACTIVE(AVX512_VPOPCNTDQ) &&
-         CPU_FEATURE_ACTIVE(AVX512_BITALG);
-}
-
+// Highway does not compile for its next target, HWY_AVX3_DL, unless it is told to.
 int64_t Detected() {
   return (HasSsse3() ? HWY_SSSE3 : 0) | (HasSse4() ? HWY_SSE4 : 0) | (HasAvx2() ? HWY_AVX2 : 0) |
-         (HasAvx3() ? HWY_AVX3 : 0) | (HasAvx3Dl() ? HWY_AVX3_DL : 0);
+         (HasAvx3() ? HWY_AVX3 : 0);
 }
 
 #else

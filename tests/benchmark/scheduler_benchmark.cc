@@ -10,7 +10,6 @@
 #include <malloc.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
@@ -50,27 +49,22 @@ void ExitUnless(const absl::Status& ok) {
 // ---- the server ----
 
 // Takes part only as far as its caller has it take part. A lease is one turn.
-class SimulatedExecutor : public Executor {
+class SimulatedExecutor {
  public:
   SimulatedExecutor(Scheduler& scheduler, bool local, double seconds)
-      : scheduler_(scheduler),
-        capacity_{.executor = scheduler.AddExecutor(*this), .local = local, .seconds = seconds} {}
-
-  void Wake() override { is_woken_ = true; }
-  void Shutdown() override {}
-
-  // Empty, and without a call, if there was nothing and the executor was not woken since.
-  std::optional<Lease> Next() {
-    if (!is_woken_) return std::nullopt;
-    std::optional<Lease> lease = scheduler_.Next(capacity_);
-    if (!lease) is_woken_ = false;
-    return lease;
+      : scheduler_(scheduler), capacity_{.local = local, .share = {}, .seconds = seconds} {
+    if (local) capacity_.share = [](const Lease&) { return std::make_shared<OneTurn>(); };
   }
 
+  std::optional<Lease> Next() { return scheduler_.Next(capacity_); }
+
  private:
+  struct OneTurn : SharedWork {
+    bool HasTurn() const override { return false; }
+  };
+
   Scheduler& scheduler_;
-  const Capacity capacity_;
-  std::atomic<bool> is_woken_ = true;
+  Capacity capacity_;
 };
 
 struct Server {

@@ -58,10 +58,10 @@ absl::Status Life::Start() {
 Life::~Life() {
   limits_.reset();
   if (book_ != nullptr) book_->Shutdown();
-  scheduler_->Shutdown();
+  threads_.reset();
+  cluster_.reset();
   if (store_ != nullptr) store_->Flush().IgnoreError();
   if (store_ != nullptr) store_->Close();
-  cluster_.reset();
   book_.reset();
 }
 

@@ -30,14 +30,6 @@ TEST_F(ClusterFolderTest, AFolderOfAnotherServerIsRefused) {
   EXPECT_OK(PrepareFolder(shared_, "first"));
 }
 
-TEST_F(ClusterFolderTest, LeasesThatAKilledServerWasWritingAreRemoved) {
-  EXPECT_OK(PrepareFolder(shared_, "me"));
-  WriteFile(shared_ + "/todo/.unfinished-1", "");
-  WriteFile(shared_ + "/todo/finished-1", "");
-  RemoveUnfinishedLeases(shared_);
-  EXPECT_THAT(NamesIn(shared_ + "/todo"), ElementsAre("finished-1"));
-}
-
 TEST_F(ClusterFolderTest, OtherFoldersAreRefused) {
   EXPECT_OK(PrepareFolder(shared_, "me"));
   WriteFile(folder_.File("file"), "");

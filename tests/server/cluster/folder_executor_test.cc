@@ -126,6 +126,13 @@ TEST_F(FolderExecutorTest, AFileStaysUntilItsChunksAreOnDisk) {
   ComputeAll(*journal);
 }
 
+TEST_F(FolderExecutorTest, ALeaseThatAKilledServerWasWritingIsRemoved) {
+  files_.files[kLeaseBeingWritten] = {};
+  Begin();
+  EXPECT_FALSE(files_.files.contains(kLeaseBeingWritten));
+  EXPECT_THAT(In("todo"), SizeIs(2));
+}
+
 // The file in taken/ is moved away, so that its worker stops. The point is not open yet when the
 // later process looks for the first time.
 TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReported) {
@@ -198,6 +205,22 @@ TEST_F(FolderExecutorTest, ASilentWorkerLosesItsLease) {
   EXPECT_THAT(In("done"), IsEmpty());
   EXPECT_EQ(executor_->Status().lost_leases, 1);
   ComputeAll(*journal);
+}
+
+TEST_F(FolderExecutorTest, AnEmptiedFolderGivesItsLeasesBack) {
+  Restart(kNoTimeOut);
+  const auto journal = Begin();
+  Take(In("todo")[0]);
+  files_.before = [](const std::string& operation, const std::string&) {
+    return operation == "create" ? absl::UnavailableError("full") : absl::OkStatus();
+  };
+  executor_->Look();
+  files_.files.clear();
+  executor_->Look();
+  EXPECT_EQ(executor_->Status().waiting_leases + executor_->Status().taken_leases, 0);
+  local_->TakeAllTurns();
+  ASSERT_TRUE(journal->outcome);
+  EXPECT_OK(*journal->outcome);
 }
 
 TEST_F(FolderExecutorTest, AFolderThatCannotBeUsedGivesItsLeasesBack) {

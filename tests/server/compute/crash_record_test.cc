@@ -21,10 +21,10 @@ class CrashRecordTest : public testing::Test {
   // A process begins, computes, and dies of the signal. What is in the record at this moment stays.
   void LiveAndDie(const Turns& turns, int signal, const OutOfMemoryKills& at_start = {}) {
     CrashRecord record(folder_.path(), at_start);
-    std::vector<std::unique_ptr<CrashRecord::Computing>> computing;
+    std::vector<std::unique_ptr<CrashRecord::Entry>> computing;
     for (const auto& [run, points] : turns) {
       for (const size_t point : points) {
-        computing.push_back(std::make_unique<CrashRecord::Computing>(record, run, point));
+        computing.push_back(std::make_unique<CrashRecord::Entry>(record, run, point));
       }
     }
     Die(signal);
@@ -33,7 +33,7 @@ class CrashRecordTest : public testing::Test {
 
   void DieInAnExamination(const RunName& run) {
     CrashRecord record(folder_.path(), {});
-    const CrashRecord::Examining examining(record, run);
+    const CrashRecord::Entry examining(record, run);
     Die(SIGSEGV);
   }
 
@@ -87,9 +87,9 @@ TEST_F(CrashRecordTest, AKillFromOutsideKeepsThePointsOfTheLastDeath) {
 TEST_F(CrashRecordTest, ADeathInAnExaminationCountsForItsRunAlone) {
   {
     CrashRecord record(folder_.path(), {});
-    const CrashRecord::Computing computing(record, kFirst, 0);
+    const CrashRecord::Entry computing(record, kFirst, 0);
     std::thread([&] {
-      const CrashRecord::Examining examining(record, kSecond);
+      const CrashRecord::Entry examining(record, kSecond);
       Die(SIGSEGV);
     }).join();
   }
@@ -101,14 +101,14 @@ TEST_F(CrashRecordTest, ADeathInAnExaminationCountsForItsRunAlone) {
 TEST_F(CrashRecordTest, AThreadWithoutRoomInTheRecordWaits) {
   {
     CrashRecord record(folder_.path(), {});
-    std::vector<std::unique_ptr<CrashRecord::Computing>> all;
+    std::vector<std::unique_ptr<CrashRecord::Entry>> all;
     for (size_t point = 0; point < 2048; ++point) {
-      all.push_back(std::make_unique<CrashRecord::Computing>(record, kFirst, point));
+      all.push_back(std::make_unique<CrashRecord::Entry>(record, kFirst, point));
     }
     std::atomic<bool> begins = false, has_room = false;
     std::thread examines([&] {
       begins = true;
-      const CrashRecord::Examining examining(record, kSecond);
+      const CrashRecord::Entry examining(record, kSecond);
       EXPECT_TRUE(has_room);
       Die(SIGSEGV);
     });
@@ -184,7 +184,7 @@ class FatalSignalsDeathTest : public testing::Test {
     NoteFatalSignals(CrashRecord::NoteDeath);
     CrashRecord record(folder_.path(), {});
     std::thread([&] {
-      const CrashRecord::Computing computing(record, kFirst, 0);
+      const CrashRecord::Entry computing(record, kFirst, 0);
       fault();
     }).join();
   }

@@ -99,6 +99,23 @@ TEST(Scheduler, AMissedToleranceIsReportedAfterAllPointsAreFinished) {
                                        reached)));
 }
 
+// Although the point has fewer samples than a tolerance awaits without a budget (docs/answers.md).
+TEST_F(SchedulerTest, AtTheEndOfABudgetTheStatedErrorAloneDecides) {
+  const auto outcome_of = [&](int64_t key, double tolerance) {
+    const EnsembleSpec spec =
+        WithTarget(1, {.tolerance = tolerance, .budget_seconds = kSpentAtOnce});
+    const auto journal = Add(key, spec);
+    local_.TakeAllTurns();
+    EXPECT_EQ(journal->finished.at(0), FakeMerged(spec, 0, 1));
+    EXPECT_FALSE(FakeExperiments()(spec, 0)->ReachesTolerance(journal->finished.at(0)));
+    return *journal->outcome;
+  };
+  const Moments first = FakeMerged(WithTarget(1, {.tolerance = 1e-3}), 0, 1).moments[0];
+  const double error = *first.StandardError() / first.mean;
+  EXPECT_THAT(outcome_of(1, 0.99 * error), StatusIs(absl::StatusCode::kDeadlineExceeded));
+  EXPECT_OK(outcome_of(2, 1.01 * error));
+}
+
 TEST_F(SchedulerTest, AReachedToleranceEndsBeforeTheBudget) {
   for (const Target& target :
        {Target{.tolerance = 0.05}, Target{.tolerance = 0.05, .budget_seconds = 1e6}}) {

@@ -115,29 +115,19 @@ inline void ExpectComplete(const EnsembleSpec& spec, RecordingJournal& journal) 
 // ---- executors ----
 
 // A local executor: the test takes its turns.
-class SteppedExecutor : public Executor {
+class SteppedExecutor {
  public:
-  explicit SteppedExecutor(Scheduler& scheduler)
-      : scheduler_(scheduler), capacity_{.executor = scheduler.AddExecutor(*this)} {}
-
-  ~SteppedExecutor() override { scheduler_.RemoveExecutor(capacity_.executor); }
-
-  void Wake() override {}
-  bool HasTurn(int64_t lease) const override {
-    const auto found = folds_.find(lease);
-    return found != folds_.end() && found->second.HasNextBlock();
-  }
-  void Shutdown() override { is_shut_down_ = true; }
+  explicit SteppedExecutor(Scheduler& scheduler) : scheduler_(scheduler) {}
 
   // Begins a turn; empty if there is no lease now.
-  std::optional<Lease> Begin() { return is_shut_down_ ? std::nullopt : scheduler_.Next(capacity_); }
+  std::optional<Lease> Begin() { return scheduler_.Next(capacity_); }
 
   // Opens the points of the lease, or computes at most `blocks` blocks of it. Ends the turn, which
   // took `seconds`.
   void End(const Lease& lease, uint64_t blocks, double seconds = 0) {
     for (const size_t point : lease.opens) scheduler_.Open(lease, point);
     if (!lease.OpensPoints()) Compute(lease, blocks);
-    if (!scheduler_.EndTurn(lease, seconds)) folds_.erase(lease.number);
+    scheduler_.EndTurn(lease, seconds);
   }
 
   // A turn; false if there is no lease now.
@@ -153,10 +143,16 @@ class SteppedExecutor : public Executor {
   }
 
  private:
+  struct Fold : SharedWork {
+    explicit Fold(const Lease& lease) : fold(lease.experiment->plan(), lease.start, lease.end) {}
+    bool HasTurn() const override { return fold.HasNextBlock(); }
+
+    ChunkFold fold;
+  };
+
   void Compute(const Lease& lease, uint64_t blocks) {
     const PointExperiment& experiment = *lease.experiment;
-    ChunkFold& fold =
-        folds_.try_emplace(lease.number, experiment.plan(), lease.start, lease.end).first->second;
+    ChunkFold& fold = static_cast<Fold&>(*lease.work).fold;
     const absl::Status computed = Guarded(lease.point, [&] {
       while (blocks-- > 0 && !lease.stop.stop_requested()) {
         const std::optional<Block> block = fold.NextBlock();
@@ -176,9 +172,8 @@ class SteppedExecutor : public Executor {
   static constexpr double kSecondsOfABlock = 1e-3;
 
   Scheduler& scheduler_;
-  const Capacity capacity_;
-  bool is_shut_down_ = false;
-  std::map<int64_t, ChunkFold> folds_;  // by lease
+  const Capacity capacity_ = {
+      .share = [](const Lease& lease) { return std::make_shared<Fold>(lease); }};
 };
 
 // The chunks of a lease in order, with what the lease has of its first chunk.
@@ -200,17 +195,11 @@ inline std::vector<ChunkResult> ComputedChunks(const Lease& lease) {
 
 // An executor elsewhere: the test decides when a lease is taken, which chunks are reported, how
 // often and in which order, and whether the lease is returned.
-class RemoteExecutor : public Executor {
+class RemoteExecutor {
  public:
   // A lease has the fewest chunks that take `seconds`; a fake sample takes 0.02 s.
   RemoteExecutor(Scheduler& scheduler, double seconds)
-      : scheduler_(scheduler),
-        capacity_{.executor = scheduler.AddExecutor(*this), .local = false, .seconds = seconds} {}
-
-  ~RemoteExecutor() override { scheduler_.RemoveExecutor(capacity_.executor); }
-
-  void Wake() override {}
-  void Shutdown() override {}
+      : scheduler_(scheduler), capacity_{.local = false, .seconds = seconds} {}
 
   std::optional<Lease> Take() { return scheduler_.Next(capacity_); }
   std::vector<Lease> TakeAll() {

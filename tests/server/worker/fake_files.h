@@ -49,6 +49,7 @@ class FakeFiles : public SharedFiles {
   absl::StatusOr<FileStamp> Create(const std::string& path, absl::string_view bytes) override {
     const absl::Status begun = Begin("create", path);
     if (!begun.ok()) return begun;
+    if (files.contains(path)) return absl::UnavailableError(path + ": file exists");
     files[path] = {std::string(bytes), Tick()};
     return FileStamp{files[path].time, bytes.size()};
   }
