@@ -150,7 +150,7 @@ absl::Status ActiveJobs::End(const JobRecord& record, const absl::Status& why) {
 absl::Status ActiveJobs::EndCrashed(const JobRecord& record) {
   const std::string points = Text(crashes_.LastPoints(RunOf(record)));
   return End(record, EngineCrashed(points.empty() ? "this job" : "points " + points,
-                                   crashes_.Deaths(RunOf(record))));
+                                   absl::StrCat(crashes_.Deaths(RunOf(record)))));
 }
 
 std::optional<Suspicion> ActiveJobs::SuspicionOf(const JobRecord& record) {

@@ -25,7 +25,7 @@ absl::Status RoleTooLow(const Principal& caller, Role least) {
   return WithReason(
       absl::PermissionDeniedError(absl::StrCat(caller.name, " has the role ", RoleName(caller.role),
                                                ", this call needs the role ", RoleName(least))),
-      "ROLE_TOO_LOW", "role", RoleName(least));
+      "ROLE_TOO_LOW", {{"role", RoleName(least)}});
 }
 
 // Sets the caller.
