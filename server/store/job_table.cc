@@ -105,9 +105,8 @@ void UpdateJob(Database& database, const JobRecord& record) {
       "message = ?"
       " WHERE sequence = ?",
       Blob{record.question}, Blob{record.family}, record.restarts, record.cancel_request_id,
-      job.state(), end_time, job.pinned(), static_cast<int64_t>(job.stored_bytes()),
-      job.progress().points_done(), job.progress().samples(), Blob{BytesWithoutGrid(job)},
-      record.sequence);
+      job.state(), end_time, job.pinned(), StoredBytesOf(job), job.progress().points_done(),
+      job.progress().samples(), Blob{BytesWithoutGrid(job)}, record.sequence);
 }
 
 std::optional<JobRecord> FindJob(Database& database, const std::string& id, Grid grid) {
