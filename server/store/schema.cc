@@ -29,7 +29,7 @@ CREATE TABLE jobs (
   cancel_request_id TEXT NOT NULL DEFAULT '',
   state INTEGER NOT NULL DEFAULT 0,
   end_time INTEGER,
-  expired_time INTEGER,
+  expired INTEGER NOT NULL DEFAULT 0,
   pinned INTEGER NOT NULL DEFAULT 0,
   bytes INTEGER NOT NULL DEFAULT 0,
   points_done INTEGER NOT NULL DEFAULT 0,
@@ -40,8 +40,8 @@ CREATE TABLE jobs (
 CREATE INDEX jobs_by_state ON jobs (state, principal, points);
 CREATE INDEX jobs_by_principal ON jobs (principal, sequence, bytes, state);
 CREATE INDEX jobs_that_may_expire ON jobs (end_time, bytes)
-  WHERE end_time IS NOT NULL AND expired_time IS NULL AND pinned = 0;
-CREATE INDEX jobs_that_expired ON jobs (end_time, bytes) WHERE expired_time IS NOT NULL;
+  WHERE end_time IS NOT NULL AND expired = 0 AND pinned = 0;
+CREATE INDEX jobs_that_expired ON jobs (end_time, bytes) WHERE expired = 1;
 CREATE INDEX jobs_by_question ON jobs (principal, question) WHERE question <> x'';
 CREATE INDEX jobs_by_family ON jobs (principal, family) WHERE family <> x'';
 CREATE UNIQUE INDEX jobs_by_request ON jobs (principal, request_id) WHERE request_id <> '';

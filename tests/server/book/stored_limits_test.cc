@@ -80,7 +80,7 @@ TEST_F(StoredLimitsTest, AJobThatWasPinnedMeanwhileDoesNotExpire) {
   const std::string id = Done(kAnn, 1);
   ASSERT_OK(book_->Update(kAnn, id, {.pinned = true}));
   ASSERT_OK(store_->CommitDeletion([&](Database& database) {
-    ExpireJob(database, FindJob(database, id, Grid::kLeftOut)->sequence, absl::Now());
+    ExpireJob(database, FindJob(database, id, Grid::kLeftOut)->sequence);
   }));
   EXPECT_FALSE(Get(id).results_expired());
   EXPECT_EQ(PointsOf(id), 3u);
