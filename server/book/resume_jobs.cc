@@ -15,7 +15,6 @@
 #include "server/convert/spec.h"
 #include "server/status/failpoint.h"
 #include "server/status/log.h"
-#include "server/store/job_name.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
 

@@ -6,7 +6,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
-#include "server/convert/errors.h"
 #include "server/rpc/client_version.h"
 #include "server/status/log.h"
 #include "server/version.h"

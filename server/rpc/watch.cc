@@ -1,9 +1,7 @@
 #include "server/rpc/watch.h"
 
 #include <algorithm>
-#include <optional>
 #include <set>
-#include <string>
 #include <utility>
 
 #include "ballpiston/storage/tokens.pb.h"

@@ -1,7 +1,5 @@
 #include "server/store/job_table.h"
 
-#include <utility>
-
 #include "absl/strings/str_cat.h"
 #include "server/convert/timestamp.h"
 #include "server/store/job_name.h"
