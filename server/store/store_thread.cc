@@ -59,12 +59,13 @@ bool Store::AwaitWork() {
 // waiting checkpoints would soon take all the room of AwaitRoom, and the threads would stop
 // computing.
 void Store::DropSuperseded() {
-  std::map<std::pair<int64_t, int64_t>, const Write*> last;  // of each point
+  const auto is_checkpoint = [](const Write& write) { return write.kind == Kind::kCheckpoint; };
+  if (std::ranges::none_of(waiting_, is_checkpoint)) return;  // closed forms have none
+  std::map<std::pair<int64_t, int64_t>, const Write*> last;   // of each point
   for (const Write& write : waiting_) last[{write.job, write.point}] = &write;
   std::erase_if(waiting_, [&](const Write& write) {
     mutex_.AssertHeld();
-    const bool is_superseded =
-        write.kind == Kind::kCheckpoint && last[{write.job, write.point}] != &write;
+    const bool is_superseded = is_checkpoint(write) && last[{write.job, write.point}] != &write;
     if (is_superseded) bytes_ -= write.bytes;
     return is_superseded;
   });
