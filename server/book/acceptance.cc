@@ -1,7 +1,5 @@
 #include "server/book/acceptance.h"
 
-#include <utility>
-
 #include "absl/strings/str_cat.h"
 #include "server/convert/errors.h"
 #include "server/convert/spec.h"

@@ -15,8 +15,7 @@ JobRecord WithoutSpec(JobRecord row) {
 }  // namespace
 
 Job::Job(JobRecord row)
-    : row_(WithoutSpec(std::move(row))),
-      numbers_{.bytes = static_cast<int64_t>(row_.job.stored_bytes())} {}
+    : row_(WithoutSpec(std::move(row))), numbers_{.bytes = StoredBytesOf(row_.job)} {}
 
 JobNumbers Job::Numbers() const {
   MutexLock lock(mutex_);

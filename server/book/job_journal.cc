@@ -2,7 +2,6 @@
 
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
@@ -69,7 +68,7 @@ void LogEnd(const v1::EnsembleJob& ended) {
   const std::string state = absl::AsciiStrToLower(v1::EnsembleJob::State_Name(ended.state()));
   // A job without a start time ended before its first turn.
   const auto& begin = ended.has_start_time() ? ended.start_time() : ended.create_time();
-  if (ReasonOf(ended.error()) == kEngineCrashed) LogCrash(ended);
+  if (ReasonOf(ended.error()) == EngineCrashed.reason) LogCrash(ended);
   Log(ended.has_error() ? Severity::kWarning : Severity::kInfo, absl::StrCat("job ", state),
       {{"job", ended.name()},
        {"principal", ended.principal()},

@@ -15,7 +15,6 @@
 #include "server/convert/spec.h"
 #include "server/status/failpoint.h"
 #include "server/status/log.h"
-#include "server/store/job_name.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
 
@@ -150,7 +149,7 @@ absl::Status ActiveJobs::End(const JobRecord& record, const absl::Status& why) {
 absl::Status ActiveJobs::EndCrashed(const JobRecord& record) {
   const std::string points = Text(crashes_.LastPoints(RunOf(record)));
   return End(record, EngineCrashed(points.empty() ? "this job" : "points " + points,
-                                   crashes_.Deaths(RunOf(record))));
+                                   absl::StrCat(crashes_.Deaths(RunOf(record)))));
 }
 
 std::optional<Suspicion> ActiveJobs::SuspicionOf(const JobRecord& record) {

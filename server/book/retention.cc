@@ -25,8 +25,8 @@ constexpr absl::Duration kSoonToExpire = absl::Hours(7 * 24);
 constexpr double kFullShare = 0.95;
 
 struct Removal {
+  Removable what = Removable::kResults;
   std::vector<JobSize> jobs = {};
-  bool whole = false;  // the jobs, not only their results
 };
 
 // The first jobs that together take `bytes` or more; all jobs if they take less.
@@ -39,7 +39,8 @@ std::vector<JobSize> EnoughOf(std::vector<JobSize> jobs, int64_t bytes) {
 
 Removal TooOld(Database& database, const Limits& limits, absl::Time now) {
   if (limits.retain_days == 0) return {};
-  return {ListExpirable(database, now - absl::Hours(24) * limits.retain_days, kMostAtOnce)};
+  const absl::Time ended = now - absl::Hours(24) * limits.retain_days;
+  return {.jobs = ListRemovable(database, Removable::kResults, ended, kMostAtOnce)};
 }
 
 // Rows that the sweeper has still to remove take pages, so nothing more expires meanwhile.
@@ -48,25 +49,24 @@ Removal TooMuch(Database& database, const Limits& limits) {
   const auto most = static_cast<int64_t>(kFullShare * static_cast<double>(limits.max_store_bytes));
   const int64_t used = UsedBytes(database);
   if (used <= most) return {};
-  auto jobs = ListExpirable(database, absl::InfiniteFuture(), kMostAtOnce);
-  const bool whole = jobs.empty();
-  if (whole) jobs = ListExpired(database, kMostAtOnce);
-  return {EnoughOf(std::move(jobs), used - most), whole};
+  for (const Removable what : {Removable::kResults, Removable::kJobs}) {
+    auto jobs = ListRemovable(database, what, absl::InfiniteFuture(), kMostAtOnce);
+    if (!jobs.empty()) return {what, EnoughOf(std::move(jobs), used - most)};
+  }
+  return {};
 }
 
 // A job may have been pinned or deleted since it was found: then this has no effect on it.
-absl::Status Remove(Store& store, const Removal& removal, absl::Time now) {
-  if (removal.jobs.empty()) return absl::OkStatus();
+absl::Status Remove(Store& store, const Removal& removal) {
+  const bool whole = removal.what == Removable::kJobs;
   const absl::Status committed = store.CommitDeletion([&](Database& database) {
     for (const JobSize& job : removal.jobs) {
-      if (removal.whole) DeleteJob(database, job.sequence);
-      if (!removal.whole) ExpireJob(database, job.sequence, now);
+      (whole ? DeleteJob : ExpireJob)(database, job.sequence);
     }
   });
   if (committed.ok()) {
-    LogInfo(
-        absl::StrCat(removal.whole ? "expired jobs were deleted: " : "results of jobs expired: ",
-                     removal.jobs.size()));
+    LogInfo(absl::StrCat(whole ? "expired jobs were deleted: " : "results of jobs expired: ",
+                         removal.jobs.size()));
   }
   return committed;
 }
@@ -74,12 +74,12 @@ absl::Status Remove(Store& store, const Removal& removal, absl::Time now) {
 }  // namespace
 
 absl::Status JobBook::EnforceRetention(absl::Time now) {
-  const auto old = store_.Read([&](Database& database) { return TooOld(database, limits_, now); });
-  if (!old.ok()) return old.status();
-  const absl::Status aged = Remove(store_, *old, now);
-  if (!aged.ok()) return aged;
-  const auto much = store_.Read([&](Database& database) { return TooMuch(database, limits_); });
-  return much.ok() ? Remove(store_, *much, now) : much.status();
+  const auto removal = store_.Read([&](Database& database) {
+    Removal old = TooOld(database, limits_, now);
+    return old.jobs.empty() ? TooMuch(database, limits_) : old;
+  });
+  if (!removal.ok() || removal->jobs.empty()) return removal.status();
+  return Remove(store_, *removal);
 }
 
 void JobBook::KeepLimits(absl::Time now) {

@@ -233,8 +233,8 @@ void Scheduler::Return(const Lease& lease, bool tried) {
 void Scheduler::ReturnCrashed(Lease lease) {
   ++lease.crashes;
   if (lease.crashes < kMostDeaths || !Needs(lease)) return Return(lease);
-  Stop(lease.run,
-       EngineCrashed(absl::StrCat("point ", lease.point, " on the cluster"), lease.crashes));
+  Stop(lease.run, EngineCrashed(absl::StrCat("point ", lease.point, " on the cluster"),
+                                absl::StrCat(lease.crashes)));
 }
 
 bool Scheduler::Needs(const Lease& lease) const {

@@ -1,13 +1,13 @@
 #include "server/convert/errors.h"
 
 #include <cmath>
-#include <map>
 #include <optional>
 #include <utility>
 
 #include "absl/strings/cord.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/substitute.h"
 #include "google/rpc/error_details.pb.h"
 
 namespace ballpiston::server {
@@ -47,21 +47,9 @@ absl::Duration RetryDelayFor(const std::string& reason) {
   return absl::Seconds(found == seconds->end() ? 0 : found->second);
 }
 
-google::rpc::ErrorInfo Info(const std::string& reason) {
-  google::rpc::ErrorInfo info;
-  info.set_reason(reason);
-  info.set_domain("ballpiston");
-  return info;
-}
-
-// Also sets the time to wait before a retry, if waiting helps.
-void SetInfo(absl::Status& status, const google::rpc::ErrorInfo& info) {
-  SetDetail(status, info);
-  const absl::Duration delay = RetryDelayFor(info.reason());
-  if (delay == absl::ZeroDuration()) return;
-  google::rpc::RetryInfo retry;
-  retry.mutable_retry_delay()->set_seconds(absl::ToInt64Seconds(delay));
-  SetDetail(status, retry);
+bool HasReason(const absl::Status& status) {
+  return status.GetPayload(absl::StrCat(kTypePrefix, google::rpc::ErrorInfo().GetTypeName()))
+      .has_value();
 }
 
 template <typename Detail>
@@ -94,16 +82,15 @@ std::string ViolationsText(const std::vector<FieldViolation>& violations) {
 }
 
 absl::Status Invalid(const std::string& reason, const std::vector<FieldViolation>& violations) {
-  absl::Status status = absl::InvalidArgumentError(ViolationsText(violations));
+  std::string text = ViolationsText(violations);
+  std::map<std::string, std::string> metadata;
   const google::rpc::BadRequest fitting = AsManyAsFit(violations);
   const size_t left_out = violations.size() - static_cast<size_t>(fitting.field_violations_size());
-  google::rpc::ErrorInfo info = Info(reason);
   if (left_out > 0) {
-    (*info.mutable_metadata())["violations_left_out"] = absl::StrCat(left_out);
-    status = absl::InvalidArgumentError(
-        absl::StrCat(status.message(), "; ", left_out, " violations are left out of the details"));
+    metadata["violations_left_out"] = absl::StrCat(left_out);
+    absl::StrAppend(&text, "; ", left_out, " violations are left out of the details");
   }
-  SetDetail(status, info);
+  absl::Status status = WithReason(absl::InvalidArgumentError(text), reason, metadata);
   SetDetail(status, fitting);
   return status;
 }
@@ -118,75 +105,21 @@ absl::Status InvalidRequest(const std::vector<FieldViolation>& violations) {
   return Invalid("INVALID_REQUEST", violations);
 }
 
-absl::Status RequestIdReused(const std::string& request_id) {
-  return WithReason(absl::InvalidArgumentError(absl::StrCat(
-                        "request_id ", request_id, " was used before with a different request")),
-                    "REQUEST_ID_REUSED", "request_id", request_id);
-}
-
-absl::Status JobNotFound(const std::string& name) {
-  return WithReason(absl::NotFoundError(absl::StrCat("no such job: ", name)), "JOB_NOT_FOUND",
-                    "name", name);
-}
-
-absl::Status ResultNotFound(const std::string& name) {
-  return WithReason(
-      absl::NotFoundError(absl::StrCat("no such result: ", name,
-                                       "; the point is not finished, or not in the grid")),
-      "RESULT_NOT_FOUND", "name", name);
-}
-
-absl::Status ResultsExpired(const std::string& name) {
-  return WithReason(absl::FailedPreconditionError(absl::StrCat(
-                        "the results of ", name, " have expired; submit its specification again")),
-                    "RESULTS_EXPIRED", "name", name);
-}
-
-absl::Status JobAlreadyEnded(const std::string& name, absl::string_view state) {
-  return WithReason(absl::FailedPreconditionError(
-                        absl::StrCat(name, " has ended already: it is ", std::string(state))),
-                    "JOB_ALREADY_ENDED", "state", std::string(state));
-}
-
-absl::Status JobStillActive(const std::string& name, absl::string_view state) {
-  return WithReason(
-      absl::FailedPreconditionError(absl::StrCat(name, " is ", std::string(state),
-                                                 ": cancel it, or wait until it has ended")),
-      "JOB_STILL_ACTIVE", "state", std::string(state));
-}
-
-absl::Status ShuttingDown() {
-  return WithReason(absl::UnavailableError("the server is shutting down; retry later"),
-                    "SHUTTING_DOWN");
-}
-
-absl::Status CredentialsMissing() {
-  return WithReason(
-      absl::UnauthenticatedError("this server requires a token: --token-file FILE, or "
-                                 "the header authorization: Bearer TOKEN"),
-      "CREDENTIALS_MISSING");
-}
-
-absl::Status CredentialsInvalid() {
-  return WithReason(absl::UnauthenticatedError("this server does not know these credentials"),
-                    "CREDENTIALS_INVALID");
-}
-
-absl::Status CredentialsExpired() {
-  return WithReason(absl::UnauthenticatedError("these credentials have expired; ask for new ones"),
-                    "CREDENTIALS_EXPIRED");
+absl::Status FixedError::operator()(const std::string& first, const std::string& second) const {
+  std::map<std::string, std::string> metadata;
+  if (*key != '\0') metadata[key] = second.empty() ? first : second;
+  return WithReason(absl::Status(code, absl::Substitute(text, first, second)), reason, metadata);
 }
 
 absl::Status LimitExceeded(const std::string& reason, const std::string& what,
                            const std::string& flag, double limit) {
-  absl::Status status =
-      absl::ResourceExhaustedError(absl::StrFormat("%s; this server permits %.15g", what, limit) +
-                                   (flag.empty() ? "" : absl::StrCat(" (--", flag, ")")));
-  google::rpc::ErrorInfo info = Info(reason);
-  (*info.mutable_metadata())["limit"] = absl::StrFormat("%.15g", limit);
-  if (!flag.empty()) (*info.mutable_metadata())["flag"] = flag;
-  SetInfo(status, info);
-  return status;
+  std::string text = absl::StrFormat("%s; this server permits %.15g", what, limit);
+  std::map<std::string, std::string> metadata = {{"limit", absl::StrFormat("%.15g", limit)}};
+  if (!flag.empty()) {
+    absl::StrAppend(&text, " (--", flag, ")");
+    metadata["flag"] = flag;
+  }
+  return WithReason(absl::ResourceExhaustedError(text), reason, metadata);
 }
 
 absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached) {
@@ -198,21 +131,11 @@ absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const E
       absl::DeadlineExceededError(absl::StrFormat(
           "point %d: tolerance %g was not reached within the budget of %g s: reached %s", point,
           *spec.target.tolerance, *spec.target.budget_seconds, error)),
-      "TOLERANCE_NOT_REACHED", "reached", error);
-}
-
-absl::Status EngineCrashed(const std::string& what, int deaths) {
-  return WithReason(
-      absl::InternalError(absl::StrCat(
-          "the engine crashed ", deaths, " times while it computed ", what,
-          ": this is a fault of the program, not of the question; please report it with the "
-          "specification. The points that were finished before stay")),
-      kEngineCrashed);
+      "TOLERANCE_NOT_REACHED", {{"reached", error}});
 }
 
 absl::Status StoreFailure(const absl::Status& status) {
-  const std::string type = absl::StrCat(kTypePrefix, google::rpc::ErrorInfo().GetTypeName());
-  if (status.ok() || status.GetPayload(type)) return status;
+  if (status.ok() || HasReason(status)) return status;
   if (absl::IsDataLoss(status)) return WithReason(status, "STORE_DAMAGED");
   if (!absl::IsResourceExhausted(status)) {
     return WithReason(absl::UnavailableError(status.message()), "STORE_FAILED");
@@ -224,22 +147,25 @@ absl::Status StoreFailure(const absl::Status& status) {
       "STORE_FULL");
 }
 
-absl::Status WithReason(absl::Status status, const std::string& reason) {
-  SetInfo(status, Info(reason));
-  return status;
-}
-
-absl::Status WithReason(absl::Status status, const std::string& reason, const std::string& key,
-                        const std::string& value) {
-  google::rpc::ErrorInfo info = Info(reason);
-  (*info.mutable_metadata())[key] = Shortened(value, kMaxMetadataValue);
-  SetInfo(status, info);
+absl::Status WithReason(absl::Status status, const std::string& reason,
+                        const std::map<std::string, std::string>& metadata) {
+  google::rpc::ErrorInfo info;
+  info.set_reason(reason);
+  info.set_domain("ballpiston");
+  for (const auto& [key, value] : metadata) {
+    (*info.mutable_metadata())[key] = Shortened(value, kMaxMetadataValue);
+  }
+  SetDetail(status, info);
+  const absl::Duration delay = RetryDelayFor(reason);
+  if (delay == absl::ZeroDuration()) return status;
+  google::rpc::RetryInfo retry;
+  retry.mutable_retry_delay()->set_seconds(absl::ToInt64Seconds(delay));
+  SetDetail(status, retry);
   return status;
 }
 
 absl::Status WithDefaultReason(absl::Status status, const std::string& reason) {
-  const std::string type = absl::StrCat(kTypePrefix, google::rpc::ErrorInfo().GetTypeName());
-  return status.GetPayload(type) ? status : WithReason(std::move(status), reason);
+  return HasReason(status) ? status : WithReason(std::move(status), reason);
 }
 
 google::rpc::Status RpcStatus(const absl::Status& status) {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -26,21 +27,53 @@ inline constexpr size_t kMaxErrorDetails = 6 * 1024;
 // INVALID_ARGUMENT, with every violation; at least one.
 absl::Status InvalidSpec(const std::vector<FieldViolation>& violations);
 absl::Status InvalidRequest(const std::vector<FieldViolation>& violations);
-absl::Status RequestIdReused(const std::string& request_id);
 
-absl::Status JobNotFound(const std::string& name);     // NOT_FOUND
-absl::Status ResultNotFound(const std::string& name);  // NOT_FOUND
-absl::Status ResultsExpired(const std::string& name);  // FAILED_PRECONDITION
-absl::Status JobAlreadyEnded(const std::string& name,
-                             absl::string_view state);  // FAILED_PRECONDITION
-absl::Status JobStillActive(const std::string& name,
-                            absl::string_view state);  // FAILED_PRECONDITION
-absl::Status ShuttingDown();                           // UNAVAILABLE
+// An error whose text is fixed except for at most two arguments, $0 and $1:
+// JobNotFound("ensembleJobs/1f0c").
+struct FixedError {
+  absl::StatusCode code;
+  const char* reason;
+  const char* key;  // of the metadata with the last argument; empty: none
+  const char* text;
 
-// UNAUTHENTICATED. No message contains the credentials.
-absl::Status CredentialsMissing();
-absl::Status CredentialsInvalid();
-absl::Status CredentialsExpired();
+  absl::Status operator()(const std::string& first = "", const std::string& second = "") const;
+};
+inline constexpr FixedError RequestIdReused = {
+    absl::StatusCode::kInvalidArgument, "REQUEST_ID_REUSED", "request_id",
+    "request_id $0 was used before with a different request"};
+inline constexpr FixedError JobNotFound = {absl::StatusCode::kNotFound, "JOB_NOT_FOUND", "name",
+                                           "no such job: $0"};
+inline constexpr FixedError ResultNotFound = {
+    absl::StatusCode::kNotFound, "RESULT_NOT_FOUND", "name",
+    "no such result: $0; the point is not finished, or not in the grid"};
+inline constexpr FixedError ResultsExpired = {
+    absl::StatusCode::kFailedPrecondition, "RESULTS_EXPIRED", "name",
+    "the results of $0 have expired; submit its specification again"};
+// Of a job and its state.
+inline constexpr FixedError JobAlreadyEnded = {absl::StatusCode::kFailedPrecondition,
+                                               "JOB_ALREADY_ENDED", "state",
+                                               "$0 has ended already: it is $1"};
+inline constexpr FixedError JobStillActive = {absl::StatusCode::kFailedPrecondition,
+                                              "JOB_STILL_ACTIVE", "state",
+                                              "$0 is $1: cancel it, or wait until it has ended"};
+inline constexpr FixedError ShuttingDown = {absl::StatusCode::kUnavailable, "SHUTTING_DOWN", "",
+                                            "the server is shutting down; retry later"};
+// No message contains the credentials.
+inline constexpr FixedError CredentialsMissing = {
+    absl::StatusCode::kUnauthenticated, "CREDENTIALS_MISSING", "",
+    "this server requires a token: --token-file FILE, or the header authorization: Bearer TOKEN"};
+inline constexpr FixedError CredentialsInvalid = {absl::StatusCode::kUnauthenticated,
+                                                  "CREDENTIALS_INVALID", "",
+                                                  "this server does not know these credentials"};
+inline constexpr FixedError CredentialsExpired = {
+    absl::StatusCode::kUnauthenticated, "CREDENTIALS_EXPIRED", "",
+    "these credentials have expired; ask for new ones"};
+// The engine killed the process, or a worker elsewhere, while it computed this part of a job, so
+// many times.
+inline constexpr FixedError EngineCrashed = {
+    absl::StatusCode::kInternal, "ENGINE_CRASHED", "",
+    "the engine crashed $1 times while it computed $0: this is a fault of the program, not of the "
+    "question; please report it with the specification. The points that were finished before stay"};
 
 // RESOURCE_EXHAUSTED: `what` exceeds `limit`, which the server's flag `flag` sets; empty: no flag.
 absl::Status LimitExceeded(const std::string& reason, const std::string& what,
@@ -50,23 +83,15 @@ absl::Status LimitExceeded(const std::string& reason, const std::string& what,
 // the error that was reached.
 absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached);
 
-inline constexpr char kEngineCrashed[] = "ENGINE_CRASHED";
-
-// INTERNAL, ENGINE_CRASHED: the engine killed the process, or a worker elsewhere, `deaths` times
-// while it computed this; `what` names the job's part.
-absl::Status EngineCrashed(const std::string& what, int deaths);
-
 // The status of a call when a write to the store or a read from it failed. UNAVAILABLE, STORE_FULL:
 // the disk is full. DATA_LOSS, STORE_DAMAGED: the stored data cannot be read, and a retry does not
 // help. UNAVAILABLE, STORE_FAILED: anything else. OK stays OK, and a status that has a reason
 // already keeps it.
 absl::Status StoreFailure(const absl::Status& status);
 
-// The status with a reason and the project's domain, which clients read. The second form adds one
-// entry of metadata.
-absl::Status WithReason(absl::Status status, const std::string& reason);
-absl::Status WithReason(absl::Status status, const std::string& reason, const std::string& key,
-                        const std::string& value);
+// The status with a reason, the project's domain and metadata, which clients read.
+absl::Status WithReason(absl::Status status, const std::string& reason,
+                        const std::map<std::string, std::string>& metadata = {});
 // The same, but keeps a reason that the status already has.
 absl::Status WithDefaultReason(absl::Status status, const std::string& reason);
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "absl/status/status.h"
-#include "ballpiston/storage/records.pb.h"
 #include "server/convert/compressed.h"
 #include "server/convert/deterministic_bytes.h"
 

@@ -1,9 +1,7 @@
 #include "server/convert/spec.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <optional>
 #include <set>
 #include <utility>
 

@@ -6,7 +6,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
-#include "server/convert/errors.h"
 #include "server/rpc/client_version.h"
 #include "server/status/log.h"
 #include "server/version.h"
@@ -25,7 +24,7 @@ absl::Status RoleTooLow(const Principal& caller, Role least) {
   return WithReason(
       absl::PermissionDeniedError(absl::StrCat(caller.name, " has the role ", RoleName(caller.role),
                                                ", this call needs the role ", RoleName(least))),
-      "ROLE_TOO_LOW", "role", RoleName(least));
+      "ROLE_TOO_LOW", {{"role", RoleName(least)}});
 }
 
 // Sets the caller.

@@ -1,7 +1,6 @@
 // One call: its caller, and the frames around its method. gRPC gives each call a thread of its own.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <utility>

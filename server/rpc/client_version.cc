@@ -38,7 +38,7 @@ absl::Status CheckClientVersion(absl::string_view user_agent, absl::string_view 
                         of_server, "; this client has version ", client, ". Install version ",
                         of_server, " of the client, or version ", of_client,
                         " of the server and restart it (a private one: ballpiston server stop)")),
-                    "CLIENT_VERSION_NOT_SERVED", "server_version", std::string(server));
+                    "CLIENT_VERSION_NOT_SERVED", {{"server_version", std::string(server)}});
 }
 
 }  // namespace ballpiston::server

@@ -1,7 +1,5 @@
 #include "server/rpc/quota.h"
 
-#include <utility>
-
 #include "absl/strings/str_cat.h"
 #include "server/convert/errors.h"
 

@@ -1,15 +1,9 @@
 #include "server/rpc/request_check.h"
 
 #include <algorithm>
-#include <optional>
-#include <set>
 #include <utility>
 
-#include "absl/functional/function_ref.h"
 #include "absl/strings/ascii.h"
-#include "absl/strings/escaping.h"
-#include "absl/strings/match.h"
-#include "absl/time/time.h"
 #include "google/protobuf/descriptor.h"
 #include "google/protobuf/generated_enum_reflection.h"
 #include "server/convert/timestamp.h"
@@ -91,22 +85,19 @@ int32_t RequestCheck::Priority(const char* field, int32_t priority) {
 
 namespace {
 
-bool IsLabelText(const std::string& text, absl::FunctionRef<bool(unsigned char)> is_permitted) {
+bool IsLabelText(const std::string& text, const char* permitted) {
   constexpr size_t kLongest = 63;
-  return !text.empty() && text.size() <= kLongest && std::ranges::all_of(text, is_permitted);
+  return !text.empty() && text.size() <= kLongest && text.find_first_not_of(permitted) == text.npos;
 }
 
 bool IsLabelKey(const std::string& key) {
-  const auto is_permitted = [](unsigned char c) {
-    return absl::ascii_islower(c) || absl::ascii_isdigit(c) || c == '_' || c == '.' || c == '-';
-  };
-  return IsLabelText(key, is_permitted) && absl::ascii_islower(static_cast<unsigned char>(key[0]));
+  return IsLabelText(key, "abcdefghijklmnopqrstuvwxyz0123456789_.-") &&
+         absl::ascii_islower(static_cast<unsigned char>(key[0]));
 }
 
 bool IsLabelValue(const std::string& value) {
-  return IsLabelText(value, [](unsigned char c) {
-    return absl::ascii_isalnum(c) || absl::StrContains("_.:/@+-", static_cast<char>(c));
-  });
+  return IsLabelText(value,
+                     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.:/@+-");
 }
 
 }  // namespace

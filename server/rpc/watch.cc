@@ -1,9 +1,7 @@
 #include "server/rpc/watch.h"
 
 #include <algorithm>
-#include <optional>
 #include <set>
-#include <string>
 #include <utility>
 
 #include "ballpiston/storage/tokens.pb.h"
@@ -138,7 +136,7 @@ class Watch {
   // The points come from the store, which has all of them. The job in memory gets its last points
   // after the commit that shows its end to readers.
   absl::StatusOr<bool> TellEnd(const JobRecord& ended) {
-    const absl::StatusOr<bool> told = TellFinishedPoints(ended, nullptr);
+    const absl::StatusOr<bool> told = TellPoints(ended, nullptr);
     if (!told.ok() || *told) return told;
     absl::StatusOr<v1::EnsembleJob> job = book_.Get(reader_.caller(), id_, Grid::kLeftOut);
     if (!job.ok()) return job.status();
@@ -153,21 +151,13 @@ class Watch {
 
   absl::StatusOr<bool> TellSnapshot() {
     const Clock::time_point now = SteadyNow();
-    if (!IsSnapshotDue(now)) {
-      if (!IsBehind()) return false;
-      return TellFinishedPoints(job_.record, job_.active.get());
+    const bool is_due = IsSnapshotDue(now);
+    if (!is_due && !IsBehind()) return false;
+    if (is_due) {
+      next_snapshot_ = now + SnapshotInterval();
+      AddUnfinishedPoints(*message_.mutable_snapshot());
     }
-    next_snapshot_ = now + SnapshotInterval();
-    v1::StatisticsSnapshot& snapshot = *message_.mutable_snapshot();
-    *snapshot.mutable_progress() = ProgressOf(job_.record.job, job_.active->Numbers());
-    AddUnfinishedPoints(snapshot);
-    const absl::StatusOr<bool> finished = AddFinishedPoints(job_.active.get());
-    if (!finished.ok()) return finished;
-    LeaveOutFinished(snapshot);
-    const std::string progress = snapshot.progress().SerializeAsString();
-    const bool same_progress = std::exchange(told_progress_, progress) == progress;
-    if (snapshot.points().empty() && !*finished && same_progress) return false;
-    return Write();
+    return TellPoints(job_.record, job_.active.get());
   }
 
   // An older snapshot may have a point as unfinished that was already sent as finished.
@@ -180,23 +170,23 @@ class Watch {
     told_ = std::max(told_, shared->change);
   }
 
-  absl::StatusOr<bool> TellFinishedPoints(const JobRecord& record, const Job* active) {
-    *message_.mutable_snapshot()->mutable_progress() =
-        active != nullptr ? ProgressOf(record.job, active->Numbers()) : record.job.progress();
-    const absl::StatusOr<bool> added = AddFinishedPoints(active);
-    return added.ok() && *added ? Write() : added;
-  }
-
   // Adds the next finished points to the message: those of `active`, or those of the store if
-  // `active` is null. False: there are none.
-  absl::StatusOr<bool> AddFinishedPoints(const Job* active) {
-    auto points = book_.FinishedAfter(job_.record, active, told_finished_, kMaxPoints);
-    if (!points.ok()) return points.status();
-    for (FinishedPoint& point : *points) {
-      *message_.mutable_snapshot()->add_finished_points() = std::move(point.result);
+  // `active` is null. Sends it if it has a point, or new progress of an active job.
+  absl::StatusOr<bool> TellPoints(const JobRecord& record, const Job* active) {
+    v1::StatisticsSnapshot& snapshot = *message_.mutable_snapshot();
+    *snapshot.mutable_progress() =
+        active != nullptr ? ProgressOf(record.job, active->Numbers()) : record.job.progress();
+    auto finished = book_.FinishedAfter(job_.record, active, told_finished_, kMaxPoints);
+    if (!finished.ok()) return finished.status();
+    for (FinishedPoint& point : *finished) {
+      *snapshot.add_finished_points() = std::move(point.result);
       told_finished_ = point.number;
     }
-    return !points->empty();
+    LeaveOutFinished(snapshot);
+    const std::string progress = snapshot.progress().SerializeAsString();
+    const bool is_new = std::exchange(told_progress_, progress) != progress && active != nullptr;
+    if (snapshot.points().empty() && finished->empty() && !is_new) return false;
+    return Write();
   }
 
   absl::StatusOr<bool> TellHeartbeat() {

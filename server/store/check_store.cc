@@ -28,16 +28,16 @@ constexpr const char* kContradictions[] = {
     " || ' end time' FROM jobs WHERE (end_time IS NOT NULL) <> (state >= 4)",
     "SELECT 'job ' || id || ' has ' || points || ' points' FROM jobs WHERE points < 1",
     "SELECT 'job ' || id || ': ' || count(*) || ' results of ' || points FROM jobs"
-    " JOIN results ON job = sequence WHERE expired_time IS NULL GROUP BY job"
+    " JOIN results ON job = sequence WHERE expired = 0 GROUP BY job"
     " HAVING count(*) > points",
     "SELECT 'job ' || id || ' finished ' || points_done || ' points and has ' || count(job)"
     " || ' results' FROM jobs LEFT JOIN results ON job = sequence"
-    " WHERE expired_time IS NULL AND state >= 4 GROUP BY sequence HAVING count(job) <> points_done",
+    " WHERE expired = 0 AND state >= 4 GROUP BY sequence HAVING count(job) <> points_done",
     "SELECT 'job ' || id || ' succeeded with ' || count(job) || ' results of ' || points FROM jobs"
-    " LEFT JOIN results ON job = sequence WHERE expired_time IS NULL AND state = 4"
+    " LEFT JOIN results ON job = sequence WHERE expired = 0 AND state = 4"
     " GROUP BY sequence HAVING count(job) <> points",
     "SELECT 'a result without a point: job ' || job || ', point ' || point FROM results"
-    " LEFT JOIN jobs ON sequence = job WHERE ((sequence IS NULL OR expired_time IS NOT NULL)"
+    " LEFT JOIN jobs ON sequence = job WHERE ((sequence IS NULL OR expired = 1)"
     " AND job NOT IN (SELECT job FROM dropped)) OR point < 0 OR point >= points",
     "SELECT 'a checkpoint without a point of an active job: job ' || job || ', point ' || point"
     " FROM checkpoints LEFT JOIN jobs ON sequence = job"

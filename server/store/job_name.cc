@@ -1,12 +1,12 @@
 #include "server/store/job_name.h"
 
-#include <algorithm>
-#include <cstdint>
 #include <cstring>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/string_view.h"
+#include "absl/strings/strip.h"
 #include "server/host.h"
 
 namespace ballpiston::server {
@@ -16,11 +16,9 @@ constexpr char kCollection[] = "ensembleJobs/";
 constexpr char kResults[] = "/results/";
 constexpr size_t kMaxIdLength = 63;
 
-bool IsIdCharacter(char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-'; }
-
-bool IsId(const std::string& id) {
+bool IsId(absl::string_view id) {
   return !id.empty() && id.size() <= kMaxIdLength &&
-         std::all_of(id.begin(), id.end(), IsIdCharacter);
+         id.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") == id.npos;
 }
 
 }  // namespace
@@ -32,11 +30,9 @@ std::string ResultName(const std::string& job_id, int64_t point) {
 }
 
 std::optional<std::string> JobIdOf(const std::string& name) {
-  const std::string collection = kCollection;
-  if (name.rfind(collection, 0) != 0) return std::nullopt;
-  std::string id = name.substr(collection.size());
-  if (!IsId(id)) return std::nullopt;
-  return id;
+  absl::string_view id = name;
+  if (!absl::ConsumePrefix(&id, kCollection) || !IsId(id)) return std::nullopt;
+  return std::string(id);
 }
 
 std::optional<ResultId> ResultIdOf(const std::string& name) {

@@ -32,6 +32,12 @@ void SetNumbers(const JobNumbers& numbers, v1::EnsembleJob& job) {
   job.set_stored_bytes(static_cast<double>(numbers.bytes));
 }
 
+int64_t StoredBytesOf(const v1::EnsembleJob& job) {
+  constexpr double kMost = 1e18;
+  const double bytes = job.stored_bytes();
+  return bytes >= 0 && bytes <= kMost ? static_cast<int64_t>(bytes) : 0;
+}
+
 void SetExpireTime(double retain_days, v1::EnsembleJob& job) {
   job.clear_expire_time();
   if (retain_days == 0 || !job.has_end_time() || job.results_expired() || job.pinned()) return;

@@ -60,6 +60,9 @@ v1::JobProgress ProgressOf(const v1::EnsembleJob& job, const JobNumbers& numbers
 
 void SetNumbers(const JobNumbers& numbers, v1::EnsembleJob& job);
 
+// The job's stored_bytes. 0 if a damaged row has a value that is not a number of bytes.
+int64_t StoredBytesOf(const v1::EnsembleJob& job);
+
 // The results of a job that has ended expire after `retain_days`; 0: never.
 void SetExpireTime(double retain_days, v1::EnsembleJob& job);
 

@@ -1,7 +1,5 @@
 #include "server/store/job_table.h"
 
-#include <utility>
-
 #include "absl/strings/str_cat.h"
 #include "server/convert/timestamp.h"
 #include "server/store/job_name.h"
@@ -14,9 +12,11 @@ constexpr char kActiveStates[] = "1, 2, 3";
 static_assert(v1::EnsembleJob::QUEUED == 1 && v1::EnsembleJob::RUNNING == 2 &&
               v1::EnsembleJob::CANCELLING == 3);
 
-// Jobs whose results may expire, and those whose results have expired. Each has an index.
-constexpr char kExpirable[] = "end_time IS NOT NULL AND expired_time IS NULL AND pinned = 0";
-constexpr char kExpired[] = "expired_time IS NOT NULL";
+// Each has an index.
+const char* ConditionOf(Removable what) {
+  return what == Removable::kResults ? "end_time IS NOT NULL AND expired = 0 AND pinned = 0"
+                                     : "expired = 1";
+}
 
 // The grid is the last column, because SQLite reads a row up to the columns that are asked for.
 std::string SelectJobs(Grid grid, const std::string& condition) {
@@ -71,15 +71,13 @@ void DropResults(Database& database, int64_t sequence) {
   database.Run("INSERT OR IGNORE INTO dropped (job) VALUES (?)", sequence);
 }
 
-// The jobs that ended first.
-std::vector<JobSize> Sizes(Database& database, const char* condition, absl::Time ended_before,
-                           int most) {
-  std::vector<JobSize> sizes;
-  Query query = database.Select(absl::StrCat("SELECT sequence, bytes FROM jobs WHERE ", condition,
-                                             " AND end_time < ? ORDER BY end_time LIMIT ?"),
-                                ended_before, most);
-  while (query.Next()) sizes.push_back({query.Get<int64_t>(0), query.Get<int64_t>(1)});
-  return sizes;
+template <typename... Values>
+std::vector<JobRecord> AllJobs(Database& database, Grid grid, const std::string& condition,
+                               const Values&... values) {
+  std::vector<JobRecord> records;
+  Query query = database.Select(SelectJobs(grid, condition), values...);
+  while (query.Next()) records.push_back(RecordOf(query));
+  return records;
 }
 
 }  // namespace
@@ -101,11 +99,10 @@ void UpdateJob(Database& database, const JobRecord& record) {
   if (job.has_end_time()) end_time = TimeOf(job.end_time());
   database.Run(
       "UPDATE jobs SET question = ?, family = ?, restarts = ?, cancel_request_id = ?, state = ?,"
-      " end_time = coalesce(?, end_time), pinned = ?, bytes = ?, points_done = ?, samples = ?, "
-      "message = ?"
-      " WHERE sequence = ?",
+      " end_time = coalesce(?, end_time), expired = ?, pinned = ?, bytes = ?, points_done = ?,"
+      " samples = ?, message = ? WHERE sequence = ?",
       Blob{record.question}, Blob{record.family}, record.restarts, record.cancel_request_id,
-      job.state(), end_time, job.pinned(), static_cast<int64_t>(job.stored_bytes()),
+      job.state(), end_time, job.results_expired(), job.pinned(), StoredBytesOf(job),
       job.progress().points_done(), job.progress().samples(), Blob{BytesWithoutGrid(job)},
       record.sequence);
 }
@@ -131,7 +128,7 @@ std::optional<JobRecord> FindAnswer(Database& database, const std::string& princ
   Query query =
       database.Select(SelectJobs(Grid::kIncluded,
                                  "principal = ? AND question = ? AND question <> x'' AND state = ?"
-                                 " AND expired_time IS NULL ORDER BY sequence"),
+                                 " AND expired = 0 ORDER BY sequence"),
                       principal, Blob{question}, v1::EnsembleJob::SUCCEEDED);
   while (query.Next()) {
     JobRecord record = RecordOf(query);
@@ -142,15 +139,10 @@ std::optional<JobRecord> FindAnswer(Database& database, const std::string& princ
 
 std::vector<JobRecord> FindFamily(Database& database, const std::string& principal,
                                   const std::string& family) {
-  std::vector<JobRecord> records;
-  if (family.empty()) return records;
-  Query query = database.Select(
-      SelectJobs(Grid::kLeftOut,
+  return AllJobs(database, Grid::kLeftOut,
                  "principal = ? AND family = ? AND family <> x'' AND state = ?"
-                 " AND expired_time IS NULL ORDER BY samples DESC, sequence LIMIT ?"),
-      principal, Blob{family}, v1::EnsembleJob::SUCCEEDED, kMostOfAFamily);
-  while (query.Next()) records.push_back(RecordOf(query));
-  return records;
+                 " AND expired = 0 ORDER BY samples DESC, sequence LIMIT ?",
+                 principal, Blob{family}, v1::EnsembleJob::SUCCEEDED, kMostOfAFamily);
 }
 
 Load ActiveLoad(Database& database, const std::string& principal) {
@@ -189,11 +181,8 @@ void ReadJobs(Database& database, const std::optional<std::string>& principal, i
 }
 
 std::vector<JobRecord> ListUnfinishedJobs(Database& database) {
-  std::vector<JobRecord> records;
-  Query query = database.Select(SelectJobs(
-      Grid::kIncluded, absl::StrCat("state IN (", kActiveStates, ") ORDER BY sequence")));
-  while (query.Next()) records.push_back(RecordOf(query));
-  return records;
+  return AllJobs(database, Grid::kIncluded,
+                 absl::StrCat("state IN (", kActiveStates, ") ORDER BY sequence"));
 }
 
 bool BeginJob(Database& database, int64_t sequence, absl::Time now) {
@@ -236,33 +225,38 @@ void RestartJob(Database& database, const JobRecord& record) {
   UpdateJob(database, record);
 }
 
-std::vector<JobSize> ListExpirable(Database& database, absl::Time ended_before, int most) {
-  return Sizes(database, kExpirable, ended_before, most);
-}
-
-std::vector<JobSize> ListExpired(Database& database, int most) {
-  return Sizes(database, kExpired, absl::InfiniteFuture(), most);
-}
-
-int64_t RemovableBytes(Database& database) {
-  constexpr char kSum[] = "SELECT sum(bytes) FROM jobs WHERE ";
-  return database.Integer(absl::StrCat(kSum, kExpirable)) +
-         database.Integer(absl::StrCat(kSum, kExpired));
+std::vector<JobSize> ListRemovable(Database& database, Removable what, absl::Time ended_before,
+                                   int most) {
+  std::vector<JobSize> jobs;
+  Query query =
+      database.Select(absl::StrCat("SELECT sequence, bytes FROM jobs WHERE ", ConditionOf(what),
+                                   " AND end_time < ? ORDER BY end_time LIMIT ?"),
+                      ended_before, most);
+  while (query.Next()) jobs.push_back({query.Get<int64_t>(0), query.Get<int64_t>(1)});
+  return jobs;
 }
 
 int64_t CountExpirable(Database& database, absl::Time ended_before) {
-  return database.Integer(
-      absl::StrCat("SELECT count(*) FROM jobs WHERE ", kExpirable, " AND end_time < ?"),
-      ended_before);
+  return database.Integer(absl::StrCat("SELECT count(*) FROM jobs WHERE ",
+                                       ConditionOf(Removable::kResults), " AND end_time < ?"),
+                          ended_before);
 }
 
-void ExpireJob(Database& database, int64_t sequence, absl::Time now) {
+int64_t RemovableBytes(Database& database) {
+  int64_t bytes = 0;
+  for (const Removable what : {Removable::kResults, Removable::kJobs}) {
+    bytes +=
+        database.Integer(absl::StrCat("SELECT sum(bytes) FROM jobs WHERE ", ConditionOf(what)));
+  }
+  return bytes;
+}
+
+void ExpireJob(Database& database, int64_t sequence) {
   std::optional<JobRecord> record = FindJobBySequence(database, sequence);
   if (!record || record->job.pinned()) return;
   record->job.set_results_expired(true);
   record->job.set_stored_bytes(static_cast<double>(record->job.spec().ByteSizeLong()));
   UpdateJob(database, *record);
-  database.Run("UPDATE jobs SET expired_time = ? WHERE sequence = ?", now, sequence);
   DropResults(database, sequence);
 }
 

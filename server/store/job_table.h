@@ -103,19 +103,20 @@ struct JobSize {
   int64_t bytes = 0;  // of the specification and the results
 };
 
-// At most `most` jobs whose results may expire: they ended before `ended_before`, and are not
-// pinned. Those that ended first come first.
-std::vector<JobSize> ListExpirable(Database& database, absl::Time ended_before, int most);
-int64_t CountExpirable(Database& database, absl::Time ended_before);
-// The same for jobs whose results have expired.
-std::vector<JobSize> ListExpired(Database& database, int most);
-// The bytes of all jobs whose results can expire or have expired.
-int64_t RemovableBytes(Database& database);
+// What retention (book/retention.cc) may remove: the results of jobs that have ended and are not
+// pinned; jobs whose results have expired.
+enum class Removable { kResults, kJobs };
+
+// At most `most` such jobs that ended before `ended_before`. Those that ended first come first.
+std::vector<JobSize> ListRemovable(Database& database, Removable what, absl::Time ended_before,
+                                   int most);
+int64_t CountExpirable(Database& database, absl::Time ended_before);  // Removable::kResults
+int64_t RemovableBytes(Database& database);                           // of both kinds
 
 // After these two, the sweeper removes the results (sweeper.h); nobody can find them meanwhile.
 // ExpireJob has no effect on a pinned job. It keeps the row, so retries of its request are still
 // answered with the job.
-void ExpireJob(Database& database, int64_t sequence, absl::Time now);
+void ExpireJob(Database& database, int64_t sequence);
 void DeleteJob(Database& database, int64_t sequence);
 
 }  // namespace ballpiston::server

@@ -29,7 +29,7 @@ CREATE TABLE jobs (
   cancel_request_id TEXT NOT NULL DEFAULT '',
   state INTEGER NOT NULL DEFAULT 0,
   end_time INTEGER,
-  expired_time INTEGER,
+  expired INTEGER NOT NULL DEFAULT 0,
   pinned INTEGER NOT NULL DEFAULT 0,
   bytes INTEGER NOT NULL DEFAULT 0,
   points_done INTEGER NOT NULL DEFAULT 0,
@@ -40,8 +40,8 @@ CREATE TABLE jobs (
 CREATE INDEX jobs_by_state ON jobs (state, principal, points);
 CREATE INDEX jobs_by_principal ON jobs (principal, sequence, bytes, state);
 CREATE INDEX jobs_that_may_expire ON jobs (end_time, bytes)
-  WHERE end_time IS NOT NULL AND expired_time IS NULL AND pinned = 0;
-CREATE INDEX jobs_that_expired ON jobs (end_time, bytes) WHERE expired_time IS NOT NULL;
+  WHERE end_time IS NOT NULL AND expired = 0 AND pinned = 0;
+CREATE INDEX jobs_that_expired ON jobs (end_time, bytes) WHERE expired = 1;
 CREATE INDEX jobs_by_question ON jobs (principal, question) WHERE question <> x'';
 CREATE INDEX jobs_by_family ON jobs (principal, family) WHERE family <> x'';
 CREATE UNIQUE INDEX jobs_by_request ON jobs (principal, request_id) WHERE request_id <> '';
@@ -105,12 +105,6 @@ absl::Status RefusedFor(const std::string& path, const absl::Status& found) {
       "this user"));
 }
 
-absl::Status CheckIsNoFolder(const std::string& path) {
-  struct stat found {};
-  const bool is_folder = stat(path.c_str(), &found) == 0 && S_ISDIR(found.st_mode);
-  return is_folder ? Refused(path, "is a folder, not a file") : absl::OkStatus();
-}
-
 // A store with tables has a log beside it; bytes 18 and 19 of its header say so. A file without
 // this mark but with a log beside it is a backup that replaced another store: SQLite would read the
 // other store's pages into it.
@@ -141,10 +135,19 @@ absl::Status CheckKind(const std::string& path, Database& database, bool& unfini
                          " than this program's version ", kSchemaVersion));
 }
 
-absl::Status CheckContents(const std::string& path, Database& database) {
-  bool unfinished = false;
-  const absl::Status kind = CheckKind(path, database, unfinished);
-  if (!kind.ok() || unfinished) return kind;
+// Through a connection that cannot write. Sets `unfinished` as CheckKind.
+absl::StatusOr<std::unique_ptr<Database>> OpenChecked(const std::string& path, bool& unfinished) {
+  struct stat found {};
+  const bool is_folder = stat(path.c_str(), &found) == 0 && S_ISDIR(found.st_mode);
+  if (is_folder) return Refused(path, "is a folder, not a file");
+  auto database = Database::Open(path, Database::Mode::kReadOnly);
+  if (!database.ok()) return RefusedFor(path, database.status());
+  absl::Status checked = CheckLog(path, **database);
+  if (checked.ok()) checked = CheckKind(path, **database, unfinished);
+  return checked.ok() ? std::move(database) : checked;
+}
+
+absl::Status CheckPages(const std::string& path, Database& database) {
   const int64_t bytes =
       database.Integer("PRAGMA page_count") * database.Integer("PRAGMA page_size");
   if (bytes > kFullCheckBytes) return absl::OkStatus();
@@ -154,18 +157,14 @@ absl::Status CheckContents(const std::string& path, Database& database) {
   return status.ok() ? status : RefusedFor(path, status);
 }
 
-// Through a connection that cannot write. A journal beside the file is left by an interrupted
-// creation: it has the undo data, which the writing connection applies.
+// A journal beside the file is left by an interrupted creation: it has the undo data, which the
+// writing connection applies.
 absl::Status CheckFile(const std::string& path) {
-  const absl::Status file = CheckIsNoFolder(path);
-  if (!file.ok()) return file;
-  if (!Database::Exists(path) || Database::Exists(path + "-journal")) {
-    return absl::OkStatus();
-  }
-  const auto database = Database::Open(path, Database::Mode::kReadOnly);
-  if (!database.ok()) return RefusedFor(path, database.status());
-  const absl::Status log = CheckLog(path, **database);
-  return log.ok() ? CheckContents(path, **database) : log;
+  if (!Database::Exists(path) || Database::Exists(path + "-journal")) return absl::OkStatus();
+  bool unfinished = false;
+  const auto database = OpenChecked(path, unfinished);
+  if (!database.ok() || unfinished) return database.status();
+  return CheckPages(path, **database);
 }
 
 void MakeTables(Database& database) {
@@ -195,19 +194,12 @@ absl::Status Prepare(Database& database) {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Database>> OpenStoreToRead(const std::string& path) {
-  absl::Status checked = CheckIsNoFolder(path);
-  if (!checked.ok()) return checked;
   if (!Database::Exists(path)) {
     return absl::NotFoundError(absl::StrCat("there is no store ", path));
   }
-  auto database = Database::Open(path, Database::Mode::kReadOnly);
-  if (!database.ok()) return RefusedFor(path, database.status());
-  checked = CheckLog(path, **database);
   bool unfinished = false;
-  if (checked.ok()) checked = CheckKind(path, **database, unfinished);
-  if (checked.ok() && unfinished) checked = Refused(path, "has no tables yet");
-  if (!checked.ok()) return checked;
-  return database;
+  auto database = OpenChecked(path, unfinished);
+  return unfinished ? Refused(path, "has no tables yet") : std::move(database);
 }
 
 absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path) {

@@ -1,5 +1,6 @@
 #include "server/store/store.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "server/status/failpoint.h"
@@ -68,15 +69,14 @@ void Store::Close() {
 
 // ---- posting ----
 
-absl::Status Store::CommitRequest(Write request) {
+absl::Status Store::CommitRequest(Kind kind, Change change) {
   if (stalled()) return Stalled();
   std::optional<absl::Status> outcome;
-  request.is_request = true;
-  request.done = [&](const absl::Status& status) {
+  const auto done = [&](const absl::Status& status) {
     MutexLock lock(mutex_);
     outcome = status;  // before written_ is notified
   };
-  Post(std::move(request));
+  Post({.kind = kind, .change = std::move(change), .done = done});
   MutexLock lock(mutex_);
   while (!outcome) written_.Wait(mutex_);
   return *outcome;
@@ -96,7 +96,11 @@ void Store::RecordCheckpoint(int64_t job, int64_t point, uint64_t chunk,
     Failpoint("checkpoint.before_write");
     WriteCheckpoint(database, job, point, static_cast<int64_t>(chunk), serialize());
   };
-  Post({.change = std::move(change), .bytes = bytes, .job = job, .point = point});
+  Post({.kind = Kind::kCheckpoint,
+        .change = std::move(change),
+        .bytes = bytes,
+        .job = job,
+        .point = point});
 }
 
 void Store::RecordChunk(int64_t job, int64_t point, uint64_t chunk, std::string record) {
@@ -109,7 +113,7 @@ void Store::RecordChunk(int64_t job, int64_t point, uint64_t chunk, std::string 
 
 void Store::RecordResult(int64_t job, PointRow row, std::function<void(int64_t number)> stored) {
   const auto number = std::make_shared<int64_t>(0);
-  Write write = {.bytes = row.bytes(), .job = job, .point = row.point, .is_result = true};
+  Write write = {.bytes = row.bytes(), .job = job, .point = row.point};
   write.change = [job, row = std::move(row), number](Database& database) {
     *number = InsertResult(database, job, row);
   };
@@ -120,25 +124,33 @@ void Store::RecordResult(int64_t job, PointRow row, std::function<void(int64_t n
 }
 
 void Store::Post(Write write, bool soon) {
-  const Clock::time_point now = SteadyNow();
-  write.due = now + options_.delay;
   {
     MutexLock lock(mutex_);
     if (!closing_) {
-      hurry_ |= soon;
+      const bool is_request = write.IsRequest();
+      requests_ += is_request ? 1 : 0;
       bytes_ += write.bytes;
-      (write.is_request ? requests_ : records_).push_back(std::move(write));
-      // The store's thread knows already when the other records are due.
-      if (records_.size() == 1 || BatchIsDue(now)) posted_.NotifyOne();
+      waiting_.push_back(std::move(write));
+      const Clock::duration delay = soon ? Clock::duration::zero() : DelayOf(waiting_.back());
+      const Clock::time_point due = std::min(due_, SteadyNow() + delay);
+      // The store's thread knows already when the other writes are due.
+      if (std::exchange(due_, due) != due || is_request) posted_.NotifyOne();
       return;
     }
   }
   if (write.done) write.done(Closed());
 }
 
+// Records share the group of a request. They are also due when half of the room is taken, because
+// AwaitRoom must not wait for the delay. While the disk fails, requests are due by themselves.
+Store::Clock::duration Store::DelayOf(const Write& write) const {
+  if (failing_) return options_.retry;
+  if (write.IsRequest() || IsFull(2)) return Clock::duration::zero();
+  return options_.delay;
+}
+
 // ---- waiting ----
 
-// A request is committed after the records that were posted before it, unless the disk fails.
 absl::Status Store::Flush() {
   // Shared, because this function does not wait for a hanging disk.
   const auto outcome = std::make_shared<std::optional<absl::Status>>();
@@ -146,7 +158,7 @@ absl::Status Store::Flush() {
     MutexLock lock(mutex_);
     *outcome = status;
   };
-  Post({.change = [](Database&) {}, .done = done, .is_request = true}, true);
+  Post({.kind = Kind::kRequest, .change = [](Database&) {}, .done = done}, true);
   MutexLock lock(mutex_);
   while (!*outcome) {
     if (stalled()) return Stalled();
@@ -157,12 +169,12 @@ absl::Status Store::Flush() {
 
 void Store::AwaitSwept() {
   MutexLock lock(mutex_);
-  while (next_sweep_ && !closing_) written_.Wait(mutex_);
+  while (next_sweep_ != kNever && !closing_) written_.Wait(mutex_);
 }
 
-bool Store::IsFull() const {
-  return records_.size() + requests_.size() + in_batch_ > options_.max_pending ||
-         bytes_ > options_.max_pending_bytes;
+bool Store::IsFull(size_t part) const {
+  return waiting_.size() + in_group_ > options_.max_pending / part ||
+         bytes_ > options_.max_pending_bytes / part;
 }
 
 void Store::AwaitRoom() {
@@ -189,7 +201,7 @@ bool Store::stalled() const {
 Store::Counts Store::counts() const {
   MutexLock lock(mutex_);
   Counts counts = counts_;
-  counts.pending_writes = static_cast<int64_t>(records_.size() + requests_.size() + in_batch_);
+  counts.pending_writes = static_cast<int64_t>(waiting_.size() + in_group_);
   return counts;
 }
 

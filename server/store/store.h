@@ -7,9 +7,9 @@
 //
 // There are two kinds of writes. A request (`Commit`) is committed at once and fails if the disk
 // fails. A record (`Record...`) is a computed result: it may wait `delay` for others, and if the
-// disk fails, it is retried until it succeeds or the store is closed. Records are committed in the
-// order in which they were posted, and before the requests of the same group. A point's checkpoint
-// is skipped if the point has a later checkpoint or a result before it is written. The space of
+// disk fails, it is retried until it succeeds or the store is closed. Writes are committed in the
+// order in which they were posted; while the disk fails, requests go before records. A point's
+// checkpoint is skipped if a later checkpoint or the result of the point waits too. The space of
 // deleted jobs is freed a little at a time, by requests of the store itself (sweeper.h).
 //
 // When the disk fails (IsOfTheDisk):
@@ -33,8 +33,8 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
+#include <list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -145,28 +145,23 @@ class Store {
  private:
   using Clock = std::chrono::steady_clock;
 
+  static constexpr Clock::time_point kNever = Clock::time_point::max();
+
+  enum class Kind { kRecord, kCheckpoint, kRequest, kDeletion };
+
   struct Write {
+    Kind kind = Kind::kRecord;
     Change change = {};
     Done done = {};
-    bool is_request = false;
-    bool frees_space = false;
-    size_t bytes = 0;    // of memory, about
-    int64_t job = 0;     // of a checkpoint or a result
-    int64_t point = -1;  // of a checkpoint or a result
-    bool is_result = false;
-    bool superseded = false;  // a checkpoint with a later one, or with the point's result, after it
-    Clock::time_point due = {};
-    // Set when the write is committed or refused, or a request has failed.
+    size_t bytes = 0;            // of memory, about
+    int64_t job = 0, point = 0;  // of a checkpoint or a result
+    bool has_waited = false;     // for a disk that failed
+    // Set when the write is refused, or when a request has failed.
     std::optional<absl::Status> outcome = {};
 
-    bool is_checkpoint() const { return point >= 0 && !is_result; }
+    bool IsRequest() const { return kind >= Kind::kRequest; }
   };
-  using Writes = std::deque<Write>;
-
-  struct Batch {
-    Writes writes = {};   // records, then requests; none: only test the disk
-    bool has_all = true;  // no records are left
-  };
+  using Writes = std::list<Write>;
 
   // Lets `run` call `function`, and returns what the function has returned if the status is OK.
   template <typename Function, typename Run>
@@ -184,7 +179,7 @@ class Store {
   template <typename Function>
   auto Committed(Function& change, bool frees_space) {
     return Returned(change, [&](Change run) {
-      return CommitRequest({.change = std::move(run), .frees_space = frees_space});
+      return CommitRequest(frees_space ? Kind::kDeletion : Kind::kRequest, std::move(run));
     });
   }
 
@@ -193,42 +188,43 @@ class Store {
   void Start();
 
   void Post(Write write, bool soon = false) ABSL_LOCKS_EXCLUDED(mutex_);
-  absl::Status CommitRequest(Write request);
-  bool IsFull() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  bool BatchIsDue(Clock::time_point now) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  absl::Status CommitRequest(Kind kind, Change change);
+  // How long this write, and with it all that wait, may wait for others.
+  Clock::duration DelayOf(const Write& write) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Whether more than one `part`-th of the room of AwaitRoom is taken.
+  bool IsFull(size_t part = 1) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   // ---- the store's thread (store_thread.cc) ----
 
   void WriteUntilClosed();
   bool AwaitWork();  // false: closed, and nothing is left to write
-  bool RecordsAreDue(Clock::time_point now) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  bool AllAreDue(Clock::time_point now) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool SweepIsDue(Clock::time_point now) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  std::optional<Clock::time_point> NextDue() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // The requests, the records if they are due, and a step of the sweeper if it is due.
-  Batch TakeBatch() ABSL_LOCKS_EXCLUDED(mutex_);
-  void WriteBatch(Batch batch);
-  size_t GroupEnd(const Writes& batch, size_t first) const;
-  // Commits all or none of writes [first, last), except those that are refused. Not OK: the disk
-  // failed.
-  absl::Status CommitGroup(Writes& batch, size_t first, size_t last);
+  bool GroupIsDue(Clock::time_point now) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void DropSuperseded() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // The first writes that wait, or only requests if the records are not due; and a step of the
+  // sweeper if it is due. Empty: only test the disk.
+  Writes TakeGroup() ABSL_LOCKS_EXCLUDED(mutex_);
+  Write SweepStepWrite();
+  void WriteGroup(Writes group);
+  // Commits all or none of the writes, except those that are refused. Not OK: the disk failed.
+  absl::Status CommitGroup(Writes::iterator first, Writes::iterator last);
   void BeginGroup();
-  absl::Status RunChange(const Change& change);  // not OK: it can never succeed
-  void RunRequest(Write& request);
-  bool RunRecord(Write& record);  // false: it is rejected, and the group begins again without it
-  void NoteCommitted(Writes& batch, size_t first, size_t last) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Sets the outcome of a request whose group failed. On a full disk it is tried alone.
-  void TryAgain(Writes& batch, size_t request, const absl::Status& failure);
+  // Sets the outcome of a write that can never succeed. False: the group has to begin again,
+  // without this write.
+  bool Run(Write& write);
+  // Sets the outcomes of the requests of a group that failed. Its records wait again.
+  void SettleFailed(Writes& group, const absl::Status& failure);
+  void PutBack(Writes& group) ABSL_LOCKS_EXCLUDED(mutex_);
+  // On a full disk the request is tried alone, because it may free space.
+  void CommitAlone(Writes::iterator request, const absl::Status& failure);
   void WriteLogBack();
   // Errors are not reported: without the reserve a deletion on a full disk may fail.
   void TakeReserve();  // writes the file, if there is room
   void ReleaseReserve();
   void NoteSweep(const absl::Status& status, bool has_advanced) ABSL_LOCKS_EXCLUDED(mutex_);
 
-  // Tells writes [first, last) their outcome.
-  void Settle(Writes& batch, size_t first, size_t last) ABSL_LOCKS_EXCLUDED(mutex_);
-  // The disk failed to take the writes from `first` on: requests fail, and records wait.
-  void SettleFailed(Batch batch, size_t first, const absl::Status& failure);
-  void Requeue(Writes again) ABSL_LOCKS_EXCLUDED(mutex_);
+  void Settle(const Writes& group) ABSL_LOCKS_EXCLUDED(mutex_);  // tells the outcomes
   void NoteHealth(const absl::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
 
   const Options options_;
@@ -244,19 +240,19 @@ class Store {
   mutable Mutex mutex_;
   Condition posted_;
   Condition written_;
-  Writes records_ ABSL_GUARDED_BY(mutex_);
-  Writes requests_ ABSL_GUARDED_BY(mutex_);
-  size_t in_batch_ ABSL_GUARDED_BY(mutex_) = 0;
-  size_t bytes_ ABSL_GUARDED_BY(mutex_) = 0;    // of pending writes and of the batch
-  bool hurry_ ABSL_GUARDED_BY(mutex_) = false;  // the pending records are not delayed
+  Writes waiting_ ABSL_GUARDED_BY(mutex_);       // in the order of posting
+  size_t requests_ ABSL_GUARDED_BY(mutex_) = 0;  // of them
+  size_t in_group_ ABSL_GUARDED_BY(mutex_) = 0;  // writes that are being committed
+  size_t bytes_ ABSL_GUARDED_BY(mutex_) = 0;     // of both
+  // When all that wait are to be written; while the disk fails, the time of the next attempt.
+  Clock::time_point due_ ABSL_GUARDED_BY(mutex_) = kNever;
   bool failing_ ABSL_GUARDED_BY(mutex_) = false;
   std::string failure_ ABSL_GUARDED_BY(mutex_);  // the last failure that was logged
-  Clock::time_point retry_time_ ABSL_GUARDED_BY(mutex_);
   bool stop_waiting_ ABSL_GUARDED_BY(mutex_) = false;
   bool closing_ ABSL_GUARDED_BY(mutex_) = false;
   Counts counts_ ABSL_GUARDED_BY(mutex_);  // without the pending writes
-  // When to free space next; empty: there is no space to free.
-  std::optional<Clock::time_point> next_sweep_ ABSL_GUARDED_BY(mutex_);
+  // When to free space next; kNever: there is no space to free.
+  Clock::time_point next_sweep_ ABSL_GUARDED_BY(mutex_) = kNever;
   bool sweep_advances_ ABSL_GUARDED_BY(mutex_) = false;  // the last step has freed some
   Thread thread_;
 };

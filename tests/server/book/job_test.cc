@@ -109,6 +109,17 @@ TEST_F(JobJournalTest, AJobWhoseEndTheStoreRejectsFails) {
   EXPECT_GT(job_->last_state_change(), change);
 }
 
+// A row has the number as a double, which damage may have changed to anything.
+TEST_F(JobJournalTest, ADamagedNumberOfStoredBytesCountsAsZero) {
+  for (const double damaged : {std::nan(""), 1e300, -1e300, -1.0}) {
+    record_.job.set_stored_bytes(damaged);
+    ASSERT_OK(store_->Commit([this](Database& database) { UpdateJob(database, record_); }));
+    const auto principals = ReadFrom(*store_, &CountJobsByPrincipal);
+    EXPECT_EQ(principals.at(0).stored_bytes(), 0) << damaged;
+    EXPECT_EQ(Job(record_).Numbers().bytes, 0) << damaged;
+  }
+}
+
 TEST(JobName, OnlyJobsAndResultsHaveTheirNames) {
   EXPECT_EQ(JobIdOf("ensembleJobs/0a-9"), "0a-9");
   EXPECT_EQ(ResultIdOf("ensembleJobs/a-1/results/7")->job, "a-1");

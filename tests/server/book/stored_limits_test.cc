@@ -74,6 +74,18 @@ TEST_F(StoredLimitsTest, APinnedJobDoesNotExpire) {
   EXPECT_EQ(ReasonOf(book_->Update(kBen, other, {.pinned = true}).status()), "JOB_NOT_FOUND");
 }
 
+// The job was pinned after retention had found that its results may expire.
+TEST_F(StoredLimitsTest, AJobThatWasPinnedMeanwhileDoesNotExpire) {
+  Start();
+  const std::string id = Done(kAnn, 1);
+  ASSERT_OK(book_->Update(kAnn, id, {.pinned = true}));
+  ASSERT_OK(store_->CommitDeletion([&](Database& database) {
+    ExpireJob(database, FindJob(database, id, Grid::kLeftOut)->sequence);
+  }));
+  EXPECT_FALSE(Get(id).results_expired());
+  EXPECT_EQ(PointsOf(id), 3u);
+}
+
 // The oldest results expire first. Then expired jobs are deleted. If pinned jobs still take too
 // much, no job is accepted.
 TEST_F(StoredLimitsTest, TheStoreKeepsItsBound) {

@@ -15,6 +15,14 @@ TEST(Errors, CarryReasonDomainAndMetadata) {
   EXPECT_EQ(details.metadata.at("name"), "ensembleJobs/x");
 }
 
+TEST(Errors, WithTwoArgumentsHaveTheLastOneInTheMetadata) {
+  const grpc::Status status = GrpcStatus(JobAlreadyEnded("ensembleJobs/$1", "FAILED"));
+  EXPECT_THAT(status, StatusIs(grpc::StatusCode::FAILED_PRECONDITION,
+                               "ensembleJobs/$1 has ended already: it is FAILED"));
+  EXPECT_EQ(DetailsOf(status).metadata.at("state"), "FAILED");
+  EXPECT_EQ(DetailsOf(GrpcStatus(ShuttingDown())).metadata.size(), 0u);
+}
+
 absl::Duration RetryDetail(const absl::Status& status) {
   const google::rpc::Status error = RpcStatus(status);
   google::rpc::RetryInfo retry;

@@ -252,7 +252,7 @@ TEST_F(StoreTest, AReadThatThrowsEndsItsTransaction) {
   EXPECT_OK(store->Read(count));
 }
 
-// A batch of two groups: each result has more bytes than half a group.
+// Two groups: each result has more bytes than half a group.
 TEST_F(StoreTest, AWriteIsToldWhenItsOwnGroupIsCommitted) {
   const auto store = Open({.delay = kUnreachedLimit});
   const int64_t job = Insert(*store, Record("a"));
