@@ -9,7 +9,6 @@
 #include "absl/strings/strip.h"
 #include "client/command/number_list.h"
 #include "client/library/quoted.h"
-#include "client/library/request_id.h"
 
 namespace ballpiston::client {
 namespace {
@@ -55,11 +54,6 @@ absl::StatusOr<std::string> ParseJobName(const std::string& text) {
       text,
       "is not a job's name: write ensembleJobs/ID, or the ID alone; an ID is 1 to 63 of "
       "a-z, 0-9 and hyphen");
-}
-
-absl::StatusOr<std::string> ParseRequestId(const std::string& text) {
-  if (IsRequestId(text)) return text;
-  return NotPermitted(text, "is not a UUID like 123e4567-e89b-12d3-a456-426614174000");
 }
 
 absl::StatusOr<std::map<std::string, std::string>> ParseLabels(const std::string& text) {
@@ -117,13 +111,6 @@ Value Date(Store<absl::Time> store) { return Parsed("DATE", ParseDate, std::move
 
 Value Job(Store<std::string> store) {
   return Parsed("JOB", ParseJobName, std::move(store), Offer::kJob);
-}
-
-Value RequestId() {
-  const Store<std::string> store = [](Options& options, std::string id) {
-    options.create.set_request_id(std::move(id));
-  };
-  return Parsed("UUID", ParseRequestId, store);
 }
 
 // Adds to the labels that were given before.

@@ -53,7 +53,6 @@ Value Shapes(Store<std::vector<std::string>> store);      // LIST of shapes
 Value Words(std::string name, Store<std::string> store);  // each word
 Value Date(Store<absl::Time> store);
 Value Job(Store<std::string> store);               // ensembleJobs/ID
-Value RequestId();                                 // a UUID
 Value Labels(std::string name);                    // KEY=VALUE, separated by commas
 Value Passed(std::string name, std::string flag);  // to ballpistond, with its flag
 

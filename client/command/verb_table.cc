@@ -64,20 +64,6 @@ void SetBudget(Options& options, double seconds) {
   budget.set_nanos(nanos % kNanos);
 }
 
-// A message cannot hold less than a nanosecond.
-Value Budget() {
-  Value value = Number("SECONDS", &SetBudget);
-  value.read = [read = value.read](const std::string& text, Options& options) {
-    const absl::Status status = read(text, options);
-    const google::protobuf::Duration& budget = options.spec.target().budget();
-    const bool is_zero = budget.seconds() == 0 && budget.nanos() == 0;
-    if (!status.ok() || !is_zero || *ParseNumber(text) == 0) return status;
-    return absl::InvalidArgumentError(
-        absl::StrCat(text, " is below the least budget; permitted: 1e-9 to 1e6 s"));
-  };
-  return value;
-}
-
 // The table has --progress before --quiet. If --quiet is already set, its source is a weaker one.
 void SetProgress(Options& options, ProgressStyle style) {
   options.progress = style;
@@ -165,7 +151,7 @@ const FlagGroup kTarget = {
      {"--tolerance", Number("REL", [](Options& o, double x) { Target(o).set_tolerance(x); }),
       "relative standard error of the first estimate; a point is finished when it reaches this "
       "error"},
-     {"--budget", Budget(),
+     {"--budget", Number("SECONDS", &SetBudget),
       "time of all workers, divided evenly between the points; with --tolerance, the job fails if "
       "this time is too short"}}};
 
@@ -205,7 +191,8 @@ const FlagGroup kJob = {
       "derive the request id from the specification: after an interruption, the same command "
       "returns the original job, unless that job failed or was cancelled, or its results have "
       "expired"},
-     {"--request-id", RequestId(),
+     {"--request-id",
+      Text("UUID", [](Options& o, std::string id) { o.create.set_request_id(std::move(id)); }),
       "idempotency key: a retry with the same UUID returns the original job"},
      {"--priority", Count([](Options& o, int64_t n) { o.create.set_priority(Clamped(n)); }),
       "-100 to 100, by default 0; the server runs your jobs with a higher priority first"},
@@ -725,6 +712,11 @@ const std::vector<Remark>& Files() {
        "BALLPISTON_SERVER_PROGRAM is the ballpistond to start"},
       {"python3", "draws figures. BALLPISTON_PYTHON is another Python to start"}};
   return *files;
+}
+
+bool IsOf(const FlagGroup& group, const Flag& flag) {
+  return std::any_of(group.flags.begin(), group.flags.end(),
+                     [&flag](const Flag& other) { return &other == &flag; });
 }
 
 std::vector<const Flag*> FlagsOf(const Verb& verb) {

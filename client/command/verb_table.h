@@ -76,6 +76,8 @@ struct Remark {
 const std::vector<Remark>& ExitCodes();
 const std::vector<Remark>& Files();
 
+bool IsOf(const FlagGroup& group, const Flag& flag);
+
 // All flags of the verb.
 std::vector<const Flag*> FlagsOf(const Verb& verb);
 
