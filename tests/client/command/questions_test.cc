@@ -79,6 +79,16 @@ TEST(SpecFile, NamesTheUnknownField) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("sed")));
 }
 
+// The JSON parser would take the last value.
+TEST(SpecFile, ARepeatedKeyIsRefused) {
+  for (const char* json :
+       {R"({"seed": 1, "seed": 1})", R"({"grid": {"seed": [1], "seed": [2]}})"}) {
+    EXPECT_THAT(ParseSpec("s.json", json),
+                StatusIs(absl::StatusCode::kInvalidArgument,
+                         "--spec s.json: Repeated map key: 'seed' is already set."));
+  }
+}
+
 // The message of the JSON parser repeats the whole value.
 TEST(SpecFile, ErrorShortensALongValue) {
   const std::string name = "HEAD" + std::string(300'000, 'X') + "TAIL";
