@@ -236,7 +236,6 @@ TEST_F(ReportTest, HasJobsWithTheirResultsInOneFile) {
   EXPECT_EQ(Length(At(data, "jobs", 0, "points")), 2);
   EXPECT_EQ(Length(At(data, "jobs", 0, "points", 0, "histograms", 0, "counts")), 1000);
   EXPECT_EQ(At(data, "jobs", 1, "job", "name").string_value(), second);
-  EXPECT_EQ(At(data, "jobs", 0, "points_left_out").number_value(), 0);
 }
 
 TEST_F(ReportTest, AFailureKeepsThePreviousFile) {
