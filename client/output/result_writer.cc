@@ -53,13 +53,13 @@ class CsvWriter : public ResultWriter {
            << BALLPISTON_VERSION << "\n# " << Json(job.spec()) << '\n';
     }
     parameters_ = ParametersInCsv(job.spec().grid());
-    out_ << CsvRow(Joined(Joined(parameters_, kPointFields), kEstimateFields));
+    out_ << CsvRow(Joined({parameters_, kPointFields, kEstimateFields}));
   }
   void Add(const v1::PointResult& point) override {
     const Cells first =
-        Joined(FieldTexts(point.parameters(), parameters_), FieldTexts(point, kPointFields));
+        Joined({FieldTexts(point.parameters(), parameters_), FieldTexts(point, kPointFields)});
     for (const v1::Estimate& estimate : point.estimates()) {
-      out_ << CsvRow(Joined(first, FieldTexts(estimate, kEstimateFields)));
+      out_ << CsvRow(Joined({first, FieldTexts(estimate, kEstimateFields)}));
     }
   }
   void End() override {}
@@ -121,14 +121,15 @@ class TableWriter : public ResultWriter {
   }
 
   static Cells Titles() {
-    return Joined(Joined(ParametersInTable(),
-                         {"model", "samples", "estimate", "value", "error", "exact", "z"}),
-                  kExtraColumns);
+    return Joined({ParametersInTable(),
+                   {"model", "samples", "estimate", "value", "error", "exact", "z"},
+                   kExtraColumns});
   }
 
   Cells PointCells(const v1::PointResult& point) const {
-    return Joined(FieldTexts(point.parameters(), ParametersInTable(), &TenDigits),
-                  {models_.size() > 1 ? Spelling(point.model()) : "", ExactText(point.samples())});
+    return Joined(
+        {FieldTexts(point.parameters(), ParametersInTable(), &TenDigits),
+         {models_.size() > 1 ? Spelling(point.model()) : "", ExactText(point.samples())}});
   }
 
   void AddRows(const v1::PointResult& point, TextTable& table) const {
@@ -138,7 +139,7 @@ class TableWriter : public ResultWriter {
           Measured(row.value(), NumberIn(row, "standard_error"), NumberIn(row, "exact"));
       const bool has_z = row.has_z_score() && !text.error.empty();
       const std::string z = has_z ? absl::StrFormat("%+.2f", row.z_score()) : "";
-      Cells cells = Joined(point_cells, {row.name(), text.value, text.error, text.exact, z});
+      Cells cells = Joined({point_cells, {row.name(), text.value, text.error, text.exact, z}});
       for (const std::string& column : kExtraColumns) cells.push_back(ExtraCell(column, row));
       table.AddRow(std::move(cells));
     }
