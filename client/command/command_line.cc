@@ -189,6 +189,15 @@ absl::Status AddGiven(const Verb& verb, const SortedWords& words, Settings& sett
   return absl::OkStatus();
 }
 
+// A value from the environment or the config file counts too.
+absl::Status CheckRequired(const Verb& verb, const Settings& settings) {
+  for (const Flag* flag : FlagsOf(verb)) {
+    if (!flag->is_required || settings.contains(flag)) continue;
+    return WrongUsage(absl::StrCat(verb.name, " needs ", flag->name, ": ", flag->text), &verb);
+  }
+  return absl::OkStatus();
+}
+
 // The last argument reads all further words.
 absl::Status ReadArguments(const Verb& verb, const std::vector<std::string>& words,
                            Options& options) {
@@ -293,6 +302,7 @@ absl::StatusOr<CommandLine> ParseCommandLine(const std::vector<std::string>& wor
   if (status.ok()) status = AddGiven(*verb, sorted, settings);
   AddVariables(*verb, settings);
   if (status.ok()) status = AddConfig(*verb, settings);
+  if (status.ok()) status = CheckRequired(*verb, settings);
   if (status.ok()) status = ReadArguments(*verb, sorted.arguments, line.options);
   if (status.ok()) status = ReadFlags(*verb, settings, line.options);
   if (!status.ok()) return status;

@@ -63,9 +63,6 @@ absl::StatusOr<std::string> Data(const Connection& connection,
 }  // namespace
 
 VerbResult ReportJobs(const Options& options, Terminal& terminal) {
-  if (options.out.empty()) {
-    return absl::InvalidArgumentError("--out is missing: name the HTML file to write");
-  }
   if (absl::Status bad = CheckNewFile("--out", options.out); !bad.ok()) return bad;
   const auto files = ReadPageFiles();
   if (!files.ok()) return files.status();

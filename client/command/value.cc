@@ -92,6 +92,16 @@ Value Number(std::string name, Store<double> store) {
 
 Value Count(Store<int64_t> store) { return Parsed("N", ParseCount, std::move(store)); }
 
+Value CountFrom(int64_t least, int64_t most, Store<int64_t> store) {
+  const auto parse = [least, most](const std::string& text) -> absl::StatusOr<int64_t> {
+    absl::StatusOr<int64_t> count = ParseCount(text);
+    if (!count.ok() || (*count >= least && *count <= most)) return count;
+    return absl::InvalidArgumentError(
+        absl::StrCat("is ", *count, "; permitted: ", least, " to ", most));
+  };
+  return Parsed("N", parse, std::move(store));
+}
+
 Value Seed(Store<uint64_t> store) { return Parsed("SEED", ParseSeed, std::move(store)); }
 
 Value List(Store<std::vector<double>> store) {

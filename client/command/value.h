@@ -47,6 +47,7 @@ Value Text(std::string name, Store<std::string> store, Offer offer = Offer::kNot
 Value File(Store<std::string> store);
 Value Number(std::string name, Store<double> store);
 Value Count(Store<int64_t> store);  // N
+Value CountFrom(int64_t least, int64_t most, Store<int64_t> store);
 Value Seed(Store<uint64_t> store);
 Value List(Store<std::vector<double>> store);             // LIST (number_list.h)
 Value Shapes(Store<std::vector<std::string>> store);      // LIST of shapes

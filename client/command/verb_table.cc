@@ -91,6 +91,11 @@ int32_t Clamped(int64_t priority) {
   return static_cast<int32_t>(std::clamp<int64_t>(priority, Limits::min(), Limits::max()));
 }
 
+Flag Required(std::string name, Value value, std::string text) {
+  return {std::move(name), std::move(value), std::move(text), /*variable=*/"",
+          /*is_required=*/true};
+}
+
 // ---- flags ----
 
 const FlagGroup kCommon = {
@@ -128,16 +133,13 @@ const FlagGroup kGrid = {
       "the piston's penetrations, 0 < delta <= (1 - lambda)/2"},
      {"--epsilon", Grid(&v1::Grid::mutable_epsilon),
       "the piston's energies, 0 to 1/2; optional in energy-relaxation"},
-     {"--exponent", Grid(&v1::Grid::mutable_exponent), "n of the outgoing law h^(n), 0 to 1000"},
+     {"--exponent", Grid(&v1::Grid::mutable_exponent), "n of the outgoing law h^(n)"},
      {"--cells", GridCells(),
-      "shapes of the gas: N or NxM; a chain of N cells, or a lattice of N columns and M rows; at "
-      "most 1e6 cells"},
+      "shapes of the gas: N or NxM; a chain of N cells, or a lattice of N columns and M rows"},
      {"--temperature", Grid(&v1::Grid::mutable_temperature),
-      "temperatures of a gas in equilibrium, by default 1; 1e-120 to 1e120 (the Boltzmann constant "
-      "is 1)"},
-     {"--hot", Grid(&v1::Grid::mutable_hot), "temperatures of the hot reservoir, 1e-120 to 1e120"},
-     {"--cold", Grid(&v1::Grid::mutable_cold),
-      "temperatures of the cold reservoir, 1e-120 to 1e120"},
+      "temperatures of a gas in equilibrium, by default 1 (the Boltzmann constant is 1)"},
+     {"--hot", Grid(&v1::Grid::mutable_hot), "temperatures of the hot reservoir"},
+     {"--cold", Grid(&v1::Grid::mutable_cold), "temperatures of the cold reservoir"},
      {"--points", File(To(&Options::points_file)),
       "CSV file with a table of points; its header names the parameters, in any order; the flags "
       "of other parameters multiply the table; - is standard input"}}};
@@ -195,13 +197,13 @@ const FlagGroup kJob = {
       Text("UUID", [](Options& o, std::string id) { o.create.set_request_id(std::move(id)); }),
       "idempotency key: a retry with the same UUID returns the original job"},
      {"--priority", Count([](Options& o, int64_t n) { o.create.set_priority(Clamped(n)); }),
-      "-100 to 100, by default 0; the server runs your jobs with a higher priority first"},
+      "by default 0; the server runs your jobs with a higher priority first"},
      {"--label", Labels("KEY=VALUE"),
       "a label of the job, by which it can be found again; may be repeated"}},
     /*is_everyday=*/false};
 
 const FlagGroup kFormat = {"Output",
-                           {{"--format", OneOf("FORMAT", Formats(), To(&Options::format)),
+                           {{"--format", OneOf("FORMAT", kFormats, To(&Options::format)),
                              "format on standard output; by default table"}}};
 
 const FlagGroup kSave = {
@@ -213,7 +215,7 @@ const FlagGroup kSave = {
 
 const FlagGroup kProgress = {
     "Progress",
-    {{"--progress", OneOf<ProgressStyle>("STYLE", ProgressStyles(), &SetProgress),
+    {{"--progress", OneOf<ProgressStyle>("STYLE", kProgressStyles, &SetProgress),
       "progress on standard error; by default auto, which shows a bar if standard error is a "
       "terminal, else nothing",
       "BALLPISTON_PROGRESS"}},
@@ -235,22 +237,22 @@ const FlagGroup kClosedForms = {
 
 const FlagGroup kTrace = {
     "Orbit",
-    {{"--rho", Number("X", [](Options& o, double x) { o.trace.set_rho(x); }),
-      "disc radius, 1/2 < rho < 1/sqrt(2); required"},
-     {"--delta", Number("X", [](Options& o, double x) { o.trace.set_delta(x); }),
-      "the pistons' penetration, above 0, up to (1 - lambda)/2 for a pair and rho/sqrt(2) - "
-      "lambda/2 for a gas; required"},
+    {Required("--rho", Number("X", [](Options& o, double x) { o.trace.set_rho(x); }),
+              "disc radius, 1/2 < rho < 1/sqrt(2)"),
+     Required("--delta", Number("X", [](Options& o, double x) { o.trace.set_delta(x); }),
+              "the pistons' penetration, above 0, up to (1 - lambda)/2 for a pair and rho/sqrt(2) "
+              "- lambda/2 for a gas"),
      {"--cells",
       Text("SHAPE",
            [](Options& o, const std::string& cells) { o.trace.set_cells(ShapeText(cells)); }),
       "a periodic gas of this shape instead of a pair: N, a chain of N cells, or NxM, a lattice of "
-      "N columns and M rows; at most 1,000 cells"},
+      "N columns and M rows"},
      {"--temperature", Number("X", [](Options& o, double x) { o.trace.set_temperature(x); }),
-      "temperature of the gas, 1e-120 to 1e120, by default 1; a pair has the energy 1/2"},
+      "temperature of the gas, by default 1; a pair has the energy 1/2"},
      {"--seed", Seed([](Options& o, uint64_t seed) { o.trace.set_seed(seed); }),
       "seed of the random start, by default 0"},
-     {"--events", Count([](Options& o, int64_t n) { o.trace.set_events(n); }),
-      "number of events, 1 to 1,000,000; required"}}};
+     Required("--events", Count([](Options& o, int64_t n) { o.trace.set_events(n); }),
+              "number of events")}};
 
 const FlagGroup kListFilter = {
     "Which jobs",
@@ -269,7 +271,8 @@ const FlagGroup kListFilter = {
       }),
       "only jobs submitted at this time (UTC) or later"},
      {"--label", Labels("KEY=VALUE"), "only jobs with this label; may be repeated"},
-     {"--limit", Count(To(&Options::limit)), "largest number of jobs to list, by default all"}}};
+     {"--limit", CountFrom(1, Client::kAllJobs, To(&Options::limit)),
+      "largest number of jobs to list, by default all"}}};
 
 const FlagGroup kSelection = {
     "Which jobs",
@@ -283,7 +286,7 @@ const FlagGroup kConfirmed = {
 
 const FlagGroup kPoint = {
     "Which points",
-    {{"--point", Count([](Options& o, int64_t index) { o.point = index; }),
+    {{"--point", CountFrom(0, INT64_MAX, [](Options& o, int64_t index) { o.point = index; }),
       "only the point with this position in the grid, from 0; by default all finished points"}}};
 
 const FlagGroup kWatch = {
@@ -313,16 +316,16 @@ const FlagGroup kFigure = {
       "only copy the figure's Python module to DIR, so that you can edit it; a module that is "
       "already there is used unchanged"}}};
 
-const FlagGroup kReport = {
-    "Report", {{"--out", File(To(&Options::out)), "the HTML file to write; required"}}};
+const FlagGroup kReport = {"Report",
+                           {Required("--out", File(To(&Options::out)), "the HTML file to write")}};
 
 const FlagGroup kTableFile = {
     "File",
-    {{"--out", File(To(&Options::out)), "the file to write, .csv, .npz or .parquet; required"}}};
+    {Required("--out", File(To(&Options::out)), "the file to write, .csv, .npz or .parquet")}};
 
-const FlagGroup kWeb = {
-    "Page",
-    {{"--port", Count(To(&Options::port)), "port for local connections, by default a free one"}}};
+const FlagGroup kWeb = {"Page",
+                        {{"--port", CountFrom(0, 65535, To(&Options::port)),
+                          "port for local connections, by default a free one"}}};
 
 const FlagGroup kDataFolder = {
     "Which server",
@@ -341,7 +344,7 @@ const FlagGroup kStart = {"Settings",
 
 const FlagGroup kToken = {
     "Access",
-    {{"--access-file", File(To(&Options::access_file)), "the server's access file; required"}}};
+    {Required("--access-file", File(To(&Options::access_file)), "the server's access file")}};
 
 const FlagGroup kPage = {
     "Page",
@@ -666,22 +669,6 @@ std::vector<std::string> NextWords(const std::string& begin) {
     if (words.empty() || words.back() != word) words.push_back(word);
   }
   return words;
-}
-
-const Choices<Format>& Formats() {
-  static const auto* const formats = new Choices<Format>{{"table", Format::kTable},
-                                                         {"json", Format::kJson},
-                                                         {"jsonl", Format::kJsonl},
-                                                         {"csv", Format::kCsv}};
-  return *formats;
-}
-
-const Choices<ProgressStyle>& ProgressStyles() {
-  static const auto* const styles = new Choices<ProgressStyle>{{"auto", ProgressStyle::kAuto},
-                                                               {"bar", ProgressStyle::kBar},
-                                                               {"json", ProgressStyle::kJson},
-                                                               {"none", ProgressStyle::kNone}};
-  return *styles;
 }
 
 const FlagGroup& ServerFlags() { return kServer; }
