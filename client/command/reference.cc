@@ -22,13 +22,13 @@ constexpr size_t kWidth = 80;
 // The content of a page, the same in every format.
 struct Section {
   std::string title;
-  std::vector<Remark> entries;
+  std::vector<Remark> entries = {};
 };
 
 struct Page {
   std::string name, summary, synopsis, description;
-  std::vector<Section> sections;
-  std::vector<std::string> examples;
+  std::vector<Section> sections = {};
+  std::vector<std::string> examples = {};
   std::string more = "";  // the last line
 };
 
@@ -48,7 +48,7 @@ std::string TermOf(const Flag& flag) {
 }
 
 Section SectionOf(const FlagGroup& group) {
-  Section section{.title = group.title, .entries = {}};
+  Section section{.title = group.title};
   for (const Flag& flag : group.flags) {
     const std::string text = absl::StrCat(flag.text, flag.is_required ? "; required" : "");
     section.entries.push_back(
@@ -67,10 +67,8 @@ Page PageOf(const Verb& verb) {
   Page page{.name = absl::StrCat(kProgram, " ", verb.name),
             .summary = verb.summary,
             .synopsis = absl::StrCat(kProgram, " ", verb.name),
-            .description = verb.description,
-            .sections = {},
-            .examples = {}};
-  Section arguments{.title = "Arguments", .entries = {}};
+            .description = verb.description};
+  Section arguments{.title = "Arguments"};
   std::string rest;
   for (const Argument& argument : verb.arguments) {
     (argument.number == Argument::kRest ? rest : page.synopsis) += SynopsisOf(argument);
@@ -125,10 +123,9 @@ Page ProgramPage() {
             .description =
                 "Results go to standard output, everything else to standard error. "
                 "help VERB shows the flags of a verb.",
-            .sections = {},
             .examples = {"ballpiston run equilibrium --rho 0.5296 --delta 0.1,0.2",
                          "ballpiston help run"}};
-  Section verbs{.title = "Verbs", .entries = {}};
+  Section verbs{.title = "Verbs"};
   for (const Verb& verb : Verbs()) verbs.entries.push_back({verb.name, verb.summary});
   page.sections = {verbs,
                    {"Flags without a verb",
