@@ -200,7 +200,7 @@ TEST(WebFlags, TheErrorNamesAPortInUse) {
   const TestServer server;
   const ProcessResult high = server.Client({"web", "--port", "70000"});
   EXPECT_THAT(high, ExitsWith(2));
-  EXPECT_THAT(high.err, HasSubstr("--port: 70000 is not from 0 to 65535"));
+  EXPECT_THAT(high.err, HasSubstr("--port: is 70000; permitted: 0 to 65535"));
   const auto web = server.StartClient({"web"});
   ASSERT_TRUE(web->WaitForOut("\n"));
   const std::string url = web->Output();
