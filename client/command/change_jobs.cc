@@ -1,5 +1,4 @@
 // ballpiston cancel, delete, pin and label: each changes jobs, and prints the new state of each.
-#include <functional>
 #include <iostream>
 
 #include "absl/strings/ascii.h"
@@ -12,14 +11,6 @@
 
 namespace ballpiston::client {
 namespace {
-
-// Changes every job, also after an error. Returns the first error.
-VerbResult ForEach(const std::vector<std::string>& names,
-                   const std::function<absl::Status(const std::string& name)>& change) {
-  absl::Status first_error;
-  for (const std::string& name : names) first_error.Update(change(name));
-  return first_error.ok() ? VerbResult(ExitCode::kDone) : first_error;
-}
 
 // With --label and without --yes, prints how many jobs `action` ("delete") concerns, and reads the
 // answer. CANCELLED if it is not y or yes.
@@ -35,7 +26,7 @@ absl::Status Confirm(const std::string& action, const std::vector<std::string>& 
   return absl::CancelledError("nothing was changed (--yes answers the question)");
 }
 
-absl::Status CancelJob(const Connection& connection, const std::string& name,
+absl::Status CancelJob(const Connection& connection, const std::string& name, const Options&,
                        const Terminal& terminal) {
   const auto job = connection.client.Cancel(name);
   if (!job.ok()) return job.status();
@@ -46,7 +37,7 @@ absl::Status CancelJob(const Connection& connection, const std::string& name,
 }
 
 // A delete is not retried: if its answer was lost, a second attempt would find no such job.
-absl::Status DeleteJob(const Connection& connection, const std::string& name,
+absl::Status DeleteJob(const Connection& connection, const std::string& name, const Options&,
                        const Terminal& terminal) {
   const absl::Status status = connection.client.Delete(name);
   if (status.ok()) terminal.out << name << " deleted" << std::endl;
@@ -55,38 +46,39 @@ absl::Status DeleteJob(const Connection& connection, const std::string& name,
   return status;
 }
 
-using ChangeOfJob = absl::Status (*)(const Connection& connection, const std::string& name,
-                                     const Terminal& terminal);
+absl::Status PinJob(const Connection& connection, const std::string& name, const Options& options,
+                    const Terminal& terminal) {
+  const auto job = connection.client.Pin(name, !options.undo);
+  if (!job.ok()) return HintIfExpired(job.status(), connection, name);
+  terminal.out << job->name() << (job->pinned() ? " pinned" : " unpinned") << std::endl;
+  return absl::OkStatus();
+}
 
-VerbResult ChangeConfirmed(const std::string& action, ChangeOfJob change, const JobStates& states,
-                           const Options& options, const Terminal& terminal) {
-  return WithJobs(
-      options, terminal, states, [&](const auto& connection, const auto& names) -> VerbResult {
-        const absl::Status confirmed = Confirm(action, names, options, terminal);
-        if (!confirmed.ok()) return confirmed;
-        return ForEach(names, [&](const auto& name) { return change(connection, name, terminal); });
-      });
+// Changes every job, also after an error. Returns the first error.
+VerbResult Change(const std::string& action, decltype(&CancelJob) change, const JobStates& states,
+                  const Options& options, const Terminal& terminal) {
+  return WithJobs(options, terminal, states,
+                  [&](const auto& connection, const auto& names) -> VerbResult {
+                    absl::Status status = Confirm(action, names, options, terminal);
+                    if (!status.ok()) return status;
+                    for (const auto& name : names)
+                      status.Update(change(connection, name, options, terminal));
+                    return status.ok() ? VerbResult(ExitCode::kDone) : status;
+                  });
 }
 
 }  // namespace
 
 VerbResult Cancel(const Options& options, Terminal& terminal) {
-  return ChangeConfirmed("cancel", &CancelJob, kActiveStates, options, terminal);
+  return Change("cancel", &CancelJob, kActiveStates, options, terminal);
 }
 
 VerbResult Delete(const Options& options, Terminal& terminal) {
-  return ChangeConfirmed("delete", &DeleteJob, kEndedStates, options, terminal);
+  return Change("delete", &DeleteJob, kEndedStates, options, terminal);
 }
 
 VerbResult Pin(const Options& options, Terminal& terminal) {
-  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-    return ForEach(options.jobs, [&](const std::string& name) -> absl::Status {
-      const auto job = connection.client.Pin(name, !options.undo);
-      if (!job.ok()) return HintIfExpired(job.status(), connection, name);
-      terminal.out << job->name() << (job->pinned() ? " pinned" : " unpinned") << std::endl;
-      return absl::OkStatus();
-    });
-  });
+  return Change("pin", &PinJob, {}, options, terminal);
 }
 
 // If two clients change the labels of a job at the same time, the later change may undo the other.

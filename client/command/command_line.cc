@@ -2,7 +2,6 @@
 
 #include <google/protobuf/stubs/logging.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -18,6 +17,7 @@
 #include "client/command/config_file.h"
 #include "client/command/points_file.h"
 #include "client/command/reference.h"
+#include "client/command/sorted_words.h"
 #include "client/command/suggestion.h"
 #include "client/library/error_text.h"
 #include "client/library/quoted.h"
@@ -56,11 +56,6 @@ absl::Status AddConfig(const Verb& verb, Settings& settings) {
                       const Source source = is_for_this_verb ? Source::kSection : Source::kFile;
                       settings.try_emplace(&flag, Setting{text, source});
                     });
-}
-
-bool IsOf(const FlagGroup& group, const Flag& flag) {
-  return std::any_of(group.flags.begin(), group.flags.end(),
-                     [&flag](const Flag& other) { return &other == &flag; });
 }
 
 // Whether another command needs this flag to reach the same server.
@@ -162,118 +157,61 @@ absl::Status WrongUsage(const std::string& message, const Verb* verb) {
                                                  " shows its usage)"));
 }
 
-// Sorts the words after the name of a verb into flags and arguments.
-class WordParser {
- public:
-  explicit WordParser(const Verb& verb) : verb_(verb) {
-    if (verb.passes_words_on) {
-      app_.allow_extras();
-    } else {
-      for (const Argument& argument : verb.arguments) AddArgument(argument);
-    }
-    for (const Flag* flag : FlagsOf(verb)) {
-      if (!flag->name.empty()) AddFlag(*flag);
-    }
+absl::Status CheckWords(const Verb& verb, const SortedWords& words) {
+  if (words.flag_without_value != nullptr) {
+    return WrongUsage(LongName(*words.flag_without_value) + " needs a value", &verb);
   }
+  if (verb.passes_words_on) return absl::OkStatus();
+  if (!words.unknown_flag.empty()) return WrongUsage(NoSuchFlag(&verb, words.unknown_flag), &verb);
+  const size_t given = words.arguments.size(), named = verb.arguments.size();
+  const bool is_open = named > 0 && verb.arguments.back().IsMany();
+  if (given > named && !is_open) {
+    return WrongUsage("not expected: " + Quoted(words.arguments[named]), &verb);
+  }
+  for (size_t i = given; i < named; ++i) {
+    const Argument& argument = verb.arguments[i];
+    if (!argument.IsRequired()) continue;
+    return WrongUsage(absl::StrCat(verb.name, " needs ", argument.value.name, ": ", argument.text),
+                      &verb);
+  }
+  return absl::OkStatus();
+}
 
-  // NOT_FOUND if the words ask for help instead.
-  absl::Status Parse(const std::vector<std::string>& words) {
-    if (absl::Status bad = CheckValuesAreThere(words); !bad.ok()) return bad;
-    if (verb_.passes_words_on && words.size() > 1) app_.set_help_flag();  // passed on too
-    try {
-      app_.parse(std::vector<std::string>(words.rbegin(), words.rend()));
-    } catch (const CLI::CallForHelp&) {
-      return absl::NotFoundError("help");
-    } catch (const CLI::ParseError& error) {
-      return WrongUsage(Explanation(error), &verb_);
+absl::Status AddGiven(const Verb& verb, const SortedWords& words, Settings& settings) {
+  for (const auto& [flag, text] : words.flags) {
+    const auto [given, is_first] = settings.try_emplace(flag, Setting{text, Source::kCommandLine});
+    if (is_first) continue;
+    if (!flag->value.is_repeatable) {
+      return WrongUsage(LongName(*flag) + " is given more than once", &verb);
     }
+    absl::StrAppend(&given->second.text, ",", text);
+  }
+  return absl::OkStatus();
+}
+
+// A value from the environment or the config file counts too.
+absl::Status CheckRequired(const Verb& verb, const Settings& settings) {
+  for (const Flag* flag : FlagsOf(verb)) {
+    if (!flag->is_required || settings.contains(flag)) continue;
+    return WrongUsage(absl::StrCat(verb.name, " needs ", flag->name, ": ", flag->text), &verb);
+  }
+  return absl::OkStatus();
+}
+
+// The last argument reads all further words.
+absl::Status ReadArguments(const Verb& verb, const std::vector<std::string>& words,
+                           Options& options) {
+  if (verb.passes_words_on) {
+    options.words = words;
     return absl::OkStatus();
   }
-
-  Settings Given() const {
-    Settings settings;
-    for (const auto& [flag, option] : flags_) {
-      if (option->empty()) continue;
-      settings[flag] = {absl::StrJoin(option->results(), ","), Source::kCommandLine};
-    }
-    return settings;
+  for (size_t i = 0; i < words.size(); ++i) {
+    const Value& value = verb.arguments[std::min(i, verb.arguments.size() - 1)].value;
+    absl::Status status = Named(value.name, value.read(words[i], options));
+    if (!status.ok()) return status;
   }
-
-  absl::Status ReadArguments(Options& options) const {
-    if (verb_.passes_words_on) options.words = app_.remaining();
-    for (size_t i = 0; i < arguments_.size(); ++i) {
-      const Value& value = verb_.arguments[i].value;
-      for (const std::string& text : arguments_[i]->results()) {
-        absl::Status status = Named(value.name, value.read(text, options));
-        if (!status.ok()) return status;
-      }
-    }
-    return absl::OkStatus();
-  }
-
- private:
-  // If the value is missing, CLI11 would take the next word as the value, even if it is a flag.
-  absl::Status CheckValuesAreThere(const std::vector<std::string>& words) const {
-    std::map<std::string, bool> takes_value = {{"--help", false}, {"-h", false}};
-    for (const auto& [flag, option] : flags_) {
-      for (const absl::string_view name : absl::StrSplit(flag->name, ',')) {
-        takes_value[std::string(name)] = !flag->value.IsSwitch();
-      }
-    }
-    const auto is_flag = [&](const std::string& word) {
-      return takes_value.contains(word.substr(0, word.find('=')));
-    };
-    for (auto word = words.begin(); word != words.end() && *word != "--"; ++word) {
-      const std::string name = word->substr(0, word->find('='));
-      if (!is_flag(name) || !takes_value.at(name)) continue;
-      const auto next = word + 1;
-      const bool is_alone = *word == name && (next == words.end() || is_flag(*next));
-      if (*word == name + "=" || is_alone) {
-        return WrongUsage(absl::StrCat(name, " needs a value"), &verb_);
-      }
-    }
-    return absl::OkStatus();
-  }
-
-  void AddArgument(const Argument& argument) {
-    CLI::Option* const option = app_.add_option(argument.value.name);
-    if (argument.IsMany()) option->expected(CLI::detail::expected_max_vector_size);
-    option->required(argument.IsRequired());
-    arguments_.push_back(option);
-  }
-
-  void AddFlag(const Flag& flag) {
-    CLI::Option* const option =
-        flag.value.IsSwitch() ? app_.add_flag(flag.name) : app_.add_option(flag.name);
-    if (flag.value.is_repeatable) option->take_all();
-    flags_[&flag] = option;
-  }
-
-  std::string Explanation(const CLI::ParseError& error) const {
-    std::vector<std::string> left = app_.remaining();
-    std::erase(left, "--");
-    if (!left.empty()) {
-      return absl::StartsWith(left[0], "-") ? NoSuchFlag(&verb_, left[0])
-                                            : absl::StrCat("not expected: ", Quoted(left[0]));
-    }
-    for (size_t i = 0; i < arguments_.size(); ++i) {
-      if (!arguments_[i]->get_required() || arguments_[i]->count() > 0) continue;
-      const Argument& argument = verb_.arguments[i];
-      return absl::StrCat(verb_.name, " needs ", argument.value.name, ": ", argument.text);
-    }
-    for (const auto& [flag, option] : flags_) {
-      if (option->count() > 1) return absl::StrCat(LongName(*flag), " is given more than once");
-    }
-    const std::string text = error.what();  // --rho: 1 required LIST missing
-    return absl::StrCat(Shortened(text.substr(0, text.find(':')), kLongestMessage),
-                        " needs a value");
-  }
-
-  const Verb& verb_;
-  CLI::App app_;
-  std::vector<CLI::Option*> arguments_;
-  std::map<const Flag*, CLI::Option*> flags_;
-};
+  return absl::OkStatus();
+}
 
 // The page that the words without a verb ask for; empty if they do not.
 std::string PageWithoutVerb(const std::vector<std::string>& words) {
@@ -354,15 +292,18 @@ absl::StatusOr<CommandLine> ParseCommandLine(const std::vector<std::string>& wor
     if (page.empty()) return WrongUsage(NoSuchVerb(words), nullptr);
     return CommandLine{.page = std::move(page)};
   }
-  WordParser parser(*verb);
-  absl::Status status = parser.Parse({words.begin() + WordsIn(verb->name), words.end()});
-  if (absl::IsNotFound(status)) return CommandLine{.page = ShortPage(verb)};
-  if (!status.ok()) return status;
+  const std::vector<std::string> rest(words.begin() + WordsIn(verb->name), words.end());
+  const SortedWords sorted = SortWords(*verb, rest);
+  const bool passes_help_on = verb->passes_words_on && rest.size() > 1;
+  if (sorted.has_help && !passes_help_on) return CommandLine{.page = ShortPage(verb)};
   CommandLine line{.verb = verb};
-  Settings settings = parser.Given();
+  Settings settings;
+  absl::Status status = CheckWords(*verb, sorted);
+  if (status.ok()) status = AddGiven(*verb, sorted, settings);
   AddVariables(*verb, settings);
-  status.Update(AddConfig(*verb, settings));
-  if (status.ok()) status = parser.ReadArguments(line.options);
+  if (status.ok()) status = AddConfig(*verb, settings);
+  if (status.ok()) status = CheckRequired(*verb, settings);
+  if (status.ok()) status = ReadArguments(*verb, sorted.arguments, line.options);
   if (status.ok()) status = ReadFlags(*verb, settings, line.options);
   if (!status.ok()) return status;
   return line;

@@ -7,11 +7,9 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "absl/strings/string_view.h"
-#include "absl/strings/strip.h"
 #include "absl/time/time.h"
 #include "client/command/connection.h"
-#include "client/command/verb_table.h"
+#include "client/command/sorted_words.h"
 
 namespace ballpiston::client {
 namespace {
@@ -19,7 +17,8 @@ namespace {
 using Strings = std::vector<std::string>;
 
 // Each script passes the words so far; the last word is the word to complete. The answer FILES
-// means that the shell completes names of files. bash splits --flag=value into three words.
+// means that the shell completes names of files. bash splits --flag=value into three words, and
+// replaces only the last one.
 constexpr char kBash[] = R"bash(# bash completion for ballpiston
 _ballpiston() {
   local words=("${COMP_WORDS[@]:1:COMP_CWORD}") word=${COMP_WORDS[COMP_CWORD]} offers
@@ -29,7 +28,8 @@ _ballpiston() {
     compopt -o filenames
     mapfile -t COMPREPLY < <(compgen -f -- "$word")
   else
-    mapfile -t COMPREPLY < <(compgen -W "${offers[*]%%$'\t'*}" -- "$word")
+    offers=("${offers[@]%%$'\t'*}")
+    mapfile -t COMPREPLY < <(compgen -W "${offers[*]#--*=}" -- "$word")
   fi
 }
 complete -F _ballpiston ballpiston
@@ -60,26 +60,11 @@ end
 complete -c ballpiston -f -a '(__ballpiston_offers)'
 )fish";
 
-// The flag that `word` names, if that flag takes a value; else null.
-const Flag* FlagWithValue(const Verb& verb, const std::string& word) {
-  for (const Flag* flag : FlagsOf(verb)) {
-    if (!flag->name.empty() && !flag->value.IsSwitch() && LongName(*flag) == word) return flag;
-  }
-  return nullptr;
-}
-
-// The argument at the position of the last word; null if the verb has no further argument.
-const Argument* ArgumentAt(const Verb& verb, const Strings& words) {
-  size_t before = 0;
-  for (size_t i = static_cast<size_t>(WordsIn(verb.name)); i + 1 < words.size(); ++i) {
-    const bool is_flag = absl::StartsWith(words[i], "-");
-    if (!is_flag) ++before;
-    if (is_flag && FlagWithValue(verb, words[i]) != nullptr) ++i;
-  }
-  if (before < verb.arguments.size()) return &verb.arguments[before];
-  if (verb.arguments.empty()) return nullptr;
-  const Argument& last = verb.arguments.back();
-  return last.IsMany() ? &last : nullptr;
+// The argument after so many others; null if the verb has no further argument.
+const Argument* ArgumentAfter(size_t others, const Verb& verb) {
+  if (others < verb.arguments.size()) return &verb.arguments[others];
+  const bool is_open = !verb.arguments.empty() && verb.arguments.back().IsMany();
+  return is_open ? &verb.arguments.back() : nullptr;
 }
 
 // The possible next words of the verbs that begin with the words so far; a whole name has its
@@ -138,63 +123,46 @@ Strings FlagOffers(const Verb& verb) {
   return offers;
 }
 
-// bash also splits words at colons: the address of a server becomes three words.
-void JoinAtColons(Strings& words) {
-  Strings joined;
-  for (std::string& word : words) {
-    const bool follows = !joined.empty() && (word == ":" || absl::EndsWith(joined.back(), ":"));
-    if (follows) {
-      joined.back() += word;
+// bash splits words at colons and equals signs: --server=unix:PATH is five words.
+Strings Joined(const Strings& words) {
+  const auto is_separator = [](const std::string& word) { return word == ":" || word == "="; };
+  Strings joined = {""};
+  for (size_t i = 0; i < words.size(); ++i) {
+    const bool follows = i > 0 && (is_separator(words[i]) || is_separator(words[i - 1]));
+    if (i == 0 || follows) {
+      joined.back() += words[i];
     } else {
-      joined.push_back(std::move(word));
+      joined.push_back(words[i]);
     }
   }
-  words = std::move(joined);
+  return joined;
 }
 
-// Splits --flag=value into two words. bash passes it as three words, zsh and fish as one word. zsh
-// and fish need offers that begin with --flag= too: returns this prefix for them, else "".
-std::string SplitValue(Strings& words) {
-  if (words.back() == "=") words.back() = "";
-  std::erase(words, "=");
-  const std::string last = words.back();
-  const size_t equals = last.find('=');
-  if (!absl::StartsWith(last, "--") || equals == std::string::npos) return "";
-  words.back() = last.substr(0, equals);
-  words.push_back(last.substr(equals + 1));
-  return last.substr(0, equals + 1);
-}
-
-// The server that the words name; empty if none.
-std::string ServerIn(const Strings& words) {
-  for (size_t i = 0; i + 1 < words.size(); ++i) {
-    absl::string_view word = words[i];
-    if (word == "--server" && i + 2 < words.size()) return words[i + 1];
-    if (absl::ConsumePrefix(&word, "--server=")) return std::string(word);
-  }
-  return "";
-}
-
-Strings Offers(Strings words, Options options, const Terminal& terminal) {
-  if (words.empty()) words = {""};
-  JoinAtColons(words);
-  const std::string prefix = SplitValue(words);
-  if (const std::string server = ServerIn(words); !server.empty()) options.server = server;
+// The value of a flag can be a word of its own or follow --flag= in its word. In the second case
+// the offers begin with --flag= too.
+Strings Offers(const Strings& given, Options options, const Terminal& terminal) {
+  Strings words = Joined(given);
   const Verb* const verb = VerbAt({words.begin(), words.end() - 1});
   if (verb == nullptr) return VerbOffers(words);
-  if (const Flag* const flag = FlagWithValue(*verb, words[words.size() - 2])) {
-    Strings offers = ValueOffers(flag->value, options, terminal);
-    if (!prefix.empty() && flag->value.offer == Offer::kFile) return {};
+  const std::string last = words.back();
+  const std::string prefix = absl::StartsWith(last, "--") ? last.substr(0, last.find('=') + 1) : "";
+  Strings before(words.begin() + WordsIn(verb->name), words.end() - 1);
+  if (!prefix.empty()) before.push_back(prefix);
+  const SortedWords sorted = SortWords(*verb, before);
+  for (const auto& [flag, text] : sorted.flags) {
+    if (IsOf(ServerFlags(), *flag)) flag->value.read(text, options).IgnoreError();
+  }
+  if (sorted.flag_without_value != nullptr) {
+    const Value& value = sorted.flag_without_value->value;
+    Strings offers = ValueOffers(value, options, terminal);
+    if (value.offer == Offer::kFile) return offers;
     for (std::string& offer : offers) offer.insert(0, prefix);
     return offers;
   }
   if (!prefix.empty()) return {};
-  const Argument* const argument = ArgumentAt(*verb, words);
-  if (absl::StartsWith(words.back(), "-") || argument == nullptr) return FlagOffers(*verb);
-  if (verb->act == &Help) {
-    words.erase(words.begin());
-    return VerbOffers(words);
-  }
+  const Argument* const argument = ArgumentAfter(sorted.arguments.size(), *verb);
+  if (absl::StartsWith(last, "-") || argument == nullptr) return FlagOffers(*verb);
+  if (verb->act == &Help) return VerbOffers({words.begin() + 1, words.end()});
   const Strings values = ValueOffers(argument->value, options, terminal);
   return values.empty() ? FlagOffers(*verb) : values;
 }

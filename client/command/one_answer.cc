@@ -1,7 +1,5 @@
 // ballpiston analytic, plan, list, trace, server address and server status: each makes one call of
 // the server and prints the answer.
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "absl/time/clock.h"
 #include "client/command/connection.h"
 #include "client/command/question.h"
@@ -32,9 +30,6 @@ VerbResult Plan(const Options& options, Terminal& terminal) {
 }
 
 VerbResult ListJobs(const Options& options, Terminal& terminal) {
-  if (options.limit < 1) {
-    return absl::InvalidArgumentError(absl::StrCat("--limit: ", options.limit, " is less than 1"));
-  }
   v1::ListEnsembleJobsRequest request = options.which_jobs;
   request.mutable_labels()->insert(options.labels.begin(), options.labels.end());
   request.set_view(JobViewFor(options.format));
@@ -46,28 +41,9 @@ VerbResult ListJobs(const Options& options, Terminal& terminal) {
   });
 }
 
-namespace {
-
-// The server cannot tell a missing number from 0.
-absl::Status CheckOrbitIsGiven(const Options& options) {
-  const v1::TraceOrbitRequest& orbit = options.trace;
-  std::vector<std::string> missing;
-  const auto check = [&](const std::string& flag, bool is_zero) {
-    if (is_zero && !options.given.contains(flag)) missing.push_back(flag);
-  };
-  check("--rho", orbit.rho() == 0);
-  check("--delta", orbit.delta() == 0);
-  check("--events", orbit.events() == 0);
-  if (missing.empty()) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat("trace needs ", absl::StrJoin(missing, ", ")));
-}
-
-}  // namespace
-
 // The events of an orbit as JSON lines, as they come. Ends if the output cannot be written, e.g.
 // because its reader has closed the pipe.
 VerbResult Trace(const Options& options, Terminal& terminal) {
-  if (absl::Status bad = CheckOrbitIsGiven(options); !bad.ok()) return bad;
   const auto print = [&out = terminal.out](const v1::TraceOrbitResponse& message) {
     if (message.has_start()) out << Json(message.start()) << '\n';
     PrintJsonLines(message.events(), out);

@@ -61,7 +61,7 @@ void SetEnvironment(const Options& options) {
   set("BALLPISTON_TOKEN_FILE", options.security.token_file);
   set("BALLPISTON_TOKEN", options.security.token);
   set("BALLPISTON_CONFIG", "/dev/null");
-  set("BALLPISTON_PROGRESS", WordOf(StyleOf(options), ProgressStyles()));
+  set("BALLPISTON_PROGRESS", WordOf(StyleOf(options), kProgressStyles));
 }
 
 }  // namespace
@@ -110,6 +110,15 @@ absl::Status CheckPython(const std::string& purpose, const std::vector<std::stri
                    ", or name an interpreter that has them with BALLPISTON_PYTHON"));
 }
 
+absl::Status CheckTableFile(const std::string& out) {
+  const auto ends_in = [&out](const char* ending) { return absl::EndsWith(out, ending); };
+  if (!ends_in(".csv") && !ends_in(".npz") && !ends_in(".parquet")) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--out: ", Quoted(out), " does not end in .csv, .npz or .parquet"));
+  }
+  return CheckNewFile("--out", out);
+}
+
 absl::Status CheckPythonFor(const std::string& out) {
   if (!absl::EndsWith(out, ".parquet")) {
     return CheckPython("--out " + out, {"ballpiston", "numpy"},
@@ -118,16 +127,6 @@ absl::Status CheckPythonFor(const std::string& out) {
   return CheckPython(
       "--out " + out, {"ballpiston", "pandas", "pyarrow"},
       "python3-ballpiston and python3-pandas, and pyarrow from the Python Package Index");
-}
-
-absl::Status CheckTableFile(const std::string& out) {
-  for (const char* ending : {".csv", ".npz", ".parquet"}) {
-    if (absl::EndsWith(out, ending)) return CheckNewFile("--out", out);
-  }
-  return absl::InvalidArgumentError(
-      out.empty()
-          ? "--out is missing: name a file .csv, .npz or .parquet"
-          : absl::StrCat("--out: ", Quoted(out), " does not end in .csv, .npz or .parquet"));
 }
 
 // The modules NAME.py in the folder of figures; names with _ are its own.

@@ -22,13 +22,13 @@ constexpr size_t kWidth = 80;
 // The content of a page, the same in every format.
 struct Section {
   std::string title;
-  std::vector<Remark> entries;
+  std::vector<Remark> entries = {};
 };
 
 struct Page {
   std::string name, summary, synopsis, description;
-  std::vector<Section> sections;
-  std::vector<std::string> examples;
+  std::vector<Section> sections = {};
+  std::vector<std::string> examples = {};
   std::string more = "";  // the last line
 };
 
@@ -48,10 +48,11 @@ std::string TermOf(const Flag& flag) {
 }
 
 Section SectionOf(const FlagGroup& group) {
-  Section section{.title = group.title, .entries = {}};
+  Section section{.title = group.title};
   for (const Flag& flag : group.flags) {
+    const std::string text = absl::StrCat(flag.text, flag.is_required ? "; required" : "");
     section.entries.push_back(
-        {TermOf(flag), Described(flag.text, flag.value, flag.name.empty() ? "" : flag.variable)});
+        {TermOf(flag), Described(text, flag.value, flag.name.empty() ? "" : flag.variable)});
   }
   return section;
 }
@@ -66,10 +67,8 @@ Page PageOf(const Verb& verb) {
   Page page{.name = absl::StrCat(kProgram, " ", verb.name),
             .summary = verb.summary,
             .synopsis = absl::StrCat(kProgram, " ", verb.name),
-            .description = verb.description,
-            .sections = {},
-            .examples = {}};
-  Section arguments{.title = "Arguments", .entries = {}};
+            .description = verb.description};
+  Section arguments{.title = "Arguments"};
   std::string rest;
   for (const Argument& argument : verb.arguments) {
     (argument.number == Argument::kRest ? rest : page.synopsis) += SynopsisOf(argument);
@@ -124,10 +123,9 @@ Page ProgramPage() {
             .description =
                 "Results go to standard output, everything else to standard error. "
                 "help VERB shows the flags of a verb.",
-            .sections = {},
             .examples = {"ballpiston run equilibrium --rho 0.5296 --delta 0.1,0.2",
                          "ballpiston help run"}};
-  Section verbs{.title = "Verbs", .entries = {}};
+  Section verbs{.title = "Verbs"};
   for (const Verb& verb : Verbs()) verbs.entries.push_back({verb.name, verb.summary});
   page.sections = {verbs,
                    {"Flags without a verb",
@@ -269,16 +267,10 @@ std::string PageName(const Verb* verb) {
 
 namespace {
 
-// The verb that the words name; null, for the program's page, if there are no words.
-absl::StatusOr<const Verb*> VerbNamed(const std::vector<std::string>& words) {
-  const std::string name = absl::StrJoin(words, " ");
-  if (name.empty()) return nullptr;
+absl::Status NoPageOf(const std::vector<std::string>& words) {
   std::vector<std::string> names;
-  for (const Verb& verb : Verbs()) {
-    if (verb.name == name) return &verb;
-    names.push_back(verb.name);
-  }
-  return absl::InvalidArgumentError(NotOneOf(name, names));
+  for (const Verb& verb : Verbs()) names.push_back(verb.name);
+  return absl::InvalidArgumentError(NotOneOf(absl::StrJoin(words, " "), names));
 }
 
 absl::Status WriteManPage(const std::string& folder, const Verb* verb) {
@@ -299,10 +291,11 @@ absl::Status WriteManPages(const std::string& folder) {
 }  // namespace
 
 VerbResult Help(const Options& options, Terminal& terminal) {
-  const absl::StatusOr<const Verb*> verb = VerbNamed(options.words);
-  if (!verb.ok()) {
-    const std::string page = options.words.size() == 1 ? GroupPage(options.words[0]) : "";
-    if (page.empty()) return verb.status();
+  const std::string name = absl::StrJoin(options.words, " ");
+  const Verb* const verb = VerbAt(options.words);  // null, for the program's page, without words
+  if (name != (verb == nullptr ? "" : verb->name)) {
+    const std::string page = options.words.size() == 1 ? GroupPage(name) : "";
+    if (page.empty()) return NoPageOf(options.words);
     terminal.out << page;
     return ExitCode::kDone;
   }
@@ -312,7 +305,7 @@ VerbResult Help(const Options& options, Terminal& terminal) {
     terminal.out << MarkdownReference();
   } else {
     const bool is_man = options.page == PageFormat::kMan;
-    terminal.out << (is_man ? ManPage(*verb) : options.all ? TextPage(*verb) : ShortPage(*verb));
+    terminal.out << (is_man ? ManPage(verb) : options.all ? TextPage(verb) : ShortPage(verb));
   }
   return ExitCode::kDone;
 }

@@ -14,46 +14,37 @@ namespace {
 constexpr size_t kMostPoints = 10'000;  // of a job; some 6 MB
 constexpr size_t kMostPictured = 12;    // points with histograms and curves; as in report.js
 
-struct Points {
-  std::vector<std::string> json;
-  bool is_complete = true;
-};
-
-absl::StatusOr<Points> PointsOf(const Connection& connection, const std::string& name) {
-  Points points;
+// The points of the job as JSON.
+absl::StatusOr<std::vector<std::string>> PointsOf(const Connection& connection,
+                                                  const std::string& name) {
+  std::vector<std::string> points;
   std::string token;
   do {
-    const bool pictured = points.json.size() < kMostPictured;
-    const auto view = pictured ? v1::ListResultsRequest::FULL : v1::ListResultsRequest::BASIC;
-    const auto page = connection.client.ResultsPage(name, view, token);
+    const auto page = connection.client.ResultsPage(name, v1::ListResultsRequest::BASIC, token);
     if (!page.ok()) return HintIfExpired(page.status(), connection, name);
-    for (v1::PointResult point : page->results()) {
-      if (points.json.size() == kMostPoints) {
-        points.is_complete = false;
-        return points;
+    for (const v1::PointResult& point : page->results()) {
+      if (points.size() == kMostPoints) return points;
+      if (points.size() >= kMostPictured) {
+        points.push_back(Json(point));
+        continue;
       }
-      if (points.json.size() >= kMostPictured) {
-        point.clear_histograms();
-        point.clear_curves();
-      }
-      points.json.push_back(Json(point));
+      const auto whole = connection.client.Point(name, point.index());
+      if (!whole.ok()) return HintIfExpired(whole.status(), connection, name);
+      points.push_back(Json(*whole));
     }
     token = page->next_page_token();
   } while (!token.empty());
   return points;
 }
 
+// The page computes how many points are left out: the job, fetched later, counts all of them.
 absl::StatusOr<std::string> JobJson(const Connection& connection, const std::string& name) {
-  const absl::StatusOr<Points> points = PointsOf(connection, name);
+  const auto points = PointsOf(connection, name);
   if (!points.ok()) return points.status();
-  // Fetched after the points, so that its count includes all of them.
   const auto job = connection.client.Get(name);
   if (!job.ok()) return job.status();
-  const int64_t left_out = points->is_complete ? 0
-                                               : job->progress().points_done() -
-                                                     static_cast<int64_t>(points->json.size());
-  return absl::StrCat("{\"job\":", Json(*job), ",\"points\":[", absl::StrJoin(points->json, ",\n"),
-                      "],\"points_left_out\":", left_out, "}");
+  return absl::StrCat("{\"job\":", Json(*job), ",\"points\":[", absl::StrJoin(*points, ",\n"),
+                      "]}");
 }
 
 absl::StatusOr<std::string> Data(const Connection& connection,
@@ -72,9 +63,6 @@ absl::StatusOr<std::string> Data(const Connection& connection,
 }  // namespace
 
 VerbResult ReportJobs(const Options& options, Terminal& terminal) {
-  if (options.out.empty()) {
-    return absl::InvalidArgumentError("--out is missing: name the HTML file to write");
-  }
   if (absl::Status bad = CheckNewFile("--out", options.out); !bad.ok()) return bad;
   const auto files = ReadPageFiles();
   if (!files.ok()) return files.status();

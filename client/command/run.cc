@@ -168,13 +168,26 @@ class Destination {
   std::unique_ptr<ResultWriter> writer_;
 };
 
+// One page of the finished points, or the point of --point.
+absl::StatusOr<v1::ListResultsResponse> PageOf(const Connection& connection,
+                                               const std::string& name, const Options& options,
+                                               v1::ListResultsRequest::View view,
+                                               const std::string& token) {
+  if (!options.point) return connection.client.ResultsPage(name, view, token);
+  auto point = connection.client.Point(name, *options.point);
+  if (!point.ok()) return point.status();
+  v1::ListResultsResponse page;
+  *page.add_results() = *std::move(point);
+  return page;
+}
+
 // If the server restarts, requests only the current page again: the earlier pages have been
 // printed. Calls Begin of the writer when the first page has arrived.
 absl::Status PrintPoints(const Connection& connection, const v1::EnsembleJob& job,
-                         Destination& destination, std::ostream& err) {
+                         const Options& options, Destination& destination, std::ostream& err) {
   std::string token;
   do {
-    const auto page = connection.client.ResultsPage(job.name(), destination.view(), token);
+    const auto page = PageOf(connection, job.name(), options, destination.view(), token);
     if (!page.ok()) return HintIfExpired(page.status(), connection, job.name());
     if (token.empty()) destination.writer().Begin(job);
     for (const v1::PointResult& point : page->results()) {
@@ -190,18 +203,6 @@ VerbResult End(const v1::EnsembleJob& job, Destination& destination, Terminal& t
   if (HasEnded(job.state())) return ReportEnd(job, terminal);
   NoteUnfinished(job, terminal);
   return ExitCode::kDone;
-}
-
-VerbResult PrintPoint(const Connection& connection, const std::string& name, int64_t index,
-                      const Options& options, Terminal& terminal) {
-  const auto point = connection.client.Point(name, index);
-  if (!point.ok()) return HintIfExpired(point.status(), connection, name);
-  const auto job = connection.client.Get(name);
-  if (!job.ok()) return job.status();
-  Destination destination(options, terminal);
-  destination.writer().Begin(*job);
-  AddPoint(*point, destination.writer(), terminal.err);
-  return End(*job, destination, terminal);
 }
 
 absl::Status TooMany(size_t jobs) {
@@ -220,10 +221,10 @@ absl::Status CheckSave(const Options& options) {
   }
   const bool is_usual = options.format == Format::kTable;
   if (!is_usual && (IsNpz(options) || options.format != FormatOf(options))) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "--save: ", options.save, " does not go with --format ", WordOf(options.format, Formats()),
-        "; permitted: no --format",
-        IsNpz(options) ? "" : ", or --format " + WordOf(FormatOf(options), Formats())));
+    return absl::InvalidArgumentError(
+        absl::StrCat("--save: ", options.save, " does not go with --format ",
+                     WordOf(options.format, kFormats), "; permitted: no --format",
+                     IsNpz(options) ? "" : ", or --format " + WordOf(FormatOf(options), kFormats)));
   }
   if (absl::Status bad = CheckNewFile("--save", options.save); !bad.ok()) return bad;
   if (!IsNpz(options)) return absl::OkStatus();
@@ -240,7 +241,7 @@ VerbResult PrintResult(const Connection& connection, const std::string& name,
   if (!job.ok()) return job.status();
   job->set_answered_from_store(answered_from_store);
   Destination destination(options, terminal);
-  const absl::Status status = PrintPoints(connection, *job, destination, terminal.err);
+  const absl::Status status = PrintPoints(connection, *job, options, destination, terminal.err);
   if (!status.ok()) return status;
   return End(*job, destination, terminal);
 }
@@ -287,9 +288,6 @@ VerbResult Run(const Options& options, Terminal& terminal) {
 }
 
 VerbResult Result(const Options& options, Terminal& terminal) {
-  if (options.point.value_or(0) < 0) {
-    return absl::InvalidArgumentError(absl::StrCat("--point: ", *options.point, " is below 0"));
-  }
   if (absl::Status bad = CheckSave(options); !bad.ok()) return bad;
   return WithJobs(
       options, terminal, {}, [&](const auto& connection, const auto& names) -> VerbResult {
@@ -298,9 +296,7 @@ VerbResult Result(const Options& options, Terminal& terminal) {
         }
         ExitCode worst = ExitCode::kDone;
         for (const std::string& name : names) {
-          const VerbResult result =
-              options.point ? PrintPoint(connection, name, *options.point, options, terminal)
-                            : PrintResult(connection, name, options, terminal);
+          const VerbResult result = PrintResult(connection, name, options, terminal);
           if (!result.ok()) return result;
           worst = std::max(worst, *result);
         }

@@ -115,9 +115,6 @@ VerbResult ServerStop(const Options& options, Terminal&) {
 }
 
 VerbResult ServerToken(const Options& options, Terminal& terminal) {
-  if (options.access_file.empty()) {
-    return absl::InvalidArgumentError("server token needs --access-file FILE");
-  }
   return RunBallpistond({"--access-file", options.access_file, "--new-token", options.credential},
                         terminal);
 }

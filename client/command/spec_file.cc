@@ -1,5 +1,10 @@
 #include "client/command/spec_file.h"
 
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/reflection.h>
+
+#include <vector>
+
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
@@ -10,16 +15,20 @@ namespace {
 
 // The parser reads -0 as the integer 0, without a sign, but keeps the sign of -0.0. Without the
 // sign a specification stays the same when it is printed and read again.
-void DropSignsOfZeros(v1::EnsembleSpec& spec) {
-  if (spec.target().has_tolerance()) {
-    spec.mutable_target()->set_tolerance(spec.target().tolerance() + 0.0);
-  }
-  if (!spec.has_grid()) return;
-  v1::Grid& grid = *spec.mutable_grid();
-  for (auto* list :
-       {grid.mutable_rho(), grid.mutable_delta(), grid.mutable_epsilon(), grid.mutable_exponent(),
-        grid.mutable_temperature(), grid.mutable_hot(), grid.mutable_cold()}) {
-    for (double& number : *list) number += 0.0;
+void DropSignsOfZeros(google::protobuf::Message& message) {
+  using google::protobuf::FieldDescriptor;
+  const google::protobuf::Reflection& values = *message.GetReflection();
+  std::vector<const FieldDescriptor*> fields;
+  values.ListFields(message, &fields);
+  for (const FieldDescriptor* field : fields) {
+    if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+      DropSignsOfZeros(*values.MutableMessage(&message, field));
+    } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE && !field->is_repeated()) {
+      values.SetDouble(&message, field, values.GetDouble(message, field) + 0.0);
+    } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
+      const auto list = values.GetMutableRepeatedFieldRef<double>(&message, field);
+      for (int i = 0; i < list.size(); ++i) list.Set(i, list.Get(i) + 0.0);
+    }
   }
 }
 

@@ -9,7 +9,6 @@
 #include "absl/strings/strip.h"
 #include "client/command/number_list.h"
 #include "client/library/quoted.h"
-#include "client/library/request_id.h"
 
 namespace ballpiston::client {
 namespace {
@@ -57,11 +56,6 @@ absl::StatusOr<std::string> ParseJobName(const std::string& text) {
       "a-z, 0-9 and hyphen");
 }
 
-absl::StatusOr<std::string> ParseRequestId(const std::string& text) {
-  if (IsRequestId(text)) return text;
-  return NotPermitted(text, "is not a UUID like 123e4567-e89b-12d3-a456-426614174000");
-}
-
 absl::StatusOr<std::map<std::string, std::string>> ParseLabels(const std::string& text) {
   std::map<std::string, std::string> labels;
   for (const absl::string_view label : absl::StrSplit(text, ',')) {
@@ -98,6 +92,16 @@ Value Number(std::string name, Store<double> store) {
 
 Value Count(Store<int64_t> store) { return Parsed("N", ParseCount, std::move(store)); }
 
+Value CountFrom(int64_t least, int64_t most, Store<int64_t> store) {
+  const auto parse = [least, most](const std::string& text) -> absl::StatusOr<int64_t> {
+    absl::StatusOr<int64_t> count = ParseCount(text);
+    if (!count.ok() || (*count >= least && *count <= most)) return count;
+    return absl::InvalidArgumentError(
+        absl::StrCat("is ", *count, "; permitted: ", least, " to ", most));
+  };
+  return Parsed("N", parse, std::move(store));
+}
+
 Value Seed(Store<uint64_t> store) { return Parsed("SEED", ParseSeed, std::move(store)); }
 
 Value List(Store<std::vector<double>> store) {
@@ -117,13 +121,6 @@ Value Date(Store<absl::Time> store) { return Parsed("DATE", ParseDate, std::move
 
 Value Job(Store<std::string> store) {
   return Parsed("JOB", ParseJobName, std::move(store), Offer::kJob);
-}
-
-Value RequestId() {
-  const Store<std::string> store = [](Options& options, std::string id) {
-    options.create.set_request_id(std::move(id));
-  };
-  return Parsed("UUID", ParseRequestId, store);
 }
 
 // Adds to the labels that were given before.

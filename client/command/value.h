@@ -47,13 +47,13 @@ Value Text(std::string name, Store<std::string> store, Offer offer = Offer::kNot
 Value File(Store<std::string> store);
 Value Number(std::string name, Store<double> store);
 Value Count(Store<int64_t> store);  // N
+Value CountFrom(int64_t least, int64_t most, Store<int64_t> store);
 Value Seed(Store<uint64_t> store);
 Value List(Store<std::vector<double>> store);             // LIST (number_list.h)
 Value Shapes(Store<std::vector<std::string>> store);      // LIST of shapes
 Value Words(std::string name, Store<std::string> store);  // each word
 Value Date(Store<absl::Time> store);
 Value Job(Store<std::string> store);               // ensembleJobs/ID
-Value RequestId();                                 // a UUID
 Value Labels(std::string name);                    // KEY=VALUE, separated by commas
 Value Passed(std::string name, std::string flag);  // to ballpistond, with its flag
 

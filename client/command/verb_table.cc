@@ -64,20 +64,6 @@ void SetBudget(Options& options, double seconds) {
   budget.set_nanos(nanos % kNanos);
 }
 
-// A message cannot hold less than a nanosecond.
-Value Budget() {
-  Value value = Number("SECONDS", &SetBudget);
-  value.read = [read = value.read](const std::string& text, Options& options) {
-    const absl::Status status = read(text, options);
-    const google::protobuf::Duration& budget = options.spec.target().budget();
-    const bool is_zero = budget.seconds() == 0 && budget.nanos() == 0;
-    if (!status.ok() || !is_zero || *ParseNumber(text) == 0) return status;
-    return absl::InvalidArgumentError(
-        absl::StrCat(text, " is below the least budget; permitted: 1e-9 to 1e6 s"));
-  };
-  return value;
-}
-
 // The table has --progress before --quiet. If --quiet is already set, its source is a weaker one.
 void SetProgress(Options& options, ProgressStyle style) {
   options.progress = style;
@@ -103,6 +89,11 @@ Value Forwarded(const std::string& flag) {
 int32_t Clamped(int64_t priority) {
   using Limits = std::numeric_limits<int32_t>;
   return static_cast<int32_t>(std::clamp<int64_t>(priority, Limits::min(), Limits::max()));
+}
+
+Flag Required(std::string name, Value value, std::string text) {
+  return {std::move(name), std::move(value), std::move(text), /*variable=*/"",
+          /*is_required=*/true};
 }
 
 // ---- flags ----
@@ -142,16 +133,13 @@ const FlagGroup kGrid = {
       "the piston's penetrations, 0 < delta <= (1 - lambda)/2"},
      {"--epsilon", Grid(&v1::Grid::mutable_epsilon),
       "the piston's energies, 0 to 1/2; optional in energy-relaxation"},
-     {"--exponent", Grid(&v1::Grid::mutable_exponent), "n of the outgoing law h^(n), 0 to 1000"},
+     {"--exponent", Grid(&v1::Grid::mutable_exponent), "n of the outgoing law h^(n)"},
      {"--cells", GridCells(),
-      "shapes of the gas: N or NxM; a chain of N cells, or a lattice of N columns and M rows; at "
-      "most 1e6 cells"},
+      "shapes of the gas: N or NxM; a chain of N cells, or a lattice of N columns and M rows"},
      {"--temperature", Grid(&v1::Grid::mutable_temperature),
-      "temperatures of a gas in equilibrium, by default 1; 1e-120 to 1e120 (the Boltzmann constant "
-      "is 1)"},
-     {"--hot", Grid(&v1::Grid::mutable_hot), "temperatures of the hot reservoir, 1e-120 to 1e120"},
-     {"--cold", Grid(&v1::Grid::mutable_cold),
-      "temperatures of the cold reservoir, 1e-120 to 1e120"},
+      "temperatures of a gas in equilibrium, by default 1 (the Boltzmann constant is 1)"},
+     {"--hot", Grid(&v1::Grid::mutable_hot), "temperatures of the hot reservoir"},
+     {"--cold", Grid(&v1::Grid::mutable_cold), "temperatures of the cold reservoir"},
      {"--points", File(To(&Options::points_file)),
       "CSV file with a table of points; its header names the parameters, in any order; the flags "
       "of other parameters multiply the table; - is standard input"}}};
@@ -165,7 +153,7 @@ const FlagGroup kTarget = {
      {"--tolerance", Number("REL", [](Options& o, double x) { Target(o).set_tolerance(x); }),
       "relative standard error of the first estimate; a point is finished when it reaches this "
       "error"},
-     {"--budget", Budget(),
+     {"--budget", Number("SECONDS", &SetBudget),
       "time of all workers, divided evenly between the points; with --tolerance, the job fails if "
       "this time is too short"}}};
 
@@ -205,16 +193,17 @@ const FlagGroup kJob = {
       "derive the request id from the specification: after an interruption, the same command "
       "returns the original job, unless that job failed or was cancelled, or its results have "
       "expired"},
-     {"--request-id", RequestId(),
+     {"--request-id",
+      Text("UUID", [](Options& o, std::string id) { o.create.set_request_id(std::move(id)); }),
       "idempotency key: a retry with the same UUID returns the original job"},
      {"--priority", Count([](Options& o, int64_t n) { o.create.set_priority(Clamped(n)); }),
-      "-100 to 100, by default 0; the server runs your jobs with a higher priority first"},
+      "by default 0; the server runs your jobs with a higher priority first"},
      {"--label", Labels("KEY=VALUE"),
       "a label of the job, by which it can be found again; may be repeated"}},
     /*is_everyday=*/false};
 
 const FlagGroup kFormat = {"Output",
-                           {{"--format", OneOf("FORMAT", Formats(), To(&Options::format)),
+                           {{"--format", OneOf("FORMAT", kFormats, To(&Options::format)),
                              "format on standard output; by default table"}}};
 
 const FlagGroup kSave = {
@@ -226,7 +215,7 @@ const FlagGroup kSave = {
 
 const FlagGroup kProgress = {
     "Progress",
-    {{"--progress", OneOf<ProgressStyle>("STYLE", ProgressStyles(), &SetProgress),
+    {{"--progress", OneOf<ProgressStyle>("STYLE", kProgressStyles, &SetProgress),
       "progress on standard error; by default auto, which shows a bar if standard error is a "
       "terminal, else nothing",
       "BALLPISTON_PROGRESS"}},
@@ -248,22 +237,22 @@ const FlagGroup kClosedForms = {
 
 const FlagGroup kTrace = {
     "Orbit",
-    {{"--rho", Number("X", [](Options& o, double x) { o.trace.set_rho(x); }),
-      "disc radius, 1/2 < rho < 1/sqrt(2); required"},
-     {"--delta", Number("X", [](Options& o, double x) { o.trace.set_delta(x); }),
-      "the pistons' penetration, above 0, up to (1 - lambda)/2 for a pair and rho/sqrt(2) - "
-      "lambda/2 for a gas; required"},
+    {Required("--rho", Number("X", [](Options& o, double x) { o.trace.set_rho(x); }),
+              "disc radius, 1/2 < rho < 1/sqrt(2)"),
+     Required("--delta", Number("X", [](Options& o, double x) { o.trace.set_delta(x); }),
+              "the pistons' penetration, above 0, up to (1 - lambda)/2 for a pair and rho/sqrt(2) "
+              "- lambda/2 for a gas"),
      {"--cells",
       Text("SHAPE",
            [](Options& o, const std::string& cells) { o.trace.set_cells(ShapeText(cells)); }),
       "a periodic gas of this shape instead of a pair: N, a chain of N cells, or NxM, a lattice of "
-      "N columns and M rows; at most 1,000 cells"},
+      "N columns and M rows"},
      {"--temperature", Number("X", [](Options& o, double x) { o.trace.set_temperature(x); }),
-      "temperature of the gas, 1e-120 to 1e120, by default 1; a pair has the energy 1/2"},
+      "temperature of the gas, by default 1; a pair has the energy 1/2"},
      {"--seed", Seed([](Options& o, uint64_t seed) { o.trace.set_seed(seed); }),
       "seed of the random start, by default 0"},
-     {"--events", Count([](Options& o, int64_t n) { o.trace.set_events(n); }),
-      "number of events, 1 to 1,000,000; required"}}};
+     Required("--events", Count([](Options& o, int64_t n) { o.trace.set_events(n); }),
+              "number of events")}};
 
 const FlagGroup kListFilter = {
     "Which jobs",
@@ -282,7 +271,8 @@ const FlagGroup kListFilter = {
       }),
       "only jobs submitted at this time (UTC) or later"},
      {"--label", Labels("KEY=VALUE"), "only jobs with this label; may be repeated"},
-     {"--limit", Count(To(&Options::limit)), "largest number of jobs to list, by default all"}}};
+     {"--limit", CountFrom(1, Client::kAllJobs, To(&Options::limit)),
+      "largest number of jobs to list, by default all"}}};
 
 const FlagGroup kSelection = {
     "Which jobs",
@@ -296,7 +286,7 @@ const FlagGroup kConfirmed = {
 
 const FlagGroup kPoint = {
     "Which points",
-    {{"--point", Count([](Options& o, int64_t index) { o.point = index; }),
+    {{"--point", CountFrom(0, INT64_MAX, [](Options& o, int64_t index) { o.point = index; }),
       "only the point with this position in the grid, from 0; by default all finished points"}}};
 
 const FlagGroup kWatch = {
@@ -326,16 +316,16 @@ const FlagGroup kFigure = {
       "only copy the figure's Python module to DIR, so that you can edit it; a module that is "
       "already there is used unchanged"}}};
 
-const FlagGroup kReport = {
-    "Report", {{"--out", File(To(&Options::out)), "the HTML file to write; required"}}};
+const FlagGroup kReport = {"Report",
+                           {Required("--out", File(To(&Options::out)), "the HTML file to write")}};
 
 const FlagGroup kTableFile = {
     "File",
-    {{"--out", File(To(&Options::out)), "the file to write, .csv, .npz or .parquet; required"}}};
+    {Required("--out", File(To(&Options::out)), "the file to write, .csv, .npz or .parquet")}};
 
-const FlagGroup kWeb = {
-    "Page",
-    {{"--port", Count(To(&Options::port)), "port for local connections, by default a free one"}}};
+const FlagGroup kWeb = {"Page",
+                        {{"--port", CountFrom(0, 65535, To(&Options::port)),
+                          "port for local connections, by default a free one"}}};
 
 const FlagGroup kDataFolder = {
     "Which server",
@@ -354,7 +344,7 @@ const FlagGroup kStart = {"Settings",
 
 const FlagGroup kToken = {
     "Access",
-    {{"--access-file", File(To(&Options::access_file)), "the server's access file; required"}}};
+    {Required("--access-file", File(To(&Options::access_file)), "the server's access file")}};
 
 const FlagGroup kPage = {
     "Page",
@@ -681,22 +671,6 @@ std::vector<std::string> NextWords(const std::string& begin) {
   return words;
 }
 
-const Choices<Format>& Formats() {
-  static const auto* const formats = new Choices<Format>{{"table", Format::kTable},
-                                                         {"json", Format::kJson},
-                                                         {"jsonl", Format::kJsonl},
-                                                         {"csv", Format::kCsv}};
-  return *formats;
-}
-
-const Choices<ProgressStyle>& ProgressStyles() {
-  static const auto* const styles = new Choices<ProgressStyle>{{"auto", ProgressStyle::kAuto},
-                                                               {"bar", ProgressStyle::kBar},
-                                                               {"json", ProgressStyle::kJson},
-                                                               {"none", ProgressStyle::kNone}};
-  return *styles;
-}
-
 const FlagGroup& ServerFlags() { return kServer; }
 const FlagGroup& TargetFlags() { return kTarget; }
 const std::vector<const FlagGroup*>& QuestionFlags() { return kQuestion; }
@@ -725,6 +699,11 @@ const std::vector<Remark>& Files() {
        "BALLPISTON_SERVER_PROGRAM is the ballpistond to start"},
       {"python3", "draws figures. BALLPISTON_PYTHON is another Python to start"}};
   return *files;
+}
+
+bool IsOf(const FlagGroup& group, const Flag& flag) {
+  return std::any_of(group.flags.begin(), group.flags.end(),
+                     [&flag](const Flag& other) { return &other == &flag; });
 }
 
 std::vector<const Flag*> FlagsOf(const Verb& verb) {

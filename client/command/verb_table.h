@@ -19,6 +19,7 @@ struct Flag {
   Value value;
   std::string text;
   std::string variable = "";  // environment variable, used if the flag is not given
+  bool is_required = false;
 };
 
 struct FlagGroup {
@@ -66,8 +67,14 @@ const FlagGroup& TargetFlags();
 const std::vector<const FlagGroup*>& QuestionFlags();
 
 // The words of --format and of --progress.
-const Choices<Format>& Formats();
-const Choices<ProgressStyle>& ProgressStyles();
+inline const Choices<Format> kFormats = {{"table", Format::kTable},
+                                         {"json", Format::kJson},
+                                         {"jsonl", Format::kJsonl},
+                                         {"csv", Format::kCsv}};
+inline const Choices<ProgressStyle> kProgressStyles = {{"auto", ProgressStyle::kAuto},
+                                                       {"bar", ProgressStyle::kBar},
+                                                       {"json", ProgressStyle::kJson},
+                                                       {"none", ProgressStyle::kNone}};
 
 // The exit codes, and the files and variables that the program reads: (name, text).
 struct Remark {
@@ -75,6 +82,8 @@ struct Remark {
 };
 const std::vector<Remark>& ExitCodes();
 const std::vector<Remark>& Files();
+
+bool IsOf(const FlagGroup& group, const Flag& flag);
 
 // All flags of the verb.
 std::vector<const Flag*> FlagsOf(const Verb& verb);

@@ -1,6 +1,5 @@
 // ballpiston watch: shows the progress of a job until it ends, or waits for several jobs.
-#include <condition_variable>
-#include <deque>
+#include <algorithm>
 #include <mutex>
 #include <stop_token>
 #include <thread>
@@ -16,39 +15,6 @@ namespace ballpiston::client {
 namespace {
 
 using Ended = absl::StatusOr<v1::EnsembleJob>;
-
-// Watches jobs at the same time, each on its own thread.
-class Watches {
- public:
-  Watches(const Connection& connection, const std::vector<std::string>& names) {
-    for (const std::string& name : names) {
-      threads_.emplace_back([this, &connection, name](const std::stop_token& stop) {
-        Add(connection.client.Watch(name, {}, {}, stop));
-      });
-    }
-  }
-
-  // Waits for the next job that ends, or whose watch fails.
-  Ended Next() {
-    std::unique_lock lock(mutex_);
-    added_.wait(lock, [this] { return !ended_.empty(); });
-    Ended next = std::move(ended_.front());
-    ended_.pop_front();
-    return next;
-  }
-
- private:
-  void Add(Ended ended) {
-    const std::lock_guard lock(mutex_);
-    ended_.push_back(std::move(ended));
-    added_.notify_one();
-  }
-
-  std::mutex mutex_;
-  std::condition_variable added_;
-  std::deque<Ended> ended_;
-  std::vector<std::jthread> threads_;  // the destructor stops them
-};
 
 VerbResult RunCommand(const v1::EnsembleJob& job, const Options& options) {
   if (options.command.empty()) return ExitCode::kDone;
@@ -69,20 +35,27 @@ VerbResult Finish(const Ended& job, const Options& options, const Terminal& term
   return ReportEnd(*job, terminal);
 }
 
-// Prints the name and the state of each job when it ends.
+// Watches each job on a thread of its own, and prints its name and state when it ends. With --any
+// the first one ends the other watches.
 VerbResult WatchSeveral(const Connection& connection, const std::vector<std::string>& names,
                         const Options& options, Terminal& terminal) {
-  Watches watches(connection, names);
-  const size_t count = options.any ? 1 : names.size();
+  std::mutex mutex;  // one job at a time is reported
   absl::Status first_error;
   ExitCode worst = ExitCode::kDone;
-  for (size_t i = 0; i < count; ++i) {
-    const Ended job = watches.Next();
+  std::stop_source enough;
+  const auto watch = [&](const std::string& name) {
+    const Ended job = connection.client.Watch(name, {}, {}, enough.get_token());
+    const std::lock_guard lock(mutex);
+    if (enough.stop_requested()) return;
+    if (options.any) enough.request_stop();
     if (job.ok()) terminal.out << job->name() << ' ' << Spelling(job->state()) << std::endl;
     const VerbResult result = Finish(job, options, terminal);
     first_error.Update(result.status());
     if (result.ok()) worst = std::max(worst, *result);
-  }
+  };
+  std::vector<std::jthread> threads;
+  for (const std::string& name : names) threads.emplace_back(watch, name);
+  threads.clear();  // waits for them
   return first_error.ok() ? VerbResult(worst) : first_error;
 }
 

@@ -4,17 +4,7 @@
 #include "client/web/web_server.h"
 
 namespace ballpiston::client {
-namespace {
-
-constexpr int64_t kMostPort = 65535;
-
-}  // namespace
-
 VerbResult Web(const Options& options, Terminal& terminal) {
-  if (options.port < 0 || options.port > kMostPort) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("--port: ", options.port, " is not from 0 to ", kMostPort));
-  }
   const auto files = ReadPageFiles();
   if (!files.ok()) return files.status();
   return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {

@@ -16,52 +16,28 @@
 namespace ballpiston::client {
 namespace {
 
-class FileActions {
- public:
-  explicit FileActions(const ChildProcess& child) {
-    posix_spawn_file_actions_init(&actions_);
-    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    if (!child.output.empty()) {
-      posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, child.output.c_str(),
-                                       O_WRONLY | O_CREAT | O_APPEND, 0600);
-      posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
-    }
-    if (!child.folder.empty()) {
-      posix_spawn_file_actions_addchdir_np(&actions_, child.folder.c_str());
-    }
-    posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1);
+void SetFiles(const ChildProcess& child, posix_spawn_file_actions_t* actions) {
+  posix_spawn_file_actions_addopen(actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  if (!child.output.empty()) {
+    posix_spawn_file_actions_addopen(actions, STDOUT_FILENO, child.output.c_str(),
+                                     O_WRONLY | O_CREAT | O_APPEND, 0600);
+    posix_spawn_file_actions_adddup2(actions, STDOUT_FILENO, STDERR_FILENO);
   }
-  ~FileActions() { posix_spawn_file_actions_destroy(&actions_); }
-  FileActions(const FileActions&) = delete;
-  FileActions& operator=(const FileActions&) = delete;
-  const posix_spawn_file_actions_t* get() const { return &actions_; }
+  if (!child.folder.empty()) posix_spawn_file_actions_addchdir_np(actions, child.folder.c_str());
+  posix_spawn_file_actions_addclosefrom_np(actions, STDERR_FILENO + 1);
+}
 
- private:
-  posix_spawn_file_actions_t actions_;
-};
-
-class Attributes {
- public:
-  explicit Attributes(const ChildProcess& child) {
-    posix_spawnattr_init(&attributes_);
-    sigset_t signals;
-    sigemptyset(&signals);
-    posix_spawnattr_setsigmask(&attributes_, &signals);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) sigaddset(&signals, signal);
-    posix_spawnattr_setsigdefault(&attributes_, &signals);
-    int flags = POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF;
-    if (child.detached) flags |= POSIX_SPAWN_SETSID;
-    if (child.own_group) flags |= POSIX_SPAWN_SETPGROUP;  // pgroup 0, the default: a new group
-    posix_spawnattr_setflags(&attributes_, static_cast<short>(flags));
-  }
-  ~Attributes() { posix_spawnattr_destroy(&attributes_); }
-  Attributes(const Attributes&) = delete;
-  Attributes& operator=(const Attributes&) = delete;
-  const posix_spawnattr_t* get() const { return &attributes_; }
-
- private:
-  posix_spawnattr_t attributes_;
-};
+void SetSignalsAndGroup(const ChildProcess& child, posix_spawnattr_t* attributes) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  posix_spawnattr_setsigmask(attributes, &signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) sigaddset(&signals, signal);
+  posix_spawnattr_setsigdefault(attributes, &signals);
+  int flags = POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF;
+  if (child.detached) flags |= POSIX_SPAWN_SETSID;
+  if (child.own_group) flags |= POSIX_SPAWN_SETPGROUP;  // pgroup 0, the default: a new group
+  posix_spawnattr_setflags(attributes, static_cast<short>(flags));
+}
 
 std::vector<char*> Arguments(const ChildProcess& child) {
   std::vector<char*> arguments;
@@ -83,11 +59,17 @@ std::string ProgramBeside(const std::string& name) {
 }
 
 absl::StatusOr<pid_t> StartChild(const ChildProcess& child) {
-  const FileActions actions(child);
-  const Attributes attributes(child);
+  posix_spawn_file_actions_t actions;
+  posix_spawnattr_t attributes;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawnattr_init(&attributes);
+  SetFiles(child, &actions);
+  SetSignalsAndGroup(child, &attributes);
   pid_t pid = 0;
-  const int error = posix_spawnp(&pid, child.command[0].c_str(), actions.get(), attributes.get(),
+  const int error = posix_spawnp(&pid, child.command[0].c_str(), &actions, &attributes,
                                  Arguments(child).data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
   if (error == 0) return pid;
   return absl::ErrnoToStatus(error, absl::StrCat("cannot start ", child.command[0]));
 }

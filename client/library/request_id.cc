@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <random>
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/str_format.h"
 
 namespace ballpiston::client {
@@ -34,17 +33,6 @@ std::string NewRequestId() { return Uuid(Random64(), Random64(), 4); }
 std::string RequestIdFor(absl::string_view text) {
   constexpr uint64_t kUsualBasis = 0xcbf29ce484222325, kOtherBasis = 0x9e3779b97f4a7c15;
   return Uuid(Fnv1a(text, kUsualBasis), Fnv1a(text, kOtherBasis), 8);
-}
-
-bool IsRequestId(absl::string_view text) {
-  constexpr absl::string_view kForm = "xxxxxxxx-xxxx-xxxx-xxxx-xxxxxxxxxxxx";
-  if (text.size() != kForm.size()) return false;
-  for (size_t i = 0; i < text.size(); ++i) {
-    const bool fits = kForm[i] == '-' ? text[i] == '-'
-                                      : absl::ascii_isxdigit(static_cast<unsigned char>(text[i]));
-    if (!fits) return false;
-  }
-  return true;
 }
 
 }  // namespace ballpiston::client

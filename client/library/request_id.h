@@ -13,7 +13,4 @@ std::string NewRequestId();
 // The UUID (version 8) of a text. Every process and version of this program gives the same UUID.
 std::string RequestIdFor(absl::string_view text);
 
-// Whether it has a UUID's form: 32 hexadecimal digits, with hyphens after 8, 12, 16 and 20.
-bool IsRequestId(absl::string_view text);
-
 }  // namespace ballpiston::client

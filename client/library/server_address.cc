@@ -16,20 +16,6 @@
 namespace ballpiston::client {
 namespace {
 
-absl::Status BadAddress(absl::string_view address, absl::string_view reason) {
-  return absl::InvalidArgumentError(absl::StrCat(
-      Quoted(address), " is not a server's address: ", reason, " (write host:port or unix:PATH)"));
-}
-
-absl::StatusOr<std::string> UnixTarget(absl::string_view address, absl::string_view path) {
-  if (path.empty()) return BadAddress(address, "the socket's path is missing");
-  if (path.size() > kMaxSocketPath) {
-    return BadAddress(address,
-                      absl::StrCat("the socket's path is longer than ", kMaxSocketPath, " bytes"));
-  }
-  return absl::StrCat("unix:", path);
-}
-
 bool IsPort(absl::string_view text) {
   uint32_t port = 0;
   return absl::SimpleAtoi(text, &port) && port >= 1 && port <= 65535;
@@ -44,14 +30,15 @@ bool IsHost(absl::string_view text) {
 
 absl::StatusOr<std::string> GrpcTarget(absl::string_view address) {
   absl::string_view path = address;
-  if (absl::ConsumePrefix(&path, "unix:")) return UnixTarget(address, path);
+  const bool is_socket = absl::ConsumePrefix(&path, "unix:");
+  if (is_socket && !path.empty() && path.size() <= kMaxSocketPath) return std::string(address);
   const size_t colon = address.rfind(':');
-  if (colon == absl::string_view::npos) return BadAddress(address, "the port is missing");
-  if (!IsHost(address.substr(0, colon))) return BadAddress(address, "the host is not valid");
-  if (!IsPort(address.substr(colon + 1))) {
-    return BadAddress(address, "the port must be a number from 1 to 65535");
-  }
-  return absl::StrCat("dns:///", address);
+  const bool is_tcp = !is_socket && colon != address.npos && IsHost(address.substr(0, colon)) &&
+                      IsPort(address.substr(colon + 1));
+  if (is_tcp) return absl::StrCat("dns:///", address);
+  return absl::InvalidArgumentError(absl::StrCat(
+      Quoted(address), " is not a server's address: write host:port or unix:PATH (a port is 1 to ",
+      "65535, and the path of a socket has at most ", kMaxSocketPath, " bytes)"));
 }
 
 std::string LiteralAddress(absl::string_view address) {

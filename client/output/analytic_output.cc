@@ -15,17 +15,17 @@ void PrintCsv(const v1::EvaluatePairsResponse& response, std::ostream& out) {
               energies = PlainFields(*v1::EnergyAnalytics::descriptor()),
               averages = PlainFields(*v1::CanonicalAnalytics::descriptor());
   const Cells no_energy(energies.size()), no_averages(averages.size());
-  out << CsvRow(Joined(Joined(pairs, energies), averages));
+  out << CsvRow(Joined({pairs, energies, averages}));
   for (const v1::PairAnalytics& pair : response.points()) {
     const Cells cells = FieldTexts(pair, pairs);
     if (pair.energies().empty() && pair.canonical().empty()) {
-      out << CsvRow(Joined(Joined(cells, no_energy), no_averages));
+      out << CsvRow(Joined({cells, no_energy, no_averages}));
     }
     for (const auto& energy : pair.energies()) {
-      out << CsvRow(Joined(Joined(cells, FieldTexts(energy, energies)), no_averages));
+      out << CsvRow(Joined({cells, FieldTexts(energy, energies), no_averages}));
     }
     for (const auto& row : pair.canonical()) {
-      out << CsvRow(Joined(Joined(cells, no_energy), FieldTexts(row, averages)));
+      out << CsvRow(Joined({cells, no_energy, FieldTexts(row, averages)}));
     }
   }
 }
@@ -51,38 +51,34 @@ void PrintQuantities(const v1::PairAnalytics& pair, std::ostream& out) {
   table.Print(out);
 }
 
-void PrintEnergies(const v1::PairAnalytics& pair, const std::vector<double>& outgoing,
-                   std::ostream& out) {
-  const Cells columns = PlainFields(*v1::EnergyAnalytics::descriptor());
-  Cells titles = columns;
-  for (const double energy : outgoing) titles.push_back(absl::StrFormat("W(%g)", energy));
-  TextTable table(titles);
-  for (const v1::EnergyAnalytics& energy : pair.energies()) {
-    Cells cells = TableCells(energy, columns);
-    for (const double w : energy.kernel()) cells.push_back(TableCell(w));
-    table.AddRow(std::move(cells));
-  }
+// A row for each message, with its kernel if it has one.
+template <typename Rows, typename Kernel>
+void PrintRows(const Rows& rows, const Cells& kernel_titles, std::ostream& out, Kernel kernel) {
+  if (rows.empty()) return;
+  const Cells columns = PlainFields(*rows[0].GetDescriptor());
+  TextTable table(Joined({columns, kernel_titles}));
+  for (const auto& row : rows) table.AddRow(Joined({TableCells(row, columns), kernel(row)}));
   out << '\n';
   table.Print(out, 2);
 }
 
-void PrintCanonical(const v1::PairAnalytics& pair, std::ostream& out) {
-  const Cells columns = PlainFields(*v1::CanonicalAnalytics::descriptor());
-  TextTable table(columns);
-  for (const auto& row : pair.canonical()) table.AddRow(TableCells(row, columns));
-  out << '\n';
-  table.Print(out, 2);
+Cells KernelCells(const v1::EnergyAnalytics& energy) {
+  Cells cells;
+  for (const double w : energy.kernel()) cells.push_back(TableCell(w));
+  return cells;
 }
 
 void PrintTable(const v1::EvaluatePairsResponse& response, const std::vector<double>& outgoing,
                 std::ostream& out) {
+  Cells kernel_titles;
+  for (const double energy : outgoing) kernel_titles.push_back(absl::StrFormat("W(%g)", energy));
   const char* separator = "";
   for (const v1::PairAnalytics& pair : response.points()) {
     out << separator;
     separator = "\n";
     PrintQuantities(pair, out);
-    if (!pair.energies().empty()) PrintEnergies(pair, outgoing, out);
-    if (!pair.canonical().empty()) PrintCanonical(pair, out);
+    PrintRows(pair.energies(), kernel_titles, out, &KernelCells);
+    PrintRows(pair.canonical(), {}, out, [](const auto&) { return Cells(); });
   }
 }
 

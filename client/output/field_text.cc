@@ -89,9 +89,10 @@ Cells PlainFields(const google::protobuf::Descriptor& type) {
   return names;
 }
 
-Cells Joined(Cells cells, const Cells& more) {
-  cells.insert(cells.end(), more.begin(), more.end());
-  return cells;
+Cells Joined(std::initializer_list<Cells> parts) {
+  Cells joined;
+  for (const Cells& part : parts) joined.insert(joined.end(), part.begin(), part.end());
+  return joined;
 }
 
 std::string CsvRow(const Cells& cells) {
@@ -127,11 +128,12 @@ std::string ParameterText(const v1::PointParameters& parameters) {
 }
 
 Cells ParametersInCsv(const v1::Grid& grid) {
-  Cells names = {"rho", "delta", "epsilon", "exponent"};
-  for (const std::string name : {"cells", "temperature", "hot", "cold"}) {
+  const std::set<std::string> always = {"rho", "delta", "epsilon", "exponent"};
+  Cells names = FieldNames(*v1::PointParameters::descriptor());
+  std::erase_if(names, [&](const std::string& name) {
     const auto* const list = v1::Grid::descriptor()->FindFieldByName(name);
-    if (grid.GetReflection()->FieldSize(grid, list) > 0) names.push_back(name);
-  }
+    return !always.contains(name) && grid.GetReflection()->FieldSize(grid, list) == 0;
+  });
   return names;
 }
 

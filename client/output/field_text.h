@@ -3,6 +3,7 @@
 
 #include <google/protobuf/message.h>
 
+#include <initializer_list>
 #include <optional>
 #include <set>
 #include <string>
@@ -34,7 +35,7 @@ Cells FieldNames(const google::protobuf::Descriptor& type);
 // Those that are neither messages nor lists, as the columns of a table.
 Cells PlainFields(const google::protobuf::Descriptor& type);
 
-Cells Joined(Cells cells, const Cells& more);
+Cells Joined(std::initializer_list<Cells> parts);
 
 // A row of CSV (RFC 4180) with its end of line. A cell is quoted if it contains a comma, a quote or
 // a line's end.
@@ -52,8 +53,8 @@ std::string TenDigits(double x);
 // "rho 0.53, delta 0.2, epsilon 0.25, exponent 1", each as TenDigits.
 std::string ParameterText(const v1::PointParameters& parameters);
 
-// The names of the parameters in CSV: rho, delta, epsilon and exponent in every file; cells,
-// temperature, hot and cold if the specification's grid has them.
+// The names of the parameters in CSV: rho, delta, epsilon and exponent in every file, the
+// others if the specification's grid has them.
 Cells ParametersInCsv(const v1::Grid& grid);
 
 // The parameters of a table: all of them; those but rho and delta are its optional columns.

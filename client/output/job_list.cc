@@ -45,12 +45,12 @@ std::string ResultsText(const v1::EnsembleJob& job, absl::Time now) {
 }
 
 void PrintCsv(const std::vector<v1::EnsembleJob>& jobs, std::ostream& out) {
-  const Cells fields = Joined(kFields, kMoreInCsv);
+  const Cells fields = Joined({kFields, kMoreInCsv});
   Cells titles;
   for (const std::string& field : fields) titles.push_back(field.substr(field.rfind('.') + 1));
-  out << CsvRow(Joined(titles, {"labels"}));
+  out << CsvRow(Joined({titles, {"labels"}}));
   for (const v1::EnsembleJob& job : jobs) {
-    out << CsvRow(Joined(FieldTexts(job, fields), {LabelsText(job)}));
+    out << CsvRow(Joined({FieldTexts(job, fields), {LabelsText(job)}}));
   }
 }
 
@@ -67,9 +67,9 @@ void PrintTable(const std::vector<v1::EnsembleJob>& jobs, absl::Time now, std::o
       {"principal", "priority", "results", "labels"});
   for (const v1::EnsembleJob& job : jobs) {
     table.AddRow(Joined(
-        FieldTexts(job, kFields),
-        {has_principals ? job.principal() : "", has_priorities ? absl::StrCat(job.priority()) : "",
-         ResultsText(job, now), LabelsText(job)}));
+        {FieldTexts(job, kFields),
+         {has_principals ? job.principal() : "", has_priorities ? absl::StrCat(job.priority()) : "",
+          ResultsText(job, now), LabelsText(job)}}));
   }
   table.Print(out);
 }

@@ -1,5 +1,6 @@
 #include "client/output/json.h"
 
+#include <google/protobuf/struct.pb.h>
 #include <google/protobuf/util/json_util.h>
 
 #include "absl/strings/ascii.h"
@@ -21,6 +22,14 @@ absl::Status ReadJson(const std::string& json, google::protobuf::Message& messag
   // The parser accepts `null` and a bare string as an empty message.
   if (!absl::StartsWith(absl::StripLeadingAsciiWhitespace(json), "{")) {
     return absl::InvalidArgumentError("not a JSON object");
+  }
+  // The parser takes the last value of a repeated key. It is strict only with the keys of a map.
+  google::protobuf::Struct keys;
+  const auto read = google::protobuf::util::JsonStringToMessage(json, &keys);
+  const size_t repeated = read.message().find("Repeated map key: ");
+  if (repeated != std::string::npos) {
+    return absl::InvalidArgumentError(
+        Shortened(read.message().substr(repeated).ToString(), kLongestMessage));
   }
   const auto status = google::protobuf::util::JsonStringToMessage(json, &message);
   if (status.ok()) return absl::OkStatus();

@@ -16,8 +16,8 @@ namespace ballpiston::client {
 
 std::string Json(const google::protobuf::Message& message);
 
-// INVALID_ARGUMENT, with the parser's message, if the text is not a JSON object, or has a field
-// that the message does not have.
+// INVALID_ARGUMENT, with the parser's message, if the text is not a JSON object, repeats a key,
+// or has a field that the message does not have.
 absl::Status ReadJson(const std::string& json, google::protobuf::Message& message);
 
 // One message per line.

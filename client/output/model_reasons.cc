@@ -22,12 +22,10 @@ std::string ModelName(v1::EnsembleSpec::Model model) {
 void ModelReasons::Add(const v1::PointParameters& parameters, v1::EnsembleSpec::Model model,
                        const std::string& reason) {
   if (reason.empty()) return;
-  const std::string name = ModelName(model);
-  const auto [entry, is_new] = position_.try_emplace({name, reason}, reasons_.size());
-  if (is_new) {
-    reasons_.push_back({.model = name, .text = reason, .first_point = parameters, .points = 0});
-  }
-  ++reasons_[entry->second].points;
+  const auto [position, is_new] =
+      positions_.try_emplace({ModelName(model), reason}, reasons_.size());
+  if (is_new) reasons_.push_back({ModelName(model), reason, parameters});
+  ++reasons_[position->second].points;
 }
 
 std::string ModelReasons::Line(const Reason& reason) const {

@@ -39,7 +39,7 @@ class ModelReasons {
   std::string Line(const Reason& reason) const;
 
   std::vector<Reason> reasons_;
-  std::map<std::pair<std::string, std::string>, size_t> position_;  // by model and text
+  std::map<std::pair<std::string, std::string>, size_t> positions_;  // by model and text
 };
 
 }  // namespace ballpiston::client

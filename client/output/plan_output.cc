@@ -32,13 +32,14 @@ void PrintCsv(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& p
   const Cells parameters = ParametersInCsv(spec.grid());
   const Cells fields = {"answers", "samples", "work", "relative_statistical_error",
                         "relative_model_error"};
-  out << CsvRow(Joined(Joined(Joined(parameters, {"model", "chosen"}), fields), {"reason"}));
+  out << CsvRow(Joined({parameters, {"model", "chosen"}, fields, {"reason"}}));
   for (const v1::PointPlan& point : plan.points()) {
     for (const v1::ModelPlan& model : point.models()) {
       const char* const chosen = IsChosen(point, model) ? "true" : "false";
-      const Cells begin =
-          Joined(FieldTexts(point.parameters(), parameters), {Spelling(model.model()), chosen});
-      out << CsvRow(Joined(Joined(begin, FieldTexts(model, fields)), {WholeReason(point, model)}));
+      out << CsvRow(Joined({FieldTexts(point.parameters(), parameters),
+                            {Spelling(model.model()), chosen},
+                            FieldTexts(model, fields),
+                            {WholeReason(point, model)}}));
     }
   }
 }
@@ -89,12 +90,12 @@ Cells CostCells(const v1::ModelPlan& model) {
 }
 
 void PrintLadder(const v1::PointPlan& point, std::ostream& out) {
-  TextTable table(Joined(Joined({"", "model", "answers"}, kCostTitles), {"remark"}),
+  TextTable table(Joined({{"", "model", "answers"}, kCostTitles, {"remark"}}),
                   {"", "model", "answers", "remark"});
   for (const v1::ModelPlan& model : point.models()) {
     const Cells begin = {IsChosen(point, model) ? ">" : "", Spelling(model.model()),
                          model.answers() ? "yes" : "no"};
-    table.AddRow(Joined(Joined(begin, CostCells(model)), {model.reason()}));
+    table.AddRow(Joined({begin, CostCells(model), {model.reason()}}));
   }
   out << '\n' << ParameterText(point.parameters()) << '\n';
   table.Print(out, 1);
@@ -112,12 +113,11 @@ const v1::ModelPlan& ChosenModel(const v1::PointPlan& point) {
 
 void PrintChoices(const v1::PlanEnsembleJobResponse& plan, std::ostream& out) {
   const Cells parameters = ParametersInTable();
-  TextTable table(Joined(Joined(parameters, {"model"}), kCostTitles), {"model"},
-                  OptionalParameters());
+  TextTable table(Joined({parameters, {"model"}, kCostTitles}), {"model"}, OptionalParameters());
   ModelReasons reasons;
   for (const v1::PointPlan& point : plan.points()) {
     const Cells cells = FieldTexts(point.parameters(), parameters, &TenDigits);
-    table.AddRow(Joined(Joined(cells, {ModelName(point.model())}), CostCells(ChosenModel(point))));
+    table.AddRow(Joined({cells, {ModelName(point.model())}, CostCells(ChosenModel(point))}));
     reasons.Add(point.parameters(), point.model(), point.reason());
   }
   out << '\n';

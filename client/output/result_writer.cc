@@ -18,40 +18,28 @@
 namespace ballpiston::client {
 namespace {
 
-std::string PointJson(v1::PointResult point) {
-  point.clear_name();
-  return Json(point);
-}
-
-class JsonlWriter : public ResultWriter {
- public:
-  explicit JsonlWriter(std::ostream& out) : out_(out) {}
-
-  void Begin(const v1::EnsembleJob&) override {}
-  void Add(const v1::PointResult& point) override { out_ << PointJson(point) << '\n'; }
-  void End() override {}
-
- private:
-  std::ostream& out_;
-};
-
+// One document, or only its points with a line each.
 class JsonWriter : public ResultWriter {
  public:
-  explicit JsonWriter(std::ostream& out) : out_(out) {}
+  JsonWriter(std::ostream& out, bool is_document) : out_(out), is_document_(is_document) {}
 
   void Begin(const v1::EnsembleJob& job) override {
+    if (!is_document_) return;
     out_ << "{\"client_version\": \"" << BALLPISTON_VERSION << "\",\n\"job\": " << Json(job)
          << ",\n\"points\": [";
   }
   void Add(const v1::PointResult& point) override {
-    out_ << (first_ ? "\n" : ",\n") << PointJson(point);
-    first_ = false;
+    v1::PointResult nameless = point;
+    nameless.clear_name();
+    out_ << (is_document_ ? separator_ : "") << Json(nameless) << (is_document_ ? "" : "\n");
+    separator_ = ",\n";
   }
-  void End() override { out_ << "\n]}\n"; }
+  void End() override { out_ << (is_document_ ? "\n]}\n" : ""); }
 
  private:
   std::ostream& out_;
-  bool first_ = true;
+  const bool is_document_;
+  const char* separator_ = "\n";
 };
 
 // A row for each estimate.
@@ -65,13 +53,13 @@ class CsvWriter : public ResultWriter {
            << BALLPISTON_VERSION << "\n# " << Json(job.spec()) << '\n';
     }
     parameters_ = ParametersInCsv(job.spec().grid());
-    out_ << CsvRow(Joined(Joined(parameters_, kPointFields), kEstimateFields));
+    out_ << CsvRow(Joined({parameters_, kPointFields, kEstimateFields}));
   }
   void Add(const v1::PointResult& point) override {
     const Cells first =
-        Joined(FieldTexts(point.parameters(), parameters_), FieldTexts(point, kPointFields));
+        Joined({FieldTexts(point.parameters(), parameters_), FieldTexts(point, kPointFields)});
     for (const v1::Estimate& estimate : point.estimates()) {
-      out_ << CsvRow(Joined(first, FieldTexts(estimate, kEstimateFields)));
+      out_ << CsvRow(Joined({first, FieldTexts(estimate, kEstimateFields)}));
     }
   }
   void End() override {}
@@ -133,14 +121,15 @@ class TableWriter : public ResultWriter {
   }
 
   static Cells Titles() {
-    return Joined(Joined(ParametersInTable(),
-                         {"model", "samples", "estimate", "value", "error", "exact", "z"}),
-                  kExtraColumns);
+    return Joined({ParametersInTable(),
+                   {"model", "samples", "estimate", "value", "error", "exact", "z"},
+                   kExtraColumns});
   }
 
   Cells PointCells(const v1::PointResult& point) const {
-    return Joined(FieldTexts(point.parameters(), ParametersInTable(), &TenDigits),
-                  {models_.size() > 1 ? Spelling(point.model()) : "", ExactText(point.samples())});
+    return Joined(
+        {FieldTexts(point.parameters(), ParametersInTable(), &TenDigits),
+         {models_.size() > 1 ? Spelling(point.model()) : "", ExactText(point.samples())}});
   }
 
   void AddRows(const v1::PointResult& point, TextTable& table) const {
@@ -150,7 +139,7 @@ class TableWriter : public ResultWriter {
           Measured(row.value(), NumberIn(row, "standard_error"), NumberIn(row, "exact"));
       const bool has_z = row.has_z_score() && !text.error.empty();
       const std::string z = has_z ? absl::StrFormat("%+.2f", row.z_score()) : "";
-      Cells cells = Joined(point_cells, {row.name(), text.value, text.error, text.exact, z});
+      Cells cells = Joined({point_cells, {row.name(), text.value, text.error, text.exact, z}});
       for (const std::string& column : kExtraColumns) cells.push_back(ExtraCell(column, row));
       table.AddRow(std::move(cells));
     }
@@ -169,9 +158,8 @@ class TableWriter : public ResultWriter {
 std::unique_ptr<ResultWriter> NewResultWriter(Format format, std::ostream& out, bool is_file) {
   switch (format) {
     case Format::kJson:
-      return std::make_unique<JsonWriter>(out);
     case Format::kJsonl:
-      return std::make_unique<JsonlWriter>(out);
+      return std::make_unique<JsonWriter>(out, /*is_document=*/format == Format::kJson);
     case Format::kTable:
       return std::make_unique<TableWriter>(out);
     default:

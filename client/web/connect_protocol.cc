@@ -4,6 +4,7 @@
 #include <google/protobuf/util/json_util.h>
 
 #include <cstdint>
+#include <map>
 #include <utility>
 
 #include "absl/strings/ascii.h"
@@ -67,37 +68,16 @@ std::string FlaggedEnvelope(char flags, absl::string_view message) {
 
 }  // namespace
 
-// From the protocol's table of codes.
 int HttpStatus(absl::StatusCode code) {
-  switch (code) {
-    case absl::StatusCode::kOk:
-      return 200;
-    case absl::StatusCode::kInvalidArgument:
-    case absl::StatusCode::kFailedPrecondition:
-    case absl::StatusCode::kOutOfRange:
-      return 400;
-    case absl::StatusCode::kUnauthenticated:
-      return 401;
-    case absl::StatusCode::kPermissionDenied:
-      return 403;
-    case absl::StatusCode::kNotFound:
-      return 404;
-    case absl::StatusCode::kAborted:
-    case absl::StatusCode::kAlreadyExists:
-      return 409;
-    case absl::StatusCode::kResourceExhausted:
-      return 429;
-    case absl::StatusCode::kCancelled:
-      return 499;
-    case absl::StatusCode::kUnimplemented:
-      return 501;
-    case absl::StatusCode::kUnavailable:
-      return 503;
-    case absl::StatusCode::kDeadlineExceeded:
-      return 504;
-    default:
-      return 500;
-  }
+  using Code = absl::StatusCode;
+  static const auto* const table = new std::map<Code, int>{
+      {Code::kOk, 200},          {Code::kInvalidArgument, 400},   {Code::kFailedPrecondition, 400},
+      {Code::kOutOfRange, 400},  {Code::kUnauthenticated, 401},   {Code::kPermissionDenied, 403},
+      {Code::kNotFound, 404},    {Code::kAborted, 409},           {Code::kAlreadyExists, 409},
+      {Code::kCancelled, 499},   {Code::kResourceExhausted, 429}, {Code::kUnimplemented, 501},
+      {Code::kUnavailable, 503}, {Code::kDeadlineExceeded, 504}};
+  const auto row = table->find(code);
+  return row == table->end() ? 500 : row->second;
 }
 
 std::string ErrorJson(const absl::Status& status) { return Json(ErrorOf(status)); }

@@ -6,16 +6,17 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "absl/time/time.h"
 #include "client/library/quoted.h"
 #include "client/library/request_id.h"
 #include "client/web/connect_protocol.h"
-#include "client/web/page_access.h"
 
 namespace ballpiston::client {
 namespace {
@@ -65,6 +66,16 @@ bool HasType(const Request& request, const std::string& type) {
   return given == type || absl::StartsWith(given, type + ";");
 }
 
+// Compares in a time that does not depend on the position of the first difference.
+bool AreEqual(absl::string_view a, absl::string_view b) {
+  if (a.size() != b.size()) return false;
+  unsigned difference = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
+  }
+  return difference == 0;
+}
+
 // The header Connect-Timeout-Ms; empty if the request lacks it.
 absl::StatusOr<std::optional<absl::Duration>> TimeoutOf(const Request& request) {
   const std::string text = request.get_header_value("Connect-Timeout-Ms");
@@ -100,22 +111,46 @@ class WebServer {
       port = -1;
     }
     if (port < 0) return absl::UnavailableError("the port is in use or not permitted");
-    access_.emplace(port, NewRequestId());
+    const std::string suffix = port == 80 ? "" : absl::StrCat(":", port);  // as browsers write it
+    hosts_ = {kLoopback + suffix, "localhost" + suffix};
     return absl::OkStatus();
   }
 
-  std::string Url() const { return access_->Url(); }
+  // The token is in the fragment, which browsers do not send.
+  std::string Url() const { return absl::StrCat("http://", hosts_[0], "/#token=", token_); }
   void Serve() { server_.listen_after_bind(); }
 
  private:
+  // The value of a header must be one of this page's hosts behind `scheme`.
+  absl::Status CheckHost(const std::string& header, const std::string& scheme,
+                         const Request& request) const {
+    const std::string value = request.get_header_value(header);
+    for (const std::string& host : hosts_) {
+      if (value == scheme + host) return absl::OkStatus();
+    }
+    return absl::PermissionDeniedError(absl::StrCat(header, ": ", Quoted(value),
+                                                    " is not this page; permitted: ", scheme,
+                                                    absl::StrJoin(hosts_, ", " + scheme)));
+  }
+
   // Rejects requests that other web pages send, and requests to another address.
   httplib::Server::Handler Checked(httplib::Server::Handler handler) {
     return [this, handler](const Request& request, Response& response) {
-      const absl::Status checked = access_->CheckOrigin(request.get_header_value("Host"),
-                                                        request.get_header_value("Origin"));
+      absl::Status checked = CheckHost("Host", "", request);
+      if (request.has_header("Origin")) checked.Update(CheckHost("Origin", "http://", request));
       if (!checked.ok()) return RespondError(checked, response);
       handler(request, response);
     };
+  }
+
+  absl::Status CheckToken(const Request& request) const {
+    const std::string given = request.get_header_value("Authorization");
+    if (AreEqual(given, absl::StrCat("Bearer ", token_))) return absl::OkStatus();
+    return absl::UnauthenticatedError(
+        given.empty()
+            ? "the header Authorization: Bearer TOKEN is missing; the token is in the address that "
+              "ballpiston web printed"
+            : "wrong token: each run of ballpiston web prints an address with a new token");
   }
 
   void SendFile(const Request& request, Response& response) const {
@@ -129,7 +164,7 @@ class WebServer {
   }
 
   void PassOn(const Request& request, Response& response) const {
-    const absl::Status status = access_->CheckToken(request.get_header_value("Authorization"));
+    const absl::Status status = CheckToken(request);
     if (!status.ok()) return RespondError(status, response);
     const auto* const method = FindMethod(request.matches[1].str());
     if (method == nullptr) {
@@ -187,7 +222,8 @@ class WebServer {
 
   const PageFiles& files_;
   const GatewayCall& call_;
-  std::optional<PageAccess> access_;
+  const std::string token_ = NewRequestId();
+  std::vector<std::string> hosts_;  // 127.0.0.1:PORT, localhost:PORT
   httplib::Server server_;
 };
 

@@ -2,7 +2,16 @@
 // gateway that forwards calls in the Connect protocol to ballpistond.
 //
 //   GET  /                                 the page
-//   POST /ballpiston.v1.SERVICE/METHOD     a call, with the token (page_access.h)
+//   POST /ballpiston.v1.SERVICE/METHOD     a call, with the token
+//
+// Other programs on this machine, and web pages of other sites in the user's browser, can reach the
+// same port. Three headers of a request are checked:
+//
+//   Host           must be this page's address. This rejects a foreign name that resolves to this
+//                  machine (DNS rebinding).
+//   Origin         must be this page's, if the browser sends it
+//   Authorization  must be Bearer TOKEN in every call to the server. The page's files contain no
+//                  secrets and need no token.
 //
 // Each open stream uses one of kMostConnections threads. If its reader disconnects, the call ends
 // at the next message. A watch sends heartbeats, so that there is always a next message.

@@ -82,20 +82,39 @@ std::vector<FieldViolation> PointsWithoutAnError(const EnsembleSpec& spec) {
   return {};
 }
 
+// A number of samples or collisions with one digit that takes at most kMostSeconds; 0 if there is
+// none. The time has parts that do not grow with the number; therefore the first guess may be too
+// large.
+int64_t PermittedCount(EnsembleSpec spec, const PointParameters& point,
+                       std::optional<int64_t> Target::*kind, double guess) {
+  for (; guess >= 1; guess /= 2) {
+    const double unit = std::pow(10, std::floor(std::log10(guess)));
+    const auto count = static_cast<int64_t>(std::floor(guess / unit) * unit);
+    spec.target.*kind = count;
+    if (NominalSeconds(spec, point) <= kMostSeconds) return count;
+  }
+  return 0;
+}
+
+// `spec` has one point.
 FieldViolation TooLong(const EnsembleSpec& spec, const PointParameters& point, double seconds) {
   const Target& target = spec.target;
-  std::string field = "target.samples";
-  std::string given = absl::StrCat("is ", kDefaultSamples, " by default");
-  if (target.samples) given = absl::StrCat("is ", *target.samples);
-  if (target.collisions) {
-    field = "target.collisions", given = absl::StrCat("is ", *target.collisions);
-  }
+  const std::string reason = absl::StrFormat(
+      ", which takes about %.1g s of one core at %s; permitted", seconds, ParametersText(point));
+  const std::string limit = absl::StrFormat("%.0g s", kMostSeconds);
   if (target.tolerance) {
-    field = "target.tolerance", given = absl::StrCat("is ", NumberText(*target.tolerance));
+    return {"target.tolerance",
+            absl::StrCat("is ", NumberText(*target.tolerance), reason, ": up to ", limit)};
   }
-  return {field,
-          absl::StrFormat("%s, which takes about %.1g s of one core at %s; permitted: up to %.0g s",
-                          given, seconds, ParametersText(point), kMostSeconds)};
+  const auto kind = target.collisions ? &Target::collisions : &Target::samples;
+  const int64_t given = (target.*kind).value_or(kDefaultSamples);
+  const int64_t permitted = PermittedCount(
+      spec, point, kind, static_cast<double>(given) * std::min(1.0, kMostSeconds / seconds));
+  return {target.collisions ? "target.collisions" : "target.samples",
+          absl::StrCat("is ", given, target.*kind ? "" : " by default", reason, " there: ",
+                       permitted == 0 ? "none, because even one takes longer than "
+                                      : absl::StrCat("up to ", permitted, ", the number for "),
+                       limit)};
 }
 
 }  // namespace
@@ -107,8 +126,9 @@ std::vector<FieldViolation> TimeViolations(const EnsembleSpec& spec) {
     // Without a tolerance AUTO takes samples of the billiard.
     const Model model = spec.target.tolerance ? ExpectedModel(spec, point) : Sampled(spec.model);
     if (!TakesSamples(model)) continue;
-    const double seconds = NominalSeconds(OnePointSpec(spec, point, model), point);
-    if (!(seconds <= kMostSeconds)) return {TooLong(spec, point, seconds)};
+    const EnsembleSpec one = OnePointSpec(spec, point, model);
+    const double seconds = NominalSeconds(one, point);
+    if (!(seconds <= kMostSeconds)) return {TooLong(one, point, seconds)};
   }
   return {};
 }

@@ -200,7 +200,7 @@ TEST(WebFlags, TheErrorNamesAPortInUse) {
   const TestServer server;
   const ProcessResult high = server.Client({"web", "--port", "70000"});
   EXPECT_THAT(high, ExitsWith(2));
-  EXPECT_THAT(high.err, HasSubstr("--port: 70000 is not from 0 to 65535"));
+  EXPECT_THAT(high.err, HasSubstr("--port: is 70000; permitted: 0 to 65535"));
   const auto web = server.StartClient({"web"});
   ASSERT_TRUE(web->WaitForOut("\n"));
   const std::string url = web->Output();
@@ -236,7 +236,6 @@ TEST_F(ReportTest, HasJobsWithTheirResultsInOneFile) {
   EXPECT_EQ(Length(At(data, "jobs", 0, "points")), 2);
   EXPECT_EQ(Length(At(data, "jobs", 0, "points", 0, "histograms", 0, "counts")), 1000);
   EXPECT_EQ(At(data, "jobs", 1, "job", "name").string_value(), second);
-  EXPECT_EQ(At(data, "jobs", 0, "points_left_out").number_value(), 0);
 }
 
 TEST_F(ReportTest, AFailureKeepsThePreviousFile) {

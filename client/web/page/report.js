@@ -1,6 +1,6 @@
 // The page of `ballpiston report`: jobs with their points, from the JSON inside the page:
-//   {client_version, created, jobs: [{job, points, points_left_out}]}
-// with an EnsembleJob, PointResults, and the number of points that are not in the file.
+//   {client_version, created, jobs: [{job, points}]}
+// with an EnsembleJob and PointResults, of which a long job has only the first ones.
 (function (ballpiston) {
   'use strict';
 
@@ -23,7 +23,8 @@
   }
 
   function panels(entry, pictured) {
-    const {job, points, points_left_out: leftOut} = entry;
+    const {job, points} = entry;
+    const leftOut = (job.progress?.points_done ?? 0) - points.length;
     return [
       outcomeText(job),
       job.results_expired ? 'The results have expired; only the specification is kept.' : null,

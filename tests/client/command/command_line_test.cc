@@ -12,6 +12,8 @@ using Words = std::vector<std::string>;
 
 class CommandLineTest : public ProgramTest {};
 
+Words LinesIn(const std::string& text) { return absl::StrSplit(text, '\n', absl::SkipEmpty()); }
+
 TEST_F(CommandLineTest, TheProgramsPageIsItsHelp) {
   const Outcome program = Ballpiston({"--help"});
   EXPECT_EQ(program.code, 0);
@@ -80,6 +82,27 @@ TEST_F(CommandLineTest, NoLibraryLogsToStandardError) {
   testing::internal::CaptureStderr();
   EXPECT_NE(WithServer({"submit", "first-hit"}).code, 0);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(CommandLineTest, AWatchOfSeveralJobsPrintsEachAndReturnsTheWorst) {
+  server_.ensemble.jobs.push_back(job());
+  job().set_name("ensembleJobs/d");
+  server_.ensemble.watches.push_back(
+      {{JobMessage(JobIn(v1::EnsembleJob::FAILED), "t")}, grpc::Status::OK});
+  const Outcome outcome = WithServer({"watch", "abc", "d"});
+  EXPECT_EQ(outcome.code, 4);
+  EXPECT_THAT(LinesIn(outcome.out), testing::UnorderedElementsAre("ensembleJobs/abc succeeded",
+                                                                  "ensembleJobs/abc failed"));
+}
+
+// The other job never ends.
+TEST_F(CommandLineTest, AWatchOfAnyJobEndsWithTheFirst) {
+  server_.ensemble.jobs.push_back(job());
+  job().set_name("ensembleJobs/d");
+  server_.ensemble.watches.push_back(
+      {.messages = {JobMessage(JobIn(v1::EnsembleJob::RUNNING), "t")}, .hangs = true});
+  const Outcome outcome = WithServer({"watch", "abc", "d", "--any"});
+  EXPECT_EQ(outcome, (Outcome{0, "ensembleJobs/abc succeeded\n", ""}));
 }
 
 TEST_F(CommandLineTest, AFigureWithoutItsNameIsAnErrorWithoutPython) {

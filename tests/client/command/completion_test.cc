@@ -138,8 +138,10 @@ TEST_F(CompletionScriptTest, BashChoosesFromTheWords) {
               ElementsAre("csv", "json", registered));
   EXPECT_THAT(Asked(),
               ElementsAre("<completion>", "<words>", "<-->", "<list>", "<--format>", "<>"));
-  EXPECT_THAT(Run("bash", InBash("csv\\n", "ballpiston list --format =", 3)),
+  EXPECT_THAT(Run("bash", InBash("no\\n--format=csv\\n", "ballpiston list --format = c", 4)),
               ElementsAre("csv", registered));
+  EXPECT_THAT(Run("bash", InBash("no\\n--label\\tof KEY=VALUE\\n", "ballpiston list --", 2)),
+              ElementsAre("--label", registered));
 }
 
 TEST_F(CompletionScriptTest, BashOffersFiles) {
