@@ -128,6 +128,22 @@ TEST_F(ServerTest, AServerInAFolderIsStartedCheckedCopiedAndStopped) {
   EXPECT_THAT(Server("stop", named_), ExitsWith(0));
 }
 
+// A server that stops, and one that is killed, are followed by one at another address.
+TEST_F(ServerTest, StartPrintsTheAddressOfTheServerThatItStarted) {
+  for (int i = 0; i < 6; ++i) {
+    const std::string address = absl::StrCat("unix:", home_.File("socket"), i);
+    EXPECT_EQ(Server("start", Joined({named_, {"--listen", address}})).out, address + "\n");
+    if (i % 2 == 0) {
+      EXPECT_THAT(Server("stop", named_), ExitsWith(0));
+      EXPECT_EQ(Contents(home_.File("data/lock")), "");
+      EXPECT_FALSE(fs::exists(home_.File("data/server.address")));
+    } else {
+      KillServers();
+      AwaitThat([&] { return Servers().empty(); });
+    }
+  }
+}
+
 // The lock file of a folder that another machine uses holds the number of a process of that
 // machine.
 TEST_F(ServerTest, StopIgnoresProcessesThatDoNotUseTheFolder) {
@@ -193,7 +209,8 @@ TEST(ServerLog, TheServerGoesOnWhenNobodyReadsItsLog) {
   }
   log.Read();
   EXPECT_EQ(server.Stop(), 0);
-  EXPECT_THAT(log.Read(), HasSubstr("warning: lines were dropped: the log was not read (lines="));
+  EXPECT_THAT(log.Read(), HasSubstr("warning: lines were dropped: the log was not read or "
+                                    "could not be written (lines="));
 }
 
 }  // namespace
